@@ -1,0 +1,208 @@
+//! Cameras: a view and a projection matrix, and what a renderer needs to know of them.
+
+use super::Bounds;
+use crate::error::{Error, Result};
+use glam::{DMat4, DVec3, DVec4};
+
+/// A view and a projection matrix, in Vulkan's clip space (x right, y down, `0 ≤ z ≤ w`), for column vectors.
+///
+/// Any rigid view and any projection of these kinds serve: perspective or orthographic, off-centre, finite or infinite, reversed or
+/// not. [`Camera::look_at`] makes ours: eye space x right, y down, z forward; reversed, infinite far plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Camera {
+    /// World to eye space.
+    pub view: DMat4,
+    /// Eye space to clip space.
+    pub projection: DMat4,
+    /// Whether clip-space depth falls with distance (1 at the near plane).
+    pub reversed: bool,
+}
+
+/// How depth becomes distance: what the third and fourth row of the projection say.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Projection {
+    /// Whether all rays meet in the eye.
+    pub perspective: bool,
+    /// +1 if eye space looks along +z, −1 if along −z: distance in front of the eye is `forward · z`.
+    pub forward: f64,
+    /// Eye-space distance of the near plane; above 0 in perspective.
+    pub near: f64,
+    /// Eye-space distance of the far plane; may be infinite in perspective.
+    pub far: f64,
+}
+
+impl Camera {
+    /// A perspective camera at `eye` that looks at `target`, with `up` upwards in the picture.
+    ///
+    /// `fov_y` is the full vertical angle in radians, `aspect` is width / height, `near` the near plane's distance.
+    pub fn look_at(eye: DVec3, target: DVec3, up: DVec3, fov_y: f64, aspect: f64, near: f64) -> Result<Self> {
+        if !(fov_y > 0.0 && fov_y < std::f64::consts::PI) {
+            let degrees = fov_y.to_degrees();
+            return Err(Error::Usage(format!("the field of view is {degrees}°: give one between 0 and 180")));
+        }
+        let view = look_at_view(eye, target, up)?;
+        let focal = 1.0 / (0.5 * fov_y).tan();
+        Ok(Self { view, projection: infinite_reversed(focal / aspect, focal, near), reversed: true })
+    }
+
+    /// An orthographic camera; `height` is the picture's height in world units, `near` and `far` are distances from `eye`.
+    pub fn orthographic(
+        [eye, target, up]: [DVec3; 3],
+        height: f64,
+        aspect: f64,
+        [near, far]: [f64; 2],
+    ) -> Result<Self> {
+        let view = look_at_view(eye, target, up)?;
+        let depth = 1.0 / (far - near);
+        let projection = DMat4::from_cols(
+            DVec4::new(2.0 / (height * aspect), 0.0, 0.0, 0.0),
+            DVec4::new(0.0, 2.0 / height, 0.0, 0.0),
+            DVec4::new(0.0, 0.0, -depth, 0.0),
+            DVec4::new(0.0, 0.0, far * depth, 1.0),
+        );
+        Ok(Self { view, projection, reversed: true })
+    }
+
+    /// A perspective camera that shows the whole of `bounds`, seen from the front, a little from the right and above (y is up).
+    pub fn framing(bounds: &Bounds, fov_y: f64, aspect: f64) -> Result<Self> {
+        let radius = if bounds.radius() > 0.0 { bounds.radius() } else { 1.0 };
+        // The sphere touches the narrower of the two fields of view.
+        let half = (0.5 * fov_y).tan().min((0.5 * fov_y).tan() * aspect).atan();
+        let distance = radius / half.sin();
+        let eye = bounds.centre() + distance * DVec3::new(1.0, 0.8, 1.6).normalize();
+        let near = Self::near_for(eye, bounds);
+        Self::look_at(eye, bounds.centre(), DVec3::Y, fov_y, aspect, near)
+    }
+
+    /// A near plane that cuts nothing a viewer at `eye` could want to see of `bounds`. Reversed float depth loses nothing by a small
+    /// one.
+    pub fn near_for(eye: DVec3, bounds: &Bounds) -> f64 {
+        let scale = bounds.radius().max((eye - bounds.centre()).length());
+        if scale > 0.0 { 1e-5 * scale } else { 1e-5 }
+    }
+
+    /// World to clip space.
+    pub fn world_to_clip(&self) -> DMat4 {
+        self.projection * self.view
+    }
+
+    /// What the projection's depth rows say; refuses a projection that is of no supported kind.
+    pub fn projection(&self) -> Result<Projection> {
+        let (z, w) = (self.projection.row(2), self.projection.row(3));
+        let refuse = |cause: &str| Err(Error::Usage(format!("the projection matrix {cause}")));
+        if !self.projection.is_finite() || !self.view.is_finite() {
+            return refuse("or the view matrix holds a value that is not finite");
+        }
+        if z.x != 0.0 || z.y != 0.0 {
+            return refuse("has an oblique near plane: use one whose depth rows depend on z alone");
+        }
+        if w.x != 0.0 || w.y != 0.0 || (w.z != 0.0) == (w.w != 0.0) {
+            return refuse("has a fourth row that is neither (0, 0, ±k, 0) nor (0, 0, 0, k)");
+        }
+        let perspective = w.z != 0.0;
+        // ndc depth as a function of the distance d = forward · z: a + b / d in perspective, (a d + b) otherwise.
+        let (forward, at_zero, at_one) = if perspective {
+            let (a, b) = (z.z / w.z, z.w / w.z.abs());
+            (w.z.signum(), -b / a, b / (1.0 - a))
+        } else {
+            let forward = if (z.z / w.w > 0.0) == self.reversed { -1.0 } else { 1.0 };
+            let (a, b) = (forward * z.z / w.w, z.w / w.w);
+            (forward, -b / a, (1.0 - b) / a)
+        };
+        let (near, far) = if self.reversed { (at_one, at_zero) } else { (at_zero, at_one) };
+        // An infinite far plane may come out as −∞ or, from single-precision matrices, as a huge negative number.
+        let far = if perspective && (far.is_nan() || far < 0.0) { f64::INFINITY } else { far };
+        if !(near.is_finite() && far > near && (near > 0.0 || !perspective)) {
+            return refuse(&format!("puts the near plane at {near} and the far plane at {far}; is `reversed` right?"));
+        }
+        Ok(Projection { perspective, forward, near, far })
+    }
+}
+
+fn infinite_reversed(focal_x: f64, focal_y: f64, near: f64) -> DMat4 {
+    DMat4::from_cols(
+        DVec4::new(focal_x, 0.0, 0.0, 0.0),
+        DVec4::new(0.0, focal_y, 0.0, 0.0),
+        DVec4::new(0.0, 0.0, 0.0, 1.0),
+        DVec4::new(0.0, 0.0, near, 0.0),
+    )
+}
+
+/// World to eye space: x right, y down, z forward.
+fn look_at_view(eye: DVec3, target: DVec3, up: DVec3) -> Result<DMat4> {
+    let usage = |cause: &str| Error::Usage(format!("the camera {cause}: move the eye, the target or the up vector"));
+    if !(eye.is_finite() && target.is_finite() && up.is_finite()) {
+        return Err(usage("has a coordinate that is not finite"));
+    }
+    let forward = (target - eye).try_normalize().ok_or_else(|| usage("stands on its target"))?;
+    let right = forward.cross(up).try_normalize().ok_or_else(|| usage("looks along its up vector"))?;
+    let down = forward.cross(right);
+    let rotation = glam::DMat3::from_cols(right, down, forward).transpose();
+    Ok(DMat4::from_mat3(rotation) * DMat4::from_translation(-eye))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::dcamera::{lh, rh};
+
+    fn camera(projection: DMat4, reversed: bool) -> Camera {
+        Camera { view: DMat4::IDENTITY, projection, reversed }
+    }
+
+    fn close(a: f64, b: f64) -> bool {
+        a == b || (a - b).abs() < 1e-9 * b.abs()
+    }
+
+    #[test]
+    fn planes_are_read_off_every_kind_of_matrix() {
+        // glam's names: rh looks along −z, lh along +z.
+        let ortho = |near, far| rh::proj::directx::orthographic(-1.0, 1.0, -1.0, 1.0, near, far);
+        let cases = [
+            (rh::proj::directx::perspective(1.0, 1.5, 0.5, 80.0), false, -1.0, 0.5, 80.0),
+            (lh::proj::directx::perspective(1.0, 1.5, 0.5, 80.0), false, 1.0, 0.5, 80.0),
+            (lh::proj::directx::perspective(1.0, 1.5, 80.0, 0.5), true, 1.0, 0.5, 80.0),
+            (rh::proj::directx::perspective_infinite(1.0, 1.5, 0.25), false, -1.0, 0.25, f64::INFINITY),
+            (rh::proj::directx::perspective_infinite_reverse(1.0, 1.5, 0.25), true, -1.0, 0.25, f64::INFINITY),
+            (3.0 * infinite_reversed(1.0, 1.0, 0.25), true, 1.0, 0.25, f64::INFINITY),
+            (ortho(0.5, 80.0), false, -1.0, 0.5, 80.0),
+            (ortho(80.0, 0.5), true, -1.0, 0.5, 80.0),
+            (lh::proj::directx::orthographic(-1.0, 1.0, -1.0, 1.0, -3.0, 80.0), false, 1.0, -3.0, 80.0),
+        ];
+        for (i, (matrix, reversed, forward, near, far)) in cases.into_iter().enumerate() {
+            let p = camera(matrix, reversed).projection().unwrap();
+            assert_eq!(p.forward, forward, "case {i}");
+            assert!(close(p.near, near) && close(p.far, far), "case {i}: {p:?}");
+        }
+    }
+
+    #[test]
+    fn unusable_matrices_are_refused() {
+        let good = rh::proj::directx::perspective(1.0, 1.5, 0.5, 80.0);
+        let mut oblique = good;
+        oblique.x_axis.z = 0.1;
+        let mut skew = good;
+        skew.x_axis.w = 0.1;
+        let mut nan = good;
+        nan.y_axis.y = f64::NAN;
+        for matrix in [oblique, skew, nan, DMat4::ZERO] {
+            assert!(camera(matrix, false).projection().is_err(), "{matrix}");
+        }
+        assert!(camera(good, true).projection().is_err(), "wrong depth direction");
+        assert!(Camera::look_at(DVec3::X, DVec3::X, DVec3::Y, 1.0, 1.0, 0.1).is_err());
+        assert!(Camera::look_at(DVec3::Y, DVec3::ZERO, DVec3::Y, 1.0, 1.0, 0.1).is_err());
+    }
+
+    #[test]
+    fn a_framed_box_lies_inside_the_picture() {
+        let bounds = Bounds { min: DVec3::new(-1.0, 5.0, 2.0), max: DVec3::new(3.0, 6.0, 9.0) };
+        for aspect in [0.3, 1.0, 2.5] {
+            let clip = Camera::framing(&bounds, 0.8, aspect).unwrap().world_to_clip();
+            for corner in 0..8 {
+                let pick = |axis: usize| if corner >> axis & 1 == 0 { bounds.min[axis] } else { bounds.max[axis] };
+                let p = clip * DVec4::new(pick(0), pick(1), pick(2), 1.0);
+                assert!(p.w > 0.0 && p.x.abs() < p.w && p.y.abs() < p.w && p.z < p.w, "{p}");
+            }
+        }
+    }
+}

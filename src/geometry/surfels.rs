@@ -1,0 +1,81 @@
+//! A set of surfels: oriented discs that sample a surface.
+
+use super::Bounds;
+use glam::{DVec3, Vec3};
+
+/// Surfels as a structure of arrays; every array has one entry a surfel.
+///
+/// A surfel is a disc with centre, unit normal and radius. The radius is that of the disc which the splat covers: `r = F σ`, where `F`
+/// is the cut-off and `σ` the kernel's 1-σ length.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Surfels {
+    /// Added to every position: the point that [`Surfels::positions`] are relative to, in the file's unit and frame. Keeps large
+    /// (geodetic) coordinates exact while positions stay f32.
+    pub origin: DVec3,
+    /// Centres, relative to `origin`.
+    pub positions: Vec<Vec3>,
+    /// Unit normals.
+    pub normals: Vec<Vec3>,
+    /// Radii of the covered discs, in the positions' unit.
+    pub radii: Vec<f32>,
+    /// Colours, where the input has them.
+    pub colours: Option<Colours>,
+}
+
+/// One colour a surfel, in the form in which it came.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Colours {
+    /// sRGB-encoded, 8 bits a channel; the fourth byte is padding.
+    Srgb8(Vec<[u8; 4]>),
+    /// Linear light.
+    Linear(Vec<[f32; 3]>),
+}
+
+impl Surfels {
+    /// Number of surfels.
+    pub fn len(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.positions.is_empty()
+    }
+
+    /// Bounds of the discs' bounding spheres in the file's frame, `origin` included; `None` if there are no surfels.
+    pub fn bounds(&self) -> Option<Bounds> {
+        let largest = self.radii.iter().copied().fold(0.0, f32::max);
+        Some(Bounds::of(&self.positions)?.grown(largest.into()).translated(self.origin))
+    }
+
+    /// Reorders every array: entry `i` of the result is entry `order[i]` of `self`.
+    pub(crate) fn permute(&mut self, order: &[u32]) {
+        fn gather<T: Copy + Send + Sync>(values: &mut Vec<T>, order: &[u32]) {
+            use rayon::prelude::*;
+            *values = order.par_iter().map(|&i| values[i as usize]).collect();
+        }
+        gather(&mut self.positions, order);
+        gather(&mut self.normals, order);
+        gather(&mut self.radii, order);
+        match &mut self.colours {
+            Some(Colours::Srgb8(colours)) => gather(colours, order),
+            Some(Colours::Linear(colours)) => gather(colours, order),
+            None => {}
+        }
+    }
+}
+
+impl Colours {
+    /// Number of colours.
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Srgb8(colours) => colours.len(),
+            Self::Linear(colours) => colours.len(),
+        }
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}

@@ -1,0 +1,1 @@
+//! The float64 twin of every shader function and pass.

@@ -1,0 +1,140 @@
+//! What a frame is asked to be: shared by the Vulkan methods and the float64 reference.
+
+use crate::error::{Error, Result};
+
+/// Settings of a frame that are not the camera's or the scene's.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// Kernel cut-off `F`, in σ: the splat ends at `u² + v² = F²`.
+    pub cutoff: f32,
+    /// Variance of the low-pass filter `H = lowpass · I`, px². Never less than what makes each splat own a pixel centre
+    /// ([`Settings::least_lowpass`]).
+    pub lowpass: f32,
+    /// Depth tolerance ε in surfel radii: splats no further than this behind the nearest one, along the viewing ray, are blended.
+    pub epsilon: f32,
+    /// Which side of a surfel is seen.
+    pub cull: Cull,
+    /// What the picture shows.
+    pub shading: Shading,
+    /// Colour where no surfel is, linear RGB; `None` leaves it transparent (all channels 0).
+    pub background: Option<[f32; 3]>,
+    /// Lights and material of [`Shading::Lit`].
+    pub lighting: Lighting,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            cutoff: 2.0,
+            lowpass: 1.0,
+            epsilon: 1.0,
+            cull: Cull::None,
+            shading: Shading::Lit,
+            background: None,
+            lighting: Lighting::default(),
+        }
+    }
+}
+
+impl Settings {
+    /// The least low-pass variance that leaves no splat without a pixel centre, px²: `(0.71 / F)²`, so that the cut-off radius is at
+    /// least √½ px. It is the low-pass of the visibility footprint.
+    pub fn least_lowpass(&self) -> f32 {
+        (0.71 / self.cutoff).powi(2)
+    }
+
+    /// The low-pass variance of the attribute footprint, px².
+    pub fn attribute_lowpass(&self) -> f32 {
+        self.lowpass.max(self.least_lowpass())
+    }
+
+    /// Refuses what no frame can be made of.
+    pub fn check(&self) -> Result<()> {
+        let positive = |name: &str, value: f32| match value.is_finite() && value > 0.0 {
+            true => Ok(()),
+            false => Err(Error::Usage(format!("{name} is {value}: give a finite number above 0"))),
+        };
+        positive("the cut-off", self.cutoff)?;
+        positive("epsilon", self.epsilon)?;
+        if !(self.lowpass.is_finite() && self.lowpass >= 0.0) {
+            return Err(Error::Usage(format!(
+                "the low-pass variance is {}: give a finite number of px², 0 or more",
+                self.lowpass
+            )));
+        }
+        if self.lighting.directional.len() > Lighting::MAX_DIRECTIONAL {
+            return Err(Error::Usage(format!(
+                "{} directional lights: at most {} are drawn",
+                self.lighting.directional.len(),
+                Lighting::MAX_DIRECTIONAL
+            )));
+        }
+        Ok(())
+    }
+}
+
+/// Which side of a surfel is seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Cull {
+    /// Both: the normal is flipped towards the eye before it is accumulated.
+    None,
+    /// Only the side that the normal points to.
+    Back,
+}
+
+/// What the picture shows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Shading {
+    /// Blinn–Phong in linear light.
+    Lit,
+    /// The surfels' colour.
+    Colour,
+    /// The unit normal, world space.
+    Normal,
+    /// The eye-space depth, in the positions' unit.
+    Depth,
+}
+
+/// Lights and material, all linear.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lighting {
+    /// Colour of a surface whose scene has none.
+    pub albedo: [f32; 3],
+    /// Light that comes from everywhere, as a factor of the albedo.
+    pub ambient: f32,
+    /// Lambert's term of the headlight, which stands at the eye.
+    pub headlight: f32,
+    /// Blinn–Phong's specular factor, the same for every light.
+    pub specular: f32,
+    /// Blinn–Phong's exponent.
+    pub shininess: f32,
+    /// Further lights, at most [`Lighting::MAX_DIRECTIONAL`].
+    pub directional: Vec<DirectionalLight>,
+}
+
+/// A light at infinity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DirectionalLight {
+    /// Unit vector from the surface to the light, world space.
+    pub to_light: [f32; 3],
+    /// Linear RGB radiance.
+    pub radiance: [f32; 3],
+}
+
+impl Lighting {
+    /// Most directional lights beside the headlight.
+    pub const MAX_DIRECTIONAL: usize = 4;
+}
+
+impl Default for Lighting {
+    fn default() -> Self {
+        Self {
+            albedo: [0.6; 3],
+            ambient: 0.08,
+            headlight: 0.87,
+            specular: 0.06,
+            shininess: 40.0,
+            directional: Vec::new(),
+        }
+    }
+}
