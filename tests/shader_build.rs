@@ -1,0 +1,206 @@
+//! What build.rs promises: errors with file and line, and Rust layouts that are the shaders' own.
+
+#[allow(dead_code)]
+#[path = "../build.rs"]
+mod build;
+
+use build::shader_build::generate;
+use std::path::Path;
+
+const BLOCK: &str =
+    "layout(push_constant) uniform Frame { vec3 eye; float epsilon; mat4 view; uint count; } frame;";
+
+/// A compute pass that uses `block` through `expression`, on line 6.
+fn pass(block: &str, expression: &str) -> String {
+    format!(
+        "#version 460\n#ifdef COMPUTE\nlayout(local_size_x = 64) in;\n{block}\nlayout(set = 0, binding = 7) writeonly buffer Out {{ float result[]; }};\nvoid main() {{ result[gl_GlobalInvocationID.x] = float({expression}); }}\n#endif\n"
+    )
+}
+
+/// Runs the build on these files in `shaders-glsl` of a folder of their own.
+fn build(files: &[(&str, &str)]) -> Result<String, String> {
+    let root = tempfile::tempdir().expect("a temporary folder");
+    let folder = root.path().join("shaders-glsl");
+    std::fs::create_dir_all(folder.join("lib")).expect("a folder for the includes");
+    for (name, source) in files {
+        std::fs::write(folder.join(name), source).expect("a shader");
+    }
+    generate(&folder).map(|table| table.rust)
+}
+
+fn error(files: &[(&str, &str)]) -> String {
+    build(files).expect_err("the build must fail")
+}
+
+#[track_caller]
+fn contains(text: &str, wanted: &[&str]) {
+    let missing: Vec<_> = wanted.iter().filter(|part| !text.contains(**part)).collect();
+    assert!(missing.is_empty(), "{missing:#?} not in:\n{text}");
+}
+
+#[test]
+fn nothing_to_compile() {
+    contains(&build(&[]).expect("an empty folder builds"), &["pub mod layout {", "pub mod constant {"]);
+    assert!(generate(Path::new("no/such/folder")).is_ok());
+}
+
+#[test]
+fn every_stage_of_a_file_is_embedded() {
+    let both = "#version 460\n#ifdef VERTEX\nvoid main() { gl_Position = vec4(0.0); }\n#endif\n\
+        #if defined(FRAGMENT)\nlayout(location = 0) out vec4 colour;\nvoid main() { colour = vec4(1.0); }\n#endif\n";
+    let rust = build(&[("disc.glsl", both), ("point-fill.glsl", &pass("", "1.0"))]).expect("it builds");
+    contains(
+        &rust,
+        &[
+            "pub const DISC_VERTEX: &[u32]",
+            "pub const DISC_FRAGMENT: &[u32]",
+            "pub const POINT_FILL_COMPUTE: &[u32]",
+        ],
+    );
+    // SPIR-V 1.3: what Vulkan 1.1 takes.
+    contains(
+        &rust,
+        &["0x07230203, 0x00010300,", "/// SPIR-V of the fragment stage of `shaders-glsl/disc.glsl`."],
+    );
+    assert!(!rust.contains("DISC_COMPUTE"));
+}
+
+#[test]
+fn a_wrong_shader_names_file_and_line() {
+    let message = error(&[("attribute.glsl", &pass("", "radius"))]);
+    assert!(message.starts_with("shaders-glsl/attribute.glsl:6: error: 'radius'"), "{message}");
+}
+
+#[test]
+fn a_file_without_a_stage_is_refused() {
+    contains(&error(&[("conic.glsl", "#version 460\n")]), &["shaders-glsl/conic.glsl:1: error: no stage"]);
+}
+
+#[test]
+fn an_error_in_an_include_names_the_include() {
+    let uses = pass("#include \"lib/kernel.glsl\"", "kernel(2.0)");
+    let wrong = "float kernel(float u) {\n    return exp(v);\n}\n";
+    let message = error(&[("a.glsl", &uses), ("lib/kernel.glsl", wrong)]);
+    assert!(message.starts_with("shaders-glsl/lib/kernel.glsl:2: error: 'v'"), "{message}");
+    // And the line numbers after an include are still the file's own.
+    let after =
+        error(&[("a.glsl", &uses.replace("2.0", "w")), ("lib/kernel.glsl", &wrong.replace('v', "u"))]);
+    assert!(after.starts_with("shaders-glsl/a.glsl:6: error: 'w'"), "{after}");
+}
+
+#[test]
+fn an_include_may_include_by_the_same_path() {
+    let outer = "#include \"lib/inner.glsl\"\nfloat outer() { return inner(); }\n";
+    let files = [("lib/inner.glsl", "float inner() { return 1.0; }\n"), ("lib/outer.glsl", outer)];
+    let uses = pass("#include \"lib/outer.glsl\"", "outer()");
+    build(&[files[0], files[1], ("a.glsl", &uses)]).expect("it builds");
+    let message = error(&[files[1], ("a.glsl", &uses)]);
+    contains(&message, &["shaders-glsl/lib/outer.glsl:1: error:", "shaders-glsl/lib/inner.glsl"]);
+}
+
+#[test]
+fn a_block_becomes_a_struct_at_its_offsets() {
+    let rust = build(&[("a.glsl", &pass(BLOCK, "frame.eye.x"))]).expect("it builds");
+    contains(
+        &rust,
+        &[
+            "pub struct Frame {",
+            "pub eye: [f32; 3],",
+            "pub epsilon: f32,",
+            "pub view: [[f32; 4]; 4],",
+            "pub count: u32,",
+            "assert!(std::mem::offset_of!(Frame, epsilon) == 12);",
+            "assert!(std::mem::offset_of!(Frame, view) == 16);",
+            "assert!(std::mem::offset_of!(Frame, count) == 80);",
+            "assert!(std::mem::size_of::<Frame>() == 84);",
+        ],
+    );
+    assert!(!rust.contains("_pad"), "{rust}");
+}
+
+#[test]
+fn swapped_and_renamed_fields_change_the_struct() {
+    let swapped = BLOCK.replace("vec3 eye; float epsilon;", "float epsilon; vec3 eye;");
+    let rust = build(&[("a.glsl", &pass(&swapped, "frame.eye.x"))]).expect("it builds");
+    contains(
+        &rust,
+        &[
+            "pub _pad1: [u8; 12],",
+            "assert!(std::mem::offset_of!(Frame, epsilon) == 0);",
+            "assert!(std::mem::offset_of!(Frame, eye) == 16);",
+            "assert!(std::mem::offset_of!(Frame, view) == 32);",
+        ],
+    );
+    let renamed = BLOCK.replace("epsilon", "tolerance");
+    let rust = build(&[("a.glsl", &pass(&renamed, "frame.eye.x"))]).expect("it builds");
+    assert!(rust.contains("pub tolerance: f32,") && !rust.contains("epsilon"), "{rust}");
+}
+
+#[test]
+fn arrays_fix_the_size_of_their_structs() {
+    let block = "struct Light { vec3 to_light; };
+        layout(set = 0, binding = 0) uniform Lights { Light lights[4]; mat3 turn; float gain[2]; int many; };";
+    let rust = build(&[("a.glsl", &pass(block, "lights[0].to_light.x + turn[0][0] + gain[0] + many"))])
+        .expect("it builds");
+    contains(
+        &rust,
+        &[
+            "pub struct Light {",
+            "assert!(std::mem::size_of::<Light>() == 16);",
+            "pub lights: [Light; 4],",
+            "assert!(std::mem::offset_of!(Lights, turn) == 64);",
+            // std140 keeps columns and the elements of arrays 16 bytes apart.
+            "pub turn: [[f32; 4]; 3],",
+            "pub gain: [[f32; 4]; 2],",
+            "assert!(std::mem::offset_of!(Lights, many) == 144);",
+            "assert!(std::mem::size_of::<Lights>() == 160);",
+        ],
+    );
+}
+
+#[test]
+fn a_runtime_array_is_not_part_of_the_struct() {
+    let block = "struct Surfel { vec3 centre; float radius; vec2 turn; };
+        layout(set = 0, binding = 0) readonly buffer Surfels { uint count; Surfel surfels[]; };
+        layout(set = 0, binding = 1) readonly buffer Colours { vec4 colours[]; };";
+    let rust = build(&[("a.glsl", &pass(block, "surfels[count].radius + colours[0].x"))]).expect("it builds");
+    contains(
+        &rust,
+        &[
+            "assert!(std::mem::size_of::<Surfel>() == 32);",
+            "pub struct Surfels {",
+            "assert!(std::mem::size_of::<Surfels>() == 16);",
+        ],
+    );
+    assert!(!rust.contains("struct Colours") && !rust.contains("struct Out"), "{rust}");
+}
+
+#[test]
+fn one_name_has_one_layout() {
+    let here = pass(BLOCK, "frame.eye.x");
+    let there = pass(&BLOCK.replace("eye", "centre"), "frame.centre.x");
+    let message = error(&[("here.glsl", &here), ("there.glsl", &there)]);
+    contains(
+        &message,
+        &[
+            "shaders-glsl/there.glsl: error: Frame is laid out as",
+            "shaders-glsl/here.glsl",
+            "eye at 0",
+            "centre at 0",
+        ],
+    );
+    build(&[("here.glsl", &here), ("there.glsl", &here)]).expect("twice the same is no conflict");
+}
+
+#[test]
+fn specialization_constants_have_one_id() {
+    let constant = "layout(constant_id = 3) const bool HAS_COLOUR = false;";
+    let here = pass(constant, "HAS_COLOUR ? 1.0 : 0.0");
+    let rust = build(&[("here.glsl", &here)]).expect("it builds");
+    contains(&rust, &["pub const HAS_COLOUR: u32 = 3;"]);
+    let message = error(&[("here.glsl", &here), ("there.glsl", &here.replace("= 3", "= 4"))]);
+    contains(
+        &message,
+        &["shaders-glsl/there.glsl: error: constant HAS_COLOUR has id 4, but 3 in shaders-glsl/here.glsl"],
+    );
+}
