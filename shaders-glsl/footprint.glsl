@@ -1,0 +1,127 @@
+// Footprint: each surfel becomes a splat, the image of its disc, and is culled and counted here (zwicker2004 §4).
+#version 450
+#extension GL_GOOGLE_include_directive : require
+
+#include "lib/frame.glsl"
+#define SPLAT_ACCESS writeonly
+#include "lib/splat.glsl"
+#include "lib/double_float.glsl"
+#include "lib/conic.glsl"
+
+#ifdef COMPUTE
+
+layout(local_size_x = 64) in;
+
+layout(constant_id = 1) const bool CULL_BACK = false;
+layout(constant_id = 2) const bool COUNT = false;
+
+layout(set = 0, binding = 2, std430) readonly buffer Positions { float positions[]; };
+layout(set = 0, binding = 3, std430) readonly buffer Normals { float normals[]; };
+layout(set = 0, binding = 4, std430) readonly buffer Radii { float radii[]; };
+layout(set = 0, binding = 6, std430) buffer Counts {
+    uint drawn;
+    uint behind;    // centre not in front of the eye
+    uint eye_plane; // the disc reaches the eye plane
+    uint back;      // the normal faces away and such are culled
+    uint outside;   // off the picture
+} counts;
+
+layout(push_constant) uniform Window { uint count; } window;
+
+const uint DRAWN = 0, BEHIND = 1, EYE_PLANE = 2, BACK = 3, OUTSIDE = 4;
+
+shared uint tally[5];
+
+// Two unit vectors that complete n to a right-handed basis (Duff et al. 2017).
+mat2x3 tangents(vec3 n) {
+    float s = n.z >= 0.0 ? 1.0 : -1.0;
+    float a = -1.0 / (s + n.z);
+    float b = n.x * n.y * a;
+    return mat2x3(vec3(1.0 + s * n.x * n.x * a, s * b, -s * n.x), vec3(b, s + n.y * n.y * a, -n.y));
+}
+
+vec3 to_clip(vec3 v) {
+    return vec3(dot(frame.clip_x.xyz, v), dot(frame.clip_y.xyz, v), dot(frame.clip_w.xyz, v));
+}
+
+// κ of the plane n·x = h at the anchor and its derivatives, in twice the precision: seen at a grazing angle, κ is a small
+// difference of large terms.
+vec3 depth_plane(vec3 n, vec2 h, float facing, vec2 anchor) {
+    vec2 x = dot_double(n, frame.ray_hi[0].xyz, frame.ray_lo[0].xyz);
+    vec2 y = dot_double(n, frame.ray_hi[1].xyz, frame.ray_lo[1].xyz);
+    vec2 key = dot_double(n, frame.ray_hi[2].xyz, frame.ray_lo[2].xyz);
+    key = add(key, add(two_product(x.x, anchor.x), vec2(x.y * anchor.x, 0.0)));
+    key = add(key, add(two_product(y.x, anchor.y), vec2(y.y * anchor.y, 0.0)));
+    if (!PERSPECTIVE) key = add(key, -add(two_product(frame.key_slope, h.x), vec2(frame.key_slope * h.y, 0.0)));
+    return vec3(key.x, x.x, y.x) / facing;
+}
+
+uint footprint(uint i, out Splat splat) {
+    vec3 p = vec3(positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]);
+    vec3 n = vec3(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]);
+    float r = radii[i];
+
+    // The position relative to the eye, and the plane's h = n·position, as sums of two floats.
+    vec2 dx = two_sum(p.x, -frame.eye_hi.x), dy = two_sum(p.y, -frame.eye_hi.y), dz = two_sum(p.z, -frame.eye_hi.z);
+    vec3 position = vec3(dx.x, dy.x, dz.x);
+    vec3 position_lo = vec3(dx.y, dy.y, dz.y) - frame.eye_lo.xyz;
+    vec2 h = dot_double(n, position, position_lo);
+    float facing = PERSPECTIVE ? h.x : dot_double(n, frame.forward_hi.xyz, frame.forward_lo.xyz).x;
+
+    vec3 X = to_clip(position + position_lo) + vec3(frame.clip_x.w, frame.clip_y.w, frame.clip_w.w);
+    if (X.z <= 0.0) return BEHIND;
+    float sigma = r / frame.cutoff;
+    mat2x3 axes = tangents(n);
+    vec3 S = sigma * to_clip(axes[0]);
+    vec3 T = sigma * to_clip(axes[1]);
+    float w = X.z / frame.cutoff;
+    float g = length(vec2(S.z, T.z));
+    float q = (w - g) * (w + g);
+    if (q <= 0.0) return EYE_PLANE;
+    if (CULL_BACK && facing >= 0.0) return BACK;
+
+    float root = frame.cutoff * sqrt(q);
+    float sqrt_det = frame.jacobian * (sigma / root) * (sigma / root) * abs(facing) / root;
+    Conic conic = dual_conic(X, S, T, q, frame.cutoff, sqrt_det, frame.viewport);
+    vec2 variance = conic.variance + frame.attribute_lowpass;
+    vec2 axis2 = conic.axis * conic.axis;
+    vec2 reach = frame.cutoff * sqrt(vec2(dot(axis2, variance), dot(axis2.yx, variance)));
+    if (any(greaterThan(conic.centre - reach, frame.viewport)) || any(lessThan(conic.centre + reach, vec2(0.0)))) return OUTSIDE;
+
+    splat.centre = conic.centre;
+    splat.axis = conic.axis;
+    splat.variance = conic.variance;
+    splat.sqrt_det = sqrt_det;
+    splat.epsilon = PERSPECTIVE ? X.z / (X.z + frame.epsilon * r) : frame.key_slope * frame.epsilon * r;
+    // A plane through the eye is seen nowhere.
+    splat.plane = facing == 0.0 ? vec3(-1.0, 0.0, 0.0) : depth_plane(n, h, facing, anchor_of(conic.centre));
+    splat.side = facing > 0.0 ? -1.0 : 1.0;
+    return DRAWN;
+}
+
+void count(uint fate, bool valid) {
+    if (gl_LocalInvocationIndex < 5) tally[gl_LocalInvocationIndex] = 0;
+    barrier();
+    if (valid) atomicAdd(tally[fate], 1);
+    barrier();
+    if (gl_LocalInvocationIndex != 0) return;
+    atomicAdd(counts.drawn, tally[DRAWN]);
+    atomicAdd(counts.behind, tally[BEHIND]);
+    atomicAdd(counts.eye_plane, tally[EYE_PLANE]);
+    atomicAdd(counts.back, tally[BACK]);
+    atomicAdd(counts.outside, tally[OUTSIDE]);
+}
+
+void main() {
+    uint i = gl_GlobalInvocationID.x;
+    bool valid = i < window.count;
+    uint fate = DRAWN;
+    if (valid) {
+        Splat splat = Splat(vec2(0.0), vec2(1.0, 0.0), vec2(0.0), 0.0, 0.0, vec3(0.0), 0.0);
+        fate = footprint(i, splat);
+        splats[i] = splat;
+    }
+    if (COUNT) count(fate, valid);
+}
+
+#endif

@@ -1,0 +1,33 @@
+// Sums and products with their rounding errors (Dekker 1971; Ogita, Rump & Oishi 2005). A value is vec2(high, low).
+// `precise` keeps the compiler from simplifying the errors away.
+
+vec2 two_sum(float a, float b) {
+    precise float sum = a + b;
+    precise float virtual_b = sum - a;
+    precise float error = (a - (sum - virtual_b)) + (b - virtual_b);
+    return vec2(sum, error);
+}
+
+vec2 two_product(float a, float b) {
+    precise float product = a * b;
+    precise float a_hi = uintBitsToFloat(floatBitsToUint(a) & 0xfffff000u);
+    precise float b_hi = uintBitsToFloat(floatBitsToUint(b) & 0xfffff000u);
+    precise float a_lo = a - a_hi;
+    precise float b_lo = b - b_hi;
+    precise float error = a_lo * b_lo - (((product - a_hi * b_hi) - a_lo * b_hi) - a_hi * b_lo);
+    return vec2(product, error);
+}
+
+vec2 add(vec2 a, vec2 b) {
+    vec2 sum = two_sum(a.x, b.x);
+    precise float low = sum.y + (a.y + b.y);
+    precise float high = sum.x + low;
+    precise float rest = low - (high - sum.x);
+    return vec2(high, rest);
+}
+
+// a · (b_hi + b_lo), as if computed in twice the precision.
+vec2 dot_double(vec3 a, vec3 b_hi, vec3 b_lo) {
+    vec2 sum = add(add(two_product(a.x, b_hi.x), two_product(a.y, b_hi.y)), two_product(a.z, b_hi.z));
+    return add(sum, vec2(dot(a, b_lo), 0.0));
+}

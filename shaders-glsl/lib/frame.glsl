@@ -1,0 +1,35 @@
+// What every pass knows of the camera and of the settings; src/frame.rs fills it, once a frame.
+// World space here is relative to the scene's origin. κ, the depth key, is near / z in perspective and linear in z otherwise:
+// 1 at the near plane, falling with distance, and affine on the screen for every plane.
+
+layout(constant_id = 0) const bool PERSPECTIVE = true;
+
+layout(set = 0, binding = 0, std140) uniform Frame {
+    vec4 clip_x;             // rows of world → clip for a position relative to the eye; .w is the row's value at the eye
+    vec4 clip_y;
+    vec4 clip_w;
+    vec4 eye_hi;             // the eye, as a sum of two floats
+    vec4 eye_lo;
+    vec4 ray_hi[3];          // world vectors: κ of the plane n·x = h at pixel (x, y) is
+    vec4 ray_lo[3];          //   n·(ray[0] x + ray[1] y + ray[2]) / h in perspective, and
+    vec4 forward_hi;         //   (n·(ray[0] x + ray[1] y + ray[2]) − key_slope h) / n·forward otherwise,
+    vec4 forward_lo;         //   where forward is the unit viewing direction
+    vec2 viewport;           // px
+    float jacobian;          // (W/2)(H/2) |det| of the projection: scales √|V|
+    float near;
+    float key_slope;         // orthographic: −dκ/dz
+    float key_far;           // κ of the far plane
+    float key_gain;          // scales κ before it is summed, so that half floats hold it
+    float cutoff;            // F, σ
+    float epsilon;           // ε in radii
+    float visibility_lowpass; // px²
+    float attribute_lowpass;  // px²
+    float ambient;
+    vec4 background;         // linear, α
+    vec4 albedo;             // .rgb; .a is the headlight's factor
+    float specular;
+    float shininess;
+    vec2 frame_padding;
+    vec4 to_light[4];
+    vec4 radiance[4];
+} frame;

@@ -1,0 +1,171 @@
+//! Geometry on the GPU: only the streams that the scene has.
+
+use crate::error::{Error, Result};
+use crate::geometry::{Bounds, Colours, Surfels};
+use crate::vk::shaders::layout::Splat;
+use crate::vk::{Binding, Buffer, Capabilities, Device, upload};
+use glam::DVec3;
+use std::ops::Range;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Surfels resident on a device.
+pub struct Scene {
+    pub(crate) id: u64,
+    pub(crate) positions: Buffer,
+    pub(crate) normals: Buffer,
+    pub(crate) radii: Buffer,
+    pub(crate) colours: Option<Buffer>,
+    colour_stream: ColourStream,
+    windows: Vec<Range<u64>>,
+    count: u64,
+    origin: DVec3,
+    bounds: Bounds,
+}
+
+/// How a scene holds its colours; the numbers are those of `shaders-glsl/lib/sums.glsl`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(u32)]
+pub enum ColourStream {
+    /// It has none.
+    None = 0,
+    /// sRGB-encoded, 8 bits a channel.
+    Srgb8 = 1,
+    /// Linear float.
+    Linear = 2,
+}
+
+impl ColourStream {
+    fn stride(self) -> u64 {
+        match self {
+            Self::None => 0,
+            Self::Srgb8 => 4,
+            Self::Linear => 12,
+        }
+    }
+}
+
+/// Bytes of a position or of a normal in its stream.
+const VECTOR: u64 = 12;
+/// Bytes of a radius.
+const SCALAR: u64 = 4;
+
+impl Scene {
+    /// Copies `surfels` to `device`. They are best in Morton order ([`Surfels::sort_morton`]).
+    ///
+    /// Refuses none at all, and arrays of unequal length.
+    pub fn upload(device: &Arc<Device>, surfels: &Surfels) -> Result<Self> {
+        static NEXT: AtomicU64 = AtomicU64::new(0);
+        let count = surfels.len() as u64;
+        let lengths = [surfels.normals.len(), surfels.radii.len(), surfels.colours.as_ref().map_or(surfels.len(), Colours::len)];
+        let Some(bounds) = surfels.bounds() else { return Err(Error::Usage("a scene without surfels".into())) };
+        if lengths.iter().any(|&length| length != surfels.len()) {
+            let text = format!("a scene of {count} positions with {lengths:?} normals, radii and colours: give one each");
+            return Err(Error::Usage(text));
+        }
+        let (colour_stream, colours): (_, &[u8]) = match &surfels.colours {
+            None => (ColourStream::None, &[]),
+            Some(Colours::Srgb8(colours)) => (ColourStream::Srgb8, bytemuck::cast_slice(colours)),
+            Some(Colours::Linear(colours)) => (ColourStream::Linear, bytemuck::cast_slice(colours)),
+        };
+        Ok(Self {
+            id: NEXT.fetch_add(1, Ordering::Relaxed),
+            positions: upload(device, "positions", bytemuck::cast_slice(&surfels.positions))?,
+            normals: upload(device, "normals", bytemuck::cast_slice(&surfels.normals))?,
+            radii: upload(device, "radii", bytemuck::cast_slice(&surfels.radii))?,
+            colours: (colour_stream != ColourStream::None).then(|| upload(device, "colours", colours)).transpose()?,
+            colour_stream,
+            windows: windows(count, device.capabilities()),
+            count,
+            origin: surfels.origin,
+            bounds,
+        })
+    }
+
+    /// Number of surfels.
+    pub fn count(&self) -> u64 {
+        self.count
+    }
+
+    /// What the shaders' coordinates are relative to, world space.
+    pub fn origin(&self) -> DVec3 {
+        self.origin
+    }
+
+    /// Bounds in the world.
+    pub fn bounds(&self) -> &Bounds {
+        &self.bounds
+    }
+
+    /// How it holds colours.
+    pub fn colour_stream(&self) -> ColourStream {
+        self.colour_stream
+    }
+
+    /// Memory of its streams, bytes.
+    pub fn bytes(&self) -> u64 {
+        let colours = self.colours.as_ref().map_or(0, Buffer::size);
+        self.positions.size() + self.normals.size() + self.radii.size() + colours
+    }
+
+    /// Ranges of surfels that one descriptor set can name.
+    pub(crate) fn windows(&self) -> &[Range<u64>] {
+        &self.windows
+    }
+
+    /// A window of each stream: positions, normals, radii, colours. A stream that the scene lacks is stood in for by the radii, which
+    /// the shaders then do not read.
+    pub(crate) fn bindings(&self, window: &Range<u64>) -> [Binding<'_>; 4] {
+        let part = |buffer, stride| Binding::Storage(buffer, window.start * stride, (window.end - window.start) * stride);
+        [
+            part(&self.positions, VECTOR),
+            part(&self.normals, VECTOR),
+            part(&self.radii, SCALAR),
+            match &self.colours {
+                Some(colours) => part(colours, self.colour_stream.stride()),
+                None => part(&self.radii, SCALAR),
+            },
+        ]
+    }
+}
+
+/// Splits `count` surfels so that a window of any stream, the splats' included, fits a descriptor and starts aligned, and so that a
+/// window's workgroups and vertices can be counted.
+fn windows(count: u64, capabilities: &Capabilities) -> Vec<Range<u64>> {
+    // Every stride is a multiple of 4 bytes, so this many elements start at a multiple of the alignment in each stream.
+    let step = capabilities.storage_buffer_alignment.max(256);
+    let largest_stride = size_of::<Splat>() as u64;
+    let fitting = (capabilities.max_storage_buffer_range / largest_stride)
+        .min(u64::from(capabilities.max_workgroups) * 64)
+        .min(u64::from(u32::MAX) / 3);
+    let size = (fitting / step * step).max(step);
+    (0..count.div_ceil(size)).map(|i| i * size..((i + 1) * size).min(count)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn windows_cover_every_surfel_once_and_fit() {
+        let capabilities = Capabilities {
+            blend_float32: true,
+            timestamps: None,
+            max_storage_buffer_range: 1 << 20,
+            storage_buffer_alignment: 64,
+            max_image_side: 4096,
+            max_workgroups: 65535,
+            debug_labels: false,
+        };
+        for count in [1, 255, 256, 21_504, 21_505, 1_000_000] {
+            let windows = windows(count, &capabilities);
+            assert_eq!(windows[0].start, 0);
+            assert_eq!(windows[windows.len() - 1].end, count);
+            assert!(windows.windows(2).all(|pair| pair[0].end == pair[1].start));
+            for window in windows {
+                assert!((window.end - window.start) * size_of::<Splat>() as u64 <= 1 << 20);
+                assert_eq!(window.start * 4 % 64, 0);
+            }
+        }
+    }
+}

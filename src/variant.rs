@@ -1,0 +1,90 @@
+//! What decides which pipelines and targets a frame needs.
+
+use crate::scene::{ColourStream, Scene};
+use crate::settings::{Cull, Settings, Shading};
+use crate::vk::Constants;
+use crate::vk::shaders::constant;
+
+/// The key of pipelines and targets: everything that the scene has and the frame wants, and nothing that changes from frame to frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Variant {
+    /// Perspective or orthographic.
+    pub perspective: bool,
+    /// Splats whose normal faces away are dropped.
+    pub cull_back: bool,
+    /// Splats are counted by their fate.
+    pub count: bool,
+    /// Normals are summed.
+    pub normals: bool,
+    /// Depths are summed.
+    pub depth: bool,
+    /// The colours that are summed, in the form in which the scene holds them.
+    pub colours: ColourStream,
+    /// What the picture shows.
+    pub shading: Shading,
+    /// Directional lights.
+    pub lights: u32,
+    /// Images beside the picture.
+    pub outputs: Outputs,
+    /// Float width of the sums.
+    pub precision: Precision,
+}
+
+/// Images that a frame gives beside the picture itself.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub struct Outputs {
+    /// Unit normals, world space.
+    pub normal: bool,
+    /// Eye-space depth.
+    pub depth: bool,
+}
+
+/// Width of the floats in which weighted sums are kept.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Precision {
+    /// 32 bits.
+    #[default]
+    Full,
+    /// 16 bits: half the memory and bandwidth. Blending in it may truncate, so that sums of many splats come out low.
+    Half,
+}
+
+impl Variant {
+    /// What a frame of `scene` needs.
+    pub fn new(
+        scene: &Scene,
+        perspective: bool,
+        settings: &Settings,
+        outputs: Outputs,
+        precision: Precision,
+        count: bool,
+    ) -> Self {
+        let shading = settings.shading;
+        let wants_colour = matches!(shading, Shading::Lit | Shading::Colour);
+        Self {
+            perspective,
+            cull_back: settings.cull == Cull::Back,
+            count,
+            normals: matches!(shading, Shading::Lit | Shading::Normal) || outputs.normal,
+            depth: shading == Shading::Depth || outputs.depth,
+            colours: if wants_colour { scene.colour_stream() } else { ColourStream::None },
+            shading,
+            lights: if shading == Shading::Lit { settings.lighting.directional.len() as u32 } else { 0 },
+            outputs,
+            precision,
+        }
+    }
+
+    /// The same as specialization constants.
+    pub fn constants(&self) -> Constants {
+        Constants::default()
+            .with(constant::PERSPECTIVE, self.perspective)
+            .with(constant::CULL_BACK, self.cull_back)
+            .with(constant::COUNT, self.count)
+            .with(constant::SUM_NORMALS, self.normals)
+            .with(constant::SUM_DEPTH, self.depth)
+            .with(constant::COLOURS, self.colours as u32)
+            .with(constant::SHADING, self.shading as u32)
+            .with(constant::LIGHTS, self.lights)
+    }
+}

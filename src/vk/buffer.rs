@@ -1,0 +1,90 @@
+//! Buffers.
+
+use super::{Device, memory};
+use crate::error::{Error, Result};
+use ash::vk;
+use gpu_allocator::MemoryLocation;
+use gpu_allocator::vulkan::Allocation;
+use std::sync::Arc;
+
+/// A buffer with its memory.
+pub struct Buffer {
+    pub(super) raw: vk::Buffer,
+    size: u64,
+    allocation: Option<Allocation>,
+    device: Arc<Device>,
+}
+
+impl Buffer {
+    /// A buffer of `size` bytes in the GPU's own memory, for storage and copies.
+    pub fn storage(device: &Arc<Device>, name: &str, size: u64) -> Result<Self> {
+        use vk::BufferUsageFlags as Usage;
+        let usage = Usage::STORAGE_BUFFER | Usage::TRANSFER_DST | Usage::TRANSFER_SRC;
+        Self::new(device, name, size, usage, MemoryLocation::GpuOnly)
+    }
+
+    /// A buffer that the CPU writes and shaders read as uniforms.
+    pub fn uniform(device: &Arc<Device>, name: &str, size: u64) -> Result<Self> {
+        Self::new(device, name, size, vk::BufferUsageFlags::UNIFORM_BUFFER, MemoryLocation::CpuToGpu)
+    }
+
+    /// A buffer that the CPU writes and the GPU copies from.
+    pub fn staging(device: &Arc<Device>, name: &str, size: u64) -> Result<Self> {
+        Self::new(device, name, size, vk::BufferUsageFlags::TRANSFER_SRC, MemoryLocation::CpuToGpu)
+    }
+
+    /// A buffer that the GPU writes, by copies or as storage, and the CPU reads.
+    pub fn readback(device: &Arc<Device>, name: &str, size: u64) -> Result<Self> {
+        let usage = vk::BufferUsageFlags::TRANSFER_DST | vk::BufferUsageFlags::STORAGE_BUFFER;
+        Self::new(device, name, size, usage, MemoryLocation::GpuToCpu)
+    }
+
+    fn new(
+        device: &Arc<Device>,
+        name: &str,
+        size: u64,
+        usage: vk::BufferUsageFlags,
+        location: MemoryLocation,
+    ) -> Result<Self> {
+        let info = vk::BufferCreateInfo::default().size(size).usage(usage);
+        // SAFETY: `info` is valid; the buffer is destroyed in `drop`.
+        let raw = unsafe { device.raw.create_buffer(&info, None) }.map_err(Error::vulkan("vkCreateBuffer"))?;
+        let mut buffer = Self { raw, size, allocation: None, device: device.clone() };
+        // SAFETY: the buffer is the device's.
+        let requirements = unsafe { device.raw.get_buffer_memory_requirements(raw) };
+        let allocation = buffer.allocation.insert(memory::allocate(device, name, requirements, location, true)?);
+        // SAFETY: the memory was allocated for this buffer's requirements and is bound once.
+        unsafe { device.raw.bind_buffer_memory(raw, allocation.memory(), allocation.offset()) }
+            .map_err(Error::vulkan("vkBindBufferMemory"))?;
+        Ok(buffer)
+    }
+
+    /// Size, bytes.
+    pub fn size(&self) -> u64 {
+        self.size
+    }
+
+    /// The contents, for buffers that the CPU sees; nothing for others. The GPU must not be using it.
+    pub fn bytes(&self) -> &[u8] {
+        let mapped = self.allocation.as_ref().and_then(|allocation| allocation.mapped_slice()).unwrap_or(&[]);
+        &mapped[..mapped.len().min(self.size as usize)]
+    }
+
+    /// As [`Buffer::bytes`], to write.
+    pub fn bytes_mut(&mut self) -> &mut [u8] {
+        let size = self.size as usize;
+        let mapped = self.allocation.as_mut().and_then(|allocation| allocation.mapped_slice_mut()).unwrap_or(&mut []);
+        let end = mapped.len().min(size);
+        &mut mapped[..end]
+    }
+}
+
+impl Drop for Buffer {
+    fn drop(&mut self) {
+        // SAFETY: the GPU is done with it (see the module's docs).
+        unsafe { self.device.raw.destroy_buffer(self.raw, None) };
+        if let Some(allocation) = self.allocation.take() {
+            memory::free(&self.device, allocation);
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! Which of the machine's devices is used.
+
+use super::instance::Instance;
+use crate::error::{Error, Result};
+use ash::vk;
+
+/// A device of this machine as the user sees it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DeviceDescription {
+    /// The device's own name.
+    pub name: String,
+    /// `discrete GPU`, `CPU`, ….
+    pub kind: &'static str,
+    /// Name and version of its driver.
+    pub driver: String,
+    /// Vulkan version, `major.minor.patch`.
+    pub api_version: String,
+    /// Why it cannot be used, if it cannot.
+    pub refused: Option<&'static str>,
+    /// Higher is preferred.
+    pub score: u32,
+}
+
+pub(super) struct Candidate {
+    pub(super) physical: vk::PhysicalDevice,
+    pub(super) family: u32,
+    pub(super) description: DeviceDescription,
+}
+
+/// Every device of this machine, in the order that `--device INDEX` counts. Errors if there is no Vulkan.
+pub fn describe_devices() -> Result<Vec<DeviceDescription>> {
+    let instance = Instance::new(false)?;
+    Ok(candidates(&instance)?.into_iter().map(|candidate| candidate.description).collect())
+}
+
+/// The device that `wanted` names, by index or by a part of its name, or the usable one with the highest score.
+pub(super) fn choose(instance: &Instance, wanted: Option<&str>) -> Result<Candidate> {
+    let all = candidates(instance)?;
+    let listing = || {
+        let line = |(i, c): (usize, &Candidate)| {
+            let refused = c.description.refused.map(|why| format!(", refused: {why}")).unwrap_or_default();
+            format!("{i} = {} ({}{refused})", c.description.name, c.description.kind)
+        };
+        all.iter().enumerate().map(line).collect::<Vec<_>>().join("; ")
+    };
+    let none = |cause: String| Error::NoDevice(cause);
+    if all.is_empty() {
+        return Err(none("Vulkan lists no device; install a driver (Debian: mesa-vulkan-drivers)".into()));
+    }
+    let fits = |index: usize, candidate: &Candidate| match wanted {
+        None => true,
+        Some(text) => match text.parse::<usize>() {
+            Ok(number) => number == index,
+            Err(_) => candidate.description.name.to_lowercase().contains(&text.to_lowercase()),
+        },
+    };
+    let listed = listing();
+    all.into_iter()
+        .enumerate()
+        .filter(|(index, candidate)| candidate.description.refused.is_none() && fits(*index, candidate))
+        // The first of equals: `max_by_key` would take the last.
+        .min_by_key(|(_, candidate)| std::cmp::Reverse(candidate.description.score))
+        .map(|(_, candidate)| candidate)
+        .ok_or_else(|| match wanted {
+            Some(text) => none(format!("none that can be used fits `{text}`; there are: {listed}")),
+            None => none(format!("none can be used; there are: {listed}")),
+        })
+}
+
+fn candidates(instance: &Instance) -> Result<Vec<Candidate>> {
+    // SAFETY: the instance is alive.
+    let devices = unsafe { instance.raw.enumerate_physical_devices() }
+        .map_err(|result| Error::NoDevice(format!("vkEnumeratePhysicalDevices: {result}")))?;
+    Ok(devices.into_iter().map(|physical| candidate(instance, physical)).collect())
+}
+
+fn candidate(instance: &Instance, physical: vk::PhysicalDevice) -> Candidate {
+    // SAFETY: `physical` is one of the instance's devices.
+    let (properties, families) = unsafe {
+        (
+            instance.raw.get_physical_device_properties(physical),
+            instance.raw.get_physical_device_queue_family_properties(physical),
+        )
+    };
+    let new_enough = properties.api_version >= vk::API_VERSION_1_1;
+    let wanted = vk::QueueFlags::GRAPHICS | vk::QueueFlags::COMPUTE;
+    let family = families.iter().position(|family| family.queue_flags.contains(wanted));
+    let (kind, score) = match properties.device_type {
+        vk::PhysicalDeviceType::DISCRETE_GPU => ("discrete GPU", 4),
+        vk::PhysicalDeviceType::INTEGRATED_GPU => ("integrated GPU", 3),
+        vk::PhysicalDeviceType::VIRTUAL_GPU => ("virtual GPU", 2),
+        vk::PhysicalDeviceType::CPU => ("CPU", 1),
+        _ => ("other", 0),
+    };
+    let refused = match (new_enough, family) {
+        (false, _) => Some("it is older than Vulkan 1.1"),
+        (true, None) => Some("no queue family does graphics and compute"),
+        (true, Some(_)) => None,
+    };
+    let description = DeviceDescription {
+        name: text(properties.device_name_as_c_str()),
+        kind,
+        driver: driver(instance, physical, new_enough, properties.driver_version),
+        api_version: version(properties.api_version),
+        refused,
+        score,
+    };
+    Candidate { physical, family: family.unwrap_or(0) as u32, description }
+}
+
+fn driver(instance: &Instance, physical: vk::PhysicalDevice, new_enough: bool, number: u32) -> String {
+    let mut driver = vk::PhysicalDeviceDriverProperties::default();
+    let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut driver);
+    if new_enough {
+        // SAFETY: `physical` is of version 1.1, which has this query; a driver that does not know the struct leaves it alone.
+        unsafe { instance.raw.get_physical_device_properties2(physical, &mut properties) };
+    }
+    let name = text(driver.driver_name_as_c_str());
+    match name.is_empty() {
+        true => format!("driver {number:#x}"),
+        false => format!("{name} {}", text(driver.driver_info_as_c_str())),
+    }
+}
+
+fn text<E>(name: Result<&std::ffi::CStr, E>) -> String {
+    name.map(|name| name.to_string_lossy().into_owned()).unwrap_or_default()
+}
+
+fn version(v: u32) -> String {
+    format!("{}.{}.{}", vk::api_version_major(v), vk::api_version_minor(v), vk::api_version_patch(v))
+}

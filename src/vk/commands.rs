@@ -1,0 +1,83 @@
+//! A command buffer with what is needed to submit it and to wait for it.
+
+use super::timestamps::Timestamps;
+use super::{Device, PassTime, Recorder};
+use crate::error::{Error, Result};
+use ash::vk;
+use std::sync::Arc;
+
+/// One slot of work for the GPU: recorded, submitted and waited for again and again.
+pub struct Commands {
+    pool: vk::CommandPool,
+    cmd: vk::CommandBuffer,
+    fence: vk::Fence,
+    timestamps: Option<Timestamps>,
+    device: Arc<Device>,
+}
+
+impl Commands {
+    /// A slot; with `profile`, passes are timed where the device can.
+    pub fn new(device: &Arc<Device>, profile: bool) -> Result<Self> {
+        let timestamps = if profile { Timestamps::new(device)? } else { None };
+        let mut commands = Self {
+            pool: vk::CommandPool::null(),
+            cmd: vk::CommandBuffer::null(),
+            fence: vk::Fence::null(),
+            timestamps,
+            device: device.clone(),
+        };
+        let pool = vk::CommandPoolCreateInfo::default().queue_family_index(device.family);
+        // SAFETY: all infos are valid; what is made is destroyed in `drop`.
+        unsafe {
+            commands.pool = device.raw.create_command_pool(&pool, None)
+                .map_err(Error::vulkan("vkCreateCommandPool"))?;
+            let buffer = vk::CommandBufferAllocateInfo::default().command_pool(commands.pool).command_buffer_count(1);
+            commands.cmd = device.raw.allocate_command_buffers(&buffer)
+                .map_err(Error::vulkan("vkAllocateCommandBuffers"))?[0];
+            commands.fence = device.raw.create_fence(&vk::FenceCreateInfo::default(), None)
+                .map_err(Error::vulkan("vkCreateFence"))?;
+        }
+        Ok(commands)
+    }
+
+    /// Records with `body`, submits, and waits until the GPU is done.
+    pub fn run(&mut self, body: impl FnOnce(&mut Recorder<'_>)) -> Result<()> {
+        let raw = &self.device.raw;
+        let begin = vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
+        // SAFETY: the last submission was waited for, so the pool's only buffer is free to be recorded anew.
+        unsafe {
+            raw.reset_command_pool(self.pool, vk::CommandPoolResetFlags::empty())
+                .map_err(Error::vulkan("vkResetCommandPool"))?;
+            raw.begin_command_buffer(self.cmd, &begin).map_err(Error::vulkan("vkBeginCommandBuffer"))?;
+        }
+        body(&mut Recorder::new(&self.device, self.cmd, self.timestamps.as_mut()));
+        let buffers = [self.cmd];
+        let submit = [vk::SubmitInfo::default().command_buffers(&buffers)];
+        // SAFETY: the buffer was recorded whole, the fence is unsignalled, and both are waited for before they are used again.
+        unsafe {
+            raw.end_command_buffer(self.cmd).map_err(Error::vulkan("vkEndCommandBuffer"))?;
+            {
+                let queue = self.device.queue.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+                raw.queue_submit(*queue, &submit, self.fence).map_err(Error::vulkan("vkQueueSubmit"))?;
+            }
+            raw.wait_for_fences(&[self.fence], true, u64::MAX).map_err(Error::vulkan("vkWaitForFences"))?;
+            raw.reset_fences(&[self.fence]).map_err(Error::vulkan("vkResetFences"))
+        }
+    }
+
+    /// Times of the passes of the last run; empty if it was not profiled.
+    pub fn pass_times(&self) -> Result<Vec<PassTime>> {
+        self.timestamps.as_ref().map_or(Ok(Vec::new()), Timestamps::read)
+    }
+}
+
+impl Drop for Commands {
+    fn drop(&mut self) {
+        // SAFETY: every run is waited for; after a failed one the device is idle or lost. Null handles are ignored.
+        unsafe {
+            let _ = self.device.raw.device_wait_idle();
+            self.device.raw.destroy_fence(self.fence, None);
+            self.device.raw.destroy_command_pool(self.pool, None);
+        }
+    }
+}

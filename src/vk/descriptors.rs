@@ -1,0 +1,125 @@
+//! What shaders see of buffers and images.
+
+use super::{Buffer, Device, Image};
+use crate::error::{Error, Result};
+use ash::vk;
+use std::sync::Arc;
+
+/// The bindings 0, 1, … of a descriptor set: each a kind and the stages that see it.
+pub struct SetLayout {
+    pub(super) raw: vk::DescriptorSetLayout,
+    kinds: Vec<vk::DescriptorType>,
+    device: Arc<Device>,
+}
+
+/// What stands at one binding.
+#[derive(Clone, Copy)]
+pub enum Binding<'a> {
+    /// A whole uniform buffer.
+    Uniform(&'a Buffer),
+    /// A range of a storage buffer: offset and length, bytes.
+    Storage(&'a Buffer, u64, u64),
+    /// An image that the shader fetches from.
+    Sampled(&'a Image),
+}
+
+impl SetLayout {
+    /// A layout with `bindings` in their order.
+    pub fn new(
+        device: &Arc<Device>,
+        bindings: &[(vk::DescriptorType, vk::ShaderStageFlags)],
+    ) -> Result<Self> {
+        let raw: Vec<_> = bindings
+            .iter()
+            .zip(0..)
+            .map(|((kind, stages), i)| {
+                vk::DescriptorSetLayoutBinding::default()
+                    .binding(i)
+                    .descriptor_type(*kind)
+                    .descriptor_count(1)
+                    .stage_flags(*stages)
+            })
+            .collect();
+        let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&raw);
+        // SAFETY: `info` is valid; the layout is destroyed in `drop`.
+        let raw = unsafe { device.raw.create_descriptor_set_layout(&info, None) }
+            .map_err(Error::vulkan("vkCreateDescriptorSetLayout"))?;
+        Ok(Self { raw, kinds: bindings.iter().map(|(kind, _)| *kind).collect(), device: device.clone() })
+    }
+}
+
+impl Drop for SetLayout {
+    fn drop(&mut self) {
+        // SAFETY: layouts may go before the sets and pipelines made from them.
+        unsafe { self.device.raw.destroy_descriptor_set_layout(self.raw, None) };
+    }
+}
+
+/// A descriptor set, written once.
+pub struct DescriptorSet {
+    pub(super) raw: vk::DescriptorSet,
+    pool: vk::DescriptorPool,
+    device: Arc<Device>,
+}
+
+impl DescriptorSet {
+    /// A set of `layout` with one entry of `bindings` a binding. What they name must outlive the set's last use.
+    pub fn new(device: &Arc<Device>, layout: &SetLayout, bindings: &[Binding<'_>]) -> Result<Self> {
+        let sizes: Vec<_> = layout
+            .kinds
+            .iter()
+            .map(|kind| vk::DescriptorPoolSize::default().ty(*kind).descriptor_count(1))
+            .collect();
+        let info = vk::DescriptorPoolCreateInfo::default().max_sets(1).pool_sizes(&sizes);
+        // SAFETY: `info` is valid; the pool, and the set with it, is destroyed in `drop`.
+        let pool = unsafe { device.raw.create_descriptor_pool(&info, None) }
+            .map_err(Error::vulkan("vkCreateDescriptorPool"))?;
+        let mut set = Self { raw: vk::DescriptorSet::null(), pool, device: device.clone() };
+        let layouts = [layout.raw];
+        let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool).set_layouts(&layouts);
+        // SAFETY: the pool was made for one set of this layout.
+        let sets = unsafe { device.raw.allocate_descriptor_sets(&info) }
+            .map_err(Error::vulkan("vkAllocateDescriptorSets"))?;
+        set.raw = sets[0];
+        set.write(bindings);
+        Ok(set)
+    }
+
+    fn write(&self, bindings: &[Binding<'_>]) {
+        for (binding, i) in bindings.iter().zip(0..) {
+            let write = vk::WriteDescriptorSet::default().dst_set(self.raw).dst_binding(i);
+            let buffer = |buffer: &Buffer, offset, range| [vk::DescriptorBufferInfo { buffer: buffer.raw, offset, range }];
+            let update = |write: vk::WriteDescriptorSet<'_>| {
+                // SAFETY: the set is new, so no command uses it, and the layout has this binding with this kind.
+                unsafe { self.device.raw.update_descriptor_sets(&[write], &[]) }
+            };
+            match *binding {
+                Binding::Uniform(uniform) => update(
+                    write
+                        .descriptor_type(vk::DescriptorType::UNIFORM_BUFFER)
+                        .buffer_info(&buffer(uniform, 0, vk::WHOLE_SIZE)),
+                ),
+                Binding::Storage(storage, offset, size) => update(
+                    write
+                        .descriptor_type(vk::DescriptorType::STORAGE_BUFFER)
+                        .buffer_info(&buffer(storage, offset, size)),
+                ),
+                Binding::Sampled(image) => {
+                    let info = [vk::DescriptorImageInfo {
+                        sampler: vk::Sampler::null(),
+                        image_view: image.view,
+                        image_layout: vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL,
+                    }];
+                    update(write.descriptor_type(vk::DescriptorType::SAMPLED_IMAGE).image_info(&info));
+                }
+            }
+        }
+    }
+}
+
+impl Drop for DescriptorSet {
+    fn drop(&mut self) {
+        // SAFETY: the GPU is done with it (see the module's docs).
+        unsafe { self.device.raw.destroy_descriptor_pool(self.pool, None) };
+    }
+}

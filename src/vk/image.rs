@@ -1,0 +1,139 @@
+//! Images that are rendered to.
+
+use super::{Device, memory};
+use crate::error::{Error, Result};
+use ash::vk;
+use gpu_allocator::MemoryLocation;
+use gpu_allocator::vulkan::Allocation;
+use std::sync::Arc;
+
+/// What an image is used for beside being rendered to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ImageUse {
+    /// A later pass reads it.
+    Sampled,
+    /// It is copied to the CPU.
+    Copied,
+}
+
+/// A two-dimensional render target with its memory and its one view.
+pub struct Image {
+    pub(super) raw: vk::Image,
+    pub(super) view: vk::ImageView,
+    pub(super) format: vk::Format,
+    size: [u32; 2],
+    allocation: Option<Allocation>,
+    device: Arc<Device>,
+}
+
+impl Image {
+    /// A colour or depth target, by its format, of `size` px.
+    pub fn target(device: &Arc<Device>, name: &str, format: vk::Format, size: [u32; 2], also: ImageUse) -> Result<Self> {
+        let attachment = match is_depth(format) {
+            true => vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT,
+            false => vk::ImageUsageFlags::COLOR_ATTACHMENT,
+        };
+        let other = match also {
+            ImageUse::Sampled => vk::ImageUsageFlags::SAMPLED,
+            ImageUse::Copied => vk::ImageUsageFlags::TRANSFER_SRC,
+        };
+        let info = vk::ImageCreateInfo::default()
+            .image_type(vk::ImageType::TYPE_2D)
+            .format(format)
+            .extent(vk::Extent3D { width: size[0], height: size[1], depth: 1 })
+            .mip_levels(1)
+            .array_layers(1)
+            .samples(vk::SampleCountFlags::TYPE_1)
+            .tiling(vk::ImageTiling::OPTIMAL)
+            .usage(attachment | other);
+        // SAFETY: `info` is valid; the image is destroyed in `drop`.
+        let raw = unsafe { device.raw.create_image(&info, None) }.map_err(Error::vulkan("vkCreateImage"))?;
+        let mut image =
+            Self { raw, view: vk::ImageView::null(), format, size, allocation: None, device: device.clone() };
+        image.bind(name)?;
+        image.make_view()?;
+        Ok(image)
+    }
+
+    fn bind(&mut self, name: &str) -> Result<()> {
+        let device = &self.device;
+        // SAFETY: the image is the device's.
+        let requirements = unsafe { device.raw.get_image_memory_requirements(self.raw) };
+        let allocation = memory::allocate(device, name, requirements, MemoryLocation::GpuOnly, false)?;
+        let allocation = self.allocation.insert(allocation);
+        // SAFETY: the memory was allocated for this image's requirements and is bound once.
+        unsafe { device.raw.bind_image_memory(self.raw, allocation.memory(), allocation.offset()) }
+            .map_err(Error::vulkan("vkBindImageMemory"))
+    }
+
+    fn make_view(&mut self) -> Result<()> {
+        let info = vk::ImageViewCreateInfo::default()
+            .image(self.raw)
+            .view_type(vk::ImageViewType::TYPE_2D)
+            .format(self.format)
+            .subresource_range(self.range());
+        // SAFETY: the image is alive and bound; the view is destroyed in `drop`.
+        self.view = unsafe { self.device.raw.create_image_view(&info, None) }
+            .map_err(Error::vulkan("vkCreateImageView"))?;
+        Ok(())
+    }
+
+    pub(super) fn aspect(&self) -> vk::ImageAspectFlags {
+        match is_depth(self.format) {
+            true => vk::ImageAspectFlags::DEPTH,
+            false => vk::ImageAspectFlags::COLOR,
+        }
+    }
+
+    pub(super) fn range(&self) -> vk::ImageSubresourceRange {
+        vk::ImageSubresourceRange {
+            aspect_mask: self.aspect(),
+            base_mip_level: 0,
+            level_count: 1,
+            base_array_layer: 0,
+            layer_count: 1,
+        }
+    }
+
+    /// Width and height, px.
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// Its format.
+    pub fn format(&self) -> vk::Format {
+        self.format
+    }
+
+    /// Bytes of a pixel when it is copied to a buffer.
+    pub fn pixel_bytes(&self) -> u64 {
+        match self.format {
+            vk::Format::R32G32B32A32_SFLOAT => 16,
+            vk::Format::R16G16B16A16_SFLOAT => 8,
+            vk::Format::R16_SFLOAT => 2,
+            _ => 4,
+        }
+    }
+
+    /// Memory that it occupies, bytes.
+    pub fn bytes(&self) -> u64 {
+        self.allocation.as_ref().map_or(0, Allocation::size)
+    }
+}
+
+impl Drop for Image {
+    fn drop(&mut self) {
+        // SAFETY: the GPU is done with it (see the module's docs); a null view is ignored.
+        unsafe {
+            self.device.raw.destroy_image_view(self.view, None);
+            self.device.raw.destroy_image(self.raw, None);
+        }
+        if let Some(allocation) = self.allocation.take() {
+            memory::free(&self.device, allocation);
+        }
+    }
+}
+
+pub(super) fn is_depth(format: vk::Format) -> bool {
+    format == vk::Format::D32_SFLOAT
+}

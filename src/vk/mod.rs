@@ -1,0 +1,36 @@
+//! The layer over raw Vulkan: the only place, beside the embedding and the swapchain, where `unsafe` is allowed.
+//!
+//! Everything that owns a Vulkan object holds an `Arc` of the [`Device`] and destroys the object when it is dropped; nothing is
+//! dropped while the GPU still uses it, because a frame is waited for before its resources can be.
+#![allow(unsafe_code)]
+
+mod buffer;
+mod choose;
+mod commands;
+mod descriptors;
+mod device;
+mod image;
+mod instance;
+mod limits;
+mod memory;
+mod pipeline;
+mod pipeline_cache;
+mod recorder;
+mod render_pass;
+pub mod shaders;
+mod timestamps;
+mod transfer;
+mod validation;
+
+pub use buffer::Buffer;
+pub use choose::{DeviceDescription, describe_devices};
+pub use commands::Commands;
+pub use descriptors::{Binding, DescriptorSet, SetLayout};
+pub use device::{Device, DeviceOptions, Usage};
+pub use image::{Image, ImageUse};
+pub use limits::{Capabilities, DeviceLimits};
+pub use pipeline::{Blend, ComputePipeline, Constants, DepthTest, DrawPipeline, DrawState};
+pub use recorder::{Access, Draws, Encoder, Recorder, Use};
+pub use render_pass::{Attachment, Framebuffer, RenderPass};
+pub use timestamps::PassTime;
+pub use transfer::upload;

@@ -1,0 +1,242 @@
+//! Compute and draw pipelines.
+
+use super::{Device, RenderPass, SetLayout};
+use crate::error::{Error, Result};
+use ash::vk;
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+
+/// Values of specialization constants.
+#[derive(Clone, Default)]
+pub struct Constants {
+    entries: Vec<vk::SpecializationMapEntry>,
+    data: Vec<u32>,
+}
+
+impl Constants {
+    /// Adds a constant by its number, one of [`super::shaders::constant`]. Shaders without it ignore it.
+    pub fn with(mut self, id: u32, value: impl Into<u32>) -> Self {
+        self.entries.push(vk::SpecializationMapEntry {
+            constant_id: id,
+            offset: 4 * self.data.len() as u32,
+            size: 4,
+        });
+        self.data.push(value.into());
+        self
+    }
+
+    fn info(&self) -> vk::SpecializationInfo<'_> {
+        vk::SpecializationInfo::default().map_entries(&self.entries).data(bytemuck::cast_slice(&self.data))
+    }
+}
+
+/// What a draw does with the depth target. Depth is reversed: greater is nearer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DepthTest {
+    /// There is none.
+    None,
+    /// The nearest is kept.
+    Nearest,
+    /// What is not behind the target's depth passes; nothing is written.
+    NotBehind,
+}
+
+/// How fragments meet what is in the colour targets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Blend {
+    /// They replace it.
+    Replace,
+    /// They are added.
+    Add,
+}
+
+/// Fixed-function state of a draw pipeline.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct DrawState {
+    /// Depth test.
+    pub depth: DepthTest,
+    /// Blending, the same for all colour targets.
+    pub blend: Blend,
+}
+
+/// What both kinds share.
+struct Raw {
+    pipeline: vk::Pipeline,
+    layout: vk::PipelineLayout,
+    device: Arc<Device>,
+}
+
+/// A compute pipeline, with one u32 of push constants.
+pub struct ComputePipeline(Raw);
+
+/// A draw pipeline over triangles without vertex buffers; viewport and scissor are those of the framebuffer.
+pub struct DrawPipeline(Raw);
+
+impl ComputePipeline {
+    /// A pipeline of the SPIR-V `code`.
+    pub fn new(device: &Arc<Device>, set: &SetLayout, code: &[u32], constants: &Constants) -> Result<Self> {
+        let mut raw = Raw::new(device, set, vk::ShaderStageFlags::COMPUTE)?;
+        let module = Module::new(device, code)?;
+        let specialization = constants.info();
+        let info = vk::ComputePipelineCreateInfo::default()
+            .stage(module.stage(vk::ShaderStageFlags::COMPUTE, &specialization))
+            .layout(raw.layout);
+        // SAFETY: layout and module are alive and belong together; the pipeline is destroyed in `drop`.
+        let made = unsafe { device.raw.create_compute_pipelines(device.pipeline_cache.raw, &[info], None) };
+        raw.pipeline = first(made, "vkCreateComputePipelines")?;
+        Ok(Self(raw))
+    }
+
+    pub(super) fn raw(&self) -> (vk::Pipeline, vk::PipelineLayout) {
+        (self.0.pipeline, self.0.layout)
+    }
+}
+
+impl DrawPipeline {
+    /// A pipeline of the SPIR-V `[vertex, fragment]` for `pass`.
+    pub fn new(
+        device: &Arc<Device>,
+        set: &SetLayout,
+        [vertex, fragment]: [&[u32]; 2],
+        constants: &Constants,
+        pass: &RenderPass,
+        state: DrawState,
+    ) -> Result<Self> {
+        let mut raw = Raw::new(device, set, vk::ShaderStageFlags::VERTEX | vk::ShaderStageFlags::FRAGMENT)?;
+        let modules = [Module::new(device, vertex)?, Module::new(device, fragment)?];
+        let specialization = constants.info();
+        let stages = [
+            modules[0].stage(vk::ShaderStageFlags::VERTEX, &specialization),
+            modules[1].stage(vk::ShaderStageFlags::FRAGMENT, &specialization),
+        ];
+        let vertex_input = vk::PipelineVertexInputStateCreateInfo::default();
+        let assembly = vk::PipelineInputAssemblyStateCreateInfo::default()
+            .topology(vk::PrimitiveTopology::TRIANGLE_LIST);
+        let viewport =
+            vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
+        let rasterization = vk::PipelineRasterizationStateCreateInfo::default()
+            .polygon_mode(vk::PolygonMode::FILL)
+            .cull_mode(vk::CullModeFlags::NONE)
+            .line_width(1.0);
+        let multisample = vk::PipelineMultisampleStateCreateInfo::default()
+            .rasterization_samples(vk::SampleCountFlags::TYPE_1);
+        let depth = state.depth.info();
+        let blends = vec![state.blend.info(); pass.colour_targets];
+        let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends);
+        let dynamic = vk::PipelineDynamicStateCreateInfo::default()
+            .dynamic_states(&[vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR]);
+        let info = vk::GraphicsPipelineCreateInfo::default()
+            .stages(&stages)
+            .vertex_input_state(&vertex_input)
+            .input_assembly_state(&assembly)
+            .viewport_state(&viewport)
+            .rasterization_state(&rasterization)
+            .multisample_state(&multisample)
+            .depth_stencil_state(&depth)
+            .color_blend_state(&blend)
+            .dynamic_state(&dynamic)
+            .layout(raw.layout)
+            .render_pass(pass.raw);
+        // SAFETY: all states, modules, the layout and the pass live until after the call; the pipeline is destroyed in `drop`.
+        let made = unsafe { device.raw.create_graphics_pipelines(device.pipeline_cache.raw, &[info], None) };
+        raw.pipeline = first(made, "vkCreateGraphicsPipelines")?;
+        Ok(Self(raw))
+    }
+
+    pub(super) fn raw(&self) -> (vk::Pipeline, vk::PipelineLayout) {
+        (self.0.pipeline, self.0.layout)
+    }
+}
+
+impl DepthTest {
+    fn info(self) -> vk::PipelineDepthStencilStateCreateInfo<'static> {
+        let compare = match self {
+            Self::NotBehind => vk::CompareOp::GREATER_OR_EQUAL,
+            _ => vk::CompareOp::GREATER,
+        };
+        vk::PipelineDepthStencilStateCreateInfo::default()
+            .depth_test_enable(self != Self::None)
+            .depth_write_enable(self == Self::Nearest)
+            .depth_compare_op(compare)
+    }
+}
+
+impl Blend {
+    fn info(self) -> vk::PipelineColorBlendAttachmentState {
+        vk::PipelineColorBlendAttachmentState::default()
+            .color_write_mask(vk::ColorComponentFlags::RGBA)
+            .blend_enable(self == Self::Add)
+            .src_color_blend_factor(vk::BlendFactor::ONE)
+            .dst_color_blend_factor(vk::BlendFactor::ONE)
+            .color_blend_op(vk::BlendOp::ADD)
+            .src_alpha_blend_factor(vk::BlendFactor::ONE)
+            .dst_alpha_blend_factor(vk::BlendFactor::ONE)
+            .alpha_blend_op(vk::BlendOp::ADD)
+    }
+}
+
+impl Raw {
+    fn new(device: &Arc<Device>, set: &SetLayout, stages: vk::ShaderStageFlags) -> Result<Self> {
+        let sets = [set.raw];
+        let constants = [vk::PushConstantRange { stage_flags: stages, offset: 0, size: 4 }];
+        let mut info = vk::PipelineLayoutCreateInfo::default().set_layouts(&sets);
+        if stages == vk::ShaderStageFlags::COMPUTE {
+            info = info.push_constant_ranges(&constants);
+        }
+        // SAFETY: the set layout is alive; the pipeline layout is destroyed in `drop`.
+        let layout = unsafe { device.raw.create_pipeline_layout(&info, None) }
+            .map_err(Error::vulkan("vkCreatePipelineLayout"))?;
+        device.made.pipelines.fetch_add(1, Ordering::Relaxed);
+        Ok(Self { pipeline: vk::Pipeline::null(), layout, device: device.clone() })
+    }
+}
+
+impl Drop for Raw {
+    fn drop(&mut self) {
+        // SAFETY: the GPU is done with it (see the module's docs); a null pipeline is ignored.
+        unsafe {
+            self.device.raw.destroy_pipeline(self.pipeline, None);
+            self.device.raw.destroy_pipeline_layout(self.layout, None);
+        }
+    }
+}
+
+/// A shader module, needed only until its pipeline is made.
+struct Module<'a> {
+    raw: vk::ShaderModule,
+    device: &'a Device,
+}
+
+impl<'a> Module<'a> {
+    fn new(device: &'a Device, code: &[u32]) -> Result<Self> {
+        let info = vk::ShaderModuleCreateInfo::default().code(code);
+        // SAFETY: the code is SPIR-V that shaderc made in the build; the module is destroyed in `drop`.
+        let raw = unsafe { device.raw.create_shader_module(&info, None) }
+            .map_err(Error::vulkan("vkCreateShaderModule"))?;
+        Ok(Self { raw, device })
+    }
+
+    fn stage<'b>(
+        &self,
+        stage: vk::ShaderStageFlags,
+        specialization: &'b vk::SpecializationInfo<'b>,
+    ) -> vk::PipelineShaderStageCreateInfo<'b> {
+        vk::PipelineShaderStageCreateInfo::default()
+            .stage(stage)
+            .module(self.raw)
+            .name(c"main")
+            .specialization_info(specialization)
+    }
+}
+
+impl Drop for Module<'_> {
+    fn drop(&mut self) {
+        // SAFETY: modules may go as soon as their pipelines are made.
+        unsafe { self.device.raw.destroy_shader_module(self.raw, None) };
+    }
+}
+
+fn first(made: Result<Vec<vk::Pipeline>, (Vec<vk::Pipeline>, vk::Result)>, call: &'static str) -> Result<vk::Pipeline> {
+    let pipelines = made.map_err(|(_, result)| Error::Vulkan { call, result })?;
+    Ok(pipelines[0])
+}

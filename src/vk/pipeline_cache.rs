@@ -1,0 +1,72 @@
+//! Compiled pipelines kept on disk between runs.
+
+use super::instance::Instance;
+use crate::error::{Error, Result};
+use ash::vk;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+pub(super) struct PipelineCache {
+    pub(super) raw: vk::PipelineCache,
+    file: Option<PathBuf>,
+    loaded: Vec<u8>,
+}
+
+impl PipelineCache {
+    /// An empty cache, or what an earlier run left in `folder` for this very device and driver. An unreadable file is no error: the
+    /// pipelines are then compiled anew.
+    pub(super) fn load(
+        instance: &Instance,
+        physical: vk::PhysicalDevice,
+        device: &ash::Device,
+        folder: Option<&Path>,
+    ) -> Result<Self> {
+        // SAFETY: `physical` is one of the instance's devices.
+        let properties = unsafe { instance.raw.get_physical_device_properties(physical) };
+        let uuid: String = properties.pipeline_cache_uuid.iter().map(|byte| format!("{byte:02x}")).collect();
+        let name = format!("pipelines-{:08x}-{:08x}-{uuid}.bin", properties.vendor_id, properties.device_id);
+        let file = folder.map(|folder| folder.join(name));
+        let loaded = file.as_ref().and_then(|file| std::fs::read(file).ok()).unwrap_or_default();
+        let loaded = if is_for(&loaded, &properties) { loaded } else { Vec::new() };
+        let info = vk::PipelineCacheCreateInfo::default().initial_data(&loaded);
+        // SAFETY: the data's header names this device and driver.
+        let raw = unsafe { device.create_pipeline_cache(&info, None) }
+            .map_err(Error::vulkan("vkCreatePipelineCache"))?;
+        Ok(Self { raw, file, loaded })
+    }
+
+    /// Writes the cache if it has grown, and destroys it.
+    ///
+    /// # Safety
+    /// `device` is the cache's; no pipeline is being made with it.
+    pub(super) unsafe fn store_and_destroy(&self, device: &ash::Device) {
+        // SAFETY: by the caller.
+        let data = unsafe { device.get_pipeline_cache_data(self.raw) }.unwrap_or_default();
+        if let Some(file) = self.file.as_ref().filter(|_| data != self.loaded)
+            && let Err(error) = write(file, &data)
+        {
+            log::debug!("{}: pipelines are not kept: {error}", file.display());
+        }
+        // SAFETY: by the caller.
+        unsafe { device.destroy_pipeline_cache(self.raw, None) };
+    }
+}
+
+/// Whether `data` begins with a version-one header of this device. Drivers must check it themselves; not all of them do.
+fn is_for(data: &[u8], properties: &vk::PhysicalDeviceProperties) -> bool {
+    let word = |i: usize| data.get(4 * i..4 * i + 4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]));
+    word(1) == Some(vk::PipelineCacheHeaderVersion::ONE.as_raw() as u32)
+        && word(2) == Some(properties.vendor_id)
+        && word(3) == Some(properties.device_id)
+        && data.get(16..32) == Some(&properties.pipeline_cache_uuid[..])
+}
+
+fn write(file: &Path, data: &[u8]) -> std::io::Result<()> {
+    let folder = file.parent().unwrap_or(Path::new("."));
+    std::fs::create_dir_all(folder)?;
+    // Another process may read or write it at the same time.
+    let mut temporary = tempfile::NamedTempFile::new_in(folder)?;
+    temporary.write_all(data)?;
+    temporary.persist(file)?;
+    Ok(())
+}

@@ -1,0 +1,89 @@
+//! Times of a frame's passes on the GPU's clock.
+
+use super::Device;
+use crate::error::{Error, Result};
+use ash::vk;
+use std::sync::Arc;
+
+/// Most passes of a profiled frame; further ones are not timed.
+const PASSES: u32 = 64;
+
+/// How long a pass took on the GPU.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PassTime {
+    /// The pass's label.
+    pub label: &'static str,
+    /// Milliseconds.
+    pub milliseconds: f64,
+}
+
+pub(super) struct Timestamps {
+    pub(super) pool: vk::QueryPool,
+    pub(super) labels: Vec<&'static str>,
+    nanoseconds: f32,
+    mask: u64,
+    device: Arc<Device>,
+}
+
+impl Timestamps {
+    /// `None` if the device has no timestamps.
+    pub(super) fn new(device: &Arc<Device>) -> Result<Option<Self>> {
+        let Some((nanoseconds, mask)) = device.capabilities().timestamps else { return Ok(None) };
+        let info =
+            vk::QueryPoolCreateInfo::default().query_type(vk::QueryType::TIMESTAMP).query_count(2 * PASSES);
+        // SAFETY: `info` is valid; the pool is destroyed in `drop`.
+        let pool = unsafe { device.raw.create_query_pool(&info, None) }
+            .map_err(Error::vulkan("vkCreateQueryPool"))?;
+        Ok(Some(Self {
+            pool,
+            labels: Vec::with_capacity(PASSES as usize),
+            nanoseconds,
+            mask,
+            device: device.clone(),
+        }))
+    }
+
+    pub(super) fn begin_frame(&mut self, cmd: vk::CommandBuffer) {
+        self.labels.clear();
+        // SAFETY: `cmd` is being recorded outside a render pass, and no frame that uses the pool is under way.
+        unsafe { self.device.raw.cmd_reset_query_pool(cmd, self.pool, 0, 2 * PASSES) };
+    }
+
+    /// Number of the first of the pass's two queries; `None` if there is no room.
+    pub(super) fn begin_pass(&mut self, label: &'static str) -> Option<u32> {
+        let query = 2 * self.labels.len() as u32;
+        if query >= 2 * PASSES {
+            return None;
+        }
+        self.labels.push(label);
+        Some(query)
+    }
+
+    /// The last frame's times; it must be over. Passes of one label are summed.
+    pub(super) fn read(&self) -> Result<Vec<PassTime>> {
+        let mut stamps = vec![0u64; 2 * self.labels.len()];
+        if stamps.is_empty() {
+            return Ok(Vec::new());
+        }
+        // SAFETY: the frame that wrote these queries is over.
+        unsafe { self.device.raw.get_query_pool_results(self.pool, 0, &mut stamps, vk::QueryResultFlags::TYPE_64) }
+            .map_err(Error::vulkan("vkGetQueryPoolResults"))?;
+        let mut times: Vec<PassTime> = Vec::new();
+        for (&label, stamp) in self.labels.iter().zip(stamps.chunks_exact(2)) {
+            let ticks = stamp[1].wrapping_sub(stamp[0]) & self.mask;
+            let milliseconds = ticks as f64 * f64::from(self.nanoseconds) * 1e-6;
+            match times.iter_mut().find(|time| time.label == label) {
+                Some(time) => time.milliseconds += milliseconds,
+                None => times.push(PassTime { label, milliseconds }),
+            }
+        }
+        Ok(times)
+    }
+}
+
+impl Drop for Timestamps {
+    fn drop(&mut self) {
+        // SAFETY: the GPU is done with it (see the module's docs).
+        unsafe { self.device.raw.destroy_query_pool(self.pool, None) };
+    }
+}

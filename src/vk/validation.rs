@@ -1,0 +1,53 @@
+//! Messages of the validation layers, collected.
+
+use ash::vk;
+use std::ffi::{CStr, c_void};
+use std::sync::Mutex;
+
+/// Warnings and errors of the validation layers, in the order in which they came.
+#[derive(Default)]
+pub(super) struct Messages(Mutex<Vec<String>>);
+
+impl Messages {
+    pub(super) fn all(&self) -> Vec<String> {
+        self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).clone()
+    }
+
+    fn push(&self, message: String) {
+        log::error!("validation: {message}");
+        self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).push(message);
+    }
+}
+
+/// What the messenger is created with; `messages` must outlive it.
+pub(super) fn messenger_info(messages: &Messages) -> vk::DebugUtilsMessengerCreateInfoEXT<'_> {
+    use vk::{DebugUtilsMessageSeverityFlagsEXT as Severity, DebugUtilsMessageTypeFlagsEXT as Type};
+    vk::DebugUtilsMessengerCreateInfoEXT::default()
+        .message_severity(Severity::WARNING | Severity::ERROR)
+        .message_type(Type::GENERAL | Type::VALIDATION | Type::PERFORMANCE)
+        .pfn_user_callback(Some(collect))
+        .user_data(std::ptr::from_ref(messages) as *mut c_void)
+}
+
+unsafe extern "system" fn collect(
+    _severity: vk::DebugUtilsMessageSeverityFlagsEXT,
+    kind: vk::DebugUtilsMessageTypeFlagsEXT,
+    data: *const vk::DebugUtilsMessengerCallbackDataEXT<'_>,
+    messages: *mut c_void,
+) -> vk::Bool32 {
+    // SAFETY: the layers pass valid data for the length of the call, and `messenger_info` a `Messages` that outlives the messenger.
+    let (text, id, messages) = unsafe {
+        let data = &*data;
+        let text = |pointer: *const std::ffi::c_char| match pointer.is_null() {
+            true => String::new(),
+            false => CStr::from_ptr(pointer).to_string_lossy().into_owned(),
+        };
+        (text(data.p_message), text(data.p_message_id_name), &*messages.cast::<Messages>())
+    };
+    // The loader speaks of drivers and manifests that it skips, under GENERAL: not of what this program does.
+    match kind == vk::DebugUtilsMessageTypeFlagsEXT::GENERAL {
+        true => log::debug!("{id}: {text}"),
+        false => messages.push(text),
+    }
+    vk::FALSE
+}
