@@ -1,3 +1,5 @@
 //! Files in and out.
 
+mod atomic;
+pub mod ply;
 pub mod srgb;
