@@ -175,6 +175,21 @@ mod tests {
     }
 
     #[test]
+    fn every_point_is_moved_by_its_own_fraction_of_the_spacing() {
+        let (rng, points) = (Pcg64::seed_from_u64(1), 10_000);
+        let offset = |i: u32| {
+            let lattice = (1.0 - 2.0 * (f64::from(i) + 0.5) / f64::from(points)).acos();
+            (jittered(i, points, rng.clone()).y.acos() - lattice) / (4.0 * PI / f64::from(points)).sqrt()
+        };
+        let offsets: Vec<f64> = (100..points - 100).map(offset).collect();
+        let mean = offsets.iter().sum::<f64>() / offsets.len() as f64;
+        let variance = offsets.iter().map(|o| (o - mean).powi(2)).sum::<f64>() / offsets.len() as f64;
+        // Uniform between −¼ and ¼.
+        assert!(mean.abs() < 0.01 && (variance - 1.0 / 48.0).abs() < 1e-3, "{mean} {variance}");
+        assert!(offsets.iter().all(|offset| offset.abs() < 0.2501));
+    }
+
+    #[test]
     fn colours_alternate() {
         let at =
             |theta: f64, phi: f64| colour(direction((theta + 0.5) * PI / 16.0, (phi + 0.5) * TAU / 32.0));

@@ -242,7 +242,6 @@ mod tests {
             ("format ascii 2.0", "line 2: version `2.0`"),
             ("format ascii", "expected `format"),
             ("format utf8 1.0", "`utf8` is none of"),
-            ("format ascii 1.0\nend_header", ""),
             ("end_header", "no `format` line"),
             ("format ascii 1.0\nelement vertex", "expected `element"),
             ("format ascii 1.0\nelement vertex -1", "`-1` is no number of records"),
@@ -266,7 +265,7 @@ mod tests {
             ("format ascii 1.0\nCreated by hand", "line 3: `Created` is no header keyword"),
             ("format ascii 1.0", "ends within its header"),
         ];
-        for (text, expected) in cases.iter().filter(|(_, expected)| !expected.is_empty()) {
+        for (text, expected) in cases {
             let cause = cause(format!("ply\n{text}\n").as_bytes());
             assert!(cause.contains(expected), "{text:?}: {cause}");
         }
