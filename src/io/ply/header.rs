@@ -1,0 +1,280 @@
+//! The header, parsed byte by byte: it may hold comments in any encoding, and no claim of it is trusted.
+
+use super::types::{Element, Format, Kind, Property, Scalar};
+use super::{Parsed, shown, sniff};
+
+/// Longest header, bytes. The longest known ones hold a few hundred properties.
+const LIMIT: usize = 1 << 20;
+
+/// A parsed header.
+#[derive(Debug, PartialEq)]
+pub(super) struct Header {
+    pub format: Format,
+    /// In the order of their records in the file.
+    pub elements: Vec<Element>,
+    /// Where the records begin, bytes from the start of the file.
+    pub payload: usize,
+}
+
+pub(super) fn parse(bytes: &[u8]) -> Parsed<Header> {
+    let mut lines = Lines::new(bytes);
+    if lines.first().trim_ascii_end() != b"ply" {
+        return Err(sniff::name(bytes));
+    }
+    let (mut format, mut elements) = (None, Vec::new());
+    loop {
+        let line = lines.next()?;
+        let keyword = line.split(u8::is_ascii_whitespace).next().unwrap_or_default();
+        let done = match keyword {
+            b"" | b"comment" | b"obj_info" => Ok(()),
+            b"format" => parse_format(line, &mut format),
+            b"element" => parse_element(line, &mut elements),
+            b"property" => parse_property(line, &mut elements),
+            b"end_header" => break,
+            _ => Err(format!(
+                "{} is no header keyword: mark the line as `comment` if it is one",
+                shown(keyword)
+            )),
+        };
+        done.map_err(|cause| format!("header line {}: {cause}", lines.number))?;
+    }
+    let format =
+        format.ok_or("the header has no `format` line: write the file again with a complete header")?;
+    Ok(Header { format, elements, payload: lines.at })
+}
+
+fn words(line: &[u8]) -> Vec<&[u8]> {
+    line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).collect()
+}
+
+fn parse_format(line: &[u8], format: &mut Option<Format>) -> Parsed<()> {
+    let (encoding, version) = match words(line)[..] {
+        [_, encoding, version] => (encoding, version),
+        _ => return Err("expected `format <encoding> 1.0`".into()),
+    };
+    if version != b"1.0" {
+        return Err(format!("version {} is not known: only 1.0 is", shown(version)));
+    }
+    let parsed = match encoding {
+        b"ascii" => Format::Ascii,
+        b"binary_little_endian" => Format::BinaryLittleEndian,
+        b"binary_big_endian" => Format::BinaryBigEndian,
+        _ => {
+            return Err(format!(
+                "{} is none of ascii, binary_little_endian, binary_big_endian",
+                shown(encoding)
+            ));
+        }
+    };
+    match format.replace(parsed) {
+        None => Ok(()),
+        Some(_) => Err("a second `format` line: remove one".into()),
+    }
+}
+
+fn parse_element(line: &[u8], elements: &mut Vec<Element>) -> Parsed<()> {
+    let [_, name, count] = words(line)[..] else {
+        return Err("expected `element <name> <count>`".into());
+    };
+    let digits =
+        std::str::from_utf8(count).ok().filter(|text| text.bytes().all(|byte| byte.is_ascii_digit()));
+    let Some(count) = digits.and_then(|text| text.parse().ok()) else {
+        return Err(format!(
+            "{} is no number of records: expected a whole number from 0 to 2⁶⁴ − 1",
+            shown(count)
+        ));
+    };
+    let name = String::from_utf8_lossy(name).into_owned();
+    if elements.iter().any(|element| element.name == name) {
+        return Err(format!("a second element {}: rename or remove one", shown(name.as_bytes())));
+    }
+    elements.push(Element { name, count, properties: Vec::new() });
+    Ok(())
+}
+
+fn parse_property(line: &[u8], elements: &mut [Element]) -> Parsed<()> {
+    let element = elements.last_mut().ok_or("a property before any `element` line")?;
+    let (kind, name) = match words(line)[..] {
+        [_, b"list", length, item, name] => {
+            (Kind::List { length: parse_length(length)?, item: parse_scalar(item)? }, name)
+        }
+        [_, b"list", ..] => return Err("expected `property list <length type> <item type> <name>`".into()),
+        [_, scalar, name] => (Kind::Scalar(parse_scalar(scalar)?), name),
+        _ => return Err("expected `property <type> <name>`".into()),
+    };
+    element.properties.push(Property { name: String::from_utf8_lossy(name).into_owned(), kind });
+    Ok(())
+}
+
+fn parse_length(name: &[u8]) -> Parsed<Scalar> {
+    match parse_scalar(name)? {
+        scalar if scalar.is_float() => {
+            Err(format!("{} cannot be the type of a list's length: use uchar or int", shown(name)))
+        }
+        scalar => Ok(scalar),
+    }
+}
+
+fn parse_scalar(name: &[u8]) -> Parsed<Scalar> {
+    Scalar::of_name(name).ok_or_else(|| match name {
+        b"int64" | b"uint64" | b"long" | b"ulong" | b"longlong" | b"ulonglong" | b"i64" | b"u64" => {
+            format!(
+                "{} is a 64-bit integer, which PLY does not have: convert it to int or double",
+                shown(name)
+            )
+        }
+        _ => format!(
+            "{} is no type: PLY has char, uchar, short, ushort, int, uint, float and double",
+            shown(name)
+        ),
+    })
+}
+
+/// Refuses a name that occurs twice in one element: which of the two is meant cannot be known.
+pub(super) fn refuse_duplicates(elements: &[Element]) -> Parsed<()> {
+    for element in elements {
+        let mut seen = std::collections::HashSet::new();
+        if let Some(twice) = element.properties.iter().find(|property| !seen.insert(&property.name)) {
+            let (element, name) = (shown(element.name.as_bytes()), shown(twice.name.as_bytes()));
+            return Err(format!("element {element} has two properties named {name}: rename or remove one"));
+        }
+    }
+    Ok(())
+}
+
+/// The header's lines, without their ends and without white space around them.
+struct Lines<'a> {
+    bytes: &'a [u8],
+    at: usize,
+    number: usize,
+    /// What ends a line. Lines that end in CR LF end in LF here; those of old Macintosh files, in CR alone. Settled once, by the first
+    /// line, because a binary payload may begin with either byte.
+    end: u8,
+}
+
+impl<'a> Lines<'a> {
+    fn new(bytes: &'a [u8]) -> Self {
+        let at = if bytes.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
+        let first = bytes[at..]
+            .iter()
+            .take(LIMIT)
+            .position(|byte| matches!(byte, b'\r' | b'\n'))
+            .map(|i| &bytes[at + i..]);
+        let end = match first {
+            Some([b'\r', b'\n', ..]) | None => b'\n',
+            Some(rest) => rest[0],
+        };
+        Self { bytes, at, number: 0, end }
+    }
+
+    /// The first line; empty if there is none.
+    fn first(&mut self) -> &'a [u8] {
+        self.next().unwrap_or_default()
+    }
+
+    fn next(&mut self) -> Parsed<&'a [u8]> {
+        let rest = &self.bytes[self.at..self.bytes.len().min(LIMIT)];
+        let length = match rest.iter().position(|&byte| byte == self.end) {
+            Some(length) => length,
+            None if self.bytes.len() > LIMIT => {
+                return Err(format!("the header is longer than {LIMIT} bytes: shorten its comments"));
+            }
+            None if rest.is_empty() => return Err("the file ends within its header: fetch it again".into()),
+            None => rest.len(),
+        };
+        self.number += 1;
+        self.at = (self.at + length + 1).min(self.bytes.len());
+        Ok(rest[..length].trim_ascii())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cause(text: &[u8]) -> String {
+        parse(text).and_then(|header| refuse_duplicates(&header.elements).map(|()| header)).unwrap_err()
+    }
+
+    #[test]
+    fn line_ends_comments_white_space_and_marks_change_nothing() {
+        let plain = "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty list uchar int i\nend_header\n";
+        let expected = parse(plain.as_bytes()).unwrap();
+        assert_eq!(expected.payload, plain.len());
+        assert_eq!(
+            expected.elements[0].properties[1].kind,
+            Kind::List { length: Scalar::U8, item: Scalar::I32 }
+        );
+        let odd: &[&[u8]] = &[
+            &plain.replace('\n', "\r\n").into_bytes(),
+            &plain.replace('\n', "\r").into_bytes(),
+            &plain.replace('\n', "\n\n\t ").into_bytes(),
+            &[b"\xef\xbb\xbf", plain.as_bytes()].concat(),
+            b"ply\ncomment \xff\xfe caf\xe9\nformat ascii 1.0\nobj_info \xff\nelement vertex 2\nproperty float32 x\ncomment\n\
+              property list uint8 int32 i\ncomment end\nend_header",
+        ];
+        for (case, text) in odd.iter().enumerate() {
+            let header = parse(text).unwrap_or_else(|cause| panic!("case {case}: {cause}"));
+            assert_eq!(
+                (header.format, header.elements),
+                (expected.format, expected.elements.clone()),
+                "case {case}"
+            );
+        }
+    }
+
+    #[test]
+    fn the_payload_may_begin_with_a_line_end() {
+        for (line_end, payload) in [("\n", "\n"), ("\n", "\r\n"), ("\r\n", "\n"), ("\r", "\n")] {
+            let header = ["ply", "format binary_little_endian 1.0", "end_header", ""].join(line_end);
+            assert_eq!(
+                parse((header.clone() + payload).as_bytes()).unwrap().payload,
+                header.len(),
+                "{line_end:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn wrong_lines_are_named_with_their_cause() {
+        let cases: &[(&str, &str)] = &[
+            ("format ascii 1.0\nformat ascii 1.0", "line 3: a second `format`"),
+            ("format ascii 2.0", "line 2: version `2.0`"),
+            ("format ascii", "expected `format"),
+            ("format utf8 1.0", "`utf8` is none of"),
+            ("end_header", "no `format` line"),
+            ("format ascii 1.0\nelement vertex", "expected `element"),
+            ("format ascii 1.0\nelement vertex -1", "`-1` is no number of records"),
+            ("format ascii 1.0\nelement vertex +1", "`+1` is no number of records"),
+            ("format ascii 1.0\nelement vertex 1.5", "`1.5` is no number"),
+            ("format ascii 1.0\nelement vertex 99999999999999999999", "is no number"),
+            ("format ascii 1.0\nelement v 1\nelement v 2", "line 4: a second element `v`"),
+            ("format ascii 1.0\nproperty float x", "before any `element`"),
+            ("format ascii 1.0\nelement v 1\nproperty float", "expected `property <type>"),
+            ("format ascii 1.0\nelement v 1\nproperty list uchar int", "expected `property list"),
+            (
+                "format ascii 1.0\nelement v 1\nproperty list float int i",
+                "cannot be the type of a list's length",
+            ),
+            ("format ascii 1.0\nelement v 1\nproperty int64 x", "64-bit integer"),
+            ("format ascii 1.0\nelement v 1\nproperty half x", "`half` is no type"),
+            (
+                "format ascii 1.0\nelement v 1\nproperty int x\nproperty float x\nend_header",
+                "two properties named `x`",
+            ),
+            ("format ascii 1.0\nCreated by hand", "line 3: `Created` is no header keyword"),
+            ("format ascii 1.0", "ends within its header"),
+        ];
+        for (text, expected) in cases {
+            let cause = cause(format!("ply\n{text}\n").as_bytes());
+            assert!(cause.contains(expected), "{text:?}: {cause}");
+        }
+    }
+
+    #[test]
+    fn a_header_without_end_is_given_up_at_the_limit() {
+        let text = "ply\nformat ascii 1.0\n".to_owned() + &"comment\n".repeat(LIMIT / 8);
+        assert!(cause(text.as_bytes()).contains("longer than 1048576 bytes"));
+        assert!(cause(&[b"ply\ncomment ", vec![b'a'; LIMIT].as_slice()].concat()).contains("longer than"));
+    }
+}

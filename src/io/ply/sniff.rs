@@ -1,0 +1,87 @@
+//! What a file is that is no PLY file, so that the message can say so.
+
+use super::shown;
+
+/// First bytes of files that are often met under the wrong name, and what to do with them.
+const KNOWN: &[(&[u8], &str)] = &[
+    (b"version https://git-lfs", "a Git LFS pointer instead of the file: fetch it with `git lfs pull`"),
+    (b"\x1f\x8b", "gzip-compressed: unpack it first"),
+    (b"BZh", "bzip2-compressed: unpack it first"),
+    (b"\xfd7zXZ", "xz-compressed: unpack it first"),
+    (b"\x28\xb5\x2f\xfd", "zstd-compressed: unpack it first"),
+    (b"PK\x03\x04", "a zip archive: unpack it first"),
+    (b"7z\xbc\xaf", "a 7z archive: unpack it first"),
+    (b"LASF", "a LAS or LAZ point cloud: convert it to PLY"),
+    (b"ASTM-E57", "an E57 point cloud: convert it to PLY"),
+    (b"# .PCD", "a PCD point cloud: convert it to PLY"),
+    (b"glTF", "a binary glTF model: convert it to PLY"),
+    (b"DRACO", "a Draco file: convert it to PLY"),
+    (b"solid", "an STL mesh: convert it to PLY with normals and radii"),
+    (b"OFF", "an OFF mesh: convert it to PLY with normals and radii"),
+    (b"\x89PNG", "a PNG picture"),
+    (b"\xff\xd8\xff", "a JPEG picture"),
+    (b"%PDF", "a PDF document"),
+    (b"<", "an HTML or XML page: the download may have failed; fetch the file itself"),
+    (b"{", "a JSON file: convert it to PLY"),
+    (b"\xff\xfe", "text in UTF-16: save it as ASCII or UTF-8"),
+    (b"\xfe\xff", "text in UTF-16: save it as ASCII or UTF-8"),
+];
+
+/// Says that the file is no PLY file, and what it is where its beginning tells.
+pub(super) fn name(bytes: &[u8]) -> String {
+    let beginning = bytes.trim_ascii_start();
+    if beginning.is_empty() {
+        return "the file is empty: fetch or write it again".into();
+    }
+    if let Some((_, what)) = KNOWN.iter().find(|(first, _)| beginning.starts_with(first)) {
+        return format!("not a PLY file, but {what}");
+    }
+    let line = beginning.split(|byte| matches!(byte, b'\n' | b'\r')).next().unwrap_or_default();
+    match text(beginning) {
+        Some(what) => format!("not a PLY file, but {what}"),
+        None => format!("not a PLY file: it begins with {} instead of `ply`; give a PLY file", shown(line)),
+    }
+}
+
+/// Text formats without a signature, told by their first lines that are no comments.
+fn text(beginning: &[u8]) -> Option<&'static str> {
+    let start = &beginning[..beginning.len().min(4096)];
+    let line = start
+        .split(|byte| *byte == b'\n')
+        .find(|line| !line.trim_ascii().is_empty() && !line.starts_with(b"#"))?;
+    let words: Vec<&str> = std::str::from_utf8(line).ok()?.split_ascii_whitespace().collect();
+    match words.first()? {
+        &"v" | &"vn" | &"vt" | &"o" | &"g" | &"mtllib" | &"usemtl" => {
+            Some("a Wavefront OBJ model: convert it to PLY with normals and radii")
+        }
+        _ if words.iter().all(|word| word.trim_end_matches(',').parse::<f64>().is_ok()) => {
+            Some("a table of numbers (XYZ, PTS): convert it to PLY")
+        }
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn other_files_are_named() {
+        let cases: &[(&[u8], &str)] = &[
+            (b"", "is empty"),
+            (b" \n ", "is empty"),
+            (b"version https://git-lfs.github.com/spec/v1\noid", "git lfs pull"),
+            (b"\x1f\x8b\x08\0", "gzip"),
+            (b"LASF\0\0", "LAS"),
+            (b"# made by hand\n\nv 1 2 3\n", "OBJ"),
+            (b"1.0 2.0, 3\n", "table of numbers"),
+            (b"<!DOCTYPE html>", "HTML"),
+            (b"plyx\nformat", "begins with `plyx`"),
+            (b"\0\0\0\0", "begins with `\\x00"),
+        ];
+        for (bytes, expected) in cases {
+            let cause = name(bytes);
+            assert!(cause.contains(expected) && !cause.contains('\n'), "{cause}");
+        }
+    }
+}
