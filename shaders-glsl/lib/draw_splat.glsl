@@ -29,7 +29,7 @@ float place_splat(Splat splat, float lowpass, int corner) {
     vec2 reach = frame.cutoff * deviation + EDGE;
     vec2 position;
     if (splat.side == 0.0 || nearest <= frame.key_far) {
-        position = vec2(-2.0); // all corners alike: no fragments
+        position = vec2(0.0); // all corners alike: no fragments
     } else if (reach.x > 0.5 * LARGEST) {
         position = vec2(corner == 1 ? 3.0 : -1.0, corner == 2 ? 3.0 : -1.0);
     } else {

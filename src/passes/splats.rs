@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::scene::Scene;
 use crate::vk::shaders::layout::{Counts, Splat};
-use crate::vk::{Access, Binding, Buffer, DescriptorSet, Device, SetLayout, Use};
+use crate::vk::{Access, Binding, Buffer, Commands, DescriptorSet, Device, SetLayout, Use};
 use ash::vk::{DescriptorType, ShaderStageFlags};
 use std::sync::Arc;
 
@@ -80,8 +80,15 @@ impl Splats {
         bytemuck::pod_read_unaligned(&self.counts.bytes()[..size_of::<Counts>()])
     }
 
-    /// The splats themselves.
-    pub fn buffer(&self) -> &Buffer {
-        &self.splats
+    /// Copies the splats of the last frame, one a surfel, to the CPU.
+    pub fn read(&self, device: &Arc<Device>) -> Result<Vec<Splat>> {
+        let size = self.splats.size();
+        let target = Buffer::readback(device, "read splats", size)?;
+        Commands::new(device, false)?.run(|rec| {
+            let uses = [self.splats.with(Access::COPY_READ), target.with(Access::COPY_WRITE)];
+            rec.pass("read splats", &uses, |enc| enc.copy(&self.splats, &target, 0, size));
+            rec.pass("read splats", &[target.with(Access::HOST_READ)], |_| {});
+        })?;
+        Ok(bytemuck::pod_collect_to_vec(target.bytes()))
     }
 }
