@@ -129,7 +129,9 @@ impl Ids {
         for instruction in module.types_global_values {
             match (instruction.class.opcode, instruction.result_id) {
                 (Op::Variable, _) => ids.variables.push(instruction),
-                (_, Some(id)) => drop(ids.values.insert(id, instruction)),
+                (_, Some(id)) => {
+                    ids.values.insert(id, instruction);
+                }
                 _ => (),
             }
         }
@@ -140,12 +142,14 @@ impl Ids {
     fn note(&mut self, operands: &[Operand]) {
         use Operand::{Decoration as Is, IdRef, LiteralBit32 as Number, LiteralString as Text};
         match operands {
-            [IdRef(id), Text(name)] => drop(self.names.insert(*id, name.clone())),
+            [IdRef(id), Text(name)] => {
+                self.names.insert(*id, name.clone());
+            }
             [IdRef(id), Number(member), Text(name)] => {
-                drop(self.members.insert((*id, *member), name.clone()))
+                self.members.insert((*id, *member), name.clone());
             }
             [IdRef(id), Is(decoration), rest @ ..] => {
-                drop(self.decorations.insert((*id, *decoration), number(rest)))
+                self.decorations.insert((*id, *decoration), number(rest));
             }
             [IdRef(id), Number(member), Is(decoration), rest @ ..] => {
                 self.member_decorations.insert((*id, *member, *decoration), number(rest));
