@@ -88,13 +88,18 @@ impl Lens {
         let matrix = DMat3::from_cols(x.truncate(), y.truncate(), third).transpose();
         let inverse = matrix.inverse();
         if !inverse.is_finite() || !eye_of_view.is_finite() {
-            return Err(Error::Usage("the camera's matrices are singular: give a field of view and axes of some extent".into()));
+            return Err(Error::Usage(
+                "the camera's matrices are singular: give a field of view and axes of some extent".into(),
+            ));
         }
         let eye = if projection.perspective { inverse * -DVec3::new(x.w, y.w, w.w) } else { eye_of_view };
         let at_eye = [x, y, w].map(|row| row.dot(eye.extend(1.0)));
         let offset = if projection.perspective { [0.0; 3] } else { at_eye };
         let clip = [x, y, w].into_iter().zip(offset).map(|(row, at)| row.truncate().extend(at));
-        let clip = { let mut clip = clip; [clip.next(), clip.next(), clip.next()].map(Option::unwrap_or_default) };
+        let clip = {
+            let mut clip = clip;
+            [clip.next(), clip.next(), clip.next()].map(Option::unwrap_or_default)
+        };
         // Pixel (px, py, 1) to ndc relative to the eye's, then to the world.
         let [width, height] = size.map(f64::from);
         let to_ndc = DMat3::from_cols(
@@ -107,7 +112,13 @@ impl Lens {
         } else {
             x.truncate().cross(y.truncate()).length()
         };
-        Ok(Self { clip, eye, forward, pixel: inverse * to_ndc, jacobian: 0.25 * width * height * determinant.abs() })
+        Ok(Self {
+            clip,
+            eye,
+            forward,
+            pixel: inverse * to_ndc,
+            jacobian: 0.25 * width * height * determinant.abs(),
+        })
     }
 
     /// Distance of a world point from the eye plane.

@@ -1,1 +1,2 @@
+//! The `surfel` program.
 fn main() {}

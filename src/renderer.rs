@@ -133,16 +133,25 @@ impl Renderer {
         self.resident.as_ref().map(|resident| &resident.splats)
     }
 
-    fn run(&mut self, scene: &Scene, camera: &Camera, settings: &Settings, read: bool) -> Result<FrameReport> {
+    fn run(
+        &mut self,
+        scene: &Scene,
+        camera: &Camera,
+        settings: &Settings,
+        read: bool,
+    ) -> Result<FrameReport> {
         settings.check()?;
         let options = self.options;
         let block = frame(camera, settings, options.size, scene.origin(), scene.bounds())?;
         let perspective = camera.projection()?.perspective;
-        let variant = Variant::new(scene, perspective, settings, options.outputs, options.precision, options.count);
+        let variant =
+            Variant::new(scene, perspective, settings, options.outputs, options.precision, options.count);
         self.make_ready(scene, variant, read)?;
         self.frame.bytes_mut().copy_from_slice(bytemuck::bytes_of(&block));
 
-        let (Some(canvas), Some(resident)) = (&self.canvas, &self.resident) else { return Ok(FrameReport::default()) };
+        let (Some(canvas), Some(resident)) = (&self.canvas, &self.resident) else {
+            return Ok(FrameReport::default());
+        };
         let method = &self.methods[&variant];
         self.commands.run(|rec| {
             method.record(rec, &resident.splats, &canvas.views, &canvas.targets);
@@ -185,14 +194,16 @@ impl Canvas {
         }
         let [width, height] = self.targets.size();
         let pixels = u64::from(width) * u64::from(height);
-        let buffer = |image: &crate::vk::Image| Buffer::readback(device, "readback", pixels * image.pixel_bytes());
+        let buffer =
+            |image: &crate::vk::Image| Buffer::readback(device, "readback", pixels * image.pixel_bytes());
         self.readback = self.targets.read_back().map(buffer).collect::<Result<_>>()?;
         Ok(())
     }
 
     fn read_back(&self, rec: &mut Recorder<'_>) {
         let pairs = || self.targets.read_back().zip(&self.readback);
-        let copy = pairs().flat_map(|(image, buffer)| [image.with(Access::COPY_READ), buffer.with(Access::COPY_WRITE)]);
+        let copy = pairs()
+            .flat_map(|(image, buffer)| [image.with(Access::COPY_READ), buffer.with(Access::COPY_WRITE)]);
         rec.pass("read back", &copy.collect::<Vec<_>>(), |enc| {
             pairs().for_each(|(image, buffer)| enc.copy_image(image, buffer));
         });

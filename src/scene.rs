@@ -57,10 +57,18 @@ impl Scene {
     pub fn upload(device: &Arc<Device>, surfels: &Surfels) -> Result<Self> {
         static NEXT: AtomicU64 = AtomicU64::new(0);
         let count = surfels.len() as u64;
-        let lengths = [surfels.normals.len(), surfels.radii.len(), surfels.colours.as_ref().map_or(surfels.len(), Colours::len)];
-        let Some(bounds) = surfels.bounds() else { return Err(Error::Usage("a scene without surfels".into())) };
+        let lengths = [
+            surfels.normals.len(),
+            surfels.radii.len(),
+            surfels.colours.as_ref().map_or(surfels.len(), Colours::len),
+        ];
+        let Some(bounds) = surfels.bounds() else {
+            return Err(Error::Usage("a scene without surfels".into()));
+        };
         if lengths.iter().any(|&length| length != surfels.len()) {
-            let text = format!("a scene of {count} positions with {lengths:?} normals, radii and colours: give one each");
+            let text = format!(
+                "a scene of {count} positions with {lengths:?} normals, radii and colours: give one each"
+            );
             return Err(Error::Usage(text));
         }
         let (colour_stream, colours): (_, &[u8]) = match &surfels.colours {
@@ -73,7 +81,9 @@ impl Scene {
             positions: upload(device, "positions", bytemuck::cast_slice(&surfels.positions))?,
             normals: upload(device, "normals", bytemuck::cast_slice(&surfels.normals))?,
             radii: upload(device, "radii", bytemuck::cast_slice(&surfels.radii))?,
-            colours: (colour_stream != ColourStream::None).then(|| upload(device, "colours", colours)).transpose()?,
+            colours: (colour_stream != ColourStream::None)
+                .then(|| upload(device, "colours", colours))
+                .transpose()?,
             colour_stream,
             windows: windows(count, device.capabilities()),
             count,
@@ -116,7 +126,9 @@ impl Scene {
     /// A window of each stream: positions, normals, radii, colours. A stream that the scene lacks is stood in for by the radii, which
     /// the shaders then do not read.
     pub(crate) fn bindings(&self, window: &Range<u64>) -> [Binding<'_>; 4] {
-        let part = |buffer, stride| Binding::Storage(buffer, window.start * stride, (window.end - window.start) * stride);
+        let part = |buffer, stride| {
+            Binding::Storage(buffer, window.start * stride, (window.end - window.start) * stride)
+        };
         [
             part(&self.positions, VECTOR),
             part(&self.normals, VECTOR),

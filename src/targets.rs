@@ -75,7 +75,8 @@ impl Targets {
         }
         let formats = Formats::of(variant);
         let target = |name, format, also| Image::target(device, name, format, size, also);
-        let optional = |name, format: Option<Format>, also| format.map(|format| target(name, format, also)).transpose();
+        let optional =
+            |name, format: Option<Format>, also| format.map(|format| target(name, format, also)).transpose();
         Ok(Self {
             visibility: target("visibility", formats.visibility, ImageUse::Sampled)?,
             sums0: target("sums0", formats.sums0, ImageUse::Sampled)?,
@@ -95,7 +96,9 @@ impl Targets {
     pub fn list(&self) -> impl Iterator<Item = (&'static str, &Image)> {
         let always = [("visibility", &self.visibility), ("sums0", &self.sums0), ("image", &self.image)];
         let optional = [("sums1", &self.sums1), ("normal", &self.normal), ("depth", &self.depth)];
-        always.into_iter().chain(optional.into_iter().filter_map(|(name, image)| Some((name, image.as_ref()?))))
+        always
+            .into_iter()
+            .chain(optional.into_iter().filter_map(|(name, image)| Some((name, image.as_ref()?))))
     }
 
     /// The targets that are read on the CPU.

@@ -5,7 +5,8 @@ use crate::error::Result;
 use crate::targets::{Formats, Targets};
 use crate::variant::Variant;
 use crate::vk::{
-    Access, Attachment, Blend, DepthTest, Device, DrawPipeline, DrawState, Framebuffer, Recorder, RenderPass, shaders,
+    Access, Attachment, Blend, DepthTest, Device, DrawPipeline, DrawState, Framebuffer, Recorder, RenderPass,
+    shaders,
 };
 use std::sync::Arc;
 
@@ -35,7 +36,13 @@ impl Attribute {
     }
 
     /// `splats`, `targets.visibility` → `targets.sums0`, `targets.sums1`.
-    pub fn record(&self, rec: &mut Recorder<'_>, splats: &Splats, framebuffer: &Framebuffer, targets: &Targets) {
+    pub fn record(
+        &self,
+        rec: &mut Recorder<'_>,
+        splats: &Splats,
+        framebuffer: &Framebuffer,
+        targets: &Targets,
+    ) {
         let sums1 = targets.sums1.as_ref().unwrap_or(&targets.sums0);
         let uses = [
             splats.with(Access::VERTEX_READ),

@@ -25,7 +25,8 @@ impl Normalize {
         let layout = SetLayout::new(device, &[frame, sampled, sampled, sampled])?;
         let formats = Formats::of(variant);
         let optional = |format: Option<_>| format.map_or(Attachment::Absent, Attachment::Overwritten);
-        let outputs = [Attachment::Overwritten(formats.image), optional(formats.normal), optional(formats.depth)];
+        let outputs =
+            [Attachment::Overwritten(formats.image), optional(formats.normal), optional(formats.depth)];
         let pass = RenderPass::new(device, &outputs, None)?;
         let code = [shaders::NORMALIZE_VERTEX, shaders::NORMALIZE_FRAGMENT];
         let state = DrawState { depth: DepthTest::None, blend: Blend::Replace };
@@ -45,7 +46,8 @@ impl Normalize {
         // Absent sums are not read; something must stand at their binding all the same.
         let sums1 = targets.sums1.as_ref().unwrap_or(&targets.sums0);
         let [visibility, sums0, sums1] = [&targets.visibility, &targets.sums0, sums1].map(Binding::Sampled);
-        let set = DescriptorSet::new(device, &self.layout, &[Binding::Uniform(frame), visibility, sums0, sums1])?;
+        let set =
+            DescriptorSet::new(device, &self.layout, &[Binding::Uniform(frame), visibility, sums0, sums1])?;
         Ok((framebuffer, set))
     }
 
@@ -56,7 +58,8 @@ impl Normalize {
         (framebuffer, set): &(Framebuffer, DescriptorSet),
         targets: &Targets,
     ) {
-        let read = [Some(&targets.visibility), Some(&targets.sums0), targets.sums1.as_ref()].into_iter().flatten();
+        let read =
+            [Some(&targets.visibility), Some(&targets.sums0), targets.sums1.as_ref()].into_iter().flatten();
         let read = read.map(|image| image.with(Access::FRAGMENT_READ));
         let written = targets.read_back().map(|image| image.with(Access::COLOUR_WRITE));
         let uses: Vec<_> = read.chain(written).collect();

@@ -5,7 +5,8 @@ use crate::error::Result;
 use crate::targets::{Formats, Targets};
 use crate::variant::Variant;
 use crate::vk::{
-    Access, Attachment, Blend, DepthTest, Device, DrawPipeline, DrawState, Framebuffer, Recorder, RenderPass, shaders,
+    Access, Attachment, Blend, DepthTest, Device, DrawPipeline, DrawState, Framebuffer, Recorder, RenderPass,
+    shaders,
 };
 use std::sync::Arc;
 
@@ -32,7 +33,13 @@ impl Visibility {
     }
 
     /// `splats` → `targets.visibility`.
-    pub fn record(&self, rec: &mut Recorder<'_>, splats: &Splats, framebuffer: &Framebuffer, targets: &Targets) {
+    pub fn record(
+        &self,
+        rec: &mut Recorder<'_>,
+        splats: &Splats,
+        framebuffer: &Framebuffer,
+        targets: &Targets,
+    ) {
         let uses = [splats.with(Access::VERTEX_READ), targets.visibility.with(Access::DEPTH_WRITE)];
         rec.pass("visibility", &uses, |enc| {
             enc.render(framebuffer, |draws| {

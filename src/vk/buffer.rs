@@ -48,11 +48,13 @@ impl Buffer {
     ) -> Result<Self> {
         let info = vk::BufferCreateInfo::default().size(size).usage(usage);
         // SAFETY: `info` is valid; the buffer is destroyed in `drop`.
-        let raw = unsafe { device.raw.create_buffer(&info, None) }.map_err(Error::vulkan("vkCreateBuffer"))?;
+        let raw =
+            unsafe { device.raw.create_buffer(&info, None) }.map_err(Error::vulkan("vkCreateBuffer"))?;
         let mut buffer = Self { raw, size, allocation: None, device: device.clone() };
         // SAFETY: the buffer is the device's.
         let requirements = unsafe { device.raw.get_buffer_memory_requirements(raw) };
-        let allocation = buffer.allocation.insert(memory::allocate(device, name, requirements, location, true)?);
+        let allocation =
+            buffer.allocation.insert(memory::allocate(device, name, requirements, location, true)?);
         // SAFETY: the memory was allocated for this buffer's requirements and is bound once.
         unsafe { device.raw.bind_buffer_memory(raw, allocation.memory(), allocation.offset()) }
             .map_err(Error::vulkan("vkBindBufferMemory"))?;
@@ -73,7 +75,8 @@ impl Buffer {
     /// As [`Buffer::bytes`], to write.
     pub fn bytes_mut(&mut self) -> &mut [u8] {
         let size = self.size as usize;
-        let mapped = self.allocation.as_mut().and_then(|allocation| allocation.mapped_slice_mut()).unwrap_or(&mut []);
+        let mapped =
+            self.allocation.as_mut().and_then(|allocation| allocation.mapped_slice_mut()).unwrap_or(&mut []);
         let end = mapped.len().min(size);
         &mut mapped[..end]
     }

@@ -29,12 +29,17 @@ impl Commands {
         let pool = vk::CommandPoolCreateInfo::default().queue_family_index(device.family);
         // SAFETY: all infos are valid; what is made is destroyed in `drop`.
         unsafe {
-            commands.pool = device.raw.create_command_pool(&pool, None)
-                .map_err(Error::vulkan("vkCreateCommandPool"))?;
-            let buffer = vk::CommandBufferAllocateInfo::default().command_pool(commands.pool).command_buffer_count(1);
-            commands.cmd = device.raw.allocate_command_buffers(&buffer)
+            commands.pool =
+                device.raw.create_command_pool(&pool, None).map_err(Error::vulkan("vkCreateCommandPool"))?;
+            let buffer =
+                vk::CommandBufferAllocateInfo::default().command_pool(commands.pool).command_buffer_count(1);
+            commands.cmd = device
+                .raw
+                .allocate_command_buffers(&buffer)
                 .map_err(Error::vulkan("vkAllocateCommandBuffers"))?[0];
-            commands.fence = device.raw.create_fence(&vk::FenceCreateInfo::default(), None)
+            commands.fence = device
+                .raw
+                .create_fence(&vk::FenceCreateInfo::default(), None)
                 .map_err(Error::vulkan("vkCreateFence"))?;
         }
         Ok(commands)

@@ -88,17 +88,21 @@ impl DescriptorSet {
     fn write(&self, bindings: &[Binding<'_>]) {
         for (binding, i) in bindings.iter().zip(0..) {
             let write = vk::WriteDescriptorSet::default().dst_set(self.raw).dst_binding(i);
-            let buffer = |buffer: &Buffer, offset, range| [vk::DescriptorBufferInfo { buffer: buffer.raw, offset, range }];
+            let buffer = |buffer: &Buffer, offset, range| {
+                [vk::DescriptorBufferInfo { buffer: buffer.raw, offset, range }]
+            };
             let update = |write: vk::WriteDescriptorSet<'_>| {
                 // SAFETY: the set is new, so no command uses it, and the layout has this binding with this kind.
                 unsafe { self.device.raw.update_descriptor_sets(&[write], &[]) }
             };
             match *binding {
-                Binding::Uniform(uniform) => update(
-                    write
-                        .descriptor_type(vk::DescriptorType::UNIFORM_BUFFER)
-                        .buffer_info(&buffer(uniform, 0, vk::WHOLE_SIZE)),
-                ),
+                Binding::Uniform(uniform) => {
+                    update(write.descriptor_type(vk::DescriptorType::UNIFORM_BUFFER).buffer_info(&buffer(
+                        uniform,
+                        0,
+                        vk::WHOLE_SIZE,
+                    )))
+                }
                 Binding::Storage(storage, offset, size) => update(
                     write
                         .descriptor_type(vk::DescriptorType::STORAGE_BUFFER)

@@ -68,12 +68,12 @@ impl Device {
         let chosen = choose(&instance, options.select.as_deref())?;
         let (physical, family, description) = (chosen.physical, chosen.family, chosen.description);
         let capabilities = Capabilities::query(&instance, physical, family, &options.limits);
-        let queues = [vk::DeviceQueueCreateInfo::default().queue_family_index(family).queue_priorities(&[1.0])];
+        let queues =
+            [vk::DeviceQueueCreateInfo::default().queue_family_index(family).queue_priorities(&[1.0])];
         let info = vk::DeviceCreateInfo::default().queue_create_infos(&queues);
         // SAFETY: the physical device is the instance's, the family one of its own, and no feature is asked for.
-        let raw = unsafe { instance.raw.create_device(physical, &info, None) }.map_err(|result| {
-            Error::NoDevice(format!("{}: vkCreateDevice: {result}", description.name))
-        })?;
+        let raw = unsafe { instance.raw.create_device(physical, &info, None) }
+            .map_err(|result| Error::NoDevice(format!("{}: vkCreateDevice: {result}", description.name)))?;
         // SAFETY: the queue was asked for above.
         let queue = unsafe { raw.get_device_queue(family, 0) };
         let allocator = Allocator::new(&AllocatorCreateDesc {
@@ -85,7 +85,8 @@ impl Device {
             allocation_sizes: gpu_allocator::AllocationSizes::default(),
         })
         .map_err(|error| Error::NoDevice(format!("{}: {error}", description.name)))?;
-        let pipeline_cache = PipelineCache::load(&instance, physical, &raw, options.pipeline_cache.as_deref())?;
+        let pipeline_cache =
+            PipelineCache::load(&instance, physical, &raw, options.pipeline_cache.as_deref())?;
         let labels = instance.debug_utils.then(|| debug_utils::Device::new(&instance.raw, &raw));
         log::info!("device: {} ({}, {})", description.name, description.kind, description.driver);
         Ok(Arc::new(Self {

@@ -28,7 +28,13 @@ pub struct Image {
 
 impl Image {
     /// A colour or depth target, by its format, of `size` px.
-    pub fn target(device: &Arc<Device>, name: &str, format: vk::Format, size: [u32; 2], also: ImageUse) -> Result<Self> {
+    pub fn target(
+        device: &Arc<Device>,
+        name: &str,
+        format: vk::Format,
+        size: [u32; 2],
+        also: ImageUse,
+    ) -> Result<Self> {
         let attachment = match is_depth(format) {
             true => vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT,
             false => vk::ImageUsageFlags::COLOR_ATTACHMENT,

@@ -23,7 +23,9 @@ impl Instance {
     pub(super) fn new(validate: bool) -> Result<Self> {
         // SAFETY: loading the system's Vulkan library runs its initialisers, which are trusted like any linked library's.
         let entry = unsafe { ash::Entry::load() }.map_err(|error| {
-            Error::NoDevice(format!("{error}; install a Vulkan loader and driver (Debian: libvulkan1 mesa-vulkan-drivers)"))
+            Error::NoDevice(format!(
+                "{error}; install a Vulkan loader and driver (Debian: libvulkan1 mesa-vulkan-drivers)"
+            ))
         })?;
         let debug_utils = has_extension(&entry, None, debug_utils::NAME);
         let layer = if validate { vec![require_validation_layer(&entry)?.as_ptr()] } else { Vec::new() };

@@ -5,7 +5,11 @@ use ash::vk;
 
 /// A mask over a device's abilities: a field that is `None` hides nothing. It only ever takes away.
 #[derive(Clone, Debug, Default, PartialEq)]
-#[cfg_attr(feature = "cli", derive(serde::Deserialize), serde(default, deny_unknown_fields, rename_all = "snake_case"))]
+#[cfg_attr(
+    feature = "cli",
+    derive(serde::Deserialize),
+    serde(default, deny_unknown_fields, rename_all = "snake_case")
+)]
 pub struct DeviceLimits {
     /// `false`: 32-bit float targets cannot be blended.
     pub blend_float32: Option<bool>,
@@ -56,14 +60,18 @@ impl Capabilities {
             let found = unsafe { instance.raw.get_physical_device_format_properties(physical, format) };
             found.optimal_tiling_features.contains(vk::FormatFeatureFlags::COLOR_ATTACHMENT_BLEND)
         };
-        let side = limits.max_image_dimension2_d.min(limits.max_framebuffer_width).min(limits.max_framebuffer_height);
+        let side = limits
+            .max_image_dimension2_d
+            .min(limits.max_framebuffer_width)
+            .min(limits.max_framebuffer_height);
         let side = side.min(limits.max_viewport_dimensions[0]).min(limits.max_viewport_dimensions[1]);
         let valid_bits = families[family as usize].timestamp_valid_bits;
         let timestamps = valid_bits > 0 && mask.timestamps != Some(false);
         Self {
             blend_float32: [vk::Format::R32_SFLOAT, vk::Format::R32G32B32A32_SFLOAT].into_iter().all(blends)
                 && mask.blend_float32 != Some(false),
-            timestamps: timestamps.then_some((limits.timestamp_period, u64::MAX >> (64 - valid_bits.clamp(1, 64)))),
+            timestamps: timestamps
+                .then_some((limits.timestamp_period, u64::MAX >> (64 - valid_bits.clamp(1, 64)))),
             max_storage_buffer_range: u64::from(limits.max_storage_buffer_range)
                 .min(mask.max_storage_buffer_range.unwrap_or(u64::MAX)),
             storage_buffer_alignment: limits.min_storage_buffer_offset_alignment,

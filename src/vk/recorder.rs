@@ -18,7 +18,9 @@ impl Access {
     /// Written, and maybe read, by a compute shader.
     pub const COMPUTE_WRITE: Self = Self::buffer(
         vk::PipelineStageFlags::COMPUTE_SHADER,
-        vk::AccessFlags::from_raw(vk::AccessFlags::SHADER_READ.as_raw() | vk::AccessFlags::SHADER_WRITE.as_raw()),
+        vk::AccessFlags::from_raw(
+            vk::AccessFlags::SHADER_READ.as_raw() | vk::AccessFlags::SHADER_WRITE.as_raw(),
+        ),
         true,
     );
     /// Read by a vertex shader.
@@ -35,7 +37,8 @@ impl Access {
     pub const COLOUR_WRITE: Self = Self {
         stages: vk::PipelineStageFlags::COLOR_ATTACHMENT_OUTPUT,
         mask: vk::AccessFlags::from_raw(
-            vk::AccessFlags::COLOR_ATTACHMENT_READ.as_raw() | vk::AccessFlags::COLOR_ATTACHMENT_WRITE.as_raw(),
+            vk::AccessFlags::COLOR_ATTACHMENT_READ.as_raw()
+                | vk::AccessFlags::COLOR_ATTACHMENT_WRITE.as_raw(),
         ),
         layout: vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL,
         write: true,
@@ -76,7 +79,8 @@ impl Access {
 }
 
 const DEPTH_STAGES: vk::PipelineStageFlags = vk::PipelineStageFlags::from_raw(
-    vk::PipelineStageFlags::EARLY_FRAGMENT_TESTS.as_raw() | vk::PipelineStageFlags::LATE_FRAGMENT_TESTS.as_raw(),
+    vk::PipelineStageFlags::EARLY_FRAGMENT_TESTS.as_raw()
+        | vk::PipelineStageFlags::LATE_FRAGMENT_TESTS.as_raw(),
 );
 
 /// A resource and how a pass touches it.
@@ -125,7 +129,11 @@ pub struct Recorder<'a> {
 }
 
 impl<'a> Recorder<'a> {
-    pub(super) fn new(device: &'a Device, cmd: vk::CommandBuffer, timestamps: Option<&'a mut Timestamps>) -> Self {
+    pub(super) fn new(
+        device: &'a Device,
+        cmd: vk::CommandBuffer,
+        timestamps: Option<&'a mut Timestamps>,
+    ) -> Self {
         let mut recorder = Self { device, cmd, states: Vec::with_capacity(16), timestamps };
         if let Some(timestamps) = &mut recorder.timestamps {
             timestamps.begin_frame(cmd);
@@ -346,7 +354,9 @@ impl Encoder<'_> {
             .image_extent(vk::Extent3D { width, height, depth: 1 });
         let layout = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
         // SAFETY: recorded outside a render pass; the pass's uses brought the image into this layout; the buffer is large enough.
-        unsafe { self.device.raw.cmd_copy_image_to_buffer(self.cmd, image.raw, layout, buffer.raw, &[region]) };
+        unsafe {
+            self.device.raw.cmd_copy_image_to_buffer(self.cmd, image.raw, layout, buffer.raw, &[region])
+        };
     }
 }
 

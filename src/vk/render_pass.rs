@@ -31,9 +31,10 @@ impl RenderPass {
     pub fn new(device: &Arc<Device>, colours: &[Attachment], depth: Option<Attachment>) -> Result<Self> {
         let mut descriptions = Vec::new();
         let mut reference = |attachment: &Attachment| match attachment.describe() {
-            None => {
-                vk::AttachmentReference { attachment: vk::ATTACHMENT_UNUSED, layout: vk::ImageLayout::UNDEFINED }
-            }
+            None => vk::AttachmentReference {
+                attachment: vk::ATTACHMENT_UNUSED,
+                layout: vk::ImageLayout::UNDEFINED,
+            },
             Some(description) => {
                 descriptions.push(description);
                 let attachment = descriptions.len() as u32 - 1;
@@ -53,7 +54,12 @@ impl RenderPass {
         // SAFETY: every reference is to an attachment of the list; the pass is destroyed in `drop`.
         let raw = unsafe { device.raw.create_render_pass(&info, None) }
             .map_err(Error::vulkan("vkCreateRenderPass"))?;
-        Ok(Self { raw, colour_targets: colours.len(), attachments: descriptions.len(), device: device.clone() })
+        Ok(Self {
+            raw,
+            colour_targets: colours.len(),
+            attachments: descriptions.len(),
+            device: device.clone(),
+        })
     }
 }
 

@@ -66,8 +66,10 @@ impl Timestamps {
             return Ok(Vec::new());
         }
         // SAFETY: the frame that wrote these queries is over.
-        unsafe { self.device.raw.get_query_pool_results(self.pool, 0, &mut stamps, vk::QueryResultFlags::TYPE_64) }
-            .map_err(Error::vulkan("vkGetQueryPoolResults"))?;
+        unsafe {
+            self.device.raw.get_query_pool_results(self.pool, 0, &mut stamps, vk::QueryResultFlags::TYPE_64)
+        }
+        .map_err(Error::vulkan("vkGetQueryPoolResults"))?;
         let mut times: Vec<PassTime> = Vec::new();
         for (&label, stamp) in self.labels.iter().zip(stamps.chunks_exact(2)) {
             let ticks = stamp[1].wrapping_sub(stamp[0]) & self.mask;
