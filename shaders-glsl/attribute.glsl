@@ -37,12 +37,25 @@ void attributes_of(uint i, float side, out vec3 first, out vec3 second) {
 
 #include "lib/pixels.glsl"
 
+layout(constant_id = 8) const bool LARGE_SPLATS = false;
+
 float splat_amplitude;
 vec3 splat_first, splat_second;
 
-void scatter_begin(uint i, Splat splat, vec2 variance) {
+bool hidden(float nearest, ivec2 low, ivec2 high) {
+    uint width = (uint(frame.viewport.x) + TILE - 1) / TILE;
+    uvec2 first = uvec2(low) / TILE, last = uvec2(high) / TILE;
+    uint farthest = 0xffffffffu;
+    for (uint y = first.y; y <= last.y; y++)
+        for (uint x = first.x; x <= last.x; x++) farthest = min(farthest, tiles[y * width + x]);
+    return floatBitsToUint(max(nearest, 0.0)) < farthest;
+}
+
+bool scatter_begin(uint i, Splat splat, vec2 variance, float nearest, ivec2 low, ivec2 high) {
+    if (!LARGE_SPLATS && hidden(nearest, low, high)) return false;
     splat_amplitude = splat.sqrt_det * inversesqrt(variance.x * variance.y);
     attributes_of(i, splat.side, splat_first, splat_second);
+    return true;
 }
 
 void scatter(uint pixel, float m2, float key) {

@@ -10,10 +10,13 @@
 
 #include "lib/pixels.glsl"
 
+layout(constant_id = 8) const bool LARGE_SPLATS = false;
+
 float splat_epsilon;
 
-void scatter_begin(uint i, Splat splat, vec2 variance) {
+bool scatter_begin(uint i, Splat splat, vec2 variance, float nearest, ivec2 low, ivec2 high) {
     splat_epsilon = splat.epsilon;
+    return true;
 }
 
 void scatter(uint pixel, float m2, float key) {

@@ -18,7 +18,8 @@ impl Images {
     /// Records the copies to those buffers.
     pub fn record_readback(&self, rec: &mut Recorder<'_>, readback: &[Buffer]) {
         let pairs = || self.outputs().zip(readback);
-        let uses = pairs().flat_map(|(image, buffer)| [image.with(Access::COPY_READ), buffer.with(Access::COPY_WRITE)]);
+        let uses = pairs()
+            .flat_map(|(image, buffer)| [image.with(Access::COPY_READ), buffer.with(Access::COPY_WRITE)]);
         rec.pass("read back", &uses.collect::<Vec<_>>(), |enc| {
             pairs().for_each(|(image, buffer)| enc.copy_image(image, buffer));
         });
@@ -60,7 +61,8 @@ impl Buffers {
         let pixels = self.pixels() as usize;
         let mut rest = readback.first().map_or(&[][..], Buffer::bytes);
         let mut plane = |there: bool, floats: usize| {
-            let (plane, after) = rest.split_at_checked(if there { 4 * floats * pixels } else { 0 }).unwrap_or_default();
+            let (plane, after) =
+                rest.split_at_checked(if there { 4 * floats * pixels } else { 0 }).unwrap_or_default();
             rest = after;
             there.then_some(plane)
         };

@@ -143,7 +143,13 @@ impl Renderer {
         self.resident.as_ref().map(|resident| &resident.splats)
     }
 
-    fn run(&mut self, scene: &Scene, camera: &Camera, settings: &Settings, read: bool) -> Result<FrameReport> {
+    fn run(
+        &mut self,
+        scene: &Scene,
+        camera: &Camera,
+        settings: &Settings,
+        read: bool,
+    ) -> Result<FrameReport> {
         settings.check()?;
         let block = frame(camera, settings, self.options.size, scene.origin(), scene.bounds())?;
         let variant = Variant::new(scene, camera.projection()?.perspective, settings, &self.options);
@@ -151,7 +157,9 @@ impl Renderer {
         self.make_present(variant, read)?;
         self.frame.bytes_mut().copy_from_slice(bytemuck::bytes_of(&block));
 
-        let (Some(present), Some(resident)) = (&self.present, &self.resident) else { return Ok(FrameReport::default()) };
+        let (Some(present), Some(resident)) = (&self.present, &self.resident) else {
+            return Ok(FrameReport::default());
+        };
         self.commands.run(|rec| {
             present.canvas.record(rec, &resident.splats);
             if read {
@@ -165,7 +173,11 @@ impl Renderer {
     }
 
     fn make_resident(&mut self, scene: &Scene, rasterizer: Rasterizer) -> Result<()> {
-        if self.resident.as_ref().is_none_or(|resident| (resident.scene, resident.rasterizer) != (scene.id, rasterizer)) {
+        if self
+            .resident
+            .as_ref()
+            .is_none_or(|resident| (resident.scene, resident.rasterizer) != (scene.id, rasterizer))
+        {
             self.resident = None;
             let splats = Splats::new(&self.device, &self.layout, &self.frame, scene, rasterizer)?;
             self.resident = Some(Resident { scene: scene.id, rasterizer, splats });
@@ -178,9 +190,12 @@ impl Renderer {
             self.present = None;
             let method = match self.methods.entry(variant) {
                 Entry::Occupied(made) => made.into_mut(),
-                Entry::Vacant(room) => room.insert(PerspectiveEwa::new(&self.device, &self.layout, &variant)?),
+                Entry::Vacant(room) => {
+                    room.insert(PerspectiveEwa::new(&self.device, &self.layout, &variant)?)
+                }
             };
-            let canvas = method.canvas(&self.device, &self.layout, &self.frame, &variant, self.options.size)?;
+            let canvas =
+                method.canvas(&self.device, &self.layout, &self.frame, &variant, self.options.size)?;
             self.present = Some(Present { variant, canvas, readback: Vec::new() });
         }
         match &mut self.present {

@@ -30,6 +30,8 @@ pub struct Buffers {
     pub sums0: Buffer,
     /// See [`Images::sums1`].
     pub sums1: Option<Buffer>,
+    /// Least visibility of each tile of [`Buffers::TILE`]² pixels, empty ones aside.
+    pub tiles: Buffer,
     /// All pixels' colour (4 floats), then all normals (3), then all depths (1), as far as they are asked for.
     pub picture: Buffer,
     /// What it holds.
@@ -94,7 +96,9 @@ pub fn check_size(device: &Device, size: [u32; 2]) -> Result<()> {
         false => Ok(()),
         true => {
             let name = &device.description().name;
-            Err(Error::Usage(format!("a picture of {width}x{height} px: {name} draws from 1x1 to {limit}x{limit}")))
+            Err(Error::Usage(format!(
+                "a picture of {width}x{height} px: {name} draws from 1x1 to {limit}x{limit}"
+            )))
         }
     }
 }
@@ -104,7 +108,8 @@ impl Images {
     pub fn new(device: &Arc<Device>, variant: &Variant, size: [u32; 2]) -> Result<Self> {
         let formats = Formats::of(variant);
         let target = |name, format, also| Image::target(device, name, format, size, also);
-        let optional = |name, format: Option<Format>, also| format.map(|format| target(name, format, also)).transpose();
+        let optional =
+            |name, format: Option<Format>, also| format.map(|format| target(name, format, also)).transpose();
         Ok(Self {
             visibility: target("visibility", formats.visibility, ImageUse::Sampled)?,
             sums0: target("sums0", formats.sums0, ImageUse::Sampled)?,
@@ -125,7 +130,8 @@ impl Images {
         let always = [("visibility", &self.visibility), ("sums0", &self.sums0), ("image", &self.image)];
         let optional = [("sums1", &self.sums1), ("normal", &self.normal), ("depth", &self.depth)];
         let there = optional.into_iter().filter_map(|(name, image)| Some((name, image.as_ref()?)));
-        let info = |(name, image): (_, &Image)| TargetInfo { name, format: image.format(), bytes: image.bytes() };
+        let info =
+            |(name, image): (_, &Image)| TargetInfo { name, format: image.format(), bytes: image.bytes() };
         always.into_iter().chain(there).map(info).collect()
     }
 }
@@ -141,6 +147,7 @@ impl Buffers {
             visibility: buffer("visibility", 1)?,
             sums0: buffer("sums0", floats(variant.wide_sums0()))?,
             sums1: sums1.transpose()?,
+            tiles: Buffer::storage(device, "tiles", 4 * Self::tiles(size))?,
             picture: buffer("picture", Self::picture_floats(variant.outputs))?,
             outputs: variant.outputs,
             size,
@@ -152,6 +159,15 @@ impl Buffers {
         let pixels = u64::from(size[0]) * u64::from(size[1]);
         // The picture has the largest pixels.
         4 * Self::picture_floats(outputs) * pixels <= capabilities.max_storage_buffer_range
+    }
+
+    /// Side of a tile, px; as in `lib/pixels.glsl`.
+    pub const TILE: u32 = 8;
+
+    /// Number of tiles of a picture of `size` px.
+    pub fn tiles(size: [u32; 2]) -> u64 {
+        let [x, y] = size.map(|side| u64::from(side.div_ceil(Self::TILE)));
+        x * y
     }
 
     /// Number of pixels.
@@ -176,6 +192,7 @@ impl Buffers {
             info("sums0", &self.sums0, sums(&self.sums0)),
         ];
         list.extend(self.sums1.as_ref().map(|buffer| info("sums1", buffer, sums(buffer))));
+        list.push(info("tiles", &self.tiles, Format::R32_UINT));
         list.push(info("picture", &self.picture, float));
         list
     }

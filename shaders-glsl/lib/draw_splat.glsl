@@ -20,13 +20,10 @@ float place_splat(Splat splat, float lowpass, int corner) {
     plane_epsilon = vec4(ellipse.plane, splat.epsilon);
 
     // The nearest depth in the ellipse bounds every fragment's, which lets a device reject the triangle early.
-    vec2 deviation = sqrt(variance);
-    vec2 minor_axis = vec2(-splat.axis.y, splat.axis.x);
-    vec2 slope = vec2(dot(splat.plane.yz, splat.axis), dot(splat.plane.yz, minor_axis)) * deviation * frame.cutoff;
-    float nearest = splat.plane.x + dot(splat.plane.yz, ellipse.offset) + length(slope);
-    nearest = min(1.0, nearest * (1.0 + 1e-6) + 1e-30);
+    float nearest = min(1.0, nearest_of(splat, variance, ellipse.offset));
 
-    vec2 reach = frame.cutoff * deviation + EDGE;
+    vec2 minor_axis = vec2(-splat.axis.y, splat.axis.x);
+    vec2 reach = frame.cutoff * sqrt(variance) + EDGE;
     vec2 position;
     if (splat.side == 0.0 || nearest <= frame.key_far) {
         position = vec2(0.0); // all corners alike: no fragments

@@ -1,18 +1,53 @@
-// The compute rasterizer: an invocation visits the pixels of a splat's box. Splats of many pixels, which would hold their neighbours
-// up, are left to a second dispatch (LARGE_SPLATS) with a workgroup a splat.
+// The compute rasterizer: an invocation visits the pixels of a splat, row by row. Splats of many pixels, which would hold their
+// neighbours up, are left to a second dispatch (LARGE_SPLATS) with a workgroup a splat.
 //
-// The including pass defines what happens: `scatter_begin(i, splat, variance)` once a splat and `scatter(pixel, m2, key)` at each
-// of its fragments.
+// The including pass defines what happens: `scatter_begin(i, splat, variance, nearest, low, high)` once a splat, which says whether
+// its fragments, in the pixels from low to high and no nearer than the κ nearest, are wanted; and `scatter(pixel, m2, key)` at each.
 
 layout(local_size_x = 64) in;
-
-layout(constant_id = 8) const bool LARGE_SPLATS = false;
 
 layout(set = 0, binding = 7, std430) readonly buffer LargeSplats { uint large_count; uint large_padding[63]; uint large[]; };
 
 layout(push_constant) uniform Window { uint count; } window;
 
-void scatter_box(uint i, float lowpass, uint first, uint step) {
+// The first and last pixel of row y that can be within the cut-off; at least one, whose fragment is tested all the same.
+ivec2 row_span(Ellipse ellipse, int y, ivec2 low, ivec2 high) {
+    vec2 x_axis = ellipse.whitening.xz, y_axis = ellipse.whitening.yw;
+    float ey = float(y) + 0.5 - ellipse.anchor.y - ellipse.offset.y;
+    float inverse = 1.0 / dot(x_axis, x_axis);
+    float determinant = x_axis.x * y_axis.y - x_axis.y * y_axis.x;
+    float square = inverse * (frame.cutoff * frame.cutoff - ey * ey * inverse * determinant * determinant);
+    // More than what rounding takes from a splat of this kind's few pixels.
+    float half_width = sqrt(max(square, 0.0)) + 0.03125;
+    float middle = ellipse.anchor.x + ellipse.offset.x - ey * inverse * dot(x_axis, y_axis) - 0.5;
+    vec2 ends = clamp(vec2(ceil(middle - half_width), floor(middle + half_width)), vec2(low.x), vec2(high.x));
+    return ivec2(ends.x, max(ends.x, ends.y));
+}
+
+void scatter_rows(Ellipse ellipse, ivec2 low, ivec2 high) {
+    float m2, key;
+    int y = low.y;
+    ivec2 span = row_span(ellipse, y, low, high);
+    // One loop over all rows keeps invocations with rows of other lengths in step.
+    while (y <= high.y) {
+        ivec2 pixel = ivec2(span.x, y);
+        if (splat_fragment(ellipse, vec2(pixel) + 0.5, m2, key)) scatter(pixel_index(pixel), m2, key);
+        span.x++;
+        if (span.x > span.y) span = row_span(ellipse, ++y, low, high);
+    }
+}
+
+void scatter_box(Ellipse ellipse, ivec2 low, ivec2 high) {
+    float m2, key;
+    uint width = uint(high.x - low.x + 1);
+    uint area = width * uint(high.y - low.y + 1);
+    for (uint k = gl_LocalInvocationIndex; k < area; k += gl_WorkGroupSize.x) {
+        ivec2 pixel = low + ivec2(k % width, k / width);
+        if (splat_fragment(ellipse, vec2(pixel) + 0.5, m2, key)) scatter(pixel_index(pixel), m2, key);
+    }
+}
+
+void scatter_splat(uint i, float lowpass) {
     Splat splat = splats[i];
     if (splat.side == 0.0 || !LARGE_SPLATS && abs(splat.side) == LARGE) return;
     vec2 variance = splat.variance + lowpass;
@@ -20,22 +55,16 @@ void scatter_box(uint i, float lowpass, uint first, uint step) {
     ivec2 low = ivec2(max(ceil(splat.centre - reach - 0.5), vec2(0.0)));
     ivec2 high = ivec2(min(floor(splat.centre + reach - 0.5), frame.viewport - 1.0));
     if (any(greaterThan(low, high))) return;
-    uint width = uint(high.x - low.x + 1);
-    uint area = width * uint(high.y - low.y + 1);
     Ellipse ellipse = ellipse_of(splat, variance);
-    scatter_begin(i, splat, variance);
-    for (uint k = first; k < area; k += step) {
-        ivec2 pixel = low + ivec2(k % width, k / width);
-        float m2, key;
-        if (splat_fragment(ellipse, vec2(pixel) + 0.5, m2, key)) scatter(pixel_index(pixel), m2, key);
-    }
+    if (!scatter_begin(i, splat, variance, nearest_of(splat, variance, ellipse.offset), low, high)) return;
+    if (LARGE_SPLATS) scatter_box(ellipse, low, high);
+    else scatter_rows(ellipse, low, high);
 }
 
 void scatter_splats(float lowpass) {
     if (LARGE_SPLATS) {
-        for (uint k = gl_WorkGroupID.x; k < large_count; k += gl_NumWorkGroups.x)
-            scatter_box(large[k], lowpass, gl_LocalInvocationIndex, gl_WorkGroupSize.x);
+        for (uint k = gl_WorkGroupID.x; k < large_count; k += gl_NumWorkGroups.x) scatter_splat(large[k], lowpass);
     } else if (gl_GlobalInvocationID.x < window.count) {
-        scatter_box(gl_GlobalInvocationID.x, lowpass, 0, 1);
+        scatter_splat(gl_GlobalInvocationID.x, lowpass);
     }
 }

@@ -51,6 +51,16 @@ bool splat_fragment(Ellipse ellipse, vec2 pixel, out float m2, out float key) {
     return m2 <= frame.cutoff * frame.cutoff && key > frame.key_far && key <= 1.0;
 }
 
+// The nearest κ within the cut-off ellipse: no fragment's is above it.
+float nearest_of(Splat splat, vec2 variance, vec2 offset) {
+    vec2 minor_axis = vec2(-splat.axis.y, splat.axis.x);
+    vec2 slope = vec2(dot(splat.plane.yz, splat.axis), dot(splat.plane.yz, minor_axis)) * sqrt(variance);
+    float rise = frame.cutoff * length(slope);
+    float centre = splat.plane.x + dot(splat.plane.yz, offset);
+    // More than what the rounding of any of these, or of a fragment's κ, takes away.
+    return centre + rise + 1e-6 * (abs(splat.plane.x) + abs(centre) + rise) + 1e-30;
+}
+
 // κ moved away from the eye along the ray by the splat's ε, which divides it by 1 + ε/z. Never 0: that means nothing is there.
 float behind(float key, float epsilon) {
     return PERSPECTIVE ? key * epsilon : max(key - epsilon, 1e-6);

@@ -7,8 +7,8 @@
 
 use crate::error::Result;
 use crate::passes::{
-    ComputeAttribute, ComputeNormalize, ComputeVisibility, DrawAttribute, DrawNormalize, DrawVisibility, Footprint,
-    NormalizeViews, PixelSet, SplatLayout, Splats,
+    ComputeAttribute, ComputeNormalize, ComputeVisibility, DrawAttribute, DrawNormalize, DrawVisibility,
+    Footprint, NormalizeViews, PixelSet, SplatLayout, Splats, Tiles,
 };
 use crate::picture::Picture;
 use crate::targets::{Buffers, Images, TargetInfo};
@@ -39,6 +39,7 @@ pub struct Draw {
 pub struct Compute {
     footprint: Footprint,
     visibility: ComputeVisibility,
+    tiles: Tiles,
     attribute: ComputeAttribute,
     normalize: ComputeNormalize,
 }
@@ -57,6 +58,7 @@ impl PerspectiveEwa {
             Rasterizer::Compute => Self::Compute(Arc::new(Compute {
                 footprint,
                 visibility: ComputeVisibility::new(device, layout, variant)?,
+                tiles: Tiles::new(device, layout, variant)?,
                 attribute: ComputeAttribute::new(device, layout, variant)?,
                 normalize: ComputeNormalize::new(device, layout, variant)?,
             })),
@@ -178,6 +180,7 @@ impl ComputeCanvas {
         let (method, targets) = (&self.method, &self.targets);
         method.footprint.record(rec, splats);
         method.visibility.record(rec, splats, &self.pixels, targets);
+        method.tiles.record(rec, &self.frame, &self.pixels, targets);
         method.attribute.record(rec, splats, &self.pixels, targets);
         method.normalize.record(rec, &self.frame, &self.pixels, targets);
     }

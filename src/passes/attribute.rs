@@ -5,8 +5,8 @@ use crate::error::Result;
 use crate::targets::{Buffers, Formats, Images};
 use crate::variant::Variant;
 use crate::vk::{
-    Access, Attachment, Blend, DepthTest, Device, DrawPipeline, DrawState, Framebuffer, Recorder, RenderPass, Use,
-    shaders,
+    Access, Attachment, Blend, DepthTest, Device, DrawPipeline, DrawState, Framebuffer, Recorder, RenderPass,
+    Use, shaders,
 };
 use std::sync::Arc;
 
@@ -28,7 +28,8 @@ impl DrawAttribute {
         let pass = RenderPass::new(device, &[Attachment::Cleared(formats.sums0), sums1], Some(depth))?;
         let code = [shaders::ATTRIBUTE_VERTEX, shaders::ATTRIBUTE_FRAGMENT];
         let state = DrawState { depth: DepthTest::NotBehind, blend: Blend::Add };
-        let pipeline = DrawPipeline::new(device, &[&layout.splats], code, &variant.constants(), &pass, state)?;
+        let pipeline =
+            DrawPipeline::new(device, &[&layout.splats], code, &variant.constants(), &pass, state)?;
         Ok(Self { pass, pipeline })
     }
 
@@ -39,7 +40,13 @@ impl DrawAttribute {
     }
 
     /// `splats`, `targets.visibility` → `targets.sums0`, `targets.sums1`.
-    pub fn record(&self, rec: &mut Recorder<'_>, splats: &Splats, framebuffer: &Framebuffer, targets: &Images) {
+    pub fn record(
+        &self,
+        rec: &mut Recorder<'_>,
+        splats: &Splats,
+        framebuffer: &Framebuffer,
+        targets: &Images,
+    ) {
         let mut uses = vec![
             splats.with(Access::VERTEX_READ),
             targets.visibility.with(Access::DEPTH_TEST),
@@ -56,14 +63,14 @@ impl ComputeAttribute {
         Scatter::new(device, layout, shaders::ATTRIBUTE_COMPUTE, variant).map(Self)
     }
 
-    /// `splats`, `targets.visibility` → `targets.sums0`, `targets.sums1`, which are cleared before.
+    /// `splats`, `targets.visibility`, `tiles` → `targets.sums0`, `targets.sums1`, which are cleared before.
     pub fn record(&self, rec: &mut Recorder<'_>, splats: &Splats, pixels: &PixelSet, targets: &Buffers) {
         let sums = || [Some(&targets.sums0), targets.sums1.as_ref()].into_iter().flatten();
         let used = |access| sums().map(move |buffer| buffer.with(access));
         let cleared: Vec<Use> = used(Access::COPY_WRITE).collect();
         rec.pass("clear", &cleared, |enc| sums().for_each(|buffer| enc.zero(buffer)));
         let mut uses = splats.read_by_scatter();
-        uses.push(targets.visibility.with(Access::COMPUTE_READ));
+        uses.extend([&targets.visibility, &targets.tiles].map(|buffer| buffer.with(Access::COMPUTE_READ)));
         uses.extend(used(Access::COMPUTE_WRITE));
         rec.pass("attribute", &uses, |enc| self.0.record(enc, splats, pixels));
     }

@@ -7,6 +7,7 @@ mod footprint;
 mod normalize;
 mod scatter;
 mod splats;
+mod tiles;
 mod visibility;
 
 pub use attribute::{ComputeAttribute, DrawAttribute};
@@ -14,4 +15,5 @@ pub use footprint::Footprint;
 pub use normalize::{ComputeNormalize, DrawNormalize, NormalizeViews};
 pub use scatter::{PixelSet, Scatter};
 pub use splats::{SplatLayout, Splats};
+pub use tiles::Tiles;
 pub use visibility::{ComputeVisibility, DrawVisibility};

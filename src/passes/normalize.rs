@@ -5,8 +5,8 @@ use crate::error::Result;
 use crate::targets::{Buffers, Formats, Images};
 use crate::variant::Variant;
 use crate::vk::{
-    Access, Attachment, Binding, Blend, Buffer, ComputePipeline, DepthTest, DescriptorSet, Device, DrawPipeline,
-    DrawState, Framebuffer, Recorder, RenderPass, SetLayout, shaders,
+    Access, Attachment, Binding, Blend, Buffer, ComputePipeline, DepthTest, DescriptorSet, Device,
+    DrawPipeline, DrawState, Framebuffer, Recorder, RenderPass, SetLayout, shaders,
 };
 use ash::vk::{DescriptorType, ShaderStageFlags};
 use std::sync::Arc;
@@ -37,7 +37,8 @@ pub struct ComputeNormalize {
     pipeline: ComputePipeline,
 }
 
-fn frame_layout(device: &Arc<Device>) -> Result<SetLayout> {
+/// Layout of a descriptor set of the frame's numbers alone.
+pub(super) fn frame_layout(device: &Arc<Device>) -> Result<SetLayout> {
     let stages = ShaderStageFlags::COMPUTE | ShaderStageFlags::ALL_GRAPHICS;
     SetLayout::new(device, &[(DescriptorType::UNIFORM_BUFFER, stages)])
 }
@@ -50,7 +51,8 @@ impl DrawNormalize {
         let sums_layout = SetLayout::new(device, &[sampled; 3])?;
         let formats = Formats::of(variant);
         let optional = |format: Option<_>| format.map_or(Attachment::Absent, Attachment::Overwritten);
-        let outputs = [Attachment::Overwritten(formats.image), optional(formats.normal), optional(formats.depth)];
+        let outputs =
+            [Attachment::Overwritten(formats.image), optional(formats.normal), optional(formats.depth)];
         let pass = RenderPass::new(device, &outputs, None)?;
         let code = [shaders::NORMALIZE_VERTEX, shaders::NORMALIZE_FRAGMENT];
         let state = DrawState { depth: DepthTest::None, blend: Blend::Replace };
@@ -74,7 +76,8 @@ impl DrawNormalize {
 
     /// `targets.visibility`, `sums0`, `sums1` → `image`, `normal`, `depth`.
     pub fn record(&self, rec: &mut Recorder<'_>, views: &NormalizeViews, targets: &Images) {
-        let read = [Some(&targets.visibility), Some(&targets.sums0), targets.sums1.as_ref()].into_iter().flatten();
+        let read =
+            [Some(&targets.visibility), Some(&targets.sums0), targets.sums1.as_ref()].into_iter().flatten();
         let read = read.map(|image| image.with(Access::FRAGMENT_READ));
         let written = targets.outputs().map(|image| image.with(Access::COLOUR_WRITE));
         let uses: Vec<_> = read.chain(written).collect();
@@ -101,8 +104,15 @@ impl ComputeNormalize {
     }
 
     /// `targets.visibility`, `sums0`, `sums1` → `picture`.
-    pub fn record(&self, rec: &mut Recorder<'_>, frame: &DescriptorSet, pixels: &PixelSet, targets: &Buffers) {
-        let read = [Some(&targets.visibility), Some(&targets.sums0), targets.sums1.as_ref()].into_iter().flatten();
+    pub fn record(
+        &self,
+        rec: &mut Recorder<'_>,
+        frame: &DescriptorSet,
+        pixels: &PixelSet,
+        targets: &Buffers,
+    ) {
+        let read =
+            [Some(&targets.visibility), Some(&targets.sums0), targets.sums1.as_ref()].into_iter().flatten();
         let mut uses: Vec<_> = read.map(|buffer| buffer.with(Access::COMPUTE_READ)).collect();
         uses.push(targets.picture.with(Access::COMPUTE_WRITE));
         let workgroups = targets.pixels().div_ceil(WORKGROUP) as u32;

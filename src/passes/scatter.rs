@@ -12,9 +12,9 @@ use std::sync::Arc;
 /// Workgroups among which large splats are dealt out.
 const LARGE_WORKGROUPS: u32 = 256;
 
-/// Layout of descriptor set 1 of the compute rasterizer: visibility, sums0, sums1, picture.
+/// Layout of descriptor set 1 of the compute rasterizer: visibility, sums0, sums1, picture, tiles.
 pub(super) fn pixel_layout(device: &Arc<Device>) -> Result<SetLayout> {
-    SetLayout::new(device, &[(DescriptorType::STORAGE_BUFFER, ShaderStageFlags::COMPUTE); 4])
+    SetLayout::new(device, &[(DescriptorType::STORAGE_BUFFER, ShaderStageFlags::COMPUTE); 5])
 }
 
 /// The compute rasterizer's view of its targets.
@@ -25,7 +25,7 @@ impl PixelSet {
     pub fn new(device: &Arc<Device>, layout: &SplatLayout, targets: &Buffers) -> Result<Self> {
         // Absent sums are not touched; something must stand at their binding all the same.
         let sums1 = targets.sums1.as_ref().unwrap_or(&targets.sums0);
-        let buffers = [&targets.visibility, &targets.sums0, sums1, &targets.picture];
+        let buffers = [&targets.visibility, &targets.sums0, sums1, &targets.picture, &targets.tiles];
         let bindings = buffers.map(|buffer| Binding::Storage(buffer, 0, buffer.size()));
         DescriptorSet::new(device, &layout.pixels, &bindings).map(Self)
     }

@@ -6,7 +6,8 @@ use crate::scene::Scene;
 use crate::variant::Rasterizer;
 use crate::vk::shaders::layout::{Counts, LargeSplats, Splat};
 use crate::vk::{
-    Access, Binding, Buffer, Commands, DescriptorSet, Device, DrawPipeline, Encoder, Framebuffer, Recorder, SetLayout, Use,
+    Access, Binding, Buffer, Commands, DescriptorSet, Device, DrawPipeline, Encoder, Framebuffer, Recorder,
+    SetLayout, Use,
 };
 use ash::vk::{DescriptorType, ShaderStageFlags};
 use std::ops::Range;
@@ -82,7 +83,8 @@ impl Splats {
             let own = Binding::Storage(&splats, range.start * stride, count * stride);
             let tally = Binding::Storage(&counts, 0, counts.size());
             // Without the compute rasterizer nothing is listed, and the counts stand in.
-            let large = large.as_ref().map_or(tally, |large| Binding::Storage(large, list, LIST_HEADER + 4 * count));
+            let large =
+                large.as_ref().map_or(tally, |large| Binding::Storage(large, list, LIST_HEADER + 4 * count));
             let bindings = [Binding::Uniform(frame), own, positions, normals, radii, colours, tally, large];
             let set = DescriptorSet::new(device, &layout.splats, &bindings)?;
             Ok(Window { set, count: count as u32, list })
@@ -103,13 +105,19 @@ impl Splats {
     pub(super) fn made(&self, count: bool) -> Vec<Use> {
         let write = Access::COMPUTE_WRITE;
         let counts = count.then(|| self.counts.with(write));
-        [Some(self.with(write)), counts, self.large.as_ref().map(|large| large.with(write))].into_iter().flatten().collect()
+        [Some(self.with(write)), counts, self.large.as_ref().map(|large| large.with(write))]
+            .into_iter()
+            .flatten()
+            .collect()
     }
 
     /// What the compute rasterizer reads.
     pub(super) fn read_by_scatter(&self) -> Vec<Use> {
         let read = Access::COMPUTE_READ;
-        [Some(self.with(read)), self.large.as_ref().map(|large| large.with(read))].into_iter().flatten().collect()
+        [Some(self.with(read)), self.large.as_ref().map(|large| large.with(read))]
+            .into_iter()
+            .flatten()
+            .collect()
     }
 
     /// Draws every splat's triangle into `framebuffer`.

@@ -5,7 +5,8 @@ use crate::error::Result;
 use crate::targets::{Buffers, Formats, Images};
 use crate::variant::Variant;
 use crate::vk::{
-    Access, Attachment, Blend, DepthTest, Device, DrawPipeline, DrawState, Framebuffer, Recorder, RenderPass, shaders,
+    Access, Attachment, Blend, DepthTest, Device, DrawPipeline, DrawState, Framebuffer, Recorder, RenderPass,
+    shaders,
 };
 use std::sync::Arc;
 
@@ -25,7 +26,8 @@ impl DrawVisibility {
         let pass = RenderPass::new(device, &[], Some(depth))?;
         let code = [shaders::VISIBILITY_VERTEX, shaders::VISIBILITY_FRAGMENT];
         let state = DrawState { depth: DepthTest::Nearest, blend: Blend::Replace };
-        let pipeline = DrawPipeline::new(device, &[&layout.splats], code, &variant.constants(), &pass, state)?;
+        let pipeline =
+            DrawPipeline::new(device, &[&layout.splats], code, &variant.constants(), &pass, state)?;
         Ok(Self { pass, pipeline })
     }
 
@@ -35,7 +37,13 @@ impl DrawVisibility {
     }
 
     /// `splats` → `targets.visibility`.
-    pub fn record(&self, rec: &mut Recorder<'_>, splats: &Splats, framebuffer: &Framebuffer, targets: &Images) {
+    pub fn record(
+        &self,
+        rec: &mut Recorder<'_>,
+        splats: &Splats,
+        framebuffer: &Framebuffer,
+        targets: &Images,
+    ) {
         let uses = [splats.with(Access::VERTEX_READ), targets.visibility.with(Access::DEPTH_WRITE)];
         rec.pass("visibility", &uses, |enc| splats.draw(enc, &self.pipeline, framebuffer));
     }
@@ -49,7 +57,9 @@ impl ComputeVisibility {
 
     /// `splats` → `targets.visibility`, which is cleared before.
     pub fn record(&self, rec: &mut Recorder<'_>, splats: &Splats, pixels: &PixelSet, targets: &Buffers) {
-        rec.pass("clear", &[targets.visibility.with(Access::COPY_WRITE)], |enc| enc.zero(&targets.visibility));
+        rec.pass("clear", &[targets.visibility.with(Access::COPY_WRITE)], |enc| {
+            enc.zero(&targets.visibility)
+        });
         let mut uses = splats.read_by_scatter();
         uses.push(targets.visibility.with(Access::COMPUTE_WRITE));
         rec.pass("visibility", &uses, |enc| self.0.record(enc, splats, pixels));

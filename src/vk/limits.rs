@@ -89,7 +89,8 @@ impl Capabilities {
 
 fn has_float_atomics(instance: &Instance, physical: vk::PhysicalDevice) -> bool {
     // SAFETY: `physical` is one of the instance's devices.
-    let extensions = unsafe { instance.raw.enumerate_device_extension_properties(physical) }.unwrap_or_default();
+    let extensions =
+        unsafe { instance.raw.enumerate_device_extension_properties(physical) }.unwrap_or_default();
     let name = ash::ext::shader_atomic_float::NAME;
     if !extensions.iter().any(|extension| extension.extension_name_as_c_str() == Ok(name)) {
         return false;

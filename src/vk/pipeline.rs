@@ -74,7 +74,12 @@ pub struct DrawPipeline(Raw);
 
 impl ComputePipeline {
     /// A pipeline of the SPIR-V `code`; `sets` are the layouts of its descriptor sets 0, 1, ….
-    pub fn new(device: &Arc<Device>, sets: &[&SetLayout], code: &[u32], constants: &Constants) -> Result<Self> {
+    pub fn new(
+        device: &Arc<Device>,
+        sets: &[&SetLayout],
+        code: &[u32],
+        constants: &Constants,
+    ) -> Result<Self> {
         let mut raw = Raw::new(device, sets, vk::ShaderStageFlags::COMPUTE)?;
         let module = Module::new(device, code)?;
         let specialization = constants.info();

@@ -294,7 +294,13 @@ pub struct Encoder<'a> {
 
 impl Encoder<'_> {
     /// Runs `x` by `y` workgroups with `push` as the push constant.
-    pub fn dispatch(&mut self, pipeline: &ComputePipeline, sets: &[&DescriptorSet], push: u32, [x, y]: [u32; 2]) {
+    pub fn dispatch(
+        &mut self,
+        pipeline: &ComputePipeline,
+        sets: &[&DescriptorSet],
+        push: u32,
+        [x, y]: [u32; 2],
+    ) {
         let sets: Vec<_> = sets.iter().map(|set| set.raw).collect();
         let (pipeline, layout) = pipeline.raw();
         let point = vk::PipelineBindPoint::COMPUTE;
