@@ -113,7 +113,9 @@ impl Camera {
         // An infinite far plane may come out as −∞ or, from single-precision matrices, as a huge negative number.
         let far = if perspective && (far.is_nan() || far < 0.0) { f64::INFINITY } else { far };
         if !(near.is_finite() && far > near && (near > 0.0 || !perspective)) {
-            return refuse(&format!("puts the near plane at {near} and the far plane at {far}; is `reversed` right?"));
+            return refuse(&format!(
+                "puts the near plane at {near} and the far plane at {far}; is `reversed` right?"
+            ));
         }
         Ok(Projection { perspective, forward, near, far })
     }
@@ -130,7 +132,8 @@ fn infinite_reversed(focal_x: f64, focal_y: f64, near: f64) -> DMat4 {
 
 /// World to eye space: x right, y down, z forward.
 fn look_at_view(eye: DVec3, target: DVec3, up: DVec3) -> Result<DMat4> {
-    let usage = |cause: &str| Error::Usage(format!("the camera {cause}: move the eye, the target or the up vector"));
+    let usage =
+        |cause: &str| Error::Usage(format!("the camera {cause}: move the eye, the target or the up vector"));
     if !(eye.is_finite() && target.is_finite() && up.is_finite()) {
         return Err(usage("has a coordinate that is not finite"));
     }
@@ -163,7 +166,13 @@ mod tests {
             (lh::proj::directx::perspective(1.0, 1.5, 0.5, 80.0), false, 1.0, 0.5, 80.0),
             (lh::proj::directx::perspective(1.0, 1.5, 80.0, 0.5), true, 1.0, 0.5, 80.0),
             (rh::proj::directx::perspective_infinite(1.0, 1.5, 0.25), false, -1.0, 0.25, f64::INFINITY),
-            (rh::proj::directx::perspective_infinite_reverse(1.0, 1.5, 0.25), true, -1.0, 0.25, f64::INFINITY),
+            (
+                rh::proj::directx::perspective_infinite_reverse(1.0, 1.5, 0.25),
+                true,
+                -1.0,
+                0.25,
+                f64::INFINITY,
+            ),
             (3.0 * infinite_reversed(1.0, 1.0, 0.25), true, 1.0, 0.25, f64::INFINITY),
             (ortho(0.5, 80.0), false, -1.0, 0.5, 80.0),
             (ortho(80.0, 0.5), true, -1.0, 0.5, 80.0),
@@ -199,7 +208,8 @@ mod tests {
         for aspect in [0.3, 1.0, 2.5] {
             let clip = Camera::framing(&bounds, 0.8, aspect).unwrap().world_to_clip();
             for corner in 0..8 {
-                let pick = |axis: usize| if corner >> axis & 1 == 0 { bounds.min[axis] } else { bounds.max[axis] };
+                let pick =
+                    |axis: usize| if corner >> axis & 1 == 0 { bounds.min[axis] } else { bounds.max[axis] };
                 let p = clip * DVec4::new(pick(0), pick(1), pick(2), 1.0);
                 assert!(p.w > 0.0 && p.x.abs() < p.w && p.y.abs() < p.w && p.z < p.w, "{p}");
             }

@@ -53,8 +53,10 @@ mod tests {
 
     #[test]
     fn order_is_the_z_curve_and_keeps_surfels_whole() {
-        let corners: Vec<Vec3> =
-            (0..8u32).rev().map(|i| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32)).collect();
+        let corners: Vec<Vec3> = (0..8u32)
+            .rev()
+            .map(|i| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32))
+            .collect();
         let mut surfels = Surfels {
             radii: corners.iter().map(|p| p.x + 2.0 * p.y + 4.0 * p.z).collect(),
             normals: corners.clone(),

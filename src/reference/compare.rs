@@ -1,0 +1,257 @@
+//! Judges a picture against the float64 frame.
+
+use super::bands::Bands;
+use super::doubt::{Admissible, Doubt};
+use super::footprint::Scene;
+use super::{Frame, Projector, Value, draw};
+use crate::error::{Error, Result};
+use crate::geometry::{Camera, Surfels};
+use crate::picture::Picture;
+use crate::settings::{Settings, Shading};
+
+/// Failures that are kept in full.
+const KEPT: usize = 20;
+
+/// Largest differences that pass.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tolerance {
+    /// Of each linear channel and of α, absolute.
+    pub colour: f64,
+    /// Of each component of the unit normal, absolute.
+    pub normal: f64,
+    /// Of the depth, relative to it.
+    pub depth_relative: f64,
+}
+
+impl Default for Tolerance {
+    fn default() -> Self {
+        Self { colour: 2e-4, normal: 2e-4, depth_relative: 1e-5 }
+    }
+}
+
+/// One image of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Channel {
+    /// Linear RGB, or whatever the shading shows.
+    Colour,
+    /// α, and with it coverage.
+    Coverage,
+    /// Eye-space distance.
+    Depth,
+    /// World-space normal.
+    Normal,
+}
+
+/// A wrong pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Failure {
+    /// Column.
+    pub x: u32,
+    /// Row.
+    pub y: u32,
+    /// The first image that is out of tolerance.
+    pub channel: Channel,
+    /// What the picture holds in that image; unused entries are 0.
+    pub gpu: [f64; 4],
+    /// What the reference holds there.
+    pub reference: [f64; 4],
+}
+
+/// Largest differences, in the units of [`Tolerance`].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Worst {
+    /// Of colour and α.
+    pub colour: f64,
+    /// Of the normal.
+    pub normal: f64,
+    /// Of the depth, relative.
+    pub depth: f64,
+}
+
+/// What [`compare`] found.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Comparison {
+    /// Pixels of the picture.
+    pub pixels: usize,
+    /// Pixels that the reference covers.
+    pub object_pixels: usize,
+    /// Pixels in doubt.
+    pub doubtful: usize,
+    /// Pixels in doubt whose admissible values are too many to try; each counts as wrong unless the frame's own value passes.
+    pub unresolvable: usize,
+    /// Wrong pixels.
+    pub failed: usize,
+    /// The first of them.
+    pub failures: Vec<Failure>,
+    /// Largest differences over the pixels that are not in doubt.
+    pub worst: Worst,
+    /// Largest differences over all pixels; those in doubt against the admissible value that comes nearest.
+    pub worst_of_all: Worst,
+}
+
+impl Comparison {
+    /// Whether every pixel is right.
+    pub fn passed(&self) -> bool {
+        self.failed == 0
+    }
+}
+
+/// The float64 frame and its pixels in doubt: all that is needed to judge any number of pictures of it.
+pub struct Expected {
+    /// The frame.
+    pub frame: Frame,
+    /// Its pixels in doubt.
+    pub doubt: Doubt,
+    settings: Settings,
+}
+
+/// Compares a picture that carries depth and normals with the float64 one of the same scene; see [`Expected::compare`].
+pub fn compare(
+    surfels: &Surfels,
+    camera: &Camera,
+    size: [u32; 2],
+    settings: &Settings,
+    gpu: &Picture,
+    tolerance: &Tolerance,
+) -> Result<Comparison> {
+    Expected::new(surfels, camera, size, settings)?.compare(gpu, tolerance)
+}
+
+impl Expected {
+    /// Renders the frame and finds the pixels in doubt.
+    pub fn new(surfels: &Surfels, camera: &Camera, size: [u32; 2], settings: &Settings) -> Result<Self> {
+        let projector = Projector::new(camera, size, settings)?;
+        let scene = Scene::project(&projector, surfels);
+        let bands = Bands::new(&projector, &scene, size);
+        let doubt = Doubt::new(&projector, &scene, &bands);
+        Ok(Self { frame: draw(&projector, &scene, &bands), doubt, settings: settings.clone() })
+    }
+
+    /// Holds every pixel of `gpu` against the frame's value or, where that fails and the pixel is in doubt, against its
+    /// other admissible values. Fails if the picture has another size or lacks depth or normals.
+    pub fn compare(&self, gpu: &Picture, tolerance: &Tolerance) -> Result<Comparison> {
+        let judge = Judge { tolerance, depth_shown: self.settings.shading == Shading::Depth };
+        let mut found = Comparison {
+            pixels: self.frame.depth.len(),
+            object_pixels: self.frame.covered.iter().filter(|c| **c).count(),
+            doubtful: self.doubt.len(),
+            ..Default::default()
+        };
+        let (depths, normals) = self.images(gpu)?;
+        for (i, colour) in gpu.colour.iter().enumerate() {
+            let seen = Value {
+                covered: depths[i] != 0.0,
+                colour: colour.map(f64::from),
+                depth: depths[i].into(),
+                normal: normals[i].map(f64::from),
+            };
+            self.pixel(i, &judge, &seen, &mut found);
+        }
+        Ok(found)
+    }
+
+    fn images<'a>(&self, gpu: &'a Picture) -> Result<(&'a [f32], &'a [[f32; 3]])> {
+        let refuse = |cause: &str| Err(Error::input("the picture to compare", cause));
+        let (Some(depths), Some(normals)) = (&gpu.depth, &gpu.normal) else {
+            return refuse("has no depth or no normals: ask for both when it is rendered");
+        };
+        let lengths = [gpu.colour.len(), depths.len(), normals.len()];
+        if gpu.size != self.frame.size || lengths != [self.frame.depth.len(); 3] {
+            return refuse("has another size than the reference: render both alike");
+        }
+        Ok((depths, normals))
+    }
+
+    fn pixel(&self, index: usize, judge: &Judge, seen: &Value, found: &mut Comparison) {
+        let own = self.frame.value(index);
+        let mut best = judge.differences(seen, &own);
+        match self.doubt.admissible(index) {
+            Admissible::Definite => found.worst.widen(&best),
+            Admissible::Unresolvable => found.unresolvable += 1,
+            Admissible::Values(_) if judge.passes(&best) => {}
+            Admissible::Values(values) => {
+                let excess = |d: &Worst| judge.excess(d);
+                let nearest = values
+                    .map(|v| judge.differences(seen, &v))
+                    .min_by(|a, b| excess(a).total_cmp(&excess(b)));
+                best = nearest.filter(|n| excess(n) < excess(&best)).unwrap_or(best);
+            }
+        }
+        found.worst_of_all.widen(&best);
+        if !judge.passes(&best) {
+            found.failed += 1;
+            if found.failures.len() < KEPT {
+                let width = self.frame.size[0] as usize;
+                let [x, y] = [index % width, index / width].map(|v| v as u32);
+                let (channel, gpu, reference) = judge.first_difference(seen, &own);
+                found.failures.push(Failure { x, y, channel, gpu, reference });
+            }
+        }
+    }
+}
+
+impl Worst {
+    fn widen(&mut self, other: &Self) {
+        // Not `f64::max`, which would pass over what is not a number.
+        let max = |a: f64, b: f64| if b.is_nan() || a < b { b } else { a };
+        self.colour = max(self.colour, other.colour);
+        self.normal = max(self.normal, other.normal);
+        self.depth = max(self.depth, other.depth);
+    }
+}
+
+/// How two values are told apart.
+struct Judge<'a> {
+    tolerance: &'a Tolerance,
+    /// The colour holds depths, which are compared as such.
+    depth_shown: bool,
+}
+
+impl Judge<'_> {
+    fn differences(&self, a: &Value, b: &Value) -> Worst {
+        let unit = if b.depth == 0.0 { 1.0 } else { b.depth.abs() };
+        let mut worst = Worst {
+            colour: largest(&a.colour[3..], &b.colour[3..]),
+            normal: largest(&a.normal, &b.normal),
+            depth: (a.depth - b.depth).abs() / unit,
+        };
+        let shown = largest(&a.colour[..3], &b.colour[..3]);
+        match self.depth_shown && b.covered {
+            true => worst.widen(&Worst { depth: shown / unit, ..Default::default() }),
+            false => worst.widen(&Worst { colour: shown, ..Default::default() }),
+        }
+        worst
+    }
+
+    /// The largest difference in tolerances: passes up to 1.
+    fn excess(&self, d: &Worst) -> f64 {
+        let t = self.tolerance;
+        let parts = [d.colour / t.colour, d.normal / t.normal, d.depth / t.depth_relative];
+        parts.into_iter().fold(0.0, |a, b| if b.is_nan() || a < b { b } else { a })
+    }
+
+    fn passes(&self, d: &Worst) -> bool {
+        self.excess(d) <= 1.0
+    }
+
+    fn first_difference(&self, seen: &Value, own: &Value) -> (Channel, [f64; 4], [f64; 4]) {
+        let d = self.differences(seen, own);
+        let t = self.tolerance;
+        let alpha = (seen.colour[3] - own.colour[3]).abs();
+        let pad = |n: [f64; 3]| [n[0], n[1], n[2], 0.0];
+        if seen.covered != own.covered || alpha.is_nan() || alpha > t.colour {
+            (Channel::Coverage, [seen.colour[3], 0.0, 0.0, 0.0], [own.colour[3], 0.0, 0.0, 0.0])
+        } else if d.depth.is_nan() || d.depth > t.depth_relative {
+            (Channel::Depth, [seen.depth, 0.0, 0.0, 0.0], [own.depth, 0.0, 0.0, 0.0])
+        } else if d.normal.is_nan() || d.normal > t.normal {
+            (Channel::Normal, pad(seen.normal), pad(own.normal))
+        } else {
+            (Channel::Colour, seen.colour, own.colour)
+        }
+    }
+}
+
+/// The largest absolute difference; NaN if there is one.
+fn largest(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, |a, b| if b.is_nan() || a < b { b } else { a })
+}
