@@ -1,8 +1,9 @@
 //! Judges a picture against the float64 frame.
 
 use super::bands::Bands;
-use super::doubt::{Admissible, Doubt};
+use super::doubt::{Admissible, Doubt, Slack};
 use super::footprint::Scene;
+use super::margin::Margins;
 use super::{Frame, Projector, Value, draw};
 use crate::error::{Error, Result};
 use crate::geometry::{Camera, Surfels};
@@ -21,11 +22,24 @@ pub struct Tolerance {
     pub normal: f64,
     /// Of the depth, relative to it.
     pub depth_relative: f64,
+    /// Rounding error of a unit vector's component in float32, for the conditioning of steep splats; 0 judges strictly.
+    ///
+    /// A plane seen at an angle θ turns rounding errors of its normal, its centre and the ray into depth errors 1 / cos θ as
+    /// large, and so `√|V|` with its weight: no float32 renderer can know better. Where that exceeds the other margins the
+    /// ε test is in doubt over that much depth, and the pixel's tolerance widens to the weighted mean of its splats'.
+    pub rounding: f64,
+}
+
+impl Tolerance {
+    /// What float32 can hold: the default with a rounding of four half units in the last place.
+    pub fn float32() -> Self {
+        Self { rounding: 4.0 * 2f64.powi(-24), ..Self::default() }
+    }
 }
 
 impl Default for Tolerance {
     fn default() -> Self {
-        Self { colour: 2e-4, normal: 2e-4, depth_relative: 1e-5 }
+        Self { colour: 2e-4, normal: 2e-4, depth_relative: 1e-5, rounding: 0.0 }
     }
 }
 
@@ -102,7 +116,8 @@ pub struct Expected {
     pub frame: Frame,
     /// Its pixels in doubt.
     pub doubt: Doubt,
-    settings: Settings,
+    tolerance: Tolerance,
+    depth_shown: bool,
 }
 
 /// Compares a picture that carries depth and normals with the float64 one of the same scene; see [`Expected::compare`].
@@ -114,23 +129,30 @@ pub fn compare(
     gpu: &Picture,
     tolerance: &Tolerance,
 ) -> Result<Comparison> {
-    Expected::new(surfels, camera, size, settings)?.compare(gpu, tolerance)
+    Expected::new(surfels, camera, size, settings, tolerance)?.compare(gpu)
 }
 
 impl Expected {
     /// Renders the frame and finds the pixels in doubt.
-    pub fn new(surfels: &Surfels, camera: &Camera, size: [u32; 2], settings: &Settings) -> Result<Self> {
+    pub fn new(
+        surfels: &Surfels,
+        camera: &Camera,
+        size: [u32; 2],
+        settings: &Settings,
+        tolerance: &Tolerance,
+    ) -> Result<Self> {
         let projector = Projector::new(camera, size, settings)?;
         let scene = Scene::project(&projector, surfels);
         let bands = Bands::new(&projector, &scene, size);
-        let doubt = Doubt::new(&projector, &scene, &bands);
-        Ok(Self { frame: draw(&projector, &scene, &bands), doubt, settings: settings.clone() })
+        let doubt =
+            Doubt::new(&Margins { projector: &projector, rounding: tolerance.rounding }, &scene, &bands);
+        let depth_shown = settings.shading == Shading::Depth;
+        Ok(Self { frame: draw(&projector, &scene, &bands), doubt, tolerance: *tolerance, depth_shown })
     }
 
     /// Holds every pixel of `gpu` against the frame's value or, where that fails and the pixel is in doubt, against its
     /// other admissible values. Fails if the picture has another size or lacks depth or normals.
-    pub fn compare(&self, gpu: &Picture, tolerance: &Tolerance) -> Result<Comparison> {
-        let judge = Judge { tolerance, depth_shown: self.settings.shading == Shading::Depth };
+    pub fn compare(&self, gpu: &Picture) -> Result<Comparison> {
         let mut found = Comparison {
             pixels: self.frame.depth.len(),
             object_pixels: self.frame.covered.iter().filter(|c| **c).count(),
@@ -145,7 +167,7 @@ impl Expected {
                 depth: depths[i].into(),
                 normal: normals[i].map(f64::from),
             };
-            self.pixel(i, &judge, &seen, &mut found);
+            self.pixel(i, &seen, &mut found);
         }
         Ok(found)
     }
@@ -162,8 +184,9 @@ impl Expected {
         Ok((depths, normals))
     }
 
-    fn pixel(&self, index: usize, judge: &Judge, seen: &Value, found: &mut Comparison) {
+    fn pixel(&self, index: usize, seen: &Value, found: &mut Comparison) {
         let own = self.frame.value(index);
+        let judge = Judge::new(&self.tolerance, self.doubt.slack(index), self.depth_shown);
         let mut best = judge.differences(seen, &own);
         match self.doubt.admissible(index) {
             Admissible::Definite => found.worst.widen(&best),
@@ -200,14 +223,24 @@ impl Worst {
     }
 }
 
-/// How two values are told apart.
-struct Judge<'a> {
-    tolerance: &'a Tolerance,
+/// How two values of a pixel are told apart.
+struct Judge {
+    /// Largest differences that pass.
+    limit: Worst,
     /// The colour holds depths, which are compared as such.
     depth_shown: bool,
 }
 
-impl Judge<'_> {
+impl Judge {
+    fn new(tolerance: &Tolerance, slack: Slack, depth_shown: bool) -> Self {
+        let limit = Worst {
+            colour: tolerance.colour.max(slack.attribute),
+            normal: tolerance.normal.max(slack.attribute),
+            depth: tolerance.depth_relative.max(slack.depth),
+        };
+        Self { limit, depth_shown }
+    }
+
     fn differences(&self, a: &Value, b: &Value) -> Worst {
         let unit = if b.depth == 0.0 { 1.0 } else { b.depth.abs() };
         let mut worst = Worst {
@@ -225,8 +258,7 @@ impl Judge<'_> {
 
     /// The largest difference in tolerances: passes up to 1.
     fn excess(&self, d: &Worst) -> f64 {
-        let t = self.tolerance;
-        let parts = [d.colour / t.colour, d.normal / t.normal, d.depth / t.depth_relative];
+        let parts = [d.colour / self.limit.colour, d.normal / self.limit.normal, d.depth / self.limit.depth];
         parts.into_iter().fold(0.0, |a, b| if b.is_nan() || a < b { b } else { a })
     }
 
@@ -236,14 +268,14 @@ impl Judge<'_> {
 
     fn first_difference(&self, seen: &Value, own: &Value) -> (Channel, [f64; 4], [f64; 4]) {
         let d = self.differences(seen, own);
-        let t = self.tolerance;
+        let limit = &self.limit;
         let alpha = (seen.colour[3] - own.colour[3]).abs();
         let pad = |n: [f64; 3]| [n[0], n[1], n[2], 0.0];
-        if seen.covered != own.covered || alpha.is_nan() || alpha > t.colour {
+        if seen.covered != own.covered || alpha.is_nan() || alpha > limit.colour {
             (Channel::Coverage, [seen.colour[3], 0.0, 0.0, 0.0], [own.colour[3], 0.0, 0.0, 0.0])
-        } else if d.depth.is_nan() || d.depth > t.depth_relative {
+        } else if d.depth.is_nan() || d.depth > limit.depth {
             (Channel::Depth, [seen.depth, 0.0, 0.0, 0.0], [own.depth, 0.0, 0.0, 0.0])
-        } else if d.normal.is_nan() || d.normal > t.normal {
+        } else if d.normal.is_nan() || d.normal > limit.normal {
             (Channel::Normal, pad(seen.normal), pad(own.normal))
         } else {
             (Channel::Colour, seen.colour, own.colour)

@@ -4,30 +4,26 @@
 //! one than rounding can tell, both outcomes are right, and no others. All of this is found in the float64 picture alone,
 //! before any other is seen.
 
+use super::Projector;
 use super::attribute::Sums;
-use super::bands::{Band, Bands, Hit};
+use super::bands::{Band, Bands};
 use super::ellipse::Ellipse;
 use super::footprint::Scene;
+use super::margin::{Candidate, Margins};
 use super::normalize::{Value, resolve};
 use super::visibility::shifted;
-use super::{Projector, Splat};
 use glam::DVec2;
 use rayon::prelude::*;
 use std::collections::{BTreeMap, HashMap};
 
-/// A pixel centre no farther than this from a cut-off ellipse is in doubt, px.
-pub(super) const CUTOFF: f64 = 3e-4;
-
-/// A splat whose depth is no farther than this from a threshold, relative to the depth, is in doubt.
-pub(super) const DEPTH: f64 = 2e-6;
-
 /// Most values that are tried for a pixel.
 const MOST: usize = 1 << 12;
 
-/// The pixels in doubt.
+/// The pixels in doubt, and how much rounding may blur each pixel.
 pub struct Doubt {
     projector: Projector,
     pixels: BTreeMap<usize, Doubtful>,
+    slack: Vec<Slack>,
 }
 
 /// The values that a pixel may have.
@@ -40,11 +36,21 @@ pub enum Admissible<'a> {
     Unresolvable,
 }
 
+/// How far rounding may move a pixel's value without any decision turning: the weighted mean over its splats. All 0 where
+/// [`super::Tolerance::rounding`] is.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Slack {
+    /// Of the depth, relative to it.
+    pub depth: f64,
+    /// Of colour and normal, absolute.
+    pub attribute: f64,
+}
+
 /// One pixel in doubt.
 struct Doubtful {
     at: DVec2,
-    /// The depths that visibility may have written; infinite for none.
-    bounds: Vec<f64>,
+    /// What visibility may have written.
+    bounds: Vec<Bound>,
     /// The splats that may be summed, whatever the bound.
     fragments: Vec<Fragment>,
 }
@@ -52,16 +58,27 @@ struct Doubtful {
 /// A splat at a pixel.
 struct Fragment {
     depth: f64,
+    margin: f64,
     sums: Sums,
-    /// Whether it is surely inside the cut-off and the clip volume.
     certain: bool,
 }
 
+/// A visibility depth as far as it is known; infinite for none.
+#[derive(Clone, Copy, PartialEq)]
+struct Bound {
+    low: f64,
+    high: f64,
+}
+
 impl Doubt {
-    pub(super) fn new(projector: &Projector, scene: &Scene, bands: &Bands) -> Self {
-        let found: Vec<(usize, Doubtful)> =
-            bands.par_iter().flat_map_iter(|band| of_band(projector, scene, &band)).collect();
-        Self { projector: projector.clone(), pixels: found.into_iter().collect() }
+    pub(super) fn new(margins: &Margins, scene: &Scene, bands: &Bands) -> Self {
+        let found: Vec<_> = bands.par_iter().map(|band| of_band(margins, scene, &band)).collect();
+        let (mut pixels, mut slack) = (BTreeMap::new(), Vec::new());
+        for (doubtful, of_band) in found {
+            pixels.extend(doubtful);
+            slack.extend(of_band);
+        }
+        Self { projector: margins.projector.clone(), pixels, slack }
     }
 
     /// Number of pixels in doubt.
@@ -79,6 +96,11 @@ impl Doubt {
         self.pixels.keys().copied()
     }
 
+    /// What rounding alone may do to pixel `index`; panics beyond the end.
+    pub fn slack(&self, index: usize) -> Slack {
+        self.slack[index]
+    }
+
     /// What pixel `index` may hold.
     pub fn admissible(&self, index: usize) -> Admissible<'_> {
         match self.pixels.get(&index) {
@@ -91,10 +113,10 @@ impl Doubt {
 
 impl Doubtful {
     /// The fragments that the visibility depth `bound` surely lets through, summed, and those that it may.
-    fn split(&self, bound: f64) -> (Sums, Vec<&Sums>) {
+    fn split(&self, bound: Bound) -> (Sums, Vec<&Sums>) {
         let (mut sure, mut maybe) = (Sums::default(), Vec::new());
-        for f in self.fragments.iter().filter(|f| f.depth <= bound + margin(f.depth)) {
-            if f.certain && f.depth < bound - margin(f.depth) {
+        for f in self.fragments.iter().filter(|f| bound.may_pass(f.depth, f.margin)) {
+            if f.certain && bound.must_pass(f.depth, f.margin) {
                 sure += f.sums;
             } else {
                 maybe.push(&f.sums);
@@ -104,88 +126,112 @@ impl Doubtful {
     }
 
     fn outcomes(&self) -> usize {
-        let of_bound =
-            |&bound: &f64| 1usize.checked_shl(self.split(bound).1.len() as u32).unwrap_or(usize::MAX);
-        self.bounds.iter().map(of_bound).fold(0, usize::saturating_add)
+        let subsets =
+            |&bound: &Bound| 1usize.checked_shl(self.split(bound).1.len() as u32).unwrap_or(usize::MAX);
+        self.bounds.iter().map(subsets).fold(0, usize::saturating_add)
     }
 
     fn values<'a>(&'a self, projector: &'a Projector) -> impl Iterator<Item = Value> + 'a {
         self.bounds.iter().flat_map(move |&bound| {
             let (sure, maybe) = self.split(bound);
-            let subsets = if bound.is_finite() { 1 << maybe.len() } else { 1 };
-            (0..subsets).map(move |subset: usize| {
+            (0..1 << maybe.len()).map(move |subset: usize| {
                 let mut sums = sure;
                 let taken = maybe.iter().enumerate().filter(|(bit, _)| subset >> bit & 1 == 1);
                 taken.for_each(|(_, fragment)| sums += **fragment);
-                resolve(projector, self.at, bound.is_finite().then_some(&sums))
+                resolve(projector, self.at, bound.exists().then_some(&sums))
             })
         })
     }
 }
 
-/// What float32 may get wrong of a depth.
-fn margin(depth: f64) -> f64 {
-    DEPTH * depth.abs()
+impl Bound {
+    const NONE: Self = Self { low: f64::INFINITY, high: f64::INFINITY };
+
+    fn exists(&self) -> bool {
+        self.high.is_finite()
+    }
+
+    /// The nearer of two.
+    fn min(self, other: Self) -> Self {
+        Self { low: self.low.min(other.low), high: self.high.min(other.high) }
+    }
+
+    fn may_pass(&self, depth: f64, margin: f64) -> bool {
+        self.exists() && depth <= self.high + margin
+    }
+
+    fn must_pass(&self, depth: f64, margin: f64) -> bool {
+        self.exists() && depth < self.low - margin
+    }
 }
 
 /// What visibility may have written in a band.
 struct Bounds {
     /// The least depth of the splats that are surely there.
-    sure: Vec<f64>,
+    sure: Vec<Bound>,
     /// By pixel, the lesser depths of those that may be.
-    maybe: HashMap<usize, Vec<f64>>,
+    maybe: HashMap<usize, Vec<Bound>>,
 }
 
 impl Bounds {
-    fn new(projector: &Projector, scene: &Scene, band: &Band) -> Self {
-        let mut sure = vec![f64::INFINITY; band.len()];
-        let mut maybe: HashMap<usize, Vec<f64>> = HashMap::new();
-        scan(projector, scene, band, Ellipse::visibility, |splat, hit, depth, certain, _| {
-            let bound = shifted(projector, splat, depth);
-            if certain {
-                sure[hit.index] = sure[hit.index].min(bound);
+    fn new(margins: &Margins, scene: &Scene, band: &Band) -> Self {
+        let mut sure = vec![Bound::NONE; band.len()];
+        let mut maybe: HashMap<usize, Vec<Bound>> = HashMap::new();
+        margins.scan(scene, band, Ellipse::visibility, |c| {
+            let depth = shifted(margins.projector, c.splat, c.depth);
+            let bound = Bound { low: depth - c.wobble, high: depth + c.wobble };
+            if c.certain {
+                sure[c.pixel] = sure[c.pixel].min(bound);
             } else {
-                maybe.entry(hit.index).or_default().push(bound);
+                maybe.entry(c.pixel).or_default().push(bound);
             }
         });
-        // A farther one changes nothing.
-        maybe.iter_mut().for_each(|(&pixel, bounds)| bounds.retain(|&b| b < sure[pixel]));
+        for (&pixel, bounds) in &mut maybe {
+            // A farther one changes nothing.
+            bounds.retain(|b| b.low < sure[pixel].high);
+            bounds.iter_mut().for_each(|b| *b = b.min(sure[pixel]));
+        }
         maybe.retain(|_, bounds| !bounds.is_empty());
         Self { sure, maybe }
     }
 
-    fn of(&self, pixel: usize) -> impl Iterator<Item = f64> {
+    fn of(&self, pixel: usize) -> impl Iterator<Item = Bound> {
         std::iter::once(self.sure[pixel]).chain(self.maybe.get(&pixel).into_iter().flatten().copied())
     }
 
-    /// Whether some bound lets `depth` through, give or take the margin, and whether it is within the margin of one.
-    fn test(&self, pixel: usize, depth: f64) -> (bool, bool) {
-        let finite = || self.of(pixel).filter(|b| b.is_finite());
-        let passes = finite().any(|bound| depth <= bound + margin(depth));
-        (passes, finite().any(|bound| (depth - bound).abs() <= margin(depth)))
+    /// Whether some bound may let the splat through, and whether one may or may not.
+    fn test(&self, c: &Candidate) -> (bool, bool) {
+        let passes = |b: &Bound| b.may_pass(c.depth, c.margin());
+        let wavers = |b: Bound| passes(&b) && !(c.certain && b.must_pass(c.depth, c.margin()));
+        (self.of(c.pixel).any(|b| passes(&b)), self.of(c.pixel).any(wavers))
     }
 }
 
-/// The pixels in doubt of one band. Twice over the attribute pass: first to mark them, then to keep their splats, because
-/// those of all pixels would not fit.
-fn of_band(projector: &Projector, scene: &Scene, band: &Band) -> Vec<(usize, Doubtful)> {
-    let bounds = Bounds::new(projector, scene, band);
+/// The pixels in doubt and the slack of one band. Twice over the attribute pass: first to mark the pixels, then to keep their
+/// splats, because those of all pixels would not fit.
+fn of_band(margins: &Margins, scene: &Scene, band: &Band) -> (Vec<(usize, Doubtful)>, Vec<Slack>) {
+    let bounds = Bounds::new(margins, scene, band);
     let mut doubtful: Vec<Option<Vec<Fragment>>> = Vec::new();
     doubtful.resize_with(band.len(), || None);
     for &pixel in bounds.maybe.keys() {
         doubtful[pixel] = Some(Vec::new());
     }
-    scan(projector, scene, band, Ellipse::attribute, |_, hit, depth, certain, _| {
-        let (passes, close) = bounds.test(hit.index, depth);
-        if close || (passes && !certain) {
-            doubtful[hit.index].get_or_insert_default();
+    let mut means = vec![Means::default(); band.len()];
+    margins.scan(scene, band, Ellipse::attribute, |c| {
+        let (passes, wavers) = bounds.test(&c);
+        if wavers {
+            doubtful[c.pixel].get_or_insert_default();
+        }
+        if passes {
+            means[c.pixel].add(margins, &c);
         }
     });
-    scan(projector, scene, band, Ellipse::attribute, |splat, hit, depth, certain, weight| {
-        if let Some(fragments) = &mut doubtful[hit.index]
-            && bounds.test(hit.index, depth).0
+    margins.scan(scene, band, Ellipse::attribute, |c| {
+        if let Some(fragments) = &mut doubtful[c.pixel]
+            && bounds.test(&c).0
         {
-            fragments.push(Fragment { depth, sums: Sums::of(projector, splat, weight, depth), certain });
+            let sums = Sums::of(margins.projector, c.splat, c.weight, c.depth);
+            fragments.push(Fragment { depth: c.depth, margin: c.margin(), sums, certain: c.certain });
         }
     });
     let first = band.first_row as usize * band.width as usize;
@@ -193,38 +239,34 @@ fn of_band(projector: &Projector, scene: &Scene, band: &Band) -> Vec<(usize, Dou
         let bounds = bounds.of(i).collect();
         Some((first + i, Doubtful { at: band.centre(i), bounds, fragments: fragments? }))
     };
-    doubtful.into_iter().enumerate().filter_map(pixel).collect()
+    let slack = means.iter().map(Means::slack).collect();
+    (doubtful.into_iter().enumerate().filter_map(pixel).collect(), slack)
 }
 
-/// Calls `visit(splat, hit, depth, certain, weight)` for every splat and pixel that may be inside each other.
-fn scan(
-    projector: &Projector,
-    scene: &Scene,
-    band: &Band,
-    footprint: fn(&Splat, &Projector) -> Ellipse,
-    mut visit: impl FnMut(&Splat, &Hit, f64, bool, f64),
-) {
-    for &i in band.splats {
-        let splat = &scene.splats[i as usize];
-        let ellipse = footprint(splat, projector);
-        // m changes by no more than 1 / (minor σ) a px.
-        let reach = CUTOFF / ellipse.sigma().y;
-        band.scan(&ellipse, ellipse.cutoff + reach, |hit| {
-            let near = (hit.sigmas - ellipse.cutoff).abs() <= reach && ellipse.distance(hit.offset) <= CUTOFF;
-            if hit.sigmas > ellipse.cutoff && !near {
-                return;
-            }
-            if let Some((depth, clear)) = clipped(projector, splat, hit.at) {
-                visit(splat, &hit, depth, clear && !near, ellipse.weight(hit.sigmas));
-            }
-        });
+/// Sums over a pixel's splats that make its [`Slack`].
+#[derive(Clone, Default)]
+struct Means {
+    weight: f64,
+    sway: f64,
+    /// The weight that the splat has in the mean depth.
+    pull: f64,
+    wobble: f64,
+}
+
+impl Means {
+    fn add(&mut self, margins: &Margins, c: &Candidate) {
+        let pull = if margins.projector.depth.perspective { c.weight / c.depth } else { c.weight };
+        self.weight += c.weight;
+        self.sway += c.weight * c.sway;
+        self.pull += pull;
+        self.wobble += pull * (c.wobble / c.depth.abs() + c.sway);
     }
-}
 
-/// The depth of `splat` at `at` unless surely outside the clip volume, and whether it is surely inside.
-fn clipped(projector: &Projector, splat: &Splat, at: DVec2) -> Option<(f64, bool)> {
-    let depth = projector.unclipped_depth(splat.plane, at)?;
-    let (near, far) = (projector.depth.near, projector.depth.far);
-    let within = |margin: f64| depth >= near + margin && depth <= far - margin;
-    within(-margin(depth)).then(|| (depth, within(margin(depth))))
+    fn slack(&self) -> Slack {
+        if self.weight == 0.0 {
+            return Slack::default();
+        }
+        // A weight that is wrong by some part moves the mean by that part of the splats' difference, at most 2 in a normal.
+        Slack { depth: self.wobble / self.pull, attribute: 2.0 * self.sway / self.weight }
+    }
 }

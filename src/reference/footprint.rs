@@ -60,6 +60,9 @@ pub struct Splat {
     pub normal: DVec3,
     /// Linear RGB; the lighting's albedo where the scene has no colours.
     pub colour: DVec3,
+    /// 1 / cosine of the angle between the normal and the ray through the centre: by so much rounding errors of the normal and
+    /// the centre grow in the plane's depth and in `√|V|`.
+    pub secant: f64,
     /// Whether the ellipse came from the dual form, the inverse form being ill-conditioned.
     pub dual: bool,
 }
@@ -135,6 +138,7 @@ impl Projector {
             shift: self.shift(surfel.radius, distance),
             normal: if facing > 0.0 { -surfel.normal } else { surfel.normal },
             colour: surfel.colour.unwrap_or(DVec3::from_array(self.settings.lighting.albedo.map(f64::from))),
+            secant: self.secant(centre, facing),
             dual: inverse.is_none(),
         };
         if self.sees(&Ellipse::attribute(&splat, self)) { Ok(splat) } else { Err(Culled::Outside) }

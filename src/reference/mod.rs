@@ -15,6 +15,7 @@ mod conic;
 mod doubt;
 mod ellipse;
 mod footprint;
+mod margin;
 mod normalize;
 mod projector;
 mod shading;
@@ -22,8 +23,8 @@ mod shading;
 mod tests;
 mod visibility;
 
-pub use compare::{Channel, Comparison, Expected, Failure, Tolerance, compare};
-pub use doubt::{Admissible, Doubt};
+pub use compare::{Channel, Comparison, Expected, Failure, Tolerance, Worst, compare};
+pub use doubt::{Admissible, Doubt, Slack};
 pub use footprint::{Counts, Culled, Splat, Surfel, footprint};
 pub use normalize::Value;
 pub use projector::Projector;

@@ -57,6 +57,12 @@ impl Projector {
         }
     }
 
+    /// 1 / cosine of the viewing angle at `point`, given its [`Projector::facing`].
+    pub(super) fn secant(&self, point: DVec3, facing: f64) -> f64 {
+        let ray = if self.depth.perspective { (point - self.eye()).length() } else { 1.0 };
+        ray / facing.abs()
+    }
+
     /// Eye-space direction to world space: the view is rigid.
     pub(super) fn to_world(&self, direction: DVec3) -> DVec3 {
         DMat3::from_mat4(self.view).transpose() * direction
@@ -86,19 +92,14 @@ impl Projector {
     /// Distance along the ray at pixel position `at` to `plane` (of [`Projector::plane`]); `None` behind the eye or outside
     /// the clip volume.
     pub(super) fn depth_at(&self, plane: DVec3, at: DVec2) -> Option<f64> {
-        let distance = self.unclipped_depth(plane, at)?;
-        (self.depth.near..=self.depth.far).contains(&distance).then_some(distance)
-    }
-
-    /// The same where only what is behind the eye is left out.
-    pub(super) fn unclipped_depth(&self, plane: DVec3, at: DVec2) -> Option<f64> {
         let value = plane.dot(DVec3::new(1.0, at.x, at.y));
         let distance = match self.depth.perspective {
             true if value > 0.0 => 1.0 / value,
             true => return None,
             false => value,
         };
-        distance.is_finite().then_some(distance)
+        // An infinite far plane lets the horizon itself through: there is nothing to see.
+        (distance.is_finite() && (self.depth.near..=self.depth.far).contains(&distance)).then_some(distance)
     }
 
     /// Eye-space homogeneous vector to `(x, y, w)` in clip space.
