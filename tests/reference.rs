@@ -73,6 +73,32 @@ fn explore() {
             );
             for f in n.failures.iter().take(3) {
                 println!("        {f:?}");
+                let i = (f.y * case.size[0] + f.x) as usize;
+                println!("           {:?}", view.expected.doubt.slack(i));
+                if let surfel::reference::Admissible::Values(v) = view.expected.doubt.admissible(i) {
+                    for v in v.take(6) {
+                        println!("           {v:?}");
+                    }
+                }
+                let pr = Projector::new(camera, case.size, &case.settings).unwrap();
+                for k in 0..case.surfels.len() {
+                    if let Ok(s) = pr.footprint(&Surfel::of(&case.surfels, k)) {
+                        let e = glam::DVec2::new(f.x as f64 + 0.5, f.y as f64 + 0.5) - s.centre;
+                        let h = f64::from(case.settings.attribute_lowpass());
+                        let m = (e.dot((s.variance + glam::DMat2::IDENTITY * h).inverse() * e)).sqrt();
+                        if m < f64::from(case.settings.cutoff) + 1e-3 {
+                            let v = s.plane.dot(DVec3::new(1.0, f.x as f64 + 0.5, f.y as f64 + 0.5));
+                            println!(
+                                "            m {m:.5} v {v} 1/v {} sec {} dist {} shift {} amp {}",
+                                1.0 / v,
+                                s.secant,
+                                s.distance,
+                                s.shift,
+                                s.sqrt_det
+                            );
+                        }
+                    }
+                }
             }
         }
     }

@@ -1,9 +1,10 @@
 //! Judges a picture against the float64 frame.
 
 use super::bands::Bands;
-use super::doubt::{Admissible, Doubt, Slack};
+use super::doubt::{Admissible, Doubt};
 use super::footprint::Scene;
 use super::margin::Margins;
+use super::slack::Slack;
 use super::{Frame, Projector, Value, draw};
 use crate::error::{Error, Result};
 use crate::geometry::{Camera, Surfels};
@@ -26,7 +27,8 @@ pub struct Tolerance {
     ///
     /// A plane seen at an angle θ turns rounding errors of its normal, its centre and the ray into depth errors 1 / cos θ as
     /// large, and so `√|V|` with its weight: no float32 renderer can know better. Where that exceeds the other margins the
-    /// ε test is in doubt over that much depth, and the pixel's tolerance widens to the weighted mean of its splats'.
+    /// ε test is in doubt over that much depth, and the pixel's tolerance widens to the weighted mean of its splats'
+    /// and by as much as cancelling normals amplify it.
     pub rounding: f64,
 }
 
@@ -63,7 +65,7 @@ pub struct Failure {
     pub x: u32,
     /// Row.
     pub y: u32,
-    /// The first image that is out of tolerance.
+    /// The first image out of tolerance, in the order coverage, depth, normal, colour.
     pub channel: Channel,
     /// What the picture holds in that image; unused entries are 0.
     pub gpu: [f64; 4],
@@ -186,30 +188,36 @@ impl Expected {
 
     fn pixel(&self, index: usize, seen: &Value, found: &mut Comparison) {
         let own = self.frame.value(index);
-        let judge = Judge::new(&self.tolerance, self.doubt.slack(index), self.depth_shown);
-        let mut best = judge.differences(seen, &own);
+        let judge = self.judge(self.doubt.slack(index));
+        let verdict = |(value, slack): (Value, Slack)| {
+            let judge = self.judge(slack);
+            let differences = judge.differences(seen, &value);
+            (judge.excess(&differences), differences)
+        };
+        let mut best = verdict((own, self.doubt.slack(index)));
         match self.doubt.admissible(index) {
-            Admissible::Definite => found.worst.widen(&best),
+            Admissible::Definite => found.worst.widen(&best.1),
             Admissible::Unresolvable => found.unresolvable += 1,
-            Admissible::Values(_) if judge.passes(&best) => {}
             Admissible::Values(values) => {
-                let excess = |d: &Worst| judge.excess(d);
-                let nearest = values
-                    .map(|v| judge.differences(seen, &v))
-                    .min_by(|a, b| excess(a).total_cmp(&excess(b)));
-                best = nearest.filter(|n| excess(n) < excess(&best)).unwrap_or(best);
+                let nearest = values.map(verdict).min_by(|a, b| a.0.total_cmp(&b.0));
+                best = nearest.unwrap_or(best);
             }
         }
-        found.worst_of_all.widen(&best);
-        if !judge.passes(&best) {
-            found.failed += 1;
-            if found.failures.len() < KEPT {
-                let width = self.frame.size[0] as usize;
-                let [x, y] = [index % width, index / width].map(|v| v as u32);
-                let (channel, gpu, reference) = judge.first_difference(seen, &own);
-                found.failures.push(Failure { x, y, channel, gpu, reference });
-            }
+        found.worst_of_all.widen(&best.1);
+        if best.0 <= 1.0 {
+            return;
         }
+        found.failed += 1;
+        if found.failures.len() < KEPT {
+            let width = self.frame.size[0] as usize;
+            let [x, y] = [index % width, index / width].map(|v| v as u32);
+            let (channel, gpu, reference) = judge.first_difference(seen, &own);
+            found.failures.push(Failure { x, y, channel, gpu, reference });
+        }
+    }
+
+    fn judge(&self, slack: Slack) -> Judge {
+        Judge::new(&self.tolerance, slack, self.depth_shown)
     }
 }
 
@@ -233,9 +241,10 @@ struct Judge {
 
 impl Judge {
     fn new(tolerance: &Tolerance, slack: Slack, depth_shown: bool) -> Self {
+        let gain = 1.0 + slack.turn;
         let limit = Worst {
-            colour: tolerance.colour.max(slack.attribute),
-            normal: tolerance.normal.max(slack.attribute),
+            colour: gain * tolerance.colour.max(slack.attribute),
+            normal: gain * tolerance.normal.max(slack.attribute),
             depth: tolerance.depth_relative.max(slack.depth),
         };
         Self { limit, depth_shown }
@@ -262,20 +271,17 @@ impl Judge {
         parts.into_iter().fold(0.0, |a, b| if b.is_nan() || a < b { b } else { a })
     }
 
-    fn passes(&self, d: &Worst) -> bool {
-        self.excess(d) <= 1.0
-    }
-
+    /// The first image out of tolerance, and what both hold there.
     fn first_difference(&self, seen: &Value, own: &Value) -> (Channel, [f64; 4], [f64; 4]) {
         let d = self.differences(seen, own);
-        let limit = &self.limit;
-        let alpha = (seen.colour[3] - own.colour[3]).abs();
-        let pad = |n: [f64; 3]| [n[0], n[1], n[2], 0.0];
-        if seen.covered != own.covered || alpha.is_nan() || alpha > limit.colour {
-            (Channel::Coverage, [seen.colour[3], 0.0, 0.0, 0.0], [own.colour[3], 0.0, 0.0, 0.0])
-        } else if d.depth.is_nan() || d.depth > limit.depth {
-            (Channel::Depth, [seen.depth, 0.0, 0.0, 0.0], [own.depth, 0.0, 0.0, 0.0])
-        } else if d.normal.is_nan() || d.normal > limit.normal {
+        let beyond = |difference: f64, limit: f64| difference.is_nan() || difference > limit;
+        let first = |v: f64| [v, 0.0, 0.0, 0.0];
+        let pad = |[x, y, z]: [f64; 3]| [x, y, z, 0.0];
+        if seen.covered != own.covered || beyond((seen.colour[3] - own.colour[3]).abs(), self.limit.colour) {
+            (Channel::Coverage, first(seen.colour[3]), first(own.colour[3]))
+        } else if beyond(d.depth, self.limit.depth) {
+            (Channel::Depth, first(seen.depth), first(own.depth))
+        } else if beyond(d.normal, self.limit.normal) {
             (Channel::Normal, pad(seen.normal), pad(own.normal))
         } else {
             (Channel::Colour, seen.colour, own.colour)

@@ -11,6 +11,7 @@ use super::ellipse::Ellipse;
 use super::footprint::Scene;
 use super::margin::{Candidate, Margins};
 use super::normalize::{Value, resolve};
+use super::slack::{Means, Slack};
 use super::visibility::shifted;
 use glam::DVec2;
 use rayon::prelude::*;
@@ -30,20 +31,10 @@ pub struct Doubt {
 pub enum Admissible<'a> {
     /// Only the frame's: the pixel is not in doubt.
     Definite,
-    /// These, made one after the other.
-    Values(Box<dyn Iterator<Item = Value> + 'a>),
+    /// These, made one after the other, each with what rounding may do to it.
+    Values(Box<dyn Iterator<Item = (Value, Slack)> + 'a>),
     /// Too many to try. Not an excuse: whoever judges the pixel calls it wrong.
     Unresolvable,
-}
-
-/// How far rounding may move a pixel's value without any decision turning: the weighted mean over its splats. All 0 where
-/// [`super::Tolerance::rounding`] is.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Slack {
-    /// Of the depth, relative to it.
-    pub depth: f64,
-    /// Of colour and normal, absolute.
-    pub attribute: f64,
 }
 
 /// One pixel in doubt.
@@ -59,8 +50,15 @@ struct Doubtful {
 struct Fragment {
     depth: f64,
     margin: f64,
-    sums: Sums,
+    share: Share,
     certain: bool,
+}
+
+/// What a splat, or some together, contribute.
+#[derive(Clone, Copy, Default)]
+struct Share {
+    sums: Sums,
+    means: Means,
 }
 
 /// A visibility depth as far as it is known; infinite for none.
@@ -113,13 +111,13 @@ impl Doubt {
 
 impl Doubtful {
     /// The fragments that the visibility depth `bound` surely lets through, summed, and those that it may.
-    fn split(&self, bound: Bound) -> (Sums, Vec<&Sums>) {
-        let (mut sure, mut maybe) = (Sums::default(), Vec::new());
+    fn split(&self, bound: Bound) -> (Share, Vec<Share>) {
+        let (mut sure, mut maybe) = (Share::default(), Vec::new());
         for f in self.fragments.iter().filter(|f| bound.may_pass(f.depth, f.margin)) {
             if f.certain && bound.must_pass(f.depth, f.margin) {
-                sure += f.sums;
+                sure += f.share;
             } else {
-                maybe.push(&f.sums);
+                maybe.push(f.share);
             }
         }
         (sure, maybe)
@@ -131,14 +129,14 @@ impl Doubtful {
         self.bounds.iter().map(subsets).fold(0, usize::saturating_add)
     }
 
-    fn values<'a>(&'a self, projector: &'a Projector) -> impl Iterator<Item = Value> + 'a {
+    fn values<'a>(&'a self, projector: &'a Projector) -> impl Iterator<Item = (Value, Slack)> + 'a {
         self.bounds.iter().flat_map(move |&bound| {
             let (sure, maybe) = self.split(bound);
             (0..1 << maybe.len()).map(move |subset: usize| {
-                let mut sums = sure;
+                let mut all = sure;
                 let taken = maybe.iter().enumerate().filter(|(bit, _)| subset >> bit & 1 == 1);
-                taken.for_each(|(_, fragment)| sums += **fragment);
-                resolve(projector, self.at, bound.exists().then_some(&sums))
+                taken.for_each(|(_, share)| all += *share);
+                (resolve(projector, self.at, bound.exists().then_some(&all.sums)), all.means.slack())
             })
         })
     }
@@ -223,7 +221,7 @@ fn of_band(margins: &Margins, scene: &Scene, band: &Band) -> (Vec<(usize, Doubtf
             doubtful[c.pixel].get_or_insert_default();
         }
         if passes {
-            means[c.pixel].add(margins, &c);
+            means[c.pixel] += Means::of(margins, &c);
         }
     });
     margins.scan(scene, band, Ellipse::attribute, |c| {
@@ -231,7 +229,8 @@ fn of_band(margins: &Margins, scene: &Scene, band: &Band) -> (Vec<(usize, Doubtf
             && bounds.test(&c).0
         {
             let sums = Sums::of(margins.projector, c.splat, c.weight, c.depth);
-            fragments.push(Fragment { depth: c.depth, margin: c.margin(), sums, certain: c.certain });
+            let share = Share { sums, means: Means::of(margins, &c) };
+            fragments.push(Fragment { depth: c.depth, margin: c.margin(), share, certain: c.certain });
         }
     });
     let first = band.first_row as usize * band.width as usize;
@@ -243,30 +242,9 @@ fn of_band(margins: &Margins, scene: &Scene, band: &Band) -> (Vec<(usize, Doubtf
     (doubtful.into_iter().enumerate().filter_map(pixel).collect(), slack)
 }
 
-/// Sums over a pixel's splats that make its [`Slack`].
-#[derive(Clone, Default)]
-struct Means {
-    weight: f64,
-    sway: f64,
-    /// The weight that the splat has in the mean depth.
-    pull: f64,
-    wobble: f64,
-}
-
-impl Means {
-    fn add(&mut self, margins: &Margins, c: &Candidate) {
-        let pull = if margins.projector.depth.perspective { c.weight / c.depth } else { c.weight };
-        self.weight += c.weight;
-        self.sway += c.weight * c.sway;
-        self.pull += pull;
-        self.wobble += pull * (c.wobble / c.depth.abs() + c.sway);
-    }
-
-    fn slack(&self) -> Slack {
-        if self.weight == 0.0 {
-            return Slack::default();
-        }
-        // A weight that is wrong by some part moves the mean by that part of the splats' difference, at most 2 in a normal.
-        Slack { depth: self.wobble / self.pull, attribute: 2.0 * self.sway / self.weight }
+impl std::ops::AddAssign for Share {
+    fn add_assign(&mut self, other: Self) {
+        self.sums += other.sums;
+        self.means += other.means;
     }
 }

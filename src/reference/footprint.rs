@@ -145,7 +145,7 @@ impl Projector {
     }
 
     /// The projected centre, px, and the mapping that [`super::conic`] wants, for 1-σ axes of length `radius / F`.
-    fn tangent_plane(&self, centre: DVec3, normal: DVec3, radius: f64) -> (DVec2, DMat3) {
+    pub(super) fn tangent_plane(&self, centre: DVec3, normal: DVec3, radius: f64) -> (DVec2, DMat3) {
         let (s, t) = normal.any_orthonormal_pair();
         let sigma = radius / self.cutoff();
         let middle = self.project(centre.extend(1.0));

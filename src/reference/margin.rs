@@ -25,6 +25,8 @@ pub(super) struct Candidate<'a> {
     pub weight: f64,
     /// How far rounding may move the weight, relative to it.
     pub sway: f64,
+    /// The same through a shift of the whole splat on the screen.
+    pub drift: f64,
     /// Whether it is surely inside the cut-off and the clip volume.
     pub certain: bool,
 }
@@ -57,25 +59,30 @@ impl Margins<'_> {
             let ellipse = footprint(splat, self.projector);
             // m changes by no more than 1 / (minor σ) a px.
             let reach = CUTOFF / ellipse.sigma().y;
+            // What rounding shifts a pixel coordinate by, in σ.
+            let shift = self.rounding * self.projector.size.max_element() / ellipse.sigma().y;
             band.scan(&ellipse, ellipse.cutoff + reach, |hit| {
                 let edge = (hit.sigmas - ellipse.cutoff).abs() <= reach;
                 let near = edge && ellipse.distance(hit.offset) <= CUTOFF;
                 if near || hit.sigmas <= ellipse.cutoff {
-                    let weight = ellipse.weight(hit.sigmas);
-                    self.candidate(splat, &hit, weight, near).into_iter().for_each(&mut visit);
+                    let mut candidate = self.candidate(splat, &hit, near);
+                    if let Some(c) = &mut candidate {
+                        (c.weight, c.drift) = (ellipse.weight(hit.sigmas), shift * hit.sigmas);
+                    }
+                    candidate.into_iter().for_each(&mut visit);
                 }
             });
         }
     }
 
     /// `None` if the splat's plane is surely outside the clip volume there.
-    fn candidate<'a>(&self, splat: &'a Splat, hit: &Hit, weight: f64, near: bool) -> Option<Candidate<'a>> {
+    fn candidate<'a>(&self, splat: &'a Splat, hit: &Hit, near: bool) -> Option<Candidate<'a>> {
         let (depth, wobble, in_front) = self.depth(splat, hit.at)?;
         let (nearest, farthest) = (self.projector.depth.near, self.projector.depth.far);
         let within = |margin: f64| depth >= nearest + margin && depth <= farthest - margin;
-        let sway = self.rounding * splat.secant;
-        let mut candidate =
-            Candidate { splat, pixel: hit.index, depth, wobble, weight, sway, certain: false };
+        let (sway, certain) = (self.rounding * splat.secant, false);
+        let pixel = hit.index;
+        let mut candidate = Candidate { splat, pixel, depth, wobble, weight: 0.0, sway, drift: 0.0, certain };
         let margin = candidate.margin();
         candidate.certain = !near && in_front && within(margin);
         within(-margin).then_some(candidate)

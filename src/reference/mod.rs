@@ -19,15 +19,17 @@ mod margin;
 mod normalize;
 mod projector;
 mod shading;
+mod slack;
 #[cfg(test)]
 mod tests;
 mod visibility;
 
 pub use compare::{Channel, Comparison, Expected, Failure, Tolerance, Worst, compare};
-pub use doubt::{Admissible, Doubt, Slack};
+pub use doubt::{Admissible, Doubt};
 pub use footprint::{Counts, Culled, Splat, Surfel, footprint};
 pub use normalize::Value;
 pub use projector::Projector;
+pub use slack::Slack;
 
 use crate::error::Result;
 use crate::geometry::{Camera, Surfels};

@@ -105,13 +105,13 @@ fn camera(eye: [f64; 3], target: [f64; 3], degrees: f64, size: [u32; 2], near: f
     Camera::look_at(eye, target, DVec3::Y, degrees.to_radians(), aspect, near).unwrap()
 }
 
-/// A plane seen from man's height up to 3000 heights away, in rings of splats that are ever thinner on the screen. Their height
+/// A plane seen from man's height up to 600 heights away: less than half a pixel below the horizon, in rings of splats that are ever thinner on the screen. Their height
 /// jitters, so that at each pixel depths differ by about ε.
 fn horizon() -> Case {
     let (mut random, mut surfels, size) = (Random(1), Surfels::default(), [256, 256]);
-    let step = 0.04;
+    let step = 0.05;
     let mut ring = 0.3;
-    while ring < 3000.0 {
+    while ring < 600.0 {
         let count = (TAU / step) as usize;
         for i in 0..count {
             let (sin, cos) = (TAU * (i as f64 + random.unit()) / count as f64).sin_cos();
@@ -173,7 +173,7 @@ fn sub_pixel() -> Case {
             0.3 * (7.0 * x).sin() * (6.0 * y).sin(),
             1.0,
         );
-        push(&mut surfels, DVec3::new(x, y, z), normal, 0.01 * pixel);
+        push(&mut surfels, DVec3::new(x, y, z + 1.2 * pixel * random.signed()), normal, 0.01 * pixel);
     }
     paint_linear(&mut surfels, &mut random);
     let degrees = 2.0 * (1.0f64 / 3.0).atan().to_degrees();
@@ -183,7 +183,7 @@ fn sub_pixel() -> Case {
         camera([-0.3, -0.9, 2.8], [0.0, 0.05, 0.0], degrees, size, 0.1),
     ];
     // ε is in radii, and the neighbours to blend are many radii away.
-    let settings = Settings { lowpass: 0.5, epsilon: 150.0, ..Default::default() };
+    let settings = Settings { lowpass: 0.5, epsilon: 200.0, ..Default::default() };
     Case { name: "sub-pixel", surfels, cameras, settings, size }
 }
 
@@ -198,10 +198,10 @@ fn huge() -> Case {
         *r *= 0.8;
     }
     for i in 0..7 {
-        let tilt = 0.03 * random.vector();
+        let tilt = 0.02 * random.vector();
         push(
             &mut surfels,
-            DVec3::new(0.7 * random.signed(), 0.7 * random.signed(), -1.5 - 0.02 * f64::from(i)),
+            DVec3::new(0.7 * random.signed(), 0.7 * random.signed(), -1.5 - 0.1 * f64::from(i)),
             DVec3::Z + tilt,
             82.0,
         );
@@ -209,10 +209,10 @@ fn huge() -> Case {
     paint_linear(&mut surfels, &mut random);
     let cameras = [
         camera([0.0, 0.0, 4.0], [0.0, 0.0, 0.0], 50.0, size, 0.1),
-        camera([0.1, 0.05, 4.2], [0.3, 0.2, 0.0], 48.0, size, 0.1),
-        camera([-0.1, 0.08, 4.0], [-0.4, 0.3, 0.0], 50.0, size, 0.1),
+        camera([0.1, 0.05, 4.2], [0.12, 0.1, 0.0], 48.0, size, 0.1),
+        camera([-0.3, 0.2, 4.5], [-0.36, 0.26, 0.0], 44.0, size, 0.1),
     ];
-    let mut settings = Settings { epsilon: 7e-4, ..Default::default() };
+    let mut settings = Settings { epsilon: 4e-3, ..Default::default() };
     settings.lighting.directional = vec![light([0.6, 0.64, 0.48], [0.5, 0.4, 0.3])];
     Case { name: "huge", surfels, cameras, settings, size }
 }
