@@ -121,3 +121,56 @@ fn from_major_axis(axes: DVec2, x: f64) -> f64 {
     let foot = x / evolute;
     (axes.x * foot - x).hypot(axes.y * (1.0 - foot * foot).sqrt())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::FRAC_PI_2;
+
+    #[test]
+    fn distance_is_that_of_the_nearest_point() {
+        for axes in [DVec2::new(3.0, 3.0), DVec2::new(5.0, 1.0), DVec2::new(4000.0, 0.71)] {
+            // Dense about the tip of the major axis, where thin ellipses turn.
+            let point = |i: i32| {
+                let angle = FRAC_PI_2 * (f64::from(i) / 20_000.0).powi(3);
+                axes * DVec2::new(angle.cos(), angle.sin())
+            };
+            let points: Vec<DVec2> = (0..=20_000).map(point).collect();
+            for fraction in [0.0, 1e-6, 1e-3, 0.3, 0.9, 1.0] {
+                for off in [-0.3, -3e-4, 0.0, 3e-4, 2.0] {
+                    let p =
+                        (axes * DVec2::from_angle(FRAC_PI_2 * fraction) + DVec2::splat(off)).max(DVec2::ZERO);
+                    let to_segment = |s: &[DVec2]| {
+                        let (from, along) = (p - s[0], s[1] - s[0]);
+                        (from - (from.dot(along) / along.length_squared()).clamp(0.0, 1.0) * along).length()
+                    };
+                    let nearest = points.windows(2).map(to_segment).fold(f64::INFINITY, f64::min);
+                    let found = to_ellipse(axes, p);
+                    assert!(
+                        (found - nearest).abs() < 0.01 * nearest + 1e-6,
+                        "{axes} {p}: {found} for {nearest}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn spans_are_where_the_line_meets_the_ellipse() {
+        let ellipse = Ellipse {
+            centre: DVec2::new(10.0, 20.0),
+            axis: DVec2::from_angle(0.7),
+            variance: DVec2::new(9.0, 0.25),
+            amplitude: 1.0,
+            cutoff: 2.0,
+        };
+        for y in [17.0, 20.0, 22.5] {
+            let (low, high) = ellipse.span(y, 2.0).unwrap();
+            for x in [low, high] {
+                assert!((ellipse.sigmas(DVec2::new(x, y) - ellipse.centre) - 2.0).abs() < 1e-9);
+            }
+        }
+        let (low, high) = ellipse.bounds();
+        assert!(ellipse.span(high.y + 1e-6, 2.0).is_none() && ellipse.span(low.y + 1e-6, 2.0).is_some());
+    }
+}

@@ -31,3 +31,38 @@ pub(super) fn linear(srgb: [u8; 4]) -> DVec3 {
     };
     DVec3::new(decode(srgb[0]), decode(srgb[1]), decode(srgb[2]))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::settings::DirectionalLight;
+
+    #[test]
+    fn light_on_a_sphere_has_the_closed_form() {
+        let mut lighting =
+            Lighting { ambient: 0.1, headlight: 0.8, specular: 0.2, shininess: 2.0, ..Default::default() };
+        let shade = |lighting: &Lighting, degrees: f64| {
+            let (sin, cos) = degrees.to_radians().sin_cos();
+            lit(lighting, DVec3::splat(0.5), DVec3::new(sin, 0.0, cos), DVec3::Z)
+        };
+        let near = |a: DVec3, b: [f64; 3]| a.abs_diff_eq(DVec3::from_array(b), 1e-7);
+        assert!(near(shade(&lighting, 0.0), [0.65; 3]));
+        assert!(near(shade(&lighting, 60.0), [0.3; 3]));
+        assert!(near(shade(&lighting, 120.0), [0.05; 3]), "no light from behind");
+
+        // From the side; half-way at 45°, so n·l = sin 60°, n·h = cos 15°.
+        lighting.directional =
+            vec![DirectionalLight { to_light: [1.0, 0.0, 0.0], radiance: [1.0, 0.5, 0.0] }];
+        let (lambert, specular) = (0.75f64.sqrt(), 0.2 * 15f64.to_radians().cos().powi(2));
+        let side = 0.5 * lambert + specular;
+        assert!(near(shade(&lighting, 60.0), [0.3 + side, 0.3 + 0.5 * side, 0.3]));
+        assert!(near(shade(&lighting, -60.0), [0.3; 3]), "the light is below the horizon");
+    }
+
+    #[test]
+    fn srgb_is_decoded_exactly() {
+        let decoded = linear([0, 10, 188, 255]);
+        assert!(decoded.abs_diff_eq(DVec3::new(0.0, 10.0 / 255.0 / 12.92, 0.502_886_458), 1e-8), "{decoded}");
+        assert_eq!(linear([255; 4]), DVec3::ONE);
+    }
+}
