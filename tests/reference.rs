@@ -4,7 +4,8 @@
 mod support;
 
 use std::sync::LazyLock;
-use support::scenes::{Case, Random, cases};
+use support::sampling::Random;
+use support::scenes::{Case, cases};
 use surfel::geometry::{Camera, Surfels};
 use surfel::reference::{Channel, Comparison, Culled, Expected, Projector, Surfel, Tolerance, render};
 use surfel::{Picture, Settings};

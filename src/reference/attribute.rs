@@ -2,7 +2,7 @@
 
 use super::bands::Band;
 use super::ellipse::Ellipse;
-use super::footprint::Scene;
+use super::scene::Scene;
 use super::{Projector, Splat};
 use glam::DVec3;
 

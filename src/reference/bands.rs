@@ -1,7 +1,7 @@
 //! Bands of rows: the unit of parallel work, each with the list of the splats that reach it.
 
 use super::ellipse::Ellipse;
-use super::footprint::Scene;
+use super::scene::Scene;
 use super::{Projector, Splat};
 use glam::DVec2;
 use rayon::prelude::*;

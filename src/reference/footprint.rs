@@ -8,7 +8,6 @@ use crate::error::Result;
 use crate::geometry::{Camera, Colours, Surfels};
 use crate::settings::{Cull, Settings};
 use glam::{DMat2, DMat3, DVec2, DVec3};
-use rayon::prelude::*;
 
 /// One surfel in float64, in world space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -80,23 +79,6 @@ pub enum Culled {
     Outside,
 }
 
-/// What became of the surfels.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Counts {
-    /// Surfels in the scene: the sum of all others.
-    pub surfels: usize,
-    /// Culled as [`Culled::Behind`].
-    pub behind: usize,
-    /// Culled as [`Culled::EyePlane`].
-    pub eye_plane: usize,
-    /// Culled as [`Culled::Back`].
-    pub back: usize,
-    /// Culled as [`Culled::Outside`].
-    pub outside: usize,
-    /// Drawn.
-    pub drawn: usize,
-}
-
 /// The splat of one surfel in a frame of `size` px, or why it has none.
 ///
 /// For many surfels of one frame make a [`Projector`] once and use [`Projector::footprint`].
@@ -119,8 +101,8 @@ impl Projector {
             return Err(Culled::Behind);
         }
         let (projected, mapping) = self.tangent_plane(centre, normal, surfel.radius);
-        // Written so that a disc that is not a number is culled too.
-        if !(clearance(&mapping, self.cutoff()) > 0.0) {
+        let clear = clearance(&mapping, self.cutoff());
+        if clear.is_nan() || clear <= 0.0 {
             return Err(Culled::EyePlane);
         }
         let facing = self.facing(centre, normal);
@@ -164,34 +146,5 @@ impl Projector {
     fn sees(&self, ellipse: &Ellipse) -> bool {
         let (low, high) = ellipse.bounds();
         high.cmpge(DVec2::ZERO).all() && low.cmple(self.size).all()
-    }
-}
-
-/// The drawn splats of a frame, in the surfels' order, and the count of all.
-pub(super) struct Scene {
-    pub splats: Vec<Splat>,
-    pub counts: Counts,
-    pub dual_form: usize,
-}
-
-impl Scene {
-    /// All surfels' splats.
-    pub fn project(projector: &Projector, surfels: &Surfels) -> Self {
-        let all: Vec<Result<Splat, Culled>> = (0..surfels.len())
-            .into_par_iter()
-            .map(|i| projector.footprint(&Surfel::of(surfels, i)))
-            .collect();
-        let count = |cause: Culled| all.iter().filter(|s| s.as_ref().err() == Some(&cause)).count();
-        let mut counts = Counts {
-            surfels: all.len(),
-            behind: count(Culled::Behind),
-            eye_plane: count(Culled::EyePlane),
-            back: count(Culled::Back),
-            outside: count(Culled::Outside),
-            drawn: 0,
-        };
-        let splats: Vec<Splat> = all.into_iter().flatten().collect();
-        counts.drawn = splats.len();
-        Self { dual_form: splats.iter().filter(|s| s.dual).count(), splats, counts }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::bands::{Band, Hit};
 use super::ellipse::Ellipse;
-use super::footprint::Scene;
+use super::scene::Scene;
 use super::{Projector, Splat};
 use glam::{DVec2, DVec3};
 

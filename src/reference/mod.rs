@@ -10,25 +10,30 @@
 
 mod attribute;
 mod bands;
+mod bound;
 mod compare;
 mod conic;
 mod doubt;
 mod ellipse;
 mod footprint;
+mod judge;
 mod margin;
 mod normalize;
 mod projector;
+mod scene;
 mod shading;
 mod slack;
 #[cfg(test)]
 mod tests;
 mod visibility;
 
-pub use compare::{Channel, Comparison, Expected, Failure, Tolerance, Worst, compare};
+pub use compare::{Comparison, Expected, Failure, compare};
 pub use doubt::{Admissible, Doubt};
-pub use footprint::{Counts, Culled, Splat, Surfel, footprint};
+pub use footprint::{Culled, Splat, Surfel, footprint};
+pub use judge::{Channel, Tolerance, Worst};
 pub use normalize::Value;
 pub use projector::Projector;
+pub use scene::Counts;
 pub use slack::Slack;
 
 use crate::error::Result;
@@ -36,8 +41,8 @@ use crate::geometry::{Camera, Surfels};
 use crate::picture::Picture;
 use crate::settings::Settings;
 use bands::Bands;
-use footprint::Scene;
 use rayon::prelude::*;
+use scene::Scene;
 
 /// A frame in float64, row by row from the top left; every image has one entry a pixel.
 #[derive(Clone, Debug, PartialEq)]

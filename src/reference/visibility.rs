@@ -2,7 +2,7 @@
 
 use super::bands::Band;
 use super::ellipse::Ellipse;
-use super::footprint::Scene;
+use super::scene::Scene;
 use super::{Projector, Splat};
 
 /// For every pixel of the band the least depth of its splats, each moved back along the viewing ray by its ε; infinite where
