@@ -207,6 +207,46 @@ fn splats_within_epsilon_blend() {
 }
 
 #[test]
+fn weights_are_the_filtered_kernels() {
+    // Both centres project to the centre of one pixel, so that only the amplitudes differ.
+    let (sigma, filter) = (16.0 * 0.5 / 2.0, f64::from(plain().attribute_lowpass()));
+    let at = DVec3::new(0.5 / 16.0, 0.5 / 16.0, 2.0);
+    let tilts = [0.3f64, 1.4];
+    let normals = tilts.map(|t| DVec3::new(t.sin(), 0.0, -t.cos()));
+    let weights = tilts.map(|t| {
+        let [narrow, wide] = [(sigma * t.cos()).powi(2), sigma * sigma];
+        (narrow * wide / ((narrow + filter) * (wide + filter))).sqrt()
+    });
+    let mut discs = normals.map(|n| disc(at, n, 0.5));
+    (discs[0].colour, discs[1].colour) = (Some(DVec3::X), Some(DVec3::Y));
+    let frame = render(&scene(&discs), &parallel(), SIZE, &plain()).unwrap();
+    let value = frame.value(32 * 64 + 32);
+    let share = weights[0] / (weights[0] + weights[1]);
+    assert!(close(value.colour[0], share, 1e-6) && close(value.colour[1], 1.0 - share, 1e-6), "{value:?}");
+    let normal = (weights[0] * normals[0] + weights[1] * normals[1]).normalize();
+    assert!(DVec3::from_array(value.normal).distance(normal) < 1e-6, "{value:?} {normal}");
+}
+
+#[test]
+fn a_splat_on_the_limit_of_epsilon_may_blend_or_not() {
+    // 2 (1 + 0.5 · 0.5 / 2) = 2.25, exactly.
+    let mut discs = [2.0, 2.25].map(|z| disc(DVec3::Z * z, DVec3::NEG_Z, 0.5));
+    (discs[0].colour, discs[1].colour) = (Some(DVec3::X), Some(DVec3::Y));
+    let surfels = scene(&discs);
+    let settings = |epsilon| Settings { epsilon, ..plain() };
+    let tolerance = Tolerance::default();
+    let expected = Expected::new(&surfels, &perspective(), SIZE, &settings(0.5), &tolerance).unwrap();
+    assert!(!expected.doubt.is_empty());
+    let passes = |surfels: &Surfels, epsilon| {
+        let frame = render(surfels, &perspective(), SIZE, &settings(epsilon)).unwrap();
+        expected.compare(&frame.to_picture()).unwrap().passed()
+    };
+    assert!([0.4, 0.5, 0.6].into_iter().all(|epsilon| passes(&surfels, epsilon)));
+    discs[1].colour = Some(DVec3::Z);
+    assert!(!passes(&scene(&discs), 0.6));
+}
+
+#[test]
 fn surfels_are_culled_in_order_and_counted() {
     let discs = [
         disc(DVec3::new(0.0, 0.0, -1.0), DVec3::Z, 0.1),
