@@ -326,3 +326,27 @@ fn a_pixel_on_the_cut_off_may_be_there_or_not() {
     assert!(pixels.iter().all(|&p| flipped(p) == 0));
     assert_eq!([32 * 64 + 28, 32 * 64 + 38].map(flipped), [1, 1]);
 }
+
+#[test]
+fn a_splat_that_ends_at_a_pixel_centre_may_colour_it_or_not() {
+    // A cut-off radius of 5 px about a pixel centre, for the attributes, on a ground that covers the picture.
+    let sigma = (25.0 / 4.0 - f64::from(plain().attribute_lowpass())).sqrt();
+    let (z, at) = (2.0, 0.5 / 64.0 * 2.0);
+    let surfels = |scale: f64| {
+        let mut discs = [
+            disc(DVec3::Z * z, DVec3::NEG_Z, 4.0),
+            disc(DVec3::new(at, at, z), DVec3::NEG_Z, scale * sigma * 2.0 * z / 64.0),
+        ];
+        (discs[0].colour, discs[1].colour) = (Some(DVec3::X), Some(DVec3::Y));
+        scene(&discs)
+    };
+    let tolerance = Tolerance::default();
+    let expected = Expected::new(&surfels(1.0), &perspective(), SIZE, &plain(), &tolerance).unwrap();
+    assert_eq!(expected.doubt.len(), 12);
+    let failed = |scale: f64| {
+        let frame = render(&surfels(scale), &perspective(), SIZE, &plain()).unwrap();
+        expected.compare(&frame.to_picture()).unwrap().failed
+    };
+    assert_eq!([1.0 - 1e-5, 1.0 + 1e-5].map(failed), [0, 0]);
+    assert!([0.99, 1.01].into_iter().all(|scale| failed(scale) > 12));
+}
