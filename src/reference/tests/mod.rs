@@ -1,0 +1,56 @@
+//! Closed forms that the passes have to meet.
+
+mod doubt;
+mod footprint;
+mod passes;
+
+use super::*;
+use crate::geometry::Colours;
+use crate::settings::{Cull, Shading};
+use glam::{DMat2, DVec2, DVec3, DVec4};
+
+const SIZE: [u32; 2] = [64, 64];
+
+/// Looks along +z from the origin; one unit at distance 1 is 64 px.
+fn perspective() -> Camera {
+    let fov = 2.0 * 0.5f64.atan();
+    Camera::look_at(DVec3::ZERO, DVec3::Z, DVec3::NEG_Y, fov, 1.0, 0.01).unwrap()
+}
+
+/// The same direction; one unit is 16 px.
+fn parallel() -> Camera {
+    Camera::orthographic([DVec3::ZERO, DVec3::Z, DVec3::NEG_Y], 4.0, 1.0, [0.1, 100.0]).unwrap()
+}
+
+fn plain() -> Settings {
+    Settings { shading: Shading::Colour, ..Default::default() }
+}
+
+fn disc(position: DVec3, normal: DVec3, radius: f64) -> Surfel {
+    Surfel { position, normal: normal.normalize(), radius, colour: None }
+}
+
+fn scene(discs: &[Surfel]) -> Surfels {
+    Surfels {
+        positions: discs.iter().map(|d| d.position.as_vec3()).collect(),
+        normals: discs.iter().map(|d| d.normal.as_vec3()).collect(),
+        radii: discs.iter().map(|d| d.radius as f32).collect(),
+        colours: discs[0].colour.map(|_| {
+            Colours::Linear(discs.iter().map(|d| d.colour.unwrap_or_default().as_vec3().to_array()).collect())
+        }),
+        ..Default::default()
+    }
+}
+
+fn random(state: &mut u64) -> f64 {
+    *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+    (*state >> 11) as f64 / 2f64.powi(52) - 1.0
+}
+
+fn random_vector(state: &mut u64) -> DVec3 {
+    DVec3::new(random(state), random(state), random(state))
+}
+
+fn close(a: f64, b: f64, relative: f64) -> bool {
+    (a - b).abs() <= relative * b.abs()
+}
