@@ -26,10 +26,10 @@ vec3 colour_of(uint i) {
 }
 
 // What the two targets sum of surfel i, see lib/sums.glsl.
-void attributes_of(uint i, float side, out vec3 first, out vec3 second) {
+void attributes_of(uint i, float epsilon, out vec3 first, out vec3 second) {
     second = COLOURS != COLOURS_NONE ? colour_of(i) : vec3(0.0);
     first = second;
-    if (SUM_NORMALS) first = sign(side) * vec3(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]);
+    if (SUM_NORMALS) first = sign(epsilon) * vec3(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]);
 }
 
 #endif
@@ -54,7 +54,7 @@ bool hidden(float nearest, ivec2 low, ivec2 high) {
 bool scatter_begin(uint i, Splat splat, vec2 variance, float nearest, ivec2 low, ivec2 high) {
     if (!LARGE_SPLATS && hidden(nearest, low, high)) return false;
     splat_amplitude = splat.sqrt_det * inversesqrt(variance.x * variance.y);
-    attributes_of(i, splat.side, splat_first, splat_second);
+    attributes_of(i, splat.epsilon, splat_first, splat_second);
     return true;
 }
 
@@ -100,7 +100,7 @@ void main() {
     uint i = gl_VertexIndex / 3;
     Splat splat = splats[i];
     amplitude = place_splat(splat, frame.attribute_lowpass, gl_VertexIndex % 3);
-    attributes_of(i, splat.side, first, second);
+    attributes_of(i, splat.epsilon, first, second);
 }
 
 #endif

@@ -46,19 +46,24 @@ mat2x3 tangents(vec3 n) {
     return mat2x3(vec3(1.0 + s * n.x * n.x * a, s * b, -s * n.x), vec3(b, s + n.y * n.y * a, -n.y));
 }
 
-vec3 to_clip(vec3 v) {
-    return vec3(dot(frame.clip_x.xyz, v), dot(frame.clip_y.xyz, v), dot(frame.clip_w.xyz, v));
+// Homogeneous pixel of a vector of the world.
+vec3 to_pixel(vec3 v) {
+    return vec3(dot(frame.rows_hi[0].xyz, v), dot(frame.rows_hi[1].xyz, v), dot(frame.rows_hi[2].xyz, v));
 }
 
-// κ of the plane n·x = h at the anchor and its derivatives, in twice the precision: seen at a grazing angle, κ is a small
-// difference of large terms.
+// A coordinate of the homogeneous pixel of a position relative to the eye.
+vec2 pixel_row(int i, vec3 hi, vec3 lo) {
+    vec2 at_eye = PERSPECTIVE ? vec2(0.0) : vec2(frame.rows_hi[i].w, frame.rows_lo[i].w);
+    return add(dot_double(hi, lo, frame.rows_hi[i].xyz, frame.rows_lo[i].xyz), at_eye);
+}
+
+// κ of the plane n·x = h at the anchor and its derivatives. Seen at a grazing angle, κ is a small difference of large terms.
 vec3 depth_plane(vec3 n, vec2 h, float facing, vec2 anchor) {
-    vec2 x = dot_double(n, frame.ray_hi[0].xyz, frame.ray_lo[0].xyz);
-    vec2 y = dot_double(n, frame.ray_hi[1].xyz, frame.ray_lo[1].xyz);
-    vec2 key = dot_double(n, frame.ray_hi[2].xyz, frame.ray_lo[2].xyz);
-    key = add(key, add(two_product(x.x, anchor.x), vec2(x.y * anchor.x, 0.0)));
-    key = add(key, add(two_product(y.x, anchor.y), vec2(y.y * anchor.y, 0.0)));
-    if (!PERSPECTIVE) key = add(key, -add(two_product(frame.key_slope, h.x), vec2(frame.key_slope * h.y, 0.0)));
+    vec2 x = dot_double(n, vec3(0.0), frame.ray_hi[0].xyz, frame.ray_lo[0].xyz);
+    vec2 y = dot_double(n, vec3(0.0), frame.ray_hi[1].xyz, frame.ray_lo[1].xyz);
+    vec2 key = dot_double(n, vec3(0.0), frame.ray_hi[2].xyz, frame.ray_lo[2].xyz);
+    key = add(key, add(scale(x, anchor.x), scale(y, anchor.y)));
+    if (!PERSPECTIVE) key = add(key, scale(h, -frame.key_slope));
     return vec3(key.x, x.x, y.x) / facing;
 }
 
@@ -67,43 +72,47 @@ uint footprint(uint i, out Splat splat) {
     vec3 n = vec3(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]);
     float r = radii[i];
 
-    // The position relative to the eye, and the plane's h = n·position, as sums of two floats.
+    // The position relative to the eye, its homogeneous pixel and its plane's h = n·position in twice the precision: all that
+    // follows is relative to them.
     vec2 dx = two_sum(p.x, -frame.eye_hi.x), dy = two_sum(p.y, -frame.eye_hi.y), dz = two_sum(p.z, -frame.eye_hi.z);
-    vec3 position = vec3(dx.x, dy.x, dz.x);
-    vec3 position_lo = vec3(dx.y, dy.y, dz.y) - frame.eye_lo.xyz;
-    vec2 h = dot_double(n, position, position_lo);
-    float facing = PERSPECTIVE ? h.x : dot_double(n, frame.forward_hi.xyz, frame.forward_lo.xyz).x;
+    vec3 hi = vec3(dx.x, dy.x, dz.x);
+    vec3 lo = vec3(dx.y, dy.y, dz.y) - frame.eye_lo.xyz;
+    vec2 w = PERSPECTIVE ? pixel_row(2, hi, lo) : vec2(1.0, 0.0);
+    if (w.x <= 0.0) return BEHIND;
 
-    vec3 X = to_clip(position + position_lo) + vec3(frame.clip_x.w, frame.clip_y.w, frame.clip_w.w);
-    if (X.z <= 0.0) return BEHIND;
     float sigma = r / frame.cutoff;
     mat2x3 axes = tangents(n);
-    vec3 S = sigma * to_clip(axes[0]);
-    vec3 T = sigma * to_clip(axes[1]);
-    float w = X.z / frame.cutoff;
+    vec3 S = sigma * to_pixel(axes[0]);
+    vec3 T = sigma * to_pixel(axes[1]);
     float g = length(vec2(S.z, T.z));
-    float q = (w - g) * (w + g);
+    float q = (w.x / frame.cutoff - g) * (w.x / frame.cutoff + g);
     if (q <= 0.0) return EYE_PLANE;
+    vec2 h = dot_double(hi, lo, n, vec3(0.0));
+    float facing = PERSPECTIVE ? h.x : dot_double(n, vec3(0.0), frame.forward_hi.xyz, frame.forward_lo.xyz).x;
     if (CULL_BACK && facing >= 0.0) return BACK;
 
     float root = frame.cutoff * sqrt(q);
     float sqrt_det = frame.jacobian * (sigma / root) * (sigma / root) * abs(facing) / root;
-    Conic conic = dual_conic(X, S, T, q, frame.cutoff, sqrt_det, frame.viewport);
+    vec2 X = pixel_row(0, hi, lo), Y = pixel_row(1, hi, lo);
+    vec2 centre = vec2(X.x, Y.x) / w.x;
+    Conic conic = dual_conic(centre, S, T, q, frame.cutoff, sqrt_det);
     vec2 reach = reach_of(conic.axis, conic.variance + frame.attribute_lowpass);
-    if (any(greaterThan(conic.centre - reach, frame.viewport)) || any(lessThan(conic.centre + reach, vec2(0.0)))) return OUTSIDE;
+    vec2 middle = centre + conic.offset;
+    if (any(greaterThan(middle - reach, frame.viewport)) || any(lessThan(middle + reach, vec2(0.0)))) return OUTSIDE;
 
-    splat.centre = conic.centre;
+    uvec2 pixel = uvec2(clamp(middle, vec2(0.0), frame.viewport - 1.0));
+    vec2 anchor = vec2(pixel) + 0.5;
+    bool listed = LIST_LARGE && 4.0 * reach.x * reach.y > LARGE_AREA;
+    if (listed) large[atomicAdd(large_count, 1)] = i;
+    splat.offset = vec2(add(X, scale(w, -anchor.x)).x, add(Y, scale(w, -anchor.y)).x) / w.x + conic.offset;
     splat.axis = conic.axis;
     splat.variance = conic.variance;
-    splat.sqrt_det = sqrt_det;
-    splat.epsilon = PERSPECTIVE ? X.z / (X.z + frame.epsilon * r) : frame.key_slope * frame.epsilon * r;
+    splat.place = place_of(pixel, listed ? LARGE : SMALL);
+    splat.epsilon = PERSPECTIVE ? w.x / (w.x + frame.epsilon * r) : frame.key_slope * frame.epsilon * r;
+    if (facing > 0.0) splat.epsilon = -splat.epsilon;
     // A plane through the eye is seen nowhere.
-    splat.plane = facing == 0.0 ? vec3(-1.0, 0.0, 0.0) : depth_plane(n, h, facing, anchor_of(conic.centre));
-    splat.side = facing > 0.0 ? -1.0 : 1.0;
-    if (LIST_LARGE && 4.0 * reach.x * reach.y > LARGE_AREA) {
-        splat.side *= LARGE;
-        large[atomicAdd(large_count, 1)] = i;
-    }
+    splat.plane = facing == 0.0 ? vec3(-1.0, 0.0, 0.0) : depth_plane(n, h, facing, anchor);
+    splat.sqrt_det = sqrt_det;
     return DRAWN;
 }
 
@@ -125,7 +134,7 @@ void main() {
     bool valid = i < window.count;
     uint fate = DRAWN;
     if (valid) {
-        Splat splat = Splat(vec2(0.0), vec2(1.0, 0.0), vec2(0.0), 0.0, 0.0, vec3(0.0), 0.0);
+        Splat splat = Splat(vec2(0.0), vec2(1.0, 0.0), vec2(0.0), 0, 0.0, vec3(0.0), 0.0);
         fate = footprint(i, splat);
         splats[i] = splat;
     }

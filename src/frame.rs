@@ -18,12 +18,14 @@ pub(crate) fn frame(
     let projection = camera.projection()?;
     let lens = Lens::new(camera, &projection, size)?;
     let mut frame = Frame::zeroed();
-    [frame.clip_x, frame.clip_y, frame.clip_w] = lens.clip.map(|row| row.as_vec4().to_array());
-    [frame.eye_hi, frame.eye_lo] = split(lens.eye - origin);
-    [frame.forward_hi, frame.forward_lo] = split(lens.forward);
+    for (i, row) in lens.rows.into_iter().enumerate() {
+        [frame.rows_hi[i], frame.rows_lo[i]] = split(row);
+    }
+    [frame.eye_hi, frame.eye_lo] = split((lens.eye - origin).extend(0.0));
+    [frame.forward_hi, frame.forward_lo] = split(lens.forward.extend(0.0));
     let key = DepthKey::new(&projection);
     for (i, column) in key.rays(&lens, &projection).into_iter().enumerate() {
-        [frame.ray_hi[i], frame.ray_lo[i]] = split(column);
+        [frame.ray_hi[i], frame.ray_lo[i]] = split(column.extend(0.0));
     }
     frame.viewport = size.map(|side| side as f32);
     frame.jacobian = lens.jacobian as f32;
@@ -54,16 +56,16 @@ fn shading(frame: &mut Frame, settings: &Settings) {
 }
 
 /// A vector as the sum of two float vectors: 48 bits of its coordinates.
-fn split(v: DVec3) -> [[f32; 4]; 2] {
-    let hi = v.as_vec3();
-    let lo = (v - hi.as_dvec3()).as_vec3();
-    [hi.extend(0.0).to_array(), lo.extend(0.0).to_array()]
+fn split(v: DVec4) -> [[f32; 4]; 2] {
+    let hi = v.as_vec4();
+    let lo = (v - hi.as_dvec4()).as_vec4();
+    [hi.to_array(), lo.to_array()]
 }
 
 /// The camera as rays through an eye.
 struct Lens {
-    /// Rows x, y, w of world → clip for positions relative to `eye`; clip w is the distance along `forward` in perspective.
-    clip: [DVec4; 3],
+    /// World → homogeneous pixel (x, y, w) for positions relative to `eye`; w is the distance along `forward` in perspective.
+    rows: [DVec4; 3],
     /// Where the rays meet; for parallel rays, the origin of eye space.
     eye: DVec3,
     /// Unit viewing direction.
@@ -71,54 +73,38 @@ struct Lens {
     /// Columns: the ray of pixel (x, y) is `c0 x + c1 y + c2`: relative to the eye the point at distance 1 in perspective, the
     /// point on the eye plane otherwise.
     pixel: DMat3,
-    /// `(W/2)(H/2) |det|` of the projection, see `√|V|` in `conic.glsl`.
+    /// Determinant that scales `√|V|`, see `footprint.glsl`.
     jacobian: f64,
 }
 
 impl Lens {
     fn new(camera: &Camera, projection: &Projection, size: [u32; 2]) -> Result<Self> {
         let world_to_clip = camera.world_to_clip();
-        let rows = [0, 1, 3].map(|i| world_to_clip.row(i));
         let scale = camera.projection.row(3).abs().max_element();
-        let [x, y, w] = rows.map(|row| row / scale);
+        let [x, y, w] = [0, 1, 3].map(|i| world_to_clip.row(i) / scale);
+        let [half_width, half_height] = size.map(|side| 0.5 * f64::from(side));
+        let rows = [half_width * (x + w), half_height * (y + w), w];
         let forward = projection.forward * camera.view.row(2).truncate().normalize();
-        let eye_of_view = camera.view.inverse().transform_point3(DVec3::ZERO);
-        let third = if projection.perspective { w.truncate() } else { forward };
-        // Columns of `matrix` are the rows of the projection.
-        let matrix = DMat3::from_cols(x.truncate(), y.truncate(), third).transpose();
-        let inverse = matrix.inverse();
-        if !inverse.is_finite() || !eye_of_view.is_finite() {
-            return Err(Error::Usage(
-                "the camera's matrices are singular: give a field of view and axes of some extent".into(),
-            ));
+        // The rows' directions, with the viewing direction in the place of parallel rays' constant w.
+        let [x, y, w] = rows.map(DVec4::truncate);
+        let third = if projection.perspective { w } else { forward };
+        let inverse = DMat3::from_cols(x, y, third).transpose().inverse();
+        let eye = match projection.perspective {
+            true => inverse * -DVec3::from_array(rows.map(|row| row.w)),
+            false => camera.view.inverse().transform_point3(DVec3::ZERO),
+        };
+        if !inverse.is_finite() || !eye.is_finite() {
+            let text = "the camera's matrices are singular: give a field of view and axes of some extent";
+            return Err(Error::Usage(text.into()));
         }
-        let eye = if projection.perspective { inverse * -DVec3::new(x.w, y.w, w.w) } else { eye_of_view };
-        let at_eye = [x, y, w].map(|row| row.dot(eye.extend(1.0)));
-        let offset = if projection.perspective { [0.0; 3] } else { at_eye };
-        let clip = [x, y, w].into_iter().zip(offset).map(|(row, at)| row.truncate().extend(at));
-        let clip = {
-            let mut clip = clip;
-            [clip.next(), clip.next(), clip.next()].map(Option::unwrap_or_default)
-        };
-        // Pixel (px, py, 1) to ndc relative to the eye's, then to the world.
-        let [width, height] = size.map(f64::from);
-        let to_ndc = DMat3::from_cols(
-            DVec3::new(2.0 / width, 0.0, 0.0),
-            DVec3::new(0.0, 2.0 / height, 0.0),
-            DVec3::new(-1.0 - offset[0], -1.0 - offset[1], if projection.perspective { 1.0 } else { 0.0 }),
-        );
-        let determinant = if projection.perspective {
-            matrix.determinant()
-        } else {
-            x.truncate().cross(y.truncate()).length()
-        };
-        Ok(Self {
-            clip,
-            eye,
-            forward,
-            pixel: inverse * to_ndc,
-            jacobian: 0.25 * width * height * determinant.abs(),
-        })
+        let at_eye = rows.map(|row| if projection.perspective { 0.0 } else { row.dot(eye.extend(1.0)) });
+        // Pixel (x, y) relative to the eye's, with w = 1 in perspective.
+        let [x0, y0, _] = at_eye;
+        let last = DVec3::new(-x0, -y0, if projection.perspective { 1.0 } else { 0.0 });
+        let relative = DMat3::from_cols(DVec3::X, DVec3::Y, last);
+        let jacobian = if projection.perspective { 1.0 / inverse.determinant() } else { x.cross(y).length() };
+        let rows = [0, 1, 2].map(|i| rows[i].truncate().extend(at_eye[i]));
+        Ok(Self { rows, eye, forward, pixel: inverse * relative, jacobian: jacobian.abs() })
     }
 
     /// Distance of a world point from the eye plane.

@@ -1,20 +1,19 @@
 // The splat of a disc by the dual conic: no inverse, so it is as stable edge-on as face-on (zwicker2004 §4.3–4.4, restated).
 
-// A disc's image: a Gaussian's centre (px), the unit major axis of its variance V and V's eigenvalues (px²).
+// A disc's image: a Gaussian's centre (px, relative to the disc centre's image), the unit major axis of its variance V and V's
+// eigenvalues (px²).
 struct Conic {
-    vec2 centre;
+    vec2 offset;
     vec2 axis;
     vec2 variance;
 };
 
-// X, S, T: clip-space (x, y, w) of the centre and of the 1-σ axes; q = (w / F)² − g·g > 0; sqrt_det = √|V|.
-Conic dual_conic(vec3 X, vec3 S, vec3 T, float q, float cutoff, float sqrt_det, vec2 viewport) {
-    vec2 half_viewport = 0.5 * viewport;
-    vec2 ndc = X.xy / X.z;
-    // Rows of D are the x and y rows of the derivative of the projection, times w.
-    vec2 Dx = half_viewport.x * (vec2(S.x, T.x) - ndc.x * vec2(S.z, T.z));
-    vec2 Dy = half_viewport.y * (vec2(S.y, T.y) - ndc.y * vec2(S.z, T.z));
+// S, T: homogeneous pixels (x, y, w) of the 1-σ axes; centre: px; q = (w / F)² − g·g > 0; sqrt_det = √|V|.
+Conic dual_conic(vec2 centre, vec3 S, vec3 T, float q, float cutoff, float sqrt_det) {
     vec2 g = vec2(S.z, T.z);
+    // Rows of D are the x and y rows of the derivative of the projection, times w.
+    vec2 Dx = vec2(S.x, T.x) - centre.x * g;
+    vec2 Dy = vec2(S.y, T.y) - centre.y * g;
     vec2 o = -vec2(dot(Dx, g), dot(Dy, g)) / q;
 
     float scale = 1.0 / (cutoff * cutoff);
@@ -40,5 +39,5 @@ Conic dual_conic(vec3 X, vec3 S, vec3 T, float q, float cutoff, float sqrt_det, 
         axis = normalize(axis + turn * vec2(-axis.y, axis.x));
         major += turn * off;
     }
-    return Conic(half_viewport * (ndc + 1.0) + o, axis, vec2(major, sqrt_det * sqrt_det / major));
+    return Conic(o, axis, vec2(major, sqrt_det * sqrt_det / major));
 }

@@ -18,6 +18,7 @@ vec2 two_product(float a, float b) {
     return vec2(product, error);
 }
 
+// a + b.
 vec2 add(vec2 a, vec2 b) {
     vec2 sum = two_sum(a.x, b.x);
     precise float low = sum.y + (a.y + b.y);
@@ -26,8 +27,19 @@ vec2 add(vec2 a, vec2 b) {
     return vec2(high, rest);
 }
 
-// a · (b_hi + b_lo), as if computed in twice the precision.
-vec2 dot_double(vec3 a, vec3 b_hi, vec3 b_lo) {
-    vec2 sum = add(add(two_product(a.x, b_hi.x), two_product(a.y, b_hi.y)), two_product(a.z, b_hi.z));
-    return add(sum, vec2(dot(a, b_lo), 0.0));
+// a · b, where b is a single float.
+vec2 scale(vec2 a, float b) {
+    vec2 product = two_product(a.x, b);
+    return vec2(product.x, product.y + a.y * b);
+}
+
+// (a_hi + a_lo) · (b_hi + b_lo).
+vec2 dot_double(vec3 a_hi, vec3 a_lo, vec3 b_hi, vec3 b_lo) {
+    vec2 x = two_product(a_hi.x, b_hi.x), y = two_product(a_hi.y, b_hi.y), z = two_product(a_hi.z, b_hi.z);
+    vec2 xy = two_sum(x.x, y.x);
+    vec2 xyz = two_sum(xy.x, z.x);
+    precise float low = (x.y + y.y) + z.y + (xy.y + xyz.y) + (dot(a_hi, b_lo) + dot(a_lo, b_hi));
+    precise float high = xyz.x + low;
+    precise float rest = low - (high - xyz.x);
+    return vec2(high, rest);
 }

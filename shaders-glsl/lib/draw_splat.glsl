@@ -20,19 +20,19 @@ float place_splat(Splat splat, float lowpass, int corner) {
     plane_epsilon = vec4(ellipse.plane, splat.epsilon);
 
     // The nearest depth in the ellipse bounds every fragment's, which lets a device reject the triangle early.
-    float nearest = min(1.0, nearest_of(splat, variance, ellipse.offset));
+    float nearest = min(1.0, nearest_of(splat, variance));
 
     vec2 minor_axis = vec2(-splat.axis.y, splat.axis.x);
     vec2 reach = frame.cutoff * sqrt(variance) + EDGE;
     vec2 position;
-    if (splat.side == 0.0 || nearest <= frame.key_far) {
+    if (kind_of(splat) == NOT_DRAWN || nearest <= frame.key_far) {
         position = vec2(0.0); // all corners alike: no fragments
     } else if (reach.x > 0.5 * LARGEST) {
         position = vec2(corner == 1 ? 3.0 : -1.0, corner == 2 ? 3.0 : -1.0);
     } else {
         const vec2 equilateral[3] = vec2[](vec2(0.0, 2.0), vec2(-1.7320508, -1.0), vec2(1.7320508, -1.0));
         vec2 local = equilateral[corner] * reach;
-        vec2 pixel = splat.centre + local.x * splat.axis + local.y * minor_axis;
+        vec2 pixel = ellipse.anchor + splat.offset + local.x * splat.axis + local.y * minor_axis;
         position = 2.0 * pixel / frame.viewport - 1.0;
     }
     gl_Position = vec4(position, nearest, 1.0);

@@ -5,17 +5,16 @@
 layout(constant_id = 0) const bool PERSPECTIVE = true;
 
 layout(set = 0, binding = 0, std140) uniform Frame {
-    vec4 clip_x;             // rows of world → clip for a position relative to the eye; .w is the row's value at the eye
-    vec4 clip_y;
-    vec4 clip_w;
-    vec4 eye_hi;             // the eye, as a sum of two floats
+    vec4 rows_hi[3];         // world → homogeneous pixel (x, y, w) for a position relative to the eye, each entry the sum of two
+    vec4 rows_lo[3];         //   floats; .w is the row's value at the eye
+    vec4 eye_hi;             // the eye, likewise
     vec4 eye_lo;
     vec4 ray_hi[3];          // world vectors: κ of the plane n·x = h at pixel (x, y) is
     vec4 ray_lo[3];          //   n·(ray[0] x + ray[1] y + ray[2]) / h in perspective, and
     vec4 forward_hi;         //   (n·(ray[0] x + ray[1] y + ray[2]) − key_slope h) / n·forward otherwise,
     vec4 forward_lo;         //   where forward is the unit viewing direction
     vec2 viewport;           // px
-    float jacobian;          // (W/2)(H/2) |det| of the projection: scales √|V|
+    float jacobian;          // |det| of the rows, or of parallel rays' x and y: scales √|V|
     float near;
     float key_slope;         // orthographic: −dκ/dz
     float key_far;           // κ of the far plane

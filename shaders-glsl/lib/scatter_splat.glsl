@@ -49,14 +49,15 @@ void scatter_box(Ellipse ellipse, ivec2 low, ivec2 high) {
 
 void scatter_splat(uint i, float lowpass) {
     Splat splat = splats[i];
-    if (splat.side == 0.0 || !LARGE_SPLATS && abs(splat.side) == LARGE) return;
+    if (kind_of(splat) != (LARGE_SPLATS ? LARGE : SMALL)) return;
     vec2 variance = splat.variance + lowpass;
     vec2 reach = reach_of(splat.axis, variance);
-    ivec2 low = ivec2(max(ceil(splat.centre - reach - 0.5), vec2(0.0)));
-    ivec2 high = ivec2(min(floor(splat.centre + reach - 0.5), frame.viewport - 1.0));
+    vec2 first = anchor_of(splat) + splat.offset - 0.5;
+    ivec2 low = ivec2(max(ceil(first - reach), vec2(0.0)));
+    ivec2 high = ivec2(min(floor(first + reach), frame.viewport - 1.0));
     if (any(greaterThan(low, high))) return;
     Ellipse ellipse = ellipse_of(splat, variance);
-    if (!scatter_begin(i, splat, variance, nearest_of(splat, variance, ellipse.offset), low, high)) return;
+    if (!scatter_begin(i, splat, variance, nearest_of(splat, variance), low, high)) return;
     if (LARGE_SPLATS) scatter_box(ellipse, low, high);
     else scatter_rows(ellipse, low, high);
 }

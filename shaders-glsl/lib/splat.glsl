@@ -1,22 +1,32 @@
 // A splat: what the footprint pass makes of a surfel, and what visibility and attribute draw.
 
 struct Splat {
-    vec2 centre;    // px
+    vec2 offset;    // centre of the variance's ellipse relative to the anchor, px
     vec2 axis;      // unit major axis of the variance V
     vec2 variance;  // V's eigenvalues, px²
-    float sqrt_det; // √|V|, px²
-    float epsilon;  // perspective: 1 / (1 + ε/z), scales κ; orthographic: ε as a difference of κ
+    uint place;     // anchor and kind, see below
+    float epsilon;  // perspective: 1 / (1 + ε/z), scales κ; orthographic: ε as a difference of κ; negative: the normal faces away
     vec3 plane;     // κ of the tangent plane at the anchor, and its derivatives along x and y, 1/px
-    float side;     // > 0 the normal faces the eye, < 0 it faces away, 0 not drawn; ±LARGE for splats of many pixels
+    float sqrt_det; // √|V|, px²
 };
-
-const float LARGE = 2.0;
 
 layout(set = 0, binding = 1, std430) SPLAT_ACCESS buffer Splats { Splat splats[]; };
 
-// The pixel centre that a splat's κ is given at: the nearest to its centre, so that the plane is evaluated close by.
-vec2 anchor_of(vec2 centre) {
-    return clamp(floor(centre) + 0.5, vec2(0.5), frame.viewport - 0.5);
+// Kinds of splats.
+const uint NOT_DRAWN = 0, SMALL = 1, LARGE = 2;
+
+// The anchor is the pixel nearest to the centre: what is given relative to it keeps its digits on large pictures.
+uint place_of(uvec2 pixel, uint kind) {
+    return pixel.x | pixel.y << 15 | kind << 30;
+}
+
+// The pixel centre of the anchor, px.
+vec2 anchor_of(Splat splat) {
+    return vec2(splat.place & 0x7fff, splat.place >> 15 & 0x7fff) + 0.5;
+}
+
+uint kind_of(Splat splat) {
+    return splat.place >> 30;
 }
 
 // Half the width and height, px, of the cut-off ellipse of a variance that is given by its major axis and eigenvalues.
@@ -35,9 +45,8 @@ struct Ellipse {
 
 Ellipse ellipse_of(Splat splat, vec2 variance) {
     vec2 inverse = inversesqrt(variance);
-    vec2 anchor = anchor_of(splat.centre);
     vec4 whitening = vec4(splat.axis * inverse.x, vec2(-splat.axis.y, splat.axis.x) * inverse.y);
-    return Ellipse(anchor, splat.centre - anchor, whitening, splat.plane);
+    return Ellipse(anchor_of(splat), splat.offset, whitening, splat.plane);
 }
 
 // Whether the splat has a fragment at a pixel centre: it is within the cut-off, and the tangent plane within the depth range.
@@ -52,16 +61,16 @@ bool splat_fragment(Ellipse ellipse, vec2 pixel, out float m2, out float key) {
 }
 
 // The nearest κ within the cut-off ellipse: no fragment's is above it.
-float nearest_of(Splat splat, vec2 variance, vec2 offset) {
+float nearest_of(Splat splat, vec2 variance) {
     vec2 minor_axis = vec2(-splat.axis.y, splat.axis.x);
     vec2 slope = vec2(dot(splat.plane.yz, splat.axis), dot(splat.plane.yz, minor_axis)) * sqrt(variance);
     float rise = frame.cutoff * length(slope);
-    float centre = splat.plane.x + dot(splat.plane.yz, offset);
+    float centre = splat.plane.x + dot(splat.plane.yz, splat.offset);
     // More than what the rounding of any of these, or of a fragment's κ, takes away.
     return centre + rise + 1e-6 * (abs(splat.plane.x) + abs(centre) + rise) + 1e-30;
 }
 
 // κ moved away from the eye along the ray by the splat's ε, which divides it by 1 + ε/z. Never 0: that means nothing is there.
 float behind(float key, float epsilon) {
-    return PERSPECTIVE ? key * epsilon : max(key - epsilon, 1e-6);
+    return PERSPECTIVE ? key * abs(epsilon) : max(key - abs(epsilon), 1e-6);
 }

@@ -1,4 +1,5 @@
 //! What several integration tests share.
 
+pub mod gpu;
 pub mod sampling;
 pub mod scenes;
