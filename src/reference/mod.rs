@@ -1,1 +1,120 @@
-//! The float64 twin of every shader function and pass.
+//! The float64 twin of the method `perspective-ewa` (zwicker2004), on the CPU: what the GPU's picture is held against.
+//!
+//! Named as the GPU's passes, and sharing none of their code: [`Projector::footprint`] makes the screen-space splat of a
+//! surfel, `visibility` finds the depth up to which splats are blended, `attribute` sums them, `normalize` divides and
+//! shades. [`Doubt`] finds, from the float64 picture alone, the pixels that hang on a decision which float32 cannot make,
+//! with every value they may take; [`compare`] judges a picture by both.
+//!
+//! Spaces: *world* is the surfels' frame; *eye* is the camera's, where the distance `z = forward · z_eye` is above 0 in
+//! front; *pixels* count from the top left, pixel centres at half-integers.
+
+mod attribute;
+mod bands;
+mod bound;
+mod compare;
+mod conic;
+mod doubt;
+mod ellipse;
+mod footprint;
+mod judge;
+mod margin;
+mod normalize;
+mod projector;
+mod scene;
+mod shading;
+mod slack;
+#[cfg(test)]
+mod tests;
+mod visibility;
+
+pub use compare::{Comparison, Expected, Failure, compare};
+pub use doubt::{Admissible, Doubt};
+pub use footprint::{Culled, Splat, Surfel, footprint};
+pub use judge::{Channel, Tolerance, Worst};
+pub use normalize::Value;
+pub use projector::Projector;
+pub use scene::Counts;
+pub use slack::Slack;
+
+use crate::error::Result;
+use crate::geometry::{Camera, Surfels};
+use crate::picture::Picture;
+use crate::settings::Settings;
+use bands::Bands;
+use rayon::prelude::*;
+use scene::Scene;
+
+/// A frame in float64, row by row from the top left; every image has one entry a pixel.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Frame {
+    /// Width and height, px.
+    pub size: [u32; 2],
+    /// What the shading asked for, linear, and α; see [`Picture::colour`].
+    pub colour: Vec<[f64; 4]>,
+    /// Eye-space distance, in the positions' unit; 0 where no surface is.
+    pub depth: Vec<f64>,
+    /// Unit normal in world space; 0 where no surface is.
+    pub normal: Vec<[f64; 3]>,
+    /// Whether a surface is there.
+    pub covered: Vec<bool>,
+    /// What became of the surfels.
+    pub counts: Counts,
+    /// How many drawn splats were too ill-conditioned for the inverse form of the conic and took the dual form.
+    pub dual_form: usize,
+}
+
+impl Frame {
+    /// The frame in single precision, with depth and normals.
+    pub fn to_picture(&self) -> Picture {
+        Picture {
+            size: self.size,
+            colour: self.colour.iter().map(|c| c.map(|v| v as f32)).collect(),
+            depth: Some(self.depth.iter().map(|&d| d as f32).collect()),
+            normal: Some(self.normal.iter().map(|n| n.map(|v| v as f32)).collect()),
+        }
+    }
+
+    /// What the frame holds at pixel `index`; panics beyond the end.
+    pub fn value(&self, index: usize) -> Value {
+        Value {
+            covered: self.covered[index],
+            colour: self.colour[index],
+            depth: self.depth[index],
+            normal: self.normal[index],
+        }
+    }
+
+    fn of(values: &[Value], scene: &Scene, size: [u32; 2]) -> Self {
+        Self {
+            size,
+            colour: values.iter().map(|v| v.colour).collect(),
+            depth: values.iter().map(|v| v.depth).collect(),
+            normal: values.iter().map(|v| v.normal).collect(),
+            covered: values.iter().map(|v| v.covered).collect(),
+            counts: scene.counts,
+            dual_form: scene.dual_form,
+        }
+    }
+}
+
+/// Renders `surfels` as `camera` sees them, `size` = width and height in px.
+///
+/// Fails on settings, sizes and cameras of which no picture can be made.
+pub fn render(surfels: &Surfels, camera: &Camera, size: [u32; 2], settings: &Settings) -> Result<Frame> {
+    let projector = Projector::new(camera, size, settings)?;
+    let scene = Scene::project(&projector, surfels);
+    Ok(draw(&projector, &scene, &Bands::new(&projector, &scene, size)))
+}
+
+/// The three passes, band by band: a band's sums are all the memory that is needed beside the splats and the picture.
+fn draw(projector: &Projector, scene: &Scene, bands: &Bands) -> Frame {
+    let values: Vec<Value> = bands
+        .par_iter()
+        .flat_map(|band| {
+            let depth = visibility::pass(projector, scene, &band);
+            let sums = attribute::pass(projector, scene, &band, &depth);
+            normalize::pass(projector, &band, &depth, &sums)
+        })
+        .collect();
+    Frame::of(&values, scene, bands.size)
+}

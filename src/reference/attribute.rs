@@ -1,0 +1,61 @@
+//! Pass `attribute`: weighted sums of the splats that the visibility depth lets through (zwicker2004 equation 2).
+
+use super::bands::Band;
+use super::ellipse::Ellipse;
+use super::scene::Scene;
+use super::{Projector, Splat};
+use glam::DVec3;
+
+/// What one pixel accumulates.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Sums {
+    /// `Σ w`.
+    pub weight: f64,
+    /// `Σ w n`.
+    pub normal: DVec3,
+    /// `Σ w rgb`.
+    pub colour: DVec3,
+    /// `Σ w / z` in perspective, `Σ w z` in orthographic projection.
+    pub depth: f64,
+}
+
+impl Sums {
+    /// What `splat` contributes with weight `weight` at distance `depth`.
+    pub fn of(projector: &Projector, splat: &Splat, weight: f64, depth: f64) -> Self {
+        Self {
+            weight,
+            normal: weight * splat.normal,
+            colour: weight * splat.colour,
+            depth: if projector.depth.perspective { weight / depth } else { weight * depth },
+        }
+    }
+}
+
+impl std::ops::AddAssign for Sums {
+    fn add_assign(&mut self, other: Self) {
+        self.weight += other.weight;
+        self.normal += other.normal;
+        self.colour += other.colour;
+        self.depth += other.depth;
+    }
+}
+
+/// The sums of every pixel of the band over the splats no farther than `visible`.
+pub(super) fn pass(projector: &Projector, scene: &Scene, band: &Band, visible: &[f64]) -> Vec<Sums> {
+    let mut sums = vec![Sums::default(); band.len()];
+    for &i in band.splats {
+        let splat = &scene.splats[i as usize];
+        let ellipse = Ellipse::attribute(splat, projector);
+        band.scan(&ellipse, ellipse.cutoff, |hit| {
+            // Where visibility wrote nothing there is no surface, however far the wider footprint reaches.
+            if visible[hit.index].is_infinite() {
+                return;
+            }
+            let Some(depth) = projector.depth_at(splat.plane, hit.at) else { return };
+            if depth <= visible[hit.index] {
+                sums[hit.index] += Sums::of(projector, splat, ellipse.weight(hit.sigmas), depth);
+            }
+        });
+    }
+    sums
+}

@@ -1,0 +1,94 @@
+//! Bands of rows: the unit of parallel work, each with the list of the splats that reach it.
+
+use super::ellipse::Ellipse;
+use super::scene::Scene;
+use super::{Projector, Splat};
+use glam::DVec2;
+use rayon::prelude::*;
+
+/// Rows a band.
+const ROWS: u32 = 8;
+
+/// The bands of a picture.
+pub(super) struct Bands {
+    pub size: [u32; 2],
+    lists: Vec<Vec<u32>>,
+}
+
+/// Some rows of the picture and the indices of the splats that may reach them, ascending.
+pub(super) struct Band<'a> {
+    pub first_row: u32,
+    pub rows: u32,
+    pub width: u32,
+    pub splats: &'a [u32],
+}
+
+/// A pixel centre inside a splat.
+pub(super) struct Hit {
+    /// Index of the pixel in its band.
+    pub index: usize,
+    /// Position of its centre in the picture, px.
+    pub at: DVec2,
+    /// Position of its centre relative to the splat's, px.
+    pub offset: DVec2,
+    /// The same in σ: `√(e (V+H)⁻¹ eᵀ)`.
+    pub sigmas: f64,
+}
+
+impl Bands {
+    /// Sorts the splats into bands, by the wider (attribute) footprint.
+    pub fn new(projector: &Projector, scene: &Scene, size: [u32; 2]) -> Self {
+        let mut lists = vec![Vec::new(); size[1].div_ceil(ROWS) as usize];
+        let bounds = |splat: &Splat| Ellipse::attribute(splat, projector).bounds();
+        let boxes: Vec<(DVec2, DVec2)> = scene.splats.par_iter().map(bounds).collect();
+        for (index, (low, high)) in (0..).zip(boxes) {
+            // One px more: doubt looks beyond the cut-off. `as` saturates.
+            let first = (low.y - 1.0) as u32 / ROWS;
+            let last = ((high.y + 1.0) as u32 / ROWS).min(lists.len() as u32 - 1);
+            for list in lists.iter_mut().take(last as usize + 1).skip(first as usize) {
+                list.push(index);
+            }
+        }
+        Self { size, lists }
+    }
+
+    /// All bands, from the top.
+    pub fn par_iter(&self) -> impl IndexedParallelIterator<Item = Band<'_>> {
+        self.lists.par_iter().enumerate().map(|(i, splats)| {
+            let first_row = i as u32 * ROWS;
+            let rows = ROWS.min(self.size[1] - first_row);
+            Band { first_row, rows, width: self.size[0], splats }
+        })
+    }
+}
+
+impl Band<'_> {
+    /// Number of pixels.
+    pub fn len(&self) -> usize {
+        (self.rows * self.width) as usize
+    }
+
+    /// Centre of pixel `index`, px.
+    pub fn centre(&self, index: usize) -> DVec2 {
+        let (row, column) = (index as u32 / self.width, index as u32 % self.width);
+        DVec2::new(f64::from(column) + 0.5, f64::from(self.first_row + row) + 0.5)
+    }
+
+    /// Calls `visit` for every pixel centre no more than `reach` σ from the centre of `ellipse`.
+    pub fn scan(&self, ellipse: &Ellipse, reach: f64, mut visit: impl FnMut(Hit)) {
+        for row in 0..self.rows {
+            let y = f64::from(self.first_row + row) + 0.5;
+            // The span only bounds the search, so a little more does not matter: the test below decides.
+            let Some((low, high)) = ellipse.span(y, reach * (1.0 + 1e-9) + 1e-9) else { continue };
+            let last = (high + 0.5).min(f64::from(self.width));
+            for column in (low - 0.5).max(0.0) as u32..last.max(0.0) as u32 {
+                let at = DVec2::new(f64::from(column) + 0.5, y);
+                let offset = at - ellipse.centre;
+                let sigmas = ellipse.sigmas(offset);
+                if sigmas <= reach {
+                    visit(Hit { index: (row * self.width + column) as usize, at, offset, sigmas });
+                }
+            }
+        }
+    }
+}

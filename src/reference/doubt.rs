@@ -1,0 +1,180 @@
+//! Which pixels hang on a decision that float32 cannot make, and every value that they may take.
+//!
+//! Splatting decides at three thresholds: the kernel's cut-off, the ε test and the clip volume. Where a splat lies nearer to
+//! one than rounding can tell, both outcomes are right, and no others. All of this is found in the float64 picture alone,
+//! before any other is seen.
+
+use super::Projector;
+use super::attribute::Sums;
+use super::bands::{Band, Bands};
+use super::bound::{Bound, Bounds};
+use super::ellipse::Ellipse;
+use super::margin::Margins;
+use super::normalize::{Value, resolve};
+use super::scene::Scene;
+use super::slack::{Means, Slack};
+use glam::DVec2;
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+/// Most values that are tried for a pixel.
+const MOST: usize = 1 << 12;
+
+/// The pixels in doubt, and how much rounding may blur each pixel.
+pub struct Doubt {
+    projector: Projector,
+    pixels: BTreeMap<usize, Doubtful>,
+    slack: Vec<Slack>,
+}
+
+/// The values that a pixel may have.
+pub enum Admissible<'a> {
+    /// Only the frame's: the pixel is not in doubt.
+    Definite,
+    /// These, made one after the other, each with what rounding may do to it.
+    Values(Box<dyn Iterator<Item = (Value, Slack)> + 'a>),
+    /// Too many to try. Not an excuse: whoever judges the pixel calls it wrong.
+    Unresolvable,
+}
+
+/// One pixel in doubt.
+struct Doubtful {
+    at: DVec2,
+    /// What visibility may have written.
+    bounds: Vec<Bound>,
+    /// The splats that may be summed, whatever the bound.
+    fragments: Vec<Fragment>,
+}
+
+/// A splat at a pixel.
+struct Fragment {
+    depth: f64,
+    margin: f64,
+    share: Share,
+    certain: bool,
+}
+
+/// What a splat, or some together, contribute.
+#[derive(Clone, Copy, Default)]
+struct Share {
+    sums: Sums,
+    means: Means,
+}
+
+impl Doubt {
+    pub(super) fn new(margins: &Margins, scene: &Scene, bands: &Bands) -> Self {
+        let found: Vec<_> = bands.par_iter().map(|band| of_band(margins, scene, &band)).collect();
+        let (mut pixels, mut slack) = (BTreeMap::new(), Vec::new());
+        for (doubtful, of_band) in found {
+            pixels.extend(doubtful);
+            slack.extend(of_band);
+        }
+        Self { projector: margins.projector.clone(), pixels, slack }
+    }
+
+    /// Number of pixels in doubt.
+    pub fn len(&self) -> usize {
+        self.pixels.len()
+    }
+
+    /// Whether no pixel is in doubt.
+    pub fn is_empty(&self) -> bool {
+        self.pixels.is_empty()
+    }
+
+    /// Indices of the pixels in doubt, row by row from the top left.
+    pub fn pixels(&self) -> impl Iterator<Item = usize> {
+        self.pixels.keys().copied()
+    }
+
+    /// What rounding alone may do to pixel `index`; panics beyond the end.
+    pub fn slack(&self, index: usize) -> Slack {
+        self.slack[index]
+    }
+
+    /// What pixel `index` may hold.
+    pub fn admissible(&self, index: usize) -> Admissible<'_> {
+        match self.pixels.get(&index) {
+            None => Admissible::Definite,
+            Some(pixel) if pixel.outcomes() > MOST => Admissible::Unresolvable,
+            Some(pixel) => Admissible::Values(Box::new(pixel.values(&self.projector))),
+        }
+    }
+}
+
+impl Doubtful {
+    /// The fragments that the visibility depth `bound` surely lets through, summed, and those that it may.
+    fn split(&self, bound: Bound) -> (Share, Vec<Share>) {
+        let (mut sure, mut maybe) = (Share::default(), Vec::new());
+        for f in self.fragments.iter().filter(|f| bound.may_pass(f.depth, f.margin)) {
+            if f.certain && bound.must_pass(f.depth, f.margin) {
+                sure += f.share;
+            } else {
+                maybe.push(f.share);
+            }
+        }
+        (sure, maybe)
+    }
+
+    fn outcomes(&self) -> usize {
+        let subsets =
+            |&bound: &Bound| 1usize.checked_shl(self.split(bound).1.len() as u32).unwrap_or(usize::MAX);
+        self.bounds.iter().map(subsets).fold(0, usize::saturating_add)
+    }
+
+    fn values<'a>(&'a self, projector: &'a Projector) -> impl Iterator<Item = (Value, Slack)> + 'a {
+        self.bounds.iter().flat_map(move |&bound| {
+            let (sure, maybe) = self.split(bound);
+            (0..1 << maybe.len()).map(move |subset: usize| {
+                let mut all = sure;
+                let taken = maybe.iter().enumerate().filter(|(bit, _)| subset >> bit & 1 == 1);
+                taken.for_each(|(_, share)| all += *share);
+                (resolve(projector, self.at, bound.exists().then_some(&all.sums)), all.means.slack())
+            })
+        })
+    }
+}
+
+/// The pixels in doubt and the slack of one band. Twice over the attribute pass: first to mark the pixels, then to keep their
+/// splats, because those of all pixels would not fit.
+fn of_band(margins: &Margins, scene: &Scene, band: &Band) -> (Vec<(usize, Doubtful)>, Vec<Slack>) {
+    let bounds = Bounds::new(margins, scene, band);
+    let mut doubtful: Vec<Option<Vec<Fragment>>> = Vec::new();
+    doubtful.resize_with(band.len(), || None);
+    for &pixel in bounds.maybe.keys() {
+        doubtful[pixel] = Some(Vec::new());
+    }
+    let mut means = vec![Means::default(); band.len()];
+    margins.scan(scene, band, Ellipse::attribute, |c| {
+        let (passes, wavers) = bounds.test(&c);
+        if wavers {
+            doubtful[c.pixel].get_or_insert_default();
+        }
+        if passes {
+            means[c.pixel] += Means::of(margins, &c);
+        }
+    });
+    margins.scan(scene, band, Ellipse::attribute, |c| {
+        if let Some(fragments) = &mut doubtful[c.pixel]
+            && bounds.test(&c).0
+        {
+            let sums = Sums::of(margins.projector, c.splat, c.weight, c.depth);
+            let share = Share { sums, means: Means::of(margins, &c) };
+            fragments.push(Fragment { depth: c.depth, margin: c.margin(), share, certain: c.certain });
+        }
+    });
+    let first = band.first_row as usize * band.width as usize;
+    let pixel = |(i, fragments): (usize, Option<Vec<Fragment>>)| {
+        let bounds = bounds.of(i).collect();
+        Some((first + i, Doubtful { at: band.centre(i), bounds, fragments: fragments? }))
+    };
+    let slack = means.iter().map(Means::slack).collect();
+    (doubtful.into_iter().enumerate().filter_map(pixel).collect(), slack)
+}
+
+impl std::ops::AddAssign for Share {
+    fn add_assign(&mut self, other: Self) {
+        self.sums += other.sums;
+        self.means += other.means;
+    }
+}

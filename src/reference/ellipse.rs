@@ -1,0 +1,176 @@
+//! The ellipse on which a splat's kernel ends, once a low-pass filter has widened it.
+
+use super::{Projector, Splat};
+use glam::DVec2;
+
+/// The filtered kernel of a splat: variance `V + h I` in its principal axes, where long thin ellipses lose no digits.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ellipse {
+    pub centre: DVec2,
+    /// Unit vector of the major axis.
+    pub axis: DVec2,
+    /// Variances along the major and the minor axis, px².
+    pub variance: DVec2,
+    /// `√(|V| / |V + h I|)`: what the filter leaves of the kernel's height.
+    pub amplitude: f64,
+    /// Cut-off `F`, in σ.
+    pub cutoff: f64,
+}
+
+impl Ellipse {
+    /// The footprint of the visibility pass: just wide enough to own a pixel centre.
+    pub fn visibility(splat: &Splat, projector: &Projector) -> Self {
+        Self::new(splat, projector.settings.least_lowpass().into(), projector.cutoff())
+    }
+
+    /// The footprint of the attribute pass: widened by the low-pass filter `H` (zwicker2004, equation 3).
+    pub fn attribute(splat: &Splat, projector: &Projector) -> Self {
+        Self::new(splat, projector.settings.attribute_lowpass().into(), projector.cutoff())
+    }
+
+    /// The splat's kernel with low-pass variance `lowpass`, px².
+    pub fn new(splat: &Splat, lowpass: f64, cutoff: f64) -> Self {
+        let [xx, xy, yy] = [splat.variance.x_axis.x, splat.variance.x_axis.y, splat.variance.y_axis.y];
+        let major = 0.5 * (xx + yy + (xx - yy).hypot(2.0 * xy));
+        // Not as the trace minus the major one: that cancels.
+        let minor = if major > 0.0 { splat.sqrt_det * (splat.sqrt_det / major) } else { 0.0 };
+        let angle = 0.5 * (2.0 * xy).atan2(xx - yy);
+        let variance = DVec2::new(major + lowpass, minor + lowpass);
+        Self {
+            centre: splat.centre,
+            axis: DVec2::from_angle(angle),
+            variance,
+            amplitude: splat.sqrt_det / (variance.x * variance.y).sqrt(),
+            cutoff,
+        }
+    }
+
+    /// `m = √(e (V+H)⁻¹ eᵀ)` of the offset `e` from the centre, in σ.
+    pub fn sigmas(&self, offset: DVec2) -> f64 {
+        (self.principal(offset) / self.sigma()).length()
+    }
+
+    /// Weight at a distance of `m` σ: the kernel's height where the filter has widened it.
+    pub fn weight(&self, sigmas: f64) -> f64 {
+        self.amplitude * (-0.5 * sigmas * sigmas).exp()
+    }
+
+    /// 1-σ lengths of the major and the minor axis, px.
+    pub fn sigma(&self) -> DVec2 {
+        DVec2::new(self.variance.x.sqrt(), self.variance.y.sqrt())
+    }
+
+    /// The offset along the major and the minor axis.
+    fn principal(&self, offset: DVec2) -> DVec2 {
+        DVec2::new(self.axis.dot(offset), self.axis.perp_dot(offset))
+    }
+
+    /// Least and greatest corner of the box around the cut-off ellipse, px: `x_t ± F √((V+H)ᵢᵢ)`.
+    pub fn bounds(&self) -> (DVec2, DVec2) {
+        let along = self.cutoff * self.sigma().x * self.axis;
+        let across = self.cutoff * self.sigma().y * self.axis.perp();
+        let half = DVec2::new(along.x.hypot(across.x), along.y.hypot(across.y));
+        (self.centre - half, self.centre + half)
+    }
+
+    /// Least and greatest x of the ellipse of `reach` σ on the line `y`, px; `None` if the line misses it.
+    pub fn span(&self, y: f64, reach: f64) -> Option<(f64, f64)> {
+        let (c, s) = (self.axis.x, self.axis.y);
+        let vertical = self.variance.x * s * s + self.variance.y * c * c;
+        let covariance = (self.variance.x - self.variance.y) * c * s;
+        let rise = y - self.centre.y;
+        let left = reach * reach - rise * rise / vertical;
+        let half = (left * (self.variance.x / vertical) * self.variance.y).sqrt();
+        let middle = self.centre.x + covariance / vertical * rise;
+        (left >= 0.0).then_some((middle - half, middle + half))
+    }
+
+    /// Distance in px from the point at `offset` from the centre to the cut-off ellipse.
+    pub fn distance(&self, offset: DVec2) -> f64 {
+        to_ellipse(self.cutoff * self.sigma(), self.principal(offset).abs())
+    }
+}
+
+/// Distance of `p`, in the first quadrant, to the ellipse of semi-axes `axes.x ≥ axes.y`. The foot of the perpendicular is
+/// `(r² p.x / (t + r²), p.y / (t + 1))`, `r = axes.x / axes.y`, with `t` the largest root of a monotonic function, found by
+/// bisection: the first-order distance `|m - F| / |∇m|` fails about the tips of thin ellipses.
+fn to_ellipse(axes: DVec2, p: DVec2) -> f64 {
+    if p.y <= 1e-12 * axes.y {
+        return from_major_axis(axes, p.x);
+    }
+    let (ratio, x, y) = (axes.x / axes.y, p.x / axes.y, p.y / axes.y);
+    let residual = |t: f64| (ratio * x / (t + ratio * ratio)).powi(2) + (y / (t + 1.0)).powi(2) - 1.0;
+    let (mut low, mut high) = (y - 1.0, (ratio * x).hypot(y) - 1.0);
+    loop {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            break;
+        }
+        *(if residual(middle) > 0.0 { &mut low } else { &mut high }) = middle;
+    }
+    let t = 0.5 * (low + high);
+    DVec2::new(ratio * ratio * p.x / (t + ratio * ratio), p.y / (t + 1.0)).distance(p)
+}
+
+/// The same for a point on the major axis: up to the centre of curvature of the tip, the nearest points are beside it.
+fn from_major_axis(axes: DVec2, x: f64) -> f64 {
+    let evolute = axes.x - axes.y * (axes.y / axes.x);
+    if x >= evolute {
+        return (x - axes.x).abs();
+    }
+    let foot = x / evolute;
+    (axes.x * foot - x).hypot(axes.y * (1.0 - foot * foot).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::FRAC_PI_2;
+
+    #[test]
+    fn distance_is_that_of_the_nearest_point() {
+        for axes in [DVec2::new(3.0, 3.0), DVec2::new(5.0, 1.0), DVec2::new(4000.0, 0.71)] {
+            // Dense about the tip of the major axis, where thin ellipses turn.
+            let point = |i: i32| {
+                let angle = FRAC_PI_2 * (f64::from(i) / 20_000.0).powi(3);
+                axes * DVec2::new(angle.cos(), angle.sin())
+            };
+            let points: Vec<DVec2> = (0..=20_000).map(point).collect();
+            for fraction in [0.0, 1e-6, 1e-3, 0.3, 0.9, 1.0] {
+                for off in [-0.3, -3e-4, 0.0, 3e-4, 2.0] {
+                    let p =
+                        (axes * DVec2::from_angle(FRAC_PI_2 * fraction) + DVec2::splat(off)).max(DVec2::ZERO);
+                    let to_segment = |s: &[DVec2]| {
+                        let (from, along) = (p - s[0], s[1] - s[0]);
+                        (from - (from.dot(along) / along.length_squared()).clamp(0.0, 1.0) * along).length()
+                    };
+                    let nearest = points.windows(2).map(to_segment).fold(f64::INFINITY, f64::min);
+                    let found = to_ellipse(axes, p);
+                    assert!(
+                        (found - nearest).abs() < 0.01 * nearest + 1e-6,
+                        "{axes} {p}: {found} for {nearest}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn spans_are_where_the_line_meets_the_ellipse() {
+        let ellipse = Ellipse {
+            centre: DVec2::new(10.0, 20.0),
+            axis: DVec2::from_angle(0.7),
+            variance: DVec2::new(9.0, 0.25),
+            amplitude: 1.0,
+            cutoff: 2.0,
+        };
+        for y in [17.0, 20.0, 22.5] {
+            let (low, high) = ellipse.span(y, 2.0).unwrap();
+            for x in [low, high] {
+                assert!((ellipse.sigmas(DVec2::new(x, y) - ellipse.centre) - 2.0).abs() < 1e-9);
+            }
+        }
+        let (low, high) = ellipse.bounds();
+        assert!(ellipse.span(high.y + 1e-6, 2.0).is_none() && ellipse.span(low.y + 1e-6, 2.0).is_some());
+    }
+}

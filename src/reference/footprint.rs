@@ -1,0 +1,150 @@
+//! Pass `footprint`: from surfels to screen-space splats.
+
+use super::Projector;
+use super::conic::{clearance, dual_form, inverse_form};
+use super::ellipse::Ellipse;
+use super::shading::linear;
+use crate::error::Result;
+use crate::geometry::{Camera, Colours, Surfels};
+use crate::settings::{Cull, Settings};
+use glam::{DMat2, DMat3, DVec2, DVec3};
+
+/// One surfel in float64, in world space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Surfel {
+    /// Centre, origin included.
+    pub position: DVec3,
+    /// Unit normal.
+    pub normal: DVec3,
+    /// Radius of the covered disc, `F σ`.
+    pub radius: f64,
+    /// Linear RGB, where the scene has colours.
+    pub colour: Option<DVec3>,
+}
+
+impl Surfel {
+    /// Entry `index` of `surfels`; panics beyond the end.
+    pub fn of(surfels: &Surfels, index: usize) -> Self {
+        let colour = surfels.colours.as_ref().map(|colours| match colours {
+            Colours::Srgb8(c) => linear(c[index]),
+            Colours::Linear(c) => DVec3::from_array(c[index].map(f64::from)),
+        });
+        Self {
+            position: surfels.origin + surfels.positions[index].as_dvec3(),
+            normal: surfels.normals[index].as_dvec3().normalize_or_zero(),
+            radius: surfels.radii[index].into(),
+            colour,
+        }
+    }
+}
+
+/// The screen-space splat of a surfel: an ellipse and a plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Splat {
+    /// Centre of the ellipse, px. In perspective not the projection of the surfel's centre.
+    pub centre: DVec2,
+    /// Variance `V` of the projected kernel without any low-pass, px².
+    pub variance: DMat2,
+    /// `√|V|`, px²; the closed form where `V` is near singular.
+    pub sqrt_det: f64,
+    /// The tangent plane's distance at pixel position (x, y): `plane · (1, x, y)` is 1 / distance in perspective, the distance
+    /// itself in orthographic projection.
+    pub plane: DVec3,
+    /// Distance of the surfel's centre.
+    pub distance: f64,
+    /// What the ε test lets lie behind this splat: its depth is multiplied by this in perspective, and this is added to it in
+    /// orthographic projection.
+    pub shift: f64,
+    /// World-space unit normal, turned to the eye where surfels are two-sided.
+    pub normal: DVec3,
+    /// Linear RGB; the lighting's albedo where the scene has no colours.
+    pub colour: DVec3,
+    /// 1 / cosine of the angle between the normal and the ray through the centre: by so much rounding errors of the normal and
+    /// the centre grow in the plane's depth and in `√|V|`.
+    pub secant: f64,
+    /// Whether the ellipse came from the dual form, the inverse form being ill-conditioned.
+    pub dual: bool,
+}
+
+/// Why a surfel makes no splat.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Culled {
+    /// Its centre is not in front of the eye (perspective only).
+    Behind,
+    /// Its disc reaches the eye plane.
+    EyePlane,
+    /// It shows its back where [`Cull::Back`] is set.
+    Back,
+    /// Its bounding box misses the picture.
+    Outside,
+}
+
+/// The splat of one surfel in a frame of `size` px, or why it has none.
+///
+/// For many surfels of one frame make a [`Projector`] once and use [`Projector::footprint`].
+pub fn footprint(
+    surfel: &Surfel,
+    camera: &Camera,
+    size: [u32; 2],
+    settings: &Settings,
+) -> Result<Result<Splat, Culled>> {
+    Ok(Projector::new(camera, size, settings)?.footprint(surfel))
+}
+
+impl Projector {
+    /// The splat of one surfel, or why it has none; the reasons are tried in the order of [`Culled`].
+    pub fn footprint(&self, surfel: &Surfel) -> Result<Splat, Culled> {
+        let centre = self.view.transform_point3(surfel.position);
+        let normal = self.view.transform_vector3(surfel.normal);
+        let distance = self.distance(centre);
+        if self.depth.perspective && distance <= 0.0 {
+            return Err(Culled::Behind);
+        }
+        let (projected, mapping) = self.tangent_plane(centre, normal, surfel.radius);
+        let clear = clearance(&mapping, self.cutoff());
+        if clear.is_nan() || clear <= 0.0 {
+            return Err(Culled::EyePlane);
+        }
+        let facing = self.facing(centre, normal);
+        if self.settings.cull == Cull::Back && facing >= 0.0 {
+            return Err(Culled::Back);
+        }
+        let inverse = inverse_form(&mapping, self.cutoff());
+        let conic = inverse.unwrap_or_else(|| dual_form(&mapping, self.cutoff()));
+        let splat = Splat {
+            centre: projected + conic.offset,
+            variance: conic.variance,
+            sqrt_det: conic.sqrt_det,
+            plane: self.plane(centre, normal),
+            distance,
+            shift: self.shift(surfel.radius, distance),
+            normal: if facing > 0.0 { -surfel.normal } else { surfel.normal },
+            colour: surfel.colour.unwrap_or(DVec3::from_array(self.settings.lighting.albedo.map(f64::from))),
+            secant: self.secant(centre, facing),
+            dual: inverse.is_none(),
+        };
+        if self.sees(&Ellipse::attribute(&splat, self)) { Ok(splat) } else { Err(Culled::Outside) }
+    }
+
+    /// The projected centre, px, and the mapping that [`super::conic`] wants, for 1-σ axes of length `radius / F`.
+    pub(super) fn tangent_plane(&self, centre: DVec3, normal: DVec3, radius: f64) -> (DVec2, DMat3) {
+        let (s, t) = normal.any_orthonormal_pair();
+        let sigma = radius / self.cutoff();
+        let middle = self.project(centre.extend(1.0));
+        let ndc = middle.truncate() / middle.z;
+        let to_pixels = |v: DVec3| (0.5 * self.size * (v.truncate() - ndc * v.z)).extend(v.z);
+        let axis = |v: DVec3| to_pixels(self.project((sigma * v).extend(0.0)));
+        let mapping = DMat3::from_cols(axis(s), axis(t), DVec3::new(0.0, 0.0, middle.z));
+        (0.5 * self.size * (ndc + 1.0), mapping)
+    }
+
+    fn shift(&self, radius: f64, distance: f64) -> f64 {
+        let epsilon = f64::from(self.settings.epsilon) * radius;
+        if self.depth.perspective { 1.0 + epsilon / distance } else { epsilon }
+    }
+
+    fn sees(&self, ellipse: &Ellipse) -> bool {
+        let (low, high) = ellipse.bounds();
+        high.cmpge(DVec2::ZERO).all() && low.cmple(self.size).all()
+    }
+}

@@ -1,0 +1,108 @@
+//! What float32 cannot tell: the splats that may be at a pixel, with the uncertainty of their depth and weight.
+
+use super::bands::{Band, Hit};
+use super::ellipse::Ellipse;
+use super::scene::Scene;
+use super::{Projector, Splat};
+use glam::{DVec2, DVec3};
+
+/// A pixel centre no farther than this from a cut-off ellipse is in doubt, px.
+pub(super) const CUTOFF: f64 = 3e-4;
+
+/// A splat whose depth is no farther than this from a threshold, relative to the depth, is in doubt.
+pub(super) const DEPTH: f64 = 2e-6;
+
+/// A splat that may be at a pixel.
+pub(super) struct Candidate<'a> {
+    pub splat: &'a Splat,
+    /// Index of the pixel in its band.
+    pub pixel: usize,
+    /// Distance along the pixel's ray.
+    pub depth: f64,
+    /// How far rounding may move the depth: see [`super::Tolerance::rounding`].
+    pub wobble: f64,
+    /// The kernel's weight.
+    pub weight: f64,
+    /// How far rounding may move the weight, relative to it.
+    pub sway: f64,
+    /// The same through a shift of the whole splat on the screen.
+    pub drift: f64,
+    /// Whether it is surely inside the cut-off and the clip volume.
+    pub certain: bool,
+}
+
+impl Candidate<'_> {
+    /// How near a threshold the depth may come without being in doubt.
+    pub fn margin(&self) -> f64 {
+        self.wobble.max(DEPTH * self.depth.abs())
+    }
+}
+
+/// What decides how sure a splat is.
+pub(super) struct Margins<'a> {
+    pub projector: &'a Projector,
+    /// See [`super::Tolerance::rounding`].
+    pub rounding: f64,
+}
+
+impl Margins<'_> {
+    /// Calls `visit` for every splat and pixel of the band that may be inside each other.
+    pub fn scan(
+        &self,
+        scene: &Scene,
+        band: &Band,
+        footprint: fn(&Splat, &Projector) -> Ellipse,
+        mut visit: impl FnMut(Candidate),
+    ) {
+        for &i in band.splats {
+            let splat = &scene.splats[i as usize];
+            let ellipse = footprint(splat, self.projector);
+            // m changes by no more than 1 / (minor σ) a px.
+            let reach = CUTOFF / ellipse.sigma().y;
+            // What rounding shifts a pixel coordinate by, in σ.
+            let shift = self.rounding * self.projector.size.max_element() / ellipse.sigma().y;
+            band.scan(&ellipse, ellipse.cutoff + reach, |hit| {
+                let edge = (hit.sigmas - ellipse.cutoff).abs() <= reach;
+                let near = edge && ellipse.distance(hit.offset) <= CUTOFF;
+                if near || hit.sigmas <= ellipse.cutoff {
+                    let mut candidate = self.candidate(splat, &hit, near);
+                    if let Some(c) = &mut candidate {
+                        (c.weight, c.drift) = (ellipse.weight(hit.sigmas), shift * hit.sigmas);
+                    }
+                    candidate.into_iter().for_each(&mut visit);
+                }
+            });
+        }
+    }
+
+    /// `None` if the splat's plane is surely outside the clip volume there.
+    fn candidate<'a>(&self, splat: &'a Splat, hit: &Hit, near: bool) -> Option<Candidate<'a>> {
+        let (depth, wobble, in_front) = self.depth(splat, hit.at)?;
+        let (nearest, farthest) = (self.projector.depth.near, self.projector.depth.far);
+        let within = |margin: f64| depth >= nearest + margin && depth <= farthest - margin;
+        let (sway, certain) = (self.rounding * splat.secant, false);
+        let pixel = hit.index;
+        let mut candidate = Candidate { splat, pixel, depth, wobble, weight: 0.0, sway, drift: 0.0, certain };
+        let margin = candidate.margin();
+        candidate.certain = !near && in_front && within(margin);
+        within(-margin).then_some(candidate)
+    }
+
+    /// Depth, its uncertainty, and whether it is surely in front of the eye; `None` if it surely is not. Rounding turns the
+    /// normal against both the ray through the splat's centre and the pixel's, so that the depth moves by the sum of both,
+    /// divided by the cosine.
+    fn depth(&self, splat: &Splat, at: DVec2) -> Option<(f64, f64, bool)> {
+        let value = splat.plane.dot(DVec3::new(1.0, at.x, at.y));
+        let turn = self.rounding * splat.secant;
+        if !self.projector.depth.perspective {
+            return Some((value, turn * (value.abs() + splat.distance.abs()), true));
+        }
+        let blur = turn * (value.abs() + 1.0 / splat.distance);
+        if value.is_nan() || value <= -blur {
+            return None;
+        }
+        // At the plane's horizon: as far away as can be told.
+        let depth = if value > 0.0 { 1.0 / value } else { 1.0 / blur };
+        Some((depth, turn * depth * (1.0 + depth / splat.distance), value > blur))
+    }
+}

@@ -1,0 +1,60 @@
+//! Pass `normalize`: divides the sums by the weights and shades (zwicker2004 section 6, third pass).
+
+use super::Projector;
+use super::attribute::Sums;
+use super::bands::Band;
+use super::shading::lit;
+use crate::settings::Shading;
+use glam::{DVec2, DVec3};
+
+/// Length of `Σ w n` relative to `Σ w` below which the normals cancel and the direction to the eye stands in for them.
+const CANCELLED: f64 = 1e-6;
+
+/// What the picture holds at one pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Value {
+    /// Whether a surface is there.
+    pub covered: bool,
+    /// What the shading asked for, linear, and α.
+    pub colour: [f64; 4],
+    /// Eye-space distance; 0 where no surface is.
+    pub depth: f64,
+    /// World-space unit normal; 0 where no surface is.
+    pub normal: [f64; 3],
+}
+
+/// The values of the band's pixels; a surface is where `visible` is finite and some weight was summed.
+pub(super) fn pass(projector: &Projector, band: &Band, visible: &[f64], sums: &[Sums]) -> Vec<Value> {
+    let pixel = |(i, (visible, sums)): (usize, (&f64, &Sums))| {
+        resolve(projector, band.centre(i), visible.is_finite().then_some(sums))
+    };
+    visible.iter().zip(sums).enumerate().map(pixel).collect()
+}
+
+/// The value of the pixel with centre `at`; `sums` are `None` where visibility wrote nothing.
+pub(super) fn resolve(projector: &Projector, at: DVec2, sums: Option<&Sums>) -> Value {
+    let Some(sums) = sums.filter(|s| s.weight > 0.0) else { return uncovered(projector) };
+    let viewer = projector.to_viewer(at);
+    let cancelled = sums.normal.length() < CANCELLED * sums.weight;
+    let normal = if cancelled { viewer } else { sums.normal.normalize() };
+    let depth = match projector.depth.perspective {
+        true => sums.weight / sums.depth,
+        false => sums.depth / sums.weight,
+    };
+    let colour = sums.colour / sums.weight;
+    let shown = match projector.settings.shading {
+        Shading::Lit => lit(&projector.settings.lighting, colour, normal, viewer),
+        Shading::Colour => colour,
+        Shading::Normal => normal,
+        Shading::Depth => DVec3::splat(depth),
+    };
+    Value { covered: true, colour: shown.extend(1.0).to_array(), depth, normal: normal.to_array() }
+}
+
+fn uncovered(projector: &Projector) -> Value {
+    let colour = match projector.settings.background {
+        Some([r, g, b]) => [r.into(), g.into(), b.into(), 1.0],
+        None => [0.0; 4],
+    };
+    Value { covered: false, colour, depth: 0.0, normal: [0.0; 3] }
+}

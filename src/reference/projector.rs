@@ -1,0 +1,134 @@
+//! A frame's camera in float64: from eye space to pixels, and back along the rays through them.
+
+use crate::error::{Error, Result};
+use crate::geometry::{Camera, Projection};
+use crate::settings::Settings;
+use glam::{DMat2, DMat3, DMat4, DVec2, DVec3, DVec4};
+
+/// What all passes of a frame need to know of its camera, size and settings.
+#[derive(Clone, Debug)]
+pub struct Projector {
+    pub(super) view: DMat4,
+    pub(super) clip: DMat4,
+    pub(super) depth: Projection,
+    /// Width and height, px.
+    pub(super) size: DVec2,
+    pub(super) settings: Settings,
+    /// Eye-space start of the ray through pixel position (x, y): `starts · (1, x, y)`; one point in perspective.
+    pub(super) starts: DMat3,
+    /// Eye-space step of that ray for one unit of distance: `steps · (1, x, y)`.
+    pub(super) steps: DMat3,
+}
+
+impl Projector {
+    /// Prepares a frame of `size` = width and height in px; refuses settings and cameras of which no picture can be made.
+    pub fn new(camera: &Camera, size: [u32; 2], settings: &Settings) -> Result<Self> {
+        settings.check()?;
+        let depth = camera.projection()?;
+        if size.contains(&0) {
+            return Err(Error::Usage(format!("the picture is {} × {} px: give 1 or more", size[0], size[1])));
+        }
+        let size = DVec2::new(size[0].into(), size[1].into());
+        let (starts, steps) = rays(&camera.projection, &depth, size)?;
+        let settings = settings.clone();
+        Ok(Self { view: camera.view, clip: camera.projection, depth, size, settings, starts, steps })
+    }
+
+    /// The cut-off `F`, in σ.
+    pub(super) fn cutoff(&self) -> f64 {
+        self.settings.cutoff.into()
+    }
+
+    /// Distance in front of the eye (perspective) or of the eye plane (orthographic) of an eye-space point.
+    pub(super) fn distance(&self, point: DVec3) -> f64 {
+        self.depth.forward * point.z
+    }
+
+    /// Where the rays meet, eye space; the origin unless the projection shifts it. Perspective only.
+    pub(super) fn eye(&self) -> DVec3 {
+        self.starts.x_axis
+    }
+
+    /// Below 0 if `normal` at `point` faces the eye, both in eye space.
+    pub(super) fn facing(&self, point: DVec3, normal: DVec3) -> f64 {
+        match self.depth.perspective {
+            true => normal.dot(point - self.eye()),
+            false => normal.z * self.depth.forward,
+        }
+    }
+
+    /// 1 / cosine of the viewing angle at `point`, given its [`Projector::facing`].
+    pub(super) fn secant(&self, point: DVec3, facing: f64) -> f64 {
+        let ray = if self.depth.perspective { (point - self.eye()).length() } else { 1.0 };
+        ray / facing.abs()
+    }
+
+    /// Eye-space direction to world space: the view is rigid.
+    pub(super) fn to_world(&self, direction: DVec3) -> DVec3 {
+        DMat3::from_mat4(self.view).transpose() * direction
+    }
+
+    /// World-space unit direction from the surface seen at pixel position `at` to the eye.
+    pub(super) fn to_viewer(&self, at: DVec2) -> DVec3 {
+        let away = match self.depth.perspective {
+            true => self.steps * DVec3::new(1.0, at.x, at.y),
+            false => DVec3::new(0.0, 0.0, self.depth.forward),
+        };
+        -self.to_world(away).normalize()
+    }
+
+    /// An eye-space plane's distance as a function of the pixel position: `c · (1, x, y)` is 1 / distance in perspective,
+    /// the distance itself otherwise. The intersection of the ray `start + distance · step` with `n · (x - point) = 0`.
+    pub(super) fn plane(&self, point: DVec3, normal: DVec3) -> DVec3 {
+        match self.depth.perspective {
+            true => self.steps.transpose() * normal / self.facing(point, normal),
+            false => {
+                let offset = DVec3::new(normal.dot(point), 0.0, 0.0) - self.starts.transpose() * normal;
+                offset / normal.dot(self.steps.x_axis)
+            }
+        }
+    }
+
+    /// Distance along the ray at pixel position `at` to `plane` (of [`Projector::plane`]); `None` behind the eye or outside
+    /// the clip volume.
+    pub(super) fn depth_at(&self, plane: DVec3, at: DVec2) -> Option<f64> {
+        let value = plane.dot(DVec3::new(1.0, at.x, at.y));
+        let distance = match self.depth.perspective {
+            true if value > 0.0 => 1.0 / value,
+            true => return None,
+            false => value,
+        };
+        // An infinite far plane lets the horizon itself through: there is nothing to see.
+        (distance.is_finite() && (self.depth.near..=self.depth.far).contains(&distance)).then_some(distance)
+    }
+
+    /// Eye-space homogeneous vector to `(x, y, w)` in clip space.
+    pub(super) fn project(&self, v: DVec4) -> DVec3 {
+        let c = self.clip * v;
+        DVec3::new(c.x, c.y, c.w)
+    }
+}
+
+/// Solves the first two rows of the projection for the eye-space (x, y) of a given pixel and distance: both are affine in
+/// either, for every projection that [`Camera::projection`] lets through.
+fn rays(clip: &DMat4, depth: &Projection, size: DVec2) -> Result<(DMat3, DMat3)> {
+    let (x, y, w) = (clip.row(0), clip.row(1), clip.row(3));
+    let block = DMat2::from_cols(DVec2::new(x.x, y.x), DVec2::new(x.y, y.y));
+    let inverse = block.inverse();
+    if !inverse.is_finite() {
+        return Err(Error::Usage(
+            "the projection matrix flattens the picture: its upper left 2×2 is singular".into(),
+        ));
+    }
+    // Columns are the coefficients of 1, x and y in ndc, times the factor of z or of 1 in the fourth row.
+    let column = |factor: f64, own: DVec2, z: f64| {
+        let solve = |v: DVec2| inverse * v;
+        let constant = solve(-factor * DVec2::ONE - own).extend(z);
+        let along_x = solve(DVec2::new(2.0 * factor / size.x, 0.0)).extend(0.0);
+        let along_y = solve(DVec2::new(0.0, 2.0 * factor / size.y)).extend(0.0);
+        DMat3::from_cols(constant, along_x, along_y)
+    };
+    let starts = column(w.w, DVec2::new(x.w, y.w), 0.0);
+    let steps = depth.forward * column(w.z, DVec2::new(x.z, y.z), 1.0);
+    Ok((starts, steps))
+}

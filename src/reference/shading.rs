@@ -1,0 +1,68 @@
+//! Light: linear Blinn–Phong, and the decoding of colours.
+
+use crate::settings::Lighting;
+use glam::DVec3;
+
+/// The shade of a surface of linear colour `albedo`; `normal` and `viewer` (from the surface to the eye) are unit vectors in
+/// world space.
+pub(super) fn lit(lighting: &Lighting, albedo: DVec3, normal: DVec3, viewer: DVec3) -> DVec3 {
+    let [ambient, headlight, specular, shininess] =
+        [lighting.ambient, lighting.headlight, lighting.specular, lighting.shininess].map(f64::from);
+    // The headlight stands at the eye: light, half-way and view direction are one.
+    let facing = normal.dot(viewer).max(0.0);
+    let mut light = albedo * (ambient + headlight * facing) + specular * facing.powf(shininess);
+    for lamp in &lighting.directional {
+        let to_light = DVec3::from_array(lamp.to_light.map(f64::from));
+        let lambert = normal.dot(to_light);
+        if lambert > 0.0 {
+            let half = normal.dot((to_light + viewer).normalize_or_zero()).max(0.0);
+            let radiance = DVec3::from_array(lamp.radiance.map(f64::from));
+            light += radiance * (albedo * lambert + specular * half.powf(shininess));
+        }
+    }
+    light
+}
+
+/// An 8-bit sRGB colour in linear light, by the exact transfer function (IEC 61966-2-1).
+pub(super) fn linear(srgb: [u8; 4]) -> DVec3 {
+    let decode = |byte: u8| {
+        let c = f64::from(byte) / 255.0;
+        if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
+    };
+    DVec3::new(decode(srgb[0]), decode(srgb[1]), decode(srgb[2]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::settings::DirectionalLight;
+
+    #[test]
+    fn light_on_a_sphere_has_the_closed_form() {
+        let mut lighting =
+            Lighting { ambient: 0.1, headlight: 0.8, specular: 0.2, shininess: 2.0, ..Default::default() };
+        let shade = |lighting: &Lighting, degrees: f64| {
+            let (sin, cos) = degrees.to_radians().sin_cos();
+            lit(lighting, DVec3::splat(0.5), DVec3::new(sin, 0.0, cos), DVec3::Z)
+        };
+        let near = |a: DVec3, b: [f64; 3]| a.abs_diff_eq(DVec3::from_array(b), 1e-7);
+        assert!(near(shade(&lighting, 0.0), [0.65; 3]));
+        assert!(near(shade(&lighting, 60.0), [0.3; 3]));
+        assert!(near(shade(&lighting, 120.0), [0.05; 3]), "no light from behind");
+
+        // From the side; half-way at 45°, so n·l = sin 60°, n·h = cos 15°.
+        lighting.directional =
+            vec![DirectionalLight { to_light: [1.0, 0.0, 0.0], radiance: [1.0, 0.5, 0.0] }];
+        let (lambert, specular) = (0.75f64.sqrt(), 0.2 * 15f64.to_radians().cos().powi(2));
+        let side = 0.5 * lambert + specular;
+        assert!(near(shade(&lighting, 60.0), [0.3 + side, 0.3 + 0.5 * side, 0.3]));
+        assert!(near(shade(&lighting, -60.0), [0.3; 3]), "the light is below the horizon");
+    }
+
+    #[test]
+    fn srgb_is_decoded_exactly() {
+        let decoded = linear([0, 10, 188, 255]);
+        assert!(decoded.abs_diff_eq(DVec3::new(0.0, 10.0 / 255.0 / 12.92, 0.502_886_458), 1e-8), "{decoded}");
+        assert_eq!(linear([255; 4]), DVec3::ONE);
+    }
+}

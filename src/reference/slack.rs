@@ -1,0 +1,77 @@
+//! How far rounding alone, without any decision turning, may move the value of a pixel.
+
+use super::margin::{Candidate, Margins};
+use glam::DVec3;
+
+/// How far rounding may move a pixel's value without any decision turning: the weighted mean over its splats. All 0 where
+/// [`super::Tolerance::rounding`] is.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Slack {
+    /// Of the depth, relative to it.
+    pub depth: f64,
+    /// Of the mean colour and the mean normal, absolute.
+    pub attribute: f64,
+    /// `Σw / |Σw n|`, less 1: the more the normals cancel, the more an error turns their normalised sum.
+    pub turn: f64,
+}
+
+/// Sums over a pixel's splats that make its [`Slack`].
+#[derive(Clone, Copy, Default)]
+pub(super) struct Means {
+    weight: f64,
+    normal: DVec3,
+    sway: f64,
+    /// The weight that a splat has in the mean depth.
+    pull: f64,
+    wobble: f64,
+    depth: f64,
+    squared_depth: f64,
+    squared_error: f64,
+}
+
+impl Means {
+    /// What one splat contributes.
+    pub fn of(margins: &Margins, c: &Candidate) -> Self {
+        let pull = if margins.projector.depth.perspective { c.weight / c.depth } else { c.weight };
+        Self {
+            weight: c.weight,
+            normal: c.weight * c.splat.normal,
+            sway: c.weight * c.sway,
+            pull,
+            wobble: pull * c.wobble,
+            depth: pull * c.depth,
+            squared_depth: pull * c.depth * c.depth,
+            squared_error: pull * (c.sway + c.drift).powi(2),
+        }
+    }
+
+    /// The means.
+    pub fn slack(&self) -> Slack {
+        if self.sway == 0.0 {
+            return Slack::default();
+        }
+        let mean = self.depth / self.pull;
+        let spread = (self.squared_depth / self.pull - mean * mean).max(0.0).sqrt();
+        // Weights that are wrong by some part move a mean by no more than that part of the spread (Cauchy and Schwarz). Of
+        // colours and normals only the greatest spread is known: 2.
+        let depth = self.wobble / self.pull + (self.squared_error / self.pull).sqrt() * spread;
+        Slack {
+            depth: depth / mean.abs(),
+            attribute: 2.0 * self.sway / self.weight,
+            turn: self.weight / self.normal.length() - 1.0,
+        }
+    }
+}
+
+impl std::ops::AddAssign for Means {
+    fn add_assign(&mut self, other: Self) {
+        self.weight += other.weight;
+        self.normal += other.normal;
+        self.sway += other.sway;
+        self.pull += other.pull;
+        self.wobble += other.wobble;
+        self.depth += other.depth;
+        self.squared_depth += other.squared_depth;
+        self.squared_error += other.squared_error;
+    }
+}

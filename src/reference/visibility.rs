@@ -1,0 +1,27 @@
+//! Pass `visibility`: the depth up to which splats are blended (zwicker2004 section 6, first pass).
+
+use super::bands::Band;
+use super::ellipse::Ellipse;
+use super::scene::Scene;
+use super::{Projector, Splat};
+
+/// For every pixel of the band the least depth of its splats, each moved back along the viewing ray by its ε; infinite where
+/// there is none.
+pub(super) fn pass(projector: &Projector, scene: &Scene, band: &Band) -> Vec<f64> {
+    let mut nearest = vec![f64::INFINITY; band.len()];
+    for &i in band.splats {
+        let splat = &scene.splats[i as usize];
+        let ellipse = Ellipse::visibility(splat, projector);
+        band.scan(&ellipse, ellipse.cutoff, |hit| {
+            if let Some(depth) = projector.depth_at(splat.plane, hit.at) {
+                nearest[hit.index] = nearest[hit.index].min(shifted(projector, splat, depth));
+            }
+        });
+    }
+    nearest
+}
+
+/// `depth`, moved back by the splat's ε. May lie beyond the far plane: it is a bound, not a surface.
+pub(super) fn shifted(projector: &Projector, splat: &Splat, depth: f64) -> f64 {
+    if projector.depth.perspective { depth * splat.shift } else { depth + splat.shift }
+}

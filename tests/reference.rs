@@ -1,0 +1,226 @@
+//! The float64 reference judges pictures rightly: it passes its own, and those that differ by no more than float32's rounding,
+//! and lets no small mutation through. Needs no GPU.
+
+mod support;
+
+use std::sync::LazyLock;
+use support::sampling::Random;
+use support::scenes::{Case, cases};
+use surfel::geometry::{Camera, Surfels};
+use surfel::reference::{Channel, Comparison, Culled, Expected, Projector, Surfel, Tolerance, render};
+use surfel::{Picture, Settings};
+
+/// Share of the object's pixels that may be in doubt.
+const MOST_DOUBT: f64 = 0.02;
+
+/// A case through one of its cameras.
+struct View {
+    name: String,
+    case: &'static Case,
+    camera: Camera,
+    /// With float32's rounding allowed for.
+    expected: Expected,
+    /// Without.
+    strict: Expected,
+}
+
+static CASES: LazyLock<Vec<Case>> = LazyLock::new(cases);
+
+static VIEWS: LazyLock<Vec<View>> = LazyLock::new(|| {
+    let views = CASES.iter().flat_map(|case| case.cameras.iter().enumerate().map(move |c| (case, c)));
+    views.map(|(case, (i, &camera))| View::new(case, camera, format!("{} {i}", case.name))).collect()
+});
+
+impl View {
+    fn new(case: &'static Case, camera: Camera, name: String) -> Self {
+        let expected =
+            |tolerance| Expected::new(&case.surfels, &camera, case.size, &case.settings, &tolerance).unwrap();
+        Self {
+            name,
+            case,
+            camera,
+            expected: expected(Tolerance::float32()),
+            strict: expected(Tolerance::default()),
+        }
+    }
+
+    fn judge(&self, picture: &Picture) -> Comparison {
+        self.expected.compare(picture).unwrap()
+    }
+
+    /// The verdict on a picture of other surfels or with other settings.
+    fn mutated(&self, surfels: &Surfels, settings: &Settings) -> Comparison {
+        self.judge(&render(surfels, &self.camera, self.case.size, settings).unwrap().to_picture())
+    }
+
+    fn own(&self) -> Picture {
+        self.expected.frame.to_picture()
+    }
+}
+
+/// Every surfel moved by `by(surfel)`, in world space.
+fn moved(surfels: &Surfels, mut by: impl FnMut(&Surfel) -> glam::DVec3) -> Surfels {
+    let mut moved = surfels.clone();
+    for (i, p) in moved.positions.iter_mut().enumerate() {
+        *p = (p.as_dvec3() + by(&Surfel::of(surfels, i))).as_vec3();
+    }
+    moved
+}
+
+#[test]
+fn its_own_picture_passes_and_few_pixels_are_in_doubt() {
+    for view in VIEWS.iter() {
+        let verdict = view.judge(&view.own());
+        let share = |pixels: usize| pixels as f64 / verdict.object_pixels as f64;
+        println!(
+            "{}: object {:.0} % of the picture, in doubt {:.2} % of it ({:.2} % strictly), unresolvable {}, dual form {}, {:?}",
+            view.name,
+            100.0 * verdict.object_pixels as f64 / verdict.pixels as f64,
+            100.0 * share(verdict.doubtful),
+            100.0 * share(view.strict.doubt.len()),
+            verdict.unresolvable,
+            view.expected.frame.dual_form,
+            view.expected.frame.counts
+        );
+        assert!(verdict.passed(), "{}: {:?}", view.name, verdict.failures);
+        assert!(view.strict.compare(&view.own()).unwrap().passed(), "{}, strictly", view.name);
+        assert!(2 * verdict.object_pixels > verdict.pixels, "{}: too little to see", view.name);
+        assert!(share(verdict.doubtful) <= MOST_DOUBT, "{}", view.name);
+        assert!(
+            verdict.worst.colour < 1e-6 && verdict.worst.depth < 1e-6,
+            "{}: {:?}",
+            view.name,
+            verdict.worst
+        );
+    }
+}
+
+/// What rounding a position and a normal in eye space to float32 does to them: no renderer can do better.
+#[test]
+fn rounding_passes() {
+    let mut random = Random(99);
+    for view in VIEWS.iter() {
+        let eye = view.camera.view.inverse().w_axis.truncate();
+        let unit = 2f64.powi(-24);
+        let mut rounded = moved(&view.case.surfels, |s| unit * s.position.distance(eye) * random.vector());
+        for n in &mut rounded.normals {
+            *n = (n.as_dvec3() + unit * random.vector()).as_vec3();
+        }
+        let verdict = view.mutated(&rounded, &view.case.settings);
+        println!("{}: worst {:?}, with doubt {:?}", view.name, verdict.worst, verdict.worst_of_all);
+        assert!(verdict.passed(), "{}: {} failed: {:?}", view.name, verdict.failed, verdict.failures);
+    }
+}
+
+#[test]
+fn small_differences_pass_and_larger_ones_do_not() {
+    let mut random = Random(7);
+    for view in VIEWS.iter() {
+        let mut disturbed = |by: f64| {
+            let mut picture = view.own();
+            let mut nudge = |v: &mut f32, by: f64| *v += (by * random.signed().signum()) as f32;
+            let (depth, normal) = (picture.depth.as_mut().unwrap(), picture.normal.as_mut().unwrap());
+            for i in (0..depth.len()).filter(|&i| view.expected.frame.covered[i]) {
+                picture.colour[i][..3].iter_mut().for_each(|c| nudge(c, by));
+                normal[i].iter_mut().for_each(|c| nudge(c, by));
+                let relative = 0.05 * by * f64::from(depth[i]);
+                nudge(&mut depth[i], relative);
+            }
+            view.strict.compare(&picture).unwrap()
+        };
+        let verdict = disturbed(1e-4);
+        assert!(verdict.passed(), "{}: {:?}", view.name, verdict.failures);
+        assert!(disturbed(4e-4).failed * 10 > verdict.object_pixels * 9, "{}", view.name);
+    }
+}
+
+#[test]
+fn another_low_pass_fails() {
+    all_fail(100, |view| {
+        let settings = Settings { lowpass: view.case.settings.lowpass * 1.01, ..view.case.settings.clone() };
+        view.mutated(&view.case.surfels, &settings)
+    });
+}
+
+#[test]
+fn another_epsilon_fails() {
+    all_fail(100, |view| {
+        let settings = Settings { epsilon: view.case.settings.epsilon * 0.5, ..view.case.settings.clone() };
+        view.mutated(&view.case.surfels, &settings)
+    });
+}
+
+#[test]
+fn centres_off_by_a_fiftieth_of_a_pixel_fail() {
+    all_fail(100, |view| {
+        let inverse = view.camera.world_to_clip().inverse();
+        let clip = view.camera.world_to_clip();
+        let step = 2.0 * 0.02 / f64::from(view.case.size[0]);
+        let shifted = moved(&view.case.surfels, |s| {
+            let at = clip * s.position.extend(1.0);
+            // Along x of the picture by `step` in ndc, at the same depth.
+            (inverse * glam::DVec4::new(step * at.w, 0.0, 0.0, 0.0)).truncate()
+        });
+        view.mutated(&shifted, &view.case.settings)
+    });
+}
+
+/// Every view sees the mutation in at least `least` pixels.
+fn all_fail(least: usize, verdict: impl Fn(&View) -> Comparison) {
+    for view in VIEWS.iter() {
+        let verdict = verdict(view);
+        println!("{}: {} of {} pixels fail", view.name, verdict.failed, verdict.object_pixels);
+        assert!(verdict.failed >= least, "{}: only {} pixels fail", view.name, verdict.failed);
+    }
+}
+
+#[test]
+fn one_wrong_pixel_fails_whatever_its_image() {
+    let view = &VIEWS[0];
+    let doubtful: Vec<usize> = view.expected.doubt.pixels().collect();
+    let pixel = (0..view.own().colour.len())
+        .find(|i| view.expected.frame.covered[*i] && !doubtful.contains(i))
+        .unwrap();
+    let failure = |spoil: &dyn Fn(&mut Picture)| {
+        let mut picture = view.own();
+        spoil(&mut picture);
+        let verdict = view.judge(&picture);
+        assert_eq!(verdict.failed, 1);
+        verdict.failures[0].channel
+    };
+    assert_eq!(failure(&|p| p.colour[pixel][1] += 1e-3), Channel::Colour);
+    assert_eq!(failure(&|p| p.colour[pixel][2] = f32::NAN), Channel::Colour);
+    assert_eq!(failure(&|p| p.colour[pixel][3] = 0.0), Channel::Coverage);
+    assert_eq!(failure(&|p| p.depth.as_mut().unwrap()[pixel] *= 1.001), Channel::Depth);
+    assert_eq!(failure(&|p| p.normal.as_mut().unwrap()[pixel][0] += 1e-3), Channel::Normal);
+}
+
+#[test]
+fn pictures_that_cannot_be_compared_are_refused() {
+    let view = &VIEWS[0];
+    assert!(view.expected.compare(&Picture { depth: None, ..view.own() }).is_err());
+    assert!(view.expected.compare(&Picture { normal: None, ..view.own() }).is_err());
+    assert!(view.expected.compare(&Picture { size: [256, 255], ..view.own() }).is_err());
+    assert!(view.expected.compare(&Picture { colour: Vec::new(), ..view.own() }).is_err());
+}
+
+/// Otherwise the scenes would ask of float32 what it cannot know, and no pixel's doubt would excuse it.
+#[test]
+fn no_surfel_is_near_a_decision_about_the_whole_of_it() {
+    for view in VIEWS.iter() {
+        let projector = Projector::new(&view.camera, view.case.size, &view.case.settings).unwrap();
+        let reaches_eye_plane = |surfel: &Surfel, scale: f64| {
+            let surfel = Surfel { radius: scale * surfel.radius, ..*surfel };
+            projector.footprint(&surfel) == Err(Culled::EyePlane)
+        };
+        for surfel in (0..view.case.surfels.len()).map(|i| Surfel::of(&view.case.surfels, i)) {
+            if let Ok(splat) = projector.footprint(&surfel) {
+                assert!(splat.secant < 1e5, "{}: edge-on: {surfel:?}", view.name);
+                assert!(!reaches_eye_plane(&surfel, 1.0 + 1e-5), "{}: {surfel:?}", view.name);
+            } else if reaches_eye_plane(&surfel, 1.0) {
+                let seen = projector.footprint(&Surfel { radius: (1.0 - 1e-5) * surfel.radius, ..surfel });
+                assert!(seen.is_err(), "{}: {surfel:?}", view.name);
+            }
+        }
+    }
+}
