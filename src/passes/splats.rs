@@ -63,6 +63,11 @@ impl Splats {
         Ok(Self { splats, counts, windows })
     }
 
+    /// Memory of the splats, bytes.
+    pub fn bytes(&self) -> u64 {
+        self.splats.size()
+    }
+
     pub(super) fn windows(&self) -> &[Window] {
         &self.windows
     }
