@@ -14,6 +14,7 @@ layout(local_size_x = 64) in;
 
 layout(constant_id = 1) const bool CULL_BACK = false;
 layout(constant_id = 2) const bool COUNT = false;
+layout(constant_id = 11) const bool LIST_LARGE = false;
 
 layout(set = 0, binding = 2, std430) readonly buffer Positions { float positions[]; };
 layout(set = 0, binding = 3, std430) readonly buffer Normals { float normals[]; };
@@ -26,9 +27,14 @@ layout(set = 0, binding = 6, std430) buffer Counts {
     uint outside;   // off the picture
 } counts;
 
+layout(set = 0, binding = 7, std430) buffer LargeSplats { uint large_count; uint large_padding[63]; uint large[]; };
+
 layout(push_constant) uniform Window { uint count; } window;
 
 const uint DRAWN = 0, BEHIND = 1, EYE_PLANE = 2, BACK = 3, OUTSIDE = 4;
+
+// Pixels in the box of a splat from which on the compute rasterizer gives it a workgroup.
+const float LARGE_AREA = 1024.0;
 
 shared uint tally[5];
 
@@ -83,9 +89,7 @@ uint footprint(uint i, out Splat splat) {
     float root = frame.cutoff * sqrt(q);
     float sqrt_det = frame.jacobian * (sigma / root) * (sigma / root) * abs(facing) / root;
     Conic conic = dual_conic(X, S, T, q, frame.cutoff, sqrt_det, frame.viewport);
-    vec2 variance = conic.variance + frame.attribute_lowpass;
-    vec2 axis2 = conic.axis * conic.axis;
-    vec2 reach = frame.cutoff * sqrt(vec2(dot(axis2, variance), dot(axis2.yx, variance)));
+    vec2 reach = reach_of(conic.axis, conic.variance + frame.attribute_lowpass);
     if (any(greaterThan(conic.centre - reach, frame.viewport)) || any(lessThan(conic.centre + reach, vec2(0.0)))) return OUTSIDE;
 
     splat.centre = conic.centre;
@@ -96,6 +100,10 @@ uint footprint(uint i, out Splat splat) {
     // A plane through the eye is seen nowhere.
     splat.plane = facing == 0.0 ? vec3(-1.0, 0.0, 0.0) : depth_plane(n, h, facing, anchor_of(conic.centre));
     splat.side = facing > 0.0 ? -1.0 : 1.0;
+    if (LIST_LARGE && 4.0 * reach.x * reach.y > LARGE_AREA) {
+        splat.side *= LARGE;
+        large[atomicAdd(large_count, 1)] = i;
+    }
     return DRAWN;
 }
 

@@ -1,11 +1,82 @@
 // Normalize: divides the sums by Σw and shades (zwicker2004 §6, third pass; equation 2's normalization).
 #version 450
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
 
 #include "lib/frame.glsl"
 #include "lib/sums.glsl"
 #include "lib/shading.glsl"
 
+layout(constant_id = 6) const uint SHADING = 0;
+const uint LIT = 0, COLOUR = 1, NORMAL = 2, DEPTH = 3;
+
+// Whether target 1 holds colours beside the depth sum.
+const bool WIDE_SUMS1 = SUM_NORMALS && COLOURS != COLOURS_NONE;
+
+struct Pixel {
+    vec4 image;
+    vec3 normal;
+    float depth;
+};
+
+// The pixel at `centre` (px) from what visibility and attribute left there.
+Pixel normalize_pixel(vec2 centre, bool visible, vec4 s0, vec4 s1) {
+    // Only what visibility wrote is there: the attribute footprint is wider and would bloat the outline.
+    if (!visible || !(s0.x > 0.0)) return Pixel(frame.background, vec3(0.0), 0.0);
+
+    vec3 ray = centre.x * frame.ray_hi[0].xyz + centre.y * frame.ray_hi[1].xyz + frame.ray_hi[2].xyz;
+    vec3 to_eye = PERSPECTIVE ? -normalize(ray) : -frame.forward_hi.xyz;
+    vec3 normal = vec3(0.0);
+    // Opposite normals that cancel leave no direction.
+    if (SUM_NORMALS) normal = length(s0.yzw) < 1e-6 * s0.x ? to_eye : normalize(s0.yzw);
+    vec3 colour = frame.albedo.rgb;
+    if (COLOURS != COLOURS_NONE) colour = (SUM_NORMALS ? s1.yzw : s0.yzw) / s0.x;
+    float depth = 0.0;
+    if (SUM_DEPTH) {
+        float key = s1.x / (s0.x * frame.key_gain);
+        depth = PERSPECTIVE ? frame.near / key : frame.near + (1.0 - key) / frame.key_slope;
+    }
+
+    vec3 shaded;
+    if (SHADING == LIT) shaded = lit(colour, normal, to_eye);
+    if (SHADING == COLOUR) shaded = colour;
+    if (SHADING == NORMAL) shaded = normal;
+    if (SHADING == DEPTH) shaded = vec3(depth);
+    return Pixel(vec4(shaded, 1.0), normal, depth);
+}
+
+#ifdef COMPUTE
+
+#include "lib/pixels.glsl"
+
+layout(local_size_x = 64) in;
+
+layout(constant_id = 9) const bool OUT_NORMAL = false;
+layout(constant_id = 10) const bool OUT_DEPTH = false;
+
+vec4 fetch0(uint i, bool wide) {
+    if (!wide) return vec4(sums0[i], vec3(0.0));
+    return vec4(sums0[4 * i], sums0[4 * i + 1], sums0[4 * i + 2], sums0[4 * i + 3]);
+}
+
+vec4 fetch1(uint i) {
+    if (!WIDE_SUMS1) return vec4(SUM_DEPTH ? sums1[i] : 0.0, vec3(0.0));
+    return vec4(sums1[4 * i], sums1[4 * i + 1], sums1[4 * i + 2], sums1[4 * i + 3]);
+}
+
+void main() {
+    uint width = uint(frame.viewport.x), pixels = width * uint(frame.viewport.y);
+    uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    if (i >= pixels) return;
+    vec2 centre = vec2(i % width, i / width) + 0.5;
+    vec4 s0 = fetch0(i, SUM_NORMALS || COLOURS != COLOURS_NONE);
+    Pixel pixel = normalize_pixel(centre, visibility[i] != 0u, s0, fetch1(i));
+    for (uint k = 0; k < 4; k++) picture[4 * i + k] = pixel.image[k];
+    if (OUT_NORMAL) for (uint k = 0; k < 3; k++) picture[4 * pixels + 3 * i + k] = pixel.normal[k];
+    if (OUT_DEPTH) picture[(OUT_NORMAL ? 7 : 4) * pixels + i] = pixel.depth;
+}
+
+#endif
 #ifdef VERTEX
 
 void main() {
@@ -15,53 +86,22 @@ void main() {
 #endif
 #ifdef FRAGMENT
 
-#extension GL_EXT_samplerless_texture_functions : require
-
-layout(constant_id = 6) const uint SHADING = 0;
-const uint LIT = 0, COLOUR = 1, NORMAL = 2, DEPTH = 3;
-
-layout(set = 0, binding = 1) uniform texture2D visibility;
-layout(set = 0, binding = 2) uniform texture2D sums0;
-layout(set = 0, binding = 3) uniform texture2D sums1;
+layout(set = 1, binding = 0) uniform texture2D visibility;
+layout(set = 1, binding = 1) uniform texture2D sums0;
+layout(set = 1, binding = 2) uniform texture2D sums1;
 
 layout(location = 0) out vec4 image;
 layout(location = 1) out vec4 out_normal;
 layout(location = 2) out float out_depth;
 
-// Unit vector from the surface to the eye at this pixel.
-vec3 to_eye() {
-    vec3 ray = gl_FragCoord.x * frame.ray_hi[0].xyz + gl_FragCoord.y * frame.ray_hi[1].xyz + frame.ray_hi[2].xyz;
-    return PERSPECTIVE ? -normalize(ray) : -frame.forward_hi.xyz;
-}
-
 void main() {
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
-    vec4 s0 = texelFetch(sums0, pixel, 0);
-    image = frame.background;
-    out_normal = vec4(0.0);
-    out_depth = 0.0;
-    // Only what visibility wrote is there: the attribute footprint is wider and would bloat the outline.
-    if (!(texelFetch(visibility, pixel, 0).r > 0.0 && s0.r > 0.0)) return;
-
-    vec4 s1 = SUM_DEPTH || (SUM_NORMALS && COLOURS != COLOURS_NONE) ? texelFetch(sums1, pixel, 0) : vec4(0.0);
-    vec3 view = to_eye();
-    vec3 normal = vec3(0.0);
-    // Opposite normals that cancel leave no direction.
-    if (SUM_NORMALS) normal = length(s0.gba) < 1e-6 * s0.r ? view : normalize(s0.gba);
-    vec3 colour = frame.albedo.rgb;
-    if (COLOURS != COLOURS_NONE) colour = (SUM_NORMALS ? s1.gba : s0.gba) / s0.r;
-    float key = s1.r / (s0.r * frame.key_gain);
-    float depth = 0.0;
-    if (SUM_DEPTH) depth = PERSPECTIVE ? frame.near / key : frame.near + (1.0 - key) / frame.key_slope;
-
-    vec3 shaded;
-    if (SHADING == LIT) shaded = lit(colour, normal, view);
-    if (SHADING == COLOUR) shaded = colour;
-    if (SHADING == NORMAL) shaded = normal;
-    if (SHADING == DEPTH) shaded = vec3(depth);
-    image = vec4(shaded, 1.0);
-    out_normal = vec4(normal, 0.0);
-    out_depth = depth;
+    ivec2 at = ivec2(gl_FragCoord.xy);
+    bool visible = texelFetch(visibility, at, 0).r > 0.0;
+    vec4 s1 = SUM_DEPTH || WIDE_SUMS1 ? texelFetch(sums1, at, 0) : vec4(0.0);
+    Pixel pixel = normalize_pixel(gl_FragCoord.xy, visible, texelFetch(sums0, at, 0), s1);
+    image = pixel.image;
+    out_normal = vec4(pixel.normal, 0.0);
+    out_depth = pixel.depth;
 }
 
 #endif

@@ -5,8 +5,30 @@
 #include "lib/frame.glsl"
 #define SPLAT_ACCESS readonly
 #include "lib/splat.glsl"
-#include "lib/draw_splat.glsl"
 
+#ifdef COMPUTE
+
+#include "lib/pixels.glsl"
+
+float splat_epsilon;
+
+void scatter_begin(uint i, Splat splat, vec2 variance) {
+    splat_epsilon = splat.epsilon;
+}
+
+void scatter(uint pixel, float m2, float key) {
+    atomicMax(visibility[pixel], floatBitsToUint(behind(key, splat_epsilon)));
+}
+
+#include "lib/scatter_splat.glsl"
+
+void main() {
+    scatter_splats(frame.visibility_lowpass);
+}
+
+#else
+#include "lib/draw_splat.glsl"
+#endif
 #ifdef VERTEX
 
 void main() {
@@ -17,10 +39,9 @@ void main() {
 #ifdef FRAGMENT
 
 void main() {
-    float key;
-    splat_fragment(key);
-    // Moving a plane away along the rays by the factor 1 + ε/z divides κ by it. Never 0, which means that nothing is there.
-    gl_FragDepth = PERSPECTIVE ? key * depth_plane.w : max(key - depth_plane.w, 1e-6);
+    float m2, key;
+    drawn_fragment(m2, key);
+    gl_FragDepth = behind(key, plane_epsilon.w);
 }
 
 #endif

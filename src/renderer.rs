@@ -3,16 +3,17 @@
 use crate::error::{Error, Result};
 use crate::frame::frame;
 use crate::geometry::Camera;
-use crate::methods::{PerspectiveEwa, Views};
+use crate::methods::perspective_ewa::{Canvas, PerspectiveEwa};
 use crate::passes::{SplatLayout, Splats};
 use crate::picture::Picture;
 use crate::scene::Scene;
 use crate::settings::Settings;
-use crate::targets::Targets;
-use crate::variant::{Outputs, Precision, Variant};
+use crate::targets::{Buffers, TargetInfo, check_size};
+use crate::variant::{Outputs, Precision, Rasterizer, Variant};
 use crate::vk::shaders::layout::{Counts, Frame};
-use crate::vk::{Access, Buffer, Commands, Device, PassTime, Recorder};
+use crate::vk::{Buffer, Commands, Device, PassTime};
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::sync::Arc;
 
 /// What stays the same from frame to frame.
@@ -24,6 +25,8 @@ pub struct RenderOptions {
     pub outputs: Outputs,
     /// Float width of the weighted sums. A device that cannot blend 32-bit floats gets 16, see [`Renderer::precision`].
     pub precision: Precision,
+    /// What visits the pixels; `None` takes what is faster on the device.
+    pub rasterizer: Option<Rasterizer>,
     /// Time the passes.
     pub profile: bool,
     /// Count the splats by their fate.
@@ -57,7 +60,7 @@ pub struct SplatCounts {
 /// Renders frames of one size on one device. One frame is under way at a time.
 pub struct Renderer {
     // Fields are dropped in this order: views before what they view.
-    canvas: Option<Canvas>,
+    present: Option<Present>,
     resident: Option<Resident>,
     methods: HashMap<Variant, PerspectiveEwa>,
     layout: SplatLayout,
@@ -68,16 +71,16 @@ pub struct Renderer {
 }
 
 /// Targets of the present variant.
-struct Canvas {
+struct Present {
     variant: Variant,
-    views: Views,
-    targets: Targets,
+    canvas: Canvas,
     readback: Vec<Buffer>,
 }
 
 /// Splats of the present scene.
 struct Resident {
     scene: u64,
+    rasterizer: Rasterizer,
     splats: Splats,
 }
 
@@ -89,8 +92,10 @@ impl Renderer {
             log::warn!("{} cannot blend 32-bit floats: sums are kept in 16 bits", device.description().name);
             options.precision = Precision::Half;
         }
+        check_size(device, options.size)?;
+        options.rasterizer = Some(rasterizer_for(device, &options)?);
         Ok(Self {
-            canvas: None,
+            present: None,
             resident: None,
             methods: HashMap::new(),
             layout: SplatLayout::new(device)?,
@@ -114,8 +119,8 @@ impl Renderer {
         settings: &Settings,
     ) -> Result<(Picture, FrameReport)> {
         let report = self.run(scene, camera, settings, true)?;
-        let canvas = self.canvas.as_ref().ok_or_else(|| Error::Usage("no frame was rendered".into()))?;
-        Ok((canvas.picture(), report))
+        let picture = self.present.as_ref().map(|present| present.canvas.picture(&present.readback));
+        Ok((picture.unwrap_or_default(), report))
     }
 
     /// Float width of the weighted sums in use.
@@ -124,8 +129,13 @@ impl Renderer {
     }
 
     /// The targets of the last frame.
-    pub fn targets(&self) -> Option<&Targets> {
-        self.canvas.as_ref().map(|canvas| &canvas.targets)
+    pub fn targets(&self) -> Vec<TargetInfo> {
+        self.present.as_ref().map_or(Vec::new(), |present| present.canvas.targets())
+    }
+
+    /// What visits the pixels in the last frame.
+    pub fn rasterizer(&self) -> Option<Rasterizer> {
+        self.present.as_ref().map(|present| present.variant.rasterizer)
     }
 
     /// The splats of the last frame.
@@ -133,95 +143,72 @@ impl Renderer {
         self.resident.as_ref().map(|resident| &resident.splats)
     }
 
-    fn run(
-        &mut self,
-        scene: &Scene,
-        camera: &Camera,
-        settings: &Settings,
-        read: bool,
-    ) -> Result<FrameReport> {
+    fn run(&mut self, scene: &Scene, camera: &Camera, settings: &Settings, read: bool) -> Result<FrameReport> {
         settings.check()?;
-        let options = self.options;
-        let block = frame(camera, settings, options.size, scene.origin(), scene.bounds())?;
-        let perspective = camera.projection()?.perspective;
-        let variant =
-            Variant::new(scene, perspective, settings, options.outputs, options.precision, options.count);
-        self.make_ready(scene, variant, read)?;
+        let block = frame(camera, settings, self.options.size, scene.origin(), scene.bounds())?;
+        let variant = Variant::new(scene, camera.projection()?.perspective, settings, &self.options);
+        self.make_resident(scene, variant.rasterizer)?;
+        self.make_present(variant, read)?;
         self.frame.bytes_mut().copy_from_slice(bytemuck::bytes_of(&block));
 
-        let (Some(canvas), Some(resident)) = (&self.canvas, &self.resident) else {
-            return Ok(FrameReport::default());
-        };
-        let method = &self.methods[&variant];
+        let (Some(present), Some(resident)) = (&self.present, &self.resident) else { return Ok(FrameReport::default()) };
         self.commands.run(|rec| {
-            method.record(rec, &resident.splats, &canvas.views, &canvas.targets);
+            present.canvas.record(rec, &resident.splats);
             if read {
-                canvas.read_back(rec);
+                present.canvas.record_readback(rec, &present.readback);
             }
         })?;
         Ok(FrameReport {
             pass_times: self.commands.pass_times()?,
-            counts: options.count.then(|| resident.splats.counts().into()),
+            counts: variant.count.then(|| resident.splats.counts().into()),
         })
     }
 
-    fn make_ready(&mut self, scene: &Scene, variant: Variant, read: bool) -> Result<()> {
-        if self.resident.as_ref().is_none_or(|resident| resident.scene != scene.id) {
+    fn make_resident(&mut self, scene: &Scene, rasterizer: Rasterizer) -> Result<()> {
+        if self.resident.as_ref().is_none_or(|resident| (resident.scene, resident.rasterizer) != (scene.id, rasterizer)) {
             self.resident = None;
-            let splats = Splats::new(&self.device, &self.layout, &self.frame, scene)?;
-            self.resident = Some(Resident { scene: scene.id, splats });
+            let splats = Splats::new(&self.device, &self.layout, &self.frame, scene, rasterizer)?;
+            self.resident = Some(Resident { scene: scene.id, rasterizer, splats });
         }
-        if !self.methods.contains_key(&variant) {
-            self.methods.insert(variant, PerspectiveEwa::new(&self.device, &self.layout, &variant)?);
-        }
-        if self.canvas.as_ref().is_none_or(|canvas| canvas.variant != variant) {
-            self.canvas = None;
-            let targets = Targets::new(&self.device, &variant, self.options.size)?;
-            let views = self.methods[&variant].views(&self.device, &self.frame, &targets)?;
-            self.canvas = Some(Canvas { variant, views, targets, readback: Vec::new() });
-        }
-        match &mut self.canvas {
-            Some(canvas) if read => canvas.make_readback(&self.device),
-            _ => Ok(()),
-        }
-    }
-}
-
-impl Canvas {
-    fn make_readback(&mut self, device: &Arc<Device>) -> Result<()> {
-        if !self.readback.is_empty() {
-            return Ok(());
-        }
-        let [width, height] = self.targets.size();
-        let pixels = u64::from(width) * u64::from(height);
-        let buffer =
-            |image: &crate::vk::Image| Buffer::readback(device, "readback", pixels * image.pixel_bytes());
-        self.readback = self.targets.read_back().map(buffer).collect::<Result<_>>()?;
         Ok(())
     }
 
-    fn read_back(&self, rec: &mut Recorder<'_>) {
-        let pairs = || self.targets.read_back().zip(&self.readback);
-        let copy = pairs()
-            .flat_map(|(image, buffer)| [image.with(Access::COPY_READ), buffer.with(Access::COPY_WRITE)]);
-        rec.pass("read back", &copy.collect::<Vec<_>>(), |enc| {
-            pairs().for_each(|(image, buffer)| enc.copy_image(image, buffer));
-        });
-        let host: Vec<_> = self.readback.iter().map(|buffer| buffer.with(Access::HOST_READ)).collect();
-        rec.pass("read back", &host, |_| {});
+    fn make_present(&mut self, variant: Variant, read: bool) -> Result<()> {
+        if self.present.as_ref().is_none_or(|present| present.variant != variant) {
+            self.present = None;
+            let method = match self.methods.entry(variant) {
+                Entry::Occupied(made) => made.into_mut(),
+                Entry::Vacant(room) => room.insert(PerspectiveEwa::new(&self.device, &self.layout, &variant)?),
+            };
+            let canvas = method.canvas(&self.device, &self.layout, &self.frame, &variant, self.options.size)?;
+            self.present = Some(Present { variant, canvas, readback: Vec::new() });
+        }
+        match &mut self.present {
+            Some(present) if read && present.readback.is_empty() => {
+                present.readback = present.canvas.make_readback(&self.device)?;
+            }
+            _ => {}
+        }
+        Ok(())
     }
+}
 
-    /// What the last frame left in the read-back buffers.
-    fn picture(&self) -> Picture {
-        let mut images = self.readback.iter().map(Buffer::bytes);
-        let mut next = |there: bool| if there { images.next() } else { None };
-        let colour = next(true).map(bytemuck::pod_collect_to_vec).unwrap_or_default();
-        let normal = next(self.targets.normal.is_some()).map(|bytes| {
-            let padded: Vec<[f32; 4]> = bytemuck::pod_collect_to_vec(bytes);
-            padded.into_iter().map(|[x, y, z, _]| [x, y, z]).collect()
-        });
-        let depth = next(self.targets.depth.is_some()).map(bytemuck::pod_collect_to_vec);
-        Picture { size: self.targets.size(), colour, depth, normal }
+/// The faster of what `device` can do with these options.
+fn rasterizer_for(device: &Device, options: &RenderOptions) -> Result<Rasterizer> {
+    let capabilities = device.capabilities();
+    let fits = Buffers::fit(capabilities, options.outputs, options.size);
+    let can_compute = capabilities.float_atomics && options.precision == Precision::Full && fits;
+    match options.rasterizer {
+        Some(Rasterizer::Compute) if !can_compute => Err(Error::Usage(format!(
+            "the compute rasterizer needs float atomics in buffers, 32-bit sums and a picture within {} bytes, which {} does \
+             not have at this size: choose the draw rasterizer",
+            capabilities.max_storage_buffer_range,
+            device.description().name
+        ))),
+        Some(rasterizer) => Ok(rasterizer),
+        // Measured on CPU devices only; a GPU's own rasterizer is taken until a measurement says otherwise.
+        None if can_compute && device.description().kind == "CPU" => Ok(Rasterizer::Compute),
+        None => Ok(Rasterizer::Draw),
     }
 }
 

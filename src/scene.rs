@@ -162,6 +162,7 @@ mod tests {
     fn windows_cover_every_surfel_once_and_fit() {
         let capabilities = Capabilities {
             blend_float32: true,
+            float_atomics: true,
             timestamps: None,
             max_storage_buffer_range: 1 << 20,
             storage_buffer_alignment: 64,

@@ -1,14 +1,13 @@
-//! Every render target: name, format, and when a frame has it.
+//! Every render target: name, format, and when a frame has it. Each name is that of the variable in the shaders.
 
 use crate::error::{Error, Result};
-use crate::scene::ColourStream;
-use crate::variant::{Precision, Variant};
-use crate::vk::{Device, Image, ImageUse};
+use crate::variant::{Outputs, Precision, Variant};
+use crate::vk::{Buffer, Capabilities, Device, Image, ImageUse};
 use ash::vk::Format;
 use std::sync::Arc;
 
-/// The targets of a frame of `perspective-ewa`.
-pub struct Targets {
+/// Targets that are drawn to.
+pub struct Images {
     /// Depth key of the nearest surface, moved back by ε; 0 where there is none.
     pub visibility: Image,
     /// `(Σw, Σw a)`: `a` is the normal where normals are wanted, else the colour.
@@ -23,21 +22,48 @@ pub struct Targets {
     pub depth: Option<Image>,
 }
 
-/// Format of each target of a [`Variant`]; `None` where there is no such target.
+/// Targets that compute shaders write, pixel by pixel from the top left.
+pub struct Buffers {
+    /// See [`Images::visibility`].
+    pub visibility: Buffer,
+    /// See [`Images::sums0`].
+    pub sums0: Buffer,
+    /// See [`Images::sums1`].
+    pub sums1: Option<Buffer>,
+    /// All pixels' colour (4 floats), then all normals (3), then all depths (1), as far as they are asked for.
+    pub picture: Buffer,
+    /// What it holds.
+    pub outputs: Outputs,
+    /// Width and height, px.
+    pub size: [u32; 2],
+}
+
+/// Format of each image of a [`Variant`]; `None` where there is no such target.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Formats {
-    /// See [`Targets::visibility`].
+    /// See [`Images::visibility`].
     pub visibility: Format,
-    /// See [`Targets::sums0`].
+    /// See [`Images::sums0`].
     pub sums0: Format,
-    /// See [`Targets::sums1`].
+    /// See [`Images::sums1`].
     pub sums1: Option<Format>,
-    /// See [`Targets::image`].
+    /// See [`Images::image`].
     pub image: Format,
-    /// See [`Targets::normal`].
+    /// See [`Images::normal`].
     pub normal: Option<Format>,
-    /// See [`Targets::depth`].
+    /// See [`Images::depth`].
     pub depth: Option<Format>,
+}
+
+/// A target as a report shows it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TargetInfo {
+    /// Its name.
+    pub name: &'static str,
+    /// Its format; for buffers, that of a pixel.
+    pub format: Format,
+    /// Memory that it occupies, bytes.
+    pub bytes: u64,
 }
 
 impl Formats {
@@ -49,12 +75,10 @@ impl Formats {
             (Precision::Half, true) => Format::R16G16B16A16_SFLOAT,
             (Precision::Half, false) => Format::R16_SFLOAT,
         };
-        let colours = variant.colours != ColourStream::None;
-        let both = variant.normals && colours;
         Self {
             visibility: Format::D32_SFLOAT,
-            sums0: sums(variant.normals || colours),
-            sums1: (both || variant.depth).then(|| sums(both)),
+            sums0: sums(variant.wide_sums0()),
+            sums1: variant.has_sums1().then(|| sums(variant.wide_sums1())),
             image: Format::R32G32B32A32_SFLOAT,
             normal: variant.outputs.normal.then_some(Format::R32G32B32A32_SFLOAT),
             depth: variant.outputs.depth.then_some(Format::R32_SFLOAT),
@@ -62,21 +86,25 @@ impl Formats {
     }
 }
 
-impl Targets {
-    /// The targets of `variant` at `size` px. [`Error::Usage`] with the limit if the device has no targets of that size.
-    pub fn new(device: &Arc<Device>, variant: &Variant, size: [u32; 2]) -> Result<Self> {
-        let limit = device.capabilities().max_image_side;
-        let [width, height] = size;
-        if size.contains(&0) || size.iter().any(|side| *side > limit) {
+/// Refuses a size that `device` has no targets of, with its limit.
+pub fn check_size(device: &Device, size: [u32; 2]) -> Result<()> {
+    let limit = device.capabilities().max_image_side;
+    let [width, height] = size;
+    match size.contains(&0) || size.iter().any(|side| *side > limit) {
+        false => Ok(()),
+        true => {
             let name = &device.description().name;
-            return Err(Error::Usage(format!(
-                "a picture of {width}x{height} px: {name} draws from 1x1 to {limit}x{limit}"
-            )));
+            Err(Error::Usage(format!("a picture of {width}x{height} px: {name} draws from 1x1 to {limit}x{limit}")))
         }
+    }
+}
+
+impl Images {
+    /// The targets of `variant` at `size` px.
+    pub fn new(device: &Arc<Device>, variant: &Variant, size: [u32; 2]) -> Result<Self> {
         let formats = Formats::of(variant);
         let target = |name, format, also| Image::target(device, name, format, size, also);
-        let optional =
-            |name, format: Option<Format>, also| format.map(|format| target(name, format, also)).transpose();
+        let optional = |name, format: Option<Format>, also| format.map(|format| target(name, format, also)).transpose();
         Ok(Self {
             visibility: target("visibility", formats.visibility, ImageUse::Sampled)?,
             sums0: target("sums0", formats.sums0, ImageUse::Sampled)?,
@@ -87,22 +115,68 @@ impl Targets {
         })
     }
 
-    /// Width and height, px.
-    pub fn size(&self) -> [u32; 2] {
-        self.image.size()
+    /// The images that are read on the CPU.
+    pub fn outputs(&self) -> impl Iterator<Item = &Image> {
+        [Some(&self.image), self.normal.as_ref(), self.depth.as_ref()].into_iter().flatten()
     }
 
-    /// Every target that there is, with its name.
-    pub fn list(&self) -> impl Iterator<Item = (&'static str, &Image)> {
+    /// Every target that there is.
+    pub fn list(&self) -> Vec<TargetInfo> {
         let always = [("visibility", &self.visibility), ("sums0", &self.sums0), ("image", &self.image)];
         let optional = [("sums1", &self.sums1), ("normal", &self.normal), ("depth", &self.depth)];
-        always
-            .into_iter()
-            .chain(optional.into_iter().filter_map(|(name, image)| Some((name, image.as_ref()?))))
+        let there = optional.into_iter().filter_map(|(name, image)| Some((name, image.as_ref()?)));
+        let info = |(name, image): (_, &Image)| TargetInfo { name, format: image.format(), bytes: image.bytes() };
+        always.into_iter().chain(there).map(info).collect()
+    }
+}
+
+impl Buffers {
+    /// The targets of `variant` at `size` px.
+    pub fn new(device: &Arc<Device>, variant: &Variant, size: [u32; 2]) -> Result<Self> {
+        let pixels = u64::from(size[0]) * u64::from(size[1]);
+        let buffer = |name, floats: u64| Buffer::storage(device, name, 4 * floats * pixels);
+        let floats = |wide: bool| if wide { 4 } else { 1 };
+        let sums1 = variant.has_sums1().then(|| buffer("sums1", floats(variant.wide_sums1())));
+        Ok(Self {
+            visibility: buffer("visibility", 1)?,
+            sums0: buffer("sums0", floats(variant.wide_sums0()))?,
+            sums1: sums1.transpose()?,
+            picture: buffer("picture", Self::picture_floats(variant.outputs))?,
+            outputs: variant.outputs,
+            size,
+        })
     }
 
-    /// The targets that are read on the CPU.
-    pub(crate) fn read_back(&self) -> impl Iterator<Item = &Image> {
-        [Some(&self.image), self.normal.as_ref(), self.depth.as_ref()].into_iter().flatten()
+    /// Whether a picture of this size fits the buffers that shaders of the device can see.
+    pub fn fit(capabilities: &Capabilities, outputs: Outputs, size: [u32; 2]) -> bool {
+        let pixels = u64::from(size[0]) * u64::from(size[1]);
+        // The picture has the largest pixels.
+        4 * Self::picture_floats(outputs) * pixels <= capabilities.max_storage_buffer_range
+    }
+
+    /// Number of pixels.
+    pub fn pixels(&self) -> u64 {
+        u64::from(self.size[0]) * u64::from(self.size[1])
+    }
+
+    fn picture_floats(outputs: Outputs) -> u64 {
+        4 + 3 * u64::from(outputs.normal) + u64::from(outputs.depth)
+    }
+
+    /// Every target that there is.
+    pub fn list(&self) -> Vec<TargetInfo> {
+        let float = Format::R32_SFLOAT;
+        let sums = |buffer: &Buffer| match buffer.size() == self.visibility.size() {
+            true => float,
+            false => Format::R32G32B32A32_SFLOAT,
+        };
+        let info = |name, buffer: &Buffer, format| TargetInfo { name, format, bytes: buffer.size() };
+        let mut list = vec![
+            info("visibility", &self.visibility, Format::R32_UINT),
+            info("sums0", &self.sums0, sums(&self.sums0)),
+        ];
+        list.extend(self.sums1.as_ref().map(|buffer| info("sums1", buffer, sums(buffer))));
+        list.push(info("picture", &self.picture, float));
+        list
     }
 }

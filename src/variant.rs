@@ -1,5 +1,6 @@
 //! What decides which pipelines and targets a frame needs.
 
+use crate::renderer::RenderOptions;
 use crate::scene::{ColourStream, Scene};
 use crate::settings::{Cull, Settings, Shading};
 use crate::vk::Constants;
@@ -28,6 +29,17 @@ pub struct Variant {
     pub outputs: Outputs,
     /// Float width of the sums.
     pub precision: Precision,
+    /// What visits the pixels.
+    pub rasterizer: Rasterizer,
+}
+
+/// What visits the pixels of a splat. Both make the same picture up to rounding.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Rasterizer {
+    /// The device's own: triangles, depth test, blending. Works everywhere.
+    Draw,
+    /// Compute shaders with atomic adds of floats: faster where fragments are slow. Sums of 32-bit floats only.
+    Compute,
 }
 
 /// Images that a frame gives beside the picture itself.
@@ -51,28 +63,37 @@ pub enum Precision {
 
 impl Variant {
     /// What a frame of `scene` needs.
-    pub fn new(
-        scene: &Scene,
-        perspective: bool,
-        settings: &Settings,
-        outputs: Outputs,
-        precision: Precision,
-        count: bool,
-    ) -> Self {
+    pub fn new(scene: &Scene, perspective: bool, settings: &Settings, options: &RenderOptions) -> Self {
         let shading = settings.shading;
         let wants_colour = matches!(shading, Shading::Lit | Shading::Colour);
         Self {
             perspective,
             cull_back: settings.cull == Cull::Back,
-            count,
-            normals: matches!(shading, Shading::Lit | Shading::Normal) || outputs.normal,
-            depth: shading == Shading::Depth || outputs.depth,
+            count: options.count,
+            normals: matches!(shading, Shading::Lit | Shading::Normal) || options.outputs.normal,
+            depth: shading == Shading::Depth || options.outputs.depth,
             colours: if wants_colour { scene.colour_stream() } else { ColourStream::None },
             shading,
             lights: if shading == Shading::Lit { settings.lighting.directional.len() as u32 } else { 0 },
-            outputs,
-            precision,
+            outputs: options.outputs,
+            precision: options.precision,
+            rasterizer: options.rasterizer.unwrap_or(Rasterizer::Draw),
         }
+    }
+
+    /// Whether target 0 sums a vector beside Σw.
+    pub fn wide_sums0(&self) -> bool {
+        self.normals || self.colours != ColourStream::None
+    }
+
+    /// Whether there is a target 1.
+    pub fn has_sums1(&self) -> bool {
+        self.depth || self.wide_sums1()
+    }
+
+    /// Whether target 1 sums colours beside the depth.
+    pub fn wide_sums1(&self) -> bool {
+        self.normals && self.colours != ColourStream::None
     }
 
     /// The same as specialization constants.
@@ -86,5 +107,8 @@ impl Variant {
             .with(constant::COLOURS, self.colours as u32)
             .with(constant::SHADING, self.shading as u32)
             .with(constant::LIGHTS, self.lights)
+            .with(constant::OUT_NORMAL, self.outputs.normal)
+            .with(constant::OUT_DEPTH, self.outputs.depth)
+            .with(constant::LIST_LARGE, self.rasterizer == Rasterizer::Compute)
     }
 }

@@ -1,22 +1,25 @@
 //! Attribute: splats within ε of the nearest surface → weighted sums (zwicker2004 §6, second pass; `attribute.glsl`).
 
-use super::{SplatLayout, Splats};
+use super::{PixelSet, Scatter, SplatLayout, Splats};
 use crate::error::Result;
-use crate::targets::{Formats, Targets};
+use crate::targets::{Buffers, Formats, Images};
 use crate::variant::Variant;
 use crate::vk::{
-    Access, Attachment, Blend, DepthTest, Device, DrawPipeline, DrawState, Framebuffer, Recorder, RenderPass,
+    Access, Attachment, Blend, DepthTest, Device, DrawPipeline, DrawState, Framebuffer, Recorder, RenderPass, Use,
     shaders,
 };
 use std::sync::Arc;
 
-/// The attribute pass.
-pub struct Attribute {
+/// The attribute pass as draws with additive blending.
+pub struct DrawAttribute {
     pass: RenderPass,
     pipeline: DrawPipeline,
 }
 
-impl Attribute {
+/// The attribute pass as a scatter with atomic sums.
+pub struct ComputeAttribute(Scatter);
+
+impl DrawAttribute {
     /// The pass for `variant`.
     pub fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self> {
         let formats = Formats::of(variant);
@@ -25,38 +28,43 @@ impl Attribute {
         let pass = RenderPass::new(device, &[Attachment::Cleared(formats.sums0), sums1], Some(depth))?;
         let code = [shaders::ATTRIBUTE_VERTEX, shaders::ATTRIBUTE_FRAGMENT];
         let state = DrawState { depth: DepthTest::NotBehind, blend: Blend::Add };
-        let pipeline = DrawPipeline::new(device, &layout.0, code, &variant.constants(), &pass, state)?;
+        let pipeline = DrawPipeline::new(device, &[&layout.splats], code, &variant.constants(), &pass, state)?;
         Ok(Self { pass, pipeline })
     }
 
     /// The pass's view of `targets`.
-    pub fn framebuffer(&self, device: &Arc<Device>, targets: &Targets) -> Result<Framebuffer> {
+    pub fn framebuffer(&self, device: &Arc<Device>, targets: &Images) -> Result<Framebuffer> {
         let images = [Some(&targets.sums0), targets.sums1.as_ref(), Some(&targets.visibility)];
         Framebuffer::new(device, &self.pass, &images.into_iter().flatten().collect::<Vec<_>>())
     }
 
     /// `splats`, `targets.visibility` → `targets.sums0`, `targets.sums1`.
-    pub fn record(
-        &self,
-        rec: &mut Recorder<'_>,
-        splats: &Splats,
-        framebuffer: &Framebuffer,
-        targets: &Targets,
-    ) {
-        let sums1 = targets.sums1.as_ref().unwrap_or(&targets.sums0);
-        let uses = [
+    pub fn record(&self, rec: &mut Recorder<'_>, splats: &Splats, framebuffer: &Framebuffer, targets: &Images) {
+        let mut uses = vec![
             splats.with(Access::VERTEX_READ),
             targets.visibility.with(Access::DEPTH_TEST),
             targets.sums0.with(Access::COLOUR_WRITE),
-            sums1.with(Access::COLOUR_WRITE),
         ];
-        let uses = if targets.sums1.is_some() { &uses[..] } else { &uses[..3] };
-        rec.pass("attribute", uses, |enc| {
-            enc.render(framebuffer, |draws| {
-                for window in splats.windows() {
-                    draws.draw(&self.pipeline, &window.set, 3 * window.count);
-                }
-            });
-        });
+        uses.extend(targets.sums1.as_ref().map(|image| image.with(Access::COLOUR_WRITE)));
+        rec.pass("attribute", &uses, |enc| splats.draw(enc, &self.pipeline, framebuffer));
+    }
+}
+
+impl ComputeAttribute {
+    /// The pass for `variant`.
+    pub fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self> {
+        Scatter::new(device, layout, shaders::ATTRIBUTE_COMPUTE, variant).map(Self)
+    }
+
+    /// `splats`, `targets.visibility` → `targets.sums0`, `targets.sums1`, which are cleared before.
+    pub fn record(&self, rec: &mut Recorder<'_>, splats: &Splats, pixels: &PixelSet, targets: &Buffers) {
+        let sums = || [Some(&targets.sums0), targets.sums1.as_ref()].into_iter().flatten();
+        let used = |access| sums().map(move |buffer| buffer.with(access));
+        let cleared: Vec<Use> = used(Access::COPY_WRITE).collect();
+        rec.pass("clear", &cleared, |enc| sums().for_each(|buffer| enc.zero(buffer)));
+        let mut uses = splats.read_by_scatter();
+        uses.push(targets.visibility.with(Access::COMPUTE_READ));
+        uses.extend(used(Access::COMPUTE_WRITE));
+        rec.pass("attribute", &uses, |enc| self.0.record(enc, splats, pixels));
     }
 }

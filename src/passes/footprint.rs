@@ -3,7 +3,7 @@
 use super::{SplatLayout, Splats};
 use crate::error::Result;
 use crate::variant::Variant;
-use crate::vk::{Access, ComputePipeline, Device, Recorder, shaders};
+use crate::vk::{ComputePipeline, Device, Recorder, shaders};
 use std::sync::Arc;
 
 /// Surfels in a workgroup of `footprint.glsl`.
@@ -19,28 +19,21 @@ impl Footprint {
     /// The pass for `variant`.
     pub fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self> {
         let code = shaders::FOOTPRINT_COMPUTE;
-        Ok(Self {
-            pipeline: ComputePipeline::new(device, &layout.0, code, &variant.constants())?,
-            count: variant.count,
-        })
+        let pipeline = ComputePipeline::new(device, &[&layout.splats], code, &variant.constants())?;
+        Ok(Self { pipeline, count: variant.count })
     }
 
     /// Surfels of the scene → `splats`, and their counts.
     pub fn record(&self, rec: &mut Recorder<'_>, splats: &Splats) {
-        let counts = splats.counts_buffer();
-        if self.count {
-            rec.pass("count", &[counts.with(Access::COPY_WRITE)], |enc| enc.zero(counts));
-        }
-        let write = Access::COMPUTE_WRITE;
-        let uses = [splats.with(write), counts.with(write)];
-        let uses = if self.count { &uses[..] } else { &uses[..1] };
-        rec.pass("footprint", uses, |enc| {
+        splats.record_clear(rec, self.count);
+        rec.pass("footprint", &splats.made(self.count), |enc| {
             for window in splats.windows() {
-                enc.dispatch(&self.pipeline, &window.set, window.count, window.count.div_ceil(WORKGROUP));
+                let workgroups = [window.count.div_ceil(WORKGROUP), 1];
+                enc.dispatch(&self.pipeline, &[&window.set], window.count, workgroups);
             }
         });
         if self.count {
-            rec.pass("count", &[counts.with(Access::HOST_READ)], |_| {});
+            splats.record_counted(rec);
         }
     }
 }

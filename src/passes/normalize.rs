@@ -1,70 +1,112 @@
 //! Normalize: weighted sums → picture, normal, depth (zwicker2004 §6, third pass; `normalize.glsl`).
 
+use super::{PixelSet, SplatLayout};
 use crate::error::Result;
-use crate::targets::{Formats, Targets};
+use crate::targets::{Buffers, Formats, Images};
 use crate::variant::Variant;
 use crate::vk::{
-    Access, Attachment, Binding, Blend, Buffer, DepthTest, DescriptorSet, Device, DrawPipeline, DrawState,
-    Framebuffer, Recorder, RenderPass, SetLayout, shaders,
+    Access, Attachment, Binding, Blend, Buffer, ComputePipeline, DepthTest, DescriptorSet, Device, DrawPipeline,
+    DrawState, Framebuffer, Recorder, RenderPass, SetLayout, shaders,
 };
 use ash::vk::{DescriptorType, ShaderStageFlags};
 use std::sync::Arc;
 
-/// The normalize pass.
-pub struct Normalize {
-    layout: SetLayout,
+/// Pixels in a workgroup of `normalize.glsl`.
+const WORKGROUP: u64 = 64;
+/// Workgroups in a row of the dispatch; every device allows as many.
+const WORKGROUPS_X: u32 = 32_768;
+
+/// The normalize pass as a draw over the whole picture.
+pub struct DrawNormalize {
+    frame_layout: SetLayout,
+    sums_layout: SetLayout,
     pass: RenderPass,
     pipeline: DrawPipeline,
 }
 
-impl Normalize {
+/// What a [`DrawNormalize`] draws to and reads.
+pub struct NormalizeViews {
+    framebuffer: Framebuffer,
+    frame: DescriptorSet,
+    sums: DescriptorSet,
+}
+
+/// The normalize pass as an invocation a pixel.
+pub struct ComputeNormalize {
+    frame_layout: SetLayout,
+    pipeline: ComputePipeline,
+}
+
+fn frame_layout(device: &Arc<Device>) -> Result<SetLayout> {
+    let stages = ShaderStageFlags::COMPUTE | ShaderStageFlags::ALL_GRAPHICS;
+    SetLayout::new(device, &[(DescriptorType::UNIFORM_BUFFER, stages)])
+}
+
+impl DrawNormalize {
     /// The pass for `variant`.
     pub fn new(device: &Arc<Device>, variant: &Variant) -> Result<Self> {
+        let frame_layout = frame_layout(device)?;
         let sampled = (DescriptorType::SAMPLED_IMAGE, ShaderStageFlags::FRAGMENT);
-        let frame = (DescriptorType::UNIFORM_BUFFER, ShaderStageFlags::ALL_GRAPHICS);
-        let layout = SetLayout::new(device, &[frame, sampled, sampled, sampled])?;
+        let sums_layout = SetLayout::new(device, &[sampled; 3])?;
         let formats = Formats::of(variant);
         let optional = |format: Option<_>| format.map_or(Attachment::Absent, Attachment::Overwritten);
-        let outputs =
-            [Attachment::Overwritten(formats.image), optional(formats.normal), optional(formats.depth)];
+        let outputs = [Attachment::Overwritten(formats.image), optional(formats.normal), optional(formats.depth)];
         let pass = RenderPass::new(device, &outputs, None)?;
         let code = [shaders::NORMALIZE_VERTEX, shaders::NORMALIZE_FRAGMENT];
         let state = DrawState { depth: DepthTest::None, blend: Blend::Replace };
-        let pipeline = DrawPipeline::new(device, &layout, code, &variant.constants(), &pass, state)?;
-        Ok(Self { layout, pass, pipeline })
+        let sets = [&frame_layout, &sums_layout];
+        let pipeline = DrawPipeline::new(device, &sets, code, &variant.constants(), &pass, state)?;
+        Ok(Self { frame_layout, sums_layout, pass, pipeline })
     }
 
-    /// The pass's view of `targets`: what it writes and what it reads. `frame` and `targets` must outlive both.
-    pub fn bind(
-        &self,
-        device: &Arc<Device>,
-        frame: &Buffer,
-        targets: &Targets,
-    ) -> Result<(Framebuffer, DescriptorSet)> {
-        let images: Vec<_> = targets.read_back().collect();
-        let framebuffer = Framebuffer::new(device, &self.pass, &images)?;
+    /// The pass's views of `targets`, which must outlive them, as must `frame`.
+    pub fn views(&self, device: &Arc<Device>, frame: &Buffer, targets: &Images) -> Result<NormalizeViews> {
+        let outputs: Vec<_> = targets.outputs().collect();
         // Absent sums are not read; something must stand at their binding all the same.
         let sums1 = targets.sums1.as_ref().unwrap_or(&targets.sums0);
-        let [visibility, sums0, sums1] = [&targets.visibility, &targets.sums0, sums1].map(Binding::Sampled);
-        let set =
-            DescriptorSet::new(device, &self.layout, &[Binding::Uniform(frame), visibility, sums0, sums1])?;
-        Ok((framebuffer, set))
+        let read = [&targets.visibility, &targets.sums0, sums1].map(Binding::Sampled);
+        Ok(NormalizeViews {
+            framebuffer: Framebuffer::new(device, &self.pass, &outputs)?,
+            frame: DescriptorSet::new(device, &self.frame_layout, &[Binding::Uniform(frame)])?,
+            sums: DescriptorSet::new(device, &self.sums_layout, &read)?,
+        })
     }
 
     /// `targets.visibility`, `sums0`, `sums1` → `image`, `normal`, `depth`.
-    pub fn record(
-        &self,
-        rec: &mut Recorder<'_>,
-        (framebuffer, set): &(Framebuffer, DescriptorSet),
-        targets: &Targets,
-    ) {
-        let read =
-            [Some(&targets.visibility), Some(&targets.sums0), targets.sums1.as_ref()].into_iter().flatten();
+    pub fn record(&self, rec: &mut Recorder<'_>, views: &NormalizeViews, targets: &Images) {
+        let read = [Some(&targets.visibility), Some(&targets.sums0), targets.sums1.as_ref()].into_iter().flatten();
         let read = read.map(|image| image.with(Access::FRAGMENT_READ));
-        let written = targets.read_back().map(|image| image.with(Access::COLOUR_WRITE));
+        let written = targets.outputs().map(|image| image.with(Access::COLOUR_WRITE));
         let uses: Vec<_> = read.chain(written).collect();
         rec.pass("normalize", &uses, |enc| {
-            enc.render(framebuffer, |draws| draws.draw(&self.pipeline, set, 3));
+            enc.render(&views.framebuffer, |draws| {
+                draws.draw(&self.pipeline, &[&views.frame, &views.sums], 3);
+            });
         });
+    }
+}
+
+impl ComputeNormalize {
+    /// The pass for `variant`.
+    pub fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self> {
+        let frame_layout = frame_layout(device)?;
+        let sets = [&frame_layout, &layout.pixels];
+        let pipeline = ComputePipeline::new(device, &sets, shaders::NORMALIZE_COMPUTE, &variant.constants())?;
+        Ok(Self { frame_layout, pipeline })
+    }
+
+    /// The pass's view of `frame`, which must outlive it.
+    pub fn view(&self, device: &Arc<Device>, frame: &Buffer) -> Result<DescriptorSet> {
+        DescriptorSet::new(device, &self.frame_layout, &[Binding::Uniform(frame)])
+    }
+
+    /// `targets.visibility`, `sums0`, `sums1` → `picture`.
+    pub fn record(&self, rec: &mut Recorder<'_>, frame: &DescriptorSet, pixels: &PixelSet, targets: &Buffers) {
+        let read = [Some(&targets.visibility), Some(&targets.sums0), targets.sums1.as_ref()].into_iter().flatten();
+        let mut uses: Vec<_> = read.map(|buffer| buffer.with(Access::COMPUTE_READ)).collect();
+        uses.push(targets.picture.with(Access::COMPUTE_WRITE));
+        let workgroups = targets.pixels().div_ceil(WORKGROUP) as u32;
+        let grid = [workgroups.min(WORKGROUPS_X), workgroups.div_ceil(WORKGROUPS_X)];
+        rec.pass("normalize", &uses, |enc| enc.dispatch(&self.pipeline, &[frame, &pixels.0], 0, grid));
     }
 }

@@ -1,19 +1,29 @@
-//! The splats between the footprint pass, which writes them, and the passes that draw them.
+//! The splats between the footprint pass, which writes them, and the passes that rasterize them.
 
+use super::scatter::pixel_layout;
 use crate::error::Result;
 use crate::scene::Scene;
-use crate::vk::shaders::layout::{Counts, Splat};
-use crate::vk::{Access, Binding, Buffer, Commands, DescriptorSet, Device, SetLayout, Use};
+use crate::variant::Rasterizer;
+use crate::vk::shaders::layout::{Counts, LargeSplats, Splat};
+use crate::vk::{
+    Access, Binding, Buffer, Commands, DescriptorSet, Device, DrawPipeline, Encoder, Framebuffer, Recorder, SetLayout, Use,
+};
 use ash::vk::{DescriptorType, ShaderStageFlags};
+use std::ops::Range;
 use std::sync::Arc;
 
-/// Layout of descriptor set 0 of the footprint, visibility and attribute passes.
-pub struct SplatLayout(pub(super) SetLayout);
+/// Layouts of descriptor sets 0 and 1 of the footprint, visibility and attribute passes.
+pub struct SplatLayout {
+    pub(super) splats: SetLayout,
+    pub(super) pixels: SetLayout,
+}
 
 /// A splat a surfel, with descriptor sets over windows of surfels and splats.
 pub struct Splats {
     splats: Buffer,
     counts: Buffer,
+    /// Indices of splats of many pixels, a list a window; only for the compute rasterizer.
+    large: Option<Buffer>,
     windows: Vec<Window>,
 }
 
@@ -21,46 +31,64 @@ pub struct Splats {
 pub(super) struct Window {
     pub(super) set: DescriptorSet,
     pub(super) count: u32,
+    /// Where its list of large splats starts, bytes.
+    list: u64,
 }
 
+/// Bytes before the indices of a list of large splats.
+const LIST_HEADER: u64 = size_of::<LargeSplats>() as u64;
+
 impl SplatLayout {
-    /// Bindings as in `lib/frame.glsl`, `lib/splat.glsl`, `footprint.glsl` and `attribute.glsl`.
+    /// Bindings as in `lib/frame.glsl`, `lib/splat.glsl`, `footprint.glsl`, `attribute.glsl` and `lib/scatter_splat.glsl`.
     pub fn new(device: &Arc<Device>) -> Result<Self> {
         let (compute, vertex) = (ShaderStageFlags::COMPUTE, ShaderStageFlags::VERTEX);
         let storage = |stages| (DescriptorType::STORAGE_BUFFER, stages);
         let frame = (DescriptorType::UNIFORM_BUFFER, compute | ShaderStageFlags::ALL_GRAPHICS);
-        let layout = SetLayout::new(
-            device,
-            &[
-                frame,
-                storage(compute | vertex), // splats
-                storage(compute),          // positions
-                storage(compute | vertex), // normals
-                storage(compute),          // radii
-                storage(vertex),           // colours
-                storage(compute),          // counts
-            ],
-        )?;
-        Ok(Self(layout))
+        let bindings = [
+            frame,
+            storage(compute | vertex), // splats
+            storage(compute),          // positions
+            storage(compute | vertex), // normals
+            storage(compute),          // radii
+            storage(compute | vertex), // colours
+            storage(compute),          // counts
+            storage(compute),          // large splats
+        ];
+        Ok(Self { splats: SetLayout::new(device, &bindings)?, pixels: pixel_layout(device)? })
     }
 }
 
 impl Splats {
     /// Room for the splats of `scene`. `frame` and `scene` must outlive it.
-    pub fn new(device: &Arc<Device>, layout: &SplatLayout, frame: &Buffer, scene: &Scene) -> Result<Self> {
+    pub fn new(
+        device: &Arc<Device>,
+        layout: &SplatLayout,
+        frame: &Buffer,
+        scene: &Scene,
+        rasterizer: Rasterizer,
+    ) -> Result<Self> {
         let stride = size_of::<Splat>() as u64;
         let splats = Buffer::storage(device, "splats", scene.count() * stride)?;
         let counts = Buffer::readback(device, "counts", size_of::<Counts>() as u64)?;
-        let window = |range: &std::ops::Range<u64>| {
-            let count = range.end - range.start;
-            let [positions, normals, radii, colours] = scene.bindings(range);
-            let splats = Binding::Storage(&splats, range.start * stride, count * stride);
-            let tally = Binding::Storage(&counts, 0, counts.size());
-            let bindings = [Binding::Uniform(frame), splats, positions, normals, radii, colours, tally];
-            Ok(Window { set: DescriptorSet::new(device, &layout.0, &bindings)?, count: count as u32 })
+        let lists = scene.windows().len() as u64 * LIST_HEADER + 4 * scene.count();
+        let large = match rasterizer {
+            Rasterizer::Draw => None,
+            Rasterizer::Compute => Some(Buffer::storage(device, "large splats", lists)?),
         };
-        let windows = scene.windows().iter().map(window).collect::<Result<_>>()?;
-        Ok(Self { splats, counts, windows })
+        let window = |(number, range): (u64, &Range<u64>)| {
+            let count = range.end - range.start;
+            let list = number * LIST_HEADER + 4 * range.start;
+            let [positions, normals, radii, colours] = scene.bindings(range);
+            let own = Binding::Storage(&splats, range.start * stride, count * stride);
+            let tally = Binding::Storage(&counts, 0, counts.size());
+            // Without the compute rasterizer nothing is listed, and the counts stand in.
+            let large = large.as_ref().map_or(tally, |large| Binding::Storage(large, list, LIST_HEADER + 4 * count));
+            let bindings = [Binding::Uniform(frame), own, positions, normals, radii, colours, tally, large];
+            let set = DescriptorSet::new(device, &layout.splats, &bindings)?;
+            Ok(Window { set, count: count as u32, list })
+        };
+        let windows = (0..).zip(scene.windows()).map(window).collect::<Result<_>>()?;
+        Ok(Self { splats, counts, large, windows })
     }
 
     /// Memory of the splats, bytes.
@@ -76,13 +104,58 @@ impl Splats {
         self.splats.with(access)
     }
 
-    pub(super) fn counts_buffer(&self) -> &Buffer {
-        &self.counts
+    /// What is touched when the splats are made: themselves, the counts where `count`, the lists where there are any.
+    pub(super) fn made(&self, count: bool) -> Vec<Use> {
+        let write = Access::COMPUTE_WRITE;
+        let counts = count.then(|| self.counts.with(write));
+        [Some(self.with(write)), counts, self.large.as_ref().map(|large| large.with(write))].into_iter().flatten().collect()
+    }
+
+    /// What the compute rasterizer reads.
+    pub(super) fn read_by_scatter(&self) -> Vec<Use> {
+        let read = Access::COMPUTE_READ;
+        [Some(self.with(read)), self.large.as_ref().map(|large| large.with(read))].into_iter().flatten().collect()
+    }
+
+    /// Draws every splat's triangle into `framebuffer`.
+    pub(super) fn draw(&self, enc: &mut Encoder<'_>, pipeline: &DrawPipeline, framebuffer: &Framebuffer) {
+        enc.render(framebuffer, |draws| {
+            for window in &self.windows {
+                draws.draw(pipeline, &[&window.set], 3 * window.count);
+            }
+        });
+    }
+
+    /// Empties counts, where `count`, and lists.
+    pub(super) fn record_clear(&self, rec: &mut Recorder<'_>, count: bool) {
+        let uses = [count.then_some(&self.counts), self.large.as_ref()].into_iter().flatten();
+        let uses: Vec<_> = uses.map(|buffer| buffer.with(Access::COPY_WRITE)).collect();
+        if uses.is_empty() {
+            return;
+        }
+        rec.pass("clear", &uses, |enc| {
+            if count {
+                enc.zero(&self.counts);
+            }
+            if let Some(large) = &self.large {
+                self.windows.iter().for_each(|window| enc.zero_range(large, window.list, 4));
+            }
+        });
+    }
+
+    /// Leaves the counts ready for the CPU.
+    pub(super) fn record_counted(&self, rec: &mut Recorder<'_>) {
+        rec.wait(&[self.counts.with(Access::HOST_READ)]);
     }
 
     /// The last counted frame's counts; it must be over.
     pub fn counts(&self) -> Counts {
         bytemuck::pod_read_unaligned(&self.counts.bytes()[..size_of::<Counts>()])
+    }
+
+    /// Memory of the splats and what belongs to them, bytes.
+    pub fn bytes(&self) -> u64 {
+        self.splats.size() + self.counts.size() + self.large.as_ref().map_or(0, Buffer::size)
     }
 
     /// Copies the splats of the last frame, one a surfel, to the CPU.
@@ -92,7 +165,7 @@ impl Splats {
         Commands::new(device, false)?.run(|rec| {
             let uses = [self.splats.with(Access::COPY_READ), target.with(Access::COPY_WRITE)];
             rec.pass("read splats", &uses, |enc| enc.copy(&self.splats, &target, 0, size));
-            rec.pass("read splats", &[target.with(Access::HOST_READ)], |_| {});
+            rec.wait(&[target.with(Access::HOST_READ)]);
         })?;
         Ok(bytemuck::pod_collect_to_vec(target.bytes()))
     }

@@ -70,8 +70,14 @@ impl Device {
         let capabilities = Capabilities::query(&instance, physical, family, &options.limits);
         let queues =
             [vk::DeviceQueueCreateInfo::default().queue_family_index(family).queue_priorities(&[1.0])];
-        let info = vk::DeviceCreateInfo::default().queue_create_infos(&queues);
-        // SAFETY: the physical device is the instance's, the family one of its own, and no feature is asked for.
+        let mut atomics =
+            vk::PhysicalDeviceShaderAtomicFloatFeaturesEXT::default().shader_buffer_float32_atomic_add(true);
+        let extensions = [ash::ext::shader_atomic_float::NAME.as_ptr()];
+        let mut info = vk::DeviceCreateInfo::default().queue_create_infos(&queues);
+        if capabilities.float_atomics {
+            info = info.enabled_extension_names(&extensions).push_next(&mut atomics);
+        }
+        // SAFETY: the physical device is the instance's, the family one of its own, and it has the one extension asked for.
         let raw = unsafe { instance.raw.create_device(physical, &info, None) }
             .map_err(|result| Error::NoDevice(format!("{}: vkCreateDevice: {result}", description.name)))?;
         // SAFETY: the queue was asked for above.

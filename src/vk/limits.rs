@@ -13,6 +13,8 @@ use ash::vk;
 pub struct DeviceLimits {
     /// `false`: 32-bit float targets cannot be blended.
     pub blend_float32: Option<bool>,
+    /// `false`: 32-bit floats in buffers cannot be added to atomically.
+    pub float_atomics: Option<bool>,
     /// `false`: the queue has no timestamps.
     pub timestamps: Option<bool>,
     /// Upper bound of `maxStorageBufferRange`, bytes.
@@ -26,6 +28,8 @@ pub struct DeviceLimits {
 pub struct Capabilities {
     /// R32F and RGBA32F render targets can be blended.
     pub blend_float32: bool,
+    /// 32-bit floats in storage buffers can be added to atomically (VK_EXT_shader_atomic_float).
+    pub float_atomics: bool,
     /// Nanoseconds a timestamp tick, and the mask of valid bits; `None` without timestamps.
     pub timestamps: Option<(f32, u64)>,
     /// Largest range of a storage buffer that one descriptor may name, bytes.
@@ -70,6 +74,7 @@ impl Capabilities {
         Self {
             blend_float32: [vk::Format::R32_SFLOAT, vk::Format::R32G32B32A32_SFLOAT].into_iter().all(blends)
                 && mask.blend_float32 != Some(false),
+            float_atomics: mask.float_atomics != Some(false) && has_float_atomics(instance, physical),
             timestamps: timestamps
                 .then_some((limits.timestamp_period, u64::MAX >> (64 - valid_bits.clamp(1, 64)))),
             max_storage_buffer_range: u64::from(limits.max_storage_buffer_range)
@@ -80,4 +85,18 @@ impl Capabilities {
             debug_labels: instance.debug_utils,
         }
     }
+}
+
+fn has_float_atomics(instance: &Instance, physical: vk::PhysicalDevice) -> bool {
+    // SAFETY: `physical` is one of the instance's devices.
+    let extensions = unsafe { instance.raw.enumerate_device_extension_properties(physical) }.unwrap_or_default();
+    let name = ash::ext::shader_atomic_float::NAME;
+    if !extensions.iter().any(|extension| extension.extension_name_as_c_str() == Ok(name)) {
+        return false;
+    }
+    let mut atomics = vk::PhysicalDeviceShaderAtomicFloatFeaturesEXT::default();
+    let mut features = vk::PhysicalDeviceFeatures2::default().push_next(&mut atomics);
+    // SAFETY: as above; the device has the extension that the struct belongs to.
+    unsafe { instance.raw.get_physical_device_features2(physical, &mut features) };
+    atomics.shader_buffer_float32_atomic_add == vk::TRUE
 }

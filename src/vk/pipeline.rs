@@ -73,9 +73,9 @@ pub struct ComputePipeline(Raw);
 pub struct DrawPipeline(Raw);
 
 impl ComputePipeline {
-    /// A pipeline of the SPIR-V `code`.
-    pub fn new(device: &Arc<Device>, set: &SetLayout, code: &[u32], constants: &Constants) -> Result<Self> {
-        let mut raw = Raw::new(device, set, vk::ShaderStageFlags::COMPUTE)?;
+    /// A pipeline of the SPIR-V `code`; `sets` are the layouts of its descriptor sets 0, 1, ….
+    pub fn new(device: &Arc<Device>, sets: &[&SetLayout], code: &[u32], constants: &Constants) -> Result<Self> {
+        let mut raw = Raw::new(device, sets, vk::ShaderStageFlags::COMPUTE)?;
         let module = Module::new(device, code)?;
         let specialization = constants.info();
         let info = vk::ComputePipelineCreateInfo::default()
@@ -93,16 +93,16 @@ impl ComputePipeline {
 }
 
 impl DrawPipeline {
-    /// A pipeline of the SPIR-V `[vertex, fragment]` for `pass`.
+    /// A pipeline of the SPIR-V `[vertex, fragment]` for `pass`; `sets` are the layouts of its descriptor sets 0, 1, ….
     pub fn new(
         device: &Arc<Device>,
-        set: &SetLayout,
+        sets: &[&SetLayout],
         [vertex, fragment]: [&[u32]; 2],
         constants: &Constants,
         pass: &RenderPass,
         state: DrawState,
     ) -> Result<Self> {
-        let mut raw = Raw::new(device, set, vk::ShaderStageFlags::VERTEX | vk::ShaderStageFlags::FRAGMENT)?;
+        let mut raw = Raw::new(device, sets, vk::ShaderStageFlags::VERTEX | vk::ShaderStageFlags::FRAGMENT)?;
         let modules = [Module::new(device, vertex)?, Module::new(device, fragment)?];
         let specialization = constants.info();
         let stages = [
@@ -175,8 +175,8 @@ impl Blend {
 }
 
 impl Raw {
-    fn new(device: &Arc<Device>, set: &SetLayout, stages: vk::ShaderStageFlags) -> Result<Self> {
-        let sets = [set.raw];
+    fn new(device: &Arc<Device>, sets: &[&SetLayout], stages: vk::ShaderStageFlags) -> Result<Self> {
+        let sets: Vec<_> = sets.iter().map(|set| set.raw).collect();
         let constants = [vk::PushConstantRange { stage_flags: stages, offset: 0, size: 4 }];
         let mut info = vk::PipelineLayoutCreateInfo::default().set_layouts(&sets);
         if stages == vk::ShaderStageFlags::COMPUTE {

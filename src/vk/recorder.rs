@@ -23,6 +23,9 @@ impl Access {
         ),
         true,
     );
+    /// Read by a compute shader.
+    pub const COMPUTE_READ: Self =
+        Self::buffer(vk::PipelineStageFlags::COMPUTE_SHADER, vk::AccessFlags::SHADER_READ, false);
     /// Read by a vertex shader.
     pub const VERTEX_READ: Self =
         Self::buffer(vk::PipelineStageFlags::VERTEX_SHADER, vk::AccessFlags::SHADER_READ, false);
@@ -179,6 +182,11 @@ impl<'a> Recorder<'a> {
         }
     }
 
+    /// Waits for what `uses` need: for work after the frame, such as the CPU's.
+    pub fn wait(&mut self, uses: &[Use]) {
+        self.barrier(uses);
+    }
+
     /// One barrier for everything that a pass touches.
     fn barrier(&mut self, uses: &[Use]) {
         let mut source = vk::PipelineStageFlags::empty();
@@ -285,8 +293,9 @@ pub struct Encoder<'a> {
 }
 
 impl Encoder<'_> {
-    /// Runs `workgroups` workgroups with `push` as the push constant.
-    pub fn dispatch(&mut self, pipeline: &ComputePipeline, set: &DescriptorSet, push: u32, workgroups: u32) {
+    /// Runs `x` by `y` workgroups with `push` as the push constant.
+    pub fn dispatch(&mut self, pipeline: &ComputePipeline, sets: &[&DescriptorSet], push: u32, [x, y]: [u32; 2]) {
+        let sets: Vec<_> = sets.iter().map(|set| set.raw).collect();
         let (pipeline, layout) = pipeline.raw();
         let point = vk::PipelineBindPoint::COMPUTE;
         let stage = vk::ShaderStageFlags::COMPUTE;
@@ -294,9 +303,9 @@ impl Encoder<'_> {
         unsafe {
             let raw = &self.device.raw;
             raw.cmd_bind_pipeline(self.cmd, point, pipeline);
-            raw.cmd_bind_descriptor_sets(self.cmd, point, layout, 0, &[set.raw], &[]);
+            raw.cmd_bind_descriptor_sets(self.cmd, point, layout, 0, &sets, &[]);
             raw.cmd_push_constants(self.cmd, layout, stage, 0, &push.to_ne_bytes());
-            raw.cmd_dispatch(self.cmd, workgroups, 1, 1);
+            raw.cmd_dispatch(self.cmd, x, y, 1);
         }
     }
 
@@ -330,8 +339,13 @@ impl Encoder<'_> {
 
     /// Sets every byte of `buffer` to 0.
     pub fn zero(&mut self, buffer: &Buffer) {
+        self.zero_range(buffer, 0, vk::WHOLE_SIZE);
+    }
+
+    /// Sets `size` bytes of `buffer` from `offset` on to 0; both are multiples of 4.
+    pub fn zero_range(&mut self, buffer: &Buffer, offset: u64, size: u64) {
         // SAFETY: recorded outside a render pass; the buffer is alive and can be copied to.
-        unsafe { self.device.raw.cmd_fill_buffer(self.cmd, buffer.raw, 0, vk::WHOLE_SIZE, 0) };
+        unsafe { self.device.raw.cmd_fill_buffer(self.cmd, buffer.raw, offset, size, 0) };
     }
 
     /// Copies `size` bytes from the start of `from` to the start of `to`.
@@ -368,14 +382,15 @@ pub struct Draws<'a> {
 
 impl Draws<'_> {
     /// Draws `vertices` vertices with `pipeline`, which was made for this render pass.
-    pub fn draw(&mut self, pipeline: &DrawPipeline, set: &DescriptorSet, vertices: u32) {
+    pub fn draw(&mut self, pipeline: &DrawPipeline, sets: &[&DescriptorSet], vertices: u32) {
+        let sets: Vec<_> = sets.iter().map(|set| set.raw).collect();
         let (pipeline, layout) = pipeline.raw();
         let point = vk::PipelineBindPoint::GRAPHICS;
         // SAFETY: recorded inside the render pass, with objects of one device that outlive the frame.
         unsafe {
             let raw = &self.device.raw;
             raw.cmd_bind_pipeline(self.cmd, point, pipeline);
-            raw.cmd_bind_descriptor_sets(self.cmd, point, layout, 0, &[set.raw], &[]);
+            raw.cmd_bind_descriptor_sets(self.cmd, point, layout, 0, &sets, &[]);
             raw.cmd_draw(self.cmd, vertices, 1, 0, 0);
         }
     }
