@@ -4,13 +4,13 @@ use super::args::Render;
 use super::inputs::Inputs;
 use super::render::{Outcome, Task};
 use super::times::Statistics;
-use serde::Serialize;
 use serde_json::{Map, Value, json};
 use std::path::Path;
 use surfel::io::ply::Dropped;
 use surfel::settings::{Cull, DirectionalLight, Lighting, Shading};
+use surfel::targets::TargetInfo;
 use surfel::vk::{DeviceDescription, Usage};
-use surfel::{Error, Precision, Result, Settings, SplatCounts};
+use surfel::{Error, Precision, Rasterizer, Result, Settings, SplatCounts};
 
 /// What is known of the device and of what was made on it.
 pub struct Gpu {
@@ -18,8 +18,10 @@ pub struct Gpu {
     pub description: DeviceDescription,
     /// Float width of the sums.
     pub precision: Precision,
+    /// What visited the pixels.
+    pub rasterizer: Option<Rasterizer>,
     /// Every render target.
-    pub targets: Vec<Target>,
+    pub targets: Vec<TargetInfo>,
     /// Memory of the surfels, bytes.
     pub scene_bytes: u64,
     /// Memory of the splats, bytes.
@@ -28,17 +30,6 @@ pub struct Gpu {
     pub usage: Usage,
     /// What the layers had to say; empty unless they were asked for.
     pub validation_messages: Vec<String>,
-}
-
-/// A render target.
-#[derive(Serialize)]
-pub struct Target {
-    /// Name.
-    pub name: &'static str,
-    /// Vulkan's name of its format.
-    pub format: String,
-    /// Memory, bytes.
-    pub bytes: u64,
 }
 
 /// A report as a JSON object.
@@ -74,7 +65,8 @@ impl Report {
         let mut put = |key: &str, value: Option<Value>| self.0.insert(key.into(), json!(value));
         put("device", gpu.map(|gpu| device(&gpu.description)));
         put("precision", gpu.map(|gpu| json!(precision(gpu.precision))));
-        put("targets", gpu.map(|gpu| json!(gpu.targets)));
+        put("rasterizer", gpu.map(|gpu| json!(gpu.rasterizer.map(rasterizer))));
+        put("targets", gpu.map(|gpu| gpu.targets.iter().map(target).collect()));
         put("target_bytes", gpu.map(|gpu| json!(gpu.targets.iter().map(|target| target.bytes).sum::<u64>())));
         put("scene_bytes", gpu.map(|gpu| json!(gpu.scene_bytes)));
         put("splat_bytes", gpu.map(|gpu| json!(gpu.splat_bytes)));
@@ -101,6 +93,17 @@ fn precision(precision: Precision) -> &'static str {
         Precision::Full => "full",
         Precision::Half => "half",
     }
+}
+
+fn rasterizer(rasterizer: Rasterizer) -> &'static str {
+    match rasterizer {
+        Rasterizer::Draw => "draw",
+        Rasterizer::Compute => "compute",
+    }
+}
+
+fn target(target: &TargetInfo) -> Value {
+    json!({ "name": target.name, "format": format!("{:?}", target.format), "bytes": target.bytes })
 }
 
 fn settings(settings: &Settings) -> Value {

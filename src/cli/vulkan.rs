@@ -3,7 +3,7 @@
 use super::args::Place;
 use super::files::{cache_folder, read_json};
 use super::render::{Outcome, Task};
-use super::report::{Gpu, Target};
+use super::report::Gpu;
 use super::times::Times;
 use std::sync::Arc;
 use std::time::Instant;
@@ -30,6 +30,7 @@ pub fn render(task: &Task<'_>, options: &DeviceOptions, half: bool, measure: boo
         precision: if half { Precision::Half } else { Precision::Full },
         profile: measure,
         count: measure,
+        ..Default::default()
     };
     let mut renderer = Renderer::new(&device, options)?;
     let scene = Scene::upload(&device, task.surfels)?;
@@ -55,15 +56,11 @@ fn outputs(task: &Task<'_>) -> Outputs {
 }
 
 fn gpu(device: &Arc<Device>, renderer: &Renderer, scene: &Scene) -> Gpu {
-    let target = |(name, image): (&'static str, &surfel::vk::Image)| Target {
-        name,
-        format: format!("{:?}", image.format()),
-        bytes: image.bytes(),
-    };
     Gpu {
         description: device.description().clone(),
         precision: renderer.precision(),
-        targets: renderer.targets().map(|targets| targets.list().map(target).collect()).unwrap_or_default(),
+        rasterizer: renderer.rasterizer(),
+        targets: renderer.targets(),
         scene_bytes: scene.bytes(),
         splat_bytes: renderer.splats().map_or(0, surfel::passes::Splats::bytes),
         usage: device.usage(),

@@ -91,11 +91,6 @@ impl Splats {
         Ok(Self { splats, counts, large, windows })
     }
 
-    /// Memory of the splats, bytes.
-    pub fn bytes(&self) -> u64 {
-        self.splats.size()
-    }
-
     pub(super) fn windows(&self) -> &[Window] {
         &self.windows
     }
