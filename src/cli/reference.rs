@@ -3,10 +3,19 @@
 use super::render::{Outcome, Task};
 use super::times::Times;
 use std::time::Instant;
-use surfel::{Result, SplatCounts, reference};
+use surfel::{Error, Result, SplatCounts, reference};
+
+/// Most pixels of a picture: they take some 5 GiB in float64, and running out of memory would stop the process.
+const MOST_PIXELS: u64 = 1 << 26;
 
 /// Renders `task` with the float64 reference, as many times as it asks for.
 pub fn render(task: &Task<'_>) -> Result<Outcome> {
+    let [width, height] = task.size;
+    if u64::from(width) * u64::from(height) > MOST_PIXELS {
+        let text =
+            format!("a picture of {width}x{height} px: the reference renders at most {MOST_PIXELS} pixels");
+        return Err(Error::Usage(text));
+    }
     let mut times = Times::default();
     let mut frame = None;
     for _ in 0..task.frames {

@@ -73,6 +73,9 @@ fn wrong_arguments_exit_with_2_before_anything_is_read() {
     assert!(program.run("render -o out.png").error(2).contains("<INPUT>"));
     assert!(program.run("render a.ply -o out.jpg").error(2).contains("name the file .png or .exr"));
     assert!(program.run("render scene:teapot -o out.png").error(2).contains("scene:bumpy-sphere"));
+    let run =
+        program.run("render scene:bumpy-sphere?points=9 -o out.png --reference --size 4294967295x4294967295");
+    assert!(run.error(2).contains("at most 67108864 pixels"), "{}", run.err);
     assert_eq!(program.run("").code, 2);
     assert!(program.files().is_empty());
 }
