@@ -1,2 +1,7 @@
-//! The `surfel` program.
-fn main() {}
+//! The `surfel` program: what it does is in `cli`.
+
+mod cli;
+
+fn main() -> std::process::ExitCode {
+    cli::run()
+}

@@ -2,6 +2,7 @@
 
 mod bounds;
 mod camera;
+mod merge;
 mod morton;
 mod surfels;
 

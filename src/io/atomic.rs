@@ -8,20 +8,37 @@ use tempfile::NamedTempFile;
 
 /// Writes `path` through a temporary file in the same folder that is renamed at the end, so that a failure leaves what was there before.
 /// What is no regular file (a device, a pipe) is written to directly.
-pub(crate) fn write(path: &Path, fill: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>) -> Result<()> {
-    // A link keeps its place: what it leads to is replaced.
-    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
-    let existing = fs::metadata(&target).ok();
+///
+/// # Errors
+/// [`Error::Io`] if the file cannot be written, or `fill` fails.
+pub fn write(path: &Path, fill: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>) -> Result<()> {
+    let (target, existing) = look_up(path);
     let done = match &existing {
-        Some(old) if old.is_dir() => {
-            Err(io::Error::new(ErrorKind::IsADirectory, "it is a folder: give a file name"))
-        }
-        Some(old) if !old.is_file() => {
+        Some(old) if !old.is_file() && !old.is_dir() => {
             File::options().write(true).open(&target).and_then(|file| fill_all(&file, fill))
         }
         _ => replace(&target, existing.as_ref(), fill),
     };
     done.map_err(Error::io(path, "cannot write"))
+}
+
+/// Refuses what [`write()`] would refuse, before there is anything to write. Leaves nothing behind.
+///
+/// # Errors
+/// [`Error::Io`] if the folder is missing or closed to us, or if `path` is a folder or write-protected.
+pub fn check(path: &Path) -> Result<()> {
+    let (target, existing) = look_up(path);
+    match &existing {
+        Some(old) if !old.is_file() && !old.is_dir() => Ok(()),
+        _ => temporary_for(&target, existing.as_ref()).map(drop).map_err(Error::io(path, "cannot write")),
+    }
+}
+
+/// Where `path` leads, and what is there now. A link keeps its place: what it leads to is replaced.
+fn look_up(path: &Path) -> (PathBuf, Option<Metadata>) {
+    let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
+    let existing = fs::metadata(&target).ok();
+    (target, existing)
 }
 
 fn fill_all(file: &File, fill: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>) -> io::Result<()> {
@@ -35,20 +52,28 @@ fn replace(
     existing: Option<&Metadata>,
     fill: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>,
 ) -> io::Result<()> {
-    // A rename would replace a write-protected file without asking.
-    if existing.is_some_and(|old| old.permissions().readonly()) {
-        return Err(io::Error::new(
-            ErrorKind::PermissionDenied,
-            "it is write-protected: unprotect it or write elsewhere",
-        ));
-    }
-    let folder = folder_of(target);
-    let temporary = temporary_in(&folder).map_err(|error| advise(&folder, error))?;
+    let temporary = temporary_for(target, existing)?;
     fill_all(temporary.as_file(), fill)?;
     if let Some(old) = existing {
         temporary.as_file().set_permissions(old.permissions())?;
     }
     temporary.persist(target).map(drop).map_err(|failed| failed.error)
+}
+
+/// The file that becomes `target`, which is `existing` now.
+fn temporary_for(target: &Path, existing: Option<&Metadata>) -> io::Result<NamedTempFile> {
+    let refuse = |kind, text: &str| Err(io::Error::new(kind, text));
+    match existing {
+        Some(old) if old.is_dir() => refuse(ErrorKind::IsADirectory, "it is a folder: give a file name"),
+        // A rename would replace a write-protected file without asking.
+        Some(old) if old.permissions().readonly() => {
+            refuse(ErrorKind::PermissionDenied, "it is write-protected: unprotect it or write elsewhere")
+        }
+        _ => {
+            let folder = folder_of(target);
+            temporary_in(&folder).map_err(|error| advise(&folder, error))
+        }
+    }
 }
 
 fn folder_of(target: &Path) -> PathBuf {
@@ -107,10 +132,25 @@ mod tests {
     fn errors_name_the_file_and_the_remedy() {
         let folder = tempfile::tempdir().unwrap();
         let missing = folder.path().join("none/a.png");
-        let text = write(&missing, |_| Ok(())).unwrap_err().to_string();
-        assert!(text.contains("none/a.png") && text.contains("does not exist: create it"), "{text}");
-        let text = write(folder.path(), |_| Ok(())).unwrap_err().to_string();
-        assert!(text.contains("it is a folder"), "{text}");
+        for result in [write(&missing, |_| Ok(())), check(&missing)] {
+            let text = result.unwrap_err().to_string();
+            assert!(text.contains("none/a.png") && text.contains("does not exist: create it"), "{text}");
+        }
+        for result in [write(folder.path(), |_| Ok(())), check(folder.path())] {
+            let text = result.unwrap_err().to_string();
+            assert!(text.contains("it is a folder"), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_check_changes_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a");
+        check(&path).unwrap();
+        assert!(names(folder.path()).is_empty());
+        write(&path, |out| out.write_all(b"old")).unwrap();
+        check(&path).unwrap();
+        assert_eq!((fs::read(&path).unwrap(), names(folder.path())), (b"old".to_vec(), vec!["a".to_owned()]));
     }
 
     #[cfg(unix)]

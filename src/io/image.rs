@@ -26,13 +26,13 @@ impl Output {
         if text == "-" { Self::Stdout } else { Self::File(text.into()) }
     }
 
-    /// Refuses a file that [`write()`] would, for lack of a known extension: before the picture is made, not after.
+    /// Refuses a file that [`write()`] would: before the picture is made, not after.
     ///
     /// # Errors
-    /// [`Error::Usage`] if the extension is neither png nor exr.
+    /// [`Error::Usage`] if the extension is neither png nor exr, [`Error::Io`] if no file can be written there.
     pub fn check(&self) -> Result<()> {
         match self {
-            Self::File(path) => Kind::of(path).map(drop),
+            Self::File(path) => Kind::of(path).and_then(|_| atomic::check(path)),
             Self::Stdout => Ok(()),
         }
     }

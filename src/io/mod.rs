@@ -1,6 +1,6 @@
 //! Files in and out.
 
-mod atomic;
+pub mod atomic;
 pub mod image;
 pub mod ply;
 pub mod srgb;

@@ -47,24 +47,31 @@ pub(super) fn choose(instance: &Instance, wanted: Option<&str>) -> Result<Candid
     if all.is_empty() {
         return Err(none("Vulkan lists no device; install a driver (Debian: mesa-vulkan-drivers)".into()));
     }
-    let fits = |index: usize, candidate: &Candidate| match wanted {
-        None => true,
-        Some(text) => match text.parse::<usize>() {
-            Ok(number) => number == index,
-            Err(_) => candidate.description.name.to_lowercase().contains(&text.to_lowercase()),
-        },
-    };
     let listed = listing();
-    all.into_iter()
+    let index = preferred(all.iter().map(|candidate| &candidate.description), wanted);
+    index.and_then(|index| all.into_iter().nth(index)).ok_or_else(|| match wanted {
+        Some(text) => none(format!("none that can be used fits `{text}`; there are: {listed}")),
+        None => none(format!("none can be used; there are: {listed}")),
+    })
+}
+
+/// Index of the device that is opened when `wanted` is asked for: of the usable ones that fit, the first with the highest score.
+pub fn preferred<'a>(
+    devices: impl IntoIterator<Item = &'a DeviceDescription>,
+    wanted: Option<&str>,
+) -> Option<usize> {
+    let fits = |index: usize, device: &DeviceDescription| match wanted.map(|text| (text, text.parse())) {
+        None => true,
+        Some((_, Ok(number))) => index == number,
+        Some((text, Err(_))) => device.name.to_lowercase().contains(&text.to_lowercase()),
+    };
+    devices
+        .into_iter()
         .enumerate()
-        .filter(|(index, candidate)| candidate.description.refused.is_none() && fits(*index, candidate))
+        .filter(|(index, device)| device.refused.is_none() && fits(*index, device))
         // The first of equals: `max_by_key` would take the last.
-        .min_by_key(|(_, candidate)| std::cmp::Reverse(candidate.description.score))
-        .map(|(_, candidate)| candidate)
-        .ok_or_else(|| match wanted {
-            Some(text) => none(format!("none that can be used fits `{text}`; there are: {listed}")),
-            None => none(format!("none can be used; there are: {listed}")),
-        })
+        .min_by_key(|(_, device)| std::cmp::Reverse(device.score))
+        .map(|(index, _)| index)
 }
 
 fn candidates(instance: &Instance) -> Result<Vec<Candidate>> {
@@ -128,4 +135,36 @@ fn text<E>(name: Result<&std::ffi::CStr, E>) -> String {
 
 fn version(v: u32) -> String {
     format!("{}.{}.{}", vk::api_version_major(v), vk::api_version_minor(v), vk::api_version_patch(v))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn device(name: &str, score: u32, refused: Option<&'static str>) -> DeviceDescription {
+        let (driver, api_version) = (String::new(), String::new());
+        DeviceDescription { name: name.into(), kind: "other", driver, api_version, refused, score }
+    }
+
+    #[test]
+    fn the_best_usable_device_that_fits_is_preferred() {
+        let devices = [
+            device("llvmpipe", 1, None),
+            device("Big One", 4, None),
+            device("Big Two", 4, None),
+            device("Old", 5, Some("it is older than Vulkan 1.1")),
+        ];
+        for (wanted, expected) in [
+            (None, Some(1)),
+            (Some("0"), Some(0)),
+            (Some("two"), Some(2)),
+            (Some("LLVM"), Some(0)),
+            (Some("old"), None),
+            (Some("3"), None),
+            (Some("7"), None),
+        ] {
+            assert_eq!(preferred(&devices, wanted), expected, "{wanted:?}");
+        }
+        assert_eq!(preferred([], None), None);
+    }
 }

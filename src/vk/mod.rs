@@ -23,7 +23,7 @@ mod transfer;
 mod validation;
 
 pub use buffer::Buffer;
-pub use choose::{DeviceDescription, describe_devices};
+pub use choose::{DeviceDescription, describe_devices, preferred};
 pub use commands::Commands;
 pub use descriptors::{Binding, DescriptorSet, SetLayout};
 pub use device::{Device, DeviceOptions, Usage};

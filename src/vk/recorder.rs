@@ -56,10 +56,14 @@ impl Access {
         layout: vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
         write: true,
     };
-    /// Tested against as the depth target.
+    /// Tested against as the depth target. Storing it at the render pass's end is a write, though nothing changes, that what comes later
+    /// must wait for.
     pub const DEPTH_TEST: Self = Self {
         stages: DEPTH_STAGES,
-        mask: vk::AccessFlags::DEPTH_STENCIL_ATTACHMENT_READ,
+        mask: vk::AccessFlags::from_raw(
+            vk::AccessFlags::DEPTH_STENCIL_ATTACHMENT_READ.as_raw()
+                | vk::AccessFlags::DEPTH_STENCIL_ATTACHMENT_WRITE.as_raw(),
+        ),
         layout: vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL,
         write: false,
     };

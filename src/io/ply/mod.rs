@@ -68,6 +68,28 @@ impl Dropped {
     }
 }
 
+/// A file's header, and its surfels if they could be had.
+#[derive(Debug)]
+pub struct Inspected {
+    /// Encoding of the records.
+    pub format: Format,
+    /// Everything that the header declares, in the file's order.
+    pub elements: Vec<Element>,
+    /// What [`read`] gives.
+    pub loaded: Result<Loaded>,
+}
+
+/// Looks at a PLY file whose surfels may be unusable: what its header declares is told all the same.
+///
+/// # Errors
+/// [`Error::Io`] if the file cannot be read; [`Error::Input`] if its header cannot.
+pub fn inspect(path: &Path) -> Result<Inspected> {
+    let (name, bytes) = (path.display().to_string(), map::open(path)?);
+    let header = header::parse(&bytes).map_err(|cause| Error::input(name.as_str(), cause))?;
+    let loaded = read_bytes(&name, &bytes);
+    Ok(Inspected { format: header.format, elements: header.elements, loaded })
+}
+
 /// Reads the surfels of a PLY file.
 ///
 /// Position from x y z of any type, in the file's unit; normal from nx ny nz or normal_x normal_y normal_z of any type and length; radius

@@ -1,0 +1,147 @@
+//! What the program can be asked.
+
+use super::values::{Background, Cull, Method, Shading, background, size, vector};
+use clap::{Args, Parser, Subcommand};
+use glam::DVec3;
+use std::ffi::OsString;
+use std::path::PathBuf;
+use surfel::Settings;
+
+/// Renders point-sampled surfaces with Vulkan.
+#[derive(Debug, Parser)]
+#[command(name = "surfel", version)]
+pub struct Surfel {
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Renders points to a picture
+    Render(Box<Render>),
+    /// Says what is in a file or scene
+    Info {
+        /// A PLY file, or a built-in scene such as scene:bumpy-sphere
+        input: OsString,
+    },
+    /// Lists the Vulkan devices; * marks the one that is used unless --device names another
+    Devices,
+}
+
+/// Options of `surfel render`.
+#[derive(Args, Debug)]
+pub struct Render {
+    /// PLY files, or built-in scenes such as scene:bumpy-sphere; several become one scene
+    #[arg(required = true, value_name = "INPUT")]
+    pub inputs: Vec<OsString>,
+    /// The picture: .png (sRGB, or `-` for standard output) or .exr (linear light)
+    #[arg(short, long, value_name = "OUT")]
+    pub output: OsString,
+    /// How points are rendered
+    #[arg(long, value_enum, default_value = "perspective-ewa")]
+    pub method: Method,
+    /// Size of the picture, px
+    #[arg(long, value_name = "WxH", default_value = "1024x1024", value_parser = size, allow_hyphen_values = true)]
+    pub size: [u32; 2],
+    /// Where the camera stands
+    #[command(flatten)]
+    pub camera: Camera,
+    /// How surfels become a picture
+    #[command(flatten)]
+    pub look: Look,
+    /// Where it is rendered
+    #[command(flatten)]
+    pub place: Place,
+    /// Writes a report: device, settings, counts, times; `-` for standard output
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<OsString>,
+    /// Prints how long each pass took
+    #[arg(long)]
+    pub times: bool,
+    /// Renders N times; the first frame warms up and does not count in the times unless it is the only one
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+    pub frames: u32,
+    /// Prints nothing but warnings and errors
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+/// The camera; the whole scene is framed unless it is given.
+#[derive(Args, Debug)]
+pub struct Camera {
+    /// Where it stands
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
+    pub eye: Option<DVec3>,
+    /// Where it looks; the middle of the scene unless given
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
+    pub target: Option<DVec3>,
+    /// What is up; 0,1,0 unless given
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
+    pub up: Option<DVec3>,
+    /// Vertical angle of view; 45 unless given
+    #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
+    pub fov: Option<f64>,
+    /// The camera from a file: {"eye":[0,0,3],"target":[0,0,0],"up":[0,1,0],"fov_y_deg":45}
+    #[arg(long = "camera", value_name = "FILE.json", conflicts_with_all = ["eye", "target", "up", "fov"])]
+    pub file: Option<PathBuf>,
+}
+
+/// How surfels become a picture.
+#[derive(Args, Debug)]
+pub struct Look {
+    /// What the picture shows
+    #[arg(long, value_enum, default_value = "lit")]
+    pub shading: Shading,
+    /// Colour where nothing is: transparent, or sRGB codes from 0 to 255
+    #[arg(long, value_name = "R,G,B|transparent", default_value = "transparent", value_parser = background, allow_hyphen_values = true)]
+    pub background: Background,
+    /// Variance of the anti-aliasing filter, px²
+    #[arg(long, value_name = "VARIANCE_PX2", default_value_t = Settings::default().lowpass, allow_hyphen_values = true)]
+    pub lowpass: f32,
+    /// Where a splat's kernel ends, in standard deviations
+    #[arg(long, value_name = "F", default_value_t = Settings::default().cutoff, allow_hyphen_values = true)]
+    pub cutoff: f32,
+    /// How far behind the nearest splat others still blend with it, in radii
+    #[arg(long, value_name = "RADII", default_value_t = Settings::default().epsilon, allow_hyphen_values = true)]
+    pub epsilon: f32,
+    /// Which surfels are left out for the side that they show
+    #[arg(long, value_enum, default_value = "none")]
+    pub cull: Cull,
+}
+
+impl Look {
+    /// The settings that this asks for.
+    pub fn settings(&self) -> Settings {
+        Settings {
+            cutoff: self.cutoff,
+            lowpass: self.lowpass,
+            epsilon: self.epsilon,
+            cull: self.cull.into(),
+            shading: self.shading.into(),
+            background: self.background.linear(),
+            ..Default::default()
+        }
+    }
+}
+
+/// Where it is rendered.
+#[derive(Args, Debug)]
+pub struct Place {
+    /// Renders with the float64 reference on the CPU, without Vulkan
+    #[arg(long, conflicts_with_all = ["half", "device", "validate", "device_limits"])]
+    pub reference: bool,
+    /// Keeps sums in 16-bit floats: half the memory, coarser
+    #[arg(long)]
+    pub half: bool,
+    /// The Vulkan device, by its index or a part of its name, as `surfel devices` lists it
+    #[arg(long, value_name = "INDEX|NAME")]
+    pub device: Option<String>,
+    /// Runs under the Vulkan validation layers; any message of theirs is an error
+    #[arg(long)]
+    pub validate: bool,
+    /// Restricts the device to what a JSON file allows, to test the fallbacks: {"max_image_side":4096}
+    #[arg(long, value_name = "FILE")]
+    pub device_limits: Option<PathBuf>,
+}

@@ -1,0 +1,43 @@
+//! The program's small files: JSON in, reports out, the cache's folder.
+
+use serde::de::DeserializeOwned;
+use std::ffi::OsString;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use surfel::io::atomic;
+use surfel::{Error, Result};
+
+/// Reads a JSON file; the error names the file and, by serde, the field.
+pub fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T> {
+    let text = std::fs::read(path).map_err(Error::io(path, "cannot read"))?;
+    let wrong = |error| Error::input(path.display().to_string(), format!("{error}: correct the file"));
+    serde_json::from_slice(&text).map_err(wrong)
+}
+
+/// Refuses a place where [`write_text`] could not write.
+pub fn check(place: &OsString) -> Result<()> {
+    if place == "-" { Ok(()) } else { atomic::check(Path::new(place)) }
+}
+
+/// Writes `text` to a file, whole or not at all, or to standard output if `place` is `-`.
+pub fn write_text(place: &OsString, text: &str) -> Result<()> {
+    match place == "-" {
+        true => print(text),
+        false => atomic::write(Path::new(place), |out| out.write_all(text.as_bytes())),
+    }
+}
+
+/// Writes `text` to standard output.
+pub fn print(text: &str) -> Result<()> {
+    let mut out = std::io::stdout().lock();
+    let done = out.write_all(text.as_bytes()).and_then(|()| out.flush());
+    done.map_err(Error::io(Path::new("-"), "cannot write to standard output"))
+}
+
+/// Where compiled pipelines are kept; `None` where the user has no home.
+pub fn cache_folder() -> Option<PathBuf> {
+    // The XDG specification has relative paths ignored.
+    let absolute = |name| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
+    let base = absolute("XDG_CACHE_HOME").or_else(|| Some(absolute("HOME")?.join(".cache")))?;
+    Some(base.join("surfel"))
+}

@@ -1,0 +1,63 @@
+//! Inputs to surfels.
+
+use std::ffi::OsString;
+use std::path::Path;
+use surfel::geometry::Surfels;
+use surfel::io::ply::{self, Dropped};
+use surfel::{Result, scenes};
+
+/// What the inputs together hold.
+pub struct Inputs {
+    /// One scene, in Morton order.
+    pub surfels: Surfels,
+    /// Points of all inputs, dropped ones included.
+    pub read: u64,
+    /// Points that are no surfels.
+    pub dropped: Dropped,
+}
+
+/// Reads every input; several become one set of surfels. `albedo` is the colour of those without one beside others that have one.
+pub fn load(names: &[OsString], albedo: [f32; 3]) -> Result<Inputs> {
+    let (mut parts, mut read, mut dropped) = (Vec::new(), 0, Dropped::default());
+    for name in names {
+        let (surfels, points, lost) = load_one(name)?;
+        parts.push(surfels);
+        read += points;
+        dropped = Dropped {
+            position: dropped.position + lost.position,
+            radius: dropped.radius + lost.radius,
+            normal: dropped.normal + lost.normal,
+        };
+    }
+    let mut surfels = Surfels::merge(parts, albedo)?;
+    // One input is sorted already.
+    if names.len() > 1 {
+        surfels.sort_morton();
+    }
+    Ok(Inputs { surfels, read, dropped })
+}
+
+/// The surfels of an input, its number of points, and how many of them were dropped.
+fn load_one(name: &OsString) -> Result<(Surfels, u64, Dropped)> {
+    if let Some(scene) = scene(name) {
+        let surfels = scenes::open(scene)?;
+        let count = surfels.len() as u64;
+        return Ok((surfels, count, Dropped::default()));
+    }
+    let ply::Loaded { surfels, report } = ply::read(Path::new(name))?;
+    let Dropped { position, radius, normal } = report.dropped;
+    if report.dropped.total() > 0 {
+        log::warn!(
+            "{}: {} of {} points are left out: {position} without a usable position, {radius} radius, {normal} normal",
+            Path::new(name).display(),
+            report.dropped.total(),
+            report.points
+        );
+    }
+    Ok((surfels, report.points, report.dropped))
+}
+
+/// The scene that an input names; `None` if it is a file.
+pub fn scene(name: &OsString) -> Option<&str> {
+    name.to_str().filter(|name| scenes::is_scene(name))
+}

@@ -1,0 +1,39 @@
+//! The command line: the library knows nothing of it.
+
+mod args;
+mod camera;
+mod devices;
+mod exit;
+mod files;
+mod info;
+mod inputs;
+mod log;
+mod reference;
+mod render;
+mod report;
+mod times;
+mod values;
+mod vulkan;
+
+use args::{Command, Surfel};
+use clap::Parser;
+use std::process::ExitCode;
+
+/// Runs the program with the process's arguments. Everything that goes wrong is one line on standard error and an [exit code](exit).
+pub fn run() -> ExitCode {
+    log::start();
+    let parsed = match Surfel::try_parse() {
+        Ok(parsed) => parsed,
+        Err(error) => return exit::of_arguments(&error),
+    };
+    let done = match parsed.command {
+        Command::Render(args) => render::run(&args),
+        Command::Info { input } => info::run(&input),
+        Command::Devices => devices::run(),
+    };
+    // By now the device is gone, and with it what the layers had to say about its end.
+    match done {
+        Ok(()) => exit::of_messages(log::validation_messages()),
+        Err(error) => exit::of_error(&error),
+    }
+}

@@ -1,0 +1,36 @@
+//! Rendering without Vulkan.
+
+use super::render::{Outcome, Task};
+use super::times::Times;
+use std::time::Instant;
+use surfel::{Error, Result, SplatCounts, reference};
+
+/// Most pixels of a picture: they take some 5 GiB in float64, and running out of memory would stop the process.
+const MOST_PIXELS: u64 = 1 << 26;
+
+/// Renders `task` with the float64 reference, as many times as it asks for.
+pub fn render(task: &Task<'_>) -> Result<Outcome> {
+    let [width, height] = task.size;
+    if u64::from(width) * u64::from(height) > MOST_PIXELS {
+        let text =
+            format!("a picture of {width}x{height} px: the reference renders at most {MOST_PIXELS} pixels");
+        return Err(Error::Usage(text));
+    }
+    let mut times = Times::default();
+    let mut frame = None;
+    for _ in 0..task.frames {
+        let start = Instant::now();
+        frame = Some(reference::render(task.surfels, &task.camera, task.size, &task.settings)?);
+        times.add(start.elapsed(), &[]);
+    }
+    let picture = frame.as_ref().map(reference::Frame::to_picture).unwrap_or_default();
+    let counts = frame.map(|frame| counts(&frame.counts));
+    Ok(Outcome { picture, counts, times, gpu: None })
+}
+
+fn counts(counts: &reference::Counts) -> SplatCounts {
+    // Surfels are numbered in 32 bits.
+    let [drawn, behind, eye_plane, back, outside] =
+        [counts.drawn, counts.behind, counts.eye_plane, counts.back, counts.outside].map(|n| n as u32);
+    SplatCounts { drawn, behind, eye_plane, back, outside }
+}

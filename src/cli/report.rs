@@ -1,0 +1,157 @@
+//! What `--json` writes. Times are milliseconds, sizes bytes, colours linear.
+
+use super::args::Render;
+use super::inputs::Inputs;
+use super::render::{Outcome, Task};
+use super::times::Statistics;
+use serde_json::{Map, Value, json};
+use std::path::Path;
+use surfel::io::ply::Dropped;
+use surfel::settings::{Cull, DirectionalLight, Lighting, Shading};
+use surfel::targets::TargetInfo;
+use surfel::vk::{DeviceDescription, Usage};
+use surfel::{Error, Precision, Rasterizer, Result, Settings, SplatCounts};
+
+/// What is known of the device and of what was made on it.
+pub struct Gpu {
+    /// The device.
+    pub description: DeviceDescription,
+    /// Float width of the sums.
+    pub precision: Precision,
+    /// What visited the pixels.
+    pub rasterizer: Option<Rasterizer>,
+    /// Every render target.
+    pub targets: Vec<TargetInfo>,
+    /// Memory of the surfels, bytes.
+    pub scene_bytes: u64,
+    /// Memory of the splats, bytes.
+    pub splat_bytes: u64,
+    /// Everything that was made.
+    pub usage: Usage,
+    /// What the layers had to say; empty unless they were asked for.
+    pub validation_messages: Vec<String>,
+}
+
+/// A report as a JSON object.
+pub struct Report(Map<String, Value>);
+
+impl Report {
+    /// Everything about a command and what came of it. Without a device, what concerns one is null.
+    pub fn new(args: &Render, loaded: &Inputs, task: &Task<'_>, outcome: &Outcome) -> Self {
+        let names = |name| Path::new(name).display().to_string();
+        let mut report = Map::new();
+        let mut put = |key: &str, value: Value| report.insert(key.into(), value);
+        put("version", json!(env!("CARGO_PKG_VERSION")));
+        put("inputs", args.inputs.iter().map(names).collect());
+        put("output", json!(names(&args.output)));
+        put(
+            "method",
+            json!(clap::ValueEnum::to_possible_value(&args.method).map(|m| m.get_name().to_owned())),
+        );
+        put("reference", json!(args.place.reference));
+        put("size", json!(task.size));
+        put("frames", json!(task.frames));
+        put("settings", settings(&task.settings));
+        put("camera", camera(task));
+        put("counts", outcome.counts.map_or(Value::Null, |counts| tally(loaded, counts)));
+        put("frame_ms", json!(outcome.times.frame()));
+        put("passes", outcome.times.passes().map(pass).collect());
+        let mut report = Self(report);
+        report.put_gpu(outcome.gpu.as_ref());
+        report
+    }
+
+    fn put_gpu(&mut self, gpu: Option<&Gpu>) {
+        let mut put = |key: &str, value: Option<Value>| self.0.insert(key.into(), json!(value));
+        put("device", gpu.map(|gpu| device(&gpu.description)));
+        put("precision", gpu.map(|gpu| json!(precision(gpu.precision))));
+        put("rasterizer", gpu.map(|gpu| json!(gpu.rasterizer.map(rasterizer))));
+        put("targets", gpu.map(|gpu| gpu.targets.iter().map(target).collect()));
+        put("target_bytes", gpu.map(|gpu| json!(gpu.targets.iter().map(|target| target.bytes).sum::<u64>())));
+        put("scene_bytes", gpu.map(|gpu| json!(gpu.scene_bytes)));
+        put("splat_bytes", gpu.map(|gpu| json!(gpu.splat_bytes)));
+        put("device_bytes", gpu.map(|gpu| json!(gpu.usage.bytes)));
+        put("pipelines", gpu.map(|gpu| json!(gpu.usage.pipelines)));
+        put("allocations", gpu.map(|gpu| json!(gpu.usage.allocations)));
+        put("validation_messages", gpu.map(|gpu| json!(gpu.validation_messages)));
+    }
+
+    /// As text that ends with a line break.
+    pub fn to_json(&self) -> Result<String> {
+        let text = serde_json::to_string_pretty(&self.0);
+        Ok(text.map_err(|error| Error::Usage(format!("the report: {error}")))? + "\n")
+    }
+}
+
+fn device(device: &DeviceDescription) -> Value {
+    let DeviceDescription { name, kind, driver, api_version, .. } = device;
+    json!({ "name": name, "kind": kind, "driver": driver, "api_version": api_version })
+}
+
+fn precision(precision: Precision) -> &'static str {
+    match precision {
+        Precision::Full => "full",
+        Precision::Half => "half",
+    }
+}
+
+fn rasterizer(rasterizer: Rasterizer) -> &'static str {
+    match rasterizer {
+        Rasterizer::Draw => "draw",
+        Rasterizer::Compute => "compute",
+    }
+}
+
+fn target(target: &TargetInfo) -> Value {
+    json!({ "name": target.name, "format": format!("{:?}", target.format), "bytes": target.bytes })
+}
+
+fn settings(settings: &Settings) -> Value {
+    let Settings { cutoff, lowpass, epsilon, cull, shading, background, lighting } = settings;
+    let cull = match cull {
+        Cull::None => "none",
+        Cull::Back => "back",
+    };
+    let shading = match shading {
+        Shading::Lit => "lit",
+        Shading::Colour => "color",
+        Shading::Normal => "normal",
+        Shading::Depth => "depth",
+    };
+    json!({
+        "cutoff": cutoff, "lowpass": lowpass, "epsilon": epsilon, "cull": cull, "shading": shading,
+        "background": background, "lighting": light(lighting),
+    })
+}
+
+fn light(lighting: &Lighting) -> Value {
+    let Lighting { albedo, ambient, headlight, specular, shininess, directional } = lighting;
+    let lamp = |light: &DirectionalLight| json!({ "to_light": light.to_light, "radiance": light.radiance });
+    json!({
+        "albedo": albedo, "ambient": ambient, "headlight": headlight, "specular": specular, "shininess": shininess,
+        "directional": directional.iter().map(lamp).collect::<Value>(),
+    })
+}
+
+/// Matrices by columns.
+fn camera(task: &Task<'_>) -> Value {
+    let camera = &task.camera;
+    let [view, projection] = [camera.view, camera.projection].map(|matrix| matrix.to_cols_array_2d());
+    json!({ "view": view, "projection": projection, "reversed": camera.reversed })
+}
+
+fn pass((name, ms): (&'static str, Statistics)) -> Value {
+    json!({ "name": name, "ms": ms })
+}
+
+/// Every point once: read = dropped + culled + drawn.
+fn tally(loaded: &Inputs, counts: SplatCounts) -> Value {
+    let Dropped { position, radius, normal } = loaded.dropped;
+    let SplatCounts { drawn, behind, eye_plane, back, outside } = counts;
+    json!({
+        "read": loaded.read,
+        "dropped": { "position": position, "radius": radius, "normal": normal },
+        "culled": { "behind": behind, "eye_plane": eye_plane, "back": back, "outside": outside },
+        "drawn": drawn,
+    })
+}

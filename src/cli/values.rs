@@ -1,0 +1,128 @@
+//! Values of options: text to what it means, with what is wrong about it.
+
+use clap::ValueEnum;
+use glam::DVec3;
+use surfel::io::srgb;
+use surfel::settings;
+
+/// `WxH`, px.
+pub fn size(text: &str) -> Result<[u32; 2], String> {
+    let side = |text: &str| text.parse().ok().filter(|&side: &u32| side > 0);
+    let sides = text.split_once('x').and_then(|(width, height)| Some([side(width)?, side(height)?]));
+    sides.ok_or_else(|| "give WIDTHxHEIGHT in px, both whole numbers above 0, for example 1024x768".into())
+}
+
+/// `X,Y,Z`.
+pub fn vector(text: &str) -> Result<DVec3, String> {
+    let number = |text: &str| text.trim().parse().ok().filter(|value: &f64| value.is_finite());
+    let numbers: Option<Vec<f64>> = text.split(',').map(number).collect();
+    match numbers.as_deref() {
+        Some(&[x, y, z]) => Ok(DVec3::new(x, y, z)),
+        _ => Err("give three numbers as X,Y,Z without spaces, for example 0,1.5,-2".into()),
+    }
+}
+
+/// What is seen where no surfel is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Background {
+    /// Nothing: all channels 0.
+    Transparent,
+    /// A colour, linear.
+    Opaque([f32; 3]),
+}
+
+impl Background {
+    /// As [`settings::Settings::background`] holds it.
+    pub fn linear(self) -> Option<[f32; 3]> {
+        match self {
+            Self::Transparent => None,
+            Self::Opaque(colour) => Some(colour),
+        }
+    }
+}
+
+/// `transparent`, or `R,G,B` as sRGB codes of 8 bits: the numbers that a colour picker shows and that the PNG then holds.
+pub fn background(text: &str) -> Result<Background, String> {
+    if text == "transparent" {
+        return Ok(Background::Transparent);
+    }
+    let codes: Option<Vec<u8>> = text.split(',').map(|code| code.trim().parse().ok()).collect();
+    match codes.as_deref() {
+        Some(&[r, g, b]) => {
+            Ok(Background::Opaque([r, g, b].map(|code| srgb::decode(f64::from(code) / 255.0) as f32)))
+        }
+        _ => Err("give transparent, or R,G,B, each from 0 to 255 (sRGB), for example 255,255,255".into()),
+    }
+}
+
+/// How points are rendered.
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+pub enum Method {
+    /// Perspective accurate splatting (Zwicker and others 2004)
+    PerspectiveEwa,
+}
+
+/// What the picture shows.
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+pub enum Shading {
+    /// Lit by a lamp at the eye
+    Lit,
+    /// The points' own colours
+    #[value(alias = "colour")]
+    Color,
+    /// Normals in world space
+    Normal,
+    /// Distance from the eye
+    Depth,
+}
+
+impl From<Shading> for settings::Shading {
+    fn from(shading: Shading) -> Self {
+        match shading {
+            Shading::Lit => Self::Lit,
+            Shading::Color => Self::Colour,
+            Shading::Normal => Self::Normal,
+            Shading::Depth => Self::Depth,
+        }
+    }
+}
+
+/// Which surfels are left out for the side that they show.
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+pub enum Cull {
+    /// None
+    None,
+    /// Those whose normal faces away
+    Back,
+}
+
+impl From<Cull> for settings::Cull {
+    fn from(cull: Cull) -> Self {
+        match cull {
+            Cull::None => Self::None,
+            Cull::Back => Self::Back,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_read_exactly_or_refused() {
+        assert_eq!(size("640x480"), Ok([640, 480]));
+        for text in ["0x5", "5x0", "5", "5x5x5", "-1x5", "5x", "4294967296x1", "1e2x5"] {
+            assert!(size(text).is_err(), "{text}");
+        }
+        assert_eq!(vector("1,-2.5, 3e2"), Ok(DVec3::new(1.0, -2.5, 300.0)));
+        for text in ["1,2", "1,2,3,4", "1,2,x", "nan,0,0", "inf,0,0", ""] {
+            assert!(vector(text).is_err(), "{text}");
+        }
+        assert_eq!(background("transparent").map(Background::linear), Ok(None));
+        assert_eq!(background("255,0,255").map(Background::linear), Ok(Some([1.0, 0.0, 1.0])));
+        for text in ["256,0,0", "0.5,0,0", "white", "1,2", "-1,0,0"] {
+            assert!(background(text).is_err(), "{text}");
+        }
+    }
+}

@@ -1,0 +1,140 @@
+//! Mistakes: each is answered with its exit code and one line that names the cause, soon, and leaves nothing behind.
+
+use crate::program::{Program, surfels};
+use std::time::{Duration, Instant};
+
+const GOOD: &str = "0 0 0 0 0 1 1";
+
+#[test]
+fn unusable_inputs_exit_with_1_at_once() {
+    let cases: [(&str, Vec<u8>, &str); 8] = [
+        ("empty.ply", Vec::new(), "the file is empty"),
+        ("text.ply", b"hello, points\n".to_vec(), "not a PLY file"),
+        ("truncated.ply", surfels(&[GOOD, GOOD]).replace("vertex 2", "vertex 3").into(), "vertex"),
+        ("cut_header.ply", surfels(&[GOOD])[..40].into(), "header"),
+        ("none.ply", surfels(&[]).into(), "it has no vertices"),
+        ("nan.ply", surfels(&["nan nan nan nan nan nan nan"; 3]).into(), "none of its 3 vertices"),
+        ("lying.ply", surfels(&[GOOD]).replace("vertex 1", "vertex 4000000000").into(), "4000000000"),
+        ("bare.ply", surfels(&[GOOD]).replace("radius", "quality").into(), "no radius"),
+    ];
+    for (name, contents, cause) in cases {
+        let program = Program::new();
+        program.write(name, contents);
+        let start = Instant::now();
+        for arguments in [format!("render {name} -o out.png"), format!("info {name}")] {
+            let run = program.run(&arguments);
+            let line = run.error(1);
+            assert!(line.starts_with(&format!("{name}: ")) && line.contains(cause), "{arguments}: {line}");
+        }
+        assert!(start.elapsed() < Duration::from_secs(1), "{name}: {:?}", start.elapsed());
+        assert_eq!(program.files(), [name]);
+    }
+}
+
+#[test]
+fn a_missing_input_exits_with_1() {
+    for arguments in [
+        "render missing.ply -o out.png",
+        "render scene:bumpy-sphere missing.ply -o out.png",
+        "info missing.ply",
+    ] {
+        let program = Program::new();
+        let line = program.run(arguments).error(1).to_owned();
+        assert!(line.starts_with("missing.ply: cannot open: there is no such file"), "{line}");
+        assert!(program.files().is_empty());
+    }
+}
+
+#[test]
+fn wrong_arguments_exit_with_2_before_anything_is_read() {
+    let cases = [
+        ("--nonsense", "--nonsense"),
+        ("--size 0x5", "0x5"),
+        ("--size 5x0", "5x0"),
+        ("--size 5", "--size"),
+        ("--eye 1,2", "1,2"),
+        ("--eye nan,0,0", "nan,0,0"),
+        ("--shading shiny", "possible values: lit, color, normal, depth"),
+        ("--method ray-tracing", "perspective-ewa"),
+        ("--background 0,0,256", "0 to 255"),
+        ("--lowpass -1", "low-pass variance is -1"),
+        ("--cutoff 0", "cut-off is 0"),
+        ("--epsilon nan", "epsilon is NaN"),
+        ("--frames 0", "--frames"),
+        ("--camera a.json --fov 20", "cannot be used with"),
+        ("--reference --device 0", "cannot be used with"),
+    ];
+    let program = Program::new();
+    for (arguments, cause) in cases {
+        let run = program.run(&format!("render missing.ply -o out.png {arguments}"));
+        assert!(run.error(2).contains(cause), "{arguments}: {}", run.err);
+    }
+    assert!(program.run("render missing.ply").error(2).contains("--output"));
+    assert!(program.run("render -o out.png").error(2).contains("<INPUT>"));
+    assert!(program.run("render a.ply -o out.jpg").error(2).contains("name the file .png or .exr"));
+    assert!(program.run("render scene:teapot -o out.png").error(2).contains("scene:bumpy-sphere"));
+    let run =
+        program.run("render scene:bumpy-sphere?points=9 -o out.png --reference --size 4294967295x4294967295");
+    assert!(run.error(2).contains("at most 67108864 pixels"), "{}", run.err);
+    assert_eq!(program.run("").code, 2);
+    assert!(program.files().is_empty());
+}
+
+#[test]
+fn outputs_that_cannot_be_written_are_refused_before_anything_is_read() {
+    let program = Program::new();
+    program.write("a.ply", surfels(&[GOOD]));
+    for arguments in ["-o no/such/a.png", "-o out.png --json no/such/a.png"] {
+        let run = program.run(&format!("render missing.ply {arguments}"));
+        let line = run.error(1);
+        assert!(line.starts_with("no/such/a.png: ") && line.contains("does not exist: create it"), "{line}");
+    }
+    for json in ["a.ply", "./a.ply", "out.png"] {
+        let run = program.run(&format!("render a.ply -o out.png --json {json}"));
+        assert!(run.error(2).contains("would overwrite"), "{}", run.err);
+    }
+    assert!(program.run("render a.ply -o - --json -").error(2).contains("would overwrite"));
+    assert_eq!(program.files(), ["a.ply"]);
+}
+
+#[test]
+fn camera_files_are_checked() {
+    let program = Program::new();
+    program.write("a.ply", surfels(&[GOOD]));
+    let good = r#"{"eye":[0,0,3],"target":[0,0,0],"up":[0,1,0],"fov_y_deg":45}"#;
+    for (contents, cause) in [
+        (good.replace(r#""up":[0,1,0],"#, ""), "missing field `up`"),
+        (good.replace("up", "upp"), "unknown field `upp`"),
+        (good.replace("45", "\"wide\""), "expected f64"),
+        (good.replace("45", "180"), "the field of view is 180°"),
+        (good.replace("[0,0,3]", "[0,0,0]"), "stands on its target"),
+        (good.replace("[0,0,3]", "[0,3]"), "length"),
+        (String::new(), "EOF"),
+    ] {
+        program.write("camera.json", &contents);
+        let run = program.run("render a.ply -o out.png --reference --camera camera.json");
+        let line = run.error(1);
+        assert!(line.starts_with("camera.json: ") && line.contains(cause), "{contents}: {line}");
+    }
+    let run = program.run("render a.ply -o out.png --reference --camera none.json");
+    assert!(run.error(1).starts_with("none.json: cannot read: "), "{}", run.err);
+    program.write("camera.json", good);
+    program.run("render a.ply -o out.png --reference --camera camera.json").text();
+}
+
+#[test]
+fn no_such_device_exits_with_3() {
+    let program = Program::new();
+    program.write("a.ply", surfels(&[GOOD]));
+    for device in ["nonsense", "99"] {
+        let run = program.run(&format!("render a.ply -o out.png --device {device}"));
+        assert!(run.error(3).starts_with("no usable Vulkan device: "), "{}", run.err);
+    }
+    // A loader that finds no driver.
+    let run = program.run_with(
+        "render a.ply -o out.png",
+        &[("VK_ICD_FILENAMES", "none.json"), ("VK_DRIVER_FILES", "none.json")],
+    );
+    assert!(run.error(3).starts_with("no usable Vulkan device: "), "{}", run.err);
+    assert_eq!(program.files(), ["a.ply"]);
+}

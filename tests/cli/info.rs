@@ -1,0 +1,60 @@
+//! `surfel info` and `surfel devices`.
+
+use crate::program::{Program, surfels};
+
+#[test]
+fn a_file_is_described() {
+    let program = Program::new();
+    program.write(
+        "a.ply",
+        surfels(&["0 0 0 0 0 1 1", "4 0 0 0 0 1 3", "2 0 0 0 0 1 2", "0 0 0 0 0 0 1", "0 nan 0 0 0 1 1"]),
+    );
+    let run = program.run("info a.ply");
+    for line in [
+        "a.ply: PLY, ascii",
+        "element vertex: 5",
+        "  float nx",
+        "understood: x y z nx ny nz radius",
+        "skipped: none",
+        "points: 5",
+        "surfels: 3",
+        // The discs' bounds, by the largest radius.
+        "bounds: [-3, -3, -3] to [7, 3, 3]",
+        "radius: 1 to 3, median 2",
+        "colours: none",
+        "left out: 2 (1 for their position, 0 radius, 1 normal)",
+    ] {
+        assert!(run.text().lines().any(|have| have == line), "no `{line}` in\n{}", run.text());
+    }
+}
+
+#[test]
+fn a_file_without_radii_still_tells_what_it_has() {
+    let program = Program::new();
+    program.write("a.ply", surfels(&["0 0 0 0 0 1 1"]).replace("radius", "confidence"));
+    let run = program.run("info a.ply");
+    assert!(run.error(1).contains("no radius"), "{}", run.err);
+    let text = String::from_utf8(run.out).unwrap();
+    assert!(text.contains("element vertex: 1\n") && text.contains("  float confidence\n"), "{text}");
+}
+
+#[test]
+fn a_scene_is_described() {
+    let text = Program::new().run("info scene:bumpy-sphere?points=500").text().to_owned();
+    assert!(text.contains("built-in scene\n") && text.contains("\nsurfels: 500\n"), "{text}");
+    assert!(text.contains("\ncolours: sRGB, 8 bits\n"), "{text}");
+}
+
+#[test]
+fn devices_are_listed_and_one_is_marked() {
+    let Some(program) = Program::with_device("devices_are_listed_and_one_is_marked") else { return };
+    let run = program.run("devices");
+    assert_eq!(run.text().lines().filter(|line| line.starts_with("* ")).count(), 1);
+    for (index, line) in run.text().lines().enumerate() {
+        assert_eq!(line.split_whitespace().find_map(|word| word.parse().ok()), Some(index), "{line}");
+        assert!(
+            line.contains("Vulkan 1.") && (line.contains("score ") || line.contains("refused: ")),
+            "{line}"
+        );
+    }
+}

@@ -1,0 +1,102 @@
+//! Several inputs, cameras and what the arguments make of them; by the reference, which needs no device.
+
+use crate::program::{Program, Run, surfels};
+use serde_json::Value;
+
+fn report(run: &Run) -> Value {
+    serde_json::from_str(run.text()).unwrap()
+}
+
+/// A camera at distance 5 that sees 4 units of height at the origin.
+const FRONT: &str = "--reference --size 40x40 --eye 0,0,5 --target 0,0,0 --fov 43.6028 --json -";
+
+#[test]
+fn several_inputs_become_one_scene() {
+    let program = Program::new();
+    program.write("left.ply", surfels(&["-1 0 0 0 0 1 0.5", "nan 0 0 0 0 1 1"]));
+    program.write("right.ply", surfels(&["1 0 0 0 0 1 0.5"]));
+    let run = program.run(&format!("render left.ply right.ply -o out.png {FRONT}"));
+    let counts = &report(&run)["counts"];
+    assert_eq!(
+        (&counts["read"], &counts["drawn"], &counts["dropped"]["position"]),
+        (&3.into(), &2.into(), &1.into())
+    );
+    assert!(run.err.contains("surfel: warning: left.ply: 1 of 2 points are left out"), "{}", run.err);
+    let alpha = |x| program.png("out.png").get_pixel(x, 20)[3];
+    assert_eq!([alpha(10), alpha(20), alpha(30)], [255, 0, 255]);
+}
+
+#[test]
+fn inputs_far_apart_keep_their_places() {
+    let program = Program::new();
+    let far = |x: f64| surfels(&[&format!("{x} 0 0 0 0 1 0.5")]).replace("float x", "double x");
+    program.write("left.ply", far(1e7 - 1.0)).write("right.ply", far(1e7 + 1.0));
+    let camera = FRONT.replace("0,0,5", "10000000,0,5").replace("0,0,0", "10000000,0,0");
+    program.run(&format!("render left.ply right.ply -o out.png {camera}")).text();
+    let alpha = |x| program.png("out.png").get_pixel(x, 20)[3];
+    assert_eq!([alpha(10), alpha(20), alpha(30)], [255, 0, 255]);
+}
+
+#[test]
+fn colours_and_their_absence_meet() {
+    let program = Program::new();
+    let red = surfels(&["-1 0 0 0 0 1 0.5 255 0 0"]);
+    let red = red
+        .replace("end_header", "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header");
+    program.write("red.ply", red).write("plain.ply", surfels(&["1 0 0 0 0 1 0.5"]));
+    program.run(&format!("render red.ply plain.ply -o out.png --shading colour {FRONT}")).text();
+    let pixel = |x| program.png("out.png").get_pixel(x, 20).0;
+    // The default albedo is 0.6, code 203.
+    assert_eq!([pixel(10), pixel(30)], [[255, 0, 0, 255], [203, 203, 203, 255]]);
+}
+
+#[test]
+fn what_of_the_camera_is_not_given_frames_the_scene() {
+    let program = Program::new();
+    program.write("a.ply", surfels(&["10 20 30 0 0 1 1"]));
+    let view = |arguments: &str| {
+        let run =
+            program.run(&format!("render a.ply -o out.png --reference --size 32x32 --json - {arguments}"));
+        report(&run)["camera"].clone()
+    };
+    let (bare, eye) = (view(""), view("--eye 10,20,40"));
+    assert_eq!(bare, view("--fov 45 --up 0,1,0 --target 10,20,30"));
+    assert_ne!(bare, view("--fov 44"));
+    assert_eq!(eye, view("--eye 10,20,40 --target 10,20,30 --up 0,1,0 --fov 45"));
+    assert_ne!(eye, view("--eye 10,20,40 --up 1,0,0"));
+    program.write("c.json", r#"{"eye":[10,20,40],"target":[10,20,30],"up":[0,1,0],"fov_y_deg":45}"#);
+    assert_eq!(eye, view("--camera c.json"));
+    // A disc that faces the camera covers the middle.
+    assert_eq!(program.png("out.png").get_pixel(16, 16)[3], 255);
+}
+
+#[test]
+fn backgrounds_are_srgb_codes() {
+    let program = Program::new();
+    program.write("a.ply", surfels(&["0 0 0 0 0 1 0.5"]));
+    program.run(&format!("render a.ply -o out.png --background 12,130,255 {FRONT}")).text();
+    assert_eq!(program.png("out.png").get_pixel(0, 0).0, [12, 130, 255, 255]);
+    program.run(&format!("render a.ply -o out.png --background transparent {FRONT}")).text();
+    assert_eq!(program.png("out.png").get_pixel(0, 0).0, [0; 4]);
+}
+
+#[test]
+fn culling_leaves_out_what_faces_away() {
+    let program = Program::new();
+    program.write("a.ply", surfels(&["0 0 0 0 0 -1 0.5"]));
+    for (cull, drawn, back) in [("none", 1, 0), ("back", 0, 1)] {
+        let run = program.run(&format!("render a.ply -o out.png --cull {cull} {FRONT}"));
+        let counts = &report(&run)["counts"];
+        assert_eq!((&counts["drawn"], &counts["culled"]["back"]), (&drawn.into(), &back.into()));
+    }
+}
+
+#[test]
+fn exr_holds_linear_light() {
+    let program = Program::new();
+    program.write("a.ply", surfels(&["0 0 0 0 0 1 0.5"]));
+    program.run(&format!("render a.ply -o out.exr --shading depth {FRONT}")).text();
+    let picture = image::open(program.path("out.exr")).unwrap().into_rgba32f();
+    let depth = picture.get_pixel(20, 20)[0];
+    assert!((depth - 5.0).abs() < 1e-4, "{depth}");
+}

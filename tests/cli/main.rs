@@ -1,0 +1,8 @@
+//! The `surfel` program as its user meets it: arguments in; exit code, streams and files out.
+
+mod errors;
+mod info;
+mod inputs;
+mod program;
+mod render;
+mod report;

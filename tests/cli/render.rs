@@ -1,0 +1,109 @@
+//! `surfel render` on a Vulkan device, always under the validation layers.
+
+use crate::program::{Program, scan};
+
+const SPHERE: &str = "scene:bumpy-sphere?points=20000";
+
+/// Mean difference of two pictures, codes.
+fn difference(a: &image::RgbaImage, b: &image::RgbaImage) -> f64 {
+    assert_eq!(a.dimensions(), b.dimensions());
+    let sum: u64 = a.iter().zip(b.iter()).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
+    sum as f64 / a.len() as f64
+}
+
+#[test]
+fn every_shading_matches_the_reference() {
+    let Some(program) = Program::with_device("every_shading_matches_the_reference") else { return };
+    // The second device has no float atomics: what it draws goes through its rasterizer.
+    program.write("limits.json", r#"{"float_atomics":false}"#);
+    for shading in ["lit", "color", "normal", "depth"] {
+        let common = format!("render {SPHERE} --size 96x64 --background 20,40,80 --shading {shading}");
+        program.run(&format!("{common} -o cpu.png --reference")).text();
+        let cpu = program.png("cpu.png");
+        assert!(cpu.get_pixel(48, 32) != cpu.get_pixel(0, 0), "{shading}: nothing in the middle");
+        for device in ["", "--device-limits limits.json"] {
+            program.run(&format!("{common} -o gpu.png --validate {device}")).text();
+            let apart = difference(&program.png("gpu.png"), &cpu);
+            assert!(apart < 0.1, "{shading} {device}: {apart} codes");
+        }
+    }
+}
+
+#[test]
+fn standard_output_takes_a_png_and_nothing_else() {
+    let Some(program) = Program::with_device("standard_output_takes_a_png_and_nothing_else") else { return };
+    let run = program.run(&format!("render {SPHERE} -o - --size 17x9 --validate --times"));
+    assert_eq!(run.code, 0, "{}", run.err);
+    let picture = image::load_from_memory_with_format(&run.out, image::ImageFormat::Png).unwrap();
+    assert_eq!((picture.width(), picture.height()), (17, 9));
+    assert!(run.err.contains("\n-: 17x9, 20000 surfels, 20000 drawn\n"), "{}", run.err);
+    assert!(program.files().is_empty());
+}
+
+#[test]
+fn a_summary_is_printed_unless_quiet() {
+    let Some(program) = Program::with_device("a_summary_is_printed_unless_quiet") else { return };
+    let loud = program.run(&format!("render {SPHERE} -o a.png --size 8x8 --validate"));
+    assert_eq!((loud.text(), loud.err.as_str()), ("", "a.png: 8x8, 20000 surfels\n"));
+    let quiet = program.run(&format!("render {SPHERE} -o a.png --size 8x8 --validate --quiet"));
+    assert_eq!((quiet.text(), quiet.err.as_str()), ("", ""));
+}
+
+#[test]
+fn a_single_pixel_and_a_single_row_are_pictures() {
+    let Some(program) = Program::with_device("a_single_pixel_and_a_single_row_are_pictures") else { return };
+    for (size, width, height) in [("1x1", 1, 1), ("300x1", 300, 1), ("1x300", 1, 300)] {
+        program.run(&format!("render {SPHERE} -o a.png --validate --size {size}")).text();
+        let picture = program.png("a.png");
+        assert_eq!(picture.dimensions(), (width, height));
+        assert_eq!(picture.get_pixel(width / 2, height / 2)[3], 255, "{size}: nothing in the middle");
+    }
+}
+
+#[test]
+fn a_size_over_the_limit_is_refused_with_the_limit() {
+    let Some(program) = Program::with_device("a_size_over_the_limit_is_refused_with_the_limit") else {
+        return;
+    };
+    program.write("limits.json", r#"{"max_image_side":64}"#);
+    let run = |size: &str| {
+        program.run(&format!("render {SPHERE} -o a.png --validate --device-limits limits.json --size {size}"))
+    };
+    for size in ["65x1", "1x65", "4294967295x4294967295"] {
+        assert!(run(size).error(2).contains("1x1 to 64x64"));
+    }
+    assert_eq!(program.files(), ["limits.json"]);
+    run("64x64").text();
+    let run = program.run(&format!("render {SPHERE} -o b.png --validate --size 1000000x1"));
+    assert!(run.error(2).contains("1000000x1 px: "), "{}", run.err);
+    program.write("limits.json", r#"{"max_side":64}"#);
+    let run = program.run(&format!("render {SPHERE} -o b.png --device-limits limits.json"));
+    assert!(run.error(1).contains("limits.json: unknown field `max_side`"), "{}", run.err);
+}
+
+#[test]
+fn messages_of_the_layers_make_it_fail() {
+    let Some(program) = Program::with_device("messages_of_the_layers_make_it_fail") else { return };
+    let advice = [("VK_LAYER_ENABLES", "VK_VALIDATION_FEATURE_ENABLE_BEST_PRACTICES_EXT")];
+    let arguments = format!("render {SPHERE} -o a.png --size 8x8");
+    let run = program.run_with(&format!("{arguments} --validate"), &advice);
+    assert_eq!(run.code, 70, "{}", run.err);
+    assert!(run.err.contains("surfel: error: validation: "), "{}", run.err);
+    // They are errors whatever the log shows.
+    let silent = program.run_with(&format!("{arguments} --validate"), &[advice[0], ("RUST_LOG", "off")]);
+    assert_eq!(silent.code, 70, "{}", silent.err);
+    assert_eq!(program.run_with(&arguments, &advice).code, 0);
+}
+
+#[test]
+fn scans_are_rendered() {
+    let Some(program) = Program::with_device("scans_are_rendered") else { return };
+    for name in ["classic/bunny16k.ply", "classic/chameleon4k.ply"] {
+        let Some(path) = scan("scans_are_rendered", name) else { return };
+        let run =
+            program.run(&format!("render {} -o a.png --size 128x128 --validate --times", path.display()));
+        assert!(run.text().is_empty() && run.err.contains(" drawn\n"), "{}", run.err);
+        let covered = program.png("a.png").pixels().filter(|pixel| pixel[3] == 255).count();
+        assert!((500..10_000).contains(&covered), "{name}: {covered} pixels");
+    }
+}

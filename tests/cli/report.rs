@@ -1,0 +1,140 @@
+//! `--json` and `--times`.
+
+use crate::program::{Program, surfels};
+use serde_json::Value;
+
+/// Surfels of every fate: drawn, behind, eye plane, back, outside; and points of every fault.
+const FATES: [&str; 9] = [
+    "0 0 0 0 0 1 0.5",
+    "0 0 9 0 0 1 0.5",
+    "0 0 4.9 1 0 0 0.5",
+    "0 0 0 0 0 -1 0.5",
+    "50 0 0 0 0 1 0.5",
+    "nan 0 0 0 0 1 0.5",
+    "0 0 0 0 0 1 0",
+    "0 0 0 0 0 1 -1",
+    "0 0 0 0 0 0 0.5",
+];
+const CAMERA: &str = "--size 64x64 --eye 0,0,5 --target 0,0,0 --cull back";
+
+fn sum(object: &Value) -> u64 {
+    object.as_object().unwrap().values().map(|value| value.as_u64().unwrap()).sum()
+}
+
+fn check_counts(counts: &Value) {
+    let total = sum(&counts["dropped"]) + sum(&counts["culled"]) + counts["drawn"].as_u64().unwrap();
+    assert_eq!(counts["read"].as_u64(), Some(total), "{counts}");
+    assert_eq!(counts["drawn"], 1, "{counts}");
+    assert_eq!(counts["dropped"], serde_json::json!({ "position": 1, "radius": 2, "normal": 1 }));
+    let culled = serde_json::json!({ "behind": 1, "eye_plane": 1, "back": 1, "outside": 1 });
+    assert_eq!(counts["culled"], culled);
+}
+
+fn check_statistics(times: &Value) {
+    let [min, median, max] = ["min", "median", "max"].map(|key| times[key].as_f64().unwrap());
+    assert!(0.0 <= min && min <= median && median <= max, "{times}");
+}
+
+#[test]
+fn the_report_has_everything_and_adds_up() {
+    let Some(program) = Program::with_device("the_report_has_everything_and_adds_up") else { return };
+    program.write("a.ply", surfels(&FATES));
+    program.run(&format!("render a.ply -o a.png --validate --frames 3 --json a.json {CAMERA}")).text();
+    let report: Value = serde_json::from_slice(&std::fs::read(program.path("a.json")).unwrap()).unwrap();
+    check_counts(&report["counts"]);
+    check_statistics(&report["frame_ms"]);
+    for key in ["name", "kind", "driver", "api_version"] {
+        assert!(report["device"][key].as_str().is_some_and(|text| !text.is_empty()), "{key}: {report}");
+    }
+    assert_eq!(
+        (&report["size"], &report["method"]),
+        (&serde_json::json!([64, 64]), &"perspective-ewa".into())
+    );
+    assert_eq!((&report["frames"], &report["precision"]), (&3.into(), &"full".into()));
+    assert_eq!(report["settings"]["cull"], "back");
+    assert_eq!(report["camera"]["view"][3], serde_json::json!([0.0, 0.0, 5.0, 1.0]));
+    assert_eq!(report["validation_messages"], serde_json::json!([]));
+    let targets = report["targets"].as_array().unwrap();
+    let bytes: u64 = targets.iter().map(|target| target["bytes"].as_u64().unwrap()).sum();
+    assert_eq!(report["target_bytes"].as_u64(), Some(bytes));
+    assert!(
+        targets.iter().all(|target| target["name"].is_string() && target["format"].is_string()),
+        "{report}"
+    );
+    // Five surfels of 28 bytes, and a picture of 16 bytes a pixel among the targets.
+    assert!(report["scene_bytes"].as_u64() >= Some(140) && bytes >= 64 * 64 * 16, "{report}");
+    for key in ["splat_bytes", "device_bytes", "pipelines", "allocations"] {
+        assert!(report[key].as_u64() > Some(0), "{key}: {report}");
+    }
+    let passes = report["passes"].as_array().unwrap();
+    let names: Vec<_> = passes.iter().map(|pass| pass["name"].as_str().unwrap()).collect();
+    for name in ["footprint", "visibility", "attribute", "normalize"] {
+        assert!(names.contains(&name), "{name}: {names:?}");
+    }
+    passes.iter().for_each(|pass| check_statistics(&pass["ms"]));
+}
+
+#[test]
+fn the_reference_reports_the_same_counts_and_no_device() {
+    let program = Program::new();
+    program.write("a.ply", surfels(&FATES));
+    let run = program.run(&format!("render a.ply -o a.png --reference --json - {CAMERA}"));
+    let report: Value = serde_json::from_str(run.text()).unwrap();
+    check_counts(&report["counts"]);
+    check_statistics(&report["frame_ms"]);
+    assert!(report["device"].is_null() && report["targets"].is_null());
+}
+
+#[test]
+fn frames_make_nothing_new_and_the_first_does_not_count() {
+    let Some(program) = Program::with_device("frames_make_nothing_new_and_the_first_does_not_count") else {
+        return;
+    };
+    let made = |frames: u32| {
+        let run = program.run(&format!(
+            "render scene:bumpy-sphere?points=1000 -o {frames}.png --size 32x32 --validate --json - --frames {frames}"
+        ));
+        let report: Value = serde_json::from_str(run.text()).unwrap();
+        (report["pipelines"].clone(), report["allocations"].clone(), report["passes"].clone())
+    };
+    let (one, three) = (made(1), made(3));
+    assert_eq!((&one.0, &one.1), (&three.0, &three.1));
+    assert_eq!(program.png("1.png"), program.png("3.png"));
+    // Only the first frame is read back.
+    let reads = |passes: &Value| passes.as_array().unwrap().iter().any(|pass| pass["name"] == "read back");
+    assert!(reads(&one.2) && !reads(&three.2), "{} {}", one.2, three.2);
+}
+
+#[test]
+fn times_are_a_table_on_standard_error() {
+    let Some(program) = Program::with_device("times_are_a_table_on_standard_error") else { return };
+    let run =
+        program.run("render scene:bumpy-sphere?points=1000 -o a.png --size 32x32 --validate --times --quiet");
+    assert!(run.text().is_empty());
+    let labels: Vec<_> = run.err.lines().map(|line| line.split_whitespace().next().unwrap()).collect();
+    assert_eq!((labels.first(), labels.last()), (Some(&"pass"), Some(&"frame")), "{}", run.err);
+    assert!(labels.contains(&"footprint") && labels.contains(&"normalize"), "{}", run.err);
+}
+
+#[test]
+fn without_timestamps_only_the_frame_is_timed() {
+    let Some(program) = Program::with_device("without_timestamps_only_the_frame_is_timed") else { return };
+    program.write("limits.json", r#"{"timestamps":false}"#);
+    let run = program.run("render scene:bumpy-sphere?points=1000 -o a.png --size 32x32 --validate --times --quiet --device-limits limits.json");
+    assert_eq!((run.code, run.err.lines().count()), (0, 2), "{}", run.err);
+}
+
+#[test]
+fn half_precision_is_reported_and_takes_less() {
+    let Some(program) = Program::with_device("half_precision_is_reported_and_takes_less") else { return };
+    program.write("limits.json", r#"{"float_atomics":false}"#);
+    let bytes = |flag: &str, precision: &str| {
+        let run = program.run(&format!(
+            "render scene:bumpy-sphere?points=1000 -o a.png --validate --json - --device-limits limits.json {flag}"
+        ));
+        let report: Value = serde_json::from_str(run.text()).unwrap();
+        assert_eq!(report["precision"], precision);
+        report["target_bytes"].as_u64().unwrap()
+    };
+    assert!(bytes("--half", "half") < bytes("", "full"));
+}
