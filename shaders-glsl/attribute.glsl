@@ -92,9 +92,9 @@ void main() {
 #endif
 #ifdef VERTEX
 
-layout(location = 3) flat out float amplitude;
-layout(location = 4) flat out vec3 first;
-layout(location = 5) flat out vec3 second;
+layout(location = 4) flat out float amplitude;
+layout(location = 5) flat out vec3 first;
+layout(location = 6) flat out vec3 second;
 
 void main() {
     uint i = gl_VertexIndex / 3;
@@ -106,9 +106,9 @@ void main() {
 #endif
 #ifdef FRAGMENT
 
-layout(location = 3) flat in float amplitude;
-layout(location = 4) flat in vec3 first;
-layout(location = 5) flat in vec3 second;
+layout(location = 4) flat in float amplitude;
+layout(location = 5) flat in vec3 first;
+layout(location = 6) flat in vec3 second;
 
 layout(location = 0) out vec4 sum0;
 layout(location = 1) out vec4 sum1;

@@ -5,7 +5,6 @@
 #include "lib/frame.glsl"
 #define SPLAT_ACCESS writeonly
 #include "lib/splat.glsl"
-#include "lib/double_float.glsl"
 #include "lib/conic.glsl"
 
 #ifdef COMPUTE
@@ -58,13 +57,16 @@ vec2 pixel_row(int i, vec3 hi, vec3 lo) {
 }
 
 // κ of the plane n·x = h at the anchor and its derivatives. Seen at a grazing angle, κ is a small difference of large terms.
-vec3 depth_plane(vec3 n, vec2 h, float facing, vec2 anchor) {
+mat2x3 depth_plane(vec3 n, vec2 h, vec2 facing, vec2 anchor) {
     vec2 x = dot_double(n, vec3(0.0), frame.ray_hi[0].xyz, frame.ray_lo[0].xyz);
     vec2 y = dot_double(n, vec3(0.0), frame.ray_hi[1].xyz, frame.ray_lo[1].xyz);
     vec2 key = dot_double(n, vec3(0.0), frame.ray_hi[2].xyz, frame.ray_lo[2].xyz);
     key = add(key, add(scale(x, anchor.x), scale(y, anchor.y)));
     if (!PERSPECTIVE) key = add(key, scale(h, -frame.key_slope));
-    return vec3(key.x, x.x, y.x) / facing;
+    key = divide(key, facing);
+    x = divide(x, facing);
+    y = divide(y, facing);
+    return mat2x3(vec3(key.x, x.x, y.x), vec3(key.y, x.y, y.y));
 }
 
 uint footprint(uint i, out Splat splat) {
@@ -88,11 +90,11 @@ uint footprint(uint i, out Splat splat) {
     float q = (w.x / frame.cutoff - g) * (w.x / frame.cutoff + g);
     if (q <= 0.0) return EYE_PLANE;
     vec2 h = dot_double(hi, lo, n, vec3(0.0));
-    float facing = PERSPECTIVE ? h.x : dot_double(n, vec3(0.0), frame.forward_hi.xyz, frame.forward_lo.xyz).x;
-    if (CULL_BACK && facing >= 0.0) return BACK;
+    vec2 facing = PERSPECTIVE ? h : dot_double(n, vec3(0.0), frame.forward_hi.xyz, frame.forward_lo.xyz);
+    if (CULL_BACK && facing.x >= 0.0) return BACK;
 
     float root = frame.cutoff * sqrt(q);
-    float sqrt_det = frame.jacobian * (sigma / root) * (sigma / root) * abs(facing) / root;
+    float sqrt_det = frame.jacobian * (sigma / root) * (sigma / root) * abs(facing.x) / root;
     vec2 X = pixel_row(0, hi, lo), Y = pixel_row(1, hi, lo);
     vec2 centre = vec2(X.x, Y.x) / w.x;
     Conic conic = dual_conic(centre, S, T, q, frame.cutoff, sqrt_det);
@@ -109,9 +111,12 @@ uint footprint(uint i, out Splat splat) {
     splat.variance = conic.variance;
     splat.place = place_of(pixel, listed ? LARGE : SMALL);
     splat.epsilon = PERSPECTIVE ? w.x / (w.x + frame.epsilon * r) : frame.key_slope * frame.epsilon * r;
-    if (facing > 0.0) splat.epsilon = -splat.epsilon;
+    if (facing.x > 0.0) splat.epsilon = -splat.epsilon;
     // A plane through the eye is seen nowhere.
-    splat.plane = facing == 0.0 ? vec3(-1.0, 0.0, 0.0) : depth_plane(n, h, facing, anchor);
+    mat2x3 plane = mat2x3(vec3(-1.0, 0.0, 0.0), vec3(0.0));
+    if (facing.x != 0.0) plane = depth_plane(n, h, facing, anchor);
+    splat.plane_hi = plane[0];
+    splat.plane_lo = plane[1];
     splat.sqrt_det = sqrt_det;
     return DRAWN;
 }
@@ -134,7 +139,7 @@ void main() {
     bool valid = i < window.count;
     uint fate = DRAWN;
     if (valid) {
-        Splat splat = Splat(vec2(0.0), vec2(1.0, 0.0), vec2(0.0), 0, 0.0, vec3(0.0), 0.0);
+        Splat splat = Splat(vec2(0.0), vec2(1.0, 0.0), vec2(0.0), 0, 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
         fate = footprint(i, splat);
         splats[i] = splat;
     }

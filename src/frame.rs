@@ -125,7 +125,8 @@ impl DepthKey {
     fn new(projection: &Projection) -> Self {
         match projection.perspective {
             true => Self { slope: 0.0, far: projection.near / projection.far },
-            false => Self { slope: 0.5 / (projection.far - projection.near), far: 0.5 },
+            // Rounded before it is used, so that the shaders' slope is the one that the rays are made with.
+            false => Self { slope: f64::from((0.5 / (projection.far - projection.near)) as f32), far: 0.5 },
         }
     }
 

@@ -33,6 +33,12 @@ vec2 scale(vec2 a, float b) {
     return vec2(product.x, product.y + a.y * b);
 }
 
+// a / b.
+vec2 divide(vec2 a, vec2 b) {
+    float high = a.x / b.x;
+    return vec2(high, add(a, -scale(b, high)).x / b.x);
+}
+
 // (a_hi + a_lo) · (b_hi + b_lo).
 vec2 dot_double(vec3 a_hi, vec3 a_lo, vec3 b_hi, vec3 b_lo) {
     vec2 x = two_product(a_hi.x, b_hi.x), y = two_product(a_hi.y, b_hi.y), z = two_product(a_hi.z, b_hi.z);

@@ -1,13 +1,17 @@
 // A splat: what the footprint pass makes of a surfel, and what visibility and attribute draw.
 
+#include "lib/double_float.glsl"
+
 struct Splat {
     vec2 offset;    // centre of the variance's ellipse relative to the anchor, px
     vec2 axis;      // unit major axis of the variance V
     vec2 variance;  // V's eigenvalues, px²
     uint place;     // anchor and kind, see below
     float epsilon;  // perspective: 1 / (1 + ε/z), scales κ; orthographic: ε as a difference of κ; negative: the normal faces away
-    vec3 plane;     // κ of the tangent plane at the anchor, and its derivatives along x and y, 1/px
+    vec3 plane_hi;  // κ of the tangent plane at the anchor, and its derivatives along x and y, 1/px, as sums of two floats
     float sqrt_det; // √|V|, px²
+    vec3 plane_lo;
+    float padding;
 };
 
 layout(set = 0, binding = 1, std430) SPLAT_ACCESS buffer Splats { Splat splats[]; };
@@ -40,13 +44,23 @@ struct Ellipse {
     vec2 anchor;
     vec2 offset;    // the centre relative to the anchor, px
     vec4 whitening; // rows of the map from px to σ
-    vec3 plane;
+    vec3 plane_hi;
+    vec3 plane_lo;
 };
 
 Ellipse ellipse_of(Splat splat, vec2 variance) {
     vec2 inverse = inversesqrt(variance);
     vec4 whitening = vec4(splat.axis * inverse.x, vec2(-splat.axis.y, splat.axis.x) * inverse.y);
-    return Ellipse(anchor_of(splat), splat.offset, whitening, splat.plane);
+    return Ellipse(anchor_of(splat), splat.offset, whitening, splat.plane_hi, splat.plane_lo);
+}
+
+// κ of a plane at d px from the anchor. Seen edge-on, the plane runs through all depths within a pixel, and along its image large
+// terms cancel.
+float plane_at(vec3 hi, vec3 lo, vec2 d) {
+    vec2 x = two_product(hi.y, d.x), y = two_product(hi.z, d.y);
+    vec2 slope = two_sum(x.x, y.x);
+    vec2 key = two_sum(slope.x, hi.x);
+    return key.x + ((key.y + slope.y) + (x.y + y.y) + (lo.x + lo.y * d.x + lo.z * d.y));
 }
 
 // Whether the splat has a fragment at a pixel centre: it is within the cut-off, and the tangent plane within the depth range.
@@ -56,18 +70,18 @@ bool splat_fragment(Ellipse ellipse, vec2 pixel, out float m2, out float key) {
     vec2 e = d - ellipse.offset;
     vec2 u = vec2(dot(ellipse.whitening.xy, e), dot(ellipse.whitening.zw, e));
     m2 = dot(u, u);
-    key = ellipse.plane.x + dot(ellipse.plane.yz, d);
+    key = plane_at(ellipse.plane_hi, ellipse.plane_lo, d);
     return m2 <= frame.cutoff * frame.cutoff && key > frame.key_far && key <= 1.0;
 }
 
 // The nearest κ within the cut-off ellipse: no fragment's is above it.
 float nearest_of(Splat splat, vec2 variance) {
     vec2 minor_axis = vec2(-splat.axis.y, splat.axis.x);
-    vec2 slope = vec2(dot(splat.plane.yz, splat.axis), dot(splat.plane.yz, minor_axis)) * sqrt(variance);
+    vec2 slope = vec2(dot(splat.plane_hi.yz, splat.axis), dot(splat.plane_hi.yz, minor_axis)) * sqrt(variance);
     float rise = frame.cutoff * length(slope);
-    float centre = splat.plane.x + dot(splat.plane.yz, splat.offset);
+    float centre = splat.plane_hi.x + dot(splat.plane_hi.yz, splat.offset);
     // More than what the rounding of any of these, or of a fragment's κ, takes away.
-    return centre + rise + 1e-6 * (abs(splat.plane.x) + abs(centre) + rise) + 1e-30;
+    return centre + rise + 1e-6 * (abs(splat.plane_hi.x) + abs(centre) + rise) + 1e-30;
 }
 
 // κ moved away from the eye along the ray by the splat's ε, which divides it by 1 + ε/z. Never 0: that means nothing is there.

@@ -34,7 +34,8 @@ pub fn cases() -> Vec<Case> {
 }
 
 impl Case {
-    /// Drops the few surfels that a camera sees within 10⁻⁴ of edge-on: which way they face is no more than rounding.
+    /// Drops the few surfels that a camera sees within 10⁻⁴ of edge-on: which way they face is no more than rounding. Far from the
+    /// world's origin the camera's own matrices round, to some 10⁻⁹ at 10⁷, and 10⁻³ are needed.
     fn without_undecided(mut self) -> Self {
         let tilt = |camera: &Camera, surfel: &Surfel| {
             let normal = camera.view.transform_vector3(surfel.normal);
@@ -42,9 +43,10 @@ impl Case {
             let ray = if camera.projection().unwrap().perspective { centre.normalize() } else { DVec3::Z };
             normal.dot(ray).abs()
         };
+        let undecided = 1e-4 + 5e-11 * self.surfels.origin.length();
         let decided = |i: &usize| {
             let surfel = Surfel::of(&self.surfels, *i);
-            self.cameras.iter().all(|camera| tilt(camera, &surfel) > 1e-4)
+            self.cameras.iter().all(|camera| tilt(camera, &surfel) > undecided)
         };
         let kept: Vec<usize> = (0..self.surfels.len()).filter(decided).collect();
         let s = &mut self.surfels;
