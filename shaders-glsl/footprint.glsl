@@ -18,24 +18,21 @@ layout(constant_id = 11) const bool LIST_LARGE = false;
 layout(set = 0, binding = 2, std430) readonly buffer Positions { float positions[]; };
 layout(set = 0, binding = 3, std430) readonly buffer Normals { float normals[]; };
 layout(set = 0, binding = 4, std430) readonly buffer Radii { float radii[]; };
-layout(set = 0, binding = 6, std430) buffer Counts {
-    uint drawn;
-    uint behind;    // centre not in front of the eye
-    uint eye_plane; // the disc reaches the eye plane
-    uint back;      // the normal faces away and such are culled
-    uint outside;   // off the picture
-} counts;
+layout(set = 0, binding = 6, std430) buffer Counts { uint culled[4]; };
 
 layout(set = 0, binding = 7, std430) buffer LargeSplats { uint large_count; uint large_padding[63]; uint large[]; };
 
 layout(push_constant) uniform Window { uint count; } window;
 
-const uint DRAWN = 0, BEHIND = 1, EYE_PLANE = 2, BACK = 3, OUTSIDE = 4;
+// Fates, the first four in the order of the counts.
+const uint BEHIND = 0;    // the centre is not in front of the eye
+const uint EYE_PLANE = 1; // the disc reaches the eye plane
+const uint BACK = 2;      // the normal faces away, and such are culled
+const uint OUTSIDE = 3;   // off the picture
+const uint DRAWN = 4;
 
 // Pixels in the box of a splat from which on the compute rasterizer gives it a workgroup.
 const float LARGE_AREA = 1024.0;
-
-shared uint tally[5];
 
 // Two unit vectors that complete n to a right-handed basis (Duff et al. 2017).
 mat2x3 tangents(vec3 n) {
@@ -121,29 +118,13 @@ uint footprint(uint i, out Splat splat) {
     return DRAWN;
 }
 
-void count(uint fate, bool valid) {
-    if (gl_LocalInvocationIndex < 5) tally[gl_LocalInvocationIndex] = 0;
-    barrier();
-    if (valid) atomicAdd(tally[fate], 1);
-    barrier();
-    if (gl_LocalInvocationIndex != 0) return;
-    atomicAdd(counts.drawn, tally[DRAWN]);
-    atomicAdd(counts.behind, tally[BEHIND]);
-    atomicAdd(counts.eye_plane, tally[EYE_PLANE]);
-    atomicAdd(counts.back, tally[BACK]);
-    atomicAdd(counts.outside, tally[OUTSIDE]);
-}
-
 void main() {
     uint i = gl_GlobalInvocationID.x;
-    bool valid = i < window.count;
-    uint fate = DRAWN;
-    if (valid) {
-        Splat splat = Splat(vec2(0.0), vec2(1.0, 0.0), vec2(0.0), 0, 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
-        fate = footprint(i, splat);
-        splats[i] = splat;
-    }
-    if (COUNT) count(fate, valid);
+    if (i >= window.count) return;
+    Splat splat = Splat(vec2(0.0), vec2(1.0, 0.0), vec2(0.0), 0, 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
+    uint fate = footprint(i, splat);
+    splats[i] = splat;
+    if (COUNT && fate != DRAWN) atomicAdd(culled[fate], 1);
 }
 
 #endif

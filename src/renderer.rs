@@ -168,7 +168,7 @@ impl Renderer {
         })?;
         Ok(FrameReport {
             pass_times: self.commands.pass_times()?,
-            counts: variant.count.then(|| resident.splats.counts().into()),
+            counts: variant.count.then(|| SplatCounts::new(scene.count(), resident.splats.counts())),
         })
     }
 
@@ -227,9 +227,10 @@ fn rasterizer_for(device: &Device, options: &RenderOptions) -> Result<Rasterizer
     }
 }
 
-impl From<Counts> for SplatCounts {
-    fn from(counts: Counts) -> Self {
-        let Counts { drawn, behind, eye_plane, back, outside } = counts;
+impl SplatCounts {
+    fn new(surfels: u64, Counts { culled }: Counts) -> Self {
+        let [behind, eye_plane, back, outside] = culled;
+        let drawn = surfels as u32 - culled.iter().sum::<u32>();
         Self { drawn, behind, eye_plane, back, outside }
     }
 }

@@ -15,12 +15,17 @@ fn every_case_through_every_camera() {
     for case in cases() {
         for (i, camera) in case.cameras.iter().enumerate() {
             let tolerance = Tolerance::default();
-            let expected = Expected::new(&case.surfels, camera, case.size, &case.settings, &tolerance).unwrap();
+            let expected =
+                Expected::new(&case.surfels, camera, case.size, &case.settings, &tolerance).unwrap();
             for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
                 let outputs = Outputs { normal: true, depth: true };
                 let rasterizer_option = Some(rasterizer);
-                let options =
-                    RenderOptions { size: case.size, outputs, rasterizer: rasterizer_option, ..Default::default() };
+                let options = RenderOptions {
+                    size: case.size,
+                    outputs,
+                    rasterizer: rasterizer_option,
+                    ..Default::default()
+                };
                 let picture = render(&device, &case.surfels, camera, &case.settings, options);
                 let verdict = expected.compare(&picture).unwrap();
                 println!(

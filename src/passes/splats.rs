@@ -151,7 +151,7 @@ impl Splats {
         rec.wait(&[self.counts.with(Access::HOST_READ)]);
     }
 
-    /// The last counted frame's counts; it must be over.
+    /// Culled surfels of the last counted frame, by reason; it must be over.
     pub fn counts(&self) -> Counts {
         bytemuck::pod_read_unaligned(&self.counts.bytes()[..size_of::<Counts>()])
     }
