@@ -87,13 +87,15 @@ struct Resident {
 impl Renderer {
     /// A renderer that has made nothing for any scene yet.
     pub fn new(device: &Arc<Device>, options: RenderOptions) -> Result<Self> {
+        check_size(device, options.size)?;
         let mut options = options;
-        if !device.capabilities().blend_float32 && options.precision == Precision::Full {
+        let rasterizer = rasterizer_for(device, &options)?;
+        options.rasterizer = Some(rasterizer);
+        let blends = device.capabilities().blend_float32;
+        if rasterizer == Rasterizer::Draw && options.precision == Precision::Full && !blends {
             log::warn!("{} cannot blend 32-bit floats: sums are kept in 16 bits", device.description().name);
             options.precision = Precision::Half;
         }
-        check_size(device, options.size)?;
-        options.rasterizer = Some(rasterizer_for(device, &options)?);
         Ok(Self {
             present: None,
             resident: None,
@@ -221,8 +223,10 @@ fn rasterizer_for(device: &Device, options: &RenderOptions) -> Result<Rasterizer
             device.description().name
         ))),
         Some(rasterizer) => Ok(rasterizer),
-        // Measured on CPU devices only; a GPU's own rasterizer is taken until a measurement says otherwise.
-        None if can_compute && device.description().kind == "CPU" => Ok(Rasterizer::Compute),
+        // Measured on CPU devices only; a GPU's own rasterizer is taken until a measurement says otherwise, if it keeps 32 bits.
+        None if can_compute && (device.description().kind == "CPU" || !capabilities.blend_float32) => {
+            Ok(Rasterizer::Compute)
+        }
         None => Ok(Rasterizer::Draw),
     }
 }

@@ -119,7 +119,7 @@ impl Scene {
     }
 
     /// Ranges of surfels that one descriptor set can name.
-    pub(crate) fn windows(&self) -> &[Range<u64>] {
+    pub fn windows(&self) -> &[Range<u64>] {
         &self.windows
     }
 

@@ -22,6 +22,7 @@ pub struct SplatLayout {
 /// A splat a surfel, with descriptor sets over windows of surfels and splats.
 pub struct Splats {
     splats: Buffer,
+    /// [`Counts`] of each window, at multiples of [`COUNTS_STEP`].
     counts: Buffer,
     /// Indices of splats of many pixels, a list a window; only for the compute rasterizer.
     large: Option<Buffer>,
@@ -36,6 +37,8 @@ pub(super) struct Window {
     list: u64,
 }
 
+/// From one window's counts to the next, bytes; no device aligns to more.
+const COUNTS_STEP: u64 = 256;
 /// Bytes before the indices of a list of large splats.
 const LIST_HEADER: u64 = size_of::<LargeSplats>() as u64;
 
@@ -70,7 +73,7 @@ impl Splats {
     ) -> Result<Self> {
         let stride = size_of::<Splat>() as u64;
         let splats = Buffer::storage(device, "splats", scene.count() * stride)?;
-        let counts = Buffer::readback(device, "counts", size_of::<Counts>() as u64)?;
+        let counts = Buffer::readback(device, "counts", scene.windows().len() as u64 * COUNTS_STEP)?;
         let lists = scene.windows().len() as u64 * LIST_HEADER + 4 * scene.count();
         let large = match rasterizer {
             Rasterizer::Draw => None,
@@ -81,7 +84,7 @@ impl Splats {
             let list = number * LIST_HEADER + 4 * range.start;
             let [positions, normals, radii, colours] = scene.bindings(range);
             let own = Binding::Storage(&splats, range.start * stride, count * stride);
-            let tally = Binding::Storage(&counts, 0, counts.size());
+            let tally = Binding::Storage(&counts, number * COUNTS_STEP, COUNTS_STEP);
             // Without the compute rasterizer nothing is listed, and the counts stand in.
             let large =
                 large.as_ref().map_or(tally, |large| Binding::Storage(large, list, LIST_HEADER + 4 * count));
@@ -153,7 +156,11 @@ impl Splats {
 
     /// Culled surfels of the last counted frame, by reason; it must be over.
     pub fn counts(&self) -> Counts {
-        bytemuck::pod_read_unaligned(&self.counts.bytes()[..size_of::<Counts>()])
+        let windows = self.counts.bytes().chunks_exact(COUNTS_STEP as usize);
+        let culled = windows
+            .map(|window| bytemuck::pod_read_unaligned::<Counts>(&window[..size_of::<Counts>()]).culled);
+        let add = |sum: [u32; 4], counts: [u32; 4]| std::array::from_fn(|i| sum[i] + counts[i]);
+        Counts { culled: culled.fold([0; 4], add) }
     }
 
     /// Memory of the splats and what belongs to them, bytes.

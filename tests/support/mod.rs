@@ -1,4 +1,5 @@
-//! What several integration tests share.
+//! What several integration tests share; none uses all of it.
+#![allow(dead_code)]
 
 pub mod gpu;
 pub mod sampling;

@@ -1,0 +1,229 @@
+//! Frames: what they make and do not make, the fallbacks of lesser devices, sizes, the two rasterizers side by side.
+
+mod support;
+
+use glam::DVec3;
+use std::sync::Arc;
+use support::gpu::{assert_silent, device, render};
+use surfel::geometry::{Camera, Surfels};
+use surfel::reference::{Expected, Tolerance};
+use surfel::scenes::bumpy_sphere;
+use surfel::settings::{Cull, DirectionalLight, Shading};
+use surfel::vk::{Device, DeviceLimits};
+use surfel::{Error, Outputs, Picture, Precision, Rasterizer, RenderOptions, Renderer, Scene, Settings};
+
+const SIZE: [u32; 2] = [256, 192];
+
+fn sphere(points: u32) -> Surfels {
+    let mut surfels = bumpy_sphere::sample(points, 1);
+    surfels.sort_morton();
+    surfels
+}
+
+fn camera(size: [u32; 2]) -> Camera {
+    let eye = 3.5 * DVec3::new(1.0, 0.8, 1.6).normalize();
+    let aspect = f64::from(size[0]) / f64::from(size[1]);
+    Camera::look_at(eye, DVec3::ZERO, DVec3::Y, 45f64.to_radians(), aspect, 1e-3).unwrap()
+}
+
+fn everything(rasterizer: Rasterizer) -> RenderOptions {
+    let outputs = Outputs { normal: true, depth: true };
+    RenderOptions { size: SIZE, outputs, rasterizer: Some(rasterizer), ..Default::default() }
+}
+
+/// Whether `picture` is the reference's of the sphere with default settings.
+fn agrees(picture: &Picture, surfels: &Surfels) -> bool {
+    let settings = Settings::default();
+    let expected = Expected::new(surfels, &camera(SIZE), SIZE, &settings, &Tolerance::default()).unwrap();
+    expected.compare(picture).unwrap().passed()
+}
+
+fn picture_on(device: &Arc<Device>, surfels: &Surfels, options: RenderOptions) -> Picture {
+    render(device, surfels, &camera(options.size), &Settings::default(), options)
+}
+
+#[test]
+fn a_second_frame_makes_nothing() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
+        let scene = Scene::upload(&device, &sphere(5_000)).unwrap();
+        let options = RenderOptions { profile: true, count: true, ..everything(rasterizer) };
+        let mut renderer = Renderer::new(&device, options).unwrap();
+        renderer.render_picture(&scene, &camera(SIZE), &Settings::default()).unwrap();
+        let before = device.usage();
+        // Neither the camera's place nor numbers that shaders read from memory are reasons to make anything.
+        let settings =
+            Settings { lowpass: 0.3, epsilon: 2.0, background: Some([0.5; 3]), ..Default::default() };
+        let moved = Camera { view: camera(SIZE).view * glam::DMat4::from_rotation_y(1.0), ..camera(SIZE) };
+        renderer.render_picture(&scene, &moved, &settings).unwrap();
+        assert_eq!(device.usage(), before, "{rasterizer:?}");
+    }
+    assert_silent(&device);
+}
+
+#[test]
+fn pipelines_are_few_and_made_once_a_variant() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let scene = Scene::upload(&device, &sphere(2_000)).unwrap();
+    let lights = DirectionalLight { to_light: [0.0, 1.0, 0.0], radiance: [0.2; 3] };
+    let mut lit = Settings::default();
+    lit.lighting.directional = vec![lights; 2];
+    let shaded = |shading| Settings { shading, ..Default::default() };
+    let frames = [
+        shaded(Shading::Lit),
+        shaded(Shading::Colour),
+        shaded(Shading::Normal),
+        shaded(Shading::Depth),
+        Settings { cull: Cull::Back, ..Default::default() },
+        lit,
+    ];
+    for (rasterizer, most) in [(Rasterizer::Draw, 4), (Rasterizer::Compute, 7)] {
+        let options = RenderOptions { size: SIZE, rasterizer: Some(rasterizer), ..Default::default() };
+        let mut renderer = Renderer::new(&device, options).unwrap();
+        let before = device.usage().pipelines;
+        for settings in frames.iter().chain(&frames) {
+            renderer.render(&scene, &camera(SIZE), settings).unwrap();
+        }
+        let made = device.usage().pipelines - before;
+        println!("{rasterizer:?}: {made} pipelines for {} variants", frames.len());
+        assert_eq!(made, most * frames.len() as u64, "{rasterizer:?}");
+    }
+    assert_silent(&device);
+}
+
+#[test]
+fn nothing_is_left_when_all_is_dropped() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let before = device.usage().bytes;
+    for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
+        picture_on(&device, &sphere(2_000), everything(rasterizer));
+    }
+    assert_eq!(device.usage().bytes, before);
+    assert_silent(&device);
+}
+
+#[test]
+fn a_scene_without_colour_has_no_colour_target() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let with = sphere(2_000);
+    let without = Surfels { colours: None, ..with.clone() };
+    for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
+        let options = RenderOptions { size: SIZE, rasterizer: Some(rasterizer), ..Default::default() };
+        let targets = |surfels: &Surfels| {
+            let scene = Scene::upload(&device, surfels).unwrap();
+            let mut renderer = Renderer::new(&device, options).unwrap();
+            renderer.render(&scene, &camera(SIZE), &Settings::default()).unwrap();
+            renderer.targets().into_iter().map(|target| target.name).collect::<Vec<_>>()
+        };
+        assert!(targets(&with).contains(&"sums1"), "{rasterizer:?}");
+        assert!(!targets(&without).contains(&"sums1"), "{rasterizer:?}");
+    }
+    assert_silent(&device);
+}
+
+#[test]
+fn many_windows_make_the_same_picture() {
+    let limits = DeviceLimits { max_storage_buffer_range: Some(1 << 20), ..Default::default() };
+    let Some(device) = device(limits) else { return };
+    let surfels = sphere(50_000);
+    let scene = Scene::upload(&device, &surfels).unwrap();
+    assert!(scene.windows().len() > 2, "one window would prove nothing");
+    let picture = picture_on(&device, &surfels, everything(Rasterizer::Draw));
+    assert!(agrees(&picture, &surfels));
+    // The compute rasterizer's buffers fit at a smaller size.
+    let small = RenderOptions { size: [128, 96], ..everything(Rasterizer::Compute) };
+    let [drawn, computed] = [Rasterizer::Draw, Rasterizer::Compute].map(|rasterizer| {
+        picture_on(&device, &surfels, RenderOptions { rasterizer: Some(rasterizer), ..small })
+    });
+    assert!(largest_difference(&drawn, &computed) < 1e-5);
+    assert_silent(&device);
+}
+
+#[test]
+fn without_float_atomics_frames_are_drawn() {
+    let Some(device) = device(DeviceLimits { float_atomics: Some(false), ..Default::default() }) else {
+        return;
+    };
+    let surfels = sphere(5_000);
+    let options = RenderOptions { rasterizer: None, ..everything(Rasterizer::Draw) };
+    assert!(agrees(&picture_on(&device, &surfels, options), &surfels));
+    let refused = Renderer::new(&device, everything(Rasterizer::Compute));
+    assert!(matches!(refused.err(), Some(Error::Usage(text)) if text.contains("float atomics")));
+    assert_silent(&device);
+}
+
+#[test]
+fn without_float32_blending_sums_are_half_floats_or_computed() {
+    let Some(device) = device(DeviceLimits { blend_float32: Some(false), ..Default::default() }) else {
+        return;
+    };
+    let surfels = sphere(5_000);
+    let renderer = Renderer::new(&device, everything(Rasterizer::Draw)).unwrap();
+    assert_eq!(renderer.precision(), Precision::Half);
+    let full = picture_on(&device, &surfels, everything(Rasterizer::Compute));
+    assert!(agrees(&full, &surfels), "computing needs no blending");
+    let half = picture_on(&device, &surfels, everything(Rasterizer::Draw));
+    let error = largest_difference(&half, &full);
+    println!("largest error of 16-bit sums: {error:.1e}");
+    // 11 bits of mantissa; truncated sums of some twenty splats, normalised.
+    assert!(error > 1e-5 && error < 3e-2, "{error}");
+    assert_silent(&device);
+}
+
+#[test]
+fn without_timestamps_there_are_no_times() {
+    let Some(device) = device(DeviceLimits { timestamps: Some(false), ..Default::default() }) else { return };
+    let scene = Scene::upload(&device, &sphere(2_000)).unwrap();
+    let options = RenderOptions { size: SIZE, profile: true, ..Default::default() };
+    let mut renderer = Renderer::new(&device, options).unwrap();
+    let report = renderer.render(&scene, &camera(SIZE), &Settings::default()).unwrap();
+    assert!(report.pass_times.is_empty());
+    assert_silent(&device);
+}
+
+#[test]
+fn every_size_that_the_device_has_works_and_others_are_refused() {
+    let Some(device) = device(DeviceLimits { max_image_side: Some(1500), ..Default::default() }) else {
+        return;
+    };
+    let surfels = sphere(2_000);
+    for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
+        for size in [[1, 1], [1, 301], [1500, 1], [1500, 3], [127, 65]] {
+            let picture = picture_on(&device, &surfels, RenderOptions { size, ..everything(rasterizer) });
+            assert_eq!(picture.colour.len() as u32, size[0] * size[1]);
+            assert!(picture.colour.iter().flatten().all(|c| c.is_finite()), "{rasterizer:?} {size:?}");
+            assert!(picture.colour.iter().any(|c| c[3] > 0.0), "{rasterizer:?} {size:?}: nothing to see");
+        }
+        for size in [[0, 5], [5, 0], [1501, 5], [5, 1501]] {
+            let refused = Renderer::new(&device, RenderOptions { size, ..everything(rasterizer) });
+            assert!(
+                matches!(refused.err(), Some(Error::Usage(text)) if text.contains("1500x1500")),
+                "{size:?}"
+            );
+        }
+    }
+    assert_silent(&device);
+}
+
+#[test]
+fn repeated_frames_are_the_same_picture() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let scene = Scene::upload(&device, &sphere(20_000)).unwrap();
+    for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
+        let mut renderer = Renderer::new(&device, everything(rasterizer)).unwrap();
+        let mut frame = || renderer.render_picture(&scene, &camera(SIZE), &Settings::default()).unwrap().0;
+        let first = frame();
+        for _ in 0..10 {
+            // Atomic sums come in any order, so their last bits may differ; a missing barrier would show far more.
+            assert!(largest_difference(&frame(), &first) < 1e-5, "{rasterizer:?}");
+        }
+    }
+    assert_silent(&device);
+}
+
+/// Over all channels of all pixels.
+fn largest_difference(a: &Picture, b: &Picture) -> f32 {
+    assert_eq!(a.size, b.size);
+    let pairs = a.colour.iter().flatten().zip(b.colour.iter().flatten());
+    pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max)
+}
