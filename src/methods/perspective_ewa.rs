@@ -77,22 +77,22 @@ impl PerspectiveEwa {
         match self {
             Self::Draw(method) => {
                 let targets = Images::new(device, variant, size)?;
-                Ok(Canvas::Draw(DrawCanvas {
+                Ok(Canvas::Draw(Box::new(DrawCanvas {
                     visibility: method.visibility.framebuffer(device, &targets)?,
                     attribute: method.attribute.framebuffer(device, &targets)?,
                     normalize: method.normalize.views(device, frame, &targets)?,
                     targets,
                     method: method.clone(),
-                }))
+                })))
             }
             Self::Compute(method) => {
                 let targets = Buffers::new(device, variant, size)?;
-                Ok(Canvas::Compute(ComputeCanvas {
+                Ok(Canvas::Compute(Box::new(ComputeCanvas {
                     pixels: PixelSet::new(device, layout, &targets)?,
                     frame: method.normalize.view(device, frame)?,
                     targets,
                     method: method.clone(),
-                }))
+                })))
             }
         }
     }
@@ -101,9 +101,9 @@ impl PerspectiveEwa {
 /// Targets with the passes that write them.
 pub enum Canvas {
     /// With the device's own rasterizer.
-    Draw(DrawCanvas),
+    Draw(Box<DrawCanvas>),
     /// With compute shaders.
-    Compute(ComputeCanvas),
+    Compute(Box<ComputeCanvas>),
 }
 
 /// Images and the passes that draw to them. Views go before what they view.
