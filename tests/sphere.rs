@@ -1,0 +1,93 @@
+//! A million splats of the bumpy sphere show what rays through the exact surface meet.
+
+mod support {
+    pub mod gpu;
+    pub mod truth;
+}
+
+use support::gpu::{assert_silent, device, render};
+use support::truth::{Differences, Truth};
+use surfel::settings::Shading;
+use surfel::vk::DeviceLimits;
+use surfel::{Picture, Rasterizer, RenderOptions, Settings, scenes};
+
+/// Most pixels outside the sphere's outline that may be covered.
+const MOST_EXTRA: usize = 2_000;
+/// The background, linear.
+const WHITE: [f32; 3] = [1.0; 3];
+
+/// What is wrong with a picture; empty if it passes. The bar is on every missing pixel, not on holes alone: discs reach beyond the
+/// outline they sample, so that nothing is lost there either.
+fn faults(found: &Differences, most_wrong_percent: f64) -> Vec<&'static str> {
+    let faults = [
+        (found.missing > 0, "pixels are missing"),
+        (found.wrong_percent() > most_wrong_percent, "too many wrong checker pixels"),
+        (found.extra > MOST_EXTRA, "too many extra outline pixels"),
+    ];
+    faults.into_iter().filter(|(fails, _)| *fails).map(|(_, fault)| fault).collect()
+}
+
+/// Compares a picture on white; what it covers is told by the same without a background.
+fn compare(truth: &Truth, transparent: &Picture, white: &Picture) -> Differences {
+    truth.compare(|i| {
+        let [r, g, b, _] = white.colour[i];
+        (transparent.colour[i][3] > 0.0, [r, g, b])
+    })
+}
+
+/// The picture, moved to the right by a pixel; what leaves a row enters the next.
+fn shifted(picture: &Picture) -> Picture {
+    let mut shifted = picture.clone();
+    shifted.colour.rotate_right(1);
+    shifted
+}
+
+#[test]
+fn a_million_splats_show_what_rays_meet() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let truth = Truth::new(1024);
+    let surfels = scenes::open("scene:bumpy-sphere?points=1000000&seed=1").unwrap();
+    let mut failed = Vec::new();
+    for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
+        for (lowpass, most_wrong_percent) in [(0.0, 1.1), (1.0, 1.25)] {
+            let picture = |background| {
+                let settings =
+                    Settings { shading: Shading::Colour, lowpass, background, ..Default::default() };
+                let options =
+                    RenderOptions { size: truth.size(), rasterizer: Some(rasterizer), ..Default::default() };
+                render(&device, &surfels, &truth.camera(), &settings, options)
+            };
+            let (mut transparent, white) = (picture(None), picture(Some(WHITE)));
+            let name = format!("{rasterizer:?}, low-pass {lowpass}");
+            for (bare, filled) in transparent.colour.iter().zip(&white.colour) {
+                let expected = if bare[3] > 0.0 { *bare } else { [1.0; 4] };
+                // The two are separate renders, and sums depend on the order in which threads add.
+                let same = expected.iter().zip(filled).all(|(a, b)| (a - b).abs() < 1e-5);
+                assert!(same, "{name}: {expected:?} {filled:?}");
+            }
+
+            let found = compare(&truth, &transparent, &white);
+            println!(
+                "{name}: {found:?}, wrong {:.3} % ({:.3} % sRGB-encoded)",
+                found.wrong_percent(),
+                found.wrong_encoded_percent()
+            );
+            let faults_of = |found: &Differences| faults(found, most_wrong_percent);
+            if !faults_of(&found).is_empty() {
+                failed.push(format!("{name}: {:?}: {found:?}", faults_of(&found)));
+            }
+
+            // The same judge sees a lost pixel, and a picture that is off by one.
+            let off = compare(&truth, &shifted(&transparent), &shifted(&white));
+            println!("{name}, off by a pixel: {off:?}, wrong {:.3} %", off.wrong_percent());
+            assert!(faults_of(&off).contains(&"too many wrong checker pixels"), "{name}: {off:?}");
+            let middle = transparent.colour.len() / 2 + truth.size()[0] as usize / 2;
+            transparent.colour[middle] = [0.0; 4];
+            let blanked = compare(&truth, &transparent, &white);
+            assert_eq!((blanked.missing, blanked.holes), (found.missing + 1, found.holes + 1), "{name}");
+            assert!(faults_of(&blanked).contains(&"pixels are missing"), "{name}");
+        }
+    }
+    assert_silent(&device);
+    assert!(failed.is_empty(), "{failed:#?}");
+}
