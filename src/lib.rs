@@ -1,4 +1,42 @@
-//! **surfel** renders point-sampled surfaces with Vulkan.
+//! **surfel** renders point-sampled surfaces with Vulkan: scans, photogrammetry, simulations.
+//!
+//! The way of the data, and where each step lives:
+//!
+//! ```text
+//! file ─ io, scenes → geometry ─ scene → buffers ─ methods, passes → targets ─ readback → picture
+//! ```
+//!
+//! | module | |
+//! |---|---|
+//! | [`geometry`] | what a scene is made of: surfels, bounds, cameras; plain CPU data |
+//! | [`io`] | PLY, PNG, EXR |
+//! | [`scenes`] | built-in scenes with exact ground truth |
+//! | [`settings`] | what a frame is asked to be |
+//! | [`scene`] | geometry on the GPU: only the streams that it has |
+//! | [`variant`], [`targets`] | which pipelines and images a frame needs, and no more |
+//! | [`passes`] | one file a pass, beside the shader of the same name |
+//! | [`methods`] | one file a method: its paper and its passes |
+//! | [`renderer`] | frames: make ready, record, submit, read back |
+//! | [`reference`](mod@reference) | the float64 twin of every pass, on the CPU; judges pictures |
+//! | [`vk`] | the layer over raw Vulkan |
+//!
+//! ```no_run
+//! use surfel::geometry::Camera;
+//! use surfel::vk::{Device, DeviceOptions};
+//! use surfel::{RenderOptions, Renderer, Scene, Settings, io};
+//!
+//! # fn main() -> surfel::Result<()> {
+//! let loaded = io::ply::read("bunny.ply".as_ref())?;
+//! let device = Device::open(&DeviceOptions::default())?;
+//! let scene = Scene::upload(&device, &loaded.surfels)?;
+//! let mut renderer = Renderer::new(&device, RenderOptions { size: [800, 600], ..Default::default() })?;
+//! let camera = Camera::framing(scene.bounds(), 45f64.to_radians(), 800.0 / 600.0)?;
+//! let (picture, _report) = renderer.render_picture(&scene, &camera, &Settings::default())?;
+//! assert_eq!(picture.colour.len(), 800 * 600);
+//! # Ok(())
+//! # }
+//! ```
+
 pub mod error;
 mod frame;
 pub mod geometry;
