@@ -66,6 +66,14 @@ mat2x3 depth_plane(vec3 n, vec2 h, vec2 facing, vec2 anchor) {
     return mat2x3(vec3(key.x, x.x, y.x), vec3(key.y, x.y, y.y));
 }
 
+// κ of a disc's nearest point. In perspective its centre is at distance w and it reaches `lean` nearer; otherwise its centre is at
+// `position`, with the cosine `facing` between normal and rays.
+float key_of_disc(float w, float lean, vec3 position, float facing, float r) {
+    if (PERSPECTIVE) return frame.near / (w - lean);
+    float z = dot(frame.forward_hi.xyz, position) - r * sqrt(max(1.0 - facing * facing, 0.0));
+    return 1.0 - (z - frame.near) * frame.key_slope;
+}
+
 uint footprint(uint i, out Splat splat) {
     vec3 p = vec3(positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]);
     vec3 n = vec3(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]);
@@ -115,6 +123,7 @@ uint footprint(uint i, out Splat splat) {
     splat.plane_hi = plane[0];
     splat.plane_lo = plane[1];
     splat.sqrt_det = sqrt_det;
+    splat.key_disc = key_of_disc(w.x, frame.cutoff * g, hi, facing.x, r);
     return DRAWN;
 }
 

@@ -12,15 +12,16 @@
 
 layout(constant_id = 8) const bool LARGE_SPLATS = false;
 
-float splat_epsilon;
+float splat_epsilon, splat_key_disc;
 
 bool scatter_begin(uint i, Splat splat, vec2 variance, float nearest, ivec2 low, ivec2 high) {
     splat_epsilon = splat.epsilon;
+    splat_key_disc = splat.key_disc;
     return true;
 }
 
 void scatter(uint pixel, float m2, float key) {
-    atomicMax(visibility[pixel], floatBitsToUint(behind(key, splat_epsilon)));
+    atomicMax(visibility[pixel], floatBitsToUint(visibility_key(key, splat_key_disc, splat_epsilon)));
 }
 
 #include "lib/scatter_splat.glsl"
@@ -44,7 +45,7 @@ void main() {
 void main() {
     float m2, key;
     drawn_fragment(m2, key);
-    gl_FragDepth = behind(key, plane_epsilon.w);
+    gl_FragDepth = visibility_key(key, plane_lo_disc.w, plane_epsilon.w);
 }
 
 #endif

@@ -5,7 +5,7 @@
 layout(location = 0) flat out vec4 anchor_offset;
 layout(location = 1) flat out vec4 whitening;
 layout(location = 2) flat out vec4 plane_epsilon;
-layout(location = 3) flat out vec3 plane_lo;
+layout(location = 3) flat out vec4 plane_lo_disc;
 
 // More than the rasterizer's snapping of vertices, at least 1/16 px, could take from an edge.
 const float EDGE = 0.125;
@@ -19,7 +19,7 @@ float place_splat(Splat splat, float lowpass, int corner) {
     anchor_offset = vec4(ellipse.anchor, ellipse.offset);
     whitening = ellipse.whitening;
     plane_epsilon = vec4(ellipse.plane_hi, splat.epsilon);
-    plane_lo = ellipse.plane_lo;
+    plane_lo_disc = vec4(ellipse.plane_lo, splat.key_disc);
 
     // The nearest depth in the ellipse bounds every fragment's, which lets a device reject the triangle early.
     float nearest = min(1.0, nearest_of(splat, variance));
@@ -47,14 +47,14 @@ float place_splat(Splat splat, float lowpass, int corner) {
 layout(location = 0) flat in vec4 anchor_offset;
 layout(location = 1) flat in vec4 whitening;
 layout(location = 2) flat in vec4 plane_epsilon;
-layout(location = 3) flat in vec3 plane_lo;
+layout(location = 3) flat in vec4 plane_lo_disc;
 
 // The bound given by the vertex stage holds: κ only falls from there.
 layout(depth_less) out float gl_FragDepth;
 
 // As splat_fragment; where there is no fragment, there is none.
 void drawn_fragment(out float m2, out float key) {
-    Ellipse ellipse = Ellipse(anchor_offset.xy, anchor_offset.zw, whitening, plane_epsilon.xyz, plane_lo);
+    Ellipse ellipse = Ellipse(anchor_offset.xy, anchor_offset.zw, whitening, plane_epsilon.xyz, plane_lo_disc.xyz);
     if (!splat_fragment(ellipse, gl_FragCoord.xy, m2, key)) discard;
 }
 

@@ -11,7 +11,7 @@ struct Splat {
     vec3 plane_hi;  // κ of the tangent plane at the anchor, and its derivatives along x and y, 1/px, as sums of two floats
     float sqrt_det; // √|V|, px²
     vec3 plane_lo;
-    float padding;
+    float key_disc; // κ of the disc's nearest point
 };
 
 layout(set = 0, binding = 1, std430) SPLAT_ACCESS buffer Splats { Splat splats[]; };
@@ -84,7 +84,12 @@ float nearest_of(Splat splat, vec2 variance) {
     return centre + rise + 1e-6 * (abs(splat.plane_hi.x) + abs(centre) + rise) + 1e-30;
 }
 
-// κ moved away from the eye along the ray by the splat's ε, which divides it by 1 + ε/z. Never 0: that means nothing is there.
-float behind(float key, float epsilon) {
+// κ that a fragment writes to visibility: moved away from the eye along the ray by the splat's ε, which divides it by 1 + ε/z. Never
+// 0: that means nothing is there.
+//
+// Nothing is claimed nearer than the disc itself. The low-pass widens a disc seen edge-on by most of a pixel, over which its plane
+// runs far out in front of it; rims of hidden surfaces would show through as dark lines.
+float visibility_key(float key, float key_disc, float epsilon) {
+    key = min(key, key_disc);
     return PERSPECTIVE ? key * abs(epsilon) : max(key - abs(epsilon), 1e-6);
 }

@@ -4,7 +4,7 @@ use super::bands::Band;
 use super::ellipse::Ellipse;
 use super::margin::{Candidate, Margins};
 use super::scene::Scene;
-use super::visibility::shifted;
+use super::visibility::claimed;
 use std::collections::HashMap;
 
 /// A visibility depth as far as it is known; infinite for none.
@@ -53,7 +53,7 @@ impl Bounds {
         let mut sure = vec![Bound::NONE; band.len()];
         let mut maybe: HashMap<usize, Vec<Bound>> = HashMap::new();
         margins.scan(scene, band, Ellipse::visibility, |c| {
-            let depth = shifted(margins.projector, c.splat, c.depth);
+            let depth = claimed(margins.projector, c.splat, c.depth);
             let bound = Bound { low: depth - c.wobble, high: depth + c.wobble };
             if c.certain {
                 sure[c.pixel] = sure[c.pixel].min(bound);

@@ -52,6 +52,8 @@ pub struct Splat {
     pub plane: DVec3,
     /// Distance of the surfel's centre.
     pub distance: f64,
+    /// Distance of the disc's nearest point.
+    pub nearest: f64,
     /// What the ε test lets lie behind this splat: its depth is multiplied by this in perspective, and this is added to it in
     /// orthographic projection.
     pub shift: f64,
@@ -117,6 +119,7 @@ impl Projector {
             sqrt_det: conic.sqrt_det,
             plane: self.plane(centre, normal),
             distance,
+            nearest: distance - surfel.radius * normal.truncate().length(),
             shift: self.shift(surfel.radius, distance),
             normal: if facing > 0.0 { -surfel.normal } else { surfel.normal },
             colour: surfel.colour.unwrap_or(DVec3::from_array(self.settings.lighting.albedo.map(f64::from))),

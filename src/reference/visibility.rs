@@ -14,14 +14,19 @@ pub(super) fn pass(projector: &Projector, scene: &Scene, band: &Band) -> Vec<f64
         let ellipse = Ellipse::visibility(splat, projector);
         band.scan(&ellipse, ellipse.cutoff, |hit| {
             if let Some(depth) = projector.depth_at(splat.plane, hit.at) {
-                nearest[hit.index] = nearest[hit.index].min(shifted(projector, splat, depth));
+                nearest[hit.index] = nearest[hit.index].min(claimed(projector, splat, depth));
             }
         });
     }
     nearest
 }
 
-/// `depth`, moved back by the splat's ε. May lie beyond the far plane: it is a bound, not a surface.
-pub(super) fn shifted(projector: &Projector, splat: &Splat, depth: f64) -> f64 {
+/// What a fragment at `depth` claims: that all is hidden from its ε behind it on. May lie beyond the far plane: it is a bound, not a
+/// surface.
+///
+/// Nothing is claimed nearer than the disc itself. The low-pass widens a disc seen edge-on by most of a pixel, over which its plane
+/// runs far out in front of it.
+pub(super) fn claimed(projector: &Projector, splat: &Splat, depth: f64) -> f64 {
+    let depth = depth.max(splat.nearest);
     if projector.depth.perspective { depth * splat.shift } else { depth + splat.shift }
 }

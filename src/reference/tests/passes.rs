@@ -96,3 +96,23 @@ fn planes_beyond_the_clip_volume_leave_no_fragment() {
     };
     assert_eq!([0.99, 1.01, 3.99, 4.01].map(drawn), [false, true, true, false]);
 }
+
+/// Fins seen almost edge-on reach, in the pixel that the low-pass adds, far in front of themselves.
+#[test]
+fn rims_behind_a_wall_do_not_show_through() {
+    let mut wall = disc(DVec3::Z * 2.0, DVec3::NEG_Z, 1.5);
+    wall.colour = Some(DVec3::X);
+    let fins = (0..40).map(|i| {
+        let tilt = 1e-3 * (1.0 + f64::from(i)) * if i % 2 == 0 { 1.0 } else { -1.0 };
+        let at = DVec3::new(0.0, 0.05 * (f64::from(i) - 20.0), 4.0);
+        let ray = at.normalize();
+        let normal = DVec3::X - DVec3::X.dot(ray) * ray + tilt * ray;
+        Surfel { colour: Some(DVec3::Y), ..disc(at, normal.normalize(), 0.3) }
+    });
+    let discs: Vec<Surfel> = fins.chain([wall]).collect();
+    let frame = render(&scene(&discs), &perspective(), SIZE, &plain()).unwrap();
+    for (i, colour) in frame.colour.iter().enumerate().filter(|(i, _)| frame.covered[*i]) {
+        // What their planes put in front of the wall still counts, with the small weights of discs seen edge-on.
+        assert!(colour[1] < 0.5, "pixel {}, {} is the fins': {colour:?}", i % 64, i / 64);
+    }
+}
