@@ -1,14 +1,16 @@
-//! Axis-aligned bounds.
+//! Bounds: a box and a sphere.
 
 use glam::{DVec3, Vec3};
 
-/// The axis-aligned box of a set of points, in the points' own unit and frame.
+/// The axis-aligned box of a set of points and a sphere about them, in the points' own unit and frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
     /// Least coordinates.
     pub min: DVec3,
     /// Greatest coordinates.
     pub max: DVec3,
+    /// Radius of the sphere about [`Bounds::centre`] that holds the points.
+    pub radius: f64,
 }
 
 impl Bounds {
@@ -16,7 +18,15 @@ impl Bounds {
     pub fn of(points: &[Vec3]) -> Option<Self> {
         let first = *points.first()?;
         let (min, max) = points.iter().fold((first, first), |(lo, hi), p| (lo.min(*p), hi.max(*p)));
-        Some(Self { min: min.as_dvec3(), max: max.as_dvec3() })
+        let (min, max) = (min.as_dvec3(), max.as_dvec3());
+        let centre = Self::of_box(min, max).centre();
+        let square = points.iter().map(|p| p.as_dvec3().distance_squared(centre)).fold(0.0, f64::max);
+        Some(Self { min, max, radius: square.sqrt() })
+    }
+
+    /// The bounds of a box's corners.
+    pub fn of_box(min: DVec3, max: DVec3) -> Self {
+        Self { min, max, radius: (0.5 * max - 0.5 * min).length() }
     }
 
     /// The middle of the box.
@@ -25,18 +35,13 @@ impl Bounds {
         0.5 * self.min + 0.5 * self.max
     }
 
-    /// Radius of the sphere about [`Bounds::centre`] through the corners.
-    pub fn radius(&self) -> f64 {
-        (0.5 * self.max - 0.5 * self.min).length()
-    }
-
-    /// The same box moved by `offset`.
+    /// The same bounds moved by `offset`.
     pub fn translated(&self, offset: DVec3) -> Self {
-        Self { min: self.min + offset, max: self.max + offset }
+        Self { min: self.min + offset, max: self.max + offset, ..*self }
     }
 
-    /// The same box with every face moved outwards by `margin`.
+    /// The same bounds moved outwards by `margin`.
     pub fn grown(&self, margin: f64) -> Self {
-        Self { min: self.min - margin, max: self.max + margin }
+        Self { min: self.min - margin, max: self.max + margin, radius: self.radius + margin }
     }
 }

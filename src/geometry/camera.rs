@@ -31,6 +31,9 @@ pub struct Projection {
     pub far: f64,
 }
 
+/// How much larger than the sphere about the object the framed sphere is, so that the outline stays clear of the edge.
+const FRAME: f64 = 1.04;
+
 impl Camera {
     /// A perspective camera at `eye` that looks at `target`, with `up` upwards in the picture.
     ///
@@ -65,7 +68,7 @@ impl Camera {
 
     /// A perspective camera that shows the whole of `bounds`, seen from the front, a little from the right and above (y is up).
     pub fn framing(bounds: &Bounds, fov_y: f64, aspect: f64) -> Result<Self> {
-        let radius = if bounds.radius() > 0.0 { bounds.radius() } else { 1.0 };
+        let radius = if bounds.radius > 0.0 { FRAME * bounds.radius } else { 1.0 };
         // The sphere touches the narrower of the two fields of view.
         let half = (0.5 * fov_y).tan().min((0.5 * fov_y).tan() * aspect).atan();
         let distance = radius / half.sin();
@@ -77,7 +80,7 @@ impl Camera {
     /// A near plane that cuts nothing a viewer at `eye` could want to see of `bounds`. Reversed float depth loses nothing by a small
     /// one.
     pub fn near_for(eye: DVec3, bounds: &Bounds) -> f64 {
-        let scale = bounds.radius().max((eye - bounds.centre()).length());
+        let scale = bounds.radius.max((eye - bounds.centre()).length());
         if scale > 0.0 { 1e-5 * scale } else { 1e-5 }
     }
 
@@ -204,7 +207,7 @@ mod tests {
 
     #[test]
     fn a_framed_box_lies_inside_the_picture() {
-        let bounds = Bounds { min: DVec3::new(-1.0, 5.0, 2.0), max: DVec3::new(3.0, 6.0, 9.0) };
+        let bounds = Bounds::of_box(DVec3::new(-1.0, 5.0, 2.0), DVec3::new(3.0, 6.0, 9.0));
         for aspect in [0.3, 1.0, 2.5] {
             let clip = Camera::framing(&bounds, 0.8, aspect).unwrap().world_to_clip();
             for corner in 0..8 {

@@ -47,7 +47,7 @@ fn common_origin(parts: &[Surfels]) -> DVec3 {
         return first;
     }
     let boxes = parts.iter().filter_map(|part| Some(Bounds::of(&part.positions)?.translated(part.origin)));
-    let union = |a: Bounds, b: Bounds| Bounds { min: a.min.min(b.min), max: a.max.max(b.max) };
+    let union = |a: Bounds, b: Bounds| Bounds::of_box(a.min.min(b.min), a.max.max(b.max));
     boxes.reduce(union).map_or(first, |bounds| bounds.centre())
 }
 

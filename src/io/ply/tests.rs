@@ -372,7 +372,7 @@ fn classic_point_clouds_load_whole() {
         assert_eq!(surfels.colours.as_ref().map(Colours::len), Some(count as usize));
         assert_eq!(report.skipped, ["alpha"]);
         let bounds = surfels.bounds().unwrap();
-        assert!(bounds.radius().is_finite() && bounds.radius() > 0.0, "{bounds:?}");
+        assert!(bounds.radius.is_finite() && bounds.radius > 0.0, "{bounds:?}");
         println!("{name}: {bounds:?}, origin {}", surfels.origin);
     }
 }
