@@ -85,7 +85,8 @@ uint footprint(uint i, out Splat splat) {
     vec3 hi = vec3(dx.x, dy.x, dz.x);
     vec3 lo = vec3(dx.y, dy.y, dz.y) - frame.eye_lo.xyz;
     vec2 w = PERSPECTIVE ? pixel_row(2, hi, lo) : vec2(1.0, 0.0);
-    if (w.x <= 0.0) return BEHIND;
+    // Tests are such that a coordinate which is no number fails them.
+    if (!(w.x > 0.0)) return BEHIND;
 
     float sigma = r / frame.cutoff;
     mat2x3 axes = tangents(n);
@@ -93,7 +94,7 @@ uint footprint(uint i, out Splat splat) {
     vec3 T = sigma * to_pixel(axes[1]);
     float g = length(vec2(S.z, T.z));
     float q = (w.x / frame.cutoff - g) * (w.x / frame.cutoff + g);
-    if (q <= 0.0) return EYE_PLANE;
+    if (!(q > 0.0)) return EYE_PLANE;
     vec2 h = dot_double(hi, lo, n, vec3(0.0));
     vec2 facing = PERSPECTIVE ? h : dot_double(n, vec3(0.0), frame.forward_hi.xyz, frame.forward_lo.xyz);
     if (CULL_BACK && facing.x >= 0.0) return BACK;
@@ -105,7 +106,8 @@ uint footprint(uint i, out Splat splat) {
     Conic conic = dual_conic(centre, S, T, q, frame.cutoff, sqrt_det);
     vec2 reach = reach_of(conic.axis, conic.variance + frame.attribute_lowpass);
     vec2 middle = centre + conic.offset;
-    if (any(greaterThan(middle - reach, frame.viewport)) || any(lessThan(middle + reach, vec2(0.0)))) return OUTSIDE;
+    bool inside = all(lessThanEqual(middle - reach, frame.viewport)) && all(greaterThanEqual(middle + reach, vec2(0.0)));
+    if (!inside) return OUTSIDE;
 
     uvec2 pixel = uvec2(clamp(middle, vec2(0.0), frame.viewport - 1.0));
     vec2 anchor = vec2(pixel) + 0.5;

@@ -11,7 +11,7 @@ use crate::settings::Settings;
 use crate::targets::{Buffers, TargetInfo, check_size};
 use crate::variant::{Outputs, Precision, Rasterizer, Variant};
 use crate::vk::shaders::layout::{Counts, Frame};
-use crate::vk::{Buffer, Commands, Device, PassTime};
+use crate::vk::{Buffer, Commands, Device, DeviceDescription, PassTime};
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::sync::Arc;
@@ -224,7 +224,9 @@ fn rasterizer_for(device: &Device, options: &RenderOptions) -> Result<Rasterizer
         ))),
         Some(rasterizer) => Ok(rasterizer),
         // Measured on CPU devices only; a GPU's own rasterizer is taken until a measurement says otherwise, if it keeps 32 bits.
-        None if can_compute && (device.description().kind == "CPU" || !capabilities.blend_float32) => {
+        None if can_compute
+            && (device.description().kind == DeviceDescription::CPU || !capabilities.blend_float32) =>
+        {
             Ok(Rasterizer::Compute)
         }
         None => Ok(Rasterizer::Draw),

@@ -221,6 +221,38 @@ fn repeated_frames_are_the_same_picture() {
     assert_silent(&device);
 }
 
+#[test]
+fn numbers_that_are_none_are_culled_and_counted() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let whole = sphere(3_000);
+    let mut broken = whole.clone();
+    let spoilt = [
+        (f32::NAN, 0.1),
+        (f32::INFINITY, 0.1),
+        (0.0, f32::NAN),
+        (0.0, f32::INFINITY),
+        (1e30, 0.1),
+        (0.0, 1e30),
+    ];
+    for (x, radius) in spoilt {
+        broken.positions.push(glam::Vec3::new(x, 0.0, 0.0));
+        broken.normals.push(glam::Vec3::new(0.6, 0.0, 0.8));
+        broken.radii.push(radius);
+    }
+    broken.colours = None;
+    let whole = Surfels { colours: None, ..whole };
+    for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
+        let options = RenderOptions { count: true, ..everything(rasterizer) };
+        let mut renderer = Renderer::new(&device, options).unwrap();
+        let scene = Scene::upload(&device, &broken).unwrap();
+        let (picture, report) = renderer.render_picture(&scene, &camera(SIZE), &Settings::default()).unwrap();
+        let counts = report.counts.unwrap();
+        assert_eq!(counts.drawn, 3_000, "{rasterizer:?}: {counts:?}");
+        assert!(agrees(&picture, &whole), "{rasterizer:?}");
+    }
+    assert_silent(&device);
+}
+
 /// Over all channels of all pixels.
 fn largest_difference(a: &Picture, b: &Picture) -> f32 {
     assert_eq!(a.size, b.size);

@@ -21,6 +21,11 @@ pub struct DeviceDescription {
     pub score: u32,
 }
 
+impl DeviceDescription {
+    /// The kind of devices that are the CPU itself.
+    pub const CPU: &'static str = "CPU";
+}
+
 pub(super) struct Candidate {
     pub(super) physical: vk::PhysicalDevice,
     pub(super) family: u32,
@@ -96,7 +101,7 @@ fn candidate(instance: &Instance, physical: vk::PhysicalDevice) -> Candidate {
         vk::PhysicalDeviceType::DISCRETE_GPU => ("discrete GPU", 4),
         vk::PhysicalDeviceType::INTEGRATED_GPU => ("integrated GPU", 3),
         vk::PhysicalDeviceType::VIRTUAL_GPU => ("virtual GPU", 2),
-        vk::PhysicalDeviceType::CPU => ("CPU", 1),
+        vk::PhysicalDeviceType::CPU => (DeviceDescription::CPU, 1),
         _ => ("other", 0),
     };
     let refused = match (new_enough, family) {

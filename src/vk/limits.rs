@@ -44,6 +44,9 @@ pub struct Capabilities {
     pub debug_labels: bool,
 }
 
+/// Largest side of a picture: a splat keeps its anchor pixel in 15 bits a coordinate (`lib/splat.glsl`).
+const LARGEST_SIDE: u32 = 1 << 15;
+
 impl Capabilities {
     pub(super) fn query(
         instance: &Instance,
@@ -80,7 +83,7 @@ impl Capabilities {
             max_storage_buffer_range: u64::from(limits.max_storage_buffer_range)
                 .min(mask.max_storage_buffer_range.unwrap_or(u64::MAX)),
             storage_buffer_alignment: limits.min_storage_buffer_offset_alignment,
-            max_image_side: side.min(mask.max_image_side.unwrap_or(u32::MAX)),
+            max_image_side: side.min(LARGEST_SIDE).min(mask.max_image_side.unwrap_or(u32::MAX)),
             max_workgroups: limits.max_compute_work_group_count[0],
             debug_labels: instance.debug_utils,
         }
