@@ -2,7 +2,7 @@
 
 use super::args::Render;
 use super::inputs::Inputs;
-use super::report::{Gpu, Report};
+use super::report::{Gpu, HalfError, Report};
 use super::times::Times;
 use super::{camera, files, inputs, reference, vulkan};
 use std::ffi::OsString;
@@ -65,7 +65,13 @@ pub fn run(args: &Render) -> Result<()> {
 /// What the user, not a program, wants to know; on standard error, which leaves the other to the picture.
 fn tell(args: &Render, loaded: &Inputs, outcome: &Outcome) {
     if args.times {
+        if let Some(Gpu { description, usage, .. }) = &outcome.gpu {
+            eprintln!("{} ({}), {} pipelines made", description.name, description.driver, usage.pipelines);
+        }
         eprint!("{}", outcome.times);
+    }
+    if let Some(HalfError { largest, rms }) = outcome.gpu.as_ref().and_then(|gpu| gpu.half_error) {
+        eprintln!("16-bit sums: linear colour is off by {largest:.1e} at most, {rms:.1e} RMS");
     }
     if !args.quiet {
         let ([width, height], surfels) = (args.size, loaded.surfels.len());

@@ -30,6 +30,17 @@ pub struct Gpu {
     pub usage: Usage,
     /// What the layers had to say; empty unless they were asked for.
     pub validation_messages: Vec<String>,
+    /// What 16-bit sums cost in accuracy, if they were asked for and the device has 32-bit ones to compare with.
+    pub half_error: Option<HalfError>,
+}
+
+/// How far a picture of 16-bit sums is from that of 32-bit sums, over all channels of all pixels, linear.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+pub struct HalfError {
+    /// Largest difference.
+    pub largest: f64,
+    /// Root of the mean square.
+    pub rms: f64,
 }
 
 /// A report as a JSON object.
@@ -71,6 +82,7 @@ impl Report {
         put("scene_bytes", gpu.map(|gpu| json!(gpu.scene_bytes)));
         put("splat_bytes", gpu.map(|gpu| json!(gpu.splat_bytes)));
         put("device_bytes", gpu.map(|gpu| json!(gpu.usage.bytes)));
+        put("half_error", gpu.map(|gpu| json!(gpu.half_error)));
         put("pipelines", gpu.map(|gpu| json!(gpu.usage.pipelines)));
         put("allocations", gpu.map(|gpu| json!(gpu.usage.allocations)));
         put("validation_messages", gpu.map(|gpu| json!(gpu.validation_messages)));

@@ -3,13 +3,13 @@
 use super::args::Place;
 use super::files::{cache_folder, read_json};
 use super::render::{Outcome, Task};
-use super::report::Gpu;
+use super::report::{Gpu, HalfError};
 use super::times::Times;
 use std::sync::Arc;
 use std::time::Instant;
 use surfel::settings::Shading;
 use surfel::vk::{Device, DeviceLimits, DeviceOptions};
-use surfel::{Outputs, Precision, RenderOptions, Renderer, Result, Scene};
+use surfel::{Outputs, Picture, Precision, RenderOptions, Renderer, Result, Scene};
 
 /// How the device is opened. Reads the file of limits.
 pub fn options(place: &Place) -> Result<DeviceOptions> {
@@ -44,8 +44,33 @@ pub fn render(task: &Task<'_>, options: &DeviceOptions, half: bool, measure: boo
         let report = renderer.render(&scene, &task.camera, &task.settings)?;
         times.add(start.elapsed(), &report.pass_times);
     }
-    let gpu = Some(gpu(&device, &renderer, &scene));
-    Ok(Outcome { picture, counts: report.counts, times, gpu })
+    let mut gpu = gpu(&device, &renderer, &scene);
+    if half {
+        gpu.half_error = half_error(&device, task, &scene, options, &picture)?;
+    }
+    Ok(Outcome { picture, counts: report.counts, times, gpu: Some(gpu) })
+}
+
+/// How far `picture`, of 16-bit sums, is from that of 32-bit sums; `None` if the device has no such sums.
+fn half_error(
+    device: &Arc<Device>,
+    task: &Task<'_>,
+    scene: &Scene,
+    options: RenderOptions,
+    picture: &Picture,
+) -> Result<Option<HalfError>> {
+    let options = RenderOptions { precision: Precision::Full, profile: false, count: false, ..options };
+    let mut renderer = Renderer::new(device, options)?;
+    if renderer.precision() != Precision::Full {
+        return Ok(None);
+    }
+    let (full, _) = renderer.render_picture(scene, &task.camera, &task.settings)?;
+    let channels =
+        |picture: &Picture| picture.colour.iter().flatten().map(|c| f64::from(*c)).collect::<Vec<_>>();
+    let (ours, exact) = (channels(picture), channels(&full));
+    let errors = || ours.iter().zip(&exact).map(|(a, b)| (a - b).abs());
+    let mean_square = errors().map(|e| e * e).sum::<f64>() / ours.len() as f64;
+    Ok(Some(HalfError { largest: errors().fold(0.0, f64::max), rms: mean_square.sqrt() }))
 }
 
 /// On an opaque background α does not tell where a surface is, which PNGs of normals and depths need to know.
@@ -64,6 +89,7 @@ fn gpu(device: &Arc<Device>, renderer: &Renderer, scene: &Scene) -> Gpu {
         scene_bytes: scene.bytes(),
         splat_bytes: renderer.splats().map_or(0, surfel::passes::Splats::bytes),
         usage: device.usage(),
+        half_error: None,
         validation_messages: device.validation_messages(),
     }
 }

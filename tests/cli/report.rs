@@ -112,7 +112,8 @@ fn times_are_a_table_on_standard_error() {
         program.run("render scene:bumpy-sphere?points=1000 -o a.png --size 32x32 --validate --times --quiet");
     assert!(run.text().is_empty());
     let labels: Vec<_> = run.err.lines().map(|line| line.split_whitespace().next().unwrap()).collect();
-    assert_eq!((labels.first(), labels.last()), (Some(&"pass"), Some(&"frame")), "{}", run.err);
+    assert!(run.err.lines().next().unwrap().ends_with(" pipelines made"), "{}", run.err);
+    assert_eq!((labels.get(1), labels.last()), (Some(&"pass"), Some(&"frame")), "{}", run.err);
     assert!(labels.contains(&"footprint") && labels.contains(&"normalize"), "{}", run.err);
 }
 
@@ -121,7 +122,7 @@ fn without_timestamps_only_the_frame_is_timed() {
     let Some(program) = Program::with_device("without_timestamps_only_the_frame_is_timed") else { return };
     program.write("limits.json", r#"{"timestamps":false}"#);
     let run = program.run("render scene:bumpy-sphere?points=1000 -o a.png --size 32x32 --validate --times --quiet --device-limits limits.json");
-    assert_eq!((run.code, run.err.lines().count()), (0, 2), "{}", run.err);
+    assert_eq!((run.code, run.err.lines().count()), (0, 3), "{}", run.err);
 }
 
 #[test]
@@ -137,4 +138,16 @@ fn half_precision_is_reported_and_takes_less() {
         report["target_bytes"].as_u64().unwrap()
     };
     assert!(bytes("--half", "half") < bytes("", "full"));
+}
+
+#[test]
+fn half_precision_tells_its_error() {
+    let Some(program) = Program::with_device("half_precision_tells_its_error") else { return };
+    let run = program
+        .run("render scene:bumpy-sphere?points=2000 -o a.png --size 64x64 --validate --half --json r.json");
+    assert!(run.err.contains("16-bit sums: linear colour is off by"), "{}", run.err);
+    let report: Value =
+        serde_json::from_str(&std::fs::read_to_string(program.path("r.json")).unwrap()).unwrap();
+    let [largest, rms] = ["largest", "rms"].map(|key| report["half_error"][key].as_f64().unwrap());
+    assert!(rms > 1e-6 && rms < largest && largest < 3e-2, "{report}");
 }
