@@ -4,11 +4,13 @@
 //! dropped while the GPU still uses it, because a frame is waited for before its resources can be.
 #![allow(unsafe_code)]
 
+mod access;
 mod buffer;
 mod choose;
 mod commands;
 mod descriptors;
 mod device;
+mod encoder;
 mod image;
 mod instance;
 mod limits;
@@ -22,15 +24,17 @@ mod timestamps;
 mod transfer;
 mod validation;
 
+pub use access::{Access, Use};
 pub use buffer::Buffer;
 pub use choose::{DeviceDescription, describe_devices, preferred};
 pub use commands::Commands;
 pub use descriptors::{Binding, DescriptorSet, SetLayout};
 pub use device::{Device, DeviceOptions, Usage};
+pub use encoder::{Draws, Encoder};
 pub use image::{Image, ImageUse};
 pub use limits::{Capabilities, DeviceLimits};
 pub use pipeline::{Blend, ComputePipeline, Constants, DepthTest, DrawPipeline, DrawState};
-pub use recorder::{Access, Draws, Encoder, Recorder, Use};
+pub use recorder::Recorder;
 pub use render_pass::{Attachment, Framebuffer, RenderPass};
 pub use timestamps::PassTime;
 pub use transfer::upload;

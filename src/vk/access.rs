@@ -1,0 +1,263 @@
+//! How passes touch resources, and what a pass must wait for.
+
+use super::{Buffer, Image};
+use ash::vk;
+
+/// How a pass touches a resource.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Access {
+    stages: vk::PipelineStageFlags,
+    mask: vk::AccessFlags,
+    layout: vk::ImageLayout,
+    write: bool,
+}
+
+impl Access {
+    /// Written, and maybe read, by a compute shader.
+    pub const COMPUTE_WRITE: Self = Self::buffer(
+        vk::PipelineStageFlags::COMPUTE_SHADER,
+        vk::AccessFlags::from_raw(
+            vk::AccessFlags::SHADER_READ.as_raw() | vk::AccessFlags::SHADER_WRITE.as_raw(),
+        ),
+        true,
+    );
+    /// Read by a compute shader.
+    pub const COMPUTE_READ: Self =
+        Self::buffer(vk::PipelineStageFlags::COMPUTE_SHADER, vk::AccessFlags::SHADER_READ, false);
+    /// Read by a vertex shader.
+    pub const VERTEX_READ: Self =
+        Self::buffer(vk::PipelineStageFlags::VERTEX_SHADER, vk::AccessFlags::SHADER_READ, false);
+    /// Fetched from by a fragment shader.
+    pub const FRAGMENT_READ: Self = Self {
+        stages: vk::PipelineStageFlags::FRAGMENT_SHADER,
+        mask: vk::AccessFlags::SHADER_READ,
+        layout: vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL,
+        write: false,
+    };
+    /// Written as a colour target, its old contents dropped.
+    pub const COLOUR_WRITE: Self = Self {
+        stages: vk::PipelineStageFlags::COLOR_ATTACHMENT_OUTPUT,
+        mask: vk::AccessFlags::from_raw(
+            vk::AccessFlags::COLOR_ATTACHMENT_READ.as_raw()
+                | vk::AccessFlags::COLOR_ATTACHMENT_WRITE.as_raw(),
+        ),
+        layout: vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL,
+        write: true,
+    };
+    /// Written as the depth target, its old contents dropped.
+    pub const DEPTH_WRITE: Self = Self {
+        stages: DEPTH_STAGES,
+        mask: vk::AccessFlags::from_raw(
+            vk::AccessFlags::DEPTH_STENCIL_ATTACHMENT_READ.as_raw()
+                | vk::AccessFlags::DEPTH_STENCIL_ATTACHMENT_WRITE.as_raw(),
+        ),
+        layout: vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
+        write: true,
+    };
+    /// Tested against as the depth target. Storing it at the render pass's end is a write, though nothing changes, that what comes later
+    /// must wait for.
+    pub const DEPTH_TEST: Self = Self {
+        stages: DEPTH_STAGES,
+        mask: vk::AccessFlags::from_raw(
+            vk::AccessFlags::DEPTH_STENCIL_ATTACHMENT_READ.as_raw()
+                | vk::AccessFlags::DEPTH_STENCIL_ATTACHMENT_WRITE.as_raw(),
+        ),
+        layout: vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL,
+        write: false,
+    };
+    /// Copied from.
+    pub const COPY_READ: Self = Self {
+        stages: vk::PipelineStageFlags::TRANSFER,
+        mask: vk::AccessFlags::TRANSFER_READ,
+        layout: vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
+        write: false,
+    };
+    /// Copied to, or filled.
+    pub const COPY_WRITE: Self =
+        Self::buffer(vk::PipelineStageFlags::TRANSFER, vk::AccessFlags::TRANSFER_WRITE, true);
+    /// Read by the CPU once the frame is over.
+    pub const HOST_READ: Self = Self::buffer(vk::PipelineStageFlags::HOST, vk::AccessFlags::HOST_READ, false);
+
+    const fn buffer(stages: vk::PipelineStageFlags, mask: vk::AccessFlags, write: bool) -> Self {
+        Self { stages, mask, layout: vk::ImageLayout::UNDEFINED, write }
+    }
+}
+
+const DEPTH_STAGES: vk::PipelineStageFlags = vk::PipelineStageFlags::from_raw(
+    vk::PipelineStageFlags::EARLY_FRAGMENT_TESTS.as_raw()
+        | vk::PipelineStageFlags::LATE_FRAGMENT_TESTS.as_raw(),
+);
+
+/// A resource and how a pass touches it.
+#[derive(Clone, Copy)]
+pub struct Use {
+    resource: Resource,
+    access: Access,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Resource {
+    Buffer(vk::Buffer),
+    Image(vk::Image, vk::ImageAspectFlags),
+}
+
+impl Buffer {
+    /// That a pass touches the buffer with `access`.
+    pub fn with(&self, access: Access) -> Use {
+        Use { resource: Resource::Buffer(self.raw), access }
+    }
+}
+
+impl Image {
+    /// That a pass touches the image with `access`.
+    pub fn with(&self, access: Access) -> Use {
+        Use { resource: Resource::Image(self.raw, self.aspect()), access }
+    }
+}
+
+/// What was done to each resource in this frame.
+#[derive(Default)]
+pub(super) struct Tracker(Vec<State>);
+
+/// A pipeline barrier.
+pub(super) struct Barrier {
+    pub(super) source: vk::PipelineStageFlags,
+    pub(super) target: vk::PipelineStageFlags,
+    pub(super) memory: vk::MemoryBarrier<'static>,
+    pub(super) images: Vec<vk::ImageMemoryBarrier<'static>>,
+}
+
+impl Tracker {
+    /// Notes what a pass does, and gives the barrier that it needs before; `None` if earlier ones cover it.
+    pub(super) fn barrier(&mut self, uses: &[Use]) -> Option<Barrier> {
+        let none = vk::PipelineStageFlags::empty();
+        let mut barrier =
+            Barrier { source: none, target: none, memory: vk::MemoryBarrier::default(), images: Vec::new() };
+        for used in uses {
+            let Some(change) = self.state_of(used.resource).advance(used.access) else { continue };
+            barrier.source |= change.stages;
+            barrier.target |= used.access.stages;
+            match used.resource {
+                Resource::Image(image, aspect) if change.from != used.access.layout => {
+                    barrier.images.push(image_barrier(image, aspect, &change, used.access));
+                }
+                _ => {
+                    barrier.memory.src_access_mask |= change.mask;
+                    barrier.memory.dst_access_mask |= used.access.mask;
+                }
+            }
+        }
+        (barrier.target != none).then_some(barrier)
+    }
+
+    fn state_of(&mut self, resource: Resource) -> &mut State {
+        let index = self.0.iter().position(|state| state.resource == resource).unwrap_or_else(|| {
+            // An earlier frame or an upload may still be at it.
+            let write = (vk::PipelineStageFlags::ALL_COMMANDS, vk::AccessFlags::MEMORY_WRITE);
+            let reads = (vk::PipelineStageFlags::empty(), vk::AccessFlags::empty());
+            self.0.push(State { resource, write, reads, layout: vk::ImageLayout::UNDEFINED });
+            self.0.len() - 1
+        });
+        &mut self.0[index]
+    }
+}
+
+/// What was last done to a resource in this frame.
+struct State {
+    resource: Resource,
+    /// The last write, or at first all that earlier frames may have done.
+    write: (vk::PipelineStageFlags, vk::AccessFlags),
+    /// All reads since.
+    reads: (vk::PipelineStageFlags, vk::AccessFlags),
+    layout: vk::ImageLayout,
+}
+
+/// What has to be waited for before an access.
+struct Change {
+    stages: vk::PipelineStageFlags,
+    mask: vk::AccessFlags,
+    from: vk::ImageLayout,
+    old: vk::ImageLayout,
+}
+
+impl State {
+    /// Notes `access` and says what it must wait for; `None` if an earlier barrier already covers it.
+    fn advance(&mut self, access: Access) -> Option<Change> {
+        let same_layout = self.layout == access.layout;
+        let seen = self.reads.0.contains(access.stages) && self.reads.1.contains(access.mask);
+        if !access.write && same_layout && seen {
+            return None;
+        }
+        // A write drops an image's contents: all targets are cleared or wholly covered.
+        let old = if access.write { vk::ImageLayout::UNDEFINED } else { self.layout };
+        let change =
+            Change { stages: self.write.0 | self.reads.0, mask: self.write.1, from: self.layout, old };
+        if access.write || !same_layout {
+            // A transition is a write of its own, which later accesses must wait for through this one's stages.
+            self.write = (access.stages, access.mask);
+            self.reads = (vk::PipelineStageFlags::empty(), vk::AccessFlags::empty());
+        }
+        if !access.write {
+            self.reads = (self.reads.0 | access.stages, self.reads.1 | access.mask);
+        }
+        self.layout = access.layout;
+        Some(change)
+    }
+}
+
+fn image_barrier(
+    image: vk::Image,
+    aspect: vk::ImageAspectFlags,
+    change: &Change,
+    access: Access,
+) -> vk::ImageMemoryBarrier<'static> {
+    let range = vk::ImageSubresourceRange {
+        aspect_mask: aspect,
+        base_mip_level: 0,
+        level_count: 1,
+        base_array_layer: 0,
+        layer_count: 1,
+    };
+    vk::ImageMemoryBarrier::default()
+        .image(image)
+        .subresource_range(range)
+        .old_layout(change.old)
+        .new_layout(access.layout)
+        .src_access_mask(change.mask)
+        .dst_access_mask(access.mask)
+        .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+        .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ash::vk::Handle;
+
+    #[test]
+    fn a_barrier_stands_where_it_is_needed_and_nowhere_else() {
+        let buffer = Resource::Buffer(vk::Buffer::from_raw(1));
+        let image = Resource::Image(vk::Image::from_raw(2), vk::ImageAspectFlags::COLOR);
+        let mut tracker = Tracker::default();
+        let mut barrier = |resource, access| tracker.barrier(&[Use { resource, access }]);
+
+        let first = barrier(buffer, Access::COMPUTE_WRITE).unwrap();
+        assert_eq!(first.source, vk::PipelineStageFlags::ALL_COMMANDS, "an earlier frame may still read it");
+        let read = barrier(buffer, Access::VERTEX_READ).unwrap();
+        assert_eq!(read.source, vk::PipelineStageFlags::COMPUTE_SHADER);
+        assert_eq!(read.target, vk::PipelineStageFlags::VERTEX_SHADER);
+        assert!(read.memory.src_access_mask.contains(vk::AccessFlags::SHADER_WRITE));
+        assert!(barrier(buffer, Access::VERTEX_READ).is_none(), "it was read there already");
+        let other = barrier(buffer, Access::COMPUTE_READ).unwrap();
+        assert!(other.source.contains(vk::PipelineStageFlags::COMPUTE_SHADER));
+        let write = barrier(buffer, Access::COMPUTE_WRITE).unwrap();
+        assert!(write.source.contains(vk::PipelineStageFlags::VERTEX_SHADER), "a reader may not be done");
+
+        let drawn = barrier(image, Access::COLOUR_WRITE).unwrap();
+        assert_eq!(drawn.images[0].old_layout, vk::ImageLayout::UNDEFINED);
+        let sampled = barrier(image, Access::FRAGMENT_READ).unwrap();
+        assert_eq!(sampled.images[0].old_layout, vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL);
+        assert_eq!(sampled.images[0].new_layout, vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL);
+        assert!(barrier(image, Access::FRAGMENT_READ).is_none());
+    }
+}

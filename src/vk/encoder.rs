@@ -1,0 +1,124 @@
+//! The commands of one pass.
+
+use super::{Buffer, ComputePipeline, DescriptorSet, Device, DrawPipeline, Framebuffer, Image};
+use ash::vk;
+
+/// Records the commands of one pass.
+pub struct Encoder<'a> {
+    device: &'a Device,
+    cmd: vk::CommandBuffer,
+}
+
+impl<'a> Encoder<'a> {
+    pub(super) fn new(device: &'a Device, cmd: vk::CommandBuffer) -> Self {
+        Self { device, cmd }
+    }
+
+    /// Runs `x` by `y` workgroups with `push` as the push constant.
+    pub fn dispatch(
+        &mut self,
+        pipeline: &ComputePipeline,
+        sets: &[&DescriptorSet],
+        push: u32,
+        [x, y]: [u32; 2],
+    ) {
+        let sets: Vec<_> = sets.iter().map(|set| set.raw).collect();
+        let (pipeline, layout) = pipeline.raw();
+        let point = vk::PipelineBindPoint::COMPUTE;
+        let stage = vk::ShaderStageFlags::COMPUTE;
+        // SAFETY: recorded outside a render pass, with objects of one device that outlive the frame.
+        unsafe {
+            let raw = &self.device.raw;
+            raw.cmd_bind_pipeline(self.cmd, point, pipeline);
+            raw.cmd_bind_descriptor_sets(self.cmd, point, layout, 0, &sets, &[]);
+            raw.cmd_push_constants(self.cmd, layout, stage, 0, &push.to_ne_bytes());
+            raw.cmd_dispatch(self.cmd, x, y, 1);
+        }
+    }
+
+    /// Draws into all of `framebuffer`; cleared targets start at 0.
+    pub fn render(&mut self, framebuffer: &Framebuffer, draws: impl FnOnce(&mut Draws<'_>)) {
+        let area = vk::Rect2D { offset: vk::Offset2D::default(), extent: framebuffer.extent };
+        let clears = vec![vk::ClearValue::default(); framebuffer.attachments];
+        let info = vk::RenderPassBeginInfo::default()
+            .render_pass(framebuffer.render_pass)
+            .framebuffer(framebuffer.raw)
+            .render_area(area)
+            .clear_values(&clears);
+        let viewport = vk::Viewport {
+            x: 0.0,
+            y: 0.0,
+            width: area.extent.width as f32,
+            height: area.extent.height as f32,
+            min_depth: 0.0,
+            max_depth: 1.0,
+        };
+        // SAFETY: recorded outside a render pass; the framebuffer was made for this pass and outlives the frame; begin and end pair.
+        unsafe {
+            let raw = &self.device.raw;
+            raw.cmd_begin_render_pass(self.cmd, &info, vk::SubpassContents::INLINE);
+            raw.cmd_set_viewport(self.cmd, 0, &[viewport]);
+            raw.cmd_set_scissor(self.cmd, 0, &[area]);
+            draws(&mut Draws { device: self.device, cmd: self.cmd });
+            raw.cmd_end_render_pass(self.cmd);
+        }
+    }
+
+    /// Sets every byte of `buffer` to 0.
+    pub fn zero(&mut self, buffer: &Buffer) {
+        self.zero_range(buffer, 0, vk::WHOLE_SIZE);
+    }
+
+    /// Sets `size` bytes of `buffer` from `offset` on to 0; both are multiples of 4.
+    pub fn zero_range(&mut self, buffer: &Buffer, offset: u64, size: u64) {
+        // SAFETY: recorded outside a render pass; the buffer is alive and can be copied to.
+        unsafe { self.device.raw.cmd_fill_buffer(self.cmd, buffer.raw, offset, size, 0) };
+    }
+
+    /// Copies `size` bytes from the start of `from` to the start of `to`.
+    pub fn copy(&mut self, from: &Buffer, to: &Buffer, to_offset: u64, size: u64) {
+        let region = vk::BufferCopy { src_offset: 0, dst_offset: to_offset, size };
+        // SAFETY: recorded outside a render pass; both buffers are alive and large enough.
+        unsafe { self.device.raw.cmd_copy_buffer(self.cmd, from.raw, to.raw, &[region]) };
+    }
+
+    /// Copies all of `image` to `buffer`, rows without gaps.
+    pub fn copy_image(&mut self, image: &Image, buffer: &Buffer) {
+        let [width, height] = image.size();
+        let region = vk::BufferImageCopy::default()
+            .image_subresource(vk::ImageSubresourceLayers {
+                aspect_mask: image.aspect(),
+                mip_level: 0,
+                base_array_layer: 0,
+                layer_count: 1,
+            })
+            .image_extent(vk::Extent3D { width, height, depth: 1 });
+        let layout = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
+        // SAFETY: recorded outside a render pass; the pass's uses brought the image into this layout; the buffer is large enough.
+        unsafe {
+            self.device.raw.cmd_copy_image_to_buffer(self.cmd, image.raw, layout, buffer.raw, &[region])
+        };
+    }
+}
+
+/// Draws inside a render pass.
+pub struct Draws<'a> {
+    device: &'a Device,
+    cmd: vk::CommandBuffer,
+}
+
+impl Draws<'_> {
+    /// Draws `vertices` vertices with `pipeline`, which was made for this render pass.
+    pub fn draw(&mut self, pipeline: &DrawPipeline, sets: &[&DescriptorSet], vertices: u32) {
+        let sets: Vec<_> = sets.iter().map(|set| set.raw).collect();
+        let (pipeline, layout) = pipeline.raw();
+        let point = vk::PipelineBindPoint::GRAPHICS;
+        // SAFETY: recorded inside the render pass, with objects of one device that outlive the frame.
+        unsafe {
+            let raw = &self.device.raw;
+            raw.cmd_bind_pipeline(self.cmd, point, pipeline);
+            raw.cmd_bind_descriptor_sets(self.cmd, point, layout, 0, &sets, &[]);
+            raw.cmd_draw(self.cmd, vertices, 1, 0, 0);
+        }
+    }
+}
