@@ -37,8 +37,6 @@ void attributes_of(uint i, float epsilon, out vec3 first, out vec3 second) {
 
 #include "lib/pixels.glsl"
 
-layout(constant_id = 8) const bool LARGE_SPLATS = false;
-
 float splat_amplitude;
 vec3 splat_first, splat_second;
 

@@ -10,8 +10,6 @@
 
 #include "lib/pixels.glsl"
 
-layout(constant_id = 8) const bool LARGE_SPLATS = false;
-
 float splat_epsilon, splat_key_disc;
 
 bool scatter_begin(uint i, Splat splat, vec2 variance, float nearest, ivec2 low, ivec2 high) {
