@@ -2,7 +2,8 @@
 //!
 //! Splatting decides at three thresholds: the kernel's cut-off, the ε test and the clip volume. Where a splat lies nearer to
 //! one than rounding can tell, both outcomes are right, and no others. All of this is found in the float64 picture alone,
-//! before any other is seen.
+//! before any other is seen. The clip volume's planes are given no margin of their own unless
+//! [`super::Tolerance::rounding`] allows for rounding.
 
 use super::Projector;
 use super::attribute::Sums;

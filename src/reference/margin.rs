@@ -83,9 +83,8 @@ impl Margins<'_> {
         let (sway, certain) = (self.rounding * splat.secant, false);
         let pixel = hit.index;
         let mut candidate = Candidate { splat, pixel, depth, wobble, weight: 0.0, sway, drift: 0.0, certain };
-        let margin = candidate.margin();
-        candidate.certain = !near && in_front && within(margin);
-        within(-margin).then_some(candidate)
+        candidate.certain = !near && in_front && within(wobble);
+        within(-wobble).then_some(candidate)
     }
 
     /// Depth, its uncertainty, and whether it is surely in front of the eye; `None` if it surely is not. Rounding turns the
