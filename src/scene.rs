@@ -168,7 +168,6 @@ mod tests {
             storage_buffer_alignment: 64,
             max_image_side: 4096,
             max_workgroups: 65535,
-            debug_labels: false,
         };
         for count in [1, 255, 256, 21_504, 21_505, 1_000_000] {
             let windows = windows(count, &capabilities);

@@ -40,8 +40,6 @@ pub struct Capabilities {
     pub max_image_side: u32,
     /// Most workgroups of a dispatch.
     pub max_workgroups: u32,
-    /// Whether debug labels can be given.
-    pub debug_labels: bool,
 }
 
 /// Largest side of a picture: a splat keeps its anchor pixel in 15 bits a coordinate (`lib/splat.glsl`).
@@ -85,7 +83,6 @@ impl Capabilities {
             storage_buffer_alignment: limits.min_storage_buffer_offset_alignment,
             max_image_side: side.min(LARGEST_SIDE).min(mask.max_image_side.unwrap_or(u32::MAX)),
             max_workgroups: limits.max_compute_work_group_count[0],
-            debug_labels: instance.debug_utils,
         }
     }
 }

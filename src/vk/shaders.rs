@@ -1,4 +1,3 @@
 //! SPIR-V of every stage, layouts of the structs shared with it and numbers of its specialization constants, written by `build.rs`.
-#![allow(missing_docs)]
 
 include!(concat!(env!("OUT_DIR"), "/shaders.rs"));

@@ -5,9 +5,9 @@
 
 mod ascii;
 mod binary;
+mod bytes;
 mod header;
 mod layout;
-mod map;
 mod points;
 mod sniff;
 mod table;
@@ -84,7 +84,7 @@ pub struct Inspected {
 /// # Errors
 /// [`Error::Io`] if the file cannot be read; [`Error::Input`] if its header cannot.
 pub fn inspect(path: &Path) -> Result<Inspected> {
-    let (name, bytes) = (path.display().to_string(), map::open(path)?);
+    let (name, bytes) = (path.display().to_string(), bytes::open(path)?);
     let header = header::parse(&bytes).map_err(|cause| Error::input(name.as_str(), cause))?;
     let loaded = read_bytes(&name, &bytes);
     Ok(Inspected { format: header.format, elements: header.elements, loaded })
@@ -99,7 +99,7 @@ pub fn inspect(path: &Path) -> Result<Inspected> {
 /// # Errors
 /// [`Error::Io`] if the file cannot be read; [`Error::Input`] if it is no PLY file, is damaged, or has no vertices, normals or radii.
 pub fn read(path: &Path) -> Result<Loaded> {
-    read_bytes(&path.display().to_string(), &map::open(path)?)
+    read_bytes(&path.display().to_string(), &bytes::open(path)?)
 }
 
 /// [`read`] of a file's contents; `name` is what errors call it.
