@@ -25,19 +25,7 @@ Conic dual_conic(vec2 centre, vec3 S, vec3 T, float q, float cutoff, float sqrt_
     vec2 axis = half_difference >= 0.0 ? vec2(half_difference + radius, xy) : vec2(xy, radius - half_difference);
     axis = radius > 0.0 ? normalize(axis) : vec2(1.0, 0.0);
 
-    // V's entries carry an error relative to the larger eigenvalue, which would tilt a long thin ellipse: form them again in the
-    // frame of the axis just found, where the off-diagonal is small, and turn by what is left of it.
-    vec2 D_major = axis.x * Dx + axis.y * Dy;
-    vec2 D_minor = axis.x * Dy - axis.y * Dx;
-    float o_major = dot(axis, o);
-    float o_minor = axis.x * o.y - axis.y * o.x;
-    float major = scale * (dot(D_major, D_major) / q + o_major * o_major);
-    float minor = scale * (dot(D_minor, D_minor) / q + o_minor * o_minor);
-    float off = scale * (dot(D_major, D_minor) / q + o_major * o_minor);
-    if (major - minor > 1e-2 * major) {
-        float turn = off / (major - minor);
-        axis = normalize(axis + turn * vec2(-axis.y, axis.x));
-        major += turn * off;
-    }
+    // The smaller eigenvalue by the determinant's closed form: as a difference it would be lost on a long thin ellipse.
+    float major = 0.5 * (xx + yy) + radius;
     return Conic(o, axis, vec2(major, sqrt_det * sqrt_det / major));
 }
