@@ -50,7 +50,15 @@ fn inputs() -> Vec<(&'static str, Surfels)> {
     let mut inputs = vec![("sphere-100k", sphere(100_000)), ("sphere-1m", sphere(1_000_000))];
     let scan = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/classic/bunny16k.ply");
     match scan.exists() {
-        true => inputs.push(("bunny16k", ply::read(&scan).expect("the scan is read").surfels)),
+        true => inputs.push((
+            "bunny16k",
+            ply::read(&scan)
+                .expect("the scan is read")
+                .cloud
+                .into_surfels(&Default::default(), &())
+                .expect("it has normals and radii")
+                .0,
+        )),
         false => eprintln!("SKIPPED: there is no {}", scan.display()),
     }
     inputs

@@ -22,13 +22,15 @@
 //!
 //! ```no_run
 //! use surfel::geometry::Camera;
+//! use surfel::geometry::estimate::Estimate;
 //! use surfel::vk::{Device, DeviceOptions};
-//! use surfel::{RenderOptions, Renderer, Scene, Settings, io};
+//! use surfel::{Error, RenderOptions, Renderer, Scene, Settings, io};
 //!
 //! # fn main() -> surfel::Result<()> {
 //! let loaded = io::ply::read("bunny.ply".as_ref())?;
+//! let (surfels, _) = loaded.cloud.into_surfels(&Estimate::default(), &()).map_err(|cause| Error::input("bunny.ply", cause))?;
 //! let device = Device::open(&DeviceOptions::default())?;
-//! let scene = Scene::upload(&device, &loaded.surfels)?;
+//! let scene = Scene::upload(&device, &surfels)?;
 //! let mut renderer = Renderer::new(&device, RenderOptions { size: [800, 600], ..Default::default() })?;
 //! let camera = Camera::framing(scene.bounds(), 45f64.to_radians(), 800.0 / 600.0)?;
 //! let (picture, _report) = renderer.render_picture(&scene, &camera, &Settings::default())?;
@@ -44,6 +46,7 @@ pub mod io;
 pub mod methods;
 pub mod passes;
 pub mod picture;
+mod progress;
 mod readback;
 pub mod reference;
 pub mod renderer;
@@ -56,6 +59,7 @@ pub mod vk;
 
 pub use error::{Error, Result};
 pub use picture::Picture;
+pub use progress::Progress;
 pub use renderer::{FrameReport, RenderOptions, Renderer, SplatCounts};
 pub use scene::Scene;
 pub use settings::Settings;

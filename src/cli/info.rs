@@ -5,9 +5,10 @@ use super::inputs::scene;
 use std::ffi::OsString;
 use std::fmt::Write;
 use std::path::Path;
+use surfel::geometry::estimate::Estimate;
 use surfel::geometry::{Colours, Surfels};
 use surfel::io::ply::{self, Element, Format, Loaded, Report};
-use surfel::{Result, scenes};
+use surfel::{Error, Result, scenes};
 
 /// Says what is in a file or scene. Of a file whose points cannot be drawn it tells what there is, and the error why.
 pub fn run(input: &OsString) -> Result<()> {
@@ -18,7 +19,9 @@ pub fn run(input: &OsString) -> Result<()> {
     let path = Path::new(input);
     let ply::Inspected { format, elements, loaded } = ply::inspect(path)?;
     print(&header(path, format, &elements))?;
-    let Loaded { surfels, report } = loaded?;
+    let Loaded { cloud, report } = loaded?;
+    let surfels = cloud.into_surfels(&Estimate::default(), &());
+    let (surfels, _) = surfels.map_err(|cause| Error::input(path.display().to_string(), cause))?;
     print(&(properties(&report) + &describe(&surfels, report.points) + &dropped(&report)))
 }
 
@@ -69,7 +72,5 @@ fn describe(surfels: &Surfels, points: u64) -> String {
 }
 
 fn dropped(report: &Report) -> String {
-    let lost = report.dropped;
-    let (position, radius, normal) = (lost.position, lost.radius, lost.normal);
-    format!("left out: {} ({position} for their position, {radius} radius, {normal} normal)\n", lost.total())
+    format!("left out: {} without a finite position\n", report.dropped.position)
 }

@@ -3,8 +3,9 @@
 use std::ffi::OsString;
 use std::path::Path;
 use surfel::geometry::Surfels;
+use surfel::geometry::estimate::Estimate;
 use surfel::io::ply::{self, Dropped};
-use surfel::{Result, scenes};
+use surfel::{Error, Result, scenes};
 
 /// What the inputs together hold.
 pub struct Inputs {
@@ -23,11 +24,7 @@ pub fn load(names: &[OsString], albedo: [f32; 3]) -> Result<Inputs> {
         let (surfels, points, lost) = load_one(name)?;
         parts.push(surfels);
         read += points;
-        dropped = Dropped {
-            position: dropped.position + lost.position,
-            radius: dropped.radius + lost.radius,
-            normal: dropped.normal + lost.normal,
-        };
+        dropped.position += lost.position;
     }
     let mut surfels = Surfels::merge(parts, albedo)?;
     // One input is sorted already.
@@ -44,16 +41,13 @@ fn load_one(name: &OsString) -> Result<(Surfels, u64, Dropped)> {
         let count = surfels.len() as u64;
         return Ok((surfels, count, Dropped::default()));
     }
-    let ply::Loaded { surfels, report } = ply::read(Path::new(name))?;
-    let Dropped { position, radius, normal } = report.dropped;
+    let ply::Loaded { cloud, report } = ply::read(Path::new(name))?;
+    let input = Path::new(name).display();
     if report.dropped.total() > 0 {
-        log::warn!(
-            "{}: {} of {} points are left out: {position} without a usable position, {radius} radius, {normal} normal",
-            Path::new(name).display(),
-            report.dropped.total(),
-            report.points
-        );
+        log::warn!("{input}: {} of {} points have no finite position", report.dropped.total(), report.points);
     }
+    let surfels = cloud.into_surfels(&Estimate::default(), &());
+    let (surfels, _) = surfels.map_err(|cause| Error::input(input.to_string(), cause))?;
     Ok((surfels, report.points, report.dropped))
 }
 

@@ -92,6 +92,7 @@ mod tests {
             normals: vec![Vec3::Z],
             radii: vec![x.abs()],
             colours,
+            ..Default::default()
         }
     }
 

@@ -2,10 +2,13 @@
 
 mod bounds;
 mod camera;
+mod cloud;
+pub mod estimate;
 mod merge;
 mod morton;
 mod surfels;
 
 pub use bounds::Bounds;
 pub use camera::{Camera, Projection};
-pub use surfels::{Colours, Surfels};
+pub use cloud::{Cloud, View};
+pub use surfels::{Colours, Ellipse, Surfels};

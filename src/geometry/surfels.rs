@@ -1,6 +1,7 @@
 //! A set of surfels: oriented discs that sample a surface.
 
 use super::Bounds;
+use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 
 /// Surfels as a structure of arrays; every array has one entry a surfel.
@@ -16,10 +17,24 @@ pub struct Surfels {
     pub positions: Vec<Vec3>,
     /// Unit normals.
     pub normals: Vec<Vec3>,
-    /// Radii of the covered discs, in the positions' unit.
+    /// Radii of the covered discs, in the positions' unit; of elliptical discs, the longer semi-axes.
     pub radii: Vec<f32>,
+    /// Shapes of the discs; all are circles where there are none.
+    pub ellipses: Option<Vec<Ellipse>>,
+    /// Surfels whose normals may as well point the other way, so that neither side is ever the back; none where there is no array.
+    pub two_sided: Option<Vec<bool>>,
     /// Colours, where the input has them.
     pub colours: Option<Colours>,
+}
+
+/// The shape of an elliptical disc whose longer semi-axis is the surfel's radius. The other axis is normal × major.
+#[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
+#[repr(C)]
+pub struct Ellipse {
+    /// Direction of the longer axis: a unit vector at a right angle to the normal.
+    pub major: Vec3,
+    /// Shorter semi-axis divided by the longer, above 0 and at most 1.
+    pub aspect: f32,
 }
 
 /// One colour a surfel, in the form in which it came.
@@ -57,6 +72,8 @@ impl Surfels {
         gather(&mut self.positions, order);
         gather(&mut self.normals, order);
         gather(&mut self.radii, order);
+        self.ellipses.as_mut().map(|ellipses| gather(ellipses, order));
+        self.two_sided.as_mut().map(|two_sided| gather(two_sided, order));
         match &mut self.colours {
             Some(Colours::Srgb8(colours)) => gather(colours, order),
             Some(Colours::Linear(colours)) => gather(colours, order),

@@ -100,6 +100,7 @@ pub fn sample(points: u32, seed: u64) -> Surfels {
         normals: surfels.par_iter().map(|surfel| surfel.1).collect(),
         radii: vec![(OVERLAP * (area() / f64::from(points)).sqrt()) as f32; points as usize],
         colours: Some(Colours::Srgb8(surfels.par_iter().map(|surfel| surfel.2).collect())),
+        ..Default::default()
     }
 }
 

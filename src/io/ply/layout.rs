@@ -35,19 +35,21 @@ impl Layout {
         let position = triple(properties, POSITIONS)
             .ok_or("its vertices have no x y z: write it again with all three")?;
         let (normal, radius) = (triple(properties, NORMALS), scalar(properties, "radius"));
-        let (Some(normal), Some((radius, _))) = (normal, radius) else {
-            return Err(missing(properties, normal.is_none(), radius.is_none()));
-        };
         let colour =
             triple(properties, COLOURS).filter(|colour| colour.iter().all(|(_, scalar)| is_colour(*scalar)));
         let mut columns = [None; COLUMNS];
-        columns[RADIUS] = Some(radius);
-        for (first, found) in [(POSITION, Some(position)), (NORMAL, Some(normal)), (COLOUR, colour)] {
+        columns[RADIUS] = radius.map(|(index, _)| index);
+        for (first, found) in [(POSITION, Some(position)), (NORMAL, normal), (COLOUR, colour)] {
             for (axis, (index, _)) in found.into_iter().flatten().enumerate() {
                 columns[first + axis] = Some(index);
             }
         }
         Ok(Self { columns, colour: colour.map(|colour| colour.map(|(_, scalar)| scalar)) })
+    }
+
+    /// Whether a property fills the column.
+    pub fn fills(&self, column: usize) -> bool {
+        self.columns[column].is_some()
     }
 
     /// Whether property `index` fills a column.
@@ -85,19 +87,6 @@ fn refuse_compressed(properties: &[Property]) -> Parsed<()> {
             .into()),
         false => Ok(()),
     }
-}
-
-fn missing(properties: &[Property], normal: bool, radius: bool) -> String {
-    let gaussians = has(properties, "f_dc_0") && has(properties, "scale_0") && has(properties, "rot_0");
-    let what = if gaussians { "its 3D Gaussians" } else { "its vertices" };
-    let lack = match (normal, radius) {
-        (true, true) => "neither normals (nx ny nz) nor a radius",
-        (true, false) => "no normals (nx ny nz)",
-        _ => "no radius",
-    };
-    format!(
-        "{what} have {lack}: this version draws files that carry nx ny nz and radius; add them, for example in MeshLab"
-    )
 }
 
 /// The element whose records are the points.
@@ -150,10 +139,6 @@ mod tests {
     fn what_is_missing_is_said() {
         let cases = [
             ("x y nx ny nz radius", "no x y z"),
-            ("x y z", "neither normals (nx ny nz) nor a radius"),
-            ("x y z nx nz radius", "no normals"),
-            ("x y z nx ny nz", "vertices have no radius"),
-            ("x y z nx ny nz f_dc_0 scale_0 rot_0", "3D Gaussians have no radius"),
             ("packed_position packed_scale", "compressed 3D Gaussians"),
         ];
         for (names, expected) in cases {
@@ -166,6 +151,6 @@ mod tests {
     fn a_list_is_no_coordinate() {
         let mut element = vertex("x y z nx ny nz radius", Scalar::F32);
         element.properties[6].kind = Kind::List { length: Scalar::U8, item: Scalar::F32 };
-        assert!(Layout::of(&element).unwrap_err().contains("no radius"));
+        assert!(!Layout::of(&element).unwrap().fills(RADIUS));
     }
 }

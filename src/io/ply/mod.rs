@@ -20,15 +20,15 @@ pub use types::{Element, Format, Kind, Property, Scalar};
 pub use write::write;
 
 use crate::error::{Error, Result};
-use crate::geometry::Surfels;
+use crate::geometry::Cloud;
 use std::path::Path;
 
-/// A file's surfels and what was made of the file.
+/// A file's points and what was made of the file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loaded {
-    /// The surfels, in Morton order. `origin` is 0 unless the coordinates are more than twice as large as the extent; then it is the middle
+    /// The points, in the file's order. `origin` is 0 unless the coordinates are more than twice as large as the extent; then it is the middle
     /// of their bounds, subtracted in float64.
-    pub surfels: Surfels,
+    pub cloud: Cloud,
     /// What was read, skipped and dropped.
     pub report: Report,
 }
@@ -46,7 +46,7 @@ pub struct Report {
     pub skipped: Vec<String>,
     /// Number of vertices in the file, dropped ones included.
     pub points: u64,
-    /// Vertices that are no surfels.
+    /// Vertices that cannot be drawn.
     pub dropped: Dropped,
 }
 
@@ -55,20 +55,16 @@ pub struct Report {
 pub struct Dropped {
     /// A coordinate is not finite, or too large for f32.
     pub position: u64,
-    /// The radius is not finite, or not above 0.
-    pub radius: u64,
-    /// The normal is zero or not finite.
-    pub normal: u64,
 }
 
 impl Dropped {
     /// Dropped for any reason.
     pub fn total(&self) -> u64 {
-        self.position + self.radius + self.normal
+        self.position
     }
 }
 
-/// A file's header, and its surfels if they could be had.
+/// A file's header, and its points if they could be had.
 #[derive(Debug)]
 pub struct Inspected {
     /// Encoding of the records.
@@ -79,7 +75,7 @@ pub struct Inspected {
     pub loaded: Result<Loaded>,
 }
 
-/// Looks at a PLY file whose surfels may be unusable: what its header declares is told all the same.
+/// Looks at a PLY file whose points may be unusable: what its header declares is told all the same.
 ///
 /// # Errors
 /// [`Error::Io`] if the file cannot be read; [`Error::Input`] if its header cannot.
@@ -90,14 +86,14 @@ pub fn inspect(path: &Path) -> Result<Inspected> {
     Ok(Inspected { format: header.format, elements: header.elements, loaded })
 }
 
-/// Reads the surfels of a PLY file.
+/// Reads the points of a PLY file.
 ///
 /// Position from x y z of any type, in the file's unit; normal from nx ny nz or normal_x normal_y normal_z of any type and length; radius
 /// from radius; colour, if there is one, from red green blue, diffuse_red… or r g b: uchar and ushort are sRGB-encoded, float and double
 /// linear. Colours of three uchar stay as they are; others become linear. What follows the vertices in the file is not looked at.
 ///
 /// # Errors
-/// [`Error::Io`] if the file cannot be read; [`Error::Input`] if it is no PLY file, is damaged, or has no vertices, normals or radii.
+/// [`Error::Io`] if the file cannot be read; [`Error::Input`] if it is no PLY file, is damaged, or has no vertices.
 pub fn read(path: &Path) -> Result<Loaded> {
     read_bytes(&path.display().to_string(), &bytes::open(path)?)
 }
@@ -120,8 +116,7 @@ fn parse(bytes: &[u8]) -> Parsed<Loaded> {
     let vertex = &header.elements[index];
     let layout = layout::Layout::of(vertex)?;
     let table = table::Table::open(bytes, &header, index, &layout)?;
-    let (mut surfels, dropped) = points::build(&table, layout.colour)?;
-    surfels.sort_morton();
+    let (cloud, dropped) = points::build(&table, &layout)?;
     let names = |used: bool| {
         let of_use = vertex.properties.iter().enumerate().filter(|(index, _)| layout.uses(*index) == used);
         of_use.map(|(_, property)| property.name.clone()).collect()
@@ -129,7 +124,7 @@ fn parse(bytes: &[u8]) -> Parsed<Loaded> {
     let (understood, skipped, points) = (names(true), names(false), vertex.count);
     let report =
         Report { format: header.format, understood, skipped, points, dropped, elements: header.elements };
-    Ok(Loaded { surfels, report })
+    Ok(Loaded { cloud, report })
 }
 
 /// Bytes of a file as they may stand in a message: quoted, on one line, not too long.

@@ -1,10 +1,10 @@
-//! From the vertices' numbers to surfels: what cannot be drawn is dropped and counted, positions are made relative in float64.
+//! From the vertices' numbers to a cloud: points without a position are dropped and counted, positions are made relative in float64.
 
-use super::layout::{COLOUR, NORMAL, POSITION, RADIUS};
+use super::layout::{COLOUR, Layout, NORMAL, POSITION, RADIUS};
 use super::table::Table;
 use super::types::Scalar;
 use super::{Dropped, Parsed};
-use crate::geometry::{Colours, Surfels};
+use crate::geometry::{Cloud, Colours};
 use crate::io::srgb;
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
@@ -16,7 +16,7 @@ const LARGEST: f64 = f32::MAX as f64 / 4.0;
 /// ordinary files keep their coordinates bit by bit, and the error of a position is at most one f32 ulp of the extent.
 const FAR: f64 = 2.0;
 
-pub(super) fn build(table: &Table, colour: Option<[Scalar; 3]>) -> Parsed<(Surfels, Dropped)> {
+pub(super) fn build(table: &Table, layout: &Layout) -> Parsed<(Cloud, Dropped)> {
     let count = u32::try_from(table.len()).map_err(|_| "more than 2³² − 1 vertices: split the file")?;
     if count == 0 {
         return Err("it has no vertices: give a file with at least one".into());
@@ -26,46 +26,35 @@ pub(super) fn build(table: &Table, colour: Option<[Scalar; 3]>) -> Parsed<(Surfe
         .fold(Tally::default, |tally, row| tally.with(table, row))
         .reduce(Tally::default, Tally::merge);
     let kept: Vec<u32> =
-        (0..count).into_par_iter().filter(|&row| check(table, row as usize).is_ok()).collect();
+        (0..count).into_par_iter().filter(|&row| check(table, row as usize).is_some()).collect();
     if kept.is_empty() {
-        let Dropped { position, normal, radius } = tally.dropped;
-        return Err(format!(
-            "none of its {count} vertices can be drawn: {position} positions are not finite, {radius} radii not finite or not \
-             above 0, {normal} normals zero or not finite; compute what is missing, for example in MeshLab"
-        ));
+        return Err(format!("none of its {count} vertices has a finite position: fetch or write it again"));
     }
     let origin = tally.origin();
     let each = kept.par_iter().map(|&row| row as usize);
-    let surfels = Surfels {
+    let cloud = Cloud {
         origin,
         positions: each.clone().map(|row| (position(table, row) - origin).as_vec3()).collect(),
-        normals: each.clone().map(|row| normal(table, row).unwrap_or_default()).collect(),
-        radii: each.clone().map(|row| table.get(row, RADIUS) as f32).collect(),
-        colours: colour.map(|types| colours(table, types, each)),
+        normals: layout
+            .fills(NORMAL)
+            .then(|| each.clone().map(|row| normal(table, row).unwrap_or_default()).collect()),
+        radii: layout.fills(RADIUS).then(|| each.clone().map(|row| radius(table, row)).collect()),
+        colours: layout.colour.map(|types| colours(table, types, each)),
+        ..Default::default()
     };
-    Ok((surfels, tally.dropped))
+    Ok((cloud, tally.dropped))
 }
 
-/// Why a point cannot be drawn.
-enum Fault {
-    Position,
-    Radius,
-    Normal,
-}
-
-/// The position of a point that can be drawn, or the first thing wrong with it.
-fn check(table: &Table, row: usize) -> Result<DVec3, Fault> {
+/// The position of a point that has one.
+fn check(table: &Table, row: usize) -> Option<DVec3> {
     let position = position(table, row);
+    (position.abs().max_element() <= LARGEST && position.is_finite()).then_some(position)
+}
+
+/// The radius of a point; 0 if there is none.
+fn radius(table: &Table, row: usize) -> f32 {
     let radius = table.get(row, RADIUS) as f32;
-    if !(position.abs().max_element() <= LARGEST && position.is_finite()) {
-        Err(Fault::Position)
-    } else if !(radius.is_finite() && radius > 0.0) {
-        Err(Fault::Radius)
-    } else if normal(table, row).is_none() {
-        Err(Fault::Normal)
-    } else {
-        Ok(position)
-    }
+    if radius.is_finite() && radius > 0.0 { radius } else { 0.0 }
 }
 
 fn position(table: &Table, row: usize) -> DVec3 {
@@ -123,18 +112,14 @@ impl Default for Tally {
 impl Tally {
     fn with(mut self, table: &Table, row: u32) -> Self {
         match check(table, row as usize) {
-            Ok(position) => (self.min, self.max) = (self.min.min(position), self.max.max(position)),
-            Err(Fault::Position) => self.dropped.position += 1,
-            Err(Fault::Radius) => self.dropped.radius += 1,
-            Err(Fault::Normal) => self.dropped.normal += 1,
+            Some(position) => (self.min, self.max) = (self.min.min(position), self.max.max(position)),
+            None => self.dropped.position += 1,
         }
         self
     }
 
     fn merge(mut self, other: Self) -> Self {
         self.dropped.position += other.dropped.position;
-        self.dropped.radius += other.dropped.radius;
-        self.dropped.normal += other.dropped.normal;
         Self { min: self.min.min(other.min), max: self.max.max(other.max), ..self }
     }
 

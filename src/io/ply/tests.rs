@@ -225,6 +225,7 @@ fn random_surfels(count: usize, origin: DVec3, colours: Option<Colours>) -> Surf
         normals: (0..count).map(|i| Vec3::new(spread(i, 4.0), 1.0, spread(i, 5.0)).normalize()).collect(),
         radii: (0..count).map(|i| 0.5 + 0.1 * spread(i, 6.0)).collect(),
         colours,
+        ..Default::default()
     };
     surfels.sort_morton();
     surfels

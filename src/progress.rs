@@ -1,0 +1,12 @@
+//! How far lengthy work has come.
+
+/// Is told how far lengthy work has come, from any thread and often: it should return at once.
+pub trait Progress: Sync {
+    /// `done` of `total` units of the work named `stage` are done. A stage begins with its first call and ends with `done == total`.
+    fn at(&self, stage: &'static str, done: u64, total: u64);
+}
+
+/// Nobody is told.
+impl Progress for () {
+    fn at(&self, _: &'static str, _: u64, _: u64) {}
+}
