@@ -1,7 +1,21 @@
 //! From a point cloud to surfels: what the cloud lacks is estimated.
 
+mod cell;
+mod eigen;
+mod faces;
+mod neighbours;
+mod orient;
+mod outliers;
+mod patch;
+mod reach;
+mod sites;
+
 use super::{Cloud, Surfels};
 use crate::Progress;
+use glam::Vec3;
+
+/// Estimated discs reach this many times as far as they must for the surface between flat neighbours to have no gap.
+const MARGIN: f64 = 1.25;
 
 /// How what is missing is estimated.
 #[derive(Clone, Debug, PartialEq)]
@@ -52,24 +66,45 @@ impl Cloud {
     /// The cause, without the input's name, if what is missing cannot be estimated.
     pub fn into_surfels(
         self,
-        _how: &Estimate,
-        _progress: &dyn Progress,
+        how: &Estimate,
+        progress: &dyn Progress,
     ) -> Result<(Surfels, Estimated), String> {
-        let count = self.len() as u64;
-        let (Some(normals), Some(radii)) = (self.normals, self.radii) else {
-            return Err("it lacks normals or radii".into());
-        };
+        let count = self.len();
         let mut surfels = Surfels {
             origin: self.origin,
             positions: self.positions,
-            normals,
-            radii,
+            normals: self.normals.unwrap_or_else(|| vec![Vec3::ZERO; count]),
+            radii: self.radii.unwrap_or_else(|| vec![0.0; count]),
             ellipses: self.ellipses,
             two_sided: self.two_sided,
             colours: self.colours,
         };
+        if let Some(radius) = how.radius {
+            surfels.radii.fill(radius);
+        }
+        let lacking = |surfels: &Surfels| {
+            let normals = surfels.normals.iter().filter(|n| **n == Vec3::ZERO).count() as u64;
+            (normals, surfels.radii.iter().filter(|r| **r == 0.0).count() as u64)
+        };
+        let lacks = lacking(&surfels);
+        let mut estimated = Estimated {
+            normals_given: count as u64 - lacks.0,
+            radii_given: count as u64 - lacks.1,
+            ..Default::default()
+        };
+        faces::fill(&mut surfels, &self.triangles, how, &mut estimated);
+        drop(self.triangles);
         surfels.sort_morton();
-        let estimated = Estimated { normals_given: count, radii_given: count, ..Default::default() };
+        if let Some(deviations) = how.outliers {
+            estimated.outliers = outliers::remove(&mut surfels, deviations, how)?;
+        }
+        if lacking(&surfels) != (0, 0) {
+            neighbours::fill(&mut surfels, self.view, how, &mut estimated, progress)?;
+        }
+        if surfels.radii.contains(&0.0) {
+            return Err("its points are all at one place, so that they have no spacing: give a radius".into());
+        }
+        surfels.radii.iter_mut().for_each(|radius| *radius *= how.radius_scale);
         Ok((surfels, estimated))
     }
 }

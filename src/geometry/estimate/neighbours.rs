@@ -1,0 +1,185 @@
+//! Normals and radii from the nearest points.
+
+use super::orient::{Edge, Oriented};
+use super::patch::{Patch, Surveyor};
+use super::sites::Sites;
+use super::{Estimate, Estimated, MARGIN};
+use crate::Progress;
+use crate::geometry::{Ellipse, Surfels, View};
+use glam::Vec3;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Neighbours of a site in the graph along which normals are made to agree.
+const EDGES: usize = 10;
+/// A disc is at most this many times as large as the middle one of those next to it.
+const LARGEST: f32 = 2.0;
+/// Sites of one piece of work.
+const PIECE: usize = 1 << 12;
+
+/// Gives surfels without a normal (0) or radius (0) one from the points around them. Surfels are best in Morton order.
+pub(super) fn fill(
+    surfels: &mut Surfels,
+    view: View,
+    how: &Estimate,
+    estimated: &mut Estimated,
+    progress: &dyn Progress,
+) -> Result<(), String> {
+    let sites = Sites::new(&surfels.positions)?;
+    let lacks = |i: usize| surfels.normals[i] == Vec3::ZERO || surfels.radii[i] == 0.0;
+    let mut wanted = vec![false; sites.len()];
+    (0..surfels.len()).filter(|&i| lacks(i)).for_each(|i| wanted[sites.of_point[i] as usize] = true);
+    let wanted: Vec<u32> = (0..sites.len() as u32).filter(|&site| wanted[site as usize]).collect();
+    let survey = Survey::new(&sites, wanted, how, progress);
+    let (normals, unknown) = normals(surfels, &sites, &survey, view);
+    let radii = radii(surfels, &sites, &survey);
+    let mut two_sided = surfels.two_sided.take().unwrap_or_else(|| vec![false; surfels.len()]);
+    let mut is_estimated = vec![false; surfels.len()];
+    for i in 0..surfels.len() {
+        let site = sites.of_point[i] as usize;
+        if surfels.normals[i] == Vec3::ZERO {
+            surfels.normals[i] = normals[site];
+            two_sided[i] = unknown[site];
+            estimated.normals_from_neighbours += 1;
+            estimated.two_sided += u64::from(unknown[site]);
+        }
+        if surfels.radii[i] == 0.0 {
+            surfels.radii[i] = radii[site];
+            estimated.radii_from_neighbours += 1;
+            is_estimated[i] = true;
+        }
+    }
+    if how.elliptical {
+        stretch(surfels, &sites, &survey, &is_estimated);
+    }
+    surfels.two_sided = two_sided.contains(&true).then_some(two_sided);
+    Ok(())
+}
+
+/// Makes the discs whose radius is estimated ellipses.
+fn stretch(surfels: &mut Surfels, sites: &Sites, survey: &Survey, is_estimated: &[bool]) {
+    let mut shapes = vec![None; sites.len()];
+    survey.each().for_each(|(site, patch, _)| shapes[site as usize] = patch.ellipse);
+    let given = surfels.ellipses.take();
+    let shape = |i: usize| {
+        let normal = surfels.normals[i];
+        let given = given.as_ref().map(|given| given[i]);
+        let estimated = shapes[sites.of_point[i] as usize].filter(|_| is_estimated[i]);
+        // The axis was found in the plane of the neighbours, to which a given normal need not be at a right angle.
+        let within = |Ellipse { major, aspect }: Ellipse| {
+            let major = (major - major.dot(normal) * normal).try_normalize()?;
+            Some(Ellipse { major, aspect })
+        };
+        estimated.and_then(within).or(given).unwrap_or_else(|| Ellipse::circle(normal))
+    };
+    surfels.ellipses = Some((0..surfels.len()).map(shape).collect());
+}
+
+/// The patches of the sites where something is missing.
+struct Survey {
+    sites: Vec<u32>,
+    patches: Vec<Patch>,
+    /// [`EDGES`] neighbours of each, or the site itself.
+    edges: Vec<u32>,
+}
+
+impl Survey {
+    fn new(sites: &Sites, wanted: Vec<u32>, how: &Estimate, progress: &dyn Progress) -> Self {
+        let mut patches = vec![Patch::default(); wanted.len()];
+        let mut edges = vec![0; wanted.len() * EDGES];
+        let (done, total) = (AtomicU64::new(0), wanted.len() as u64);
+        let pieces = patches.par_chunks_mut(PIECE).zip(edges.par_chunks_mut(PIECE * EDGES));
+        pieces.zip(wanted.par_chunks(PIECE)).for_each(|((patches, edges), wanted)| {
+            let mut surveyor = Surveyor::new(sites, how.neighbours, how.elliptical);
+            for ((patch, edges), &site) in patches.iter_mut().zip(edges.chunks_mut(EDGES)).zip(wanted) {
+                *patch = surveyor.survey(site, edges);
+            }
+            let piece = wanted.len() as u64;
+            progress.at(
+                "estimating normals and radii",
+                done.fetch_add(piece, Ordering::Relaxed) + piece,
+                total,
+            );
+        });
+        Self { sites: wanted, patches, edges }
+    }
+
+    /// The sites that are next to each other, each pair once, without those that are both `known`.
+    fn edges(&self, count: usize, known: &[bool]) -> Vec<Edge> {
+        let mut place = vec![None; count];
+        self.sites
+            .iter()
+            .zip(self.edges.chunks(EDGES))
+            .for_each(|(&site, near)| place[site as usize] = Some(near));
+        let listed = |by: u32, site: u32| place[by as usize].is_some_and(|near| near.contains(&site));
+        let mut edges = Vec::with_capacity(self.edges.len() / 2);
+        for (site, _, near) in self.each().filter(|&(site, ..)| !known[site as usize]) {
+            let is_new = |other: u32| other > site || known[other as usize] || !listed(other, site);
+            edges.extend(
+                near.iter()
+                    .filter(|&&other| other != site && is_new(other))
+                    .map(|&other| Edge::new(site, other)),
+            );
+        }
+        edges
+    }
+
+    /// Each site, its patch and its neighbours.
+    fn each(&self) -> impl Iterator<Item = (u32, &Patch, &[u32])> {
+        self.sites
+            .iter()
+            .zip(&self.patches)
+            .zip(self.edges.chunks(EDGES))
+            .map(|((site, patch), edges)| (*site, patch, edges))
+    }
+}
+
+/// The normal of every site, and the sites whose side is unknown.
+fn normals(surfels: &Surfels, sites: &Sites, survey: &Survey, view: View) -> (Vec<Vec3>, Vec<bool>) {
+    let (mut normals, mut known) = (vec![Vec3::ZERO; sites.len()], vec![false; sites.len()]);
+    for (normal, &site) in surfels.normals.iter().zip(&sites.of_point) {
+        if *normal != Vec3::ZERO {
+            (normals[site as usize], known[site as usize]) = (*normal, true);
+        }
+    }
+    let mut areas = vec![0.0; sites.len()];
+    for (site, patch, _) in survey.each() {
+        let site = site as usize;
+        areas[site] = patch.reach * patch.reach;
+        if !known[site] {
+            let to_view = match view {
+                View::Unknown => None,
+                View::From(eye) => Some(eye - surfels.positions[sites.point[site] as usize]),
+                View::Towards(direction) => Some(direction),
+            };
+            let away = to_view.is_some_and(|to_view| patch.normal.dot(to_view) < 0.0);
+            normals[site] = if away { -patch.normal } else { patch.normal };
+            known[site] = to_view.is_some();
+        }
+    }
+    let edges = survey.edges(sites.len(), &known);
+    let mut oriented =
+        Oriented { normals: &mut normals, known: &known, positions: &|site| sites.at(site), areas: &areas };
+    let unknown = oriented.settle(edges);
+    (normals, unknown)
+}
+
+/// The radius of every site, in the points' unit.
+fn radii(surfels: &Surfels, sites: &Sites, survey: &Survey) -> Vec<f32> {
+    let mut reaches = vec![0.0; sites.len()];
+    survey.each().for_each(|(site, patch, _)| reaches[site as usize] = sites.unit * patch.reach);
+    for (radius, &site) in surfels.radii.iter().zip(&sites.of_point) {
+        if *radius > 0.0 {
+            reaches[site as usize] = radius / MARGIN as f32;
+        }
+    }
+    let mut radii = vec![0.0; sites.len()];
+    for (site, _, near) in survey.each() {
+        // A point far from all others would be a disc that hides them.
+        let mut around = [0.0; EDGES];
+        around.iter_mut().zip(near).for_each(|(reach, &other)| *reach = reaches[other as usize]);
+        let (_, middle, _) = around.select_nth_unstable_by(EDGES / 2, f32::total_cmp);
+        radii[site as usize] = MARGIN as f32 * reaches[site as usize].min(LARGEST * *middle);
+    }
+    radii
+}

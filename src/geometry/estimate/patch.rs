@@ -1,0 +1,137 @@
+//! What the points around a point say of the surface there: its plane, and how far a disc must reach.
+
+use super::cell::Cell;
+use super::eigen;
+use super::sites::Sites;
+use crate::geometry::Ellipse;
+use glam::{DMat2, DMat3, DVec2, DVec3, Vec3};
+
+/// The surface around a site.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Patch {
+    /// Unit normal, of either side.
+    pub normal: Vec3,
+    /// How far a disc must reach to cover what is nearest to the site; 0 if it has no neighbours. Of an ellipse, its longer semi-axis.
+    pub reach: f32,
+    /// The ellipse that covers it.
+    pub ellipse: Option<Ellipse>,
+}
+
+/// Makes patches, one after the other.
+pub(super) struct Surveyor<'a> {
+    sites: &'a Sites,
+    /// How many neighbours are looked at where they surround the site.
+    neighbours: usize,
+    elliptical: bool,
+    cell: Cell,
+    near: Vec<u32>,
+    /// The neighbours relative to the site, and those of them that lie in its plane.
+    offsets: Vec<DVec3>,
+    flat: Vec<DVec2>,
+}
+
+/// Where the neighbours do not surround a site, because they all belong to one scan line for example, this many times as many are looked at.
+const WIDER: usize = 4;
+/// Neighbours whose extents across and along are less than this far apart, 1-σ, lie in a line.
+const LINE: f64 = 0.1;
+/// Least shorter axis of an ellipse by its longer.
+const LEAST_ASPECT: f64 = 0.125;
+
+/// The plane through a site's neighbours.
+struct Plane {
+    normal: DVec3,
+    /// The other eigenvectors, the longer extent last.
+    tangents: [DVec3; 2],
+    is_line: bool,
+}
+
+impl<'a> Surveyor<'a> {
+    pub fn new(sites: &'a Sites, neighbours: usize, elliptical: bool) -> Self {
+        Self {
+            sites,
+            neighbours,
+            elliptical,
+            cell: Cell::new(),
+            near: Vec::new(),
+            offsets: Vec::new(),
+            flat: Vec::new(),
+        }
+    }
+
+    /// The patch around `site`; the nearest of its neighbours, at most `edges.len()`, go to `edges`, whose rest becomes `site`.
+    pub fn survey(&mut self, site: u32, edges: &mut [u32]) -> Patch {
+        let mut plane = self.look(site, self.neighbours);
+        for (i, edge) in edges.iter_mut().enumerate() {
+            *edge = self.near.get(i).copied().unwrap_or(site);
+        }
+        if plane.is_line || self.cell.is_open(&self.flat) {
+            let wider = self.look(site, WIDER * self.neighbours);
+            // At an edge of the surface the nearer neighbours know its direction better.
+            if plane.is_line || !self.cell.is_open(&self.flat) {
+                plane = wider;
+            }
+        }
+        let reach = self.cell.reach(&self.flat);
+        let mut patch = Patch { normal: plane.normal.as_vec3(), reach: reach as f32, ellipse: None };
+        if self.elliptical {
+            self.stretch(&plane, &mut patch);
+        }
+        if patch.reach == 0.0 {
+            // On a line, or with a single neighbour: half-way to the second.
+            let second = self.near.get(1).or(self.near.first());
+            patch.reach =
+                second.map_or(0.0, |&other| 0.5 * self.sites.at(site).distance(self.sites.at(other)));
+        }
+        patch
+    }
+
+    /// Looks at the `count` nearest sites: their plane, and the cell among them in it.
+    fn look(&mut self, site: u32, count: usize) -> Plane {
+        let centre = self.sites.at(site).as_dvec3();
+        self.near.clear();
+        self.near.extend(self.sites.nearest(site, count));
+        self.offsets.clear();
+        self.offsets.extend(self.near.iter().map(|&other| self.sites.at(other).as_dvec3() - centre));
+        let plane = Plane::through(&self.offsets);
+        self.flat.clear();
+        for offset in &self.offsets {
+            let flat = DVec2::from(plane.tangents.map(|tangent| tangent.dot(*offset)));
+            // What is rather above than beside the site is of another sheet, or noise.
+            let above = offset.dot(plane.normal);
+            if above * above <= flat.length_squared() {
+                self.flat.push(flat);
+            }
+        }
+        self.cell.build(&self.flat);
+        plane
+    }
+
+    /// Makes the disc an ellipse: a circle in the plane that is stretched so that the distances to the neighbours around are the same in
+    /// every direction.
+    fn stretch(&mut self, plane: &Plane, patch: &mut Patch) {
+        let around = self.cell.neighbours().map(|i| self.flat[i as usize]);
+        let covariance = around.fold(DMat2::ZERO, |sum, e| sum + DMat2::from_cols(e * e.x, e * e.y));
+        let (a, b, d) = (covariance.x_axis.x, covariance.x_axis.y, covariance.y_axis.y);
+        let angle = 0.5 * (2.0 * b).atan2(a - d);
+        let (major, minor) = (DVec2::from_angle(angle), DVec2::from_angle(angle).perp());
+        let [long, short] = [major, minor].map(|axis| axis.dot(covariance * axis).max(0.0).sqrt());
+        let aspect = if long > 0.0 { (short / long).clamp(LEAST_ASPECT, 1.0) } else { 1.0 };
+        self.flat.iter_mut().for_each(|e| *e = DVec2::new(e.dot(major), e.dot(minor) / aspect));
+        self.flat.sort_by(|a, b| a.length_squared().total_cmp(&b.length_squared()));
+        self.cell.build(&self.flat);
+        let direction = major.x * plane.tangents[0] + major.y * plane.tangents[1];
+        patch.reach = self.cell.reach(&self.flat) as f32;
+        patch.ellipse = Some(Ellipse { major: direction.normalize().as_vec3(), aspect: aspect as f32 });
+    }
+}
+
+impl Plane {
+    /// The plane of least squares through the site, at 0, and its neighbours.
+    fn through(neighbours: &[DVec3]) -> Self {
+        let mean = neighbours.iter().sum::<DVec3>() / (1.0 + neighbours.len() as f64);
+        let outer = |d: DVec3| DMat3::from_cols(d * d.x, d * d.y, d * d.z);
+        let covariance = neighbours.iter().fold(outer(mean), |sum, &d| sum + outer(d - mean));
+        let (values, [normal, a, b]) = eigen::symmetric(covariance);
+        Self { normal, tangents: [a, b], is_line: values[1] <= LINE * LINE * values[2] }
+    }
+}
