@@ -14,20 +14,23 @@ layout(local_size_x = 64) in;
 layout(constant_id = 1) const bool CULL_BACK = false;
 layout(constant_id = 2) const bool COUNT = false;
 layout(constant_id = 11) const bool LIST_LARGE = false;
+layout(constant_id = 12) const bool ELLIPSES = false;
+layout(constant_id = 13) const bool TWO_SIDED = false;
 
 layout(set = 0, binding = 2, std430) readonly buffer Positions { float positions[]; };
 layout(set = 0, binding = 3, std430) readonly buffer Normals { float normals[]; };
-layout(set = 0, binding = 4, std430) readonly buffer Radii { float radii[]; };
+layout(set = 0, binding = 4, std430) readonly buffer Radii { float radii[]; }; // TWO_SIDED: negative where it is
 layout(set = 0, binding = 6, std430) buffer Counts { uint culled[4]; };
 
 layout(set = 0, binding = 7, std430) buffer LargeSplats { uint large_count; uint large_padding[63]; uint large[]; };
+layout(set = 0, binding = 8, std430) readonly buffer Ellipses { vec4 ellipses[]; }; // major axis, aspect
 
 layout(push_constant) uniform Window { uint count; } window;
 
 // Fates, the first four in the order of the counts.
 const uint BEHIND = 0;    // the centre is not in front of the eye
 const uint EYE_PLANE = 1; // the disc reaches the eye plane
-const uint BACK = 2;      // the normal faces away, and such are culled
+const uint BACK = 2;      // the normal faces away, such are culled, and the surfel is not two-sided
 const uint OUTSIDE = 3;   // off the picture
 const uint DRAWN = 4;
 
@@ -40,6 +43,12 @@ mat2x3 tangents(vec3 n) {
     float a = -1.0 / (s + n.z);
     float b = n.x * n.y * a;
     return mat2x3(vec3(1.0 + s * n.x * n.x * a, s * b, -s * n.x), vec3(b, s + n.y * n.y * a, -n.y));
+}
+
+// The axes of an elliptical disc whose longer semi-axis is 1, exactly at a right angle to n however its shape was rounded.
+mat2x3 ellipse_axes(vec3 n, vec4 shape) {
+    vec3 minor = normalize(cross(n, shape.xyz));
+    return mat2x3(cross(minor, n), shape.w * minor);
 }
 
 // Homogeneous pixel of a vector of the world.
@@ -66,18 +75,18 @@ mat2x3 depth_plane(vec3 n, vec2 h, vec2 facing, vec2 anchor) {
     return mat2x3(vec3(key.x, x.x, y.x), vec3(key.y, x.y, y.y));
 }
 
-// κ of a disc's nearest point. In perspective its centre is at distance w and it reaches `lean` nearer; otherwise its centre is at
-// `position`, with the cosine `facing` between normal and rays.
-float key_of_disc(float w, float lean, vec3 position, float facing, float r) {
+// κ of a disc's nearest point, which is `lean` nearer than its centre at `position`; in perspective that is at distance w.
+float key_of_disc(float w, vec3 position, float lean) {
     if (PERSPECTIVE) return frame.near / (w - lean);
-    float z = dot(frame.forward_hi.xyz, position) - r * sqrt(max(1.0 - facing * facing, 0.0));
+    float z = dot(frame.forward_hi.xyz, position) - lean;
     return 1.0 - (z - frame.near) * frame.key_slope;
 }
 
 uint footprint(uint i, out Splat splat) {
     vec3 p = vec3(positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]);
     vec3 n = vec3(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]);
-    float r = radii[i];
+    float r = TWO_SIDED ? abs(radii[i]) : radii[i];
+    vec4 shape = ELLIPSES ? ellipses[i] : vec4(vec3(0.0), 1.0);
 
     // The position relative to the eye, its homogeneous pixel and its plane's h = n·position in twice the precision: all that
     // follows is relative to them.
@@ -89,7 +98,7 @@ uint footprint(uint i, out Splat splat) {
     if (!(w.x > 0.0)) return BEHIND;
 
     float sigma = r / frame.cutoff;
-    mat2x3 axes = tangents(n);
+    mat2x3 axes = ELLIPSES ? ellipse_axes(n, shape) : tangents(n);
     vec3 S = sigma * to_pixel(axes[0]);
     vec3 T = sigma * to_pixel(axes[1]);
     float g = length(vec2(S.z, T.z));
@@ -97,10 +106,10 @@ uint footprint(uint i, out Splat splat) {
     if (!(q > 0.0)) return EYE_PLANE;
     vec2 h = dot_double(hi, lo, n, vec3(0.0));
     vec2 facing = PERSPECTIVE ? h : dot_double(n, vec3(0.0), frame.forward_hi.xyz, frame.forward_lo.xyz);
-    if (CULL_BACK && facing.x >= 0.0) return BACK;
+    if (CULL_BACK && facing.x >= 0.0 && !(TWO_SIDED && radii[i] < 0.0)) return BACK;
 
     float root = frame.cutoff * sqrt(q);
-    float sqrt_det = frame.jacobian * (sigma / root) * (sigma / root) * abs(facing.x) / root;
+    float sqrt_det = frame.jacobian * shape.w * (sigma / root) * (sigma / root) * abs(facing.x) / root;
     vec2 X = pixel_row(0, hi, lo), Y = pixel_row(1, hi, lo);
     vec2 centre = vec2(X.x, Y.x) / w.x;
     Conic conic = dual_conic(centre, S, T, q, frame.cutoff, sqrt_det);
@@ -125,7 +134,8 @@ uint footprint(uint i, out Splat splat) {
     splat.plane_hi = plane[0];
     splat.plane_lo = plane[1];
     splat.sqrt_det = sqrt_det;
-    splat.key_disc = key_of_disc(w.x, frame.cutoff * g, hi, facing.x, r);
+    float lean = frame.cutoff * (PERSPECTIVE ? g : sigma * length(frame.forward_hi.xyz * axes));
+    splat.key_disc = key_of_disc(w.x, hi, lean);
     return DRAWN;
 }
 

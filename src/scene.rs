@@ -1,10 +1,11 @@
 //! Geometry on the GPU: only the streams that the scene has.
 
 use crate::error::{Error, Result};
-use crate::geometry::{Bounds, Colours, Surfels};
+use crate::geometry::{Bounds, Colours, Ellipse, Surfels};
 use crate::vk::shaders::layout::Splat;
 use crate::vk::{Binding, Buffer, Capabilities, Device, upload};
 use glam::DVec3;
+use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -14,7 +15,10 @@ pub struct Scene {
     pub(crate) id: u64,
     pub(crate) positions: Buffer,
     pub(crate) normals: Buffer,
+    /// Negative radii are those of two-sided surfels, in a scene that has such.
     pub(crate) radii: Buffer,
+    pub(crate) two_sided: bool,
+    pub(crate) ellipses: Option<Buffer>,
     pub(crate) colours: Option<Buffer>,
     colour_stream: ColourStream,
     windows: Vec<Range<u64>>,
@@ -49,6 +53,8 @@ impl ColourStream {
 const VECTOR: u64 = 12;
 /// Bytes of a radius.
 const SCALAR: u64 = 4;
+/// Bytes of a disc's shape.
+const ELLIPSE: u64 = size_of::<Ellipse>() as u64;
 
 impl Scene {
     /// Copies `surfels` to `device`. They are best in Morton order ([`Surfels::sort_morton`]).
@@ -57,20 +63,11 @@ impl Scene {
     pub fn upload(device: &Arc<Device>, surfels: &Surfels) -> Result<Self> {
         static NEXT: AtomicU64 = AtomicU64::new(0);
         let count = surfels.len() as u64;
-        let lengths = [
-            surfels.normals.len(),
-            surfels.radii.len(),
-            surfels.colours.as_ref().map_or(surfels.len(), Colours::len),
-        ];
         let Some(bounds) = surfels.bounds() else {
             return Err(Error::Usage("a scene without surfels".into()));
         };
-        if lengths.iter().any(|&length| length != surfels.len()) {
-            let text = format!(
-                "a scene of {count} positions with {lengths:?} normals, radii and colours: give one each"
-            );
-            return Err(Error::Usage(text));
-        }
+        check_lengths(surfels)?;
+        let ellipses = surfels.ellipses.as_deref();
         let (colour_stream, colours): (_, &[u8]) = match &surfels.colours {
             None => (ColourStream::None, &[]),
             Some(Colours::Srgb8(colours)) => (ColourStream::Srgb8, bytemuck::cast_slice(colours)),
@@ -80,7 +77,11 @@ impl Scene {
             id: NEXT.fetch_add(1, Ordering::Relaxed),
             positions: upload(device, "positions", bytemuck::cast_slice(&surfels.positions))?,
             normals: upload(device, "normals", bytemuck::cast_slice(&surfels.normals))?,
-            radii: upload(device, "radii", bytemuck::cast_slice(&surfels.radii))?,
+            radii: upload(device, "radii", bytemuck::cast_slice(&signed_radii(surfels)))?,
+            two_sided: surfels.two_sided.is_some(),
+            ellipses: ellipses
+                .map(|ellipses| upload(device, "ellipses", bytemuck::cast_slice(ellipses)))
+                .transpose()?,
             colours: (colour_stream != ColourStream::None)
                 .then(|| upload(device, "colours", colours))
                 .transpose()?,
@@ -114,8 +115,8 @@ impl Scene {
 
     /// Memory of its streams, bytes.
     pub fn bytes(&self) -> u64 {
-        let colours = self.colours.as_ref().map_or(0, Buffer::size);
-        self.positions.size() + self.normals.size() + self.radii.size() + colours
+        let optional = [&self.ellipses, &self.colours].map(|stream| stream.as_ref().map_or(0, Buffer::size));
+        self.positions.size() + self.normals.size() + self.radii.size() + optional.iter().sum::<u64>()
     }
 
     /// Ranges of surfels that one descriptor set can name.
@@ -123,9 +124,9 @@ impl Scene {
         &self.windows
     }
 
-    /// A window of each stream: positions, normals, radii, colours. A stream that the scene lacks is stood in for by the radii, which
+    /// A window of each stream: positions, normals, radii, colours, ellipses. A stream that the scene lacks is stood in for by the radii, which
     /// the shaders then do not read.
-    pub(crate) fn bindings(&self, window: &Range<u64>) -> [Binding<'_>; 4] {
+    pub(crate) fn bindings(&self, window: &Range<u64>) -> [Binding<'_>; 5] {
         let part = |buffer, stride| {
             Binding::Storage(buffer, window.start * stride, (window.end - window.start) * stride)
         };
@@ -137,8 +138,37 @@ impl Scene {
                 Some(colours) => part(colours, self.colour_stream.stride()),
                 None => part(&self.radii, SCALAR),
             },
+            match &self.ellipses {
+                Some(ellipses) => part(ellipses, ELLIPSE),
+                None => part(&self.radii, SCALAR),
+            },
         ]
     }
+}
+
+/// Refuses arrays of unequal length.
+fn check_lengths(surfels: &Surfels) -> Result<()> {
+    let count = surfels.len();
+    let lengths = [
+        surfels.normals.len(),
+        surfels.radii.len(),
+        surfels.ellipses.as_ref().map_or(count, Vec::len),
+        surfels.two_sided.as_ref().map_or(count, Vec::len),
+        surfels.colours.as_ref().map_or(count, Colours::len),
+    ];
+    if lengths.iter().all(|&length| length == count) {
+        return Ok(());
+    }
+    Err(Error::Usage(format!(
+        "a scene of {count} positions with {lengths:?} normals, radii, ellipses, sides and colours: give one each"
+    )))
+}
+
+/// The radii, those of two-sided surfels negative.
+fn signed_radii(surfels: &Surfels) -> Cow<'_, [f32]> {
+    let Some(two_sided) = &surfels.two_sided else { return Cow::Borrowed(&surfels.radii) };
+    let sign = |&two_sided: &bool| if two_sided { -1.0f32 } else { 1.0 };
+    surfels.radii.iter().zip(two_sided).map(|(radius, side)| radius.copysign(sign(side))).collect()
 }
 
 /// Splits `count` surfels so that a window of any stream, the splats' included, fits a descriptor and starts aligned, and so that a

@@ -13,6 +13,10 @@ pub struct Variant {
     pub perspective: bool,
     /// Splats whose normal faces away are dropped.
     pub cull_back: bool,
+    /// The scene's discs are ellipses.
+    pub ellipses: bool,
+    /// The scene has surfels that are never dropped for facing away.
+    pub two_sided: bool,
     /// Splats are counted by their fate.
     pub count: bool,
     /// Normals are summed.
@@ -69,6 +73,8 @@ impl Variant {
         Self {
             perspective,
             cull_back: settings.cull == Cull::Back,
+            ellipses: scene.ellipses.is_some(),
+            two_sided: scene.two_sided,
             count: options.count,
             normals: matches!(shading, Shading::Lit | Shading::Normal) || options.outputs.normal,
             depth: shading == Shading::Depth || options.outputs.depth,
@@ -101,6 +107,8 @@ impl Variant {
         Constants::default()
             .with(constant::PERSPECTIVE, self.perspective)
             .with(constant::CULL_BACK, self.cull_back)
+            .with(constant::ELLIPSES, self.ellipses)
+            .with(constant::TWO_SIDED, self.two_sided)
             .with(constant::COUNT, self.count)
             .with(constant::SUM_NORMALS, self.normals)
             .with(constant::SUM_DEPTH, self.depth)

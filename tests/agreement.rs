@@ -2,11 +2,11 @@
 
 mod support;
 
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use std::sync::Arc;
 use support::gpu::{assert_silent, device, render};
 use support::scenes::{Case, cases};
-use surfel::geometry::{Camera, Surfels};
+use surfel::geometry::{Camera, Ellipse, Surfels};
 use surfel::reference::{Comparison, Expected, Surfel, Tolerance};
 use surfel::vk::{Device, DeviceLimits};
 use surfel::{Outputs, Rasterizer, RenderOptions, Settings};
@@ -96,6 +96,35 @@ fn small_mutations_fail() {
         }
     }
     assert_silent(&device);
+}
+
+#[test]
+fn other_shapes_and_sides_fail() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    for case in cases().iter().filter(|case| case.surfels.ellipses.is_some()) {
+        let view = View::new(case, case.cameras[0]);
+        let slimmer = reshaped(&case.surfels, |e, _| Ellipse { aspect: 0.99 * e.aspect, ..e });
+        let turned =
+            reshaped(&case.surfels, |e, n| Ellipse { major: e.major + 0.01 * n.cross(e.major), ..e });
+        let one_sided = Surfels { two_sided: None, ..case.surfels.clone() };
+        for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
+            let failed = |surfels| view.judge(&device, rasterizer, surfels, &case.settings).failed;
+            let [a, t, o] = [&slimmer, &turned, &one_sided].map(failed);
+            println!(
+                "{} {rasterizer:?}: aspect × 0.99 {a}, turned by 0.01 {t}, one-sided {o} pixels",
+                case.name
+            );
+            let sides_seen = (o > 0) == case.surfels.two_sided.is_some();
+            assert!(a > 0 && t > 0 && sides_seen, "{}: a mutation went unseen", case.name);
+        }
+    }
+    assert_silent(&device);
+}
+
+/// Every ellipse changed by `by(ellipse, normal)`.
+fn reshaped(surfels: &Surfels, by: impl Fn(Ellipse, Vec3) -> Ellipse) -> Surfels {
+    let pairs = surfels.ellipses.iter().flatten().zip(&surfels.normals);
+    Surfels { ellipses: Some(pairs.map(|(e, n)| by(*e, *n)).collect()), ..surfels.clone() }
 }
 
 /// Every centre moved along the picture's x axis by `by` px.

@@ -5,7 +5,7 @@ mod support;
 use glam::{DMat2, DVec2, DVec3};
 use std::f64::consts::TAU;
 use support::gpu::{assert_silent, device};
-use support::sampling::{Random, push};
+use support::sampling::{Random, narrow, push};
 use surfel::geometry::{Camera, Surfels};
 use surfel::reference::{Culled, Projector, Splat, Surfel};
 use surfel::vk::DeviceLimits;
@@ -37,8 +37,8 @@ impl Drawn {
     }
 }
 
-/// Discs anywhere in and around the picture, from 1/100 px to 1000 px, turned away by 0° to 89.9999°.
-fn discs(camera: &Camera) -> Surfels {
+/// Discs, maybe of aspects from 0.1 to 1, anywhere in and around the picture, from 1/100 px to 1000 px, turned away by 0° to 89.9999°.
+fn discs(camera: &Camera, elliptical: bool) -> Surfels {
     let mut random = Random(11);
     let mut surfels = Surfels::default();
     let eta = 0.5 * f64::from(SIZE) * camera.projection.y_axis.y;
@@ -60,6 +60,9 @@ fn discs(camera: &Camera) -> Surfels {
         let turn = TAU * random.unit();
         let normal = sin * (turn.cos() * s + turn.sin() * t) - cos * ray;
         push(&mut surfels, to_world.transform_point3(position), to_world.transform_vector3(normal), radius);
+    }
+    if elliptical {
+        narrow(&mut surfels, &mut random);
     }
     surfels
 }
@@ -101,11 +104,20 @@ impl Worst {
 
 #[test]
 fn the_dual_conic_is_exact_at_every_angle() {
+    compare(false);
+}
+
+#[test]
+fn the_dual_conic_of_ellipses_is_exact_at_every_angle() {
+    compare(true);
+}
+
+fn compare(elliptical: bool) {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let eye = DVec3::new(0.3, -0.2, 0.1);
     let camera = Camera::look_at(eye, eye + DVec3::new(0.4, 0.1, 1.0), DVec3::Y, 0.8, 1.0, 1e-4).unwrap();
     let settings = Settings::default();
-    let surfels = discs(&camera);
+    let surfels = discs(&camera, elliptical);
     let scene = Scene::upload(&device, &surfels).unwrap();
     let options = RenderOptions { size: [SIZE; 2], ..Default::default() };
     let mut renderer = Renderer::new(&device, options).unwrap();
@@ -122,7 +134,8 @@ fn the_dual_conic_is_exact_at_every_angle() {
         match (Drawn::new(splat), projector.footprint(&surfel)) {
             (Some(gpu), Ok(truth)) => {
                 // 1 − F|g|/w: how far the disc stays from the eye plane, as a share of its centre's distance.
-                let lean = surfel.normal.reject_from(forward).length().min(1.0);
+                let minor = surfel.aspect * surfel.normal.cross(surfel.major);
+                let lean = forward.dot(surfel.major).hypot(forward.dot(minor));
                 let margin = 1.0 - surfel.radius * lean / truth.distance;
                 worst.note(&gpu, &truth, settings.attribute_lowpass().into(), cutoff, margin);
                 compared += 1;

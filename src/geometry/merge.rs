@@ -1,6 +1,6 @@
 //! Several sets of surfels as one.
 
-use super::{Bounds, Colours, Surfels};
+use super::{Bounds, Colours, Ellipse, Surfels};
 use crate::error::{Error, Result};
 use crate::io::srgb;
 use glam::DVec3;
@@ -10,7 +10,8 @@ impl Surfels {
     ///
     /// If the parts' origins agree, the origin and every position stay as they are; otherwise the origin is the middle of the common
     /// bounds, and positions are moved in float64. Where only some parts have colours, `albedo` (linear) is the others' colour; colours
-    /// stay sRGB-encoded unless a part has linear ones.
+    /// stay sRGB-encoded unless a part has linear ones. Where only some have shapes, the others' discs are circles; where only some
+    /// name two-sided surfels, the others' are not.
     ///
     /// # Errors
     /// [`Error::Usage`] if there are more than 2³² − 1 surfels.
@@ -22,7 +23,8 @@ impl Surfels {
         let origin = common_origin(&parts);
         parts.iter_mut().for_each(|part| part.move_origin(origin));
         let colours = merge_colours(&parts, albedo);
-        let mut merged = Self { origin, colours, ..Default::default() };
+        let (ellipses, two_sided) = (merge_ellipses(&parts), merge_two_sided(&parts));
+        let mut merged = Self { origin, ellipses, two_sided, colours, ..Default::default() };
         for part in parts {
             merged.positions.extend(part.positions);
             merged.normals.extend(part.normals);
@@ -49,6 +51,21 @@ fn common_origin(parts: &[Surfels]) -> DVec3 {
     let boxes = parts.iter().filter_map(|part| Some(Bounds::of(&part.positions)?.translated(part.origin)));
     let union = |a: Bounds, b: Bounds| Bounds::of_box(a.min.min(b.min), a.max.max(b.max));
     boxes.reduce(union).map_or(first, |bounds| bounds.centre())
+}
+
+fn merge_ellipses(parts: &[Surfels]) -> Option<Vec<Ellipse>> {
+    let shapes = |part: &Surfels| match &part.ellipses {
+        Some(ellipses) => ellipses.clone(),
+        None => part.normals.iter().map(|normal| Ellipse::circle(*normal)).collect(),
+    };
+    let any = parts.iter().any(|part| part.ellipses.is_some());
+    any.then(|| parts.iter().flat_map(shapes).collect())
+}
+
+fn merge_two_sided(parts: &[Surfels]) -> Option<Vec<bool>> {
+    let flags = |part: &Surfels| part.two_sided.clone().unwrap_or_else(|| vec![false; part.len()]);
+    let any = parts.iter().any(|part| part.two_sided.is_some());
+    any.then(|| parts.iter().flat_map(flags).collect())
 }
 
 fn merge_colours(parts: &[Surfels], albedo: [f32; 3]) -> Option<Colours> {
@@ -112,6 +129,24 @@ mod tests {
         for (position, expected) in merged.positions.iter().zip([1e7 + 0.001, 1e7 + 2.0]) {
             assert!((position.as_dvec3() + merged.origin - expected).length() < 1e-6, "{merged:?}");
         }
+    }
+
+    #[test]
+    fn parts_without_shapes_are_circles_and_parts_without_sides_are_one_sided() {
+        let plain = || part(0.0, 1.0, None);
+        let ellipse = Ellipse { major: Vec3::X, aspect: 0.25 };
+        let special =
+            || Surfels { ellipses: Some(vec![ellipse]), two_sided: Some(vec![true]), ..part(0.0, 2.0, None) };
+        let merged = Surfels::merge(vec![plain(), special(), plain()], [0.5; 3]).unwrap();
+        let ellipses = merged.ellipses.unwrap();
+        assert_eq!((ellipses.len(), ellipses[1]), (3, ellipse));
+        for circle in [ellipses[0], ellipses[2]] {
+            assert_eq!(circle.aspect, 1.0);
+            assert!(circle.major.dot(Vec3::Z).abs() < 1e-6 && circle.major.is_normalized(), "{circle:?}");
+        }
+        assert_eq!(merged.two_sided, Some(vec![false, true, false]));
+        let merged = Surfels::merge(vec![plain(), plain()], [0.5; 3]).unwrap();
+        assert_eq!((merged.ellipses, merged.two_sided), (None, None));
     }
 
     #[test]

@@ -37,6 +37,13 @@ pub struct Ellipse {
     pub aspect: f32,
 }
 
+impl Ellipse {
+    /// The circle of a disc with the unit normal `normal`; its major axis is any.
+    pub fn circle(normal: Vec3) -> Self {
+        Self { major: normal.any_orthonormal_vector(), aspect: 1.0 }
+    }
+}
+
 /// One colour a surfel, in the form in which it came.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Colours {

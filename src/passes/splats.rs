@@ -57,6 +57,7 @@ impl SplatLayout {
             storage(compute | vertex), // colours
             storage(compute),          // counts
             storage(compute),          // large splats
+            storage(compute),          // ellipses
         ];
         Ok(Self { splats: SetLayout::new(device, &bindings)?, pixels: pixel_layout(device)? })
     }
@@ -82,13 +83,14 @@ impl Splats {
         let window = |(number, range): (u64, &Range<u64>)| {
             let count = range.end - range.start;
             let list = number * LIST_HEADER + 4 * range.start;
-            let [positions, normals, radii, colours] = scene.bindings(range);
+            let [positions, normals, radii, colours, ellipses] = scene.bindings(range);
             let own = Binding::Storage(&splats, range.start * stride, count * stride);
             let tally = Binding::Storage(&counts, number * COUNTS_STEP, COUNTS_STEP);
             // Without the compute rasterizer nothing is listed, and the counts stand in.
             let large =
                 large.as_ref().map_or(tally, |large| Binding::Storage(large, list, LIST_HEADER + 4 * count));
-            let bindings = [Binding::Uniform(frame), own, positions, normals, radii, colours, tally, large];
+            let frame = Binding::Uniform(frame);
+            let bindings = [frame, own, positions, normals, radii, colours, tally, large, ellipses];
             let set = DescriptorSet::new(device, &layout.splats, &bindings)?;
             Ok(Window { set, count: count as u32, list })
         };

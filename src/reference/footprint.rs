@@ -16,8 +16,14 @@ pub struct Surfel {
     pub position: DVec3,
     /// Unit normal.
     pub normal: DVec3,
-    /// Radius of the covered disc, `F σ`.
+    /// Longer semi-axis of the covered disc, `F σ`.
     pub radius: f64,
+    /// Its direction, a unit vector at a right angle to the normal; any such for a circle.
+    pub major: DVec3,
+    /// The shorter semi-axis divided by the longer: 1 for a circle.
+    pub aspect: f64,
+    /// Whether neither side is the back.
+    pub two_sided: bool,
     /// Linear RGB, where the scene has colours.
     pub colour: Option<DVec3>,
 }
@@ -29,10 +35,21 @@ impl Surfel {
             Colours::Srgb8(c) => linear(c[index]),
             Colours::Linear(c) => DVec3::from_array(c[index].map(f64::from)),
         });
+        let normal = surfels.normals[index].as_dvec3().normalize_or_zero();
+        let (major, aspect) = match &surfels.ellipses {
+            // In the disc's plane, from which float32 took it.
+            Some(e) => {
+                (e[index].major.as_dvec3().reject_from_normalized(normal).normalize(), e[index].aspect)
+            }
+            None => (normal.any_orthonormal_vector(), 1.0),
+        };
         Self {
             position: surfels.origin + surfels.positions[index].as_dvec3(),
-            normal: surfels.normals[index].as_dvec3().normalize_or_zero(),
+            normal,
             radius: surfels.radii[index].into(),
+            major,
+            aspect: aspect.into(),
+            two_sided: surfels.two_sided.as_ref().is_some_and(|two_sided| two_sided[index]),
             colour,
         }
     }
@@ -57,13 +74,15 @@ pub struct Splat {
     /// What the ε test lets lie behind this splat: its depth is multiplied by this in perspective, and this is added to it in
     /// orthographic projection.
     pub shift: f64,
-    /// World-space unit normal, turned to the eye where surfels are two-sided.
+    /// World-space unit normal, turned to the eye.
     pub normal: DVec3,
     /// Linear RGB; the lighting's albedo where the scene has no colours.
     pub colour: DVec3,
     /// 1 / cosine of the angle between the normal and the ray through the centre: by so much rounding errors of the normal and
     /// the centre grow in the plane's depth and in `√|V|`.
     pub secant: f64,
+    /// Shorter semi-axis of the disc divided by the longer.
+    pub aspect: f64,
     /// Whether the ellipse came from the dual form, the inverse form being ill-conditioned.
     pub dual: bool,
 }
@@ -75,7 +94,7 @@ pub enum Culled {
     Behind,
     /// Its disc reaches the eye plane.
     EyePlane,
-    /// It shows its back where [`Cull::Back`] is set.
+    /// It shows its back where [`Cull::Back`] is set, and is not two-sided.
     Back,
     /// Its bounding box misses the picture.
     Outside,
@@ -102,13 +121,14 @@ impl Projector {
         if self.depth.perspective && distance <= 0.0 {
             return Err(Culled::Behind);
         }
-        let (projected, mapping) = self.tangent_plane(centre, normal, surfel.radius);
+        let axes = self.semi_axes(surfel);
+        let (projected, mapping) = self.tangent_plane(centre, axes);
         let clear = clearance(&mapping, self.cutoff());
         if clear.is_nan() || clear <= 0.0 {
             return Err(Culled::EyePlane);
         }
         let facing = self.facing(centre, normal);
-        if self.settings.cull == Cull::Back && facing >= 0.0 {
+        if self.settings.cull == Cull::Back && facing >= 0.0 && !surfel.two_sided {
             return Err(Culled::Back);
         }
         let inverse = inverse_form(&mapping, self.cutoff());
@@ -119,24 +139,30 @@ impl Projector {
             sqrt_det: conic.sqrt_det,
             plane: self.plane(centre, normal),
             distance,
-            nearest: distance - surfel.radius * normal.truncate().length(),
+            nearest: distance - axes[0].z.hypot(axes[1].z),
             shift: self.shift(surfel.radius, distance),
             normal: if facing > 0.0 { -surfel.normal } else { surfel.normal },
             colour: surfel.colour.unwrap_or(DVec3::from_array(self.settings.lighting.albedo.map(f64::from))),
             secant: self.secant(centre, facing),
+            aspect: surfel.aspect,
             dual: inverse.is_none(),
         };
         if self.sees(&Ellipse::attribute(&splat, self)) { Ok(splat) } else { Err(Culled::Outside) }
     }
 
-    /// The projected centre, px, and the mapping that [`super::conic`] wants, for 1-σ axes of length `radius / F`.
-    pub(super) fn tangent_plane(&self, centre: DVec3, normal: DVec3, radius: f64) -> (DVec2, DMat3) {
-        let (s, t) = normal.any_orthonormal_pair();
-        let sigma = radius / self.cutoff();
+    /// The semi-axes of the covered disc, eye space.
+    pub(super) fn semi_axes(&self, surfel: &Surfel) -> [DVec3; 2] {
+        let minor = surfel.aspect * surfel.normal.cross(surfel.major);
+        [surfel.major, minor].map(|axis| self.view.transform_vector3(surfel.radius * axis))
+    }
+
+    /// The projected centre, px, and the mapping that [`super::conic`] wants, for the semi-axes of the covered disc.
+    pub(super) fn tangent_plane(&self, centre: DVec3, semi_axes: [DVec3; 2]) -> (DVec2, DMat3) {
+        let [s, t] = semi_axes.map(|axis| axis / self.cutoff());
         let middle = self.project(centre.extend(1.0));
         let ndc = middle.truncate() / middle.z;
         let to_pixels = |v: DVec3| (0.5 * self.size * (v.truncate() - ndc * v.z)).extend(v.z);
-        let axis = |v: DVec3| to_pixels(self.project((sigma * v).extend(0.0)));
+        let axis = |v: DVec3| to_pixels(self.project(v.extend(0.0)));
         let mapping = DMat3::from_cols(axis(s), axis(t), DVec3::new(0.0, 0.0, middle.z));
         (0.5 * self.size * (ndc + 1.0), mapping)
     }

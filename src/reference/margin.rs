@@ -80,11 +80,17 @@ impl Margins<'_> {
         let (depth, wobble, in_front) = self.depth(splat, hit.at)?;
         let (nearest, farthest) = (self.projector.depth.near, self.projector.depth.far);
         let within = |margin: f64| depth >= nearest + margin && depth <= farthest - margin;
-        let (sway, certain) = (self.rounding * splat.secant, false);
+        let (sway, certain) = (self.rounding * (splat.secant + self.turn(splat)), false);
         let pixel = hit.index;
         let mut candidate = Candidate { splat, pixel, depth, wobble, weight: 0.0, sway, drift: 0.0, certain };
         candidate.certain = !near && in_front && within(wobble);
         within(-wobble).then_some(candidate)
+    }
+
+    /// How much a rounding error of the major axis grows in the weight. Turning the axes of an ellipse by δ moves `½ m²` by no more
+    /// than `½ F² (1/aspect − aspect) δ`.
+    fn turn(&self, splat: &Splat) -> f64 {
+        0.5 * self.projector.cutoff().powi(2) * (1.0 / splat.aspect - splat.aspect)
     }
 
     /// Depth, its uncertainty, and whether it is surely in front of the eye; `None` if it surely is not. Rounding turns the

@@ -1,8 +1,8 @@
 //! Random numbers and sampled surfaces for test scenes.
 
-use glam::DVec3;
-use std::f64::consts::PI;
-use surfel::geometry::{Colours, Surfels};
+use glam::{DVec3, Vec3};
+use std::f64::consts::{PI, TAU};
+use surfel::geometry::{Colours, Ellipse, Surfels};
 
 /// splitmix64: the same numbers everywhere, for good.
 pub struct Random(pub u64);
@@ -53,6 +53,32 @@ pub fn paint_srgb(surfels: &mut Surfels, random: &mut Random) {
 pub fn paint_linear(surfels: &mut Surfels, random: &mut Random) {
     let colours = (0..surfels.len()).map(|_| random.hue().map(|c| c as f32)).collect();
     surfels.colours = Some(Colours::Linear(colours));
+}
+
+/// Makes every disc an ellipse of random direction and an aspect from 0.1 to 1; the radius stays its longer semi-axis.
+pub fn narrow(surfels: &mut Surfels, random: &mut Random) {
+    let ellipse = |normal: &Vec3| {
+        let (s, t) = normal.as_dvec3().normalize().any_orthonormal_pair();
+        let (sin, cos) = (TAU * random.unit()).sin_cos();
+        Ellipse { major: (cos * s + sin * t).as_vec3(), aspect: (0.1 + 0.9 * random.unit()) as f32 }
+    };
+    surfels.ellipses = Some(surfels.normals.iter().map(ellipse).collect());
+}
+
+/// The same, of the areas that the discs had.
+pub fn stretch(surfels: &mut Surfels, random: &mut Random) {
+    narrow(surfels, random);
+    let aspects = surfels.ellipses.iter().flatten().map(|ellipse| ellipse.aspect);
+    surfels.radii.iter_mut().zip(aspects).for_each(|(radius, aspect)| *radius /= aspect.sqrt());
+}
+
+/// Makes a share of the surfels two-sided, and turns half of those over.
+pub fn forget_sides(surfels: &mut Surfels, share: f64, random: &mut Random) {
+    let two_sided: Vec<bool> = (0..surfels.len()).map(|_| random.unit() < share).collect();
+    for (normal, _) in surfels.normals.iter_mut().zip(&two_sided).filter(|(_, two_sided)| **two_sided) {
+        *normal *= random.signed().signum() as f32;
+    }
+    surfels.two_sided = Some(two_sided);
 }
 
 /// A closed bumpy sphere of about unit radius; centres are off the surface by some of the radius, normals tilted by a few

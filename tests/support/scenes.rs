@@ -4,7 +4,7 @@
 //! No surfel stands so near a decision about the whole of it (which side it shows, whether its disc reaches the eye plane)
 //! that rounding could turn it: such a splat would be right either way, and no comparison could tell.
 
-use super::sampling::{Random, bumpy_sphere, paint_linear, paint_srgb, push};
+use super::sampling::{Random, bumpy_sphere, forget_sides, paint_linear, paint_srgb, push, stretch};
 use glam::{DMat4, DVec3, DVec4};
 use std::f64::consts::TAU;
 use surfel::Settings;
@@ -28,9 +28,9 @@ pub struct Case {
 
 /// All cases.
 pub fn cases() -> Vec<Case> {
-    let all =
+    let circles =
         [horizon(), edge_on(), sub_pixel(), huge(), inside(), far_origin(), orthographic(), off_centre()];
-    all.map(Case::without_undecided).into()
+    circles.into_iter().chain([ellipses(), two_sided()]).map(Case::without_undecided).collect()
 }
 
 impl Case {
@@ -50,16 +50,23 @@ impl Case {
         };
         let kept: Vec<usize> = (0..self.surfels.len()).filter(decided).collect();
         let s = &mut self.surfels;
-        s.positions = kept.iter().map(|&i| s.positions[i]).collect();
-        s.normals = kept.iter().map(|&i| s.normals[i]).collect();
-        s.radii = kept.iter().map(|&i| s.radii[i]).collect();
+        keep(&mut s.positions, &kept);
+        keep(&mut s.normals, &kept);
+        keep(&mut s.radii, &kept);
+        s.ellipses.iter_mut().for_each(|ellipses| keep(ellipses, &kept));
+        s.two_sided.iter_mut().for_each(|two_sided| keep(two_sided, &kept));
         match &mut s.colours {
-            Some(Colours::Srgb8(c)) => *c = kept.iter().map(|&i| c[i]).collect(),
-            Some(Colours::Linear(c)) => *c = kept.iter().map(|&i| c[i]).collect(),
+            Some(Colours::Srgb8(c)) => keep(c, &kept),
+            Some(Colours::Linear(c)) => keep(c, &kept),
             None => {}
         }
         self
     }
+}
+
+/// Keeps the entries at `kept`.
+fn keep<T: Copy>(values: &mut Vec<T>, kept: &[usize]) {
+    *values = kept.iter().map(|&i| values[i]).collect();
 }
 
 /// Looks from `eye` at `target`, y up.
@@ -246,6 +253,53 @@ fn off_centre() -> Case {
     settings.lighting.directional =
         vec![light([0.0, 1.0, 0.0], [0.3, 0.3, 0.2]), light([0.6, 0.0, -0.8], [0.2, 0.1, 0.4])];
     Case { name: "off-centre", surfels, cameras, settings, size }
+}
+
+/// A closed surface of ellipses up to ten times as long as wide, from outside and from within, with fins of them seen edge-on.
+fn ellipses() -> Case {
+    let (mut random, size) = (Random(9), [256, 256]);
+    let mut surfels = bumpy_sphere(8000, &mut random);
+    for i in 0..600 {
+        let (sin, cos) = (TAU * random.unit()).sin_cos();
+        let tilt = [1.0f64, 0.1, 0.01][i % 3].to_radians() * random.signed().signum();
+        let normal = tilt.cos() * DVec3::new(-sin, cos, 0.0) + tilt.sin() * DVec3::Z;
+        let rho = 0.2 + 1.2 * random.unit();
+        push(&mut surfels, DVec3::new(rho * cos, rho * sin, 1.4 + 0.3 * random.signed()), normal, 0.06);
+    }
+    stretch(&mut surfels, &mut random);
+    paint_srgb(&mut surfels, &mut random);
+    let cameras = [
+        camera([0.0, 0.0, 4.5], [0.0, 0.0, 0.0], 32.0, size, 0.1),
+        camera([2.0, 1.1, -1.9], [0.0, 0.0, 0.0], 38.0, size, 0.01),
+        camera([0.1, -0.2, 0.15], [1.0, 0.3, 0.4], 80.0, size, 0.01),
+    ];
+    Case {
+        name: "ellipses",
+        surfels,
+        cameras,
+        settings: Settings { epsilon: 0.4, ..Default::default() },
+        size,
+    }
+}
+
+/// Ellipses of which a part has no known side, where surfels that face away are culled.
+fn two_sided() -> Case {
+    let (mut random, size) = (Random(10), [288, 256]);
+    let mut surfels = bumpy_sphere(6000, &mut random);
+    stretch(&mut surfels, &mut random);
+    forget_sides(&mut surfels, 0.4, &mut random);
+    paint_linear(&mut surfels, &mut random);
+    let parallel = |e: [f64; 3], height: f64| {
+        let view = [DVec3::from_array(e), DVec3::ZERO, DVec3::Y];
+        Camera::orthographic(view, height, 288.0 / 256.0, [0.5, 6.0]).unwrap()
+    };
+    let cameras = [
+        parallel([2.0, 0.5, 2.0], 2.2),
+        camera([-1.5, 1.8, 1.1], [0.0, 0.0, 0.0], 40.0, size, 0.1),
+        parallel([0.2, -1.2, -2.2], 1.8),
+    ];
+    let settings = Settings { cull: Cull::Back, epsilon: 0.5, ..Default::default() };
+    Case { name: "two-sided", surfels, cameras, settings, size }
 }
 
 /// Right-handed, y up in eye space and down in clip space; `shift` of the principal point in ndc.

@@ -59,6 +59,26 @@ fn a_pixel_on_the_cut_off_may_be_there_or_not() {
     assert_eq!([32 * 64 + 28, 32 * 64 + 38].map(flipped), [1, 1]);
 }
 
+/// A turn of 2⁻²⁴ about a far centre moves the near end of a long ellipse, and with it the weights.
+#[test]
+fn rounding_of_a_long_axis_is_forgiven_only_where_rounding_is() {
+    let surfels = |major: DVec3| {
+        let mut discs = [
+            disc(DVec3::Z * 2.0, DVec3::NEG_Z, 4.0),
+            Surfel { major, aspect: 2e-5, ..disc(DVec3::new(7e4, 0.0, 2.0), DVec3::NEG_Z, 1e5) },
+        ];
+        (discs[0].colour, discs[1].colour) = (Some(DVec3::X), Some(DVec3::Y));
+        scene(&discs)
+    };
+    let picture = |surfels: &Surfels| render(surfels, &perspective(), SIZE, &plain()).unwrap().to_picture();
+    let failed = |tolerance: Tolerance| {
+        let expected = Expected::new(&surfels(DVec3::X), &perspective(), SIZE, &plain(), &tolerance).unwrap();
+        expected.compare(&picture(&surfels(DVec3::new(1.0, 2f64.powi(-24), 0.0)))).unwrap().failed
+    };
+    assert!(failed(Tolerance::default()) > 1000);
+    assert_eq!(failed(Tolerance::float32()), 0);
+}
+
 #[test]
 fn a_splat_that_ends_at_a_pixel_centre_may_colour_it_or_not() {
     // A cut-off radius of 5 px about a pixel centre, for the attributes, on a ground that covers the picture.

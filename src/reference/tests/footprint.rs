@@ -15,7 +15,9 @@ fn both_forms_of_the_conic_agree() {
         let centre = DVec3::new(random(&mut state), random(&mut state), 2.5 + random(&mut state));
         let (normal, radius) =
             (random_vector(&mut state).normalize(), 10f64.powf(-1.5 + 1.4 * random(&mut state)));
-        let mapping = projector.tangent_plane(centre, normal, radius).1;
+        let aspect = 1.0 - 0.45 * (1.0 + random(&mut state));
+        let surfel = Surfel { aspect, ..disc(centre, normal, radius) };
+        let mapping = projector.tangent_plane(centre, projector.semi_axes(&surfel)).1;
         if conic::clearance(&mapping, 2.0) <= 0.0 {
             continue;
         }
@@ -81,6 +83,32 @@ fn a_disc_that_faces_the_eye_is_a_circle() {
 }
 
 #[test]
+fn an_ellipse_keeps_its_shape_and_is_foreshortened_along_its_own_axes() {
+    let (r, aspect, turn) = (0.25, 0.3, 0.7f64);
+    let flat = disc(DVec3::Z * 2.0, DVec3::NEG_Z, r);
+    let major = DVec3::new(turn.cos(), turn.sin(), 0.0);
+    let splat =
+        footprint(&Surfel { major, aspect, ..flat }, &perspective(), SIZE, &plain()).unwrap().unwrap();
+    let sigma = 64.0 * r / 2.0 / 2.0;
+    let along = DMat2::from_cols(major.truncate(), major.truncate().perp());
+    let variance = along * DMat2::from_diagonal(DVec2::new(1.0, aspect * aspect) * sigma * sigma);
+    let difference = splat.variance - variance * along.transpose();
+    assert!(difference.to_cols_array().iter().all(|d| d.abs() < 1e-9), "{splat:?}");
+    assert!(close(splat.sqrt_det, aspect * sigma * sigma, 1e-12) && close(splat.nearest, 2.0, 1e-12));
+
+    let angle = 1.2f64;
+    let steep = disc(DVec3::Z * 3.0, DVec3::new(angle.sin(), 0.0, -angle.cos()), r);
+    for (major, reach) in [(DVec3::Y, aspect * r), (DVec3::new(angle.cos(), 0.0, angle.sin()), r)] {
+        for camera in [parallel(), perspective()] {
+            let splat =
+                footprint(&Surfel { major, aspect, ..steep }, &camera, SIZE, &plain()).unwrap().unwrap();
+            assert!(close(splat.nearest, 3.0 - reach * angle.sin(), 1e-12), "{splat:?}");
+            assert!(close(splat.shift, if camera == parallel() { r } else { 1.0 + r / 3.0 }, 1e-12));
+        }
+    }
+}
+
+#[test]
 fn parallel_rays_foreshorten_by_the_cosine() {
     let (r, angle) = (0.5, 1.2f64);
     let normal = DVec3::new(angle.sin(), 0.0, -angle.cos());
@@ -118,10 +146,11 @@ fn surfels_are_culled_in_order_and_counted() {
         disc(DVec3::new(0.0, 0.0, 2.0), DVec3::Z, 0.1),
         disc(DVec3::new(9.0, 0.0, 2.0), DVec3::NEG_Z, 0.1),
         disc(DVec3::new(0.0, 0.0, 2.0), DVec3::NEG_Z, 0.1),
+        Surfel { two_sided: true, ..disc(DVec3::new(0.0, 0.0, 2.0), DVec3::Z, 0.1) },
     ];
     let counts =
         |cull| render(&scene(&discs), &perspective(), SIZE, &Settings { cull, ..plain() }).unwrap().counts;
-    let back = Counts { surfels: 5, behind: 1, eye_plane: 1, back: 1, outside: 1, drawn: 1 };
+    let back = Counts { surfels: 6, behind: 1, eye_plane: 1, back: 1, outside: 1, drawn: 2 };
     assert_eq!(counts(Cull::Back), back);
-    assert_eq!(counts(Cull::None), Counts { back: 0, drawn: 2, ..back });
+    assert_eq!(counts(Cull::None), Counts { back: 0, drawn: 3, ..back });
 }

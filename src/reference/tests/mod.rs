@@ -5,7 +5,7 @@ mod footprint;
 mod passes;
 
 use super::*;
-use crate::geometry::Colours;
+use crate::geometry::{Colours, Ellipse};
 use crate::settings::{Cull, Shading};
 use glam::{DMat2, DVec2, DVec3, DVec4};
 
@@ -27,7 +27,9 @@ fn plain() -> Settings {
 }
 
 fn disc(position: DVec3, normal: DVec3, radius: f64) -> Surfel {
-    Surfel { position, normal: normal.normalize(), radius, colour: None }
+    let normal = normal.normalize();
+    let major = normal.any_orthonormal_vector();
+    Surfel { position, normal, radius, major, aspect: 1.0, two_sided: false, colour: None }
 }
 
 fn scene(discs: &[Surfel]) -> Surfels {
@@ -35,6 +37,11 @@ fn scene(discs: &[Surfel]) -> Surfels {
         positions: discs.iter().map(|d| d.position.as_vec3()).collect(),
         normals: discs.iter().map(|d| d.normal.as_vec3()).collect(),
         radii: discs.iter().map(|d| d.radius as f32).collect(),
+        ellipses: discs.iter().any(|d| d.aspect < 1.0).then(|| {
+            let shape = |d: &Surfel| Ellipse { major: d.major.as_vec3(), aspect: d.aspect as f32 };
+            discs.iter().map(shape).collect()
+        }),
+        two_sided: Some(discs.iter().map(|d| d.two_sided).collect()),
         colours: discs[0].colour.map(|_| {
             Colours::Linear(discs.iter().map(|d| d.colour.unwrap_or_default().as_vec3().to_array()).collect())
         }),

@@ -1,0 +1,138 @@
+//! Shapes and sides of discs: ellipses against circles, surfels without a back, what of both a scene keeps and refuses.
+
+mod support;
+
+use glam::{DVec3, Vec3};
+use std::sync::Arc;
+use support::gpu::{assert_silent, device, render};
+use support::sampling::{Random, bumpy_sphere, forget_sides, narrow, push, stretch};
+use surfel::geometry::{Camera, Ellipse, Surfels};
+use surfel::reference::{Expected, Tolerance};
+use surfel::settings::Cull;
+use surfel::vk::{Device, DeviceLimits};
+use surfel::{Error, Outputs, Picture, Rasterizer, RenderOptions, Renderer, Scene, Settings};
+
+const SIZE: [u32; 2] = [256, 192];
+const BOTH: [Rasterizer; 2] = [Rasterizer::Draw, Rasterizer::Compute];
+
+/// Looks at the origin.
+fn camera(eye: DVec3) -> Camera {
+    Camera::look_at(eye, DVec3::ZERO, DVec3::Y, 45f64.to_radians(), 256.0 / 192.0, 1e-3).unwrap()
+}
+
+fn options(rasterizer: Rasterizer) -> RenderOptions {
+    let outputs = Outputs { normal: true, depth: true };
+    RenderOptions { size: SIZE, outputs, count: true, rasterizer: Some(rasterizer), ..Default::default() }
+}
+
+fn picture(device: &Arc<Device>, surfels: &Surfels, rasterizer: Rasterizer) -> Picture {
+    let eye = DVec3::new(1.8, 1.2, 2.6);
+    render(device, surfels, &camera(eye), &Settings::default(), options(rasterizer))
+}
+
+#[test]
+fn ellipses_of_aspect_1_are_circles() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let circles = bumpy_sphere(6000, &mut Random(1));
+    let mut round = circles.clone();
+    narrow(&mut round, &mut Random(2));
+    round.ellipses.iter_mut().flatten().for_each(|ellipse| ellipse.aspect = 1.0);
+    let view = camera(DVec3::new(1.8, 1.2, 2.6));
+    let expected = Expected::new(&circles, &view, SIZE, &Settings::default(), &Tolerance::default()).unwrap();
+    for rasterizer in BOTH {
+        let verdict = expected.compare(&picture(&device, &round, rasterizer)).unwrap();
+        assert!(verdict.passed(), "{rasterizer:?}: {:?}", verdict.failures.first());
+    }
+    assert_silent(&device);
+}
+
+/// A wall whose left half, as seen from +z, is two-sided.
+fn wall() -> Surfels {
+    let mut surfels = Surfels::default();
+    for i in 0..40 * 40 {
+        let [x, y] = [i % 40, i / 40].map(|v| 0.1 * (f64::from(v) - 19.5));
+        push(&mut surfels, DVec3::new(x, y, 0.0), DVec3::Z, 0.1);
+    }
+    surfels.two_sided = Some(surfels.positions.iter().map(|p| p.x < 0.0).collect());
+    surfels
+}
+
+#[test]
+fn two_sided_surfels_have_no_back() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let scene = Scene::upload(&device, &wall()).unwrap();
+    let settings = Settings { cull: Cull::Back, ..Default::default() };
+    for rasterizer in BOTH {
+        let mut renderer = Renderer::new(&device, options(rasterizer)).unwrap();
+        let mut seen = |z: f64| {
+            let (picture, report) =
+                renderer.render_picture(&scene, &camera(DVec3::Z * z), &settings).unwrap();
+            let covered = |x: usize| picture.colour[96 * 256 + x][3] > 0.0;
+            ([64, 192].map(covered), report.counts.unwrap().back)
+        };
+        assert_eq!(seen(3.0), ([true, true], 0), "{rasterizer:?}, from the front");
+        // From behind, the left half is on the right.
+        assert_eq!(seen(-3.0), ([false, true], 800), "{rasterizer:?}, from behind");
+    }
+    assert_silent(&device);
+}
+
+#[test]
+fn shapes_and_sides_reach_every_window() {
+    let limits = DeviceLimits { max_storage_buffer_range: Some(1 << 20), ..Default::default() };
+    let (Some(device), Some(narrow)) = (device(DeviceLimits::default()), device(limits)) else { return };
+    let mut surfels = bumpy_sphere(40_000, &mut Random(3));
+    stretch(&mut surfels, &mut Random(4));
+    forget_sides(&mut surfels, 0.5, &mut Random(5));
+    assert!(Scene::upload(&narrow, &surfels).unwrap().windows().len() > 2, "one window would prove nothing");
+    let [whole, parts] = [&device, &narrow].map(|device| picture(device, &surfels, Rasterizer::Draw));
+    let channels = |picture: &Picture| picture.colour.iter().flatten().copied().collect::<Vec<_>>();
+    let pairs = channels(&whole).into_iter().zip(channels(&parts));
+    assert!(pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f32::max) < 1e-5);
+    assert_silent(&narrow);
+}
+
+#[test]
+fn a_scene_keeps_shapes_only_if_it_has_them_and_sides_cost_nothing() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let circles = bumpy_sphere(1000, &mut Random(6));
+    let mut ellipses = circles.clone();
+    narrow(&mut ellipses, &mut Random(6));
+    let mut sides = circles.clone();
+    forget_sides(&mut sides, 0.5, &mut Random(6));
+    let bytes = |surfels: &Surfels| Scene::upload(&device, surfels).unwrap().bytes();
+    assert_eq!(bytes(&ellipses), bytes(&circles) + 16 * 1000);
+    assert_eq!(bytes(&sides), bytes(&circles));
+}
+
+#[test]
+fn arrays_of_other_lengths_are_refused() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let refused = |surfels: &Surfels| matches!(Scene::upload(&device, surfels), Err(Error::Usage(_)));
+    let surfels = wall();
+    assert!(!refused(&surfels));
+    assert!(refused(&Surfels { two_sided: Some(vec![true; 1599]), ..surfels.clone() }));
+    let ellipses = vec![Ellipse::circle(Vec3::Z); 1601];
+    assert!(refused(&Surfels { ellipses: Some(ellipses), ..surfels }));
+}
+
+#[test]
+fn shapes_that_are_none_are_culled() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let mut surfels = wall();
+    let mut ellipses = vec![Ellipse::circle(Vec3::Z); surfels.len()];
+    ellipses[0].major = Vec3::NAN;
+    ellipses[1].major = Vec3::new(f32::INFINITY, 0.0, 0.0);
+    ellipses[2].aspect = f32::NAN;
+    ellipses[3].aspect = f32::INFINITY;
+    surfels.ellipses = Some(ellipses);
+    let scene = Scene::upload(&device, &surfels).unwrap();
+    for rasterizer in BOTH {
+        let mut renderer = Renderer::new(&device, options(rasterizer)).unwrap();
+        let (picture, report) =
+            renderer.render_picture(&scene, &camera(DVec3::Z * 9.0), &Settings::default()).unwrap();
+        assert_eq!(report.counts.unwrap().drawn, 1596, "{rasterizer:?}");
+        assert!(picture.colour.iter().flatten().all(|c| c.is_finite()), "{rasterizer:?}");
+    }
+    assert_silent(&device);
+}
