@@ -11,7 +11,9 @@ use rayon::prelude::*;
 pub(super) fn remove(surfels: &mut Surfels, deviations: f32, how: &Estimate) -> Result<u64, String> {
     let sites = Sites::new(&surfels.positions)?;
     let mean_distance = |site: u32| {
-        let distances = sites.nearest(site, how.neighbours).map(|other| f64::from(sites.at(site).distance(sites.at(other))));
+        let distances = sites
+            .nearest(site, how.neighbours)
+            .map(|other| f64::from(sites.at(site).distance(sites.at(other))));
         let (sum, count) = distances.fold((0.0, 0u32), |(sum, count), distance| (sum + distance, count + 1));
         sum / f64::from(count.max(1))
     };
