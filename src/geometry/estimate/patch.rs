@@ -13,6 +13,8 @@ pub(super) struct Patch {
     pub normal: Vec3,
     /// How far a disc must reach to cover what is nearest to the site; 0 if it has no neighbours. Of an ellipse, its longer semi-axis.
     pub reach: f32,
+    /// From 0, the neighbours do not lie in a plane, to 1, they do.
+    pub flatness: f32,
     /// The ellipse that covers it.
     pub ellipse: Option<Ellipse>,
 }
@@ -34,6 +36,14 @@ pub(super) struct Surveyor<'a> {
 const WIDER: usize = 4;
 /// Neighbours whose extents across and along are less than this far apart, 1-σ, lie in a line.
 const LINE: f64 = 0.1;
+/// A site on a surface has about this many neighbours around it.
+const AROUND: usize = 6;
+/// Of these neighbours' distance, a disc reaches at most so many times as far: where they do not lie in a plane, and where they do.
+const WIDEST: [f64; 2] = [1.0, 8.0];
+/// Neighbours lie in a plane if their extent across it is less than this part of the lesser extent along it, 1-σ; and they do not if it is
+/// more than [`THICK`] of it.
+const THIN: f64 = 0.2;
+const THICK: f64 = 0.4;
 /// Least shorter axis of an ellipse by its longer.
 const LEAST_ASPECT: f64 = 0.125;
 
@@ -42,7 +52,8 @@ struct Plane {
     normal: DVec3,
     /// The other eigenvectors, the longer extent last.
     tangents: [DVec3; 2],
-    is_line: bool,
+    /// Extents along normal and tangents, 1-σ.
+    extents: DVec3,
 }
 
 impl<'a> Surveyor<'a> {
@@ -64,25 +75,39 @@ impl<'a> Surveyor<'a> {
         for (i, edge) in edges.iter_mut().enumerate() {
             *edge = self.near.get(i).copied().unwrap_or(site);
         }
-        if plane.is_line || self.cell.is_open(&self.flat) {
+        if plane.is_line() || self.cell.is_open(&self.flat) {
             let wider = self.look(site, WIDER * self.neighbours);
-            // At an edge of the surface the nearer neighbours know its direction better.
-            if plane.is_line || !self.cell.is_open(&self.flat) {
+            if plane.is_line() || !self.cell.is_open(&self.flat) {
                 plane = wider;
+            } else {
+                // An edge of the surface: the nearer neighbours know better, and do not bridge its bays.
+                plane = self.look(site, self.neighbours);
             }
         }
-        let reach = self.cell.reach(&self.flat);
-        let mut patch = Patch { normal: plane.normal.as_vec3(), reach: reach as f32, ellipse: None };
+        let mut patch = Patch {
+            normal: plane.normal.as_vec3(),
+            reach: self.cell.reach(&self.flat) as f32,
+            flatness: plane.flatness() as f32,
+            ellipse: None,
+        };
         if self.elliptical {
             self.stretch(&plane, &mut patch);
         }
-        if patch.reach == 0.0 {
-            // On a line, or with a single neighbour: half-way to the second.
-            let second = self.near.get(1).or(self.near.first());
-            patch.reach =
-                second.map_or(0.0, |&other| 0.5 * self.sites.at(site).distance(self.sites.at(other)));
-        }
+        self.limit(&mut patch);
         patch
+    }
+
+    /// Keeps a disc from covering what is no surface: gaps that are wide for how near the nearest neighbours are, the more so where these
+    /// do not lie in a plane.
+    fn limit(&self, patch: &mut Patch) {
+        let distance =
+            |i: usize| self.offsets.get(i).or(self.offsets.last()).map_or(0.0, |offset| offset.length());
+        let most = distance(AROUND - 1) * (WIDEST[0] + f64::from(patch.flatness) * (WIDEST[1] - WIDEST[0]));
+        patch.reach = match patch.reach {
+            // On a line, or with a single neighbour: half-way to the second.
+            0.0 => 0.5 * distance(1) as f32,
+            reach => reach.min(most as f32),
+        };
     }
 
     /// Looks at the `count` nearest sites: their plane, and the cell among them in it.
@@ -132,6 +157,17 @@ impl Plane {
         let outer = |d: DVec3| DMat3::from_cols(d * d.x, d * d.y, d * d.z);
         let covariance = neighbours.iter().fold(outer(mean), |sum, &d| sum + outer(d - mean));
         let (values, [normal, a, b]) = eigen::symmetric(covariance);
-        Self { normal, tangents: [a, b], is_line: values[1] <= LINE * LINE * values[2] }
+        Self { normal, tangents: [a, b], extents: values.max(DVec3::ZERO).map(f64::sqrt) }
+    }
+
+    /// Whether the neighbours lie in a line.
+    fn is_line(&self) -> bool {
+        self.extents.y <= LINE * self.extents.z
+    }
+
+    /// From 0, the neighbours do not lie in a plane, to 1, they do.
+    fn flatness(&self) -> f64 {
+        let thickness = if self.extents.y > 0.0 { self.extents.x / self.extents.y } else { 1.0 };
+        ((THICK - thickness) / (THICK - THIN)).clamp(0.0, 1.0)
     }
 }
