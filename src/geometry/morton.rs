@@ -43,6 +43,7 @@ fn spread(x: u64) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Ellipse;
 
     #[test]
     fn spread_moves_every_bit_to_its_triple() {
@@ -60,11 +61,16 @@ mod tests {
         let mut surfels = Surfels {
             radii: corners.iter().map(|p| p.x + 2.0 * p.y + 4.0 * p.z).collect(),
             normals: corners.clone(),
+            ellipses: Some(corners.iter().map(|p| Ellipse { major: *p, aspect: 1.0 }).collect()),
+            two_sided: Some(corners.iter().map(|p| p.x > 0.0).collect()),
             positions: corners,
             ..Default::default()
         };
         surfels.sort_morton();
         assert_eq!(surfels.radii, (0..8).map(|i| i as f32).collect::<Vec<_>>());
         assert_eq!(surfels.normals, surfels.positions);
+        let majors: Vec<Vec3> = surfels.ellipses.iter().flatten().map(|ellipse| ellipse.major).collect();
+        assert_eq!(majors, surfels.positions);
+        assert_eq!(surfels.two_sided, Some(vec![false, true, false, true, false, true, false, true]));
     }
 }

@@ -79,8 +79,8 @@ impl Surfels {
         gather(&mut self.positions, order);
         gather(&mut self.normals, order);
         gather(&mut self.radii, order);
-        self.ellipses.as_mut().map(|ellipses| gather(ellipses, order));
-        self.two_sided.as_mut().map(|two_sided| gather(two_sided, order));
+        self.ellipses.iter_mut().for_each(|ellipses| gather(ellipses, order));
+        self.two_sided.iter_mut().for_each(|two_sided| gather(two_sided, order));
         match &mut self.colours {
             Some(Colours::Srgb8(colours)) => gather(colours, order),
             Some(Colours::Linear(colours)) => gather(colours, order),
