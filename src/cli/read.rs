@@ -1,9 +1,5 @@
 //! Reading a file with a number a point.
 
-use ply_rs::parser::Parser;
-use ply_rs::ply::{DefaultElement, Property};
-use std::fs::File;
-use std::io::BufReader;
 use std::path::Path;
 use surfel::io::ply::{self, Loaded};
 use surfel::{Error, Progress, Result};
@@ -15,21 +11,17 @@ pub fn read(path: &Path, scalar: Option<&str>, _progress: &dyn Progress) -> Resu
     Ok(loaded)
 }
 
-/// A property of the vertices whose x, y and z are finite.
+/// A property of the vertices of an ASCII file, of those whose x, y and z are finite.
 fn column(path: &Path, name: &str) -> Result<Vec<f32>> {
-    let mut file = BufReader::new(File::open(path).map_err(Error::io(path, "cannot open"))?);
-    let ply = Parser::<DefaultElement>::new().read_ply(&mut file).map_err(Error::io(path, "cannot read"))?;
-    let number = |vertex: &DefaultElement, name: &str| match vertex.get(name) {
-        Some(Property::Float(value)) => Some(*value),
-        Some(Property::Double(value)) => Some(*value as f32),
-        Some(Property::UChar(value)) => Some(f32::from(*value)),
-        Some(Property::UShort(value)) => Some(f32::from(*value)),
-        _ => None,
+    let text = std::fs::read_to_string(path).map_err(Error::io(path, "cannot read"))?;
+    let (header, body) = text.split_once("end_header\n").unwrap_or_default();
+    let names = header.lines().filter(|line| line.starts_with("property"));
+    let names: Vec<_> = names.filter_map(|line| line.split(' ').next_back()).collect();
+    let Some(wanted) = names.iter().position(|property| *property == name) else {
+        let cause = format!("its vertices have no property `{name}`: choose among {}", names.join(" "));
+        return Err(Error::input(path.display().to_string(), cause));
     };
-    let vertices = ply.payload.get("vertex").into_iter().flatten();
-    let whole =
-        vertices.filter(|v| ["x", "y", "z"].iter().all(|axis| number(v, axis).is_some_and(f32::is_finite)));
-    let missing =
-        || Error::input(path.display().to_string(), format!("its vertices have no property `{name}`"));
-    whole.map(|vertex| number(vertex, name).ok_or_else(missing)).collect()
+    let number = |text: &str| text.parse().unwrap_or(f32::NAN);
+    let rows = body.lines().map(|line| line.split_whitespace().map(number).collect::<Vec<f32>>());
+    Ok(rows.filter(|row| row[..3].iter().all(|x| x.is_finite())).map(|row| row[wanted]).collect())
 }

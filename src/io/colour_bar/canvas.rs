@@ -13,7 +13,17 @@ pub(super) struct Rectangle {
     pub height: u32,
 }
 
-/// A size of letters.
+impl Rectangle {
+    /// The four sides, 1 px thick, inside it; no corner twice.
+    pub fn edges(self) -> [Self; 4] {
+        let Self { x, y, width, height } = self;
+        let (level, upright) =
+            (Self { height: 1, ..self }, Self { y: y + 1, width: 1, height: height - 2, x });
+        [level, Self { y: y + height - 1, ..level }, upright, Self { x: x + width - 1, ..upright }]
+    }
+}
+
+/// A size of letters. They are bold: thin dark ones fade when they are blended in linear light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Font {
     raster: RasterHeight,
@@ -38,7 +48,7 @@ impl Font {
 
     /// Width of a letter, px.
     pub fn advance(self) -> u32 {
-        get_raster_width(FontWeight::Regular, self.raster) as u32 * self.zoom
+        get_raster_width(FontWeight::Bold, self.raster) as u32 * self.zoom
     }
 
     /// Width of `text`, px.
@@ -47,7 +57,7 @@ impl Font {
     }
 
     fn glyph(self, letter: char) -> Option<RasterizedChar> {
-        let raster = |letter| get_raster(letter, FontWeight::Regular, self.raster);
+        let raster = |letter| get_raster(letter, FontWeight::Bold, self.raster);
         raster(letter).or_else(|| raster('\u{fffd}')).or_else(|| raster('?'))
     }
 }

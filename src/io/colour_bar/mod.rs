@@ -24,11 +24,20 @@ const LEAST_SIZE: [u32; 2] = [160, 128];
 const LINES: u32 = 45;
 /// Height of the bar, of the picture's.
 const HEIGHT: f64 = 0.6;
-/// How much of the picture its panel hides, in linear light.
-const OPACITY: f64 = 0.85;
-/// Panel and ink: on a light picture, and on a dark one.
-const LIGHT: [[u8; 3]; 2] = [[255; 3], [16; 3]];
-const DARK: [[u8; 3]; 2] = [[16; 3], [240; 3]];
+/// On a light picture. In linear light little white is enough to read dark letters on.
+const LIGHT: Theme = Theme { panel: [255; 3], ink: [16; 3], opacity: 0.65 };
+/// On a dark picture.
+const DARK: Theme = Theme { panel: [16; 3], ink: [240; 3], opacity: 0.8 };
+/// How much of the picture the panel's edge hides.
+const EDGE: f64 = 0.4;
+
+/// Colours, sRGB-encoded.
+struct Theme {
+    panel: [u8; 3],
+    ink: [u8; 3],
+    /// How much of the picture the panel hides, in linear light.
+    opacity: f64,
+}
 
 /// Where everything is, px.
 struct Layout {
@@ -64,8 +73,10 @@ impl ColourBar {
         let ticks = ticks(&self.scale.range, 1.1 * f64::from(font.height()) / f64::from(height));
         let name = self.title(font, picture.size[0] / 2);
         let layout = Layout::of(picture.size, font, height, &name, &ticks);
-        let [panel, ink] = if picture.lightness(layout.panel) > 0.2 { LIGHT } else { DARK };
-        picture.fill(layout.panel, panel, OPACITY);
+        let Theme { panel, ink, opacity } = if picture.lightness(layout.panel) > 0.2 { LIGHT } else { DARK };
+        picture.fill(layout.panel, panel, opacity);
+        // Without an edge, a panel of the background's colour looks like the end of the object.
+        layout.panel.edges().into_iter().for_each(|edge| picture.fill(edge, ink, EDGE));
         picture.text(layout.title, &name, font, ink);
         self.draw_bar(picture, layout.bar, ink);
         ticks.iter().for_each(|tick| layout.draw_tick(picture, tick, ink));
