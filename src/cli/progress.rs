@@ -89,9 +89,10 @@ impl Progress for Bars {
         match &mut *stage {
             Some(stage) if stage.name == name => {
                 if now.as_micros() as u64 >= self.next.load(Relaxed) {
-                    let bar = stage.bar.get_or_insert_with(|| bar(name));
-                    bar.set_length(total);
-                    bar.set_position(done);
+                    stage.bar.get_or_insert_with(|| bar(name)).update(|state| {
+                        state.set_len(total);
+                        state.set_pos(done);
+                    });
                     self.wait(now, PERIOD);
                 }
             }
