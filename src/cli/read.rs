@@ -1,7 +1,7 @@
-//! Reading a file with a number a point.
+//! Reading files.
 
 use std::path::Path;
-use surfel::io::ply::{self, Loaded};
+use surfel::io::ply::{self, Inspected, Loaded};
 use surfel::{Error, Progress, Result};
 
 /// Reads a PLY file; `scalar` names the vertex property that becomes the cloud's scalar.
@@ -9,6 +9,11 @@ pub fn read(path: &Path, scalar: Option<&str>, _progress: &dyn Progress) -> Resu
     let mut loaded = ply::read(path)?;
     loaded.cloud.scalar = scalar.map(|name| column(path, name)).transpose()?;
     Ok(loaded)
+}
+
+/// Looks at a PLY file whose points may be unusable.
+pub fn inspect(path: &Path, _progress: &dyn Progress) -> Result<Inspected> {
+    ply::inspect(path)
 }
 
 /// A property of the vertices of an ASCII file, of those whose x, y and z are finite.
