@@ -50,7 +50,7 @@ impl View {
 
     /// The verdict on a picture of other surfels or with other settings.
     fn mutated(&self, surfels: &Surfels, settings: &Settings) -> Comparison {
-        self.judge(&render(surfels, &self.camera, self.case.size, settings).unwrap().to_picture())
+        self.judge(&render(surfels, &self.camera, self.case.size, settings, &()).unwrap().to_picture())
     }
 
     fn own(&self) -> Picture {

@@ -45,7 +45,12 @@ pub fn make(
         Some(eye) => eye,
         None => framed_eye(bounds, fov, aspect)?,
     };
-    look_at(eye, args.target.unwrap_or(bounds.centre()), args.up.unwrap_or(DVec3::Y), fov)
+    look_at(eye, args.target.unwrap_or(bounds.centre()), up(args, None), fov)
+}
+
+/// What is up in the picture, as far as the arguments say; not of unit length.
+pub fn up(args: &args::Camera, file: Option<(&Path, File)>) -> DVec3 {
+    file.map(|(_, file)| file.up.into()).or(args.up).unwrap_or(DVec3::Y)
 }
 
 /// Where a camera stands that shows the whole of `bounds`.

@@ -34,6 +34,12 @@ pub fn print(text: &str) -> Result<()> {
     done.map_err(Error::io(Path::new("-"), "cannot write to standard output"))
 }
 
+/// Whether both name one file; standard output is none.
+pub fn is_same(a: &OsString, b: &OsString) -> bool {
+    let real = |name: &OsString| std::fs::canonicalize(name).ok();
+    a == b || (a != "-" && real(a).is_some_and(|path| real(b) == Some(path)))
+}
+
 /// Where compiled pipelines are kept; `None` where the user has no home.
 pub fn cache_folder() -> Option<PathBuf> {
     // The XDG specification has relative paths ignored.

@@ -1,28 +1,32 @@
 //! `surfel info`.
 
+use super::args::Info;
 use super::files::print;
 use super::inputs::scene;
-use std::ffi::OsString;
+use super::{progress, read};
 use std::fmt::Write;
 use std::path::Path;
-use surfel::geometry::estimate::Estimate;
-use surfel::geometry::{Colours, Surfels};
-use surfel::io::ply::{self, Element, Format, Loaded, Report};
+use surfel::geometry::estimate::Estimated;
+use surfel::geometry::{Cloud, Colours, Surfels};
+use surfel::io::ply::{Element, Format, Inspected, Loaded, Report};
 use surfel::{Error, Result, scenes};
 
 /// Says what is in a file or scene. Of a file whose points cannot be drawn it tells what there is, and the error why.
-pub fn run(input: &OsString) -> Result<()> {
-    if let Some(name) = scene(input) {
+pub fn run(args: &Info) -> Result<()> {
+    if let Some(name) = scene(&args.input) {
         let surfels = scenes::open(name)?;
         return print(&format!("{name}: built-in scene\n{}", describe(&surfels, surfels.len() as u64)));
     }
-    let path = Path::new(input);
-    let ply::Inspected { format, elements, loaded } = ply::inspect(path)?;
+    let path = Path::new(&args.input);
+    let bars = progress::bars(false);
+    let Inspected { format, elements, loaded } = read::inspect(path, &*bars)?;
     print(&header(path, format, &elements))?;
     let Loaded { cloud, report } = loaded?;
-    let surfels = cloud.into_surfels(&Estimate::default(), &());
-    let (surfels, _) = surfels.map_err(|cause| Error::input(path.display().to_string(), cause))?;
-    print(&(properties(&report) + &describe(&surfels, report.points) + &dropped(&report)))
+    print(&(properties(&report) + &frame(&cloud)))?;
+    let surfels = cloud.into_surfels(&args.points.estimate(), &*bars);
+    let (surfels, estimated) = surfels.map_err(|cause| Error::input(path.display().to_string(), cause))?;
+    drop(bars);
+    print(&(describe(&surfels, report.points) + &sources(&estimated) + &dropped(&report, &estimated)))
 }
 
 /// What a file declares.
@@ -71,6 +75,42 @@ fn describe(surfels: &Surfels, points: u64) -> String {
     text
 }
 
-fn dropped(report: &Report) -> String {
-    format!("left out: {} without a finite position\n", report.dropped.position)
+/// What positions are relative to, and how the points are connected.
+fn frame(cloud: &Cloud) -> String {
+    let mut text = String::new();
+    if cloud.origin != glam::DVec3::ZERO {
+        let _ = writeln!(text, "origin: {}", cloud.origin);
+    }
+    if !cloud.triangles.is_empty() {
+        let _ = writeln!(text, "triangles: {}", cloud.triangles.len());
+    }
+    text
+}
+
+/// Where normals and radii came from.
+fn sources(estimated: &Estimated) -> String {
+    let list = |counts: [(u64, &str); 4]| {
+        let some = counts.iter().filter(|(count, _)| *count > 0);
+        some.map(|(count, what)| format!("{count} {what}")).collect::<Vec<_>>().join(", ")
+    };
+    let normals = list([
+        (estimated.normals_given, "given"),
+        (estimated.normals_from_faces, "from faces"),
+        (estimated.normals_from_neighbours, "from neighbours"),
+        (estimated.two_sided, "two-sided"),
+    ]);
+    let radii = list([
+        (estimated.radii_given, "given"),
+        (estimated.radii_from_faces, "from faces"),
+        (estimated.radii_from_neighbours, "from neighbours"),
+        (0, ""),
+    ]);
+    format!("normals: {normals}\nradii: {radii}\n")
+}
+
+fn dropped(report: &Report, estimated: &Estimated) -> String {
+    format!(
+        "left out: {} without a finite position, {} outliers\n",
+        report.dropped.position, estimated.outliers
+    )
 }

@@ -1,11 +1,30 @@
 //! Inputs to surfels.
 
+use super::colouring::{Coloured, Colouring};
+use super::progress::say;
+use super::{read, summary};
 use std::ffi::OsString;
 use std::path::Path;
-use surfel::geometry::Surfels;
-use surfel::geometry::estimate::Estimate;
-use surfel::io::ply::{self, Dropped};
-use surfel::{Error, Result, scenes};
+use surfel::geometry::estimate::{Estimate, Estimated};
+use surfel::geometry::{Cloud, Surfels};
+use surfel::io::ply::{Dropped, Loaded};
+use surfel::{Error, Progress, Result, Settings, scenes};
+
+/// What is wanted of which inputs.
+pub struct Wanted<'a> {
+    /// Files and scenes.
+    pub names: &'a [OsString],
+    /// How what they lack is estimated.
+    pub estimate: Estimate,
+    /// The side of the voxels that keep one point each.
+    pub voxel: Option<f64>,
+    /// What the points are coloured by, if not by their own colours.
+    pub colouring: Option<Colouring>,
+    /// Whether nothing is said.
+    pub quiet: bool,
+    /// Is told how far it has come.
+    pub progress: &'a dyn Progress,
+}
 
 /// What the inputs together hold.
 pub struct Inputs {
@@ -15,40 +34,109 @@ pub struct Inputs {
     pub read: u64,
     /// Points that are no surfels.
     pub dropped: Dropped,
+    /// Where normals and radii came from.
+    pub estimated: Estimated,
+    /// What the points were coloured by, if not by their own colours.
+    pub coloured: Option<Coloured>,
 }
 
-/// Reads every input; several become one set of surfels. `albedo` is the colour of those without one beside others that have one.
-pub fn load(names: &[OsString], albedo: [f32; 3]) -> Result<Inputs> {
+/// An input as it was read.
+enum Part {
+    File { name: String, cloud: Cloud },
+    Scene(Surfels),
+}
+
+/// Reads every input; several become one set of surfels.
+pub fn load(wanted: &Wanted<'_>) -> Result<Inputs> {
     let (mut parts, mut read, mut dropped) = (Vec::new(), 0, Dropped::default());
-    for name in names {
-        let (surfels, points, lost) = load_one(name)?;
-        parts.push(surfels);
+    for name in wanted.names {
+        let (part, points, lost) = load_one(name, wanted)?;
+        parts.push(part);
         read += points;
         dropped.position += lost.position;
     }
-    let mut surfels = Surfels::merge(parts, albedo)?;
-    // One input is sorted already.
-    if names.len() > 1 {
-        surfels.sort_morton();
+    let by_property = wanted.colouring.as_ref().filter(|colouring| colouring.property().is_some());
+    let coloured = by_property.map(|colouring| colour(colouring, &mut parts, wanted.quiet));
+    let (surfels, estimated) = merge(parts, wanted)?;
+    let mut inputs = Inputs { surfels, read, dropped, estimated, coloured };
+    if let (Some(colouring), None) = (&wanted.colouring, &inputs.coloured) {
+        inputs.coloured = colouring.colour_surfels(&mut inputs.surfels, wanted.quiet);
     }
-    Ok(Inputs { surfels, read, dropped })
+    Ok(inputs)
 }
 
-/// The surfels of an input, its number of points, and how many of them were dropped.
-fn load_one(name: &OsString) -> Result<(Surfels, u64, Dropped)> {
+/// What is in an input, its number of points, and how many of them were dropped.
+fn load_one(name: &OsString, wanted: &Wanted<'_>) -> Result<(Part, u64, Dropped)> {
+    let property = wanted.colouring.as_ref().and_then(Colouring::property);
     if let Some(scene) = scene(name) {
         let surfels = scenes::open(scene)?;
         let count = surfels.len() as u64;
-        return Ok((surfels, count, Dropped::default()));
+        return match property {
+            Some(property) => Err(Error::Usage(format!(
+                "{scene}: its points have no property `{property}`: colour by x, y, z, height, normal or radius"
+            ))),
+            None => Ok((Part::Scene(surfels), count, Dropped::default())),
+        };
     }
-    let ply::Loaded { cloud, report } = ply::read(Path::new(name))?;
-    let input = Path::new(name).display();
+    let Loaded { cloud, report } = read::read(Path::new(name), property, wanted.progress)?;
+    let name = Path::new(name).display().to_string();
     if report.dropped.total() > 0 {
-        log::warn!("{input}: {} of {} points have no finite position", report.dropped.total(), report.points);
+        log::warn!("{name}: {} of {} points have no finite position", report.dropped.total(), report.points);
     }
-    let surfels = cloud.into_surfels(&Estimate::default(), &());
-    let (surfels, _) = surfels.map_err(|cause| Error::input(input.to_string(), cause))?;
-    Ok((surfels, report.points, report.dropped))
+    let cloud = match wanted.voxel {
+        Some(voxel) => thin(&name, cloud, voxel, wanted.quiet)?,
+        None => cloud,
+    };
+    Ok((Part::File { name, cloud }, report.points, report.dropped))
+}
+
+fn thin(name: &str, cloud: Cloud, voxel: f64, quiet: bool) -> Result<Cloud> {
+    let before = cloud.len();
+    let thinned = cloud.thin(voxel).map_err(|cause| Error::input(name, cause))?;
+    if !quiet {
+        say(&format!("{name}: {before} points thinned to {}", thinned.len()));
+    }
+    Ok(thinned)
+}
+
+fn colour(colouring: &Colouring, parts: &mut [Part], quiet: bool) -> Coloured {
+    let cloud = |part| match part {
+        &mut Part::File { ref mut cloud, .. } => Some(cloud),
+        Part::Scene(_) => None,
+    };
+    colouring.colour_clouds(&mut parts.iter_mut().filter_map(cloud).collect::<Vec<_>>(), quiet)
+}
+
+/// One set of surfels of all parts, each of which is estimated by itself.
+fn merge(parts: Vec<Part>, wanted: &Wanted<'_>) -> Result<(Surfels, Estimated)> {
+    let several = parts.len() > 1;
+    let (mut all, mut total) = (Vec::new(), Estimated::default());
+    for part in parts {
+        let (surfels, estimated) = match part {
+            Part::Scene(surfels) => {
+                let count = surfels.len() as u64;
+                (surfels, Estimated { normals_given: count, radii_given: count, ..Default::default() })
+            }
+            Part::File { name, cloud } => estimate(&name, cloud, wanted)?,
+        };
+        all.push(surfels);
+        total = summary::sum(total, estimated);
+    }
+    let mut surfels = Surfels::merge(all, Settings::default().lighting.albedo)?;
+    // One input is sorted already.
+    if several {
+        surfels.sort_morton();
+    }
+    Ok((surfels, total))
+}
+
+fn estimate(name: &str, cloud: Cloud, wanted: &Wanted<'_>) -> Result<(Surfels, Estimated)> {
+    let made = cloud.into_surfels(&wanted.estimate, wanted.progress);
+    let (surfels, estimated) = made.map_err(|cause| Error::input(name, cause))?;
+    if let (false, Some(text)) = (wanted.quiet, summary::estimated(&estimated)) {
+        say(&format!("{name}: {text}"));
+    }
+    Ok((surfels, estimated))
 }
 
 /// The scene that an input names; `None` if it is a file.

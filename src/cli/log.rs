@@ -1,6 +1,7 @@
 //! Logging to standard error, in the form of the program's other messages.
 
-use env_logger::Builder;
+use super::progress;
+use env_logger::{Builder, Target};
 use log::LevelFilter;
 use std::io::Write;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -16,6 +17,7 @@ pub fn start() {
         .filter_level(LevelFilter::Warn)
         .filter_module(VALIDATION, LevelFilter::Error)
         .parse_default_env()
+        .target(Target::Pipe(Box::new(progress::Log)))
         .format(|out, record| {
             if record.target() == VALIDATION && record.level() == log::Level::Error {
                 MESSAGES.fetch_add(1, Ordering::Relaxed);

@@ -2,15 +2,20 @@
 
 mod args;
 mod camera;
+mod colouring;
+mod convert;
 mod devices;
 mod exit;
 mod files;
 mod info;
 mod inputs;
 mod log;
+mod progress;
+mod read;
 mod reference;
 mod render;
 mod report;
+mod summary;
 mod times;
 mod values;
 mod vulkan;
@@ -28,7 +33,8 @@ pub fn run() -> ExitCode {
     };
     let done = match parsed.command {
         Command::Render(args) => render::run(&args),
-        Command::Info { input } => info::run(&input),
+        Command::Info(args) => info::run(&args),
+        Command::Convert(args) => convert::run(&args),
         Command::Devices => devices::run(),
     };
     // By now the device is gone, and with it what the layers had to say about its end.

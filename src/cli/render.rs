@@ -1,15 +1,17 @@
 //! `surfel render`.
 
 use super::args::Render;
-use super::inputs::Inputs;
+use super::colouring::{Coloured, Colouring};
+use super::inputs::{Inputs, Wanted};
 use super::report::{Gpu, HalfError, Report};
 use super::times::Times;
-use super::{camera, files, inputs, reference, vulkan};
-use std::ffi::OsString;
+use super::{camera, files, inputs, progress, reference, vulkan};
 use std::path::Path;
 use surfel::geometry::{Camera, Surfels};
-use surfel::io::image::{Output, write};
-use surfel::{Error, Picture, Result, Settings, SplatCounts};
+use surfel::io::colour_bar::ColourBar;
+use surfel::io::image::{Encoded, Output, write};
+use surfel::settings::Shading;
+use surfel::{Error, Picture, Progress, Result, Settings, SplatCounts};
 
 /// What is to be rendered, wherever that happens.
 pub struct Task<'a> {
@@ -23,6 +25,8 @@ pub struct Task<'a> {
     pub size: [u32; 2],
     /// How many times; at least once.
     pub frames: u32,
+    /// Is told how far it has come.
+    pub progress: &'a dyn Progress,
 }
 
 /// What came of it.
@@ -46,15 +50,27 @@ pub fn run(args: &Render) -> Result<()> {
     settings.check()?;
     let device = vulkan::options(&args.place)?;
     let file = camera::read(&args.camera)?;
-    let loaded = inputs::load(&args.inputs, settings.lighting.albedo)?;
+    let colouring = Colouring::new(&args.colours, camera::up(&args.camera, file))?;
+    check_colours(args, colouring.as_ref(), &out)?;
+    let bars = progress::bars(args.quiet);
+    let loaded = inputs::load(&Wanted {
+        names: &args.inputs,
+        estimate: args.points.estimate(),
+        voxel: None,
+        colouring,
+        quiet: args.quiet,
+        progress: &*bars,
+    })?;
     let bounds = loaded.surfels.bounds().ok_or_else(|| Error::Usage("the inputs hold no points".into()))?;
     let camera = camera::make(&args.camera, file, &bounds, args.size)?;
-    let task = Task { surfels: &loaded.surfels, camera, settings, size: args.size, frames: args.frames };
+    let (surfels, size, frames) = (&loaded.surfels, args.size, args.frames);
+    let task = Task { surfels, camera, settings, size, frames, progress: &*bars };
     let outcome = match args.place.reference {
         true => reference::render(&task)?,
         false => vulkan::render(&task, &device, args.place.half, args.json.is_some() || args.times)?,
     };
-    write(&outcome.picture, task.settings.shading, &out)?;
+    let bar = loaded.coloured.as_ref().filter(|_| args.color_bar).and_then(Coloured::bar);
+    save(&outcome.picture, task.settings.shading, bar.as_ref(), &out)?;
     if let Some(place) = &args.json {
         files::write_text(place, &Report::new(args, &loaded, &task, &outcome).to_json()?)?;
     }
@@ -62,22 +78,50 @@ pub fn run(args: &Render) -> Result<()> {
     Ok(())
 }
 
+/// Writes the picture, with a colour bar in it if there is one.
+fn save(picture: &Picture, shading: Shading, bar: Option<&ColourBar>, out: &Output) -> Result<()> {
+    let Some(bar) = bar else { return write(picture, shading, out) };
+    let mut encoded = Encoded::of(picture, shading)?;
+    bar.draw(&mut encoded)?;
+    encoded.write_png(out)
+}
+
+/// Refuses colours that would not be seen, and a bar where there is no place or nothing to tell.
+fn check_colours(args: &Render, colouring: Option<&Colouring>, out: &Output) -> Result<()> {
+    let Some(colouring) = colouring else { return Ok(()) };
+    let refuse = |text: &str| Err(Error::Usage(text.into()));
+    if matches!(args.look.settings().shading, Shading::Normal | Shading::Depth) {
+        return refuse("--color-by shows under --shading lit or color alone: choose one of them");
+    }
+    match args.color_bar {
+        false => Ok(()),
+        true if !out.is_png() => refuse("--color-bar is drawn into a PNG alone: name the picture .png"),
+        true if !colouring.has_values() => {
+            refuse("--color-bar has no values to tell of normals: leave it out")
+        }
+        true => ColourBar::check(args.size),
+    }
+}
+
 /// What the user, not a program, wants to know; on standard error, which leaves the other to the picture.
 fn tell(args: &Render, loaded: &Inputs, outcome: &Outcome) {
     if args.times {
         if let Some(Gpu { description, usage, .. }) = &outcome.gpu {
-            eprintln!("{} ({}), {} pipelines made", description.name, description.driver, usage.pipelines);
+            progress::say(&format!(
+                "{} ({}), {} pipelines made",
+                description.name, description.driver, usage.pipelines
+            ));
         }
-        eprint!("{}", outcome.times);
+        progress::say(outcome.times.to_string().trim_end());
     }
     if let Some(HalfError { largest, rms }) = outcome.gpu.as_ref().and_then(|gpu| gpu.half_error) {
-        eprintln!("16-bit sums: linear colour is off by {largest:.1e} at most, {rms:.1e} RMS");
+        progress::say(&format!("16-bit sums: linear colour is off by {largest:.1e} at most, {rms:.1e} RMS"));
     }
     if !args.quiet {
         let ([width, height], surfels) = (args.size, loaded.surfels.len());
         let drawn = outcome.counts.map(|counts| format!(", {} drawn", counts.drawn)).unwrap_or_default();
         let out = Path::new(&args.output).display();
-        eprintln!("{out}: {width}x{height}, {surfels} surfels{drawn}");
+        progress::say(&format!("{out}: {width}x{height}, {surfels} surfels{drawn}"));
     }
 }
 
@@ -86,16 +130,11 @@ fn check_outputs(args: &Render, out: &Output) -> Result<()> {
     out.check()?;
     let Some(json) = &args.json else { return Ok(()) };
     files::check(json)?;
-    match std::iter::once(&args.output).chain(&args.inputs).find(|other| is_same(other, json)) {
+    match std::iter::once(&args.output).chain(&args.inputs).find(|other| files::is_same(other, json)) {
         Some(other) => Err(Error::Usage(format!(
             "--json would overwrite {}, which is another file of this command: name another",
             Path::new(other).display()
         ))),
         None => Ok(()),
     }
-}
-
-fn is_same(a: &OsString, b: &OsString) -> bool {
-    let real = |name: &OsString| std::fs::canonicalize(name).ok();
-    a == b || (a != "-" && real(a).is_some_and(|path| real(b) == Some(path)))
 }

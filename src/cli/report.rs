@@ -1,11 +1,13 @@
 //! What `--json` writes. Times are milliseconds, sizes bytes, colours linear.
 
 use super::args::Render;
+use super::colouring::Coloured;
 use super::inputs::Inputs;
 use super::render::{Outcome, Task};
 use super::times::Statistics;
 use serde_json::{Map, Value, json};
 use std::path::Path;
+use surfel::geometry::estimate::Estimated;
 use surfel::io::ply::Dropped;
 use surfel::settings::{Cull, DirectionalLight, Lighting, Shading};
 use surfel::targets::TargetInfo;
@@ -65,6 +67,8 @@ impl Report {
         put("settings", settings(&task.settings));
         put("camera", camera(task));
         put("counts", outcome.counts.map_or(Value::Null, |counts| tally(loaded, counts)));
+        put("estimated", estimated(&loaded.estimated));
+        put("color_by", loaded.coloured.as_ref().map_or(Value::Null, |coloured| color_by(args, coloured)));
         put("frame_ms", json!(outcome.times.frame()));
         put("passes", outcome.times.passes().map(pass).collect());
         let mut report = Self(report);
@@ -162,8 +166,31 @@ fn tally(loaded: &Inputs, counts: SplatCounts) -> Value {
     let SplatCounts { drawn, behind, eye_plane, back, outside } = counts;
     json!({
         "read": loaded.read,
-        "dropped": { "position": position },
+        "dropped": { "position": position, "outlier": loaded.estimated.outliers },
         "culled": { "behind": behind, "eye_plane": eye_plane, "back": back, "outside": outside },
         "drawn": drawn,
     })
+}
+
+/// Where normals and radii came from, as numbers of points.
+fn estimated(counts: &Estimated) -> Value {
+    let Estimated { normals_given, normals_from_faces, normals_from_neighbours, two_sided, .. } = counts;
+    let Estimated { radii_given, radii_from_faces, radii_from_neighbours, .. } = counts;
+    json!({
+        "normals": {
+            "given": normals_given, "from_faces": normals_from_faces, "from_neighbours": normals_from_neighbours,
+            "two_sided": two_sided,
+        },
+        "radii": {
+            "given": radii_given, "from_faces": radii_from_faces, "from_neighbours": radii_from_neighbours,
+        },
+    })
+}
+
+/// Null where there are no values, as of normals.
+fn color_by(args: &Render, coloured: &Coloured) -> Value {
+    let map =
+        clap::ValueEnum::to_possible_value(&args.colours.color_map).map(|map| map.get_name().to_owned());
+    let range = coloured.scale.map(|scale| [scale.range.min, scale.range.max]);
+    json!({ "name": coloured.name, "map": range.and(map), "range": range })
 }

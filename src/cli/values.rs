@@ -2,6 +2,8 @@
 
 use clap::ValueEnum;
 use glam::DVec3;
+use std::str::FromStr;
+use surfel::geometry::{ColourMap, ValueRange};
 use surfel::io::srgb;
 use surfel::settings;
 
@@ -19,6 +21,71 @@ pub fn vector(text: &str) -> Result<DVec3, String> {
     match numbers.as_deref() {
         Some(&[x, y, z]) => Ok(DVec3::new(x, y, z)),
         _ => Err("give three numbers as X,Y,Z without spaces, for example 0,1.5,-2".into()),
+    }
+}
+
+/// A vector that is not 0, as a unit vector.
+pub fn direction(text: &str) -> Result<DVec3, String> {
+    vector(text)?.try_normalize().ok_or_else(|| "give a direction that is not 0,0,0".into())
+}
+
+/// A finite number above 0.
+pub fn positive<T: FromStr + Into<f64> + Copy>(text: &str) -> Result<T, String> {
+    let number = text.trim().parse().ok();
+    let usable = number.filter(|&number: &T| number.into() > 0.0 && number.into().is_finite());
+    usable.ok_or_else(|| "give a number above 0".into())
+}
+
+/// What points are coloured by.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ColourBy {
+    /// A property or a quantity.
+    pub name: String,
+    /// The values at the ends of the colour map, if they are given.
+    pub range: Option<ValueRange>,
+}
+
+/// `NAME` or `NAME:MIN,MAX`. A name may hold colons, so a range is what has a comma after the last one.
+pub fn colour_by(text: &str) -> Result<ColourBy, String> {
+    let wrong = || "give NAME or NAME:MIN,MAX with MIN below MAX, for example intensity:0,255".to_owned();
+    let number = |text: &str| text.trim().parse().ok().filter(|value: &f64| value.is_finite());
+    let (name, range) = match text.rsplit_once(':').map(|(name, range)| (name, range.split_once(','))) {
+        Some((name, Some((min, max)))) => {
+            let (min, max) = number(min).zip(number(max)).filter(|(min, max)| min < max).ok_or_else(wrong)?;
+            (name, Some(ValueRange { min, max }))
+        }
+        _ => (text, None),
+    };
+    if name.is_empty() { Err(wrong()) } else { Ok(ColourBy { name: name.into(), range }) }
+}
+
+/// The colours of numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Map {
+    /// Purple, green, yellow
+    Viridis,
+    /// Blue, grey, yellow: the same to the colour-blind
+    Cividis,
+    /// Black, red, pale yellow
+    Magma,
+    /// Black, orange, yellow
+    Inferno,
+    /// Blue, pink, yellow
+    Plasma,
+    /// A rainbow
+    Turbo,
+}
+
+impl From<Map> for ColourMap {
+    fn from(map: Map) -> Self {
+        match map {
+            Map::Viridis => Self::Viridis,
+            Map::Cividis => Self::Cividis,
+            Map::Magma => Self::Magma,
+            Map::Inferno => Self::Inferno,
+            Map::Plasma => Self::Plasma,
+            Map::Turbo => Self::Turbo,
+        }
     }
 }
 
@@ -123,6 +190,22 @@ mod tests {
         assert_eq!(background("255,0,255").map(Background::linear), Ok(Some([1.0, 0.0, 1.0])));
         for text in ["256,0,0", "0.5,0,0", "white", "1,2", "-1,0,0"] {
             assert!(background(text).is_err(), "{text}");
+        }
+    }
+    #[test]
+    fn numbers_names_and_directions_are_read_or_refused() {
+        assert_eq!((positive("1e-3"), positive("2")), (Ok(1e-3), Ok(2f32)));
+        for text in ["0", "-1", "nan", "inf", "1e39", "", "x"] {
+            assert!(positive::<f32>(text).is_err(), "{text}");
+        }
+        assert_eq!(direction("0,0,-5"), Ok(DVec3::NEG_Z));
+        assert!(direction("0,0,0").is_err());
+        let by = |name: &str, range| Ok(ColourBy { name: name.into(), range });
+        assert_eq!(colour_by("intensity"), by("intensity", None));
+        assert_eq!(colour_by("a:b"), by("a:b", None));
+        assert_eq!(colour_by("a:b:-1,2.5"), by("a:b", Some(ValueRange { min: -1.0, max: 2.5 })));
+        for text in ["", "a:1,1", "a:2,1", "a:1,2,3", "a:nan,2", "a:,", ":1,2"] {
+            assert!(colour_by(text).is_err(), "{text}");
         }
     }
 }

@@ -11,6 +11,9 @@ use surfel::settings::Shading;
 use surfel::vk::{Device, DeviceLimits, DeviceOptions};
 use surfel::{Outputs, Picture, Precision, RenderOptions, Renderer, Result, Scene};
 
+/// The stage of rendering, for who is told about progress.
+const FRAMES: &str = "rendering frames";
+
 /// How the device is opened. Reads the file of limits.
 pub fn options(place: &Place) -> Result<DeviceOptions> {
     Ok(DeviceOptions {
@@ -39,11 +42,13 @@ pub fn render(task: &Task<'_>, options: &DeviceOptions, half: bool, measure: boo
     let start = Instant::now();
     let (picture, report) = renderer.render_picture(&scene, &task.camera, &task.settings)?;
     times.add(start.elapsed(), &report.pass_times);
-    for _ in 1..task.frames {
+    for frame in 1..task.frames {
+        task.progress.at(FRAMES, frame.into(), task.frames.into());
         let start = Instant::now();
         let report = renderer.render(&scene, &task.camera, &task.settings)?;
         times.add(start.elapsed(), &report.pass_times);
     }
+    task.progress.at(FRAMES, task.frames.into(), task.frames.into());
     let mut gpu = gpu(&device, &renderer, &scene);
     if half {
         gpu.half_error = half_error(&device, task, &scene, options, &picture)?;

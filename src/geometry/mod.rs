@@ -3,12 +3,17 @@
 mod bounds;
 mod camera;
 mod cloud;
+mod colour_map;
 pub mod estimate;
 mod merge;
 mod morton;
+mod quantity;
 mod surfels;
+mod thin;
 
 pub use bounds::Bounds;
 pub use camera::{Camera, Projection};
 pub use cloud::{Cloud, View};
+pub use colour_map::{ColourMap, ColourScale, ValueRange};
+pub use quantity::Quantity;
 pub use surfels::{Colours, Ellipse, Surfels};

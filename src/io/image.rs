@@ -26,6 +26,14 @@ impl Output {
         if text == "-" { Self::Stdout } else { Self::File(text.into()) }
     }
 
+    /// Whether it holds 8 bits a channel, for the eye, and not numbers.
+    pub fn is_png(&self) -> bool {
+        match self {
+            Self::File(path) => matches!(Kind::of(path), Ok(Kind::Png)),
+            Self::Stdout => true,
+        }
+    }
+
     /// Refuses a file that [`write()`] would: before the picture is made, not after.
     ///
     /// # Errors
@@ -72,36 +80,65 @@ pub fn write(picture: &Picture, shading: Shading, out: &Output) -> Result<()> {
     }
 }
 
-/// Writes a picture as 8-bit PNG: RGBA with straight α, or RGB if every pixel is opaque.
-///
-/// `Lit` and `Colour` are sRGB-encoded. `Normal` maps −1…1 to 0…255 without a transfer function, in world space. `Depth` is grey, white at
-/// the nearest covered pixel and a tenth of that at the furthest, linear in depth, without a transfer function. Pixels without a surface are
-/// the background's colour, black under `Depth`.
+/// Writes a picture as 8-bit PNG, [`Encoded`].
 ///
 /// # Errors
 /// [`Error::Usage`] if the picture's arrays do not fit its size, [`Error::Io`] if `out` cannot be written.
 pub fn write_png(picture: &Picture, shading: Shading, out: &Output) -> Result<()> {
-    check(picture)?;
-    let mut pixels = encode(picture, shading);
-    let opaque = pixels.iter().all(|pixel| pixel[3] == 255);
-    let (bytes, kind) = match opaque {
-        true => (pixels.iter().flat_map(|&[r, g, b, _]| [r, g, b]).collect(), ExtendedColorType::Rgb8),
-        false => {
-            // What cannot be seen compresses better as nothing.
-            pixels.iter_mut().filter(|pixel| pixel[3] == 0).for_each(|pixel| *pixel = [0; 4]);
-            (pixels.into_flattened(), ExtendedColorType::Rgba8)
-        }
-    };
-    let [width, height] = picture.size;
-    let png =
-        |out: &mut dyn Write| PngEncoder::new(out).write_image(&bytes, width, height, kind).map_err(io_error);
-    match out {
-        Output::File(path) => atomic::write(path, |mut out| png(&mut out)),
-        Output::Stdout => {
-            let mut out = io::stdout().lock();
-            png(&mut out)
-                .and_then(|()| out.flush())
-                .map_err(Error::io(Path::new("-"), "cannot write to standard output"))
+    Encoded::of(picture, shading)?.write_png(out)
+}
+
+/// A picture as a PNG holds it: RGBA, 8 bits a channel, straight α.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Encoded {
+    /// Width and height, px.
+    pub size: [u32; 2],
+    /// Row by row from the top left.
+    pub pixels: Vec<[u8; 4]>,
+}
+
+impl Encoded {
+    /// Encodes a picture.
+    ///
+    /// `Lit` and `Colour` are sRGB-encoded. `Normal` maps −1…1 to 0…255 without a transfer function, in world space. `Depth` is grey, white
+    /// at the nearest covered pixel and a tenth of that at the furthest, linear in depth, without a transfer function. Pixels without a
+    /// surface are the background's colour, black under `Depth`.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if the picture's arrays do not fit its size.
+    pub fn of(picture: &Picture, shading: Shading) -> Result<Self> {
+        check(picture)?;
+        Ok(Self { size: picture.size, pixels: encode(picture, shading) })
+    }
+
+    /// Writes it as PNG: RGBA, or RGB if every pixel is opaque.
+    ///
+    /// # Errors
+    /// [`Error::Io`] if `out` cannot be written.
+    pub fn write_png(mut self, out: &Output) -> Result<()> {
+        let opaque = self.pixels.iter().all(|pixel| pixel[3] == 255);
+        let (bytes, kind) = match opaque {
+            true => {
+                (self.pixels.iter().flat_map(|&[r, g, b, _]| [r, g, b]).collect(), ExtendedColorType::Rgb8)
+            }
+            false => {
+                // What cannot be seen compresses better as nothing.
+                self.pixels.iter_mut().filter(|pixel| pixel[3] == 0).for_each(|pixel| *pixel = [0; 4]);
+                (self.pixels.into_flattened(), ExtendedColorType::Rgba8)
+            }
+        };
+        let [width, height] = self.size;
+        let png = |out: &mut dyn Write| {
+            PngEncoder::new(out).write_image(&bytes, width, height, kind).map_err(io_error)
+        };
+        match out {
+            Output::File(path) => atomic::write(path, |mut out| png(&mut out)),
+            Output::Stdout => {
+                let mut out = io::stdout().lock();
+                png(&mut out)
+                    .and_then(|()| out.flush())
+                    .map_err(Error::io(Path::new("-"), "cannot write to standard output"))
+            }
         }
     }
 }

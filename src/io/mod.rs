@@ -1,6 +1,7 @@
 //! Files in and out.
 
 pub mod atomic;
+pub mod colour_bar;
 pub mod image;
 pub mod ply;
 pub mod srgb;

@@ -3,6 +3,7 @@
 use super::ellipse::Ellipse;
 use super::scene::Scene;
 use super::{Projector, Splat};
+use crate::Progress;
 use glam::DVec2;
 use rayon::prelude::*;
 
@@ -50,6 +51,11 @@ impl Bands {
             }
         }
         Self { size, lists }
+    }
+
+    /// Tells that so many bands are drawn.
+    pub fn tell(&self, progress: &dyn Progress, done: u64) {
+        progress.at("rendering rows", done, self.lists.len() as u64);
     }
 
     /// All bands, from the top.

@@ -95,7 +95,7 @@ impl Expected {
         let doubt =
             Doubt::new(&Margins { projector: &projector, rounding: tolerance.rounding }, &scene, &bands);
         let depth_shown = settings.shading == Shading::Depth;
-        Ok(Self { frame: draw(&projector, &scene, &bands), doubt, tolerance: *tolerance, depth_shown })
+        Ok(Self { frame: draw(&projector, &scene, &bands, &()), doubt, tolerance: *tolerance, depth_shown })
     }
 
     /// Holds every pixel of `gpu` against the frame's value or, where that fails and the pixel is in doubt, against its

@@ -36,6 +36,7 @@ pub use projector::Projector;
 pub use scene::Counts;
 pub use slack::Slack;
 
+use crate::Progress;
 use crate::error::Result;
 use crate::geometry::{Camera, Surfels};
 use crate::picture::Picture;
@@ -43,6 +44,7 @@ use crate::settings::Settings;
 use bands::Bands;
 use rayon::prelude::*;
 use scene::Scene;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// A frame in float64, row by row from the top left; every image has one entry a pixel.
 #[derive(Clone, Debug, PartialEq)]
@@ -100,20 +102,30 @@ impl Frame {
 /// Renders `surfels` as `camera` sees them, `size` = width and height in px.
 ///
 /// Fails on settings, sizes and cameras of which no picture can be made.
-pub fn render(surfels: &Surfels, camera: &Camera, size: [u32; 2], settings: &Settings) -> Result<Frame> {
+pub fn render(
+    surfels: &Surfels,
+    camera: &Camera,
+    size: [u32; 2],
+    settings: &Settings,
+    progress: &dyn Progress,
+) -> Result<Frame> {
     let projector = Projector::new(camera, size, settings)?;
     let scene = Scene::project(&projector, surfels);
-    Ok(draw(&projector, &scene, &Bands::new(&projector, &scene, size)))
+    Ok(draw(&projector, &scene, &Bands::new(&projector, &scene, size), progress))
 }
 
 /// The three passes, band by band: a band's sums are all the memory that is needed beside the splats and the picture.
-fn draw(projector: &Projector, scene: &Scene, bands: &Bands) -> Frame {
+fn draw(projector: &Projector, scene: &Scene, bands: &Bands, progress: &dyn Progress) -> Frame {
+    let done = AtomicU64::new(0);
+    bands.tell(progress, 0);
     let values: Vec<Value> = bands
         .par_iter()
         .flat_map(|band| {
             let depth = visibility::pass(projector, scene, &band);
             let sums = attribute::pass(projector, scene, &band, &depth);
-            normalize::pass(projector, &band, &depth, &sums)
+            let values = normalize::pass(projector, &band, &depth, &sums);
+            bands.tell(progress, done.fetch_add(1, Ordering::Relaxed) + 1);
+            values
         })
         .collect();
     Frame::of(&values, scene, bands.size)

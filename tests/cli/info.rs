@@ -5,24 +5,23 @@ use crate::program::{Program, surfels};
 #[test]
 fn a_file_is_described() {
     let program = Program::new();
-    program.write(
-        "a.ply",
-        surfels(&["0 0 0 0 0 1 1", "4 0 0 0 0 1 3", "2 0 0 0 0 1 2", "0 0 0 0 0 0 1", "0 nan 0 0 0 1 1"]),
-    );
+    program.write("a.ply", surfels(&["0 0 0 0 0 1 1", "4 0 0 0 0 1 3", "2 0 0 0 0 1 2", "0 nan 0 0 0 1 1"]));
     let run = program.run("info a.ply");
     for line in [
         "a.ply: PLY, ascii",
-        "element vertex: 5",
+        "element vertex: 4",
         "  float nx",
         "understood: x y z nx ny nz radius",
         "skipped: none",
-        "points: 5",
+        "points: 4",
         "surfels: 3",
         // The discs' bounds, by the largest radius.
         "bounds: [-3, -3, -3] to [7, 3, 3]",
         "radius: 1 to 3, median 2",
         "colours: none",
-        "left out: 2 (1 for their position, 0 radius, 1 normal)",
+        "normals: 3 given",
+        "radii: 3 given",
+        "left out: 1 without a finite position, 0 outliers",
     ] {
         assert!(run.text().lines().any(|have| have == line), "no `{line}` in\n{}", run.text());
     }
@@ -33,7 +32,7 @@ fn a_file_without_radii_still_tells_what_it_has() {
     let program = Program::new();
     program.write("a.ply", surfels(&["0 0 0 0 0 1 1"]).replace("radius", "confidence"));
     let run = program.run("info a.ply");
-    assert!(run.error(1).contains("no radius"), "{}", run.err);
+    assert!(run.error(1).contains("lacks normals or radii"), "{}", run.err);
     let text = String::from_utf8(run.out).unwrap();
     assert!(text.contains("element vertex: 1\n") && text.contains("  float confidence\n"), "{text}");
 }

@@ -21,7 +21,11 @@ fn several_inputs_become_one_scene() {
         (&counts["read"], &counts["drawn"], &counts["dropped"]["position"]),
         (&3.into(), &2.into(), &1.into())
     );
-    assert!(run.err.contains("surfel: warning: left.ply: 1 of 2 points are left out"), "{}", run.err);
+    assert!(
+        run.err.contains("surfel: warning: left.ply: 1 of 2 points have no finite position"),
+        "{}",
+        run.err
+    );
     let alpha = |x| program.png("out.png").get_pixel(x, 20)[3];
     assert_eq!([alpha(10), alpha(20), alpha(30)], [255, 0, 255]);
 }

@@ -101,6 +101,11 @@ pub fn surfels(lines: &[&str]) -> String {
     format!("{header} {}\n{properties}end_header\n{}\n", lines.len(), lines.join("\n"))
 }
 
+/// [`surfels`] with one more number at the end of each line.
+pub fn surfels_with(name: &str, lines: &[&str]) -> String {
+    surfels(lines).replace("end_header", &format!("property float {name}\nend_header"))
+}
+
 /// A file of the scans that lie beside the project; `None`, said aloud, where they are not.
 pub fn scan(test: &str, name: &str) -> Option<PathBuf> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data").join(name);

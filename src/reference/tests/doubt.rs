@@ -13,7 +13,7 @@ fn a_splat_on_the_limit_of_epsilon_may_blend_or_not() {
     let expected = Expected::new(&surfels, &perspective(), SIZE, &settings(0.5), &tolerance).unwrap();
     assert!(!expected.doubt.is_empty());
     let passes = |surfels: &Surfels, epsilon| {
-        let frame = render(surfels, &perspective(), SIZE, &settings(epsilon)).unwrap();
+        let frame = render(surfels, &perspective(), SIZE, &settings(epsilon), &()).unwrap();
         expected.compare(&frame.to_picture()).unwrap().passed()
     };
     assert!([0.4, 0.5, 0.6].into_iter().all(|epsilon| passes(&surfels, epsilon)));
@@ -96,7 +96,7 @@ fn a_splat_that_ends_at_a_pixel_centre_may_colour_it_or_not() {
     let expected = Expected::new(&surfels(1.0), &perspective(), SIZE, &plain(), &tolerance).unwrap();
     assert_eq!(expected.doubt.len(), 12);
     let failed = |scale: f64| {
-        let frame = render(&surfels(scale), &perspective(), SIZE, &plain()).unwrap();
+        let frame = render(&surfels(scale), &perspective(), SIZE, &plain(), &()).unwrap();
         expected.compare(&frame.to_picture()).unwrap().failed
     };
     assert_eq!([1.0 - 1e-5, 1.0 + 1e-5].map(failed), [0, 0]);

@@ -67,7 +67,7 @@ fn a_disc_that_faces_the_eye_is_a_circle() {
     assert!(close(splat.shift, 1.0 + r / z, 1e-12));
 
     let frame =
-        render(&scene(&[disc(DVec3::Z * z, DVec3::NEG_Z, r)]), &perspective(), SIZE, &plain()).unwrap();
+        render(&scene(&[disc(DVec3::Z * z, DVec3::NEG_Z, r)]), &perspective(), SIZE, &plain(), &()).unwrap();
     let reach = 4.0 * (sigma * sigma + f64::from(plain().least_lowpass()));
     for (i, &covered) in frame.covered.iter().enumerate() {
         let at = DVec2::new((i % 64) as f64 + 0.5, (i / 64) as f64 + 0.5);
@@ -148,8 +148,9 @@ fn surfels_are_culled_in_order_and_counted() {
         disc(DVec3::new(0.0, 0.0, 2.0), DVec3::NEG_Z, 0.1),
         Surfel { two_sided: true, ..disc(DVec3::new(0.0, 0.0, 2.0), DVec3::Z, 0.1) },
     ];
-    let counts =
-        |cull| render(&scene(&discs), &perspective(), SIZE, &Settings { cull, ..plain() }).unwrap().counts;
+    let counts = |cull| {
+        render(&scene(&discs), &perspective(), SIZE, &Settings { cull, ..plain() }, &()).unwrap().counts
+    };
     let back = Counts { surfels: 6, behind: 1, eye_plane: 1, back: 1, outside: 1, drawn: 2 };
     assert_eq!(counts(Cull::Back), back);
     assert_eq!(counts(Cull::None), Counts { back: 0, drawn: 3, ..back });

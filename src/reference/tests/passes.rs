@@ -16,7 +16,7 @@ fn a_plane_has_no_holes_and_its_own_depth() {
     let normal = DVec3::new(0.4, -0.2, -1.0);
     let unit = scene(&[disc(DVec3::ZERO, normal, 1.0)]).normals[0].as_dvec3();
     for (camera, is_perspective) in [(perspective(), true), (parallel(), false)] {
-        let frame = render(&plane(normal), &camera, SIZE, &plain()).unwrap();
+        let frame = render(&plane(normal), &camera, SIZE, &plain(), &()).unwrap();
         for (i, &depth) in frame.depth.iter().enumerate() {
             let [x, y] =
                 [i % 64, i / 64].map(|v| (v as f64 + 0.5 - 32.0) / if is_perspective { 64.0 } else { 16.0 });
@@ -39,7 +39,7 @@ fn splats_within_epsilon_blend() {
         let mut front = disc(DVec3::Z * 2.0, DVec3::NEG_Z, 0.2);
         let mut back = disc(DVec3::Z * (2.0 + gap), DVec3::NEG_Z, 0.2);
         (front.colour, back.colour) = (Some(DVec3::X), Some(DVec3::Y));
-        let frame = render(&scene(&[back, front]), camera, SIZE, &settings).unwrap();
+        let frame = render(&scene(&[back, front]), camera, SIZE, &settings, &()).unwrap();
         frame.colour[32 * 64 + 32]
     };
     for camera in [perspective(), parallel()] {
@@ -62,7 +62,7 @@ fn weights_are_the_filtered_kernels() {
     });
     let mut discs = normals.map(|n| disc(at, n, 0.5));
     (discs[0].colour, discs[1].colour) = (Some(DVec3::X), Some(DVec3::Y));
-    let frame = render(&scene(&discs), &parallel(), SIZE, &plain()).unwrap();
+    let frame = render(&scene(&discs), &parallel(), SIZE, &plain(), &()).unwrap();
     let value = frame.value(32 * 64 + 32);
     let share = weights[0] / (weights[0] + weights[1]);
     assert!(close(value.colour[0], share, 1e-6) && close(value.colour[1], 1.0 - share, 1e-6), "{value:?}");
@@ -73,7 +73,7 @@ fn weights_are_the_filtered_kernels() {
 #[test]
 fn normals_turn_to_the_eye_and_cancel_into_the_viewing_direction() {
     let away = disc(DVec3::Z * 2.0, DVec3::Z, 0.3);
-    let frame = render(&scene(&[away]), &perspective(), SIZE, &plain()).unwrap();
+    let frame = render(&scene(&[away]), &perspective(), SIZE, &plain(), &()).unwrap();
     assert_eq!(frame.normal[32 * 64 + 32], [0.0, 0.0, -1.0]);
     // Without a normal of its own the surface faces the eye.
     let projector = Projector::new(&perspective(), SIZE, &plain()).unwrap();
@@ -91,7 +91,7 @@ fn planes_beyond_the_clip_volume_leave_no_fragment() {
     camera.projection.w_axis.z = 4.0 / 3.0;
     let drawn = |z: f64| {
         let frame =
-            render(&scene(&[disc(DVec3::Z * z, DVec3::NEG_Z, 0.3)]), &camera, SIZE, &plain()).unwrap();
+            render(&scene(&[disc(DVec3::Z * z, DVec3::NEG_Z, 0.3)]), &camera, SIZE, &plain(), &()).unwrap();
         frame.covered.iter().any(|c| *c)
     };
     assert_eq!([0.99, 1.01, 3.99, 4.01].map(drawn), [false, true, true, false]);
@@ -110,7 +110,7 @@ fn rims_behind_a_wall_do_not_show_through() {
         Surfel { colour: Some(DVec3::Y), ..disc(at, normal.normalize(), 0.3) }
     });
     let discs: Vec<Surfel> = fins.chain([wall]).collect();
-    let frame = render(&scene(&discs), &perspective(), SIZE, &plain()).unwrap();
+    let frame = render(&scene(&discs), &perspective(), SIZE, &plain(), &()).unwrap();
     for (i, colour) in frame.colour.iter().enumerate().filter(|(i, _)| frame.covered[*i]) {
         // What their planes put in front of the wall still counts, with the small weights of discs seen edge-on.
         assert!(colour[1] < 0.5, "pixel {}, {} is the fins': {colour:?}", i % 64, i / 64);

@@ -1,5 +1,11 @@
 //! What the program can be asked.
 
+mod convert;
+mod points;
+
+pub use convert::{Convert, Info};
+pub use points::{Colours, Points};
+
 use super::values::{Background, Cull, Method, Shading, background, size, vector};
 use clap::{Args, Parser, Subcommand};
 use glam::DVec3;
@@ -21,11 +27,10 @@ pub struct Surfel {
 pub enum Command {
     /// Renders points to a picture
     Render(Box<Render>),
-    /// Says what is in a file or scene
-    Info {
-        /// A PLY file, or a built-in scene such as scene:bumpy-sphere
-        input: OsString,
-    },
+    /// Says what is in a file or scene, and what is estimated of it
+    Info(Info),
+    /// Makes surfels of points once and writes them to a PLY file
+    Convert(Box<Convert>),
     /// Lists the Vulkan devices; * marks the one that is used unless --device names another
     Devices,
 }
@@ -45,6 +50,15 @@ pub struct Render {
     /// Size of the picture, px
     #[arg(long, value_name = "WxH", default_value = "1024x1024", value_parser = size, allow_hyphen_values = true)]
     pub size: [u32; 2],
+    /// How normals and radii are estimated
+    #[command(flatten)]
+    pub points: Points,
+    /// What points are coloured by
+    #[command(flatten)]
+    pub colours: Colours,
+    /// Draws a bar with the colours of --color-by and their values into the PNG
+    #[arg(long, alias = "colour-bar", requires = "color_by")]
+    pub color_bar: bool,
     /// Where the camera stands
     #[command(flatten)]
     pub camera: Camera,

@@ -1,0 +1,43 @@
+//! Options of `surfel convert` and `surfel info`.
+
+use super::{Colours, Points};
+use crate::cli::values::{direction, positive};
+use clap::Args;
+use glam::DVec3;
+use std::ffi::OsString;
+
+/// Options of `surfel convert`.
+#[derive(Args, Debug)]
+pub struct Convert {
+    /// PLY files, or built-in scenes such as scene:bumpy-sphere; several become one file
+    #[arg(required = true, value_name = "INPUT")]
+    pub inputs: Vec<OsString>,
+    /// The file: binary PLY with position, normal, radius and, if there is one, colour
+    #[arg(short, long, value_name = "OUT.ply")]
+    pub output: OsString,
+    /// Keeps one point for every cube of this side, in the positions' unit
+    #[arg(long, value_name = "SIZE", value_parser = positive::<f64>, allow_hyphen_values = true)]
+    pub voxel: Option<f64>,
+    /// How normals and radii are estimated
+    #[command(flatten)]
+    pub points: Points,
+    /// What points are coloured by
+    #[command(flatten)]
+    pub colours: Colours,
+    /// What is up, for --color-by height
+    #[arg(long, value_name = "X,Y,Z", default_value = "0,1,0", value_parser = direction, allow_hyphen_values = true)]
+    pub up: DVec3,
+    /// Prints nothing but warnings and errors
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+/// Options of `surfel info`.
+#[derive(Args, Debug)]
+pub struct Info {
+    /// A PLY file, or a built-in scene such as scene:bumpy-sphere
+    pub input: OsString,
+    /// How normals and radii are estimated
+    #[command(flatten)]
+    pub points: Points,
+}

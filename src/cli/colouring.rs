@@ -1,0 +1,155 @@
+//! `--color-by`: one scale of colours for all inputs together.
+
+use super::args;
+use super::progress::say;
+use glam::DVec3;
+use rayon::prelude::*;
+use surfel::geometry::{Cloud, ColourMap, ColourScale, Quantity, Surfels, ValueRange};
+use surfel::io::colour_bar::ColourBar;
+use surfel::{Error, Result};
+
+/// What points are coloured by.
+pub struct Colouring {
+    name: String,
+    source: Source,
+    map: ColourMap,
+    range: Option<ValueRange>,
+}
+
+/// Where the colours come from.
+enum Source {
+    /// A property of the files.
+    Property,
+    /// A number that the surfels have.
+    Quantity(Quantity),
+    /// The surfels' normals.
+    Normal,
+}
+
+/// How points were coloured.
+pub struct Coloured {
+    /// By what, as the user named it.
+    pub name: String,
+    /// Which colour a value has; `None` for normals, and where no point has a value.
+    pub scale: Option<ColourScale>,
+}
+
+impl Colouring {
+    /// What the arguments ask for, if anything; `up` need not be of unit length.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if a range is given of what has no values.
+    pub fn new(args: &args::Colours, up: DVec3) -> Result<Option<Self>> {
+        let Some(by) = &args.color_by else { return Ok(None) };
+        let along = |axis| Source::Quantity(Quantity::Along(axis));
+        let source = match by.name.as_str() {
+            "x" => along(DVec3::X),
+            "y" => along(DVec3::Y),
+            "z" => along(DVec3::Z),
+            "height" => along(up.normalize_or(DVec3::Y)),
+            "radius" => Source::Quantity(Quantity::Radius),
+            "normal" => Source::Normal,
+            _ => Source::Property,
+        };
+        if matches!(source, Source::Normal) && by.range.is_some() {
+            return Err(Error::Usage(
+                "--color-by normal shows directions, which have no range: leave out MIN,MAX".into(),
+            ));
+        }
+        Ok(Some(Self { name: by.name.clone(), source, map: args.color_map.into(), range: by.range }))
+    }
+
+    /// The property that is to be read from the files.
+    pub fn property(&self) -> Option<&str> {
+        matches!(self.source, Source::Property).then_some(self.name.as_str())
+    }
+
+    /// Whether there are values for a bar to tell.
+    pub fn has_values(&self) -> bool {
+        !matches!(self.source, Source::Normal)
+    }
+
+    /// Colours clouds by the property that was read from their files.
+    pub fn colour_clouds(&self, clouds: &mut [&mut Cloud], quiet: bool) -> Coloured {
+        let scalars = || clouds.iter().filter_map(|cloud| cloud.scalar.as_ref());
+        let count = scalars().map(|scalar| scalar.len() as u64).sum();
+        let coloured = self.scale(scalars().flatten().map(|&value| f64::from(value)), count, quiet);
+        let scale = coloured.scale_or_grey(self.map);
+        for cloud in clouds {
+            let scalar = cloud.scalar.take();
+            cloud.colours = scalar.map(|scalar| scale.colours(scalar.par_iter().map(|&value| value.into())));
+        }
+        coloured
+    }
+
+    /// Colours surfels by what they have themselves; `None` if the colours come from the files.
+    pub fn colour_surfels(&self, surfels: &mut Surfels, quiet: bool) -> Option<Coloured> {
+        match self.source {
+            Source::Property => None,
+            Source::Normal => {
+                surfels.colour_by_normals();
+                Some(Coloured { name: self.name.clone(), scale: None })
+            }
+            Source::Quantity(quantity) => {
+                let values = surfels.values(quantity);
+                let coloured = self.scale(values.iter().copied(), values.len() as u64, quiet);
+                surfels.colour_by_values(&values, &coloured.scale_or_grey(self.map));
+                Some(coloured)
+            }
+        }
+    }
+
+    /// The scale for `values`, of which there are `count`. Says how it came about.
+    fn scale(&self, values: impl Iterator<Item = f64> + Clone, count: u64, quiet: bool) -> Coloured {
+        let name = self.name.clone();
+        let Some((usual, finite)) = ValueRange::of(values) else {
+            log::warn!("{name}: no point has a value, so all are grey");
+            return Coloured { name, scale: None };
+        };
+        let range = self.range.unwrap_or(usual);
+        let how = self.range.is_none().then(|| {
+            let [min, max] = [range.min, range.max].map(short);
+            format!("{min} to {max} (1st to 99th percentile of {finite})")
+        });
+        let grey =
+            (finite < count).then(|| format!("{} of {count} points have none and are grey", count - finite));
+        let news: Vec<_> = how.into_iter().chain(grey).collect();
+        if !(quiet || news.is_empty()) {
+            say(&format!("{name}: {}", news.join("; ")));
+        }
+        Coloured { name, scale: Some(ColourScale { map: self.map, range }) }
+    }
+}
+
+impl Coloured {
+    /// The bar that tells the values.
+    pub fn bar(&self) -> Option<ColourBar> {
+        Some(ColourBar { scale: self.scale?, name: self.name.clone() })
+    }
+
+    /// A scale also where there are no values, which it then shows grey.
+    fn scale_or_grey(&self, map: ColourMap) -> ColourScale {
+        self.scale.unwrap_or(ColourScale { map, range: ValueRange { min: 0.0, max: 0.0 } })
+    }
+}
+
+/// A number without the digits that its conversion to f64 or a sum added.
+fn short(value: f64) -> String {
+    let single = value as f32;
+    if f64::from(single) == value {
+        return single.to_string();
+    }
+    let rounded: f64 = format!("{value:.8e}").parse().unwrap_or(value);
+    rounded.to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::short;
+
+    #[test]
+    fn numbers_are_told_without_noise() {
+        let sums = [0.1f32.into(), 0.1 + 0.2, 4_600_000.123_456, -0.0, 255.0].map(short);
+        assert_eq!(sums, ["0.1", "0.3", "4600000.12", "-0", "255"]);
+    }
+}

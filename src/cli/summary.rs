@@ -1,0 +1,91 @@
+//! Counts of what was estimated, added up and told.
+
+use surfel::geometry::estimate::Estimated;
+
+/// Both together.
+pub fn sum(a: Estimated, b: Estimated) -> Estimated {
+    Estimated {
+        normals_given: a.normals_given + b.normals_given,
+        normals_from_faces: a.normals_from_faces + b.normals_from_faces,
+        normals_from_neighbours: a.normals_from_neighbours + b.normals_from_neighbours,
+        two_sided: a.two_sided + b.two_sided,
+        radii_given: a.radii_given + b.radii_given,
+        radii_from_faces: a.radii_from_faces + b.radii_from_faces,
+        radii_from_neighbours: a.radii_from_neighbours + b.radii_from_neighbours,
+        outliers: a.outliers + b.outliers,
+    }
+}
+
+/// What was estimated and what was dropped for it; `None` if nothing was.
+pub fn estimated(counts: &Estimated) -> Option<String> {
+    let normals = sources(counts.normals_from_faces, counts.normals_from_neighbours);
+    let radii = sources(counts.radii_from_faces, counts.radii_from_neighbours);
+    let two_sided = Some(counts.two_sided).filter(|&count| count > 0 && normals.is_some());
+    let outliers = Some(counts.outliers).filter(|&count| count > 0);
+    let parts = [
+        normals.map(|text| format!("normals of {text}")),
+        radii.map(|text| format!("radii of {text}")),
+        two_sided.map(|count| format!("{count} two-sided")),
+        outliers.map(|count| format!("{count} outliers left out")),
+    ];
+    let parts: Vec<_> = parts.into_iter().flatten().collect();
+    (!parts.is_empty()).then(|| parts.join("; "))
+}
+
+/// `5 points from faces, 3 from neighbours`.
+fn sources(faces: u64, neighbours: u64) -> Option<String> {
+    match (faces, neighbours) {
+        (0, 0) => None,
+        (faces, 0) => Some(format!("{faces} points from faces")),
+        (0, neighbours) => Some(format!("{neighbours} points from neighbours")),
+        (faces, neighbours) => Some(format!("{faces} points from faces, {neighbours} from neighbours")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_estimated_is_one_line_and_nothing_is_none() {
+        let given = Estimated { normals_given: 5, radii_given: 5, two_sided: 2, ..Default::default() };
+        assert_eq!(estimated(&given), None);
+        let mixed = Estimated {
+            normals_from_faces: 34_834,
+            normals_from_neighbours: 1113,
+            radii_from_neighbours: 35_947,
+            two_sided: 210,
+            ..Default::default()
+        };
+        let line = "normals of 34834 points from faces, 1113 from neighbours; radii of 35947 points from neighbours; 210 two-sided";
+        assert_eq!(estimated(&mixed).as_deref(), Some(line));
+        let dropped = Estimated { radii_from_faces: 3, outliers: 1, ..given };
+        let line = "radii of 3 points from faces; 1 outliers left out";
+        assert_eq!(estimated(&dropped).as_deref(), Some(line));
+    }
+
+    #[test]
+    fn every_count_is_added() {
+        let one = Estimated {
+            normals_given: 1,
+            normals_from_faces: 2,
+            normals_from_neighbours: 3,
+            two_sided: 4,
+            radii_given: 5,
+            radii_from_faces: 6,
+            radii_from_neighbours: 7,
+            outliers: 8,
+        };
+        let two = Estimated {
+            normals_given: 2,
+            normals_from_faces: 4,
+            normals_from_neighbours: 6,
+            two_sided: 8,
+            radii_given: 10,
+            radii_from_faces: 12,
+            radii_from_neighbours: 14,
+            outliers: 16,
+        };
+        assert_eq!(sum(one, one), two);
+    }
+}

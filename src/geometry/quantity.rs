@@ -1,0 +1,66 @@
+//! Numbers that surfels have by themselves, to be shown as colours.
+
+use super::{ColourScale, Colours, Surfels};
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// A number a surfel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Quantity {
+    /// The coordinate along a unit vector, origin included.
+    Along(DVec3),
+    /// The radius.
+    Radius,
+}
+
+impl Surfels {
+    /// A quantity of every surfel.
+    pub fn values(&self, quantity: Quantity) -> Vec<f64> {
+        match quantity {
+            Quantity::Along(axis) => {
+                let start = self.origin.dot(axis);
+                self.positions.par_iter().map(|p| p.as_dvec3().dot(axis) + start).collect()
+            }
+            Quantity::Radius => self.radii.par_iter().map(|&radius| f64::from(radius)).collect(),
+        }
+    }
+
+    /// Colours every surfel by its number among `values`, one a surfel.
+    pub fn colour_by_values(&mut self, values: &[f64], scale: &ColourScale) {
+        self.colours = Some(scale.colours(values.par_iter().copied()));
+    }
+
+    /// Colours every surfel by its normal: red, green and blue are x, y and z from −1 to 1.
+    pub fn colour_by_normals(&mut self) {
+        let code = |coordinate: f32| ((0.5 * coordinate + 0.5).clamp(0.0, 1.0) * 255.0).round() as u8;
+        let colour = |n: &glam::Vec3| [code(n.x), code(n.y), code(n.z), 0];
+        self.colours = Some(Colours::Srgb8(self.normals.par_iter().map(colour).collect()));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{ColourMap, ValueRange};
+    use super::*;
+    use glam::Vec3;
+
+    #[test]
+    fn quantities_are_those_of_the_world() {
+        let mut surfels = Surfels {
+            origin: DVec3::new(0.0, 1e7, 0.0),
+            positions: vec![Vec3::new(1.0, 0.25, 0.0), Vec3::ZERO],
+            normals: vec![Vec3::Y, Vec3::NEG_Z],
+            radii: vec![2.0, 3.0],
+            ..Default::default()
+        };
+        assert_eq!(surfels.values(Quantity::Along(DVec3::Y)), [1e7 + 0.25, 1e7]);
+        assert_eq!(surfels.values(Quantity::Along(DVec3::NEG_X)), [-1.0, 0.0]);
+        assert_eq!(surfels.values(Quantity::Radius), [2.0, 3.0]);
+        surfels.colour_by_normals();
+        assert_eq!(surfels.colours, Some(Colours::Srgb8(vec![[128, 255, 128, 0], [128, 128, 0, 0]])));
+        let range = ValueRange { min: 0.0, max: 1.0 };
+        let scale = ColourScale { map: ColourMap::Magma, range };
+        surfels.colour_by_values(&[0.0, f64::NAN], &scale);
+        assert_eq!(surfels.colours, Some(Colours::Srgb8(vec![[0, 0, 4, 0], [128, 128, 128, 0]])));
+    }
+}

@@ -1,0 +1,108 @@
+//! Where a scale has its marks, and the numbers beside them.
+
+use crate::geometry::ValueRange;
+
+/// A mark on a scale.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Tick {
+    /// 0 at the least value, 1 at the greatest.
+    pub share: f64,
+    /// The value.
+    pub label: String,
+}
+
+/// About so many round numbers lie between the ends.
+const STEPS: f64 = 5.0;
+/// Longest plain number; longer ones get an exponent.
+const LONGEST: usize = 10;
+
+/// Both ends, and the round numbers between them no closer than `apart` to an end (1 is the whole scale). One mark if both ends are one.
+pub(super) fn ticks(range: &ValueRange, apart: f64) -> Vec<Tick> {
+    let ValueRange { min, max } = *range;
+    let span = max - min;
+    // Of a range that is no number wide, or wider than there are numbers, only the ends can be told.
+    let step = if span > 0.0 && span.is_finite() { round_step(span / STEPS) } else { 0.0 };
+    if step == 0.0 || min + step == min {
+        let ends = if min == max { vec![min] } else { vec![min, max] };
+        return ends
+            .into_iter()
+            .map(|v| Tick { share: range.share(v), label: number(v, v.abs() * 1e-3) })
+            .collect();
+    }
+    let end = |value| Tick { share: range.share(value), label: number(value, 0.01 * step) };
+    let first = (min / step).ceil();
+    let round = (0..=STEPS as u32 * 2).map(|i| (first + f64::from(i)) * step);
+    let between = round
+        .map(|value| Tick { share: range.share(value), label: number(value, step) })
+        .filter(|tick| tick.share >= apart && tick.share <= 1.0 - apart);
+    std::iter::once(end(min)).chain(between).chain([end(max)]).collect()
+}
+
+/// 1, 2 or 5 times a power of ten, at least `least`.
+fn round_step(least: f64) -> f64 {
+    let power = 10f64.powf(least.log10().floor());
+    let factor = [1.0, 2.0, 5.0].into_iter().find(|factor| factor * power >= least * (1.0 - 1e-9));
+    factor.unwrap_or(10.0) * power
+}
+
+/// `value` with as many digits as tell it from a number that is `spacing` away.
+fn number(value: f64, spacing: f64) -> String {
+    let exponent = |v: f64| if v == 0.0 { 0.0 } else { v.abs().log10().floor() };
+    let decimals = (-exponent(spacing)).max(0.0);
+    let plain = format!("{value:.*}", decimals.min(20.0) as usize);
+    // What rounds to nothing has no sign.
+    let plain = if plain.parse() == Ok(0.0) { "0".to_owned() } else { shorten(plain) };
+    if plain.len() <= LONGEST && (plain != "0" || value == 0.0 || value.abs() < spacing) {
+        return plain;
+    }
+    let digits = (exponent(value) - exponent(spacing)).clamp(0.0, 12.0);
+    let text = format!("{value:.*e}", digits as usize);
+    let (mantissa, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+    format!("{}e{exponent}", shorten(mantissa.to_owned()))
+}
+
+/// Without zeros at the end that say nothing.
+fn shorten(number: String) -> String {
+    match number.contains('.') {
+        true => number.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => number,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn labels(min: f64, max: f64) -> Vec<String> {
+        ticks(&ValueRange { min, max }, 0.05).into_iter().map(|tick| tick.label).collect()
+    }
+
+    #[test]
+    fn marks_are_round_and_the_ends_are_told() {
+        assert_eq!(labels(0.0, 255.0), ["0", "100", "200", "255"]);
+        assert_eq!(labels(0.0, 1.0), ["0", "0.2", "0.4", "0.6", "0.8", "1"]);
+        assert_eq!(labels(-0.033, 0.187), ["-0.033", "0", "0.05", "0.1", "0.15", "0.187"]);
+        // 4 600 001 is too near to the end.
+        assert_eq!(labels(4600000.98, 4600003.5), ["4600000.98", "4600002", "4600003", "4600003.5"]);
+        assert_eq!(labels(2e-12, 8e-12)[0], "2e-12");
+        assert_eq!(labels(0.0, 3e20).last().unwrap(), "3e20");
+    }
+
+    #[test]
+    fn marks_lie_where_their_values_are() {
+        for tick in ticks(&ValueRange { min: -3.0, max: 17.0 }, 0.0) {
+            let value: f64 = tick.label.parse().unwrap();
+            assert!((tick.share - (value + 3.0) / 20.0).abs() < 1e-12, "{tick:?}");
+        }
+    }
+
+    #[test]
+    fn a_range_without_room_has_its_ends_alone() {
+        assert_eq!(labels(7.0, 7.0), ["7"]);
+        assert_eq!(labels(0.0, 0.0), ["0"]);
+        assert_eq!(labels(-f64::MAX, f64::MAX).len(), 2);
+        let close = f64::from_bits(1e7f64.to_bits() + 1);
+        assert!(labels(1e7, close).len() <= 2);
+        assert!(labels(0.0, f64::MIN_POSITIVE).len() >= 2);
+    }
+}
