@@ -7,7 +7,7 @@ use std::fmt::Write;
 use std::path::Path;
 use surfel::geometry::estimate::Estimate;
 use surfel::geometry::{Colours, Surfels};
-use surfel::io::ply::{self, Element, Format, Loaded, Report};
+use surfel::io::ply::{self, Element, Format, Loaded, ReadOptions, Report};
 use surfel::{Error, Result, scenes};
 
 /// Says what is in a file or scene. Of a file whose points cannot be drawn it tells what there is, and the error why.
@@ -17,7 +17,7 @@ pub fn run(input: &OsString) -> Result<()> {
         return print(&format!("{name}: built-in scene\n{}", describe(&surfels, surfels.len() as u64)));
     }
     let path = Path::new(input);
-    let ply::Inspected { format, elements, loaded } = ply::inspect(path)?;
+    let ply::Inspected { format, elements, loaded } = ply::inspect(path, &ReadOptions::default(), &())?;
     print(&header(path, format, &elements))?;
     let Loaded { cloud, report } = loaded?;
     let surfels = cloud.into_surfels(&Estimate::default(), &());

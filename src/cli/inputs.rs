@@ -4,7 +4,7 @@ use std::ffi::OsString;
 use std::path::Path;
 use surfel::geometry::Surfels;
 use surfel::geometry::estimate::Estimate;
-use surfel::io::ply::{self, Dropped};
+use surfel::io::ply::{self, Dropped, ReadOptions};
 use surfel::{Error, Result, scenes};
 
 /// What the inputs together hold.
@@ -25,6 +25,7 @@ pub fn load(names: &[OsString], albedo: [f32; 3]) -> Result<Inputs> {
         parts.push(surfels);
         read += points;
         dropped.position += lost.position;
+        dropped.transparent += lost.transparent;
     }
     let mut surfels = Surfels::merge(parts, albedo)?;
     // One input is sorted already.
@@ -41,7 +42,7 @@ fn load_one(name: &OsString) -> Result<(Surfels, u64, Dropped)> {
         let count = surfels.len() as u64;
         return Ok((surfels, count, Dropped::default()));
     }
-    let ply::Loaded { cloud, report } = ply::read(Path::new(name))?;
+    let ply::Loaded { cloud, report } = ply::read(Path::new(name), &ReadOptions::default(), &())?;
     let input = Path::new(name).display();
     if report.dropped.total() > 0 {
         log::warn!("{input}: {} of {} points have no finite position", report.dropped.total(), report.points);
