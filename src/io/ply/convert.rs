@@ -26,11 +26,13 @@ pub(super) struct Tally {
     pub transparent: u64,
     pub min: DVec3,
     pub max: DVec3,
+    /// Whether a normal or a radius is missing.
+    pub lacking: bool,
 }
 
 impl Default for Tally {
     fn default() -> Self {
-        Self { dropped: 0, transparent: 0, min: DVec3::INFINITY, max: DVec3::NEG_INFINITY }
+        Self { dropped: 0, transparent: 0, min: DVec3::INFINITY, max: DVec3::NEG_INFINITY, lacking: false }
     }
 }
 
@@ -41,13 +43,14 @@ impl Tally {
             transparent: self.transparent + other.transparent,
             min: self.min.min(other.min),
             max: self.max.max(other.max),
+            lacking: self.lacking || other.lacking,
         }
     }
 }
 
 /// Fills as many entries as the block has rows.
 pub(super) fn convert(block: &Block, layout: &Layout, out: &mut Slices) -> Tally {
-    let tally = match layout.narrow {
+    let mut tally = match layout.narrow {
         true => positions(block, layout, out.narrow, DVec3::as_vec3, Vec3::NAN),
         false => positions(block, layout, out.wide, |position| position, DVec3::NAN),
     };
@@ -63,6 +66,9 @@ pub(super) fn convert(block: &Block, layout: &Layout, out: &mut Slices) -> Tally
     shapes(block, layout, out);
     colours(block, layout, out);
     out.scalar.iter_mut().zip(block.column(SCALAR)).for_each(|(to, value)| *to = *value as f32);
+    // Here, as the entries are still in the cache.
+    tally.lacking = !layout.has_normals() || !layout.has_radii();
+    tally.lacking |= out.normals.contains(&Vec3::ZERO) || out.radii.contains(&0.0);
     tally
 }
 

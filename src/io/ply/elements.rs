@@ -16,7 +16,8 @@ use super::types::{Element, Format, Kind};
 use super::vertices::{self, Records};
 use super::{Faces, Parsed};
 use crate::geometry::View;
-use glam::DVec3;
+use glam::{DVec3, Vec3};
+use std::borrow::Cow;
 
 /// What all elements together hold.
 pub(super) struct Contents {
@@ -83,7 +84,7 @@ impl File<'_> {
     }
 
     /// Everything from a byte on.
-    fn from(&self, start: u64) -> Parsed<std::borrow::Cow<'_, [u8]>> {
+    fn from(&self, start: u64) -> Parsed<Cow<'_, [u8]>> {
         self.source.part(start, self.source.size().saturating_sub(start))
     }
 
@@ -172,7 +173,7 @@ impl Others<'_> {
         reader: &mut R,
         element: &Element,
         list: usize,
-        each: impl Fn(&mut Self, &[f64]),
+        mut each: impl FnMut(&mut Self, &[f64]),
     ) -> Parsed<bool> {
         let wanted: Vec<bool> = (0..element.properties.len()).map(|index| index == list).collect();
         let meter = self.meter;
@@ -186,32 +187,20 @@ impl Others<'_> {
     /// Cells with at most one vertex each. Without columns and rows, only the direction of view is of use.
     fn range_grid<R: Reader>(&mut self, reader: &mut R, element: &Element, list: usize) -> Parsed<bool> {
         let mut cells = Vec::new();
-        self.lists_into(reader, element, list, &mut cells)?;
-        self.view = View::Towards(glam::Vec3::Z);
-        let Some(grid) = Grid::new(cells, self.grid) else { return Ok(false) };
-        grid.triangulate(self.points, &mut self.collector);
-        Ok(true)
-    }
-
-    fn lists_into<R: Reader>(
-        &mut self,
-        reader: &mut R,
-        element: &Element,
-        list: usize,
-        cells: &mut Vec<Option<u32>>,
-    ) -> Parsed<()> {
-        let wanted: Vec<bool> = (0..element.properties.len()).map(|index| index == list).collect();
-        walk(reader, element, &wanted, self.meter, |_, corners| {
+        self.lists(reader, element, list, |others, corners| {
             let cell = match corners {
-                [vertex] => self.points.of_vertex(*vertex),
+                [vertex] => others.points.of_vertex(*vertex),
                 _ => None,
             };
             if cell.is_none() && !corners.is_empty() {
-                self.collector.count(false);
+                others.collector.count(false);
             }
             cells.push(cell);
-            Ok(())
-        })
+        })?;
+        self.view = View::Towards(Vec3::Z);
+        let Some(grid) = Grid::new(cells, self.grid) else { return Ok(false) };
+        grid.triangulate(self.points, &mut self.collector);
+        Ok(true)
     }
 
     /// Where the camera stood, if there was one camera.

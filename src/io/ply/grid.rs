@@ -20,7 +20,9 @@ impl Grid {
     /// Cells whose number is that of columns × rows; `None` if it is not.
     pub fn new(cells: Vec<Option<u32>>, [columns, rows]: [Option<u64>; 2]) -> Option<Self> {
         let columns = usize::try_from(columns?).ok()?;
-        let fits = columns > 1 && Some(cells.len() as u64) == rows?.checked_mul(columns as u64);
+        let fits = Some(cells.len() as u64) == rows?.checked_mul(columns as u64);
+        // Without rows there may be any number of columns.
+        let fits = fits && (2..=cells.len()).contains(&columns);
         fits.then_some(Self { columns, cells })
     }
 

@@ -134,7 +134,9 @@ fn parse(source: &Source, options: &ReadOptions, progress: &dyn Progress) -> Par
     let header = parse_header(source)?;
     header::refuse_duplicates(&header.elements)?;
     let vertex = layout::find_vertex(&header.elements)?;
-    let layout = Layout::of(&header.elements[vertex], options.scalar.as_deref())?;
+    let mut layout = Layout::of(&header.elements[vertex], options.scalar.as_deref())?;
+    // Text keeps its digits, whatever type the header names.
+    layout.narrow &= header.format != Format::Ascii;
     let meter = Meter::new(progress, source.size());
     let contents = File { source, header: &header, vertex, layout: &layout, meter: &meter }.read()?;
     meter.finish();

@@ -36,9 +36,7 @@ impl Points {
         }
         let map = (dropped.total() > 0).then(|| leave_out(&mut arrays));
         let cloud = cloud(arrays, &tally);
-        let lacks_normals = cloud.normals.as_ref().is_none_or(|normals| normals.contains(&Vec3::ZERO));
-        let lacking = lacks_normals || cloud.radii.as_ref().is_none_or(|radii| radii.contains(&0.0));
-        Ok(Self { cloud, dropped, count, map, lacking })
+        Ok(Self { cloud, dropped, count, map, lacking: tally.lacking })
     }
 
     /// The point that a vertex has become; `None` if there is no such vertex, or if it was dropped.

@@ -81,6 +81,12 @@ fn range_grids_leave_out_tears() {
     for [a, b, c] in cloud.triangles.iter().map(|t| t.map(|corner| cloud.positions[corner as usize])) {
         assert!((b - a).cross(c - a).z > 0.0);
     }
+    for impossible in
+        ["num_cols 18446744073709551615\nobj_info num_rows 0", "num_cols 0\nobj_info num_rows 0"]
+    {
+        let lines = format!("obj_info {impossible}\nelement vertex 4\n{XYZ}\n{}", grid.replace("12", "0"));
+        assert!(load(&text(&lines, SQUARE)).cloud.triangles.is_empty());
+    }
     let unknown = load(&text(&lines.replace("num_rows 3", "num_rows 4"), &format!("{points}{cells}")));
     assert_eq!((unknown.cloud.triangles.len(), unknown.cloud.view), (0, View::Towards(Vec3::Z)));
     assert_eq!(unknown.report.skipped_elements, ["range_grid"]);

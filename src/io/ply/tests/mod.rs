@@ -183,6 +183,8 @@ fn large_coordinates_keep_their_fractions() {
     let across = surfels.positions[0] - surfels.positions[1];
     assert!((f64::from(across.x.abs()) - 0.875_000_5).abs() < 1e-7, "{across}");
     assert!((surfels.origin.x - 10_000_000.562_5).abs() < 1e-6, "{}", surfels.origin);
+    let text = load(&ascii(2, "", "1e7 0 0 0 0 1 1 10000000.875 0 0 0 0 1 1")).cloud;
+    assert_eq!(text.positions[1].x - text.positions[0].x, 0.875, "text keeps its digits");
     // Ordinary coordinates stay as they are.
     assert_eq!(load(&ascii(2, "", "0.1 0 0 0 0 1 1 1 0 0 0 0 1 1")).cloud.origin, DVec3::ZERO);
 }
