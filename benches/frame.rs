@@ -52,7 +52,7 @@ fn inputs() -> Vec<(&'static str, Surfels)> {
     match scan.exists() {
         true => inputs.push((
             "bunny16k",
-            ply::read(&scan)
+            ply::read(&scan, &Default::default(), &())
                 .expect("the scan is read")
                 .cloud
                 .into_surfels(&Default::default(), &())

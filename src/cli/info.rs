@@ -3,12 +3,12 @@
 use super::args::Info;
 use super::files::print;
 use super::inputs::scene;
-use super::{progress, read};
+use super::progress;
 use std::fmt::Write;
 use std::path::Path;
 use surfel::geometry::estimate::Estimated;
 use surfel::geometry::{Cloud, Colours, Surfels};
-use surfel::io::ply::{Element, Format, Inspected, Loaded, Report};
+use surfel::io::ply::{self, Element, Format, Inspected, Loaded, ReadOptions, Report};
 use surfel::{Error, Result, scenes};
 
 /// Says what is in a file or scene. Of a file whose points cannot be drawn it tells what there is, and the error why.
@@ -19,7 +19,7 @@ pub fn run(args: &Info) -> Result<()> {
     }
     let path = Path::new(&args.input);
     let bars = progress::bars(false);
-    let Inspected { format, elements, loaded } = read::inspect(path, &*bars)?;
+    let Inspected { format, elements, loaded } = ply::inspect(path, &ReadOptions::default(), &*bars)?;
     print(&header(path, format, &elements))?;
     let Loaded { cloud, report } = loaded?;
     print(&(properties(&report) + &frame(&cloud)))?;

@@ -2,12 +2,12 @@
 
 use super::colouring::{Coloured, Colouring};
 use super::progress::say;
-use super::{read, summary};
+use super::summary;
 use std::ffi::OsString;
 use std::path::Path;
 use surfel::geometry::estimate::{Estimate, Estimated};
 use surfel::geometry::{Cloud, Surfels};
-use surfel::io::ply::{Dropped, Loaded};
+use surfel::io::ply::{self, Dropped, Loaded, ReadOptions};
 use surfel::{Error, Progress, Result, Settings, scenes};
 
 /// What is wanted of which inputs.
@@ -54,6 +54,7 @@ pub fn load(wanted: &Wanted<'_>) -> Result<Inputs> {
         parts.push(part);
         read += points;
         dropped.position += lost.position;
+        dropped.transparent += lost.transparent;
     }
     let by_property = wanted.colouring.as_ref().filter(|colouring| colouring.property().is_some());
     let coloured = by_property.map(|colouring| colour(colouring, &mut parts, wanted.quiet));
@@ -78,7 +79,8 @@ fn load_one(name: &OsString, wanted: &Wanted<'_>) -> Result<(Part, u64, Dropped)
             None => Ok((Part::Scene(surfels), count, Dropped::default())),
         };
     }
-    let Loaded { cloud, report } = read::read(Path::new(name), property, wanted.progress)?;
+    let options = ReadOptions { scalar: property.map(str::to_owned) };
+    let Loaded { cloud, report } = ply::read(Path::new(name), &options, wanted.progress)?;
     let name = Path::new(name).display().to_string();
     if report.dropped.total() > 0 {
         log::warn!("{name}: {} of {} points have no finite position", report.dropped.total(), report.points);

@@ -11,7 +11,6 @@ mod info;
 mod inputs;
 mod log;
 mod progress;
-mod read;
 mod reference;
 mod render;
 mod report;

@@ -162,11 +162,11 @@ fn pass((name, ms): (&'static str, Statistics)) -> Value {
 
 /// Every point once: read = dropped + culled + drawn.
 fn tally(loaded: &Inputs, counts: SplatCounts) -> Value {
-    let Dropped { position } = loaded.dropped;
+    let Dropped { position, transparent } = loaded.dropped;
     let SplatCounts { drawn, behind, eye_plane, back, outside } = counts;
     json!({
         "read": loaded.read,
-        "dropped": { "position": position, "outlier": loaded.estimated.outliers },
+        "dropped": { "position": position, "transparent": transparent, "outlier": loaded.estimated.outliers },
         "culled": { "behind": behind, "eye_plane": eye_plane, "back": back, "outside": outside },
         "drawn": drawn,
     })

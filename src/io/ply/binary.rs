@@ -1,106 +1,130 @@
 //! Binary records.
 
-use super::layout::{COLUMNS, Layout};
-use super::table::{refuse_lie, room};
-use super::types::{Element, Kind, Scalar};
-use super::{Parsed, shown};
+use super::Parsed;
+use super::records::Reader;
+use super::types::{Element, Scalar};
 
-/// The number at the start of `bytes`, which must be long enough.
-pub(super) fn decode(bytes: &[u8], scalar: Scalar, big_endian: bool) -> f64 {
-    fn array<const N: usize>(bytes: &[u8], big_endian: bool) -> [u8; N] {
-        let mut array = [0; N];
-        array.copy_from_slice(&bytes[..N]);
+/// The number at the start of `bytes`; `None` if they are too few.
+fn decode(bytes: &[u8], scalar: Scalar, big_endian: bool) -> Option<f64> {
+    fn array<const N: usize>(bytes: &[u8], big_endian: bool) -> Option<[u8; N]> {
+        let mut array = *bytes.first_chunk()?;
         if big_endian {
             array.reverse();
         }
-        array
+        Some(array)
+    }
+    Some(match scalar {
+        Scalar::I8 => i8::from_le_bytes(array(bytes, big_endian)?).into(),
+        Scalar::U8 => u8::from_le_bytes(array(bytes, big_endian)?).into(),
+        Scalar::I16 => i16::from_le_bytes(array(bytes, big_endian)?).into(),
+        Scalar::U16 => u16::from_le_bytes(array(bytes, big_endian)?).into(),
+        Scalar::I32 => i32::from_le_bytes(array(bytes, big_endian)?).into(),
+        Scalar::U32 => u32::from_le_bytes(array(bytes, big_endian)?).into(),
+        Scalar::F32 => f32::from_le_bytes(array(bytes, big_endian)?).into(),
+        Scalar::F64 => f64::from_le_bytes(array(bytes, big_endian)?),
+    })
+}
+
+/// One property of consecutive records of `stride` bytes: a loop of its own for every type and byte order.
+pub(super) fn gather(
+    to: &mut [f64],
+    records: &[u8],
+    stride: usize,
+    offset: usize,
+    scalar: Scalar,
+    big_endian: bool,
+) {
+    fn each<const N: usize>(
+        to: &mut [f64],
+        records: &[u8],
+        stride: usize,
+        offset: usize,
+        value: impl Fn([u8; N]) -> f64,
+    ) {
+        for (to, record) in to.iter_mut().zip(records.chunks_exact(stride)) {
+            *to =
+                record.get(offset..).and_then(|bytes| bytes.first_chunk()).map_or(0.0, |bytes| value(*bytes));
+        }
+    }
+    macro_rules! each {
+        ($number:ty) => {
+            match big_endian {
+                false => each(to, records, stride, offset, |bytes| <$number>::from_le_bytes(bytes).into()),
+                true => each(to, records, stride, offset, |bytes| <$number>::from_be_bytes(bytes).into()),
+            }
+        };
     }
     match scalar {
-        Scalar::I8 => i8::from_le_bytes(array(bytes, big_endian)).into(),
-        Scalar::U8 => bytes[0].into(),
-        Scalar::I16 => i16::from_le_bytes(array(bytes, big_endian)).into(),
-        Scalar::U16 => u16::from_le_bytes(array(bytes, big_endian)).into(),
-        Scalar::I32 => i32::from_le_bytes(array(bytes, big_endian)).into(),
-        Scalar::U32 => u32::from_le_bytes(array(bytes, big_endian)).into(),
-        Scalar::F32 => f32::from_le_bytes(array(bytes, big_endian)).into(),
-        Scalar::F64 => f64::from_le_bytes(array(bytes, big_endian)),
+        Scalar::I8 => each!(i8),
+        Scalar::U8 => each!(u8),
+        Scalar::I16 => each!(i16),
+        Scalar::U16 => each!(u16),
+        Scalar::I32 => each!(i32),
+        Scalar::U32 => each!(u32),
+        Scalar::F32 => each!(f32),
+        Scalar::F64 => each!(f64),
     }
 }
 
 /// A place among binary records.
+#[derive(Clone)]
 pub(super) struct Cursor<'a> {
     rest: &'a [u8],
     big_endian: bool,
 }
 
 impl<'a> Cursor<'a> {
-    pub fn new(payload: &'a [u8], big_endian: bool) -> Self {
-        Self { rest: payload, big_endian }
+    pub fn new(rest: &'a [u8], big_endian: bool) -> Self {
+        Self { rest, big_endian }
     }
 
-    /// All records of an element without lists.
-    pub fn records(&mut self, element: &Element) -> Parsed<&'a [u8]> {
-        let stride = element.least_stride();
-        refuse_lie(element, stride, self.rest.len())?;
-        // Fits, as the product is no more than the bytes left; a stride of 0 needs no bytes whatever the count.
-        Ok(self.take(element.count.saturating_mul(stride)).unwrap_or_default())
-    }
-
-    /// Goes past all records of an element.
-    pub fn skip(&mut self, element: &Element) -> Parsed<()> {
-        if !element.has_lists() {
-            return self.records(element).map(drop);
-        }
-        refuse_lie(element, element.least_stride(), self.rest.len())?;
-        (0..element.count).try_for_each(|record| self.record(element, record, |_, _| ()))
-    }
-
-    /// The rows of a vertex element that has lists.
-    pub fn rows(&mut self, vertex: &Element, layout: &Layout) -> Parsed<Vec<[f64; COLUMNS]>> {
-        refuse_lie(vertex, vertex.least_stride(), self.rest.len())?;
-        let mut rows = room(vertex)?;
-        let mut values = vec![0.0; vertex.properties.len()];
-        for record in 0..vertex.count {
-            self.record(vertex, record, |index, value| values[index] = value)?;
-            rows.push(layout.columns.map(|column| column.map_or(0.0, |index| values[index])));
-        }
-        Ok(rows)
-    }
-
-    /// Reads one record and hands over its single numbers.
-    fn record(&mut self, element: &Element, record: u64, mut value: impl FnMut(usize, f64)) -> Parsed<()> {
-        for (index, property) in element.properties.iter().enumerate() {
-            let done = match property.kind {
-                Kind::Scalar(scalar) => self.number(scalar).map(|number| value(index, number)),
-                Kind::List { length, item } => {
-                    self.number(length).and_then(|items| self.skip_items(items, item))
-                }
-            };
-            done.ok_or_else(|| {
-                let (element, property) = (shown(element.name.as_bytes()), shown(property.name.as_bytes()));
-                format!("record {record} of element {element} runs past the end of the file in {property}, or its list has a \
-                         negative length: the file is damaged; fetch it again")
-            })?;
-        }
-        Ok(())
-    }
-
-    fn number(&mut self, scalar: Scalar) -> Option<f64> {
-        let bytes = self.take(scalar.size())?;
-        Some(decode(bytes, scalar, self.big_endian))
-    }
-
-    /// `items` is a whole number, as lengths are of integer types.
-    fn skip_items(&mut self, items: f64, item: Scalar) -> Option<()> {
-        if items < 0.0 {
-            return None;
-        }
-        self.take(items as u64 * item.size()).map(drop)
-    }
-
-    fn take(&mut self, size: u64) -> Option<&'a [u8]> {
+    /// The next `size` bytes.
+    pub fn take(&mut self, size: u64) -> Option<&'a [u8]> {
         let (taken, rest) = self.rest.split_at_checked(usize::try_from(size).ok()?)?;
         self.rest = rest;
         Some(taken)
+    }
+}
+
+impl Reader for Cursor<'_> {
+    fn left(&self) -> usize {
+        self.rest.len()
+    }
+
+    fn least_size(element: &Element) -> u64 {
+        element.least_stride()
+    }
+
+    fn number(&mut self, scalar: Scalar) -> Parsed<f64> {
+        let number = decode(self.rest, scalar, self.big_endian).ok_or("the file ends here")?;
+        self.rest = &self.rest[scalar.size() as usize..];
+        Ok(number)
+    }
+
+    fn skip(&mut self, scalar: Scalar, count: u64) -> Parsed<()> {
+        self.take(count.saturating_mul(scalar.size())).map(drop).ok_or_else(|| "the file ends here".into())
+    }
+
+    fn length(&mut self, length: Scalar, item: Scalar) -> Parsed<u64> {
+        // A whole number, as lengths are of integer types.
+        let length = self.number(length)?;
+        if length < 0.0 {
+            return Err(format!("a list of negative length, {length}"));
+        }
+        if length * item.size() as f64 > self.left() as f64 {
+            return Err(format!(
+                "a list of {length} numbers does not fit into the {} bytes left",
+                self.left()
+            ));
+        }
+        Ok(length as u64)
+    }
+
+    fn leap(&mut self, element: &Element) -> bool {
+        !element.has_lists() && self.take(element.count.saturating_mul(element.least_stride())).is_some()
+    }
+
+    fn trailing(&self) -> usize {
+        self.rest.len()
     }
 }

@@ -4,7 +4,7 @@ use super::types::{Element, Format, Kind, Property, Scalar};
 use super::{Parsed, shown, sniff};
 
 /// Longest header, bytes. The longest known ones hold a few hundred properties.
-const LIMIT: usize = 1 << 20;
+pub(super) const LIMIT: usize = 1 << 20;
 
 /// A parsed header.
 #[derive(Debug, PartialEq)]
@@ -14,6 +14,8 @@ pub(super) struct Header {
     pub elements: Vec<Element>,
     /// Where the records begin, bytes from the start of the file.
     pub payload: usize,
+    /// Columns and rows of a range grid, from `obj_info num_cols` and `num_rows`.
+    pub grid: [Option<u64>; 2],
 }
 
 pub(super) fn parse(bytes: &[u8]) -> Parsed<Header> {
@@ -21,12 +23,16 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Header> {
     if lines.first().trim_ascii_end() != b"ply" {
         return Err(sniff::name(bytes));
     }
-    let (mut format, mut elements) = (None, Vec::new());
+    let (mut format, mut elements, mut grid) = (None, Vec::new(), [None; 2]);
     loop {
         let line = lines.next()?;
         let keyword = line.split(u8::is_ascii_whitespace).next().unwrap_or_default();
         let done = match keyword {
-            b"" | b"comment" | b"obj_info" => Ok(()),
+            b"" | b"comment" => Ok(()),
+            b"obj_info" => {
+                parse_info(line, &mut grid);
+                Ok(())
+            }
             b"format" => parse_format(line, &mut format),
             b"element" => parse_element(line, &mut elements),
             b"property" => parse_property(line, &mut elements),
@@ -40,7 +46,19 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Header> {
     }
     let format =
         format.ok_or("the header has no `format` line: write the file again with a complete header")?;
-    Ok(Header { format, elements, payload: lines.at })
+    Ok(Header { format, elements, payload: lines.at, grid })
+}
+
+/// Free text as a rule; what range scanners say of their grids is understood.
+fn parse_info(line: &[u8], grid: &mut [Option<u64>; 2]) {
+    if let [_, name, value] = words(line)[..] {
+        let value = std::str::from_utf8(value).ok().and_then(|text| text.parse().ok());
+        match name {
+            b"num_cols" => grid[0] = value,
+            b"num_rows" => grid[1] = value,
+            _ => {}
+        }
+    }
 }
 
 fn words(line: &[u8]) -> Vec<&[u8]> {

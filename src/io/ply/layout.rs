@@ -3,48 +3,124 @@
 use super::types::{Element, Kind, Property, Scalar};
 use super::{Parsed, shown};
 
-/// Numbers of a surfel, in this order: x y z, nx ny nz, radius, red green blue.
-pub(super) const COLUMNS: usize = 10;
+/// Number of columns.
+pub(super) const COLUMNS: usize = SCALAR + 1;
 /// Column of x; y and z follow.
 pub(super) const POSITION: usize = 0;
 /// Column of nx; ny and nz follow.
 pub(super) const NORMAL: usize = 3;
 /// Column of the radius.
 pub(super) const RADIUS: usize = 6;
-/// Column of red; green and blue follow.
+/// Column of red; green and blue follow. Of 3D Gaussians, the constant harmonics f_dc_0 to 2.
 pub(super) const COLOUR: usize = 7;
+/// Column of ux; uy uz, vx vy vz follow. Of 3D Gaussians, scale_0 to 2.
+pub(super) const AXES: usize = 10;
+/// Column of two_sided.
+pub(super) const TWO_SIDED: usize = 16;
+/// Column of the opacity of a 3D Gaussian.
+pub(super) const OPACITY: usize = 17;
+/// Column of rot_0, the real part of a 3D Gaussian's rotation; rot_1 to 3 follow.
+pub(super) const ROTATION: usize = 18;
+/// Column of the scalar that the caller has chosen.
+pub(super) const SCALAR: usize = 22;
 
-const POSITIONS: &[[&str; 3]] = &[["x", "y", "z"]];
 const NORMALS: &[[&str; 3]] = &[["nx", "ny", "nz"], ["normal_x", "normal_y", "normal_z"]];
 const COLOURS: &[[&str; 3]] =
     &[["red", "green", "blue"], ["diffuse_red", "diffuse_green", "diffuse_blue"], ["r", "g", "b"]];
+
+/// How the shape of a disc is given beyond its radius.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Shape {
+    /// Not at all.
+    Circle,
+    /// By two axes.
+    Axes,
+    /// As a Gaussian with so many scales, 2 or 3, and a rotation.
+    Gaussian(u8),
+}
+
+/// What the columns of colour hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Colour {
+    /// red green blue of these types.
+    Rgb([Scalar; 3]),
+    /// The constant terms of spherical harmonics, as of 3D Gaussians.
+    Harmonics,
+}
 
 /// Where a vertex keeps what a surfel needs.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Layout {
     /// Index of the property that fills each column.
     pub columns: [Option<usize>; COLUMNS],
-    /// Types of red, green and blue, if there is colour.
-    pub colour: Option<[Scalar; 3]>,
+    /// What the shape comes from.
+    pub shape: Shape,
+    /// What the colour comes from, if there is one.
+    pub colour: Option<Colour>,
+    /// Whether f32 holds every coordinate that the file can, as it is.
+    pub narrow: bool,
 }
 
 impl Layout {
-    pub fn of(vertex: &Element) -> Parsed<Self> {
+    /// Looks for what is understood, and for the property named `chosen`.
+    pub fn of(vertex: &Element, chosen: Option<&str>) -> Parsed<Self> {
         let properties = &vertex.properties;
         refuse_compressed(properties)?;
-        let position = triple(properties, POSITIONS)
-            .ok_or("its vertices have no x y z: write it again with all three")?;
-        let (normal, radius) = (triple(properties, NORMALS), scalar(properties, "radius"));
-        let colour =
-            triple(properties, COLOURS).filter(|colour| colour.iter().all(|(_, scalar)| is_colour(*scalar)));
-        let mut columns = [None; COLUMNS];
-        columns[RADIUS] = radius.map(|(index, _)| index);
-        for (first, found) in [(POSITION, Some(position)), (NORMAL, normal), (COLOUR, colour)] {
-            for (axis, (index, _)) in found.into_iter().flatten().enumerate() {
-                columns[first + axis] = Some(index);
-            }
+        let find = Finder { properties };
+        let position =
+            find.all(["x", "y", "z"]).ok_or("its vertices have no x y z: write it again with all three")?;
+        let narrow = position.iter().all(|(_, scalar)| scalar.size() <= 2 || *scalar == Scalar::F32);
+        let mut layout = Self { columns: [None; COLUMNS], shape: Shape::Circle, colour: None, narrow };
+        layout.fill(POSITION, position);
+        layout.find_shape(&find);
+        layout.find_colour(&find);
+        if let Some(name) = chosen {
+            layout.fill(SCALAR, [find.one(name).ok_or_else(|| no_scalar(name, properties))?]);
         }
-        Ok(Self { columns, colour: colour.map(|colour| colour.map(|(_, scalar)| scalar)) })
+        Ok(layout)
+    }
+
+    fn fill<const N: usize>(&mut self, first: usize, found: [(usize, Scalar); N]) {
+        for (axis, (index, _)) in found.into_iter().enumerate() {
+            self.columns[first + axis] = Some(index);
+        }
+    }
+
+    fn find_shape(&mut self, find: &Finder) {
+        if let Some(normal) = NORMALS.iter().find_map(|names| find.all(*names)) {
+            self.fill(NORMAL, normal);
+        }
+        // `value` is a scale beside the normals of FSSR's samples alone; elsewhere it may be anything.
+        let scale = || find.one("value").filter(|(_, scalar)| scalar.is_float() && self.fills(NORMAL));
+        if let Some(radius) = find.one("radius").or_else(scale) {
+            self.fill(RADIUS, [radius]);
+        }
+        if let Some(side) = find.one("two_sided") {
+            self.fill(TWO_SIDED, [side]);
+        }
+        let gaussian = find.all(["rot_0", "rot_1", "rot_2", "rot_3"]).zip(find.all(["scale_0", "scale_1"]));
+        if let Some(axes) = find.all(["ux", "uy", "uz", "vx", "vy", "vz"]) {
+            self.fill(AXES, axes);
+            self.shape = Shape::Axes;
+        } else if let Some((rotation, scales)) = gaussian {
+            self.fill(ROTATION, rotation);
+            self.fill(AXES, scales);
+            let third = find.one("scale_2");
+            third.into_iter().for_each(|scale| self.fill(AXES + 2, [scale]));
+            find.one("opacity").into_iter().for_each(|opacity| self.fill(OPACITY, [opacity]));
+            self.shape = Shape::Gaussian(if third.is_some() { 3 } else { 2 });
+        }
+    }
+
+    fn find_colour(&mut self, find: &Finder) {
+        let usable = |rgb: &[(usize, Scalar); 3]| rgb.iter().all(|(_, scalar)| is_colour(*scalar));
+        if let Some(rgb) = COLOURS.iter().find_map(|names| find.all(*names).filter(usable)) {
+            self.fill(COLOUR, rgb);
+            self.colour = Some(Colour::Rgb(rgb.map(|(_, scalar)| scalar)));
+        } else if let Some(harmonics) = find.all(["f_dc_0", "f_dc_1", "f_dc_2"]) {
+            self.fill(COLOUR, harmonics);
+            self.colour = Some(Colour::Harmonics);
+        }
     }
 
     /// Whether a property fills the column.
@@ -56,6 +132,26 @@ impl Layout {
     pub fn uses(&self, index: usize) -> bool {
         self.columns.contains(&Some(index))
     }
+
+    /// Whether the discs have normals of their own.
+    pub fn has_normals(&self) -> bool {
+        self.fills(NORMAL) || self.shape != Shape::Circle
+    }
+
+    /// Whether the discs have radii of their own.
+    pub fn has_radii(&self) -> bool {
+        self.fills(RADIUS) || self.shape != Shape::Circle
+    }
+
+    /// Whether the colours can stay sRGB-encoded.
+    pub fn has_codes(&self) -> bool {
+        matches!(self.colour, Some(Colour::Rgb([Scalar::U8, Scalar::U8, Scalar::U8]) | Colour::Harmonics))
+    }
+
+    /// Whether the file can say that a disc has no side.
+    pub fn has_sides(&self) -> bool {
+        self.fills(TWO_SIDED) || matches!(self.shape, Shape::Gaussian(_))
+    }
 }
 
 /// Integers of other sizes have no agreed range as colours.
@@ -63,17 +159,37 @@ fn is_colour(scalar: Scalar) -> bool {
     matches!(scalar, Scalar::U8 | Scalar::U16) || scalar.is_float()
 }
 
-fn scalar(properties: &[Property], name: &str) -> Option<(usize, Scalar)> {
-    properties.iter().enumerate().find_map(|(index, property)| match property.kind {
-        Kind::Scalar(scalar) if property.name == name => Some((index, scalar)),
-        _ => None,
-    })
+struct Finder<'a> {
+    properties: &'a [Property],
 }
 
-/// The first set of three names that is there in full.
-fn triple(properties: &[Property], sets: &[[&str; 3]]) -> Option<[(usize, Scalar); 3]> {
-    sets.iter()
-        .find_map(|[a, b, c]| Some([scalar(properties, a)?, scalar(properties, b)?, scalar(properties, c)?]))
+impl Finder<'_> {
+    /// The property of one number that has this name.
+    fn one(&self, name: &str) -> Option<(usize, Scalar)> {
+        self.properties.iter().enumerate().find_map(|(index, property)| match property.kind {
+            Kind::Scalar(scalar) if property.name == name => Some((index, scalar)),
+            _ => None,
+        })
+    }
+
+    /// The properties of these names; `None` unless all are there.
+    fn all<const N: usize>(&self, names: [&str; N]) -> Option<[(usize, Scalar); N]> {
+        let mut found = [(0, Scalar::I8); N];
+        for (found, name) in found.iter_mut().zip(names) {
+            *found = self.one(name)?;
+        }
+        Some(found)
+    }
+}
+
+fn no_scalar(name: &str, properties: &[Property]) -> String {
+    let scalars = properties.iter().filter(|property| matches!(property.kind, Kind::Scalar(_)));
+    let names: Vec<_> = scalars.map(|property| shown(property.name.as_bytes())).collect();
+    format!(
+        "its vertices have no number named {}: choose one of {}",
+        shown(name.as_bytes()),
+        names.join(", ")
+    )
 }
 
 fn has(properties: &[Property], name: &str) -> bool {
@@ -116,23 +232,47 @@ mod tests {
         }
     }
 
+    fn layout(names: &str, scalar: Scalar) -> Layout {
+        Layout::of(&vertex(names, scalar), None).unwrap()
+    }
+
     #[test]
     fn names_are_found_in_any_order() {
-        let layout =
-            Layout::of(&vertex("radius z normal_z y x normal_x b g r quality normal_y", Scalar::F32))
-                .unwrap();
-        assert_eq!(layout.columns, [4, 3, 1, 5, 10, 2, 0, 8, 7, 6].map(Some));
+        let layout = layout("radius z normal_z y x normal_x b g r quality normal_y", Scalar::F32);
+        assert_eq!(layout.columns[..AXES], [4, 3, 1, 5, 10, 2, 0, 8, 7, 6].map(Some));
         assert!(!layout.uses(9) && layout.uses(10));
     }
 
     #[test]
     fn colours_of_other_integers_are_left_alone() {
-        assert_eq!(
-            Layout::of(&vertex("x y z nx ny nz radius red green blue", Scalar::I32)).unwrap().colour,
-            None
-        );
-        let half = Layout::of(&vertex("x y z nx ny nz radius red green r g b", Scalar::U16)).unwrap();
-        assert_eq!((half.colour, half.columns[COLOUR]), (Some([Scalar::U16; 3]), Some(9)));
+        assert_eq!(layout("x y z red green blue", Scalar::I32).colour, None);
+        let half = layout("x y z red green r g b", Scalar::U16);
+        assert_eq!((half.colour, half.columns[COLOUR]), (Some(Colour::Rgb([Scalar::U16; 3])), Some(5)));
+    }
+
+    #[test]
+    fn a_value_is_a_radius_beside_normals_alone() {
+        assert_eq!(layout("x y z nx ny nz value", Scalar::F32).columns[RADIUS], Some(6));
+        assert_eq!(layout("x y z nx ny nz value radius", Scalar::F32).columns[RADIUS], Some(7));
+        assert!(!layout("x y z value", Scalar::F32).fills(RADIUS));
+    }
+
+    #[test]
+    fn shapes_need_every_part() {
+        let gaussian = "x y z scale_0 scale_1 rot_0 rot_1 rot_2 rot_3";
+        assert_eq!(layout(gaussian, Scalar::F32).shape, Shape::Gaussian(2));
+        assert_eq!(layout(&format!("{gaussian} scale_2"), Scalar::F32).shape, Shape::Gaussian(3));
+        assert_eq!(layout(&gaussian.replace("rot_3", "rot"), Scalar::F32).shape, Shape::Circle);
+        assert_eq!(layout("x y z ux uy uz vx vy vz", Scalar::F32).shape, Shape::Axes);
+        assert_eq!(layout("x y z ux uy uz vx vy", Scalar::F32).shape, Shape::Circle);
+    }
+
+    #[test]
+    fn the_chosen_scalar_may_be_any_number() {
+        let cloud = vertex("x y z quality", Scalar::F32);
+        assert_eq!(Layout::of(&cloud, Some("quality")).unwrap().columns[SCALAR], Some(3));
+        let cause = Layout::of(&cloud, Some("height")).unwrap_err();
+        assert!(cause.contains("`height`: choose one of `x`, `y`, `z`, `quality`"), "{cause}");
     }
 
     #[test]
@@ -142,7 +282,7 @@ mod tests {
             ("packed_position packed_scale", "compressed 3D Gaussians"),
         ];
         for (names, expected) in cases {
-            let cause = Layout::of(&vertex(names, Scalar::F32)).unwrap_err();
+            let cause = Layout::of(&vertex(names, Scalar::F32), None).unwrap_err();
             assert!(cause.contains(expected), "{names}: {cause}");
         }
     }
@@ -151,6 +291,6 @@ mod tests {
     fn a_list_is_no_coordinate() {
         let mut element = vertex("x y z nx ny nz radius", Scalar::F32);
         element.properties[6].kind = Kind::List { length: Scalar::U8, item: Scalar::F32 };
-        assert!(!Layout::of(&element).unwrap().fills(RADIUS));
+        assert!(!Layout::of(&element, None).unwrap().fills(RADIUS));
     }
 }

@@ -1,26 +1,68 @@
 //! PLY files: any encoding, any order of elements and properties.
 //!
+//! What is understood; everything else is skipped, and the [`Report`] says so:
+//!
+//! | vertex property | type | becomes |
+//! |---|---|---|
+//! | `x y z` | any | position, in the file's unit; must be there |
+//! | `nx ny nz`, `normal_x normal_y normal_z` | any | normal, of any length; all 0 is none |
+//! | `radius` | any | radius of the disc, in the positions' unit; 0 or less is none |
+//! | `value` | float, double | the same, beside normals: the scale of FSSR's samples |
+//! | `ux uy uz vx vy vz` | any | an elliptical disc: two semi-axes of what is covered, in the positions' unit. If there is a radius, that is the longer one, and the axes tell direction and ratio alone; if there are no normals, u × v is one |
+//! | `two_sided` | any, written as uchar | not 0: the normal may as well point the other way |
+//! | `red green blue`, `diffuse_red diffuse_green diffuse_blue`, `r g b` | uchar, ushort | colour, sRGB-encoded |
+//! | | float, double | colour, linear light; 1 is white |
+//! | `f_dc_0..2 opacity scale_0..2 rot_0..3` | float | a 3D Gaussian (or 2D, without `scale_2`) with the INRIA layout's logarithms, logits and `rot_0` as the real part: the disc of two standard deviations across its smallest axis, two-sided unless there is a normal; less than a tenth opaque is none |
+//! | any | any | [`Cloud::scalar`], if [`ReadOptions`] names it |
+//!
+//! | element | property | becomes |
+//! |---|---|---|
+//! | `face` | list `vertex_indices` or `vertex_index` | polygons, as fans of triangles |
+//! | `tristrips` | list `vertex_indices` | strips of triangles; −1 begins another |
+//! | `range_grid` | list `vertex_indices` of no vertex or one; `obj_info num_cols`, `num_rows` | triangles between neighbours, where the surface is not torn; [`View::Towards`](crate::geometry::View::Towards) +z |
+//! | `camera` | `view_px view_py view_pz` | [`View::From`](crate::geometry::View::From) |
+//!
+//! Triangles are kept only where some point has no normal or no radius, which they can tell. Skipped elements are checked all the same: a
+//! file that ends too early is an error, bytes after its end are counted.
+//!
 //! The header is parsed here rather than by ply-rs, whose parser stops the process on large counts, takes two properties of one name for
 //! one and refuses much that programs write; ply-rs [writes](write()).
 
+mod arrays;
 mod ascii;
 mod binary;
-mod bytes;
+mod block;
+mod convert;
+mod elements;
+mod faces;
+mod grid;
 mod header;
 mod layout;
+mod meter;
 mod points;
+mod records;
+mod report;
+mod shape;
 mod sniff;
-mod table;
+mod source;
 #[cfg(test)]
 mod tests;
 mod types;
+mod vertices;
 mod write;
 
+pub use report::{Dropped, Faces, Report};
 pub use types::{Element, Format, Kind, Property, Scalar};
 pub use write::write;
 
+use crate::Progress;
 use crate::error::{Error, Result};
 use crate::geometry::Cloud;
+use elements::{Contents, File};
+use header::Header;
+use layout::{Layout, Shape};
+use meter::Meter;
+use source::Source;
 use std::path::Path;
 
 /// A file's points and what was made of the file.
@@ -33,35 +75,11 @@ pub struct Loaded {
     pub report: Report,
 }
 
-/// What was made of a file.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Report {
-    /// Encoding of the records.
-    pub format: Format,
-    /// Everything that the header declares, in the file's order.
-    pub elements: Vec<Element>,
-    /// Names of the vertices' properties that were used, in the file's order.
-    pub understood: Vec<String>,
-    /// Names of the vertices' properties that were not used, in the file's order.
-    pub skipped: Vec<String>,
-    /// Number of vertices in the file, dropped ones included.
-    pub points: u64,
-    /// Vertices that cannot be drawn.
-    pub dropped: Dropped,
-}
-
-/// Vertices that cannot be drawn, each counted once, under the first reason that applies.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Dropped {
-    /// A coordinate is not finite, or too large for f32.
-    pub position: u64,
-}
-
-impl Dropped {
-    /// Dropped for any reason.
-    pub fn total(&self) -> u64 {
-        self.position
-    }
+/// What is looked for in a file.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ReadOptions {
+    /// Name of the vertices' property that becomes [`Cloud::scalar`]. A file whose vertices have no number of this name is refused.
+    pub scalar: Option<String>,
 }
 
 /// A file's header, and its points if they could be had.
@@ -79,52 +97,71 @@ pub struct Inspected {
 ///
 /// # Errors
 /// [`Error::Io`] if the file cannot be read; [`Error::Input`] if its header cannot.
-pub fn inspect(path: &Path) -> Result<Inspected> {
-    let (name, bytes) = (path.display().to_string(), bytes::open(path)?);
-    let header = header::parse(&bytes).map_err(|cause| Error::input(name.as_str(), cause))?;
-    let loaded = read_bytes(&name, &bytes);
+pub fn inspect(path: &Path, options: &ReadOptions, progress: &dyn Progress) -> Result<Inspected> {
+    let (name, source) = (path.display().to_string(), Source::open(path)?);
+    let header = parse_header(&source).map_err(|cause| Error::input(name.as_str(), cause))?;
+    let loaded = parse(&source, options, progress).map_err(|cause| Error::input(name, cause));
     Ok(Inspected { format: header.format, elements: header.elements, loaded })
 }
 
-/// Reads the points of a PLY file.
-///
-/// Position from x y z of any type, in the file's unit; normal from nx ny nz or normal_x normal_y normal_z of any type and length; radius
-/// from radius; colour, if there is one, from red green blue, diffuse_red… or r g b: uchar and ushort are sRGB-encoded, float and double
-/// linear. Colours of three uchar stay as they are; others become linear. What follows the vertices in the file is not looked at.
+/// Reads the points of a PLY file. The stage of the progress is `reading`, its unit the byte.
 ///
 /// # Errors
-/// [`Error::Io`] if the file cannot be read; [`Error::Input`] if it is no PLY file, is damaged, or has no vertices.
-pub fn read(path: &Path) -> Result<Loaded> {
-    read_bytes(&path.display().to_string(), &bytes::open(path)?)
+/// [`Error::Io`] if the file cannot be opened; [`Error::Input`] if it is no PLY file, is damaged or truncated anywhere, has no vertices, or
+/// lacks what the options ask for.
+pub fn read(path: &Path, options: &ReadOptions, progress: &dyn Progress) -> Result<Loaded> {
+    let source = Source::open(path)?;
+    parse(&source, options, progress).map_err(|cause| Error::input(path.display().to_string(), cause))
 }
 
 /// [`read`] of a file's contents; `name` is what errors call it.
 ///
 /// # Errors
 /// [`Error::Input`], as [`read`].
-pub fn read_bytes(name: &str, bytes: &[u8]) -> Result<Loaded> {
-    parse(bytes).map_err(|cause| Error::input(name, cause))
+pub fn read_bytes(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Loaded> {
+    parse(&Source::of(bytes), options, &()).map_err(|cause| Error::input(name, cause))
 }
 
 /// The cause of a failure, without the file's name.
 type Parsed<T> = Result<T, String>;
 
-fn parse(bytes: &[u8]) -> Parsed<Loaded> {
-    let header = header::parse(bytes)?;
+fn parse_header(source: &Source) -> Parsed<Header> {
+    // One byte more than allowed, so that a header which is too long shows.
+    header::parse(&source.part(0, source.size().min(header::LIMIT as u64 + 1))?)
+}
+
+fn parse(source: &Source, options: &ReadOptions, progress: &dyn Progress) -> Parsed<Loaded> {
+    let header = parse_header(source)?;
     header::refuse_duplicates(&header.elements)?;
-    let index = layout::find_vertex(&header.elements)?;
-    let vertex = &header.elements[index];
-    let layout = layout::Layout::of(vertex)?;
-    let table = table::Table::open(bytes, &header, index, &layout)?;
-    let (cloud, dropped) = points::build(&table, &layout)?;
+    let vertex = layout::find_vertex(&header.elements)?;
+    let mut layout = Layout::of(&header.elements[vertex], options.scalar.as_deref())?;
+    // Text keeps its digits, whatever type the header names.
+    layout.narrow &= header.format != Format::Ascii;
+    let meter = Meter::new(progress, source.size());
+    let contents = File { source, header: &header, vertex, layout: &layout, meter: &meter }.read()?;
+    meter.finish();
+    let report = report(header, vertex, &layout, &contents);
+    Ok(Loaded { cloud: contents.points.cloud, report })
+}
+
+fn report(header: Header, vertex: usize, layout: &Layout, contents: &Contents) -> Report {
+    let properties = || header.elements[vertex].properties.iter().enumerate();
     let names = |used: bool| {
-        let of_use = vertex.properties.iter().enumerate().filter(|(index, _)| layout.uses(*index) == used);
-        of_use.map(|(_, property)| property.name.clone()).collect()
+        properties().filter(|(index, _)| layout.uses(*index) == used).map(|(_, p)| p.name.clone()).collect()
     };
-    let (understood, skipped, points) = (names(true), names(false), vertex.count);
-    let report =
-        Report { format: header.format, understood, skipped, points, dropped, elements: header.elements };
-    Ok(Loaded { cloud, report })
+    let skipped = header.elements.iter().zip(&contents.used).filter(|(_, used)| !**used);
+    Report {
+        format: header.format,
+        understood: names(true),
+        skipped: names(false),
+        skipped_elements: skipped.map(|(element, _)| element.name.clone()).collect(),
+        points: header.elements[vertex].count,
+        dropped: contents.points.dropped,
+        faces: contents.faces,
+        gaussians: matches!(layout.shape, Shape::Gaussian(_)),
+        trailing: contents.trailing,
+        elements: header.elements,
+    }
 }
 
 /// Bytes of a file as they may stand in a message: quoted, on one line, not too long.

@@ -1,9 +1,9 @@
 //! Writing surfels, through ply-rs: its writer is sound for binary records of single numbers, as long as the header's count is ours.
 
 use crate::error::{Error, Result};
-use crate::geometry::{Colours, Surfels};
+use crate::geometry::{Colours, Ellipse, Surfels};
 use crate::io::atomic;
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use ply_rs::ply::{
     Addable, ElementDef, Encoding, Header, PropertyAccess, PropertyDef, PropertyType, ScalarType,
 };
@@ -11,14 +11,22 @@ use ply_rs::writer::Writer;
 use std::io::{self, Write};
 use std::path::Path;
 
-/// Writes surfels as binary little-endian PLY: x y z as float, or as double if they have an origin; nx ny nz and radius as float; red
-/// green blue as uchar if sRGB-encoded, as float if linear. The file is replaced as a whole or, after an error, not at all.
+/// Writes surfels as binary little-endian PLY: x y z as float, or as double if they have an origin; nx ny nz and radius as float; if there
+/// are ellipses, their semi-axes ux uy uz vx vy vz as float; if some may have no side, two_sided as uchar; red green blue as uchar if
+/// sRGB-encoded, as float if linear. The file is replaced as a whole or, after an error, not at all.
 ///
 /// # Errors
 /// [`Error::Usage`] if the arrays differ in length, [`Error::Io`] if the file cannot be written.
 pub fn write(path: &Path, surfels: &Surfels) -> Result<()> {
-    let colours = surfels.colours.as_ref().map_or(surfels.len(), Colours::len);
-    if [surfels.normals.len(), surfels.radii.len(), colours] != [surfels.len(); 3] {
+    let count = surfels.len();
+    let lengths = [
+        surfels.normals.len(),
+        surfels.radii.len(),
+        surfels.ellipses.as_ref().map_or(count, Vec::len),
+        surfels.two_sided.as_ref().map_or(count, Vec::len),
+        surfels.colours.as_ref().map_or(count, Colours::len),
+    ];
+    if lengths != [count; 5] {
         return Err(Error::Usage("surfels with arrays of different lengths: give one entry a surfel".into()));
     }
     atomic::write(path, |mut out| records(&mut out, surfels))
@@ -46,6 +54,12 @@ fn definition(surfels: &Surfels) -> ElementDef {
     };
     add(&["x", "y", "z"], if surfels.origin == DVec3::ZERO { ScalarType::Float } else { ScalarType::Double });
     add(&["nx", "ny", "nz", "radius"], ScalarType::Float);
+    if surfels.ellipses.is_some() {
+        add(&AXES, ScalarType::Float);
+    }
+    if surfels.two_sided.is_some() {
+        add(&["two_sided"], ScalarType::UChar);
+    }
     match surfels.colours {
         Some(Colours::Srgb8(_)) => add(&["red", "green", "blue"], ScalarType::UChar),
         Some(Colours::Linear(_)) => add(&["red", "green", "blue"], ScalarType::Float),
@@ -54,12 +68,20 @@ fn definition(surfels: &Surfels) -> ElementDef {
     vertex
 }
 
+/// Names of the semi-axes of an elliptical disc.
+const AXES: [&str; 6] = ["ux", "uy", "uz", "vx", "vy", "vz"];
+
+/// Names of [`Row::floats`].
+const FLOATS: [&str; 13] = [
+    "nx", "ny", "nz", "radius", "red", "green", "blue", AXES[0], AXES[1], AXES[2], AXES[3], AXES[4], AXES[5],
+];
+
 /// One surfel, as ply-rs asks for it: by name and type.
 struct Row {
     position: DVec3,
-    /// nx ny nz, radius, linear red green blue.
-    floats: [f32; 7],
+    floats: [f32; FLOATS.len()],
     srgb: [u8; 4],
+    two_sided: bool,
 }
 
 impl Row {
@@ -70,14 +92,19 @@ impl Row {
             Some(Colours::Linear(colours)) => (colours[i], [0; 4]),
             None => ([0.0; 3], [0; 4]),
         };
+        let [u, v] = surfels.ellipses.as_ref().map_or([Vec3::ZERO; 2], |ellipses| {
+            let Ellipse { major, aspect } = ellipses[i];
+            [major * radius, n.cross(major) * (radius * aspect)]
+        });
         let position = surfels.origin + surfels.positions[i].as_dvec3();
-        Self { position, floats: [n.x, n.y, n.z, radius, r, g, b], srgb }
+        let floats = [n.x, n.y, n.z, radius, r, g, b, u.x, u.y, u.z, v.x, v.y, v.z];
+        Self { position, floats, srgb, two_sided: surfels.two_sided.as_ref().is_some_and(|flags| flags[i]) }
     }
 }
 
 impl PropertyAccess for Row {
     fn new() -> Self {
-        Self { position: DVec3::ZERO, floats: [0.0; 7], srgb: [0; 4] }
+        Self { position: DVec3::ZERO, floats: [0.0; FLOATS.len()], srgb: [0; 4], two_sided: false }
     }
 
     fn get_double(&self, name: &String) -> Option<f64> {
@@ -85,14 +112,16 @@ impl PropertyAccess for Row {
     }
 
     fn get_float(&self, name: &String) -> Option<f32> {
-        let names = ["nx", "ny", "nz", "radius", "red", "green", "blue"];
-        match names.iter().position(|float| float == name) {
+        match FLOATS.iter().position(|float| float == name) {
             Some(index) => Some(self.floats[index]),
             None => self.get_double(name).map(|value| value as f32),
         }
     }
 
     fn get_uchar(&self, name: &String) -> Option<u8> {
+        if name == "two_sided" {
+            return Some(self.two_sided.into());
+        }
         Some(self.srgb[["red", "green", "blue"].iter().position(|channel| channel == name)?])
     }
 }

@@ -1,0 +1,162 @@
+//! From a block of the file's numbers to points.
+
+use super::arrays::Slices;
+use super::block::Block;
+use super::layout::{
+    AXES, COLOUR, Colour, Layout, NORMAL, OPACITY, POSITION, RADIUS, ROTATION, SCALAR, Shape, TWO_SIDED,
+};
+use super::shape::{self, Disc};
+use super::types::Scalar;
+use crate::io::srgb;
+use glam::{DVec3, Vec3};
+
+/// Largest usable coordinate: differences of two stay finite in f32.
+const LARGEST: f64 = f32::MAX as f64 / 4.0;
+
+/// Least opacity of a 3D Gaussian that becomes a disc. Trained scenes make surfaces of many faint Gaussians, so that only haze is below.
+const OPAQUE: f64 = 0.1;
+
+/// The constant spherical harmonic, 1 / (2 √π).
+const HARMONIC: f64 = 0.282_094_791_773_878_14;
+
+/// What was dropped, and the bounds of what was kept.
+#[derive(Clone, Copy)]
+pub(super) struct Tally {
+    pub dropped: u64,
+    pub transparent: u64,
+    pub min: DVec3,
+    pub max: DVec3,
+    /// Whether a normal or a radius is missing.
+    pub lacking: bool,
+}
+
+impl Default for Tally {
+    fn default() -> Self {
+        Self { dropped: 0, transparent: 0, min: DVec3::INFINITY, max: DVec3::NEG_INFINITY, lacking: false }
+    }
+}
+
+impl Tally {
+    pub fn merge(self, other: Self) -> Self {
+        Self {
+            dropped: self.dropped + other.dropped,
+            transparent: self.transparent + other.transparent,
+            min: self.min.min(other.min),
+            max: self.max.max(other.max),
+            lacking: self.lacking || other.lacking,
+        }
+    }
+}
+
+/// Fills as many entries as the block has rows.
+pub(super) fn convert(block: &Block, layout: &Layout, out: &mut Slices) -> Tally {
+    let mut tally = match layout.narrow {
+        true => positions(block, layout, out.narrow, DVec3::as_vec3, Vec3::NAN),
+        false => positions(block, layout, out.wide, |position| position, DVec3::NAN),
+    };
+    if layout.fills(NORMAL) {
+        out.normals.iter_mut().zip(block.triples(NORMAL)).for_each(|(to, n)| *to = shape::unit(n));
+    }
+    if layout.fills(RADIUS) {
+        out.radii.iter_mut().zip(block.column(RADIUS)).for_each(|(to, radius)| *to = shape::length(*radius));
+    }
+    if layout.fills(TWO_SIDED) {
+        out.two_sided.iter_mut().zip(block.column(TWO_SIDED)).for_each(|(to, flag)| *to = *flag != 0.0);
+    }
+    shapes(block, layout, out);
+    colours(block, layout, out);
+    out.scalar.iter_mut().zip(block.column(SCALAR)).for_each(|(to, value)| *to = *value as f32);
+    // Here, as the entries are still in the cache.
+    tally.lacking = !layout.has_normals() || !layout.has_radii();
+    tally.lacking |= out.normals.contains(&Vec3::ZERO) || out.radii.contains(&0.0);
+    tally
+}
+
+/// Positions, with `none` for those that are dropped.
+fn positions<T>(block: &Block, layout: &Layout, to: &mut [T], of: impl Fn(DVec3) -> T, none: T) -> Tally
+where
+    T: Copy,
+{
+    let mut tally = Tally::default();
+    for (to, position) in to.iter_mut().zip(block.triples(POSITION)) {
+        let inside = |coordinate: f64| coordinate.abs() <= LARGEST;
+        if inside(position.x) & inside(position.y) & inside(position.z) {
+            *to = of(position);
+            (tally.min, tally.max) = (tally.min.min(position), tally.max.max(position));
+        } else {
+            *to = none;
+            tally.dropped += 1;
+        }
+    }
+    if !layout.fills(OPACITY) {
+        return tally;
+    }
+    // Bounds that hold a little more than is left do no harm.
+    for ((to, logit), position) in to.iter_mut().zip(block.column(OPACITY)).zip(block.triples(POSITION)) {
+        let opaque = 1.0 / (1.0 + (-logit).exp()) >= OPAQUE;
+        if !opaque && position.abs().max_element() <= LARGEST && !position.is_nan() {
+            *to = none;
+            tally.transparent += 1;
+        }
+    }
+    tally
+}
+
+/// Discs whose shape is given by more than a radius.
+fn shapes(block: &Block, layout: &Layout, out: &mut Slices) {
+    for row in 0..out.ellipses.len().min(block.rows()) {
+        let at = |column| block.column(column)[row];
+        let three = |first| DVec3::new(at(first), at(first + 1), at(first + 2));
+        let given = Disc {
+            normal: if layout.fills(NORMAL) { out.normals[row] } else { Vec3::ZERO },
+            radius: if layout.fills(RADIUS) { out.radii[row] } else { 0.0 },
+        };
+        let (disc, ellipse) = match layout.shape {
+            Shape::Circle => continue,
+            Shape::Axes => shape::of_axes(given, three(AXES), three(AXES + 3)),
+            Shape::Gaussian(scales) => {
+                let third = if scales == 3 { at(AXES + 2) } else { f64::NEG_INFINITY };
+                let rotation = [0, 1, 2, 3].map(|part| at(ROTATION + part));
+                if !layout.fills(TWO_SIDED) {
+                    out.two_sided[row] = given.normal == Vec3::ZERO;
+                }
+                shape::of_gaussian(given.normal, [at(AXES), at(AXES + 1), third], rotation)
+            }
+        };
+        (out.normals[row], out.radii[row], out.ellipses[row]) = (disc.normal, disc.radius, ellipse);
+    }
+}
+
+fn colours(block: &Block, layout: &Layout, out: &mut Slices) {
+    match layout.colour {
+        None => {}
+        Some(Colour::Harmonics) => {
+            let code = |f: f64| ((0.5 + HARMONIC * f) * 255.0).round() as u8;
+            for (to, f) in out.codes.iter_mut().zip(block.triples(COLOUR)) {
+                *to = [code(f.x), code(f.y), code(f.z), 0];
+            }
+        }
+        Some(Colour::Rgb(_)) if layout.has_codes() => {
+            // In text, any number can stand for a code: rounded, and clamped by the conversion.
+            for (to, code) in out.codes.iter_mut().zip(block.triples(COLOUR)) {
+                *to = [(code.x + 0.5) as u8, (code.y + 0.5) as u8, (code.z + 0.5) as u8, 0];
+            }
+        }
+        Some(Colour::Rgb(types)) => {
+            for (to, rgb) in out.linear.iter_mut().zip(block.triples(COLOUR)) {
+                *to = [0, 1, 2].map(|channel: usize| linear(rgb[channel], types[channel]));
+            }
+        }
+    }
+}
+
+/// Linear light of a channel: integers are sRGB-encoded, floats linear already. What is no colour (negative, not finite) is black.
+fn linear(value: f64, scalar: Scalar) -> f32 {
+    let linear = match scalar {
+        Scalar::U8 => srgb::decode(value / 255.0),
+        Scalar::U16 => srgb::decode(value / 65535.0),
+        _ => value,
+    };
+    let linear = linear as f32;
+    if linear.is_finite() && linear > 0.0 { linear } else { 0.0 }
+}

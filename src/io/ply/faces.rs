@@ -1,0 +1,73 @@
+//! Triangles from faces and strips.
+
+use super::Faces;
+use super::points::Points;
+
+/// Collects triangles between the points.
+pub(super) struct Collector<'a> {
+    points: &'a Points,
+    /// Empty unless the points lack normals or radii.
+    pub triangles: Vec<[u32; 3]>,
+    pub faces: Faces,
+}
+
+impl<'a> Collector<'a> {
+    pub fn new(points: &'a Points) -> Self {
+        Self { points, triangles: Vec::new(), faces: Faces::default() }
+    }
+
+    /// A polygon, as a fan.
+    pub fn face(&mut self, corners: &[f64]) {
+        let inside = corners.iter().all(|corner| self.points.of_vertex(*corner).is_some());
+        let mut understood = false;
+        if let (true, [first, rest @ ..]) = (inside, corners) {
+            for pair in rest.windows(2) {
+                understood |= self.triangle([*first, pair[0], pair[1]]);
+            }
+        }
+        self.count(understood);
+    }
+
+    /// A strip of triangles; −1 begins another. Every other triangle is wound the other way; those with two equal corners only carry
+    /// the strip on.
+    pub fn strip(&mut self, corners: &[f64]) {
+        for strip in corners.split(|corner| *corner == -1.0) {
+            for (index, corners) in strip.windows(3).enumerate() {
+                let &[a, b, c] = corners else { continue };
+                if a == b || b == c || c == a {
+                    continue;
+                }
+                let understood = self.triangle(if index % 2 == 0 { [a, b, c] } else { [b, a, c] });
+                self.count(understood);
+            }
+        }
+    }
+
+    /// A triangle whose corners are different points.
+    pub fn add(&mut self, triangle: [u32; 3]) {
+        self.count(true);
+        if self.points.lacking {
+            self.triangles.push(triangle);
+        }
+    }
+
+    /// Counts a face.
+    pub fn count(&mut self, understood: bool) {
+        match understood {
+            true => self.faces.understood += 1,
+            false => self.faces.skipped += 1,
+        }
+    }
+
+    /// Whether it has three different corners, all of them points.
+    fn triangle(&mut self, corners: [f64; 3]) -> bool {
+        let [Some(a), Some(b), Some(c)] = corners.map(|corner| self.points.of_vertex(corner)) else {
+            return false;
+        };
+        let proper = a != b && b != c && c != a;
+        if proper && self.points.lacking {
+            self.triangles.push([a, b, c]);
+        }
+        proper
+    }
+}

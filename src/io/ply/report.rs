@@ -1,0 +1,53 @@
+//! What was made of a file, for those who must tell it.
+
+use super::types::{Element, Format};
+
+/// What was made of a file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Report {
+    /// Encoding of the records.
+    pub format: Format,
+    /// Everything that the header declares, in the file's order.
+    pub elements: Vec<Element>,
+    /// Names of the vertices' properties that were used, in the file's order.
+    pub understood: Vec<String>,
+    /// Names of the vertices' properties that were not used, in the file's order.
+    pub skipped: Vec<String>,
+    /// Names of the elements that were not used, in the file's order.
+    pub skipped_elements: Vec<String>,
+    /// Number of vertices in the file, dropped ones included.
+    pub points: u64,
+    /// Vertices that are not among the points.
+    pub dropped: Dropped,
+    /// Faces, triangle strips and cells of range grids.
+    pub faces: Faces,
+    /// Whether the vertices are 3D Gaussians, whose flat sides became discs.
+    pub gaussians: bool,
+    /// Bytes after the last element, which mean nothing.
+    pub trailing: u64,
+}
+
+/// Vertices that are not among the points, each counted once, under the first reason that applies.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Dropped {
+    /// A coordinate is not finite, or too large for f32.
+    pub position: u64,
+    /// A 3D Gaussian that is less than a tenth opaque.
+    pub transparent: u64,
+}
+
+impl Dropped {
+    /// Dropped for any reason.
+    pub fn total(&self) -> u64 {
+        self.position + self.transparent
+    }
+}
+
+/// Faces of a file; of strips and range grids, their triangles.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Faces {
+    /// Faces that could be understood, whether or not they are needed.
+    pub understood: u64,
+    /// Faces without three different corners, with a corner that does not exist, or with one that was dropped.
+    pub skipped: u64,
+}

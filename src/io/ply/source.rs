@@ -1,0 +1,102 @@
+//! A file's bytes, in memory or where they lie.
+
+use super::Parsed;
+use crate::error::{Error, Result};
+use std::borrow::Cow;
+use std::fs::File;
+use std::io::{self, ErrorKind, Read};
+use std::path::Path;
+
+/// Read, not mapped: a mapping would end the process by SIGBUS if another one shortened the file meanwhile.
+pub(super) enum Source<'a> {
+    /// All of it.
+    Bytes(Cow<'a, [u8]>),
+    /// A file of `size` bytes, read piece by piece, from any thread.
+    #[cfg_attr(not(unix), allow(dead_code))]
+    File { file: File, size: u64 },
+}
+
+impl<'a> Source<'a> {
+    /// Opens a file. Of what has no size, such as a pipe, everything is read.
+    pub fn open(path: &Path) -> Result<Source<'static>> {
+        let mut file = File::open(path).map_err(|error| Error::io(path, "cannot open")(advise(error)))?;
+        let about = file.metadata().map_err(Error::io(path, "cannot read"))?;
+        if cfg!(unix) && about.is_file() {
+            return Ok(Source::File { file, size: about.len() });
+        }
+        let mut bytes = Vec::new();
+        file.read_to_end(&mut bytes).map_err(Error::io(path, "cannot read"))?;
+        Ok(Source::Bytes(bytes.into()))
+    }
+
+    /// What is in memory already.
+    pub fn of(bytes: &'a [u8]) -> Self {
+        Self::Bytes(Cow::Borrowed(bytes))
+    }
+
+    /// Bytes in all.
+    pub fn size(&self) -> u64 {
+        match self {
+            Self::Bytes(bytes) => bytes.len() as u64,
+            Self::File { size, .. } => *size,
+        }
+    }
+
+    /// `length` bytes from `start` on, all of which must exist.
+    pub fn part(&self, start: u64, length: u64) -> Parsed<Cow<'_, [u8]>> {
+        match self {
+            Self::Bytes(bytes) => slice(bytes, start, length).map(Cow::Borrowed),
+            Self::File { .. } => {
+                let mut part = room(length)?;
+                self.copy(start, &mut part)?;
+                Ok(part.into())
+            }
+        }
+    }
+
+    /// The same, through `buffer` where the bytes are not in memory.
+    pub fn view<'b>(&'b self, start: u64, length: usize, buffer: &'b mut Vec<u8>) -> Parsed<&'b [u8]> {
+        match self {
+            Self::Bytes(bytes) => slice(bytes, start, length as u64),
+            Self::File { .. } => {
+                buffer.resize(length, 0);
+                self.copy(start, buffer)?;
+                Ok(buffer)
+            }
+        }
+    }
+
+    fn copy(&self, start: u64, to: &mut [u8]) -> Parsed<()> {
+        let done = match self {
+            #[cfg(unix)]
+            Self::File { file, .. } => std::os::unix::fs::FileExt::read_exact_at(file, to, start),
+            _ => Err(ErrorKind::Unsupported.into()),
+        };
+        done.map_err(|error| format!("cannot read {} bytes from byte {start} on: {error}", to.len()))
+    }
+}
+
+fn slice(bytes: &[u8], start: u64, length: u64) -> Parsed<&[u8]> {
+    let range = usize::try_from(start).ok().zip(usize::try_from(start.saturating_add(length)).ok());
+    range
+        .and_then(|(start, end)| bytes.get(start..end))
+        .ok_or_else(|| "the file ends early: fetch it again".into())
+}
+
+/// An array of zeros; pages that are never written cost nothing.
+pub(super) fn room<T: bytemuck::Zeroable>(count: u64) -> Parsed<Vec<T>> {
+    let zeros = usize::try_from(count).ok().and_then(|count| bytemuck::try_zeroed_vec(count).ok());
+    zeros.ok_or_else(|| format!("not enough memory for {count} entries: give a smaller file"))
+}
+
+fn advise(error: io::Error) -> io::Error {
+    match error.kind() {
+        ErrorKind::NotFound => {
+            io::Error::new(ErrorKind::NotFound, "there is no such file: check the name and the folder")
+        }
+        ErrorKind::PermissionDenied => {
+            io::Error::new(ErrorKind::PermissionDenied, "no permission to read it: ask its owner")
+        }
+        _ => error,
+    }
+}

@@ -1,0 +1,195 @@
+//! What is understood beyond positions, normals, radii and colours.
+
+use super::*;
+use crate::geometry::View;
+
+/// A file of text; its header is `lines` between the first and the last line.
+fn text(lines: &str, records: &str) -> Vec<u8> {
+    format!("ply\nformat ascii 1.0\n{lines}\nend_header\n{records}").into_bytes()
+}
+
+const XYZ: &str = "property float x\nproperty float y\nproperty float z";
+const SQUARE: &str = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
+
+fn square(more: &str, records: &str) -> Loaded {
+    load(&text(&format!("element vertex 4\n{XYZ}\n{more}"), &format!("{SQUARE}{records}")))
+}
+
+#[test]
+fn faces_become_fans_and_bad_ones_are_counted() {
+    let records = "4 0 1 2 3\n2 0 1\n3 0 1 4\n3 0 1 -1\n3 1 1 2\n0\n";
+    for name in ["vertex_indices", "vertex_index"] {
+        let Loaded { cloud, report } =
+            square(&format!("element face 6\nproperty list uchar int {name}"), records);
+        assert_eq!(cloud.triangles, [[0, 1, 2], [0, 2, 3]]);
+        assert_eq!(report.faces, Faces { understood: 1, skipped: 5 });
+        assert!(report.skipped_elements.is_empty());
+    }
+    let other = square("element face 1\nproperty list uchar int corners", "3 0 1 2");
+    assert_eq!((other.cloud.triangles.len(), other.report.skipped_elements), (0, vec!["face".to_owned()]));
+}
+
+#[test]
+fn faces_follow_when_points_are_dropped() {
+    let face = "element face 3\nproperty list uchar int vertex_indices";
+    let vertex = format!("element vertex 4\n{XYZ}");
+    let (faces, points) = ("3 0 2 3\n3 0 1 2\n4 3 2 1 0\n", "0 0 0\nnan 0 0\n1 1 0\n0 1 0\n");
+    let after = load(&text(&format!("{vertex}\n{face}"), &format!("{points}{faces}")));
+    let before = load(&text(&format!("{face}\n{vertex}"), &format!("{faces}{points}")));
+    for Loaded { cloud, report } in [after, before] {
+        assert_eq!((cloud.len(), cloud.triangles), (3, vec![[0, 1, 2]]));
+        assert_eq!(report.faces, Faces { understood: 1, skipped: 2 });
+    }
+}
+
+#[test]
+fn faces_are_kept_only_where_points_lack_something() {
+    let file = |normal: &str| {
+        let lines =
+            format!("element vertex 3\n{FLOATS}element face 1\nproperty list uchar int vertex_indices");
+        load(&text(&lines, &format!("0 0 0 0 0 1 1\n1 0 0 0 0 1 1\n0 1 0 {normal} 1\n3 0 1 2\n")))
+    };
+    assert_eq!((file("0 0 1").cloud.triangles.len(), file("0 0 1").report.faces.understood), (0, 1));
+    assert_eq!(file("0 0 0").cloud.triangles.len(), 1);
+}
+
+#[test]
+fn strips_alternate_and_restart() {
+    let strip = square("element tristrips 1\nproperty list int int vertex_indices", "9 0 1 3 2 -1 1 2 3 3");
+    assert_eq!(strip.cloud.triangles, [[0, 1, 3], [3, 1, 2], [1, 2, 3]]);
+    assert_eq!(strip.report.faces, Faces { understood: 3, skipped: 0 });
+}
+
+#[test]
+fn range_grids_leave_out_tears() {
+    // Three rows of four cells, spaced by 1; a cell is empty, the last column lies far behind the others.
+    let info = "obj_info num_cols 4\nobj_info num_rows 3\n";
+    let grid = "element range_grid 12\nproperty list uchar int vertex_indices";
+    let mut points = String::new();
+    let mut cells = String::new();
+    for cell in 0..12 {
+        let (column, row) = (cell % 4, cell / 4);
+        points += &format!("{column} {row} {}\n", if column == 3 { -50 } else { 0 });
+        cells += &if cell == 0 { "0\n".into() } else { format!("1 {cell}\n") };
+    }
+    let lines = format!("{info}element vertex 12\n{XYZ}\n{grid}");
+    let Loaded { cloud, report } = load(&text(&lines, &format!("{points}{cells}")));
+    assert_eq!(cloud.view, View::Towards(Vec3::Z));
+    // Two columns of two cells: one of them has a corner less.
+    assert_eq!((cloud.triangles.len(), report.faces), (7, Faces { understood: 7, skipped: 0 }));
+    assert!(cloud.triangles.iter().flatten().all(|corner| corner % 4 != 3 && *corner != 0));
+    for [a, b, c] in cloud.triangles.iter().map(|t| t.map(|corner| cloud.positions[corner as usize])) {
+        assert!((b - a).cross(c - a).z > 0.0);
+    }
+    for impossible in
+        ["num_cols 18446744073709551615\nobj_info num_rows 0", "num_cols 0\nobj_info num_rows 0"]
+    {
+        let lines = format!("obj_info {impossible}\nelement vertex 4\n{XYZ}\n{}", grid.replace("12", "0"));
+        assert!(load(&text(&lines, SQUARE)).cloud.triangles.is_empty());
+    }
+    let unknown = load(&text(&lines.replace("num_rows 3", "num_rows 4"), &format!("{points}{cells}")));
+    assert_eq!((unknown.cloud.triangles.len(), unknown.cloud.view), (0, View::Towards(Vec3::Z)));
+    assert_eq!(unknown.report.skipped_elements, ["range_grid"]);
+}
+
+#[test]
+fn a_camera_tells_from_where_the_points_were_seen() {
+    let view = "property float view_px\nproperty float view_py\nproperty float view_pz";
+    let file = |count: usize, eyes: &str| {
+        let lines = format!("element camera {count}\n{view}\nelement vertex 2\n{XYZ}");
+        load(&text(&lines, &format!("{eyes}1e6 0 0\n1000010 10 10\n"))).cloud
+    };
+    let cloud = file(1, "1000015 5 5\n");
+    assert_eq!(cloud.origin, DVec3::new(1_000_005.0, 5.0, 5.0));
+    assert_eq!(cloud.view, View::From(Vec3::new(10.0, 0.0, 0.0)));
+    assert_eq!(file(2, "1 2 3\n4 5 6\n").view, View::Unknown);
+    assert_eq!(file(1, "1 nan 3\n").view, View::Unknown);
+}
+
+#[test]
+fn axes_give_ellipses_normals_and_radii() {
+    let axes = ["ux", "uy", "uz", "vx", "vy", "vz"].map(|name| format!("property float {name}\n")).concat();
+    let lines = format!("element vertex 2\n{XYZ}\n{axes}property uchar two_sided");
+    let cloud = load(&text(&lines, "0 0 0 0 0.5 0 0 0 2 1\n9 0 0 0 0 0 0 0 0 0\n")).cloud;
+    assert_eq!((cloud.normals, cloud.radii), (Some(vec![Vec3::X, Vec3::ZERO]), Some(vec![2.0, 0.0])));
+    let ellipses = cloud.ellipses.unwrap();
+    assert!((ellipses[0].aspect - 0.25).abs() < 1e-6 && ellipses[0].major.z.abs() > 1.0 - 1e-6);
+    assert_eq!((ellipses[1].aspect, cloud.two_sided), (1.0, Some(vec![true, false])));
+}
+
+#[test]
+fn gaussians_become_discs_and_haze_is_dropped() {
+    let names = "f_dc_0 f_dc_1 f_dc_2 opacity scale_0 scale_1 scale_2 rot_0 rot_1 rot_2 rot_3";
+    let properties: Vec<_> = names.split(' ').map(|name| format!("property float {name}")).collect();
+    let lines = format!("element vertex 3\n{XYZ}\n{}", properties.join("\n"));
+    let records = "0 0 0  0 1.7724539 -9  2  0 -1 -3  1 0 0 0\n1 1 1  0 0 0  -2.3  0 0 0  1 0 0 0\n2 2 2  0 0 0  -2.1  0 0 0  0 0 0 0\n";
+    let Loaded { cloud, report } = load(&text(&lines, records));
+    assert_eq!((report.gaussians, report.dropped), (true, Dropped { position: 0, transparent: 1 }));
+    assert_eq!(cloud.positions, [Vec3::ZERO, Vec3::splat(2.0)]);
+    assert_eq!((cloud.normals, cloud.radii), (Some(vec![Vec3::Z, Vec3::ZERO]), Some(vec![2.0, 0.0])));
+    assert_eq!(cloud.colours, Some(Colours::Srgb8(vec![[128, 255, 0, 0], [128, 128, 128, 0]])));
+    assert_eq!(cloud.two_sided, Some(vec![true; 2]));
+    assert!((cloud.ellipses.unwrap()[0].aspect - (-1f32).exp()).abs() < 1e-6);
+}
+
+#[test]
+fn a_chosen_number_comes_along() {
+    let file = text(&format!("element vertex 2\n{XYZ}\nproperty uint id"), "0 0 0 7\nnan 0 0 8\n");
+    let options = ReadOptions { scalar: Some("id".into()) };
+    let Loaded { cloud, report } = read_bytes("test.ply", &file, &options).unwrap();
+    assert_eq!((cloud.scalar, report.skipped.len()), (Some(vec![7.0]), 0));
+    let options = ReadOptions { scalar: Some("height".into()) };
+    let cause = read_bytes("test.ply", &file, &options).unwrap_err().to_string();
+    assert!(cause.contains("no number named `height`: choose one of `x`, `y`, `z`, `id`"), "{cause}");
+}
+
+#[test]
+fn bytes_after_the_end_are_counted() {
+    assert_eq!(square("comment", " \n\n").report.trailing, 0);
+    assert_eq!(square("comment", "9 9 9\n").report.trailing, 6);
+    let header = format!("ply\nformat binary_little_endian 1.0\nelement vertex 1\n{XYZ}\nend_header\n");
+    assert_eq!(load(&[header.as_bytes(), &[0; 15]].concat()).report.trailing, 3);
+}
+
+/// Many records, so that they are read in several pieces, from memory and from a file; every third point is dropped.
+#[test]
+fn pieces_join_without_a_seam() {
+    let count = 100_000u32;
+    let mut bytes = format!(
+        "ply\nformat binary_big_endian 1.0\nelement vertex {count}\n{XYZ}\nproperty ushort red\n\
+        property ushort green\nproperty ushort blue\nend_header\n"
+    )
+    .into_bytes();
+    for i in 0..count {
+        let z = if i % 3 == 0 { f32::NAN } else { 1.0 };
+        [i as f32, -(i as f32), z].iter().for_each(|value| bytes.extend(value.to_be_bytes()));
+        bytes.extend([0, 0, 255, 255, 0, 0]);
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("many.ply");
+    std::fs::write(&path, &bytes).unwrap();
+    let from_file = read(&path, &ReadOptions::default(), &()).unwrap();
+    assert_eq!(from_file, load(&bytes));
+    let expected = (0..count).filter(|i| i % 3 != 0).map(|i| Vec3::new(i as f32, -(i as f32), 1.0));
+    assert!(from_file.cloud.positions.iter().copied().eq(expected));
+    assert_eq!(from_file.report.dropped.position, 33_334);
+}
+
+#[test]
+fn progress_goes_from_nothing_to_all() {
+    struct Log(std::sync::Mutex<Vec<[u64; 2]>>);
+    impl Progress for Log {
+        fn at(&self, stage: &'static str, done: u64, total: u64) {
+            assert_eq!(stage, "reading");
+            self.0.lock().unwrap().push([done, total]);
+        }
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("a.ply");
+    std::fs::write(&path, mixed("ascii")).unwrap();
+    let (log, size) = (Log(Default::default()), mixed("ascii").len() as u64);
+    read(&path, &ReadOptions::default(), &log).unwrap();
+    let log = log.0.into_inner().unwrap();
+    assert_eq!((log[0], log[log.len() - 1]), ([0, size], [size, size]));
+    assert!(log.iter().all(|[done, _]| *done <= size));
+}

@@ -1,0 +1,75 @@
+//! What is written reads back.
+
+use super::*;
+use crate::geometry::{Ellipse, Surfels};
+
+fn random_surfels(count: usize, origin: DVec3, colours: Option<Colours>) -> Surfels {
+    let spread = |i: usize, k: f32| ((i as f32 * k).sin() * 1e3).fract();
+    Surfels {
+        origin,
+        positions: (0..count).map(|i| Vec3::new(spread(i, 1.0), spread(i, 2.0), spread(i, 3.0))).collect(),
+        normals: (0..count).map(|i| Vec3::new(spread(i, 4.0), 1.0, spread(i, 5.0)).normalize()).collect(),
+        radii: (0..count).map(|i| 0.5 + 0.1 * spread(i, 6.0)).collect(),
+        colours,
+        ..Default::default()
+    }
+}
+
+fn read_back(path: &Path) -> Cloud {
+    read(path, &ReadOptions::default(), &()).unwrap().cloud
+}
+
+#[test]
+fn what_is_written_reads_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("out.ply");
+    let srgb = Colours::Srgb8((0..100).map(|i| [i, 255 - i, 7, 0]).collect());
+    let linear = Colours::Linear((0..100).map(|i| [i as f32 / 99.0, 0.5, 0.0]).collect());
+    for colours in [None, Some(srgb), Some(linear)] {
+        let surfels = random_surfels(100, DVec3::ZERO, colours);
+        write(&path, &surfels).unwrap();
+        let read = read_back(&path);
+        assert_eq!(
+            (read.positions, read.radii, read.colours),
+            (surfels.positions, Some(surfels.radii), surfels.colours)
+        );
+        assert_eq!((read.ellipses, read.two_sided), (None, None));
+        assert!(read.normals.unwrap().iter().zip(&surfels.normals).all(|(a, b)| a.abs_diff_eq(*b, 2e-7)));
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "a temporary file was left");
+    }
+}
+
+#[test]
+fn the_origin_is_part_of_the_coordinates() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("far.ply");
+    let far = random_surfels(100, DVec3::new(5e6, -4e5, 120.25), None);
+    write(&path, &far).unwrap();
+    let read = read_back(&path);
+    for (a, b) in read.positions.iter().zip(&far.positions) {
+        let apart = (a.as_dvec3() + read.origin).distance(b.as_dvec3() + far.origin);
+        assert!(apart < 1e-6, "{apart}");
+    }
+    let ragged = Surfels { radii: vec![], ..far };
+    assert!(matches!(write(&path, &ragged), Err(Error::Usage(_))));
+}
+
+#[test]
+fn ellipses_and_sides_read_back() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("out.ply");
+    let mut surfels = random_surfels(100, DVec3::ZERO, None);
+    let aspect = |i: usize| (i + 1) as f32 / 100.0;
+    let ellipse = |(i, n): (usize, &Vec3)| Ellipse { major: n.any_orthonormal_vector(), aspect: aspect(i) };
+    surfels.ellipses = Some(surfels.normals.iter().enumerate().map(ellipse).collect());
+    surfels.two_sided = Some((0..100).map(|i| i % 3 == 0).collect());
+    write(&path, &surfels).unwrap();
+    let read = read_back(&path);
+    assert_eq!((read.radii, read.two_sided), (Some(surfels.radii), surfels.two_sided));
+    for (i, (a, b)) in read.ellipses.unwrap().iter().zip(&surfels.ellipses.unwrap()).enumerate() {
+        assert!((a.aspect - b.aspect).abs() < 1e-6, "{i}: {a:?} {b:?}");
+        // A circle has no direction.
+        assert!(b.aspect == 1.0 || a.major.dot(b.major).abs() > 1.0 - 1e-5, "{i}: {a:?} {b:?}");
+        assert!(a.major.dot(surfels.normals[i]).abs() < 1e-6);
+    }
+}

@@ -1,0 +1,118 @@
+//! A hundred thousand damaged PLY files: whatever is in them, the reader neither panics nor hangs nor takes much memory, and what it
+//! accepts keeps its promises.
+
+mod files;
+mod mutate;
+
+use cap::Cap;
+use mutate::Random;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::time::{Duration, Instant};
+use surfel::geometry::{Cloud, Colours, View};
+use surfel::io::ply::{self, Loaded, ReadOptions};
+
+#[global_allocator]
+static ALLOCATOR: Cap<std::alloc::System> = Cap::new(std::alloc::System, usize::MAX);
+
+const MUTANTS: u64 = 100_000;
+
+/// Longest time for one file.
+const PATIENCE: Duration = Duration::from_millis(500);
+
+/// What all threads together may use beyond what was in use before a file was read, bytes.
+const CAP: usize = 256 << 20;
+
+/// What reading a file may allocate in all, freed or not, bytes: a few tables, and so much for each byte of it. The most are arrays
+/// for text records of six bytes.
+fn allowance(size: usize) -> u64 {
+    (1 << 20) + 100 * size as u64
+}
+
+#[test]
+fn no_mutant_breaks_the_reader() {
+    let files = files::all();
+    assert!(files.iter().all(|file| !file.is_empty()));
+    let mut loaded = 0;
+    for seed in 0..MUTANTS {
+        let mutant = mutate::mutant(&files, &mut Random::new(seed));
+        match catch_unwind(AssertUnwindSafe(|| examine(&mutant))) {
+            Ok(accepted) => loaded += u64::from(accepted),
+            Err(_) => panic!("seed {seed}, {} bytes: {}", mutant.len(), mutant.escape_ascii()),
+        }
+    }
+    println!("{loaded} of {MUTANTS} mutants of {} files were read", files.len());
+    // Damage that is always found at once would test nothing but the header.
+    assert!(loaded > MUTANTS / 10 && loaded < MUTANTS * 9 / 10, "{loaded}");
+}
+
+#[test]
+fn the_files_are_sound_before_they_are_damaged() {
+    for bytes in files::own() {
+        let Loaded { cloud, report } = read(&bytes).unwrap_or_else(|error| panic!("{error}"));
+        check(&cloud, &report);
+        assert_eq!(report.trailing, 0);
+    }
+}
+
+fn read(bytes: &[u8]) -> surfel::Result<Loaded> {
+    ply::read_bytes("mutant", bytes, &ReadOptions::default())
+}
+
+/// Whether it can be read; panics if anything about it is wrong.
+fn examine(bytes: &[u8]) -> bool {
+    ALLOCATOR.set_limit(ALLOCATOR.allocated() + CAP).unwrap();
+    let (start, before) = (Instant::now(), ALLOCATOR.total_allocated());
+    let result = read(bytes);
+    let (time, allocated) = (start.elapsed(), ALLOCATOR.total_allocated() - before);
+    ALLOCATOR.set_limit(usize::MAX).unwrap();
+    assert!(allocated as u64 <= allowance(bytes.len()), "{allocated} bytes allocated for {}", bytes.len());
+    if time > PATIENCE {
+        // The machine may have been busy with other work; the same file is not slow twice by chance.
+        let again = Instant::now();
+        drop(read(bytes));
+        assert!(again.elapsed() <= PATIENCE, "{time:?}, and again {:?}", again.elapsed());
+    }
+    match result {
+        Ok(Loaded { cloud, report }) => {
+            check(&cloud, &report);
+            true
+        }
+        Err(error) => {
+            let text = error.to_string();
+            assert!(text.starts_with("mutant: ") && text.lines().count() == 1, "{text:?}");
+            false
+        }
+    }
+}
+
+/// What a cloud promises.
+fn check(cloud: &Cloud, report: &ply::Report) {
+    let count = cloud.len();
+    assert!(count > 0 && count as u64 + report.dropped.total() == report.points);
+    let lengths = [
+        cloud.normals.as_ref().map(Vec::len),
+        cloud.radii.as_ref().map(Vec::len),
+        cloud.ellipses.as_ref().map(Vec::len),
+        cloud.two_sided.as_ref().map(Vec::len),
+        cloud.colours.as_ref().map(Colours::len),
+        cloud.scalar.as_ref().map(Vec::len),
+    ];
+    assert!(lengths.iter().flatten().all(|length| *length == count), "{lengths:?}");
+    assert!(cloud.origin.is_finite() && cloud.positions.iter().all(|position| position.is_finite()));
+    let unit = |n: &glam::Vec3| (n.length() - 1.0).abs() < 1e-5;
+    assert!(cloud.normals.iter().flatten().all(|n| *n == glam::Vec3::ZERO || unit(n)));
+    assert!(cloud.radii.iter().flatten().all(|radius| radius.is_finite() && *radius >= 0.0));
+    let sound =
+        |shape: &surfel::geometry::Ellipse| shape.aspect > 0.0 && shape.aspect <= 1.0 && unit(&shape.major);
+    assert!(cloud.ellipses.iter().flatten().all(sound));
+    if let Some(Colours::Linear(colours)) = &cloud.colours {
+        assert!(colours.iter().flatten().all(|channel| channel.is_finite() && *channel >= 0.0));
+    }
+    let index = |corner: &u32| (*corner as usize) < count;
+    assert!(cloud.triangles.iter().flatten().all(index), "a corner that is no point");
+    match cloud.view {
+        View::Unknown => {}
+        View::From(eye) => assert!(eye.is_finite()),
+        View::Towards(direction) => assert!(unit(&direction)),
+    }
+}
