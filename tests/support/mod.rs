@@ -2,5 +2,6 @@
 #![allow(dead_code)]
 
 pub mod gpu;
+pub mod mesh;
 pub mod sampling;
 pub mod scenes;

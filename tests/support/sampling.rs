@@ -22,6 +22,11 @@ impl Random {
         2.0 * self.unit() - 1.0
     }
 
+    /// Of the normal distribution with mean 0 and variance 1.
+    pub fn normal(&mut self) -> f64 {
+        (-2.0 * (1.0 - self.unit()).ln()).sqrt() * (TAU * self.unit()).cos()
+    }
+
     /// Uniform in the cube [-1, 1)³.
     pub fn vector(&mut self) -> DVec3 {
         DVec3::new(self.signed(), self.signed(), self.signed())

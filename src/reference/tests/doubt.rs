@@ -70,7 +70,7 @@ fn rounding_of_a_long_axis_is_forgiven_only_where_rounding_is() {
         (discs[0].colour, discs[1].colour) = (Some(DVec3::X), Some(DVec3::Y));
         scene(&discs)
     };
-    let picture = |surfels: &Surfels| render(surfels, &parallel(), SIZE, &plain()).unwrap().to_picture();
+    let picture = |surfels: &Surfels| render(surfels, &parallel(), SIZE, &plain(), &()).unwrap().to_picture();
     let failed = |tolerance: Tolerance| {
         let expected = Expected::new(&surfels(DVec3::X), &parallel(), SIZE, &plain(), &tolerance).unwrap();
         expected.compare(&picture(&surfels(DVec3::new(1.0, 2f64.powi(-24), 0.0)))).unwrap().failed
