@@ -54,8 +54,11 @@ fn the_files_are_sound_before_they_are_damaged() {
     }
 }
 
+/// With a chosen scalar, if there is a property of one of the usual names.
 fn read(bytes: &[u8]) -> surfel::Result<Loaded> {
-    ply::read_bytes("mutant", bytes, &ReadOptions::default())
+    let named = |name: &&str| bytes.windows(name.len()).any(|window| window == name.as_bytes());
+    let scalar = ["radius\n", "tag\n"].iter().find(|name| named(name)).map(|name| name.trim_end().into());
+    ply::read_bytes("mutant", bytes, &ReadOptions { scalar })
 }
 
 /// Whether it can be read; panics if anything about it is wrong.

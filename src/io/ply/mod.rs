@@ -39,6 +39,7 @@ mod grid;
 mod header;
 mod layout;
 mod meter;
+mod others;
 mod points;
 mod records;
 mod report;
