@@ -65,3 +65,185 @@ fn normals_of_scans_are_those_of_their_meshes() {
         assert!(errors.median <= 5.0 && errors.p95 <= 20.0 && errors.right >= 0.995, "{name}: {errors:?}");
     }
 }
+
+/// `across` × `along` points of a plane, `pitch` apart across, 1 along.
+fn lines(across: i32, along: i32, pitch: f32) -> Vec<Vec3> {
+    let point = |i: i32, j: i32| Vec3::new(pitch * i as f32, j as f32, 0.0);
+    (0..across).flat_map(|i| (0..along).map(move |j| point(i, j))).collect()
+}
+
+fn bare(positions: Vec<Vec3>) -> Cloud {
+    Cloud { positions, ..Default::default() }
+}
+
+/// The middle of a list.
+fn median(values: &[f32]) -> f32 {
+    let mut values = values.to_vec();
+    values.sort_unstable_by(f32::total_cmp);
+    values[values.len() / 2]
+}
+
+#[test]
+fn radii_reach_from_scan_line_to_scan_line() {
+    for pitch in [1.0_f32, 3.0, 10.0] {
+        let (surfels, _) = estimate(bare(lines(200 / pitch as i32, 200, pitch)));
+        // Half the diagonal of a cell between the lines, and the margin.
+        let expected = 1.25 * 0.5 * pitch.hypot(1.0);
+        assert!(
+            (median(&surfels.radii) / expected - 1.0).abs() < 1e-3,
+            "{pitch}: {}",
+            median(&surfels.radii)
+        );
+        let largest = surfels.radii.iter().copied().fold(0.0, f32::max);
+        assert!(largest < 1.05 * expected, "{pitch}: a disc of {largest} at the edge");
+        assert!(surfels.normals.iter().all(|n| n.z.abs() > 0.9999), "{pitch}");
+    }
+}
+
+#[test]
+fn ellipses_follow_the_scan_lines() {
+    let how = Estimate { elliptical: true, ..Default::default() };
+    let (surfels, _) = bare(lines(40, 200, 5.0)).into_surfels(&how, &()).unwrap();
+    let inner = |p: &Vec3| (20.0..180.0).contains(&p.x) && (20.0..180.0).contains(&p.y);
+    let ellipses = surfels.ellipses.unwrap();
+    for ((_, ellipse), radius) in
+        surfels.positions.iter().zip(&ellipses).zip(&surfels.radii).filter(|((p, _), _)| inner(p))
+    {
+        assert!(ellipse.major.x.abs() > 0.99 && (ellipse.aspect - 0.2).abs() < 0.02, "{ellipse:?}");
+        // The corner of a cell, 2.5 across and 0.5 along, lies on the ellipse without its margin.
+        let corner = (2.5 * 2.5 + 0.25 / ellipse.aspect.powi(2)).sqrt();
+        assert!((radius / (1.25 * corner) - 1.0).abs() < 0.02, "{radius} {corner}");
+    }
+}
+
+#[test]
+fn duplicates_change_nothing() {
+    let sphere = bumpy_sphere::sample(5000, 2).positions;
+    let (once, _) = estimate(bare(sphere.clone()));
+    let (tripled, counts) = estimate(bare([&sphere[..], &sphere, &sphere].concat()));
+    assert_eq!((tripled.len(), counts.normals_from_neighbours), (15_000, 15_000));
+    let by_place = |surfels: &Surfels| -> HashMap<[u32; 3], (Vec3, f32)> {
+        let places = surfels.positions.iter().map(|p| p.to_array().map(f32::to_bits));
+        places.zip(surfels.normals.iter().copied().zip(surfels.radii.iter().copied())).collect()
+    };
+    assert_eq!(by_place(&once), by_place(&tripled));
+}
+
+#[test]
+fn points_far_from_all_others_stay_small_and_can_be_removed() {
+    let mut points = bumpy_sphere::sample(20_000, 3).positions;
+    let largest = estimate(bare(points.clone())).0.radii.into_iter().fold(0.0, f32::max);
+    let mut random = Random(5);
+    points.extend((0..20).map(|_| (4.0 * random.vector().normalize()).as_vec3()));
+    let (surfels, counts) = estimate(bare(points.clone()));
+    let strays = || surfels.positions.iter().zip(&surfels.radii).filter(|(p, _)| p.length() > 3.0);
+    assert_eq!((strays().count(), counts.outliers), (20, 0));
+    assert!(strays().all(|(_, radius)| *radius < 4.0 * largest), "{:?}", strays().collect::<Vec<_>>());
+    let how = Estimate { outliers: Some(4.0), ..Default::default() };
+    let (surfels, counts) = bare(points).into_surfels(&how, &()).unwrap();
+    assert_eq!((surfels.len() as u64 + counts.outliers, surfels.len()), (20_020, 20_000));
+}
+
+#[test]
+fn normals_point_to_where_points_were_seen_from() {
+    use surfel::geometry::View;
+    let sheet = lines(50, 50, 1.0);
+    for (view, up) in [
+        (View::From(Vec3::new(25.0, 25.0, 40.0)), 1.0),
+        (View::From(Vec3::new(25.0, 25.0, -40.0)), -1.0),
+        (View::Towards(Vec3::Z), 1.0),
+        (View::Towards(Vec3::NEG_Z), -1.0),
+    ] {
+        let (surfels, counts) = estimate(Cloud { view, ..bare(sheet.clone()) });
+        assert!(surfels.normals.iter().all(|n| n.z * up > 0.99), "{view:?}");
+        assert_eq!((counts.two_sided, surfels.two_sided), (0, None), "{view:?}");
+    }
+    // An open sheet tells nothing of its side, but its normals agree.
+    let (surfels, counts) = estimate(bare(sheet));
+    assert_eq!((counts.two_sided, surfels.two_sided), (2500, Some(vec![true; 2500])));
+    assert_eq!(surfels.normals.iter().filter(|n| n.z > 0.0).count() % 2500, 0);
+}
+
+#[test]
+fn normals_that_are_there_stay_and_lead_the_others() {
+    let sheet = lines(50, 50, 1.0);
+    let known = |i: usize| if i == 7 { Vec3::new(0.0, 0.6, -0.8) } else { Vec3::ZERO };
+    let normals = Some((0..sheet.len()).map(known).collect());
+    let (surfels, counts) = estimate(Cloud { normals, ..bare(sheet) });
+    assert_eq!((counts.normals_given, counts.normals_from_neighbours, counts.two_sided), (1, 2499, 0));
+    assert_eq!(surfels.normals.iter().filter(|n| **n == Vec3::new(0.0, 0.6, -0.8)).count(), 1);
+    assert!(surfels.normals.iter().all(|n| n.z < -0.7));
+}
+
+#[test]
+fn closed_surfaces_are_oriented_each_by_itself() {
+    let sphere = bumpy_sphere::sample(3000, 4).positions;
+    let away = Vec3::new(10.0, 0.0, 0.0);
+    let both: Vec<Vec3> = sphere.iter().copied().chain(sphere.iter().map(|p| *p + away)).collect();
+    let (surfels, counts) = estimate(bare(both));
+    assert_eq!(counts.two_sided, 0);
+    let outwards = |(p, n): (&Vec3, &Vec3)| n.dot(if p.x > 5.0 { *p - away } else { *p }) > 0.0;
+    assert!(surfels.positions.iter().zip(&surfels.normals).all(outwards));
+}
+
+#[test]
+fn faces_tell_normals_and_radii_and_points_without_faces_follow() {
+    // Two triangles of a unit square, and a point beside them.
+    let positions = vec![Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::Y, Vec3::new(2.0, 0.5, 0.0)];
+    let triangles = vec![[0, 1, 2], [0, 2, 3]];
+    let (surfels, counts) = estimate(Cloud { triangles, ..bare(positions) });
+    assert_eq!((counts.normals_from_faces, counts.radii_from_faces), (4, 4));
+    assert_eq!((counts.normals_from_neighbours, counts.radii_from_neighbours, counts.two_sided), (1, 1, 0));
+    for (p, (n, radius)) in surfels.positions.iter().zip(surfels.normals.iter().zip(&surfels.radii)) {
+        assert!((*n - Vec3::Z).length() < 1e-6, "{p}: {n}");
+        assert!(p.x > 1.5 || (radius - 1.25 * 0.5_f32.sqrt()).abs() < 1e-6, "{p}: {radius}");
+    }
+}
+
+#[test]
+fn the_smallest_and_oddest_clouds_are_answered() {
+    let radius = |radius| Estimate { radius: Some(radius), ..Default::default() };
+    let one = || bare(vec![Vec3::ONE]);
+    assert!(one().into_surfels(&Estimate::default(), &()).unwrap_err().contains("give a radius"));
+    assert!(
+        bare(vec![Vec3::ONE; 40])
+            .into_surfels(&Estimate::default(), &())
+            .unwrap_err()
+            .contains("give a radius")
+    );
+    let (surfels, _) = one().into_surfels(&radius(2.0), &()).unwrap();
+    assert_eq!((surfels.radii, surfels.two_sided), (vec![2.0], Some(vec![true])));
+    for scale in [1e-35_f32, 1e-6, 1.0, 1e6, 1e36] {
+        let on_a_line = (0..30).map(|i| scale * Vec3::new(i as f32, 2.0 * i as f32, 0.0)).collect();
+        let corners =
+            (0..8).map(|i| scale * Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32)).collect();
+        for positions in [vec![Vec3::ZERO, scale * Vec3::X], on_a_line, corners] {
+            let count = positions.len();
+            for elliptical in [false, true] {
+                let how = Estimate { elliptical, ..Default::default() };
+                let (surfels, _) = bare(positions.clone()).into_surfels(&how, &()).unwrap();
+                assert_eq!(surfels.len(), count);
+                assert!(
+                    surfels.radii.iter().all(|r| (0.1..4.0).contains(&(r / scale))),
+                    "{scale}: {:?}",
+                    surfels.radii
+                );
+                assert!(surfels.normals.iter().all(|n| (n.length() - 1.0).abs() < 1e-5), "{scale}");
+            }
+        }
+    }
+}
+
+#[test]
+fn what_makes_no_sense_is_refused() {
+    let cases = [
+        (Estimate { neighbours: 5, ..Default::default() }, "5 neighbours"),
+        (Estimate { radius: Some(0.0), ..Default::default() }, "radius is 0"),
+        (Estimate { radius_scale: f32::NAN, ..Default::default() }, "factor of the radii is NaN"),
+        (Estimate { outliers: Some(-1.0), ..Default::default() }, "deviations is -1"),
+    ];
+    for (how, cause) in cases {
+        let error = bare(lines(5, 5, 1.0)).into_surfels(&how, &()).unwrap_err();
+        assert!(error.contains(cause), "{error}");
+    }
+}

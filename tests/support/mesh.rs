@@ -39,7 +39,7 @@ pub fn silhouette(mesh: &Cloud, camera: &Camera, [width, height]: [u32; 2]) -> V
     let project = |p: &Vec3| {
         let clip = matrix * (p.as_dvec3() + mesh.origin).extend(1.0);
         assert!(clip.w > 0.0, "the mesh is in front of the eye");
-        0.5 * (DVec2::new(clip.x, -clip.y) / clip.w + 1.0) * size
+        0.5 * (clip.truncate().truncate() / clip.w + 1.0) * size
     };
     let points: Vec<DVec2> = mesh.positions.iter().map(project).collect();
     let mut covered = vec![false; (width * height) as usize];

@@ -38,6 +38,27 @@ impl Default for Estimate {
     }
 }
 
+impl Estimate {
+    /// Refuses what nothing can be estimated with; says what and the remedy.
+    fn check(&self) -> Result<(), String> {
+        let positive = |name: &str, value: f32| match value.is_finite() && value > 0.0 {
+            true => Ok(()),
+            false => Err(format!("{name} is {value}: give a finite number above 0")),
+        };
+        if self.neighbours < Self::LEAST_NEIGHBOURS {
+            let (least, given) = (Self::LEAST_NEIGHBOURS, self.neighbours);
+            return Err(format!("{given} neighbours do not tell a plane: give at least {least}"));
+        }
+        self.radius.map_or(Ok(()), |radius| positive("the radius", radius))?;
+        self.outliers
+            .map_or(Ok(()), |deviations| positive("the outliers' standard deviations", deviations))?;
+        positive("the factor of the radii", self.radius_scale)
+    }
+
+    /// Least [`Estimate::neighbours`].
+    pub const LEAST_NEIGHBOURS: usize = 6;
+}
+
 /// Where normals and radii came from, as numbers of points.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Estimated {
@@ -62,6 +83,12 @@ pub struct Estimated {
 impl Cloud {
     /// The surfels of the cloud, in Morton order.
     ///
+    /// A normal that is missing is that of the faces around the point; where there are none, of the plane of least squares through its
+    /// neighbours, which points to where the cloud was seen from, or agrees with normals that are known and with its neighbours', outwards
+    /// on a closed surface. Where even that does not tell its side, the surfel is two-sided. A radius that is missing is just large enough
+    /// that the discs of a smooth surface leave no gap, by the triangles between the points: the faces', or those of the neighbours'
+    /// Delaunay triangulation in the tangent plane.
+    ///
     /// # Errors
     /// The cause, without the input's name, if what is missing cannot be estimated.
     pub fn into_surfels(
@@ -69,6 +96,7 @@ impl Cloud {
         how: &Estimate,
         progress: &dyn Progress,
     ) -> Result<(Surfels, Estimated), String> {
+        how.check()?;
         let count = self.len();
         let mut surfels = Surfels {
             origin: self.origin,

@@ -7,7 +7,7 @@ use crate::geometry::{Cloud, Colours};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
-/// The origin is 0 unless the coordinates are more than this many times larger than the extent; then it is the middle of the bounds. So
+/// The origin is 0 unless the coordinates are more than this many times larger than the extent; then it is near the middle of the bounds. So
 /// ordinary files keep their coordinates bit by bit, and the error of a position is at most one f32 ulp of the extent.
 const FAR: f64 = 2.0;
 
@@ -114,8 +114,15 @@ fn positions(mut narrow: Vec<Vec3>, wide: &[DVec3], origin: DVec3) -> Vec<Vec3> 
     narrow
 }
 
+/// What positions are made relative to. A round number: the power of two next above the extent divides it, so that coordinates which have
+/// been moved by whole metres, say, come back as they were.
 fn origin(min: DVec3, max: DVec3) -> DVec3 {
     let largest = min.abs().max(max.abs()).max_element();
     let extent = (max - min).max_element();
-    if largest > FAR * extent { 0.5 * min + 0.5 * max } else { DVec3::ZERO }
+    if largest <= FAR * extent {
+        return DVec3::ZERO;
+    }
+    let middle = 0.5 * min + 0.5 * max;
+    let step = 2.0 * extent.log2().floor().exp2();
+    if step.is_normal() { (middle / step).round() * step } else { middle }
 }
