@@ -8,7 +8,7 @@ use std::fmt::Write;
 use std::path::Path;
 use surfel::geometry::estimate::Estimated;
 use surfel::geometry::{Cloud, Colours, Surfels};
-use surfel::io::ply::{self, Element, Format, Inspected, Loaded, ReadOptions, Report};
+use surfel::io::ply::{self, Dropped, Element, Format, Inspected, Loaded, ReadOptions, Report};
 use surfel::{Error, Result, scenes};
 
 /// Says what is in a file or scene. Of a file whose points cannot be drawn it tells what there is, and the error why.
@@ -53,7 +53,11 @@ fn properties(report: &Report) -> String {
         true => "none".to_owned(),
         false => names.iter().map(|name| shown(name)).collect::<Vec<_>>().join(" "),
     };
-    format!("understood: {}\nskipped: {}\n", list(&report.understood), list(&report.skipped))
+    let (understood, skipped) = (list(&report.understood), list(&report.skipped));
+    format!(
+        "understood: {understood}\nskipped: {skipped}\nskipped elements: {}\n",
+        list(&report.skipped_elements)
+    )
 }
 
 fn describe(surfels: &Surfels, points: u64) -> String {
@@ -109,8 +113,12 @@ fn sources(estimated: &Estimated) -> String {
 }
 
 fn dropped(report: &Report, estimated: &Estimated) -> String {
-    format!(
-        "left out: {} without a finite position, {} outliers\n",
-        report.dropped.position, estimated.outliers
-    )
+    let (Dropped { position, transparent }, outliers) = (report.dropped, estimated.outliers);
+    let mut text = format!(
+        "left out: {position} without a finite position, {transparent} less than a tenth opaque, {outliers} outliers\n"
+    );
+    if report.trailing > 0 {
+        let _ = writeln!(text, "after the last element: {} bytes that mean nothing", report.trailing);
+    }
+    text
 }

@@ -48,6 +48,7 @@ enum Part {
 
 /// Reads every input; several become one set of surfels.
 pub fn load(wanted: &Wanted<'_>) -> Result<Inputs> {
+    refuse_scenes(wanted)?;
     let (mut parts, mut read, mut dropped) = (Vec::new(), 0, Dropped::default());
     for name in wanted.names {
         let (part, points, lost) = load_one(name, wanted)?;
@@ -66,24 +67,42 @@ pub fn load(wanted: &Wanted<'_>) -> Result<Inputs> {
     Ok(inputs)
 }
 
+/// Refuses scenes beside files whose property is asked for: they have none.
+fn refuse_scenes(wanted: &Wanted<'_>) -> Result<()> {
+    let property = wanted.colouring.as_ref().and_then(Colouring::property);
+    match property.zip(wanted.names.iter().find_map(scene)) {
+        Some((property, scene)) => Err(Error::Usage(format!(
+            "{scene}: its points have no property `{property}`: colour by x, y, z, height, normal or radius"
+        ))),
+        None => Ok(()),
+    }
+}
+
 /// What is in an input, its number of points, and how many of them were dropped.
 fn load_one(name: &OsString, wanted: &Wanted<'_>) -> Result<(Part, u64, Dropped)> {
-    let property = wanted.colouring.as_ref().and_then(Colouring::property);
     if let Some(scene) = scene(name) {
         let surfels = scenes::open(scene)?;
         let count = surfels.len() as u64;
-        return match property {
-            Some(property) => Err(Error::Usage(format!(
-                "{scene}: its points have no property `{property}`: colour by x, y, z, height, normal or radius"
-            ))),
-            None => Ok((Part::Scene(surfels), count, Dropped::default())),
-        };
+        return Ok((Part::Scene(surfels), count, Dropped::default()));
     }
+    let property = wanted.colouring.as_ref().and_then(Colouring::property);
     let options = ReadOptions { scalar: property.map(str::to_owned) };
     let Loaded { cloud, report } = ply::read(Path::new(name), &options, wanted.progress)?;
     let name = Path::new(name).display().to_string();
-    if report.dropped.total() > 0 {
-        log::warn!("{name}: {} of {} points have no finite position", report.dropped.total(), report.points);
+    let Dropped { position, transparent } = report.dropped;
+    for (count, why) in [(position, "have no finite position"), (transparent, "are less than a tenth opaque")]
+    {
+        if count > 0 {
+            log::warn!("{name}: {count} of {} points {why} and are left out", report.points);
+        }
+    }
+    if report.faces.skipped > 0 {
+        let faces = report.faces;
+        log::warn!(
+            "{name}: {} of {} faces have no three different corners that exist and are left out",
+            faces.skipped,
+            faces.skipped + faces.understood
+        );
     }
     let cloud = match wanted.voxel {
         Some(voxel) => thin(&name, cloud, voxel, wanted.quiet)?,

@@ -139,7 +139,7 @@ fn what_cannot_be_shown_is_refused_before_anything_is_read() {
     }
     let run = program.run("render missing.ply -o out.exr --color-by x --color-bar");
     assert!(run.error(2).contains("into a PNG alone"), "{}", run.err);
-    let run = program.run("render scene:bumpy-sphere -o out.png --color-by intensity");
+    let run = program.run("render missing.ply scene:bumpy-sphere -o out.png --color-by intensity");
     assert!(run.error(2).contains("no property `intensity`"), "{}", run.err);
     assert!(program.files().is_empty());
 }

@@ -15,7 +15,7 @@ use crate::Progress;
 use glam::Vec3;
 
 /// Estimated discs reach this many times as far as they must for the surface between flat neighbours to have no gap.
-const MARGIN: f64 = 1.25;
+const MARGIN: f64 = 1.3;
 
 /// How what is missing is estimated.
 #[derive(Clone, Debug, PartialEq)]

@@ -14,7 +14,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 const EDGES: usize = 10;
 /// A disc is at most this many times as large as the middle one of those next to it, and as what 99 % of all are not larger than,
 /// on flat ground twice that: a point far from others would hide them, or much that is empty.
-const LARGEST: f32 = 2.0;
+const LARGEST: f32 = 3.0;
 /// Sites of one piece of work.
 const PIECE: usize = 1 << 12;
 

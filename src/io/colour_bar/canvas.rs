@@ -132,6 +132,9 @@ mod tests {
         assert_eq!(picture.pixels, [[188, 188, 188, 255], [255, 255, 255, 128], [0, 0, 0, 255]]);
         assert_eq!(picture.lightness(Rectangle { x: 2, y: 0, width: 1, height: 1 }), 0.0);
         assert_eq!(picture.lightness(Rectangle { x: 1, y: 0, width: 1, height: 1 }), 1.0);
+        // Code 188 is half of linear light, 137 a quarter.
+        picture.fill(Rectangle { width: 1, ..area }, [0; 3], 0.5);
+        assert_eq!(picture.pixels[0], [137, 137, 137, 255]);
         // Nothing happens beyond the edge.
         picture.fill(Rectangle { x: 2, y: 0, width: 5, height: 5 }, [255; 3], 1.0);
         assert_eq!(picture.pixels[2], [255; 4]);
