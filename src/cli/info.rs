@@ -6,7 +6,7 @@ use super::inputs::scene;
 use super::progress;
 use std::fmt::Write;
 use std::path::Path;
-use surfel::geometry::estimate::Estimated;
+use surfel::geometry::estimate::{Estimated, spacing};
 use surfel::geometry::{Cloud, Colours, Surfels};
 use surfel::io::ply::{self, Dropped, Element, Format, Inspected, Loaded, ReadOptions, Report};
 use surfel::{Error, Result, scenes};
@@ -64,6 +64,9 @@ fn describe(surfels: &Surfels, points: u64) -> String {
     let mut text = format!("points: {points}\nsurfels: {}\n", surfels.len());
     if let Some(bounds) = surfels.bounds() {
         let _ = writeln!(text, "bounds: {} to {}", bounds.min, bounds.max);
+    }
+    if let Some(spacing) = spacing(&surfels.positions) {
+        let _ = writeln!(text, "spacing: {spacing}, the median distance to the nearest point");
     }
     let mut radii = surfels.radii.clone();
     radii.sort_unstable_by(f32::total_cmp);

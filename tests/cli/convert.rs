@@ -69,7 +69,7 @@ fn colours_are_written() {
 }
 
 #[test]
-#[ignore = "thinned points have no radii until these are estimated"]
+
 fn thinning_says_how_many_are_left() {
     let program = Program::new();
     let bare = surfels(&["0 0 0 0 0 1 9", "0.25 0 0 0 0 1 9", "5 0 0 0 0 1 9"]);
@@ -87,7 +87,7 @@ fn thinning_says_how_many_are_left() {
 }
 
 #[test]
-#[ignore = "radii are taken as they are until there is an estimate"]
+
 fn radii_are_set_and_scaled() {
     let program = Program::new();
     program.write("a.ply", surfels(&TWO));

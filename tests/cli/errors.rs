@@ -15,7 +15,7 @@ fn unusable_inputs_exit_with_1_at_once() {
         ("none.ply", surfels(&[]).into(), "it has no vertices"),
         ("nan.ply", surfels(&["nan nan nan nan nan nan nan"; 3]).into(), "none of its 3 vertices"),
         ("lying.ply", surfels(&[GOOD]).replace("vertex 1", "vertex 4000000000").into(), "4000000000"),
-        ("bare.ply", surfels(&[GOOD]).replace("radius", "quality").into(), "lacks normals or radii"),
+        ("bare.ply", surfels(&[GOOD]).replace("radius", "quality").into(), "give a radius"),
     ];
     for (name, contents, cause) in cases {
         let program = Program::new();

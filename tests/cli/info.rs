@@ -17,24 +17,36 @@ fn a_file_is_described() {
         "surfels: 3",
         // The discs' bounds, by the largest radius.
         "bounds: [-3, -3, -3] to [7, 3, 3]",
+        "spacing: 2, the median distance to the nearest point",
         "radius: 1 to 3, median 2",
         "colours: none",
         "normals: 3 given",
         "radii: 3 given",
-        "left out: 1 without a finite position, 0 outliers",
+        "left out: 1 without a finite position, 0 less than a tenth opaque, 0 outliers",
     ] {
         assert!(run.text().lines().any(|have| have == line), "no `{line}` in\n{}", run.text());
     }
 }
 
 #[test]
-fn a_file_without_radii_still_tells_what_it_has() {
+fn a_file_that_cannot_be_drawn_still_tells_what_it_has() {
     let program = Program::new();
     program.write("a.ply", surfels(&["0 0 0 0 0 1 1"]).replace("radius", "confidence"));
     let run = program.run("info a.ply");
-    assert!(run.error(1).contains("lacks normals or radii"), "{}", run.err);
+    assert!(run.error(1).contains("give a radius"), "{}", run.err);
     let text = String::from_utf8(run.out).unwrap();
     assert!(text.contains("element vertex: 1\n") && text.contains("  float confidence\n"), "{text}");
+}
+
+#[test]
+fn what_is_estimated_is_told() {
+    let program = Program::new();
+    let grid: Vec<String> = (0..49).map(|i| format!("{} {} 0 0 0 0 0", i % 7, i / 7)).collect();
+    program.write("a.ply", surfels(&grid.iter().map(String::as_str).collect::<Vec<_>>()));
+    let run = program.run("info a.ply");
+    for line in ["normals: 49 from neighbours, 49 two-sided", "radii: 49 from neighbours"] {
+        assert!(run.text().lines().any(|have| have == line), "no `{line}` in\n{}", run.text());
+    }
 }
 
 #[test]

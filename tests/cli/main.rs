@@ -8,3 +8,4 @@ mod inputs;
 mod program;
 mod render;
 mod report;
+mod scans;

@@ -117,6 +117,6 @@ pub fn scan(test: &str, name: &str) -> Option<PathBuf> {
 }
 
 /// Past the test harness, which keeps to itself what a passing test prints through macros.
-fn say_skipped(test: &str, why: &str) {
+pub fn say_skipped(test: &str, why: &str) {
     std::io::stderr().write_all(format!("SKIPPED {test}: {why}\n").as_bytes()).unwrap();
 }

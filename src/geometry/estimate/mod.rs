@@ -9,6 +9,9 @@ mod outliers;
 mod patch;
 mod reach;
 mod sites;
+mod spacing;
+
+pub use spacing::spacing;
 
 use super::{Cloud, Surfels};
 use crate::Progress;
@@ -68,7 +71,7 @@ pub struct Estimated {
     pub normals_from_faces: u64,
     /// Normals from the nearest points.
     pub normals_from_neighbours: u64,
-    /// Normals whose side is unknown.
+    /// Surfels that are two-sided, because the side of their normals is unknown or because the file says so.
     pub two_sided: u64,
     /// The file's own radii, or the one that was asked for.
     pub radii_given: u64,
@@ -133,6 +136,8 @@ impl Cloud {
             return Err("its points are all at one place, so that they have no spacing: give a radius".into());
         }
         surfels.radii.iter_mut().for_each(|radius| *radius *= how.radius_scale);
+        estimated.two_sided =
+            surfels.two_sided.iter().flatten().filter(|two_sided| **two_sided).count() as u64;
         Ok((surfels, estimated))
     }
 }

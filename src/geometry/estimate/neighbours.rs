@@ -42,7 +42,6 @@ pub(super) fn fill(
             surfels.normals[i] = normals[site];
             two_sided[i] = unknown[site];
             estimated.normals_from_neighbours += 1;
-            estimated.two_sided += u64::from(unknown[site]);
         }
         if surfels.radii[i] == 0.0 {
             surfels.radii[i] = radii[site];
