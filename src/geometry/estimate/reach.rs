@@ -70,6 +70,6 @@ mod tests {
         assert_eq!(reach(1.0, 1.0, 4.0), 0.5);
         assert_eq!(reach(1.0, 4.0, 1.0), 0.5);
         assert_eq!(reach(1.0, 1.0, 0.0), 0.5);
-        assert!(!(reach(0.0, 0.0, 0.0) > 0.0));
+        assert_eq!(reach(0.0, 0.0, 0.0), 0.0);
     }
 }

@@ -48,7 +48,7 @@ impl Sites {
         let most = NonZero::new(count + 1).unwrap_or(NonZero::<usize>::MIN);
         let query = &self.points[site as usize];
         let found = self.tree.query(query).nearest_n::<SquaredEuclidean<f32>>(most).execute();
-        found.into_iter().map(|found| found.item as u32).filter(move |&other| other != site).take(count)
+        found.into_iter().map(|found| found.item).filter(move |&other| other != site).take(count)
     }
 }
 
