@@ -145,6 +145,18 @@ fn points_far_from_all_others_stay_small_and_can_be_removed() {
 }
 
 #[test]
+fn a_point_that_floats_above_a_surface_lies_parallel_to_it() {
+    let mut sheet = lines(60, 60, 1.0);
+    let floating = |i: usize| i % 97 == 5;
+    (0..sheet.len()).filter(|&i| floating(i)).for_each(|i| sheet[i].z = 5.0);
+    let (surfels, _) = estimate(bare(sheet));
+    let inner = |p: &Vec3| (5.0..55.0).contains(&p.x) && (5.0..55.0).contains(&p.y);
+    let inside = || surfels.positions.iter().zip(&surfels.normals).filter(|(p, _)| inner(p));
+    assert!(inside().filter(|(p, _)| p.z == 5.0).count() > 20);
+    assert!(inside().all(|(_, n)| n.z.abs() > 0.99), "{:?}", inside().find(|(_, n)| n.z.abs() <= 0.99));
+}
+
+#[test]
 fn normals_point_to_where_points_were_seen_from() {
     use surfel::geometry::View;
     let sheet = lines(50, 50, 1.0);

@@ -12,9 +12,11 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Neighbours of a site in the graph along which normals are made to agree.
 const EDGES: usize = 10;
-/// A disc is at most this many times as large as the middle one of those next to it, and as what 99 % of all are not larger than,
-/// on flat ground twice that: a point far from others would hide them, or much that is empty.
-const LARGEST: f32 = 3.0;
+/// A disc is at most this many times as large as the middle one of those next to it: a point far from others would hide them.
+const LARGEST_BESIDE: f32 = 3.0;
+/// And this many times, on flat ground twice as many, as what 99 % of all are not larger than: a few points far from all others would fill
+/// what is empty.
+const LARGEST_OVERALL: f32 = 2.0;
 /// Sites of one piece of work.
 const PIECE: usize = 1 << 12;
 
@@ -173,14 +175,14 @@ fn radii(surfels: &Surfels, sites: &Sites, survey: &Survey) -> Vec<f32> {
             reaches[site as usize] = radius / MARGIN as f32;
         }
     }
-    let most = LARGEST * tail(survey.each().map(|(site, ..)| reaches[site as usize]).collect());
+    let most = LARGEST_OVERALL * tail(reaches.clone());
     let mut radii = vec![0.0; sites.len()];
     for (site, patch, near) in survey.each() {
         let mut around = [0.0; EDGES];
         around.iter_mut().zip(near).for_each(|(reach, &other)| *reach = reaches[other as usize]);
         let (_, middle, _) = around.select_nth_unstable_by(EDGES / 2, f32::total_cmp);
-        radii[site as usize] =
-            MARGIN as f32 * reaches[site as usize].min(LARGEST * *middle).min(most * (1.0 + patch.flatness));
+        radii[site as usize] = MARGIN as f32
+            * reaches[site as usize].min(LARGEST_BESIDE * *middle).min(most * (1.0 + patch.flatness));
     }
     radii
 }

@@ -30,9 +30,11 @@ pub(super) struct Surveyor<'a> {
     /// The neighbours relative to the site, and those of them that lie in its plane.
     offsets: Vec<DVec3>,
     flat: Vec<DVec2>,
+    distances: Vec<f64>,
 }
 
-/// Where the neighbours do not surround a site, because they all belong to one scan line for example, this many times as many are looked at.
+/// Where the neighbours do not surround a site, because they all belong to one scan line for example, or where they do not lie in a plane,
+/// this many times as many are looked at.
 const WIDER: usize = 4;
 /// Neighbours whose extents across and along are less than this far apart, 1-σ, lie in a line.
 const LINE: f64 = 0.1;
@@ -40,15 +42,23 @@ const LINE: f64 = 0.1;
 const AROUND: usize = 6;
 /// Of these neighbours' distance, a disc reaches at most so many times as far: where they do not lie in a plane, and where they do.
 const WIDEST: [f64; 2] = [1.0, 8.0];
-/// Neighbours lie in a plane if their extent across it is less than this part of the lesser extent along it, 1-σ; and they do not if it is
-/// more than [`THICK`] of it.
+/// Neighbours lie in a plane if their thickness, the extent across it by the lesser extent along it, 1-σ, is less than this; and they do
+/// not if it is more than [`THICK`].
 const THIN: f64 = 0.2;
 const THICK: f64 = 0.4;
+/// Neighbours that are this thick may be noise. They are if more of them are less than [`SMOOTHER`] times as thick: a crease is as thick in
+/// any neighbourhood.
+const NOISY: f64 = 0.15;
+const SMOOTHER: f64 = 0.6;
+/// How often a plane through noise is made anew without what is far from it.
+const SETTLING: usize = 3;
 /// Least shorter axis of an ellipse by its longer.
 const LEAST_ASPECT: f64 = 0.125;
 
 /// The plane through a site's neighbours.
 struct Plane {
+    /// The middle of the neighbours, relative to the site.
+    mean: DVec3,
     normal: DVec3,
     /// The other eigenvectors, the longer extent last.
     tangents: [DVec3; 2],
@@ -66,6 +76,7 @@ impl<'a> Surveyor<'a> {
             near: Vec::new(),
             offsets: Vec::new(),
             flat: Vec::new(),
+            distances: Vec::new(),
         }
     }
 
@@ -75,14 +86,19 @@ impl<'a> Surveyor<'a> {
         for (i, edge) in edges.iter_mut().enumerate() {
             *edge = self.near.get(i).copied().unwrap_or(site);
         }
-        if plane.is_line() || self.cell.is_open(&self.flat) {
+        let (open, noisy) = (self.cell.is_open(&self.flat), plane.thickness() > NOISY);
+        if plane.is_line() || open || noisy {
             let wider = self.look(site, WIDER * self.neighbours);
-            if plane.is_line() || !self.cell.is_open(&self.flat) {
-                plane = wider;
-            } else {
-                // An edge of the surface: the nearer neighbours know better, and do not bridge its bays.
-                plane = self.look(site, self.neighbours);
-            }
+            let closes = open && !self.cell.is_open(&self.flat);
+            let smooths = noisy && wider.thickness() < SMOOTHER * plane.thickness();
+            plane = match plane.is_line() || closes || smooths {
+                true => wider,
+                // An edge of the surface, or a crease: the nearer neighbours know better, and do not bridge its bays.
+                false => self.look(site, self.neighbours),
+            };
+        }
+        if plane.thickness() > NOISY && !self.offsets.is_empty() {
+            plane = self.settle(plane);
         }
         let mut patch = Patch {
             normal: plane.normal.as_vec3(),
@@ -110,6 +126,24 @@ impl<'a> Surveyor<'a> {
         };
     }
 
+    /// The plane of most neighbours, where they lie in several: each counts the less the further it is from the plane before.
+    fn settle(&mut self, mut plane: Plane) -> Plane {
+        for _ in 0..SETTLING {
+            let distance = |offset: &DVec3| (offset - plane.mean).dot(plane.normal).abs();
+            self.distances.clear();
+            self.distances.extend(self.offsets.iter().map(distance));
+            let middle = self.distances.len() / 2;
+            let typical = *self.distances.select_nth_unstable_by(middle, f64::total_cmp).1;
+            if typical == 0.0 {
+                break;
+            }
+            let weight = |offset: &DVec3| 1.0 / (1.0 + (distance(offset) / typical).powi(2));
+            plane = Plane::through(self.offsets.iter().map(|offset| (*offset, weight(offset))));
+        }
+        self.flatten(&plane);
+        plane
+    }
+
     /// Looks at the `count` nearest sites: their plane, and the cell among them in it.
     fn look(&mut self, site: u32, count: usize) -> Plane {
         let centre = self.sites.at(site).as_dvec3();
@@ -117,7 +151,13 @@ impl<'a> Surveyor<'a> {
         self.near.extend(self.sites.nearest(site, count));
         self.offsets.clear();
         self.offsets.extend(self.near.iter().map(|&other| self.sites.at(other).as_dvec3() - centre));
-        let plane = Plane::through(&self.offsets);
+        let plane = Plane::through(self.offsets.iter().map(|offset| (*offset, 1.0)));
+        self.flatten(&plane);
+        plane
+    }
+
+    /// Finds the cell among the neighbours in a plane.
+    fn flatten(&mut self, plane: &Plane) {
         self.flat.clear();
         for offset in &self.offsets {
             let flat = DVec2::from(plane.tangents.map(|tangent| tangent.dot(*offset)));
@@ -128,7 +168,6 @@ impl<'a> Surveyor<'a> {
             }
         }
         self.cell.build(&self.flat);
-        plane
     }
 
     /// Makes the disc an ellipse: a circle in the plane that is stretched so that the distances to the neighbours around are the same in
@@ -151,13 +190,15 @@ impl<'a> Surveyor<'a> {
 }
 
 impl Plane {
-    /// The plane of least squares through the site, at 0, and its neighbours.
-    fn through(neighbours: &[DVec3]) -> Self {
-        let mean = neighbours.iter().sum::<DVec3>() / (1.0 + neighbours.len() as f64);
+    /// The plane of least squares through points, each with its weight.
+    fn through(points: impl Iterator<Item = (DVec3, f64)> + Clone) -> Self {
+        let (sum, weight) =
+            points.clone().fold((DVec3::ZERO, 0.0), |(sum, weight), (p, w)| (sum + w * p, weight + w));
+        let mean = if weight > 0.0 { sum / weight } else { DVec3::ZERO };
         let outer = |d: DVec3| DMat3::from_cols(d * d.x, d * d.y, d * d.z);
-        let covariance = neighbours.iter().fold(outer(mean), |sum, &d| sum + outer(d - mean));
+        let covariance = points.fold(DMat3::ZERO, |sum, (p, w)| sum + outer(p - mean) * w);
         let (values, [normal, a, b]) = eigen::symmetric(covariance);
-        Self { normal, tangents: [a, b], extents: values.max(DVec3::ZERO).map(f64::sqrt) }
+        Self { mean, normal, tangents: [a, b], extents: values.max(DVec3::ZERO).map(f64::sqrt) }
     }
 
     /// Whether the neighbours lie in a line.
@@ -165,9 +206,13 @@ impl Plane {
         self.extents.y <= LINE * self.extents.z
     }
 
+    /// The extent across by the lesser extent along, from 0 to 1.
+    fn thickness(&self) -> f64 {
+        if self.extents.y > 0.0 { self.extents.x / self.extents.y } else { 1.0 }
+    }
+
     /// From 0, the neighbours do not lie in a plane, to 1, they do.
     fn flatness(&self) -> f64 {
-        let thickness = if self.extents.y > 0.0 { self.extents.x / self.extents.y } else { 1.0 };
-        ((THICK - thickness) / (THICK - THIN)).clamp(0.0, 1.0)
+        ((THICK - self.thickness()) / (THICK - THIN)).clamp(0.0, 1.0)
     }
 }
