@@ -66,7 +66,7 @@ impl Scene {
         let Some(bounds) = surfels.bounds() else {
             return Err(Error::Usage("a scene without surfels".into()));
         };
-        check_lengths(surfels)?;
+        surfels.check()?;
         let ellipses = surfels.ellipses.as_deref();
         let (colour_stream, colours): (_, &[u8]) = match &surfels.colours {
             None => (ColourStream::None, &[]),
@@ -146,24 +146,6 @@ impl Scene {
     }
 }
 
-/// Refuses arrays of unequal length.
-fn check_lengths(surfels: &Surfels) -> Result<()> {
-    let count = surfels.len();
-    let lengths = [
-        surfels.normals.len(),
-        surfels.radii.len(),
-        surfels.ellipses.as_ref().map_or(count, Vec::len),
-        surfels.two_sided.as_ref().map_or(count, Vec::len),
-        surfels.colours.as_ref().map_or(count, Colours::len),
-    ];
-    if lengths.iter().all(|&length| length == count) {
-        return Ok(());
-    }
-    Err(Error::Usage(format!(
-        "a scene of {count} positions with {lengths:?} normals, radii, ellipses, sides and colours: give one each"
-    )))
-}
-
 /// The radii, those of two-sided surfels negative.
 fn signed_radii(surfels: &Surfels) -> Cow<'_, [f32]> {
     let Some(two_sided) = &surfels.two_sided else { return Cow::Borrowed(&surfels.radii) };
@@ -197,6 +179,7 @@ mod tests {
             max_storage_buffer_range: 1 << 20,
             storage_buffer_alignment: 64,
             max_image_side: 4096,
+            max_storage_buffers: 16,
             max_workgroups: 65535,
         };
         for count in [1, 255, 256, 21_504, 21_505, 1_000_000] {

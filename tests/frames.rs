@@ -182,6 +182,21 @@ fn without_timestamps_there_are_no_times() {
 }
 
 #[test]
+fn too_few_storage_buffers_are_an_error() {
+    let Some(device) = device(DeviceLimits { max_storage_buffers: Some(4), ..Default::default() }) else {
+        return;
+    };
+    let options = RenderOptions { size: [64, 64], ..Default::default() };
+    let made = Renderer::new(&device, options).and_then(|mut renderer| {
+        let scene = Scene::upload(&device, &sphere(100))?;
+        renderer.render_picture(&scene, &Camera::framing(scene.bounds(), 0.8, 1.0)?, &Settings::default())
+    });
+    let cause = made.map(drop).unwrap_err().to_string();
+    assert!(cause.contains("storage buffers, this one allows 4"), "{cause}");
+    assert_silent(&device);
+}
+
+#[test]
 fn every_size_that_the_device_has_works_and_others_are_refused() {
     let Some(device) = device(DeviceLimits { max_image_side: Some(1500), ..Default::default() }) else {
         return;

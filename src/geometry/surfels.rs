@@ -1,6 +1,7 @@
 //! A set of surfels: oriented discs that sample a surface.
 
 use super::Bounds;
+use crate::error::{Error, Result};
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 
@@ -68,6 +69,27 @@ impl Surfels {
     pub fn bounds(&self) -> Option<Bounds> {
         let largest = self.radii.iter().copied().fold(0.0, f32::max);
         Some(Bounds::of(&self.positions)?.grown(largest.into()).translated(self.origin))
+    }
+
+    /// Refuses arrays of unequal length.
+    ///
+    /// # Errors
+    /// [`Error::Usage`], with the lengths.
+    pub fn check(&self) -> Result<()> {
+        let count = self.len();
+        let lengths = [
+            self.normals.len(),
+            self.radii.len(),
+            self.ellipses.as_ref().map_or(count, Vec::len),
+            self.two_sided.as_ref().map_or(count, Vec::len),
+            self.colours.as_ref().map_or(count, Colours::len),
+        ];
+        if lengths.iter().all(|&length| length == count) {
+            return Ok(());
+        }
+        Err(Error::Usage(format!(
+            "{count} positions with {lengths:?} normals, radii, ellipses, sides and colours: give one each"
+        )))
     }
 
     /// Reorders every array: entry `i` of the result is entry `order[i]` of `self`.

@@ -8,7 +8,7 @@ use std::sync::Arc;
 /// The bindings 0, 1, … of a descriptor set: each a kind and the stages that see it.
 pub struct SetLayout {
     pub(super) raw: vk::DescriptorSetLayout,
-    kinds: Vec<vk::DescriptorType>,
+    bindings: Vec<(vk::DescriptorType, vk::ShaderStageFlags)>,
     device: Arc<Device>,
 }
 
@@ -44,7 +44,15 @@ impl SetLayout {
         // SAFETY: `info` is valid; the layout is destroyed in `drop`.
         let raw = unsafe { device.raw.create_descriptor_set_layout(&info, None) }
             .map_err(Error::vulkan("vkCreateDescriptorSetLayout"))?;
-        Ok(Self { raw, kinds: bindings.iter().map(|(kind, _)| *kind).collect(), device: device.clone() })
+        Ok(Self { raw, bindings: bindings.to_vec(), device: device.clone() })
+    }
+
+    /// How many storage buffers a stage sees.
+    pub(super) fn storage_buffers(&self, stage: vk::ShaderStageFlags) -> u32 {
+        let seen = |(kind, stages): &&(vk::DescriptorType, vk::ShaderStageFlags)| {
+            *kind == vk::DescriptorType::STORAGE_BUFFER && stages.contains(stage)
+        };
+        self.bindings.iter().filter(seen).count() as u32
     }
 }
 
@@ -66,9 +74,9 @@ impl DescriptorSet {
     /// A set of `layout` with one entry of `bindings` a binding. What they name must outlive the set's last use.
     pub fn new(device: &Arc<Device>, layout: &SetLayout, bindings: &[Binding<'_>]) -> Result<Self> {
         let sizes: Vec<_> = layout
-            .kinds
+            .bindings
             .iter()
-            .map(|kind| vk::DescriptorPoolSize::default().ty(*kind).descriptor_count(1))
+            .map(|(kind, _)| vk::DescriptorPoolSize::default().ty(*kind).descriptor_count(1))
             .collect();
         let info = vk::DescriptorPoolCreateInfo::default().max_sets(1).pool_sizes(&sizes);
         // SAFETY: `info` is valid; the pool, and the set with it, is destroyed in `drop`.

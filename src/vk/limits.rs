@@ -19,6 +19,8 @@ pub struct DeviceLimits {
     pub timestamps: Option<bool>,
     /// Upper bound of `maxStorageBufferRange`, bytes.
     pub max_storage_buffer_range: Option<u64>,
+    /// Upper bound of `maxPerStageDescriptorStorageBuffers`.
+    pub max_storage_buffers: Option<u32>,
     /// Upper bound of the largest render target's side, px.
     pub max_image_side: Option<u32>,
 }
@@ -36,6 +38,8 @@ pub struct Capabilities {
     pub max_storage_buffer_range: u64,
     /// Alignment of the start of such a range, bytes.
     pub storage_buffer_alignment: u64,
+    /// Most storage buffers that one stage of a shader sees.
+    pub max_storage_buffers: u32,
     /// Largest side of a render target, px.
     pub max_image_side: u32,
     /// Most workgroups of a dispatch.
@@ -81,6 +85,9 @@ impl Capabilities {
             max_storage_buffer_range: u64::from(limits.max_storage_buffer_range)
                 .min(mask.max_storage_buffer_range.unwrap_or(u64::MAX)),
             storage_buffer_alignment: limits.min_storage_buffer_offset_alignment,
+            max_storage_buffers: limits
+                .max_per_stage_descriptor_storage_buffers
+                .min(mask.max_storage_buffers.unwrap_or(u32::MAX)),
             max_image_side: side.min(LARGEST_SIDE).min(mask.max_image_side.unwrap_or(u32::MAX)),
             max_workgroups: limits.max_compute_work_group_count[0],
         }

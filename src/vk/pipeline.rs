@@ -179,8 +179,24 @@ impl Blend {
     }
 }
 
+/// Vulkan promises four storage buffers a stage; devices that draw have far more, but one that has not must say so.
+fn check_storage_buffers(device: &Device, sets: &[&SetLayout]) -> Result<()> {
+    let most = device.capabilities().max_storage_buffers;
+    for stage in [vk::ShaderStageFlags::VERTEX, vk::ShaderStageFlags::FRAGMENT, vk::ShaderStageFlags::COMPUTE]
+    {
+        let needed: u32 = sets.iter().map(|set| set.storage_buffers(stage)).sum();
+        if needed > most {
+            return Err(Error::NoDevice(format!(
+                "a shader needs {needed} storage buffers, this one allows {most}: name another with --device"
+            )));
+        }
+    }
+    Ok(())
+}
+
 impl Raw {
     fn new(device: &Arc<Device>, sets: &[&SetLayout], stages: vk::ShaderStageFlags) -> Result<Self> {
+        check_storage_buffers(device, sets)?;
         let sets: Vec<_> = sets.iter().map(|set| set.raw).collect();
         let constants = [vk::PushConstantRange { stage_flags: stages, offset: 0, size: 4 }];
         let mut info = vk::PipelineLayoutCreateInfo::default().set_layouts(&sets);

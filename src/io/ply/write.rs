@@ -1,6 +1,6 @@
 //! Writing surfels, through ply-rs: its writer is sound for binary records of single numbers, as long as the header's count is ours.
 
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::geometry::{Colours, Ellipse, Surfels};
 use crate::io::atomic;
 use glam::{DVec3, Vec3};
@@ -18,17 +18,7 @@ use std::path::Path;
 /// # Errors
 /// [`Error::Usage`] if the arrays differ in length, [`Error::Io`] if the file cannot be written.
 pub fn write(path: &Path, surfels: &Surfels) -> Result<()> {
-    let count = surfels.len();
-    let lengths = [
-        surfels.normals.len(),
-        surfels.radii.len(),
-        surfels.ellipses.as_ref().map_or(count, Vec::len),
-        surfels.two_sided.as_ref().map_or(count, Vec::len),
-        surfels.colours.as_ref().map_or(count, Colours::len),
-    ];
-    if lengths != [count; 5] {
-        return Err(Error::Usage("surfels with arrays of different lengths: give one entry a surfel".into()));
-    }
+    surfels.check()?;
     atomic::write(path, |mut out| records(&mut out, surfels))
 }
 
