@@ -16,7 +16,7 @@ use std::path::Path;
 /// sRGB-encoded, as float if linear. The file is replaced as a whole or, after an error, not at all.
 ///
 /// # Errors
-/// [`Error::Usage`] if the arrays differ in length, [`Error::Io`] if the file cannot be written.
+/// [`crate::Error::Usage`] if the arrays differ in length, [`crate::Error::Io`] if the file cannot be written.
 pub fn write(path: &Path, surfels: &Surfels) -> Result<()> {
     surfels.check()?;
     atomic::write(path, |mut out| records(&mut out, surfels))
