@@ -96,7 +96,9 @@ mod tests {
             let grid: Vec<Vec3> = grid.collect();
             let sites = Sites::new(&grid).unwrap();
             for site in [0, 210, 3999_u32] {
-                let distance = |&other: &u32| grid[other as usize].distance(grid[site as usize]) / scale;
+                // Divided before they are squared, which must not leave f32's range.
+                let at = |site: u32| grid[site as usize] / scale;
+                let distance = |&other: &u32| at(other).distance(at(site));
                 let found: Vec<f32> = sites.nearest(site, 8).map(|other| distance(&other)).collect();
                 let mut all: Vec<f32> = (0..4000).filter(|&i| i != site).map(|i| distance(&i)).collect();
                 all.sort_by(f32::total_cmp);

@@ -100,8 +100,9 @@ fn a_camera_tells_from_where_the_points_were_seen() {
         load(&text(&lines, &format!("{eyes}1e6 0 0\n1000010 10 10\n"))).cloud
     };
     let cloud = file(1, "1000015 5 5\n");
-    assert_eq!(cloud.origin, DVec3::new(1_000_005.0, 5.0, 5.0));
-    assert_eq!(cloud.view, View::From(Vec3::new(10.0, 0.0, 0.0)));
+    // The origin is a multiple of 16, the power of two above the extent.
+    assert_eq!(cloud.origin, DVec3::new(1e6, 0.0, 0.0));
+    assert_eq!(cloud.view, View::From(Vec3::new(15.0, 5.0, 5.0)));
     assert_eq!(file(2, "1 2 3\n4 5 6\n").view, View::Unknown);
     assert_eq!(file(1, "1 nan 3\n").view, View::Unknown);
 }
