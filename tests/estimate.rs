@@ -199,6 +199,63 @@ fn closed_surfaces_are_oriented_each_by_itself() {
 }
 
 #[test]
+fn clutter_has_no_side() {
+    let mut random = Random(11);
+    let clutter = (0..5000).map(|_| random.vector().as_vec3()).collect();
+    let (_, counts) = estimate(bare(clutter));
+    assert_eq!(counts.two_sided, 5000);
+}
+
+#[test]
+fn faces_back_to_back_tell_nothing_and_neighbours_do() {
+    let sphere = bumpy_sphere::sample(2000, 6).positions;
+    // Small triangles around each point's place, each also the other way round, in an order that keeps their sum from being 0.
+    let near = |i: u32, k: u32| (i + k) % 2000;
+    let triangles: Vec<[u32; 3]> = (0..2000)
+        .map(|i| [i, near(i, 5), near(i, 89)])
+        .chain((0..2000).rev().map(|i| [i, near(i, 89), near(i, 5)]))
+        .collect();
+    let (surfels, counts) = estimate(Cloud { triangles, ..bare(sphere) });
+    assert_eq!((counts.normals_from_faces, counts.normals_from_neighbours, counts.two_sided), (0, 2000, 0));
+    assert!(surfels.positions.iter().zip(&surfels.normals).all(|(p, n)| p.dot(*n) > 0.0));
+}
+
+#[test]
+fn given_ellipses_lie_in_the_plane_of_estimated_normals() {
+    use surfel::geometry::Ellipse;
+    let sheet = lines(20, 20, 1.0);
+    let majors = [Vec3::Z, Vec3::new(0.6, 0.0, 0.8)];
+    let ellipses = (0..sheet.len()).map(|i| Ellipse { major: majors[i % 2], aspect: 0.5 }).collect();
+    let radii = Some(vec![1.0; sheet.len()]);
+    let (surfels, _) = estimate(Cloud { ellipses: Some(ellipses), radii, ..bare(sheet) });
+    let ellipses = surfels.ellipses.unwrap();
+    for (ellipse, normal) in ellipses.iter().zip(&surfels.normals) {
+        assert!(ellipse.major.dot(*normal).abs() < 1e-6 && ellipse.major.is_normalized(), "{ellipse:?}");
+    }
+    // What stood upright has no direction in the plane; what leaned has.
+    assert_eq!(ellipses.iter().filter(|ellipse| ellipse.aspect == 1.0).count(), 200);
+    assert_eq!(
+        ellipses.iter().filter(|ellipse| ellipse.major.x > 0.999 && ellipse.aspect == 0.5).count(),
+        200
+    );
+}
+
+#[test]
+fn outliers_take_their_triangles_along_and_are_not_counted_as_given() {
+    let mut positions = lines(20, 20, 1.0);
+    positions.push(Vec3::new(0.0, 0.0, 500.0));
+    let stray = positions.len() as u32 - 1;
+    let triangles = vec![[0, 20, 1], [stray, 0, 1], [20, 21, 1]];
+    let radii = Some(vec![1.0; positions.len()]);
+    let how = Estimate { outliers: Some(3.0), ..Default::default() };
+    let cloud = Cloud { triangles, radii, ..bare(positions) };
+    let (surfels, counts) = cloud.into_surfels(&how, &()).unwrap();
+    assert_eq!((surfels.len(), counts.outliers, counts.radii_given), (400, 1, 400));
+    assert_eq!((counts.normals_from_faces, counts.normals_from_neighbours), (4, 396));
+    assert!(surfels.normals.iter().all(|n| n.z > 0.999));
+}
+
+#[test]
 fn faces_tell_normals_and_radii_and_points_without_faces_follow() {
     // Two triangles of a unit square, and a point beside them.
     let positions = vec![Vec3::ZERO, Vec3::X, Vec3::new(1.0, 1.0, 0.0), Vec3::Y, Vec3::new(2.0, 0.5, 0.0)];
@@ -250,6 +307,9 @@ fn the_smallest_and_oddest_clouds_are_answered() {
 fn what_makes_no_sense_is_refused() {
     let cases = [
         (Estimate { neighbours: 5, ..Default::default() }, "5 neighbours"),
+        (Estimate { neighbours: usize::MAX, ..Default::default() }, "give 6 to 64"),
+        (Estimate { radius: Some(1e38), radius_scale: 100.0, ..Default::default() }, "have the radius inf"),
+        (Estimate { radius: Some(1e-30), radius_scale: 1e-30, ..Default::default() }, "have the radius 0"),
         (Estimate { radius: Some(0.0), ..Default::default() }, "radius is 0"),
         (Estimate { radius_scale: f32::NAN, ..Default::default() }, "factor of the radii is NaN"),
         (Estimate { outliers: Some(-1.0), ..Default::default() }, "deviations is -1"),
@@ -258,4 +318,8 @@ fn what_makes_no_sense_is_refused() {
         let error = bare(lines(5, 5, 1.0)).into_surfels(&how, &()).unwrap_err();
         assert!(error.contains(cause), "{error}");
     }
+    let ragged = Cloud { radii: Some(vec![1.0; 3]), ..bare(lines(2, 2, 1.0)) };
+    assert!(ragged.into_surfels(&Estimate::default(), &()).unwrap_err().contains("give one each"));
+    let dangling = Cloud { triangles: vec![[0, 1, 4]], ..bare(lines(2, 2, 1.0)) };
+    assert!(dangling.into_surfels(&Estimate::default(), &()).unwrap_err().contains("none of the 4 points"));
 }

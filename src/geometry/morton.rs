@@ -10,20 +10,24 @@ const BITS: u32 = 21;
 impl Surfels {
     /// Sorts the surfels along the Z-curve of their bounds; equal codes keep their order, so the result is deterministic.
     pub fn sort_morton(&mut self) {
-        let Some(bounds) = Bounds::of(&self.positions) else { return };
-        let extent = (bounds.max - bounds.min).max_element();
-        let cells = f64::from((1u32 << BITS) - 1);
-        let scale = if extent > 0.0 { cells / extent } else { 0.0 };
-        let mut keys: Vec<(u64, u32)> = self
-            .positions
-            .par_iter()
-            .zip(0..self.positions.len() as u32)
-            .map(|(p, i)| (code(*p, bounds.min, scale), i))
-            .collect();
-        keys.par_sort_unstable();
-        let order: Vec<u32> = keys.into_par_iter().map(|(_, i)| i).collect();
+        let order = order(&self.positions);
         self.permute(&order);
     }
+}
+
+/// The points' indices in the order of the Z-curve of their bounds; where codes are equal, in their own.
+pub(super) fn order(positions: &[Vec3]) -> Vec<u32> {
+    let Some(bounds) = Bounds::of(positions) else { return Vec::new() };
+    let extent = (bounds.max - bounds.min).max_element();
+    let cells = f64::from((1u32 << BITS) - 1);
+    let scale = if extent > 0.0 { cells / extent } else { 0.0 };
+    let mut keys: Vec<(u64, u32)> = positions
+        .par_iter()
+        .zip(0..positions.len() as u32)
+        .map(|(p, i)| (code(*p, bounds.min, scale), i))
+        .collect();
+    keys.par_sort_unstable();
+    keys.into_par_iter().map(|(_, i)| i).collect()
 }
 
 fn code(p: Vec3, min: DVec3, scale: f64) -> u64 {

@@ -1,6 +1,7 @@
 //! From a point cloud to surfels: what the cloud lacks is estimated.
 
 mod cell;
+mod draft;
 mod eigen;
 mod faces;
 mod neighbours;
@@ -8,6 +9,7 @@ mod orient;
 mod outliers;
 mod patch;
 mod reach;
+mod sheet;
 mod sites;
 mod spacing;
 
@@ -15,7 +17,8 @@ pub use spacing::spacing;
 
 use super::{Cloud, Surfels};
 use crate::Progress;
-use glam::Vec3;
+use draft::Draft;
+use std::ops::Add;
 
 /// Estimated discs reach this many times as far as they must for the surface between flat neighbours to have no gap.
 const MARGIN: f64 = 1.3;
@@ -42,24 +45,24 @@ impl Default for Estimate {
 }
 
 impl Estimate {
+    /// Least and greatest [`Estimate::neighbours`]: fewer do not tell a plane, more are no neighbourhood.
+    pub const NEIGHBOURS: [usize; 2] = [6, 64];
+
     /// Refuses what nothing can be estimated with; says what and the remedy.
     fn check(&self) -> Result<(), String> {
         let positive = |name: &str, value: f32| match value.is_finite() && value > 0.0 {
             true => Ok(()),
             false => Err(format!("{name} is {value}: give a finite number above 0")),
         };
-        if self.neighbours < Self::LEAST_NEIGHBOURS {
-            let (least, given) = (Self::LEAST_NEIGHBOURS, self.neighbours);
-            return Err(format!("{given} neighbours do not tell a plane: give at least {least}"));
+        let ([least, most], given) = (Self::NEIGHBOURS, self.neighbours);
+        if !(least..=most).contains(&given) {
+            return Err(format!("{given} neighbours to estimate from: give {least} to {most}"));
         }
         self.radius.map_or(Ok(()), |radius| positive("the radius", radius))?;
         self.outliers
             .map_or(Ok(()), |deviations| positive("the outliers' standard deviations", deviations))?;
         positive("the factor of the radii", self.radius_scale)
     }
-
-    /// Least [`Estimate::neighbours`].
-    pub const LEAST_NEIGHBOURS: usize = 6;
 }
 
 /// Where normals and radii came from, as numbers of points.
@@ -83,6 +86,23 @@ pub struct Estimated {
     pub outliers: u64,
 }
 
+impl Add for Estimated {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            normals_given: self.normals_given + other.normals_given,
+            normals_from_faces: self.normals_from_faces + other.normals_from_faces,
+            normals_from_neighbours: self.normals_from_neighbours + other.normals_from_neighbours,
+            two_sided: self.two_sided + other.two_sided,
+            radii_given: self.radii_given + other.radii_given,
+            radii_from_faces: self.radii_from_faces + other.radii_from_faces,
+            radii_from_neighbours: self.radii_from_neighbours + other.radii_from_neighbours,
+            outliers: self.outliers + other.outliers,
+        }
+    }
+}
+
 impl Cloud {
     /// The surfels of the cloud, in Morton order.
     ///
@@ -100,44 +120,18 @@ impl Cloud {
         progress: &dyn Progress,
     ) -> Result<(Surfels, Estimated), String> {
         how.check()?;
-        let count = self.len();
-        let mut surfels = Surfels {
-            origin: self.origin,
-            positions: self.positions,
-            normals: self.normals.unwrap_or_else(|| vec![Vec3::ZERO; count]),
-            radii: self.radii.unwrap_or_else(|| vec![0.0; count]),
-            ellipses: self.ellipses,
-            two_sided: self.two_sided,
-            colours: self.colours,
-        };
-        if let Some(radius) = how.radius {
-            surfels.radii.fill(radius);
-        }
-        let lacking = |surfels: &Surfels| {
-            let normals = surfels.normals.iter().filter(|n| **n == Vec3::ZERO).count() as u64;
-            (normals, surfels.radii.iter().filter(|r| **r == 0.0).count() as u64)
-        };
-        let lacks = lacking(&surfels);
-        let mut estimated = Estimated {
-            normals_given: count as u64 - lacks.0,
-            radii_given: count as u64 - lacks.1,
-            ..Default::default()
-        };
-        faces::fill(&mut surfels, &self.triangles, how, &mut estimated);
-        drop(self.triangles);
-        surfels.sort_morton();
+        let view = self.view;
+        let mut draft = Draft::new(self, how)?;
+        draft.sort_morton();
         if let Some(deviations) = how.outliers {
-            estimated.outliers = outliers::remove(&mut surfels, deviations, how)?;
+            let kept = outliers::kept(&draft.surfels.positions, deviations, how, progress)?;
+            draft.keep(&kept);
         }
-        if lacking(&surfels) != (0, 0) {
-            neighbours::fill(&mut surfels, self.view, how, &mut estimated, progress)?;
+        draft.count_given();
+        faces::fill(&mut draft, how);
+        if draft.lacks_anything() {
+            neighbours::fill(&mut draft, view, how, progress)?;
         }
-        if surfels.radii.contains(&0.0) {
-            return Err("its points are all at one place, so that they have no spacing: give a radius".into());
-        }
-        surfels.radii.iter_mut().for_each(|radius| *radius *= how.radius_scale);
-        estimated.two_sided =
-            surfels.two_sided.iter().flatten().filter(|two_sided| **two_sided).count() as u64;
-        Ok((surfels, estimated))
+        draft.finish(how)
     }
 }

@@ -1,9 +1,10 @@
 //! Normals and radii from the nearest points.
 
+use super::draft::Draft;
 use super::orient::{Edge, Oriented};
 use super::patch::{Patch, Surveyor};
 use super::sites::Sites;
-use super::{Estimate, Estimated, MARGIN};
+use super::{Estimate, MARGIN};
 use crate::Progress;
 use crate::geometry::{Ellipse, Surfels, View};
 use glam::Vec3;
@@ -20,42 +21,50 @@ const LARGEST_OVERALL: f32 = 2.0;
 /// Sites of one piece of work.
 const PIECE: usize = 1 << 12;
 
-/// Gives surfels without a normal (0) or radius (0) one from the points around them. Surfels are best in Morton order.
+/// Gives surfels without a normal or radius one from the points around them. Surfels are best in Morton order.
 pub(super) fn fill(
-    surfels: &mut Surfels,
+    draft: &mut Draft,
     view: View,
     how: &Estimate,
-    estimated: &mut Estimated,
     progress: &dyn Progress,
 ) -> Result<(), String> {
-    let sites = Sites::new(&surfels.positions)?;
+    let surfels = &draft.surfels;
+    let sites = Sites::new(&surfels.positions, progress)?;
+    let survey = Survey::new(&sites, wanted(surfels, &sites), how, progress);
+    let (normals, unknown) = normals(surfels, &sites, &survey, view, progress);
+    let radii = radii(surfels, &sites, &survey);
+    let is_estimated: Vec<bool> = surfels.radii.iter().map(|radius| *radius == 0.0).collect();
+    put(draft, &sites, &normals, &unknown, &radii);
+    if how.elliptical {
+        stretch(&mut draft.surfels, &sites, &survey, &is_estimated);
+    }
+    Ok(())
+}
+
+/// The sites where a normal or a radius is missing.
+fn wanted(surfels: &Surfels, sites: &Sites) -> Vec<u32> {
     let lacks = |i: usize| surfels.normals[i] == Vec3::ZERO || surfels.radii[i] == 0.0;
     let mut wanted = vec![false; sites.len()];
     (0..surfels.len()).filter(|&i| lacks(i)).for_each(|i| wanted[sites.of_point[i] as usize] = true);
-    let wanted: Vec<u32> = (0..sites.len() as u32).filter(|&site| wanted[site as usize]).collect();
-    let survey = Survey::new(&sites, wanted, how, progress);
-    let (normals, unknown) = normals(surfels, &sites, &survey, view);
-    let radii = radii(surfels, &sites, &survey);
+    (0..sites.len() as u32).filter(|&site| wanted[site as usize]).collect()
+}
+
+/// Puts normals and radii where they are missing.
+fn put(draft: &mut Draft, sites: &Sites, normals: &[Vec3], unknown: &[bool], radii: &[f32]) {
+    let (surfels, estimated) = (&mut draft.surfels, &mut draft.estimated);
     let mut two_sided = surfels.two_sided.take().unwrap_or_else(|| vec![false; surfels.len()]);
-    let mut is_estimated = vec![false; surfels.len()];
-    for i in 0..surfels.len() {
-        let site = sites.of_point[i] as usize;
+    for (i, &site) in sites.of_point.iter().enumerate() {
         if surfels.normals[i] == Vec3::ZERO {
-            surfels.normals[i] = normals[site];
-            two_sided[i] = unknown[site];
+            surfels.normals[i] = normals[site as usize];
+            two_sided[i] = unknown[site as usize];
             estimated.normals_from_neighbours += 1;
         }
         if surfels.radii[i] == 0.0 {
-            surfels.radii[i] = radii[site];
+            surfels.radii[i] = radii[site as usize];
             estimated.radii_from_neighbours += 1;
-            is_estimated[i] = true;
         }
     }
-    if how.elliptical {
-        stretch(surfels, &sites, &survey, &is_estimated);
-    }
     surfels.two_sided = two_sided.contains(&true).then_some(two_sided);
-    Ok(())
 }
 
 /// Makes the discs whose radius is estimated ellipses.
@@ -64,15 +73,9 @@ fn stretch(surfels: &mut Surfels, sites: &Sites, survey: &Survey, is_estimated: 
     survey.each().for_each(|(site, patch, _)| shapes[site as usize] = patch.ellipse);
     let given = surfels.ellipses.take();
     let shape = |i: usize| {
-        let normal = surfels.normals[i];
-        let given = given.as_ref().map(|given| given[i]);
         let estimated = shapes[sites.of_point[i] as usize].filter(|_| is_estimated[i]);
-        // The axis was found in the plane of the neighbours, to which a given normal need not be at a right angle.
-        let within = |Ellipse { major, aspect }: Ellipse| {
-            let major = (major - major.dot(normal) * normal).try_normalize()?;
-            Some(Ellipse { major, aspect })
-        };
-        estimated.and_then(within).or(given).unwrap_or_else(|| Ellipse::circle(normal))
+        let given = given.as_ref().map(|given| given[i]);
+        estimated.or(given).unwrap_or_else(|| Ellipse::circle(surfels.normals[i]))
     };
     surfels.ellipses = Some((0..surfels.len()).map(shape).collect());
 }
@@ -137,7 +140,13 @@ impl Survey {
 }
 
 /// The normal of every site, and the sites whose side is unknown.
-fn normals(surfels: &Surfels, sites: &Sites, survey: &Survey, view: View) -> (Vec<Vec3>, Vec<bool>) {
+fn normals(
+    surfels: &Surfels,
+    sites: &Sites,
+    survey: &Survey,
+    view: View,
+    progress: &dyn Progress,
+) -> (Vec<Vec3>, Vec<bool>) {
     let (mut normals, mut known) = (vec![Vec3::ZERO; sites.len()], vec![false; sites.len()]);
     for (normal, &site) in surfels.normals.iter().zip(&sites.of_point) {
         if *normal != Vec3::ZERO {
@@ -162,7 +171,7 @@ fn normals(surfels: &Surfels, sites: &Sites, survey: &Survey, view: View) -> (Ve
     let edges = survey.edges(sites.len(), &known);
     let mut oriented =
         Oriented { normals: &mut normals, known: &known, positions: &|site| sites.at(site), areas: &areas };
-    let unknown = oriented.settle(edges);
+    let unknown = oriented.settle(edges, progress);
     (normals, unknown)
 }
 

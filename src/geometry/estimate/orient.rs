@@ -1,8 +1,11 @@
 //! Which side normals point to: neighbours agree first where they are most nearly parallel (Hoppe et al., Surface Reconstruction from
 //! Unorganized Points, 1992, section 3.3), along the minimum spanning tree of the graph of neighbours.
 
-use glam::{DVec3, Vec3};
+use super::sheet::Sheet;
+use crate::Progress;
+use glam::Vec3;
 use rayon::prelude::*;
+use std::collections::HashMap;
 
 /// A node that knows whether it agrees with its parent: a disjoint-set forest with parity.
 struct Forest {
@@ -72,61 +75,66 @@ impl Edge {
     }
 }
 
+/// Edges between two words about progress.
+const PERIOD: u64 = 1 << 16;
 /// Steps of the weights by which edges are sorted.
 const STEPS: usize = 1 << 10;
-
-/// A component of the graph: what tells its inside from its outside.
-#[derive(Clone, Copy, Default)]
-struct Component {
-    area: f64,
-    /// Sum of normals times areas: 0 of a closed surface.
-    vector: DVec3,
-    /// Sum of positions times areas.
-    moment: DVec3,
-    /// Sum of normal · position times area: three times the volume of a closed surface, negative if the normals point inwards.
-    flux: f64,
-}
-
-/// A surface whose vector area is below this part of its area is closed: it has an outside. A half sphere's is 0.5.
-const CLOSED: f64 = 0.15;
+/// Edges below this weight are sure: their normals are less than 41° from parallel, or antiparallel.
+const SURE: u16 = (STEPS / 4) as u16;
 
 impl Oriented<'_> {
     /// Makes normals agree along `edges`, outwards on closed surfaces; those that are known stay. Gives the sites whose side is still
     /// unknown.
-    pub fn settle(&mut self, mut edges: Vec<Edge>) -> Vec<bool> {
-        let count = self.normals.len();
-        let mut forest = Forest::new(count + 1);
-        // All known normals agree with the node beyond the last.
-        let known = count as u32;
-        (0..known).filter(|&i| self.known[i as usize]).for_each(|i| forest.join(known, i, false));
+    pub fn settle(&mut self, mut edges: Vec<Edge>, progress: &dyn Progress) -> Vec<bool> {
         edges.par_iter_mut().for_each(|edge| self.weigh(edge));
-        for index in surest_first(&edges) {
+        let mut forest = self.span(&edges, progress);
+        let known = forest.find(self.known.len() as u32);
+        let roots: Vec<(u32, bool)> = (0..self.known.len() as u32).map(|site| forest.find(site)).collect();
+        let sheets = self.sheets(&roots, &edges);
+        let mut unknown = vec![false; roots.len()];
+        for (site, &(root, flipped)) in roots.iter().enumerate() {
+            let (inwards, sure) = match root == known.0 {
+                true => (known.1, true),
+                false => (sheets[&root].volume() < 0.0, sheets[&root].is_closed()),
+            };
+            if flipped ^ inwards {
+                self.normals[site] = -self.normals[site];
+            }
+            unknown[site] = !sure;
+        }
+        unknown
+    }
+
+    /// The minimum spanning tree, as far as it matters: who agrees with whom. All known normals agree with the node beyond the last.
+    fn span(&self, edges: &[Edge], progress: &dyn Progress) -> Forest {
+        let known = self.known.len() as u32;
+        let mut forest = Forest::new(self.known.len() + 1);
+        (0..known).filter(|&site| self.known[site as usize]).for_each(|site| forest.join(known, site, false));
+        let total = edges.len() as u64;
+        for (done, index) in (1..).zip(surest_first(edges)) {
+            if done % PERIOD == 0 || done == total {
+                progress.at("orienting normals", done, total);
+            }
             let Edge { a, b, disagree, .. } = edges[index as usize];
             forest.join(a, b, disagree);
         }
-        let roots: Vec<(u32, bool)> = (0..known).map(|i| forest.find(i)).collect();
-        let known_root = forest.find(known).0;
-        let mut components = vec![Component::default(); count + 1];
-        for (i, &(root, flipped)) in roots.iter().enumerate() {
-            if flipped {
-                self.normals[i] = -self.normals[i];
-            }
-            components[root as usize].add(self.normals[i], (self.positions)(i as u32), self.areas[i]);
+        forest
+    }
+
+    /// The parts that hang together, by their roots, with normals as the roots have them.
+    fn sheets(&self, roots: &[(u32, bool)], edges: &[Edge]) -> HashMap<u32, Sheet> {
+        let mut sheets = HashMap::<u32, Sheet>::new();
+        for (site, &(root, flipped)) in roots.iter().enumerate() {
+            let normal = if flipped { -self.normals[site] } else { self.normals[site] };
+            sheets.entry(root).or_default().add(normal, (self.positions)(site as u32), self.areas[site]);
         }
-        // The known node may be flipped against its root.
-        let known_flipped = forest.find(known).1;
-        let mut unknown = vec![false; count];
-        for (i, &(root, _)) in roots.iter().enumerate() {
-            let (inwards, closed) = match root == known_root {
-                true => (known_flipped, true),
-                false => (components[root as usize].volume() < 0.0, components[root as usize].is_closed()),
-            };
-            if inwards {
-                self.normals[i] = -self.normals[i];
-            }
-            unknown[i] = !closed;
+        for edge in edges.iter().filter(|edge| edge.weight < SURE) {
+            let [(root, a), (_, b)] = [edge.a, edge.b].map(|site| roots[site as usize]);
+            let sheet = sheets.entry(root).or_default();
+            sheet.sure += 1;
+            sheet.contradicted += u64::from(edge.disagree ^ a ^ b);
         }
-        unknown
+        sheets
     }
 
     /// Whether two normals agree, and how surely: the one is mirrored as a circle's would be on the way to the other, so that creases do not
@@ -152,23 +160,4 @@ fn surest_first(edges: &[Edge]) -> Vec<u32> {
         *place += 1;
     }
     sorted
-}
-
-impl Component {
-    fn add(&mut self, normal: Vec3, position: Vec3, area: f32) {
-        let (normal, position, area) = (normal.as_dvec3(), position.as_dvec3(), f64::from(area));
-        self.area += area;
-        self.vector += area * normal;
-        self.moment += area * position;
-        self.flux += area * normal.dot(position);
-    }
-
-    fn is_closed(&self) -> bool {
-        self.vector.length() < CLOSED * self.area
-    }
-
-    /// Three times the volume, seen from the middle.
-    fn volume(&self) -> f64 {
-        self.flux - self.vector.dot(self.moment / self.area)
-    }
 }

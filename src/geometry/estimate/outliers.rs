@@ -3,30 +3,47 @@
 
 use super::Estimate;
 use super::sites::Sites;
-use crate::geometry::Surfels;
+use crate::Progress;
+use glam::Vec3;
 use rayon::prelude::*;
+use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Removes the surfels whose mean distance from their neighbours is more than `deviations` standard deviations above the mean of all. Gives
-/// their number.
-pub(super) fn remove(surfels: &mut Surfels, deviations: f32, how: &Estimate) -> Result<u64, String> {
-    let sites = Sites::new(&surfels.positions)?;
-    let mean_distance = |site: u32| {
-        let distances = sites
-            .nearest(site, how.neighbours)
-            .map(|other| f64::from(sites.at(site).distance(sites.at(other))));
-        let (sum, count) = distances.fold((0.0, 0u32), |(sum, count), distance| (sum + distance, count + 1));
-        sum / f64::from(count.max(1))
-    };
-    let distances: Vec<f64> = (0..sites.len() as u32).into_par_iter().map(mean_distance).collect();
+/// Sites of one piece of work.
+const PIECE: usize = 1 << 12;
+
+/// The points that stay: those whose mean distance from their neighbours is no more than `deviations` standard deviations above the mean of
+/// all.
+pub(super) fn kept(
+    positions: &[Vec3],
+    deviations: f32,
+    how: &Estimate,
+    progress: &dyn Progress,
+) -> Result<Vec<u32>, String> {
+    let sites = Sites::new(positions, progress)?;
+    let distances = distances(&sites, how.neighbours, progress);
     let count = distances.len() as f64;
     let mean = distances.iter().sum::<f64>() / count;
     let variance = distances.iter().map(|distance| (distance - mean).powi(2)).sum::<f64>() / count;
     let most = mean + f64::from(deviations) * variance.sqrt();
     let stays = |i: &u32| distances[sites.of_point[*i as usize] as usize] <= most;
-    let kept: Vec<u32> = (0..surfels.len() as u32).filter(stays).collect();
-    let removed = surfels.len() - kept.len();
-    if removed > 0 {
-        surfels.permute(&kept);
-    }
-    Ok(removed as u64)
+    Ok((0..positions.len() as u32).filter(stays).collect())
+}
+
+/// The mean distance of each site from its neighbours.
+fn distances(sites: &Sites, neighbours: usize, progress: &dyn Progress) -> Vec<f64> {
+    let mean = |site: u32| {
+        let each =
+            sites.nearest(site, neighbours).map(|other| f64::from(sites.at(site).distance(sites.at(other))));
+        let (sum, count) = each.fold((0.0, 0u32), |(sum, count), distance| (sum + distance, count + 1));
+        sum / f64::from(count.max(1))
+    };
+    let mut distances = vec![0.0; sites.len()];
+    let (done, total) = (AtomicU64::new(0), sites.len() as u64);
+    distances.par_chunks_mut(PIECE).enumerate().for_each(|(piece, distances)| {
+        let first = (piece * PIECE) as u32;
+        distances.iter_mut().zip(first..).for_each(|(distance, site)| *distance = mean(site));
+        let piece = distances.len() as u64;
+        progress.at("looking for outliers", done.fetch_add(piece, Ordering::Relaxed) + piece, total);
+    });
+    distances
 }

@@ -18,9 +18,11 @@ pub(super) fn reach(pa: f64, pb: f64, ab: f64) -> f64 {
     } else if at_b <= 0.0 {
         pb * pa.sqrt() / at_p
     } else {
-        // 16 times the square of the area, by Heron.
-        let area = 4.0 * pa * pb - at_p * at_p;
-        (pa * pb * ab / area).sqrt()
+        // 16 times the square of the area, by Heron; where two corners are close together it is rounding alone, but of an acute triangle
+        // the circle's radius is between these two parts of the longest side.
+        let area = (4.0 * pa * pb - at_p * at_p).max(0.0);
+        let longest = pa.max(pb).max(ab).sqrt();
+        (pa * pb * ab / area).sqrt().min(longest / 3f64.sqrt()).max(0.5 * longest)
     }
     .max(0.0)
 }
@@ -71,5 +73,10 @@ mod tests {
         assert_eq!(reach(1.0, 4.0, 1.0), 0.5);
         assert_eq!(reach(1.0, 1.0, 0.0), 0.5);
         assert_eq!(reach(0.0, 0.0, 0.0), 0.0);
+        // A sliver whose area is lost in rounding.
+        let (a, b) = (1.272_204_f64.powi(2), 9.6e-9_f64.powi(2) + 6.8e-9_f64.powi(2));
+        for found in [reach(a, b, a + b), reach(b, a, a + b), reach(a, a + b, b), reach(a, a, b)] {
+            assert!(found <= 0.75 * 1.272_204, "{found}");
+        }
     }
 }

@@ -1,5 +1,6 @@
 //! The places where points are, each once, and the nearest of them to each.
 
+use crate::Progress;
 use glam::Vec3;
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
 use rayon::prelude::*;
@@ -20,16 +21,20 @@ pub(super) struct Sites {
 
 impl Sites {
     /// The sites of `positions`, in their order.
-    pub fn new(positions: &[Vec3]) -> Result<Self, String> {
+    pub fn new(positions: &[Vec3], progress: &dyn Progress) -> Result<Self, String> {
+        let stage = |done| progress.at("building the search tree", done, 2);
+        stage(0);
         let (of_point, point) = distinct(positions);
         let largest = positions.iter().map(|p| p.abs().max_element()).fold(0.0, f32::max);
         // Both the unit and its inverse are finite and normal.
         let unit = if largest > 0.0 { largest.log2().floor().clamp(-125.0, 125.0).exp2() } else { 1.0 };
         let points: Vec<[f32; 3]> =
             point.par_iter().map(|&i| (positions[i as usize] / unit).to_array()).collect();
+        stage(1);
         let tree = ImmutableKdTree::new_from_slice(&points).map_err(|error| {
             format!("its {} points cannot be searched: {error}; give fewer", points.len())
         })?;
+        stage(2);
         Ok(Self { tree, points, of_point, point, unit })
     }
 
@@ -84,7 +89,7 @@ mod tests {
     #[test]
     fn equal_positions_are_one_site() {
         let (a, b, zero) = (Vec3::X, Vec3::Y, Vec3::new(0.0, -0.0, 0.0));
-        let sites = Sites::new(&[a, b, a, Vec3::ZERO, zero, b]).unwrap();
+        let sites = Sites::new(&[a, b, a, Vec3::ZERO, zero, b], &()).unwrap();
         assert_eq!((&sites.of_point[..], &sites.point[..]), (&[0, 1, 0, 2, 2, 1][..], &[0, 1, 3][..]));
         assert_eq!(sites.nearest(2, 9).collect::<Vec<_>>().len(), 2);
     }
@@ -94,7 +99,7 @@ mod tests {
         for scale in [1e-30_f32, 1e-3, 1.0, 1e30] {
             let grid = (0..4000).map(|i| scale * Vec3::new((i % 20) as f32, (i / 20) as f32, 0.0));
             let grid: Vec<Vec3> = grid.collect();
-            let sites = Sites::new(&grid).unwrap();
+            let sites = Sites::new(&grid, &()).unwrap();
             for site in [0, 210, 3999_u32] {
                 // Divided before they are squared, which must not leave f32's range.
                 let at = |site: u32| grid[site as usize] / scale;

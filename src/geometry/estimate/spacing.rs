@@ -6,7 +6,7 @@ use rayon::prelude::*;
 
 /// The median distance from a point to the nearest one elsewhere, in the points' unit; `None` if they are all at one place.
 pub fn spacing(positions: &[Vec3]) -> Option<f32> {
-    let sites = Sites::new(positions).ok()?;
+    let sites = Sites::new(positions, &()).ok()?;
     let distance = |site: u32| Some(sites.at(site).distance(sites.at(sites.nearest(site, 1).next()?)));
     let mut distances: Vec<f32> = (0..sites.len() as u32).into_par_iter().filter_map(distance).collect();
     let middle = distances.len() / 2;

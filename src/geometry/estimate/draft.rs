@@ -1,0 +1,120 @@
+//! Surfels in the making.
+
+use super::{Estimate, Estimated};
+use crate::geometry::{Cloud, Ellipse, Surfels, morton};
+use glam::Vec3;
+
+/// Surfels whose normals and radii may still be missing, which is 0 here, and what tells them.
+pub(super) struct Draft {
+    pub surfels: Surfels,
+    /// Between the surfels.
+    pub triangles: Vec<[u32; 3]>,
+    pub estimated: Estimated,
+}
+
+impl Draft {
+    /// What the cloud has, with the radius that is asked for.
+    pub fn new(cloud: Cloud, how: &Estimate) -> Result<Self, String> {
+        let count = cloud.len();
+        let surfels = Surfels {
+            origin: cloud.origin,
+            positions: cloud.positions,
+            normals: cloud.normals.unwrap_or_else(|| vec![Vec3::ZERO; count]),
+            radii: match how.radius {
+                Some(radius) => vec![radius; count],
+                None => cloud.radii.unwrap_or_else(|| vec![0.0; count]),
+            },
+            ellipses: cloud.ellipses,
+            two_sided: cloud.two_sided,
+            colours: cloud.colours,
+        };
+        surfels.check().map_err(|error| error.to_string())?;
+        if u32::try_from(count).is_err() {
+            return Err(format!("{count} points: at most 2³² − 1 are drawn"));
+        }
+        if let Some(triangle) =
+            cloud.triangles.iter().find(|corners| corners.iter().any(|&i| i as usize >= count))
+        {
+            return Err(format!("triangle {triangle:?} has a corner that is none of the {count} points"));
+        }
+        Ok(Self { surfels, triangles: cloud.triangles, estimated: Estimated::default() })
+    }
+
+    /// Neighbours in space become neighbours in memory.
+    pub fn sort_morton(&mut self) {
+        let order = morton::order(&self.surfels.positions);
+        self.arrange(&order);
+    }
+
+    /// Leaves out what is not among `kept`.
+    pub fn keep(&mut self, kept: &[u32]) {
+        self.estimated.outliers = (self.surfels.len() - kept.len()) as u64;
+        if self.estimated.outliers > 0 {
+            self.arrange(kept);
+        }
+    }
+
+    /// Surfel `order[i]` becomes surfel `i`. Triangles that lose a corner go.
+    fn arrange(&mut self, order: &[u32]) {
+        if !self.triangles.is_empty() {
+            let mut place = vec![None; self.surfels.len()];
+            order.iter().zip(0..).for_each(|(&from, to)| place[from as usize] = Some(to));
+            let moved = |corners: &[u32; 3]| {
+                let [a, b, c] = corners.map(|i| place[i as usize]);
+                Some([a?, b?, c?])
+            };
+            self.triangles = self.triangles.iter().filter_map(moved).collect();
+        }
+        self.surfels.permute(order);
+    }
+
+    /// What is there by now was given.
+    pub fn count_given(&mut self) {
+        let [normals, radii] = self.lacking();
+        let count = self.surfels.len() as u64;
+        (self.estimated.normals_given, self.estimated.radii_given) = (count - normals, count - radii);
+    }
+
+    /// How many normals and radii are missing.
+    fn lacking(&self) -> [u64; 2] {
+        let normals = self.surfels.normals.iter().filter(|normal| **normal == Vec3::ZERO).count();
+        let radii = self.surfels.radii.iter().filter(|radius| **radius == 0.0).count();
+        [normals as u64, radii as u64]
+    }
+
+    /// Whether a normal or a radius is missing.
+    pub fn lacks_anything(&self) -> bool {
+        self.lacking() != [0; 2]
+    }
+
+    /// The surfels, if they can be drawn.
+    pub fn finish(self, how: &Estimate) -> Result<(Surfels, Estimated), String> {
+        let Self { mut surfels, mut estimated, .. } = self;
+        if surfels.radii.contains(&0.0) {
+            return Err("its points are all at one place, so that they have no spacing: give a radius".into());
+        }
+        surfels.radii.iter_mut().for_each(|radius| *radius *= how.radius_scale);
+        if let Some(radius) = surfels.radii.iter().find(|radius| !(radius.is_finite() && **radius > 0.0)) {
+            return Err(format!(
+                "a surfel would have the radius {radius}: give another radius or factor of it"
+            ));
+        }
+        // A shape may be older than the normal to which its axis must be at a right angle.
+        for (ellipse, normal) in surfels.ellipses.iter_mut().flatten().zip(&surfels.normals) {
+            *ellipse = within(*ellipse, *normal);
+        }
+        estimated.two_sided =
+            surfels.two_sided.iter().flatten().filter(|two_sided| **two_sided).count() as u64;
+        Ok((surfels, estimated))
+    }
+}
+
+/// The ellipse in the plane of a disc with a unit normal; a circle if it stands upright on it.
+fn within(ellipse: Ellipse, normal: Vec3) -> Ellipse {
+    let major = ellipse.major - ellipse.major.dot(normal) * normal;
+    // Shorter than this it is rounding alone.
+    match major.length() > 1e-3 {
+        true => Ellipse { major: major.normalize(), ..ellipse },
+        false => Ellipse::circle(normal),
+    }
+}
