@@ -73,11 +73,11 @@ impl Colouring {
     pub fn colour_clouds(&self, clouds: &mut [&mut Cloud], quiet: bool) -> Coloured {
         let scalars = || clouds.iter().filter_map(|cloud| cloud.scalar.as_ref());
         let count = scalars().map(|scalar| scalar.len() as u64).sum();
-        let coloured = self.scale(scalars().flatten().map(|&value| f64::from(value)), count, quiet);
+        let coloured = self.scale(scalars().flatten().copied(), count, quiet);
         let scale = coloured.scale_or_grey(self.map);
         for cloud in clouds {
             let scalar = cloud.scalar.take();
-            cloud.colours = scalar.map(|scalar| scale.colours(scalar.par_iter().map(|&value| value.into())));
+            cloud.colours = scalar.map(|scalar| scale.colours(scalar.par_iter().copied()));
         }
         coloured
     }

@@ -21,7 +21,7 @@ pub struct Cloud {
     /// Colours.
     pub colours: Option<Colours>,
     /// A number a point, chosen on reading; not finite where there is none.
-    pub scalar: Option<Vec<f32>>,
+    pub scalar: Option<Vec<f64>>,
     /// Triangles between the points, counter-clockwise from outside; each index is one of a point.
     pub triangles: Vec<[u32; 3]>,
     /// From where the points were seen.

@@ -65,7 +65,7 @@ pub(super) fn convert(block: &Block, layout: &Layout, out: &mut Slices) -> Tally
     }
     shapes(block, layout, out);
     colours(block, layout, out);
-    out.scalar.iter_mut().zip(block.column(SCALAR)).for_each(|(to, value)| *to = *value as f32);
+    out.scalar.iter_mut().zip(block.column(SCALAR)).for_each(|(to, value)| *to = *value);
     // Here, as the entries are still in the cache.
     tally.lacking = !layout.has_normals() || !layout.has_radii();
     tally.lacking |= out.normals.contains(&Vec3::ZERO) || out.radii.contains(&0.0);

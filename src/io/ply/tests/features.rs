@@ -140,6 +140,10 @@ fn a_chosen_number_comes_along() {
     let Loaded { cloud, report } = read_bytes("test.ply", &file, &options).unwrap();
     assert_eq!((cloud.scalar, report.skipped.len()), (Some(vec![7.0]), 0));
     let options = ReadOptions { scalar: Some("height".into()) };
+    let time = text(&format!("element vertex 1\n{XYZ}\nproperty double gps_time"), "0 0 0 300000010.0625\n");
+    let options = ReadOptions { scalar: Some("gps_time".into()) };
+    let Loaded { cloud, .. } = read_bytes("test.ply", &time, &options).unwrap();
+    assert_eq!(cloud.scalar, Some(vec![300_000_010.062_5]), "more digits than f32 holds");
     let cause = read_bytes("test.ply", &file, &options).unwrap_err().to_string();
     assert!(cause.contains("no number named `height`: choose one of `x`, `y`, `z`, `id`"), "{cause}");
 }
