@@ -69,8 +69,8 @@ use std::path::Path;
 /// A file's points and what was made of the file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loaded {
-    /// The points, in the file's order. `origin` is 0 unless the coordinates are more than twice as large as the extent; then it is a round
-    /// number near the middle of their bounds, subtracted in float64.
+    /// The points, in the file's order. `origin` is 0 unless the coordinates are more than twice as large as the extent, a few stray points
+    /// aside; then it is a round number near their middle, subtracted in float64.
     pub cloud: Cloud,
     /// What was read, skipped and dropped.
     pub report: Report,
