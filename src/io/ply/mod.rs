@@ -101,8 +101,9 @@ pub struct Inspected {
 pub fn inspect(path: &Path, options: &ReadOptions, progress: &dyn Progress) -> Result<Inspected> {
     let (name, source) = (path.display().to_string(), Source::open(path)?);
     let header = parse_header(&source).map_err(|cause| Error::input(name.as_str(), cause))?;
-    let loaded = parse(&source, options, progress).map_err(|cause| Error::input(name, cause));
-    Ok(Inspected { format: header.format, elements: header.elements, loaded })
+    let (format, elements) = (header.format, header.elements.clone());
+    let loaded = parse_records(&source, header, options, progress).map_err(|cause| Error::input(name, cause));
+    Ok(Inspected { format, elements, loaded })
 }
 
 /// Reads the points of a PLY file. The stage of the progress is `reading`, its unit the byte.
@@ -132,7 +133,15 @@ fn parse_header(source: &Source) -> Parsed<Header> {
 }
 
 fn parse(source: &Source, options: &ReadOptions, progress: &dyn Progress) -> Parsed<Loaded> {
-    let header = parse_header(source)?;
+    parse_records(source, parse_header(source)?, options, progress)
+}
+
+fn parse_records(
+    source: &Source,
+    header: Header,
+    options: &ReadOptions,
+    progress: &dyn Progress,
+) -> Parsed<Loaded> {
     header::refuse_duplicates(&header.elements)?;
     let vertex = layout::find_vertex(&header.elements)?;
     let mut layout = Layout::of(&header.elements[vertex], options.scalar.as_deref())?;
