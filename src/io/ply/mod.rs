@@ -174,6 +174,18 @@ fn report(header: Header, vertex: usize, layout: &Layout, contents: &Contents) -
     }
 }
 
+/// Names of a file as they may stand in a message: the first few, and how many more there are.
+fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    const MOST: usize = 8;
+    let mut names = names.map(|name| shown(name.as_bytes()));
+    let mut text = names.by_ref().take(MOST).collect::<Vec<_>>().join(", ");
+    match names.count() {
+        0 => {}
+        more => text += &format!(" and {more} more"),
+    }
+    text
+}
+
 /// Bytes of a file as they may stand in a message: quoted, on one line, not too long.
 fn shown(bytes: &[u8]) -> String {
     const LONGEST: usize = 40;
