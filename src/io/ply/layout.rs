@@ -109,6 +109,8 @@ impl Layout {
             third.into_iter().for_each(|scale| self.fill(AXES + 2, [scale]));
             find.one("opacity").into_iter().for_each(|opacity| self.fill(OPACITY, [opacity]));
             self.shape = Shape::Gaussian(if third.is_some() { 3 } else { 2 });
+            // The scales tell it.
+            self.columns[RADIUS] = None;
         }
     }
 
@@ -261,6 +263,8 @@ mod tests {
         assert_eq!(layout(&gaussian.replace("rot_3", "rot"), Scalar::F32).shape, Shape::Circle);
         assert_eq!(layout("x y z ux uy uz vx vy vz", Scalar::F32).shape, Shape::Axes);
         assert_eq!(layout("x y z ux uy uz vx vy", Scalar::F32).shape, Shape::Circle);
+        assert!(!layout(&format!("{gaussian} radius"), Scalar::F32).uses(9), "its scales are the radius");
+        assert!(layout("x y z ux uy uz vx vy vz radius", Scalar::F32).uses(9));
     }
 
     #[test]
@@ -269,13 +273,13 @@ mod tests {
         assert_eq!(Layout::of(&cloud, Some("quality")).unwrap().columns[SCALAR], Some(3));
         let cause = Layout::of(&cloud, Some("height")).unwrap_err();
         assert!(cause.contains("`height`: choose one of `x`, `y`, `z`, `quality`"), "{cause}");
+        let many: String = (0..50_000).map(|i| format!(" p{i}")).collect();
+        let cause = Layout::of(&vertex(&format!("x y z{many}"), Scalar::F32), Some("height")).unwrap_err();
+        assert!(cause.ends_with("`p3`, `p4` and 49995 more"), "{cause}");
     }
 
     #[test]
     fn what_is_missing_is_said() {
-        let many: String = (0..50_000).map(|i| format!(" p{i}")).collect();
-        let cause = Layout::of(&vertex(&format!("x y z{many}"), Scalar::F32), Some("height")).unwrap_err();
-        assert!(cause.ends_with("`p3`, `p4` and 49995 more"), "{cause}");
         let cases = [
             ("x y nx ny nz radius", "no x y z"),
             ("packed_position packed_scale", "compressed 3D Gaussians"),

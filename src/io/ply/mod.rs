@@ -20,7 +20,7 @@
 //! | `face` | list `vertex_indices` or `vertex_index` | polygons, as fans of triangles |
 //! | `tristrips` | list `vertex_indices` | strips of triangles; −1 begins another |
 //! | `range_grid` | list `vertex_indices` of no vertex or one; `obj_info num_cols`, `num_rows` | triangles between neighbours, where the surface is not torn; [`View::Towards`](crate::geometry::View::Towards) +z |
-//! | `camera` | `view_px view_py view_pz` | [`View::From`](crate::geometry::View::From) |
+//! | `camera` | `view_px view_py view_pz` | [`View::From`](crate::geometry::View::From); all 0, which is what some programs write of any cloud, is not known |
 //!
 //! Triangles are kept only where some point has no normal or no radius, which they can tell. Skipped elements are checked all the same: a
 //! file that ends too early is an error, bytes after its end are counted.
