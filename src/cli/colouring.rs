@@ -56,7 +56,7 @@ impl Colouring {
                 "--color-by normal shows directions, which have no range: leave out MIN,MAX".into(),
             ));
         }
-        Ok(Some(Self { name: by.name.clone(), source, map: args.color_map.into(), range: by.range }))
+        Ok(Some(Self { name: by.name.clone(), source, map: args.color_map, range: by.range }))
     }
 
     /// The property that is to be read from the files.
