@@ -1,6 +1,6 @@
 //! A point cloud as files hold it: positions, and whatever else there is.
 
-use super::{Colours, Ellipse};
+use super::{Colours, Ellipse, Surfels};
 use glam::{DVec3, Vec3};
 
 /// Points as a structure of arrays; every array that is there has one entry a point.
@@ -49,5 +49,21 @@ impl Cloud {
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.positions.is_empty()
+    }
+}
+
+impl From<Surfels> for Cloud {
+    /// A cloud that lacks nothing.
+    fn from(surfels: Surfels) -> Self {
+        Self {
+            origin: surfels.origin,
+            positions: surfels.positions,
+            normals: Some(surfels.normals),
+            radii: Some(surfels.radii),
+            ellipses: surfels.ellipses,
+            two_sided: surfels.two_sided,
+            colours: surfels.colours,
+            ..Default::default()
+        }
     }
 }
