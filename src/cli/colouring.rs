@@ -56,7 +56,7 @@ impl Colouring {
                 "--color-by normal shows directions, which have no range: leave out MIN,MAX".into(),
             ));
         }
-        Ok(Some(Self { name: by.name.clone(), source, map: args.color_map.into(), range: by.range }))
+        Ok(Some(Self { name: by.name.clone(), source, map: args.color_map, range: by.range }))
     }
 
     /// The property that is to be read from the files.
@@ -73,11 +73,11 @@ impl Colouring {
     pub fn colour_clouds(&self, clouds: &mut [&mut Cloud], quiet: bool) -> Coloured {
         let scalars = || clouds.iter().filter_map(|cloud| cloud.scalar.as_ref());
         let count = scalars().map(|scalar| scalar.len() as u64).sum();
-        let coloured = self.scale(scalars().flatten().map(|&value| f64::from(value)), count, quiet);
+        let coloured = self.scale(scalars().flatten().copied(), count, quiet);
         let scale = coloured.scale_or_grey(self.map);
         for cloud in clouds {
             let scalar = cloud.scalar.take();
-            cloud.colours = scalar.map(|scalar| scale.colours(scalar.par_iter().map(|&value| value.into())));
+            cloud.colours = scalar.map(|scalar| scale.colours(scalar.par_iter().copied()));
         }
         coloured
     }

@@ -6,27 +6,40 @@ use super::inputs::scene;
 use super::progress;
 use std::fmt::Write;
 use std::path::Path;
-use surfel::geometry::estimate::{Estimated, spacing};
-use surfel::geometry::{Cloud, Colours, Surfels};
-use surfel::io::ply::{self, Dropped, Element, Format, Inspected, Loaded, ReadOptions, Report};
+use surfel::geometry::estimate::{Estimate, Estimated, spacing};
+use surfel::geometry::{Cloud, Colours, Surfels, View};
+use surfel::io::ply::{self, Dropped, Element, Faces, Format, Inspected, Loaded, ReadOptions, Report};
 use surfel::{Error, Result, scenes};
+
+/// How many skipped names are told; the header has told all of them.
+const MOST_NAMES: usize = 8;
 
 /// Says what is in a file or scene. Of a file whose points cannot be drawn it tells what there is, and the error why.
 pub fn run(args: &Info) -> Result<()> {
     if let Some(name) = scene(&args.input) {
-        let surfels = scenes::open(name)?;
-        return print(&format!("{name}: built-in scene\n{}", describe(&surfels, surfels.len() as u64)));
+        return scene_text(name, &args.points.estimate()).and_then(|text| print(&text));
     }
     let path = Path::new(&args.input);
     let bars = progress::bars(false);
     let Inspected { format, elements, loaded } = ply::inspect(path, &ReadOptions::default(), &*bars)?;
     print(&header(path, format, &elements))?;
     let Loaded { cloud, report } = loaded?;
-    print(&(properties(&report) + &frame(&cloud)))?;
+    print(&(properties(&report) + &frame(&report, &cloud)))?;
     let surfels = cloud.into_surfels(&args.points.estimate(), &*bars);
     let (surfels, estimated) = surfels.map_err(|cause| Error::input(path.display().to_string(), cause))?;
     drop(bars);
-    print(&(describe(&surfels, report.points) + &sources(&estimated) + &dropped(&report, &estimated)))
+    let text = describe(&surfels, report.points) + &sources(&estimated);
+    print(&(text + &dropped(report.dropped, &estimated) + &trailing(&report)))
+}
+
+/// What a scene is under these options.
+fn scene_text(name: &str, how: &Estimate) -> Result<String> {
+    let cloud = Cloud::from(scenes::open(name)?);
+    let points = cloud.len() as u64;
+    let surfels = cloud.into_surfels(how, &());
+    let (surfels, estimated) = surfels.map_err(|cause| Error::input(name, cause))?;
+    let dropped = dropped(Dropped::default(), &estimated);
+    Ok(format!("{name}: built-in scene\n{}{}{dropped}", describe(&surfels, points), sources(&estimated)))
 }
 
 /// What a file declares.
@@ -48,15 +61,22 @@ fn shown(name: &str) -> String {
     name.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
 }
 
+/// The first `most` names, and how many more there are.
+fn listed(names: &[String], most: usize) -> String {
+    let text = names.iter().take(most).map(|name| shown(name)).collect::<Vec<_>>().join(" ");
+    match names.len().saturating_sub(most) {
+        0 if names.is_empty() => "none".into(),
+        0 => text,
+        more => format!("{text} and {more} more"),
+    }
+}
+
 fn properties(report: &Report) -> String {
-    let list = |names: &[String]| match names.is_empty() {
-        true => "none".to_owned(),
-        false => names.iter().map(|name| shown(name)).collect::<Vec<_>>().join(" "),
-    };
-    let (understood, skipped) = (list(&report.understood), list(&report.skipped));
+    // What is understood is never much.
+    let (understood, skipped) = (listed(&report.understood, usize::MAX), listed(&report.skipped, MOST_NAMES));
     format!(
         "understood: {understood}\nskipped: {skipped}\nskipped elements: {}\n",
-        list(&report.skipped_elements)
+        listed(&report.skipped_elements, MOST_NAMES)
     )
 }
 
@@ -82,11 +102,27 @@ fn describe(surfels: &Surfels, points: u64) -> String {
     text
 }
 
-/// What positions are relative to, and how the points are connected.
-fn frame(cloud: &Cloud) -> String {
+/// What positions are relative to, from where they were seen, and how the points are connected.
+fn frame(report: &Report, cloud: &Cloud) -> String {
     let mut text = String::new();
+    if report.gaussians {
+        text += "kind: 3D Gaussians, as discs\n";
+    }
     if cloud.origin != glam::DVec3::ZERO {
         let _ = writeln!(text, "origin: {}", cloud.origin);
+    }
+    match cloud.view {
+        View::Unknown => {}
+        View::From(eye) => {
+            let _ = writeln!(text, "seen from: {}", cloud.origin + eye.as_dvec3());
+        }
+        View::Towards(direction) => {
+            let _ = writeln!(text, "seen from: far away along {direction}");
+        }
+    }
+    let Faces { understood, skipped } = report.faces;
+    if understood + skipped > 0 {
+        let _ = writeln!(text, "faces: {understood} understood, {skipped} skipped");
     }
     if !cloud.triangles.is_empty() {
         let _ = writeln!(text, "triangles: {}", cloud.triangles.len());
@@ -115,13 +151,16 @@ fn sources(estimated: &Estimated) -> String {
     format!("normals: {normals}\nradii: {radii}\n")
 }
 
-fn dropped(report: &Report, estimated: &Estimated) -> String {
-    let (Dropped { position, transparent }, outliers) = (report.dropped, estimated.outliers);
-    let mut text = format!(
+fn dropped(Dropped { position, transparent }: Dropped, estimated: &Estimated) -> String {
+    let outliers = estimated.outliers;
+    format!(
         "left out: {position} without a finite position, {transparent} less than a tenth opaque, {outliers} outliers\n"
-    );
-    if report.trailing > 0 {
-        let _ = writeln!(text, "after the last element: {} bytes that mean nothing", report.trailing);
+    )
+}
+
+fn trailing(report: &Report) -> String {
+    match report.trailing {
+        0 => String::new(),
+        bytes => format!("after the last element: {bytes} bytes that mean nothing\n"),
     }
-    text
 }

@@ -7,7 +7,7 @@ use std::ffi::OsString;
 use std::path::Path;
 use surfel::geometry::estimate::{Estimate, Estimated};
 use surfel::geometry::{Cloud, Surfels};
-use surfel::io::ply::{self, Dropped, Loaded, ReadOptions};
+use surfel::io::ply::{self, Dropped, Faces, Loaded, ReadOptions, Report};
 use surfel::{Error, Progress, Result, Settings, scenes};
 
 /// What is wanted of which inputs.
@@ -41,9 +41,9 @@ pub struct Inputs {
 }
 
 /// An input as it was read.
-enum Part {
-    File { name: String, cloud: Cloud },
-    Scene(Surfels),
+struct Part {
+    name: String,
+    cloud: Cloud,
 }
 
 /// Reads every input; several become one set of surfels.
@@ -57,8 +57,16 @@ pub fn load(wanted: &Wanted<'_>) -> Result<Inputs> {
         dropped.position += lost.position;
         dropped.transparent += lost.transparent;
     }
+    if let Some(voxel) = wanted.voxel {
+        parts = vec![thin(parts, voxel, wanted.quiet)?];
+    }
     let by_property = wanted.colouring.as_ref().filter(|colouring| colouring.property().is_some());
-    let coloured = by_property.map(|colouring| colour(colouring, &mut parts, wanted.quiet));
+    let coloured = by_property.map(|colouring| {
+        colouring.colour_clouds(
+            &mut parts.iter_mut().map(|part| &mut part.cloud).collect::<Vec<_>>(),
+            wanted.quiet,
+        )
+    });
     let (surfels, estimated) = merge(parts, wanted)?;
     let mut inputs = Inputs { surfels, read, dropped, estimated, coloured };
     if let (Some(colouring), None) = (&wanted.colouring, &inputs.coloured) {
@@ -80,15 +88,21 @@ fn refuse_scenes(wanted: &Wanted<'_>) -> Result<()> {
 
 /// What is in an input, its number of points, and how many of them were dropped.
 fn load_one(name: &OsString, wanted: &Wanted<'_>) -> Result<(Part, u64, Dropped)> {
-    if let Some(scene) = scene(name) {
-        let surfels = scenes::open(scene)?;
-        let count = surfels.len() as u64;
-        return Ok((Part::Scene(surfels), count, Dropped::default()));
+    if let Some(name) = scene(name) {
+        let cloud = Cloud::from(scenes::open(name)?);
+        let count = cloud.len() as u64;
+        return Ok((Part { name: name.into(), cloud }, count, Dropped::default()));
     }
     let property = wanted.colouring.as_ref().and_then(Colouring::property);
     let options = ReadOptions { scalar: property.map(str::to_owned) };
     let Loaded { cloud, report } = ply::read(Path::new(name), &options, wanted.progress)?;
     let name = Path::new(name).display().to_string();
+    warn(&name, &report);
+    Ok((Part { name, cloud }, report.points, report.dropped))
+}
+
+/// Says what of a file is left out, and what may be damage.
+fn warn(name: &str, report: &Report) {
     let Dropped { position, transparent } = report.dropped;
     for (count, why) in [(position, "have no finite position"), (transparent, "are less than a tenth opaque")]
     {
@@ -96,50 +110,40 @@ fn load_one(name: &OsString, wanted: &Wanted<'_>) -> Result<(Part, u64, Dropped)
             log::warn!("{name}: {count} of {} points {why} and are left out", report.points);
         }
     }
-    if report.faces.skipped > 0 {
-        let faces = report.faces;
+    let Faces { understood, skipped } = report.faces;
+    if skipped > 0 {
         log::warn!(
-            "{name}: {} of {} faces have no three different corners that exist and are left out",
-            faces.skipped,
-            faces.skipped + faces.understood
+            "{name}: {skipped} of {} faces have no three different corners that exist and are left out",
+            skipped + understood
         );
     }
-    let cloud = match wanted.voxel {
-        Some(voxel) => thin(&name, cloud, voxel, wanted.quiet)?,
-        None => cloud,
-    };
-    Ok((Part::File { name, cloud }, report.points, report.dropped))
-}
-
-fn thin(name: &str, cloud: Cloud, voxel: f64, quiet: bool) -> Result<Cloud> {
-    let before = cloud.len();
-    let thinned = cloud.thin(voxel).map_err(|cause| Error::input(name, cause))?;
-    if !quiet {
-        say(&format!("{name}: {before} points thinned to {}", thinned.len()));
+    if report.trailing > 0 {
+        log::warn!("{name}: {} bytes after the last element mean nothing and are left out", report.trailing);
     }
-    Ok(thinned)
 }
 
-fn colour(colouring: &Colouring, parts: &mut [Part], quiet: bool) -> Coloured {
-    let cloud = |part| match part {
-        &mut Part::File { ref mut cloud, .. } => Some(cloud),
-        Part::Scene(_) => None,
+/// All parts together, with one point a voxel.
+fn thin(parts: Vec<Part>, voxel: f64, quiet: bool) -> Result<Part> {
+    let name = match &parts[..] {
+        [one] => one.name.clone(),
+        several => format!("{} inputs", several.len()),
     };
-    colouring.colour_clouds(&mut parts.iter_mut().filter_map(cloud).collect::<Vec<_>>(), quiet)
+    let clouds = parts.into_iter().map(|part| part.cloud).collect();
+    let all = Cloud::merge(clouds, Settings::default().lighting.albedo)?;
+    let before = all.len();
+    let cloud = all.thin(voxel).map_err(|cause| Error::input(name.as_str(), cause))?;
+    if !quiet {
+        say(&format!("{name}: {before} points thinned to {}", cloud.len()));
+    }
+    Ok(Part { name, cloud })
 }
 
 /// One set of surfels of all parts, each of which is estimated by itself.
 fn merge(parts: Vec<Part>, wanted: &Wanted<'_>) -> Result<(Surfels, Estimated)> {
     let several = parts.len() > 1;
     let (mut all, mut total) = (Vec::new(), Estimated::default());
-    for part in parts {
-        let (surfels, estimated) = match part {
-            Part::Scene(surfels) => {
-                let count = surfels.len() as u64;
-                (surfels, Estimated { normals_given: count, radii_given: count, ..Default::default() })
-            }
-            Part::File { name, cloud } => estimate(&name, cloud, wanted)?,
-        };
+    for Part { name, cloud } in parts {
+        let (surfels, estimated) = estimate(&name, cloud, wanted)?;
         all.push(surfels);
         total = summary::sum(total, estimated);
     }

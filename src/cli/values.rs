@@ -3,7 +3,7 @@
 use clap::ValueEnum;
 use glam::DVec3;
 use std::str::FromStr;
-use surfel::geometry::{ColourMap, ValueRange};
+use surfel::geometry::ValueRange;
 use surfel::io::srgb;
 use surfel::settings;
 
@@ -57,36 +57,6 @@ pub fn colour_by(text: &str) -> Result<ColourBy, String> {
         _ => (text, None),
     };
     if name.is_empty() { Err(wrong()) } else { Ok(ColourBy { name: name.into(), range }) }
-}
-
-/// The colours of numbers.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Map {
-    /// Purple, green, yellow
-    Viridis,
-    /// Blue, grey, yellow: the same to the colour-blind
-    Cividis,
-    /// Black, red, pale yellow
-    Magma,
-    /// Black, orange, yellow
-    Inferno,
-    /// Blue, pink, yellow
-    Plasma,
-    /// A rainbow
-    Turbo,
-}
-
-impl From<Map> for ColourMap {
-    fn from(map: Map) -> Self {
-        match map {
-            Map::Viridis => Self::Viridis,
-            Map::Cividis => Self::Cividis,
-            Map::Magma => Self::Magma,
-            Map::Inferno => Self::Inferno,
-            Map::Plasma => Self::Plasma,
-            Map::Turbo => Self::Turbo,
-        }
-    }
 }
 
 /// What is seen where no surfel is.
@@ -192,6 +162,7 @@ mod tests {
             assert!(background(text).is_err(), "{text}");
         }
     }
+
     #[test]
     fn numbers_names_and_directions_are_read_or_refused() {
         assert_eq!((positive("1e-3"), positive("2")), (Ok(1e-3), Ok(2f32)));

@@ -1,6 +1,6 @@
 //! A point cloud as files hold it: positions, and whatever else there is.
 
-use super::{Colours, Ellipse};
+use super::{Colours, Ellipse, Surfels};
 use glam::{DVec3, Vec3};
 
 /// Points as a structure of arrays; every array that is there has one entry a point.
@@ -21,7 +21,7 @@ pub struct Cloud {
     /// Colours.
     pub colours: Option<Colours>,
     /// A number a point, chosen on reading; not finite where there is none.
-    pub scalar: Option<Vec<f32>>,
+    pub scalar: Option<Vec<f64>>,
     /// Triangles between the points, counter-clockwise from outside; each index is one of a point.
     pub triangles: Vec<[u32; 3]>,
     /// From where the points were seen.
@@ -49,5 +49,21 @@ impl Cloud {
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.positions.is_empty()
+    }
+}
+
+impl From<Surfels> for Cloud {
+    /// A cloud that lacks nothing.
+    fn from(surfels: Surfels) -> Self {
+        Self {
+            origin: surfels.origin,
+            positions: surfels.positions,
+            normals: Some(surfels.normals),
+            radii: Some(surfels.radii),
+            ellipses: surfels.ellipses,
+            two_sided: surfels.two_sided,
+            colours: surfels.colours,
+            ..Default::default()
+        }
     }
 }

@@ -5,6 +5,7 @@ use rayon::prelude::*;
 
 /// A sequence of colours for the numbers from 0 to 1. In all but `Turbo` equal steps look equal, and lightness grows throughout.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum ColourMap {
     /// Purple, green, yellow.
     #[default]

@@ -1,9 +1,9 @@
-//! Several sets of surfels as one.
+//! Several sets of points as one.
 
-use super::{Bounds, Colours, Ellipse, Surfels};
+use super::{Bounds, Cloud, Colours, Ellipse, Surfels, View};
 use crate::error::{Error, Result};
 use crate::io::srgb;
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 impl Surfels {
     /// All surfels of `parts`, one part after the other.
@@ -15,35 +15,67 @@ impl Surfels {
     ///
     /// # Errors
     /// [`Error::Usage`] if there are more than 2³² − 1 surfels.
+    pub fn merge(parts: Vec<Self>, albedo: [f32; 3]) -> Result<Self> {
+        let merged = Cloud::merge(parts.into_iter().map(Cloud::from).collect(), albedo)?;
+        Ok(Self {
+            origin: merged.origin,
+            positions: merged.positions,
+            normals: merged.normals.unwrap_or_default(),
+            radii: merged.radii.unwrap_or_default(),
+            ellipses: merged.ellipses,
+            two_sided: merged.two_sided,
+            colours: merged.colours,
+        })
+    }
+}
+
+impl Cloud {
+    /// All points of `parts`, one part after the other, as [`Surfels::merge`] has it. Where only some parts have normals, radii or
+    /// scalars, the others' points have none; where the parts were not all seen from the same place, it is not known.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if there are more than 2³² − 1 points.
     pub fn merge(mut parts: Vec<Self>, albedo: [f32; 3]) -> Result<Self> {
         let count: usize = parts.iter().map(Self::len).sum();
         if u32::try_from(count).is_err() {
-            return Err(Error::Usage(format!("{count} surfels in one scene: at most 2³² − 1 are drawn")));
+            return Err(Error::Usage(format!("{count} points in one scene: at most 2³² − 1 are drawn")));
+        }
+        if parts.len() == 1 {
+            return Ok(parts.remove(0));
         }
         let origin = common_origin(&parts);
         parts.iter_mut().for_each(|part| part.move_origin(origin));
-        let colours = merge_colours(&parts, albedo);
-        let (ellipses, two_sided) = (merge_ellipses(&parts), merge_two_sided(&parts));
-        let mut merged = Self { origin, ellipses, two_sided, colours, ..Default::default() };
-        for part in parts {
-            merged.positions.extend(part.positions);
-            merged.normals.extend(part.normals);
-            merged.radii.extend(part.radii);
-        }
-        Ok(merged)
+        let parts = &mut parts[..];
+        Ok(Self {
+            origin,
+            view: common_view(parts),
+            triangles: join_triangles(parts),
+            colours: join_colours(parts, albedo),
+            // Before the normals, which circles are made of.
+            ellipses: join(parts, |part| part.ellipses.take(), circles),
+            two_sided: join(parts, |part| part.two_sided.take(), |part| vec![false; part.len()]),
+            scalar: join(parts, |part| part.scalar.take(), |part| vec![f64::NAN; part.len()]),
+            radii: join(parts, |part| part.radii.take(), |part| vec![0.0; part.len()]),
+            normals: join(parts, |part| part.normals.take(), |part| vec![Vec3::ZERO; part.len()]),
+            positions: parts.iter_mut().flat_map(|part| std::mem::take(&mut part.positions)).collect(),
+        })
     }
 
     /// Makes `origin` what the positions are relative to.
     fn move_origin(&mut self, origin: DVec3) {
         let offset = self.origin - origin;
         if offset != DVec3::ZERO {
-            self.positions.iter_mut().for_each(|p| *p = (p.as_dvec3() + offset).as_vec3());
+            let moved = |p: Vec3| (p.as_dvec3() + offset).as_vec3();
+            self.positions.iter_mut().for_each(|p| *p = moved(*p));
+            if let View::From(eye) = &mut self.view {
+                *eye = moved(*eye);
+            }
         }
         self.origin = origin;
     }
 }
 
-fn common_origin(parts: &[Surfels]) -> DVec3 {
+fn common_origin(parts: &[Cloud]) -> DVec3 {
     let first = parts.first().map_or(DVec3::ZERO, |part| part.origin);
     if parts.iter().all(|part| part.origin == first) {
         return first;
@@ -53,46 +85,71 @@ fn common_origin(parts: &[Surfels]) -> DVec3 {
     boxes.reduce(union).map_or(first, |bounds| bounds.centre())
 }
 
-fn merge_ellipses(parts: &[Surfels]) -> Option<Vec<Ellipse>> {
-    let shapes = |part: &Surfels| match &part.ellipses {
-        Some(ellipses) => ellipses.clone(),
-        None => part.normals.iter().map(|normal| Ellipse::circle(*normal)).collect(),
+fn common_view(parts: &[Cloud]) -> View {
+    let first = parts.first().map(|part| part.view).unwrap_or_default();
+    if parts.iter().all(|part| part.view == first) { first } else { View::Unknown }
+}
+
+/// The parts' arrays one after the other, with what `missing` gives of a part that has none; `None` if no part has any.
+fn join<T>(
+    parts: &mut [Cloud],
+    take: impl Fn(&mut Cloud) -> Option<Vec<T>>,
+    missing: impl Fn(&Cloud) -> Vec<T>,
+) -> Option<Vec<T>> {
+    let arrays: Vec<_> = parts.iter_mut().map(take).collect();
+    let fill = |(array, part): (Option<Vec<T>>, &Cloud)| array.unwrap_or_else(|| missing(part));
+    let any = arrays.iter().any(Option::is_some);
+    any.then(|| arrays.into_iter().zip(&*parts).flat_map(fill).collect())
+}
+
+fn circles(part: &Cloud) -> Vec<Ellipse> {
+    // What has no normal has no disc yet.
+    let circle = |normal: &Vec3| match *normal {
+        Vec3::ZERO => Ellipse::circle(Vec3::Z),
+        normal => Ellipse::circle(normal),
     };
-    let any = parts.iter().any(|part| part.ellipses.is_some());
-    any.then(|| parts.iter().flat_map(shapes).collect())
+    match &part.normals {
+        Some(normals) => normals.iter().map(circle).collect(),
+        None => vec![circle(&Vec3::ZERO); part.len()],
+    }
 }
 
-fn merge_two_sided(parts: &[Surfels]) -> Option<Vec<bool>> {
-    let flags = |part: &Surfels| part.two_sided.clone().unwrap_or_else(|| vec![false; part.len()]);
-    let any = parts.iter().any(|part| part.two_sided.is_some());
-    any.then(|| parts.iter().flat_map(flags).collect())
+fn join_triangles(parts: &mut [Cloud]) -> Vec<[u32; 3]> {
+    let mut all = Vec::new();
+    let mut first = 0;
+    for part in parts {
+        all.extend(std::mem::take(&mut part.triangles).iter().map(|corners| corners.map(|i| first + i)));
+        // Fits: the number of all points does.
+        first += part.len() as u32;
+    }
+    all
 }
 
-fn merge_colours(parts: &[Surfels], albedo: [f32; 3]) -> Option<Colours> {
-    let coded = |part: &Surfels| matches!(part.colours, Some(Colours::Srgb8(_)) | None);
+fn join_colours(parts: &mut [Cloud], albedo: [f32; 3]) -> Option<Colours> {
     if parts.iter().all(|part| part.colours.is_none()) {
         return None;
     }
     let [r, g, b] = albedo.map(srgb::encode8);
+    let coded = |part: &Cloud| matches!(part.colours, Some(Colours::Srgb8(_)) | None);
     Some(match parts.iter().all(coded) {
-        true => Colours::Srgb8(parts.iter().flat_map(|part| codes(part, [r, g, b, 0])).collect()),
-        false => Colours::Linear(parts.iter().flat_map(|part| linear(part, albedo)).collect()),
+        true => Colours::Srgb8(parts.iter_mut().flat_map(|part| codes(part, [r, g, b, 0])).collect()),
+        false => Colours::Linear(parts.iter_mut().flat_map(|part| linear(part, albedo)).collect()),
     })
 }
 
 /// sRGB codes of a part that has no linear colours.
-fn codes(part: &Surfels, albedo: [u8; 4]) -> Vec<[u8; 4]> {
-    match &part.colours {
-        Some(Colours::Srgb8(colours)) => colours.clone(),
+fn codes(part: &mut Cloud, albedo: [u8; 4]) -> Vec<[u8; 4]> {
+    match part.colours.take() {
+        Some(Colours::Srgb8(colours)) => colours,
         _ => vec![albedo; part.len()],
     }
 }
 
-fn linear(part: &Surfels, albedo: [f32; 3]) -> Vec<[f32; 3]> {
+fn linear(part: &mut Cloud, albedo: [f32; 3]) -> Vec<[f32; 3]> {
     let decode = |code: u8| srgb::decode(f64::from(code) / 255.0) as f32;
-    match &part.colours {
+    match part.colours.take() {
         None => vec![albedo; part.len()],
-        Some(Colours::Linear(colours)) => colours.clone(),
+        Some(Colours::Linear(colours)) => colours,
         Some(Colours::Srgb8(colours)) => colours.iter().map(|&[r, g, b, _]| [r, g, b].map(decode)).collect(),
     }
 }
@@ -100,7 +157,6 @@ fn linear(part: &Surfels, albedo: [f32; 3]) -> Vec<[f32; 3]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use glam::Vec3;
 
     fn part(origin: f64, x: f32, colours: Option<Colours>) -> Surfels {
         Surfels {
@@ -129,6 +185,37 @@ mod tests {
         for (position, expected) in merged.positions.iter().zip([1e7 + 0.001, 1e7 + 2.0]) {
             assert!((position.as_dvec3() + merged.origin - expected).length() < 1e-6, "{merged:?}");
         }
+    }
+
+    #[test]
+    fn a_single_part_stays_where_it_is() {
+        let part = part(5.0, 1.0, Some(Colours::Linear(vec![[0.1, 0.2, 0.3]])));
+        let (copy, place) = (part.clone(), part.positions.as_ptr());
+        let merged = Surfels::merge(vec![part], [0.5; 3]).unwrap();
+        assert_eq!((merged.positions.as_ptr(), merged), (place, copy));
+    }
+
+    #[test]
+    fn clouds_keep_what_each_of_them_has() {
+        let (from, to) = (DVec3::splat(1e7), DVec3::splat(1e7 + 2.0));
+        let bare = |origin| Cloud {
+            origin,
+            positions: vec![Vec3::ZERO; 3],
+            triangles: vec![[0, 1, 2]],
+            view: View::From((to - origin).as_vec3()),
+            ..Default::default()
+        };
+        let full = Cloud { normals: Some(vec![Vec3::Z; 3]), scalar: Some(vec![7.0; 3]), ..bare(to) };
+        let merged = Cloud::merge(vec![bare(from), full.clone()], [0.5; 3]).unwrap();
+        assert_eq!((merged.len(), merged.radii.clone(), merged.colours.clone()), (6, None, None));
+        assert_eq!(merged.triangles, [[0, 1, 2], [3, 4, 5]]);
+        let normals = merged.normals.unwrap();
+        assert_eq!((normals[0], normals[5]), (Vec3::ZERO, Vec3::Z));
+        let scalar = merged.scalar.unwrap();
+        assert!(scalar[0].is_nan() && scalar[5] == 7.0, "{scalar:?}");
+        assert_eq!(merged.view, View::From((to - merged.origin).as_vec3()), "both were seen from there");
+        let elsewhere = Cloud { view: View::Towards(Vec3::Z), ..full };
+        assert_eq!(Cloud::merge(vec![bare(from), elsewhere], [0.5; 3]).unwrap().view, View::Unknown);
     }
 
     #[test]

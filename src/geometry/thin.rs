@@ -16,8 +16,8 @@ impl Cloud {
     /// origin included.
     ///
     /// The point is the mean of its voxel's: of positions, of normals (0 where they cancel), of colours in linear light, of the finite
-    /// scalars. Radii, ellipses and triangles, which belonged to the closer points, are dropped. The result does not depend on the number of
-    /// threads.
+    /// scalars. Radii, ellipses and triangles, which belonged to the closer points, are dropped: a normal that only the triangles told is
+    /// then estimated from the points. The result does not depend on the number of threads.
     ///
     /// # Errors
     /// The cause, if `voxel` is not above 0 or too small for the coordinates.
@@ -95,10 +95,10 @@ fn mean(group: &[Key], value: impl Fn(usize) -> DVec3) -> Vec3 {
 }
 
 /// Mean of the finite ones; not a number if none is.
-fn mean_finite(values: impl Iterator<Item = f32>) -> f32 {
+fn mean_finite(values: impl Iterator<Item = f64>) -> f64 {
     let finite = values.filter(|value| value.is_finite());
-    let (sum, count) = finite.fold((0.0, 0u32), |(sum, count), value| (sum + f64::from(value), count + 1));
-    (sum / f64::from(count)) as f32
+    let (sum, count) = finite.fold((0.0, 0u32), |(sum, count), value| (sum + value, count + 1));
+    sum / f64::from(count)
 }
 
 fn mean_colours(colours: &Colours, groups: &[&[Key]]) -> Colours {
@@ -137,7 +137,7 @@ mod tests {
             normals: Some(vec![Vec3::X, Vec3::Y, Vec3::Z, Vec3::ZERO]),
             radii: Some(vec![1.0; 4]),
             colours: Some(Colours::Srgb8(vec![[255, 0, 9, 0], [0, 0, 9, 0], [7; 4], [7; 4]])),
-            scalar: Some(vec![1.0, f32::NAN, f32::NAN, f32::NAN]),
+            scalar: Some(vec![1.0, f64::NAN, f64::NAN, f64::NAN]),
             triangles: vec![[0, 1, 2]],
             ..cloud(&[0.25, 0.75, 1.0, -0.5])
         }

@@ -91,10 +91,9 @@ pub fn write_png(picture: &Picture, shading: Shading, out: &Output) -> Result<()
 /// A picture as a PNG holds it: RGBA, 8 bits a channel, straight α.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Encoded {
-    /// Width and height, px.
-    pub size: [u32; 2],
-    /// Row by row from the top left.
-    pub pixels: Vec<[u8; 4]>,
+    /// As large as `size` says.
+    pixels: Vec<[u8; 4]>,
+    size: [u32; 2],
 }
 
 impl Encoded {
@@ -108,7 +107,37 @@ impl Encoded {
     /// [`Error::Usage`] if the picture's arrays do not fit its size.
     pub fn of(picture: &Picture, shading: Shading) -> Result<Self> {
         check(picture)?;
-        Ok(Self { size: picture.size, pixels: encode(picture, shading) })
+        Self::new(picture.size, encode(picture, shading))
+    }
+
+    /// Pixels row by row from the top left.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if there are none, or not as many as `size`, width and height in px, says.
+    pub fn new(size: [u32; 2], pixels: Vec<[u8; 4]>) -> Result<Self> {
+        let [width, height] = size;
+        match !pixels.is_empty() && pixels.len() as u64 == u64::from(width) * u64::from(height) {
+            true => Ok(Self { pixels, size }),
+            false => Err(Error::Usage(format!(
+                "{} pixels for a picture of {width} × {height}: give as many as it has, at least one",
+                pixels.len()
+            ))),
+        }
+    }
+
+    /// Width and height, px.
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// Row by row from the top left.
+    pub fn pixels(&self) -> &[[u8; 4]] {
+        &self.pixels
+    }
+
+    /// The same, to be drawn on.
+    pub fn pixels_mut(&mut self) -> &mut [[u8; 4]] {
+        &mut self.pixels
     }
 
     /// Writes it as PNG: RGBA, or RGB if every pixel is opaque.
@@ -317,5 +346,8 @@ mod tests {
         assert_eq!(Output::parse(OsStr::new("-")), Output::Stdout);
         let ragged = Picture { size: [2, 1], ..one };
         assert!(matches!(write_png(&ragged, Shading::Lit, &Output::Stdout), Err(Error::Usage(_))));
+        for (size, count) in [([2, 1], 1), ([0, 0], 0), ([u32::MAX; 2], 1)] {
+            assert!(matches!(Encoded::new(size, vec![[0; 4]; count]), Err(Error::Usage(_))), "{size:?}");
+        }
     }
 }

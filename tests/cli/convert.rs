@@ -69,7 +69,6 @@ fn colours_are_written() {
 }
 
 #[test]
-
 fn thinning_says_how_many_are_left() {
     let program = Program::new();
     let bare = surfels(&["0 0 0 0 0 1 9", "0.25 0 0 0 0 1 9", "5 0 0 0 0 1 9"]);
@@ -87,7 +86,38 @@ fn thinning_says_how_many_are_left() {
 }
 
 #[test]
+fn inputs_are_thinned_together() {
+    let program = Program::new();
+    program.write("a.ply", surfels(&TWO)).write("b.ply", surfels(&["0.5 0 0 0 0 1 9", "5 0 0 0 0 1 9"]));
+    let run = program.run("convert a.ply b.ply -o c.ply --voxel 1 --radius 0.5");
+    assert!(run.err.contains("2 inputs: 4 points thinned to 2\n"), "{}", run.err);
+    assert!(
+        info(&program, "c.ply").contains("\nbounds: [0, -0.5, -0.5] to [5.5, 0.5, 0.5]"),
+        "{}",
+        info(&program, "c.ply")
+    );
+    let run = program.run("convert a.ply b.ply -o c.ply --voxel 1e-12");
+    assert!(run.error(1).contains("2 inputs: voxels of side"), "{}", run.err);
+}
 
+#[test]
+fn scenes_heed_every_option() {
+    let program = Program::new();
+    let scene = "scene:bumpy-sphere?points=2000";
+    let run = program.run(&format!("convert {scene} -o c.ply --radius 0.25 --radius-scale 2"));
+    assert_eq!(run.err, "c.ply: 2000 surfels\n");
+    let radius = "\nradius: 0.5 to 0.5, median 0.5\n";
+    assert!(info(&program, "c.ply").contains(radius), "{}", info(&program, "c.ply"));
+    let text = info(&program, &format!("{scene} --radius 0.5"));
+    assert!(text.contains(radius) && text.contains("\nnormals: 2000 given\n"), "{text}");
+    let text = info(&program, &format!("{scene} --drop-outliers 1"));
+    assert!(!text.contains("\nsurfels: 2000\n") && !text.contains(" 0 outliers"), "{text}");
+    let run = program.run(&format!("convert {scene} -o c.ply --voxel 0.25 --elliptical"));
+    assert!(run.err.contains(&format!("{scene}: 2000 points thinned to ")), "{}", run.err);
+    assert!(info(&program, "c.ply").contains("\n  float ux\n"), "{}", info(&program, "c.ply"));
+}
+
+#[test]
 fn radii_are_set_and_scaled() {
     let program = Program::new();
     program.write("a.ply", surfels(&TWO));

@@ -50,6 +50,29 @@ fn what_is_estimated_is_told() {
 }
 
 #[test]
+fn what_is_beside_the_points_is_told() {
+    let program = Program::new();
+    let camera = "element camera 1\nproperty float view_px\nproperty float view_py\nproperty float view_pz\n";
+    let face = "element face 2\nproperty list uchar int vertex_indices\n";
+    let many: String = (0..30).map(|i| format!("element e{i} 0\n")).collect();
+    let file = surfels(&["0 0 0 0 0 0 1", "4 0 0 0 0 0 3", "2 9 0 0 0 0 2"]);
+    let file = file.replace("end_header", &format!("{camera}{face}{many}end_header"));
+    program.write("a.ply", file + "1 2 3\n3 0 1 2\n3 0 1 7\nmore\n");
+    let run = program.run("info a.ply");
+    for line in [
+        "seen from: [1, 2, 3]",
+        "faces: 1 understood, 1 skipped",
+        "triangles: 1",
+        "after the last element: 5 bytes that mean nothing",
+    ] {
+        assert!(run.text().lines().any(|have| have == line), "no `{line}` in\n{}", run.text());
+    }
+    assert!(run.text().contains(" e6 e7 and 22 more\n"), "{}", run.text());
+    let run = program.run("convert a.ply -o c.ply");
+    assert!(run.err.contains("a.ply: 5 bytes after the last element mean nothing"), "{}", run.err);
+}
+
+#[test]
 fn a_scene_is_described() {
     let text = Program::new().run("info scene:bumpy-sphere?points=500").text().to_owned();
     assert!(text.contains("built-in scene\n") && text.contains("\nsurfels: 500\n"), "{text}");

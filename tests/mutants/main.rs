@@ -1,5 +1,5 @@
 //! A hundred thousand damaged PLY files: whatever is in them, the reader neither panics nor hangs nor takes much memory, and what it
-//! accepts keeps its promises.
+//! accepts keeps its promises, as do the surfels that become of it.
 
 mod files;
 mod mutate;
@@ -8,13 +8,17 @@ use cap::Cap;
 use mutate::Random;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::{Duration, Instant};
-use surfel::geometry::{Cloud, Colours, View};
+use surfel::geometry::estimate::Estimate;
+use surfel::geometry::{Cloud, Colours, Surfels, View};
 use surfel::io::ply::{self, Loaded, ReadOptions};
 
 #[global_allocator]
 static ALLOCATOR: Cap<std::alloc::System> = Cap::new(std::alloc::System, usize::MAX);
 
 const MUTANTS: u64 = 100_000;
+
+/// Most points of a cloud that is made to surfels.
+const MOST_POINTS: usize = 2000;
 
 /// Longest time for one file.
 const PATIENCE: Duration = Duration::from_millis(500);
@@ -51,6 +55,7 @@ fn the_files_are_sound_before_they_are_damaged() {
         let Loaded { cloud, report } = read(&bytes).unwrap_or_else(|error| panic!("{error}"));
         check(&cloud, &report);
         assert_eq!(report.trailing, 0);
+        draw(cloud);
     }
 }
 
@@ -78,6 +83,7 @@ fn examine(bytes: &[u8]) -> bool {
     match result {
         Ok(Loaded { cloud, report }) => {
             check(&cloud, &report);
+            draw(cloud);
             true
         }
         Err(error) => {
@@ -108,6 +114,8 @@ fn check(cloud: &Cloud, report: &ply::Report) {
     let sound =
         |shape: &surfel::geometry::Ellipse| shape.aspect > 0.0 && shape.aspect <= 1.0 && unit(&shape.major);
     assert!(cloud.ellipses.iter().flatten().all(sound));
+    let across = |(shape, n): (&surfel::geometry::Ellipse, &glam::Vec3)| shape.major.dot(*n).abs() < 1e-5;
+    assert!(cloud.ellipses.iter().flatten().zip(cloud.normals.iter().flatten()).all(across), "{cloud:?}");
     if let Some(Colours::Linear(colours)) = &cloud.colours {
         assert!(colours.iter().flatten().all(|channel| channel.is_finite() && *channel >= 0.0));
     }
@@ -117,5 +125,33 @@ fn check(cloud: &Cloud, report: &ply::Report) {
         View::Unknown => {}
         View::From(eye) => assert!(eye.is_finite()),
         View::Towards(direction) => assert!(unit(&direction)),
+    }
+}
+
+/// Makes surfels, if that is possible, and looks at what they promise.
+fn draw(cloud: Cloud) {
+    if cloud.len() > MOST_POINTS {
+        return;
+    }
+    for elliptical in [false, true] {
+        let how = Estimate { elliptical, ..Default::default() };
+        match cloud.clone().into_surfels(&how, &()) {
+            Ok((surfels, _)) => check_surfels(&surfels),
+            Err(cause) => assert!(!cause.is_empty() && cause.lines().count() == 1, "{cause:?}"),
+        }
+    }
+}
+
+fn check_surfels(surfels: &Surfels) {
+    surfels.check().unwrap();
+    let unit = |n: &glam::Vec3| (n.length() - 1.0).abs() < 1e-4;
+    for ((position, normal), radius) in surfels.positions.iter().zip(&surfels.normals).zip(&surfels.radii) {
+        assert!(position.is_finite(), "a position: {position}");
+        assert!(unit(normal), "a normal: {normal}");
+        assert!(*radius > 0.0 && radius.is_finite(), "a radius: {radius}");
+    }
+    for (ellipse, normal) in surfels.ellipses.iter().flatten().zip(&surfels.normals) {
+        assert!(ellipse.aspect > 0.0 && ellipse.aspect <= 1.0 && unit(&ellipse.major), "{ellipse:?}");
+        assert!(ellipse.major.dot(*normal).abs() < 1e-3, "{ellipse:?} on {normal}");
     }
 }

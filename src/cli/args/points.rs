@@ -1,7 +1,8 @@
 //! Options of every command that reads points: how what a file lacks is estimated, and what points are coloured by.
 
-use crate::cli::values::{ColourBy, Map, colour_by, positive};
+use crate::cli::values::{ColourBy, colour_by, positive};
 use clap::Args;
+use surfel::geometry::ColourMap;
 use surfel::geometry::estimate::Estimate;
 
 /// How normals and radii are estimated.
@@ -53,5 +54,5 @@ pub struct Colours {
         default_value = "viridis",
         requires = "color_by"
     )]
-    pub color_map: Map,
+    pub color_map: ColourMap,
 }

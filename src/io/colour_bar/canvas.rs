@@ -65,11 +65,11 @@ impl Font {
 impl Encoded {
     /// Blends an sRGB-encoded colour over a pixel; what is beyond the edge is not drawn.
     fn blend(&mut self, x: u32, y: u32, colour: [u8; 3], alpha: f64) {
-        let [width, height] = self.size;
+        let [width, height] = self.size();
         if x >= width || y >= height {
             return;
         }
-        let pixel = &mut self.pixels[y as usize * width as usize + x as usize];
+        let pixel = &mut self.pixels_mut()[y as usize * width as usize + x as usize];
         let below = f64::from(pixel[3]) / 255.0 * (1.0 - alpha);
         let sum = alpha + below;
         if sum > 0.0 {
@@ -106,8 +106,8 @@ impl Encoded {
     /// Mean linear lightness of a rectangle inside the picture, as it looks over white.
     pub(super) fn lightness(&self, area: Rectangle) -> f64 {
         let row = |y: u32| {
-            let start = y as usize * self.size[0] as usize + area.x as usize;
-            &self.pixels[start..start + area.width as usize]
+            let start = y as usize * self.size()[0] as usize + area.x as usize;
+            &self.pixels()[start..start + area.width as usize]
         };
         let over_white = |&[r, g, b, a]: &[u8; 4]| {
             let [r, g, b] = [r, g, b].map(|code| srgb::decode(f64::from(code) / 255.0));
@@ -125,19 +125,18 @@ mod tests {
 
     #[test]
     fn what_is_drawn_is_blended_in_linear_light() {
-        let mut picture =
-            Encoded { size: [3, 1], pixels: vec![[0, 0, 0, 255], [9, 9, 9, 0], [0, 0, 0, 255]] };
+        let mut picture = Encoded::new([3, 1], vec![[0, 0, 0, 255], [9, 9, 9, 0], [0, 0, 0, 255]]).unwrap();
         let area = Rectangle { x: 0, y: 0, width: 2, height: 1 };
         picture.fill(area, [255; 3], 0.5);
-        assert_eq!(picture.pixels, [[188, 188, 188, 255], [255, 255, 255, 128], [0, 0, 0, 255]]);
+        assert_eq!(picture.pixels(), [[188, 188, 188, 255], [255, 255, 255, 128], [0, 0, 0, 255]]);
         assert_eq!(picture.lightness(Rectangle { x: 2, y: 0, width: 1, height: 1 }), 0.0);
         assert_eq!(picture.lightness(Rectangle { x: 1, y: 0, width: 1, height: 1 }), 1.0);
         // Code 188 is half of linear light, 137 a quarter.
         picture.fill(Rectangle { width: 1, ..area }, [0; 3], 0.5);
-        assert_eq!(picture.pixels[0], [137, 137, 137, 255]);
+        assert_eq!(picture.pixels()[0], [137, 137, 137, 255]);
         // Nothing happens beyond the edge.
         picture.fill(Rectangle { x: 2, y: 0, width: 5, height: 5 }, [255; 3], 1.0);
-        assert_eq!(picture.pixels[2], [255; 4]);
+        assert_eq!(picture.pixels()[2], [255; 4]);
     }
 
     #[test]
@@ -146,12 +145,12 @@ mod tests {
         assert_eq!(heights, [16, 16, 20, 24, 32, 32, 64, 96]);
         for text in ["0", "é", "漢", "\u{7}"] {
             let font = Font::of_height(20);
-            let mut picture = Encoded { size: [20, 20], pixels: vec![[255; 4]; 400] };
+            let mut picture = Encoded::new([20, 20], vec![[255; 4]; 400]).unwrap();
             picture.text([0, 0], text, font, [0; 3]);
-            assert!(picture.pixels.iter().any(|pixel| pixel[0] < 64), "{text}");
+            assert!(picture.pixels().iter().any(|pixel| pixel[0] < 64), "{text}");
             let beside =
                 |(i, pixel): (usize, &[u8; 4])| i % 20 >= font.width(text) as usize && *pixel != [255; 4];
-            assert!(!picture.pixels.iter().enumerate().any(beside), "{text}");
+            assert!(!picture.pixels().iter().enumerate().any(beside), "{text}");
         }
     }
 }

@@ -67,12 +67,12 @@ impl ColourBar {
     /// # Errors
     /// As [`ColourBar::check`].
     pub fn draw(&self, picture: &mut Encoded) -> Result<()> {
-        Self::check(picture.size)?;
-        let font = Font::of_height(picture.size[0].min(picture.size[1]) / LINES);
-        let height = (f64::from(picture.size[1]) * HEIGHT) as u32 - 2 * font.height();
+        Self::check(picture.size())?;
+        let font = Font::of_height(picture.size()[0].min(picture.size()[1]) / LINES);
+        let height = (f64::from(picture.size()[1]) * HEIGHT) as u32 - 2 * font.height();
         let ticks = ticks(&self.scale.range, 1.1 * f64::from(font.height()) / f64::from(height));
-        let name = self.title(font, picture.size[0] / 2);
-        let layout = Layout::of(picture.size, font, height, &name, &ticks);
+        let name = self.title(font, picture.size()[0] / 2);
+        let layout = Layout::of(picture.size(), font, height, &name, &ticks);
         let Theme { panel, ink, opacity } = if picture.lightness(layout.panel) > 0.2 { LIGHT } else { DARK };
         picture.fill(layout.panel, panel, opacity);
         // Without an edge, a panel of the background's colour looks like the end of the object.
@@ -141,7 +141,7 @@ mod tests {
 
     fn drawn(bar: &ColourBar, [width, height]: [u32; 2], background: [u8; 4]) -> Encoded {
         let pixels = vec![background; width as usize * height as usize];
-        let mut picture = Encoded { size: [width, height], pixels };
+        let mut picture = Encoded::new([width, height], pixels).unwrap();
         bar.draw(&mut picture).unwrap();
         picture
     }
@@ -153,7 +153,7 @@ mod tests {
             let colour = ColourMap::Viridis.at(share);
             let apart =
                 |pixel: &[u8; 4]| (0..3).map(|i| u32::from(pixel[i].abs_diff(colour[i]))).sum::<u32>();
-            let nearest = (0..).zip(&picture.pixels).min_by_key(|(_, pixel)| apart(pixel)).unwrap();
+            let nearest = (0..).zip(picture.pixels()).min_by_key(|(_, pixel)| apart(pixel)).unwrap();
             assert!(apart(nearest.1) <= 6, "{share}: {nearest:?}");
             nearest.0 / 256
         };
@@ -168,7 +168,7 @@ mod tests {
         for background in [[255; 4], [0, 0, 0, 255], [0; 4], [120, 120, 120, 255], [250, 0, 0, 255]] {
             let bar = bar("x", -3.0, 3.0);
             let picture = drawn(&bar, [200, 200], background);
-            let changed = || picture.pixels.iter().filter(|pixel| **pixel != background).copied();
+            let changed = || picture.pixels().iter().filter(|pixel| **pixel != background).copied();
             // The panel is the commonest of the new colours.
             let mut counts = std::collections::BTreeMap::new();
             changed().for_each(|pixel| *counts.entry(pixel).or_insert(0) += 1);
@@ -188,7 +188,7 @@ mod tests {
                     [(0.0, 1.0), (5.0, 5.0), (-1e30, 1e-30), (-f64::MAX, f64::MAX), (4600000.1, 4600000.2)]
                 {
                     let picture = drawn(&bar(name, min, max), size, [7, 7, 7, 255]);
-                    let left = picture.pixels.chunks(size[0] as usize).all(|row| row[0] == [7, 7, 7, 255]);
+                    let left = picture.pixels().chunks(size[0] as usize).all(|row| row[0] == [7, 7, 7, 255]);
                     assert!(left, "{size:?} {name} {min} {max}: it covers the left edge");
                 }
             }

@@ -55,7 +55,7 @@ arrays! {
     two_sided: bool, Layout::has_sides, "Whether the normal's side is unknown.";
     codes: [u8; 4], Layout::has_codes, "sRGB-encoded colours.";
     linear: [f32; 3], |layout: &Layout| layout.colour.is_some() && !layout.has_codes(), "Linear colours.";
-    scalar: f32, |layout: &Layout| layout.fills(SCALAR), "The chosen scalar.";
+    scalar: f64, |layout: &Layout| layout.fills(SCALAR), "The chosen scalar.";
 }
 
 fn split<'a, T>(rest: &mut &'a mut [T], rows: usize) -> &'a mut [T] {

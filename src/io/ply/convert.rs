@@ -19,21 +19,13 @@ const OPAQUE: f64 = 0.1;
 /// The constant spherical harmonic, 1 / (2 √π).
 const HARMONIC: f64 = 0.282_094_791_773_878_14;
 
-/// What was dropped, and the bounds of what was kept.
-#[derive(Clone, Copy)]
+/// What was dropped, and whether what was kept is whole.
+#[derive(Clone, Copy, Default)]
 pub(super) struct Tally {
     pub dropped: u64,
     pub transparent: u64,
-    pub min: DVec3,
-    pub max: DVec3,
     /// Whether a normal or a radius is missing.
     pub lacking: bool,
-}
-
-impl Default for Tally {
-    fn default() -> Self {
-        Self { dropped: 0, transparent: 0, min: DVec3::INFINITY, max: DVec3::NEG_INFINITY, lacking: false }
-    }
 }
 
 impl Tally {
@@ -41,8 +33,6 @@ impl Tally {
         Self {
             dropped: self.dropped + other.dropped,
             transparent: self.transparent + other.transparent,
-            min: self.min.min(other.min),
-            max: self.max.max(other.max),
             lacking: self.lacking || other.lacking,
         }
     }
@@ -65,7 +55,7 @@ pub(super) fn convert(block: &Block, layout: &Layout, out: &mut Slices) -> Tally
     }
     shapes(block, layout, out);
     colours(block, layout, out);
-    out.scalar.iter_mut().zip(block.column(SCALAR)).for_each(|(to, value)| *to = *value as f32);
+    out.scalar.iter_mut().zip(block.column(SCALAR)).for_each(|(to, value)| *to = *value);
     // Here, as the entries are still in the cache.
     tally.lacking = !layout.has_normals() || !layout.has_radii();
     tally.lacking |= out.normals.contains(&Vec3::ZERO) || out.radii.contains(&0.0);
@@ -82,7 +72,6 @@ where
         let inside = |coordinate: f64| coordinate.abs() <= LARGEST;
         if inside(position.x) & inside(position.y) & inside(position.z) {
             *to = of(position);
-            (tally.min, tally.max) = (tally.min.min(position), tally.max.max(position));
         } else {
             *to = none;
             tally.dropped += 1;
@@ -91,7 +80,6 @@ where
     if !layout.fills(OPACITY) {
         return tally;
     }
-    // Bounds that hold a little more than is left do no harm.
     for ((to, logit), position) in to.iter_mut().zip(block.column(OPACITY)).zip(block.triples(POSITION)) {
         let opaque = 1.0 / (1.0 + (-logit).exp()) >= OPAQUE;
         if !opaque && position.abs().max_element() <= LARGEST && !position.is_nan() {

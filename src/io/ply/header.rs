@@ -2,6 +2,7 @@
 
 use super::types::{Element, Format, Kind, Property, Scalar};
 use super::{Parsed, shown, sniff};
+use std::collections::HashSet;
 
 /// Longest header, bytes. The longest known ones hold a few hundred properties.
 pub(super) const LIMIT: usize = 1 << 20;
@@ -24,6 +25,7 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Header> {
         return Err(sniff::name(bytes));
     }
     let (mut format, mut elements, mut grid) = (None, Vec::new(), [None; 2]);
+    let mut names = HashSet::new();
     loop {
         let line = lines.next()?;
         let keyword = line.split(u8::is_ascii_whitespace).next().unwrap_or_default();
@@ -34,7 +36,7 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Header> {
                 Ok(())
             }
             b"format" => parse_format(line, &mut format),
-            b"element" => parse_element(line, &mut elements),
+            b"element" => parse_element(line, &mut elements, &mut names),
             b"property" => parse_property(line, &mut elements),
             b"end_header" => break,
             _ => Err(format!(
@@ -90,7 +92,11 @@ fn parse_format(line: &[u8], format: &mut Option<Format>) -> Parsed<()> {
     }
 }
 
-fn parse_element(line: &[u8], elements: &mut Vec<Element>) -> Parsed<()> {
+fn parse_element<'a>(
+    line: &'a [u8],
+    elements: &mut Vec<Element>,
+    names: &mut HashSet<&'a [u8]>,
+) -> Parsed<()> {
     let [_, name, count] = words(line)[..] else {
         return Err("expected `element <name> <count>`".into());
     };
@@ -102,10 +108,10 @@ fn parse_element(line: &[u8], elements: &mut Vec<Element>) -> Parsed<()> {
             shown(count)
         ));
     };
-    let name = String::from_utf8_lossy(name).into_owned();
-    if elements.iter().any(|element| element.name == name) {
-        return Err(format!("a second element {}: rename or remove one", shown(name.as_bytes())));
+    if !names.insert(name) {
+        return Err(format!("a second element {}: rename or remove one", shown(name)));
     }
+    let name = String::from_utf8_lossy(name).into_owned();
     elements.push(Element { name, count, properties: Vec::new() });
     Ok(())
 }
@@ -151,7 +157,7 @@ fn parse_scalar(name: &[u8]) -> Parsed<Scalar> {
 /// Refuses a name that occurs twice in one element: which of the two is meant cannot be known.
 pub(super) fn refuse_duplicates(elements: &[Element]) -> Parsed<()> {
     for element in elements {
-        let mut seen = std::collections::HashSet::new();
+        let mut seen = HashSet::new();
         if let Some(twice) = element.properties.iter().find(|property| !seen.insert(&property.name)) {
             let (element, name) = (shown(element.name.as_bytes()), shown(twice.name.as_bytes()));
             return Err(format!("element {element} has two properties named {name}: rename or remove one"));

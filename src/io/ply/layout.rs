@@ -1,7 +1,7 @@
 //! Which properties of a vertex are understood, and as what.
 
 use super::types::{Element, Kind, Property, Scalar};
-use super::{Parsed, shown};
+use super::{Parsed, listed, shown};
 
 /// Number of columns.
 pub(super) const COLUMNS: usize = SCALAR + 1;
@@ -109,6 +109,8 @@ impl Layout {
             third.into_iter().for_each(|scale| self.fill(AXES + 2, [scale]));
             find.one("opacity").into_iter().for_each(|opacity| self.fill(OPACITY, [opacity]));
             self.shape = Shape::Gaussian(if third.is_some() { 3 } else { 2 });
+            // The scales tell it.
+            self.columns[RADIUS] = None;
         }
     }
 
@@ -184,11 +186,10 @@ impl Finder<'_> {
 
 fn no_scalar(name: &str, properties: &[Property]) -> String {
     let scalars = properties.iter().filter(|property| matches!(property.kind, Kind::Scalar(_)));
-    let names: Vec<_> = scalars.map(|property| shown(property.name.as_bytes())).collect();
     format!(
         "its vertices have no number named {}: choose one of {}",
         shown(name.as_bytes()),
-        names.join(", ")
+        listed(scalars.map(|property| property.name.as_str()))
     )
 }
 
@@ -207,15 +208,12 @@ fn refuse_compressed(properties: &[Property]) -> Parsed<()> {
 
 /// The element whose records are the points.
 pub(super) fn find_vertex(elements: &[Element]) -> Parsed<usize> {
-    elements.iter().position(|element| element.name == "vertex").ok_or_else(|| {
-        let names: Vec<_> = elements.iter().take(8).map(|element| shown(element.name.as_bytes())).collect();
-        match names.is_empty() {
-            true => "it has no elements: give a file with an element `vertex`".into(),
-            false => format!(
-                "it has no element `vertex`, only {}: rename the one that holds the points",
-                names.join(", ")
-            ),
-        }
+    elements.iter().position(|element| element.name == "vertex").ok_or_else(|| match elements.is_empty() {
+        true => "it has no elements: give a file with an element `vertex`".into(),
+        false => format!(
+            "it has no element `vertex`, only {}: rename the one that holds the points",
+            listed(elements.iter().map(|element| element.name.as_str()))
+        ),
     })
 }
 
@@ -265,6 +263,8 @@ mod tests {
         assert_eq!(layout(&gaussian.replace("rot_3", "rot"), Scalar::F32).shape, Shape::Circle);
         assert_eq!(layout("x y z ux uy uz vx vy vz", Scalar::F32).shape, Shape::Axes);
         assert_eq!(layout("x y z ux uy uz vx vy", Scalar::F32).shape, Shape::Circle);
+        assert!(!layout(&format!("{gaussian} radius"), Scalar::F32).uses(9), "its scales are the radius");
+        assert!(layout("x y z ux uy uz vx vy vz radius", Scalar::F32).uses(9));
     }
 
     #[test]
@@ -273,6 +273,9 @@ mod tests {
         assert_eq!(Layout::of(&cloud, Some("quality")).unwrap().columns[SCALAR], Some(3));
         let cause = Layout::of(&cloud, Some("height")).unwrap_err();
         assert!(cause.contains("`height`: choose one of `x`, `y`, `z`, `quality`"), "{cause}");
+        let many: String = (0..50_000).map(|i| format!(" p{i}")).collect();
+        let cause = Layout::of(&vertex(&format!("x y z{many}"), Scalar::F32), Some("height")).unwrap_err();
+        assert!(cause.ends_with("`p3`, `p4` and 49995 more"), "{cause}");
     }
 
     #[test]

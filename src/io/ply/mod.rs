@@ -20,7 +20,7 @@
 //! | `face` | list `vertex_indices` or `vertex_index` | polygons, as fans of triangles |
 //! | `tristrips` | list `vertex_indices` | strips of triangles; −1 begins another |
 //! | `range_grid` | list `vertex_indices` of no vertex or one; `obj_info num_cols`, `num_rows` | triangles between neighbours, where the surface is not torn; [`View::Towards`](crate::geometry::View::Towards) +z |
-//! | `camera` | `view_px view_py view_pz` | [`View::From`](crate::geometry::View::From) |
+//! | `camera` | `view_px view_py view_pz` | [`View::From`](crate::geometry::View::From); all 0, which is what some programs write of any cloud, is not known |
 //!
 //! Triangles are kept only where some point has no normal or no radius, which they can tell. Skipped elements are checked all the same: a
 //! file that ends too early is an error, bytes after its end are counted.
@@ -69,8 +69,8 @@ use std::path::Path;
 /// A file's points and what was made of the file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loaded {
-    /// The points, in the file's order. `origin` is 0 unless the coordinates are more than twice as large as the extent; then it is a round
-    /// number near the middle of their bounds, subtracted in float64.
+    /// The points, in the file's order. `origin` is 0 unless the coordinates are more than twice as large as the extent, a few stray points
+    /// aside; then it is a round number near their middle, subtracted in float64.
     pub cloud: Cloud,
     /// What was read, skipped and dropped.
     pub report: Report,
@@ -101,8 +101,9 @@ pub struct Inspected {
 pub fn inspect(path: &Path, options: &ReadOptions, progress: &dyn Progress) -> Result<Inspected> {
     let (name, source) = (path.display().to_string(), Source::open(path)?);
     let header = parse_header(&source).map_err(|cause| Error::input(name.as_str(), cause))?;
-    let loaded = parse(&source, options, progress).map_err(|cause| Error::input(name, cause));
-    Ok(Inspected { format: header.format, elements: header.elements, loaded })
+    let (format, elements) = (header.format, header.elements.clone());
+    let loaded = parse_records(&source, header, options, progress).map_err(|cause| Error::input(name, cause));
+    Ok(Inspected { format, elements, loaded })
 }
 
 /// Reads the points of a PLY file. The stage of the progress is `reading`, its unit the byte.
@@ -132,7 +133,15 @@ fn parse_header(source: &Source) -> Parsed<Header> {
 }
 
 fn parse(source: &Source, options: &ReadOptions, progress: &dyn Progress) -> Parsed<Loaded> {
-    let header = parse_header(source)?;
+    parse_records(source, parse_header(source)?, options, progress)
+}
+
+fn parse_records(
+    source: &Source,
+    header: Header,
+    options: &ReadOptions,
+    progress: &dyn Progress,
+) -> Parsed<Loaded> {
     header::refuse_duplicates(&header.elements)?;
     let vertex = layout::find_vertex(&header.elements)?;
     let mut layout = Layout::of(&header.elements[vertex], options.scalar.as_deref())?;
@@ -163,6 +172,18 @@ fn report(header: Header, vertex: usize, layout: &Layout, contents: &Contents) -
         trailing: contents.trailing,
         elements: header.elements,
     }
+}
+
+/// Names of a file as they may stand in a message: the first few, and how many more there are.
+fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    const MOST: usize = 8;
+    let mut names = names.map(|name| shown(name.as_bytes()));
+    let mut text = names.by_ref().take(MOST).collect::<Vec<_>>().join(", ");
+    match names.count() {
+        0 => {}
+        more => text += &format!(" and {more} more"),
+    }
+    text
 }
 
 /// Bytes of a file as they may stand in a message: quoted, on one line, not too long.

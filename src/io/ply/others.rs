@@ -68,7 +68,7 @@ impl<'a> Others<'a> {
         Ok(true)
     }
 
-    /// Cells with at most one vertex each. Without columns and rows, only the direction of view is of use.
+    /// Cells with at most one vertex each. A grid whose cells are not as many as its columns and rows is left alone.
     fn range_grid<R: Reader>(&mut self, reader: &mut R, element: &Element, list: usize) -> Parsed<bool> {
         let mut cells = Vec::new();
         self.lists(reader, element, list, |others, corners| {
@@ -81,13 +81,13 @@ impl<'a> Others<'a> {
             }
             cells.push(cell);
         })?;
-        self.view = View::Towards(Vec3::Z);
         let Some(grid) = Grid::new(cells, self.grid) else { return Ok(false) };
+        self.view = View::Towards(Vec3::Z);
         grid.triangulate(self.points, &mut self.collector);
         Ok(true)
     }
 
-    /// Where the camera stood, if there was one camera.
+    /// Where the camera stood, if there was one camera. Exactly 0 is what the Point Cloud Library writes unless it is told otherwise.
     fn camera<R: Reader>(&mut self, reader: &mut R, element: &Element) -> Parsed<bool> {
         let find = |name: &str| {
             let is = |kind| matches!(kind, Kind::Scalar(_));
@@ -102,7 +102,7 @@ impl<'a> Others<'a> {
             Ok(())
         })?;
         let relative = (position - self.points.cloud.origin).as_vec3();
-        let usable = element.count == 1 && relative.is_finite();
+        let usable = element.count == 1 && relative.is_finite() && position != DVec3::ZERO;
         if usable {
             self.view = View::From(relative);
         }

@@ -7,9 +7,16 @@ use crate::geometry::{Cloud, Colours};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
-/// The origin is 0 unless the coordinates are more than this many times larger than the extent; then it is near the middle of the bounds. So
-/// ordinary files keep their coordinates bit by bit, and the error of a position is at most one f32 ulp of the extent.
+/// The origin is 0 unless the coordinates are more than this many times larger than the extent; then it is near the middle. So ordinary
+/// files keep their coordinates bit by bit, and the error of a position is at most one f32 ulp of the extent.
 const FAR: f64 = 2.0;
+
+/// Extent and middle are those of the points between these percentiles of each coordinate: a single stray point, such as a scanner's 0 0 0
+/// where nothing came back, must not cost all others their precision.
+const PERCENTILES: [f64; 2] = [0.01, 0.99];
+
+/// Most points that the percentiles are taken of.
+const SAMPLE: usize = 1 << 12;
 
 /// A file's points, before its faces are looked at.
 pub(super) struct Points {
@@ -35,7 +42,7 @@ impl Points {
             return Err(nothing(count, dropped));
         }
         let map = (dropped.total() > 0).then(|| leave_out(&mut arrays));
-        let cloud = cloud(arrays, &tally);
+        let cloud = cloud(arrays);
         Ok(Self { cloud, dropped, count, map, lacking: tally.lacking })
     }
 
@@ -79,8 +86,8 @@ fn leave_out(arrays: &mut Arrays) -> Vec<u32> {
     kept.iter().map(|kept| place(*kept)).collect()
 }
 
-fn cloud(arrays: Arrays, tally: &Tally) -> Cloud {
-    let origin = origin(tally.min, tally.max);
+fn cloud(arrays: Arrays) -> Cloud {
+    let origin = origin(&arrays);
     let colours = match (arrays.codes.is_empty(), arrays.linear.is_empty()) {
         (false, _) => Some(Colours::Srgb8(arrays.codes)),
         (_, false) => Some(Colours::Linear(arrays.linear)),
@@ -116,7 +123,8 @@ fn positions(mut narrow: Vec<Vec3>, wide: &[DVec3], origin: DVec3) -> Vec<Vec3> 
 
 /// What positions are made relative to. A round number: the power of two next above the extent divides it, so that coordinates which have
 /// been moved by whole metres, say, come back as they were.
-fn origin(min: DVec3, max: DVec3) -> DVec3 {
+fn origin(arrays: &Arrays) -> DVec3 {
+    let [min, max] = usual_box(arrays);
     let largest = min.abs().max(max.abs()).max_element();
     let extent = (max - min).max_element();
     if largest <= FAR * extent {
@@ -125,4 +133,23 @@ fn origin(min: DVec3, max: DVec3) -> DVec3 {
     let middle = 0.5 * min + 0.5 * max;
     let step = 2.0 * extent.log2().floor().exp2();
     if step.is_normal() { (middle / step).round() * step } else { middle }
+}
+
+/// The box between the percentiles; of few points, that of all of them.
+fn usual_box(arrays: &Arrays) -> [DVec3; 2] {
+    let mut points: Vec<DVec3> = match arrays.wide.is_empty() {
+        true => sample(&arrays.narrow).map(|position| position.as_dvec3()).collect(),
+        false => sample(&arrays.wide).copied().collect(),
+    };
+    PERCENTILES.map(|percentile| {
+        let rank = (percentile * points.len().saturating_sub(1) as f64).round() as usize;
+        DVec3::from([0, 1, 2].map(|axis: usize| {
+            points.select_nth_unstable_by(rank, |a, b| a[axis].total_cmp(&b[axis])).1[axis]
+        }))
+    })
+}
+
+/// Evenly spread entries.
+fn sample<T>(all: &[T]) -> impl Iterator<Item = &T> {
+    all.iter().step_by(all.len().div_ceil(SAMPLE).max(1))
 }

@@ -88,7 +88,7 @@ fn range_grids_leave_out_tears() {
         assert!(load(&text(&lines, SQUARE)).cloud.triangles.is_empty());
     }
     let unknown = load(&text(&lines.replace("num_rows 3", "num_rows 4"), &format!("{points}{cells}")));
-    assert_eq!((unknown.cloud.triangles.len(), unknown.cloud.view), (0, View::Towards(Vec3::Z)));
+    assert_eq!((unknown.cloud.triangles.len(), unknown.cloud.view), (0, View::Unknown));
     assert_eq!(unknown.report.skipped_elements, ["range_grid"]);
 }
 
@@ -105,6 +105,7 @@ fn a_camera_tells_from_where_the_points_were_seen() {
     assert_eq!(cloud.view, View::From(Vec3::new(15.0, 5.0, 5.0)));
     assert_eq!(file(2, "1 2 3\n4 5 6\n").view, View::Unknown);
     assert_eq!(file(1, "1 nan 3\n").view, View::Unknown);
+    assert_eq!(file(1, "0 -0 0\n").view, View::Unknown, "some programs write that of any cloud");
 }
 
 #[test]
@@ -139,6 +140,10 @@ fn a_chosen_number_comes_along() {
     let options = ReadOptions { scalar: Some("id".into()) };
     let Loaded { cloud, report } = read_bytes("test.ply", &file, &options).unwrap();
     assert_eq!((cloud.scalar, report.skipped.len()), (Some(vec![7.0]), 0));
+    let time = text(&format!("element vertex 1\n{XYZ}\nproperty double gps_time"), "0 0 0 300000010.0625\n");
+    let options = ReadOptions { scalar: Some("gps_time".into()) };
+    let Loaded { cloud, .. } = read_bytes("test.ply", &time, &options).unwrap();
+    assert_eq!(cloud.scalar, Some(vec![300_000_010.062_5]), "more digits than f32 holds");
     let options = ReadOptions { scalar: Some("height".into()) };
     let cause = read_bytes("test.ply", &file, &options).unwrap_err().to_string();
     assert!(cause.contains("no number named `height`: choose one of `x`, `y`, `z`, `id`"), "{cause}");

@@ -191,6 +191,53 @@ fn large_coordinates_keep_their_fractions() {
 }
 
 #[test]
+fn stray_points_cost_the_others_no_precision() {
+    for (kind, precision) in [("double", 1e-4), ("float", 0.5)] {
+        for stray in [[0.0; 3], [1e9, -1e9, 1e9]] {
+            let header = format!("property {kind} x\nproperty {kind} y\nproperty {kind} z\nend_header\n");
+            let mut bytes =
+                format!("ply\nformat binary_little_endian 1.0\nelement vertex 20001\n{header}").into_bytes();
+            let place = |i: u32| {
+                [500_000.0 + f64::from(i % 100) / 64.0, 4_600_000.0 + f64::from(i / 100) / 64.0, 100.0]
+            };
+            for position in (0..20_000).map(place).chain([stray]) {
+                position.iter().for_each(|x| match kind {
+                    "double" => bytes.extend(x.to_le_bytes()),
+                    _ => bytes.extend((*x as f32).to_le_bytes()),
+                });
+            }
+            let cloud = load(&bytes).cloud;
+            let middle = DVec3::new(500_000.8, 4_600_001.5, 100.0);
+            assert!(cloud.origin.distance(middle) < 4.0, "{kind}, {stray:?}: {}", cloud.origin);
+            for (i, position) in (0..20_000).zip(&cloud.positions) {
+                let apart = (cloud.origin + position.as_dvec3()).distance(place(i).into());
+                assert!(apart < precision, "{kind}, {stray:?}, {i}: {apart}");
+            }
+        }
+    }
+}
+
+#[test]
+fn headers_of_many_names_are_read_at_once() {
+    let start = Instant::now();
+    let many = |line: &str| -> String {
+        (0..).map(|i| line.replace('#', &format!("{i:x}"))).take((1 << 20) / (line.len() + 6)).collect()
+    };
+    let vertex = format!("element vertex 1\n{FLOATS}");
+    let records = [0u8; 28];
+    for elements in [
+        vertex.clone() + &many("element # 0\n"),
+        many("element # 0\n") + &vertex,
+        vertex + "element e 0\n" + &many("property int #\n"),
+    ] {
+        let header = format!("ply\nformat binary_little_endian 1.0\n{elements}end_header\n");
+        let loaded = load(&[header.as_bytes(), &records].concat());
+        assert!(loaded.report.elements.len() > 1 && loaded.cloud.len() == 1);
+    }
+    assert!(start.elapsed() < Duration::from_secs(2), "{:?}", start.elapsed());
+}
+
+#[test]
 fn lying_counts_fail_at_once() {
     let start = Instant::now();
     for format in ["ascii", "binary_little_endian", "binary_big_endian"] {
