@@ -145,7 +145,7 @@ fn merge(parts: Vec<Part>, wanted: &Wanted<'_>) -> Result<(Surfels, Estimated)> 
     for Part { name, cloud } in parts {
         let (surfels, estimated) = estimate(&name, cloud, wanted)?;
         all.push(surfels);
-        total = summary::sum(total, estimated);
+        total = total + estimated;
     }
     let mut surfels = Surfels::merge(all, Settings::default().lighting.albedo)?;
     // One input is sorted already.

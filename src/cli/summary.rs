@@ -1,20 +1,6 @@
-//! Counts of what was estimated, added up and told.
+//! Counts of what was estimated, told.
 
 use surfel::geometry::estimate::Estimated;
-
-/// Both together.
-pub fn sum(a: Estimated, b: Estimated) -> Estimated {
-    Estimated {
-        normals_given: a.normals_given + b.normals_given,
-        normals_from_faces: a.normals_from_faces + b.normals_from_faces,
-        normals_from_neighbours: a.normals_from_neighbours + b.normals_from_neighbours,
-        two_sided: a.two_sided + b.two_sided,
-        radii_given: a.radii_given + b.radii_given,
-        radii_from_faces: a.radii_from_faces + b.radii_from_faces,
-        radii_from_neighbours: a.radii_from_neighbours + b.radii_from_neighbours,
-        outliers: a.outliers + b.outliers,
-    }
-}
 
 /// What was estimated and what was dropped for it; `None` if nothing was.
 pub fn estimated(counts: &Estimated) -> Option<String> {
@@ -62,30 +48,5 @@ mod tests {
         let dropped = Estimated { radii_from_faces: 3, outliers: 1, ..given };
         let line = "radii of 3 points from faces; 1 outliers left out";
         assert_eq!(estimated(&dropped).as_deref(), Some(line));
-    }
-
-    #[test]
-    fn every_count_is_added() {
-        let one = Estimated {
-            normals_given: 1,
-            normals_from_faces: 2,
-            normals_from_neighbours: 3,
-            two_sided: 4,
-            radii_given: 5,
-            radii_from_faces: 6,
-            radii_from_neighbours: 7,
-            outliers: 8,
-        };
-        let two = Estimated {
-            normals_given: 2,
-            normals_from_faces: 4,
-            normals_from_neighbours: 6,
-            two_sided: 8,
-            radii_given: 10,
-            radii_from_faces: 12,
-            radii_from_neighbours: 14,
-            outliers: 16,
-        };
-        assert_eq!(sum(one, one), two);
     }
 }

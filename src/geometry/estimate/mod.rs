@@ -135,3 +135,33 @@ impl Cloud {
         draft.finish(how)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_count_is_added() {
+        let one = Estimated {
+            normals_given: 1,
+            normals_from_faces: 2,
+            normals_from_neighbours: 3,
+            two_sided: 4,
+            radii_given: 5,
+            radii_from_faces: 6,
+            radii_from_neighbours: 7,
+            outliers: 8,
+        };
+        let two = Estimated {
+            normals_given: 2,
+            normals_from_faces: 4,
+            normals_from_neighbours: 6,
+            two_sided: 8,
+            radii_given: 10,
+            radii_from_faces: 12,
+            radii_from_neighbours: 14,
+            outliers: 16,
+        };
+        assert_eq!(one + one, two);
+    }
+}
