@@ -15,6 +15,8 @@ const FAR: f64 = 2.0;
 /// where nothing came back, must not cost all others their precision.
 const PERCENTILES: [f64; 2] = [0.01, 0.99];
 
+/// So many points are a scan.
+const MANY: usize = 100;
 /// Most points that the percentiles are taken of.
 const SAMPLE: usize = 1 << 12;
 
@@ -141,6 +143,10 @@ fn usual_box(arrays: &Arrays) -> [DVec3; 2] {
         true => sample(&arrays.narrow).map(|position| position.as_dvec3()).collect(),
         false => sample(&arrays.wide).copied().collect(),
     };
+    // Scanners write 0 0 0 for many a ray that came back from nothing. Of few points each counts.
+    if points.iter().filter(|point| **point != DVec3::ZERO).count() >= MANY {
+        points.retain(|point| *point != DVec3::ZERO);
+    }
     PERCENTILES.map(|percentile| {
         let rank = (percentile * points.len().saturating_sub(1) as f64).round() as usize;
         DVec3::from([0, 1, 2].map(|axis: usize| {

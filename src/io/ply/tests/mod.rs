@@ -193,14 +193,15 @@ fn large_coordinates_keep_their_fractions() {
 #[test]
 fn stray_points_cost_the_others_no_precision() {
     for (kind, precision) in [("double", 1e-4), ("float", 0.5)] {
-        for stray in [[0.0; 3], [1e9, -1e9, 1e9]] {
+        for (stray, strays) in [([0.0; 3], 1), ([1e9, -1e9, 1e9], 1), ([0.0; 3], 3000)] {
             let header = format!("property {kind} x\nproperty {kind} y\nproperty {kind} z\nend_header\n");
-            let mut bytes =
-                format!("ply\nformat binary_little_endian 1.0\nelement vertex 20001\n{header}").into_bytes();
+            let count = 20_000 + strays;
+            let mut bytes = format!("ply\nformat binary_little_endian 1.0\nelement vertex {count}\n{header}")
+                .into_bytes();
             let place = |i: u32| {
                 [500_000.0 + f64::from(i % 100) / 64.0, 4_600_000.0 + f64::from(i / 100) / 64.0, 100.0]
             };
-            for position in (0..20_000).map(place).chain([stray]) {
+            for position in (0..20_000).map(place).chain(std::iter::repeat_n(stray, strays)) {
                 position.iter().for_each(|x| match kind {
                     "double" => bytes.extend(x.to_le_bytes()),
                     _ => bytes.extend((*x as f32).to_le_bytes()),
