@@ -14,6 +14,7 @@ mod progress;
 mod reference;
 mod render;
 mod report;
+mod scenes;
 mod summary;
 mod times;
 mod values;
@@ -35,6 +36,7 @@ pub fn run() -> ExitCode {
         Command::Info(args) => info::run(&args),
         Command::Convert(args) => convert::run(&args),
         Command::Devices => devices::run(),
+        Command::Scenes => scenes::run(),
     };
     // By now the device is gone, and with it what the layers had to say about its end.
     match done {

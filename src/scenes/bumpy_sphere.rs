@@ -16,7 +16,7 @@ use std::f64::consts::{PI, TAU};
 /// Least distance of the surface from the centre.
 const LEAST: f64 = 0.9;
 /// Greatest distance of the surface from the centre.
-const GREATEST: f64 = 1.1;
+pub(super) const GREATEST: f64 = 1.1;
 /// Disc radius in mean spacings √(area / points).
 const OVERLAP: f64 = 1.5;
 
@@ -46,6 +46,12 @@ fn shape(u: DVec3) -> Shape {
         radius: 1.0 + 0.1 * sin_5theta * sin_5phi,
         slope: 0.5 * cos_5theta * sin_5phi * along_theta + 0.5 * theta_ratio * cos_5phi * along_phi,
     }
+}
+
+/// Distance from the centre in the direction of the unit vector `u`, and its gradient over the unit sphere.
+pub(super) fn radius_and_slope(u: DVec3) -> (f64, DVec3) {
+    let shape = shape(u);
+    (shape.radius, shape.slope)
 }
 
 /// `|p| − r`: negative inside, 0 on the surface, positive outside; and its gradient, which points outwards. `p` is not the centre.

@@ -33,6 +33,8 @@ pub enum Command {
     Convert(Box<Convert>),
     /// Lists the Vulkan devices; * marks the one that is used unless --device names another
     Devices,
+    /// Lists the built-in scenes with their parameters
+    Scenes,
 }
 
 /// Options of `surfel render`.

@@ -1,0 +1,243 @@
+//! Every built-in scene, with its parameters and a camera.
+
+use super::models;
+use super::query::{Parameter, Query, Values};
+use super::surface::Piece;
+use crate::error::Result;
+use crate::geometry::{Bounds, Camera};
+use glam::DVec3;
+
+/// Most points of a scene: what a large machine's memory holds.
+const MOST_POINTS: u64 = 100_000_000;
+
+/// A built-in scene.
+#[derive(Clone, Copy)]
+pub struct Scene {
+    /// Name, `scene:` included.
+    pub name: &'static str,
+    /// What it shows.
+    pub summary: &'static str,
+    /// From where it is best seen.
+    pub viewpoint: Viewpoint,
+    /// Parameters of its surface.
+    pub own: &'static [Parameter],
+    pub(super) build: fn(&Query) -> Vec<Piece>,
+}
+
+/// Where a camera stands and looks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Viewpoint {
+    /// Where it stands.
+    pub eye: [f64; 3],
+    /// Where it looks.
+    pub target: [f64; 3],
+    /// What is up.
+    pub up: [f64; 3],
+    /// Vertical angle of view, degrees.
+    pub fov_y_deg: f64,
+}
+
+impl Viewpoint {
+    /// The camera of a picture of this width / height that shows what lies in `bounds`.
+    pub fn camera(&self, aspect: f64, bounds: &Bounds) -> Result<Camera> {
+        let [eye, target, up] = [self.eye, self.target, self.up].map(DVec3::from);
+        let near = Camera::near_for(eye, bounds);
+        Camera::look_at(eye, target, up, self.fov_y_deg.to_radians(), aspect, near)
+    }
+}
+
+impl Scene {
+    /// Its parameters: those of its samples, then those of its surface.
+    pub fn parameters(&self) -> impl Iterator<Item = &'static Parameter> + use<> {
+        SAMPLING.iter().chain(self.own)
+    }
+}
+
+/// What every scene takes.
+pub const SAMPLING: &[Parameter] = &[
+    Parameter {
+        name: "points",
+        default: "100000",
+        values: Values::Whole(1, MOST_POINTS),
+        meaning: "number of surfels",
+    },
+    Parameter {
+        name: "seed",
+        default: "1",
+        values: Values::Whole(0, u64::MAX),
+        meaning: "seed of the samples",
+    },
+    Parameter {
+        name: "sampler",
+        default: "jittered",
+        values: Values::Choice(&["jittered", "blue-noise", "grid", "scanner"]),
+        meaning: "how the surface is sampled",
+    },
+    Parameter {
+        name: "noise",
+        default: "0",
+        values: Values::Number(0.0, 100.0),
+        meaning: "standard deviation by which surfels are moved along their normals (scanner: along the rays), spacings",
+    },
+    Parameter {
+        name: "scans",
+        default: "3",
+        values: Values::Whole(1, 64),
+        meaning: "scanner: number of places from which it scans",
+    },
+    Parameter {
+        name: "outliers",
+        default: "0",
+        values: Values::Number(0.0, 0.5),
+        meaning: "scanner: part of the surfels that float in front of the surface",
+    },
+];
+
+const fn albedo(default: &'static str) -> Parameter {
+    let values = Values::Choice(&["checker", "stripes", "zone", "noise", "plain"]);
+    Parameter { name: "albedo", default, values, meaning: "texture" }
+}
+
+const fn frequency(default: &'static str) -> Parameter {
+    let meaning = "periods of the texture in a unit of length; of the zone plate at distance 1";
+    Parameter { name: "frequency", default, values: Values::Number(0.0, 1e6), meaning }
+}
+
+const fn number(
+    name: &'static str,
+    default: &'static str,
+    range: [f64; 2],
+    meaning: &'static str,
+) -> Parameter {
+    Parameter { name, default, values: Values::Number(range[0], range[1]), meaning }
+}
+
+const fn whole(
+    name: &'static str,
+    default: &'static str,
+    range: [u64; 2],
+    meaning: &'static str,
+) -> Parameter {
+    Parameter { name, default, values: Values::Whole(range[0], range[1]), meaning }
+}
+
+const fn view(eye: [f64; 3], target: [f64; 3], fov_y_deg: f64) -> Viewpoint {
+    Viewpoint { eye, target, up: [0.0, 1.0, 0.0], fov_y_deg }
+}
+
+/// 3.5 normalize(1, 0.8, 1.6), from where comparisons of the bumpy sphere are made.
+const COMPARISON: [f64; 3] = [1.707_825_127_659_933, 1.366_260_102_127_946_3, 2.732_520_204_255_892_7];
+
+/// Every built-in scene.
+pub fn list() -> &'static [Scene] {
+    SCENES
+}
+
+const SCENES: &[Scene] = &[
+    Scene {
+        name: "scene:bumpy-sphere",
+        summary: "a sphere of radius 1 with bumps",
+        viewpoint: view(COMPARISON, [0.0; 3], 45.0),
+        // 8 / π: 16 fields from pole to pole.
+        own: &[albedo("checker"), frequency("2.5464790894703255")],
+        build: models::bumpy_sphere,
+    },
+    Scene {
+        name: "scene:sphere",
+        summary: "a sphere of radius 1",
+        viewpoint: view(COMPARISON, [0.0; 3], 45.0),
+        own: &[albedo("checker"), frequency("2.5464790894703255")],
+        build: models::sphere,
+    },
+    Scene {
+        name: "scene:torus",
+        summary: "a torus of radius 1",
+        viewpoint: view([1.4, 2.6, 2.4], [0.0; 3], 45.0),
+        own: &[
+            albedo("checker"),
+            frequency("2.5464790894703255"),
+            number("minor", "0.4", [0.01, 0.99], "radius of its tube"),
+        ],
+        build: models::torus,
+    },
+    Scene {
+        name: "scene:plane",
+        summary: "a checkerboard to the horizon, for an eye at height 1 above its middle; denser near that",
+        viewpoint: view([0.0, 1.0, 0.0], [0.0, 0.7, -1.0], 60.0),
+        own: &[albedo("checker"), frequency("0.5"), number("radius", "1000", [1.0, 1e6], "where it ends")],
+        build: models::plane,
+    },
+    Scene {
+        name: "scene:part",
+        summary: "a block with a step, a slot and a bore: sharp edges and corners, convex and concave",
+        viewpoint: view([1.9, 2.0, 3.2], [0.0; 3], 40.0),
+        own: &[albedo("plain"), frequency("4")],
+        build: models::part,
+    },
+    Scene {
+        name: "scene:ribbon",
+        summary: "a twisted ribbon of length 3, open",
+        viewpoint: view([0.8, 1.2, 3.6], [0.0; 3], 45.0),
+        own: &[
+            albedo("checker"),
+            frequency("4"),
+            number("twists", "1.5", [0.0, 20.0], "turns from end to end"),
+            number("width", "0.8", [0.001, 2.0], "width"),
+        ],
+        build: models::ribbon,
+    },
+    Scene {
+        name: "scene:helix",
+        summary: "a tapered tube along a helix",
+        viewpoint: view([1.4, 1.6, 3.0], [0.0; 3], 45.0),
+        own: &[
+            albedo("stripes"),
+            frequency("4"),
+            number("turns", "3", [1.0, 20.0], "turns; the tube is as thick as they allow"),
+        ],
+        build: models::helix,
+    },
+    Scene {
+        name: "scene:slabs",
+        summary: "thin level squares of side 2, close together, each in another colour",
+        viewpoint: view([2.6, 1.4, 3.0], [0.3, -0.1, 0.3], 45.0),
+        own: &[
+            albedo("plain"),
+            frequency("4"),
+            whole("slabs", "3", [1, 32], "how many"),
+            number("gap", "0.02", [1e-6, 1.0], "distance between them"),
+            number("thickness", "0.01", [1e-6, 1.0], "thickness of each"),
+        ],
+        build: models::slabs,
+    },
+    Scene {
+        name: "scene:relief",
+        summary: "a relief, 12 wide, that fills the picture at a grazing angle",
+        viewpoint: view([0.0, 2.07, 7.73], [0.0; 3], 12.0),
+        own: &[
+            albedo("checker"),
+            frequency("2"),
+            number("height", "0.15", [0.0, 0.5], "greatest height above its middle plane"),
+        ],
+        build: models::relief,
+    },
+    Scene {
+        name: "scene:tree",
+        summary: "a tree of tubes with ribbons for leaves",
+        viewpoint: view([1.8, 2.2, 4.6], [0.0, 1.25, 0.0], 40.0),
+        own: &[
+            albedo("plain"),
+            frequency("20"),
+            whole("depth", "3", [0, 5], "how often it forks"),
+            whole("growth", "1", [0, u64::MAX], "seed of its shape"),
+        ],
+        build: models::tree,
+    },
+    Scene {
+        name: "scene:mixed",
+        summary: "a torus for points, a spring and a ribbon for lines, a floor and a box for polygons",
+        viewpoint: view([1.2, 1.7, 3.2], [0.0, 0.4, 0.0], 42.0),
+        own: &[albedo("checker"), frequency("5")],
+        build: models::mixed,
+    },
+];

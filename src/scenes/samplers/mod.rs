@@ -1,0 +1,72 @@
+//! Samplers: surfels of a surface that is known.
+
+mod atlas;
+mod blue_noise;
+mod rows;
+mod scanner;
+
+use super::query::Query;
+use super::random::Random;
+use super::surface::Surface;
+use crate::error::Result;
+use crate::geometry::{Colours, Surfels};
+use atlas::Atlas;
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// Samples that share a sequence of random numbers.
+const CHUNK: usize = 4096;
+/// Streams of random numbers: what displaces the samples is independent of what places them.
+const NOISE_STREAM: u64 = 1 << 40;
+
+/// A surfel in the making.
+struct Draft {
+    position: DVec3,
+    normal: DVec3,
+    albedo: [f64; 3],
+    /// Distance to its neighbours.
+    spacing: f64,
+    /// Radius of the disc that leaves no hole between it and its neighbours.
+    radius: f64,
+    two_sided: bool,
+}
+
+/// The surfels that `query` asks for of `surface`, in no particular order.
+pub fn sample(query: &Query, surface: &dyn Surface) -> Result<Surfels> {
+    let (points, seed) = (query.whole("points") as usize, query.whole("seed"));
+    let mut drafts = match query.word("sampler") {
+        "scanner" => return Ok(surfels(scanner::scan(query, surface)?)),
+        "blue-noise" => blue_noise::sample(&Atlas::new(surface.pieces()), points, seed),
+        "grid" => rows::grid(&Atlas::new(surface.pieces()), points),
+        _ => rows::jittered(&Atlas::new(surface.pieces()), points, seed),
+    };
+    displace(&mut drafts, query.number("noise"), seed);
+    Ok(surfels(drafts))
+}
+
+/// Moves samples along their normals by normally distributed distances; `deviation` is in spacings.
+fn displace(drafts: &mut [Draft], deviation: f64, seed: u64) {
+    if deviation > 0.0 {
+        drafts.par_chunks_mut(CHUNK).enumerate().for_each(|(i, chunk)| {
+            let mut random = Random::new(seed, NOISE_STREAM + i as u64);
+            for draft in chunk {
+                draft.position += deviation * draft.spacing * random.normal() * draft.normal;
+            }
+        });
+    }
+}
+
+fn surfels(drafts: Vec<Draft>) -> Surfels {
+    let two_sided = drafts.iter().any(|draft| draft.two_sided);
+    Surfels {
+        origin: DVec3::ZERO,
+        positions: drafts.par_iter().map(|draft| draft.position.as_vec3()).collect(),
+        normals: drafts.par_iter().map(|draft| draft.normal.as_vec3()).collect(),
+        radii: drafts.par_iter().map(|draft| draft.radius as f32).collect(),
+        ellipses: None,
+        two_sided: two_sided.then(|| drafts.par_iter().map(|draft| draft.two_sided).collect()),
+        colours: Some(Colours::Linear(
+            drafts.par_iter().map(|draft| draft.albedo.map(|channel| channel as f32)).collect(),
+        )),
+    }
+}

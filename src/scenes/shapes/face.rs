@@ -1,0 +1,124 @@
+//! Pieces of planes.
+
+use super::{EDGE, Ray, Sample, Shape, Spot};
+use glam::{DVec2, DVec3};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// The outline of a piece of a plane, in coordinates (a, b) of the plane about its centre.
+#[derive(Clone, Copy, Debug)]
+pub enum Region {
+    /// |a| and |b| at most these.
+    Rectangle([f64; 2]),
+    /// A disc of this radius.
+    Disc(f64),
+    /// The quarter towards +a of a square with a round hole in its middle: `|b| ≤ a ≤ half`, outside of the hole.
+    Collar {
+        /// Half the square's side.
+        half: f64,
+        /// Radius of the hole.
+        hole: f64,
+    },
+}
+
+/// A piece of a plane.
+#[derive(Clone, Copy, Debug)]
+pub struct Face {
+    /// Its coordinates' origin.
+    pub centre: DVec3,
+    /// Unit vectors along a and b, at a right angle; the outer side is that of `axes[0] × axes[1]`.
+    pub axes: [DVec3; 2],
+    /// Its outline.
+    pub region: Region,
+}
+
+impl Face {
+    fn normal(&self) -> DVec3 {
+        self.axes[0].cross(self.axes[1])
+    }
+
+    /// Charts are those of the whole plane, so that textures go on from one face to the next.
+    fn spot(&self, at: DVec2) -> Spot {
+        let position = self.centre + at.x * self.axes[0] + at.y * self.axes[1];
+        let chart = DVec2::new(position.dot(self.axes[0]), position.dot(self.axes[1]));
+        Spot { position, normal: self.normal(), chart }
+    }
+}
+
+impl Region {
+    /// Half the side of a square about the centre that holds the region.
+    fn reach(&self) -> DVec2 {
+        match *self {
+            Self::Rectangle(half) => half.into(),
+            Self::Disc(radius) => DVec2::splat(radius),
+            Self::Collar { half, .. } => DVec2::splat(half),
+        }
+    }
+
+    fn contains(&self, at: DVec2) -> bool {
+        let slack = EDGE * self.reach().max_element();
+        match *self {
+            Self::Rectangle([a, b]) => at.x.abs() <= a + slack && at.y.abs() <= b + slack,
+            Self::Disc(radius) => at.length() <= radius + slack,
+            Self::Collar { half, hole } => {
+                at.y.abs() <= at.x + slack && at.x <= half + slack && at.length() >= hole - slack
+            }
+        }
+    }
+
+    /// The point of (u, v), its derivatives' cross product and the length of that by v.
+    fn at(&self, uv: DVec2) -> (DVec2, f64, f64) {
+        match *self {
+            Self::Rectangle([a, b]) => {
+                (DVec2::new(a * (2.0 * uv.x - 1.0), b * (2.0 * uv.y - 1.0)), 4.0 * a * b, 2.0 * b)
+            }
+            Self::Disc(radius) => {
+                let d = radius * uv.y;
+                (d * DVec2::from_angle(TAU * uv.x), TAU * d * radius, radius)
+            }
+            Self::Collar { half, hole } => {
+                let angle = FRAC_PI_2 * (uv.x - 0.5);
+                let (inner, outer) = (hole * DVec2::from_angle(angle), DVec2::new(half, half * angle.tan()));
+                let turn = FRAC_PI_2 * DVec2::new(-hole * angle.sin(), hole * angle.cos());
+                let slide = FRAC_PI_2 * DVec2::new(0.0, half / angle.cos().powi(2));
+                let (du, dv) = (turn.lerp(slide, uv.y), outer - inner);
+                (inner.lerp(outer, uv.y), du.perp_dot(dv).abs(), dv.length())
+            }
+        }
+    }
+}
+
+impl Shape for Face {
+    fn at(&self, uv: DVec2) -> Sample {
+        let (at, element, along_v) = self.region.at(uv);
+        Sample { spot: self.spot(at), element, along_v }
+    }
+
+    fn trace(&self, ray: &Ray, limit: f64) -> Option<(f64, Spot)> {
+        let normal = self.normal();
+        let t = (self.centre - ray.origin).dot(normal) / ray.direction.dot(normal);
+        let p = ray.at(t) - self.centre;
+        let at = DVec2::new(p.dot(self.axes[0]), p.dot(self.axes[1]));
+        (t > 0.0 && t < limit && self.region.contains(at)).then(|| (t, self.spot(at)))
+    }
+
+    fn corners(&self) -> [DVec3; 2] {
+        let reach = self.region.reach();
+        let half = self.axes[0].abs() * reach.x + self.axes[1].abs() * reach.y;
+        [self.centre - half, self.centre + half]
+    }
+
+    fn cells(&self) -> [usize; 2] {
+        match self.region {
+            Region::Rectangle(_) => [1, 1],
+            _ => [32, 32],
+        }
+    }
+
+    fn area(&self) -> f64 {
+        match self.region {
+            Region::Rectangle([a, b]) => 4.0 * a * b,
+            Region::Disc(radius) => PI * radius * radius,
+            Region::Collar { half, hole } => half * half - 0.25 * PI * hole * hole,
+        }
+    }
+}

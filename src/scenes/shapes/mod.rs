@@ -1,0 +1,121 @@
+//! Shapes: parametrised for sampling, and met by rays; one definition serves both.
+
+mod bumpy;
+mod curve;
+mod cylinder;
+mod face;
+mod ground;
+mod patch;
+mod polynomial;
+mod relief;
+mod ribbon;
+mod sphere;
+mod torus;
+mod tube;
+
+pub use bumpy::Bumpy;
+pub use curve::Curve;
+pub use cylinder::Cylinder;
+pub use face::{Face, Region};
+pub use ground::Ground;
+pub use patch::Patch;
+pub use relief::Relief;
+pub use ribbon::Ribbon;
+pub use sphere::Sphere;
+pub use torus::Torus;
+pub use tube::Tube;
+
+use glam::{DVec2, DVec3};
+
+/// How far beyond its border a trimmed shape is met, as a part of its size: shapes that share an edge leave no slit.
+const EDGE: f64 = 1e-12;
+
+/// A ray whose origin is near the shapes.
+#[derive(Clone, Copy, Debug)]
+pub struct Ray {
+    /// Where it begins.
+    pub origin: DVec3,
+    /// Unit vector.
+    pub direction: DVec3,
+}
+
+impl Ray {
+    /// The point at distance `t`.
+    pub fn at(&self, t: f64) -> DVec3 {
+        self.origin + t * self.direction
+    }
+
+    /// The ray's parameter nearest to `centre`, and the point there relative to `centre`.
+    fn foot(&self, centre: DVec3) -> (f64, DVec3) {
+        let t = (centre - self.origin).dot(self.direction);
+        (t, self.at(t) - centre)
+    }
+}
+
+/// A point of a shape.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spot {
+    /// Where it is.
+    pub position: DVec3,
+    /// Unit normal of the outer side.
+    pub normal: DVec3,
+    /// Coordinates on the shape for textures, in lengths as far as the shape can be unrolled.
+    pub chart: DVec2,
+}
+
+/// A point of a shape, by its parameters.
+#[derive(Clone, Copy, Debug)]
+pub struct Sample {
+    /// The point.
+    pub spot: Spot,
+    /// |∂P/∂u × ∂P/∂v|.
+    pub element: f64,
+    /// |∂P/∂v|.
+    pub along_v: f64,
+}
+
+/// A piece of surface with parameters (u, v) in the unit square.
+pub trait Shape: Send + Sync {
+    /// The point of a pair of parameters.
+    fn at(&self, uv: DVec2) -> Sample;
+
+    /// The nearest point that the ray meets at a distance above 0 and below `limit`.
+    fn trace(&self, ray: &Ray, limit: f64) -> Option<(f64, Spot)>;
+
+    /// Least and greatest coordinates.
+    fn corners(&self) -> [DVec3; 2];
+
+    /// Into how many cells of u and of v the samplers divide the shape, so that the area element varies little in each.
+    fn cells(&self) -> [usize; 2] {
+        [32, 32]
+    }
+
+    /// Area: by default the integral of the element over the cells, by Gauss's rule of three points.
+    fn area(&self) -> f64 {
+        let size = self.cells();
+        let cells = (0..size[0] * size[1]).map(|i| [i % size[0], i / size[0]]);
+        cells.map(|cell| integrate(cell, size, |uv| self.at(uv).element)).sum()
+    }
+
+    /// Where `position` is in the space in which samples are spread evenly, and the ratio of a length at `position` to its length
+    /// there. Unless a shape wants other densities, the same space.
+    fn place(&self, position: DVec3) -> (DVec3, f64) {
+        (position, 1.0)
+    }
+}
+
+/// The integral of `f` over a cell of the unit square, by Gauss's rule of three points.
+pub fn integrate(cell: [usize; 2], size: [usize; 2], f: impl Fn(DVec2) -> f64) -> f64 {
+    let node = 0.5 * 0.6f64.sqrt();
+    let nodes = [(0.5 - node, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.5 + node, 5.0 / 18.0)];
+    let size = DVec2::new(size[0] as f64, size[1] as f64);
+    let corner = DVec2::new(cell[0] as f64, cell[1] as f64);
+    let rows = nodes.iter().flat_map(|v| nodes.iter().map(move |u| (DVec2::new(u.0, v.0), u.1 * v.1)));
+    rows.map(|(at, weight)| weight * f((corner + at) / size)).sum::<f64>() / (size.x * size.y)
+}
+
+/// The first of two distances, in ascending order, that lies above 0 and below `limit` and is accepted.
+fn first<T>(pair: [f64; 2], limit: f64, accept: impl Fn(f64) -> Option<T>) -> Option<(f64, T)> {
+    let inside = pair.into_iter().filter(|t| *t > 0.0 && *t < limit);
+    inside.filter_map(|t| Some((t, accept(t)?))).next()
+}

@@ -1,0 +1,1 @@
+//! Every scene, traced and sampled, against what is known of it otherwise.
