@@ -155,7 +155,8 @@ const SCENES: &[Scene] = &[
         viewpoint: view([1.4, 2.6, 2.4], [0.0; 3], 45.0),
         own: &[
             albedo("checker"),
-            frequency("2.5464790894703255"),
+            // 15 / 2π: 15 periods around the axis, 6 around the tube.
+            frequency("2.3873241463784303"),
             number("minor", "0.4", [0.01, 0.99], "radius of its tube"),
         ],
         build: models::torus,
@@ -200,7 +201,7 @@ const SCENES: &[Scene] = &[
     Scene {
         name: "scene:slabs",
         summary: "thin level squares of side 2, close together, each in another colour",
-        viewpoint: view([2.6, 1.4, 3.0], [0.3, -0.1, 0.3], 45.0),
+        viewpoint: view([2.6, 1.4, 3.0], [0.3, -0.05, 0.3], 48.0),
         own: &[
             albedo("plain"),
             frequency("4"),
@@ -224,7 +225,7 @@ const SCENES: &[Scene] = &[
     Scene {
         name: "scene:tree",
         summary: "a tree of tubes with ribbons for leaves",
-        viewpoint: view([1.8, 2.2, 4.6], [0.0, 1.25, 0.0], 40.0),
+        viewpoint: view([1.8, 2.2, 4.6], [0.0, 1.15, 0.0], 32.0),
         own: &[
             albedo("plain"),
             frequency("20"),
@@ -236,7 +237,7 @@ const SCENES: &[Scene] = &[
     Scene {
         name: "scene:mixed",
         summary: "a torus for points, a spring and a ribbon for lines, a floor and a box for polygons",
-        viewpoint: view([1.2, 1.7, 3.2], [0.0, 0.4, 0.0], 42.0),
+        viewpoint: view([1.2, 1.9, 3.6], [-0.1, 0.4, 0.0], 43.0),
         own: &[albedo("checker"), frequency("5")],
         build: models::mixed,
     },

@@ -9,3 +9,4 @@ mod program;
 mod render;
 mod report;
 mod scans;
+mod scenes;

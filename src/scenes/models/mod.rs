@@ -10,6 +10,12 @@ pub use part::part;
 pub use slabs::slabs;
 pub use tree::tree;
 
+#[cfg(test)]
+pub mod outline {
+    //! What the part is cut from.
+    pub use super::part::{BORE, BORE_RADIUS, DEPTH, PROFILE};
+}
+
 use super::query::Query;
 use super::shapes::{Bumpy, Curve, Face, Ground, Patch, Region, Relief, Ribbon, Shape, Sphere, Torus, Tube};
 use super::surface::{Kind, Piece};

@@ -88,6 +88,7 @@ pub fn draft(piece: &Piece, sample: &Sample, spacing: f64, radius: f64) -> Draft
         albedo: piece.texture.at(&sample.spot),
         spacing: spacing * scale,
         radius: radius * scale,
+        ellipse: None,
         two_sided: piece.is_two_sided(),
     }
 }

@@ -20,6 +20,8 @@ const PATIENCE: usize = 6;
 const SHRINK: f64 = 0.97;
 /// Least distance below which nothing is promised: far more rounds than any surface takes.
 const NARROWEST: f64 = 0.1;
+/// Chunks of darts that are drawn together, whatever the number of threads.
+const BATCH: usize = 16;
 /// Disc radius, in spacings.
 const RADIUS: f64 = 1.25;
 /// Cosine of the angle between normals from which points are of opposite sides, and not kept apart.
@@ -51,16 +53,17 @@ pub fn sample(atlas: &Atlas, points: usize, seed: u64) -> Vec<Draft> {
     let spacing = atlas.spacing(points);
     let mut board = Board::new(points, 2.0 * WIDEST * spacing);
     let mut drafts = Vec::with_capacity(points);
-    // Chunks of a batch are drawn together, whatever the number of threads.
-    const BATCH: usize = 16;
+    let size = (points / (2 * BATCH)).clamp(1, CHUNK);
     for batch in 0.. {
-        let thrown = batch * BATCH * CHUNK;
+        let thrown = batch * BATCH * size;
         let rounds = (thrown / points).saturating_sub(PATIENCE);
         let distance = spacing * (WIDEST * SHRINK.powi(rounds.min(1000) as i32));
         let distance = if distance < NARROWEST * spacing { 0.0 } else { distance };
         let draw = |chunk: usize| {
             let mut random = Random::new(seed, (batch * BATCH + chunk) as u64);
-            (0..CHUNK).map(|_| atlas.draw(&mut random)).collect::<Vec<_>>()
+            let darts = (0..size).map(|_| atlas.draw(&mut random));
+            // Most are lost to darts of earlier batches, which all threads can see at once.
+            darts.filter(|(piece, sample)| board.is_free(&dart(piece, sample), distance)).collect::<Vec<_>>()
         };
         let drawn: Vec<(&Piece, Sample)> = (0..BATCH).into_par_iter().flat_map_iter(draw).collect();
         for (piece, sample) in drawn {
@@ -90,15 +93,20 @@ impl Board {
         }
     }
 
+    /// Whether no dart is nearer than `distance`.
+    fn is_free(&self, dart: &Dart, distance: f64) -> bool {
+        let corner = (dart.place / self.side - 0.5).floor().as_i64vec3();
+        let near = |i: i64| corner + I64Vec3::new(i & 1, i >> 1 & 1, i >> 2);
+        !(0..8).any(|i| self.is_taken(near(i), dart, distance))
+    }
+
     /// Adds the dart if none is nearer than `distance`.
     fn hit(&mut self, dart: Dart, distance: f64) -> bool {
-        let at = dart.place / self.side;
-        let corner = (at - 0.5).floor().as_i64vec3();
-        let near = |i: i64| corner + I64Vec3::new(i & 1, i >> 1 & 1, i >> 2);
-        if (0..8).any(|i| self.is_taken(near(i), &dart, distance)) {
+        if !self.is_free(&dart, distance) {
             return false;
         }
-        let (slot, index) = (self.slot(at.floor().as_i64vec3()), self.darts.len() as u32);
+        let cube = (dart.place / self.side).floor().as_i64vec3();
+        let (slot, index) = (self.slot(cube), self.darts.len() as u32);
         self.darts.push(dart);
         self.before.push(self.last[slot]);
         self.last[slot] = index;

@@ -9,7 +9,7 @@ use super::query::Query;
 use super::random::Random;
 use super::surface::Surface;
 use crate::error::Result;
-use crate::geometry::{Colours, Surfels};
+use crate::geometry::{Colours, Ellipse, Surfels};
 use atlas::Atlas;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -26,8 +26,10 @@ struct Draft {
     albedo: [f64; 3],
     /// Distance to its neighbours.
     spacing: f64,
-    /// Radius of the disc that leaves no hole between it and its neighbours.
+    /// Radius of the disc that leaves no hole between it and its neighbours; of an ellipse, the longer semi-axis.
     radius: f64,
+    /// The shape of an elliptical disc.
+    ellipse: Option<Ellipse>,
     two_sided: bool,
 }
 
@@ -58,12 +60,14 @@ fn displace(drafts: &mut [Draft], deviation: f64, seed: u64) {
 
 fn surfels(drafts: Vec<Draft>) -> Surfels {
     let two_sided = drafts.iter().any(|draft| draft.two_sided);
+    let elliptical = drafts.iter().any(|draft| draft.ellipse.is_some());
+    let ellipse = |draft: &Draft| draft.ellipse.unwrap_or_else(|| Ellipse::circle(draft.normal.as_vec3()));
     Surfels {
         origin: DVec3::ZERO,
         positions: drafts.par_iter().map(|draft| draft.position.as_vec3()).collect(),
         normals: drafts.par_iter().map(|draft| draft.normal.as_vec3()).collect(),
         radii: drafts.par_iter().map(|draft| draft.radius as f32).collect(),
-        ellipses: None,
+        ellipses: elliptical.then(|| drafts.par_iter().map(ellipse).collect()),
         two_sided: two_sided.then(|| drafts.par_iter().map(|draft| draft.two_sided).collect()),
         colours: Some(Colours::Linear(
             drafts.par_iter().map(|draft| draft.albedo.map(|channel| channel as f32)).collect(),

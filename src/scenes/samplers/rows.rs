@@ -88,10 +88,6 @@ fn rows(atlas: &Atlas, points: usize) -> Vec<Row> {
         }
         area += whole;
     }
-    // Rounding of the sums may leave out the last point.
-    if let Some(last) = rows.iter_mut().rfind(|row| row.count > 0 || row.first == 0) {
-        last.count += points - first;
-    }
     rows
 }
 

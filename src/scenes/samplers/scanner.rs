@@ -2,6 +2,7 @@
 
 use super::Draft;
 use crate::error::{Error, Result};
+use crate::geometry::Ellipse;
 use crate::scenes::query::Query;
 use crate::scenes::random::Random;
 use crate::scenes::surface::{Hit, Surface};
@@ -11,8 +12,8 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Cosine of the angle of incidence below which nothing comes back.
 const GRAZING: f64 = 0.05;
-/// Disc radius in half diagonals of the rectangle that a sample stands for.
-const OVERLAP: f64 = 1.25;
+/// Disc radius across the ray, in spacings: half a square's diagonal and a quarter more.
+const OVERLAP: f64 = 0.9;
 /// How many more points are scanned than wanted, so that the last attempt has enough.
 const SURPLUS: f64 = 1.02;
 /// Rays of the first, coarse scan from each place.
@@ -119,18 +120,28 @@ impl Scanner {
     }
 }
 
-/// The surfel of an echo. Noise is along the ray, in spacings; an outlier is somewhere between the scanner and what it met.
+/// The surfel of an echo: a disc that the scanner sees as a circle. Noise is along the ray, in spacings; an outlier is somewhere between the scanner and what it met.
 fn draft(echo: &Echo, step: f64, noise: f64, outliers: f64, random: &mut Random) -> Draft {
-    let (spacing, towards) = (step * echo.hit.t, echo.hit.normal.dot(echo.direction));
+    let towards = echo.hit.normal.dot(echo.direction);
     let is_outlier = random.unit() < outliers;
     let (place, error) = (random.unit(), random.normal());
-    let t = if is_outlier { echo.hit.t * (0.3 + 0.7 * place) } else { echo.hit.t + noise * spacing * error };
+    let t =
+        if is_outlier { echo.hit.t * (0.7 + 0.3 * place) } else { echo.hit.t * (1.0 + noise * step * error) };
+    let spacing = step * t;
     Draft {
         position: echo.at + t * echo.direction,
         normal: echo.hit.normal,
         albedo: echo.hit.albedo,
         spacing,
-        radius: OVERLAP * 0.5 * spacing * 1f64.hypot(towards.recip()),
+        radius: OVERLAP * spacing / towards.abs(),
+        ellipse: Some(ellipse(echo, towards)),
         two_sided: towards > 0.0,
     }
+}
+
+/// Longer along the ray's direction on the surface, where samples are as much further apart.
+fn ellipse(echo: &Echo, towards: f64) -> Ellipse {
+    let along = (echo.direction - towards * echo.hit.normal).as_vec3();
+    let circle = Ellipse::circle(echo.hit.normal.as_vec3());
+    Ellipse { major: along.try_normalize().unwrap_or(circle.major), aspect: towards.abs() as f32 }
 }

@@ -4,7 +4,7 @@ use super::sphere::{angles, direction};
 use super::{Ray, Sample, Shape, Spot};
 use crate::scenes::bumpy_sphere::{self, GREATEST};
 use glam::{DVec2, DVec3};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// The [bumpy sphere](bumpy_sphere); u is the azimuth from +x towards +z, v the polar angle from +y.
 #[derive(Clone, Copy, Debug)]
@@ -21,7 +21,8 @@ impl Shape for Bumpy {
             chart: DVec2::new(TAU * uv.x, theta),
         };
         let element = TAU * PI * theta.sin() * radius * radius.hypot(slope.length());
-        Sample { spot, element, along_v: PI * radius.hypot(slope.length()) }
+        let along_theta = slope.dot(direction(theta + FRAC_PI_2, TAU * uv.x));
+        Sample { spot, element, along_v: PI * radius.hypot(along_theta) }
     }
 
     fn trace(&self, ray: &Ray, limit: f64) -> Option<(f64, Spot)> {

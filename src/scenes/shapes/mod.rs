@@ -19,6 +19,8 @@ pub use cylinder::Cylinder;
 pub use face::{Face, Region};
 pub use ground::Ground;
 pub use patch::Patch;
+#[cfg(test)]
+pub use patch::{Jet, Parametric};
 pub use relief::Relief;
 pub use ribbon::Ribbon;
 pub use sphere::Sphere;
