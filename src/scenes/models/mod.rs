@@ -1,7 +1,7 @@
 //! What each scene is made of.
 
 mod mixed;
-mod part;
+pub mod part;
 mod slabs;
 mod tree;
 
@@ -9,12 +9,6 @@ pub use mixed::mixed;
 pub use part::part;
 pub use slabs::slabs;
 pub use tree::tree;
-
-#[cfg(test)]
-pub mod outline {
-    //! What the part is cut from.
-    pub use super::part::{BORE, BORE_RADIUS, DEPTH, PROFILE};
-}
 
 use super::query::Query;
 use super::shapes::{Bumpy, Curve, Face, Ground, Patch, Region, Relief, Ribbon, Shape, Sphere, Torus, Tube};

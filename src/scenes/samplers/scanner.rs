@@ -6,7 +6,7 @@ use crate::geometry::Ellipse;
 use crate::scenes::query::Query;
 use crate::scenes::random::Random;
 use crate::scenes::surface::{Hit, Surface};
-use glam::{DVec2, DVec3};
+use glam::{DQuat, DVec2, DVec3};
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -72,7 +72,7 @@ fn scanners(query: &Query, surface: &dyn Surface, random: &mut Random) -> Vec<Sc
     let centre = bounds.centre();
     let from = DVec3::from(query.scene.viewpoint.eye) - centre;
     let place = |i: u64| {
-        let at = centre + DVec3::from(glam::DQuat::from_rotation_y(TAU * i as f64 / count as f64) * from);
+        let at = centre + DQuat::from_rotation_y(TAU * i as f64 / count as f64) * from;
         let distance = (centre - at).length();
         let forward = (centre - at).normalize_or(DVec3::X);
         // A scanner above what it scans, or among it, looks all around.

@@ -84,7 +84,7 @@ fn areas_are_those_of_closed_forms() {
 
 /// By the shoelace formula and the outline's length.
 fn part_area() -> f64 {
-    use crate::scenes::models::outline::{BORE_RADIUS, DEPTH, PROFILE};
+    use crate::scenes::models::part::{BORE_RADIUS, DEPTH, PROFILE};
     let next = |i: usize| PROFILE[(i + 1) % PROFILE.len()];
     let pairs = (0..PROFILE.len()).map(|i| (PROFILE[i], next(i)));
     let front: f64 = pairs.clone().map(|(a, b)| 0.5 * (a[0] * b[1] - a[1] * b[0])).sum();

@@ -3,7 +3,7 @@
 use super::super::random::Random;
 use super::super::shapes::{Jet, Parametric, Patch, Ray, Shape, Torus};
 use super::{points, scenes, vector};
-use crate::scenes::models::outline::{BORE, BORE_RADIUS, DEPTH};
+use crate::scenes::models::part::{BORE, BORE_RADIUS, DEPTH};
 use crate::scenes::{self, Surface};
 use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
