@@ -220,8 +220,11 @@ fn rays_may_be_of_any_length_from_anywhere() {
 fn the_horizon_is_where_the_plane_ends() {
     let plane = scenes::surface("scene:plane?radius=500").unwrap();
     let eye = DVec3::Y;
-    let at = |distance: f64| plane.trace(eye, DVec3::new(0.0, -1.0 / distance, -1.0));
-    assert!((at(499.9).unwrap().position.z + 499.9).abs() < 1e-9);
-    assert!(at(500.1).is_none() && plane.trace(eye, DVec3::NEG_Z).is_none());
+    // Aslant, so that it is the disc which ends and not the box around it.
+    let aslant = DVec3::new(0.8, 0.0, -0.6);
+    let along = |level: DVec3, distance: f64| plane.trace(eye, level - DVec3::Y / distance);
+    assert!((along(aslant, 499.9).unwrap().position.length() - 499.9).abs() < 1e-9);
+    assert!(along(aslant, 500.1).is_none() && plane.trace(eye, aslant).is_none());
+    let at = |distance: f64| along(DVec3::NEG_Z, distance);
     assert_ne!(at(10.4).unwrap().albedo, at(11.4).unwrap().albedo);
 }
