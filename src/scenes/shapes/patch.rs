@@ -1,4 +1,4 @@
-//! Rays against any smooth parametrised surface, with proof that no crossing is passed over.
+//! Rays against any smooth parametrised surface: no crossing is passed over where the bounds of its second derivatives hold.
 //!
 //! The surface is divided into cells in (u, v). In a cell with half sides h about its middle, Taylor's formula with a bound of the
 //! second derivatives encloses the surface, seen along the ray, in the image of the tangent plane widened by a remainder. A part that the
