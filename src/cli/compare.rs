@@ -24,9 +24,8 @@ pub fn run(args: &Compare) -> Result<Vec<String>> {
     let limits = args.fail_above.iter().chain(&args.fail_below);
     let violations: Vec<_> =
         limits.filter_map(|limit| limit.violation(&measured).transpose()).collect::<Result<_>>()?;
-    match &args.json {
-        Some(place) => files::write_text(place, &report(args, &pair, &measured, &violations)?)?,
-        None => {}
+    if let Some(place) = &args.json {
+        files::write_text(place, &report(args, &pair, &measured, &violations)?)?;
     }
     if !args.quiet && args.json.as_ref().is_none_or(|place| place != "-") {
         files::print(&table(&measured))?;
