@@ -11,8 +11,9 @@ use crate::geometry::ColourMap;
 use crate::io::image::Encoded;
 use nv_flip::FlipImageRgb8;
 
-/// Pixels per degree of visual angle unless others are given: the authors' choice, a 0.7 m wide screen of 3840 px seen from 0.7 m.
-pub const PIXELS_PER_DEGREE: f32 = nv_flip::DEFAULT_PIXELS_PER_DEGREE;
+/// Pixels per degree of visual angle unless others are given: the authors' choice, a screen of 3840 px and 0.7 m seen from 0.7 m; they
+/// call it 67.
+pub const PIXELS_PER_DEGREE: f32 = (3840.0 * std::f64::consts::PI / 180.0) as f32;
 
 /// Smallest and largest pixels per degree that are taken: the program's filters are a few degrees wide, and their cost grows with it.
 pub const RANGE: [f32; 2] = [1.0, 1000.0];
@@ -86,7 +87,11 @@ mod tests {
     }
 
     fn stripes(offset: u32) -> Vec<[f64; 3]> {
-        image(|x, y| if (x + offset) / 6 % 2 == 0 { [0.9, 0.4, f64::from(y) / 40.0] } else { [0.1; 3] })
+        image(
+            |x, y| {
+                if ((x + offset) / 6).is_multiple_of(2) { [0.9, 0.4, f64::from(y) / 40.0] } else { [0.1; 3] }
+            },
+        )
     }
 
     #[test]
@@ -96,6 +101,16 @@ mod tests {
         let shifted = of(&stripes(1), &stripes(0));
         assert!(shifted.mean() > 0.1 && shifted.max() > 0.3, "{} {}", shifted.mean(), shifted.max());
         assert!(shifted.mean() < of(&stripes(3), &stripes(0)).mean());
+    }
+
+    #[test]
+    fn structure_is_as_the_authors_compute_it() {
+        // By their Python package, flip-evaluator 1.7.
+        for (offset, mean, max) in [(1, 0.410_390, 0.977_773), (3, 0.703_570, 0.979_717)] {
+            let found = of(&stripes(offset), &stripes(0));
+            assert!((found.mean() - mean).abs() < 2e-5, "{offset}: {}", found.mean());
+            assert!((found.max() - max).abs() < 2e-5, "{offset}: {}", found.max());
+        }
     }
 
     #[test]

@@ -60,6 +60,7 @@ mod tests {
         assert_eq!(of(&["####", "####"]), [8, 1, 8]);
         // Corners connect, and the end of a row does not touch the beginning of the next.
         assert_eq!(of(&["#..#", ".#..", "...#", "#..#"]), [6, 4, 2]);
+        assert_eq!(of(&[".#", "#."]), [2, 1, 2]);
         assert_eq!(of(&["#.#.#"]), [3, 3, 1]);
         assert_eq!(of(&["#", "#", ".", "#"]), [3, 2, 2]);
         assert_eq!(of(&["###.", "#.#.", "###."]), [8, 1, 8]);
