@@ -15,10 +15,10 @@ pub struct Compare {
     /// The truth: a file of the same size
     #[arg(value_name = "B")]
     pub truth: OsString,
-    /// Exits with 4 if METRIC is above VALUE, for example flip=0.05; for metrics of which less is better, any number of times
+    /// Exits with 4 if METRIC, of which less is better, is above VALUE, for example flip=0.05; the table names the metrics. May be given several times
     #[arg(long, value_name = "METRIC=VALUE", value_parser = above)]
     pub fail_above: Vec<Limit>,
-    /// Exits with 4 if METRIC is below VALUE, for example ssim=0.98; for metrics of which more is better, any number of times
+    /// Exits with 4 if METRIC, of which more is better, is below VALUE, for example ssim=0.98. May be given several times
     #[arg(long, value_name = "METRIC=VALUE", value_parser = below)]
     pub fail_below: Vec<Limit>,
     /// Writes FLIP's error map: black where nothing differs, through red to pale yellow where most does
