@@ -18,6 +18,7 @@
 //! | [`methods`] | one file a method: its paper and its passes |
 //! | [`renderer`] | frames: make ready, record, submit, read back |
 //! | [`reference`](mod@reference) | the float64 twin of every pass, on the CPU; judges pictures |
+//! | [`metrics`] | how far a picture is from the truth |
 //! | [`vk`] | the layer over raw Vulkan |
 //!
 //! ```no_run
@@ -44,6 +45,7 @@ mod frame;
 pub mod geometry;
 pub mod io;
 pub mod methods;
+pub mod metrics;
 pub mod passes;
 pub mod picture;
 mod progress;

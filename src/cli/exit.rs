@@ -9,6 +9,8 @@ const DATA: u8 = 1;
 const USAGE: u8 = 2;
 /// No usable Vulkan device, or no validation layer where one is asked for.
 const NO_DEVICE: u8 = 3;
+/// A picture is not as good as the command line demands.
+const VIOLATED: u8 = 4;
 /// The device was lost.
 const LOST: u8 = 5;
 /// The validation layers found something: what BSD calls an internal error of the software.
@@ -31,6 +33,12 @@ pub fn of_messages(count: usize) -> ExitCode {
             ExitCode::from(INVALID)
         }
     }
+}
+
+/// Says which limits were crossed; there is at least one.
+pub fn of_violations(violations: &[String]) -> ExitCode {
+    say(&violations.join("; "));
+    ExitCode::from(VIOLATED)
 }
 
 /// Shows the help that was asked for, or says in one line what is wrong with the arguments.

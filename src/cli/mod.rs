@@ -3,13 +3,16 @@
 mod args;
 mod camera;
 mod colouring;
+mod compare;
 mod convert;
 mod devices;
 mod exit;
 mod files;
 mod info;
 mod inputs;
+mod limits;
 mod log;
+mod number;
 mod progress;
 mod reference;
 mod render;
@@ -35,6 +38,10 @@ pub fn run() -> ExitCode {
         Command::Render(args) => render::run(&args),
         Command::Info(args) => info::run(&args),
         Command::Convert(args) => convert::run(&args),
+        Command::Compare(args) => match compare::run(&args) {
+            Ok(violations) if !violations.is_empty() => return exit::of_violations(&violations),
+            compared => compared.map(drop),
+        },
         Command::Devices => devices::run(),
         Command::Scenes => scenes::run(),
     };

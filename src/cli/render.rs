@@ -11,7 +11,7 @@ use surfel::geometry::{Camera, Surfels};
 use surfel::io::colour_bar::ColourBar;
 use surfel::io::image::{Encoded, Output, write};
 use surfel::settings::Shading;
-use surfel::{Error, Picture, Progress, Result, Settings, SplatCounts};
+use surfel::{Error, Outputs, Picture, Progress, Result, Settings, SplatCounts};
 
 /// What is to be rendered, wherever that happens.
 pub struct Task<'a> {
@@ -23,6 +23,8 @@ pub struct Task<'a> {
     pub settings: Settings,
     /// Width and height, px.
     pub size: [u32; 2],
+    /// Images that are written beside it.
+    pub layers: Outputs,
     /// How many times; at least once.
     pub frames: u32,
     /// Is told how far it has come.
@@ -64,11 +66,14 @@ pub fn run(args: &Render) -> Result<()> {
     let bounds = loaded.surfels.bounds().ok_or_else(|| Error::Usage("the inputs hold no points".into()))?;
     let camera = camera::make(&args.camera, file, &bounds, args.size)?;
     let (surfels, size, frames) = (&loaded.surfels, args.size, args.frames);
-    let task = Task { surfels, camera, settings, size, frames, progress: &*bars };
-    let outcome = match args.place.reference {
+    let task = Task { surfels, camera, settings, size, layers: args.outputs(), frames, progress: &*bars };
+    let mut outcome = match args.place.reference {
         true => reference::render(&task)?,
         false => vulkan::render(&task, &device, args.place.half, args.json.is_some() || args.times)?,
     };
+    if !out.is_png() {
+        keep_layers(&mut outcome.picture, task.layers);
+    }
     let bar = loaded.coloured.as_ref().filter(|_| args.color_bar).and_then(Coloured::bar);
     save(&outcome.picture, task.settings.shading, bar.as_ref(), &out)?;
     if let Some(place) = &args.json {
@@ -84,6 +89,12 @@ fn save(picture: &Picture, shading: Shading, bar: Option<&ColourBar>, out: &Outp
     let mut encoded = Encoded::of(picture, shading)?;
     bar.draw(&mut encoded)?;
     encoded.write_png(out)
+}
+
+/// Leaves out of a picture what was not asked for.
+fn keep_layers(picture: &mut Picture, layers: Outputs) {
+    picture.normal.take_if(|_| !layers.normal);
+    picture.depth.take_if(|_| !layers.depth);
 }
 
 /// Refuses colours that would not be seen, and a bar where there is no place or nothing to tell.
@@ -128,6 +139,9 @@ fn tell(args: &Render, loaded: &Inputs, outcome: &Outcome) {
 /// Refuses places that cannot be written to, and a report that would take the place of the picture or of an input.
 fn check_outputs(args: &Render, out: &Output) -> Result<()> {
     out.check()?;
+    if out.is_png() && !args.layers.is_empty() {
+        return Err(Error::Usage("--layers are written to EXR alone: name the picture .exr".into()));
+    }
     let Some(json) = &args.json else { return Ok(()) };
     files::check(json)?;
     match std::iter::once(&args.output).chain(&args.inputs).find(|other| files::is_same(other, json)) {

@@ -78,17 +78,22 @@ impl Background {
     }
 }
 
-/// `transparent`, or `R,G,B` as sRGB codes of 8 bits: the numbers that a colour picker shows and that the PNG then holds.
+/// `transparent`, or [`opaque`].
 pub fn background(text: &str) -> Result<Background, String> {
-    if text == "transparent" {
-        return Ok(Background::Transparent);
+    match text {
+        "transparent" => Ok(Background::Transparent),
+        _ => opaque(text)
+            .map(Background::Opaque)
+            .map_err(|error| error.replacen("give ", "give transparent, or ", 1)),
     }
+}
+
+/// `R,G,B` as sRGB codes of 8 bits, the numbers that a colour picker shows and that the PNG then holds; as linear light.
+pub fn opaque(text: &str) -> Result<[f32; 3], String> {
     let codes: Option<Vec<u8>> = text.split(',').map(|code| code.trim().parse().ok()).collect();
     match codes.as_deref() {
-        Some(&[r, g, b]) => {
-            Ok(Background::Opaque([r, g, b].map(|code| srgb::decode(f64::from(code) / 255.0) as f32)))
-        }
-        _ => Err("give transparent, or R,G,B, each from 0 to 255 (sRGB), for example 255,255,255".into()),
+        Some(&[r, g, b]) => Ok([r, g, b].map(|code| srgb::decode(f64::from(code) / 255.0) as f32)),
+        _ => Err("give R,G,B, each from 0 to 255 (sRGB), for example 255,255,255".into()),
     }
 }
 
@@ -122,6 +127,15 @@ impl From<Shading> for settings::Shading {
             Shading::Depth => Self::Depth,
         }
     }
+}
+
+/// What an EXR file holds beside the picture.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Layer {
+    /// Unit normals in world space, as channels N.X, N.Y, N.Z
+    Normal,
+    /// Distance from the eye along the view, as channel Z
+    Depth,
 }
 
 /// Which surfels are left out for the side that they show.

@@ -78,11 +78,15 @@ fn half_error(
     Ok(Some(HalfError { largest: errors().fold(0.0, f64::max), rms: mean_square.sqrt() }))
 }
 
-/// On an opaque background α does not tell where a surface is, which PNGs of normals and depths need to know.
+/// The layers; and what PNGs of normals and depths need, as on an opaque background α does not tell where a surface is.
 fn outputs(task: &Task<'_>) -> Outputs {
     let opaque = task.settings.background.is_some();
     let shading = task.settings.shading;
-    Outputs { normal: opaque && shading == Shading::Normal, depth: opaque && shading == Shading::Depth }
+    let Outputs { normal, depth } = task.layers;
+    Outputs {
+        normal: normal || opaque && shading == Shading::Normal,
+        depth: depth || opaque && shading == Shading::Depth,
+    }
 }
 
 fn gpu(device: &Arc<Device>, renderer: &Renderer, scene: &Scene) -> Gpu {

@@ -1,17 +1,19 @@
 //! What the program can be asked.
 
+mod compare;
 mod convert;
 mod points;
 
+pub use compare::Compare;
 pub use convert::{Convert, Info};
 pub use points::{Colours, Points};
 
-use super::values::{Background, Cull, Method, Shading, background, size, vector};
+use super::values::{Background, Cull, Layer, Method, Shading, background, size, vector};
 use clap::{Args, Parser, Subcommand};
 use glam::DVec3;
 use std::ffi::OsString;
 use std::path::PathBuf;
-use surfel::Settings;
+use surfel::{Outputs, Settings};
 
 /// Renders point-sampled surfaces with Vulkan.
 #[derive(Debug, Parser)]
@@ -31,6 +33,8 @@ pub enum Command {
     Info(Info),
     /// Makes surfels of points once and writes them to a PLY file
     Convert(Box<Convert>),
+    /// Compares picture A with the truth B: colours, silhouette, normals, depths
+    Compare(Box<Compare>),
     /// Lists the Vulkan devices; * marks the one that is used unless --device names another
     Devices,
     /// Lists the built-in scenes with their parameters
@@ -61,6 +65,9 @@ pub struct Render {
     /// Draws a bar with the colours of --color-by and their values into the PNG
     #[arg(long, alias = "colour-bar", requires = "color_by")]
     pub color_bar: bool,
+    /// What an EXR holds beside the picture
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "LAYER,…")]
+    pub layers: Vec<Layer>,
     /// Where the camera stands
     #[command(flatten)]
     pub camera: Camera,
@@ -82,6 +89,14 @@ pub struct Render {
     /// Prints nothing but warnings and errors
     #[arg(short, long)]
     pub quiet: bool,
+}
+
+impl Render {
+    /// The images beside the picture that this asks for.
+    pub fn outputs(&self) -> Outputs {
+        let asked = |layer| self.layers.contains(&layer);
+        Outputs { normal: asked(Layer::Normal), depth: asked(Layer::Depth) }
+    }
 }
 
 /// The camera; the whole scene is framed unless it is given.

@@ -1,14 +1,18 @@
 //! Pictures in files: PNG for the eye, EXR for numbers.
 
+mod exr;
+mod read;
+
+pub use read::{MOST_PIXELS, read};
+
 use super::{atomic, srgb};
 use crate::error::{Error, Result};
 use crate::picture::Picture;
 use crate::settings::Shading;
-use image::codecs::openexr::OpenExrEncoder;
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder, ImageError};
 use std::ffi::OsStr;
-use std::io::{self, Seek, Write};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 /// Where a picture goes.
@@ -172,20 +176,14 @@ impl Encoded {
     }
 }
 
-/// Writes [`Picture::colour`] as float RGBA OpenEXR, value by value: linear light, unit normals or depths, and straight α.
+/// Writes a picture as float OpenEXR, value by value: [`Picture::colour`] as R, G, B and straight A (linear light, unit normals or
+/// depths); [`Picture::depth`] as Z and [`Picture::normal`] as N.X, N.Y, N.Z where it has them.
 ///
 /// # Errors
 /// As [`write_png`].
 pub fn write_exr(picture: &Picture, path: &Path) -> Result<()> {
     check(picture)?;
-    let [width, height] = picture.size;
-    let bytes: &[u8] = bytemuck::cast_slice(&picture.colour);
-    fn exr(out: impl Write + Seek, bytes: &[u8], width: u32, height: u32) -> io::Result<()> {
-        OpenExrEncoder::new(out)
-            .write_image(bytes, width, height, ExtendedColorType::Rgba32F)
-            .map_err(io_error)
-    }
-    atomic::write(path, |out| exr(out, bytes, width, height))
+    atomic::write(path, |out| exr::write(picture, out))
 }
 
 fn io_error(error: ImageError) -> io::Error {

@@ -1,0 +1,96 @@
+//! `--fail-above` and `--fail-below`: how good a picture must be.
+
+use super::number::significant;
+use surfel::metrics::{Better, Measured, Metric};
+use surfel::{Error, Result};
+
+/// A bound on one metric, which must not be crossed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limit {
+    /// What is bounded.
+    pub metric: Metric,
+    /// The bound: the greatest value that is good where less is better, the least where more is.
+    pub value: f64,
+}
+
+/// `METRIC=VALUE` of a metric of which less is better.
+pub fn above(text: &str) -> Result<Limit, String> {
+    parse(text, Better::Less)
+}
+
+/// `METRIC=VALUE` of a metric of which more is better.
+pub fn below(text: &str) -> Result<Limit, String> {
+    parse(text, Better::More)
+}
+
+fn parse(text: &str, better: Better) -> Result<Limit, String> {
+    let choice = || {
+        let fitting = Metric::ALL.into_iter().filter(|metric| metric.better() == better);
+        fitting.map(Metric::name).collect::<Vec<_>>().join(", ")
+    };
+    let (name, value) =
+        text.split_once('=').ok_or_else(|| format!("give METRIC=VALUE, METRIC one of {}", choice()))?;
+    let metric =
+        Metric::named(name).ok_or_else(|| format!("there is no metric {name}: give one of {}", choice()))?;
+    match (metric.better() == better, better) {
+        (true, _) => {}
+        (false, Better::Less) => return Err(format!("of {name} more is better: use --fail-below")),
+        (false, Better::More) => return Err(format!("of {name} less is better: use --fail-above")),
+    }
+    let value = value.trim().parse().ok().filter(|value: &f64| value.is_finite());
+    Ok(Limit { metric, value: value.ok_or_else(|| format!("the value of {name} is not a number"))? })
+}
+
+impl Limit {
+    /// How it is crossed, if it is.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if the metric was not measured: that is no pass.
+    pub fn violation(&self, measured: &Measured) -> Result<Option<String>> {
+        let name = self.metric.name();
+        let Some(found) = measured.value(self.metric) else {
+            return Err(Error::Usage(format!("{name} cannot be measured: it needs {}", self.metric.needs())));
+        };
+        let (crossed, side) = match self.metric.better() {
+            Better::Less => (found > self.value, "above"),
+            Better::More => (found < self.value, "below"),
+        };
+        Ok(crossed.then(|| format!("{name} is {}, {side} {}", significant(found), self.value)))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn limits_are_read_or_refused() {
+        assert_eq!(above("rmse=0.5"), Ok(Limit { metric: Metric::Rmse, value: 0.5 }));
+        assert_eq!(below("psnr= -1e1"), Ok(Limit { metric: Metric::Psnr, value: -10.0 }));
+        for (text, cause) in [
+            ("rmse", "METRIC=VALUE"),
+            ("error=1", "no metric error: give one of rmse, rmse-srgb, flip"),
+            ("ssim=1", "use --fail-below"),
+            ("rmse=", "not a number"),
+            ("rmse=nan", "not a number"),
+        ] {
+            assert!(above(text).unwrap_err().contains(cause), "{text}");
+        }
+        assert!(below("holes=1").unwrap_err().contains("use --fail-above"));
+        assert!(below("error=1").unwrap_err().ends_with("psnr, psnr-srgb, ssim, iou"));
+    }
+
+    #[test]
+    fn only_what_crosses_a_limit_violates_it() {
+        let flip = surfel::metrics::flip::Map { size: [0, 0], values: vec![] };
+        let values = vec![(Metric::Rmse, 0.5), (Metric::Psnr, f64::INFINITY), (Metric::Ssim, 0.25)];
+        let measured = Measured { values, flip, picture_covers: 0, truth_covers: 0 };
+        let of = |metric, value| Limit { metric, value }.violation(&measured);
+        assert_eq!(of(Metric::Rmse, 0.5).unwrap(), None);
+        assert_eq!(of(Metric::Rmse, 0.25).unwrap().unwrap(), "rmse is 0.5, above 0.25");
+        assert_eq!(of(Metric::Psnr, 1e9).unwrap(), None);
+        assert_eq!(of(Metric::Ssim, 0.25).unwrap(), None);
+        assert_eq!(of(Metric::Ssim, 0.75).unwrap().unwrap(), "ssim is 0.25, below 0.75");
+        assert!(of(Metric::DepthMax, 1.0).unwrap_err().to_string().contains("needs depths in both"));
+    }
+}

@@ -1,0 +1,159 @@
+//! Pictures from files.
+
+use super::exr;
+use crate::error::{Error, Result};
+use crate::io::srgb;
+use crate::picture::Picture;
+use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
+use std::io::Cursor;
+use std::path::Path;
+
+/// Most pixels of a picture that is read: a gibibyte of colours.
+pub const MOST_PIXELS: u64 = 1 << 26;
+
+const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
+const EXR: &[u8] = &[0x76, 0x2f, 0x31, 0x01];
+
+/// Reads a PNG or EXR file, told apart by its contents.
+///
+/// PNG of 8 or 16 bits is taken as sRGB and decoded to linear light; its α is straight, as PNG has it, and 1 without one. Other colour
+/// spaces that it may name are passed over. EXR is taken as [`super::write_exr`] writes it, with depth and normals if there are any; α
+/// is straight there too.
+///
+/// # Errors
+/// [`Error::Io`] if the file cannot be read, [`Error::Input`] if it is neither, is damaged, or has more than [`MOST_PIXELS`].
+pub fn read(path: &Path) -> Result<Picture> {
+    let bytes = std::fs::read(path).map_err(Error::io(path, "cannot read"))?;
+    let picture = match &bytes {
+        png if png.starts_with(PNG) => read_png(png),
+        exr if exr.starts_with(EXR) => exr::read(exr, MOST_PIXELS),
+        _ => Err("neither a PNG nor an EXR file: convert it to one of them".into()),
+    };
+    picture.map_err(|cause| Error::input(path.display().to_string(), cause))
+}
+
+fn read_png(bytes: &[u8]) -> Result<Picture, String> {
+    let mut reader = ImageReader::with_format(Cursor::new(bytes), ImageFormat::Png);
+    reader.limits(Limits::no_limits());
+    let decoder = reader.into_decoder().map_err(|error| error.to_string())?;
+    let (width, height) = decoder.dimensions();
+    if u64::from(width) * u64::from(height) > MOST_PIXELS {
+        return Err(format!("{width}x{height} px: at most {MOST_PIXELS} pixels are read"));
+    }
+    let image = DynamicImage::from_decoder(decoder).map_err(|error| error.to_string())?;
+    Ok(Picture { size: [width, height], colour: decoded(image), ..Default::default() })
+}
+
+/// Linear light; a code of 8 bits is one of 16 exactly.
+fn decoded(image: DynamicImage) -> Vec<[f32; 4]> {
+    let share = |code: u16| f64::from(code) / f64::from(u16::MAX);
+    let linear: Vec<f32> = (0..=u16::MAX).map(|code| srgb::decode(share(code)) as f32).collect();
+    let light = |code: u16| linear[usize::from(code)];
+    let pixel = |&[r, g, b, alpha]: &[u16; 4]| [light(r), light(g), light(b), share(alpha) as f32];
+    image.into_rgba16().into_raw().as_chunks().0.iter().map(pixel).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Output, write, write_exr};
+    use super::*;
+    use crate::settings::Shading;
+    use image::{ImageBuffer, Luma, Rgba};
+
+    fn in_folder<T>(run: impl FnOnce(&Path) -> T) -> T {
+        run(tempfile::tempdir().unwrap().path())
+    }
+
+    fn picture() -> Picture {
+        Picture {
+            size: [2, 2],
+            colour: vec![[0.1, -2.0, 1e9, 0.5], [1e-6, 3.5, 0.0, 1.0], [0.0; 4], [0.25, 0.5, 0.75, 1.0]],
+            depth: Some(vec![1.5, 2.0, 0.0, 1e-3]),
+            normal: Some(vec![[0.0, 0.6, 0.8], [1.0, 0.0, 0.0], [0.0; 3], [-1.0, 0.0, 0.0]]),
+        }
+    }
+
+    #[test]
+    fn exr_comes_back_as_it_was_with_every_layer() {
+        let whole = picture();
+        let no_normal = Picture { normal: None, ..picture() };
+        let bare = Picture { depth: None, ..no_normal.clone() };
+        for picture in [whole, no_normal, bare] {
+            in_folder(|folder| {
+                let path = folder.join("a.exr");
+                write_exr(&picture, &path).unwrap();
+                assert_eq!(read(&path).unwrap(), picture);
+            });
+        }
+    }
+
+    #[test]
+    fn values_that_are_not_finite_come_back() {
+        let mut bad = picture();
+        bad.colour[0] = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, 1.0];
+        let back = in_folder(|folder| {
+            write_exr(&bad, &folder.join("a.exr")).unwrap();
+            read(&folder.join("a.exr")).unwrap()
+        });
+        let bits = |picture: &Picture| picture.colour[0].map(f32::is_nan);
+        assert_eq!((bits(&back), back.colour[0][1..3].to_vec()), (bits(&bad), bad.colour[0][1..3].to_vec()));
+    }
+
+    #[test]
+    fn png_of_8_and_16_bits_is_decoded() {
+        in_folder(|folder| {
+            let path = folder.join("a.png");
+            let colour = vec![[0.5, 0.0, 1.0, 0.5], [0.214_041, 0.18, 0.003, 1.0]];
+            let lit = Picture { size: [2, 1], colour, ..Default::default() };
+            write(&lit, Shading::Lit, &Output::File(path.clone())).unwrap();
+            let back = read(&path).unwrap();
+            for (a, b) in back.colour.as_flattened().iter().zip(lit.colour.as_flattened()) {
+                // Half a code, where the transfer function is steepest.
+                assert!((a - b).abs() < 0.5 / 255.0 * 2.3, "{a} {b}");
+            }
+            // Of 16 bits: linear 0.214041 is half way, to much less than a code of 8 bits.
+            let deep = ImageBuffer::from_raw(1, 1, vec![32768u16, 0, 65535, 16384]).unwrap();
+            let deep: ImageBuffer<Rgba<u16>, Vec<u16>> = deep;
+            deep.save(&path).unwrap();
+            let [r, g, b, alpha] = read(&path).unwrap().colour[0];
+            assert!((r - 0.214_049).abs() < 2e-6 && (alpha - 0.250_004).abs() < 1e-6, "{r} {alpha}");
+            assert_eq!((g, b), (0.0, 1.0));
+            let grey: ImageBuffer<Luma<u8>, Vec<u8>> = ImageBuffer::from_raw(1, 1, vec![188]).unwrap();
+            grey.save(&path).unwrap();
+            let [r, g, b, alpha] = read(&path).unwrap().colour[0];
+            assert!((r - 0.502_886).abs() < 1e-6 && r == g && g == b && alpha == 1.0, "{r} {alpha}");
+        });
+    }
+
+    #[test]
+    fn damaged_files_are_refused_without_a_panic() {
+        in_folder(|folder| {
+            let path = folder.join("a");
+            let refused = |bytes: &[u8]| {
+                std::fs::write(&path, bytes).unwrap();
+                read(&path).unwrap_err().to_string()
+            };
+            for bytes in [&b""[..], b"P6 1 1 255 abc", b"\x89PNG"] {
+                assert!(refused(bytes).contains("neither a PNG nor an EXR file"));
+            }
+            for name in ["a.png", "a.exr"] {
+                let whole = folder.join(name);
+                write(&picture(), Shading::Lit, &Output::File(whole.clone())).unwrap();
+                let whole = std::fs::read(whole).unwrap();
+                for length in (8..whole.len() - 12).step_by(7) {
+                    assert!(!refused(&whole[..length]).contains('\n'), "{name} {length}");
+                }
+                // Whatever a wrong byte makes of it, it is a picture or an error.
+                for at in 4..whole.len() {
+                    for flip in [0x01, 0x80, 0xff] {
+                        let mut wrong = whole.clone();
+                        wrong[at] ^= flip;
+                        std::fs::write(&path, wrong).unwrap();
+                        let _ = read(&path);
+                    }
+                }
+            }
+            assert!(read(&folder.join("missing.png")).unwrap_err().to_string().contains("cannot read"));
+        });
+    }
+}
