@@ -19,7 +19,7 @@ pub fn run(args: &Compare) -> Result<Vec<String>> {
     let pair = Pair::new(&picture, &truth).map_err(|error| named(error, args))?;
     let measured = measure(&pair, &options(args))?;
     if let Some(map) = &args.map {
-        measured.flip.coloured().write_png(&Output::File(map.into()))?;
+        measured.flip.coloured()?.write_png(&Output::File(map.into()))?;
     }
     let limits = args.fail_above.iter().chain(&args.fail_below);
     let violations: Vec<_> =

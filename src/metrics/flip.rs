@@ -63,12 +63,15 @@ impl Map {
     }
 
     /// The map as a picture in the paper's colours, magma: black is 0, pale yellow is 1.
-    pub fn coloured(&self) -> Encoded {
+    ///
+    /// # Errors
+    /// [`Error::Usage`](crate::Error::Usage) if there are not as many values as the size says.
+    pub fn coloured(&self) -> Result<Encoded> {
         let pixel = |&value: &f32| {
             let [r, g, b] = ColourMap::Magma.at(value.into());
             [r, g, b, 255]
         };
-        Encoded { size: self.size, pixels: self.values.iter().map(pixel).collect() }
+        Encoded::new(self.size, self.values.iter().map(pixel).collect())
     }
 }
 
@@ -143,6 +146,6 @@ mod tests {
     fn the_map_is_drawn_in_magma() {
         let map = Map { size: [2, 1], values: vec![0.0, 1.0] };
         // Published: #000004 and #fcfdbf.
-        assert_eq!(map.coloured().pixels, [[0, 0, 4, 255], [252, 253, 191, 255]]);
+        assert_eq!(map.coloured().unwrap().pixels(), [[0, 0, 4, 255], [252, 253, 191, 255]]);
     }
 }
