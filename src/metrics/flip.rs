@@ -65,7 +65,7 @@ impl Map {
     /// The map as a picture in the paper's colours, magma: black is 0, pale yellow is 1.
     ///
     /// # Errors
-    /// [`Error::Usage`](crate::Error::Usage) if there are not as many values as the size says.
+    /// [`Error::Usage`] if there are not as many values as the size says.
     pub fn coloured(&self) -> Result<Encoded> {
         let pixel = |&value: &f32| {
             let [r, g, b] = ColourMap::Magma.at(value.into());
