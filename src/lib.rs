@@ -18,6 +18,7 @@
 //! | [`methods`] | one file a method: its paper and its passes |
 //! | [`renderer`] | frames: make ready, record, submit, read back |
 //! | [`reference`](mod@reference) | the float64 twin of every pass, on the CPU; judges pictures |
+//! | [`truth`] | exact images: rays against the surface itself |
 //! | [`metrics`] | how far a picture is from the truth |
 //! | [`vk`] | the layer over raw Vulkan |
 //!
@@ -56,6 +57,7 @@ pub mod scene;
 pub mod scenes;
 pub mod settings;
 pub mod targets;
+pub mod truth;
 pub mod variant;
 pub mod vk;
 

@@ -94,7 +94,7 @@ fn load_one(name: &OsString, wanted: &Wanted<'_>) -> Result<(Part, u64, Dropped)
         return Ok((Part { name: name.into(), cloud }, count, Dropped::default()));
     }
     let property = wanted.colouring.as_ref().and_then(Colouring::property);
-    let options = ReadOptions { scalar: property.map(str::to_owned) };
+    let options = ReadOptions { scalar: property.map(str::to_owned), ..Default::default() };
     let Loaded { cloud, report } = ply::read(Path::new(name), &options, wanted.progress)?;
     let name = Path::new(name).display().to_string();
     warn(&name, &report);

@@ -20,6 +20,7 @@ mod report;
 mod scenes;
 mod summary;
 mod times;
+mod truth;
 mod values;
 mod vulkan;
 
@@ -42,6 +43,7 @@ pub fn run() -> ExitCode {
             Ok(violations) if !violations.is_empty() => return exit::of_violations(&violations),
             compared => compared.map(drop),
         },
+        Command::Truth(args) => truth::run(&args),
         Command::Devices => devices::run(),
         Command::Scenes => scenes::run(),
     };

@@ -92,7 +92,7 @@ fn save(picture: &Picture, shading: Shading, bar: Option<&ColourBar>, out: &Outp
 }
 
 /// Leaves out of a picture what was not asked for.
-fn keep_layers(picture: &mut Picture, layers: Outputs) {
+pub fn keep_layers(picture: &mut Picture, layers: Outputs) {
     picture.normal.take_if(|_| !layers.normal);
     picture.depth.take_if(|_| !layers.depth);
 }

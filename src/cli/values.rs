@@ -59,6 +59,17 @@ pub fn colour_by(text: &str) -> Result<ColourBy, String> {
     if name.is_empty() { Err(wrong()) } else { Ok(ColourBy { name: name.into(), range }) }
 }
 
+/// How the rays about a pixel become its value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Filter {
+    /// The low-pass of EWA splatting
+    Gaussian,
+    /// The mean over the pixel
+    Box,
+    /// The one ray through the pixel's centre
+    Point,
+}
+
 /// What is seen where no surfel is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Background {

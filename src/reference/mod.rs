@@ -34,6 +34,7 @@ pub use judge::{Channel, Tolerance, Worst};
 pub use normalize::Value;
 pub use projector::Projector;
 pub use scene::Counts;
+pub(crate) use shading::{linear, lit};
 pub use slack::Slack;
 
 use crate::Progress;

@@ -63,13 +63,25 @@ impl Projector {
         ray / facing.abs()
     }
 
+    /// The distances of the near and the far plane.
+    pub(crate) fn planes(&self) -> [f64; 2] {
+        [self.depth.near, self.depth.far]
+    }
+
+    /// The ray through pixel position `at` in world space: where it is at distance 0, and its step for one unit of distance.
+    pub(crate) fn ray(&self, at: DVec2) -> (DVec3, DVec3) {
+        let at = DVec3::new(1.0, at.x, at.y);
+        let start = self.starts * at - self.view.w_axis.truncate();
+        (self.to_world(start), self.to_world(self.steps * at))
+    }
+
     /// Eye-space direction to world space: the view is rigid.
     pub(super) fn to_world(&self, direction: DVec3) -> DVec3 {
         DMat3::from_mat4(self.view).transpose() * direction
     }
 
     /// World-space unit direction from the surface seen at pixel position `at` to the eye.
-    pub(super) fn to_viewer(&self, at: DVec2) -> DVec3 {
+    pub(crate) fn to_viewer(&self, at: DVec2) -> DVec3 {
         let away = match self.depth.perspective {
             true => self.steps * DVec3::new(1.0, at.x, at.y),
             false => DVec3::new(0.0, 0.0, self.depth.forward),

@@ -5,7 +5,7 @@ use glam::DVec3;
 
 /// The shade of a surface of linear colour `albedo`; `normal` and `viewer` (from the surface to the eye) are unit vectors in
 /// world space.
-pub(super) fn lit(lighting: &Lighting, albedo: DVec3, normal: DVec3, viewer: DVec3) -> DVec3 {
+pub(crate) fn lit(lighting: &Lighting, albedo: DVec3, normal: DVec3, viewer: DVec3) -> DVec3 {
     let [ambient, headlight, specular, shininess] =
         [lighting.ambient, lighting.headlight, lighting.specular, lighting.shininess].map(f64::from);
     // The headlight stands at the eye: light, half-way and view direction are one.
@@ -24,7 +24,7 @@ pub(super) fn lit(lighting: &Lighting, albedo: DVec3, normal: DVec3, viewer: DVe
 }
 
 /// An 8-bit sRGB colour in linear light, by the exact transfer function (IEC 61966-2-1).
-pub(super) fn linear(srgb: [u8; 4]) -> DVec3 {
+pub(crate) fn linear(srgb: [u8; 4]) -> DVec3 {
     let decode = |byte: u8| {
         let c = f64::from(byte) / 255.0;
         if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }

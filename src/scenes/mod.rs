@@ -7,7 +7,7 @@ mod catalogue;
 mod hierarchy;
 mod models;
 mod query;
-mod random;
+pub(crate) mod random;
 mod samplers;
 mod shapes;
 mod surface;

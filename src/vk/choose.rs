@@ -65,11 +65,12 @@ pub fn preferred<'a>(
     devices: impl IntoIterator<Item = &'a DeviceDescription>,
     wanted: Option<&str>,
 ) -> Option<usize> {
-    let fits = |index: usize, device: &DeviceDescription| match wanted.map(|text| (text, text.parse())) {
-        None => true,
-        Some((_, Ok(number))) => index == number,
-        Some((text, Err(_))) => device.name.to_lowercase().contains(&text.to_lowercase()),
-    };
+    let fits =
+        |index: usize, device: &DeviceDescription| match wanted.map(|text| (text, text.parse::<usize>())) {
+            None => true,
+            Some((_, Ok(number))) => index == number,
+            Some((text, Err(_))) => device.name.to_lowercase().contains(&text.to_lowercase()),
+        };
     devices
         .into_iter()
         .enumerate()

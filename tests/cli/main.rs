@@ -11,3 +11,4 @@ mod render;
 mod report;
 mod scans;
 mod scenes;
+mod truth;

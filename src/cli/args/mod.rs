@@ -3,10 +3,12 @@
 mod compare;
 mod convert;
 mod points;
+mod truth;
 
 pub use compare::Compare;
 pub use convert::{Convert, Info};
 pub use points::{Colours, Points};
+pub use truth::Truth;
 
 use super::values::{Background, Cull, Layer, Method, Shading, background, size, vector};
 use clap::{Args, Parser, Subcommand};
@@ -35,6 +37,8 @@ pub enum Command {
     Convert(Box<Convert>),
     /// Compares picture A with the truth B: colours, silhouette, normals, depths
     Compare(Box<Compare>),
+    /// Traces the exact picture of a built-in scene or a mesh, without Vulkan
+    Truth(Box<Truth>),
     /// Lists the Vulkan devices; * marks the one that is used unless --device names another
     Devices,
     /// Lists the built-in scenes with their parameters
@@ -94,9 +98,14 @@ pub struct Render {
 impl Render {
     /// The images beside the picture that this asks for.
     pub fn outputs(&self) -> Outputs {
-        let asked = |layer| self.layers.contains(&layer);
-        Outputs { normal: asked(Layer::Normal), depth: asked(Layer::Depth) }
+        outputs(&self.layers)
     }
+}
+
+/// The images that these layers are.
+fn outputs(layers: &[Layer]) -> Outputs {
+    let asked = |layer| layers.contains(&layer);
+    Outputs { normal: asked(Layer::Normal), depth: asked(Layer::Depth) }
 }
 
 /// The camera; the whole scene is framed unless it is given.

@@ -34,6 +34,8 @@ pub(super) struct File<'a> {
     pub vertex: usize,
     pub layout: &'a Layout,
     pub meter: &'a Meter<'a>,
+    /// Whether triangles are kept even if the points lack nothing.
+    pub triangles: bool,
 }
 
 impl File<'_> {
@@ -114,7 +116,7 @@ impl File<'_> {
         }
         let (arrays, tally) = points(&mut reader)?;
         let mut points = Points::new(arrays, tally)?;
-        let mut others = Others::new(self.header.grid, self.meter, &points);
+        let mut others = Others::new(self.header.grid, self.meter, &points, self.triangles);
         let mut used = Vec::new();
         for (element, mut reader) in elements.iter().zip(bookmarks) {
             used.push(others.read(&mut reader, element)?);

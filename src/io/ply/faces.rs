@@ -6,14 +6,16 @@ use super::points::Points;
 /// Collects triangles between the points.
 pub(super) struct Collector<'a> {
     points: &'a Points,
-    /// Empty unless the points lack normals or radii.
+    keep: bool,
+    /// Empty unless they are to be kept.
     pub triangles: Vec<[u32; 3]>,
     pub faces: Faces,
 }
 
 impl<'a> Collector<'a> {
-    pub fn new(points: &'a Points) -> Self {
-        Self { points, triangles: Vec::new(), faces: Faces::default() }
+    /// Collects triangles between `points`; only counts them unless they are to be kept.
+    pub fn new(points: &'a Points, keep: bool) -> Self {
+        Self { points, keep, triangles: Vec::new(), faces: Faces::default() }
     }
 
     /// A polygon, as a fan.
@@ -46,7 +48,7 @@ impl<'a> Collector<'a> {
     /// A triangle whose corners are different points.
     pub fn add(&mut self, triangle: [u32; 3]) {
         self.count(true);
-        if self.points.lacking {
+        if self.keep {
             self.triangles.push(triangle);
         }
     }
@@ -65,7 +67,7 @@ impl<'a> Collector<'a> {
             return false;
         };
         let proper = a != b && b != c && c != a;
-        if proper && self.points.lacking {
+        if proper && self.keep {
             self.triangles.push([a, b, c]);
         }
         proper

@@ -22,7 +22,7 @@
 //! | `range_grid` | list `vertex_indices` of no vertex or one; `obj_info num_cols`, `num_rows` | triangles between neighbours, where the surface is not torn; [`View::Towards`](crate::geometry::View::Towards) +z |
 //! | `camera` | `view_px view_py view_pz` | [`View::From`](crate::geometry::View::From); all 0, which is what some programs write of any cloud, is not known |
 //!
-//! Triangles are kept only where some point has no normal or no radius, which they can tell. Skipped elements are checked all the same: a
+//! Triangles are kept only where some point has no normal or no radius, which they can tell, or where [`ReadOptions`] ask for them. Skipped elements are checked all the same: a
 //! file that ends too early is an error, bytes after its end are counted.
 //!
 //! The header is parsed here rather than by ply-rs, whose parser stops the process on large counts, takes two properties of one name for
@@ -81,6 +81,8 @@ pub struct Loaded {
 pub struct ReadOptions {
     /// Name of the vertices' property that becomes [`Cloud::scalar`]. A file whose vertices have no number of this name is refused.
     pub scalar: Option<String>,
+    /// Whether triangles are kept where every point has a normal and a radius, too.
+    pub triangles: bool,
 }
 
 /// A file's header, and its points if they could be had.
@@ -148,7 +150,9 @@ fn parse_records(
     // Text keeps its digits, whatever type the header names.
     layout.narrow &= header.format != Format::Ascii;
     let meter = Meter::new(progress, source.size());
-    let contents = File { source, header: &header, vertex, layout: &layout, meter: &meter }.read()?;
+    let triangles = options.triangles;
+    let contents =
+        File { source, header: &header, vertex, layout: &layout, meter: &meter, triangles }.read()?;
     meter.finish();
     let report = report(header, vertex, &layout, &contents);
     Ok(Loaded { cloud: contents.points.cloud, report })

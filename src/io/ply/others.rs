@@ -21,8 +21,10 @@ pub(super) struct Others<'a> {
 }
 
 impl<'a> Others<'a> {
-    pub fn new(grid: [Option<u64>; 2], meter: &'a Meter<'a>, points: &'a Points) -> Self {
-        Self { grid, meter, points, collector: Collector::new(points), view: View::Unknown }
+    /// Triangles are kept if they are asked for or if the points lack normals or radii.
+    pub fn new(grid: [Option<u64>; 2], meter: &'a Meter<'a>, points: &'a Points, triangles: bool) -> Self {
+        let collector = Collector::new(points, triangles || points.lacking);
+        Self { grid, meter, points, collector, view: View::Unknown }
     }
 
     /// The faces, and from where the points were seen.

@@ -137,14 +137,14 @@ fn gaussians_become_discs_and_haze_is_dropped() {
 #[test]
 fn a_chosen_number_comes_along() {
     let file = text(&format!("element vertex 2\n{XYZ}\nproperty uint id"), "0 0 0 7\nnan 0 0 8\n");
-    let options = ReadOptions { scalar: Some("id".into()) };
+    let options = ReadOptions { scalar: Some("id".into()), ..Default::default() };
     let Loaded { cloud, report } = read_bytes("test.ply", &file, &options).unwrap();
     assert_eq!((cloud.scalar, report.skipped.len()), (Some(vec![7.0]), 0));
     let time = text(&format!("element vertex 1\n{XYZ}\nproperty double gps_time"), "0 0 0 300000010.0625\n");
-    let options = ReadOptions { scalar: Some("gps_time".into()) };
+    let options = ReadOptions { scalar: Some("gps_time".into()), ..Default::default() };
     let Loaded { cloud, .. } = read_bytes("test.ply", &time, &options).unwrap();
     assert_eq!(cloud.scalar, Some(vec![300_000_010.062_5]), "more digits than f32 holds");
-    let options = ReadOptions { scalar: Some("height".into()) };
+    let options = ReadOptions { scalar: Some("height".into()), ..Default::default() };
     let cause = read_bytes("test.ply", &file, &options).unwrap_err().to_string();
     assert!(cause.contains("no number named `height`: choose one of `x`, `y`, `z`, `id`"), "{cause}");
 }

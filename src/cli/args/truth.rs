@@ -1,0 +1,73 @@
+//! Options of `surfel truth`.
+
+use super::{Background, Camera, Layer, Shading, background, size};
+use crate::cli::values::{Filter, positive};
+use clap::Args;
+use std::ffi::OsString;
+use surfel::{Outputs, Settings, truth};
+
+/// Options of `surfel truth`.
+#[derive(Args, Debug)]
+pub struct Truth {
+    /// A built-in scene such as scene:bumpy-sphere, or a PLY file with a triangle mesh
+    pub input: OsString,
+    /// The picture: .png (sRGB, or `-` for standard output) or .exr (linear light)
+    #[arg(short, long, value_name = "OUT")]
+    pub output: OsString,
+    /// Size of the picture, px
+    #[arg(long, value_name = "WxH", default_value = "1024x1024", value_parser = size, allow_hyphen_values = true)]
+    pub size: [u32; 2],
+    /// How the rays about a pixel become its value
+    #[arg(long, value_enum, default_value = "gaussian")]
+    pub filter: Filter,
+    /// Variance of the Gaussian, px²
+    #[arg(long, value_name = "VARIANCE_PX2", default_value_t = 1.0, value_parser = positive::<f64>, allow_hyphen_values = true)]
+    pub variance: f64,
+    /// Standard error that no pixel should exceed, in linear light
+    #[arg(long, value_name = "E", default_value_t = truth::Options::default().error, value_parser = positive::<f64>, allow_hyphen_values = true)]
+    pub error: f64,
+    /// Rays after which a pixel is left as it is
+    #[arg(long, value_name = "N", default_value_t = truth::Options::default().most_samples, allow_hyphen_values = true)]
+    pub most_samples: u32,
+    /// What an EXR holds beside the picture
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "LAYER,…")]
+    pub layers: Vec<Layer>,
+    /// Where the camera stands
+    #[command(flatten)]
+    pub camera: Camera,
+    /// What the picture shows
+    #[arg(long, value_enum, default_value = "lit")]
+    pub shading: Shading,
+    /// Colour where nothing is: transparent, or sRGB codes from 0 to 255
+    #[arg(long, value_name = "R,G,B|transparent", default_value = "transparent", value_parser = background, allow_hyphen_values = true)]
+    pub background: Background,
+    /// Traces the picture even if it has been before, and does not keep it
+    #[arg(long)]
+    pub no_cache: bool,
+    /// Prints nothing but warnings and errors
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+impl Truth {
+    /// The settings that this asks for.
+    pub fn settings(&self) -> Settings {
+        let background = self.background.linear();
+        Settings { shading: self.shading.into(), background, ..Default::default() }
+    }
+
+    /// How the picture is to be made.
+    pub fn options(&self) -> truth::Options {
+        let filter = match self.filter {
+            Filter::Gaussian => truth::Filter::Gaussian { variance: self.variance },
+            Filter::Box => truth::Filter::Box,
+            Filter::Point => truth::Filter::Point,
+        };
+        truth::Options { filter, error: self.error, most_samples: self.most_samples }
+    }
+
+    /// The images beside the picture that this asks for.
+    pub fn outputs(&self) -> Outputs {
+        super::outputs(&self.layers)
+    }
+}

@@ -1,0 +1,90 @@
+//! `surfel truth`.
+
+use super::args::Truth;
+use super::files::cache_folder;
+use super::inputs::{self, Wanted};
+use super::render::keep_layers;
+use super::{camera, progress};
+use std::path::Path;
+use surfel::geometry::estimate::Estimate;
+use surfel::geometry::{Bounds, Camera};
+use surfel::io::image::{Output, write};
+use surfel::io::ply::{self, ReadOptions};
+use surfel::truth::{self, Cache, Mesh, Scene};
+use surfel::{Error, Progress, Result, Settings, scenes};
+
+/// Traces an input to a picture. Arguments and places to write to are looked at first.
+pub fn run(args: &Truth) -> Result<()> {
+    let out = Output::parse(&args.output);
+    out.check()?;
+    if out.is_png() && !args.layers.is_empty() {
+        return Err(Error::Usage("--layers are written to EXR alone: name the picture .exr".into()));
+    }
+    args.options().check()?;
+    let file = camera::read(&args.camera)?;
+    let bars = progress::bars(args.quiet);
+    let camera = camera::make(&args.camera, file, &bounds(args, &*bars)?, args.size)?;
+    let mut truth = match inputs::scene(&args.input) {
+        Some(name) => trace(args, name, &*scenes::surface(name)?, &camera, &*bars)?,
+        None => {
+            let mesh = read(Path::new(&args.input), &*bars)?;
+            trace(args, &mesh.digest(), &mesh, &camera, &*bars)?
+        }
+    };
+    if !out.is_png() {
+        keep_layers(&mut truth.picture, args.outputs());
+    }
+    write(&truth.picture, args.settings().shading, &out)?;
+    if !args.quiet {
+        progress::say(&summary(args, &truth));
+    }
+    Ok(())
+}
+
+/// What `render` frames of the same input, so that both pictures are of one camera.
+fn bounds(args: &Truth, progress: &dyn Progress) -> Result<Bounds> {
+    let loaded = inputs::load(&Wanted {
+        names: std::slice::from_ref(&args.input),
+        estimate: Estimate::default(),
+        voxel: None,
+        colouring: None,
+        quiet: true,
+        progress,
+    })?;
+    loaded.surfels.bounds().ok_or_else(|| Error::Usage("the input holds no points".into()))
+}
+
+fn read(path: &Path, progress: &dyn Progress) -> Result<Mesh> {
+    let options = ReadOptions { triangles: true, ..Default::default() };
+    let loaded = ply::read(path, &options, progress)?;
+    Mesh::new(&loaded.cloud).map_err(|cause| Error::input(path.display().to_string(), cause))
+}
+
+fn trace<S: Scene + ?Sized>(
+    args: &Truth,
+    name: &str,
+    scene: &S,
+    camera: &Camera,
+    progress: &dyn Progress,
+) -> Result<truth::Truth> {
+    let (settings, options): (Settings, _) = (args.settings(), args.options());
+    match cache_folder().filter(|_| !args.no_cache) {
+        Some(folder) => Cache::new(folder.join("truth"))
+            .render(name, scene, camera, &settings, args.size, &options, progress),
+        None => truth::render(scene, camera, &settings, args.size, &options, progress),
+    }
+}
+
+fn summary(args: &Truth, truth: &truth::Truth) -> String {
+    let truth::Achieved { rms, max, above } = truth.error;
+    let ([width, height], out) = (args.size, Path::new(&args.output).display());
+    let exact = match args.options().filter {
+        truth::Filter::Point => "one ray a pixel".into(),
+        _ => format!("standard error {rms:.1e} RMS, {max:.1e} at most"),
+    };
+    let above = match above {
+        0 => String::new(),
+        above => format!(", {above} px above {:.1e}: allow more with --most-samples", args.error),
+    };
+    format!("{out}: {width}x{height}, {exact}{above}")
+}

@@ -1,0 +1,152 @@
+//! The weighted sums of the rays about each pixel, and what a picture is made of them.
+
+use super::eye::Seen;
+use super::kernel::Kernel;
+use super::pixel::Sample;
+use super::{Achieved, Truth};
+use crate::picture::Picture;
+use crate::settings::{Settings, Shading};
+use glam::DVec3;
+use std::ops::Range;
+
+/// `Σ w`, `Σ w` times each [value](super::pixel::Value), `Σ w²` times the variance of the values.
+type Cell = [f64; 9];
+
+const WEIGHT: usize = 0;
+const ALPHA: usize = 1;
+const VARIANCE: usize = 8;
+
+/// What the rays through some rows give to the pixels of these and of the rows about them.
+pub struct Part {
+    kernel: Kernel,
+    width: usize,
+    /// Rows of `cells`, all in the picture.
+    rows: Range<i64>,
+    cells: Vec<Cell>,
+    /// Rows of `seen`, all in the picture.
+    own: Range<i64>,
+    seen: Vec<Option<Seen>>,
+}
+
+impl Part {
+    /// For the rays through `rows`, some of which may lie beyond the picture.
+    pub fn new(kernel: Kernel, size: [u32; 2], rows: Range<i64>) -> Self {
+        let (width, height, reach) = (size[0] as usize, i64::from(size[1]), kernel.reach as i64);
+        let inside = |rows: Range<i64>| rows.start.clamp(0, height)..rows.end.clamp(0, height);
+        let own = inside(rows.clone());
+        let rows = inside(rows.start - reach..rows.end + reach);
+        let pixels = |rows: &Range<i64>| (rows.end - rows.start) as usize * width;
+        let (cells, seen) = (vec![[0.0; 9]; pixels(&rows)], vec![None; pixels(&own)]);
+        Self { kernel, width, rows, cells, own, seen }
+    }
+
+    /// Adds the rays of the pixel `at`, one a stratum, with the variances of their values.
+    pub fn add(&mut self, at: [i64; 2], samples: &[Sample], variances: &[f64]) {
+        let area = 1.0 / samples.len() as f64;
+        let width = self.kernel.width();
+        let (mut along_x, mut along_y) = (vec![0.0; width], vec![0.0; width]);
+        for (sample, variance) in samples.iter().zip(variances) {
+            self.kernel.weigh(sample.at.x, &mut along_x);
+            self.kernel.weigh(sample.at.y, &mut along_y);
+            let values = sample.seen.map(|_| sample.value());
+            let reach = self.kernel.reach as i64;
+            // The rows and columns of the picture about the pixel, and which weights are theirs.
+            let clip = |at: i64, start: i64, end: i64| (at - reach).max(start)..(at + reach + 1).min(end);
+            let columns = clip(at[0], 0, self.width as i64);
+            if columns.is_empty() {
+                continue;
+            }
+            let weights = &along_x[(columns.start - at[0] + reach) as usize..][..columns.clone().count()];
+            for y in clip(at[1], self.rows.start, self.rows.end) {
+                let row = area * along_y[(y - at[1] + reach) as usize];
+                let first = (y - self.rows.start) as usize * self.width + columns.start as usize;
+                for (cell, weight) in self.cells[first..].iter_mut().zip(weights) {
+                    let weight = row * weight;
+                    cell[WEIGHT] += weight;
+                    if let Some(values) = &values {
+                        cell[ALPHA..VARIANCE].iter_mut().zip(values).for_each(|(s, v)| *s += weight * v);
+                    }
+                    cell[VARIANCE] += weight * weight * variance;
+                }
+            }
+        }
+    }
+
+    /// Keeps what is in the middle of the pixel `at`, if that is in the picture.
+    pub fn see(&mut self, [x, y]: [i64; 2], seen: impl FnOnce() -> Option<Seen>) {
+        if self.own.contains(&y) && (0..self.width as i64).contains(&x) {
+            self.seen[(y - self.own.start) as usize * self.width + x as usize] = seen();
+        }
+    }
+}
+
+/// The sums of a whole picture.
+pub struct Sums {
+    size: [u32; 2],
+    cells: Vec<Cell>,
+    depths: Vec<f32>,
+}
+
+impl Sums {
+    pub fn new(size: [u32; 2]) -> Self {
+        let pixels = size[0] as usize * size[1] as usize;
+        Self { size, cells: vec![[0.0; 9]; pixels], depths: vec![0.0; pixels] }
+    }
+
+    pub fn add(&mut self, part: &Part) {
+        let start = part.rows.start as usize * part.width;
+        for (cell, add) in self.cells[start..].iter_mut().zip(&part.cells) {
+            cell.iter_mut().zip(add).for_each(|(sum, add)| *sum += add);
+        }
+        let start = part.own.start as usize * part.width;
+        for (depth, seen) in self.depths[start..].iter_mut().zip(&part.seen) {
+            *depth = seen.map_or(0.0, |seen| seen.depth as f32);
+        }
+    }
+
+    /// The picture, and how far it is from `asked`.
+    pub fn resolve(self, settings: &Settings, asked: f64) -> Truth {
+        let errors = || self.cells.iter().map(|cell| cell[VARIANCE].sqrt() / cell[WEIGHT]);
+        let squares: f64 = errors().map(|error| error * error).sum();
+        let error = Achieved {
+            rms: (squares / self.cells.len() as f64).sqrt(),
+            max: errors().fold(0.0, f64::max),
+            above: errors().filter(|error| *error > asked).count() as u64,
+        };
+        let pixels = self.cells.iter().zip(&self.depths);
+        let (colour, normal) = pixels.map(|(cell, depth)| resolve(cell, *depth, settings)).unzip();
+        let picture = Picture { size: self.size, colour, depth: Some(self.depths), normal: Some(normal) };
+        Truth { picture, error }
+    }
+}
+
+/// Colour with α, and the normal.
+fn resolve(cell: &Cell, depth: f32, settings: &Settings) -> ([f32; 4], [f32; 3]) {
+    let covered = cell[ALPHA];
+    if covered <= 0.0 {
+        let colour = settings.background.map_or([0.0; 4], |[r, g, b]| [r, g, b, 1.0]);
+        return (colour, [0.0; 3]);
+    }
+    let normal = DVec3::new(cell[5], cell[6], cell[7]).normalize_or_zero().as_vec3().to_array();
+    let alpha = covered / cell[WEIGHT];
+    let light = DVec3::new(cell[2], cell[3], cell[4]) / covered;
+    let shown = match settings.shading {
+        Shading::Lit | Shading::Colour => return (over(light, alpha, settings.background), normal),
+        Shading::Normal => normal,
+        Shading::Depth => [depth; 3],
+    };
+    // Numbers are not mixed with a colour.
+    let alpha = if settings.background.is_some() { 1.0 } else { alpha as f32 };
+    ([shown[0], shown[1], shown[2], alpha], normal)
+}
+
+/// Light over the background, if there is one.
+fn over(light: DVec3, alpha: f64, background: Option<[f32; 3]>) -> [f32; 4] {
+    match background {
+        None => light.extend(alpha).as_vec4().to_array(),
+        Some(background) => {
+            let behind = DVec3::from(background.map(f64::from));
+            (alpha * light + (1.0 - alpha) * behind).extend(1.0).as_vec4().to_array()
+        }
+    }
+}

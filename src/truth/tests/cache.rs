@@ -1,0 +1,135 @@
+//! Exact images on disk.
+
+use crate::Progress;
+use crate::geometry::Camera;
+use crate::scenes;
+use crate::settings::{Settings, Shading};
+use crate::truth::{Cache, Filter, Options, Truth};
+use std::fs;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+const SIZE: [u32; 2] = [12, 10];
+
+/// Counts what is rendered.
+#[derive(Default)]
+struct Count(AtomicU64);
+
+impl Progress for Count {
+    fn at(&self, _: &'static str, done: u64, _: u64) {
+        self.0.fetch_add(u64::from(done == 0), Ordering::Relaxed);
+    }
+}
+
+struct Request<'a> {
+    name: &'a str,
+    settings: Settings,
+    options: Options,
+}
+
+impl Request<'_> {
+    fn camera(&self) -> Camera {
+        scenes::camera("scene:torus")
+            .unwrap()
+            .camera(1.2, &scenes::surface("scene:torus").unwrap().bounds())
+            .unwrap()
+    }
+
+    fn render(&self, cache: &Cache, count: &Count) -> Truth {
+        let surface = scenes::surface(self.name).unwrap();
+        cache
+            .render(self.name, &*surface, &self.camera(), &self.settings, SIZE, &self.options, count)
+            .unwrap()
+    }
+
+    fn path(&self, cache: &Cache) -> PathBuf {
+        let surface = scenes::surface(self.name).unwrap();
+        cache.path(self.name, &*surface, &self.camera(), &self.settings, SIZE, &self.options)
+    }
+}
+
+fn request(name: &str) -> Request<'_> {
+    Request { name, settings: Settings::default(), options: Options::default() }
+}
+
+#[test]
+fn what_was_rendered_comes_back_as_it_was() {
+    let folder = tempfile::tempdir().unwrap();
+    let (cache, count, torus) =
+        (Cache::new(folder.path().join("a/b")), Count::default(), request("scene:torus"));
+    let first = torus.render(&cache, &count);
+    assert!(torus.path(&cache).is_file());
+    assert_eq!((torus.render(&cache, &count), count.0.load(Ordering::Relaxed)), (first, 1));
+}
+
+#[test]
+fn damaged_files_are_replaced() {
+    let folder = tempfile::tempdir().unwrap();
+    let (cache, count, torus) = (Cache::new(folder.path()), Count::default(), request("scene:torus"));
+    let first = torus.render(&cache, &count);
+    let (image, note) = (torus.path(&cache), torus.path(&cache).with_extension("txt"));
+    let (whole, noted) = (fs::read(&image).unwrap(), fs::read(&note).unwrap());
+    let mut wrong = whole.clone();
+    // Deep in the values, where the format itself has nothing to tell.
+    let middle = wrong.len() / 2;
+    wrong[middle] ^= 1;
+    let damages: [(&PathBuf, &[u8]); 5] = [
+        (&image, &wrong),
+        (&image, &whole[..middle]),
+        (&image, b""),
+        (&note, b"x 0 0 0"),
+        (&note, &noted[..70]),
+    ];
+    for (renders, (file, contents)) in damages.into_iter().enumerate() {
+        fs::write(file, contents).unwrap();
+        assert_eq!(torus.render(&cache, &count), first);
+        assert_eq!(count.0.load(Ordering::Relaxed), renders as u64 + 2);
+        assert_eq!((fs::read(&image).unwrap(), fs::read(&note).unwrap()), (whole.clone(), noted.clone()));
+    }
+}
+
+#[test]
+fn a_path_tells_images_apart_and_nothing_else() {
+    let cache = Cache::new("somewhere");
+    let path = |request: Request<'_>| request.path(&cache);
+    let usual = path(request("scene:torus"));
+    assert!(usual.starts_with("somewhere") && usual.extension().unwrap() == "exr");
+    for same in ["scene:torus?", "scene:torus?points=7&seed=3", "scene:torus?noise=1&sampler=grid"] {
+        assert_eq!(path(request(same)), usual, "{same}");
+    }
+    let splats = Settings { cutoff: 3.0, lowpass: 0.0, epsilon: 2.0, ..Default::default() };
+    assert_eq!(path(Request { settings: splats, ..request("scene:torus") }), usual);
+
+    let settings = |settings| Request { settings, ..request("scene:torus") };
+    let options = |options| Request { options, ..request("scene:torus") };
+    let point = |error| options(Options { filter: Filter::Point, error, ..Default::default() });
+    let mut others = vec![
+        usual,
+        path(request("scene:torus?frequency=3")),
+        path(request("scene:torus?frequency=3&minor=0.3")),
+        path(request("scene:sphere")),
+        path(settings(Settings { shading: Shading::Colour, ..Default::default() })),
+        path(settings(Settings { background: Some([0.0; 3]), ..Default::default() })),
+        path(options(Options { error: 0.1, ..Default::default() })),
+        path(options(Options { filter: Filter::Gaussian { variance: 1.5 }, ..Default::default() })),
+        path(options(Options { filter: Filter::Box, ..Default::default() })),
+        path(point(0.1)),
+    ];
+    assert_eq!(path(point(0.2)), others[9], "single rays have no error");
+    assert_eq!(path(request("scene:torus?minor=0.3&frequency=3")), others[2]);
+    let count = others.len();
+    others.sort();
+    others.dedup();
+    assert_eq!(others.len(), count);
+}
+
+#[test]
+fn a_scene_that_has_changed_is_another_under_the_same_name() {
+    let cache = Cache::new("somewhere");
+    let (old, new) =
+        (scenes::surface("scene:torus").unwrap(), scenes::surface("scene:torus?minor=0.41").unwrap());
+    let torus = request("scene:torus");
+    let path =
+        |surface| cache.path("scene:torus", surface, &torus.camera(), &torus.settings, SIZE, &torus.options);
+    assert_ne!(path(&*old), path(&*new));
+}
