@@ -36,11 +36,11 @@ struct Pilot {
 
 impl<'a, S: Scene + ?Sized> Plan<'a, S> {
     pub fn new(eye: &'a Eye<'a, S>, size: [u32; 2], shading: Shading, options: &Options) -> Self {
-        let kernel = Kernel::new(options.filter);
         let strata = match options.filter {
             Filter::Point => [1; 2],
             _ => [FEWEST_STRATA as usize, options.most_strata() as usize],
         };
+        let kernel = Kernel::new(options.filter, strata[1]);
         let enough = options.error * options.error / kernel.gain();
         Self { eye, size, kernel, exact: exact(shading), enough, strata }
     }
@@ -54,8 +54,8 @@ impl<'a, S: Scene + ?Sized> Plan<'a, S> {
     }
 
     /// Traces some rows.
-    pub fn trace(&self, rows: Range<i64>) -> Part {
-        let mut part = Part::new(self.kernel, self.size, rows.clone());
+    pub fn trace(&self, rows: Range<i64>) -> Part<'_> {
+        let mut part = Part::new(&self.kernel, self.size, rows.clone());
         let mut above = self.pilot(rows.start - 1).variances;
         let mut here = self.pilot(rows.start);
         for y in rows {
@@ -84,7 +84,7 @@ impl<'a, S: Scene + ?Sized> Plan<'a, S> {
     }
 
     /// Traces a pixel until it is exact enough; `rough` if it or a neighbour was not in the pilot.
-    fn finish(&self, mut pixel: Pixel, rough: bool, at: [i64; 2], part: &mut Part) {
+    fn finish(&self, mut pixel: Pixel, rough: bool, at: [i64; 2], part: &mut Part<'_>) {
         let mut variances = Vec::new();
         let mut variance = pixel.variances(self.exact, &mut variances);
         let least = if rough { BESIDE } else { self.strata[0] };

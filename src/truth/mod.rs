@@ -5,7 +5,7 @@
 //! strata, more where what they see differs, until the standard error of what the [`Filter`] makes of them is as small as the
 //! [`Options`] ask.
 //!
-//! What the pixels hold, where `w` is the filter's weight of a ray:
+//! What the pixels hold, where `w` is the filter's weight of a ray's stratum:
 //!
 //! | | |
 //! |---|---|

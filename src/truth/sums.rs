@@ -9,16 +9,15 @@ use crate::settings::{Settings, Shading};
 use glam::DVec3;
 use std::ops::Range;
 
-/// `Σ w`, `Σ w` times each [value](super::pixel::Value), `Σ w²` times the variance of the values.
-type Cell = [f64; 9];
+/// `Σ w` times each [value](super::pixel::Value), `Σ w²` times the variance of the values; `Σ w` is 1.
+type Cell = [f64; 8];
 
-const WEIGHT: usize = 0;
-const ALPHA: usize = 1;
-const VARIANCE: usize = 8;
+const ALPHA: usize = 0;
+const VARIANCE: usize = 7;
 
 /// What the rays through some rows give to the pixels of these and of the rows about them.
-pub struct Part {
-    kernel: Kernel,
+pub struct Part<'a> {
+    kernel: &'a Kernel,
     width: usize,
     /// Rows of `cells`, all in the picture.
     rows: Range<i64>,
@@ -28,46 +27,59 @@ pub struct Part {
     seen: Vec<Option<Seen>>,
 }
 
-impl Part {
+impl<'a> Part<'a> {
     /// For the rays through `rows`, some of which may lie beyond the picture.
-    pub fn new(kernel: Kernel, size: [u32; 2], rows: Range<i64>) -> Self {
+    pub fn new(kernel: &'a Kernel, size: [u32; 2], rows: Range<i64>) -> Self {
         let (width, height, reach) = (size[0] as usize, i64::from(size[1]), kernel.reach as i64);
         let inside = |rows: Range<i64>| rows.start.clamp(0, height)..rows.end.clamp(0, height);
         let own = inside(rows.clone());
         let rows = inside(rows.start - reach..rows.end + reach);
         let pixels = |rows: &Range<i64>| (rows.end - rows.start) as usize * width;
-        let (cells, seen) = (vec![[0.0; 9]; pixels(&rows)], vec![None; pixels(&own)]);
+        let (cells, seen) = (vec![[0.0; 8]; pixels(&rows)], vec![None; pixels(&own)]);
         Self { kernel, width, rows, cells, own, seen }
     }
 
     /// Adds the rays of the pixel `at`, one a stratum, with the variances of their values.
     pub fn add(&mut self, at: [i64; 2], samples: &[Sample], variances: &[f64]) {
-        let area = 1.0 / samples.len() as f64;
-        let width = self.kernel.width();
-        let (mut along_x, mut along_y) = (vec![0.0; width], vec![0.0; width]);
-        for (sample, variance) in samples.iter().zip(variances) {
-            self.kernel.weigh(sample.at.x, &mut along_x);
-            self.kernel.weigh(sample.at.y, &mut along_y);
-            let values = sample.seen.map(|_| sample.value());
-            let reach = self.kernel.reach as i64;
-            // The rows and columns of the picture about the pixel, and which weights are theirs.
-            let clip = |at: i64, start: i64, end: i64| (at - reach).max(start)..(at + reach + 1).min(end);
-            let columns = clip(at[0], 0, self.width as i64);
-            if columns.is_empty() {
-                continue;
+        if samples.iter().all(|sample| sample.seen.is_none()) {
+            return;
+        }
+        let strata = samples.len().isqrt();
+        let rows = samples.chunks(strata).zip(variances.chunks(strata));
+        let mut row = vec![[0.0; 8]; self.kernel.width()];
+        for ((samples, variances), weights) in rows.zip(self.kernel.weights(strata)) {
+            self.along(samples, variances, &mut row);
+            self.across(at, &row, weights);
+        }
+    }
+
+    /// The sums of a row of strata for the pixels beside.
+    fn along(&self, samples: &[Sample], variances: &[f64], row: &mut [Cell]) {
+        row.fill([0.0; 8]);
+        let strata = samples.iter().zip(variances).zip(self.kernel.weights(samples.len()));
+        for ((sample, variance), weights) in strata {
+            let [v0, v1, v2, v3, v4, v5, v6] = sample.value();
+            let values = [v0, v1, v2, v3, v4, v5, v6, *variance];
+            for (cell, &weight) in row.iter_mut().zip(weights) {
+                add(cell, &values, weight);
             }
-            let weights = &along_x[(columns.start - at[0] + reach) as usize..][..columns.clone().count()];
-            for y in clip(at[1], self.rows.start, self.rows.end) {
-                let row = area * along_y[(y - at[1] + reach) as usize];
-                let first = (y - self.rows.start) as usize * self.width + columns.start as usize;
-                for (cell, weight) in self.cells[first..].iter_mut().zip(weights) {
-                    let weight = row * weight;
-                    cell[WEIGHT] += weight;
-                    if let Some(values) = &values {
-                        cell[ALPHA..VARIANCE].iter_mut().zip(values).for_each(|(s, v)| *s += weight * v);
-                    }
-                    cell[VARIANCE] += weight * weight * variance;
-                }
+        }
+    }
+
+    /// Adds the sums of a row of strata of the pixel `at` to the pixels of the picture.
+    fn across(&mut self, at: [i64; 2], row: &[Cell], weights: &[f64]) {
+        let reach = self.kernel.reach as i64;
+        let clip = |at: i64, start: i64, end: i64| (at - reach).max(start)..(at + reach + 1).min(end);
+        let columns = clip(at[0], 0, self.width as i64);
+        if columns.is_empty() {
+            return;
+        }
+        let row = &row[(columns.start - at[0] + reach) as usize..][..(columns.end - columns.start) as usize];
+        for y in clip(at[1], self.rows.start, self.rows.end) {
+            let first = (y - self.rows.start) as usize * self.width + columns.start as usize;
+            let weight = weights[(y - at[1] + reach) as usize];
+            for (cell, values) in self.cells[first..].iter_mut().zip(row) {
+                add(cell, values, weight);
             }
         }
     }
@@ -80,6 +92,14 @@ impl Part {
     }
 }
 
+/// Adds weighted values; the weight of a variance is a square.
+fn add(cell: &mut Cell, values: &Cell, weight: f64) {
+    for (sum, value) in cell[..VARIANCE].iter_mut().zip(values) {
+        *sum += weight * value;
+    }
+    cell[VARIANCE] += weight * weight * values[VARIANCE];
+}
+
 /// The sums of a whole picture.
 pub struct Sums {
     size: [u32; 2],
@@ -90,10 +110,10 @@ pub struct Sums {
 impl Sums {
     pub fn new(size: [u32; 2]) -> Self {
         let pixels = size[0] as usize * size[1] as usize;
-        Self { size, cells: vec![[0.0; 9]; pixels], depths: vec![0.0; pixels] }
+        Self { size, cells: vec![[0.0; 8]; pixels], depths: vec![0.0; pixels] }
     }
 
-    pub fn add(&mut self, part: &Part) {
+    pub fn add(&mut self, part: &Part<'_>) {
         let start = part.rows.start as usize * part.width;
         for (cell, add) in self.cells[start..].iter_mut().zip(&part.cells) {
             cell.iter_mut().zip(add).for_each(|(sum, add)| *sum += add);
@@ -106,7 +126,7 @@ impl Sums {
 
     /// The picture, and how far it is from `asked`.
     pub fn resolve(self, settings: &Settings, asked: f64) -> Truth {
-        let errors = || self.cells.iter().map(|cell| cell[VARIANCE].sqrt() / cell[WEIGHT]);
+        let errors = || self.cells.iter().map(|cell| cell[VARIANCE].sqrt());
         let squares: f64 = errors().map(|error| error * error).sum();
         let error = Achieved {
             rms: (squares / self.cells.len() as f64).sqrt(),
@@ -122,21 +142,25 @@ impl Sums {
 
 /// Colour with α, and the normal.
 fn resolve(cell: &Cell, depth: f32, settings: &Settings) -> ([f32; 4], [f32; 3]) {
-    let covered = cell[ALPHA];
+    // No more than 1 but for rounding.
+    let covered = cell[ALPHA].min(1.0);
     if covered <= 0.0 {
         let colour = settings.background.map_or([0.0; 4], |[r, g, b]| [r, g, b, 1.0]);
         return (colour, [0.0; 3]);
     }
-    let normal = DVec3::new(cell[5], cell[6], cell[7]).normalize_or_zero().as_vec3().to_array();
-    let alpha = covered / cell[WEIGHT];
-    let light = DVec3::new(cell[2], cell[3], cell[4]) / covered;
+    let normal = DVec3::new(cell[4], cell[5], cell[6]).normalize_or_zero().as_vec3().to_array();
+    let light = DVec3::new(cell[1], cell[2], cell[3]) / covered;
     let shown = match settings.shading {
-        Shading::Lit | Shading::Colour => return (over(light, alpha, settings.background), normal),
+        Shading::Lit | Shading::Colour => return (over(light, covered, settings.background), normal),
         Shading::Normal => normal,
         Shading::Depth => [depth; 3],
     };
-    // Numbers are not mixed with a colour.
-    let alpha = if settings.background.is_some() { 1.0 } else { alpha as f32 };
+    // Numbers are not mixed with a colour: the half decides.
+    let alpha = match settings.background {
+        None => covered as f32,
+        Some(_) if covered >= 0.5 => 1.0,
+        Some([r, g, b]) => return ([r, g, b, 1.0], normal),
+    };
     ([shown[0], shown[1], shown[2], alpha], normal)
 }
 

@@ -104,7 +104,7 @@ fn a_checker_far_above_nyquist_is_its_average() {
 fn the_plane_towards_the_horizon_is_its_average() {
     let plane = scenes::surface("scene:plane?frequency=300").unwrap();
     let settings = Settings { shading: Shading::Colour, ..Default::default() };
-    let camera = Camera::look_at(DVec3::Y, DVec3::new(0.0, 0.7, -1.0), DVec3::Y, 0.4, 2.0, 0.01).unwrap();
+    let camera = Camera::look_at(DVec3::Y, DVec3::new(0.0, 0.7, -1.0), DVec3::Y, 0.1, 2.0, 0.01).unwrap();
     let options = FINE;
     let truth = render(&*plane, &camera, &settings, [8, 4], &options, &()).unwrap();
     let albedo = |x: f64| plane.trace(DVec3::new(x, 1.0, -1.0), DVec3::NEG_Y).unwrap().albedo[0];

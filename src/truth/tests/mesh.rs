@@ -14,7 +14,9 @@ use std::f64::consts::{PI, TAU};
 fn sphere(n: u32) -> Cloud {
     let point = |i: u32, j: u32| {
         let (theta, phi) = (PI * f64::from(j) / f64::from(n), TAU * f64::from(i) / f64::from(2 * n));
-        DVec3::new(theta.sin() * phi.sin(), theta.cos(), theta.sin() * phi.cos()).as_vec3()
+        // The poles are points.
+        let around = if j == n { 0.0 } else { theta.sin() };
+        DVec3::new(around * phi.sin(), theta.cos(), around * phi.cos()).as_vec3()
     };
     let index = |i: u32, j: u32| j * 2 * n + i % (2 * n);
     let positions = (0..=n).flat_map(|j| (0..2 * n).map(move |i| point(i, j))).collect();

@@ -6,7 +6,7 @@ use crate::scenes;
 use crate::settings::{Settings, Shading};
 use crate::truth::{Eye, Filter, Options, render};
 use glam::dcamera::{lh, rh};
-use glam::{DMat4, DVec2, DVec3, DVec4};
+use glam::{DVec2, DVec3, DVec4};
 
 const SIZE: [u32; 2] = [96, 64];
 

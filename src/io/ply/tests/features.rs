@@ -61,6 +61,17 @@ fn strips_alternate_and_restart() {
 }
 
 #[test]
+fn triangles_are_kept_for_complete_points_on_request() {
+    let lines = format!("element vertex 3\n{XYZ}\n{NORMAL}\nproperty float radius\n{FACE}");
+    let file = text(&lines, "0 0 0 0 0 1 1\n1 0 0 0 0 1 1\n0 1 0 0 0 1 1\n3 0 1 2\n");
+    let triangles = |triangles| {
+        let options = ReadOptions { triangles, ..Default::default() };
+        read_bytes("test.ply", &file, &options).unwrap().cloud.triangles
+    };
+    assert_eq!((triangles(false), triangles(true)), (vec![], vec![[0, 1, 2]]));
+}
+
+#[test]
 fn range_grids_leave_out_tears() {
     // Three rows of four cells, spaced by 1; a cell is empty, the last column lies far behind the others.
     let info = "obj_info num_cols 4\nobj_info num_rows 3\n";
