@@ -62,7 +62,7 @@ fn strips_alternate_and_restart() {
 
 #[test]
 fn triangles_are_kept_for_complete_points_on_request() {
-    let lines = format!("element vertex 3\n{XYZ}\n{NORMAL}\nproperty float radius\n{FACE}");
+    let lines = format!("element vertex 3\n{FLOATS}element face 1\nproperty list uchar int vertex_indices");
     let file = text(&lines, "0 0 0 0 0 1 1\n1 0 0 0 0 1 1\n0 1 0 0 0 1 1\n3 0 1 2\n");
     let triangles = |triangles| {
         let options = ReadOptions { triangles, ..Default::default() };
