@@ -13,7 +13,7 @@
 //! | colour, normal | `Σ w c / Σ w` over the rays that hit, as splatting divides; each ray is shaded by itself. Normals are made unit again |
 //! | depth | that of the ray through the pixel's centre, or of the nearest one to it that hits: a mean of two surfaces is none |
 //!
-//! Both sides of a surface are seen. [`Settings`](crate::Settings) that concern splats (cut-off, low-pass, ε, culling) mean nothing here.
+//! Both sides of a surface are seen. [`Settings`] that concern splats (cut-off, low-pass, ε, culling) mean nothing here.
 
 mod band;
 mod cache;

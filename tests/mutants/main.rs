@@ -63,7 +63,7 @@ fn the_files_are_sound_before_they_are_damaged() {
 fn read(bytes: &[u8]) -> surfel::Result<Loaded> {
     let named = |name: &&str| bytes.windows(name.len()).any(|window| window == name.as_bytes());
     let scalar = ["radius\n", "tag\n"].iter().find(|name| named(name)).map(|name| name.trim_end().into());
-    ply::read_bytes("mutant", bytes, &ReadOptions { scalar })
+    ply::read_bytes("mutant", bytes, &ReadOptions { scalar, ..Default::default() })
 }
 
 /// Whether it can be read; panics if anything about it is wrong.
