@@ -20,6 +20,7 @@
 //! | [`reference`](mod@reference) | the float64 twin of every pass, on the CPU; judges pictures |
 //! | [`truth`] | exact images: rays against the surface itself |
 //! | [`metrics`] | how far a picture is from the truth |
+//! | `bench` | speed against error (feature `bench`) |
 //! | [`vk`] | the layer over raw Vulkan |
 //!
 //! ```no_run
@@ -41,6 +42,8 @@
 //! # }
 //! ```
 
+#[cfg(feature = "bench")]
+pub mod bench;
 pub mod error;
 mod frame;
 pub mod geometry;

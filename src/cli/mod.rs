@@ -19,7 +19,6 @@ mod render;
 mod report;
 mod scenes;
 mod summary;
-mod times;
 mod truth;
 mod values;
 mod vulkan;

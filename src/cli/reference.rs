@@ -1,8 +1,8 @@
 //! Rendering without Vulkan.
 
 use super::render::{Outcome, Task};
-use super::times::Times;
 use std::time::Instant;
+use surfel::bench::Times;
 use surfel::{Error, Result, SplatCounts, reference};
 
 /// Most pixels of a picture: they take some 5 GiB in float64, and running out of memory would stop the process.

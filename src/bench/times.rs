@@ -1,8 +1,8 @@
 //! How long frames and their passes took.
 
+use crate::vk::PassTime;
 use std::fmt;
 use std::time::Duration;
-use surfel::vk::PassTime;
 
 /// Times of one command's frames.
 #[derive(Clone, Debug, Default)]
@@ -15,7 +15,7 @@ pub struct Times {
 }
 
 /// Milliseconds over the frames that count.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Statistics {
     /// The middle one; the mean of the two in the middle if there is none.
     pub median: f64,
@@ -44,6 +44,11 @@ impl Times {
         }
     }
 
+    /// Frames that count.
+    pub fn count(&self) -> usize {
+        self.frames.len()
+    }
+
     /// Whole frames, as their caller waited for them.
     pub fn frame(&self) -> Option<Statistics> {
         Statistics::of(&self.frames)
@@ -56,7 +61,8 @@ impl Times {
 }
 
 impl Statistics {
-    fn of(times: &[f64]) -> Option<Self> {
+    /// Of milliseconds in any order; `None` of none.
+    pub fn of(times: &[f64]) -> Option<Self> {
         let mut sorted = times.to_vec();
         sorted.sort_by(f64::total_cmp);
         let (min, max) = (*sorted.first()?, *sorted.last()?);
