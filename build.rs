@@ -1,6 +1,10 @@
 //! Compiles `shaders-glsl/*.glsl` and writes `OUT_DIR/shaders.rs`: the SPIR-V, the structs that shaders and Rust share, the ids of the
 //! specialization constants. GLSL is the truth: a field that is renamed, swapped or gone there does not build here.
+//!
+//! Tells the program which code it is of: `SURFEL_CODE` and `SURFEL_COMMIT`.
 
+#[path = "tools/code_digest.rs"]
+pub mod code_digest;
 #[path = "tools/shader_build/mod.rs"]
 pub mod shader_build;
 
@@ -10,7 +14,7 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     // Cargo watches every file below a folder, so the includes are covered.
     println!("cargo::rerun-if-changed=shaders-glsl");
-    match write_table() {
+    match write_table().and_then(|()| code_digest::tell()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(message) => {
             message.lines().for_each(|line| println!("cargo::error={line}"));

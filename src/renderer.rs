@@ -27,7 +27,7 @@ pub struct RenderOptions {
     pub precision: Precision,
     /// What visits the pixels; `None` takes what is faster on the device.
     pub rasterizer: Option<Rasterizer>,
-    /// Time the passes.
+    /// Time the passes; see also [`Renderer::profile`].
     pub profile: bool,
     /// Count the splats by their fate.
     pub count: bool,
@@ -123,6 +123,11 @@ impl Renderer {
         let report = self.run(scene, camera, settings, true)?;
         let picture = self.present.as_ref().map(|present| present.canvas.picture(&present.readback));
         Ok((picture.unwrap_or_default(), report))
+    }
+
+    /// Whether later frames are profiled, if [`RenderOptions::profile`] was asked for: what a whole frame costs is best timed without.
+    pub fn profile(&mut self, on: bool) {
+        self.commands.time(on);
     }
 
     /// Float width of the weighted sums in use.

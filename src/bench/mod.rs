@@ -1,7 +1,35 @@
-//! Measuring speed against error.
+//! Measuring speed against error: which method with which settings for which budget.
+//!
+//! ```text
+//! suites → plans ─ runner: subject, engine → stopwatch · truth, metrics, terms · reference → record ─ JSON, CSV, table, page
+//! ```
+//!
+//! | module | |
+//! |---|---|
+//! | [`suites`] | what is measured together |
+//! | [`plan`] | one run: a scene, an engine, settings, what is wanted to be known |
+//! | [`subject`] | a scene that can be sampled ever more densely, and what it truly looks like |
+//! | [`engine`] | who renders: each method behind the same few calls |
+//! | [`stopwatch`] | how long frames take |
+//! | [`terms`], [`hidden`] | what an error is made of |
+//! | [`runner`], [`session`] | carries plans out |
+//! | [`record`] | what was measured, as it is kept |
 
+pub mod code;
+pub mod engine;
+pub mod exhibit;
+pub mod hidden;
+pub mod plan;
 pub mod record;
+pub mod runner;
+pub mod session;
+pub mod stopwatch;
+pub mod subject;
+pub mod suites;
+pub mod terms;
 mod times;
 
 pub use record::Results;
+pub use session::{Wanted, measure};
+pub use suites::Suite;
 pub use times::{Statistics, Times};

@@ -193,7 +193,7 @@ pub struct Error {
     /// Metrics by their names; those that are infinite or could not be taken are not there.
     pub metrics: BTreeMap<String, f64>,
     /// What it is made of.
-    pub terms: Option<Terms>,
+    pub terms: Terms,
 }
 
 /// What an `rmse` is made of, in its unit: linear light, white is 1.
@@ -209,8 +209,6 @@ pub struct Terms {
     pub hidden: Option<f64>,
     /// By how much rounding to float32 changes the picture: its difference from the float64 reference.
     pub precision: Option<f64>,
-    /// Of the filter: how far the truth through a [cut-off](crate::Settings::cutoff) filter is from the truth.
-    pub filter: Option<f64>,
 }
 
 /// How far a float32 picture is from the float64 reference, pixel by pixel: as [`Comparison`](crate::reference::Comparison).

@@ -1,6 +1,7 @@
 //! The command line: the library knows nothing of it.
 
 mod args;
+mod bench;
 mod camera;
 mod colouring;
 mod compare;
@@ -43,6 +44,7 @@ pub fn run() -> ExitCode {
             compared => compared.map(drop),
         },
         Command::Truth(args) => truth::run(&args),
+        Command::Bench(args) => bench::run(&args),
         Command::Devices => devices::run(),
         Command::Scenes => scenes::run(),
     };

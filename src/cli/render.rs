@@ -50,7 +50,7 @@ pub fn run(args: &Render) -> Result<()> {
     check_outputs(args, &out)?;
     let settings = args.look.settings();
     settings.check()?;
-    let device = vulkan::options(&args.place)?;
+    let device = vulkan::options(&args.place.device)?;
     let file = camera::read(&args.camera)?;
     let colouring = Colouring::new(&args.colours, camera::up(&args.camera, file))?;
     check_colours(args, colouring.as_ref(), &out)?;

@@ -1,6 +1,6 @@
 //! Rendering on a Vulkan device.
 
-use super::args::Place;
+use super::args::OnDevice;
 use super::files::{cache_folder, read_json};
 use super::render::{Outcome, Task};
 use super::report::{Gpu, HalfError};
@@ -15,7 +15,7 @@ use surfel::{Outputs, Picture, Precision, RenderOptions, Renderer, Result, Scene
 const FRAMES: &str = "rendering frames";
 
 /// How the device is opened. Reads the file of limits.
-pub fn options(place: &Place) -> Result<DeviceOptions> {
+pub fn options(place: &OnDevice) -> Result<DeviceOptions> {
     Ok(DeviceOptions {
         select: place.device.clone(),
         validate: place.validate,

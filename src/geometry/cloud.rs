@@ -1,5 +1,6 @@
 //! A point cloud as files hold it: positions, and whatever else there is.
 
+use super::morton::order;
 use super::{Colours, Ellipse, Surfels};
 use glam::{DVec3, Vec3};
 
@@ -46,6 +47,34 @@ impl Cloud {
         self.positions.len()
     }
 
+    /// So many of its points, spread evenly: every so-manyth along the Z-curve of their bounds; all of them, and everything else, if there are
+    /// no more. Radii, ellipses and triangles, which belonged to the closer points, are dropped.
+    pub fn some(&self, count: usize) -> Self {
+        if count >= self.len() {
+            return self.clone();
+        }
+        let order = order(&self.positions);
+        let all = order.len() as u64;
+        let kept: Vec<usize> =
+            (0..count as u64).map(|i| order[(i * all / count as u64) as usize] as usize).collect();
+        fn of<T: Copy>(values: &[T], kept: &[usize]) -> Vec<T> {
+            kept.iter().map(|&i| values[i]).collect()
+        }
+        Self {
+            origin: self.origin,
+            positions: of(&self.positions, &kept),
+            normals: self.normals.as_ref().map(|normals| of(normals, &kept)),
+            two_sided: self.two_sided.as_ref().map(|two_sided| of(two_sided, &kept)),
+            colours: self.colours.as_ref().map(|colours| match colours {
+                Colours::Srgb8(codes) => Colours::Srgb8(of(codes, &kept)),
+                Colours::Linear(linear) => Colours::Linear(of(linear, &kept)),
+            }),
+            scalar: self.scalar.as_ref().map(|scalar| of(scalar, &kept)),
+            view: self.view,
+            ..Default::default()
+        }
+    }
+
     /// Whether there are none.
     pub fn is_empty(&self) -> bool {
         self.positions.is_empty()
@@ -65,5 +94,32 @@ impl From<Surfels> for Cloud {
             colours: surfels.colours,
             ..Default::default()
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn some_of_the_points_are_spread_evenly_and_stay_whole() {
+        let xs: Vec<f32> = (0..1000u32).map(|i| (i * 7919 % 1000) as f32).collect();
+        let cloud = Cloud {
+            positions: xs.iter().map(|&x| Vec3::new(x, 0.0, 0.0)).collect(),
+            colours: Some(Colours::Linear(xs.iter().map(|&x| [x; 3]).collect())),
+            radii: Some(vec![1.0; 1000]),
+            triangles: vec![[0, 1, 2]],
+            ..Default::default()
+        };
+        let some = cloud.some(100);
+        assert_eq!(
+            some.positions.iter().map(|p| p.x).collect::<Vec<_>>(),
+            (0..100).map(|i| 10.0 * i as f32).collect::<Vec<_>>()
+        );
+        let Some(Colours::Linear(colours)) = &some.colours else { panic!("no colours") };
+        assert!(colours.iter().zip(&some.positions).all(|(colour, p)| colour[0] == p.x));
+        assert_eq!((some.radii, some.triangles.len()), (None, 0));
+        assert_eq!(cloud.some(1000), cloud);
+        assert!(cloud.some(0).is_empty());
     }
 }

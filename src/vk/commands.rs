@@ -12,6 +12,7 @@ pub struct Commands {
     cmd: vk::CommandBuffer,
     fence: vk::Fence,
     timestamps: Option<Timestamps>,
+    timed: bool,
     device: Arc<Device>,
 }
 
@@ -24,6 +25,7 @@ impl Commands {
             cmd: vk::CommandBuffer::null(),
             fence: vk::Fence::null(),
             timestamps,
+            timed: profile,
             device: device.clone(),
         };
         let pool = vk::CommandPoolCreateInfo::default().queue_family_index(device.family);
@@ -45,6 +47,11 @@ impl Commands {
         Ok(commands)
     }
 
+    /// Whether passes of later runs are timed, of a slot that can time them: brackets about every pass cost time themselves.
+    pub fn time(&mut self, on: bool) {
+        self.timed = on;
+    }
+
     /// Records with `body`, submits, and waits until the GPU is done.
     pub fn run(&mut self, body: impl FnOnce(&mut Recorder<'_>)) -> Result<()> {
         let raw = &self.device.raw;
@@ -55,7 +62,7 @@ impl Commands {
                 .map_err(Error::vulkan("vkResetCommandPool"))?;
             raw.begin_command_buffer(self.cmd, &begin).map_err(Error::vulkan("vkBeginCommandBuffer"))?;
         }
-        body(&mut Recorder::new(&self.device, self.cmd, self.timestamps.as_mut()));
+        body(&mut Recorder::new(&self.device, self.cmd, self.timestamps.as_mut().filter(|_| self.timed)));
         let buffers = [self.cmd];
         let submit = [vk::SubmitInfo::default().command_buffers(&buffers)];
         // SAFETY: the buffer was recorded whole, the fence is unsignalled, and both are waited for before they are used again.
@@ -72,7 +79,7 @@ impl Commands {
 
     /// Times of the passes of the last run; empty if it was not profiled.
     pub fn pass_times(&self) -> Result<Vec<PassTime>> {
-        self.timestamps.as_ref().map_or(Ok(Vec::new()), Timestamps::read)
+        self.timestamps.as_ref().filter(|_| self.timed).map_or(Ok(Vec::new()), Timestamps::read)
     }
 }
 

@@ -1,10 +1,12 @@
 //! What the program can be asked.
 
+mod bench;
 mod compare;
 mod convert;
 mod points;
 mod truth;
 
+pub use bench::Bench;
 pub use compare::Compare;
 pub use convert::{Convert, Info};
 pub use points::{Colours, Points};
@@ -39,6 +41,8 @@ pub enum Command {
     Compare(Box<Compare>),
     /// Traces the exact picture of a built-in scene or a mesh, without Vulkan
     Truth(Box<Truth>),
+    /// Measures speed against error, and makes a page of it
+    Bench(Box<Bench>),
     /// Lists the Vulkan devices; * marks the one that is used unless --device names another
     Devices,
     /// Lists the built-in scenes with their parameters
@@ -175,6 +179,14 @@ pub struct Place {
     /// Keeps sums in 16-bit floats: half the memory, coarser
     #[arg(long)]
     pub half: bool,
+    /// On which device
+    #[command(flatten)]
+    pub device: OnDevice,
+}
+
+/// A Vulkan device, and how it is opened.
+#[derive(Args, Debug)]
+pub struct OnDevice {
     /// The Vulkan device, by its index or a part of its name, as `surfel devices` lists it
     #[arg(long, value_name = "INDEX|NAME")]
     pub device: Option<String>,

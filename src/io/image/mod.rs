@@ -144,11 +144,27 @@ impl Encoded {
         &mut self.pixels
     }
 
-    /// Writes it as PNG: RGBA, or RGB if every pixel is opaque.
+    /// Writes it as PNG to a file or to standard output, as [`Encoded::png`].
     ///
     /// # Errors
     /// [`Error::Io`] if `out` cannot be written.
-    pub fn write_png(mut self, out: &Output) -> Result<()> {
+    pub fn write_png(self, out: &Output) -> Result<()> {
+        match out {
+            Output::File(path) => atomic::write(path, |mut out| self.png(&mut out)),
+            Output::Stdout => {
+                let mut out = io::stdout().lock();
+                self.png(&mut out)
+                    .and_then(|()| out.flush())
+                    .map_err(Error::io(Path::new("-"), "cannot write to standard output"))
+            }
+        }
+    }
+
+    /// The bytes of a PNG of it: RGBA, or RGB if every pixel is opaque.
+    ///
+    /// # Errors
+    /// What `out` says.
+    pub fn png(mut self, out: &mut dyn Write) -> io::Result<()> {
         let opaque = self.pixels.iter().all(|pixel| pixel[3] == 255);
         let (bytes, kind) = match opaque {
             true => {
@@ -161,18 +177,7 @@ impl Encoded {
             }
         };
         let [width, height] = self.size;
-        let png = |out: &mut dyn Write| {
-            PngEncoder::new(out).write_image(&bytes, width, height, kind).map_err(io_error)
-        };
-        match out {
-            Output::File(path) => atomic::write(path, |mut out| png(&mut out)),
-            Output::Stdout => {
-                let mut out = io::stdout().lock();
-                png(&mut out)
-                    .and_then(|()| out.flush())
-                    .map_err(Error::io(Path::new("-"), "cannot write to standard output"))
-            }
-        }
+        PngEncoder::new(out).write_image(&bytes, width, height, kind).map_err(io_error)
     }
 }
 

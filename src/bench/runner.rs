@@ -1,0 +1,286 @@
+//! Carries out what is planned, and keeps what several runs share: surfels, exact pictures, the device.
+
+use super::engine::{Engine, OnDevice, Ready};
+use super::plan::Plan;
+use super::record::{self, Agreement, Exhibit, Run, Setting, Time};
+use super::subject::Subject;
+use super::{exhibit, hidden, stopwatch, terms};
+use crate::error::{Error, Result};
+use crate::geometry::{Camera, Surfels};
+use crate::metrics::flicker::Flicker;
+use crate::metrics::{self, Metric, Pair, colour};
+use crate::picture::Picture;
+use crate::reference::{self, Expected, Tolerance};
+use crate::settings::Settings;
+use crate::truth::{self, Cache, Truth};
+use crate::vk::Device;
+use std::collections::HashMap;
+use std::path::PathBuf;
+use std::rc::Rc;
+use std::sync::Arc;
+
+/// Frames of the path along which flicker is measured.
+const PATH: u32 = 6;
+
+/// How far the picture moves from one of them to the next, px: less than half, and no simple fraction.
+const STEP: f64 = 0.37;
+
+/// How runs are made.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// The device; without one, what needs it is refused.
+    pub device: Option<Arc<Device>>,
+    /// Where exact pictures are kept between calls.
+    pub cache: Option<PathBuf>,
+    /// How exact pictures are made.
+    pub truth: truth::Options,
+    /// How many frames are timed.
+    pub effort: stopwatch::Effort,
+}
+
+/// Makes runs one after the other; fastest if those of one scene follow each other.
+pub struct Runner {
+    options: Options,
+    /// Scans, which are no scenes.
+    scans: Vec<Rc<Subject>>,
+    subject: Option<Rc<Subject>>,
+    surfels: Option<(SurfelKey, Rc<Surfels>)>,
+    truths: HashMap<String, Rc<Truth>>,
+    exhibits: Vec<Exhibit>,
+}
+
+/// What surfels depend on.
+#[derive(Clone, Debug, PartialEq)]
+struct SurfelKey {
+    scene: String,
+    points: u64,
+    radius_scale: f32,
+}
+
+/// A plan with all that it needs.
+struct Job<'a> {
+    plan: &'a Plan,
+    subject: Rc<Subject>,
+    surfels: Rc<Surfels>,
+    camera: Camera,
+}
+
+impl Runner {
+    /// Has made nothing yet. Plans name these scans, or built-in scenes.
+    pub fn new(options: Options, scans: Vec<Rc<Subject>>) -> Self {
+        Self { options, scans, subject: None, surfels: None, truths: HashMap::new(), exhibits: Vec::new() }
+    }
+
+    /// Carries out a plan; what cannot be rendered is refused in the result.
+    ///
+    /// # Errors
+    /// If the device is lost, or the scene is none.
+    pub fn run(&mut self, plan: &Plan) -> Result<Run> {
+        let job = self.job(plan)?;
+        let mut run = blank(&job);
+        match self.fill(&job, &mut run) {
+            Ok(()) => Ok(run),
+            Err(error) if error.is_device_lost() => Err(error),
+            Err(error) => Ok(Run { refused: Some(error.to_string()), ..blank(&job) }),
+        }
+    }
+
+    /// The pictures of the runs so far.
+    pub fn exhibits(self) -> Vec<Exhibit> {
+        self.exhibits
+    }
+
+    fn job<'a>(&mut self, plan: &'a Plan) -> Result<Job<'a>> {
+        let known = self.subject.iter().chain(&self.scans).find(|subject| subject.name == plan.scene);
+        let subject = match known {
+            Some(subject) => subject.clone(),
+            None => Rc::new(Subject::scene(&plan.scene)?),
+        };
+        self.subject = Some(subject.clone());
+        let (points, radius_scale) = (plan.points, plan.radius_scale);
+        let key = SurfelKey { scene: plan.scene.clone(), points, radius_scale };
+        let surfels = match self.surfels.take() {
+            Some((of, surfels)) if of == key => surfels,
+            _ => {
+                let mut surfels = subject.surfels(points)?;
+                surfels.radii.iter_mut().for_each(|radius| *radius *= radius_scale);
+                Rc::new(surfels)
+            }
+        };
+        self.surfels = Some((key, surfels.clone()));
+        let camera = subject.camera(0.0, plan.size)?;
+        Ok(Job { plan, subject, surfels, camera })
+    }
+
+    fn fill(&mut self, job: &Job<'_>, run: &mut Run) -> Result<()> {
+        let (plan, settings) = (job.plan, &job.plan.settings);
+        let mut ready = self.ready(plan.engine, &job.surfels, plan.size)?;
+        if plan.wants.time {
+            run.time = Some(stopwatch::time(&mut *ready, &job.camera, settings, &self.options.effort)?);
+        }
+        let wants = plan.wants;
+        if wants.error || wants.agreement || wants.exhibit || wants.terms {
+            let picture = ready.picture(&job.camera, settings)?;
+            let expected = self.agree(job, &picture, run)?;
+            if wants.error {
+                run.error = Some(self.error(job, &picture)?);
+            }
+            if wants.terms {
+                self.add_terms(job, &picture, expected.as_ref(), run)?;
+            }
+            if wants.exhibit {
+                self.exhibit(job, &picture, run)?;
+            }
+        }
+        if wants.flicker {
+            let flicker = self.flicker(job, &mut *ready)?;
+            run.error.iter_mut().for_each(|error| {
+                error.metrics.insert("flicker".into(), flicker);
+            });
+        }
+        run.memory = ready.memory();
+        Ok(())
+    }
+
+    fn ready(&self, engine: Engine, surfels: &Surfels, size: [u32; 2]) -> Result<Box<dyn Ready>> {
+        match engine {
+            Engine::PerspectiveEwa { rasterizer, precision } => {
+                let none = || Error::NoDevice("this run needs one: see `surfel devices`".into());
+                let device = self.options.device.as_ref().ok_or_else(none)?;
+                Ok(Box::new(OnDevice::new(device, surfels, size, rasterizer, precision)?))
+            }
+        }
+    }
+
+    /// Holds the picture against the float64 reference, if that is wanted, and gives the reference's.
+    fn agree(&self, job: &Job<'_>, picture: &Picture, run: &mut Run) -> Result<Option<Picture>> {
+        let (plan, surfels) = (job.plan, &*job.surfels);
+        if plan.wants.agreement {
+            let tolerance = Tolerance::float32();
+            let expected = Expected::new(surfels, &job.camera, plan.size, &plan.settings, &tolerance)?;
+            run.agreement = Some(Agreement::of(&expected.compare(picture)?));
+            return Ok(Some(expected.frame.to_picture()));
+        }
+        match plan.wants.terms {
+            true => {
+                let frame = reference::render(surfels, &job.camera, plan.size, &plan.settings, &())?;
+                Ok(Some(frame.to_picture()))
+            }
+            false => Ok(None),
+        }
+    }
+
+    fn error(&mut self, job: &Job<'_>, picture: &Picture) -> Result<record::Error> {
+        let truth = self.truth(job, &job.camera)?;
+        let options =
+            metrics::Options { object_size: 2.0 * job.subject.bounds().radius, ..Default::default() };
+        let pair = Pair::new(picture, &truth.picture)?;
+        let measured = metrics::measure(&pair, &options)?;
+        let finite = measured.values.into_iter().filter(|(_, value)| value.is_finite());
+        Ok(record::Error {
+            filter: filter_name(&self.options.truth),
+            truth_rms: truth.error.rms,
+            metrics: finite.map(|(metric, value)| (Metric::name(metric).into(), value)).collect(),
+            terms: terms::split(&pair),
+        })
+    }
+
+    fn add_terms(
+        &mut self,
+        job: &Job<'_>,
+        picture: &Picture,
+        expected: Option<&Picture>,
+        run: &mut Run,
+    ) -> Result<()> {
+        let seen = hidden::without(&job.surfels, job.subject.surface(), &job.camera);
+        let mut ready = self.ready(job.plan.engine, &seen, job.plan.size)?;
+        let clean = ready.picture(&job.camera, &job.plan.settings)?;
+        if let Some(error) = &mut run.error {
+            error.terms.hidden = Some(terms::distance(picture, &clean));
+            error.terms.precision = expected.map(|expected| terms::distance(picture, expected));
+        }
+        Ok(())
+    }
+
+    fn exhibit(&mut self, job: &Job<'_>, picture: &Picture, run: &mut Run) -> Result<()> {
+        let truth = self.truth(job, &job.camera)?;
+        self.exhibits.push(exhibit::exhibit(job.plan, picture, &truth.picture)?);
+        run.exhibit = Some(self.exhibits.len() - 1);
+        Ok(())
+    }
+
+    fn flicker(&mut self, job: &Job<'_>, ready: &mut dyn Ready) -> Result<f64> {
+        let (subject, size) = (&job.subject, job.plan.size);
+        let mut flicker = Flicker::new(colour::BLACK);
+        for frame in 0..PATH {
+            let angle = STEP * subject.pixel_angle(size[1]) * f64::from(frame);
+            let camera = subject.camera(angle, size)?;
+            let (picture, truth) = (ready.picture(&camera, &job.plan.settings)?, self.truth(job, &camera)?);
+            flicker.add(&Pair::new(&picture, &truth.picture)?)?;
+        }
+        flicker.value()
+    }
+
+    /// The exact picture; traced once, and kept on disk if there is a place.
+    fn truth(&mut self, job: &Job<'_>, camera: &Camera) -> Result<Rc<Truth>> {
+        let Settings { shading, background, lighting, .. } = job.plan.settings.clone();
+        let settings = Settings { shading, background, lighting, ..Default::default() };
+        let (surface, size, options) = (job.subject.surface(), job.plan.size, &self.options.truth);
+        let key = format!("{} {size:?} {settings:?} {camera:?}", job.plan.scene);
+        if let Some(truth) = self.truths.get(&key) {
+            return Ok(truth.clone());
+        }
+        let truth = Rc::new(match &self.options.cache {
+            Some(folder) => Cache::new(folder).render(
+                &job.subject.digest,
+                surface,
+                camera,
+                &settings,
+                size,
+                options,
+                &(),
+            )?,
+            None => truth::render(surface, camera, &settings, size, options, &())?,
+        });
+        self.truths.insert(key, truth.clone());
+        Ok(truth)
+    }
+}
+
+fn filter_name(options: &truth::Options) -> String {
+    match options.filter {
+        truth::Filter::Gaussian { .. } => "gaussian".into(),
+        truth::Filter::Box => "box".into(),
+        truth::Filter::Point => "point".into(),
+    }
+}
+
+/// A run of which nothing is known yet.
+fn blank(job: &Job<'_>) -> Run {
+    let plan = job.plan;
+    Run {
+        suite: plan.suite.into(),
+        figure: plan.figure,
+        scene: plan.scene.clone(),
+        points: job.surfels.len() as u64,
+        size: plan.size,
+        contender: plan.engine.contender(),
+        setting: Setting::of(&plan.settings),
+        refused: None,
+        time: None::<Time>,
+        error: None,
+        agreement: None,
+        memory: Default::default(),
+        overlap: job.subject.area().map(|area| overlap(&job.surfels, area)),
+        exhibit: None,
+    }
+}
+
+/// Discs over every point of the surface, on average.
+fn overlap(surfels: &Surfels, area: f64) -> f64 {
+    let disc = |i: usize| {
+        let aspect = surfels.ellipses.as_ref().map_or(1.0, |ellipses| f64::from(ellipses[i].aspect));
+        std::f64::consts::PI * f64::from(surfels.radii[i]).powi(2) * aspect
+    };
+    (0..surfels.len()).map(disc).sum::<f64>() / area
+}

@@ -1,0 +1,152 @@
+//! What is rendered, and what it truly looks like.
+
+use crate::error::{Error, Result};
+use crate::geometry::estimate::Estimate;
+use crate::geometry::{Bounds, Camera, Cloud, Surfels};
+use crate::io::ply::{self, ReadOptions};
+use crate::progress::Progress;
+use crate::scenes::{self, Surface, Viewpoint};
+use crate::truth::{self, Hit, Mesh};
+use glam::{DQuat, DVec3};
+use std::path::Path;
+
+/// Vertical angle of view of a scan, degrees.
+const FOV: f64 = 45.0;
+
+/// Something that can be sampled more and less densely, seen from one place.
+pub struct Subject {
+    /// The scene with its parameters, but for the number of points; or the file.
+    pub name: String,
+    /// What exact pictures of it are kept under.
+    pub digest: String,
+    viewpoint: Viewpoint,
+    shape: Shape,
+}
+
+enum Shape {
+    /// A built-in scene.
+    Built(Built),
+    /// A scan, and the mesh that is held to be what was scanned.
+    Scan { cloud: Cloud, mesh: Mesh },
+}
+
+/// A surface as something to be traced.
+struct Built(Box<dyn Surface>);
+
+impl truth::Scene for Built {
+    fn trace(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
+        truth::Scene::trace(&*self.0, origin, direction)
+    }
+
+    fn bounds(&self) -> Bounds {
+        truth::Scene::bounds(&*self.0)
+    }
+}
+
+impl Subject {
+    /// A built-in scene, named without its number of points.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if there is none of that name, or a parameter is wrong.
+    pub fn scene(name: &str) -> Result<Self> {
+        let (viewpoint, shape) = (scenes::camera(name)?, Shape::Built(Built(scenes::surface(name)?)));
+        Ok(Self { name: name.into(), digest: name.into(), viewpoint, shape })
+    }
+
+    /// The points of a PLY file, beside the triangles of `mesh` or, without that, its own.
+    ///
+    /// # Errors
+    /// [`Error::Io`] and [`Error::Input`] if a file cannot be read, or has no triangles.
+    pub fn scan(path: &Path, mesh: Option<&Path>, progress: &dyn Progress) -> Result<Self> {
+        let triangles = ReadOptions { triangles: true, ..Default::default() };
+        let cloud = ply::read(path, &triangles, progress)?.cloud;
+        let other =
+            mesh.map(|mesh| Ok::<_, Error>(ply::read(mesh, &triangles, progress)?.cloud)).transpose()?;
+        let named = |cause| Error::input(mesh.unwrap_or(path).display().to_string(), cause);
+        let mesh = Mesh::new(other.as_ref().unwrap_or(&cloud)).map_err(named)?;
+        let viewpoint = framing(&truth::Scene::bounds(&mesh))?;
+        let (name, digest) = (path.display().to_string(), mesh.digest());
+        Ok(Self { name, digest, viewpoint, shape: Shape::Scan { cloud, mesh } })
+    }
+
+    /// Most points that it has; none if it can have any number.
+    pub fn most_points(&self) -> Option<u64> {
+        match &self.shape {
+            Shape::Built(_) => None,
+            Shape::Scan { cloud, .. } => Some(cloud.len() as u64),
+        }
+    }
+
+    /// So many surfels of it, in Morton order.
+    ///
+    /// # Errors
+    /// As [`scenes::open`]; [`Error::Input`] if a scan's points do not make surfels.
+    pub fn surfels(&self, points: u64) -> Result<Surfels> {
+        match &self.shape {
+            Shape::Built(_) => {
+                let separator = if self.name.contains('?') { '&' } else { '?' };
+                scenes::open(&format!("{}{separator}points={points}", self.name))
+            }
+            Shape::Scan { cloud, .. } => {
+                let made = cloud.some(points as usize).into_surfels(&Estimate::default(), &());
+                Ok(made.map_err(|cause| Error::input(self.name.as_str(), cause))?.0)
+            }
+        }
+    }
+
+    /// The camera of a picture of `size` px, the same however many points there are, after the eye has gone `angle`, rad, around what it
+    /// looks at.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if no camera sees it so.
+    pub fn camera(&self, angle: f64, size: [u32; 2]) -> Result<Camera> {
+        let Viewpoint { eye, target, up, .. } = self.viewpoint;
+        let [eye, target, up] = [eye, target, up].map(DVec3::from);
+        let turned = DQuat::from_axis_angle(up.normalize_or(DVec3::Y), angle) * (eye - target);
+        let eye = if angle == 0.0 { eye } else { target + turned };
+        let viewpoint = Viewpoint { eye: eye.to_array(), ..self.viewpoint };
+        viewpoint.camera(f64::from(size[0]) / f64::from(size[1]), &self.bounds())
+    }
+
+    /// Angle of view of a pixel in the middle of a picture of so many rows, rad.
+    pub fn pixel_angle(&self, rows: u32) -> f64 {
+        2.0 * (0.5 * self.viewpoint.fov_y_deg.to_radians()).tan() / f64::from(rows)
+    }
+
+    /// Where the surface is.
+    pub fn bounds(&self) -> Bounds {
+        self.surface().bounds()
+    }
+
+    /// Area of the surface, hidden parts included; none if it is not known.
+    pub fn area(&self) -> Option<f64> {
+        match &self.shape {
+            Shape::Built(built) => Some(built.0.area()),
+            Shape::Scan { .. } => None,
+        }
+    }
+
+    /// The surface itself.
+    pub fn surface(&self) -> &dyn truth::Scene {
+        match &self.shape {
+            Shape::Built(built) => built,
+            Shape::Scan { mesh, .. } => mesh,
+        }
+    }
+
+    /// Whether its points have colours.
+    pub fn is_coloured(&self) -> bool {
+        match &self.shape {
+            Shape::Built(_) => true,
+            Shape::Scan { cloud, .. } => cloud.colours.is_some(),
+        }
+    }
+}
+
+/// From where `render` would see it in a square.
+fn framing(bounds: &Bounds) -> Result<Viewpoint> {
+    let camera = Camera::framing(bounds, FOV.to_radians(), 1.0)?;
+    let eye = camera.view.inverse().w_axis.truncate();
+    let up = DVec3::Y.to_array();
+    Ok(Viewpoint { eye: eye.to_array(), target: bounds.centre().to_array(), up, fov_y_deg: FOV })
+}

@@ -1,0 +1,159 @@
+//! What is measured together.
+
+mod full;
+mod own;
+mod quick;
+mod scaling;
+mod yardstick;
+
+use super::engine::Engine;
+use super::plan::{Plan, Wants};
+use super::record::Figure;
+use super::stopwatch::Effort;
+use super::subject::Subject;
+use crate::settings::{Settings, Shading};
+use crate::truth;
+use std::rc::Rc;
+use std::time::Duration;
+
+/// A suite.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Suite {
+    /// A first impression of everything, in a minute on two cores.
+    Quick,
+    /// Every scene, from 10⁴ to 10⁶ points.
+    Full,
+    /// Where numbers get difficult: float32 against float64.
+    Hard,
+    /// Time against points, pixels and overlap.
+    Scaling,
+    /// Every way to render, as multiples of what a plain program on the CPU takes.
+    Yardstick,
+    /// What the user brings.
+    Own,
+}
+
+impl Suite {
+    /// Those that need nothing from the user.
+    pub const ALL: [Self; 5] = [Self::Quick, Self::Full, Self::Hard, Self::Scaling, Self::Yardstick];
+
+    /// As it is called on the command line and in results.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Quick => "quick",
+            Self::Full => "full",
+            Self::Hard => "hard",
+            Self::Scaling => "scaling",
+            Self::Yardstick => "yardstick",
+            Self::Own => "own",
+        }
+    }
+
+    /// Its runs, those of one scene one after the other; none of the hard cases, which are no runs. `subjects` are what the user brings.
+    pub fn plans(self, subjects: &[Rc<Subject>]) -> Vec<Plan> {
+        match self {
+            Self::Quick => quick::plans(),
+            Self::Full => full::plans(),
+            Self::Hard => Vec::new(),
+            Self::Scaling => scaling::plans(),
+            Self::Yardstick => yardstick::plans(),
+            Self::Own => own::plans(subjects),
+        }
+    }
+
+    /// How many frames are timed.
+    pub fn effort(self) -> Effort {
+        match self {
+            Self::Quick => Effort { warmup: 1, least: 3, most: 20, budget: Duration::from_millis(400) },
+            Self::Scaling => Effort { warmup: 1, least: 3, ..Effort::default() },
+            _ => Effort::default(),
+        }
+    }
+
+    /// How exact its exact pictures are.
+    pub fn truth(self) -> truth::Options {
+        match self {
+            Self::Quick => truth::Options { error: 1.0 / 256.0, most_samples: 256, ..Default::default() },
+            _ => truth::Options::default(),
+        }
+    }
+}
+
+/// What the plans of a figure have in common: time and error of the default method with the default settings.
+fn plan(suite: Suite, figure: Figure, scene: &str, points: u64, size: [u32; 2]) -> Plan {
+    // What has no texture has light and shade.
+    let textured = !["scene:part", "scene:slabs", "scene:tree"].contains(&scene);
+    let shading = if textured { Shading::Colour } else { Shading::Lit };
+    Plan {
+        suite: suite.name(),
+        figure,
+        scene: scene.into(),
+        points,
+        radius_scale: 1.0,
+        size,
+        engine: Engine::DEFAULT,
+        settings: Settings { shading, ..Default::default() },
+        wants: Wants::BOTH,
+    }
+}
+
+/// The low-pass filter's price and gain: its variance, px², from 0 to 1, and the kernel's cut-off, σ.
+fn lowpass(
+    suite: Suite,
+    scene: &str,
+    points: u64,
+    size: [u32; 2],
+    variances: &[f32],
+    cutoffs: &[f32],
+) -> Vec<Plan> {
+    let one = |cutoff: f32, lowpass: f32| {
+        let mut plan = plan(suite, Figure::Lowpass, scene, points, size);
+        plan.settings.cutoff = cutoff;
+        plan.settings.lowpass = lowpass;
+        plan
+    };
+    cutoffs.iter().flat_map(|&cutoff| variances.iter().map(move |&variance| one(cutoff, variance))).collect()
+}
+
+/// A checkerboard to the horizon, with the low-pass filter off and on. So many points that pixels hold many of them: what is left of the
+/// error is the filter's.
+fn aliasing(suite: Suite, size: [u32; 2]) -> Vec<Plan> {
+    let one = |lowpass: f32| {
+        let mut plan = plan(suite, Figure::Aliasing, "scene:plane?frequency=2", 1_000_000, size);
+        plan.settings.lowpass = lowpass;
+        plan.wants = Wants { flicker: true, exhibit: true, ..Wants::BOTH };
+        plan
+    };
+    [0.0, 1.0].map(one).into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_plan_is_of_a_scene_that_exists_and_of_its_suite() {
+        for suite in Suite::ALL {
+            for plan in suite.plans(&[]) {
+                assert_eq!(plan.suite, suite.name());
+                assert!(Subject::scene(&plan.scene).is_ok(), "{}", plan.scene);
+                assert!(plan.settings.check().is_ok());
+            }
+        }
+    }
+
+    #[test]
+    fn runs_of_a_scene_follow_each_other() {
+        for suite in Suite::ALL {
+            let plans = suite.plans(&[]);
+            for figure in plans.chunk_by(|a, b| a.figure == b.figure) {
+                let mut scenes: Vec<_> =
+                    figure.chunk_by(|a, b| a.scene == b.scene).map(|c| &c[0].scene).collect();
+                let count = scenes.len();
+                scenes.sort();
+                scenes.dedup();
+                assert_eq!(scenes.len(), count, "{}", suite.name());
+            }
+        }
+    }
+}

@@ -1,0 +1,36 @@
+//! A first impression of everything.
+
+use super::{Suite, aliasing, lowpass, plan};
+use crate::bench::plan::{Plan, Wants};
+use crate::bench::record::Figure;
+
+const SIZE: [u32; 2] = [384, 384];
+
+pub(super) fn plans() -> Vec<Plan> {
+    let mut plans = Vec::new();
+    for scene in ["scene:bumpy-sphere", "scene:torus", "scene:part"] {
+        for points in [10_000, 100_000, 1_000_000] {
+            plans.extend(budget(scene, points));
+        }
+    }
+    plans.extend(lowpass(
+        Suite::Quick,
+        "scene:bumpy-sphere",
+        100_000,
+        SIZE,
+        &[0.0, 0.5, 1.0],
+        &[1.5, 2.0, 3.0],
+    ));
+    plans.extend(aliasing(Suite::Quick, [256, 256]));
+    plans
+}
+
+/// Sharp and smooth; with what the error is made of where the float64 reference is quick.
+fn budget(scene: &str, points: u64) -> Vec<Plan> {
+    let smooth = plan(Suite::Quick, Figure::Budget, scene, points, SIZE);
+    let mut sharp = smooth.clone();
+    sharp.settings.lowpass = 0.0;
+    let middle = points == 100_000;
+    let wants = Wants { terms: true, agreement: points < 1_000_000, exhibit: middle, ..Wants::BOTH };
+    vec![Plan { wants, ..smooth }, sharp]
+}

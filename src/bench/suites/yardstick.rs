@@ -1,0 +1,24 @@
+//! Every way to render, as multiples of what a plain program on the CPU takes.
+
+use super::{Suite, plan};
+use crate::bench::engine::Engine;
+use crate::bench::plan::{Plan, Wants};
+use crate::bench::record::Figure;
+use crate::{Precision, Rasterizer};
+
+const SIZE: [u32; 2] = [1024, 1024];
+
+pub(super) fn plans() -> Vec<Plan> {
+    let vulkan = |rasterizer, precision| Engine::PerspectiveEwa { rasterizer: Some(rasterizer), precision };
+    let engines = [
+        vulkan(Rasterizer::Compute, Precision::Full),
+        vulkan(Rasterizer::Draw, Precision::Full),
+        vulkan(Rasterizer::Draw, Precision::Half),
+    ];
+    let plan = |points| {
+        let wants = Wants { agreement: points <= 100_000, ..Wants::TIME };
+        Plan { wants, ..plan(Suite::Yardstick, Figure::Yardstick, "scene:bumpy-sphere", points, SIZE) }
+    };
+    let one = |points| engines.map(|engine| Plan { engine, ..plan(points) });
+    [100_000, 1_000_000].map(one).concat()
+}

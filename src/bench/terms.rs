@@ -1,0 +1,50 @@
+//! What an error is made of.
+
+use super::record::Terms;
+use crate::metrics::{Pair, colour, rmse};
+use crate::picture::Picture;
+
+/// How little of a pixel may be uncovered for it to be whole: more than the rounding of a filter's weights.
+const WHOLE: f32 = 1.0 - 1e-4;
+
+/// The parts of the error that belong to pixels on the outline and to those inside, over black.
+pub fn split(pair: &Pair<'_>) -> Terms {
+    let (picture, truth) = (pair.picture(), pair.truth());
+    let [ours, exact] = [picture, truth].map(|picture| colour::over(picture, colour::BLACK));
+    let (mut inside, mut silhouette) = (0.0, 0.0);
+    for (i, (a, b)) in ours.iter().zip(&exact).enumerate() {
+        let square: f64 = a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum();
+        let whole = [picture, truth].iter().all(|picture| picture.colour[i][3] >= WHOLE);
+        *(if whole { &mut inside } else { &mut silhouette }) += square;
+    }
+    let mean = |squares: f64| (squares / (3 * ours.len()) as f64).sqrt();
+    Terms { silhouette: mean(silhouette), inside: mean(inside), hidden: None, precision: None }
+}
+
+/// How far two pictures of one size are apart: `rmse` over black.
+pub fn distance(a: &Picture, b: &Picture) -> f64 {
+    rmse::rmse(&colour::over(a, colour::BLACK), &colour::over(b, colour::BLACK))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn picture(pixels: [[f32; 4]; 4]) -> Picture {
+        Picture { size: [4, 1], colour: pixels.to_vec(), ..Default::default() }
+    }
+
+    #[test]
+    fn squares_of_the_parts_add_up_and_lie_where_the_outline_is() {
+        let grey = |value: f32, alpha| [value, value, value, alpha];
+        // Nothing, half covered, missed altogether, inside.
+        let ours = picture([grey(0.0, 0.0), grey(0.5, 1.0), grey(0.0, 0.0), grey(0.75, 1.0)]);
+        let truth = picture([grey(0.0, 0.0), grey(0.5, 0.5), grey(0.5, 1.0), grey(0.5, 1.0)]);
+        let terms = split(&Pair::new(&ours, &truth).unwrap());
+        assert_eq!(terms.inside, (0.25f64.powi(2) / 4.0).sqrt());
+        assert_eq!(terms.silhouette, ((0.25f64.powi(2) + 0.5f64.powi(2)) / 4.0).sqrt());
+        let whole = terms.inside.hypot(terms.silhouette);
+        assert!((whole - distance(&ours, &truth)).abs() < 1e-15);
+        assert_eq!(distance(&ours, &ours), 0.0);
+    }
+}

@@ -1,0 +1,42 @@
+//! Options of `surfel bench`.
+
+use super::OnDevice;
+use crate::cli::values::Suite;
+use clap::Args;
+use std::ffi::OsString;
+use std::path::PathBuf;
+
+/// Options of `surfel bench`.
+#[derive(Args, Debug)]
+pub struct Bench {
+    /// PLY files with triangles, or built-in scenes: measured at every density that they have
+    #[arg(value_name = "INPUT")]
+    pub inputs: Vec<OsString>,
+    /// The PLY file with the triangles that the points of INPUT are samples of; unless given, those of INPUT itself
+    #[arg(long, value_name = "MESH", requires = "inputs")]
+    pub truth: Option<PathBuf>,
+    /// What is measured; quick unless something else, an INPUT or --from, is given
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "SUITE,…")]
+    pub suite: Vec<Suite>,
+    /// Shows what --json of earlier calls wrote, here or elsewhere, beside what is measured now
+    #[arg(long, value_name = "FILE")]
+    pub from: Vec<PathBuf>,
+    /// Writes a page with plots and pictures, and the plots as SVG, into a folder
+    #[arg(long, value_name = "DIR")]
+    pub report: Option<PathBuf>,
+    /// Writes everything as JSON; `-` for standard output, in place of the table
+    #[arg(long, value_name = "FILE")]
+    pub json: Option<OsString>,
+    /// Writes a line a run as CSV; `-` for standard output, in place of the table
+    #[arg(long, value_name = "FILE")]
+    pub csv: Option<OsString>,
+    /// On which device
+    #[command(flatten)]
+    pub device: OnDevice,
+    /// Traces exact pictures even if they have been before, and does not keep them
+    #[arg(long)]
+    pub no_cache: bool,
+    /// Prints nothing but warnings and errors
+    #[arg(short, long)]
+    pub quiet: bool,
+}
