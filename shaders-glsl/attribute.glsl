@@ -40,6 +40,10 @@ void attributes_of(uint i, float epsilon, out vec3 first, out vec3 second) {
 float splat_amplitude;
 vec3 splat_first, splat_second;
 
+vec2 scatter_variance(vec2 variance) {
+    return attribute_variance(variance);
+}
+
 bool hidden(float nearest, ivec2 low, ivec2 high) {
     uint width = (uint(frame.viewport.x) + TILE - 1) / TILE;
     uvec2 first = uvec2(low) / TILE, last = uvec2(high) / TILE;
@@ -82,7 +86,7 @@ void scatter(uint pixel, float m2, float key) {
 #include "lib/scatter_splat.glsl"
 
 void main() {
-    scatter_splats(frame.attribute_lowpass);
+    scatter_splats();
 }
 
 #else
@@ -97,7 +101,7 @@ layout(location = 6) flat out vec3 second;
 void main() {
     uint i = gl_VertexIndex / 3;
     Splat splat = splats[i];
-    amplitude = place_splat(splat, frame.attribute_lowpass, gl_VertexIndex % 3);
+    amplitude = place_splat(splat, attribute_variance(splat.variance), gl_VertexIndex % 3);
     attributes_of(i, splat.epsilon, first, second);
 }
 

@@ -113,7 +113,7 @@ uint footprint(uint i, out Splat splat) {
     vec2 X = pixel_row(0, hi, lo), Y = pixel_row(1, hi, lo);
     vec2 centre = vec2(X.x, Y.x) / w.x;
     Conic conic = dual_conic(centre, S, T, q, frame.cutoff, sqrt_det);
-    vec2 reach = reach_of(conic.axis, conic.variance + frame.attribute_lowpass);
+    vec2 reach = reach_of(conic.axis, attribute_variance(conic.variance));
     vec2 middle = centre + conic.offset;
     bool inside = all(lessThanEqual(middle - reach, frame.viewport)) && all(greaterThanEqual(middle + reach, vec2(0.0)));
     if (!inside) return OUTSIDE;

@@ -12,6 +12,10 @@
 
 float splat_epsilon, splat_key_disc;
 
+vec2 scatter_variance(vec2 variance) {
+    return visibility_variance(variance);
+}
+
 bool scatter_begin(uint i, Splat splat, vec2 variance, float nearest, ivec2 low, ivec2 high) {
     splat_epsilon = splat.epsilon;
     splat_key_disc = splat.key_disc;
@@ -25,7 +29,7 @@ void scatter(uint pixel, float m2, float key) {
 #include "lib/scatter_splat.glsl"
 
 void main() {
-    scatter_splats(frame.visibility_lowpass);
+    scatter_splats();
 }
 
 #else
@@ -34,7 +38,8 @@ void main() {
 #ifdef VERTEX
 
 void main() {
-    place_splat(splats[gl_VertexIndex / 3], frame.visibility_lowpass, gl_VertexIndex % 3);
+    Splat splat = splats[gl_VertexIndex / 3];
+    place_splat(splat, visibility_variance(splat.variance), gl_VertexIndex % 3);
 }
 
 #endif

@@ -10,6 +10,8 @@ pub struct Settings {
     /// Variance of the low-pass filter `H = lowpass · I`, px². Never less than what makes each splat own a pixel centre
     /// ([`Settings::least_lowpass`]).
     pub lowpass: f32,
+    /// What the low-pass filter widens.
+    pub widen: Widen,
     /// Depth tolerance ε in surfel radii: splats no further than this behind the nearest one, along the viewing ray, are blended.
     pub epsilon: f32,
     /// Which side of a surfel is seen.
@@ -27,6 +29,7 @@ impl Default for Settings {
         Self {
             cutoff: 2.0,
             lowpass: 1.0,
+            widen: Widen::All,
             epsilon: 1.0,
             cull: Cull::None,
             shading: Shading::Lit,
@@ -43,7 +46,8 @@ impl Settings {
         (0.71 / self.cutoff).powi(2)
     }
 
-    /// The low-pass variance of the attribute footprint, px².
+    /// The low-pass variance of the attribute footprint, px²: what is added to a splat's variance, or with [`Widen::Small`] what
+    /// it is raised to.
     pub fn attribute_lowpass(&self) -> f32 {
         self.lowpass.max(self.least_lowpass())
     }
@@ -71,6 +75,21 @@ impl Settings {
         }
         Ok(())
     }
+}
+
+/// What the low-pass filter `H` widens: how it turns the variance `V` of a projected kernel, with eigenvalues `λ`, into that of the
+/// attribute footprint.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Widen {
+    /// Every splat: `V + H`, the convolution of both (zwicker2004, equation 3).
+    #[default]
+    All,
+    /// Only what is smaller than the filter, along either of `V`'s axes: `λ` becomes `max(λ + least, H)`, with
+    /// [`Settings::least_lowpass`]. Larger splats stay sharp and cost fewer pixels. Continuous in `V`, so that nothing jumps as a
+    /// splat grows, and nowhere less than the visibility footprint, so that every pixel which that covers gets attributes. (Clamping
+    /// the axes is how texture filters bound theirs: Greene, Heckbert, *Creating Raster Omnimax Images from Multiple Perspective
+    /// Views Using the Elliptical Weighted Average Filter*, IEEE Computer Graphics and Applications 1986.)
+    Small,
 }
 
 /// Which side of a surfel is seen.

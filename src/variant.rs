@@ -2,7 +2,7 @@
 
 use crate::renderer::RenderOptions;
 use crate::scene::{ColourStream, Scene};
-use crate::settings::{Cull, Settings, Shading};
+use crate::settings::{Cull, Settings, Shading, Widen};
 use crate::vk::Constants;
 use crate::vk::shaders::constant;
 
@@ -17,6 +17,8 @@ pub struct Variant {
     pub ellipses: bool,
     /// The scene has surfels that are never dropped for facing away.
     pub two_sided: bool,
+    /// Only axes that are shorter than the low-pass filter are widened by it.
+    pub widen_small: bool,
     /// Splats are counted by their fate.
     pub count: bool,
     /// Normals are summed.
@@ -75,6 +77,7 @@ impl Variant {
             cull_back: settings.cull == Cull::Back,
             ellipses: scene.ellipses.is_some(),
             two_sided: scene.two_sided,
+            widen_small: settings.widen == Widen::Small,
             count: options.count,
             normals: matches!(shading, Shading::Lit | Shading::Normal) || options.outputs.normal,
             depth: shading == Shading::Depth || options.outputs.depth,
@@ -109,6 +112,7 @@ impl Variant {
             .with(constant::CULL_BACK, self.cull_back)
             .with(constant::ELLIPSES, self.ellipses)
             .with(constant::TWO_SIDED, self.two_sided)
+            .with(constant::WIDEN_SMALL, self.widen_small)
             .with(constant::COUNT, self.count)
             .with(constant::SUM_NORMALS, self.normals)
             .with(constant::SUM_DEPTH, self.depth)

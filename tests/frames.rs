@@ -8,7 +8,7 @@ use support::gpu::{assert_silent, device, render};
 use surfel::geometry::{Camera, Surfels};
 use surfel::reference::{Expected, Tolerance};
 use surfel::scenes::bumpy_sphere;
-use surfel::settings::{Cull, DirectionalLight, Shading};
+use surfel::settings::{Cull, DirectionalLight, Shading, Widen};
 use surfel::vk::{Device, DeviceLimits};
 use surfel::{Error, Outputs, Picture, Precision, Rasterizer, RenderOptions, Renderer, Scene, Settings};
 
@@ -75,6 +75,7 @@ fn pipelines_are_few_and_made_once_a_variant() {
         shaded(Shading::Normal),
         shaded(Shading::Depth),
         Settings { cull: Cull::Back, ..Default::default() },
+        Settings { widen: Widen::Small, ..Default::default() },
         lit,
     ];
     for (rasterizer, most) in [(Rasterizer::Draw, 4), (Rasterizer::Compute, 7)] {

@@ -12,9 +12,8 @@ const float EDGE = 0.125;
 // A triangle that reaches further than this (px) is replaced by one over the viewport, whose edges stay exact.
 const float LARGEST = 8192.0;
 
-// Places a corner and returns the attribute weight's amplitude √(|V| / |V + H|).
-float place_splat(Splat splat, float lowpass, int corner) {
-    vec2 variance = splat.variance + lowpass;
+// Places a corner of a footprint of the given variance V' and returns the attribute weight's amplitude √(|V| / |V'|).
+float place_splat(Splat splat, vec2 variance, int corner) {
     Ellipse ellipse = ellipse_of(splat, variance);
     anchor_offset = vec4(ellipse.anchor, ellipse.offset);
     whitening = ellipse.whitening;

@@ -22,7 +22,7 @@ layout(set = 0, binding = 0, std140) uniform Frame {
     float cutoff;            // F, σ
     float epsilon;           // ε in radii
     float visibility_lowpass; // px²
-    float attribute_lowpass;  // px²
+    float attribute_lowpass;  // px²; see attribute_variance in splat.glsl
     float ambient;
     vec4 background;         // linear, α
     vec4 albedo;             // .rgb; .a is the headlight's factor

@@ -1,8 +1,9 @@
 // The compute rasterizer: an invocation visits the pixels of a splat, row by row. Splats of many pixels, which would hold their
 // neighbours up, are left to a second dispatch (LARGE_SPLATS) with a workgroup a splat.
 //
-// The including pass defines what happens: `scatter_begin(i, splat, variance, nearest, low, high)` once a splat, which says whether
-// its fragments, in the pixels from low to high and no nearer than the κ nearest, are wanted; and `scatter(pixel, m2, key)` at each.
+// The including pass defines what happens: `scatter_variance(variance)` makes its footprint's variance of V's; `scatter_begin(i,
+// splat, variance, nearest, low, high)` says once a splat whether its fragments, in the pixels from low to high and no nearer than
+// the κ nearest, are wanted; and `scatter(pixel, m2, key)` takes each.
 
 layout(local_size_x = 64) in;
 
@@ -47,10 +48,10 @@ void scatter_box(Ellipse ellipse, ivec2 low, ivec2 high) {
     }
 }
 
-void scatter_splat(uint i, float lowpass) {
+void scatter_splat(uint i) {
     Splat splat = splats[i];
     if (kind_of(splat) != (LARGE_SPLATS ? LARGE : SMALL)) return;
-    vec2 variance = splat.variance + lowpass;
+    vec2 variance = scatter_variance(splat.variance);
     vec2 reach = reach_of(splat.axis, variance);
     vec2 first = anchor_of(splat) + splat.offset - 0.5;
     ivec2 low = ivec2(max(ceil(first - reach), vec2(0.0)));
@@ -62,10 +63,10 @@ void scatter_splat(uint i, float lowpass) {
     else scatter_rows(ellipse, low, high);
 }
 
-void scatter_splats(float lowpass) {
+void scatter_splats() {
     if (LARGE_SPLATS) {
-        for (uint k = gl_WorkGroupID.x; k < large_count; k += gl_NumWorkGroups.x) scatter_splat(large[k], lowpass);
+        for (uint k = gl_WorkGroupID.x; k < large_count; k += gl_NumWorkGroups.x) scatter_splat(large[k]);
     } else if (gl_GlobalInvocationID.x < window.count) {
-        scatter_splat(gl_GlobalInvocationID.x, lowpass);
+        scatter_splat(gl_GlobalInvocationID.x);
     }
 }

@@ -2,6 +2,8 @@
 
 #include "lib/double_float.glsl"
 
+layout(constant_id = 14) const bool WIDEN_SMALL = false; // the low-pass filter widens only what is smaller than itself
+
 struct Splat {
     vec2 offset;    // centre of the variance's ellipse relative to the anchor, px
     vec2 axis;      // unit major axis of the variance V
@@ -37,6 +39,18 @@ uint kind_of(Splat splat) {
 vec2 reach_of(vec2 axis, vec2 variance) {
     vec2 axis2 = axis * axis;
     return frame.cutoff * sqrt(vec2(dot(axis2, variance), dot(axis2.yx, variance)));
+}
+
+// The variances of a splat's two footprints along V's axes, from V's eigenvalues, px². Visibility's is just wide enough to own a
+// pixel centre. Attribute's is V + H, or with WIDEN_SMALL at least H and otherwise visibility's. It is never less than that, so
+// that no pixel which visibility owns is left without attributes.
+vec2 visibility_variance(vec2 variance) {
+    return variance + frame.visibility_lowpass;
+}
+
+vec2 attribute_variance(vec2 variance) {
+    if (WIDEN_SMALL) return max(visibility_variance(variance), frame.attribute_lowpass);
+    return variance + frame.attribute_lowpass;
 }
 
 // What a fragment needs of a splat.

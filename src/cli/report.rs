@@ -9,7 +9,7 @@ use std::path::Path;
 use surfel::bench::Statistics;
 use surfel::geometry::estimate::Estimated;
 use surfel::io::ply::Dropped;
-use surfel::settings::{Cull, DirectionalLight, Lighting, Shading};
+use surfel::settings::{Cull, DirectionalLight, Lighting, Shading, Widen};
 use surfel::targets::TargetInfo;
 use surfel::vk::{DeviceDescription, Usage};
 use surfel::{Error, Precision, Rasterizer, Result, Settings, SplatCounts};
@@ -123,7 +123,11 @@ fn target(target: &TargetInfo) -> Value {
 }
 
 fn settings(settings: &Settings) -> Value {
-    let Settings { cutoff, lowpass, epsilon, cull, shading, background, lighting } = settings;
+    let Settings { cutoff, lowpass, widen, epsilon, cull, shading, background, lighting } = settings;
+    let widen = match widen {
+        Widen::All => "all",
+        Widen::Small => "small",
+    };
     let cull = match cull {
         Cull::None => "none",
         Cull::Back => "back",
@@ -135,7 +139,7 @@ fn settings(settings: &Settings) -> Value {
         Shading::Depth => "depth",
     };
     json!({
-        "cutoff": cutoff, "lowpass": lowpass, "epsilon": epsilon, "cull": cull, "shading": shading,
+        "cutoff": cutoff, "lowpass": lowpass, "widen": widen, "epsilon": epsilon, "cull": cull, "shading": shading,
         "background": background, "lighting": light(lighting),
     })
 }

@@ -149,6 +149,24 @@ pub enum Layer {
     Depth,
 }
 
+/// What the anti-aliasing filter widens.
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+pub enum Widen {
+    /// Every splat
+    All,
+    /// Splats, or their axes, that are smaller than the filter
+    Small,
+}
+
+impl From<Widen> for settings::Widen {
+    fn from(widen: Widen) -> Self {
+        match widen {
+            Widen::All => Self::All,
+            Widen::Small => Self::Small,
+        }
+    }
+}
+
 /// Which surfels are left out for the side that they show.
 #[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
 pub enum Cull {

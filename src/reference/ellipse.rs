@@ -1,9 +1,10 @@
 //! The ellipse on which a splat's kernel ends, once a low-pass filter has widened it.
 
 use super::{Projector, Splat};
+use crate::settings::Widen;
 use glam::DVec2;
 
-/// The filtered kernel of a splat: variance `V + h I` in its principal axes, where long thin ellipses lose no digits.
+/// The filtered kernel of a splat: its variance `V'`, such as `V + h I`, in its principal axes, where long thin ellipses lose no digits.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ellipse {
     pub centre: DVec2,
@@ -11,7 +12,7 @@ pub(super) struct Ellipse {
     pub axis: DVec2,
     /// Variances along the major and the minor axis, px².
     pub variance: DVec2,
-    /// `√(|V| / |V + h I|)`: what the filter leaves of the kernel's height.
+    /// `√(|V| / |V'|)`: what the filter leaves of the kernel's height.
     pub amplitude: f64,
     /// Cut-off `F`, in σ.
     pub cutoff: f64,
@@ -20,22 +21,28 @@ pub(super) struct Ellipse {
 impl Ellipse {
     /// The footprint of the visibility pass: just wide enough to own a pixel centre.
     pub fn visibility(splat: &Splat, projector: &Projector) -> Self {
-        Self::new(splat, projector.settings.least_lowpass().into(), projector.cutoff())
+        let least = f64::from(projector.settings.least_lowpass());
+        Self::new(splat, |variance| variance + least, projector.cutoff())
     }
 
-    /// The footprint of the attribute pass: widened by the low-pass filter `H` (zwicker2004, equation 3).
+    /// The footprint of the attribute pass: widened by the low-pass filter `H` (zwicker2004, equation 3), as far as the settings want.
     pub fn attribute(splat: &Splat, projector: &Projector) -> Self {
-        Self::new(splat, projector.settings.attribute_lowpass().into(), projector.cutoff())
+        let settings = &projector.settings;
+        let [least, lowpass] = [settings.least_lowpass(), settings.attribute_lowpass()].map(f64::from);
+        match settings.widen {
+            Widen::All => Self::new(splat, |variance| variance + lowpass, projector.cutoff()),
+            Widen::Small => Self::new(splat, |variance| (variance + least).max(lowpass), projector.cutoff()),
+        }
     }
 
-    /// The splat's kernel with low-pass variance `lowpass`, px².
-    pub fn new(splat: &Splat, lowpass: f64, cutoff: f64) -> Self {
+    /// The splat's kernel, with the variance along either of its axes turned by `widened` into another, px².
+    pub fn new(splat: &Splat, widened: impl Fn(f64) -> f64, cutoff: f64) -> Self {
         let [xx, xy, yy] = [splat.variance.x_axis.x, splat.variance.x_axis.y, splat.variance.y_axis.y];
         let major = 0.5 * (xx + yy + (xx - yy).hypot(2.0 * xy));
         // Not as the trace minus the major one: that cancels.
         let minor = if major > 0.0 { splat.sqrt_det * (splat.sqrt_det / major) } else { 0.0 };
         let angle = 0.5 * (2.0 * xy).atan2(xx - yy);
-        let variance = DVec2::new(major + lowpass, minor + lowpass);
+        let variance = DVec2::new(widened(major), widened(minor));
         Self {
             centre: splat.centre,
             axis: DVec2::from_angle(angle),
@@ -45,7 +52,7 @@ impl Ellipse {
         }
     }
 
-    /// `m = √(e (V+H)⁻¹ eᵀ)` of the offset `e` from the centre, in σ.
+    /// `m = √(e V'⁻¹ eᵀ)` of the offset `e` from the centre, in σ.
     pub fn sigmas(&self, offset: DVec2) -> f64 {
         (self.principal(offset) / self.sigma()).length()
     }
@@ -65,7 +72,7 @@ impl Ellipse {
         DVec2::new(self.axis.dot(offset), self.axis.perp_dot(offset))
     }
 
-    /// Least and greatest corner of the box around the cut-off ellipse, px: `x_t ± F √((V+H)ᵢᵢ)`.
+    /// Least and greatest corner of the box around the cut-off ellipse, px: `x_t ± F √V'ᵢᵢ`.
     pub fn bounds(&self) -> (DVec2, DVec2) {
         let along = self.cutoff * self.sigma().x * self.axis;
         let across = self.cutoff * self.sigma().y * self.axis.perp();

@@ -12,7 +12,7 @@ pub use convert::{Convert, Info};
 pub use points::{Colours, Points};
 pub use truth::Truth;
 
-use super::values::{Background, Cull, Layer, Method, Shading, background, size, vector};
+use super::values::{Background, Cull, Layer, Method, Shading, Widen, background, size, vector};
 use clap::{Args, Parser, Subcommand};
 use glam::DVec3;
 use std::ffi::OsString;
@@ -144,6 +144,9 @@ pub struct Look {
     /// Variance of the anti-aliasing filter, px²
     #[arg(long, value_name = "VARIANCE_PX2", default_value_t = Settings::default().lowpass, allow_hyphen_values = true)]
     pub lowpass: f32,
+    /// What the anti-aliasing filter widens
+    #[arg(long, value_enum, default_value = "all")]
+    pub widen: Widen,
     /// Where a splat's kernel ends, in standard deviations
     #[arg(long, value_name = "F", default_value_t = Settings::default().cutoff, allow_hyphen_values = true)]
     pub cutoff: f32,
@@ -161,6 +164,7 @@ impl Look {
         Settings {
             cutoff: self.cutoff,
             lowpass: self.lowpass,
+            widen: self.widen.into(),
             epsilon: self.epsilon,
             cull: self.cull.into(),
             shading: self.shading.into(),

@@ -1,6 +1,8 @@
 //! Splats to pictures.
 
+use super::super::ellipse::Ellipse;
 use super::*;
+use crate::settings::Widen;
 
 /// Splats on a grid in the plane through (0, 0, 3) with the given normal.
 fn plane(normal: DVec3) -> Surfels {
@@ -52,22 +54,54 @@ fn splats_within_epsilon_blend() {
 #[test]
 fn weights_are_the_filtered_kernels() {
     // Both centres project to the centre of one pixel, so that only the amplitudes differ.
-    let (sigma, filter) = (16.0 * 0.5 / 2.0, f64::from(plain().attribute_lowpass()));
+    let [sigma, filter, least] =
+        [16.0 * 0.5 / 2.0, plain().attribute_lowpass().into(), plain().least_lowpass().into()];
     let at = DVec3::new(0.5 / 16.0, 0.5 / 16.0, 2.0);
     let tilts = [0.3f64, 1.4];
     let normals = tilts.map(|t| DVec3::new(t.sin(), 0.0, -t.cos()));
-    let weights = tilts.map(|t| {
-        let [narrow, wide] = [(sigma * t.cos()).powi(2), sigma * sigma];
-        (narrow * wide / ((narrow + filter) * (wide + filter))).sqrt()
-    });
+    let variances = tilts.map(|t| [(sigma * t.cos()).powi(2), sigma * sigma]);
+    let all = variances.map(|[narrow, wide]| [narrow + filter, wide + filter]);
+    // Of the four axes only the second disc's narrow one is smaller than the filter.
+    let [[a, b], [c, d]] = variances;
+    assert!(c + least < filter);
+    let small = [[a + least, b + least], [filter, d + least]];
     let mut discs = normals.map(|n| disc(at, n, 0.5));
     (discs[0].colour, discs[1].colour) = (Some(DVec3::X), Some(DVec3::Y));
-    let frame = render(&scene(&discs), &parallel(), SIZE, &plain(), &()).unwrap();
-    let value = frame.value(32 * 64 + 32);
-    let share = weights[0] / (weights[0] + weights[1]);
-    assert!(close(value.colour[0], share, 1e-6) && close(value.colour[1], 1.0 - share, 1e-6), "{value:?}");
-    let normal = (weights[0] * normals[0] + weights[1] * normals[1]).normalize();
-    assert!(DVec3::from_array(value.normal).distance(normal) < 1e-6, "{value:?} {normal}");
+    for (widen, widened) in [(Widen::All, all), (Widen::Small, small)] {
+        let frame = render(&scene(&discs), &parallel(), SIZE, &Settings { widen, ..plain() }, &()).unwrap();
+        let value = frame.value(32 * 64 + 32);
+        let weights = [0, 1].map(|i| {
+            let ([a, b], [c, d]): ([f64; 2], [f64; 2]) = (variances[i], widened[i]);
+            (a * b / (c * d)).sqrt()
+        });
+        let share = weights[0] / (weights[0] + weights[1]);
+        assert!(
+            close(value.colour[0], share, 1e-6) && close(value.colour[1], 1.0 - share, 1e-6),
+            "{value:?}"
+        );
+        let normal = (weights[0] * normals[0] + weights[1] * normals[1]).normalize();
+        assert!(DVec3::from_array(value.normal).distance(normal) < 1e-6, "{value:?} {normal}");
+    }
+}
+
+/// A pixel that visibility owns and no splat gives attributes to would be a hole.
+#[test]
+fn attributes_reach_wherever_visibility_does() {
+    for (cutoff, lowpass) in [(1.0, 0.0), (2.0, 0.0), (2.0, 0.3), (2.0, 1.0), (4.0, 9.0)] {
+        for widen in [Widen::All, Widen::Small] {
+            let settings = Settings { cutoff, lowpass, widen, ..plain() };
+            let projector = Projector::new(&parallel(), SIZE, &settings).unwrap();
+            for i in 0..200 {
+                let radius = 1e-3 * 1.05f64.powi(i);
+                let tilted = disc(DVec3::Z * 2.0, DVec3::new(1.0, 0.0, -0.3), radius);
+                let splat = projector.footprint(&tilted).unwrap();
+                let [owned, filled] = [Ellipse::visibility, Ellipse::attribute]
+                    .map(|footprint| footprint(&splat, &projector).variance);
+                assert!(filled.cmpge(owned).all(), "{settings:?}: {owned} {filled}");
+                assert!(filled.min_element() >= lowpass.into(), "{settings:?}: {filled}");
+            }
+        }
+    }
 }
 
 #[test]
