@@ -2,7 +2,7 @@
 
 use super::engine::Engine;
 use super::record::{Figure, Setting};
-use crate::settings::{Cull, Settings, Shading};
+use crate::settings::{Cull, Settings, Shading, Widen};
 
 /// One run.
 #[derive(Clone, Debug, PartialEq)]
@@ -65,10 +65,14 @@ impl Setting {
             Shading::Normal => "normal",
             Shading::Depth => "depth",
         };
+        let widen = match settings.widen {
+            Widen::All => "all",
+            Widen::Small => "small",
+        };
         Self {
             cutoff: settings.cutoff,
             lowpass: settings.lowpass,
-            widen: "all".into(),
+            widen: widen.into(),
             epsilon: settings.epsilon,
             cull: cull.into(),
             shading: shading.into(),

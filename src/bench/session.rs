@@ -3,15 +3,13 @@
 use super::code;
 use super::record::{Agreement, Gpu, Host, Made, Session};
 use super::runner::{Options, Runner};
-use super::subject::Subject;
-use super::suites::Suite;
+use super::suites::{Own, Suite};
 use crate::error::Result;
 use crate::progress::Progress;
 use crate::reference::Comparison;
 use crate::vk::Device;
 use jiff::Timestamp;
 use std::path::PathBuf;
-use std::rc::Rc;
 use std::sync::Arc;
 use std::time::Instant;
 use sysinfo::System;
@@ -24,7 +22,7 @@ pub struct Wanted {
     /// The suites, in this order.
     pub suites: Vec<Suite>,
     /// What the user brings, for [`Suite::Own`].
-    pub subjects: Vec<Rc<Subject>>,
+    pub own: Own,
     /// The device; without one, what needs it is refused.
     pub device: Option<Arc<Device>>,
     /// Whether the device runs under the validation layers.
@@ -41,7 +39,7 @@ pub struct Wanted {
 /// If the device is lost; what else cannot be rendered is refused in its run.
 pub fn measure(wanted: &Wanted, progress: &dyn Progress) -> Result<Session> {
     let (date, start) = (Timestamp::now(), Instant::now());
-    let plans = |suite: &Suite| suite.plans(&wanted.subjects);
+    let plans = |suite: &Suite| suite.plans(&wanted.own);
     let total = wanted.suites.iter().map(|suite| plans(suite).len() as u64).sum();
     let (mut runs, mut exhibits) = (Vec::new(), Vec::new());
     progress.at(STAGE, 0, total);
@@ -52,7 +50,7 @@ pub fn measure(wanted: &Wanted, progress: &dyn Progress) -> Result<Session> {
             truth: suite.truth(),
             effort: suite.effort(),
         };
-        let mut runner = Runner::new(options, wanted.subjects.clone());
+        let mut runner = Runner::new(options, wanted.own.subjects.clone());
         for plan in plans(suite) {
             let begin = Instant::now();
             let mut run = runner.run(&plan)?;

@@ -8,6 +8,7 @@ use std::path::Path;
 use std::rc::Rc;
 use surfel::bench::record::FORMAT;
 use surfel::bench::subject::Subject;
+use surfel::bench::suites::Own;
 use surfel::bench::{Results, Suite, Wanted, measure};
 use surfel::io::atomic;
 use surfel::vk::Device;
@@ -64,7 +65,15 @@ fn wanted(args: &Bench, suites: Vec<Suite>, progress: &dyn Progress) -> Result<W
     Ok(Wanted {
         command: command(args, &suites),
         suites,
-        subjects: args.inputs.iter().map(|input| subject(args, input, progress)).collect::<Result<_>>()?,
+        own: Own {
+            subjects: args
+                .inputs
+                .iter()
+                .map(|input| subject(args, input, progress))
+                .collect::<Result<_>>()?,
+            points: args.points.clone(),
+            size: args.size.unwrap_or(Own::default().size),
+        },
         device: Some(Device::open(&vulkan::options(&args.device)?)?),
         validated: args.device.validate,
         cache: cache_folder().filter(|_| !args.no_cache).map(|folder| folder.join("truth")),

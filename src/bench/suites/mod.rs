@@ -6,14 +6,14 @@ mod quick;
 mod scaling;
 mod yardstick;
 
+pub use own::Own;
+
 use super::engine::Engine;
 use super::plan::{Plan, Wants};
 use super::record::Figure;
 use super::stopwatch::Effort;
-use super::subject::Subject;
-use crate::settings::{Settings, Shading};
+use crate::settings::{Settings, Shading, Widen};
 use crate::truth;
-use std::rc::Rc;
 use std::time::Duration;
 
 /// A suite.
@@ -49,15 +49,15 @@ impl Suite {
         }
     }
 
-    /// Its runs, those of one scene one after the other; none of the hard cases, which are no runs. `subjects` are what the user brings.
-    pub fn plans(self, subjects: &[Rc<Subject>]) -> Vec<Plan> {
+    /// Its runs, those of one scene one after the other; none of the hard cases, which are no runs. `own` is what the user brings.
+    pub fn plans(self, own: &Own) -> Vec<Plan> {
         match self {
             Self::Quick => quick::plans(),
             Self::Full => full::plans(),
             Self::Hard => Vec::new(),
             Self::Scaling => scaling::plans(),
             Self::Yardstick => yardstick::plans(),
-            Self::Own => own::plans(subjects),
+            Self::Own => own::plans(own),
         }
     }
 
@@ -97,7 +97,7 @@ fn plan(suite: Suite, figure: Figure, scene: &str, points: u64, size: [u32; 2]) 
     }
 }
 
-/// The low-pass filter's price and gain: its variance, px², from 0 to 1, and the kernel's cut-off, σ.
+/// The low-pass filter's price and gain: its variance, px², from 0 to 1, the kernel's cut-off, σ, and which splats it widens.
 fn lowpass(
     suite: Suite,
     scene: &str,
@@ -106,13 +106,19 @@ fn lowpass(
     variances: &[f32],
     cutoffs: &[f32],
 ) -> Vec<Plan> {
-    let one = |cutoff: f32, lowpass: f32| {
+    let one = |widen, cutoff, lowpass| {
         let mut plan = plan(suite, Figure::Lowpass, scene, points, size);
-        plan.settings.cutoff = cutoff;
-        plan.settings.lowpass = lowpass;
+        plan.settings = Settings { widen, cutoff, lowpass, ..plan.settings };
         plan
     };
-    cutoffs.iter().flat_map(|&cutoff| variances.iter().map(move |&variance| one(cutoff, variance))).collect()
+    let some = |widen| {
+        // A filter of no variance widens nothing.
+        let variances = variances.iter().filter(move |variance| widen == Widen::All || **variance > 0.0);
+        cutoffs
+            .iter()
+            .flat_map(move |&cutoff| variances.clone().map(move |&variance| one(widen, cutoff, variance)))
+    };
+    some(Widen::All).chain(some(Widen::Small)).collect()
 }
 
 /// A checkerboard to the horizon, with the low-pass filter off and on. So many points that pixels hold many of them: what is left of the
@@ -130,11 +136,12 @@ fn aliasing(suite: Suite, size: [u32; 2]) -> Vec<Plan> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bench::subject::Subject;
 
     #[test]
     fn every_plan_is_of_a_scene_that_exists_and_of_its_suite() {
         for suite in Suite::ALL {
-            for plan in suite.plans(&[]) {
+            for plan in suite.plans(&Own::default()) {
                 assert_eq!(plan.suite, suite.name());
                 assert!(Subject::scene(&plan.scene).is_ok(), "{}", plan.scene);
                 assert!(plan.settings.check().is_ok());
@@ -145,7 +152,7 @@ mod tests {
     #[test]
     fn runs_of_a_scene_follow_each_other() {
         for suite in Suite::ALL {
-            let plans = suite.plans(&[]);
+            let plans = suite.plans(&Own::default());
             for figure in plans.chunk_by(|a, b| a.figure == b.figure) {
                 let mut scenes: Vec<_> =
                     figure.chunk_by(|a, b| a.scene == b.scene).map(|c| &c[0].scene).collect();

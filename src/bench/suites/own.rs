@@ -7,25 +7,49 @@ use crate::bench::subject::Subject;
 use crate::settings::Shading;
 use std::rc::Rc;
 
-const SIZE: [u32; 2] = [768, 768];
+/// Numbers of points unless others are wanted.
 const POINTS: [u64; 5] = [10_000, 30_000, 100_000, 300_000, 1_000_000];
 
-/// Time against error of each subject, at every density that it has and with all of its points.
-pub fn plans(subjects: &[Rc<Subject>]) -> Vec<Plan> {
-    subjects
-        .iter()
-        .flat_map(|subject| densities(subject).into_iter().flat_map(|points| budget(subject, points)))
-        .collect()
+/// What the user brings, and how it is to be seen.
+#[derive(Clone)]
+pub struct Own {
+    /// What is rendered.
+    pub subjects: Vec<Rc<Subject>>,
+    /// Numbers of points, of a scan as far as it has them; if there are none, from 10⁴ to 10⁶ or to all of a scan's.
+    pub points: Vec<u64>,
+    /// Width and height, px.
+    pub size: [u32; 2],
 }
 
-fn densities(subject: &Subject) -> Vec<u64> {
+impl Default for Own {
+    /// Nothing.
+    fn default() -> Self {
+        Self { subjects: Vec::new(), points: Vec::new(), size: [768, 768] }
+    }
+}
+
+/// Time against error of each subject, at every density.
+pub(super) fn plans(own: &Own) -> Vec<Plan> {
+    let each = |subject: &Rc<Subject>| {
+        let plans = |points| budget(subject, points, own.size);
+        densities(subject, &own.points).into_iter().flat_map(plans).collect::<Vec<_>>()
+    };
+    own.subjects.iter().flat_map(each).collect()
+}
+
+fn densities(subject: &Subject, wanted: &[u64]) -> Vec<u64> {
     let most = subject.most_points();
-    let fewer = POINTS.into_iter().filter(|&points| most.is_none_or(|most| points < most));
-    fewer.chain(most).collect()
+    let points = if wanted.is_empty() { &POINTS } else { wanted };
+    let mut densities: Vec<u64> =
+        points.iter().map(|&points| most.map_or(points, |most| points.min(most))).collect();
+    densities.extend(most.filter(|_| wanted.is_empty()));
+    densities.sort_unstable();
+    densities.dedup();
+    densities
 }
 
-fn budget(subject: &Subject, points: u64) -> Vec<Plan> {
-    let mut smooth = plan(Suite::Own, Figure::Budget, &subject.name, points, SIZE);
+fn budget(subject: &Subject, points: u64, size: [u32; 2]) -> Vec<Plan> {
+    let mut smooth = plan(Suite::Own, Figure::Budget, &subject.name, points, size);
     if !subject.is_coloured() {
         smooth.settings.shading = Shading::Lit;
     }

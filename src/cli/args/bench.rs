@@ -1,7 +1,7 @@
 //! Options of `surfel bench`.
 
 use super::OnDevice;
-use crate::cli::values::Suite;
+use crate::cli::values::{Suite, size};
 use clap::Args;
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -15,6 +15,12 @@ pub struct Bench {
     /// The PLY file with the triangles that the points of INPUT are samples of; unless given, those of INPUT itself
     #[arg(long, value_name = "MESH", requires = "inputs")]
     pub truth: Option<PathBuf>,
+    /// Numbers of points of INPUT; from 10000 to 1000000, or to all that there are, unless given
+    #[arg(long, value_name = "N,…", value_delimiter = ',', requires = "inputs", value_parser = clap::value_parser!(u64).range(1..))]
+    pub points: Vec<u64>,
+    /// Size of INPUT's pictures, px; 768x768 unless given
+    #[arg(long, value_name = "WxH", value_parser = size, requires = "inputs", allow_hyphen_values = true)]
+    pub size: Option<[u32; 2]>,
     /// What is measured; quick unless something else, an INPUT or --from, is given
     #[arg(long, value_enum, value_delimiter = ',', value_name = "SUITE,…")]
     pub suite: Vec<Suite>,

@@ -1,0 +1,150 @@
+//! The bench measures what is there, and says so where nothing can be measured.
+
+mod support;
+
+use base64::prelude::{BASE64_STANDARD, Engine as _};
+use std::path::Path;
+use std::rc::Rc;
+use std::time::Duration;
+use support::gpu::{assert_silent, device};
+use surfel::bench::engine::Engine;
+use surfel::bench::plan::{Plan, Wants};
+use surfel::bench::record::{Figure, Run};
+use surfel::bench::runner::{Options, Runner};
+use surfel::bench::stopwatch::Effort;
+use surfel::bench::subject::Subject;
+use surfel::settings::{Settings, Shading};
+use surfel::truth;
+use surfel::vk::DeviceLimits;
+
+const EFFORT: Effort = Effort { warmup: 1, least: 3, most: 3, budget: Duration::ZERO };
+const TRUTH: truth::Options = truth::Options {
+    filter: truth::Filter::Gaussian { variance: 1.0 },
+    error: 1.0 / 256.0,
+    most_samples: 256,
+};
+
+fn plan(scene: &str, points: u64, side: u32) -> Plan {
+    Plan {
+        suite: "test",
+        figure: Figure::Budget,
+        scene: scene.into(),
+        points,
+        radius_scale: 1.0,
+        size: [side, side],
+        engine: Engine::DEFAULT,
+        settings: Settings { shading: Shading::Colour, ..Default::default() },
+        wants: Wants { time: false, ..Wants::BOTH },
+    }
+}
+
+/// A runner on a validated device; `None`, said aloud, where there is none.
+fn runner(subjects: Vec<Rc<Subject>>) -> Option<Runner> {
+    let device = device(DeviceLimits::default())?;
+    Some(Runner::new(Options { device: Some(device), cache: None, truth: TRUTH, effort: EFFORT }, subjects))
+}
+
+fn rmse(run: &Run) -> f64 {
+    run.error.as_ref().unwrap().metrics["rmse"]
+}
+
+#[test]
+fn a_run_knows_its_time_its_error_and_what_that_is_made_of() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let options = Options { device: Some(device.clone()), cache: None, truth: TRUTH, effort: EFFORT };
+    let mut runner = Runner::new(options, Vec::new());
+    let wants = Wants { time: true, error: true, terms: true, agreement: true, flicker: true, exhibit: true };
+    let run = runner.run(&Plan { wants, ..plan("scene:torus", 20_000, 96) }).unwrap();
+    assert_eq!((run.refused.as_deref(), run.points, run.size), (None, 20_000, [96, 96]));
+
+    let time = run.time.as_ref().unwrap();
+    assert_eq!((time.frames, time.warmup), (3, 1));
+    assert!(time.wall.min > 0.0 && time.wall.min <= time.wall.median && time.wall.median <= time.wall.max);
+    if device.capabilities().timestamps.is_some() {
+        let names: Vec<_> = time.passes.iter().map(|pass| pass.name.as_str()).collect();
+        for pass in ["footprint", "visibility", "attribute", "normalize"] {
+            assert!(names.contains(&pass), "{names:?}");
+        }
+        let sum: f64 = time.passes.iter().map(|pass| pass.ms.median).sum();
+        assert!(time.device.unwrap().min > 0.0 && sum > 0.0);
+    }
+
+    let error = run.error.as_ref().unwrap();
+    let terms = &error.terms;
+    assert!((terms.silhouette.hypot(terms.inside) - rmse(&run)).abs() < 1e-12);
+    // Both kinds of pixels are there, and are wrong by more than the truth's own error.
+    assert!(terms.silhouette > 2.0 * error.truth_rms && terms.inside > 2.0 * error.truth_rms, "{terms:?}");
+    assert!((1e-9..1e-5).contains(&terms.precision.unwrap()), "{terms:?}");
+    assert!((1e-4..terms.silhouette).contains(&terms.hidden.unwrap()), "{terms:?}");
+    assert!(error.metrics["flicker"] > 0.0 && error.metrics["iou"] > 0.9 && error.metrics["holes"] == 0.0);
+
+    let agreement = run.agreement.unwrap();
+    assert!(agreement.object > 1000 && agreement.failed == 0 && agreement.colour < 2e-4);
+    // Samples' radii are 1.5 spacings.
+    assert!((run.overlap.unwrap() - 2.25 * std::f64::consts::PI).abs() < 0.05, "{:?}", run.overlap);
+    assert!(run.memory.scene > 0 && run.memory.splats > 0 && run.memory.targets > 0);
+    let exhibits = runner.exhibits();
+    let exhibit = &exhibits[run.exhibit.unwrap()];
+    for png in [&exhibit.picture, &exhibit.truth, &exhibit.map] {
+        assert!(BASE64_STANDARD.decode(png).unwrap().starts_with(b"\x89PNG"));
+    }
+    assert_silent(&device);
+}
+
+#[test]
+fn on_smooth_scenes_the_error_falls_as_points_rise() {
+    let Some(mut runner) = runner(Vec::new()) else { return };
+    for scene in ["sphere", "bumpy-sphere", "torus", "relief", "helix", "ribbon"] {
+        let mut last = f64::INFINITY;
+        for points in [3_000, 10_000, 100_000] {
+            let now = rmse(&runner.run(&plan(&format!("scene:{scene}"), points, 128)).unwrap());
+            println!("{scene} {points}: RMSE {now:.4}");
+            assert!(now < last, "{scene}: RMSE {now} of {points} points, {last} of fewer");
+            last = now;
+        }
+    }
+}
+
+#[test]
+fn without_a_device_a_run_says_why() {
+    let options = Options { device: None, cache: None, truth: TRUTH, effort: EFFORT };
+    let run = Runner::new(options, Vec::new()).run(&plan("scene:torus", 1000, 32)).unwrap();
+    assert!(run.refused.unwrap().contains("no usable Vulkan device"));
+    assert!(run.time.is_none() && run.error.is_none());
+}
+
+#[test]
+fn what_the_device_cannot_is_refused_and_the_next_run_goes_on() {
+    let limits = DeviceLimits { max_image_side: Some(64), ..Default::default() };
+    let Some(device) = device(limits) else { return };
+    let options = Options { device: Some(device), cache: None, truth: TRUTH, effort: EFFORT };
+    let mut runner = Runner::new(options, Vec::new());
+    let large = runner.run(&plan("scene:torus", 1000, 128)).unwrap();
+    assert!(large.refused.is_some_and(|why| why.contains("128")), "the size is named");
+    let small = runner.run(&plan("scene:torus", 1000, 64)).unwrap();
+    assert!(small.refused.is_none() && small.error.is_some());
+}
+
+#[test]
+fn a_scan_is_held_against_its_mesh_at_any_density() {
+    let scan =
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/stanford/bunny/bun_zipper_res2.ply");
+    if !scan.exists() {
+        return eprintln!("SKIPPED, not passed: there is no {}", scan.display());
+    }
+    let subject = Rc::new(Subject::scan(&scan, None, &()).unwrap());
+    let most = subject.most_points().unwrap();
+    let Some(mut runner) = runner(vec![subject.clone()]) else { return };
+    let mut of = |points| {
+        let mut plan = plan(&subject.name, points, 128);
+        plan.settings.shading = Shading::Lit;
+        runner.run(&plan).unwrap()
+    };
+    let (thin, whole) = (of(2000), of(most));
+    assert_eq!((thin.points, whole.points), (2000, most));
+    let metric = |run: &Run, name: &str| run.error.as_ref().unwrap().metrics[name];
+    for name in ["rmse", "normal-median", "depth-rms"] {
+        assert!(metric(&whole, name) < metric(&thin, name), "{name}");
+    }
+    assert!(metric(&whole, "iou") > 0.97 && metric(&whole, "normal-median") < 5.0);
+}
