@@ -143,8 +143,11 @@ fn a_scan_is_held_against_its_mesh_at_any_density() {
     let (thin, whole) = (of(2000), of(most));
     assert_eq!((thin.points, whole.points), (2000, most));
     let metric = |run: &Run, name: &str| run.error.as_ref().unwrap().metrics[name];
+    for name in ["rmse", "iou", "normal-median", "depth-rms"] {
+        println!("{name}: {} of all points, {} of 2000", metric(&whole, name), metric(&thin, name));
+    }
     for name in ["rmse", "normal-median", "depth-rms"] {
         assert!(metric(&whole, name) < metric(&thin, name), "{name}");
     }
-    assert!(metric(&whole, "iou") > 0.97 && metric(&whole, "normal-median") < 5.0);
+    assert!(metric(&whole, "iou") > metric(&thin, "iou") && metric(&whole, "normal-median") < 2.0);
 }
