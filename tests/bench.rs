@@ -60,6 +60,7 @@ fn a_run_knows_its_time_its_error_and_what_that_is_made_of() {
     let time = run.time.as_ref().unwrap();
     assert_eq!((time.frames, time.warmup), (3, 1));
     assert!(time.wall.min > 0.0 && time.wall.min <= time.wall.median && time.wall.median <= time.wall.max);
+    assert!(time.cpu.min > 0.0);
     if device.capabilities().timestamps.is_some() {
         let names: Vec<_> = time.passes.iter().map(|pass| pass.name.as_str()).collect();
         for pass in ["footprint", "visibility", "attribute", "normalize"] {

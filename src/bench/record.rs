@@ -166,6 +166,8 @@ pub struct Time {
     pub warmup: usize,
     /// As its caller waits for it, ms.
     pub wall: Statistics,
+    /// Processor time of all threads, ms: the steadier figure where the device is the processor itself.
+    pub cpu: Statistics,
     /// Each pass by the device's timestamps, ms, in the order in which they run; empty if there are none.
     pub passes: Vec<Pass>,
     /// All passes together, frame by frame, ms.

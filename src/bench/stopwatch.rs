@@ -6,6 +6,7 @@ use super::times::{Statistics, Times};
 use crate::error::Result;
 use crate::geometry::Camera;
 use crate::settings::Settings;
+use cpu_time::ProcessTime;
 use std::time::{Duration, Instant};
 
 /// How many frames are timed: at least so many, at most so many, and no more once the time is up.
@@ -33,13 +34,14 @@ pub fn time(ready: &mut dyn Ready, camera: &Camera, settings: &Settings, effort:
     for _ in 0..effort.warmup {
         ready.frame(camera, settings, false)?;
     }
-    let (mut whole, mut sums) = (Vec::new(), Vec::new());
+    let (mut whole, mut cpu, mut sums) = (Vec::new(), Vec::new(), Vec::new());
     let mut passes = Times::default();
     let start = Instant::now();
     while whole.len() < effort.least || (whole.len() < effort.most && start.elapsed() < effort.budget) {
-        let begin = Instant::now();
+        let (begin, spent) = (Instant::now(), ProcessTime::now());
         ready.frame(camera, settings, false)?;
         whole.push(begin.elapsed().as_secs_f64() * 1e3);
+        cpu.push(spent.elapsed().as_secs_f64() * 1e3);
         let times = ready.frame(camera, settings, true)?;
         if !times.is_empty() {
             sums.push(times.iter().map(|pass| pass.milliseconds).sum());
@@ -51,6 +53,7 @@ pub fn time(ready: &mut dyn Ready, camera: &Camera, settings: &Settings, effort:
         frames: whole.len(),
         warmup: effort.warmup,
         wall: Statistics::of(&whole).unwrap_or_default(),
+        cpu: Statistics::of(&cpu).unwrap_or_default(),
         passes: passes.passes().map(pass).collect(),
         device: Statistics::of(&sums),
         multiple: None,

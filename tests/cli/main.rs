@@ -1,5 +1,6 @@
 //! The `surfel` program as its user meets it: arguments in; exit code, streams and files out.
 
+mod bench;
 mod colours;
 mod compare;
 mod convert;

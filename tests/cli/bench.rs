@@ -1,0 +1,69 @@
+//! `surfel bench`.
+
+use crate::program::Program;
+use serde_json::Value;
+
+fn json(program: &Program, name: &str) -> Value {
+    serde_json::from_slice(&std::fs::read(program.path(name)).unwrap()).unwrap()
+}
+
+#[test]
+fn what_the_user_brings_is_measured_kept_and_shown_again() {
+    let Some(program) = Program::with_device("what_the_user_brings_is_measured_kept_and_shown_again") else {
+        return;
+    };
+    let arguments = "scene:torus --points 1000,3000 --size 64x64";
+    let run = program.run(&format!("bench {arguments} --json a.json --csv a.csv --report page"));
+    assert!(run.text().contains("scene:torus") && run.text().contains("perspective-ewa"), "{}", run.text());
+    let results = json(&program, "a.json");
+    let session = &results["sessions"][0];
+    assert_eq!(session["made"]["command"], format!("surfel bench {arguments}"));
+    let runs = session["runs"].as_array().unwrap();
+    let points: Vec<_> = runs.iter().map(|run| run["points"].as_u64().unwrap()).collect();
+    assert!(points.contains(&1000) && points.contains(&3000));
+    for run in runs {
+        assert!(run["refused"].is_null(), "{run}");
+        assert!(run["time"]["wall"]["median"].as_f64().unwrap() > 0.0);
+        assert!(run["error"]["metrics"]["rmse"].as_f64().unwrap() > 0.0);
+    }
+    let rows = std::fs::read_to_string(program.path("a.csv")).unwrap().lines().count();
+    assert_eq!(rows, 1 + runs.len());
+    let page = |folder: &str| std::fs::read_to_string(program.path(folder).join("index.html")).unwrap();
+    assert!(page("page").contains("<svg"));
+
+    // Without a device, from what was kept.
+    let again = program.run_with(
+        "bench --from a.json --json b.json --report again",
+        &[("VK_DRIVER_FILES", "none"), ("VK_ICD_FILENAMES", "none")],
+    );
+    assert_eq!(again.text(), run.text());
+    assert_eq!(json(&program, "b.json"), results);
+    assert_eq!(page("again"), page("page"));
+}
+
+#[test]
+fn results_of_other_code_say_so() {
+    let program = Program::new();
+    let made = r#""version":"0.1.0","commit":"0123456789","code":"another","date":"2026-01-02T03:04:05Z","seconds":1.0,
+        "command":"surfel bench","suites":["quick"],"host":{"cpu":"A","cores":2,"memory":1,"system":"B"},"device":null"#;
+    let session = format!(r#"{{"made":{{{made}}},"runs":[],"sweeps":[],"exhibits":[]}}"#);
+    program.write("old.json", format!(r#"{{"format":1,"sessions":[{session}]}}"#));
+    let run = program.run("bench --from old.json --report page");
+    assert!(run.text().contains("0123456789"), "{}", run.text());
+    let page = std::fs::read_to_string(program.path("page/index.html")).unwrap();
+    assert!(page.contains("0123456789") && page.contains("2026-01-02"));
+}
+
+#[test]
+fn what_cannot_be_is_refused_before_anything_is_measured() {
+    let program = Program::new();
+    program.write("none.json", "{}").write("later.json", r#"{"format":99,"sessions":[]}"#).write("file", "");
+    let refused = |arguments: &str, code| program.run(&format!("bench {arguments}")).error(code).to_owned();
+    assert!(refused("--from missing.json", 1).contains("missing.json"));
+    assert!(refused("--from none.json", 1).contains("none.json: missing field"));
+    assert!(refused("--from later.json", 1).contains("format 99"));
+    assert!(refused("--from later.json --report file", 2).contains("is no folder"));
+    assert!(refused("--suite slow", 2).contains("slow"));
+    assert!(refused("--points 100", 2).contains("INPUT"));
+    assert!(refused("scene:none", 2).contains("no such scene"));
+}
