@@ -87,6 +87,11 @@ pub struct Splat {
     pub dual: bool,
 }
 
+/// Least `√|V|` of a splat that is drawn, px²: float32's weight of a smaller one may be 0.
+const LEAST_AREA: f64 = 1e-30;
+/// Largest variance along the major axis of a splat that is drawn, px²: float32 overflows beyond.
+const LARGEST_VARIANCE: f64 = 1e30;
+
 /// Why a surfel makes no splat.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Culled {
@@ -96,8 +101,11 @@ pub enum Culled {
     EyePlane,
     /// It shows its back where [`Cull::Back`] is set, and is not two-sided.
     Back,
-    /// Its bounding box misses the picture.
+    /// Its bounding box misses the picture, or its image has no area: it is seen exactly edge-on, or so small that its weight is
+    /// nothing in float32.
     Outside,
+    /// It is not [valid](Surfels::is_valid), which is found before all else, or its image is too large for float32.
+    Invalid,
 }
 
 /// The splat of one surfel in a frame of `size` px, or why it has none.
@@ -113,7 +121,7 @@ pub fn footprint(
 }
 
 impl Projector {
-    /// The splat of one surfel, or why it has none; the reasons are tried in the order of [`Culled`].
+    /// The splat of one surfel, or why it has none; the reasons are tried in the order of [`Culled`]. Takes the surfel to be valid.
     pub fn footprint(&self, surfel: &Surfel) -> Result<Splat, Culled> {
         let centre = self.view.transform_point3(surfel.position);
         let normal = self.view.transform_vector3(surfel.normal);
@@ -147,7 +155,13 @@ impl Projector {
             aspect: surfel.aspect,
             dual: inverse.is_none(),
         };
-        if self.sees(&Ellipse::attribute(&splat, self)) { Ok(splat) } else { Err(Culled::Outside) }
+        let attribute = Ellipse::attribute(&splat, self);
+        // What is no number fails either.
+        match splat.sqrt_det >= LEAST_AREA && self.sees(&attribute) {
+            true if attribute.variance.x <= LARGEST_VARIANCE => Ok(splat),
+            true => Err(Culled::Invalid),
+            false => Err(Culled::Outside),
+        }
     }
 
     /// The semi-axes of the covered disc, eye space.
