@@ -29,12 +29,14 @@ layout(push_constant) uniform Window { uint count; } window;
 
 // Fates, the first five in the order of the counts.
 const uint BEHIND = 0;    // the centre is not in front of the eye
-const uint EYE_PLANE = 1; // the disc reaches the eye plane
+const uint EYE_PLANE = 1; // the disc reaches the eye plane, or all but does
 const uint BACK = 2;      // the normal faces away, such are culled, and the surfel is not two-sided
 const uint OUTSIDE = 3;   // off the picture, or without an area on it
 const uint INVALID = 4;   // marked by a radius of 0, or with an image too large for floats
 const uint DRAWN = 5;
 
+// Least q, relative to (w / F)²: nearer the eye plane q has lost the digits that tell where the ellipse is.
+const float LEAST_CLEARANCE = 1e-4;
 // Least √|V|, px², whose weight is surely above 0: less would hide what is behind and show nothing.
 const float LEAST_AREA = 1e-30;
 // Largest variance, px².
@@ -110,7 +112,7 @@ uint footprint(uint i, out Splat splat) {
     vec3 T = sigma * to_pixel(axes[1]);
     float g = length(vec2(S.z, T.z));
     float q = (w.x / frame.cutoff - g) * (w.x / frame.cutoff + g);
-    if (!(q > 0.0)) return EYE_PLANE;
+    if (!(q > LEAST_CLEARANCE * (w.x / frame.cutoff) * (w.x / frame.cutoff))) return EYE_PLANE;
     vec2 h = dot_double(hi, lo, n, vec3(0.0));
     vec2 facing = PERSPECTIVE ? h : dot_double(n, vec3(0.0), frame.forward_hi.xyz, frame.forward_lo.xyz);
     if (CULL_BACK && facing.x >= 0.0 && !(TWO_SIDED && radii[i] < 0.0)) return BACK;

@@ -49,7 +49,7 @@ pub struct SplatCounts {
     pub drawn: u32,
     /// The centre is not in front of the eye.
     pub behind: u32,
-    /// The disc reaches the eye plane.
+    /// The disc reaches the eye plane, or comes within 1/20000 of its distance to it.
     pub eye_plane: u32,
     /// The normal faces away, and such are culled.
     pub back: u32,

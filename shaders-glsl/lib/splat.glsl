@@ -39,6 +39,13 @@ vec2 reach_of(vec2 axis, vec2 variance) {
     return frame.cutoff * sqrt(vec2(dot(axis2, variance), dot(axis2.yx, variance)));
 }
 
+// √(|V| / |V + H|), of the filtered variance V + H: what the filter leaves of the kernel's height. The product of both eigenvalues
+// would overflow on a very large splat.
+float amplitude_of(Splat splat, vec2 variance) {
+    vec2 inverse = inversesqrt(variance);
+    return splat.sqrt_det * inverse.x * inverse.y;
+}
+
 // What a fragment needs of a splat.
 struct Ellipse {
     vec2 anchor;

@@ -87,6 +87,8 @@ pub struct Splat {
     pub dual: bool,
 }
 
+/// Least `1 − (F |g| / w)²` of a splat that is drawn: nearer the eye plane float32 cannot tell where the ellipse is.
+const LEAST_CLEARANCE: f64 = 1e-4;
 /// Least `√|V|` of a splat that is drawn, px²: float32's weight of a smaller one may be 0.
 const LEAST_AREA: f64 = 1e-30;
 /// Largest variance along the major axis of a splat that is drawn, px²: float32 overflows beyond.
@@ -97,7 +99,7 @@ const LARGEST_VARIANCE: f64 = 1e30;
 pub enum Culled {
     /// Its centre is not in front of the eye (perspective only).
     Behind,
-    /// Its disc reaches the eye plane.
+    /// Its disc reaches the eye plane, or comes within 1/20000 of its distance to it.
     EyePlane,
     /// It shows its back where [`Cull::Back`] is set, and is not two-sided.
     Back,
@@ -131,8 +133,8 @@ impl Projector {
         }
         let axes = self.semi_axes(surfel);
         let (projected, mapping) = self.tangent_plane(centre, axes);
-        let clear = clearance(&mapping, self.cutoff());
-        if clear.is_nan() || clear <= 0.0 {
+        let clear = clearance(&mapping, self.cutoff()) / (mapping.z_axis.z / self.cutoff()).powi(2);
+        if clear.is_nan() || clear <= LEAST_CLEARANCE {
             return Err(Culled::EyePlane);
         }
         let facing = self.facing(centre, normal);
