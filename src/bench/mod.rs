@@ -1,5 +1,6 @@
 //! Measuring speed against error.
 
+pub mod hard;
 pub mod record;
 mod times;
 
