@@ -55,7 +55,7 @@ bool hidden(float nearest, ivec2 low, ivec2 high) {
 
 bool scatter_begin(uint i, Splat splat, vec2 variance, float nearest, ivec2 low, ivec2 high) {
     if (!LARGE_SPLATS && hidden(nearest, low, high)) return false;
-    splat_amplitude = splat.sqrt_det * inversesqrt(variance.x * variance.y);
+    splat_amplitude = amplitude_of(splat, variance);
     attributes_of(i, splat.epsilon, splat_first, splat_second);
     return true;
 }

@@ -19,20 +19,28 @@ layout(constant_id = 13) const bool TWO_SIDED = false;
 
 layout(set = 0, binding = 2, std430) readonly buffer Positions { float positions[]; };
 layout(set = 0, binding = 3, std430) readonly buffer Normals { float normals[]; };
-layout(set = 0, binding = 4, std430) readonly buffer Radii { float radii[]; }; // TWO_SIDED: negative where it is
-layout(set = 0, binding = 6, std430) buffer Counts { uint culled[4]; };
+layout(set = 0, binding = 4, std430) readonly buffer Radii { float radii[]; }; // 0: invalid; TWO_SIDED: negative where it is
+layout(set = 0, binding = 6, std430) buffer Counts { uint culled[5]; };
 
 layout(set = 0, binding = 7, std430) buffer LargeSplats { uint large_count; uint large_padding[63]; uint large[]; };
 layout(set = 0, binding = 8, std430) readonly buffer Ellipses { vec4 ellipses[]; }; // major axis, aspect
 
 layout(push_constant) uniform Window { uint count; } window;
 
-// Fates, the first four in the order of the counts.
+// Fates, the first five in the order of the counts.
 const uint BEHIND = 0;    // the centre is not in front of the eye
-const uint EYE_PLANE = 1; // the disc reaches the eye plane
+const uint EYE_PLANE = 1; // the disc reaches the eye plane, or all but does
 const uint BACK = 2;      // the normal faces away, such are culled, and the surfel is not two-sided
-const uint OUTSIDE = 3;   // off the picture
-const uint DRAWN = 4;
+const uint OUTSIDE = 3;   // off the picture, or without an area on it
+const uint INVALID = 4;   // marked by a radius of 0, or with an image too large for floats
+const uint DRAWN = 5;
+
+// Least q, relative to (w / F)²: nearer the eye plane q has lost the digits that tell where the ellipse is.
+const float LEAST_CLEARANCE = 1e-4;
+// Least √|V|, px², whose weight is surely above 0: less would hide what is behind and show nothing.
+const float LEAST_AREA = 1e-30;
+// Largest variance, px².
+const float LARGEST_VARIANCE = 1e30;
 
 // Pixels in the box of a splat from which on the compute rasterizer gives it a workgroup.
 const float LARGE_AREA = 1024.0;
@@ -86,6 +94,7 @@ uint footprint(uint i, out Splat splat) {
     vec3 p = vec3(positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]);
     vec3 n = vec3(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]);
     float r = TWO_SIDED ? abs(radii[i]) : radii[i];
+    if (!(r > 0.0)) return INVALID;
     vec4 shape = ELLIPSES ? ellipses[i] : vec4(vec3(0.0), 1.0);
 
     // The position relative to the eye, its homogeneous pixel and its plane's h = n·position in twice the precision: all that
@@ -103,7 +112,7 @@ uint footprint(uint i, out Splat splat) {
     vec3 T = sigma * to_pixel(axes[1]);
     float g = length(vec2(S.z, T.z));
     float q = (w.x / frame.cutoff - g) * (w.x / frame.cutoff + g);
-    if (!(q > 0.0)) return EYE_PLANE;
+    if (!(q > LEAST_CLEARANCE * (w.x / frame.cutoff) * (w.x / frame.cutoff))) return EYE_PLANE;
     vec2 h = dot_double(hi, lo, n, vec3(0.0));
     vec2 facing = PERSPECTIVE ? h : dot_double(n, vec3(0.0), frame.forward_hi.xyz, frame.forward_lo.xyz);
     if (CULL_BACK && facing.x >= 0.0 && !(TWO_SIDED && radii[i] < 0.0)) return BACK;
@@ -116,7 +125,8 @@ uint footprint(uint i, out Splat splat) {
     vec2 reach = reach_of(conic.axis, attribute_variance(conic.variance));
     vec2 middle = centre + conic.offset;
     bool inside = all(lessThanEqual(middle - reach, frame.viewport)) && all(greaterThanEqual(middle + reach, vec2(0.0)));
-    if (!inside) return OUTSIDE;
+    if (!inside || !(sqrt_det >= LEAST_AREA)) return OUTSIDE;
+    if (!(conic.variance.x <= LARGEST_VARIANCE)) return INVALID;
 
     uvec2 pixel = uvec2(clamp(middle, vec2(0.0), frame.viewport - 1.0));
     vec2 anchor = vec2(pixel) + 0.5;
@@ -128,9 +138,7 @@ uint footprint(uint i, out Splat splat) {
     splat.place = place_of(pixel, listed ? LARGE : SMALL);
     splat.epsilon = PERSPECTIVE ? w.x / (w.x + frame.epsilon * r) : frame.key_slope * frame.epsilon * r;
     if (facing.x > 0.0) splat.epsilon = -splat.epsilon;
-    // A plane through the eye is seen nowhere.
-    mat2x3 plane = mat2x3(vec3(-1.0, 0.0, 0.0), vec3(0.0));
-    if (facing.x != 0.0) plane = depth_plane(n, h, facing, anchor);
+    mat2x3 plane = depth_plane(n, h, facing, anchor);
     splat.plane_hi = plane[0];
     splat.plane_lo = plane[1];
     splat.sqrt_det = sqrt_det;

@@ -49,12 +49,14 @@ pub struct SplatCounts {
     pub drawn: u32,
     /// The centre is not in front of the eye.
     pub behind: u32,
-    /// The disc reaches the eye plane.
+    /// The disc reaches the eye plane, or comes within 1/20000 of its distance to it.
     pub eye_plane: u32,
     /// The normal faces away, and such are culled.
     pub back: u32,
-    /// Off the picture.
+    /// Off the picture, or without an area on it: exactly edge-on, or too small to weigh anything.
     pub outside: u32,
+    /// Not [valid](crate::geometry::Surfels::is_valid), or with an image too large for float32.
+    pub invalid: u32,
 }
 
 /// Renders frames of one size on one device. One frame is under way at a time.
@@ -240,8 +242,8 @@ fn rasterizer_for(device: &Device, options: &RenderOptions) -> Result<Rasterizer
 
 impl SplatCounts {
     fn new(surfels: u64, Counts { culled }: Counts) -> Self {
-        let [behind, eye_plane, back, outside] = culled;
+        let [behind, eye_plane, back, outside, invalid] = culled;
         let drawn = surfels as u32 - culled.iter().sum::<u32>();
-        Self { drawn, behind, eye_plane, back, outside }
+        Self { drawn, behind, eye_plane, back, outside, invalid }
     }
 }

@@ -15,7 +15,7 @@ pub struct Scene {
     pub(crate) id: u64,
     pub(crate) positions: Buffer,
     pub(crate) normals: Buffer,
-    /// Negative radii are those of two-sided surfels, in a scene that has such.
+    /// Negative radii are those of two-sided surfels, in a scene that has such; 0 is that of an invalid surfel.
     pub(crate) radii: Buffer,
     pub(crate) two_sided: bool,
     pub(crate) ellipses: Option<Buffer>,
@@ -59,25 +59,33 @@ const ELLIPSE: u64 = size_of::<Ellipse>() as u64;
 impl Scene {
     /// Copies `surfels` to `device`. They are best in Morton order ([`Surfels::sort_morton`]).
     ///
-    /// Refuses none at all, and arrays of unequal length.
+    /// Those that are not [valid](Surfels::is_valid) will not be drawn: a warning says how many, and frames count them as `invalid`.
+    /// Refuses arrays of unequal length, and surfels none of which is valid.
     pub fn upload(device: &Arc<Device>, surfels: &Surfels) -> Result<Self> {
+        let (scene, invalid) = Self::upload_silently(device, surfels)?;
+        if invalid > 0 {
+            warn_of(invalid, surfels.len());
+        }
+        Ok(scene)
+    }
+
+    /// [`Scene::upload`] without the warning, and the number of invalid surfels.
+    pub(crate) fn upload_silently(device: &Arc<Device>, surfels: &Surfels) -> Result<(Self, usize)> {
         static NEXT: AtomicU64 = AtomicU64::new(0);
-        let count = surfels.len() as u64;
-        let Some(bounds) = surfels.bounds() else {
-            return Err(Error::Usage("a scene without surfels".into()));
-        };
         surfels.check()?;
+        let (bounds, invalid) = usable(surfels)?;
+        let count = surfels.len() as u64;
         let ellipses = surfels.ellipses.as_deref();
         let (colour_stream, colours): (_, &[u8]) = match &surfels.colours {
             None => (ColourStream::None, &[]),
             Some(Colours::Srgb8(colours)) => (ColourStream::Srgb8, bytemuck::cast_slice(colours)),
             Some(Colours::Linear(colours)) => (ColourStream::Linear, bytemuck::cast_slice(colours)),
         };
-        Ok(Self {
+        let scene = Self {
             id: NEXT.fetch_add(1, Ordering::Relaxed),
             positions: upload(device, "positions", bytemuck::cast_slice(&surfels.positions))?,
             normals: upload(device, "normals", bytemuck::cast_slice(&surfels.normals))?,
-            radii: upload(device, "radii", bytemuck::cast_slice(&signed_radii(surfels)))?,
+            radii: upload(device, "radii", bytemuck::cast_slice(&marked_radii(surfels, invalid)))?,
             two_sided: surfels.two_sided.is_some(),
             ellipses: ellipses
                 .map(|ellipses| upload(device, "ellipses", bytemuck::cast_slice(ellipses)))
@@ -90,7 +98,8 @@ impl Scene {
             count,
             origin: surfels.origin,
             bounds,
-        })
+        };
+        Ok((scene, invalid))
     }
 
     /// Number of surfels.
@@ -146,11 +155,36 @@ impl Scene {
     }
 }
 
-/// The radii, those of two-sided surfels negative.
-fn signed_radii(surfels: &Surfels) -> Cow<'_, [f32]> {
-    let Some(two_sided) = &surfels.two_sided else { return Cow::Borrowed(&surfels.radii) };
-    let sign = |&two_sided: &bool| if two_sided { -1.0f32 } else { 1.0 };
-    surfels.radii.iter().zip(two_sided).map(|(radius, side)| radius.copysign(sign(side))).collect()
+/// The bounds of the valid surfels, and the number of the others.
+fn usable(surfels: &Surfels) -> Result<(Bounds, usize)> {
+    let (count, invalid) = (surfels.len(), surfels.count_invalid());
+    let Some(bounds) = surfels.bounds() else {
+        let text = format!("a scene without surfels: {count} are given, and {invalid} of them are invalid");
+        return Err(Error::Usage(text));
+    };
+    Ok((bounds, invalid))
+}
+
+fn warn_of(invalid: usize, count: usize) {
+    log::warn!(
+        "{invalid} of {count} surfels are invalid and will not be drawn: a value is NaN, infinite or beyond {:e}, a normal or an axis \
+         is no unit vector, a radius or an aspect is not above 0",
+        Surfels::LARGEST
+    );
+}
+
+/// The radii, those of two-sided surfels negative and those of the invalid ones, if there are any, 0.
+fn marked_radii(surfels: &Surfels, invalid: usize) -> Cow<'_, [f32]> {
+    if surfels.two_sided.is_none() && invalid == 0 {
+        return Cow::Borrowed(&surfels.radii);
+    }
+    let two_sided = |i: usize| surfels.two_sided.as_ref().is_some_and(|two_sided| two_sided[i]);
+    let mark = |(i, &radius): (usize, &f32)| match (surfels.is_valid(i), two_sided(i)) {
+        (false, _) => 0.0,
+        (true, false) => radius,
+        (true, true) => -radius,
+    };
+    surfels.radii.iter().enumerate().map(mark).collect()
 }
 
 /// Splits `count` surfels so that a window of any stream, the splats' included, fits a descriptor and starts aligned, and so that a

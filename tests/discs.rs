@@ -131,8 +131,49 @@ fn shapes_that_are_none_are_culled() {
         let mut renderer = Renderer::new(&device, options(rasterizer)).unwrap();
         let (picture, report) =
             renderer.render_picture(&scene, &camera(DVec3::Z * 9.0), &Settings::default()).unwrap();
-        assert_eq!(report.counts.unwrap().drawn, 1596, "{rasterizer:?}");
+        let counts = report.counts.unwrap();
+        assert_eq!((counts.drawn, counts.invalid), (1596, 4), "{rasterizer:?}");
         assert!(picture.colour.iter().flatten().all(|c| c.is_finite()), "{rasterizer:?}");
     }
     assert_silent(&device);
+}
+
+#[test]
+fn invalid_surfels_neither_show_nor_hide() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let good = wall();
+    let mut mixed = good.clone();
+    let bad = |surfels: &mut Surfels, radius: f32, normal: Vec3| {
+        surfels.positions.push(Vec3::Z);
+        surfels.normals.push(normal);
+        surfels.radii.push(radius);
+        surfels.two_sided.get_or_insert_default().push(true);
+    };
+    bad(&mut mixed, 0.0, Vec3::Z);
+    bad(&mut mixed, -0.5, Vec3::Z);
+    bad(&mut mixed, f32::NAN, Vec3::Z);
+    bad(&mut mixed, 0.5, Vec3::ZERO);
+    // Nothing wrong, but without a weight.
+    bad(&mut mixed, 1e-21, Vec3::Z);
+    let view = camera(DVec3::Z * 9.0);
+    let expected = Expected::new(&good, &view, SIZE, &Settings::default(), &Tolerance::default()).unwrap();
+    let scene = Scene::upload(&device, &mixed).unwrap();
+    for rasterizer in BOTH {
+        let mut renderer = Renderer::new(&device, options(rasterizer)).unwrap();
+        let (picture, report) = renderer.render_picture(&scene, &view, &Settings::default()).unwrap();
+        let verdict = expected.compare(&picture).unwrap();
+        assert!(verdict.passed(), "{rasterizer:?}: {:?}", verdict.failures.first());
+        let counts = report.counts.unwrap();
+        assert_eq!((counts.drawn, counts.invalid, counts.outside), (1600, 4, 1), "{rasterizer:?}");
+    }
+    assert_silent(&device);
+}
+
+#[test]
+fn scenes_without_a_valid_surfel_or_a_finite_origin_are_refused() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let surfels = wall();
+    let refused = |surfels: &Surfels| matches!(Scene::upload(&device, surfels), Err(Error::Usage(_)));
+    assert!(refused(&Surfels { radii: vec![0.0; surfels.len()], ..surfels.clone() }));
+    assert!(refused(&Surfels { origin: DVec3::new(0.0, f64::NAN, 0.0), ..surfels }));
 }

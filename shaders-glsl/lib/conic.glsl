@@ -20,12 +20,15 @@ Conic dual_conic(vec2 centre, vec3 S, vec3 T, float q, float cutoff, float sqrt_
     float xx = scale * (dot(Dx, Dx) / q + o.x * o.x);
     float xy = scale * (dot(Dx, Dy) / q + o.x * o.y);
     float yy = scale * (dot(Dy, Dy) / q + o.y * o.y);
-    float half_difference = 0.5 * (xx - yy);
+    // In units of the larger variance, so that squares neither overflow nor vanish.
+    float unit = max(max(xx, yy), 1e-37);
+    float half_difference = 0.5 * (xx - yy) / unit;
+    xy /= unit;
     float radius = length(vec2(half_difference, xy));
     vec2 axis = half_difference >= 0.0 ? vec2(half_difference + radius, xy) : vec2(xy, radius - half_difference);
     axis = radius > 0.0 ? normalize(axis) : vec2(1.0, 0.0);
 
     // The smaller eigenvalue by the determinant's closed form: as a difference it would be lost on a long thin ellipse.
-    float major = 0.5 * (xx + yy) + radius;
-    return Conic(o, axis, vec2(major, sqrt_det * sqrt_det / major));
+    float major = 0.5 * (xx + yy) + radius * unit;
+    return Conic(o, axis, vec2(major, sqrt_det * (sqrt_det / major)));
 }

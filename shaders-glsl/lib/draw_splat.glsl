@@ -37,7 +37,7 @@ float place_splat(Splat splat, vec2 variance, int corner) {
         position = 2.0 * pixel / frame.viewport - 1.0;
     }
     gl_Position = vec4(position, nearest, 1.0);
-    return splat.sqrt_det * inversesqrt(variance.x * variance.y);
+    return amplitude_of(splat, variance);
 }
 
 #endif

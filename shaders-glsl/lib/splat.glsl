@@ -53,6 +53,13 @@ vec2 attribute_variance(vec2 variance) {
     return variance + frame.attribute_lowpass;
 }
 
+// √(|V| / |V'|), of the filtered variance V': what the filter leaves of the kernel's height. The product of both eigenvalues would
+// overflow on a very large splat.
+float amplitude_of(Splat splat, vec2 variance) {
+    vec2 inverse = inversesqrt(variance);
+    return splat.sqrt_det * inverse.x * inverse.y;
+}
+
 // What a fragment needs of a splat.
 struct Ellipse {
     vec2 anchor;

@@ -13,11 +13,13 @@
 //! | [`stopwatch`] | how long frames take |
 //! | [`terms`], [`hidden`] | what an error is made of |
 //! | [`runner`], [`session`] | carries plans out |
+//! | [`hard`] | where numbers get difficult: float32 against float64 |
 //! | [`record`] | what was measured, as it is kept |
 
 pub mod code;
 pub mod engine;
 pub mod exhibit;
+pub mod hard;
 pub mod hidden;
 pub mod plan;
 pub mod record;

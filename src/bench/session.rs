@@ -1,9 +1,9 @@
 //! One call of the bench: all runs of some suites on one machine.
 
-use super::code;
 use super::record::{Agreement, Gpu, Host, Made, Session};
 use super::runner::{Options, Runner};
 use super::suites::{Own, Suite};
+use super::{code, hard};
 use crate::error::Result;
 use crate::progress::Progress;
 use crate::reference::Comparison;
@@ -61,6 +61,12 @@ pub fn measure(wanted: &Wanted, progress: &dyn Progress) -> Result<Session> {
         }
         exhibits.extend(runner.exhibits());
     }
+    let sweeps = match &wanted.device {
+        Some(device) if wanted.suites.contains(&Suite::Hard) => {
+            hard::run(device, &hard::Options::default(), progress)?
+        }
+        _ => Vec::new(),
+    };
     let made = Made {
         version: env!("CARGO_PKG_VERSION").into(),
         commit: code::COMMIT.into(),
@@ -72,7 +78,7 @@ pub fn measure(wanted: &Wanted, progress: &dyn Progress) -> Result<Session> {
         host: host(),
         device: wanted.device.as_deref().map(|device| gpu(device, wanted.validated)),
     };
-    Ok(Session { made, runs, sweeps: Vec::new(), exhibits })
+    Ok(Session { made, runs, sweeps, exhibits })
 }
 
 fn host() -> Host {

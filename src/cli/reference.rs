@@ -31,7 +31,7 @@ pub fn render(task: &Task<'_>) -> Result<Outcome> {
 
 fn counts(counts: &reference::Counts) -> SplatCounts {
     // Surfels are numbered in 32 bits.
-    let [drawn, behind, eye_plane, back, outside] =
-        [counts.drawn, counts.behind, counts.eye_plane, counts.back, counts.outside].map(|n| n as u32);
-    SplatCounts { drawn, behind, eye_plane, back, outside }
+    let [drawn, behind, eye_plane] = [counts.drawn, counts.behind, counts.eye_plane].map(|n| n as u32);
+    let [back, outside, invalid] = [counts.back, counts.outside, counts.invalid].map(|n| n as u32);
+    SplatCounts { drawn, behind, eye_plane, back, outside, invalid }
 }

@@ -167,11 +167,13 @@ fn pass((name, ms): (&'static str, Statistics)) -> Value {
 /// Every point once: read = dropped + culled + drawn.
 fn tally(loaded: &Inputs, counts: SplatCounts) -> Value {
     let Dropped { position, transparent } = loaded.dropped;
-    let SplatCounts { drawn, behind, eye_plane, back, outside } = counts;
+    let SplatCounts { drawn, behind, eye_plane, back, outside, invalid } = counts;
     json!({
         "read": loaded.read,
         "dropped": { "position": position, "transparent": transparent, "outlier": loaded.estimated.outliers },
-        "culled": { "behind": behind, "eye_plane": eye_plane, "back": back, "outside": outside },
+        "culled": {
+            "behind": behind, "eye_plane": eye_plane, "back": back, "outside": outside, "invalid": invalid,
+        },
         "drawn": drawn,
     })
 }

@@ -10,6 +10,7 @@ mod morton;
 mod quantity;
 mod surfels;
 mod thin;
+mod valid;
 
 pub use bounds::Bounds;
 pub use camera::{Camera, Projection};

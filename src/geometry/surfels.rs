@@ -1,6 +1,5 @@
 //! A set of surfels: oriented discs that sample a surface.
 
-use super::Bounds;
 use crate::error::{Error, Result};
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
@@ -8,7 +7,7 @@ use glam::{DVec3, Vec3};
 /// Surfels as a structure of arrays; every array has one entry a surfel.
 ///
 /// A surfel is a disc with centre, unit normal and radius. The radius is that of the disc which the splat covers: `r = F σ`, where `F`
-/// is the cut-off and `σ` the kernel's 1-σ length.
+/// is the cut-off and `σ` the kernel's 1-σ length. What is not [valid](Surfels::is_valid) is never drawn, and counted.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Surfels {
     /// Added to every position: the point that [`Surfels::positions`] are relative to, in the file's unit and frame. Keeps large
@@ -65,17 +64,14 @@ impl Surfels {
         self.positions.is_empty()
     }
 
-    /// Bounds of the discs' bounding spheres in the file's frame, `origin` included; `None` if there are no surfels.
-    pub fn bounds(&self) -> Option<Bounds> {
-        let largest = self.radii.iter().copied().fold(0.0, f32::max);
-        Some(Bounds::of(&self.positions)?.grown(largest.into()).translated(self.origin))
-    }
-
-    /// Refuses arrays of unequal length.
+    /// Refuses arrays of unequal length and an origin that is not finite.
     ///
     /// # Errors
-    /// [`Error::Usage`], with the lengths.
+    /// [`Error::Usage`], with the lengths or the origin.
     pub fn check(&self) -> Result<()> {
+        if !self.origin.is_finite() {
+            return Err(Error::Usage(format!("the surfels' origin is {}: give a finite one", self.origin)));
+        }
         let count = self.len();
         let lengths = [
             self.normals.len(),

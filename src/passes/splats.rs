@@ -161,8 +161,8 @@ impl Splats {
         let windows = self.counts.bytes().chunks_exact(COUNTS_STEP as usize);
         let culled = windows
             .map(|window| bytemuck::pod_read_unaligned::<Counts>(&window[..size_of::<Counts>()]).culled);
-        let add = |sum: [u32; 4], counts: [u32; 4]| std::array::from_fn(|i| sum[i] + counts[i]);
-        Counts { culled: culled.fold([0; 4], add) }
+        let add = |sum: [u32; 5], counts: [u32; 5]| std::array::from_fn(|i| sum[i] + counts[i]);
+        Counts { culled: culled.fold([0; 5], add) }
     }
 
     /// Memory of the splats and what belongs to them, bytes.

@@ -87,17 +87,27 @@ pub struct Splat {
     pub dual: bool,
 }
 
+/// Least `1 − (F |g| / w)²` of a splat that is drawn: nearer the eye plane float32 cannot tell where the ellipse is.
+const LEAST_CLEARANCE: f64 = 1e-4;
+/// Least `√|V|` of a splat that is drawn, px²: float32's weight of a smaller one may be 0.
+const LEAST_AREA: f64 = 1e-30;
+/// Largest variance along the major axis of a splat that is drawn, px²: float32 overflows beyond.
+const LARGEST_VARIANCE: f64 = 1e30;
+
 /// Why a surfel makes no splat.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Culled {
     /// Its centre is not in front of the eye (perspective only).
     Behind,
-    /// Its disc reaches the eye plane.
+    /// Its disc reaches the eye plane, or comes within 1/20000 of its distance to it.
     EyePlane,
     /// It shows its back where [`Cull::Back`] is set, and is not two-sided.
     Back,
-    /// Its bounding box misses the picture.
+    /// Its bounding box misses the picture, or its image has no area: it is seen exactly edge-on, or so small that its weight is
+    /// nothing in float32.
     Outside,
+    /// It is not [valid](Surfels::is_valid), which is found before all else, or its image is too large for float32.
+    Invalid,
 }
 
 /// The splat of one surfel in a frame of `size` px, or why it has none.
@@ -113,7 +123,7 @@ pub fn footprint(
 }
 
 impl Projector {
-    /// The splat of one surfel, or why it has none; the reasons are tried in the order of [`Culled`].
+    /// The splat of one surfel, or why it has none; the reasons are tried in the order of [`Culled`]. Takes the surfel to be valid.
     pub fn footprint(&self, surfel: &Surfel) -> Result<Splat, Culled> {
         let centre = self.view.transform_point3(surfel.position);
         let normal = self.view.transform_vector3(surfel.normal);
@@ -123,8 +133,8 @@ impl Projector {
         }
         let axes = self.semi_axes(surfel);
         let (projected, mapping) = self.tangent_plane(centre, axes);
-        let clear = clearance(&mapping, self.cutoff());
-        if clear.is_nan() || clear <= 0.0 {
+        let clear = clearance(&mapping, self.cutoff()) / (mapping.z_axis.z / self.cutoff()).powi(2);
+        if clear.is_nan() || clear <= LEAST_CLEARANCE {
             return Err(Culled::EyePlane);
         }
         let facing = self.facing(centre, normal);
@@ -147,7 +157,13 @@ impl Projector {
             aspect: surfel.aspect,
             dual: inverse.is_none(),
         };
-        if self.sees(&Ellipse::attribute(&splat, self)) { Ok(splat) } else { Err(Culled::Outside) }
+        let attribute = Ellipse::attribute(&splat, self);
+        // What is no number fails either.
+        match splat.sqrt_det >= LEAST_AREA && self.sees(&attribute) {
+            true if attribute.variance.x <= LARGEST_VARIANCE => Ok(splat),
+            true => Err(Culled::Invalid),
+            false => Err(Culled::Outside),
+        }
     }
 
     /// The semi-axes of the covered disc, eye space.

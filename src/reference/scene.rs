@@ -18,6 +18,8 @@ pub struct Counts {
     pub back: usize,
     /// Culled as [`Culled::Outside`].
     pub outside: usize,
+    /// Culled as [`Culled::Invalid`].
+    pub invalid: usize,
     /// Drawn.
     pub drawn: usize,
 }
@@ -34,7 +36,10 @@ impl Scene {
     pub fn project(projector: &Projector, surfels: &Surfels) -> Self {
         let all: Vec<Result<Splat, Culled>> = (0..surfels.len())
             .into_par_iter()
-            .map(|i| projector.footprint(&Surfel::of(surfels, i)))
+            .map(|i| match surfels.is_valid(i) {
+                true => projector.footprint(&Surfel::of(surfels, i)),
+                false => Err(Culled::Invalid),
+            })
             .collect();
         let count = |cause: Culled| all.iter().filter(|s| s.as_ref().err() == Some(&cause)).count();
         let mut counts = Counts {
@@ -43,6 +48,7 @@ impl Scene {
             eye_plane: count(Culled::EyePlane),
             back: count(Culled::Back),
             outside: count(Culled::Outside),
+            invalid: count(Culled::Invalid),
             drawn: 0,
         };
         let splats: Vec<Splat> = all.into_iter().flatten().collect();

@@ -1,0 +1,64 @@
+//! How far a picture is from the float64 one, and what no tolerance excuses.
+
+use super::super::record::{Agreement, Faults};
+use crate::error::Result;
+use crate::picture::Picture;
+use crate::reference::{Admissible, Expected};
+
+/// Holds a picture with depth and normals against `expected`. A pixel with a value that is not finite is a fault, and empty in
+/// what else is measured.
+///
+/// # Errors
+/// The picture has another size, or lacks depth or normals.
+pub fn judge(expected: &Expected, picture: &Picture) -> Result<(Agreement, Faults)> {
+    let (picture, non_finite) = finite(picture);
+    let found = expected.compare(&picture)?;
+    let mut faults = Faults { non_finite, ..Default::default() };
+    for (i, &depth) in picture.depth.iter().flatten().enumerate() {
+        let covered = expected.frame.covered[i];
+        if (depth != 0.0) == covered || !is_sure(expected, i) {
+            continue;
+        }
+        *(if covered { &mut faults.uncovered } else { &mut faults.overcovered }) += 1;
+    }
+    let agreement = Agreement {
+        object: found.object_pixels as u64,
+        doubtful: found.doubtful as u64,
+        failed: found.failed as u64,
+        colour: found.worst.colour,
+        normal: found.worst.normal,
+        depth: found.worst.depth,
+    };
+    Ok((agreement, faults))
+}
+
+/// The picture with its pixels that hold NaN or infinity emptied, and their number.
+fn finite(picture: &Picture) -> (Picture, u64) {
+    let mut cleared = picture.clone();
+    let mut count = 0;
+    for i in 0..picture.colour.len() {
+        let mut depth = cleared.depth.as_mut().and_then(|depths| depths.get_mut(i));
+        let mut normal = cleared.normal.as_mut().and_then(|normals| normals.get_mut(i));
+        let values =
+            cleared.colour[i].iter().chain(depth.as_deref()).chain(normal.as_deref().into_iter().flatten());
+        if values.into_iter().all(|value| value.is_finite()) {
+            continue;
+        }
+        count += 1;
+        cleared.colour[i] = [0.0; 4];
+        depth.iter_mut().for_each(|depth| **depth = 0.0);
+        normal.iter_mut().for_each(|normal| **normal = [0.0; 3]);
+    }
+    (cleared, count)
+}
+
+/// Whether all that pixel `index` may hold is covered alike.
+fn is_sure(expected: &Expected, index: usize) -> bool {
+    match expected.doubt.admissible(index) {
+        Admissible::Definite => true,
+        Admissible::Unresolvable => false,
+        Admissible::Values(mut values) => {
+            values.all(|(value, _)| value.covered == expected.frame.covered[index])
+        }
+    }
+}

@@ -1,0 +1,207 @@
+//! Hard cases: float32 on the device against float64 on the CPU, as a parameter goes to where numbers get difficult.
+//!
+//! A case is a short file's worth of geometry for every value of a parameter. Each value is rendered by all ways that
+//! the device has, and every pixel is held against [`Expected`]: how far colour, normal and depth are off, and the
+//! [`Faults`](super::record::Faults) that no tolerance excuses. What is refused or culled is told, never left out.
+
+mod attributes;
+mod case;
+mod depth;
+mod grazing;
+mod judge;
+mod layers;
+mod offset;
+mod overlap;
+mod planes;
+mod shape;
+mod sizes;
+
+pub use judge::judge;
+
+use super::record::{Contender, Sweep, SweepPoint};
+use crate::Progress;
+use crate::error::{Error, Result};
+use crate::methods::perspective_ewa::NAME;
+use crate::reference::{Counts, Expected, Tolerance};
+use crate::renderer::{RenderOptions, Renderer, SplatCounts};
+use crate::scene::Scene;
+use crate::variant::{Outputs, Precision, Rasterizer};
+use crate::vk::Device;
+use case::{Case, View};
+use std::sync::Arc;
+
+/// What a [`SweepPoint::note`] begins with where float32 cannot agree with float64; the reason follows.
+pub const EXCUSED: &str = "beyond float32: ";
+
+/// What is swept.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Options {
+    /// Most values of each parameter, from its first to its last; at least 2.
+    pub values: usize,
+    /// Names of the cases; all if there are none.
+    pub only: Vec<String>,
+}
+
+impl Default for Options {
+    /// Every value of every case.
+    fn default() -> Self {
+        Self { values: usize::MAX, only: Vec::new() }
+    }
+}
+
+/// All cases, in the order in which they are swept.
+fn cases() -> Vec<Case> {
+    let families = grazing::cases().into_iter().chain(planes::cases()).chain([depth::case()]);
+    let families = families.chain(offset::cases()).chain(shape::cases()).chain(overlap::cases());
+    families.chain([layers::case(), sizes::case(), attributes::case()]).collect()
+}
+
+/// Names of all cases.
+pub fn names() -> Vec<&'static str> {
+    cases().iter().map(|case| case.name).collect()
+}
+
+/// Sweeps the cases on `device`.
+///
+/// # Errors
+/// [`Error::Usage`] if there is no case of a name, and what is wrong with the device itself. A point that the device refuses is a
+/// [`SweepPoint::refused`].
+pub fn run(device: &Arc<Device>, options: &Options, progress: &dyn Progress) -> Result<Vec<Sweep>> {
+    let mut cases = cases();
+    if let Some(name) = options.only.iter().find(|name| !names().contains(&name.as_str())) {
+        let all = names().join(", ");
+        return Err(Error::Usage(format!("there is no hard case named {name}: give one of {all}")));
+    }
+    cases.retain(|case| options.only.is_empty() || options.only.iter().any(|name| name == case.name));
+    let total = cases.iter().map(|case| case.some(options.values).len() as u64).sum();
+    let mut bench = Bench { device: device.clone(), renderers: Vec::new(), progress, done: 0, total };
+    let sweeps = cases.iter().map(|case| bench.sweep(case, options.values)).collect();
+    bench.tell();
+    sweeps
+}
+
+/// A way to render, and its place in the order.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Way {
+    Draw,
+    Compute,
+    Half,
+}
+
+impl Way {
+    fn contender(self) -> Contender {
+        let variant = match self {
+            Self::Draw => "draw",
+            Self::Compute => "compute",
+            Self::Half => "draw, 16-bit sums",
+        };
+        Contender { method: NAME.into(), variant: variant.into() }
+    }
+
+    fn precision(self) -> Precision {
+        if self == Self::Half { Precision::Half } else { Precision::Full }
+    }
+
+    fn options(self, size: [u32; 2]) -> RenderOptions {
+        let rasterizer = if self == Self::Compute { Rasterizer::Compute } else { Rasterizer::Draw };
+        let (outputs, precision) = (Outputs { normal: true, depth: true }, self.precision());
+        RenderOptions { size, outputs, precision, rasterizer: Some(rasterizer), profile: false, count: true }
+    }
+}
+
+/// A device with the renderers that were made on it.
+struct Bench<'a> {
+    device: Arc<Device>,
+    renderers: Vec<(RenderOptions, Renderer)>,
+    progress: &'a dyn Progress,
+    /// Values that are swept, and how many there are.
+    done: u64,
+    total: u64,
+}
+
+impl Bench<'_> {
+    fn tell(&self) {
+        self.progress.at("hard cases", self.done, self.total);
+    }
+
+    fn sweep(&mut self, case: &Case, most: usize) -> Result<Sweep> {
+        let mut points = Vec::new();
+        for value in case.some(most) {
+            self.tell();
+            points.extend(self.points(case, value)?);
+            self.done += 1;
+        }
+        // Stable: the values stay in order.
+        points.sort_by_key(|(way, _)| *way);
+        Ok(case.sweep(points.into_iter().map(|(_, point)| point).collect()))
+    }
+
+    /// One value of a case, by every way.
+    fn points(&mut self, case: &Case, value: f64) -> Result<Vec<(Way, SweepPoint)>> {
+        let view = (case.view)(value)?;
+        let expected =
+            Expected::new(&view.surfels, &view.camera, view.size, &view.settings, &Tolerance::default())?;
+        // Invalid surfels are what a case is about, and told in its notes.
+        let (scene, _) = Scene::upload_silently(&self.device, &view.surfels)?;
+        let ways = [Way::Draw, Way::Compute].into_iter().chain(case.half.then_some(Way::Half));
+        let mut point = |way: Way| {
+            let mut point = self.point(way, &view, &scene, &expected)?;
+            let excuse = (case.excuse)(value, way.precision()).map(|reason| format!("{EXCUSED}{reason}"));
+            let notes = excuse.into_iter().chain([view.note.clone(), point.note]);
+            point.note = notes.filter(|note| !note.is_empty()).collect::<Vec<_>>().join("; ");
+            Ok((way, SweepPoint { value, ..point }))
+        };
+        ways.map(&mut point).collect()
+    }
+
+    /// By one way, what is found, refused and culled.
+    fn point(&mut self, way: Way, view: &View, scene: &Scene, expected: &Expected) -> Result<SweepPoint> {
+        let (agreement, faults) = Default::default();
+        let contender = way.contender();
+        let mut point =
+            SweepPoint { value: 0.0, contender, refused: None, agreement, faults, note: String::new() };
+        let renderer = self.renderer(way, view.size);
+        match renderer.and_then(|renderer| renderer.render_picture(scene, &view.camera, &view.settings)) {
+            Ok((picture, report)) => {
+                (point.agreement, point.faults) = judge(expected, &picture)?;
+                point.note =
+                    report.counts.map_or(String::new(), |counts| fates(&counts, &expected.frame.counts));
+            }
+            Err(cause @ (Error::Usage(_) | Error::Memory { .. })) => point.refused = Some(cause.to_string()),
+            Err(cause) => return Err(cause),
+        }
+        Ok(point)
+    }
+
+    /// The renderer of one way and size, made when it is first wanted.
+    fn renderer(&mut self, way: Way, size: [u32; 2]) -> Result<&mut Renderer> {
+        let options = way.options(size);
+        let place = match self.renderers.iter().position(|(made, _)| *made == options) {
+            Some(place) => place,
+            None => {
+                self.renderers.push((options, Renderer::new(&self.device, options)?));
+                self.renderers.len() - 1
+            }
+        };
+        let renderer = &mut self.renderers[place].1;
+        match renderer.precision() == options.precision {
+            true => Ok(renderer),
+            false => Err(Error::Usage("the device cannot blend 32-bit floats".into())),
+        }
+    }
+}
+
+/// What was culled on the device, and by the reference too where that differs: at a threshold, rounding decides.
+fn fates(device: &SplatCounts, reference: &Counts) -> String {
+    let SplatCounts { drawn: _, behind, eye_plane, back, outside, invalid } = *device;
+    let expected =
+        [reference.behind, reference.eye_plane, reference.back, reference.outside, reference.invalid];
+    let names = ["behind", "at the eye plane", "facing away", "outside", "invalid"];
+    let fates = names.into_iter().zip([behind, eye_plane, back, outside, invalid]).zip(expected);
+    let told = fates.filter_map(|((name, count), expected)| match (count as usize == expected, count) {
+        (true, 0) => None,
+        (true, count) => Some(format!("{count} {name}")),
+        (false, count) => Some(format!("{count} {name} ({expected} in float64)")),
+    });
+    told.collect::<Vec<_>>().join(", ")
+}

@@ -1,0 +1,82 @@
+//! Many splats on one pixel.
+
+use super::case::{Case, View, look, push, signed};
+use crate::error::Result;
+use crate::geometry::Surfels;
+use crate::scenes::random::Random;
+use crate::variant::Precision;
+use glam::DVec3;
+
+/// Height of a pixel at the distance of the surfels: 64 rows of a picture that is 2 high.
+const PIXEL: f64 = 2.0 / 64.0;
+
+/// Of splats smaller than a pixel, and of splats one on the other.
+pub fn cases() -> [Case; 2] {
+    [
+        Case {
+            name: "sub-pixel",
+            about: "A patch of 14² px of overlapping splats, so small that many have their centres on a pixel.",
+            parameter: "splats a pixel",
+            logarithmic: true,
+            values: vec![1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0],
+            view: sub_pixel,
+            half: false,
+            excuse: |_, _| None,
+        },
+        Case {
+            name: "accumulator",
+            about: "Coincident splats of 24 px and different colours, which the sums of a pixel must hold all.",
+            parameter: "splats one on the other",
+            logarithmic: true,
+            values: (0..=12).step_by(2).map(|power| f64::from(1u32 << power)).collect(),
+            view: accumulator,
+            half: true,
+            excuse: too_many,
+        },
+    ]
+}
+
+fn too_many(count: f64, precision: Precision) -> Option<&'static str> {
+    match precision {
+        Precision::Full if count <= 512.0 => None,
+        Precision::Full => Some("every sum rounds, and a depth is off by up to 2⁻²⁵ a splat"),
+        Precision::Half => {
+            Some("16-bit sums have 11 digits, and no more is added to one 2048 times as large")
+        }
+    }
+}
+
+fn view(surfels: Surfels) -> Result<View> {
+    let degrees = 2.0 * 0.2f64.atan().to_degrees();
+    let camera = look(5.0 * DVec3::Z, DVec3::ZERO, degrees, 0.1)?;
+    Ok(View { size: [64, 64], ..View::new(surfels, camera) })
+}
+
+fn sub_pixel(density: f64) -> Result<View> {
+    let (mut surfels, mut random) = (Surfels::default(), Random::new(6, 1));
+    let spacing = PIXEL / density.sqrt();
+    let side = (14.0 * PIXEL / spacing).round() as u32;
+    for i in 0..side * side {
+        let at =
+            |k: u32, random: &mut Random| (f64::from(k) - 0.5 * f64::from(side) + random.unit()) * spacing;
+        let position = DVec3::new(
+            at(i % side, &mut random),
+            at(i / side, &mut random),
+            0.3 * spacing * signed(&mut random),
+        );
+        let normal = DVec3::new(0.2 * signed(&mut random), 0.2 * signed(&mut random), 1.0);
+        push(&mut surfels, &mut random, position, normal, 1.5 * spacing);
+    }
+    // Splats that are many radii apart meet in a pixel.
+    let mut view = view(surfels)?;
+    view.settings.epsilon = (PIXEL / (1.5 * spacing)) as f32;
+    Ok(view)
+}
+
+fn accumulator(count: f64) -> Result<View> {
+    let (mut surfels, mut random) = (Surfels::default(), Random::new(6, 2));
+    for _ in 0..count as u32 {
+        push(&mut surfels, &mut random, DVec3::ZERO, DVec3::new(0.1, 0.2, 1.0), 12.03 * PIXEL);
+    }
+    view(surfels)
+}

@@ -1,0 +1,108 @@
+//! Which surfels can be drawn at all.
+
+use super::{Bounds, Colours, Surfels};
+use glam::Vec3;
+use rayon::prelude::*;
+
+/// How far the squared length of a unit vector may be from 1.
+const UNIT: f32 = 1e-3;
+
+impl Surfels {
+    /// Largest coordinate, radius and linear colour of a [valid](Surfels::is_valid) surfel: float32 still holds products of two, and
+    /// sums of such, with room for the scale of a picture.
+    pub const LARGEST: f32 = 1e15;
+
+    /// Whether surfel `index` can be drawn: no attribute is NaN, infinite or beyond [`Surfels::LARGEST`], the radius is above 0, the
+    /// normal is a unit vector, and so is the longer axis of an ellipse, at a right angle to the normal and with an aspect above 0
+    /// and up to 1. `false` beyond the end of any array.
+    pub fn is_valid(&self, index: usize) -> bool {
+        let bounded = |v: Vec3| v.abs().cmple(Vec3::splat(Self::LARGEST)).all();
+        let at = |values: &[Vec3]| values.get(index).copied();
+        let (Some(position), Some(normal)) = (at(&self.positions), at(&self.normals)) else { return false };
+        let sized = self.radii.get(index).is_some_and(|&radius| radius > 0.0 && radius <= Self::LARGEST);
+        let shaped = self.ellipses.as_ref().is_none_or(|ellipses| {
+            let fits =
+                |e: &super::Ellipse| is_unit(normal.cross(e.major)) && e.aspect > 0.0 && e.aspect <= 1.0;
+            ellipses.get(index).is_some_and(fits)
+        });
+        let coloured = match &self.colours {
+            Some(Colours::Linear(colours)) => colours.get(index).is_some_and(|&c| bounded(c.into())),
+            Some(Colours::Srgb8(colours)) => index < colours.len(),
+            None => true,
+        };
+        bounded(position) && is_unit(normal) && sized && shaped && coloured
+    }
+
+    /// How many surfels are not [valid](Surfels::is_valid).
+    pub fn count_invalid(&self) -> usize {
+        (0..self.len()).into_par_iter().filter(|&i| !self.is_valid(i)).count()
+    }
+
+    /// Bounds of the valid discs' bounding spheres in the file's frame, `origin` included; `None` if there are none.
+    pub fn bounds(&self) -> Option<Bounds> {
+        let of = |positions: &[Vec3], radii: &[f32]| {
+            let largest = radii.iter().copied().fold(0.0, f32::max);
+            Some(Bounds::of(positions)?.grown(largest.into()).translated(self.origin))
+        };
+        if self.count_invalid() == 0 {
+            return of(&self.positions, &self.radii);
+        }
+        let valid = (0..self.len()).filter(|&i| self.is_valid(i));
+        let (positions, radii): (Vec<_>, Vec<_>) = valid.map(|i| (self.positions[i], self.radii[i])).unzip();
+        of(&positions, &radii)
+    }
+}
+
+/// Whether `v` has length 1; NaN and infinity have not.
+fn is_unit(v: Vec3) -> bool {
+    (v.length_squared() - 1.0).abs() <= UNIT
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::Ellipse;
+    use glam::DVec3;
+
+    fn two() -> Surfels {
+        Surfels {
+            origin: DVec3::new(100.0, 0.0, 0.0),
+            positions: vec![Vec3::ZERO, Vec3::ONE],
+            normals: vec![Vec3::Z; 2],
+            radii: vec![0.5; 2],
+            ellipses: Some(vec![Ellipse { major: Vec3::X, aspect: 1e-4 }; 2]),
+            two_sided: None,
+            colours: Some(Colours::Linear(vec![[-1.0, 0.0, 1e14]; 2])),
+        }
+    }
+
+    #[test]
+    fn what_is_out_of_bounds_is_invalid_and_bounds_leave_it_out() {
+        let alone = two().bounds().unwrap();
+        assert_eq!(two().count_invalid(), 0);
+        let changes: [fn(&mut Surfels); 14] = [
+            |s| s.positions[1].y = f32::NAN,
+            |s| s.positions[1].z = f32::NEG_INFINITY,
+            |s| s.positions[1].x = -1.1e15,
+            |s| s.normals[1] = Vec3::ZERO,
+            |s| s.normals[1].z = 1.001,
+            |s| s.normals[1].x = f32::NAN,
+            |s| s.radii[1] = 0.0,
+            |s| s.radii[1] = -0.5,
+            |s| s.radii[1] = f32::INFINITY,
+            |s| s.ellipses.as_mut().unwrap()[1].major = Vec3::Z,
+            |s| s.ellipses.as_mut().unwrap()[1].aspect = 1.5,
+            |s| s.ellipses.as_mut().unwrap()[1].aspect = 0.0,
+            |s| s.colours = Some(Colours::Linear(vec![[0.0; 3], [0.0, f32::NAN, 0.0]])),
+            |s| s.colours = Some(Colours::Srgb8(vec![[0; 4]])),
+        ];
+        for (i, change) in changes.into_iter().enumerate() {
+            let mut surfels = two();
+            change(&mut surfels);
+            assert_eq!([0, 1].map(|i| surfels.is_valid(i)), [true, false], "change {i}");
+            let bounds = surfels.bounds().unwrap();
+            assert_eq!((bounds.centre(), bounds.radius), (DVec3::new(100.0, 0.0, 0.0), 0.5), "change {i}");
+        }
+        assert!(alone.radius > 1.3 && !two().is_valid(2));
+    }
+}

@@ -1,0 +1,200 @@
+//! The hard cases: float32 against float64 where numbers get difficult, and what holds one against the other.
+
+mod support;
+
+use glam::DVec3;
+use support::gpu::{assert_silent, device};
+use support::sampling::push;
+use surfel::bench::hard::{EXCUSED, Options, judge, run};
+use surfel::bench::record::{Faults, Sweep, SweepPoint};
+use surfel::geometry::{Camera, Surfels};
+use surfel::reference::{Admissible, Expected, Tolerance};
+use surfel::vk::DeviceLimits;
+use surfel::{Picture, Settings};
+
+fn is_excused(point: &SweepPoint) -> bool {
+    point.note.starts_with(EXCUSED)
+}
+
+/// A line a point.
+fn print(sweep: &Sweep) {
+    println!("\n{}: {}", sweep.name, sweep.about);
+    println!(
+        "{:<50} {:>8} {:>7} {:>7} {:>8} {:>8} {:>8}",
+        sweep.parameter, "object", "doubt", "failed", "colour", "normal", "depth"
+    );
+    for point in &sweep.points {
+        let a = point.agreement;
+        let of = format!("{:.6} {}", point.value, point.contender.variant);
+        print!("{of:<50} {:>8} {:>7} {:>7}", a.object, a.doubtful, a.failed);
+        println!(" {:>8.1e} {:>8.1e} {:>8.1e}  {}", a.colour, a.normal, a.depth, point.note);
+    }
+}
+
+/// The sweep's line of the README's table: largest errors where float32 is not excused, then where it is.
+fn summarize(sweep: &Sweep) {
+    let largest = |excused: bool| {
+        let points = || sweep.points.iter().filter(move |point| is_excused(point) == excused);
+        let worst = |of: fn(&SweepPoint) -> f64| points().map(of).fold(0.0, f64::max);
+        let errors = [
+            worst(|point| point.agreement.colour),
+            worst(|point| point.agreement.normal),
+            worst(|point| point.agreement.depth),
+        ];
+        (points().count(), errors.map(|error| format!("{error:.1e}")))
+    };
+    let values = || sweep.points.iter().map(|point| point.value);
+    let (from, to) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
+    let short = |value: f64| {
+        if (0.1..1e4).contains(&value.abs()) { format!("{value:.0}") } else { format!("{value:.0e}") }
+    };
+    let range = format!("{} to {}", short(from), short(to));
+    let beyond = match largest(true) {
+        (0, _) => String::new(),
+        (count, errors) => format!("{count} of {}: {}", sweep.points.len(), errors.join(", ")),
+    };
+    println!(
+        "| `{}` | {}: {range} | {} | {beyond} |",
+        sweep.name,
+        sweep.parameter,
+        largest(false).1.join(" | ")
+    );
+}
+
+fn check(sweep: &Sweep, point: &SweepPoint) {
+    let at = format!("{} at {}: {point:?}", sweep.name, point.value);
+    let (bars, a) = (Tolerance::default(), point.agreement);
+    assert_eq!(point.refused, None, "{at}");
+    assert!([a.colour, a.normal, a.depth, point.value].into_iter().all(f64::is_finite), "{at}");
+    assert!(point.faults.is_none() && a.object > 0, "{at}");
+    assert_eq!(a.failed > 0, is_excused(point), "{at}");
+    let within = a.colour <= bars.colour && a.normal <= bars.normal && a.depth <= bars.depth_relative;
+    assert!(within || is_excused(point), "{at}");
+    let unusable = ["NaN", "infinity", "3e38"].iter().any(|value| point.note.contains(value));
+    assert_eq!(unusable && sweep.name == "attributes", point.note.contains("50 invalid") && unusable, "{at}");
+}
+
+#[test]
+fn every_case_agrees_or_says_why_not() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let sweeps = run(&device, &Options::default(), &()).unwrap();
+    sweeps.iter().for_each(print);
+    println!("\n| case | parameter | colour | normal | depth | beyond float32 |\n|---|---|---|---|---|---|");
+    sweeps.iter().for_each(summarize);
+    for sweep in &sweeps {
+        sweep.points.iter().for_each(|point| check(sweep, point));
+        let [values, others] = ["draw", "compute"].map(|variant| {
+            let by = sweep.points.iter().filter(|point| point.contender.variant == variant);
+            by.map(|point| point.value).collect::<Vec<_>>()
+        });
+        assert!(values.len() > 6 && values.is_sorted_by(|a, b| a < b), "{}: {values:?}", sweep.name);
+        assert_eq!(values, others, "{}", sweep.name);
+    }
+    assert_eq!(sweeps.len(), 16);
+    let halves = |sweep: &Sweep| sweep.points.iter().any(|point| point.contender.variant.contains("16-bit"));
+    assert!(sweeps.iter().all(|sweep| halves(sweep) == (sweep.name == "accumulator")));
+    assert_silent(&device);
+}
+
+#[test]
+fn what_a_device_refuses_is_told() {
+    let limits = DeviceLimits {
+        blend_float32: Some(false),
+        float_atomics: Some(false),
+        max_image_side: Some(300),
+        ..Default::default()
+    };
+    let Some(device) = device(limits) else { return };
+    let unknown = Options { only: vec!["sizes".into()], ..Default::default() };
+    assert!(run(&device, &unknown, &()).unwrap_err().to_string().contains("sizes: give one of grazing, "));
+    let options = Options { values: 2, only: vec!["accumulator".into(), "size".into()] };
+    let sweeps = run(&device, &options, &()).unwrap();
+    let [accumulator, size] = &sweeps[..] else { panic!("{} sweeps", sweeps.len()) };
+    let reasons = |sweep: &Sweep| sweep.points.iter().map(|point| point.refused.clone()).collect::<Vec<_>>();
+    let says =
+        |reason: &Option<String>, text: &str| reason.as_ref().is_some_and(|reason| reason.contains(text));
+    let found = reasons(accumulator);
+    assert!(found[..2].iter().all(|reason| says(reason, "blend")), "{found:?}");
+    assert!(found[2..4].iter().all(|reason| says(reason, "atomics")), "{found:?}");
+    assert!(found[4..].iter().all(Option::is_none) && found.len() == 6, "{found:?}");
+    let found = reasons(size);
+    assert!(found.iter().all(|reason| says(reason, "640")) && found.len() == 4, "{found:?}");
+}
+
+/// A picture by the reference itself, and what it is held against: a disc of so many pixels, between four of them.
+fn disc(radius: f64) -> (Expected, Picture) {
+    let mut surfels = Surfels::default();
+    push(&mut surfels, DVec3::ZERO, DVec3::Z, radius);
+    // A pixel is a unit wide.
+    let camera =
+        Camera::orthographic([5.0 * DVec3::Z, DVec3::ZERO, DVec3::Y], 64.0, 1.0, [1.0, 10.0]).unwrap();
+    let expected =
+        Expected::new(&surfels, &camera, [64, 64], &Settings::default(), &Tolerance::default()).unwrap();
+    let picture = expected.frame.to_picture();
+    (expected, picture)
+}
+
+#[test]
+fn faults_are_found() {
+    let (expected, own) = disc(20.0);
+    let found = |tamper: &dyn Fn(&mut Picture)| {
+        let mut picture = own.clone();
+        tamper(&mut picture);
+        judge(&expected, &picture).unwrap()
+    };
+    let (agreement, faults) = found(&|_| {});
+    assert!(faults.is_none() && agreement.failed == 0 && agreement.object > 1000, "{agreement:?} {faults:?}");
+
+    let sure = |covered: bool| {
+        let definite = |i: &usize| matches!(expected.doubt.admissible(*i), Admissible::Definite);
+        (0..own.colour.len()).filter(definite).find(|&i| expected.frame.covered[i] == covered).unwrap()
+    };
+    let (inside, outside) = (sure(true), sure(false));
+    let one = |faults: Faults| [faults.non_finite, faults.uncovered, faults.overcovered];
+    // Pixels that are no number count as holes too.
+    let broken: [&dyn Fn(&mut Picture); 3] =
+        [&|p| p.colour[inside][1] = f32::NAN, &|p| p.depth.as_mut().unwrap()[inside] = f32::INFINITY, &|p| {
+            p.normal.as_mut().unwrap()[inside][2] = f32::NEG_INFINITY
+        }];
+    for tamper in broken {
+        let (agreement, faults) = found(tamper);
+        assert_eq!((one(faults), agreement.failed), ([1, 1, 0], 1));
+        assert!(agreement.colour.is_finite() && agreement.depth.is_finite(), "{agreement:?}");
+    }
+    let (agreement, faults) = found(&|p| p.colour[outside][3] = f32::NAN);
+    assert_eq!((one(faults), agreement.failed), ([1, 0, 0], 0));
+    let (agreement, faults) = found(&|p| {
+        p.colour[inside] = [0.0; 4];
+        p.depth.as_mut().unwrap()[inside] = 0.0;
+        p.normal.as_mut().unwrap()[inside] = [0.0; 3];
+    });
+    assert_eq!((one(faults), agreement.failed), ([0, 1, 0], 1));
+    let (agreement, faults) = found(&|p| {
+        p.colour[outside] = p.colour[inside];
+        p.depth.as_mut().unwrap()[outside] = p.depth.as_ref().unwrap()[inside];
+    });
+    assert_eq!((one(faults), agreement.failed), ([0, 0, 1], 1));
+    let (agreement, faults) = found(&|p| p.colour[inside][0] += 1e-3);
+    assert!(faults.is_none() && agreement.failed == 1 && agreement.colour > 9e-4, "{agreement:?}");
+}
+
+#[test]
+fn what_may_be_either_is_no_fault() {
+    // What visibility sees is larger than the disc by the least low-pass, and ends at the centres of pixels.
+    let lowpass = f64::from(Settings::default().least_lowpass().sqrt() * Settings::default().cutoff);
+    let (expected, own) = disc((10.5f64.powi(2) + 5.5f64.powi(2) - lowpass.powi(2)).sqrt());
+    let is_open = |i: &usize| match expected.doubt.admissible(*i) {
+        Admissible::Values(values) => {
+            values.map(|(value, _)| value.covered).any(|c| c != expected.frame.covered[*i])
+        }
+        _ => false,
+    };
+    let mut open = (0..own.colour.len()).filter(is_open).peekable();
+    assert!(open.peek().is_some(), "no pixel is in doubt");
+    for i in open {
+        let mut picture = own.clone();
+        let depth = &mut picture.depth.as_mut().unwrap()[i];
+        *depth = if *depth == 0.0 { 5.0 } else { 0.0 };
+        assert!(judge(&expected, &picture).unwrap().1.is_none());
+    }
+}
