@@ -20,6 +20,7 @@
 //! | [`reference`](mod@reference) | the float64 twin of every pass, on the CPU; judges pictures |
 //! | [`truth`] | exact images: rays against the surface itself |
 //! | [`metrics`] | how far a picture is from the truth |
+//! | [`yardstick`] | the same frames by a plain native program: what times are multiples of |
 //! | `bench` | speed against error (feature `bench`) |
 //! | [`vk`] | the layer over raw Vulkan |
 //!
@@ -63,6 +64,7 @@ pub mod targets;
 pub mod truth;
 pub mod variant;
 pub mod vk;
+pub mod yardstick;
 
 pub use error::{Error, Result};
 pub use picture::Picture;

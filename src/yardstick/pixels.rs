@@ -1,0 +1,189 @@
+//! The one-pixel projection: each surfel's centre takes the pixel that it falls in, and the nearest wins.
+
+use super::clock::Stages;
+use super::shade::{Shader, Surface, Vectors};
+use super::splat::FLIPPED;
+use super::sums::Streams;
+use super::target::{Slab, Target, place, resize, tiles};
+use super::tile::{BLOCKS, LANES, centres, corner};
+use super::view::View;
+use crate::error::Result;
+use crate::geometry::Surfels;
+use crate::settings::{Cull, Settings};
+use glam::{BVec4A, Mat3A, Vec2, Vec3, Vec3A, Vec4};
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// Surfels of a task.
+const CHUNK: usize = 1 << 14;
+/// Where no surfel is.
+const EMPTY: u64 = u64::MAX;
+
+/// What is kept from frame to frame: for every pixel, in the target's order, the nearest surfel. The bits of its depth are above its
+/// index, so that the least is the nearest, and the first of several as near.
+#[derive(Debug, Default)]
+pub(super) struct Pixels {
+    nearest: Vec<AtomicU64>,
+}
+
+/// What projects a scene's surfels in a frame.
+struct Projection<'a> {
+    surfels: &'a Surfels,
+    view: &'a View,
+    cull: bool,
+    /// The eye as a sum of two floats.
+    eye: [Vec3; 2],
+    pixel: Mat3A,
+    middle: Vec2,
+    forward: Vec3,
+    /// Distance that depths are counted from, so that none is below 0.
+    base: f32,
+    /// The near and the far plane, from there.
+    range: [f32; 2],
+    /// Colour of a scene that has none.
+    albedo: Vectors,
+}
+
+impl Pixels {
+    /// Draws a frame.
+    pub fn frame(
+        &mut self,
+        surfels: &Surfels,
+        streams: &Streams,
+        view: &View,
+        settings: &Settings,
+        target: &mut Target,
+        stages: &mut Stages,
+    ) -> Result<()> {
+        resize(&mut self.nearest, tiles(view.size) * BLOCKS * LANES, "the yardstick's pixels", || {
+            AtomicU64::new(EMPTY)
+        })?;
+        stages.time("clear", || {
+            let tiles = self.nearest.par_chunks_mut(BLOCKS * LANES);
+            tiles.for_each(|tile| tile.iter_mut().for_each(|nearest| *nearest.get_mut() = EMPTY));
+        });
+        let projection = Projection::new(surfels, view, settings);
+        stages.time("project", || {
+            let chunks = (0..surfels.len()).into_par_iter().step_by(CHUNK);
+            chunks.for_each(|first| {
+                let last = surfels.len().min(first + CHUNK);
+                (first..last).for_each(|index| projection.project(index, &self.nearest));
+            });
+        });
+        let shader = Shader::new(settings, view, streams.normals);
+        stages.time("resolve", || {
+            let tiles = self.nearest.par_chunks_mut(BLOCKS * LANES);
+            target.slabs().zip(tiles).for_each(|(mut slab, nearest)| {
+                projection.resolve(streams, &shader, nearest, &mut slab);
+            });
+        });
+        Ok(())
+    }
+
+    /// Memory in use, bytes.
+    pub fn bytes(&self) -> u64 {
+        size_of_val(self.nearest.as_slice()) as u64
+    }
+}
+
+impl<'a> Projection<'a> {
+    fn new(surfels: &'a Surfels, view: &'a View, settings: &Settings) -> Self {
+        let high = view.eye.as_vec3();
+        let base = if view.perspective { 0.0 } else { view.near };
+        Self {
+            surfels,
+            view,
+            cull: settings.cull == Cull::Back,
+            eye: [high, (view.eye - high.as_dvec3()).as_vec3()],
+            pixel: Mat3A::from(view.pixel.as_mat3()),
+            middle: view.middle.as_vec2(),
+            forward: view.forward.as_vec3(),
+            base: base as f32,
+            range: [view.near, view.far].map(|plane| (plane - base) as f32),
+            albedo: settings.lighting.albedo.map(Vec4::splat),
+        }
+    }
+
+    /// Lets a surfel take its pixel, unless a nearer one has it.
+    #[inline]
+    fn project(&self, index: usize, nearest: &[AtomicU64]) {
+        let position = self.position(index);
+        let image = self.pixel * Vec3A::from(position);
+        let depth = image.z - self.base;
+        // Such that a coordinate which is no number fails.
+        if !(depth >= self.range[0] && depth <= self.range[1]) {
+            return;
+        }
+        let (x, y) = match self.view.perspective {
+            true => (image.x / depth, image.y / depth),
+            false => (image.x + self.middle.x, image.y + self.middle.y),
+        };
+        let [width, height] = self.view.size;
+        let inside = x >= 0.0 && y >= 0.0 && x < width as f32 && y < height as f32;
+        if !inside || self.is_culled(index, position) {
+            return;
+        }
+        let (tile, pixel) = place(self.view.size, [x as u32, y as u32]);
+        let place = &nearest[tile * BLOCKS * LANES + pixel];
+        // Never −0, whose bits are large.
+        let key = u64::from(depth.abs().to_bits()) << 32 | index as u64;
+        // Most surfels lose: looking first is cheaper.
+        if key < place.load(Ordering::Relaxed) {
+            place.fetch_min(key, Ordering::Relaxed);
+        }
+    }
+
+    /// Relative to the eye.
+    #[inline]
+    fn position(&self, index: usize) -> Vec3 {
+        (self.surfels.positions[index] - self.eye[0]) - self.eye[1]
+    }
+
+    /// Whether the normal points away from the eye.
+    #[inline]
+    fn is_turned(&self, index: usize, position: Vec3) -> bool {
+        let ray = if self.view.perspective { position } else { self.forward };
+        self.surfels.normals[index].dot(ray) >= 0.0
+    }
+
+    #[inline]
+    fn is_culled(&self, index: usize, position: Vec3) -> bool {
+        let two_sided = || self.surfels.two_sided.as_ref().is_some_and(|two_sided| two_sided[index]);
+        self.cull && self.is_turned(index, position) && !two_sided()
+    }
+
+    /// Shades a tile from the surfels that its pixels see.
+    fn resolve(&self, streams: &Streams, shader: &Shader, nearest: &mut [AtomicU64], slab: &mut Slab) {
+        for (block, nearest) in nearest.chunks_exact_mut(LANES).enumerate() {
+            let (x, y) = centres(corner(slab.at), block);
+            let surface = self.surface(streams, nearest);
+            slab.put(block, &shader.shade(x, y, &surface));
+        }
+    }
+
+    /// What the surfels of a block's pixels look like.
+    fn surface(&self, streams: &Streams, nearest: &mut [AtomicU64]) -> Surface {
+        let mut attributes = [[0f32; LANES]; 6];
+        let mut depth = [0f32; LANES];
+        let mut covered = [false; LANES];
+        for (lane, nearest) in nearest.iter_mut().map(|nearest| *nearest.get_mut()).enumerate() {
+            if nearest == EMPTY {
+                continue;
+            }
+            let index = nearest as u32;
+            let turned = streams.normals && self.is_turned(index as usize, self.position(index as usize));
+            let of = streams.attributes(if turned { index | FLIPPED } else { index });
+            attributes.iter_mut().zip(of).for_each(|(lanes, value)| lanes[lane] = value);
+            depth[lane] = f32::from_bits((nearest >> 32) as u32) + self.base;
+            covered[lane] = true;
+        }
+        let vectors = |first: usize| [0, 1, 2].map(|i| Vec4::from_array(attributes[first + i]));
+        Surface {
+            covered: BVec4A::from_array(covered),
+            colour: if streams.colours { vectors(streams.colour_channel()) } else { self.albedo },
+            normal: vectors(0),
+            weight: Vec4::ONE,
+            depth: Vec4::from_array(depth),
+        }
+    }
+}

@@ -1,0 +1,215 @@
+//! Surfel to splat: the disc's image by the dual conic, which needs no inverse (zwicker2004 sections 4.2 to 4.4, restated).
+
+use super::shape::{Shape, filtered, half_box};
+use super::view::View;
+use crate::geometry::Surfels;
+use crate::settings::{Cull, Settings};
+use glam::{DVec2, DVec3, Mat3A, Vec2, Vec3, Vec3A};
+
+/// The image of a disc: an ellipse and a plane.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Splat {
+    /// The pixel that the rest is relative to, near the centre, so that nothing loses digits on large pictures.
+    pub anchor: [u16; 2],
+    /// Index of the surfel; [`FLIPPED`] is set where its normal points away from the eye.
+    pub surfel: u32,
+    /// Centre of the ellipse relative to the anchor's centre, px.
+    pub offset: Vec2,
+    /// The ellipse, without any low-pass.
+    pub shape: Shape,
+    /// Key of the tangent plane at the anchor, and its slopes along x and y, 1/px.
+    pub plane: Vec3,
+    /// Key of the disc's nearest point.
+    pub disc: f32,
+    /// No key within the attribute footprint is above this.
+    pub nearest: f32,
+    /// What ε does to a key: its factor in perspective, what is taken from it otherwise.
+    pub epsilon: f32,
+}
+
+/// Mark of a surfel whose normal points away from the eye.
+pub(super) const FLIPPED: u32 = 1 << 31;
+
+/// What makes splats of a scene's surfels in a frame.
+pub(super) struct Footprint<'a> {
+    surfels: &'a Surfels,
+    settings: &'a Settings,
+    view: &'a View,
+    pixel: Mat3A,
+    /// Width and height of the picture, px.
+    pub extent: Vec2,
+    attribute_lowpass: f32,
+}
+
+/// Where a surfel is, in twice the precision: large terms cancel here, and it is a small part of the work.
+struct Place {
+    /// Distance in front of the eye.
+    distance: f64,
+    /// What homogeneous pixels are divided by.
+    w: f64,
+    /// Height of the disc's plane above the eye, along the normal.
+    height: f64,
+    /// What the plane's keys are divided by; above 0 where the normal points away from the eye.
+    facing: f64,
+    /// Homogeneous pixel of the centre.
+    image: DVec2,
+}
+
+impl<'a> Footprint<'a> {
+    pub fn new(surfels: &'a Surfels, settings: &'a Settings, view: &'a View) -> Self {
+        Self {
+            surfels,
+            settings,
+            view,
+            pixel: Mat3A::from(view.pixel.as_mat3()),
+            extent: view.extent(),
+            attribute_lowpass: settings.attribute_lowpass(),
+        }
+    }
+
+    /// The splat of surfel `index`, and half the width and height of the box about its attribute footprint, px; `None` if nothing
+    /// of it is seen.
+    #[inline]
+    pub fn splat(&self, index: usize) -> Option<(Splat, Vec2)> {
+        let place = self.place(index)?;
+        let (radius, normal) = (self.surfels.radii[index], self.surfels.normals[index]);
+        let sigma = radius / self.settings.cutoff;
+        let ([major, minor], aspect) = self.axes(index, normal);
+        let [s, t] = [self.pixel * (sigma * major), self.pixel * (sigma * minor)];
+        let w = place.w as f32;
+        let inverse = 1.0 / place.w;
+        let centre = (place.image * inverse).as_vec2();
+        let area = self.view.jacobian * aspect * sigma * sigma * place.facing.abs() as f32;
+        let (shape, shift) = self.image([s, t], w, centre, area)?;
+
+        let wide = Shape { variance: filtered(shape.variance, self.attribute_lowpass), ..shape };
+        let (middle, half) = (centre + shift, half_box(&wide, self.settings.cutoff));
+        let seen = (middle + half).cmpge(Vec2::ZERO) & (middle - half).cmple(self.extent);
+        if !seen.all() {
+            return None;
+        }
+        let (anchor, pixel) = self.anchor(middle);
+        let offset = ((place.image - place.w * pixel) * inverse).as_vec2() + shift;
+        let plane = self.plane(normal.as_dvec3(), &place, pixel);
+        let reach = self.settings.epsilon * radius;
+        let splat = Splat {
+            anchor,
+            surfel: index as u32 | if place.facing > 0.0 { FLIPPED } else { 0 },
+            offset,
+            shape,
+            plane,
+            disc: self.disc(&place, Vec2::new(s.z, t.z)),
+            nearest: nearest(plane, offset, &wide, half, self.settings.cutoff),
+            epsilon: if self.view.perspective { w / (w + reach) } else { reach },
+        };
+        Some((splat, half))
+    }
+
+    /// The pixel of the picture that is nearest to `middle`, and its centre.
+    #[inline]
+    fn anchor(&self, middle: Vec2) -> ([u16; 2], DVec2) {
+        let nearest = middle.clamp(Vec2::ZERO, self.extent - 1.0);
+        let anchor = [nearest.x as u16, nearest.y as u16];
+        (anchor, DVec2::new(f64::from(anchor[0]) + 0.5, f64::from(anchor[1]) + 0.5))
+    }
+
+    /// Key of the nearest point of a disc whose 1-σ axes go `depths` away from the eye.
+    #[inline]
+    fn disc(&self, place: &Place, depths: Vec2) -> f32 {
+        let lean = self.settings.cutoff * depths.length();
+        match self.view.perspective {
+            true => 1.0 / (place.w as f32 - lean),
+            false => (self.view.near - place.distance) as f32 + lean,
+        }
+    }
+
+    /// `None` behind the eye, on the back where that is not seen, and where the plane runs through the eye. Comparisons are such that
+    /// they fail where a coordinate is no number.
+    #[inline]
+    fn place(&self, index: usize) -> Option<Place> {
+        let view = self.view;
+        let position = self.surfels.positions[index].as_dvec3() - view.eye;
+        let normal = self.surfels.normals[index].as_dvec3();
+        let image = view.pixel * position;
+        let (distance, w) = (image.z, if view.perspective { image.z } else { 1.0 });
+        let height = normal.dot(position);
+        let facing = if view.perspective { height } else { normal.dot(view.forward) };
+        let two_sided = || self.surfels.two_sided.as_ref().is_some_and(|two_sided| two_sided[index]);
+        if !(w > 0.0 && facing.abs() > 0.0)
+            || self.settings.cull == Cull::Back && facing > 0.0 && !two_sided()
+        {
+            return None;
+        }
+        Some(Place { distance, w, height, facing, image: image.truncate() + view.middle })
+    }
+
+    /// Directions of the disc's semi-axes, of which the second is shorter by the factor that is returned and contained in it.
+    #[inline]
+    fn axes(&self, index: usize, normal: Vec3) -> ([Vec3A; 2], f32) {
+        match &self.surfels.ellipses {
+            None => (tangents(normal), 1.0),
+            Some(ellipses) => {
+                let ellipse = ellipses[index];
+                // Exactly at a right angle to the normal, however the file rounded it.
+                let minor = normal.cross(ellipse.major).normalize();
+                ([minor.cross(normal).into(), (ellipse.aspect * minor).into()], ellipse.aspect)
+            }
+        }
+    }
+
+    /// The ellipse of a disc whose 1-σ axes have the homogeneous pixels `s` and `t`, and by how much its centre is off the `centre`'s
+    /// image; `None` if the disc reaches the eye plane. `area` is what the disc's 1-σ area would be enlarged to at w = 1.
+    #[inline]
+    fn image(&self, [s, t]: [Vec3A; 2], w: f32, centre: Vec2, area: f32) -> Option<(Shape, Vec2)> {
+        let cutoff = self.settings.cutoff;
+        let (x, y) = (Vec2::new(s.x, t.x), Vec2::new(s.y, t.y));
+        let g = if self.view.perspective { Vec2::new(s.z, t.z) } else { Vec2::ZERO };
+        let lean = g.length();
+        // (w / F)² - g·g, which as a product keeps its digits.
+        let q = (w / cutoff - lean) * (w / cutoff + lean);
+        if q.is_nan() || q <= 0.0 {
+            return None;
+        }
+        let inverse = 1.0 / (cutoff * q.sqrt());
+        // Rows of the projection's derivative, times w.
+        let (dx, dy) = (x - centre.x * g, y - centre.y * g);
+        let shift = -(cutoff * inverse).powi(2) * Vec2::new(dx.dot(g), dy.dot(g));
+        let (dx, dy, o) = (inverse * dx, inverse * dy, shift / cutoff);
+        let xx = dx.dot(dx) + o.x * o.x;
+        let xy = dx.dot(dy) + o.x * o.y;
+        let yy = dy.dot(dy) + o.y * o.y;
+        Some((Shape::new([xx, xy, yy], area * inverse * inverse * inverse), shift))
+    }
+
+    /// Key of the tangent plane at `pixel`, and its slopes: affine in the pixel, whatever the projection.
+    #[inline]
+    fn plane(&self, normal: DVec3, place: &Place, pixel: DVec2) -> Vec3 {
+        let view = self.view;
+        let of = view.ray.transpose_mul_vec3(normal);
+        let key = of.dot(pixel.extend(1.0));
+        let key = if view.perspective { key } else { key - place.height + view.near * place.facing };
+        (DVec3::new(key, of.x, of.y) / place.facing).as_vec3()
+    }
+}
+
+/// Two unit vectors that complete `normal` to a right-handed basis (Duff et al., *Building an Orthonormal Basis, Revisited*, 2017).
+#[inline]
+fn tangents(normal: Vec3) -> [Vec3A; 2] {
+    let sign = 1f32.copysign(normal.z);
+    let a = -1.0 / (sign + normal.z);
+    let b = normal.x * normal.y * a;
+    [
+        Vec3A::new(1.0 + sign * normal.x * normal.x * a, sign * b, -sign * normal.x),
+        Vec3A::new(b, sign + normal.y * normal.y * a, -normal.y),
+    ]
+}
+
+/// More than any key that the plane has within the cut-off ellipse, however that is rounded; `half` is the ellipse's box.
+#[inline]
+fn nearest(plane: Vec3, offset: Vec2, shape: &Shape, half: Vec2, cutoff: f32) -> f32 {
+    let slope = Vec2::new(plane.y, plane.z);
+    let along = Vec2::new(slope.dot(shape.axis), slope.dot(shape.axis.perp()));
+    let rise = cutoff * (along * along).dot(shape.variance).sqrt();
+    let terms = plane.x.abs() + slope.abs().dot(offset.abs() + half);
+    plane.x + slope.dot(offset) + rise + 1e-6 * terms
+}

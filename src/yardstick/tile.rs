@@ -1,0 +1,173 @@
+//! Tiles: squares of pixels that stay in the processor's cache from the first splat to the picture.
+
+use super::chunk::Chunk;
+use super::cover::{Block, Cover};
+use super::exp::exp_half;
+use super::shape::{Shape, filtered};
+use super::splat::Splat;
+use super::sums::{Channels, Streams};
+use super::view::View;
+use crate::settings::Settings;
+use glam::Vec4;
+
+/// Pixels along a tile's side.
+pub(super) const SIDE: usize = 32;
+/// Pixels that are treated at once.
+pub(super) const LANES: usize = 4;
+/// Blocks of pixels in a tile.
+pub(super) const BLOCKS: usize = SIDE * SIDE / LANES;
+/// Columns of a block.
+pub(super) const RAMP: Vec4 = Vec4::new(0.0, 1.0, 2.0, 3.0);
+/// Splats after which a tile finds out anew what it hides.
+const FRESH: usize = 32;
+
+/// One value a pixel, row by row.
+pub(super) type Plane = [Vec4; BLOCKS];
+
+/// What all tiles of a frame share.
+pub(super) struct Frame<'a> {
+    pub view: &'a View,
+    pub settings: &'a Settings,
+    pub streams: Streams<'a>,
+    /// In any order; best from near to far.
+    pub chunks: &'a [Chunk],
+    pub order: &'a [u32],
+}
+
+/// A tile in the making.
+pub(super) struct Tile {
+    /// Column and row among the tiles.
+    at: [u32; 2],
+    /// Key of the nearest surface, moved back by ε; −∞ where there is none.
+    keys: Plane,
+    /// The least of the keys, −∞ if there is a gap: what is behind is hidden.
+    farthest: f32,
+    /// Weighted sums: of the weights, the attributes, the keys.
+    pub sums: [Plane; 8],
+}
+
+impl Tile {
+    pub fn new(at: [u32; 2]) -> Self {
+        Self {
+            at,
+            keys: [Vec4::NEG_INFINITY; BLOCKS],
+            farthest: f32::NEG_INFINITY,
+            sums: [[Vec4::ZERO; BLOCKS]; 8],
+        }
+    }
+
+    /// The tile's first pixel.
+    pub fn corner(&self) -> [u32; 2] {
+        corner(self.at)
+    }
+
+    /// Pass `visibility`: the nearest surface at each pixel, moved back by ε. Returns whether there is any.
+    pub fn visibility(&mut self, frame: &Frame) -> bool {
+        let (mut drawn, mut stale) = (false, 0);
+        for chunk in frame.order.iter().map(|&index| &frame.chunks[index as usize]) {
+            let list = chunk.of_tile(self.at);
+            drawn |= !list.is_empty();
+            for &index in list {
+                self.claim(frame, &chunk.splats[index as usize]);
+            }
+            stale += list.len();
+            if stale > FRESH {
+                self.farthest = least(&self.keys);
+                stale = 0;
+            }
+        }
+        drawn
+    }
+
+    /// What a splat hides.
+    #[inline]
+    fn claim(&mut self, frame: &Frame, splat: &Splat) {
+        let (factor, shift) = match frame.view.perspective {
+            true => (splat.epsilon, 0.0),
+            false => (1.0, splat.epsilon),
+        };
+        // Nothing is claimed nearer than the disc itself, however far the filter has widened its plane.
+        if splat.disc * factor - shift <= self.farthest {
+            return;
+        }
+        let shape =
+            Shape { variance: filtered(splat.shape.variance, frame.settings.least_lowpass()), ..splat.shape };
+        let Some(cover) = Cover::new(splat, &shape, frame.settings.cutoff, self.corner()) else { return };
+        let [far, near] = frame.view.keys.map(Vec4::splat);
+        let disc = Vec4::splat(splat.disc);
+        cover.each(|block| {
+            let inside = block.inside & block.key.cmpgt(far) & block.key.cmple(near);
+            let claimed = block.key.min(disc) * factor - shift;
+            let key = &mut self.keys[block.index];
+            *key = Vec4::select(inside, key.max(claimed), *key);
+        });
+    }
+
+    /// Pass `attribute`: weighted sums over the splats that the keys let through.
+    pub fn attribute(&mut self, frame: &Frame) {
+        // Where there is no surface nothing is let through, however far the wider footprint reaches.
+        for key in &mut self.keys {
+            *key = Vec4::select(key.cmpeq(Vec4::NEG_INFINITY), Vec4::INFINITY, *key);
+        }
+        self.farthest = least(&self.keys);
+        match frame.streams.channels() {
+            Channels { attributes: 0, keys: false } => self.sum::<0, false>(frame),
+            Channels { attributes: 0, keys: true } => self.sum::<0, true>(frame),
+            Channels { attributes: 3, keys: false } => self.sum::<3, false>(frame),
+            Channels { attributes: 3, keys: true } => self.sum::<3, true>(frame),
+            Channels { keys: false, .. } => self.sum::<6, false>(frame),
+            Channels { keys: true, .. } => self.sum::<6, true>(frame),
+        }
+    }
+
+    /// The sums of `COUNT` attributes, and of the keys if `KEYS`.
+    fn sum<const COUNT: usize, const KEYS: bool>(&mut self, frame: &Frame) {
+        for chunk in frame.chunks {
+            for &index in chunk.of_tile(self.at) {
+                let splat = &chunk.splats[index as usize];
+                if splat.nearest >= self.farthest {
+                    self.add::<COUNT, KEYS>(frame, splat);
+                }
+            }
+        }
+    }
+
+    #[inline]
+    fn add<const COUNT: usize, const KEYS: bool>(&mut self, frame: &Frame, splat: &Splat) {
+        let variance = filtered(splat.shape.variance, frame.settings.attribute_lowpass());
+        let shape = Shape { variance, ..splat.shape };
+        let Some(cover) = Cover::new(splat, &shape, frame.settings.cutoff, self.corner()) else { return };
+        let amplitude = splat.shape.root / (variance.x * variance.y).sqrt();
+        let attributes = frame.streams.attributes(splat.surfel);
+        let [far, near] = frame.view.keys.map(Vec4::splat);
+        cover.each(|Block { index, distance, key, inside }| {
+            let seen = inside & key.cmpgt(far) & key.cmple(near) & key.cmpge(self.keys[index]);
+            let weight = Vec4::select(seen, amplitude * exp_half(distance), Vec4::ZERO);
+            self.sums[0][index] += weight;
+            for (sum, attribute) in self.sums[1..=COUNT].iter_mut().zip(attributes) {
+                sum[index] += weight * attribute;
+            }
+            if KEYS {
+                self.sums[7][index] += weight * key;
+            }
+        });
+    }
+}
+
+/// The first pixel of a tile.
+pub(super) fn corner(at: [u32; 2]) -> [u32; 2] {
+    at.map(|tile| tile * SIDE as u32)
+}
+
+/// Centres of a block's pixels in the tile whose first pixel is `corner`: x of each, and y.
+#[inline]
+pub(super) fn centres(corner: [u32; 2], block: usize) -> (Vec4, f32) {
+    let (row, column) = (block / (SIDE / LANES), block % (SIDE / LANES) * LANES);
+    let x = RAMP + ((corner[0] as usize + column) as f32 + 0.5);
+    (x, (corner[1] as usize + row) as f32 + 0.5)
+}
+
+/// The least value of a plane.
+fn least(plane: &Plane) -> f32 {
+    plane.iter().copied().fold(Vec4::INFINITY, Vec4::min).min_element()
+}
