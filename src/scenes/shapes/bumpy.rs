@@ -26,9 +26,8 @@ impl Shape for Bumpy {
     }
 
     fn trace(&self, ray: &Ray, limit: f64) -> Option<(f64, Spot)> {
-        let hit = bumpy_sphere::trace(ray.origin, ray.direction)?;
-        let spot = Spot { position: hit.position, normal: hit.normal, chart: angles(hit.position) };
-        (hit.distance > 0.0 && hit.distance < limit).then_some((hit.distance, spot))
+        let (t, position, normal) = bumpy_sphere::meet(ray.origin, ray.direction)?;
+        (t > 0.0 && t < limit).then(|| (t, Spot { position, normal, chart: angles(position) }))
     }
 
     fn corners(&self) -> [DVec3; 2] {

@@ -10,13 +10,16 @@
 //! The bounds of the second derivatives are differences at nine points of each cell, with a margin of half: cells are to be small
 //! against the surface's features.
 
-use super::{Ray, Sample, Shape, Spot, first};
+use super::{Ray, Sample, Shape, Spot};
 use crate::scenes::hierarchy::{Hierarchy, union};
 use glam::{DMat2, DVec2, DVec3};
 use rayon::prelude::*;
 
 /// Smallest part of a cell that is looked at, of the cell's side.
 const FINEST: f64 = 1e-6;
+/// Cells for rays to a cell for the samplers, either way: in cells this small a crossing that is not too flat is known at once to be
+/// the only one, and no cell has to be divided for it.
+const FINER: usize = 2;
 /// How far beyond its border a part is searched, of its side.
 const SLACK: f64 = 1e-9;
 /// Margin of the bounds that are taken from differences.
@@ -45,9 +48,10 @@ pub trait Parametric: Send + Sync {
 /// A parametrised surface, divided into cells.
 pub struct Patch<P> {
     surface: P,
+    /// Cells of u and of v for the samplers.
     size: [usize; 2],
     extent: DVec2,
-    /// Row by row of v.
+    /// Row by row of v, [`FINER`] times as many either way.
     cells: Vec<Cell>,
     hierarchy: Hierarchy,
     corners: [DVec3; 2],
@@ -63,7 +67,12 @@ struct Part {
 struct Cell {
     part: Part,
     bend: Bend,
+    /// In the part's middle: no ray has to ask for it again.
+    jet: Jet,
 }
+
+/// Where a ray meets the surface: distance, parameters and the point.
+type Met = (f64, DVec2, Jet);
 
 /// Bounds of |∂²P/∂u²|, |∂²P/∂u∂v| and |∂²P/∂v²|.
 #[derive(Clone, Copy)]
@@ -88,16 +97,17 @@ enum Verdict {
 impl<P: Parametric> Patch<P> {
     /// Divides `surface` into this many cells of u and v.
     pub fn new(surface: P, size: [usize; 2]) -> Self {
-        let half = 0.5 / DVec2::new(size[0] as f64, size[1] as f64);
+        let [columns, rows] = size.map(|cells| FINER * cells);
+        let half = 0.5 / DVec2::new(columns as f64, rows as f64);
         let cell = |i: usize| {
-            let index = DVec2::new((i % size[0]) as f64, (i / size[0]) as f64);
+            let index = DVec2::new((i % columns) as f64, (i / columns) as f64);
             let part = Part { middle: (2.0 * index + 1.0) * half, half };
             let bend = Bend::of(&surface, part);
             let jet = surface.jet(part.middle);
             let reach = jet.du.abs() * half.x + jet.dv.abs() * half.y + bend.remainder(half);
-            (Cell { part, bend }, [jet.position - reach, jet.position + reach])
+            (Cell { part, bend, jet }, [jet.position - reach, jet.position + reach])
         };
-        let (cells, boxes): (Vec<_>, Vec<_>) = (0..size[0] * size[1]).into_par_iter().map(cell).unzip();
+        let (cells, boxes): (Vec<_>, Vec<_>) = (0..columns * rows).into_par_iter().map(cell).unzip();
         let corners = boxes.iter().copied().reduce(union).unwrap_or_default();
         let extent = surface.extent();
         Self { size, extent, cells, hierarchy: Hierarchy::new(&boxes), corners, surface }
@@ -108,33 +118,46 @@ impl<P: Parametric> Patch<P> {
         Spot { position: jet.position, normal, chart: uv * self.extent }
     }
 
-    /// The least distance below `limit` at which the ray meets the cell, and the parameters there.
-    fn meet(&self, sight: &Sight, cell: &Cell, limit: f64) -> Option<(f64, DVec2)> {
-        let (mut limit, mut found) = (limit, None);
-        let mut todo = vec![cell.part];
+    /// The point nearest to the ray's origin, at less than `limit`, in which the ray meets the cell.
+    fn meet(&self, sight: &Sight, cell: &Cell, limit: f64) -> Option<Met> {
+        match self.judge(sight, cell.part, &cell.jet, &cell.bend, limit) {
+            Verdict::Nothing => None,
+            Verdict::Root(uv) => self.take(sight, uv, limit),
+            Verdict::Unknown => self.search(sight, cell, limit),
+        }
+    }
+
+    /// The same for a cell that has to be divided.
+    fn search(&self, sight: &Sight, cell: &Cell, mut limit: f64) -> Option<Met> {
+        let mut found = None;
+        let mut todo = Vec::from(cell.part.quarters());
         while let Some(part) = todo.pop() {
-            match self.judge(sight, part, &cell.bend, limit) {
-                Verdict::Nothing => {}
-                Verdict::Unknown if part.half.x > FINEST * cell.part.half.x => todo.extend(part.quarters()),
-                Verdict::Unknown => self.take(sight, part.middle, &mut limit, &mut found),
-                Verdict::Root(uv) => self.take(sight, uv, &mut limit, &mut found),
+            let met = match self.judge(sight, part, &self.surface.jet(part.middle), &cell.bend, limit) {
+                Verdict::Nothing => None,
+                Verdict::Root(uv) => self.take(sight, uv, limit),
+                Verdict::Unknown if part.half.x > FINEST * cell.part.half.x => {
+                    todo.extend(part.quarters());
+                    None
+                }
+                Verdict::Unknown => self.take(sight, part.middle, limit),
+            };
+            if let Some(met) = met {
+                limit = met.0;
+                found = Some(met);
             }
         }
         found
     }
 
-    fn take(&self, sight: &Sight, uv: DVec2, limit: &mut f64, found: &mut Option<(f64, DVec2)>) {
-        let t = sight.distance(self.surface.jet(uv).position);
-        if t > 0.0 && t < *limit {
-            *limit = t;
-            *found = Some((t, uv));
-        }
+    fn take(&self, sight: &Sight, uv: DVec2, limit: f64) -> Option<Met> {
+        let jet = self.surface.jet(uv);
+        let t = sight.distance(jet.position);
+        (t > 0.0 && t < limit).then_some((t, uv, jet))
     }
 
-    fn judge(&self, sight: &Sight, part: Part, bend: &Bend, limit: f64) -> Verdict {
-        let jet = self.surface.jet(part.middle);
+    fn judge(&self, sight: &Sight, part: Part, jet: &Jet, bend: &Bend, limit: f64) -> Verdict {
         let (remainder, half) = (bend.remainder(part.half), part.half);
-        let (offset, slopes) = (sight.offset(jet.position), sight.slopes(&jet));
+        let (offset, slopes) = (sight.offset(jet.position), sight.slopes(jet));
         let reach = slopes.x_axis.abs() * half.x + slopes.y_axis.abs() * half.y + remainder;
         let depth = sight.distance(jet.position);
         let d = sight.ray.direction;
@@ -170,7 +193,8 @@ impl<P: Parametric> Patch<P> {
                 return Verdict::Unknown;
             }
             uv -= step;
-            if step.abs().cmple(1e-9 * part.half).all() {
+            // Steps square their error, so that the one after this would be less than rounding.
+            if step.abs().cmple(1e-6 * part.half).all() {
                 let inside = (uv - part.middle).abs().cmple(part.half * (1.0 + SLACK)).all();
                 return if inside { Verdict::Root(uv) } else { Verdict::Nothing };
             }
@@ -190,15 +214,14 @@ impl<P: Parametric> Shape for Patch<P> {
         let mut found = None;
         self.hierarchy.visit(ray, limit, |cell, limit| {
             match self.meet(&sight, &self.cells[cell as usize], limit) {
-                Some((t, uv)) => {
-                    found = Some((t, uv));
-                    t
+                Some(met) => {
+                    found = Some(met);
+                    met.0
                 }
                 None => limit,
             }
         });
-        let (t, uv) = found?;
-        first([t, t], limit, |_| Some(self.spot(uv, &self.surface.jet(uv))))
+        found.map(|(t, uv, jet)| (t, self.spot(uv, &jet)))
     }
 
     fn corners(&self) -> [DVec3; 2] {

@@ -1,65 +1,83 @@
 //! Roots of polynomials in an interval, none missed: between two neighbouring roots of the derivative there is at most one.
 
+/// Greatest degree.
+const DEGREE: usize = 4;
+
+/// A few numbers, without memory of their own to ask for: rays are many.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Few {
+    values: [f64; DEGREE + 1],
+    count: usize,
+}
+
+impl Few {
+    fn push(&mut self, value: f64) {
+        self.values[self.count] = value;
+        self.count += 1;
+    }
+}
+
+impl std::ops::Deref for Few {
+    type Target = [f64];
+
+    fn deref(&self) -> &[f64] {
+        &self.values[..self.count]
+    }
+}
+
 /// Value of the polynomial with these coefficients, the constant first.
 fn value(coefficients: &[f64], t: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, c| sum * t + c)
 }
 
-/// The roots between `low` and `high`, ascending. Where the polynomial comes within `touch` of 0 without a change of sign, its extremum
-/// counts as one root.
-pub fn roots(coefficients: &[f64], [low, high]: [f64; 2], touch: f64) -> Vec<f64> {
-    if coefficients.len() < 2 {
-        return Vec::new();
+/// Its value and its derivative's.
+fn value_and_slope(coefficients: &[f64], t: f64) -> (f64, f64) {
+    coefficients.iter().rev().fold((0.0, 0.0), |(value, slope), c| (value * t + c, slope * t + value))
+}
+
+/// The roots between `low` and `high`, ascending, of a polynomial of degree 4 at most. Where the polynomial comes within `touch` of 0
+/// without a change of sign, its extremum counts as one root.
+pub fn roots(coefficients: &[f64], [low, high]: [f64; 2], touch: f64) -> Few {
+    let mut found = Few::default();
+    let degree = coefficients.len().saturating_sub(1);
+    if degree == 0 {
+        return found;
     }
-    let derivative: Vec<f64> = coefficients.iter().enumerate().skip(1).map(|(i, c)| i as f64 * c).collect();
+    let mut derivative = [0.0; DEGREE];
+    for (i, slot) in derivative[..degree].iter_mut().enumerate() {
+        *slot = (i + 1) as f64 * coefficients[i + 1];
+    }
     // An extremum that the derivative only touches is a saddle, which divides nothing.
-    let mut ends = roots(&derivative, [low, high], 0.0);
-    ends.insert(0, low);
-    ends.push(high);
-    let mut found: Vec<f64> = Vec::new();
-    for pair in ends.windows(2) {
-        let (at_a, at_b) = (value(coefficients, pair[0]), value(coefficients, pair[1]));
+    let extrema = roots(&derivative[..degree], [low, high], 0.0);
+    let (mut a, mut at_a) = (low, value(coefficients, low));
+    for (i, &b) in extrema.iter().chain(&[high]).enumerate() {
+        let at_b = value(coefficients, b);
         if (at_a < 0.0) != (at_b < 0.0) {
-            found.push(crossing(coefficients, pair[0], pair[1], at_a < 0.0));
-        } else if pair[1] < high && at_b.abs() <= touch {
-            found.push(pair[1]);
+            found.push(crossing(coefficients, [a, b], at_a < 0.0));
+        } else if i < extrema.len() && at_b.abs() <= touch {
+            found.push(b);
         }
+        (a, at_a) = (b, at_b);
     }
     found
 }
 
-/// The root between `low`, where the sign is `negative`, and `high`, where it is not, by the ITP method (Oliveira & Takahashi 2020):
-/// never slower than bisection by more than a step.
-fn crossing(coefficients: &[f64], low: f64, high: f64, negative: bool) -> f64 {
+/// The root between `low`, where the sign is `negative`, and `high`, where it is not: Newton's steps, halving where they leave the
+/// bracket or do not halve the step before.
+fn crossing(coefficients: &[f64], [low, high]: [f64; 2], negative: bool) -> f64 {
     let (mut a, mut b) = (low, high);
-    let oriented = |t: f64| if negative { value(coefficients, t) } else { -value(coefficients, t) };
-    let (mut at_a, mut at_b) = (oriented(a), oriented(b));
-    let epsilon = 2.0 * f64::EPSILON * low.abs().max(high.abs());
-    let (half, truncation) = (((b - a) / (2.0 * epsilon)).log2().ceil().max(0.0), 0.2 / (b - a));
-    let mut radius = epsilon * (half + 1.0).exp2();
-    while b - a > 2.0 * epsilon {
-        let middle = 0.5 * (a + b);
-        radius *= 0.5;
-        let interpolated = (at_b * a - at_a * b) / (at_b - at_a);
-        let side = (middle - interpolated).signum();
-        let step = truncation * (b - a).powi(2);
-        let truncated =
-            if step <= (middle - interpolated).abs() { interpolated + side * step } else { middle };
-        let reach = (radius - 0.5 * (b - a)).max(0.0);
-        let t = if (truncated - middle).abs() <= reach { truncated } else { middle - side * reach };
-        // Rounding may put the estimate on an end, which would not move.
-        let t = if t > a && t < b { t } else { middle };
-        if t <= a || t >= b {
-            break;
-        }
-        let at_t = oriented(t);
-        if at_t < 0.0 {
-            (a, at_a) = (t, at_t);
-        } else {
-            (b, at_b) = (t, at_t);
-        }
+    let enough = 2.0 * f64::EPSILON * low.abs().max(high.abs());
+    let (mut t, mut last) = (0.5 * (a + b), b - a);
+    while last > enough {
+        let (value, slope) = value_and_slope(coefficients, t);
+        *(if (value < 0.0) == negative { &mut a } else { &mut b }) = t;
+        let newton = t - value / slope;
+        let tame = newton >= a && newton <= b && (newton - t).abs() <= 0.5 * last;
+        let next = if tame { newton } else { 0.5 * (a + b) };
+        last = if tame { (next - t).abs() } else { 0.5 * (b - a) };
+        t = next;
     }
-    0.5 * (a + b)
+    t
 }
 
 #[cfg(test)]

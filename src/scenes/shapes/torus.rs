@@ -49,6 +49,13 @@ impl Shape for Torus {
         let outer = self.major + self.minor;
         let half = outer * outer - f.length_squared();
         let half = (half >= 0.0).then(|| half.sqrt() * (1.0 + 1e-9) + 1e-9 * outer)?;
+        // Where the ray is within the sphere around the torus and between the planes that it lies on.
+        let level = |y: f64| (y * (1.0 + 1e-9) - f.y) / d.y;
+        let (a, b) = (level(self.minor), level(-self.minor));
+        let (low, high) = (a.min(b).max(-half), a.max(b).min(half));
+        if low >= high {
+            return None;
+        }
         let k = f.length_squared() + square - self.minor * self.minor;
         let quartic = [
             k * k - 4.0 * square * (f.x * f.x + f.z * f.z),
@@ -57,14 +64,14 @@ impl Shape for Torus {
             0.0,
             1.0,
         ];
-        let found = roots(&quartic, [-half, half], 1e-14 * outer.powi(4));
+        let found = roots(&quartic, [low, high], 1e-14 * outer.powi(4));
         // The quartic's coefficients lose digits which the distance function, by one step of Newton's method, gives back.
         let polish = |t: f64| {
             let (value, gradient) = self.distance(f + t * d);
             let slope = gradient.dot(d);
             if slope.abs() > 1e-3 { t - value / slope } else { t }
         };
-        let t = found.into_iter().map(polish).find(|t| t + to_foot > 0.0 && t + to_foot < limit)?;
+        let t = found.iter().map(|t| polish(*t)).find(|t| t + to_foot > 0.0 && t + to_foot < limit)?;
         Some((t + to_foot, self.spot(f + t * d)))
     }
 
