@@ -8,8 +8,14 @@ use crate::passes::Splats;
 use crate::picture::Picture;
 use crate::settings::Settings;
 use crate::vk::{Device, PassTime};
+use crate::yardstick::{self, Kind, Yardstick};
 use crate::{Outputs, Precision, Rasterizer, RenderOptions, Renderer, Scene};
 use std::sync::Arc;
+
+/// Name of the [yardstick](crate::yardstick)'s splats: what times are multiples of.
+pub const SPLATS: &str = "yardstick-splats";
+/// Name of its one pixel a point.
+pub const PIXELS: &str = "yardstick-pixels";
 
 /// A way to render.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -21,6 +27,8 @@ pub enum Engine {
         /// Width of the sums.
         precision: Precision,
     },
+    /// What a plain program on the CPU makes of the same.
+    Yardstick(Kind),
 }
 
 impl Engine {
@@ -39,6 +47,8 @@ impl Engine {
                 let variant = rasterizer.into_iter().chain(half).collect::<Vec<_>>().join(", ");
                 Contender { method: perspective_ewa::NAME.into(), variant }
             }
+            Self::Yardstick(Kind::Splats) => Contender { method: SPLATS.into(), variant: String::new() },
+            Self::Yardstick(Kind::Pixels) => Contender { method: PIXELS.into(), variant: String::new() },
         }
     }
 }
@@ -107,5 +117,40 @@ impl Ready for OnDevice {
             splats: self.lean.splats().map_or(0, Splats::bytes),
             targets: self.lean.targets().iter().map(|target| target.bytes).sum(),
         }
+    }
+}
+
+/// Surfels in the yardstick.
+pub struct OnHost {
+    yardstick: Yardstick,
+    kind: Kind,
+    size: [u32; 2],
+}
+
+impl OnHost {
+    /// Takes a copy of `surfels`.
+    ///
+    /// # Errors
+    /// As [`Yardstick::new`].
+    pub fn new(surfels: &Surfels, size: [u32; 2], kind: Kind) -> Result<Self> {
+        Ok(Self { yardstick: Yardstick::new(surfels)?, kind, size })
+    }
+}
+
+impl Ready for OnHost {
+    fn frame(&mut self, camera: &Camera, settings: &Settings, _: bool) -> Result<Vec<PassTime>> {
+        let outputs = Outputs::default();
+        Ok(self.yardstick.frame(self.kind, camera, self.size, settings, outputs)?.to_vec())
+    }
+
+    fn picture(&mut self, camera: &Camera, settings: &Settings) -> Result<Picture> {
+        let outputs = Outputs { normal: true, depth: true };
+        self.yardstick.frame(self.kind, camera, self.size, settings, outputs)?;
+        Ok(self.yardstick.picture())
+    }
+
+    fn memory(&self) -> Memory {
+        let yardstick::Memory { scene, splats, targets } = self.yardstick.bytes();
+        Memory { scene, splats, targets }
     }
 }

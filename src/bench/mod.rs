@@ -15,23 +15,32 @@
 //! | [`runner`], [`session`] | carries plans out |
 //! | [`hard`] | where numbers get difficult: float32 against float64 |
 //! | [`record`] | what was measured, as it is kept |
+//! | [`table`], [`csv`], [`report`] | the same for the eye and for other programs |
+//! | [`advice`], [`falling`] | what follows from it |
 
+pub mod advice;
 pub mod code;
+pub mod csv;
 pub mod engine;
 pub mod exhibit;
+pub mod falling;
 pub mod hard;
 pub mod hidden;
 pub mod plan;
 pub mod record;
+pub mod report;
 pub mod runner;
 pub mod session;
+mod show;
 pub mod stopwatch;
 pub mod subject;
 pub mod suites;
+mod table;
 pub mod terms;
 mod times;
 
 pub use record::Results;
 pub use session::{Wanted, measure};
 pub use suites::Suite;
+pub use table::table;
 pub use times::{Statistics, Times};

@@ -2,6 +2,7 @@
 //! [metrics](crate::metrics) define them.
 
 use super::times::Statistics;
+use crate::settings::Settings;
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -295,6 +296,39 @@ pub struct Exhibit {
     pub truth: String,
     /// FLIP's differences, in magma.
     pub map: String,
+}
+
+impl Made {
+    /// Whether it was measured by other code than that of the digest `code`.
+    pub fn is_stale(&self, code: &str) -> bool {
+        self.code != code
+    }
+}
+
+impl Run {
+    /// Median of the wall clock, ms; none if it was not timed, or is no time that a ratio can be made of.
+    pub fn ms(&self) -> Option<f64> {
+        self.time.as_ref().map(|time| time.wall.median).filter(|ms| ms.is_finite() && *ms > 0.0)
+    }
+
+    /// A metric, if it was taken.
+    pub fn metric(&self, name: &str) -> Option<f64> {
+        self.error.as_ref()?.metrics.get(name).copied().filter(|value| value.is_finite())
+    }
+
+    /// The error that budgets are made of.
+    pub fn rmse(&self) -> Option<f64> {
+        self.metric("rmse")
+    }
+}
+
+impl Setting {
+    /// What surfel does unless it is told otherwise.
+    pub fn shipped() -> Self {
+        let Settings { cutoff, lowpass, epsilon, .. } = Settings::default();
+        let [widen, cull, shading] = ["all", "none", "lit"].map(str::to_owned);
+        Self { cutoff, lowpass, widen, epsilon, cull, shading }
+    }
 }
 
 impl Contender {

@@ -1,6 +1,6 @@
 //! Carries out what is planned, and keeps what several runs share: surfels, exact pictures, the device.
 
-use super::engine::{Engine, OnDevice, Ready};
+use super::engine::{Engine, OnDevice, OnHost, Ready};
 use super::plan::Plan;
 use super::record::{self, Agreement, Exhibit, Run, Setting, Time};
 use super::subject::Subject;
@@ -149,6 +149,7 @@ impl Runner {
                 let device = self.options.device.as_ref().ok_or_else(none)?;
                 Ok(Box::new(OnDevice::new(device, surfels, size, rasterizer, precision)?))
             }
+            Engine::Yardstick(kind) => Ok(Box::new(OnHost::new(surfels, size, kind)?)),
         }
     }
 

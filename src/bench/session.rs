@@ -1,9 +1,9 @@
 //! One call of the bench: all runs of some suites on one machine.
 
-use super::record::{Agreement, Gpu, Host, Made, Session};
+use super::record::{Agreement, Gpu, Host, Made, Run, Session};
 use super::runner::{Options, Runner};
 use super::suites::{Own, Suite};
-use super::{code, hard};
+use super::{code, engine, hard};
 use crate::error::Result;
 use crate::progress::Progress;
 use crate::reference::Comparison;
@@ -61,6 +61,7 @@ pub fn measure(wanted: &Wanted, progress: &dyn Progress) -> Result<Session> {
         }
         exhibits.extend(runner.exhibits());
     }
+    compare_times(&mut runs);
     let sweeps = match &wanted.device {
         Some(device) if wanted.suites.contains(&Suite::Hard) => {
             hard::run(device, &hard::Options::default(), progress)?
@@ -79,6 +80,25 @@ pub fn measure(wanted: &Wanted, progress: &dyn Progress) -> Result<Session> {
         device: wanted.device.as_deref().map(|device| gpu(device, wanted.validated)),
     };
     Ok(Session { made, runs, sweeps, exhibits })
+}
+
+/// Tells times as multiples of what the yardstick's splats take for the same points, pixels and settings.
+fn compare_times(runs: &mut [Run]) {
+    let yardsticks: Vec<(Run, f64)> = runs
+        .iter()
+        .filter(|run| run.contender.method == engine::SPLATS)
+        .filter_map(|run| Some((run.clone(), run.ms()?)))
+        .collect();
+    let alike = |a: &Run, b: &Run| {
+        let what = |run: &Run| (run.points, run.size, run.overlap);
+        a.scene == b.scene && what(a) == what(b) && a.setting == b.setting
+    };
+    for run in runs {
+        let unit = yardsticks.iter().find(|(other, _)| alike(run, other)).map(|(_, ms)| *ms);
+        if let (Some(time), Some(unit)) = (&mut run.time, unit) {
+            time.multiple = Some(time.wall.median / unit);
+        }
+    }
 }
 
 fn host() -> Host {

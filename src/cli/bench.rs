@@ -9,7 +9,7 @@ use std::rc::Rc;
 use surfel::bench::record::FORMAT;
 use surfel::bench::subject::Subject;
 use surfel::bench::suites::Own;
-use surfel::bench::{Results, Suite, Wanted, measure};
+use surfel::bench::{Results, Suite, Wanted, code, csv, measure, report, table};
 use surfel::io::atomic;
 use surfel::vk::Device;
 use surfel::{Error, Progress, Result};
@@ -26,10 +26,28 @@ pub fn run(args: &Bench) -> Result<()> {
         let bars = progress::bars(args.quiet);
         results.sessions.push(measure(&wanted(args, suites, &*bars)?, &*bars)?);
     }
+    show(args, &results)
+}
+
+/// Writes what was asked for, and a table unless something else goes to standard output.
+fn show(args: &Bench, results: &Results) -> Result<()> {
     if let Some(place) = &args.json {
-        files::write_text(place, &(to_json(&results)? + "\n"))?;
+        files::write_text(place, &(to_json(results)? + "\n"))?;
     }
-    Ok(())
+    if let Some(place) = &args.csv {
+        files::write_text(place, &csv::runs(results, code::DIGEST)?)?;
+    }
+    if let Some(folder) = &args.report {
+        let files = report::write(results, code::DIGEST, code::COMMIT, folder)?;
+        if let (false, Some(page)) = (args.quiet, files.first()) {
+            progress::say(&format!("{}: the page, with {} plots beside it", page.display(), files.len() - 1));
+        }
+    }
+    let taken = [&args.json, &args.csv].into_iter().flatten().any(|place| place == "-");
+    match args.quiet || taken {
+        true => Ok(()),
+        false => files::print(&table(results, code::DIGEST, code::COMMIT)),
+    }
 }
 
 /// Those that were asked for; the first impression unless there is something else to show.

@@ -1,5 +1,6 @@
 //! The ellipse of a kernel on the screen, by its principal axes: long thin ones lose no digits.
 
+use crate::settings::{Settings, Widen};
 use glam::Vec2;
 
 /// A Gaussian's variance on the screen.
@@ -30,10 +31,21 @@ impl Shape {
     }
 }
 
-/// The variances of a kernel that the low-pass filter has widened (zwicker2004 equation 3).
+/// The variances of the footprint by which a splat hides others: just wide enough to own a pixel centre.
 #[inline]
-pub(super) fn filtered(variance: Vec2, lowpass: f32) -> Vec2 {
-    variance + lowpass
+pub(super) fn visibility_variance(variance: Vec2, settings: &Settings) -> Vec2 {
+    variance + settings.least_lowpass()
+}
+
+/// The variances of the footprint by which a splat gives its attributes: as wide as the low-pass filter makes it (zwicker2004 equation 3).
+#[inline]
+pub(super) fn attribute_variance(variance: Vec2, settings: &Settings) -> Vec2 {
+    match settings.widen {
+        Widen::All => variance + settings.attribute_lowpass(),
+        Widen::Small => {
+            visibility_variance(variance, settings).max(Vec2::splat(settings.attribute_lowpass()))
+        }
+    }
 }
 
 /// Half the width and height of the box about the cut-off ellipse, px.

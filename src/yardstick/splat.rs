@@ -1,6 +1,6 @@
 //! Surfel to splat: the disc's image by the dual conic, which needs no inverse (zwicker2004 sections 4.2 to 4.4, restated).
 
-use super::shape::{Shape, filtered, half_box};
+use super::shape::{Shape, attribute_variance, half_box};
 use super::view::View;
 use crate::geometry::Surfels;
 use crate::settings::{Cull, Settings};
@@ -38,7 +38,6 @@ pub(super) struct Footprint<'a> {
     pixel: Mat3A,
     /// Width and height of the picture, px.
     pub extent: Vec2,
-    attribute_lowpass: f32,
 }
 
 /// Where a surfel is, in twice the precision: large terms cancel here, and it is a small part of the work.
@@ -57,14 +56,7 @@ struct Place {
 
 impl<'a> Footprint<'a> {
     pub fn new(surfels: &'a Surfels, settings: &'a Settings, view: &'a View) -> Self {
-        Self {
-            surfels,
-            settings,
-            view,
-            pixel: Mat3A::from(view.pixel.as_mat3()),
-            extent: view.extent(),
-            attribute_lowpass: settings.attribute_lowpass(),
-        }
+        Self { surfels, settings, view, pixel: Mat3A::from(view.pixel.as_mat3()), extent: view.extent() }
     }
 
     /// The splat of surfel `index`, and half the width and height of the box about its attribute footprint, px; `None` if nothing
@@ -82,7 +74,7 @@ impl<'a> Footprint<'a> {
         let area = self.view.jacobian * aspect * sigma * sigma * place.facing.abs() as f32;
         let (shape, shift) = self.image([s, t], w, centre, area)?;
 
-        let wide = Shape { variance: filtered(shape.variance, self.attribute_lowpass), ..shape };
+        let wide = Shape { variance: attribute_variance(shape.variance, self.settings), ..shape };
         let (middle, half) = (centre + shift, half_box(&wide, self.settings.cutoff));
         let seen = (middle + half).cmpge(Vec2::ZERO) & (middle - half).cmple(self.extent);
         if !seen.all() {

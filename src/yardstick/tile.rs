@@ -3,7 +3,7 @@
 use super::chunk::Chunk;
 use super::cover::{Block, Cover};
 use super::exp::exp_half;
-use super::shape::{Shape, filtered};
+use super::shape::{Shape, attribute_variance, visibility_variance};
 use super::splat::Splat;
 use super::sums::{Channels, Streams};
 use super::view::View;
@@ -91,7 +91,7 @@ impl Tile {
             return;
         }
         let shape =
-            Shape { variance: filtered(splat.shape.variance, frame.settings.least_lowpass()), ..splat.shape };
+            Shape { variance: visibility_variance(splat.shape.variance, frame.settings), ..splat.shape };
         let Some(cover) = Cover::new(splat, &shape, frame.settings.cutoff, self.corner()) else { return };
         let [far, near] = frame.view.keys.map(Vec4::splat);
         let disc = Vec4::splat(splat.disc);
@@ -134,7 +134,7 @@ impl Tile {
 
     #[inline]
     fn add<const COUNT: usize, const KEYS: bool>(&mut self, frame: &Frame, splat: &Splat) {
-        let variance = filtered(splat.shape.variance, frame.settings.attribute_lowpass());
+        let variance = attribute_variance(splat.shape.variance, frame.settings);
         let shape = Shape { variance, ..splat.shape };
         let Some(cover) = Cover::new(splat, &shape, frame.settings.cutoff, self.corner()) else { return };
         let amplitude = splat.shape.root / (variance.x * variance.y).sqrt();

@@ -1,10 +1,11 @@
 //! Every scene, at every density.
 
-use super::{Suite, aliasing, lowpass, plan};
+use super::{Suite, aliasing, lowpass, plan, yardstick};
 use crate::bench::engine::Engine;
 use crate::bench::plan::{Plan, Wants};
 use crate::bench::record::Figure;
 use crate::scenes;
+use crate::yardstick::Kind;
 use crate::{Precision, Rasterizer};
 
 const SIZE: [u32; 2] = [768, 768];
@@ -33,5 +34,6 @@ fn budget(scene: &str, points: u64) -> Vec<Plan> {
     let draw = Plan { engine: draw, ..smooth.clone() };
     let wants =
         Wants { terms: true, agreement: points <= 100_000, exhibit: points == 100_000, ..Wants::BOTH };
-    vec![Plan { wants, ..smooth }, sharp, draw]
+    let plain = [Kind::Splats, Kind::Pixels].map(|kind| yardstick(&smooth, kind));
+    [Plan { wants, ..smooth }, sharp, draw].into_iter().chain(plain).collect()
 }

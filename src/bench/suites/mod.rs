@@ -2,9 +2,9 @@
 
 mod full;
 mod own;
+mod plain;
 mod quick;
 mod scaling;
-mod yardstick;
 
 pub use own::Own;
 
@@ -14,6 +14,7 @@ use super::record::Figure;
 use super::stopwatch::Effort;
 use crate::settings::{Settings, Shading, Widen};
 use crate::truth;
+use crate::yardstick::Kind;
 use std::time::Duration;
 
 /// A suite.
@@ -56,7 +57,7 @@ impl Suite {
             Self::Full => full::plans(),
             Self::Hard => Vec::new(),
             Self::Scaling => scaling::plans(),
-            Self::Yardstick => yardstick::plans(),
+            Self::Yardstick => plain::plans(),
             Self::Own => own::plans(own),
         }
     }
@@ -95,6 +96,11 @@ fn plan(suite: Suite, figure: Figure, scene: &str, points: u64, size: [u32; 2]) 
         settings: Settings { shading, ..Default::default() },
         wants: Wants::BOTH,
     }
+}
+
+/// The same by a plain program on the CPU.
+fn yardstick(plan: &Plan, kind: Kind) -> Plan {
+    Plan { engine: Engine::Yardstick(kind), ..plan.clone() }
 }
 
 /// The low-pass filter's price and gain: its variance, px², from 0 to 1, the kernel's cut-off, σ, and which splats it widens.

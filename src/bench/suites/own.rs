@@ -1,10 +1,11 @@
 //! What the user brings.
 
-use super::{Suite, plan};
+use super::{Suite, plan, yardstick};
 use crate::bench::plan::{Plan, Wants};
 use crate::bench::record::Figure;
 use crate::bench::subject::Subject;
 use crate::settings::Shading;
+use crate::yardstick::Kind;
 use std::rc::Rc;
 
 /// Numbers of points unless others are wanted.
@@ -56,5 +57,10 @@ fn budget(subject: &Subject, points: u64, size: [u32; 2]) -> Vec<Plan> {
     let mut sharp = smooth.clone();
     sharp.settings.lowpass = 0.0;
     let wants = Wants { terms: true, agreement: points <= 100_000, exhibit: true, ..Wants::BOTH };
-    vec![Plan { wants, ..smooth }, sharp]
+    vec![
+        Plan { wants, ..smooth.clone() },
+        sharp,
+        yardstick(&smooth, Kind::Splats),
+        yardstick(&smooth, Kind::Pixels),
+    ]
 }

@@ -1,8 +1,9 @@
 //! A first impression of everything.
 
-use super::{Suite, aliasing, lowpass, plan};
+use super::{Suite, aliasing, lowpass, plan, yardstick};
 use crate::bench::plan::{Plan, Wants};
 use crate::bench::record::Figure;
+use crate::yardstick::Kind;
 
 const SIZE: [u32; 2] = [384, 384];
 
@@ -32,5 +33,10 @@ fn budget(scene: &str, points: u64) -> Vec<Plan> {
     sharp.settings.lowpass = 0.0;
     let middle = points == 100_000;
     let wants = Wants { terms: true, agreement: points < 1_000_000, exhibit: middle, ..Wants::BOTH };
-    vec![Plan { wants, ..smooth }, sharp]
+    vec![
+        Plan { wants, ..smooth.clone() },
+        sharp,
+        yardstick(&smooth, Kind::Splats),
+        yardstick(&smooth, Kind::Pixels),
+    ]
 }

@@ -1,0 +1,118 @@
+//! Which setting for which budget of time, which for which budget of error.
+//!
+//! Only runs on the Pareto front can be the answer: those of which no other is both faster and nearer to the truth. The best for a
+//! budget of time is the one of least error among those that keep to it; for a budget of error, the fastest.
+
+use super::record::{Figure, Run, Session};
+
+/// A run that was timed and compared.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Offer<'a> {
+    /// The run.
+    pub run: &'a Run,
+    /// Median wall time of a frame, ms.
+    pub ms: f64,
+    /// RMSE against the truth, linear light.
+    pub rmse: f64,
+}
+
+/// A scene at one size, and its front.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column<'a> {
+    /// The scene.
+    pub scene: &'a str,
+    /// Width and height, px.
+    pub size: [u32; 2],
+    /// The [`front`] of its runs.
+    pub front: Vec<Offer<'a>>,
+}
+
+/// A session's budgets. Times of other sessions are other machines'.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Advice<'a> {
+    /// Scene by scene, in the order of the runs.
+    pub columns: Vec<Column<'a>>,
+    /// Budgets of time, ms, ascending.
+    pub times: Vec<f64>,
+    /// Budgets of error, ascending.
+    pub errors: Vec<f64>,
+}
+
+impl<'a> Advice<'a> {
+    /// Of the runs that are measured for budgets; none if there are none.
+    pub fn of(session: &'a Session) -> Option<Self> {
+        let mut columns: Vec<Column<'a>> = Vec::new();
+        let runs = || session.runs.iter().filter(|run| run.figure == Figure::Budget);
+        for run in runs() {
+            if !columns.iter().any(|column| column.scene == run.scene && column.size == run.size) {
+                let alike = runs().filter(|other| other.scene == run.scene && other.size == run.size);
+                columns.push(Column { scene: &run.scene, size: run.size, front: front(&offers(alike)) });
+            }
+        }
+        columns.retain(|column| !column.front.is_empty());
+        let best = || columns.iter().flat_map(|column| &column.front);
+        let (times, errors) = (budgets(best().map(|o| o.ms)), budgets(best().map(|o| o.rmse)));
+        (!columns.is_empty()).then_some(Self { columns, times, errors })
+    }
+}
+
+/// Those of the runs that have a time and an error, both above 0.
+pub fn offers<'a>(runs: impl IntoIterator<Item = &'a Run>) -> Vec<Offer<'a>> {
+    let offer = |run: &'a Run| match (run.refused.is_none(), run.ms(), run.rmse()) {
+        (true, Some(ms), Some(rmse)) if rmse > 0.0 => Some(Offer { run, ms, rmse }),
+        _ => None,
+    };
+    runs.into_iter().filter_map(offer).collect()
+}
+
+/// The Pareto front: ascending in time, descending in error. Of runs that are alike in both it has the first.
+pub fn front<'a>(offers: &[Offer<'a>]) -> Vec<Offer<'a>> {
+    let mut sorted = offers.to_vec();
+    sorted.sort_by(|a, b| a.ms.total_cmp(&b.ms).then(a.rmse.total_cmp(&b.rmse)));
+    let mut least = f64::INFINITY;
+    sorted.retain(|offer| {
+        let better = offer.rmse < least;
+        least = least.min(offer.rmse);
+        better
+    });
+    sorted
+}
+
+/// The nearest to the truth that takes no longer than `ms`; none if all take longer.
+pub fn within_time<'f, 'a>(front: &'f [Offer<'a>], ms: f64) -> Option<&'f Offer<'a>> {
+    front.iter().rev().find(|offer| offer.ms <= ms)
+}
+
+/// The fastest of an RMSE of at most `rmse`; none if all are further from the truth.
+pub fn within_error<'f, 'a>(front: &'f [Offer<'a>], rmse: f64) -> Option<&'f Offer<'a>> {
+    front.iter().find(|offer| offer.rmse <= rmse)
+}
+
+/// 1, 2 and 5 times powers of ten, from the first that the least value keeps to, to the first that all do.
+pub fn budgets(values: impl IntoIterator<Item = f64>) -> Vec<f64> {
+    let valid = values.into_iter().filter(|value| value.is_finite() && *value > 0.0);
+    let range = valid.fold(None, |range: Option<[f64; 2]>, value| {
+        let [min, max] = range.unwrap_or([value; 2]);
+        Some([min.min(value), max.max(value)])
+    });
+    let Some([min, max]) = range else { return Vec::new() };
+    let powers = min.log10().floor() as i32..=max.log10().ceil() as i32;
+    let round = |power: i32| [1, 2, 5].map(|factor| format!("{factor}e{power}").parse().unwrap_or(f64::NAN));
+    let mut budgets: Vec<f64> = powers.flat_map(round).filter(|budget| *budget >= min).collect();
+    let enough = budgets.iter().position(|budget| *budget >= max);
+    budgets.truncate(enough.map_or(budgets.len(), |last| last + 1));
+    budgets
+}
+
+#[cfg(test)]
+mod tests {
+    use super::budgets;
+
+    #[test]
+    fn budgets_are_round_and_cover_the_values() {
+        assert_eq!(budgets([42.0, 900.0]), [50.0, 100.0, 200.0, 500.0, 1000.0]);
+        assert_eq!(budgets([0.02]), [0.02]);
+        assert_eq!(budgets([0.021, 0.09]), [0.05, 0.1]);
+        assert_eq!(budgets([f64::NAN, 0.0, f64::INFINITY, -1.0]), []);
+    }
+}

@@ -1,0 +1,208 @@
+//! Results as flat rows, for spreadsheets and scripts. A cell without a value is empty; no rows at all have no header either.
+
+use super::record::{Agreement, Memory, Results, Run, Session, SweepPoint};
+use super::times::Statistics;
+use crate::error::{Error, Result};
+use crate::metrics::Metric;
+use std::collections::BTreeSet;
+
+/// A cell with the name of its column.
+type Cell = (String, String);
+
+/// A row a run: its session, what was run, how long it took, how far it is from the truth and from float64. Each metric has a column of
+/// its name, and each pass `pass:NAME`, with `:min` and `:max` beside it. `stale` tells whether the session was measured by other code
+/// than that of the digest `code`. Times are in ms, memory in bytes.
+///
+/// # Errors
+/// [`Error::Usage`] if the rows cannot be put together, which only a lack of memory can cause.
+pub fn runs(results: &Results, code: &str) -> Result<String> {
+    let all =
+        || results.sessions.iter().flat_map(|session| session.runs.iter().map(move |run| (session, run)));
+    let metrics = metrics(all().map(|(_, run)| run));
+    let mut passes: Vec<&str> = Vec::new();
+    for name in all().flat_map(|(_, run)| &run.time).flat_map(|time| &time.passes).map(|pass| &*pass.name) {
+        if !passes.contains(&name) {
+            passes.push(name);
+        }
+    }
+    let row = |(session, run): (&Session, &Run)| {
+        let mut row = made(session, code);
+        row.extend([what(run), time(run), error(run), memory(&run.memory)].into_iter().flatten());
+        row.extend(agreement(run.agreement.as_ref()));
+        row.extend(metrics.iter().map(|name| (name.clone(), number(run.metric(name)))));
+        row.extend(passes.iter().flat_map(|name| pass(run, name)));
+        row
+    };
+    text(all().map(row))
+}
+
+/// A row a point of a sweep: its session, the sweep, the point, how far it is from float64, and what is not as it should be.
+///
+/// # Errors
+/// As [`runs`].
+pub fn sweeps(results: &Results, code: &str) -> Result<String> {
+    let row = |session: &Session, (name, parameter): (&str, &str), point: &SweepPoint| {
+        let mut row = made(session, code);
+        let value = point.value.to_string();
+        row.extend(cells([("sweep", name.into()), ("parameter", parameter.into()), ("value", value)]));
+        row.extend(cells([
+            ("method", point.contender.method.clone()),
+            ("variant", point.contender.variant.clone()),
+            ("refused", point.refused.clone().unwrap_or_default()),
+        ]));
+        row.extend(agreement(Some(&point.agreement).filter(|_| point.refused.is_none())));
+        row.extend(cells([
+            ("non_finite", point.faults.non_finite.to_string()),
+            ("uncovered", point.faults.uncovered.to_string()),
+            ("overcovered", point.faults.overcovered.to_string()),
+            ("note", point.note.clone()),
+        ]));
+        row
+    };
+    text(results.sessions.iter().flat_map(|session| {
+        session.sweeps.iter().flat_map(move |sweep| {
+            sweep.points.iter().map(move |point| row(session, (&sweep.name, &sweep.parameter), point))
+        })
+    }))
+}
+
+fn cells<const N: usize>(cells: [(&str, String); N]) -> impl Iterator<Item = Cell> {
+    cells.map(|(name, value)| (name.to_owned(), value)).into_iter()
+}
+
+fn number(value: Option<f64>) -> String {
+    value.map(|value| value.to_string()).unwrap_or_default()
+}
+
+fn made(session: &Session, code: &str) -> Vec<Cell> {
+    let made = &session.made;
+    let device = made.device.as_ref();
+    cells([
+        ("stale", made.is_stale(code).to_string()),
+        ("version", made.version.clone()),
+        ("commit", made.commit.clone()),
+        ("code", made.code.clone()),
+        ("date", made.date.to_string()),
+        ("seconds", made.seconds.to_string()),
+        ("command", made.command.clone()),
+        ("suites", made.suites.join(" ")),
+        ("cpu", made.host.cpu.clone()),
+        ("cores", made.host.cores.to_string()),
+        ("host_memory", made.host.memory.to_string()),
+        ("system", made.host.system.clone()),
+        ("device", device.map(|gpu| gpu.name.clone()).unwrap_or_default()),
+        ("driver", device.map(|gpu| gpu.driver.clone()).unwrap_or_default()),
+        ("validated", device.map(|gpu| gpu.validated.to_string()).unwrap_or_default()),
+    ])
+    .collect()
+}
+
+fn what(run: &Run) -> Vec<Cell> {
+    let setting = &run.setting;
+    cells([
+        ("suite", run.suite.clone()),
+        ("figure", super::show::figure(run.figure).into()),
+        ("scene", run.scene.clone()),
+        ("points", run.points.to_string()),
+        ("width", run.size[0].to_string()),
+        ("height", run.size[1].to_string()),
+        ("method", run.contender.method.clone()),
+        ("variant", run.contender.variant.clone()),
+        ("cutoff", setting.cutoff.to_string()),
+        ("lowpass", setting.lowpass.to_string()),
+        ("widen", setting.widen.clone()),
+        ("epsilon", setting.epsilon.to_string()),
+        ("cull", setting.cull.clone()),
+        ("shading", setting.shading.clone()),
+        ("refused", run.refused.clone().unwrap_or_default()),
+        ("overlap", number(run.overlap)),
+        ("exhibit", run.exhibit.map(|index| index.to_string()).unwrap_or_default()),
+    ])
+    .collect()
+}
+
+fn time(run: &Run) -> Vec<Cell> {
+    let time = run.time.as_ref();
+    let mut row: Vec<Cell> = cells([
+        ("frames", time.map(|time| time.frames.to_string()).unwrap_or_default()),
+        ("warmup", time.map(|time| time.warmup.to_string()).unwrap_or_default()),
+    ])
+    .collect();
+    row.extend(spread("wall", time.map(|time| time.wall)));
+    row.extend(spread("device_time", time.and_then(|time| time.device)));
+    row.push(("multiple".into(), number(time.and_then(|time| time.multiple))));
+    row
+}
+
+/// Median, minimum and maximum.
+fn spread(name: &str, times: Option<Statistics>) -> [Cell; 3] {
+    [
+        (name.to_owned(), number(times.map(|times| times.median))),
+        (format!("{name}:min"), number(times.map(|times| times.min))),
+        (format!("{name}:max"), number(times.map(|times| times.max))),
+    ]
+}
+
+fn pass(run: &Run, name: &str) -> [Cell; 3] {
+    let times = run.time.as_ref().and_then(|time| time.passes.iter().find(|pass| pass.name == name));
+    spread(&format!("pass:{name}"), times.map(|pass| pass.ms))
+}
+
+fn error(run: &Run) -> Vec<Cell> {
+    let error = run.error.as_ref();
+    let terms = error.map(|error| error.terms);
+    cells([
+        ("truth_filter", error.map(|error| error.filter.clone()).unwrap_or_default()),
+        ("truth_rms", number(error.map(|error| error.truth_rms))),
+        ("term:silhouette", number(terms.map(|terms| terms.silhouette))),
+        ("term:inside", number(terms.map(|terms| terms.inside))),
+        ("term:hidden", number(terms.and_then(|terms| terms.hidden))),
+        ("term:precision", number(terms.and_then(|terms| terms.precision))),
+    ])
+    .collect()
+}
+
+fn memory(memory: &Memory) -> Vec<Cell> {
+    let Memory { scene, splats, targets } = memory;
+    let bytes = [("memory:scene", scene), ("memory:splats", splats), ("memory:targets", targets)];
+    cells(bytes.map(|(name, bytes)| (name, bytes.to_string()))).collect()
+}
+
+fn agreement(agreement: Option<&Agreement>) -> impl Iterator<Item = Cell> {
+    let text = |value: fn(&Agreement) -> String| agreement.map(value).unwrap_or_default();
+    cells([
+        ("f64:object", text(|a| a.object.to_string())),
+        ("f64:doubtful", text(|a| a.doubtful.to_string())),
+        ("f64:failed", text(|a| a.failed.to_string())),
+        ("f64:colour", text(|a| a.colour.to_string())),
+        ("f64:normal", text(|a| a.normal.to_string())),
+        ("f64:depth", text(|a| a.depth.to_string())),
+    ])
+}
+
+/// The names of all metrics that were taken, known ones first and in their order.
+pub(super) fn metrics<'a>(runs: impl Iterator<Item = &'a Run>) -> Vec<String> {
+    let taken: BTreeSet<&String> =
+        runs.filter_map(|run| run.error.as_ref()).flat_map(|error| error.metrics.keys()).collect();
+    let mut names: Vec<String> = taken.into_iter().cloned().collect();
+    let place =
+        |name: &str| Metric::ALL.iter().position(|metric| metric.name() == name).unwrap_or(usize::MAX);
+    names.sort_by_key(|name| place(name));
+    names
+}
+
+/// Rows that all have the same columns.
+fn text(rows: impl Iterator<Item = Vec<Cell>>) -> Result<String> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let failed = |cause: String| Error::Usage(format!("cannot put the results together as CSV: {cause}"));
+    for (index, row) in rows.enumerate() {
+        if index == 0 {
+            writer
+                .write_record(row.iter().map(|(name, _)| name))
+                .map_err(|error| failed(error.to_string()))?;
+        }
+        writer.write_record(row.iter().map(|(_, value)| value)).map_err(|error| failed(error.to_string()))?;
+    }
+    let bytes = writer.into_inner().map_err(|error| failed(error.to_string()))?;
+    String::from_utf8(bytes).map_err(|error| failed(error.to_string()))
+}

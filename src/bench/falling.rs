@@ -1,0 +1,104 @@
+//! Where error stops falling as points rise, and what is left there.
+
+use super::record::{Run, Terms};
+
+/// The error falls from one number of points to the next if the slope of its logarithm over theirs is below this: a fifth less with ten
+/// times the points.
+pub const SLOPE: f64 = -0.1;
+/// What is left is put down to a cause if that alone makes up so much of it; otherwise to where it is.
+pub const SHARE: f64 = 0.5;
+
+/// An error at a number of points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    /// Number of surfels.
+    pub points: u64,
+    /// RMSE against the truth.
+    pub rmse: f64,
+}
+
+/// How the error goes as points rise.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Fall {
+    /// Fewer than two numbers of points have an error.
+    Unknown,
+    /// It does not fall between any two.
+    Nowhere,
+    /// It falls up to the second and not beyond, though there are more.
+    Until([Step; 2]),
+    /// It falls up to the most there are.
+    Throughout([Step; 2]),
+}
+
+/// What is left, as a term of the error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Left {
+    /// The term, in words.
+    pub term: &'static str,
+    /// Its size, in the unit of the RMSE.
+    pub size: f64,
+}
+
+/// Runs of one kind as steps: ascending in points, the least error of each number.
+pub fn steps<'a>(runs: impl IntoIterator<Item = &'a Run>) -> Vec<Step> {
+    let step = |run: &Run| Some(Step { points: run.points, rmse: run.rmse().filter(|rmse| *rmse > 0.0)? });
+    let mut steps: Vec<Step> =
+        runs.into_iter().filter(|run| run.points > 0 && run.refused.is_none()).filter_map(step).collect();
+    steps.sort_by(|a, b| a.points.cmp(&b.points).then(a.rmse.total_cmp(&b.rmse)));
+    steps.dedup_by_key(|step| step.points);
+    steps
+}
+
+/// From the first step to the last between which and its forerunner the slope is below [`SLOPE`].
+pub fn fall(steps: &[Step]) -> Fall {
+    let [first, .., most] = steps else { return Fall::Unknown };
+    let slope = |[a, b]: [Step; 2]| (b.rmse / a.rmse).ln() / (b.points as f64 / a.points as f64).ln();
+    let falling = |pair: &&[Step]| slope([pair[0], pair[1]]) < SLOPE;
+    match steps.windows(2).rfind(falling).map(|pair| pair[1]) {
+        None => Fall::Nowhere,
+        Some(last) if last.points == most.points => Fall::Throughout([*first, last]),
+        Some(last) => Fall::Until([*first, last]),
+    }
+}
+
+/// The largest cause that makes up a [`SHARE`] of the error, else the larger of both places.
+pub fn left(run: &Run) -> Option<Left> {
+    let error = run.error.as_ref()?;
+    let rmse = run.rmse()?;
+    let Terms { silhouette, inside, hidden, precision } = error.terms;
+    let causes = [
+        ("what ε lets through", hidden),
+        ("float32's precision", precision),
+        ("the truth's own error", Some(error.truth_rms)),
+    ];
+    let sizes = causes.into_iter().filter_map(|(term, size)| Some(Left { term, size: size? }));
+    let largest = sizes.filter(|left| left.size >= SHARE * rmse).max_by(|a, b| a.size.total_cmp(&b.size));
+    let place = match silhouette > inside {
+        true => Left { term: "the silhouette", size: silhouette },
+        false => Left { term: "the texture", size: inside },
+    };
+    Some(largest.unwrap_or(place))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn steps(errors: &[f64]) -> Vec<Step> {
+        let step = |(i, rmse): (usize, &f64)| Step { points: 10u64.pow(4 + i as u32), rmse: *rmse };
+        errors.iter().enumerate().map(step).collect()
+    }
+
+    #[test]
+    fn a_fall_ends_where_the_slope_does() {
+        let throughout = steps(&[0.09, 0.05, 0.03]);
+        assert_eq!(fall(&throughout), Fall::Throughout([throughout[0], throughout[2]]));
+        let flat = steps(&[0.09, 0.05, 0.045, 0.046]);
+        assert_eq!(fall(&flat), Fall::Until([flat[0], flat[1]]));
+        // 10^-0.1 = 0.794: just above and just below the slope.
+        assert_eq!(fall(&steps(&[0.1, 0.080])), Fall::Nowhere);
+        assert!(matches!(fall(&steps(&[0.1, 0.079])), Fall::Throughout(_)));
+        assert_eq!(fall(&steps(&[0.1])), Fall::Unknown);
+        assert_eq!(fall(&[]), Fall::Unknown);
+    }
+}

@@ -1,0 +1,75 @@
+//! What is finer than pixels, with the low-pass off and on.
+
+use super::page::{Page, grouped, titled};
+use crate::bench::record::{Figure, Run, Session};
+use crate::bench::show;
+use maud::{Markup, html};
+use std::io;
+
+/// A table a scene, and what the filter does to the error.
+pub fn part(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
+    let runs = session.runs.iter().filter(|run| run.figure == Figure::Aliasing);
+    let groups = grouped(runs, |run| (&run.scene, run.size));
+    Ok((!groups.is_empty()).then(|| html! {
+        p {
+            "Texture far above what pixels can show. Without the low-pass filter each pixel shows whatever sample it meets; with it, their mean."
+        }
+        @for ((scene, size), runs) in &groups {
+            h3 { (titled(scene, *size)) }
+            (table(runs))
+            @for sentence in sentences(runs) { p { (sentence) } }
+        }
+    }))
+}
+
+fn table(runs: &[&Run]) -> Markup {
+    let differing = show::differing(runs.iter().copied());
+    let metrics = ["rmse", "flip", "ssim", "flicker"];
+    let taken: Vec<&str> =
+        metrics.into_iter().filter(|name| runs.iter().any(|run| run.metric(name).is_some())).collect();
+    let worst = runs.iter().filter_map(|run| run.rmse()).fold(0.0, f64::max);
+    html! {
+        div.scroll { table {
+            thead { tr {
+                th scope="col" { "contender" } th scope="col" { "settings" } th.number scope="col" { "points" }
+                @for name in &taken { th.number scope="col" { (name) } }
+                th.number scope="col" { "ms" } th scope="col" { "RMSE" }
+            } }
+            tbody { @for run in runs { tr {
+                td { (run.contender.label()) } td { (show::told(&run.setting, differing)) }
+                td.number { (show::count(run.points)) }
+                @for name in &taken {
+                    td.number { (run.metric(name).map(|value| show::significant(value, 3)).unwrap_or_default()) }
+                }
+                td.number { (run.ms().map(show::ms).unwrap_or_default()) }
+                td.bar { @if let Some(why) = &run.refused { (why) } @else if let Some(rmse) = run.rmse() {
+                    span style=(format!("width:{:.1}%", 100.0 * rmse / worst.max(f64::MIN_POSITIVE))) {}
+                } }
+            } } }
+        } }
+    }
+}
+
+/// How the error without filter stands to that with it, among runs that are alike otherwise.
+fn sentences(runs: &[&Run]) -> Vec<String> {
+    let alike = |run: &Run| (run.contender.label(), run.points, run.setting.cutoff.to_string());
+    let mut said = Vec::new();
+    for ((contender, points, _), group) in grouped(runs.iter().copied(), alike) {
+        let by_width = |a: &&&Run, b: &&&Run| a.setting.lowpass.total_cmp(&b.setting.lowpass);
+        let off = group.iter().filter(|run| run.setting.lowpass == 0.0).min_by(by_width);
+        let on = group.iter().filter(|run| run.setting.lowpass > 0.0).max_by(by_width);
+        let (Some(off), Some(on)) = (off, on) else { continue };
+        if let (Some(without), Some(with)) = (off.rmse(), on.rmse()) {
+            said.push(format!(
+                "{contender}, {} points: RMSE {} with the low-pass off, {} with H {} ({}): {} times as much without it.",
+                show::count(points),
+                show::significant(without, 3),
+                show::significant(with, 3),
+                on.setting.lowpass,
+                on.setting.widen,
+                show::significant(without / with.max(f64::MIN_POSITIVE), 2),
+            ));
+        }
+    }
+    said
+}

@@ -1,0 +1,124 @@
+//! The hard cases: float32 against float64.
+
+use super::page::Page;
+use super::plot::{Alarm, Bar, Line, Plot, Scale, Style};
+use crate::bench::record::{Agreement, Contender, Faults, Session, Sweep, SweepPoint};
+use crate::bench::show;
+use maud::{Markup, html};
+use std::io;
+
+/// What is compared: name, largest difference allowed, and where it is kept.
+type Quantity = (&'static str, f64, fn(&Agreement) -> f64);
+
+const QUANTITIES: [Quantity; 3] =
+    [("colour", 2e-4, |a| a.colour), ("normal", 2e-4, |a| a.normal), ("depth", 1e-5, |a| a.depth)];
+
+/// A plot a sweep, with what is not as it should be in words.
+pub fn part(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
+    let mut plots = Vec::new();
+    for sweep in session.sweeps.iter().filter(|sweep| !sweep.points.is_empty()) {
+        let words = words(sweep);
+        let drawn = if sweep.points.iter().any(|point| point.refused.is_none()) {
+            Some(page.plot(plot(sweep))?)
+        } else {
+            None
+        };
+        plots.push(html! { div {
+            @if let Some(plot) = &drawn { (plot) } @else { h3 { (title(sweep)) } }
+            p.caption { (sweep.about) }
+            @match words.is_empty() {
+                true => { p.fine { "No fault at any point, and no pixel that is wrong." } }
+                false => { ul.faults { @for (grave, text) in &words { li.grave[*grave] { (text) } } } }
+            }
+        } });
+    }
+    Ok((!plots.is_empty()).then(|| html! {
+        p {
+            "The largest difference from the float64 reference, outside the pixels that hang on a decision within rounding: colour and α "
+            "(absolute), normal (each coordinate), depth (relative). Dashed lines are the bars, 2·10⁻⁴ and 10⁻⁵. Crosses at the top mark "
+            "points with wrong pixels or faults, and those that were refused."
+        }
+        div.plots { @for plot in &plots { (plot) } }
+    }))
+}
+
+fn title(sweep: &Sweep) -> String {
+    let words = sweep.name.replace('-', " ");
+    let mut letters = words.chars();
+    letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
+}
+
+/// Colour by quantity, marker by contender.
+fn plot(sweep: &Sweep) -> Plot {
+    let contenders = contenders(sweep);
+    let mut lines = Vec::new();
+    for (index, contender) in contenders.iter().enumerate() {
+        for (number, (name, _, of)) in QUANTITIES.iter().enumerate() {
+            let own = sweep.points.iter().filter(|p| p.contender == **contender && p.refused.is_none());
+            let points = own.map(|point| [point.value, of(&point.agreement)]).collect();
+            let label = match contenders.len() {
+                1 => (*name).to_owned(),
+                _ => format!("{name}, {}", show::apart(contender, &contenders)),
+            };
+            let style = Style {
+                colour: number,
+                marker: number,
+                hollow: index % 2 == 1,
+                dashed: index > 0,
+                ..Style::default()
+            };
+            lines.push(Line::new(label, style, points));
+        }
+    }
+    let bars = vec![
+        Bar { y: 2e-4, label: "colour, normal: 2·10⁻⁴".into(), colour: None },
+        Bar { y: 1e-5, label: "depth: 10⁻⁵".into(), colour: None },
+    ];
+    let across = if sweep.logarithmic { Scale::Log } else { Scale::Linear };
+    let axes = [(sweep.parameter.as_str(), across), ("largest difference", Scale::Log)];
+    let alarm = |point: &SweepPoint| Alarm { x: point.value, grave: point.refused.is_none() };
+    let told = sweep.points.iter().filter(|point| is_grave(point) || point.refused.is_some());
+    let alarms = told.map(alarm).collect();
+    Plot::of(format!("hard-{}", sweep.name), title(sweep), axes, lines).with(bars, alarms)
+}
+
+fn contenders(sweep: &Sweep) -> Vec<&Contender> {
+    let mut contenders: Vec<&Contender> = Vec::new();
+    for point in &sweep.points {
+        if !contenders.contains(&&point.contender) {
+            contenders.push(&point.contender);
+        }
+    }
+    contenders
+}
+
+fn is_grave(point: &SweepPoint) -> bool {
+    point.refused.is_none() && (point.agreement.failed > 0 || !point.faults.is_none())
+}
+
+/// What is to be told of the points: whether it is a fault, and what.
+fn words(sweep: &Sweep) -> Vec<(bool, String)> {
+    let told = sweep.points.iter().filter_map(|point| {
+        let what = remarks(point);
+        let place = format!("{} at {}", point.contender.label(), show::significant(point.value, 6));
+        (!what.is_empty()).then(|| (is_grave(point), format!("{place}: {}", what.join(", "))))
+    });
+    told.collect()
+}
+
+fn remarks(point: &SweepPoint) -> Vec<String> {
+    if let Some(why) = &point.refused {
+        return vec![format!("refused, {why}")];
+    }
+    let Faults { non_finite, uncovered, overcovered } = point.faults;
+    let counts = [
+        (point.agreement.failed, "wrong"),
+        (non_finite, "NaN or infinite"),
+        (uncovered, "uncovered"),
+        (overcovered, "wrongly covered"),
+    ];
+    let some = counts.into_iter().filter(|(count, _)| *count > 0);
+    let mut remarks: Vec<String> = some.map(|(count, what)| format!("{count} px {what}")).collect();
+    remarks.extend(Some(point.note.clone()).filter(|note| !note.is_empty()));
+    remarks
+}

@@ -1,0 +1,111 @@
+//! The low-pass filter's price and gain.
+
+use super::page::{Page, grouped, titled};
+use super::plot::{Line, Plot, Scale, Style};
+use crate::bench::record::{Figure, Run, Session, Setting};
+use crate::bench::show;
+use maud::{Markup, html};
+use std::io;
+
+/// Error and time over the filter's variance, a line a cut-off and kind of widening, and what the shipped defaults cost.
+pub fn part(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
+    let measured = |run: &&Run| run.figure == Figure::Lowpass && run.refused.is_none();
+    let runs = session.runs.iter().filter(measured);
+    let mut groups = Vec::new();
+    for ((scene, size, points, contender), runs) in
+        grouped(runs, |run| (&run.scene, run.size, run.points, &run.contender))
+    {
+        let title = format!("{}, {} points", titled(scene, size), show::count(points));
+        let name = format!("lowpass-{}-{points}-{}", show::scene(scene), contender.label());
+        let error = lines(&runs, Run::rmse);
+        let time = lines(&runs, Run::ms);
+        let axes = |y| [("low-pass variance H, px²", Scale::Linear), (y, Scale::Linear)];
+        let mut plots = Vec::new();
+        for (what, y, lines) in
+            [("error", "RMSE, linear light", error), ("time", "time of a frame, ms", time)]
+        {
+            if !lines.is_empty() {
+                let plot = Plot::of(format!("{name}-{what}"), format!("{title}: {what}"), axes(y), lines);
+                plots.push(page.plot(plot)?);
+            }
+        }
+        groups.push(html! {
+            div.plots { @for plot in &plots { (plot) } }
+            p.caption { (contender.label()) ". " (sentence(&runs)) }
+        });
+    }
+    Ok((!groups.is_empty()).then(|| html! {
+        p {
+            "The attribute footprint is widened by H; at H = 0 by just enough that each splat owns a pixel centre. F is the kernel's "
+            "cut-off in σ. " em { "all" } ": all splats are widened; " em { "small" } ": only those that are small in the picture."
+        }
+        @for group in &groups { (group) }
+    }))
+}
+
+/// A line a cut-off and kind of widening: colour and marker by cut-off, dashes and hollow markers for all kinds but the first.
+fn lines(runs: &[&Run], of: impl Fn(&Run) -> Option<f64>) -> Vec<Line> {
+    let mut groups = grouped(runs.iter().copied(), |run| (run.setting.cutoff, &run.setting.widen));
+    groups.sort_by(|(a, _), (b, _)| a.1.cmp(b.1).then(a.0.total_cmp(&b.0)));
+    let mut cutoffs: Vec<f32> = groups.iter().map(|((cutoff, _), _)| *cutoff).collect();
+    cutoffs.sort_by(f32::total_cmp);
+    cutoffs.dedup();
+    let first = groups.first().map(|((_, widen), _)| (*widen).clone());
+    let line = |((cutoff, widen), mut runs): ((f32, &String), Vec<&Run>)| {
+        runs.sort_by(|a, b| a.setting.lowpass.total_cmp(&b.setting.lowpass));
+        let points = runs.iter().filter_map(|run| Some([f64::from(run.setting.lowpass), of(run)?])).collect();
+        let other = Some(widen) != first.as_ref();
+        let nth = Style::nth(cutoffs.iter().position(|known| *known == cutoff).unwrap_or(0));
+        Line::new(format!("F {cutoff}, {widen}"), Style { dashed: other, hollow: other, ..nth }, points)
+    };
+    groups.into_iter().map(line).filter(|line| !line.points.is_empty()).collect()
+}
+
+/// Which is best by error, which by time, and what the shipped defaults are against them.
+fn sentence(runs: &[&Run]) -> String {
+    let least = |of: fn(&Run) -> Option<f64>| {
+        let known = runs.iter().filter_map(|run| Some((*run, of(run)?)));
+        known.min_by(|a, b| a.1.total_cmp(&b.1))
+    };
+    let Some((best, rmse)) = least(Run::rmse) else { return "No error was measured.".into() };
+    let number = |value| show::significant(value, 3);
+    let mut text = format!("Least error: {} with RMSE {}{}", named(best), number(rmse), timed(best));
+    let fastest = least(Run::ms);
+    if let Some((run, _)) = fastest {
+        let error = run.rmse().map(|rmse| format!(" with RMSE {}", number(rmse))).unwrap_or_default();
+        text += &format!("; least time: {}{error}{}", named(run), timed(run));
+    }
+    let shipped = Setting::shipped();
+    let same = |run: &&&Run| {
+        let Setting { cutoff, lowpass, widen, .. } = &run.setting;
+        (*cutoff, *lowpass, widen) == (shipped.cutoff, shipped.lowpass, &shipped.widen)
+    };
+    let Some(own) = runs.iter().find(same) else {
+        return text + ". The shipped defaults are not among them.";
+    };
+    text += &format!(". The shipped defaults, {}", named(own));
+    if let Some(error) = own.rmse() {
+        text += &format!(", have RMSE {}, {} the least", number(error), more(error, rmse));
+    }
+    if let (Some(ms), Some((_, least))) = (own.ms(), fastest) {
+        text += &format!(", and take {} ms, {} the fastest", show::ms(ms), more(ms, least));
+    }
+    text + "."
+}
+
+fn named(run: &Run) -> String {
+    let Setting { cutoff, lowpass, widen, .. } = &run.setting;
+    format!("H {lowpass}, F {cutoff}, {widen}")
+}
+
+fn timed(run: &Run) -> String {
+    run.ms().map(|ms| format!(" in {} ms", show::ms(ms))).unwrap_or_default()
+}
+
+/// By how much `value` is above `least`.
+fn more(value: f64, least: f64) -> String {
+    match 100.0 * (value / least - 1.0) {
+        none if none < 0.05 => "as".into(),
+        percent => format!("{} % above", show::significant(percent, 2)),
+    }
+}

@@ -1,0 +1,52 @@
+//! Several sessions side by side, by multiples of the yardstick: the only times that can be compared.
+
+use super::page::titled;
+use crate::bench::record::{Figure, Results, Run, Session};
+use crate::bench::show;
+use maud::{Markup, html};
+
+/// What was rendered, and by whom.
+type Key<'a> = (&'a str, [u32; 2], u64, String, String);
+
+/// A table with a column a session; none of one session alone, or where they have nothing in common.
+pub fn section(results: &Results) -> Option<Markup> {
+    let sessions = &results.sessions;
+    let mut rows: Vec<Key<'_>> = Vec::new();
+    for key in sessions.iter().flat_map(|session| runs(session).map(key)) {
+        if !rows.contains(&key)
+            && sessions.iter().filter(|session| multiple(session, &key).is_some()).count() > 1
+        {
+            rows.push(key);
+        }
+    }
+    (!rows.is_empty()).then(|| html! {
+        p { "Medians as multiples of the yardstick on the same machine." }
+        div.scroll { table {
+            thead { tr {
+                th scope="col" { "scene" } th.number scope="col" { "points" } th scope="col" { "contender" }
+                @for session in sessions { th.number scope="col" { (show::machine(session)) } }
+            } }
+            tbody { @for row in &rows { tr {
+                @let (scene, size, points, contender, settings) = row;
+                td { (titled(scene, *size)) } td.number { (show::count(*points)) }
+                td { (contender) @if !settings.is_empty() { ", " (settings) } }
+                @for session in sessions {
+                    td.number { (multiple(session, row).map(show::multiple).unwrap_or_else(|| "–".into())) }
+                }
+            } } }
+        } }
+    })
+}
+
+fn runs(session: &Session) -> impl Iterator<Item = &Run> {
+    session.runs.iter().filter(|run| matches!(run.figure, Figure::Yardstick | Figure::Budget))
+}
+
+fn key(run: &Run) -> Key<'_> {
+    let settings = show::told(&run.setting, [true, true, true, true, true, false]);
+    (&run.scene, run.size, run.points, run.contender.label(), settings)
+}
+
+fn multiple(session: &Session, wanted: &Key<'_>) -> Option<f64> {
+    runs(session).filter(|run| key(run) == *wanted).find_map(|run| run.time.as_ref()?.multiple)
+}

@@ -1,0 +1,119 @@
+//! How each figure was made.
+
+use super::page::Page;
+use crate::bench::record::{Made, Run, Session};
+use crate::bench::show;
+use maud::{Markup, html};
+use std::collections::BTreeSet;
+use std::io;
+
+/// Command, machine and times of the passes.
+pub fn part(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
+    Ok(Some(html! {
+        (origin(session))
+        (passes(session))
+    }))
+}
+
+fn origin(session: &Session) -> Markup {
+    let made: &Made = &session.made;
+    let host = &made.host;
+    html! {
+        dl {
+            dt { "command" } dd { code { (made.command) } }
+            dt { "date" } dd { (made.date.strftime("%Y-%m-%d %H:%M UTC")) ", took " (show::significant(made.seconds, 3)) " s" }
+            dt { "program" } dd { "surfel " (made.version) ", commit " code { (show::commit(&made.commit)) } }
+            @if let Some(gpu) = &made.device {
+                dt { "device" } dd { (gpu.name) }
+                dt { "driver" } dd { (gpu.driver) @if gpu.validated { " (under the validation layers, which take time)" } }
+            } @else { dt { "device" } dd { "none: no Vulkan device was used" } }
+            dt { "processor" } dd { (host.cpu) ", " (host.cores) " logical cores, " (show::mib(host.memory)) " MiB of memory" }
+            dt { "system" } dd { (host.system) }
+            dt { "frames" } dd { (frames(&session.runs)) }
+            dt { "truth" } dd { (truth(&session.runs)) }
+        }
+    }
+}
+
+/// How many frames counted and how many warmed up, over all runs.
+fn frames(runs: &[Run]) -> String {
+    let counts = |of: fn(&crate::bench::record::Time) -> usize| {
+        let all: BTreeSet<usize> = runs.iter().filter_map(|run| run.time.as_ref()).map(of).collect();
+        match (all.first(), all.last()) {
+            (Some(least), Some(most)) if least < most => format!("{least} to {most}"),
+            (Some(same), _) => same.to_string(),
+            _ => "no".into(),
+        }
+    };
+    format!(
+        "{} a run after {} that warm up and do not count; times are the median, the least and the greatest of the wall clock as a \
+         caller waits for a frame, without reading it back",
+        counts(|time| time.frames),
+        counts(|time| time.warmup)
+    )
+}
+
+fn truth(runs: &[Run]) -> String {
+    let errors = || runs.iter().filter_map(|run| run.error.as_ref());
+    let filters: BTreeSet<&str> = errors().map(|error| error.filter.as_str()).collect();
+    let worst = errors().map(|error| error.truth_rms).fold(0.0, f64::max);
+    match filters.is_empty() {
+        true => "nothing was compared with the truth".into(),
+        false => format!(
+            "rays against the surface itself in float64, filtered by {}; its own standard error is at most {} (root mean square over a \
+             picture)",
+            filters.into_iter().map(filter).collect::<Vec<_>>().join(" and "),
+            show::significant(worst, 2)
+        ),
+    }
+}
+
+fn filter(name: &str) -> &str {
+    match name {
+        "gaussian" => "a Gaussian with a variance of 1 px²",
+        "box" => "the mean over each pixel",
+        other => other,
+    }
+}
+
+/// Median time of each pass, a row a run; only of runs that have passes.
+fn passes(session: &Session) -> Markup {
+    let timed: Vec<(&Run, _)> =
+        session.runs.iter().filter_map(|run| Some((run, run.time.as_ref()?))).collect();
+    let timed: Vec<_> = timed.into_iter().filter(|(_, time)| !time.passes.is_empty()).collect();
+    let mut names: Vec<&str> = Vec::new();
+    for pass in timed.iter().flat_map(|(_, time)| &time.passes) {
+        if !names.contains(&pass.name.as_str()) {
+            names.push(&pass.name);
+        }
+    }
+    html! { @if !timed.is_empty() {
+        details {
+            summary { "Times of the passes: " (timed.len()) " runs" }
+            p { "Median and range by the device's timestamps, ms. H is the low-pass variance in px², F the cut-off in σ." }
+            div.scroll { table.passes {
+                thead { tr {
+                    th scope="col" { "figure" } th scope="col" { "scene" } th.number scope="col" { "points" } th scope="col" { "size" }
+                    th scope="col" { "contender" } th scope="col" { "settings" }
+                    @for name in &names { th.number scope="col" { (name) } }
+                    th.number scope="col" { "device" } th.number scope="col" { "wall" }
+                } }
+                tbody { @for (run, time) in &timed { tr {
+                    td { (show::figure(run.figure)) } td { (show::scene(&run.scene)) }
+                    td.number { (show::count(run.points)) } td { (show::size(run.size)) }
+                    td { (run.contender.label()) } td { (show::told(&run.setting, [true, true, true, false, true, false])) }
+                    @for name in &names {
+                        @let pass = time.passes.iter().find(|pass| pass.name == *name);
+                        td.number { @if let Some(pass) = pass { (spread(pass.ms)) } }
+                    }
+                    td.number { @if let Some(device) = time.device { (spread(device)) } }
+                    td.number { (spread(time.wall)) }
+                } } }
+            } }
+        }
+    } }
+}
+
+fn spread(times: crate::bench::Statistics) -> Markup {
+    html! { (show::ms(times.median)) small { " " (show::ms(times.min)) "–" (show::ms(times.max)) } }
+}

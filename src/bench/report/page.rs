@@ -1,0 +1,191 @@
+//! The page's frame: head, banners, contents, and the sections that have something to show.
+
+use super::plot::{Plot, Style, draw};
+use super::{
+    aliasing, budget, glance, hard, lowpass, machines, made, pictures, points, scaling, terms, yardstick,
+};
+use crate::bench::record::{Contender, Results, Run, Session};
+use crate::bench::show;
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+use std::io;
+
+/// A page that is being built.
+pub struct Page<'a> {
+    /// What it shows.
+    pub results: &'a Results,
+    code: &'a str,
+    commit: &'a str,
+    /// Names and contents of the SVG files.
+    pub plots: Vec<(String, String)>,
+    /// In order of their first run, so that each looks the same everywhere.
+    contenders: Vec<&'a Contender>,
+}
+
+/// What a section shows of a session; none if the session has nothing for it.
+type Part = fn(&mut Page<'_>, &Session) -> io::Result<Option<Markup>>;
+
+/// A part of the page.
+struct Section {
+    id: &'static str,
+    title: &'static str,
+    part: Part,
+}
+
+const SECTIONS: [Section; 10] = [
+    Section { id: "glance", title: "At a glance", part: glance::part },
+    Section { id: "budget", title: "Time against error", part: budget::part },
+    Section { id: "points", title: "Error against points", part: points::part },
+    Section { id: "lowpass", title: "Low-pass", part: lowpass::part },
+    Section { id: "aliasing", title: "Aliasing", part: aliasing::part },
+    Section { id: "scaling", title: "Scaling", part: scaling::part },
+    Section { id: "yardstick", title: "Yardstick", part: yardstick::part },
+    Section { id: "hard", title: "Hard cases", part: hard::part },
+    Section { id: "pictures", title: "Pictures", part: pictures::part },
+    Section { id: "made", title: "How each figure was made", part: made::part },
+];
+
+impl<'a> Page<'a> {
+    /// Of results, seen by a program of that code and commit.
+    pub fn new(results: &'a Results, code: &'a str, commit: &'a str) -> Self {
+        let mut contenders: Vec<&Contender> = Vec::new();
+        let ran = |session: &'a Session| session.runs.iter().map(|run| &run.contender);
+        let swept = |session: &'a Session| session.sweeps.iter().flat_map(|sweep| &sweep.points);
+        let swept = |session| swept(session).map(|point| &point.contender);
+        for contender in results.sessions.iter().flat_map(|session| ran(session).chain(swept(session))) {
+            if !contenders.contains(&contender) {
+                contenders.push(contender);
+            }
+        }
+        Self { results, code, commit, plots: Vec::new(), contenders }
+    }
+
+    /// All of it, as HTML.
+    pub fn build(&mut self) -> io::Result<String> {
+        let mut sections = Vec::new();
+        for section in SECTIONS {
+            sections.extend(self.section(&section)?.map(|body| (section.id, section.title, body)));
+        }
+        sections.extend(machines::section(self.results).map(|body| ("machines", "Machines", body)));
+        sections.extend(terms::section(self.results).map(|body| ("terms", "Terms", body)));
+        let page = html! {
+            (DOCTYPE)
+            html lang="en" {
+                head {
+                    meta charset="utf-8";
+                    meta name="viewport" content="width=device-width, initial-scale=1";
+                    title { "surfel: speed against error" }
+                    style { (PreEscaped(include_str!("style.css"))) }
+                }
+                body {
+                    header { (self.head()) }
+                    (self.contents(&sections))
+                    main {
+                        @for (id, title, body) in &sections {
+                            section id=(id) { h2 { (title) } (body) }
+                        }
+                        @if sections.is_empty() { p { "Nothing has been measured yet: these results hold no run." } }
+                    }
+                }
+            }
+        };
+        Ok(page.into_string())
+    }
+
+    fn head(&self) -> Markup {
+        html! {
+            h1 { "surfel: speed against error" }
+            ul.sessions {
+                @for session in &self.results.sessions {
+                    li {
+                        strong { (show::machine(session)) } ", "
+                        (show::day(&session.made)) ", suites " (session.made.suites.join(", "))
+                        ", commit " code { (show::commit(&session.made.commit)) }
+                    }
+                }
+            }
+            @for session in &self.results.sessions {
+                @if let Some(stale) = self.stale(session) {
+                    p.stale role="alert" { strong { "Out of date. " } (stale) " Run " code { (session.made.command) } " again." }
+                }
+            }
+        }
+    }
+
+    fn contents(&self, sections: &[(&str, &str, Markup)]) -> Markup {
+        html! {
+            @if sections.len() > 1 {
+                nav aria-label="Contents" {
+                    @for (id, title, _) in sections { a href={ "#" (id) } { (title) } }
+                }
+            }
+        }
+    }
+
+    /// What all sessions have to show, each under its own name if there are several.
+    fn section(&mut self, section: &Section) -> io::Result<Option<Markup>> {
+        let several = self.results.sessions.len() > 1;
+        let mut parts = Vec::new();
+        for session in &self.results.sessions {
+            if let Some(part) = (section.part)(self, session)? {
+                parts.push(html! {
+                    @if several { h3.session { (show::machine(session)) ", " (show::day(&session.made)) } }
+                    @if let Some(stale) = self.stale(session) { p.stale { (stale) } }
+                    (part)
+                });
+            }
+        }
+        Ok((!parts.is_empty()).then(|| html! { @for part in &parts { (part) } }))
+    }
+
+    fn stale(&self, session: &Session) -> Option<String> {
+        show::stale(&session.made, self.code, self.commit)
+    }
+
+    /// How a contender's lines look.
+    pub fn style(&self, contender: &Contender) -> Style {
+        Style::nth(self.contenders.iter().position(|known| *known == contender).unwrap_or(0))
+    }
+
+    /// Draws a plot, keeps it for its file, and shows it.
+    pub fn plot(&mut self, mut plot: Plot) -> io::Result<Markup> {
+        plot.name = self.free(&slug(&plot.name));
+        let [file, inline] = draw(&plot)?;
+        self.plots.push((plot.name, file));
+        Ok(html! { figure.plot { (PreEscaped(inline)) } })
+    }
+
+    /// A name that no other plot has.
+    fn free(&self, name: &str) -> String {
+        let taken = |name: &String| self.plots.iter().any(|(other, _)| other == name);
+        let numbered = (2..).map(|number| format!("{name}-{number}"));
+        let free = std::iter::once(name.to_owned()).chain(numbered).find(|name| !taken(name));
+        free.unwrap_or_default()
+    }
+}
+
+/// Only what is safe in every file name and id.
+fn slug(name: &str) -> String {
+    let words = name.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
+    words.collect::<Vec<_>>().join("-").to_lowercase()
+}
+
+/// Runs by something that they have in common, in the order of their first.
+pub fn grouped<'r, K: PartialEq>(
+    runs: impl IntoIterator<Item = &'r Run>,
+    key: impl Fn(&'r Run) -> K,
+) -> Vec<(K, Vec<&'r Run>)> {
+    let mut groups: Vec<(K, Vec<&Run>)> = Vec::new();
+    for run in runs {
+        let key = key(run);
+        match groups.iter_mut().find(|(other, _)| *other == key) {
+            Some((_, group)) => group.push(run),
+            None => groups.push((key, vec![run])),
+        }
+    }
+    groups
+}
+
+/// A scene at a size, as a title.
+pub fn titled(scene: &str, size: [u32; 2]) -> String {
+    format!("{}, {}", show::scene(scene), show::size(size))
+}

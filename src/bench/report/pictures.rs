@@ -1,0 +1,46 @@
+//! Pictures beside the truth and the difference that is seen.
+
+use super::page::Page;
+use crate::bench::record::{Exhibit, Run, Session};
+use crate::bench::show;
+use maud::{Markup, html};
+use std::io;
+
+/// Truth, picture and FLIP's map in a row, with what was measured of them.
+pub fn part(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
+    let exhibits = &session.exhibits;
+    Ok((!exhibits.is_empty()).then(|| html! {
+        p {
+            "From left to right: the truth, the picture, and FLIP's map of the difference that a viewer sees who flips between them, from "
+            "black (none) through red to pale yellow (most)."
+        }
+        @for (index, exhibit) in exhibits.iter().enumerate() {
+            figure.exhibit {
+                div.row { @for (name, png) in pictures(exhibit) {
+                    img src={ "data:image/png;base64," (png) } alt={ (exhibit.title) ": " (name) };
+                } }
+                figcaption {
+                    strong { (exhibit.title) }
+                    @for run in session.runs.iter().filter(|run| run.exhibit == Some(index)) { ". " (caption(run)) }
+                }
+            }
+        }
+    }))
+}
+
+fn pictures(exhibit: &Exhibit) -> [(&'static str, &str); 3] {
+    [("the truth", &exhibit.truth), ("the picture", &exhibit.picture), ("FLIP's map", &exhibit.map)]
+}
+
+fn caption(run: &Run) -> String {
+    let mut words = vec![
+        run.contender.label(),
+        format!("{} points", show::count(run.points)),
+        show::told(&run.setting, [true, true, true, false, false, false]),
+    ];
+    let metrics = [("rmse", "RMSE"), ("flip", "FLIP"), ("iou", "IoU")];
+    let known = metrics.iter().filter_map(|(name, label)| Some((label, run.metric(name)?)));
+    words.extend(known.map(|(label, value)| format!("{label} {}", show::significant(value, 3))));
+    words.extend(run.ms().map(|ms| format!("{} ms", show::ms(ms))));
+    words.join(", ")
+}

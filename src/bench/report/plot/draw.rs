@@ -1,0 +1,242 @@
+//! How plots are drawn.
+
+use super::labels::{Area, Taken, width};
+use super::legend::{self, Legend};
+use super::style::{ALARM, GREY, GRID, INK};
+use super::{Axis, Bar, Kind, Line, Plot, Style, svg};
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+/// Coordinates are whole numbers: so many make a pixel.
+pub(super) const FINE: i32 = 4;
+/// Width, px.
+pub(super) const WIDTH: i32 = 540;
+/// Height of axes and their labels, px.
+const BODY: i32 = 340;
+/// Height of the title, px.
+const HEAD: i32 = 30;
+/// Sizes of fonts, px.
+pub(super) const FONT: f64 = 14.0;
+const SMALL: f64 = 12.5;
+const TITLE: f64 = 16.0;
+/// Left, right, above and below the axes, px.
+pub(super) const LEFT: i32 = 78;
+const RIGHT: i32 = 18;
+const ABOVE: i32 = 10;
+const BELOW: i32 = 50;
+/// Radius of a marker, px.
+const RADIUS: f64 = 4.2;
+
+pub(super) type Root<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
+type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<Axis, Axis>>;
+pub(super) type Drawn<T = ()> = Result<T, DrawingAreaErrorKind<std::io::Error>>;
+
+/// A plot as SVG: for a file of its own, and for a page.
+///
+/// # Errors
+/// The backend's, which writes to memory and so has none in practice.
+pub fn draw(plot: &Plot) -> std::io::Result<[String; 2]> {
+    let mut drawing = String::new();
+    let legend = legend::lay_out(plot);
+    let size = [WIDTH, HEAD + legend.height + BODY].map(|length| length as u32);
+    let fine = size.map(|length| length * FINE as u32);
+    paint(plot, &legend, SVGBackend::with_string(&mut drawing, fine.into()))
+        .map_err(|error| std::io::Error::other(error.to_string()))?;
+    Ok([svg::Use::File, svg::Use::Inline].map(|usage| svg::dress(plot, &drawing, size, FINE as u32, usage)))
+}
+
+fn paint(plot: &Plot, legend: &Legend, backend: SVGBackend<'_>) -> Drawn {
+    let root = backend.into_drawing_area();
+    root.fill(&WHITE)?;
+    let title = shorten(&plot.title, TITLE * 1.08, WIDTH - LEFT - RIGHT);
+    write(&root, &title, [LEFT, 5], &bold(font(TITLE, INK, HPos::Left, VPos::Top)))?;
+    legend::draw(&root, legend, HEAD)?;
+    let top = HEAD + legend.height;
+    let area = root.clone().shrink((0, top * FINE), (WIDTH * FINE, BODY * FINE));
+    let mut chart = axes(plot, &area)?;
+    names(&root, plot, top)?;
+    let mut taken = Taken::default();
+    for bar in &plot.bars {
+        limit(&mut chart, &root, bar)?;
+    }
+    for kind in [Kind::Band, Kind::Faint, Kind::Joined, Kind::Loose] {
+        for line in plot.lines.iter().filter(|line| line.style.kind == kind) {
+            join(&mut chart, line)?;
+            for (x, y) in known(line).map(|point| chart.backend_coord(&point)) {
+                mark(&root, [x, y], &line.style)?;
+                let reach = (RADIUS * 1.2) as i32 * FINE;
+                taken.take([x - reach, y - reach, x + reach, y + reach]);
+            }
+        }
+    }
+    let within = [LEFT, top + ABOVE, WIDTH - RIGHT, top + BODY - BELOW].map(|length| length * FINE);
+    notes(&chart, &root, plot, &mut taken, within)?;
+    alarms(&chart, &root, plot, within)?;
+    root.present()
+}
+
+/// Grid, axes and their ticks.
+fn axes<'a, 'b>(plot: &Plot, area: &'a Root<'b>) -> Drawn<Chart<'a, 'b>> {
+    let mut chart = ChartBuilder::on(area)
+        .margin_top(ABOVE * FINE)
+        .margin_right(RIGHT * FINE)
+        .x_label_area_size(BELOW * FINE)
+        .y_label_area_size(LEFT * FINE)
+        .build_cartesian_2d(plot.x.clone(), plot.y.clone())?;
+    let [bold, light] = GRID.map(|colour| colour.stroke_width(FINE as u32));
+    chart
+        .configure_mesh()
+        .bold_line_style(bold)
+        .light_line_style(light)
+        .axis_style(GREY.stroke_width(FINE as u32))
+        .label_style(font(FONT, INK, HPos::Center, VPos::Center))
+        .set_all_tick_mark_size(4 * FINE)
+        .draw()?;
+    Ok(chart)
+}
+
+/// What the axes show.
+fn names(root: &Root<'_>, plot: &Plot, top: i32) -> Drawn {
+    let across = [LEFT + (WIDTH - LEFT - RIGHT) / 2, top + BODY - 6];
+    write(root, &plot.x.label, across, &font(FONT, INK, HPos::Center, VPos::Bottom))?;
+    let mut style = font(FONT, INK, HPos::Center, VPos::Top);
+    style.font = style.font.transform(FontTransform::Rotate270);
+    let middle = top + ABOVE + (BODY - ABOVE - BELOW) / 2;
+    write(root, &plot.y.label, [2, middle], &style)
+}
+
+/// A text style. `size` is what the reader sees: the backend divides by 1.24.
+pub(super) fn font(size: f64, colour: RGBColor, across: HPos, up: VPos) -> TextStyle<'static> {
+    let font = FontDesc::new(FontFamily::SansSerif, size * 1.24 * f64::from(FINE), FontStyle::Normal);
+    font.color(&colour).pos(Pos::new(across, up))
+}
+
+fn bold(mut style: TextStyle<'static>) -> TextStyle<'static> {
+    style.font = style.font.style(FontStyle::Bold);
+    style
+}
+
+/// At a place in px.
+pub(super) fn write(root: &Root<'_>, text: &str, [x, y]: [i32; 2], style: &TextStyle<'_>) -> Drawn {
+    root.draw_text(text, style, (x * FINE, y * FINE))
+}
+
+/// As much of a text as is about so wide, px.
+pub(super) fn shorten(text: &str, size: f64, most: i32) -> String {
+    let mut short = text.to_owned();
+    while width(&short, size) > most && short.pop().is_some() {}
+    match short.len() < text.len() {
+        true => short.trim_end().to_owned() + "…",
+        false => short,
+    }
+}
+
+/// The points that are somewhere.
+fn known(line: &Line) -> impl Iterator<Item = (f64, f64)> + Clone + '_ {
+    line.points.iter().filter(|point| point.iter().all(|value| !value.is_nan())).map(|&[x, y]| (x, y))
+}
+
+fn join(chart: &mut Chart<'_, '_>, line: &Line) -> Drawn {
+    let colour = line.style.rgb();
+    let fine = FINE as u32;
+    match (line.style.kind, line.style.dashed) {
+        (Kind::Faint | Kind::Loose, _) => Ok(()),
+        (Kind::Band, _) => {
+            let style = GREY.mix(0.28).stroke_width(9 * fine);
+            chart.draw_series(LineSeries::new(known(line), style)).map(drop)
+        }
+        (Kind::Joined, false) => {
+            chart.draw_series(LineSeries::new(known(line), colour.stroke_width(2 * fine))).map(drop)
+        }
+        (Kind::Joined, true) => {
+            let style = colour.stroke_width(2 * fine);
+            chart.draw_series(DashedLineSeries::new(known(line), 6 * FINE, 4 * FINE, style)).map(drop)
+        }
+    }
+}
+
+/// A marker at a place in fine px, with a pale rim that parts it from what is below.
+pub(super) fn mark(root: &Root<'_>, [x, y]: [i32; 2], style: &Style) -> Drawn {
+    let shape = |radius: f64, colour: RGBAColor| {
+        let size = radius * f64::from(FINE);
+        let corner = |(dx, dy): (f64, f64)| (x + (dx * size).round() as i32, y + (dy * size).round() as i32);
+        Polygon::new(style.outline().into_iter().map(corner).collect::<Vec<_>>(), colour.filled())
+    };
+    match style.kind {
+        Kind::Band => Ok(()),
+        Kind::Faint => root.draw(&shape(0.7 * RADIUS, style.rgb().mix(0.4))),
+        Kind::Joined | Kind::Loose => {
+            root.draw(&shape(1.3 * RADIUS, WHITE.mix(1.0)))?;
+            root.draw(&shape(RADIUS, style.rgb().mix(1.0)))?;
+            match style.hollow {
+                true => root.draw(&shape(0.55 * RADIUS, WHITE.mix(1.0))),
+                false => Ok(()),
+            }
+        }
+    }
+}
+
+/// A dashed line across, with its label at the right end above it.
+fn limit(chart: &mut Chart<'_, '_>, root: &Root<'_>, bar: &Bar) -> Drawn {
+    let ends = chart.x_range();
+    let colour = bar.colour.map_or(GREY, |colour| Style::nth(colour).rgb());
+    let style = colour.stroke_width(FINE as u32 * 3 / 2);
+    let points = [(ends.start, bar.y), (ends.end, bar.y)];
+    chart.draw_series(DashedLineSeries::new(points, 3 * FINE, 3 * FINE, style))?;
+    let (x, y) = chart.backend_coord(&points[1]);
+    let style = font(SMALL, colour, HPos::Right, VPos::Bottom);
+    root.draw_text(&bar.label, &style, (x - 4 * FINE, y - FINE))
+}
+
+/// Beside points, where there is room.
+fn notes(chart: &Chart<'_, '_>, root: &Root<'_>, plot: &Plot, taken: &mut Taken, within: Area) -> Drawn {
+    for line in &plot.lines {
+        for (point, note) in line.points.iter().zip(&line.notes) {
+            if note.is_empty() || point.iter().any(|value| value.is_nan()) {
+                continue;
+            }
+            let at = chart.backend_coord(&(point[0], point[1]));
+            let size = [width(note, SMALL) * FINE, SMALL as i32 * FINE];
+            if let Some([left, top, ..]) = taken.first_free(beside(at, size), within) {
+                let style = font(SMALL, INK, HPos::Left, VPos::Top);
+                root.draw_text(note, &style, (left, top))?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Where a text may stand beside a point.
+fn beside((x, y): (i32, i32), [wide, high]: [i32; 2]) -> [Area; 6] {
+    let gap = 7 * FINE;
+    let at = |left: i32, top: i32| [left, top, left + wide, top + high];
+    [
+        at(x + gap, y - gap - high / 2),
+        at(x - gap - wide, y + gap - high / 2),
+        at(x - wide / 2, y - gap - high),
+        at(x - wide / 2, y + gap),
+        at(x + gap, y + gap - high / 2),
+        at(x - gap - wide, y - gap - high / 2),
+    ]
+}
+
+/// Crosses on the upper edge.
+fn alarms(chart: &Chart<'_, '_>, root: &Root<'_>, plot: &Plot, within: Area) -> Drawn {
+    let y = within[1] + 5 * FINE;
+    for alarm in plot.alarms.iter().filter(|alarm| !alarm.x.is_nan()) {
+        let (x, _) = chart.backend_coord(&(alarm.x, chart.y_range().end));
+        cross(root, [x, y], alarm.grave)?;
+    }
+    Ok(())
+}
+
+/// A cross at a place in fine px.
+pub(super) fn cross(root: &Root<'_>, [x, y]: [i32; 2], grave: bool) -> Drawn {
+    let arm = 4 * FINE;
+    let colour = if grave { ALARM } else { GREY };
+    for slope in [-arm, arm] {
+        let ends = [(x - arm, y - slope), (x + arm, y + slope)];
+        root.draw(&PathElement::new(ends, colour.stroke_width(2 * FINE as u32)))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,78 @@
+//! Where texts may stand, by how wide they are about to be: an SVG's reader chooses the font.
+
+/// A rectangle, px: left, top, right, bottom.
+pub type Area = [i32; 4];
+
+/// Mean width of a character over the size of the font, on the wide side.
+const CHARACTER: f64 = 0.56;
+
+/// About how wide a text is.
+pub fn width(text: &str, font: f64) -> i32 {
+    let wide = |c: char| match c {
+        'i' | 'l' | 'j' | 'f' | 't' | '.' | ',' | ' ' | '(' | ')' | '|' => 0.35,
+        '⁰'..='₉' | '¹' | '²' | '³' => 0.4,
+        'm' | 'M' | 'W' | 'w' => 0.9,
+        _ => CHARACTER,
+    };
+    (text.chars().map(wide).sum::<f64>() * font).ceil() as i32
+}
+
+/// Places that are taken.
+#[derive(Debug, Default)]
+pub struct Taken(Vec<Area>);
+
+impl Taken {
+    /// Takes a place, whatever is there.
+    pub fn take(&mut self, area: Area) {
+        self.0.push(area);
+    }
+
+    /// Takes the first place that is free and inside `within`, and tells which.
+    pub fn first_free(&mut self, places: impl IntoIterator<Item = Area>, within: Area) -> Option<Area> {
+        let inside =
+            |a: &Area| a[0] >= within[0] && a[1] >= within[1] && a[2] <= within[2] && a[3] <= within[3];
+        let apart = |a: &Area, b: &Area| a[2] <= b[0] || b[2] <= a[0] || a[3] <= b[1] || b[3] <= a[1];
+        let free = places.into_iter().find(|a| inside(a) && self.0.iter().all(|b| apart(a, b)))?;
+        self.0.push(free);
+        Some(free)
+    }
+}
+
+/// Rows of entries that are at most `most` wide: index of the row and left edge of each, and the number of rows.
+pub fn rows(widths: &[i32], gap: i32, most: i32) -> (Vec<(i32, i32)>, i32) {
+    let (mut row, mut left) = (0, 0);
+    let mut places = Vec::new();
+    for &width in widths {
+        if left > 0 && left + width > most {
+            (row, left) = (row + 1, 0);
+        }
+        places.push((row, left));
+        left += width + gap;
+    }
+    let count = if widths.is_empty() { 0 } else { row + 1 };
+    (places, count)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn labels_do_not_collide() {
+        let within = [0, 0, 100, 100];
+        let mut taken = Taken::default();
+        taken.take([40, 40, 60, 60]);
+        let places = [[50, 50, 70, 60], [60, 40, 80, 50], [0, 0, 5, 5]];
+        assert_eq!(taken.first_free(places, within), Some(places[1]));
+        assert_eq!(taken.first_free(places, within), Some(places[2]));
+        assert_eq!(taken.first_free([[90, 0, 101, 5]], within), None);
+    }
+
+    #[test]
+    fn a_legend_breaks_where_it_is_too_wide() {
+        let (places, count) = rows(&[40, 40, 40], 10, 95);
+        assert_eq!((places, count), (vec![(0, 0), (0, 50), (1, 0)], 2));
+        assert_eq!(rows(&[], 10, 95).1, 0);
+        assert_eq!(rows(&[200], 10, 95), (vec![(0, 0)], 1));
+    }
+}

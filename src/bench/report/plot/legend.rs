@@ -1,0 +1,82 @@
+//! The legend, in rows between title and axes, so that it covers no data.
+
+use super::draw::{Drawn, FINE, FONT, LEFT, Root, WIDTH, cross, font, mark, shorten, write};
+use super::labels::{rows, width};
+use super::style::{GREY, INK};
+use super::{Kind, Plot, Style};
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, VPos};
+
+/// Height of a row, px.
+const ROW: i32 = 20;
+/// Width of a sample of a line, px.
+const SAMPLE: i32 = 28;
+/// Between entries, px.
+const GAP: i32 = 18;
+
+/// Entries and their places.
+pub struct Legend {
+    entries: Vec<Entry>,
+    /// Row, and distance from the left of the axes, px.
+    places: Vec<(i32, i32)>,
+    /// Height of all rows, px.
+    pub height: i32,
+}
+
+struct Entry {
+    label: String,
+    /// A line's look; for alarms, whether they are grave.
+    look: Result<Style, bool>,
+}
+
+/// Of the lines that have labels. One line alone has no need of a legend.
+pub fn lay_out(plot: &Plot) -> Legend {
+    let most = WIDTH - LEFT - 10;
+    let short = |label: &str| shorten(label, FONT, most - SAMPLE);
+    let labelled = plot.lines.iter().filter(|line| !line.label.is_empty());
+    let mut entries: Vec<Entry> =
+        labelled.map(|line| Entry { label: short(&line.label), look: Ok(line.style) }).collect();
+    for (grave, label) in [(true, "fault"), (false, "refused")] {
+        if plot.alarms.iter().any(|alarm| alarm.grave == grave) {
+            entries.push(Entry { label: label.into(), look: Err(grave) });
+        }
+    }
+    if entries.len() == 1 {
+        entries.clear();
+    }
+    let widths: Vec<i32> = entries.iter().map(|entry| SAMPLE + width(&entry.label, FONT)).collect();
+    let (places, count) = rows(&widths, GAP, most);
+    Legend { entries, places, height: count * ROW }
+}
+
+/// With its upper edge at `top` px.
+pub fn draw(root: &Root<'_>, legend: &Legend, top: i32) -> Drawn {
+    for (entry, (row, left)) in legend.entries.iter().zip(&legend.places) {
+        let (x, y) = (LEFT + left, top + row * ROW + ROW / 2);
+        sample(root, entry.look, [x, y])?;
+        write(root, &entry.label, [x + SAMPLE, y], &font(FONT, INK, HPos::Left, VPos::Center))?;
+    }
+    Ok(())
+}
+
+fn sample(root: &Root<'_>, look: Result<Style, bool>, [x, y]: [i32; 2]) -> Drawn {
+    let [left, right, y] = [x, x + SAMPLE - 7, y].map(|length| length * FINE);
+    let fine = FINE as u32;
+    let line = |ends: [i32; 2], style: ShapeStyle| root.draw(&PathElement::new(ends.map(|x| (x, y)), style));
+    let middle = (left + right) / 2;
+    let style = match look {
+        Ok(style) => style,
+        Err(grave) => return cross(root, [middle, y], grave),
+    };
+    match (style.kind, style.dashed) {
+        (Kind::Band, _) => line([left, right], GREY.mix(0.28).stroke_width(9 * fine))?,
+        (Kind::Faint | Kind::Loose, _) => {}
+        (Kind::Joined, false) => line([left, right], style.rgb().stroke_width(2 * fine))?,
+        (Kind::Joined, true) => {
+            for start in [left, right - 6 * FINE] {
+                line([start, start + 6 * FINE], style.rgb().stroke_width(2 * fine))?;
+            }
+        }
+    }
+    mark(root, [middle, y], &style)
+}

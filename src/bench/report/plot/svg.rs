@@ -1,0 +1,35 @@
+//! An SVG beside the page, and the same within it.
+
+use super::Plot;
+
+/// How a drawing is used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Use {
+    /// A file of its own: with the namespace, and a size.
+    File,
+    /// Part of an HTML page, which knows the namespace and scales it to its width.
+    Inline,
+}
+
+/// With a head that suits its use, a title and a description. `drawing` is `size` px times `scale`.
+pub fn dress(plot: &Plot, drawing: &str, size: [u32; 2], scale: u32, usage: Use) -> String {
+    let body = drawing.split_once('>').map_or("", |(_, body)| body);
+    let [width, height] = size;
+    let [wide, high] = size.map(|length| length * scale);
+    let place = match usage {
+        Use::File => {
+            format!(r#" xmlns="http://www.w3.org/2000/svg" width="{width}" height="{height}""#)
+        }
+        Use::Inline => String::new(),
+    };
+    let (name, title, about) = (escape(&plot.name), escape(&plot.title), escape(&plot.about));
+    format!(
+        "<svg{place} viewBox=\"0 0 {wide} {high}\" role=\"img\" aria-labelledby=\"{name}-title {name}-about\">\n\
+         <title id=\"{name}-title\">{title}</title>\n<desc id=\"{name}-about\">{about}</desc>{body}"
+    )
+}
+
+/// Text as XML has it.
+fn escape(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
+}

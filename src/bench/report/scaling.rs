@@ -1,0 +1,112 @@
+//! Time against the number of points, the picture's size and the number of splats that cover a pixel.
+
+use super::page::{Page, grouped};
+use super::plot::{Line, Plot, Scale, Style};
+use crate::bench::record::{Figure, Run, Session};
+use crate::bench::show;
+use maud::{Markup, html};
+use std::io;
+
+/// What a figure is over.
+struct Over {
+    figure: Figure,
+    name: &'static str,
+    title: &'static str,
+    axis: &'static str,
+    of: fn(&Run) -> Option<f64>,
+}
+
+const FIGURES: [Over; 3] = [
+    Over {
+        figure: Figure::ScalingPoints,
+        name: "points",
+        title: "number of points",
+        axis: "points",
+        of: |run| Some(run.points as f64),
+    },
+    Over {
+        figure: Figure::ScalingSize,
+        name: "size",
+        title: "size of the picture",
+        axis: "size of the picture, px",
+        of: |run| Some(f64::from(run.size[0]) * f64::from(run.size[1])),
+    },
+    Over {
+        figure: Figure::ScalingOverlap,
+        name: "overlap",
+        title: "overlap",
+        axis: "splats that cover a pixel, mean",
+        of: |run| run.overlap,
+    },
+];
+
+/// A plot a figure and scene, with how fast time grows at its end.
+pub fn part(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
+    let mut plots = Vec::new();
+    for over in &FIGURES {
+        let runs = session.runs.iter().filter(|run| run.figure == over.figure && run.refused.is_none());
+        for (scene, runs) in grouped(runs, |run| &run.scene) {
+            let lines = lines(page, &runs, over);
+            if lines.is_empty() {
+                continue;
+            }
+            let (growth, fixed) = (growth(&lines), fixed(&runs, over));
+            let title = format!("Time over {}: {}", over.title, show::scene(scene));
+            let name = format!("scaling-{}-{}", over.name, show::scene(scene));
+            let axes = [(over.axis, Scale::Log), ("time of a frame, ms", Scale::Log)];
+            let plot = page.plot(Plot::of(name, title, axes, lines))?;
+            plots.push(html! { div { (plot) p.caption { (fixed) " " (growth) } } });
+        }
+    }
+    Ok((!plots.is_empty()).then(|| {
+        html! {
+            p { "Straight lines are power laws; what grows in proportion has exponent 1." }
+            div.plots { @for plot in &plots { (plot) } }
+        }
+    }))
+}
+
+fn lines(page: &Page<'_>, runs: &[&Run], over: &Over) -> Vec<Line> {
+    let mut lines: Vec<Line> = Vec::new();
+    let settings = show::differing(runs.iter().copied());
+    for ((contender, setting), runs) in
+        grouped(runs.iter().copied(), |run| (&run.contender, show::told(&run.setting, settings)))
+    {
+        let mut points: Vec<_> = runs.iter().filter_map(|run| Some([(over.of)(run)?, run.ms()?])).collect();
+        points.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        let base = page.style(contender);
+        let alike = lines.iter().filter(|line| line.style.colour == base.colour).count();
+        let style = Style { marker: base.marker + alike, hollow: alike > 0, dashed: alike > 0, ..base };
+        let label =
+            if setting.is_empty() { contender.label() } else { format!("{}: {setting}", contender.label()) };
+        if !points.is_empty() {
+            lines.push(Line::new(label, style, points));
+        }
+    }
+    lines
+}
+
+/// What all runs have in common beside the scene.
+fn fixed(runs: &[&Run], over: &Over) -> String {
+    let (first, mut words) = (runs[0], Vec::new());
+    if over.figure != Figure::ScalingPoints && runs.iter().all(|run| run.points == first.points) {
+        words.push(format!("{} points", show::count(first.points)));
+    }
+    if over.figure != Figure::ScalingSize && runs.iter().all(|run| run.size == first.size) {
+        words.push(format!("{} px", show::size(first.size)));
+    }
+    if words.is_empty() { String::new() } else { words.join(", ") + "." }
+}
+
+/// Each line's exponent between its last two points.
+fn growth(lines: &[Line]) -> String {
+    let exponent = |line: &Line| {
+        let [.., [x0, y0], [x1, y1]] = line.points.as_slice() else { return None };
+        Some((y1 / y0).ln() / (x1 / x0).ln()).filter(|exponent| exponent.is_finite())
+    };
+    let told = lines.iter().filter_map(|line| Some(format!("{} {:.2}", line.label, exponent(line)?)));
+    match told.collect::<Vec<_>>().join(", ") {
+        none if none.is_empty() => String::new(),
+        list => format!("Exponents between the last two points: {list}."),
+    }
+}

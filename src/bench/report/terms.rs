@@ -1,0 +1,98 @@
+//! What the page's words mean.
+
+use crate::bench::csv::metrics;
+use crate::bench::record::Results;
+use crate::metrics::Metric;
+use maud::{Markup, html};
+
+/// Terms, and the metrics that were taken; none of no sessions.
+pub fn section(results: &Results) -> Option<Markup> {
+    (!results.sessions.is_empty()).then(|| html! { (terms()) (definitions(results)) })
+}
+
+fn terms() -> Markup {
+    let terms = [
+        (
+            "RMSE",
+            "root mean square difference from the truth over all pixels and channels, linear light, white is 1",
+        ),
+        (
+            "silhouette",
+            "the part of the RMSE in pixels that the truth or the picture covers in part, or one of both not at all",
+        ),
+        (
+            "texture",
+            "the part in pixels that both cover wholly, as far as samples and filter lose it; silhouette² + texture² = RMSE²",
+        ),
+        (
+            "hidden surfels (ε)",
+            "by how much the surfels that the surface itself hides change the picture: what ε lets through, and what visibility misses",
+        ),
+        (
+            "precision",
+            "by how much rounding to float32 changes the picture: its difference from the float64 reference",
+        ),
+        (
+            "truth's own error",
+            "root mean square of the truth's standard error, estimated on the careful side",
+        ),
+        ("overlap", "splats that cover a pixel of the object, on average"),
+        (
+            "vs f64",
+            "largest difference of linear colour and α from the float64 reference outside the pixels in doubt",
+        ),
+        (
+            "× yardstick",
+            "median wall time over that of a plain native renderer for the same scene, size and settings in the same session",
+        ),
+    ];
+    html! { dl { @for (term, meaning) in terms { dt { (term) } dd { (meaning) } } } }
+}
+
+/// What the metrics that were taken mean.
+fn definitions(results: &Results) -> Markup {
+    let names = metrics(results.sessions.iter().flat_map(|session| &session.runs));
+    html! { @if !names.is_empty() {
+        h3 { "Metrics" }
+        dl { @for name in &names {
+            @let metric = Metric::named(name);
+            dt { (name) @if let Some(unit) = metric.map(Metric::unit).filter(|unit| !unit.is_empty()) { ", " (unit) } }
+            dd { (meaning(name)) }
+        } }
+    } }
+}
+
+fn meaning(name: &str) -> &str {
+    match name {
+        "rmse" => "root mean square difference of linear colours over black; 0 is best",
+        "rmse-srgb" => "the same of sRGB-encoded colours",
+        "psnr" => "RMSE as peak signal-to-noise ratio: −20 log₁₀ RMSE; more is better",
+        "psnr-srgb" => "the same of sRGB-encoded colours",
+        "ssim" => {
+            "structural similarity of sRGB luma (Wang, Bovik, Sheikh, Simoncelli 2004), 11×11 Gaussian window; 1 is best"
+        }
+        "flip" => {
+            "mean of the difference that is seen when flipping between both (Andersson et al. 2020); 0 is best"
+        }
+        "flip-max" => "the largest value of that map",
+        "iou" => "intersection over union of the silhouettes, where α is ½ or more; 1 is best",
+        "holes" => "pixels that the truth covers and the picture does not",
+        "hole-regions" => "connected regions of holes",
+        "largest-hole" => "the largest of them",
+        "bloat" => "pixels that the picture covers and the truth does not",
+        "bloat-regions" => "connected regions of bloat",
+        "largest-bloat" => "the largest of them",
+        "normal-median" => "median angle between normals, where both cover",
+        "normal-mean" => "their mean",
+        "normal-p95" => "their 95th percentile",
+        "normal-max" => "the largest",
+        "depth-rms" => "root mean square difference of depths over the object's size",
+        "depth-p99" => "their 99th percentile",
+        "depth-max" => "the largest",
+        name if name.starts_with("flicker") => {
+            "error that comes and goes over a slow camera path: its standard deviation as noise in time, by second differences \
+             (Gasser, Sroka, Jennen-Steinmetz 1986)"
+        }
+        _ => "see the library's metrics",
+    }
+}

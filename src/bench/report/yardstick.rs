@@ -1,0 +1,47 @@
+//! Multiples of what a plain program on the CPU takes.
+
+use super::page::{Page, grouped, titled};
+use crate::bench::record::{Figure, Run, Session};
+use crate::bench::show;
+use maud::{Markup, html};
+use std::io;
+
+/// A table: what was rendered, by whom, how long it took, and how often the yardstick fits into that.
+pub fn part(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
+    let runs: Vec<&Run> = session.runs.iter().filter(|run| run.figure == Figure::Yardstick).collect();
+    if runs.is_empty() {
+        return Ok(None);
+    }
+    let differing = show::differing(runs.iter().copied());
+    let groups = grouped(runs, |run| (&run.scene, run.size, run.points));
+    Ok(Some(html! {
+        p {
+            "The yardstick is a plain native renderer: float32, points in Morton order, every core, no Vulkan. Its own rows are 1×. "
+            "Multiples travel from machine to machine where milliseconds do not."
+        }
+        div.scroll { table {
+            thead { tr {
+                th scope="col" { "contender" } th scope="col" { "settings" } th.number scope="col" { "median, ms" }
+                th.number scope="col" { "range, ms" } th.number scope="col" { "× yardstick" }
+            } }
+            @for ((scene, size, points), runs) in &groups { tbody {
+                tr.group { th colspan="5" scope="rowgroup" { (titled(scene, *size)) ", " (show::count(*points)) " points" } }
+                @for run in runs { (row(run, differing)) }
+            } }
+        } }
+    }))
+}
+
+fn row(run: &Run, differing: [bool; 6]) -> Markup {
+    let time = run.time.as_ref();
+    html! { tr {
+        td { (run.contender.label()) }
+        td { (show::told(&run.setting, differing)) }
+        @if let Some(why) = &run.refused { td colspan="3" { "refused: " (why) } }
+        @else if let Some(time) = time {
+            td.number { (show::ms(time.wall.median)) }
+            td.number { (show::ms(time.wall.min)) "–" (show::ms(time.wall.max)) }
+            td.number { (time.multiple.map(show::multiple).unwrap_or_default()) }
+        } @else { td colspan="3" { "not timed" } }
+    } }
+}

@@ -1,0 +1,172 @@
+//! Numbers and names as people read them.
+
+use super::record::{Contender, Figure, Made, Memory, Run, Session, Setting};
+
+/// With `digits` significant ones at most, and no zeros behind them; in powers of ten where it would be long.
+pub fn significant(value: f64, digits: usize) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return if value.is_infinite() { sign(value) + "∞" } else { value.to_string() };
+    }
+    let rounded: f64 = format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value);
+    match rounded.abs() {
+        size if (1e-4..1e6).contains(&size) => sign(rounded) + &rounded.abs().to_string(),
+        _ => scientific(rounded),
+    }
+}
+
+fn sign(value: f64) -> String {
+    if value < 0.0 { "−".into() } else { String::new() }
+}
+
+/// As a factor and a power of ten; the factor is left out if it is 1.
+pub fn scientific(value: f64) -> String {
+    let text = format!("{:e}", value.abs());
+    let (factor, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+    let factor = if factor == "1" { String::new() } else { format!("{factor}·") };
+    format!("{}{factor}10{}", sign(value), superscript(exponent))
+}
+
+/// A whole number, raised.
+fn superscript(number: &str) -> String {
+    let raise = |c: char| match c {
+        '-' => '⁻',
+        '1' => '¹',
+        '2' => '²',
+        '3' => '³',
+        digit => digit.to_digit(10).and_then(|d| char::from_u32(0x2070 + d)).unwrap_or(digit),
+    };
+    number.chars().map(raise).collect()
+}
+
+/// A number of points: `500`, `20 k`, `1.5 M`.
+pub fn count(points: u64) -> String {
+    let value = points as f64;
+    match points {
+        0..=9_999 => points.to_string(),
+        10_000..=999_499 => format!("{} k", significant(value * 1e-3, 3)),
+        _ => format!("{} M", significant(value * 1e-6, 3)),
+    }
+}
+
+/// Milliseconds without their unit.
+pub fn ms(value: f64) -> String {
+    significant(value, 3)
+}
+
+/// A multiple of the yardstick.
+pub fn multiple(value: f64) -> String {
+    format!("{}×", significant(value, 2))
+}
+
+/// Bytes as MiB, without the unit.
+pub fn mib(bytes: u64) -> String {
+    significant(bytes as f64 / f64::from(1 << 20), 3)
+}
+
+/// All of it.
+pub fn total(memory: Memory) -> u64 {
+    memory.scene.saturating_add(memory.splats).saturating_add(memory.targets)
+}
+
+/// Width and height.
+pub fn size([width, height]: [u32; 2]) -> String {
+    format!("{width}×{height}")
+}
+
+/// A scene without what all scenes have in front.
+pub fn scene(name: &str) -> &str {
+    name.strip_prefix("scene:").unwrap_or(name)
+}
+
+/// A figure as it is called on the command line and in files.
+pub fn figure(figure: Figure) -> &'static str {
+    match figure {
+        Figure::Budget => "budget",
+        Figure::Lowpass => "lowpass",
+        Figure::Aliasing => "aliasing",
+        Figure::ScalingPoints => "scaling-points",
+        Figure::ScalingSize => "scaling-size",
+        Figure::ScalingOverlap => "scaling-overlap",
+        Figure::Yardstick => "yardstick",
+    }
+}
+
+/// What tells a contender from the others: its variant if all are of one method.
+pub fn apart(contender: &Contender, all: &[&Contender]) -> String {
+    let one = all.iter().all(|other| other.method == contender.method);
+    if one && !contender.variant.is_empty() { contender.variant.clone() } else { contender.label() }
+}
+
+/// What a session ran on.
+pub fn machine(session: &Session) -> String {
+    let made = &session.made;
+    let host = format!("{}, {} cores", made.host.cpu, made.host.cores);
+    match &made.device {
+        Some(gpu) => format!("{} ({host})", gpu.name),
+        None => host,
+    }
+}
+
+/// A day, in UTC.
+pub fn day(made: &Made) -> String {
+    made.date.strftime("%Y-%m-%d").to_string()
+}
+
+/// A commit as it is commonly shortened.
+pub fn commit(commit: &str) -> String {
+    match commit.trim_end_matches('+') {
+        "" => "unknown".into(),
+        hash => {
+            let changed = if commit.ends_with('+') { " (with changes)" } else { "" };
+            hash.chars().take(10).collect::<String>() + changed
+        }
+    }
+}
+
+/// Why a session cannot stand for the present program: none if its code is the present one.
+pub fn stale(made: &Made, code: &str, now: &str) -> Option<String> {
+    made.is_stale(code).then(|| {
+        let (then, now) = (commit(&made.commit), commit(now));
+        format!("Measured by commit {then} on {}; the code has changed since (now {now}).", day(made))
+    })
+}
+
+/// Each setting with its value.
+pub fn settings(setting: &Setting) -> [String; 6] {
+    let Setting { cutoff, lowpass, widen, epsilon, cull, shading } = setting;
+    [
+        format!("H {lowpass}"),
+        format!("F {cutoff}"),
+        format!("widen {widen}"),
+        format!("ε {epsilon}"),
+        format!("cull {cull}"),
+        shading.clone(),
+    ]
+}
+
+/// The settings in which `runs` differ from each other.
+pub fn differing<'a>(runs: impl IntoIterator<Item = &'a Run>) -> [bool; 6] {
+    let all: Vec<_> = runs.into_iter().map(|run| settings(&run.setting)).collect();
+    std::array::from_fn(|i| all.iter().any(|one| one[i] != all[0][i]))
+}
+
+/// The settings that `which` asks for.
+pub fn told(setting: &Setting, which: [bool; 6]) -> String {
+    let chosen = settings(setting).into_iter().zip(which).filter(|(_, asked)| *asked);
+    chosen.map(|(text, _)| text).collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_short() {
+        let cases = [(0.0, "0"), (0.020_49, "0.0205"), (140.23, "140"), (1e-7, "10⁻⁷"), (-2.5e8, "−2.5·10⁸")];
+        for (value, text) in cases {
+            assert_eq!(significant(value, 3), text);
+        }
+        assert_eq!(significant(f64::NEG_INFINITY, 3), "−∞");
+        assert_eq!([500, 10_000, 1_500_000, 999_999].map(count), ["500", "10 k", "1.5 M", "1 M"]);
+    }
+}

@@ -1,0 +1,216 @@
+//! Results on a terminal: a line a run, a line a sweep.
+
+use super::record::{Agreement, Results, Run, Session, Sweep};
+use super::show;
+use std::fmt::Write;
+
+/// Columns of a terminal that lines fit into.
+pub const WIDTH: usize = 160;
+
+/// Columns of a table, with what they are aligned by.
+const HEADERS: [(&str, Align); 15] = [
+    ("points", Align::Right),
+    ("size px", Align::Right),
+    ("contender", Align::Left),
+    ("settings", Align::Left),
+    ("wall ms (min–max)", Align::Left),
+    ("× yard", Align::Right),
+    ("RMSE", Align::Left),
+    ("FLIP", Align::Left),
+    ("PSNR dB", Align::Right),
+    ("IoU", Align::Left),
+    ("holes px", Align::Right),
+    ("bloat px", Align::Right),
+    ("n p95 °", Align::Right),
+    ("vs f64", Align::Left),
+    ("MiB", Align::Right),
+];
+/// Columns whose text may be cut: contender and settings.
+const CUTTABLE: [usize; 2] = [2, 3];
+
+#[derive(Clone, Copy)]
+enum Align {
+    Left,
+    Right,
+}
+
+/// All sessions, each with its groups of runs by suite, figure and scene, and its sweeps. A session that was measured by other code than
+/// that of the digest `code` says so; `commit` is the present one.
+pub fn table(results: &Results, code: &str, commit: &str) -> String {
+    let mut text = String::new();
+    for session in &results.sessions {
+        // Here and below: writing to a String cannot fail.
+        let _ = writeln!(text, "{} · surfel {}", show::machine(session), session.made.version);
+        if let Some(stale) = show::stale(&session.made, code, commit) {
+            let _ = writeln!(text, "STALE: {stale}");
+        }
+        for group in groups(&session.runs) {
+            let run = group[0];
+            let common = common(&group);
+            let _ = write!(text, "\n{} · {} · {}", run.suite, show::figure(run.figure), run.scene);
+            for (_, told) in &common {
+                let _ = write!(text, " · {told}");
+            }
+            text.push('\n');
+            text += &lines(&group, &common);
+        }
+        text += &sweeps(session);
+        text.push('\n');
+    }
+    text
+}
+
+/// Runs of one suite, figure and scene, in the order of their first.
+fn groups(runs: &[Run]) -> Vec<Vec<&Run>> {
+    let alike = |a: &Run, b: &Run| (&a.suite, a.figure, &a.scene) == (&b.suite, b.figure, &b.scene);
+    let mut groups: Vec<Vec<&Run>> = Vec::new();
+    for run in runs {
+        match groups.iter_mut().find(|group| alike(group[0], run)) {
+            Some(group) => group.push(run),
+            None => groups.push(vec![run]),
+        }
+    }
+    groups
+}
+
+/// A column, and what a run has there in words.
+type Common = (usize, fn(&Run) -> String);
+
+/// Columns in which all runs are the same, and what they say: told once.
+fn common(runs: &[&Run]) -> Vec<(usize, String)> {
+    let told: [Common; 3] = [
+        (0, |run| format!("{} points", show::count(run.points))),
+        (1, |run| format!("{} px", show::size(run.size))),
+        (2, |run| run.contender.label()),
+    ];
+    let same = |(_, of): &Common| runs.len() > 1 && runs.iter().all(|run| of(run) == of(runs[0]));
+    told.into_iter().filter(same).map(|(column, of)| (column, of(runs[0]))).collect()
+}
+
+/// Aligned, without the columns that have nothing to tell or are in `common`.
+fn lines(runs: &[&Run], common: &[(usize, String)]) -> String {
+    let differing = show::differing(runs.iter().copied());
+    let mut rows: Vec<Vec<String>> = vec![HEADERS.map(|(name, _)| name.to_owned()).to_vec()];
+    rows.extend(runs.iter().map(|run| cells(run, differing)));
+    let untold = |column: &usize| common.iter().all(|(other, _)| other != column);
+    let told: Vec<usize> = (0..HEADERS.len())
+        .filter(|&i| rows[1..].iter().any(|row| !row[i].is_empty()))
+        .filter(untold)
+        .collect();
+    let widths = widths(&rows, &told);
+    let refusals = std::iter::once(None).chain(runs.iter().map(|run| run.refused.as_ref()));
+    let mut text = String::new();
+    for (row, refused) in rows.iter().zip(refusals) {
+        let columns = told.iter().zip(&widths);
+        let cells = columns.map(|(&column, &width)| aligned(&row[column], width, HEADERS[column].1));
+        let _ = writeln!(text, "{}", cells.collect::<Vec<_>>().join("  ").trim_end());
+        if let Some(why) = refused {
+            let _ = writeln!(text, "    refused: {why}");
+        }
+    }
+    text
+}
+
+/// What each column takes, together at most [`WIDTH`].
+fn widths(rows: &[Vec<String>], told: &[usize]) -> Vec<usize> {
+    let widest = |&column: &usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+    let mut widths: Vec<usize> = told.iter().map(widest).collect();
+    let total = widths.iter().map(|width| width + 2).sum::<usize>();
+    let mut excess = total.saturating_sub(WIDTH + 2);
+    while excess > 0 {
+        let cuttable = (0..told.len()).filter(|&i| CUTTABLE.contains(&told[i]) && widths[i] > 8);
+        let Some(widest) = cuttable.max_by_key(|&i| widths[i]) else { break };
+        widths[widest] -= 1;
+        excess -= 1;
+    }
+    widths
+}
+
+fn cells(run: &Run, differing: [bool; 6]) -> Vec<String> {
+    let metric = |name, digits| run.metric(name).map(|v| show::significant(v, digits)).unwrap_or_default();
+    let wall = |run: &Run| {
+        let wall = run.time.as_ref()?.wall;
+        Some(format!("{} ({}–{})", show::ms(wall.median), show::ms(wall.min), show::ms(wall.max)))
+    };
+    let multiple = run.time.as_ref().and_then(|time| time.multiple).map(show::multiple);
+    let memory = show::total(run.memory);
+    let start = [
+        show::count(run.points),
+        show::size(run.size),
+        run.contender.label(),
+        show::told(&run.setting, differing),
+    ];
+    let rest = [
+        wall(run).unwrap_or_default(),
+        multiple.unwrap_or_default(),
+        metric("rmse", 3),
+        metric("flip", 3),
+        metric("psnr", 3),
+        metric("iou", 4),
+        metric("holes", 6),
+        metric("bloat", 6),
+        metric("normal-p95", 3),
+        run.agreement.as_ref().map(agreement).unwrap_or_default(),
+        if memory == 0 { String::new() } else { show::mib(memory) },
+    ];
+    start.into_iter().chain(rest).collect()
+}
+
+/// The largest difference of colours, and how many pixels are wrong if any are.
+fn agreement(agreement: &Agreement) -> String {
+    let colour = format!("{:.0e}", agreement.colour);
+    match agreement.failed {
+        0 => colour,
+        failed => format!("{colour} ({failed} px wrong)"),
+    }
+}
+
+fn sweeps(session: &Session) -> String {
+    let mut text = String::new();
+    if !session.sweeps.is_empty() {
+        text += "\nhard cases: float32 against float64, worst of all points\n";
+    }
+    let longest = session.sweeps.iter().map(|sweep| sweep.name.chars().count()).max().unwrap_or(0);
+    for sweep in &session.sweeps {
+        let _ = writeln!(text, "{}", cut(&sweep_line(sweep, longest), WIDTH));
+    }
+    text
+}
+
+fn sweep_line(sweep: &Sweep, longest: usize) -> String {
+    let made = || sweep.points.iter().filter(|point| point.refused.is_none());
+    let worst = |of: fn(&Agreement) -> f64| {
+        // Not `f64::max`, which hides NaN.
+        let larger = |a: f64, b: f64| if b.is_nan() || b > a { b } else { a };
+        made().map(|point| of(&point.agreement)).fold(0.0, larger)
+    };
+    let [colour, normal, depth] = [worst(|a| a.colour), worst(|a| a.normal), worst(|a| a.depth)];
+    let failed: u64 = made().map(|point| point.agreement.failed).sum();
+    let faults = made().map(|point| point.faults);
+    let [non_finite, uncovered, overcovered] = faults.fold([0; 3], |sum, faults| {
+        [sum[0] + faults.non_finite, sum[1] + faults.uncovered, sum[2] + faults.overcovered]
+    });
+    let name = aligned(&sweep.name, longest, Align::Left);
+    let refused = sweep.points.len() - made().count();
+    format!(
+        "{name}  {:>3} points  colour {colour:.0e}  normal {normal:.0e}  depth {depth:.0e}  {failed} px wrong, \
+         {non_finite} not finite, {uncovered} uncovered, {overcovered} overcovered, {refused} points refused",
+        sweep.points.len()
+    )
+}
+
+fn aligned(text: &str, width: usize, align: Align) -> String {
+    let text = cut(text, width);
+    match align {
+        Align::Left => format!("{text:<width$}"),
+        Align::Right => format!("{text:>width$}"),
+    }
+}
+
+/// At most `width` characters, the last an ellipsis if some are missing.
+fn cut(text: &str, width: usize) -> String {
+    match text.chars().count() <= width {
+        true => text.to_owned(),
+        false => text.chars().take(width.saturating_sub(1)).chain(['…']).collect(),
+    }
+}

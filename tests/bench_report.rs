@@ -1,0 +1,320 @@
+//! What the bench shows: advice, table, CSV and page, of results as they could have been measured.
+
+#[path = "support/results.rs"]
+mod results;
+
+use results::*;
+use std::collections::BTreeMap;
+use surfel::bench::advice::{Advice, front, offers, within_error, within_time};
+use surfel::bench::record::*;
+use surfel::bench::{Results, csv, report, table};
+
+const NOW: &str = "aaaaaaaaaaaa";
+
+/// The page and the plots.
+fn files(results: &Results, code: &str) -> BTreeMap<String, String> {
+    let folder = tempfile::tempdir().unwrap();
+    let paths = report::write(results, code, NOW, &folder.path().join("new/report")).unwrap();
+    assert_eq!(paths[0].file_name().unwrap(), "index.html");
+    let name = |path: &std::path::PathBuf| path.file_name().unwrap().to_str().unwrap().to_owned();
+    let files: BTreeMap<_, _> =
+        paths.iter().map(|path| (name(path), std::fs::read_to_string(path).unwrap())).collect();
+    assert_eq!(files.len(), paths.len(), "two plots of one name");
+    files
+}
+
+fn page(results: &Results, code: &str) -> String {
+    files(results, code).remove("index.html").unwrap()
+}
+
+/// HTML whose elements are all closed is XML but for those that have no end tag.
+fn as_xml(page: &str) -> String {
+    let mut xml = page.replacen("<!DOCTYPE html>", "", 1);
+    for void in ["<meta ", "<img "] {
+        let mut from = 0;
+        while let Some(start) = xml[from..].find(void).map(|at| from + at) {
+            let end = start + xml[start..].find('>').unwrap();
+            xml.insert(end, '/');
+            from = end;
+        }
+    }
+    xml
+}
+
+/// Strictly parsed: the page loads nothing, and every coordinate in it and in the plots is a number.
+fn check(results: &Results) {
+    let files = files(results, CODE);
+    for (name, text) in &files {
+        let xml = if name.ends_with(".html") { as_xml(text) } else { text.clone() };
+        let document =
+            roxmltree::Document::parse(&xml).unwrap_or_else(|error| panic!("{name}: {error}\n{xml}"));
+        let mut ids = Vec::new();
+        for node in document.descendants().filter(|node| node.is_element()) {
+            for attribute in node.attributes() {
+                check_attribute(name, attribute.name(), attribute.value());
+                if attribute.name() == "id" {
+                    ids.push(attribute.value().to_owned());
+                }
+            }
+        }
+        let count = ids.len();
+        ids.sort();
+        ids.dedup();
+        assert_eq!(ids.len(), count, "{name} has an id twice");
+    }
+    let page = &files["index.html"];
+    for foreign in ["http:", "https:", "url(", "@import", "<script", "<link", "NaN"] {
+        assert!(!page.contains(foreign), "the page has {foreign}");
+    }
+}
+
+fn check_attribute(file: &str, name: &str, value: &str) {
+    match name {
+        "href" => assert!(value.starts_with('#'), "{file}: {value}"),
+        "src" => assert!(value.starts_with("data:image/png;base64,"), "{file}: {value}"),
+        "x" | "y" | "x1" | "x2" | "y1" | "y2" | "cx" | "cy" | "r" | "width" | "height" => {
+            let number: f64 = value.parse().unwrap_or_else(|_| panic!("{file}: {name}={value}"));
+            assert!(number.is_finite() && number.abs() < 1e4, "{file}: {name}={value}");
+        }
+        "points" => {
+            for number in value.split([' ', ',']).filter(|text| !text.is_empty()) {
+                let number: f64 = number.parse().unwrap_or_else(|_| panic!("{file}: {value}"));
+                assert!(number.is_finite() && number.abs() < 1e4, "{file}: {value}");
+            }
+        }
+        _ => {}
+    }
+}
+
+#[test]
+fn the_best_run_within_a_budget_is_on_the_front() {
+    let of = |points, ms, rmse| run(Figure::Budget, "scene:a", points, ms, rmse);
+    let mut refused = of(9, 1.0, 0.001);
+    refused.refused = Some("no".into());
+    let mut untimed = of(8, 1.0, 0.001);
+    untimed.time = None;
+    let [nan, infinite, exact] = [of(7, f64::NAN, 0.001), of(6, f64::INFINITY, 0.001), of(5, 1.0, 0.0)];
+    // Dominated: by the first in both, by the second in time alone, by the third in error alone.
+    let runs = [
+        of(1, 10.0, 0.09),
+        of(2, 30.0, 0.04),
+        of(3, 80.0, 0.02),
+        of(11, 11.0, 0.095),
+        of(12, 31.0, 0.04),
+        of(13, 80.0, 0.021),
+        refused,
+        untimed,
+        nan,
+        infinite,
+        exact,
+    ];
+    let front = front(&offers(&runs));
+    assert_eq!(front.iter().map(|offer| offer.run.points).collect::<Vec<_>>(), [1, 2, 3]);
+    let points = |offer: Option<&surfel::bench::advice::Offer>| offer.map(|offer| offer.run.points);
+    let by_time = [9.0, 10.0, 29.0, 30.0, 79.0, 1e9].map(|ms| points(within_time(&front, ms)));
+    assert_eq!(by_time, [None, Some(1), Some(1), Some(2), Some(2), Some(3)]);
+    let by_error = [0.019, 0.02, 0.039, 0.04, 0.5].map(|rmse| points(within_error(&front, rmse)));
+    assert_eq!(by_error, [None, Some(3), Some(3), Some(2), Some(1)]);
+}
+
+#[test]
+fn advice_is_by_scene_and_size_and_of_budget_runs_alone() {
+    let mut session = session();
+    session.runs = vec![
+        run(Figure::Budget, "scene:a", 1, 42.0, 0.03),
+        run(Figure::Budget, "scene:b", 2, 300.0, 0.008),
+        // Better than both, but measured for something else.
+        run(Figure::Lowpass, "scene:a", 3, 1.0, 0.001),
+    ];
+    session.runs.push(Run { size: [64, 64], ..run(Figure::Budget, "scene:a", 4, 7.0, 0.04) });
+    let advice = Advice::of(&session).unwrap();
+    let columns: Vec<_> =
+        advice.columns.iter().map(|column| (column.scene, column.size[0], column.front.len())).collect();
+    assert_eq!(columns, [("scene:a", 512, 1), ("scene:b", 512, 1), ("scene:a", 64, 1)]);
+    assert_eq!(advice.times, [10.0, 20.0, 50.0, 100.0, 200.0, 500.0]);
+    assert_eq!(advice.errors, [0.01, 0.02, 0.05]);
+    session.runs.clear();
+    assert_eq!(Advice::of(&session), None);
+}
+
+#[test]
+fn the_page_is_whole_and_loads_nothing() {
+    check(&plausible());
+    let files = files(&plausible(), CODE);
+    for plot in ["time-error-torus-512-512.svg", "scaling-points-bumpy-sphere.svg", "hard-offset.svg"] {
+        assert!(files.contains_key(plot), "{plot} is not in {:?}", files.keys());
+        let title = files[plot].split_once("<title").unwrap().1.split_once("</title>").unwrap().0;
+        assert!(files["index.html"].contains(title));
+    }
+    for section in [
+        "glance",
+        "budget",
+        "points",
+        "lowpass",
+        "aliasing",
+        "scaling",
+        "yardstick",
+        "hard",
+        "pictures",
+        "made",
+    ] {
+        assert!(files["index.html"].contains(&format!("<section id=\"{section}\">")), "no {section}");
+    }
+}
+
+#[test]
+fn a_section_without_data_is_not_there() {
+    let mut results = plausible();
+    results.sessions[0].runs.retain(|run| run.figure == Figure::Yardstick);
+    results.sessions[0].sweeps.clear();
+    results.sessions[0].exhibits.clear();
+    let page = page(&results, CODE);
+    for section in ["yardstick", "made", "terms"] {
+        assert!(page.contains(&format!("<section id=\"{section}\">")));
+    }
+    assert_eq!(page.matches("<section").count(), 3);
+    check(&results);
+    check(&empty());
+    assert!(self::page(&empty(), CODE).contains("Nothing has been measured"));
+}
+
+#[test]
+fn numbers_that_cannot_be_drawn_do_no_harm() {
+    let hard = [0.0, -0.0, -3.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e-300, 1e300, f64::MAX, 0.02];
+    let mut results = plausible();
+    let session = &mut results.sessions[0];
+    for (i, run) in session.runs.iter_mut().enumerate() {
+        let value = hard[i % hard.len()];
+        if let Some(time) = &mut run.time {
+            (time.wall.median, time.multiple) = (hard[(i / 3) % hard.len()], Some(value));
+        }
+        if let Some(error) = &mut run.error {
+            error.metrics.insert("rmse".into(), value);
+            error.truth_rms = value;
+            error.terms = Terms { silhouette: value, hidden: Some(value), ..error.terms };
+        }
+        run.overlap = Some(value);
+        run.setting.lowpass = hard[(i / 2) % hard.len()] as f32;
+        run.points *= (i % 7) as u64;
+    }
+    for (i, point) in session.sweeps.iter_mut().flat_map(|sweep| &mut sweep.points).enumerate() {
+        point.value = hard[(i / 2) % hard.len()];
+        point.agreement.colour = hard[i % hard.len()];
+    }
+    let folder = tempfile::tempdir().unwrap();
+    for path in report::write(&results, CODE, NOW, folder.path()).unwrap() {
+        let text = std::fs::read_to_string(&path).unwrap();
+        let name = path.file_name().unwrap().to_str().unwrap();
+        let xml = if name.ends_with(".html") { as_xml(&text) } else { text };
+        for node in roxmltree::Document::parse(&xml).unwrap().descendants() {
+            node.attributes()
+                .for_each(|attribute| check_attribute(name, attribute.name(), attribute.value()));
+        }
+    }
+    table(&results, CODE, NOW);
+    csv::runs(&results, CODE).unwrap();
+}
+
+#[test]
+fn one_point_or_equal_values_have_a_plot() {
+    let mut results = plausible();
+    results.sessions[0].runs = vec![run(Figure::Budget, "scene:a", 10_000, 100.0, 0.05)];
+    check(&results);
+    let again = results.sessions[0].runs[0].clone();
+    results.sessions[0].runs.push(again);
+    check(&results);
+}
+
+#[test]
+fn stale_results_say_so_everywhere_and_fresh_ones_nowhere() {
+    let results = plausible();
+    let (fresh, stale) = (page(&results, CODE), page(&results, "other"));
+    let said = "Measured by commit 559aa66d0c on 2026-11-21; the code has changed since";
+    assert!(!fresh.contains("class=\"stale\"") && !fresh.contains("changed since"));
+    // On top, and at each section but the terms, which are of no session.
+    assert_eq!(stale.matches(said).count(), stale.matches("<section").count());
+    assert!(!table(&results, CODE, NOW).contains("STALE"));
+    assert!(table(&results, "other", NOW).contains(&format!("STALE: {said}")));
+    let column = |code| {
+        let text = csv::runs(&results, code).unwrap();
+        let mut reader = ::csv::Reader::from_reader(text.as_bytes());
+        let place = reader.headers().unwrap().iter().position(|name| name == "stale").unwrap();
+        reader.records().map(|record| record.unwrap()[place].to_owned()).collect::<Vec<_>>()
+    };
+    assert!(column(CODE).iter().all(|stale| stale == "false"));
+    assert!(column("other").iter().all(|stale| stale == "true"));
+}
+
+#[test]
+fn sessions_stay_apart() {
+    let mut results = plausible();
+    let mut other = session();
+    other.made.code = "older".into();
+    other.made.device.as_mut().unwrap().name = "NVIDIA H100".into();
+    other.runs.iter_mut().flat_map(|run| &mut run.time).for_each(|time| time.wall.median *= 0.01);
+    results.sessions.push(other);
+    check(&results);
+    let page = page(&results, CODE);
+    assert_eq!(page.matches("role=\"alert\"").count(), 1);
+    assert!(page.contains("<section id=\"machines\">"));
+    let plots = |results: &Results| files(results, CODE).len() - 1;
+    assert_eq!(plots(&results), 2 * plots(&plausible()));
+}
+
+#[test]
+fn csv_holds_every_number() {
+    let results = plausible();
+    let text = csv::runs(&results, CODE).unwrap();
+    let mut reader = ::csv::Reader::from_reader(text.as_bytes());
+    let headers = reader.headers().unwrap().clone();
+    let records: Vec<_> = reader.records().map(|record| record.unwrap()).collect();
+    let runs = &results.sessions[0].runs;
+    assert_eq!(records.len(), runs.len());
+    for (record, run) in records.iter().zip(runs) {
+        let cell = |name: &str| &record[headers.iter().position(|other| other == name).unwrap()];
+        let number = |name: &str| cell(name).parse::<f64>().ok();
+        assert_eq!(cell("scene"), run.scene);
+        assert_eq!(cell("points").parse(), Ok(run.points));
+        assert_eq!(cell("lowpass").parse(), Ok(run.setting.lowpass));
+        assert_eq!(cell("refused"), run.refused.as_deref().unwrap_or(""));
+        assert_eq!(number("wall"), run.time.as_ref().map(|time| time.wall.median));
+        let attribute = run.time.as_ref().map(|time| time.passes[2].ms);
+        assert_eq!(number("pass:attribute"), attribute.map(|ms| ms.median));
+        assert_eq!(number("pass:attribute:max"), attribute.map(|ms| ms.max));
+        for metric in ["rmse", "psnr", "flip", "normal-p95", "flicker"] {
+            assert_eq!(
+                number(metric),
+                run.error.as_ref().and_then(|e| e.metrics.get(metric).copied()),
+                "{metric}"
+            );
+        }
+        assert_eq!(number("term:hidden"), run.error.as_ref().and_then(|error| error.terms.hidden));
+        assert_eq!(number("f64:colour"), run.agreement.map(|agreement| agreement.colour));
+    }
+    let sweeps = csv::sweeps(&results, CODE).unwrap();
+    let points: usize = results.sessions[0].sweeps.iter().map(|sweep| sweep.points.len()).sum();
+    assert_eq!(::csv::Reader::from_reader(sweeps.as_bytes()).records().count(), points);
+    assert_eq!(csv::runs(&empty(), CODE).unwrap(), "");
+}
+
+#[test]
+fn the_table_is_narrow_and_says_why_runs_were_refused() {
+    let mut results = plausible();
+    let long = "a-method-with-a-name-that-is-much-longer-than-any-terminal-has-room-for";
+    results.sessions[0].runs[1].contender.method = long.into();
+    let text = table(&results, CODE, NOW);
+    for line in text.lines().filter(|line| !line.contains("refused:")) {
+        assert!(line.chars().count() <= 160, "{} columns: {line}", line.chars().count());
+    }
+    assert!(text.contains("refused: cannot allocate 640000000 bytes"));
+    assert!(text.contains("a-method-with") && !text.contains(long));
+    let line = text.lines().find(|line| line.starts_with("offset ")).unwrap();
+    assert!(
+        line.contains("212 px wrong") && line.contains("40 uncovered") && line.contains("1 points refused"),
+        "{line}"
+    );
+    // Settings are told where they differ: cut-offs in one figure alone.
+    let group = |name| text.split("\n\n").find(|group| group.starts_with(name)).unwrap();
+    assert!(group("quick · lowpass").contains("F 1.5, widen small"));
+    assert!(!group("quick · budget").contains("F "));
+}

@@ -1,0 +1,273 @@
+//! Results as a bench could have measured them.
+
+use std::collections::BTreeMap;
+use surfel::bench::record::*;
+use surfel::bench::{Results, Statistics};
+
+/// Digest of the code that the results are by.
+pub const CODE: &str = "c0de";
+
+const POINTS: [u64; 5] = [10_000, 31_623, 100_000, 316_228, 1_000_000];
+
+/// A session with every figure, on a small CPU.
+pub fn plausible() -> Results {
+    Results { format: FORMAT, sessions: vec![session()] }
+}
+
+/// Of no session at all.
+#[allow(dead_code)]
+pub fn empty() -> Results {
+    Results { format: FORMAT, sessions: Vec::new() }
+}
+
+pub fn session() -> Session {
+    let runs = [budget(), lowpass(), aliasing(), scaling(), yardstick()].concat();
+    Session { made: made(), runs, sweeps: vec![grazing(), offset(), layers()], exhibits: vec![exhibit()] }
+}
+
+pub fn made() -> Made {
+    Made {
+        version: "0.1.0".into(),
+        commit: "559aa66d0c9f3c6bd4f06e0f4a".into(),
+        code: CODE.into(),
+        date: "2026-11-21T12:00:00Z".parse().unwrap(),
+        seconds: 57.3,
+        command: "surfel bench --suite quick --report report".into(),
+        suites: vec!["quick".into(), "hard".into()],
+        host: Host {
+            cpu: "AMD EPYC 7B13".into(),
+            cores: 2,
+            memory: 24 << 30,
+            system: "Debian GNU/Linux 12, Linux 6.1".into(),
+        },
+        device: Some(Gpu {
+            name: "llvmpipe (LLVM 15.0.6, 256 bits)".into(),
+            driver: "llvmpipe Mesa 22.3.6 (LLVM 15.0.6)".into(),
+            validated: false,
+        }),
+    }
+}
+
+pub fn contender(variant: &str) -> Contender {
+    Contender { method: "perspective-ewa".into(), variant: variant.into() }
+}
+
+pub fn native() -> Contender {
+    Contender { method: "yardstick-splats".into(), variant: String::new() }
+}
+
+/// A run with a time and an error; the rest follows from them.
+pub fn run(figure: Figure, scene: &str, points: u64, ms: f64, rmse: f64) -> Run {
+    let metrics = [
+        ("rmse", rmse),
+        ("psnr", -20.0 * rmse.log10()),
+        ("flip", 1.4 * rmse),
+        ("ssim", 1.0 - 2.0 * rmse),
+        ("iou", 1.0 - 0.2 * rmse),
+        ("holes", (rmse * 300.0).floor()),
+        ("bloat", (rmse * 4000.0).floor()),
+        ("normal-p95", 30.0 * rmse),
+    ];
+    Run {
+        suite: "quick".into(),
+        figure,
+        scene: scene.into(),
+        points,
+        size: [512, 512],
+        contender: contender("compute"),
+        setting: Setting::shipped(),
+        refused: None,
+        time: Some(time(ms)),
+        error: Some(Error {
+            filter: "gaussian".into(),
+            truth_rms: 4e-4,
+            metrics: BTreeMap::from(metrics.map(|(name, value)| (name.to_owned(), value))),
+            terms: Terms {
+                silhouette: 0.35 * rmse,
+                inside: rmse * (1.0f64 - 0.35 * 0.35).sqrt(),
+                hidden: Some(8e-4),
+                precision: Some(3e-7),
+            },
+        }),
+        agreement: Some(Agreement {
+            object: 90_000,
+            doubtful: 120,
+            failed: 0,
+            colour: 9e-6,
+            normal: 6e-5,
+            depth: 1e-6,
+        }),
+        memory: Memory { scene: 28 * points, splats: 64 * points, targets: 512 * 512 * 48 },
+        overlap: Some(7.5),
+        exhibit: None,
+    }
+}
+
+pub fn time(ms: f64) -> Time {
+    let spread =
+        |share: f64| Statistics { median: share * ms, min: 0.95 * share * ms, max: 1.2 * share * ms };
+    let passes = [("footprint", 0.1), ("visibility", 0.3), ("attribute", 0.5), ("normalize", 0.08)];
+    Time {
+        frames: 12,
+        warmup: 2,
+        wall: spread(1.0),
+        cpu: spread(1.8),
+        passes: passes.map(|(name, share)| Pass { name: name.into(), ms: spread(share) }).to_vec(),
+        device: Some(spread(0.98)),
+        multiple: Some(ms / 60.0),
+    }
+}
+
+fn budget() -> Vec<Run> {
+    let mut runs = Vec::new();
+    for (scene, difficulty, floor) in
+        [("scene:bumpy-sphere", 1.0, 0.018), ("scene:torus", 0.6, 0.0), ("scene:part", 1.4, 0.05)]
+    {
+        for points in POINTS {
+            let more = points as f64 / 1e4;
+            let error = (difficulty * 0.09 * more.powf(-0.37)).hypot(floor);
+            let ms = 90.0 + 21.0 * more.powf(0.51);
+            for (variant, slower) in [("compute", 1.0), ("raster", 1.9)] {
+                for (lowpass, cheaper, worse) in [(1.0, 1.0, 1.0), (0.25, 0.8, 1.06), (0.0, 0.76, 1.12)] {
+                    let mut run = run(Figure::Budget, scene, points, slower * cheaper * ms, worse * error);
+                    run.contender = contender(variant);
+                    run.setting.lowpass = lowpass;
+                    runs.push(run);
+                }
+            }
+        }
+    }
+    let mut refused = run(Figure::Budget, "scene:part", 10_000_000, 1.0, 1.0);
+    (refused.time, refused.error, refused.agreement) = (None, None, None);
+    refused.refused =
+        Some("cannot allocate 640000000 bytes for splats: use fewer points or a smaller picture".into());
+    runs.push(refused);
+    runs[POINTS.len()].exhibit = Some(0);
+    runs
+}
+
+fn lowpass() -> Vec<Run> {
+    let mut runs = Vec::new();
+    for cutoff in [1.5, 2.0, 2.5, 3.0, 4.0f32] {
+        for widen in ["all", "small"] {
+            for lowpass in [0.0, 0.25, 0.5, 0.75, 1.0f32] {
+                let (h, f) = (f64::from(lowpass), f64::from(cutoff));
+                let price = if widen == "all" { 1.0 } else { 0.3 };
+                let error = 0.02 + 0.006 * (h - 0.6).powi(2) + 0.001 * (f - 2.0).powi(2) + 0.0005 * price;
+                let mut run = run(
+                    Figure::Lowpass,
+                    "scene:bumpy-sphere",
+                    100_000,
+                    (80.0 + 60.0 * h * price) * f / 2.0,
+                    error,
+                );
+                run.setting = Setting { cutoff, lowpass, widen: widen.into(), ..run.setting };
+                runs.push(run);
+            }
+        }
+    }
+    runs
+}
+
+fn aliasing() -> Vec<Run> {
+    let cases = [(0.0, 0.18), (0.25, 0.11), (1.0, 0.031f64)];
+    cases
+        .map(|(lowpass, rmse)| {
+            let mut run = run(Figure::Aliasing, "scene:plane?radius=1000", 1_000_000, 250.0, rmse);
+            run.setting.lowpass = lowpass;
+            run.error.as_mut().unwrap().metrics.insert("flicker".into(), 0.4 * rmse);
+            run
+        })
+        .to_vec()
+}
+
+fn scaling() -> Vec<Run> {
+    let mut runs = Vec::new();
+    for variant in ["compute", "raster"] {
+        let slower = if variant == "raster" { 1.8 } else { 1.0 };
+        let mut add = |figure, points, size: u32, overlap: f64, ms: f64| {
+            let mut run = run(figure, "scene:bumpy-sphere", points, slower * ms, 0.03);
+            (run.error, run.agreement) = (None, None);
+            (run.size, run.overlap, run.contender) = ([size, size], Some(overlap), contender(variant));
+            runs.push(run);
+        };
+        for points in [10_000, 100_000, 1_000_000, 10_000_000] {
+            add(Figure::ScalingPoints, points, 1024, 7.5, 60.0 + points as f64 * 2.6e-4);
+        }
+        for size in [256, 512, 1024, 2048, 4096] {
+            add(Figure::ScalingSize, 100_000, size, 7.5, 20.0 + f64::from(size * size) * 1e-4);
+        }
+        for overlap in [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0] {
+            add(Figure::ScalingOverlap, 100_000, 1024, overlap, 30.0 + 11.0 * overlap);
+        }
+    }
+    runs
+}
+
+fn yardstick() -> Vec<Run> {
+    let mut runs = Vec::new();
+    for (points, ms) in [(100_000, 62.0), (1_000_000, 164.0)] {
+        for (contender, times) in [(native(), 1.0), (contender("compute"), 2.3), (contender("raster"), 4.4)] {
+            let mut run = run(Figure::Yardstick, "scene:bumpy-sphere", points, times * ms, 0.03);
+            run.error = None;
+            run.time.as_mut().unwrap().multiple = Some(times);
+            run.contender = contender;
+            runs.push(run);
+        }
+    }
+    runs
+}
+
+fn sweep(name: &str, about: &str, parameter: &str, points: Vec<SweepPoint>) -> Sweep {
+    let logarithmic = name != "layers";
+    Sweep { name: name.into(), about: about.into(), parameter: parameter.into(), logarithmic, points }
+}
+
+fn point(variant: &str, value: f64, [colour, normal, depth]: [f64; 3]) -> SweepPoint {
+    SweepPoint {
+        value,
+        contender: contender(variant),
+        refused: None,
+        agreement: Agreement { object: 16_000, doubtful: 12, failed: 0, colour, normal, depth },
+        faults: Faults::default(),
+        note: String::new(),
+    }
+}
+
+fn grazing() -> Sweep {
+    let angles = [10.0, 1.0, 0.1, 1e-2, 1e-3, 1e-4];
+    let of = |variant: &str| {
+        angles
+            .iter()
+            .rev()
+            .map(|&left| point(variant, left, [4e-6 * f64::powf(left, -0.1), 3e-5, 8e-7]))
+            .collect::<Vec<_>>()
+    };
+    let points = [of("compute"), of("raster")].concat();
+    sweep("grazing-angle", "A disc seen ever more from its edge.", "angle to the surface, degrees", points)
+}
+
+fn offset() -> Sweep {
+    let mut points: Vec<_> = (0..=8)
+        .map(|power| {
+            let far = 10f64.powi(power);
+            point("compute", far, [2e-6 * far.sqrt(), 1e-5, 3e-7 * far.powf(0.8)])
+        })
+        .collect();
+    points[7].agreement.failed = 212;
+    points[7].faults.uncovered = 40;
+    points[8].refused = Some("positions are not finite in float32".into());
+    sweep("offset", "The same object ever further from the origin.", "offset, object sizes", points)
+}
+
+fn layers() -> Sweep {
+    let points = [0.0, 0.5, 1.0, 2.0].map(|gap| point("compute", gap, [0.0, 0.0, 0.0])).to_vec();
+    sweep("layers", "Two layers ever further apart.", "gap, ε", points)
+}
+
+fn exhibit() -> Exhibit {
+    // 2×2 px, grey.
+    let png = "iVBORw0KGgoAAAANSUhEUgAAAAIAAAACCAIAAAD91JpzAAAAEElEQVR42mNoaGgAIgYIBQAlrgWBQ3Xg0wAAAABJRU5ErkJggg==";
+    let [picture, truth, map] = [png; 3].map(str::to_owned);
+    Exhibit { title: "bumpy-sphere, 10 k points".into(), picture, truth, map }
+}
