@@ -36,6 +36,8 @@ pub(super) struct Footprint<'a> {
     settings: &'a Settings,
     view: &'a View,
     pixel: Mat3A,
+    /// 1 / F.
+    inverse_cutoff: f32,
     /// Width and height of the picture, px.
     pub extent: Vec2,
 }
@@ -56,7 +58,14 @@ struct Place {
 
 impl<'a> Footprint<'a> {
     pub fn new(surfels: &'a Surfels, settings: &'a Settings, view: &'a View) -> Self {
-        Self { surfels, settings, view, pixel: Mat3A::from(view.pixel.as_mat3()), extent: view.extent() }
+        Self {
+            surfels,
+            settings,
+            view,
+            pixel: Mat3A::from(view.pixel.as_mat3()),
+            inverse_cutoff: 1.0 / settings.cutoff,
+            extent: view.extent(),
+        }
     }
 
     /// The splat of surfel `index`, and half the width and height of the box about its attribute footprint, px; `None` if nothing
@@ -65,7 +74,7 @@ impl<'a> Footprint<'a> {
     pub fn splat(&self, index: usize) -> Option<(Splat, Vec2)> {
         let place = self.place(index)?;
         let (radius, normal) = (self.surfels.radii[index], self.surfels.normals[index]);
-        let sigma = radius / self.settings.cutoff;
+        let sigma = radius * self.inverse_cutoff;
         let ([major, minor], aspect) = self.axes(index, normal);
         let [s, t] = [self.pixel * (sigma * major), self.pixel * (sigma * minor)];
         let w = place.w as f32;
@@ -158,7 +167,8 @@ impl<'a> Footprint<'a> {
         let g = if self.view.perspective { Vec2::new(s.z, t.z) } else { Vec2::ZERO };
         let lean = g.length();
         // (w / F)² - g·g, which as a product keeps its digits.
-        let q = (w / cutoff - lean) * (w / cutoff + lean);
+        let reach = w * self.inverse_cutoff;
+        let q = (reach - lean) * (reach + lean);
         if q.is_nan() || q <= 0.0 {
             return None;
         }
@@ -166,7 +176,7 @@ impl<'a> Footprint<'a> {
         // Rows of the projection's derivative, times w.
         let (dx, dy) = (x - centre.x * g, y - centre.y * g);
         let shift = -(cutoff * inverse).powi(2) * Vec2::new(dx.dot(g), dy.dot(g));
-        let (dx, dy, o) = (inverse * dx, inverse * dy, shift / cutoff);
+        let (dx, dy, o) = (inverse * dx, inverse * dy, shift * self.inverse_cutoff);
         let xx = dx.dot(dx) + o.x * o.x;
         let xy = dx.dot(dy) + o.x * o.y;
         let yy = dy.dot(dy) + o.y * o.y;
@@ -180,7 +190,7 @@ impl<'a> Footprint<'a> {
         let of = view.ray.transpose_mul_vec3(normal);
         let key = of.dot(pixel.extend(1.0));
         let key = if view.perspective { key } else { key - place.height + view.near * place.facing };
-        (DVec3::new(key, of.x, of.y) / place.facing).as_vec3()
+        (DVec3::new(key, of.x, of.y) * (1.0 / place.facing)).as_vec3()
     }
 }
 
