@@ -17,6 +17,24 @@ use crate::error::{Error, Result};
 const FEWEST: usize = 3;
 
 /// Takes the frames of a path one after the other, and keeps the errors of two.
+///
+/// ```
+/// use surfel::Picture;
+/// use surfel::metrics::{Pair, flicker::Flicker};
+///
+/// # fn main() -> surfel::Result<()> {
+/// let grey = |value: f32| Picture { size: [1, 1], colour: vec![[value, value, value, 1.0]], ..Default::default() };
+/// // Along the path the truth grows lighter; the pictures do, too, but every other one is too light by a tenth.
+/// let mut flicker = Flicker::new([0.0; 3]);
+/// for frame in 0..6u8 {
+///     let truth = 0.1 * f32::from(frame);
+///     let wrong = if frame % 2 == 0 { 0.0 } else { 0.1 };
+///     flicker.add(&Pair::new(&grey(truth + wrong), &grey(truth))?)?;
+/// }
+/// assert!((flicker.value()? - 0.2 / 6f64.sqrt()).abs() < 1e-6);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Clone, Debug, Default)]
 pub struct Flicker {
     background: [f32; 3],

@@ -131,6 +131,64 @@ mod tests {
         assert!((found.max() - found.mean()).abs() < 1e-4);
     }
 
+    /// CIELAB of an sRGB colour with a* and b* as the Hunt effect leaves them, by the paper's sections 4.1.1 and 4.1.2: the white is the
+    /// sum of the primaries.
+    fn hunt([r, g, b]: [u8; 3]) -> [f64; 3] {
+        let linear = [r, g, b].map(|code| match f64::from(code) / 255.0 {
+            c if c <= 0.04045 => c / 12.92,
+            c => ((c + 0.055) / 1.055).powf(2.4),
+        });
+        let rows = [[0.412_4, 0.357_6, 0.180_5], [0.212_6, 0.715_2, 0.072_2], [0.019_3, 0.119_2, 0.950_5]];
+        let [x, y, z] = rows.map(|row| {
+            let part: f64 = (0..3).map(|i| row[i] * linear[i]).sum();
+            match part / row.iter().sum::<f64>() {
+                t if t > (6.0f64 / 29.0).powi(3) => t.cbrt(),
+                t => t / (3.0 * (6.0f64 / 29.0).powi(2)) + 4.0 / 29.0,
+            }
+        });
+        let lightness = 116.0 * y - 16.0;
+        [lightness, 5.0 * lightness * (x - y), 2.0 * lightness * (y - z)]
+    }
+
+    /// FLIP of two even pictures: their filters leave them as they are, and there are no features. The HyAB distance to the power of
+    /// 0.7; the first 0.4 of its greatest value become 0.95, the rest the remaining 0.05 (section 4.1.3).
+    fn even(a: [u8; 3], b: [u8; 3]) -> f64 {
+        let distance = |a: [u8; 3], b: [u8; 3]| {
+            let ([l, a, b], [m, c, d]) = (hunt(a), hunt(b));
+            ((l - m).abs() + (a - c).hypot(b - d)).powf(0.7)
+        };
+        let (found, most) = (distance(a, b), distance([0, 255, 0], [0, 0, 255]));
+        let knee = 0.4 * most;
+        if found < knee { 0.95 * found / knee } else { 0.95 + 0.05 * (found - knee) / (most - knee) }
+    }
+
+    #[test]
+    fn even_pictures_are_as_the_papers_formulas_have_it() {
+        let pairs: [([u8; 3], [u8; 3]); 7] = [
+            ([0; 3], [255; 3]),
+            ([128; 3], [129; 3]),
+            ([0; 3], [9; 3]),
+            ([64, 128, 192], [70, 120, 190]),
+            ([200, 30, 40], [30, 200, 40]),
+            ([255, 0, 0], [0, 255, 255]),
+            ([10, 20, 15], [240, 250, 230]),
+        ];
+        // Both sides of the knee.
+        assert!(even(pairs[1].0, pairs[1].1) < 0.1 && even(pairs[5].0, pairs[5].1) > 0.95);
+        for (a, b) in pairs {
+            let [ours, truth] = [a, b].map(|codes| image(|_, _| codes.map(|code| f64::from(code) / 255.0)));
+            let (found, expected) = (of(&ours, &truth), even(a, b));
+            assert!((found.mean() - expected).abs() < 5e-4, "{a:?} {b:?}: {} {expected}", found.mean());
+            assert!((found.max() - expected).abs() < 5e-4, "{a:?} {b:?}: {} {expected}", found.max());
+        }
+    }
+
+    #[test]
+    fn a_single_pixel_can_be_compared() {
+        let map = flip(&[[1.0; 3]], &[[0.0; 3]], [1, 1], PIXELS_PER_DEGREE).unwrap();
+        assert!((map.mean() - even([0; 3], [255; 3])).abs() < 5e-4, "{}", map.mean());
+    }
+
     #[test]
     fn what_is_seen_from_afar_is_seen_less() {
         let dots = image(|x, y| if (x + y) % 2 == 0 { [1.0; 3] } else { [0.0; 3] });

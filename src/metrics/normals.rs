@@ -78,6 +78,15 @@ mod tests {
     }
 
     #[test]
+    fn percentiles_are_those_of_their_names() {
+        let degrees: Vec<f64> = (1..=100).map(f64::from).collect();
+        let all = [NORMALS[1]; 100];
+        let (truth, turned) = (picture(&all), rotated(&all, &degrees));
+        let found = normals(&Pair::new(&turned, &truth).unwrap()).unwrap();
+        assert!((found.median - 50.0).abs() < 1e-4 && (found.p95 - 95.0).abs() < 1e-4, "{found:?}");
+    }
+
+    #[test]
     fn only_pixels_that_both_cover_count() {
         let truth = picture(&NORMALS);
         let mut turned = rotated(&NORMALS, &[1.0, 70.0, 80.0, 2.0]);

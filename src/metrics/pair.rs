@@ -180,6 +180,7 @@ mod tests {
         picture.normal = Some(vec![[0.0, 0.0, 1.0], [0.0, 0.0, 1.0], [0.0; 3], [0.0, 0.0, 1.0]]);
         assert_eq!([0, 1, 2, 3].map(|i| covers(&picture, i)), [false, false, false, true]);
         (picture.depth, picture.normal) = (None, None);
+        picture.colour[1][3] = 0.5;
         assert_eq!([0, 1, 2, 3].map(|i| covers(&picture, i)), [false, true, true, true]);
     }
 }

@@ -3,8 +3,9 @@
 use crate::Progress;
 use crate::geometry::Camera;
 use crate::scenes;
-use crate::settings::{Settings, Shading};
+use crate::settings::{Lighting, Settings, Shading};
 use crate::truth::{Cache, Filter, Options, Truth};
+use glam::DMat4;
 use std::fs;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -114,6 +115,11 @@ fn a_path_tells_images_apart_and_nothing_else() {
         path(options(Options { filter: Filter::Gaussian { variance: 1.5 }, ..Default::default() })),
         path(options(Options { filter: Filter::Box, ..Default::default() })),
         path(point(0.1)),
+        path(options(Options { most_samples: 256, ..Default::default() })),
+        path(settings(Settings {
+            lighting: Lighting { ambient: 0.2, ..Default::default() },
+            ..Default::default()
+        })),
     ];
     assert_eq!(path(point(0.2)), others[9], "single rays have no error");
     assert_eq!(path(request("scene:torus?minor=0.3&frequency=3")), others[2]);
@@ -124,12 +130,39 @@ fn a_path_tells_images_apart_and_nothing_else() {
 }
 
 #[test]
+fn every_number_of_the_camera_and_the_size_tell_images_apart() {
+    let (cache, torus) = (Cache::new("somewhere"), request("scene:torus"));
+    let surface = scenes::surface(torus.name).unwrap();
+    let path = |camera: Camera, size| {
+        cache.path(torus.name, &*surface, &camera, &torus.settings, size, &torus.options)
+    };
+    let usual = torus.camera();
+    let mut paths = vec![path(usual, SIZE), path(usual, [10, 12]), path(usual, [12, 11])];
+    paths.push(path(Camera { reversed: !usual.reversed, ..usual }, SIZE));
+    for i in 0..16 {
+        let nudged = |matrix: DMat4| {
+            let mut numbers = matrix.to_cols_array();
+            numbers[i] += 1e-9;
+            DMat4::from_cols_array(&numbers)
+        };
+        paths.push(path(Camera { view: nudged(usual.view), ..usual }, SIZE));
+        paths.push(path(Camera { projection: nudged(usual.projection), ..usual }, SIZE));
+    }
+    let count = paths.len();
+    paths.sort();
+    paths.dedup();
+    assert_eq!(paths.len(), count);
+}
+
+#[test]
 fn a_scene_that_has_changed_is_another_under_the_same_name() {
     let cache = Cache::new("somewhere");
-    let (old, new) =
-        (scenes::surface("scene:torus").unwrap(), scenes::surface("scene:torus?minor=0.41").unwrap());
     let torus = request("scene:torus");
-    let path =
-        |surface| cache.path("scene:torus", surface, &torus.camera(), &torus.settings, SIZE, &torus.options);
-    assert_ne!(path(&*old), path(&*new));
+    let path = |text: &str| {
+        let surface = scenes::surface(text).unwrap();
+        cache.path("scene:torus", &*surface, &torus.camera(), &torus.settings, SIZE, &torus.options)
+    };
+    // Another shape, and only other colours.
+    assert_ne!(path("scene:torus"), path("scene:torus?minor=0.41"));
+    assert_ne!(path("scene:torus"), path("scene:torus?frequency=3"));
 }

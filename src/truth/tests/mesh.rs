@@ -133,3 +133,43 @@ fn colours_and_normals_are_interpolated() {
     cloud.triangles.clear();
     assert!(Mesh::new(&cloud).err().unwrap().contains("no triangles"));
 }
+
+/// Two triangles meet in a corner of the cube's level face, and one in each of the upright ones.
+#[test]
+fn normals_weigh_triangles_by_their_angles() {
+    let corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [0, 1, 1]];
+    let mesh = Mesh::new(&Cloud {
+        positions: corners.map(|corner| Vec3::from(corner.map(|c| c as f32))).to_vec(),
+        // Outwards: down, to the left and to the back.
+        triangles: vec![[0, 2, 1], [0, 3, 2], [0, 4, 3], [4, 6, 3], [0, 1, 4], [1, 5, 4]],
+        ..Default::default()
+    })
+    .unwrap();
+    let hit = mesh.trace(DVec3::new(-2.0, -2.0, -3.0), DVec3::new(2.0, 2.0, 3.0) + 1e-9).unwrap();
+    assert!(hit.normal.abs_diff_eq(DVec3::splat(-1.0 / 3f64.sqrt()), 1e-6), "{}", hit.normal);
+}
+
+#[test]
+fn digests_tell_meshes_apart() {
+    let usual = Cloud {
+        positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
+        normals: Some(vec![Vec3::Z; 3]),
+        triangles: vec![[0, 1, 2]],
+        colours: Some(Colours::Linear(vec![[0.5; 3]; 3])),
+        ..Default::default()
+    };
+    let digest = |cloud: &Cloud| Mesh::new(cloud).unwrap().digest();
+    assert_eq!(digest(&usual), digest(&usual.clone()));
+    let all = [
+        usual.clone(),
+        Cloud { origin: DVec3::X, ..usual.clone() },
+        Cloud { normals: Some(vec![Vec3::Z, Vec3::Z, Vec3::X]), ..usual.clone() },
+        Cloud { triangles: vec![[0, 2, 1]], normals: Some(vec![Vec3::Z; 3]), ..usual.clone() },
+        Cloud { colours: Some(Colours::Linear(vec![[0.5, 0.5, 0.6]; 3])), ..usual.clone() },
+        Cloud { colours: None, ..usual },
+    ];
+    let mut digests = all.each_ref().map(digest).to_vec();
+    digests.sort();
+    digests.dedup();
+    assert_eq!(digests.len(), all.len());
+}

@@ -81,6 +81,26 @@ fn outline_and_depth_are_the_closed_form() {
     }
 }
 
+/// A mean of depths would be none where two surfaces meet in a pixel, and at the outline what the pixel sees is nearest its centre.
+#[test]
+fn depth_is_that_of_the_ray_through_the_centre() {
+    let sphere = scenes::surface("scene:sphere?albedo=plain").unwrap();
+    let (settings, camera) = (Settings::default(), cameras()[0]);
+    let picture = render(&*sphere, &camera, &settings, SIZE, &Options::default(), &()).unwrap().picture;
+    let (eye, mut beside) = (Eye::new(&*sphere, &camera, &settings, SIZE).unwrap(), 0);
+    for (i, depth) in picture.depth.unwrap().into_iter().enumerate() {
+        match eye.see(centre(i, SIZE)) {
+            Some(seen) => assert_eq!(depth, seen.depth as f32),
+            None if depth > 0.0 => {
+                beside += 1;
+                assert!(picture.colour[i][3] > 0.0 && depth > 2.0 && depth < 3.1, "{depth}");
+            }
+            None => {}
+        }
+    }
+    assert!(beside > 20, "{beside}");
+}
+
 #[test]
 fn normals_face_the_eye_and_light_is_the_references() {
     let inside = Camera::look_at(DVec3::new(0.0, 0.0, 0.5), DVec3::ZERO, DVec3::Y, 1.0, 1.5, 0.01).unwrap();
