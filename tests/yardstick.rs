@@ -8,7 +8,7 @@ use support::sampling::{Random, bumpy_sphere, paint_linear, push};
 use support::scenes::{Case, cases};
 use surfel::geometry::{Camera, Colours, Surfels};
 use surfel::reference::{Comparison, Expected, Tolerance};
-use surfel::settings::{Cull, Shading};
+use surfel::settings::{Cull, Shading, Widen};
 use surfel::yardstick::{Kind, Yardstick};
 use surfel::{Error, Outputs, Picture, Settings};
 
@@ -36,8 +36,34 @@ fn print(name: &str, verdict: &Comparison) {
 
 #[test]
 fn every_case_through_every_camera() {
+    all_agree(&cases());
+}
+
+#[test]
+fn every_case_with_only_small_splats_widened() {
+    let mut cases = cases();
+    cases.iter_mut().for_each(|case| case.settings.widen = Widen::Small);
+    all_agree(&cases);
+}
+
+#[test]
+fn invalid_surfels_are_left_out() {
+    let case = &cases()[0];
+    let (mut spoilt, camera) = (case.surfels.clone(), &case.cameras[0]);
+    for (i, position) in spoilt.positions.iter_mut().enumerate().step_by(7) {
+        *position = Vec3::splat([f32::NAN, f32::INFINITY][i % 2]);
+    }
+    let expected = Expected::new(&spoilt, camera, case.size, &case.settings, &Tolerance::float32()).unwrap();
+    let verdict = expected.compare(&draw(Kind::Splats, &spoilt, camera, case.size, &case.settings)).unwrap();
+    assert!(verdict.passed() && verdict.object_pixels > 100, "{:?}", verdict.failures.first());
+    let none = Surfels { radii: vec![f32::NAN; spoilt.len()], ..spoilt };
+    assert!(matches!(Yardstick::new(&none), Err(Error::Usage(_))));
+}
+
+/// Every camera's picture is the reference's.
+fn all_agree(cases: &[Case]) {
     let mut failed = Vec::new();
-    for case in &cases() {
+    for case in cases {
         for (i, camera) in case.cameras.iter().enumerate() {
             let picture = draw(Kind::Splats, &case.surfels, camera, case.size, &case.settings);
             let verdict = expected(case, camera).compare(&picture).unwrap();

@@ -38,6 +38,16 @@ impl Surfels {
         (0..self.len()).into_par_iter().filter(|&i| !self.is_valid(i)).count()
     }
 
+    /// A copy of the valid ones, in their order.
+    pub fn valid(&self) -> Self {
+        let mut copy = self.clone();
+        if self.count_invalid() > 0 {
+            let valid: Vec<u32> = (0..self.len() as u32).filter(|&i| self.is_valid(i as usize)).collect();
+            copy.permute(&valid);
+        }
+        copy
+    }
+
     /// Bounds of the valid discs' bounding spheres in the file's frame, `origin` included; `None` if there are none.
     pub fn bounds(&self) -> Option<Bounds> {
         let of = |positions: &[Vec3], radii: &[f32]| {

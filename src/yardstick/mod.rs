@@ -75,18 +75,19 @@ pub struct Yardstick {
 }
 
 impl Yardstick {
-    /// Takes a copy of `surfels`, which are best in Morton order ([`Surfels::sort_morton`]).
+    /// Takes a copy of the [valid](Surfels::is_valid) ones of `surfels`, which are best in Morton order ([`Surfels::sort_morton`]).
     ///
     /// # Errors
     /// [`Error::Usage`] for none, for 2³¹ or more, and for arrays of unequal length.
     pub fn new(surfels: &Surfels) -> Result<Self> {
         surfels.check()?;
+        let surfels = surfels.valid();
         if surfels.is_empty() || surfels.len() >= FLIPPED as usize {
             let count = surfels.len();
             return Err(Error::Usage(format!("{count} surfels: the yardstick draws 1 to {}", FLIPPED - 1)));
         }
         Ok(Self {
-            surfels: surfels.clone(),
+            surfels,
             linear: std::array::from_fn(|code| srgb::decode(code as f64 / 255.0) as f32),
             pixels: Pixels::default(),
             splats: Splats::default(),
