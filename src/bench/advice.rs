@@ -32,9 +32,9 @@ pub struct Column<'a> {
 pub struct Advice<'a> {
     /// Scene by scene, in the order of the runs.
     pub columns: Vec<Column<'a>>,
-    /// Budgets of time, ms, ascending.
+    /// [`budgets`] of time, ms.
     pub times: Vec<f64>,
-    /// Budgets of error, ascending.
+    /// [`budgets`] of error.
     pub errors: Vec<f64>,
 }
 
@@ -88,16 +88,28 @@ pub fn within_error<'f, 'a>(front: &'f [Offer<'a>], rmse: f64) -> Option<&'f Off
     front.iter().find(|offer| offer.rmse <= rmse)
 }
 
-/// 1, 2 and 5 times powers of ten, from the first that the least value keeps to, to the first that all do.
+/// Round numbers from the first that the least value keeps to, to the first that all do: 1, 2 and 5 times powers of ten, or a finer
+/// series where these would be few.
 pub fn budgets(values: impl IntoIterator<Item = f64>) -> Vec<f64> {
     let valid = values.into_iter().filter(|value| value.is_finite() && *value > 0.0);
     let range = valid.fold(None, |range: Option<[f64; 2]>, value| {
         let [min, max] = range.unwrap_or([value; 2]);
         Some([min.min(value), max.max(value)])
     });
-    let Some([min, max]) = range else { return Vec::new() };
+    let Some(range) = range else { return Vec::new() };
+    let coarse = series(&["1", "2", "5"], range);
+    if coarse.len() < FEW { series(&["1", "1.5", "2", "3", "5", "7"], range) } else { coarse }
+}
+
+/// Fewer budgets are few.
+const FEW: usize = 4;
+
+/// The numbers that start with these digits, as [`budgets`] has them.
+fn series(digits: &[&str], [min, max]: [f64; 2]) -> Vec<f64> {
     let powers = min.log10().floor() as i32..=max.log10().ceil() as i32;
-    let round = |power: i32| [1, 2, 5].map(|factor| format!("{factor}e{power}").parse().unwrap_or(f64::NAN));
+    // By way of text, so that they are the nearest to what they are called.
+    let round =
+        |power: i32| digits.iter().map(move |digit| format!("{digit}e{power}").parse().unwrap_or(f64::NAN));
     let mut budgets: Vec<f64> = powers.flat_map(round).filter(|budget| *budget >= min).collect();
     let enough = budgets.iter().position(|budget| *budget >= max);
     budgets.truncate(enough.map_or(budgets.len(), |last| last + 1));
@@ -112,7 +124,7 @@ mod tests {
     fn budgets_are_round_and_cover_the_values() {
         assert_eq!(budgets([42.0, 900.0]), [50.0, 100.0, 200.0, 500.0, 1000.0]);
         assert_eq!(budgets([0.02]), [0.02]);
-        assert_eq!(budgets([0.021, 0.09]), [0.05, 0.1]);
+        assert_eq!(budgets([0.021, 0.09]), [0.03, 0.05, 0.07, 0.1]);
         assert_eq!(budgets([f64::NAN, 0.0, f64::INFINITY, -1.0]), []);
     }
 }

@@ -129,6 +129,7 @@ fn time(run: &Run) -> Vec<Cell> {
     ])
     .collect();
     row.extend(spread("wall", time.map(|time| time.wall)));
+    row.extend(spread("cpu", time.map(|time| time.cpu)));
     row.extend(spread("device_time", time.and_then(|time| time.device)));
     row.push(("multiple".into(), number(time.and_then(|time| time.multiple))));
     row

@@ -325,9 +325,7 @@ impl Run {
 impl Setting {
     /// What surfel does unless it is told otherwise.
     pub fn shipped() -> Self {
-        let Settings { cutoff, lowpass, epsilon, .. } = Settings::default();
-        let [widen, cull, shading] = ["all", "none", "lit"].map(str::to_owned);
-        Self { cutoff, lowpass, widen, epsilon, cull, shading }
+        Self::of(&Settings::default())
     }
 }
 

@@ -8,12 +8,13 @@ use std::fmt::Write;
 pub const WIDTH: usize = 160;
 
 /// Columns of a table, with what they are aligned by.
-const HEADERS: [(&str, Align); 15] = [
+const HEADERS: [(&str, Align); 16] = [
     ("points", Align::Right),
     ("size px", Align::Right),
     ("contender", Align::Left),
     ("settings", Align::Left),
     ("wall ms (min–max)", Align::Left),
+    ("CPU ms", Align::Right),
     ("× yard", Align::Right),
     ("RMSE", Align::Left),
     ("FLIP", Align::Left),
@@ -142,6 +143,7 @@ fn cells(run: &Run, differing: [bool; 6]) -> Vec<String> {
     ];
     let rest = [
         wall(run).unwrap_or_default(),
+        run.time.as_ref().map(|time| show::ms(time.cpu.median)).unwrap_or_default(),
         multiple.unwrap_or_default(),
         metric("rmse", 3),
         metric("flip", 3),

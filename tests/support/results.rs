@@ -111,7 +111,7 @@ pub fn time(ms: f64) -> Time {
         frames: 12,
         warmup: 2,
         wall: spread(1.0),
-        cpu: spread(1.8),
+        cpu: spread(1.9),
         passes: passes.map(|(name, share)| Pass { name: name.into(), ms: spread(share) }).to_vec(),
         device: Some(spread(0.98)),
         multiple: Some(ms / 60.0),

@@ -12,12 +12,12 @@ pub fn part(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
     let Some(advice) = Advice::of(session) else { return Ok(None) };
     let Advice { columns, times, errors } = &advice;
     let time = |budget: f64| format!("{} ms", show::ms(budget));
-    let error = |budget: f64| show::significant(budget, 1);
+    let error = |budget: f64| show::significant(budget, 2);
     Ok(Some(html! {
         p.lead {
-            "Of all runs, those on the Pareto front: none other is both faster and nearer to the truth. × is a multiple of the "
-            a href="#yardstick" { "yardstick" } ". Settings are named where they are not the defaults, "
-            (unbroken(&show::told(&Setting::shipped(), NAMED))) "."
+            "Of all runs, those on the Pareto front: none other is both faster and nearer to the truth. "
+            @if multiples(session) { "× is a multiple of the yardstick, a plain renderer on the CPU. " }
+            "Settings are named where they are not the defaults, " (unbroken(&show::told(&Setting::shipped(), NAMED))) "."
         }
         h3 { "Least error within a budget of time" }
         (table("ms a frame", columns, times, time, |column, ms| within_time(&column.front, ms), true))
@@ -72,6 +72,11 @@ fn cell(offer: &Offer<'_>, error_first: bool) -> Markup {
         @let settings = unusual(&run.setting);
         @if !settings.is_empty() { span { (settings) } }
     }
+}
+
+/// Whether there are multiples of the yardstick.
+fn multiples(session: &Session) -> bool {
+    session.runs.iter().any(|run| run.time.as_ref().is_some_and(|time| time.multiple.is_some()))
 }
 
 /// A list that breaks between its entries only.

@@ -37,7 +37,7 @@ pub fn part(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>
     Ok((!groups.is_empty()).then(|| html! {
         p {
             "The attribute footprint is widened by H; at H = 0 by just enough that each splat owns a pixel centre. F is the kernel's "
-            "cut-off in σ. " em { "all" } ": all splats are widened; " em { "small" } ": only those that are small in the picture."
+            "cut-off in σ. " em { "all" } ": all splats are widened; " em { "small" } ": only what is smaller than the filter, up to it."
         }
         @for group in &groups { (group) }
     }))

@@ -90,13 +90,13 @@ fn passes(session: &Session) -> Markup {
     html! { @if !timed.is_empty() {
         details {
             summary { "Times of the passes: " (timed.len()) " runs" }
-            p { "Median and range by the device's timestamps, ms. H is the low-pass variance in px², F the cut-off in σ." }
+            p { "Median and range by the device's timestamps, ms; wall clock and processor time of all threads beside them. H is the low-pass variance in px², F the cut-off in σ." }
             div.scroll { table.passes {
                 thead { tr {
                     th scope="col" { "figure" } th scope="col" { "scene" } th.number scope="col" { "points" } th scope="col" { "size" }
                     th scope="col" { "contender" } th scope="col" { "settings" }
                     @for name in &names { th.number scope="col" { (name) } }
-                    th.number scope="col" { "device" } th.number scope="col" { "wall" }
+                    th.number scope="col" { "device" } th.number scope="col" { "wall" } th.number scope="col" { "CPU" }
                 } }
                 tbody { @for (run, time) in &timed { tr {
                     td { (show::figure(run.figure)) } td { (show::scene(&run.scene)) }
@@ -107,7 +107,7 @@ fn passes(session: &Session) -> Markup {
                         td.number { @if let Some(pass) = pass { (spread(pass.ms)) } }
                     }
                     td.number { @if let Some(device) = time.device { (spread(device)) } }
-                    td.number { (spread(time.wall)) }
+                    td.number { (spread(time.wall)) } td.number { (spread(time.cpu)) }
                 } } }
             } }
         }

@@ -1,6 +1,6 @@
 //! Pictures beside the truth and the difference that is seen.
 
-use super::page::Page;
+use super::page::{Page, titled};
 use crate::bench::record::{Exhibit, Run, Session};
 use crate::bench::show;
 use maud::{Markup, html};
@@ -19,10 +19,7 @@ pub fn part(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
                 div.row { @for (name, png) in pictures(exhibit) {
                     img src={ "data:image/png;base64," (png) } alt={ (exhibit.title) ": " (name) };
                 } }
-                figcaption {
-                    strong { (exhibit.title) }
-                    @for run in session.runs.iter().filter(|run| run.exhibit == Some(index)) { ". " (caption(run)) }
-                }
+                figcaption { (words(exhibit, session.runs.iter().filter(|run| run.exhibit == Some(index)))) }
             }
         }
     }))
@@ -30,6 +27,15 @@ pub fn part(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
 
 fn pictures(exhibit: &Exhibit) -> [(&'static str, &str); 3] {
     [("the truth", &exhibit.truth), ("the picture", &exhibit.picture), ("FLIP's map", &exhibit.map)]
+}
+
+/// What the runs are that show the pictures; the title if there are none.
+fn words<'r>(exhibit: &Exhibit, runs: impl Iterator<Item = &'r Run>) -> Markup {
+    let runs: Vec<&Run> = runs.collect();
+    html! {
+        @for run in &runs { strong { (titled(&run.scene, run.size)) } ": " (caption(run)) ". " }
+        @if runs.is_empty() { strong { (exhibit.title) } }
+    }
 }
 
 fn caption(run: &Run) -> String {

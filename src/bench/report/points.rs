@@ -63,16 +63,18 @@ fn main<'r>(runs: &[&'r Run]) -> Option<(&'r Contender, &'r Setting, Vec<&'r Run
 type Term = (&'static str, Style, fn(&Error) -> Option<f64>);
 
 fn lines(runs: &[&Run]) -> Vec<Line> {
-    let terms: [Term; 5] = [
-        ("truth's own error", Style { dashed: true, hollow: true, ..Style::nth(5) }, |e| Some(e.truth_rms)),
-        ("precision", Style::nth(3), |e| e.terms.precision),
-        ("hidden surfels (ε)", Style { marker: 4, ..Style::nth(2) }, |e| e.terms.hidden),
-        ("texture", Style { marker: 2, ..Style::nth(1) }, |e| Some(e.terms.inside)),
-        ("silhouette", Style { marker: 1, ..Style::nth(0) }, |e| Some(e.terms.silhouette)),
+    let terms: [Term; 6] = [
+        ("RMSE", Style::nth(6), |error| error.metrics.get("rmse").copied()),
+        ("silhouette", Style { marker: 1, ..Style::nth(0) }, |error| Some(error.terms.silhouette)),
+        ("texture", Style { marker: 2, ..Style::nth(1) }, |error| Some(error.terms.inside)),
+        ("hidden surfels (ε)", Style { marker: 4, ..Style::nth(2) }, |error| error.terms.hidden),
+        ("precision", Style::nth(3), |error| error.terms.precision),
+        ("truth's own error", Style { dashed: true, hollow: true, ..Style::nth(5) }, |error| {
+            Some(error.truth_rms)
+        }),
     ];
-    let total: Term = ("RMSE", Style::nth(6), |error| error.metrics.get("rmse").copied());
     let mut lines = Vec::new();
-    for (label, style, of) in terms.into_iter().chain([total]) {
+    for (label, style, of) in terms {
         let point = |run: &&Run| Some([run.points as f64, of(run.error.as_ref()?)?]);
         let points: Vec<_> = runs.iter().filter_map(point).collect();
         if !points.is_empty() {
@@ -100,8 +102,26 @@ fn sentence(runs: &[&Run]) -> String {
     let run = end.and_then(|end| runs.iter().find(|run| run.points == end.points)).or(runs.last());
     match run.and_then(|run| left(run)) {
         Some(left) => {
-            format!("{falls}; what is left is mostly {}, {}.", left.term, show::significant(left.size, 2))
+            let size = show::significant(left.size, 2);
+            format!(
+                "{falls}; what is left is mostly {}, {size}. {}",
+                left.term,
+                run.map(causes).unwrap_or_default()
+            )
         }
         None => falls + ".",
     }
+}
+
+/// All causes that were measured.
+fn causes(run: &&Run) -> String {
+    let Some(error) = &run.error else { return String::new() };
+    let causes = [
+        ("ε", error.terms.hidden),
+        ("precision", error.terms.precision),
+        ("the truth", Some(error.truth_rms)),
+    ];
+    let told = |(name, size): (&str, Option<f64>)| Some(format!("{name} {}", show::significant(size?, 2)));
+    let list = causes.into_iter().filter_map(told).collect::<Vec<_>>().join(", ");
+    format!("Causes at {} points: {list}.", show::count(run.points))
 }

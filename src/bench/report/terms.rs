@@ -65,30 +65,30 @@ fn definitions(results: &Results) -> Markup {
 fn meaning(name: &str) -> &str {
     match name {
         "rmse" => "root mean square difference of linear colours over black; 0 is best",
-        "rmse-srgb" => "the same of sRGB-encoded colours",
+        "rmse-srgb" => "root mean square difference of sRGB-encoded colours over black; 0 is best",
         "psnr" => "RMSE as peak signal-to-noise ratio: −20 log₁₀ RMSE; more is better",
-        "psnr-srgb" => "the same of sRGB-encoded colours",
+        "psnr-srgb" => "RMSE of sRGB-encoded colours as peak signal-to-noise ratio",
         "ssim" => {
             "structural similarity of sRGB luma (Wang, Bovik, Sheikh, Simoncelli 2004), 11×11 Gaussian window; 1 is best"
         }
         "flip" => {
             "mean of the difference that is seen when flipping between both (Andersson et al. 2020); 0 is best"
         }
-        "flip-max" => "the largest value of that map",
+        "flip-max" => "the largest difference that is seen when flipping between both",
         "iou" => "intersection over union of the silhouettes, where α is ½ or more; 1 is best",
         "holes" => "pixels that the truth covers and the picture does not",
         "hole-regions" => "connected regions of holes",
-        "largest-hole" => "the largest of them",
+        "largest-hole" => "pixels of the largest connected region of holes",
         "bloat" => "pixels that the picture covers and the truth does not",
         "bloat-regions" => "connected regions of bloat",
-        "largest-bloat" => "the largest of them",
+        "largest-bloat" => "pixels of the largest connected region of bloat",
         "normal-median" => "median angle between normals, where both cover",
-        "normal-mean" => "their mean",
-        "normal-p95" => "their 95th percentile",
-        "normal-max" => "the largest",
+        "normal-mean" => "mean angle between normals, where both cover",
+        "normal-p95" => "95th percentile of the angles between normals, where both cover",
+        "normal-max" => "largest angle between normals, where both cover",
         "depth-rms" => "root mean square difference of depths over the object's size",
-        "depth-p99" => "their 99th percentile",
-        "depth-max" => "the largest",
+        "depth-p99" => "99th percentile of the differences of depths over the object's size",
+        "depth-max" => "largest difference of depths over the object's size",
         name if name.starts_with("flicker") => {
             "error that comes and goes over a slow camera path: its standard deviation as noise in time, by second differences \
              (Gasser, Sroka, Jennen-Steinmetz 1986)"

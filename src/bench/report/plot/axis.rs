@@ -202,7 +202,7 @@ fn decimal(factor: i32, power: i32) -> f64 {
 
 /// Plain where all are short, else as powers of ten.
 fn labels(values: &[f64], scale: Scale) -> Vec<String> {
-    let short = |value: &f64| *value == 0.0 || (9e-4..2e4).contains(&value.abs());
+    let short = |value: &f64| *value == 0.0 || (9e-5..2e4).contains(&value.abs());
     let plain = values.iter().all(short) || (scale == Scale::Linear && values.iter().all(|v| v.abs() < 1e6));
     let label = |value: &f64| match plain || *value == 0.0 {
         true => significant(*value, 8),

@@ -60,7 +60,7 @@ fn paint(plot: &Plot, legend: &Legend, backend: SVGBackend<'_>) -> Drawn {
         limit(&mut chart, &root, bar)?;
     }
     for kind in [Kind::Band, Kind::Faint, Kind::Joined, Kind::Loose] {
-        for line in plot.lines.iter().filter(|line| line.style.kind == kind) {
+        for line in plot.lines.iter().rev().filter(|line| line.style.kind == kind) {
             join(&mut chart, line)?;
             for (x, y) in known(line).map(|point| chart.backend_coord(&point)) {
                 mark(&root, [x, y], &line.style)?;
@@ -199,6 +199,8 @@ fn notes(chart: &Chart<'_, '_>, root: &Root<'_>, plot: &Plot, taken: &mut Taken,
             let size = [width(note, SMALL) * FINE, SMALL as i32 * FINE];
             if let Some([left, top, ..]) = taken.first_free(beside(at, size), within) {
                 let style = font(SMALL, INK, HPos::Left, VPos::Top);
+                let ground = [(left, top), (left + size[0], top + size[1])];
+                root.draw(&Rectangle::new(ground, WHITE.mix(0.8).filled()))?;
                 root.draw_text(note, &style, (left, top))?;
             }
         }
@@ -207,7 +209,7 @@ fn notes(chart: &Chart<'_, '_>, root: &Root<'_>, plot: &Plot, taken: &mut Taken,
 }
 
 /// Where a text may stand beside a point.
-fn beside((x, y): (i32, i32), [wide, high]: [i32; 2]) -> [Area; 6] {
+fn beside((x, y): (i32, i32), [wide, high]: [i32; 2]) -> [Area; 9] {
     let gap = 7 * FINE;
     let at = |left: i32, top: i32| [left, top, left + wide, top + high];
     [
@@ -217,6 +219,9 @@ fn beside((x, y): (i32, i32), [wide, high]: [i32; 2]) -> [Area; 6] {
         at(x - wide / 2, y + gap),
         at(x + gap, y + gap - high / 2),
         at(x - gap - wide, y - gap - high / 2),
+        at(x - wide / 2, y + 2 * gap),
+        at(x + 2 * gap, y - high / 2),
+        at(x - 2 * gap - wide, y - high / 2),
     ]
 }
 

@@ -24,7 +24,7 @@ pub struct Plot {
     pub x: Axis,
     /// From below to above.
     pub y: Axis,
-    /// In the order of the legend; earlier ones lie behind.
+    /// In the order of the legend; earlier ones lie on top.
     pub lines: Vec<Line>,
     /// Limits.
     pub bars: Vec<Bar>,
