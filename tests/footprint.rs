@@ -47,8 +47,8 @@ fn discs(camera: &Camera, elliptical: bool) -> Surfels {
     while surfels.len() < COUNT {
         let depth = 10f64.powf(-1.0 + 4.0 * random.unit());
         let middle = 0.5 * f64::from(SIZE);
-        let position =
-            DVec3::new(random.signed() * middle, random.signed() * middle, eta) * (1.1 * depth / eta);
+        let [x, y] = [0, 1].map(|_| 1.1 * random.signed() * middle);
+        let position = DVec3::new(x, y, eta) * (depth / eta);
         let radius = 10f64.powf(-2.0 + 5.0 * random.unit()) * position.z / eta;
         // Half the angles are spread evenly, half crowd towards 90°.
         let angle = match random.unit() < 0.5 {
