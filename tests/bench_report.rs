@@ -90,6 +90,17 @@ fn check_attribute(file: &str, name: &str, value: &str) {
 }
 
 #[test]
+fn the_yardstick_is_no_advice() {
+    let of = |points, ms| run(Figure::Budget, "scene:a", points, ms, 0.05);
+    let mut session = session();
+    session.runs = vec![of(1, 10.0), Run { contender: native(), ..of(2, 1.0) }];
+    let advice = Advice::of(&session).unwrap();
+    assert_eq!(advice.columns[0].front.iter().map(|offer| offer.run.points).collect::<Vec<_>>(), [1]);
+    session.runs.remove(0);
+    assert!(Advice::of(&session).is_none());
+}
+
+#[test]
 fn the_best_run_within_a_budget_is_on_the_front() {
     let of = |points, ms, rmse| run(Figure::Budget, "scene:a", points, ms, rmse);
     let mut refused = of(9, 1.0, 0.001);

@@ -39,10 +39,11 @@ pub struct Advice<'a> {
 }
 
 impl<'a> Advice<'a> {
-    /// Of the runs that are measured for budgets; none if there are none.
+    /// Of the methods' runs that are measured for budgets; none if there are none.
     pub fn of(session: &'a Session) -> Option<Self> {
         let mut columns: Vec<Column<'a>> = Vec::new();
-        let runs = || session.runs.iter().filter(|run| run.figure == Figure::Budget);
+        let methods = |run: &&Run| run.figure == Figure::Budget && !run.contender.is_yardstick();
+        let runs = || session.runs.iter().filter(methods);
         for run in runs() {
             if !columns.iter().any(|column| column.scene == run.scene && column.size == run.size) {
                 let alike = runs().filter(|other| other.scene == run.scene && other.size == run.size);

@@ -1,6 +1,6 @@
 //! Who renders: each method behind the same few calls.
 
-use super::record::{Contender, Memory};
+use super::record::{Contender, Memory, PIXELS, SPLATS};
 use crate::error::Result;
 use crate::geometry::{Camera, Surfels};
 use crate::methods::perspective_ewa;
@@ -11,11 +11,6 @@ use crate::vk::{Device, PassTime};
 use crate::yardstick::{self, Kind, Yardstick};
 use crate::{Outputs, Precision, Rasterizer, RenderOptions, Renderer, Scene};
 use std::sync::Arc;
-
-/// Name of the [yardstick](crate::yardstick)'s splats: what times are multiples of.
-pub const SPLATS: &str = "yardstick-splats";
-/// Name of its one pixel a point.
-pub const PIXELS: &str = "yardstick-pixels";
 
 /// A way to render.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]

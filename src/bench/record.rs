@@ -10,6 +10,11 @@ use std::collections::BTreeMap;
 /// Rises whenever files of an older program can no longer be read.
 pub const FORMAT: u32 = 1;
 
+/// Name of the [yardstick](crate::yardstick)'s splats: what times are multiples of.
+pub const SPLATS: &str = "yardstick-splats";
+/// Name of its one pixel a point.
+pub const PIXELS: &str = "yardstick-pixels";
+
 /// Everything that a page or a table is made of: one session, or several that are shown together.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Results {
@@ -330,6 +335,11 @@ impl Setting {
 }
 
 impl Contender {
+    /// Whether it is the [yardstick](crate::yardstick): what methods are measured by, and none itself.
+    pub fn is_yardstick(&self) -> bool {
+        [SPLATS, PIXELS].contains(&self.method.as_str())
+    }
+
     /// The method, and in which way.
     pub fn label(&self) -> String {
         match self.variant.is_empty() {

@@ -1,9 +1,9 @@
 //! One call of the bench: all runs of some suites on one machine.
 
-use super::record::{Agreement, Gpu, Host, Made, Run, Session};
+use super::record::{Agreement, Gpu, Host, Made, Run, SPLATS, Session};
 use super::runner::{Options, Runner};
 use super::suites::{Own, Suite};
-use super::{code, engine, hard};
+use super::{code, hard};
 use crate::error::Result;
 use crate::progress::Progress;
 use crate::reference::Comparison;
@@ -86,7 +86,7 @@ pub fn measure(wanted: &Wanted, progress: &dyn Progress) -> Result<Session> {
 fn compare_times(runs: &mut [Run]) {
     let yardsticks: Vec<(Run, f64)> = runs
         .iter()
-        .filter(|run| run.contender.method == engine::SPLATS)
+        .filter(|run| run.contender.method == SPLATS)
         .filter_map(|run| Some((run.clone(), run.ms()?)))
         .collect();
     let alike = |a: &Run, b: &Run| {

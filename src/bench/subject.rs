@@ -27,7 +27,13 @@ enum Shape {
     /// A built-in scene.
     Built(Built),
     /// A scan, and the mesh that is held to be what was scanned.
-    Scan { cloud: Cloud, mesh: Mesh },
+    Scan(Box<Scan>),
+}
+
+/// Points, and what they are samples of.
+struct Scan {
+    cloud: Cloud,
+    mesh: Mesh,
 }
 
 /// A surface as something to be traced.
@@ -66,14 +72,14 @@ impl Subject {
         let mesh = Mesh::new(other.as_ref().unwrap_or(&cloud)).map_err(named)?;
         let viewpoint = framing(&truth::Scene::bounds(&mesh))?;
         let (name, digest) = (path.display().to_string(), mesh.digest());
-        Ok(Self { name, digest, viewpoint, shape: Shape::Scan { cloud, mesh } })
+        Ok(Self { name, digest, viewpoint, shape: Shape::Scan(Box::new(Scan { cloud, mesh })) })
     }
 
     /// Most points that it has; none if it can have any number.
     pub fn most_points(&self) -> Option<u64> {
         match &self.shape {
             Shape::Built(_) => None,
-            Shape::Scan { cloud, .. } => Some(cloud.len() as u64),
+            Shape::Scan(scan) => Some(scan.cloud.len() as u64),
         }
     }
 
@@ -87,8 +93,8 @@ impl Subject {
                 let separator = if self.name.contains('?') { '&' } else { '?' };
                 scenes::open(&format!("{}{separator}points={points}", self.name))
             }
-            Shape::Scan { cloud, .. } => {
-                let made = cloud.some(points as usize).into_surfels(&Estimate::default(), &());
+            Shape::Scan(scan) => {
+                let made = scan.cloud.some(points as usize).into_surfels(&Estimate::default(), &());
                 Ok(made.map_err(|cause| Error::input(self.name.as_str(), cause))?.0)
             }
         }
@@ -122,7 +128,7 @@ impl Subject {
     pub fn area(&self) -> Option<f64> {
         match &self.shape {
             Shape::Built(built) => Some(built.0.area()),
-            Shape::Scan { .. } => None,
+            Shape::Scan(_) => None,
         }
     }
 
@@ -130,7 +136,7 @@ impl Subject {
     pub fn surface(&self) -> &dyn truth::Scene {
         match &self.shape {
             Shape::Built(built) => built,
-            Shape::Scan { mesh, .. } => mesh,
+            Shape::Scan(scan) => &scan.mesh,
         }
     }
 
@@ -138,7 +144,7 @@ impl Subject {
     pub fn is_coloured(&self) -> bool {
         match &self.shape {
             Shape::Built(_) => true,
-            Shape::Scan { cloud, .. } => cloud.colours.is_some(),
+            Shape::Scan(scan) => scan.cloud.colours.is_some(),
         }
     }
 }

@@ -35,7 +35,7 @@ fn show(args: &Bench, results: &Results) -> Result<()> {
         files::write_text(place, &(to_json(results)? + "\n"))?;
     }
     if let Some(place) = &args.csv {
-        files::write_text(place, &csv::runs(results, code::DIGEST)?)?;
+        write_csv(place, results)?;
     }
     if let Some(folder) = &args.report {
         let files = report::write(results, code::DIGEST, code::COMMIT, folder)?;
@@ -48,6 +48,32 @@ fn show(args: &Bench, results: &Results) -> Result<()> {
         true => Ok(()),
         false => files::print(&table(results, code::DIGEST, code::COMMIT)),
     }
+}
+
+/// A line a run; the hard cases, whose lines are of another kind, in a file of their own: `-hard` is put behind its name. On standard output
+/// an empty line is between both.
+fn write_csv(place: &OsString, results: &Results) -> Result<()> {
+    let (runs, sweeps) = (csv::runs(results, code::DIGEST)?, csv::sweeps(results, code::DIGEST)?);
+    let any = results.sessions.iter().any(|session| !session.sweeps.is_empty());
+    match (any, place == "-") {
+        (false, _) => files::write_text(place, &runs),
+        (true, true) => files::print(&format!("{runs}\n{sweeps}")),
+        (true, false) => {
+            files::write_text(place, &runs)?;
+            files::write_text(&hard_file(Path::new(place)), &sweeps)
+        }
+    }
+}
+
+fn hard_file(path: &Path) -> OsString {
+    let mut name = path.file_stem().unwrap_or_default().to_owned();
+    name.push("-hard");
+    let mut file = path.with_file_name(name).into_os_string();
+    if let Some(extension) = path.extension() {
+        file.push(".");
+        file.push(extension);
+    }
+    file
 }
 
 /// Those that were asked for; the first impression unless there is something else to show.

@@ -15,7 +15,7 @@ pub fn part(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
     let error = |budget: f64| show::significant(budget, 2);
     Ok(Some(html! {
         p.lead {
-            "Of all runs, those on the Pareto front: none other is both faster and nearer to the truth. "
+            "Of the methods' runs, those on the Pareto front: none other is both faster and nearer to the truth. "
             @if multiples(session) { "× is a multiple of the yardstick, a plain renderer on the CPU. " }
             "Settings are named where they are not the defaults, " (unbroken(&show::told(&Setting::shipped(), NAMED))) "."
         }
