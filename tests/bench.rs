@@ -3,6 +3,7 @@
 mod support;
 
 use base64::prelude::{BASE64_STANDARD, Engine as _};
+use std::f64::consts::PI;
 use std::path::Path;
 use std::rc::Rc;
 use std::time::Duration;
@@ -58,7 +59,8 @@ fn a_run_knows_its_time_its_error_and_what_that_is_made_of() {
     assert_eq!((run.refused.as_deref(), run.points, run.size), (None, 20_000, [96, 96]));
 
     let time = run.time.as_ref().unwrap();
-    assert_eq!((time.frames, time.warmup), (3, 1));
+    assert_eq!(time.frames, 3);
+    assert!(time.warmup >= 2);
     assert!(time.wall.min > 0.0 && time.wall.min <= time.wall.median && time.wall.median <= time.wall.max);
     assert!(time.cpu.min > 0.0);
     if device.capabilities().timestamps.is_some() {
@@ -82,7 +84,7 @@ fn a_run_knows_its_time_its_error_and_what_that_is_made_of() {
     let agreement = run.agreement.unwrap();
     assert!(agreement.object > 1000 && agreement.failed == 0 && agreement.colour < 2e-4);
     // Samples' radii are 1.5 spacings.
-    assert!((run.overlap.unwrap() - 2.25 * std::f64::consts::PI).abs() < 0.05, "{:?}", run.overlap);
+    assert!((run.overlap.unwrap() - 2.25 * PI).abs() < 0.05, "{:?}", run.overlap);
     assert!(run.memory.scene > 0 && run.memory.splats > 0 && run.memory.targets > 0);
     let exhibits = runner.exhibits();
     let exhibit = &exhibits[run.exhibit.unwrap()];
@@ -126,29 +128,74 @@ fn what_the_device_cannot_is_refused_and_the_next_run_goes_on() {
     assert!(small.refused.is_none() && small.error.is_some());
 }
 
+/// A sphere of quadrilaterals, halved, as a PLY file.
+fn sphere(path: &Path) {
+    let (rows, columns) = (60, 120);
+    let mut text = String::from("ply\nformat ascii 1.0\n");
+    text += &format!("element vertex {}\n", (rows + 1) * columns);
+    text += "property float x\nproperty float y\nproperty float z\n";
+    text +=
+        &format!("element face {}\nproperty list uchar int vertex_indices\nend_header\n", 2 * rows * columns);
+    for (row, column) in (0..=rows).flat_map(|row| (0..columns).map(move |column| (row, column))) {
+        let (down, around) = (f64::from(row) / f64::from(rows), f64::from(column) / f64::from(columns));
+        let ((sin, cos), (s, c)) = ((PI * down).sin_cos(), (2.0 * PI * around).sin_cos());
+        text += &format!("{} {cos} {}\n", sin * s, sin * c);
+    }
+    for (row, column) in (0..rows).flat_map(|row| (0..columns).map(move |column| (row, column))) {
+        let at = |row: i32, column: i32| row * columns + column % columns;
+        let [a, b] = [at(row, column), at(row, column + 1)];
+        let [c, d] = [at(row + 1, column), at(row + 1, column + 1)];
+        text += &format!("3 {a} {c} {b}\n3 {b} {c} {d}\n");
+    }
+    std::fs::write(path, text).unwrap();
+}
+
 #[test]
 fn a_scan_is_held_against_its_mesh_at_any_density() {
-    let scan =
-        Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/stanford/bunny/bun_zipper_res2.ply");
-    if !scan.exists() {
-        return eprintln!("SKIPPED, not passed: there is no {}", scan.display());
-    }
-    let subject = Rc::new(Subject::scan(&scan, None, &()).unwrap());
+    let folder = tempfile::tempdir().unwrap();
+    let [scan, points] = ["mesh.ply", "points.ply"].map(|name| folder.path().join(name));
+    sphere(&scan);
+    let bare = std::fs::read_to_string(&scan).unwrap().replace("element face 14400", "element other 14400");
+    std::fs::write(&points, bare).unwrap();
+    assert!(Subject::scan(&points, None, &()).is_err_and(|error| error.to_string().contains("no triangles")));
+    let subject = Rc::new(Subject::scan(&points, Some(&scan), &()).unwrap());
     let most = subject.most_points().unwrap();
     let Some(mut runner) = runner(vec![subject.clone()]) else { return };
     let mut of = |points| {
         let mut plan = plan(&subject.name, points, 128);
         plan.settings.shading = Shading::Lit;
+        plan.wants.terms = true;
         runner.run(&plan).unwrap()
     };
-    let (thin, whole) = (of(2000), of(most));
-    assert_eq!((thin.points, whole.points), (2000, most));
+    let (thin, whole) = (of(800), of(most));
+    assert_eq!((thin.points, whole.points), (800, most));
     let metric = |run: &Run, name: &str| run.error.as_ref().unwrap().metrics[name];
     for name in ["rmse", "iou", "normal-median", "depth-rms"] {
-        println!("{name}: {} of all points, {} of 2000", metric(&whole, name), metric(&thin, name));
+        println!("{name}: {} of all points, {} of 800", metric(&whole, name), metric(&thin, name));
     }
     for name in ["rmse", "normal-median", "depth-rms"] {
         assert!(metric(&whole, name) < metric(&thin, name), "{name}");
     }
     assert!(metric(&whole, "iou") > metric(&thin, "iou") && metric(&whole, "normal-median") < 2.0);
+    // The mesh lies a little below its own corners: they are not hidden for that.
+    let terms = whole.error.unwrap().terms;
+    assert!(terms.hidden.unwrap() < 0.5 * terms.silhouette, "{terms:?}");
+}
+
+#[test]
+fn what_makes_no_surfels_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let scan = folder.path().join("mesh.ply");
+    sphere(&scan);
+    let subject = Rc::new(Subject::scan(&scan, None, &()).unwrap());
+    let Some(mut runner) = runner(vec![subject.clone()]) else { return };
+    assert!(runner.run(&plan(&subject.name, 1, 32)).unwrap().refused.is_some());
+    assert!(
+        runner
+            .run(&plan("scene:none", 1, 32))
+            .unwrap()
+            .refused
+            .is_some_and(|why| why.contains("no such scene"))
+    );
+    assert!(Subject::scene("scene:torus?points=5").is_err());
 }

@@ -4,13 +4,25 @@ use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// Everything that a measurement can depend on.
-const CODE: [&str; 5] = ["Cargo.lock", "Cargo.toml", "build.rs", "shaders-glsl", "src"];
+/// Everything that a measurement can depend on, but for the machine and its compiler.
+const CODE: [&str; 7] = [
+    "Cargo.lock",
+    "Cargo.toml",
+    "build.rs",
+    "shaders-glsl",
+    "src",
+    "tools/code_digest.rs",
+    "tools/shader_build",
+];
+/// Kinds of files that are code: editors leave others beside them.
+const KINDS: [&str; 5] = ["css", "glsl", "lock", "rs", "toml"];
 
 /// Sets `SURFEL_CODE`, a digest of all files of the code, and `SURFEL_COMMIT`, empty where there is no git.
 pub fn tell() -> Result<(), String> {
-    CODE.iter().for_each(|path| println!("cargo::rerun-if-changed={path}"));
-    println!("cargo::rustc-env=SURFEL_CODE={}", digest()?);
+    // A package may come without a lock file, and what is missing would be looked for on every build.
+    let there = CODE.iter().filter(|path| Path::new(path).exists());
+    there.for_each(|path| println!("cargo::rerun-if-changed={path}"));
+    println!("cargo::rustc-env=SURFEL_CODE={}", digest(Path::new("."))?);
     // Written to by every commit and every checkout.
     if let Some(log) = git(&["rev-parse", "--git-path", "logs/HEAD"]).filter(|log| Path::new(log).exists()) {
         println!("cargo::rerun-if-changed={log}");
@@ -19,18 +31,18 @@ pub fn tell() -> Result<(), String> {
     Ok(())
 }
 
-/// 16 hexadecimal digits.
-fn digest() -> Result<String, String> {
+/// Of all code below `root` and of how far it is optimised; 16 hexadecimal digits.
+pub fn digest(root: &Path) -> Result<String, String> {
     let mut files = Vec::new();
-    // A package may come without a lock file.
-    for path in CODE.map(Path::new).into_iter().filter(|path| path.exists()) {
+    for path in CODE.map(|path| root.join(path)).iter().filter(|path| path.exists()) {
         collect(path, &mut files)?;
     }
     files.sort();
     let mut hash = blake3::Hasher::new();
+    hash.update(std::env::var("OPT_LEVEL").unwrap_or_default().as_bytes());
     for path in files {
         let bytes = fs::read(&path).map_err(|error| format!("{}: {error}", path.display()))?;
-        let name = path.to_string_lossy().replace('\\', "/");
+        let name = path.strip_prefix(root).unwrap_or(&path).to_string_lossy().replace('\\', "/");
         hash.update(&(name.len() as u64).to_le_bytes()).update(name.as_bytes());
         hash.update(&(bytes.len() as u64).to_le_bytes()).update(&bytes);
     }
@@ -39,7 +51,11 @@ fn digest() -> Result<String, String> {
 
 fn collect(path: &Path, files: &mut Vec<PathBuf>) -> Result<(), String> {
     if !path.is_dir() {
-        files.push(path.to_owned());
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let is_code = path.extension().is_some_and(|kind| KINDS.iter().any(|known| kind == *known));
+        if path.is_file() && is_code && !name.starts_with('.') {
+            files.push(path.to_owned());
+        }
         return Ok(());
     }
     let told = |error| format!("{}: {error}", path.display());

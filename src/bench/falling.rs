@@ -49,12 +49,12 @@ pub fn steps<'a>(runs: impl IntoIterator<Item = &'a Run>) -> Vec<Step> {
     steps
 }
 
-/// From the first step to the last between which and its forerunner the slope is below [`SLOPE`].
+/// From the first step for as long as the slope from each to the next is below [`SLOPE`].
 pub fn fall(steps: &[Step]) -> Fall {
     let [first, .., most] = steps else { return Fall::Unknown };
     let slope = |[a, b]: [Step; 2]| (b.rmse / a.rmse).ln() / (b.points as f64 / a.points as f64).ln();
     let falling = |pair: &&[Step]| slope([pair[0], pair[1]]) < SLOPE;
-    match steps.windows(2).rfind(falling).map(|pair| pair[1]) {
+    match steps.windows(2).take_while(falling).last().map(|pair| pair[1]) {
         None => Fall::Nowhere,
         Some(last) if last.points == most.points => Fall::Throughout([*first, last]),
         Some(last) => Fall::Until([*first, last]),
@@ -67,15 +67,16 @@ pub fn left(run: &Run) -> Option<Left> {
     let rmse = run.rmse()?;
     let Terms { silhouette, inside, hidden, precision } = error.terms;
     let causes = [
-        ("what ε lets through", hidden),
+        ("hidden surfels", hidden),
         ("float32's precision", precision),
         ("the truth's own error", Some(error.truth_rms)),
     ];
     let sizes = causes.into_iter().filter_map(|(term, size)| Some(Left { term, size: size? }));
     let largest = sizes.filter(|left| left.size >= SHARE * rmse).max_by(|a, b| a.size.total_cmp(&b.size));
+    let lit = run.setting.shading == "lit";
     let place = match silhouette > inside {
         true => Left { term: "the silhouette", size: silhouette },
-        false => Left { term: "the texture", size: inside },
+        false => Left { term: if lit { "the shade" } else { "the texture" }, size: inside },
     };
     Some(largest.unwrap_or(place))
 }
@@ -98,6 +99,8 @@ mod tests {
         // 10^-0.1 = 0.794: just above and just below the slope.
         assert_eq!(fall(&steps(&[0.1, 0.080])), Fall::Nowhere);
         assert!(matches!(fall(&steps(&[0.1, 0.079])), Fall::Throughout(_)));
+        // A fall after a rise is none from the first.
+        assert_eq!(fall(&steps(&[0.05, 0.09, 0.07])), Fall::Nowhere);
         assert_eq!(fall(&steps(&[0.1])), Fall::Unknown);
         assert_eq!(fall(&[]), Fall::Unknown);
     }

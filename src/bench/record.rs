@@ -2,6 +2,7 @@
 //! [metrics](crate::metrics) define them.
 
 use super::times::Statistics;
+use crate::reference::Comparison;
 use crate::settings::Settings;
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
@@ -111,7 +112,7 @@ pub struct Run {
     pub agreement: Option<Agreement>,
     /// What it takes of the device's memory, or of the host's if it uses no device.
     pub memory: Memory,
-    /// Splats that cover a pixel of the object, on average; none if it is not known.
+    /// Discs over a point of the surface, on average, before any filter widens them; none if it is not known.
     pub overlap: Option<f64>,
     /// Its entry in [`Session::exhibits`].
     pub exhibit: Option<usize>,
@@ -131,7 +132,7 @@ pub enum Figure {
     ScalingPoints,
     /// Time against the picture's size.
     ScalingSize,
-    /// Time against the number of splats that cover a pixel.
+    /// Time against the number of discs over a point of the surface.
     ScalingOverlap,
     /// Multiples of what a plain program on the CPU takes.
     Yardstick,
@@ -178,7 +179,8 @@ pub struct Time {
     pub passes: Vec<Pass>,
     /// All passes together, frame by frame, ms.
     pub device: Option<Statistics>,
-    /// `wall.median` as a multiple of the yardstick's for the same scene, size and settings, measured in the same session.
+    /// `wall.median` as a multiple of the yardstick's for the same scene, points and size with the shipped settings, measured in the same
+    /// session.
     pub multiple: Option<f64>,
 }
 
@@ -211,9 +213,9 @@ pub struct Error {
 pub struct Terms {
     /// Of the pixels that the truth or the picture covers in part, or one of both not at all.
     pub silhouette: f64,
-    /// Of the pixels that both cover wholly: the texture, as far as samples and filter lose it.
+    /// Of the pixels that both cover wholly: texture and shade, as far as samples and filter lose them.
     pub inside: f64,
-    /// By how much the surfels that the surface itself hides change the picture: what ε lets through, and what visibility misses.
+    /// By how much the surfels of hidden sheets change the picture: what ε lets through, and what visibility misses.
     pub hidden: Option<f64>,
     /// By how much rounding to float32 changes the picture: its difference from the float64 reference.
     pub precision: Option<f64>,
@@ -331,6 +333,21 @@ impl Setting {
     /// What surfel does unless it is told otherwise.
     pub fn shipped() -> Self {
         Self::of(&Settings::default())
+    }
+}
+
+impl Agreement {
+    /// What a comparison with the reference found. What is no number is the largest there is: JSON has neither NaN nor infinity.
+    pub fn of(found: &Comparison) -> Self {
+        let finite = |value: f64| if value.is_finite() { value } else { f64::MAX };
+        Self {
+            object: found.object_pixels as u64,
+            doubtful: found.doubtful as u64,
+            failed: found.failed as u64,
+            colour: finite(found.worst.colour),
+            normal: finite(found.worst.normal),
+            depth: finite(found.worst.depth),
+        }
     }
 }
 

@@ -22,7 +22,7 @@ use std::sync::Arc;
 /// Frames of the path along which flicker is measured.
 const PATH: u32 = 6;
 
-/// How far the picture moves from one of them to the next, px: less than half, and no simple fraction.
+/// How far the picture moves from one of them to the next as the eye turns, px: less than half, and no simple fraction.
 const STEP: f64 = 0.37;
 
 /// How runs are made.
@@ -74,14 +74,13 @@ impl Runner {
     /// Carries out a plan; what cannot be rendered is refused in the result.
     ///
     /// # Errors
-    /// If the device is lost, or the scene is none.
+    /// If the device is lost.
     pub fn run(&mut self, plan: &Plan) -> Result<Run> {
-        let job = self.job(plan)?;
-        let mut run = blank(&job);
-        match self.fill(&job, &mut run) {
+        let mut run = blank(plan);
+        match self.job(plan).and_then(|job| self.fill(&job, &mut run)) {
             Ok(()) => Ok(run),
             Err(error) if error.is_device_lost() => Err(error),
-            Err(error) => Ok(Run { refused: Some(error.to_string()), ..blank(&job) }),
+            Err(error) => Ok(Run { refused: Some(error.to_string()), ..blank(plan) }),
         }
     }
 
@@ -114,6 +113,8 @@ impl Runner {
 
     fn fill(&mut self, job: &Job<'_>, run: &mut Run) -> Result<()> {
         let (plan, settings) = (job.plan, &job.plan.settings);
+        run.points = job.surfels.len() as u64;
+        run.overlap = job.subject.area().map(|area| overlap(&job.surfels, area));
         let mut ready = self.ready(plan.engine, &job.surfels, plan.size)?;
         if plan.wants.time {
             run.time = Some(stopwatch::time(&mut *ready, &job.camera, settings, &self.options.effort)?);
@@ -194,8 +195,17 @@ impl Runner {
         run: &mut Run,
     ) -> Result<()> {
         let seen = hidden::without(&job.surfels, job.subject.surface(), &job.camera);
-        let mut ready = self.ready(job.plan.engine, &seen, job.plan.size)?;
-        let clean = ready.picture(&job.camera, &job.plan.settings)?;
+        let clean = match seen.is_empty() {
+            true => Picture {
+                size: picture.size,
+                colour: vec![[0.0; 4]; picture.colour.len()],
+                ..Default::default()
+            },
+            false => {
+                let mut ready = self.ready(job.plan.engine, &seen, job.plan.size)?;
+                ready.picture(&job.camera, &job.plan.settings)?
+            }
+        };
         if let Some(error) = &mut run.error {
             error.terms.hidden = Some(terms::distance(picture, &clean));
             error.terms.precision = expected.map(|expected| terms::distance(picture, expected));
@@ -257,13 +267,12 @@ fn filter_name(options: &truth::Options) -> String {
 }
 
 /// A run of which nothing is known yet.
-fn blank(job: &Job<'_>) -> Run {
-    let plan = job.plan;
+fn blank(plan: &Plan) -> Run {
     Run {
         suite: plan.suite.into(),
         figure: plan.figure,
         scene: plan.scene.clone(),
-        points: job.surfels.len() as u64,
+        points: plan.points,
         size: plan.size,
         contender: plan.engine.contender(),
         setting: Setting::of(&plan.settings),
@@ -272,7 +281,7 @@ fn blank(job: &Job<'_>) -> Run {
         error: None,
         agreement: None,
         memory: Default::default(),
-        overlap: job.subject.area().map(|area| overlap(&job.surfels, area)),
+        overlap: None,
         exhibit: None,
     }
 }

@@ -1,12 +1,11 @@
 //! One call of the bench: all runs of some suites on one machine.
 
-use super::record::{Agreement, Gpu, Host, Made, Run, SPLATS, Session};
+use super::record::{Gpu, Host, Made, Run, SPLATS, Session, Setting, Sweep};
 use super::runner::{Options, Runner};
 use super::suites::{Own, Suite};
 use super::{code, hard};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::progress::Progress;
-use crate::reference::Comparison;
 use crate::vk::Device;
 use jiff::Timestamp;
 use std::path::PathBuf;
@@ -33,41 +32,42 @@ pub struct Wanted {
     pub command: String,
 }
 
-/// Measures.
-///
-/// # Errors
-/// If the device is lost; what else cannot be rendered is refused in its run.
-pub fn measure(wanted: &Wanted, progress: &dyn Progress) -> Result<Session> {
+/// Measures. What cannot be rendered is refused in its run; what ended everything early, such as the loss of the device, stands beside what
+/// was measured until then.
+pub fn measure(wanted: &Wanted, progress: &dyn Progress) -> (Session, Result<()>) {
     let (date, start) = (Timestamp::now(), Instant::now());
     let plans = |suite: &Suite| suite.plans(&wanted.own);
     let total = wanted.suites.iter().map(|suite| plans(suite).len() as u64).sum();
     let (mut runs, mut exhibits) = (Vec::new(), Vec::new());
     progress.at(STAGE, 0, total);
-    for suite in &wanted.suites {
+    let mut ended = wanted.suites.iter().try_for_each(|suite| {
         let options = Options {
             device: wanted.device.clone(),
             cache: wanted.cache.clone(),
             truth: suite.truth(),
             effort: suite.effort(),
         };
-        let mut runner = Runner::new(options, wanted.own.subjects.clone());
-        for plan in plans(suite) {
+        let (mut runner, before) = (Runner::new(options, wanted.own.subjects.clone()), exhibits.len());
+        let done = plans(suite).iter().try_for_each(|plan| {
             let begin = Instant::now();
-            let mut run = runner.run(&plan)?;
+            let mut run = runner.run(plan)?;
             log::info!("{} {} {:?}: {:.2?}", plan.scene, plan.points, plan.figure, begin.elapsed());
-            run.exhibit.iter_mut().for_each(|index| *index += exhibits.len());
+            run.exhibit.iter_mut().for_each(|index| *index += before);
             runs.push(run);
             progress.at(STAGE, runs.len() as u64, total);
-        }
+            Ok(())
+        });
         exhibits.extend(runner.exhibits());
-    }
+        done
+    });
     compare_times(&mut runs);
-    let sweeps = match &wanted.device {
-        Some(device) if wanted.suites.contains(&Suite::Hard) => {
-            hard::run(device, &hard::Options::default(), progress)?
+    let mut sweeps = Vec::new();
+    if ended.is_ok() && wanted.suites.contains(&Suite::Hard) {
+        match hard(wanted, progress) {
+            Ok(swept) => sweeps = swept,
+            Err(error) => ended = Err(error),
         }
-        _ => Vec::new(),
-    };
+    }
     let made = Made {
         version: env!("CARGO_PKG_VERSION").into(),
         commit: code::COMMIT.into(),
@@ -79,22 +79,33 @@ pub fn measure(wanted: &Wanted, progress: &dyn Progress) -> Result<Session> {
         host: host(),
         device: wanted.device.as_deref().map(|device| gpu(device, wanted.validated)),
     };
-    Ok(Session { made, runs, sweeps, exhibits })
+    (Session { made, runs, sweeps, exhibits }, ended)
 }
 
-/// Tells times as multiples of what the yardstick's splats take for the same points, pixels and settings.
+fn hard(wanted: &Wanted, progress: &dyn Progress) -> Result<Vec<Sweep>> {
+    let none = || Error::NoDevice("the hard cases need one: see `surfel devices`".into());
+    hard::run(wanted.device.as_ref().ok_or_else(none)?, &hard::Options::default(), progress)
+}
+
+/// Tells times as multiples of what the yardstick takes for as many points and pixels with the shipped settings. Of several that of the
+/// same suite and figure counts, which ran at the same time.
 fn compare_times(runs: &mut [Run]) {
-    let yardsticks: Vec<(Run, f64)> = runs
-        .iter()
-        .filter(|run| run.contender.method == SPLATS)
-        .filter_map(|run| Some((run.clone(), run.ms()?)))
-        .collect();
-    let alike = |a: &Run, b: &Run| {
-        let what = |run: &Run| (run.points, run.size, run.overlap);
-        a.scene == b.scene && what(a) == what(b) && a.setting == b.setting
+    let shipped = |run: &&Run| {
+        let Setting { cutoff, lowpass, widen, epsilon, cull, .. } = Setting::shipped();
+        let own = &run.setting;
+        (own.cutoff, own.lowpass, own.epsilon) == (cutoff, lowpass, epsilon)
+            && own.widen == widen
+            && own.cull == cull
     };
+    let yardsticks = runs.iter().filter(|run| run.contender.method == SPLATS).filter(shipped);
+    let yardsticks: Vec<(Run, f64)> = yardsticks.filter_map(|run| Some((run.clone(), run.ms()?))).collect();
     for run in runs {
-        let unit = yardsticks.iter().find(|(other, _)| alike(run, other)).map(|(_, ms)| *ms);
+        let alike = yardsticks.iter().filter(|(other, _)| {
+            let what = |run: &Run| (run.points, run.size, run.overlap);
+            run.scene == other.scene && what(run) == what(other)
+        });
+        let distance = |other: &Run| (run.suite != other.suite, run.figure != other.figure);
+        let unit = alike.min_by_key(|(other, _)| distance(other)).map(|(_, ms)| *ms);
         if let (Some(time), Some(unit)) = (&mut run.time, unit) {
             time.multiple = Some(time.wall.median / unit);
         }
@@ -115,18 +126,4 @@ fn host() -> Host {
 fn gpu(device: &Device, validated: bool) -> Gpu {
     let description = device.description();
     Gpu { name: description.name.clone(), driver: description.driver.clone(), validated }
-}
-
-impl Agreement {
-    /// What a comparison with the reference found.
-    pub fn of(found: &Comparison) -> Self {
-        Self {
-            object: found.object_pixels as u64,
-            doubtful: found.doubtful as u64,
-            failed: found.failed as u64,
-            colour: found.worst.colour,
-            normal: found.worst.normal,
-            depth: found.worst.depth,
-        }
-    }
 }

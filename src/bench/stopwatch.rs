@@ -22,20 +22,33 @@ pub struct Effort {
     pub budget: Duration,
 }
 
+/// What a device that slows down when idle is given to speed up.
+const WARM: Duration = Duration::from_millis(50);
+
 impl Default for Effort {
     fn default() -> Self {
-        Self { warmup: 2, least: 7, most: 50, budget: Duration::from_secs(2) }
+        Self { warmup: 1, least: 7, most: 1000, budget: Duration::from_secs(2) }
     }
+}
+
+/// Renders frames that do not count until there were enough and the device has had the time to speed up; how many.
+fn warm_up(ready: &mut dyn Ready, camera: &Camera, settings: &Settings, effort: &Effort) -> Result<usize> {
+    let (start, mut frames) = (Instant::now(), 0);
+    while frames < effort.warmup || (frames < effort.most && start.elapsed() < WARM) {
+        ready.frame(camera, settings, false)?;
+        frames += 1;
+    }
+    Ok(frames)
 }
 
 /// Times frames. Whole frames are timed without timestamps, passes in other frames, which take turns: so neither disturbs the other, and
 /// whatever else the machine does disturbs both alike.
 pub fn time(ready: &mut dyn Ready, camera: &Camera, settings: &Settings, effort: &Effort) -> Result<Time> {
-    for _ in 0..effort.warmup {
-        ready.frame(camera, settings, false)?;
-    }
+    let warmup = warm_up(ready, camera, settings, effort)?;
     let (mut whole, mut cpu, mut sums) = (Vec::new(), Vec::new(), Vec::new());
     let mut passes = Times::default();
+    // Its first frame does not count.
+    passes.add(Duration::ZERO, &ready.frame(camera, settings, true)?);
     let start = Instant::now();
     while whole.len() < effort.least || (whole.len() < effort.most && start.elapsed() < effort.budget) {
         let (begin, spent) = (Instant::now(), ProcessTime::now());
@@ -51,7 +64,7 @@ pub fn time(ready: &mut dyn Ready, camera: &Camera, settings: &Settings, effort:
     let pass = |(name, ms): (&'static str, Statistics)| Pass { name: name.into(), ms };
     Ok(Time {
         frames: whole.len(),
-        warmup: effort.warmup,
+        warmup: warmup + 1,
         wall: Statistics::of(&whole).unwrap_or_default(),
         cpu: Statistics::of(&cpu).unwrap_or_default(),
         passes: passes.passes().map(pass).collect(),

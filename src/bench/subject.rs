@@ -55,6 +55,11 @@ impl Subject {
     /// # Errors
     /// [`Error::Usage`] if there is none of that name, or a parameter is wrong.
     pub fn scene(name: &str) -> Result<Self> {
+        if name.split(['?', '&']).any(|part| part.starts_with("points=")) {
+            return Err(Error::Usage(format!(
+                "{name}: leave out its number of points, which is measured over"
+            )));
+        }
         let (viewpoint, shape) = (scenes::camera(name)?, Shape::Built(Built(scenes::surface(name)?)));
         Ok(Self { name: name.into(), digest: name.into(), viewpoint, shape })
     }
@@ -83,7 +88,8 @@ impl Subject {
         }
     }
 
-    /// So many surfels of it, in Morton order.
+    /// So many surfels of it, in Morton order. Of a scan, normals are the file's or estimated of the points that are left, at any number of
+    /// them: so that numbers differ in nothing else.
     ///
     /// # Errors
     /// As [`scenes::open`]; [`Error::Input`] if a scan's points do not make surfels.
@@ -100,17 +106,16 @@ impl Subject {
         }
     }
 
-    /// The camera of a picture of `size` px, the same however many points there are, after the eye has gone `angle`, rad, around what it
-    /// looks at.
+    /// The camera of a picture of `size` px, the same however many points there are, after it has turned by `angle`, rad, where it stands.
     ///
     /// # Errors
     /// [`Error::Usage`] if no camera sees it so.
     pub fn camera(&self, angle: f64, size: [u32; 2]) -> Result<Camera> {
         let Viewpoint { eye, target, up, .. } = self.viewpoint;
-        let [eye, target, up] = [eye, target, up].map(DVec3::from);
-        let turned = DQuat::from_axis_angle(up.normalize_or(DVec3::Y), angle) * (eye - target);
-        let eye = if angle == 0.0 { eye } else { target + turned };
-        let viewpoint = Viewpoint { eye: eye.to_array(), ..self.viewpoint };
+        let [eye, target_then, up] = [eye, target, up].map(DVec3::from);
+        let turned = DQuat::from_axis_angle(up.normalize_or(DVec3::Y), angle) * (target_then - eye);
+        let target = if angle == 0.0 { target } else { (eye + turned).to_array() };
+        let viewpoint = Viewpoint { target, ..self.viewpoint };
         viewpoint.camera(f64::from(size[0]) / f64::from(size[1]), &self.bounds())
     }
 

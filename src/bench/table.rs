@@ -1,6 +1,7 @@
 //! Results on a terminal: a line a run, a line a sweep.
 
-use super::record::{Agreement, Results, Run, Session, Sweep};
+use super::hard::EXCUSED;
+use super::record::{Agreement, Figure, Results, Run, Session, Sweep};
 use super::show;
 use std::fmt::Write;
 
@@ -8,11 +9,12 @@ use std::fmt::Write;
 pub const WIDTH: usize = 160;
 
 /// Columns of a table, with what they are aligned by.
-const HEADERS: [(&str, Align); 16] = [
+const HEADERS: [(&str, Align); 17] = [
     ("points", Align::Right),
     ("size px", Align::Right),
     ("contender", Align::Left),
     ("settings", Align::Left),
+    ("overlap", Align::Right),
     ("wall ms (min–max)", Align::Left),
     ("CPU ms", Align::Right),
     ("× yard", Align::Right),
@@ -140,6 +142,11 @@ fn cells(run: &Run, differing: [bool; 6]) -> Vec<String> {
         show::size(run.size),
         run.contender.label(),
         show::told(&run.setting, differing),
+        // Elsewhere it is the scene's own.
+        run.overlap
+            .filter(|_| run.figure == Figure::ScalingOverlap)
+            .map(|v| show::significant(v, 2))
+            .unwrap_or_default(),
     ];
     let rest = [
         wall(run).unwrap_or_default(),
@@ -170,7 +177,7 @@ fn agreement(agreement: &Agreement) -> String {
 fn sweeps(session: &Session) -> String {
     let mut text = String::new();
     if !session.sweeps.is_empty() {
-        text += "\nhard cases: float32 against float64, worst of all points\n";
+        text += "\nhard cases: float32 against float64, worst of all points but those beyond float32\n";
     }
     let longest = session.sweeps.iter().map(|sweep| sweep.name.chars().count()).max().unwrap_or(0);
     for sweep in &session.sweeps {
@@ -184,10 +191,12 @@ fn sweep_line(sweep: &Sweep, longest: usize) -> String {
     let worst = |of: fn(&Agreement) -> f64| {
         // Not `f64::max`, which hides NaN.
         let larger = |a: f64, b: f64| if b.is_nan() || b > a { b } else { a };
-        made().map(|point| of(&point.agreement)).fold(0.0, larger)
+        let held = made().filter(|point| !point.note.starts_with(EXCUSED));
+        held.map(|point| of(&point.agreement)).fold(0.0, larger)
     };
     let [colour, normal, depth] = [worst(|a| a.colour), worst(|a| a.normal), worst(|a| a.depth)];
-    let failed: u64 = made().map(|point| point.agreement.failed).sum();
+    let (excused, held): (Vec<_>, Vec<_>) = made().partition(|point| point.note.starts_with(EXCUSED));
+    let failed: u64 = held.iter().map(|point| point.agreement.failed).sum();
     let faults = made().map(|point| point.faults);
     let [non_finite, uncovered, overcovered] = faults.fold([0; 3], |sum, faults| {
         [sum[0] + faults.non_finite, sum[1] + faults.uncovered, sum[2] + faults.overcovered]
@@ -196,8 +205,10 @@ fn sweep_line(sweep: &Sweep, longest: usize) -> String {
     let refused = sweep.points.len() - made().count();
     format!(
         "{name}  {:>3} points  colour {colour:.0e}  normal {normal:.0e}  depth {depth:.0e}  {failed} px wrong, \
-         {non_finite} not finite, {uncovered} uncovered, {overcovered} overcovered, {refused} points refused",
-        sweep.points.len()
+         {non_finite} not finite, {uncovered} uncovered, {overcovered} overcovered, {refused} points refused, \
+         {} beyond float32",
+        sweep.points.len(),
+        excused.len()
     )
 }
 

@@ -4,8 +4,9 @@ use super::args::Bench;
 use super::files::{self, cache_folder, read_json};
 use super::{inputs, progress, vulkan};
 use std::ffi::OsString;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::rc::Rc;
+use std::sync::Arc;
 use surfel::bench::record::FORMAT;
 use surfel::bench::subject::Subject;
 use surfel::bench::suites::Own;
@@ -24,7 +25,10 @@ pub fn run(args: &Bench) -> Result<()> {
     let suites = suites(args);
     if !suites.is_empty() {
         let bars = progress::bars(args.quiet);
-        results.sessions.push(measure(&wanted(args, suites, &*bars)?, &*bars)?);
+        let (session, ended) = measure(&wanted(args, suites, &*bars)?, &*bars);
+        results.sessions.push(session);
+        // What was measured before something went wrong is shown all the same.
+        return show(args, &results).and(ended);
     }
     show(args, &results)
 }
@@ -79,14 +83,23 @@ fn hard_file(path: &Path) -> OsString {
 /// Those that were asked for; the first impression unless there is something else to show.
 fn suites(args: &Bench) -> Vec<Suite> {
     let own = (!args.inputs.is_empty()).then_some(Suite::Own);
-    match args.suite.is_empty() && args.from.is_empty() && own.is_none() {
-        true => vec![Suite::Quick],
-        false => args.suite.iter().map(|&suite| suite.into()).chain(own).collect(),
+    if args.suite.is_empty() && args.from.is_empty() && own.is_none() {
+        return vec![Suite::Quick];
     }
+    let mut suites = Vec::new();
+    for suite in args.suite.iter().map(|&suite| suite.into()).chain(own) {
+        if !suites.contains(&suite) {
+            suites.push(suite);
+        }
+    }
+    suites
 }
 
 fn subject(args: &Bench, input: &OsString, progress: &dyn Progress) -> Result<Rc<Subject>> {
     Ok(Rc::new(match inputs::scene(input) {
+        Some(scene) if args.truth.is_some() => {
+            return Err(Error::Usage(format!("{scene} is its own truth: give --truth beside files alone")));
+        }
         Some(scene) => Subject::scene(scene)?,
         None => Subject::scan(Path::new(input), args.truth.as_deref(), progress)?,
     }))
@@ -95,14 +108,42 @@ fn subject(args: &Bench, input: &OsString, progress: &dyn Progress) -> Result<Rc
 /// The command that repeats this, less where its results go.
 fn command(args: &Bench, suites: &[Suite]) -> String {
     let mut words = vec!["surfel bench".to_owned()];
-    words.extend(args.inputs.iter().map(|input| input.display().to_string()));
-    words.extend(args.truth.iter().map(|mesh| format!("--truth {}", mesh.display())));
-    let names: Vec<_> =
-        suites.iter().filter(|suite| **suite != Suite::Own).map(|suite| suite.name()).collect();
-    if !names.is_empty() {
-        words.push(format!("--suite {}", names.join(",")));
-    }
+    words.extend(args.inputs.iter().map(|input| quoted(&input.to_string_lossy())));
+    let mut option = |name: &str, value: Option<String>| {
+        words.extend(value.map(|value| format!("--{name} {}", quoted(&value))));
+    };
+    let path = |path: &Option<PathBuf>| path.as_ref().map(|path| path.display().to_string());
+    let list = |words: Vec<String>| (!words.is_empty()).then(|| words.join(","));
+    option("truth", path(&args.truth));
+    option("points", list(args.points.iter().map(u64::to_string).collect()));
+    option("size", args.size.map(|[width, height]| format!("{width}x{height}")));
+    let named = suites.iter().filter(|suite| **suite != Suite::Own);
+    option("suite", list(named.map(|suite| suite.name().to_owned()).collect()));
+    option("device", args.device.device.clone());
+    option("device-limits", path(&args.device.device_limits));
+    words.extend(args.device.validate.then(|| "--validate".into()));
     words.join(" ")
+}
+
+/// As a shell takes it for one word.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./:,=+@%".contains(c);
+    match !word.is_empty() && word.chars().all(plain) {
+        true => word.to_owned(),
+        false => format!("'{}'", word.replace('\'', r"'\''")),
+    }
+}
+
+/// None, which is said, where there is none: the yardstick needs no device.
+fn device(args: &Bench) -> Result<Option<Arc<Device>>> {
+    match Device::open(&vulkan::options(&args.device)?) {
+        Ok(device) => Ok(Some(device)),
+        Err(error @ Error::NoDevice(_)) if args.device.device.is_none() && !args.device.validate => {
+            log::warn!("{error}: what needs one is refused");
+            Ok(None)
+        }
+        Err(error) => Err(error),
+    }
 }
 
 fn wanted(args: &Bench, suites: Vec<Suite>, progress: &dyn Progress) -> Result<Wanted> {
@@ -118,19 +159,22 @@ fn wanted(args: &Bench, suites: Vec<Suite>, progress: &dyn Progress) -> Result<W
             points: args.points.clone(),
             size: args.size.unwrap_or(Own::default().size),
         },
-        device: Some(Device::open(&vulkan::options(&args.device)?)?),
+        device: device(args)?,
         validated: args.device.validate,
         cache: cache_folder().filter(|_| !args.no_cache).map(|folder| folder.join("truth")),
     })
 }
 
 fn read(path: &Path) -> Result<Results> {
-    let results: Results = read_json(path)?;
-    match results.format == FORMAT {
-        true => Ok(results),
-        false => Err(Error::input(
+    #[derive(serde::Deserialize)]
+    struct Head {
+        format: u32,
+    }
+    match read_json(path)? {
+        Head { format: FORMAT } => read_json(path),
+        Head { format } => Err(Error::input(
             path.display().to_string(),
-            format!("format {} of results, not {FORMAT}: measure anew", results.format),
+            format!("format {format} of results, not {FORMAT}: measure anew"),
         )),
     }
 }
@@ -139,14 +183,18 @@ fn to_json(results: &Results) -> Result<String> {
     serde_json::to_string_pretty(results).map_err(|error| Error::Usage(format!("the results: {error}")))
 }
 
-/// Refuses places that cannot be written to.
+/// Refuses places that cannot be written to, and makes the page's folder: what was measured for long should not be lost for want of one.
 fn check_outputs(args: &Bench) -> Result<()> {
     [&args.json, &args.csv].into_iter().flatten().try_for_each(files::check)?;
-    match &args.report {
-        Some(folder) if folder.exists() && !folder.is_dir() => {
-            Err(Error::Usage(format!("--report {}: is no folder: name another", folder.display())))
-        }
-        Some(folder) if folder.is_dir() => atomic::check(&folder.join("index.html")),
-        _ => Ok(()),
+    if let (Some(json), Some(csv)) = (&args.json, &args.csv)
+        && files::is_same(json, csv)
+    {
+        return Err(Error::Usage("--json and --csv go to one place: name two".into()));
     }
+    let Some(folder) = &args.report else { return Ok(()) };
+    if folder.exists() && !folder.is_dir() {
+        return Err(Error::Usage(format!("--report {}: is no folder: name another", folder.display())));
+    }
+    std::fs::create_dir_all(folder).map_err(Error::io(folder, "cannot make the folder"))?;
+    atomic::check(&folder.join("index.html"))
 }

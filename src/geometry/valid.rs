@@ -21,8 +21,9 @@ impl Surfels {
         let (Some(position), Some(normal)) = (at(&self.positions), at(&self.normals)) else { return false };
         let sized = self.radii.get(index).is_some_and(|&radius| radius > 0.0 && radius <= Self::LARGEST);
         let shaped = self.ellipses.as_ref().is_none_or(|ellipses| {
-            let fits =
-                |e: &super::Ellipse| is_unit(normal.cross(e.major)) && e.aspect > 0.0 && e.aspect <= 1.0;
+            let fits = |e: &super::Ellipse| {
+                is_unit(e.major) && is_unit(normal.cross(e.major)) && e.aspect > 0.0 && e.aspect <= 1.0
+            };
             ellipses.get(index).is_some_and(fits)
         });
         let coloured = match &self.colours {

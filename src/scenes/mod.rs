@@ -48,6 +48,14 @@ pub fn camera(text: &str) -> Result<Viewpoint> {
     Ok(Query::parse(text)?.scene.viewpoint)
 }
 
+/// Whether a scene has a texture: where it has none, what is seen of its shape is light and shade.
+///
+/// # Errors
+/// Like [`surface`].
+pub fn is_textured(text: &str) -> Result<bool> {
+    Ok(Query::parse(text)?.pattern() != Pattern::Plain)
+}
+
 /// Makes the surfels of a scene, in Morton order.
 ///
 /// # Errors

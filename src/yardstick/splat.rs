@@ -27,6 +27,9 @@ pub(super) struct Splat {
     pub epsilon: f32,
 }
 
+/// Least q, relative to (w / F)²: nearer the eye plane q has lost the digits that tell where the ellipse is.
+const LEAST_CLEARANCE: f32 = 1e-4;
+
 /// Mark of a surfel whose normal points away from the eye.
 pub(super) const FLIPPED: u32 = 1 << 31;
 
@@ -169,7 +172,7 @@ impl<'a> Footprint<'a> {
         // (w / F)² - g·g, which as a product keeps its digits.
         let reach = w * self.inverse_cutoff;
         let q = (reach - lean) * (reach + lean);
-        if q.is_nan() || q <= 0.0 {
+        if q.is_nan() || q <= LEAST_CLEARANCE * reach * reach {
             return None;
         }
         let inverse = 1.0 / (cutoff * q.sqrt());

@@ -137,7 +137,8 @@ impl Tile {
         let variance = attribute_variance(splat.shape.variance, frame.settings);
         let shape = Shape { variance, ..splat.shape };
         let Some(cover) = Cover::new(splat, &shape, frame.settings.cutoff, self.corner()) else { return };
-        let amplitude = splat.shape.root / (variance.x * variance.y).sqrt();
+        // Their product would overflow on a very large splat.
+        let amplitude = splat.shape.root / variance.x.sqrt() / variance.y.sqrt();
         let attributes = frame.streams.attributes(splat.surfel);
         let [far, near] = frame.view.keys.map(Vec4::splat);
         cover.each(|Block { index, distance, key, inside }| {

@@ -66,4 +66,7 @@ fn what_cannot_be_is_refused_before_anything_is_measured() {
     assert!(refused("--suite slow", 2).contains("slow"));
     assert!(refused("--points 100", 2).contains("INPUT"));
     assert!(refused("scene:none", 2).contains("no such scene"));
+    assert!(refused("scene:torus?points=5", 2).contains("leave out its number of points"));
+    assert!(refused("scene:torus --truth mesh.ply", 2).contains("its own truth"));
+    assert!(refused("--from later.json --json a --csv a", 2).contains("name two"));
 }

@@ -21,15 +21,7 @@ pub fn judge(expected: &Expected, picture: &Picture) -> Result<(Agreement, Fault
         }
         *(if covered { &mut faults.uncovered } else { &mut faults.overcovered }) += 1;
     }
-    let agreement = Agreement {
-        object: found.object_pixels as u64,
-        doubtful: found.doubtful as u64,
-        failed: found.failed as u64,
-        colour: found.worst.colour,
-        normal: found.worst.normal,
-        depth: found.worst.depth,
-    };
-    Ok((agreement, faults))
+    Ok((Agreement::of(&found), faults))
 }
 
 /// The picture with its pixels that hold NaN or infinity emptied, and their number.

@@ -2,6 +2,7 @@
 
 use super::page::Page;
 use super::plot::{Alarm, Bar, Line, Plot, Scale, Style};
+use crate::bench::hard::EXCUSED;
 use crate::bench::record::{Agreement, Contender, Faults, Session, Sweep, SweepPoint};
 use crate::bench::show;
 use maud::{Markup, html};
@@ -9,6 +10,9 @@ use std::io;
 
 /// What is compared: name, largest difference allowed, and where it is kept.
 type Quantity = (&'static str, f64, fn(&Agreement) -> f64);
+
+/// Remarks that are shown at once.
+const FEW: usize = 4;
 
 const QUANTITIES: [Quantity; 3] =
     [("colour", 2e-4, |a| a.colour), ("normal", 2e-4, |a| a.normal), ("depth", 1e-5, |a| a.depth)];
@@ -26,9 +30,13 @@ pub fn part(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>
         plots.push(html! { div {
             @if let Some(plot) = &drawn { (plot) } @else { h3 { (title(sweep)) } }
             p.caption { (sweep.about) }
-            @match words.is_empty() {
-                true => { p.fine { "No fault at any point, and no pixel that is wrong." } }
-                false => { ul.faults { @for (grave, text) in &words { li.grave[*grave] { (text) } } } }
+            @if words.iter().all(|(grave, _)| !grave) {
+                p.fine { "No fault at any point, and no pixel that is wrong where float32 can be right." }
+            }
+            @if words.len() <= FEW {
+                ul.faults { @for (grave, text) in &words { li.grave[*grave] { (text) } } }
+            } @else {
+                details { summary { (words.len()) " remarks" } ul.faults { @for (grave, text) in &words { li.grave[*grave] { (text) } } } }
             }
         } });
     }
@@ -36,7 +44,7 @@ pub fn part(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>
         p {
             "The largest difference from the float64 reference, outside the pixels that hang on a decision within rounding: colour and α "
             "(absolute), normal (each coordinate), depth (relative). Dashed lines are the bars, 2·10⁻⁴ and 10⁻⁵. Crosses at the top mark "
-            "points with wrong pixels or faults, and those that were refused."
+            "points with faults, or with wrong pixels where float32 can be right, and those that were refused."
         }
         div.plots { @for plot in &plots { (plot) } }
     }))
@@ -92,8 +100,10 @@ fn contenders(sweep: &Sweep) -> Vec<&Contender> {
     contenders
 }
 
+/// Where float32 cannot agree, wrong pixels are no fault; a hole always is.
 fn is_grave(point: &SweepPoint) -> bool {
-    point.refused.is_none() && (point.agreement.failed > 0 || !point.faults.is_none())
+    let wrong = point.agreement.failed > 0 && !point.note.starts_with(EXCUSED);
+    point.refused.is_none() && (wrong || !point.faults.is_none())
 }
 
 /// What is to be told of the points: whether it is a fault, and what.

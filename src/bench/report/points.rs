@@ -32,11 +32,11 @@ pub fn part(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>
     }
     Ok((!plots.is_empty()).then(|| html! {
         p {
-            "silhouette² + texture² = RMSE². The others are how far the picture would move without their cause, and overlap with these "
+            "silhouette² + inside² = RMSE². The others are how far the picture would move without their cause, and overlap with these "
             "two: " a href="#terms" { "definitions" } ". The error counts as falling between two numbers of points if the slope of "
             "log RMSE over log points is below " (show::significant(SLOPE, 2)) ", that is by a fifth or more with ten times the points. What is "
             "left is put down to a cause that alone makes up " (show::significant(100.0 * SHARE, 2)) " % or more of the RMSE, otherwise to the "
-            "larger of silhouette and texture."
+            "larger of silhouette and inside, which is texture, or shade where there is no texture."
         }
         div.plots { @for plot in &plots { (plot) } }
     }))
@@ -66,7 +66,7 @@ fn lines(runs: &[&Run]) -> Vec<Line> {
     let terms: [Term; 6] = [
         ("RMSE", Style::nth(6), |error| error.metrics.get("rmse").copied()),
         ("silhouette", Style { marker: 1, ..Style::nth(0) }, |error| Some(error.terms.silhouette)),
-        ("texture", Style { marker: 2, ..Style::nth(1) }, |error| Some(error.terms.inside)),
+        ("inside", Style { marker: 2, ..Style::nth(1) }, |error| Some(error.terms.inside)),
         ("hidden surfels (ε)", Style { marker: 4, ..Style::nth(2) }, |error| error.terms.hidden),
         ("precision", Style::nth(3), |error| error.terms.precision),
         ("truth's own error", Style { dashed: true, hollow: true, ..Style::nth(5) }, |error| {
@@ -117,7 +117,7 @@ fn sentence(runs: &[&Run]) -> String {
 fn causes(run: &&Run) -> String {
     let Some(error) = &run.error else { return String::new() };
     let causes = [
-        ("ε", error.terms.hidden),
+        ("hidden surfels", error.terms.hidden),
         ("precision", error.terms.precision),
         ("the truth", Some(error.truth_rms)),
     ];

@@ -1,4 +1,4 @@
-//! Time against the number of points, the picture's size and the number of splats that cover a pixel.
+//! Time against the number of points, the picture's size and the number of discs over a point of the surface.
 
 use super::page::{Page, grouped};
 use super::plot::{Line, Plot, Scale, Style};
@@ -35,7 +35,7 @@ const FIGURES: [Over; 3] = [
         figure: Figure::ScalingOverlap,
         name: "overlap",
         title: "overlap",
-        axis: "splats that cover a pixel, mean",
+        axis: "discs over a point of the surface",
         of: |run| run.overlap,
     },
 ];

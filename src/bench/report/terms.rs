@@ -21,12 +21,12 @@ fn terms() -> Markup {
             "the part of the RMSE in pixels that the truth or the picture covers in part, or one of both not at all",
         ),
         (
-            "texture",
-            "the part in pixels that both cover wholly, as far as samples and filter lose it; silhouette² + texture² = RMSE²",
+            "inside",
+            "the part in pixels that both cover wholly, texture or shade, as far as samples and filter lose it; silhouette² + inside² = RMSE²",
         ),
         (
             "hidden surfels (ε)",
-            "by how much the surfels that the surface itself hides change the picture: what ε lets through, and what visibility misses",
+            "by how much the surfels of hidden sheets change the picture: what ε lets through, and what visibility misses",
         ),
         (
             "precision",
@@ -36,14 +36,14 @@ fn terms() -> Markup {
             "truth's own error",
             "root mean square of the truth's standard error, estimated on the careful side",
         ),
-        ("overlap", "splats that cover a pixel of the object, on average"),
+        ("overlap", "discs over a point of the surface, on average, before any filter widens them"),
         (
             "vs f64",
             "largest difference of linear colour and α from the float64 reference outside the pixels in doubt",
         ),
         (
             "× yardstick",
-            "median wall time over that of a plain native renderer for the same scene, size and settings in the same session",
+            "median wall time over that of a plain native renderer for the same scene, points and size with the shipped settings, in the same session",
         ),
     ];
     html! { dl { @for (term, meaning) in terms { dt { (term) } dd { (meaning) } } } }

@@ -1,39 +1,35 @@
 //! Every scene, at every density.
 
 use super::{Suite, aliasing, lowpass, plan, yardstick};
-use crate::bench::engine::Engine;
 use crate::bench::plan::{Plan, Wants};
 use crate::bench::record::Figure;
 use crate::scenes;
 use crate::yardstick::Kind;
-use crate::{Precision, Rasterizer};
 
-const SIZE: [u32; 2] = [768, 768];
+const SIZE: [u32; 2] = [512, 512];
 const POINTS: [u64; 5] = [10_000, 30_000, 100_000, 300_000, 1_000_000];
 
 pub(super) fn plans() -> Vec<Plan> {
     let scenes = || scenes::list().iter().map(|scene| scene.name);
     let mut plans: Vec<_> =
         scenes().flat_map(|scene| POINTS.map(|points| budget(scene, points))).flatten().collect();
-    for scene in ["scene:bumpy-sphere", "scene:plane"] {
-        for points in [100_000, 1_000_000] {
-            let (variances, cutoffs) = ([0.0, 0.25, 0.5, 0.75, 1.0], [1.5, 2.0, 2.5, 3.0, 4.0]);
-            plans.extend(lowpass(Suite::Full, scene, points, SIZE, &variances, &cutoffs));
-        }
+    let (variances, cutoffs) = ([0.0, 0.25, 0.5, 0.75, 1.0], [1.5, 2.0, 2.5, 3.0, 4.0]);
+    for (scene, points) in
+        [("scene:bumpy-sphere", 100_000), ("scene:bumpy-sphere", 1_000_000), ("scene:plane", 1_000_000)]
+    {
+        plans.extend(lowpass(Suite::Full, scene, points, SIZE, &variances, &cutoffs));
     }
     plans.extend(aliasing(Suite::Full, [256, 256]));
     plans
 }
 
-/// Every way to render.
+/// Smooth and sharp, and the yardstick.
 fn budget(scene: &str, points: u64) -> Vec<Plan> {
     let smooth = plan(Suite::Full, Figure::Budget, scene, points, SIZE);
     let mut sharp = smooth.clone();
     sharp.settings.lowpass = 0.0;
-    let draw = Engine::PerspectiveEwa { rasterizer: Some(Rasterizer::Draw), precision: Precision::Full };
-    let draw = Plan { engine: draw, ..smooth.clone() };
     let wants =
         Wants { terms: true, agreement: points <= 100_000, exhibit: points == 100_000, ..Wants::BOTH };
     let plain = [Kind::Splats, Kind::Pixels].map(|kind| yardstick(&smooth, kind));
-    [Plan { wants, ..smooth }, sharp, draw].into_iter().chain(plain).collect()
+    [Plan { wants, ..smooth }, sharp].into_iter().chain(plain).collect()
 }

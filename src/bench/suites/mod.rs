@@ -13,8 +13,8 @@ use super::plan::{Plan, Wants};
 use super::record::Figure;
 use super::stopwatch::Effort;
 use crate::settings::{Settings, Shading, Widen};
-use crate::truth;
 use crate::yardstick::Kind;
+use crate::{scenes, truth};
 use std::time::Duration;
 
 /// A suite.
@@ -65,8 +65,9 @@ impl Suite {
     /// How many frames are timed.
     pub fn effort(self) -> Effort {
         match self {
-            Self::Quick => Effort { warmup: 1, least: 3, most: 20, budget: Duration::from_millis(400) },
-            Self::Scaling => Effort { warmup: 1, least: 3, ..Effort::default() },
+            Self::Quick => Effort { least: 3, budget: Duration::from_millis(250), ..Effort::default() },
+            Self::Scaling => Effort { least: 3, ..Effort::default() },
+            Self::Full => Effort { least: 5, budget: Duration::from_millis(700), ..Effort::default() },
             _ => Effort::default(),
         }
     }
@@ -83,7 +84,7 @@ impl Suite {
 /// What the plans of a figure have in common: time and error of the default method with the default settings.
 fn plan(suite: Suite, figure: Figure, scene: &str, points: u64, size: [u32; 2]) -> Plan {
     // What has no texture has light and shade.
-    let textured = !["scene:part", "scene:slabs", "scene:tree"].contains(&scene);
+    let textured = scenes::is_textured(scene).unwrap_or(true);
     let shading = if textured { Shading::Colour } else { Shading::Lit };
     Plan {
         suite: suite.name(),
