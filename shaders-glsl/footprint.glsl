@@ -36,7 +36,7 @@ const uint INVALID = 4;   // marked by a radius of 0, or with an image too large
 const uint DRAWN = 5;
 
 // Least q, relative to (w / F)²: nearer the eye plane q has lost the digits that tell where the ellipse is.
-const float LEAST_CLEARANCE = 1e-4;
+const float LEAST_CLEARANCE = 1e-3;
 // Least √|V|, px², whose weight is surely above 0: less would hide what is behind and show nothing.
 const float LEAST_AREA = 1e-30;
 // Largest variance, px².

@@ -25,11 +25,13 @@ pub struct Settings {
 }
 
 impl Default for Settings {
+    /// What `surfel bench --suite full` supports: the cut-off beyond which time rises faster than error falls, and a filter that costs nothing
+    /// where splats are larger.
     fn default() -> Self {
         Self {
-            cutoff: 2.0,
+            cutoff: 2.5,
             lowpass: 1.0,
-            widen: Widen::All,
+            widen: Widen::Small,
             epsilon: 1.0,
             cull: Cull::None,
             shading: Shading::Lit,

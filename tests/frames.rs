@@ -75,7 +75,7 @@ fn pipelines_are_few_and_made_once_a_variant() {
         shaded(Shading::Normal),
         shaded(Shading::Depth),
         Settings { cull: Cull::Back, ..Default::default() },
-        Settings { widen: Widen::Small, ..Default::default() },
+        Settings { widen: Widen::All, ..Default::default() },
         lit,
     ];
     for (rasterizer, most) in [(Rasterizer::Draw, 4), (Rasterizer::Compute, 7)] {

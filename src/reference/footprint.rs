@@ -88,7 +88,7 @@ pub struct Splat {
 }
 
 /// Least `1 − (F |g| / w)²` of a splat that is drawn: nearer the eye plane float32 cannot tell where the ellipse is.
-const LEAST_CLEARANCE: f64 = 1e-4;
+const LEAST_CLEARANCE: f64 = 1e-3;
 /// Least `√|V|` of a splat that is drawn, px²: float32's weight of a smaller one may be 0.
 const LEAST_AREA: f64 = 1e-30;
 /// Largest variance along the major axis of a splat that is drawn, px²: float32 overflows beyond.
@@ -99,7 +99,7 @@ const LARGEST_VARIANCE: f64 = 1e30;
 pub enum Culled {
     /// Its centre is not in front of the eye (perspective only).
     Behind,
-    /// Its disc reaches the eye plane, or comes within 1/20000 of its distance to it.
+    /// Its disc reaches the eye plane, or comes within 1/2000 of its distance to it.
     EyePlane,
     /// It shows its back where [`Cull::Back`] is set, and is not two-sided.
     Back,

@@ -28,7 +28,7 @@ pub(super) struct Splat {
 }
 
 /// Least q, relative to (w / F)²: nearer the eye plane q has lost the digits that tell where the ellipse is.
-const LEAST_CLEARANCE: f32 = 1e-4;
+const LEAST_CLEARANCE: f32 = 1e-3;
 
 /// Mark of a surfel whose normal points away from the eye.
 pub(super) const FLIPPED: u32 = 1 << 31;

@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 use surfel::Settings;
 use surfel::geometry::{Camera, Colours, Surfels};
 use surfel::reference::Surfel;
-use surfel::settings::{Cull, DirectionalLight, Shading};
+use surfel::settings::{Cull, DirectionalLight, Shading, Widen};
 
 /// A scene, its cameras and the frame to render.
 pub struct Case {
@@ -30,7 +30,11 @@ pub struct Case {
 pub fn cases() -> Vec<Case> {
     let circles =
         [horizon(), edge_on(), sub_pixel(), huge(), inside(), far_origin(), orthographic(), off_centre()];
-    circles.into_iter().chain([ellipses(), two_sided()]).map(Case::without_undecided).collect()
+    let cases = circles.into_iter().chain([ellipses(), two_sided()]).map(Case::without_undecided);
+    // Every splat is widened, so that none is indifferent to the filter.
+    cases
+        .map(|case| Case { settings: Settings { widen: Widen::All, ..case.settings.clone() }, ..case })
+        .collect()
 }
 
 impl Case {

@@ -44,8 +44,8 @@ pub fn cases() -> [Case; 3] {
 }
 
 fn too_wide(degrees: f64, _: Precision) -> Option<&'static str> {
-    (degrees < 0.05).then_some(
-        "half a unit in the last place of an axis moves the image of a disc 50,000 px away by pixels' parts",
+    (degrees < 0.005).then_some(
+        "half a unit in the last place of an axis moves the image of a disc 500,000 px away by pixels' parts",
     )
 }
 

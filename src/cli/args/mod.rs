@@ -145,7 +145,7 @@ pub struct Look {
     #[arg(long, value_name = "VARIANCE_PX2", default_value_t = Settings::default().lowpass, allow_hyphen_values = true)]
     pub lowpass: f32,
     /// What the anti-aliasing filter widens
-    #[arg(long, value_enum, default_value = "all")]
+    #[arg(long, value_enum, default_value = "small")]
     pub widen: Widen,
     /// Where a splat's kernel ends, in standard deviations
     #[arg(long, value_name = "F", default_value_t = Settings::default().cutoff, allow_hyphen_values = true)]

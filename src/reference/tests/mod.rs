@@ -6,7 +6,7 @@ mod passes;
 
 use super::*;
 use crate::geometry::{Colours, Ellipse};
-use crate::settings::{Cull, Shading};
+use crate::settings::{Cull, Shading, Widen};
 use glam::{DMat2, DVec2, DVec3, DVec4};
 
 const SIZE: [u32; 2] = [64, 64];
@@ -22,8 +22,9 @@ fn parallel() -> Camera {
     Camera::orthographic([DVec3::ZERO, DVec3::Z, DVec3::NEG_Y], 4.0, 1.0, [0.1, 100.0]).unwrap()
 }
 
+/// A σ is half a radius, and every splat is widened.
 fn plain() -> Settings {
-    Settings { shading: Shading::Colour, ..Default::default() }
+    Settings { shading: Shading::Colour, cutoff: 2.0, widen: Widen::All, ..Default::default() }
 }
 
 fn disc(position: DVec3, normal: DVec3, radius: f64) -> Surfel {
