@@ -109,6 +109,22 @@ fn on_smooth_scenes_the_error_falls_as_points_rise() {
 }
 
 #[test]
+fn without_the_low_pass_the_horizon_aliases_and_the_error_says_so() {
+    let Some(mut runner) = runner(Vec::new()) else { return };
+    let mut with = |lowpass| {
+        let mut plan = plan("scene:plane?frequency=2", 300_000, 128);
+        plan.settings.lowpass = lowpass;
+        plan.wants.flicker = true;
+        let error = runner.run(&plan).unwrap().error.unwrap();
+        println!("H {lowpass}: inside {}, {:?}", error.terms.inside, error.metrics);
+        (error.terms.inside, error.metrics["flicker"])
+    };
+    let ((off, flickers), (on, steady)) = (with(0.0), with(1.0));
+    assert!(off > 1.7 * on, "{off} {on}");
+    assert!(flickers > 1.2 * steady, "{flickers} {steady}");
+}
+
+#[test]
 fn without_a_device_a_run_says_why() {
     let options = Options { device: None, cache: None, truth: TRUTH, effort: EFFORT };
     let run = Runner::new(options, Vec::new()).run(&plan("scene:torus", 1000, 32)).unwrap();

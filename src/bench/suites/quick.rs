@@ -5,7 +5,7 @@ use crate::bench::plan::{Plan, Wants};
 use crate::bench::record::Figure;
 use crate::yardstick::Kind;
 
-const SIZE: [u32; 2] = [384, 384];
+const SIZE: [u32; 2] = [320, 320];
 
 pub(super) fn plans() -> Vec<Plan> {
     let mut plans = Vec::new();
@@ -20,7 +20,7 @@ pub(super) fn plans() -> Vec<Plan> {
         100_000,
         SIZE,
         &[0.0, 0.5, 1.0],
-        &[1.5, 2.0, 3.0],
+        &[1.5, 2.5, 4.0],
     ));
     plans.extend(aliasing(Suite::Quick, [256, 256]));
     plans
@@ -32,7 +32,8 @@ fn budget(scene: &str, points: u64) -> Vec<Plan> {
     let mut sharp = smooth.clone();
     sharp.settings.lowpass = 0.0;
     let middle = points == 100_000;
-    let wants = Wants { terms: true, agreement: points < 1_000_000, exhibit: middle, ..Wants::BOTH };
+    let few = points < 1_000_000;
+    let wants = Wants { terms: few, agreement: few, exhibit: middle, ..Wants::BOTH };
     vec![
         Plan { wants, ..smooth.clone() },
         sharp,
