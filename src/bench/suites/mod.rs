@@ -65,7 +65,7 @@ impl Suite {
     /// How many frames are timed.
     pub fn effort(self) -> Effort {
         match self {
-            Self::Quick => Effort { least: 3, budget: Duration::from_millis(250), ..Effort::default() },
+            Self::Quick => Effort { least: 3, budget: Duration::from_millis(150), ..Effort::default() },
             Self::Scaling => Effort { least: 3, ..Effort::default() },
             Self::Full => Effort { least: 5, budget: Duration::from_millis(700), ..Effort::default() },
             _ => Effort::default(),
