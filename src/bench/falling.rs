@@ -49,12 +49,16 @@ pub fn steps<'a>(runs: impl IntoIterator<Item = &'a Run>) -> Vec<Step> {
     steps
 }
 
-/// From the first step for as long as the slope from each to the next is below [`SLOPE`].
+/// From the first step to the last that lies below all before it, with a slope from its forerunner below [`SLOPE`].
 pub fn fall(steps: &[Step]) -> Fall {
     let [first, .., most] = steps else { return Fall::Unknown };
     let slope = |[a, b]: [Step; 2]| (b.rmse / a.rmse).ln() / (b.points as f64 / a.points as f64).ln();
     let falling = |pair: &&[Step]| slope([pair[0], pair[1]]) < SLOPE;
-    match steps.windows(2).take_while(falling).last().map(|pair| pair[1]) {
+    // A fall after a rise counts from where it is below all that was before.
+    let least = |step: &Step| {
+        steps.iter().filter(|other| other.points < step.points).all(|other| step.rmse < other.rmse)
+    };
+    match steps.windows(2).rfind(|pair| falling(pair) && least(&pair[1])).map(|pair| pair[1]) {
         None => Fall::Nowhere,
         Some(last) if last.points == most.points => Fall::Throughout([*first, last]),
         Some(last) => Fall::Until([*first, last]),
@@ -99,6 +103,9 @@ mod tests {
         // 10^-0.1 = 0.794: just above and just below the slope.
         assert_eq!(fall(&steps(&[0.1, 0.080])), Fall::Nowhere);
         assert!(matches!(fall(&steps(&[0.1, 0.079])), Fall::Throughout(_)));
+        // Slower for once, it falls all the same.
+        let uneven = steps(&[0.1, 0.08, 0.04]);
+        assert_eq!(fall(&uneven), Fall::Throughout([uneven[0], uneven[2]]));
         // A fall after a rise is none from the first.
         assert_eq!(fall(&steps(&[0.05, 0.09, 0.07])), Fall::Nowhere);
         assert_eq!(fall(&steps(&[0.1])), Fall::Unknown);
