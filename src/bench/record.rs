@@ -221,7 +221,7 @@ pub struct Terms {
     pub precision: Option<f64>,
 }
 
-/// How far a float32 picture is from the float64 reference, pixel by pixel: as [`Comparison`](crate::reference::Comparison).
+/// How far a float32 picture is from the float64 reference, pixel by pixel: as [`Comparison`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Agreement {
     /// Pixels that the reference covers.
