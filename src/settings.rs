@@ -25,8 +25,8 @@ pub struct Settings {
 }
 
 impl Default for Settings {
-    /// What `surfel bench --suite full` supports: the cut-off beyond which time rises faster than error falls, and a filter that costs nothing
-    /// where splats are larger.
+    /// What `surfel bench --suite full` supports: the cut-off beyond which the RMSE no longer falls though time rises, and a filter that costs
+    /// nothing where splats are larger.
     fn default() -> Self {
         Self {
             cutoff: 2.5,
