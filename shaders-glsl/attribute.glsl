@@ -12,32 +12,20 @@
 
 #ifndef FRAGMENT
 
-layout(set = 0, binding = 3, std430) readonly buffer Normals { float normals[]; };
-layout(set = 0, binding = 5, std430) readonly buffer Colours { uint colours[]; };
+#include "lib/surface.glsl"
 
-vec3 srgb_to_linear(vec3 c) {
-    return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045)));
-}
-
-vec3 colour_of(uint i) {
-    if (COLOURS == COLOURS_LINEAR)
-        return uintBitsToFloat(uvec3(colours[3 * i], colours[3 * i + 1], colours[3 * i + 2]));
-    return srgb_to_linear(unpackUnorm4x8(colours[i]).rgb);
-}
-
-// What the two targets sum of surfel i, see lib/sums.glsl.
-void attributes_of(uint i, float epsilon, out vec3 first, out vec3 second) {
-    second = COLOURS != COLOURS_NONE ? colour_of(i) : vec3(0.0);
-    first = second;
-    if (SUM_NORMALS) first = sign(epsilon) * vec3(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]);
+// What scales a splat's kernel.
+float weight_of(uint i, Splat splat, vec2 variance) {
+    return OVERLAP ? 1.0 : amplitude_of(splat, variance);
 }
 
 #endif
 #ifdef COMPUTE
 
+#include "lib/window.glsl"
 #include "lib/pixels.glsl"
 
-float splat_amplitude;
+float splat_weight;
 vec3 splat_first, splat_second;
 
 vec2 scatter_variance(vec2 variance) {
@@ -55,8 +43,8 @@ bool hidden(float nearest, ivec2 low, ivec2 high) {
 
 bool scatter_begin(uint i, Splat splat, vec2 variance, float nearest, ivec2 low, ivec2 high) {
     if (!LARGE_SPLATS && hidden(nearest, low, high)) return false;
-    splat_amplitude = amplitude_of(splat, variance);
-    attributes_of(i, splat.epsilon, splat_first, splat_second);
+    splat_weight = weight_of(i, splat, variance);
+    surface_of(i, splat.epsilon, splat_first, splat_second);
     return true;
 }
 
@@ -64,22 +52,18 @@ void scatter(uint pixel, float m2, float key) {
     uint nearest = visibility[pixel];
     // Where visibility wrote nothing there is no surface, whatever the wider attribute footprint says.
     if (nearest == 0u || floatBitsToUint(key) < nearest) return;
-    float weight = splat_amplitude * exp(-0.5 * m2);
-    if (SUM_NORMALS || COLOURS != COLOURS_NONE) {
-        atomicAdd(sums0[4 * pixel], weight);
+    float weight = OVERLAP ? 1.0 : splat_weight * kernel(m2);
+    if (SUM_WEIGHTS) atomicAdd(sums0[WIDE_SUMS0 ? 4 * pixel : pixel], weight);
+    if (WIDE_SUMS0) {
         atomicAdd(sums0[4 * pixel + 1], weight * splat_first.x);
         atomicAdd(sums0[4 * pixel + 2], weight * splat_first.y);
         atomicAdd(sums0[4 * pixel + 3], weight * splat_first.z);
-    } else {
-        atomicAdd(sums0[pixel], weight);
     }
-    if (SUM_NORMALS && COLOURS != COLOURS_NONE) {
-        if (SUM_DEPTH) atomicAdd(sums1[4 * pixel], weight * frame.key_gain * key);
+    if (SUM_DEPTH) atomicAdd(sums1[WIDE_SUMS1 ? 4 * pixel : pixel], weight * frame.key_gain * key);
+    if (WIDE_SUMS1) {
         atomicAdd(sums1[4 * pixel + 1], weight * splat_second.x);
         atomicAdd(sums1[4 * pixel + 2], weight * splat_second.y);
         atomicAdd(sums1[4 * pixel + 3], weight * splat_second.z);
-    } else if (SUM_DEPTH) {
-        atomicAdd(sums1[pixel], weight * frame.key_gain * key);
     }
 }
 
@@ -94,21 +78,23 @@ void main() {
 #endif
 #ifdef VERTEX
 
-layout(location = 4) flat out float amplitude;
+layout(location = 4) flat out float height;
 layout(location = 5) flat out vec3 first;
 layout(location = 6) flat out vec3 second;
 
 void main() {
     uint i = gl_VertexIndex / 3;
     Splat splat = splats[i];
-    amplitude = place_splat(splat, attribute_variance(splat.variance), gl_VertexIndex % 3);
-    attributes_of(i, splat.epsilon, first, second);
+    vec2 variance = attribute_variance(splat.variance);
+    place_splat(splat, variance, gl_VertexIndex % 3);
+    height = weight_of(i, splat, variance);
+    surface_of(i, splat.epsilon, first, second);
 }
 
 #endif
 #ifdef FRAGMENT
 
-layout(location = 4) flat in float amplitude;
+layout(location = 4) flat in float height;
 layout(location = 5) flat in vec3 first;
 layout(location = 6) flat in vec3 second;
 
@@ -118,7 +104,7 @@ layout(location = 1) out vec4 sum1;
 void main() {
     float m2, key;
     drawn_fragment(m2, key);
-    float weight = amplitude * exp(-0.5 * m2);
+    float weight = OVERLAP ? 1.0 : height * kernel(m2);
     gl_FragDepth = key;
     sum0 = weight * vec4(1.0, first);
     sum1 = weight * vec4(SUM_DEPTH ? frame.key_gain * key : 0.0, second);

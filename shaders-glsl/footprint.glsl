@@ -5,9 +5,11 @@
 #include "lib/frame.glsl"
 #define SPLAT_ACCESS writeonly
 #include "lib/splat.glsl"
-#include "lib/conic.glsl"
+#include "lib/image.glsl"
 
 #ifdef COMPUTE
+
+#include "lib/window.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -16,6 +18,7 @@ layout(constant_id = 2) const bool COUNT = false;
 layout(constant_id = 11) const bool LIST_LARGE = false;
 layout(constant_id = 12) const bool ELLIPSES = false;
 layout(constant_id = 13) const bool TWO_SIDED = false;
+layout(constant_id = 21) const bool MOVED = false; // splats are of discs moved away from the eye along the camera's axis, by ε
 
 layout(set = 0, binding = 2, std430) readonly buffer Positions { float positions[]; };
 layout(set = 0, binding = 3, std430) readonly buffer Normals { float normals[]; };
@@ -24,8 +27,6 @@ layout(set = 0, binding = 6, std430) buffer Counts { uint culled[5]; };
 
 layout(set = 0, binding = 7, std430) buffer LargeSplats { uint large_count; uint large_padding[63]; uint large[]; };
 layout(set = 0, binding = 8, std430) readonly buffer Ellipses { vec4 ellipses[]; }; // major axis, aspect
-
-layout(push_constant) uniform Window { uint count; } window;
 
 // Fates, the first five in the order of the counts.
 const uint BEHIND = 0;    // the centre is not in front of the eye
@@ -59,11 +60,6 @@ mat2x3 ellipse_axes(vec3 n, vec4 shape) {
     return mat2x3(cross(minor, n), shape.w * minor);
 }
 
-// Homogeneous pixel of a vector of the world.
-vec3 to_pixel(vec3 v) {
-    return vec3(dot(frame.rows_hi[0].xyz, v), dot(frame.rows_hi[1].xyz, v), dot(frame.rows_hi[2].xyz, v));
-}
-
 // A coordinate of the homogeneous pixel of a position relative to the eye.
 vec2 pixel_row(int i, vec3 hi, vec3 lo) {
     vec2 at_eye = PERSPECTIVE ? vec2(0.0) : vec2(frame.rows_hi[i].w, frame.rows_lo[i].w);
@@ -90,60 +86,87 @@ float key_of_disc(float w, vec3 position, float lean) {
     return 1.0 - (z - frame.near) * frame.key_slope;
 }
 
-uint footprint(uint i, out Splat splat) {
+// κ of a plane that is not the tangent plane, or its distance where that is linear, at the anchor and its derivatives; `to_centre` is px.
+mat2x3 flat_plane(Disc disc, vec2 slope, vec2 to_centre) {
+    vec2 value = has_linear_depth() ? disc.w : vec2(frame.near / disc.w.x, 0.0);
+    if (!PERSPECTIVE) {
+        vec2 z = dot_double(disc.hi, disc.lo, frame.forward_hi.xyz, frame.forward_lo.xyz);
+        value = add(two_sum(1.0, frame.near * frame.key_slope), scale(z, -frame.key_slope));
+    }
+    value = add(value, -two_product(slope.x, to_centre.x));
+    value = add(value, -two_product(slope.y, to_centre.y));
+    return mat2x3(vec3(value.x, slope), vec3(value.y, 0.0, 0.0));
+}
+
+// Reads surfel i and what becomes of it before its image is known.
+uint disc_of(uint i, out Disc disc) {
     vec3 p = vec3(positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]);
     vec3 n = vec3(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]);
     float r = TWO_SIDED ? abs(radii[i]) : radii[i];
     if (!(r > 0.0)) return INVALID;
     vec4 shape = ELLIPSES ? ellipses[i] : vec4(vec3(0.0), 1.0);
+    disc.normal = n;
+    disc.radius = r;
+    disc.aspect = shape.w;
+    disc.axes = ELLIPSES ? ellipse_axes(n, shape) : tangents(n);
 
     // The position relative to the eye, its homogeneous pixel and its plane's h = n·position in twice the precision: all that
     // follows is relative to them.
     vec2 dx = two_sum(p.x, -frame.eye_hi.x), dy = two_sum(p.y, -frame.eye_hi.y), dz = two_sum(p.z, -frame.eye_hi.z);
-    vec3 hi = vec3(dx.x, dy.x, dz.x);
-    vec3 lo = vec3(dx.y, dy.y, dz.y) - frame.eye_lo.xyz;
-    vec2 w = PERSPECTIVE ? pixel_row(2, hi, lo) : vec2(1.0, 0.0);
+    if (MOVED) {
+        vec3 back = frame.epsilon * r * frame.forward_hi.xyz;
+        dx = add(dx, vec2(back.x, 0.0));
+        dy = add(dy, vec2(back.y, 0.0));
+        dz = add(dz, vec2(back.z, 0.0));
+    }
+    disc.hi = vec3(dx.x, dy.x, dz.x);
+    disc.lo = vec3(dx.y, dy.y, dz.y) - frame.eye_lo.xyz;
+    disc.w = PERSPECTIVE ? pixel_row(2, disc.hi, disc.lo) : vec2(1.0, 0.0);
     // Tests are such that a coordinate which is no number fails them.
-    if (!(w.x > 0.0)) return BEHIND;
+    if (!(disc.w.x > 0.0)) return BEHIND;
+    disc.h = dot_double(disc.hi, disc.lo, n, vec3(0.0));
+    disc.facing = PERSPECTIVE ? disc.h : dot_double(n, vec3(0.0), frame.forward_hi.xyz, frame.forward_lo.xyz);
+    return DRAWN;
+}
 
-    float sigma = r / frame.cutoff;
-    mat2x3 axes = ELLIPSES ? ellipse_axes(n, shape) : tangents(n);
-    vec3 S = sigma * to_pixel(axes[0]);
-    vec3 T = sigma * to_pixel(axes[1]);
-    float g = length(vec2(S.z, T.z));
-    float q = (w.x / frame.cutoff - g) * (w.x / frame.cutoff + g);
-    if (!(q > LEAST_CLEARANCE * (w.x / frame.cutoff) * (w.x / frame.cutoff))) return EYE_PLANE;
-    vec2 h = dot_double(hi, lo, n, vec3(0.0));
-    vec2 facing = PERSPECTIVE ? h : dot_double(n, vec3(0.0), frame.forward_hi.xyz, frame.forward_lo.xyz);
-    if (CULL_BACK && facing.x >= 0.0 && !(TWO_SIDED && radii[i] < 0.0)) return BACK;
+uint footprint(uint i, out Splat splat) {
+    Disc disc;
+    uint fate = disc_of(i, disc);
+    if (fate != DRAWN) return fate;
+    float sigma = disc.radius / frame.cutoff;
+    vec3 S = sigma * to_pixel(disc.axes[0]);
+    vec3 T = sigma * to_pixel(disc.axes[1]);
+    float w = disc.w.x / frame.cutoff;
+    if (!(clearance(disc, S, T) > LEAST_CLEARANCE * w * w)) return EYE_PLANE;
+    if (CULL_BACK && disc.facing.x >= 0.0 && !(TWO_SIDED && radii[i] < 0.0)) return BACK;
 
-    float root = frame.cutoff * sqrt(q);
-    float sqrt_det = frame.jacobian * shape.w * (sigma / root) * (sigma / root) * abs(facing.x) / root;
-    vec2 X = pixel_row(0, hi, lo), Y = pixel_row(1, hi, lo);
-    vec2 centre = vec2(X.x, Y.x) / w.x;
-    Conic conic = dual_conic(centre, S, T, q, frame.cutoff, sqrt_det);
-    vec2 reach = reach_of(conic.axis, attribute_variance(conic.variance));
-    vec2 middle = centre + conic.offset;
+    disc.x = pixel_row(0, disc.hi, disc.lo);
+    disc.y = pixel_row(1, disc.hi, disc.lo);
+    Image image = image_of(disc, sigma, S, T);
+    vec2 reach = most_reach() * reach_of(image.conic.axis, attribute_variance(image.conic.variance));
+    vec2 middle = vec2(disc.x.x, disc.y.x) / disc.w.x + image.conic.offset;
     bool inside = all(lessThanEqual(middle - reach, frame.viewport)) && all(greaterThanEqual(middle + reach, vec2(0.0)));
-    if (!inside || !(sqrt_det >= LEAST_AREA)) return OUTSIDE;
-    if (!(conic.variance.x <= LARGEST_VARIANCE)) return INVALID;
+    if (!inside || !(image.sqrt_det >= LEAST_AREA)) return OUTSIDE;
+    if (!(image.conic.variance.x <= LARGEST_VARIANCE)) return INVALID;
 
     uvec2 pixel = uvec2(clamp(middle, vec2(0.0), frame.viewport - 1.0));
     vec2 anchor = vec2(pixel) + 0.5;
     bool listed = LIST_LARGE && 4.0 * reach.x * reach.y > LARGE_AREA;
     if (listed) large[atomicAdd(large_count, 1)] = i;
-    splat.offset = vec2(add(X, scale(w, -anchor.x)).x, add(Y, scale(w, -anchor.y)).x) / w.x + conic.offset;
-    splat.axis = conic.axis;
-    splat.variance = conic.variance;
+    vec2 to_centre = vec2(add(disc.x, scale(disc.w, -anchor.x)).x, add(disc.y, scale(disc.w, -anchor.y)).x) / disc.w.x;
+    splat.offset = to_centre + image.conic.offset;
+    splat.axis = image.conic.axis;
+    splat.variance = image.conic.variance;
     splat.place = place_of(pixel, listed ? LARGE : SMALL);
-    splat.epsilon = PERSPECTIVE ? w.x / (w.x + frame.epsilon * r) : frame.key_slope * frame.epsilon * r;
-    if (facing.x > 0.0) splat.epsilon = -splat.epsilon;
-    mat2x3 plane = depth_plane(n, h, facing, anchor);
+    float epsilon = MOVED ? 0.0 : frame.epsilon * disc.radius;
+    splat.epsilon = PERSPECTIVE ? disc.w.x / (disc.w.x + epsilon) : frame.key_slope * epsilon;
+    if (disc.facing.x > 0.0) splat.epsilon = -splat.epsilon;
+    bool tangent = !is_sprite() && FOOTPRINT != SQUARE;
+    mat2x3 plane = tangent ? depth_plane(disc.normal, disc.h, disc.facing, anchor) : flat_plane(disc, image.slope, to_centre);
     splat.plane_hi = plane[0];
     splat.plane_lo = plane[1];
-    splat.sqrt_det = sqrt_det;
-    float lean = frame.cutoff * (PERSPECTIVE ? g : sigma * length(frame.forward_hi.xyz * axes));
-    splat.key_disc = key_of_disc(w.x, hi, lean);
+    splat.sqrt_det = image.sqrt_det;
+    splat.key_disc = key_of_disc(disc.w.x, disc.hi, image.lean);
     return DRAWN;
 }
 

@@ -8,10 +8,8 @@
 #include "lib/shading.glsl"
 
 layout(constant_id = 6) const uint SHADING = 0;
-const uint LIT = 0, COLOUR = 1, NORMAL = 2, DEPTH = 3;
-
-// Whether target 1 holds colours beside the depth sum.
-const bool WIDE_SUMS1 = SUM_NORMALS && COLOURS != COLOURS_NONE;
+const uint LIT = 0, COLOUR = 1, NORMAL = 2, DEPTH = 3, OVERLAPS = 4;
+layout(constant_id = 20) const bool SHADE_SPLATS = false; // colours are light already
 
 struct Pixel {
     vec4 image;
@@ -22,15 +20,16 @@ struct Pixel {
 // The pixel at `centre` (px) from what visibility and attribute left there.
 Pixel normalize_pixel(vec2 centre, bool visible, vec4 s0, vec4 s1) {
     // Only what visibility wrote is there: the attribute footprint is wider and would bloat the outline.
-    if (!visible || !(s0.x > 0.0)) return Pixel(frame.background, vec3(0.0), 0.0);
+    if (!visible || SUM_WEIGHTS && !(s0.x > 0.0)) return Pixel(frame.background, vec3(0.0), 0.0);
 
+    float total = NORMALIZATION == PER_PIXEL ? s0.x : 1.0;
     vec3 ray = centre.x * frame.ray_hi[0].xyz + centre.y * frame.ray_hi[1].xyz + frame.ray_hi[2].xyz;
     vec3 to_eye = PERSPECTIVE ? -normalize(ray) : -frame.forward_hi.xyz;
     vec3 normal = vec3(0.0);
     // Opposite normals that cancel leave no direction.
-    if (SUM_NORMALS) normal = length(s0.yzw) < 1e-6 * s0.x ? to_eye : normalize(s0.yzw);
+    if (SUM_NORMALS) normal = length(s0.yzw) < 1e-6 * total ? to_eye : normalize(s0.yzw);
     vec3 colour = frame.albedo.rgb;
-    if (COLOURS != COLOURS_NONE) colour = (SUM_NORMALS ? s1.yzw : s0.yzw) / s0.x;
+    if (SUM_COLOURS) colour = (SUM_NORMALS ? s1.yzw : s0.yzw) / total;
     float depth = 0.0;
     if (SUM_DEPTH) {
         float key = s1.x / (s0.x * frame.key_gain);
@@ -38,10 +37,11 @@ Pixel normalize_pixel(vec2 centre, bool visible, vec4 s0, vec4 s1) {
     }
 
     vec3 shaded;
-    if (SHADING == LIT) shaded = lit(colour, normal, to_eye);
+    if (SHADING == LIT) shaded = SHADE_SPLATS ? colour : lit(colour, normal, to_eye);
     if (SHADING == COLOUR) shaded = colour;
     if (SHADING == NORMAL) shaded = normal;
     if (SHADING == DEPTH) shaded = vec3(depth);
+    if (SHADING == OVERLAPS) shaded = vec3(total);
     return Pixel(vec4(shaded, 1.0), normal, depth);
 }
 
@@ -53,6 +53,7 @@ layout(local_size_x = 64) in;
 
 layout(constant_id = 9) const bool OUT_NORMAL = false;
 layout(constant_id = 10) const bool OUT_DEPTH = false;
+layout(constant_id = 22) const bool NEAREST = false; // resolve left a weight where there is something
 
 vec4 fetch0(uint i, bool wide) {
     if (!wide) return vec4(sums0[i], vec3(0.0));
@@ -69,8 +70,9 @@ void main() {
     uint i = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     if (i >= pixels) return;
     vec2 centre = vec2(i % width, i / width) + 0.5;
-    vec4 s0 = fetch0(i, SUM_NORMALS || COLOURS != COLOURS_NONE);
-    Pixel pixel = normalize_pixel(centre, visibility[i] != 0u, s0, fetch1(i));
+    vec4 s0 = fetch0(i, WIDE_SUMS0);
+    bool visible = NEAREST ? s0.x > 0.0 : visibility[i] != 0u;
+    Pixel pixel = normalize_pixel(centre, visible, s0, fetch1(i));
     for (uint k = 0; k < 4; k++) picture[4 * i + k] = pixel.image[k];
     if (OUT_NORMAL) for (uint k = 0; k < 3; k++) picture[4 * pixels + 3 * i + k] = pixel.normal[k];
     if (OUT_DEPTH) picture[(OUT_NORMAL ? 7 : 4) * pixels + i] = pixel.depth;

@@ -8,6 +8,7 @@
 
 #ifdef COMPUTE
 
+#include "lib/window.glsl"
 #include "lib/pixels.glsl"
 
 float splat_epsilon, splat_key_disc;

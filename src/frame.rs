@@ -3,6 +3,7 @@
 use crate::error::{Error, Result};
 use crate::geometry::{Bounds, Camera, Projection};
 use crate::settings::Settings;
+use crate::splatting::Kernel;
 use crate::vk::shaders::layout::Frame;
 use bytemuck::Zeroable;
 use glam::{DMat3, DVec3, DVec4};
@@ -23,6 +24,11 @@ pub(crate) fn frame(
     }
     [frame.eye_hi, frame.eye_lo] = split((lens.eye - origin).extend(0.0));
     [frame.forward_hi, frame.forward_lo] = split(lens.forward.extend(0.0));
+    for (i, row) in lens.rows.iter().take(2).enumerate() {
+        let row = row.truncate();
+        let flat = row - row.dot(lens.forward) * lens.forward;
+        frame.flat_rows[i][..3].copy_from_slice(&flat.as_vec3().to_array());
+    }
     let key = DepthKey::new(&projection);
     for (i, column) in key.rays(&lens, &projection).into_iter().enumerate() {
         [frame.ray_hi[i], frame.ray_lo[i]] = split(column.extend(0.0));
@@ -35,6 +41,9 @@ pub(crate) fn frame(
     frame.key_gain = key.gain(&projection, lens.distance(bounds.centre())) as f32;
     frame.cutoff = settings.cutoff;
     frame.epsilon = settings.epsilon;
+    if let Kernel::Confetti { a, n } = settings.splatting.kernel {
+        [frame.kernel_a, frame.kernel_n] = [a, n];
+    }
     frame.visibility_lowpass = settings.least_lowpass();
     frame.attribute_lowpass = settings.attribute_lowpass();
     shading(&mut frame, settings);

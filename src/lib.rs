@@ -11,7 +11,7 @@
 //! | [`geometry`] | what a scene is made of: surfels, bounds, cameras; plain CPU data |
 //! | [`io`] | PLY, PNG, EXR |
 //! | [`scenes`] | built-in scenes with exact ground truth |
-//! | [`settings`] | what a frame is asked to be |
+//! | [`settings`], [`splatting`] | what a frame is asked to be, and how surfels become pixels |
 //! | [`scene`] | geometry on the GPU: only the streams that it has |
 //! | [`variant`], [`targets`] | which pipelines and images a frame needs, and no more |
 //! | [`passes`] | one file a pass, beside the shader of the same name |
@@ -60,6 +60,7 @@ pub mod renderer;
 pub mod scene;
 pub mod scenes;
 pub mod settings;
+pub mod splatting;
 pub mod targets;
 pub mod truth;
 pub mod variant;

@@ -3,11 +3,12 @@
 use crate::error::{Error, Result};
 use crate::frame::frame;
 use crate::geometry::Camera;
-use crate::methods::perspective_ewa::{Canvas, PerspectiveEwa};
+use crate::methods::{Canvas, Pipelines};
 use crate::passes::{SplatLayout, Splats};
 use crate::picture::Picture;
 use crate::scene::Scene;
 use crate::settings::Settings;
+use crate::splatting::Visibility;
 use crate::targets::{Buffers, TargetInfo, check_size};
 use crate::variant::{Outputs, Precision, Rasterizer, Variant};
 use crate::vk::shaders::layout::{Counts, Frame};
@@ -64,7 +65,7 @@ pub struct Renderer {
     // Fields are dropped in this order: views before what they view.
     present: Option<Present>,
     resident: Option<Resident>,
-    methods: HashMap<Variant, PerspectiveEwa>,
+    pipelines: HashMap<Variant, Pipelines>,
     layout: SplatLayout,
     frame: Buffer,
     commands: Commands,
@@ -91,8 +92,7 @@ impl Renderer {
     pub fn new(device: &Arc<Device>, options: RenderOptions) -> Result<Self> {
         check_size(device, options.size)?;
         let mut options = options;
-        let rasterizer = rasterizer_for(device, &options)?;
-        options.rasterizer = Some(rasterizer);
+        let rasterizer = rasterizer_for(device, &options, true)?;
         let blends = device.capabilities().blend_float32;
         if rasterizer == Rasterizer::Draw && options.precision == Precision::Full && !blends {
             log::warn!("{} cannot blend 32-bit floats: sums are kept in 16 bits", device.description().name);
@@ -101,7 +101,7 @@ impl Renderer {
         Ok(Self {
             present: None,
             resident: None,
-            methods: HashMap::new(),
+            pipelines: HashMap::new(),
             layout: SplatLayout::new(device)?,
             frame: Buffer::uniform(device, "frame", size_of::<Frame>() as u64)?,
             commands: Commands::new(device, options.profile)?,
@@ -161,7 +161,10 @@ impl Renderer {
     ) -> Result<FrameReport> {
         settings.check()?;
         let block = frame(camera, settings, self.options.size, scene.origin(), scene.bounds())?;
-        let variant = Variant::new(scene, camera.projection()?.perspective, settings, &self.options);
+        let blends = settings.splatting.visibility != Visibility::Nearest;
+        let rasterizer = rasterizer_for(&self.device, &self.options, blends)?;
+        let perspective = camera.projection()?.perspective;
+        let variant = Variant::new(scene, perspective, settings, &self.options, rasterizer);
         self.make_resident(scene, variant.rasterizer)?;
         self.make_present(variant, read)?;
         self.frame.bytes_mut().copy_from_slice(bytemuck::bytes_of(&block));
@@ -197,14 +200,12 @@ impl Renderer {
     fn make_present(&mut self, variant: Variant, read: bool) -> Result<()> {
         if self.present.as_ref().is_none_or(|present| present.variant != variant) {
             self.present = None;
-            let method = match self.methods.entry(variant) {
+            let pipelines = match self.pipelines.entry(variant) {
                 Entry::Occupied(made) => made.into_mut(),
-                Entry::Vacant(room) => {
-                    room.insert(PerspectiveEwa::new(&self.device, &self.layout, &variant)?)
-                }
+                Entry::Vacant(room) => room.insert(Pipelines::new(&self.device, &self.layout, &variant)?),
             };
             let canvas =
-                method.canvas(&self.device, &self.layout, &self.frame, &variant, self.options.size)?;
+                pipelines.canvas(&self.device, &self.layout, &self.frame, &variant, self.options.size)?;
             self.present = Some(Present { variant, canvas, readback: Vec::new() });
         }
         match &mut self.present {
@@ -217,14 +218,18 @@ impl Renderer {
     }
 }
 
-/// The faster of what `device` can do with these options.
-fn rasterizer_for(device: &Device, options: &RenderOptions) -> Result<Rasterizer> {
+/// The faster of what `device` can do with these options, for frames that blend splats or do not.
+fn rasterizer_for(device: &Device, options: &RenderOptions, blends: bool) -> Result<Rasterizer> {
     let capabilities = device.capabilities();
     let fits = Buffers::fit(capabilities, options.outputs, options.size);
-    let can_compute = capabilities.float_atomics && options.precision == Precision::Full && fits;
+    let (needed, atomics) = match blends {
+        true => ("float atomics", capabilities.float_atomics),
+        false => ("64-bit atomics", capabilities.int64_atomics),
+    };
+    let can_compute = atomics && options.precision == Precision::Full && fits;
     match options.rasterizer {
         Some(Rasterizer::Compute) if !can_compute => Err(Error::Usage(format!(
-            "the compute rasterizer needs float atomics in buffers, 32-bit sums and a picture within {} bytes, which {} does \
+            "the compute rasterizer needs {needed} in buffers, 32-bit sums and a picture within {} bytes, which {} does \
              not have at this size: choose the draw rasterizer",
             capabilities.max_storage_buffer_range,
             device.description().name
@@ -232,7 +237,8 @@ fn rasterizer_for(device: &Device, options: &RenderOptions) -> Result<Rasterizer
         Some(rasterizer) => Ok(rasterizer),
         // Measured on CPU devices only; a GPU's own rasterizer is taken until a measurement says otherwise, if it keeps 32 bits.
         None if can_compute
-            && (device.description().kind == DeviceDescription::CPU || !capabilities.blend_float32) =>
+            && (device.description().kind == DeviceDescription::CPU
+                || blends && !capabilities.blend_float32) =>
         {
             Ok(Rasterizer::Compute)
         }

@@ -209,6 +209,7 @@ mod tests {
         let capabilities = Capabilities {
             blend_float32: true,
             float_atomics: true,
+            int64_atomics: true,
             timestamps: None,
             max_storage_buffer_range: 1 << 20,
             storage_buffer_alignment: 64,

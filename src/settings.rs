@@ -1,10 +1,13 @@
 //! What a frame is asked to be: shared by the Vulkan methods and the float64 reference.
 
 use crate::error::{Error, Result};
+use crate::splatting::{Filter, Splatting};
 
 /// Settings of a frame that are not the camera's or the scene's.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
+    /// How surfels become pixels.
+    pub splatting: Splatting,
     /// Kernel cut-off `F`, in σ: the splat ends at `u² + v² = F²`.
     pub cutoff: f32,
     /// Variance of the low-pass filter `H = lowpass · I`, px². Never less than what makes each splat own a pixel centre
@@ -29,6 +32,7 @@ impl Default for Settings {
     /// nothing where splats are larger.
     fn default() -> Self {
         Self {
+            splatting: Splatting::default(),
             cutoff: 2.5,
             lowpass: 1.0,
             widen: Widen::Small,
@@ -51,11 +55,15 @@ impl Settings {
     /// The low-pass variance of the attribute footprint, px²: what is added to a splat's variance, or with [`Widen::Small`] what
     /// it is raised to.
     pub fn attribute_lowpass(&self) -> f32 {
-        self.lowpass.max(self.least_lowpass())
+        match self.splatting.filter {
+            Filter::None => self.least_lowpass(),
+            Filter::Screen | Filter::Object => self.lowpass.max(self.least_lowpass()),
+        }
     }
 
     /// Refuses what no frame can be made of.
     pub fn check(&self) -> Result<()> {
+        self.splatting.check()?;
         let positive = |name: &str, value: f32| match value.is_finite() && value > 0.0 {
             true => Ok(()),
             false => Err(Error::Usage(format!("{name} is {value}: give a finite number above 0"))),
@@ -114,6 +122,41 @@ pub enum Shading {
     Normal,
     /// The eye-space depth, in the positions' unit.
     Depth,
+    /// The number of splats that are blended (pajarola2004 figure 18).
+    Overlap,
+}
+
+impl Widen {
+    /// As options and reports call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::All => "all",
+            Self::Small => "small",
+        }
+    }
+}
+
+impl Cull {
+    /// As options and reports call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Back => "back",
+        }
+    }
+}
+
+impl Shading {
+    /// As options and reports call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Lit => "lit",
+            Self::Colour => "color",
+            Self::Normal => "normal",
+            Self::Depth => "depth",
+            Self::Overlap => "overlap",
+        }
+    }
 }
 
 /// Lights and material, all linear.

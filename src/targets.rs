@@ -1,6 +1,7 @@
 //! Every render target: name, format, and when a frame has it. Each name is that of the variable in the shaders.
 
 use crate::error::{Error, Result};
+use crate::splatting::Visibility;
 use crate::variant::{Outputs, Precision, Variant};
 use crate::vk::{Buffer, Capabilities, Device, Image, ImageUse};
 use ash::vk::Format;
@@ -24,14 +25,14 @@ pub struct Images {
 
 /// Targets that compute shaders write, pixel by pixel from the top left.
 pub struct Buffers {
-    /// See [`Images::visibility`].
+    /// See [`Images::visibility`]; where the nearest splat is seen alone, its number is beside the key.
     pub visibility: Buffer,
     /// See [`Images::sums0`].
     pub sums0: Buffer,
     /// See [`Images::sums1`].
     pub sums1: Option<Buffer>,
-    /// Least visibility of each tile of [`Buffers::TILE`]² pixels, empty ones aside.
-    pub tiles: Buffer,
+    /// Least visibility of each tile of [`Buffers::TILE`]² pixels, empty ones aside; where splats are blended.
+    pub tiles: Option<Buffer>,
     /// All pixels' colour (4 floats), then all normals (3), then all depths (1), as far as they are asked for.
     pub picture: Buffer,
     /// What it holds.
@@ -143,11 +144,13 @@ impl Buffers {
         let buffer = |name, floats: u64| Buffer::storage(device, name, 4 * floats * pixels);
         let floats = |wide: bool| if wide { 4 } else { 1 };
         let sums1 = variant.has_sums1().then(|| buffer("sums1", floats(variant.wide_sums1())));
+        let nearest = variant.visibility == Visibility::Nearest;
+        let tiles = (!nearest).then(|| Buffer::storage(device, "tiles", 4 * Self::tiles(size)));
         Ok(Self {
-            visibility: buffer("visibility", 1)?,
+            visibility: buffer("visibility", if nearest { 2 } else { 1 })?,
             sums0: buffer("sums0", floats(variant.wide_sums0()))?,
             sums1: sums1.transpose()?,
-            tiles: Buffer::storage(device, "tiles", 4 * Self::tiles(size))?,
+            tiles: tiles.transpose()?,
             picture: buffer("picture", Self::picture_floats(variant.outputs))?,
             outputs: variant.outputs,
             size,
@@ -182,17 +185,16 @@ impl Buffers {
     /// Every target that there is.
     pub fn list(&self) -> Vec<TargetInfo> {
         let float = Format::R32_SFLOAT;
-        let sums = |buffer: &Buffer| match buffer.size() == self.visibility.size() {
+        let sums = |buffer: &Buffer| match buffer.size() == 4 * self.pixels() {
             true => float,
             false => Format::R32G32B32A32_SFLOAT,
         };
         let info = |name, buffer: &Buffer, format| TargetInfo { name, format, bytes: buffer.size() };
-        let mut list = vec![
-            info("visibility", &self.visibility, Format::R32_UINT),
-            info("sums0", &self.sums0, sums(&self.sums0)),
-        ];
+        let key = if self.tiles.is_some() { Format::R32_UINT } else { Format::R64_UINT };
+        let mut list =
+            vec![info("visibility", &self.visibility, key), info("sums0", &self.sums0, sums(&self.sums0))];
         list.extend(self.sums1.as_ref().map(|buffer| info("sums1", buffer, sums(buffer))));
-        list.push(info("tiles", &self.tiles, Format::R32_UINT));
+        list.extend(self.tiles.as_ref().map(|tiles| info("tiles", tiles, Format::R32_UINT)));
         list.push(info("picture", &self.picture, float));
         list
     }

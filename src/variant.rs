@@ -3,6 +3,7 @@
 use crate::renderer::RenderOptions;
 use crate::scene::{ColourStream, Scene};
 use crate::settings::{Cull, Settings, Shading, Widen};
+use crate::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Visibility};
 use crate::vk::Constants;
 use crate::vk::shaders::constant;
 
@@ -17,6 +18,16 @@ pub struct Variant {
     pub ellipses: bool,
     /// The scene has surfels that are never dropped for facing away.
     pub two_sided: bool,
+    /// The image of a disc.
+    pub footprint: Footprint,
+    /// The kernel is Confetti's.
+    pub confetti: bool,
+    /// Which splats a pixel sees.
+    pub visibility: Visibility,
+    /// What the sums are divided by.
+    pub normalization: Normalization,
+    /// Splats are lit, not pixels.
+    pub shade_splats: bool,
     /// Only axes that are shorter than the low-pass filter are widened by it.
     pub widen_small: bool,
     /// Splats are counted by their fate.
@@ -69,30 +80,55 @@ pub enum Precision {
 
 impl Variant {
     /// What a frame of `scene` needs.
-    pub fn new(scene: &Scene, perspective: bool, settings: &Settings, options: &RenderOptions) -> Self {
-        let shading = settings.shading;
+    pub fn new(
+        scene: &Scene,
+        perspective: bool,
+        settings: &Settings,
+        options: &RenderOptions,
+        rasterizer: Rasterizer,
+    ) -> Self {
+        let (shading, splatting) = (settings.shading, settings.splatting);
         let wants_colour = matches!(shading, Shading::Lit | Shading::Colour);
+        let shade_splats = shading == Shading::Lit && splatting.shade == Shade::Splat;
+        let lit_pixels = shading == Shading::Lit && !shade_splats;
         Self {
             perspective,
             cull_back: settings.cull == Cull::Back,
             ellipses: scene.ellipses.is_some(),
             two_sided: scene.two_sided,
-            widen_small: settings.widen == Widen::Small,
+            footprint: splatting.footprint,
+            confetti: splatting.kernel != Kernel::Gaussian,
+            visibility: splatting.visibility,
+            // How many there are is never divided.
+            normalization: if shading == Shading::Overlap {
+                Normalization::Pixel
+            } else {
+                splatting.normalization
+            },
+            shade_splats,
+            widen_small: settings.widen == Widen::Small && splatting.filter != Filter::None,
             count: options.count,
-            normals: matches!(shading, Shading::Lit | Shading::Normal) || options.outputs.normal,
+            normals: lit_pixels || shading == Shading::Normal || options.outputs.normal,
             depth: shading == Shading::Depth || options.outputs.depth,
             colours: if wants_colour { scene.colour_stream() } else { ColourStream::None },
             shading,
             lights: if shading == Shading::Lit { settings.lighting.directional.len() as u32 } else { 0 },
             outputs: options.outputs,
             precision: options.precision,
-            rasterizer: options.rasterizer.unwrap_or(Rasterizer::Draw),
+            rasterizer,
         }
+    }
+
+    /// Whether colours are summed: the scene's, light, or what stands in for them, where what is summed is not divided.
+    pub fn sums_colours(&self) -> bool {
+        let undivided = self.normalization != Normalization::Pixel && self.visibility != Visibility::Nearest;
+        let wanted = matches!(self.shading, Shading::Lit | Shading::Colour);
+        wanted && (undivided || self.shade_splats || self.colours != ColourStream::None)
     }
 
     /// Whether target 0 sums a vector beside Σw.
     pub fn wide_sums0(&self) -> bool {
-        self.normals || self.colours != ColourStream::None
+        self.normals || self.sums_colours()
     }
 
     /// Whether there is a target 1.
@@ -102,7 +138,7 @@ impl Variant {
 
     /// Whether target 1 sums colours beside the depth.
     pub fn wide_sums1(&self) -> bool {
-        self.normals && self.colours != ColourStream::None
+        self.normals && self.sums_colours()
     }
 
     /// The same as specialization constants.
@@ -112,11 +148,18 @@ impl Variant {
             .with(constant::CULL_BACK, self.cull_back)
             .with(constant::ELLIPSES, self.ellipses)
             .with(constant::TWO_SIDED, self.two_sided)
+            .with(constant::FOOTPRINT, self.footprint as u32)
+            .with(constant::CONFETTI, self.confetti)
+            .with(constant::NORMALIZATION, self.normalization as u32)
+            .with(constant::SHADE_SPLATS, self.shade_splats)
+            .with(constant::NEAREST, self.visibility == Visibility::Nearest)
+            .with(constant::OVERLAP, self.shading == Shading::Overlap)
             .with(constant::WIDEN_SMALL, self.widen_small)
             .with(constant::COUNT, self.count)
             .with(constant::SUM_NORMALS, self.normals)
             .with(constant::SUM_DEPTH, self.depth)
             .with(constant::COLOURS, self.colours as u32)
+            .with(constant::SUM_COLOURS, self.sums_colours())
             .with(constant::SHADING, self.shading as u32)
             .with(constant::LIGHTS, self.lights)
             .with(constant::OUT_NORMAL, self.outputs.normal)

@@ -1,4 +1,5 @@
-// The splat of a disc by the dual conic: no inverse, so it is as stable edge-on as face-on (zwicker2004 §4.3–4.4, restated).
+// The ellipse that a splat is on the screen, from sums of squares: no inverse, so it is as stable edge-on as face-on (zwicker2004
+// §4.3–4.4, restated).
 
 // A disc's image: a Gaussian's centre (px, relative to the disc centre's image), the unit major axis of its variance V and V's
 // eigenvalues (px²).
@@ -8,14 +9,8 @@ struct Conic {
     vec2 variance;
 };
 
-// S, T: homogeneous pixels (x, y, w) of the 1-σ axes; centre: px; q = (w / F)² − g·g > 0; sqrt_det = √|V|.
-Conic dual_conic(vec2 centre, vec3 S, vec3 T, float q, float cutoff, float sqrt_det) {
-    vec2 g = vec2(S.z, T.z);
-    // Rows of D are the x and y rows of the derivative of the projection, times w.
-    vec2 Dx = vec2(S.x, T.x) - centre.x * g;
-    vec2 Dy = vec2(S.y, T.y) - centre.y * g;
-    vec2 o = -vec2(dot(Dx, g), dot(Dy, g)) / q;
-
+// V = (Dx, Dy)ᵀ(Dx, Dy) / (q F²) + o oᵀ / F²; sqrt_det = √|V|, px².
+Conic conic_of(vec3 Dx, vec3 Dy, vec2 o, float q, float cutoff, float sqrt_det) {
     float scale = 1.0 / (cutoff * cutoff);
     float xx = scale * (dot(Dx, Dx) / q + o.x * o.x);
     float xy = scale * (dot(Dx, Dy) / q + o.x * o.y);

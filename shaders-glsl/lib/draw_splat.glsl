@@ -12,8 +12,8 @@ const float EDGE = 0.125;
 // A triangle that reaches further than this (px) is replaced by one over the viewport, whose edges stay exact.
 const float LARGEST = 8192.0;
 
-// Places a corner of a footprint of the given variance V' and returns the attribute weight's amplitude √(|V| / |V'|).
-float place_splat(Splat splat, vec2 variance, int corner) {
+// Places a corner of a footprint of the given variance.
+void place_splat(Splat splat, vec2 variance, int corner) {
     Ellipse ellipse = ellipse_of(splat, variance);
     anchor_offset = vec4(ellipse.anchor, ellipse.offset);
     whitening = ellipse.whitening;
@@ -21,10 +21,11 @@ float place_splat(Splat splat, vec2 variance, int corner) {
     plane_lo_disc = vec4(ellipse.plane_lo, splat.key_disc);
 
     // The nearest depth in the ellipse bounds every fragment's, which lets a device reject the triangle early.
-    float nearest = min(1.0, nearest_of(splat, variance));
+    float stretch = stretch_of(splat, variance, ellipse.key_centre);
+    float nearest = min(1.0, nearest_of(splat, variance, stretch));
 
     vec2 minor_axis = vec2(-splat.axis.y, splat.axis.x);
-    vec2 reach = frame.cutoff * sqrt(variance) + EDGE;
+    vec2 reach = stretch * frame.cutoff * sqrt(variance) + EDGE;
     vec2 position;
     if (kind_of(splat) == NOT_DRAWN || nearest <= frame.key_far) {
         position = vec2(0.0); // all corners alike: no fragments
@@ -37,7 +38,6 @@ float place_splat(Splat splat, vec2 variance, int corner) {
         position = 2.0 * pixel / frame.viewport - 1.0;
     }
     gl_Position = vec4(position, nearest, 1.0);
-    return amplitude_of(splat, variance);
 }
 
 #endif
@@ -53,7 +53,9 @@ layout(depth_less) out float gl_FragDepth;
 
 // As splat_fragment; where there is no fragment, there is none.
 void drawn_fragment(out float m2, out float key) {
-    Ellipse ellipse = Ellipse(anchor_offset.xy, anchor_offset.zw, whitening, plane_epsilon.xyz, plane_lo_disc.xyz);
+    float key_centre = centre_key(plane_epsilon.xyz, plane_lo_disc.xyz, anchor_offset.zw);
+    Ellipse ellipse =
+        Ellipse(anchor_offset.xy, anchor_offset.zw, whitening, plane_epsilon.xyz, plane_lo_disc.xyz, key_centre);
     if (!splat_fragment(ellipse, gl_FragCoord.xy, m2, key)) discard;
 }
 

@@ -13,6 +13,7 @@ layout(set = 0, binding = 0, std140) uniform Frame {
     vec4 ray_lo[3];          //   n·(ray[0] x + ray[1] y + ray[2]) / h in perspective, and
     vec4 forward_hi;         //   (n·(ray[0] x + ray[1] y + ray[2]) − key_slope h) / n·forward otherwise,
     vec4 forward_lo;         //   where forward is the unit viewing direction
+    vec4 flat_rows[2];       // world vector → pixel (x, y) at distance 1, whatever its extent along the viewing direction
     vec2 viewport;           // px
     float jacobian;          // |det| of the rows, or of parallel rays' x and y: scales √|V|
     float near;
@@ -28,7 +29,8 @@ layout(set = 0, binding = 0, std140) uniform Frame {
     vec4 albedo;             // .rgb; .a is the headlight's factor
     float specular;
     float shininess;
-    vec2 frame_padding;
+    float kernel_a;          // of a Confetti kernel
+    float kernel_n;
     vec4 to_light[4];
     vec4 radiance[4];
 } frame;

@@ -6,9 +6,6 @@ layout(set = 1, binding = 2, std430) buffer Sums1 { float sums1[]; };
 layout(set = 1, binding = 3, std430) writeonly buffer Picture { float picture[]; }; // colour, then normals, then depths
 layout(set = 1, binding = 4, std430) buffer Tiles { uint tiles[]; }; // least visibility in each tile, empty pixels aside
 
-// Whether a scatter visits the splats of many pixels, or the others.
-layout(constant_id = 8) const bool LARGE_SPLATS = false;
-
 // Side of a tile, px.
 const uint TILE = 8;
 

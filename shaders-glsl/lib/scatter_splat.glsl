@@ -9,15 +9,13 @@ layout(local_size_x = 64) in;
 
 layout(set = 0, binding = 7, std430) readonly buffer LargeSplats { uint large_count; uint large_padding[63]; uint large[]; };
 
-layout(push_constant) uniform Window { uint count; } window;
-
-// The first and last pixel of row y that can be within the cut-off; at least one, whose fragment is tested all the same.
-ivec2 row_span(Ellipse ellipse, int y, ivec2 low, ivec2 high) {
+// The first and last pixel of row y that can be within `rim` σ; at least one, whose fragment is tested all the same.
+ivec2 row_span(Ellipse ellipse, float rim, int y, ivec2 low, ivec2 high) {
     vec2 x_axis = ellipse.whitening.xz, y_axis = ellipse.whitening.yw;
     float ey = float(y) + 0.5 - ellipse.anchor.y - ellipse.offset.y;
     float inverse = 1.0 / dot(x_axis, x_axis);
     float determinant = x_axis.x * y_axis.y - x_axis.y * y_axis.x;
-    float square = inverse * (frame.cutoff * frame.cutoff - ey * ey * inverse * determinant * determinant);
+    float square = inverse * (rim * rim - ey * ey * inverse * determinant * determinant);
     // More than what rounding takes from a splat of this kind's few pixels.
     float half_width = sqrt(max(square, 0.0)) + 0.03125;
     float middle = ellipse.anchor.x + ellipse.offset.x - ey * inverse * dot(x_axis, y_axis) - 0.5;
@@ -25,16 +23,16 @@ ivec2 row_span(Ellipse ellipse, int y, ivec2 low, ivec2 high) {
     return ivec2(ends.x, max(ends.x, ends.y));
 }
 
-void scatter_rows(Ellipse ellipse, ivec2 low, ivec2 high) {
+void scatter_rows(Ellipse ellipse, float rim, ivec2 low, ivec2 high) {
     float m2, key;
     int y = low.y;
-    ivec2 span = row_span(ellipse, y, low, high);
+    ivec2 span = row_span(ellipse, rim, y, low, high);
     // One loop over all rows keeps invocations with rows of other lengths in step.
     while (y <= high.y) {
         ivec2 pixel = ivec2(span.x, y);
         if (splat_fragment(ellipse, vec2(pixel) + 0.5, m2, key)) scatter(pixel_index(pixel), m2, key);
         span.x++;
-        if (span.x > span.y) span = row_span(ellipse, ++y, low, high);
+        if (span.x > span.y) span = row_span(ellipse, rim, ++y, low, high);
     }
 }
 
@@ -52,15 +50,16 @@ void scatter_splat(uint i) {
     Splat splat = splats[i];
     if (kind_of(splat) != (LARGE_SPLATS ? LARGE : SMALL)) return;
     vec2 variance = scatter_variance(splat.variance);
-    vec2 reach = reach_of(splat.axis, variance);
+    Ellipse ellipse = ellipse_of(splat, variance);
+    float stretch = stretch_of(splat, variance, ellipse.key_centre);
+    vec2 reach = stretch * reach_of(splat.axis, variance);
     vec2 first = anchor_of(splat) + splat.offset - 0.5;
     ivec2 low = ivec2(max(ceil(first - reach), vec2(0.0)));
     ivec2 high = ivec2(min(floor(first + reach), frame.viewport - 1.0));
     if (any(greaterThan(low, high))) return;
-    Ellipse ellipse = ellipse_of(splat, variance);
-    if (!scatter_begin(i, splat, variance, nearest_of(splat, variance), low, high)) return;
+    if (!scatter_begin(i, splat, variance, nearest_of(splat, variance, stretch), low, high)) return;
     if (LARGE_SPLATS) scatter_box(ellipse, low, high);
-    else scatter_rows(ellipse, low, high);
+    else scatter_rows(ellipse, stretch * frame.cutoff, low, high);
 }
 
 void scatter_splats() {

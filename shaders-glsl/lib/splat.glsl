@@ -3,6 +3,29 @@
 #include "lib/double_float.glsl"
 
 layout(constant_id = 14) const bool WIDEN_SMALL = false; // the low-pass filter widens only what is smaller than itself
+layout(constant_id = 15) const uint FOOTPRINT = 0;        // as in src/splatting.rs
+layout(constant_id = 16) const bool CONFETTI = false;     // the kernel is ψ_E
+
+const uint CONIC = 0, AFFINE = 1, PARALLELOGRAM = 2, DISC = 3, SPRITE = 4, WHOLE_SPRITE = 5, SQUARE = 6;
+
+// Whether the kernel lies in the tangent plane.
+bool on_plane() {
+    return PERSPECTIVE && (FOOTPRINT == PARALLELOGRAM || FOOTPRINT == DISC);
+}
+
+bool is_sprite() {
+    return FOOTPRINT == SPRITE || FOOTPRINT == WHOLE_SPRITE;
+}
+
+// Whether the distance from the eye, not its inverse, is affine on the screen.
+bool has_linear_depth() {
+    return PERSPECTIVE && is_sprite();
+}
+
+// Half the diagonal of a footprint whose semi-axes are 1: it ends on a square about them, or on an ellipse.
+float rim() {
+    return FOOTPRINT == PARALLELOGRAM || FOOTPRINT == SQUARE ? 1.4142137 : 1.0;
+}
 
 struct Splat {
     vec2 offset;    // centre of the variance's ellipse relative to the anchor, px
@@ -10,7 +33,8 @@ struct Splat {
     vec2 variance;  // V's eigenvalues, px²
     uint place;     // anchor and kind, see below
     float epsilon;  // perspective: 1 / (1 + ε/z), scales κ; orthographic: ε as a difference of κ; negative: the normal faces away
-    vec3 plane_hi;  // κ of the tangent plane at the anchor, and its derivatives along x and y, 1/px, as sums of two floats
+    vec3 plane_hi;  // κ of the tangent plane (has_linear_depth: distance) at the anchor, and its derivatives along x and y, per px, as
+                    // sums of two floats
     float sqrt_det; // √|V|, px²
     vec3 plane_lo;
     float key_disc; // κ of the disc's nearest point
@@ -20,6 +44,9 @@ layout(set = 0, binding = 1, std430) SPLAT_ACCESS buffer Splats { Splat splats[]
 
 // Kinds of splats.
 const uint NOT_DRAWN = 0, SMALL = 1, LARGE = 2;
+
+// Whether a scatter visits the large splats, or the small ones.
+layout(constant_id = 8) const bool LARGE_SPLATS = false;
 
 // The anchor is the pixel nearest to the centre: what is given relative to it keeps its digits on large pictures.
 uint place_of(uvec2 pixel, uint kind) {
@@ -35,10 +62,29 @@ uint kind_of(Splat splat) {
     return splat.place >> 30;
 }
 
+// Largest factor by which perspective may shrink or enlarge a kernel that lies in the tangent plane, against its centre: further out the
+// plane nears its horizon, and a parallelogram would reach behind the eye.
+const float MOST_STRETCH = 2.0;
+
+// How far beyond F σ of the affine ellipse a footprint can reach, as a factor, at most.
+float most_reach() {
+    return on_plane() ? MOST_STRETCH * rim() : rim();
+}
+
 // Half the width and height, px, of the cut-off ellipse of a variance that is given by its major axis and eigenvalues.
 vec2 reach_of(vec2 axis, vec2 variance) {
     vec2 axis2 = axis * axis;
     return frame.cutoff * sqrt(vec2(dot(axis2, variance), dot(axis2.yx, variance)));
+}
+
+// The same factor for a splat of the given variance: where the plane is nearest to the eye, the kernel is largest.
+float stretch_of(Splat splat, vec2 variance, float key_centre) {
+    if (!on_plane()) return rim();
+    vec2 minor_axis = vec2(-splat.axis.y, splat.axis.x);
+    vec2 slope = vec2(dot(splat.plane_hi.yz, splat.axis), dot(splat.plane_hi.yz, minor_axis)) * sqrt(variance);
+    float rise = rim() * frame.cutoff * length(slope) / key_centre;
+    // Rounding moves either by far less than the margin.
+    return rim() * min(MOST_STRETCH, 1.0001 / max(1.0 - rise, 0.5));
 }
 
 // The variances of a splat's two footprints along V's axes, from V's eigenvalues, px². Visibility's is just wide enough to own a
@@ -60,6 +106,16 @@ float amplitude_of(Splat splat, vec2 variance) {
     return splat.sqrt_det * inverse.x * inverse.y;
 }
 
+// Least exponent of a Confetti kernel: the rim keeps some weight, so that no pixel which visibility owns is left without.
+const float LEAST_EXPONENT = -10.0;
+
+// The kernel at the squared distance m2 from its centre, σ².
+float kernel(float m2) {
+    if (!CONFETTI) return exp(-0.5 * m2);
+    float t = pow(m2 / (frame.cutoff * frame.cutoff), 0.5 * frame.kernel_n);
+    return exp(max(-frame.kernel_a * t / max(1.0 - t, 1e-6), LEAST_EXPONENT));
+}
+
 // What a fragment needs of a splat.
 struct Ellipse {
     vec2 anchor;
@@ -67,15 +123,10 @@ struct Ellipse {
     vec4 whitening; // rows of the map from px to σ
     vec3 plane_hi;
     vec3 plane_lo;
+    float key_centre; // on_plane: κ of the plane at the centre
 };
 
-Ellipse ellipse_of(Splat splat, vec2 variance) {
-    vec2 inverse = inversesqrt(variance);
-    vec4 whitening = vec4(splat.axis * inverse.x, vec2(-splat.axis.y, splat.axis.x) * inverse.y);
-    return Ellipse(anchor_of(splat), splat.offset, whitening, splat.plane_hi, splat.plane_lo);
-}
-
-// κ of a plane at d px from the anchor. Seen edge-on, the plane runs through all depths within a pixel, and along its image large
+// The plane's value at d px from the anchor. Seen edge-on, the plane runs through all depths within a pixel, and along its image large
 // terms cancel.
 float plane_at(vec3 hi, vec3 lo, vec2 d) {
     vec2 x = two_product(hi.y, d.x), y = two_product(hi.z, d.y);
@@ -84,25 +135,42 @@ float plane_at(vec3 hi, vec3 lo, vec2 d) {
     return key.x + ((key.y + slope.y) + (x.y + y.y) + (lo.x + lo.y * d.x + lo.z * d.y));
 }
 
-// Whether the splat has a fragment at a pixel centre: it is within the cut-off, and the tangent plane within the depth range.
+float centre_key(vec3 hi, vec3 lo, vec2 offset) {
+    return on_plane() ? plane_at(hi, lo, offset) : 0.0;
+}
+
+Ellipse ellipse_of(Splat splat, vec2 variance) {
+    vec2 inverse = inversesqrt(variance);
+    vec4 whitening = vec4(splat.axis * inverse.x, vec2(-splat.axis.y, splat.axis.x) * inverse.y);
+    float key = centre_key(splat.plane_hi, splat.plane_lo, splat.offset);
+    return Ellipse(anchor_of(splat), splat.offset, whitening, splat.plane_hi, splat.plane_lo, key);
+}
+
+// Whether the splat has a fragment at a pixel centre: it is within the rim, and the tangent plane within the depth range.
 // m2: squared distance to the centre in σ; key: the plane's κ.
 bool splat_fragment(Ellipse ellipse, vec2 pixel, out float m2, out float key) {
     vec2 d = pixel - ellipse.anchor;
     vec2 e = d - ellipse.offset;
     vec2 u = vec2(dot(ellipse.whitening.xy, e), dot(ellipse.whitening.zw, e));
-    m2 = dot(u, u);
     key = plane_at(ellipse.plane_hi, ellipse.plane_lo, d);
-    return m2 <= frame.cutoff * frame.cutoff && key > frame.key_far && key <= 1.0;
+    if (has_linear_depth()) key = key > 0.0 ? frame.near / key : 2.0;
+    // A homography that keeps the centre is affine but for the plane's distance.
+    if (on_plane()) u /= clamp(key / ellipse.key_centre, 1.0 / MOST_STRETCH, MOST_STRETCH);
+    m2 = dot(u, u);
+    bool inside = rim() > 1.0 ? max(abs(u.x), abs(u.y)) <= frame.cutoff : m2 <= frame.cutoff * frame.cutoff;
+    return inside && key > frame.key_far && key <= 1.0;
 }
 
-// The nearest κ within the cut-off ellipse: no fragment's is above it.
-float nearest_of(Splat splat, vec2 variance) {
+// The nearest κ within `stretch` cut-offs of the ellipse: no fragment's is above it.
+float nearest_of(Splat splat, vec2 variance, float stretch) {
     vec2 minor_axis = vec2(-splat.axis.y, splat.axis.x);
     vec2 slope = vec2(dot(splat.plane_hi.yz, splat.axis), dot(splat.plane_hi.yz, minor_axis)) * sqrt(variance);
-    float rise = frame.cutoff * length(slope);
+    float rise = stretch * frame.cutoff * length(slope);
     float centre = splat.plane_hi.x + dot(splat.plane_hi.yz, splat.offset);
     // More than what the rounding of any of these, or of a fragment's κ, takes away.
-    return centre + rise + 1e-6 * (abs(splat.plane_hi.x) + abs(centre) + rise) + 1e-30;
+    float margin = 1e-6 * (abs(splat.plane_hi.x) + abs(centre) + rise) + 1e-30;
+    if (has_linear_depth()) return frame.near / max(centre - rise - margin, 1e-30);
+    return centre + rise + margin;
 }
 
 // κ that a fragment writes to visibility: moved away from the eye along the ray by the splat's ε, which divides it by 1 + ε/z. Never

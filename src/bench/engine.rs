@@ -40,7 +40,7 @@ impl Engine {
                 });
                 let half = (*precision == Precision::Half).then_some("16-bit sums");
                 let variant = rasterizer.into_iter().chain(half).collect::<Vec<_>>().join(", ");
-                Contender { method: perspective_ewa::NAME.into(), variant }
+                Contender { method: perspective_ewa::METHOD.name.into(), variant }
             }
             Self::Yardstick(Kind::Splats) => Contender { method: SPLATS.into(), variant: String::new() },
             Self::Yardstick(Kind::Pixels) => Contender { method: PIXELS.into(), variant: String::new() },

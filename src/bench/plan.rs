@@ -2,7 +2,7 @@
 
 use super::engine::Engine;
 use super::record::{Figure, Setting};
-use crate::settings::{Cull, Settings, Shading, Widen};
+use crate::settings::Settings;
 
 /// One run.
 #[derive(Clone, Debug, PartialEq)]
@@ -55,27 +55,13 @@ impl Wants {
 impl Setting {
     /// Those of `settings` that matter.
     pub fn of(settings: &Settings) -> Self {
-        let cull = match settings.cull {
-            Cull::None => "none",
-            Cull::Back => "back",
-        };
-        let shading = match settings.shading {
-            Shading::Lit => "lit",
-            Shading::Colour => "color",
-            Shading::Normal => "normal",
-            Shading::Depth => "depth",
-        };
-        let widen = match settings.widen {
-            Widen::All => "all",
-            Widen::Small => "small",
-        };
         Self {
             cutoff: settings.cutoff,
             lowpass: settings.lowpass,
-            widen: widen.into(),
+            widen: settings.widen.name().into(),
             epsilon: settings.epsilon,
-            cull: cull.into(),
-            shading: shading.into(),
+            cull: settings.cull.name().into(),
+            shading: settings.shading.name().into(),
         }
     }
 }

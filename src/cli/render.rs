@@ -48,7 +48,7 @@ pub struct Outcome {
 pub fn run(args: &Render) -> Result<()> {
     let out = Output::parse(&args.output);
     check_outputs(args, &out)?;
-    let settings = args.look.settings();
+    let settings = args.settings();
     settings.check()?;
     let device = vulkan::options(&args.place.device)?;
     let file = camera::read(&args.camera)?;
@@ -101,7 +101,7 @@ pub fn keep_layers(picture: &mut Picture, layers: Outputs) {
 fn check_colours(args: &Render, colouring: Option<&Colouring>, out: &Output) -> Result<()> {
     let Some(colouring) = colouring else { return Ok(()) };
     let refuse = |text: &str| Err(Error::Usage(text.into()));
-    if matches!(args.look.settings().shading, Shading::Normal | Shading::Depth) {
+    if matches!(args.settings().shading, Shading::Normal | Shading::Depth | Shading::Overlap) {
         return refuse("--color-by shows under --shading lit or color alone: choose one of them");
     }
     match args.color_bar {

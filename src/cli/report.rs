@@ -9,7 +9,8 @@ use std::path::Path;
 use surfel::bench::Statistics;
 use surfel::geometry::estimate::Estimated;
 use surfel::io::ply::Dropped;
-use surfel::settings::{Cull, DirectionalLight, Lighting, Shading, Widen};
+use surfel::settings::{DirectionalLight, Lighting};
+use surfel::splatting::Splatting;
 use surfel::targets::TargetInfo;
 use surfel::vk::{DeviceDescription, Usage};
 use surfel::{Error, Precision, Rasterizer, Result, Settings, SplatCounts};
@@ -57,10 +58,7 @@ impl Report {
         put("version", json!(env!("CARGO_PKG_VERSION")));
         put("inputs", args.inputs.iter().map(names).collect());
         put("output", json!(names(&args.output)));
-        put(
-            "method",
-            json!(clap::ValueEnum::to_possible_value(&args.method).map(|m| m.get_name().to_owned())),
-        );
+        put("method", json!(args.method.name));
         put("reference", json!(args.place.reference));
         put("size", json!(task.size));
         put("frames", json!(task.frames));
@@ -123,23 +121,14 @@ fn target(target: &TargetInfo) -> Value {
 }
 
 fn settings(settings: &Settings) -> Value {
-    let Settings { cutoff, lowpass, widen, epsilon, cull, shading, background, lighting } = settings;
-    let widen = match widen {
-        Widen::All => "all",
-        Widen::Small => "small",
-    };
-    let cull = match cull {
-        Cull::None => "none",
-        Cull::Back => "back",
-    };
-    let shading = match shading {
-        Shading::Lit => "lit",
-        Shading::Colour => "color",
-        Shading::Normal => "normal",
-        Shading::Depth => "depth",
-    };
+    let Settings { splatting, cutoff, lowpass, widen, epsilon, cull, shading, background, lighting } =
+        settings;
+    let Splatting { footprint, kernel, filter, visibility, normalization, shade } = splatting;
     json!({
-        "cutoff": cutoff, "lowpass": lowpass, "widen": widen, "epsilon": epsilon, "cull": cull, "shading": shading,
+        "footprint": footprint.name(), "kernel": kernel.to_string(), "filter": filter.name(),
+        "visibility": visibility.name(), "normalization": normalization.name(), "shade": shade.name(),
+        "cutoff": cutoff, "lowpass": lowpass, "widen": widen.name(), "epsilon": epsilon, "cull": cull.name(),
+        "shading": shading.name(),
         "background": background, "lighting": light(lighting),
     })
 }

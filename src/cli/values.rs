@@ -1,10 +1,13 @@
 //! Values of options: text to what it means, with what is wrong about it.
 
 use clap::ValueEnum;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use glam::DVec3;
 use std::str::FromStr;
 use surfel::geometry::ValueRange;
 use surfel::io::srgb;
+use surfel::methods::Method;
+use surfel::splatting::Kernel;
 use surfel::{bench, settings};
 
 /// `WxH`, px.
@@ -108,11 +111,22 @@ pub fn opaque(text: &str) -> Result<[f32; 3], String> {
     }
 }
 
-/// How points are rendered.
-#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
-pub enum Method {
-    /// Perspective accurate splatting (Zwicker and others 2004)
-    PerspectiveEwa,
+/// A preset by its name.
+pub fn method() -> impl TypedValueParser<Value = Method> {
+    let presets = Method::ALL.map(|method| PossibleValue::new(method.name).help(method.paper));
+    PossibleValuesParser::new(presets).map(|name| Method::named(&name).unwrap_or(Method::ALL[0]))
+}
+
+/// `gaussian`, or `confetti:A,N`.
+pub fn kernel(text: &str) -> Result<Kernel, String> {
+    let number = |text: &str| text.trim().parse().ok();
+    let numbers = |text: &str| text.split_once(',').and_then(|(a, n)| number(a).zip(number(n)));
+    match text.split_once(':') {
+        None if text == "gaussian" => Some(Kernel::Gaussian),
+        Some(("confetti", rest)) => numbers(rest).map(|(a, n)| Kernel::Confetti { a, n }),
+        _ => None,
+    }
+    .ok_or_else(|| "give gaussian, or confetti:A,N, for example confetti:6,3".into())
 }
 
 /// What the picture shows.
@@ -127,6 +141,8 @@ pub enum Shading {
     Normal,
     /// Distance from the eye
     Depth,
+    /// How many splats are blended
+    Overlap,
 }
 
 impl From<Shading> for settings::Shading {
@@ -136,6 +152,7 @@ impl From<Shading> for settings::Shading {
             Shading::Color => Self::Colour,
             Shading::Normal => Self::Normal,
             Shading::Depth => Self::Depth,
+            Shading::Overlap => Self::Overlap,
         }
     }
 }

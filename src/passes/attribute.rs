@@ -70,7 +70,8 @@ impl ComputeAttribute {
         let cleared: Vec<Use> = used(Access::COPY_WRITE).collect();
         rec.pass("clear", &cleared, |enc| sums().for_each(|buffer| enc.zero(buffer)));
         let mut uses = splats.read_by_scatter();
-        uses.extend([&targets.visibility, &targets.tiles].map(|buffer| buffer.with(Access::COMPUTE_READ)));
+        let read = [Some(&targets.visibility), targets.tiles.as_ref()].into_iter().flatten();
+        uses.extend(read.map(|buffer| buffer.with(Access::COMPUTE_READ)));
         uses.extend(used(Access::COMPUTE_WRITE));
         rec.pass("attribute", &uses, |enc| self.0.record(enc, splats, pixels));
     }

@@ -1,10 +1,12 @@
 //! One file a pass, beside the shader of the same name: `new` makes the pipelines, `record` the commands.
 //!
-//! Visibility, attribute and normalize come in two kinds, one for each [`crate::variant::Rasterizer`].
+//! Visibility, attribute, nearest and normalize come in two kinds, one for each [`crate::variant::Rasterizer`].
 
 mod attribute;
 mod footprint;
+mod nearest;
 mod normalize;
+mod resolve;
 mod scatter;
 mod splats;
 mod tiles;
@@ -12,7 +14,9 @@ mod visibility;
 
 pub use attribute::{ComputeAttribute, DrawAttribute};
 pub use footprint::Footprint;
+pub use nearest::{ComputeNearest, DrawNearest};
 pub use normalize::{ComputeNormalize, DrawNormalize, NormalizeViews};
+pub use resolve::Resolve;
 pub use scatter::{PixelSet, Scatter};
 pub use splats::{SplatLayout, Splats};
 pub use tiles::Tiles;

@@ -11,7 +11,7 @@ use crate::vk::{
 use ash::vk::{DescriptorType, ShaderStageFlags};
 use std::sync::Arc;
 
-/// Pixels in a workgroup of `normalize.glsl`.
+/// Pixels in a workgroup of `normalize.glsl` and `resolve.glsl`.
 const WORKGROUP: u64 = 64;
 /// Workgroups in a row of the dispatch; every device allows as many.
 const WORKGROUPS_X: u32 = 32_768;
@@ -35,6 +35,12 @@ pub struct NormalizeViews {
 pub struct ComputeNormalize {
     frame_layout: SetLayout,
     pipeline: ComputePipeline,
+}
+
+/// Workgroups for an invocation a pixel.
+pub(super) fn grid_over(pixels: u64) -> [u32; 2] {
+    let workgroups = pixels.div_ceil(WORKGROUP) as u32;
+    [workgroups.min(WORKGROUPS_X), workgroups.div_ceil(WORKGROUPS_X)]
 }
 
 /// Layout of a descriptor set of the frame's numbers alone.
@@ -115,8 +121,7 @@ impl ComputeNormalize {
             [Some(&targets.visibility), Some(&targets.sums0), targets.sums1.as_ref()].into_iter().flatten();
         let mut uses: Vec<_> = read.map(|buffer| buffer.with(Access::COMPUTE_READ)).collect();
         uses.push(targets.picture.with(Access::COMPUTE_WRITE));
-        let workgroups = targets.pixels().div_ceil(WORKGROUP) as u32;
-        let grid = [workgroups.min(WORKGROUPS_X), workgroups.div_ceil(WORKGROUPS_X)];
-        rec.pass("normalize", &uses, |enc| enc.dispatch(&self.pipeline, &[frame, &pixels.0], 0, grid));
+        let grid = grid_over(targets.pixels());
+        rec.pass("normalize", &uses, |enc| enc.dispatch(&self.pipeline, &[frame, &pixels.0], [0; 2], grid));
     }
 }

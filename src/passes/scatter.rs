@@ -23,9 +23,10 @@ pub struct PixelSet(pub(super) DescriptorSet);
 impl PixelSet {
     /// A view of `targets`, which must outlive it.
     pub fn new(device: &Arc<Device>, layout: &SplatLayout, targets: &Buffers) -> Result<Self> {
-        // Absent sums are not touched; something must stand at their binding all the same.
+        // What is absent is not touched; something must stand at its binding all the same.
         let sums1 = targets.sums1.as_ref().unwrap_or(&targets.sums0);
-        let buffers = [&targets.visibility, &targets.sums0, sums1, &targets.picture, &targets.tiles];
+        let tiles = targets.tiles.as_ref().unwrap_or(&targets.sums0);
+        let buffers = [&targets.visibility, &targets.sums0, sums1, &targets.picture, tiles];
         let bindings = buffers.map(|buffer| Binding::Storage(buffer, 0, buffer.size()));
         DescriptorSet::new(device, &layout.pixels, &bindings).map(Self)
     }
@@ -52,8 +53,8 @@ impl Scatter {
     pub fn record(&self, enc: &mut Encoder<'_>, splats: &Splats, pixels: &PixelSet) {
         for window in splats.windows() {
             let sets = [&window.set, &pixels.0];
-            enc.dispatch(&self.small, &sets, window.count, [window.count.div_ceil(64), 1]);
-            enc.dispatch(&self.large, &sets, window.count, [LARGE_WORKGROUPS, 1]);
+            enc.dispatch(&self.small, &sets, window.push(), [window.count.div_ceil(64), 1]);
+            enc.dispatch(&self.large, &sets, window.push(), [LARGE_WORKGROUPS, 1]);
         }
     }
 }

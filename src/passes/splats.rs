@@ -33,6 +33,8 @@ pub struct Splats {
 pub(super) struct Window {
     pub(super) set: DescriptorSet,
     pub(super) count: u32,
+    /// The number of its first surfel in the scene.
+    first: u32,
     /// Where its list of large splats starts, bytes.
     list: u64,
 }
@@ -51,7 +53,7 @@ impl SplatLayout {
         let bindings = [
             frame,
             storage(compute | vertex), // splats
-            storage(compute),          // positions
+            storage(compute | vertex), // positions
             storage(compute | vertex), // normals
             storage(compute),          // radii
             storage(compute | vertex), // colours
@@ -60,6 +62,13 @@ impl SplatLayout {
             storage(compute),          // ellipses
         ];
         Ok(Self { splats: SetLayout::new(device, &bindings)?, pixels: pixel_layout(device)? })
+    }
+}
+
+impl Window {
+    /// The push constants of `lib/window.glsl`.
+    pub(super) fn push(&self) -> [u32; 2] {
+        [self.count, self.first]
     }
 }
 
@@ -92,7 +101,7 @@ impl Splats {
             let frame = Binding::Uniform(frame);
             let bindings = [frame, own, positions, normals, radii, colours, tally, large, ellipses];
             let set = DescriptorSet::new(device, &layout.splats, &bindings)?;
-            Ok(Window { set, count: count as u32, list })
+            Ok(Window { set, count: count as u32, first: range.start as u32, list })
         };
         let windows = (0..).zip(scene.windows()).map(window).collect::<Result<_>>()?;
         Ok(Self { splats, counts, large, windows })

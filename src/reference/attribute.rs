@@ -4,6 +4,7 @@ use super::bands::Band;
 use super::ellipse::Ellipse;
 use super::scene::Scene;
 use super::{Projector, Splat};
+use crate::settings::Shading;
 use glam::DVec3;
 
 /// What one pixel accumulates.
@@ -22,6 +23,7 @@ pub(super) struct Sums {
 impl Sums {
     /// What `splat` contributes with weight `weight` at distance `depth`.
     pub fn of(projector: &Projector, splat: &Splat, weight: f64, depth: f64) -> Self {
+        let weight = if projector.settings.shading == Shading::Overlap { 1.0 } else { weight };
         Self {
             weight,
             normal: weight * splat.normal,
@@ -43,15 +45,14 @@ impl std::ops::AddAssign for Sums {
 /// The sums of every pixel of the band over the splats no farther than `visible`.
 pub(super) fn pass(projector: &Projector, scene: &Scene, band: &Band, visible: &[f64]) -> Vec<Sums> {
     let mut sums = vec![Sums::default(); band.len()];
-    for &i in band.splats {
-        let splat = &scene.splats[i as usize];
+    for splat in band.contributors(scene).iter() {
         let ellipse = Ellipse::attribute(splat, projector);
         band.scan(&ellipse, ellipse.cutoff, |hit| {
             // Where visibility wrote nothing there is no surface, however far the wider footprint reaches.
             if visible[hit.index].is_infinite() {
                 return;
             }
-            let Some(depth) = projector.depth_at(splat.plane, hit.at) else { return };
+            let Some(depth) = projector.depth_of(splat, hit.at) else { return };
             if depth <= visible[hit.index] {
                 sums[hit.index] += Sums::of(projector, splat, ellipse.weight(hit.sigmas), depth);
             }

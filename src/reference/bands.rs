@@ -14,6 +14,8 @@ const ROWS: u32 = 8;
 pub(super) struct Bands {
     pub size: [u32; 2],
     lists: Vec<Vec<u32>>,
+    /// Of the splats that visibility has of its own.
+    blockers: Option<Vec<Vec<u32>>>,
 }
 
 /// Some rows of the picture and the indices of the splats that may reach them, ascending.
@@ -21,7 +23,14 @@ pub(super) struct Band<'a> {
     pub first_row: u32,
     pub rows: u32,
     pub width: u32,
-    pub splats: &'a [u32],
+    splats: &'a [u32],
+    blockers: Option<&'a [u32]>,
+}
+
+/// Splats that reach a band.
+pub(super) struct Reaching<'a> {
+    all: &'a [Splat],
+    list: &'a [u32],
 }
 
 /// A pixel centre inside a splat.
@@ -34,23 +43,15 @@ pub(super) struct Hit {
     pub offset: DVec2,
     /// The same in σ: `√(e (V+H)⁻¹ eᵀ)`.
     pub sigmas: f64,
+    /// What is compared with the cut-off, σ.
+    pub rim: f64,
 }
 
 impl Bands {
     /// Sorts the splats into bands, by the wider (attribute) footprint.
     pub fn new(projector: &Projector, scene: &Scene, size: [u32; 2]) -> Self {
-        let mut lists = vec![Vec::new(); size[1].div_ceil(ROWS) as usize];
-        let bounds = |splat: &Splat| Ellipse::attribute(splat, projector).bounds();
-        let boxes: Vec<(DVec2, DVec2)> = scene.splats.par_iter().map(bounds).collect();
-        for (index, (low, high)) in (0..).zip(boxes) {
-            // One px more: doubt looks beyond the cut-off. `as` saturates.
-            let first = (low.y - 1.0) as u32 / ROWS;
-            let last = ((high.y + 1.0) as u32 / ROWS).min(lists.len() as u32 - 1);
-            for list in lists.iter_mut().take(last as usize + 1).skip(first as usize) {
-                list.push(index);
-            }
-        }
-        Self { size, lists }
+        let blockers = scene.moved.as_ref().map(|moved| sorted(projector, moved, size));
+        Self { size, lists: sorted(projector, &scene.splats, size), blockers }
     }
 
     /// Tells that so many bands are drawn.
@@ -63,12 +64,49 @@ impl Bands {
         self.lists.par_iter().enumerate().map(|(i, splats)| {
             let first_row = i as u32 * ROWS;
             let rows = ROWS.min(self.size[1] - first_row);
-            Band { first_row, rows, width: self.size[0], splats }
+            let blockers = self.blockers.as_ref().map(|lists| lists[i].as_slice());
+            Band { first_row, rows, width: self.size[0], splats, blockers }
         })
     }
 }
 
-impl Band<'_> {
+/// For every band the splats that may reach it.
+fn sorted(projector: &Projector, splats: &[Splat], size: [u32; 2]) -> Vec<Vec<u32>> {
+    let mut lists = vec![Vec::new(); size[1].div_ceil(ROWS) as usize];
+    let bounds = |splat: &Splat| Ellipse::attribute(splat, projector).bounds();
+    let boxes: Vec<(DVec2, DVec2)> = splats.par_iter().map(bounds).collect();
+    for (index, (low, high)) in (0..).zip(boxes) {
+        // One px more: doubt looks beyond the cut-off. `as` saturates.
+        let first = (low.y - 1.0) as u32 / ROWS;
+        let last = ((high.y + 1.0) as u32 / ROWS).min(lists.len() as u32 - 1);
+        for list in lists.iter_mut().take(last as usize + 1).skip(first as usize) {
+            list.push(index);
+        }
+    }
+    lists
+}
+
+impl<'a> Reaching<'a> {
+    /// Each of them, in the scene's order.
+    pub fn iter(&self) -> impl Iterator<Item = &'a Splat> {
+        self.list.iter().map(|&i| &self.all[i as usize])
+    }
+}
+
+impl<'a> Band<'a> {
+    /// The splats that attribute sums.
+    pub fn contributors(&self, scene: &'a Scene) -> Reaching<'a> {
+        Reaching { all: &scene.splats, list: self.splats }
+    }
+
+    /// The splats that visibility looks at: the same, unless it has some of its own.
+    pub fn blockers(&self, scene: &'a Scene) -> Reaching<'a> {
+        match (&scene.moved, self.blockers) {
+            (Some(moved), Some(list)) => Reaching { all: moved, list },
+            _ => self.contributors(scene),
+        }
+    }
+
     /// Number of pixels.
     pub fn len(&self) -> usize {
         (self.rows * self.width) as usize
@@ -80,7 +118,7 @@ impl Band<'_> {
         DVec2::new(f64::from(column) + 0.5, f64::from(self.first_row + row) + 0.5)
     }
 
-    /// Calls `visit` for every pixel centre no more than `reach` σ from the centre of `ellipse`.
+    /// Calls `visit` for every pixel centre within the outline of `ellipse` at `reach` σ.
     pub fn scan(&self, ellipse: &Ellipse, reach: f64, mut visit: impl FnMut(Hit)) {
         for row in 0..self.rows {
             let y = f64::from(self.first_row + row) + 0.5;
@@ -90,9 +128,10 @@ impl Band<'_> {
             for column in (low - 0.5).max(0.0) as u32..last.max(0.0) as u32 {
                 let at = DVec2::new(f64::from(column) + 0.5, y);
                 let offset = at - ellipse.centre;
-                let sigmas = ellipse.sigmas(offset);
-                if sigmas <= reach {
-                    visit(Hit { index: (row * self.width + column) as usize, at, offset, sigmas });
+                let rim = ellipse.rim(offset);
+                if rim <= reach {
+                    let (index, sigmas) = ((row * self.width + column) as usize, ellipse.sigmas(offset));
+                    visit(Hit { index, at, offset, sigmas, rim });
                 }
             }
         }

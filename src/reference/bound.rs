@@ -52,7 +52,7 @@ impl Bounds {
     pub fn new(margins: &Margins, scene: &Scene, band: &Band) -> Self {
         let mut sure = vec![Bound::NONE; band.len()];
         let mut maybe: HashMap<usize, Vec<Bound>> = HashMap::new();
-        margins.scan(scene, band, Ellipse::visibility, |c| {
+        margins.scan(band, &band.blockers(scene), Ellipse::visibility, |c| {
             let depth = claimed(margins.projector, c.splat, c.depth);
             let bound = Bound { low: depth - c.wobble, high: depth + c.wobble };
             if c.certain {

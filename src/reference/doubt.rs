@@ -1,6 +1,6 @@
 //! Which pixels hang on a decision that float32 cannot make, and every value that they may take.
 //!
-//! Splatting decides at three thresholds: the kernel's cut-off, the ε test and the clip volume. Where a splat lies nearer to
+//! Splatting decides at three thresholds: the kernel's cut-off, the ε test (or which splat is nearest) and the clip volume. Where a splat lies nearer to
 //! one than rounding can tell, both outcomes are right, and no others. All of this is found in the float64 picture alone,
 //! before any other is seen. The clip volume's planes are given no margin of their own unless
 //! [`super::Tolerance::rounding`] allows for rounding.
@@ -10,10 +10,12 @@ use super::attribute::Sums;
 use super::bands::{Band, Bands};
 use super::bound::{Bound, Bounds};
 use super::ellipse::Ellipse;
-use super::margin::Margins;
+use super::margin::{Candidate, Margins};
+use super::nearest::ranked;
 use super::normalize::{Value, resolve};
 use super::scene::Scene;
 use super::slack::{Means, Slack};
+use crate::splatting::Visibility;
 use glam::DVec2;
 use rayon::prelude::*;
 use std::collections::BTreeMap;
@@ -39,7 +41,15 @@ pub enum Admissible<'a> {
 }
 
 /// One pixel in doubt.
-struct Doubtful {
+enum Doubtful {
+    /// Splats are blended.
+    Blended(Blended),
+    /// One is seen alone: any of these, or none.
+    Alone(DVec2, Vec<Option<Share>>),
+}
+
+/// A pixel at which splats are blended.
+struct Blended {
     at: DVec2,
     /// What visibility may have written.
     bounds: Vec<Bound>,
@@ -64,6 +74,8 @@ struct Share {
 
 impl Doubt {
     pub(super) fn new(margins: &Margins, scene: &Scene, bands: &Bands) -> Self {
+        let alone = margins.projector.settings.splatting.visibility == Visibility::Nearest;
+        let of_band = if alone { of_band_alone } else { of_band };
         let found: Vec<_> = bands.par_iter().map(|band| of_band(margins, scene, &band)).collect();
         let (mut pixels, mut slack) = (BTreeMap::new(), Vec::new());
         for (doubtful, of_band) in found {
@@ -98,12 +110,31 @@ impl Doubt {
         match self.pixels.get(&index) {
             None => Admissible::Definite,
             Some(pixel) if pixel.outcomes() > MOST => Admissible::Unresolvable,
-            Some(pixel) => Admissible::Values(Box::new(pixel.values(&self.projector))),
+            Some(pixel) => Admissible::Values(pixel.values(&self.projector)),
         }
     }
 }
 
 impl Doubtful {
+    fn outcomes(&self) -> usize {
+        match self {
+            Self::Blended(pixel) => pixel.outcomes(),
+            Self::Alone(_, shares) => shares.len(),
+        }
+    }
+
+    fn values<'a>(&'a self, projector: &'a Projector) -> Box<dyn Iterator<Item = (Value, Slack)> + 'a> {
+        match self {
+            Self::Blended(pixel) => Box::new(pixel.values(projector)),
+            Self::Alone(at, shares) => Box::new(shares.iter().map(|share| {
+                let slack = share.map_or(Slack::default(), |share| share.means.slack());
+                (resolve(projector, *at, share.as_ref().map(|share| &share.sums)), slack)
+            })),
+        }
+    }
+}
+
+impl Blended {
     /// The fragments that the visibility depth `bound` surely lets through, summed, and those that it may.
     fn split(&self, bound: Bound) -> (Share, Vec<Share>) {
         let (mut sure, mut maybe) = (Share::default(), Vec::new());
@@ -146,7 +177,7 @@ fn of_band(margins: &Margins, scene: &Scene, band: &Band) -> (Vec<(usize, Doubtf
         doubtful[pixel] = Some(Vec::new());
     }
     let mut means = vec![Means::default(); band.len()];
-    margins.scan(scene, band, Ellipse::attribute, |c| {
+    margins.scan(band, &band.contributors(scene), Ellipse::attribute, |c| {
         let (passes, wavers) = bounds.test(&c);
         if wavers {
             doubtful[c.pixel].get_or_insert_default();
@@ -155,7 +186,7 @@ fn of_band(margins: &Margins, scene: &Scene, band: &Band) -> (Vec<(usize, Doubtf
             means[c.pixel] += Means::of(margins, &c);
         }
     });
-    margins.scan(scene, band, Ellipse::attribute, |c| {
+    margins.scan(band, &band.contributors(scene), Ellipse::attribute, |c| {
         if let Some(fragments) = &mut doubtful[c.pixel]
             && bounds.test(&c).0
         {
@@ -167,10 +198,43 @@ fn of_band(margins: &Margins, scene: &Scene, band: &Band) -> (Vec<(usize, Doubtf
     let first = band.first_row as usize * band.width as usize;
     let pixel = |(i, fragments): (usize, Option<Vec<Fragment>>)| {
         let bounds = bounds.of(i).collect();
-        Some((first + i, Doubtful { at: band.centre(i), bounds, fragments: fragments? }))
+        let pixel = Blended { at: band.centre(i), bounds, fragments: fragments? };
+        Some((first + i, Doubtful::Blended(pixel)))
     };
     let slack = means.iter().map(Means::slack).collect();
     (doubtful.into_iter().enumerate().filter_map(pixel).collect(), slack)
+}
+
+/// The same where the nearest splat is seen alone.
+fn of_band_alone(margins: &Margins, scene: &Scene, band: &Band) -> (Vec<(usize, Doubtful)>, Vec<Slack>) {
+    let splats = band.contributors(scene);
+    // As far as the nearest splat may surely be, and the nearest that may be.
+    let mut farthest = vec![f64::INFINITY; band.len()];
+    margins.scan(band, &splats, Ellipse::visibility, |c| {
+        if c.certain {
+            farthest[c.pixel] = farthest[c.pixel].min(ranked(c.splat, c.depth) + c.margin());
+        }
+    });
+    let mut shares: Vec<Vec<Share>> = vec![Vec::new(); band.len()];
+    margins.scan(band, &splats, Ellipse::visibility, |c| {
+        if ranked(c.splat, c.depth) - c.margin() <= farthest[c.pixel] {
+            let c = Candidate { weight: 1.0, ..c };
+            let sums = Sums::of(margins.projector, c.splat, 1.0, c.depth);
+            shares[c.pixel].push(Share { sums, means: Means::of(margins, &c) });
+        }
+    });
+    let first = band.first_row as usize * band.width as usize;
+    let (mut doubtful, mut slack) = (Vec::new(), Vec::new());
+    for (i, shares) in shares.into_iter().enumerate() {
+        slack.push(shares.first().map_or(Slack::default(), |share| share.means.slack()));
+        let surely_there = farthest[i].is_finite();
+        if shares.len() > 1 || !surely_there && !shares.is_empty() {
+            let none = (!surely_there).then_some(None);
+            let shares = shares.into_iter().map(Some).chain(none).collect();
+            doubtful.push((first + i, Doubtful::Alone(band.centre(i), shares)));
+        }
+    }
+    (doubtful, slack)
 }
 
 impl std::ops::AddAssign for Share {

@@ -1,8 +1,15 @@
-//! The ellipse on which a splat's kernel ends, once a low-pass filter has widened it.
+//! The outline on which a splat's kernel ends, once a low-pass filter has widened it, and the kernel in it.
 
 use super::{Projector, Splat};
 use crate::settings::Widen;
-use glam::DVec2;
+use crate::splatting::{Footprint, Kernel};
+use glam::{DVec2, DVec3};
+
+/// Largest factor by which perspective shrinks or enlarges a kernel in the tangent plane against its centre.
+const MOST_STRETCH: f64 = 2.0;
+
+/// Least exponent of a Confetti kernel.
+const LEAST_EXPONENT: f64 = -10.0;
 
 /// The filtered kernel of a splat: its variance `V'`, such as `V + h I`, in its principal axes, where long thin ellipses lose no digits.
 #[derive(Clone, Copy, Debug)]
@@ -16,13 +23,19 @@ pub(super) struct Ellipse {
     pub amplitude: f64,
     /// Cut-off `F`, in σ.
     pub cutoff: f64,
+    /// Where the kernel lies in the tangent plane: its plane as of [`Projector::plane`], divided by its value at the centre.
+    pub horizon: Option<DVec3>,
+    /// Whether the outline is the square about the ellipse.
+    pub square: bool,
+    /// How the weight falls off.
+    pub kernel: Kernel,
 }
 
 impl Ellipse {
     /// The footprint of the visibility pass: just wide enough to own a pixel centre.
     pub fn visibility(splat: &Splat, projector: &Projector) -> Self {
         let least = f64::from(projector.settings.least_lowpass());
-        Self::new(splat, |variance| variance + least, projector.cutoff())
+        Self::new(splat, projector, |variance| variance + least)
     }
 
     /// The footprint of the attribute pass: widened by the low-pass filter `H` (zwicker2004, equation 3), as far as the settings want.
@@ -30,36 +43,85 @@ impl Ellipse {
         let settings = &projector.settings;
         let [least, lowpass] = [settings.least_lowpass(), settings.attribute_lowpass()].map(f64::from);
         match settings.widen {
-            Widen::All => Self::new(splat, |variance| variance + lowpass, projector.cutoff()),
-            Widen::Small => Self::new(splat, |variance| (variance + least).max(lowpass), projector.cutoff()),
+            Widen::All => Self::new(splat, projector, |variance| variance + lowpass),
+            Widen::Small => Self::new(splat, projector, |variance| (variance + least).max(lowpass)),
         }
     }
 
     /// The splat's kernel, with the variance along either of its axes turned by `widened` into another, px².
-    pub fn new(splat: &Splat, widened: impl Fn(f64) -> f64, cutoff: f64) -> Self {
+    pub fn new(splat: &Splat, projector: &Projector, widened: impl Fn(f64) -> f64) -> Self {
         let [xx, xy, yy] = [splat.variance.x_axis.x, splat.variance.x_axis.y, splat.variance.y_axis.y];
         let major = 0.5 * (xx + yy + (xx - yy).hypot(2.0 * xy));
         // Not as the trace minus the major one: that cancels.
         let minor = if major > 0.0 { splat.sqrt_det * (splat.sqrt_det / major) } else { 0.0 };
         let angle = 0.5 * (2.0 * xy).atan2(xx - yy);
         let variance = DVec2::new(widened(major), widened(minor));
+        let splatting = projector.settings.splatting;
+        let on_plane = splatting.footprint.is_on_plane() && projector.depth.perspective;
+        let centre = splat.centre;
         Self {
-            centre: splat.centre,
+            centre,
             axis: DVec2::from_angle(angle),
             variance,
             amplitude: splat.sqrt_det / (variance.x * variance.y).sqrt(),
-            cutoff,
+            cutoff: projector.cutoff(),
+            horizon: on_plane.then(|| splat.plane / splat.plane.dot(DVec3::new(1.0, centre.x, centre.y))),
+            square: matches!(splatting.footprint, Footprint::Parallelogram | Footprint::Square),
+            kernel: splatting.kernel,
         }
+    }
+
+    /// Where in the kernel the offset `e` from the centre is: along its axes, in σ. Seen in perspective, what lies in a plane is a
+    /// homography of it; one that keeps the centre is affine but for the division by the plane's inverse distance.
+    fn in_kernel(&self, offset: DVec2) -> DVec2 {
+        let at = self.centre + offset;
+        let nearness = self.horizon.map_or(1.0, |plane| plane.dot(DVec3::new(1.0, at.x, at.y)));
+        self.principal(offset) / self.sigma() / nearness.clamp(1.0 / MOST_STRETCH, MOST_STRETCH)
     }
 
     /// `m = √(e V'⁻¹ eᵀ)` of the offset `e` from the centre, in σ.
     pub fn sigmas(&self, offset: DVec2) -> f64 {
-        (self.principal(offset) / self.sigma()).length()
+        self.in_kernel(offset).length()
+    }
+
+    /// What is compared with the cut-off at the offset `e` from the centre, in σ.
+    pub fn rim(&self, offset: DVec2) -> f64 {
+        let y = self.in_kernel(offset);
+        if self.square { y.abs().max_element() } else { y.length() }
+    }
+
+    /// Whether the outline is the ellipse itself.
+    pub fn is_plain(&self) -> bool {
+        self.horizon.is_none() && !self.square
+    }
+
+    /// How far the outline can reach beyond the ellipse, as a factor.
+    fn stretch(&self) -> f64 {
+        let rim = if self.square { std::f64::consts::SQRT_2 } else { 1.0 };
+        if self.horizon.is_some() { MOST_STRETCH * rim } else { rim }
     }
 
     /// Weight at a distance of `m` σ: the kernel's height where the filter has widened it.
     pub fn weight(&self, sigmas: f64) -> f64 {
-        self.amplitude * (-0.5 * sigmas * sigmas).exp()
+        let height = match self.kernel {
+            Kernel::Gaussian => (-0.5 * sigmas * sigmas).exp(),
+            Kernel::Confetti { a, n } => {
+                let t = (sigmas / self.cutoff).powf(n.into()).min(1.0);
+                (-f64::from(a) * t / (1.0 - t)).max(LEAST_EXPONENT).exp()
+            }
+        };
+        self.amplitude * height
+    }
+
+    /// How much steeper than a Gaussian the kernel is at a distance of `m` σ: `|d ln w / dm| − m`, or 0.
+    pub fn steepness(&self, sigmas: f64) -> f64 {
+        let Kernel::Confetti { a, n } = self.kernel else { return 0.0 };
+        let [a, n] = [a, n].map(f64::from);
+        let t = (sigmas / self.cutoff).powf(n).min(1.0 - 1e-9);
+        // From where the exponent is at its least, the kernel is flat.
+        let flat = a * t / (1.0 - t) > -LEAST_EXPONENT;
+        let slope = if flat || sigmas == 0.0 { 0.0 } else { a / (1.0 - t).powi(2) * n * t / sigmas };
+        (slope - sigmas).max(0.0)
     }
 
     /// 1-σ lengths of the major and the minor axis, px.
@@ -72,16 +134,17 @@ impl Ellipse {
         DVec2::new(self.axis.dot(offset), self.axis.perp_dot(offset))
     }
 
-    /// Least and greatest corner of the box around the cut-off ellipse, px: `x_t ± F √V'ᵢᵢ`.
+    /// Least and greatest corner of a box around the outline, px: `x_t ± F √V'ᵢᵢ`, or more where it is no ellipse.
     pub fn bounds(&self) -> (DVec2, DVec2) {
-        let along = self.cutoff * self.sigma().x * self.axis;
-        let across = self.cutoff * self.sigma().y * self.axis.perp();
+        let along = self.stretch() * self.cutoff * self.sigma().x * self.axis;
+        let across = self.stretch() * self.cutoff * self.sigma().y * self.axis.perp();
         let half = DVec2::new(along.x.hypot(across.x), along.y.hypot(across.y));
         (self.centre - half, self.centre + half)
     }
 
-    /// Least and greatest x of the ellipse of `reach` σ on the line `y`, px; `None` if the line misses it.
+    /// Bounds of x within the outline at `reach` σ on the line `y`, px, those of the ellipse exactly; `None` if the line misses it.
     pub fn span(&self, y: f64, reach: f64) -> Option<(f64, f64)> {
+        let reach = self.stretch() * reach;
         let (c, s) = (self.axis.x, self.axis.y);
         let vertical = self.variance.x * s * s + self.variance.y * c * c;
         let covariance = (self.variance.x - self.variance.y) * c * s;
@@ -92,8 +155,14 @@ impl Ellipse {
         (left >= 0.0).then_some((middle - half, middle + half))
     }
 
-    /// Distance in px from the point at `offset` from the centre to the cut-off ellipse.
+    /// Distance in px from the point at `offset` from the centre to the outline; to first order where it is no ellipse.
     pub fn distance(&self, offset: DVec2) -> f64 {
+        if !self.is_plain() {
+            let step = 1e-5;
+            let along = |d: DVec2| (self.rim(offset + d) - self.rim(offset - d)) / (2.0 * step);
+            let slope = DVec2::new(along(step * DVec2::X), along(step * DVec2::Y)).length();
+            return (self.rim(offset) - self.cutoff).abs() / slope;
+        }
         to_ellipse(self.cutoff * self.sigma(), self.principal(offset).abs())
     }
 }
@@ -170,6 +239,9 @@ mod tests {
             variance: DVec2::new(9.0, 0.25),
             amplitude: 1.0,
             cutoff: 2.0,
+            horizon: None,
+            square: false,
+            kernel: Kernel::Gaussian,
         };
         for y in [17.0, 20.0, 22.5] {
             let (low, high) = ellipse.span(y, 2.0).unwrap();

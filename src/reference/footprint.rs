@@ -1,12 +1,14 @@
 //! Pass `footprint`: from surfels to screen-space splats.
 
 use super::Projector;
-use super::conic::{clearance, dual_form, inverse_form};
+use super::conic::clearance;
 use super::ellipse::Ellipse;
-use super::shading::linear;
+use super::image::Disc;
+use super::shading::{linear, lit};
 use crate::error::Result;
 use crate::geometry::{Camera, Colours, Surfels};
-use crate::settings::{Cull, Settings};
+use crate::settings::{Cull, Settings, Shading};
+use crate::splatting::Shade;
 use glam::{DMat2, DMat3, DVec2, DVec3};
 
 /// One surfel in float64, in world space.
@@ -64,8 +66,8 @@ pub struct Splat {
     pub variance: DMat2,
     /// `√|V|`, px²; the closed form where `V` is near singular.
     pub sqrt_det: f64,
-    /// The tangent plane's distance at pixel position (x, y): `plane · (1, x, y)` is 1 / distance in perspective, the distance
-    /// itself in orthographic projection.
+    /// The distance at pixel position (x, y) of its plane, the tangent plane if it is no sprite: `plane · (1, x, y)` is 1 / distance in
+    /// perspective, the distance itself in orthographic projection and of sprites.
     pub plane: DVec3,
     /// Distance of the surfel's centre.
     pub distance: f64,
@@ -141,21 +143,22 @@ impl Projector {
         if self.settings.cull == Cull::Back && facing >= 0.0 && !surfel.two_sided {
             return Err(Culled::Back);
         }
-        let inverse = inverse_form(&mapping, self.cutoff());
-        let conic = inverse.unwrap_or_else(|| dual_form(&mapping, self.cutoff()));
+        let image = self.image(&Disc { surfel, centre, normal, axes, projected, mapping });
+        let shown = surfel.colour.unwrap_or(DVec3::from_array(self.settings.lighting.albedo.map(f64::from)));
+        let towards = if facing > 0.0 { -surfel.normal } else { surfel.normal };
         let splat = Splat {
-            centre: projected + conic.offset,
-            variance: conic.variance,
-            sqrt_det: conic.sqrt_det,
-            plane: self.plane(centre, normal),
+            centre: image.centre,
+            variance: image.variance,
+            sqrt_det: image.sqrt_det,
+            plane: image.plane,
             distance,
-            nearest: distance - axes[0].z.hypot(axes[1].z),
+            nearest: image.nearest,
             shift: self.shift(surfel.radius, distance),
-            normal: if facing > 0.0 { -surfel.normal } else { surfel.normal },
-            colour: surfel.colour.unwrap_or(DVec3::from_array(self.settings.lighting.albedo.map(f64::from))),
+            normal: towards,
+            colour: self.splat_colour(shown, towards, centre),
             secant: self.secant(centre, facing),
             aspect: surfel.aspect,
-            dual: inverse.is_none(),
+            dual: image.dual,
         };
         let attribute = Ellipse::attribute(&splat, self);
         // What is no number fails either.
@@ -164,6 +167,28 @@ impl Projector {
             true => Err(Culled::Invalid),
             false => Err(Culled::Outside),
         }
+    }
+
+    /// The same of the surfel moved away by ε along the camera's axis (ren2002 §5.1), for a visibility that has ε in the position.
+    pub(super) fn moved_footprint(&self, surfel: &Surfel) -> Result<Splat, Culled> {
+        let epsilon = f64::from(self.settings.epsilon) * surfel.radius;
+        let away = self.to_world(DVec3::new(0.0, 0.0, self.depth.forward));
+        let moved = Surfel { position: surfel.position + epsilon * away, ..*surfel };
+        let shift = if self.depth.perspective { 1.0 } else { 0.0 };
+        self.footprint(&moved).map(|splat| Splat { shift, ..splat })
+    }
+
+    /// The colour that a splat adds: light, where splats are lit.
+    fn splat_colour(&self, albedo: DVec3, normal: DVec3, centre: DVec3) -> DVec3 {
+        let Settings { shading, splatting, lighting, .. } = &self.settings;
+        if *shading != Shading::Lit || splatting.shade != Shade::Splat {
+            return albedo;
+        }
+        let away = match self.depth.perspective {
+            true => centre - self.eye(),
+            false => DVec3::new(0.0, 0.0, self.depth.forward),
+        };
+        lit(lighting, albedo, normal, -self.to_world(away).normalize())
     }
 
     /// The semi-axes of the covered disc, eye space.

@@ -83,7 +83,7 @@ impl Judge {
         let gain = 1.0 + slack.turn;
         let limit = Worst {
             colour: gain * tolerance.colour.max(slack.attribute),
-            normal: gain * tolerance.normal.max(slack.attribute),
+            normal: (gain * tolerance.normal.max(slack.attribute)).max(slack.summed),
             depth: tolerance.depth_relative.max(slack.depth),
         };
         Self { limit, depth_shown }

@@ -1,8 +1,7 @@
 //! What float32 cannot tell: the splats that may be at a pixel, with the uncertainty of their depth and weight.
 
-use super::bands::{Band, Hit};
+use super::bands::{Band, Hit, Reaching};
 use super::ellipse::Ellipse;
-use super::scene::Scene;
 use super::{Projector, Splat};
 use glam::{DVec2, DVec3};
 
@@ -49,24 +48,25 @@ impl Margins<'_> {
     /// Calls `visit` for every splat and pixel of the band that may be inside each other.
     pub fn scan(
         &self,
-        scene: &Scene,
         band: &Band,
+        splats: &Reaching,
         footprint: fn(&Splat, &Projector) -> Ellipse,
         mut visit: impl FnMut(Candidate),
     ) {
-        for &i in band.splats {
-            let splat = &scene.splats[i as usize];
+        for splat in splats.iter() {
             let ellipse = footprint(splat, self.projector);
-            // m changes by no more than 1 / (minor σ) a px.
-            let reach = CUTOFF / ellipse.sigma().y;
+            // m changes by no more than 1 / (minor σ) a px, or the stretch of a kernel in the plane times that and its own slope.
+            let reach = if ellipse.is_plain() { CUTOFF / ellipse.sigma().y } else { 64.0 * CUTOFF };
             // What rounding shifts a pixel coordinate by, in σ.
             let shift = self.rounding * self.projector.size.max_element() / ellipse.sigma().y;
             band.scan(&ellipse, ellipse.cutoff + reach, |hit| {
-                let edge = (hit.sigmas - ellipse.cutoff).abs() <= reach;
+                let edge = (hit.rim - ellipse.cutoff).abs() <= reach;
                 let near = edge && ellipse.distance(hit.offset) <= CUTOFF;
-                if near || hit.sigmas <= ellipse.cutoff {
+                if near || hit.rim <= ellipse.cutoff {
                     let mut candidate = self.candidate(splat, &hit, near);
                     if let Some(c) = &mut candidate {
+                        // A kernel that is steeper than a Gaussian makes more of the same shift.
+                        c.sway += shift * ellipse.steepness(hit.sigmas);
                         (c.weight, c.drift) = (ellipse.weight(hit.sigmas), shift * hit.sigmas);
                     }
                     candidate.into_iter().for_each(&mut visit);
@@ -99,7 +99,7 @@ impl Margins<'_> {
     fn depth(&self, splat: &Splat, at: DVec2) -> Option<(f64, f64, bool)> {
         let value = splat.plane.dot(DVec3::new(1.0, at.x, at.y));
         let turn = self.rounding * splat.secant;
-        if !self.projector.depth.perspective {
+        if !self.projector.has_inverse_depth() {
             return Some((value, turn * (value.abs() + splat.distance.abs()), true));
         }
         let blur = turn * (value.abs() + 1.0 / splat.distance);

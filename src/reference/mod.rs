@@ -1,8 +1,8 @@
-//! The float64 twin of the method `perspective-ewa` (zwicker2004), on the CPU: what the GPU's picture is held against.
+//! The float64 twin of every splatting method, on the CPU: what the GPU's picture is held against.
 //!
 //! Named as the GPU's passes, and sharing none of their code: [`Projector::footprint`] makes the screen-space splat of a
-//! surfel, `visibility` finds the depth up to which splats are blended, `attribute` sums them, `normalize` divides and
-//! shades. [`Doubt`] finds, from the float64 picture alone, the pixels that hang on a decision which float32 cannot make,
+//! surfel, `visibility` finds the depth up to which splats are blended, `attribute` sums them, or `nearest` takes the first
+//! alone, and `normalize` divides and shades. [`Doubt`] finds, from the float64 picture alone, the pixels that hang on a decision which float32 cannot make,
 //! with every value they may take; [`compare`] judges a picture by both.
 //!
 //! Spaces: *world* is the surfels' frame; *eye* is the camera's, where the distance `z = forward · z_eye` is above 0 in
@@ -16,8 +16,10 @@ mod conic;
 mod doubt;
 mod ellipse;
 mod footprint;
+mod image;
 mod judge;
 mod margin;
+mod nearest;
 mod normalize;
 mod projector;
 mod scene;
@@ -42,7 +44,8 @@ use crate::error::Result;
 use crate::geometry::{Camera, Surfels};
 use crate::picture::Picture;
 use crate::settings::Settings;
-use bands::Bands;
+use crate::splatting::Visibility;
+use bands::{Band, Bands};
 use rayon::prelude::*;
 use scene::Scene;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -115,16 +118,24 @@ pub fn render(
     Ok(draw(&projector, &scene, &Bands::new(&projector, &scene, size), progress))
 }
 
-/// The three passes, band by band: a band's sums are all the memory that is needed beside the splats and the picture.
+/// The pixels of a band.
+fn values(projector: &Projector, scene: &Scene, band: &Band) -> Vec<Value> {
+    if projector.settings.splatting.visibility == Visibility::Nearest {
+        return normalize::pass_alone(projector, band, &nearest::pass(projector, scene, band));
+    }
+    let depth = visibility::pass(projector, scene, band);
+    let sums = attribute::pass(projector, scene, band, &depth);
+    normalize::pass(projector, band, &depth, &sums)
+}
+
+/// All passes, band by band: a band's sums are all the memory that is needed beside the splats and the picture.
 fn draw(projector: &Projector, scene: &Scene, bands: &Bands, progress: &dyn Progress) -> Frame {
     let done = AtomicU64::new(0);
     bands.tell(progress, 0);
     let values: Vec<Value> = bands
         .par_iter()
         .flat_map(|band| {
-            let depth = visibility::pass(projector, scene, &band);
-            let sums = attribute::pass(projector, scene, &band, &depth);
-            let values = normalize::pass(projector, &band, &depth, &sums);
+            let values = values(projector, scene, &band);
             bands.tell(progress, done.fetch_add(1, Ordering::Relaxed) + 1);
             values
         })

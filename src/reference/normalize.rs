@@ -5,6 +5,7 @@ use super::attribute::Sums;
 use super::bands::Band;
 use super::shading::lit;
 use crate::settings::Shading;
+use crate::splatting::{Normalization, Shade};
 use glam::{DVec2, DVec3};
 
 /// Length of `Σ w n` relative to `Σ w` below which the normals cancel and the direction to the eye stands in for them.
@@ -31,6 +32,12 @@ pub(super) fn pass(projector: &Projector, band: &Band, visible: &[f64], sums: &[
     visible.iter().zip(sums).enumerate().map(pixel).collect()
 }
 
+/// The values of the band's pixels from what is seen there alone.
+pub(super) fn pass_alone(projector: &Projector, band: &Band, seen: &[Option<Sums>]) -> Vec<Value> {
+    let pixel = |(i, sums): (usize, &Option<Sums>)| resolve(projector, band.centre(i), sums.as_ref());
+    seen.iter().enumerate().map(pixel).collect()
+}
+
 /// The value of the pixel with centre `at`; `sums` are `None` where visibility wrote nothing.
 pub(super) fn resolve(projector: &Projector, at: DVec2, sums: Option<&Sums>) -> Value {
     let Some(sums) = sums.filter(|s| s.weight > 0.0) else { return uncovered(projector) };
@@ -41,12 +48,20 @@ pub(super) fn resolve(projector: &Projector, at: DVec2, sums: Option<&Sums>) -> 
         true => sums.weight / sums.depth,
         false => sums.depth / sums.weight,
     };
-    let colour = sums.colour / sums.weight;
-    let shown = match projector.settings.shading {
-        Shading::Lit => lit(&projector.settings.lighting, colour, normal, viewer),
+    let settings = &projector.settings;
+    let total = match settings.splatting.normalization {
+        Normalization::Pixel => sums.weight,
+        Normalization::Surfel | Normalization::None => 1.0,
+    };
+    let colour = sums.colour / total;
+    let shown = match settings.shading {
+        // The splats are lit already.
+        Shading::Lit if settings.splatting.shade == Shade::Splat => colour,
+        Shading::Lit => lit(&settings.lighting, colour, normal, viewer),
         Shading::Colour => colour,
         Shading::Normal => normal,
         Shading::Depth => DVec3::splat(depth),
+        Shading::Overlap => DVec3::splat(sums.weight),
     };
     Value { covered: true, colour: shown.extend(1.0).to_array(), depth, normal: normal.to_array() }
 }

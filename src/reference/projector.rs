@@ -1,5 +1,6 @@
 //! A frame's camera in float64: from eye space to pixels, and back along the rays through them.
 
+use super::Splat;
 use crate::error::{Error, Result};
 use crate::geometry::{Camera, Projection};
 use crate::settings::Settings;
@@ -101,11 +102,15 @@ impl Projector {
         }
     }
 
-    /// Distance along the ray at pixel position `at` to `plane` (of [`Projector::plane`]); `None` behind the eye or outside
-    /// the clip volume.
-    pub(super) fn depth_at(&self, plane: DVec3, at: DVec2) -> Option<f64> {
-        let value = plane.dot(DVec3::new(1.0, at.x, at.y));
-        let distance = match self.depth.perspective {
+    /// Whether a splat's plane gives 1 / distance, not the distance itself.
+    pub(super) fn has_inverse_depth(&self) -> bool {
+        self.depth.perspective && !self.settings.splatting.footprint.is_sprite()
+    }
+
+    /// Distance along the ray at pixel position `at` to a splat's plane; `None` behind the eye or outside the clip volume.
+    pub(super) fn depth_of(&self, splat: &Splat, at: DVec2) -> Option<f64> {
+        let value = splat.plane.dot(DVec3::new(1.0, at.x, at.y));
+        let distance = match self.has_inverse_depth() {
             true if value > 0.0 => 1.0 / value,
             true => return None,
             false => value,

@@ -3,6 +3,7 @@
 use super::footprint::Culled;
 use super::{Projector, Splat, Surfel};
 use crate::geometry::Surfels;
+use crate::splatting::Visibility;
 use rayon::prelude::*;
 
 /// What became of the surfels.
@@ -27,6 +28,8 @@ pub struct Counts {
 /// The drawn splats of a frame, in the surfels' order, and the count of all.
 pub(super) struct Scene {
     pub splats: Vec<Splat>,
+    /// Those that visibility has of its own: of discs moved away by ε along the camera's axis.
+    pub moved: Option<Vec<Splat>>,
     pub counts: Counts,
     pub dual_form: usize,
 }
@@ -53,6 +56,10 @@ impl Scene {
         };
         let splats: Vec<Splat> = all.into_iter().flatten().collect();
         counts.drawn = splats.len();
-        Self { dual_form: splats.iter().filter(|s| s.dual).count(), splats, counts }
+        let moves = projector.settings.splatting.visibility == Visibility::Axis;
+        let moved = |i: usize| projector.moved_footprint(&Surfel::of(surfels, i)).ok();
+        let valid = (0..surfels.len()).into_par_iter().filter(|&i| surfels.is_valid(i));
+        let moved = moves.then(|| valid.filter_map(moved).collect());
+        Self { dual_form: splats.iter().filter(|s| s.dual).count(), splats, moved, counts }
     }
 }

@@ -3,7 +3,7 @@
 use super::margin::{Candidate, Margins};
 use glam::DVec3;
 
-/// How far rounding may move a pixel's value without any decision turning: the weighted mean over its splats. All 0 where
+/// How far rounding may move a pixel's value without any decision turning: the weighted mean over its splats. All but the last 0 where
 /// [`super::Tolerance::rounding`] is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Slack {
@@ -13,7 +13,12 @@ pub struct Slack {
     pub attribute: f64,
     /// `Σw / |Σw n|`, less 1: the more the normals cancel, the more an error turns their normalised sum.
     pub turn: f64,
+    /// What the rounding of the sum itself does to the unit normal.
+    pub summed: f64,
 }
+
+/// Rounding error of a sum of a few floats, relative to the sum of their magnitudes: four half units in the last place.
+const SUM: f64 = 4.0 * 1.0 / (1 << 24) as f64;
 
 /// Sums over a pixel's splats that make its [`Slack`].
 #[derive(Clone, Copy, Default)]
@@ -47,8 +52,10 @@ impl Means {
 
     /// The means.
     pub fn slack(&self) -> Slack {
+        let spread_of_normals = self.weight / self.normal.length();
+        let summed = if self.weight > 0.0 { SUM * spread_of_normals } else { 0.0 };
         if self.sway == 0.0 {
-            return Slack::default();
+            return Slack { summed, ..Default::default() };
         }
         let mean = self.depth / self.pull;
         let spread = (self.squared_depth / self.pull - mean * mean).max(0.0).sqrt();
@@ -58,7 +65,8 @@ impl Means {
         Slack {
             depth: depth / mean.abs(),
             attribute: 2.0 * self.sway / self.weight,
-            turn: self.weight / self.normal.length() - 1.0,
+            turn: spread_of_normals - 1.0,
+            summed,
         }
     }
 }

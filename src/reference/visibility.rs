@@ -2,6 +2,7 @@
 
 use super::bands::Band;
 use super::ellipse::Ellipse;
+use super::nearest::ranked;
 use super::scene::Scene;
 use super::{Projector, Splat};
 
@@ -9,11 +10,10 @@ use super::{Projector, Splat};
 /// there is none.
 pub(super) fn pass(projector: &Projector, scene: &Scene, band: &Band) -> Vec<f64> {
     let mut nearest = vec![f64::INFINITY; band.len()];
-    for &i in band.splats {
-        let splat = &scene.splats[i as usize];
+    for splat in band.blockers(scene).iter() {
         let ellipse = Ellipse::visibility(splat, projector);
         band.scan(&ellipse, ellipse.cutoff, |hit| {
-            if let Some(depth) = projector.depth_at(splat.plane, hit.at) {
+            if let Some(depth) = projector.depth_of(splat, hit.at) {
                 nearest[hit.index] = nearest[hit.index].min(claimed(projector, splat, depth));
             }
         });
@@ -27,6 +27,6 @@ pub(super) fn pass(projector: &Projector, scene: &Scene, band: &Band) -> Vec<f64
 /// Nothing is claimed nearer than the disc itself. The low-pass widens a disc seen edge-on by most of a pixel, over which its plane
 /// runs far out in front of it.
 pub(super) fn claimed(projector: &Projector, splat: &Splat, depth: f64) -> f64 {
-    let depth = depth.max(splat.nearest);
+    let depth = ranked(splat, depth);
     if projector.depth.perspective { depth * splat.shift } else { depth + splat.shift }
 }

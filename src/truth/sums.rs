@@ -154,6 +154,8 @@ fn resolve(cell: &Cell, depth: f32, settings: &Settings) -> ([f32; 4], [f32; 3])
         Shading::Lit | Shading::Colour => return (over(light, covered, settings.background), normal),
         Shading::Normal => normal,
         Shading::Depth => [depth; 3],
+        // The surface is there once.
+        Shading::Overlap => [1.0; 3],
     };
     // Numbers are not mixed with a colour: the half decides.
     let alpha = match settings.background {

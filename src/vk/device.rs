@@ -70,14 +70,24 @@ impl Device {
         let capabilities = Capabilities::query(&instance, physical, family, &options.limits);
         let queues =
             [vk::DeviceQueueCreateInfo::default().queue_family_index(family).queue_priorities(&[1.0])];
-        let mut atomics =
+        let mut floats =
             vk::PhysicalDeviceShaderAtomicFloatFeaturesEXT::default().shader_buffer_float32_atomic_add(true);
-        let extensions = [ash::ext::shader_atomic_float::NAME.as_ptr()];
-        let mut info = vk::DeviceCreateInfo::default().queue_create_infos(&queues);
+        let mut integers =
+            vk::PhysicalDeviceShaderAtomicInt64Features::default().shader_buffer_int64_atomics(true);
+        let features = vk::PhysicalDeviceFeatures::default().shader_int64(capabilities.int64_atomics);
+        let mut extensions = Vec::new();
+        let mut info =
+            vk::DeviceCreateInfo::default().queue_create_infos(&queues).enabled_features(&features);
         if capabilities.float_atomics {
-            info = info.enabled_extension_names(&extensions).push_next(&mut atomics);
+            extensions.push(ash::ext::shader_atomic_float::NAME.as_ptr());
+            info = info.push_next(&mut floats);
         }
-        // SAFETY: the physical device is the instance's, the family one of its own, and it has the one extension asked for.
+        if capabilities.int64_atomics {
+            extensions.push(ash::khr::shader_atomic_int64::NAME.as_ptr());
+            info = info.push_next(&mut integers);
+        }
+        info = info.enabled_extension_names(&extensions);
+        // SAFETY: the physical device is the instance's, the family one of its own, and it has the extensions asked for.
         let raw = unsafe { instance.raw.create_device(physical, &info, None) }
             .map_err(|result| Error::NoDevice(format!("{}: vkCreateDevice: {result}", description.name)))?;
         // SAFETY: the queue was asked for above.

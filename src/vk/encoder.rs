@@ -14,12 +14,12 @@ impl<'a> Encoder<'a> {
         Self { device, cmd }
     }
 
-    /// Runs `x` by `y` workgroups with `push` as the push constant.
+    /// Runs `x` by `y` workgroups with `push` as the push constants.
     pub fn dispatch(
         &mut self,
         pipeline: &ComputePipeline,
         sets: &[&DescriptorSet],
-        push: u32,
+        push: [u32; 2],
         [x, y]: [u32; 2],
     ) {
         let sets: Vec<_> = sets.iter().map(|set| set.raw).collect();
@@ -31,7 +31,7 @@ impl<'a> Encoder<'a> {
             let raw = &self.device.raw;
             raw.cmd_bind_pipeline(self.cmd, point, pipeline);
             raw.cmd_bind_descriptor_sets(self.cmd, point, layout, 0, &sets, &[]);
-            raw.cmd_push_constants(self.cmd, layout, stage, 0, &push.to_ne_bytes());
+            raw.cmd_push_constants(self.cmd, layout, stage, 0, bytemuck::bytes_of(&push));
             raw.cmd_dispatch(self.cmd, x, y, 1);
         }
     }

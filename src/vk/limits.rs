@@ -2,6 +2,7 @@
 
 use super::instance::Instance;
 use ash::vk;
+use std::ffi::CStr;
 
 /// A mask over a device's abilities: a field that is `None` hides nothing. It only ever takes away.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -15,6 +16,8 @@ pub struct DeviceLimits {
     pub blend_float32: Option<bool>,
     /// `false`: 32-bit floats in buffers cannot be added to atomically.
     pub float_atomics: Option<bool>,
+    /// `false`: 64-bit integers in buffers have no atomic maximum.
+    pub int64_atomics: Option<bool>,
     /// `false`: the queue has no timestamps.
     pub timestamps: Option<bool>,
     /// Upper bound of `maxStorageBufferRange`, bytes.
@@ -32,6 +35,8 @@ pub struct Capabilities {
     pub blend_float32: bool,
     /// 32-bit floats in storage buffers can be added to atomically (VK_EXT_shader_atomic_float).
     pub float_atomics: bool,
+    /// 64-bit integers in storage buffers have an atomic maximum (VK_KHR_shader_atomic_int64).
+    pub int64_atomics: bool,
     /// Nanoseconds a timestamp tick, and the mask of valid bits; `None` without timestamps.
     pub timestamps: Option<(f32, u64)>,
     /// Largest range of a storage buffer that one descriptor may name, bytes.
@@ -80,6 +85,7 @@ impl Capabilities {
             blend_float32: [vk::Format::R32_SFLOAT, vk::Format::R32G32B32A32_SFLOAT].into_iter().all(blends)
                 && mask.blend_float32 != Some(false),
             float_atomics: mask.float_atomics != Some(false) && has_float_atomics(instance, physical),
+            int64_atomics: mask.int64_atomics != Some(false) && has_int64_atomics(instance, physical),
             timestamps: timestamps
                 .then_some((limits.timestamp_period, u64::MAX >> (64 - valid_bits.clamp(1, 64)))),
             max_storage_buffer_range: u64::from(limits.max_storage_buffer_range)
@@ -94,17 +100,32 @@ impl Capabilities {
     }
 }
 
-fn has_float_atomics(instance: &Instance, physical: vk::PhysicalDevice) -> bool {
+fn has_extension(instance: &Instance, physical: vk::PhysicalDevice, name: &CStr) -> bool {
     // SAFETY: `physical` is one of the instance's devices.
     let extensions =
         unsafe { instance.raw.enumerate_device_extension_properties(physical) }.unwrap_or_default();
-    let name = ash::ext::shader_atomic_float::NAME;
-    if !extensions.iter().any(|extension| extension.extension_name_as_c_str() == Ok(name)) {
+    extensions.iter().any(|extension| extension.extension_name_as_c_str() == Ok(name))
+}
+
+fn has_float_atomics(instance: &Instance, physical: vk::PhysicalDevice) -> bool {
+    if !has_extension(instance, physical, ash::ext::shader_atomic_float::NAME) {
         return false;
     }
     let mut atomics = vk::PhysicalDeviceShaderAtomicFloatFeaturesEXT::default();
     let mut features = vk::PhysicalDeviceFeatures2::default().push_next(&mut atomics);
-    // SAFETY: as above; the device has the extension that the struct belongs to.
+    // SAFETY: `physical` is one of the instance's devices, and has the extension that the struct belongs to.
     unsafe { instance.raw.get_physical_device_features2(physical, &mut features) };
     atomics.shader_buffer_float32_atomic_add == vk::TRUE
+}
+
+fn has_int64_atomics(instance: &Instance, physical: vk::PhysicalDevice) -> bool {
+    if !has_extension(instance, physical, ash::khr::shader_atomic_int64::NAME) {
+        return false;
+    }
+    let mut atomics = vk::PhysicalDeviceShaderAtomicInt64Features::default();
+    let mut features = vk::PhysicalDeviceFeatures2::default().push_next(&mut atomics);
+    // SAFETY: as above.
+    unsafe { instance.raw.get_physical_device_features2(physical, &mut features) };
+    let wide = features.features.shader_int64 == vk::TRUE;
+    wide && atomics.shader_buffer_int64_atomics == vk::TRUE
 }

@@ -66,7 +66,7 @@ struct Raw {
     device: Arc<Device>,
 }
 
-/// A compute pipeline, with one u32 of push constants.
+/// A compute pipeline, with two u32 of push constants.
 pub struct ComputePipeline(Raw);
 
 /// A draw pipeline over triangles without vertex buffers; viewport and scissor are those of the framebuffer.
@@ -198,7 +198,7 @@ impl Raw {
     fn new(device: &Arc<Device>, sets: &[&SetLayout], stages: vk::ShaderStageFlags) -> Result<Self> {
         check_storage_buffers(device, sets)?;
         let sets: Vec<_> = sets.iter().map(|set| set.raw).collect();
-        let constants = [vk::PushConstantRange { stage_flags: stages, offset: 0, size: 4 }];
+        let constants = [vk::PushConstantRange { stage_flags: stages, offset: 0, size: 8 }];
         let mut info = vk::PipelineLayoutCreateInfo::default().set_layouts(&sets);
         if stages == vk::ShaderStageFlags::COMPUTE {
             info = info.push_constant_ranges(&constants);

@@ -31,7 +31,8 @@ use crate::error::{Error, Result};
 use crate::geometry::{Camera, Colours, Surfels};
 use crate::io::srgb;
 use crate::picture::Picture;
-use crate::settings::Settings;
+use crate::settings::{Settings, Shading};
+use crate::splatting::Splatting;
 use crate::variant::Outputs;
 use crate::vk::PassTime;
 use clock::Stages;
@@ -110,6 +111,10 @@ impl Yardstick {
         outputs: Outputs,
     ) -> Result<&[PassTime]> {
         settings.check()?;
+        if settings.splatting != Splatting::default() || settings.shading == Shading::Overlap {
+            let text = "the yardstick draws as perspective-ewa does, and no overlaps: choose that method";
+            return Err(Error::Usage(text.into()));
+        }
         let view = View::new(camera, size, self.surfels.origin)?;
         self.target.fit(size, outputs)?;
         self.stages.times.clear();

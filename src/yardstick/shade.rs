@@ -67,6 +67,8 @@ impl<'a> Shader<'a> {
             Shading::Colour => surface.colour,
             Shading::Normal => normal,
             Shading::Depth => [surface.depth; 3],
+            // Refused before a frame is begun.
+            Shading::Overlap => [Vec4::ONE; 3],
         };
         let [r, g, b] = shown;
         let select = |here: Vec4, otherwise: Vec4| Vec4::select(surface.covered, here, otherwise);

@@ -21,7 +21,7 @@ pub use judge::judge;
 use super::record::{Contender, Sweep, SweepPoint};
 use crate::Progress;
 use crate::error::{Error, Result};
-use crate::methods::perspective_ewa::NAME;
+use crate::methods::perspective_ewa::METHOD;
 use crate::reference::{Counts, Expected, Tolerance};
 use crate::renderer::{RenderOptions, Renderer, SplatCounts};
 use crate::scene::Scene;
@@ -95,7 +95,7 @@ impl Way {
             Self::Compute => "compute",
             Self::Half => "draw, 16-bit sums",
         };
-        Contender { method: NAME.into(), variant: variant.into() }
+        Contender { method: METHOD.name.into(), variant: variant.into() }
     }
 
     fn precision(self) -> Precision {

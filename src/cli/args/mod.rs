@@ -12,11 +12,13 @@ pub use convert::{Convert, Info};
 pub use points::{Colours, Points};
 pub use truth::Truth;
 
-use super::values::{Background, Cull, Layer, Method, Shading, Widen, background, size, vector};
+use super::values::{Background, Cull, Layer, Shading, Widen, background, kernel, method, size, vector};
 use clap::{Args, Parser, Subcommand};
 use glam::DVec3;
 use std::ffi::OsString;
 use std::path::PathBuf;
+use surfel::methods::Method;
+use surfel::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
 use surfel::{Outputs, Settings};
 
 /// Renders point-sampled surfaces with Vulkan.
@@ -58,9 +60,12 @@ pub struct Render {
     /// The picture: .png (sRGB, or `-` for standard output) or .exr (linear light)
     #[arg(short, long, value_name = "OUT")]
     pub output: OsString,
-    /// How points are rendered
-    #[arg(long, value_enum, default_value = "perspective-ewa")]
+    /// How points are rendered; `surfel methods` tells more
+    #[arg(long, default_value = Method::ALL[0].name, value_parser = method())]
     pub method: Method,
+    /// What is changed of the method
+    #[command(flatten)]
+    pub axes: Axes,
     /// Size of the picture, px
     #[arg(long, value_name = "WxH", default_value = "1024x1024", value_parser = size, allow_hyphen_values = true)]
     pub size: [u32; 2],
@@ -141,35 +146,77 @@ pub struct Look {
     /// Colour where nothing is: transparent, or sRGB codes from 0 to 255
     #[arg(long, value_name = "R,G,B|transparent", default_value = "transparent", value_parser = background, allow_hyphen_values = true)]
     pub background: Background,
-    /// Variance of the anti-aliasing filter, px²
-    #[arg(long, value_name = "VARIANCE_PX2", default_value_t = Settings::default().lowpass, allow_hyphen_values = true)]
-    pub lowpass: f32,
-    /// What the anti-aliasing filter widens
-    #[arg(long, value_enum, default_value = "small")]
-    pub widen: Widen,
-    /// Where a splat's kernel ends, in standard deviations
-    #[arg(long, value_name = "F", default_value_t = Settings::default().cutoff, allow_hyphen_values = true)]
-    pub cutoff: f32,
+    /// Variance of the anti-aliasing filter, px²; the method's unless given, 1 of most
+    #[arg(long, value_name = "VARIANCE_PX2", allow_hyphen_values = true)]
+    pub lowpass: Option<f32>,
+    /// What the anti-aliasing filter widens; the method's unless given
+    #[arg(long, value_enum)]
+    pub widen: Option<Widen>,
+    /// Where a splat's kernel ends, in standard deviations; the method's unless given, 2.5 of perspective-ewa
+    #[arg(long, value_name = "F", allow_hyphen_values = true)]
+    pub cutoff: Option<f32>,
     /// How far behind the nearest splat others still blend with it, in radii
     #[arg(long, value_name = "RADII", default_value_t = Settings::default().epsilon, allow_hyphen_values = true)]
     pub epsilon: f32,
-    /// Which surfels are left out for the side that they show
-    #[arg(long, value_enum, default_value = "none")]
-    pub cull: Cull,
+    /// Which surfels are left out for the side that they show; the method's unless given
+    #[arg(long, value_enum)]
+    pub cull: Option<Cull>,
 }
 
-impl Look {
+/// What is changed of a method: see `surfel methods`.
+#[derive(Args, Debug, Clone, Copy)]
+pub struct Axes {
+    /// The image of a surfel's disc
+    #[arg(long, value_enum)]
+    pub footprint: Option<Footprint>,
+    /// How a splat's weight falls off: gaussian, or confetti:A,N
+    #[arg(long, value_parser = kernel)]
+    pub kernel: Option<Kernel>,
+    /// Where the anti-aliasing filter is applied
+    #[arg(long, value_enum)]
+    pub filter: Option<Filter>,
+    /// Which splats a pixel sees
+    #[arg(long, value_enum)]
+    pub visibility: Option<Visibility>,
+    /// What makes weights add up to 1
+    #[arg(long, value_enum)]
+    pub normalization: Option<Normalization>,
+    /// What is lit
+    #[arg(long, value_enum)]
+    pub shade: Option<Shade>,
+}
+
+impl Axes {
+    /// `splatting` with what is given here.
+    fn over(&self, splatting: Splatting) -> Splatting {
+        let visibility = self.visibility.unwrap_or(splatting.visibility);
+        // One splat alone has nothing to normalize.
+        let alone = (visibility == Visibility::Nearest).then_some(Normalization::None);
+        Splatting {
+            footprint: self.footprint.unwrap_or(splatting.footprint),
+            kernel: self.kernel.unwrap_or(splatting.kernel),
+            filter: self.filter.unwrap_or(splatting.filter),
+            visibility,
+            normalization: self.normalization.or(alone).unwrap_or(splatting.normalization),
+            shade: self.shade.unwrap_or(splatting.shade),
+        }
+    }
+}
+
+impl Render {
     /// The settings that this asks for.
     pub fn settings(&self) -> Settings {
+        let (look, preset) = (&self.look, self.method.settings());
         Settings {
-            cutoff: self.cutoff,
-            lowpass: self.lowpass,
-            widen: self.widen.into(),
-            epsilon: self.epsilon,
-            cull: self.cull.into(),
-            shading: self.shading.into(),
-            background: self.background.linear(),
-            ..Default::default()
+            splatting: self.axes.over(preset.splatting),
+            cutoff: look.cutoff.unwrap_or(preset.cutoff),
+            lowpass: look.lowpass.unwrap_or(preset.lowpass),
+            widen: look.widen.map_or(preset.widen, Into::into),
+            epsilon: look.epsilon,
+            cull: look.cull.map_or(preset.cull, Into::into),
+            shading: look.shading.into(),
+            background: look.background.linear(),
+            lighting: preset.lighting,
         }
     }
 }

@@ -7,6 +7,7 @@ pub use read::{MOST_PIXELS, read};
 
 use super::{atomic, srgb};
 use crate::error::{Error, Result};
+use crate::geometry::ColourMap;
 use crate::picture::Picture;
 use crate::settings::Shading;
 use image::codecs::png::PngEncoder;
@@ -104,7 +105,7 @@ impl Encoded {
     /// Encodes a picture.
     ///
     /// `Lit` and `Colour` are sRGB-encoded. `Normal` maps −1…1 to 0…255 without a transfer function, in world space. `Depth` is grey, white
-    /// at the nearest covered pixel and a tenth of that at the furthest, linear in depth, without a transfer function. Pixels without a
+    /// at the nearest covered pixel and a tenth of that at the furthest, linear in depth, without a transfer function. Overlaps are viridis from 0 to their greatest. Pixels without a
     /// surface are the background's colour, black under `Depth`.
     ///
     /// # Errors
@@ -241,6 +242,18 @@ fn encode(picture: &Picture, shading: Shading) -> Vec<[u8; 4]> {
                 [grey, grey, grey, alpha(pixel)]
             };
             pixels.map(pixel).collect()
+        }
+        Shading::Overlap => {
+            let most =
+                (0..picture.colour.len()).filter(|&i| covered(picture, i)).map(|i| picture.colour[i][0]);
+            let most = most.fold(1.0, f32::max);
+            let coloured = |pixel: &[f32; 4]| {
+                let [r, g, b] = ColourMap::Viridis.at((pixel[0] / most).into());
+                [r, g, b, alpha(pixel)]
+            };
+            pixels
+                .map(|(i, pixel)| if covered(picture, i) { coloured(pixel) } else { colour(pixel) })
+                .collect()
         }
     }
 }

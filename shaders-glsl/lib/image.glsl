@@ -1,0 +1,115 @@
+// The image of a disc by the kind of footprint: an ellipse on the screen and a plane through the centre.
+
+#include "lib/conic.glsl"
+
+// A disc in front of the eye; all vectors world space.
+struct Disc {
+    vec3 hi, lo;      // centre relative to the eye
+    vec2 w, x, y;     // its homogeneous pixel; w is the distance along the viewing direction, 1 for parallel rays
+    vec3 normal;
+    vec2 h;           // of its plane n·x = h
+    vec2 facing;      // above 0 where the normal points away from the eye
+    float radius;     // longer semi-axis
+    float aspect;     // shorter semi-axis / longer
+    mat2x3 axes;      // directions of the semi-axes, the second of length `aspect`
+};
+
+// A splat before the low-pass filter.
+struct Image {
+    Conic conic;
+    float sqrt_det; // √|V|, px²
+    float lean;     // how much nearer than the centre the disc comes: w in perspective, else distance
+    vec2 slope;     // of the plane where it is not the tangent plane: distance (has_linear_depth) or κ, per px
+};
+
+// Least cosine by which a sprite is foreshortened. Flatter ones would leave holes, because the angle between ray and axis is neglected.
+const float LEAST_FORESHORTENING = 0.1;
+
+// Homogeneous pixel of a vector of the world.
+vec3 to_pixel(vec3 v) {
+    return vec3(dot(frame.rows_hi[0].xyz, v), dot(frame.rows_hi[1].xyz, v), dot(frame.rows_hi[2].xyz, v));
+}
+
+// How clear of the eye plane the disc is: above 0 where all of it is in front. S, T: homogeneous pixels of the 1-σ axes.
+float clearance(Disc disc, vec3 S, vec3 T) {
+    float g = length(vec2(S.z, T.z));
+    return (disc.w.x / frame.cutoff - g) * (disc.w.x / frame.cutoff + g);
+}
+
+// The disc as the projection maps its rim (zwicker2004 §4.4), or as it maps what is next to its centre (ren2002 §3).
+Image image_of_disc(Disc disc, float sigma, vec3 S, vec3 T) {
+    vec2 g = vec2(S.z, T.z);
+    // Rows of D are the x and y rows of the derivative of the projection, times w.
+    vec2 centre = vec2(disc.x.x, disc.y.x) / disc.w.x;
+    vec2 Dx = vec2(S.x, T.x) - centre.x * g;
+    vec2 Dy = vec2(S.y, T.y) - centre.y * g;
+    float w = disc.w.x / frame.cutoff;
+    float q = FOOTPRINT == CONIC ? clearance(disc, S, T) : w * w;
+    vec2 o = FOOTPRINT == CONIC ? -vec2(dot(Dx, g), dot(Dy, g)) / q : vec2(0.0);
+
+    float root = frame.cutoff * sqrt(q);
+    float sqrt_det = frame.jacobian * disc.aspect * (sigma / root) * (sigma / root) * abs(disc.facing.x) / root;
+    float lean = frame.cutoff * (PERSPECTIVE ? length(g) : sigma * length(frame.forward_hi.xyz * disc.axes));
+    return Image(conic_of(vec3(Dx, 0.0), vec3(Dy, 0.0), o, q, frame.cutoff, sqrt_det), sqrt_det, lean, vec2(0.0));
+}
+
+// The part of a vector that is parallel to the image plane.
+vec3 flattened(vec3 v) {
+    return v - dot(v, frame.forward_hi.xyz) * frame.forward_hi.xyz;
+}
+
+// px of a vector by parallel projection, at distance 1.
+vec2 flat_pixel(vec3 v) {
+    return vec2(dot(frame.flat_rows[0].xyz, v), dot(frame.flat_rows[1].xyz, v));
+}
+
+// px of a unit length along y at distance 1: η.
+float focal_length() {
+    return length(frame.flat_rows[1].xyz);
+}
+
+// A sprite: the disc by parallel projection at its centre's scale, no flatter than LEAST_FORESHORTENING (botsch2003 §3.1–3.3).
+Image image_of_sprite(Disc disc, float sigma) {
+    float across = dot(disc.normal, frame.forward_hi.xyz);
+    vec3 along = flattened(disc.normal);
+    vec3 lean = dot(along, along) > 0.0 ? normalize(along) : vec3(0.0);
+    float cosine = max(abs(across), LEAST_FORESHORTENING);
+    float sine = sqrt(1.0 - cosine * cosine);
+
+    vec2 s = sigma * flat_pixel(disc.axes[0]);
+    vec2 t = sigma * flat_pixel(disc.axes[1]);
+    // What the bound adds to the variance along the normal's image.
+    vec2 extra = sigma * disc.aspect * sqrt(cosine * cosine - across * across) * flat_pixel(lean);
+    float whole = 1.0;
+    if (FOOTPRINT == WHOLE_SPRITE) {
+        float width = 2.0 * disc.radius * focal_length() / disc.w.x;
+        whole = max(floor(width + 0.5), 1.0) / width;
+    }
+    float scale = whole / disc.w.x;
+    // |V| is the sum of the squares of all 2×2 minors (Cauchy and Binet); the first is known in closed form.
+    vec2 minors = vec2(s.x, t.x) * extra.y - vec2(s.y, t.y) * extra.x;
+    float area = frame.jacobian * disc.aspect * sigma * sigma * abs(across);
+    float sqrt_det = scale * scale * length(vec3(area, minors));
+    float w = disc.w.x / frame.cutoff;
+    Conic conic = conic_of(
+        whole * vec3(s.x, t.x, extra.x), whole * vec3(s.y, t.y, extra.y), vec2(0.0), w * w, frame.cutoff, sqrt_det);
+
+    vec3 tilt = (across < 0.0 ? -1.0 : 1.0) * sine / (cosine * whole) * lean;
+    vec2 slope = vec2(dot(tilt, frame.ray_hi[0].xyz), dot(tilt, frame.ray_hi[1].xyz));
+    if (PERSPECTIVE) slope *= -disc.w.x / frame.near;
+    return Image(conic, sqrt_det, disc.radius * sine, slope);
+}
+
+// A square that faces the image plane (botsch2003 §3.1).
+Image image_of_square(Disc disc, float sigma) {
+    vec2 size = sigma / disc.w.x * vec2(length(frame.flat_rows[0].xyz), focal_length());
+    bool wide = size.x >= size.y;
+    vec2 variance = wide ? size * size : size.yx * size.yx;
+    return Image(Conic(vec2(0.0), wide ? vec2(1.0, 0.0) : vec2(0.0, 1.0), variance), size.x * size.y, 0.0, vec2(0.0));
+}
+
+Image image_of(Disc disc, float sigma, vec3 S, vec3 T) {
+    if (FOOTPRINT == SQUARE) return image_of_square(disc, sigma);
+    if (is_sprite()) return image_of_sprite(disc, sigma);
+    return image_of_disc(disc, sigma, S, T);
+}

@@ -1,0 +1,34 @@
+// What a pixel gets of a surfel: the vectors that the targets sum, see lib/sums.glsl.
+
+#include "lib/shading.glsl"
+
+layout(constant_id = 20) const bool SHADE_SPLATS = false; // what is summed as colour is light: splats are lit at their centres
+
+layout(set = 0, binding = 2, std430) readonly buffer Positions { float positions[]; };
+layout(set = 0, binding = 3, std430) readonly buffer Normals { float normals[]; };
+layout(set = 0, binding = 5, std430) readonly buffer Colours { uint colours[]; };
+
+vec3 srgb_to_linear(vec3 c) {
+    return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045)));
+}
+
+vec3 colour_of(uint i) {
+    if (COLOURS == COLOURS_NONE) return frame.albedo.rgb;
+    if (COLOURS == COLOURS_LINEAR)
+        return uintBitsToFloat(uvec3(colours[3 * i], colours[3 * i + 1], colours[3 * i + 2]));
+    return srgb_to_linear(unpackUnorm4x8(colours[i]).rgb);
+}
+
+// Unit vector from surfel i to the eye.
+vec3 to_eye_of(uint i) {
+    vec3 position = vec3(positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]);
+    return PERSPECTIVE ? normalize(frame.eye_hi.xyz - position + frame.eye_lo.xyz) : -frame.forward_hi.xyz;
+}
+
+// What the two targets sum of surfel i; `epsilon` tells its side.
+void surface_of(uint i, float epsilon, out vec3 first, out vec3 second) {
+    vec3 normal = sign(epsilon) * vec3(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]);
+    second = SUM_COLOURS ? colour_of(i) : vec3(0.0);
+    if (SHADE_SPLATS) second = lit(second, normal, to_eye_of(i));
+    first = SUM_NORMALS ? normal : second;
+}

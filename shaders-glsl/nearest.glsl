@@ -1,0 +1,76 @@
+// Nearest: the nearest splat of each pixel, alone and whole: one pass, nothing is blended (zwicker2004 table 1; botsch2003 §3.2).
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#ifdef COMPUTE
+#extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+#extension GL_EXT_shader_atomic_int64 : require
+#endif
+
+#include "lib/frame.glsl"
+#include "lib/sums.glsl"
+#define SPLAT_ACCESS readonly
+#include "lib/splat.glsl"
+
+#ifdef COMPUTE
+
+#include "lib/window.glsl"
+#include "lib/winners.glsl"
+
+uint splat_index;
+float splat_key_disc;
+
+vec2 scatter_variance(vec2 variance) {
+    return visibility_variance(variance);
+}
+
+bool scatter_begin(uint i, Splat splat, vec2 variance, float nearest, ivec2 low, ivec2 high) {
+    splat_index = i;
+    splat_key_disc = splat.key_disc;
+    return true;
+}
+
+void scatter(uint pixel, float m2, float key) {
+    atomicMax(winners[pixel], winner(min(key, splat_key_disc), splat_index));
+}
+
+#include "lib/scatter_splat.glsl"
+
+void main() {
+    scatter_splats();
+}
+
+#else
+#include "lib/draw_splat.glsl"
+#endif
+#ifdef VERTEX
+
+#include "lib/surface.glsl"
+
+layout(location = 4) flat out vec3 first;
+layout(location = 5) flat out vec3 second;
+
+void main() {
+    uint i = gl_VertexIndex / 3;
+    Splat splat = splats[i];
+    place_splat(splat, visibility_variance(splat.variance), gl_VertexIndex % 3);
+    surface_of(i, splat.epsilon, first, second);
+}
+
+#endif
+#ifdef FRAGMENT
+
+layout(location = 4) flat in vec3 first;
+layout(location = 5) flat in vec3 second;
+
+layout(location = 0) out vec4 sum0;
+layout(location = 1) out vec4 sum1;
+
+void main() {
+    float m2, key;
+    drawn_fragment(m2, key);
+    gl_FragDepth = min(key, plane_lo_disc.w);
+    sum0 = vec4(1.0, first);
+    sum1 = vec4(SUM_DEPTH ? frame.key_gain * key : 0.0, second);
+}
+
+#endif

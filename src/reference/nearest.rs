@@ -1,0 +1,28 @@
+//! Pass `nearest`: the nearest splat of each pixel, alone (zwicker2004 table 1; botsch2003 section 3.2).
+
+use super::attribute::Sums;
+use super::bands::Band;
+use super::ellipse::Ellipse;
+use super::scene::Scene;
+use super::{Projector, Splat};
+
+/// For every pixel of the band what its nearest splat is, as sums of that one splat of weight 1. The first of equals wins.
+pub(super) fn pass(projector: &Projector, scene: &Scene, band: &Band) -> Vec<Option<Sums>> {
+    let mut nearest = vec![(f64::INFINITY, None); band.len()];
+    for splat in band.contributors(scene).iter() {
+        let ellipse = Ellipse::visibility(splat, projector);
+        band.scan(&ellipse, ellipse.cutoff, |hit| {
+            let Some(depth) = projector.depth_of(splat, hit.at) else { return };
+            let ranked = ranked(splat, depth);
+            if ranked < nearest[hit.index].0 {
+                nearest[hit.index] = (ranked, Some(Sums::of(projector, splat, 1.0, depth)));
+            }
+        });
+    }
+    nearest.into_iter().map(|(_, sums)| sums).collect()
+}
+
+/// The depth by which splats are ranked: none is nearer than its disc.
+pub(super) fn ranked(splat: &Splat, depth: f64) -> f64 {
+    depth.max(splat.nearest)
+}
