@@ -12,7 +12,7 @@ pub struct Convert {
     /// PLY files, or built-in scenes such as scene:bumpy-sphere; several become one file
     #[arg(required = true, value_name = "INPUT")]
     pub inputs: Vec<OsString>,
-    /// The file: binary PLY with position, normal and radius, and where there are any, axes of ellipses, two-sidedness and colour
+    /// The file: binary PLY with position, normal and radius, and where there are any, axes of ellipses, two-sidedness, clip lines and colour
     #[arg(short, long, value_name = "OUT.ply")]
     pub output: OsString,
     /// Keeps one point for every cube of this side, in the positions' unit, of all inputs together

@@ -69,6 +69,7 @@ fn surfels(drafts: Vec<Draft>) -> Surfels {
         radii: drafts.par_iter().map(|draft| draft.radius as f32).collect(),
         ellipses: elliptical.then(|| drafts.par_iter().map(ellipse).collect()),
         two_sided: two_sided.then(|| drafts.par_iter().map(|draft| draft.two_sided).collect()),
+        clips: None,
         colours: Some(Colours::Linear(
             drafts.par_iter().map(|draft| draft.albedo.map(|channel| channel as f32)).collect(),
         )),
