@@ -1,10 +1,11 @@
 //! Options of `surfel convert` and `surfel info`.
 
 use super::{Colours, Points};
-use crate::cli::values::{direction, positive};
+use crate::cli::values::{direction, edge, positive};
 use clap::Args;
 use glam::DVec3;
 use std::ffi::OsString;
+use surfel::geometry::estimate::Estimate;
 
 /// Options of `surfel convert`.
 #[derive(Args, Debug)]
@@ -21,6 +22,9 @@ pub struct Convert {
     /// How normals and radii are estimated
     #[command(flatten)]
     pub points: Points,
+    /// Ends discs at creases where normals turn by more than ANGLE degrees
+    #[arg(long, value_name = "ANGLE", value_parser = edge, allow_hyphen_values = true)]
+    pub sharp: Option<f32>,
     /// What points are coloured by
     #[command(flatten)]
     pub colours: Colours,
@@ -30,6 +34,13 @@ pub struct Convert {
     /// Prints nothing but warnings and errors
     #[arg(short, long)]
     pub quiet: bool,
+}
+
+impl Convert {
+    /// What the library is asked for.
+    pub fn estimate(&self) -> Estimate {
+        Estimate { sharp: self.sharp.map(f32::to_radians), ..self.points.estimate() }
+    }
 }
 
 /// Options of `surfel info`.
