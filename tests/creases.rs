@@ -51,7 +51,7 @@ struct Found {
     found: f64,
     corners: f64,
     corners_found: f64,
-    /// Clipped discs that have no line which was found.
+    /// Lines that were found and are not there.
     wrong: f64,
     /// By how much the lines that were found are off at most, in radii.
     off: f64,
@@ -67,11 +67,15 @@ fn compare(found: &Surfels, truth: &Surfels, most: impl Fn(usize) -> f64) -> Fou
                 lines(ours).map(|ours| apart(truth, index, ours, line) / f64::from(truth.radii[index]));
             each.fold(f64::INFINITY, f64::min)
         };
+        let is_there = |ours: &ClipLine| {
+            lines(theirs)
+                .any(|line| apart(truth, index, ours, line) <= most(index) * f64::from(truth.radii[index]))
+        };
         let offs: Vec<f64> = lines(theirs).map(off).collect();
         let near: Vec<f64> = offs.iter().copied().filter(|off| *off <= most(index)).collect();
         sum.lines += offs.len() as f64;
         sum.found += near.len() as f64;
-        sum.wrong += f64::from(u8::from(ours.is_some() && near.is_empty()));
+        sum.wrong += lines(ours).filter(|ours| !is_there(ours)).count() as f64;
         sum.off = near.iter().copied().fold(sum.off, f64::max);
         if offs.len() == 2 {
             sum.corners += 1.0;
