@@ -16,7 +16,7 @@ pub fn run(args: &Convert) -> Result<()> {
     let bars = progress::bars(args.quiet);
     let loaded = inputs::load(&Wanted {
         names: &args.inputs,
-        estimate: args.points.estimate(),
+        estimate: args.estimate(),
         voxel: args.voxel,
         colouring: Colouring::new(&args.colours, args.up)?,
         quiet: args.quiet,

@@ -110,6 +110,12 @@ fn warn(name: &str, report: &Report) {
             log::warn!("{name}: {count} of {} points {why} and are left out", report.points);
         }
     }
+    if report.clip_lines_dropped > 0 {
+        log::warn!(
+            "{name}: {} clip lines are not finite or in no tangent plane and are left out",
+            report.clip_lines_dropped
+        );
+    }
     let Faces { understood, skipped } = report.faces;
     if skipped > 0 {
         log::warn!(

@@ -8,11 +8,13 @@ pub fn estimated(counts: &Estimated) -> Option<String> {
     let radii = sources(counts.radii_from_faces, counts.radii_from_neighbours);
     let two_sided = Some(counts.two_sided).filter(|&count| count > 0 && normals.is_some());
     let outliers = Some(counts.outliers).filter(|&count| count > 0);
+    let clipped = Some(counts.clipped).filter(|&count| count > 0);
     let parts = [
         normals.map(|text| format!("normals of {text}")),
         radii.map(|text| format!("radii of {text}")),
         two_sided.map(|count| format!("{count} two-sided")),
         outliers.map(|count| format!("{count} outliers left out")),
+        clipped.map(|count| format!("{count} clipped at sharp edges")),
     ];
     let parts: Vec<_> = parts.into_iter().flatten().collect();
     (!parts.is_empty()).then(|| parts.join("; "))
@@ -45,8 +47,8 @@ mod tests {
         };
         let line = "normals of 34834 points from faces, 1113 from neighbours; radii of 35947 points from neighbours; 210 two-sided";
         assert_eq!(estimated(&mixed).as_deref(), Some(line));
-        let dropped = Estimated { radii_from_faces: 3, outliers: 1, ..given };
-        let line = "radii of 3 points from faces; 1 outliers left out";
+        let dropped = Estimated { radii_from_faces: 3, outliers: 1, clipped: 7, ..given };
+        let line = "radii of 3 points from faces; 1 outliers left out; 7 clipped at sharp edges";
         assert_eq!(estimated(&dropped).as_deref(), Some(line));
     }
 }

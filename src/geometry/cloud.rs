@@ -1,7 +1,7 @@
 //! A point cloud as files hold it: positions, and whatever else there is.
 
 use super::morton::order;
-use super::{Colours, Ellipse, Surfels};
+use super::{Clips, Colours, Ellipse, Surfels};
 use glam::{DVec3, Vec3};
 
 /// Points as a structure of arrays; every array that is there has one entry a point.
@@ -19,6 +19,8 @@ pub struct Cloud {
     pub ellipses: Option<Vec<Ellipse>>,
     /// Points whose normals may as well point the other way.
     pub two_sided: Option<Vec<bool>>,
+    /// Where discs end at sharp edges. There are normals, then.
+    pub clips: Option<Clips>,
     /// Colours.
     pub colours: Option<Colours>,
     /// A number a point, chosen on reading; not finite where there is none.
@@ -48,7 +50,7 @@ impl Cloud {
     }
 
     /// So many of its points, spread evenly: every so-manyth along the Z-curve of their bounds, in that order; all if there are no more.
-    /// Radii, ellipses and triangles, which belonged to closer points, are dropped.
+    /// Radii, ellipses, clips and triangles, which belonged to closer points, are dropped: larger discs reach edges that those did not.
     pub fn some(&self, count: usize) -> Self {
         let order = order(&self.positions);
         let (count, all) = (count.min(order.len()), order.len() as u64);
@@ -88,6 +90,7 @@ impl From<Surfels> for Cloud {
             radii: Some(surfels.radii),
             ellipses: surfels.ellipses,
             two_sided: surfels.two_sided,
+            clips: surfels.clips,
             colours: surfels.colours,
             ..Default::default()
         }

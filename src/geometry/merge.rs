@@ -1,6 +1,6 @@
 //! Several sets of points as one.
 
-use super::{Bounds, Cloud, Colours, Ellipse, Surfels, View};
+use super::{Bounds, Clips, Cloud, Colours, Ellipse, Surfels, View};
 use crate::error::{Error, Result};
 use crate::io::srgb;
 use glam::{DVec3, Vec3};
@@ -11,7 +11,7 @@ impl Surfels {
     /// If the parts' origins agree, the origin and every position stay as they are; otherwise the origin is the middle of the common
     /// bounds, and positions are moved in float64. Where only some parts have colours, `albedo` (linear) is the others' colour; colours
     /// stay sRGB-encoded unless a part has linear ones. Where only some have shapes, the others' discs are circles; where only some
-    /// name two-sided surfels, the others' are not.
+    /// name two-sided surfels, the others' are not; where only some have clips, the others' discs are whole.
     ///
     /// # Errors
     /// [`Error::Usage`] if there are more than 2³² − 1 surfels.
@@ -24,6 +24,7 @@ impl Surfels {
             radii: merged.radii.unwrap_or_default(),
             ellipses: merged.ellipses,
             two_sided: merged.two_sided,
+            clips: merged.clips,
             colours: merged.colours,
         })
     }
@@ -53,6 +54,7 @@ impl Cloud {
             colours: join_colours(parts, albedo),
             // Before the normals, which circles are made of.
             ellipses: join(parts, |part| part.ellipses.take(), circles),
+            clips: join_clips(parts),
             two_sided: join(parts, |part| part.two_sided.take(), |part| vec![false; part.len()]),
             scalar: join(parts, |part| part.scalar.take(), |part| vec![f64::NAN; part.len()]),
             radii: join(parts, |part| part.radii.take(), |part| vec![0.0; part.len()]),
@@ -114,6 +116,11 @@ fn circles(part: &Cloud) -> Vec<Ellipse> {
     }
 }
 
+/// Offsets are from the surfels' centres, so that another origin changes nothing.
+fn join_clips(parts: &mut [Cloud]) -> Option<Clips> {
+    Clips::join(parts.iter_mut().map(|part| (part.clips.take(), part.len())))
+}
+
 fn join_triangles(parts: &mut [Cloud]) -> Vec<[u32; 3]> {
     let mut all = Vec::new();
     let mut first = 0;
@@ -157,6 +164,7 @@ fn linear(part: &mut Cloud, albedo: [f32; 3]) -> Vec<[f32; 3]> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::{Clip, ClipLine};
 
     fn part(origin: f64, x: f32, colours: Option<Colours>) -> Surfels {
         Surfels {
@@ -234,6 +242,20 @@ mod tests {
         assert_eq!(merged.two_sided, Some(vec![false, true, false]));
         let merged = Surfels::merge(vec![plain(), plain()], [0.5; 3]).unwrap();
         assert_eq!((merged.ellipses, merged.two_sided), (None, None));
+    }
+
+    #[test]
+    fn clips_keep_their_surfels() {
+        let clip = |offset| Clip::line(ClipLine { outward: Vec3::X, offset });
+        let clipped = |x: f64, offset| Surfels {
+            origin: DVec3::new(x, 0.0, 0.0),
+            clips: Clips::collect([Some(clip(offset))]),
+            ..part(0.0, 1.0, None)
+        };
+        let parts = vec![clipped(0.0, 0.25), part(0.0, 1.0, None), clipped(1e7, -0.5)];
+        let merged = Surfels::merge(parts, [0.5; 3]).unwrap();
+        assert_eq!(merged.clips, Clips::collect([Some(clip(0.25)), None, Some(clip(-0.5))]));
+        assert_eq!(Surfels::merge(vec![part(0.0, 1.0, None); 2], [0.5; 3]).unwrap().clips, None);
     }
 
     #[test]

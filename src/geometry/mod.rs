@@ -2,6 +2,7 @@
 
 mod bounds;
 mod camera;
+mod clips;
 mod cloud;
 mod colour_map;
 pub mod estimate;
@@ -14,6 +15,7 @@ mod valid;
 
 pub use bounds::Bounds;
 pub use camera::{Camera, Projection};
+pub use clips::{Clip, ClipLine, Clips};
 pub use cloud::{Cloud, View};
 pub use colour_map::{ColourMap, ColourScale, ValueRange};
 pub use quantity::Quantity;

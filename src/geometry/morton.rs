@@ -47,7 +47,7 @@ fn spread(x: u64) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Ellipse;
+    use crate::geometry::{Clip, ClipLine, Clips, Ellipse};
 
     #[test]
     fn spread_moves_every_bit_to_its_triple() {
@@ -62,11 +62,13 @@ mod tests {
             .rev()
             .map(|i| Vec3::new((i & 1) as f32, (i >> 1 & 1) as f32, (i >> 2) as f32))
             .collect();
+        let clip = |p: &Vec3| Clip::line(ClipLine { outward: *p, offset: p.z });
         let mut surfels = Surfels {
             radii: corners.iter().map(|p| p.x + 2.0 * p.y + 4.0 * p.z).collect(),
             normals: corners.clone(),
             ellipses: Some(corners.iter().map(|p| Ellipse { major: *p, aspect: 1.0 }).collect()),
             two_sided: Some(corners.iter().map(|p| p.x > 0.0).collect()),
+            clips: Clips::collect(corners.iter().map(|p| (p.x > 0.0).then(|| clip(p)))),
             positions: corners,
             ..Default::default()
         };
@@ -76,5 +78,7 @@ mod tests {
         let majors: Vec<Vec3> = surfels.ellipses.iter().flatten().map(|ellipse| ellipse.major).collect();
         assert_eq!(majors, surfels.positions);
         assert_eq!(surfels.two_sided, Some(vec![false, true, false, true, false, true, false, true]));
+        let expected = surfels.positions.iter().map(|p| (p.x > 0.0).then(|| clip(p)));
+        assert_eq!(surfels.clips, Clips::collect(expected));
     }
 }

@@ -1,5 +1,6 @@
 //! A set of surfels: oriented discs that sample a surface.
 
+use super::Clips;
 use crate::error::{Error, Result};
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
@@ -23,6 +24,8 @@ pub struct Surfels {
     pub ellipses: Option<Vec<Ellipse>>,
     /// Surfels whose normals may as well point the other way, so that neither side is ever the back; none where there is no array.
     pub two_sided: Option<Vec<bool>>,
+    /// Where discs end at sharp edges; all are whole where there are none.
+    pub clips: Option<Clips>,
     /// Colours, where the input has them.
     pub colours: Option<Colours>,
 }
@@ -64,10 +67,10 @@ impl Surfels {
         self.positions.is_empty()
     }
 
-    /// Refuses arrays of unequal length and an origin that is not finite.
+    /// Refuses arrays of unequal length, an origin that is not finite, and clips that do not exist.
     ///
     /// # Errors
-    /// [`Error::Usage`], with the lengths or the origin.
+    /// [`Error::Usage`], with the lengths, the origin or the clip.
     pub fn check(&self) -> Result<()> {
         if !self.origin.is_finite() {
             return Err(Error::Usage(format!("the surfels' origin is {}: give a finite one", self.origin)));
@@ -78,13 +81,14 @@ impl Surfels {
             self.radii.len(),
             self.ellipses.as_ref().map_or(count, Vec::len),
             self.two_sided.as_ref().map_or(count, Vec::len),
+            self.clips.as_ref().map_or(count, |clips| clips.of.len()),
             self.colours.as_ref().map_or(count, Colours::len),
         ];
         if lengths.iter().all(|&length| length == count) {
-            return Ok(());
+            return self.clips.as_ref().map_or(Ok(()), Clips::check);
         }
         Err(Error::Usage(format!(
-            "{count} positions with {lengths:?} normals, radii, ellipses, sides and colours: give one each"
+            "{count} positions with {lengths:?} normals, radii, ellipses, sides, clips and colours: give one each"
         )))
     }
 
@@ -99,6 +103,7 @@ impl Surfels {
         gather(&mut self.radii, order);
         self.ellipses.iter_mut().for_each(|ellipses| gather(ellipses, order));
         self.two_sided.iter_mut().for_each(|two_sided| gather(two_sided, order));
+        self.clips.iter_mut().for_each(|clips| clips.permute(order));
         match &mut self.colours {
             Some(Colours::Srgb8(colours)) => gather(colours, order),
             Some(Colours::Linear(colours)) => gather(colours, order),

@@ -1,6 +1,6 @@
 //! Which surfels can be drawn at all.
 
-use super::{Bounds, Colours, Surfels};
+use super::{Bounds, Clip, ClipLine, Colours, Surfels};
 use glam::Vec3;
 use rayon::prelude::*;
 
@@ -14,7 +14,7 @@ impl Surfels {
 
     /// Whether surfel `index` can be drawn: no attribute is NaN, infinite or beyond [`Surfels::LARGEST`], the radius is above 0, the
     /// normal is a unit vector, and so is the longer axis of an ellipse, at a right angle to the normal and with an aspect above 0
-    /// and up to 1. `false` beyond the end of any array.
+    /// and up to 1. The same holds of the lines of its clip, if it has one. `false` beyond the end of any array.
     pub fn is_valid(&self, index: usize) -> bool {
         let bounded = |v: Vec3| v.abs().cmple(Vec3::splat(Self::LARGEST)).all();
         let at = |values: &[Vec3]| values.get(index).copied();
@@ -26,12 +26,16 @@ impl Surfels {
             };
             ellipses.get(index).is_some_and(fits)
         });
+        let clipped = self.clips.as_ref().is_none_or(|clips| {
+            clips.of.get(index).is_some_and(|clip| *clip == 0)
+                || clips.get(index).is_some_and(|clip| fits_clip(clip, normal))
+        });
         let coloured = match &self.colours {
             Some(Colours::Linear(colours)) => colours.get(index).is_some_and(|&c| bounded(c.into())),
             Some(Colours::Srgb8(colours)) => index < colours.len(),
             None => true,
         };
-        bounded(position) && is_unit(normal) && sized && shaped && coloured
+        bounded(position) && is_unit(normal) && sized && shaped && clipped && coloured
     }
 
     /// How many surfels are not [valid](Surfels::is_valid).
@@ -64,6 +68,16 @@ impl Surfels {
     }
 }
 
+/// Whether every line is one of the tangent plane, or [`ClipLine::NONE`].
+fn fits_clip(clip: &Clip, normal: Vec3) -> bool {
+    clip.lines.iter().all(|line| {
+        *line == ClipLine::NONE
+            || is_unit(line.outward)
+                && is_unit(normal.cross(line.outward))
+                && line.offset.abs() <= Surfels::LARGEST
+    })
+}
+
 /// Whether `v` has length 1; NaN and infinity have not.
 fn is_unit(v: Vec3) -> bool {
     (v.length_squared() - 1.0).abs() <= UNIT
@@ -72,8 +86,17 @@ fn is_unit(v: Vec3) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::Ellipse;
+    use crate::geometry::{Clips, Ellipse};
     use glam::DVec3;
+
+    fn clip() -> Clip {
+        Clip { lines: [ClipLine { outward: Vec3::Y, offset: -0.1 }, ClipLine::NONE], concave: false }
+    }
+
+    /// The clip of the second surfel.
+    fn second(surfels: &mut Surfels) -> &mut Clip {
+        &mut surfels.clips.as_mut().unwrap().clips[1]
+    }
 
     fn two() -> Surfels {
         Surfels {
@@ -83,6 +106,7 @@ mod tests {
             radii: vec![0.5; 2],
             ellipses: Some(vec![Ellipse { major: Vec3::X, aspect: 1e-4 }; 2]),
             two_sided: None,
+            clips: Clips::collect([Some(clip()), Some(clip())]),
             colours: Some(Colours::Linear(vec![[-1.0, 0.0, 1e14]; 2])),
         }
     }
@@ -91,7 +115,7 @@ mod tests {
     fn what_is_out_of_bounds_is_invalid_and_bounds_leave_it_out() {
         let alone = two().bounds().unwrap();
         assert_eq!(two().count_invalid(), 0);
-        let changes: [fn(&mut Surfels); 14] = [
+        let changes: [fn(&mut Surfels); 21] = [
             |s| s.positions[1].y = f32::NAN,
             |s| s.positions[1].z = f32::NEG_INFINITY,
             |s| s.positions[1].x = -1.1e15,
@@ -104,6 +128,13 @@ mod tests {
             |s| s.ellipses.as_mut().unwrap()[1].major = Vec3::Z,
             |s| s.ellipses.as_mut().unwrap()[1].aspect = 1.5,
             |s| s.ellipses.as_mut().unwrap()[1].aspect = 0.0,
+            |s| second(s).lines[0].outward = Vec3::Z,
+            |s| second(s).lines[0].outward *= 1.001,
+            |s| second(s).lines[0].outward.x = f32::NAN,
+            |s| second(s).lines[0].offset = f32::INFINITY,
+            |s| second(s).lines[1].offset = 1.0,
+            |s| s.clips.as_mut().unwrap().of[1] = 3,
+            |s| s.clips.as_mut().unwrap().of.truncate(1),
             |s| s.colours = Some(Colours::Linear(vec![[0.0; 3], [0.0, f32::NAN, 0.0]])),
             |s| s.colours = Some(Colours::Srgb8(vec![[0; 4]])),
         ];

@@ -1,5 +1,6 @@
 //! Every built-in scene, with its parameters and a camera.
 
+use super::edges::Edge;
 use super::models;
 use super::query::{Parameter, Query, Values};
 use super::surface::Piece;
@@ -22,6 +23,8 @@ pub struct Scene {
     /// Parameters of its surface.
     pub own: &'static [Parameter],
     pub(super) build: fn(&Query) -> Vec<Piece>,
+    /// Its sharp edges, where those are what clip lines are made of.
+    pub(super) edges: Option<fn(&Query) -> Vec<Edge>>,
 }
 
 /// Where a camera stands and looks.
@@ -50,6 +53,11 @@ impl Scene {
     /// Its parameters: those of its samples, then those of its surface.
     pub fn parameters(&self) -> impl Iterator<Item = &'static Parameter> + use<> {
         SAMPLING.iter().chain(self.own)
+    }
+
+    /// The sharp edges at which `query` wants discs to end.
+    pub(super) fn edges(&self, query: &Query) -> Vec<Edge> {
+        self.edges.filter(|_| query.word(CLIPS_NAME) == "on").map_or_else(Vec::new, |edges| edges(query))
     }
 }
 
@@ -92,6 +100,16 @@ pub const SAMPLING: &[Parameter] = &[
         meaning: "scanner: part of the surfels that float in front of the surface",
     },
 ];
+
+/// Of scenes that know their sharp edges.
+const CLIPS: Parameter = Parameter {
+    name: CLIPS_NAME,
+    default: "on",
+    values: Values::Choice(&["on", "off"]),
+    meaning: "whether discs end at sharp edges",
+};
+/// Name of the parameter that says whether discs are clipped.
+const CLIPS_NAME: &str = "clips";
 
 const fn albedo(default: &'static str) -> Parameter {
     let values = Values::Choice(&["checker", "stripes", "zone", "noise", "plain"]);
@@ -141,6 +159,7 @@ const SCENES: &[Scene] = &[
         // 8 / π: 16 fields from pole to pole.
         own: &[albedo("checker"), frequency("2.5464790894703255")],
         build: models::bumpy_sphere,
+        edges: None,
     },
     Scene {
         name: "scene:sphere",
@@ -148,6 +167,7 @@ const SCENES: &[Scene] = &[
         viewpoint: view(COMPARISON, [0.0; 3], 45.0),
         own: &[albedo("checker"), frequency("2.5464790894703255")],
         build: models::sphere,
+        edges: None,
     },
     Scene {
         name: "scene:torus",
@@ -160,6 +180,7 @@ const SCENES: &[Scene] = &[
             number("minor", "0.4", [0.01, 0.99], "radius of its tube"),
         ],
         build: models::torus,
+        edges: None,
     },
     Scene {
         name: "scene:plane",
@@ -167,13 +188,15 @@ const SCENES: &[Scene] = &[
         viewpoint: view([0.0, 1.0, 0.0], [0.0, 0.7, -1.0], 60.0),
         own: &[albedo("checker"), frequency("0.5"), number("radius", "1000", [1.0, 1e6], "where it ends")],
         build: models::plane,
+        edges: None,
     },
     Scene {
         name: "scene:part",
         summary: "a block with a step, a slot and a bore: sharp edges and corners, convex and concave",
         viewpoint: view([1.9, 2.0, 3.2], [0.0; 3], 40.0),
-        own: &[albedo("plain"), frequency("4")],
+        own: &[albedo("plain"), frequency("4"), CLIPS],
         build: models::part,
+        edges: Some(models::part_edges),
     },
     Scene {
         name: "scene:ribbon",
@@ -186,6 +209,7 @@ const SCENES: &[Scene] = &[
             number("width", "0.8", [0.001, 2.0], "width"),
         ],
         build: models::ribbon,
+        edges: None,
     },
     Scene {
         name: "scene:helix",
@@ -197,6 +221,7 @@ const SCENES: &[Scene] = &[
             number("turns", "3", [1.0, 20.0], "turns; the tube is as thick as they allow"),
         ],
         build: models::helix,
+        edges: None,
     },
     Scene {
         name: "scene:slabs",
@@ -208,8 +233,10 @@ const SCENES: &[Scene] = &[
             whole("slabs", "3", [1, 32], "how many"),
             number("gap", "0.02", [1e-6, 1.0], "distance between them"),
             number("thickness", "0.01", [1e-6, 1.0], "thickness of each"),
+            CLIPS,
         ],
         build: models::slabs,
+        edges: Some(models::slabs_edges),
     },
     Scene {
         name: "scene:relief",
@@ -221,6 +248,7 @@ const SCENES: &[Scene] = &[
             number("height", "0.15", [0.0, 0.5], "greatest height above its middle plane"),
         ],
         build: models::relief,
+        edges: None,
     },
     Scene {
         name: "scene:tree",
@@ -233,6 +261,7 @@ const SCENES: &[Scene] = &[
             whole("growth", "1", [0, u64::MAX], "seed of its shape"),
         ],
         build: models::tree,
+        edges: None,
     },
     Scene {
         name: "scene:mixed",
@@ -240,5 +269,6 @@ const SCENES: &[Scene] = &[
         viewpoint: view([1.2, 1.9, 3.6], [-0.1, 0.4, 0.0], 43.0),
         own: &[albedo("checker"), frequency("5")],
         build: models::mixed,
+        edges: None,
     },
 ];

@@ -4,6 +4,7 @@
 
 pub mod bumpy_sphere;
 mod catalogue;
+mod edges;
 mod hierarchy;
 mod models;
 mod query;

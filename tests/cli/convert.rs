@@ -118,6 +118,29 @@ fn scenes_heed_every_option() {
 }
 
 #[test]
+fn sharp_edges_are_found_and_written() {
+    let program = Program::new();
+    let scene = "scene:part?points=5000&clips=off";
+    let run = program.run(&format!("convert {scene} -o c.ply --sharp 40"));
+    assert!(run.err.contains(" clipped at sharp edges\nc.ply: 5000 surfels\n"), "{}", run.err);
+    let text = info(&program, "c.ply");
+    assert!(text.contains("\n  float clip0x\n") && text.contains("\n  uchar clip_concave\n"), "{text}");
+    assert!(text.contains("skipped: none"), "{text}");
+    // What is clipped stays so, with or without another search.
+    program.run("convert c.ply -o d.ply").text();
+    assert_eq!(program.run("convert c.ply -o e.ply --sharp 90").err, "e.ply: 5000 surfels\n");
+    let [c, d, e] = ["c.ply", "d.ply", "e.ply"].map(|name| std::fs::read(program.path(name)).unwrap());
+    assert!(c.len() == d.len() && d == e);
+    let run = program.run("convert scene:torus?points=5000 -o f.ply --sharp 40");
+    assert_eq!(run.err, "f.ply: 5000 surfels\n");
+    assert!(!info(&program, "f.ply").contains("clip"));
+    for angle in ["0", "-40", "180", "nan", "wide"] {
+        let run = program.run(&format!("convert missing.ply -o out.ply --sharp {angle}"));
+        assert!(run.error(2).contains("above 0 and below 180"), "{angle}: {}", run.err);
+    }
+}
+
+#[test]
 fn radii_are_set_and_scaled() {
     let program = Program::new();
     program.write("a.ply", surfels(&TWO));

@@ -34,6 +34,13 @@ const FILES: &[(&str, &str)] = &[
         "0 0 0 1 0 0 0 2 0 -1  1 1 1 .1 .2 .3 -.2 .1 0 -2",
     ),
     (
+        "element vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\n\
+         property float nz\nproperty float radius\nproperty float clip0x\nproperty float clip0y\nproperty float clip0z\n\
+         property float clip0d\nproperty double clip1x\nproperty float clip1y\nproperty char clip1z\nproperty float clip1d\n\
+         property uchar clip_concave",
+        "0 0 0 0 0 1 .5 1 0 0 .25 0 1 0 -.1 1  1 0 0 0 1 0 .5 0 .5 1 .1 0 0 0 0 0  0 1 0 1 0 0 .5 0 0 0 0 0 0 0 0 0",
+    ),
+    (
         "element vertex 2\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\n\
          property float nz\nproperty float f_dc_0\nproperty float f_dc_1\nproperty float f_dc_2\nproperty float f_rest_0\n\
          property float opacity\nproperty float scale_0\nproperty float scale_1\nproperty float scale_2\n\

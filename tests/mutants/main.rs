@@ -9,7 +9,7 @@ use mutate::Random;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::{Duration, Instant};
 use surfel::geometry::estimate::Estimate;
-use surfel::geometry::{Cloud, Colours, Surfels, View};
+use surfel::geometry::{Clip, ClipLine, Cloud, Colours, Surfels, View};
 use surfel::io::ply::{self, Loaded, ReadOptions};
 
 #[global_allocator]
@@ -103,6 +103,7 @@ fn check(cloud: &Cloud, report: &ply::Report) {
         cloud.radii.as_ref().map(Vec::len),
         cloud.ellipses.as_ref().map(Vec::len),
         cloud.two_sided.as_ref().map(Vec::len),
+        cloud.clips.as_ref().map(|clips| clips.of.len()),
         cloud.colours.as_ref().map(Colours::len),
         cloud.scalar.as_ref().map(Vec::len),
     ];
@@ -116,6 +117,10 @@ fn check(cloud: &Cloud, report: &ply::Report) {
     assert!(cloud.ellipses.iter().flatten().all(sound));
     let across = |(shape, n): (&surfel::geometry::Ellipse, &glam::Vec3)| shape.major.dot(*n).abs() < 1e-5;
     assert!(cloud.ellipses.iter().flatten().zip(cloud.normals.iter().flatten()).all(across), "{cloud:?}");
+    assert!(cloud.clips.is_none() || cloud.normals.is_some());
+    (0..count)
+        .filter_map(|i| Some((cloud.clips.as_ref()?.get(i)?, cloud.normals.as_ref()?[i])))
+        .for_each(check_clip);
     if let Some(Colours::Linear(colours)) = &cloud.colours {
         assert!(colours.iter().flatten().all(|channel| channel.is_finite() && *channel >= 0.0));
     }
@@ -126,6 +131,15 @@ fn check(cloud: &Cloud, report: &ply::Report) {
         View::From(eye) => assert!(eye.is_finite()),
         View::Towards(direction) => assert!(unit(&direction)),
     }
+}
+
+fn check_clip((clip, normal): (&Clip, glam::Vec3)) {
+    let sound = |line: &ClipLine| {
+        let unit = (line.outward.length() - 1.0).abs() < 1e-5 && line.outward.dot(normal).abs() < 1e-5;
+        unit && line.offset.is_finite()
+    };
+    assert!(sound(&clip.lines[0]) && (clip.lines[1] == ClipLine::NONE || sound(&clip.lines[1])), "{clip:?}");
+    assert!(!clip.concave || clip.lines[1].is_some(), "{clip:?}");
 }
 
 /// Makes surfels, if that is possible, and looks at what they promise.
@@ -154,4 +168,6 @@ fn check_surfels(surfels: &Surfels) {
         assert!(ellipse.aspect > 0.0 && ellipse.aspect <= 1.0 && unit(&ellipse.major), "{ellipse:?}");
         assert!(ellipse.major.dot(*normal).abs() < 1e-3, "{ellipse:?} on {normal}");
     }
+    let clips = |i: usize| Some((surfels.clips.as_ref()?.get(i)?, surfels.normals[i]));
+    (0..surfels.len()).filter_map(clips).for_each(check_clip);
 }

@@ -1,10 +1,11 @@
 //! Options of `surfel convert` and `surfel info`.
 
 use super::{Colours, Points};
-use crate::cli::values::{direction, positive};
+use crate::cli::values::{direction, edge, positive};
 use clap::Args;
 use glam::DVec3;
 use std::ffi::OsString;
+use surfel::geometry::estimate::Estimate;
 
 /// Options of `surfel convert`.
 #[derive(Args, Debug)]
@@ -12,7 +13,7 @@ pub struct Convert {
     /// PLY files, or built-in scenes such as scene:bumpy-sphere; several become one file
     #[arg(required = true, value_name = "INPUT")]
     pub inputs: Vec<OsString>,
-    /// The file: binary PLY with position, normal and radius, and where there are any, axes of ellipses, two-sidedness and colour
+    /// The file: binary PLY with position, normal and radius, and where there are any, axes of ellipses, two-sidedness, clip lines and colour
     #[arg(short, long, value_name = "OUT.ply")]
     pub output: OsString,
     /// Keeps one point for every cube of this side, in the positions' unit, of all inputs together
@@ -21,6 +22,9 @@ pub struct Convert {
     /// How normals and radii are estimated
     #[command(flatten)]
     pub points: Points,
+    /// Ends discs at creases where normals turn by more than ANGLE degrees
+    #[arg(long, value_name = "ANGLE", value_parser = edge, allow_hyphen_values = true)]
+    pub sharp: Option<f32>,
     /// What points are coloured by
     #[command(flatten)]
     pub colours: Colours,
@@ -30,6 +34,13 @@ pub struct Convert {
     /// Prints nothing but warnings and errors
     #[arg(short, long)]
     pub quiet: bool,
+}
+
+impl Convert {
+    /// What the library is asked for.
+    pub fn estimate(&self) -> Estimate {
+        Estimate { sharp: self.sharp.map(f32::to_radians), ..self.points.estimate() }
+    }
 }
 
 /// Options of `surfel info`.

@@ -34,6 +34,7 @@ impl Points {
             radius_scale: self.radius_scale,
             elliptical: self.elliptical,
             outliers: self.drop_outliers,
+            sharp: None,
         }
     }
 }

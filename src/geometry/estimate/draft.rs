@@ -1,7 +1,7 @@
 //! Surfels in the making.
 
 use super::{Estimate, Estimated};
-use crate::geometry::{Cloud, Ellipse, Surfels, morton};
+use crate::geometry::{Clips, Cloud, Ellipse, Surfels, morton};
 use glam::Vec3;
 
 /// Surfels whose normals and radii may still be missing, which is 0 here, and what tells them.
@@ -26,6 +26,7 @@ impl Draft {
             },
             ellipses: cloud.ellipses,
             two_sided: cloud.two_sided,
+            clips: cloud.clips,
             colours: cloud.colours,
         };
         surfels.check().map_err(|error| error.to_string())?;
@@ -99,9 +100,13 @@ impl Draft {
                 "a surfel would have the radius {radius}: give another radius or factor of it"
             ));
         }
-        // A shape may be older than the normal to which its axis must be at a right angle.
+        // A shape or a clip may be older than the normal to which its axis and its lines must be at a right angle.
         for (ellipse, normal) in surfels.ellipses.iter_mut().flatten().zip(&surfels.normals) {
             *ellipse = within(*ellipse, *normal);
+        }
+        if let Some(clips) = surfels.clips.take() {
+            let within = |(i, normal): (usize, &Vec3)| clips.get(i)?.within(*normal);
+            surfels.clips = Clips::collect(surfels.normals.iter().enumerate().map(within));
         }
         estimated.two_sided =
             surfels.two_sided.iter().flatten().filter(|two_sided| **two_sided).count() as u64;

@@ -1,9 +1,11 @@
 //! From a point cloud to surfels: what the cloud lacks is estimated.
 
 mod cell;
+mod creases;
 mod draft;
 mod eigen;
 mod faces;
+mod facets;
 mod neighbours;
 mod orient;
 mod outliers;
@@ -18,6 +20,7 @@ pub use spacing::spacing;
 use super::{Cloud, Surfels};
 use crate::Progress;
 use draft::Draft;
+use std::f32::consts::PI;
 use std::ops::Add;
 
 /// Estimated discs reach this many times as far as they must for the surface between flat neighbours to have no gap.
@@ -36,11 +39,20 @@ pub struct Estimate {
     pub elliptical: bool,
     /// Removes points whose mean distance from their neighbours is more than this many standard deviations above the average.
     pub outliers: Option<f32>,
+    /// Clips discs that reach a crease at which normals turn by more than this angle, radians.
+    pub sharp: Option<f32>,
 }
 
 impl Default for Estimate {
     fn default() -> Self {
-        Self { neighbours: 16, radius: None, radius_scale: 1.0, elliptical: false, outliers: None }
+        Self {
+            neighbours: 16,
+            radius: None,
+            radius_scale: 1.0,
+            elliptical: false,
+            outliers: None,
+            sharp: None,
+        }
     }
 }
 
@@ -61,6 +73,11 @@ impl Estimate {
         self.radius.map_or(Ok(()), |radius| positive("the radius", radius))?;
         self.outliers
             .map_or(Ok(()), |deviations| positive("the outliers' standard deviations", deviations))?;
+        if let Some(angle) = self.sharp.filter(|angle| !(*angle > 0.0 && *angle < PI)) {
+            return Err(format!(
+                "the angle of a sharp edge is {angle} radians: give one between 0 and a half turn"
+            ));
+        }
         positive("the factor of the radii", self.radius_scale)
     }
 }
@@ -84,6 +101,8 @@ pub struct Estimated {
     pub radii_from_neighbours: u64,
     /// Points that were removed as outliers.
     pub outliers: u64,
+    /// Surfels that are clipped because of a crease that was looked for.
+    pub clipped: u64,
 }
 
 impl Add for Estimated {
@@ -99,6 +118,7 @@ impl Add for Estimated {
             radii_from_faces: self.radii_from_faces + other.radii_from_faces,
             radii_from_neighbours: self.radii_from_neighbours + other.radii_from_neighbours,
             outliers: self.outliers + other.outliers,
+            clipped: self.clipped + other.clipped,
         }
     }
 }
@@ -132,7 +152,11 @@ impl Cloud {
         if draft.lacks_anything() {
             neighbours::fill(&mut draft, view, how, progress)?;
         }
-        draft.finish(how)
+        let (mut surfels, mut estimated) = draft.finish(how)?;
+        if let Some(angle) = how.sharp {
+            estimated.clipped = creases::clip(&mut surfels, angle, how, progress)?;
+        }
+        Ok((surfels, estimated))
     }
 }
 
@@ -151,6 +175,7 @@ mod tests {
             radii_from_faces: 6,
             radii_from_neighbours: 7,
             outliers: 8,
+            clipped: 9,
         };
         let two = Estimated {
             normals_given: 2,
@@ -161,6 +186,7 @@ mod tests {
             radii_from_faces: 12,
             radii_from_neighbours: 14,
             outliers: 16,
+            clipped: 18,
         };
         assert_eq!(one + one, two);
     }

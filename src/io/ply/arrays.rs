@@ -3,7 +3,7 @@
 use super::Parsed;
 use super::layout::{Layout, SCALAR, Shape};
 use super::source::room;
-use crate::geometry::Ellipse;
+use crate::geometry::{Clip, Ellipse};
 use glam::{DVec3, Vec3};
 
 macro_rules! arrays {
@@ -53,6 +53,7 @@ arrays! {
     radii: f32, Layout::has_radii, "Radii or 0.";
     ellipses: Ellipse, |layout: &Layout| layout.shape != Shape::Circle, "Shapes.";
     two_sided: bool, Layout::has_sides, "Whether the normal's side is unknown.";
+    clips: Clip, Layout::has_clips, "Clips, of two lines that are none where the disc is whole.";
     codes: [u8; 4], Layout::has_codes, "sRGB-encoded colours.";
     linear: [f32; 3], |layout: &Layout| layout.colour.is_some() && !layout.has_codes(), "Linear colours.";
     scalar: f64, |layout: &Layout| layout.fills(SCALAR), "The chosen scalar.";

@@ -3,10 +3,12 @@
 use super::arrays::Slices;
 use super::block::Block;
 use super::layout::{
-    AXES, COLOUR, Colour, Layout, NORMAL, OPACITY, POSITION, RADIUS, ROTATION, SCALAR, Shape, TWO_SIDED,
+    AXES, CLIPS, COLOUR, CONCAVE, Colour, Layout, NORMAL, OPACITY, POSITION, RADIUS, ROTATION, SCALAR, Shape,
+    TWO_SIDED,
 };
 use super::shape::{self, Disc};
 use super::types::Scalar;
+use crate::geometry::{Clip, ClipLine};
 use crate::io::srgb;
 use glam::{DVec3, Vec3};
 
@@ -24,6 +26,8 @@ const HARMONIC: f64 = 0.282_094_791_773_878_14;
 pub(super) struct Tally {
     pub dropped: u64,
     pub transparent: u64,
+    /// Clip lines that are none.
+    pub clip_lines: u64,
     /// Whether a normal or a radius is missing.
     pub lacking: bool,
 }
@@ -33,6 +37,7 @@ impl Tally {
         Self {
             dropped: self.dropped + other.dropped,
             transparent: self.transparent + other.transparent,
+            clip_lines: self.clip_lines + other.clip_lines,
             lacking: self.lacking || other.lacking,
         }
     }
@@ -54,6 +59,7 @@ pub(super) fn convert(block: &Block, layout: &Layout, out: &mut Slices) -> Tally
         out.two_sided.iter_mut().zip(block.column(TWO_SIDED)).for_each(|(to, flag)| *to = *flag != 0.0);
     }
     shapes(block, layout, out);
+    tally.clip_lines = clips(block, out);
     colours(block, layout, out);
     out.scalar.iter_mut().zip(block.column(SCALAR)).for_each(|(to, value)| *to = *value);
     // Here, as the entries are still in the cache.
@@ -113,6 +119,26 @@ fn shapes(block: &Block, layout: &Layout, out: &mut Slices) {
         };
         (out.normals[row], out.radii[row], out.ellipses[row]) = (disc.normal, disc.radius, ellipse);
     }
+}
+
+/// Clips, in the planes of the normals that the discs have by now; gives the number of lines that are none of these planes.
+fn clips(block: &Block, out: &mut Slices) -> u64 {
+    let mut dropped = 0;
+    for row in 0..out.clips.len().min(block.rows()) {
+        let at = |column| block.column(column)[row];
+        let read = |line: usize| {
+            let first = CLIPS + 4 * line;
+            let outward = DVec3::new(at(first), at(first + 1), at(first + 2));
+            (outward != DVec3::ZERO)
+                .then(|| ClipLine::of_half_space(outward, at(first + 3), out.normals[row]))
+        };
+        let lines = [read(0), read(1)];
+        dropped += lines.iter().filter(|line| **line == Some(None)).count() as u64;
+        // What is concave is a corner: two lines that the file has, whether or not they are of any use.
+        let concave = at(CONCAVE) != 0.0 && lines.iter().all(Option::is_some);
+        out.clips[row] = Clip::of_some(lines.map(Option::flatten), concave).unwrap_or_default();
+    }
+    dropped
 }
 
 fn colours(block: &Block, layout: &Layout, out: &mut Slices) {

@@ -21,9 +21,18 @@ pub(super) const TWO_SIDED: usize = 16;
 pub(super) const OPACITY: usize = 17;
 /// Column of rot_0, the real part of a 3D Gaussian's rotation; rot_1 to 3 follow.
 pub(super) const ROTATION: usize = 18;
+/// Column of clip0x; clip0y clip0z clip0d, clip1x clip1y clip1z clip1d follow.
+pub(super) const CLIPS: usize = 22;
+/// Column of clip_concave.
+pub(super) const CONCAVE: usize = 30;
 /// Column of the scalar that the caller has chosen.
-pub(super) const SCALAR: usize = 22;
+pub(super) const SCALAR: usize = 31;
 
+/// Names of the columns of two clip lines.
+pub(super) const CLIP_LINES: [[&str; 4]; 2] =
+    [["clip0x", "clip0y", "clip0z", "clip0d"], ["clip1x", "clip1y", "clip1z", "clip1d"]];
+/// Name of the column that says how they meet.
+pub(super) const CLIP_CONCAVE: &str = "clip_concave";
 const NORMALS: &[[&str; 3]] = &[["nx", "ny", "nz"], ["normal_x", "normal_y", "normal_z"]];
 const COLOURS: &[[&str; 3]] =
     &[["red", "green", "blue"], ["diffuse_red", "diffuse_green", "diffuse_blue"], ["r", "g", "b"]];
@@ -73,6 +82,7 @@ impl Layout {
         let mut layout = Self { columns: [None; COLUMNS], shape: Shape::Circle, colour: None, narrow };
         layout.fill(POSITION, position);
         layout.find_shape(&find);
+        layout.find_clips(&find);
         layout.find_colour(&find);
         if let Some(name) = chosen {
             layout.fill(SCALAR, [find.one(name).ok_or_else(|| no_scalar(name, properties))?]);
@@ -114,6 +124,21 @@ impl Layout {
         }
     }
 
+    /// Lines of no tangent plane would clip nothing.
+    fn find_clips(&mut self, find: &Finder) {
+        if !self.has_normals() {
+            return;
+        }
+        for (line, names) in CLIP_LINES.into_iter().enumerate() {
+            if let Some(found) = find.all(names) {
+                self.fill(CLIPS + 4 * line, found);
+            }
+        }
+        if let Some(concave) = find.one(CLIP_CONCAVE).filter(|_| self.has_clips()) {
+            self.fill(CONCAVE, [concave]);
+        }
+    }
+
     fn find_colour(&mut self, find: &Finder) {
         let usable = |rgb: &[(usize, Scalar); 3]| rgb.iter().all(|(_, scalar)| is_colour(*scalar));
         if let Some(rgb) = COLOURS.iter().find_map(|names| find.all(*names).filter(usable)) {
@@ -148,6 +173,11 @@ impl Layout {
     /// Whether the colours can stay sRGB-encoded.
     pub fn has_codes(&self) -> bool {
         matches!(self.colour, Some(Colour::Rgb([Scalar::U8, Scalar::U8, Scalar::U8]) | Colour::Harmonics))
+    }
+
+    /// Whether the discs can end at clip lines.
+    pub fn has_clips(&self) -> bool {
+        self.fills(CLIPS) || self.fills(CLIPS + 4)
     }
 
     /// Whether the file can say that a disc has no side.
@@ -265,6 +295,21 @@ mod tests {
         assert_eq!(layout("x y z ux uy uz vx vy", Scalar::F32).shape, Shape::Circle);
         assert!(!layout(&format!("{gaussian} radius"), Scalar::F32).uses(9), "its scales are the radius");
         assert!(layout("x y z ux uy uz vx vy vz radius", Scalar::F32).uses(9));
+    }
+
+    #[test]
+    fn clip_lines_need_a_plane_and_every_part() {
+        let lines = "clip0x clip0y clip0z clip0d clip1x clip1y clip1z clip1d clip_concave";
+        let both = layout(&format!("x y z nx ny nz {lines}"), Scalar::F32);
+        assert_eq!(both.columns[CLIPS..SCALAR], [6, 7, 8, 9, 10, 11, 12, 13, 14].map(Some));
+        assert!(!layout(&format!("x y z {lines}"), Scalar::F32).has_clips(), "no normals");
+        let axes = layout(&format!("x y z ux uy uz vx vy vz {lines}"), Scalar::F32);
+        assert!(axes.has_clips() && axes.fills(CONCAVE));
+        let second = layout(&format!("x y z nx ny nz {}", lines.replace("clip0d", "d")), Scalar::F32);
+        assert!(!second.fills(CLIPS) && second.fills(CLIPS + 4) && second.fills(CONCAVE));
+        let none = lines.replace("clip0x", "a").replace("clip1y", "b");
+        let none = layout(&format!("x y z nx ny nz {none}"), Scalar::F32);
+        assert!(!none.has_clips() && !none.fills(CONCAVE));
     }
 
     #[test]

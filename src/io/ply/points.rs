@@ -3,7 +3,7 @@
 use super::arrays::Arrays;
 use super::convert::Tally;
 use super::{Dropped, Parsed};
-use crate::geometry::{Cloud, Colours};
+use crate::geometry::{Clip, Clips, Cloud, Colours};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
@@ -30,6 +30,8 @@ pub(super) struct Points {
     map: Option<Vec<u32>>,
     /// Whether some points lack normals or radii, which faces can tell.
     pub lacking: bool,
+    /// Clip lines that are none.
+    pub clip_lines: u64,
 }
 
 /// What stands in the map for a vertex that was dropped.
@@ -45,7 +47,7 @@ impl Points {
         }
         let map = (dropped.total() > 0).then(|| leave_out(&mut arrays));
         let cloud = cloud(arrays);
-        Ok(Self { cloud, dropped, count, map, lacking: tally.lacking })
+        Ok(Self { cloud, dropped, count, map, lacking: tally.lacking, clip_lines: tally.clip_lines })
     }
 
     /// The point that a vertex has become; `None` if there is no such vertex, or if it was dropped.
@@ -106,6 +108,7 @@ fn cloud(arrays: Arrays) -> Cloud {
         normals,
         radii,
         ellipses,
+        clips: Clips::collect(arrays.clips.into_iter().map(|clip| (clip != Clip::default()).then_some(clip))),
         two_sided: Some(arrays.two_sided).filter(|flags| !flags.is_empty()),
         colours,
         scalar: Some(arrays.scalar).filter(|values| !values.is_empty()),

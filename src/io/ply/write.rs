@@ -1,7 +1,8 @@
 //! Writing surfels, through ply-rs: its writer is sound for binary records of single numbers, as long as the header's count is ours.
 
+use super::layout::{CLIP_CONCAVE, CLIP_LINES};
 use crate::error::Result;
-use crate::geometry::{Colours, Ellipse, Surfels};
+use crate::geometry::{Clip, Colours, Ellipse, Surfels};
 use crate::io::atomic;
 use glam::{DVec3, Vec3};
 use ply_rs::ply::{
@@ -12,8 +13,9 @@ use std::io::{self, Write};
 use std::path::Path;
 
 /// Writes surfels as binary little-endian PLY: x y z as float, or as double if they have an origin; nx ny nz and radius as float; if there
-/// are ellipses, their semi-axes ux uy uz vx vy vz as float; if some may have no side, two_sided as uchar; red green blue as uchar if
-/// sRGB-encoded, as float if linear. The file is replaced as a whole or, after an error, not at all.
+/// are ellipses, their semi-axes ux uy uz vx vy vz as float; if some may have no side, two_sided as uchar; if there are clips, their lines
+/// clip0x clip0y clip0z clip0d clip1x clip1y clip1z clip1d as float, all 0 where there is none, and clip_concave as uchar; red green blue as
+/// uchar if sRGB-encoded, as float if linear. The file is replaced as a whole or, after an error, not at all.
 ///
 /// # Errors
 /// [`crate::Error::Usage`] if the arrays differ in length, [`crate::Error::Io`] if the file cannot be written.
@@ -50,6 +52,10 @@ fn definition(surfels: &Surfels) -> ElementDef {
     if surfels.two_sided.is_some() {
         add(&["two_sided"], ScalarType::UChar);
     }
+    if surfels.clips.is_some() {
+        CLIP_LINES.iter().for_each(|names| add(names, ScalarType::Float));
+        add(&[CLIP_CONCAVE], ScalarType::UChar);
+    }
     match surfels.colours {
         Some(Colours::Srgb8(_)) => add(&["red", "green", "blue"], ScalarType::UChar),
         Some(Colours::Linear(_)) => add(&["red", "green", "blue"], ScalarType::Float),
@@ -72,6 +78,7 @@ struct Row {
     floats: [f32; FLOATS.len()],
     srgb: [u8; 4],
     two_sided: bool,
+    clip: Clip,
 }
 
 impl Row {
@@ -88,13 +95,28 @@ impl Row {
         });
         let position = surfels.origin + surfels.positions[i].as_dvec3();
         let floats = [n.x, n.y, n.z, radius, r, g, b, u.x, u.y, u.z, v.x, v.y, v.z];
-        Self { position, floats, srgb, two_sided: surfels.two_sided.as_ref().is_some_and(|flags| flags[i]) }
+        Self {
+            position,
+            floats,
+            srgb,
+            two_sided: surfels.two_sided.as_ref().is_some_and(|flags| flags[i]),
+            clip: surfels.clips.as_ref().and_then(|clips| clips.get(i)).copied().unwrap_or_default(),
+        }
+    }
+
+    /// A number of a clip line.
+    fn clip_number(&self, name: &str) -> Option<f32> {
+        self.clip.lines.iter().zip(CLIP_LINES).find_map(|(line, names)| {
+            let numbers = [line.outward.x, line.outward.y, line.outward.z, line.offset];
+            Some(numbers[names.iter().position(|one| *one == name)?])
+        })
     }
 }
 
 impl PropertyAccess for Row {
     fn new() -> Self {
-        Self { position: DVec3::ZERO, floats: [0.0; FLOATS.len()], srgb: [0; 4], two_sided: false }
+        let (floats, clip) = ([0.0; FLOATS.len()], Clip::default());
+        Self { position: DVec3::ZERO, floats, srgb: [0; 4], two_sided: false, clip }
     }
 
     fn get_double(&self, name: &String) -> Option<f64> {
@@ -104,13 +126,16 @@ impl PropertyAccess for Row {
     fn get_float(&self, name: &String) -> Option<f32> {
         match FLOATS.iter().position(|float| float == name) {
             Some(index) => Some(self.floats[index]),
-            None => self.get_double(name).map(|value| value as f32),
+            None => self.clip_number(name).or_else(|| self.get_double(name).map(|value| value as f32)),
         }
     }
 
     fn get_uchar(&self, name: &String) -> Option<u8> {
         if name == "two_sided" {
             return Some(self.two_sided.into());
+        }
+        if name == CLIP_CONCAVE {
+            return Some(self.clip.concave.into());
         }
         Some(self.srgb[["red", "green", "blue"].iter().position(|channel| channel == name)?])
     }

@@ -6,10 +6,11 @@ mod slabs;
 mod tree;
 
 pub use mixed::mixed;
-pub use part::part;
-pub use slabs::slabs;
+pub use part::{part, part_edges};
+pub use slabs::{slabs, slabs_edges};
 pub use tree::tree;
 
+use super::edges::Edge;
 use super::query::Query;
 use super::shapes::{Bumpy, Curve, Face, Ground, Patch, Region, Relief, Ribbon, Shape, Sphere, Torus, Tube};
 use super::surface::{Kind, Piece};
@@ -87,6 +88,18 @@ fn faces(centre: DVec3, half: DVec3) -> impl Iterator<Item = Face> {
             axes: sides.map(|side| axes[side]),
             region: Region::Rectangle(sides.map(|side| half[side])),
         }
+    })
+}
+
+/// The twelve edges of a box.
+fn box_edges(centre: DVec3, half: DVec3) -> impl Iterator<Item = Edge> {
+    let axes = [DVec3::X, DVec3::Y, DVec3::Z];
+    (0..12usize).map(move |i| {
+        let [along, a, b] = [0, 1, 2].map(|turn| (i + turn) % 3);
+        let [a, b] = [(a, i / 3 % 2), (b, i / 6)].map(|(axis, side)| [1.0, -1.0][side] * axes[axis]);
+        let middle = centre + half * (a + b);
+        let reach = half * axes[along];
+        Edge::Straight { ends: [middle - reach, middle + reach], normals: [a, b], convex: true }
     })
 }
 

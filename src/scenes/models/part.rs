@@ -1,6 +1,7 @@
 //! A machined part: a block with a step, a slot and a bore.
 
 use super::{piece, texture};
+use crate::scenes::edges::Edge;
 use crate::scenes::query::Query;
 use crate::scenes::shapes::{Cylinder, Face, Region};
 use crate::scenes::surface::{Kind, Piece};
@@ -40,6 +41,31 @@ pub fn part(query: &Query) -> Vec<Piece> {
         faces.map(|face| Piece { kind: Kind::Polygon, ..piece(face, texture) }).collect();
     pieces.push(piece(bore, texture));
     pieces
+}
+
+/// Its edges: along z at the outline's corners, around front and back, and around both ends of the bore.
+pub fn part_edges(_: &Query) -> Vec<Edge> {
+    let count = PROFILE.len();
+    let corner = |i: usize| DVec2::from(PROFILE[i % count]);
+    let along = |i: usize| (corner(i + 1) - corner(i)).normalize();
+    // The outline is counter-clockwise.
+    let normal = |i: usize| (-along(i).perp()).extend(0.0);
+    let upright = |i: usize| Edge::Straight {
+        ends: [1.0, -1.0].map(|sign| corner(i + 1).extend(sign * DEPTH)),
+        normals: [normal(i), normal(i + 1)],
+        convex: along(i).perp_dot(along(i + 1)) > 0.0,
+    };
+    let around = |sign: f64| {
+        let front = sign * DVec3::Z;
+        let side = move |i: usize| Edge::Straight {
+            ends: [corner(i), corner(i + 1)].map(|end| end.extend(sign * DEPTH)),
+            normals: [normal(i), front],
+            convex: true,
+        };
+        let rim = Edge::Rim { centre: BORE.extend(sign * DEPTH), normal: front, radius: BORE_RADIUS };
+        (0..count).map(side).chain([rim])
+    };
+    (0..count).map(upright).chain(around(1.0)).chain(around(-1.0)).collect()
 }
 
 /// The faces along z, one for each side of the outline.

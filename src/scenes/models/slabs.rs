@@ -1,6 +1,7 @@
 //! Thin slabs close together: what is behind must not shine through.
 
-use super::{faces, piece, tinted};
+use super::{box_edges, faces, piece, tinted};
+use crate::scenes::edges::Edge;
 use crate::scenes::query::Query;
 use crate::scenes::surface::{Kind, Piece};
 use glam::DVec3;
@@ -12,17 +13,24 @@ const STEP: f64 = 0.3;
 
 /// Level square slabs, one above the other.
 pub fn slabs(query: &Query) -> Vec<Piece> {
+    let slab = |(i, [centre, half]): (u32, [DVec3; 2])| {
+        let texture = tinted(query, COLOURS[i as usize % COLOURS.len()]);
+        faces(centre, half).map(move |face| Piece { kind: Kind::Polygon, sheet: i, ..piece(face, texture) })
+    };
+    (0..).zip(boxes(query)).flat_map(slab).collect()
+}
+
+/// Their edges.
+pub fn slabs_edges(query: &Query) -> Vec<Edge> {
+    boxes(query).flat_map(|[centre, half]| box_edges(centre, half)).collect()
+}
+
+/// Middle and half the extent of each.
+fn boxes(query: &Query) -> impl Iterator<Item = [DVec3; 2]> {
     let (gap, thickness) = (query.number("gap"), query.number("thickness"));
-    let count = query.whole("slabs") as u32;
-    let slab = |i: u32| {
+    (0..query.whole("slabs") as u32).map(move |i| {
         let down = f64::from(i) * (gap + thickness);
         let centre = DVec3::new(STEP * f64::from(i), -down, STEP * f64::from(i));
-        let texture = tinted(query, COLOURS[i as usize % COLOURS.len()]);
-        faces(centre, DVec3::new(1.0, 0.5 * thickness, 1.0)).map(move |face| Piece {
-            kind: Kind::Polygon,
-            sheet: i,
-            ..piece(face, texture)
-        })
-    };
-    (0..count).flat_map(slab).collect()
+        [centre, DVec3::new(1.0, 0.5 * thickness, 1.0)]
+    })
 }

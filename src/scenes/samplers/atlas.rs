@@ -84,6 +84,7 @@ pub fn draft(piece: &Piece, sample: &Sample, spacing: f64, radius: f64) -> Draft
     let (_, scale) = piece.shape.place(sample.spot.position);
     Draft {
         position: sample.spot.position,
+        on: Some(sample.spot.position),
         normal: sample.spot.normal,
         albedo: piece.texture.at(&sample.spot),
         spacing: spacing * scale,

@@ -5,11 +5,12 @@ mod blue_noise;
 mod rows;
 mod scanner;
 
+use super::edges::{self, Disc};
 use super::query::Query;
 use super::random::Random;
 use super::surface::Surface;
 use crate::error::Result;
-use crate::geometry::{Colours, Ellipse, Surfels};
+use crate::geometry::{Clips, Colours, Ellipse, Surfels};
 use atlas::Atlas;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -22,6 +23,8 @@ const NOISE_STREAM: u64 = 1 << 40;
 /// A surfel in the making.
 struct Draft {
     position: DVec3,
+    /// Where on the surface it was taken; nowhere, if it floats.
+    on: Option<DVec3>,
     normal: DVec3,
     albedo: [f64; 3],
     /// Distance to its neighbours.
@@ -37,13 +40,13 @@ struct Draft {
 pub fn sample(query: &Query, surface: &dyn Surface) -> Result<Surfels> {
     let (points, seed) = (query.whole("points") as usize, query.whole("seed"));
     let mut drafts = match query.word("sampler") {
-        "scanner" => return Ok(surfels(scanner::scan(query, surface)?)),
+        "scanner" => return Ok(surfels(query, scanner::scan(query, surface)?)),
         "blue-noise" => blue_noise::sample(&Atlas::new(surface.pieces()), points, seed),
         "grid" => rows::grid(&Atlas::new(surface.pieces()), points),
         _ => rows::jittered(&Atlas::new(surface.pieces()), points, seed),
     };
     displace(&mut drafts, query.number("noise"), seed);
-    Ok(surfels(drafts))
+    Ok(surfels(query, drafts))
 }
 
 /// Moves samples along their normals by normally distributed distances; `deviation` is in spacings.
@@ -58,7 +61,22 @@ fn displace(drafts: &mut [Draft], deviation: f64, seed: u64) {
     }
 }
 
-fn surfels(drafts: Vec<Draft>) -> Surfels {
+/// The drafts' clips at the sharp edges that the scene knows.
+fn clips(query: &Query, drafts: &[Draft]) -> Option<Clips> {
+    let edges = query.scene.edges(query);
+    let clip = |draft: &Draft| {
+        // The centre that the surfel has.
+        let centre = draft.position.as_vec3().as_dvec3();
+        edges::clip(&edges, &Disc { on: draft.on?, centre, normal: draft.normal, radius: draft.radius })
+    };
+    if edges.is_empty() {
+        return None;
+    }
+    let chunk = |chunk: &[Draft]| (Clips::collect(chunk.iter().map(clip)), chunk.len());
+    Clips::join(drafts.par_chunks(CHUNK).map(chunk).collect::<Vec<_>>())
+}
+
+fn surfels(query: &Query, drafts: Vec<Draft>) -> Surfels {
     let two_sided = drafts.iter().any(|draft| draft.two_sided);
     let elliptical = drafts.iter().any(|draft| draft.ellipse.is_some());
     let ellipse = |draft: &Draft| draft.ellipse.unwrap_or_else(|| Ellipse::circle(draft.normal.as_vec3()));
@@ -69,6 +87,7 @@ fn surfels(drafts: Vec<Draft>) -> Surfels {
         radii: drafts.par_iter().map(|draft| draft.radius as f32).collect(),
         ellipses: elliptical.then(|| drafts.par_iter().map(ellipse).collect()),
         two_sided: two_sided.then(|| drafts.par_iter().map(|draft| draft.two_sided).collect()),
+        clips: clips(query, &drafts),
         colours: Some(Colours::Linear(
             drafts.par_iter().map(|draft| draft.albedo.map(|channel| channel as f32)).collect(),
         )),

@@ -1,5 +1,6 @@
 //! Every scene, traced and sampled, against what is known of it otherwise.
 
+mod edges;
 mod names;
 mod samplers;
 mod shapes;

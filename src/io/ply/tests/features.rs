@@ -1,7 +1,7 @@
 //! What is understood beyond positions, normals, radii and colours.
 
 use super::*;
-use crate::geometry::View;
+use crate::geometry::{Clip, ClipLine, Clips, View};
 
 /// A file of text; its header is `lines` between the first and the last line.
 fn text(lines: &str, records: &str) -> Vec<u8> {
@@ -128,6 +128,49 @@ fn axes_give_ellipses_normals_and_radii() {
     let ellipses = cloud.ellipses.unwrap();
     assert!((ellipses[0].aspect - 0.25).abs() < 1e-6 && ellipses[0].major.z.abs() > 1.0 - 1e-6);
     assert_eq!((ellipses[1].aspect, cloud.two_sided), (1.0, Some(vec![true, false])));
+}
+
+#[test]
+fn clip_lines_are_made_lines_of_the_plane_or_dropped() {
+    let names =
+        ["clip0x", "clip0y", "clip0z", "clip0d", "clip1x", "clip1y", "clip1z", "clip1d", "clip_concave"];
+    let lines: String = names.map(|name| format!("property float {name}\n")).concat();
+    let lines = format!("element vertex 10\n{FLOATS}{}", lines.trim_end());
+    let records = [
+        // One line: as it is, longer, slanted, in the second place.
+        "0 0 1 1  0.6 0.8 0 0.5  0 0 0 9  1",
+        "0 0 1 1  0 -4 0 2  0 0 0 0  0",
+        "0 0 9 1  3 0 4 1  0 0 0 0  0",
+        "0 0 1 1  0 0 0 0  -1 0 0 -0.25  0",
+        // Two.
+        "0 0 1 1  1 0 0 1  0 1 0 2  7",
+        // Of no use: infinite, beside a good one of a convex corner, of a concave corner; upright; without a normal.
+        "0 0 1 1  1 0 0 inf  0 0 0 0  0",
+        "0 0 1 1  nan 0 0 1  0 1 0 2  0",
+        "0 0 1 1  nan 0 0 1  0 1 0 2  1",
+        "0 0 1 1  0 0 1 1  0 0 0 0  0",
+        "0 0 0 1  1 0 0 1  0 1 0 1  0",
+    ];
+    let records = records.map(|record| format!("0 0 0 {record}\n")).concat();
+    let Loaded { cloud, report } = load(&text(&lines, &records));
+    let line = |x: f32, y: f32, offset: f32| ClipLine { outward: Vec3::new(x, y, 0.0), offset };
+    let one = |x, y, offset| Some(Clip::line(line(x, y, offset)));
+    let expected = [
+        one(0.6, 0.8, 0.5),
+        one(0.0, -1.0, 0.5),
+        one(1.0, 0.0, 1.0 / 3.0),
+        one(-1.0, 0.0, -0.25),
+        Some(Clip { lines: [line(1.0, 0.0, 1.0), line(0.0, 1.0, 2.0)], concave: true }),
+        None,
+        one(0.0, 1.0, 2.0),
+        None,
+        None,
+        None,
+    ];
+    assert_eq!((cloud.clips, report.clip_lines_dropped), (Clips::collect(expected), 6));
+    assert!(report.skipped.is_empty(), "{:?}", report.skipped);
+    let whole = load(&text(&lines.replace("10", "1"), "0 0 0 0 0 1 1  0 0 0 0  0 0 0 0  1\n")).cloud;
+    assert_eq!(whole.clips, None);
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! What is written reads back.
 
 use super::*;
-use crate::geometry::{Ellipse, Surfels};
+use crate::geometry::{Clip, ClipLine, Clips, Ellipse, Surfels};
 
 fn random_surfels(count: usize, origin: DVec3, colours: Option<Colours>) -> Surfels {
     let spread = |i: usize, k: f32| ((i as f32 * k).sin() * 1e3).fract();
@@ -33,7 +33,7 @@ fn what_is_written_reads_back() {
             (read.positions, read.radii, read.colours),
             (surfels.positions, Some(surfels.radii), surfels.colours)
         );
-        assert_eq!((read.ellipses, read.two_sided), (None, None));
+        assert_eq!((read.ellipses, read.two_sided, read.clips), (None, None, None));
         assert!(read.normals.unwrap().iter().zip(&surfels.normals).all(|(a, b)| a.abs_diff_eq(*b, 2e-7)));
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1, "a temporary file was left");
     }
@@ -52,6 +52,31 @@ fn the_origin_is_part_of_the_coordinates() {
     }
     let ragged = Surfels { radii: vec![], ..far };
     assert!(matches!(write(&path, &ragged), Err(Error::Usage(_))));
+}
+
+#[test]
+fn clips_read_back_exactly() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("clips.ply");
+    let mut surfels = random_surfels(100, DVec3::ZERO, None);
+    let clip = |(i, normal): (usize, &Vec3)| {
+        let outward = normal.any_orthonormal_vector();
+        let line = ClipLine { outward, offset: 0.3 - 0.01 * i as f32 };
+        let other = ClipLine { outward: normal.cross(outward).normalize(), offset: 0.01 * i as f32 - 0.7 };
+        match i % 4 {
+            0 => None,
+            1 => Some(Clip::line(line)),
+            turn => Some(Clip { lines: [line, other], concave: turn == 3 }),
+        }
+    };
+    surfels.clips = Clips::collect(surfels.normals.iter().enumerate().map(clip));
+    assert_eq!(surfels.count_invalid(), 0);
+    write(&path, &surfels).unwrap();
+    let Loaded { cloud, report } = read(&path, &ReadOptions::default(), &()).unwrap();
+    assert_eq!((&cloud.clips, report.clip_lines_dropped, report.skipped.len()), (&surfels.clips, 0, 0));
+    let (estimated, _) = cloud.into_surfels(&crate::geometry::estimate::Estimate::default(), &()).unwrap();
+    surfels.sort_morton();
+    assert_eq!(estimated.clips, surfels.clips);
 }
 
 #[test]

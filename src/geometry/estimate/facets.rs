@@ -1,0 +1,107 @@
+//! Plane faces that samples around a point belong to, by their normals.
+
+use glam::DVec3;
+
+/// Most faces that are told apart: a disc has no more clip lines.
+const MOST: usize = 2;
+/// Fewest samples of a face: of fewer, each could be noise.
+const LEAST: usize = 3;
+/// How often a face's samples are chosen anew by its mean normal.
+const SETTLING: usize = 2;
+
+/// A sample.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Seen {
+    pub at: DVec3,
+    /// Unit normal.
+    pub normal: DVec3,
+}
+
+/// A plane that several samples agree on: `normal · x = offset`.
+#[derive(Clone, Debug)]
+pub(super) struct Facet {
+    /// Mean of the samples' normals, a unit vector.
+    pub normal: DVec3,
+    /// The middle of what the samples say, so that a few that belong elsewhere do not move it.
+    pub offset: f64,
+    /// Where they are.
+    pub members: Vec<DVec3>,
+}
+
+/// The largest faces, at most two. Samples of a face have normals within `spread` of its mean, radians; faces are twice as far apart.
+pub(super) fn facets(seen: &[Seen], spread: f64) -> Vec<Facet> {
+    let near = spread.cos();
+    let mut left = seen.to_vec();
+    let mut facets: Vec<Facet> = Vec::new();
+    while facets.len() < MOST && left.len() >= LEAST {
+        let Some(normal) = densest(&left, near) else { break };
+        let (members, rest): (Vec<Seen>, Vec<Seen>) =
+            left.iter().partition(|seen| seen.normal.dot(normal) >= near);
+        if members.len() < LEAST {
+            break;
+        }
+        // What is left of a rounded face beside it is none of its own.
+        let apart = |facet: &Facet| facet.normal.dot(normal) < (2.0 * spread).cos();
+        if facets.iter().all(apart) {
+            let offset = median(members.iter().map(|seen| seen.at.dot(normal)).collect());
+            facets.push(Facet { normal, offset, members: members.iter().map(|seen| seen.at).collect() });
+        }
+        left = rest;
+    }
+    facets
+}
+
+/// The mean normal of the samples of which most have similar normals.
+fn densest(seen: &[Seen], near: f64) -> Option<DVec3> {
+    let around = |normal: DVec3| seen.iter().filter(move |seen| seen.normal.dot(normal) >= near);
+    let mut normal = seen.iter().max_by_key(|seen| around(seen.normal).count())?.normal;
+    for _ in 0..SETTLING {
+        normal = around(normal).map(|seen| seen.normal).sum::<DVec3>().try_normalize()?;
+    }
+    Some(normal)
+}
+
+/// The middle one, of an even number the mean of both; not a number of none.
+pub(super) fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_unstable_by(f64::total_cmp);
+    let at = |i: usize| values.get(i).copied().unwrap_or(f64::NAN);
+    0.5 * (at(values.len().saturating_sub(1) / 2) + at(values.len() / 2))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sample(x: f64, normal: DVec3) -> Seen {
+        Seen { at: DVec3::new(x, 0.1 * x, 0.0), normal: normal.normalize() }
+    }
+
+    #[test]
+    fn the_two_largest_faces_are_found_among_strays() {
+        let mut seen: Vec<Seen> =
+            (0..5).map(|i| sample(2.0, DVec3::new(1.0, 0.02 * f64::from(i), 0.0))).collect();
+        seen.push(sample(9.0, DVec3::X));
+        seen.extend([sample(3.0, DVec3::Y); 4]);
+        seen.extend([sample(5.0, DVec3::NEG_Z); 2]);
+        let found = facets(&seen, 0.35);
+        assert_eq!(found.iter().map(|facet| facet.members.len()).collect::<Vec<_>>(), [6, 4]);
+        assert!(found[0].normal.x > 0.999 && (found[0].offset - 2.0).abs() < 0.02, "{found:?}");
+        assert!((found[1].normal - DVec3::Y).length() < 1e-12 && (found[1].offset - 0.3).abs() < 1e-12);
+        assert!(facets(&seen[..2], 0.35).is_empty() && facets(&[], 0.35).is_empty());
+    }
+
+    #[test]
+    fn a_rounded_face_is_one() {
+        let around = (0..30)
+            .map(|i| sample(1.0, DVec3::new((0.04 * f64::from(i)).cos(), (0.04 * f64::from(i)).sin(), 0.0)));
+        let found = facets(&around.collect::<Vec<_>>(), 0.35);
+        assert_eq!(found.len(), 1, "{found:?}");
+    }
+
+    #[test]
+    fn a_median_is_in_the_middle() {
+        assert_eq!(median(vec![3.0, 1.0, 9.0]), 3.0);
+        assert_eq!(median(vec![4.0, 1.0, 2.0, 9.0]), 3.0);
+        assert!(median(vec![]).is_nan());
+    }
+}

@@ -1,0 +1,123 @@
+//! Sharp edges of surfaces, and the clip lines of discs that reach them (Zwicker et al. 2004, section 5): a disc ends where its plane meets
+//! the plane that touches the face beyond the edge.
+
+use crate::geometry::{Clip, ClipLine};
+use glam::DVec3;
+
+/// What is no further apart is the same, the scenes being about 1 large: faces in one plane, unit normals, ends of edges.
+const SAME: f64 = 1e-9;
+
+/// Where two smooth faces meet.
+#[derive(Clone, Copy, Debug)]
+pub enum Edge {
+    /// Straight, between two planes.
+    Straight {
+        /// Where it begins and ends.
+        ends: [DVec3; 2],
+        /// The faces' unit normals, outwards.
+        normals: [DVec3; 2],
+        /// Whether the solid is within both planes, rather than within either.
+        convex: bool,
+    },
+    /// Around the end of a round hole at a right angle to a plane.
+    Rim {
+        /// The middle of the hole's end.
+        centre: DVec3,
+        /// The plane's unit normal, outwards.
+        normal: DVec3,
+        /// The hole's radius.
+        radius: f64,
+    },
+}
+
+impl Edge {
+    /// The point of the edge next to `p`; none from a rim's axis.
+    fn foot(&self, p: DVec3) -> Option<DVec3> {
+        match *self {
+            Self::Straight { ends: [from, to], .. } => {
+                let along = to - from;
+                let part = (p - from).dot(along) / along.length_squared();
+                Some(from + part.clamp(0.0, 1.0) * along)
+            }
+            Self::Rim { centre, normal, radius } => {
+                Some(centre + radius * (p - centre).reject_from_normalized(normal).try_normalize()?)
+            }
+        }
+    }
+
+    /// The faces' unit normals at a point of the edge, outwards, and whether the edge is convex.
+    fn faces(&self, foot: DVec3) -> ([DVec3; 2], bool) {
+        match *self {
+            Self::Straight { normals, convex, .. } => (normals, convex),
+            Self::Rim { centre, normal, .. } => ([normal, (centre - foot).normalize()], true),
+        }
+    }
+
+    /// How a disc around `p` on the surface ends at the edge; `None` unless `p` is on one of the edge's faces.
+    fn cut(&self, p: DVec3, normal: DVec3, radius: f64) -> Option<Cut<'_>> {
+        let foot = self.foot(p)?;
+        let distance = p.distance(foot);
+        if distance > radius {
+            return None;
+        }
+        let (normals, convex) = self.faces(foot);
+        let is_own = |face: DVec3| (face - normal).length() < SAME && (p - foot).dot(face).abs() < SAME;
+        let own = normals.iter().position(|face| is_own(*face))?;
+        let beyond = normals[1 - own];
+        Some(Cut { edge: self, distance, foot, outward: if convex { beyond } else { -beyond } })
+    }
+}
+
+/// Where a disc ends: at the border of the half-space `outward · (x − foot) ≤ 0`.
+struct Cut<'a> {
+    edge: &'a Edge,
+    distance: f64,
+    foot: DVec3,
+    outward: DVec3,
+}
+
+impl Cut<'_> {
+    fn keeps(&self, p: DVec3) -> bool {
+        self.outward.dot(p - self.foot) <= SAME
+    }
+
+    /// The direction in which the edge of `other` leaves a corner that it shares with this one.
+    fn leaving(&self, other: &Self) -> Option<DVec3> {
+        let (Edge::Straight { ends, .. }, Edge::Straight { ends: [from, to], .. }) = (self.edge, other.edge)
+        else {
+            return None;
+        };
+        let is_end = |p: &DVec3| ends.iter().any(|end| end.distance(*p) < SAME);
+        if is_end(from) { Some(to - from) } else { is_end(to).then(|| from - to) }
+    }
+
+    fn line(&self, centre: DVec3, normal: DVec3) -> Option<ClipLine> {
+        ClipLine::of_half_space(self.outward, self.outward.dot(self.foot - centre), normal.as_vec3())
+    }
+}
+
+/// A disc to be clipped.
+pub struct Disc {
+    /// Where on the surface it was taken.
+    pub on: DVec3,
+    /// Its centre, which may be beside the surface.
+    pub centre: DVec3,
+    /// Its unit normal, that of the surface.
+    pub normal: DVec3,
+    /// Its radius; of an ellipse, the longer semi-axis.
+    pub radius: f64,
+}
+
+/// The clip of a disc by the edges of its face that it reaches, the two nearest if there are more: at a corner of the face they share, what
+/// is kept is what the face has there; otherwise both cut.
+pub fn clip(edges: &[Edge], disc: &Disc) -> Option<Clip> {
+    let mut cuts: Vec<Cut> =
+        edges.iter().filter_map(|edge| edge.cut(disc.on, disc.normal, disc.radius)).collect();
+    cuts.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+    let (first, rest) = cuts.split_first()?;
+    // Another face in the same plane may have an edge within reach; its own discs cover it.
+    let second = rest.iter().find(|cut| first.leaving(cut).is_some() || cut.keeps(disc.on));
+    let concave = second.is_some_and(|cut| first.leaving(cut).is_some_and(|d| first.outward.dot(d) > 0.0));
+    let line = |cut: &Cut| cut.line(disc.centre, disc.normal);
+    Clip::of_some([line(first), second.and_then(line)], concave)
+}
