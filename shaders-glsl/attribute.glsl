@@ -8,6 +8,7 @@
 #include "lib/frame.glsl"
 #include "lib/sums.glsl"
 #define SPLAT_ACCESS readonly
+#define CLIP_ACCESS readonly
 #include "lib/splat.glsl"
 
 #ifndef FRAGMENT
@@ -86,7 +87,7 @@ void main() {
     uint i = gl_VertexIndex / 3;
     Splat splat = splats[i];
     vec2 variance = attribute_variance(splat.variance);
-    place_splat(splat, variance, gl_VertexIndex % 3);
+    place_splat(i, splat, variance, gl_VertexIndex % 3);
     height = weight_of(i, splat, variance);
     surface_of(i, splat.epsilon, first, second);
 }

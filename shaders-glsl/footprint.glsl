@@ -4,6 +4,7 @@
 
 #include "lib/frame.glsl"
 #define SPLAT_ACCESS writeonly
+#define CLIP_ACCESS writeonly
 #include "lib/splat.glsl"
 #include "lib/image.glsl"
 
@@ -98,6 +99,51 @@ mat2x3 flat_plane(Disc disc, vec2 slope, vec2 to_centre) {
     return mat2x3(vec3(value.x, slope), vec3(value.y, 0.0, 0.0));
 }
 
+// Where a line of the tangent plane, outward·(x − centre) = offset, is on the screen: see ScreenClip. Near the line its value is a small
+// difference of large terms.
+vec4 screen_line(Disc disc, vec2 anchor, vec3 outward, float offset) {
+    if (outward == vec3(0.0)) return NO_LINE;
+    // The plane's and the half-space's n·x = h, and what they make of the rays: values at the anchor and derivatives along x and y.
+    vec2 reach = add(vec2(offset, 0.0), dot_double(disc.hi, disc.lo, outward, vec3(0.0)));
+    vec2 plane[3], half_space[3];
+    for (int i = 0; i < 3; i++) {
+        plane[i] = dot_double(disc.normal, vec3(0.0), frame.ray_hi[i].xyz, frame.ray_lo[i].xyz);
+        half_space[i] = dot_double(outward, vec3(0.0), frame.ray_hi[i].xyz, frame.ray_lo[i].xyz);
+    }
+    plane[2] = add(plane[2], add(scale(plane[0], anchor.x), scale(plane[1], anchor.y)));
+    half_space[2] = add(half_space[2], add(scale(half_space[0], anchor.x), scale(half_space[1], anchor.y)));
+    // On a ray that meets the plane at h / n·ray, outward·x ≤ reach is reach n·ray − h outward·ray ≥ 0 for h > 0.
+    vec2 of_plane = reach, of_half_space = disc.h;
+    if (!PERSPECTIVE) {
+        // Parallel rays differ in where they begin, not in where they go.
+        of_plane = dot_double(outward, vec3(0.0), frame.forward_hi.xyz, frame.forward_lo.xyz);
+        of_half_space = disc.facing;
+        plane[2] = add(plane[2], -scale(disc.h, frame.key_slope));
+        half_space[2] = add(half_space[2], -scale(reach, frame.key_slope));
+    }
+    vec3 line;
+    for (int i = 0; i < 3; i++) {
+        line[(i + 1) % 3] = add(multiply(of_plane, plane[i]), -multiply(of_half_space, half_space[i])).x;
+    }
+    float sign_of_h = disc.facing.x < 0.0 ? -1.0 : 1.0;
+    float slope = length(line.yz);
+    return slope > 0.0 ? vec4(sign_of_h / slope * line, 0.0) : NO_LINE;
+}
+
+// Writes the clip of surfel i, whose splat has this anchor.
+void clip_splat(uint i, Disc disc, vec2 anchor) {
+    uint number = clip_number(i);
+    if (!has_clip(number)) return;
+    vec4 lines[2];
+    for (uint k = 0; k < 2; k++) {
+        uint at = window.count + 8 * number + 4 * k;
+        vec3 outward = uintBitsToFloat(uvec3(clips[at], clips[at + 1], clips[at + 2]));
+        lines[k] = screen_line(disc, anchor, outward, uintBitsToFloat(clips[at + 3]));
+    }
+    lines[0].w = (clips[i] & CONCAVE) != 0u ? 1.0 : 0.0;
+    screen_clips[number] = ScreenClip(lines[0], lines[1]);
+}
+
 // Reads surfel i and what becomes of it before its image is known.
 uint disc_of(uint i, out Disc disc) {
     vec3 p = vec3(positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]);
@@ -165,6 +211,7 @@ uint footprint(uint i, out Splat splat) {
     mat2x3 plane = tangent ? depth_plane(disc.normal, disc.h, disc.facing, anchor) : flat_plane(disc, image.slope, to_centre);
     splat.plane_hi = plane[0];
     splat.plane_lo = plane[1];
+    clip_splat(i, disc, anchor);
     splat.sqrt_det = image.sqrt_det;
     splat.key_disc = key_of_disc(disc.w.x, disc.hi, image.lean);
     return DRAWN;

@@ -9,6 +9,7 @@
 #include "lib/frame.glsl"
 #include "lib/sums.glsl"
 #define SPLAT_ACCESS readonly
+#define CLIP_ACCESS readonly
 #include "lib/splat.glsl"
 
 #ifdef COMPUTE
@@ -52,7 +53,7 @@ layout(location = 5) flat out vec3 second;
 void main() {
     uint i = gl_VertexIndex / 3;
     Splat splat = splats[i];
-    place_splat(splat, visibility_variance(splat.variance), gl_VertexIndex % 3);
+    place_splat(i, splat, visibility_variance(splat.variance), gl_VertexIndex % 3);
     surface_of(i, splat.epsilon, first, second);
 }
 

@@ -8,6 +8,7 @@
 #include "lib/frame.glsl"
 #include "lib/sums.glsl"
 #define SPLAT_ACCESS readonly
+#define CLIP_ACCESS readonly
 #include "lib/splat.glsl"
 #include "lib/surface.glsl"
 

@@ -4,6 +4,7 @@
 
 #include "lib/frame.glsl"
 #define SPLAT_ACCESS readonly
+#define CLIP_ACCESS readonly
 #include "lib/splat.glsl"
 
 #ifdef COMPUTE
@@ -39,8 +40,9 @@ void main() {
 #ifdef VERTEX
 
 void main() {
-    Splat splat = splats[gl_VertexIndex / 3];
-    place_splat(splat, visibility_variance(splat.variance), gl_VertexIndex % 3);
+    uint i = gl_VertexIndex / 3;
+    Splat splat = splats[i];
+    place_splat(i, splat, visibility_variance(splat.variance), gl_VertexIndex % 3);
 }
 
 #endif

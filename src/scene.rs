@@ -1,7 +1,7 @@
 //! Geometry on the GPU: only the streams that the scene has.
 
 use crate::error::{Error, Result};
-use crate::geometry::{Bounds, Colours, Ellipse, Surfels};
+use crate::geometry::{Bounds, Clip, ClipLine, Clips, Colours, Ellipse, Surfels};
 use crate::vk::shaders::layout::Splat;
 use crate::vk::{Binding, Buffer, Capabilities, Device, upload};
 use glam::DVec3;
@@ -19,12 +19,27 @@ pub struct Scene {
     pub(crate) radii: Buffer,
     pub(crate) two_sided: bool,
     pub(crate) ellipses: Option<Buffer>,
+    clips: Option<ClipStream>,
     pub(crate) colours: Option<Buffer>,
     colour_stream: ColourStream,
     windows: Vec<Range<u64>>,
     count: u64,
     origin: DVec3,
     bounds: Bounds,
+}
+
+/// Clips as `lib/clip.glsl` wants them, window by window: for every surfel which clip it has, then the clips.
+struct ClipStream {
+    buffer: Buffer,
+    windows: Vec<ClipWindow>,
+}
+
+/// Where a window's clips are.
+pub(crate) struct ClipWindow {
+    /// Bytes of the stream.
+    bytes: Range<u64>,
+    /// Number of its clips.
+    pub(crate) count: u64,
 }
 
 /// How a scene holds its colours; the numbers are those of `shaders-glsl/lib/sums.glsl`.
@@ -76,6 +91,7 @@ impl Scene {
         let (bounds, invalid) = usable(surfels)?;
         let count = surfels.len() as u64;
         let ellipses = surfels.ellipses.as_deref();
+        let windows = windows(count, device.capabilities());
         let (colour_stream, colours): (_, &[u8]) = match &surfels.colours {
             None => (ColourStream::None, &[]),
             Some(Colours::Srgb8(colours)) => (ColourStream::Srgb8, bytemuck::cast_slice(colours)),
@@ -94,7 +110,12 @@ impl Scene {
                 .then(|| upload(device, "colours", colours))
                 .transpose()?,
             colour_stream,
-            windows: windows(count, device.capabilities()),
+            clips: surfels
+                .clips
+                .as_ref()
+                .map(|clips| ClipStream::new(device, clips, &windows))
+                .transpose()?,
+            windows,
             count,
             origin: surfels.origin,
             bounds,
@@ -124,7 +145,9 @@ impl Scene {
 
     /// Memory of its streams, bytes.
     pub fn bytes(&self) -> u64 {
-        let optional = [&self.ellipses, &self.colours].map(|stream| stream.as_ref().map_or(0, Buffer::size));
+        let clips = self.clips.as_ref().map(|clips| &clips.buffer);
+        let optional = [self.ellipses.as_ref(), self.colours.as_ref(), clips]
+            .map(|stream| stream.map_or(0, Buffer::size));
         self.positions.size() + self.normals.size() + self.radii.size() + optional.iter().sum::<u64>()
     }
 
@@ -133,9 +156,20 @@ impl Scene {
         &self.windows
     }
 
-    /// A window of each stream: positions, normals, radii, colours, ellipses. A stream that the scene lacks is stood in for by the radii, which
-    /// the shaders then do not read.
-    pub(crate) fn bindings(&self, window: &Range<u64>) -> [Binding<'_>; 5] {
+    /// Whether some of its discs are clipped.
+    pub fn has_clips(&self) -> bool {
+        self.clips.is_some()
+    }
+
+    /// The clips of each window, if there are any.
+    pub(crate) fn clip_windows(&self) -> Option<&[ClipWindow]> {
+        self.clips.as_ref().map(|clips| clips.windows.as_slice())
+    }
+
+    /// A window, by its number, of each stream: positions, normals, radii, colours, ellipses, clips. A stream that the scene lacks is stood
+    /// in for by the radii, which the shaders then do not read.
+    pub(crate) fn bindings(&self, number: usize) -> [Binding<'_>; 6] {
+        let window = &self.windows[number];
         let part = |buffer, stride| {
             Binding::Storage(buffer, window.start * stride, (window.end - window.start) * stride)
         };
@@ -151,9 +185,43 @@ impl Scene {
                 Some(ellipses) => part(ellipses, ELLIPSE),
                 None => part(&self.radii, SCALAR),
             },
+            match &self.clips {
+                Some(ClipStream { buffer, windows }) => {
+                    let Range { start, end } = windows[number].bytes;
+                    Binding::Storage(buffer, start, end - start)
+                }
+                None => part(&self.radii, SCALAR),
+            },
         ]
     }
 }
+
+impl ClipStream {
+    fn new(device: &Arc<Device>, clips: &Clips, windows: &[Range<u64>]) -> Result<Self> {
+        let mut words: Vec<u32> = Vec::new();
+        let mut parts = Vec::new();
+        for window in windows {
+            let start = 4 * words.len() as u64;
+            let surfels = window.start as usize..window.end as usize;
+            let mut named: Vec<&Clip> = Vec::new();
+            for surfel in surfels {
+                let clip = clips.get(surfel);
+                named.extend(clip);
+                let corner = clip.map_or(0, |clip| if clip.concave { CONCAVE } else { 0 });
+                words.push(clip.map_or(0, |_| named.len() as u32 | corner));
+            }
+            let lines = named.iter().flat_map(|clip| clip.lines);
+            words.extend(lines.flat_map(|line| bytemuck::cast::<ClipLine, [u32; 4]>(line)));
+            parts.push(ClipWindow { bytes: start..4 * words.len() as u64, count: named.len() as u64 });
+            // No device aligns ranges to more.
+            words.resize(words.len().next_multiple_of(64), 0);
+        }
+        Ok(Self { buffer: upload(device, "clips", bytemuck::cast_slice(&words))?, windows: parts })
+    }
+}
+
+/// The bit of a surfel's clip that tells a concave corner, as in `lib/clip.glsl`.
+const CONCAVE: u32 = 1 << 31;
 
 /// The bounds of the valid surfels, and the number of the others.
 fn usable(surfels: &Surfels) -> Result<(Bounds, usize)> {
@@ -168,7 +236,7 @@ fn usable(surfels: &Surfels) -> Result<(Bounds, usize)> {
 fn warn_of(invalid: usize, count: usize) {
     log::warn!(
         "{invalid} of {count} surfels are invalid and will not be drawn: a value is NaN, infinite or beyond {:e}, a normal or an axis \
-         is no unit vector, a radius or an aspect is not above 0",
+         is no unit vector, a radius or an aspect is not above 0, a clip line is not in the tangent plane",
         Surfels::LARGEST
     );
 }

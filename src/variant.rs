@@ -16,6 +16,8 @@ pub struct Variant {
     pub cull_back: bool,
     /// The scene's discs are ellipses.
     pub ellipses: bool,
+    /// Some of the scene's discs end at clip lines.
+    pub clips: bool,
     /// The scene has surfels that are never dropped for facing away.
     pub two_sided: bool,
     /// The image of a disc.
@@ -95,6 +97,7 @@ impl Variant {
             perspective,
             cull_back: settings.cull == Cull::Back,
             ellipses: scene.ellipses.is_some(),
+            clips: scene.has_clips(),
             two_sided: scene.two_sided,
             footprint: splatting.footprint,
             confetti: splatting.kernel != Kernel::Gaussian,
@@ -148,6 +151,7 @@ impl Variant {
             .with(constant::CULL_BACK, self.cull_back)
             .with(constant::ELLIPSES, self.ellipses)
             .with(constant::TWO_SIDED, self.two_sided)
+            .with(constant::CLIPS, self.clips)
             .with(constant::FOOTPRINT, self.footprint as u32)
             .with(constant::CONFETTI, self.confetti)
             .with(constant::NORMALIZATION, self.normalization as u32)

@@ -6,7 +6,7 @@ use glam::{DVec3, Vec3};
 use std::sync::Arc;
 use support::gpu::{assert_silent, device, render};
 use support::scenes::{Case, cases};
-use surfel::geometry::{Camera, Ellipse, Surfels};
+use surfel::geometry::{Camera, Clip, Ellipse, Surfels};
 use surfel::methods::{Method, sprites};
 use surfel::reference::{Comparison, Expected, Surfel, Tolerance};
 use surfel::settings::Widen;
@@ -175,6 +175,29 @@ fn small_mutations_fail() {
             // Beside the filter these vanish, and all are as wide as that either way.
             let alike = case.name == "sub-pixel";
             assert!(h > 0 && (s > 0 || alike) && e > 0 && c > 0, "{}: a mutation went unseen", case.name);
+        }
+    }
+    assert_silent(&device);
+}
+
+#[test]
+fn other_clip_lines_fail() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    for case in cases().iter().filter(|case| case.surfels.clips.is_some()) {
+        let view = View::new(case, case.cameras[0]);
+        let changed = |by: &dyn Fn(&mut Clip)| {
+            let mut surfels = case.surfels.clone();
+            surfels.clips.iter_mut().flat_map(|clips| &mut clips.clips).for_each(by);
+            surfels
+        };
+        let moved = changed(&|clip| clip.lines.iter_mut().for_each(|line| line.offset *= 1.01));
+        let convex = changed(&|clip| clip.concave = false);
+        let whole = Surfels { clips: None, ..case.surfels.clone() };
+        for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
+            let failed = |surfels| view.judge(&device, rasterizer, surfels, &case.settings).failed;
+            let [m, c, w] = [&moved, &convex, &whole].map(failed);
+            println!("{} {rasterizer:?}: lines moved {m}, all convex {c}, none {w} pixels", case.name);
+            assert!(m > 0 && c > 0 && w > 0, "{}: a mutation went unseen", case.name);
         }
     }
     assert_silent(&device);

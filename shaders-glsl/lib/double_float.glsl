@@ -33,6 +33,11 @@ vec2 scale(vec2 a, float b) {
     return vec2(product.x, product.y + a.y * b);
 }
 
+// a · b.
+vec2 multiply(vec2 a, vec2 b) {
+    return add(scale(a, b.x), vec2(a.x * b.y, 0.0));
+}
+
 // a / b.
 vec2 divide(vec2 a, vec2 b) {
     float high = a.x / b.x;

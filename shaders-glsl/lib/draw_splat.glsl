@@ -6,15 +6,17 @@ layout(location = 0) flat out vec4 anchor_offset;
 layout(location = 1) flat out vec4 whitening;
 layout(location = 2) flat out vec4 plane_epsilon;
 layout(location = 3) flat out vec4 plane_lo_disc;
+layout(location = 7) flat out uint clip;
 
 // More than the rasterizer's snapping of vertices, at least 1/16 px, could take from an edge.
 const float EDGE = 0.125;
 // A triangle that reaches further than this (px) is replaced by one over the viewport, whose edges stay exact.
 const float LARGEST = 8192.0;
 
-// Places a corner of a footprint of the given variance.
-void place_splat(Splat splat, vec2 variance, int corner) {
-    Ellipse ellipse = ellipse_of(splat, variance);
+// Places a corner of splat i's footprint of the given variance.
+void place_splat(uint i, Splat splat, vec2 variance, int corner) {
+    clip = clip_number(i);
+    Ellipse ellipse = ellipse_of(splat, variance, clip);
     anchor_offset = vec4(ellipse.anchor, ellipse.offset);
     whitening = ellipse.whitening;
     plane_epsilon = vec4(ellipse.plane_hi, splat.epsilon);
@@ -47,6 +49,7 @@ layout(location = 0) flat in vec4 anchor_offset;
 layout(location = 1) flat in vec4 whitening;
 layout(location = 2) flat in vec4 plane_epsilon;
 layout(location = 3) flat in vec4 plane_lo_disc;
+layout(location = 7) flat in uint clip;
 
 // The bound given by the vertex stage holds: κ only falls from there.
 layout(depth_less) out float gl_FragDepth;
@@ -55,7 +58,7 @@ layout(depth_less) out float gl_FragDepth;
 void drawn_fragment(out float m2, out float key) {
     float key_centre = centre_key(plane_epsilon.xyz, plane_lo_disc.xyz, anchor_offset.zw);
     Ellipse ellipse =
-        Ellipse(anchor_offset.xy, anchor_offset.zw, whitening, plane_epsilon.xyz, plane_lo_disc.xyz, key_centre);
+        Ellipse(anchor_offset.xy, anchor_offset.zw, whitening, plane_epsilon.xyz, plane_lo_disc.xyz, key_centre, clip);
     if (!splat_fragment(ellipse, gl_FragCoord.xy, m2, key)) discard;
 }
 

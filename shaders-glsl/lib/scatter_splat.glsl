@@ -50,7 +50,7 @@ void scatter_splat(uint i) {
     Splat splat = splats[i];
     if (kind_of(splat) != (LARGE_SPLATS ? LARGE : SMALL)) return;
     vec2 variance = scatter_variance(splat.variance);
-    Ellipse ellipse = ellipse_of(splat, variance);
+    Ellipse ellipse = ellipse_of(splat, variance, clip_number(i));
     float stretch = stretch_of(splat, variance, ellipse.key_centre);
     vec2 reach = stretch * reach_of(splat.axis, variance);
     vec2 first = anchor_of(splat) + splat.offset - 0.5;

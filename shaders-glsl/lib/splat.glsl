@@ -1,6 +1,7 @@
 // A splat: what the footprint pass makes of a surfel, and what visibility and attribute draw.
 
 #include "lib/double_float.glsl"
+#include "lib/clip.glsl"
 
 layout(constant_id = 14) const bool WIDEN_SMALL = false; // the low-pass filter widens only what is smaller than itself
 layout(constant_id = 15) const uint FOOTPRINT = 0;        // as in src/splatting.rs
@@ -124,6 +125,7 @@ struct Ellipse {
     vec3 plane_hi;
     vec3 plane_lo;
     float key_centre; // on_plane: κ of the plane at the centre
+    uint clip;        // see clip_number
 };
 
 // The plane's value at d px from the anchor. Seen edge-on, the plane runs through all depths within a pixel, and along its image large
@@ -139,14 +141,14 @@ float centre_key(vec3 hi, vec3 lo, vec2 offset) {
     return on_plane() ? plane_at(hi, lo, offset) : 0.0;
 }
 
-Ellipse ellipse_of(Splat splat, vec2 variance) {
+Ellipse ellipse_of(Splat splat, vec2 variance, uint clip) {
     vec2 inverse = inversesqrt(variance);
     vec4 whitening = vec4(splat.axis * inverse.x, vec2(-splat.axis.y, splat.axis.x) * inverse.y);
     float key = centre_key(splat.plane_hi, splat.plane_lo, splat.offset);
-    return Ellipse(anchor_of(splat), splat.offset, whitening, splat.plane_hi, splat.plane_lo, key);
+    return Ellipse(anchor_of(splat), splat.offset, whitening, splat.plane_hi, splat.plane_lo, key, clip);
 }
 
-// Whether the splat has a fragment at a pixel centre: it is within the rim, and the tangent plane within the depth range.
+// Whether the splat has a fragment at a pixel centre: it is within the rim and not clipped, and the tangent plane within the depth range.
 // m2: squared distance to the centre in σ; key: the plane's κ.
 bool splat_fragment(Ellipse ellipse, vec2 pixel, out float m2, out float key) {
     vec2 d = pixel - ellipse.anchor;
@@ -158,6 +160,7 @@ bool splat_fragment(Ellipse ellipse, vec2 pixel, out float m2, out float key) {
     if (on_plane()) u /= clamp(key / ellipse.key_centre, 1.0 / MOST_STRETCH, MOST_STRETCH);
     m2 = dot(u, u);
     bool inside = rim() > 1.0 ? max(abs(u.x), abs(u.y)) <= frame.cutoff : m2 <= frame.cutoff * frame.cutoff;
+    if (has_clip(ellipse.clip)) inside = inside && clip_keeps(screen_clips[ellipse.clip], d);
     return inside && key > frame.key_far && key <= 1.0;
 }
 

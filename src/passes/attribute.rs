@@ -47,11 +47,9 @@ impl DrawAttribute {
         framebuffer: &Framebuffer,
         targets: &Images,
     ) {
-        let mut uses = vec![
-            splats.with(Access::VERTEX_READ),
-            targets.visibility.with(Access::DEPTH_TEST),
-            targets.sums0.with(Access::COLOUR_WRITE),
-        ];
+        let mut uses = splats.read_by_draws();
+        uses.push(targets.visibility.with(Access::DEPTH_TEST));
+        uses.push(targets.sums0.with(Access::COLOUR_WRITE));
         uses.extend(targets.sums1.as_ref().map(|image| image.with(Access::COLOUR_WRITE)));
         rec.pass("attribute", &uses, |enc| splats.draw(enc, &self.pipeline, framebuffer));
     }

@@ -2,9 +2,9 @@
 
 use super::scatter::pixel_layout;
 use crate::error::Result;
-use crate::scene::Scene;
+use crate::scene::{ClipWindow, Scene};
 use crate::variant::Rasterizer;
-use crate::vk::shaders::layout::{Counts, LargeSplats, Splat};
+use crate::vk::shaders::layout::{Counts, LargeSplats, ScreenClip, Splat};
 use crate::vk::{
     Access, Binding, Buffer, Commands, DescriptorSet, Device, DrawPipeline, Encoder, Framebuffer, Recorder,
     SetLayout, Use,
@@ -26,6 +26,8 @@ pub struct Splats {
     counts: Buffer,
     /// Indices of splats of many pixels, a list a window; only for the compute rasterizer.
     large: Option<Buffer>,
+    /// A [`ScreenClip`] a clip, those of a window at a multiple of [`COUNTS_STEP`]; only of a scene that has clips.
+    screen_clips: Option<Buffer>,
     windows: Vec<Window>,
 }
 
@@ -52,14 +54,16 @@ impl SplatLayout {
         let frame = (DescriptorType::UNIFORM_BUFFER, compute | ShaderStageFlags::ALL_GRAPHICS);
         let bindings = [
             frame,
-            storage(compute | vertex), // splats
-            storage(compute | vertex), // positions
-            storage(compute | vertex), // normals
-            storage(compute),          // radii
-            storage(compute | vertex), // colours
-            storage(compute),          // counts
-            storage(compute),          // large splats
-            storage(compute),          // ellipses
+            storage(compute | vertex),                              // splats
+            storage(compute | vertex),                              // positions
+            storage(compute | vertex),                              // normals
+            storage(compute),                                       // radii
+            storage(compute | vertex),                              // colours
+            storage(compute),                                       // counts
+            storage(compute),                                       // large splats
+            storage(compute),                                       // ellipses
+            storage(compute | vertex | ShaderStageFlags::FRAGMENT), // clips
+            storage(compute | ShaderStageFlags::FRAGMENT),          // screen clips
         ];
         Ok(Self { splats: SetLayout::new(device, &bindings)?, pixels: pixel_layout(device)? })
     }
@@ -89,22 +93,46 @@ impl Splats {
             Rasterizer::Draw => None,
             Rasterizer::Compute => Some(Buffer::storage(device, "large splats", lists)?),
         };
+        let clip_bytes = |clips: &ClipWindow| (clips.count * size_of::<ScreenClip>() as u64).max(COUNTS_STEP);
+        let clip_starts: Vec<u64> = scene
+            .clip_windows()
+            .unwrap_or_default()
+            .iter()
+            .scan(0, |end, clips| {
+                let start = *end;
+                *end = (start + clip_bytes(clips)).next_multiple_of(COUNTS_STEP);
+                Some(start)
+            })
+            .collect();
+        let last = scene.clip_windows().and_then(|windows| windows.last()).zip(clip_starts.last());
+        let screen_clips = last
+            .map(|(clips, start)| Buffer::storage(device, "screen clips", start + clip_bytes(clips)))
+            .transpose()?;
         let window = |(number, range): (u64, &Range<u64>)| {
             let count = range.end - range.start;
             let list = number * LIST_HEADER + 4 * range.start;
-            let [positions, normals, radii, colours, ellipses] = scene.bindings(range);
+            let [positions, normals, radii, colours, ellipses, clips] = scene.bindings(number as usize);
             let own = Binding::Storage(&splats, range.start * stride, count * stride);
             let tally = Binding::Storage(&counts, number * COUNTS_STEP, COUNTS_STEP);
             // Without the compute rasterizer nothing is listed, and the counts stand in.
             let large =
                 large.as_ref().map_or(tally, |large| Binding::Storage(large, list, LIST_HEADER + 4 * count));
             let frame = Binding::Uniform(frame);
-            let bindings = [frame, own, positions, normals, radii, colours, tally, large, ellipses];
+            let on_screen = match (&screen_clips, scene.clip_windows()) {
+                (Some(buffer), Some(windows)) => {
+                    let number = number as usize;
+                    Binding::Storage(buffer, clip_starts[number], clip_bytes(&windows[number]))
+                }
+                // Not touched, but what stands there is waited for as if it were.
+                _ => Binding::Storage(&splats, range.start * stride, count * stride),
+            };
+            let bindings =
+                [frame, own, positions, normals, radii, colours, tally, large, ellipses, clips, on_screen];
             let set = DescriptorSet::new(device, &layout.splats, &bindings)?;
             Ok(Window { set, count: count as u32, first: range.start as u32, list })
         };
         let windows = (0..).zip(scene.windows()).map(window).collect::<Result<_>>()?;
-        Ok(Self { splats, counts, large, windows })
+        Ok(Self { splats, counts, large, screen_clips, windows })
     }
 
     pub(super) fn windows(&self) -> &[Window] {
@@ -119,19 +147,23 @@ impl Splats {
     pub(super) fn made(&self, count: bool) -> Vec<Use> {
         let write = Access::COMPUTE_WRITE;
         let counts = count.then(|| self.counts.with(write));
-        [Some(self.with(write)), counts, self.large.as_ref().map(|large| large.with(write))]
-            .into_iter()
-            .flatten()
-            .collect()
+        let optional =
+            [&self.large, &self.screen_clips].map(|made| made.as_ref().map(|made| made.with(write)));
+        [Some(self.with(write)), counts].into_iter().chain(optional).flatten().collect()
     }
 
     /// What the compute rasterizer reads.
     pub(super) fn read_by_scatter(&self) -> Vec<Use> {
         let read = Access::COMPUTE_READ;
-        [Some(self.with(read)), self.large.as_ref().map(|large| large.with(read))]
-            .into_iter()
-            .flatten()
-            .collect()
+        let optional =
+            [&self.large, &self.screen_clips].map(|made| made.as_ref().map(|made| made.with(read)));
+        [Some(self.with(read))].into_iter().chain(optional).flatten().collect()
+    }
+
+    /// What drawing reads.
+    pub(super) fn read_by_draws(&self) -> Vec<Use> {
+        let clips = self.screen_clips.as_ref().unwrap_or(&self.splats);
+        vec![self.with(Access::VERTEX_READ), clips.with(Access::FRAGMENT_READ)]
     }
 
     /// Draws every splat's triangle into `framebuffer`.
@@ -176,7 +208,8 @@ impl Splats {
 
     /// Memory of the splats and what belongs to them, bytes.
     pub fn bytes(&self) -> u64 {
-        self.splats.size() + self.counts.size() + self.large.as_ref().map_or(0, Buffer::size)
+        let optional = [&self.large, &self.screen_clips].map(|made| made.as_ref().map_or(0, Buffer::size));
+        self.splats.size() + self.counts.size() + optional.iter().sum::<u64>()
     }
 
     /// Copies the splats of the last frame, one a surfel, to the CPU.

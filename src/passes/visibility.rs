@@ -44,7 +44,8 @@ impl DrawVisibility {
         framebuffer: &Framebuffer,
         targets: &Images,
     ) {
-        let uses = [splats.with(Access::VERTEX_READ), targets.visibility.with(Access::DEPTH_WRITE)];
+        let mut uses = splats.read_by_draws();
+        uses.push(targets.visibility.with(Access::DEPTH_WRITE));
         rec.pass("visibility", &uses, |enc| splats.draw(enc, &self.pipeline, framebuffer));
     }
 }

@@ -47,7 +47,7 @@ pub(super) fn pass(projector: &Projector, scene: &Scene, band: &Band, visible: &
     let mut sums = vec![Sums::default(); band.len()];
     for splat in band.contributors(scene).iter() {
         let ellipse = Ellipse::attribute(splat, projector);
-        band.scan(&ellipse, ellipse.cutoff, |hit| {
+        band.inside(&ellipse, |hit| {
             // Where visibility wrote nothing there is no surface, however far the wider footprint reaches.
             if visible[hit.index].is_infinite() {
                 return;

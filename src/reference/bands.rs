@@ -45,6 +45,8 @@ pub(super) struct Hit {
     pub sigmas: f64,
     /// What is compared with the cut-off, σ.
     pub rim: f64,
+    /// Signed distance to what clip lines cut off, px.
+    pub kept: f64,
 }
 
 impl Bands {
@@ -118,7 +120,16 @@ impl<'a> Band<'a> {
         DVec2::new(f64::from(column) + 0.5, f64::from(self.first_row + row) + 0.5)
     }
 
-    /// Calls `visit` for every pixel centre within the outline of `ellipse` at `reach` σ.
+    /// Calls `visit` for every pixel centre of the splat.
+    pub fn inside(&self, ellipse: &Ellipse, mut visit: impl FnMut(Hit)) {
+        self.scan(ellipse, ellipse.cutoff, |hit| {
+            if hit.kept >= 0.0 {
+                visit(hit);
+            }
+        });
+    }
+
+    /// Calls `visit` for every pixel centre within the outline of `ellipse` at `reach` σ, kept or not.
     pub fn scan(&self, ellipse: &Ellipse, reach: f64, mut visit: impl FnMut(Hit)) {
         for row in 0..self.rows {
             let y = f64::from(self.first_row + row) + 0.5;
@@ -131,7 +142,7 @@ impl<'a> Band<'a> {
                 let rim = ellipse.rim(offset);
                 if rim <= reach {
                     let (index, sigmas) = ((row * self.width + column) as usize, ellipse.sigmas(offset));
-                    visit(Hit { index, at, offset, sigmas, rim });
+                    visit(Hit { index, at, offset, sigmas, rim, kept: ellipse.kept(at) });
                 }
             }
         }

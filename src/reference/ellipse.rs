@@ -1,5 +1,6 @@
 //! The outline on which a splat's kernel ends, once a low-pass filter has widened it, and the kernel in it.
 
+use super::footprint::ScreenClip;
 use super::{Projector, Splat};
 use crate::settings::Widen;
 use crate::splatting::{Footprint, Kernel};
@@ -29,6 +30,8 @@ pub(super) struct Ellipse {
     pub square: bool,
     /// How the weight falls off.
     pub kernel: Kernel,
+    /// What of it is kept.
+    pub clip: Option<ScreenClip>,
 }
 
 impl Ellipse {
@@ -68,6 +71,7 @@ impl Ellipse {
             horizon: on_plane.then(|| splat.plane / splat.plane.dot(DVec3::new(1.0, centre.x, centre.y))),
             square: matches!(splatting.footprint, Footprint::Parallelogram | Footprint::Square),
             kernel: splatting.kernel,
+            clip: splat.clip,
         }
     }
 
@@ -88,6 +92,11 @@ impl Ellipse {
     pub fn rim(&self, offset: DVec2) -> f64 {
         let y = self.in_kernel(offset);
         if self.square { y.abs().max_element() } else { y.length() }
+    }
+
+    /// Signed distance of a pixel position to what clip lines cut off, px: below 0 where the splat is not.
+    pub fn kept(&self, at: DVec2) -> f64 {
+        self.clip.map_or(f64::INFINITY, |clip| clip.distance(at))
     }
 
     /// Whether the outline is the ellipse itself.
@@ -242,6 +251,7 @@ mod tests {
             horizon: None,
             square: false,
             kernel: Kernel::Gaussian,
+            clip: None,
         };
         for y in [17.0, 20.0, 22.5] {
             let (low, high) = ellipse.span(y, 2.0).unwrap();

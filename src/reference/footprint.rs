@@ -6,7 +6,7 @@ use super::ellipse::Ellipse;
 use super::image::Disc;
 use super::shading::{linear, lit};
 use crate::error::Result;
-use crate::geometry::{Camera, Colours, Surfels};
+use crate::geometry::{Camera, Clip, ClipLine, Colours, Surfels};
 use crate::settings::{Cull, Settings, Shading};
 use crate::splatting::Shade;
 use glam::{DMat2, DMat3, DVec2, DVec3};
@@ -28,6 +28,8 @@ pub struct Surfel {
     pub two_sided: bool,
     /// Linear RGB, where the scene has colours.
     pub colour: Option<DVec3>,
+    /// What is cut off the disc.
+    pub clip: Option<Clip>,
 }
 
 impl Surfel {
@@ -53,6 +55,7 @@ impl Surfel {
             aspect: aspect.into(),
             two_sided: surfels.two_sided.as_ref().is_some_and(|two_sided| two_sided[index]),
             colour,
+            clip: surfels.clips.as_ref().and_then(|clips| clips.get(index)).copied(),
         }
     }
 }
@@ -87,6 +90,28 @@ pub struct Splat {
     pub aspect: f64,
     /// Whether the ellipse came from the dual form, the inverse form being ill-conditioned.
     pub dual: bool,
+    /// What of it is kept, where some is cut off.
+    pub clip: Option<ScreenClip>,
+}
+
+/// The part of the screen that clip lines keep.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScreenClip {
+    /// Signed distances to the lines at pixel position (x, y), px: `line · (1, x, y)`, above 0 where the line keeps; infinite for none.
+    pub lines: [DVec3; 2],
+    /// Whether what either keeps is kept.
+    pub concave: bool,
+}
+
+impl ScreenClip {
+    /// Signed distance at a pixel position, px; above 0 where the splat is kept.
+    pub fn distance(&self, at: DVec2) -> f64 {
+        let [a, b] = self.lines.map(|line| match line.is_finite() {
+            true => line.dot(DVec3::new(1.0, at.x, at.y)),
+            false => f64::INFINITY,
+        });
+        if self.concave { a.max(b) } else { a.min(b) }
+    }
 }
 
 /// Least `1 − (F |g| / w)²` of a splat that is drawn: nearer the eye plane float32 cannot tell where the ellipse is.
@@ -159,6 +184,7 @@ impl Projector {
             secant: self.secant(centre, facing),
             aspect: surfel.aspect,
             dual: image.dual,
+            clip: surfel.clip.map(|clip| self.screen_clip(&clip, centre, normal)),
         };
         let attribute = Ellipse::attribute(&splat, self);
         // What is no number fails either.
@@ -176,6 +202,28 @@ impl Projector {
         let moved = Surfel { position: surfel.position + epsilon * away, ..*surfel };
         let shift = if self.depth.perspective { 1.0 } else { 0.0 };
         self.footprint(&moved).map(|splat| Splat { shift, ..splat })
+    }
+
+    /// Clip lines on the screen (zwicker2004 §5): each through the images of two points in the tangent plane. `centre` and `normal` are in
+    /// eye space.
+    fn screen_clip(&self, clip: &Clip, centre: DVec3, normal: DVec3) -> ScreenClip {
+        let line = |line: ClipLine| {
+            if !line.is_some() {
+                return DVec3::INFINITY;
+            }
+            let outward = self.view.transform_vector3(line.outward.as_dvec3());
+            // The half-space's border meets the plane where `outward · (x − centre) = offset`.
+            let across = outward.reject_from_normalized(normal);
+            let nearest = across * (f64::from(line.offset) / outward.dot(across));
+            let point =
+                |from_centre: DVec3, w: f64| self.homogeneous_pixel((from_centre + w * centre).extend(w));
+            let border = point(nearest, 1.0).cross(point(normal.cross(across), 0.0));
+            // Anything on the kept side: homogeneous, so that even what is behind the eye tells it.
+            let inside = border.dot(point(nearest - across, 1.0));
+            let unit = border.truncate().length() * inside.signum();
+            DVec3::new(border.z, border.x, border.y) / unit
+        };
+        ScreenClip { lines: clip.lines.map(line), concave: clip.concave }
     }
 
     /// The colour that a splat adds: light, where splats are lit.

@@ -5,7 +5,7 @@ use super::ellipse::Ellipse;
 use super::{Projector, Splat};
 use glam::{DVec2, DVec3};
 
-/// A pixel centre no farther than this from a cut-off ellipse is in doubt, px.
+/// A pixel centre no farther than this from a cut-off ellipse or a clip line is in doubt, px.
 pub(super) const CUTOFF: f64 = 3e-4;
 
 /// A splat whose depth is no farther than this from a threshold, relative to the depth, is in doubt.
@@ -61,8 +61,9 @@ impl Margins<'_> {
             let shift = self.rounding * self.projector.size.max_element() / ellipse.sigma().y;
             band.scan(&ellipse, ellipse.cutoff + reach, |hit| {
                 let edge = (hit.rim - ellipse.cutoff).abs() <= reach;
-                let near = edge && ellipse.distance(hit.offset) <= CUTOFF;
-                if near || hit.rim <= ellipse.cutoff {
+                let near_rim = edge && ellipse.distance(hit.offset) <= CUTOFF;
+                if (near_rim || hit.rim <= ellipse.cutoff) && hit.kept >= -CUTOFF {
+                    let near = near_rim || hit.kept <= CUTOFF;
                     let mut candidate = self.candidate(splat, &hit, near);
                     if let Some(c) = &mut candidate {
                         // A kernel that is steeper than a Gaussian makes more of the same shift.

@@ -31,7 +31,7 @@ mod visibility;
 
 pub use compare::{Comparison, Expected, Failure, compare};
 pub use doubt::{Admissible, Doubt};
-pub use footprint::{Culled, Splat, Surfel, footprint};
+pub use footprint::{Culled, ScreenClip, Splat, Surfel, footprint};
 pub use judge::{Channel, Tolerance, Worst};
 pub use normalize::Value;
 pub use projector::Projector;

@@ -11,7 +11,7 @@ pub(super) fn pass(projector: &Projector, scene: &Scene, band: &Band) -> Vec<Opt
     let mut nearest = vec![(f64::INFINITY, None); band.len()];
     for splat in band.contributors(scene).iter() {
         let ellipse = Ellipse::visibility(splat, projector);
-        band.scan(&ellipse, ellipse.cutoff, |hit| {
+        band.inside(&ellipse, |hit| {
             let Some(depth) = projector.depth_of(splat, hit.at) else { return };
             let ranked = ranked(splat, depth);
             if ranked < nearest[hit.index].0 {

@@ -124,6 +124,12 @@ impl Projector {
         let c = self.clip * v;
         DVec3::new(c.x, c.y, c.w)
     }
+
+    /// Eye-space homogeneous vector to a homogeneous pixel position `(x w, y w, w)`.
+    pub(super) fn homogeneous_pixel(&self, v: DVec4) -> DVec3 {
+        let clip = self.project(v);
+        (0.5 * self.size * (clip.truncate() + clip.z)).extend(clip.z)
+    }
 }
 
 /// Solves the first two rows of the projection for the eye-space (x, y) of a given pixel and distance: both are affine in

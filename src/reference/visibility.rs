@@ -12,7 +12,7 @@ pub(super) fn pass(projector: &Projector, scene: &Scene, band: &Band) -> Vec<f64
     let mut nearest = vec![f64::INFINITY; band.len()];
     for splat in band.blockers(scene).iter() {
         let ellipse = Ellipse::visibility(splat, projector);
-        band.scan(&ellipse, ellipse.cutoff, |hit| {
+        band.inside(&ellipse, |hit| {
             if let Some(depth) = projector.depth_of(splat, hit.at) {
                 nearest[hit.index] = nearest[hit.index].min(claimed(projector, splat, depth));
             }

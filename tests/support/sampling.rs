@@ -2,7 +2,7 @@
 
 use glam::{DVec3, Vec3};
 use std::f64::consts::{PI, TAU};
-use surfel::geometry::{Colours, Ellipse, Surfels};
+use surfel::geometry::{Clip, ClipLine, Clips, Colours, Ellipse, Surfels};
 
 /// splitmix64: the same numbers everywhere, for good.
 pub struct Random(pub u64);
@@ -45,6 +45,24 @@ pub fn push(surfels: &mut Surfels, position: DVec3, normal: DVec3, radius: f64) 
     surfels.positions.push(position.as_vec3());
     surfels.normals.push(normal.normalize().as_vec3());
     surfels.radii.push(radius as f32);
+}
+
+/// Clips two thirds of the discs: by a line, at a convex corner, at a concave one.
+pub fn clip(surfels: &mut Surfels, random: &mut Random) {
+    let mut one = |i: usize| {
+        let (normal, radius) = (surfels.normals[i].as_dvec3(), surfels.radii[i]);
+        let mut line = || ClipLine {
+            outward: random.vector().reject_from(normal).normalize().as_vec3(),
+            offset: radius * (0.5 * random.signed() + 0.2) as f32,
+        };
+        match i % 6 {
+            0 | 1 => None,
+            2 | 3 => Some(Clip::line(line())),
+            corner => Some(Clip { lines: [line(), line()], concave: corner == 5 }),
+        }
+    };
+    let clips: Vec<_> = (0..surfels.len()).map(&mut one).collect();
+    surfels.clips = Clips::collect(clips);
 }
 
 /// Gives every surfel an 8-bit colour of one of three hues.

@@ -4,7 +4,7 @@
 //! No surfel stands so near a decision about the whole of it (which side it shows, whether its disc reaches the eye plane)
 //! that rounding could turn it: such a splat would be right either way, and no comparison could tell.
 
-use super::sampling::{Random, bumpy_sphere, forget_sides, paint_linear, paint_srgb, push, stretch};
+use super::sampling::{Random, bumpy_sphere, clip, forget_sides, paint_linear, paint_srgb, push, stretch};
 use glam::{DMat4, DVec3, DVec4};
 use std::f64::consts::TAU;
 use surfel::Settings;
@@ -30,7 +30,7 @@ pub struct Case {
 pub fn cases() -> Vec<Case> {
     let circles =
         [horizon(), edge_on(), sub_pixel(), huge(), inside(), far_origin(), orthographic(), off_centre()];
-    let cases = circles.into_iter().chain([ellipses(), two_sided()]).map(Case::without_undecided);
+    let cases = circles.into_iter().chain([ellipses(), two_sided(), clipped()]).map(Case::without_undecided);
     // Every splat is widened, so that none is indifferent to the filter.
     cases
         .map(|case| Case { settings: Settings { widen: Widen::All, ..case.settings.clone() }, ..case })
@@ -59,6 +59,7 @@ impl Case {
         keep(&mut s.radii, &kept);
         s.ellipses.iter_mut().for_each(|ellipses| keep(ellipses, &kept));
         s.two_sided.iter_mut().for_each(|two_sided| keep(two_sided, &kept));
+        s.clips.iter_mut().for_each(|clips| keep(&mut clips.of, &kept));
         match &mut s.colours {
             Some(Colours::Srgb8(c)) => keep(c, &kept),
             Some(Colours::Linear(c)) => keep(c, &kept),
@@ -304,6 +305,32 @@ fn two_sided() -> Case {
     ];
     let settings = Settings { cull: Cull::Back, epsilon: 0.5, ..Default::default() };
     Case { name: "two-sided", surfels, cameras, settings, size }
+}
+
+/// Discs that end at a line, at a convex and at a concave corner; a third of them are whole.
+fn clipped() -> Case {
+    let (mut random, size) = (Random(11), [288, 256]);
+    let mut surfels = bumpy_sphere(5000, &mut random);
+    clip(&mut surfels, &mut random);
+    paint_srgb(&mut surfels, &mut random);
+    let parallel = Camera::orthographic(
+        [DVec3::new(2.0, 0.5, 2.0), DVec3::ZERO, DVec3::Y],
+        2.2,
+        288.0 / 256.0,
+        [0.5, 6.0],
+    );
+    let cameras = [
+        camera([1.8, 0.9, 1.2], [0.0, 0.0, 0.0], 40.0, size, 0.1),
+        parallel.unwrap(),
+        camera([0.0, 0.75, 1.0], [0.5, 0.6, 0.0], 80.0, size, 0.01),
+    ];
+    Case {
+        name: "clipped",
+        surfels,
+        cameras,
+        settings: Settings { epsilon: 0.5, ..Default::default() },
+        size,
+    }
 }
 
 /// Right-handed, y up in eye space and down in clip space; `shift` of the principal point in ndc.

@@ -1,0 +1,35 @@
+// Clip lines: where splats end at sharp edges and corners (zwicker2004 §5). On the screen a line of the tangent plane stays a line.
+
+layout(constant_id = 23) const bool CLIPS = false;
+
+// Signed distances, px, at d px from the anchor: l.x + l.y d.x + l.z d.y is above 0 where the line keeps the splat. Each plane is
+// (value, derivatives); a line that is not there keeps everything.
+struct ScreenClip {
+    vec4 first;  // .w: above 0 for a concave corner, which keeps what either line keeps
+    vec4 second;
+};
+
+const vec4 NO_LINE = vec4(1e30, 0.0, 0.0, 0.0);
+
+// The scene's: for every surfel of the window 0, or 1 + the number of its clip with CONCAVE if its corner is; then the clips, each two
+// lines of outward (3 floats) and offset.
+layout(set = 0, binding = 9, std430) readonly buffer Clips { uint clips[]; };
+// The same on the screen, by the footprint pass.
+layout(set = 0, binding = 10, std430) CLIP_ACCESS buffer ScreenClips { ScreenClip screen_clips[]; };
+
+const uint CONCAVE = 0x80000000u;
+
+// Number of surfel i's clip in the window, or ~0 if its disc is whole.
+uint clip_number(uint i) {
+    return CLIPS ? (clips[i] & ~CONCAVE) - 1u : ~0u;
+}
+
+bool has_clip(uint number) {
+    return CLIPS && number < CONCAVE - 1u;
+}
+
+bool clip_keeps(ScreenClip clip, vec2 d) {
+    float first = clip.first.x + dot(clip.first.yz, d);
+    float second = clip.second.x + dot(clip.second.yz, d);
+    return (clip.first.w > 0.0 ? max(first, second) : min(first, second)) >= 0.0;
+}
