@@ -164,7 +164,7 @@ impl Renderer {
         let blends = settings.splatting.visibility != Visibility::Nearest;
         let rasterizer = rasterizer_for(&self.device, &self.options, blends)?;
         let perspective = camera.projection()?.perspective;
-        let variant = Variant::new(scene, perspective, settings, &self.options, rasterizer);
+        let variant = Variant::new(scene.streams(), perspective, settings, &self.options, rasterizer);
         self.make_resident(scene, variant.rasterizer)?;
         self.make_present(variant, read)?;
         self.frame.bytes_mut().copy_from_slice(bytemuck::bytes_of(&block));

@@ -42,6 +42,19 @@ pub(crate) struct ClipWindow {
     pub(crate) count: u64,
 }
 
+/// What a scene has beside positions, normals and radii.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Streams {
+    /// Discs are ellipses.
+    pub ellipses: bool,
+    /// Some surfels have no side.
+    pub two_sided: bool,
+    /// Some discs end at clip lines.
+    pub clips: bool,
+    /// How it holds colours.
+    pub colours: ColourStream,
+}
+
 /// How a scene holds its colours; the numbers are those of `shaders-glsl/lib/sums.glsl`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u32)]
@@ -156,9 +169,14 @@ impl Scene {
         &self.windows
     }
 
-    /// Whether some of its discs are clipped.
-    pub fn has_clips(&self) -> bool {
-        self.clips.is_some()
+    /// What it has.
+    pub fn streams(&self) -> Streams {
+        Streams {
+            ellipses: self.ellipses.is_some(),
+            two_sided: self.two_sided,
+            clips: self.clips.is_some(),
+            colours: self.colour_stream,
+        }
     }
 
     /// The clips of each window, if there are any.

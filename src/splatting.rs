@@ -244,3 +244,28 @@ impl std::fmt::Display for Kernel {
 fn refuse(cause: &str) -> Result<()> {
     Err(Error::Usage(cause.into()))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_makes_no_sense_together_is_refused_with_its_reason() {
+        let conic = Splatting::default();
+        let confetti = Kernel::Confetti { a: 6.0, n: 3.0 };
+        let cases = [
+            (Splatting { footprint: Footprint::Disc, ..conic }, "filter there"),
+            (Splatting { filter: Filter::Object, ..conic }, "footprint parallelogram or disc"),
+            (Splatting { footprint: Footprint::Square, ..conic }, "visibility nearest"),
+            (Splatting { kernel: confetti, ..conic }, "no closed form"),
+            (Splatting { visibility: Visibility::Nearest, ..conic }, "normalization none"),
+            (Splatting { kernel: Kernel::Confetti { a: 0.0, n: 3.0 }, ..conic }, "above 0"),
+            (Splatting { kernel: Kernel::Confetti { a: 1.0, n: f32::NAN }, ..conic }, "above 0"),
+        ];
+        for (splatting, reason) in cases {
+            let cause = splatting.check().unwrap_err().to_string();
+            assert!(cause.contains(reason), "{cause}");
+        }
+        Splatting { filter: Filter::None, kernel: confetti, ..conic }.check().unwrap();
+    }
+}

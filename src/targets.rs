@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use crate::splatting::Visibility;
 use crate::variant::{Outputs, Precision, Variant};
-use crate::vk::{Buffer, Capabilities, Device, Image, ImageUse};
+use crate::vk::{Buffer, Capabilities, Device, Image, ImageUse, pixel_bytes};
 use ash::vk::Format;
 use std::sync::Arc;
 
@@ -87,7 +87,23 @@ impl Formats {
             depth: variant.outputs.depth.then_some(Format::R32_SFLOAT),
         }
     }
+
+    /// What the images take.
+    pub fn per_pixel(&self) -> PerPixel {
+        let always = [("visibility", Some(self.visibility)), ("sums0", Some(self.sums0))];
+        let optional = [
+            ("sums1", self.sums1),
+            ("image", Some(self.image)),
+            ("normal", self.normal),
+            ("depth", self.depth),
+        ];
+        let bytes = |(name, format): (_, Option<Format>)| Some((name, pixel_bytes(format?) as f64));
+        always.into_iter().chain(optional).filter_map(bytes).collect()
+    }
 }
+
+/// Targets by name with the bytes of a pixel, of which a tile's are shared.
+pub type PerPixel = Vec<(&'static str, f64)>;
 
 /// Refuses a size that `device` has no targets of, with its limit.
 pub fn check_size(device: &Device, size: [u32; 2]) -> Result<()> {
@@ -162,6 +178,18 @@ impl Buffers {
         let pixels = u64::from(size[0]) * u64::from(size[1]);
         // The picture has the largest pixels.
         4 * Self::picture_floats(outputs) * pixels <= capabilities.max_storage_buffer_range
+    }
+
+    /// What the buffers take.
+    pub fn per_pixel(variant: &Variant) -> PerPixel {
+        let nearest = variant.visibility == Visibility::Nearest;
+        let floats = |wide: bool| if wide { 16.0 } else { 4.0 };
+        let mut list =
+            vec![("visibility", if nearest { 8.0 } else { 4.0 }), ("sums0", floats(variant.wide_sums0()))];
+        list.extend(variant.has_sums1().then(|| ("sums1", floats(variant.wide_sums1()))));
+        list.extend((!nearest).then_some(("tiles", 4.0 / f64::from(Self::TILE * Self::TILE))));
+        list.push(("picture", 4.0 * Self::picture_floats(variant.outputs) as f64));
+        list
     }
 
     /// Side of a tile, px; as in `lib/pixels.glsl`.

@@ -1,7 +1,7 @@
 //! What decides which pipelines and targets a frame needs.
 
 use crate::renderer::RenderOptions;
-use crate::scene::{ColourStream, Scene};
+use crate::scene::{ColourStream, Streams};
 use crate::settings::{Cull, Settings, Shading, Widen};
 use crate::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Visibility};
 use crate::vk::Constants;
@@ -81,9 +81,9 @@ pub enum Precision {
 }
 
 impl Variant {
-    /// What a frame of `scene` needs.
+    /// What a frame of a scene that has `streams` needs.
     pub fn new(
-        scene: &Scene,
+        streams: Streams,
         perspective: bool,
         settings: &Settings,
         options: &RenderOptions,
@@ -96,9 +96,9 @@ impl Variant {
         Self {
             perspective,
             cull_back: settings.cull == Cull::Back,
-            ellipses: scene.ellipses.is_some(),
-            clips: scene.has_clips(),
-            two_sided: scene.two_sided,
+            ellipses: streams.ellipses,
+            clips: streams.clips,
+            two_sided: streams.two_sided,
             footprint: splatting.footprint,
             confetti: splatting.kernel != Kernel::Gaussian,
             visibility: splatting.visibility,
@@ -113,7 +113,7 @@ impl Variant {
             count: options.count,
             normals: lit_pixels || shading == Shading::Normal || options.outputs.normal,
             depth: shading == Shading::Depth || options.outputs.depth,
-            colours: if wants_colour { scene.colour_stream() } else { ColourStream::None },
+            colours: if wants_colour { streams.colours } else { ColourStream::None },
             shading,
             lights: if shading == Shading::Lit { settings.lighting.directional.len() as u32 } else { 0 },
             outputs: options.outputs,

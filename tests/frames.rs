@@ -6,9 +6,13 @@ use glam::DVec3;
 use std::sync::Arc;
 use support::gpu::{assert_silent, device, render};
 use surfel::geometry::{Camera, Surfels};
+use surfel::methods::{Method, passes};
 use surfel::reference::{Expected, Tolerance};
 use surfel::scenes::bumpy_sphere;
 use surfel::settings::{Cull, DirectionalLight, Shading, Widen};
+use surfel::splatting::{Splatting, Visibility};
+use surfel::targets::{Buffers, Formats};
+use surfel::variant::Variant;
 use surfel::vk::{Device, DeviceLimits};
 use surfel::{Error, Outputs, Picture, Precision, Rasterizer, RenderOptions, Renderer, Scene, Settings};
 
@@ -74,6 +78,7 @@ fn pipelines_are_few_and_made_once_a_variant() {
         shaded(Shading::Colour),
         shaded(Shading::Normal),
         shaded(Shading::Depth),
+        shaded(Shading::Overlap),
         Settings { cull: Cull::Back, ..Default::default() },
         Settings { widen: Widen::All, ..Default::default() },
         lit,
@@ -89,6 +94,67 @@ fn pipelines_are_few_and_made_once_a_variant() {
         println!("{rasterizer:?}: {made} pipelines for {} variants", frames.len());
         assert_eq!(made, most * frames.len() as u64, "{rasterizer:?}");
     }
+    assert_silent(&device);
+}
+
+#[test]
+fn passes_and_targets_are_those_that_are_told() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let scene = Scene::upload(&device, &sphere(2_000)).unwrap();
+    let pixels = f64::from(SIZE[0] * SIZE[1]);
+    let axis = Splatting { visibility: Visibility::Axis, ..Splatting::default() };
+    let frames = Method::ALL.iter().map(Method::settings);
+    for settings in frames.chain([Settings { splatting: axis, ..Default::default() }]) {
+        for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
+            let options = RenderOptions {
+                size: SIZE,
+                rasterizer: Some(rasterizer),
+                profile: true,
+                ..Default::default()
+            };
+            let mut renderer = Renderer::new(&device, options).unwrap();
+            let report = renderer.render(&scene, &camera(SIZE), &settings).unwrap();
+            let variant = Variant::new(scene.streams(), true, &settings, &options, rasterizer);
+            let mut told = passes(&variant);
+            // Passes of one name are timed together.
+            if settings.splatting == axis {
+                let last = told.iter().rposition(|pass| *pass == "footprint").unwrap();
+                told.remove(last);
+            }
+            let timed: Vec<_> = report.pass_times.iter().map(|time| time.label).collect();
+            let timed: Vec<_> = timed.into_iter().filter(|label| *label != "clear").collect();
+            assert_eq!(timed, told, "{rasterizer:?}");
+            let per_pixel = match rasterizer {
+                Rasterizer::Draw => Formats::of(&variant).per_pixel(),
+                Rasterizer::Compute => Buffers::per_pixel(&variant),
+            };
+            let names: Vec<_> = per_pixel.iter().map(|(name, _)| *name).collect();
+            let mut made: Vec<_> = renderer.targets().iter().map(|target| target.name).collect();
+            made.sort_by_key(|name| names.iter().position(|told| told == name));
+            assert_eq!(made, names, "{rasterizer:?}");
+            // Allocations are rounded up.
+            let bytes: f64 = renderer.targets().iter().map(|target| target.bytes as f64).sum();
+            let told: f64 = per_pixel.iter().map(|(_, bytes)| bytes * pixels).sum();
+            assert!(bytes >= told && bytes < 1.1 * told + 65_536.0, "{bytes} for {told}");
+        }
+    }
+    assert_silent(&device);
+}
+
+#[test]
+fn without_64_bit_atomics_the_nearest_splats_are_drawn() {
+    let Some(device) = device(DeviceLimits { int64_atomics: Some(false), ..Default::default() }) else {
+        return;
+    };
+    let (surfels, settings) = (sphere(5_000), Method::named("sprites-unfiltered").unwrap().settings());
+    let options = RenderOptions { rasterizer: None, ..everything(Rasterizer::Draw) };
+    let picture = render(&device, &surfels, &camera(SIZE), &settings, options);
+    let expected = Expected::new(&surfels, &camera(SIZE), SIZE, &settings, &Tolerance::default()).unwrap();
+    assert!(expected.compare(&picture).unwrap().passed());
+    let scene = Scene::upload(&device, &surfels).unwrap();
+    let mut computed = Renderer::new(&device, everything(Rasterizer::Compute)).unwrap();
+    let refused = computed.render(&scene, &camera(SIZE), &settings).unwrap_err().to_string();
+    assert!(refused.contains("64-bit atomics"), "{refused}");
     assert_silent(&device);
 }
 

@@ -13,6 +13,7 @@ mod info;
 mod inputs;
 mod limits;
 mod log;
+mod methods;
 mod number;
 mod progress;
 mod reference;
@@ -46,6 +47,7 @@ pub fn run() -> ExitCode {
         Command::Truth(args) => truth::run(&args),
         Command::Bench(args) => bench::run(&args),
         Command::Devices => devices::run(),
+        Command::Methods => methods::run(),
         Command::Scenes => scenes::run(),
     };
     // By now the device is gone, and with it what the layers had to say about its end.

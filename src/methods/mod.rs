@@ -12,7 +12,8 @@ pub mod sprites;
 pub use canvas::{Canvas, Pipelines};
 
 use crate::settings::{Cull, Settings, Widen};
-use crate::splatting::Splatting;
+use crate::splatting::{Splatting, Visibility};
+use crate::variant::{Rasterizer, Variant};
 
 /// A method as its paper has it, or as measurements improve on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,6 +60,22 @@ impl Method {
             ..Default::default()
         }
     }
+}
+
+/// The passes of a frame, in their order; what only clears or reads back is none.
+pub fn passes(variant: &Variant) -> Vec<&'static str> {
+    let computed = variant.rasterizer == Rasterizer::Compute;
+    let list = match variant.visibility {
+        Visibility::Nearest if computed => &["footprint", "nearest", "resolve", "normalize"][..],
+        Visibility::Nearest => &["footprint", "nearest", "normalize"],
+        Visibility::Ray if computed => &["footprint", "visibility", "tiles", "attribute", "normalize"],
+        Visibility::Ray => &["footprint", "visibility", "attribute", "normalize"],
+        Visibility::Axis if computed => {
+            &["footprint", "visibility", "tiles", "footprint", "attribute", "normalize"]
+        }
+        Visibility::Axis => &["footprint", "visibility", "footprint", "attribute", "normalize"],
+    };
+    list.to_vec()
 }
 
 #[cfg(test)]

@@ -26,6 +26,16 @@ pub struct Image {
     device: Arc<Device>,
 }
 
+/// Bytes of a pixel of a target's format.
+pub fn pixel_bytes(format: vk::Format) -> u64 {
+    match format {
+        vk::Format::R32G32B32A32_SFLOAT => 16,
+        vk::Format::R16G16B16A16_SFLOAT => 8,
+        vk::Format::R16_SFLOAT => 2,
+        _ => 4,
+    }
+}
+
 impl Image {
     /// A colour or depth target, by its format, of `size` px.
     pub fn target(
@@ -113,12 +123,7 @@ impl Image {
 
     /// Bytes of a pixel when it is copied to a buffer.
     pub fn pixel_bytes(&self) -> u64 {
-        match self.format {
-            vk::Format::R32G32B32A32_SFLOAT => 16,
-            vk::Format::R16G16B16A16_SFLOAT => 8,
-            vk::Format::R16_SFLOAT => 2,
-            _ => 4,
-        }
+        pixel_bytes(self.format)
     }
 
     /// Memory that it occupies, bytes.

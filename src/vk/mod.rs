@@ -31,7 +31,7 @@ pub use commands::Commands;
 pub use descriptors::{Binding, DescriptorSet, SetLayout};
 pub use device::{Device, DeviceOptions, Usage};
 pub use encoder::{Draws, Encoder};
-pub use image::{Image, ImageUse};
+pub use image::{Image, ImageUse, pixel_bytes};
 pub use limits::{Capabilities, DeviceLimits};
 pub use pipeline::{Blend, ComputePipeline, Constants, DepthTest, DrawPipeline, DrawState};
 pub use recorder::Recorder;

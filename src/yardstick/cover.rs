@@ -1,8 +1,9 @@
 //! The pixels of a tile that a splat covers, four at a time.
 
+use super::clip::ScreenClip;
 use super::shape::{Shape, half_box};
 use super::splat::Splat;
-use super::tile::{LANES, RAMP, SIDE};
+use super::tile::{Frame, LANES, RAMP, SIDE};
 use glam::{BVec4A, Vec2, Vec4};
 
 /// The ellipse on which a splat's kernel ends, over one tile.
@@ -16,6 +17,8 @@ pub(super) struct Cover<'a> {
     whitening: [Vec2; 2],
     /// Rows of the tile, first and last.
     rows: [u32; 2],
+    /// What clip lines keep of it.
+    clip: Option<ScreenClip>,
 }
 
 /// Four neighbouring pixels of a row.
@@ -26,14 +29,15 @@ pub(super) struct Block {
     pub distance: Vec4,
     /// Keys of the plane.
     pub key: Vec4,
-    /// Which are within the cut-off.
+    /// Which are within the cut-off and kept.
     pub inside: BVec4A,
 }
 
 impl<'a> Cover<'a> {
     /// `shape` is the splat's, filtered; `corner` the tile's first pixel. `None` if no row of the tile is covered.
     #[inline]
-    pub fn new(splat: &'a Splat, shape: &Shape, cutoff: f32, corner: [u32; 2]) -> Option<Self> {
+    pub fn new(splat: &'a Splat, shape: &Shape, frame: &Frame, corner: [u32; 2]) -> Option<Self> {
+        let cutoff = frame.settings.cutoff;
         let corner = Vec2::new(
             corner[0] as f32 - f32::from(splat.anchor[0]),
             corner[1] as f32 - f32::from(splat.anchor[1]),
@@ -48,7 +52,8 @@ impl<'a> Cover<'a> {
         let rows = [low.max(0.0) as u32, high.min(SIDE as f32 - 1.0) as u32];
         let (major, minor) = (1.0 / shape.variance.x.sqrt(), 1.0 / shape.variance.y.sqrt());
         let whitening = [major * shape.axis, minor * shape.axis.perp()];
-        Some(Self { splat, limit: cutoff * cutoff, corner, whitening, rows })
+        let clip = ScreenClip::of(splat, frame.surfels, frame.view);
+        Some(Self { splat, limit: cutoff * cutoff, corner, whitening, rows, clip })
     }
 
     /// Calls `visit` for all blocks that hold a covered pixel, and maybe for others beside them.
@@ -71,11 +76,12 @@ impl<'a> Cover<'a> {
                     let x = dx - self.splat.offset.x;
                     let (along, across) = (a.x * x + ay, b.x * x + by);
                     let distance = along * along + across * across;
+                    let within = distance.cmple(Vec4::splat(self.limit));
                     visit(Block {
                         index: row as usize * (SIDE / LANES) + block,
                         distance,
                         key: plane.y * dx + key,
-                        inside: distance.cmple(Vec4::splat(self.limit)),
+                        inside: self.clip.map_or(within, |clip| within & clip.keeps(dx, dy)),
                     });
                 }
             }

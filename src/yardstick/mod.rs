@@ -14,6 +14,7 @@
 //! | [`Kind::Splats`] | `footprint`: surfel → splat; `bin`: splats → lists of tiles; then, tile by tile in the processor's cache, `visibility`, `attribute` and `normalize` as in [`perspective_ewa`](crate::methods::perspective_ewa) |
 
 mod chunk;
+mod clip;
 mod clock;
 mod cover;
 mod exp;
@@ -28,7 +29,7 @@ mod tile;
 mod view;
 
 use crate::error::{Error, Result};
-use crate::geometry::{Camera, Colours, Surfels};
+use crate::geometry::{Camera, Clips, Colours, Surfels};
 use crate::io::srgb;
 use crate::picture::Picture;
 use crate::settings::{Settings, Shading};
@@ -144,8 +145,10 @@ impl Yardstick {
             Some(Colours::Linear(colours)) => size_of_val(colours.as_slice()),
             None => 0,
         };
-        let shapes =
-            s.ellipses.as_deref().map_or(0, size_of_val) + s.two_sided.as_deref().map_or(0, size_of_val);
+        let clips = |clips: &Clips| size_of_val(&clips.of[..]) + size_of_val(&clips.clips[..]);
+        let shapes = s.ellipses.as_deref().map_or(0, size_of_val)
+            + s.two_sided.as_deref().map_or(0, size_of_val)
+            + s.clips.as_ref().map_or(0, clips);
         let vectors = size_of_val(s.positions.as_slice()) + size_of_val(s.normals.as_slice());
         Memory {
             scene: (vectors + size_of_val(s.radii.as_slice()) + shapes + colours) as u64,

@@ -53,7 +53,7 @@ impl Splats {
             self.order.sort_unstable_by(|a, b| nearest(b).total_cmp(&nearest(a)));
         });
         let shader = Shader::new(settings, view, streams.normals);
-        let frame = Frame { view, settings, streams, chunks: &self.chunks, order: &self.order };
+        let frame = Frame { surfels, view, settings, streams, chunks: &self.chunks, order: &self.order };
         stages.time_shared(["visibility", "attribute", "normalize"], |clock| {
             target.slabs().for_each(|mut slab| {
                 let mut tile = Tile::new(slab.at);

@@ -7,6 +7,7 @@ use super::shape::{Shape, attribute_variance, visibility_variance};
 use super::splat::Splat;
 use super::sums::{Channels, Streams};
 use super::view::View;
+use crate::geometry::Surfels;
 use crate::settings::Settings;
 use glam::Vec4;
 
@@ -26,6 +27,7 @@ pub(super) type Plane = [Vec4; BLOCKS];
 
 /// What all tiles of a frame share.
 pub(super) struct Frame<'a> {
+    pub surfels: &'a Surfels,
     pub view: &'a View,
     pub settings: &'a Settings,
     pub streams: Streams<'a>,
@@ -92,7 +94,7 @@ impl Tile {
         }
         let shape =
             Shape { variance: visibility_variance(splat.shape.variance, frame.settings), ..splat.shape };
-        let Some(cover) = Cover::new(splat, &shape, frame.settings.cutoff, self.corner()) else { return };
+        let Some(cover) = Cover::new(splat, &shape, frame, self.corner()) else { return };
         let [far, near] = frame.view.keys.map(Vec4::splat);
         let disc = Vec4::splat(splat.disc);
         cover.each(|block| {
@@ -136,7 +138,7 @@ impl Tile {
     fn add<const COUNT: usize, const KEYS: bool>(&mut self, frame: &Frame, splat: &Splat) {
         let variance = attribute_variance(splat.shape.variance, frame.settings);
         let shape = Shape { variance, ..splat.shape };
-        let Some(cover) = Cover::new(splat, &shape, frame.settings.cutoff, self.corner()) else { return };
+        let Some(cover) = Cover::new(splat, &shape, frame, self.corner()) else { return };
         // Their product would overflow on a very large splat.
         let amplitude = splat.shape.root / variance.x.sqrt() / variance.y.sqrt();
         let attributes = frame.streams.attributes(splat.surfel);

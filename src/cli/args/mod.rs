@@ -47,6 +47,8 @@ pub enum Command {
     Bench(Box<Bench>),
     /// Lists the Vulkan devices; * marks the one that is used unless --device names another
     Devices,
+    /// Lists the methods: paper, choices along the axes, passes, targets
+    Methods,
     /// Lists the built-in scenes with their parameters
     Scenes,
 }

@@ -2,6 +2,7 @@
 
 mod doubt;
 mod footprint;
+mod kinds;
 mod passes;
 
 use super::*;

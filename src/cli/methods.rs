@@ -1,0 +1,60 @@
+//! `surfel methods`.
+
+use super::files::print;
+use std::fmt::Write;
+use surfel::methods::{Method, passes};
+use surfel::scene::{ColourStream, Streams};
+use surfel::settings::{Settings, Shading};
+use surfel::splatting::{Filter, Splatting};
+use surfel::targets::{Buffers, Formats, PerPixel};
+use surfel::variant::Variant;
+use surfel::{Rasterizer, RenderOptions, Result};
+
+/// Lists the methods: paper, choices along the axes, and for coloured circles that are lit the passes and targets of either rasterizer.
+pub fn run() -> Result<()> {
+    let mut text = String::from("bytes are those of a pixel, of a lit frame of coloured circles\n");
+    Method::ALL.iter().for_each(|method| describe(&mut text, method));
+    print(&text)
+}
+
+fn describe(text: &mut String, method: &Method) {
+    let Splatting { footprint, kernel, filter, visibility, normalization, shade } = method.splatting;
+    let Method { cutoff, lowpass, widen, cull, .. } = method;
+    let lowpass = match filter {
+        Filter::None => String::new(),
+        Filter::Screen | Filter::Object => format!(" --lowpass {lowpass} --widen {}", widen.name()),
+    };
+    // Here and below: writing to a String cannot fail.
+    let _ = writeln!(text, "\n{}: {}", method.name, method.paper);
+    let _ = writeln!(
+        text,
+        "  axes     --footprint {} --kernel {kernel} --filter {} --visibility {} --normalization {} --shade {}",
+        footprint.name(),
+        filter.name(),
+        visibility.name(),
+        normalization.name(),
+        shade.name()
+    );
+    let _ = writeln!(text, "  settings --cutoff {cutoff} --cull {}{lowpass}", cull.name());
+    for (rasterizer, name) in [(Rasterizer::Draw, "drawn"), (Rasterizer::Compute, "computed")] {
+        let variant = variant(&method.settings(), rasterizer);
+        let targets = match rasterizer {
+            Rasterizer::Draw => Formats::of(&variant).per_pixel(),
+            Rasterizer::Compute => Buffers::per_pixel(&variant),
+        };
+        let _ = writeln!(text, "  {name:<8} {}", passes(&variant).join(" → "));
+        let _ = writeln!(text, "           {}", told(&targets));
+    }
+}
+
+fn variant(settings: &Settings, rasterizer: Rasterizer) -> Variant {
+    let streams = Streams { ellipses: false, two_sided: false, clips: false, colours: ColourStream::Srgb8 };
+    let settings = Settings { shading: Shading::Lit, ..settings.clone() };
+    Variant::new(streams, true, &settings, &RenderOptions::default(), rasterizer)
+}
+
+fn told(targets: &PerPixel) -> String {
+    let each: Vec<_> = targets.iter().map(|(name, bytes)| format!("{name} {bytes}")).collect();
+    let sum: f64 = targets.iter().map(|(_, bytes)| bytes).sum();
+    format!("{}: {sum} bytes", each.join(", "))
+}
