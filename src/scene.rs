@@ -229,7 +229,7 @@ impl ClipStream {
                 words.push(clip.map_or(0, |_| named.len() as u32 | corner));
             }
             let lines = named.iter().flat_map(|clip| clip.lines);
-            words.extend(lines.flat_map(|line| bytemuck::cast::<ClipLine, [u32; 4]>(line)));
+            words.extend(lines.flat_map(bytemuck::cast::<ClipLine, [u32; 4]>));
             parts.push(ClipWindow { bytes: start..4 * words.len() as u64, count: named.len() as u64 });
             // No device aligns ranges to more.
             words.resize(words.len().next_multiple_of(64), 0);

@@ -29,13 +29,16 @@ fn plan(scene: &str, points: u64, side: u32) -> Plan {
     Plan {
         suite: "test",
         figure: Figure::Budget,
+        part: String::new(),
         scene: scene.into(),
         points,
         radius_scale: 1.0,
         size: [side, side],
         engine: Engine::DEFAULT,
         settings: Settings { shading: Shading::Colour, ..Default::default() },
+        viewpoint: None,
         wants: Wants { time: false, ..Wants::BOTH },
+        base: None,
     }
 }
 
@@ -54,8 +57,22 @@ fn a_run_knows_its_time_its_error_and_what_that_is_made_of() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let options = Options { device: Some(device.clone()), cache: None, truth: TRUTH, effort: EFFORT };
     let mut runner = Runner::new(options, Vec::new());
-    let wants = Wants { time: true, error: true, terms: true, agreement: true, flicker: true, exhibit: true };
-    let run = runner.run(&Plan { wants, ..plan("scene:torus", 20_000, 96) }).unwrap();
+    let wants = Wants {
+        time: true,
+        error: true,
+        details: true,
+        terms: true,
+        agreement: true,
+        flicker: true,
+        exhibit: true,
+    };
+    let plan = Plan { wants, ..plan("scene:torus", 20_000, 96) };
+    // Thrice as wide a frame takes longer, and the ratio is of that to this.
+    let base = Plan { size: [288, 96], ..plan.clone() };
+    let run = runner.run(&Plan { base: Some(Box::new(base)), ..plan }).unwrap();
+    let ratio = run.ratio.unwrap();
+    assert!(0.0 < ratio.min && ratio.min <= ratio.median && ratio.median <= ratio.max, "{ratio:?}");
+    assert!(ratio.min < 1.0, "{ratio:?}");
     assert_eq!((run.refused.as_deref(), run.points, run.size), (None, 20_000, [96, 96]));
 
     let time = run.time.as_ref().unwrap();
@@ -80,6 +97,7 @@ fn a_run_knows_its_time_its_error_and_what_that_is_made_of() {
     assert!((1e-9..1e-5).contains(&terms.precision.unwrap()), "{terms:?}");
     assert!((1e-4..terms.silhouette).contains(&terms.hidden.unwrap()), "{terms:?}");
     assert!(error.metrics["flicker"] > 0.0 && error.metrics["iou"] > 0.9 && error.metrics["holes"] == 0.0);
+    assert!(error.metrics["gaps"] == 0.0 && error.metrics["sharpness"] > 0.3);
 
     let agreement = run.agreement.unwrap();
     assert!(agreement.object > 1000 && agreement.failed == 0 && agreement.colour < 2e-4);

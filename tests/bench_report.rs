@@ -332,3 +332,46 @@ fn the_table_is_narrow_and_says_why_runs_were_refused() {
     assert!(group("quick · lowpass").contains("F 1.5, widen small"));
     assert!(!group("quick · budget").contains("F "));
 }
+
+#[test]
+fn what_the_papers_say_stands_beside_what_is_measured() {
+    let results = plausible();
+    let page = page(&results, CODE);
+    let text = table(&results, CODE, NOW);
+    for words in
+        ["81 of perspective-ewa (visibility axis) against 0 of perspective-ewa", "2.5 (2.25–3)", "3.6 to 4.8"]
+    {
+        assert!(page.contains(words) && text.contains(words), "{words}\n{text}");
+    }
+    // 300 k points in 100 ms are 3 million a second.
+    let row = text
+        .lines()
+        .find(|line| line.trim_start().starts_with("3 passes") && line.contains("512×512"))
+        .unwrap();
+    assert!(row.contains(" 1.4 ") && row.contains(" 3.1 ") && row.contains(" 3  perspective-ewa"), "{row}");
+    assert!(text.contains("none: needs levels of detail") || !text.contains("pajarola2004 table 2"));
+    let verdicts =
+        |text: &str| [text.matches("as in the paper:").count(), text.matches("NOT as in the paper:").count()];
+    assert_eq!(verdicts(&text), [2, 0], "{text}");
+    let mut unlike = results.clone();
+    unlike.sessions[0].runs.iter_mut().filter(|run| run.part == "axis-offset").for_each(|run| {
+        run.error.as_mut().unwrap().metrics.insert("gaps".into(), 5.0);
+    });
+    assert_eq!(verdicts(&table(&unlike, CODE, NOW)), [2, 1]);
+}
+
+#[test]
+fn results_of_before_there_were_methods_are_read() {
+    let mut json = serde_json::to_value(plausible()).unwrap();
+    for run in json["sessions"][0]["runs"].as_array_mut().unwrap() {
+        let run = run.as_object_mut().unwrap();
+        for name in ["part", "ratio", "blended"] {
+            run.remove(name).unwrap();
+        }
+        run["setting"].as_object_mut().unwrap().remove("axes").unwrap();
+    }
+    let read: Results = serde_json::from_value(json).unwrap();
+    assert!(
+        read.sessions[0].runs.iter().all(|run| run.setting.axes == Axes::default() && run.part.is_empty())
+    );
+}

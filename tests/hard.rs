@@ -5,9 +5,10 @@ mod support;
 use glam::DVec3;
 use support::gpu::{assert_silent, device};
 use support::sampling::push;
-use surfel::bench::hard::{EXCUSED, Options, judge, run};
+use surfel::bench::hard::{EXCUSED, Options, judge, names, run};
 use surfel::bench::record::{Faults, Sweep, SweepPoint};
 use surfel::geometry::{Camera, Surfels};
+use surfel::methods::{Method, confetti};
 use surfel::reference::{Admissible, Expected, Tolerance};
 use surfel::vk::DeviceLimits;
 use surfel::{Picture, Settings};
@@ -25,16 +26,18 @@ fn print(sweep: &Sweep) {
     );
     for point in &sweep.points {
         let a = point.agreement;
-        let of = format!("{:.6} {}", point.value, point.contender.variant);
+        let of = format!("{:.6} {}", point.value, point.contender.label());
         print!("{of:<50} {:>8} {:>7} {:>7}", a.object, a.doubtful, a.failed);
         println!(" {:>8.1e} {:>8.1e} {:>8.1e}  {}", a.colour, a.normal, a.depth, point.note);
     }
 }
 
-/// The sweep's line of the README's table: largest errors where float32 is not excused, then where it is.
-fn summarize(sweep: &Sweep) {
+/// The sweep's line of a method's table, for the first of which see the README: largest errors where float32 is not excused, then where it
+/// is.
+fn summarize(sweep: &Sweep, method: &Method) {
+    let own = || sweep.points.iter().filter(|point| point.contender.method == method.name);
     let largest = |excused: bool| {
-        let points = || sweep.points.iter().filter(move |point| is_excused(point) == excused);
+        let points = || own().filter(move |point| is_excused(point) == excused);
         let worst = |of: fn(&SweepPoint) -> f64| points().map(of).fold(0.0, f64::max);
         let errors = [
             worst(|point| point.agreement.colour),
@@ -43,7 +46,7 @@ fn summarize(sweep: &Sweep) {
         ];
         (points().count(), errors.map(|error| format!("{error:.1e}")))
     };
-    let values = || sweep.points.iter().map(|point| point.value);
+    let values = || own().map(|point| point.value);
     let (from, to) = (values().fold(f64::INFINITY, f64::min), values().fold(f64::NEG_INFINITY, f64::max));
     let short = |value: f64| {
         if (0.1..1e4).contains(&value.abs()) { format!("{value:.0}") } else { format!("{value:.0e}") }
@@ -51,7 +54,7 @@ fn summarize(sweep: &Sweep) {
     let range = format!("{} to {}", short(from), short(to));
     let beyond = match largest(true) {
         (0, _) => String::new(),
-        (count, errors) => format!("{count} of {}: {}", sweep.points.len(), errors.join(", ")),
+        (count, errors) => format!("{count} of {}: {}", own().count(), errors.join(", ")),
     };
     println!(
         "| `{}` | {}: {range} | {} | {beyond} |",
@@ -67,9 +70,13 @@ fn check(sweep: &Sweep, point: &SweepPoint) {
     assert_eq!(point.refused, None, "{at}");
     assert!([a.colour, a.normal, a.depth, point.value].into_iter().all(f64::is_finite), "{at}");
     assert!(point.faults.is_none() && a.object > 0, "{at}");
-    assert_eq!(a.failed > 0, is_excused(point), "{at}");
+    assert!(a.failed == 0 || is_excused(point), "{at}");
+    // Nothing is excused for nothing; excuses are the first method's, and others may do without.
+    assert!(a.failed > 0 || !is_excused(point) || point.contender.method != Method::ALL[0].name, "{at}");
     let within = a.colour <= bars.colour && a.normal <= bars.normal && a.depth <= bars.depth_relative;
-    assert!(within || is_excused(point), "{at}");
+    // A steep kernel's tolerance widens with it, pixel by pixel.
+    let steep = point.contender.method == confetti::METHOD.name;
+    assert!(within || steep || is_excused(point), "{at}");
     let unusable = ["NaN", "infinity", "3e38"].iter().any(|value| point.note.contains(value));
     assert_eq!(unusable && sweep.name == "attributes", point.note.contains("50 invalid") && unusable, "{at}");
 }
@@ -77,18 +84,33 @@ fn check(sweep: &Sweep, point: &SweepPoint) {
 #[test]
 fn every_case_agrees_or_says_why_not() {
     let Some(device) = device(DeviceLimits::default()) else { return };
-    let sweeps = run(&device, &Options::default(), &()).unwrap();
+    // Angles are where footprints differ: there every method is held to every value, elsewhere the first.
+    let (angles, rest): (Vec<_>, Vec<_>) =
+        names().into_iter().map(str::to_owned).partition(|name| name.starts_with("grazing"));
+    let sweeps = [(angles, usize::MAX), (rest, 2)].map(|(only, others)| {
+        let options = Options { only, others, ..Default::default() };
+        run(&device, &options, &()).unwrap()
+    });
+    let sweeps = sweeps.concat();
     sweeps.iter().for_each(print);
-    println!("\n| case | parameter | colour | normal | depth | beyond float32 |\n|---|---|---|---|---|---|");
-    sweeps.iter().for_each(summarize);
+    for method in &Method::ALL {
+        println!("\n{}\n| case | parameter | colour | normal | depth | beyond float32 |", method.name);
+        println!("|---|---|---|---|---|---|");
+        sweeps.iter().for_each(|sweep| summarize(sweep, method));
+    }
     for sweep in &sweeps {
         sweep.points.iter().for_each(|point| check(sweep, point));
-        let [values, others] = ["draw", "compute"].map(|variant| {
-            let by = sweep.points.iter().filter(|point| point.contender.variant == variant);
-            by.map(|point| point.value).collect::<Vec<_>>()
-        });
-        assert!(values.len() > 6 && values.is_sorted_by(|a, b| a < b), "{}: {values:?}", sweep.name);
-        assert_eq!(values, others, "{}", sweep.name);
+        for method in Method::ALL {
+            let [values, others] = ["draw", "compute"].map(|variant| {
+                let own = |point: &&SweepPoint| point.contender.method == method.name;
+                let by = sweep.points.iter().filter(own).filter(|point| point.contender.variant == variant);
+                by.map(|point| point.value).collect::<Vec<_>>()
+            });
+            let least = if method == Method::ALL[0] || sweep.name.starts_with("grazing") { 7 } else { 2 };
+            let ascending = values.is_sorted_by(|a, b| a < b);
+            assert!(values.len() >= least && ascending, "{} {}: {values:?}", sweep.name, method.name);
+            assert_eq!(values, others, "{} {}", sweep.name, method.name);
+        }
     }
     assert_eq!(sweeps.len(), 16);
     let halves = |sweep: &Sweep| sweep.points.iter().any(|point| point.contender.variant.contains("16-bit"));
@@ -107,10 +129,13 @@ fn what_a_device_refuses_is_told() {
     let Some(device) = device(limits) else { return };
     let unknown = Options { only: vec!["sizes".into()], ..Default::default() };
     assert!(run(&device, &unknown, &()).unwrap_err().to_string().contains("sizes: give one of grazing, "));
-    let options = Options { values: 2, only: vec!["accumulator".into(), "size".into()] };
+    let options = Options { values: 2, others: 2, only: vec!["accumulator".into(), "size".into()] };
     let sweeps = run(&device, &options, &()).unwrap();
     let [accumulator, size] = &sweeps[..] else { panic!("{} sweeps", sweeps.len()) };
-    let reasons = |sweep: &Sweep| sweep.points.iter().map(|point| point.refused.clone()).collect::<Vec<_>>();
+    let reasons = |sweep: &Sweep| {
+        let first = sweep.points.iter().filter(|point| point.contender.method == Method::ALL[0].name);
+        first.map(|point| point.refused.clone()).collect::<Vec<_>>()
+    };
     let says =
         |reason: &Option<String>, text: &str| reason.as_ref().is_some_and(|reason| reason.contains(text));
     let found = reasons(accumulator);

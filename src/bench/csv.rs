@@ -102,6 +102,7 @@ fn what(run: &Run) -> Vec<Cell> {
     cells([
         ("suite", run.suite.clone()),
         ("figure", super::show::figure(run.figure).into()),
+        ("part", run.part.clone()),
         ("scene", run.scene.clone()),
         ("points", run.points.to_string()),
         ("width", run.size[0].to_string()),
@@ -114,8 +115,16 @@ fn what(run: &Run) -> Vec<Cell> {
         ("epsilon", setting.epsilon.to_string()),
         ("cull", setting.cull.clone()),
         ("shading", setting.shading.clone()),
+        ("footprint", setting.axes.footprint.clone()),
+        ("kernel", setting.axes.kernel.clone()),
+        ("filter", setting.axes.filter.clone()),
+        ("visibility", setting.axes.visibility.clone()),
+        ("normalization", setting.axes.normalization.clone()),
+        ("shade", setting.axes.shade.clone()),
         ("refused", run.refused.clone().unwrap_or_default()),
         ("overlap", number(run.overlap)),
+        ("blended", number(run.blended.map(|blended| blended.mean))),
+        ("blended:max", number(run.blended.map(|blended| blended.largest))),
         ("exhibit", run.exhibit.map(|index| index.to_string()).unwrap_or_default()),
     ])
     .collect()
@@ -132,6 +141,7 @@ fn time(run: &Run) -> Vec<Cell> {
     row.extend(spread("cpu", time.map(|time| time.cpu)));
     row.extend(spread("device_time", time.and_then(|time| time.device)));
     row.push(("multiple".into(), number(time.and_then(|time| time.multiple))));
+    row.extend(spread("ratio", run.ratio));
     row
 }
 

@@ -1,12 +1,13 @@
 //! Who renders: each method behind the same few calls.
 
-use super::record::{Contender, Memory, PIXELS, SPLATS};
+use super::record::{Axes, Contender, Memory, PIXELS, SPLATS};
 use crate::error::Result;
 use crate::geometry::{Camera, Surfels};
-use crate::methods::perspective_ewa;
+use crate::methods::Method;
 use crate::passes::Splats;
 use crate::picture::Picture;
 use crate::settings::Settings;
+use crate::splatting::Splatting;
 use crate::vk::{Device, PassTime};
 use crate::yardstick::{self, Kind, Yardstick};
 use crate::{Outputs, Precision, Rasterizer, RenderOptions, Renderer, Scene};
@@ -15,8 +16,8 @@ use std::sync::Arc;
 /// A way to render.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Engine {
-    /// `perspective-ewa` on a Vulkan device; without a rasterizer, with the one that the device is faster with.
-    PerspectiveEwa {
+    /// Splats on a Vulkan device, by the method that the settings choose; without a rasterizer, with the one that the device is faster with.
+    Splatting {
         /// What visits the pixels.
         rasterizer: Option<Rasterizer>,
         /// Width of the sums.
@@ -27,25 +28,40 @@ pub enum Engine {
 }
 
 impl Engine {
-    /// `perspective-ewa` as it is shipped.
-    pub const DEFAULT: Self = Self::PerspectiveEwa { rasterizer: None, precision: Precision::Full };
+    /// Splatting as it is shipped.
+    pub const DEFAULT: Self = Self::Splatting { rasterizer: None, precision: Precision::Full };
 
-    /// Its name in the results.
-    pub fn contender(&self) -> Contender {
+    /// Its name in the results, with these settings.
+    pub fn contender(&self, settings: &Settings) -> Contender {
         match self {
-            Self::PerspectiveEwa { rasterizer, precision } => {
+            Self::Splatting { rasterizer, precision } => {
                 let rasterizer = rasterizer.map(|rasterizer| match rasterizer {
                     Rasterizer::Draw => "draw",
                     Rasterizer::Compute => "compute",
                 });
                 let half = (*precision == Precision::Half).then_some("16-bit sums");
-                let variant = rasterizer.into_iter().chain(half).collect::<Vec<_>>().join(", ");
-                Contender { method: perspective_ewa::METHOD.name.into(), variant }
+                let (method, changes) = preset(&settings.splatting);
+                let ways = rasterizer.into_iter().chain(half).map(str::to_owned);
+                let variant = changes.into_iter().chain(ways).collect::<Vec<_>>().join(", ");
+                Contender { method: method.name.into(), variant }
             }
             Self::Yardstick(Kind::Splats) => Contender { method: SPLATS.into(), variant: String::new() },
             Self::Yardstick(Kind::Pixels) => Contender { method: PIXELS.into(), variant: String::new() },
         }
     }
+}
+
+/// The first of the presets that differ along the fewest axes, and what is changed of it.
+fn preset(splatting: &Splatting) -> (Method, Vec<String>) {
+    let own = Axes::of(splatting);
+    let changes = |method: &Method| {
+        let preset = Axes::of(&method.splatting);
+        let pairs = own.named().into_iter().zip(preset.named()).filter(|(own, preset)| own != preset);
+        pairs.map(|((axis, choice), _)| format!("{axis} {choice}")).collect::<Vec<_>>()
+    };
+    let all = Method::ALL.map(|method| (method, changes(&method)));
+    let nearest = all.into_iter().min_by_key(|(_, changes)| changes.len());
+    nearest.unwrap_or((Method::ALL[0], Vec::new()))
 }
 
 /// An engine with a scene in it, ready for frames of one size.
@@ -147,5 +163,33 @@ impl Ready for OnHost {
     fn memory(&self) -> Memory {
         let yardstick::Memory { scene, splats, targets } = self.yardstick.bytes();
         Memory { scene, splats, targets }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::splatting::{Filter, Footprint, Kernel};
+
+    fn named(splatting: Splatting) -> String {
+        Engine::DEFAULT.contender(&Settings { splatting, ..Default::default() }).label()
+    }
+
+    #[test]
+    fn a_contender_is_its_preset_or_the_nearest_with_what_is_changed() {
+        for method in Method::ALL {
+            assert_eq!(named(method.splatting), method.name);
+        }
+        let default = Splatting::default();
+        assert_eq!(named(Splatting { filter: Filter::None, ..default }), "perspective-ewa (filter none)");
+        let unfiltered = Method::named("sprites-unfiltered").unwrap().splatting;
+        let squares = Splatting { footprint: Footprint::Square, ..unfiltered };
+        assert_eq!(named(squares), "sprites-unfiltered (footprint square)");
+        let confetti = Method::named("confetti").unwrap().splatting;
+        let wide = Splatting { kernel: Kernel::Confetti { a: 1.0, n: 2.0 }, ..confetti };
+        assert_eq!(named(wide), "confetti (kernel confetti:1,2)");
+        let half = Engine::Splatting { rasterizer: Some(Rasterizer::Draw), precision: Precision::Half };
+        let settings = Settings { splatting: squares, ..Default::default() };
+        assert_eq!(half.contender(&settings).variant, "footprint square, draw, 16-bit sums");
     }
 }

@@ -17,7 +17,7 @@ pub fn exhibit(plan: &Plan, picture: &Picture, truth: &Picture) -> Result<Exhibi
     let measured = measure(&Pair::new(&picture, &truth)?, &Options::default())?;
     let flip = measured.value(Metric::Flip).unwrap_or_default();
     let shading = plan.settings.shading;
-    let contender = plan.engine.contender().label();
+    let contender = plan.engine.contender(&plan.settings).label();
     Ok(Exhibit {
         title: format!("{}, {} points, {contender}: FLIP {flip:.3}", plan.scene, plan.points),
         picture: png(Encoded::of(&picture, shading)?)?,

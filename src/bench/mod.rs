@@ -13,6 +13,7 @@
 //! | [`stopwatch`] | how long frames take |
 //! | [`terms`], [`hidden`] | what an error is made of |
 //! | [`runner`], [`session`] | carries plans out |
+//! | [`papers`] | what the papers show, say and measured |
 //! | [`hard`] | where numbers get difficult: float32 against float64 |
 //! | [`record`] | what was measured, as it is kept |
 //! | [`table`], [`csv`], [`report`] | the same for the eye and for other programs |
@@ -26,6 +27,7 @@ pub mod exhibit;
 pub mod falling;
 pub mod hard;
 pub mod hidden;
+pub mod papers;
 pub mod plan;
 pub mod record;
 pub mod report;

@@ -1,7 +1,8 @@
 //! What is to be measured.
 
 use super::engine::Engine;
-use super::record::{Figure, Setting};
+use super::record::{Axes, Figure, Setting};
+use crate::scenes::Viewpoint;
 use crate::settings::Settings;
 
 /// One run.
@@ -11,6 +12,8 @@ pub struct Plan {
     pub suite: &'static str,
     /// What it is measured for.
     pub figure: Figure,
+    /// See [`Run::part`](super::record::Run::part).
+    pub part: String,
     /// The scene with its parameters, but for the number of points.
     pub scene: String,
     /// Number of surfels.
@@ -23,8 +26,12 @@ pub struct Plan {
     pub engine: Engine,
     /// How.
     pub settings: Settings,
+    /// From where; the scene's own place if there is none.
+    pub viewpoint: Option<Viewpoint>,
     /// What is wanted to be known.
     pub wants: Wants,
+    /// What its time is to be a multiple of.
+    pub base: Option<Box<Plan>>,
 }
 
 /// What is wanted to be known of a run.
@@ -34,6 +41,8 @@ pub struct Wants {
     pub time: bool,
     /// How far it is from the truth.
     pub error: bool,
+    /// By the metrics of single [effects](super::papers::details) too.
+    pub details: bool,
     /// What that error is made of.
     pub terms: bool,
     /// How far it is from the float64 reference.
@@ -46,8 +55,15 @@ pub struct Wants {
 
 impl Wants {
     /// Time and error.
-    pub const BOTH: Self =
-        Self { time: true, error: true, terms: false, agreement: false, flicker: false, exhibit: false };
+    pub const BOTH: Self = Self {
+        time: true,
+        error: true,
+        details: false,
+        terms: false,
+        agreement: false,
+        flicker: false,
+        exhibit: false,
+    };
     /// Time alone.
     pub const TIME: Self = Self { error: false, ..Self::BOTH };
 }
@@ -62,6 +78,7 @@ impl Setting {
             epsilon: settings.epsilon,
             cull: settings.cull.name().into(),
             shading: settings.shading.name().into(),
+            axes: Axes::of(&settings.splatting),
         }
     }
 }

@@ -2,8 +2,10 @@
 //! [metrics](crate::metrics) define them.
 
 use super::times::Statistics;
+use crate::methods::Method;
 use crate::reference::Comparison;
 use crate::settings::Settings;
+use crate::splatting::Splatting;
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -92,6 +94,9 @@ pub struct Run {
     pub suite: String,
     /// What it is measured for.
     pub figure: Figure,
+    /// Which effect, claim or row of a table of the [papers](super::papers); empty elsewhere.
+    #[serde(default)]
+    pub part: String,
     /// The scene with its parameters, but for the number of points; or the file.
     pub scene: String,
     /// Number of surfels.
@@ -106,6 +111,9 @@ pub struct Run {
     pub refused: Option<String>,
     /// How long it takes; none if it was not timed.
     pub time: Option<Time>,
+    /// Its wall time as a multiple of another run's, whose frames took turns with its own; none if there was no other.
+    #[serde(default)]
+    pub ratio: Option<Statistics>,
     /// How far it is from the truth; none if it was not compared.
     pub error: Option<Error>,
     /// How far float32 is from float64; none if it was not compared.
@@ -114,6 +122,9 @@ pub struct Run {
     pub memory: Memory,
     /// Discs over a point of the surface, on average, before any filter widens them; none if it is not known.
     pub overlap: Option<f64>,
+    /// Splats that are blended at a pixel; none unless they were counted.
+    #[serde(default)]
+    pub blended: Option<Blended>,
     /// Its entry in [`Session::exhibits`].
     pub exhibit: Option<usize>,
 }
@@ -136,6 +147,21 @@ pub enum Figure {
     ScalingOverlap,
     /// Multiples of what a plain program on the CPU takes.
     Yardstick,
+    /// What the papers' figures show, both sides of each.
+    Effects,
+    /// What the papers say that something costs: pairs of runs.
+    Claims,
+    /// The papers' tables of times.
+    PaperTables,
+}
+
+/// Splats that are blended at a pixel, over the pixels that have any.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Blended {
+    /// Mean.
+    pub mean: f64,
+    /// Largest.
+    pub largest: f64,
 }
 
 /// Who renders.
@@ -162,6 +188,26 @@ pub struct Setting {
     pub cull: String,
     /// What the picture shows.
     pub shading: String,
+    /// How surfels become pixels; where nothing is said of it, as `perspective-ewa` does.
+    #[serde(default)]
+    pub axes: Axes,
+}
+
+/// The choice along each axis of [`Splatting`], as options call it.
+#[derive(Clone, Debug, PartialEq, PartialOrd, Serialize, Deserialize)]
+pub struct Axes {
+    /// The image of a disc.
+    pub footprint: String,
+    /// The falloff of its weight.
+    pub kernel: String,
+    /// Where the low-pass filter is applied.
+    pub filter: String,
+    /// Which splats a pixel sees.
+    pub visibility: String,
+    /// What makes weights a partition of unity.
+    pub normalization: String,
+    /// What is lit.
+    pub shade: String,
 }
 
 /// How long a frame takes, without reading it back. Frames that warm up do not count.
@@ -333,6 +379,44 @@ impl Setting {
     /// What surfel does unless it is told otherwise.
     pub fn shipped() -> Self {
         Self::of(&Settings::default())
+    }
+
+    /// What a method does unless it is told otherwise; as [`shipped`](Self::shipped) where there is none of this name.
+    pub fn preset(method: &str) -> Self {
+        Method::named(method).map_or_else(Self::shipped, |method| Self::of(&method.settings()))
+    }
+}
+
+impl Default for Axes {
+    fn default() -> Self {
+        Self::of(&Splatting::default())
+    }
+}
+
+impl Axes {
+    /// Those of `splatting`.
+    pub fn of(splatting: &Splatting) -> Self {
+        let Splatting { footprint, kernel, filter, visibility, normalization, shade } = splatting;
+        Self {
+            footprint: footprint.name().into(),
+            kernel: kernel.to_string(),
+            filter: filter.name().into(),
+            visibility: visibility.name().into(),
+            normalization: normalization.name().into(),
+            shade: shade.name().into(),
+        }
+    }
+
+    /// Each with its name.
+    pub fn named(&self) -> [(&'static str, &str); 6] {
+        [
+            ("footprint", &self.footprint),
+            ("kernel", &self.kernel),
+            ("filter", &self.filter),
+            ("visibility", &self.visibility),
+            ("normalization", &self.normalization),
+            ("shade", &self.shade),
+        ]
     }
 }
 

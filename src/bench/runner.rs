@@ -1,9 +1,11 @@
 //! Carries out what is planned, and keeps what several runs share: surfels, exact pictures, the device.
 
 use super::engine::{Engine, OnDevice, OnHost, Ready};
+use super::papers::details;
 use super::plan::Plan;
 use super::record::{self, Agreement, Exhibit, Run, Setting, Time};
-use super::subject::Subject;
+use super::subject::{Subject, pixel_angle};
+use super::times::Statistics;
 use super::{exhibit, hidden, stopwatch, terms};
 use crate::error::{Error, Result};
 use crate::geometry::{Camera, Surfels};
@@ -11,7 +13,8 @@ use crate::metrics::flicker::Flicker;
 use crate::metrics::{self, Metric, Pair, colour};
 use crate::picture::Picture;
 use crate::reference::{self, Expected, Tolerance};
-use crate::settings::Settings;
+use crate::scenes::Viewpoint;
+use crate::settings::{Settings, Shading};
 use crate::truth::{self, Cache, Truth};
 use crate::vk::Device;
 use std::collections::HashMap;
@@ -62,6 +65,7 @@ struct Job<'a> {
     plan: &'a Plan,
     subject: Rc<Subject>,
     surfels: Rc<Surfels>,
+    viewpoint: Viewpoint,
     camera: Camera,
 }
 
@@ -107,8 +111,9 @@ impl Runner {
             }
         };
         self.surfels = Some((key, surfels.clone()));
-        let camera = subject.camera(0.0, plan.size)?;
-        Ok(Job { plan, subject, surfels, camera })
+        let viewpoint = plan.viewpoint.unwrap_or(subject.viewpoint());
+        let camera = subject.camera(&viewpoint, 0.0, plan.size)?;
+        Ok(Job { plan, subject, surfels, viewpoint, camera })
     }
 
     fn fill(&mut self, job: &Job<'_>, run: &mut Run) -> Result<()> {
@@ -119,12 +124,18 @@ impl Runner {
         if plan.wants.time {
             run.time = Some(stopwatch::time(&mut *ready, &job.camera, settings, &self.options.effort)?);
         }
+        if let Some(base) = &plan.base {
+            run.ratio = self.ratio(job, &mut *ready, base)?;
+        }
         let wants = plan.wants;
-        if wants.error || wants.agreement || wants.exhibit || wants.terms {
+        if wants.error || wants.agreement || wants.exhibit || wants.terms || wants.details {
             let picture = ready.picture(&job.camera, settings)?;
             let expected = self.agree(job, &picture, run)?;
             if wants.error {
                 run.error = Some(self.error(job, &picture)?);
+            }
+            if wants.details && settings.shading == Shading::Overlap {
+                run.blended = details::blended(&picture);
             }
             if wants.terms {
                 self.add_terms(job, &picture, expected.as_ref(), run)?;
@@ -143,9 +154,23 @@ impl Runner {
         Ok(())
     }
 
+    /// Times its frames as multiples of those of `base`.
+    fn ratio(
+        &mut self,
+        job: &Job<'_>,
+        ready: &mut (dyn Ready + 'static),
+        base: &Plan,
+    ) -> Result<Option<Statistics>> {
+        let other = self.job(base)?;
+        let mut others = self.ready(base.engine, &other.surfels, base.size)?;
+        let first = (&mut *others, &other.camera, &base.settings);
+        let second = (ready, &job.camera, &job.plan.settings);
+        stopwatch::ratio(first, second, &self.options.effort)
+    }
+
     fn ready(&self, engine: Engine, surfels: &Surfels, size: [u32; 2]) -> Result<Box<dyn Ready>> {
         match engine {
-            Engine::PerspectiveEwa { rasterizer, precision } => {
+            Engine::Splatting { rasterizer, precision } => {
                 let none = || Error::NoDevice("this run needs one: see `surfel devices`".into());
                 let device = self.options.device.as_ref().ok_or_else(none)?;
                 Ok(Box::new(OnDevice::new(device, surfels, size, rasterizer, precision)?))
@@ -178,11 +203,13 @@ impl Runner {
             metrics::Options { object_size: 2.0 * job.subject.bounds().radius, ..Default::default() };
         let pair = Pair::new(picture, &truth.picture)?;
         let measured = metrics::measure(&pair, &options)?;
-        let finite = measured.values.into_iter().filter(|(_, value)| value.is_finite());
+        let known = measured.values.into_iter().map(|(metric, value)| (Metric::name(metric), value));
+        let details = if job.plan.wants.details { details::of(&pair) } else { Vec::new() };
+        let finite = known.chain(details).filter(|(_, value)| value.is_finite());
         Ok(record::Error {
             filter: filter_name(&self.options.truth),
             truth_rms: truth.error.rms,
-            metrics: finite.map(|(metric, value)| (Metric::name(metric).into(), value)).collect(),
+            metrics: finite.map(|(name, value)| (name.into(), value)).collect(),
             terms: terms::split(&pair),
         })
     }
@@ -224,8 +251,8 @@ impl Runner {
         let (subject, size) = (&job.subject, job.plan.size);
         let mut flicker = Flicker::new(colour::BLACK);
         for frame in 0..PATH {
-            let angle = STEP * subject.pixel_angle(size[1]) * f64::from(frame);
-            let camera = subject.camera(angle, size)?;
+            let angle = STEP * pixel_angle(&job.viewpoint, size[1]) * f64::from(frame);
+            let camera = subject.camera(&job.viewpoint, angle, size)?;
             let (picture, truth) = (ready.picture(&camera, &job.plan.settings)?, self.truth(job, &camera)?);
             flicker.add(&Pair::new(&picture, &truth.picture)?)?;
         }
@@ -271,17 +298,20 @@ fn blank(plan: &Plan) -> Run {
     Run {
         suite: plan.suite.into(),
         figure: plan.figure,
+        part: plan.part.clone(),
         scene: plan.scene.clone(),
         points: plan.points,
         size: plan.size,
-        contender: plan.engine.contender(),
+        contender: plan.engine.contender(&plan.settings),
         setting: Setting::of(&plan.settings),
         refused: None,
         time: None::<Time>,
+        ratio: None,
         error: None,
         agreement: None,
         memory: Default::default(),
         overlap: None,
+        blended: None,
         exhibit: None,
     }
 }

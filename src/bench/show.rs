@@ -88,6 +88,9 @@ pub fn figure(figure: Figure) -> &'static str {
         Figure::ScalingSize => "scaling-size",
         Figure::ScalingOverlap => "scaling-overlap",
         Figure::Yardstick => "yardstick",
+        Figure::Effects => "effects",
+        Figure::Claims => "claims",
+        Figure::PaperTables => "paper-tables",
     }
 }
 
@@ -131,9 +134,9 @@ pub fn stale(made: &Made, code: &str, now: &str) -> Option<String> {
     })
 }
 
-/// Each setting with its value.
+/// Each setting with its value, but for the axes, which a contender's name tells.
 pub fn settings(setting: &Setting) -> [String; 6] {
-    let Setting { cutoff, lowpass, widen, epsilon, cull, shading } = setting;
+    let Setting { cutoff, lowpass, widen, epsilon, cull, shading, axes: _ } = setting;
     [
         format!("H {lowpass}"),
         format!("F {cutoff}"),

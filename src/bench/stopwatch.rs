@@ -72,3 +72,31 @@ pub fn time(ready: &mut dyn Ready, camera: &Camera, settings: &Settings, effort:
         multiple: None,
     })
 }
+
+/// Fewest pairs of frames that a ratio is made of.
+const FEWEST_PAIRS: usize = 9;
+
+/// Something that renders, what it sees, and how.
+pub type Side<'a> = (&'a mut (dyn Ready + 'static), &'a Camera, &'a Settings);
+
+/// How many times as long a frame of the second side takes as one of the first. Their frames take turns, so that whatever else the machine
+/// does disturbs both alike; each quotient is of two frames one after the other.
+pub fn ratio(
+    (first, a, first_settings): Side<'_>,
+    (second, b, second_settings): Side<'_>,
+    effort: &Effort,
+) -> Result<Option<Statistics>> {
+    warm_up(first, a, first_settings, effort)?;
+    warm_up(second, b, second_settings, effort)?;
+    let (mut quotients, start) = (Vec::new(), Instant::now());
+    while quotients.len() < effort.least.max(FEWEST_PAIRS)
+        || (quotients.len() < effort.most && start.elapsed() < effort.budget)
+    {
+        let begin = Instant::now();
+        first.frame(a, first_settings, false)?;
+        let middle = Instant::now();
+        second.frame(b, second_settings, false)?;
+        quotients.push(middle.elapsed().as_secs_f64() / (middle - begin).as_secs_f64());
+    }
+    Ok(Statistics::of(&quotients))
+}

@@ -106,22 +106,22 @@ impl Subject {
         }
     }
 
+    /// From where it is seen.
+    pub fn viewpoint(&self) -> Viewpoint {
+        self.viewpoint
+    }
+
     /// The camera of a picture of `size` px, the same however many points there are, after it has turned by `angle`, rad, where it stands.
     ///
     /// # Errors
     /// [`Error::Usage`] if no camera sees it so.
-    pub fn camera(&self, angle: f64, size: [u32; 2]) -> Result<Camera> {
-        let Viewpoint { eye, target, up, .. } = self.viewpoint;
+    pub fn camera(&self, from: &Viewpoint, angle: f64, size: [u32; 2]) -> Result<Camera> {
+        let Viewpoint { eye, target, up, .. } = *from;
         let [eye, target_then, up] = [eye, target, up].map(DVec3::from);
         let turned = DQuat::from_axis_angle(up.normalize_or(DVec3::Y), angle) * (target_then - eye);
         let target = if angle == 0.0 { target } else { (eye + turned).to_array() };
-        let viewpoint = Viewpoint { target, ..self.viewpoint };
+        let viewpoint = Viewpoint { target, ..*from };
         viewpoint.camera(f64::from(size[0]) / f64::from(size[1]), &self.bounds())
-    }
-
-    /// Angle of view of a pixel in the middle of a picture of so many rows, rad.
-    pub fn pixel_angle(&self, rows: u32) -> f64 {
-        2.0 * (0.5 * self.viewpoint.fov_y_deg.to_radians()).tan() / f64::from(rows)
     }
 
     /// Where the surface is.
@@ -152,6 +152,11 @@ impl Subject {
             Shape::Scan(scan) => scan.cloud.colours.is_some(),
         }
     }
+}
+
+/// Angle of view of a pixel in the middle of a picture of so many rows, rad.
+pub fn pixel_angle(from: &Viewpoint, rows: u32) -> f64 {
+    2.0 * (0.5 * from.fov_y_deg.to_radians()).tan() / f64::from(rows)
 }
 
 /// From where `render` would see it in a square.

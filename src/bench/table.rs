@@ -1,8 +1,8 @@
 //! Results on a terminal: a line a run, a line a sweep.
 
 use super::hard::EXCUSED;
-use super::record::{Agreement, Figure, Results, Run, Session, Sweep};
-use super::show;
+use super::record::{Agreement, Faults, Figure, Results, Run, Session, Sweep, SweepPoint};
+use super::{papers, show};
 use std::fmt::Write;
 
 /// Columns of a terminal that lines fit into.
@@ -57,17 +57,19 @@ pub fn table(results: &Results, code: &str, commit: &str) -> String {
             text.push('\n');
             text += &lines(&group, &common);
         }
+        text += &papers::text(session);
         text += &sweeps(session);
         text.push('\n');
     }
     text
 }
 
-/// Runs of one suite, figure and scene, in the order of their first.
+/// Runs of one suite, figure and scene, in the order of their first; not those that the papers' own tables show.
 fn groups(runs: &[Run]) -> Vec<Vec<&Run>> {
     let alike = |a: &Run, b: &Run| (&a.suite, a.figure, &a.scene) == (&b.suite, b.figure, &b.scene);
     let mut groups: Vec<Vec<&Run>> = Vec::new();
-    for run in runs {
+    let shown = |run: &&Run| !matches!(run.figure, Figure::Effects | Figure::Claims | Figure::PaperTables);
+    for run in runs.iter().filter(shown) {
         match groups.iter_mut().find(|group| alike(group[0], run)) {
             Some(group) => group.push(run),
             None => groups.push(vec![run]),
@@ -182,6 +184,9 @@ fn sweeps(session: &Session) -> String {
     let longest = session.sweeps.iter().map(|sweep| sweep.name.chars().count()).max().unwrap_or(0);
     for sweep in &session.sweeps {
         let _ = writeln!(text, "{}", cut(&sweep_line(sweep, longest), WIDTH));
+        for line in wrong_lines(sweep) {
+            let _ = writeln!(text, "    {}", cut(&line, WIDTH - 4));
+        }
     }
     text
 }
@@ -210,6 +215,24 @@ fn sweep_line(sweep: &Sweep, longest: usize) -> String {
         sweep.points.len(),
         excused.len()
     )
+}
+
+/// Each contender that is wrong at a point where float32 can be right, or has a fault anywhere.
+fn wrong_lines(sweep: &Sweep) -> impl Iterator<Item = String> {
+    let is_wrong = |point: &&SweepPoint| {
+        let wrong = point.agreement.failed > 0 && !point.note.starts_with(EXCUSED);
+        point.refused.is_none() && (wrong || !point.faults.is_none())
+    };
+    let line = |point: &SweepPoint| {
+        let Faults { non_finite, uncovered, overcovered } = point.faults;
+        format!(
+            "{} at {}: {} px wrong, {non_finite} not finite, {uncovered} uncovered, {overcovered} overcovered",
+            point.contender.label(),
+            show::significant(point.value, 4),
+            point.agreement.failed
+        )
+    };
+    sweep.points.iter().filter(is_wrong).map(line)
 }
 
 fn aligned(text: &str, width: usize, align: Align) -> String {

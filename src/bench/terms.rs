@@ -5,7 +5,7 @@ use crate::metrics::{Pair, colour, rmse};
 use crate::picture::Picture;
 
 /// How little of a pixel may be uncovered for it to be whole: more than the rounding of a filter's weights.
-const WHOLE: f32 = 1.0 - 1e-4;
+pub(super) const WHOLE: f32 = 1.0 - 1e-4;
 
 /// The parts of the error that belong to pixels on the outline and to those inside, over black.
 pub fn split(pair: &Pair<'_>) -> Terms {

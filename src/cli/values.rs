@@ -221,6 +221,8 @@ pub enum Suite {
     Scaling,
     /// Every way to render, as multiples of what a plain program on the CPU takes
     Yardstick,
+    /// What the papers show, say and measured: their effects, costs and tables
+    Papers,
 }
 
 impl From<Suite> for bench::Suite {
@@ -231,6 +233,7 @@ impl From<Suite> for bench::Suite {
             Suite::Hard => Self::Hard,
             Suite::Scaling => Self::Scaling,
             Suite::Yardstick => Self::Yardstick,
+            Suite::Papers => Self::Papers,
         }
     }
 }

@@ -21,8 +21,13 @@ pub fn empty() -> Results {
 }
 
 pub fn session() -> Session {
-    let runs = [budget(), lowpass(), aliasing(), scaling(), yardstick()].concat();
-    Session { made: made(), runs, sweeps: vec![grazing(), offset(), layers()], exhibits: vec![exhibit()] }
+    let runs = [budget(), lowpass(), aliasing(), scaling(), yardstick(), papers()].concat();
+    Session {
+        made: made(),
+        runs,
+        sweeps: vec![grazing(), offset(), layers()],
+        exhibits: vec![exhibit(), exhibit()],
+    }
 }
 
 pub fn made() -> Made {
@@ -71,6 +76,7 @@ pub fn run(figure: Figure, scene: &str, points: u64, ms: f64, rmse: f64) -> Run 
     Run {
         suite: "quick".into(),
         figure,
+        part: String::new(),
         scene: scene.into(),
         points,
         size: [512, 512],
@@ -78,6 +84,7 @@ pub fn run(figure: Figure, scene: &str, points: u64, ms: f64, rmse: f64) -> Run 
         setting: Setting::shipped(),
         refused: None,
         time: Some(time(ms)),
+        ratio: None,
         error: Some(Error {
             filter: "gaussian".into(),
             truth_rms: 4e-4,
@@ -99,6 +106,7 @@ pub fn run(figure: Figure, scene: &str, points: u64, ms: f64, rmse: f64) -> Run 
         }),
         memory: Memory { scene: 28 * points, splats: 64 * points, targets: 512 * 512 * 48 },
         overlap: Some(7.5),
+        blended: None,
         exhibit: None,
     }
 }
@@ -216,6 +224,26 @@ fn yardstick() -> Vec<Run> {
         }
     }
     runs
+}
+
+/// An effect's two sides, a cost, and a row of a paper's table.
+fn papers() -> Vec<Run> {
+    let of = |figure, part: &str, points, ms, rmse| {
+        let run = run(figure, "scene:sphere", points, ms, rmse);
+        Run { suite: "papers".into(), part: part.into(), contender: contender(""), ..run }
+    };
+    let mut axis = of(Figure::Effects, "axis-offset", 20_000, 3.0, 0.05);
+    let mut ray = of(Figure::Effects, "axis-offset", 20_000, 3.0, 0.04);
+    axis.contender.variant = "visibility axis".into();
+    for (run, gaps) in [(&mut axis, 81.0), (&mut ray, 0.0)] {
+        run.error.as_mut().unwrap().metrics.insert("gaps".into(), gaps);
+        run.exhibit = Some(1);
+    }
+    let single = of(Figure::Claims, "three-passes", 100_000, 10.0, 0.06);
+    let mut three = of(Figure::Claims, "three-passes", 100_000, 25.0, 0.04);
+    three.ratio = Some(Statistics { median: 2.5, min: 2.25, max: 3.0 });
+    let row = of(Figure::PaperTables, "zwicker2004 table 1", 300_000, 100.0, 0.04);
+    vec![axis, ray, single, three, row]
 }
 
 fn sweep(name: &str, about: &str, parameter: &str, points: Vec<SweepPoint>) -> Sweep {

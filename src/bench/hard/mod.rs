@@ -1,7 +1,7 @@
 //! Hard cases: float32 on the device against float64 on the CPU, as a parameter goes to where numbers get difficult.
 //!
-//! A case is a short file's worth of geometry for every value of a parameter. Each value is rendered by all ways that
-//! the device has, and every pixel is held against [`Expected`]: how far colour, normal and depth are off, and the
+//! A case is a short file's worth of geometry for every value of a parameter. Each value is rendered by every method and by all ways
+//! that the device has, and every pixel is held against [`Expected`]: how far colour, normal and depth are off, and the
 //! [`Faults`](super::record::Faults) that no tolerance excuses. What is refused or culled is told, never left out.
 
 mod attributes;
@@ -21,10 +21,12 @@ pub use judge::judge;
 use super::record::{Contender, Sweep, SweepPoint};
 use crate::Progress;
 use crate::error::{Error, Result};
-use crate::methods::perspective_ewa::METHOD;
+use crate::methods::Method;
 use crate::reference::{Counts, Expected, Tolerance};
 use crate::renderer::{RenderOptions, Renderer, SplatCounts};
 use crate::scene::Scene;
+use crate::settings::Settings;
+use crate::splatting::Kernel;
 use crate::variant::{Outputs, Precision, Rasterizer};
 use crate::vk::Device;
 use case::{Case, View};
@@ -38,6 +40,8 @@ pub const EXCUSED: &str = "beyond float32: ";
 pub struct Options {
     /// Most values of each parameter, from its first to its last; at least 2.
     pub values: usize,
+    /// Most of them by other methods than the first, at least 2.
+    pub others: usize,
     /// Names of the cases; all if there are none.
     pub only: Vec<String>,
 }
@@ -45,7 +49,7 @@ pub struct Options {
 impl Default for Options {
     /// Every value of every case.
     fn default() -> Self {
-        Self { values: usize::MAX, only: Vec::new() }
+        Self { values: usize::MAX, others: usize::MAX, only: Vec::new() }
     }
 }
 
@@ -73,9 +77,22 @@ pub fn run(device: &Arc<Device>, options: &Options, progress: &dyn Progress) -> 
         return Err(Error::Usage(format!("there is no hard case named {name}: give one of {all}")));
     }
     cases.retain(|case| options.only.is_empty() || options.only.iter().any(|name| name == case.name));
-    let total = cases.iter().map(|case| case.some(options.values).len() as u64).sum();
+    let values = |case: &Case, method: usize| match method {
+        0 => case.some(options.values),
+        _ => case.some(options.values.min(options.others)),
+    };
+    let places = || 0..Method::ALL.len();
+    let count = |case: &Case| places().map(|method| values(case, method).len() as u64).sum::<u64>();
+    let total = cases.iter().map(count).sum();
     let mut bench = Bench { device: device.clone(), renderers: Vec::new(), progress, done: 0, total };
-    let sweeps = cases.iter().map(|case| bench.sweep(case, options.values)).collect();
+    let sweep = |case: &Case| {
+        let mut points = Vec::new();
+        for method in places() {
+            points.extend(bench.sweep(case, method, values(case, method))?);
+        }
+        Ok(case.sweep(points))
+    };
+    let sweeps = cases.iter().map(sweep).collect();
     bench.tell();
     sweeps
 }
@@ -89,13 +106,13 @@ enum Way {
 }
 
 impl Way {
-    fn contender(self) -> Contender {
+    fn contender(self, method: &Method) -> Contender {
         let variant = match self {
             Self::Draw => "draw",
             Self::Compute => "compute",
             Self::Half => "draw, 16-bit sums",
         };
-        Contender { method: METHOD.name.into(), variant: variant.into() }
+        Contender { method: method.name.into(), variant: variant.into() }
     }
 
     fn precision(self) -> Precision {
@@ -124,28 +141,39 @@ impl Bench<'_> {
         self.progress.at("hard cases", self.done, self.total);
     }
 
-    fn sweep(&mut self, case: &Case, most: usize) -> Result<Sweep> {
+    /// A case by the method in this place, way by way.
+    fn sweep(&mut self, case: &Case, method: usize, values: Vec<f64>) -> Result<Vec<SweepPoint>> {
         let mut points = Vec::new();
-        for value in case.some(most) {
+        for value in values {
             self.tell();
-            points.extend(self.points(case, value)?);
+            points.extend(self.points(case, &Method::ALL[method], method == 0, value)?);
             self.done += 1;
         }
         // Stable: the values stay in order.
         points.sort_by_key(|(way, _)| *way);
-        Ok(case.sweep(points.into_iter().map(|(_, point)| point).collect()))
+        Ok(points.into_iter().map(|(_, point)| point).collect())
     }
 
-    /// One value of a case, by every way.
-    fn points(&mut self, case: &Case, value: f64) -> Result<Vec<(Way, SweepPoint)>> {
-        let view = (case.view)(value)?;
-        let expected =
-            Expected::new(&view.surfels, &view.camera, view.size, &view.settings, &Tolerance::default())?;
+    /// One value of a case, by every way; in 16 bits by the first method alone, as what such sums lose is the same by all.
+    fn points(
+        &mut self,
+        case: &Case,
+        method: &Method,
+        first: bool,
+        value: f64,
+    ) -> Result<Vec<(Way, SweepPoint)>> {
+        let mut view = (case.view)(value)?;
+        let Settings { epsilon, shading, .. } = view.settings;
+        view.settings = Settings { epsilon, shading, ..method.settings() };
+        let tolerance = tolerance(&method.splatting.kernel);
+        let expected = Expected::new(&view.surfels, &view.camera, view.size, &view.settings, &tolerance)?;
         // Invalid surfels are what a case is about, and told in its notes.
         let (scene, _) = Scene::upload_silently(&self.device, &view.surfels)?;
-        let ways = [Way::Draw, Way::Compute].into_iter().chain(case.half.then_some(Way::Half));
+        let half = case.half && first;
+        let ways = [Way::Draw, Way::Compute].into_iter().chain(half.then_some(Way::Half));
         let mut point = |way: Way| {
-            let mut point = self.point(way, &view, &scene, &expected)?;
+            let contender = way.contender(method);
+            let mut point = self.point(way, contender, &view, &scene, &expected)?;
             let excuse = (case.excuse)(value, way.precision()).map(|reason| format!("{EXCUSED}{reason}"));
             let notes = excuse.into_iter().chain([view.note.clone(), point.note]);
             point.note = notes.filter(|note| !note.is_empty()).collect::<Vec<_>>().join("; ");
@@ -155,9 +183,15 @@ impl Bench<'_> {
     }
 
     /// By one way, what is found, refused and culled.
-    fn point(&mut self, way: Way, view: &View, scene: &Scene, expected: &Expected) -> Result<SweepPoint> {
+    fn point(
+        &mut self,
+        way: Way,
+        contender: Contender,
+        view: &View,
+        scene: &Scene,
+        expected: &Expected,
+    ) -> Result<SweepPoint> {
         let (agreement, faults) = Default::default();
-        let contender = way.contender();
         let mut point =
             SweepPoint { value: 0.0, contender, refused: None, agreement, faults, note: String::new() };
         let renderer = self.renderer(way, view.size);
@@ -188,6 +222,15 @@ impl Bench<'_> {
             true => Ok(renderer),
             false => Err(Error::Usage("the device cannot blend 32-bit floats".into())),
         }
+    }
+}
+
+/// Strict, but for Confetti's kernel: its rim is some twenty times as steep as a Gaussian's, and so is what a rounding of the pixel's place
+/// in it does to the weight.
+fn tolerance(kernel: &Kernel) -> Tolerance {
+    match kernel {
+        Kernel::Gaussian => Tolerance::default(),
+        Kernel::Confetti { .. } => Tolerance::float32(),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::page::{Page, titled};
 use crate::bench::advice::{Advice, Column, Offer, within_error, within_time};
-use crate::bench::record::{Session, Setting};
+use crate::bench::record::{Run, Session, Setting};
 use crate::bench::show;
 use maud::{Markup, html};
 use std::io;
@@ -17,7 +17,8 @@ pub fn part(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
         p.lead {
             "Of the methods' runs, those on the Pareto front: none other is both faster and nearer to the truth. "
             @if multiples(session) { "× is a multiple of the yardstick, a plain renderer on the CPU. " }
-            "Settings are named where they are not the defaults, " (unbroken(&show::told(&Setting::shipped(), NAMED))) "."
+            "Settings are named where they are not the method's own; the default method's are "
+            (unbroken(&show::told(&Setting::shipped(), NAMED))) "."
         }
         h3 { "Least error within a budget of time" }
         (table("ms a frame", columns, times, time, |column, ms| within_time(&column.front, ms), true))
@@ -69,7 +70,7 @@ fn cell(offer: &Offer<'_>, error_first: bool) -> Markup {
     html! {
         strong { (first) } span { (second) }
         span { (show::count(run.points)) " points, " (run.contender.label()) }
-        @let settings = unusual(&run.setting);
+        @let settings = unusual(run);
         @if !settings.is_empty() { span { (settings) } }
     }
 }
@@ -84,8 +85,9 @@ fn unbroken(list: &str) -> String {
     list.replace(' ', "\u{a0}").replace(",\u{a0}", ", ")
 }
 
-/// The settings that are not the shipped ones.
-fn unusual(setting: &Setting) -> String {
-    let (own, shipped) = (show::settings(setting), show::settings(&Setting::shipped()));
-    show::told(setting, std::array::from_fn(|i| NAMED[i] && own[i] != shipped[i]))
+/// The settings that are not the method's own.
+fn unusual(run: &Run) -> String {
+    let (own, preset) =
+        (show::settings(&run.setting), show::settings(&Setting::preset(&run.contender.method)));
+    show::told(&run.setting, std::array::from_fn(|i| NAMED[i] && own[i] != preset[i]))
 }

@@ -46,8 +46,55 @@ pub fn part(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>
             "(absolute), normal (each coordinate), depth (relative). Dashed lines are the bars, 2·10⁻⁴ and 10⁻⁵. Crosses at the top mark "
             "points with faults, or with wrong pixels where float32 can be right, and those that were refused."
         }
+        @if methods(session).len() > 1 { p { "Lines are of " (methods(session)[0]) "; what the other methods are off by is in the table below." } }
         div.plots { @for plot in &plots { (plot) } }
+        @if methods(session).len() > 1 { (by_method(session)) }
     }))
+}
+
+/// Names of the methods, in the order of their first point.
+fn methods(session: &Session) -> Vec<&str> {
+    let mut methods: Vec<&str> = Vec::new();
+    for point in session.sweeps.iter().flat_map(|sweep| &sweep.points) {
+        if !methods.contains(&point.contender.method.as_str()) {
+            methods.push(&point.contender.method);
+        }
+    }
+    methods
+}
+
+/// The largest difference of colour of each case by each method, and what is wrong.
+fn by_method(session: &Session) -> Markup {
+    let methods = methods(session);
+    html! {
+        h3 { "By every method" }
+        p {
+            "The largest difference of colour where float32 can be right, and the pixels that are wrong there, if any. A kernel with a steep "
+            "rim, as Confetti's, is further off for the same rounding, and is held to as much as that allows."
+        }
+        div.scroll { table {
+            thead { tr { th scope="col" { "case" } @for method in &methods { th.number scope="col" { (method) } } } }
+            tbody { @for sweep in &session.sweeps { tr {
+                th scope="row" { (title(sweep)) }
+                @for method in &methods {
+                    @let points: Vec<_> = sweep.points.iter().filter(|p| p.contender.method == **method).collect();
+                    td.number { (worst(&points)) }
+                }
+            } } }
+        } }
+    }
+}
+
+fn worst(points: &[&SweepPoint]) -> String {
+    let made = || points.iter().filter(|point| point.refused.is_none());
+    let held = || made().filter(|point| !point.note.starts_with(EXCUSED));
+    let colour = held().map(|point| point.agreement.colour).fold(0.0, f64::max);
+    let wrong: u64 = held().map(|point| point.agreement.failed).sum();
+    match (made().count(), wrong) {
+        (0, _) => String::new(),
+        (_, 0) => show::significant(colour, 2),
+        _ => format!("{}, {wrong} px wrong", show::significant(colour, 2)),
+    }
 }
 
 fn title(sweep: &Sweep) -> String {
@@ -56,7 +103,7 @@ fn title(sweep: &Sweep) -> String {
     letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
 }
 
-/// Colour by quantity, marker by contender.
+/// Colour by quantity, marker by contender; of the first method.
 fn plot(sweep: &Sweep) -> Plot {
     let contenders = contenders(sweep);
     let mut lines = Vec::new();
@@ -92,7 +139,8 @@ fn plot(sweep: &Sweep) -> Plot {
 
 fn contenders(sweep: &Sweep) -> Vec<&Contender> {
     let mut contenders: Vec<&Contender> = Vec::new();
-    for point in &sweep.points {
+    let first = sweep.points.first().map(|point| &point.contender.method);
+    for point in sweep.points.iter().filter(|point| Some(&point.contender.method) == first) {
         if !contenders.contains(&&point.contender) {
             contenders.push(&point.contender);
         }

@@ -2,12 +2,14 @@
 
 mod aliasing;
 mod budget;
+mod effects;
 mod glance;
 mod hard;
 mod lowpass;
 mod machines;
 mod made;
 mod page;
+mod papers;
 mod pictures;
 mod plot;
 mod points;

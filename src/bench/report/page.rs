@@ -2,7 +2,8 @@
 
 use super::plot::{Plot, Style, draw};
 use super::{
-    aliasing, budget, glance, hard, lowpass, machines, made, pictures, points, scaling, terms, yardstick,
+    aliasing, budget, effects, glance, hard, lowpass, machines, made, papers, pictures, points, scaling,
+    terms, yardstick,
 };
 use crate::bench::record::{Contender, Results, Run, Session};
 use crate::bench::show;
@@ -31,7 +32,7 @@ struct Section {
     part: Part,
 }
 
-const SECTIONS: [Section; 10] = [
+const SECTIONS: [Section; 12] = [
     Section { id: "glance", title: "At a glance", part: glance::part },
     Section { id: "budget", title: "Time against error", part: budget::part },
     Section { id: "points", title: "Error against points", part: points::part },
@@ -39,6 +40,8 @@ const SECTIONS: [Section; 10] = [
     Section { id: "aliasing", title: "Aliasing", part: aliasing::part },
     Section { id: "scaling", title: "Scaling", part: scaling::part },
     Section { id: "yardstick", title: "Yardstick", part: yardstick::part },
+    Section { id: "effects", title: "What the papers show", part: effects::part },
+    Section { id: "papers", title: "What the papers measured", part: papers::part },
     Section { id: "hard", title: "Hard cases", part: hard::part },
     Section { id: "pictures", title: "Pictures", part: pictures::part },
     Section { id: "made", title: "How each figure was made", part: made::part },

@@ -1,20 +1,24 @@
 //! Pictures beside the truth and the difference that is seen.
 
 use super::page::{Page, titled};
-use crate::bench::record::{Exhibit, Run, Session};
+use crate::bench::record::{Exhibit, Figure, Run, Session};
 use crate::bench::show;
 use maud::{Markup, html};
 use std::io;
 
 /// Truth, picture and FLIP's map in a row, with what was measured of them.
 pub fn part(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
-    let exhibits = &session.exhibits;
+    // Those of effects are shown with them.
+    let elsewhere =
+        |index| session.runs.iter().any(|run| run.figure == Figure::Effects && run.exhibit == Some(index));
+    let exhibits: Vec<_> =
+        session.exhibits.iter().enumerate().filter(|(index, _)| !elsewhere(*index)).collect();
     Ok((!exhibits.is_empty()).then(|| html! {
         p {
             "From left to right: the truth, the picture, and FLIP's map of the difference that a viewer sees who flips between them, from "
             "black (none) through red to pale yellow (most)."
         }
-        @for (index, exhibit) in exhibits.iter().enumerate() {
+        @for &(index, exhibit) in &exhibits {
             figure.exhibit {
                 div.row { @for (name, png) in pictures(exhibit) {
                     img src={ "data:image/png;base64," (png) } alt={ (exhibit.title) ": " (name) };

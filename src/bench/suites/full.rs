@@ -1,6 +1,6 @@
 //! Every scene, at every density.
 
-use super::{Suite, aliasing, lowpass, plan, yardstick};
+use super::{Suite, aliasing, lowpass, methods, plan, yardstick};
 use crate::bench::plan::{Plan, Wants};
 use crate::bench::record::Figure;
 use crate::scenes;
@@ -23,7 +23,7 @@ pub(super) fn plans() -> Vec<Plan> {
     plans
 }
 
-/// Smooth and sharp, and the yardstick.
+/// Smooth and sharp, every other method, and the yardstick.
 fn budget(scene: &str, points: u64) -> Vec<Plan> {
     let smooth = plan(Suite::Full, Figure::Budget, scene, points, SIZE);
     let mut sharp = smooth.clone();
@@ -31,5 +31,9 @@ fn budget(scene: &str, points: u64) -> Vec<Plan> {
     let wants =
         Wants { terms: true, agreement: points <= 100_000, exhibit: points == 100_000, ..Wants::BOTH };
     let plain = [Kind::Splats, Kind::Pixels].map(|kind| yardstick(&smooth, kind));
-    [Plan { wants, ..smooth }, sharp].into_iter().chain(plain).collect()
+    // Pictures by every method are many: of one scene they are enough.
+    let exhibit = wants.exhibit && scene == "scene:bumpy-sphere";
+    let others = methods(&smooth).map(|plan| Plan { wants: Wants { exhibit, ..Wants::BOTH }, ..plan });
+    let others: Vec<Plan> = others.collect();
+    [Plan { wants, ..smooth }, sharp].into_iter().chain(others).chain(plain).collect()
 }

@@ -2,6 +2,7 @@
 
 mod full;
 mod own;
+mod papers;
 mod plain;
 mod quick;
 mod scaling;
@@ -12,7 +13,9 @@ use super::engine::Engine;
 use super::plan::{Plan, Wants};
 use super::record::Figure;
 use super::stopwatch::Effort;
+use crate::methods::Method;
 use crate::settings::{Settings, Shading, Widen};
+use crate::splatting::Splatting;
 use crate::yardstick::Kind;
 use crate::{scenes, truth};
 use std::time::Duration;
@@ -30,13 +33,16 @@ pub enum Suite {
     Scaling,
     /// Every way to render, as multiples of what a plain program on the CPU takes.
     Yardstick,
+    /// What the papers show, say and measured: their effects, costs and tables.
+    Papers,
     /// What the user brings.
     Own,
 }
 
 impl Suite {
     /// Those that need nothing from the user.
-    pub const ALL: [Self; 5] = [Self::Quick, Self::Full, Self::Hard, Self::Scaling, Self::Yardstick];
+    pub const ALL: [Self; 6] =
+        [Self::Quick, Self::Full, Self::Hard, Self::Scaling, Self::Yardstick, Self::Papers];
 
     /// As it is called on the command line and in results.
     pub fn name(self) -> &'static str {
@@ -46,6 +52,7 @@ impl Suite {
             Self::Hard => "hard",
             Self::Scaling => "scaling",
             Self::Yardstick => "yardstick",
+            Self::Papers => "papers",
             Self::Own => "own",
         }
     }
@@ -58,6 +65,7 @@ impl Suite {
             Self::Hard => Vec::new(),
             Self::Scaling => scaling::plans(),
             Self::Yardstick => plain::plans(),
+            Self::Papers => papers::plans(),
             Self::Own => own::plans(own),
         }
     }
@@ -67,6 +75,7 @@ impl Suite {
         match self {
             Self::Quick => Effort { least: 3, budget: Duration::from_millis(150), ..Effort::default() },
             Self::Scaling => Effort { least: 3, ..Effort::default() },
+            Self::Papers => Effort { least: 3, budget: Duration::from_millis(500), ..Effort::default() },
             Self::Full => Effort { least: 5, budget: Duration::from_millis(700), ..Effort::default() },
             _ => Effort::default(),
         }
@@ -75,28 +84,42 @@ impl Suite {
     /// How exact its exact pictures are.
     pub fn truth(self) -> truth::Options {
         match self {
-            Self::Quick => truth::Options { error: 1.0 / 256.0, most_samples: 256, ..Default::default() },
+            Self::Quick | Self::Papers => {
+                truth::Options { error: 1.0 / 256.0, most_samples: 256, ..Default::default() }
+            }
             _ => truth::Options::default(),
         }
     }
 }
 
 /// What the plans of a figure have in common: time and error of the default method with the default settings.
-fn plan(suite: Suite, figure: Figure, scene: &str, points: u64, size: [u32; 2]) -> Plan {
+pub(super) fn plan(suite: Suite, figure: Figure, scene: &str, points: u64, size: [u32; 2]) -> Plan {
     // What has no texture has light and shade.
     let textured = scenes::is_textured(scene).unwrap_or(true);
     let shading = if textured { Shading::Colour } else { Shading::Lit };
     Plan {
         suite: suite.name(),
         figure,
+        part: String::new(),
         scene: scene.into(),
         points,
         radius_scale: 1.0,
         size,
         engine: Engine::DEFAULT,
         settings: Settings { shading, ..Default::default() },
+        viewpoint: None,
         wants: Wants::BOTH,
+        base: None,
     }
+}
+
+/// The same by every other method, each with its own settings.
+fn methods(plan: &Plan) -> impl Iterator<Item = Plan> + use<> {
+    let plan = plan.clone();
+    Method::ALL.into_iter().filter(|method| method.splatting != Splatting::default()).map(move |method| {
+        let settings = Settings { shading: plan.settings.shading, ..method.settings() };
+        Plan { settings, ..plan.clone() }
+    })
 }
 
 /// The same by a plain program on the CPU.
@@ -152,6 +175,7 @@ mod tests {
                 assert_eq!(plan.suite, suite.name());
                 assert!(Subject::scene(&plan.scene).is_ok(), "{}", plan.scene);
                 assert!(plan.settings.check().is_ok());
+                assert!(plan.viewpoint.is_none() || suite == Suite::Papers);
             }
         }
     }
@@ -160,7 +184,7 @@ mod tests {
     fn runs_of_a_scene_follow_each_other() {
         for suite in Suite::ALL {
             let plans = suite.plans(&Own::default());
-            for figure in plans.chunk_by(|a, b| a.figure == b.figure) {
+            for figure in plans.chunk_by(|a, b| (a.figure, &a.part) == (b.figure, &b.part)) {
                 let mut scenes: Vec<_> =
                     figure.chunk_by(|a, b| a.scene == b.scene).map(|c| &c[0].scene).collect();
                 let count = scenes.len();

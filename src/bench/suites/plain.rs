@@ -10,7 +10,7 @@ use crate::{Precision, Rasterizer};
 const SIZE: [u32; 2] = [1024, 1024];
 
 pub(super) fn plans() -> Vec<Plan> {
-    let vulkan = |rasterizer, precision| Engine::PerspectiveEwa { rasterizer: Some(rasterizer), precision };
+    let vulkan = |rasterizer, precision| Engine::Splatting { rasterizer: Some(rasterizer), precision };
     let engines = [
         vulkan(Rasterizer::Compute, Precision::Full),
         vulkan(Rasterizer::Draw, Precision::Full),

@@ -1,27 +1,25 @@
 //! A first impression of everything.
 
-use super::{Suite, aliasing, lowpass, plan, yardstick};
+use super::{Suite, aliasing, lowpass, methods, plan, yardstick};
 use crate::bench::plan::{Plan, Wants};
 use crate::bench::record::Figure;
 use crate::yardstick::Kind;
 
 const SIZE: [u32; 2] = [320, 320];
+/// What every method is shown by: more of them take more than a minute.
+const EVERY_METHOD: (&str, u64) = ("scene:bumpy-sphere", 100_000);
 
 pub(super) fn plans() -> Vec<Plan> {
     let mut plans = Vec::new();
     for scene in ["scene:bumpy-sphere", "scene:torus", "scene:part"] {
         for points in [10_000, 100_000, 1_000_000] {
             plans.extend(budget(scene, points));
+            if (scene, points) == EVERY_METHOD {
+                plans.extend(methods(&plan(Suite::Quick, Figure::Budget, scene, points, SIZE)));
+            }
         }
     }
-    plans.extend(lowpass(
-        Suite::Quick,
-        "scene:bumpy-sphere",
-        100_000,
-        SIZE,
-        &[0.0, 0.5, 1.0],
-        &[1.5, 2.5, 4.0],
-    ));
+    plans.extend(lowpass(Suite::Quick, "scene:bumpy-sphere", 100_000, SIZE, &[0.0, 0.5, 1.0], &[1.5, 2.5]));
     plans.extend(aliasing(Suite::Quick, [256, 256]));
     plans
 }

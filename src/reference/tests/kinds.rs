@@ -76,7 +76,8 @@ fn object_and_screen_space_filters_are_one_but_for_perspective() {
         let grid = (0..rows * rows).map(|i| {
             let [x, y] = [i % rows, i / rows].map(|v| step * (v as f64 + 0.5) - 3.0);
             let normal = DVec3::new(0.5, -0.3, -1.0);
-            let colour = DVec3::splat(f64::from(((x + 3.0) / 0.3) as i32 + ((y + 3.0) / 0.3) as i32 & 1));
+            let field = ((x + 3.0) / 0.3) as i32 + ((y + 3.0) / 0.3) as i32;
+            let colour = DVec3::splat(f64::from(field & 1));
             let position = DVec3::new(x, y, 3.0 - (normal.x * x + normal.y * y) / normal.z);
             Surfel { colour: Some(colour), ..disc(position, normal, 1.5 * step) }
         });

@@ -1,0 +1,130 @@
+//! What the papers say that something costs: pairs of runs whose frames take turns.
+
+use crate::bench::plan::{Plan, Wants};
+use crate::bench::record::Figure;
+use crate::bench::suites::{Suite, plan};
+use crate::methods::Method;
+use crate::settings::{Settings, Widen};
+use crate::splatting::{Filter, Footprint, Normalization, Splatting, Visibility};
+
+/// Something that costs time.
+pub struct Claim {
+    /// Name of the part.
+    pub name: &'static str,
+    /// What costs time, against what.
+    pub title: &'static str,
+    /// Paper and table or section.
+    pub source: &'static str,
+    /// Times as long it takes there, from the least to the most that are published; none where it is told in words.
+    pub published: Option<[f64; 2]>,
+    /// What the paper says in words, or which of its numbers are compared.
+    pub words: &'static str,
+    scene: [&'static str; 2],
+    settings: fn() -> [Settings; 2],
+}
+
+const SCENE: &str = "scene:bumpy-sphere";
+
+/// All that can be measured, the cheaper side first.
+pub const ALL: [Claim; 6] = [
+    Claim {
+        name: "filtered-sprites",
+        title: "filtered sprites against unfiltered ones",
+        source: "botsch2003 table 1",
+        published: Some([2.2, 2.8]),
+        words: "models of 0.1 to 1.6 M points, 512×512 and 1024×1024",
+        scene: [SCENE; 2],
+        settings: || ["sprites-unfiltered", "sprites"].map(preset),
+    },
+    Claim {
+        name: "object-lowpass",
+        title: "a low-pass filter in object space against none",
+        source: "ren2002 table 1",
+        published: Some([2.5, 3.4]),
+        words: "both without a division at every pixel; here both with it",
+        scene: ["scene:plane?frequency=2"; 2],
+        settings: || {
+            let with = preset("object-ewa");
+            [changed(&with, |splatting| splatting.filter = Filter::None), with]
+        },
+    },
+    Claim {
+        name: "screen-lowpass",
+        title: "a low-pass filter on the screen, for all splats, against none",
+        source: "zwicker2004 section 7",
+        published: None,
+        words: "no number",
+        scene: [SCENE; 2],
+        settings: || {
+            let with = Settings { widen: Widen::All, ..preset("perspective-ewa") };
+            [changed(&with, |splatting| splatting.filter = Filter::None), with]
+        },
+    },
+    Claim {
+        name: "three-passes",
+        title: "three passes against a single one",
+        source: "zwicker2004 table 1",
+        published: Some([3.6, 4.8]),
+        words: "simple z-buffering against visibility, blending and normalization",
+        scene: [SCENE; 2],
+        settings: || {
+            let three = preset("perspective-ewa");
+            let single = changed(&three, |splatting| {
+                splatting.visibility = Visibility::Nearest;
+                splatting.normalization = Normalization::None;
+            });
+            [single, three]
+        },
+    },
+    Claim {
+        name: "clip-lines",
+        title: "clip lines against none",
+        source: "zwicker2004 section 7",
+        published: None,
+        words: "overall performance is not affected significantly",
+        scene: ["scene:part?clips=off", "scene:part?clips=on"],
+        settings: || [preset("perspective-ewa"), preset("perspective-ewa")],
+    },
+    Claim {
+        name: "fractional-sizes",
+        title: "sprites of fractional sizes against whole ones",
+        source: "botsch2003 section 4",
+        published: None,
+        words: "no number",
+        scene: [SCENE; 2],
+        settings: || {
+            let fractional = preset("sprites");
+            [changed(&fractional, |splatting| splatting.footprint = Footprint::WholeSprite), fractional]
+        },
+    },
+];
+
+impl Claim {
+    /// The claim of a name.
+    pub fn named(name: &str) -> Option<&'static Self> {
+        ALL.iter().find(|claim| claim.name == name)
+    }
+
+    /// The cheaper side, and the dearer with its time as a multiple of that.
+    pub fn plans(&self) -> [Plan; 2] {
+        let [first, second] = (self.settings)();
+        let side = |scene, settings: Settings| {
+            let plan = plan(Suite::Papers, Figure::Claims, scene, 100_000, [512, 512]);
+            let settings = Settings { shading: plan.settings.shading, ..settings };
+            Plan { part: self.name.into(), settings, wants: Wants::BOTH, ..plan }
+        };
+        let base = side(self.scene[0], first);
+        let dearer = side(self.scene[1], second);
+        [base.clone(), Plan { base: Some(Box::new(base)), ..dearer }]
+    }
+}
+
+fn preset(name: &str) -> Settings {
+    Method::named(name).unwrap_or(Method::ALL[0]).settings()
+}
+
+fn changed(settings: &Settings, change: impl Fn(&mut Splatting)) -> Settings {
+    let mut settings = settings.clone();
+    change(&mut settings.splatting);
+    settings
+}

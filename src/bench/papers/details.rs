@@ -1,0 +1,145 @@
+//! Metrics that single effects are seen by. All but the overlap are of a picture beside the truth, over black, by the luma of linear light.
+
+use crate::bench::record::Blended;
+use crate::bench::terms::WHOLE;
+use crate::metrics::{Pair, colour, covers};
+use crate::picture::Picture;
+
+/// Pixels well inside the surface that the picture does not cover: the truth covers them and all that its filter reaches.
+pub const GAPS: &str = "gaps";
+/// How unevenly bright the surface is: the standard deviation of the picture's luma over the truth's, as a share of its mean, over pixels that
+/// both cover wholly. 0 where light is only more or less everywhere.
+pub const UNEVENNESS: &str = "unevenness";
+/// How much of the truth's contrast from pixel to pixel is left: `Σ ∇p·∇t / Σ ∇t·∇t` over pixels that both cover wholly. 1 is as sharp as the
+/// truth, less is blurred.
+pub const SHARPNESS: &str = "sharpness";
+/// Facets: the root mean square of the error's Laplacian, over pixels that both cover wholly with their neighbours. What is smooth and
+/// wrong has none; borders between splats have.
+pub const FACETS: &str = "facets";
+
+/// All of them that there are.
+pub fn of(pair: &Pair<'_>) -> Vec<(&'static str, f64)> {
+    let image = Image::new(pair);
+    let gaps = (0..pair.pixels()).filter(|&i| image.inside_truth[i] && !covers(pair.picture(), i)).count();
+    let others = [(UNEVENNESS, image.unevenness()), (SHARPNESS, image.sharpness()), (FACETS, image.facets())];
+    let known = others.into_iter().filter_map(|(name, value)| Some((name, value?)));
+    std::iter::once((GAPS, gaps as f64)).chain(known).collect()
+}
+
+/// Of a picture of [overlaps](crate::settings::Shading::Overlap): none if nothing is covered.
+pub fn blended(picture: &Picture) -> Option<Blended> {
+    let counts = || picture.colour.iter().filter(|pixel| pixel[3] > 0.0).map(|pixel| f64::from(pixel[0]));
+    let covered = counts().count();
+    let mean = counts().sum::<f64>() / covered as f64;
+    (covered > 0).then(|| Blended { mean, largest: counts().fold(0.0, f64::max) })
+}
+
+/// Luma of both, and where there is surface.
+struct Image {
+    width: usize,
+    picture: Vec<f64>,
+    truth: Vec<f64>,
+    inside_truth: Vec<bool>,
+    inside_both: Vec<bool>,
+}
+
+impl Image {
+    fn new(pair: &Pair<'_>) -> Self {
+        let both = [pair.picture(), pair.truth()];
+        let [picture, truth] = both.map(|picture| colour::luma(&colour::over(picture, colour::BLACK)));
+        let [ours, inside_truth] =
+            both.map(|picture| picture.colour.iter().map(|pixel| pixel[3] >= WHOLE).collect::<Vec<_>>());
+        let inside_both = ours.iter().zip(&inside_truth).map(|(a, b)| *a && *b).collect();
+        Self { width: pair.size()[0] as usize, picture, truth, inside_truth, inside_both }
+    }
+
+    /// Pixels that have neighbours on all sides, if they and these lie inside of both.
+    fn inner(&self) -> impl Iterator<Item = usize> + '_ {
+        let (width, inside) = (self.width, &self.inside_both);
+        let height = inside.len() / width;
+        let rows = (1..height.max(1) - 1).map(move |y| y * width);
+        let all = rows.flat_map(move |row| (1..width.max(1) - 1).map(move |x| row + x));
+        all.filter(move |&i| [i, i - 1, i + 1, i - width, i + width].into_iter().all(|k| inside[k]))
+    }
+
+    fn unevenness(&self) -> Option<f64> {
+        let lit = (0..self.truth.len()).filter(|&i| self.inside_both[i] && self.truth[i] > 0.0);
+        let ratios: Vec<f64> = lit.map(|i| self.picture[i] / self.truth[i]).collect();
+        let mean = ratios.iter().sum::<f64>() / ratios.len() as f64;
+        let square = ratios.iter().map(|ratio| (ratio - mean).powi(2)).sum::<f64>() / ratios.len() as f64;
+        (mean > 0.0).then(|| square.sqrt() / mean)
+    }
+
+    fn sharpness(&self) -> Option<f64> {
+        let gradient =
+            |of: &[f64], i: usize| [of[i + 1] - of[i - 1], of[i + self.width] - of[i - self.width]];
+        let sums = self.inner().fold([0.0; 2], |[along, own], i| {
+            let ([px, py], [tx, ty]) = (gradient(&self.picture, i), gradient(&self.truth, i));
+            [along + px * tx + py * ty, own + tx * tx + ty * ty]
+        });
+        (sums[1] > 0.0).then(|| sums[0] / sums[1])
+    }
+
+    fn facets(&self) -> Option<f64> {
+        let error = |i: usize| self.picture[i] - self.truth[i];
+        let laplacian = |i: usize| {
+            error(i - 1) + error(i + 1) + error(i - self.width) + error(i + self.width) - 4.0 * error(i)
+        };
+        let (count, sum) = self.inner().fold((0, 0.0), |(n, sum), i| (n + 1, sum + laplacian(i).powi(2)));
+        (count > 0).then(|| (sum / f64::from(count)).sqrt())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// 8×8 px, of a luma each and a coverage.
+    fn picture(of: impl Fn(usize, usize) -> (f32, f32)) -> Picture {
+        let pixels = (0..64).map(|i| of(i % 8, i / 8)).map(|(grey, alpha)| [grey, grey, grey, alpha]);
+        Picture { size: [8, 8], colour: pixels.collect(), ..Default::default() }
+    }
+
+    fn value(name: &str, picture: &Picture, truth: &Picture) -> f64 {
+        let found = of(&Pair::new(picture, truth).unwrap());
+        found.into_iter().find(|(other, _)| *other == name).unwrap().1
+    }
+
+    #[test]
+    fn gaps_are_what_is_missing_where_the_truth_is_whole() {
+        let truth = picture(|x, _| (0.5, if x == 7 { 0.9 } else { 1.0 }));
+        assert_eq!(value(GAPS, &truth, &truth), 0.0);
+        let holed = picture(|x, y| (0.5, if y == 3 && x > 4 { 0.0 } else { 1.0 }));
+        assert_eq!(value(GAPS, &holed, &truth), 2.0);
+    }
+
+    #[test]
+    fn brightness_is_even_if_it_is_wrong_by_one_factor() {
+        let truth = picture(|x, _| (0.1 + 0.05 * x as f32, 1.0));
+        let scaled = |of: fn(usize) -> f32| picture(|x, _| (of(x) * (0.1 + 0.05 * x as f32), 1.0));
+        assert!(value(UNEVENNESS, &scaled(|_| 2.0), &truth) < 1e-6);
+        // Half of all by 1.5, half by 0.5: a half of the mean.
+        let uneven = value(UNEVENNESS, &scaled(|x| [0.5, 1.5][x % 2]), &truth);
+        assert!((uneven - 0.5).abs() < 1e-6, "{uneven}");
+    }
+
+    #[test]
+    fn blur_takes_sharpness_and_edges_make_facets() {
+        let truth = picture(|x, _| (0.1 * x as f32, 1.0));
+        assert!((value(SHARPNESS, &truth, &truth) - 1.0).abs() < 1e-6);
+        let blurred = picture(|x, _| (0.3 + 0.025 * x as f32, 1.0));
+        assert!((value(SHARPNESS, &blurred, &truth) - 0.25).abs() < 1e-6);
+        // The error of the blurred one is linear; steps of two pixels are off by 0.1 at every other one: Laplacians of ±0.1.
+        assert!(value(FACETS, &blurred, &truth) < 1e-6);
+        let steps = picture(|x, _| (0.2 * (x / 2) as f32, 1.0));
+        let facets = value(FACETS, &steps, &truth);
+        assert!((facets - 0.2).abs() < 1e-6, "{facets}");
+    }
+
+    #[test]
+    fn the_overlap_is_that_of_covered_pixels() {
+        let counts = picture(|x, y| if y == 0 { (x as f32 + 1.0, 1.0) } else { (0.0, 0.0) });
+        assert_eq!(blended(&counts), Some(Blended { mean: 4.5, largest: 8.0 }));
+        assert_eq!(blended(&picture(|_, _| (0.0, 0.0))), None);
+    }
+}

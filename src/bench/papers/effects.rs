@@ -1,0 +1,309 @@
+//! What the papers' figures show: scenes in which one way to splat goes wrong and another does not, and the metrics that tell them apart.
+
+use super::details::{FACETS, GAPS, SHARPNESS, UNEVENNESS};
+use crate::bench::plan::{Plan, Wants};
+use crate::bench::record::{Figure, Run};
+use crate::bench::suites::{Suite, plan};
+use crate::methods::Method;
+use crate::scenes::Viewpoint;
+use crate::settings::{Settings, Shading};
+use crate::splatting::{Filter, Footprint, Kernel, Normalization, Splatting, Visibility};
+
+/// A figure's effect, and its sides.
+pub struct Effect {
+    /// Name of the part.
+    pub name: &'static str,
+    /// What is to be seen.
+    pub title: &'static str,
+    /// Paper and figure.
+    pub source: &'static str,
+    /// What happens, and where it is looked for.
+    pub about: &'static str,
+    /// The metrics that are told: name, label.
+    pub metrics: &'static [(&'static str, &'static str)],
+    /// What the paper's figure leads one to expect.
+    pub expected: &'static [Expected],
+    plans: fn(&Effect) -> Vec<Plan>,
+}
+
+/// One side has more of something than another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Expected {
+    /// Name of the metric.
+    pub metric: &'static str,
+    /// The side with more, by its place.
+    pub more: usize,
+    /// The side with less.
+    pub less: usize,
+    /// How much more.
+    pub by: Margin,
+}
+
+/// How much more of something there is at least.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Margin {
+    /// So many times as much.
+    Times(f64),
+    /// So much more, in the metric's unit, as of none at all there is no multiple.
+    Plus(f64),
+}
+
+impl Expected {
+    /// Whether the runs of an effect, in order, show it; none if a value is missing.
+    pub fn holds(&self, runs: &[&Run]) -> Option<bool> {
+        let [more, less] = [self.more, self.less].map(|side| value(runs.get(side)?, self.metric));
+        let (more, less) = (more?, less?);
+        Some(match self.by {
+            Margin::Times(factor) => more >= factor * less,
+            Margin::Plus(amount) => more >= less + amount,
+        })
+    }
+}
+
+/// Mean number of splats that are blended at a pixel, and the largest.
+const OVERLAP: [(&str, &str); 2] = [("overlap-mean", "splats a pixel"), ("overlap-max", "most at a pixel")];
+
+/// What a run has of a metric.
+pub fn value(run: &Run, metric: &str) -> Option<f64> {
+    match metric {
+        "overlap-mean" => Some(run.blended?.mean),
+        "overlap-max" => Some(run.blended?.largest),
+        _ => run.metric(metric),
+    }
+}
+
+const fn more(metric: &'static str, more: usize, less: usize, by: Margin) -> Expected {
+    Expected { metric, more, less, by }
+}
+
+/// All of them.
+pub const ALL: [Effect; 10] = [
+    Effect {
+        name: "axis-offset",
+        title: "A depth offset along the camera's axis hides too much",
+        source: "ren2002 figures 4 and 5",
+        about: "One slab in front of another, at the side of a wide picture, ε of 4 radii. Discs that are moved along the camera's axis move \
+                towards the middle of the picture, and hide what lies behind beside the silhouette.",
+        metrics: &[(GAPS, "px without surface"), ("rmse", "RMSE")],
+        expected: &[more(GAPS, 0, 1, Margin::Plus(40.0)), more("rmse", 0, 1, Margin::Times(1.1))],
+        plans: axis_offset,
+    },
+    Effect {
+        name: "thickening",
+        title: "Squares thicken contours",
+        source: "botsch2003 figure 1",
+        about: "A sphere of few points. A square of the disc's size that faces the image plane stands out over the outline; an ellipse of the \
+                disc's slope does not.",
+        metrics: &[("bloat", "px too many"), ("rmse", "RMSE")],
+        expected: &[more("bloat", 0, 1, Margin::Times(2.0)), more("rmse", 0, 1, Margin::Times(1.1))],
+        plans: thickening,
+    },
+    Effect {
+        name: "perspective-holes",
+        title: "Footprints that are right at their centre alone leave holes",
+        source: "zwicker2004 figures 3 and 7",
+        about: "A plane of large discs that just cover it, from a flat angle, at the edge of a wide field of view. Then by every other method.",
+        metrics: &[(GAPS, "px without surface"), ("rmse", "RMSE")],
+        expected: &[more(GAPS, 1, 0, Margin::Plus(50.0)), more(GAPS, 3, 0, Margin::Plus(150.0))],
+        plans: perspective_holes,
+    },
+    Effect {
+        name: "moire",
+        title: "Without a low-pass filter a checkerboard flickers",
+        source: "zwicker2004 figure 6, ren2002 figure 11",
+        about: "A checkerboard to the horizon, far finer there than pixels. Flicker is error that comes and goes as the camera turns slowly.",
+        metrics: &[("rmse", "RMSE"), ("flicker", "flicker")],
+        expected: &[
+            more("rmse", 0, 1, Margin::Times(1.3)),
+            more("flicker", 0, 1, Margin::Times(1.2)),
+            more("rmse", 2, 3, Margin::Times(1.3)),
+            more("flicker", 2, 3, Margin::Times(1.2)),
+        ],
+        plans: moire,
+    },
+    Effect {
+        name: "kernel-blur",
+        title: "Wide kernels blur",
+        source: "pajarola2004 figures 9 and 15",
+        about: "A checkerboard whose fields are as wide as two discs' radii, from above. Gaussians of the paper's σ, 0.5 and 0.8 of a rim at \
+                1.5, are cut off at 3 and 1.875 σ. A sharpness of 1 is the exact picture's.",
+        metrics: &[(SHARPNESS, "sharpness"), ("rmse", "RMSE")],
+        expected: &[
+            more(SHARPNESS, 2, 0, Margin::Times(1.2)),
+            more(SHARPNESS, 3, 4, Margin::Times(1.2)),
+            more(SHARPNESS, 1, 4, Margin::Times(1.1)),
+        ],
+        plans: kernel_blur,
+    },
+    Effect {
+        name: "kernel-facets",
+        title: "Narrow kernels show facets",
+        source: "pajarola2004 figures 9 and 16",
+        about: "A sphere lit pixel by pixel, of few points. Where a kernel is narrow one splat counts, and normals jump from one to the next.",
+        metrics: &[(FACETS, "facets"), ("rmse", "RMSE")],
+        expected: &[more(FACETS, 1, 0, Margin::Times(1.05)), more(FACETS, 2, 0, Margin::Times(1.2))],
+        plans: kernel_facets,
+    },
+    Effect {
+        name: "clip-lines",
+        title: "Discs that end at sharp edges keep them sharp",
+        source: "zwicker2004 figures 5 and 8",
+        about: "A block with convex and concave edges, of few points. Whole discs stand out over its edges.",
+        metrics: &[("bloat", "px too many"), ("rmse", "RMSE")],
+        expected: &[more("bloat", 0, 1, Margin::Times(1.5)), more("rmse", 0, 1, Margin::Times(1.1))],
+        plans: clip_lines,
+    },
+    Effect {
+        name: "overlap",
+        title: "How many splats are blended at a pixel",
+        source: "pajarola2004 figure 18",
+        about: "As many points as the paper's Balljoint has. Without a low-pass filter overlap is that of the discs themselves; a filter widens \
+                those that are small. Pictures go from 0 to their own largest number.",
+        metrics: &OVERLAP,
+        expected: &[more("overlap-mean", 1, 0, Margin::Times(1.2))],
+        plans: overlap,
+    },
+    Effect {
+        name: "no-normalization",
+        title: "Without normalization brightness varies with the overlap",
+        source: "ren2002 figure 10a",
+        about: "A sphere of one colour. Unevenness is the standard deviation of brightness, as a share of its mean.",
+        metrics: &[(UNEVENNESS, "unevenness"), ("rmse", "RMSE")],
+        expected: &[more(UNEVENNESS, 0, 1, Margin::Plus(0.05))],
+        plans: no_normalization,
+    },
+    Effect {
+        name: "whole-sizes",
+        title: "Sprites of whole sizes are too large",
+        source: "botsch2003 section 4",
+        about: "Sprites whose width is rounded up to whole pixels. What the rounding saves is among the costs.",
+        metrics: &[("bloat", "px too many"), ("rmse", "RMSE")],
+        expected: &[more("rmse", 0, 1, Margin::Times(1.01))],
+        plans: whole_sizes,
+    },
+];
+
+impl Effect {
+    /// The effect of a name.
+    pub fn named(name: &str) -> Option<&'static Self> {
+        ALL.iter().find(|effect| effect.name == name)
+    }
+
+    /// Its sides.
+    pub fn plans(&self) -> Vec<Plan> {
+        (self.plans)(self)
+    }
+
+    /// A side of a square picture of so many px, of colours and by the default method.
+    fn side(&self, scene: &str, points: u64, side: u32) -> Plan {
+        let wants = Wants { error: true, details: true, exhibit: true, ..Wants::default() };
+        let plan = plan(Suite::Papers, Figure::Effects, scene, points, [side; 2]);
+        Plan { part: self.name.into(), wants, ..plan }
+    }
+}
+
+/// The plan once for every splatting, with the rest of its settings.
+fn each<const N: usize>(plan: &Plan, splattings: [Splatting; N]) -> Vec<Plan> {
+    let one = |splatting| Settings { splatting, ..plan.settings.clone() };
+    splattings.map(|splatting| Plan { settings: one(splatting), ..plan.clone() }).into()
+}
+
+/// The plan once for every method, with the method's settings.
+fn by(plan: &Plan, method: &Method) -> Plan {
+    Plan { settings: Settings { shading: plan.settings.shading, ..method.settings() }, ..plan.clone() }
+}
+
+fn preset(name: &str) -> Method {
+    Method::named(name).unwrap_or(Method::ALL[0])
+}
+
+fn view(eye: [f64; 3], target: [f64; 3], fov_y_deg: f64) -> Option<Viewpoint> {
+    Some(Viewpoint { eye, target, up: [0.0, 1.0, 0.0], fov_y_deg })
+}
+
+fn axis_offset(effect: &Effect) -> Vec<Plan> {
+    let mut plan = effect.side("scene:slabs?slabs=2&gap=0.6&clips=off", 20_000, 192);
+    plan.viewpoint = view([0.3, 3.0, 0.3], [3.2, 0.4, 0.3], 75.0);
+    plan.settings.epsilon = 4.0;
+    let along = |visibility| Splatting { visibility, ..Splatting::default() };
+    each(&plan, [along(Visibility::Axis), along(Visibility::Ray)])
+}
+
+fn thickening(effect: &Effect) -> Vec<Plan> {
+    let ellipses = by(&effect.side("scene:sphere", 3000, 128), &preset("sprites-unfiltered"));
+    let shaped = ellipses.settings.splatting;
+    each(&ellipses, [Splatting { footprint: Footprint::Square, ..shaped }, shaped])
+}
+
+/// The affine approximation beside the exact image, then by every other method.
+fn perspective_holes(effect: &Effect) -> Vec<Plan> {
+    let mut plan = effect.side("scene:relief?height=0&sampler=grid", 100, 192);
+    // Grids come with discs of 1.5 spacings; half the diagonal between neighbours is 0.71 of one, and samples are off the grid by a little.
+    plan.radius_scale = 0.56;
+    plan.viewpoint = view([-2.0, 0.6, 7.2], [-2.0, 3.0, -2.0], 125.0);
+    let affine = Splatting { footprint: Footprint::Affine, ..Splatting::default() };
+    let mut plans = each(&plan, [Splatting::default(), affine]);
+    plans.extend(Method::ALL[1..].iter().map(|method| by(&plan, method)));
+    plans
+}
+
+fn moire(effect: &Effect) -> Vec<Plan> {
+    let mut plan = effect.side("scene:plane?frequency=2", 300_000, 128);
+    plan.wants.flicker = true;
+    let screen = Splatting::default();
+    let object = Splatting { footprint: Footprint::Parallelogram, filter: Filter::Object, ..screen };
+    let without = |splatting| Splatting { filter: Filter::None, ..splatting };
+    each(&plan, [without(screen), screen, without(object), object])
+}
+
+/// The plan by kernels on discs in the tangent plane, each cut off at so many σ.
+fn kernels<const N: usize>(plan: &Plan, kernels: [(Kernel, f32); N]) -> Vec<Plan> {
+    let one = |(kernel, cutoff)| {
+        let splatting =
+            Splatting { footprint: Footprint::Disc, kernel, filter: Filter::None, ..Splatting::default() };
+        let settings = Settings { splatting, cutoff, ..plan.settings.clone() };
+        Plan { settings, ..plan.clone() }
+    };
+    kernels.map(one).into()
+}
+
+const fn confetti(a: f32, n: f32) -> (Kernel, f32) {
+    (Kernel::Confetti { a, n }, 2.5)
+}
+
+fn kernel_blur(effect: &Effect) -> Vec<Plan> {
+    let mut plan = effect.side("scene:relief?height=0&frequency=2", 20_000, 192);
+    plan.viewpoint = view([0.0, 3.0, 0.5], [0.0; 3], 60.0);
+    let gaussian = |sigma: f32| (Kernel::Gaussian, 1.5 / sigma);
+    kernels(&plan, [confetti(1.0, 2.0), confetti(4.0, 5.0), confetti(6.0, 3.0), gaussian(0.5), gaussian(0.8)])
+}
+
+fn kernel_facets(effect: &Effect) -> Vec<Plan> {
+    let plan = effect.side("scene:sphere?albedo=plain", 3000, 256);
+    kernels(&plan, [confetti(4.0, 5.0), confetti(6.0, 3.0), (Kernel::Gaussian, 1.5 / 0.3)])
+}
+
+fn clip_lines(effect: &Effect) -> Vec<Plan> {
+    ["off", "on"].map(|clips| effect.side(&format!("scene:part?clips={clips}"), 5000, 192)).into()
+}
+
+fn overlap(effect: &Effect) -> Vec<Plan> {
+    let mut plan = effect.side("scene:bumpy-sphere", 137_062, 256);
+    plan.settings.shading = Shading::Overlap;
+    // There is no exact number to compare with.
+    plan.wants.error = false;
+    ["confetti", "object-ewa"].map(|name| by(&plan, &preset(name))).into()
+}
+
+fn no_normalization(effect: &Effect) -> Vec<Plan> {
+    let mut plan = effect.side("scene:sphere?albedo=plain", 10_000, 128);
+    plan.settings.shading = Shading::Colour;
+    let normalized = |normalization| Splatting { normalization, ..Splatting::default() };
+    each(&plan, [normalized(Normalization::None), normalized(Normalization::Pixel)])
+}
+
+fn whole_sizes(effect: &Effect) -> Vec<Plan> {
+    let sprites = by(&effect.side("scene:bumpy-sphere", 100_000, 192), &preset("sprites"));
+    let fractional = sprites.settings.splatting;
+    each(&sprites, [Splatting { footprint: Footprint::WholeSprite, ..fractional }, fractional])
+}

@@ -1,0 +1,156 @@
+//! The papers' part of the table on a terminal.
+
+use super::claims::{self, Claim};
+use super::effects::{self, Effect, Margin, value};
+use super::runs;
+use super::tables::{self, Row, Table, Unit};
+use crate::bench::record::{Figure, Run, Session};
+use crate::bench::show;
+use crate::bench::table::WIDTH;
+use std::fmt::Write;
+
+/// What a session has measured of the papers; empty if nothing.
+pub fn text(session: &Session) -> String {
+    let mut text = String::new();
+    for effect in &effects::ALL {
+        effect_lines(&mut text, effect, &runs(&session.runs, Figure::Effects, effect.name));
+    }
+    claim_lines(&mut text, session);
+    for table in &tables::ALL {
+        table_lines(&mut text, table, &runs(&session.runs, Figure::PaperTables, table.source), session);
+    }
+    text.lines().map(folded).collect()
+}
+
+/// A line, in several where it is too wide, the others indented; each with its end.
+fn folded(line: &str) -> String {
+    let (mut text, mut width) = (String::new(), 0);
+    for word in line.split_inclusive(' ') {
+        let length = word.chars().count();
+        if width + length > WIDTH && width > 0 {
+            text.truncate(text.trim_end().len());
+            text += "\n      ";
+            width = 6;
+        }
+        text += word;
+        width += length;
+    }
+    text + "\n"
+}
+
+// Writing to a String cannot fail, here and below.
+
+fn effect_lines(text: &mut String, effect: &Effect, runs: &[&Run]) {
+    if runs.is_empty() {
+        return;
+    }
+    let _ = writeln!(text, "\n{} · {}", effect.title, effect.source);
+    for run in runs {
+        let told = effect
+            .metrics
+            .iter()
+            .filter_map(|(name, label)| Some(format!("{label} {}", show::significant(value(run, name)?, 3))));
+        let what = told.chain(run.refused.clone()).collect::<Vec<_>>().join(", ");
+        let _ = writeln!(text, "  {:<52}  {what}", side(run, runs));
+    }
+    for (words, holds) in verdicts(effect, runs) {
+        let _ =
+            writeln!(text, "  {} {words}", if holds { "as in the paper:" } else { "NOT as in the paper:" });
+    }
+}
+
+/// What tells a side from the others: the contender, and the settings and parameters in which they differ.
+pub(in crate::bench) fn side(run: &Run, runs: &[&Run]) -> String {
+    let mut words = vec![run.contender.label()];
+    let settings = show::told(&run.setting, show::differing(runs.iter().copied()));
+    words.extend(Some(settings).filter(|text| !text.is_empty()));
+    if runs.iter().any(|other| other.scene != run.scene) {
+        words.extend(run.scene.split_once('?').map(|(_, parameters)| parameters.to_owned()));
+    }
+    words.join(", ")
+}
+
+/// What the paper leads one to expect, in words and numbers, and whether it is so.
+pub(in crate::bench) fn verdicts(effect: &Effect, runs: &[&Run]) -> Vec<(String, bool)> {
+    let told = effect.expected.iter().filter_map(|expected| {
+        let holds = expected.holds(runs)?;
+        let [more, less] = [expected.more, expected.less].map(|i| runs.get(i).copied());
+        let (more, less) = (more?, less?);
+        let [a, b] = [more, less].map(|run| value(run, expected.metric).unwrap_or_default());
+        let label = effect.metrics.iter().find(|(name, _)| *name == expected.metric);
+        let label = label.map_or(expected.metric, |(_, label)| label);
+        let [a, b] = [a, b].map(|number| show::significant(number, 3));
+        let margin = match expected.by {
+            Margin::Times(factor) => format!("{} times", show::significant(factor, 3)),
+            Margin::Plus(amount) => format!("{} more", show::significant(amount, 3)),
+        };
+        let [more, less] = [more, less].map(|run| side(run, runs));
+        Some((format!("{label} {a} of {more} against {b} of {less} (at least {margin})"), holds))
+    });
+    told.collect()
+}
+
+fn claim_lines(text: &mut String, session: &Session) {
+    let mut title = Some("\ncosts: times as long, frames taking turns: median (least–greatest)");
+    for claim in &claims::ALL {
+        let runs = runs(&session.runs, Figure::Claims, claim.name);
+        let [_, dearer] = runs[..] else { continue };
+        title.take().into_iter().for_each(|title| {
+            let _ = writeln!(text, "{title}");
+        });
+        let _ = writeln!(text, "  {:<66}  {:<22}  {}", claim.title, ratio(dearer), published(claim));
+    }
+}
+
+/// How many times as long, with the spread.
+pub(in crate::bench) fn ratio(run: &Run) -> String {
+    let number = |value| show::significant(value, 3);
+    match (&run.refused, run.ratio) {
+        (Some(why), _) => format!("refused: {why}"),
+        (_, Some(ratio)) => {
+            format!("{} ({}–{})", number(ratio.median), number(ratio.min), number(ratio.max))
+        }
+        _ => String::new(),
+    }
+}
+
+/// What the paper says of it.
+pub(in crate::bench) fn published(claim: &Claim) -> String {
+    let numbers = claim.published.map(|[least, most]| format!("{least} to {most}, "));
+    format!("{}: {}{}", claim.source, numbers.unwrap_or_default(), claim.words)
+}
+
+fn table_lines(text: &mut String, table: &Table, runs: &[&Run], session: &Session) {
+    if runs.is_empty() {
+        return;
+    }
+    let Table { source, hardware, unit, note, .. } = table;
+    let _ =
+        writeln!(text, "\n{source} · {} · there {hardware} · here {}", unit.name(), show::machine(session));
+    let _ = writeln!(text, "  {note}");
+    let columns = table.columns.iter().map(|name| format!("{name:>12}")).collect::<String>();
+    let _ =
+        writeln!(text, "  {:<32}{:>10}{:>12}{columns}{:>12}  here by", "model", "points", "size px", "here");
+    for row in table.rows {
+        let numbers = row.published.iter().map(|number| format!("{number:>12}")).collect::<String>();
+        let (points, size) = (show::count(row.points), show::size(row.size));
+        let [here, by] = here(row, *unit, runs);
+        let _ = writeln!(text, "  {:<32}{points:>10}{size:>12}{numbers}{here:>12}  {by}", row.model);
+    }
+}
+
+/// The number of a row here, and what it is of; or why there is none.
+pub(in crate::bench) fn here(row: &Row, unit: Unit, runs: &[&Run]) -> [String; 2] {
+    if let Some(why) = row.missing() {
+        return ["".into(), format!("none: {why}")];
+    }
+    let Some(run) = row.run(runs) else { return ["".into(), "not measured".into()] };
+    match (&run.refused, run.ms()) {
+        (Some(why), _) => ["".into(), format!("refused: {why}")],
+        (None, Some(ms)) => {
+            let number = show::significant(unit.of(ms, run.points), 3);
+            [number, format!("{}, {}", run.contender.label(), show::scene(&run.scene))]
+        }
+        (None, None) => ["".into(), "not timed".into()],
+    }
+}

@@ -1,0 +1,58 @@
+//! What the papers' figures show: both sides of each beside each other, with the numbers that tell them apart.
+
+use super::page::Page;
+use crate::bench::papers::effects::{ALL, Effect, value};
+use crate::bench::papers::{runs, side, verdicts};
+use crate::bench::record::{Exhibit, Figure, Run, Session};
+use crate::bench::show;
+use maud::{Markup, html};
+use std::io;
+
+/// An effect after the other.
+pub fn part(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
+    let measured = ALL.iter().map(|effect| (effect, runs(&session.runs, Figure::Effects, effect.name)));
+    let measured: Vec<_> = measured.filter(|(_, runs)| !runs.is_empty()).collect();
+    Ok((!measured.is_empty()).then(|| {
+        html! {
+            p { "Each is a scene of the bench's own in which one way to splat goes wrong and another does not." }
+            @for (effect, runs) in &measured { (one(effect, runs, &session.exhibits)) }
+        }
+    }))
+}
+
+fn one(effect: &Effect, runs: &[&Run], exhibits: &[Exhibit]) -> Markup {
+    let shown = |run: &Run| exhibits.get(run.exhibit?);
+    // Of counts there is no truth.
+    let truth = runs.iter().filter(|run| run.error.is_some()).find_map(|run| shown(run));
+    html! {
+        h3 { (effect.title) }
+        p { (effect.about) " " span.source { "(" (effect.source) ")" } }
+        div.sides {
+            @if let Some(exhibit) = truth { (picture(&exhibit.truth, "the exact picture", &[])) }
+            @for run in runs {
+                @let name = side(run, runs);
+                @let numbers = numbers(effect, run);
+                @if let Some(exhibit) = shown(run) { (picture(&exhibit.picture, &name, &numbers)) }
+                @else { figure { figcaption { strong { (name) } (run.refused.as_deref().unwrap_or("no picture")) } } }
+            }
+        }
+        ul.verdicts { @for (words, holds) in verdicts(effect, runs) {
+            li.grave[!holds] { @if holds { "As in the paper: " } @else { "Not as in the paper: " } (words) "." }
+        } }
+    }
+}
+
+fn picture(png: &str, name: &str, numbers: &[String]) -> Markup {
+    html! {
+        figure {
+            img src={ "data:image/png;base64," (png) } alt=(name);
+            figcaption { strong { (name) } @for number in numbers { span { (number) } } }
+        }
+    }
+}
+
+fn numbers(effect: &Effect, run: &Run) -> Vec<String> {
+    let number =
+        |(name, label): &(&str, &str)| Some(format!("{label}: {}", show::significant(value(run, name)?, 3)));
+    effect.metrics.iter().filter_map(number).collect()
+}

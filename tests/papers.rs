@@ -1,0 +1,65 @@
+//! What the papers' figures show is there to be measured: each effect's sides differ as expected.
+
+mod support;
+
+use std::time::Duration;
+use support::gpu::{assert_silent, device};
+use surfel::bench::papers::effects::{ALL, Effect, value};
+use surfel::bench::record::Run;
+use surfel::bench::runner::{Options, Runner};
+use surfel::bench::stopwatch::Effort;
+use surfel::truth;
+use surfel::vk::DeviceLimits;
+
+/// Every side's values, and that they differ as the paper has it.
+fn check(name: &str) {
+    let effect = Effect::named(name).unwrap();
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let truth = truth::Options { error: 1.0 / 256.0, most_samples: 256, ..Default::default() };
+    let effort = Effort { warmup: 1, least: 1, most: 1, budget: Duration::ZERO };
+    let options = Options { device: Some(device.clone()), cache: None, truth, effort };
+    let mut runner = Runner::new(options, Vec::new());
+    let runs: Vec<Run> = effect.plans().iter().map(|plan| runner.run(plan).unwrap()).collect();
+    for run in &runs {
+        let told = effect.metrics.iter().map(|(name, label)| format!("{label} {:?}", value(run, name)));
+        let what = [run.contender.label(), format!("F {}, {}", run.setting.cutoff, run.scene)];
+        println!("{}: {}: {}", effect.name, what.join(", "), told.collect::<Vec<_>>().join(", "));
+        assert_eq!(run.refused, None);
+    }
+    let runs: Vec<&Run> = runs.iter().collect();
+    for expected in effect.expected {
+        assert_eq!(expected.holds(&runs), Some(true), "{}: {expected:?}", effect.name);
+    }
+    assert_silent(&device);
+}
+
+/// A test an effect, of its name.
+macro_rules! effects {
+    ($($test:ident: $name:literal;)*) => {
+        $(#[test] fn $test() { check($name); })*
+
+        #[test]
+        fn every_effect_has_a_test() {
+            let tested = [$($name),*];
+            assert!(ALL.iter().all(|effect| effect.name == "clip-lines" || tested.contains(&effect.name)));
+        }
+    };
+}
+
+effects! {
+    an_offset_along_the_axis_hides_too_much: "axis-offset";
+    squares_thicken_contours: "thickening";
+    footprints_that_are_right_at_their_centre_alone_leave_holes: "perspective-holes";
+    without_a_low_pass_filter_a_checkerboard_flickers: "moire";
+    wide_kernels_blur: "kernel-blur";
+    narrow_kernels_show_facets: "kernel-facets";
+    filters_add_to_the_overlap: "overlap";
+    without_normalization_brightness_varies: "no-normalization";
+    sprites_of_whole_sizes_are_too_large: "whole-sizes";
+}
+
+#[test]
+#[ignore = "methods draw whole discs as yet: clip lines change nothing"]
+fn discs_that_end_at_sharp_edges_keep_them_sharp() {
+    check("clip-lines");
+}
