@@ -87,10 +87,8 @@ pub enum Visibility {
 pub enum Normalization {
     /// Division by their sum at every pixel.
     Pixel = 0,
-    /// A factor of each surfel, captured beforehand (ren2002 §7).
-    Surfel = 1,
     /// Nothing: brightness varies with the overlap (ren2002 figure 10a).
-    None = 2,
+    None = 1,
 }
 
 /// What is lit, where a frame is [lit](crate::settings::Shading::Lit).
@@ -215,7 +213,6 @@ impl Normalization {
     pub fn name(self) -> &'static str {
         match self {
             Self::Pixel => "pixel",
-            Self::Surfel => "surfel",
             Self::None => "none",
         }
     }

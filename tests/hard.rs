@@ -84,10 +84,10 @@ fn check(sweep: &Sweep, point: &SweepPoint) {
 #[test]
 fn every_case_agrees_or_says_why_not() {
     let Some(device) = device(DeviceLimits::default()) else { return };
-    // Angles are where footprints differ: there every method is held to every value, elsewhere the first.
+    // Angles are where footprints differ: there other methods are held to more values than elsewhere.
     let (angles, rest): (Vec<_>, Vec<_>) =
         names().into_iter().map(str::to_owned).partition(|name| name.starts_with("grazing"));
-    let sweeps = [(angles, usize::MAX), (rest, 2)].map(|(only, others)| {
+    let sweeps = [(angles, 5), (rest, 2)].map(|(only, others)| {
         let options = Options { only, others, ..Default::default() };
         run(&device, &options, &()).unwrap()
     });
@@ -106,7 +106,7 @@ fn every_case_agrees_or_says_why_not() {
                 let by = sweep.points.iter().filter(own).filter(|point| point.contender.variant == variant);
                 by.map(|point| point.value).collect::<Vec<_>>()
             });
-            let least = if method == Method::ALL[0] || sweep.name.starts_with("grazing") { 7 } else { 2 };
+            let least = if method == Method::ALL[0] { 7 } else { 2 };
             let ascending = values.is_sorted_by(|a, b| a < b);
             assert!(values.len() >= least && ascending, "{} {}: {values:?}", sweep.name, method.name);
             assert_eq!(values, others, "{} {}", sweep.name, method.name);

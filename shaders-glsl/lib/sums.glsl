@@ -9,7 +9,7 @@ layout(constant_id = 18) const uint NORMALIZATION = 0;     // as in src/splattin
 layout(constant_id = 19) const bool OVERLAP = false;       // every splat weighs 1: Σw is their number
 
 const uint COLOURS_NONE = 0, COLOURS_SRGB8 = 1, COLOURS_LINEAR = 2;
-const uint PER_PIXEL = 0, PER_SURFEL = 1, NONE = 2;
+const uint PER_PIXEL = 0, NONE = 1;
 
 // Whether Σw is wanted: something is divided by it.
 const bool SUM_WEIGHTS = NORMALIZATION == PER_PIXEL || SUM_DEPTH;

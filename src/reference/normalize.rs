@@ -51,7 +51,7 @@ pub(super) fn resolve(projector: &Projector, at: DVec2, sums: Option<&Sums>) -> 
     let settings = &projector.settings;
     let total = match settings.splatting.normalization {
         Normalization::Pixel => sums.weight,
-        Normalization::Surfel | Normalization::None => 1.0,
+        Normalization::None => 1.0,
     };
     let colour = sums.colour / total;
     let shown = match settings.shading {
