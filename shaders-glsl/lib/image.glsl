@@ -36,6 +36,15 @@ float clearance(Disc disc, vec3 S, vec3 T) {
     return (disc.w.x / frame.cutoff - g) * (disc.w.x / frame.cutoff + g);
 }
 
+// A parallelogram's sides are the ellipse's axes; where its variances differ by no more than this part, they are those of the picture:
+// rounding alone would turn them otherwise.
+const float LEAST_ANISOTROPY = 1e-4;
+
+vec2 axis_of_sides(Conic conic) {
+    bool circle = conic.variance.x - conic.variance.y <= LEAST_ANISOTROPY * conic.variance.x;
+    return FOOTPRINT == PARALLELOGRAM && circle ? vec2(1.0, 0.0) : conic.axis;
+}
+
 // The disc as the projection maps its rim (zwicker2004 §4.4), or as it maps what is next to its centre (ren2002 §3).
 Image image_of_disc(Disc disc, float sigma, vec3 S, vec3 T) {
     vec2 g = vec2(S.z, T.z);
@@ -50,7 +59,9 @@ Image image_of_disc(Disc disc, float sigma, vec3 S, vec3 T) {
     float root = frame.cutoff * sqrt(q);
     float sqrt_det = frame.jacobian * disc.aspect * (sigma / root) * (sigma / root) * abs(disc.facing.x) / root;
     float lean = frame.cutoff * (PERSPECTIVE ? length(g) : sigma * length(frame.forward_hi.xyz * disc.axes));
-    return Image(conic_of(vec3(Dx, 0.0), vec3(Dy, 0.0), o, q, frame.cutoff, sqrt_det), sqrt_det, lean, vec2(0.0));
+    Conic conic = conic_of(vec3(Dx, 0.0), vec3(Dy, 0.0), o, q, frame.cutoff, sqrt_det);
+    conic.axis = axis_of_sides(conic);
+    return Image(conic, sqrt_det, lean, vec2(0.0));
 }
 
 // The part of a vector that is parallel to the image plane.
@@ -72,27 +83,29 @@ float focal_length() {
 Image image_of_sprite(Disc disc, float sigma) {
     float across = dot(disc.normal, frame.forward_hi.xyz);
     vec3 along = flattened(disc.normal);
+    // Not as √(1 − cosine²): that cancels on a sprite that faces the image plane.
+    float sine = min(length(along), sqrt(1.0 - LEAST_FORESHORTENING * LEAST_FORESHORTENING));
     vec3 lean = dot(along, along) > 0.0 ? normalize(along) : vec3(0.0);
     float cosine = max(abs(across), LEAST_FORESHORTENING);
-    float sine = sqrt(1.0 - cosine * cosine);
 
-    vec2 s = sigma * flat_pixel(disc.axes[0]);
-    vec2 t = sigma * flat_pixel(disc.axes[1]);
-    // What the bound adds to the variance along the normal's image.
-    vec2 extra = sigma * disc.aspect * sqrt(cosine * cosine - across * across) * flat_pixel(lean);
     float whole = 1.0;
     if (FOOTPRINT == WHOLE_SPRITE) {
         float width = 2.0 * disc.radius * focal_length() / disc.w.x;
         whole = max(floor(width + 0.5), 1.0) / width;
     }
-    float scale = whole / disc.w.x;
+    // Per unit of `size` so far: squares of the scene's lengths may be no float, nor fourth powers of px.
+    vec2 s = flat_pixel(disc.axes[0]);
+    vec2 t = flat_pixel(disc.axes[1]);
+    // What the bound adds to the variance along the normal's image.
+    vec2 extra = disc.aspect * sqrt(cosine * cosine - across * across) * flat_pixel(lean);
     // |V| is the sum of the squares of all 2×2 minors (Cauchy and Binet); the first is known in closed form.
     vec2 minors = vec2(s.x, t.x) * extra.y - vec2(s.y, t.y) * extra.x;
-    float area = frame.jacobian * disc.aspect * sigma * sigma * abs(across);
-    float sqrt_det = scale * scale * length(vec3(area, minors));
-    float w = disc.w.x / frame.cutoff;
-    Conic conic = conic_of(
-        whole * vec3(s.x, t.x, extra.x), whole * vec3(s.y, t.y, extra.y), vec2(0.0), w * w, frame.cutoff, sqrt_det);
+    float area = length(vec3(frame.jacobian * disc.aspect * abs(across), minors));
+    float size = sigma / disc.w.x * whole;
+    float sqrt_det = size * size * area;
+    vec3 Dx = size * vec3(s.x, t.x, extra.x);
+    vec3 Dy = size * vec3(s.y, t.y, extra.y);
+    Conic conic = conic_of(Dx, Dy, vec2(0.0), 1.0 / (frame.cutoff * frame.cutoff), frame.cutoff, sqrt_det);
 
     vec3 tilt = (across < 0.0 ? -1.0 : 1.0) * sine / (cosine * whole) * lean;
     vec2 slope = vec2(dot(tilt, frame.ray_hi[0].xyz), dot(tilt, frame.ray_hi[1].xyz));

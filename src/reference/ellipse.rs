@@ -5,9 +5,16 @@ use super::{Projector, Splat};
 use crate::settings::Widen;
 use crate::splatting::{Footprint, Kernel};
 use glam::{DVec2, DVec3};
+use std::f64::consts::FRAC_PI_4;
 
 /// Largest factor by which perspective shrinks or enlarges a kernel in the tangent plane against its centre.
 const MOST_STRETCH: f64 = 2.0;
+
+/// Part by which the variances of a parallelogram differ at least; otherwise its sides are the picture's.
+const LEAST_ANISOTROPY: f64 = 1e-4;
+
+/// How far float32's rounding moves the difference of two variances, relative to the larger: four half units in the last place.
+const ROUNDING: f64 = 4.0 / (1 << 24) as f64;
 
 /// Least exponent of a Confetti kernel.
 const LEAST_EXPONENT: f64 = -10.0;
@@ -28,6 +35,8 @@ pub(super) struct Ellipse {
     pub horizon: Option<DVec3>,
     /// Whether the outline is the square about the ellipse.
     pub square: bool,
+    /// How far rounding may turn that square, rad: the nearer the ellipse is to a circle, the less its axes are determined.
+    pub turn: f64,
     /// How the weight falls off.
     pub kernel: Kernel,
     /// What of it is kept.
@@ -57,7 +66,9 @@ impl Ellipse {
         let major = 0.5 * (xx + yy + (xx - yy).hypot(2.0 * xy));
         // Not as the trace minus the major one: that cancels.
         let minor = if major > 0.0 { splat.sqrt_det * (splat.sqrt_det / major) } else { 0.0 };
-        let angle = 0.5 * (2.0 * xy).atan2(xx - yy);
+        let sided = projector.settings.splatting.footprint == Footprint::Parallelogram;
+        let anisotropy = if sided && major > 0.0 { (major - minor) / major } else { 1.0 };
+        let angle = if anisotropy <= LEAST_ANISOTROPY { 0.0 } else { 0.5 * (2.0 * xy).atan2(xx - yy) };
         let variance = DVec2::new(widened(major), widened(minor));
         let splatting = projector.settings.splatting;
         let on_plane = splatting.footprint.is_on_plane() && projector.depth.perspective;
@@ -70,6 +81,7 @@ impl Ellipse {
             cutoff: projector.cutoff(),
             horizon: on_plane.then(|| splat.plane / splat.plane.dot(DVec3::new(1.0, centre.x, centre.y))),
             square: matches!(splatting.footprint, Footprint::Parallelogram | Footprint::Square),
+            turn: if sided { turn(anisotropy) } else { 0.0 },
             kernel: splatting.kernel,
             clip: splat.clip,
         }
@@ -104,6 +116,16 @@ impl Ellipse {
         self.horizon.is_none() && !self.square
     }
 
+    /// How far rounding may move the outline at the offset `e` from the centre, px, beside what it moves any outline.
+    pub fn shift(&self, offset: DVec2) -> f64 {
+        self.turn * offset.length()
+    }
+
+    /// The same anywhere on the outline, at most, in σ of the minor axis.
+    pub fn reach_of_shift(&self) -> f64 {
+        self.turn * self.stretch() * self.cutoff * self.sigma().x / self.sigma().y
+    }
+
     /// How far the outline can reach beyond the ellipse, as a factor.
     fn stretch(&self) -> f64 {
         let rim = if self.square { std::f64::consts::SQRT_2 } else { 1.0 };
@@ -112,14 +134,18 @@ impl Ellipse {
 
     /// Weight at a distance of `m` σ: the kernel's height where the filter has widened it.
     pub fn weight(&self, sigmas: f64) -> f64 {
-        let height = match self.kernel {
-            Kernel::Gaussian => (-0.5 * sigmas * sigmas).exp(),
+        self.amplitude * (-self.exponent(sigmas)).exp()
+    }
+
+    /// Of what the kernel is the exponential, negated, at a distance of `m` σ.
+    pub fn exponent(&self, sigmas: f64) -> f64 {
+        match self.kernel {
+            Kernel::Gaussian => 0.5 * sigmas * sigmas,
             Kernel::Confetti { a, n } => {
                 let t = (sigmas / self.cutoff).powf(n.into()).min(1.0);
-                (-f64::from(a) * t / (1.0 - t)).max(LEAST_EXPONENT).exp()
+                (f64::from(a) * t / (1.0 - t)).min(-LEAST_EXPONENT)
             }
-        };
-        self.amplitude * height
+        }
     }
 
     /// How much steeper than a Gaussian the kernel is at a distance of `m` σ: `|d ln w / dm| − m`, or 0.
@@ -173,6 +199,16 @@ impl Ellipse {
             return (self.rim(offset) - self.cutoff).abs() / slope;
         }
         to_ellipse(self.cutoff * self.sigma(), self.principal(offset).abs())
+    }
+}
+
+/// How far rounding may turn the sides of a parallelogram whose variances differ by that part, rad.
+fn turn(anisotropy: f64) -> f64 {
+    let past = anisotropy - LEAST_ANISOTROPY;
+    match past {
+        _ if past.abs() <= ROUNDING => FRAC_PI_4,
+        _ if past < 0.0 => 0.0,
+        _ => ROUNDING / anisotropy,
     }
 }
 
@@ -250,6 +286,7 @@ mod tests {
             cutoff: 2.0,
             horizon: None,
             square: false,
+            turn: 0.0,
             kernel: Kernel::Gaussian,
             clip: None,
         };

@@ -103,7 +103,8 @@ impl Projector {
     fn sprite_image(&self, disc: &Disc, whole: f64) -> Image {
         let (normal, flat) = (disc.normal, disc.normal.truncate());
         let cosine = normal.z.abs().max(LEAST_FORESHORTENING);
-        let sine = (1.0 - cosine * cosine).sqrt();
+        // Not as √(1 − cosine²): that cancels on a sprite that faces the image plane.
+        let sine = flat.length().min((1.0 - LEAST_FORESHORTENING * LEAST_FORESHORTENING).sqrt());
         let lean = flat.normalize_or_zero();
         // Seen along the axis, the semi-axes lose their z; the bound gives some of the shorter one back along the normal.
         let given_back =

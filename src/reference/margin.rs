@@ -22,6 +22,8 @@ pub(super) struct Candidate<'a> {
     pub wobble: f64,
     /// The kernel's weight.
     pub weight: f64,
+    /// Of what the kernel is the exponential, negated.
+    pub exponent: f64,
     /// How far rounding may move the weight, relative to it.
     pub sway: f64,
     /// The same through a shift of the whole splat on the screen.
@@ -56,12 +58,13 @@ impl Margins<'_> {
         for splat in splats.iter() {
             let ellipse = footprint(splat, self.projector);
             // m changes by no more than 1 / (minor σ) a px, or the stretch of a kernel in the plane times that and its own slope.
-            let reach = if ellipse.is_plain() { CUTOFF / ellipse.sigma().y } else { 64.0 * CUTOFF };
+            let slope = if ellipse.is_plain() { 1.0 / ellipse.sigma().y } else { 64.0 };
+            let reach = slope * CUTOFF + ellipse.reach_of_shift();
             // What rounding shifts a pixel coordinate by, in σ.
             let shift = self.rounding * self.projector.size.max_element() / ellipse.sigma().y;
             band.scan(&ellipse, ellipse.cutoff + reach, |hit| {
                 let edge = (hit.rim - ellipse.cutoff).abs() <= reach;
-                let near_rim = edge && ellipse.distance(hit.offset) <= CUTOFF;
+                let near_rim = edge && ellipse.distance(hit.offset) <= CUTOFF + ellipse.shift(hit.offset);
                 if (near_rim || hit.rim <= ellipse.cutoff) && hit.kept >= -CUTOFF {
                     let near = near_rim || hit.kept <= CUTOFF;
                     let mut candidate = self.candidate(splat, &hit, near);
@@ -69,6 +72,7 @@ impl Margins<'_> {
                         // A kernel that is steeper than a Gaussian makes more of the same shift.
                         c.sway += shift * ellipse.steepness(hit.sigmas);
                         (c.weight, c.drift) = (ellipse.weight(hit.sigmas), shift * hit.sigmas);
+                        c.exponent = ellipse.exponent(hit.sigmas);
                     }
                     candidate.into_iter().for_each(&mut visit);
                 }
@@ -83,7 +87,8 @@ impl Margins<'_> {
         let within = |margin: f64| depth >= nearest + margin && depth <= farthest - margin;
         let (sway, certain) = (self.rounding * (splat.secant + self.turn(splat)), false);
         let pixel = hit.index;
-        let mut candidate = Candidate { splat, pixel, depth, wobble, weight: 0.0, sway, drift: 0.0, certain };
+        let mut candidate =
+            Candidate { splat, pixel, depth, wobble, weight: 0.0, exponent: 0.0, sway, drift: 0.0, certain };
         candidate.certain = !near && in_front && within(wobble);
         within(-wobble).then_some(candidate)
     }
