@@ -54,6 +54,7 @@ pub mod metrics;
 pub mod passes;
 pub mod picture;
 mod progress;
+pub mod pull_push;
 mod readback;
 pub mod reference;
 pub mod renderer;

@@ -22,6 +22,7 @@ mod margin;
 mod nearest;
 mod normalize;
 mod projector;
+pub mod pull_push;
 mod scene;
 mod shading;
 mod slack;
@@ -90,15 +91,16 @@ impl Frame {
         }
     }
 
-    fn of(values: &[Value], scene: &Scene, size: [u32; 2]) -> Self {
+    /// Of so many values, without counts.
+    fn of(values: &[Value], size: [u32; 2]) -> Self {
         Self {
             size,
             colour: values.iter().map(|v| v.colour).collect(),
             depth: values.iter().map(|v| v.depth).collect(),
             normal: values.iter().map(|v| v.normal).collect(),
             covered: values.iter().map(|v| v.covered).collect(),
-            counts: scene.counts,
-            dual_form: scene.dual_form,
+            counts: Counts::default(),
+            dual_form: 0,
         }
     }
 }
@@ -140,5 +142,5 @@ fn draw(projector: &Projector, scene: &Scene, bands: &Bands, progress: &dyn Prog
             values
         })
         .collect();
-    Frame::of(&values, scene, bands.size)
+    Frame { counts: scene.counts, dual_form: scene.dual_form, ..Frame::of(&values, bands.size) }
 }

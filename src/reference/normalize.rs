@@ -66,7 +66,8 @@ pub(super) fn resolve(projector: &Projector, at: DVec2, sums: Option<&Sums>) -> 
     Value { covered: true, colour: shown.extend(1.0).to_array(), depth, normal: normal.to_array() }
 }
 
-fn uncovered(projector: &Projector) -> Value {
+/// The value of a pixel where nothing is.
+pub(super) fn uncovered(projector: &Projector) -> Value {
     let colour = match projector.settings.background {
         Some([r, g, b]) => [r.into(), g.into(), b.into(), 1.0],
         None => [0.0; 4],

@@ -99,7 +99,7 @@ impl Truth {
     }
 
     /// Whether the rays of the pixel's eight neighbours meet the sphere; not on the picture's edge.
-    fn is_interior(&self, index: usize) -> bool {
+    pub fn is_interior(&self, index: usize) -> bool {
         let side = self.side as usize;
         let (x, y) = (index % side, index / side);
         let inner = 1..side - 1;

@@ -1,0 +1,180 @@
+//! The float64 twin of pull–push: points one pixel large, from which a pyramid of ever coarser pictures makes a surface
+//! (marroquim2008).
+//!
+//! ```text
+//! surfels ─ project → level 0 ─ pull → 1 ─ pull → … → L        the pulled pyramid, fine to coarse
+//!                       │              │              │
+//!           picture ← shade ← 0 ← push ← 1 ← push ← … L        the final one, coarse to fine
+//! ```
+//!
+//! Level `l` has a pixel for every `2^l` × `2^l` of the picture's; the centre of its pixel `(i, j)` is at `2^l (i + ½, j + ½)` px. All
+//! lengths on the screen are px of the picture, whatever the level.
+
+mod lens;
+mod paper;
+mod project;
+mod pull;
+mod push;
+mod shade;
+#[cfg(test)]
+mod tests;
+
+use super::{Frame, Projector};
+use crate::error::Result;
+use crate::geometry::{Camera, Surfels};
+use crate::pull_push::{PullPush, Rules};
+use crate::settings::Settings;
+use glam::{DVec2, DVec3};
+use lens::Lens;
+use rayon::prelude::*;
+
+pub use project::Visible;
+
+/// What a pixel of a level knows of the surface: a disc.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Least distance from which on the surface is.
+    pub near: f64,
+    /// Greatest distance up to which another surface is the same.
+    pub far: f64,
+    /// Distance of the disc's centre.
+    pub depth: f64,
+    /// Of the disc's centre from the pixel's, px.
+    pub displacement: DVec2,
+    /// Of the disc seen face-on, px.
+    pub radius: f64,
+    /// Unit, eye space.
+    pub normal: DVec3,
+    /// Linear.
+    pub colour: DVec3,
+}
+
+/// A level of a pyramid.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Level {
+    /// 0 is the picture's own.
+    pub level: u32,
+    /// Width and height, pixels of this level.
+    pub size: [u32; 2],
+    /// Row by row from the top left; `None` where nothing is known.
+    pub samples: Vec<Option<Sample>>,
+}
+
+/// Both pyramids, by level.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pyramid {
+    /// Fine to coarse: means.
+    pub pulled: Vec<Level>,
+    /// Coarse to fine: holes filled, and hidden samples replaced.
+    pub pushed: Vec<Level>,
+}
+
+impl Level {
+    /// Makes a level of so many pixels, each by its coordinates.
+    fn new(level: u32, size: [u32; 2], sample: impl Fn([i64; 2]) -> Option<Sample> + Sync) -> Self {
+        let width = i64::from(size[0]);
+        let count = width * i64::from(size[1]);
+        let samples = (0..count).into_par_iter().map(|i| sample([i % width, i / width])).collect();
+        Self { level, size, samples }
+    }
+
+    /// The sample at these coordinates; `None` outside, too.
+    pub fn at(&self, [x, y]: [i64; 2]) -> Option<Sample> {
+        let [width, height] = self.size.map(i64::from);
+        let inside = (0..width).contains(&x) && (0..height).contains(&y);
+        inside.then(|| self.samples[(y * width + x) as usize]).flatten()
+    }
+
+    /// Centre of the pixel at these coordinates, px.
+    pub fn centre(&self, coordinates: [i64; 2]) -> DVec2 {
+        centre(self.level, coordinates)
+    }
+
+    /// Size of the next coarser level.
+    pub fn coarser_size(&self) -> [u32; 2] {
+        self.size.map(|side| side.div_ceil(2))
+    }
+}
+
+/// Centre of a pixel of a level, px.
+fn centre(level: u32, [x, y]: [i64; 2]) -> DVec2 {
+    (DVec2::new(x as f64, y as f64) + 0.5) * f64::from(level).exp2()
+}
+
+/// A frame's rules and camera.
+pub struct Reconstruction {
+    projector: Projector,
+    lens: Lens,
+    pull_push: PullPush,
+}
+
+impl Reconstruction {
+    /// Prepares a frame of `size` px; fails as [`Projector::new`].
+    pub fn new(camera: &Camera, size: [u32; 2], settings: &Settings, pull_push: PullPush) -> Result<Self> {
+        let projector = Projector::new(camera, size, settings)?;
+        let lens = Lens::new(&projector);
+        Ok(Self { projector, lens, pull_push })
+    }
+
+    /// Pass `project`: level 0 of the pulled pyramid, and what became of the surfels.
+    pub fn project(&self, surfels: &Surfels) -> Visible {
+        project::pass(self, surfels)
+    }
+
+    /// Pass `pull`: the level above.
+    pub fn pull(&self, finer: &Level) -> Level {
+        match self.pull_push.rules {
+            Rules::Paper => paper::pull(&self.lens, finer),
+            Rules::Robust => pull::pass(&self.lens, finer),
+        }
+    }
+
+    /// Pass `push`: the final level below `coarser`, which is final, from the pulled one.
+    pub fn push(&self, coarser: &Level, pulled: &Level) -> Level {
+        match self.pull_push.rules {
+            Rules::Paper => paper::push(&self.lens, coarser, pulled),
+            Rules::Robust => push::pass(&self.lens, coarser, pulled),
+        }
+    }
+
+    /// Pass `shade`: the picture, from the final level 0.
+    pub fn shade(&self, pushed: &Level) -> Frame {
+        shade::pass(self, pushed)
+    }
+
+    /// The level on which the largest visible disc is no larger than a pixel: what is coarser changes nothing.
+    pub fn top_level(finest: &Level) -> u32 {
+        let largest = finest.samples.iter().flatten().map(|sample| sample.radius).fold(0.0, f64::max);
+        largest.log2().ceil().max(1.0) as u32
+    }
+
+    /// Both pyramids, up to the level `top`.
+    pub fn pyramid(&self, finest: Level, top: u32) -> Pyramid {
+        let mut pulled = vec![finest];
+        while pulled.len() <= top as usize {
+            pulled.push(self.pull(&pulled[pulled.len() - 1]));
+        }
+        // What is known of the coarsest level is final.
+        let mut pushed = vec![pulled[pulled.len() - 1].clone()];
+        for level in pulled.iter().rev().skip(1) {
+            pushed.push(self.push(&pushed[pushed.len() - 1], level));
+        }
+        pushed.reverse();
+        Pyramid { pulled, pushed }
+    }
+}
+
+/// Renders `surfels` as `camera` sees them, `size` = width and height in px; fails as [`Projector::new`].
+pub fn render(
+    surfels: &Surfels,
+    camera: &Camera,
+    size: [u32; 2],
+    settings: &Settings,
+    pull_push: PullPush,
+) -> Result<Frame> {
+    let reconstruction = Reconstruction::new(camera, size, settings, pull_push)?;
+    let visible = reconstruction.project(surfels);
+    let top = Reconstruction::top_level(&visible.level);
+    let pyramid = reconstruction.pyramid(visible.level, top);
+    Ok(Frame { counts: visible.counts, ..reconstruction.shade(&pyramid.pushed[0]) })
+}

@@ -1,0 +1,67 @@
+//! Passes `pull` and `push` as the paper has them (marroquim2008 sections 3.2 and 3.3).
+
+use super::lens::Lens;
+use super::pull::{children, mean_of_front};
+use super::push::nearest_four;
+use super::{Level, Sample, centre};
+use glam::{DVec2, DVec3};
+
+/// Least minor semi-axis of an ellipse, px.
+const LEAST_AXIS: f64 = 0.5;
+
+/// `ln` of the weight at the rim, negated: σ is half of the radius.
+const RIM: f64 = 2.0;
+
+/// Squared distance of `at` from the centre of a disc's ellipse by parallel projection, in its radii.
+fn radii2(sample: &Sample, disc: DVec2, at: DVec2) -> f64 {
+    let e = at - disc;
+    let along = sample.normal.truncate().normalize_or(DVec2::X);
+    let minor = (sample.radius * sample.normal.z.abs()).max(LEAST_AXIS);
+    let major = sample.radius.max(LEAST_AXIS);
+    (e.dot(along) / minor).powi(2) + (e.perp_dot(along) / major).powi(2)
+}
+
+/// Fine to coarse.
+pub fn pull(_: &Lens, finer: &Level) -> Level {
+    let level = finer.level + 1;
+    Level::new(level, finer.coarser_size(), |at| {
+        let own = centre(level, at);
+        mean_of_front(own, &children(finer, at, |sample, disc| radii2(sample, disc, own) <= 1.0))
+    })
+}
+
+/// Coarse to fine: a pixel that is empty, or behind what the coarser one has, is made anew.
+pub fn push(_: &Lens, coarser: &Level, pulled: &Level) -> Level {
+    Level::new(pulled.level, pulled.size, |at| {
+        let own = centre(pulled.level, at);
+        let around = nearest_four(at);
+        let point = pulled.at(at);
+        let behind = |point: &Sample| coarser.at(around[0]).is_some_and(|surface| point.near > surface.far);
+        match point {
+            Some(point) if !behind(&point) => Some(point),
+            _ => blend(own, &around.map(|at| Some((coarser.at(at)?, coarser.centre(at))))),
+        }
+    })
+}
+
+fn blend(own: DVec2, coarser: &[Option<(Sample, DVec2)>]) -> Option<Sample> {
+    let weighted = coarser.iter().flatten().filter_map(|(sample, centre)| {
+        let disc = *centre + sample.displacement;
+        let radii2 = radii2(sample, disc, own);
+        (radii2 <= 1.0).then(|| (sample, disc, (-RIM * radii2).exp()))
+    });
+    let discs: Vec<_> = weighted.collect();
+    let total: f64 = discs.iter().map(|(_, _, weight)| weight).sum();
+    let mean = |of: &dyn Fn(&Sample) -> f64| discs.iter().map(|(s, _, w)| w * of(s)).sum::<f64>() / total;
+    let mean3 =
+        |of: &dyn Fn(&Sample) -> DVec3| discs.iter().map(|(s, _, w)| *w * of(s)).sum::<DVec3>() / total;
+    (total > 0.0).then(|| Sample {
+        near: mean(&|sample| sample.near),
+        far: mean(&|sample| sample.far),
+        depth: mean(&|sample| sample.depth),
+        displacement: discs.iter().map(|(_, disc, w)| *w * (*disc - own)).sum::<DVec2>() / total,
+        radius: mean(&|sample| sample.radius),
+        normal: mean3(&|sample| sample.normal).normalize_or_zero(),
+        colour: mean3(&|sample| sample.colour),
+    })
+}

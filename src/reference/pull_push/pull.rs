@@ -1,0 +1,47 @@
+//! Pass `pull`: the discs that a coarser pixel has in front (marroquim2008 section 3.2; a perspective ellipse, and true displacements).
+
+use super::lens::Lens;
+use super::{Level, Sample, centre};
+use glam::{DVec2, DVec3};
+
+pub fn pass(lens: &Lens, finer: &Level) -> Level {
+    let level = finer.level + 1;
+    Level::new(level, finer.coarser_size(), |at| {
+        let own = centre(level, at);
+        let covers = |sample: &Sample, disc: DVec2| lens.radii2(sample, disc, own, 0.0) <= 1.0;
+        mean_of_front(own, &children(finer, at, covers))
+    })
+}
+
+/// The finer samples under a pixel whose discs cover its centre, with their discs' centres.
+pub fn children(
+    finer: &Level,
+    [x, y]: [i64; 2],
+    covers: impl Fn(&Sample, DVec2) -> bool,
+) -> Vec<(Sample, DVec2)> {
+    let corners = [[0, 0], [1, 0], [0, 1], [1, 1]].map(|[dx, dy]| [2 * x + dx, 2 * y + dy]);
+    let discs = corners.into_iter().filter_map(|at| {
+        let sample = finer.at(at)?;
+        Some((sample, finer.centre(at) + sample.displacement))
+    });
+    discs.filter(|(sample, disc)| covers(sample, *disc)).collect()
+}
+
+/// The mean of those discs that are one surface with the nearest, for the pixel with this centre.
+pub fn mean_of_front(own: DVec2, discs: &[(Sample, DVec2)]) -> Option<Sample> {
+    let (front, _) = discs.iter().min_by(|a, b| a.0.near.total_cmp(&b.0.near))?;
+    let front: Vec<_> = discs.iter().filter(|(sample, _)| sample.near <= front.far).collect();
+    let count = front.len() as f64;
+    let mean = |of: &dyn Fn(&Sample) -> f64| front.iter().map(|(sample, _)| of(sample)).sum::<f64>() / count;
+    let mean3 =
+        |of: &dyn Fn(&Sample) -> DVec3| front.iter().map(|(sample, _)| of(sample)).sum::<DVec3>() / count;
+    Some(Sample {
+        near: front.iter().map(|(sample, _)| sample.near).fold(f64::INFINITY, f64::min),
+        far: front.iter().map(|(sample, _)| sample.far).fold(0.0, f64::max),
+        depth: mean(&|sample| sample.depth),
+        displacement: front.iter().map(|(_, disc)| *disc - own).sum::<DVec2>() / count,
+        radius: mean(&|sample| sample.radius),
+        normal: mean3(&|sample| sample.normal).normalize_or_zero(),
+        colour: mean3(&|sample| sample.colour),
+    })
+}

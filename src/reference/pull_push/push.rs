@@ -1,0 +1,79 @@
+//! Pass `push`: a finer pixel from the coarser ones about it, and from its neighbours (marroquim2008 section 3.3; with the nearest
+//! surface alone, and with neighbours of the same level, without which steep surfaces have holes).
+
+use super::lens::Lens;
+use super::{Level, Sample, centre};
+use glam::{DVec2, DVec3};
+
+/// What a disc's variance is widened by on level 0, px²; four times as much a level. Narrower ones leave holes between themselves.
+const WIDENING: f64 = 0.25;
+
+/// `ln` of the weight at a disc's rim, negated: σ is a third of the radius.
+const RIM: f64 = 4.5;
+
+/// A disc that covers a pixel's centre.
+struct Candidate {
+    sample: Sample,
+    /// Its centre, px.
+    disc: DVec2,
+    weight: f64,
+}
+
+pub fn pass(lens: &Lens, coarser: &Level, pulled: &Level) -> Level {
+    let widening = WIDENING * f64::from(pulled.level).exp2().powi(2);
+    Level::new(pulled.level, pulled.size, |at| {
+        let own = centre(pulled.level, at);
+        let candidate = |level: &Level, at: [i64; 2]| {
+            let sample = level.at(at)?;
+            let disc = level.centre(at) + sample.displacement;
+            let radii2 = lens.radii2(&sample, disc, own, widening);
+            (radii2 <= 1.0).then(|| Candidate { sample, disc, weight: (-RIM * radii2).exp() })
+        };
+        let above = nearest_four(at).map(|at| candidate(coarser, at));
+        let beside = neighbours(at).map(|at| candidate(pulled, at));
+        // On the finest level a point is seen where its disc covers the pixel's centre; elsewhere it is a source alone.
+        let shown = pulled.level > 0 || beside[4].is_some();
+        let candidates: Vec<_> = above.into_iter().chain(beside).flatten().collect();
+        let surface = blend(lens, own, &candidates, pulled.level == 0);
+        match (pulled.at(at).filter(|_| shown), surface) {
+            (Some(point), Some(surface)) if point.near > surface.far => Some(surface),
+            (Some(point), Some(surface)) if pulled.level == 0 && surface.near <= point.far => {
+                let Sample { colour, normal, depth, .. } = surface;
+                Some(Sample { colour, normal, depth, ..point })
+            }
+            (Some(point), _) => Some(point),
+            (None, surface) => surface,
+        }
+    })
+}
+
+/// The pixel of the next coarser level that holds a pixel, and the three that are next to it on its side.
+pub fn nearest_four([x, y]: [i64; 2]) -> [[i64; 2]; 4] {
+    let [[x0, x1], [y0, y1]] = [x, y].map(|i| [i.div_euclid(2), i.div_euclid(2) + 2 * i.rem_euclid(2) - 1]);
+    [[x0, y0], [x1, y0], [x0, y1], [x1, y1]]
+}
+
+/// A pixel with its eight neighbours, row by row.
+fn neighbours([x, y]: [i64; 2]) -> [[i64; 2]; 9] {
+    std::array::from_fn(|i| [x + i as i64 % 3 - 1, y + i as i64 / 3 - 1])
+}
+
+/// The weighted mean of the candidates that are one surface with the nearest, for the pixel with this centre.
+fn blend(lens: &Lens, own: DVec2, candidates: &[Candidate], finest: bool) -> Option<Sample> {
+    let front = candidates.iter().map(|c| &c.sample).min_by(|a, b| a.near.total_cmp(&b.near))?;
+    let front: Vec<_> = candidates.iter().filter(|c| c.sample.near <= front.far).collect();
+    let total: f64 = front.iter().map(|c| c.weight).sum();
+    let mean = |of: &dyn Fn(&Candidate) -> f64| front.iter().map(|c| c.weight * of(c)).sum::<f64>() / total;
+    let mean3 =
+        |of: &dyn Fn(&Sample) -> DVec3| front.iter().map(|c| c.weight * of(&c.sample)).sum::<DVec3>() / total;
+    Some(Sample {
+        near: mean(&|c| c.sample.near),
+        far: mean(&|c| c.sample.far),
+        // Discs carry the depths of their centres; a pixel of the picture shows that of its own.
+        depth: mean(&|c| if finest { lens.depth_at(&c.sample, c.disc, own) } else { c.sample.depth }),
+        displacement: front.iter().map(|c| c.weight * (c.disc - own)).sum::<DVec2>() / total,
+        radius: mean(&|c| c.sample.radius),
+        normal: mean3(&|sample| sample.normal).normalize_or_zero(),
+        colour: mean3(&|sample| sample.colour),
+    })
+}

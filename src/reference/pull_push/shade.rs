@@ -1,0 +1,42 @@
+//! Pass `shade`: the picture, lit pixel by pixel (marroquim2008 section 3.4).
+
+use super::super::normalize::{Value, uncovered};
+use super::super::{Frame, lit};
+use super::{Level, Reconstruction, Sample};
+use crate::settings::Shading;
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+
+pub fn pass(frame: &Reconstruction, pushed: &Level) -> Frame {
+    let width = i64::from(pushed.size[0]);
+    let values: Vec<Value> = pushed
+        .samples
+        .par_iter()
+        .enumerate()
+        .map(|(i, sample)| match sample {
+            Some(sample) => value(frame, sample, pushed.centre([i as i64 % width, i as i64 / width])),
+            None => uncovered(&frame.projector),
+        })
+        .collect();
+    Frame::of(&values, pushed.size)
+}
+
+fn value(frame: &Reconstruction, sample: &Sample, at: DVec2) -> Value {
+    let projector = &frame.projector;
+    let (viewer, normal) = (projector.to_viewer(at), projector.to_world(sample.normal));
+    let settings = &projector.settings;
+    let shown = match settings.shading {
+        Shading::Lit => lit(&settings.lighting, sample.colour, normal, viewer),
+        Shading::Colour => sample.colour,
+        Shading::Normal => normal,
+        Shading::Depth => DVec3::splat(sample.depth),
+        // A pixel shows one point, or what is made of those about it.
+        Shading::Overlap => DVec3::ONE,
+    };
+    Value {
+        covered: true,
+        colour: shown.extend(1.0).to_array(),
+        depth: sample.depth,
+        normal: normal.to_array(),
+    }
+}

@@ -1,0 +1,139 @@
+//! What single pixels of the pyramids have to be.
+
+use super::*;
+use crate::settings::{Cull, Shading};
+use glam::DVec3;
+
+/// Looks along +z from the origin; one unit at distance 1 is 64 px.
+fn camera() -> Camera {
+    let fov = 2.0 * 0.5f64.atan();
+    Camera::look_at(DVec3::ZERO, DVec3::Z, DVec3::NEG_Y, fov, 1.0, 0.01).unwrap()
+}
+
+fn frame(rules: Rules) -> Reconstruction {
+    let settings = Settings { shading: Shading::Colour, cull: Cull::Back, ..Default::default() };
+    Reconstruction::new(&camera(), [64, 64], &settings, PullPush { rules }).unwrap()
+}
+
+/// A disc that faces the eye from the middle of the view.
+fn sample(near: f64, radius: f64) -> Sample {
+    Sample {
+        near,
+        far: near + 0.1,
+        depth: near,
+        displacement: DVec2::ZERO,
+        radius,
+        normal: DVec3::NEG_Z,
+        colour: DVec3::ONE,
+    }
+}
+
+/// A level of 64 px of the picture, with some samples.
+fn level(level: u32, known: &[([i64; 2], Sample)]) -> Level {
+    let side = 64 >> level;
+    let find = |at: [i64; 2]| known.iter().find(|(place, _)| *place == at).map(|(_, sample)| *sample);
+    Level::new(level, [side; 2], find)
+}
+
+fn discs(list: &[(DVec3, DVec3, f32)]) -> Surfels {
+    Surfels {
+        positions: list.iter().map(|(p, _, _)| p.as_vec3()).collect(),
+        normals: list.iter().map(|(_, n, _)| n.as_vec3().normalize()).collect(),
+        radii: list.iter().map(|(_, _, r)| *r).collect(),
+        ..Default::default()
+    }
+}
+
+#[test]
+fn ellipses_are_the_derivative_of_the_projection() {
+    let projector = Projector::new(&camera(), [64, 64], &Settings::default()).unwrap();
+    let lens = Lens::new(&projector);
+    // Points of a small circle about the centre, projected: on the rim to first order in the radius.
+    let (centre, normal, radius) = (DVec3::new(0.7, -0.4, 2.0), DVec3::new(0.5, 0.3, -1.0).normalize(), 1e-4);
+    let pixel = |p: DVec3| {
+        let h = projector.homogeneous_pixel(p.extend(1.0));
+        h.truncate() / h.z
+    };
+    let seen = Sample { normal, depth: 2.0, radius: lens.to_pixels(radius, 2.0), ..sample(2.0, 0.0) };
+    let (s, t) = normal.any_orthonormal_pair();
+    for i in 0..12 {
+        let (sin, cos) = (f64::from(i) * 0.5).sin_cos();
+        let rim = pixel(centre + radius * (cos * s + sin * t));
+        let found = lens.radii2(&seen, pixel(centre), rim, 0.0);
+        assert!((found - 1.0).abs() < 1e-3, "{i}: {found}");
+    }
+    // Of the plane, too.
+    let at = pixel(centre + radius * s);
+    let met = lens.depth_at(&seen, pixel(centre), at);
+    assert!((met - (centre + radius * s).z).abs() < 1e-9, "{met}");
+}
+
+#[test]
+fn depth_is_moved_by_a_radius_at_most() {
+    let projector = Projector::new(&camera(), [64, 64], &Settings::default()).unwrap();
+    let lens = Lens::new(&projector);
+    let steep = Sample { normal: DVec3::new(1.0, 0.0, -0.01).normalize(), ..sample(2.0, 8.0) };
+    let reach = lens.to_length(8.0, 2.0);
+    let at = |x: f64| lens.depth_at(&steep, DVec2::splat(32.0), DVec2::new(x, 32.0));
+    assert_eq!((at(32.0), at(24.0), at(60.0)), (2.0, 2.0 - reach, 2.0 + reach));
+}
+
+#[test]
+fn the_nearest_point_of_a_pixel_is_seen_and_of_two_alike_the_first() {
+    let towards = DVec3::NEG_Z;
+    let at = |z: f64| DVec3::new(0.01 * z, 0.02 * z, z);
+    let list = [
+        (at(3.0), towards, 0.2),
+        (at(2.0), towards, 0.1),
+        (at(2.0), towards, 0.3),
+        (at(1.0), -towards, 0.1),
+        (at(1e-3), towards, 0.1),
+        (DVec3::new(9.0, 0.0, 1.0), towards, 0.1),
+        (at(2.0), towards, f32::NAN),
+    ];
+    let seen = frame(Rules::Robust).project(&discs(&list));
+    let there: Vec<_> = (0..64 * 64).filter_map(|i| Some((i, seen.index[i]?))).collect();
+    assert_eq!(there, [(33 * 64 + 32, 1)]);
+    let sample = seen.level.samples[33 * 64 + 32].unwrap();
+    assert!(sample.displacement.abs_diff_eq(DVec2::new(0.14, -0.22), 1e-5), "{sample:?}");
+    assert!((sample.radius - 0.1 * 64.0 / 2.0).abs() < 1e-6 && (sample.far - 2.2).abs() < 1e-6, "{sample:?}");
+    let c = seen.counts;
+    assert_eq!((c.surfels, c.drawn, c.back, c.behind, c.outside, c.invalid), (7, 3, 1, 1, 1, 1));
+}
+
+#[test]
+fn a_parent_is_the_mean_of_the_front_that_covers_it() {
+    for rules in [Rules::Paper, Rules::Robust] {
+        // Of pixel (16, 16) above, whose centre is at 33: one in front, one of the same surface, one behind, one that is too small.
+        let small = sample(1.9, 0.6);
+        let known = [
+            ([32, 32], sample(2.0, 4.0)),
+            ([33, 32], Sample { radius: 6.0, ..sample(2.05, 4.0) }),
+            ([32, 33], sample(2.2, 4.0)),
+            ([33, 33], small),
+        ];
+        let parent = frame(rules).pull(&level(0, &known)).at([16, 16]).unwrap();
+        assert_eq!((parent.near, parent.far, parent.radius), (2.0, 2.05 + 0.1, 5.0), "{rules:?}");
+        assert!((parent.depth - 2.025).abs() < 1e-12);
+        // Both centres are half a pixel above it, and on either side.
+        assert!(parent.displacement.abs_diff_eq(DVec2::new(0.0, -0.5), 1e-12), "{parent:?}");
+    }
+}
+
+#[test]
+fn a_hole_is_filled_and_a_hidden_point_replaced() {
+    for rules in [Rules::Paper, Rules::Robust] {
+        let coarse = level(1, &[([16, 16], sample(2.0, 6.0)), ([15, 16], sample(2.0, 6.0))]);
+        let fine = level(0, &[([32, 32], sample(3.0, 0.8)), ([33, 32], sample(1.0, 0.8))]);
+        let finished = frame(rules).push(&coarse, &fine);
+        let near = |x: i64| finished.at([x, 32]).map(|sample| sample.near);
+        assert_eq!((near(31), near(32), near(33)), (Some(2.0), Some(2.0), Some(1.0)), "{rules:?}");
+        assert_eq!(near(50), None);
+    }
+}
+
+#[test]
+fn the_four_nearest_are_on_a_pixels_own_side() {
+    assert_eq!(push::nearest_four([4, 7]), [[2, 3], [1, 3], [2, 4], [1, 4]]);
+    assert_eq!(push::nearest_four([0, 0]), [[0, 0], [-1, 0], [0, -1], [-1, -1]]);
+}

@@ -1,0 +1,129 @@
+//! Pull–push on the bumpy sphere, from ten thousand to a million points: the float64 reference against rays through the exact surface.
+
+mod support {
+    pub mod truth;
+}
+
+use glam::DVec3;
+use support::truth::{Differences, Truth};
+use surfel::pull_push::{PullPush, Rules};
+use surfel::reference::Frame;
+use surfel::reference::pull_push::{Pyramid, Reconstruction};
+use surfel::scenes::bumpy_sphere::Hit;
+use surfel::settings::{Cull, Settings, Shading};
+use surfel::{Picture, scenes};
+
+/// How far behind the surface a pixel shows what it should hide.
+const LEAK: f64 = 0.02;
+
+/// What is wrong with a picture.
+#[derive(Debug)]
+struct Faults {
+    differences: Differences,
+    /// Pixels that show what is behind the surface.
+    leaks: usize,
+    /// Mean angle between the normals, degrees, inside the outline where the surface that is seen is shown.
+    normal: f64,
+    /// Points that lie on the surface that is seen and were taken for hidden, per cent of the pixels with a point on it.
+    removed: f64,
+}
+
+impl Faults {
+    /// Holes, missing and extra pixels, per cent of wrong checker pixels, degrees.
+    fn figures(&self) -> [f64; 5] {
+        let d = &self.differences;
+        [d.holes as f64, d.missing as f64, d.extra as f64, d.wrong_percent(), self.normal]
+    }
+}
+
+fn distance(truth: &Truth, position: DVec3) -> f64 {
+    truth.camera().view.transform_point3(position).z
+}
+
+fn faults(truth: &Truth, frame: &Frame, pyramid: &Pyramid) -> Faults {
+    let picture: Picture = frame.to_picture();
+    let colour = |i: usize| {
+        let [r, g, b, a] = picture.colour[i];
+        (a > 0.0, [r, g, b])
+    };
+    let hits = || truth.hits.iter().enumerate().filter_map(|(i, hit)| Some((i, (*hit)?)));
+    let shown: Vec<_> = hits().filter(|(i, _)| frame.covered[*i]).collect();
+    let behind = |(i, hit): &(usize, Hit)| frame.depth[*i] - distance(truth, hit.position);
+    let angles: Vec<f64> = shown
+        .iter()
+        .filter(|seen| truth.is_interior(seen.0) && behind(seen).abs() < LEAK)
+        .map(|(i, hit)| DVec3::from_array(frame.normal[*i]).angle_between(hit.normal).to_degrees())
+        .collect();
+    let [points, finals] = [&pyramid.pulled[0], &pyramid.pushed[0]].map(|level| &level.samples);
+    let on_surface: Vec<usize> = hits()
+        .filter(|(i, hit)| points[*i].is_some_and(|p| (p.near - distance(truth, hit.position)).abs() < LEAK))
+        .map(|(i, _)| i)
+        .collect();
+    // A point that stays keeps its interval.
+    let removed = on_surface.iter().filter(|&&i| {
+        let (point, now) = (points[i].unwrap(), finals[i]);
+        now.is_some_and(|now| now.near != point.near && point.near > now.far)
+    });
+    Faults {
+        differences: truth.compare(colour),
+        leaks: shown.iter().filter(|seen| behind(seen) > LEAK).count(),
+        normal: angles.iter().sum::<f64>() / angles.len() as f64,
+        removed: 100.0 * removed.count() as f64 / on_surface.len() as f64,
+    }
+}
+
+fn render(truth: &Truth, points: u32, rules: Rules) -> Faults {
+    let surfels = scenes::open(&format!("scene:bumpy-sphere?points={points}&seed=1")).unwrap();
+    let settings = Settings { shading: Shading::Colour, cull: Cull::Back, ..Default::default() };
+    let frame = Reconstruction::new(&truth.camera(), truth.size(), &settings, PullPush { rules }).unwrap();
+    let visible = frame.project(&surfels).level;
+    let top = Reconstruction::top_level(&visible);
+    let pyramid = frame.pyramid(visible, top);
+    let found = faults(truth, &frame.shade(&pyramid.pushed[0]), &pyramid);
+    let wrong = [found.differences.wrong_percent(), found.differences.wrong_encoded_percent()];
+    println!(
+        "{points} points, {rules:?}, {top} levels: {found:?}, wrong {wrong:.3?} % (linear, sRGB-encoded)"
+    );
+    found
+}
+
+#[test]
+fn coarser_levels_than_the_largest_disc_change_nothing() {
+    let truth = Truth::new(128);
+    let surfels = scenes::open("scene:bumpy-sphere?points=2000&seed=1").unwrap();
+    let settings = Settings { cull: Cull::Back, ..Default::default() };
+    let of =
+        |rules| Reconstruction::new(&truth.camera(), truth.size(), &settings, PullPush { rules }).unwrap();
+    let frame = of(Rules::Robust);
+    let visible = frame.project(&surfels).level;
+    let top = Reconstruction::top_level(&visible);
+    let picture = |top: u32| frame.shade(&frame.pyramid(visible.clone(), top).pushed[0]);
+    assert_eq!(picture(top), picture(top + 1));
+    assert_ne!(picture(top), picture(top - 2), "levels are of no use");
+}
+
+#[test]
+fn the_reference_reaches_what_was_measured() {
+    let truth = Truth::new(1024);
+    // Holes, missing, extra, wrong %, normal °; leaks, where discs are small enough to tell.
+    let bars = [
+        (10_000, [15.0, 15.0, 6700.0, 9.5, 0.75], usize::MAX),
+        (30_000, [20.0, 20.0, 2750.0, 5.35, 0.38], usize::MAX),
+        (100_000, [15.0, 15.0, 1550.0, 3.05, 0.25], 5),
+        (300_000, [12.0, 12.0, 1220.0, 1.9, 0.16], 5),
+        (1_000_000, [10.0, 12.0, 1110.0, 1.1, 0.10], 5),
+    ];
+    let mut failed = Vec::new();
+    for (points, bar, leaks) in bars {
+        let [paper, robust] = [Rules::Paper, Rules::Robust].map(|rules| render(&truth, points, rules));
+        let within = robust.figures().iter().zip(bar).all(|(found, bar)| *found <= bar);
+        if !within || robust.leaks > leaks || points >= 100_000 && robust.removed > 1.0 {
+            failed.push(format!("{points}: {robust:?}"));
+        }
+        assert!(
+            paper.differences.extra > robust.differences.extra && paper.normal > robust.normal,
+            "{paper:?}"
+        );
+    }
+    assert!(failed.is_empty(), "{failed:#?}");
+}
