@@ -160,6 +160,7 @@ impl Renderer {
         read: bool,
     ) -> Result<FrameReport> {
         settings.check()?;
+        settings.splatting.normalization.check_weights(scene.weights.is_some())?;
         let block = frame(camera, settings, self.options.size, scene.origin(), scene.bounds())?;
         let blends = settings.splatting.visibility != Visibility::Nearest;
         let rasterizer = rasterizer_for(&self.device, &self.options, blends)?;

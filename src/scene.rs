@@ -1,7 +1,9 @@
 //! Geometry on the GPU: only the streams that the scene has.
 
+mod weights;
+
 use crate::error::{Error, Result};
-use crate::geometry::{Bounds, Colours, Ellipse, Surfels};
+use crate::geometry::{Bounds, Colours, Ellipse, Surfels, Weights};
 use crate::vk::shaders::layout::Splat;
 use crate::vk::{Binding, Buffer, Capabilities, Device, upload};
 use glam::DVec3;
@@ -9,6 +11,7 @@ use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
+use weights::WeightStream;
 
 /// Surfels resident on a device.
 pub struct Scene {
@@ -20,11 +23,21 @@ pub struct Scene {
     pub(crate) two_sided: bool,
     pub(crate) ellipses: Option<Buffer>,
     pub(crate) colours: Option<Buffer>,
+    pub(crate) weights: Option<WeightBuffer>,
     colour_stream: ColourStream,
     windows: Vec<Range<u64>>,
     count: u64,
     origin: DVec3,
     bounds: Bounds,
+}
+
+/// Normalization weights of a scene.
+pub(crate) struct WeightBuffer {
+    buffer: Buffer,
+    /// Where each window of surfels has its words, in words.
+    windows: Vec<Range<u64>>,
+    /// Whether some surfels have weights at the corners of their squares.
+    pub corners: bool,
 }
 
 /// How a scene holds its colours; the numbers are those of `shaders-glsl/lib/sums.glsl`.
@@ -81,6 +94,9 @@ impl Scene {
             Some(Colours::Srgb8(colours)) => (ColourStream::Srgb8, bytemuck::cast_slice(colours)),
             Some(Colours::Linear(colours)) => (ColourStream::Linear, bytemuck::cast_slice(colours)),
         };
+        let windows = windows(count, device.capabilities());
+        let weights =
+            surfels.weights.as_ref().map(|weights| WeightBuffer::new(device, surfels, weights, &windows));
         let scene = Self {
             id: NEXT.fetch_add(1, Ordering::Relaxed),
             positions: upload(device, "positions", bytemuck::cast_slice(&surfels.positions))?,
@@ -93,8 +109,9 @@ impl Scene {
             colours: (colour_stream != ColourStream::None)
                 .then(|| upload(device, "colours", colours))
                 .transpose()?,
+            weights: weights.transpose()?,
             colour_stream,
-            windows: windows(count, device.capabilities()),
+            windows,
             count,
             origin: surfels.origin,
             bounds,
@@ -125,7 +142,12 @@ impl Scene {
     /// Memory of its streams, bytes.
     pub fn bytes(&self) -> u64 {
         let optional = [&self.ellipses, &self.colours].map(|stream| stream.as_ref().map_or(0, Buffer::size));
-        self.positions.size() + self.normals.size() + self.radii.size() + optional.iter().sum::<u64>()
+        let weights = self.weights.as_ref().map_or(0, |weights| weights.buffer.size());
+        self.positions.size()
+            + self.normals.size()
+            + self.radii.size()
+            + weights
+            + optional.iter().sum::<u64>()
     }
 
     /// Ranges of surfels that one descriptor set can name.
@@ -133,9 +155,10 @@ impl Scene {
         &self.windows
     }
 
-    /// A window of each stream: positions, normals, radii, colours, ellipses. A stream that the scene lacks is stood in for by the radii, which
-    /// the shaders then do not read.
-    pub(crate) fn bindings(&self, window: &Range<u64>) -> [Binding<'_>; 5] {
+    /// Window `number` of each stream: positions, normals, radii, colours, ellipses, weights. A stream that the scene lacks is stood in for
+    /// by the radii, which the shaders then do not read.
+    pub(crate) fn bindings(&self, number: usize) -> [Binding<'_>; 6] {
+        let window = &self.windows[number];
         let part = |buffer, stride| {
             Binding::Storage(buffer, window.start * stride, (window.end - window.start) * stride)
         };
@@ -151,7 +174,30 @@ impl Scene {
                 Some(ellipses) => part(ellipses, ELLIPSE),
                 None => part(&self.radii, SCALAR),
             },
+            match &self.weights {
+                Some(weights) => weights.binding(number),
+                None => part(&self.radii, SCALAR),
+            },
         ]
+    }
+}
+
+impl WeightBuffer {
+    fn new(
+        device: &Arc<Device>,
+        surfels: &Surfels,
+        weights: &Weights,
+        windows: &[Range<u64>],
+    ) -> Result<Self> {
+        let WeightStream { words, windows } =
+            WeightStream::new(surfels, weights, windows, step(device.capabilities()));
+        let buffer = upload(device, "weights", bytemuck::cast_slice(&words))?;
+        Ok(Self { buffer, windows, corners: !weights.corners.is_empty() })
+    }
+
+    fn binding(&self, window: usize) -> Binding<'_> {
+        let Range { start, end } = self.windows[window];
+        Binding::Storage(&self.buffer, start * SCALAR, (end - start) * SCALAR)
     }
 }
 
@@ -187,11 +233,15 @@ fn marked_radii(surfels: &Surfels, invalid: usize) -> Cow<'_, [f32]> {
     surfels.radii.iter().enumerate().map(mark).collect()
 }
 
+/// Every stride is a multiple of 4 bytes, so this many elements start at a multiple of the alignment in each stream.
+fn step(capabilities: &Capabilities) -> u64 {
+    capabilities.storage_buffer_alignment.max(256)
+}
+
 /// Splits `count` surfels so that a window of any stream, the splats' included, fits a descriptor and starts aligned, and so that a
 /// window's workgroups and vertices can be counted.
 fn windows(count: u64, capabilities: &Capabilities) -> Vec<Range<u64>> {
-    // Every stride is a multiple of 4 bytes, so this many elements start at a multiple of the alignment in each stream.
-    let step = capabilities.storage_buffer_alignment.max(256);
+    let step = step(capabilities);
     let largest_stride = size_of::<Splat>() as u64;
     let fitting = (capabilities.max_storage_buffer_range / largest_stride)
         .min(u64::from(capabilities.max_workgroups) * 64)

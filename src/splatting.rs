@@ -173,6 +173,22 @@ impl Splatting {
     }
 }
 
+impl Normalization {
+    /// Refuses surfels without the weights that it needs.
+    ///
+    /// # Errors
+    /// [`Error::Usage`].
+    pub fn check_weights(self, there: bool) -> Result<()> {
+        match self {
+            Self::Surfel if !there => refuse(
+                "normalization by surfel needs surfels with normalization weights: capture them with `surfel convert --weights`, or \
+                 choose the normalization pixel",
+            ),
+            _ => Ok(()),
+        }
+    }
+}
+
 impl Footprint {
     /// As options and reports call it.
     pub fn name(self) -> &'static str {

@@ -52,11 +52,11 @@ layout(location = 3) flat in vec4 plane_lo_disc;
 layout(depth_less) out float gl_FragDepth;
 
 // As splat_fragment; where there is no fragment, there is none.
-void drawn_fragment(out float m2, out float key) {
+void drawn_fragment(out vec2 m, out float key) {
     float key_centre = centre_key(plane_epsilon.xyz, plane_lo_disc.xyz, anchor_offset.zw);
     Ellipse ellipse =
         Ellipse(anchor_offset.xy, anchor_offset.zw, whitening, plane_epsilon.xyz, plane_lo_disc.xyz, key_centre);
-    if (!splat_fragment(ellipse, gl_FragCoord.xy, m2, key)) discard;
+    if (!splat_fragment(ellipse, gl_FragCoord.xy, m, key)) discard;
 }
 
 #endif

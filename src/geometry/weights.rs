@@ -2,7 +2,7 @@
 //! 2002, section 7).
 
 use crate::error::{Error, Result};
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 /// A factor of each surfel's kernel. They belong to the surfels as they are: other radii, or fewer neighbours, need other weights.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -30,6 +30,15 @@ pub fn first_axis(normal: DVec3) -> DVec3 {
     let s = if normal.z >= 0.0 { 1.0 } else { -1.0 };
     let a = -1.0 / (s + normal.z);
     DVec3::new(1.0 + s * normal.x * normal.x * a, s * normal.x * normal.y * a, -s * normal.x)
+}
+
+/// The first axis of the square about a disc, a unit vector at a right angle to its normal; `major` is that of an ellipse.
+pub(crate) fn square_axis(normal: Vec3, major: Option<Vec3>) -> DVec3 {
+    let normal = normal.as_dvec3().normalize_or_zero();
+    match major {
+        Some(major) => major.as_dvec3().reject_from_normalized(normal).normalize_or_zero(),
+        None => first_axis(normal),
+    }
 }
 
 impl Weights {

@@ -45,7 +45,8 @@ const COUNTS_STEP: u64 = 256;
 const LIST_HEADER: u64 = size_of::<LargeSplats>() as u64;
 
 impl SplatLayout {
-    /// Bindings as in `lib/frame.glsl`, `lib/splat.glsl`, `footprint.glsl`, `attribute.glsl` and `lib/scatter_splat.glsl`.
+    /// Bindings as in `lib/frame.glsl`, `lib/splat.glsl`, `footprint.glsl`, `attribute.glsl`, `lib/scatter_splat.glsl` and
+    /// `lib/weights.glsl`.
     pub fn new(device: &Arc<Device>) -> Result<Self> {
         let (compute, vertex) = (ShaderStageFlags::COMPUTE, ShaderStageFlags::VERTEX);
         let storage = |stages| (DescriptorType::STORAGE_BUFFER, stages);
@@ -60,6 +61,7 @@ impl SplatLayout {
             storage(compute),          // counts
             storage(compute),          // large splats
             storage(compute),          // ellipses
+            storage(compute | vertex), // weights
         ];
         Ok(Self { splats: SetLayout::new(device, &bindings)?, pixels: pixel_layout(device)? })
     }
@@ -92,14 +94,14 @@ impl Splats {
         let window = |(number, range): (u64, &Range<u64>)| {
             let count = range.end - range.start;
             let list = number * LIST_HEADER + 4 * range.start;
-            let [positions, normals, radii, colours, ellipses] = scene.bindings(range);
+            let [positions, normals, radii, colours, ellipses, weights] = scene.bindings(number as usize);
             let own = Binding::Storage(&splats, range.start * stride, count * stride);
             let tally = Binding::Storage(&counts, number * COUNTS_STEP, COUNTS_STEP);
             // Without the compute rasterizer nothing is listed, and the counts stand in.
             let large =
                 large.as_ref().map_or(tally, |large| Binding::Storage(large, list, LIST_HEADER + 4 * count));
             let frame = Binding::Uniform(frame);
-            let bindings = [frame, own, positions, normals, radii, colours, tally, large, ellipses];
+            let bindings = [frame, own, positions, normals, radii, colours, tally, large, ellipses, weights];
             let set = DescriptorSet::new(device, &layout.splats, &bindings)?;
             Ok(Window { set, count: count as u32, first: range.start as u32, list })
         };
