@@ -97,7 +97,7 @@ impl Weights {
     }
 
     /// Gives surfels whose factor is 0 the middle one of the others; `None` if there are no others.
-    pub(super) fn filled(mut self) -> Option<Self> {
+    pub(crate) fn filled(mut self) -> Option<Self> {
         let mut known: Vec<f32> = self.of.iter().copied().filter(|&weight| weight > 0.0).collect();
         let middle = known.len() / 2;
         let (_, &mut median, _) =
