@@ -87,7 +87,7 @@ pub enum Visibility {
 pub enum Normalization {
     /// Division by their sum at every pixel.
     Pixel = 0,
-    /// A factor of each surfel, captured beforehand (ren2002 §7).
+    /// A factor of each surfel, captured beforehand ([`crate::capture`]; ren2002 §7).
     Surfel = 1,
     /// Nothing: brightness varies with the overlap (ren2002 figure 10a).
     None = 2,
@@ -167,6 +167,22 @@ impl Splatting {
             ),
             _ if !blends && normalization != Normalization::None => refuse(
                 "a pixel that sees the nearest splat alone has nothing to normalize: choose the normalization none",
+            ),
+            _ => Ok(()),
+        }
+    }
+}
+
+impl Normalization {
+    /// Refuses surfels without the weights that it needs.
+    ///
+    /// # Errors
+    /// [`Error::Usage`].
+    pub fn check_weights(self, there: bool) -> Result<()> {
+        match self {
+            Self::Surfel if !there => refuse(
+                "normalization by surfel needs surfels with normalization weights: capture them with `surfel convert --weights`, or \
+                 choose the normalization pixel",
             ),
             _ => Ok(()),
         }

@@ -4,7 +4,7 @@ use super::footprint::ScreenClip;
 use super::{Projector, Splat};
 use crate::settings::Widen;
 use crate::splatting::{Footprint, Kernel};
-use glam::{DVec2, DVec3};
+use glam::{DMat2, DVec2, DVec3};
 
 /// Largest factor by which perspective shrinks or enlarges a kernel in the tangent plane against its centre.
 const MOST_STRETCH: f64 = 2.0;
@@ -32,6 +32,9 @@ pub(super) struct Ellipse {
     pub kernel: Kernel,
     /// What of it is kept.
     pub clip: Option<ScreenClip>,
+    /// Normalization weights at the corners of the kernel's square, and from that square's axes to the kernel's.
+    pub corners: [f64; 4],
+    pub turn: DMat2,
 }
 
 impl Ellipse {
@@ -72,18 +75,21 @@ impl Ellipse {
             square: matches!(splatting.footprint, Footprint::Parallelogram | Footprint::Square),
             kernel: splatting.kernel,
             clip: splat.clip,
+            corners: splat.weights,
+            turn: turn(splat, DVec2::from_angle(angle)),
         }
     }
 
     /// Where in the kernel the offset `e` from the centre is: along its axes, in σ. Seen in perspective, what lies in a plane is a
     /// homography of it; one that keeps the centre is affine but for the division by the plane's inverse distance.
-    fn in_kernel(&self, offset: DVec2) -> DVec2 {
+    pub fn in_kernel(&self, offset: DVec2) -> DVec2 {
         let at = self.centre + offset;
         let nearness = self.horizon.map_or(1.0, |plane| plane.dot(DVec3::new(1.0, at.x, at.y)));
         self.principal(offset) / self.sigma() / nearness.clamp(1.0 / MOST_STRETCH, MOST_STRETCH)
     }
 
     /// `m = √(e V'⁻¹ eᵀ)` of the offset `e` from the centre, in σ.
+    #[cfg(test)]
     pub fn sigmas(&self, offset: DVec2) -> f64 {
         self.in_kernel(offset).length()
     }
@@ -110,8 +116,20 @@ impl Ellipse {
         if self.horizon.is_some() { MOST_STRETCH * rim } else { rim }
     }
 
-    /// Weight at a distance of `m` σ: the kernel's height where the filter has widened it.
-    pub fn weight(&self, sigmas: f64) -> f64 {
+    /// Weight at the place `m` in the kernel, σ: the kernel's height where the filter has widened it, times the normalization weight.
+    pub fn weight(&self, m: DVec2) -> f64 {
+        self.height(m.length()) * self.normalization(m)
+    }
+
+    /// The normalization weight at the place `m` in the kernel, σ: bilinear in its square (ren2002 section 7.2).
+    fn normalization(&self, m: DVec2) -> f64 {
+        let [a, b, c, d] = self.corners;
+        let at = (self.turn.transpose() * m / self.cutoff).clamp(DVec2::NEG_ONE, DVec2::ONE);
+        let [low, high] = [0.5 - 0.5 * at, 0.5 + 0.5 * at];
+        low.y * (low.x * a + high.x * b) + high.y * (low.x * c + high.x * d)
+    }
+
+    fn height(&self, sigmas: f64) -> f64 {
         let height = match self.kernel {
             Kernel::Gaussian => (-0.5 * sigmas * sigmas).exp(),
             Kernel::Confetti { a, n } => {
@@ -174,6 +192,15 @@ impl Ellipse {
         }
         to_ellipse(self.cutoff * self.sigma(), self.principal(offset).abs())
     }
+}
+
+/// From the axes of a disc's square to those of its kernel on the screen, of which `major` is the longer. Without a filter `V = D Dᵀ`, and the
+/// kernel's axes are `Λ^(-1/2) Rᵀ D` of the square's: a rotation, or a reflection where the back is seen. Its first row is the image of the
+/// longer axis; the other one, at a right angle, is not computed from the shorter, which may have no length.
+fn turn(splat: &Splat, major: DVec2) -> DMat2 {
+    let first = (splat.square.transpose() * major).try_normalize().unwrap_or(DVec2::X);
+    let second = splat.square.determinant().signum() * first.perp();
+    DMat2::from_cols(first, second).transpose()
 }
 
 /// Distance of `p`, in the first quadrant, to the ellipse of semi-axes `axes.x ≥ axes.y`. The foot of the perpendicular is
@@ -252,6 +279,8 @@ mod tests {
             square: false,
             kernel: Kernel::Gaussian,
             clip: None,
+            corners: [1.0; 4],
+            turn: DMat2::IDENTITY,
         };
         for y in [17.0, 20.0, 22.5] {
             let (low, high) = ellipse.span(y, 2.0).unwrap();

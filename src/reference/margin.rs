@@ -68,7 +68,7 @@ impl Margins<'_> {
                     if let Some(c) = &mut candidate {
                         // A kernel that is steeper than a Gaussian makes more of the same shift.
                         c.sway += shift * ellipse.steepness(hit.sigmas);
-                        (c.weight, c.drift) = (ellipse.weight(hit.sigmas), shift * hit.sigmas);
+                        (c.weight, c.drift) = (ellipse.weight(hit.in_kernel), shift * hit.sigmas);
                     }
                     candidate.into_iter().for_each(&mut visit);
                 }

@@ -69,6 +69,27 @@ fn colours_are_written() {
 }
 
 #[test]
+fn weights_are_captured_once_and_render_by_surfel() {
+    let Some(program) = Program::with_device("weights_are_captured_once_and_render_by_surfel") else {
+        return;
+    };
+    let scene = "scene:bumpy-sphere?points=2000";
+    let run = program.run(&format!("convert {scene} -o w.ply --weights 12"));
+    assert!(run.err.contains("w.ply: 2000 surfels\n"), "{}", run.err);
+    let seen = run.err.split_once("weights of ").unwrap().1;
+    let seen: u32 = seen.split_once(" surfels from 12 views").unwrap().0.parse().unwrap();
+    assert!(seen > 1900, "{}", run.err);
+    assert!(info(&program, "w.ply").contains("  float surfel_weight"));
+    let by_surfel = "--method object-ewa --normalization surfel --size 64x64 --quiet";
+    program.run(&format!("render w.ply -o w.png {by_surfel}")).text();
+    assert!(program.png("w.png").pixels().any(|pixel| pixel[3] == 255));
+    let refused = program.run(&format!("render {scene} -o x.png {by_surfel}"));
+    assert!(refused.code == 2 && refused.err.contains("surfel convert --weights"), "{}", refused.err);
+    let none = program.run(&format!("convert {scene} -o x.ply --weights 0"));
+    assert_eq!(none.code, 2, "{}", none.err);
+}
+
+#[test]
 fn thinning_says_how_many_are_left() {
     let program = Program::new();
     let bare = surfels(&["0 0 0 0 0 1 9", "0.25 0 0 0 0 1 9", "5 0 0 0 0 1 9"]);

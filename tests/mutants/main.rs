@@ -104,6 +104,7 @@ fn check(cloud: &Cloud, report: &ply::Report) {
         cloud.ellipses.as_ref().map(Vec::len),
         cloud.two_sided.as_ref().map(Vec::len),
         cloud.clips.as_ref().map(|clips| clips.of.len()),
+        cloud.weights.as_ref().map(|weights| weights.of.len()),
         cloud.colours.as_ref().map(Colours::len),
         cloud.scalar.as_ref().map(Vec::len),
     ];
@@ -118,6 +119,7 @@ fn check(cloud: &Cloud, report: &ply::Report) {
     let across = |(shape, n): (&surfel::geometry::Ellipse, &glam::Vec3)| shape.major.dot(*n).abs() < 1e-5;
     assert!(cloud.ellipses.iter().flatten().zip(cloud.normals.iter().flatten()).all(across), "{cloud:?}");
     assert!(cloud.clips.is_none() || cloud.normals.is_some());
+    assert!(cloud.weights.is_none() || cloud.normals.is_some() && cloud.radii.is_some());
     (0..count)
         .filter_map(|i| Some((cloud.clips.as_ref()?.get(i)?, cloud.normals.as_ref()?[i])))
         .for_each(check_clip);
