@@ -5,7 +5,7 @@
 //! footprint    V + J⁻¹ H J⁻ᵀ in the tangent plane (equation 7) → the parallelogram that it stretches (§5.2)
 //! visibility   opaque quads + ε along the viewing ray (§5.1)
 //! attribute    Σ w (rgb, κ), light at each splat, over what is within ε (§5.2)
-//! normalize    / Σ w; or not, with weights that every surfel brings (§7)
+//! normalize    / Σ w (what §7 calls per-pixel normalization); or not, with weights that every surfel brings (per-surfel)
 //! ```
 //!
 //! While the camera moves the sums need no division, and once it rests they are divided (§8): [`Progressive`].
