@@ -6,15 +6,15 @@ pub(super) struct Sample {
     pub surfel: u32,
     /// Σw at its centre.
     pub sum: f32,
-    /// Where it looks like a border: Σw at the corners of its square, 0 where the surface has ended, `None` where that is not seen.
-    pub corners: Option<[Option<f32>; 4]>,
+    /// Where it looks like a border: weights at the corners of its square.
+    pub corners: Option<[f32; 4]>,
 }
 
 /// What all views say.
 #[derive(Default)]
 pub(super) struct Samples {
     sums: Vec<(u32, f32)>,
-    corners: Vec<(u32, [Option<f32>; 4])>,
+    corners: Vec<(u32, [f32; 4])>,
 }
 
 /// Weights of the surfels that were seen.
@@ -38,7 +38,9 @@ impl Samples {
             let (surfel, sum) = seen[seen.len() / 2];
             let border = borders.next_if(|border| border[0].0 == surfel);
             let border = border.filter(|border| 2 * border.len() > seen.len());
-            (surfel, 1.0 / sum, border.map(|border| corner_weights(1.0 / sum, border)))
+            let at =
+                |border: &[(u32, [f32; 4])], i: usize| median(border.iter().map(|(_, all)| all[i]).collect());
+            (surfel, 1.0 / sum, border.map(|border| [0, 1, 2, 3].map(|i| at(border, i))))
         };
         Medians(self.sums.chunk_by(|a, b| a.0 == b.0).map(of_surfel).collect())
     }
@@ -58,63 +60,31 @@ impl Medians {
     }
 }
 
-/// From the centre of a surfel's square to a corner the weight may grow by this factor; beyond, kernels run out there, and the inverse of
-/// what they leave is steeper than anything bilinear.
-const MOST_GROWTH: f32 = 2.0;
-
-/// Weights at the corners of a surfel whose weight at the centre is `centre`. Where the surface has ended, or all but, there is no sum to go
-/// by: such corners share what makes the mean of all four, which is the bilinear value at the centre, right there.
-fn corner_weights(centre: f32, views: &[(u32, [Option<f32>; 4])]) -> [f32; 4] {
-    let sums = [0, 1, 2, 3].map(|corner: usize| median(views.iter().filter_map(|(_, sums)| sums[corner])));
-    let known = sums.map(|sum| match sum {
-        Some(sum) if sum * MOST_GROWTH * centre >= 1.0 => Some(1.0 / sum),
-        Some(_) => None,
-        None => Some(centre),
-    });
-    let ended = known.iter().filter(|weight| weight.is_none()).count() as f32;
-    let rest = 4.0 * centre - known.iter().flatten().sum::<f32>();
-    known.map(|weight| weight.unwrap_or((rest / ended).max(centre)))
-}
-
-fn median(values: impl Iterator<Item = f32>) -> Option<f32> {
-    let mut values: Vec<f32> = values.collect();
+fn median(mut values: Vec<f32>) -> f32 {
     let middle = values.len() / 2;
-    (!values.is_empty()).then(|| *values.select_nth_unstable_by(middle, f32::total_cmp).1)
+    *values.select_nth_unstable_by(middle, f32::total_cmp).1
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn sample(surfel: u32, sum: f32, corners: Option<[Option<f32>; 4]>) -> Sample {
+    fn sample(surfel: u32, sum: f32, corners: Option<[f32; 4]>) -> Sample {
         Sample { surfel, sum, corners }
     }
 
     #[test]
     fn weights_are_by_the_median_and_borders_by_most_views() {
-        let ended = Some([Some(4.0), Some(4.0), Some(0.0), Some(0.0)]);
+        let border = |first: f32| Some([first, 0.2, 0.3, 0.4]);
         let mut samples = Samples::default();
-        samples.add(vec![sample(7, 2.0, ended), sample(3, 8.0, None), sample(5, 1.0, ended)]);
-        samples.add(vec![sample(3, 2.0, ended), sample(7, 1.0, ended)]);
-        samples.add(vec![sample(3, 4.0, None), sample(7, 50.0, None)]);
+        samples.add(vec![sample(7, 2.0, border(0.1)), sample(3, 8.0, None), sample(5, 1.0, border(0.9))]);
+        samples.add(vec![sample(3, 2.0, border(0.1)), sample(7, 1.0, border(0.7))]);
+        samples.add(vec![sample(3, 4.0, None), sample(7, 50.0, border(0.3)), sample(7, 1.5, None)]);
         let medians = samples.medians();
         assert_eq!(medians.len(), 3);
         assert_eq!(medians.get(3), Some((0.25, None)), "one view of three");
-        assert_eq!(medians.get(7), Some((0.5, Some([0.25, 0.25, 0.75, 0.75]))));
-        assert_eq!(medians.get(5), Some((1.0, Some([0.25, 0.25, 1.75, 1.75]))));
+        assert_eq!(medians.get(7), Some((0.5, border(0.3))), "three views of four");
+        assert_eq!(medians.get(5), Some((1.0, border(0.9))));
         assert_eq!(medians.get(4), None);
-    }
-
-    #[test]
-    fn corners_that_are_not_seen_are_as_the_centre() {
-        let views = [(0, [Some(8.0), None, Some(0.0), None]), (0, [Some(2.0), None, Some(0.0), None])];
-        assert_eq!(corner_weights(0.5, &views), [0.125, 0.5, 0.875, 0.5]);
-        // Never less than the centre's.
-        assert_eq!(corner_weights(0.5, &[(0, [Some(1.0), Some(1.0), Some(1.0), Some(0.0)])])[3], 0.5);
-        // Where hardly anything is left, as where nothing is.
-        assert_eq!(
-            corner_weights(0.5, &[(0, [Some(4.0), Some(4.0), Some(0.5), Some(0.0)])]),
-            [0.25, 0.25, 0.75, 0.75]
-        );
     }
 }

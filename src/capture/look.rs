@@ -1,13 +1,15 @@
 //! One picture of Σw and depth, and what it says of the surfels.
 
+use super::border::Fit;
 use super::gather::Sample;
+use super::overlap::kernel;
 use crate::error::Result;
 use crate::geometry::{Camera, Surfels};
 use crate::picture::Picture;
 use crate::reference::{Projector, Surfel};
 use crate::renderer::Renderer;
 use crate::scene::Scene;
-use crate::settings::Settings;
+use crate::settings::{Cull, Settings};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
@@ -15,14 +17,25 @@ use rayon::prelude::*;
 const LEAST_COSINE: f64 = 0.5;
 /// Least extent of a disc from its centre, px: smaller ones are narrower than what lies between two pixels.
 const LEAST_RADIUS: f64 = 2.0;
-/// From one corner of a surfel's square to its centre the sum may change by this factor; beyond, each corner has a weight of its own.
+/// From the centre of a surfel's square to a corner the sum may change by this factor; beyond, each corner has a weight of its own.
 const STEADY: f64 = 2.0;
+/// Samples along either side of such a square: a pixel or two from one to the next.
+const SAMPLES: u32 = 7;
 
 /// A picture from somewhere.
 pub(super) struct Look {
     projector: Projector,
     picture: Picture,
-    epsilon: f64,
+    settings: Settings,
+}
+
+/// A surfel's square: its centre and the axes from there to its sides.
+struct Square {
+    centre: DVec3,
+    u: DVec3,
+    v: DVec3,
+    /// By how much the distance of what is seen of it may differ from its own.
+    tolerance: f64,
 }
 
 /// What is seen at a point of a surface.
@@ -41,7 +54,7 @@ impl Look {
     pub fn new(renderer: &mut Renderer, scene: &Scene, camera: &Camera, settings: &Settings) -> Result<Self> {
         let (picture, _) = renderer.render_picture(scene, camera, settings)?;
         let projector = Projector::new(camera, picture.size, settings)?;
-        Ok(Self { projector, picture, epsilon: settings.epsilon.into() })
+        Ok(Self { projector, picture, settings: settings.clone() })
     }
 
     /// What is seen of the surfels whose centres are visible. `surfels` are the scene's.
@@ -53,33 +66,50 @@ impl Look {
     fn sample(&self, index: usize, surfel: &Surfel) -> Option<Sample> {
         let u = surfel.radius * surfel.major;
         let v = surfel.aspect * surfel.normal.cross(u);
-        let (centre, distance) = self.projector.locate(surfel.position)?;
+        let tolerance = f64::from(self.settings.epsilon) * surfel.radius;
+        let square = Square { centre: surfel.position, u, v, tolerance };
+        let (centre, _) = self.projector.locate(surfel.position)?;
         let (_, step) = self.projector.ray(centre);
-        if step.normalize().dot(surfel.normal).abs() < LEAST_COSINE {
+        let facing = -step.normalize().dot(surfel.normal);
+        let culled = self.settings.cull == Cull::Back && facing < 0.0 && !surfel.two_sided;
+        if culled || facing.abs() < LEAST_COSINE {
             return None;
         }
-        let tolerance = self.epsilon * surfel.radius;
-        let Seen::Sum(sum) = self.at(centre, distance, tolerance) else { return None };
+        let Seen::Sum(sum) = self.seen(&square, DVec2::ZERO) else { return None };
         let extent = |axis: DVec3| Some(self.projector.locate(surfel.position + axis)?.0.distance(centre));
         if extent(u)?.min(extent(v)?) < LEAST_RADIUS {
             return None;
         }
-        let corner = |offset: DVec3| {
-            let located = self.projector.locate(surfel.position + offset);
-            located.map_or(Seen::Hidden, |(at, distance)| self.at(at, distance, tolerance))
-        };
-        let corners = [-u - v, u - v, v - u, u + v].map(corner);
-        let is_border = corners.iter().any(|corner| match corner {
+        let corners = self.is_border(&square, sum).then(|| self.corners(&square, sum).map(|w| w as f32));
+        Some(Sample { surfel: index as u32, sum: sum as f32, corners })
+    }
+
+    /// Whether a surface ends within the square, or its sum is far from constant there.
+    fn is_border(&self, square: &Square, sum: f64) -> bool {
+        let corners = [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)];
+        corners.into_iter().any(|at| match self.seen(square, at.into()) {
             Seen::Sum(other) => (other / sum).max(sum / other) > STEADY,
             Seen::Gap => true,
             Seen::Hidden => false,
-        });
-        let known = corners.map(|corner| match corner {
-            Seen::Sum(sum) => Some(sum as f32),
-            Seen::Gap => Some(0.0),
-            Seen::Hidden => None,
-        });
-        Some(Sample { surfel: index as u32, sum: sum as f32, corners: is_border.then_some(known) })
+        })
+    }
+
+    /// Weights at the square's corners, of what is seen within the kernel.
+    fn corners(&self, square: &Square, sum: f64) -> [f64; 4] {
+        let mut fit = Fit::new(1.0 / sum);
+        let place = |i: u32| f64::from(2 * i + 1) / f64::from(SAMPLES) - 1.0;
+        for at in (0..SAMPLES * SAMPLES).map(|i| DVec2::new(place(i % SAMPLES), place(i / SAMPLES))) {
+            if let (Some(kernel), Seen::Sum(sum)) = (kernel(&self.settings, at), self.seen(square, at)) {
+                fit.add(at, kernel, 1.0 / sum);
+            }
+        }
+        fit.corners()
+    }
+
+    /// What is seen of the surface at a place in a square, in its axes.
+    fn seen(&self, square: &Square, place: DVec2) -> Seen {
+        let located = self.projector.locate(square.centre + place.x * square.u + place.y * square.v);
+        located.map_or(Seen::Hidden, |(at, distance)| self.at(at, distance, square.tolerance))
     }
 
     /// What is seen of a point of a surface at a pixel position, px, and a distance, from which depths may differ by `tolerance`: Σw between

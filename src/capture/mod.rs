@@ -5,9 +5,10 @@
 //!                                                         unseen ─ overlap: the same sum over the surfels around it ──┘
 //! ```
 //!
-//! Where the surface ends, or the sum changes much from one corner of a surfel's square to the other, each corner gets a weight of its own.
+//! Where the surface ends, or the sum changes much from the centre of a surfel's square to a corner, each corner gets a weight of its own.
 //! The paper's factor γ, which keeps 8-bit sums from overflowing, has no use with floats.
 
+mod border;
 mod gather;
 mod look;
 mod overlap;
@@ -20,7 +21,7 @@ use crate::error::{Error, Result};
 use crate::geometry::{Camera, Surfels, Weights};
 use crate::renderer::{RenderOptions, Renderer};
 use crate::scene::Scene;
-use crate::settings::{Cull, Settings, Shading};
+use crate::settings::{Settings, Shading};
 use crate::splatting::{Filter, Normalization, Splatting, Visibility};
 use crate::variant::Outputs;
 use crate::vk::Device;
@@ -43,7 +44,7 @@ pub struct Captured {
 }
 
 /// Weights for all of `surfels`, captured by parallel views from `views` directions that are spread evenly over a sphere. They are for the
-/// kernel, cut-off, footprint and ε of `settings`, whatever else those say. The stage of the progress is `capturing weights`, its unit the
+/// kernel, cut-off, footprint, ε and culling of `settings`, whatever else those say. The stage of the progress is `capturing weights`, its unit the
 /// picture.
 ///
 /// # Errors
@@ -117,9 +118,9 @@ fn renderer(device: &Arc<Device>, size: [u32; 2]) -> Result<Renderer> {
     Renderer::new(device, RenderOptions { size, outputs, ..Default::default() })
 }
 
-/// The two passes without pre-filtering and per-surfel normalization, which show Σw of either side.
-fn plain(settings: &Settings) -> Settings {
+/// The two passes without pre-filtering and per-surfel normalization, which show Σw of either side: what weights depend on, and no more.
+pub(crate) fn plain(settings: &Settings) -> Settings {
     let (filter, normalization) = (Filter::None, Normalization::None);
     let splatting = Splatting { filter, normalization, visibility: Visibility::Ray, ..settings.splatting };
-    Settings { splatting, shading: Shading::Weight, cull: Cull::None, background: None, ..settings.clone() }
+    Settings { splatting, shading: Shading::Weight, background: None, ..settings.clone() }
 }

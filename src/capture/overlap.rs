@@ -2,7 +2,7 @@
 
 use crate::geometry::Surfels;
 use crate::reference::Surfel;
-use crate::settings::Settings;
+use crate::settings::{Cull, Settings};
 use crate::splatting::{Footprint, Kernel};
 use glam::{DVec2, DVec3, I64Vec3};
 use rayon::prelude::*;
@@ -51,12 +51,8 @@ impl<'a> Around<'a> {
 
     /// How far from its centre a splat of this radius may weigh something, ε off its plane.
     fn reach(&self, radius: f32) -> f64 {
-        let rim = if self.is_square() { std::f64::consts::SQRT_2 } else { 1.0 };
+        let rim = if is_square(self.settings) { std::f64::consts::SQRT_2 } else { 1.0 };
         (rim + f64::from(self.settings.epsilon)) * f64::from(radius)
-    }
-
-    fn is_square(&self) -> bool {
-        self.settings.splatting.footprint == Footprint::Parallelogram
     }
 
     fn overlap(&self, surfel: u32) -> f64 {
@@ -78,7 +74,9 @@ impl<'a> Around<'a> {
     /// The splat of `other` at the line through `centre` along its normal, if it belongs to the same surface.
     fn hit(&self, centre: &Surfel, other: &Surfel) -> Option<Hit> {
         let cosine = other.normal.dot(centre.normal);
-        if cosine.abs() < LEAST_COSINE {
+        let one_sided = !other.two_sided && !centre.two_sided;
+        let culled = self.settings.cull == Cull::Back && cosine < 0.0 && one_sided;
+        if culled || cosine.abs() < LEAST_COSINE {
             return None;
         }
         let height = other.normal.dot(other.position - centre.position) / cosine;
@@ -91,17 +89,25 @@ impl<'a> Around<'a> {
     fn weight(&self, surfel: &Surfel, point: DVec3) -> Option<f64> {
         let offset = (point - surfel.position) / surfel.radius;
         let across = offset.dot(surfel.normal.cross(surfel.major)) / surfel.aspect;
-        let at = DVec2::new(offset.dot(surfel.major), across);
-        let rim = if self.is_square() { at.abs().max_element() } else { at.length() };
-        let weight = match self.settings.splatting.kernel {
-            Kernel::Gaussian => (-0.5 * f64::from(self.settings.cutoff).powi(2) * at.length_squared()).exp(),
-            Kernel::Confetti { a, n } => {
-                let t = at.length().powf(n.into()).min(1.0);
-                (-f64::from(a) * t / (1.0 - t)).exp()
-            }
-        };
-        (rim <= 1.0).then_some(weight)
+        kernel(self.settings, DVec2::new(offset.dot(surfel.major), across))
     }
+}
+
+/// The kernel of a disc at a place in its plane, in semi-axes from its centre; `None` beyond its rim.
+pub(super) fn kernel(settings: &Settings, at: DVec2) -> Option<f64> {
+    let rim = if is_square(settings) { at.abs().max_element() } else { at.length() };
+    let weight = match settings.splatting.kernel {
+        Kernel::Gaussian => (-0.5 * f64::from(settings.cutoff).powi(2) * at.length_squared()).exp(),
+        Kernel::Confetti { a, n } => {
+            let t = at.length().powf(n.into()).min(1.0);
+            (-f64::from(a) * t / (1.0 - t)).exp()
+        }
+    };
+    (rim <= 1.0).then_some(weight)
+}
+
+fn is_square(settings: &Settings) -> bool {
+    settings.splatting.footprint == Footprint::Parallelogram
 }
 
 fn cell(position: DVec3, level: i32) -> I64Vec3 {
@@ -152,7 +158,13 @@ mod tests {
         surfels.positions.push(Vec3::new(9.0, 1.0, 0.0));
         surfels.normals.push(Vec3::NEG_Z);
         surfels.radii.push(10.0);
-        let found = overlaps(&surfels, &object_ewa::METHOD.settings(), &[4]);
+        let both = Settings { cull: Cull::None, ..object_ewa::METHOD.settings() };
+        let found = overlaps(&surfels, &both, &[4]);
         assert!((found[0] - 1.0 - (-0.64f64).exp()).abs() < 1e-6, "{found:?}");
+        // Where backs are culled, an eye above sees the front of nothing else.
+        let front = overlaps(&surfels, &object_ewa::METHOD.settings(), &[4]);
+        assert!((front[0] - 1.0).abs() < 1e-6, "{front:?}");
+        surfels.two_sided = Some(vec![false, false, false, false, false, false, false, false, false, true]);
+        assert_eq!(overlaps(&surfels, &object_ewa::METHOD.settings(), &[4]), found);
     }
 }
