@@ -144,3 +144,86 @@ impl Look {
         Some((self.picture.colour[index][0].into(), depth.into()))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::methods::object_ewa;
+    use glam::Vec3;
+
+    const SIDE: u32 = 32;
+    const DISTANCE: f64 = 10.0;
+
+    /// What an eye 10 above the plane z = 0 sees along −z, a pixel a unit, its first row at y = 32: Σw and distance of each pixel.
+    fn look(cull: Cull, seen: impl Fn(u32, u32) -> (f32, f64)) -> Look {
+        let middle = DVec3::new(16.0, 16.0, 0.0);
+        let eye = [middle + DISTANCE * DVec3::Z, middle, DVec3::Y];
+        let camera = Camera::orthographic(eye, SIDE.into(), 1.0, [1.0, 100.0]).unwrap();
+        let settings = Settings { cull, epsilon: 0.5, ..object_ewa::METHOD.settings() };
+        let (sums, depths): (Vec<f32>, Vec<f64>) = (0..SIDE * SIDE).map(|i| seen(i % SIDE, i / SIDE)).unzip();
+        let picture = Picture {
+            size: [SIDE; 2],
+            colour: sums.into_iter().map(|sum| [sum, sum, sum, 1.0]).collect(),
+            depth: Some(depths.into_iter().map(|depth| depth as f32).collect()),
+            ..Default::default()
+        };
+        Look { projector: Projector::new(&camera, [SIDE; 2], &settings).unwrap(), picture, settings }
+    }
+
+    #[test]
+    fn sums_are_interpolated_between_the_pixels_of_the_surface() {
+        let ramp = look(Cull::Back, |x, y| ((x + 10 * y) as f32, DISTANCE));
+        assert_eq!(ramp.at(DVec2::new(4.0, 5.25), DISTANCE, 0.5), Seen::Sum(3.5 + 47.5));
+        let half = look(Cull::Back, |x, _| (x as f32, if x < 8 { DISTANCE } else { 12.0 }));
+        assert_eq!(half.at(DVec2::new(8.25, 8.0), DISTANCE, 0.5), Seen::Sum(7.0), "of those that show it");
+    }
+
+    #[test]
+    fn a_surface_ends_at_nothing_and_what_is_behind_and_is_hidden_by_what_is_in_front() {
+        let depths = [0.0, DISTANCE + 1.0, DISTANCE - 1.0, DISTANCE + 0.4];
+        let strips = look(Cull::Back, |x, _| (2.0, depths[x as usize / 8]));
+        let seen = [4.0, 12.0, 20.0, 28.0].map(|x| strips.at(DVec2::new(x, 16.0), DISTANCE, 0.5));
+        assert_eq!(seen, [Seen::Gap, Seen::Gap, Seen::Hidden, Seen::Sum(2.0)]);
+        assert_eq!(strips.at(DVec2::new(31.9, 16.0), DISTANCE, 0.5), Seen::Hidden, "beyond the picture");
+    }
+
+    /// A disc of radius 3 in the plane, 12 from the left, turned by so many degrees.
+    fn disc(degrees: f32, radius: f32) -> Surfels {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        Surfels {
+            positions: vec![Vec3::new(12.0, 16.0, 0.0)],
+            normals: vec![Vec3::new(sin, 0.0, cos)],
+            radii: vec![radius],
+            ..Default::default()
+        }
+    }
+
+    #[test]
+    fn surfels_that_are_small_or_steep_or_culled_are_left_to_other_views() {
+        let all = |cull| look(cull, |_, _| (4.0, DISTANCE));
+        let [both, front] = [all(Cull::None), all(Cull::Back)];
+        let whole = vec![Sample { surfel: 0, sum: 4.0, corners: None }];
+        assert_eq!(front.samples(&disc(0.0, 3.0)), whole);
+        for (degrees, radius) in [(0.0, 1.9), (61.0, 5.0)] {
+            assert!(both.samples(&disc(degrees, radius)).is_empty(), "{degrees} {radius}");
+        }
+        assert_eq!((both.samples(&disc(180.0, 3.0)), front.samples(&disc(180.0, 3.0))), (whole, Vec::new()));
+        let turned = Surfels { two_sided: Some(vec![true]), ..disc(180.0, 3.0) };
+        assert_eq!(front.samples(&turned).len(), 1);
+    }
+
+    #[test]
+    fn a_surfel_at_a_border_has_a_weight_at_each_corner() {
+        // The sum falls from 4 to 1 over the disc, and the surface ends at 14.
+        let sum = |x: u32| 4.0 - (x as f32 - 9.0).clamp(0.0, 3.0);
+        let border = look(Cull::Back, |x, _| (sum(x), if x < 14 { DISTANCE } else { 0.0 }));
+        let [found] = border.samples(&disc(0.0, 3.0))[..] else { panic!("not seen") };
+        let corners = found.corners.unwrap();
+        // The first axis is x, or its opposite: two corners are beyond, and weigh more than the centre; two are within, and weigh less.
+        let mut sorted = corners;
+        sorted.sort_by(f32::total_cmp);
+        let centre = 1.0 / found.sum;
+        assert!(sorted[1] < centre && sorted[2] > 1.5 * centre, "{corners:?} {centre}");
+        assert_eq!(corners[0] > centre, corners[2] > centre, "{corners:?}");
+    }
+}
