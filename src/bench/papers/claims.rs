@@ -24,6 +24,8 @@ pub struct Claim {
 }
 
 const SCENE: &str = "scene:bumpy-sphere";
+/// A checkerboard whose weights can be captured: a plane that ends.
+const BOARD: &str = "scene:relief?height=0&frequency=2";
 
 /// All that can be measured, the cheaper side first.
 pub const ALL: [Claim; 7] = [
@@ -42,7 +44,7 @@ pub const ALL: [Claim; 7] = [
         source: "ren2002 table 1",
         published: Some([2.5, 3.4]),
         words: "both with weights of the surfels, without a division at every pixel",
-        scene: ["scene:plane?frequency=2"; 2],
+        scene: [BOARD; 2],
         settings: || {
             let with =
                 changed(&preset("object-ewa"), |splatting| splatting.normalization = Normalization::Surfel);
@@ -55,7 +57,7 @@ pub const ALL: [Claim; 7] = [
         source: "ren2002 table 1",
         published: Some([13.0, 23.8]),
         words: "there the processor read the frame buffer back and divided",
-        scene: ["scene:plane?frequency=2"; 2],
+        scene: [BOARD; 2],
         settings: || {
             let pixel = preset("object-ewa");
             [changed(&pixel, |splatting| splatting.normalization = Normalization::Surfel), pixel]
