@@ -129,6 +129,18 @@ impl Ellipse {
         low.y * (low.x * a + high.x * b) + high.y * (low.x * c + high.x * d)
     }
 
+    /// How far off a float32 weight may be at the place `m`, σ, in half units in its last place. Vulkan has the exponential of x within
+    /// 3 + 2 |x| units. Of a weight that is bilinear between corners, two interpolations round four times each, and as often does each
+    /// coordinate of the place, along which the weight moves by no more than the corners span.
+    pub fn grain(&self, m: DVec2) -> f64 {
+        let exponent = (self.height(m.length()) / self.amplitude).ln().abs();
+        let exponential = 2.0 * (3.0 + 2.0 * exponent);
+        let least = self.corners.into_iter().fold(f64::INFINITY, f64::min);
+        let span = self.corners.into_iter().fold(0.0, f64::max) - least;
+        let bilinear = if span > 0.0 { 8.0 + 8.0 * span / self.normalization(m) } else { 0.0 };
+        exponential + bilinear
+    }
+
     fn height(&self, sigmas: f64) -> f64 {
         let height = match self.kernel {
             Kernel::Gaussian => (-0.5 * sigmas * sigmas).exp(),

@@ -26,6 +26,8 @@ pub(super) struct Candidate<'a> {
     pub sway: f64,
     /// The same through a shift of the whole splat on the screen.
     pub drift: f64,
+    /// How far off the weight is in float32, relative to it, whatever else is: in half units in the last place.
+    pub grain: f64,
     /// Whether it is surely inside the cut-off and the clip volume.
     pub certain: bool,
 }
@@ -69,6 +71,7 @@ impl Margins<'_> {
                         // A kernel that is steeper than a Gaussian makes more of the same shift.
                         c.sway += shift * ellipse.steepness(hit.sigmas);
                         (c.weight, c.drift) = (ellipse.weight(hit.in_kernel), shift * hit.sigmas);
+                        c.grain = ellipse.grain(hit.in_kernel);
                     }
                     candidate.into_iter().for_each(&mut visit);
                 }
@@ -83,7 +86,8 @@ impl Margins<'_> {
         let within = |margin: f64| depth >= nearest + margin && depth <= farthest - margin;
         let (sway, certain) = (self.rounding * (splat.secant + self.turn(splat)), false);
         let pixel = hit.index;
-        let mut candidate = Candidate { splat, pixel, depth, wobble, weight: 0.0, sway, drift: 0.0, certain };
+        let mut candidate =
+            Candidate { splat, pixel, depth, wobble, weight: 0.0, sway, drift: 0.0, grain: 0.0, certain };
         candidate.certain = !near && in_front && within(wobble);
         within(-wobble).then_some(candidate)
     }
