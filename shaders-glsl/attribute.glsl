@@ -10,14 +10,28 @@
 #define SPLAT_ACCESS readonly
 #define CLIP_ACCESS readonly
 #include "lib/splat.glsl"
+#include "lib/weights.glsl"
 
 #ifndef FRAGMENT
 
 #include "lib/surface.glsl"
 
-// What scales a splat's kernel.
-float weight_of(uint i, Splat splat, vec2 variance) {
-    return OVERLAP ? 1.0 : amplitude_of(splat, variance);
+// What scales a splat's kernel everywhere, and what scales it further at the corners of the surfel's square.
+float weight_of(uint i, Splat splat, vec2 variance, out vec4 corners, out mat2 square) {
+    corners = vec4(1.0);
+    square = mat2(1.0);
+    if (OVERLAP) return 1.0;
+    float amplitude = amplitude_of(splat, variance);
+    uint weight = WEIGHTS ? weights[i] : floatBitsToUint(1.0);
+    if (!CORNERS || (weight & AT_CORNERS) == 0) return amplitude * uintBitsToFloat(weight);
+    float at[8];
+    for (uint k = 0; k < 8; k++) at[k] = uintBitsToFloat(weights[(weight & ~AT_CORNERS) + k]);
+    corners = vec4(at[0], at[1], at[2], at[3]);
+    vec3 position = vec3(positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]);
+    vec3 normal = vec3(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]);
+    vec3 to_eye = frame.eye_hi.xyz - position + frame.eye_lo.xyz;
+    square = square_of(splat, vec3(at[4], at[5], at[6]), at[7], normal, to_eye);
+    return amplitude;
 }
 
 #endif
@@ -27,6 +41,8 @@ float weight_of(uint i, Splat splat, vec2 variance) {
 #include "lib/pixels.glsl"
 
 float splat_weight;
+vec4 splat_corners;
+mat2 splat_square;
 vec3 splat_first, splat_second;
 
 vec2 scatter_variance(vec2 variance) {
@@ -44,16 +60,17 @@ bool hidden(float nearest, ivec2 low, ivec2 high) {
 
 bool scatter_begin(uint i, Splat splat, vec2 variance, float nearest, ivec2 low, ivec2 high) {
     if (!LARGE_SPLATS && hidden(nearest, low, high)) return false;
-    splat_weight = weight_of(i, splat, variance);
+    splat_weight = weight_of(i, splat, variance, splat_corners, splat_square);
     surface_of(i, splat.epsilon, splat_first, splat_second);
     return true;
 }
 
-void scatter(uint pixel, float m2, float key) {
+void scatter(uint pixel, vec2 m, float key) {
     uint nearest = visibility[pixel];
     // Where visibility wrote nothing there is no surface, whatever the wider attribute footprint says.
     if (nearest == 0u || floatBitsToUint(key) < nearest) return;
-    float weight = OVERLAP ? 1.0 : splat_weight * kernel(m2);
+    float weight = OVERLAP ? 1.0 : splat_weight * kernel(dot(m, m));
+    if (CORNERS && !OVERLAP) weight *= weight_in(splat_corners, splat_square, m);
     if (SUM_WEIGHTS) atomicAdd(sums0[WIDE_SUMS0 ? 4 * pixel : pixel], weight);
     if (WIDE_SUMS0) {
         atomicAdd(sums0[4 * pixel + 1], weight * splat_first.x);
@@ -82,13 +99,17 @@ void main() {
 layout(location = 4) flat out float height;
 layout(location = 5) flat out vec3 first;
 layout(location = 6) flat out vec3 second;
+layout(location = 7) flat out vec4 corners;
+layout(location = 8) flat out vec4 square;
 
 void main() {
     uint i = gl_VertexIndex / 3;
     Splat splat = splats[i];
     vec2 variance = attribute_variance(splat.variance);
     place_splat(i, splat, variance, gl_VertexIndex % 3);
-    height = weight_of(i, splat, variance);
+    mat2 axes;
+    height = weight_of(i, splat, variance, corners, axes);
+    square = vec4(axes[0], axes[1]);
     surface_of(i, splat.epsilon, first, second);
 }
 
@@ -98,14 +119,18 @@ void main() {
 layout(location = 4) flat in float height;
 layout(location = 5) flat in vec3 first;
 layout(location = 6) flat in vec3 second;
+layout(location = 7) flat in vec4 corners;
+layout(location = 8) flat in vec4 square;
 
 layout(location = 0) out vec4 sum0;
 layout(location = 1) out vec4 sum1;
 
 void main() {
-    float m2, key;
-    drawn_fragment(m2, key);
-    float weight = OVERLAP ? 1.0 : height * kernel(m2);
+    vec2 m;
+    float key;
+    drawn_fragment(m, key);
+    float weight = OVERLAP ? 1.0 : height * kernel(dot(m, m));
+    if (CORNERS && !OVERLAP) weight *= weight_in(corners, mat2(square.xy, square.zw), m);
     gl_FragDepth = key;
     sum0 = weight * vec4(1.0, first);
     sum1 = weight * vec4(SUM_DEPTH ? frame.key_gain * key : 0.0, second);

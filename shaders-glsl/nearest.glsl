@@ -30,7 +30,7 @@ bool scatter_begin(uint i, Splat splat, vec2 variance, float nearest, ivec2 low,
     return true;
 }
 
-void scatter(uint pixel, float m2, float key) {
+void scatter(uint pixel, vec2 m, float key) {
     atomicMax(winners[pixel], winner(min(key, splat_key_disc), splat_index));
 }
 
@@ -67,8 +67,9 @@ layout(location = 0) out vec4 sum0;
 layout(location = 1) out vec4 sum1;
 
 void main() {
-    float m2, key;
-    drawn_fragment(m2, key);
+    vec2 m;
+    float key;
+    drawn_fragment(m, key);
     gl_FragDepth = min(key, plane_lo_disc.w);
     sum0 = vec4(1.0, first);
     sum1 = vec4(SUM_DEPTH ? frame.key_gain * key : 0.0, second);

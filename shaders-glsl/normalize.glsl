@@ -8,7 +8,7 @@
 #include "lib/shading.glsl"
 
 layout(constant_id = 6) const uint SHADING = 0;
-const uint LIT = 0, COLOUR = 1, NORMAL = 2, DEPTH = 3, OVERLAPS = 4;
+const uint LIT = 0, COLOUR = 1, NORMAL = 2, DEPTH = 3, OVERLAPS = 4, WEIGHT = 5;
 layout(constant_id = 20) const bool SHADE_SPLATS = false; // colours are light already
 
 struct Pixel {
@@ -27,7 +27,7 @@ Pixel normalize_pixel(vec2 centre, bool visible, vec4 s0, vec4 s1) {
     vec3 to_eye = PERSPECTIVE ? -normalize(ray) : -frame.forward_hi.xyz;
     vec3 normal = vec3(0.0);
     // Opposite normals that cancel leave no direction.
-    if (SUM_NORMALS) normal = length(s0.yzw) < 1e-6 * total ? to_eye : normalize(s0.yzw);
+    if (SUM_NORMALS) normal = length(s0.yzw) < 1e-6 * s0.x ? to_eye : normalize(s0.yzw);
     vec3 colour = frame.albedo.rgb;
     if (SUM_COLOURS) colour = (SUM_NORMALS ? s1.yzw : s0.yzw) / total;
     float depth = 0.0;
@@ -41,7 +41,7 @@ Pixel normalize_pixel(vec2 centre, bool visible, vec4 s0, vec4 s1) {
     if (SHADING == COLOUR) shaded = colour;
     if (SHADING == NORMAL) shaded = normal;
     if (SHADING == DEPTH) shaded = vec3(depth);
-    if (SHADING == OVERLAPS) shaded = vec3(total);
+    if (SHADING == OVERLAPS || SHADING == WEIGHT) shaded = vec3(s0.x);
     return Pixel(vec4(shaded, 1.0), normal, depth);
 }
 

@@ -24,7 +24,7 @@ bool scatter_begin(uint i, Splat splat, vec2 variance, float nearest, ivec2 low,
     return true;
 }
 
-void scatter(uint pixel, float m2, float key) {
+void scatter(uint pixel, vec2 m, float key) {
     atomicMax(visibility[pixel], floatBitsToUint(visibility_key(key, splat_key_disc, splat_epsilon)));
 }
 
@@ -49,8 +49,9 @@ void main() {
 #ifdef FRAGMENT
 
 void main() {
-    float m2, key;
-    drawn_fragment(m2, key);
+    vec2 m;
+    float key;
+    drawn_fragment(m, key);
     gl_FragDepth = visibility_key(key, plane_lo_disc.w, plane_epsilon.w);
 }
 

@@ -17,6 +17,7 @@
 //! | [`passes`] | one file a pass, beside the shader of the same name |
 //! | [`methods`] | one file a method: its paper and its passes |
 //! | [`renderer`] | frames: make ready, record, submit, read back |
+//! | [`capture`] | normalization weights of surfels, from pictures of them |
 //! | [`reference`](mod@reference) | the float64 twin of every pass, on the CPU; judges pictures |
 //! | [`truth`] | exact images: rays against the surface itself |
 //! | [`metrics`] | how far a picture is from the truth |
@@ -45,6 +46,7 @@
 
 #[cfg(feature = "bench")]
 pub mod bench;
+pub mod capture;
 pub mod error;
 mod frame;
 pub mod geometry;

@@ -64,6 +64,8 @@ pub struct SplatCounts {
 pub struct Renderer {
     // Fields are dropped in this order: views before what they view.
     present: Option<Present>,
+    /// What was before it: who switches to and fro, as in progressive rendering, makes nothing.
+    previous: Option<Present>,
     resident: Option<Resident>,
     pipelines: HashMap<Variant, Pipelines>,
     layout: SplatLayout,
@@ -100,6 +102,7 @@ impl Renderer {
         }
         Ok(Self {
             present: None,
+            previous: None,
             resident: None,
             pipelines: HashMap::new(),
             layout: SplatLayout::new(device)?,
@@ -110,7 +113,8 @@ impl Renderer {
         })
     }
 
-    /// Renders a frame and waits for it. Makes nothing that an earlier frame of the same scene and kind has made.
+    /// Renders a frame and waits for it. Makes nothing that an earlier frame of the same scene and kind has made,
+    /// if no more than one other kind came between.
     pub fn render(&mut self, scene: &Scene, camera: &Camera, settings: &Settings) -> Result<FrameReport> {
         self.run(scene, camera, settings, false)
     }
@@ -160,6 +164,7 @@ impl Renderer {
         read: bool,
     ) -> Result<FrameReport> {
         settings.check()?;
+        settings.splatting.normalization.check_weights(scene.weights.is_some())?;
         let block = frame(camera, settings, self.options.size, scene.origin(), scene.bounds())?;
         let blends = settings.splatting.visibility != Visibility::Nearest;
         let rasterizer = rasterizer_for(&self.device, &self.options, blends)?;
@@ -198,7 +203,11 @@ impl Renderer {
     }
 
     fn make_present(&mut self, variant: Variant, read: bool) -> Result<()> {
-        if self.present.as_ref().is_none_or(|present| present.variant != variant) {
+        let is_other = |present: &Option<Present>| present.as_ref().is_none_or(|p| p.variant != variant);
+        if is_other(&self.present) {
+            std::mem::swap(&mut self.present, &mut self.previous);
+        }
+        if is_other(&self.present) {
             self.present = None;
             let pipelines = match self.pipelines.entry(variant) {
                 Entry::Occupied(made) => made.into_mut(),

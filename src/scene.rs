@@ -1,7 +1,9 @@
 //! Geometry on the GPU: only the streams that the scene has.
 
+mod weights;
+
 use crate::error::{Error, Result};
-use crate::geometry::{Bounds, Clip, ClipLine, Clips, Colours, Ellipse, Surfels};
+use crate::geometry::{Bounds, Clip, ClipLine, Clips, Colours, Ellipse, Surfels, Weights};
 use crate::vk::shaders::layout::Splat;
 use crate::vk::{Binding, Buffer, Capabilities, Device, upload};
 use glam::DVec3;
@@ -9,6 +11,7 @@ use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
+use weights::WeightStream;
 
 /// Surfels resident on a device.
 pub struct Scene {
@@ -21,6 +24,7 @@ pub struct Scene {
     pub(crate) ellipses: Option<Buffer>,
     clips: Option<ClipStream>,
     pub(crate) colours: Option<Buffer>,
+    pub(crate) weights: Option<WeightBuffer>,
     colour_stream: ColourStream,
     windows: Vec<Range<u64>>,
     count: u64,
@@ -42,6 +46,15 @@ pub(crate) struct ClipWindow {
     pub(crate) count: u64,
 }
 
+/// Normalization weights of a scene.
+pub(crate) struct WeightBuffer {
+    buffer: Buffer,
+    /// Where each window of surfels has its words, in words.
+    windows: Vec<Range<u64>>,
+    /// Whether some surfels have weights at the corners of their squares.
+    pub corners: bool,
+}
+
 /// What a scene has beside positions, normals and radii.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Streams {
@@ -51,6 +64,8 @@ pub struct Streams {
     pub two_sided: bool,
     /// Some discs end at clip lines.
     pub clips: bool,
+    /// Surfels have normalization weights, and some have four: none, or whether.
+    pub weights: Option<bool>,
     /// How it holds colours.
     pub colours: ColourStream,
 }
@@ -110,6 +125,8 @@ impl Scene {
             Some(Colours::Srgb8(colours)) => (ColourStream::Srgb8, bytemuck::cast_slice(colours)),
             Some(Colours::Linear(colours)) => (ColourStream::Linear, bytemuck::cast_slice(colours)),
         };
+        let weights =
+            surfels.weights.as_ref().map(|weights| WeightBuffer::new(device, surfels, weights, &windows));
         let scene = Self {
             id: NEXT.fetch_add(1, Ordering::Relaxed),
             positions: upload(device, "positions", bytemuck::cast_slice(&surfels.positions))?,
@@ -122,6 +139,7 @@ impl Scene {
             colours: (colour_stream != ColourStream::None)
                 .then(|| upload(device, "colours", colours))
                 .transpose()?,
+            weights: weights.transpose()?,
             colour_stream,
             clips: surfels
                 .clips
@@ -159,7 +177,8 @@ impl Scene {
     /// Memory of its streams, bytes.
     pub fn bytes(&self) -> u64 {
         let clips = self.clips.as_ref().map(|clips| &clips.buffer);
-        let optional = [self.ellipses.as_ref(), self.colours.as_ref(), clips]
+        let weights = self.weights.as_ref().map(|weights| &weights.buffer);
+        let optional = [self.ellipses.as_ref(), self.colours.as_ref(), clips, weights]
             .map(|stream| stream.map_or(0, Buffer::size));
         self.positions.size() + self.normals.size() + self.radii.size() + optional.iter().sum::<u64>()
     }
@@ -175,6 +194,7 @@ impl Scene {
             ellipses: self.ellipses.is_some(),
             two_sided: self.two_sided,
             clips: self.clips.is_some(),
+            weights: self.weights.as_ref().map(|weights| weights.corners),
             colours: self.colour_stream,
         }
     }
@@ -184,9 +204,9 @@ impl Scene {
         self.clips.as_ref().map(|clips| clips.windows.as_slice())
     }
 
-    /// A window, by its number, of each stream: positions, normals, radii, colours, ellipses, clips. A stream that the scene lacks is stood
+    /// Window `number` of each stream: positions, normals, radii, colours, ellipses, clips, weights. A stream that the scene lacks is stood
     /// in for by the radii, which the shaders then do not read.
-    pub(crate) fn bindings(&self, number: usize) -> [Binding<'_>; 6] {
+    pub(crate) fn bindings(&self, number: usize) -> [Binding<'_>; 7] {
         let window = &self.windows[number];
         let part = |buffer, stride| {
             Binding::Storage(buffer, window.start * stride, (window.end - window.start) * stride)
@@ -208,6 +228,10 @@ impl Scene {
                     let Range { start, end } = windows[number].bytes;
                     Binding::Storage(buffer, start, end - start)
                 }
+                None => part(&self.radii, SCALAR),
+            },
+            match &self.weights {
+                Some(weights) => weights.binding(number),
                 None => part(&self.radii, SCALAR),
             },
         ]
@@ -241,6 +265,25 @@ impl ClipStream {
 /// The bit of a surfel's clip that tells a concave corner, as in `lib/clip.glsl`.
 const CONCAVE: u32 = 1 << 31;
 
+impl WeightBuffer {
+    fn new(
+        device: &Arc<Device>,
+        surfels: &Surfels,
+        weights: &Weights,
+        windows: &[Range<u64>],
+    ) -> Result<Self> {
+        let WeightStream { words, windows } =
+            WeightStream::new(surfels, weights, windows, step(device.capabilities()));
+        let buffer = upload(device, "weights", bytemuck::cast_slice(&words))?;
+        Ok(Self { buffer, windows, corners: !weights.corners.is_empty() })
+    }
+
+    fn binding(&self, window: usize) -> Binding<'_> {
+        let Range { start, end } = self.windows[window];
+        Binding::Storage(&self.buffer, start * SCALAR, (end - start) * SCALAR)
+    }
+}
+
 /// The bounds of the valid surfels, and the number of the others.
 fn usable(surfels: &Surfels) -> Result<(Bounds, usize)> {
     let (count, invalid) = (surfels.len(), surfels.count_invalid());
@@ -273,11 +316,15 @@ fn marked_radii(surfels: &Surfels, invalid: usize) -> Cow<'_, [f32]> {
     surfels.radii.iter().enumerate().map(mark).collect()
 }
 
+/// Every stride is a multiple of 4 bytes, so this many elements start at a multiple of the alignment in each stream.
+fn step(capabilities: &Capabilities) -> u64 {
+    capabilities.storage_buffer_alignment.max(256)
+}
+
 /// Splits `count` surfels so that a window of any stream, the splats' included, fits a descriptor and starts aligned, and so that a
 /// window's workgroups and vertices can be counted.
 fn windows(count: u64, capabilities: &Capabilities) -> Vec<Range<u64>> {
-    // Every stride is a multiple of 4 bytes, so this many elements start at a multiple of the alignment in each stream.
-    let step = capabilities.storage_buffer_alignment.max(256);
+    let step = step(capabilities);
     let largest_stride = size_of::<Splat>() as u64;
     let fitting = (capabilities.max_storage_buffer_range / largest_stride)
         .min(u64::from(capabilities.max_workgroups) * 64)

@@ -124,6 +124,8 @@ pub enum Shading {
     Depth,
     /// The number of splats that are blended (pajarola2004 figure 18).
     Overlap,
+    /// The sum of their weights, normalization weights included: how far they are from a partition of unity.
+    Weight,
 }
 
 impl Widen {
@@ -155,6 +157,7 @@ impl Shading {
             Self::Normal => "normal",
             Self::Depth => "depth",
             Self::Overlap => "overlap",
+            Self::Weight => "weight",
         }
     }
 }

@@ -87,8 +87,10 @@ pub enum Visibility {
 pub enum Normalization {
     /// Division by their sum at every pixel.
     Pixel = 0,
+    /// A factor of each surfel, captured beforehand ([`crate::capture`]; ren2002 §7).
+    Surfel = 1,
     /// Nothing: brightness varies with the overlap (ren2002 figure 10a).
-    None = 1,
+    None = 2,
 }
 
 /// What is lit, where a frame is [lit](crate::settings::Shading::Lit).
@@ -171,6 +173,22 @@ impl Splatting {
     }
 }
 
+impl Normalization {
+    /// Refuses surfels without the weights that it needs.
+    ///
+    /// # Errors
+    /// [`Error::Usage`].
+    pub fn check_weights(self, there: bool) -> Result<()> {
+        match self {
+            Self::Surfel if !there => refuse(
+                "normalization by surfel needs surfels with normalization weights: capture them with `surfel convert --weights`, or \
+                 choose the normalization pixel",
+            ),
+            _ => Ok(()),
+        }
+    }
+}
+
 impl Footprint {
     /// As options and reports call it.
     pub fn name(self) -> &'static str {
@@ -213,6 +231,7 @@ impl Normalization {
     pub fn name(self) -> &'static str {
         match self {
             Self::Pixel => "pixel",
+            Self::Surfel => "surfel",
             Self::None => "none",
         }
     }

@@ -28,6 +28,10 @@ pub struct Variant {
     pub visibility: Visibility,
     /// What the sums are divided by.
     pub normalization: Normalization,
+    /// Kernels are multiplied by the scene's normalization weights.
+    pub weights: bool,
+    /// Some of these are at the corners of surfels' squares.
+    pub corners: bool,
     /// Splats are lit, not pixels.
     pub shade_splats: bool,
     /// Only axes that are shorter than the low-pass filter are widened by it.
@@ -92,6 +96,8 @@ impl Variant {
         let (shading, splatting) = (settings.shading, settings.splatting);
         let wants_colour = matches!(shading, Shading::Lit | Shading::Colour);
         let shade_splats = shading == Shading::Lit && splatting.shade == Shade::Splat;
+        let by_surfel = splatting.normalization == Normalization::Surfel && shading != Shading::Overlap;
+        let weights = streams.weights.filter(|_| by_surfel);
         let lit_pixels = shading == Shading::Lit && !shade_splats;
         Self {
             perspective,
@@ -102,12 +108,13 @@ impl Variant {
             footprint: splatting.footprint,
             confetti: splatting.kernel != Kernel::Gaussian,
             visibility: splatting.visibility,
-            // How many there are is never divided.
-            normalization: if shading == Shading::Overlap {
-                Normalization::Pixel
-            } else {
-                splatting.normalization
+            // How many there are, or what they weigh, is never divided.
+            normalization: match shading {
+                Shading::Overlap | Shading::Weight => Normalization::Pixel,
+                _ => splatting.normalization,
             },
+            weights: weights.is_some(),
+            corners: weights == Some(true),
             shade_splats,
             widen_small: settings.widen == Widen::Small && splatting.filter != Filter::None,
             count: options.count,
@@ -155,6 +162,8 @@ impl Variant {
             .with(constant::FOOTPRINT, self.footprint as u32)
             .with(constant::CONFETTI, self.confetti)
             .with(constant::NORMALIZATION, self.normalization as u32)
+            .with(constant::WEIGHTS, self.weights)
+            .with(constant::CORNERS, self.corners)
             .with(constant::SHADE_SPLATS, self.shade_splats)
             .with(constant::NEAREST, self.visibility == Visibility::Nearest)
             .with(constant::OVERLAP, self.shading == Shading::Overlap)

@@ -5,9 +5,10 @@ mod support;
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
 use support::gpu::{assert_silent, device, render};
+use support::sampling::Random;
 use support::scenes::{Case, cases};
-use surfel::geometry::{Camera, Clip, Ellipse, Surfels};
-use surfel::methods::{Method, sprites};
+use surfel::geometry::{Camera, Clip, Ellipse, Surfels, Weights};
+use surfel::methods::{Method, object_ewa, sprites};
 use surfel::reference::{Comparison, Expected, Surfel, Tolerance};
 use surfel::settings::Widen;
 use surfel::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
@@ -91,13 +92,17 @@ fn every_case_by_every_method() {
 fn every_case_by_other_axes() {
     let conic = Splatting::default();
     let alone = Splatting { visibility: Visibility::Nearest, normalization: Normalization::None, ..conic };
-    let sprites = sprites::METHOD.splatting;
+    let [sprites, object] = [sprites::METHOD, object_ewa::METHOD].map(|method| method.splatting);
     let all = [
         Splatting { footprint: Footprint::Affine, ..conic },
         Splatting { footprint: Footprint::Disc, filter: Filter::Object, ..conic },
         Splatting { filter: Filter::None, kernel: Kernel::Confetti { a: 4.0, n: 5.0 }, ..conic },
         Splatting { visibility: Visibility::Axis, ..conic },
         Splatting { normalization: Normalization::None, ..conic },
+        Splatting { normalization: Normalization::Surfel, ..conic },
+        Splatting { normalization: Normalization::Surfel, ..object },
+        Splatting { normalization: Normalization::Surfel, footprint: Footprint::Disc, ..object },
+        Splatting { normalization: Normalization::Surfel, ..sprites },
         Splatting { filter: Filter::Screen, shade: Shade::Pixel, ..sprites },
         alone,
         Splatting { footprint: Footprint::Square, filter: Filter::None, ..alone },
@@ -112,8 +117,19 @@ fn every_case_by_other_axes() {
 /// All cases, rendered in another way.
 fn with_axes(settings: impl Fn(&Case) -> Settings) -> Vec<Case> {
     let mut cases = cases();
-    cases.iter_mut().for_each(|case| case.settings = settings(case));
+    for case in &mut cases {
+        case.settings = settings(case);
+        let by_surfel = case.settings.splatting.normalization == Normalization::Surfel;
+        case.surfels.weights = by_surfel.then(|| weights(case.surfels.len()));
+    }
     cases
+}
+
+/// Random normalization weights, of every third surfel one at each corner.
+fn weights(count: usize) -> Weights {
+    let mut random = Random(99);
+    let mut weight = || (0.05 + 0.4 * random.unit()) as f32;
+    Weights::collect((0..count).map(|i| (weight(), i.is_multiple_of(3).then(|| [(); 4].map(|()| weight())))))
 }
 
 fn assert_agree(failed: Vec<String>) {

@@ -5,12 +5,13 @@ mod support;
 use glam::DVec3;
 use std::sync::Arc;
 use support::gpu::{assert_silent, device, render};
-use surfel::geometry::{Camera, Surfels};
+use surfel::geometry::{Camera, Surfels, Weights};
+use surfel::methods::object_ewa::{self, Progressive};
 use surfel::methods::{Method, passes};
 use surfel::reference::{Expected, Tolerance};
 use surfel::scenes::bumpy_sphere;
 use surfel::settings::{Cull, DirectionalLight, Shading, Widen};
-use surfel::splatting::{Splatting, Visibility};
+use surfel::splatting::{Normalization, Splatting, Visibility};
 use surfel::targets::{Buffers, Formats};
 use surfel::variant::Variant;
 use surfel::vk::{Device, DeviceLimits};
@@ -155,6 +156,47 @@ fn without_64_bit_atomics_the_nearest_splats_are_drawn() {
     let mut computed = Renderer::new(&device, everything(Rasterizer::Compute)).unwrap();
     let refused = computed.render(&scene, &camera(SIZE), &settings).unwrap_err().to_string();
     assert!(refused.contains("64-bit atomics"), "{refused}");
+    assert_silent(&device);
+}
+
+#[test]
+fn progressive_frames_make_nothing_once_both_kinds_are_made() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let mut surfels = sphere(5_000);
+    surfels.weights = Some(Weights::collect((0..5_000).map(|i| (0.2, (i % 9 == 0).then_some([0.2; 4])))));
+    for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
+        let scene = Scene::upload(&device, &surfels).unwrap();
+        let mut renderer = Renderer::new(&device, everything(rasterizer)).unwrap();
+        let mut progressive = Progressive::default();
+        let mut frame = |camera: &Camera| {
+            let settings = progressive.settings(camera);
+            renderer.render_picture(&scene, camera, &settings).unwrap();
+            settings.splatting.normalization
+        };
+        let turned = |i: u32| Camera {
+            view: camera(SIZE).view * glam::DMat4::from_rotation_y(f64::from(i)),
+            ..camera(SIZE)
+        };
+        // The first moves, the second rests.
+        let first = [0, 0].map(|i| frame(&turned(i)));
+        assert_eq!(first, [Normalization::Surfel, Normalization::Pixel]);
+        let before = device.usage();
+        for i in [1, 2, 2, 2, 3, 3, 0] {
+            frame(&turned(i));
+        }
+        assert_eq!(device.usage(), before, "{rasterizer:?}");
+    }
+    assert_silent(&device);
+}
+
+#[test]
+fn normalization_by_surfel_needs_weights() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let scene = Scene::upload(&device, &sphere(500)).unwrap();
+    let mut renderer = Renderer::new(&device, everything(Rasterizer::Draw)).unwrap();
+    let refused = renderer.render(&scene, &camera(SIZE), &object_ewa::progressive(true));
+    assert!(matches!(refused.err(), Some(Error::Usage(text)) if text.contains("`surfel convert --weights`")));
+    renderer.render(&scene, &camera(SIZE), &object_ewa::progressive(false)).unwrap();
     assert_silent(&device);
 }
 

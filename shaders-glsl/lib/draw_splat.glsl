@@ -6,7 +6,7 @@ layout(location = 0) flat out vec4 anchor_offset;
 layout(location = 1) flat out vec4 whitening;
 layout(location = 2) flat out vec4 plane_epsilon;
 layout(location = 3) flat out vec4 plane_lo_disc;
-layout(location = 7) flat out uint clip;
+layout(location = 9) flat out uint clip;
 
 // More than the rasterizer's snapping of vertices, at least 1/16 px, could take from an edge.
 const float EDGE = 0.125;
@@ -49,17 +49,17 @@ layout(location = 0) flat in vec4 anchor_offset;
 layout(location = 1) flat in vec4 whitening;
 layout(location = 2) flat in vec4 plane_epsilon;
 layout(location = 3) flat in vec4 plane_lo_disc;
-layout(location = 7) flat in uint clip;
+layout(location = 9) flat in uint clip;
 
 // The bound given by the vertex stage holds: κ only falls from there.
 layout(depth_less) out float gl_FragDepth;
 
 // As splat_fragment; where there is no fragment, there is none.
-void drawn_fragment(out float m2, out float key) {
+void drawn_fragment(out vec2 m, out float key) {
     float key_centre = centre_key(plane_epsilon.xyz, plane_lo_disc.xyz, anchor_offset.zw);
     Ellipse ellipse =
         Ellipse(anchor_offset.xy, anchor_offset.zw, whitening, plane_epsilon.xyz, plane_lo_disc.xyz, key_centre, clip);
-    if (!splat_fragment(ellipse, gl_FragCoord.xy, m2, key)) discard;
+    if (!splat_fragment(ellipse, gl_FragCoord.xy, m, key)) discard;
 }
 
 #endif

@@ -149,17 +149,17 @@ Ellipse ellipse_of(Splat splat, vec2 variance, uint clip) {
 }
 
 // Whether the splat has a fragment at a pixel centre: it is within the rim and not clipped, and the tangent plane within the depth range.
-// m2: squared distance to the centre in σ; key: the plane's κ.
-bool splat_fragment(Ellipse ellipse, vec2 pixel, out float m2, out float key) {
+// m: place in the kernel along the ellipse's axes, σ; key: the plane's κ.
+bool splat_fragment(Ellipse ellipse, vec2 pixel, out vec2 m, out float key) {
     vec2 d = pixel - ellipse.anchor;
     vec2 e = d - ellipse.offset;
-    vec2 u = vec2(dot(ellipse.whitening.xy, e), dot(ellipse.whitening.zw, e));
+    m = vec2(dot(ellipse.whitening.xy, e), dot(ellipse.whitening.zw, e));
     key = plane_at(ellipse.plane_hi, ellipse.plane_lo, d);
     if (has_linear_depth()) key = key > 0.0 ? frame.near / key : 2.0;
     // A homography that keeps the centre is affine but for the plane's distance.
-    if (on_plane()) u /= clamp(key / ellipse.key_centre, 1.0 / MOST_STRETCH, MOST_STRETCH);
-    m2 = dot(u, u);
-    bool inside = rim() > 1.0 ? max(abs(u.x), abs(u.y)) <= frame.cutoff : m2 <= frame.cutoff * frame.cutoff;
+    if (on_plane()) m /= clamp(key / ellipse.key_centre, 1.0 / MOST_STRETCH, MOST_STRETCH);
+    bool inside =
+        rim() > 1.0 ? max(abs(m.x), abs(m.y)) <= frame.cutoff : dot(m, m) <= frame.cutoff * frame.cutoff;
     if (has_clip(ellipse.clip)) inside = inside && clip_keeps(screen_clips[ellipse.clip], d);
     return inside && key > frame.key_far && key <= 1.0;
 }

@@ -9,10 +9,10 @@ layout(constant_id = 18) const uint NORMALIZATION = 0;     // as in src/splattin
 layout(constant_id = 19) const bool OVERLAP = false;       // every splat weighs 1: Σw is their number
 
 const uint COLOURS_NONE = 0, COLOURS_SRGB8 = 1, COLOURS_LINEAR = 2;
-const uint PER_PIXEL = 0, NONE = 1;
+const uint PER_PIXEL = 0, PER_SURFEL = 1, NONE = 2;
 
-// Whether Σw is wanted: something is divided by it.
-const bool SUM_WEIGHTS = NORMALIZATION == PER_PIXEL || SUM_DEPTH;
+// Whether Σw is wanted: something is divided by it, or held against it.
+const bool SUM_WEIGHTS = NORMALIZATION == PER_PIXEL || SUM_DEPTH || SUM_NORMALS;
 // Whether target 0 holds a vector beside Σw.
 const bool WIDE_SUMS0 = SUM_NORMALS || SUM_COLOURS;
 // Whether target 1 holds colours beside the depth sum.

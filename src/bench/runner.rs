@@ -7,6 +7,7 @@ use super::record::{self, Agreement, Exhibit, Run, Setting, Time};
 use super::subject::{Subject, pixel_angle};
 use super::times::Statistics;
 use super::{exhibit, hidden, stopwatch, terms};
+use crate::capture::{self, capture};
 use crate::error::{Error, Result};
 use crate::geometry::{Camera, Surfels};
 use crate::metrics::flicker::Flicker;
@@ -15,6 +16,7 @@ use crate::picture::Picture;
 use crate::reference::{self, Expected, Tolerance};
 use crate::scenes::Viewpoint;
 use crate::settings::{Settings, Shading};
+use crate::splatting::Normalization;
 use crate::truth::{self, Cache, Truth};
 use crate::vk::Device;
 use std::collections::HashMap;
@@ -58,6 +60,8 @@ struct SurfelKey {
     scene: String,
     points: u64,
     radius_scale: f32,
+    /// What their normalization weights depend on, if they have some.
+    weights: Option<Settings>,
 }
 
 /// A plan with all that it needs.
@@ -101,19 +105,32 @@ impl Runner {
         };
         self.subject = Some(subject.clone());
         let (points, radius_scale) = (plan.points, plan.radius_scale);
-        let key = SurfelKey { scene: plan.scene.clone(), points, radius_scale };
+        let by_surfel = plan.settings.splatting.normalization == Normalization::Surfel;
+        let weights = by_surfel.then(|| capture::plain(&plan.settings));
+        let key = SurfelKey { scene: plan.scene.clone(), points, radius_scale, weights };
         let surfels = match self.surfels.take() {
             Some((of, surfels)) if of == key => surfels,
-            _ => {
-                let mut surfels = subject.surfels(points)?;
-                surfels.radii.iter_mut().for_each(|radius| *radius *= radius_scale);
-                Rc::new(surfels)
-            }
+            _ => Rc::new(self.surfels(&subject, &key)?),
         };
         self.surfels = Some((key, surfels.clone()));
         let viewpoint = plan.viewpoint.unwrap_or(subject.viewpoint());
         let camera = subject.camera(&viewpoint, 0.0, plan.size)?;
         Ok(Job { plan, subject, surfels, viewpoint, camera })
+    }
+
+    fn surfels(&self, subject: &Subject, key: &SurfelKey) -> Result<Surfels> {
+        let mut surfels = subject.surfels(key.points)?;
+        surfels.radii.iter_mut().for_each(|radius| *radius *= key.radius_scale);
+        if let Some(settings) = &key.weights {
+            let (weights, _) = capture(self.device()?, &surfels, settings, capture::VIEWS, &())?;
+            surfels.weights = Some(weights);
+        }
+        Ok(surfels)
+    }
+
+    fn device(&self) -> Result<&Arc<Device>> {
+        let none = || Error::NoDevice("this run needs one: see `surfel devices`".into());
+        self.options.device.as_ref().ok_or_else(none)
     }
 
     fn fill(&mut self, job: &Job<'_>, run: &mut Run) -> Result<()> {
@@ -171,9 +188,7 @@ impl Runner {
     fn ready(&self, engine: Engine, surfels: &Surfels, size: [u32; 2]) -> Result<Box<dyn Ready>> {
         match engine {
             Engine::Splatting { rasterizer, precision } => {
-                let none = || Error::NoDevice("this run needs one: see `surfel devices`".into());
-                let device = self.options.device.as_ref().ok_or_else(none)?;
-                Ok(Box::new(OnDevice::new(device, surfels, size, rasterizer, precision)?))
+                Ok(Box::new(OnDevice::new(self.device()?, surfels, size, rasterizer, precision)?))
             }
             Engine::Yardstick(kind) => Ok(Box::new(OnHost::new(surfels, size, kind)?)),
         }

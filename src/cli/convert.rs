@@ -4,17 +4,23 @@ use super::args::Convert;
 use super::colouring::Colouring;
 use super::files::is_same;
 use super::inputs::{self, Wanted};
-use super::progress;
+use super::{progress, vulkan};
 use std::path::Path;
+use std::sync::Arc;
+use surfel::capture::{Captured, capture};
+use surfel::geometry::Surfels;
 use surfel::io::{atomic, ply};
-use surfel::{Error, Result};
+use surfel::methods::object_ewa;
+use surfel::vk::Device;
+use surfel::{Error, Progress, Result};
 
 /// Writes the surfels of inputs to a PLY file. Where it is to be written is looked at before anything is read.
 pub fn run(args: &Convert) -> Result<()> {
     let out = Path::new(&args.output);
     check_output(args, out)?;
+    let device = vulkan::options(&args.device)?;
     let bars = progress::bars(args.quiet);
-    let loaded = inputs::load(&Wanted {
+    let mut loaded = inputs::load(&Wanted {
         names: &args.inputs,
         estimate: args.estimate(),
         voxel: args.voxel,
@@ -22,9 +28,31 @@ pub fn run(args: &Convert) -> Result<()> {
         quiet: args.quiet,
         progress: &*bars,
     })?;
+    if let Some(views) = args.weights {
+        capture_weights(&mut loaded.surfels, views, &Device::open(&device)?, &*bars, args.quiet)?;
+    }
     ply::write(out, &loaded.surfels)?;
     if !args.quiet {
         progress::say(&format!("{}: {} surfels", out.display(), loaded.surfels.len()));
+    }
+    Ok(())
+}
+
+/// Gives the surfels normalization weights.
+fn capture_weights(
+    surfels: &mut Surfels,
+    views: u32,
+    device: &Arc<Device>,
+    progress: &dyn Progress,
+    quiet: bool,
+) -> Result<()> {
+    let (weights, found) = capture(device, surfels, &object_ewa::METHOD.settings(), views, progress)?;
+    surfels.weights = Some(weights);
+    let Captured { seen, borders, computed } = found;
+    if !quiet {
+        progress::say(&format!(
+            "weights of {seen} surfels from {views} views, {borders} of them at borders; {computed} computed"
+        ));
     }
     Ok(())
 }

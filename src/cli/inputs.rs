@@ -116,6 +116,12 @@ fn warn(name: &str, report: &Report) {
             report.clip_lines_dropped
         );
     }
+    if report.weights_dropped > 0 {
+        log::warn!(
+            "{name}: {} normalization weights are not finite or not above 0 and are left out",
+            report.weights_dropped
+        );
+    }
     let Faces { understood, skipped } = report.faces;
     if skipped > 0 {
         log::warn!(

@@ -48,7 +48,13 @@ fn describe(text: &mut String, method: &Method) {
 }
 
 fn variant(settings: &Settings, rasterizer: Rasterizer) -> Variant {
-    let streams = Streams { ellipses: false, two_sided: false, clips: false, colours: ColourStream::Srgb8 };
+    let streams = Streams {
+        ellipses: false,
+        two_sided: false,
+        clips: false,
+        weights: None,
+        colours: ColourStream::Srgb8,
+    };
     let settings = Settings { shading: Shading::Lit, ..settings.clone() };
     Variant::new(streams, true, &settings, &RenderOptions::default(), rasterizer)
 }

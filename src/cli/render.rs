@@ -101,7 +101,7 @@ pub fn keep_layers(picture: &mut Picture, layers: Outputs) {
 fn check_colours(args: &Render, colouring: Option<&Colouring>, out: &Output) -> Result<()> {
     let Some(colouring) = colouring else { return Ok(()) };
     let refuse = |text: &str| Err(Error::Usage(text.into()));
-    if matches!(args.settings().shading, Shading::Normal | Shading::Depth | Shading::Overlap) {
+    if !matches!(args.settings().shading, Shading::Lit | Shading::Colour) {
         return refuse("--color-by shows under --shading lit or color alone: choose one of them");
     }
     match args.color_bar {

@@ -149,6 +149,8 @@ pub enum Shading {
     Depth,
     /// How many splats are blended
     Overlap,
+    /// What the splats' weights add up to
+    Weight,
 }
 
 impl From<Shading> for settings::Shading {
@@ -159,6 +161,7 @@ impl From<Shading> for settings::Shading {
             Shading::Normal => Self::Normal,
             Shading::Depth => Self::Depth,
             Shading::Overlap => Self::Overlap,
+            Shading::Weight => Self::Weight,
         }
     }
 }

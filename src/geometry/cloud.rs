@@ -1,7 +1,7 @@
 //! A point cloud as files hold it: positions, and whatever else there is.
 
 use super::morton::order;
-use super::{Clips, Colours, Ellipse, Surfels};
+use super::{Clips, Colours, Ellipse, Surfels, Weights};
 use glam::{DVec3, Vec3};
 
 /// Points as a structure of arrays; every array that is there has one entry a point.
@@ -21,6 +21,8 @@ pub struct Cloud {
     pub two_sided: Option<Vec<bool>>,
     /// Where discs end at sharp edges. There are normals, then.
     pub clips: Option<Clips>,
+    /// Normalization weights; 0 where a point has none. There are normals and radii, then.
+    pub weights: Option<Weights>,
     /// Colours.
     pub colours: Option<Colours>,
     /// A number a point, chosen on reading; not finite where there is none.
@@ -50,7 +52,8 @@ impl Cloud {
     }
 
     /// So many of its points, spread evenly: every so-manyth along the Z-curve of their bounds, in that order; all if there are no more.
-    /// Radii, ellipses, clips and triangles, which belonged to closer points, are dropped: larger discs reach edges that those did not.
+    /// Radii, ellipses, clips, weights and triangles, which belonged to closer points, are dropped: larger discs reach edges that those
+    /// did not.
     pub fn some(&self, count: usize) -> Self {
         let order = order(&self.positions);
         let (count, all) = (count.min(order.len()), order.len() as u64);
@@ -91,6 +94,7 @@ impl From<Surfels> for Cloud {
             ellipses: surfels.ellipses,
             two_sided: surfels.two_sided,
             clips: surfels.clips,
+            weights: surfels.weights,
             colours: surfels.colours,
             ..Default::default()
         }

@@ -1,6 +1,6 @@
 //! Several sets of points as one.
 
-use super::{Bounds, Clips, Cloud, Colours, Ellipse, Surfels, View};
+use super::{Bounds, Clips, Cloud, Colours, Ellipse, Surfels, View, Weights};
 use crate::error::{Error, Result};
 use crate::io::srgb;
 use glam::{DVec3, Vec3};
@@ -11,7 +11,8 @@ impl Surfels {
     /// If the parts' origins agree, the origin and every position stay as they are; otherwise the origin is the middle of the common
     /// bounds, and positions are moved in float64. Where only some parts have colours, `albedo` (linear) is the others' colour; colours
     /// stay sRGB-encoded unless a part has linear ones. Where only some have shapes, the others' discs are circles; where only some
-    /// name two-sided surfels, the others' are not; where only some have clips, the others' discs are whole.
+    /// name two-sided surfels, the others' are not; where only some have clips, the others' discs are whole;
+    /// where only some have normalization weights, none has: there are none that would fit the others.
     ///
     /// # Errors
     /// [`Error::Usage`] if there are more than 2³² − 1 surfels.
@@ -25,6 +26,7 @@ impl Surfels {
             ellipses: merged.ellipses,
             two_sided: merged.two_sided,
             clips: merged.clips,
+            weights: merged.weights,
             colours: merged.colours,
         })
     }
@@ -55,6 +57,7 @@ impl Cloud {
             // Before the normals, which circles are made of.
             ellipses: join(parts, |part| part.ellipses.take(), circles),
             clips: join_clips(parts),
+            weights: Weights::join(parts.iter_mut().map(|part| part.weights.take())),
             two_sided: join(parts, |part| part.two_sided.take(), |part| vec![false; part.len()]),
             scalar: join(parts, |part| part.scalar.take(), |part| vec![f64::NAN; part.len()]),
             radii: join(parts, |part| part.radii.take(), |part| vec![0.0; part.len()]),
@@ -256,6 +259,18 @@ mod tests {
         let merged = Surfels::merge(parts, [0.5; 3]).unwrap();
         assert_eq!(merged.clips, Clips::collect([Some(clip(0.25)), None, Some(clip(-0.5))]));
         assert_eq!(Surfels::merge(vec![part(0.0, 1.0, None); 2], [0.5; 3]).unwrap().clips, None);
+    }
+
+    #[test]
+    fn weights_are_kept_where_every_part_has_them() {
+        let weighted = |weight| Surfels {
+            weights: Some(Weights::collect([(weight, Some([weight; 4]))])),
+            ..part(0.0, 1.0, None)
+        };
+        let merge = |parts| Surfels::merge(parts, [0.5; 3]).unwrap().weights;
+        let both = Weights::collect([0.5, 0.25].map(|weight| (weight, Some([weight; 4]))));
+        assert_eq!(merge(vec![weighted(0.5), weighted(0.25)]), Some(both));
+        assert_eq!(merge(vec![weighted(0.5), part(0.0, 1.0, None)]), None);
     }
 
     #[test]

@@ -12,6 +12,7 @@ mod quantity;
 mod surfels;
 mod thin;
 mod valid;
+mod weights;
 
 pub use bounds::Bounds;
 pub use camera::{Camera, Projection};
@@ -20,3 +21,5 @@ pub use cloud::{Cloud, View};
 pub use colour_map::{ColourMap, ColourScale, ValueRange};
 pub use quantity::Quantity;
 pub use surfels::{Colours, Ellipse, Surfels};
+pub(crate) use weights::square_axis;
+pub use weights::{Corners, Weights, first_axis};

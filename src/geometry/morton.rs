@@ -47,7 +47,7 @@ fn spread(x: u64) -> u64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Clip, ClipLine, Clips, Ellipse};
+    use crate::geometry::{Clip, ClipLine, Clips, Ellipse, Weights};
 
     #[test]
     fn spread_moves_every_bit_to_its_triple() {
@@ -69,6 +69,7 @@ mod tests {
             ellipses: Some(corners.iter().map(|p| Ellipse { major: *p, aspect: 1.0 }).collect()),
             two_sided: Some(corners.iter().map(|p| p.x > 0.0).collect()),
             clips: Clips::collect(corners.iter().map(|p| (p.x > 0.0).then(|| clip(p)))),
+            weights: Some(Weights::collect(corners.iter().map(|p| (p.y, (p.x > 0.0).then_some([p.z; 4]))))),
             positions: corners,
             ..Default::default()
         };
@@ -80,5 +81,7 @@ mod tests {
         assert_eq!(surfels.two_sided, Some(vec![false, true, false, true, false, true, false, true]));
         let expected = surfels.positions.iter().map(|p| (p.x > 0.0).then(|| clip(p)));
         assert_eq!(surfels.clips, Clips::collect(expected));
+        let expected = surfels.positions.iter().map(|p| (p.y, (p.x > 0.0).then_some([p.z; 4])));
+        assert_eq!(surfels.weights, Some(Weights::collect(expected)));
     }
 }

@@ -1,6 +1,6 @@
 //! A set of surfels: oriented discs that sample a surface.
 
-use super::Clips;
+use super::{Clips, Weights};
 use crate::error::{Error, Result};
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
@@ -26,6 +26,8 @@ pub struct Surfels {
     pub two_sided: Option<Vec<bool>>,
     /// Where discs end at sharp edges; all are whole where there are none.
     pub clips: Option<Clips>,
+    /// What kernels are multiplied by where nothing is divided by their sum ([`crate::splatting::Normalization::Surfel`]).
+    pub weights: Option<Weights>,
     /// Colours, where the input has them.
     pub colours: Option<Colours>,
 }
@@ -67,10 +69,10 @@ impl Surfels {
         self.positions.is_empty()
     }
 
-    /// Refuses arrays of unequal length, an origin that is not finite, and clips that do not exist.
+    /// Refuses arrays of unequal length, an origin that is not finite, and clips and corners that do not exist.
     ///
     /// # Errors
-    /// [`Error::Usage`], with the lengths, the origin or the clip.
+    /// [`Error::Usage`], with the lengths, the origin, the clip or the corners.
     pub fn check(&self) -> Result<()> {
         if !self.origin.is_finite() {
             return Err(Error::Usage(format!("the surfels' origin is {}: give a finite one", self.origin)));
@@ -82,13 +84,16 @@ impl Surfels {
             self.ellipses.as_ref().map_or(count, Vec::len),
             self.two_sided.as_ref().map_or(count, Vec::len),
             self.clips.as_ref().map_or(count, |clips| clips.of.len()),
+            self.weights.as_ref().map_or(count, |weights| weights.of.len()),
             self.colours.as_ref().map_or(count, Colours::len),
         ];
         if lengths.iter().all(|&length| length == count) {
-            return self.clips.as_ref().map_or(Ok(()), Clips::check);
+            self.clips.as_ref().map_or(Ok(()), Clips::check)?;
+            return self.weights.as_ref().map_or(Ok(()), Weights::check);
         }
         Err(Error::Usage(format!(
-            "{count} positions with {lengths:?} normals, radii, ellipses, sides, clips and colours: give one each"
+            "{count} positions with {lengths:?} normals, radii, ellipses, sides, clips, weights and colours: give \
+             one each"
         )))
     }
 
@@ -104,6 +109,7 @@ impl Surfels {
         self.ellipses.iter_mut().for_each(|ellipses| gather(ellipses, order));
         self.two_sided.iter_mut().for_each(|two_sided| gather(two_sided, order));
         self.clips.iter_mut().for_each(|clips| clips.permute(order));
+        self.weights.iter_mut().for_each(|weights| weights.permute(order));
         match &mut self.colours {
             Some(Colours::Srgb8(colours)) => gather(colours, order),
             Some(Colours::Linear(colours)) => gather(colours, order),

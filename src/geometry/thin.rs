@@ -16,7 +16,7 @@ impl Cloud {
     /// origin included.
     ///
     /// The point is the mean of its voxel's: of positions, of normals (0 where they cancel), of colours in linear light, of the finite
-    /// scalars. Radii, ellipses, clips and triangles, which belonged to the closer points, are dropped: a normal that only the triangles told is
+    /// scalars. Radii, ellipses, clips, weights and triangles, which belonged to the closer points, are dropped: a normal that only the triangles told is
     /// then estimated from the points. The result does not depend on the number of threads.
     ///
     /// # Errors

@@ -14,7 +14,8 @@ impl Surfels {
 
     /// Whether surfel `index` can be drawn: no attribute is NaN, infinite or beyond [`Surfels::LARGEST`], the radius is above 0, the
     /// normal is a unit vector, and so is the longer axis of an ellipse, at a right angle to the normal and with an aspect above 0
-    /// and up to 1. The same holds of the lines of its clip, if it has one. `false` beyond the end of any array.
+    /// and up to 1. The same holds of the lines of its clip, if it has one, and its normalization weights, if it has any, are
+    /// above 0. `false` beyond the end of any array.
     pub fn is_valid(&self, index: usize) -> bool {
         let bounded = |v: Vec3| v.abs().cmple(Vec3::splat(Self::LARGEST)).all();
         let at = |values: &[Vec3]| values.get(index).copied();
@@ -30,12 +31,13 @@ impl Surfels {
             clips.of.get(index).is_some_and(|clip| *clip == 0)
                 || clips.get(index).is_some_and(|clip| fits_clip(clip, normal))
         });
+        let weighted = self.weights.as_ref().is_none_or(|weights| weights.is_valid(index, Self::LARGEST));
         let coloured = match &self.colours {
             Some(Colours::Linear(colours)) => colours.get(index).is_some_and(|&c| bounded(c.into())),
             Some(Colours::Srgb8(colours)) => index < colours.len(),
             None => true,
         };
-        bounded(position) && is_unit(normal) && sized && shaped && clipped && coloured
+        bounded(position) && is_unit(normal) && sized && shaped && clipped && weighted && coloured
     }
 
     /// How many surfels are not [valid](Surfels::is_valid).
@@ -86,7 +88,7 @@ fn is_unit(v: Vec3) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Clips, Ellipse};
+    use crate::geometry::{Clips, Ellipse, Weights};
     use glam::DVec3;
 
     fn clip() -> Clip {
@@ -107,6 +109,7 @@ mod tests {
             ellipses: Some(vec![Ellipse { major: Vec3::X, aspect: 1e-4 }; 2]),
             two_sided: None,
             clips: Clips::collect([Some(clip()), Some(clip())]),
+            weights: Some(Weights::collect([(0.5, None), (0.25, Some([0.1, 0.2, 0.3, 0.4]))])),
             colours: Some(Colours::Linear(vec![[-1.0, 0.0, 1e14]; 2])),
         }
     }
@@ -115,7 +118,7 @@ mod tests {
     fn what_is_out_of_bounds_is_invalid_and_bounds_leave_it_out() {
         let alone = two().bounds().unwrap();
         assert_eq!(two().count_invalid(), 0);
-        let changes: [fn(&mut Surfels); 21] = [
+        let changes: [fn(&mut Surfels); 26] = [
             |s| s.positions[1].y = f32::NAN,
             |s| s.positions[1].z = f32::NEG_INFINITY,
             |s| s.positions[1].x = -1.1e15,
@@ -135,6 +138,11 @@ mod tests {
             |s| second(s).lines[1].offset = 1.0,
             |s| s.clips.as_mut().unwrap().of[1] = 3,
             |s| s.clips.as_mut().unwrap().of.truncate(1),
+            |s| s.weights.as_mut().unwrap().of[1] = 0.0,
+            |s| s.weights.as_mut().unwrap().of[1] = f32::NAN,
+            |s| s.weights.as_mut().unwrap().corners[0].weights[3] = -0.1,
+            |s| s.weights.as_mut().unwrap().corners[0].weights[0] = f32::INFINITY,
+            |s| s.weights.as_mut().unwrap().of.truncate(1),
             |s| s.colours = Some(Colours::Linear(vec![[0.0; 3], [0.0, f32::NAN, 0.0]])),
             |s| s.colours = Some(Colours::Srgb8(vec![[0; 4]])),
         ];

@@ -47,7 +47,8 @@ const COUNTS_STEP: u64 = 256;
 const LIST_HEADER: u64 = size_of::<LargeSplats>() as u64;
 
 impl SplatLayout {
-    /// Bindings as in `lib/frame.glsl`, `lib/splat.glsl`, `footprint.glsl`, `attribute.glsl` and `lib/scatter_splat.glsl`.
+    /// Bindings as in `lib/frame.glsl`, `lib/splat.glsl`, `footprint.glsl`, `attribute.glsl`, `lib/scatter_splat.glsl` and
+    /// `lib/weights.glsl`.
     pub fn new(device: &Arc<Device>) -> Result<Self> {
         let (compute, vertex) = (ShaderStageFlags::COMPUTE, ShaderStageFlags::VERTEX);
         let storage = |stages| (DescriptorType::STORAGE_BUFFER, stages);
@@ -64,6 +65,7 @@ impl SplatLayout {
             storage(compute),                                       // ellipses
             storage(compute | vertex | ShaderStageFlags::FRAGMENT), // clips
             storage(compute | ShaderStageFlags::FRAGMENT),          // screen clips
+            storage(compute | vertex),                              // weights
         ];
         Ok(Self { splats: SetLayout::new(device, &bindings)?, pixels: pixel_layout(device)? })
     }
@@ -111,7 +113,8 @@ impl Splats {
         let window = |(number, range): (u64, &Range<u64>)| {
             let count = range.end - range.start;
             let list = number * LIST_HEADER + 4 * range.start;
-            let [positions, normals, radii, colours, ellipses, clips] = scene.bindings(number as usize);
+            let [positions, normals, radii, colours, ellipses, clips, weights] =
+                scene.bindings(number as usize);
             let own = Binding::Storage(&splats, range.start * stride, count * stride);
             let tally = Binding::Storage(&counts, number * COUNTS_STEP, COUNTS_STEP);
             // Without the compute rasterizer nothing is listed, and the counts stand in.
@@ -126,8 +129,10 @@ impl Splats {
                 // Not touched, but what stands there is waited for as if it were.
                 _ => Binding::Storage(&splats, range.start * stride, count * stride),
             };
-            let bindings =
-                [frame, own, positions, normals, radii, colours, tally, large, ellipses, clips, on_screen];
+            let bindings = [
+                frame, own, positions, normals, radii, colours, tally, large, ellipses, clips, on_screen,
+                weights,
+            ];
             let set = DescriptorSet::new(device, &layout.splats, &bindings)?;
             Ok(Window { set, count: count as u32, first: range.start as u32, list })
         };

@@ -54,7 +54,7 @@ pub(super) fn pass(projector: &Projector, scene: &Scene, band: &Band, visible: &
             }
             let Some(depth) = projector.depth_of(splat, hit.at) else { return };
             if depth <= visible[hit.index] {
-                sums[hit.index] += Sums::of(projector, splat, ellipse.weight(hit.sigmas), depth);
+                sums[hit.index] += Sums::of(projector, splat, ellipse.weight(hit.in_kernel), depth);
             }
         });
     }

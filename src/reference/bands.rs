@@ -41,7 +41,9 @@ pub(super) struct Hit {
     pub at: DVec2,
     /// Position of its centre relative to the splat's, px.
     pub offset: DVec2,
-    /// The same in σ: `√(e (V+H)⁻¹ eᵀ)`.
+    /// The same along the kernel's axes, in σ.
+    pub in_kernel: DVec2,
+    /// Its length: `√(e (V+H)⁻¹ eᵀ)`.
     pub sigmas: f64,
     /// What is compared with the cut-off, σ.
     pub rim: f64,
@@ -141,8 +143,10 @@ impl<'a> Band<'a> {
                 let offset = at - ellipse.centre;
                 let rim = ellipse.rim(offset);
                 if rim <= reach {
-                    let (index, sigmas) = ((row * self.width + column) as usize, ellipse.sigmas(offset));
-                    visit(Hit { index, at, offset, sigmas, rim, kept: ellipse.kept(at) });
+                    let (index, in_kernel) =
+                        ((row * self.width + column) as usize, ellipse.in_kernel(offset));
+                    let kept = ellipse.kept(at);
+                    visit(Hit { index, at, offset, in_kernel, sigmas: in_kernel.length(), rim, kept });
                 }
             }
         }

@@ -89,6 +89,7 @@ impl Expected {
         settings: &Settings,
         tolerance: &Tolerance,
     ) -> Result<Self> {
+        settings.splatting.normalization.check_weights(surfels.weights.is_some())?;
         let projector = Projector::new(camera, size, settings)?;
         let scene = Scene::project(&projector, surfels);
         let bands = Bands::new(&projector, &scene, size);

@@ -4,7 +4,7 @@ use super::footprint::ScreenClip;
 use super::{Projector, Splat};
 use crate::settings::Widen;
 use crate::splatting::{Footprint, Kernel};
-use glam::{DVec2, DVec3};
+use glam::{DMat2, DVec2, DVec3};
 use std::f64::consts::FRAC_PI_4;
 
 /// Largest factor by which perspective shrinks or enlarges a kernel in the tangent plane against its centre.
@@ -36,11 +36,14 @@ pub(super) struct Ellipse {
     /// Whether the outline is the square about the ellipse.
     pub square: bool,
     /// How far rounding may turn that square, rad: the nearer the ellipse is to a circle, the less its axes are determined.
-    pub turn: f64,
+    pub spin: f64,
     /// How the weight falls off.
     pub kernel: Kernel,
     /// What of it is kept.
     pub clip: Option<ScreenClip>,
+    /// Normalization weights at the corners of the kernel's square, and from that square's axes to the kernel's.
+    pub corners: [f64; 4],
+    pub turn: DMat2,
 }
 
 impl Ellipse {
@@ -81,21 +84,24 @@ impl Ellipse {
             cutoff: projector.cutoff(),
             horizon: on_plane.then(|| splat.plane / splat.plane.dot(DVec3::new(1.0, centre.x, centre.y))),
             square: matches!(splatting.footprint, Footprint::Parallelogram | Footprint::Square),
-            turn: if sided { turn(anisotropy) } else { 0.0 },
+            spin: if sided { spin(anisotropy) } else { 0.0 },
             kernel: splatting.kernel,
             clip: splat.clip,
+            corners: splat.weights,
+            turn: turn(splat, DVec2::from_angle(angle)),
         }
     }
 
     /// Where in the kernel the offset `e` from the centre is: along its axes, in σ. Seen in perspective, what lies in a plane is a
     /// homography of it; one that keeps the centre is affine but for the division by the plane's inverse distance.
-    fn in_kernel(&self, offset: DVec2) -> DVec2 {
+    pub fn in_kernel(&self, offset: DVec2) -> DVec2 {
         let at = self.centre + offset;
         let nearness = self.horizon.map_or(1.0, |plane| plane.dot(DVec3::new(1.0, at.x, at.y)));
         self.principal(offset) / self.sigma() / nearness.clamp(1.0 / MOST_STRETCH, MOST_STRETCH)
     }
 
     /// `m = √(e V'⁻¹ eᵀ)` of the offset `e` from the centre, in σ.
+    #[cfg(test)]
     pub fn sigmas(&self, offset: DVec2) -> f64 {
         self.in_kernel(offset).length()
     }
@@ -118,12 +124,12 @@ impl Ellipse {
 
     /// How far rounding may move the outline at the offset `e` from the centre, px, beside what it moves any outline.
     pub fn shift(&self, offset: DVec2) -> f64 {
-        self.turn * offset.length()
+        self.spin * offset.length()
     }
 
     /// The same anywhere on the outline, at most, in σ of the minor axis.
     pub fn reach_of_shift(&self) -> f64 {
-        self.turn * self.stretch() * self.cutoff * self.sigma().x / self.sigma().y
+        self.spin * self.stretch() * self.cutoff * self.sigma().x / self.sigma().y
     }
 
     /// How far the outline can reach beyond the ellipse, as a factor.
@@ -132,13 +138,32 @@ impl Ellipse {
         if self.horizon.is_some() { MOST_STRETCH * rim } else { rim }
     }
 
-    /// Weight at a distance of `m` σ: the kernel's height where the filter has widened it.
-    pub fn weight(&self, sigmas: f64) -> f64 {
-        self.amplitude * (-self.exponent(sigmas)).exp()
+    /// Weight at the place `m` in the kernel, σ: the kernel's height where the filter has widened it, times the normalization weight.
+    pub fn weight(&self, m: DVec2) -> f64 {
+        self.amplitude * (-self.exponent(m.length())).exp() * self.normalization(m)
+    }
+
+    /// The normalization weight at the place `m` in the kernel, σ: bilinear in its square (ren2002 section 7.2).
+    fn normalization(&self, m: DVec2) -> f64 {
+        let [a, b, c, d] = self.corners;
+        let at = (self.turn.transpose() * m / self.cutoff).clamp(DVec2::NEG_ONE, DVec2::ONE);
+        let [low, high] = [0.5 - 0.5 * at, 0.5 + 0.5 * at];
+        low.y * (low.x * a + high.x * b) + high.y * (low.x * c + high.x * d)
+    }
+
+    /// How far off a float32 weight may be at the place `m`, σ, in half units in its last place. Vulkan has the exponential of x within
+    /// 3 + 2 |x| units. Of a weight that is bilinear between corners, two interpolations round four times each, and as often does each
+    /// coordinate of the place, along which the weight moves by no more than the corners span.
+    pub fn grain(&self, m: DVec2) -> f64 {
+        let exponential = 2.0 * (3.0 + 2.0 * self.exponent(m.length()));
+        let least = self.corners.into_iter().fold(f64::INFINITY, f64::min);
+        let span = self.corners.into_iter().fold(0.0, f64::max) - least;
+        let bilinear = if span > 0.0 { 8.0 + 8.0 * span / self.normalization(m) } else { 0.0 };
+        exponential + bilinear
     }
 
     /// Of what the kernel is the exponential, negated, at a distance of `m` σ.
-    pub fn exponent(&self, sigmas: f64) -> f64 {
+    fn exponent(&self, sigmas: f64) -> f64 {
         match self.kernel {
             Kernel::Gaussian => 0.5 * sigmas * sigmas,
             Kernel::Confetti { a, n } => {
@@ -203,13 +228,22 @@ impl Ellipse {
 }
 
 /// How far rounding may turn the sides of a parallelogram whose variances differ by that part, rad.
-fn turn(anisotropy: f64) -> f64 {
+fn spin(anisotropy: f64) -> f64 {
     let past = anisotropy - LEAST_ANISOTROPY;
     match past {
         _ if past.abs() <= ROUNDING => FRAC_PI_4,
         _ if past < 0.0 => 0.0,
         _ => ROUNDING / anisotropy,
     }
+}
+
+/// From the axes of a disc's square to those of its kernel on the screen, of which `major` is the longer. Without a filter `V = D Dᵀ`, and the
+/// kernel's axes are `Λ^(-1/2) Rᵀ D` of the square's: a rotation, or a reflection where the back is seen. Its first row is the image of the
+/// longer axis; the other one, at a right angle, is not computed from the shorter, which may have no length.
+fn turn(splat: &Splat, major: DVec2) -> DMat2 {
+    let first = (splat.square.transpose() * major).try_normalize().unwrap_or(DVec2::X);
+    let second = splat.square.determinant().signum() * first.perp();
+    DMat2::from_cols(first, second).transpose()
 }
 
 /// Distance of `p`, in the first quadrant, to the ellipse of semi-axes `axes.x ≥ axes.y`. The foot of the perpendicular is
@@ -286,9 +320,11 @@ mod tests {
             cutoff: 2.0,
             horizon: None,
             square: false,
-            turn: 0.0,
+            spin: 0.0,
             kernel: Kernel::Gaussian,
             clip: None,
+            corners: [1.0; 4],
+            turn: DMat2::IDENTITY,
         };
         for y in [17.0, 20.0, 22.5] {
             let (low, high) = ellipse.span(y, 2.0).unwrap();

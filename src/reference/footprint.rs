@@ -6,9 +6,9 @@ use super::ellipse::Ellipse;
 use super::image::Disc;
 use super::shading::{linear, lit};
 use crate::error::Result;
-use crate::geometry::{Camera, Clip, ClipLine, Colours, Surfels};
+use crate::geometry::{Camera, Clip, ClipLine, Colours, Surfels, square_axis};
 use crate::settings::{Cull, Settings, Shading};
-use crate::splatting::Shade;
+use crate::splatting::{Normalization, Shade};
 use glam::{DMat2, DMat3, DVec2, DVec3};
 
 /// One surfel in float64, in world space.
@@ -26,6 +26,9 @@ pub struct Surfel {
     pub aspect: f64,
     /// Whether neither side is the back.
     pub two_sided: bool,
+    /// Normalization weights at the corners −u −v, +u −v, −u +v, +u +v of the square about the disc, u = `major` and v = normal × u; all
+    /// the same within a surface, and 1 where the scene has none.
+    pub weights: [f64; 4],
     /// Linear RGB, where the scene has colours.
     pub colour: Option<DVec3>,
     /// What is cut off the disc.
@@ -40,19 +43,19 @@ impl Surfel {
             Colours::Linear(c) => DVec3::from_array(c[index].map(f64::from)),
         });
         let normal = surfels.normals[index].as_dvec3().normalize_or_zero();
-        let (major, aspect) = match &surfels.ellipses {
-            // In the disc's plane, from which float32 took it.
-            Some(e) => {
-                (e[index].major.as_dvec3().reject_from_normalized(normal).normalize(), e[index].aspect)
-            }
-            None => (normal.any_orthonormal_vector(), 1.0),
-        };
+        let ellipse = surfels.ellipses.as_ref().map(|ellipses| ellipses[index]);
+        let weights = surfels
+            .weights
+            .as_ref()
+            .map_or([1.0; 4], |weights| weights.corners_of(index).unwrap_or([weights.of[index]; 4]));
         Self {
             position: surfels.origin + surfels.positions[index].as_dvec3(),
             normal,
             radius: surfels.radii[index].into(),
-            major,
-            aspect: aspect.into(),
+            // In the disc's plane, from which float32 took it.
+            major: square_axis(surfels.normals[index], ellipse.map(|ellipse| ellipse.major)),
+            aspect: ellipse.map_or(1.0, |ellipse| ellipse.aspect.into()),
+            weights: weights.map(f64::from),
             two_sided: surfels.two_sided.as_ref().is_some_and(|two_sided| two_sided[index]),
             colour,
             clip: surfels.clips.as_ref().and_then(|clips| clips.get(index)).copied(),
@@ -88,6 +91,10 @@ pub struct Splat {
     pub secant: f64,
     /// Shorter semi-axis of the disc divided by the longer.
     pub aspect: f64,
+    /// Normalization weights at the corners of the disc's square, all 1 where the frame wants none.
+    pub weights: [f64; 4],
+    /// Images of the square's axes at the centre, px up to a common factor.
+    pub square: DMat2,
     /// Whether the ellipse came from the dual form, the inverse form being ill-conditioned.
     pub dual: bool,
     /// What of it is kept, where some is cut off.
@@ -168,6 +175,8 @@ impl Projector {
         if self.settings.cull == Cull::Back && facing >= 0.0 && !surfel.two_sided {
             return Err(Culled::Back);
         }
+        let square = DMat2::from_cols(mapping.x_axis.truncate(), mapping.y_axis.truncate());
+        let by_surfel = self.settings.splatting.normalization == Normalization::Surfel;
         let image = self.image(&Disc { surfel, centre, normal, axes, projected, mapping });
         let shown = surfel.colour.unwrap_or(DVec3::from_array(self.settings.lighting.albedo.map(f64::from)));
         let towards = if facing > 0.0 { -surfel.normal } else { surfel.normal };
@@ -183,6 +192,8 @@ impl Projector {
             colour: self.splat_colour(shown, towards, centre),
             secant: self.secant(centre, facing),
             aspect: surfel.aspect,
+            weights: if by_surfel { surfel.weights } else { [1.0; 4] },
+            square,
             dual: image.dual,
             clip: surfel.clip.map(|clip| self.screen_clip(&clip, centre, normal)),
         };

@@ -22,12 +22,12 @@ pub(super) struct Candidate<'a> {
     pub wobble: f64,
     /// The kernel's weight.
     pub weight: f64,
-    /// Of what the kernel is the exponential, negated.
-    pub exponent: f64,
     /// How far rounding may move the weight, relative to it.
     pub sway: f64,
     /// The same through a shift of the whole splat on the screen.
     pub drift: f64,
+    /// How far off the weight is in float32, relative to it, whatever else is: in half units in the last place.
+    pub grain: f64,
     /// Whether it is surely inside the cut-off and the clip volume.
     pub certain: bool,
 }
@@ -71,8 +71,8 @@ impl Margins<'_> {
                     if let Some(c) = &mut candidate {
                         // A kernel that is steeper than a Gaussian makes more of the same shift.
                         c.sway += shift * ellipse.steepness(hit.sigmas);
-                        (c.weight, c.drift) = (ellipse.weight(hit.sigmas), shift * hit.sigmas);
-                        c.exponent = ellipse.exponent(hit.sigmas);
+                        (c.weight, c.drift) = (ellipse.weight(hit.in_kernel), shift * hit.sigmas);
+                        c.grain = ellipse.grain(hit.in_kernel);
                     }
                     candidate.into_iter().for_each(&mut visit);
                 }
@@ -88,7 +88,7 @@ impl Margins<'_> {
         let (sway, certain) = (self.rounding * (splat.secant + self.turn(splat)), false);
         let pixel = hit.index;
         let mut candidate =
-            Candidate { splat, pixel, depth, wobble, weight: 0.0, exponent: 0.0, sway, drift: 0.0, certain };
+            Candidate { splat, pixel, depth, wobble, weight: 0.0, sway, drift: 0.0, grain: 0.0, certain };
         candidate.certain = !near && in_front && within(wobble);
         within(-wobble).then_some(candidate)
     }

@@ -115,6 +115,7 @@ pub fn render(
     settings: &Settings,
     progress: &dyn Progress,
 ) -> Result<Frame> {
+    settings.splatting.normalization.check_weights(surfels.weights.is_some())?;
     let projector = Projector::new(camera, size, settings)?;
     let scene = Scene::project(&projector, surfels);
     Ok(draw(&projector, &scene, &Bands::new(&projector, &scene, size), progress))

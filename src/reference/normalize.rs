@@ -51,7 +51,7 @@ pub(super) fn resolve(projector: &Projector, at: DVec2, sums: Option<&Sums>) -> 
     let settings = &projector.settings;
     let total = match settings.splatting.normalization {
         Normalization::Pixel => sums.weight,
-        Normalization::None => 1.0,
+        Normalization::Surfel | Normalization::None => 1.0,
     };
     let colour = sums.colour / total;
     let shown = match settings.shading {
@@ -61,7 +61,7 @@ pub(super) fn resolve(projector: &Projector, at: DVec2, sums: Option<&Sums>) -> 
         Shading::Colour => colour,
         Shading::Normal => normal,
         Shading::Depth => DVec3::splat(depth),
-        Shading::Overlap => DVec3::splat(sums.weight),
+        Shading::Overlap | Shading::Weight => DVec3::splat(sums.weight),
     };
     Value { covered: true, colour: shown.extend(1.0).to_array(), depth, normal: normal.to_array() }
 }

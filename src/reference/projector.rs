@@ -119,6 +119,14 @@ impl Projector {
         (distance.is_finite() && (self.depth.near..=self.depth.far).contains(&distance)).then_some(distance)
     }
 
+    /// Pixel position and distance of a point of the world; `None` if it is not in front of the eye.
+    pub(crate) fn locate(&self, point: DVec3) -> Option<(DVec2, f64)> {
+        let eye = self.view.transform_point3(point);
+        let projected = self.project(eye.extend(1.0));
+        let at = 0.5 * self.size * (projected.truncate() / projected.z + 1.0);
+        (projected.z > 0.0).then_some((at, self.distance(eye)))
+    }
+
     /// Eye-space homogeneous vector to `(x, y, w)` in clip space.
     pub(super) fn project(&self, v: DVec4) -> DVec3 {
         let c = self.clip * v;

@@ -13,25 +13,22 @@ pub struct Slack {
     pub attribute: f64,
     /// `Σw / |Σw n|`, less 1: the more the normals cancel, the more an error turns their normalised sum.
     pub turn: f64,
-    /// What the rounding of the kernels and of their sum does to the unit normal.
+    /// What the rounding of the weights and of their sum does to the unit normal.
     pub summed: f64,
 }
 
-/// Rounding error of a sum of a few floats, relative to the sum of their magnitudes: four half units in the last place.
-const SUM: f64 = 4.0 * 1.0 / (1 << 24) as f64;
-
-/// What Vulkan grants `exp(-x)`, relative to it: 3 + 2 x units in the last place.
-fn of_exp(x: f64) -> f64 {
-    (3.0 + 2.0 * x) / (1 << 23) as f64
-}
+/// Half a unit in the last place of a float of 1.
+const HALF_UNIT: f64 = 1.0 / (1 << 24) as f64;
+/// Rounding error of a sum of a few floats, relative to the sum of their magnitudes, in half units in the last place.
+const SUM: f64 = 4.0;
 
 /// Sums over a pixel's splats that make its [`Slack`].
 #[derive(Clone, Copy, Default)]
 pub(super) struct Means {
     weight: f64,
     normal: DVec3,
-    rounding: f64,
     sway: f64,
+    grain: f64,
     /// The weight that a splat has in the mean depth.
     pull: f64,
     wobble: f64,
@@ -47,8 +44,8 @@ impl Means {
         Self {
             weight: c.weight,
             normal: c.weight * c.splat.normal,
-            rounding: c.weight * (SUM + of_exp(c.exponent)),
             sway: c.weight * c.sway,
+            grain: c.weight * c.grain,
             pull,
             wobble: pull * c.wobble,
             depth: pull * c.depth,
@@ -60,7 +57,8 @@ impl Means {
     /// The means.
     pub fn slack(&self) -> Slack {
         let spread_of_normals = self.weight / self.normal.length();
-        let summed = if self.weight > 0.0 { self.rounding / self.normal.length() } else { 0.0 };
+        let grain = HALF_UNIT * (SUM + self.grain / self.weight);
+        let summed = if self.weight > 0.0 { grain * spread_of_normals } else { 0.0 };
         if self.sway == 0.0 {
             return Slack { summed, ..Default::default() };
         }
@@ -82,8 +80,8 @@ impl std::ops::AddAssign for Means {
     fn add_assign(&mut self, other: Self) {
         self.weight += other.weight;
         self.normal += other.normal;
-        self.rounding += other.rounding;
         self.sway += other.sway;
+        self.grain += other.grain;
         self.pull += other.pull;
         self.wobble += other.wobble;
         self.depth += other.depth;

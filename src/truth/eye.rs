@@ -49,7 +49,7 @@ impl<'a, S: Scene + ?Sized> Eye<'a, S> {
         let albedo = DVec3::from(hit.albedo.unwrap_or(lighting.albedo.map(f64::from)));
         let colour = match self.settings.shading {
             Shading::Lit => lit(lighting, albedo, normal, viewer),
-            Shading::Colour | Shading::Normal | Shading::Depth | Shading::Overlap => albedo,
+            _ => albedo,
         };
         Some(Seen { colour, depth, normal })
     }

@@ -29,7 +29,7 @@ pub fn exact(shading: Shading) -> &'static [usize] {
     match shading {
         Shading::Lit | Shading::Colour => &[0, 1, 2, 3],
         Shading::Normal => &[0, 4, 5, 6],
-        Shading::Depth | Shading::Overlap => &[0],
+        Shading::Depth | Shading::Overlap | Shading::Weight => &[0],
     }
 }
 

@@ -155,7 +155,7 @@ fn resolve(cell: &Cell, depth: f32, settings: &Settings) -> ([f32; 4], [f32; 3])
         Shading::Normal => normal,
         Shading::Depth => [depth; 3],
         // The surface is there once.
-        Shading::Overlap => [1.0; 3],
+        Shading::Overlap | Shading::Weight => [1.0; 3],
     };
     // Numbers are not mixed with a colour: the half decides.
     let alpha = match settings.background {

@@ -112,8 +112,9 @@ impl Yardstick {
         outputs: Outputs,
     ) -> Result<&[PassTime]> {
         settings.check()?;
-        if settings.splatting != Splatting::default() || settings.shading == Shading::Overlap {
-            let text = "the yardstick draws as perspective-ewa does, and no overlaps: choose that method";
+        let counts = matches!(settings.shading, Shading::Overlap | Shading::Weight);
+        if settings.splatting != Splatting::default() || counts {
+            let text = "the yardstick draws as perspective-ewa does, and neither overlaps nor weights: choose that method";
             return Err(Error::Usage(text.into()));
         }
         let view = View::new(camera, size, self.surfels.origin)?;

@@ -68,7 +68,7 @@ impl<'a> Shader<'a> {
             Shading::Normal => normal,
             Shading::Depth => [surface.depth; 3],
             // Refused before a frame is begun.
-            Shading::Overlap => [Vec4::ONE; 3],
+            Shading::Overlap | Shading::Weight => [Vec4::ONE; 3],
         };
         let [r, g, b] = shown;
         let select = |here: Vec4, otherwise: Vec4| Vec4::select(surface.covered, here, otherwise);

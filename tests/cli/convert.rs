@@ -69,6 +69,56 @@ fn colours_are_written() {
 }
 
 #[test]
+fn weights_are_captured_once_and_render_by_surfel() {
+    let Some(program) = Program::with_device("weights_are_captured_once_and_render_by_surfel") else {
+        return;
+    };
+    let scene = "scene:bumpy-sphere?points=2000";
+    let run = program.run(&format!("convert {scene} -o w.ply --weights 12"));
+    assert!(run.err.contains("w.ply: 2000 surfels\n"), "{}", run.err);
+    let seen = run.err.split_once("weights of ").unwrap().1;
+    let seen: u32 = seen.split_once(" surfels from 12 views").unwrap().0.parse().unwrap();
+    assert!(seen > 1900, "{}", run.err);
+    assert!(info(&program, "w.ply").contains("  float surfel_weight"));
+    let by_surfel = "--method object-ewa --normalization surfel --size 64x64 --quiet";
+    program.run(&format!("render w.ply -o w.png {by_surfel}")).text();
+    assert!(program.png("w.png").pixels().any(|pixel| pixel[3] == 255));
+    let refused = program.run(&format!("render {scene} -o x.png {by_surfel}"));
+    assert!(refused.code == 2 && refused.err.contains("surfel convert --weights"), "{}", refused.err);
+    let none = program.run(&format!("convert {scene} -o x.ply --weights 0"));
+    assert_eq!(none.code, 2, "{}", none.err);
+}
+
+#[test]
+fn borders_have_weights_at_corners_and_the_file_evens_out_what_is_rendered() {
+    let name = "borders_have_weights_at_corners_and_the_file_evens_out_what_is_rendered";
+    let Some(program) = Program::with_device(name) else { return };
+    let run = program.run("convert scene:relief?height=0&points=3000&albedo=plain -o w.ply --weights");
+    let borders = run.err.split_once(" from 24 views, ").unwrap().1.split_once(" of them").unwrap().0;
+    assert!((100..1000).contains(&borders.parse::<u32>().unwrap()), "{}", run.err);
+    let text = info(&program, "w.ply");
+    let properties = ["surfel_weight", "surfel_weight0", "surfel_weight3"];
+    assert!(properties.iter().all(|name| text.contains(&format!("  float {name}\n"))), "{text}");
+    // Written again they are the same to the byte, and with other radii they are gone.
+    program.run("convert w.ply -o again.ply").text();
+    let [first, again] = ["w.ply", "again.ply"].map(|name| std::fs::read(program.path(name)).unwrap());
+    assert!(first == again);
+    program.run("convert w.ply -o wide.ply --radius-scale 2").text();
+    assert!(!info(&program, "wide.ply").contains("surfel_weight"));
+    let [pixel, surfel, none] = ["pixel", "surfel", "none"].map(|normalization| {
+        let how = "--method object-ewa --shading color --size 128x128 --quiet --normalization";
+        program.run(&format!("render w.ply -o {normalization}.png {how} {normalization}")).text();
+        program.png(&format!("{normalization}.png"))
+    });
+    // Of one colour: what differs from the division at every pixel is the sum.
+    let off = |picture: &image::RgbaImage| {
+        let pairs = picture.pixels().zip(pixel.pixels()).filter(|(_, exact)| exact[3] == 255);
+        pairs.map(|(a, b)| f64::from(a[1].abs_diff(b[1]))).sum::<f64>()
+    };
+    assert!(off(&surfel) > 0.0 && off(&surfel) < 0.5 * off(&none), "{} {}", off(&surfel), off(&none));
+}
+
+#[test]
 fn thinning_says_how_many_are_left() {
     let program = Program::new();
     let bare = surfels(&["0 0 0 0 0 1 9", "0.25 0 0 0 0 1 9", "5 0 0 0 0 1 9"]);

@@ -41,6 +41,12 @@ const FILES: &[(&str, &str)] = &[
         "0 0 0 0 0 1 .5 1 0 0 .25 0 1 0 -.1 1  1 0 0 0 1 0 .5 0 .5 1 .1 0 0 0 0 0  0 1 0 1 0 0 .5 0 0 0 0 0 0 0 0 0",
     ),
     (
+        "element vertex 4\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\n\
+         property float nz\nproperty float radius\nproperty float surfel_weight\nproperty float surfel_weight0\n\
+         property float surfel_weight1\nproperty double surfel_weight2\nproperty uchar surfel_weight3",
+        "0 0 0 0 0 1 .5 .25 0 0 0 0  1 0 0 0 1 0 .5 .5 .25 .125 .5 1  0 1 0 1 0 0 .5 0 0 0 0 0  1 1 0 0 0 1 .5 2 .5 0 1 3",
+    ),
+    (
         "element vertex 2\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\n\
          property float nz\nproperty float f_dc_0\nproperty float f_dc_1\nproperty float f_dc_2\nproperty float f_rest_0\n\
          property float opacity\nproperty float scale_0\nproperty float scale_1\nproperty float scale_2\n\

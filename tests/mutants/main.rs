@@ -9,7 +9,7 @@ use mutate::Random;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::{Duration, Instant};
 use surfel::geometry::estimate::Estimate;
-use surfel::geometry::{Clip, ClipLine, Cloud, Colours, Surfels, View};
+use surfel::geometry::{Clip, ClipLine, Cloud, Colours, Surfels, View, Weights};
 use surfel::io::ply::{self, Loaded, ReadOptions};
 
 #[global_allocator]
@@ -104,6 +104,7 @@ fn check(cloud: &Cloud, report: &ply::Report) {
         cloud.ellipses.as_ref().map(Vec::len),
         cloud.two_sided.as_ref().map(Vec::len),
         cloud.clips.as_ref().map(|clips| clips.of.len()),
+        cloud.weights.as_ref().map(|weights| weights.of.len()),
         cloud.colours.as_ref().map(Colours::len),
         cloud.scalar.as_ref().map(Vec::len),
     ];
@@ -118,6 +119,8 @@ fn check(cloud: &Cloud, report: &ply::Report) {
     let across = |(shape, n): (&surfel::geometry::Ellipse, &glam::Vec3)| shape.major.dot(*n).abs() < 1e-5;
     assert!(cloud.ellipses.iter().flatten().zip(cloud.normals.iter().flatten()).all(across), "{cloud:?}");
     assert!(cloud.clips.is_none() || cloud.normals.is_some());
+    assert!(cloud.weights.is_none() || cloud.normals.is_some() && cloud.radii.is_some());
+    cloud.weights.iter().for_each(|weights| check_weights(weights, count));
     (0..count)
         .filter_map(|i| Some((cloud.clips.as_ref()?.get(i)?, cloud.normals.as_ref()?[i])))
         .for_each(check_clip);
@@ -140,6 +143,18 @@ fn check_clip((clip, normal): (&Clip, glam::Vec3)) {
     };
     assert!(sound(&clip.lines[0]) && (clip.lines[1] == ClipLine::NONE || sound(&clip.lines[1])), "{clip:?}");
     assert!(!clip.concave || clip.lines[1].is_some(), "{clip:?}");
+}
+
+/// A factor of each surfel, 0 where it has none; those at corners of some of the surfels, in order.
+fn check_weights(weights: &Weights, count: usize) {
+    assert!(
+        weights.of.len() == count && weights.of.iter().all(|w| *w >= 0.0 && w.is_finite()),
+        "{weights:?}"
+    );
+    let at_corners = weights.corners.iter().flat_map(|corners| corners.weights);
+    assert!(at_corners.into_iter().all(|weight| weight > 0.0 && weight.is_finite()), "{weights:?}");
+    assert!(weights.corners.windows(2).all(|pair| pair[0].surfel < pair[1].surfel), "{weights:?}");
+    assert!(weights.corners.iter().all(|corners| (corners.surfel as usize) < count), "{weights:?}");
 }
 
 /// Makes surfels, if that is possible, and looks at what they promise.
@@ -168,6 +183,10 @@ fn check_surfels(surfels: &Surfels) {
         assert!(ellipse.aspect > 0.0 && ellipse.aspect <= 1.0 && unit(&ellipse.major), "{ellipse:?}");
         assert!(ellipse.major.dot(*normal).abs() < 1e-3, "{ellipse:?} on {normal}");
     }
+    surfels.weights.iter().for_each(|weights| {
+        check_weights(weights, surfels.len());
+        assert!(weights.of.iter().all(|weight| *weight > 0.0), "{weights:?}");
+    });
     let clips = |i: usize| Some((surfels.clips.as_ref()?.get(i)?, surfels.normals[i]));
     (0..surfels.len()).filter_map(clips).for_each(check_clip);
 }

@@ -24,9 +24,11 @@ pub struct Claim {
 }
 
 const SCENE: &str = "scene:bumpy-sphere";
+/// A checkerboard whose weights can be captured: a plane that ends.
+const BOARD: &str = "scene:relief?height=0&frequency=2";
 
 /// All that can be measured, the cheaper side first.
-pub const ALL: [Claim; 6] = [
+pub const ALL: [Claim; 7] = [
     Claim {
         name: "filtered-sprites",
         title: "filtered sprites against unfiltered ones",
@@ -41,11 +43,24 @@ pub const ALL: [Claim; 6] = [
         title: "a low-pass filter in object space against none",
         source: "ren2002 table 1",
         published: Some([2.5, 3.4]),
-        words: "both without a division at every pixel; here both with it",
-        scene: ["scene:plane?frequency=2"; 2],
+        words: "both with weights of the surfels, without a division at every pixel",
+        scene: [BOARD; 2],
         settings: || {
-            let with = preset("object-ewa");
+            let with =
+                changed(&preset("object-ewa"), |splatting| splatting.normalization = Normalization::Surfel);
             [changed(&with, |splatting| splatting.filter = Filter::None), with]
+        },
+    },
+    Claim {
+        name: "per-pixel",
+        title: "a division at every pixel against weights of the surfels",
+        source: "ren2002 table 1",
+        published: Some([13.0, 23.8]),
+        words: "there the processor read the frame buffer back and divided",
+        scene: [BOARD; 2],
+        settings: || {
+            let pixel = preset("object-ewa");
+            [changed(&pixel, |splatting| splatting.normalization = Normalization::Surfel), pixel]
         },
     },
     Claim {

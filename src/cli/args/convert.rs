@@ -1,6 +1,6 @@
 //! Options of `surfel convert` and `surfel info`.
 
-use super::{Colours, Points};
+use super::{Colours, OnDevice, Points};
 use crate::cli::values::{direction, edge, positive};
 use clap::Args;
 use glam::DVec3;
@@ -13,7 +13,8 @@ pub struct Convert {
     /// PLY files, or built-in scenes such as scene:bumpy-sphere; several become one file
     #[arg(required = true, value_name = "INPUT")]
     pub inputs: Vec<OsString>,
-    /// The file: binary PLY with position, normal and radius, and where there are any, axes of ellipses, two-sidedness, clip lines and colour
+    /// The file: binary PLY with position, normal and radius, and where there are any, axes of ellipses, two-sidedness, clip lines,
+    /// normalization weights and colour
     #[arg(short, long, value_name = "OUT.ply")]
     pub output: OsString,
     /// Keeps one point for every cube of this side, in the positions' unit, of all inputs together
@@ -25,6 +26,12 @@ pub struct Convert {
     /// Ends discs at creases where normals turn by more than ANGLE degrees
     #[arg(long, value_name = "ANGLE", value_parser = edge, allow_hyphen_values = true)]
     pub sharp: Option<f32>,
+    /// Captures normalization weights, for object-ewa with --normalization surfel, from VIEWS directions; 24 unless given
+    #[arg(long, value_name = "VIEWS", num_args = 0..=1, default_missing_value = "24", value_parser = clap::value_parser!(u32).range(1..=10_000))]
+    pub weights: Option<u32>,
+    /// Where weights are captured
+    #[command(flatten)]
+    pub device: OnDevice,
     /// What points are coloured by
     #[command(flatten)]
     pub colours: Colours,

@@ -1,7 +1,7 @@
 //! Surfels in the making.
 
 use super::{Estimate, Estimated};
-use crate::geometry::{Clips, Cloud, Ellipse, Surfels, morton};
+use crate::geometry::{Clips, Cloud, Ellipse, Surfels, Weights, morton};
 use glam::Vec3;
 
 /// Surfels whose normals and radii may still be missing, which is 0 here, and what tells them.
@@ -27,6 +27,7 @@ impl Draft {
             ellipses: cloud.ellipses,
             two_sided: cloud.two_sided,
             clips: cloud.clips,
+            weights: cloud.weights,
             colours: cloud.colours,
         };
         surfels.check().map_err(|error| error.to_string())?;
@@ -100,6 +101,10 @@ impl Draft {
                 "a surfel would have the radius {radius}: give another radius or factor of it"
             ));
         }
+        // Weights are of the kernels that were, and of their neighbours.
+        let changed = how.radius.is_some() || how.radius_scale != 1.0 || how.sharp.is_some();
+        let changed = changed || estimated.outliers > 0;
+        surfels.weights = surfels.weights.take().filter(|_| !changed).and_then(Weights::filled);
         // A shape or a clip may be older than the normal to which its axis and its lines must be at a right angle.
         for (ellipse, normal) in surfels.ellipses.iter_mut().flatten().zip(&surfels.normals) {
             *ellipse = within(*ellipse, *normal);

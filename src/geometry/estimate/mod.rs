@@ -130,7 +130,8 @@ impl Cloud {
     /// neighbours, which points to where the cloud was seen from, or agrees with normals that are known and with its neighbours', outwards
     /// on a closed surface. Where even that does not tell its side, the surfel is two-sided. A radius that is missing is just large enough
     /// that the discs of a smooth surface leave no gap, by the triangles between the points: the faces', or those of the neighbours'
-    /// Delaunay triangulation in the tangent plane.
+    /// Delaunay triangulation in the tangent plane. Normalization weights are kept unless the radii, the number or the edges of the discs
+    /// change; one that is missing is the median.
     ///
     /// # Errors
     /// The cause, without the input's name, if what is missing cannot be estimated.

@@ -243,7 +243,7 @@ fn encode(picture: &Picture, shading: Shading) -> Vec<[u8; 4]> {
             };
             pixels.map(pixel).collect()
         }
-        Shading::Overlap => {
+        Shading::Overlap | Shading::Weight => {
             let most =
                 (0..picture.colour.len()).filter(|&i| covered(picture, i)).map(|i| picture.colour[i][0]);
             let most = most.fold(1.0, f32::max);

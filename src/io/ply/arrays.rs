@@ -1,7 +1,7 @@
 //! Where the points go: one array for each attribute that the file can have, filled piece by piece from several threads.
 
 use super::Parsed;
-use super::layout::{Layout, SCALAR, Shape};
+use super::layout::{CORNERS, Layout, SCALAR, Shape, WEIGHT};
 use super::source::room;
 use crate::geometry::{Clip, Ellipse};
 use glam::{DVec3, Vec3};
@@ -54,6 +54,8 @@ arrays! {
     ellipses: Ellipse, |layout: &Layout| layout.shape != Shape::Circle, "Shapes.";
     two_sided: bool, Layout::has_sides, "Whether the normal's side is unknown.";
     clips: Clip, Layout::has_clips, "Clips, of two lines that are none where the disc is whole.";
+    weights: f32, |layout: &Layout| layout.fills(WEIGHT), "Normalization weights or 0.";
+    corners: [f32; 4], |layout: &Layout| layout.fills(CORNERS), "Those at the corners of discs at borders; all 0 of others.";
     codes: [u8; 4], Layout::has_codes, "sRGB-encoded colours.";
     linear: [f32; 3], |layout: &Layout| layout.colour.is_some() && !layout.has_codes(), "Linear colours.";
     scalar: f64, |layout: &Layout| layout.fills(SCALAR), "The chosen scalar.";

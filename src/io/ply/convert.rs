@@ -3,8 +3,8 @@
 use super::arrays::Slices;
 use super::block::Block;
 use super::layout::{
-    AXES, CLIPS, COLOUR, CONCAVE, Colour, Layout, NORMAL, OPACITY, POSITION, RADIUS, ROTATION, SCALAR, Shape,
-    TWO_SIDED,
+    AXES, CLIPS, COLOUR, CONCAVE, CORNERS, Colour, Layout, NORMAL, OPACITY, POSITION, RADIUS, ROTATION,
+    SCALAR, Shape, TWO_SIDED, WEIGHT,
 };
 use super::shape::{self, Disc};
 use super::types::Scalar;
@@ -28,6 +28,8 @@ pub(super) struct Tally {
     pub transparent: u64,
     /// Clip lines that are none.
     pub clip_lines: u64,
+    /// Normalization weights that are none.
+    pub weights: u64,
     /// Whether a normal or a radius is missing.
     pub lacking: bool,
 }
@@ -38,6 +40,7 @@ impl Tally {
             dropped: self.dropped + other.dropped,
             transparent: self.transparent + other.transparent,
             clip_lines: self.clip_lines + other.clip_lines,
+            weights: self.weights + other.weights,
             lacking: self.lacking || other.lacking,
         }
     }
@@ -60,6 +63,7 @@ pub(super) fn convert(block: &Block, layout: &Layout, out: &mut Slices) -> Tally
     }
     shapes(block, layout, out);
     tally.clip_lines = clips(block, out);
+    tally.weights = weights(block, out);
     colours(block, layout, out);
     out.scalar.iter_mut().zip(block.column(SCALAR)).for_each(|(to, value)| *to = *value);
     // Here, as the entries are still in the cache.
@@ -137,6 +141,24 @@ fn clips(block: &Block, out: &mut Slices) -> u64 {
         // What is concave is a corner: two lines that the file has, whether or not they are of any use.
         let concave = at(CONCAVE) != 0.0 && lines.iter().all(Option::is_some);
         out.clips[row] = Clip::of_some(lines.map(Option::flatten), concave).unwrap_or_default();
+    }
+    dropped
+}
+
+/// Weights, and those at corners; gives the number of those that are none. Where one corner's is none, so are the others.
+fn weights(block: &Block, out: &mut Slices) -> u64 {
+    let read = |value: f64| Some(value as f32).filter(|weight| *weight > 0.0 && weight.is_finite());
+    let mut dropped = 0;
+    for (to, value) in out.weights.iter_mut().zip(block.column(WEIGHT)) {
+        *to = read(*value).unwrap_or_default();
+        dropped += u64::from(*to == 0.0);
+    }
+    for row in 0..out.corners.len().min(block.rows()) {
+        let given = [0, 1, 2, 3].map(|corner| block.column(CORNERS + corner)[row]);
+        let usable = given.map(read);
+        let whole = usable.iter().all(Option::is_some);
+        out.corners[row] = if whole { usable.map(Option::unwrap_or_default) } else { [0.0; 4] };
+        dropped += if given == [0.0; 4] { 0 } else { usable.iter().filter(|w| w.is_none()).count() as u64 };
     }
     dropped
 }

@@ -25,14 +25,23 @@ pub(super) const ROTATION: usize = 18;
 pub(super) const CLIPS: usize = 22;
 /// Column of clip_concave.
 pub(super) const CONCAVE: usize = 30;
+/// Column of surfel_weight.
+pub(super) const WEIGHT: usize = 31;
+/// Column of surfel_weight0; 1 to 3 follow.
+pub(super) const CORNERS: usize = 32;
 /// Column of the scalar that the caller has chosen.
-pub(super) const SCALAR: usize = 31;
+pub(super) const SCALAR: usize = 36;
 
 /// Names of the columns of two clip lines.
 pub(super) const CLIP_LINES: [[&str; 4]; 2] =
     [["clip0x", "clip0y", "clip0z", "clip0d"], ["clip1x", "clip1y", "clip1z", "clip1d"]];
 /// Name of the column that says how they meet.
 pub(super) const CLIP_CONCAVE: &str = "clip_concave";
+/// Name of the column of normalization weights.
+pub(super) const WEIGHT_NAME: &str = "surfel_weight";
+/// Names of those at the corners of surfels at borders.
+pub(super) const CORNER_NAMES: [&str; 4] =
+    ["surfel_weight0", "surfel_weight1", "surfel_weight2", "surfel_weight3"];
 const NORMALS: &[[&str; 3]] = &[["nx", "ny", "nz"], ["normal_x", "normal_y", "normal_z"]];
 const COLOURS: &[[&str; 3]] =
     &[["red", "green", "blue"], ["diffuse_red", "diffuse_green", "diffuse_blue"], ["r", "g", "b"]];
@@ -83,6 +92,7 @@ impl Layout {
         layout.fill(POSITION, position);
         layout.find_shape(&find);
         layout.find_clips(&find);
+        layout.find_weights(&find);
         layout.find_colour(&find);
         if let Some(name) = chosen {
             layout.fill(SCALAR, [find.one(name).ok_or_else(|| no_scalar(name, properties))?]);
@@ -137,6 +147,15 @@ impl Layout {
         if let Some(concave) = find.one(CLIP_CONCAVE).filter(|_| self.has_clips()) {
             self.fill(CONCAVE, [concave]);
         }
+    }
+
+    /// Weights of no disc would weigh nothing.
+    fn find_weights(&mut self, find: &Finder) {
+        let Some(weight) = find.one(WEIGHT_NAME).filter(|_| self.has_normals() && self.has_radii()) else {
+            return;
+        };
+        self.fill(WEIGHT, [weight]);
+        find.all(CORNER_NAMES).into_iter().for_each(|corners| self.fill(CORNERS, corners));
     }
 
     fn find_colour(&mut self, find: &Finder) {
@@ -301,7 +320,7 @@ mod tests {
     fn clip_lines_need_a_plane_and_every_part() {
         let lines = "clip0x clip0y clip0z clip0d clip1x clip1y clip1z clip1d clip_concave";
         let both = layout(&format!("x y z nx ny nz {lines}"), Scalar::F32);
-        assert_eq!(both.columns[CLIPS..SCALAR], [6, 7, 8, 9, 10, 11, 12, 13, 14].map(Some));
+        assert_eq!(both.columns[CLIPS..WEIGHT], [6, 7, 8, 9, 10, 11, 12, 13, 14].map(Some));
         assert!(!layout(&format!("x y z {lines}"), Scalar::F32).has_clips(), "no normals");
         let axes = layout(&format!("x y z ux uy uz vx vy vz {lines}"), Scalar::F32);
         assert!(axes.has_clips() && axes.fills(CONCAVE));
@@ -310,6 +329,18 @@ mod tests {
         let none = lines.replace("clip0x", "a").replace("clip1y", "b");
         let none = layout(&format!("x y z nx ny nz {none}"), Scalar::F32);
         assert!(!none.has_clips() && !none.fills(CONCAVE));
+    }
+
+    #[test]
+    fn weights_need_discs_and_corners_need_weights() {
+        let corners = CORNER_NAMES.join(" ");
+        let both = layout(&format!("x y z nx ny nz radius {WEIGHT_NAME} {corners}"), Scalar::F32);
+        assert_eq!(both.columns[WEIGHT..SCALAR], [7, 8, 9, 10, 11].map(Some));
+        let missing = format!("x y z nx ny nz radius {WEIGHT_NAME} {}", corners.replace('3', "4"));
+        let one = layout(&missing, Scalar::F32);
+        assert!(one.fills(WEIGHT) && !one.fills(CORNERS));
+        assert!(!layout(&format!("x y z nx ny nz radius {corners}"), Scalar::F32).fills(CORNERS));
+        assert!(!layout(&format!("x y z nx ny nz {WEIGHT_NAME}"), Scalar::F32).fills(WEIGHT), "no radius");
     }
 
     #[test]

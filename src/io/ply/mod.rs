@@ -12,6 +12,8 @@
 //! | `two_sided` | any, written as uchar | not 0: the normal may as well point the other way |
 //! | `clip0x clip0y clip0z clip0d`, `clip1x clip1y clip1z clip1d` | any, written as float | at a sharp edge: the disc keeps what is not beyond the line at distance d, in the positions' unit, from its centre along (x, y, z), a vector of any length in the tangent plane, into which others are projected; all 0 is no line |
 //! | `clip_concave` | any, written as uchar | not 0: of two lines, what either keeps is kept, rather than what both keep |
+//! | `surfel_weight` | any, written as float | normalization weight ([`Cloud::weights`]) of a disc with a normal and a radius; 0 or less is none |
+//! | `surfel_weight0..3` | any, written as float | at a border, those at the corners −u −v, +u −v, −u +v, +u +v of the square about the disc, with u as above or [`first_axis`](crate::geometry::first_axis), v = normal × u; all 0 is none |
 //! | `red green blue`, `diffuse_red diffuse_green diffuse_blue`, `r g b` | uchar, ushort | colour, sRGB-encoded |
 //! | | float, double | colour, linear light; 1 is white |
 //! | `f_dc_0..2 opacity scale_0..2 rot_0..3` | float | a 3D Gaussian (or 2D, without `scale_2`) with the INRIA layout's logarithms, logits and `rot_0` as the real part: the disc of two standard deviations across its smallest axis, two-sided unless there is a normal; less than a tenth opaque is none |
@@ -174,6 +176,7 @@ fn report(header: Header, vertex: usize, layout: &Layout, contents: &Contents) -
         points: header.elements[vertex].count,
         dropped: contents.points.dropped,
         clip_lines_dropped: contents.points.clip_lines,
+        weights_dropped: contents.points.weights,
         faces: contents.faces,
         gaussians: matches!(layout.shape, Shape::Gaussian(_)),
         trailing: contents.trailing,

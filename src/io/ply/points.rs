@@ -3,7 +3,7 @@
 use super::arrays::Arrays;
 use super::convert::Tally;
 use super::{Dropped, Parsed};
-use crate::geometry::{Clip, Clips, Cloud, Colours};
+use crate::geometry::{Clip, Clips, Cloud, Colours, Weights};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
@@ -32,6 +32,8 @@ pub(super) struct Points {
     pub lacking: bool,
     /// Clip lines that are none.
     pub clip_lines: u64,
+    /// Normalization weights that are none.
+    pub weights: u64,
 }
 
 /// What stands in the map for a vertex that was dropped.
@@ -47,7 +49,8 @@ impl Points {
         }
         let map = (dropped.total() > 0).then(|| leave_out(&mut arrays));
         let cloud = cloud(arrays);
-        Ok(Self { cloud, dropped, count, map, lacking: tally.lacking, clip_lines: tally.clip_lines })
+        let Tally { lacking, clip_lines, weights, .. } = tally;
+        Ok(Self { cloud, dropped, count, map, lacking, clip_lines, weights })
     }
 
     /// The point that a vertex has become; `None` if there is no such vertex, or if it was dropped.
@@ -102,6 +105,9 @@ fn cloud(arrays: Arrays) -> Cloud {
     let radii = Some(arrays.radii).filter(|radii| radii.iter().any(|radius| *radius > 0.0));
     let ellipses =
         Some(arrays.ellipses).filter(|all| !all.is_empty() && normals.is_some() && radii.is_some());
+    let weights = weights(&arrays.weights, &arrays.corners).filter(|weights| {
+        weights.of.iter().any(|weight| *weight > 0.0) && normals.is_some() && radii.is_some()
+    });
     Cloud {
         origin,
         positions: positions(arrays.narrow, &arrays.wide, origin),
@@ -109,11 +115,19 @@ fn cloud(arrays: Arrays) -> Cloud {
         radii,
         ellipses,
         clips: Clips::collect(arrays.clips.into_iter().map(|clip| (clip != Clip::default()).then_some(clip))),
+        weights,
         two_sided: Some(arrays.two_sided).filter(|flags| !flags.is_empty()),
         colours,
         scalar: Some(arrays.scalar).filter(|values| !values.is_empty()),
         ..Default::default()
     }
+}
+
+/// Corners whose weights are all 0 are none.
+fn weights(weights: &[f32], corners: &[[f32; 4]]) -> Option<Weights> {
+    let corners_of = |i: usize| corners.get(i).copied().filter(|corners| *corners != [0.0; 4]);
+    let each = weights.iter().enumerate().map(|(i, &weight)| (weight, corners_of(i)));
+    (!weights.is_empty()).then(|| Weights::collect(each))
 }
 
 fn positions(mut narrow: Vec<Vec3>, wide: &[DVec3], origin: DVec3) -> Vec<Vec3> {

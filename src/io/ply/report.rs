@@ -21,6 +21,8 @@ pub struct Report {
     pub dropped: Dropped,
     /// Clip lines of no use: a number is not finite, or the line is in no tangent plane, as there is no normal or as it stands upright on it.
     pub clip_lines_dropped: u64,
+    /// Normalization weights of no use: not finite, or not above 0.
+    pub weights_dropped: u64,
     /// Faces, triangle strips and cells of range grids.
     pub faces: Faces,
     /// Whether the vertices are 3D Gaussians, whose flat sides became discs.

@@ -1,6 +1,6 @@
 //! Writing surfels, through ply-rs: its writer is sound for binary records of single numbers, as long as the header's count is ours.
 
-use super::layout::{CLIP_CONCAVE, CLIP_LINES};
+use super::layout::{CLIP_CONCAVE, CLIP_LINES, CORNER_NAMES, WEIGHT_NAME};
 use crate::error::Result;
 use crate::geometry::{Clip, Colours, Ellipse, Surfels};
 use crate::io::atomic;
@@ -14,8 +14,10 @@ use std::path::Path;
 
 /// Writes surfels as binary little-endian PLY: x y z as float, or as double if they have an origin; nx ny nz and radius as float; if there
 /// are ellipses, their semi-axes ux uy uz vx vy vz as float; if some may have no side, two_sided as uchar; if there are clips, their lines
-/// clip0x clip0y clip0z clip0d clip1x clip1y clip1z clip1d as float, all 0 where there is none, and clip_concave as uchar; red green blue as
-/// uchar if sRGB-encoded, as float if linear. The file is replaced as a whole or, after an error, not at all.
+/// clip0x clip0y clip0z clip0d clip1x clip1y clip1z clip1d as float, all 0 where there is none, and clip_concave as uchar; if there are
+/// normalization weights, surfel_weight as float, and if there are some at corners, surfel_weight0 to surfel_weight3 as float, all 0 where
+/// there are none; red green blue as uchar if sRGB-encoded, as float if linear. The file is replaced as a whole or, after an error, not at
+/// all.
 ///
 /// # Errors
 /// [`crate::Error::Usage`] if the arrays differ in length, [`crate::Error::Io`] if the file cannot be written.
@@ -56,6 +58,10 @@ fn definition(surfels: &Surfels) -> ElementDef {
         CLIP_LINES.iter().for_each(|names| add(names, ScalarType::Float));
         add(&[CLIP_CONCAVE], ScalarType::UChar);
     }
+    if let Some(weights) = &surfels.weights {
+        add(&[WEIGHT_NAME], ScalarType::Float);
+        add(if weights.corners.is_empty() { &[] } else { &CORNER_NAMES }, ScalarType::Float);
+    }
     match surfels.colours {
         Some(Colours::Srgb8(_)) => add(&["red", "green", "blue"], ScalarType::UChar),
         Some(Colours::Linear(_)) => add(&["red", "green", "blue"], ScalarType::Float),
@@ -79,6 +85,8 @@ struct Row {
     srgb: [u8; 4],
     two_sided: bool,
     clip: Clip,
+    weight: f32,
+    corners: [f32; 4],
 }
 
 impl Row {
@@ -101,6 +109,16 @@ impl Row {
             srgb,
             two_sided: surfels.two_sided.as_ref().is_some_and(|flags| flags[i]),
             clip: surfels.clips.as_ref().and_then(|clips| clips.get(i)).copied().unwrap_or_default(),
+            weight: surfels.weights.as_ref().map_or(0.0, |weights| weights.of[i]),
+            corners: surfels.weights.as_ref().and_then(|weights| weights.corners_of(i)).unwrap_or_default(),
+        }
+    }
+
+    /// A normalization weight.
+    fn weight(&self, name: &str) -> Option<f32> {
+        match CORNER_NAMES.iter().position(|corner| *corner == name) {
+            Some(corner) => Some(self.corners[corner]),
+            None => (name == WEIGHT_NAME).then_some(self.weight),
         }
     }
 
@@ -116,7 +134,8 @@ impl Row {
 impl PropertyAccess for Row {
     fn new() -> Self {
         let (floats, clip) = ([0.0; FLOATS.len()], Clip::default());
-        Self { position: DVec3::ZERO, floats, srgb: [0; 4], two_sided: false, clip }
+        let (weight, corners) = (0.0, [0.0; 4]);
+        Self { position: DVec3::ZERO, floats, srgb: [0; 4], two_sided: false, clip, weight, corners }
     }
 
     fn get_double(&self, name: &String) -> Option<f64> {
@@ -126,7 +145,10 @@ impl PropertyAccess for Row {
     fn get_float(&self, name: &String) -> Option<f32> {
         match FLOATS.iter().position(|float| float == name) {
             Some(index) => Some(self.floats[index]),
-            None => self.clip_number(name).or_else(|| self.get_double(name).map(|value| value as f32)),
+            None => self
+                .clip_number(name)
+                .or_else(|| self.weight(name))
+                .or_else(|| self.get_double(name).map(|value| value as f32)),
         }
     }
 

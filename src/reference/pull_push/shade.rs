@@ -31,7 +31,7 @@ fn value(frame: &Reconstruction, sample: &Sample, at: DVec2) -> Value {
         Shading::Normal => normal,
         Shading::Depth => DVec3::splat(sample.depth),
         // A pixel shows one point, or what is made of those about it.
-        Shading::Overlap => DVec3::ONE,
+        Shading::Overlap | Shading::Weight => DVec3::ONE,
     };
     Value {
         covered: true,

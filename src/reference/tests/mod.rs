@@ -31,7 +31,18 @@ fn plain() -> Settings {
 fn disc(position: DVec3, normal: DVec3, radius: f64) -> Surfel {
     let normal = normal.normalize();
     let major = normal.any_orthonormal_vector();
-    Surfel { position, normal, radius, major, aspect: 1.0, two_sided: false, colour: None, clip: None }
+    let weights = [1.0; 4];
+    Surfel {
+        position,
+        normal,
+        radius,
+        major,
+        aspect: 1.0,
+        two_sided: false,
+        weights,
+        colour: None,
+        clip: None,
+    }
 }
 
 fn scene(discs: &[Surfel]) -> Surfels {

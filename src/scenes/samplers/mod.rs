@@ -88,6 +88,7 @@ fn surfels(query: &Query, drafts: Vec<Draft>) -> Surfels {
         ellipses: elliptical.then(|| drafts.par_iter().map(ellipse).collect()),
         two_sided: two_sided.then(|| drafts.par_iter().map(|draft| draft.two_sided).collect()),
         clips: clips(query, &drafts),
+        weights: None,
         colours: Some(Colours::Linear(
             drafts.par_iter().map(|draft| draft.albedo.map(|channel| channel as f32)).collect(),
         )),

@@ -1,7 +1,7 @@
 //! What is understood beyond positions, normals, radii and colours.
 
 use super::*;
-use crate::geometry::{Clip, ClipLine, Clips, View};
+use crate::geometry::{Clip, ClipLine, Clips, View, Weights};
 
 /// A file of text; its header is `lines` between the first and the last line.
 fn text(lines: &str, records: &str) -> Vec<u8> {
@@ -171,6 +171,29 @@ fn clip_lines_are_made_lines_of_the_plane_or_dropped() {
     assert!(report.skipped.is_empty(), "{:?}", report.skipped);
     let whole = load(&text(&lines.replace("10", "1"), "0 0 0 0 0 1 1  0 0 0 0  0 0 0 0  1\n")).cloud;
     assert_eq!(whole.clips, None);
+}
+
+#[test]
+fn weights_that_are_none_are_left_out_and_counted() {
+    let names =
+        ["", "0", "1", "2", "3"].map(|corner| format!("property float surfel_weight{corner}\n")).concat();
+    let lines = format!("element vertex 5\n{FLOATS}{}", names.trim_end());
+    let records = [
+        "0.5  0 0 0 0",
+        "0.25  0.1 0.2 0.3 0.4",
+        // Of no use: itself, itself and two of its corners', one corner's.
+        "-1  0 0 0 0",
+        "nan  1 inf 0 1",
+        "2  1 1 1 -1",
+    ];
+    let records = records.map(|record| format!("0 0 0 0 0 1 1  {record}\n")).concat();
+    let Loaded { cloud, report } = load(&text(&lines, &records));
+    let expected = [(0.5, None), (0.25, Some([0.1, 0.2, 0.3, 0.4])), (0.0, None), (0.0, None), (2.0, None)];
+    assert_eq!((&cloud.weights, report.weights_dropped), (&Some(Weights::collect(expected)), 5));
+    let (surfels, _) = cloud.into_surfels(&Default::default(), &()).unwrap();
+    assert_eq!(surfels.weights.unwrap().of, [0.5, 0.25, 0.5, 0.5, 2.0], "the median stands in");
+    let none = text(&lines.replace("vertex 5", "vertex 1"), "0 0 0 0 0 1 1  0  0 0 0 0\n");
+    assert_eq!(load(&none).cloud.weights, None);
 }
 
 #[test]

@@ -1,7 +1,8 @@
 //! What is written reads back.
 
 use super::*;
-use crate::geometry::{Clip, ClipLine, Clips, Ellipse, Surfels};
+use crate::geometry::estimate::Estimate;
+use crate::geometry::{Clip, ClipLine, Clips, Ellipse, Surfels, Weights};
 
 fn random_surfels(count: usize, origin: DVec3, colours: Option<Colours>) -> Surfels {
     let spread = |i: usize, k: f32| ((i as f32 * k).sin() * 1e3).fract();
@@ -74,9 +75,31 @@ fn clips_read_back_exactly() {
     write(&path, &surfels).unwrap();
     let Loaded { cloud, report } = read(&path, &ReadOptions::default(), &()).unwrap();
     assert_eq!((&cloud.clips, report.clip_lines_dropped, report.skipped.len()), (&surfels.clips, 0, 0));
-    let (estimated, _) = cloud.into_surfels(&crate::geometry::estimate::Estimate::default(), &()).unwrap();
+    let (estimated, _) = cloud.into_surfels(&Estimate::default(), &()).unwrap();
     surfels.sort_morton();
     assert_eq!(estimated.clips, surfels.clips);
+}
+
+#[test]
+fn weights_read_back_exactly() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("weights.ply");
+    let mut surfels = random_surfels(100, DVec3::ZERO, None);
+    for at_corners in [false, true] {
+        let weight = |i: usize| 0.1 + 0.013 * i as f32;
+        let corners =
+            |i: usize| (at_corners && i.is_multiple_of(3)).then(|| [1, 2, 3, 4].map(|k| weight(k * i)));
+        surfels.weights = Some(Weights::collect((0..100).map(|i| (weight(i), corners(i)))));
+        write(&path, &surfels).unwrap();
+        let Loaded { cloud, report } = read(&path, &ReadOptions::default(), &()).unwrap();
+        assert_eq!((&cloud.weights, report.weights_dropped, report.skipped.len()), (&surfels.weights, 0, 0));
+        let (estimated, _) = cloud.clone().into_surfels(&Estimate::default(), &()).unwrap();
+        let mut sorted = surfels.clone();
+        sorted.sort_morton();
+        assert_eq!(estimated.weights, sorted.weights);
+        let larger = Estimate { radius_scale: 1.5, ..Default::default() };
+        assert_eq!(cloud.into_surfels(&larger, &()).unwrap().0.weights, None, "weights of other discs");
+    }
 }
 
 #[test]

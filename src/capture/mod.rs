@@ -1,0 +1,126 @@
+//! Captures normalization weights (Ren, Pfister, Zwicker 2002, section 7.2).
+//!
+//! ```text
+//! views ─ render Σw and depth, without filter and division → look ─ 1/Σw at every surfel that is seen → median over the views → weights
+//!                                                         unseen ─ overlap: the same sum over the surfels around it ──┘
+//! ```
+//!
+//! Where the surface ends, or the sum changes much from the centre of a surfel's square to a corner, each corner gets a weight of its own.
+//! The paper's factor γ, which keeps 8-bit sums from overflowing, has no use with floats.
+
+mod border;
+mod gather;
+mod look;
+mod overlap;
+mod views;
+
+pub use overlap::overlaps;
+
+use crate::Progress;
+use crate::error::{Error, Result};
+use crate::geometry::{Camera, Surfels, Weights};
+use crate::renderer::{RenderOptions, Renderer};
+use crate::scene::Scene;
+use crate::settings::{Settings, Shading};
+use crate::splatting::{Filter, Normalization, Splatting, Visibility};
+use crate::variant::Outputs;
+use crate::vk::Device;
+use gather::Samples;
+use look::Look;
+use std::sync::Arc;
+
+/// Views from which a whole scene is captured unless asked otherwise: six or so see each place of a closed surface from less than 60°.
+pub const VIEWS: u32 = 24;
+
+/// Where weights came from, as numbers of surfels.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Captured {
+    /// Seen by a view.
+    pub seen: u64,
+    /// Those of them with a weight at each corner.
+    pub borders: u64,
+    /// Seen by none: the sum over the surfels around them was computed.
+    pub computed: u64,
+}
+
+/// Weights for all of `surfels`, captured by parallel views from `views` directions that are spread evenly over a sphere. They are for the
+/// kernel, cut-off, footprint, ε and culling of `settings`, whatever else those say. The stage of the progress is `capturing weights`, its unit the
+/// picture.
+///
+/// # Errors
+/// [`Error::Usage`] if there are no views, no valid surfels, or settings of which no picture can be made; those of rendering.
+pub fn capture(
+    device: &Arc<Device>,
+    surfels: &Surfels,
+    settings: &Settings,
+    views: u32,
+    progress: &dyn Progress,
+) -> Result<(Weights, Captured)> {
+    if views == 0 {
+        return Err(Error::Usage("weights captured from no view: give 1 or more".into()));
+    }
+    let scene = Scene::upload(device, surfels)?;
+    let (size, cameras) = views::around(surfels, scene.bounds(), views)?;
+    let mut renderer = renderer(device, [size; 2])?;
+    let settings = plain(settings);
+    let mut samples = Samples::default();
+    for (done, camera) in (0..).zip(&cameras) {
+        progress.at("capturing weights", done, cameras.len() as u64);
+        samples.add(Look::new(&mut renderer, &scene, camera, &settings)?.samples(surfels));
+    }
+    progress.at("capturing weights", cameras.len() as u64, cameras.len() as u64);
+    Ok(complete(surfels, &settings, samples))
+}
+
+/// Captures anew the weights of the surfels that `camera` sees in a picture of `size` px, and tells how many those are. Others stay; if
+/// there were none, they are 1. Surfels of fewer than two pixels, or seen from more than 60°, are not captured.
+///
+/// # Errors
+/// As [`capture`].
+pub fn capture_region(
+    device: &Arc<Device>,
+    surfels: &mut Surfels,
+    camera: &Camera,
+    size: [u32; 2],
+    settings: &Settings,
+) -> Result<u64> {
+    let scene = Scene::upload(device, surfels)?;
+    let mut samples = Samples::default();
+    samples.add(Look::new(&mut renderer(device, size)?, &scene, camera, &plain(settings))?.samples(surfels));
+    let seen = samples.medians();
+    let before = surfels.weights.take();
+    let weight = |i: usize| match (seen.get(i), &before) {
+        (Some(weight), _) => weight,
+        (None, Some(before)) => (before.of[i], before.corners_of(i)),
+        (None, None) => (1.0, None),
+    };
+    surfels.weights = Some(Weights::collect((0..surfels.len()).map(weight)));
+    Ok(seen.len() as u64)
+}
+
+/// The medians, and sums over what is around the surfels that no view saw.
+fn complete(surfels: &Surfels, settings: &Settings, samples: Samples) -> (Weights, Captured) {
+    let seen = samples.medians();
+    let unseen = |&i: &u32| seen.get(i as usize).is_none() && surfels.is_valid(i as usize);
+    let unseen: Vec<u32> = (0..surfels.len() as u32).filter(unseen).collect();
+    let mut weights = Weights::collect((0..surfels.len()).map(|i| seen.get(i).unwrap_or_default()));
+    for (&surfel, sum) in unseen.iter().zip(overlaps(surfels, settings, &unseen)) {
+        weights.of[surfel as usize] = (1.0 / sum) as f32;
+    }
+    let (borders, computed) = (weights.corners.len() as u64, unseen.len() as u64);
+    let captured = Captured { seen: seen.len() as u64, borders, computed };
+    // What is left is invalid, and never drawn.
+    (weights.filled().unwrap_or_default(), captured)
+}
+
+fn renderer(device: &Arc<Device>, size: [u32; 2]) -> Result<Renderer> {
+    let outputs = Outputs { normal: false, depth: true };
+    Renderer::new(device, RenderOptions { size, outputs, ..Default::default() })
+}
+
+/// The two passes without pre-filtering and per-surfel normalization, which show Σw of either side: what weights depend on, and no more.
+pub(crate) fn plain(settings: &Settings) -> Settings {
+    let (filter, normalization) = (Filter::None, Normalization::None);
+    let splatting = Splatting { filter, normalization, visibility: Visibility::Ray, ..settings.splatting };
+    Settings { splatting, shading: Shading::Weight, background: None, ..settings.clone() }
+}

@@ -1,0 +1,68 @@
+//! The stream of normalization weights, as `shaders-glsl/lib/weights.glsl` reads it.
+
+use crate::geometry::{Surfels, Weights, square_axis};
+use std::ops::Range;
+
+/// Set in an entry that is where a surfel's corners are, not its weight, whose sign bit never is.
+const AT_CORNERS: u32 = 1 << 31;
+
+/// The words of every window of surfels, one window after the other, and where each has them.
+pub(super) struct WeightStream {
+    pub words: Vec<u32>,
+    pub windows: Vec<Range<u64>>,
+}
+
+impl WeightStream {
+    /// Of `weights`, those of `surfels`. A window's words start at a multiple of `step`: an entry a surfel, then what is at corners.
+    pub fn new(surfels: &Surfels, weights: &Weights, windows: &[Range<u64>], step: u64) -> Self {
+        let mut stream = Self { words: Vec::new(), windows: Vec::new() };
+        for window in windows {
+            let first = stream.words.len();
+            stream.words.extend(window.clone().map(|i| weights.of[i as usize].to_bits()));
+            let from = weights.corners.partition_point(|corners| u64::from(corners.surfel) < window.start);
+            for corners in weights.corners[from..].iter().take_while(|c| u64::from(c.surfel) < window.end) {
+                let surfel = corners.surfel as usize;
+                let place = (stream.words.len() - first) as u32;
+                stream.words[first + surfel - window.start as usize] = AT_CORNERS | place;
+                stream
+                    .words
+                    .extend(corners.weights.iter().chain(&square(surfels, surfel)).map(|v| v.to_bits()));
+            }
+            stream.windows.push(first as u64..stream.words.len() as u64);
+            stream.words.resize(stream.words.len().next_multiple_of(step as usize), 0);
+        }
+        stream
+    }
+}
+
+/// The first axis of a surfel's square, and its aspect.
+fn square(surfels: &Surfels, surfel: usize) -> [f32; 4] {
+    let ellipse = surfels.ellipses.as_ref().map(|ellipses| ellipses[surfel]);
+    let axis = square_axis(surfels.normals[surfel], ellipse.map(|ellipse| ellipse.major)).as_vec3();
+    [axis.x, axis.y, axis.z, ellipse.map_or(1.0, |ellipse| ellipse.aspect)]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+
+    #[test]
+    fn windows_have_their_surfels_weights_and_corners() {
+        let weights = Weights::collect([
+            (0.5, None),
+            (0.25, Some([1.0, 2.0, 3.0, 4.0])),
+            (2.0, Some([5.0; 4])),
+            (3.0, None),
+        ]);
+        let surfels = Surfels { normals: vec![Vec3::Z; 4], ..Default::default() };
+        let stream = WeightStream::new(&surfels, &weights, &[0..2, 2..4], 16);
+        assert_eq!(stream.windows, [0..10, 16..26]);
+        let floats =
+            |range: Range<usize>| stream.words[range].iter().map(|w| f32::from_bits(*w)).collect::<Vec<_>>();
+        assert_eq!((floats(0..1), stream.words[1]), (vec![0.5], AT_CORNERS | 2));
+        assert_eq!(floats(2..10), [1.0, 2.0, 3.0, 4.0, 1.0, 0.0, 0.0, 1.0]);
+        assert_eq!((stream.words[16], floats(17..18)), (AT_CORNERS | 2, vec![3.0]));
+        assert_eq!(floats(18..22), [5.0; 4]);
+    }
+}
