@@ -49,7 +49,7 @@ bool scatter_begin(uint i, Splat splat, vec2 variance, float nearest, ivec2 low,
     return true;
 }
 
-void scatter(uint pixel, float m2, float key) {
+void scatter(uint pixel, vec2 centre, float m2, float key) {
     uint nearest = visibility[pixel];
     // Where visibility wrote nothing there is no surface, whatever the wider attribute footprint says.
     if (nearest == 0u || floatBitsToUint(key) < nearest) return;

@@ -1,5 +1,6 @@
 // Nearest: the nearest splat of each pixel, alone and whole: one pass, nothing is blended (zwicker2004 table 1; botsch2003 §3.2).
 #version 450
+#pragma variant COVERAGE
 #extension GL_GOOGLE_include_directive : require
 #ifdef COMPUTE
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
@@ -11,6 +12,9 @@
 #define SPLAT_ACCESS readonly
 #define CLIP_ACCESS readonly
 #include "lib/splat.glsl"
+#ifdef COVERAGE
+#include "lib/coverage.glsl"
+#endif
 
 #ifdef COMPUTE
 
@@ -19,6 +23,9 @@
 
 uint splat_index;
 float splat_key_disc;
+#ifdef COVERAGE
+Ellipse splat_solid;
+#endif
 
 vec2 scatter_variance(vec2 variance) {
     return visibility_variance(variance);
@@ -27,10 +34,16 @@ vec2 scatter_variance(vec2 variance) {
 bool scatter_begin(uint i, Splat splat, vec2 variance, float nearest, ivec2 low, ivec2 high) {
     splat_index = i;
     splat_key_disc = splat.key_disc;
+#ifdef COVERAGE
+    splat_solid = solid_of(splat);
+#endif
     return true;
 }
 
-void scatter(uint pixel, float m2, float key) {
+void scatter(uint pixel, vec2 centre, float m2, float key) {
+#ifdef COVERAGE
+    cover(pixel, splat_solid, centre);
+#endif
     atomicMax(winners[pixel], winner(min(key, splat_key_disc), splat_index));
 }
 

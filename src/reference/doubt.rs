@@ -1,6 +1,7 @@
 //! Which pixels hang on a decision that float32 cannot make, and every value that they may take.
 //!
-//! Splatting decides at three thresholds: the kernel's cut-off, the ε test (or which splat is nearest) and the clip volume. Where a splat lies nearer to
+//! Splatting decides at three thresholds: the kernel's cut-off, the ε test (or which splat is nearest) and the clip volume; and which
+//! samples a splat covers, where α is coverage. Where a splat lies nearer to
 //! one than rounding can tell, both outcomes are right, and no others. All of this is found in the float64 picture alone,
 //! before any other is seen. The clip volume's planes are given no margin of their own unless
 //! [`super::Tolerance::rounding`] allows for rounding.
@@ -9,6 +10,7 @@ use super::Projector;
 use super::attribute::Sums;
 use super::bands::{Band, Bands};
 use super::bound::{Bound, Bounds};
+use super::coverage::Covered;
 use super::ellipse::Ellipse;
 use super::margin::{Candidate, Margins};
 use super::nearest::ranked;
@@ -45,7 +47,7 @@ enum Doubtful {
     /// Splats are blended.
     Blended(Blended),
     /// One is seen alone: any of these, or none.
-    Alone(DVec2, Vec<Option<Share>>),
+    Alone(DVec2, Vec<Option<Share>>, Covered),
 }
 
 /// A pixel at which splats are blended.
@@ -55,6 +57,7 @@ struct Blended {
     bounds: Vec<Bound>,
     /// The splats that may be summed, whatever the bound.
     fragments: Vec<Fragment>,
+    covered: Covered,
 }
 
 /// A splat at a pixel.
@@ -119,16 +122,17 @@ impl Doubtful {
     fn outcomes(&self) -> usize {
         match self {
             Self::Blended(pixel) => pixel.outcomes(),
-            Self::Alone(_, shares) => shares.len(),
+            Self::Alone(_, shares, covered) => shares.len() * covered.len(),
         }
     }
 
     fn values<'a>(&'a self, projector: &'a Projector) -> Box<dyn Iterator<Item = (Value, Slack)> + 'a> {
         match self {
             Self::Blended(pixel) => Box::new(pixel.values(projector)),
-            Self::Alone(at, shares) => Box::new(shares.iter().map(|share| {
+            Self::Alone(at, shares, covered) => Box::new(shares.iter().flat_map(move |share| {
                 let slack = share.map_or(Slack::default(), |share| share.means.slack());
-                (resolve(projector, *at, share.as_ref().map(|share| &share.sums)), slack)
+                let sums = share.as_ref().map(|share| &share.sums);
+                covered.shares().map(move |alpha| (resolve(projector, *at, sums, alpha), slack))
             })),
         }
     }
@@ -151,17 +155,21 @@ impl Blended {
     fn outcomes(&self) -> usize {
         let subsets =
             |&bound: &Bound| 1usize.checked_shl(self.split(bound).1.len() as u32).unwrap_or(usize::MAX);
-        self.bounds.iter().map(subsets).fold(0, usize::saturating_add)
+        let sums = self.bounds.iter().map(subsets).fold(0, usize::saturating_add);
+        sums.saturating_mul(self.covered.len())
     }
 
     fn values<'a>(&'a self, projector: &'a Projector) -> impl Iterator<Item = (Value, Slack)> + 'a {
         self.bounds.iter().flat_map(move |&bound| {
             let (sure, maybe) = self.split(bound);
-            (0..1 << maybe.len()).map(move |subset: usize| {
+            (0..1 << maybe.len()).flat_map(move |subset: usize| {
                 let mut all = sure;
                 let taken = maybe.iter().enumerate().filter(|(bit, _)| subset >> bit & 1 == 1);
                 taken.for_each(|(_, share)| all += *share);
-                (resolve(projector, self.at, bound.exists().then_some(&all.sums)), all.means.slack())
+                let slack = all.means.slack();
+                let value =
+                    move |alpha: f64| resolve(projector, self.at, bound.exists().then_some(&all.sums), alpha);
+                self.covered.shares().map(move |alpha| (value(alpha), slack))
             })
         })
     }
@@ -173,7 +181,9 @@ fn of_band(margins: &Margins, scene: &Scene, band: &Band) -> (Vec<(usize, Doubtf
     let bounds = Bounds::new(margins, scene, band);
     let mut doubtful: Vec<Option<Vec<Fragment>>> = Vec::new();
     doubtful.resize_with(band.len(), || None);
-    for &pixel in bounds.maybe.keys() {
+    let covered = Covered::of_band(margins, scene, band);
+    let wavering = (0..band.len()).filter(|&pixel| covered[pixel].wavers());
+    for pixel in bounds.maybe.keys().copied().chain(wavering) {
         doubtful[pixel] = Some(Vec::new());
     }
     let mut means = vec![Means::default(); band.len()];
@@ -198,7 +208,8 @@ fn of_band(margins: &Margins, scene: &Scene, band: &Band) -> (Vec<(usize, Doubtf
     let first = band.first_row as usize * band.width as usize;
     let pixel = |(i, fragments): (usize, Option<Vec<Fragment>>)| {
         let bounds = bounds.of(i).collect();
-        let pixel = Blended { at: band.centre(i), bounds, fragments: fragments? };
+        let covered = covered[i].clone();
+        let pixel = Blended { at: band.centre(i), bounds, fragments: fragments?, covered };
         Some((first + i, Doubtful::Blended(pixel)))
     };
     let slack = means.iter().map(Means::slack).collect();
@@ -223,15 +234,17 @@ fn of_band_alone(margins: &Margins, scene: &Scene, band: &Band) -> (Vec<(usize, 
             shares[c.pixel].push(Share { sums, means: Means::of(margins, &c) });
         }
     });
+    let covered = Covered::of_band(margins, scene, band);
     let first = band.first_row as usize * band.width as usize;
     let (mut doubtful, mut slack) = (Vec::new(), Vec::new());
     for (i, shares) in shares.into_iter().enumerate() {
         slack.push(shares.first().map_or(Slack::default(), |share| share.means.slack()));
         let surely_there = farthest[i].is_finite();
-        if shares.len() > 1 || !surely_there && !shares.is_empty() {
+        let covered = covered[i].clone();
+        if shares.len() > 1 || (!surely_there || covered.wavers()) && !shares.is_empty() {
             let none = (!surely_there).then_some(None);
             let shares = shares.into_iter().map(Some).chain(none).collect();
-            doubtful.push((first + i, Doubtful::Alone(band.centre(i), shares)));
+            doubtful.push((first + i, Doubtful::Alone(band.centre(i), shares, covered)));
         }
     }
     (doubtful, slack)

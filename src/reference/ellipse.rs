@@ -78,9 +78,14 @@ impl Ellipse {
     /// Where in the kernel the offset `e` from the centre is: along its axes, in σ. Seen in perspective, what lies in a plane is a
     /// homography of it; one that keeps the centre is affine but for the division by the plane's inverse distance.
     fn in_kernel(&self, offset: DVec2) -> DVec2 {
+        self.principal(offset) / self.sigma() / self.nearness(offset)
+    }
+
+    /// By what perspective shrinks a kernel in the tangent plane at the offset `e` from the centre.
+    fn nearness(&self, offset: DVec2) -> f64 {
         let at = self.centre + offset;
         let nearness = self.horizon.map_or(1.0, |plane| plane.dot(DVec3::new(1.0, at.x, at.y)));
-        self.principal(offset) / self.sigma() / nearness.clamp(1.0 / MOST_STRETCH, MOST_STRETCH)
+        nearness.clamp(1.0 / MOST_STRETCH, MOST_STRETCH)
     }
 
     /// `m = √(e V'⁻¹ eᵀ)` of the offset `e` from the centre, in σ.
@@ -162,6 +167,22 @@ impl Ellipse {
         let half = (left * (self.variance.x / vertical) * self.variance.y).sqrt();
         let middle = self.centre.x + covariance / vertical * rise;
         (left >= 0.0).then_some((middle - half, middle + half))
+    }
+
+    /// Whether the point at `offset` from the centre is so near to the outline that moving it by `margin` px may take it across.
+    pub fn is_undecided(&self, offset: DVec2, margin: f64) -> bool {
+        if self.is_plain() {
+            let reach = margin / self.sigma().y;
+            return (self.rim(offset) - self.cutoff).abs() <= reach && self.distance(offset) <= margin;
+        }
+        // By how much either coordinate in the kernel can change; the two are bounded apart, as one px may be many σ across a thin
+        // kernel and few along it.
+        let nearness = self.nearness(offset);
+        let slope = self.horizon.map_or(0.0, |plane| DVec2::new(plane.y, plane.z).length());
+        let y = self.in_kernel(offset).abs();
+        let change = margin * (1.0 / self.sigma() + y * slope) / nearness;
+        let rim = |y: DVec2| if self.square { y.max_element() } else { y.length() };
+        rim((y - change).max(DVec2::ZERO)) <= self.cutoff && rim(y + change) >= self.cutoff
     }
 
     /// Distance in px from the point at `offset` from the centre to the outline; to first order where it is no ellipse.

@@ -25,6 +25,8 @@ pub(super) struct Cover<'a> {
 pub(super) struct Block {
     /// Which of the tile's, row by row.
     pub index: usize,
+    /// Where the pixels are relative to the centre, px: x of each, and y.
+    pub offset: (Vec4, f32),
     /// Squared distances to the centre in σ.
     pub distance: Vec4,
     /// Keys of the plane.
@@ -79,6 +81,7 @@ impl<'a> Cover<'a> {
                     let within = distance.cmple(Vec4::splat(self.limit));
                     visit(Block {
                         index: row as usize * (SIDE / LANES) + block,
+                        offset: (x, y),
                         distance,
                         key: plane.y * dx + key,
                         inside: self.clip.map_or(within, |clip| within & clip.keeps(dx, dy)),

@@ -4,11 +4,12 @@ use super::chunk::Chunk;
 use super::cover::{Block, Cover};
 use super::exp::exp_half;
 use super::shape::{Shape, attribute_variance, visibility_variance};
+use super::solid::{Samples, Solid};
 use super::splat::Splat;
 use super::sums::{Channels, Streams};
 use super::view::View;
 use crate::geometry::Surfels;
-use crate::settings::Settings;
+use crate::settings::{Alpha, Settings};
 use glam::Vec4;
 
 /// Pixels along a tile's side.
@@ -44,16 +45,24 @@ pub(super) struct Tile {
     keys: Plane,
     /// The least of the keys, −∞ if there is a gap: what is behind is hidden.
     farthest: f32,
+    /// The samples that a surface covers; all, where α is a mask.
+    pub covered: [Samples; BLOCKS],
+    /// Whether that is all.
+    full: bool,
     /// Weighted sums: of the weights, the attributes, the keys.
     pub sums: [Plane; 8],
 }
 
 impl Tile {
-    pub fn new(at: [u32; 2]) -> Self {
+    /// An empty tile of a frame with this α.
+    pub fn new(at: [u32; 2], alpha: Alpha) -> Self {
+        let full = alpha == Alpha::Mask;
         Self {
             at,
             keys: [Vec4::NEG_INFINITY; BLOCKS],
             farthest: f32::NEG_INFINITY,
+            covered: [if full { Samples::MAX } else { 0 }; BLOCKS],
+            full,
             sums: [[Vec4::ZERO; BLOCKS]; 8],
         }
     }
@@ -75,13 +84,14 @@ impl Tile {
             stale += list.len();
             if stale > FRESH {
                 self.farthest = least(&self.keys);
+                self.full = self.covered.iter().all(|samples| *samples == Samples::MAX);
                 stale = 0;
             }
         }
         drawn
     }
 
-    /// What a splat hides.
+    /// What a splat hides, and what it covers whether it is hidden or not.
     #[inline]
     fn claim(&mut self, frame: &Frame, splat: &Splat) {
         let (factor, shift) = match frame.view.perspective {
@@ -89,7 +99,7 @@ impl Tile {
             false => (1.0, splat.epsilon),
         };
         // Nothing is claimed nearer than the disc itself, however far the filter has widened its plane.
-        if splat.disc * factor - shift <= self.farthest {
+        if self.full && splat.disc * factor - shift <= self.farthest {
             return;
         }
         let shape =
@@ -97,11 +107,19 @@ impl Tile {
         let Some(cover) = Cover::new(splat, &shape, frame, self.corner()) else { return };
         let [far, near] = frame.view.keys.map(Vec4::splat);
         let disc = Vec4::splat(splat.disc);
+        let solid = (!self.full).then(|| Solid::new(&splat.shape, frame.settings.cutoff));
         cover.each(|block| {
             let inside = block.inside & block.key.cmpgt(far) & block.key.cmple(near);
             let claimed = block.key.min(disc) * factor - shift;
             let key = &mut self.keys[block.index];
             *key = Vec4::select(inside, key.max(claimed), *key);
+            let covered = &mut self.covered[block.index];
+            if let Some(solid) = &solid
+                && *covered != Samples::MAX
+            {
+                let (x, y) = block.offset;
+                *covered |= solid.covered(inside, x, y);
+            }
         });
     }
 
@@ -143,7 +161,7 @@ impl Tile {
         let amplitude = splat.shape.root / variance.x.sqrt() / variance.y.sqrt();
         let attributes = frame.streams.attributes(splat.surfel);
         let [far, near] = frame.view.keys.map(Vec4::splat);
-        cover.each(|Block { index, distance, key, inside }| {
+        cover.each(|Block { index, distance, key, inside, .. }| {
             let seen = inside & key.cmpgt(far) & key.cmple(near) & key.cmpge(self.keys[index]);
             let weight = Vec4::select(seen, amplitude * exp_half(distance), Vec4::ZERO);
             self.sums[0][index] += weight;

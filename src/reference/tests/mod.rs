@@ -1,5 +1,6 @@
 //! Closed forms that the passes have to meet.
 
+mod coverage;
 mod doubt;
 mod footprint;
 mod kinds;
@@ -7,7 +8,7 @@ mod passes;
 
 use super::*;
 use crate::geometry::{Colours, Ellipse};
-use crate::settings::{Cull, Shading, Widen};
+use crate::settings::{Alpha, Cull, Shading, Widen};
 use glam::{DMat2, DVec2, DVec3, DVec4};
 
 const SIZE: [u32; 2] = [64, 64];
