@@ -59,7 +59,6 @@ effects! {
 }
 
 #[test]
-#[ignore = "methods draw whole discs as yet: clip lines change nothing"]
 fn discs_that_end_at_sharp_edges_keep_them_sharp() {
     check("clip-lines");
 }
