@@ -49,10 +49,10 @@ bool scatter_begin(uint i, Splat splat, vec2 variance, float nearest, ivec2 low,
     return true;
 }
 
-void scatter(uint pixel, vec2 centre, float m2, float key) {
+void scatter(uint pixel, vec2 centre, float m2, float key, float rank) {
     uint nearest = visibility[pixel];
     // Where visibility wrote nothing there is no surface, whatever the wider attribute footprint says.
-    if (nearest == 0u || floatBitsToUint(key) < nearest) return;
+    if (nearest == 0u || floatBitsToUint(ranked(key, rank)) < nearest) return;
     float weight = OVERLAP ? 1.0 : splat_weight * kernel(m2);
     if (SUM_WEIGHTS) atomicAdd(sums0[WIDE_SUMS0 ? 4 * pixel : pixel], weight);
     if (WIDE_SUMS0) {
@@ -103,10 +103,10 @@ layout(location = 0) out vec4 sum0;
 layout(location = 1) out vec4 sum1;
 
 void main() {
-    float m2, key;
-    drawn_fragment(m2, key);
+    float m2, key, rank;
+    drawn_fragment(m2, key, rank);
     float weight = OVERLAP ? 1.0 : height * kernel(m2);
-    gl_FragDepth = key;
+    gl_FragDepth = ranked(key, rank);
     sum0 = weight * vec4(1.0, first);
     sum1 = weight * vec4(SUM_DEPTH ? frame.key_gain * key : 0.0, second);
 }

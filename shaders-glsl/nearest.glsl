@@ -35,16 +35,16 @@ bool scatter_begin(uint i, Splat splat, vec2 variance, float nearest, ivec2 low,
     splat_index = i;
     splat_key_disc = splat.key_disc;
 #ifdef COVERAGE
-    splat_solid = solid_of(splat);
+    splat_solid = solid_of(splat, clip_number(i));
 #endif
     return true;
 }
 
-void scatter(uint pixel, vec2 centre, float m2, float key) {
+void scatter(uint pixel, vec2 centre, float m2, float key, float rank) {
 #ifdef COVERAGE
     cover(pixel, splat_solid, centre);
 #endif
-    atomicMax(winners[pixel], winner(min(key, splat_key_disc), splat_index));
+    atomicMax(winners[pixel], winner(ranked(min(key, splat_key_disc), rank), splat_index));
 }
 
 #include "lib/scatter_splat.glsl"
@@ -80,9 +80,9 @@ layout(location = 0) out vec4 sum0;
 layout(location = 1) out vec4 sum1;
 
 void main() {
-    float m2, key;
-    drawn_fragment(m2, key);
-    gl_FragDepth = min(key, plane_lo_disc.w);
+    float m2, key, rank;
+    drawn_fragment(m2, key, rank);
+    gl_FragDepth = ranked(min(key, plane_lo_disc.w), rank);
     sum0 = vec4(1.0, first);
     sum1 = vec4(SUM_DEPTH ? frame.key_gain * key : 0.0, second);
 }

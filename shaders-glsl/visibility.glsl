@@ -29,16 +29,17 @@ bool scatter_begin(uint i, Splat splat, vec2 variance, float nearest, ivec2 low,
     splat_epsilon = splat.epsilon;
     splat_key_disc = splat.key_disc;
 #ifdef COVERAGE
-    splat_solid = solid_of(splat);
+    splat_solid = solid_of(splat, clip_number(i));
 #endif
     return true;
 }
 
-void scatter(uint pixel, vec2 centre, float m2, float key) {
+void scatter(uint pixel, vec2 centre, float m2, float key, float rank) {
 #ifdef COVERAGE
     cover(pixel, splat_solid, centre);
 #endif
-    atomicMax(visibility[pixel], floatBitsToUint(visibility_key(key, splat_key_disc, splat_epsilon)));
+    float moved = visibility_key(key, splat_key_disc, splat_epsilon);
+    atomicMax(visibility[pixel], floatBitsToUint(ranked(moved, rank)));
 }
 
 #include "lib/scatter_splat.glsl"
@@ -62,9 +63,9 @@ void main() {
 #ifdef FRAGMENT
 
 void main() {
-    float m2, key;
-    drawn_fragment(m2, key);
-    gl_FragDepth = visibility_key(key, plane_lo_disc.w, plane_epsilon.w);
+    float m2, key, rank;
+    drawn_fragment(m2, key, rank);
+    gl_FragDepth = ranked(visibility_key(key, plane_lo_disc.w, plane_epsilon.w), rank);
 }
 
 #endif

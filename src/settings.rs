@@ -121,8 +121,8 @@ pub enum Alpha {
     Mask,
     /// The part of it that surface covers: of 16 samples, those within any splat, hidden or not. A splat counts up to 0.77 of its cut-off
     /// and unfiltered: discs of radii 1.3 times as large as needed leave no holes then, and reach no further beyond an outline. Each also
-    /// covers the sample nearest to its centre if it holds none in that pixel, so that what is drawn shows however small it is. Clip lines
-    /// decide of whole pixels.
+    /// covers the sample nearest to its centre if it holds none in that pixel, so that what is drawn shows however small it is. A clip line
+    /// parts the pixels that it cuts by their samples too; what it cuts off is drawn up to half a pixel beyond it where nothing else is.
     Coverage,
 }
 

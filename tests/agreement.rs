@@ -119,6 +119,46 @@ fn every_case_with_coverage() {
     assert_agree(all.into_iter().flat_map(by).collect());
 }
 
+/// The first filter and normalization with which a footprint and a visibility go together.
+fn together(footprint: Footprint, visibility: Visibility) -> Option<Splatting> {
+    let filters = [Filter::Screen, Filter::Object, Filter::None];
+    let each = filters.into_iter().flat_map(|filter| {
+        [Normalization::Pixel, Normalization::None].map(|normalization| Splatting {
+            footprint,
+            filter,
+            visibility,
+            normalization,
+            ..Splatting::default()
+        })
+    });
+    each.into_iter().find(|splatting| splatting.check().is_ok())
+}
+
+#[test]
+fn every_footprint_under_every_visibility_with_coverage() {
+    let footprints = [
+        Footprint::Conic,
+        Footprint::Affine,
+        Footprint::Parallelogram,
+        Footprint::Disc,
+        Footprint::Sprite,
+        Footprint::WholeSprite,
+        Footprint::Square,
+    ];
+    let visibilities = [Visibility::Ray, Visibility::Axis, Visibility::Nearest];
+    let all = footprints.iter().flat_map(|f| visibilities.iter().filter_map(|v| together(*f, *v)));
+    let by = |splatting: Splatting| {
+        let mut cases =
+            with_axes(|case| Settings { splatting, alpha: Alpha::Coverage, ..case.settings.clone() });
+        cases.retain(|case| ["clipped", "ellipses"].contains(&case.name));
+        assert_eq!(cases.len(), 2);
+        failures(&cases, &format!("coverage, {splatting:?}"))
+    };
+    let all: Vec<Splatting> = all.collect();
+    assert_eq!(all.len(), 19);
+    assert_agree(all.into_iter().flat_map(by).collect());
+}
+
 /// Choices along one axis that no preset makes.
 #[test]
 fn every_case_by_other_axes() {

@@ -229,7 +229,7 @@ fn without_writes_from_fragments_coverage_is_computed() {
     let Some(device) = device(limits.clone()) else { return };
     let surfels = sphere(5_000);
     let settings = Settings { alpha: Alpha::Coverage, ..Default::default() };
-    let run = |device: &Arc<Device>, rasterizer, settings| {
+    let run = |device: &Arc<Device>, rasterizer, settings: &Settings| {
         let options = RenderOptions { size: SIZE, rasterizer, ..Default::default() };
         let scene = Scene::upload(device, &surfels)?;
         let mut renderer = Renderer::new(device, options)?;

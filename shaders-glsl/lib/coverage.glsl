@@ -14,6 +14,8 @@ const uint ALL_SAMPLES = (1u << SAMPLES) - 1;
 const float SOLID = 0.77;
 // Least variance of what is surface, px²: edge-on it has none.
 const float LEAST_SOLID = 1e-12;
+// What discs on either side of an edge share of it, px: more than rounding can part them by.
+const float SEAM = 1.0 / 256.0;
 
 // Sample k relative to the pixel's centre, px: a lattice with one sample in each of 16 rows and of 16 columns, no two nearer than 0.19 px.
 vec2 sample_at(uint k) {
@@ -34,12 +36,11 @@ uint nearest_sample(vec2 to) {
 }
 
 // The ellipse of a splat's own variance: filters widen what is seen of a surface, not the surface.
-Ellipse solid_of(Splat splat) {
-    return ellipse_of(splat, max(splat.variance, LEAST_SOLID));
+Ellipse solid_of(Splat splat, uint clip) {
+    return ellipse_of(splat, max(splat.variance, LEAST_SOLID), clip);
 }
 
-// The samples that a splat covers at a pixel centre where it has a fragment; `solid` is its ellipse by solid_of. Clip lines decide of whole
-// pixels: of one across an edge the discs of one side alone have a fragment, which must not leave the other side's part open.
+// The samples that a splat covers at a pixel centre where it has a fragment; `solid` is its ellipse by solid_of.
 uint coverage_mask(Ellipse solid, vec2 pixel) {
     vec2 d = pixel - solid.anchor;
     vec2 e = d - solid.offset;
@@ -52,6 +53,7 @@ uint coverage_mask(Ellipse solid, vec2 pixel) {
         vec2 u = vec2(dot(solid.whitening.xy, e + s), dot(solid.whitening.zw, e + s));
         if (on_plane()) u /= clamp(nearness.x + dot(nearness.yz, s), 1.0 / MOST_STRETCH, MOST_STRETCH);
         bool inside = rim() > 1.0 ? max(abs(u.x), abs(u.y)) <= limit : dot(u, u) <= limit * limit;
+        if (has_clip(solid.clip)) inside = inside && clip_distance(screen_clips[solid.clip], d + s) >= -SEAM;
         mask |= uint(inside) << k;
     }
     // Where a splat is, there is surface, however little.

@@ -25,7 +25,7 @@ void place_splat(uint i, Splat splat, vec2 variance, int corner) {
     plane_epsilon = vec4(ellipse.plane_hi, splat.epsilon);
     plane_lo_disc = vec4(ellipse.plane_lo, splat.key_disc);
 #ifdef COVERAGE
-    solid_whitening = solid_of(splat).whitening;
+    solid_whitening = solid_of(splat, clip).whitening;
 #endif
 
     // The nearest depth in the ellipse bounds every fragment's, which lets a device reject the triangle early.
@@ -66,11 +66,11 @@ layout(depth_less) out float gl_FragDepth;
 #endif
 
 // As splat_fragment; where there is no fragment, there is none.
-void drawn_fragment(out float m2, out float key) {
+void drawn_fragment(out float m2, out float key, out float rank) {
     float key_centre = centre_key(plane_epsilon.xyz, plane_lo_disc.xyz, anchor_offset.zw);
     Ellipse ellipse =
         Ellipse(anchor_offset.xy, anchor_offset.zw, whitening, plane_epsilon.xyz, plane_lo_disc.xyz, key_centre, clip);
-    if (!splat_fragment(ellipse, gl_FragCoord.xy, m2, key)) discard;
+    if (!splat_fragment(ellipse, gl_FragCoord.xy, m2, key, rank)) discard;
 #ifdef COVERAGE
     uvec2 pixel = uvec2(gl_FragCoord.xy);
     ellipse.whitening = solid_whitening;

@@ -3,7 +3,7 @@
 //
 // The including pass defines what happens: `scatter_variance(variance)` makes its footprint's variance of V's; `scatter_begin(i,
 // splat, variance, nearest, low, high)` says once a splat whether its fragments, in the pixels from low to high and no nearer than
-// the κ nearest, are wanted; and `scatter(pixel, centre, m2, key)` takes each.
+// the κ nearest, are wanted; and `scatter(pixel, centre, m2, key, rank)` takes each.
 
 layout(local_size_x = 64) in;
 
@@ -24,27 +24,27 @@ ivec2 row_span(Ellipse ellipse, float rim, int y, ivec2 low, ivec2 high) {
 }
 
 void scatter_rows(Ellipse ellipse, float rim, ivec2 low, ivec2 high) {
-    float m2, key;
+    float m2, key, rank;
     int y = low.y;
     ivec2 span = row_span(ellipse, rim, y, low, high);
     // One loop over all rows keeps invocations with rows of other lengths in step.
     while (y <= high.y) {
         ivec2 pixel = ivec2(span.x, y);
         vec2 centre = vec2(pixel) + 0.5;
-        if (splat_fragment(ellipse, centre, m2, key)) scatter(pixel_index(pixel), centre, m2, key);
+        if (splat_fragment(ellipse, centre, m2, key, rank)) scatter(pixel_index(pixel), centre, m2, key, rank);
         span.x++;
         if (span.x > span.y) span = row_span(ellipse, rim, ++y, low, high);
     }
 }
 
 void scatter_box(Ellipse ellipse, ivec2 low, ivec2 high) {
-    float m2, key;
+    float m2, key, rank;
     uint width = uint(high.x - low.x + 1);
     uint area = width * uint(high.y - low.y + 1);
     for (uint k = gl_LocalInvocationIndex; k < area; k += gl_WorkGroupSize.x) {
         ivec2 pixel = low + ivec2(k % width, k / width);
         vec2 centre = vec2(pixel) + 0.5;
-        if (splat_fragment(ellipse, centre, m2, key)) scatter(pixel_index(pixel), centre, m2, key);
+        if (splat_fragment(ellipse, centre, m2, key, rank)) scatter(pixel_index(pixel), centre, m2, key, rank);
     }
 }
 

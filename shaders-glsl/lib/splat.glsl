@@ -149,8 +149,8 @@ Ellipse ellipse_of(Splat splat, vec2 variance, uint clip) {
 }
 
 // Whether the splat has a fragment at a pixel centre: it is within the rim and not clipped, and the tangent plane within the depth range.
-// m2: squared distance to the centre in σ; key: the plane's κ.
-bool splat_fragment(Ellipse ellipse, vec2 pixel, out float m2, out float key) {
+// m2: squared distance to the centre in σ; key: the plane's κ; rank: see clip_rank.
+bool splat_fragment(Ellipse ellipse, vec2 pixel, out float m2, out float key, out float rank) {
     vec2 d = pixel - ellipse.anchor;
     vec2 e = d - ellipse.offset;
     vec2 u = vec2(dot(ellipse.whitening.xy, e), dot(ellipse.whitening.zw, e));
@@ -160,8 +160,9 @@ bool splat_fragment(Ellipse ellipse, vec2 pixel, out float m2, out float key) {
     if (on_plane()) u /= clamp(key / ellipse.key_centre, 1.0 / MOST_STRETCH, MOST_STRETCH);
     m2 = dot(u, u);
     bool inside = rim() > 1.0 ? max(abs(u.x), abs(u.y)) <= frame.cutoff : m2 <= frame.cutoff * frame.cutoff;
-    if (has_clip(ellipse.clip)) inside = inside && clip_keeps(screen_clips[ellipse.clip], d);
-    return inside && key > frame.key_far && key <= 1.0;
+    rank = 1.0;
+    if (has_clip(ellipse.clip)) rank = clip_rank(screen_clips[ellipse.clip], d);
+    return inside && rank > 0.0 && key > frame.key_far && key <= 1.0;
 }
 
 // The nearest κ within `stretch` cut-offs of the ellipse: no fragment's is above it.

@@ -2,7 +2,7 @@
 
 use super::bands::Band;
 use super::ellipse::Ellipse;
-use super::margin::{CUTOFF, Margins};
+use super::margin::Margins;
 use super::scene::Scene;
 use super::{Projector, Splat};
 use crate::settings::Alpha;
@@ -23,8 +23,14 @@ fn sample(k: u32) -> DVec2 {
     (DVec2::new(f64::from(k), f64::from(13 * k % Mask::BITS)) + 0.5) / f64::from(Mask::BITS) - 0.5
 }
 
-/// What of a splat is surface: its own ellipse, unfiltered. Clip lines decide of whole pixels, as without coverage: of a pixel across an edge
-/// the discs of one side alone have a fragment, which must not leave the other side's part of it open.
+/// How near an outline or a clip line a sample is in doubt: px, and so much more of the splat's size, as 8 half units in the last place of
+/// float32. Nearer than pixel centres, as each pixel has 16 samples.
+const DOUBT: [f64; 2] = [3e-5, 8.0 / (1 << 24) as f64];
+
+/// What discs on either side of an edge share of it, px: more than rounding can part them by.
+const SEAM: f64 = 1.0 / 256.0;
+
+/// What of a splat is surface: its own ellipse, unfiltered.
 fn solid(splat: &Splat, projector: &Projector) -> Ellipse {
     let cutoff = SOLID * projector.cutoff();
     Ellipse { cutoff, ..Ellipse::new(splat, projector, |variance| variance.max(LEAST)) }
@@ -32,8 +38,8 @@ fn solid(splat: &Splat, projector: &Projector) -> Ellipse {
 
 /// The samples that a splat covers in the pixel whose centre is at `offset` from its own.
 fn mask(solid: &Ellipse, offset: DVec2) -> Mask {
-    let inside = |k: &u32| solid.rim(offset + sample(*k)) <= solid.cutoff;
-    let mask = bits((0..Mask::BITS).filter(inside));
+    let inside = |at: DVec2| solid.rim(at) <= solid.cutoff && solid.kept(solid.centre + at) >= -SEAM;
+    let mask = bits((0..Mask::BITS).filter(|&k| inside(offset + sample(k))));
     // Where a splat is, there is surface, however little.
     let owns = mask == 0 && offset.abs().max_element() <= 0.5;
     if owns { bits(nearest(offset, 0.0).take(1)) } else { mask }
@@ -52,14 +58,19 @@ fn nearest(offset: DVec2, margin: f64) -> impl Iterator<Item = u32> {
 
 /// The samples that it surely covers, and those that it may.
 fn known(solid: &Ellipse, offset: DVec2) -> [Mask; 2] {
-    let undecided = |k: &u32| solid.is_undecided(offset + sample(*k), CUTOFF);
-    let undecided = bits((0..Mask::BITS).filter(undecided));
-    let inside = bits((0..Mask::BITS).filter(|k| solid.rim(offset + sample(*k)) <= solid.cutoff));
-    let (mut sure, mut maybe) = (inside & !undecided, inside | undecided);
+    let doubt = DOUBT[0] + DOUBT[1] * solid.cutoff * solid.sigma().x;
+    // Give or take what moves a sample that far.
+    let inside = |at: DVec2, margin: f64| {
+        let undecided = solid.is_undecided(at, margin.abs());
+        let within = if undecided { margin > 0.0 } else { solid.rim(at) <= solid.cutoff };
+        within && solid.kept(solid.centre + at) + margin >= -SEAM
+    };
+    let [mut sure, mut maybe] =
+        [-doubt, doubt].map(|margin| bits((0..Mask::BITS).filter(|&k| inside(offset + sample(k), margin))));
     let owns = |margin: f64| sure == 0 && offset.abs().max_element() <= 0.5 + margin;
-    if owns(CUTOFF) {
-        let candidates = bits(nearest(offset, 2.0 * CUTOFF));
-        if owns(-CUTOFF) && maybe == 0 && candidates.is_power_of_two() {
+    if owns(doubt) {
+        let candidates = bits(nearest(offset, 2.0 * doubt));
+        if owns(-doubt) && maybe == 0 && candidates.is_power_of_two() {
             sure = candidates;
         }
         maybe |= candidates;

@@ -15,6 +15,7 @@ use super::ellipse::Ellipse;
 use super::margin::{Candidate, Margins};
 use super::nearest::ranked;
 use super::normalize::{Value, resolve};
+use super::rank::Rank;
 use super::scene::Scene;
 use super::slack::{Means, Slack};
 use crate::splatting::Visibility;
@@ -62,10 +63,12 @@ struct Blended {
 
 /// A splat at a pixel.
 struct Fragment {
-    depth: f64,
+    rank: Rank,
     margin: f64,
     share: Share,
     certain: bool,
+    /// See [`Candidate::either`].
+    either: bool,
 }
 
 /// What a splat, or some together, contribute.
@@ -142,8 +145,10 @@ impl Blended {
     /// The fragments that the visibility depth `bound` surely lets through, summed, and those that it may.
     fn split(&self, bound: Bound) -> (Share, Vec<Share>) {
         let (mut sure, mut maybe) = (Share::default(), Vec::new());
-        for f in self.fragments.iter().filter(|f| bound.may_pass(f.depth, f.margin)) {
-            if f.certain && bound.must_pass(f.depth, f.margin) {
+        // Of a splat on a clip line what is beyond it stands for both.
+        let twice = |f: &Fragment| f.either && bound.is_beyond();
+        for f in self.fragments.iter().filter(|f| bound.may_pass(f.rank, f.margin) && !twice(f)) {
+            if f.certain && bound.must_pass(f.rank, f.margin) {
                 sure += f.share;
             } else {
                 maybe.push(f.share);
@@ -202,7 +207,8 @@ fn of_band(margins: &Margins, scene: &Scene, band: &Band) -> (Vec<(usize, Doubtf
         {
             let sums = Sums::of(margins.projector, c.splat, c.weight, c.depth);
             let share = Share { sums, means: Means::of(margins, &c) };
-            fragments.push(Fragment { depth: c.depth, margin: c.margin(), share, certain: c.certain });
+            let (rank, margin) = (c.rank(c.depth), c.margin());
+            fragments.push(Fragment { rank, margin, share, certain: c.certain, either: c.either });
         }
     });
     let first = band.first_row as usize * band.width as usize;
@@ -220,15 +226,16 @@ fn of_band(margins: &Margins, scene: &Scene, band: &Band) -> (Vec<(usize, Doubtf
 fn of_band_alone(margins: &Margins, scene: &Scene, band: &Band) -> (Vec<(usize, Doubtful)>, Vec<Slack>) {
     let splats = band.contributors(scene);
     // As far as the nearest splat may surely be, and the nearest that may be.
-    let mut farthest = vec![f64::INFINITY; band.len()];
+    let mut farthest = vec![Rank::NONE; band.len()];
     margins.scan(band, &splats, Ellipse::visibility, |c| {
         if c.certain {
-            farthest[c.pixel] = farthest[c.pixel].min(ranked(c.splat, c.depth) + c.margin());
+            let rank = c.rank(ranked(c.splat, c.depth));
+            farthest[c.pixel] = farthest[c.pixel].min(rank.farther(c.margin()));
         }
     });
     let mut shares: Vec<Vec<Share>> = vec![Vec::new(); band.len()];
     margins.scan(band, &splats, Ellipse::visibility, |c| {
-        if ranked(c.splat, c.depth) - c.margin() <= farthest[c.pixel] {
+        if c.rank(ranked(c.splat, c.depth)).farther(-c.margin()) <= farthest[c.pixel] {
             let c = Candidate { weight: 1.0, ..c };
             let sums = Sums::of(margins.projector, c.splat, 1.0, c.depth);
             shares[c.pixel].push(Share { sums, means: Means::of(margins, &c) });
@@ -239,7 +246,7 @@ fn of_band_alone(margins: &Margins, scene: &Scene, band: &Band) -> (Vec<(usize, 
     let (mut doubtful, mut slack) = (Vec::new(), Vec::new());
     for (i, shares) in shares.into_iter().enumerate() {
         slack.push(shares.first().map_or(Slack::default(), |share| share.means.slack()));
-        let surely_there = farthest[i].is_finite();
+        let surely_there = farthest[i].exists();
         let covered = covered[i].clone();
         if shares.len() > 1 || (!surely_there || covered.wavers()) && !shares.is_empty() {
             let none = (!surely_there).then_some(None);

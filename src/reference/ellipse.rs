@@ -32,6 +32,8 @@ pub(super) struct Ellipse {
     pub kernel: Kernel,
     /// What of it is kept.
     pub clip: Option<ScreenClip>,
+    /// See [`Projector::beyond_clips`].
+    pub beyond: f64,
 }
 
 impl Ellipse {
@@ -72,6 +74,7 @@ impl Ellipse {
             square: matches!(splatting.footprint, Footprint::Parallelogram | Footprint::Square),
             kernel: splatting.kernel,
             clip: splat.clip,
+            beyond: projector.beyond_clips(),
         }
     }
 
@@ -273,6 +276,7 @@ mod tests {
             square: false,
             kernel: Kernel::Gaussian,
             clip: None,
+            beyond: 0.0,
         };
         for y in [17.0, 20.0, 22.5] {
             let (low, high) = ellipse.span(y, 2.0).unwrap();

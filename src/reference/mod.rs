@@ -23,6 +23,7 @@ mod margin;
 mod nearest;
 mod normalize;
 mod projector;
+mod rank;
 mod scene;
 mod shading;
 mod slack;

@@ -3,6 +3,7 @@
 use super::Projector;
 use super::attribute::Sums;
 use super::bands::Band;
+use super::rank::Rank;
 use super::shading::lit;
 use crate::settings::Shading;
 use crate::splatting::{Normalization, Shade};
@@ -24,16 +25,16 @@ pub struct Value {
     pub normal: [f64; 3],
 }
 
-/// The values of the band's pixels; a surface is where `visible` is finite, some weight was summed and `alpha` is not 0.
+/// The values of the band's pixels; a surface is where `visible` exists, some weight was summed and `alpha` is not 0.
 pub(super) fn pass(
     projector: &Projector,
     band: &Band,
-    visible: &[f64],
+    visible: &[Rank],
     sums: &[Sums],
     alpha: &[f64],
 ) -> Vec<Value> {
-    let pixel = |(i, (visible, sums)): (usize, (&f64, &Sums))| {
-        resolve(projector, band.centre(i), visible.is_finite().then_some(sums), alpha[i])
+    let pixel = |(i, (visible, sums)): (usize, (&Rank, &Sums))| {
+        resolve(projector, band.centre(i), visible.exists().then_some(sums), alpha[i])
     };
     visible.iter().zip(sums).enumerate().map(pixel).collect()
 }

@@ -1,6 +1,7 @@
 //! The samples of pixels that a splat covers, where α is the part of a pixel that is covered.
 
-use super::shape::Shape;
+use super::clip::ScreenClip;
+use super::splat::Splat;
 use super::tile::LANES;
 use glam::{BVec4A, Vec2, Vec4};
 
@@ -19,7 +20,10 @@ const SOLID: f32 = 0.77;
 /// Least variance of what is surface, px²: edge-on it has none.
 const LEAST: f32 = 1e-12;
 
-/// The part of a splat that is surface: its own ellipse, unfiltered; clip lines decide of whole pixels.
+/// What discs on either side of an edge share of it, px: more than rounding can part them by.
+const SEAM: f32 = 1.0 / 256.0;
+
+/// The part of a splat that is surface: its own ellipse, unfiltered, as far as clip lines keep it.
 pub(super) struct Solid {
     /// Rows of the map from px to σ.
     whitening: [Vec2; 2],
@@ -27,6 +31,8 @@ pub(super) struct Solid {
     samples: [Vec2; SAMPLES],
     /// Square of where it ends, σ².
     limit: f32,
+    /// Relative to its centre.
+    clip: Option<ScreenClip>,
 }
 
 /// Where sample `k` is in its pixel, relative to the centre: a lattice.
@@ -35,14 +41,16 @@ fn sample(k: usize) -> Vec2 {
 }
 
 impl Solid {
-    /// Of the splat of this unfiltered `shape`.
+    /// Of a splat and what clips it.
     #[inline]
-    pub fn new(shape: &Shape, cutoff: f32) -> Self {
+    pub fn new(splat: &Splat, clip: Option<ScreenClip>, cutoff: f32) -> Self {
+        let shape = &splat.shape;
         let sigma = shape.variance.max(Vec2::splat(LEAST)).map(f32::sqrt);
         let [a, b] = [shape.axis / sigma.x, shape.axis.perp() / sigma.y];
         let along = |k| Vec2::new(a.dot(sample(k)), b.dot(sample(k)));
         let limit = SOLID * cutoff;
-        Self { whitening: [a, b], samples: std::array::from_fn(along), limit: limit * limit }
+        let clip = clip.map(|clip| clip.about(splat.offset));
+        Self { whitening: [a, b], samples: std::array::from_fn(along), limit: limit * limit, clip }
     }
 
     /// The samples covered in those of four pixels that are `inside` the splat, whose centres are at `x` and `y` from its own, px.
@@ -53,7 +61,11 @@ impl Solid {
         let mut covered = 0;
         for (k, at) in self.samples.iter().enumerate() {
             let (u, v) = (along + at.x, across + at.y);
-            let within = (u * u + v * v).cmple(Vec4::splat(self.limit));
+            let mut within = (u * u + v * v).cmple(Vec4::splat(self.limit));
+            if let Some(clip) = &self.clip {
+                let at = sample(k);
+                within &= clip.distance(x + at.x, y + at.y).cmpge(Vec4::splat(-SEAM));
+            }
             covered |= Samples::from(within.bitmask()) << (LANES * k);
         }
         for lane in 0..LANES {

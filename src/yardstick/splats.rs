@@ -57,7 +57,7 @@ impl Splats {
         let frame = Frame { surfels, view, settings, streams, chunks: &self.chunks, order: &self.order };
         stages.time_shared(["visibility", "attribute", "normalize"], |clock| {
             target.slabs().for_each(|mut slab| {
-                let mut tile = Tile::new(slab.at, settings.alpha);
+                let mut tile = Tile::new(slab.at, &frame);
                 let mut lap = clock.start();
                 let drawn = tile.visibility(&frame);
                 lap.end(0);
