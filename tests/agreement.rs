@@ -98,20 +98,7 @@ fn every_case_by_every_method() {
 
 #[test]
 fn every_case_with_coverage() {
-    let kernel = |footprint, filter| Splatting { footprint, filter, ..Splatting::default() };
-    let alone = |footprint| Splatting {
-        visibility: Visibility::Nearest,
-        normalization: Normalization::None,
-        ..kernel(footprint, Filter::None)
-    };
-    let all = [
-        Splatting::default(),
-        object_ewa::METHOD.splatting,
-        kernel(Footprint::Disc, Filter::Object),
-        Splatting { visibility: Visibility::Axis, ..Splatting::default() },
-        sprites::UNFILTERED.splatting,
-        alone(Footprint::Square),
-    ];
+    let all = [Splatting::default(), object_ewa::METHOD.splatting, sprites::UNFILTERED.splatting];
     let by = |splatting: Splatting| {
         let cases = with_axes(|case| Settings { splatting, alpha: Alpha::Coverage, ..case.settings.clone() });
         failures(&cases, &format!("coverage, {splatting:?}"))

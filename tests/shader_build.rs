@@ -73,6 +73,9 @@ fn a_variant_is_compiled_beside_the_file() {
     // What the variant has the file itself has not.
     let message = error(&[("a.glsl", &pass(buffer, "extra[0]"))]);
     contains(&message, &["shaders-glsl/a.glsl:", "'extra'"]);
+    // And the other way round.
+    let only = "#pragma variant FULL\n#ifdef FULL\nmisspelt x;\n#endif";
+    contains(&error(&[("a.glsl", &pass(only, "1.0"))]), &["shaders-glsl/a.glsl:", "'misspelt'"]);
 }
 
 #[test]

@@ -4,7 +4,7 @@ layout(constant_id = 23) const bool CLIPS = false;
 layout(constant_id = 24) const bool BEYOND_CLIPS = false; // α is coverage, and of a pixel that a line cuts either part may be covered
 
 // How far beyond a line there are fragments then, px: as far as a pixel that it cuts can have its centre.
-const float BEYOND = 0.70711;
+const float BEYOND = 0.70710678;
 // Such a fragment is seen where there is no other: its κ counts for so much less that it is behind all that are not beyond a line.
 const float BEHIND_ALL = 8.6736174e-19; // 2⁻⁶⁰
 

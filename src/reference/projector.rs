@@ -7,7 +7,7 @@ use crate::settings::{Alpha, Settings};
 use glam::{DMat2, DMat3, DMat4, DVec2, DVec3, DVec4};
 
 /// How far beyond a clip line splats have fragments where α is coverage, px: as far as a pixel that it cuts can have its centre.
-const BEYOND: f64 = 0.70711;
+const BEYOND: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// What all passes of a frame need to know of its camera, size and settings.
 #[derive(Clone, Debug)]

@@ -25,7 +25,7 @@ pub(super) struct Cover<'a> {
 }
 
 /// How far beyond a clip line a splat has fragments where α is coverage, px: as far as a pixel that it cuts can have its centre.
-const BEYOND: f32 = 0.70711;
+const BEYOND: f32 = std::f32::consts::FRAC_1_SQRT_2;
 
 /// Four neighbouring pixels of a row.
 pub(super) struct Block {
