@@ -65,10 +65,10 @@ bool scatter_begin(uint i, Splat splat, vec2 variance, float nearest, ivec2 low,
     return true;
 }
 
-void scatter(uint pixel, vec2 m, float key) {
+void scatter(uint pixel, vec2 centre, vec2 m, float key, float rank) {
     uint nearest = visibility[pixel];
     // Where visibility wrote nothing there is no surface, whatever the wider attribute footprint says.
-    if (nearest == 0u || floatBitsToUint(key) < nearest) return;
+    if (nearest == 0u || floatBitsToUint(ranked(key, rank)) < nearest) return;
     float weight = OVERLAP ? 1.0 : splat_weight * kernel(dot(m, m));
     if (CORNERS && !OVERLAP) weight *= weight_in(splat_corners, splat_square, m);
     if (SUM_WEIGHTS) atomicAdd(sums0[WIDE_SUMS0 ? 4 * pixel : pixel], weight);
@@ -127,11 +127,11 @@ layout(location = 1) out vec4 sum1;
 
 void main() {
     vec2 m;
-    float key;
-    drawn_fragment(m, key);
+    float key, rank;
+    drawn_fragment(m, key, rank);
     float weight = OVERLAP ? 1.0 : height * kernel(dot(m, m));
     if (CORNERS && !OVERLAP) weight *= weight_in(corners, mat2(square.xy, square.zw), m);
-    gl_FragDepth = key;
+    gl_FragDepth = ranked(key, rank);
     sum0 = weight * vec4(1.0, first);
     sum1 = weight * vec4(SUM_DEPTH ? frame.key_gain * key : 0.0, second);
 }

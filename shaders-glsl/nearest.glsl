@@ -1,5 +1,6 @@
 // Nearest: the nearest splat of each pixel, alone and whole: one pass, nothing is blended (zwicker2004 table 1; botsch2003 §3.2).
 #version 450
+#pragma variant COVERAGE
 #extension GL_GOOGLE_include_directive : require
 #ifdef COMPUTE
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
@@ -11,6 +12,9 @@
 #define SPLAT_ACCESS readonly
 #define CLIP_ACCESS readonly
 #include "lib/splat.glsl"
+#ifdef COVERAGE
+#include "lib/coverage.glsl"
+#endif
 
 #ifdef COMPUTE
 
@@ -19,6 +23,9 @@
 
 uint splat_index;
 float splat_key_disc;
+#ifdef COVERAGE
+Ellipse splat_solid;
+#endif
 
 vec2 scatter_variance(vec2 variance) {
     return visibility_variance(variance);
@@ -27,11 +34,17 @@ vec2 scatter_variance(vec2 variance) {
 bool scatter_begin(uint i, Splat splat, vec2 variance, float nearest, ivec2 low, ivec2 high) {
     splat_index = i;
     splat_key_disc = splat.key_disc;
+#ifdef COVERAGE
+    splat_solid = solid_of(splat, clip_number(i));
+#endif
     return true;
 }
 
-void scatter(uint pixel, vec2 m, float key) {
-    atomicMax(winners[pixel], winner(min(key, splat_key_disc), splat_index));
+void scatter(uint pixel, vec2 centre, vec2 m, float key, float rank) {
+#ifdef COVERAGE
+    cover(pixel, splat_solid, centre);
+#endif
+    atomicMax(winners[pixel], winner(ranked(min(key, splat_key_disc), rank), splat_index));
 }
 
 #include "lib/scatter_splat.glsl"
@@ -68,9 +81,9 @@ layout(location = 1) out vec4 sum1;
 
 void main() {
     vec2 m;
-    float key;
-    drawn_fragment(m, key);
-    gl_FragDepth = min(key, plane_lo_disc.w);
+    float key, rank;
+    drawn_fragment(m, key, rank);
+    gl_FragDepth = ranked(min(key, plane_lo_disc.w), rank);
     sum0 = vec4(1.0, first);
     sum1 = vec4(SUM_DEPTH ? frame.key_gain * key : 0.0, second);
 }

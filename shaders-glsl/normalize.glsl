@@ -1,5 +1,6 @@
 // Normalize: divides the sums by Σw and shades (zwicker2004 §6, third pass; equation 2's normalization).
 #version 450
+#pragma variant COVERAGE
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
@@ -11,16 +12,42 @@ layout(constant_id = 6) const uint SHADING = 0;
 const uint LIT = 0, COLOUR = 1, NORMAL = 2, DEPTH = 3, OVERLAPS = 4, WEIGHT = 5;
 layout(constant_id = 20) const bool SHADE_SPLATS = false; // colours are light already
 
+#ifdef COVERAGE
+#ifdef COMPUTE
+const uint COVERAGE_BINDING = 5;
+#else
+const uint COVERAGE_BINDING = 3;
+#endif
+layout(set = 1, binding = COVERAGE_BINDING, std430) readonly buffer Coverage { uint coverage[]; }; // a bit a sample
+#endif
+
+// The part of pixel i that is covered, where there is something.
+float alpha_of(uint i) {
+#ifdef COVERAGE
+    return bitCount(coverage[i]) / 16.0;
+#else
+    return 1.0;
+#endif
+}
+
 struct Pixel {
     vec4 image;
     vec3 normal;
     float depth;
 };
 
-// The pixel at `centre` (px) from what visibility and attribute left there.
-Pixel normalize_pixel(vec2 centre, bool visible, vec4 s0, vec4 s1) {
+// What is shown of a surface with the background, if there is one, behind it.
+vec4 over_background(vec3 shown, float alpha) {
+    if (frame.background.a == 0.0) return vec4(shown, alpha);
+    // Numbers are not mixed with a colour: the half decides.
+    if (SHADING != LIT && SHADING != COLOUR) alpha = step(0.5, alpha);
+    return vec4(mix(frame.background.rgb, shown, alpha), 1.0);
+}
+
+// The pixel at `centre` (px), of which `alpha` is covered, from what visibility and attribute left there.
+Pixel normalize_pixel(vec2 centre, bool visible, float alpha, vec4 s0, vec4 s1) {
     // Only what visibility wrote is there: the attribute footprint is wider and would bloat the outline.
-    if (!visible || SUM_WEIGHTS && !(s0.x > 0.0)) return Pixel(frame.background, vec3(0.0), 0.0);
+    if (!visible || alpha == 0.0 || SUM_WEIGHTS && !(s0.x > 0.0)) return Pixel(frame.background, vec3(0.0), 0.0);
 
     float total = NORMALIZATION == PER_PIXEL ? s0.x : 1.0;
     vec3 ray = centre.x * frame.ray_hi[0].xyz + centre.y * frame.ray_hi[1].xyz + frame.ray_hi[2].xyz;
@@ -42,7 +69,7 @@ Pixel normalize_pixel(vec2 centre, bool visible, vec4 s0, vec4 s1) {
     if (SHADING == NORMAL) shaded = normal;
     if (SHADING == DEPTH) shaded = vec3(depth);
     if (SHADING == OVERLAPS || SHADING == WEIGHT) shaded = vec3(s0.x);
-    return Pixel(vec4(shaded, 1.0), normal, depth);
+    return Pixel(over_background(shaded, alpha), normal, depth);
 }
 
 #ifdef COMPUTE
@@ -72,7 +99,7 @@ void main() {
     vec2 centre = vec2(i % width, i / width) + 0.5;
     vec4 s0 = fetch0(i, WIDE_SUMS0);
     bool visible = NEAREST ? s0.x > 0.0 : visibility[i] != 0u;
-    Pixel pixel = normalize_pixel(centre, visible, s0, fetch1(i));
+    Pixel pixel = normalize_pixel(centre, visible, alpha_of(i), s0, fetch1(i));
     for (uint k = 0; k < 4; k++) picture[4 * i + k] = pixel.image[k];
     if (OUT_NORMAL) for (uint k = 0; k < 3; k++) picture[4 * pixels + 3 * i + k] = pixel.normal[k];
     if (OUT_DEPTH) picture[(OUT_NORMAL ? 7 : 4) * pixels + i] = pixel.depth;
@@ -100,7 +127,8 @@ void main() {
     ivec2 at = ivec2(gl_FragCoord.xy);
     bool visible = texelFetch(visibility, at, 0).r > 0.0;
     vec4 s1 = SUM_DEPTH || WIDE_SUMS1 ? texelFetch(sums1, at, 0) : vec4(0.0);
-    Pixel pixel = normalize_pixel(gl_FragCoord.xy, visible, texelFetch(sums0, at, 0), s1);
+    float alpha = alpha_of(at.y * uint(frame.viewport.x) + at.x);
+    Pixel pixel = normalize_pixel(gl_FragCoord.xy, visible, alpha, texelFetch(sums0, at, 0), s1);
     image = pixel.image;
     out_normal = vec4(pixel.normal, 0.0);
     out_depth = pixel.depth;

@@ -1,11 +1,15 @@
 // Visibility: the depth of the nearest surface, moved back by ε along the viewing rays (zwicker2004 §6, first pass).
 #version 450
+#pragma variant COVERAGE
 #extension GL_GOOGLE_include_directive : require
 
 #include "lib/frame.glsl"
 #define SPLAT_ACCESS readonly
 #define CLIP_ACCESS readonly
 #include "lib/splat.glsl"
+#ifdef COVERAGE
+#include "lib/coverage.glsl"
+#endif
 
 #ifdef COMPUTE
 
@@ -13,6 +17,9 @@
 #include "lib/pixels.glsl"
 
 float splat_epsilon, splat_key_disc;
+#ifdef COVERAGE
+Ellipse splat_solid;
+#endif
 
 vec2 scatter_variance(vec2 variance) {
     return visibility_variance(variance);
@@ -21,11 +28,18 @@ vec2 scatter_variance(vec2 variance) {
 bool scatter_begin(uint i, Splat splat, vec2 variance, float nearest, ivec2 low, ivec2 high) {
     splat_epsilon = splat.epsilon;
     splat_key_disc = splat.key_disc;
+#ifdef COVERAGE
+    splat_solid = solid_of(splat, clip_number(i));
+#endif
     return true;
 }
 
-void scatter(uint pixel, vec2 m, float key) {
-    atomicMax(visibility[pixel], floatBitsToUint(visibility_key(key, splat_key_disc, splat_epsilon)));
+void scatter(uint pixel, vec2 centre, vec2 m, float key, float rank) {
+#ifdef COVERAGE
+    cover(pixel, splat_solid, centre);
+#endif
+    float moved = visibility_key(key, splat_key_disc, splat_epsilon);
+    atomicMax(visibility[pixel], floatBitsToUint(ranked(moved, rank)));
 }
 
 #include "lib/scatter_splat.glsl"
@@ -50,9 +64,9 @@ void main() {
 
 void main() {
     vec2 m;
-    float key;
-    drawn_fragment(m, key);
-    gl_FragDepth = visibility_key(key, plane_lo_disc.w, plane_epsilon.w);
+    float key, rank;
+    drawn_fragment(m, key, rank);
+    gl_FragDepth = ranked(visibility_key(key, plane_lo_disc.w, plane_epsilon.w), rank);
 }
 
 #endif

@@ -7,7 +7,7 @@ use crate::methods::{Canvas, Pipelines};
 use crate::passes::{SplatLayout, Splats};
 use crate::picture::Picture;
 use crate::scene::Scene;
-use crate::settings::Settings;
+use crate::settings::{Alpha, Settings};
 use crate::splatting::Visibility;
 use crate::targets::{Buffers, TargetInfo, check_size};
 use crate::variant::{Outputs, Precision, Rasterizer, Variant};
@@ -94,7 +94,7 @@ impl Renderer {
     pub fn new(device: &Arc<Device>, options: RenderOptions) -> Result<Self> {
         check_size(device, options.size)?;
         let mut options = options;
-        let rasterizer = rasterizer_for(device, &options, true)?;
+        let rasterizer = rasterizer_for(device, &options, true, Alpha::Mask)?;
         let blends = device.capabilities().blend_float32;
         if rasterizer == Rasterizer::Draw && options.precision == Precision::Full && !blends {
             log::warn!("{} cannot blend 32-bit floats: sums are kept in 16 bits", device.description().name);
@@ -167,7 +167,7 @@ impl Renderer {
         settings.splatting.normalization.check_weights(scene.weights.is_some())?;
         let block = frame(camera, settings, self.options.size, scene.origin(), scene.bounds())?;
         let blends = settings.splatting.visibility != Visibility::Nearest;
-        let rasterizer = rasterizer_for(&self.device, &self.options, blends)?;
+        let rasterizer = rasterizer_for(&self.device, &self.options, blends, settings.alpha)?;
         let perspective = camera.projection()?.perspective;
         let variant = Variant::new(scene.streams(), perspective, settings, &self.options, rasterizer);
         self.make_resident(scene, variant.rasterizer)?;
@@ -228,7 +228,12 @@ impl Renderer {
 }
 
 /// The faster of what `device` can do with these options, for frames that blend splats or do not.
-fn rasterizer_for(device: &Device, options: &RenderOptions, blends: bool) -> Result<Rasterizer> {
+fn rasterizer_for(
+    device: &Device,
+    options: &RenderOptions,
+    blends: bool,
+    alpha: Alpha,
+) -> Result<Rasterizer> {
     let capabilities = device.capabilities();
     let fits = Buffers::fit(capabilities, options.outputs, options.size);
     let (needed, atomics) = match blends {
@@ -236,6 +241,8 @@ fn rasterizer_for(device: &Device, options: &RenderOptions, blends: bool) -> Res
         false => ("64-bit atomics", capabilities.int64_atomics),
     };
     let can_compute = atomics && options.precision == Precision::Full && fits;
+    let covers = capabilities.fragment_writes && Buffers::fit_coverage(capabilities, options.size);
+    let can_draw = alpha == Alpha::Mask || covers;
     match options.rasterizer {
         Some(Rasterizer::Compute) if !can_compute => Err(Error::Usage(format!(
             "the compute rasterizer needs {needed} in buffers, 32-bit sums and a picture within {} bytes, which {} does \
@@ -243,10 +250,19 @@ fn rasterizer_for(device: &Device, options: &RenderOptions, blends: bool) -> Res
             capabilities.max_storage_buffer_range,
             device.description().name
         ))),
+        Some(Rasterizer::Draw) | None if !can_draw && (options.rasterizer.is_some() || !can_compute) => {
+            Err(Error::Usage(format!(
+                "coverage by the draw rasterizer needs buffers that fragment shaders write to (fragmentStoresAndAtomics), and 4 bytes a \
+                 pixel within {}, which {} does not have at this size: choose the compute rasterizer, or a mask as α",
+                capabilities.max_storage_buffer_range,
+                device.description().name
+            )))
+        }
         Some(rasterizer) => Ok(rasterizer),
         // Measured on CPU devices only; a GPU's own rasterizer is taken until a measurement says otherwise, if it keeps 32 bits.
         None if can_compute
-            && (device.description().kind == DeviceDescription::CPU
+            && (!can_draw
+                || device.description().kind == DeviceDescription::CPU
                 || blends && !capabilities.blend_float32) =>
         {
             Ok(Rasterizer::Compute)

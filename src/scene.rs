@@ -343,6 +343,7 @@ mod tests {
             blend_float32: true,
             float_atomics: true,
             int64_atomics: true,
+            fragment_writes: true,
             timestamps: None,
             max_storage_buffer_range: 1 << 20,
             storage_buffer_alignment: 64,

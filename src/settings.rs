@@ -19,9 +19,11 @@ pub struct Settings {
     pub epsilon: f32,
     /// Which side of a surfel is seen.
     pub cull: Cull,
+    /// What α is.
+    pub alpha: Alpha,
     /// What the picture shows.
     pub shading: Shading,
-    /// Colour where no surfel is, linear RGB; `None` leaves it transparent (all channels 0).
+    /// Colour where no surfel is, linear RGB; `None` leaves it transparent (all channels 0). What is partly covered is blended with it.
     pub background: Option<[f32; 3]>,
     /// Lights and material of [`Shading::Lit`].
     pub lighting: Lighting,
@@ -38,6 +40,7 @@ impl Default for Settings {
             widen: Widen::Small,
             epsilon: 1.0,
             cull: Cull::None,
+            alpha: Alpha::Mask,
             shading: Shading::Lit,
             background: None,
             lighting: Lighting::default(),
@@ -111,6 +114,18 @@ pub enum Cull {
     Back,
 }
 
+/// What α says of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Alpha {
+    /// Whether a splat owns its centre: 1 or 0.
+    Mask,
+    /// The part of it that surface covers: of 16 samples, those within any splat, hidden or not. A splat counts up to 0.77 of its cut-off
+    /// and unfiltered: discs of radii 1.3 times as large as needed leave no holes then, and reach no further beyond an outline. Each also
+    /// covers the sample nearest to its centre if it holds none in that pixel, so that what is drawn shows however small it is. A clip line
+    /// parts the pixels that it cuts by their samples too; what it cuts off is drawn up to half a pixel beyond it where nothing else is.
+    Coverage,
+}
+
 /// What the picture shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Shading {
@@ -144,6 +159,16 @@ impl Cull {
         match self {
             Self::None => "none",
             Self::Back => "back",
+        }
+    }
+}
+
+impl Alpha {
+    /// As options and reports call it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Mask => "mask",
+            Self::Coverage => "coverage",
         }
     }
 }

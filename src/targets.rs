@@ -21,6 +21,8 @@ pub struct Images {
     pub normal: Option<Image>,
     /// Eye-space depth, where it is asked for.
     pub depth: Option<Image>,
+    /// The samples of each pixel that a surface covers, a bit each, where α is coverage.
+    pub coverage: Option<Buffer>,
 }
 
 /// Targets that compute shaders write, pixel by pixel from the top left.
@@ -33,6 +35,8 @@ pub struct Buffers {
     pub sums1: Option<Buffer>,
     /// Least visibility of each tile of [`Buffers::TILE`]² pixels, empty ones aside; where splats are blended.
     pub tiles: Option<Buffer>,
+    /// See [`Images::coverage`].
+    pub coverage: Option<Buffer>,
     /// All pixels' colour (4 floats), then all normals (3), then all depths (1), as far as they are asked for.
     pub picture: Buffer,
     /// What it holds.
@@ -56,6 +60,8 @@ pub struct Formats {
     pub normal: Option<Format>,
     /// See [`Images::depth`].
     pub depth: Option<Format>,
+    /// See [`Images::coverage`]; of a pixel in a buffer.
+    pub coverage: Option<Format>,
 }
 
 /// A target as a report shows it.
@@ -85,6 +91,7 @@ impl Formats {
             image: Format::R32G32B32A32_SFLOAT,
             normal: variant.outputs.normal.then_some(Format::R32G32B32A32_SFLOAT),
             depth: variant.outputs.depth.then_some(Format::R32_SFLOAT),
+            coverage: variant.coverage.then_some(Format::R32_UINT),
         }
     }
 
@@ -96,6 +103,7 @@ impl Formats {
             ("image", Some(self.image)),
             ("normal", self.normal),
             ("depth", self.depth),
+            ("coverage", self.coverage),
         ];
         let bytes = |(name, format): (_, Option<Format>)| Some((name, pixel_bytes(format?) as f64));
         always.into_iter().chain(optional).filter_map(bytes).collect()
@@ -120,6 +128,16 @@ pub fn check_size(device: &Device, size: [u32; 2]) -> Result<()> {
     }
 }
 
+/// Where α is coverage, its target.
+fn coverage(device: &Arc<Device>, variant: &Variant, size: [u32; 2]) -> Result<Option<Buffer>> {
+    let bytes = 4 * u64::from(size[0]) * u64::from(size[1]);
+    variant.coverage.then(|| Buffer::storage(device, "coverage", bytes)).transpose()
+}
+
+fn coverage_info(buffer: &Buffer) -> TargetInfo {
+    TargetInfo { name: "coverage", format: Format::R32_UINT, bytes: buffer.size() }
+}
+
 impl Images {
     /// The targets of `variant` at `size` px.
     pub fn new(device: &Arc<Device>, variant: &Variant, size: [u32; 2]) -> Result<Self> {
@@ -134,6 +152,7 @@ impl Images {
             image: target("image", formats.image, ImageUse::Copied)?,
             normal: optional("normal", formats.normal, ImageUse::Copied)?,
             depth: optional("depth", formats.depth, ImageUse::Copied)?,
+            coverage: coverage(device, variant, size)?,
         })
     }
 
@@ -149,7 +168,8 @@ impl Images {
         let there = optional.into_iter().filter_map(|(name, image)| Some((name, image.as_ref()?)));
         let info =
             |(name, image): (_, &Image)| TargetInfo { name, format: image.format(), bytes: image.bytes() };
-        always.into_iter().chain(there).map(info).collect()
+        let images = always.into_iter().chain(there).map(info);
+        images.chain(self.coverage.iter().map(coverage_info)).collect()
     }
 }
 
@@ -167,10 +187,16 @@ impl Buffers {
             sums0: buffer("sums0", floats(variant.wide_sums0()))?,
             sums1: sums1.transpose()?,
             tiles: tiles.transpose()?,
+            coverage: coverage(device, variant, size)?,
             picture: buffer("picture", Self::picture_floats(variant.outputs))?,
             outputs: variant.outputs,
             size,
         })
+    }
+
+    /// Whether the coverage of a picture of this size fits a buffer that shaders of the device can see.
+    pub fn fit_coverage(capabilities: &Capabilities, size: [u32; 2]) -> bool {
+        4 * u64::from(size[0]) * u64::from(size[1]) <= capabilities.max_storage_buffer_range
     }
 
     /// Whether a picture of this size fits the buffers that shaders of the device can see.
@@ -188,6 +214,7 @@ impl Buffers {
             vec![("visibility", if nearest { 8.0 } else { 4.0 }), ("sums0", floats(variant.wide_sums0()))];
         list.extend(variant.has_sums1().then(|| ("sums1", floats(variant.wide_sums1()))));
         list.extend((!nearest).then_some(("tiles", 4.0 / f64::from(Self::TILE * Self::TILE))));
+        list.extend(variant.coverage.then_some(("coverage", 4.0)));
         list.push(("picture", 4.0 * Self::picture_floats(variant.outputs) as f64));
         list
     }
@@ -223,6 +250,7 @@ impl Buffers {
             vec![info("visibility", &self.visibility, key), info("sums0", &self.sums0, sums(&self.sums0))];
         list.extend(self.sums1.as_ref().map(|buffer| info("sums1", buffer, sums(buffer))));
         list.extend(self.tiles.as_ref().map(|tiles| info("tiles", tiles, Format::R32_UINT)));
+        list.extend(self.coverage.as_ref().map(coverage_info));
         list.push(info("picture", &self.picture, float));
         list
     }

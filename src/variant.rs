@@ -2,7 +2,7 @@
 
 use crate::renderer::RenderOptions;
 use crate::scene::{ColourStream, Streams};
-use crate::settings::{Cull, Settings, Shading, Widen};
+use crate::settings::{Alpha, Cull, Settings, Shading, Widen};
 use crate::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Visibility};
 use crate::vk::Constants;
 use crate::vk::shaders::constant;
@@ -44,6 +44,8 @@ pub struct Variant {
     pub depth: bool,
     /// The colours that are summed, in the form in which the scene holds them.
     pub colours: ColourStream,
+    /// α is the part of a pixel that is covered.
+    pub coverage: bool,
     /// What the picture shows.
     pub shading: Shading,
     /// Directional lights.
@@ -121,6 +123,7 @@ impl Variant {
             normals: lit_pixels || shading == Shading::Normal || options.outputs.normal,
             depth: shading == Shading::Depth || options.outputs.depth,
             colours: if wants_colour { streams.colours } else { ColourStream::None },
+            coverage: settings.alpha == Alpha::Coverage,
             shading,
             lights: if shading == Shading::Lit { settings.lighting.directional.len() as u32 } else { 0 },
             outputs: options.outputs,
@@ -159,6 +162,7 @@ impl Variant {
             .with(constant::ELLIPSES, self.ellipses)
             .with(constant::TWO_SIDED, self.two_sided)
             .with(constant::CLIPS, self.clips)
+            .with(constant::BEYOND_CLIPS, self.coverage && self.clips)
             .with(constant::FOOTPRINT, self.footprint as u32)
             .with(constant::CONFETTI, self.confetti)
             .with(constant::NORMALIZATION, self.normalization as u32)

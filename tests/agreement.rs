@@ -10,10 +10,10 @@ use support::scenes::{Case, cases};
 use surfel::geometry::{Camera, Clip, Ellipse, Surfels, Weights};
 use surfel::methods::{Method, object_ewa, sprites};
 use surfel::reference::{Comparison, Expected, Surfel, Tolerance};
-use surfel::settings::Widen;
+use surfel::settings::{Alpha, Widen};
 use surfel::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
 use surfel::vk::{Device, DeviceLimits};
-use surfel::{Outputs, Rasterizer, RenderOptions, Settings};
+use surfel::{Outputs, Picture, Rasterizer, RenderOptions, Settings};
 
 /// Share of the object's pixels that the reference may hold to be undecided.
 const MOST_DOUBT: f64 = 0.02;
@@ -32,6 +32,23 @@ impl<'a> View<'a> {
         Self { case, camera, expected: expected.unwrap() }
     }
 
+    /// The device's picture of maybe other surfels with maybe other settings.
+    fn picture(
+        &self,
+        device: &Arc<Device>,
+        rasterizer: Rasterizer,
+        surfels: &Surfels,
+        settings: &Settings,
+    ) -> Picture {
+        let options = RenderOptions {
+            size: self.case.size,
+            outputs: Outputs { normal: true, depth: true },
+            rasterizer: Some(rasterizer),
+            ..Default::default()
+        };
+        render(device, surfels, &self.camera, settings, options)
+    }
+
     /// The verdict on the device's picture of maybe other surfels with maybe other settings.
     fn judge(
         &self,
@@ -40,14 +57,7 @@ impl<'a> View<'a> {
         surfels: &Surfels,
         settings: &Settings,
     ) -> Comparison {
-        let options = RenderOptions {
-            size: self.case.size,
-            outputs: Outputs { normal: true, depth: true },
-            rasterizer: Some(rasterizer),
-            ..Default::default()
-        };
-        let picture = render(device, surfels, &self.camera, settings, options);
-        self.expected.compare(&picture).unwrap()
+        self.expected.compare(&self.picture(device, rasterizer, surfels, settings)).unwrap()
     }
 }
 
@@ -85,6 +95,56 @@ fn every_case_by_every_method() {
         failures(&cases, method.name)
     };
     assert_agree(Method::ALL[1..].iter().flat_map(by).collect());
+}
+
+#[test]
+fn every_case_with_coverage() {
+    let all = [Splatting::default(), object_ewa::METHOD.splatting, sprites::UNFILTERED.splatting];
+    let by = |splatting: Splatting| {
+        let cases = with_axes(|case| Settings { splatting, alpha: Alpha::Coverage, ..case.settings.clone() });
+        failures(&cases, &format!("coverage, {splatting:?}"))
+    };
+    assert_agree(all.into_iter().flat_map(by).collect());
+}
+
+/// The first filter and normalization with which a footprint and a visibility go together.
+fn together(footprint: Footprint, visibility: Visibility) -> Option<Splatting> {
+    let filters = [Filter::Screen, Filter::Object, Filter::None];
+    let each = filters.into_iter().flat_map(|filter| {
+        [Normalization::Pixel, Normalization::None].map(|normalization| Splatting {
+            footprint,
+            filter,
+            visibility,
+            normalization,
+            ..Splatting::default()
+        })
+    });
+    each.into_iter().find(|splatting| splatting.check().is_ok())
+}
+
+#[test]
+fn every_footprint_under_every_visibility_with_coverage() {
+    let footprints = [
+        Footprint::Conic,
+        Footprint::Affine,
+        Footprint::Parallelogram,
+        Footprint::Disc,
+        Footprint::Sprite,
+        Footprint::WholeSprite,
+        Footprint::Square,
+    ];
+    let visibilities = [Visibility::Ray, Visibility::Axis, Visibility::Nearest];
+    let all = footprints.iter().flat_map(|f| visibilities.iter().filter_map(|v| together(*f, *v)));
+    let by = |splatting: Splatting| {
+        let mut cases =
+            with_axes(|case| Settings { splatting, alpha: Alpha::Coverage, ..case.settings.clone() });
+        cases.retain(|case| ["clipped", "ellipses"].contains(&case.name));
+        assert_eq!(cases.len(), 2);
+        failures(&cases, &format!("coverage, {splatting:?}"))
+    };
+    let all: Vec<Splatting> = all.collect();
+    assert_eq!(all.len(), 19);
+    assert_agree(all.into_iter().flat_map(by).collect());
 }
 
 /// Choices along one axis that no preset makes.
@@ -193,6 +253,38 @@ fn small_mutations_fail() {
             assert!(h > 0 && (s > 0 || alike) && e > 0 && c > 0, "{}: a mutation went unseen", case.name);
         }
     }
+    assert_silent(&device);
+}
+
+/// The α of discs that are a little larger, in a picture that is right otherwise.
+#[test]
+fn another_coverage_fails() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let cases =
+        with_axes(|case| Settings { alpha: Alpha::Coverage, background: None, ..case.settings.clone() });
+    let mut noticed = 0;
+    for case in &cases {
+        let view = View::new(case, case.cameras[0]);
+        let mut larger = case.surfels.clone();
+        larger.radii.iter_mut().for_each(|radius| *radius *= 1.02);
+        for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
+            let mut picture = view.picture(&device, rasterizer, &case.surfels, &case.settings);
+            let other = view.picture(&device, rasterizer, &larger, &case.settings);
+            let differ = |(own, other): (&mut [f32; 4], &[f32; 4])| {
+                let partial = own[3] > 0.0 && own[3] < 1.0 && other[3] > 0.0;
+                own[3] = if partial { other[3] } else { own[3] };
+                usize::from(partial)
+            };
+            let partial: usize = picture.colour.iter_mut().zip(&other.colour).map(differ).sum();
+            let failed = view.expected.compare(&picture).unwrap().failed;
+            println!("{} {rasterizer:?}: radii × 1.02 {failed} of {partial} pixels", case.name);
+            // What is beside a pixel covers one sample of it, whatever its size.
+            let seen = failed > partial / 50 || partial < 100 || case.name == "sub-pixel";
+            assert!(seen, "{}: a mutation went unseen", case.name);
+            noticed += usize::from(failed > 0);
+        }
+    }
+    assert!(noticed >= 8, "{noticed}");
     assert_silent(&device);
 }
 

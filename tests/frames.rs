@@ -10,7 +10,7 @@ use surfel::methods::object_ewa::{self, Progressive};
 use surfel::methods::{Method, passes};
 use surfel::reference::{Expected, Tolerance};
 use surfel::scenes::bumpy_sphere;
-use surfel::settings::{Cull, DirectionalLight, Shading, Widen};
+use surfel::settings::{Alpha, Cull, DirectionalLight, Shading, Widen};
 use surfel::splatting::{Normalization, Splatting, Visibility};
 use surfel::targets::{Buffers, Formats};
 use surfel::variant::Variant;
@@ -105,7 +105,11 @@ fn passes_and_targets_are_those_that_are_told() {
     let pixels = f64::from(SIZE[0] * SIZE[1]);
     let axis = Splatting { visibility: Visibility::Axis, ..Splatting::default() };
     let frames = Method::ALL.iter().map(Method::settings);
-    for settings in frames.chain([Settings { splatting: axis, ..Default::default() }]) {
+    let others = [
+        Settings { splatting: axis, ..Default::default() },
+        Settings { alpha: Alpha::Coverage, ..Default::default() },
+    ];
+    for settings in frames.chain(others) {
         for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
             let options = RenderOptions {
                 size: SIZE,
@@ -262,6 +266,47 @@ fn without_float_atomics_frames_are_drawn() {
 }
 
 #[test]
+fn without_writes_from_fragments_coverage_is_computed() {
+    let limits = DeviceLimits { fragment_writes: Some(false), ..Default::default() };
+    let Some(device) = device(limits.clone()) else { return };
+    let surfels = sphere(5_000);
+    let settings = Settings { alpha: Alpha::Coverage, ..Default::default() };
+    let run = |device: &Arc<Device>, rasterizer, settings: &Settings| {
+        let options = RenderOptions { size: SIZE, rasterizer, ..Default::default() };
+        let scene = Scene::upload(device, &surfels)?;
+        let mut renderer = Renderer::new(device, options)?;
+        renderer.render(&scene, &camera(SIZE), settings).map(|_| renderer.rasterizer())
+    };
+    assert_eq!(run(&device, None, &settings).unwrap(), Some(Rasterizer::Compute));
+    let drawn = Some(Rasterizer::Draw);
+    assert_eq!(run(&device, drawn, &Settings::default()).unwrap(), drawn);
+    let lacks = |refused: Result<_, Error>| matches!(refused.err(), Some(Error::Usage(text)) if text.contains("fragmentStoresAndAtomics"));
+    assert!(lacks(run(&device, drawn, &settings)));
+    assert_silent(&device);
+    let neither = self::device(DeviceLimits { float_atomics: Some(false), ..limits }).unwrap();
+    assert!(lacks(run(&neither, None, &settings)));
+    assert_silent(&neither);
+}
+
+#[test]
+fn coverage_is_there_where_it_is_asked_for() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let scene = Scene::upload(&device, &sphere(5_000)).unwrap();
+    for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
+        let mut renderer = Renderer::new(&device, everything(rasterizer)).unwrap();
+        let mut frame = |alpha| {
+            let settings = Settings { alpha, ..Default::default() };
+            let picture = renderer.render_picture(&scene, &camera(SIZE), &settings).unwrap().0;
+            let target = renderer.targets().into_iter().find(|target| target.name == "coverage");
+            (target.map(|target| target.bytes), picture.colour.iter().any(|c| c[3] > 0.0 && c[3] < 1.0))
+        };
+        assert_eq!(frame(Alpha::Mask), (None, false), "{rasterizer:?}");
+        assert_eq!(frame(Alpha::Coverage), (Some(4 * 256 * 192), true), "{rasterizer:?}");
+    }
+    assert_silent(&device);
+}
+
+#[test]
 fn without_float32_blending_sums_are_half_floats_or_computed() {
     let Some(device) = device(DeviceLimits { blend_float32: Some(false), ..Default::default() }) else {
         return;
@@ -335,7 +380,8 @@ fn repeated_frames_are_the_same_picture() {
     let scene = Scene::upload(&device, &sphere(20_000)).unwrap();
     for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
         let mut renderer = Renderer::new(&device, everything(rasterizer)).unwrap();
-        let mut frame = || renderer.render_picture(&scene, &camera(SIZE), &Settings::default()).unwrap().0;
+        let settings = Settings { alpha: Alpha::Coverage, ..Default::default() };
+        let mut frame = || renderer.render_picture(&scene, &camera(SIZE), &settings).unwrap().0;
         let first = frame();
         for _ in 0..10 {
             // Atomic sums come in any order, so their last bits may differ; a missing barrier would show far more.

@@ -66,6 +66,19 @@ fn every_stage_of_a_file_is_embedded() {
 }
 
 #[test]
+fn a_variant_is_compiled_beside_the_file() {
+    let buffer = "#ifdef FULL\nlayout(set = 0, binding = 1) readonly buffer Extra { float extra[]; };\n#endif\n#pragma variant FULL";
+    let plain = build(&[("a.glsl", &pass(buffer, "1.0"))]).expect("it builds");
+    contains(&plain, &["pub const A_COMPUTE: &[u32]", "pub const A_FULL_COMPUTE: &[u32]"]);
+    // What the variant has the file itself has not.
+    let message = error(&[("a.glsl", &pass(buffer, "extra[0]"))]);
+    contains(&message, &["shaders-glsl/a.glsl:", "'extra'"]);
+    // And the other way round.
+    let only = "#pragma variant FULL\n#ifdef FULL\nmisspelt x;\n#endif";
+    contains(&error(&[("a.glsl", &pass(only, "1.0"))]), &["shaders-glsl/a.glsl:6: error:"]);
+}
+
+#[test]
 fn a_wrong_shader_names_file_and_line() {
     let message = error(&[("attribute.glsl", &pass("", "radius"))]);
     assert!(message.starts_with("shaders-glsl/attribute.glsl:6: error: 'radius'"), "{message}");

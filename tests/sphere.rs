@@ -7,12 +7,16 @@ mod support {
 
 use support::gpu::{assert_silent, device, render};
 use support::truth::{Differences, Truth};
-use surfel::settings::Shading;
+use surfel::settings::{Alpha, Shading};
 use surfel::vk::DeviceLimits;
 use surfel::{Picture, Rasterizer, RenderOptions, Settings, scenes};
 
 /// Most pixels outside the sphere's outline that may be covered.
 const MOST_EXTRA: usize = 2_000;
+/// Largest sum of what pixels' α are off by.
+const MOST_COVERAGE_ERROR: f64 = 1_000.0;
+/// Most pixels within the sphere's outline that are not covered.
+const MOST_GAPS: usize = 500;
 /// The background, linear.
 const WHITE: [f32; 3] = [1.0; 3];
 
@@ -40,6 +44,35 @@ fn shifted(picture: &Picture) -> Picture {
     let mut shifted = picture.clone();
     shifted.colour.rotate_right(1);
     shifted
+}
+
+/// How far α is from the part of each pixel that the sphere covers: the sum over all pixels, and how many of those that it covers whole
+/// are not, to 2 %.
+fn coverage_errors(exact: &[f64], picture: &Picture) -> (f64, usize) {
+    let pairs = || exact.iter().zip(picture.colour.iter().map(|colour| f64::from(colour[3])));
+    let error = pairs().map(|(exact, alpha)| (exact - alpha).abs()).sum();
+    (error, pairs().filter(|(exact, alpha)| **exact == 1.0 && *alpha < 0.98).count())
+}
+
+#[test]
+fn coverage_is_what_the_surface_covers() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let truth = Truth::new(1024);
+    let exact = truth.coverage();
+    let surfels = scenes::open("scene:bumpy-sphere?points=1000000&seed=1").unwrap();
+    for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
+        let errors = |alpha| {
+            let settings = Settings { shading: Shading::Colour, alpha, ..Default::default() };
+            let options =
+                RenderOptions { size: truth.size(), rasterizer: Some(rasterizer), ..Default::default() };
+            coverage_errors(&exact, &render(&device, &surfels, &truth.camera(), &settings, options))
+        };
+        let [(mask, _), (coverage, gaps)] = [Alpha::Mask, Alpha::Coverage].map(errors);
+        println!("{rasterizer:?}: off by {coverage:.0} px with {gaps} gaps; a mask by {mask:.0} px");
+        assert!(coverage <= MOST_COVERAGE_ERROR && gaps <= MOST_GAPS, "{rasterizer:?}: {coverage} {gaps}");
+        assert!(mask > MOST_COVERAGE_ERROR, "the same judge refuses a mask");
+    }
+    assert_silent(&device);
 }
 
 #[test]

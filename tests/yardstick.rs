@@ -8,7 +8,7 @@ use support::sampling::{Random, bumpy_sphere, paint_linear, push};
 use support::scenes::{Case, cases};
 use surfel::geometry::{Camera, Colours, Surfels};
 use surfel::reference::{Comparison, Expected, Tolerance};
-use surfel::settings::{Cull, Shading, Widen};
+use surfel::settings::{Alpha, Cull, Shading, Widen};
 use surfel::yardstick::{Kind, Yardstick};
 use surfel::{Error, Outputs, Picture, Settings};
 
@@ -43,6 +43,13 @@ fn every_case_through_every_camera() {
 fn every_case_with_only_small_splats_widened() {
     let mut cases = cases();
     cases.iter_mut().for_each(|case| case.settings.widen = Widen::Small);
+    all_agree(&cases);
+}
+
+#[test]
+fn every_case_with_coverage() {
+    let mut cases = cases();
+    cases.iter_mut().for_each(|case| case.settings.alpha = Alpha::Coverage);
     all_agree(&cases);
 }
 

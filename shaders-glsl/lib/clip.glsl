@@ -1,6 +1,12 @@
 // Clip lines: where splats end at sharp edges and corners (zwicker2004 §5). On the screen a line of the tangent plane stays a line.
 
 layout(constant_id = 23) const bool CLIPS = false;
+layout(constant_id = 24) const bool BEYOND_CLIPS = false; // α is coverage, and of a pixel that a line cuts either part may be covered
+
+// How far beyond a line there are fragments then, px: as far as a pixel that it cuts can have its centre.
+const float BEYOND = 0.70710678;
+// Such a fragment is seen where there is no other: its κ counts for so much less that it is behind all that are not beyond a line.
+const float BEHIND_ALL = 8.6736174e-19; // 2⁻⁶⁰
 
 // Signed distances, px, at d px from the anchor: l.x + l.y d.x + l.z d.y is above 0 where the line keeps the splat. Each plane is
 // (value, derivatives); a line that is not there keeps everything.
@@ -28,8 +34,21 @@ bool has_clip(uint number) {
     return CLIPS && number < CONCAVE - 1u;
 }
 
-bool clip_keeps(ScreenClip clip, vec2 d) {
+// Signed distance, px, of what is d px from the anchor to what is clipped: at least 0 where it is kept.
+float clip_distance(ScreenClip clip, vec2 d) {
     float first = clip.first.x + dot(clip.first.yz, d);
     float second = clip.second.x + dot(clip.second.yz, d);
-    return (clip.first.w > 0.0 ? max(first, second) : min(first, second)) >= 0.0;
+    return clip.first.w > 0.0 ? max(first, second) : min(first, second);
+}
+
+// What a fragment's κ is multiplied by where κ are compared; 0 where there is no fragment.
+float clip_rank(ScreenClip clip, vec2 d) {
+    float distance = clip_distance(clip, d);
+    if (BEYOND_CLIPS && distance < 0.0 && distance >= -BEYOND) return BEHIND_ALL;
+    return distance >= 0.0 ? 1.0 : 0.0;
+}
+
+// κ as it is compared.
+float ranked(float key, float rank) {
+    return BEYOND_CLIPS ? rank * key : key;
 }

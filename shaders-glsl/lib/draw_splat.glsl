@@ -7,6 +7,9 @@ layout(location = 1) flat out vec4 whitening;
 layout(location = 2) flat out vec4 plane_epsilon;
 layout(location = 3) flat out vec4 plane_lo_disc;
 layout(location = 9) flat out uint clip;
+#ifdef COVERAGE
+layout(location = 10) flat out vec4 solid_whitening;
+#endif
 
 // More than the rasterizer's snapping of vertices, at least 1/16 px, could take from an edge.
 const float EDGE = 0.125;
@@ -21,6 +24,9 @@ void place_splat(uint i, Splat splat, vec2 variance, int corner) {
     whitening = ellipse.whitening;
     plane_epsilon = vec4(ellipse.plane_hi, splat.epsilon);
     plane_lo_disc = vec4(ellipse.plane_lo, splat.key_disc);
+#ifdef COVERAGE
+    solid_whitening = solid_of(splat, clip).whitening;
+#endif
 
     // The nearest depth in the ellipse bounds every fragment's, which lets a device reject the triangle early.
     float stretch = stretch_of(splat, variance, ellipse.key_centre);
@@ -50,16 +56,26 @@ layout(location = 1) flat in vec4 whitening;
 layout(location = 2) flat in vec4 plane_epsilon;
 layout(location = 3) flat in vec4 plane_lo_disc;
 layout(location = 9) flat in uint clip;
+#ifdef COVERAGE
+layout(location = 10) flat in vec4 solid_whitening;
+#endif
 
-// The bound given by the vertex stage holds: κ only falls from there.
+#ifndef COVERAGE
+// The bound given by the vertex stage holds: κ only falls from there. Hidden fragments cover too, so that none may be skipped by it.
 layout(depth_less) out float gl_FragDepth;
+#endif
 
 // As splat_fragment; where there is no fragment, there is none.
-void drawn_fragment(out vec2 m, out float key) {
+void drawn_fragment(out vec2 m, out float key, out float rank) {
     float key_centre = centre_key(plane_epsilon.xyz, plane_lo_disc.xyz, anchor_offset.zw);
     Ellipse ellipse =
         Ellipse(anchor_offset.xy, anchor_offset.zw, whitening, plane_epsilon.xyz, plane_lo_disc.xyz, key_centre, clip);
-    if (!splat_fragment(ellipse, gl_FragCoord.xy, m, key)) discard;
+    if (!splat_fragment(ellipse, gl_FragCoord.xy, m, key, rank)) discard;
+#ifdef COVERAGE
+    uvec2 pixel = uvec2(gl_FragCoord.xy);
+    ellipse.whitening = solid_whitening;
+    cover(pixel.y * uint(frame.viewport.x) + pixel.x, ellipse, gl_FragCoord.xy);
+#endif
 }
 
 #endif

@@ -3,7 +3,7 @@
 //
 // The including pass defines what happens: `scatter_variance(variance)` makes its footprint's variance of V's; `scatter_begin(i,
 // splat, variance, nearest, low, high)` says once a splat whether its fragments, in the pixels from low to high and no nearer than
-// the κ nearest, are wanted; and `scatter(pixel, m, key)` takes each, m σ from the centre.
+// the κ nearest, are wanted; and `scatter(pixel, centre, m, key, rank)` takes each, m σ from the centre.
 
 layout(local_size_x = 64) in;
 
@@ -25,13 +25,14 @@ ivec2 row_span(Ellipse ellipse, float rim, int y, ivec2 low, ivec2 high) {
 
 void scatter_rows(Ellipse ellipse, float rim, ivec2 low, ivec2 high) {
     vec2 m;
-    float key;
+    float key, rank;
     int y = low.y;
     ivec2 span = row_span(ellipse, rim, y, low, high);
     // One loop over all rows keeps invocations with rows of other lengths in step.
     while (y <= high.y) {
         ivec2 pixel = ivec2(span.x, y);
-        if (splat_fragment(ellipse, vec2(pixel) + 0.5, m, key)) scatter(pixel_index(pixel), m, key);
+        vec2 centre = vec2(pixel) + 0.5;
+        if (splat_fragment(ellipse, centre, m, key, rank)) scatter(pixel_index(pixel), centre, m, key, rank);
         span.x++;
         if (span.x > span.y) span = row_span(ellipse, rim, ++y, low, high);
     }
@@ -39,12 +40,13 @@ void scatter_rows(Ellipse ellipse, float rim, ivec2 low, ivec2 high) {
 
 void scatter_box(Ellipse ellipse, ivec2 low, ivec2 high) {
     vec2 m;
-    float key;
+    float key, rank;
     uint width = uint(high.x - low.x + 1);
     uint area = width * uint(high.y - low.y + 1);
     for (uint k = gl_LocalInvocationIndex; k < area; k += gl_WorkGroupSize.x) {
         ivec2 pixel = low + ivec2(k % width, k / width);
-        if (splat_fragment(ellipse, vec2(pixel) + 0.5, m, key)) scatter(pixel_index(pixel), m, key);
+        vec2 centre = vec2(pixel) + 0.5;
+        if (splat_fragment(ellipse, centre, m, key, rank)) scatter(pixel_index(pixel), centre, m, key, rank);
     }
 }
 

@@ -149,8 +149,8 @@ Ellipse ellipse_of(Splat splat, vec2 variance, uint clip) {
 }
 
 // Whether the splat has a fragment at a pixel centre: it is within the rim and not clipped, and the tangent plane within the depth range.
-// m: place in the kernel along the ellipse's axes, σ; key: the plane's κ.
-bool splat_fragment(Ellipse ellipse, vec2 pixel, out vec2 m, out float key) {
+// m: place in the kernel along the ellipse's axes, σ; key: the plane's κ; rank: see clip_rank.
+bool splat_fragment(Ellipse ellipse, vec2 pixel, out vec2 m, out float key, out float rank) {
     vec2 d = pixel - ellipse.anchor;
     vec2 e = d - ellipse.offset;
     m = vec2(dot(ellipse.whitening.xy, e), dot(ellipse.whitening.zw, e));
@@ -160,8 +160,9 @@ bool splat_fragment(Ellipse ellipse, vec2 pixel, out vec2 m, out float key) {
     if (on_plane()) m /= clamp(key / ellipse.key_centre, 1.0 / MOST_STRETCH, MOST_STRETCH);
     bool inside =
         rim() > 1.0 ? max(abs(m.x), abs(m.y)) <= frame.cutoff : dot(m, m) <= frame.cutoff * frame.cutoff;
-    if (has_clip(ellipse.clip)) inside = inside && clip_keeps(screen_clips[ellipse.clip], d);
-    return inside && key > frame.key_far && key <= 1.0;
+    rank = 1.0;
+    if (has_clip(ellipse.clip)) rank = clip_rank(screen_clips[ellipse.clip], d);
+    return inside && rank > 0.0 && key > frame.key_far && key <= 1.0;
 }
 
 // The nearest κ within `stretch` cut-offs of the ellipse: no fragment's is above it.

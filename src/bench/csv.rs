@@ -114,6 +114,7 @@ fn what(run: &Run) -> Vec<Cell> {
         ("widen", setting.widen.clone()),
         ("epsilon", setting.epsilon.to_string()),
         ("cull", setting.cull.clone()),
+        ("alpha", setting.alpha.clone()),
         ("shading", setting.shading.clone()),
         ("footprint", setting.axes.footprint.clone()),
         ("kernel", setting.axes.kernel.clone()),

@@ -77,6 +77,7 @@ impl Setting {
             widen: settings.widen.name().into(),
             epsilon: settings.epsilon,
             cull: settings.cull.name().into(),
+            alpha: settings.alpha.name().into(),
             shading: settings.shading.name().into(),
             axes: Axes::of(&settings.splatting),
         }

@@ -4,7 +4,7 @@
 use super::times::Statistics;
 use crate::methods::Method;
 use crate::reference::Comparison;
-use crate::settings::Settings;
+use crate::settings::{Alpha, Settings};
 use crate::splatting::Splatting;
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
@@ -186,6 +186,9 @@ pub struct Setting {
     pub epsilon: f32,
     /// Which surfels are left out: `none` or `back`.
     pub cull: String,
+    /// [`Settings::alpha`](crate::Settings::alpha): `mask` or `coverage`.
+    #[serde(default = "mask")]
+    pub alpha: String,
     /// What the picture shows.
     pub shading: String,
     /// How surfels become pixels; where nothing is said of it, as `perspective-ewa` does.
@@ -208,6 +211,11 @@ pub struct Axes {
     pub normalization: String,
     /// What is lit.
     pub shade: String,
+}
+
+/// What α was before there was a choice.
+fn mask() -> String {
+    Alpha::Mask.name().into()
 }
 
 /// How long a frame takes, without reading it back. Frames that warm up do not count.

@@ -91,11 +91,12 @@ fn hard(wanted: &Wanted, progress: &dyn Progress) -> Result<Vec<Sweep>> {
 /// same suite and figure counts, which ran at the same time.
 fn compare_times(runs: &mut [Run]) {
     let shipped = |run: &&Run| {
-        let Setting { cutoff, lowpass, widen, epsilon, cull, .. } = Setting::shipped();
+        let Setting { cutoff, lowpass, widen, epsilon, cull, alpha, .. } = Setting::shipped();
         let own = &run.setting;
         (own.cutoff, own.lowpass, own.epsilon) == (cutoff, lowpass, epsilon)
             && own.widen == widen
             && own.cull == cull
+            && own.alpha == alpha
     };
     let yardsticks = runs.iter().filter(|run| run.contender.method == SPLATS).filter(shipped);
     let yardsticks: Vec<(Run, f64)> = yardsticks.filter_map(|run| Some((run.clone(), run.ms()?))).collect();

@@ -135,26 +135,27 @@ pub fn stale(made: &Made, code: &str, now: &str) -> Option<String> {
 }
 
 /// Each setting with its value, but for the axes, which a contender's name tells.
-pub fn settings(setting: &Setting) -> [String; 6] {
-    let Setting { cutoff, lowpass, widen, epsilon, cull, shading, axes: _ } = setting;
+pub fn settings(setting: &Setting) -> [String; 7] {
+    let Setting { cutoff, lowpass, widen, epsilon, cull, alpha, shading, axes: _ } = setting;
     [
         format!("H {lowpass}"),
         format!("F {cutoff}"),
         format!("widen {widen}"),
         format!("ε {epsilon}"),
         format!("cull {cull}"),
+        format!("α {alpha}"),
         shading.clone(),
     ]
 }
 
 /// The settings in which `runs` differ from each other.
-pub fn differing<'a>(runs: impl IntoIterator<Item = &'a Run>) -> [bool; 6] {
+pub fn differing<'a>(runs: impl IntoIterator<Item = &'a Run>) -> [bool; 7] {
     let all: Vec<_> = runs.into_iter().map(|run| settings(&run.setting)).collect();
     std::array::from_fn(|i| all.iter().any(|one| one[i] != all[0][i]))
 }
 
 /// The settings that `which` asks for.
-pub fn told(setting: &Setting, which: [bool; 6]) -> String {
+pub fn told(setting: &Setting, which: [bool; 7]) -> String {
     let chosen = settings(setting).into_iter().zip(which).filter(|(_, asked)| *asked);
     chosen.map(|(text, _)| text).collect::<Vec<_>>().join(", ")
 }

@@ -131,7 +131,7 @@ fn widths(rows: &[Vec<String>], told: &[usize]) -> Vec<usize> {
     widths
 }
 
-fn cells(run: &Run, differing: [bool; 6]) -> Vec<String> {
+fn cells(run: &Run, differing: [bool; 7]) -> Vec<String> {
     let metric = |name, digits| run.metric(name).map(|v| show::significant(v, digits)).unwrap_or_default();
     let wall = |run: &Run| {
         let wall = run.time.as_ref()?.wall;

@@ -121,14 +121,14 @@ fn target(target: &TargetInfo) -> Value {
 }
 
 fn settings(settings: &Settings) -> Value {
-    let Settings { splatting, cutoff, lowpass, widen, epsilon, cull, shading, background, lighting } =
+    let Settings { splatting, cutoff, lowpass, widen, epsilon, cull, alpha, shading, background, lighting } =
         settings;
     let Splatting { footprint, kernel, filter, visibility, normalization, shade } = splatting;
     json!({
         "footprint": footprint.name(), "kernel": kernel.to_string(), "filter": filter.name(),
         "visibility": visibility.name(), "normalization": normalization.name(), "shade": shade.name(),
         "cutoff": cutoff, "lowpass": lowpass, "widen": widen.name(), "epsilon": epsilon, "cull": cull.name(),
-        "shading": shading.name(),
+        "alpha": alpha.name(), "shading": shading.name(),
         "background": background, "lighting": light(lighting),
     })
 }

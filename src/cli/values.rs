@@ -193,6 +193,24 @@ impl From<Widen> for settings::Widen {
     }
 }
 
+/// What α says of a pixel.
+#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
+pub enum Alpha {
+    /// Whether a splat owns its centre
+    Mask,
+    /// The part of it that is covered: smooth outlines
+    Coverage,
+}
+
+impl From<Alpha> for settings::Alpha {
+    fn from(alpha: Alpha) -> Self {
+        match alpha {
+            Alpha::Mask => Self::Mask,
+            Alpha::Coverage => Self::Coverage,
+        }
+    }
+}
+
 /// Which surfels are left out for the side that they show.
 #[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
 pub enum Cull {

@@ -1,7 +1,7 @@
 //! The passes of every method that blends the splats within ε of the nearest surface.
 //!
 //! ```text
-//! surfels ─ footprint → splats ─ visibility → depth + ε
+//! surfels ─ footprint → splats ─ visibility → depth + ε, coverage
 //!                         └──── attribute ──→ Σw, Σw n, Σw rgb, Σw κ ─ normalize → picture, normal, depth
 //! ```
 //!
@@ -11,7 +11,7 @@ use super::canvas::{Computed, Drawn};
 use crate::error::Result;
 use crate::passes::{
     ComputeAttribute, ComputeNormalize, ComputeVisibility, DrawAttribute, DrawNormalize, DrawVisibility,
-    Footprint, NormalizeViews, PixelSet, SplatLayout, Splats, Tiles,
+    Footprint, NormalizeViews, PixelSet, SplatLayout, Splats, Tiles, VisibilityViews,
 };
 use crate::splatting::Visibility;
 use crate::targets::{Buffers, Images};
@@ -30,7 +30,7 @@ pub struct Draw {
 
 /// What [`Draw`] draws to.
 pub struct DrawViews {
-    visibility: Framebuffer,
+    visibility: VisibilityViews,
     attribute: Framebuffer,
     normalize: NormalizeViews,
 }
@@ -66,7 +66,7 @@ impl Drawn for Draw {
 
     fn views(&self, device: &Arc<Device>, frame: &Buffer, targets: &Images) -> Result<DrawViews> {
         Ok(DrawViews {
-            visibility: self.visibility.framebuffer(device, targets)?,
+            visibility: self.visibility.views(device, targets)?,
             attribute: self.attribute.framebuffer(device, targets)?,
             normalize: self.normalize.views(device, frame, targets)?,
         })

@@ -1,7 +1,7 @@
 //! The passes of every method that shows the nearest splat of each pixel alone.
 //!
 //! ```text
-//! surfels ─ footprint → splats ─ nearest → n, rgb, κ ─ normalize → picture, normal, depth
+//! surfels ─ footprint → splats ─ nearest → n, rgb, κ, coverage ─ normalize → picture, normal, depth
 //! ```
 //!
 //! Computed, `nearest` leaves the number of the splat, and `resolve` what it is.
@@ -9,12 +9,12 @@
 use super::canvas::{Computed, Drawn};
 use crate::error::Result;
 use crate::passes::{
-    ComputeNearest, ComputeNormalize, DrawNearest, DrawNormalize, Footprint, NormalizeViews, PixelSet,
-    Resolve, SplatLayout, Splats,
+    ComputeNearest, ComputeNormalize, DrawNearest, DrawNormalize, Footprint, NearestViews, NormalizeViews,
+    PixelSet, Resolve, SplatLayout, Splats,
 };
 use crate::targets::{Buffers, Images};
 use crate::variant::Variant;
-use crate::vk::{Buffer, DescriptorSet, Device, Framebuffer, Recorder};
+use crate::vk::{Buffer, DescriptorSet, Device, Recorder};
 use std::sync::Arc;
 
 /// The passes, drawn.
@@ -26,7 +26,7 @@ pub struct Draw {
 
 /// What [`Draw`] draws to.
 pub struct DrawViews {
-    nearest: Framebuffer,
+    nearest: NearestViews,
     normalize: NormalizeViews,
 }
 
@@ -51,7 +51,7 @@ impl Drawn for Draw {
 
     fn views(&self, device: &Arc<Device>, frame: &Buffer, targets: &Images) -> Result<DrawViews> {
         Ok(DrawViews {
-            nearest: self.nearest.framebuffer(device, targets)?,
+            nearest: self.nearest.views(device, targets)?,
             normalize: self.normalize.views(device, frame, targets)?,
         })
     }

@@ -51,7 +51,7 @@ impl DrawAttribute {
         uses.push(targets.visibility.with(Access::DEPTH_TEST));
         uses.push(targets.sums0.with(Access::COLOUR_WRITE));
         uses.extend(targets.sums1.as_ref().map(|image| image.with(Access::COLOUR_WRITE)));
-        rec.pass("attribute", &uses, |enc| splats.draw(enc, &self.pipeline, framebuffer));
+        rec.pass("attribute", &uses, |enc| splats.draw(enc, &self.pipeline, framebuffer, &[]));
     }
 }
 

@@ -3,6 +3,7 @@
 //! Visibility, attribute, nearest and normalize come in two kinds, one for each [`crate::variant::Rasterizer`].
 
 mod attribute;
+mod coverage;
 mod footprint;
 mod nearest;
 mod normalize;
@@ -14,10 +15,10 @@ mod visibility;
 
 pub use attribute::{ComputeAttribute, DrawAttribute};
 pub use footprint::Footprint;
-pub use nearest::{ComputeNearest, DrawNearest};
+pub use nearest::{ComputeNearest, DrawNearest, NearestViews};
 pub use normalize::{ComputeNormalize, DrawNormalize, NormalizeViews};
 pub use resolve::Resolve;
 pub use scatter::{PixelSet, Scatter};
 pub use splats::{SplatLayout, Splats};
 pub use tiles::Tiles;
-pub use visibility::{ComputeVisibility, DrawVisibility};
+pub use visibility::{ComputeVisibility, DrawVisibility, VisibilityViews};

@@ -1,12 +1,13 @@
 //! Nearest: splats → the nearest one of each pixel, alone (zwicker2004 table 1; botsch2003 §3.2; `nearest.glsl`).
 
+use super::coverage::{DrawnCoverage, clear, clear_drawn};
 use super::{PixelSet, Scatter, SplatLayout, Splats};
 use crate::error::Result;
 use crate::targets::{Buffers, Formats, Images};
 use crate::variant::Variant;
 use crate::vk::{
-    Access, Attachment, Blend, DepthTest, Device, DrawPipeline, DrawState, Framebuffer, Recorder, RenderPass,
-    shaders,
+    Access, Attachment, Blend, DepthTest, DescriptorSet, Device, DrawPipeline, DrawState, Framebuffer,
+    Recorder, RenderPass, shaders,
 };
 use std::sync::Arc;
 
@@ -14,6 +15,13 @@ use std::sync::Arc;
 pub struct DrawNearest {
     pass: RenderPass,
     pipeline: DrawPipeline,
+    coverage: DrawnCoverage,
+}
+
+/// What a [`DrawNearest`] draws to.
+pub struct NearestViews {
+    framebuffer: Framebuffer,
+    coverage: Option<DescriptorSet>,
 }
 
 /// The nearest pass as a scatter with atomic maxima, which leaves which splat it is.
@@ -26,48 +34,53 @@ impl DrawNearest {
         let sums1 = formats.sums1.map_or(Attachment::Absent, Attachment::Cleared);
         let depth = Attachment::Cleared(formats.visibility);
         let pass = RenderPass::new(device, &[Attachment::Cleared(formats.sums0), sums1], Some(depth))?;
-        let code = [shaders::NEAREST_VERTEX, shaders::NEAREST_FRAGMENT];
+        let code = match variant.coverage {
+            false => [shaders::NEAREST_VERTEX, shaders::NEAREST_FRAGMENT],
+            true => [shaders::NEAREST_COVERAGE_VERTEX, shaders::NEAREST_COVERAGE_FRAGMENT],
+        };
+        let coverage = DrawnCoverage::new(device, variant)?;
+        let sets: Vec<_> = std::iter::once(&layout.splats).chain(coverage.layout()).collect();
         let state = DrawState { depth: DepthTest::Nearest, blend: Blend::Replace };
-        let pipeline =
-            DrawPipeline::new(device, &[&layout.splats], code, &variant.constants(), &pass, state)?;
-        Ok(Self { pass, pipeline })
+        let pipeline = DrawPipeline::new(device, &sets, code, &variant.constants(), &pass, state)?;
+        Ok(Self { pass, pipeline, coverage })
     }
 
-    /// The pass's view of `targets`.
-    pub fn framebuffer(&self, device: &Arc<Device>, targets: &Images) -> Result<Framebuffer> {
+    /// The pass's views of `targets`, which must outlive them.
+    pub fn views(&self, device: &Arc<Device>, targets: &Images) -> Result<NearestViews> {
         let images = [Some(&targets.sums0), targets.sums1.as_ref(), Some(&targets.visibility)];
-        Framebuffer::new(device, &self.pass, &images.into_iter().flatten().collect::<Vec<_>>())
+        let images: Vec<_> = images.into_iter().flatten().collect();
+        let framebuffer = Framebuffer::new(device, &self.pass, &images)?;
+        Ok(NearestViews { framebuffer, coverage: self.coverage.view(device, targets)? })
     }
 
-    /// `splats` → `targets.visibility`, `targets.sums0`, `targets.sums1`.
-    pub fn record(
-        &self,
-        rec: &mut Recorder<'_>,
-        splats: &Splats,
-        framebuffer: &Framebuffer,
-        targets: &Images,
-    ) {
+    /// `splats` → `targets.visibility`, `targets.sums0`, `targets.sums1`, `targets.coverage`.
+    pub fn record(&self, rec: &mut Recorder<'_>, splats: &Splats, views: &NearestViews, targets: &Images) {
         let mut uses = splats.read_by_draws();
         uses.push(targets.visibility.with(Access::DEPTH_WRITE));
         uses.push(targets.sums0.with(Access::COLOUR_WRITE));
         uses.extend(targets.sums1.as_ref().map(|image| image.with(Access::COLOUR_WRITE)));
-        rec.pass("nearest", &uses, |enc| splats.draw(enc, &self.pipeline, framebuffer));
+        uses.extend(clear_drawn(rec, targets));
+        let more: Vec<_> = views.coverage.iter().collect();
+        rec.pass("nearest", &uses, |enc| splats.draw(enc, &self.pipeline, &views.framebuffer, &more));
     }
 }
 
 impl ComputeNearest {
     /// The pass for `variant`.
     pub fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self> {
-        Scatter::new(device, layout, shaders::NEAREST_COMPUTE, variant).map(Self)
+        let code = match variant.coverage {
+            false => shaders::NEAREST_COMPUTE,
+            true => shaders::NEAREST_COVERAGE_COMPUTE,
+        };
+        Scatter::new(device, layout, code, variant).map(Self)
     }
 
-    /// `splats` → `targets.visibility`, which is cleared before.
+    /// `splats` → `targets.visibility`, `targets.coverage`, which are cleared before.
     pub fn record(&self, rec: &mut Recorder<'_>, splats: &Splats, pixels: &PixelSet, targets: &Buffers) {
-        rec.pass("clear", &[targets.visibility.with(Access::COPY_WRITE)], |enc| {
-            enc.zero(&targets.visibility)
-        });
+        let written = || std::iter::once(&targets.visibility).chain(&targets.coverage);
+        clear(rec, written());
         let mut uses = splats.read_by_scatter();
-        uses.push(targets.visibility.with(Access::COMPUTE_WRITE));
+        uses.extend(written().map(|buffer| buffer.with(Access::COMPUTE_WRITE)));
         rec.pass("nearest", &uses, |enc| self.0.record(enc, splats, pixels));
     }
 }

@@ -1,5 +1,6 @@
 //! Normalize: weighted sums → picture, normal, depth (zwicker2004 §6, third pass; `normalize.glsl`).
 
+use super::coverage::whole;
 use super::{PixelSet, SplatLayout};
 use crate::error::Result;
 use crate::targets::{Buffers, Formats, Images};
@@ -54,13 +55,19 @@ impl DrawNormalize {
     pub fn new(device: &Arc<Device>, variant: &Variant) -> Result<Self> {
         let frame_layout = frame_layout(device)?;
         let sampled = (DescriptorType::SAMPLED_IMAGE, ShaderStageFlags::FRAGMENT);
-        let sums_layout = SetLayout::new(device, &[sampled; 3])?;
+        let coverage =
+            variant.coverage.then_some((DescriptorType::STORAGE_BUFFER, ShaderStageFlags::FRAGMENT));
+        let read: Vec<_> = [sampled; 3].into_iter().chain(coverage).collect();
+        let sums_layout = SetLayout::new(device, &read)?;
         let formats = Formats::of(variant);
         let optional = |format: Option<_>| format.map_or(Attachment::Absent, Attachment::Overwritten);
         let outputs =
             [Attachment::Overwritten(formats.image), optional(formats.normal), optional(formats.depth)];
         let pass = RenderPass::new(device, &outputs, None)?;
-        let code = [shaders::NORMALIZE_VERTEX, shaders::NORMALIZE_FRAGMENT];
+        let code = match variant.coverage {
+            false => [shaders::NORMALIZE_VERTEX, shaders::NORMALIZE_FRAGMENT],
+            true => [shaders::NORMALIZE_COVERAGE_VERTEX, shaders::NORMALIZE_COVERAGE_FRAGMENT],
+        };
         let state = DrawState { depth: DepthTest::None, blend: Blend::Replace };
         let sets = [&frame_layout, &sums_layout];
         let pipeline = DrawPipeline::new(device, &sets, code, &variant.constants(), &pass, state)?;
@@ -72,7 +79,8 @@ impl DrawNormalize {
         let outputs: Vec<_> = targets.outputs().collect();
         // Absent sums are not read; something must stand at their binding all the same.
         let sums1 = targets.sums1.as_ref().unwrap_or(&targets.sums0);
-        let read = [&targets.visibility, &targets.sums0, sums1].map(Binding::Sampled);
+        let images = [&targets.visibility, &targets.sums0, sums1].map(Binding::Sampled);
+        let read: Vec<_> = images.into_iter().chain(targets.coverage.as_ref().map(whole)).collect();
         Ok(NormalizeViews {
             framebuffer: Framebuffer::new(device, &self.pass, &outputs)?,
             frame: DescriptorSet::new(device, &self.frame_layout, &[Binding::Uniform(frame)])?,
@@ -80,13 +88,14 @@ impl DrawNormalize {
         })
     }
 
-    /// `targets.visibility`, `sums0`, `sums1` → `image`, `normal`, `depth`.
+    /// `targets.visibility`, `sums0`, `sums1`, `coverage` → `image`, `normal`, `depth`.
     pub fn record(&self, rec: &mut Recorder<'_>, views: &NormalizeViews, targets: &Images) {
         let read =
             [Some(&targets.visibility), Some(&targets.sums0), targets.sums1.as_ref()].into_iter().flatten();
         let read = read.map(|image| image.with(Access::FRAGMENT_READ));
+        let coverage = targets.coverage.iter().map(|buffer| buffer.with(Access::FRAGMENT_LOAD));
         let written = targets.outputs().map(|image| image.with(Access::COLOUR_WRITE));
-        let uses: Vec<_> = read.chain(written).collect();
+        let uses: Vec<_> = read.chain(coverage).chain(written).collect();
         rec.pass("normalize", &uses, |enc| {
             enc.render(&views.framebuffer, |draws| {
                 draws.draw(&self.pipeline, &[&views.frame, &views.sums], 3);
@@ -100,7 +109,11 @@ impl ComputeNormalize {
     pub fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self> {
         let frame_layout = frame_layout(device)?;
         let sets = [&frame_layout, &layout.pixels];
-        let pipeline = ComputePipeline::new(device, &sets, shaders::NORMALIZE_COMPUTE, &variant.constants())?;
+        let code = match variant.coverage {
+            false => shaders::NORMALIZE_COMPUTE,
+            true => shaders::NORMALIZE_COVERAGE_COMPUTE,
+        };
+        let pipeline = ComputePipeline::new(device, &sets, code, &variant.constants())?;
         Ok(Self { frame_layout, pipeline })
     }
 
@@ -109,7 +122,7 @@ impl ComputeNormalize {
         DescriptorSet::new(device, &self.frame_layout, &[Binding::Uniform(frame)])
     }
 
-    /// `targets.visibility`, `sums0`, `sums1` → `picture`.
+    /// `targets.visibility`, `sums0`, `sums1`, `coverage` → `picture`.
     pub fn record(
         &self,
         rec: &mut Recorder<'_>,
@@ -117,8 +130,8 @@ impl ComputeNormalize {
         pixels: &PixelSet,
         targets: &Buffers,
     ) {
-        let read =
-            [Some(&targets.visibility), Some(&targets.sums0), targets.sums1.as_ref()].into_iter().flatten();
+        let read = [Some(&targets.visibility), Some(&targets.sums0), targets.sums1.as_ref()];
+        let read = read.into_iter().chain([targets.coverage.as_ref()]).flatten();
         let mut uses: Vec<_> = read.map(|buffer| buffer.with(Access::COMPUTE_READ)).collect();
         uses.push(targets.picture.with(Access::COMPUTE_WRITE));
         let grid = grid_over(targets.pixels());

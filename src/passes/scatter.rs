@@ -12,9 +12,9 @@ use std::sync::Arc;
 /// Workgroups among which large splats are dealt out.
 const LARGE_WORKGROUPS: u32 = 256;
 
-/// Layout of descriptor set 1 of the compute rasterizer: visibility, sums0, sums1, picture, tiles.
+/// Layout of descriptor set 1 of the compute rasterizer: visibility, sums0, sums1, picture, tiles, coverage.
 pub(super) fn pixel_layout(device: &Arc<Device>) -> Result<SetLayout> {
-    SetLayout::new(device, &[(DescriptorType::STORAGE_BUFFER, ShaderStageFlags::COMPUTE); 5])
+    SetLayout::new(device, &[(DescriptorType::STORAGE_BUFFER, ShaderStageFlags::COMPUTE); 6])
 }
 
 /// The compute rasterizer's view of its targets.
@@ -26,7 +26,8 @@ impl PixelSet {
         // What is absent is not touched; something must stand at its binding all the same.
         let sums1 = targets.sums1.as_ref().unwrap_or(&targets.sums0);
         let tiles = targets.tiles.as_ref().unwrap_or(&targets.sums0);
-        let buffers = [&targets.visibility, &targets.sums0, sums1, &targets.picture, tiles];
+        let coverage = targets.coverage.as_ref().unwrap_or(&targets.sums0);
+        let buffers = [&targets.visibility, &targets.sums0, sums1, &targets.picture, tiles, coverage];
         let bindings = buffers.map(|buffer| Binding::Storage(buffer, 0, buffer.size()));
         DescriptorSet::new(device, &layout.pixels, &bindings).map(Self)
     }

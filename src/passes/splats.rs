@@ -171,11 +171,18 @@ impl Splats {
         vec![self.with(Access::VERTEX_READ), clips.with(Access::FRAGMENT_READ)]
     }
 
-    /// Draws every splat's triangle into `framebuffer`.
-    pub(super) fn draw(&self, enc: &mut Encoder<'_>, pipeline: &DrawPipeline, framebuffer: &Framebuffer) {
+    /// Draws every splat's triangle into `framebuffer`, with `more` at the descriptor sets from 1 on.
+    pub(super) fn draw(
+        &self,
+        enc: &mut Encoder<'_>,
+        pipeline: &DrawPipeline,
+        framebuffer: &Framebuffer,
+        more: &[&DescriptorSet],
+    ) {
         enc.render(framebuffer, |draws| {
             for window in &self.windows {
-                draws.draw(pipeline, &[&window.set], 3 * window.count);
+                let sets: Vec<_> = std::iter::once(&window.set).chain(more.iter().copied()).collect();
+                draws.draw(pipeline, &sets, 3 * window.count);
             }
         });
     }

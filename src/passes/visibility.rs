@@ -1,12 +1,13 @@
 //! Visibility: splats → depth of the nearest surface, moved back by ε (zwicker2004 §6, first pass; `visibility.glsl`).
 
+use super::coverage::{DrawnCoverage, clear, clear_drawn};
 use super::{PixelSet, Scatter, SplatLayout, Splats};
 use crate::error::Result;
 use crate::targets::{Buffers, Formats, Images};
 use crate::variant::Variant;
 use crate::vk::{
-    Access, Attachment, Blend, DepthTest, Device, DrawPipeline, DrawState, Framebuffer, Recorder, RenderPass,
-    shaders,
+    Access, Attachment, Blend, DepthTest, DescriptorSet, Device, DrawPipeline, DrawState, Framebuffer,
+    Recorder, RenderPass, shaders,
 };
 use std::sync::Arc;
 
@@ -14,6 +15,13 @@ use std::sync::Arc;
 pub struct DrawVisibility {
     pass: RenderPass,
     pipeline: DrawPipeline,
+    coverage: DrawnCoverage,
+}
+
+/// What a [`DrawVisibility`] draws to.
+pub struct VisibilityViews {
+    framebuffer: Framebuffer,
+    coverage: Option<DescriptorSet>,
 }
 
 /// The visibility pass as a scatter with atomic maxima.
@@ -24,45 +32,49 @@ impl DrawVisibility {
     pub fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self> {
         let depth = Attachment::Cleared(Formats::of(variant).visibility);
         let pass = RenderPass::new(device, &[], Some(depth))?;
-        let code = [shaders::VISIBILITY_VERTEX, shaders::VISIBILITY_FRAGMENT];
+        let code = match variant.coverage {
+            false => [shaders::VISIBILITY_VERTEX, shaders::VISIBILITY_FRAGMENT],
+            true => [shaders::VISIBILITY_COVERAGE_VERTEX, shaders::VISIBILITY_COVERAGE_FRAGMENT],
+        };
+        let coverage = DrawnCoverage::new(device, variant)?;
+        let sets: Vec<_> = std::iter::once(&layout.splats).chain(coverage.layout()).collect();
         let state = DrawState { depth: DepthTest::Nearest, blend: Blend::Replace };
-        let pipeline =
-            DrawPipeline::new(device, &[&layout.splats], code, &variant.constants(), &pass, state)?;
-        Ok(Self { pass, pipeline })
+        let pipeline = DrawPipeline::new(device, &sets, code, &variant.constants(), &pass, state)?;
+        Ok(Self { pass, pipeline, coverage })
     }
 
-    /// The pass's view of `targets`.
-    pub fn framebuffer(&self, device: &Arc<Device>, targets: &Images) -> Result<Framebuffer> {
-        Framebuffer::new(device, &self.pass, &[&targets.visibility])
+    /// The pass's views of `targets`, which must outlive them.
+    pub fn views(&self, device: &Arc<Device>, targets: &Images) -> Result<VisibilityViews> {
+        let framebuffer = Framebuffer::new(device, &self.pass, &[&targets.visibility])?;
+        Ok(VisibilityViews { framebuffer, coverage: self.coverage.view(device, targets)? })
     }
 
-    /// `splats` → `targets.visibility`.
-    pub fn record(
-        &self,
-        rec: &mut Recorder<'_>,
-        splats: &Splats,
-        framebuffer: &Framebuffer,
-        targets: &Images,
-    ) {
+    /// `splats` → `targets.visibility`, `targets.coverage`.
+    pub fn record(&self, rec: &mut Recorder<'_>, splats: &Splats, views: &VisibilityViews, targets: &Images) {
         let mut uses = splats.read_by_draws();
         uses.push(targets.visibility.with(Access::DEPTH_WRITE));
-        rec.pass("visibility", &uses, |enc| splats.draw(enc, &self.pipeline, framebuffer));
+        uses.extend(clear_drawn(rec, targets));
+        let more: Vec<_> = views.coverage.iter().collect();
+        rec.pass("visibility", &uses, |enc| splats.draw(enc, &self.pipeline, &views.framebuffer, &more));
     }
 }
 
 impl ComputeVisibility {
     /// The pass for `variant`.
     pub fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self> {
-        Scatter::new(device, layout, shaders::VISIBILITY_COMPUTE, variant).map(Self)
+        let code = match variant.coverage {
+            false => shaders::VISIBILITY_COMPUTE,
+            true => shaders::VISIBILITY_COVERAGE_COMPUTE,
+        };
+        Scatter::new(device, layout, code, variant).map(Self)
     }
 
-    /// `splats` → `targets.visibility`, which is cleared before.
+    /// `splats` → `targets.visibility`, `targets.coverage`, which are cleared before.
     pub fn record(&self, rec: &mut Recorder<'_>, splats: &Splats, pixels: &PixelSet, targets: &Buffers) {
-        rec.pass("clear", &[targets.visibility.with(Access::COPY_WRITE)], |enc| {
-            enc.zero(&targets.visibility)
-        });
+        let written = || std::iter::once(&targets.visibility).chain(&targets.coverage);
+        clear(rec, written());
         let mut uses = splats.read_by_scatter();
-        uses.push(targets.visibility.with(Access::COMPUTE_WRITE));
+        uses.extend(written().map(|buffer| buffer.with(Access::COMPUTE_WRITE)));
         rec.pass("visibility", &uses, |enc| self.0.record(enc, splats, pixels));
     }
 }

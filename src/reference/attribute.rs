@@ -2,6 +2,7 @@
 
 use super::bands::Band;
 use super::ellipse::Ellipse;
+use super::rank::Rank;
 use super::scene::Scene;
 use super::{Projector, Splat};
 use crate::settings::Shading;
@@ -43,17 +44,17 @@ impl std::ops::AddAssign for Sums {
 }
 
 /// The sums of every pixel of the band over the splats no farther than `visible`.
-pub(super) fn pass(projector: &Projector, scene: &Scene, band: &Band, visible: &[f64]) -> Vec<Sums> {
+pub(super) fn pass(projector: &Projector, scene: &Scene, band: &Band, visible: &[Rank]) -> Vec<Sums> {
     let mut sums = vec![Sums::default(); band.len()];
     for splat in band.contributors(scene).iter() {
         let ellipse = Ellipse::attribute(splat, projector);
         band.inside(&ellipse, |hit| {
             // Where visibility wrote nothing there is no surface, however far the wider footprint reaches.
-            if visible[hit.index].is_infinite() {
+            if !visible[hit.index].exists() {
                 return;
             }
             let Some(depth) = projector.depth_of(splat, hit.at) else { return };
-            if depth <= visible[hit.index] {
+            if hit.rank(depth) <= visible[hit.index] {
                 sums[hit.index] += Sums::of(projector, splat, ellipse.weight(hit.in_kernel), depth);
             }
         });

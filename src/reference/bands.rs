@@ -1,6 +1,7 @@
 //! Bands of rows: the unit of parallel work, each with the list of the splats that reach it.
 
 use super::ellipse::Ellipse;
+use super::rank::Rank;
 use super::scene::Scene;
 use super::{Projector, Splat};
 use crate::Progress;
@@ -49,6 +50,13 @@ pub(super) struct Hit {
     pub rim: f64,
     /// Signed distance to what clip lines cut off, px.
     pub kept: f64,
+}
+
+impl Hit {
+    /// How the splat ranks there at this depth.
+    pub fn rank(&self, depth: f64) -> Rank {
+        Rank { beyond: self.kept < 0.0, depth }
+    }
 }
 
 impl Bands {
@@ -122,10 +130,10 @@ impl<'a> Band<'a> {
         DVec2::new(f64::from(column) + 0.5, f64::from(self.first_row + row) + 0.5)
     }
 
-    /// Calls `visit` for every pixel centre of the splat.
+    /// Calls `visit` for every pixel centre at which the splat has a fragment.
     pub fn inside(&self, ellipse: &Ellipse, mut visit: impl FnMut(Hit)) {
         self.scan(ellipse, ellipse.cutoff, |hit| {
-            if hit.kept >= 0.0 {
+            if hit.kept >= -ellipse.beyond {
                 visit(hit);
             }
         });

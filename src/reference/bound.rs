@@ -3,24 +3,25 @@
 use super::bands::Band;
 use super::ellipse::Ellipse;
 use super::margin::{Candidate, Margins};
+use super::rank::Rank;
 use super::scene::Scene;
 use super::visibility::claimed;
 use std::collections::HashMap;
 
-/// A visibility depth as far as it is known; infinite for none.
+/// A visibility depth as far as it is known.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) struct Bound {
-    low: f64,
-    high: f64,
+    low: Rank,
+    high: Rank,
 }
 
 impl Bound {
     /// No surface.
-    const NONE: Self = Self { low: f64::INFINITY, high: f64::INFINITY };
+    const NONE: Self = Self { low: Rank::NONE, high: Rank::NONE };
 
     /// Whether visibility wrote anything.
     pub fn exists(&self) -> bool {
-        self.high.is_finite()
+        self.high.exists()
     }
 
     /// The nearer of two.
@@ -28,14 +29,19 @@ impl Bound {
         Self { low: self.low.min(other.low), high: self.high.min(other.high) }
     }
 
-    /// Whether a splat at `depth`, give or take `margin`, may be let through.
-    pub fn may_pass(&self, depth: f64, margin: f64) -> bool {
-        self.exists() && depth <= self.high + margin
+    /// Whether it is surely of what is beyond a clip line.
+    pub fn is_beyond(&self) -> bool {
+        self.low.beyond && self.high.beyond
+    }
+
+    /// Whether a splat of this rank, give or take `margin`, may be let through.
+    pub fn may_pass(&self, rank: Rank, margin: f64) -> bool {
+        self.exists() && rank <= self.high.farther(margin)
     }
 
     /// Whether it surely is.
-    pub fn must_pass(&self, depth: f64, margin: f64) -> bool {
-        self.exists() && depth < self.low - margin
+    pub fn must_pass(&self, rank: Rank, margin: f64) -> bool {
+        self.exists() && rank < self.low.farther(-margin)
     }
 }
 
@@ -53,8 +59,8 @@ impl Bounds {
         let mut sure = vec![Bound::NONE; band.len()];
         let mut maybe: HashMap<usize, Vec<Bound>> = HashMap::new();
         margins.scan(band, &band.blockers(scene), Ellipse::visibility, |c| {
-            let depth = claimed(margins.projector, c.splat, c.depth);
-            let bound = Bound { low: depth - c.wobble, high: depth + c.wobble };
+            let rank = c.rank(claimed(margins.projector, c.splat, c.depth));
+            let bound = Bound { low: rank.farther(-c.wobble), high: rank.farther(c.wobble) };
             if c.certain {
                 sure[c.pixel] = sure[c.pixel].min(bound);
             } else {
@@ -77,8 +83,8 @@ impl Bounds {
 
     /// Whether some bound may let the splat through, and whether one may or may not.
     pub fn test(&self, c: &Candidate) -> (bool, bool) {
-        let passes = |b: &Bound| b.may_pass(c.depth, c.margin());
-        let wavers = |b: Bound| passes(&b) && !(c.certain && b.must_pass(c.depth, c.margin()));
+        let passes = |b: &Bound| b.may_pass(c.rank(c.depth), c.margin());
+        let wavers = |b: Bound| passes(&b) && !(c.certain && b.must_pass(c.rank(c.depth), c.margin()));
         (self.of(c.pixel).any(|b| passes(&b)), self.of(c.pixel).any(wavers))
     }
 }

@@ -44,6 +44,8 @@ pub(super) struct Ellipse {
     /// Normalization weights at the corners of the kernel's square, and from that square's axes to the kernel's.
     pub corners: [f64; 4],
     pub turn: DMat2,
+    /// See [`Projector::beyond_clips`].
+    pub beyond: f64,
 }
 
 impl Ellipse {
@@ -89,15 +91,21 @@ impl Ellipse {
             clip: splat.clip,
             corners: splat.weights,
             turn: turn(splat, DVec2::from_angle(angle)),
+            beyond: projector.beyond_clips(),
         }
     }
 
     /// Where in the kernel the offset `e` from the centre is: along its axes, in σ. Seen in perspective, what lies in a plane is a
     /// homography of it; one that keeps the centre is affine but for the division by the plane's inverse distance.
     pub fn in_kernel(&self, offset: DVec2) -> DVec2 {
+        self.principal(offset) / self.sigma() / self.nearness(offset)
+    }
+
+    /// By what perspective shrinks a kernel in the tangent plane at the offset `e` from the centre.
+    fn nearness(&self, offset: DVec2) -> f64 {
         let at = self.centre + offset;
         let nearness = self.horizon.map_or(1.0, |plane| plane.dot(DVec3::new(1.0, at.x, at.y)));
-        self.principal(offset) / self.sigma() / nearness.clamp(1.0 / MOST_STRETCH, MOST_STRETCH)
+        nearness.clamp(1.0 / MOST_STRETCH, MOST_STRETCH)
     }
 
     /// `m = √(e V'⁻¹ eᵀ)` of the offset `e` from the centre, in σ.
@@ -215,6 +223,22 @@ impl Ellipse {
         (left >= 0.0).then_some((middle - half, middle + half))
     }
 
+    /// Whether the point at `offset` from the centre is so near to the outline that moving it by `margin` px may take it across.
+    pub fn is_undecided(&self, offset: DVec2, margin: f64) -> bool {
+        if self.is_plain() {
+            let reach = margin / self.sigma().y;
+            return (self.rim(offset) - self.cutoff).abs() <= reach && self.distance(offset) <= margin;
+        }
+        // By how much either coordinate in the kernel can change; the two are bounded apart, as one px may be many σ across a thin
+        // kernel and few along it.
+        let nearness = self.nearness(offset);
+        let slope = self.horizon.map_or(0.0, |plane| DVec2::new(plane.y, plane.z).length());
+        let y = self.in_kernel(offset).abs();
+        let change = margin * (1.0 / self.sigma() + y * slope) / nearness;
+        let rim = |y: DVec2| if self.square { y.max_element() } else { y.length() };
+        rim((y - change).max(DVec2::ZERO)) <= self.cutoff && rim(y + change) >= self.cutoff
+    }
+
     /// Distance in px from the point at `offset` from the centre to the outline; to first order where it is no ellipse.
     pub fn distance(&self, offset: DVec2) -> f64 {
         if !self.is_plain() {
@@ -325,6 +349,7 @@ mod tests {
             clip: None,
             corners: [1.0; 4],
             turn: DMat2::IDENTITY,
+            beyond: 0.0,
         };
         for y in [17.0, 20.0, 22.5] {
             let (low, high) = ellipse.span(y, 2.0).unwrap();

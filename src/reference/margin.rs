@@ -2,6 +2,7 @@
 
 use super::bands::{Band, Hit, Reaching};
 use super::ellipse::Ellipse;
+use super::rank::Rank;
 use super::{Projector, Splat};
 use glam::{DVec2, DVec3};
 
@@ -30,9 +31,18 @@ pub(super) struct Candidate<'a> {
     pub grain: f64,
     /// Whether it is surely inside the cut-off and the clip volume.
     pub certain: bool,
+    /// Whether it is beyond its clip lines.
+    pub beyond: bool,
+    /// Whether it is beyond them if it is not here: that is another candidate.
+    pub either: bool,
 }
 
 impl Candidate<'_> {
+    /// How it ranks at a depth.
+    pub fn rank(&self, depth: f64) -> Rank {
+        Rank { beyond: self.beyond, depth }
+    }
+
     /// How near a threshold the depth may come without being in doubt.
     pub fn margin(&self) -> f64 {
         self.wobble.max(DEPTH * self.depth.abs())
@@ -44,6 +54,27 @@ pub(super) struct Margins<'a> {
     pub projector: &'a Projector,
     /// See [`super::Tolerance::rounding`].
     pub rounding: f64,
+}
+
+/// A side of its clip lines on which a splat may be.
+struct Side {
+    beyond: bool,
+    /// Whether it may not be there.
+    near: bool,
+    /// Whether it is on the other side then.
+    either: bool,
+}
+
+/// The sides of the clip lines on which a splat may be at a signed distance `kept` from what they cut off, where there is some of it up to
+/// `reach` beyond them, px.
+fn sides(kept: f64, reach: f64) -> impl Iterator<Item = Side> {
+    let (at_line, at_reach) = (kept.abs() <= CUTOFF, (kept + reach).abs() <= CUTOFF);
+    let beyond = reach > 0.0;
+    let within = (kept >= -CUTOFF).then_some(Side { beyond: false, near: at_line, either: beyond });
+    let there = beyond && kept <= CUTOFF && kept >= -reach - CUTOFF;
+    // What is on a line is beyond it or nearer: beyond it it is at least.
+    let past = there.then_some(Side { beyond, near: at_reach, either: false });
+    within.map(|side| Side { either: side.either && at_line, ..side }).into_iter().chain(past)
 }
 
 impl Margins<'_> {
@@ -65,16 +96,17 @@ impl Margins<'_> {
             band.scan(&ellipse, ellipse.cutoff + reach, |hit| {
                 let edge = (hit.rim - ellipse.cutoff).abs() <= reach;
                 let near_rim = edge && ellipse.distance(hit.offset) <= CUTOFF + ellipse.shift(hit.offset);
-                if (near_rim || hit.rim <= ellipse.cutoff) && hit.kept >= -CUTOFF {
-                    let near = near_rim || hit.kept <= CUTOFF;
-                    let mut candidate = self.candidate(splat, &hit, near);
-                    if let Some(c) = &mut candidate {
-                        // A kernel that is steeper than a Gaussian makes more of the same shift.
-                        c.sway += shift * ellipse.steepness(hit.sigmas);
-                        (c.weight, c.drift) = (ellipse.weight(hit.in_kernel), shift * hit.sigmas);
-                        c.grain = ellipse.grain(hit.in_kernel);
-                    }
-                    candidate.into_iter().for_each(&mut visit);
+                if !near_rim && hit.rim > ellipse.cutoff {
+                    return;
+                }
+                for side in sides(hit.kept, ellipse.beyond) {
+                    let Some(mut c) = self.candidate(splat, &hit, near_rim || side.near) else { return };
+                    // A kernel that is steeper than a Gaussian makes more of the same shift.
+                    c.sway += shift * ellipse.steepness(hit.sigmas);
+                    (c.weight, c.drift) = (ellipse.weight(hit.in_kernel), shift * hit.sigmas);
+                    c.grain = ellipse.grain(hit.in_kernel);
+                    (c.beyond, c.either) = (side.beyond, side.either);
+                    visit(c);
                 }
             });
         }
@@ -87,8 +119,9 @@ impl Margins<'_> {
         let within = |margin: f64| depth >= nearest + margin && depth <= farthest - margin;
         let (sway, certain) = (self.rounding * (splat.secant + self.turn(splat)), false);
         let pixel = hit.index;
+        let (weight, drift, grain, beyond, either) = (0.0, 0.0, 0.0, false, false);
         let mut candidate =
-            Candidate { splat, pixel, depth, wobble, weight: 0.0, sway, drift: 0.0, grain: 0.0, certain };
+            Candidate { splat, pixel, depth, wobble, weight, sway, drift, grain, certain, beyond, either };
         candidate.certain = !near && in_front && within(wobble);
         within(-wobble).then_some(candidate)
     }

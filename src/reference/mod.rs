@@ -1,8 +1,8 @@
 //! The float64 twin of every splatting method, on the CPU: what the GPU's picture is held against.
 //!
 //! Named as the GPU's passes, and sharing none of their code: [`Projector::footprint`] makes the screen-space splat of a
-//! surfel, `visibility` finds the depth up to which splats are blended, `attribute` sums them, or `nearest` takes the first
-//! alone, and `normalize` divides and shades. [`Doubt`] finds, from the float64 picture alone, the pixels that hang on a decision which float32 cannot make,
+//! surfel, `visibility` finds the depth up to which splats are blended, `coverage` the part of each pixel that they cover,
+//! `attribute` sums them, or `nearest` takes the first alone, and `normalize` divides and shades. [`Doubt`] finds, from the float64 picture alone, the pixels that hang on a decision which float32 cannot make,
 //! with every value they may take; [`compare`] judges a picture by both.
 //!
 //! Spaces: *world* is the surfels' frame; *eye* is the camera's, where the distance `z = forward · z_eye` is above 0 in
@@ -13,6 +13,7 @@ mod bands;
 mod bound;
 mod compare;
 mod conic;
+mod coverage;
 mod doubt;
 mod ellipse;
 mod footprint;
@@ -23,6 +24,7 @@ mod nearest;
 mod normalize;
 mod projector;
 pub mod pull_push;
+mod rank;
 mod scene;
 mod shading;
 mod slack;
@@ -123,12 +125,13 @@ pub fn render(
 
 /// The pixels of a band.
 fn values(projector: &Projector, scene: &Scene, band: &Band) -> Vec<Value> {
+    let alpha = coverage::pass(projector, scene, band);
     if projector.settings.splatting.visibility == Visibility::Nearest {
-        return normalize::pass_alone(projector, band, &nearest::pass(projector, scene, band));
+        return normalize::pass_alone(projector, band, &nearest::pass(projector, scene, band), &alpha);
     }
     let depth = visibility::pass(projector, scene, band);
     let sums = attribute::pass(projector, scene, band, &depth);
-    normalize::pass(projector, band, &depth, &sums)
+    normalize::pass(projector, band, &depth, &sums, &alpha)
 }
 
 /// All passes, band by band: a band's sums are all the memory that is needed beside the splats and the picture.

@@ -3,19 +3,20 @@
 use super::attribute::Sums;
 use super::bands::Band;
 use super::ellipse::Ellipse;
+use super::rank::Rank;
 use super::scene::Scene;
 use super::{Projector, Splat};
 
 /// For every pixel of the band what its nearest splat is, as sums of that one splat of weight 1. The first of equals wins.
 pub(super) fn pass(projector: &Projector, scene: &Scene, band: &Band) -> Vec<Option<Sums>> {
-    let mut nearest = vec![(f64::INFINITY, None); band.len()];
+    let mut nearest = vec![(Rank::NONE, None); band.len()];
     for splat in band.contributors(scene).iter() {
         let ellipse = Ellipse::visibility(splat, projector);
         band.inside(&ellipse, |hit| {
             let Some(depth) = projector.depth_of(splat, hit.at) else { return };
-            let ranked = ranked(splat, depth);
-            if ranked < nearest[hit.index].0 {
-                nearest[hit.index] = (ranked, Some(Sums::of(projector, splat, 1.0, depth)));
+            let rank = hit.rank(ranked(splat, depth));
+            if rank < nearest[hit.index].0 {
+                nearest[hit.index] = (rank, Some(Sums::of(projector, splat, 1.0, depth)));
             }
         });
     }

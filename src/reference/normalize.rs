@@ -3,6 +3,7 @@
 use super::Projector;
 use super::attribute::Sums;
 use super::bands::Band;
+use super::rank::Rank;
 use super::shading::lit;
 use crate::settings::Shading;
 use crate::splatting::{Normalization, Shade};
@@ -24,23 +25,35 @@ pub struct Value {
     pub normal: [f64; 3],
 }
 
-/// The values of the band's pixels; a surface is where `visible` is finite and some weight was summed.
-pub(super) fn pass(projector: &Projector, band: &Band, visible: &[f64], sums: &[Sums]) -> Vec<Value> {
-    let pixel = |(i, (visible, sums)): (usize, (&f64, &Sums))| {
-        resolve(projector, band.centre(i), visible.is_finite().then_some(sums))
+/// The values of the band's pixels; a surface is where `visible` exists, some weight was summed and `alpha` is not 0.
+pub(super) fn pass(
+    projector: &Projector,
+    band: &Band,
+    visible: &[Rank],
+    sums: &[Sums],
+    alpha: &[f64],
+) -> Vec<Value> {
+    let pixel = |(i, (visible, sums)): (usize, (&Rank, &Sums))| {
+        resolve(projector, band.centre(i), visible.exists().then_some(sums), alpha[i])
     };
     visible.iter().zip(sums).enumerate().map(pixel).collect()
 }
 
 /// The values of the band's pixels from what is seen there alone.
-pub(super) fn pass_alone(projector: &Projector, band: &Band, seen: &[Option<Sums>]) -> Vec<Value> {
-    let pixel = |(i, sums): (usize, &Option<Sums>)| resolve(projector, band.centre(i), sums.as_ref());
+pub(super) fn pass_alone(
+    projector: &Projector,
+    band: &Band,
+    seen: &[Option<Sums>],
+    alpha: &[f64],
+) -> Vec<Value> {
+    let pixel =
+        |(i, sums): (usize, &Option<Sums>)| resolve(projector, band.centre(i), sums.as_ref(), alpha[i]);
     seen.iter().enumerate().map(pixel).collect()
 }
 
-/// The value of the pixel with centre `at`; `sums` are `None` where visibility wrote nothing.
-pub(super) fn resolve(projector: &Projector, at: DVec2, sums: Option<&Sums>) -> Value {
-    let Some(sums) = sums.filter(|s| s.weight > 0.0) else { return uncovered(projector) };
+/// The value of the pixel with centre `at`, of which `alpha` is covered; `sums` are `None` where visibility wrote nothing.
+pub(super) fn resolve(projector: &Projector, at: DVec2, sums: Option<&Sums>, alpha: f64) -> Value {
+    let Some(sums) = sums.filter(|s| s.weight > 0.0 && alpha > 0.0) else { return uncovered(projector) };
     let viewer = projector.to_viewer(at);
     let cancelled = sums.normal.length() < CANCELLED * sums.weight;
     let normal = if cancelled { viewer } else { sums.normal.normalize() };
@@ -63,7 +76,24 @@ pub(super) fn resolve(projector: &Projector, at: DVec2, sums: Option<&Sums>) -> 
         Shading::Depth => DVec3::splat(depth),
         Shading::Overlap | Shading::Weight => DVec3::splat(sums.weight),
     };
-    Value { covered: true, colour: shown.extend(1.0).to_array(), depth, normal: normal.to_array() }
+    Value {
+        covered: true,
+        colour: over_background(projector, shown, alpha),
+        depth,
+        normal: normal.to_array(),
+    }
+}
+
+/// What is shown of a surface with the background, if there is one, behind it.
+fn over_background(projector: &Projector, shown: DVec3, alpha: f64) -> [f64; 4] {
+    let Some(background) = projector.settings.background else { return shown.extend(alpha).to_array() };
+    let behind = DVec3::from_array(background.map(f64::from));
+    // Numbers are not mixed with a colour: the half decides.
+    let share = match projector.settings.shading {
+        Shading::Lit | Shading::Colour => alpha,
+        Shading::Normal | Shading::Depth | Shading::Overlap | Shading::Weight => f64::from(alpha >= 0.5),
+    };
+    (share * shown + (1.0 - share) * behind).extend(1.0).to_array()
 }
 
 /// The value of a pixel where nothing is.

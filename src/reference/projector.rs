@@ -3,8 +3,11 @@
 use super::Splat;
 use crate::error::{Error, Result};
 use crate::geometry::{Camera, Projection};
-use crate::settings::Settings;
+use crate::settings::{Alpha, Settings};
 use glam::{DMat2, DMat3, DMat4, DVec2, DVec3, DVec4};
+
+/// How far beyond a clip line splats have fragments where α is coverage, px: as far as a pixel that it cuts can have its centre.
+const BEYOND: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
 /// What all passes of a frame need to know of its camera, size and settings.
 #[derive(Clone, Debug)]
@@ -38,6 +41,11 @@ impl Projector {
     /// The cut-off `F`, in σ.
     pub(super) fn cutoff(&self) -> f64 {
         self.settings.cutoff.into()
+    }
+
+    /// How far beyond its clip lines a splat has fragments, px. They are seen where there are no others.
+    pub(super) fn beyond_clips(&self) -> f64 {
+        if self.settings.alpha == Alpha::Coverage { BEYOND } else { 0.0 }
     }
 
     /// Distance in front of the eye (perspective) or of the eye plane (orthographic) of an eye-space point.

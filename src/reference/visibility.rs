@@ -3,18 +3,18 @@
 use super::bands::Band;
 use super::ellipse::Ellipse;
 use super::nearest::ranked;
+use super::rank::Rank;
 use super::scene::Scene;
 use super::{Projector, Splat};
 
-/// For every pixel of the band the least depth of its splats, each moved back along the viewing ray by its ε; infinite where
-/// there is none.
-pub(super) fn pass(projector: &Projector, scene: &Scene, band: &Band) -> Vec<f64> {
-    let mut nearest = vec![f64::INFINITY; band.len()];
+/// For every pixel of the band the least depth of its splats, each moved back along the viewing ray by its ε.
+pub(super) fn pass(projector: &Projector, scene: &Scene, band: &Band) -> Vec<Rank> {
+    let mut nearest = vec![Rank::NONE; band.len()];
     for splat in band.blockers(scene).iter() {
         let ellipse = Ellipse::visibility(splat, projector);
         band.inside(&ellipse, |hit| {
             if let Some(depth) = projector.depth_of(splat, hit.at) {
-                nearest[hit.index] = nearest[hit.index].min(claimed(projector, splat, depth));
+                nearest[hit.index] = nearest[hit.index].min(hit.rank(claimed(projector, splat, depth)));
             }
         });
     }

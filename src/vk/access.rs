@@ -34,6 +34,17 @@ impl Access {
         layout: vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL,
         write: false,
     };
+    /// Read from a buffer by a fragment shader.
+    pub const FRAGMENT_LOAD: Self =
+        Self::buffer(vk::PipelineStageFlags::FRAGMENT_SHADER, vk::AccessFlags::SHADER_READ, false);
+    /// Written, and maybe read, by a fragment shader: a buffer.
+    pub const FRAGMENT_WRITE: Self = Self::buffer(
+        vk::PipelineStageFlags::FRAGMENT_SHADER,
+        vk::AccessFlags::from_raw(
+            vk::AccessFlags::SHADER_READ.as_raw() | vk::AccessFlags::SHADER_WRITE.as_raw(),
+        ),
+        true,
+    );
     /// Written as a colour target, its old contents dropped.
     pub const COLOUR_WRITE: Self = Self {
         stages: vk::PipelineStageFlags::COLOR_ATTACHMENT_OUTPUT,

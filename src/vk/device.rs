@@ -74,7 +74,9 @@ impl Device {
             vk::PhysicalDeviceShaderAtomicFloatFeaturesEXT::default().shader_buffer_float32_atomic_add(true);
         let mut integers =
             vk::PhysicalDeviceShaderAtomicInt64Features::default().shader_buffer_int64_atomics(true);
-        let features = vk::PhysicalDeviceFeatures::default().shader_int64(capabilities.int64_atomics);
+        let features = vk::PhysicalDeviceFeatures::default()
+            .shader_int64(capabilities.int64_atomics)
+            .fragment_stores_and_atomics(capabilities.fragment_writes);
         let mut extensions = Vec::new();
         let mut info =
             vk::DeviceCreateInfo::default().queue_create_infos(&queues).enabled_features(&features);

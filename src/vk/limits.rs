@@ -18,6 +18,8 @@ pub struct DeviceLimits {
     pub float_atomics: Option<bool>,
     /// `false`: 64-bit integers in buffers have no atomic maximum.
     pub int64_atomics: Option<bool>,
+    /// `false`: fragment shaders cannot write to buffers.
+    pub fragment_writes: Option<bool>,
     /// `false`: the queue has no timestamps.
     pub timestamps: Option<bool>,
     /// Upper bound of `maxStorageBufferRange`, bytes.
@@ -37,6 +39,8 @@ pub struct Capabilities {
     pub float_atomics: bool,
     /// 64-bit integers in storage buffers have an atomic maximum (VK_KHR_shader_atomic_int64).
     pub int64_atomics: bool,
+    /// Fragment shaders can write to storage buffers (the feature fragmentStoresAndAtomics).
+    pub fragment_writes: bool,
     /// Nanoseconds a timestamp tick, and the mask of valid bits; `None` without timestamps.
     pub timestamps: Option<(f32, u64)>,
     /// Largest range of a storage buffer that one descriptor may name, bytes.
@@ -62,9 +66,10 @@ impl Capabilities {
         mask: &DeviceLimits,
     ) -> Self {
         // SAFETY: `physical` is one of the instance's devices.
-        let (properties, families) = unsafe {
+        let (properties, features, families) = unsafe {
             (
                 instance.raw.get_physical_device_properties(physical),
+                instance.raw.get_physical_device_features(physical),
                 instance.raw.get_physical_device_queue_family_properties(physical),
             )
         };
@@ -86,6 +91,8 @@ impl Capabilities {
                 && mask.blend_float32 != Some(false),
             float_atomics: mask.float_atomics != Some(false) && has_float_atomics(instance, physical),
             int64_atomics: mask.int64_atomics != Some(false) && has_int64_atomics(instance, physical),
+            fragment_writes: features.fragment_stores_and_atomics == vk::TRUE
+                && mask.fragment_writes != Some(false),
             timestamps: timestamps
                 .then_some((limits.timestamp_period, u64::MAX >> (64 - valid_bits.clamp(1, 64)))),
             max_storage_buffer_range: u64::from(limits.max_storage_buffer_range)

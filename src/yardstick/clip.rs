@@ -3,12 +3,12 @@
 use super::splat::{FLIPPED, Splat};
 use super::view::View;
 use crate::geometry::{ClipLine, Surfels};
-use glam::{BVec4A, DVec3, Vec3, Vec4};
+use glam::{DVec3, Vec2, Vec3, Vec4};
 
 /// What clip lines keep of a splat.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ScreenClip {
-    /// Values at the anchor and slopes along x and y: above 0 where the line keeps; infinite for none.
+    /// Values at the anchor, px, and slopes along x and y: above 0 where the line keeps; infinite for none.
     lines: [Vec3; 2],
     /// Whether what either keeps is kept.
     concave: bool,
@@ -25,11 +25,17 @@ impl ScreenClip {
         Some(Self { lines: clip.lines.map(line), concave: clip.concave })
     }
 
-    /// Which of four pixels are kept, at `dx` and `dy` px from the anchor.
+    /// Signed distances of four points, at `dx` and `dy` px from the anchor, to what is clipped, px: at least 0 where it is kept.
     #[inline]
-    pub fn keeps(&self, dx: Vec4, dy: f32) -> BVec4A {
+    pub fn distance(&self, dx: Vec4, dy: f32) -> Vec4 {
         let [a, b] = self.lines.map(|line| line.y * dx + (line.x + line.z * dy));
-        (if self.concave { a.max(b) } else { a.min(b) }).cmpge(Vec4::ZERO)
+        if self.concave { a.max(b) } else { a.min(b) }
+    }
+
+    /// The same for points at px from what is at `offset` from the anchor.
+    pub fn about(&self, offset: Vec2) -> Self {
+        let about = |line: Vec3| Vec3::new(line.x + line.y * offset.x + line.z * offset.y, line.y, line.z);
+        Self { lines: self.lines.map(about), concave: self.concave }
     }
 }
 

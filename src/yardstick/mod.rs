@@ -21,6 +21,7 @@ mod exp;
 mod pixels;
 mod shade;
 mod shape;
+mod solid;
 mod splat;
 mod splats;
 mod sums;
@@ -47,7 +48,7 @@ use view::View;
 /// What a yardstick draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Kind {
-    /// One pixel a surfel: its centre's. The nearest wins; of several as near the first.
+    /// One pixel a surfel: its centre's, all of it. The nearest wins; of several as near the first.
     Pixels,
     /// The picture of the method `perspective-ewa`.
     Splats,

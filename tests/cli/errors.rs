@@ -57,6 +57,7 @@ fn wrong_arguments_exit_with_2_before_anything_is_read() {
         ("--shading shiny", "possible values: lit, color, normal, depth"),
         ("--method ray-tracing", "perspective-ewa"),
         ("--background 0,0,256", "0 to 255"),
+        ("--alpha half", "possible values: mask, coverage"),
         ("--widen none", "possible values: all, small"),
         ("--lowpass -1", "low-pass variance is -1"),
         ("--cutoff 0", "cut-off is 0"),

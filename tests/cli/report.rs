@@ -12,7 +12,7 @@ const FATES: [&str; 6] = [
     "50 0 0 0 0 1 0.5",
     "nan 0 0 0 0 1 0.5",
 ];
-const CAMERA: &str = "--size 64x64 --eye 0,0,5 --target 0,0,0 --cull back --widen small";
+const CAMERA: &str = "--size 64x64 --eye 0,0,5 --target 0,0,0 --cull back --widen small --alpha coverage";
 
 fn sum(object: &Value) -> u64 {
     object.as_object().unwrap().values().map(|value| value.as_u64().unwrap()).sum()
@@ -50,11 +50,13 @@ fn the_report_has_everything_and_adds_up() {
     assert_eq!((&report["frames"], &report["precision"]), (&3.into(), &"full".into()));
     assert_eq!(report["settings"]["cull"], "back");
     assert_eq!(report["settings"]["widen"], "small");
+    assert_eq!(report["settings"]["alpha"], "coverage");
     assert_eq!(report["camera"]["view"][3], serde_json::json!([0.0, 0.0, 5.0, 1.0]));
     assert_eq!(report["validation_messages"], serde_json::json!([]));
     let targets = report["targets"].as_array().unwrap();
     let bytes: u64 = targets.iter().map(|target| target["bytes"].as_u64().unwrap()).sum();
     assert_eq!(report["target_bytes"].as_u64(), Some(bytes));
+    assert!(targets.iter().any(|target| target["name"] == "coverage"), "{report}");
     assert!(
         targets.iter().all(|target| target["name"].is_string() && target["format"].is_string()),
         "{report}"

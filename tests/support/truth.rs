@@ -53,17 +53,53 @@ fn eye() -> DVec3 {
     3.5 * DVec3::new(1.0, 0.8, 1.6).normalize()
 }
 
+/// Of the ray through a point of a square picture of `side` px, px. From the angles alone, not from the camera's matrices, which are under
+/// test with the rest.
+fn direction(side: u32, at: [f64; 2]) -> DVec3 {
+    let forward = -eye().normalize();
+    let right = forward.cross(DVec3::Y).normalize();
+    let down = forward.cross(right);
+    let half = (0.5 * FOV_Y.to_radians()).tan();
+    let [x, y] = at.map(|at| half * (2.0 * at / f64::from(side) - 1.0));
+    forward + x * right + y * down
+}
+
 impl Truth {
     /// Traces a square picture of `side` px.
     pub fn new(side: u32) -> Self {
-        // From the angles alone, not from the camera's matrices, which are under test with the rest.
-        let forward = -eye().normalize();
-        let right = forward.cross(DVec3::Y).normalize();
-        let down = forward.cross(right);
-        let half = (0.5 * FOV_Y.to_radians()).tan();
-        let across = |i: u32| half * (2.0 * (f64::from(i) + 0.5) / f64::from(side) - 1.0);
-        let pixel = |i: u32| trace(eye(), forward + across(i % side) * right + across(i / side) * down);
+        let middle = |i: u32| f64::from(i) + 0.5;
+        let pixel = |i: u32| trace(eye(), direction(side, [middle(i % side), middle(i / side)]));
         Self { side, hits: (0..side * side).into_par_iter().map(pixel).collect() }
+    }
+
+    /// The part of each pixel that the sphere covers, from rays about those of the outline.
+    pub fn coverage(&self) -> Vec<f64> {
+        let side = self.side as usize;
+        let around = |i: usize| {
+            let (x, y) = (i % side, i / side);
+            let rows = y.saturating_sub(1)..(y + 2).min(side);
+            rows.flat_map(move |y| (x.saturating_sub(1)..(x + 2).min(side)).map(move |x| y * side + x))
+        };
+        let share = |i: usize| {
+            let met = self.hits[i].is_some();
+            match around(i).all(|near| self.hits[near].is_some() == met) {
+                true => f64::from(u8::from(met)),
+                false => self.share(i),
+            }
+        };
+        (0..side * side).into_par_iter().map(share).collect()
+    }
+
+    /// The part of pixel `i` whose rays meet the sphere.
+    fn share(&self, i: usize) -> f64 {
+        const RAYS: usize = 16;
+        let at = |k: usize| (k as f64 + 0.5) / RAYS as f64;
+        let (x, y) = ((i % self.side as usize) as f64, (i / self.side as usize) as f64);
+        let met = |k: &usize| {
+            let at = [x + at(k % RAYS), y + at(k / RAYS)];
+            trace(eye(), direction(self.side, at)).is_some()
+        };
+        (0..RAYS * RAYS).filter(met).count() as f64 / (RAYS * RAYS) as f64
     }
 
     /// The camera whose picture this is.

@@ -12,7 +12,7 @@ const STAGES: [(&str, ShaderKind); 3] =
 pub struct Module {
     /// The file as messages name it: `shaders-glsl/footprint.glsl`.
     pub file: String,
-    /// Name of the Rust constant: `FOOTPRINT_COMPUTE`.
+    /// Name of the Rust constant: `FOOTPRINT_COMPUTE`, or of a variant `VISIBILITY_COVERAGE_COMPUTE`.
     pub constant: String,
     /// Optimised SPIR-V, to be embedded.
     pub optimised: Vec<u32>,
@@ -22,7 +22,7 @@ pub struct Module {
     pub warnings: String,
 }
 
-/// Compiles every stage of every `folder/*.glsl`, in the order of their names. A folder that does not exist has no shaders.
+/// Compiles every stage of every variant of every `folder/*.glsl`, in the order of their names. A folder that does not exist has no shaders.
 pub fn folder(folder: &Path) -> Result<Vec<Module>, String> {
     let compiler = Compiler::new().map_err(|error| error.to_string())?;
     let mut modules = Vec::new();
@@ -57,7 +57,15 @@ fn file(compiler: &Compiler, folder: &Path, path: &Path) -> Result<Vec<Module>, 
             "{name}:1: error: no stage: give it an #ifdef VERTEX, FRAGMENT or COMPUTE, or move it to lib/"
         ));
     }
-    stages.into_iter().map(|stage| module(compiler, folder, &name, &source, stage)).collect()
+    let variants = std::iter::once(None).chain(variants(&source).map(Some));
+    let both = variants.flat_map(|variant| stages.iter().map(move |stage| (variant, *stage)));
+    both.map(|(variant, stage)| module(compiler, folder, &name, &source, variant, stage)).collect()
+}
+
+/// The names that a file is compiled with beside being compiled without any: those of its lines `#pragma variant NAME`. For what a
+/// specialization constant cannot take away, such as a buffer.
+fn variants(source: &str) -> impl Iterator<Item = &str> {
+    source.lines().filter_map(|line| line.strip_prefix("#pragma variant ")).map(str::trim)
 }
 
 fn module(
@@ -65,11 +73,13 @@ fn module(
     folder: &Path,
     name: &str,
     source: &str,
+    variant: Option<&str>,
     (stage, kind): (&str, ShaderKind),
 ) -> Result<Module, String> {
     let compile = |level| {
         let mut options = options(folder).map_err(|error| error.to_string())?;
         options.add_macro_definition(stage, None);
+        variant.into_iter().for_each(|name| options.add_macro_definition(name, None));
         options.set_optimization_level(level);
         compiler.compile_into_spirv(source, kind, name, "main", Some(&options)).map_err(message)
     };
@@ -78,7 +88,13 @@ fn module(
     let stem = Path::new(name).file_stem().unwrap_or_default().to_string_lossy();
     Ok(Module {
         file: name.to_owned(),
-        constant: format!("{stem}_{stage}").replace('-', "_").to_uppercase(),
+        constant: [Some(&*stem), variant, Some(stage)]
+            .into_iter()
+            .flatten()
+            .collect::<Vec<_>>()
+            .join("_")
+            .replace('-', "_")
+            .to_uppercase(),
         optimised: optimised.as_binary().to_vec(),
         named: named.as_binary().to_vec(),
         warnings: named.get_warning_messages(),

@@ -27,8 +27,8 @@ pub fn part(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
     }))
 }
 
-/// Low-pass, cut-off, what is widened, ε and culling; what the picture shows is the same for all of a scene.
-const NAMED: [bool; 6] = [true, true, true, true, true, false];
+/// Low-pass, cut-off, what is widened, ε, culling and α; what the picture shows is the same for all of a scene.
+const NAMED: [bool; 7] = [true, true, true, true, true, true, false];
 
 fn table<'c, 'a>(
     unit: &str,

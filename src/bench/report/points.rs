@@ -23,7 +23,7 @@ pub fn part(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>
             let largest = runs.iter().filter_map(|run| run.rmse()).fold(0.0, f64::max);
             let plot = Plot::of(name, titled(scene, size), axes, lines(&runs)).above(SHOWN * largest);
             let plot = page.plot(plot)?;
-            let how = show::told(setting, [true, true, true, true, false, false]);
+            let how = show::told(setting, [true, true, true, true, false, false, false]);
             plots.push(html! { div {
                 (plot)
                 p.caption { (contender.label()) ", " (how) ". " (sentence(&runs)) }

@@ -32,7 +32,7 @@ pub fn part(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
     }))
 }
 
-fn row(run: &Run, differing: [bool; 6]) -> Markup {
+fn row(run: &Run, differing: [bool; 7]) -> Markup {
     let time = run.time.as_ref();
     html! { tr {
         td { (run.contender.label()) }

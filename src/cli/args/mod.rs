@@ -12,7 +12,9 @@ pub use convert::{Convert, Info};
 pub use points::{Colours, Points};
 pub use truth::Truth;
 
-use super::values::{Background, Cull, Layer, Shading, Widen, background, kernel, method, size, vector};
+use super::values::{
+    Alpha, Background, Cull, Layer, Shading, Widen, background, kernel, method, size, vector,
+};
 use clap::{Args, Parser, Subcommand};
 use glam::DVec3;
 use std::ffi::OsString;
@@ -145,6 +147,9 @@ pub struct Look {
     /// What the picture shows
     #[arg(long, value_enum, default_value = "lit")]
     pub shading: Shading,
+    /// What α says of a pixel
+    #[arg(long, value_enum, default_value = "mask")]
+    pub alpha: Alpha,
     /// Colour where nothing is: transparent, or sRGB codes from 0 to 255
     #[arg(long, value_name = "R,G,B|transparent", default_value = "transparent", value_parser = background, allow_hyphen_values = true)]
     pub background: Background,
@@ -216,6 +221,7 @@ impl Render {
             widen: look.widen.map_or(preset.widen, Into::into),
             epsilon: look.epsilon,
             cull: look.cull.map_or(preset.cull, Into::into),
+            alpha: look.alpha.into(),
             shading: look.shading.into(),
             background: look.background.linear(),
             lighting: preset.lighting,

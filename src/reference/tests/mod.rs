@@ -1,13 +1,14 @@
 //! Closed forms that the passes have to meet.
 
+mod coverage;
 mod doubt;
 mod footprint;
 mod kinds;
 mod passes;
 
 use super::*;
-use crate::geometry::{Colours, Ellipse};
-use crate::settings::{Cull, Shading, Widen};
+use crate::geometry::{Clip, ClipLine, Clips, Colours, Ellipse};
+use crate::settings::{Alpha, Cull, Shading, Widen};
 use glam::{DMat2, DVec2, DVec3, DVec4};
 
 const SIZE: [u32; 2] = [64, 64];

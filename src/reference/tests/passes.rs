@@ -112,7 +112,7 @@ fn normals_turn_to_the_eye_and_cancel_into_the_viewing_direction() {
     // Without a normal of its own the surface faces the eye.
     let projector = Projector::new(&perspective(), SIZE, &plain()).unwrap();
     let sums = attribute::Sums { weight: 1.0, normal: DVec3::X * 1e-7, depth: 0.5, ..Default::default() };
-    let value = normalize::resolve(&projector, DVec2::new(64.0, 32.0), Some(&sums));
+    let value = normalize::resolve(&projector, DVec2::new(64.0, 32.0), Some(&sums), 1.0);
     let expected = DVec3::new(-0.5, 0.0, -1.0).normalize();
     assert!(DVec3::from_array(value.normal).distance(expected) < 1e-12 && close(value.depth, 2.0, 1e-12));
 }

@@ -1,0 +1,48 @@
+//! Coverage: the samples of each pixel that a surface covers (`lib/coverage.glsl`), beside visibility or nearest where α is coverage.
+
+use crate::error::Result;
+use crate::targets::Images;
+use crate::variant::Variant;
+use crate::vk::{Access, Binding, Buffer, DescriptorSet, Device, Recorder, SetLayout, Use};
+use ash::vk::{DescriptorType, ShaderStageFlags};
+use std::sync::Arc;
+
+/// Descriptor set 1 of a draw that writes coverage; nothing in a frame without.
+pub(super) struct DrawnCoverage(Option<SetLayout>);
+
+impl DrawnCoverage {
+    /// As `variant` wants it.
+    pub fn new(device: &Arc<Device>, variant: &Variant) -> Result<Self> {
+        let binding = [(DescriptorType::STORAGE_BUFFER, ShaderStageFlags::FRAGMENT)];
+        variant.coverage.then(|| SetLayout::new(device, &binding)).transpose().map(Self)
+    }
+
+    /// Its layout.
+    pub fn layout(&self) -> Option<&SetLayout> {
+        self.0.as_ref()
+    }
+
+    /// The set of `targets`, which must outlive it.
+    pub fn view(&self, device: &Arc<Device>, targets: &Images) -> Result<Option<DescriptorSet>> {
+        let set = |(layout, buffer)| DescriptorSet::new(device, layout, &[whole(buffer)]);
+        self.0.as_ref().zip(targets.coverage.as_ref()).map(set).transpose()
+    }
+}
+
+/// All of a storage buffer.
+pub(super) fn whole(buffer: &Buffer) -> Binding<'_> {
+    Binding::Storage(buffer, 0, buffer.size())
+}
+
+/// Zeroes `buffers`.
+pub(super) fn clear<'a>(rec: &mut Recorder<'_>, buffers: impl Iterator<Item = &'a Buffer> + Clone) {
+    let uses: Vec<_> = buffers.clone().map(|buffer| buffer.with(Access::COPY_WRITE)).collect();
+    rec.pass("clear", &uses, |enc| buffers.for_each(|buffer| enc.zero(buffer)));
+}
+
+/// Zeroes the coverage that a draw is about to write, where there is any, and gives that use of it.
+pub(super) fn clear_drawn(rec: &mut Recorder<'_>, targets: &Images) -> Option<Use> {
+    let coverage = targets.coverage.as_ref()?;
+    clear(rec, std::iter::once(coverage));
+    Some(coverage.with(Access::FRAGMENT_WRITE))
+}
