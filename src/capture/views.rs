@@ -78,8 +78,12 @@ mod tests {
         assert_eq!((cameras.len() % 5, size <= 1024), (0, true));
         let tiles = cameras.len() / 5;
         assert!(tiles > 1);
-        for p in [DVec3::ZERO, DVec3::new(20.0, 3.0, 1.0), DVec3::new(9.0, 2.0, 0.5)] {
-            for view in cameras.chunks(tiles) {
+        for view in cameras.chunks(tiles) {
+            // What is farthest to either side, too.
+            let across =
+                [view[0].view.row(0), view[0].view.row(1)].map(|axis| bounds.radius * axis.truncate());
+            let rim = across.into_iter().flat_map(|a| [bounds.centre() + a, bounds.centre() - a]);
+            for p in rim.chain([DVec3::ZERO, DVec3::new(9.0, 2.0, 0.5)]) {
                 let shown = |camera: &&Camera| {
                     let clip: DVec4 = camera.world_to_clip() * p.extend(1.0);
                     clip.x.abs() <= 1.0 && clip.y.abs() <= 1.0 && (0.0..=1.0).contains(&clip.z)
