@@ -2,7 +2,7 @@
 
 use crate::error::Result;
 use crate::picture::Picture;
-use crate::targets::{Buffers, Images};
+use crate::targets::{Images, PictureBuffer};
 use crate::vk::{Access, Buffer, Device, Image, Recorder};
 use std::sync::Arc;
 
@@ -41,22 +41,22 @@ impl Images {
     }
 }
 
-impl Buffers {
+impl PictureBuffer {
     /// A buffer for the picture.
     pub fn make_readback(&self, device: &Arc<Device>) -> Result<Vec<Buffer>> {
-        Ok(vec![Buffer::readback(device, "read back", self.picture.size())?])
+        Ok(vec![Buffer::readback(device, "read back", self.buffer.size())?])
     }
 
     /// Records the copy to that buffer.
     pub fn record_readback(&self, rec: &mut Recorder<'_>, readback: &[Buffer]) {
         for buffer in readback {
-            let uses = [self.picture.with(Access::COPY_READ), buffer.with(Access::COPY_WRITE)];
-            rec.pass("read back", &uses, |enc| enc.copy(&self.picture, buffer, 0, self.picture.size()));
+            let uses = [self.buffer.with(Access::COPY_READ), buffer.with(Access::COPY_WRITE)];
+            rec.pass("read back", &uses, |enc| enc.copy(&self.buffer, buffer, 0, self.buffer.size()));
             rec.wait(&[buffer.with(Access::HOST_READ)]);
         }
     }
 
-    /// What the last frame left in that buffer: plane after plane, as `normalize.glsl` writes them.
+    /// What the last frame left in that buffer: plane after plane, as `normalize.glsl` and `shade.glsl` write them.
     pub fn picture(&self, readback: &[Buffer]) -> Picture {
         let pixels = self.pixels() as usize;
         let mut rest = readback.first().map_or(&[][..], Buffer::bytes);

@@ -167,7 +167,10 @@ impl Renderer {
         settings.splatting.normalization.check_weights(scene.weights.is_some())?;
         let block = frame(camera, settings, self.options.size, scene.origin(), scene.bounds())?;
         let blends = settings.splatting.visibility != Visibility::Nearest;
-        let rasterizer = rasterizer_for(&self.device, &self.options, blends, settings.alpha)?;
+        let rasterizer = match settings.pull_push {
+            Some(_) => projects(&self.device)?,
+            None => rasterizer_for(&self.device, &self.options, blends, settings.alpha)?,
+        };
         let perspective = camera.projection()?.perspective;
         let variant = Variant::new(scene.streams(), perspective, settings, &self.options, rasterizer);
         self.make_resident(scene, variant.rasterizer)?;
@@ -224,6 +227,17 @@ impl Renderer {
             _ => {}
         }
         Ok(())
+    }
+}
+
+/// What projects points: compute shaders.
+fn projects(device: &Device) -> Result<Rasterizer> {
+    match device.capabilities().int64_atomics {
+        true => Ok(Rasterizer::Compute),
+        false => Err(Error::Usage(format!(
+            "pull-push needs 64-bit atomics in buffers, which {} does not have: choose a method that splats",
+            device.description().name
+        ))),
     }
 }
 

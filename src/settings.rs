@@ -1,6 +1,7 @@
 //! What a frame is asked to be: shared by the Vulkan methods and the float64 reference.
 
 use crate::error::{Error, Result};
+use crate::pull_push::PullPush;
 use crate::splatting::{Filter, Splatting};
 
 /// Settings of a frame that are not the camera's or the scene's.
@@ -8,6 +9,8 @@ use crate::splatting::{Filter, Splatting};
 pub struct Settings {
     /// How surfels become pixels.
     pub splatting: Splatting,
+    /// Makes the picture of points one pixel large instead; what is said of splats, kernels and filters is of no use then.
+    pub pull_push: Option<PullPush>,
     /// Kernel cut-off `F`, in σ: the splat ends at `u² + v² = F²`.
     pub cutoff: f32,
     /// Variance of the low-pass filter `H = lowpass · I`, px². Never less than what makes each splat own a pixel centre
@@ -34,6 +37,7 @@ impl Default for Settings {
     /// nothing where splats are larger.
     fn default() -> Self {
         Self {
+            pull_push: None,
             splatting: Splatting::default(),
             cutoff: 2.5,
             lowpass: 1.0,

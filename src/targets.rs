@@ -37,12 +37,31 @@ pub struct Buffers {
     pub tiles: Option<Buffer>,
     /// See [`Images::coverage`].
     pub coverage: Option<Buffer>,
-    /// All pixels' colour (4 floats), then all normals (3), then all depths (1), as far as they are asked for.
-    pub picture: Buffer,
+    /// The picture.
+    pub picture: PictureBuffer,
+}
+
+/// A picture that compute shaders write, pixel by pixel from the top left: all pixels' colour (4 floats), then all normals (3), then all
+/// depths (1), as far as they are asked for.
+pub struct PictureBuffer {
+    /// The floats.
+    pub buffer: Buffer,
     /// What it holds.
     pub outputs: Outputs,
     /// Width and height, px.
     pub size: [u32; 2],
+}
+
+/// Targets of pull–push: `lib/pyramid.glsl`.
+pub struct Pyramids {
+    /// Distance and number of the nearest point of each pixel.
+    pub nearest: Buffer,
+    /// Samples of all levels, fine to coarse.
+    pub pulled: Buffer,
+    /// The same where holes are filled and hidden samples replaced.
+    pub pushed: Buffer,
+    /// The picture.
+    pub picture: PictureBuffer,
 }
 
 /// Format of each image of a [`Variant`]; `None` where there is no such target.
@@ -188,9 +207,7 @@ impl Buffers {
             sums1: sums1.transpose()?,
             tiles: tiles.transpose()?,
             coverage: coverage(device, variant, size)?,
-            picture: buffer("picture", Self::picture_floats(variant.outputs))?,
-            outputs: variant.outputs,
-            size,
+            picture: PictureBuffer::new(device, variant.outputs, size)?,
         })
     }
 
@@ -203,7 +220,7 @@ impl Buffers {
     pub fn fit(capabilities: &Capabilities, outputs: Outputs, size: [u32; 2]) -> bool {
         let pixels = u64::from(size[0]) * u64::from(size[1]);
         // The picture has the largest pixels.
-        4 * Self::picture_floats(outputs) * pixels <= capabilities.max_storage_buffer_range
+        4 * PictureBuffer::floats(outputs) * pixels <= capabilities.max_storage_buffer_range
     }
 
     /// What the buffers take.
@@ -215,7 +232,7 @@ impl Buffers {
         list.extend(variant.has_sums1().then(|| ("sums1", floats(variant.wide_sums1()))));
         list.extend((!nearest).then_some(("tiles", 4.0 / f64::from(Self::TILE * Self::TILE))));
         list.extend(variant.coverage.then_some(("coverage", 4.0)));
-        list.push(("picture", 4.0 * Self::picture_floats(variant.outputs) as f64));
+        list.push(("picture", 4.0 * PictureBuffer::floats(variant.outputs) as f64));
         list
     }
 
@@ -230,11 +247,7 @@ impl Buffers {
 
     /// Number of pixels.
     pub fn pixels(&self) -> u64 {
-        u64::from(self.size[0]) * u64::from(self.size[1])
-    }
-
-    fn picture_floats(outputs: Outputs) -> u64 {
-        4 + 3 * u64::from(outputs.normal) + u64::from(outputs.depth)
+        self.picture.pixels()
     }
 
     /// Every target that there is.
@@ -251,7 +264,82 @@ impl Buffers {
         list.extend(self.sums1.as_ref().map(|buffer| info("sums1", buffer, sums(buffer))));
         list.extend(self.tiles.as_ref().map(|tiles| info("tiles", tiles, Format::R32_UINT)));
         list.extend(self.coverage.as_ref().map(coverage_info));
-        list.push(info("picture", &self.picture, float));
+        list.push(self.picture.info());
         list
     }
+}
+
+impl PictureBuffer {
+    fn new(device: &Arc<Device>, outputs: Outputs, size: [u32; 2]) -> Result<Self> {
+        let bytes = 4 * Self::floats(outputs) * u64::from(size[0]) * u64::from(size[1]);
+        Ok(Self { buffer: Buffer::storage(device, "picture", bytes)?, outputs, size })
+    }
+
+    /// Floats of a pixel.
+    fn floats(outputs: Outputs) -> u64 {
+        4 + 3 * u64::from(outputs.normal) + u64::from(outputs.depth)
+    }
+
+    /// Number of pixels.
+    pub fn pixels(&self) -> u64 {
+        u64::from(self.size[0]) * u64::from(self.size[1])
+    }
+
+    fn info(&self) -> TargetInfo {
+        TargetInfo { name: "picture", format: Format::R32_SFLOAT, bytes: self.buffer.size() }
+    }
+}
+
+impl Pyramids {
+    /// The targets of `variant` at `size` px.
+    pub fn new(device: &Arc<Device>, variant: &Variant, size: [u32; 2]) -> Result<Self> {
+        let picture = PictureBuffer::new(device, variant.outputs, size)?;
+        let samples: u64 = (0..levels(size)).map(|level| level_pixels(size, level)).sum();
+        let bytes = 4 * Self::floats(variant) * samples;
+        Ok(Self {
+            nearest: Buffer::storage(device, "nearest", 8 * picture.pixels())?,
+            pulled: Buffer::storage(device, "pulled", bytes)?,
+            pushed: Buffer::storage(device, "pushed", bytes)?,
+            picture,
+        })
+    }
+
+    /// Floats of a sample.
+    fn floats(variant: &Variant) -> u64 {
+        if variant.sums_colours() { 12 } else { 9 }
+    }
+
+    /// Number of levels: up to one of a single pixel.
+    pub fn levels(&self) -> u32 {
+        levels(self.picture.size)
+    }
+
+    /// Number of pixels of a level.
+    pub fn level_pixels(&self, level: u32) -> u64 {
+        level_pixels(self.picture.size, level)
+    }
+
+    /// Number of the picture's pixels.
+    pub fn pixels(&self) -> u64 {
+        self.picture.pixels()
+    }
+
+    /// Every target that there is.
+    pub fn list(&self) -> Vec<TargetInfo> {
+        let info = |name, buffer: &Buffer, format| TargetInfo { name, format, bytes: buffer.size() };
+        let nearest = info("nearest", &self.nearest, Format::R64_UINT);
+        let samples = [("pulled", &self.pulled), ("pushed", &self.pushed)];
+        let samples = samples.map(|(name, buffer)| info(name, buffer, Format::R32_SFLOAT));
+        [nearest].into_iter().chain(samples).chain([self.picture.info()]).collect()
+    }
+}
+
+fn levels(size: [u32; 2]) -> u32 {
+    let longest = size[0].max(size[1]);
+    1 + longest.next_power_of_two().trailing_zeros()
+}
+
+fn level_pixels(size: [u32; 2], level: u32) -> u64 {
+    let [width, height] = size.map(|side| u64::from(side.div_ceil(1 << level)));
+    width * height
 }

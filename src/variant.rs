@@ -1,9 +1,10 @@
 //! What decides which pipelines and targets a frame needs.
 
+use crate::pull_push::Rules;
 use crate::renderer::RenderOptions;
 use crate::scene::{ColourStream, Streams};
 use crate::settings::{Alpha, Cull, Settings, Shading, Widen};
-use crate::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Visibility};
+use crate::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
 use crate::vk::Constants;
 use crate::vk::shaders::constant;
 
@@ -26,6 +27,8 @@ pub struct Variant {
     pub confetti: bool,
     /// Which splats a pixel sees.
     pub visibility: Visibility,
+    /// Points, a pyramid of them, and its rules.
+    pub pull_push: Option<Rules>,
     /// What the sums are divided by.
     pub normalization: Normalization,
     /// Kernels are multiplied by the scene's normalization weights.
@@ -95,7 +98,9 @@ impl Variant {
         options: &RenderOptions,
         rasterizer: Rasterizer,
     ) -> Self {
-        let (shading, splatting) = (settings.shading, settings.splatting);
+        let shading = settings.shading;
+        // Points are none of the splats that could be chosen.
+        let splatting = if settings.pull_push.is_some() { Splatting::default() } else { settings.splatting };
         let wants_colour = matches!(shading, Shading::Lit | Shading::Colour);
         let shade_splats = shading == Shading::Lit && splatting.shade == Shade::Splat;
         let by_surfel = splatting.normalization == Normalization::Surfel && shading != Shading::Overlap;
@@ -110,6 +115,7 @@ impl Variant {
             footprint: splatting.footprint,
             confetti: splatting.kernel != Kernel::Gaussian,
             visibility: splatting.visibility,
+            pull_push: settings.pull_push.map(|pull_push| pull_push.rules),
             // How many there are, or what they weigh, is never divided.
             normalization: match shading {
                 Shading::Overlap | Shading::Weight => Normalization::Pixel,
@@ -123,7 +129,7 @@ impl Variant {
             normals: lit_pixels || shading == Shading::Normal || options.outputs.normal,
             depth: shading == Shading::Depth || options.outputs.depth,
             colours: if wants_colour { streams.colours } else { ColourStream::None },
-            coverage: settings.alpha == Alpha::Coverage,
+            coverage: settings.alpha == Alpha::Coverage && settings.pull_push.is_none(),
             shading,
             lights: if shading == Shading::Lit { settings.lighting.directional.len() as u32 } else { 0 },
             outputs: options.outputs,
@@ -170,6 +176,7 @@ impl Variant {
             .with(constant::CORNERS, self.corners)
             .with(constant::SHADE_SPLATS, self.shade_splats)
             .with(constant::NEAREST, self.visibility == Visibility::Nearest)
+            .with(constant::PAPER, self.pull_push == Some(Rules::Paper))
             .with(constant::OVERLAP, self.shading == Shading::Overlap)
             .with(constant::WIDEN_SMALL, self.widen_small)
             .with(constant::COUNT, self.count)

@@ -121,8 +121,19 @@ fn target(target: &TargetInfo) -> Value {
 }
 
 fn settings(settings: &Settings) -> Value {
-    let Settings { splatting, cutoff, lowpass, widen, epsilon, cull, alpha, shading, background, lighting } =
-        settings;
+    let Settings {
+        splatting,
+        pull_push: _,
+        cutoff,
+        lowpass,
+        widen,
+        epsilon,
+        cull,
+        alpha,
+        shading,
+        background,
+        lighting,
+    } = settings;
     let Splatting { footprint, kernel, filter, visibility, normalization, shade } = splatting;
     json!({
         "footprint": footprint.name(), "kernel": kernel.to_string(), "filter": filter.name(),

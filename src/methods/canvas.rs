@@ -1,11 +1,12 @@
 //! Passes with the targets that they write.
 
+use super::pull_push::PullPush;
 use super::{blended, nearest};
 use crate::error::Result;
-use crate::passes::{PixelSet, SplatLayout, Splats};
+use crate::passes::{PixelSet, PyramidSet, SplatLayout, Splats};
 use crate::picture::Picture;
 use crate::splatting::Visibility;
-use crate::targets::{Buffers, Images, TargetInfo};
+use crate::targets::{Buffers, Images, Pyramids, TargetInfo};
 use crate::variant::{Rasterizer, Variant};
 use crate::vk::{Buffer, DescriptorSet, Device, Recorder};
 use std::sync::Arc;
@@ -52,6 +53,7 @@ enum Kind {
     DrawNearest(Arc<nearest::Draw>),
     ComputeBlended(Arc<blended::Compute>),
     ComputeNearest(Arc<nearest::Compute>),
+    PullPush(Arc<PullPush>),
 }
 
 /// Targets with the passes that write them.
@@ -64,6 +66,7 @@ pub struct Canvas {
 enum Targets {
     Images(Arc<Images>),
     Buffers(Arc<Buffers>),
+    Pyramids(Arc<Pyramids>),
 }
 
 /// Passes with their views of some targets. Views go before what they view.
@@ -87,6 +90,10 @@ struct OnBuffers<P: Computed> {
 impl Pipelines {
     /// Makes the pipelines.
     pub fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self> {
+        if variant.pull_push.is_some() {
+            return PullPush::new(device, layout, variant)
+                .map(|passes| Self(Kind::PullPush(Arc::new(passes))));
+        }
         let alone = variant.visibility == Visibility::Nearest;
         Ok(Self(match (variant.rasterizer, alone) {
             (Rasterizer::Draw, false) => Kind::DrawBlended(made(device, layout, variant, Drawn::new)?),
@@ -116,6 +123,13 @@ impl Pipelines {
             Kind::DrawNearest(passes) => on_images(device, frame, passes, images()?),
             Kind::ComputeBlended(passes) => on_buffers(device, layout, frame, passes, buffers()?),
             Kind::ComputeNearest(passes) => on_buffers(device, layout, frame, passes, buffers()?),
+            Kind::PullPush(passes) => {
+                let targets = Pyramids::new(device, variant, size).map(Arc::new)?;
+                let set = PyramidSet::new(device, layout, &targets)?;
+                let frame = passes.frame_view(device, frame)?;
+                let recorded = OnPyramids { set, frame, targets: targets.clone(), passes: passes.clone() };
+                Ok(Canvas { recorded: Box::new(recorded), targets: Targets::Pyramids(targets) })
+            }
         }
     }
 }
@@ -153,6 +167,19 @@ fn on_buffers<P: Computed + 'static>(
     Ok(Canvas { recorded: Box::new(recorded), targets: Targets::Buffers(targets) })
 }
 
+struct OnPyramids {
+    set: PyramidSet,
+    frame: DescriptorSet,
+    targets: Arc<Pyramids>,
+    passes: Arc<PullPush>,
+}
+
+impl Recorded for OnPyramids {
+    fn record(&self, rec: &mut Recorder<'_>, splats: &Splats) {
+        self.passes.record(rec, splats, &self.frame, &self.set, &self.targets);
+    }
+}
+
 impl<P: Drawn> Recorded for OnImages<P> {
     fn record(&self, rec: &mut Recorder<'_>, splats: &Splats) {
         self.passes.record(rec, splats, &self.views, &self.targets);
@@ -176,6 +203,7 @@ impl Canvas {
         match &self.targets {
             Targets::Images(targets) => targets.list(),
             Targets::Buffers(targets) => targets.list(),
+            Targets::Pyramids(targets) => targets.list(),
         }
     }
 
@@ -183,7 +211,8 @@ impl Canvas {
     pub fn make_readback(&self, device: &Arc<Device>) -> Result<Vec<Buffer>> {
         match &self.targets {
             Targets::Images(targets) => targets.make_readback(device),
-            Targets::Buffers(targets) => targets.make_readback(device),
+            Targets::Buffers(targets) => targets.picture.make_readback(device),
+            Targets::Pyramids(targets) => targets.picture.make_readback(device),
         }
     }
 
@@ -191,7 +220,8 @@ impl Canvas {
     pub fn record_readback(&self, rec: &mut Recorder<'_>, readback: &[Buffer]) {
         match &self.targets {
             Targets::Images(targets) => targets.record_readback(rec, readback),
-            Targets::Buffers(targets) => targets.record_readback(rec, readback),
+            Targets::Buffers(targets) => targets.picture.record_readback(rec, readback),
+            Targets::Pyramids(targets) => targets.picture.record_readback(rec, readback),
         }
     }
 
@@ -199,7 +229,8 @@ impl Canvas {
     pub fn picture(&self, readback: &[Buffer]) -> Picture {
         match &self.targets {
             Targets::Images(targets) => targets.picture(readback),
-            Targets::Buffers(targets) => targets.picture(readback),
+            Targets::Buffers(targets) => targets.picture.picture(readback),
+            Targets::Pyramids(targets) => targets.picture.picture(readback),
         }
     }
 }

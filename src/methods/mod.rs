@@ -7,6 +7,7 @@ pub mod confetti;
 pub mod nearest;
 pub mod object_ewa;
 pub mod perspective_ewa;
+pub mod pull_push;
 pub mod sprites;
 
 pub use canvas::{Canvas, Pipelines};

@@ -133,7 +133,7 @@ impl ComputeNormalize {
         let read = [Some(&targets.visibility), Some(&targets.sums0), targets.sums1.as_ref()];
         let read = read.into_iter().chain([targets.coverage.as_ref()]).flatten();
         let mut uses: Vec<_> = read.map(|buffer| buffer.with(Access::COMPUTE_READ)).collect();
-        uses.push(targets.picture.with(Access::COMPUTE_WRITE));
+        uses.push(targets.picture.buffer.with(Access::COMPUTE_WRITE));
         let grid = grid_over(targets.pixels());
         rec.pass("normalize", &uses, |enc| enc.dispatch(&self.pipeline, &[frame, &pixels.0], [0; 2], grid));
     }

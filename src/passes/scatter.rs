@@ -27,7 +27,7 @@ impl PixelSet {
         let sums1 = targets.sums1.as_ref().unwrap_or(&targets.sums0);
         let tiles = targets.tiles.as_ref().unwrap_or(&targets.sums0);
         let coverage = targets.coverage.as_ref().unwrap_or(&targets.sums0);
-        let buffers = [&targets.visibility, &targets.sums0, sums1, &targets.picture, tiles, coverage];
+        let buffers = [&targets.visibility, &targets.sums0, sums1, &targets.picture.buffer, tiles, coverage];
         let bindings = buffers.map(|buffer| Binding::Storage(buffer, 0, buffer.size()));
         DescriptorSet::new(device, &layout.pixels, &bindings).map(Self)
     }

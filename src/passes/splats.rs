@@ -1,5 +1,6 @@
 //! The splats between the footprint pass, which writes them, and the passes that rasterize them.
 
+use super::pyramid::pyramid_layout;
 use super::scatter::pixel_layout;
 use crate::error::Result;
 use crate::scene::{ClipWindow, Scene};
@@ -17,6 +18,7 @@ use std::sync::Arc;
 pub struct SplatLayout {
     pub(super) splats: SetLayout,
     pub(super) pixels: SetLayout,
+    pub(super) pyramids: SetLayout,
 }
 
 /// A splat a surfel, with descriptor sets over windows of surfels and splats.
@@ -67,7 +69,11 @@ impl SplatLayout {
             storage(compute | ShaderStageFlags::FRAGMENT),          // screen clips
             storage(compute | vertex),                              // weights
         ];
-        Ok(Self { splats: SetLayout::new(device, &bindings)?, pixels: pixel_layout(device)? })
+        Ok(Self {
+            splats: SetLayout::new(device, &bindings)?,
+            pixels: pixel_layout(device)?,
+            pyramids: pyramid_layout(device)?,
+        })
     }
 }
 

@@ -31,7 +31,7 @@ impl Tiles {
     ) {
         let tiles = targets.tiles.iter().map(|tiles| tiles.with(Access::COMPUTE_WRITE));
         let uses: Vec<_> = tiles.chain([targets.visibility.with(Access::COMPUTE_READ)]).collect();
-        let workgroups = Buffers::tiles(targets.size).div_ceil(WORKGROUP) as u32;
+        let workgroups = Buffers::tiles(targets.picture.size).div_ceil(WORKGROUP) as u32;
         rec.pass("tiles", &uses, |enc| enc.dispatch(&self.0, &[frame, &pixels.0], [0; 2], [workgroups, 1]));
     }
 }

@@ -69,6 +69,12 @@ impl<'a> Encoder<'a> {
         self.zero_range(buffer, 0, vk::WHOLE_SIZE);
     }
 
+    /// Sets every bit of `buffer` to 1.
+    pub fn ones(&mut self, buffer: &Buffer) {
+        // SAFETY: recorded outside a render pass; the buffer is alive and can be copied to.
+        unsafe { self.device.raw.cmd_fill_buffer(self.cmd, buffer.raw, 0, vk::WHOLE_SIZE, u32::MAX) };
+    }
+
     /// Sets `size` bytes of `buffer` from `offset` on to 0; both are multiples of 4.
     pub fn zero_range(&mut self, buffer: &Buffer, offset: u64, size: u64) {
         // SAFETY: recorded outside a render pass; the buffer is alive and can be copied to.

@@ -215,6 +215,7 @@ impl Render {
     pub fn settings(&self) -> Settings {
         let (look, preset) = (&self.look, self.method.settings());
         Settings {
+            pull_push: None,
             splatting: self.axes.over(preset.splatting),
             cutoff: look.cutoff.unwrap_or(preset.cutoff),
             lowpass: look.lowpass.unwrap_or(preset.lowpass),

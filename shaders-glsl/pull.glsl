@@ -1,0 +1,59 @@
+// Pull: a coarser pixel is the mean of the discs below it that are in front and cover its centre (marroquim2008 §3.2).
+#version 450
+#extension GL_GOOGLE_include_directive : require
+
+#ifdef COMPUTE
+
+#include "lib/frame.glsl"
+#include "lib/pyramid.glsl"
+#include "lib/lens.glsl"
+
+layout(local_size_x = 64) in;
+
+void main() {
+    uint level = pass.level, finer = level - 1;
+    ivec2 at = own_pixel(level);
+    if (at.x < 0) return;
+    vec2 own = level_centre(level, at);
+    uint start = level_start(finer);
+
+    Sample below[4];
+    float nearest = 1e38, far = 0.0;
+    for (int k = 0; k < 4; k++) {
+        ivec2 child = 2 * at + ivec2(k & 1, k >> 1);
+        below[k] = is_within(finer, child) ? load_pulled(place_in(finer, start, child)) : NOTHING;
+        if (below[k].near == 0.0) continue;
+        vec2 centre = level_centre(finer, child) + below[k].displacement;
+        below[k].displacement = centre - own;
+        if (!(radii2(below[k], centre, own - centre, 0.0) <= 1.0)) {
+            below[k].near = 0.0;
+        } else if (below[k].near < nearest) {
+            nearest = below[k].near;
+            far = below[k].far;
+        }
+    }
+    Sample mean = NOTHING;
+    float count = 0.0;
+    for (int k = 0; k < 4; k++) {
+        Sample s = below[k];
+        if (s.near == 0.0 || s.near > far) continue;
+        count += 1.0;
+        mean.far = max(mean.far, s.far);
+        mean.depth += s.depth;
+        mean.radius += s.radius;
+        mean.displacement += s.displacement;
+        mean.normal += s.normal;
+        mean.colour += s.colour;
+    }
+    if (count > 0.0) {
+        mean.near = nearest;
+        mean.depth /= count;
+        mean.radius /= count;
+        mean.displacement /= count;
+        mean.normal = dot(mean.normal, mean.normal) > 0.0 ? normalize(mean.normal) : vec3(0.0);
+        mean.colour /= count;
+    }
+    store_pulled(place_in(level, level_start(level), at), mean);
+}
+
+#endif

@@ -1,0 +1,101 @@
+// Push: a finer pixel from the coarser ones about it and from its neighbours (marroquim2008 §3.3).
+#version 450
+#extension GL_GOOGLE_include_directive : require
+
+#ifdef COMPUTE
+
+#include "lib/frame.glsl"
+#include "lib/pyramid.glsl"
+#include "lib/lens.glsl"
+
+layout(local_size_x = 64) in;
+
+// What a disc's variance is widened by on level 0, px²; four times as much a level. Narrower ones leave holes between themselves.
+const float WIDENING = 0.25;
+// ln of the weight at a disc's rim, negated: σ is a third of the radius; half of it as published.
+const float RIM = 4.5, PAPER_RIM = 2.0;
+
+// Candidate k for pixel `at`: the four nearest coarser pixels, then the pixel and its neighbours, row by row. Its displacement is from `own`.
+Sample candidate(int k, uint level, uint start, uint above, ivec2 at, vec2 own) {
+    bool coarse = k < 4;
+    uint of = coarse ? level + 1 : level;
+    ivec2 side = 2 * (at & 1) - 1;
+    ivec2 place = coarse ? at / 2 + side * ivec2(k & 1, k >> 1) : at + ivec2((k - 4) % 3, (k - 4) / 3) - 1;
+    if (of >= pass.levels || !is_within(of, place)) return NOTHING;
+    Sample s = NOTHING;
+    if (coarse) s = load_pushed(place_in(of, above, place));
+    else s = load_pulled(place_in(of, start, place));
+    s.displacement += level_centre(of, place) - own;
+    return s;
+}
+
+void main() {
+    uint level = pass.level;
+    ivec2 at = own_pixel(level);
+    if (at.x < 0) return;
+    vec2 own = level_centre(level, at);
+    uint start = level_start(level), above = level_start(level + 1);
+    float widening = PAPER ? 0.0 : WIDENING * float(1u << (2 * level));
+    int count = PAPER ? 4 : 13;
+
+    Sample point = load_pulled(place_in(level, start, at));
+    float weights[13], nearest = 1e38, far = 0.0;
+    for (int k = 0; k < count; k++) {
+        Sample s = candidate(k, level, start, above, at, own);
+        weights[k] = 0.0;
+        if (s.near == 0.0) continue;
+        float m2 = radii2(s, own + s.displacement, -s.displacement, widening);
+        if (!(m2 <= 1.0)) continue;
+        weights[k] = exp(-(PAPER ? PAPER_RIM : RIM) * m2);
+        if (s.near < nearest) {
+            nearest = s.near;
+            far = s.far;
+        }
+    }
+    // On the finest level a point is seen where its disc covers the pixel's centre; elsewhere it is a source alone.
+    if (!PAPER && level == 0 && weights[8] == 0.0) point.near = 0.0;
+
+    Sample mean = NOTHING;
+    float total = 0.0;
+    for (int k = 0; k < count; k++) {
+        if (weights[k] == 0.0) continue;
+        Sample s = candidate(k, level, start, above, at, own);
+        if (!PAPER && s.near > far) continue;
+        float w = weights[k];
+        total += w;
+        mean.near += w * s.near;
+        mean.far += w * s.far;
+        // Discs carry the depths of their centres; a pixel of the picture shows that of its own.
+        mean.depth += w * (!PAPER && level == 0 ? depth_at(s, own + s.displacement, -s.displacement) : s.depth);
+        mean.radius += w * s.radius;
+        mean.displacement += w * s.displacement;
+        mean.normal += w * s.normal;
+        mean.colour += w * s.colour;
+    }
+    if (total > 0.0) {
+        mean.near /= total;
+        mean.far /= total;
+        mean.depth /= total;
+        mean.radius /= total;
+        mean.displacement /= total;
+        mean.normal = dot(mean.normal, mean.normal) > 0.0 ? normalize(mean.normal) : vec3(0.0);
+        mean.colour /= total;
+    }
+    bool known = point.near > 0.0, made = total > 0.0;
+    float limit = mean.far;
+    if (PAPER) {
+        // Behind is what is behind the coarser pixel that holds it.
+        Sample holder = candidate(0, level, start, above, at, own);
+        bool behind = holder.near > 0.0 && point.near > holder.far;
+        if (!known || behind) point = mean;
+    } else if (!known || made && point.near > mean.far) {
+        point = mean;
+    } else if (level == 0 && made && mean.near <= point.far) {
+        point.colour = mean.colour;
+        point.normal = mean.normal;
+        point.depth = mean.depth;
+    }
+    store_pushed(place_in(level, start, at), point);
+}
+
+#endif

@@ -1,0 +1,55 @@
+//! The passes of pull–push: *Efficient Image Reconstruction for Point-Based and Line-Based Rendering*, Marroquim, Kraus, Cavalcanti,
+//! Computers & Graphics 2008.
+//!
+//! ```text
+//! surfels ─ project → the nearest point of each pixel ─ fetch → level 0
+//! level 0 ─ pull → 1 ─ pull → … ─ pull → top           means of what is in front, fine to coarse
+//! picture ← shade ← 0 ← push ← 1 ← push ← … ← push     holes filled, hidden points replaced, coarse to fine
+//! ```
+
+use crate::error::Result;
+use crate::passes::{Project, Pull, Push, PyramidSet, Shade, SplatLayout, Splats};
+use crate::targets::Pyramids;
+use crate::variant::Variant;
+use crate::vk::{Buffer, DescriptorSet, Device, Recorder};
+use std::sync::Arc;
+
+/// The passes.
+pub struct PullPush {
+    project: Project,
+    pull: Pull,
+    push: Push,
+    shade: Shade,
+}
+
+impl PullPush {
+    /// Makes the pipelines.
+    pub fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self> {
+        Ok(Self {
+            project: Project::new(device, layout, variant)?,
+            pull: Pull::new(device, layout, variant)?,
+            push: Push::new(device, layout, variant)?,
+            shade: Shade::new(device, layout, variant)?,
+        })
+    }
+
+    /// Their view of `frame`, which must outlive it.
+    pub fn frame_view(&self, device: &Arc<Device>, frame: &Buffer) -> Result<DescriptorSet> {
+        self.shade.view(device, frame)
+    }
+
+    /// Records a frame.
+    pub fn record(
+        &self,
+        rec: &mut Recorder<'_>,
+        splats: &Splats,
+        frame: &DescriptorSet,
+        set: &PyramidSet,
+        targets: &Pyramids,
+    ) {
+        self.project.record(rec, splats, set, targets);
+        self.pull.record(rec, frame, set, targets);
+        self.push.record(rec, frame, set, targets);
+        self.shade.record(rec, frame, set, targets);
+    }
+}

@@ -1,0 +1,36 @@
+//! Pull: a level of the pulled pyramid → the next coarser one (marroquim2008 §3.2; `pull.glsl`).
+
+use super::normalize::{frame_layout, grid_over};
+use super::{PyramidSet, SplatLayout};
+use crate::error::Result;
+use crate::targets::Pyramids;
+use crate::variant::Variant;
+use crate::vk::{Access, ComputePipeline, DescriptorSet, Device, Recorder, shaders};
+use std::sync::Arc;
+
+/// The pull pass.
+pub struct Pull(ComputePipeline);
+
+impl Pull {
+    /// The pass for `variant`.
+    pub fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self> {
+        let sets = [&frame_layout(device)?, &layout.pyramids];
+        ComputePipeline::new(device, &sets, shaders::PULL_COMPUTE, &variant.constants()).map(Self)
+    }
+
+    /// Level 0 of `targets.pulled` → all others. `frame` is a set of the frame's numbers.
+    pub fn record(
+        &self,
+        rec: &mut Recorder<'_>,
+        frame: &DescriptorSet,
+        set: &PyramidSet,
+        targets: &Pyramids,
+    ) {
+        for level in 1..targets.levels() {
+            rec.pass("pull", &[targets.pulled.with(Access::COMPUTE_WRITE)], |enc| {
+                let push = [level, targets.levels()];
+                enc.dispatch(&self.0, &[frame, &set.0], push, grid_over(targets.level_pixels(level)));
+            });
+        }
+    }
+}

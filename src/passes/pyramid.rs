@@ -1,0 +1,25 @@
+//! The descriptor set that project, fetch, pull, push and shade share (`lib/pyramid.glsl`).
+
+use super::SplatLayout;
+use crate::error::Result;
+use crate::targets::Pyramids;
+use crate::vk::{Binding, DescriptorSet, Device, SetLayout};
+use ash::vk::{DescriptorType, ShaderStageFlags};
+use std::sync::Arc;
+
+/// Layout of descriptor set 1 of pull–push: nearest, pulled, pushed, picture.
+pub(super) fn pyramid_layout(device: &Arc<Device>) -> Result<SetLayout> {
+    SetLayout::new(device, &[(DescriptorType::STORAGE_BUFFER, ShaderStageFlags::COMPUTE); 4])
+}
+
+/// Pull–push's view of its targets.
+pub struct PyramidSet(pub(super) DescriptorSet);
+
+impl PyramidSet {
+    /// A view of `targets`, which must outlive it.
+    pub fn new(device: &Arc<Device>, layout: &SplatLayout, targets: &Pyramids) -> Result<Self> {
+        let buffers = [&targets.nearest, &targets.pulled, &targets.pushed, &targets.picture.buffer];
+        let bindings = buffers.map(|buffer| Binding::Storage(buffer, 0, buffer.size()));
+        DescriptorSet::new(device, &layout.pyramids, &bindings).map(Self)
+    }
+}

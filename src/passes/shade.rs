@@ -1,0 +1,47 @@
+//! Shade: the final level 0 → picture, normal, depth (marroquim2008 §3.4; `shade.glsl`).
+
+use super::normalize::{frame_layout, grid_over};
+use super::{PyramidSet, SplatLayout};
+use crate::error::Result;
+use crate::targets::Pyramids;
+use crate::variant::Variant;
+use crate::vk::{
+    Access, Binding, Buffer, ComputePipeline, DescriptorSet, Device, Recorder, SetLayout, shaders,
+};
+use std::sync::Arc;
+
+/// The shade pass.
+pub struct Shade {
+    frame_layout: SetLayout,
+    pipeline: ComputePipeline,
+}
+
+impl Shade {
+    /// The pass for `variant`.
+    pub fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self> {
+        let frame_layout = frame_layout(device)?;
+        let sets = [&frame_layout, &layout.pyramids];
+        let pipeline = ComputePipeline::new(device, &sets, shaders::SHADE_COMPUTE, &variant.constants())?;
+        Ok(Self { frame_layout, pipeline })
+    }
+
+    /// The set of the frame's numbers; `frame` must outlive it.
+    pub fn view(&self, device: &Arc<Device>, frame: &Buffer) -> Result<DescriptorSet> {
+        DescriptorSet::new(device, &self.frame_layout, &[Binding::Uniform(frame)])
+    }
+
+    /// Level 0 of `targets.pushed` → `targets.picture`.
+    pub fn record(
+        &self,
+        rec: &mut Recorder<'_>,
+        frame: &DescriptorSet,
+        set: &PyramidSet,
+        targets: &Pyramids,
+    ) {
+        let uses =
+            [targets.pushed.with(Access::COMPUTE_READ), targets.picture.buffer.with(Access::COMPUTE_WRITE)];
+        rec.pass("shade", &uses, |enc| {
+            enc.dispatch(&self.pipeline, &[frame, &set.0], [0; 2], grid_over(targets.pixels()));
+        });
+    }
+}
