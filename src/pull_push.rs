@@ -15,3 +15,13 @@ pub enum Rules {
     /// Perspective ellipses, intervals of two radii, and means over the nearest surface alone, of coarser pixels and neighbours.
     Robust,
 }
+
+impl Rules {
+    /// As reports have it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Paper => "paper",
+            Self::Robust => "robust",
+        }
+    }
+}

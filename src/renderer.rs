@@ -85,7 +85,8 @@ struct Present {
 /// Splats of the present scene.
 struct Resident {
     scene: u64,
-    rasterizer: Rasterizer,
+    /// What it makes splats for, if any.
+    rasterizer: Option<Rasterizer>,
     splats: Splats,
 }
 
@@ -168,12 +169,13 @@ impl Renderer {
         let block = frame(camera, settings, self.options.size, scene.origin(), scene.bounds())?;
         let blends = settings.splatting.visibility != Visibility::Nearest;
         let rasterizer = match settings.pull_push {
-            Some(_) => projects(&self.device)?,
+            Some(_) => projects(&self.device, &self.options)?,
             None => rasterizer_for(&self.device, &self.options, blends, settings.alpha)?,
         };
         let perspective = camera.projection()?.perspective;
         let variant = Variant::new(scene.streams(), perspective, settings, &self.options, rasterizer);
-        self.make_resident(scene, variant.rasterizer)?;
+        let splats = variant.pull_push.is_none().then_some(variant.rasterizer);
+        self.make_resident(scene, splats)?;
         self.make_present(variant, read)?;
         self.frame.bytes_mut().copy_from_slice(bytemuck::bytes_of(&block));
 
@@ -188,11 +190,12 @@ impl Renderer {
         })?;
         Ok(FrameReport {
             pass_times: self.commands.pass_times()?,
-            counts: variant.count.then(|| SplatCounts::new(scene.count(), resident.splats.counts())),
+            counts: (variant.count && variant.pull_push.is_none())
+                .then(|| SplatCounts::new(scene.count(), resident.splats.counts())),
         })
     }
 
-    fn make_resident(&mut self, scene: &Scene, rasterizer: Rasterizer) -> Result<()> {
+    fn make_resident(&mut self, scene: &Scene, rasterizer: Option<Rasterizer>) -> Result<()> {
         if self
             .resident
             .as_ref()
@@ -231,13 +234,16 @@ impl Renderer {
 }
 
 /// What projects points: compute shaders.
-fn projects(device: &Device) -> Result<Rasterizer> {
-    match device.capabilities().int64_atomics {
-        true => Ok(Rasterizer::Compute),
-        false => Err(Error::Usage(format!(
-            "pull-push needs 64-bit atomics in buffers, which {} does not have: choose a method that splats",
-            device.description().name
+fn projects(device: &Device, options: &RenderOptions) -> Result<Rasterizer> {
+    let name = &device.description().name;
+    match options.rasterizer {
+        Some(Rasterizer::Draw) => {
+            Err(Error::Usage("pull-push is computed alone: leave the rasterizer open".into()))
+        }
+        _ if !device.capabilities().int64_atomics => Err(Error::Usage(format!(
+            "pull-push needs 64-bit atomics in buffers, which {name} does not have: choose a method that splats"
         ))),
+        _ => Ok(Rasterizer::Compute),
     }
 }
 

@@ -70,6 +70,13 @@ impl Settings {
 
     /// Refuses what no frame can be made of.
     pub fn check(&self) -> Result<()> {
+        if self.pull_push.is_some() && (self.splatting != Splatting::default() || self.alpha != Alpha::Mask) {
+            return Err(Error::Usage(
+                "pull-push makes no splats: it has no footprint, kernel, filter, visibility, normalization or shade to choose, and a \
+                 mask as α"
+                    .into(),
+            ));
+        }
         self.splatting.check()?;
         let positive = |name: &str, value: f32| match value.is_finite() && value > 0.0 {
             true => Ok(()),

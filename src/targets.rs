@@ -309,6 +309,13 @@ impl Pyramids {
         if variant.sums_colours() { 12 } else { 9 }
     }
 
+    /// What the buffers take; a level has a quarter of the pixels of the one below.
+    pub fn per_pixel(variant: &Variant) -> PerPixel {
+        let samples = 4.0 / 3.0 * 4.0 * Self::floats(variant) as f64;
+        let picture = 4.0 * PictureBuffer::floats(variant.outputs) as f64;
+        vec![("nearest", 8.0), ("pulled", samples), ("pushed", samples), ("picture", picture)]
+    }
+
     /// Number of levels: up to one of a single pixel.
     pub fn levels(&self) -> u32 {
         levels(self.picture.size)

@@ -96,20 +96,20 @@ fn every_case_agrees_or_says_why_not() {
     });
     let sweeps = sweeps.concat();
     sweeps.iter().for_each(print);
-    for method in &Method::ALL {
+    for method in &Method::SPLATTING {
         println!("\n{}\n| case | parameter | colour | normal | depth | beyond float32 |", method.name);
         println!("|---|---|---|---|---|---|");
         sweeps.iter().for_each(|sweep| summarize(sweep, method));
     }
     for sweep in &sweeps {
         sweep.points.iter().for_each(|point| check(sweep, point));
-        for method in Method::ALL {
+        for method in Method::SPLATTING {
             let [values, others] = ["draw", "compute"].map(|variant| {
                 let own = |point: &&SweepPoint| point.contender.method == method.name;
                 let by = sweep.points.iter().filter(own).filter(|point| point.contender.variant == variant);
                 by.map(|point| point.value).collect::<Vec<_>>()
             });
-            let least = if method == Method::ALL[0] { 7 } else { 2 };
+            let least = if method == Method::SPLATTING[0] { 7 } else { 2 };
             let ascending = values.is_sorted_by(|a, b| a < b);
             assert!(values.len() >= least && ascending, "{} {}: {values:?}", sweep.name, method.name);
             assert_eq!(values, others, "{} {}", sweep.name, method.name);
@@ -136,7 +136,7 @@ fn what_a_device_refuses_is_told() {
     let sweeps = run(&device, &options, &()).unwrap();
     let [accumulator, size] = &sweeps[..] else { panic!("{} sweeps", sweeps.len()) };
     let reasons = |sweep: &Sweep| {
-        let first = sweep.points.iter().filter(|point| point.contender.method == Method::ALL[0].name);
+        let first = sweep.points.iter().filter(|point| point.contender.method == Method::SPLATTING[0].name);
         first.map(|point| point.refused.clone()).collect::<Vec<_>>()
     };
     let says =

@@ -8,13 +8,17 @@ mod support {
 use glam::DVec3;
 use support::gpu::{assert_silent, device, render};
 use support::truth::{Differences, Truth};
+use surfel::methods::{passes, pull_push};
 use surfel::pull_push::{PullPush, Rules};
 use surfel::reference::pull_push::{Pyramid, Reconstruction};
 use surfel::reference::{Frame, pull_push as reference};
 use surfel::scenes::bumpy_sphere::Hit;
-use surfel::settings::{Cull, Settings, Shading};
+use surfel::settings::{Alpha, Cull, Settings, Shading};
+use surfel::splatting::Footprint;
+use surfel::targets::Pyramids;
+use surfel::variant::Variant;
 use surfel::vk::DeviceLimits;
-use surfel::{Outputs, Picture, RenderOptions, scenes};
+use surfel::{Outputs, Picture, Rasterizer, RenderOptions, Renderer, Scene, scenes};
 
 /// How far behind the surface a pixel shows what it should hide.
 const LEAK: f64 = 0.02;
@@ -171,4 +175,67 @@ fn the_gpu_makes_the_references_picture() {
         }
     }
     assert_silent(&device);
+}
+
+#[test]
+fn passes_and_targets_are_those_that_are_told() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let surfels = scenes::open("scene:bumpy-sphere?points=2000&seed=1").unwrap();
+    let scene = Scene::upload(&device, &surfels).unwrap();
+    let truth = Truth::new(100);
+    let options = RenderOptions { size: truth.size(), profile: true, ..Default::default() };
+    let mut renderer = Renderer::new(&device, options).unwrap();
+    for method in [pull_push::METHOD, pull_push::PAPER] {
+        for shading in [Shading::Lit, Shading::Normal] {
+            let settings = Settings { shading, ..method.settings() };
+            let report = renderer.render(&scene, &truth.camera(), &settings).unwrap();
+            let variant = Variant::new(scene.streams(), true, &settings, &options, Rasterizer::Compute);
+            let timed = report.pass_times.iter().map(|time| time.label).filter(|label| *label != "clear");
+            assert_eq!(timed.collect::<Vec<_>>(), passes(&variant));
+            let told = Pyramids::per_pixel(&variant);
+            for (target, (name, bytes)) in renderer.targets().iter().zip(&told) {
+                let [made, told] = [target.bytes as f64, bytes * 1e4];
+                assert!(
+                    target.name == *name && made >= told && made < 1.1 * told + 65_536.0,
+                    "{target:?} {told}"
+                );
+            }
+            let coloured = told[1].1 == 64.0;
+            assert_eq!((renderer.targets().len(), coloured), (told.len(), shading == Shading::Lit));
+        }
+    }
+    // No splats are made.
+    assert!(renderer.splats().unwrap().bytes() < 10_000, "{}", renderer.splats().unwrap().bytes());
+    assert_silent(&device);
+}
+
+#[test]
+fn what_cannot_be_is_refused() {
+    let refused = |limits, options: RenderOptions, change: fn(&mut Settings)| {
+        let device = device(limits)?;
+        let truth = Truth::new(8);
+        let surfels = scenes::open("scene:bumpy-sphere?points=100&seed=1").unwrap();
+        let scene = Scene::upload(&device, &surfels).unwrap();
+        let mut settings = pull_push::METHOD.settings();
+        change(&mut settings);
+        let mut renderer = Renderer::new(&device, RenderOptions { size: truth.size(), ..options }).unwrap();
+        Some(renderer.render(&scene, &truth.camera(), &settings).unwrap_err().to_string())
+    };
+    let none = DeviceLimits { int64_atomics: Some(false), ..Default::default() };
+    let draw = RenderOptions { rasterizer: Some(Rasterizer::Draw), ..Default::default() };
+    let open = RenderOptions::default();
+    let Some(atomics) = refused(none, open, |_| {}) else { return };
+    assert!(atomics.contains("64-bit atomics"), "{atomics}");
+    let drawn = refused(DeviceLimits::default(), draw, |_| {}).unwrap();
+    assert!(drawn.contains("leave the rasterizer open"), "{drawn}");
+    let changes: [fn(&mut Settings); 2] = [
+        |settings| settings.alpha = Alpha::Coverage,
+        |settings| {
+            settings.splatting.footprint = Footprint::Affine;
+        },
+    ];
+    for change in changes {
+        let text = refused(DeviceLimits::default(), open, change).unwrap();
+        assert!(text.contains("pull-push makes no splats"), "{text}");
+    }
 }

@@ -59,9 +59,9 @@ fn preset(splatting: &Splatting) -> (Method, Vec<String>) {
         let pairs = own.named().into_iter().zip(preset.named()).filter(|(own, preset)| own != preset);
         pairs.map(|((axis, choice), _)| format!("{axis} {choice}")).collect::<Vec<_>>()
     };
-    let all = Method::ALL.map(|method| (method, changes(&method)));
+    let all = Method::SPLATTING.map(|method| (method, changes(&method)));
     let nearest = all.into_iter().min_by_key(|(_, changes)| changes.len());
-    nearest.unwrap_or((Method::ALL[0], Vec::new()))
+    nearest.unwrap_or((Method::SPLATTING[0], Vec::new()))
 }
 
 /// An engine with a scene in it, ready for frames of one size.
@@ -177,7 +177,7 @@ mod tests {
 
     #[test]
     fn a_contender_is_its_preset_or_the_nearest_with_what_is_changed() {
-        for method in Method::ALL {
+        for method in Method::SPLATTING {
             assert_eq!(named(method.splatting), method.name);
         }
         let default = Splatting::default();

@@ -6,7 +6,7 @@ use surfel::methods::{Method, passes};
 use surfel::scene::{ColourStream, Streams};
 use surfel::settings::{Settings, Shading};
 use surfel::splatting::{Filter, Splatting};
-use surfel::targets::{Buffers, Formats, PerPixel};
+use surfel::targets::{Buffers, Formats, PerPixel, Pyramids};
 use surfel::variant::Variant;
 use surfel::{Rasterizer, RenderOptions, Result};
 
@@ -18,13 +18,21 @@ pub fn run() -> Result<()> {
 }
 
 fn describe(text: &mut String, method: &Method) {
+    if method.pull_push.is_some() {
+        let variant = variant(&method.settings(), Rasterizer::Compute);
+        // Here and below: writing to a String cannot fail.
+        let _ = writeln!(text, "\n{}: {}", method.name, method.paper);
+        let _ = writeln!(text, "  settings --cull {}", method.cull.name());
+        let _ = writeln!(text, "  computed {}", passes(&variant).join(" → "));
+        let _ = writeln!(text, "           {}", told(&Pyramids::per_pixel(&variant)));
+        return;
+    }
     let Splatting { footprint, kernel, filter, visibility, normalization, shade } = method.splatting;
     let Method { cutoff, lowpass, widen, cull, .. } = method;
     let lowpass = match filter {
         Filter::None => String::new(),
         Filter::Screen | Filter::Object => format!(" --lowpass {lowpass} --widen {}", widen.name()),
     };
-    // Here and below: writing to a String cannot fail.
     let _ = writeln!(text, "\n{}: {}", method.name, method.paper);
     let _ = writeln!(
         text,

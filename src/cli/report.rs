@@ -123,7 +123,7 @@ fn target(target: &TargetInfo) -> Value {
 fn settings(settings: &Settings) -> Value {
     let Settings {
         splatting,
-        pull_push: _,
+        pull_push,
         cutoff,
         lowpass,
         widen,
@@ -135,6 +135,12 @@ fn settings(settings: &Settings) -> Value {
         lighting,
     } = settings;
     let Splatting { footprint, kernel, filter, visibility, normalization, shade } = splatting;
+    if let Some(pull_push) = pull_push {
+        return json!({
+            "rules": pull_push.rules.name(), "cull": cull.name(), "shading": shading.name(), "background": background,
+            "lighting": light(lighting),
+        });
+    }
     json!({
         "footprint": footprint.name(), "kernel": kernel.to_string(), "filter": filter.name(),
         "visibility": visibility.name(), "normalization": normalization.name(), "shade": shade.name(),

@@ -1,5 +1,5 @@
 //! One short file a method: its paper, its pipeline figure, and what it chooses along the axes of [`Splatting`]; and the passes that the
-//! choices lead to, [`blended`] or [`nearest`].
+//! choices lead to, [`blended`] or [`nearest`]; or a [`pull_push`] of points.
 
 pub mod blended;
 mod canvas;
@@ -12,6 +12,7 @@ pub mod sprites;
 
 pub use canvas::{Canvas, Pipelines};
 
+use crate::pull_push::PullPush;
 use crate::settings::{Cull, Settings, Widen};
 use crate::splatting::{Splatting, Visibility};
 use crate::variant::{Rasterizer, Variant};
@@ -23,8 +24,10 @@ pub struct Method {
     pub name: &'static str,
     /// Authors, title, year.
     pub paper: &'static str,
-    /// Its choice along each axis.
+    /// Its choice along each axis; of no use where it is one of `pull_push`.
     pub splatting: Splatting,
+    /// See [`Settings::pull_push`].
+    pub pull_push: Option<PullPush>,
     /// See [`Settings::cutoff`].
     pub cutoff: f32,
     /// See [`Settings::lowpass`].
@@ -36,9 +39,15 @@ pub struct Method {
 }
 
 impl Method {
-    /// Every preset.
-    pub const ALL: [Self; 5] =
+    /// Every preset that splats.
+    pub const SPLATTING: [Self; 5] =
         [perspective_ewa::METHOD, object_ewa::METHOD, sprites::METHOD, sprites::UNFILTERED, confetti::METHOD];
+
+    /// Every preset.
+    pub const ALL: [Self; 7] = {
+        let [a, b, c, d, e] = Self::SPLATTING;
+        [a, b, c, d, e, pull_push::METHOD, pull_push::PAPER]
+    };
 
     /// The preset of this name.
     pub fn named(name: &str) -> Option<Self> {
@@ -47,13 +56,14 @@ impl Method {
 
     /// The preset with these axes.
     pub fn of(splatting: &Splatting) -> Option<Self> {
-        Self::ALL.into_iter().find(|method| method.splatting == *splatting)
+        Self::SPLATTING.into_iter().find(|method| method.splatting == *splatting)
     }
 
     /// Its settings.
     pub fn settings(&self) -> Settings {
         Settings {
             splatting: self.splatting,
+            pull_push: self.pull_push,
             cutoff: self.cutoff,
             lowpass: self.lowpass,
             widen: self.widen,
@@ -65,6 +75,9 @@ impl Method {
 
 /// The passes of a frame, in their order; what only clears or reads back is none.
 pub fn passes(variant: &Variant) -> Vec<&'static str> {
+    if variant.pull_push.is_some() {
+        return vec!["project", "fetch", "pull", "push", "shade"];
+    }
     let computed = variant.rasterizer == Rasterizer::Compute;
     let list = match variant.visibility {
         Visibility::Nearest if computed => &["footprint", "nearest", "resolve", "normalize"][..],
@@ -93,6 +106,8 @@ mod tests {
         for method in Method::ALL {
             method.settings().check().unwrap();
             assert_eq!(Method::named(method.name), Some(method));
+        }
+        for method in Method::SPLATTING {
             assert_eq!(Method::of(&method.splatting), Some(method));
         }
     }

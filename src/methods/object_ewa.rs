@@ -29,6 +29,7 @@ pub const METHOD: Method = Method {
         normalization: Normalization::Pixel,
         shade: Shade::Splat,
     },
+    pull_push: None,
     // §5.2: ½ y·y ≤ c = 1.
     cutoff: std::f32::consts::SQRT_2,
     lowpass: 1.0,

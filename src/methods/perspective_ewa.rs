@@ -26,6 +26,7 @@ pub const METHOD: Method = Method {
         normalization: Normalization::Pixel,
         shade: Shade::Pixel,
     },
+    pull_push: None,
     cutoff: 2.5,
     lowpass: 1.0,
     widen: Widen::Small,

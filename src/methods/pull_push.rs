@@ -7,12 +7,31 @@
 //! picture ← shade ← 0 ← push ← 1 ← push ← … ← push     holes filled, hidden points replaced, coarse to fine
 //! ```
 
+use super::{Method, perspective_ewa};
 use crate::error::Result;
 use crate::passes::{Project, Pull, Push, PyramidSet, Shade, SplatLayout, Splats};
+use crate::pull_push::Rules;
+use crate::settings::Cull;
 use crate::targets::Pyramids;
 use crate::variant::Variant;
 use crate::vk::{Buffer, DescriptorSet, Device, Recorder};
 use std::sync::Arc;
+
+/// The preset that holds.
+pub const METHOD: Method = Method {
+    name: "pull-push",
+    pull_push: Some(crate::pull_push::PullPush { rules: Rules::Robust }),
+    ..PAPER
+};
+
+/// The preset as published.
+pub const PAPER: Method = Method {
+    name: "pull-push-paper",
+    paper: "Marroquim, Kraus, Cavalcanti, Efficient Image Reconstruction for Point-Based and Line-Based Rendering, 2008",
+    pull_push: Some(crate::pull_push::PullPush { rules: Rules::Paper }),
+    cull: Cull::Back,
+    ..perspective_ewa::METHOD
+};
 
 /// The passes.
 pub struct PullPush {

@@ -25,6 +25,7 @@ pub const METHOD: Method = Method {
         normalization: Normalization::Pixel,
         shade: Shade::Splat,
     },
+    pull_push: None,
     cutoff: 2.0,
     lowpass: 0.0,
     widen: Widen::All,

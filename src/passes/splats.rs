@@ -85,21 +85,22 @@ impl Window {
 }
 
 impl Splats {
-    /// Room for the splats of `scene`. `frame` and `scene` must outlive it.
+    /// Room for the splats of `scene`, if any are made of its surfels. `frame` and `scene` must outlive it.
     pub fn new(
         device: &Arc<Device>,
         layout: &SplatLayout,
         frame: &Buffer,
         scene: &Scene,
-        rasterizer: Rasterizer,
+        rasterizer: Option<Rasterizer>,
     ) -> Result<Self> {
         let stride = size_of::<Splat>() as u64;
-        let splats = Buffer::storage(device, "splats", scene.count() * stride)?;
+        let room = if rasterizer.is_some() { scene.count() * stride } else { COUNTS_STEP };
+        let splats = Buffer::storage(device, "splats", room)?;
         let counts = Buffer::readback(device, "counts", scene.windows().len() as u64 * COUNTS_STEP)?;
         let lists = scene.windows().len() as u64 * LIST_HEADER + 4 * scene.count();
         let large = match rasterizer {
-            Rasterizer::Draw => None,
-            Rasterizer::Compute => Some(Buffer::storage(device, "large splats", lists)?),
+            None | Some(Rasterizer::Draw) => None,
+            Some(Rasterizer::Compute) => Some(Buffer::storage(device, "large splats", lists)?),
         };
         let clip_bytes = |clips: &ClipWindow| (clips.count * size_of::<ScreenClip>() as u64).max(COUNTS_STEP);
         let clip_starts: Vec<u64> = scene
@@ -121,7 +122,11 @@ impl Splats {
             let list = number * LIST_HEADER + 4 * range.start;
             let [positions, normals, radii, colours, ellipses, clips, weights] =
                 scene.bindings(number as usize);
-            let own = Binding::Storage(&splats, range.start * stride, count * stride);
+            // Where none are made, something must stand at their binding all the same.
+            let of_splats = || match rasterizer {
+                Some(_) => Binding::Storage(&splats, range.start * stride, count * stride),
+                None => Binding::Storage(&splats, 0, COUNTS_STEP),
+            };
             let tally = Binding::Storage(&counts, number * COUNTS_STEP, COUNTS_STEP);
             // Without the compute rasterizer nothing is listed, and the counts stand in.
             let large =
@@ -133,10 +138,20 @@ impl Splats {
                     Binding::Storage(buffer, clip_starts[number], clip_bytes(&windows[number]))
                 }
                 // Not touched, but what stands there is waited for as if it were.
-                _ => Binding::Storage(&splats, range.start * stride, count * stride),
+                _ => of_splats(),
             };
             let bindings = [
-                frame, own, positions, normals, radii, colours, tally, large, ellipses, clips, on_screen,
+                frame,
+                of_splats(),
+                positions,
+                normals,
+                radii,
+                colours,
+                tally,
+                large,
+                ellipses,
+                clips,
+                on_screen,
                 weights,
             ];
             let set = DescriptorSet::new(device, &layout.splats, &bindings)?;

@@ -89,6 +89,10 @@ impl Expected {
         settings: &Settings,
         tolerance: &Tolerance,
     ) -> Result<Self> {
+        if settings.pull_push.is_some() {
+            let text = "what rounding may turn is known of splats alone: compare pull-push with the reference's picture";
+            return Err(Error::Usage(text.into()));
+        }
         settings.splatting.normalization.check_weights(surfels.weights.is_some())?;
         let projector = Projector::new(camera, size, settings)?;
         let scene = Scene::project(&projector, surfels);

@@ -118,6 +118,9 @@ pub fn render(
     progress: &dyn Progress,
 ) -> Result<Frame> {
     settings.splatting.normalization.check_weights(surfels.weights.is_some())?;
+    if let Some(rules) = settings.pull_push {
+        return pull_push::render(surfels, camera, size, settings, rules);
+    }
     let projector = Projector::new(camera, size, settings)?;
     let scene = Scene::project(&projector, surfels);
     Ok(draw(&projector, &scene, &Bands::new(&projector, &scene, size), progress))

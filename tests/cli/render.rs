@@ -30,6 +30,33 @@ fn every_shading_matches_the_reference() {
 }
 
 #[test]
+fn pull_push_matches_the_reference() {
+    let Some(program) = Program::with_device("pull_push_matches_the_reference") else { return };
+    // The paper's rules have more decisions that rounding turns: ellipses that end between a few pixels' centres.
+    let cases = [("pull-push", "lit", 0.1), ("pull-push", "depth", 0.1), ("pull-push-paper", "normal", 0.3)];
+    let mut seen = Vec::new();
+    for (method, shading, most) in cases {
+        let common = format!(
+            "render {SPHERE} --size 96x64 --background 20,40,80 --method {method} --shading {shading}"
+        );
+        program.run(&format!("{common} -o cpu.png --reference")).text();
+        program.run(&format!("{common} -o gpu.png --validate")).text();
+        let (cpu, gpu) = (program.png("cpu.png"), program.png("gpu.png"));
+        assert!(cpu.get_pixel(48, 32) != cpu.get_pixel(0, 0), "{method} {shading}: nothing in the middle");
+        let apart = difference(&gpu, &cpu);
+        assert!(apart < most, "{method} {shading}: {apart} codes");
+        seen.push(gpu);
+    }
+    let robust =
+        format!("render {SPHERE} --size 96x64 --background 20,40,80 --method pull-push --shading normal");
+    program.run(&format!("{robust} -o gpu.png --validate")).text();
+    let between = difference(&program.png("gpu.png"), &seen[2]);
+    assert!(between > 1.0, "both rules make one picture: {between} codes");
+    let run = program.run(&format!("render {SPHERE} -o a.png --method pull-push --kernel confetti:6,3"));
+    assert!(run.code == 2 && run.err.contains("pull-push makes no splats"), "{} {}", run.code, run.err);
+}
+
+#[test]
 fn standard_output_takes_a_png_and_nothing_else() {
     let Some(program) = Program::with_device("standard_output_takes_a_png_and_nothing_else") else { return };
     let run = program.run(&format!("render {SPHERE} -o - --size 17x9 --validate --times"));

@@ -81,7 +81,7 @@ pub fn run(device: &Arc<Device>, options: &Options, progress: &dyn Progress) -> 
         0 => case.some(options.values),
         _ => case.some(options.values.min(options.others)),
     };
-    let places = || 0..Method::ALL.len();
+    let places = || 0..Method::SPLATTING.len();
     let count = |case: &Case| places().map(|method| values(case, method).len() as u64).sum::<u64>();
     let total = cases.iter().map(count).sum();
     let mut bench = Bench { device: device.clone(), renderers: Vec::new(), progress, done: 0, total };
@@ -146,7 +146,7 @@ impl Bench<'_> {
         let mut points = Vec::new();
         for value in values {
             self.tell();
-            points.extend(self.points(case, &Method::ALL[method], method == 0, value)?);
+            points.extend(self.points(case, &Method::SPLATTING[method], method == 0, value)?);
             self.done += 1;
         }
         // Stable: the values stay in order.

@@ -135,7 +135,7 @@ impl Claim {
 }
 
 fn preset(name: &str) -> Settings {
-    Method::named(name).unwrap_or(Method::ALL[0]).settings()
+    Method::named(name).unwrap_or(Method::SPLATTING[0]).settings()
 }
 
 fn changed(settings: &Settings, change: impl Fn(&mut Splatting)) -> Settings {

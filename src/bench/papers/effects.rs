@@ -215,7 +215,7 @@ fn by(plan: &Plan, method: &Method) -> Plan {
 }
 
 fn preset(name: &str) -> Method {
-    Method::named(name).unwrap_or(Method::ALL[0])
+    Method::named(name).unwrap_or(Method::SPLATTING[0])
 }
 
 fn view(eye: [f64; 3], target: [f64; 3], fov_y_deg: f64) -> Option<Viewpoint> {
@@ -244,7 +244,7 @@ fn perspective_holes(effect: &Effect) -> Vec<Plan> {
     plan.viewpoint = view([-2.0, 0.6, 7.2], [-2.0, 3.0, -2.0], 125.0);
     let affine = Splatting { footprint: Footprint::Affine, ..Splatting::default() };
     let mut plans = each(&plan, [Splatting::default(), affine]);
-    plans.extend(Method::ALL[1..].iter().map(|method| by(&plan, method)));
+    plans.extend(Method::SPLATTING[1..].iter().map(|method| by(&plan, method)));
     plans
 }
 

@@ -263,7 +263,7 @@ impl Row {
 
     /// How it is rendered, or why not.
     fn settings(&self) -> Result<Settings, &'static str> {
-        let preset = |name| Method::named(name).unwrap_or(Method::ALL[0]).settings();
+        let preset = |name| Method::named(name).unwrap_or(Method::SPLATTING[0]).settings();
         let mut settings = match self.way {
             Way::Method(name) => preset(name),
             Way::Board(..) | Way::BySurfel => preset("object-ewa"),

@@ -116,10 +116,12 @@ pub(super) fn plan(suite: Suite, figure: Figure, scene: &str, points: u64, size:
 /// The same by every other method, each with its own settings.
 fn methods(plan: &Plan) -> impl Iterator<Item = Plan> + use<> {
     let plan = plan.clone();
-    Method::ALL.into_iter().filter(|method| method.splatting != Splatting::default()).map(move |method| {
-        let settings = Settings { shading: plan.settings.shading, ..method.settings() };
-        Plan { settings, ..plan.clone() }
-    })
+    Method::SPLATTING.into_iter().filter(|method| method.splatting != Splatting::default()).map(
+        move |method| {
+            let settings = Settings { shading: plan.settings.shading, ..method.settings() };
+            Plan { settings, ..plan.clone() }
+        },
+    )
 }
 
 /// The same by a plain program on the CPU.

@@ -215,8 +215,8 @@ impl Render {
     pub fn settings(&self) -> Settings {
         let (look, preset) = (&self.look, self.method.settings());
         Settings {
-            pull_push: None,
             splatting: self.axes.over(preset.splatting),
+            pull_push: preset.pull_push,
             cutoff: look.cutoff.unwrap_or(preset.cutoff),
             lowpass: look.lowpass.unwrap_or(preset.lowpass),
             widen: look.widen.map_or(preset.widen, Into::into),
