@@ -7,6 +7,7 @@
 #define CLIP_ACCESS writeonly
 #include "lib/splat.glsl"
 #include "lib/image.glsl"
+#include "lib/pixel_row.glsl"
 
 #ifdef COMPUTE
 
@@ -59,12 +60,6 @@ mat2x3 tangents(vec3 n) {
 mat2x3 ellipse_axes(vec3 n, vec4 shape) {
     vec3 minor = normalize(cross(n, shape.xyz));
     return mat2x3(cross(minor, n), shape.w * minor);
-}
-
-// A coordinate of the homogeneous pixel of a position relative to the eye.
-vec2 pixel_row(int i, vec3 hi, vec3 lo) {
-    vec2 at_eye = PERSPECTIVE ? vec2(0.0) : vec2(frame.rows_hi[i].w, frame.rows_lo[i].w);
-    return add(dot_double(hi, lo, frame.rows_hi[i].xyz, frame.rows_lo[i].xyz), at_eye);
 }
 
 // κ of the plane n·x = h at the anchor and its derivatives. Seen at a grazing angle, κ is a small difference of large terms.

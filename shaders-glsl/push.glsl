@@ -82,7 +82,6 @@ void main() {
         mean.colour /= total;
     }
     bool known = point.near > 0.0, made = total > 0.0;
-    float limit = mean.far;
     if (PAPER) {
         // Behind is what is behind the coarser pixel that holds it.
         Sample holder = candidate(0, level, start, above, at, own);

@@ -1,6 +1,7 @@
 // A surfel as a point: where it is on the screen, and the sample that it is there.
 
 #include "lib/double_float.glsl"
+#include "lib/pixel_row.glsl"
 
 layout(constant_id = 1) const bool CULL_BACK = false;
 layout(constant_id = 12) const bool ELLIPSES = false;
@@ -8,12 +9,6 @@ layout(constant_id = 13) const bool TWO_SIDED = false;
 
 layout(set = 0, binding = 4, std430) readonly buffer Radii { float radii[]; }; // negative where two-sided
 layout(set = 0, binding = 8, std430) readonly buffer Ellipses { vec4 ellipses[]; };
-
-// A coordinate of the homogeneous pixel of a position relative to the eye.
-vec2 pixel_row(int i, vec3 hi, vec3 lo) {
-    vec2 at_eye = PERSPECTIVE ? vec2(0.0) : vec2(frame.rows_hi[i].w, frame.rows_lo[i].w);
-    return add(dot_double(hi, lo, frame.rows_hi[i].xyz, frame.rows_lo[i].xyz), at_eye);
-}
 
 // The pixel and the sample of surfel i; false where it is culled. The colour is left out.
 bool point_of(uint i, out ivec2 at, out Sample s) {

@@ -1,0 +1,7 @@
+// Where a position is on the screen, in twice the precision: see lib/double_float.glsl.
+
+// A coordinate of the homogeneous pixel of a position relative to the eye.
+vec2 pixel_row(int i, vec3 hi, vec3 lo) {
+    vec2 at_eye = PERSPECTIVE ? vec2(0.0) : vec2(frame.rows_hi[i].w, frame.rows_lo[i].w);
+    return add(dot_double(hi, lo, frame.rows_hi[i].xyz, frame.rows_lo[i].xyz), at_eye);
+}
