@@ -9,7 +9,7 @@ use crate::picture::Picture;
 use crate::scene::Scene;
 use crate::settings::{Alpha, Settings};
 use crate::splatting::Visibility;
-use crate::targets::{Buffers, TargetInfo, check_size};
+use crate::targets::{Buffers, Pyramids, TargetInfo, check_size};
 use crate::variant::{Outputs, Precision, Rasterizer, Variant};
 use crate::vk::shaders::layout::{Counts, Frame};
 use crate::vk::{Buffer, Commands, Device, DeviceDescription, PassTime};
@@ -242,6 +242,12 @@ fn projects(device: &Device, options: &RenderOptions) -> Result<Rasterizer> {
         }
         _ if !device.capabilities().int64_atomics => Err(Error::Usage(format!(
             "pull-push needs 64-bit atomics in buffers, which {name} does not have: choose a method that splats"
+        ))),
+        _ if !Pyramids::fit(device.capabilities(), options.size) => Err(Error::Usage(format!(
+            "a pyramid of {}x{} px does not fit the {} bytes of a buffer that shaders of {name} can see: choose a smaller size",
+            options.size[0],
+            options.size[1],
+            device.capabilities().max_storage_buffer_range
         ))),
         _ => Ok(Rasterizer::Compute),
     }

@@ -309,6 +309,12 @@ impl Pyramids {
         if variant.sums_colours() { 12 } else { 9 }
     }
 
+    /// Whether pyramids of a picture of this size, with colours, fit the buffers that shaders of the device can see.
+    pub fn fit(capabilities: &Capabilities, size: [u32; 2]) -> bool {
+        let samples: u64 = (0..levels(size)).map(|level| level_pixels(size, level)).sum();
+        4 * 12 * samples <= capabilities.max_storage_buffer_range
+    }
+
     /// What the buffers take; a level has a quarter of the pixels of the one below.
     pub fn per_pixel(variant: &Variant) -> PerPixel {
         let samples = 4.0 / 3.0 * 4.0 * Self::floats(variant) as f64;

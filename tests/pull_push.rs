@@ -226,6 +226,16 @@ fn what_cannot_be_is_refused() {
     let open = RenderOptions::default();
     let Some(atomics) = refused(none, open, |_| {}) else { return };
     assert!(atomics.contains("64-bit atomics"), "{atomics}");
+    // 8² px in all levels are 85 samples of 48 bytes.
+    let [narrow, wide] = [4_079, 4_080]
+        .map(|bytes| DeviceLimits { max_storage_buffer_range: Some(bytes), ..Default::default() });
+    let large = refused(narrow, open, |_| {}).unwrap();
+    assert!(large.contains("a pyramid of 8x8 px does not fit the 4079 bytes"), "{large}");
+    let fitting = device(wide).unwrap();
+    let surfels = scenes::open("scene:bumpy-sphere?points=100&seed=1").unwrap();
+    let options = RenderOptions { size: [8, 8], ..open };
+    render(&fitting, &surfels, &Truth::new(8).camera(), &pull_push::METHOD.settings(), options);
+    assert_silent(&fitting);
     let drawn = refused(DeviceLimits::default(), draw, |_| {}).unwrap();
     assert!(drawn.contains("leave the rasterizer open"), "{drawn}");
     let changes: [fn(&mut Settings); 2] = [
