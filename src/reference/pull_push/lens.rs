@@ -47,7 +47,7 @@ impl Lens {
     }
 
     /// Step of the ray through a pixel position for one unit of distance.
-    fn step(&self, at: DVec2) -> DVec3 {
+    pub fn step(&self, at: DVec2) -> DVec3 {
         self.steps * DVec3::new(1.0, at.x, at.y)
     }
 

@@ -41,7 +41,11 @@ pub fn pass(lens: &Lens, coarser: &Level, pulled: &Level) -> Level {
                 if pulled.level == 0 && surface.near <= point.far && surface.tube == point.tube =>
             {
                 let Sample { colour, normal, depth, .. } = surface;
-                Some(Sample { colour, normal, depth, ..point })
+                Some(match point.tube {
+                    // What is seen of a tube is told from its axis, whose depth is that of the disc's centre.
+                    true => Sample { near: point.near, far: point.far, ..surface },
+                    false => Sample { colour, normal, depth, ..point },
+                })
             }
             (Some(point), _) => Some(point),
             (None, surface) => surface,

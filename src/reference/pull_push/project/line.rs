@@ -1,12 +1,21 @@
 //! A segment is a pixel in every column of the picture that it reaches, or in every row where it is steeper: no gaps, and no wider.
 
-use super::{Point, Reconstruction, Vertex};
+use super::strands::{End, Strand};
+use super::{Point, Reconstruction, Sample};
 
 impl Reconstruction {
-    /// The pixels of a segment. What is not between the near and the far plane is cut off.
-    pub(super) fn line(&self, ends: [Vertex; 2], tube: bool) -> Vec<Point> {
-        let Some(ends) = self.between_planes(ends) else { return Vec::new() };
+    /// The pixels of a segment. What is in front of the near plane is cut off.
+    pub(super) fn line(&self, ends: [End; 2], tube: bool) -> Vec<Point> {
+        let Some(ends) = self.beyond_near_plane(ends) else { return Vec::new() };
+        self.strands(ends, tube).iter().flat_map(|strand| self.strand(strand)).collect()
+    }
+
+    fn strand(&self, &Strand { ends, discs, tube, on_tube }: &Strand) -> Vec<Point> {
         let distances = ends.map(|end| self.projector.distance(end.position));
+        // What is wide may reach through the near plane though its middle line does not: a strand is cut off as a whole.
+        if distances.iter().any(|distance| *distance < self.projector.planes()[0]) {
+            return Vec::new();
+        }
         let [from, to] = ends.map(|end| self.pixel(end.position));
         let extent = (to - from).abs();
         let along = usize::from(extent.y > extent.x);
@@ -19,37 +28,41 @@ impl Reconstruction {
             let t = if reached.is_finite() { reached.clamp(0.0, 1.0) } else { 0.0 };
             let screen = from.lerp(to, t);
             let across = screen[1 - along].floor();
-            if !(0.0..self.projector.size[1 - along]).contains(&across) {
+            let at = if along == 0 { [column, across as i64] } else { [across as i64, column] };
+            let weights = self.in_space([1.0 - t, t], distances);
+            let distance = weights[0] * distances[0] + weights[1] * distances[1];
+            let seen = (0.0..self.projector.size[1 - along]).contains(&across);
+            if !seen || distance > self.projector.planes()[1] {
                 return None;
             }
-            let at = if along == 0 { [column, across as i64] } else { [across as i64, column] };
-            let mut disc = Self::between(&ends, self.in_space([1.0 - t, t], distances));
+            let mut disc = Self::between(&discs, weights);
             // A ribbon shows the side that is seen; a tube's tangent has no sign.
             if !tube && self.projector.facing(disc.position, disc.direction) > 0.0 {
                 disc.direction = -disc.direction;
             }
-            Some((at, self.sample(disc, screen, at, tube)))
+            let sample = self.sample(disc, self.pixel(disc.position), at, tube);
+            // What is on a tube is as near as it is seen there.
+            Some((at, if on_tube { Sample { near: distance, ..sample } } else { sample }))
         };
         (least..=last).filter_map(point).collect()
     }
 
-    /// The part of a segment between the near and the far plane.
-    fn between_planes(&self, ends: [Vertex; 2]) -> Option<[Vertex; 2]> {
-        let [near, far] = self.projector.planes();
-        let [a, b] = ends.map(|end| self.projector.distance(end.position));
-        let reach = |plane: f64| (plane - a) / (b - a);
-        let enters =
-            [(a < near, near), (a > far, far)].map(|(out, plane)| if out { reach(plane) } else { 0.0 });
-        let leaves =
-            [(b < near, near), (b > far, far)].map(|(out, plane)| if out { reach(plane) } else { 1.0 });
-        let [from, to] = [enters[0].max(enters[1]), leaves[0].min(leaves[1])];
-        // Neither holds of what is beyond a plane as a whole.
-        let inside = from <= to && [from, to].iter().all(|t| (0.0..=1.0).contains(t));
-        let cut = |t: f64| match t {
-            0.0 => ends[0],
-            1.0 => ends[1],
-            t => Self::between(&ends, [1.0 - t, t]),
+    /// The part of a segment beyond the near plane.
+    fn beyond_near_plane(&self, ends: [End; 2]) -> Option<[End; 2]> {
+        let near = self.projector.planes()[0];
+        let [a, b] = ends.map(|end| self.projector.distance(end.vertex.position) - near);
+        let cut = || {
+            let t = a / (a - b);
+            End {
+                vertex: Self::between(&ends.map(|end| end.vertex), [1.0 - t, t]),
+                along: ends[0].along.lerp(ends[1].along, t).normalize_or_zero(),
+            }
         };
-        inside.then(|| [cut(from), cut(to)])
+        match [a >= 0.0, b >= 0.0] {
+            [false, false] => None,
+            [true, true] => Some(ends),
+            [true, false] => Some([ends[0], cut()]),
+            [false, true] => Some([cut(), ends[1]]),
+        }
     }
 }

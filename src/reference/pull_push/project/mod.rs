@@ -4,6 +4,7 @@
 
 mod line;
 mod point;
+mod strands;
 mod triangle;
 
 use super::super::scene::Counts;
@@ -11,8 +12,9 @@ use super::super::{Culled, Surfel, linear};
 use super::{Level, Reconstruction, Sample};
 use crate::geometry::{Colours, Parts, Primitives};
 use crate::pull_push::Rules;
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
+use strands::End;
 
 /// The points that are seen, and what became of all surfels.
 #[derive(Clone, Debug, PartialEq)]
@@ -60,8 +62,9 @@ pub fn pass(frame: &Reconstruction, parts: Parts<'_>) -> Visible {
         nearest.add(i, at, sample);
     }
     if let Some(primitives) = parts.primitives {
-        let all: Vec<_> =
-            (0..primitives.count()).into_par_iter().map(|i| frame.primitive(primitives, i)).collect();
+        let along = primitives.line_directions();
+        let pixels = |i: usize| frame.primitive(primitives, &along, i);
+        let all: Vec<_> = (0..primitives.count()).into_par_iter().map(pixels).collect();
         for (i, pixels) in all.into_iter().enumerate() {
             pixels.into_iter().for_each(|(at, sample)| nearest.add(surfels.len() + i, at, sample));
         }
@@ -93,7 +96,7 @@ impl Nearest {
 
 impl Reconstruction {
     /// The pixels of a segment or a triangle.
-    fn primitive(&self, primitives: &Primitives, number: usize) -> Vec<Point> {
+    fn primitive(&self, primitives: &Primitives, along: &[Vec3], number: usize) -> Vec<Point> {
         let [ribbons, tubes] = [&primitives.ribbons, &primitives.tubes].map(Vec::len);
         let lines = ribbons + tubes;
         let vertices = match number {
@@ -105,7 +108,13 @@ impl Reconstruction {
             return Vec::new();
         }
         match *vertices {
-            [a, b] => self.line([a, b].map(|i| self.vertex(primitives, i as usize)), number >= ribbons),
+            [a, b] => {
+                let end = |i: u32| End {
+                    vertex: self.vertex(primitives, i as usize),
+                    along: self.projector.view.transform_vector3(along[i as usize].as_dvec3()),
+                };
+                self.line([a, b].map(end), number >= ribbons)
+            }
             [a, b, c] => self.triangle([a, b, c].map(|i| self.vertex(primitives, i as usize))),
             _ => Vec::new(),
         }
@@ -126,6 +135,18 @@ impl Reconstruction {
         }
     }
 
+    fn is_paper(&self) -> bool {
+        self.pull_push.rules == Rules::Paper
+    }
+
+    /// Unit vector from a position to the eye.
+    fn towards_eye(&self, position: DVec3) -> DVec3 {
+        match self.projector.depth.perspective {
+            true => (self.projector.eye() - position).normalize_or_zero(),
+            false => DVec3::new(0.0, 0.0, -self.projector.depth.forward),
+        }
+    }
+
     /// The colour of what has none.
     fn albedo(&self) -> DVec3 {
         DVec3::from_array(self.projector.settings.lighting.albedo.map(f64::from))
@@ -141,32 +162,33 @@ impl Reconstruction {
     fn sample(&self, disc: Vertex, screen: DVec2, at: [i64; 2], tube: bool) -> Sample {
         let distance = self.projector.distance(disc.position);
         // How far it is in front of its centre, and behind, in radii.
-        let [before, behind, displaced] = match (self.pull_push.rules, tube) {
-            (Rules::Paper, _) => [0.0, 1.0, 0.0],
-            (Rules::Robust, true) => [1.0, 1.0, 1.0],
+        let [before, behind] = match (self.pull_push.rules, tube) {
+            (Rules::Paper, _) => [0.0, 1.0],
+            (Rules::Robust, true) => [1.0, 1.0],
             // Twice the radius: half as much takes neighbours of a steep surface for another.
-            (Rules::Robust, false) => [0.0, 2.0, 1.0],
+            (Rules::Robust, false) => [0.0, 2.0],
         };
+        let displacement = screen - super::centre(0, at);
         Sample {
-            near: distance - before * disc.radius,
+            near: (distance - before * disc.radius).max(self.projector.planes()[0]),
             far: distance + behind * disc.radius,
             depth: distance,
-            displacement: displaced * (screen - super::centre(0, at)),
+            displacement: if self.is_paper() { DVec2::ZERO } else { displacement },
             radius: self.lens.to_pixels(disc.radius, distance),
-            normal: disc.direction,
+            normal: disc.direction.normalize_or_zero(),
             tube,
             colour: disc.colour,
         }
     }
 
-    /// What is between vertices with these weights, whose sum is 1.
+    /// What is between vertices with these weights, whose sum is 1; its direction is no unit vector.
     fn between<const N: usize>(vertices: &[Vertex; N], weights: [f64; N]) -> Vertex {
         let mean = |of: &dyn Fn(&Vertex) -> DVec3| {
             vertices.iter().zip(weights).map(|(vertex, weight)| weight * of(vertex)).sum::<DVec3>()
         };
         Vertex {
             position: mean(&|vertex| vertex.position),
-            direction: mean(&|vertex| vertex.direction).normalize_or_zero(),
+            direction: mean(&|vertex| vertex.direction),
             radius: vertices.iter().zip(weights).map(|(vertex, weight)| weight * vertex.radius).sum(),
             colour: mean(&|vertex| vertex.colour),
         }

@@ -2,7 +2,7 @@
 
 use super::super::centre;
 use super::{Point, Reconstruction, Vertex};
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 
 impl Reconstruction {
     /// The pixels of a triangle. What is in front of the near plane is cut off.
@@ -58,7 +58,7 @@ impl Reconstruction {
             }
             let disc = Self::between(&corners, self.in_space(weights, distances));
             let is_seen = self.projector.distance(disc.position) <= self.projector.planes()[1];
-            (is_seen && disc.direction != DVec3::ZERO).then(|| (at, self.sample(disc, own, at, false)))
+            is_seen.then(|| (at, self.sample(disc, own, at, false)))
         };
         pixels.filter_map(point).collect()
     }
