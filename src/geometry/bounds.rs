@@ -40,6 +40,13 @@ impl Bounds {
         Self { min: self.min + offset, max: self.max + offset, ..*self }
     }
 
+    /// Bounds that hold both.
+    pub fn with(&self, other: &Self) -> Self {
+        let both = Self::of_box(self.min.min(other.min), self.max.max(other.max));
+        let reach = |part: &Self| part.centre().distance(both.centre()) + part.radius;
+        Self { radius: both.radius.min(reach(self).max(reach(other))), ..both }
+    }
+
     /// The same bounds moved outwards by `margin`.
     pub fn grown(&self, margin: f64) -> Self {
         Self { min: self.min - margin, max: self.max + margin, radius: self.radius + margin }

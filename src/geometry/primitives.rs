@@ -1,0 +1,281 @@
+//! Lines and triangles: what pull–push draws beside surfels.
+
+use super::{Bounds, Colours, Surfels};
+use crate::error::{Error, Result};
+use glam::{DVec3, Vec3};
+
+/// Ribbons, tubes and triangles between shared vertices (marroquim2008 sections 4 and 5). Every array of vertices has one entry a
+/// vertex.
+///
+/// A ribbon is a flat strip about its centre line, seen from both sides; a tube is round about its own. What is between two vertices is
+/// interpolated. What is not [valid](Primitives::is_valid) is never drawn, and counted.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Primitives {
+    /// Added to every position, as [`Surfels::origin`](super::Surfels::origin).
+    pub origin: DVec3,
+    /// Of the vertices, relative to `origin`.
+    pub positions: Vec<Vec3>,
+    /// Unit vectors: normals of ribbons and triangles, tangents of tubes.
+    pub directions: Vec<Vec3>,
+    /// Half the width of ribbons, the radius of tubes, how far a triangle's surface goes on beyond it, in the positions' unit; 0 or more.
+    pub radii: Vec<f32>,
+    /// Colours, where the input has them.
+    pub colours: Option<Colours>,
+    /// Segments of ribbons.
+    pub ribbons: Vec<[u32; 2]>,
+    /// Segments of tubes.
+    pub tubes: Vec<[u32; 2]>,
+    /// Triangles, seen from both sides.
+    pub triangles: Vec<[u32; 3]>,
+}
+
+/// What a scene is made of. Both are relative to one origin, if there are both.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Model {
+    /// Points.
+    pub surfels: Surfels,
+    /// Lines and triangles.
+    pub primitives: Primitives,
+}
+
+/// A model's parts, wherever they are.
+#[derive(Clone, Copy, Debug)]
+pub struct Parts<'a> {
+    /// Points.
+    pub surfels: &'a Surfels,
+    /// Lines and triangles, if there are any.
+    pub primitives: Option<&'a Primitives>,
+}
+
+impl<'a> From<&'a Surfels> for Parts<'a> {
+    fn from(surfels: &'a Surfels) -> Self {
+        Self { surfels, primitives: None }
+    }
+}
+
+impl<'a> From<&'a Model> for Parts<'a> {
+    fn from(model: &'a Model) -> Self {
+        let primitives = (!model.primitives.is_empty()).then_some(&model.primitives);
+        Self { surfels: &model.surfels, primitives }
+    }
+}
+
+impl From<Surfels> for Model {
+    fn from(surfels: Surfels) -> Self {
+        Self { surfels, primitives: Primitives::default() }
+    }
+}
+
+impl Parts<'_> {
+    /// Refuses arrays of unequal length, what is not there, and two origins.
+    ///
+    /// # Errors
+    /// [`Error::Usage`], as [`Surfels::check`] and [`Primitives::check`].
+    pub fn check(&self) -> Result<()> {
+        self.surfels.check()?;
+        let Some(primitives) = self.primitives else { return Ok(()) };
+        primitives.check()?;
+        let [a, b] = [self.surfels.origin, primitives.origin];
+        match self.surfels.is_empty() || a == b {
+            true => Ok(()),
+            false => Err(Error::Usage(format!(
+                "the surfels' origin is {a}, that of lines and triangles {b}: give one"
+            ))),
+        }
+    }
+
+    /// What positions are relative to.
+    pub fn origin(&self) -> DVec3 {
+        match self.primitives {
+            Some(primitives) if self.surfels.is_empty() => primitives.origin,
+            _ => self.surfels.origin,
+        }
+    }
+
+    /// Bounds of what is valid, in the world; `None` if nothing is.
+    pub fn bounds(&self) -> Option<Bounds> {
+        let both = [self.surfels.bounds(), self.primitives.and_then(Primitives::bounds)];
+        both.into_iter().flatten().reduce(|a, b| a.with(&b))
+    }
+}
+
+impl Primitives {
+    /// Number of vertices.
+    pub fn len(&self) -> usize {
+        self.positions.len()
+    }
+
+    /// Number of segments and triangles.
+    pub fn count(&self) -> usize {
+        self.ribbons.len() + self.tubes.len() + self.triangles.len()
+    }
+
+    /// Whether nothing is drawn.
+    pub fn is_empty(&self) -> bool {
+        self.count() == 0
+    }
+
+    /// Segments of both kinds, ribbons first, with whether each is of a tube.
+    pub fn segments(&self) -> impl Iterator<Item = ([u32; 2], bool)> {
+        let ribbons = self.ribbons.iter().map(|ends| (*ends, false));
+        ribbons.chain(self.tubes.iter().map(|ends| (*ends, true)))
+    }
+
+    /// Direction of the lines at every vertex: the mean of the segments' that end there, whichever way they go; 0 where there are none.
+    pub fn line_directions(&self) -> Vec<Vec3> {
+        let mut directions = vec![Vec3::ZERO; self.len()];
+        for ([from, to], _) in self.segments() {
+            let [from, to] = [from, to].map(|vertex| vertex as usize);
+            let along = (self.positions[to] - self.positions[from]).normalize_or_zero();
+            for vertex in [from, to] {
+                let there = directions[vertex];
+                directions[vertex] += if there.dot(along) < 0.0 { -along } else { along };
+            }
+        }
+        directions.into_iter().map(Vec3::normalize_or_zero).collect()
+    }
+
+    /// Refuses arrays of unequal length, an origin that is not finite, and vertices that do not exist.
+    ///
+    /// # Errors
+    /// [`Error::Usage`], with the lengths, the origin or the vertex.
+    pub fn check(&self) -> Result<()> {
+        if !self.origin.is_finite() {
+            let text = format!("the origin of lines and triangles is {}: give a finite one", self.origin);
+            return Err(Error::Usage(text));
+        }
+        let count = self.len();
+        let colours = self.colours.as_ref().map_or(count, Colours::len);
+        let lengths = [self.directions.len(), self.radii.len(), colours];
+        if lengths.iter().any(|&length| length != count) {
+            return Err(Error::Usage(format!(
+                "{count} vertices with {lengths:?} directions, radii and colours: give one each"
+            )));
+        }
+        let ends = self.segments().flat_map(|(ends, _)| ends);
+        match ends.chain(self.triangles.iter().copied().flatten()).find(|&vertex| vertex as usize >= count) {
+            None => Ok(()),
+            Some(vertex) => Err(Error::Usage(format!(
+                "a line or a triangle has vertex {vertex}, and there are {count}: number them from 0"
+            ))),
+        }
+    }
+
+    /// Whether what has this vertex can be drawn: no attribute is NaN, infinite or beyond [`Surfels::LARGEST`], the direction is a unit
+    /// vector and the radius 0 or more. `false` beyond the end of any array.
+    pub fn is_valid(&self, vertex: usize) -> bool {
+        let bounded = |v: Vec3| v.abs().cmple(Vec3::splat(Surfels::LARGEST)).all();
+        let placed = self.positions.get(vertex).is_some_and(|&position| bounded(position));
+        let directed = self.directions.get(vertex).is_some_and(|&direction| super::valid::is_unit(direction));
+        let sized = self.radii.get(vertex).is_some_and(|radius| (0.0..=Surfels::LARGEST).contains(radius));
+        let coloured = match &self.colours {
+            Some(Colours::Linear(colours)) => colours.get(vertex).is_some_and(|&c| bounded(c.into())),
+            Some(Colours::Srgb8(colours)) => vertex < colours.len(),
+            None => true,
+        };
+        placed && directed && sized && coloured
+    }
+
+    /// How many segments and triangles have a vertex that is not [valid](Primitives::is_valid).
+    pub fn count_invalid(&self) -> usize {
+        let valid = |vertices: &[u32]| vertices.iter().all(|&vertex| self.is_valid(vertex as usize));
+        let lines = self.segments().filter(|(ends, _)| !valid(ends)).count();
+        lines + self.triangles.iter().filter(|corners| !valid(*corners)).count()
+    }
+
+    /// Bounds in the world of the spheres about the valid vertices; `None` if there are none.
+    pub fn bounds(&self) -> Option<Bounds> {
+        let valid = (0..self.len()).filter(|&i| self.is_valid(i));
+        let (positions, radii): (Vec<_>, Vec<f32>) =
+            valid.map(|i| (self.positions[i], self.radii[i])).unzip();
+        let largest = radii.iter().copied().fold(0.0, f32::max);
+        Some(Bounds::of(&positions)?.grown(largest.into()).translated(self.origin))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn two() -> Primitives {
+        Primitives {
+            positions: vec![Vec3::ZERO, Vec3::X],
+            directions: vec![Vec3::Z; 2],
+            radii: vec![0.25, 0.0],
+            ribbons: vec![[0, 1]],
+            ..Default::default()
+        }
+    }
+
+    #[test]
+    fn what_is_not_there_is_refused() {
+        assert!(two().check().is_ok());
+        let changes: [fn(&mut Primitives); 5] = [
+            |p| p.tubes.push([0, 2]),
+            |p| p.triangles.push([0, 1, 9]),
+            |p| p.radii.truncate(1),
+            |p| p.colours = Some(Colours::Linear(vec![])),
+            |p| p.origin.x = f64::NAN,
+        ];
+        let causes = ["vertex 2, and there are 2", "vertex 9", "[2, 1, 2]", "[2, 2, 0]", "finite"];
+        for (change, said) in changes.into_iter().zip(causes) {
+            let mut primitives = two();
+            change(&mut primitives);
+            let text = primitives.check().unwrap_err().to_string();
+            assert!(text.contains(said), "{text}");
+        }
+    }
+
+    #[test]
+    fn what_is_out_of_bounds_is_invalid_and_bounds_leave_it_out() {
+        assert_eq!((two().count_invalid(), two().bounds().unwrap().max.x), (0, 1.25));
+        let changes: [fn(&mut Primitives); 6] = [
+            |p| p.positions[1].x = f32::NAN,
+            |p| p.positions[1].y = 2e15,
+            |p| p.directions[1] *= 1.01,
+            |p| p.radii[1] = -0.1,
+            |p| p.radii[1] = f32::INFINITY,
+            |p| p.colours = Some(Colours::Linear(vec![[0.0; 3], [0.0, f32::NAN, 0.0]])),
+        ];
+        for (i, change) in changes.into_iter().enumerate() {
+            let mut primitives = two();
+            change(&mut primitives);
+            let bounds = primitives.bounds().unwrap();
+            assert_eq!((primitives.count_invalid(), bounds.max.x), (1, 0.25), "change {i}");
+        }
+    }
+
+    #[test]
+    fn lines_go_on_from_segment_to_segment() {
+        let mut bent = two();
+        bent.positions.extend([Vec3::new(1.0, 1.0, 0.0), Vec3::Z]);
+        // The second segment goes the other way.
+        bent.ribbons.push([2, 1]);
+        let directions = bent.line_directions();
+        assert_eq!(directions[0], Vec3::X);
+        assert!(
+            (directions[1].abs() - Vec3::new(0.5f32.sqrt(), 0.5f32.sqrt(), 0.0)).length() < 1e-6,
+            "{directions:?}"
+        );
+        assert_eq!((directions[2].abs(), directions[3]), (Vec3::Y, Vec3::ZERO));
+    }
+
+    #[test]
+    fn surfels_and_lines_have_one_origin() {
+        let surfels = Surfels {
+            positions: vec![Vec3::Y],
+            normals: vec![Vec3::Z],
+            radii: vec![1.0],
+            ..Default::default()
+        };
+        let mut model = Model { surfels, primitives: two() };
+        let bounds = Parts::from(&model).bounds().unwrap();
+        assert_eq!((bounds.min, bounds.max), (DVec3::new(-1.0, -0.25, -1.0), DVec3::new(1.25, 2.0, 1.0)));
+        model.primitives.origin.x = 1.0;
+        assert!(Parts::from(&model).check().is_err());
+        model.surfels = Surfels::default();
+        assert!(Parts::from(&model).check().is_ok());
+        assert_eq!(Parts::from(&model).origin(), DVec3::X);
+        assert!(Parts::from(&Model::from(Surfels::default())).primitives.is_none());
+    }
+}
