@@ -72,14 +72,14 @@ impl Lens {
     pub fn depth_at(&self, sample: &Sample, centre: DVec2, at: DVec2) -> f64 {
         let [from, to] = [centre, at].map(|p| sample.normal.dot(self.step(p)));
         let met = match self.perspective {
-            true => sample.depth * from / to,
+            // Beyond the plane's horizon it is as far as it may be.
+            true if from / to > 0.0 => sample.depth * from / to,
+            true => f64::INFINITY,
             false => {
                 let starts = self.starts * DVec3::new(0.0, centre.x - at.x, centre.y - at.y);
                 sample.depth + sample.normal.dot(starts) / to
             }
         };
-        // Beyond the plane's horizon it is as far as it may be.
-        let met = if self.perspective && met.is_nan() || met <= 0.0 { f64::INFINITY } else { met };
         let reach = self.to_length(sample.radius, sample.depth);
         met.clamp(sample.depth - reach, sample.depth + reach)
     }

@@ -79,6 +79,20 @@ fn depth_is_moved_by_a_radius_at_most() {
 }
 
 #[test]
+fn parallel_rays_meet_every_plane() {
+    let camera = Camera::orthographic([DVec3::ZERO, DVec3::Z, DVec3::NEG_Y], 2.0, 1.0, [0.5, 8.0]).unwrap();
+    let projector = Projector::new(&camera, [64, 64], &Settings::default()).unwrap();
+    let lens = Lens::new(&projector);
+    // So steep that planes reach behind the eye a pixel beside the disc's centre: there they are as near as they may be.
+    let steep = |x: f64| Sample { normal: DVec3::new(x, 0.0, -0.001).normalize(), ..sample(2.0, 8.0) };
+    let reach = lens.to_length(8.0, 2.0);
+    for (x, sign) in [(1.0, 1.0), (-1.0, -1.0)] {
+        let at = |offset: f64| lens.depth_at(&steep(x), DVec2::splat(32.0), DVec2::new(32.0 + offset, 32.0));
+        assert_eq!((at(4.0), at(-4.0)), (2.0 + sign * reach, 2.0 - sign * reach));
+    }
+}
+
+#[test]
 fn the_nearest_point_of_a_pixel_is_seen_and_of_two_alike_the_first() {
     let towards = DVec3::NEG_Z;
     let at = |z: f64| DVec3::new(0.01 * z, 0.02 * z, z);
