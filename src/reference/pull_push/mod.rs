@@ -11,6 +11,7 @@
 //! lengths on the screen are px of the picture, whatever the level.
 
 mod lens;
+mod margin;
 mod paper;
 mod project;
 mod pull;
@@ -26,8 +27,10 @@ use crate::pull_push::{PullPush, Rules};
 use crate::settings::Settings;
 use glam::{DVec2, DVec3};
 use lens::Lens;
+use margin::Margin;
 use rayon::prelude::*;
 
+pub use margin::Decided;
 pub use project::Visible;
 
 /// What a pixel of a level knows of the surface: a disc.
@@ -70,14 +73,6 @@ pub struct Pyramid {
 }
 
 impl Level {
-    /// Makes a level of so many pixels, each by its coordinates.
-    fn new(level: u32, size: [u32; 2], sample: impl Fn([i64; 2]) -> Option<Sample> + Sync) -> Self {
-        let width = i64::from(size[0]);
-        let count = width * i64::from(size[1]);
-        let samples = (0..count).into_par_iter().map(|i| sample([i % width, i / width])).collect();
-        Self { level, size, samples }
-    }
-
     /// The sample at these coordinates; `None` outside, too.
     pub fn at(&self, [x, y]: [i64; 2]) -> Option<Sample> {
         let [width, height] = self.size.map(i64::from);
@@ -93,6 +88,20 @@ impl Level {
     /// Size of the next coarser level.
     pub fn coarser_size(&self) -> [u32; 2] {
         self.size.map(|side| side.div_ceil(2))
+    }
+}
+
+impl Decided {
+    /// Makes a level of so many pixels, each by its coordinates.
+    fn new(level: u32, size: [u32; 2], sample: impl Fn([i64; 2], &Margin) -> Option<Sample> + Sync) -> Self {
+        let width = i64::from(size[0]);
+        let count = width * i64::from(size[1]);
+        let decide = |i| {
+            let margin = Margin::new();
+            (sample([i % width, i / width], &margin), margin.least())
+        };
+        let (samples, margins) = (0..count).into_par_iter().map(decide).unzip();
+        Self { level: Level { level, size, samples }, margins }
     }
 }
 
@@ -121,8 +130,19 @@ impl Reconstruction {
         project::pass(self, surfels)
     }
 
+    /// How near the projection of `surfels` to `visible` was to another outcome, by pixel: by a depth or a coordinate, relative, or by a
+    /// cosine.
+    pub fn margins(&self, surfels: &Surfels, visible: &Visible) -> Vec<f64> {
+        margin::of_projection(self, surfels, visible)
+    }
+
     /// Pass `pull`: the level above.
     pub fn pull(&self, finer: &Level) -> Level {
+        self.decide_pull(finer).level
+    }
+
+    /// The same with how near its decisions were.
+    pub fn decide_pull(&self, finer: &Level) -> Decided {
         match self.pull_push.rules {
             Rules::Paper => paper::pull(&self.lens, finer),
             Rules::Robust => pull::pass(&self.lens, finer),
@@ -131,6 +151,11 @@ impl Reconstruction {
 
     /// Pass `push`: the final level below `coarser`, which is final, from the pulled one.
     pub fn push(&self, coarser: &Level, pulled: &Level) -> Level {
+        self.decide_push(coarser, pulled).level
+    }
+
+    /// The same with how near its decisions were.
+    pub fn decide_push(&self, coarser: &Level, pulled: &Level) -> Decided {
         match self.pull_push.rules {
             Rules::Paper => paper::push(&self.lens, coarser, pulled),
             Rules::Robust => push::pass(&self.lens, coarser, pulled),

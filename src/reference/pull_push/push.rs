@@ -2,7 +2,7 @@
 //! surface alone, and with neighbours of the same level, without which steep surfaces have holes).
 
 use super::lens::Lens;
-use super::{Level, Sample, centre};
+use super::{Decided, Level, Sample, centre};
 use glam::{DVec2, DVec3};
 
 /// What a disc's variance is widened by on level 0, px²; four times as much a level. Narrower ones leave holes between themselves.
@@ -19,15 +19,15 @@ struct Candidate {
     weight: f64,
 }
 
-pub fn pass(lens: &Lens, coarser: &Level, pulled: &Level) -> Level {
+pub fn pass(lens: &Lens, coarser: &Level, pulled: &Level) -> Decided {
     let widening = WIDENING * f64::from(pulled.level).exp2().powi(2);
-    Level::new(pulled.level, pulled.size, |at| {
+    Decided::new(pulled.level, pulled.size, |at, margin| {
         let own = centre(pulled.level, at);
         let candidate = |level: &Level, at: [i64; 2]| {
             let sample = level.at(at)?;
             let disc = level.centre(at) + sample.displacement;
             let radii2 = lens.radii2(&sample, disc, own, widening);
-            (radii2 <= 1.0).then(|| Candidate { sample, disc, weight: (-RIM * radii2).exp() })
+            margin.covers(radii2).then(|| Candidate { sample, disc, weight: (-RIM * radii2.value).exp() })
         };
         let above = nearest_four(at).map(|at| candidate(coarser, at));
         let beside = neighbours(at).map(|at| candidate(pulled, at));
@@ -36,8 +36,8 @@ pub fn pass(lens: &Lens, coarser: &Level, pulled: &Level) -> Level {
         let candidates: Vec<_> = above.into_iter().chain(beside).flatten().collect();
         let surface = blend(lens, own, &candidates, pulled.level == 0);
         match (pulled.at(at).filter(|_| shown), surface) {
-            (Some(point), Some(surface)) if point.near > surface.far => Some(surface),
-            (Some(point), Some(surface)) if pulled.level == 0 && surface.near <= point.far => {
+            (Some(point), Some(surface)) if !margin.at_most(point.near, surface.far) => Some(surface),
+            (Some(point), Some(surface)) if pulled.level == 0 && margin.at_most(surface.near, point.far) => {
                 let Sample { colour, normal, depth, .. } = surface;
                 Some(Sample { colour, normal, depth, ..point })
             }

@@ -32,7 +32,7 @@ fn sample(near: f64, radius: f64) -> Sample {
 fn level(level: u32, known: &[([i64; 2], Sample)]) -> Level {
     let side = 64 >> level;
     let find = |at: [i64; 2]| known.iter().find(|(place, _)| *place == at).map(|(_, sample)| *sample);
-    Level::new(level, [side; 2], find)
+    Decided::new(level, [side; 2], |at, _| find(at)).level
 }
 
 fn discs(list: &[(DVec3, DVec3, f32)]) -> Surfels {
@@ -59,7 +59,7 @@ fn ellipses_are_the_derivative_of_the_projection() {
     for i in 0..12 {
         let (sin, cos) = (f64::from(i) * 0.5).sin_cos();
         let rim = pixel(centre + radius * (cos * s + sin * t));
-        let found = lens.radii2(&seen, pixel(centre), rim, 0.0);
+        let found = lens.radii2(&seen, pixel(centre), rim, 0.0).value;
         assert!((found - 1.0).abs() < 1e-3, "{i}: {found}");
     }
     // Of the plane, too.
