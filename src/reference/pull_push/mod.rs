@@ -167,10 +167,14 @@ impl Reconstruction {
         shade::pass(self, pushed)
     }
 
-    /// The level on which the largest visible disc is no larger than a pixel: what is coarser changes nothing.
+    /// The level above which coarser ones change nothing.
+    ///
+    /// A disc that is known on level `l + 1` covers its pixel's centre, and so is no further from that than its radius `r`; the centres of
+    /// the pixels of level `l` are `2^l / √2` away. Of the variance that `push` widens it to there, `r² + 4^l / 4`, it reaches none if
+    /// `2^l > 4 √2 r`. Perspective makes it longer, by up to √2 more where the angle of view is 90° from corner to corner.
     pub fn top_level(finest: &Level) -> u32 {
         let largest = finest.samples.iter().flatten().map(|sample| sample.radius).fold(0.0, f64::max);
-        largest.log2().ceil().max(1.0) as u32
+        (8.0 * largest).log2().ceil().max(1.0) as u32
     }
 
     /// Both pyramids, up to the level `top`.
