@@ -24,9 +24,10 @@ void main() {
         ivec2 child = 2 * at + ivec2(k & 1, k >> 1);
         below[k] = is_within(finer, child) ? load_pulled(place_in(finer, start, child)) : NOTHING;
         if (below[k].near == 0.0) continue;
-        vec2 centre = level_centre(finer, child) + below[k].displacement;
-        below[k].displacement = centre - own;
-        if (!(radii2(below[k], centre, own - centre, 0.0) <= 1.0)) {
+        // From whole numbers: a difference of positions on the picture would lose digits.
+        vec2 e = (vec2(child - 2 * at) - 0.5) * float(1u << finer) + below[k].displacement;
+        below[k].displacement = e;
+        if (!(radii2(below[k], own + e, -e, 0.0) <= 1.0)) {
             below[k].near = 0.0;
         } else if (below[k].near < nearest) {
             nearest = below[k].near;

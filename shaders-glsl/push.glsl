@@ -16,7 +16,7 @@ const float WIDENING = 0.25;
 const float RIM = 4.5, PAPER_RIM = 2.0;
 
 // Candidate k for pixel `at`: the four nearest coarser pixels, then the pixel and its neighbours, row by row. Its displacement is from `own`.
-Sample candidate(int k, uint level, uint start, uint above, ivec2 at, vec2 own) {
+Sample candidate(int k, uint level, uint start, uint above, ivec2 at) {
     bool coarse = k < 4;
     uint of = coarse ? level + 1 : level;
     ivec2 side = 2 * (at & 1) - 1;
@@ -25,7 +25,8 @@ Sample candidate(int k, uint level, uint start, uint above, ivec2 at, vec2 own) 
     Sample s = NOTHING;
     if (coarse) s = load_pushed(place_in(of, above, place));
     else s = load_pulled(place_in(of, start, place));
-    s.displacement += level_centre(of, place) - own;
+    // From whole numbers: a difference of positions on the picture would lose digits.
+    s.displacement += (coarse ? vec2(2 * place - at) + 0.5 : vec2(place - at)) * float(1u << level);
     return s;
 }
 
@@ -43,7 +44,7 @@ void main() {
     Sample front = NOTHING;
     float weights[13], first = PAPER ? 0.0 : -1e38;
     for (int k = 0; k < count; k++) {
-        Sample s = candidate(k, level, start, above, at, own);
+        Sample s = candidate(k, level, start, above, at);
         weights[k] = 0.0;
         if (s.near == 0.0) continue;
         float m2 = radii2(s, own + s.displacement, -s.displacement, widening);
@@ -62,7 +63,7 @@ void main() {
     float total = 0.0;
     for (int k = 0; k < count; k++) {
         if (weights[k] == 0.0) continue;
-        Sample s = candidate(k, level, start, above, at, own);
+        Sample s = candidate(k, level, start, above, at);
         if (!PAPER && s.near > front.far || s.tube != front.tube) continue;
         float w = weights[k];
         total += w;
@@ -88,7 +89,7 @@ void main() {
     bool known = point.near > 0.0, made = total > 0.0;
     if (PAPER) {
         // Behind is what is behind the coarser pixel that holds it.
-        Sample holder = candidate(0, level, start, above, at, own);
+        Sample holder = candidate(0, level, start, above, at);
         bool behind = holder.near > 0.0 && point.near > holder.far;
         if (!known || behind) point = mean;
     } else if (!known || made && point.near > mean.far) {

@@ -73,6 +73,7 @@ pub mod yardstick;
 pub use error::{Error, Result};
 pub use picture::Picture;
 pub use progress::Progress;
+pub use readback::{PyramidLevel, PyramidSample};
 pub use renderer::{FrameReport, RenderOptions, Renderer, SplatCounts};
 pub use scene::Scene;
 pub use settings::Settings;

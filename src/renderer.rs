@@ -157,6 +157,11 @@ impl Renderer {
         self.resident.as_ref().map(|resident| &resident.splats)
     }
 
+    /// The pyramids of the last frame, if it was pull–push's.
+    pub fn pyramids(&self) -> Option<&Pyramids> {
+        self.present.as_ref().and_then(|present| present.canvas.pyramids())
+    }
+
     fn run(
         &mut self,
         scene: &Scene,

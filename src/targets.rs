@@ -62,6 +62,8 @@ pub struct Pyramids {
     pub pushed: Buffer,
     /// The picture.
     pub picture: PictureBuffer,
+    /// Floats of a sample.
+    pub(crate) floats: u64,
 }
 
 /// Format of each image of a [`Variant`]; `None` where there is no such target.
@@ -295,12 +297,14 @@ impl Pyramids {
     pub fn new(device: &Arc<Device>, variant: &Variant, size: [u32; 2]) -> Result<Self> {
         let picture = PictureBuffer::new(device, variant.outputs, size)?;
         let samples: u64 = (0..levels(size)).map(|level| level_pixels(size, level)).sum();
-        let bytes = 4 * Self::floats(variant) * samples;
+        let floats = Self::floats(variant);
+        let bytes = 4 * floats * samples;
         Ok(Self {
             nearest: Buffer::storage(device, "nearest", 8 * picture.pixels())?,
             pulled: Buffer::storage(device, "pulled", bytes)?,
             pushed: Buffer::storage(device, "pushed", bytes)?,
             picture,
+            floats,
         })
     }
 
@@ -325,6 +329,11 @@ impl Pyramids {
     /// Number of levels: up to one of a single pixel.
     pub fn levels(&self) -> u32 {
         levels(self.picture.size)
+    }
+
+    /// Width and height of a level, its pixels.
+    pub fn level_size(&self, level: u32) -> [u32; 2] {
+        level_size(self.picture.size, level)
     }
 
     /// Number of pixels of a level.
@@ -352,7 +361,10 @@ fn levels(size: [u32; 2]) -> u32 {
     1 + longest.next_power_of_two().trailing_zeros()
 }
 
+fn level_size(size: [u32; 2], level: u32) -> [u32; 2] {
+    size.map(|side| side.div_ceil(1 << level))
+}
+
 fn level_pixels(size: [u32; 2], level: u32) -> u64 {
-    let [width, height] = size.map(|side| u64::from(side.div_ceil(1 << level)));
-    width * height
+    level_size(size, level).map(u64::from).iter().product()
 }

@@ -177,6 +177,29 @@ fn the_page_is_whole_and_loads_nothing() {
 }
 
 #[test]
+fn the_page_says_what_points_cost_and_when_they_win() {
+    let told = |runs: Vec<Run>| {
+        let mut results = plausible();
+        results.sessions[0].runs = runs;
+        check(&results);
+        page(&results, CODE)
+    };
+    let whole = told(points_alone());
+    assert!(whole.contains("Passes of pull-push over number of points"));
+    let cost = "Pull and push take 30 to 44 ms, at most 1.1 times the 40 ms that they take where every pixel shows a point.";
+    assert!(whole.contains(cost));
+    assert!(whole.contains("It is faster than perspective-ewa from 1 M points on."));
+    let until = |most: u64| points_alone().into_iter().filter(|run| run.points <= most).collect();
+    let few = told(until(100_000));
+    assert!(few.contains(
+        "Pull and push take 30 to 44 ms. It is not faster than perspective-ewa at the most points measured."
+    ));
+    let above = |least: u64| points_alone().into_iter().filter(|run| run.points >= least).collect();
+    let many = told(above(1_000_000));
+    assert!(many.contains("It is faster than perspective-ewa at every number of points measured, from 1 M."));
+}
+
+#[test]
 fn a_section_without_data_is_not_there() {
     let mut results = plausible();
     results.sessions[0].runs.retain(|run| run.figure == Figure::Yardstick);

@@ -55,6 +55,7 @@ effects! {
     narrow_kernels_show_facets: "kernel-facets";
     filters_add_to_the_overlap: "overlap";
     without_normalization_brightness_varies: "no-normalization";
+    means_of_all_around_let_hidden_surfaces_through: "layers";
     sprites_of_whole_sizes_are_too_large: "whole-sizes";
 }
 

@@ -7,7 +7,6 @@ use crate::methods::Method;
 use crate::passes::Splats;
 use crate::picture::Picture;
 use crate::settings::Settings;
-use crate::splatting::Splatting;
 use crate::vk::{Device, PassTime};
 use crate::yardstick::{self, Kind, Yardstick};
 use crate::{Outputs, Precision, Rasterizer, RenderOptions, Renderer, Scene};
@@ -40,7 +39,7 @@ impl Engine {
                     Rasterizer::Compute => "compute",
                 });
                 let half = (*precision == Precision::Half).then_some("16-bit sums");
-                let (method, changes) = preset(&settings.splatting);
+                let (method, changes) = preset(settings);
                 let ways = rasterizer.into_iter().chain(half).map(str::to_owned);
                 let variant = changes.into_iter().chain(ways).collect::<Vec<_>>().join(", ");
                 Contender { method: method.name.into(), variant }
@@ -51,9 +50,13 @@ impl Engine {
     }
 }
 
-/// The first of the presets that differ along the fewest axes, and what is changed of it.
-fn preset(splatting: &Splatting) -> (Method, Vec<String>) {
-    let own = Axes::of(splatting);
+/// The preset of that pull–push; of splats the first of those that differ along the fewest axes, and what is changed of it.
+fn preset(settings: &Settings) -> (Method, Vec<String>) {
+    let of_points = |method: &Method| method.pull_push.is_some() && method.pull_push == settings.pull_push;
+    if let Some(method) = Method::ALL.into_iter().find(of_points) {
+        return (method, Vec::new());
+    }
+    let own = Axes::of(&settings.splatting);
     let changes = |method: &Method| {
         let preset = Axes::of(&method.splatting);
         let pairs = own.named().into_iter().zip(preset.named()).filter(|(own, preset)| own != preset);
@@ -169,7 +172,7 @@ impl Ready for OnHost {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::splatting::{Filter, Footprint, Kernel};
+    use crate::splatting::{Filter, Footprint, Kernel, Splatting};
 
     fn named(splatting: Splatting) -> String {
         Engine::DEFAULT.contender(&Settings { splatting, ..Default::default() }).label()
@@ -177,8 +180,8 @@ mod tests {
 
     #[test]
     fn a_contender_is_its_preset_or_the_nearest_with_what_is_changed() {
-        for method in Method::SPLATTING {
-            assert_eq!(named(method.splatting), method.name);
+        for method in Method::ALL {
+            assert_eq!(Engine::DEFAULT.contender(&method.settings()).label(), method.name);
         }
         let default = Splatting::default();
         assert_eq!(named(Splatting { filter: Filter::None, ..default }), "perspective-ewa (filter none)");

@@ -141,6 +141,8 @@ pub enum Figure {
     Aliasing,
     /// Time against the number of points.
     ScalingPoints,
+    /// Time where every pixel shows a point: the most that the passes of pull–push which are over pixels take.
+    Filled,
     /// Time against the picture's size.
     ScalingSize,
     /// Time against the number of discs over a point of the surface.

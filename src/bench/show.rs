@@ -85,6 +85,7 @@ pub fn figure(figure: Figure) -> &'static str {
         Figure::Lowpass => "lowpass",
         Figure::Aliasing => "aliasing",
         Figure::ScalingPoints => "scaling-points",
+        Figure::Filled => "filled",
         Figure::ScalingSize => "scaling-size",
         Figure::ScalingOverlap => "scaling-overlap",
         Figure::Yardstick => "yardstick",

@@ -207,6 +207,14 @@ impl Canvas {
         }
     }
 
+    /// The pyramids, of pull–push.
+    pub fn pyramids(&self) -> Option<&Pyramids> {
+        match &self.targets {
+            Targets::Pyramids(targets) => Some(targets),
+            Targets::Images(_) | Targets::Buffers(_) => None,
+        }
+    }
+
     /// Buffers in which the picture can be read back.
     pub fn make_readback(&self, device: &Arc<Device>) -> Result<Vec<Buffer>> {
         match &self.targets {

@@ -76,7 +76,7 @@ impl Method {
 /// The passes of a frame, in their order; what only clears or reads back is none.
 pub fn passes(variant: &Variant) -> Vec<&'static str> {
     if variant.pull_push.is_some() {
-        return vec!["project", "fetch", "pull", "push", "shade"];
+        return pull_push::PASSES.into();
     }
     let computed = variant.rasterizer == Rasterizer::Compute;
     let list = match variant.visibility {

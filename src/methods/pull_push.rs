@@ -33,6 +33,9 @@ pub const PAPER: Method = Method {
     ..perspective_ewa::METHOD
 };
 
+/// Their names.
+pub const PASSES: [&str; 5] = ["project", "fetch", "pull", "push", "shade"];
+
 /// The passes.
 pub struct PullPush {
     project: Project,

@@ -1,6 +1,7 @@
 //! Pull: a level of the pulled pyramid → the next coarser one (marroquim2008 §3.2; `pull.glsl`).
 
-use super::normalize::{frame_layout, grid_over};
+use super::normalize::grid_over;
+use super::pyramid::over_pixels;
 use super::{PyramidSet, SplatLayout};
 use crate::error::Result;
 use crate::targets::Pyramids;
@@ -14,8 +15,7 @@ pub struct Pull(ComputePipeline);
 impl Pull {
     /// The pass for `variant`.
     pub fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self> {
-        let sets = [&frame_layout(device)?, &layout.pyramids];
-        ComputePipeline::new(device, &sets, shaders::PULL_COMPUTE, &variant.constants()).map(Self)
+        over_pixels(device, layout, variant, shaders::PULL_COMPUTE).map(Self)
     }
 
     /// Level 0 of `targets.pulled` → all others. `frame` is a set of the frame's numbers.

@@ -1,6 +1,7 @@
 //! Push: the pulled pyramid → the final one, coarse to fine (marroquim2008 §3.3; `push.glsl`).
 
-use super::normalize::{frame_layout, grid_over};
+use super::normalize::grid_over;
+use super::pyramid::over_pixels;
 use super::{PyramidSet, SplatLayout};
 use crate::error::Result;
 use crate::targets::Pyramids;
@@ -14,8 +15,7 @@ pub struct Push(ComputePipeline);
 impl Push {
     /// The pass for `variant`.
     pub fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self> {
-        let sets = [&frame_layout(device)?, &layout.pyramids];
-        ComputePipeline::new(device, &sets, shaders::PUSH_COMPUTE, &variant.constants()).map(Self)
+        over_pixels(device, layout, variant, shaders::PUSH_COMPUTE).map(Self)
     }
 
     /// `targets.pulled` → `targets.pushed`. `frame` is a set of the frame's numbers.

@@ -1,15 +1,28 @@
-//! The descriptor set that project, fetch, pull, push and shade share (`lib/pyramid.glsl`).
+//! What project, fetch, pull, push and shade share (`lib/pyramid.glsl`).
 
 use super::SplatLayout;
+use super::normalize::frame_layout;
 use crate::error::Result;
 use crate::targets::Pyramids;
-use crate::vk::{Binding, DescriptorSet, Device, SetLayout};
+use crate::variant::Variant;
+use crate::vk::{Binding, ComputePipeline, DescriptorSet, Device, SetLayout};
 use ash::vk::{DescriptorType, ShaderStageFlags};
 use std::sync::Arc;
 
 /// Layout of descriptor set 1 of pull–push: nearest, pulled, pushed, picture.
 pub(super) fn pyramid_layout(device: &Arc<Device>) -> Result<SetLayout> {
     SetLayout::new(device, &[(DescriptorType::STORAGE_BUFFER, ShaderStageFlags::COMPUTE); 4])
+}
+
+/// The pipeline of a pass over pixels, of the SPIR-V `code`: the frame's numbers are its descriptor set 0, the pyramids set 1.
+pub(super) fn over_pixels(
+    device: &Arc<Device>,
+    layout: &SplatLayout,
+    variant: &Variant,
+    code: &[u32],
+) -> Result<ComputePipeline> {
+    let sets = [&frame_layout(device)?, &layout.pyramids];
+    ComputePipeline::new(device, &sets, code, &variant.constants())
 }
 
 /// Pull–push's view of its targets.

@@ -1,6 +1,7 @@
 //! Shade: the final level 0 → picture, normal, depth (marroquim2008 §3.4; `shade.glsl`).
 
 use super::normalize::{frame_layout, grid_over};
+use super::pyramid::over_pixels;
 use super::{PyramidSet, SplatLayout};
 use crate::error::Result;
 use crate::targets::Pyramids;
@@ -19,10 +20,8 @@ pub struct Shade {
 impl Shade {
     /// The pass for `variant`.
     pub fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self> {
-        let frame_layout = frame_layout(device)?;
-        let sets = [&frame_layout, &layout.pyramids];
-        let pipeline = ComputePipeline::new(device, &sets, shaders::SHADE_COMPUTE, &variant.constants())?;
-        Ok(Self { frame_layout, pipeline })
+        let pipeline = over_pixels(device, layout, variant, shaders::SHADE_COMPUTE)?;
+        Ok(Self { frame_layout: frame_layout(device)?, pipeline })
     }
 
     /// The set of the frame's numbers; `frame` must outlive it.

@@ -3,5 +3,6 @@
 
 pub mod gpu;
 pub mod mesh;
+pub mod pyramids;
 pub mod sampling;
 pub mod scenes;

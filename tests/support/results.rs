@@ -212,6 +212,32 @@ fn scaling() -> Vec<Run> {
     runs
 }
 
+/// Pull–push over points, slower than splats at first, and where every pixel shows one.
+pub fn points_alone() -> Vec<Run> {
+    let mut runs = Vec::new();
+    let mut add = |figure, method: &str, points: u64, ms: f64, pixels: f64| {
+        let mut run = run(figure, "scene:bumpy-sphere", points, ms, 0.03);
+        run.contender = Contender { method: method.into(), variant: String::new() };
+        if method == "pull-push" {
+            let times = [("project", 1e-5 * points as f64), ("pull", 0.2 * pixels), ("push", 0.8 * pixels)];
+            let pass = |(name, ms): (&str, f64)| Pass {
+                name: name.into(),
+                ms: Statistics { median: ms, min: ms, max: ms },
+            };
+            run.time.as_mut().unwrap().passes = times.map(pass).to_vec();
+        }
+        runs.push(run);
+    };
+    for (points, splats, own, pixels) in
+        [(10_000, 20.0, 50.0, 30.0), (100_000, 40.0, 52.0, 44.0), (1_000_000, 200.0, 70.0, 40.0)]
+    {
+        add(Figure::ScalingPoints, "perspective-ewa", points, splats, 0.0);
+        add(Figure::ScalingPoints, "pull-push", points, own, pixels);
+    }
+    add(Figure::Filled, "pull-push", 4_000_000, 90.0, 40.0);
+    runs
+}
+
 fn yardstick() -> Vec<Run> {
     let mut runs = Vec::new();
     for (points, ms) in [(100_000, 62.0), (1_000_000, 164.0)] {

@@ -17,13 +17,24 @@ pub const SHARPNESS: &str = "sharpness";
 /// wrong has none; borders between splats have.
 pub const FACETS: &str = "facets";
 
+/// Pixels well inside the surface that show something further away than it, by more than a hundredth of its distance.
+pub const LEAKS: &str = "leaks";
+
 /// All of them that there are.
 pub fn of(pair: &Pair<'_>) -> Vec<(&'static str, f64)> {
     let image = Image::new(pair);
     let gaps = (0..pair.pixels()).filter(|&i| image.inside_truth[i] && !covers(pair.picture(), i)).count();
     let others = [(UNEVENNESS, image.unevenness()), (SHARPNESS, image.sharpness()), (FACETS, image.facets())];
     let known = others.into_iter().filter_map(|(name, value)| Some((name, value?)));
-    std::iter::once((GAPS, gaps as f64)).chain(known).collect()
+    let leaks = leaks(pair, &image).map(|leaks| (LEAKS, leaks as f64));
+    std::iter::once((GAPS, gaps as f64)).chain(leaks).chain(known).collect()
+}
+
+/// None without depths.
+fn leaks(pair: &Pair<'_>, image: &Image) -> Option<usize> {
+    let (picture, truth) = (pair.picture().depth.as_ref()?, pair.truth().depth.as_ref()?);
+    let behind = |i: &usize| image.inside_truth[*i] && picture[*i] > 1.01 * truth[*i];
+    Some((0..pair.pixels()).filter(behind).count())
 }
 
 /// Of a picture of [overlaps](crate::settings::Shading::Overlap): none if nothing is covered.

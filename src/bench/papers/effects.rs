@@ -1,6 +1,6 @@
 //! What the papers' figures show: scenes in which one way to splat goes wrong and another does not, and the metrics that tell them apart.
 
-use super::details::{FACETS, GAPS, SHARPNESS, UNEVENNESS};
+use super::details::{FACETS, GAPS, LEAKS, SHARPNESS, UNEVENNESS};
 use crate::bench::plan::{Plan, Wants};
 use crate::bench::record::{Figure, Run};
 use crate::bench::suites::{Suite, plan};
@@ -77,7 +77,7 @@ const fn more(metric: &'static str, more: usize, less: usize, by: Margin) -> Exp
 }
 
 /// All of them.
-pub const ALL: [Effect; 10] = [
+pub const ALL: [Effect; 11] = [
     Effect {
         name: "axis-offset",
         title: "A depth offset along the camera's axis hides too much",
@@ -181,6 +181,16 @@ pub const ALL: [Effect; 10] = [
         metrics: &[("bloat", "px too many"), ("rmse", "RMSE")],
         expected: &[more("rmse", 0, 1, Margin::Times(1.01))],
         plans: whole_sizes,
+    },
+    Effect {
+        name: "layers",
+        title: "Means over whatever is around let hidden surfaces through",
+        source: "marroquim2008 section 3.3",
+        about: "One slab five radii above another, by points. As published a hole is filled with the mean of all coarser pixels about it, whichever \
+                surface they are of; by the robust rules with that of the nearest surface alone.",
+        metrics: &[(LEAKS, "px of what is hidden"), ("rmse", "RMSE")],
+        expected: &[more(LEAKS, 0, 1, Margin::Plus(20.0)), more("rmse", 0, 1, Margin::Times(1.1))],
+        plans: layers,
     },
 ];
 
@@ -308,4 +318,9 @@ fn whole_sizes(effect: &Effect) -> Vec<Plan> {
     let sprites = by(&effect.side("scene:bumpy-sphere", 100_000, 192), &preset("sprites"));
     let fractional = sprites.settings.splatting;
     each(&sprites, [Splatting { footprint: Footprint::WholeSprite, ..fractional }, fractional])
+}
+
+fn layers(effect: &Effect) -> Vec<Plan> {
+    let plan = effect.side("scene:slabs?slabs=2&gap=0.1&clips=off", 100_000, 512);
+    ["pull-push-paper", "pull-push", "perspective-ewa"].map(|name| by(&plan, &preset(name))).into()
 }

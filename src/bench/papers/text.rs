@@ -130,12 +130,12 @@ fn table_lines(text: &mut String, table: &Table, runs: &[&Run], session: &Sessio
     let _ = writeln!(text, "  {note}");
     let columns = table.columns.iter().map(|name| format!("{name:>12}")).collect::<String>();
     let _ =
-        writeln!(text, "  {:<32}{:>10}{:>12}{columns}{:>12}  here by", "model", "points", "size px", "here");
+        writeln!(text, "  {:<32}{:>10}{:>12}{columns}{:>18}  here by", "model", "points", "size px", "here");
     for row in table.rows {
         let numbers = row.published.iter().map(|number| format!("{number:>12}")).collect::<String>();
         let (points, size) = (show::count(row.points), show::size(row.size));
         let [here, by] = here(row, *unit, runs);
-        let _ = writeln!(text, "  {:<32}{points:>10}{size:>12}{numbers}{here:>12}  {by}", row.model);
+        let _ = writeln!(text, "  {:<32}{points:>10}{size:>12}{numbers}{here:>18}  {by}", row.model);
     }
 }
 
@@ -145,12 +145,9 @@ pub(in crate::bench) fn here(row: &Row, unit: Unit, runs: &[&Run]) -> [String; 2
         return ["".into(), format!("none: {why}")];
     }
     let Some(run) = row.run(runs) else { return ["".into(), "not measured".into()] };
-    match (&run.refused, run.ms()) {
+    match (&run.refused, unit.told(run)) {
         (Some(why), _) => ["".into(), format!("refused: {why}")],
-        (None, Some(ms)) => {
-            let number = show::significant(unit.of(ms, run.points), 3);
-            [number, format!("{}, {}", run.contender.label(), show::scene(&run.scene))]
-        }
+        (None, Some(number)) => [number, format!("{}, {}", run.contender.label(), show::scene(&run.scene))],
         (None, None) => ["".into(), "not timed".into()],
     }
 }

@@ -13,6 +13,7 @@ mod papers;
 mod pictures;
 mod plot;
 mod points;
+mod points_alone;
 mod scaling;
 mod terms;
 mod yardstick;

@@ -2,6 +2,7 @@
 
 use super::page::{Page, grouped};
 use super::plot::{Line, Plot, Scale, Style};
+use super::points_alone;
 use crate::bench::record::{Figure, Run, Session};
 use crate::bench::show;
 use maud::{Markup, html};
@@ -58,6 +59,7 @@ pub fn part(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>
             plots.push(html! { div { (plot) p.caption { (fixed) " " (growth) } } });
         }
     }
+    plots.extend(points_alone::plots(page, session)?);
     Ok((!plots.is_empty()).then(|| {
         html! {
             p { "Straight lines are power laws; what grows in proportion has exponent 1." }

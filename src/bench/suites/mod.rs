@@ -13,9 +13,8 @@ use super::engine::Engine;
 use super::plan::{Plan, Wants};
 use super::record::Figure;
 use super::stopwatch::Effort;
-use crate::methods::Method;
+use crate::methods::{Method, perspective_ewa};
 use crate::settings::{Settings, Shading, Widen};
-use crate::splatting::Splatting;
 use crate::yardstick::Kind;
 use crate::{scenes, truth};
 use std::time::Duration;
@@ -116,12 +115,14 @@ pub(super) fn plan(suite: Suite, figure: Figure, scene: &str, points: u64, size:
 /// The same by every other method, each with its own settings.
 fn methods(plan: &Plan) -> impl Iterator<Item = Plan> + use<> {
     let plan = plan.clone();
-    Method::SPLATTING.into_iter().filter(|method| method.splatting != Splatting::default()).map(
-        move |method| {
-            let settings = Settings { shading: plan.settings.shading, ..method.settings() };
-            Plan { settings, ..plan.clone() }
-        },
-    )
+    let others = Method::ALL.into_iter().filter(|method| *method != perspective_ewa::METHOD);
+    others.map(move |method| by(&plan, &method))
+}
+
+/// The same by a method with its own settings.
+fn by(plan: &Plan, method: &Method) -> Plan {
+    let settings = Settings { shading: plan.settings.shading, ..method.settings() };
+    Plan { settings, ..plan.clone() }
 }
 
 /// The same by a plain program on the CPU.
@@ -177,7 +178,7 @@ mod tests {
                 assert_eq!(plan.suite, suite.name());
                 assert!(Subject::scene(&plan.scene).is_ok(), "{}", plan.scene);
                 assert!(plan.settings.check().is_ok());
-                assert!(plan.viewpoint.is_none() || suite == Suite::Papers);
+                assert!(plan.viewpoint.is_none() || [Suite::Papers, Suite::Scaling].contains(&suite));
             }
         }
     }

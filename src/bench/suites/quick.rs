@@ -1,8 +1,9 @@
 //! A first impression of everything.
 
-use super::{Suite, aliasing, lowpass, methods, plan, yardstick};
+use super::{Suite, aliasing, by, lowpass, methods, plan, yardstick};
 use crate::bench::plan::{Plan, Wants};
 use crate::bench::record::Figure;
+use crate::methods::pull_push;
 use crate::yardstick::Kind;
 
 const SIZE: [u32; 2] = [320, 320];
@@ -14,8 +15,10 @@ pub(super) fn plans() -> Vec<Plan> {
     for scene in ["scene:bumpy-sphere", "scene:torus", "scene:part"] {
         for points in [10_000, 100_000, 1_000_000] {
             plans.extend(budget(scene, points));
-            if (scene, points) == EVERY_METHOD {
-                plans.extend(methods(&plan(Suite::Quick, Figure::Budget, scene, points, SIZE)));
+            let smooth = plan(Suite::Quick, Figure::Budget, scene, points, SIZE);
+            match (scene, points) == EVERY_METHOD {
+                true => plans.extend(methods(&smooth)),
+                false => plans.push(by(&smooth, &pull_push::METHOD)),
             }
         }
     }

@@ -1,18 +1,23 @@
 //! Time against points, pixels and overlap.
 
-use super::{Suite, methods, plan, yardstick};
+use super::{Suite, by, methods, plan, yardstick};
 use crate::bench::plan::{Plan, Wants};
 use crate::bench::record::Figure;
+use crate::methods::{Method, pull_push};
+use crate::scenes::Viewpoint;
 use crate::yardstick::Kind;
 
 const SCENE: &str = "scene:bumpy-sphere";
 const SIZE: [u32; 2] = [1024, 1024];
+const PULL_PUSH: [Method; 2] = [pull_push::METHOD, pull_push::PAPER];
 
 pub(super) fn plans() -> Vec<Plan> {
-    // Every method at a few of the places.
+    // Every method at a few of the places; at all of them the default one and, over points, pull–push.
     let plan = |figure, points, size, every: bool| {
         let plan = Plan { wants: Wants::TIME, ..plan(Suite::Scaling, figure, SCENE, points, size) };
-        let others = methods(&plan).filter(move |_| every);
+        let all =
+            move |plan: &Plan| every || figure == Figure::ScalingPoints && plan.settings.pull_push.is_some();
+        let others = methods(&plan).filter(all);
         [plan.clone(), yardstick(&plan, Kind::Splats)].into_iter().chain(others)
     };
     let points = [10_000, 30_000, 100_000, 300_000, 1_000_000, 3_000_000, 10_000_000];
@@ -21,6 +26,7 @@ pub(super) fn plans() -> Vec<Plan> {
         let every = [10_000, 100_000, 1_000_000].contains(&points);
         plans.extend(plan(Figure::ScalingPoints, points, SIZE, every));
     }
+    plans.extend(PULL_PUSH.map(|method| filled(&method)));
     for side in [256, 512, 1024, 2048, 4096] {
         plans.extend(plan(Figure::ScalingSize, 1_000_000, [side; 2], [256, 1024, 4096].contains(&side)));
     }
@@ -32,4 +38,12 @@ pub(super) fn plans() -> Vec<Plan> {
         plans.extend(plans_of_it.map(|plan| Plan { radius_scale, ..plan }));
     }
     plans
+}
+
+/// A plane that fills the picture with points at every pixel: pull–push finds each sample known, and has the most to do.
+fn filled(method: &Method) -> Plan {
+    let viewpoint =
+        Viewpoint { eye: [0.0, 14.0, 0.0], target: [0.0; 3], up: [0.0, 0.0, -1.0], fov_y_deg: 45.0 };
+    let plan = plan(Suite::Scaling, Figure::Filled, "scene:relief?height=0", 4_000_000, SIZE);
+    by(&Plan { wants: Wants::TIME, viewpoint: Some(viewpoint), ..plan }, method)
 }

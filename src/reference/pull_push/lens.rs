@@ -21,6 +21,14 @@ pub struct Lens {
     focal: f64,
 }
 
+/// A squared distance from a disc's centre, in its radii.
+#[derive(Clone, Copy)]
+pub struct Radii2 {
+    pub value: f64,
+    /// What it is the sum of, all taken as positive: it rounds with these.
+    pub summands: f64,
+}
+
 impl Lens {
     pub fn new(projector: &Projector) -> Self {
         let column = |axis: DVec3| 0.5 * projector.size * projector.project(axis.extend(0.0)).truncate();
@@ -58,7 +66,7 @@ impl Lens {
 
     /// Squared distance of the pixel position `at` from a disc's centre, in its radii: the ellipse is the disc's image to first order
     /// about its centre, its variance widened by `h`, px².
-    pub fn radii2(&self, sample: &Sample, centre: DVec2, at: DVec2, h: f64) -> f64 {
+    pub fn radii2(&self, sample: &Sample, centre: DVec2, at: DVec2, h: f64) -> Radii2 {
         let step = self.step(centre);
         let across = step.truncate();
         let normal = self.normal(sample, centre);
@@ -73,21 +81,23 @@ impl Lens {
         // The determinant by its closed form: as a difference it would be lost on a disc seen edge-on.
         let determinant = (radius2 * normal.dot(step)).powi(2) + h * (xx + yy - h);
         let e = at - centre;
-        (yy * e.x * e.x - 2.0 * xy * e.x * e.y + xx * e.y * e.y) / determinant
+        let (squares, product) = (yy * e.x * e.x + xx * e.y * e.y, 2.0 * xy * e.x * e.y);
+        let [value, summands] = [squares - product, squares + product.abs()].map(|sum| sum / determinant);
+        Radii2 { value, summands }
     }
 
     /// Distance at which the ray through `at` meets the disc's plane, no further from its own than its radius.
     pub fn depth_at(&self, sample: &Sample, centre: DVec2, at: DVec2) -> f64 {
         let [from, to] = [centre, at].map(|p| sample.normal.dot(self.step(p)));
         let met = match self.perspective {
-            true => sample.depth * from / to,
+            // Beyond the plane's horizon it is as far as it may be.
+            true if from / to > 0.0 => sample.depth * from / to,
+            true => f64::INFINITY,
             false => {
                 let starts = self.starts * DVec3::new(0.0, centre.x - at.x, centre.y - at.y);
                 sample.depth + sample.normal.dot(starts) / to
             }
         };
-        // Beyond the plane's horizon it is as far as it may be.
-        let met = if self.perspective && met.is_nan() || met <= 0.0 { f64::INFINITY } else { met };
         let reach = self.to_length(sample.radius, sample.depth);
         met.clamp(sample.depth - reach, sample.depth + reach)
     }

@@ -11,6 +11,7 @@
 //! lengths on the screen are px of the picture, whatever the level.
 
 mod lens;
+mod margin;
 mod paper;
 mod project;
 mod pull;
@@ -21,13 +22,15 @@ mod tests;
 
 use super::{Frame, Projector};
 use crate::error::Result;
-use crate::geometry::{Camera, Parts};
+use crate::geometry::{Camera, Parts, Surfels};
 use crate::pull_push::{PullPush, Rules};
 use crate::settings::Settings;
 use glam::{DVec2, DVec3};
 use lens::Lens;
+use margin::Margin;
 use rayon::prelude::*;
 
+pub use margin::Decided;
 pub use project::Visible;
 
 /// What a pixel of a level knows of the surface: a disc.
@@ -79,14 +82,6 @@ impl Sample {
 }
 
 impl Level {
-    /// Makes a level of so many pixels, each by its coordinates.
-    fn new(level: u32, size: [u32; 2], sample: impl Fn([i64; 2]) -> Option<Sample> + Sync) -> Self {
-        let width = i64::from(size[0]);
-        let count = width * i64::from(size[1]);
-        let samples = (0..count).into_par_iter().map(|i| sample([i % width, i / width])).collect();
-        Self { level, size, samples }
-    }
-
     /// The sample at these coordinates; `None` outside, too.
     pub fn at(&self, [x, y]: [i64; 2]) -> Option<Sample> {
         let [width, height] = self.size.map(i64::from);
@@ -102,6 +97,20 @@ impl Level {
     /// Size of the next coarser level.
     pub fn coarser_size(&self) -> [u32; 2] {
         self.size.map(|side| side.div_ceil(2))
+    }
+}
+
+impl Decided {
+    /// Makes a level of so many pixels, each by its coordinates.
+    fn new(level: u32, size: [u32; 2], sample: impl Fn([i64; 2], &Margin) -> Option<Sample> + Sync) -> Self {
+        let width = i64::from(size[0]);
+        let count = width * i64::from(size[1]);
+        let decide = |i| {
+            let margin = Margin::new();
+            (sample([i % width, i / width], &margin), margin.least())
+        };
+        let (samples, margins) = (0..count).into_par_iter().map(decide).unzip();
+        Self { level: Level { level, size, samples }, margins }
     }
 }
 
@@ -130,8 +139,19 @@ impl Reconstruction {
         project::pass(self, parts.into())
     }
 
+    /// How near the projection of `surfels` to `visible` was to another outcome, by pixel: by a depth or a coordinate, relative, or by a
+    /// cosine.
+    pub fn margins(&self, surfels: &Surfels, visible: &Visible) -> Vec<f64> {
+        margin::of_projection(self, surfels, visible)
+    }
+
     /// Pass `pull`: the level above.
     pub fn pull(&self, finer: &Level) -> Level {
+        self.decide_pull(finer).level
+    }
+
+    /// The same with how near its decisions were.
+    pub fn decide_pull(&self, finer: &Level) -> Decided {
         match self.pull_push.rules {
             Rules::Paper => paper::pull(&self.lens, finer),
             Rules::Robust => pull::pass(&self.lens, finer),
@@ -140,6 +160,11 @@ impl Reconstruction {
 
     /// Pass `push`: the final level below `coarser`, which is final, from the pulled one.
     pub fn push(&self, coarser: &Level, pulled: &Level) -> Level {
+        self.decide_push(coarser, pulled).level
+    }
+
+    /// The same with how near its decisions were.
+    pub fn decide_push(&self, coarser: &Level, pulled: &Level) -> Decided {
         match self.pull_push.rules {
             Rules::Paper => paper::push(&self.lens, coarser, pulled),
             Rules::Robust => push::pass(&self.lens, coarser, pulled),
@@ -151,10 +176,14 @@ impl Reconstruction {
         shade::pass(self, pushed)
     }
 
-    /// The level on which the largest visible disc is no larger than a pixel: what is coarser changes nothing.
+    /// The level above which coarser ones change nothing.
+    ///
+    /// A disc that is known on level `l + 1` covers its pixel's centre, and so is no further from that than its radius `r`; the centres of
+    /// the pixels of level `l` are `2^l / √2` away. Of the variance that `push` widens it to there, `r² + 4^l / 4`, it reaches none if
+    /// `2^l > 4 √2 r`. Perspective makes it longer, by up to √2 more where the angle of view is 90° from corner to corner.
     pub fn top_level(finest: &Level) -> u32 {
         let largest = finest.samples.iter().flatten().map(|sample| sample.radius).fold(0.0, f64::max);
-        largest.log2().ceil().max(1.0) as u32
+        (8.0 * largest).log2().ceil().max(1.0) as u32
     }
 
     /// Both pyramids, up to the level `top`.

@@ -1,9 +1,10 @@
 //! Passes `pull` and `push` as the paper has them (marroquim2008 sections 3.2 and 3.3).
 
-use super::lens::Lens;
+use super::lens::{Lens, Radii2};
+use super::margin::Margin;
 use super::pull::{children, mean_of_front};
 use super::push::nearest_four;
-use super::{Level, Sample, centre};
+use super::{Decided, Level, Sample, centre};
 use glam::{DVec2, DVec3};
 
 /// Least minor semi-axis of an ellipse, px.
@@ -13,44 +14,46 @@ const LEAST_AXIS: f64 = 0.5;
 const RIM: f64 = 2.0;
 
 /// Squared distance of `at` from the centre of a disc's ellipse by parallel projection, in its radii.
-fn radii2(lens: &Lens, sample: &Sample, disc: DVec2, at: DVec2) -> f64 {
+fn radii2(lens: &Lens, sample: &Sample, disc: DVec2, at: DVec2) -> Radii2 {
     let e = at - disc;
     let normal = lens.normal(sample, disc);
     let along = normal.truncate().normalize_or(DVec2::X);
     let minor = (sample.radius * normal.z.abs()).max(LEAST_AXIS);
     let major = sample.radius.max(LEAST_AXIS);
-    (e.dot(along) / minor).powi(2) + (e.perp_dot(along) / major).powi(2)
+    let value = (e.dot(along) / minor).powi(2) + (e.perp_dot(along) / major).powi(2);
+    Radii2 { value, summands: value }
 }
 
 /// Fine to coarse.
-pub fn pull(lens: &Lens, finer: &Level) -> Level {
+pub fn pull(lens: &Lens, finer: &Level) -> Decided {
     let level = finer.level + 1;
-    Level::new(level, finer.coarser_size(), |at| {
+    Decided::new(level, finer.coarser_size(), |at, margin| {
         let own = centre(level, at);
-        mean_of_front(own, &children(finer, at, |sample, disc| radii2(lens, sample, disc, own) <= 1.0))
+        let covers = |sample: &Sample, disc: DVec2| margin.covers(radii2(lens, sample, disc, own));
+        mean_of_front(own, &children(finer, at, covers))
     })
 }
 
 /// Coarse to fine: a pixel that is empty, or behind what the coarser one has, is made anew.
-pub fn push(lens: &Lens, coarser: &Level, pulled: &Level) -> Level {
-    Level::new(pulled.level, pulled.size, |at| {
+pub fn push(lens: &Lens, coarser: &Level, pulled: &Level) -> Decided {
+    Decided::new(pulled.level, pulled.size, |at, margin| {
         let own = centre(pulled.level, at);
         let around = nearest_four(at);
         let point = pulled.at(at);
         let behind = |point: &Sample| coarser.at(around[0]).is_some_and(|surface| point.near > surface.far);
         match point {
             Some(point) if !behind(&point) => Some(point),
-            _ => blend(lens, own, &around.map(|at| Some((coarser.at(at)?, coarser.centre(at))))),
+            _ => blend(lens, own, margin, &around.map(|at| Some((coarser.at(at)?, coarser.centre(at))))),
         }
     })
 }
 
 /// Its kind is that of the greatest weight; how tangents and normals would mix is not said.
-fn blend(lens: &Lens, own: DVec2, coarser: &[Option<(Sample, DVec2)>]) -> Option<Sample> {
+fn blend(lens: &Lens, own: DVec2, margin: &Margin, coarser: &[Option<(Sample, DVec2)>]) -> Option<Sample> {
     let weighted = coarser.iter().flatten().filter_map(|(sample, centre)| {
         let disc = *centre + sample.displacement;
         let radii2 = radii2(lens, sample, disc, own);
-        (radii2 <= 1.0).then(|| (sample, disc, (-RIM * radii2).exp()))
+        margin.covers(radii2).then(|| (sample, disc, (-RIM * radii2.value).exp()))
     });
     let mut discs: Vec<_> = weighted.collect();
     let (first, ..) = *discs.iter().reduce(|a, b| if b.2 > a.2 { b } else { a })?;

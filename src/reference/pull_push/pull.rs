@@ -1,14 +1,14 @@
 //! Pass `pull`: the discs that a coarser pixel has in front (marroquim2008 section 3.2; a perspective ellipse, and true displacements).
 
 use super::lens::Lens;
-use super::{Level, Sample, centre};
+use super::{Decided, Level, Sample, centre};
 use glam::{DVec2, DVec3};
 
-pub fn pass(lens: &Lens, finer: &Level) -> Level {
+pub fn pass(lens: &Lens, finer: &Level) -> Decided {
     let level = finer.level + 1;
-    Level::new(level, finer.coarser_size(), |at| {
+    Decided::new(level, finer.coarser_size(), |at, margin| {
         let own = centre(level, at);
-        let covers = |sample: &Sample, disc: DVec2| lens.radii2(sample, disc, own, 0.0) <= 1.0;
+        let covers = |sample: &Sample, disc: DVec2| margin.covers(lens.radii2(sample, disc, own, 0.0));
         mean_of_front(own, &children(finer, at, covers))
     })
 }

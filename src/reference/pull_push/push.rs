@@ -2,7 +2,7 @@
 //! surface alone, and with neighbours of the same level, without which steep surfaces have holes).
 
 use super::lens::Lens;
-use super::{Level, Sample, centre};
+use super::{Decided, Level, Sample, centre};
 use glam::{DVec2, DVec3};
 
 /// What a disc's variance is widened by on level 0, px²; four times as much a level. Narrower ones leave holes between themselves.
@@ -19,15 +19,15 @@ struct Candidate {
     weight: f64,
 }
 
-pub fn pass(lens: &Lens, coarser: &Level, pulled: &Level) -> Level {
+pub fn pass(lens: &Lens, coarser: &Level, pulled: &Level) -> Decided {
     let widening = WIDENING * f64::from(pulled.level).exp2().powi(2);
-    Level::new(pulled.level, pulled.size, |at| {
+    Decided::new(pulled.level, pulled.size, |at, margin| {
         let own = centre(pulled.level, at);
         let candidate = |level: &Level, at: [i64; 2]| {
             let sample = level.at(at)?;
             let disc = level.centre(at) + sample.displacement;
             let radii2 = lens.radii2(&sample, disc, own, widening);
-            (radii2 <= 1.0).then(|| Candidate { sample, disc, weight: (-RIM * radii2).exp() })
+            margin.covers(radii2).then(|| Candidate { sample, disc, weight: (-RIM * radii2.value).exp() })
         };
         let above = nearest_four(at).map(|at| candidate(coarser, at));
         let beside = neighbours(at).map(|at| candidate(pulled, at));
@@ -36,9 +36,11 @@ pub fn pass(lens: &Lens, coarser: &Level, pulled: &Level) -> Level {
         let candidates: Vec<_> = above.into_iter().chain(beside).flatten().collect();
         let surface = blend(lens, own, &candidates, pulled.level == 0);
         match (pulled.at(at).filter(|_| shown), surface) {
-            (Some(point), Some(surface)) if point.near > surface.far => Some(surface),
+            (Some(point), Some(surface)) if !margin.at_most(point.near, surface.far) => Some(surface),
             (Some(point), Some(surface))
-                if pulled.level == 0 && surface.near <= point.far && surface.tube == point.tube =>
+                if pulled.level == 0
+                    && margin.at_most(surface.near, point.far)
+                    && surface.tube == point.tube =>
             {
                 let Sample { colour, normal, depth, .. } = surface;
                 Some(match point.tube {
@@ -64,7 +66,8 @@ fn neighbours([x, y]: [i64; 2]) -> [[i64; 2]; 9] {
     std::array::from_fn(|i| [x + i as i64 % 3 - 1, y + i as i64 / 3 - 1])
 }
 
-/// The weighted mean of the candidates that are one surface with the nearest, and as it is of a tube or of none, for the pixel with this centre.
+/// The weighted mean of the candidates that are one surface with the nearest, and as it is of a tube or of none, for the pixel with this
+/// centre.
 fn blend(lens: &Lens, own: DVec2, candidates: &[Candidate], finest: bool) -> Option<Sample> {
     let front = candidates.iter().map(|c| &c.sample).min_by(|a, b| a.near.total_cmp(&b.near))?;
     let one = |sample: &Sample| sample.near <= front.far && sample.tube == front.tube;

@@ -34,7 +34,7 @@ fn sample(near: f64, radius: f64) -> Sample {
 fn level(level: u32, known: &[([i64; 2], Sample)]) -> Level {
     let side = 64 >> level;
     let find = |at: [i64; 2]| known.iter().find(|(place, _)| *place == at).map(|(_, sample)| *sample);
-    Level::new(level, [side; 2], find)
+    Decided::new(level, [side; 2], |at, _| find(at)).level
 }
 
 fn discs(list: &[(DVec3, DVec3, f32)]) -> Surfels {
@@ -61,7 +61,7 @@ fn ellipses_are_the_derivative_of_the_projection() {
     for i in 0..12 {
         let (sin, cos) = (f64::from(i) * 0.5).sin_cos();
         let rim = pixel(centre + radius * (cos * s + sin * t));
-        let found = lens.radii2(&seen, pixel(centre), rim, 0.0);
+        let found = lens.radii2(&seen, pixel(centre), rim, 0.0).value;
         assert!((found - 1.0).abs() < 1e-3, "{i}: {found}");
     }
     // Of the plane, too.
@@ -78,6 +78,20 @@ fn depth_is_moved_by_a_radius_at_most() {
     let reach = lens.to_length(8.0, 2.0);
     let at = |x: f64| lens.depth_at(&steep, DVec2::splat(32.0), DVec2::new(x, 32.0));
     assert_eq!((at(32.0), at(24.0), at(60.0)), (2.0, 2.0 - reach, 2.0 + reach));
+}
+
+#[test]
+fn parallel_rays_meet_every_plane() {
+    let camera = Camera::orthographic([DVec3::ZERO, DVec3::Z, DVec3::NEG_Y], 2.0, 1.0, [0.5, 8.0]).unwrap();
+    let projector = Projector::new(&camera, [64, 64], &Settings::default()).unwrap();
+    let lens = Lens::new(&projector);
+    // So steep that planes reach behind the eye a pixel beside the disc's centre: there they are as near as they may be.
+    let steep = |x: f64| Sample { normal: DVec3::new(x, 0.0, -0.001).normalize(), ..sample(2.0, 8.0) };
+    let reach = lens.to_length(8.0, 2.0);
+    for (x, sign) in [(1.0, 1.0), (-1.0, -1.0)] {
+        let at = |offset: f64| lens.depth_at(&steep(x), DVec2::splat(32.0), DVec2::new(32.0 + offset, 32.0));
+        assert_eq!((at(4.0), at(-4.0)), (2.0 + sign * reach, 2.0 - sign * reach));
+    }
 }
 
 #[test]

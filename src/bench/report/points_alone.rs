@@ -1,0 +1,110 @@
+//! What pull–push costs against the number of points, pass by pass, and from how many on it is faster than splats.
+
+use super::page::{Page, grouped};
+use super::plot::{Line, Plot, Scale, Style};
+use crate::bench::record::{Contender, Figure, Run, Session};
+use crate::bench::show;
+use crate::methods::{Method, perspective_ewa, pull_push};
+use maud::{Markup, html};
+use std::io;
+
+/// Whose passes are shown.
+const METHODS: [Method; 2] = [pull_push::METHOD, pull_push::PAPER];
+/// The passes that go over pixels alone.
+const OVER_PIXELS: [&str; 2] = ["pull", "push"];
+
+/// A plot a preset, with what it says.
+pub fn plots(page: &mut Page<'_>, session: &Session) -> io::Result<Vec<Markup>> {
+    let timed = |run: &&Run| run.figure == Figure::ScalingPoints && run.ms().is_some();
+    let runs = session.runs.iter().filter(timed);
+    let mut plots = Vec::new();
+    for ((scene, size), runs) in grouped(runs, |run| (&run.scene, run.size)) {
+        for method in METHODS {
+            let mut own = by(&runs, &method);
+            own.sort_by_key(|run| run.points);
+            let lines = lines(&own);
+            if lines.is_empty() {
+                continue;
+            }
+            let title = format!("Passes of {} over number of points: {}", method.name, show::scene(scene));
+            let name = format!("passes-{}-{}", method.name, show::scene(scene));
+            let axes = [("points", Scale::Log), ("time of a pass, ms", Scale::Log)];
+            let filled = session.runs.iter().find(|run| {
+                run.figure == Figure::Filled && run.size == size && run.contender == own[0].contender
+            });
+            let told =
+                [against_filled(&own, filled), against_splats(&own, &by(&runs, &perspective_ewa::METHOD))];
+            let plot = page.plot(Plot::of(name, title, axes, lines))?;
+            plots.push(html! { div { (plot) p.caption { (told.join(" ")) } } });
+        }
+    }
+    Ok(plots)
+}
+
+/// The runs by a preset as it is.
+fn by<'r>(runs: &[&'r Run], method: &Method) -> Vec<&'r Run> {
+    let preset = Contender { method: method.name.into(), variant: String::new() };
+    runs.iter().copied().filter(|run| run.contender == preset).collect()
+}
+
+fn lines(runs: &[&Run]) -> Vec<Line> {
+    let line = |(i, name): (usize, &'static str)| {
+        let point = |run: &&Run| Some([run.points as f64, pass(run, name)?]);
+        let points: Vec<_> = runs.iter().filter_map(point).collect();
+        (!points.is_empty()).then(|| Line::new(name, Style::nth(i), points))
+    };
+    pull_push::PASSES.into_iter().enumerate().filter_map(line).collect()
+}
+
+/// Median time of a pass, ms.
+fn pass(run: &Run, name: &str) -> Option<f64> {
+    let passes = &run.time.as_ref()?.passes;
+    passes.iter().find(|pass| pass.name == name).map(|pass| pass.ms.median)
+}
+
+/// What the passes over pixels take, ms.
+fn over_pixels(run: &Run) -> Option<f64> {
+    OVER_PIXELS.iter().map(|name| pass(run, name)).sum()
+}
+
+/// How much of what they take at most the passes over pixels take.
+fn against_filled(runs: &[&Run], filled: Option<&Run>) -> String {
+    let times = || runs.iter().filter_map(|run| over_pixels(run));
+    let [least, most] = [times().fold(f64::INFINITY, f64::min), times().fold(0.0, f64::max)];
+    if least > most {
+        return String::new();
+    }
+    let range = format!("Pull and push take {} to {} ms", show::ms(least), show::ms(most));
+    match filled.and_then(over_pixels).filter(|full| *full > 0.0) {
+        Some(full) => format!(
+            "{range}, at most {} times the {} ms that they take where every pixel shows a point.",
+            show::significant(most / full, 2),
+            show::ms(full)
+        ),
+        None => range + ".",
+    }
+}
+
+/// From how many points on it is faster than splats.
+fn against_splats(runs: &[&Run], splats: &[&Run]) -> String {
+    let faster = |run: &&Run| {
+        let other = splats.iter().find(|other| other.points == run.points)?;
+        Some((run.points, run.ms()? < other.ms()?))
+    };
+    let compared: Vec<_> = runs.iter().filter_map(faster).collect();
+    let name = perspective_ewa::METHOD.name;
+    let slower = compared.iter().rposition(|(_, faster)| !faster);
+    match (compared.first(), slower.map(|last| compared.get(last + 1))) {
+        (None, _) => String::new(),
+        (Some((least, _)), None) => {
+            format!(
+                "It is faster than {name} at every number of points measured, from {}.",
+                show::count(*least)
+            )
+        }
+        (_, Some(Some((from, _)))) => {
+            format!("It is faster than {name} from {} points on.", show::count(*from))
+        }
+        (_, Some(None)) => format!("It is not faster than {name} at the most points measured."),
+    }
+}

@@ -1,0 +1,302 @@
+//! Pull–push on the GPU, pass by pass: what each makes of the GPU's own input, against what the float64 twin makes of the same.
+
+mod support;
+
+use glam::DVec3;
+use std::fmt;
+use std::sync::Arc;
+use support::gpu::{assert_silent, device};
+use support::pyramids::Shot;
+use support::scenes::{Case, cases};
+use surfel::geometry::{Camera, Model, Parts, Surfels};
+use surfel::pull_push::{PullPush, Rules};
+use surfel::reference::Frame;
+use surfel::reference::pull_push::{Decided, Level, Reconstruction, Sample};
+use surfel::settings::{Cull, Shading};
+use surfel::vk::{Device, DeviceLimits};
+use surfel::{Settings, scenes};
+
+const SIZES: [[u32; 2]; 5] = [[1, 1], [1, 1023], [640, 480], [1023, 769], [1024, 1024]];
+
+/// What is nearer to another outcome is in doubt: a comparison of levels, relative.
+const DOUBT: f64 = 1e-5;
+
+/// The same of the projection: a coordinate is divided as Vulkan wants it, to 2½ units in the last place, after either part was rounded.
+const DOUBT_OF_POINTS: f64 = 3.5 / (1 << 23) as f64;
+
+/// Largest difference of attributes that passes: of distances relative, of displacements and radii in radii or pixels of the level, of normals
+/// and colours absolute.
+const LIMIT: f64 = 2e-4;
+
+/// Largest differences of attributes, in the units of [`LIMIT`].
+#[derive(Clone, Copy, Debug, Default)]
+struct Worst {
+    /// Of near, far and depth.
+    distance: f64,
+    /// Of displacement and radius.
+    place: f64,
+    normal: f64,
+    colour: f64,
+}
+
+impl Worst {
+    /// Between two samples of a level.
+    fn between(a: &Sample, b: &Sample, level: u32) -> Self {
+        let relative = |a: f64, b: f64| (a - b).abs() / b;
+        let unit = b.radius.max(f64::from(level).exp2());
+        // A tangent may as well be its opposite.
+        let turned = if a.tube && a.normal.dot(b.normal) < 0.0 { -a.normal } else { a.normal };
+        let apart = (a.displacement - b.displacement).length().max((a.radius - b.radius).abs());
+        Self {
+            distance: [relative(a.near, b.near), relative(a.far, b.far), relative(a.depth, b.depth)]
+                .into_iter()
+                .fold(0.0, largest),
+            place: apart / unit,
+            normal: if a.tube == b.tube { (turned - b.normal).abs().max_element() } else { f64::INFINITY },
+            colour: (a.colour - b.colour).abs().max_element(),
+        }
+    }
+
+    fn widen(&mut self, other: &Self) {
+        self.distance = largest(self.distance, other.distance);
+        self.place = largest(self.place, other.place);
+        self.normal = largest(self.normal, other.normal);
+        self.colour = largest(self.colour, other.colour);
+    }
+
+    fn passes(&self) -> bool {
+        [self.distance, self.place, self.normal, self.colour].into_iter().all(|worst| worst <= LIMIT)
+    }
+}
+
+impl fmt::Display for Worst {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { distance, place, normal, colour } = self;
+        write!(f, "distances {distance:.1e}, places {place:.1e}, normals {normal:.1e}, colours {colour:.1e}")
+    }
+}
+
+/// The greater; what is no number is the greatest.
+fn largest(a: f64, b: f64) -> f64 {
+    if b.is_nan() || a < b { b } else { a }
+}
+
+/// How a level of the GPU's differs from the twin's.
+#[derive(Clone, Debug, Default)]
+struct Verdict {
+    samples: usize,
+    /// Samples that differ and whose decisions are in doubt.
+    excused: usize,
+    /// Samples that differ and are in no doubt.
+    failed: usize,
+    /// The first of them.
+    first: String,
+    /// Over all samples that pass.
+    worst: Worst,
+}
+
+impl Verdict {
+    fn of(gpu: &Level, twin: &Decided, doubt: f64) -> Self {
+        let mut found = Self { samples: gpu.samples.len(), ..Default::default() };
+        let pairs = gpu.samples.iter().zip(&twin.level.samples).zip(&twin.margins);
+        for (i, ((gpu, own), margin)) in pairs.enumerate() {
+            let worst = match (gpu, own) {
+                (Some(gpu), Some(own)) => Some(Worst::between(gpu, own, twin.level.level)),
+                (None, None) => Some(Worst::default()),
+                _ => None,
+            };
+            match worst.filter(Worst::passes) {
+                Some(worst) => found.worst.widen(&worst),
+                None if *margin < doubt => found.excused += 1,
+                None => {
+                    found.failed += 1;
+                    if found.first.is_empty() {
+                        found.first =
+                            format!("sample {i}, margin {margin:.2e}: {worst:?}: {gpu:?} for {own:?}");
+                    }
+                }
+            }
+        }
+        found
+    }
+}
+
+/// Samples of a level of less than 3000 that may be excused: at one in 10⁵, which is more than are found, one level in 10⁵ has more of them.
+const FEW: usize = 2;
+
+/// Of all levels of a kind.
+#[derive(Default)]
+struct Summary {
+    worst: Worst,
+    excused: usize,
+    samples: usize,
+    failures: Vec<String>,
+}
+
+impl Summary {
+    fn add(&mut self, name: &str, verdict: &Verdict) {
+        self.worst.widen(&verdict.worst);
+        self.excused += verdict.excused;
+        self.samples += verdict.samples;
+        let most = (verdict.samples / 1000).max(FEW);
+        if verdict.failed > 0 || verdict.excused > most {
+            let Verdict { samples, excused, failed, first, .. } = verdict;
+            self.failures
+                .push(format!("{name}: {failed} failed and {excused} excused of {samples}: {first}"));
+        }
+    }
+}
+
+/// The twin's level 0, with its doubt.
+fn projected(shot: &Shot, twin: &Reconstruction) -> Decided {
+    let visible = twin.project(shot.parts);
+    let mut margins = twin.margins(shot.parts.surfels, &visible);
+    if shot.parts.primitives.is_some() {
+        // Where a line may be or a triangle is, nothing is known of doubt, so that there must be few differences.
+        let own = |number: &Option<usize>| number.is_some_and(|number| number < shot.parts.surfels.len());
+        let free = visible.index.iter().map(|number| !own(number));
+        margins.iter_mut().zip(free).filter(|(_, free)| *free).for_each(|(margin, _)| *margin = 0.0);
+    }
+    Decided { level: visible.level, margins }
+}
+
+/// Two frames' largest difference of colours, normals and distances (relative) where both show a surface, and the part of the pixels that
+/// differ by more than 2e-4 or in that.
+fn compare(gpu: &Frame, twin: &Frame) -> (f64, f64) {
+    let apart = |i: usize| {
+        if gpu.covered[i] != twin.covered[i] {
+            return f64::INFINITY;
+        }
+        let colours = gpu.colour[i].iter().zip(twin.colour[i]).map(|(a, b)| (a - b).abs());
+        let normals = gpu.normal[i].iter().zip(twin.normal[i]).map(|(a, b)| (a - b).abs());
+        let unit = if twin.covered[i] { twin.depth[i] } else { 1.0 };
+        let depth = (gpu.depth[i] - twin.depth[i]).abs() / unit;
+        colours.chain(normals).chain([depth]).fold(0.0, largest)
+    };
+    let all: Vec<f64> = (0..gpu.covered.len()).map(apart).collect();
+    let differ = all.iter().filter(|apart| **apart > LIMIT).count();
+    let worst = all.iter().copied().filter(|apart| apart.is_finite()).fold(0.0, largest);
+    (worst, differ as f64 / all.len() as f64)
+}
+
+/// A level of which nothing is known, above the coarsest.
+fn beyond(coarsest: &Level) -> Level {
+    let size = coarsest.coarser_size();
+    Level { level: coarsest.level + 1, size, samples: vec![None; size.iter().product::<u32>() as usize] }
+}
+
+/// Every pass of a frame, each kind's levels added to `kinds`: project, pull, push. What is wrong with the last, if anything.
+fn test(device: &Arc<Device>, shot: &Shot, kinds: &mut [Summary; 3]) -> Option<String> {
+    let (made, twin, name) = (shot.by_gpu(device), shot.reconstruction(), &shot.name);
+    let [pulled, pushed] = [&made.pyramid.pulled, &made.pyramid.pushed];
+
+    let points = projected(shot, &twin);
+    kinds[0].add(&format!("{name}: project"), &Verdict::of(&pulled[0], &points, DOUBT_OF_POINTS));
+    for (finer, level) in pulled.iter().zip(&pulled[1..]) {
+        let name = format!("{name}: pull to {}", level.level);
+        kinds[1].add(&name, &Verdict::of(level, &twin.decide_pull(finer), DOUBT));
+    }
+    let beyond = beyond(&pulled[pulled.len() - 1]);
+    for (level, known) in pushed.iter().zip(pulled) {
+        let coarser = pushed.get(level.level as usize + 1).unwrap_or(&beyond);
+        let name = format!("{name}: push to {}", level.level);
+        kinds[2].add(&name, &Verdict::of(level, &twin.decide_push(coarser, known), DOUBT));
+    }
+    let (shade, differ) = compare(&made.frame, &twin.shade(&pushed[0]));
+
+    // The twin makes as many levels as it needs, the GPU all: coarser ones change nothing.
+    let top = Reconstruction::top_level(&points.level);
+    let (worst, other) = compare(&made.frame, &twin.shade(&twin.pyramid(points.level, top).pushed[0]));
+    let other = 100.0 * other;
+    println!(
+        "{name}: shade {shade:.1e}; of the whole chain {other:.4} % of pixels differ, by up to {worst:.1e}"
+    );
+    (differ > 0.0).then(|| format!("{name}: shade {shade:.1e}, {differ}"))
+}
+
+/// The comparison camera, in perspective and not, of a picture of another shape.
+fn cameras([width, height]: [u32; 2]) -> [(&'static str, Camera); 2] {
+    let eye = 3.5 * DVec3::new(1.0, 0.8, 1.6).normalize();
+    let aspect = f64::from(width) / f64::from(height);
+    let fov = 45f64.to_radians();
+    let perspective = Camera::look_at(eye, DVec3::ZERO, DVec3::Y, fov, aspect, 1e-3).unwrap();
+    let flat = Camera::orthographic([eye, DVec3::ZERO, DVec3::Y], 2.6, aspect, [0.5, 8.0]).unwrap();
+    [("perspective", perspective), ("orthographic", flat)]
+}
+
+fn shots<'a>(
+    name: &'a str,
+    parts: Parts<'a>,
+    shading: Shading,
+    sizes: &'a [[u32; 2]],
+) -> impl Iterator<Item = Shot<'a>> {
+    let each = sizes.iter().flat_map(|&size| cameras(size).map(|(kind, camera)| (size, kind, camera)));
+    each.flat_map(move |(size, kind, camera)| {
+        [Rules::Paper, Rules::Robust].map(|rules| {
+            let pull_push = PullPush { rules };
+            let settings =
+                Settings { cull: Cull::Back, shading, pull_push: Some(pull_push), ..Default::default() };
+            let name = format!("{name} {kind} {}x{} {}", size[0], size[1], rules.name());
+            Shot { name, parts, camera, size, settings, pull_push }
+        })
+    })
+}
+
+fn holds(list: impl IntoIterator<Item = (&'static str, impl Into<Model>, Shading)>, sizes: &[[u32; 2]]) {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let mut kinds: [Summary; 3] = Default::default();
+    let mut failures = Vec::new();
+    for (name, model, shading) in list {
+        let model = model.into();
+        for shot in shots(name, Parts::from(&model), shading, sizes) {
+            failures.extend(test(&device, &shot, &mut kinds));
+        }
+    }
+    for (name, kind) in ["project", "pull", "push"].into_iter().zip(kinds) {
+        let excused = 100.0 * kind.excused as f64 / kind.samples as f64;
+        println!(
+            "{name}: {}, {} of {} samples excused, {excused:.4} %",
+            kind.worst, kind.excused, kind.samples
+        );
+        failures.extend(kind.failures);
+    }
+    assert!(failures.is_empty(), "{} failures: {:#?}", failures.len(), &failures[..failures.len().min(40)]);
+    assert_silent(&device);
+}
+
+fn bumpy(points: u32) -> Surfels {
+    scenes::open(&format!("scene:bumpy-sphere?points={points}&seed=1")).unwrap()
+}
+
+#[test]
+fn few_points() {
+    holds([("10 k", bumpy(10_000), Shading::Lit)], &SIZES);
+}
+
+#[test]
+fn many_points() {
+    holds([("100 k", bumpy(100_000), Shading::Colour)], &SIZES);
+}
+
+#[test]
+fn ellipses_without_sides_and_what_has_no_colours() {
+    let named = |name: &str| cases().into_iter().find(|case: &Case| case.name == name).unwrap().surfels;
+    let list = [
+        ("two-sided", named("two-sided"), Shading::Lit),
+        ("ellipses", named("ellipses"), Shading::Colour),
+        ("no colours", Surfels { colours: None, ..bumpy(10_000) }, Shading::Lit),
+    ];
+    holds(list, &SIZES[2..3]);
+}
+
+#[test]
+fn ribbons_tubes_and_triangles() {
+    let model = |name: &str| scenes::model(&format!("scene:{name}&primitives=on")).unwrap();
+    let list = [
+        ("mixed", model("mixed?segments=200&points=30000"), Shading::Lit),
+        ("tree", model("tree?segments=12&depth=2"), Shading::Colour),
+        ("helix", model("helix?segments=100"), Shading::Lit),
+        ("ribbon", model("ribbon?segments=40"), Shading::Lit),
+    ];
+    holds(list, &SIZES[2..3]);
+}

@@ -1,0 +1,93 @@
+//! Pull–push on the GPU, in the terms of the float64 twin.
+
+use glam::{DMat3, DVec2, DVec3};
+use std::sync::Arc;
+use surfel::geometry::{Camera, Parts};
+use surfel::pull_push::PullPush;
+use surfel::reference::Frame;
+use surfel::reference::pull_push::{Level, Pyramid, Reconstruction, Sample};
+use surfel::vk::Device;
+use surfel::{Outputs, Picture, PyramidLevel, PyramidSample, RenderOptions, Renderer, Scene, Settings};
+
+/// A frame to be taken apart.
+pub struct Shot<'a> {
+    /// For messages.
+    pub name: String,
+    pub parts: Parts<'a>,
+    pub camera: Camera,
+    /// Width and height, px.
+    pub size: [u32; 2],
+    pub settings: Settings,
+    pub pull_push: PullPush,
+}
+
+/// What became of a frame.
+pub struct Made {
+    pub frame: Frame,
+    pub pyramid: Pyramid,
+}
+
+impl Shot<'_> {
+    /// The frame's twin.
+    pub fn reconstruction(&self) -> Reconstruction {
+        Reconstruction::new(&self.camera, self.size, &self.settings, self.pull_push).unwrap()
+    }
+
+    /// By the twin, with as many levels as it needs.
+    pub fn by_twin(&self) -> Made {
+        let twin = self.reconstruction();
+        let visible = twin.project(self.parts).level;
+        let top = Reconstruction::top_level(&visible);
+        let pyramid = twin.pyramid(visible, top);
+        Made { frame: twin.shade(&pyramid.pushed[0]), pyramid }
+    }
+
+    /// By the GPU.
+    pub fn by_gpu(&self, device: &Arc<Device>) -> Made {
+        let scene = Scene::upload(device, self.parts).unwrap();
+        let outputs = Outputs { normal: true, depth: true };
+        let options = RenderOptions { size: self.size, outputs, ..Default::default() };
+        let mut renderer = Renderer::new(device, options).unwrap();
+        let (picture, _) = renderer.render_picture(&scene, &self.camera, &self.settings).unwrap();
+        let levels = renderer.pyramids().unwrap().read(device).unwrap();
+        let as_twins =
+            |levels: Vec<PyramidLevel>| (0..).zip(levels).map(|(i, l)| self.level(i, &l)).collect();
+        let [pulled, pushed] = levels.map(as_twins);
+        Made { frame: frame_of(&picture), pyramid: Pyramid { pulled, pushed } }
+    }
+
+    /// A level of the GPU's as the twin has them: normals are in eye space.
+    fn level(&self, level: u32, made: &PyramidLevel) -> Level {
+        let to_eye = DMat3::from_mat4(self.camera.view);
+        let albedo = self.settings.lighting.albedo;
+        let sample = |sample: &PyramidSample| {
+            let [x, y] = sample.displacement.map(f64::from);
+            Sample {
+                near: sample.near.into(),
+                far: sample.far.into(),
+                depth: sample.depth.into(),
+                displacement: DVec2::new(x, y),
+                radius: sample.radius.into(),
+                normal: to_eye * DVec3::from_array(sample.normal.map(f64::from)),
+                tube: sample.tube,
+                colour: DVec3::from_array(sample.colour.unwrap_or(albedo).map(f64::from)),
+            }
+        };
+        let samples = made.samples.iter().map(|made| made.as_ref().map(sample)).collect();
+        Level { level, size: made.size, samples }
+    }
+}
+
+/// A picture with normals and depths as a frame of the twin's.
+fn frame_of(picture: &Picture) -> Frame {
+    let (depths, normals) = (picture.depth.as_ref().unwrap(), picture.normal.as_ref().unwrap());
+    Frame {
+        size: picture.size,
+        colour: picture.colour.iter().map(|colour| colour.map(f64::from)).collect(),
+        depth: depths.iter().copied().map(f64::from).collect(),
+        normal: normals.iter().map(|normal| normal.map(f64::from)).collect(),
+        covered: picture.colour.iter().map(|colour| colour[3] > 0.0).collect(),
+        counts: Default::default(),
+        dual_form: 0,
+    }
+}
