@@ -33,7 +33,7 @@ impl Surfels {
 }
 
 impl Cloud {
-    /// All points of `parts`, one part after the other, as [`Surfels::merge`] has it. Where only some parts have normals, radii or
+    /// All points of `parts`, one part after the other, as [`Surfels::merge`] has it. Where only some parts have normals, radii, tangents or
     /// scalars, the others' points have none; where the parts were not all seen from the same place, it is not known.
     ///
     /// # Errors
@@ -52,7 +52,10 @@ impl Cloud {
         Ok(Self {
             origin,
             view: common_view(parts),
-            triangles: join_triangles(parts),
+            triangles: join_corners(parts, |part| &mut part.triangles),
+            ribbons: join_corners(parts, |part| &mut part.ribbons),
+            tubes: join_corners(parts, |part| &mut part.tubes),
+            tangents: join(parts, |part| part.tangents.take(), |part| vec![Vec3::ZERO; part.len()]),
             colours: join_colours(parts, albedo),
             // Before the normals, which circles are made of.
             ellipses: join(parts, |part| part.ellipses.take(), circles),
@@ -124,11 +127,14 @@ fn join_clips(parts: &mut [Cloud]) -> Option<Clips> {
     Clips::join(parts.iter_mut().map(|part| (part.clips.take(), part.len())))
 }
 
-fn join_triangles(parts: &mut [Cloud]) -> Vec<[u32; 3]> {
+fn join_corners<const N: usize>(
+    parts: &mut [Cloud],
+    of: impl Fn(&mut Cloud) -> &mut Vec<[u32; N]>,
+) -> Vec<[u32; N]> {
     let mut all = Vec::new();
     let mut first = 0;
     for part in parts {
-        all.extend(std::mem::take(&mut part.triangles).iter().map(|corners| corners.map(|i| first + i)));
+        all.extend(std::mem::take(of(part)).iter().map(|corners| corners.map(|i| first + i)));
         // Fits: the number of all points does.
         first += part.len() as u32;
     }
@@ -213,13 +219,22 @@ mod tests {
             origin,
             positions: vec![Vec3::ZERO; 3],
             triangles: vec![[0, 1, 2]],
+            ribbons: vec![[0, 1]],
+            tubes: vec![[1, 2]],
             view: View::From((to - origin).as_vec3()),
             ..Default::default()
         };
-        let full = Cloud { normals: Some(vec![Vec3::Z; 3]), scalar: Some(vec![7.0; 3]), ..bare(to) };
+        let full = Cloud {
+            normals: Some(vec![Vec3::Z; 3]),
+            scalar: Some(vec![7.0; 3]),
+            tangents: Some(vec![Vec3::X; 3]),
+            ..bare(to)
+        };
         let merged = Cloud::merge(vec![bare(from), full.clone()], [0.5; 3]).unwrap();
         assert_eq!((merged.len(), merged.radii.clone(), merged.colours.clone()), (6, None, None));
         assert_eq!(merged.triangles, [[0, 1, 2], [3, 4, 5]]);
+        assert_eq!((merged.ribbons, merged.tubes), (vec![[0, 1], [3, 4]], vec![[1, 2], [4, 5]]));
+        assert_eq!(merged.tangents.unwrap()[3..], [Vec3::X; 3]);
         let normals = merged.normals.unwrap();
         assert_eq!((normals[0], normals[5]), (Vec3::ZERO, Vec3::Z));
         let scalar = merged.scalar.unwrap();

@@ -107,6 +107,7 @@ fn check(cloud: &Cloud, report: &ply::Report) {
         cloud.weights.as_ref().map(|weights| weights.of.len()),
         cloud.colours.as_ref().map(Colours::len),
         cloud.scalar.as_ref().map(Vec::len),
+        cloud.tangents.as_ref().map(Vec::len),
     ];
     assert!(lengths.iter().flatten().all(|length| *length == count), "{lengths:?}");
     assert!(cloud.origin.is_finite() && cloud.positions.iter().all(|position| position.is_finite()));
@@ -129,6 +130,11 @@ fn check(cloud: &Cloud, report: &ply::Report) {
     }
     let index = |corner: &u32| (*corner as usize) < count;
     assert!(cloud.triangles.iter().flatten().all(index), "a corner that is no point");
+    assert!(cloud.ribbons.iter().chain(&cloud.tubes).flatten().all(index), "an end that is no point");
+    let apart = |[a, b]: &[u32; 2]| cloud.positions[*a as usize] != cloud.positions[*b as usize];
+    assert!(cloud.ribbons.iter().chain(&cloud.tubes).all(apart), "a segment of no length");
+    assert_eq!(report.lines.understood, (cloud.ribbons.len() + cloud.tubes.len()) as u64);
+    assert!(cloud.tangents.iter().flatten().all(|t| *t == glam::Vec3::ZERO || unit(t)));
     match cloud.view {
         View::Unknown => {}
         View::From(eye) => assert!(eye.is_finite()),
