@@ -196,7 +196,8 @@ mod tests {
     #[test]
     fn what_is_not_there_is_refused() {
         assert!(two().check().is_ok());
-        let changes: [(fn(&mut Primitives), &str); 5] = [
+        type Change = fn(&mut Primitives);
+        let changes: [(Change, &str); 5] = [
             (|p| p.tubes.push([0, 2]), "vertex 2, and there are 2"),
             (|p| p.triangles.push([0, 1, 9]), "vertex 9"),
             (|p| p.radii.truncate(1), "[2, 1, 2]"),

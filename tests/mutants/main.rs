@@ -9,7 +9,7 @@ use mutate::Random;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::{Duration, Instant};
 use surfel::geometry::estimate::Estimate;
-use surfel::geometry::{Clip, ClipLine, Cloud, Colours, Surfels, View, Weights};
+use surfel::geometry::{Clip, ClipLine, Cloud, Colours, Model, Surfels, View, Weights};
 use surfel::io::ply::{self, Loaded, ReadOptions};
 
 #[global_allocator]
@@ -175,6 +175,21 @@ fn draw(cloud: Cloud) {
             Err(cause) => assert!(!cause.is_empty() && cause.lines().count() == 1, "{cause:?}"),
         }
     }
+    if cloud.has_lines() {
+        match cloud.into_model(false, &Estimate::default(), &()) {
+            Ok((model, _)) => check_model(&model),
+            Err(cause) => assert!(!cause.is_empty() && cause.lines().count() == 1, "{cause:?}"),
+        }
+    }
+}
+
+fn check_model(Model { surfels, primitives }: &Model) {
+    check_surfels(surfels);
+    primitives.check().unwrap();
+    assert!(primitives.directions.iter().all(|d| (d.length() - 1.0).abs() < 1e-4), "{primitives:?}");
+    let lines = || primitives.segments().flat_map(|(ends, _)| ends);
+    let radius = |i: u32| primitives.radii[i as usize];
+    assert!(lines().all(|i| radius(i) >= 0.0 && radius(i).is_finite()), "{primitives:?}");
 }
 
 fn check_surfels(surfels: &Surfels) {
