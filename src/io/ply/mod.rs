@@ -53,6 +53,7 @@ mod others;
 mod points;
 mod records;
 mod report;
+mod row;
 mod shape;
 mod sniff;
 mod source;
