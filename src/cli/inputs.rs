@@ -1,4 +1,4 @@
-//! Inputs to surfels.
+//! Inputs to a model.
 
 use super::colouring::{Coloured, Colouring};
 use super::progress::say;
@@ -6,8 +6,8 @@ use super::summary;
 use std::ffi::OsString;
 use std::path::Path;
 use surfel::geometry::estimate::{Estimate, Estimated};
-use surfel::geometry::{Cloud, Surfels};
-use surfel::io::ply::{self, Dropped, Faces, Loaded, ReadOptions, Report};
+use surfel::geometry::{Cloud, Model};
+use surfel::io::ply::{self, Dropped, Faces, Lines, Loaded, ReadOptions, Report};
 use surfel::{Error, Progress, Result, Settings, scenes};
 
 /// What is wanted of which inputs.
@@ -16,6 +16,8 @@ pub struct Wanted<'a> {
     pub names: &'a [OsString],
     /// How what they lack is estimated.
     pub estimate: Estimate,
+    /// Whether faces are drawn as triangles, lines or not.
+    pub polygons: bool,
     /// The side of the voxels that keep one point each.
     pub voxel: Option<f64>,
     /// What the points are coloured by, if not by their own colours.
@@ -28,8 +30,8 @@ pub struct Wanted<'a> {
 
 /// What the inputs together hold.
 pub struct Inputs {
-    /// One scene, in Morton order.
-    pub surfels: Surfels,
+    /// One scene; its surfels are in Morton order.
+    pub model: Model,
     /// Points of all inputs, dropped ones included.
     pub read: u64,
     /// Points that are no surfels.
@@ -46,7 +48,7 @@ struct Part {
     cloud: Cloud,
 }
 
-/// Reads every input; several become one set of surfels.
+/// Reads every input; several become one model.
 pub fn load(wanted: &Wanted<'_>) -> Result<Inputs> {
     refuse_scenes(wanted)?;
     let (mut parts, mut read, mut dropped) = (Vec::new(), 0, Dropped::default());
@@ -67,10 +69,10 @@ pub fn load(wanted: &Wanted<'_>) -> Result<Inputs> {
             wanted.quiet,
         )
     });
-    let (surfels, estimated) = merge(parts, wanted)?;
-    let mut inputs = Inputs { surfels, read, dropped, estimated, coloured };
+    let (model, estimated) = merge(parts, wanted)?;
+    let mut inputs = Inputs { model, read, dropped, estimated, coloured };
     if let (Some(colouring), None) = (&wanted.colouring, &inputs.coloured) {
-        inputs.coloured = colouring.colour_surfels(&mut inputs.surfels, wanted.quiet);
+        inputs.coloured = colouring.colour_model(&mut inputs.model, wanted.quiet);
     }
     Ok(inputs)
 }
@@ -94,7 +96,7 @@ fn load_one(name: &OsString, wanted: &Wanted<'_>) -> Result<(Part, u64, Dropped)
         return Ok((Part { name: name.into(), cloud }, count, Dropped::default()));
     }
     let property = wanted.colouring.as_ref().and_then(Colouring::property);
-    let options = ReadOptions { scalar: property.map(str::to_owned), ..Default::default() };
+    let options = ReadOptions { scalar: property.map(str::to_owned), triangles: wanted.polygons };
     let Loaded { cloud, report } = ply::read(Path::new(name), &options, wanted.progress)?;
     let name = Path::new(name).display().to_string();
     warn(&name, &report);
@@ -129,6 +131,13 @@ fn warn(name: &str, report: &Report) {
             skipped + understood
         );
     }
+    let Lines { understood, skipped, .. } = report.lines;
+    if skipped > 0 {
+        log::warn!(
+            "{name}: {skipped} of {} segments of lines have no two ends that exist, at two places, and are left out",
+            skipped + understood
+        );
+    }
     if report.trailing > 0 {
         log::warn!("{name}: {} bytes after the last element mean nothing and are left out", report.trailing);
     }
@@ -150,30 +159,30 @@ fn thin(parts: Vec<Part>, voxel: f64, quiet: bool) -> Result<Part> {
     Ok(Part { name, cloud })
 }
 
-/// One set of surfels of all parts, each of which is estimated by itself.
-fn merge(parts: Vec<Part>, wanted: &Wanted<'_>) -> Result<(Surfels, Estimated)> {
+/// One model of all parts, each of which is estimated by itself.
+fn merge(parts: Vec<Part>, wanted: &Wanted<'_>) -> Result<(Model, Estimated)> {
     let several = parts.len() > 1;
     let (mut all, mut total) = (Vec::new(), Estimated::default());
     for Part { name, cloud } in parts {
-        let (surfels, estimated) = estimate(&name, cloud, wanted)?;
-        all.push(surfels);
+        let (model, estimated) = estimate(&name, cloud, wanted)?;
+        all.push(model);
         total = total + estimated;
     }
-    let mut surfels = Surfels::merge(all, Settings::default().lighting.albedo)?;
+    let mut model = Model::merge(all, Settings::default().lighting.albedo)?;
     // One input is sorted already.
     if several {
-        surfels.sort_morton();
+        model.surfels.sort_morton();
     }
-    Ok((surfels, total))
+    Ok((model, total))
 }
 
-fn estimate(name: &str, cloud: Cloud, wanted: &Wanted<'_>) -> Result<(Surfels, Estimated)> {
-    let made = cloud.into_surfels(&wanted.estimate, wanted.progress);
-    let (surfels, estimated) = made.map_err(|cause| Error::input(name, cause))?;
+fn estimate(name: &str, cloud: Cloud, wanted: &Wanted<'_>) -> Result<(Model, Estimated)> {
+    let made = cloud.into_model(wanted.polygons, &wanted.estimate, wanted.progress);
+    let (model, estimated) = made.map_err(|cause| Error::input(name, cause))?;
     if let (false, Some(text)) = (wanted.quiet, summary::estimated(&estimated)) {
         say(&format!("{name}: {text}"));
     }
-    Ok((surfels, estimated))
+    Ok((model, estimated))
 }
 
 /// The scene that an input names; `None` if it is a file.

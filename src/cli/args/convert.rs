@@ -14,11 +14,11 @@ pub struct Convert {
     #[arg(required = true, value_name = "INPUT")]
     pub inputs: Vec<OsString>,
     /// The file: binary PLY with position, normal and radius, and where there are any, axes of ellipses, two-sidedness, clip lines,
-    /// normalization weights and colour
+    /// normalization weights, tangents, colour, edges and faces
     #[arg(short, long, value_name = "OUT.ply")]
     pub output: OsString,
     /// Keeps one point for every cube of this side, in the positions' unit, of all inputs together
-    #[arg(long, value_name = "SIZE", value_parser = positive::<f64>, allow_hyphen_values = true)]
+    #[arg(long, value_name = "SIZE", value_parser = positive::<f64>, allow_hyphen_values = true, conflicts_with = "polygons")]
     pub voxel: Option<f64>,
     /// How normals and radii are estimated
     #[command(flatten)]
