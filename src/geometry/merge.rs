@@ -78,7 +78,7 @@ impl From<Primitives> for Cloud {
 
 impl Primitives {
     /// What such a cloud was made of.
-    fn whole(cloud: Cloud) -> Self {
+    pub(super) fn whole(cloud: Cloud) -> Self {
         Self {
             origin: cloud.origin,
             positions: cloud.positions,

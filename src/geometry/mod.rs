@@ -10,6 +10,7 @@ mod merge;
 mod morton;
 mod primitives;
 mod quantity;
+mod simplify;
 mod surfels;
 mod thin;
 mod valid;
