@@ -24,6 +24,8 @@ pub fn run(args: &Convert) -> Result<()> {
         names: &args.inputs,
         estimate: args.estimate(),
         polygons: args.points.polygons,
+        lines: args.lines,
+        simplify: args.simplify_lines,
         voxel: args.voxel,
         colouring: Colouring::new(&args.colours, args.up)?,
         quiet: args.quiet,

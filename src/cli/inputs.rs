@@ -6,7 +6,7 @@ use super::summary;
 use std::ffi::OsString;
 use std::path::Path;
 use surfel::geometry::estimate::{Estimate, Estimated};
-use surfel::geometry::{Cloud, Model};
+use surfel::geometry::{Cloud, Lined, Model, ToLines};
 use surfel::io::ply::{self, Dropped, Faces, Lines, Loaded, ReadOptions, Report};
 use surfel::{Error, Progress, Result, Settings, scenes};
 
@@ -18,6 +18,10 @@ pub struct Wanted<'a> {
     pub estimate: Estimate,
     /// Whether faces are drawn as triangles, lines or not.
     pub polygons: bool,
+    /// How faces become lines; they stay faces if not at all.
+    pub lines: Option<ToLines>,
+    /// By how much lines may be off that are simplified.
+    pub simplify: Option<f64>,
     /// The side of the voxels that keep one point each.
     pub voxel: Option<f64>,
     /// What the points are coloured by, if not by their own colours.
@@ -96,7 +100,7 @@ fn load_one(name: &OsString, wanted: &Wanted<'_>) -> Result<(Part, u64, Dropped)
         return Ok((Part { name: name.into(), cloud }, count, Dropped::default()));
     }
     let property = wanted.colouring.as_ref().and_then(Colouring::property);
-    let options = ReadOptions { scalar: property.map(str::to_owned), triangles: wanted.polygons };
+    let options = ReadOptions { scalar: property.map(str::to_owned), triangles: draws_faces(wanted) };
     let Loaded { cloud, report } = ply::read(Path::new(name), &options, wanted.progress)?;
     let name = Path::new(name).display().to_string();
     warn(&name, &report);
@@ -169,6 +173,12 @@ fn merge(parts: Vec<Part>, wanted: &Wanted<'_>) -> Result<(Model, Estimated)> {
         total = total + estimated;
     }
     let mut model = Model::merge(all, Settings::default().lighting.albedo)?;
+    if let Some(tolerance) = wanted.simplify {
+        let (before, fewer) = (model.primitives.segments().count(), model.primitives.simplify(tolerance));
+        if !wanted.quiet {
+            say(&format!("{before} segments of lines simplified to {}", before as u64 - fewer));
+        }
+    }
     // One input is sorted already.
     if several {
         model.surfels.sort_morton();
@@ -177,12 +187,35 @@ fn merge(parts: Vec<Part>, wanted: &Wanted<'_>) -> Result<(Model, Estimated)> {
 }
 
 fn estimate(name: &str, cloud: Cloud, wanted: &Wanted<'_>) -> Result<(Model, Estimated)> {
-    let made = cloud.into_model(wanted.polygons, &wanted.estimate, wanted.progress);
+    let cloud = match &wanted.lines {
+        Some(how) => to_lines(name, &cloud, how, wanted.quiet)?,
+        None => cloud,
+    };
+    let made = cloud.into_model(draws_faces(wanted), &wanted.estimate, wanted.progress);
     let (model, estimated) = made.map_err(|cause| Error::input(name, cause))?;
     if let (false, Some(text)) = (wanted.quiet, summary::estimated(&estimated)) {
         say(&format!("{name}: {text}"));
     }
     Ok((model, estimated))
+}
+
+/// Whether faces are drawn, unless they become lines.
+fn draws_faces(wanted: &Wanted<'_>) -> bool {
+    wanted.polygons || wanted.lines.is_some()
+}
+
+/// The lines of a part's faces.
+fn to_lines(name: &str, cloud: &Cloud, how: &ToLines, quiet: bool) -> Result<Cloud> {
+    let (cloud, lined) = cloud.to_lines(how).map_err(|cause| Error::input(name, cause))?;
+    let Lined { triangles, leaves: [of_leaves, ribbons], branches: [of_branches, tubes], vertices } = lined;
+    if !quiet {
+        say(&format!(
+            "{name}: of {triangles} triangles {of_leaves} are leaves and became {ribbons} segments of ribbons, {of_branches} are branches \
+             and became {tubes} segments of tubes; of {} vertices {} are left",
+            vertices[0], vertices[1]
+        ));
+    }
+    Ok(cloud)
 }
 
 /// The scene that an input names; `None` if it is a file.

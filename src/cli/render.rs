@@ -69,6 +69,8 @@ pub fn run(args: &Render) -> Result<()> {
         names: &args.inputs,
         estimate: args.points.estimate(),
         polygons: args.points.polygons,
+        lines: None,
+        simplify: None,
         voxel: None,
         colouring,
         quiet: args.quiet,

@@ -47,6 +47,8 @@ fn bounds(args: &Truth, progress: &dyn Progress) -> Result<Bounds> {
         names: std::slice::from_ref(&args.input),
         estimate: Estimate::default(),
         polygons: false,
+        lines: None,
+        simplify: None,
         voxel: None,
         colouring: None,
         quiet: true,

@@ -102,3 +102,30 @@ fn methods_that_splat_refuse_lines() {
     let report = std::fs::read_to_string(program.path("a.json")).unwrap();
     assert!(report.contains("\"method\": \"pull-push\""), "{report}");
 }
+
+#[test]
+fn meshes_become_lines_and_lines_simpler() {
+    let program = Program::new();
+    // A tube of triangles with three rings, the middle one where it would be without it.
+    let rings = (0..9).map(|i| {
+        let angle = f64::from(i % 3) * std::f64::consts::TAU / 3.0;
+        format!("{} {} {}\n", 0.1 * angle.cos(), 0.1 * angle.sin(), i / 3)
+    });
+    let faces = (0..6).map(|i| {
+        let (ring, next) = (3 * (i / 3), (i + 1) % 3);
+        format!("4 {i} {} {} {}\n", ring + next, ring + next + 3, i + 3)
+    });
+    let header = format!("element vertex 9\n{XYZ}element face 6\nproperty list uchar int vertex_indices");
+    let records: String = rings.chain(faces).collect();
+    program.write("a.ply", format!("ply\nformat ascii 1.0\n{header}\nend_header\n{records}"));
+    let run = program.run("convert a.ply -o b.ply --lines 1");
+    let said = "a.ply: of 12 triangles 0 are leaves and became 0 segments of ribbons, 12 are branches and became 2 segments of \
+                tubes; of 9 vertices 3 are left\nb.ply: 2 tubes\n";
+    assert_eq!(run.err, said);
+    let run = program.run("convert b.ply -o c.ply --simplify-lines 0.001");
+    assert_eq!(run.err, "2 segments of lines simplified to 1\nc.ply: 1 tubes\n");
+    // Thicker than the usual part of so small an extent.
+    assert!(program.run("convert a.ply --lines -o d.ply").err.ends_with("d.ply: 12 triangles\n"));
+    refused(&program, "convert a.ply -o b.ply --lines 0");
+    refused(&program, "convert a.ply -o b.ply --lines 1 --voxel 1");
+}
