@@ -195,17 +195,22 @@ fn leave_out_stout(segments: &mut BTreeSet<[u32; 2]>, rings: &[Ring]) {
         near.entry(a).or_default().insert(b);
         near.entry(b).or_default().insert(a);
     }
-    for tube in parts(&near.keys().copied().collect(), &near) {
-        let own = |[a, _]: &&[u32; 2]| tube.contains(a);
-        let length = |[a, b]: &[u32; 2]| rings[*a as usize].centre.distance(rings[*b as usize].centre);
-        let length: f64 = segments.iter().filter(own).map(length).sum();
-        let radii: Vec<f64> =
-            tube.iter().map(|&i| rings[i as usize].radius).filter(|radius| *radius > 0.0).collect();
-        let mean = radii.iter().sum::<f64>() / radii.len().max(1) as f64;
-        if radii.is_empty() || length < SLENDER * mean {
-            segments.retain(|[a, _]| !tube.contains(a));
-        }
+    let mut tubes: BTreeMap<u32, usize> = BTreeMap::new();
+    let all = parts(&near.keys().copied().collect(), &near);
+    for (tube, members) in all.iter().enumerate() {
+        tubes.extend(members.iter().map(|&i| (i, tube)));
     }
+    let mut lengths = vec![0.0; all.len()];
+    for [a, b] in segments.iter() {
+        lengths[tubes[a]] += rings[*a as usize].centre.distance(rings[*b as usize].centre);
+    }
+    let is_slender = |(members, length): (&BTreeSet<u32>, &f64)| {
+        let radii = members.iter().map(|&i| rings[i as usize].radius).filter(|radius| *radius > 0.0);
+        let (count, sum) = radii.fold((0u32, 0.0), |(count, sum), radius| (count + 1, sum + radius));
+        count > 0 && *length >= SLENDER * sum / f64::from(count)
+    };
+    let slender: Vec<bool> = all.iter().zip(&lengths).map(is_slender).collect();
+    segments.retain(|[a, _]| slender[tubes[a]]);
 }
 
 /// Single vertices get a radius.

@@ -143,6 +143,15 @@ fn a_branch_is_a_tube_along_its_rings() {
 }
 
 #[test]
+fn corners_that_rounding_has_moved_are_one() {
+    let mut soup = Soup::default();
+    soup.tube(Vec3::X, 5, &[[0.0, 0.5], [1.0, 0.5], [2.0, 0.5]]);
+    let ulps = |(i, p): (usize, &mut Vec3)| *p *= 1.0 + (i % 3) as f32 * f32::EPSILON;
+    soup.positions.iter_mut().enumerate().for_each(ulps);
+    assert_eq!(soup.lines(1.0).1.branches, [20, 2]);
+}
+
+#[test]
 fn a_branch_ends_in_a_point_or_a_lid() {
     let rings = [[0.0, 0.0], [1.0, 0.25], [2.0, 0.25], [3.0, 0.25], [3.0, 0.0]];
     let mut soup = Soup::default();
