@@ -105,7 +105,7 @@ layout(location = 8) flat out vec4 square;
 void main() {
     uint i = gl_VertexIndex / 3;
     Splat splat = splats[i];
-    vec2 variance = attribute_variance(splat.variance);
+    vec2 variance = attribute_variance(variance_of(splat));
     place_splat(i, splat, variance, gl_VertexIndex % 3);
     mat2 axes;
     height = weight_of(i, splat, variance, corners, axes);

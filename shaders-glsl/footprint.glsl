@@ -18,7 +18,6 @@ layout(local_size_x = 64) in;
 layout(constant_id = 1) const bool CULL_BACK = false;
 layout(constant_id = 2) const bool COUNT = false;
 layout(constant_id = 11) const bool LIST_LARGE = false;
-layout(constant_id = 12) const bool ELLIPSES = false;
 layout(constant_id = 13) const bool TWO_SIDED = false;
 layout(constant_id = 21) const bool MOVED = false; // splats are of discs moved away from the eye along the camera's axis, by ε
 
@@ -149,6 +148,7 @@ uint disc_of(uint i, out Disc disc) {
     disc.normal = n;
     disc.radius = r;
     disc.aspect = shape.w;
+    disc.major = shape.xyz;
     disc.axes = ELLIPSES ? ellipse_axes(n, shape) : tangents(n);
 
     // The position relative to the eye, its homogeneous pixel and its plane's h = n·position in twice the precision: all that
@@ -168,6 +168,13 @@ uint disc_of(uint i, out Disc disc) {
     disc.h = dot_double(disc.hi, disc.lo, n, vec3(0.0));
     disc.facing = PERSPECTIVE ? disc.h : dot_double(n, vec3(0.0), frame.forward_hi.xyz, frame.forward_lo.xyz);
     return DRAWN;
+}
+
+// The ellipse's centre relative to the anchor, px, with no more than the last rounding.
+vec2 fine_offset(Disc disc, Conic conic, vec2 anchor) {
+    vec2 x = divide(add(disc.x, scale(disc.w, -anchor.x)), disc.w);
+    vec2 y = divide(add(disc.y, scale(disc.w, -anchor.y)), disc.w);
+    return vec2(add(x, vec2(conic.offset.x, conic.offset_lo.x)).x, add(y, vec2(conic.offset.y, conic.offset_lo.y)).x);
 }
 
 uint footprint(uint i, out Splat splat) {
@@ -195,9 +202,10 @@ uint footprint(uint i, out Splat splat) {
     bool listed = LIST_LARGE && 4.0 * reach.x * reach.y > LARGE_AREA;
     if (listed) large[atomicAdd(large_count, 1)] = i;
     vec2 to_centre = vec2(add(disc.x, scale(disc.w, -anchor.x)).x, add(disc.y, scale(disc.w, -anchor.y)).x) / disc.w.x;
-    splat.offset = to_centre + image.conic.offset;
+    splat.offset = CONFETTI ? fine_offset(disc, image.conic, anchor) : to_centre + image.conic.offset;
     splat.axis = image.conic.axis;
-    splat.variance = image.conic.variance;
+    splat.variance = image.conic.variance.x;
+    splat.turn = image.conic.turn;
     splat.place = place_of(pixel, listed ? LARGE : SMALL);
     float epsilon = MOVED ? 0.0 : frame.epsilon * disc.radius;
     splat.epsilon = PERSPECTIVE ? disc.w.x / (disc.w.x + epsilon) : frame.key_slope * epsilon;
@@ -215,7 +223,7 @@ uint footprint(uint i, out Splat splat) {
 void main() {
     uint i = gl_GlobalInvocationID.x;
     if (i >= window.count) return;
-    Splat splat = Splat(vec2(0.0), vec2(1.0, 0.0), vec2(0.0), 0, 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
+    Splat splat = Splat(vec2(0.0), vec2(1.0, 0.0), 1.0, 0.0, 0, 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
     uint fate = footprint(i, splat);
     splats[i] = splat;
     if (COUNT && fate != DRAWN) atomicAdd(culled[fate], 1);

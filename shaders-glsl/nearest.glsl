@@ -66,7 +66,7 @@ layout(location = 5) flat out vec3 second;
 void main() {
     uint i = gl_VertexIndex / 3;
     Splat splat = splats[i];
-    place_splat(i, splat, visibility_variance(splat.variance), gl_VertexIndex % 3);
+    place_splat(i, splat, visibility_variance(variance_of(splat)), gl_VertexIndex % 3);
     surface_of(i, splat.epsilon, first, second);
 }
 

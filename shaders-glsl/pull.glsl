@@ -18,7 +18,8 @@ void main() {
     uint start = level_start(finer);
 
     Sample below[4];
-    float nearest = 1e38, far = 0.0;
+    float nearest = 1e38;
+    int front = 0;
     for (int k = 0; k < 4; k++) {
         ivec2 child = 2 * at + ivec2(k & 1, k >> 1);
         below[k] = is_within(finer, child) ? load_pulled(place_in(finer, start, child)) : NOTHING;
@@ -29,24 +30,26 @@ void main() {
             below[k].near = 0.0;
         } else if (below[k].near < nearest) {
             nearest = below[k].near;
-            far = below[k].far;
+            front = k;
         }
     }
     Sample mean = NOTHING;
     float count = 0.0;
     for (int k = 0; k < 4; k++) {
         Sample s = below[k];
-        if (s.near == 0.0 || s.near > far) continue;
+        // One surface, and as the nearest is of a tube or of none.
+        if (s.near == 0.0 || s.near > below[front].far || s.tube != below[front].tube) continue;
         count += 1.0;
         mean.far = max(mean.far, s.far);
         mean.depth += s.depth;
         mean.radius += s.radius;
         mean.displacement += s.displacement;
-        mean.normal += s.normal;
+        mean.normal += direction_as(s, below[front]);
         mean.colour += s.colour;
     }
     if (count > 0.0) {
         mean.near = nearest;
+        mean.tube = below[front].tube;
         mean.depth /= count;
         mean.radius /= count;
         mean.displacement /= count;

@@ -39,7 +39,9 @@ void main() {
     int count = PAPER ? 4 : 13;
 
     Sample point = load_pulled(place_in(level, start, at));
-    float weights[13], nearest = 1e38, far = 0.0;
+    // The one that decides which others are its surface: the nearest; as published, of which kind, by the greatest weight.
+    Sample front = NOTHING;
+    float weights[13], first = PAPER ? 0.0 : -1e38;
     for (int k = 0; k < count; k++) {
         Sample s = candidate(k, level, start, above, at, own);
         weights[k] = 0.0;
@@ -47,9 +49,10 @@ void main() {
         float m2 = radii2(s, own + s.displacement, -s.displacement, widening);
         if (!(m2 <= 1.0)) continue;
         weights[k] = exp(-(PAPER ? PAPER_RIM : RIM) * m2);
-        if (s.near < nearest) {
-            nearest = s.near;
-            far = s.far;
+        float rank = PAPER ? weights[k] : -s.near;
+        if (rank > first) {
+            first = rank;
+            front = s;
         }
     }
     // On the finest level a point is seen where its disc covers the pixel's centre; elsewhere it is a source alone.
@@ -60,19 +63,20 @@ void main() {
     for (int k = 0; k < count; k++) {
         if (weights[k] == 0.0) continue;
         Sample s = candidate(k, level, start, above, at, own);
-        if (!PAPER && s.near > far) continue;
+        if (!PAPER && s.near > front.far || s.tube != front.tube) continue;
         float w = weights[k];
         total += w;
         mean.near += w * s.near;
         mean.far += w * s.far;
-        // Discs carry the depths of their centres; a pixel of the picture shows that of its own.
-        mean.depth += w * (!PAPER && level == 0 ? depth_at(s, own + s.displacement, -s.displacement) : s.depth);
+        // Discs carry the depths of their centres; a pixel of the picture shows that of its own. Tubes carry those of their axes.
+        mean.depth += w * (!PAPER && level == 0 && !s.tube ? depth_at(s, own + s.displacement, -s.displacement) : s.depth);
         mean.radius += w * s.radius;
         mean.displacement += w * s.displacement;
-        mean.normal += w * s.normal;
+        mean.normal += w * direction_as(s, front);
         mean.colour += w * s.colour;
     }
     if (total > 0.0) {
+        mean.tube = front.tube;
         mean.near /= total;
         mean.far /= total;
         mean.depth /= total;
@@ -89,7 +93,12 @@ void main() {
         if (!known || behind) point = mean;
     } else if (!known || made && point.near > mean.far) {
         point = mean;
-    } else if (level == 0 && made && mean.near <= point.far) {
+    } else if (level == 0 && made && mean.near <= point.far && mean.tube == point.tube) {
+        // What is seen of a tube is told from its axis, whose depth is that of the disc's centre.
+        if (point.tube) {
+            point.displacement = mean.displacement;
+            point.radius = mean.radius;
+        }
         point.colour = mean.colour;
         point.normal = mean.normal;
         point.depth = mean.depth;

@@ -6,6 +6,7 @@
 
 #include "lib/frame.glsl"
 #include "lib/pyramid.glsl"
+#include "lib/lens.glsl"
 #include "lib/shading.glsl"
 
 layout(local_size_x = 64) in;
@@ -29,9 +30,12 @@ void main() {
         vec3 ray = centre.x * frame.ray_hi[0].xyz + centre.y * frame.ray_hi[1].xyz + frame.ray_hi[2].xyz;
         vec3 to_eye = PERSPECTIVE ? -normalize(ray) : -frame.forward_hi.xyz;
         vec3 colour = SUM_COLOURS ? s.colour : frame.albedo.rgb;
+        vec3 tangent = s.normal;
+        if (s.tube && PAPER) s.normal = line_normal(tangent, to_eye);
+        else if (s.tube) s.depth = on_tube(s, centre, -s.displacement, s.normal);
         // A pixel shows one point, or what is made of those about it.
         vec3 shown = vec3(1.0);
-        if (SHADING == LIT) shown = lit(colour, s.normal, to_eye);
+        if (SHADING == LIT) shown = s.tube && PAPER ? lit_line(colour, tangent, to_eye) : lit(colour, s.normal, to_eye);
         if (SHADING == COLOUR) shown = colour;
         if (SHADING == NORMAL) shown = s.normal;
         if (SHADING == DEPTH) shown = vec3(s.depth);

@@ -56,7 +56,7 @@ void main() {
 void main() {
     uint i = gl_VertexIndex / 3;
     Splat splat = splats[i];
-    place_splat(i, splat, visibility_variance(splat.variance), gl_VertexIndex % 3);
+    place_splat(i, splat, visibility_variance(variance_of(splat)), gl_VertexIndex % 3);
 }
 
 #endif

@@ -166,6 +166,7 @@ impl Renderer {
     ) -> Result<FrameReport> {
         settings.check()?;
         settings.splatting.normalization.check_weights(scene.weights.is_some())?;
+        settings.check_primitives(scene.primitives.is_some())?;
         let block = frame(camera, settings, self.options.size, scene.origin(), scene.bounds())?;
         let blends = settings.splatting.visibility != Visibility::Nearest;
         let rasterizer = match settings.pull_push {

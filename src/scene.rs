@@ -1,19 +1,21 @@
 //! Geometry on the GPU: only the streams that the scene has.
 
+mod primitives;
 mod weights;
 
 use crate::error::{Error, Result};
-use crate::geometry::{Bounds, Clip, ClipLine, Clips, Colours, Ellipse, Surfels, Weights};
+use crate::geometry::{Bounds, Clip, ClipLine, Clips, Colours, Ellipse, Parts, Surfels, Weights};
 use crate::vk::shaders::layout::Splat;
 use crate::vk::{Binding, Buffer, Capabilities, Device, upload};
 use glam::DVec3;
+pub(crate) use primitives::{Elements, PrimitiveStreams};
 use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use weights::WeightStream;
 
-/// Surfels resident on a device.
+/// Surfels, lines and triangles resident on a device.
 pub struct Scene {
     pub(crate) id: u64,
     pub(crate) positions: Buffer,
@@ -25,6 +27,7 @@ pub struct Scene {
     clips: Option<ClipStream>,
     pub(crate) colours: Option<Buffer>,
     pub(crate) weights: Option<WeightBuffer>,
+    pub(crate) primitives: Option<PrimitiveStreams>,
     colour_stream: ColourStream,
     windows: Vec<Range<u64>>,
     count: u64,
@@ -68,6 +71,24 @@ pub struct Streams {
     pub weights: Option<bool>,
     /// How it holds colours.
     pub colours: ColourStream,
+    /// What else there is than surfels.
+    pub primitives: PrimitiveKinds,
+}
+
+/// Which lines and triangles a scene has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct PrimitiveKinds {
+    /// Ribbons or tubes.
+    pub lines: bool,
+    /// Triangles.
+    pub triangles: bool,
+    /// How it holds the colours of their vertices.
+    pub colours: ColourStream,
+}
+
+impl PrimitiveKinds {
+    /// Nothing but surfels.
+    pub const NONE: Self = Self { lines: false, triangles: false, colours: ColourStream::None };
 }
 
 /// How a scene holds its colours; the numbers are those of `shaders-glsl/lib/sums.glsl`.
@@ -100,31 +121,37 @@ const SCALAR: u64 = 4;
 const ELLIPSE: u64 = size_of::<Ellipse>() as u64;
 
 impl Scene {
-    /// Copies `surfels` to `device`. They are best in Morton order ([`Surfels::sort_morton`]).
+    /// Copies surfels, lines and triangles to `device`. Surfels are best in Morton order ([`Surfels::sort_morton`]).
     ///
-    /// Those that are not [valid](Surfels::is_valid) will not be drawn: a warning says how many, and frames count them as `invalid`.
-    /// Refuses arrays of unequal length, and surfels none of which is valid.
-    pub fn upload(device: &Arc<Device>, surfels: &Surfels) -> Result<Self> {
-        let (scene, invalid) = Self::upload_silently(device, surfels)?;
+    /// What is not valid ([`Surfels::is_valid`], [`Primitives::is_valid`](crate::geometry::Primitives::is_valid)) will not be drawn: a
+    /// warning says how many, and frames count such surfels as `invalid`. Refuses arrays of unequal length, and a scene in which nothing is
+    /// valid.
+    pub fn upload<'a>(device: &Arc<Device>, parts: impl Into<Parts<'a>>) -> Result<Self> {
+        let parts = parts.into();
+        let (scene, invalid) = Self::upload_silently(device, parts)?;
         if invalid > 0 {
-            warn_of(invalid, surfels.len());
+            warn_of(invalid, parts.surfels.len());
+        }
+        if let Some(primitives) = parts.primitives {
+            warn_of_primitives(primitives.count_invalid(), primitives.count());
         }
         Ok(scene)
     }
 
-    /// [`Scene::upload`] without the warning, and the number of invalid surfels.
-    pub(crate) fn upload_silently(device: &Arc<Device>, surfels: &Surfels) -> Result<(Self, usize)> {
+    /// [`Scene::upload`] without the warnings, and the number of invalid surfels.
+    pub(crate) fn upload_silently<'a>(
+        device: &Arc<Device>,
+        parts: impl Into<Parts<'a>>,
+    ) -> Result<(Self, usize)> {
         static NEXT: AtomicU64 = AtomicU64::new(0);
-        surfels.check()?;
-        let (bounds, invalid) = usable(surfels)?;
+        let parts = parts.into();
+        let surfels = parts.surfels;
+        parts.check()?;
+        let (bounds, invalid) = usable(&parts)?;
         let count = surfels.len() as u64;
         let ellipses = surfels.ellipses.as_deref();
         let windows = windows(count, device.capabilities());
-        let (colour_stream, colours): (_, &[u8]) = match &surfels.colours {
-            None => (ColourStream::None, &[]),
-            Some(Colours::Srgb8(colours)) => (ColourStream::Srgb8, bytemuck::cast_slice(colours)),
-            Some(Colours::Linear(colours)) => (ColourStream::Linear, bytemuck::cast_slice(colours)),
-        };
+        let (colour_stream, colours) = colour_bytes(surfels.colours.as_ref());
         let weights =
             surfels.weights.as_ref().map(|weights| WeightBuffer::new(device, surfels, weights, &windows));
         let scene = Self {
@@ -146,9 +173,10 @@ impl Scene {
                 .as_ref()
                 .map(|clips| ClipStream::new(device, clips, &windows))
                 .transpose()?,
+            primitives: PrimitiveStreams::new(device, &parts)?,
             windows,
             count,
-            origin: surfels.origin,
+            origin: parts.origin(),
             bounds,
         };
         Ok((scene, invalid))
@@ -180,7 +208,9 @@ impl Scene {
         let weights = self.weights.as_ref().map(|weights| &weights.buffer);
         let optional = [self.ellipses.as_ref(), self.colours.as_ref(), clips, weights]
             .map(|stream| stream.map_or(0, Buffer::size));
-        self.positions.size() + self.normals.size() + self.radii.size() + optional.iter().sum::<u64>()
+        let primitives = self.primitives.as_ref().map_or(0, PrimitiveStreams::bytes);
+        let always = self.positions.size() + self.normals.size() + self.radii.size();
+        always + optional.iter().sum::<u64>() + primitives
     }
 
     /// Ranges of surfels that one descriptor set can name.
@@ -196,6 +226,7 @@ impl Scene {
             clips: self.clips.is_some(),
             weights: self.weights.as_ref().map(|weights| weights.corners),
             colours: self.colour_stream,
+            primitives: self.primitives.as_ref().map_or(PrimitiveKinds::NONE, PrimitiveStreams::kinds),
         }
     }
 
@@ -284,14 +315,33 @@ impl WeightBuffer {
     }
 }
 
-/// The bounds of the valid surfels, and the number of the others.
-fn usable(surfels: &Surfels) -> Result<(Bounds, usize)> {
-    let (count, invalid) = (surfels.len(), surfels.count_invalid());
-    let Some(bounds) = surfels.bounds() else {
+/// How colours are held, and their bytes.
+fn colour_bytes(colours: Option<&Colours>) -> (ColourStream, &[u8]) {
+    match colours {
+        None => (ColourStream::None, &[]),
+        Some(Colours::Srgb8(colours)) => (ColourStream::Srgb8, bytemuck::cast_slice(colours)),
+        Some(Colours::Linear(colours)) => (ColourStream::Linear, bytemuck::cast_slice(colours)),
+    }
+}
+
+/// The bounds of what is valid, and the number of surfels that are not.
+fn usable(parts: &Parts<'_>) -> Result<(Bounds, usize)> {
+    let (count, invalid) = (parts.surfels.len(), parts.surfels.count_invalid());
+    let Some(bounds) = parts.bounds() else {
         let text = format!("a scene without surfels: {count} are given, and {invalid} of them are invalid");
         return Err(Error::Usage(text));
     };
     Ok((bounds, invalid))
+}
+
+fn warn_of_primitives(invalid: usize, count: usize) {
+    if invalid > 0 {
+        log::warn!(
+            "{invalid} of {count} segments and triangles are invalid and will not be drawn: a value of a vertex is NaN, infinite or \
+             beyond {:e}, a direction is no unit vector, or a radius is below 0",
+            Surfels::LARGEST
+        );
+    }
 }
 
 fn warn_of(invalid: usize, count: usize) {

@@ -68,6 +68,16 @@ impl Settings {
         }
     }
 
+    /// Refuses splats of a scene that has lines or triangles, as `there` says.
+    pub fn check_primitives(&self, there: bool) -> Result<()> {
+        match there && self.pull_push.is_none() {
+            false => Ok(()),
+            true => Err(Error::Usage(
+                "lines and triangles are drawn by pull-push and pull-push-paper alone: choose one of them, or leave them out".into(),
+            )),
+        }
+    }
+
     /// Refuses what no frame can be made of.
     pub fn check(&self) -> Result<()> {
         if self.pull_push.is_some() && (self.splatting != Splatting::default() || self.alpha != Alpha::Mask) {

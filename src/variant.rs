@@ -2,7 +2,7 @@
 
 use crate::pull_push::Rules;
 use crate::renderer::RenderOptions;
-use crate::scene::{ColourStream, Streams};
+use crate::scene::{ColourStream, PrimitiveKinds, Streams};
 use crate::settings::{Alpha, Cull, Settings, Shading, Widen};
 use crate::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
 use crate::vk::Constants;
@@ -47,6 +47,8 @@ pub struct Variant {
     pub depth: bool,
     /// The colours that are summed, in the form in which the scene holds them.
     pub colours: ColourStream,
+    /// The scene's lines and triangles, with their colours in the same way.
+    pub primitives: PrimitiveKinds,
     /// α is the part of a pixel that is covered.
     pub coverage: bool,
     /// What the picture shows.
@@ -129,6 +131,10 @@ impl Variant {
             normals: lit_pixels || shading == Shading::Normal || options.outputs.normal,
             depth: shading == Shading::Depth || options.outputs.depth,
             colours: if wants_colour { streams.colours } else { ColourStream::None },
+            primitives: PrimitiveKinds {
+                colours: if wants_colour { streams.primitives.colours } else { ColourStream::None },
+                ..streams.primitives
+            },
             coverage: settings.alpha == Alpha::Coverage && settings.pull_push.is_none(),
             shading,
             lights: if shading == Shading::Lit { settings.lighting.directional.len() as u32 } else { 0 },
@@ -142,7 +148,8 @@ impl Variant {
     pub fn sums_colours(&self) -> bool {
         let undivided = self.normalization != Normalization::Pixel && self.visibility != Visibility::Nearest;
         let wanted = matches!(self.shading, Shading::Lit | Shading::Colour);
-        wanted && (undivided || self.shade_splats || self.colours != ColourStream::None)
+        let coloured = [self.colours, self.primitives.colours] != [ColourStream::None; 2];
+        wanted && (undivided || self.shade_splats || coloured)
     }
 
     /// Whether target 0 sums a vector beside Σw.
@@ -183,6 +190,7 @@ impl Variant {
             .with(constant::SUM_NORMALS, self.normals)
             .with(constant::SUM_DEPTH, self.depth)
             .with(constant::COLOURS, self.colours as u32)
+            .with(constant::VERTEX_COLOURS, self.primitives.colours as u32)
             .with(constant::SUM_COLOURS, self.sums_colours())
             .with(constant::SHADING, self.shading as u32)
             .with(constant::LIGHTS, self.lights)

@@ -28,7 +28,7 @@ struct View<'a> {
 impl<'a> View<'a> {
     fn new(case: &'a Case, camera: Camera) -> Self {
         let expected =
-            Expected::new(&case.surfels, &camera, case.size, &case.settings, &tolerance(&case.settings));
+            Expected::new(&case.surfels, &camera, case.size, &case.settings, &Tolerance::default());
         Self { case, camera, expected: expected.unwrap() }
     }
 
@@ -58,15 +58,6 @@ impl<'a> View<'a> {
         settings: &Settings,
     ) -> Comparison {
         self.expected.compare(&self.picture(device, rasterizer, surfels, settings)).unwrap()
-    }
-}
-
-/// Judges strictly, but for Confetti's kernel: its rim is some twenty times as steep as a Gaussian's, and so is what a rounding of the
-/// pixel's place in it does to the weight.
-fn tolerance(settings: &Settings) -> Tolerance {
-    match settings.splatting.kernel {
-        Kernel::Gaussian => Tolerance::default(),
-        Kernel::Confetti { .. } => Tolerance::float32(),
     }
 }
 

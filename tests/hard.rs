@@ -8,7 +8,7 @@ use support::sampling::push;
 use surfel::bench::hard::{EXCUSED, Options, judge, names, run};
 use surfel::bench::record::{Faults, Sweep, SweepPoint};
 use surfel::geometry::{Camera, Surfels};
-use surfel::methods::{Method, confetti};
+use surfel::methods::Method;
 use surfel::reference::{Admissible, Expected, Tolerance};
 use surfel::vk::DeviceLimits;
 use surfel::{Picture, Settings};
@@ -77,9 +77,7 @@ fn check(sweep: &Sweep, point: &SweepPoint) {
     let fails = sweep.points.iter().filter(same).any(|other| other.agreement.failed > 0);
     assert!(fails || !is_excused(point), "{at}");
     let within = a.colour <= bars.colour && a.normal <= bars.normal && a.depth <= bars.depth_relative;
-    // A steep kernel's tolerance widens with it, pixel by pixel.
-    let steep = point.contender.method == confetti::METHOD.name;
-    assert!(within || steep || is_excused(point), "{at}");
+    assert!(within || is_excused(point), "{at}");
     let unusable = ["NaN", "infinity", "3e38"].iter().any(|value| point.note.contains(value));
     assert_eq!(unusable && sweep.name == "attributes", point.note.contains("50 invalid") && unusable, "{at}");
 }

@@ -2,19 +2,18 @@
 // §4.3–4.4, restated).
 
 // A disc's image: a Gaussian's centre (px, relative to the disc centre's image), the unit major axis of its variance V and V's
-// eigenvalues (px²).
+// eigenvalues (px²). What follows is 0 but where lib/fine_conic.glsl knows it: what rounding took from the offset, and how far V's axis is
+// turned from the rounded one (rad).
 struct Conic {
     vec2 offset;
     vec2 axis;
     vec2 variance;
+    vec2 offset_lo;
+    float turn;
 };
 
-// V = (Dx, Dy)ᵀ(Dx, Dy) / (q F²) + o oᵀ / F²; sqrt_det = √|V|, px².
-Conic conic_of(vec3 Dx, vec3 Dy, vec2 o, float q, float cutoff, float sqrt_det) {
-    float scale = 1.0 / (cutoff * cutoff);
-    float xx = scale * (dot(Dx, Dx) / q + o.x * o.x);
-    float xy = scale * (dot(Dx, Dy) / q + o.x * o.y);
-    float yy = scale * (dot(Dy, Dy) / q + o.y * o.y);
+// V by its entries; sqrt_det = √|V|, px².
+Conic conic_of_variance(vec2 o, float xx, float xy, float yy, float sqrt_det) {
     // In units of the larger variance, so that squares neither overflow nor vanish.
     float unit = max(max(xx, yy), 1e-37);
     float half_difference = 0.5 * (xx - yy) / unit;
@@ -25,5 +24,14 @@ Conic conic_of(vec3 Dx, vec3 Dy, vec2 o, float q, float cutoff, float sqrt_det) 
 
     // The smaller eigenvalue by the determinant's closed form: as a difference it would be lost on a long thin ellipse.
     float major = 0.5 * (xx + yy) + radius * unit;
-    return Conic(o, axis, vec2(major, sqrt_det * (sqrt_det / major)));
+    return Conic(o, axis, vec2(major, sqrt_det * (sqrt_det / major)), vec2(0.0), 0.0);
+}
+
+// V = (Dx, Dy)ᵀ(Dx, Dy) / (q F²) + o oᵀ / F².
+Conic conic_of(vec3 Dx, vec3 Dy, vec2 o, float q, float cutoff, float sqrt_det) {
+    float scale = 1.0 / (cutoff * cutoff);
+    float xx = scale * (dot(Dx, Dx) / q + o.x * o.x);
+    float xy = scale * (dot(Dx, Dy) / q + o.x * o.y);
+    float yy = scale * (dot(Dy, Dy) / q + o.y * o.y);
+    return conic_of_variance(o, xx, xy, yy, sqrt_det);
 }

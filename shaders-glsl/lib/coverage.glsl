@@ -37,7 +37,7 @@ uint nearest_sample(vec2 to) {
 
 // The ellipse of a splat's own variance: filters widen what is seen of a surface, not the surface.
 Ellipse solid_of(Splat splat, uint clip) {
-    return ellipse_of(splat, max(splat.variance, LEAST_SOLID), clip);
+    return ellipse_of(splat, max(variance_of(splat), LEAST_SOLID), clip);
 }
 
 // The samples that a splat covers at a pixel centre where it has a fragment; `solid` is its ellipse by solid_of.

@@ -7,6 +7,7 @@ layout(location = 1) flat out vec4 whitening;
 layout(location = 2) flat out vec4 plane_epsilon;
 layout(location = 3) flat out vec4 plane_lo_disc;
 layout(location = 9) flat out uint clip;
+layout(location = 11) flat out mat2x4 fine;
 #ifdef COVERAGE
 layout(location = 10) flat out vec4 solid_whitening;
 #endif
@@ -22,6 +23,7 @@ void place_splat(uint i, Splat splat, vec2 variance, int corner) {
     Ellipse ellipse = ellipse_of(splat, variance, clip);
     anchor_offset = vec4(ellipse.anchor, ellipse.offset);
     whitening = ellipse.whitening;
+    fine = ellipse.fine;
     plane_epsilon = vec4(ellipse.plane_hi, splat.epsilon);
     plane_lo_disc = vec4(ellipse.plane_lo, splat.key_disc);
 #ifdef COVERAGE
@@ -56,6 +58,7 @@ layout(location = 1) flat in vec4 whitening;
 layout(location = 2) flat in vec4 plane_epsilon;
 layout(location = 3) flat in vec4 plane_lo_disc;
 layout(location = 9) flat in uint clip;
+layout(location = 11) flat in mat2x4 fine;
 #ifdef COVERAGE
 layout(location = 10) flat in vec4 solid_whitening;
 #endif
@@ -68,8 +71,8 @@ layout(depth_less) out float gl_FragDepth;
 // As splat_fragment; where there is no fragment, there is none.
 void drawn_fragment(out vec2 m, out float key, out float rank) {
     float key_centre = centre_key(plane_epsilon.xyz, plane_lo_disc.xyz, anchor_offset.zw);
-    Ellipse ellipse =
-        Ellipse(anchor_offset.xy, anchor_offset.zw, whitening, plane_epsilon.xyz, plane_lo_disc.xyz, key_centre, clip);
+    Ellipse ellipse = Ellipse(
+        anchor_offset.xy, anchor_offset.zw, whitening, fine, plane_epsilon.xyz, plane_lo_disc.xyz, key_centre, clip);
     if (!splat_fragment(ellipse, gl_FragCoord.xy, m, key, rank)) discard;
 #ifdef COVERAGE
     uvec2 pixel = uvec2(gl_FragCoord.xy);

@@ -2,6 +2,8 @@
 
 #include "lib/conic.glsl"
 
+layout(constant_id = 12) const bool ELLIPSES = false;
+
 // A disc in front of the eye; all vectors world space.
 struct Disc {
     vec3 hi, lo;      // centre relative to the eye
@@ -12,7 +14,10 @@ struct Disc {
     float radius;     // longer semi-axis
     float aspect;     // shorter semi-axis / longer
     mat2x3 axes;      // directions of the semi-axes, the second of length `aspect`
+    vec3 major;       // of an ellipse, the first as it was given: of about unit length, and about at a right angle to the normal
 };
+
+#include "lib/fine_conic.glsl"
 
 // A splat before the low-pass filter.
 struct Image {
@@ -40,9 +45,11 @@ float clearance(Disc disc, vec3 S, vec3 T) {
 // rounding alone would turn them otherwise.
 const float LEAST_ANISOTROPY = 1e-4;
 
-vec2 axis_of_sides(Conic conic) {
+void align_sides(inout Conic conic) {
     bool circle = conic.variance.x - conic.variance.y <= LEAST_ANISOTROPY * conic.variance.x;
-    return FOOTPRINT == PARALLELOGRAM && circle ? vec2(1.0, 0.0) : conic.axis;
+    if (FOOTPRINT != PARALLELOGRAM || !circle) return;
+    conic.axis = vec2(1.0, 0.0);
+    conic.turn = 0.0;
 }
 
 // The disc as the projection maps its rim (zwicker2004 §4.4), or as it maps what is next to its centre (ren2002 §3).
@@ -59,8 +66,9 @@ Image image_of_disc(Disc disc, float sigma, vec3 S, vec3 T) {
     float root = frame.cutoff * sqrt(q);
     float sqrt_det = frame.jacobian * disc.aspect * (sigma / root) * (sigma / root) * abs(disc.facing.x) / root;
     float lean = frame.cutoff * (PERSPECTIVE ? length(g) : sigma * length(frame.forward_hi.xyz * disc.axes));
-    Conic conic = conic_of(vec3(Dx, 0.0), vec3(Dy, 0.0), o, q, frame.cutoff, sqrt_det);
-    conic.axis = axis_of_sides(conic);
+    Conic conic = CONFETTI ? fine_conic(disc, sqrt_det)
+                           : conic_of(vec3(Dx, 0.0), vec3(Dy, 0.0), o, q, frame.cutoff, sqrt_det);
+    align_sides(conic);
     return Image(conic, sqrt_det, lean, vec2(0.0));
 }
 
@@ -118,7 +126,8 @@ Image image_of_square(Disc disc, float sigma) {
     vec2 size = sigma / disc.w.x * vec2(length(frame.flat_rows[0].xyz), focal_length());
     bool wide = size.x >= size.y;
     vec2 variance = wide ? size * size : size.yx * size.yx;
-    return Image(Conic(vec2(0.0), wide ? vec2(1.0, 0.0) : vec2(0.0, 1.0), variance), size.x * size.y, 0.0, vec2(0.0));
+    vec2 axis = wide ? vec2(1.0, 0.0) : vec2(0.0, 1.0);
+    return Image(Conic(vec2(0.0), axis, variance, vec2(0.0), 0.0), size.x * size.y, 0.0, vec2(0.0));
 }
 
 Image image_of(Disc disc, float sigma, vec3 S, vec3 T) {

@@ -42,5 +42,6 @@ bool point_of(uint i, out ivec2 at, out Sample s) {
     s.displacement = PAPER ? vec2(0.0) : offset;
     // Seen from behind, a disc is that of the opposite normal.
     s.normal = facing > 0.0 ? -n : n;
+    s.tube = false;
     return true;
 }

@@ -14,18 +14,24 @@ struct Sample {
     float depth;       // distance of the disc's centre
     float radius;      // of the disc seen face-on, px
     vec2 displacement; // of the disc's centre from the pixel's, px
-    vec3 normal;       // world
+    vec3 normal;       // world; of a tube, the tangent
     vec3 colour;       // linear
+    bool tube;         // it is of a tube: the disc faces the eye, about a point of the axis
 };
 
 layout(set = 1, binding = 1, std430) buffer Pulled { float pulled[]; };
 layout(set = 1, binding = 2, std430) buffer Pushed { float pushed[]; };
 
-const Sample NOTHING = Sample(0.0, 0.0, 0.0, 0.0, vec2(0.0), vec3(0.0), vec3(0.0));
+const Sample NOTHING = Sample(0.0, 0.0, 0.0, 0.0, vec2(0.0), vec3(0.0), vec3(0.0), false);
 
 // Floats of a sample.
 uint sample_size() {
     return SUM_COLOURS ? 12u : 9u;
+}
+
+// The normal, or the tangent, turned so that it points as that of `other` does: a tangent may as well be its opposite.
+vec3 direction_as(Sample s, Sample other) {
+    return s.tube && dot(s.normal, other.normal) < 0.0 ? -s.normal : s.normal;
 }
 
 ivec2 level_size(uint level) {
@@ -51,6 +57,7 @@ bool is_within(uint level, ivec2 at) {
     return all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, level_size(level)));
 }
 
+// The radius of a tube's sample is stored with a minus.
 #define DEFINE_PYRAMID(LOAD, STORE, FLOATS)                                                            \
     Sample LOAD(uint place) {                                                                          \
         uint i = place * sample_size();                                                                \
@@ -59,7 +66,8 @@ bool is_within(uint level, ivec2 at) {
         if (s.near == 0.0) return s;                                                                   \
         s.far = FLOATS[i + 1];                                                                         \
         s.depth = FLOATS[i + 2];                                                                       \
-        s.radius = FLOATS[i + 3];                                                                      \
+        s.tube = floatBitsToUint(FLOATS[i + 3]) >> 31 != 0;                                            \
+        s.radius = abs(FLOATS[i + 3]);                                                                 \
         s.displacement = vec2(FLOATS[i + 4], FLOATS[i + 5]);                                           \
         s.normal = vec3(FLOATS[i + 6], FLOATS[i + 7], FLOATS[i + 8]);                                  \
         if (SUM_COLOURS) s.colour = vec3(FLOATS[i + 9], FLOATS[i + 10], FLOATS[i + 11]);               \
@@ -70,7 +78,7 @@ bool is_within(uint level, ivec2 at) {
         FLOATS[i] = s.near;                                                                            \
         FLOATS[i + 1] = s.far;                                                                         \
         FLOATS[i + 2] = s.depth;                                                                       \
-        FLOATS[i + 3] = s.radius;                                                                      \
+        FLOATS[i + 3] = s.tube ? -s.radius : s.radius;                                                 \
         FLOATS[i + 4] = s.displacement.x;                                                              \
         FLOATS[i + 5] = s.displacement.y;                                                              \
         for (uint k = 0; k < 3; k++) FLOATS[i + 6 + k] = s.normal[k];                                  \

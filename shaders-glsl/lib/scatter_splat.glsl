@@ -53,7 +53,7 @@ void scatter_box(Ellipse ellipse, ivec2 low, ivec2 high) {
 void scatter_splat(uint i) {
     Splat splat = splats[i];
     if (kind_of(splat) != (LARGE_SPLATS ? LARGE : SMALL)) return;
-    vec2 variance = scatter_variance(splat.variance);
+    vec2 variance = scatter_variance(variance_of(splat));
     Ellipse ellipse = ellipse_of(splat, variance, clip_number(i));
     float stretch = stretch_of(splat, variance, ellipse.key_centre);
     vec2 reach = stretch * reach_of(splat.axis, variance);

@@ -2,16 +2,37 @@
 
 layout(constant_id = 7) const uint LIGHTS = 0;
 
-vec3 blinn_phong(vec3 albedo, vec3 normal, vec3 light, vec3 view, float diffuse) {
-    float lambert = dot(normal, light);
+vec3 blinn_phong(vec3 albedo, float lambert, float half_way, float diffuse) {
     if (lambert <= 0.0) return vec3(0.0);
-    float highlight = pow(max(dot(normal, normalize(light + view)), 0.0), frame.shininess);
+    float highlight = pow(max(half_way, 0.0), frame.shininess);
     return diffuse * lambert * albedo + frame.specular * highlight;
 }
 
 vec3 lit(vec3 albedo, vec3 normal, vec3 view) {
-    vec3 sum = frame.ambient * albedo + blinn_phong(albedo, normal, view, view, frame.albedo.a);
-    for (uint i = 0; i < LIGHTS; i++)
-        sum += frame.radiance[i].rgb * blinn_phong(albedo, normal, frame.to_light[i].xyz, view, 1.0);
+    float facing = dot(normal, view);
+    vec3 sum = frame.ambient * albedo + blinn_phong(albedo, facing, facing, frame.albedo.a);
+    for (uint i = 0; i < LIGHTS; i++) {
+        vec3 light = frame.to_light[i].xyz;
+        float half_way = dot(normal, normalize(light + view));
+        sum += frame.radiance[i].rgb * blinn_phong(albedo, dot(normal, light), half_way, 1.0);
+    }
+    return sum;
+}
+
+// Of all normals across a line, the one that is turned to a unit vector.
+vec3 line_normal(vec3 tangent, vec3 towards) {
+    vec3 normal = towards - dot(towards, tangent) * tangent;
+    return dot(normal, normal) > 0.0 ? normalize(normal) : towards;
+}
+
+// A line has every normal across it: towards each light, the one that is brightest (marroquim2008 §4.2; its highlights likewise).
+vec3 lit_line(vec3 albedo, vec3 tangent, vec3 view) {
+    float facing = dot(line_normal(tangent, view), view);
+    vec3 sum = frame.ambient * albedo + blinn_phong(albedo, facing, facing, frame.albedo.a);
+    for (uint i = 0; i < LIGHTS; i++) {
+        vec3 light = frame.to_light[i].xyz, middle = normalize(light + view);
+        float lambert = dot(line_normal(tangent, light), light), half_way = dot(line_normal(tangent, middle), middle);
+        sum += frame.radiance[i].rgb * blinn_phong(albedo, lambert, half_way, 1.0);
+    }
     return sum;
 }

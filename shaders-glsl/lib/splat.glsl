@@ -31,7 +31,8 @@ float rim() {
 struct Splat {
     vec2 offset;    // centre of the variance's ellipse relative to the anchor, px
     vec2 axis;      // unit major axis of the variance V
-    vec2 variance;  // V's eigenvalues, px²
+    float variance; // V's larger eigenvalue, px²
+    float turn;     // how far V's axis is turned from `axis`, which is rounded, rad; CONFETTI, otherwise 0
     uint place;     // anchor and kind, see below
     float epsilon;  // perspective: 1 / (1 + ε/z), scales κ; orthographic: ε as a difference of κ; negative: the normal faces away
     vec3 plane_hi;  // κ of the tangent plane (has_linear_depth: distance) at the anchor, and its derivatives along x and y, per px, as
@@ -61,6 +62,11 @@ vec2 anchor_of(Splat splat) {
 
 uint kind_of(Splat splat) {
     return splat.place >> 30;
+}
+
+// V's eigenvalues, px²: their product is its determinant.
+vec2 variance_of(Splat splat) {
+    return vec2(splat.variance, splat.sqrt_det * (splat.sqrt_det / splat.variance));
 }
 
 // Largest factor by which perspective may shrink or enlarge a kernel that lies in the tangent plane, against its centre: further out the
@@ -110,10 +116,18 @@ float amplitude_of(Splat splat, vec2 variance) {
 // Least exponent of a Confetti kernel: the rim keeps some weight, so that no pixel which visibility owns is left without.
 const float LEAST_EXPONENT = -10.0;
 
+// x^(n/2), of a small whole n by products: pow is as far off as a logarithm.
+float half_power(float x, float n) {
+    if (n != floor(n) || n > 16.0) return pow(x, 0.5 * n);
+    float power = fract(0.5 * n) > 0.0 ? sqrt(x) : 1.0;
+    for (float k = 2.0; k <= n; k += 2.0) power *= x;
+    return power;
+}
+
 // The kernel at the squared distance m2 from its centre, σ².
 float kernel(float m2) {
     if (!CONFETTI) return exp(-0.5 * m2);
-    float t = pow(m2 / (frame.cutoff * frame.cutoff), 0.5 * frame.kernel_n);
+    float t = half_power(m2 / (frame.cutoff * frame.cutoff), frame.kernel_n);
     return exp(max(-frame.kernel_a * t / max(1.0 - t, 1e-6), LEAST_EXPONENT));
 }
 
@@ -122,6 +136,7 @@ struct Ellipse {
     vec2 anchor;
     vec2 offset;    // the centre relative to the anchor, px
     vec4 whitening; // rows of the map from px to σ
+    mat2x4 fine;    // CONFETTI: what the rows lack, see fine_row
     vec3 plane_hi;
     vec3 plane_lo;
     float key_centre; // on_plane: κ of the plane at the centre
@@ -141,19 +156,52 @@ float centre_key(vec3 hi, vec3 lo, vec2 offset) {
     return on_plane() ? plane_at(hi, lo, offset) : 0.0;
 }
 
+// A row of the whitening, an axis over its deviation, as a plane: its value at the anchor as the sum of two floats, and of its derivatives
+// what floats leave over. At the tips of a thin ellipse the row's value is a small difference of large terms. `turned` is what turning the
+// axis adds to it.
+vec4 fine_row(vec2 axis, vec2 turned, float variance, vec2 offset) {
+    float inverse = inversesqrt(variance);
+    vec2 length2 = add(two_product(axis.x, axis.x), two_product(axis.y, axis.y));
+    // What the rounding of the root and of the axis has made of 1.
+    vec2 unit = multiply(scale(two_product(inverse, inverse), variance), length2);
+    float short_of = 0.5 * add(vec2(1.0, 0.0), -unit).x;
+    vec2 x = two_product(axis.x, inverse), y = two_product(axis.y, inverse);
+    vec2 rest = vec2(x.y, y.y) + inverse * (short_of * axis + turned);
+    vec2 to_centre = add(two_product(x.x, offset.x), two_product(y.x, offset.y));
+    return vec4(-add(to_centre, vec2(dot(rest, offset), 0.0)), rest);
+}
+
+mat2x4 fine_rows(Splat splat, vec2 variance) {
+    vec2 minor_axis = vec2(-splat.axis.y, splat.axis.x);
+    return mat2x4(fine_row(splat.axis, splat.turn * minor_axis, variance.x, splat.offset),
+                  fine_row(minor_axis, -splat.turn * splat.axis, variance.y, splat.offset));
+}
+
 Ellipse ellipse_of(Splat splat, vec2 variance, uint clip) {
     vec2 inverse = inversesqrt(variance);
     vec4 whitening = vec4(splat.axis * inverse.x, vec2(-splat.axis.y, splat.axis.x) * inverse.y);
+    mat2x4 fine = CONFETTI ? fine_rows(splat, variance) : mat2x4(0.0);
     float key = centre_key(splat.plane_hi, splat.plane_lo, splat.offset);
-    return Ellipse(anchor_of(splat), splat.offset, whitening, splat.plane_hi, splat.plane_lo, key, clip);
+    return Ellipse(anchor_of(splat), splat.offset, whitening, fine, splat.plane_hi, splat.plane_lo, key, clip);
+}
+
+// The place in the kernel along the ellipse's axes, σ, at d px from the anchor.
+vec2 place(Ellipse ellipse, vec2 d) {
+    vec2 e = d - ellipse.offset;
+    return vec2(dot(ellipse.whitening.xy, e), dot(ellipse.whitening.zw, e));
+}
+
+// The same where a steep rim shows what is lost in that.
+vec2 fine_place(Ellipse ellipse, vec2 d) {
+    return vec2(plane_at(vec3(ellipse.fine[0].x, ellipse.whitening.xy), ellipse.fine[0].yzw, d),
+                plane_at(vec3(ellipse.fine[1].x, ellipse.whitening.zw), ellipse.fine[1].yzw, d));
 }
 
 // Whether the splat has a fragment at a pixel centre: it is within the rim and not clipped, and the tangent plane within the depth range.
 // m: place in the kernel along the ellipse's axes, σ; key: the plane's κ; rank: see clip_rank.
 bool splat_fragment(Ellipse ellipse, vec2 pixel, out vec2 m, out float key, out float rank) {
     vec2 d = pixel - ellipse.anchor;
-    vec2 e = d - ellipse.offset;
-    m = vec2(dot(ellipse.whitening.xy, e), dot(ellipse.whitening.zw, e));
+    m = CONFETTI ? fine_place(ellipse, d) : place(ellipse, d);
     key = plane_at(ellipse.plane_hi, ellipse.plane_lo, d);
     if (has_linear_depth()) key = key > 0.0 ? frame.near / key : 2.0;
     // A homography that keeps the centre is affine but for the plane's distance.

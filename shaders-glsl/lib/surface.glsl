@@ -1,16 +1,13 @@
 // What a pixel gets of a surfel: the vectors that the targets sum, see lib/sums.glsl.
 
 #include "lib/shading.glsl"
+#include "lib/srgb.glsl"
 
 layout(constant_id = 20) const bool SHADE_SPLATS = false; // what is summed as colour is light: splats are lit at their centres
 
 layout(set = 0, binding = 2, std430) readonly buffer Positions { float positions[]; };
 layout(set = 0, binding = 3, std430) readonly buffer Normals { float normals[]; };
 layout(set = 0, binding = 5, std430) readonly buffer Colours { uint colours[]; };
-
-vec3 srgb_to_linear(vec3 c) {
-    return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045)));
-}
 
 vec3 colour_of(uint i) {
     if (COLOURS == COLOURS_NONE) return frame.albedo.rgb;

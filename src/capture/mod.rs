@@ -84,7 +84,7 @@ pub fn capture_region(
     size: [u32; 2],
     settings: &Settings,
 ) -> Result<u64> {
-    let scene = Scene::upload(device, surfels)?;
+    let scene = Scene::upload(device, &*surfels)?;
     let mut samples = Samples::default();
     samples.add(Look::new(&mut renderer(device, size)?, &scene, camera, &plain(settings))?.samples(surfels));
     let seen = samples.medians();

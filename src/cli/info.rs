@@ -2,14 +2,14 @@
 
 use super::args::Info;
 use super::files::print;
-use super::inputs::scene;
+use super::inputs::{scene, scene_cloud};
 use super::progress;
 use std::fmt::Write;
 use std::path::Path;
 use surfel::geometry::estimate::{Estimate, Estimated, spacing};
 use surfel::geometry::{Cloud, Colours, Model, Parts, View};
 use surfel::io::ply::{self, Dropped, Element, Faces, Format, Inspected, Lines, Loaded, ReadOptions, Report};
-use surfel::{Error, Result, scenes};
+use surfel::{Error, Result};
 
 /// How many skipped names are told; the header has told all of them.
 const MOST_NAMES: usize = 8;
@@ -35,16 +35,12 @@ pub fn run(args: &Info) -> Result<()> {
 
 /// What a scene is under these options.
 fn scene_text(name: &str, how: &Estimate) -> Result<String> {
-    let cloud = Cloud::from(scenes::open(name)?);
+    let cloud = scene_cloud(name)?;
     let points = cloud.len() as u64;
-    let surfels = cloud.into_surfels(how, &());
-    let (surfels, estimated) = surfels.map_err(|cause| Error::input(name, cause))?;
+    let model = cloud.into_model(true, how, &());
+    let (model, estimated) = model.map_err(|cause| Error::input(name, cause))?;
     let dropped = dropped(Dropped::default(), &estimated);
-    Ok(format!(
-        "{name}: built-in scene\n{}{}{dropped}",
-        describe(&Model::from(surfels), points),
-        sources(&estimated)
-    ))
+    Ok(format!("{name}: built-in scene\n{}{}{dropped}", describe(&model, points), sources(&estimated)))
 }
 
 /// What a file declares.

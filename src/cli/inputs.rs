@@ -50,6 +50,8 @@ pub struct Inputs {
 struct Part {
     name: String,
     cloud: Cloud,
+    /// Whether its faces are drawn, whatever is wanted of files.
+    drawn: bool,
 }
 
 /// Reads every input; several become one model.
@@ -95,16 +97,16 @@ fn refuse_scenes(wanted: &Wanted<'_>) -> Result<()> {
 /// What is in an input, its number of points, and how many of them were dropped.
 fn load_one(name: &OsString, wanted: &Wanted<'_>) -> Result<(Part, u64, Dropped)> {
     if let Some(name) = scene(name) {
-        let cloud = Cloud::from(scenes::open(name)?);
+        let cloud = scene_cloud(name)?;
         let count = cloud.len() as u64;
-        return Ok((Part { name: name.into(), cloud }, count, Dropped::default()));
+        return Ok((Part { name: name.into(), cloud, drawn: true }, count, Dropped::default()));
     }
     let property = wanted.colouring.as_ref().and_then(Colouring::property);
     let options = ReadOptions { scalar: property.map(str::to_owned), triangles: draws_faces(wanted) };
     let Loaded { cloud, report } = ply::read(Path::new(name), &options, wanted.progress)?;
     let name = Path::new(name).display().to_string();
     warn(&name, &report);
-    Ok((Part { name, cloud }, report.points, report.dropped))
+    Ok((Part { name, cloud, drawn: false }, report.points, report.dropped))
 }
 
 /// Says what of a file is left out, and what may be damage.
@@ -153,6 +155,7 @@ fn thin(parts: Vec<Part>, voxel: f64, quiet: bool) -> Result<Part> {
         [one] => one.name.clone(),
         several => format!("{} inputs", several.len()),
     };
+    let drawn = parts.iter().any(|part| part.drawn);
     let clouds = parts.into_iter().map(|part| part.cloud).collect();
     let all = Cloud::merge(clouds, Settings::default().lighting.albedo)?;
     let before = all.len();
@@ -160,15 +163,15 @@ fn thin(parts: Vec<Part>, voxel: f64, quiet: bool) -> Result<Part> {
     if !quiet {
         say(&format!("{name}: {before} points thinned to {}", cloud.len()));
     }
-    Ok(Part { name, cloud })
+    Ok(Part { name, cloud, drawn })
 }
 
 /// One model of all parts, each of which is estimated by itself.
 fn merge(parts: Vec<Part>, wanted: &Wanted<'_>) -> Result<(Model, Estimated)> {
     let several = parts.len() > 1;
     let (mut all, mut total) = (Vec::new(), Estimated::default());
-    for Part { name, cloud } in parts {
-        let (model, estimated) = estimate(&name, cloud, wanted)?;
+    for part in parts {
+        let (model, estimated) = estimate(part, wanted)?;
         all.push(model);
         total = total + estimated;
     }
@@ -186,17 +189,25 @@ fn merge(parts: Vec<Part>, wanted: &Wanted<'_>) -> Result<(Model, Estimated)> {
     Ok((model, total))
 }
 
-fn estimate(name: &str, cloud: Cloud, wanted: &Wanted<'_>) -> Result<(Model, Estimated)> {
+fn estimate(part: Part, wanted: &Wanted<'_>) -> Result<(Model, Estimated)> {
+    let Part { name, cloud, drawn } = part;
     let cloud = match &wanted.lines {
-        Some(how) => to_lines(name, &cloud, how, wanted.quiet)?,
+        Some(how) => to_lines(&name, &cloud, how, wanted.quiet)?,
         None => cloud,
     };
-    let made = cloud.into_model(draws_faces(wanted), &wanted.estimate, wanted.progress);
-    let (model, estimated) = made.map_err(|cause| Error::input(name, cause))?;
+    let made = cloud.into_model(drawn || draws_faces(wanted), &wanted.estimate, wanted.progress);
+    let (model, estimated) = made.map_err(|cause| Error::input(name.as_str(), cause))?;
     if let (false, Some(text)) = (wanted.quiet, summary::estimated(&estimated)) {
         say(&format!("{name}: {text}"));
     }
     Ok((model, estimated))
+}
+
+/// The points of a built-in scene, and its lines and triangles if it wants some.
+pub fn scene_cloud(name: &str) -> Result<Cloud> {
+    let Model { surfels, primitives } = scenes::model(name)?;
+    let parts = [Cloud::from(surfels), Cloud::from(primitives)].into_iter().filter(|part| !part.is_empty());
+    Cloud::merge(parts.collect(), Settings::default().lighting.albedo)
 }
 
 /// Whether faces are drawn, unless they become lines.

@@ -3,7 +3,7 @@
 use super::files::print;
 use std::fmt::Write;
 use surfel::methods::{Method, passes};
-use surfel::scene::{ColourStream, Streams};
+use surfel::scene::{ColourStream, PrimitiveKinds, Streams};
 use surfel::settings::{Settings, Shading};
 use surfel::splatting::{Filter, Splatting};
 use surfel::targets::{Buffers, Formats, PerPixel, Pyramids};
@@ -62,6 +62,7 @@ fn variant(settings: &Settings, rasterizer: Rasterizer) -> Variant {
         clips: false,
         weights: None,
         colours: ColourStream::Srgb8,
+        primitives: PrimitiveKinds::NONE,
     };
     let settings = Settings { shading: Shading::Lit, ..settings.clone() };
     Variant::new(streams, true, &settings, &RenderOptions::default(), rasterizer)

@@ -7,25 +7,17 @@ use super::report::{Gpu, HalfError, Report};
 use super::{camera, files, inputs, progress, reference, summary, vulkan};
 use std::path::Path;
 use surfel::bench::Times;
-use surfel::geometry::{Camera, Model, Parts, Surfels};
+use surfel::geometry::{Camera, Model, Parts};
 use surfel::io::colour_bar::ColourBar;
 use surfel::io::image::{Encoded, Output, write};
 use surfel::methods::{Method, pull_push};
 use surfel::settings::Shading;
 use surfel::{Error, Outputs, Picture, Progress, Result, Settings, SplatCounts};
 
-/// What the library draws of a [`Model`].
-pub type Drawn = Surfels;
-
-/// What of `model` is drawn: the one place that says so.
-fn drawn(model: &Model) -> &Drawn {
-    &model.surfels
-}
-
 /// What is to be rendered, wherever that happens.
 pub struct Task<'a> {
     /// The scene.
-    pub scene: &'a Drawn,
+    pub scene: &'a Model,
     /// By which method, before anything was changed of it.
     pub method: Method,
     /// Seen from here.
@@ -76,7 +68,7 @@ pub fn run(args: &Render) -> Result<()> {
         quiet: args.quiet,
         progress: &*bars,
     })?;
-    let (method, scene) = (method(args.method, &loaded.model)?, drawn(&loaded.model));
+    let (method, scene) = (method(args.method, &loaded.model)?, &loaded.model);
     let settings = args.settings(&method);
     settings.check()?;
     let bounds = Parts::from(scene).bounds();

@@ -60,9 +60,16 @@ impl Model {
 }
 
 impl From<Primitives> for Cloud {
-    /// The vertices as points, directions as normals.
+    /// The vertices as points: directions as normals, and those of tubes as tangents, too.
     fn from(primitives: Primitives) -> Self {
+        let mut tangents = (!primitives.tubes.is_empty()).then(|| vec![Vec3::ZERO; primitives.len()]);
+        let tangents_of = |tangents: &mut Vec<Vec3>| {
+            let vertices = primitives.tubes.iter().flatten().map(|&i| i as usize);
+            vertices.for_each(|i| tangents[i] = primitives.directions[i]);
+        };
+        tangents.iter_mut().for_each(tangents_of);
         Self {
+            tangents,
             origin: primitives.origin,
             positions: primitives.positions,
             normals: Some(primitives.directions),

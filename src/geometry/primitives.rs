@@ -126,6 +126,20 @@ impl Primitives {
         ribbons.chain(self.tubes.iter().map(|ends| (*ends, true)))
     }
 
+    /// Direction of the lines at every vertex: the mean of the segments' that end there, whichever way they go; 0 where there are none.
+    pub fn line_directions(&self) -> Vec<Vec3> {
+        let mut directions = vec![Vec3::ZERO; self.len()];
+        for ([from, to], _) in self.segments() {
+            let [from, to] = [from, to].map(|vertex| vertex as usize);
+            let along = (self.positions[to] - self.positions[from]).normalize_or_zero();
+            for vertex in [from, to] {
+                let there = directions[vertex];
+                directions[vertex] += if there.dot(along) < 0.0 { -along } else { along };
+            }
+        }
+        directions.into_iter().map(Vec3::normalize_or_zero).collect()
+    }
+
     /// Refuses arrays of unequal length, an origin that is not finite, and vertices that do not exist.
     ///
     /// # Errors
@@ -201,15 +215,15 @@ mod tests {
     #[test]
     fn what_is_not_there_is_refused() {
         assert!(two().check().is_ok());
-        type Change = fn(&mut Primitives);
-        let changes: [(Change, &str); 5] = [
-            (|p| p.tubes.push([0, 2]), "vertex 2, and there are 2"),
-            (|p| p.triangles.push([0, 1, 9]), "vertex 9"),
-            (|p| p.radii.truncate(1), "[2, 1, 2]"),
-            (|p| p.colours = Some(Colours::Linear(vec![])), "[2, 2, 0]"),
-            (|p| p.origin.x = f64::NAN, "finite"),
+        let changes: [fn(&mut Primitives); 5] = [
+            |p| p.tubes.push([0, 2]),
+            |p| p.triangles.push([0, 1, 9]),
+            |p| p.radii.truncate(1),
+            |p| p.colours = Some(Colours::Linear(vec![])),
+            |p| p.origin.x = f64::NAN,
         ];
-        for (change, said) in changes {
+        let causes = ["vertex 2, and there are 2", "vertex 9", "[2, 1, 2]", "[2, 2, 0]", "finite"];
+        for (change, said) in changes.into_iter().zip(causes) {
             let mut primitives = two();
             change(&mut primitives);
             let text = primitives.check().unwrap_err().to_string();
@@ -234,6 +248,21 @@ mod tests {
             let bounds = primitives.bounds().unwrap();
             assert_eq!((primitives.count_invalid(), bounds.max.x), (1, 0.25), "change {i}");
         }
+    }
+
+    #[test]
+    fn lines_go_on_from_segment_to_segment() {
+        let mut bent = two();
+        bent.positions.extend([Vec3::new(1.0, 1.0, 0.0), Vec3::Z]);
+        // The second segment goes the other way.
+        bent.ribbons.push([2, 1]);
+        let directions = bent.line_directions();
+        assert_eq!(directions[0], Vec3::X);
+        assert!(
+            (directions[1].abs() - Vec3::new(0.5f32.sqrt(), 0.5f32.sqrt(), 0.0)).length() < 1e-6,
+            "{directions:?}"
+        );
+        assert_eq!((directions[2].abs(), directions[3]), (Vec3::Y, Vec3::ZERO));
     }
 
     #[test]

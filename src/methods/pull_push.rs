@@ -66,7 +66,7 @@ impl PullPush {
         set: &PyramidSet,
         targets: &Pyramids,
     ) {
-        self.project.record(rec, splats, set, targets);
+        self.project.record(rec, splats, frame, set, targets);
         self.pull.record(rec, frame, set, targets);
         self.push.record(rec, frame, set, targets);
         self.shade.record(rec, frame, set, targets);

@@ -7,6 +7,7 @@ mod coverage;
 mod footprint;
 mod nearest;
 mod normalize;
+mod primitives;
 mod project;
 mod pull;
 mod push;

@@ -1,5 +1,6 @@
 //! The splats between the footprint pass, which writes them, and the passes that rasterize them.
 
+use super::primitives::{PrimitiveSets, primitive_layout};
 use super::pyramid::pyramid_layout;
 use super::scatter::pixel_layout;
 use crate::error::Result;
@@ -19,6 +20,7 @@ pub struct SplatLayout {
     pub(super) splats: SetLayout,
     pub(super) pixels: SetLayout,
     pub(super) pyramids: SetLayout,
+    pub(super) primitives: SetLayout,
 }
 
 /// A splat a surfel, with descriptor sets over windows of surfels and splats.
@@ -31,6 +33,7 @@ pub struct Splats {
     /// A [`ScreenClip`] a clip, those of a window at a multiple of [`COUNTS_STEP`]; only of a scene that has clips.
     screen_clips: Option<Buffer>,
     windows: Vec<Window>,
+    primitives: Option<PrimitiveSets>,
 }
 
 /// As many splats as one descriptor can name.
@@ -73,6 +76,7 @@ impl SplatLayout {
             splats: SetLayout::new(device, &bindings)?,
             pixels: pixel_layout(device)?,
             pyramids: pyramid_layout(device)?,
+            primitives: primitive_layout(device)?,
         })
     }
 }
@@ -94,9 +98,9 @@ impl Splats {
         rasterizer: Option<Rasterizer>,
     ) -> Result<Self> {
         let stride = size_of::<Splat>() as u64;
-        let room = if rasterizer.is_some() { scene.count() * stride } else { COUNTS_STEP };
+        let room = if rasterizer.is_some() { scene.count() * stride } else { 0 }.max(COUNTS_STEP);
         let splats = Buffer::storage(device, "splats", room)?;
-        let counts = Buffer::readback(device, "counts", scene.windows().len() as u64 * COUNTS_STEP)?;
+        let counts = Buffer::readback(device, "counts", (scene.windows().len() as u64).max(1) * COUNTS_STEP)?;
         let lists = scene.windows().len() as u64 * LIST_HEADER + 4 * scene.count();
         let large = match rasterizer {
             None | Some(Rasterizer::Draw) => None,
@@ -158,7 +162,16 @@ impl Splats {
             Ok(Window { set, count: count as u32, first: range.start as u32, list })
         };
         let windows = (0..).zip(scene.windows()).map(window).collect::<Result<_>>()?;
-        Ok(Self { splats, counts, large, screen_clips, windows })
+        let primitives = scene
+            .primitives
+            .as_ref()
+            .map(|streams| PrimitiveSets::new(device, layout, streams))
+            .transpose()?;
+        Ok(Self { splats, counts, large, screen_clips, windows, primitives })
+    }
+
+    pub(super) fn primitives(&self) -> Option<&PrimitiveSets> {
+        self.primitives.as_ref()
     }
 
     pub(super) fn windows(&self) -> &[Window] {

@@ -39,12 +39,12 @@ pub use judge::{Channel, Tolerance, Worst};
 pub use normalize::Value;
 pub use projector::Projector;
 pub use scene::Counts;
-pub(crate) use shading::{linear, lit};
+pub(crate) use shading::{line_normal, linear, lit, lit_line};
 pub use slack::Slack;
 
 use crate::Progress;
 use crate::error::Result;
-use crate::geometry::{Camera, Surfels};
+use crate::geometry::{Camera, Parts};
 use crate::picture::Picture;
 use crate::settings::Settings;
 use crate::splatting::Visibility;
@@ -107,19 +107,22 @@ impl Frame {
     }
 }
 
-/// Renders `surfels` as `camera` sees them, `size` = width and height in px.
+/// Renders `parts` as `camera` sees them, `size` = width and height in px.
 ///
-/// Fails on settings, sizes and cameras of which no picture can be made.
-pub fn render(
-    surfels: &Surfels,
+/// Fails on settings, sizes and cameras of which no picture can be made, and on lines and triangles where splats are drawn.
+pub fn render<'a>(
+    parts: impl Into<Parts<'a>>,
     camera: &Camera,
     size: [u32; 2],
     settings: &Settings,
     progress: &dyn Progress,
 ) -> Result<Frame> {
+    let parts = parts.into();
+    let surfels = parts.surfels;
     settings.splatting.normalization.check_weights(surfels.weights.is_some())?;
+    settings.check_primitives(parts.primitives.is_some())?;
     if let Some(rules) = settings.pull_push {
-        return pull_push::render(surfels, camera, size, settings, rules);
+        return pull_push::render(parts, camera, size, settings, rules);
     }
     let projector = Projector::new(camera, size, settings)?;
     let scene = Scene::project(&projector, surfels);

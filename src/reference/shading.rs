@@ -6,16 +6,32 @@ use glam::DVec3;
 /// The shade of a surface of linear colour `albedo`; `normal` and `viewer` (from the surface to the eye) are unit vectors in
 /// world space.
 pub(crate) fn lit(lighting: &Lighting, albedo: DVec3, normal: DVec3, viewer: DVec3) -> DVec3 {
+    by_cosines(lighting, albedo, viewer, |towards| normal.dot(towards))
+}
+
+/// The shade of a line with a unit `tangent`, which has every normal across it: towards each light, the one that is brightest
+/// (marroquim2008 section 4.2; its highlights likewise).
+pub(crate) fn lit_line(lighting: &Lighting, albedo: DVec3, tangent: DVec3, viewer: DVec3) -> DVec3 {
+    by_cosines(lighting, albedo, viewer, |towards| line_normal(tangent, towards).dot(towards))
+}
+
+/// Of all normals across a line, the one that is turned `towards`, both unit.
+pub(crate) fn line_normal(tangent: DVec3, towards: DVec3) -> DVec3 {
+    (towards - towards.dot(tangent) * tangent).try_normalize().unwrap_or(towards)
+}
+
+/// Blinn–Phong, given the cosine of the angle between the surface's normal and a direction.
+fn by_cosines(lighting: &Lighting, albedo: DVec3, viewer: DVec3, cosine: impl Fn(DVec3) -> f64) -> DVec3 {
     let [ambient, headlight, specular, shininess] =
         [lighting.ambient, lighting.headlight, lighting.specular, lighting.shininess].map(f64::from);
     // The headlight stands at the eye: light, half-way and view direction are one.
-    let facing = normal.dot(viewer).max(0.0);
+    let facing = cosine(viewer).max(0.0);
     let mut light = albedo * (ambient + headlight * facing) + specular * facing.powf(shininess);
     for lamp in &lighting.directional {
         let to_light = DVec3::from_array(lamp.to_light.map(f64::from));
-        let lambert = normal.dot(to_light);
+        let lambert = cosine(to_light);
         if lambert > 0.0 {
-            let half = normal.dot((to_light + viewer).normalize_or_zero()).max(0.0);
+            let half = cosine((to_light + viewer).normalize_or_zero()).max(0.0);
             let radiance = DVec3::from_array(lamp.radiance.map(f64::from));
             light += radiance * (albedo * lambert + specular * half.powf(shininess));
         }

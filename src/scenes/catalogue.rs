@@ -111,6 +111,23 @@ const CLIPS: Parameter = Parameter {
 /// Name of the parameter that says whether discs are clipped.
 const CLIPS_NAME: &str = "clips";
 
+/// Of scenes that may be drawn as lines and polygons.
+const PRIMITIVES: Parameter = Parameter {
+    name: PRIMITIVES_NAME,
+    default: "off",
+    values: Values::Choice(&["on", "off"]),
+    meaning: "whether tubes and ribbons are lines, and boxes and floors triangles, rather than surfels",
+};
+/// Name of the parameter that says whether there are lines and triangles.
+pub(super) const PRIMITIVES_NAME: &str = "primitives";
+/// Into how much these are divided.
+const SEGMENTS: Parameter = Parameter {
+    name: "segments",
+    default: "32",
+    values: Values::Whole(1, 4096),
+    meaning: "segments of each line, and of each side of a polygon",
+};
+
 const fn albedo(default: &'static str) -> Parameter {
     let values = Values::Choice(&["checker", "stripes", "zone", "noise", "plain"]);
     Parameter { name: "albedo", default, values, meaning: "texture" }
@@ -207,6 +224,8 @@ const SCENES: &[Scene] = &[
             frequency("4"),
             number("twists", "1.5", [0.0, 20.0], "turns from end to end"),
             number("width", "0.8", [0.001, 2.0], "width"),
+            PRIMITIVES,
+            SEGMENTS,
         ],
         build: models::ribbon,
         edges: None,
@@ -219,6 +238,8 @@ const SCENES: &[Scene] = &[
             albedo("stripes"),
             frequency("4"),
             number("turns", "3", [1.0, 20.0], "turns; the tube is as thick as they allow"),
+            PRIMITIVES,
+            SEGMENTS,
         ],
         build: models::helix,
         edges: None,
@@ -259,6 +280,8 @@ const SCENES: &[Scene] = &[
             frequency("20"),
             whole("depth", "3", [0, 5], "how often it forks"),
             whole("growth", "1", [0, u64::MAX], "seed of its shape"),
+            PRIMITIVES,
+            SEGMENTS,
         ],
         build: models::tree,
         edges: None,
@@ -267,7 +290,7 @@ const SCENES: &[Scene] = &[
         name: "scene:mixed",
         summary: "a torus for points, a spring and a ribbon for lines, a floor and a box for polygons",
         viewpoint: view([1.2, 1.9, 3.6], [-0.1, 0.4, 0.0], 43.0),
-        own: &[albedo("checker"), frequency("5")],
+        own: &[albedo("checker"), frequency("5"), PRIMITIVES, SEGMENTS],
         build: models::mixed,
         edges: None,
     },

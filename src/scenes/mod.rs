@@ -7,6 +7,7 @@ mod catalogue;
 mod edges;
 mod hierarchy;
 mod models;
+mod primitives;
 mod query;
 pub(crate) mod random;
 mod samplers;
@@ -17,13 +18,14 @@ mod tests;
 mod texture;
 
 pub use catalogue::{SAMPLING, Scene, Viewpoint, list};
+pub use primitives::Middle;
 pub use query::{Parameter, Values};
 pub use shapes::{Ray, Sample, Shape, Spot};
 pub use surface::{Hit, Kind, Piece, Surface};
 pub use texture::{Pattern, Rgb, Texture};
 
-use crate::error::Result;
-use crate::geometry::Surfels;
+use crate::error::{Error, Result};
+use crate::geometry::{Model, Surfels};
 use query::{PREFIX, Query};
 use surface::Assembly;
 
@@ -57,12 +59,35 @@ pub fn is_textured(text: &str) -> Result<bool> {
     Ok(Query::parse(text)?.pattern() != Pattern::Plain)
 }
 
-/// Makes the surfels of a scene, in Morton order.
+/// Makes a scene: surfels in Morton order, and the lines and triangles of what it wants drawn so.
 ///
 /// # Errors
 /// Like [`surface`].
+pub fn model(text: &str) -> Result<Model> {
+    let query = Query::parse(text)?;
+    if query.word(catalogue::PRIMITIVES_NAME) != "on" {
+        return open(text).map(Model::from);
+    }
+    let (points, others): (Vec<_>, Vec<_>) =
+        (query.scene.build)(&query).into_iter().partition(|piece| piece.kind == Kind::Surface);
+    let mut surfels = match points.is_empty() {
+        true => Surfels::default(),
+        false => samplers::sample(&query, &Assembly::new(points))?,
+    };
+    surfels.sort_morton();
+    Ok(Model { surfels, primitives: primitives::primitives(&query, &others) })
+}
+
+/// Makes the surfels of a scene, in Morton order.
+///
+/// # Errors
+/// Like [`surface`]; one that wants lines and triangles is refused.
 pub fn open(text: &str) -> Result<Surfels> {
     let query = Query::parse(text)?;
+    if query.word(catalogue::PRIMITIVES_NAME) == "on" {
+        let text = format!("{text}: lines and triangles are no surfels: leave `primitives` off");
+        return Err(Error::Usage(text));
+    }
     let mut surfels = match is_comparison(&query) {
         true => bumpy_sphere::sample(query.whole("points") as u32, query.whole("seed")),
         false => samplers::sample(&query, &assemble(&query))?,

@@ -1,7 +1,7 @@
 //! A device under validation, for tests that need one.
 
 use std::sync::Arc;
-use surfel::geometry::{Camera, Surfels};
+use surfel::geometry::{Camera, Parts};
 use surfel::vk::{Device, DeviceLimits, DeviceOptions};
 use surfel::{Picture, RenderOptions, Renderer, Scene, Settings};
 
@@ -24,15 +24,15 @@ pub fn assert_silent(device: &Device) {
     assert!(messages.is_empty(), "{} validation messages: {messages:#?}", messages.len());
 }
 
-/// One frame of `surfels` on `device`.
-pub fn render(
+/// One frame of `parts` on `device`.
+pub fn render<'a>(
     device: &Arc<Device>,
-    surfels: &Surfels,
+    parts: impl Into<Parts<'a>>,
     camera: &Camera,
     settings: &Settings,
     options: RenderOptions,
 ) -> Picture {
-    let scene = Scene::upload(device, surfels).unwrap();
+    let scene = Scene::upload(device, parts).unwrap();
     let mut renderer = Renderer::new(device, options).unwrap();
     renderer.render_picture(&scene, camera, settings).unwrap().0
 }

@@ -26,7 +26,6 @@ use crate::reference::{Counts, Expected, Tolerance};
 use crate::renderer::{RenderOptions, Renderer, SplatCounts};
 use crate::scene::Scene;
 use crate::settings::Settings;
-use crate::splatting::Kernel;
 use crate::variant::{Outputs, Precision, Rasterizer};
 use crate::vk::Device;
 use case::{Case, View};
@@ -166,8 +165,8 @@ impl Bench<'_> {
         // Some cases show the backs of their discs: who culls those has nothing to show.
         let Settings { epsilon, shading, cull, .. } = view.settings;
         view.settings = Settings { epsilon, shading, cull, ..method.settings() };
-        let tolerance = tolerance(&method.splatting.kernel);
-        let expected = Expected::new(&view.surfels, &view.camera, view.size, &view.settings, &tolerance)?;
+        let expected =
+            Expected::new(&view.surfels, &view.camera, view.size, &view.settings, &Tolerance::default())?;
         // Invalid surfels are what a case is about, and told in its notes.
         let (scene, _) = Scene::upload_silently(&self.device, &view.surfels)?;
         let half = case.half && first;
@@ -223,15 +222,6 @@ impl Bench<'_> {
             true => Ok(renderer),
             false => Err(Error::Usage("the device cannot blend 32-bit floats".into())),
         }
-    }
-}
-
-/// Strict, but for Confetti's kernel: its rim is some twenty times as steep as a Gaussian's, and so is what a rounding of the pixel's place
-/// in it does to the weight.
-fn tolerance(kernel: &Kernel) -> Tolerance {
-    match kernel {
-        Kernel::Gaussian => Tolerance::default(),
-        Kernel::Confetti { .. } => Tolerance::float32(),
     }
 }
 

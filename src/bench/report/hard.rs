@@ -68,10 +68,7 @@ fn by_method(session: &Session) -> Markup {
     let methods = methods(session);
     html! {
         h3 { "By every method" }
-        p {
-            "The largest difference of colour where float32 can be right, and the pixels that are wrong there, if any. A kernel with a steep "
-            "rim, as Confetti's, is further off for the same rounding, and is held to as much as that allows."
-        }
+        p { "The largest difference of colour where float32 can be right, and the pixels that are wrong there, if any." }
         div.scroll { table {
             thead { tr { th scope="col" { "case" } @for method in &methods { th.number scope="col" { (method) } } } }
             tbody { @for sweep in &session.sweeps { tr {

@@ -4,6 +4,9 @@ use super::super::Projector;
 use super::Sample;
 use glam::{DMat2, DMat3, DVec2, DVec3};
 
+/// Squared sine of the angle to its axis below which a tube is seen from its end.
+const END_ON: f64 = 1e-4;
+
 /// A frame's camera, as pull–push sees it.
 pub struct Lens {
     perspective: bool,
@@ -44,8 +47,13 @@ impl Lens {
     }
 
     /// Step of the ray through a pixel position for one unit of distance.
-    fn step(&self, at: DVec2) -> DVec3 {
+    pub fn step(&self, at: DVec2) -> DVec3 {
         self.steps * DVec3::new(1.0, at.x, at.y)
+    }
+
+    /// Normal of the disc about a centre on the screen: a tube's faces the eye.
+    pub fn normal(&self, sample: &Sample, centre: DVec2) -> DVec3 {
+        if sample.tube { self.to_eye(centre) } else { sample.normal }
     }
 
     /// Squared distance of the pixel position `at` from a disc's centre, in its radii: the ellipse is the disc's image to first order
@@ -53,7 +61,7 @@ impl Lens {
     pub fn radii2(&self, sample: &Sample, centre: DVec2, at: DVec2, h: f64) -> f64 {
         let step = self.step(centre);
         let across = step.truncate();
-        let normal = sample.normal;
+        let normal = self.normal(sample, centre);
         // The projection of the normal along the ray.
         let lean = normal.truncate() - across * (normal.z * self.forward);
         let outer = |v: DVec2| DMat2::from_cols(v * v.x, v * v.y);
@@ -82,5 +90,32 @@ impl Lens {
         let met = if self.perspective && met.is_nan() || met <= 0.0 { f64::INFINITY } else { met };
         let reach = self.to_length(sample.radius, sample.depth);
         met.clamp(sample.depth - reach, sample.depth + reach)
+    }
+
+    /// Unit vector from the surface at a pixel position to the eye.
+    fn to_eye(&self, at: DVec2) -> DVec3 {
+        -self.step(at).normalize()
+    }
+
+    /// Where the ray through `at` meets a tube whose axis is seen at `centre`: the distance, no further from the axis's than the radius, and
+    /// the normal. Beyond its outline, those of the outline.
+    pub fn on_tube(&self, sample: &Sample, centre: DVec2, at: DVec2) -> (f64, DVec3) {
+        let (tangent, radius) = (sample.normal, self.to_length(sample.radius, sample.depth));
+        let to_eye = self.to_eye(at);
+        // From the axis to the ray, at the axis's distance.
+        let start = |at: DVec2| self.starts * DVec3::new(1.0, at.x, at.y) + sample.depth * self.step(at);
+        let across = |v: DVec3| v - v.dot(tangent) * tangent;
+        let [offset, eye] = [across(start(at) - start(centre)), across(to_eye)];
+        let slope = eye.length_squared();
+        // Along the axis it has no side: it is the ball about its end.
+        if slope < END_ON {
+            return (sample.depth - radius, to_eye);
+        }
+        let middle = -offset.dot(eye) / slope;
+        let beyond = (radius * radius - (offset + middle * eye).length_squared()) / slope;
+        let reached = middle + beyond.max(0.0).sqrt();
+        let normal = (offset + reached * eye).try_normalize().unwrap_or(to_eye);
+        let rise = -self.forward * reached * to_eye.z;
+        (sample.depth - rise.clamp(-radius, radius), normal)
     }
 }

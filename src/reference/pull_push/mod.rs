@@ -21,7 +21,7 @@ mod tests;
 
 use super::{Frame, Projector};
 use crate::error::Result;
-use crate::geometry::{Camera, Surfels};
+use crate::geometry::{Camera, Parts};
 use crate::pull_push::{PullPush, Rules};
 use crate::settings::Settings;
 use glam::{DVec2, DVec3};
@@ -43,8 +43,10 @@ pub struct Sample {
     pub displacement: DVec2,
     /// Of the disc seen face-on, px.
     pub radius: f64,
-    /// Unit, eye space.
+    /// Unit normal, eye space; of a tube, the tangent.
     pub normal: DVec3,
+    /// Whether it is of a tube: a disc that faces the eye, about a point of the axis.
+    pub tube: bool,
     /// Linear.
     pub colour: DVec3,
 }
@@ -67,6 +69,13 @@ pub struct Pyramid {
     pub pulled: Vec<Level>,
     /// Coarse to fine: holes filled, and hidden samples replaced.
     pub pushed: Vec<Level>,
+}
+
+impl Sample {
+    /// The normal, or the tangent, turned so that it points as that of `other` does: a tangent may as well be its opposite.
+    fn direction_as(&self, other: &Self) -> DVec3 {
+        if self.tube && self.normal.dot(other.normal) < 0.0 { -self.normal } else { self.normal }
+    }
 }
 
 impl Level {
@@ -117,8 +126,8 @@ impl Reconstruction {
     }
 
     /// Pass `project`: level 0 of the pulled pyramid, and what became of the surfels.
-    pub fn project(&self, surfels: &Surfels) -> Visible {
-        project::pass(self, surfels)
+    pub fn project<'a>(&self, parts: impl Into<Parts<'a>>) -> Visible {
+        project::pass(self, parts.into())
     }
 
     /// Pass `pull`: the level above.
@@ -164,16 +173,18 @@ impl Reconstruction {
     }
 }
 
-/// Renders `surfels` as `camera` sees them, `size` = width and height in px; fails as [`Projector::new`].
-pub fn render(
-    surfels: &Surfels,
+/// Renders `parts` as `camera` sees them, `size` = width and height in px; fails as [`Projector::new`] and [`Parts::check`].
+pub fn render<'a>(
+    parts: impl Into<Parts<'a>>,
     camera: &Camera,
     size: [u32; 2],
     settings: &Settings,
     pull_push: PullPush,
 ) -> Result<Frame> {
+    let parts = parts.into();
+    parts.check()?;
     let reconstruction = Reconstruction::new(camera, size, settings, pull_push)?;
-    let visible = reconstruction.project(surfels);
+    let visible = reconstruction.project(parts);
     let top = Reconstruction::top_level(&visible.level);
     let pyramid = reconstruction.pyramid(visible.level, top);
     Ok(Frame { counts: visible.counts, ..reconstruction.shade(&pyramid.pushed[0]) })

@@ -13,25 +13,26 @@ const LEAST_AXIS: f64 = 0.5;
 const RIM: f64 = 2.0;
 
 /// Squared distance of `at` from the centre of a disc's ellipse by parallel projection, in its radii.
-fn radii2(sample: &Sample, disc: DVec2, at: DVec2) -> f64 {
+fn radii2(lens: &Lens, sample: &Sample, disc: DVec2, at: DVec2) -> f64 {
     let e = at - disc;
-    let along = sample.normal.truncate().normalize_or(DVec2::X);
-    let minor = (sample.radius * sample.normal.z.abs()).max(LEAST_AXIS);
+    let normal = lens.normal(sample, disc);
+    let along = normal.truncate().normalize_or(DVec2::X);
+    let minor = (sample.radius * normal.z.abs()).max(LEAST_AXIS);
     let major = sample.radius.max(LEAST_AXIS);
     (e.dot(along) / minor).powi(2) + (e.perp_dot(along) / major).powi(2)
 }
 
 /// Fine to coarse.
-pub fn pull(_: &Lens, finer: &Level) -> Level {
+pub fn pull(lens: &Lens, finer: &Level) -> Level {
     let level = finer.level + 1;
     Level::new(level, finer.coarser_size(), |at| {
         let own = centre(level, at);
-        mean_of_front(own, &children(finer, at, |sample, disc| radii2(sample, disc, own) <= 1.0))
+        mean_of_front(own, &children(finer, at, |sample, disc| radii2(lens, sample, disc, own) <= 1.0))
     })
 }
 
 /// Coarse to fine: a pixel that is empty, or behind what the coarser one has, is made anew.
-pub fn push(_: &Lens, coarser: &Level, pulled: &Level) -> Level {
+pub fn push(lens: &Lens, coarser: &Level, pulled: &Level) -> Level {
     Level::new(pulled.level, pulled.size, |at| {
         let own = centre(pulled.level, at);
         let around = nearest_four(at);
@@ -39,18 +40,21 @@ pub fn push(_: &Lens, coarser: &Level, pulled: &Level) -> Level {
         let behind = |point: &Sample| coarser.at(around[0]).is_some_and(|surface| point.near > surface.far);
         match point {
             Some(point) if !behind(&point) => Some(point),
-            _ => blend(own, &around.map(|at| Some((coarser.at(at)?, coarser.centre(at))))),
+            _ => blend(lens, own, &around.map(|at| Some((coarser.at(at)?, coarser.centre(at))))),
         }
     })
 }
 
-fn blend(own: DVec2, coarser: &[Option<(Sample, DVec2)>]) -> Option<Sample> {
+/// Its kind is that of the greatest weight; how tangents and normals would mix is not said.
+fn blend(lens: &Lens, own: DVec2, coarser: &[Option<(Sample, DVec2)>]) -> Option<Sample> {
     let weighted = coarser.iter().flatten().filter_map(|(sample, centre)| {
         let disc = *centre + sample.displacement;
-        let radii2 = radii2(sample, disc, own);
+        let radii2 = radii2(lens, sample, disc, own);
         (radii2 <= 1.0).then(|| (sample, disc, (-RIM * radii2).exp()))
     });
-    let discs: Vec<_> = weighted.collect();
+    let mut discs: Vec<_> = weighted.collect();
+    let (first, ..) = *discs.iter().reduce(|a, b| if b.2 > a.2 { b } else { a })?;
+    discs.retain(|(sample, ..)| sample.tube == first.tube);
     let total: f64 = discs.iter().map(|(_, _, weight)| weight).sum();
     let mean = |of: &dyn Fn(&Sample) -> f64| discs.iter().map(|(s, _, w)| w * of(s)).sum::<f64>() / total;
     let mean3 =
@@ -61,7 +65,8 @@ fn blend(own: DVec2, coarser: &[Option<(Sample, DVec2)>]) -> Option<Sample> {
         depth: mean(&|sample| sample.depth),
         displacement: discs.iter().map(|(_, disc, w)| *w * (*disc - own)).sum::<DVec2>() / total,
         radius: mean(&|sample| sample.radius),
-        normal: mean3(&|sample| sample.normal).normalize_or_zero(),
+        normal: mean3(&|sample| sample.direction_as(first)).normalize_or_zero(),
+        tube: first.tube,
         colour: mean3(&|sample| sample.colour),
     })
 }

@@ -27,21 +27,23 @@ pub fn children(
     discs.filter(|(sample, disc)| covers(sample, *disc)).collect()
 }
 
-/// The mean of those discs that are one surface with the nearest, for the pixel with this centre.
+/// The mean of those discs that are one surface with the nearest, and as it is of a tube or of none, for the pixel with this centre.
 pub fn mean_of_front(own: DVec2, discs: &[(Sample, DVec2)]) -> Option<Sample> {
     let (front, _) = discs.iter().min_by(|a, b| a.0.near.total_cmp(&b.0.near))?;
-    let front: Vec<_> = discs.iter().filter(|(sample, _)| sample.near <= front.far).collect();
-    let count = front.len() as f64;
-    let mean = |of: &dyn Fn(&Sample) -> f64| front.iter().map(|(sample, _)| of(sample)).sum::<f64>() / count;
+    let one = |sample: &Sample| sample.near <= front.far && sample.tube == front.tube;
+    let discs: Vec<_> = discs.iter().filter(|(sample, _)| one(sample)).collect();
+    let count = discs.len() as f64;
+    let mean = |of: &dyn Fn(&Sample) -> f64| discs.iter().map(|(sample, _)| of(sample)).sum::<f64>() / count;
     let mean3 =
-        |of: &dyn Fn(&Sample) -> DVec3| front.iter().map(|(sample, _)| of(sample)).sum::<DVec3>() / count;
+        |of: &dyn Fn(&Sample) -> DVec3| discs.iter().map(|(sample, _)| of(sample)).sum::<DVec3>() / count;
     Some(Sample {
-        near: front.iter().map(|(sample, _)| sample.near).fold(f64::INFINITY, f64::min),
-        far: front.iter().map(|(sample, _)| sample.far).fold(0.0, f64::max),
+        near: discs.iter().map(|(sample, _)| sample.near).fold(f64::INFINITY, f64::min),
+        far: discs.iter().map(|(sample, _)| sample.far).fold(0.0, f64::max),
         depth: mean(&|sample| sample.depth),
-        displacement: front.iter().map(|(_, disc)| *disc - own).sum::<DVec2>() / count,
+        displacement: discs.iter().map(|(_, disc)| *disc - own).sum::<DVec2>() / count,
         radius: mean(&|sample| sample.radius),
-        normal: mean3(&|sample| sample.normal).normalize_or_zero(),
+        normal: mean3(&|sample| sample.direction_as(front)).normalize_or_zero(),
+        tube: front.tube,
         colour: mean3(&|sample| sample.colour),
     })
 }

@@ -37,9 +37,15 @@ pub fn pass(lens: &Lens, coarser: &Level, pulled: &Level) -> Level {
         let surface = blend(lens, own, &candidates, pulled.level == 0);
         match (pulled.at(at).filter(|_| shown), surface) {
             (Some(point), Some(surface)) if point.near > surface.far => Some(surface),
-            (Some(point), Some(surface)) if pulled.level == 0 && surface.near <= point.far => {
+            (Some(point), Some(surface))
+                if pulled.level == 0 && surface.near <= point.far && surface.tube == point.tube =>
+            {
                 let Sample { colour, normal, depth, .. } = surface;
-                Some(Sample { colour, normal, depth, ..point })
+                Some(match point.tube {
+                    // What is seen of a tube is told from its axis, whose depth is that of the disc's centre.
+                    true => Sample { near: point.near, far: point.far, ..surface },
+                    false => Sample { colour, normal, depth, ..point },
+                })
             }
             (Some(point), _) => Some(point),
             (None, surface) => surface,
@@ -58,22 +64,29 @@ fn neighbours([x, y]: [i64; 2]) -> [[i64; 2]; 9] {
     std::array::from_fn(|i| [x + i as i64 % 3 - 1, y + i as i64 / 3 - 1])
 }
 
-/// The weighted mean of the candidates that are one surface with the nearest, for the pixel with this centre.
+/// The weighted mean of the candidates that are one surface with the nearest, and as it is of a tube or of none, for the pixel with this centre.
 fn blend(lens: &Lens, own: DVec2, candidates: &[Candidate], finest: bool) -> Option<Sample> {
     let front = candidates.iter().map(|c| &c.sample).min_by(|a, b| a.near.total_cmp(&b.near))?;
-    let front: Vec<_> = candidates.iter().filter(|c| c.sample.near <= front.far).collect();
-    let total: f64 = front.iter().map(|c| c.weight).sum();
-    let mean = |of: &dyn Fn(&Candidate) -> f64| front.iter().map(|c| c.weight * of(c)).sum::<f64>() / total;
-    let mean3 =
-        |of: &dyn Fn(&Sample) -> DVec3| front.iter().map(|c| c.weight * of(&c.sample)).sum::<DVec3>() / total;
+    let one = |sample: &Sample| sample.near <= front.far && sample.tube == front.tube;
+    let surface: Vec<_> = candidates.iter().filter(|c| one(&c.sample)).collect();
+    let total: f64 = surface.iter().map(|c| c.weight).sum();
+    let mean = |of: &dyn Fn(&Candidate) -> f64| surface.iter().map(|c| c.weight * of(c)).sum::<f64>() / total;
+    let mean3 = |of: &dyn Fn(&Sample) -> DVec3| {
+        surface.iter().map(|c| c.weight * of(&c.sample)).sum::<DVec3>() / total
+    };
+    let depth = |c: &Candidate| match finest && !c.sample.tube {
+        true => lens.depth_at(&c.sample, c.disc, own),
+        false => c.sample.depth,
+    };
     Some(Sample {
         near: mean(&|c| c.sample.near),
         far: mean(&|c| c.sample.far),
-        // Discs carry the depths of their centres; a pixel of the picture shows that of its own.
-        depth: mean(&|c| if finest { lens.depth_at(&c.sample, c.disc, own) } else { c.sample.depth }),
-        displacement: front.iter().map(|c| c.weight * (c.disc - own)).sum::<DVec2>() / total,
+        // Discs carry the depths of their centres; a pixel of the picture shows that of its own. Tubes carry those of their axes.
+        depth: mean(&depth),
+        displacement: surface.iter().map(|c| c.weight * (c.disc - own)).sum::<DVec2>() / total,
         radius: mean(&|c| c.sample.radius),
-        normal: mean3(&|sample| sample.normal).normalize_or_zero(),
+        normal: mean3(&|sample| sample.direction_as(front)).normalize_or_zero(),
+        tube: front.tube,
         colour: mean3(&|sample| sample.colour),
     })
 }

@@ -1,6 +1,7 @@
 //! What single pixels of the pyramids have to be.
 
 use super::*;
+use crate::geometry::{Model, Primitives, Surfels};
 use crate::settings::{Cull, Shading};
 use glam::DVec3;
 
@@ -24,6 +25,7 @@ fn sample(near: f64, radius: f64) -> Sample {
         displacement: DVec2::ZERO,
         radius,
         normal: DVec3::NEG_Z,
+        tube: false,
         colour: DVec3::ONE,
     }
 }
@@ -136,4 +138,95 @@ fn a_hole_is_filled_and_a_hidden_point_replaced() {
 fn the_four_nearest_are_on_a_pixels_own_side() {
     assert_eq!(push::nearest_four([4, 7]), [[2, 3], [1, 3], [2, 4], [1, 4]]);
     assert_eq!(push::nearest_four([0, 0]), [[0, 0], [-1, 0], [0, -1], [-1, -1]]);
+}
+
+/// Vertices at eye-space positions with directions and radii; the camera stands at the origin.
+fn vertices(list: &[(DVec3, DVec3, f32)]) -> Primitives {
+    let Surfels { positions, normals, radii, .. } = discs(list);
+    Primitives { positions, directions: normals, radii, ..Default::default() }
+}
+
+/// Level 0, where lines and triangles are all there is.
+fn projected(rules: Rules, primitives: Primitives) -> Level {
+    frame(rules).project(&Model { primitives, ..Default::default() }).level
+}
+
+#[test]
+fn lines_have_no_gaps_and_no_more_than_a_pixel_a_column() {
+    let random = |i: u32| f64::from(i.wrapping_mul(2_654_435_761) >> 8) / f64::from(1 << 24) - 0.5;
+    for i in 0..200 {
+        let at = |k: u32| DVec3::new(random(8 * i + k), random(8 * i + k + 1), 1.5 + random(8 * i + k + 2));
+        let [from, to] = [at(0), at(3)];
+        // Every fourth begins behind the eye.
+        let from = if i % 4 == 0 { from - 1.6 * DVec3::Z } else { from };
+        let ends = [(from, DVec3::Z, 0.0), (to, DVec3::Z, 0.0)];
+        let level = projected(Rules::Robust, Primitives { ribbons: vec![[0, 1]], ..vertices(&ends) });
+        let known: Vec<[i64; 2]> =
+            (0..64 * 64).map(|k| [k % 64, k / 64]).filter(|at| level.at(*at).is_some()).collect();
+        let side = |axis: usize| {
+            let places = known.iter().map(|at| at[axis]);
+            (places.clone().min().unwrap_or(0), places.max().unwrap_or(-1))
+        };
+        let longest = (0..2).map(|axis| side(axis).1 - side(axis).0 + 1).max().unwrap() as usize;
+        assert_eq!(known.len(), longest, "{i}: {known:?}");
+        let next = |a: &[i64; 2]| known.iter().any(|b| a != b && (0..2).all(|k| (a[k] - b[k]).abs() <= 1));
+        assert!(known.len() < 2 || known.iter().all(next), "{i}: {known:?}");
+    }
+}
+
+#[test]
+fn triangles_of_a_square_hold_its_pixels_and_no_others() {
+    let corners = [(-0.21, -0.3), (0.4, -0.25), (0.33, 0.37), (-0.29, 0.2)];
+    let list = corners.map(|(x, y)| (DVec3::new(x, y, 1.0), DVec3::NEG_Z, 0.0));
+    let level =
+        projected(Rules::Robust, Primitives { triangles: vec![[0, 1, 2], [0, 2, 3]], ..vertices(&list) });
+    let inside = |at: DVec2| {
+        let corner = |i: usize| DVec2::new(corners[i % 4].0, corners[i % 4].1);
+        (0..4).all(|i| (corner(i + 1) - corner(i)).perp_dot(at - corner(i)) > 0.0)
+    };
+    let lens = frame(Rules::Robust).lens;
+    for at in (0..64 * 64).map(|k| [k % 64, k / 64]) {
+        let seen = lens.step(level.centre(at)).truncate();
+        assert_eq!(level.at(at).is_some(), inside(seen), "{at:?}");
+        assert!(level.at(at).is_none_or(|s| s.near == s.far && s.displacement == DVec2::ZERO), "{at:?}");
+    }
+}
+
+#[test]
+fn a_tube_is_round() {
+    let (axis, radius) = (DVec3::new(0.1, -0.05, 2.0), 0.2);
+    for tangent in [DVec3::X, DVec3::new(0.5, 1.0, 0.7)].map(DVec3::normalize) {
+        let ends = [-1.0, 1.0].map(|side| (axis + side * tangent, tangent, radius as f32));
+        let model =
+            Model { primitives: Primitives { tubes: vec![[0, 1]], ..vertices(&ends) }, ..Default::default() };
+        let settings = Settings { shading: Shading::Normal, ..Default::default() };
+        let pull_push = PullPush { rules: Rules::Robust };
+        let picture = render(&model, &camera(), [64, 64], &settings, pull_push).unwrap();
+        let lens = frame(Rules::Robust).lens;
+        let mut seen = 0;
+        for (i, [x, y]) in (0..64 * 64).map(|k| (k as usize, [k % 64, k / 64])) {
+            let step = lens.step(centre(0, [x, y]));
+            let across = |v: DVec3| v - v.dot(tangent) * tangent;
+            let (a, b) = (across(step), across(axis));
+            let root = a.dot(b).powi(2) - a.length_squared() * (b.length_squared() - radius * radius);
+            // Well inside the outline, and away from the ends.
+            if root < 0.002 {
+                continue;
+            }
+            let z = (a.dot(b) - root.sqrt()) / a.length_squared();
+            if (z * step - axis).dot(tangent).abs() > 0.6 {
+                continue;
+            }
+            let normal = across(z * step - axis) / radius;
+            let found = DVec3::from_array(picture.normal[i]);
+            assert!(
+                picture.covered[i] && (picture.depth[i] - z).abs() < 0.02,
+                "{i}: {} {z}",
+                picture.depth[i]
+            );
+            assert!(found.angle_between(normal) < 0.1, "{i}: {found} {normal}");
+            seen += 1;
+        }
+        assert!(seen > 100, "{seen}");
+    }
 }

@@ -7,7 +7,7 @@ mod kinds;
 mod passes;
 
 use super::*;
-use crate::geometry::{Clip, ClipLine, Clips, Colours, Ellipse};
+use crate::geometry::{Clip, ClipLine, Clips, Colours, Ellipse, Surfels};
 use crate::settings::{Alpha, Cull, Shading, Widen};
 use glam::{DMat2, DVec2, DVec3, DVec4};
 

@@ -27,6 +27,7 @@ pub use sphere::Sphere;
 pub use torus::Torus;
 pub use tube::Tube;
 
+use super::primitives::Middle;
 use glam::{DVec2, DVec3};
 
 /// How far beyond its border a trimmed shape is met, as a part of its size: shapes that share an edge leave no slit.
@@ -97,6 +98,11 @@ pub trait Shape: Send + Sync {
         let size = self.cells();
         let cells = (0..size[0] * size[1]).map(|i| [i % size[0], i / size[0]]);
         cells.map(|cell| integrate(cell, size, |uv| self.at(uv).element)).sum()
+    }
+
+    /// The point of its middle line with a parameter u, if it is about one.
+    fn middle(&self, _: f64) -> Option<Middle> {
+        None
     }
 
     /// Where `position` is in the space in which samples are spread evenly, and the ratio of a length at `position` to its length

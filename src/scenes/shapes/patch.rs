@@ -11,6 +11,7 @@
 //! against the surface's features.
 
 use super::{Ray, Sample, Shape, Spot};
+use crate::scenes::Middle;
 use crate::scenes::hierarchy::{Hierarchy, union};
 use glam::{DMat2, DVec2, DVec3};
 use rayon::prelude::*;
@@ -43,6 +44,11 @@ pub trait Parametric: Send + Sync {
 
     /// Mean lengths along u and v, which make (u, v) a chart for textures.
     fn extent(&self) -> DVec2;
+
+    /// The point of its middle line, if it is about one.
+    fn middle(&self, _: f64) -> Option<Middle> {
+        None
+    }
 }
 
 /// A parametrised surface, divided into cells.
@@ -230,6 +236,10 @@ impl<P: Parametric> Shape for Patch<P> {
 
     fn cells(&self) -> [usize; 2] {
         self.size
+    }
+
+    fn middle(&self, u: f64) -> Option<Middle> {
+        self.surface.middle(u)
     }
 }
 

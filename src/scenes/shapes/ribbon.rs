@@ -2,6 +2,7 @@
 
 use super::curve::Curve;
 use super::patch::{Jet, Parametric};
+use crate::scenes::Middle;
 use glam::{DVec2, DVec3};
 
 /// A ribbon ruled by segments at right angles to a curve. u goes along the curve, v across.
@@ -38,5 +39,11 @@ impl Parametric for Ribbon {
 
     fn extent(&self) -> DVec2 {
         DVec2::new(self.curve.length(), 2.0 * self.half)
+    }
+
+    fn middle(&self, u: f64) -> Option<Middle> {
+        let jet = self.jet(DVec2::new(u, 0.5));
+        let direction = jet.du.cross(jet.dv).normalize_or(DVec3::Y);
+        Some(Middle { position: jet.position, direction, radius: 0.5 * jet.dv.length() })
     }
 }

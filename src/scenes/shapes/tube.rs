@@ -2,6 +2,7 @@
 
 use super::curve::Curve;
 use super::patch::{Jet, Parametric};
+use crate::scenes::Middle;
 use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
 
@@ -35,5 +36,11 @@ impl Parametric for Tube {
 
     fn extent(&self) -> DVec2 {
         DVec2::new(self.curve.length(), TAU * 0.5 * (self.radii[0] + self.radii[1]))
+    }
+
+    fn middle(&self, u: f64) -> Option<Middle> {
+        let frame = self.curve.frame(u, self.reference);
+        let radius = self.radii[0] + u * (self.radii[1] - self.radii[0]);
+        Some(Middle { position: frame.point[0], direction: frame.tangent, radius })
     }
 }

@@ -1,0 +1,75 @@
+// The vertices of ribbons, tubes and triangles.
+
+#include "lib/double_float.glsl"
+#include "lib/pixel_row.glsl"
+#include "lib/srgb.glsl"
+
+layout(constant_id = 29) const uint VERTEX_COLOURS = 0; // how the scene holds their colours; see lib/sums.glsl
+
+layout(set = 2, binding = 0, std430) readonly buffer Vertices { float vertices[]; };            // position, direction, radius
+layout(set = 2, binding = 1, std430) readonly buffer Alongs { float alongs[]; };                // directions of the lines
+layout(set = 2, binding = 2, std430) readonly buffer VertexColours { uint vertex_colours[]; };
+layout(set = 2, binding = 3, std430) readonly buffer Elements { uint elements[]; };             // vertices of lines, or of triangles
+
+struct Vertex {
+    vec3 hi, lo;     // position relative to the eye, the sum of both
+    vec3 direction;  // unit: normal, or tangent of a tube
+    float radius;    // below 0 where it is invalid
+    float distance;
+    vec3 colour;     // linear
+};
+
+float distance_of(vec3 hi, vec3 lo) {
+    return dot_double(hi, lo, frame.forward_hi.xyz, frame.forward_lo.xyz).x;
+}
+
+vec3 vertex_colour(uint i) {
+    if (VERTEX_COLOURS == COLOURS_NONE) return frame.albedo.rgb;
+    if (VERTEX_COLOURS == COLOURS_LINEAR)
+        return uintBitsToFloat(uvec3(vertex_colours[3 * i], vertex_colours[3 * i + 1], vertex_colours[3 * i + 2]));
+    return srgb_to_linear(unpackUnorm4x8(vertex_colours[i]).rgb);
+}
+
+Vertex vertex_of(uint i) {
+    uint k = 7 * i;
+    Vertex v;
+    vec2 x = two_sum(vertices[k], -frame.eye_hi.x);
+    vec2 y = two_sum(vertices[k + 1], -frame.eye_hi.y);
+    vec2 z = two_sum(vertices[k + 2], -frame.eye_hi.z);
+    v.hi = vec3(x.x, y.x, z.x);
+    v.lo = vec3(x.y, y.y, z.y) - frame.eye_lo.xyz;
+    v.direction = vec3(vertices[k + 3], vertices[k + 4], vertices[k + 5]);
+    v.radius = vertices[k + 6];
+    v.distance = distance_of(v.hi, v.lo);
+    v.colour = SUM_COLOURS ? vertex_colour(i) : vec3(0.0);
+    return v;
+}
+
+// Position on the screen, px, of what is at this distance.
+vec2 screen_of(vec3 hi, vec3 lo) {
+    vec2 x = pixel_row(0, hi, lo), y = pixel_row(1, hi, lo);
+    return vec2(x.x, y.x) / (PERSPECTIVE ? pixel_row(2, hi, lo).x : 1.0);
+}
+
+bool is_beyond_far(float distance) {
+    return (PERSPECTIVE ? frame.near / distance : 1.0 - (distance - frame.near) * frame.key_slope) < frame.key_far;
+}
+
+// Below 0 if a plane with this normal at a position relative to the eye faces it.
+float facing_of(vec3 position, vec3 normal) {
+    return dot(PERSPECTIVE ? position : frame.forward_hi.xyz, normal);
+}
+
+// The sample of the pixel with the centre `own` that a disc about `screen` is. What is nearest of it is at `nearest`.
+Sample disc_sample(vec2 own, vec2 screen, float nearest, float distance, float radius, vec3 direction, vec3 colour, bool tube) {
+    Sample s;
+    s.near = nearest;
+    s.far = distance + (PAPER || tube ? 1.0 : 2.0) * radius;
+    s.depth = distance;
+    s.radius = focal_scale() * radius / (PERSPECTIVE ? distance : 1.0);
+    s.displacement = PAPER ? vec2(0.0) : screen - own;
+    s.normal = dot(direction, direction) > 0.0 ? normalize(direction) : vec3(0.0);
+    s.tube = tube;
+    s.colour = colour;
+    return s;
+}

@@ -1,0 +1,83 @@
+// A triangle as points: the pixels whose centres it holds, those on its edges with it (marroquim2008 §5.1). Edges are planes through the eye,
+// so that what is behind it needs no clipping.
+
+struct Triangle {
+    uint corners[3];
+    Vertex a, b, c;
+    vec2 anchor;         // a pixel's corner near it, px
+    vec2 screen[3];      // of the corners, from the anchor, px
+};
+
+vec2 from_anchor(Vertex v, vec2 anchor) {
+    vec2 x = pixel_row(0, v.hi, v.lo), y = pixel_row(1, v.hi, v.lo);
+    vec2 w = PERSPECTIVE ? pixel_row(2, v.hi, v.lo) : vec2(1.0, 0.0);
+    return vec2(add(x, scale(w, -anchor.x)).x, add(y, scale(w, -anchor.y)).x) / w.x;
+}
+
+bool triangle_of(uint i, out Triangle t) {
+    for (int k = 0; k < 3; k++) t.corners[k] = elements[3 * i + k];
+    t.a = vertex_of(t.corners[0]);
+    t.b = vertex_of(t.corners[1]);
+    t.c = vertex_of(t.corners[2]);
+    t.anchor = floor(clamp(screen_of(t.a.hi, t.a.lo), vec2(0.0), frame.viewport));
+    t.screen[0] = from_anchor(t.a, t.anchor);
+    t.screen[1] = from_anchor(t.b, t.anchor);
+    t.screen[2] = from_anchor(t.c, t.anchor);
+    return min(min(t.a.radius, t.b.radius), t.c.radius) >= 0.0 && max(max(t.a.distance, t.b.distance), t.c.distance) >= frame.near;
+}
+
+// First and last pixel of a box about a triangle: the picture where a part of it is in front of the near plane.
+ivec4 box_of(Triangle t) {
+    vec2 low = vec2(0.0), high = frame.viewport - 1.0;
+    if (min(min(t.a.distance, t.b.distance), t.c.distance) >= frame.near) {
+        vec2 a = t.screen[0], b = t.screen[1], c = t.screen[2];
+        low = max(t.anchor + floor(min(min(a, b), c)), low);
+        high = min(t.anchor + floor(max(max(a, b), c)), high);
+    }
+    return ivec4(low, high);
+}
+
+// How far the ray through what is `own` px from the anchor passes an edge. The same for both of its triangles, but for the sign.
+float pass_edge(uint i, Vertex a, vec2 on_screen_a, uint j, Vertex b, vec2 on_screen_b, vec2 own) {
+    bool turned = i > j;
+    Vertex p = b, q = a;
+    vec2 e = own - on_screen_b;
+    if (!turned) {
+        p = a;
+        q = b;
+        e = own - on_screen_a;
+    }
+    precise vec3 edge = (q.hi - p.hi) + (q.lo - p.lo);
+    // The plane of the edge and the eye holds p: what is left of the ray is its way from there.
+    precise vec3 from = PERSPECTIVE ? p.hi + p.lo : frame.forward_hi.xyz;
+    precise vec3 plane = from.yzx * edge.zxy - from.zxy * edge.yzx;
+    precise vec3 way = frame.ray_hi[0].xyz * e.x + frame.ray_hi[1].xyz * e.y;
+    precise float side = plane.x * way.x + plane.y * way.y + plane.z * way.z;
+    return turned ? -side : side;
+}
+
+// The weights of the corners, in space, for what is seen at a pixel's centre; false where that is not of the triangle.
+bool weights_at(Triangle t, ivec2 at, out vec3 weights, out float distance) {
+    vec2 own = vec2(at) - t.anchor + 0.5;
+    weights.x = pass_edge(t.corners[1], t.b, t.screen[1], t.corners[2], t.c, t.screen[2], own);
+    weights.y = pass_edge(t.corners[2], t.c, t.screen[2], t.corners[0], t.a, t.screen[0], own);
+    weights.z = pass_edge(t.corners[0], t.a, t.screen[0], t.corners[1], t.b, t.screen[1], own);
+    distance = 0.0;
+    float sum = weights.x + weights.y + weights.z;
+    if (!(all(greaterThanEqual(weights, vec3(0.0))) || all(lessThanEqual(weights, vec3(0.0)))) || sum == 0.0) return false;
+    weights /= sum;
+    distance = dot(weights, vec3(t.a.distance, t.b.distance, t.c.distance));
+    return distance >= frame.near && !is_beyond_far(distance);
+}
+
+Sample sample_at(Triangle t, ivec2 at, vec3 weights, float distance) {
+    vec3 plane = cross(t.b.hi - t.a.hi, t.c.hi - t.a.hi);
+    vec3 direction = weights.x * t.a.direction + weights.y * t.b.direction + weights.z * t.c.direction;
+    // Its front is where its normals point to; seen from behind, they are the opposite.
+    bool is_front = dot(plane, t.a.direction + t.b.direction + t.c.direction) >= 0.0;
+    if (facing_of(t.a.hi, is_front ? plane : -plane) > 0.0) direction = -direction;
+    float radius = dot(weights, vec3(t.a.radius, t.b.radius, t.c.radius));
+    vec3 colour = weights.x * t.a.colour + weights.y * t.b.colour + weights.z * t.c.colour;
+    vec2 own = vec2(at) + 0.5;
+    return disc_sample(own, own, distance, distance, radius, direction, colour, false);
+}

@@ -1,0 +1,38 @@
+//! A surfel is the one pixel that holds its centre.
+
+use super::super::super::{Culled, Surfel};
+use super::{Point, Reconstruction, Vertex};
+use crate::settings::Cull;
+use glam::DVec2;
+
+impl Reconstruction {
+    pub(super) fn point(&self, surfel: &Surfel) -> Result<Point, Culled> {
+        let projector = &self.projector;
+        let position = projector.view.transform_point3(surfel.position);
+        let normal = projector.view.transform_vector3(surfel.normal);
+        let [near, far] = projector.planes();
+        if !(near..=far).contains(&projector.distance(position)) {
+            return Err(Culled::Behind);
+        }
+        let towards = projector.facing(position, normal);
+        let back = projector.settings.cull == Cull::Back && !surfel.two_sided;
+        if towards >= 0.0 && back || towards == 0.0 {
+            return Err(Culled::Back);
+        }
+        let screen = self.pixel(position);
+        let corner = screen.floor();
+        if corner.cmplt(DVec2::ZERO).any() || corner.cmpge(projector.size).any() {
+            return Err(Culled::Outside);
+        }
+        let disc = Vertex {
+            position,
+            // Seen from behind, a disc is that of the opposite normal.
+            direction: if towards > 0.0 { -normal } else { normal },
+            // A disc of the ellipse's area.
+            radius: surfel.radius * surfel.aspect.sqrt(),
+            colour: surfel.colour.unwrap_or(self.albedo()),
+        };
+        let at = [corner.x as i64, corner.y as i64];
+        Ok((at, self.sample(disc, screen, at, false)))
+    }
+}

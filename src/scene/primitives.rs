@@ -1,0 +1,114 @@
+//! Ribbons, tubes and triangles on the GPU.
+
+use super::{ColourStream, PrimitiveKinds, colour_bytes};
+use crate::error::{Error, Result};
+use crate::geometry::{Parts, Primitives};
+use crate::vk::{Buffer, Device, upload};
+use std::sync::Arc;
+
+/// The bit of a segment's first vertex that tells a tube, as in `lib/line.glsl`.
+const TUBE: u32 = 1 << 31;
+
+/// Lines and triangles of a scene, as `lib/primitives.glsl` wants them.
+pub(crate) struct PrimitiveStreams {
+    /// Position, direction and radius of each vertex, seven floats; the radii of invalid ones are below 0.
+    pub vertices: Buffer,
+    /// Directions of the lines at the vertices, if there are lines.
+    pub alongs: Option<Buffer>,
+    pub colours: Option<Buffer>,
+    pub colour_stream: ColourStream,
+    pub lines: Option<Elements>,
+    pub triangles: Option<Elements>,
+}
+
+/// Segments, or triangles.
+pub(crate) struct Elements {
+    /// The vertices of each.
+    pub buffer: Buffer,
+    pub count: u32,
+    /// Number of the first one in the scene: they come after the surfels.
+    pub first: u32,
+}
+
+impl PrimitiveStreams {
+    /// The streams of `parts`, which were checked; `None` if there are no lines and triangles.
+    pub fn new(device: &Arc<Device>, parts: &Parts<'_>) -> Result<Option<Self>> {
+        let Some(primitives) = parts.primitives else { return Ok(None) };
+        let surfels = parts.surfels.len();
+        check_sizes(device, primitives, surfels)?;
+        let vertices: Vec<f32> = (0..primitives.len()).flat_map(|i| vertex(primitives, i)).collect();
+        let (colour_stream, colours) = colour_bytes(primitives.colours.as_ref());
+        let alongs =
+            || upload(device, "line directions", bytemuck::cast_slice(&primitives.line_directions()));
+        let segments: Vec<[u32; 2]> =
+            primitives.segments().map(|([a, b], tube)| [if tube { a | TUBE } else { a }, b]).collect();
+        let elements = |name, indices: &[u32], count: usize, first: usize| {
+            let buffer = || upload(device, name, bytemuck::cast_slice(indices));
+            let made = || Ok(Elements { buffer: buffer()?, count: count as u32, first: first as u32 });
+            (count > 0).then(made).transpose()
+        };
+        Ok(Some(Self {
+            vertices: upload(device, "vertices", bytemuck::cast_slice(&vertices))?,
+            alongs: (!segments.is_empty()).then(alongs).transpose()?,
+            colours: (colour_stream != ColourStream::None)
+                .then(|| upload(device, "vertex colours", colours))
+                .transpose()?,
+            colour_stream,
+            lines: elements("lines", segments.as_flattened(), segments.len(), surfels)?,
+            triangles: elements(
+                "triangles",
+                primitives.triangles.as_flattened(),
+                primitives.triangles.len(),
+                surfels + segments.len(),
+            )?,
+        }))
+    }
+
+    /// What there is.
+    pub fn kinds(&self) -> PrimitiveKinds {
+        PrimitiveKinds {
+            lines: self.lines.is_some(),
+            triangles: self.triangles.is_some(),
+            colours: self.colour_stream,
+        }
+    }
+
+    /// Memory of the streams, bytes.
+    pub fn bytes(&self) -> u64 {
+        let elements = [&self.lines, &self.triangles].map(|elements| elements.as_ref().map(|e| &e.buffer));
+        let optional = [self.alongs.as_ref(), self.colours.as_ref()].into_iter().chain(elements);
+        self.vertices.size() + optional.flatten().map(Buffer::size).sum::<u64>()
+    }
+}
+
+/// The floats of a vertex.
+fn vertex(primitives: &Primitives, i: usize) -> [f32; 7] {
+    if !primitives.is_valid(i) {
+        return [0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0];
+    }
+    let ([x, y, z], [u, v, w]) = (primitives.positions[i].to_array(), primitives.directions[i].to_array());
+    [x, y, z, u, v, w, primitives.radii[i]]
+}
+
+/// Refuses what shaders cannot number or see.
+fn check_sizes(device: &Device, primitives: &Primitives, surfels: usize) -> Result<()> {
+    let numbers = surfels as u64 + primitives.count() as u64;
+    if primitives.len() as u64 >= u64::from(TUBE) || numbers >= u64::from(u32::MAX) {
+        return Err(Error::Usage(format!(
+            "{} vertices of lines and triangles, and {numbers} of these and surfels: give fewer than 2³¹ and 2³² − 1",
+            primitives.len()
+        )));
+    }
+    let range = device.capabilities().max_storage_buffer_range;
+    let lines = primitives.count() - primitives.triangles.len();
+    let largest = (28 * primitives.len()).max(8 * lines).max(12 * primitives.triangles.len()) as u64;
+    let groups = u64::from(device.capabilities().max_workgroups) * 64;
+    let most = lines.max(primitives.triangles.len()) as u64;
+    match largest <= range && most <= groups {
+        true => Ok(()),
+        false => Err(Error::Usage(format!(
+            "lines and triangles take {largest} bytes a stream and {most} invocations; {} has buffers of {range} and {groups}: give fewer",
+            device.description().name
+        ))),
+    }
+}

@@ -1,0 +1,67 @@
+//! Scenes as lines and polygons: the pieces that may be drawn so, and surfels of the others.
+
+use super::query::Query;
+use super::surface::{Kind, Piece};
+use crate::geometry::{Colours, Primitives};
+use glam::{DVec2, DVec3, Vec3};
+
+/// A point of a middle line.
+#[derive(Clone, Copy, Debug)]
+pub struct Middle {
+    /// Where it is.
+    pub position: DVec3,
+    /// Unit normal of a ribbon, tangent of a tube.
+    pub direction: DVec3,
+    /// Half the width, or the radius.
+    pub radius: f64,
+}
+
+/// The lines and triangles of `pieces`. A tube's caps have no middle line: where it ends, it is round.
+pub fn primitives(query: &Query, pieces: &[Piece]) -> Primitives {
+    let steps = query.whole("segments") as usize;
+    let mut drawn = Primitives { colours: Some(Colours::Linear(Vec::new())), ..Default::default() };
+    for piece in pieces {
+        match piece.kind {
+            Kind::Surface => {}
+            Kind::Tube | Kind::Ribbon => line(&mut drawn, piece, steps),
+            Kind::Polygon => polygons(&mut drawn, piece, steps),
+        }
+    }
+    drawn
+}
+
+fn line(drawn: &mut Primitives, piece: &Piece, steps: usize) {
+    let first = drawn.positions.len() as u32;
+    for i in 0..=steps {
+        let u = i as f64 / steps as f64;
+        let Some(middle) = piece.shape.middle(u) else { return };
+        let spot = piece.shape.at(DVec2::new(u, 0.5)).spot;
+        vertex(drawn, middle, piece.texture.at(&spot));
+    }
+    let segments = (first..first + steps as u32).map(|i| [i, i + 1]);
+    match piece.kind {
+        Kind::Tube => drawn.tubes.extend(segments),
+        _ => drawn.ribbons.extend(segments),
+    }
+}
+
+fn polygons(drawn: &mut Primitives, piece: &Piece, steps: usize) {
+    let (first, side) = (drawn.positions.len() as u32, steps as u32 + 1);
+    for i in 0..side * side {
+        let uv = DVec2::new(f64::from(i % side), f64::from(i / side)) / steps as f64;
+        let spot = piece.shape.at(uv).spot;
+        let corner = Middle { position: spot.position, direction: spot.normal, radius: 0.0 };
+        vertex(drawn, corner, piece.texture.at(&spot));
+    }
+    let corners = (0..side * (side - 1)).filter(|i| i % side + 1 < side).map(|i| first + i);
+    drawn.triangles.extend(corners.flat_map(|a| [[a, a + 1, a + side], [a + 1, a + side + 1, a + side]]));
+}
+
+fn vertex(drawn: &mut Primitives, vertex: Middle, albedo: [f64; 3]) {
+    drawn.positions.push(vertex.position.as_vec3());
+    drawn.directions.push(Vec3::normalize(vertex.direction.as_vec3()));
+    drawn.radii.push(vertex.radius as f32);
+    if let Some(Colours::Linear(colours)) = &mut drawn.colours {
+        colours.push(albedo.map(|channel| channel as f32));
+    }
+}
