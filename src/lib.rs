@@ -8,7 +8,7 @@
 //!
 //! | module | |
 //! |---|---|
-//! | [`geometry`] | what a scene is made of: surfels, bounds, cameras; plain CPU data |
+//! | [`geometry`] | what a scene is made of: surfels, lines, triangles, bounds, cameras; plain CPU data |
 //! | [`io`] | PLY, PNG, EXR |
 //! | [`scenes`] | built-in scenes with exact ground truth |
 //! | [`settings`], [`splatting`] | what a frame is asked to be, and how surfels become pixels |

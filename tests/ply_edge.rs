@@ -74,6 +74,9 @@ fn summary(cloud: &Cloud, report: &Report) -> String {
     add(matches!(cloud.colours, Some(Colours::Linear(_))), "linear colours");
     add(report.faces.understood > 0, &format!("{} faces", report.faces.understood));
     add(report.faces.skipped > 0, &format!("{} faces skipped", report.faces.skipped));
+    add(report.lines.understood > 0, &format!("{} lines", report.lines.understood));
+    add(report.lines.skipped > 0, &format!("{} lines skipped", report.lines.skipped));
+    add(report.lines.sides > 0, &format!("{} edges of faces", report.lines.sides));
     add(cloud.view != View::Unknown, "view");
     add(report.gaussians, "Gaussians");
     add(report.trailing > 0, &format!("{} bytes trailing", report.trailing));

@@ -4,7 +4,7 @@ use super::args;
 use super::progress::say;
 use glam::DVec3;
 use rayon::prelude::*;
-use surfel::geometry::{Cloud, ColourMap, ColourScale, Quantity, Surfels, ValueRange};
+use surfel::geometry::{Cloud, ColourMap, ColourScale, Model, Quantity, ValueRange};
 use surfel::io::colour_bar::ColourBar;
 use surfel::{Error, Result};
 
@@ -82,18 +82,23 @@ impl Colouring {
         coloured
     }
 
-    /// Colours surfels by what they have themselves; `None` if the colours come from the files.
-    pub fn colour_surfels(&self, surfels: &mut Surfels, quiet: bool) -> Option<Coloured> {
+    /// Colours surfels and vertices by what they have themselves; `None` if the colours come from the files.
+    pub fn colour_model(&self, model: &mut Model, quiet: bool) -> Option<Coloured> {
+        let Model { surfels, primitives } = model;
         match self.source {
             Source::Property => None,
             Source::Normal => {
                 surfels.colour_by_normals();
+                primitives.colour_by_directions();
                 Some(Coloured { name: self.name.clone(), scale: None })
             }
             Source::Quantity(quantity) => {
-                let values = surfels.values(quantity);
-                let coloured = self.scale(values.iter().copied(), values.len() as u64, quiet);
-                surfels.colour_by_values(&values, &coloured.scale_or_grey(self.map));
+                let [of_surfels, of_lines] = [surfels.values(quantity), primitives.values(quantity)];
+                let both = of_surfels.iter().chain(&of_lines).copied();
+                let coloured = self.scale(both, (of_surfels.len() + of_lines.len()) as u64, quiet);
+                let scale = coloured.scale_or_grey(self.map);
+                surfels.colour_by_values(&of_surfels, &scale);
+                primitives.colour_by_values(&of_lines, &scale);
                 Some(coloured)
             }
         }

@@ -4,17 +4,17 @@ use super::args::Convert;
 use super::colouring::Colouring;
 use super::files::is_same;
 use super::inputs::{self, Wanted};
-use super::{progress, vulkan};
+use super::{progress, summary, vulkan};
 use std::path::Path;
 use std::sync::Arc;
 use surfel::capture::{Captured, capture};
-use surfel::geometry::Surfels;
+use surfel::geometry::{Model, Surfels};
 use surfel::io::{atomic, ply};
 use surfel::methods::object_ewa;
 use surfel::vk::Device;
 use surfel::{Error, Progress, Result};
 
-/// Writes the surfels of inputs to a PLY file. Where it is to be written is looked at before anything is read.
+/// Writes the model of inputs to a PLY file. Where it is to be written is looked at before anything is read.
 pub fn run(args: &Convert) -> Result<()> {
     let out = Path::new(&args.output);
     check_output(args, out)?;
@@ -23,19 +23,34 @@ pub fn run(args: &Convert) -> Result<()> {
     let mut loaded = inputs::load(&Wanted {
         names: &args.inputs,
         estimate: args.estimate(),
+        polygons: args.points.polygons,
+        lines: args.lines,
+        simplify: args.simplify_lines,
         voxel: args.voxel,
         colouring: Colouring::new(&args.colours, args.up)?,
         quiet: args.quiet,
         progress: &*bars,
     })?;
     if let Some(views) = args.weights {
-        capture_weights(&mut loaded.surfels, views, &Device::open(&device)?, &*bars, args.quiet)?;
+        refuse_lines(&loaded.model)?;
+        capture_weights(&mut loaded.model.surfels, views, &Device::open(&device)?, &*bars, args.quiet)?;
     }
-    ply::write(out, &loaded.surfels)?;
+    ply::write(out, &loaded.model)?;
     if !args.quiet {
-        progress::say(&format!("{}: {} surfels", out.display(), loaded.surfels.len()));
+        progress::say(&format!("{}: {}", out.display(), summary::parts(&loaded.model)));
     }
     Ok(())
+}
+
+/// Refuses weights of what is not splatted.
+fn refuse_lines(model: &Model) -> Result<()> {
+    match model.primitives.is_empty() {
+        true => Ok(()),
+        false => Err(Error::Usage(format!(
+            "--weights are for splats, and the inputs have {}: leave it out",
+            summary::parts(model)
+        ))),
+    }
 }
 
 /// Gives the surfels normalization weights.

@@ -2,14 +2,14 @@
 
 use super::args::Info;
 use super::files::print;
-use super::inputs::scene;
+use super::inputs::{scene, scene_cloud};
 use super::progress;
 use std::fmt::Write;
 use std::path::Path;
 use surfel::geometry::estimate::{Estimate, Estimated, spacing};
-use surfel::geometry::{Cloud, Colours, Surfels, View};
-use surfel::io::ply::{self, Dropped, Element, Faces, Format, Inspected, Loaded, ReadOptions, Report};
-use surfel::{Error, Result, scenes};
+use surfel::geometry::{Cloud, Colours, Model, Parts, View};
+use surfel::io::ply::{self, Dropped, Element, Faces, Format, Inspected, Lines, Loaded, ReadOptions, Report};
+use surfel::{Error, Result};
 
 /// How many skipped names are told; the header has told all of them.
 const MOST_NAMES: usize = 8;
@@ -21,25 +21,26 @@ pub fn run(args: &Info) -> Result<()> {
     }
     let path = Path::new(&args.input);
     let bars = progress::bars(false);
-    let Inspected { format, elements, loaded } = ply::inspect(path, &ReadOptions::default(), &*bars)?;
+    let options = ReadOptions { triangles: args.points.polygons, ..Default::default() };
+    let Inspected { format, elements, loaded } = ply::inspect(path, &options, &*bars)?;
     print(&header(path, format, &elements))?;
     let Loaded { cloud, report } = loaded?;
     print(&(properties(&report) + &frame(&report, &cloud)))?;
-    let surfels = cloud.into_surfels(&args.points.estimate(), &*bars);
-    let (surfels, estimated) = surfels.map_err(|cause| Error::input(path.display().to_string(), cause))?;
+    let model = cloud.into_model(args.points.polygons, &args.points.estimate(), &*bars);
+    let (model, estimated) = model.map_err(|cause| Error::input(path.display().to_string(), cause))?;
     drop(bars);
-    let text = describe(&surfels, report.points) + &sources(&estimated);
+    let text = describe(&model, report.points) + &sources(&estimated);
     print(&(text + &dropped(report.dropped, &estimated) + &trailing(&report)))
 }
 
 /// What a scene is under these options.
 fn scene_text(name: &str, how: &Estimate) -> Result<String> {
-    let cloud = Cloud::from(scenes::open(name)?);
+    let cloud = scene_cloud(name)?;
     let points = cloud.len() as u64;
-    let surfels = cloud.into_surfels(how, &());
-    let (surfels, estimated) = surfels.map_err(|cause| Error::input(name, cause))?;
+    let model = cloud.into_model(true, how, &());
+    let (model, estimated) = model.map_err(|cause| Error::input(name, cause))?;
     let dropped = dropped(Dropped::default(), &estimated);
-    Ok(format!("{name}: built-in scene\n{}{}{dropped}", describe(&surfels, points), sources(&estimated)))
+    Ok(format!("{name}: built-in scene\n{}{}{dropped}", describe(&model, points), sources(&estimated)))
 }
 
 /// What a file declares.
@@ -80,26 +81,41 @@ fn properties(report: &Report) -> String {
     )
 }
 
-fn describe(surfels: &Surfels, points: u64) -> String {
+fn describe(model: &Model, points: u64) -> String {
+    let Model { surfels, primitives } = model;
     let mut text = format!("points: {points}\nsurfels: {}\n", surfels.len());
-    if let Some(bounds) = surfels.bounds() {
+    if !primitives.is_empty() {
+        let (ribbons, tubes) = (primitives.ribbons.len(), primitives.tubes.len());
+        let (triangles, vertices) = (primitives.triangles.len(), primitives.len());
+        let _ = writeln!(text, "ribbons: {ribbons}\ntubes: {tubes}\ndrawn triangles: {triangles}");
+        let _ = writeln!(text, "vertices of these: {vertices}, {}", range(&primitives.radii));
+    }
+    if let Some(bounds) = Parts::from(model).bounds() {
         let _ = writeln!(text, "bounds: {} to {}", bounds.min, bounds.max);
     }
     if let Some(spacing) = spacing(&surfels.positions) {
         let _ = writeln!(text, "spacing: {spacing}, the median distance to the nearest point");
     }
-    let mut radii = surfels.radii.clone();
-    radii.sort_unstable_by(f32::total_cmp);
-    if let (Some(min), Some(max)) = (radii.first(), radii.last()) {
-        let _ = writeln!(text, "radius: {min} to {max}, median {}", radii[radii.len() / 2]);
+    if !surfels.is_empty() {
+        let _ = writeln!(text, "{}", range(&surfels.radii));
     }
-    let colours = match &surfels.colours {
+    let colours = match surfels.colours.as_ref().or(primitives.colours.as_ref()) {
         None => "none",
         Some(Colours::Srgb8(_)) => "sRGB, 8 bits",
         Some(Colours::Linear(_)) => "linear, float",
     };
     let _ = writeln!(text, "colours: {colours}");
     text
+}
+
+/// Least, greatest and median radius; empty if there are none.
+fn range(radii: &[f32]) -> String {
+    let mut radii = radii.to_vec();
+    radii.sort_unstable_by(f32::total_cmp);
+    match (radii.first(), radii.last()) {
+        (Some(min), Some(max)) => format!("radius: {min} to {max}, median {}", radii[radii.len() / 2]),
+        _ => String::new(),
+    }
 }
 
 /// What positions are relative to, from where they were seen, and how the points are connected.
@@ -123,6 +139,10 @@ fn frame(report: &Report, cloud: &Cloud) -> String {
     let Faces { understood, skipped } = report.faces;
     if understood + skipped > 0 {
         let _ = writeln!(text, "faces: {understood} understood, {skipped} skipped");
+    }
+    let Lines { understood, skipped, sides } = report.lines;
+    if understood + skipped + sides > 0 {
+        let _ = writeln!(text, "lines: {understood} understood, {skipped} skipped, {sides} sides of faces");
     }
     if !cloud.triangles.is_empty() {
         let _ = writeln!(text, "triangles: {}", cloud.triangles.len());
@@ -148,7 +168,14 @@ fn sources(estimated: &Estimated) -> String {
         (estimated.radii_from_neighbours, "from neighbours"),
         (0, ""),
     ]);
-    format!("normals: {normals}\nradii: {radii}\n")
+    let lines = list([
+        (estimated.line_radii_given, "given"),
+        (estimated.line_radii_from_lines, "from others of the line"),
+        (estimated.line_radii_from_extent, "from the lines' extent"),
+        (0, ""),
+    ]);
+    let lines = if lines.is_empty() { lines } else { format!("radii of lines: {lines}\n") };
+    format!("normals: {normals}\nradii: {radii}\n{lines}")
 }
 
 fn dropped(Dropped { position, transparent }: Dropped, estimated: &Estimated) -> String {

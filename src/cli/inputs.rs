@@ -1,4 +1,4 @@
-//! Inputs to surfels.
+//! Inputs to a model.
 
 use super::colouring::{Coloured, Colouring};
 use super::progress::say;
@@ -6,8 +6,8 @@ use super::summary;
 use std::ffi::OsString;
 use std::path::Path;
 use surfel::geometry::estimate::{Estimate, Estimated};
-use surfel::geometry::{Cloud, Surfels};
-use surfel::io::ply::{self, Dropped, Faces, Loaded, ReadOptions, Report};
+use surfel::geometry::{Cloud, Lined, Model, ToLines};
+use surfel::io::ply::{self, Dropped, Faces, Lines, Loaded, ReadOptions, Report};
 use surfel::{Error, Progress, Result, Settings, scenes};
 
 /// What is wanted of which inputs.
@@ -16,6 +16,12 @@ pub struct Wanted<'a> {
     pub names: &'a [OsString],
     /// How what they lack is estimated.
     pub estimate: Estimate,
+    /// Whether faces are drawn as triangles, lines or not.
+    pub polygons: bool,
+    /// How faces become lines; they stay faces if not at all.
+    pub lines: Option<ToLines>,
+    /// By how much lines may be off that are simplified.
+    pub simplify: Option<f64>,
     /// The side of the voxels that keep one point each.
     pub voxel: Option<f64>,
     /// What the points are coloured by, if not by their own colours.
@@ -28,8 +34,8 @@ pub struct Wanted<'a> {
 
 /// What the inputs together hold.
 pub struct Inputs {
-    /// One scene, in Morton order.
-    pub surfels: Surfels,
+    /// One scene; its surfels are in Morton order.
+    pub model: Model,
     /// Points of all inputs, dropped ones included.
     pub read: u64,
     /// Points that are no surfels.
@@ -44,9 +50,11 @@ pub struct Inputs {
 struct Part {
     name: String,
     cloud: Cloud,
+    /// Whether its faces are drawn, whatever is wanted of files.
+    drawn: bool,
 }
 
-/// Reads every input; several become one set of surfels.
+/// Reads every input; several become one model.
 pub fn load(wanted: &Wanted<'_>) -> Result<Inputs> {
     refuse_scenes(wanted)?;
     let (mut parts, mut read, mut dropped) = (Vec::new(), 0, Dropped::default());
@@ -67,10 +75,10 @@ pub fn load(wanted: &Wanted<'_>) -> Result<Inputs> {
             wanted.quiet,
         )
     });
-    let (surfels, estimated) = merge(parts, wanted)?;
-    let mut inputs = Inputs { surfels, read, dropped, estimated, coloured };
+    let (model, estimated) = merge(parts, wanted)?;
+    let mut inputs = Inputs { model, read, dropped, estimated, coloured };
     if let (Some(colouring), None) = (&wanted.colouring, &inputs.coloured) {
-        inputs.coloured = colouring.colour_surfels(&mut inputs.surfels, wanted.quiet);
+        inputs.coloured = colouring.colour_model(&mut inputs.model, wanted.quiet);
     }
     Ok(inputs)
 }
@@ -89,16 +97,16 @@ fn refuse_scenes(wanted: &Wanted<'_>) -> Result<()> {
 /// What is in an input, its number of points, and how many of them were dropped.
 fn load_one(name: &OsString, wanted: &Wanted<'_>) -> Result<(Part, u64, Dropped)> {
     if let Some(name) = scene(name) {
-        let cloud = Cloud::from(scenes::open(name)?);
+        let cloud = scene_cloud(name)?;
         let count = cloud.len() as u64;
-        return Ok((Part { name: name.into(), cloud }, count, Dropped::default()));
+        return Ok((Part { name: name.into(), cloud, drawn: true }, count, Dropped::default()));
     }
     let property = wanted.colouring.as_ref().and_then(Colouring::property);
-    let options = ReadOptions { scalar: property.map(str::to_owned), ..Default::default() };
+    let options = ReadOptions { scalar: property.map(str::to_owned), triangles: draws_faces(wanted) };
     let Loaded { cloud, report } = ply::read(Path::new(name), &options, wanted.progress)?;
     let name = Path::new(name).display().to_string();
     warn(&name, &report);
-    Ok((Part { name, cloud }, report.points, report.dropped))
+    Ok((Part { name, cloud, drawn: false }, report.points, report.dropped))
 }
 
 /// Says what of a file is left out, and what may be damage.
@@ -129,6 +137,13 @@ fn warn(name: &str, report: &Report) {
             skipped + understood
         );
     }
+    let Lines { understood, skipped, .. } = report.lines;
+    if skipped > 0 {
+        log::warn!(
+            "{name}: {skipped} of {} segments of lines have no two ends that exist, at two places, and are left out",
+            skipped + understood
+        );
+    }
     if report.trailing > 0 {
         log::warn!("{name}: {} bytes after the last element mean nothing and are left out", report.trailing);
     }
@@ -140,6 +155,7 @@ fn thin(parts: Vec<Part>, voxel: f64, quiet: bool) -> Result<Part> {
         [one] => one.name.clone(),
         several => format!("{} inputs", several.len()),
     };
+    let drawn = parts.iter().any(|part| part.drawn);
     let clouds = parts.into_iter().map(|part| part.cloud).collect();
     let all = Cloud::merge(clouds, Settings::default().lighting.albedo)?;
     let before = all.len();
@@ -147,33 +163,70 @@ fn thin(parts: Vec<Part>, voxel: f64, quiet: bool) -> Result<Part> {
     if !quiet {
         say(&format!("{name}: {before} points thinned to {}", cloud.len()));
     }
-    Ok(Part { name, cloud })
+    Ok(Part { name, cloud, drawn })
 }
 
-/// One set of surfels of all parts, each of which is estimated by itself.
-fn merge(parts: Vec<Part>, wanted: &Wanted<'_>) -> Result<(Surfels, Estimated)> {
+/// One model of all parts, each of which is estimated by itself.
+fn merge(parts: Vec<Part>, wanted: &Wanted<'_>) -> Result<(Model, Estimated)> {
     let several = parts.len() > 1;
     let (mut all, mut total) = (Vec::new(), Estimated::default());
-    for Part { name, cloud } in parts {
-        let (surfels, estimated) = estimate(&name, cloud, wanted)?;
-        all.push(surfels);
+    for part in parts {
+        let (model, estimated) = estimate(part, wanted)?;
+        all.push(model);
         total = total + estimated;
     }
-    let mut surfels = Surfels::merge(all, Settings::default().lighting.albedo)?;
+    let mut model = Model::merge(all, Settings::default().lighting.albedo)?;
+    if let Some(tolerance) = wanted.simplify {
+        let (before, fewer) = (model.primitives.segments().count(), model.primitives.simplify(tolerance));
+        if !wanted.quiet {
+            say(&format!("{before} segments of lines simplified to {}", before as u64 - fewer));
+        }
+    }
     // One input is sorted already.
     if several {
-        surfels.sort_morton();
+        model.surfels.sort_morton();
     }
-    Ok((surfels, total))
+    Ok((model, total))
 }
 
-fn estimate(name: &str, cloud: Cloud, wanted: &Wanted<'_>) -> Result<(Surfels, Estimated)> {
-    let made = cloud.into_surfels(&wanted.estimate, wanted.progress);
-    let (surfels, estimated) = made.map_err(|cause| Error::input(name, cause))?;
+fn estimate(part: Part, wanted: &Wanted<'_>) -> Result<(Model, Estimated)> {
+    let Part { name, cloud, drawn } = part;
+    let cloud = match &wanted.lines {
+        Some(how) => to_lines(&name, &cloud, how, wanted.quiet)?,
+        None => cloud,
+    };
+    let made = cloud.into_model(drawn || draws_faces(wanted), &wanted.estimate, wanted.progress);
+    let (model, estimated) = made.map_err(|cause| Error::input(name.as_str(), cause))?;
     if let (false, Some(text)) = (wanted.quiet, summary::estimated(&estimated)) {
         say(&format!("{name}: {text}"));
     }
-    Ok((surfels, estimated))
+    Ok((model, estimated))
+}
+
+/// The points of a built-in scene, and its lines and triangles if it wants some.
+pub fn scene_cloud(name: &str) -> Result<Cloud> {
+    let Model { surfels, primitives } = scenes::model(name)?;
+    let parts = [Cloud::from(surfels), Cloud::from(primitives)].into_iter().filter(|part| !part.is_empty());
+    Cloud::merge(parts.collect(), Settings::default().lighting.albedo)
+}
+
+/// Whether faces are drawn, unless they become lines.
+fn draws_faces(wanted: &Wanted<'_>) -> bool {
+    wanted.polygons || wanted.lines.is_some()
+}
+
+/// The lines of a part's faces.
+fn to_lines(name: &str, cloud: &Cloud, how: &ToLines, quiet: bool) -> Result<Cloud> {
+    let (cloud, lined) = cloud.to_lines(how).map_err(|cause| Error::input(name, cause))?;
+    let Lined { triangles, leaves: [of_leaves, ribbons], branches: [of_branches, tubes], vertices } = lined;
+    if !quiet {
+        say(&format!(
+            "{name}: of {triangles} triangles {of_leaves} are leaves and became {ribbons} segments of ribbons, {of_branches} are branches \
+             and became {tubes} segments of tubes; of {} vertices {} are left",
+            vertices[0], vertices[1]
+        ));
+    }
+    Ok(cloud)
 }
 
 /// The scene that an input names; `None` if it is a file.

@@ -20,8 +20,7 @@ pub fn render(task: &Task<'_>) -> Result<Outcome> {
     let mut frame = None;
     for _ in 0..task.frames {
         let start = Instant::now();
-        frame =
-            Some(reference::render(task.surfels, &task.camera, task.size, &task.settings, task.progress)?);
+        frame = Some(reference::render(task.scene, &task.camera, task.size, &task.settings, task.progress)?);
         times.add(start.elapsed(), &[]);
     }
     let picture = frame.as_ref().map(reference::Frame::to_picture).unwrap_or_default();

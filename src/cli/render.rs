@@ -4,19 +4,22 @@ use super::args::Render;
 use super::colouring::{Coloured, Colouring};
 use super::inputs::{Inputs, Wanted};
 use super::report::{Gpu, HalfError, Report};
-use super::{camera, files, inputs, progress, reference, vulkan};
+use super::{camera, files, inputs, progress, reference, summary, vulkan};
 use std::path::Path;
 use surfel::bench::Times;
-use surfel::geometry::{Camera, Surfels};
+use surfel::geometry::{Camera, Model, Parts};
 use surfel::io::colour_bar::ColourBar;
 use surfel::io::image::{Encoded, Output, write};
+use surfel::methods::{Method, pull_push};
 use surfel::settings::Shading;
 use surfel::{Error, Outputs, Picture, Progress, Result, Settings, SplatCounts};
 
 /// What is to be rendered, wherever that happens.
 pub struct Task<'a> {
     /// The scene.
-    pub surfels: &'a Surfels,
+    pub scene: &'a Model,
+    /// By which method, before anything was changed of it.
+    pub method: Method,
     /// Seen from here.
     pub camera: Camera,
     /// Like this.
@@ -48,8 +51,7 @@ pub struct Outcome {
 pub fn run(args: &Render) -> Result<()> {
     let out = Output::parse(&args.output);
     check_outputs(args, &out)?;
-    let settings = args.settings();
-    settings.check()?;
+    args.settings(&args.method.unwrap_or(Method::ALL[0])).check()?;
     let device = vulkan::options(&args.place.device)?;
     let file = camera::read(&args.camera)?;
     let colouring = Colouring::new(&args.colours, camera::up(&args.camera, file))?;
@@ -58,15 +60,22 @@ pub fn run(args: &Render) -> Result<()> {
     let loaded = inputs::load(&Wanted {
         names: &args.inputs,
         estimate: args.points.estimate(),
+        polygons: args.points.polygons,
+        lines: None,
+        simplify: None,
         voxel: None,
         colouring,
         quiet: args.quiet,
         progress: &*bars,
     })?;
-    let bounds = loaded.surfels.bounds().ok_or_else(|| Error::Usage("the inputs hold no points".into()))?;
+    let (method, scene) = (method(args.method, &loaded.model)?, &loaded.model);
+    let settings = args.settings(&method);
+    settings.check()?;
+    let bounds = Parts::from(scene).bounds();
+    let bounds = bounds.ok_or_else(|| Error::Usage("the inputs hold nothing that can be drawn".into()))?;
     let camera = camera::make(&args.camera, file, &bounds, args.size)?;
-    let (surfels, size, frames) = (&loaded.surfels, args.size, args.frames);
-    let task = Task { surfels, camera, settings, size, layers: args.outputs(), frames, progress: &*bars };
+    let (layers, size, frames, progress) = (args.outputs(), args.size, args.frames, &*bars);
+    let task = Task { scene, method, camera, settings, size, layers, frames, progress };
     let mut outcome = match args.place.reference {
         true => reference::render(&task)?,
         false => vulkan::render(&task, &device, args.place.half, args.json.is_some() || args.times)?,
@@ -81,6 +90,21 @@ pub fn run(args: &Render) -> Result<()> {
     }
     tell(args, &loaded, &outcome);
     Ok(())
+}
+
+/// The method that was asked for, or the one that is taken for such a scene.
+fn method(asked: Option<Method>, model: &Model) -> Result<Method> {
+    let splats = model.primitives.is_empty();
+    match asked {
+        Some(method) if !splats && method.pull_push.is_none() => Err(Error::Usage(format!(
+            "--method {} draws points alone, and the inputs have {}: leave it out, or give --method {}",
+            method.name,
+            summary::parts(model),
+            pull_push::METHOD.name
+        ))),
+        Some(method) => Ok(method),
+        None => Ok(if splats { Method::ALL[0] } else { pull_push::METHOD }),
+    }
 }
 
 /// Writes the picture, with a colour bar in it if there is one.
@@ -101,7 +125,7 @@ pub fn keep_layers(picture: &mut Picture, layers: Outputs) {
 fn check_colours(args: &Render, colouring: Option<&Colouring>, out: &Output) -> Result<()> {
     let Some(colouring) = colouring else { return Ok(()) };
     let refuse = |text: &str| Err(Error::Usage(text.into()));
-    if !matches!(args.settings().shading, Shading::Lit | Shading::Colour) {
+    if !matches!(args.look.shading.into(), Shading::Lit | Shading::Colour) {
         return refuse("--color-by shows under --shading lit or color alone: choose one of them");
     }
     match args.color_bar {
@@ -129,10 +153,10 @@ fn tell(args: &Render, loaded: &Inputs, outcome: &Outcome) {
         progress::say(&format!("16-bit sums: linear colour is off by {largest:.1e} at most, {rms:.1e} RMS"));
     }
     if !args.quiet {
-        let ([width, height], surfels) = (args.size, loaded.surfels.len());
+        let ([width, height], parts) = (args.size, summary::parts(&loaded.model));
         let drawn = outcome.counts.map(|counts| format!(", {} drawn", counts.drawn)).unwrap_or_default();
         let out = Path::new(&args.output).display();
-        progress::say(&format!("{out}: {width}x{height}, {surfels} surfels{drawn}"));
+        progress::say(&format!("{out}: {width}x{height}, {parts}{drawn}"));
     }
 }
 

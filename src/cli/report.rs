@@ -58,7 +58,7 @@ impl Report {
         put("version", json!(env!("CARGO_PKG_VERSION")));
         put("inputs", args.inputs.iter().map(names).collect());
         put("output", json!(names(&args.output)));
-        put("method", json!(args.method.name));
+        put("method", json!(task.method.name));
         put("reference", json!(args.place.reference));
         put("size", json!(task.size));
         put("frames", json!(task.frames));

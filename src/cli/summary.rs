@@ -1,6 +1,25 @@
-//! Counts of what was estimated, told.
+//! Counts of what there is and of what was estimated, told.
 
+use surfel::geometry::Model;
 use surfel::geometry::estimate::Estimated;
+
+/// What a model is made of: `5 surfels, 2 ribbons`.
+pub fn parts(Model { surfels, primitives }: &Model) -> String {
+    let others = [
+        (&primitives.ribbons.len(), "ribbons"),
+        (&primitives.tubes.len(), "tubes"),
+        (&primitives.triangles.len(), "triangles"),
+    ];
+    let others: Vec<_> = others
+        .iter()
+        .filter(|(count, _)| **count > 0)
+        .map(|(count, what)| format!("{count} {what}"))
+        .collect();
+    match (surfels.len(), others.is_empty()) {
+        (0, false) => others.join(", "),
+        (count, _) => [vec![format!("{count} surfels")], others].concat().join(", "),
+    }
+}
 
 /// What was estimated and what was dropped for it; `None` if nothing was.
 pub fn estimated(counts: &Estimated) -> Option<String> {
@@ -9,12 +28,18 @@ pub fn estimated(counts: &Estimated) -> Option<String> {
     let two_sided = Some(counts.two_sided).filter(|&count| count > 0 && normals.is_some());
     let outliers = Some(counts.outliers).filter(|&count| count > 0);
     let clipped = Some(counts.clipped).filter(|&count| count > 0);
+    let along = Some(counts.line_radii_from_lines).filter(|&count| count > 0);
+    let thin = Some(counts.line_radii_from_extent).filter(|&count| count > 0);
     let parts = [
         normals.map(|text| format!("normals of {text}")),
         radii.map(|text| format!("radii of {text}")),
         two_sided.map(|count| format!("{count} two-sided")),
         outliers.map(|count| format!("{count} outliers left out")),
         clipped.map(|count| format!("{count} clipped at sharp edges")),
+        along.map(|count| format!("radii of {count} vertices of lines from others of their line")),
+        thin.map(|count| {
+            format!("radii of {count} vertices of lines from the lines' extent: --line-radius gives another")
+        }),
     ];
     let parts: Vec<_> = parts.into_iter().flatten().collect();
     (!parts.is_empty()).then(|| parts.join("; "))
@@ -47,6 +72,10 @@ mod tests {
         };
         let line = "normals of 34834 points from faces, 1113 from neighbours; radii of 35947 points from neighbours; 210 two-sided";
         assert_eq!(estimated(&mixed).as_deref(), Some(line));
+        let lines = Estimated { line_radii_from_lines: 2, line_radii_from_extent: 4, ..given };
+        let line = "radii of 2 vertices of lines from others of their line; radii of 4 vertices of lines from the lines' extent: \
+                    --line-radius gives another";
+        assert_eq!(estimated(&lines).as_deref(), Some(line));
         let dropped = Estimated { radii_from_faces: 3, outliers: 1, clipped: 7, ..given };
         let line = "radii of 3 points from faces; 1 outliers left out; 7 clipped at sharp edges";
         assert_eq!(estimated(&dropped).as_deref(), Some(line));

@@ -7,7 +7,7 @@ use super::render::keep_layers;
 use super::{camera, progress};
 use std::path::Path;
 use surfel::geometry::estimate::Estimate;
-use surfel::geometry::{Bounds, Camera};
+use surfel::geometry::{Bounds, Camera, Parts};
 use surfel::io::image::{Output, write};
 use surfel::io::ply::{self, ReadOptions};
 use surfel::truth::{self, Cache, Mesh, Scene};
@@ -46,12 +46,15 @@ fn bounds(args: &Truth, progress: &dyn Progress) -> Result<Bounds> {
     let loaded = inputs::load(&Wanted {
         names: std::slice::from_ref(&args.input),
         estimate: Estimate::default(),
+        polygons: false,
+        lines: None,
+        simplify: None,
         voxel: None,
         colouring: None,
         quiet: true,
         progress,
     })?;
-    loaded.surfels.bounds().ok_or_else(|| Error::Usage("the input holds no points".into()))
+    Parts::from(&loaded.model).bounds().ok_or_else(|| Error::Usage("the input holds no points".into()))
 }
 
 fn read(path: &Path, progress: &dyn Progress) -> Result<Mesh> {

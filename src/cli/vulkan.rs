@@ -36,7 +36,7 @@ pub fn render(task: &Task<'_>, options: &DeviceOptions, half: bool, measure: boo
         ..Default::default()
     };
     let mut renderer = Renderer::new(&device, options)?;
-    let scene = Scene::upload(&device, task.surfels)?;
+    let scene = Scene::upload(&device, task.scene)?;
     let mut times = Times::default();
     // The first frame is the one that is read back, so that the times of the others are of rendering alone.
     let start = Instant::now();

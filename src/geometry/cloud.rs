@@ -29,6 +29,12 @@ pub struct Cloud {
     pub scalar: Option<Vec<f64>>,
     /// Triangles between the points, counter-clockwise from outside; each index is one of a point.
     pub triangles: Vec<[u32; 3]>,
+    /// Segments of ribbons between points: see [`Primitives`](super::Primitives). Ends are different points at different places.
+    pub ribbons: Vec<[u32; 2]>,
+    /// Segments of tubes between points, likewise.
+    pub tubes: Vec<[u32; 2]>,
+    /// Unit tangents of tubes; 0 where a point has none.
+    pub tangents: Option<Vec<Vec3>>,
     /// From where the points were seen.
     pub view: View,
 }
@@ -52,26 +58,66 @@ impl Cloud {
     }
 
     /// So many of its points, spread evenly: every so-manyth along the Z-curve of their bounds, in that order; all if there are no more.
-    /// Radii, ellipses, clips, weights and triangles, which belonged to closer points, are dropped: larger discs reach edges that those
-    /// did not.
+    /// Radii, ellipses, clips, weights, triangles and lines, which belonged to closer points, are dropped: larger discs reach edges that
+    /// those did not.
     pub fn some(&self, count: usize) -> Self {
         let order = order(&self.positions);
         let (count, all) = (count.min(order.len()), order.len() as u64);
-        let kept: Vec<usize> =
-            (0..count as u64).map(|i| order[(i * all / count as u64) as usize] as usize).collect();
-        fn of<T: Copy>(values: &[T], kept: &[usize]) -> Vec<T> {
-            kept.iter().map(|&i| values[i]).collect()
+        let kept: Vec<u32> = (0..count as u64).map(|i| order[(i * all / count as u64) as usize]).collect();
+        Self { radii: None, ellipses: None, clips: None, weights: None, tangents: None, ..self.points(&kept) }
+    }
+
+    /// Whether there are ribbons or tubes.
+    pub fn has_lines(&self) -> bool {
+        !(self.ribbons.is_empty() && self.tubes.is_empty())
+    }
+
+    /// The points that lines use, with the lines between them, and the others; if `faces`, points and triangles of faces are with the
+    /// lines. Order stays.
+    pub(super) fn split(self, faces: bool) -> [Self; 2] {
+        let mut used = vec![false; self.len()];
+        let triangles = if faces { &self.triangles[..] } else { &[] };
+        let lines = self.ribbons.iter().chain(&self.tubes).flatten();
+        lines.chain(triangles.iter().flatten()).for_each(|&i| used[i as usize] = true);
+        let which = |is: bool| (0..self.len() as u32).filter(|&i| used[i as usize] == is).collect::<Vec<_>>();
+        [which(true), which(false)].map(|kept| self.part(&kept))
+    }
+
+    /// The points `kept`, in that order, and the triangles and lines of which they are all corners.
+    pub(super) fn part(&self, kept: &[u32]) -> Self {
+        let mut place = vec![None; self.len()];
+        kept.iter().zip(0..).for_each(|(&from, to)| place[from as usize] = Some(to));
+        Self {
+            triangles: moved(&self.triangles, &place),
+            ribbons: moved(&self.ribbons, &place),
+            tubes: moved(&self.tubes, &place),
+            ..self.points(kept)
+        }
+    }
+
+    /// The points `kept`, in that order, and nothing that connects them.
+    fn points(&self, kept: &[u32]) -> Self {
+        fn of<T: Copy>(values: &Option<Vec<T>>, kept: &[u32]) -> Option<Vec<T>> {
+            values.as_ref().map(|values| kept.iter().map(|&i| values[i as usize]).collect())
         }
         Self {
             origin: self.origin,
-            positions: of(&self.positions, &kept),
-            normals: self.normals.as_ref().map(|normals| of(normals, &kept)),
-            two_sided: self.two_sided.as_ref().map(|two_sided| of(two_sided, &kept)),
-            colours: self.colours.as_ref().map(|colours| match colours {
-                Colours::Srgb8(codes) => Colours::Srgb8(of(codes, &kept)),
-                Colours::Linear(linear) => Colours::Linear(of(linear, &kept)),
+            positions: kept.iter().map(|&i| self.positions[i as usize]).collect(),
+            normals: of(&self.normals, kept),
+            radii: of(&self.radii, kept),
+            ellipses: of(&self.ellipses, kept),
+            two_sided: of(&self.two_sided, kept),
+            clips: self.clips.clone().map(|mut clips| {
+                clips.permute(kept);
+                clips
             }),
-            scalar: self.scalar.as_ref().map(|scalar| of(scalar, &kept)),
+            weights: self.weights.clone().map(|mut weights| {
+                weights.permute(kept);
+                weights
+            }),
+            colours: self.colours.as_ref().map(|colours| colours.gather(kept)),
+            scalar: of(&self.scalar, kept),
+            tangents: of(&self.tangents, kept),
             view: self.view,
             ..Default::default()
         }
@@ -81,6 +127,12 @@ impl Cloud {
     pub fn is_empty(&self) -> bool {
         self.positions.is_empty()
     }
+}
+
+/// What has all of its corners at new places.
+fn moved<const N: usize>(all: &[[u32; N]], place: &[Option<u32>]) -> Vec<[u32; N]> {
+    let whole = |corners: &&[u32; N]| corners.iter().all(|&i| place[i as usize].is_some());
+    all.iter().filter(whole).map(|corners| corners.map(|i| place[i as usize].unwrap_or_default())).collect()
 }
 
 impl From<Surfels> for Cloud {
@@ -106,6 +158,27 @@ mod tests {
     use super::*;
 
     #[test]
+    fn lines_and_points_are_told_apart() {
+        let cloud = Cloud {
+            positions: (0..6u8).map(|i| Vec3::splat(i.into())).collect(),
+            radii: Some((0..6u8).map(f32::from).collect()),
+            ribbons: vec![[5, 1]],
+            tubes: vec![[1, 3]],
+            triangles: vec![[0, 1, 5], [1, 3, 5]],
+            ..Default::default()
+        };
+        let [lines, points] = cloud.clone().split(false);
+        assert!(!points.has_lines() && points.triangles.is_empty());
+        assert_eq!((lines.radii, points.radii), (Some(vec![1.0, 3.0, 5.0]), Some(vec![0.0, 2.0, 4.0])));
+        assert_eq!(
+            (lines.ribbons, lines.tubes, lines.triangles),
+            (vec![[2, 0]], vec![[0, 1]], vec![[0, 1, 2]])
+        );
+        let [drawn, points] = cloud.split(true);
+        assert_eq!((drawn.triangles, points.radii), (vec![[0, 1, 3], [1, 2, 3]], Some(vec![2.0, 4.0])));
+    }
+
+    #[test]
     fn some_of_the_points_are_spread_evenly_and_stay_whole() {
         let xs: Vec<f32> = (0..1000u32).map(|i| (i * 7919 % 1000) as f32).collect();
         let cloud = Cloud {
@@ -113,6 +186,7 @@ mod tests {
             colours: Some(Colours::Linear(xs.iter().map(|&x| [x; 3]).collect())),
             radii: Some(vec![1.0; 1000]),
             triangles: vec![[0, 1, 2]],
+            tubes: vec![[3, 4]],
             ..Default::default()
         };
         let some = cloud.some(100);
@@ -122,7 +196,7 @@ mod tests {
         );
         let Some(Colours::Linear(colours)) = &some.colours else { panic!("no colours") };
         assert!(colours.iter().zip(&some.positions).all(|(colour, p)| colour[0] == p.x));
-        assert_eq!((some.radii, some.triangles.len()), (None, 0));
+        assert_eq!((some.radii.is_none(), some.triangles.len(), some.has_lines()), (true, 0, false));
         assert_eq!((cloud.some(5000).len(), cloud.some(1000).triangles.len()), (1000, 0));
         assert!(cloud.some(0).is_empty());
     }

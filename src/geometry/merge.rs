@@ -1,6 +1,6 @@
 //! Several sets of points as one.
 
-use super::{Bounds, Clips, Cloud, Colours, Ellipse, Surfels, View, Weights};
+use super::{Bounds, Clips, Cloud, Colours, Ellipse, Model, Primitives, Surfels, View, Weights};
 use crate::error::{Error, Result};
 use crate::io::srgb;
 use glam::{DVec3, Vec3};
@@ -17,23 +17,90 @@ impl Surfels {
     /// # Errors
     /// [`Error::Usage`] if there are more than 2³² − 1 surfels.
     pub fn merge(parts: Vec<Self>, albedo: [f32; 3]) -> Result<Self> {
-        let merged = Cloud::merge(parts.into_iter().map(Cloud::from).collect(), albedo)?;
-        Ok(Self {
-            origin: merged.origin,
-            positions: merged.positions,
-            normals: merged.normals.unwrap_or_default(),
-            radii: merged.radii.unwrap_or_default(),
-            ellipses: merged.ellipses,
-            two_sided: merged.two_sided,
-            clips: merged.clips,
-            weights: merged.weights,
-            colours: merged.colours,
-        })
+        Ok(Self::whole(Cloud::merge(parts.into_iter().map(Cloud::from).collect(), albedo)?))
+    }
+
+    /// The points of a cloud that lacks nothing.
+    fn whole(cloud: Cloud) -> Self {
+        Self {
+            origin: cloud.origin,
+            positions: cloud.positions,
+            normals: cloud.normals.unwrap_or_default(),
+            radii: cloud.radii.unwrap_or_default(),
+            ellipses: cloud.ellipses,
+            two_sided: cloud.two_sided,
+            clips: cloud.clips,
+            weights: cloud.weights,
+            colours: cloud.colours,
+        }
+    }
+}
+
+impl Model {
+    /// All parts, one after the other, about one origin: [`Surfels::merge`] of their surfels, and likewise of their lines and triangles.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if there are more than 2³² − 1 surfels or vertices.
+    pub fn merge(mut parts: Vec<Self>, albedo: [f32; 3]) -> Result<Self> {
+        if parts.len() == 1 {
+            return Ok(parts.remove(0));
+        }
+        let split = |model: Self| [Cloud::from(model.surfels), Cloud::from(model.primitives)];
+        let mut clouds: Vec<_> = parts.into_iter().map(split).collect();
+        let origin = common_origin(clouds.iter().flatten().filter(|cloud| !cloud.is_empty()));
+        clouds.iter_mut().flatten().for_each(|cloud| cloud.move_origin(origin));
+        let (surfels, primitives): (Vec<_>, Vec<_>) =
+            clouds.into_iter().map(|[surfels, primitives]| (surfels, primitives)).unzip();
+        let join = |parts: Vec<Cloud>| {
+            let some = parts.into_iter().filter(|part| !part.is_empty()).collect();
+            Ok::<_, Error>(Cloud { origin, ..Cloud::merge(some, albedo)? })
+        };
+        Ok(Self { surfels: Surfels::whole(join(surfels)?), primitives: Primitives::whole(join(primitives)?) })
+    }
+}
+
+impl From<Primitives> for Cloud {
+    /// The vertices as points: directions as normals, and those of tubes as tangents, too.
+    fn from(primitives: Primitives) -> Self {
+        let mut tangents = (!primitives.tubes.is_empty()).then(|| vec![Vec3::ZERO; primitives.len()]);
+        let tangents_of = |tangents: &mut Vec<Vec3>| {
+            let vertices = primitives.tubes.iter().flatten().map(|&i| i as usize);
+            vertices.for_each(|i| tangents[i] = primitives.directions[i]);
+        };
+        tangents.iter_mut().for_each(tangents_of);
+        Self {
+            tangents,
+            origin: primitives.origin,
+            positions: primitives.positions,
+            normals: Some(primitives.directions),
+            radii: Some(primitives.radii),
+            colours: primitives.colours,
+            ribbons: primitives.ribbons,
+            tubes: primitives.tubes,
+            triangles: primitives.triangles,
+            ..Default::default()
+        }
+    }
+}
+
+impl Primitives {
+    /// What such a cloud was made of.
+    pub(super) fn whole(cloud: Cloud) -> Self {
+        Self {
+            origin: cloud.origin,
+            positions: cloud.positions,
+            directions: cloud.normals.unwrap_or_default(),
+            radii: cloud.radii.unwrap_or_default(),
+            colours: cloud.colours,
+            ribbons: cloud.ribbons,
+            tubes: cloud.tubes,
+            triangles: cloud.triangles,
+        }
     }
 }
 
 impl Cloud {
-    /// All points of `parts`, one part after the other, as [`Surfels::merge`] has it. Where only some parts have normals, radii or
+    /// All points of `parts`, one part after the other, as [`Surfels::merge`] has it. Where only some parts have normals, radii, tangents or
     /// scalars, the others' points have none; where the parts were not all seen from the same place, it is not known.
     ///
     /// # Errors
@@ -46,13 +113,16 @@ impl Cloud {
         if parts.len() == 1 {
             return Ok(parts.remove(0));
         }
-        let origin = common_origin(&parts);
+        let origin = common_origin(parts.iter());
         parts.iter_mut().for_each(|part| part.move_origin(origin));
         let parts = &mut parts[..];
         Ok(Self {
             origin,
             view: common_view(parts),
-            triangles: join_triangles(parts),
+            triangles: join_corners(parts, |part| &mut part.triangles),
+            ribbons: join_corners(parts, |part| &mut part.ribbons),
+            tubes: join_corners(parts, |part| &mut part.tubes),
+            tangents: join(parts, |part| part.tangents.take(), |part| vec![Vec3::ZERO; part.len()]),
             colours: join_colours(parts, albedo),
             // Before the normals, which circles are made of.
             ellipses: join(parts, |part| part.ellipses.take(), circles),
@@ -80,12 +150,13 @@ impl Cloud {
     }
 }
 
-fn common_origin(parts: &[Cloud]) -> DVec3 {
-    let first = parts.first().map_or(DVec3::ZERO, |part| part.origin);
-    if parts.iter().all(|part| part.origin == first) {
+fn common_origin<'a>(mut parts: impl Iterator<Item = &'a Cloud> + Clone) -> DVec3 {
+    let all = parts.clone();
+    let first = all.clone().next().map_or(DVec3::ZERO, |part| part.origin);
+    if parts.all(|part| part.origin == first) {
         return first;
     }
-    let boxes = parts.iter().filter_map(|part| Some(Bounds::of(&part.positions)?.translated(part.origin)));
+    let boxes = all.filter_map(|part| Some(Bounds::of(&part.positions)?.translated(part.origin)));
     let union = |a: Bounds, b: Bounds| Bounds::of_box(a.min.min(b.min), a.max.max(b.max));
     boxes.reduce(union).map_or(first, |bounds| bounds.centre())
 }
@@ -124,11 +195,14 @@ fn join_clips(parts: &mut [Cloud]) -> Option<Clips> {
     Clips::join(parts.iter_mut().map(|part| (part.clips.take(), part.len())))
 }
 
-fn join_triangles(parts: &mut [Cloud]) -> Vec<[u32; 3]> {
+fn join_corners<const N: usize>(
+    parts: &mut [Cloud],
+    of: impl Fn(&mut Cloud) -> &mut Vec<[u32; N]>,
+) -> Vec<[u32; N]> {
     let mut all = Vec::new();
     let mut first = 0;
     for part in parts {
-        all.extend(std::mem::take(&mut part.triangles).iter().map(|corners| corners.map(|i| first + i)));
+        all.extend(std::mem::take(of(part)).iter().map(|corners| corners.map(|i| first + i)));
         // Fits: the number of all points does.
         first += part.len() as u32;
     }
@@ -213,13 +287,22 @@ mod tests {
             origin,
             positions: vec![Vec3::ZERO; 3],
             triangles: vec![[0, 1, 2]],
+            ribbons: vec![[0, 1]],
+            tubes: vec![[1, 2]],
             view: View::From((to - origin).as_vec3()),
             ..Default::default()
         };
-        let full = Cloud { normals: Some(vec![Vec3::Z; 3]), scalar: Some(vec![7.0; 3]), ..bare(to) };
+        let full = Cloud {
+            normals: Some(vec![Vec3::Z; 3]),
+            scalar: Some(vec![7.0; 3]),
+            tangents: Some(vec![Vec3::X; 3]),
+            ..bare(to)
+        };
         let merged = Cloud::merge(vec![bare(from), full.clone()], [0.5; 3]).unwrap();
         assert_eq!((merged.len(), merged.radii.clone(), merged.colours.clone()), (6, None, None));
         assert_eq!(merged.triangles, [[0, 1, 2], [3, 4, 5]]);
+        assert_eq!((merged.ribbons, merged.tubes), (vec![[0, 1], [3, 4]], vec![[1, 2], [4, 5]]));
+        assert_eq!(merged.tangents.unwrap()[3..], [Vec3::X; 3]);
         let normals = merged.normals.unwrap();
         assert_eq!((normals[0], normals[5]), (Vec3::ZERO, Vec3::Z));
         let scalar = merged.scalar.unwrap();
@@ -227,6 +310,38 @@ mod tests {
         assert_eq!(merged.view, View::From((to - merged.origin).as_vec3()), "both were seen from there");
         let elsewhere = Cloud { view: View::Towards(Vec3::Z), ..full };
         assert_eq!(Cloud::merge(vec![bare(from), elsewhere], [0.5; 3]).unwrap().view, View::Unknown);
+    }
+
+    #[test]
+    fn models_meet_about_one_origin_and_keep_their_lines() {
+        let lines = |x: f64| Primitives {
+            origin: DVec3::new(x, 0.0, 0.0),
+            positions: vec![Vec3::ZERO, Vec3::Y],
+            directions: vec![Vec3::Z; 2],
+            radii: vec![0.5, 0.25],
+            ribbons: vec![[0, 1]],
+            tubes: vec![[1, 0]],
+            triangles: vec![[0, 1, 0]],
+            ..Default::default()
+        };
+        let points = part(1e7, 1.0, None);
+        let empty = || Surfels { origin: DVec3::splat(-9e9), ..Default::default() };
+        let parts = vec![
+            Model { surfels: empty(), primitives: lines(1e7) },
+            Model::from(points.clone()),
+            Model { surfels: empty(), primitives: lines(1e7 + 2.0) },
+        ];
+        let Model { surfels, primitives } = Model::merge(parts, [0.5; 3]).unwrap();
+        assert_eq!((surfels.origin, surfels.len(), surfels.radii), (primitives.origin, 1, points.radii));
+        assert_eq!((primitives.ribbons, primitives.tubes), (vec![[0, 1], [2, 3]], vec![[1, 0], [3, 2]]));
+        assert_eq!(
+            (primitives.triangles, primitives.radii),
+            (vec![[0, 1, 0], [2, 3, 2]], vec![0.5, 0.25, 0.5, 0.25])
+        );
+        let world = |p: Vec3| p.as_dvec3() + primitives.origin;
+        assert!((world(primitives.positions[3]) - DVec3::new(1e7 + 2.0, 1.0, 0.0)).length() < 1e-6);
+        let none = Model::merge(vec![], [0.5; 3]).unwrap();
+        assert!(none.surfels.is_empty() && none.primitives.is_empty());
     }
 
     #[test]

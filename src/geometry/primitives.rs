@@ -1,6 +1,6 @@
 //! Lines and triangles: what pull–push draws beside surfels.
 
-use super::{Bounds, Colours, Surfels};
+use super::{Bounds, Cloud, Colours, Surfels};
 use crate::error::{Error, Result};
 use glam::{DVec3, Vec3};
 
@@ -103,6 +103,11 @@ impl Primitives {
     /// Number of vertices.
     pub fn len(&self) -> usize {
         self.positions.len()
+    }
+
+    /// The vertices `kept`, in that order, and what has no others.
+    pub(super) fn part(&self, kept: &[u32]) -> Self {
+        Self::whole(Cloud::from(self.clone()).part(kept))
     }
 
     /// Number of segments and triangles.

@@ -1,7 +1,7 @@
 //! Numbers that surfels have by themselves, to be shown as colours.
 
-use super::{ColourScale, Colours, Surfels};
-use glam::DVec3;
+use super::{ColourScale, Colours, Primitives, Surfels};
+use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
 /// A number a surfel.
@@ -16,13 +16,7 @@ pub enum Quantity {
 impl Surfels {
     /// A quantity of every surfel.
     pub fn values(&self, quantity: Quantity) -> Vec<f64> {
-        match quantity {
-            Quantity::Along(axis) => {
-                let start = self.origin.dot(axis);
-                self.positions.par_iter().map(|p| p.as_dvec3().dot(axis) + start).collect()
-            }
-            Quantity::Radius => self.radii.par_iter().map(|&radius| f64::from(radius)).collect(),
-        }
+        values(self.origin, &self.positions, &self.radii, quantity)
     }
 
     /// Colours every surfel by its number among `values`, one a surfel.
@@ -32,17 +26,47 @@ impl Surfels {
 
     /// Colours every surfel by its normal: red, green and blue are x, y and z from −1 to 1.
     pub fn colour_by_normals(&mut self) {
-        let code = |coordinate: f32| ((0.5 * coordinate + 0.5).clamp(0.0, 1.0) * 255.0).round() as u8;
-        let colour = |n: &glam::Vec3| [code(n.x), code(n.y), code(n.z), 0];
-        self.colours = Some(Colours::Srgb8(self.normals.par_iter().map(colour).collect()));
+        self.colours = Some(colours_of(&self.normals));
     }
+}
+
+impl Primitives {
+    /// A quantity of every vertex.
+    pub fn values(&self, quantity: Quantity) -> Vec<f64> {
+        values(self.origin, &self.positions, &self.radii, quantity)
+    }
+
+    /// Colours every vertex by its number among `values`, one a vertex.
+    pub fn colour_by_values(&mut self, values: &[f64], scale: &ColourScale) {
+        self.colours = Some(scale.colours(values.par_iter().copied()));
+    }
+
+    /// Colours every vertex by its direction, a normal or of tubes a tangent, as [`Surfels::colour_by_normals`] does.
+    pub fn colour_by_directions(&mut self) {
+        self.colours = Some(colours_of(&self.directions));
+    }
+}
+
+fn values(origin: DVec3, positions: &[Vec3], radii: &[f32], quantity: Quantity) -> Vec<f64> {
+    match quantity {
+        Quantity::Along(axis) => {
+            let start = origin.dot(axis);
+            positions.par_iter().map(|p| p.as_dvec3().dot(axis) + start).collect()
+        }
+        Quantity::Radius => radii.par_iter().map(|&radius| f64::from(radius)).collect(),
+    }
+}
+
+fn colours_of(directions: &[Vec3]) -> Colours {
+    let code = |coordinate: f32| ((0.5 * coordinate + 0.5).clamp(0.0, 1.0) * 255.0).round() as u8;
+    let colour = |n: &Vec3| [code(n.x), code(n.y), code(n.z), 0];
+    Colours::Srgb8(directions.par_iter().map(colour).collect())
 }
 
 #[cfg(test)]
 mod tests {
     use super::super::{ColourMap, ValueRange};
     use super::*;
-    use glam::Vec3;
 
     #[test]
     fn quantities_are_those_of_the_world() {

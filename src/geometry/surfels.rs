@@ -119,6 +119,14 @@ impl Surfels {
 }
 
 impl Colours {
+    /// Those at `indices`, in that order.
+    pub(crate) fn gather(&self, indices: &[u32]) -> Self {
+        match self {
+            Self::Srgb8(codes) => Self::Srgb8(indices.iter().map(|&i| codes[i as usize]).collect()),
+            Self::Linear(linear) => Self::Linear(indices.iter().map(|&i| linear[i as usize]).collect()),
+        }
+    }
+
     /// Number of colours.
     pub fn len(&self) -> usize {
         match self {

@@ -17,11 +17,22 @@ impl Cloud {
     ///
     /// The point is the mean of its voxel's: of positions, of normals (0 where they cancel), of colours in linear light, of the finite
     /// scalars. Radii, ellipses, clips, weights and triangles, which belonged to the closer points, are dropped: a normal that only the triangles told is
-    /// then estimated from the points. The result does not depend on the number of threads.
+    /// then estimated from the points. The points of lines and, if there are lines, of triangles stay as they are, before the others. The
+    /// result does not depend on the number of threads.
     ///
     /// # Errors
     /// The cause, if `voxel` is not above 0 or too small for the coordinates.
     pub fn thin(self, voxel: f64) -> Result<Self, String> {
+        if !self.has_lines() {
+            return self.thin_points(voxel);
+        }
+        let [lines, points] = self.split(true);
+        let parts = vec![lines, points.thin_points(voxel)?];
+        // Both have colours, or neither has.
+        Self::merge(parts, [0.0; 3]).map_err(|error| error.to_string())
+    }
+
+    fn thin_points(self, voxel: f64) -> Result<Self, String> {
         let keys = self.keys(voxel)?;
         let groups: Vec<&[Key]> = keys.chunk_by(|a, b| a.0 == b.0).collect();
         Ok(Self {
@@ -125,6 +136,7 @@ fn mean_colours(colours: &Colours, groups: &[&[Key]]) -> Colours {
 
 #[cfg(test)]
 mod tests {
+    use super::super::View;
     use super::*;
 
     fn cloud(xs: &[f32]) -> Cloud {
@@ -151,6 +163,22 @@ mod tests {
         let scalar = thinned.scalar.unwrap();
         assert!(scalar[0].is_nan() && scalar[1] == 1.0 && scalar[2].is_nan(), "{scalar:?}");
         assert_eq!((thinned.radii, thinned.triangles.len()), (None, 0));
+    }
+
+    #[test]
+    fn lines_are_not_thinned() {
+        let thinned = Cloud {
+            radii: Some(vec![1.0, 2.0, 3.0, 4.0]),
+            tubes: vec![[3, 1]],
+            view: View::Towards(Vec3::Z),
+            ..cloud(&[0.1, 0.2, 0.3, 0.4])
+        }
+        .thin(1.0)
+        .unwrap();
+        let close = [0.2, 0.4, 0.2f32].iter().zip(&thinned.positions).all(|(x, p)| (p.x - x).abs() < 1e-6);
+        assert!(close, "{thinned:?}");
+        assert_eq!((thinned.tubes, thinned.radii), (vec![[1, 0]], Some(vec![2.0, 4.0, 0.0])));
+        assert_eq!(thinned.view, View::Towards(Vec3::Z));
     }
 
     #[test]

@@ -7,6 +7,7 @@ mod convert;
 mod errors;
 mod info;
 mod inputs;
+mod lines;
 mod program;
 mod render;
 mod report;

@@ -29,6 +29,14 @@ const FILES: &[(&str, &str)] = &[
         "1 2 3  0 0 0 .1 .2 .3 0  1 0 0 .1 .2 .3 2 8 9  1 1 0 .1 .2 .3 1 7  0 1 0 .1 .2 3 0  9 0 1 3 2 -1 1 2 3 3",
     ),
     (
+        "element polyline 2\nproperty list uchar int vertex_indices\nelement vertex 6\nproperty float x\nproperty float y\n\
+         property float z\nproperty float diameter\nproperty float tx\nproperty float ty\nproperty float tz\nproperty float nx\n\
+         property float ny\nproperty float nz\nelement edge 3\nproperty int vertex1\nproperty uchar tube\nproperty ushort vertex2\n\
+         element face 1\nproperty list uchar int vertex_indices",
+        "3 0 1 2  3 4 -1 3  0 0 0 .5 1 0 0 0 0 1  1 0 0 0 0 0 0 0 0 1  2 0 1 .25 0 0 2 1 0 1  0 3 0 0 0 0 0 0 0 0 \
+         1 3 0 1 0 0 0 1 0 0  2 3 1 0 0 0 0 0 1 0  0 1 1  2 0 1  4 1 5  3 2 1 0",
+    ),
+    (
         "element vertex 2\nproperty float x\nproperty float y\nproperty float z\nproperty float ux\nproperty float uy\n\
          property float uz\nproperty float vx\nproperty float vy\nproperty float vz\nproperty char tag",
         "0 0 0 1 0 0 0 2 0 -1  1 1 1 .1 .2 .3 -.2 .1 0 -2",

@@ -9,7 +9,7 @@ use mutate::Random;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::{Duration, Instant};
 use surfel::geometry::estimate::Estimate;
-use surfel::geometry::{Clip, ClipLine, Cloud, Colours, Surfels, View, Weights};
+use surfel::geometry::{Clip, ClipLine, Cloud, Colours, Model, Surfels, View, Weights};
 use surfel::io::ply::{self, Loaded, ReadOptions};
 
 #[global_allocator]
@@ -107,6 +107,7 @@ fn check(cloud: &Cloud, report: &ply::Report) {
         cloud.weights.as_ref().map(|weights| weights.of.len()),
         cloud.colours.as_ref().map(Colours::len),
         cloud.scalar.as_ref().map(Vec::len),
+        cloud.tangents.as_ref().map(Vec::len),
     ];
     assert!(lengths.iter().flatten().all(|length| *length == count), "{lengths:?}");
     assert!(cloud.origin.is_finite() && cloud.positions.iter().all(|position| position.is_finite()));
@@ -129,6 +130,11 @@ fn check(cloud: &Cloud, report: &ply::Report) {
     }
     let index = |corner: &u32| (*corner as usize) < count;
     assert!(cloud.triangles.iter().flatten().all(index), "a corner that is no point");
+    assert!(cloud.ribbons.iter().chain(&cloud.tubes).flatten().all(index), "an end that is no point");
+    let apart = |[a, b]: &[u32; 2]| cloud.positions[*a as usize] != cloud.positions[*b as usize];
+    assert!(cloud.ribbons.iter().chain(&cloud.tubes).all(apart), "a segment of no length");
+    assert_eq!(report.lines.understood, (cloud.ribbons.len() + cloud.tubes.len()) as u64);
+    assert!(cloud.tangents.iter().flatten().all(|t| *t == glam::Vec3::ZERO || unit(t)));
     match cloud.view {
         View::Unknown => {}
         View::From(eye) => assert!(eye.is_finite()),
@@ -169,6 +175,21 @@ fn draw(cloud: Cloud) {
             Err(cause) => assert!(!cause.is_empty() && cause.lines().count() == 1, "{cause:?}"),
         }
     }
+    if cloud.has_lines() {
+        match cloud.into_model(false, &Estimate::default(), &()) {
+            Ok((model, _)) => check_model(&model),
+            Err(cause) => assert!(!cause.is_empty() && cause.lines().count() == 1, "{cause:?}"),
+        }
+    }
+}
+
+fn check_model(Model { surfels, primitives }: &Model) {
+    check_surfels(surfels);
+    primitives.check().unwrap();
+    assert!(primitives.directions.iter().all(|d| (d.length() - 1.0).abs() < 1e-4), "{primitives:?}");
+    let lines = || primitives.segments().flat_map(|(ends, _)| ends);
+    let radius = |i: u32| primitives.radii[i as usize];
+    assert!(lines().all(|i| radius(i) >= 0.0 && radius(i).is_finite()), "{primitives:?}");
 }
 
 fn check_surfels(surfels: &Surfels) {

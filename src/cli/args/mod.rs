@@ -64,9 +64,9 @@ pub struct Render {
     /// The picture: .png (sRGB, or `-` for standard output) or .exr (linear light)
     #[arg(short, long, value_name = "OUT")]
     pub output: OsString,
-    /// How points are rendered; `surfel methods` tells more
-    #[arg(long, default_value = Method::ALL[0].name, value_parser = method())]
-    pub method: Method,
+    /// How it is rendered; perspective-ewa unless given, pull-push where there are lines or triangles; `surfel methods` tells more
+    #[arg(long, value_parser = method())]
+    pub method: Option<Method>,
     /// What is changed of the method
     #[command(flatten)]
     pub axes: Axes,
@@ -211,9 +211,9 @@ impl Axes {
 }
 
 impl Render {
-    /// The settings that this asks for.
-    pub fn settings(&self) -> Settings {
-        let (look, preset) = (&self.look, self.method.settings());
+    /// The settings that this asks for of a method.
+    pub fn settings(&self, method: &Method) -> Settings {
+        let (look, preset) = (&self.look, method.settings());
         Settings {
             splatting: self.axes.over(preset.splatting),
             pull_push: preset.pull_push,

@@ -23,6 +23,12 @@ pub struct Points {
     /// Drops points whose mean distance from their neighbours is more than SIGMA standard deviations above the average
     #[arg(long, value_name = "SIGMA", value_parser = positive::<f32>, allow_hyphen_values = true)]
     pub drop_outliers: Option<f32>,
+    /// Draws faces as triangles, rather than their vertices as points; where there are lines, they are anyway
+    #[arg(long)]
+    pub polygons: bool,
+    /// Radius of ribbons and tubes where they have none, in the positions' unit
+    #[arg(long, value_name = "R", value_parser = positive::<f32>, allow_hyphen_values = true)]
+    pub line_radius: Option<f32>,
 }
 
 impl Points {
@@ -35,6 +41,7 @@ impl Points {
             elliptical: self.elliptical,
             outliers: self.drop_outliers,
             sharp: None,
+            line_radius: self.line_radius,
         }
     }
 }

@@ -43,6 +43,24 @@ pub(super) fn fill(draft: &mut Draft, how: &Estimate) {
     }
 }
 
+/// The mean normal of the triangles around each point, weighted by the angle that each has there; `None` where there are none, or none with
+/// an area. Where they cancel, as on two sheets back to back, it is that of one of them.
+pub(super) fn normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Option<Vec3>> {
+    let corners = corners(positions, triangles);
+    let mean = |corner: &Corner| {
+        (corner.normal.length() > CANCELLED * corner.angle).then(|| corner.normal.normalize().as_vec3())
+    };
+    let mut normals: Vec<_> = corners.iter().map(mean).collect();
+    for triangle in triangles {
+        let [a, b, c] = triangle.map(|i| positions[i as usize].as_dvec3());
+        let own = (b - a).cross(c - a).normalize_or_zero().as_vec3();
+        for &i in triangle.iter().filter(|_| own != Vec3::ZERO) {
+            normals[i as usize].get_or_insert(own);
+        }
+    }
+    normals
+}
+
 fn corners(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Corner> {
     let mut corners = vec![Corner::default(); positions.len()];
     for triangle in triangles {

@@ -6,6 +6,8 @@ mod draft;
 mod eigen;
 mod faces;
 mod facets;
+mod lines;
+mod model;
 mod neighbours;
 mod orient;
 mod outliers;
@@ -41,6 +43,8 @@ pub struct Estimate {
     pub outliers: Option<f32>,
     /// Clips discs that reach a crease at which normals turn by more than this angle, radians.
     pub sharp: Option<f32>,
+    /// Radius of ribbons and tubes where they have none, in the positions' unit.
+    pub line_radius: Option<f32>,
 }
 
 impl Default for Estimate {
@@ -52,6 +56,7 @@ impl Default for Estimate {
             elliptical: false,
             outliers: None,
             sharp: None,
+            line_radius: None,
         }
     }
 }
@@ -71,6 +76,7 @@ impl Estimate {
             return Err(format!("{given} neighbours to estimate from: give {least} to {most}"));
         }
         self.radius.map_or(Ok(()), |radius| positive("the radius", radius))?;
+        self.line_radius.map_or(Ok(()), |radius| positive("the radius of lines", radius))?;
         self.outliers
             .map_or(Ok(()), |deviations| positive("the outliers' standard deviations", deviations))?;
         if let Some(angle) = self.sharp.filter(|angle| !(*angle > 0.0 && *angle < PI)) {
@@ -103,6 +109,12 @@ pub struct Estimated {
     pub outliers: u64,
     /// Surfels that are clipped because of a crease that was looked for.
     pub clipped: u64,
+    /// Radii of the vertices of lines, the file's own or the one that was asked for.
+    pub line_radii_given: u64,
+    /// Those of the nearest vertex of the same line that has one.
+    pub line_radii_from_lines: u64,
+    /// Those that are a part of the lines' extent.
+    pub line_radii_from_extent: u64,
 }
 
 impl Add for Estimated {
@@ -119,12 +131,15 @@ impl Add for Estimated {
             radii_from_neighbours: self.radii_from_neighbours + other.radii_from_neighbours,
             outliers: self.outliers + other.outliers,
             clipped: self.clipped + other.clipped,
+            line_radii_given: self.line_radii_given + other.line_radii_given,
+            line_radii_from_lines: self.line_radii_from_lines + other.line_radii_from_lines,
+            line_radii_from_extent: self.line_radii_from_extent + other.line_radii_from_extent,
         }
     }
 }
 
 impl Cloud {
-    /// The surfels of the cloud, in Morton order.
+    /// The surfels of the cloud, one a point, in Morton order. [`Cloud::into_model`] has lines and triangles, too.
     ///
     /// A normal that is missing is that of the faces around the point; where there are none, of the plane of least squares through its
     /// neighbours, which points to where the cloud was seen from, or agrees with normals that are known and with its neighbours', outwards
@@ -177,6 +192,9 @@ mod tests {
             radii_from_neighbours: 7,
             outliers: 8,
             clipped: 9,
+            line_radii_given: 10,
+            line_radii_from_lines: 11,
+            line_radii_from_extent: 12,
         };
         let two = Estimated {
             normals_given: 2,
@@ -188,6 +206,9 @@ mod tests {
             radii_from_neighbours: 14,
             outliers: 16,
             clipped: 18,
+            line_radii_given: 20,
+            line_radii_from_lines: 22,
+            line_radii_from_extent: 24,
         };
         assert_eq!(one + one, two);
     }

@@ -1,7 +1,7 @@
 //! Where the points go: one array for each attribute that the file can have, filled piece by piece from several threads.
 
 use super::Parsed;
-use super::layout::{CORNERS, Layout, SCALAR, Shape, WEIGHT};
+use super::layout::{CORNERS, Layout, SCALAR, Shape, TANGENT, WEIGHT};
 use super::source::room;
 use crate::geometry::{Clip, Ellipse};
 use glam::{DVec3, Vec3};
@@ -56,6 +56,7 @@ arrays! {
     clips: Clip, Layout::has_clips, "Clips, of two lines that are none where the disc is whole.";
     weights: f32, |layout: &Layout| layout.fills(WEIGHT), "Normalization weights or 0.";
     corners: [f32; 4], |layout: &Layout| layout.fills(CORNERS), "Those at the corners of discs at borders; all 0 of others.";
+    tangents: Vec3, |layout: &Layout| layout.fills(TANGENT), "Unit tangents or 0.";
     codes: [u8; 4], Layout::has_codes, "sRGB-encoded colours.";
     linear: [f32; 3], |layout: &Layout| layout.colour.is_some() && !layout.has_codes(), "Linear colours.";
     scalar: f64, |layout: &Layout| layout.fills(SCALAR), "The chosen scalar.";

@@ -4,7 +4,7 @@ use super::arrays::Slices;
 use super::block::Block;
 use super::layout::{
     AXES, CLIPS, COLOUR, CONCAVE, CORNERS, Colour, Layout, NORMAL, OPACITY, POSITION, RADIUS, ROTATION,
-    SCALAR, Shape, TWO_SIDED, WEIGHT,
+    SCALAR, Shape, TANGENT, TWO_SIDED, WEIGHT,
 };
 use super::shape::{self, Disc};
 use super::types::Scalar;
@@ -56,7 +56,12 @@ pub(super) fn convert(block: &Block, layout: &Layout, out: &mut Slices) -> Tally
         out.normals.iter_mut().zip(block.triples(NORMAL)).for_each(|(to, n)| *to = shape::unit(n));
     }
     if layout.fills(RADIUS) {
-        out.radii.iter_mut().zip(block.column(RADIUS)).for_each(|(to, radius)| *to = shape::length(*radius));
+        let part = if layout.diameters { 0.5 } else { 1.0 };
+        let radii = block.column(RADIUS).iter().map(|radius| shape::length(part * radius));
+        out.radii.iter_mut().zip(radii).for_each(|(to, radius)| *to = radius);
+    }
+    if layout.fills(TANGENT) {
+        out.tangents.iter_mut().zip(block.triples(TANGENT)).for_each(|(to, t)| *to = shape::unit(t));
     }
     if layout.fills(TWO_SIDED) {
         out.two_sided.iter_mut().zip(block.column(TWO_SIDED)).for_each(|(to, flag)| *to = *flag != 0.0);

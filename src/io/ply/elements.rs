@@ -4,23 +4,24 @@ use super::arrays::Arrays;
 use super::ascii::Tokens;
 use super::binary::Cursor;
 use super::convert::Tally;
-use super::faces::Collector;
 use super::header::Header;
 use super::layout::Layout;
 use super::meter::Meter;
-use super::others::Others;
+use super::others::{Found, Others};
 use super::points::Points;
 use super::records::{Reader, refuse_lie, walk};
 use super::source::Source;
 use super::types::{Element, Format};
 use super::vertices::{self, Records};
-use super::{Faces, Parsed};
+use super::{Faces, Lines, Parsed};
+use crate::geometry::Cloud;
 use std::borrow::Cow;
 
 /// What all elements together hold.
 pub(super) struct Contents {
     pub points: Points,
     pub faces: Faces,
+    pub lines: Lines,
     pub trailing: u64,
     /// Which elements were used.
     pub used: Vec<bool>,
@@ -34,8 +35,10 @@ pub(super) struct File<'a> {
     pub vertex: usize,
     pub layout: &'a Layout,
     pub meter: &'a Meter<'a>,
-    /// Whether triangles are kept even if the points lack nothing.
+    /// Whether triangles are kept even if the points lack nothing and there are no lines.
     pub triangles: bool,
+    /// Whether the header declares lines.
+    pub lines: bool,
 }
 
 impl File<'_> {
@@ -116,7 +119,8 @@ impl File<'_> {
         }
         let (arrays, tally) = points(&mut reader)?;
         let mut points = Points::new(arrays, tally)?;
-        let mut others = Others::new(self.header.grid, self.meter, &points, self.triangles);
+        let told = self.triangles || points.lacking;
+        let mut others = Others::new(self.header.grid, self.meter, &points, told || self.lines);
         let mut used = Vec::new();
         for (element, mut reader) in elements.iter().zip(bookmarks) {
             used.push(others.read(&mut reader, element)?);
@@ -125,8 +129,11 @@ impl File<'_> {
         for element in &elements[self.vertex + 1..] {
             used.push(others.read(&mut reader, element)?);
         }
-        let (Collector { triangles, faces, .. }, view) = others.finish();
-        (points.cloud.triangles, points.cloud.view) = (triangles, view);
-        Ok(Contents { points, faces, trailing: reader.trailing() as u64, used })
+        let Found { cloud: Cloud { ribbons, tubes, triangles, view, .. }, faces, lines } = others.finish();
+        points.cloud = Cloud { ribbons, tubes, view, ..points.cloud };
+        if told || points.cloud.has_lines() {
+            points.cloud.triangles = triangles;
+        }
+        Ok(Contents { points, faces, lines, trailing: reader.trailing() as u64, used })
     }
 }

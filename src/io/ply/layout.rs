@@ -29,8 +29,10 @@ pub(super) const CONCAVE: usize = 30;
 pub(super) const WEIGHT: usize = 31;
 /// Column of surfel_weight0; 1 to 3 follow.
 pub(super) const CORNERS: usize = 32;
+/// Column of tx; ty and tz follow.
+pub(super) const TANGENT: usize = 36;
 /// Column of the scalar that the caller has chosen.
-pub(super) const SCALAR: usize = 36;
+pub(super) const SCALAR: usize = 39;
 
 /// Names of the columns of two clip lines.
 pub(super) const CLIP_LINES: [[&str; 4]; 2] =
@@ -42,6 +44,8 @@ pub(super) const WEIGHT_NAME: &str = "surfel_weight";
 /// Names of those at the corners of surfels at borders.
 pub(super) const CORNER_NAMES: [&str; 4] =
     ["surfel_weight0", "surfel_weight1", "surfel_weight2", "surfel_weight3"];
+/// Names of the columns of tangents.
+pub(super) const TANGENT_NAMES: [&str; 3] = ["tx", "ty", "tz"];
 const NORMALS: &[[&str; 3]] = &[["nx", "ny", "nz"], ["normal_x", "normal_y", "normal_z"]];
 const COLOURS: &[[&str; 3]] =
     &[["red", "green", "blue"], ["diffuse_red", "diffuse_green", "diffuse_blue"], ["r", "g", "b"]];
@@ -77,23 +81,29 @@ pub(super) struct Layout {
     pub colour: Option<Colour>,
     /// Whether f32 holds every coordinate that the file can, as it is.
     pub narrow: bool,
+    /// Whether the column of the radius holds diameters.
+    pub diameters: bool,
 }
 
 impl Layout {
-    /// Looks for what is understood, and for the property named `chosen`.
-    pub fn of(vertex: &Element, chosen: Option<&str>) -> Parsed<Self> {
+    /// Looks for what is understood, for the property named `chosen`, and for what belongs to `lines`, if the file has some.
+    pub fn of(vertex: &Element, chosen: Option<&str>, lines: bool) -> Parsed<Self> {
         let properties = &vertex.properties;
         refuse_compressed(properties)?;
         let find = Finder { properties };
         let position =
             find.all(["x", "y", "z"]).ok_or("its vertices have no x y z: write it again with all three")?;
         let narrow = position.iter().all(|(_, scalar)| scalar.size() <= 2 || *scalar == Scalar::F32);
-        let mut layout = Self { columns: [None; COLUMNS], shape: Shape::Circle, colour: None, narrow };
+        let mut layout =
+            Self { columns: [None; COLUMNS], shape: Shape::Circle, colour: None, narrow, diameters: false };
         layout.fill(POSITION, position);
         layout.find_shape(&find);
         layout.find_clips(&find);
         layout.find_weights(&find);
         layout.find_colour(&find);
+        if lines {
+            layout.find_lines(&find);
+        }
         if let Some(name) = chosen {
             layout.fill(SCALAR, [find.one(name).ok_or_else(|| no_scalar(name, properties))?]);
         }
@@ -156,6 +166,17 @@ impl Layout {
         };
         self.fill(WEIGHT, [weight]);
         find.all(CORNER_NAMES).into_iter().for_each(|corners| self.fill(CORNERS, corners));
+    }
+
+    /// What is a tangent or a diameter beside lines may be anything elsewhere.
+    fn find_lines(&mut self, find: &Finder) {
+        if let Some(tangent) = find.all(TANGENT_NAMES) {
+            self.fill(TANGENT, tangent);
+        }
+        if let Some(diameter) = find.one("diameter").filter(|_| !self.has_radii()) {
+            self.fill(RADIUS, [diameter]);
+            self.diameters = true;
+        }
     }
 
     fn find_colour(&mut self, find: &Finder) {
@@ -280,7 +301,19 @@ mod tests {
     }
 
     fn layout(names: &str, scalar: Scalar) -> Layout {
-        Layout::of(&vertex(names, scalar), None).unwrap()
+        Layout::of(&vertex(names, scalar), None, false).unwrap()
+    }
+
+    #[test]
+    fn diameters_and_tangents_are_those_of_lines() {
+        let of = |names: &str, lines| Layout::of(&vertex(names, Scalar::F32), None, lines).unwrap();
+        let line = of("x y z diameter tx ty tz", true);
+        assert_eq!((line.columns[RADIUS], line.diameters), (Some(3), true));
+        assert_eq!(line.columns[TANGENT..SCALAR], [4, 5, 6].map(Some));
+        let point = of("x y z diameter tx ty tz", false);
+        assert!(!point.fills(RADIUS) && !point.fills(TANGENT) && !point.diameters);
+        let both = of("x y z diameter radius", true);
+        assert_eq!((both.columns[RADIUS], both.diameters), (Some(4), false));
     }
 
     #[test]
@@ -335,7 +368,7 @@ mod tests {
     fn weights_need_discs_and_corners_need_weights() {
         let corners = CORNER_NAMES.join(" ");
         let both = layout(&format!("x y z nx ny nz radius {WEIGHT_NAME} {corners}"), Scalar::F32);
-        assert_eq!(both.columns[WEIGHT..SCALAR], [7, 8, 9, 10, 11].map(Some));
+        assert_eq!(both.columns[WEIGHT..TANGENT], [7, 8, 9, 10, 11].map(Some));
         let missing = format!("x y z nx ny nz radius {WEIGHT_NAME} {}", corners.replace('3', "4"));
         let one = layout(&missing, Scalar::F32);
         assert!(one.fills(WEIGHT) && !one.fills(CORNERS));
@@ -346,11 +379,12 @@ mod tests {
     #[test]
     fn the_chosen_scalar_may_be_any_number() {
         let cloud = vertex("x y z quality", Scalar::F32);
-        assert_eq!(Layout::of(&cloud, Some("quality")).unwrap().columns[SCALAR], Some(3));
-        let cause = Layout::of(&cloud, Some("height")).unwrap_err();
+        assert_eq!(Layout::of(&cloud, Some("quality"), false).unwrap().columns[SCALAR], Some(3));
+        let cause = Layout::of(&cloud, Some("height"), false).unwrap_err();
         assert!(cause.contains("`height`: choose one of `x`, `y`, `z`, `quality`"), "{cause}");
         let many: String = (0..50_000).map(|i| format!(" p{i}")).collect();
-        let cause = Layout::of(&vertex(&format!("x y z{many}"), Scalar::F32), Some("height")).unwrap_err();
+        let cause =
+            Layout::of(&vertex(&format!("x y z{many}"), Scalar::F32), Some("height"), false).unwrap_err();
         assert!(cause.ends_with("`p3`, `p4` and 49995 more"), "{cause}");
     }
 
@@ -361,7 +395,7 @@ mod tests {
             ("packed_position packed_scale", "compressed 3D Gaussians"),
         ];
         for (names, expected) in cases {
-            let cause = Layout::of(&vertex(names, Scalar::F32), None).unwrap_err();
+            let cause = Layout::of(&vertex(names, Scalar::F32), None, false).unwrap_err();
             assert!(cause.contains(expected), "{names}: {cause}");
         }
     }
@@ -370,6 +404,6 @@ mod tests {
     fn a_list_is_no_coordinate() {
         let mut element = vertex("x y z nx ny nz radius", Scalar::F32);
         element.properties[6].kind = Kind::List { length: Scalar::U8, item: Scalar::F32 };
-        assert!(!Layout::of(&element, None).unwrap().fills(RADIUS));
+        assert!(!Layout::of(&element, None, false).unwrap().fills(RADIUS));
     }
 }

@@ -6,7 +6,9 @@
 //! |---|---|---|
 //! | `x y z` | any | position, in the file's unit; must be there |
 //! | `nx ny nz`, `normal_x normal_y normal_z` | any | normal, of any length; all 0 is none |
-//! | `radius` | any | radius of the disc, in the positions' unit; 0 or less is none |
+//! | `radius` | any | radius of the disc, ribbon or tube, in the positions' unit; 0 or less is none |
+//! | `diameter` | any | where the file has lines and there is no `radius`: twice that |
+//! | `tx ty tz` | any | where the file has lines: tangent of a tube, of any length; all 0 is none |
 //! | `value` | float, double | the same, beside normals: the scale of FSSR's samples |
 //! | `ux uy uz vx vy vz` | any | an elliptical disc: two semi-axes of what is covered, in the positions' unit. If there is a radius, that is the longer one, and the axes tell direction and ratio alone; if there are no normals, u × v is one |
 //! | `two_sided` | any, written as uchar | not 0: the normal may as well point the other way |
@@ -23,10 +25,13 @@
 //! |---|---|---|
 //! | `face` | list `vertex_indices` or `vertex_index` | polygons, as fans of triangles |
 //! | `tristrips` | list `vertex_indices` | strips of triangles; −1 begins another |
+//! | `edge` | `vertex1 vertex2`, or a list of two as of faces | a segment of a line, unless it is the side of a face and has no `tube` |
+//! | `polyline`, `linestrips` | list `vertex_indices` or `vertex_index` | lines; −1 begins another |
+//! | of these three | `tube`, any, written as uchar | not 0: a tube; 0: a ribbon. Where there is none, and where an end has no normal: a ribbon if both ends have normals, otherwise a tube |
 //! | `range_grid` | list `vertex_indices` of no vertex or one; `obj_info num_cols`, `num_rows` | triangles between neighbours, where the surface is not torn; [`View::Towards`](crate::geometry::View::Towards) +z |
 //! | `camera` | `view_px view_py view_pz` | [`View::From`](crate::geometry::View::From); all 0, which is what some programs write of any cloud, is not known |
 //!
-//! Triangles are kept only where some point has no normal or no radius, which they can tell, or where [`ReadOptions`] ask for them. Skipped elements are checked all the same: a
+//! Triangles are kept only where some point has no normal or no radius, which they can tell, where there are lines, or where [`ReadOptions`] ask for them. Skipped elements are checked all the same: a
 //! file that ends too early is an error, bytes after its end are counted.
 //!
 //! The header is parsed here rather than by ply-rs, whose parser stops the process on large counts, takes two properties of one name for
@@ -42,11 +47,13 @@ mod faces;
 mod grid;
 mod header;
 mod layout;
+mod lines;
 mod meter;
 mod others;
 mod points;
 mod records;
 mod report;
+mod row;
 mod shape;
 mod sniff;
 mod source;
@@ -56,7 +63,7 @@ mod types;
 mod vertices;
 mod write;
 
-pub use report::{Dropped, Faces, Report};
+pub use report::{Dropped, Faces, Lines, Report};
 pub use types::{Element, Format, Kind, Property, Scalar};
 pub use write::write;
 
@@ -150,13 +157,14 @@ fn parse_records(
 ) -> Parsed<Loaded> {
     header::refuse_duplicates(&header.elements)?;
     let vertex = layout::find_vertex(&header.elements)?;
-    let mut layout = Layout::of(&header.elements[vertex], options.scalar.as_deref())?;
+    let lines = header.elements.iter().any(|element| element.count > 0 && lines::ends(element).is_some());
+    let mut layout = Layout::of(&header.elements[vertex], options.scalar.as_deref(), lines)?;
     // Text keeps its digits, whatever type the header names.
     layout.narrow &= header.format != Format::Ascii;
     let meter = Meter::new(progress, source.size());
     let triangles = options.triangles;
-    let contents =
-        File { source, header: &header, vertex, layout: &layout, meter: &meter, triangles }.read()?;
+    let file = File { source, header: &header, vertex, layout: &layout, meter: &meter, triangles, lines };
+    let contents = file.read()?;
     meter.finish();
     let report = report(header, vertex, &layout, &contents);
     Ok(Loaded { cloud: contents.points.cloud, report })
@@ -178,6 +186,7 @@ fn report(header: Header, vertex: usize, layout: &Layout, contents: &Contents) -
         clip_lines_dropped: contents.points.clip_lines,
         weights_dropped: contents.points.weights,
         faces: contents.faces,
+        lines: contents.lines,
         gaussians: matches!(layout.shape, Shape::Gaussian(_)),
         trailing: contents.trailing,
         elements: header.elements,

@@ -3,11 +3,13 @@
 use super::Parsed;
 use super::faces::Collector;
 use super::grid::Grid;
+use super::lines::{self, Ends, Segments, TUBE};
 use super::meter::Meter;
 use super::points::Points;
 use super::records::{Reader, walk};
 use super::types::{Element, Kind};
-use crate::geometry::View;
+use super::{Faces, Lines};
+use crate::geometry::{Cloud, View};
 use glam::{DVec3, Vec3};
 
 /// What elements other than the vertices tell of them.
@@ -17,19 +19,30 @@ pub(super) struct Others<'a> {
     meter: &'a Meter<'a>,
     points: &'a Points,
     collector: Collector<'a>,
+    segments: Segments<'a>,
     view: View,
 }
 
+/// What there was.
+pub(super) struct Found {
+    /// Triangles, ribbons and tubes between the points.
+    pub cloud: Cloud,
+    pub faces: Faces,
+    pub lines: Lines,
+}
+
 impl<'a> Others<'a> {
-    /// Triangles are kept if they are asked for or if the points lack normals or radii.
+    /// Triangles are looked at if they are asked for.
     pub fn new(grid: [Option<u64>; 2], meter: &'a Meter<'a>, points: &'a Points, triangles: bool) -> Self {
-        let collector = Collector::new(points, triangles || points.lacking);
-        Self { grid, meter, points, collector, view: View::Unknown }
+        let (collector, segments) = (Collector::new(points, triangles), Segments::new(points));
+        Self { grid, meter, points, collector, segments, view: View::Unknown }
     }
 
-    /// The faces, and from where the points were seen.
-    pub fn finish(self) -> (Collector<'a>, View) {
-        (self.collector, self.view)
+    /// Faces, lines, and from where the points were seen.
+    pub fn finish(self) -> Found {
+        let Collector { triangles, faces, .. } = self.collector;
+        let (found, lines) = self.segments.finish(&triangles);
+        Found { cloud: Cloud { triangles, view: self.view, ..found }, faces, lines }
     }
 
     /// Reads an element, understood or not; says whether it was.
@@ -48,6 +61,9 @@ impl<'a> Others<'a> {
             ("range_grid", Some(list)) => self.range_grid(reader, element, list),
             ("camera", _) => self.camera(reader, element),
             _ => {
+                if let Some(ends) = lines::ends(element) {
+                    return self.lines(reader, element, ends);
+                }
                 walk(reader, element, &vec![false; element.properties.len()], self.meter, |_, _| Ok(()))?;
                 Ok(false)
             }
@@ -65,6 +81,29 @@ impl<'a> Others<'a> {
         let meter = self.meter;
         walk(reader, element, &wanted, meter, |_, corners| {
             each(self, corners);
+            Ok(())
+        })?;
+        Ok(true)
+    }
+
+    fn lines<R: Reader>(&mut self, reader: &mut R, element: &Element, ends: Ends) -> Parsed<bool> {
+        let kind = lines::scalar(element, TUBE);
+        let is_end = |index| match ends {
+            Ends::Two(pair) => pair.contains(&index),
+            Ends::List(list) => index == list,
+        };
+        let wanted: Vec<bool> =
+            (0..element.properties.len()).map(|index| is_end(index) || kind == Some(index)).collect();
+        let segments = &mut self.segments;
+        walk(reader, element, &wanted, self.meter, |numbers, list| {
+            let tube = kind.map(|index| numbers[index] != 0.0);
+            match ends {
+                Ends::Two(pair) => segments.edge(pair.map(|index| numbers[index]), tube),
+                Ends::List(_) if element.name == "edge" && list.len() == 2 => {
+                    segments.edge([list[0], list[1]], tube);
+                }
+                Ends::List(_) => segments.strip(list, tube),
+            }
             Ok(())
         })?;
         Ok(true)
@@ -91,11 +130,7 @@ impl<'a> Others<'a> {
 
     /// Where the camera stood, if there was one camera. Exactly 0 is what the Point Cloud Library writes unless it is told otherwise.
     fn camera<R: Reader>(&mut self, reader: &mut R, element: &Element) -> Parsed<bool> {
-        let find = |name: &str| {
-            let is = |kind| matches!(kind, Kind::Scalar(_));
-            element.properties.iter().position(|property| property.name == name && is(property.kind))
-        };
-        let eye = [find("view_px"), find("view_py"), find("view_pz")];
+        let eye = ["view_px", "view_py", "view_pz"].map(|name| lines::scalar(element, name));
         let wanted: Vec<bool> =
             (0..element.properties.len()).map(|index| eye.contains(&Some(index))).collect();
         let mut position = DVec3::NAN;

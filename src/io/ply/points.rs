@@ -103,6 +103,7 @@ fn cloud(arrays: Arrays) -> Cloud {
     // Arrays that the file has, but nothing but zeros in them, are none.
     let normals = Some(arrays.normals).filter(|normals| normals.iter().any(|n| *n != Vec3::ZERO));
     let radii = Some(arrays.radii).filter(|radii| radii.iter().any(|radius| *radius > 0.0));
+    let tangents = Some(arrays.tangents).filter(|tangents| tangents.iter().any(|t| *t != Vec3::ZERO));
     let ellipses =
         Some(arrays.ellipses).filter(|all| !all.is_empty() && normals.is_some() && radii.is_some());
     let weights = weights(&arrays.weights, &arrays.corners).filter(|weights| {
@@ -118,6 +119,7 @@ fn cloud(arrays: Arrays) -> Cloud {
         weights,
         two_sided: Some(arrays.two_sided).filter(|flags| !flags.is_empty()),
         colours,
+        tangents,
         scalar: Some(arrays.scalar).filter(|values| !values.is_empty()),
         ..Default::default()
     }

@@ -25,6 +25,8 @@ pub struct Report {
     pub weights_dropped: u64,
     /// Faces, triangle strips and cells of range grids.
     pub faces: Faces,
+    /// Segments of edges and polylines.
+    pub lines: Lines,
     /// Whether the vertices are 3D Gaussians, whose flat sides became discs.
     pub gaussians: bool,
     /// Bytes after the last element, which mean nothing.
@@ -45,6 +47,17 @@ impl Dropped {
     pub fn total(&self) -> u64 {
         self.position + self.transparent
     }
+}
+
+/// Segments of lines of a file, each counted once.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Lines {
+    /// Segments of ribbons and tubes.
+    pub understood: u64,
+    /// Segments with an end that does not exist or was dropped, and those whose ends are at one place.
+    pub skipped: u64,
+    /// Edges of no kind of their own that are sides of faces: they tell how the mesh is connected, which its faces do already.
+    pub sides: u64,
 }
 
 /// Faces of a file; of strips and range grids, their triangles.

@@ -16,9 +16,16 @@ pub(super) struct Disc {
     pub radius: f32,
 }
 
+/// How far the squared length of a unit vector that f32 has rounded may be from 1.
+const ROUNDED: f64 = 1e-6;
+
 /// The unit vector along `n`; 0 if there is no direction.
 pub(super) fn unit(n: DVec3) -> Vec3 {
     let square = n.length_squared();
+    // What has been written comes back bit by bit.
+    if (square - 1.0).abs() < ROUNDED {
+        return n.as_vec3();
+    }
     if (1e-200..1e200).contains(&square) {
         return (n * square.sqrt().recip()).as_vec3();
     }

@@ -1,10 +1,12 @@
-//! Writing surfels, through ply-rs: its writer is sound for binary records of single numbers, as long as the header's count is ours.
+//! Writing models, through ply-rs: its writer is sound for binary records, as long as the header's counts and the lists' lengths are ours.
 
-use super::layout::{CLIP_CONCAVE, CLIP_LINES, CORNER_NAMES, WEIGHT_NAME};
-use crate::error::Result;
-use crate::geometry::{Clip, Colours, Ellipse, Surfels};
+use super::layout::{CLIP_CONCAVE, CLIP_LINES, CORNER_NAMES, TANGENT_NAMES, WEIGHT_NAME};
+use super::lines::TUBE;
+use super::row::{Line, Row, Triangle};
+use crate::error::{Error, Result};
+use crate::geometry::{Colours, Parts, Primitives};
 use crate::io::atomic;
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 use ply_rs::ply::{
     Addable, ElementDef, Encoding, Header, PropertyAccess, PropertyDef, PropertyType, ScalarType,
 };
@@ -12,44 +14,127 @@ use ply_rs::writer::Writer;
 use std::io::{self, Write};
 use std::path::Path;
 
-/// Writes surfels as binary little-endian PLY: x y z as float, or as double if they have an origin; nx ny nz and radius as float; if there
-/// are ellipses, their semi-axes ux uy uz vx vy vz as float; if some may have no side, two_sided as uchar; if there are clips, their lines
-/// clip0x clip0y clip0z clip0d clip1x clip1y clip1z clip1d as float, all 0 where there is none, and clip_concave as uchar; if there are
-/// normalization weights, surfel_weight as float, and if there are some at corners, surfel_weight0 to surfel_weight3 as float, all 0 where
-/// there are none; red green blue as uchar if sRGB-encoded, as float if linear. The file is replaced as a whole or, after an error, not at
-/// all.
+/// Writes surfels, lines and triangles as binary little-endian PLY. Of a vertex: x y z as float, or as double if they have an origin; nx ny nz
+/// and radius as float; if there are ellipses, their semi-axes ux uy uz vx vy vz as float; if some surfels may have no side, two_sided as
+/// uchar; if there are clips, their lines clip0x clip0y clip0z clip0d clip1x clip1y clip1z clip1d as float, all 0 where there is none, and
+/// clip_concave as uchar; if there are normalization weights, surfel_weight as float, and if there are some at corners, surfel_weight0 to
+/// surfel_weight3 as float, all 0 where there are none; if there are tubes, their tangents tx ty tz as float, with which nx ny nz are 0;
+/// red green blue as uchar if sRGB-encoded, as float if linear.
+///
+/// The surfels come first, then the vertices that lines and triangles use, in their order. If there are lines, an element edge has
+/// vertex1 and vertex2 and, as uchar, tube: ribbons first, then tubes. If there are triangles, an element face has the list
+/// vertex_indices. Where only surfels or only vertices have colours, the others' are the default albedo. The file is replaced as a whole
+/// or, after an error, not at all.
 ///
 /// # Errors
-/// [`crate::Error::Usage`] if the arrays differ in length, [`crate::Error::Io`] if the file cannot be written.
-pub fn write(path: &Path, surfels: &Surfels) -> Result<()> {
-    surfels.check()?;
-    atomic::write(path, |mut out| records(&mut out, surfels))
+/// [`Error::Usage`] if the arrays differ in length, a line or triangle has a vertex that does not exist, or there are more than 2³² − 1
+/// vertices; [`Error::Io`] if the file cannot be written.
+pub fn write<'a>(path: &Path, parts: impl Into<Parts<'a>>) -> Result<()> {
+    let parts = parts.into();
+    parts.check()?;
+    let count = parts.surfels.len() + parts.primitives.map_or(0, Primitives::len);
+    if u32::try_from(count).is_err() {
+        return Err(Error::Usage(format!(
+            "{count} surfels and vertices in one file: at most 2³² − 1 are read"
+        )));
+    }
+    atomic::write(path, |mut out| records(&mut out, &Whole::new(parts)))
 }
 
-fn records(out: &mut impl Write, surfels: &Surfels) -> io::Result<()> {
-    let vertex = definition(surfels);
-    let writer = Writer::<Row>::new();
+/// What is written.
+pub(super) struct Whole<'a> {
+    pub parts: Parts<'a>,
+    /// The vertices that something uses.
+    pub vertices: Vec<u32>,
+    /// Which vertex of the file each has become.
+    place: Vec<u32>,
+    /// Whether each is a tube's, a ribbon's or triangle's, or both.
+    pub tangent: Vec<bool>,
+    pub normal: Vec<bool>,
+}
+
+impl<'a> Whole<'a> {
+    fn new(parts: Parts<'a>) -> Self {
+        let none = Primitives::default();
+        let primitives = parts.primitives.unwrap_or(&none);
+        let (mut tangent, mut normal) = (vec![false; primitives.len()], vec![false; primitives.len()]);
+        primitives.tubes.iter().flatten().for_each(|&i| tangent[i as usize] = true);
+        let others = primitives.ribbons.iter().flatten().chain(primitives.triangles.iter().flatten());
+        others.for_each(|&i| normal[i as usize] = true);
+        let used = |&i: &u32| tangent[i as usize] || normal[i as usize];
+        let vertices: Vec<u32> = (0..primitives.len() as u32).filter(used).collect();
+        let mut place = vec![0; primitives.len()];
+        let first = parts.surfels.len();
+        // Fits, as that many are refused.
+        vertices.iter().zip(first as u32..).for_each(|(&i, to)| place[i as usize] = to);
+        Self { parts, vertices, place, tangent, normal }
+    }
+
+    /// Number of vertices in the file.
+    fn len(&self) -> usize {
+        self.parts.surfels.len() + self.vertices.len()
+    }
+
+    fn place<const N: usize>(&self, corners: &[u32; N]) -> [u32; N] {
+        corners.map(|i| self.place[i as usize])
+    }
+
+    /// Type of a vertex's number: most programs write and expect int.
+    fn index(&self) -> ScalarType {
+        if i32::try_from(self.len()).is_ok() { ScalarType::Int } else { ScalarType::UInt }
+    }
+
+    /// Colours of surfels and of vertices.
+    pub fn colours(&self) -> [Option<&'a Colours>; 2] {
+        [self.parts.surfels.colours.as_ref(), self.parts.primitives.and_then(|lines| lines.colours.as_ref())]
+    }
+}
+
+fn records(out: &mut impl Write, whole: &Whole) -> io::Result<()> {
+    let none = Primitives::default();
+    let primitives = whole.parts.primitives.unwrap_or(&none);
+    let (vertex, edge, face) = (vertex(whole), edge(whole, primitives), face(whole, primitives));
     let mut header = Header::new();
     header.encoding = Encoding::BinaryLittleEndian;
-    header.elements.add(vertex.clone());
-    writer.write_header(out, &header)?;
+    let there = [&vertex].into_iter().chain([&edge, &face].into_iter().filter(|element| element.count > 0));
+    there.for_each(|element| header.elements.add(element.clone()));
+    Writer::<Row>::new().write_header(out, &header)?;
     // Record by record: a payload of its own would hold everything twice.
-    (0..surfels.len())
-        .try_for_each(|i| writer.write_little_endian_element(out, &Row::of(surfels, i), &vertex).map(drop))
+    let surfels = (0..whole.parts.surfels.len()).map(|i| Row::surfel(whole, i));
+    let vertices = whole.vertices.iter().map(|&i| Row::vertex(whole, primitives, i as usize));
+    each(out, &vertex, surfels.chain(vertices))?;
+    each(out, &edge, primitives.segments().map(|(ends, tube)| Line { ends: whole.place(&ends), tube }))?;
+    // ply-rs takes the number of records for the length of each one's list.
+    let face = ElementDef { count: 3, ..face };
+    each(out, &face, primitives.triangles.iter().map(|corners| Triangle::of(whole.place(corners))))
 }
 
-fn definition(surfels: &Surfels) -> ElementDef {
+fn each<T: PropertyAccess>(
+    out: &mut impl Write,
+    element: &ElementDef,
+    rows: impl Iterator<Item = T>,
+) -> io::Result<()> {
+    let writer = Writer::<T>::new();
+    let mut rows = rows;
+    rows.try_for_each(|row| writer.write_little_endian_element(out, &row, element).map(drop))
+}
+
+fn add(element: &mut ElementDef, names: &[&str], scalar: ScalarType) {
+    for name in names {
+        element.properties.add(PropertyDef::new((*name).into(), PropertyType::Scalar(scalar.clone())));
+    }
+}
+
+fn vertex(whole: &Whole) -> ElementDef {
+    let surfels = whole.parts.surfels;
     let mut vertex = ElementDef::new("vertex".into());
-    vertex.count = surfels.len();
-    let mut add = |names: &[&str], scalar: ScalarType| {
-        for name in names {
-            vertex.properties.add(PropertyDef::new((*name).into(), PropertyType::Scalar(scalar.clone())));
-        }
-    };
-    add(&["x", "y", "z"], if surfels.origin == DVec3::ZERO { ScalarType::Float } else { ScalarType::Double });
+    vertex.count = whole.len();
+    let mut add = |names: &[&str], scalar: ScalarType| add(&mut vertex, names, scalar);
+    let near = whole.parts.origin() == DVec3::ZERO;
+    add(&["x", "y", "z"], if near { ScalarType::Float } else { ScalarType::Double });
     add(&["nx", "ny", "nz", "radius"], ScalarType::Float);
     if surfels.ellipses.is_some() {
-        add(&AXES, ScalarType::Float);
+        add(&super::row::AXES, ScalarType::Float);
     }
     if surfels.two_sided.is_some() {
         add(&["two_sided"], ScalarType::UChar);
@@ -62,103 +147,31 @@ fn definition(surfels: &Surfels) -> ElementDef {
         add(&[WEIGHT_NAME], ScalarType::Float);
         add(if weights.corners.is_empty() { &[] } else { &CORNER_NAMES }, ScalarType::Float);
     }
-    match surfels.colours {
-        Some(Colours::Srgb8(_)) => add(&["red", "green", "blue"], ScalarType::UChar),
-        Some(Colours::Linear(_)) => add(&["red", "green", "blue"], ScalarType::Float),
-        None => {}
+    if whole.tangent.contains(&true) {
+        add(&TANGENT_NAMES, ScalarType::Float);
+    }
+    match whole.colours() {
+        [None, None] => {}
+        [Some(Colours::Linear(_)), _] | [_, Some(Colours::Linear(_))] => {
+            add(&["red", "green", "blue"], ScalarType::Float);
+        }
+        _ => add(&["red", "green", "blue"], ScalarType::UChar),
     }
     vertex
 }
 
-/// Names of the semi-axes of an elliptical disc.
-const AXES: [&str; 6] = ["ux", "uy", "uz", "vx", "vy", "vz"];
-
-/// Names of [`Row::floats`].
-const FLOATS: [&str; 13] = [
-    "nx", "ny", "nz", "radius", "red", "green", "blue", AXES[0], AXES[1], AXES[2], AXES[3], AXES[4], AXES[5],
-];
-
-/// One surfel, as ply-rs asks for it: by name and type.
-struct Row {
-    position: DVec3,
-    floats: [f32; FLOATS.len()],
-    srgb: [u8; 4],
-    two_sided: bool,
-    clip: Clip,
-    weight: f32,
-    corners: [f32; 4],
+fn edge(whole: &Whole, primitives: &Primitives) -> ElementDef {
+    let mut edge = ElementDef::new("edge".into());
+    edge.count = primitives.ribbons.len() + primitives.tubes.len();
+    add(&mut edge, &["vertex1", "vertex2"], whole.index());
+    add(&mut edge, &[TUBE], ScalarType::UChar);
+    edge
 }
 
-impl Row {
-    fn of(surfels: &Surfels, i: usize) -> Self {
-        let (n, radius) = (surfels.normals[i], surfels.radii[i]);
-        let ([r, g, b], srgb) = match &surfels.colours {
-            Some(Colours::Srgb8(colours)) => ([0.0; 3], colours[i]),
-            Some(Colours::Linear(colours)) => (colours[i], [0; 4]),
-            None => ([0.0; 3], [0; 4]),
-        };
-        let [u, v] = surfels.ellipses.as_ref().map_or([Vec3::ZERO; 2], |ellipses| {
-            let Ellipse { major, aspect } = ellipses[i];
-            [major * radius, n.cross(major) * (radius * aspect)]
-        });
-        let position = surfels.origin + surfels.positions[i].as_dvec3();
-        let floats = [n.x, n.y, n.z, radius, r, g, b, u.x, u.y, u.z, v.x, v.y, v.z];
-        Self {
-            position,
-            floats,
-            srgb,
-            two_sided: surfels.two_sided.as_ref().is_some_and(|flags| flags[i]),
-            clip: surfels.clips.as_ref().and_then(|clips| clips.get(i)).copied().unwrap_or_default(),
-            weight: surfels.weights.as_ref().map_or(0.0, |weights| weights.of[i]),
-            corners: surfels.weights.as_ref().and_then(|weights| weights.corners_of(i)).unwrap_or_default(),
-        }
-    }
-
-    /// A normalization weight.
-    fn weight(&self, name: &str) -> Option<f32> {
-        match CORNER_NAMES.iter().position(|corner| *corner == name) {
-            Some(corner) => Some(self.corners[corner]),
-            None => (name == WEIGHT_NAME).then_some(self.weight),
-        }
-    }
-
-    /// A number of a clip line.
-    fn clip_number(&self, name: &str) -> Option<f32> {
-        self.clip.lines.iter().zip(CLIP_LINES).find_map(|(line, names)| {
-            let numbers = [line.outward.x, line.outward.y, line.outward.z, line.offset];
-            Some(numbers[names.iter().position(|one| *one == name)?])
-        })
-    }
-}
-
-impl PropertyAccess for Row {
-    fn new() -> Self {
-        let (floats, clip) = ([0.0; FLOATS.len()], Clip::default());
-        let (weight, corners) = (0.0, [0.0; 4]);
-        Self { position: DVec3::ZERO, floats, srgb: [0; 4], two_sided: false, clip, weight, corners }
-    }
-
-    fn get_double(&self, name: &String) -> Option<f64> {
-        Some(self.position[["x", "y", "z"].iter().position(|axis| axis == name)?])
-    }
-
-    fn get_float(&self, name: &String) -> Option<f32> {
-        match FLOATS.iter().position(|float| float == name) {
-            Some(index) => Some(self.floats[index]),
-            None => self
-                .clip_number(name)
-                .or_else(|| self.weight(name))
-                .or_else(|| self.get_double(name).map(|value| value as f32)),
-        }
-    }
-
-    fn get_uchar(&self, name: &String) -> Option<u8> {
-        if name == "two_sided" {
-            return Some(self.two_sided.into());
-        }
-        if name == CLIP_CONCAVE {
-            return Some(self.clip.concave.into());
-        }
-        Some(self.srgb[["red", "green", "blue"].iter().position(|channel| channel == name)?])
-    }
+fn face(whole: &Whole, primitives: &Primitives) -> ElementDef {
+    let mut face = ElementDef::new("face".into());
+    face.count = primitives.triangles.len();
+    let list = PropertyType::List(ScalarType::UChar, whole.index());
+    face.properties.add(PropertyDef::new("vertex_indices".into(), list));
+    face
 }

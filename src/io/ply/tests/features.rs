@@ -3,12 +3,6 @@
 use super::*;
 use crate::geometry::{Clip, ClipLine, Clips, View, Weights};
 
-/// A file of text; its header is `lines` between the first and the last line.
-fn text(lines: &str, records: &str) -> Vec<u8> {
-    format!("ply\nformat ascii 1.0\n{lines}\nend_header\n{records}").into_bytes()
-}
-
-const XYZ: &str = "property float x\nproperty float y\nproperty float z";
 const SQUARE: &str = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
 
 fn square(more: &str, records: &str) -> Loaded {

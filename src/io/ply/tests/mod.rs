@@ -2,6 +2,7 @@
 
 mod data;
 mod features;
+mod lines;
 mod nonsense;
 mod written;
 
@@ -12,6 +13,13 @@ use std::time::{Duration, Instant};
 
 const FLOATS: &str = "property float x\nproperty float y\nproperty float z\nproperty float nx\nproperty float ny\n\
                       property float nz\nproperty float radius\n";
+
+/// A file of text; its header is `lines` between the first and the last line.
+fn text(lines: &str, records: &str) -> Vec<u8> {
+    format!("ply\nformat ascii 1.0\n{lines}\nend_header\n{records}").into_bytes()
+}
+
+const XYZ: &str = "property float x\nproperty float y\nproperty float z";
 
 fn ascii(count: usize, more: &str, records: &str) -> Vec<u8> {
     format!("ply\nformat ascii 1.0\nelement vertex {count}\n{FLOATS}{more}end_header\n{records}").into_bytes()

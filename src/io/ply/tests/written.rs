@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::geometry::estimate::Estimate;
-use crate::geometry::{Clip, ClipLine, Clips, Ellipse, Surfels, Weights};
+use crate::geometry::{Clip, ClipLine, Clips, Ellipse, Model, Primitives, Surfels, Weights};
 
 fn random_surfels(count: usize, origin: DVec3, colours: Option<Colours>) -> Surfels {
     let spread = |i: usize, k: f32| ((i as f32 * k).sin() * 1e3).fract();
@@ -100,6 +100,89 @@ fn weights_read_back_exactly() {
         let larger = Estimate { radius_scale: 1.5, ..Default::default() };
         assert_eq!(cloud.into_surfels(&larger, &()).unwrap().0.weights, None, "weights of other discs");
     }
+}
+
+/// A model of everything; every vertex is of one kind.
+fn everything(origin: DVec3, colours: impl Fn(usize) -> Option<Colours>) -> Model {
+    let mut surfels = random_surfels(100, origin, colours(100));
+    surfels.two_sided = Some((0..100).map(|i| i % 3 == 0).collect());
+    surfels.sort_morton();
+    let vertices = random_surfels(50, origin, colours(50));
+    let (ribbons, tubes) = ((0..9).map(|i| [i, i + 1]).collect(), (10..19).map(|i| [i + 1, i]).collect());
+    let triangles = (20..48).map(|i| [i, i + 1, i + 2]).collect();
+    let primitives = Primitives {
+        origin,
+        positions: vertices.positions,
+        directions: vertices.normals,
+        radii: (0..50).map(|i| if i < 40 { vertices.radii[i] } else { 0.0 }).collect(),
+        colours: vertices.colours,
+        ribbons,
+        tubes,
+        triangles,
+    };
+    Model { surfels, primitives }
+}
+
+#[test]
+fn models_read_back_bit_by_bit() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("model.ply");
+    let srgb =
+        |count: usize| Some(Colours::Srgb8((0..count).map(|i| [i as u8, 255 - i as u8, 7, 0]).collect()));
+    let linear =
+        |count: usize| Some(Colours::Linear((0..count).map(|i| [i as f32 / 99.0, 0.5, 0.0]).collect()));
+    let kinds: [&dyn Fn(usize) -> Option<Colours>; 3] = [&|_| None, &srgb, &linear];
+    for colours in kinds {
+        let mut model = everything(DVec3::ZERO, colours);
+        let other = model.primitives.clone();
+        for part in [other, Primitives::default()] {
+            model.primitives = part;
+            write(&path, &model).unwrap();
+            let Loaded { cloud, report } = read(&path, &ReadOptions::default(), &()).unwrap();
+            assert_eq!(
+                (report.skipped.len(), report.skipped_elements.len(), report.lines.skipped),
+                (0, 0, 0)
+            );
+            let (again, counts) = cloud.into_model(false, &Estimate::default(), &()).unwrap();
+            assert_eq!((counts.radii_from_neighbours, counts.line_radii_from_lines), (0, 0));
+            assert!(again == model, "{again:?}\n{model:?}");
+        }
+    }
+}
+
+#[test]
+fn vertices_that_nothing_uses_are_not_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("model.ply");
+    let mut model = everything(DVec3::new(5e6, -4e5, 120.25), |_| None);
+    model.surfels = Surfels::default();
+    model.primitives.tubes.clear();
+    write(&path, &model).unwrap();
+    let (again, _) = read_back(&path).into_model(false, &Estimate::default(), &()).unwrap();
+    assert_eq!((again.surfels.len(), again.primitives.len()), (0, 40));
+    let ([a, b], radii) = (again.primitives.ribbons[8], &model.primitives.radii);
+    assert_eq!([a, b].map(|i| again.primitives.radii[i as usize]), [radii[8], radii[9]]);
+    model.primitives.ribbons.push([0, 50]);
+    assert!(matches!(write(&path, &model), Err(Error::Usage(_))));
+}
+
+#[test]
+fn a_vertex_of_a_tube_and_a_ribbon_becomes_two() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("shared.ply");
+    let primitives = Primitives {
+        positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
+        directions: vec![Vec3::Z; 3],
+        radii: vec![1.0; 3],
+        ribbons: vec![[0, 1]],
+        tubes: vec![[1, 2]],
+        ..Default::default()
+    };
+    write(&path, &Model { surfels: Surfels::default(), primitives }).unwrap();
+    let (Model { primitives, .. }, _) =
+        read_back(&path).into_model(false, &Estimate::default(), &()).unwrap();
+    assert_eq!((primitives.ribbons, primitives.tubes), (vec![[0, 1]], vec![[3, 2]]));
+    assert_eq!((primitives.positions[3], primitives.directions), (Vec3::X, vec![Vec3::Z; 4]));
 }
 
 #[test]

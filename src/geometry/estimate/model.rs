@@ -1,0 +1,176 @@
+//! From a cloud to everything that is drawn of it: surfels, lines and triangles.
+
+use super::{Estimate, Estimated, faces, lines};
+use crate::Progress;
+use crate::geometry::{Cloud, Colours, Model, Primitives, Surfels};
+use glam::Vec3;
+
+impl Cloud {
+    /// What is drawn of the cloud: its lines as ribbons and tubes; its faces as triangles if there are lines or if `polygons`; the points
+    /// that neither uses as surfels, as [`Cloud::into_surfels`] has them. All have the cloud's origin.
+    ///
+    /// A tube's vertex without a tangent gets the mean direction of the segments there (marroquim2008, section 4.3). A vertex of a
+    /// triangle without a normal gets that of the faces around it. A radius that is missing is 0 where there are triangles alone; of a
+    /// line it is [`Estimate::line_radius`], otherwise that of the nearest vertex along its line that has one, otherwise 1/2000 of the
+    /// diagonal of the lines' bounds: about a pixel across where all is in the picture. A vertex of tubes that ribbons or triangles share
+    /// becomes two, as it has a direction for each.
+    ///
+    /// # Errors
+    /// The cause, without the input's name, if what is missing cannot be estimated or if a corner is no point.
+    pub fn into_model(
+        self,
+        polygons: bool,
+        how: &Estimate,
+        progress: &dyn Progress,
+    ) -> Result<(Model, Estimated), String> {
+        how.check()?;
+        self.check_corners()?;
+        let (origin, faces) = (self.origin, polygons || self.has_lines());
+        if !(faces && (self.has_lines() || !self.triangles.is_empty())) {
+            let (surfels, estimated) = self.into_surfels(how, progress)?;
+            return Ok((
+                Model { surfels, primitives: Primitives { origin, ..Default::default() } },
+                estimated,
+            ));
+        }
+        let [drawn, points] = self.split(true);
+        let (primitives, estimated) = drawn.into_primitives(how);
+        let (surfels, more) = match points.is_empty() {
+            true => (Surfels { origin, ..Default::default() }, Estimated::default()),
+            false => points.into_surfels(how, progress)?,
+        };
+        Ok((Model { surfels, primitives }, estimated + more))
+    }
+
+    fn check_corners(&self) -> Result<(), String> {
+        let count = self.len();
+        let corners = self.ribbons.iter().chain(&self.tubes).flatten().chain(self.triangles.iter().flatten());
+        match corners.copied().find(|&i| i as usize >= count) {
+            Some(corner) => Err(format!(
+                "a line or a triangle has the corner {corner}, which is none of the {count} points"
+            )),
+            None => Ok(()),
+        }
+    }
+
+    /// All points as vertices of lines and triangles.
+    fn into_primitives(self, how: &Estimate) -> (Primitives, Estimated) {
+        let mut estimated = Estimated::default();
+        let given = self.radii.clone().unwrap_or_else(|| vec![0.0; self.len()]);
+        let mut radii = lines::radii(&self, given, how.line_radius, &mut estimated);
+        radii.iter_mut().for_each(|radius| *radius *= how.radius_scale);
+        let tangents = lines::tangents(&self);
+        let mut primitives = Primitives {
+            origin: self.origin,
+            directions: normals(&self),
+            positions: self.positions,
+            radii,
+            colours: self.colours,
+            ribbons: self.ribbons,
+            tubes: self.tubes,
+            triangles: self.triangles,
+        };
+        primitives.give_tangents(&tangents);
+        (primitives, estimated)
+    }
+}
+
+impl Primitives {
+    /// Puts tangents where there are tubes: in place of a normal that nothing needs, otherwise on a copy of the vertex.
+    fn give_tangents(&mut self, tangents: &[Vec3]) {
+        let mut needed = vec![false; self.len()];
+        let others = self.ribbons.iter().flatten().chain(self.triangles.iter().flatten());
+        others.for_each(|&i| needed[i as usize] = true);
+        let mut place: Vec<u32> = (0..self.len() as u32).collect();
+        let mut copied = Vec::new();
+        for (i, tangent) in tangents.iter().enumerate().filter(|(_, tangent)| **tangent != Vec3::ZERO) {
+            if needed[i] {
+                place[i] = (self.len() + copied.len()) as u32;
+                copied.push(i as u32);
+            } else {
+                self.directions[i] = *tangent;
+            }
+        }
+        self.tubes.iter_mut().flatten().for_each(|i| *i = place[*i as usize]);
+        self.append_copies(&copied);
+        for &i in &copied {
+            self.directions[place[i as usize] as usize] = tangents[i as usize];
+        }
+    }
+
+    fn append_copies(&mut self, of: &[u32]) {
+        for &i in of {
+            self.positions.push(self.positions[i as usize]);
+            self.directions.push(self.directions[i as usize]);
+            self.radii.push(self.radii[i as usize]);
+            match &mut self.colours {
+                Some(Colours::Srgb8(codes)) => codes.push(codes[i as usize]),
+                Some(Colours::Linear(linear)) => linear.push(linear[i as usize]),
+                None => {}
+            }
+        }
+    }
+}
+
+/// The points' normals; those of the faces around them where they have none; any direction where there are none either.
+fn normals(cloud: &Cloud) -> Vec<Vec3> {
+    let mut normals = cloud.normals.clone().unwrap_or_else(|| vec![Vec3::ZERO; cloud.len()]);
+    if normals.contains(&Vec3::ZERO) {
+        let told = faces::normals(&cloud.positions, &cloud.triangles);
+        for (normal, told) in normals.iter_mut().zip(told).filter(|(normal, _)| **normal == Vec3::ZERO) {
+            *normal = told.unwrap_or(Vec3::Z);
+        }
+    }
+    normals
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec3;
+
+    /// A square of two triangles, a point of its own, and a branch from one of the square's corners.
+    fn hybrid() -> Cloud {
+        let z = |z: f32| Vec3::new(1.0, 1.0, z);
+        Cloud {
+            origin: DVec3::new(1e6, 0.0, 0.0),
+            positions: vec![Vec3::ZERO, Vec3::X, Vec3::new(5.0, 5.0, 5.0), z(0.0), Vec3::Y, z(1.0), z(2.0)],
+            radii: Some(vec![0.0, 0.125, 0.5, 0.0, 0.0, 0.25, 0.0]),
+            normals: Some([vec![Vec3::ZERO; 2], vec![Vec3::Y], vec![Vec3::ZERO; 4]].concat()),
+            colours: Some(Colours::Srgb8((0..7).map(|i| [i; 4]).collect())),
+            triangles: vec![[0, 1, 3], [0, 3, 4]],
+            tubes: vec![[3, 5], [6, 5]],
+            ..Default::default()
+        }
+    }
+
+    #[test]
+    fn points_lines_and_triangles_become_one_model() {
+        let (Model { surfels, primitives }, counts) =
+            hybrid().into_model(false, &Estimate { radius_scale: 2.0, ..Default::default() }, &()).unwrap();
+        assert_eq!((surfels.positions, surfels.normals), (vec![Vec3::splat(5.0)], vec![Vec3::Y]));
+        assert_eq!((surfels.radii, surfels.origin), (vec![1.0], primitives.origin));
+        // The corner where the branch begins has two directions.
+        assert_eq!(primitives.triangles, [[0, 1, 2], [0, 2, 3]]);
+        assert_eq!(primitives.tubes, [[6, 4], [5, 4]]);
+        assert_eq!(primitives.directions, [Vec3::Z; 7]);
+        assert_eq!(primitives.radii, [0.0, 0.25, 0.5, 0.0, 0.5, 0.5, 0.5]);
+        let colours = [0, 1, 3, 4, 5, 6, 3].map(|i: u8| [i; 4]);
+        assert_eq!(primitives.colours, Some(Colours::Srgb8(colours.to_vec())));
+        assert_eq!((counts.line_radii_given, counts.line_radii_from_lines), (1, 2));
+        assert_eq!((primitives.count_invalid(), primitives.check().is_ok()), (0, true));
+    }
+
+    #[test]
+    fn faces_are_triangles_beside_lines_or_where_they_are_asked_for() {
+        let mesh = || Cloud { tubes: vec![], ..hybrid() };
+        let model = |polygons| mesh().into_model(polygons, &Estimate::default(), &()).unwrap().0;
+        assert_eq!((model(false).surfels.len(), model(false).primitives.is_empty()), (7, true));
+        let drawn = model(true);
+        assert_eq!((drawn.surfels.len(), drawn.primitives.len(), drawn.primitives.count()), (3, 4, 2));
+        assert_eq!(drawn.primitives.radii, [0.0, 0.125, 0.0, 0.0]);
+        let dangling = Cloud { tubes: vec![[0, 7]], ..hybrid() };
+        let cause = dangling.into_model(false, &Estimate::default(), &()).unwrap_err();
+        assert!(cause.contains("corner 7, which is none of the 7"), "{cause}");
+    }
+}

@@ -1,0 +1,132 @@
+//! Segments of ribbons and tubes from edges and polylines.
+
+use super::Lines;
+use super::points::Points;
+use super::types::{Element, Kind};
+use crate::geometry::Cloud;
+use glam::Vec3;
+
+/// Name of the property that says what a line is.
+pub(super) const TUBE: &str = "tube";
+
+/// What an element of lines has its vertices in, as indices of its properties.
+#[derive(Clone, Copy)]
+pub(super) enum Ends {
+    /// Two numbers.
+    Two([usize; 2]),
+    /// A list, in which −1 begins another line.
+    List(usize),
+}
+
+/// The vertices of an element's lines; `None` if it has no lines that are understood.
+pub(super) fn ends(element: &Element) -> Option<Ends> {
+    let scalar = |name: &str| scalar(element, name);
+    let list = || {
+        let is = |kind| matches!(kind, Kind::List { .. });
+        let named = |name: &str| matches!(name, "vertex_indices" | "vertex_index");
+        element.properties.iter().position(|property| named(&property.name) && is(property.kind))
+    };
+    match element.name.as_str() {
+        "edge" => match (scalar("vertex1"), scalar("vertex2")) {
+            (Some(a), Some(b)) => Some(Ends::Two([a, b])),
+            _ => list().map(Ends::List),
+        },
+        "polyline" | "linestrips" => list().map(Ends::List),
+        _ => None,
+    }
+}
+
+/// Index of the property of one number that has this name.
+pub(super) fn scalar(element: &Element, name: &str) -> Option<usize> {
+    let is = |kind| matches!(kind, Kind::Scalar(_));
+    element.properties.iter().position(|property| property.name == name && is(property.kind))
+}
+
+/// A segment between points.
+struct Segment {
+    /// The lesser first.
+    ends: [u32; 2],
+    /// Whether they are the other way round in the file.
+    turned: bool,
+    tube: bool,
+    /// Whether the file says what it is, and not only that there is an edge.
+    told: bool,
+}
+
+/// Collects segments between the points.
+pub(super) struct Segments<'a> {
+    points: &'a Points,
+    all: Vec<Segment>,
+    lines: Lines,
+}
+
+impl<'a> Segments<'a> {
+    pub fn new(points: &'a Points) -> Self {
+        Self { points, all: Vec::new(), lines: Lines::default() }
+    }
+
+    /// The segments of a list; −1 begins another line.
+    pub fn strip(&mut self, vertices: &[f64], tube: Option<bool>) {
+        for line in vertices.split(|vertex| *vertex == -1.0) {
+            for pair in line.windows(2) {
+                self.add([pair[0], pair[1]], tube, true);
+            }
+        }
+    }
+
+    /// An edge, which is a line unless it is the side of a face.
+    pub fn edge(&mut self, vertices: [f64; 2], tube: Option<bool>) {
+        self.add(vertices, tube, tube.is_some());
+    }
+
+    /// A segment is a ribbon if both ends have normals and the file does not say otherwise.
+    fn add(&mut self, vertices: [f64; 2], tube: Option<bool>, told: bool) {
+        let cloud = &self.points.cloud;
+        let [a, b] = vertices.map(|vertex| self.points.of_vertex(vertex));
+        let ends = a.zip(b).filter(|&(a, b)| cloud.positions[a as usize] != cloud.positions[b as usize]);
+        let Some((a, b)) = ends else {
+            self.lines.skipped += 1;
+            return;
+        };
+        let normal = |i: u32| cloud.normals.as_ref().is_some_and(|normals| normals[i as usize] != Vec3::ZERO);
+        let tube = tube == Some(true) || !(normal(a) && normal(b));
+        self.all.push(Segment { ends: [a.min(b), a.max(b)], turned: b < a, tube, told });
+    }
+
+    /// What becomes of the segments, beside the sides of `triangles`.
+    pub fn finish(mut self, triangles: &[[u32; 3]]) -> (Cloud, Lines) {
+        self.leave_out_sides(triangles);
+        let mut found = Cloud::default();
+        for Segment { ends: [a, b], turned, tube, .. } in self.all {
+            let ends = if turned { [b, a] } else { [a, b] };
+            if tube { &mut found.tubes } else { &mut found.ribbons }.push(ends);
+            self.lines.understood += 1;
+        }
+        (found, self.lines)
+    }
+
+    fn leave_out_sides(&mut self, triangles: &[[u32; 3]]) {
+        // As few as there are edges, while there may be many triangles.
+        let mut untold: Vec<_> =
+            self.all.iter().filter(|edge| !edge.told).map(|edge| (edge.ends, false)).collect();
+        if untold.is_empty() || triangles.is_empty() {
+            return;
+        }
+        untold.sort_unstable();
+        untold.dedup();
+        for &[a, b, c] in triangles {
+            for (a, b) in [(a, b), (b, c), (c, a)] {
+                if let Ok(place) = untold.binary_search_by_key(&[a.min(b), a.max(b)], |(ends, _)| *ends) {
+                    untold[place].1 = true;
+                }
+            }
+        }
+        let is_side = |edge: &Segment| {
+            let place = untold.binary_search_by_key(&edge.ends, |(ends, _)| *ends);
+            !edge.told && place.is_ok_and(|place| untold[place].1)
+        };
+        let before = self.all.len();
+        self.all.retain(|edge| !is_side(edge));
+        self.lines.sides = (before - self.all.len()) as u64;
+    }
+}
