@@ -68,6 +68,8 @@ float depth_at(Sample s, vec2 centre, vec2 e) {
     return clamp(met, s.depth - reach, s.depth + reach);
 }
 
+// Radius below which a tube is as round as one of it, px: a pixel that holds all of a hair is not its rim.
+const float THIN = 1.0;
 // Squared sine of the angle to its axis below which a tube is seen from its end.
 const float END_ON = 1e-4;
 
@@ -75,7 +77,7 @@ const float END_ON = 1e-4;
 // normal is that there, or of the outline beyond it.
 float on_tube(Sample s, vec2 at, vec2 e, out vec3 normal) {
     vec3 tangent = s.normal, to_eye = to_eye_at(at);
-    float radius = s.radius / focal_scale() * (PERSPECTIVE ? s.depth : 1.0);
+    float radius = max(s.radius, THIN) / focal_scale() * (PERSPECTIVE ? s.depth : 1.0);
     // From the axis to the ray, at the axis's distance.
     float reach = PERSPECTIVE ? s.depth / frame.near : 1.0 / frame.key_slope;
     vec3 offset = reach * (frame.ray_hi[0].xyz * e.x + frame.ray_hi[1].xyz * e.y);

@@ -4,6 +4,9 @@ use super::super::Projector;
 use super::Sample;
 use glam::{DMat2, DMat3, DVec2, DVec3};
 
+/// Radius below which a tube is as round as one of it, px: a pixel that holds all of a hair is not its rim.
+const THIN: f64 = 1.0;
+
 /// Squared sine of the angle to its axis below which a tube is seen from its end.
 const END_ON: f64 = 1e-4;
 
@@ -110,7 +113,7 @@ impl Lens {
     /// Where the ray through `at` meets a tube whose axis is seen at `centre`: the distance, no further from the axis's than the radius, and
     /// the normal. Beyond its outline, those of the outline.
     pub fn on_tube(&self, sample: &Sample, centre: DVec2, at: DVec2) -> (f64, DVec3) {
-        let (tangent, radius) = (sample.normal, self.to_length(sample.radius, sample.depth));
+        let (tangent, radius) = (sample.normal, self.to_length(sample.radius.max(THIN), sample.depth));
         let to_eye = self.to_eye(at);
         // From the axis to the ray, at the axis's distance.
         let start = |at: DVec2| self.starts * DVec3::new(1.0, at.x, at.y) + sample.depth * self.step(at);
