@@ -50,7 +50,8 @@ fn polygons(drawn: &mut Primitives, piece: &Piece, steps: usize) {
     for i in 0..side * side {
         let uv = DVec2::new(f64::from(i % side), f64::from(i / side)) / steps as f64;
         let spot = piece.shape.at(uv).spot;
-        let corner = Middle { position: spot.position, direction: spot.normal, radius: 0.0 };
+        let radius = if uv.x == 1.0 { piece.seam } else { 0.0 };
+        let corner = Middle { position: spot.position, direction: spot.normal, radius };
         vertex(drawn, corner, piece.texture.at(&spot));
     }
     let corners = (0..side * (side - 1)).filter(|i| i % side + 1 < side).map(|i| first + i);

@@ -55,6 +55,8 @@ pub struct Piece {
     pub texture: Texture,
     /// As what it may be drawn.
     pub kind: Kind,
+    /// As polygons, the radius of its vertices at u = 1, where it meets what is made of points.
+    pub seam: f64,
     /// Pieces with the same number meet at their edges; samplers keep their points apart from each other.
     pub sheet: u32,
 }

@@ -12,7 +12,9 @@ pub use tree::tree;
 
 use super::edges::Edge;
 use super::query::Query;
-use super::shapes::{Bumpy, Curve, Face, Ground, Patch, Region, Relief, Ribbon, Shape, Sphere, Torus, Tube};
+use super::shapes::{
+    Bumpy, Curve, Face, Ground, Patch, Region, Relief, Ribbon, Shape, Span, Sphere, Torus, Tube,
+};
 use super::surface::{Kind, Piece};
 use super::texture::Texture;
 use glam::DVec3;
@@ -58,6 +60,15 @@ pub fn helix(query: &Query) -> Vec<Piece> {
     let turns = query.number("turns");
     let curve = Curve::Helix { base: DVec3::new(0.0, -1.0, 0.0), radii: [0.8, 0.3], rise: 2.0, turns };
     capped(curve, [0.6 / turns, 0.18 / turns], [(32.0 * turns) as usize + 8, 16], texture(query))
+}
+
+/// A horn of two pieces, for polygons and for points.
+pub fn hybrid(query: &Query) -> Vec<Piece> {
+    let ends = [DVec3::new(-0.5, -1.0, 0.0), DVec3::new(0.9, -0.2, 0.0), DVec3::new(0.1, 1.0, 0.0)];
+    let horn = Tube { curve: Curve::Bezier(ends), radii: [0.55, 0.15], reference: DVec3::Z };
+    let half = |from: f64| Patch::new(Span { surface: horn, from, length: 0.5 }, [16, 24]);
+    let lower = Piece { kind: Kind::Polygon, seam: query.number("seam"), ..piece(half(0.0), texture(query)) };
+    vec![lower, piece(half(0.5), texture(query))]
 }
 
 /// A tube about a curve with flat ends.
@@ -108,7 +119,7 @@ fn one(shape: impl Shape + 'static, query: &Query) -> Vec<Piece> {
 }
 
 fn piece(shape: impl Shape + 'static, texture: Texture) -> Piece {
-    Piece { shape: Box::new(shape), texture, kind: Kind::Surface, sheet: 0 }
+    Piece { shape: Box::new(shape), texture, kind: Kind::Surface, seam: 0.0, sheet: 0 }
 }
 
 /// The texture that is asked for, red and cream.

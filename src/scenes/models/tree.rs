@@ -11,6 +11,10 @@ use std::f64::consts::TAU;
 
 /// Branches that grow from the end of each.
 const FORKS: u32 = 3;
+/// Trees in a row.
+const ROW: u64 = 5;
+/// Distance of trees.
+const APART: f64 = 1.8;
 /// Leaves of each last branch.
 const LEAVES: u32 = 6;
 
@@ -31,7 +35,7 @@ struct Bud {
     forks: u64,
 }
 
-/// A tree that forks `depth` times.
+/// Trees that fork `depth` times, in rows of [`ROW`], each of its own growth.
 pub fn tree(query: &Query) -> Vec<Piece> {
     let mut growth = Growth {
         random: Random::new(query.whole("growth"), 0),
@@ -40,7 +44,12 @@ pub fn tree(query: &Query) -> Vec<Piece> {
         pieces: Vec::new(),
     };
     let forks = query.whole("depth");
-    growth.branch(Bud { at: DVec3::ZERO, direction: DVec3::Y, length: 0.9, radius: 0.09, forks });
+    for i in 0..query.whole("trees") {
+        // The first is in the middle of the first row, the others are to its right, to its left, and behind.
+        let side = [0.0, 1.0, -1.0, 2.0, -2.0][(i % ROW) as usize];
+        let at = DVec3::new(APART * side, 0.0, -APART * (i / ROW) as f64);
+        growth.branch(Bud { at, direction: DVec3::Y, length: 0.9, radius: 0.09, forks });
+    }
     growth.pieces
 }
 

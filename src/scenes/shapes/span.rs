@@ -1,0 +1,26 @@
+//! Parts of parametrised surfaces.
+
+use super::patch::{Jet, Parametric};
+use glam::DVec2;
+
+/// What a surface is where u is in a range.
+#[derive(Clone, Copy, Debug)]
+pub struct Span<P> {
+    /// The whole surface.
+    pub surface: P,
+    /// Where the range begins.
+    pub from: f64,
+    /// How long it is.
+    pub length: f64,
+}
+
+impl<P: Parametric> Parametric for Span<P> {
+    fn jet(&self, uv: DVec2) -> Jet {
+        let jet = self.surface.jet(DVec2::new(self.from + self.length * uv.x, uv.y));
+        Jet { du: self.length * jet.du, ..jet }
+    }
+
+    fn extent(&self) -> DVec2 {
+        self.surface.extent() * DVec2::new(self.length, 1.0)
+    }
+}
