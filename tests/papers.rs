@@ -57,6 +57,13 @@ effects! {
     without_normalization_brightness_varies: "no-normalization";
     means_of_all_around_let_hidden_surfaces_through: "layers";
     sprites_of_whole_sizes_are_too_large: "whole-sizes";
+    a_ribbon_is_as_wide_as_it_is: "ribbon";
+    a_tube_is_round: "tubes";
+    a_branch_has_leaves: "leaf-and-branch";
+    a_tree_is_lines: "tree";
+    ten_trees_are_lines: "ten-trees";
+    points_lines_and_polygons_hide_each_other: "kinds";
+    triangles_go_on_as_points: "hybrid";
 }
 
 #[test]

@@ -96,7 +96,7 @@ fn a_scan_has_no_holes_and_does_not_leak() {
     let behind = 0.02 * subject.bounds().radius;
     // Estimated radii are the least that leave no hole between splats. Points want larger discs: as those of the bumpy sphere, of one and a
     // half spacings on average.
-    let estimated = subject.surfels(u64::MAX).unwrap();
+    let estimated = subject.model(u64::MAX).unwrap().surfels;
     let mean = estimated.radii.iter().map(|r| f64::from(*r)).sum::<f64>() / estimated.len() as f64;
     let spacings = mean / (area(&mesh::read(&path)) / estimated.len() as f64).sqrt();
     let scale = (1.5 / spacings) as f32;
@@ -117,7 +117,7 @@ fn nothing_shines_through_a_layer() {
     let device = device(DeviceLimits::default());
     for gap in [0.06, 0.1, 0.2] {
         let subject = Subject::scene(&format!("scene:slabs?slabs=2&gap={gap}&clips=off")).unwrap();
-        let (surfels, truth) = (subject.surfels(100_000).unwrap(), depths(&subject));
+        let (surfels, truth) = (subject.model(100_000).unwrap().surfels, depths(&subject));
         let radius = surfels.radii.iter().copied().fold(0.0, f32::max);
         println!("{:.1} radii apart:", gap / f64::from(radius));
         for rules in [Rules::Paper, Rules::Robust] {

@@ -2,7 +2,7 @@
 
 use super::record::{Axes, Contender, Memory, PIXELS, SPLATS};
 use crate::error::Result;
-use crate::geometry::{Camera, Surfels};
+use crate::geometry::{Camera, Parts, Surfels};
 use crate::methods::Method;
 use crate::passes::Splats;
 use crate::picture::Picture;
@@ -85,7 +85,7 @@ pub trait Ready {
     fn memory(&self) -> Memory;
 }
 
-/// Surfels on a Vulkan device, with a renderer that makes no more than the picture and one that adds normals and depths.
+/// A model on a Vulkan device, with a renderer that makes no more than the picture and one that adds normals and depths.
 pub struct OnDevice {
     scene: Scene,
     lean: Renderer,
@@ -93,13 +93,13 @@ pub struct OnDevice {
 }
 
 impl OnDevice {
-    /// Uploads `surfels`.
+    /// Uploads `parts`.
     ///
     /// # Errors
     /// As [`Scene::upload`] and [`Renderer::new`].
-    pub fn new(
+    pub fn new<'a>(
         device: &Arc<Device>,
-        surfels: &Surfels,
+        parts: impl Into<Parts<'a>>,
         size: [u32; 2],
         rasterizer: Option<Rasterizer>,
         precision: Precision,
@@ -108,7 +108,7 @@ impl OnDevice {
         let outputs = Outputs { normal: true, depth: true };
         let whole = RenderOptions { outputs, profile: false, ..lean };
         Ok(Self {
-            scene: Scene::upload(device, surfels)?,
+            scene: Scene::upload(device, parts)?,
             lean: Renderer::new(device, lean)?,
             whole: Renderer::new(device, whole)?,
         })

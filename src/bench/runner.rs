@@ -9,7 +9,7 @@ use super::times::Statistics;
 use super::{exhibit, hidden, stopwatch, terms};
 use crate::capture::{self, capture};
 use crate::error::{Error, Result};
-use crate::geometry::{Camera, Surfels};
+use crate::geometry::{Camera, Model, Surfels};
 use crate::metrics::flicker::Flicker;
 use crate::metrics::{self, Metric, Pair, colour};
 use crate::picture::Picture;
@@ -49,18 +49,18 @@ pub struct Runner {
     /// Scans, which are no scenes.
     scans: Vec<Rc<Subject>>,
     subject: Option<Rc<Subject>>,
-    surfels: Option<(SurfelKey, Rc<Surfels>)>,
+    model: Option<(ModelKey, Rc<Model>)>,
     truths: HashMap<String, Rc<Truth>>,
     exhibits: Vec<Exhibit>,
 }
 
-/// What surfels depend on.
+/// What surfels, lines and triangles depend on.
 #[derive(Clone, Debug, PartialEq)]
-struct SurfelKey {
+struct ModelKey {
     scene: String,
     points: u64,
     radius_scale: f32,
-    /// What their normalization weights depend on, if they have some.
+    /// What the surfels' normalization weights depend on, if they have some.
     weights: Option<Settings>,
 }
 
@@ -68,7 +68,7 @@ struct SurfelKey {
 struct Job<'a> {
     plan: &'a Plan,
     subject: Rc<Subject>,
-    surfels: Rc<Surfels>,
+    model: Rc<Model>,
     viewpoint: Viewpoint,
     camera: Camera,
 }
@@ -76,7 +76,7 @@ struct Job<'a> {
 impl Runner {
     /// Has made nothing yet. Plans name these scans, or built-in scenes.
     pub fn new(options: Options, scans: Vec<Rc<Subject>>) -> Self {
-        Self { options, scans, subject: None, surfels: None, truths: HashMap::new(), exhibits: Vec::new() }
+        Self { options, scans, subject: None, model: None, truths: HashMap::new(), exhibits: Vec::new() }
     }
 
     /// Carries out a plan; what cannot be rendered is refused in the result.
@@ -107,25 +107,26 @@ impl Runner {
         let (points, radius_scale) = (plan.points, plan.radius_scale);
         let by_surfel = plan.settings.splatting.normalization == Normalization::Surfel;
         let weights = by_surfel.then(|| capture::plain(&plan.settings));
-        let key = SurfelKey { scene: plan.scene.clone(), points, radius_scale, weights };
-        let surfels = match self.surfels.take() {
-            Some((of, surfels)) if of == key => surfels,
-            _ => Rc::new(self.surfels(&subject, &key)?),
+        let key = ModelKey { scene: plan.scene.clone(), points, radius_scale, weights };
+        let model = match self.model.take() {
+            Some((of, model)) if of == key => model,
+            _ => Rc::new(self.model(&subject, &key)?),
         };
-        self.surfels = Some((key, surfels.clone()));
+        self.model = Some((key, model.clone()));
         let viewpoint = plan.viewpoint.unwrap_or(subject.viewpoint());
         let camera = subject.camera(&viewpoint, 0.0, plan.size)?;
-        Ok(Job { plan, subject, surfels, viewpoint, camera })
+        Ok(Job { plan, subject, model, viewpoint, camera })
     }
 
-    fn surfels(&self, subject: &Subject, key: &SurfelKey) -> Result<Surfels> {
-        let mut surfels = subject.surfels(key.points)?;
+    fn model(&self, subject: &Subject, key: &ModelKey) -> Result<Model> {
+        let mut model = subject.model(key.points)?;
+        let surfels = &mut model.surfels;
         surfels.radii.iter_mut().for_each(|radius| *radius *= key.radius_scale);
         if let Some(settings) = &key.weights {
-            let (weights, _) = capture(self.device()?, &surfels, settings, capture::VIEWS, &())?;
+            let (weights, _) = capture(self.device()?, surfels, settings, capture::VIEWS, &())?;
             surfels.weights = Some(weights);
         }
-        Ok(surfels)
+        Ok(model)
     }
 
     fn device(&self) -> Result<&Arc<Device>> {
@@ -135,9 +136,9 @@ impl Runner {
 
     fn fill(&mut self, job: &Job<'_>, run: &mut Run) -> Result<()> {
         let (plan, settings) = (job.plan, &job.plan.settings);
-        run.points = job.surfels.len() as u64;
-        run.overlap = job.subject.area().map(|area| overlap(&job.surfels, area));
-        let mut ready = self.ready(plan.engine, &job.surfels, plan.size)?;
+        run.points = job.model.surfels.len() as u64;
+        run.overlap = job.subject.area().map(|area| overlap(&job.model.surfels, area));
+        let mut ready = self.ready(plan.engine, &job.model, plan.size)?;
         if plan.wants.time {
             run.time = Some(stopwatch::time(&mut *ready, &job.camera, settings, &self.options.effort)?);
         }
@@ -179,33 +180,33 @@ impl Runner {
         base: &Plan,
     ) -> Result<Option<Statistics>> {
         let other = self.job(base)?;
-        let mut others = self.ready(base.engine, &other.surfels, base.size)?;
+        let mut others = self.ready(base.engine, &other.model, base.size)?;
         let first = (&mut *others, &other.camera, &base.settings);
         let second = (ready, &job.camera, &job.plan.settings);
         stopwatch::ratio(first, second, &self.options.effort)
     }
 
-    fn ready(&self, engine: Engine, surfels: &Surfels, size: [u32; 2]) -> Result<Box<dyn Ready>> {
+    fn ready(&self, engine: Engine, model: &Model, size: [u32; 2]) -> Result<Box<dyn Ready>> {
         match engine {
             Engine::Splatting { rasterizer, precision } => {
-                Ok(Box::new(OnDevice::new(self.device()?, surfels, size, rasterizer, precision)?))
+                Ok(Box::new(OnDevice::new(self.device()?, model, size, rasterizer, precision)?))
             }
-            Engine::Yardstick(kind) => Ok(Box::new(OnHost::new(surfels, size, kind)?)),
+            Engine::Yardstick(kind) => Ok(Box::new(OnHost::new(&model.surfels, size, kind)?)),
         }
     }
 
     /// Holds the picture against the float64 reference, if that is wanted, and gives the reference's.
     fn agree(&self, job: &Job<'_>, picture: &Picture, run: &mut Run) -> Result<Option<Picture>> {
-        let (plan, surfels) = (job.plan, &*job.surfels);
+        let (plan, model) = (job.plan, &*job.model);
         if plan.wants.agreement {
             let tolerance = Tolerance::float32();
-            let expected = Expected::new(surfels, &job.camera, plan.size, &plan.settings, &tolerance)?;
+            let expected = Expected::new(&model.surfels, &job.camera, plan.size, &plan.settings, &tolerance)?;
             run.agreement = Some(Agreement::of(&expected.compare(picture)?));
             return Ok(Some(expected.frame.to_picture()));
         }
         match plan.wants.terms {
             true => {
-                let frame = reference::render(surfels, &job.camera, plan.size, &plan.settings, &())?;
+                let frame = reference::render(model, &job.camera, plan.size, &plan.settings, &())?;
                 Ok(Some(frame.to_picture()))
             }
             false => Ok(None),
@@ -236,7 +237,7 @@ impl Runner {
         expected: Option<&Picture>,
         run: &mut Run,
     ) -> Result<()> {
-        let seen = hidden::without(&job.surfels, job.subject.surface(), &job.camera);
+        let seen = hidden::without(&job.model.surfels, job.subject.surface(), &job.camera);
         let clean = match seen.is_empty() {
             true => Picture {
                 size: picture.size,
@@ -244,7 +245,7 @@ impl Runner {
                 ..Default::default()
             },
             false => {
-                let mut ready = self.ready(job.plan.engine, &seen, job.plan.size)?;
+                let mut ready = self.ready(job.plan.engine, &seen.into(), job.plan.size)?;
                 ready.picture(&job.camera, &job.plan.settings)?
             }
         };

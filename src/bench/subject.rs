@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::geometry::estimate::Estimate;
-use crate::geometry::{Bounds, Camera, Cloud, Surfels};
+use crate::geometry::{Bounds, Camera, Cloud, Model};
 use crate::io::ply::{self, ReadOptions};
 use crate::progress::Progress;
 use crate::scenes::{self, Surface, Viewpoint};
@@ -88,20 +88,20 @@ impl Subject {
         }
     }
 
-    /// So many surfels of it, in Morton order. Of a scan, normals are the file's or estimated of the points that are left, at any number of
+    /// So many surfels of it, in Morton order, and what it has of lines and triangles. Of a scan, normals are the file's or estimated of the points that are left, at any number of
     /// them: so that numbers differ in nothing else.
     ///
     /// # Errors
-    /// As [`scenes::open`]; [`Error::Input`] if a scan's points do not make surfels.
-    pub fn surfels(&self, points: u64) -> Result<Surfels> {
+    /// As [`scenes::model`]; [`Error::Input`] if a scan's points do not make surfels.
+    pub fn model(&self, points: u64) -> Result<Model> {
         match &self.shape {
             Shape::Built(_) => {
                 let separator = if self.name.contains('?') { '&' } else { '?' };
-                scenes::open(&format!("{}{separator}points={points}", self.name))
+                scenes::model(&format!("{}{separator}points={points}", self.name))
             }
             Shape::Scan(scan) => {
                 let made = scan.cloud.some(points as usize).into_surfels(&Estimate::default(), &());
-                Ok(made.map_err(|cause| Error::input(self.name.as_str(), cause))?.0)
+                Ok(made.map_err(|cause| Error::input(self.name.as_str(), cause))?.0.into())
             }
         }
     }

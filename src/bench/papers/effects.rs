@@ -77,7 +77,7 @@ const fn more(metric: &'static str, more: usize, less: usize, by: Margin) -> Exp
 }
 
 /// All of them.
-pub const ALL: [Effect; 11] = [
+pub const ALL: [Effect; 18] = [
     Effect {
         name: "axis-offset",
         title: "A depth offset along the camera's axis hides too much",
@@ -191,6 +191,71 @@ pub const ALL: [Effect; 11] = [
         metrics: &[(LEAKS, "px of what is hidden"), ("rmse", "RMSE")],
         expected: &[more(LEAKS, 0, 1, Margin::Plus(20.0)), more("rmse", 0, 1, Margin::Times(1.1))],
         plans: layers,
+    },
+    Effect {
+        name: "ribbon",
+        title: "A twisted ribbon",
+        source: "marroquim2008 figures 8 and 9",
+        about: "A ribbon of one and a half turns, of 32 segments: as published, one line of discs that are as wide as it; by the robust rules, strands of \
+                8 px. Then surfels.",
+        metrics: &[("bloat", "px too many"), ("rmse", "RMSE")],
+        expected: &[more("rmse", 0, 1, Margin::Times(1.02))],
+        plans: |effect| drawn(effect, "scene:ribbon?albedo=plain", 100000),
+    },
+    Effect {
+        name: "tubes",
+        title: "A tube along a helix",
+        source: "marroquim2008 figure 10",
+        about: "A tapered tube of 128 segments: discs that face the eye with the normal that a line has towards the light, or what is round about the \
+                axis. Then surfels.",
+        metrics: &[("bloat", "px too many"), ("rmse", "RMSE")],
+        expected: &[more("rmse", 0, 1, Margin::Times(1.02))],
+        plans: |effect| drawn(effect, "scene:helix?segments=128", 100000),
+    },
+    Effect {
+        name: "leaf-and-branch",
+        title: "A branch and its leaves",
+        source: "marroquim2008 figures 12 and 14",
+        about: "A tube with six ribbons, of 12 segments each. Then surfels.",
+        metrics: &[("bloat", "px too many"), ("rmse", "RMSE")],
+        expected: &[more("rmse", 0, 1, Margin::Times(1.02))],
+        plans: |effect| drawn(effect, "scene:tree?depth=0&segments=12", 100000),
+    },
+    Effect {
+        name: "tree",
+        title: "A tree of lines",
+        source: "marroquim2008 figure 13",
+        about: "162 leaves as ribbons and 40 branches as tubes, of 12 segments each. Then surfels.",
+        metrics: &[("bloat", "px too many"), ("rmse", "RMSE")],
+        expected: &[more("rmse", 0, 1, Margin::Times(1.02))],
+        plans: |effect| drawn(effect, "scene:tree?segments=12", 100000),
+    },
+    Effect {
+        name: "ten-trees",
+        title: "Ten trees of lines",
+        source: "marroquim2008 figure 19",
+        about: "The same ten times: as many lines as pixels of them. Then surfels.",
+        metrics: &[("bloat", "px too many"), ("rmse", "RMSE")],
+        expected: &[more("rmse", 0, 1, Margin::Times(1.02))],
+        plans: |effect| drawn(effect, "scene:tree?trees=10&segments=12", 100000),
+    },
+    Effect {
+        name: "kinds",
+        title: "Points, lines and polygons in one picture",
+        source: "marroquim2008 figure 15",
+        about: "A torus of points, a spring and a ribbon of lines, a floor and a box of triangles. Then surfels.",
+        metrics: &[("bloat", "px too many"), ("rmse", "RMSE")],
+        expected: &[more("rmse", 0, 1, Margin::Times(1.02))],
+        plans: |effect| drawn(effect, "scene:mixed?segments=200", 50000),
+    },
+    Effect {
+        name: "hybrid",
+        title: "A surface of triangles and of points",
+        source: "marroquim2008 figure 16",
+        about: "A horn, the lower half of which is triangles: their vertices at the seam have radii that blend with the points. Then surfels.",
+        metrics: &[("bloat", "px too many"), ("rmse", "RMSE")],
+        expected: &[more("rmse", 0, 1, Margin::Times(1.02))],
+        plans: |effect| drawn(effect, "scene:hybrid?segments=96", 50000),
     },
 ];
 
@@ -318,6 +383,16 @@ fn whole_sizes(effect: &Effect) -> Vec<Plan> {
     let sprites = by(&effect.side("scene:bumpy-sphere", 100_000, 192), &preset("sprites"));
     let fractional = sprites.settings.splatting;
     each(&sprites, [Splatting { footprint: Footprint::WholeSprite, ..fractional }, fractional])
+}
+
+/// A scene as lines and polygons by both rules, and as surfels.
+fn drawn(effect: &Effect, scene: &str, points: u64) -> Vec<Plan> {
+    let separator = if scene.contains('?') { '&' } else { '?' };
+    let mut lines = effect.side(&format!("{scene}{separator}primitives=on"), points, 512);
+    lines.settings.shading = Shading::Lit;
+    let surfels = Plan { scene: scene.into(), ..lines.clone() };
+    let by_rules = ["pull-push-paper", "pull-push"].map(|name| by(&lines, &preset(name)));
+    by_rules.into_iter().chain([by(&surfels, &preset("perspective-ewa"))]).collect()
 }
 
 fn layers(effect: &Effect) -> Vec<Plan> {
