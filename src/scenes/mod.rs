@@ -38,7 +38,7 @@ pub fn is_scene(text: &str) -> bool {
 /// stand there too.
 ///
 /// # Errors
-/// [`Error::Usage`](crate::Error::Usage), which lists what exists, if the scene, a parameter or a value is none.
+/// [`Error::Usage`], which lists what exists, if the scene, a parameter or a value is none.
 pub fn surface(text: &str) -> Result<Box<dyn Surface>> {
     Ok(Box::new(assemble(&Query::parse(text)?)))
 }
