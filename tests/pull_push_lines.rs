@@ -114,10 +114,10 @@ const NAMES: [&str; 7] = [
 
 /// Upper limits of missing pixels, holes, extra ones, what is behind and before, and of the mean normal's error in degrees, at 512 × 512 px.
 const BARS: [([usize; 5], f64); 7] = [
-    ([310, 10, 930, 40, 60], 0.9),
+    ([320, 12, 930, 40, 60], 0.9),
     ([100, 2, 420, 3, 10], 1.4),
     ([75, 0, 150, 0, 0], 2.0),
-    ([590, 2, 520, 120, 270], 1.5),
+    ([590, 2, 520, 25, 390], 1.35),
     ([1000, 25, 620, 280, 160], 2.8),
     ([450, 40, 940, 360, 220], 4.6),
     ([180, 60, 100, 70, 330], 0.6),

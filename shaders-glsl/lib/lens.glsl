@@ -73,8 +73,8 @@ const float THIN = 1.0;
 // Squared sine of the angle to its axis below which a tube is seen from its end.
 const float END_ON = 1e-4;
 
-// Where the ray through `at`, e px from where a tube's axis is seen, meets it: the distance, no further from the axis's than the radius. The
-// normal is that there, or of the outline beyond it.
+// Where the ray through `at`, e px from where a tube's axis is seen, meets it: the distance, no further from the axis's than twice the
+// radius, which is as far as it goes up to 60° from the picture's plane. The normal is that there, or of the outline beyond it.
 float on_tube(Sample s, vec2 at, vec2 e, out vec3 normal) {
     vec3 tangent = s.normal, to_eye = to_eye_at(at);
     float radius = max(s.radius, THIN) / focal_scale() * (PERSPECTIVE ? s.depth : 1.0);
@@ -93,5 +93,5 @@ float on_tube(Sample s, vec2 at, vec2 e, out vec3 normal) {
     vec3 out_of = offset + reached * eye;
     if (dot(out_of, out_of) > 0.0) normal = normalize(out_of);
     float rise = -reached * dot(to_eye, frame.forward_hi.xyz);
-    return s.depth - clamp(rise, -radius, radius);
+    return s.depth - clamp(rise, -2.0 * radius, 2.0 * radius);
 }

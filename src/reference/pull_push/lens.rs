@@ -110,8 +110,8 @@ impl Lens {
         -self.step(at).normalize()
     }
 
-    /// Where the ray through `at` meets a tube whose axis is seen at `centre`: the distance, no further from the axis's than the radius, and
-    /// the normal. Beyond its outline, those of the outline.
+    /// Where the ray through `at` meets a tube whose axis is seen at `centre`: the distance, no further from the axis's than twice the
+    /// radius, which is as far as it goes up to 60° from the picture's plane, and the normal. Beyond its outline, those of the outline.
     pub fn on_tube(&self, sample: &Sample, centre: DVec2, at: DVec2) -> (f64, DVec3) {
         let (tangent, radius) = (sample.normal, self.to_length(sample.radius.max(THIN), sample.depth));
         let to_eye = self.to_eye(at);
@@ -129,6 +129,6 @@ impl Lens {
         let reached = middle + beyond.max(0.0).sqrt();
         let normal = (offset + reached * eye).try_normalize().unwrap_or(to_eye);
         let rise = -self.forward * reached * to_eye.z;
-        (sample.depth - rise.clamp(-radius, radius), normal)
+        (sample.depth - rise.clamp(-2.0 * radius, 2.0 * radius), normal)
     }
 }

@@ -233,9 +233,9 @@ fn a_tube_is_round() {
             }
             let normal = across(z * step - axis) / radius;
             let found = DVec3::from_array(picture.normal[i]);
-            // Its axis is a mean of discs up to a radius away, bent by perspective by r² / z, and seen in pixels of 1 / 32.
+            // Its axis is a mean of discs up to a radius away, bent by perspective by r² / z.
             assert!(
-                picture.covered[i] && (picture.depth[i] - z).abs() < 0.03,
+                picture.covered[i] && (picture.depth[i] - z).abs() < 0.02,
                 "{i}: {} {z}",
                 picture.depth[i]
             );
