@@ -185,7 +185,7 @@ fn the_page_says_what_points_cost_and_when_they_win() {
         page(&results, CODE)
     };
     let whole = told(points_alone());
-    assert!(whole.contains("Passes of pull-push over number of points"));
+    assert!(whole.contains("Passes of pull-push: bumpy-sphere"));
     let cost = "Pull and push take 30 to 44 ms, at most 1.1 times the 40 ms that they take where every pixel shows a point.";
     assert!(whole.contains(cost));
     assert!(whole.contains("It is faster than perspective-ewa from 1 M points on."));

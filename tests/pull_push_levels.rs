@@ -97,6 +97,7 @@ struct Verdict {
 
 impl Verdict {
     fn of(gpu: &Level, twin: &Decided, doubt: f64) -> Self {
+        assert_eq!((gpu.size, gpu.samples.len()), (twin.level.size, twin.margins.len()));
         let mut found = Self { samples: gpu.samples.len(), ..Default::default() };
         let pairs = gpu.samples.iter().zip(&twin.level.samples).zip(&twin.margins);
         for (i, ((gpu, own), margin)) in pairs.enumerate() {
@@ -174,7 +175,7 @@ fn compare(gpu: &Frame, twin: &Frame) -> (f64, f64) {
         colours.chain(normals).chain([depth]).fold(0.0, largest)
     };
     let all: Vec<f64> = (0..gpu.covered.len()).map(apart).collect();
-    let differ = all.iter().filter(|apart| **apart > LIMIT).count();
+    let differ = all.iter().filter(|apart| apart.is_nan() || **apart > LIMIT).count();
     let worst = all.iter().copied().filter(|apart| apart.is_finite()).fold(0.0, largest);
     (worst, differ as f64 / all.len() as f64)
 }

@@ -26,7 +26,7 @@ pub fn plots(page: &mut Page<'_>, session: &Session) -> io::Result<Vec<Markup>> 
             if lines.is_empty() {
                 continue;
             }
-            let title = format!("Passes of {} over number of points: {}", method.name, show::scene(scene));
+            let title = format!("Passes of {}: {}", method.name, show::scene(scene));
             let name = format!("passes-{}-{}", method.name, show::scene(scene));
             let axes = [("points", Scale::Log), ("time of a pass, ms", Scale::Log)];
             let filled = session.runs.iter().find(|run| {

@@ -40,10 +40,11 @@ pub(super) fn plans() -> Vec<Plan> {
     plans
 }
 
-/// A plane that fills the picture with points at every pixel: pull–push finds each sample known, and has the most to do.
+/// A plane that fills the picture with points at every pixel, whose discs reach all their neighbours: pull–push finds each sample known and
+/// each candidate to count, and has the most to do.
 fn filled(method: &Method) -> Plan {
     let viewpoint =
         Viewpoint { eye: [0.0, 14.0, 0.0], target: [0.0; 3], up: [0.0, 0.0, -1.0], fov_y_deg: 45.0 };
     let plan = plan(Suite::Scaling, Figure::Filled, "scene:relief?height=0", 4_000_000, SIZE);
-    by(&Plan { wants: Wants::TIME, viewpoint: Some(viewpoint), ..plan }, method)
+    by(&Plan { wants: Wants::TIME, viewpoint: Some(viewpoint), radius_scale: 4.0, ..plan }, method)
 }
