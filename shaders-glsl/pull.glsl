@@ -22,12 +22,14 @@ void main() {
     int front = 0;
     for (int k = 0; k < 4; k++) {
         ivec2 child = 2 * at + ivec2(k & 1, k >> 1);
-        below[k] = is_within(finer, child) ? load_pulled(place_in(finer, start, child)) : NOTHING;
-        if (below[k].near == 0.0) continue;
+        bool there = is_within(finer, child);
+        below[k] = load_pulled(there ? place_in(finer, start, child) : 0);
+        if (!there) below[k].near = 0.0;
         // From whole numbers: a difference of positions on the picture would lose digits.
         vec2 e = (vec2(child - 2 * at) - 0.5) * float(1u << finer) + below[k].displacement;
         below[k].displacement = e;
-        if (!(radii2(below[k], own + e, -e, 0.0) <= 1.0)) {
+        bool counts = below[k].near > 0.0 && radii2(below[k], own + e, -e, 0.0) <= 1.0;
+        if (!counts) {
             below[k].near = 0.0;
         } else if (below[k].near < nearest) {
             nearest = below[k].near;

@@ -21,10 +21,14 @@ Sample candidate(int k, uint level, uint start, uint above, ivec2 at) {
     uint of = coarse ? level + 1 : level;
     ivec2 side = 2 * (at & 1) - 1;
     ivec2 place = coarse ? at / 2 + side * ivec2(k & 1, k >> 1) : at + ivec2((k - 4) % 3, (k - 4) / 3) - 1;
-    if (of >= pass.levels || !is_within(of, place)) return NOTHING;
+    if (of >= pass.levels) return NOTHING;
+    // Beyond the border the pixel's own place is read, and forgotten: all lanes read.
+    bool there = is_within(of, place);
+    ivec2 known = there ? place : coarse ? at / 2 : at;
     Sample s = NOTHING;
-    if (coarse) s = load_pushed(place_in(of, above, place));
-    else s = load_pulled(place_in(of, start, place));
+    if (coarse) s = load_pushed(place_in(of, above, known));
+    else s = load_pulled(place_in(of, start, known));
+    if (!there) s = NOTHING;
     // From whole numbers: a difference of positions on the picture would lose digits.
     s.displacement += (coarse ? vec2(2 * place - at) + 0.5 : vec2(place - at)) * float(1u << level);
     return s;
@@ -45,13 +49,11 @@ void main() {
     float weights[13], first = PAPER ? 0.0 : -1e38;
     for (int k = 0; k < count; k++) {
         Sample s = candidate(k, level, start, above, at);
-        weights[k] = 0.0;
-        if (s.near == 0.0) continue;
         float m2 = radii2(s, own + s.displacement, -s.displacement, widening);
-        if (!(m2 <= 1.0)) continue;
-        weights[k] = exp(-(PAPER ? PAPER_RIM : RIM) * m2);
+        bool counts = s.near > 0.0 && m2 <= 1.0;
+        weights[k] = counts ? exp(-(PAPER ? PAPER_RIM : RIM) * m2) : 0.0;
         float rank = PAPER ? weights[k] : -s.near;
-        if (rank > first) {
+        if (counts && rank > first) {
             first = rank;
             front = s;
         }
@@ -61,11 +63,9 @@ void main() {
 
     Sample mean = NOTHING;
     float total = 0.0;
-    for (int k = 0; k < count; k++) {
-        if (weights[k] == 0.0) continue;
+    for (int k = 0; k < (front.near > 0.0 ? count : 0); k++) {
         Sample s = candidate(k, level, start, above, at);
-        if (!PAPER && s.near > front.far || s.tube != front.tube) continue;
-        float w = weights[k];
+        float w = (PAPER || s.near <= front.far) && s.tube == front.tube ? weights[k] : 0.0;
         total += w;
         mean.near += w * s.near;
         mean.far += w * s.far;

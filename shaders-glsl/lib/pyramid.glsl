@@ -57,13 +57,13 @@ bool is_within(uint level, ivec2 at) {
     return all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, level_size(level)));
 }
 
-// The radius of a tube's sample is stored with a minus.
+// The radius of a tube's sample is stored with a minus. What is not known is stored as zeros, and read like all else: where lanes differ in what
+// they know, branches cost more than what they leave out.
 #define DEFINE_PYRAMID(LOAD, STORE, FLOATS)                                                            \
     Sample LOAD(uint place) {                                                                          \
         uint i = place * sample_size();                                                                \
         Sample s = NOTHING;                                                                            \
         s.near = FLOATS[i];                                                                            \
-        if (s.near == 0.0) return s;                                                                   \
         s.far = FLOATS[i + 1];                                                                         \
         s.depth = FLOATS[i + 2];                                                                       \
         s.tube = floatBitsToUint(FLOATS[i + 3]) >> 31 != 0;                                            \
