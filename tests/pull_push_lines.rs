@@ -71,6 +71,7 @@ fn faults(found: &Picture, exact: &Picture) -> Faults {
     faults
 }
 
+/// Keeps a picture, to be looked at, where `SURFEL_FIGURES` names a folder.
 fn write(picture: &Picture, name: &str) {
     if let Some(folder) = std::env::var_os("SURFEL_FIGURES") {
         let path = std::path::Path::new(&folder).join(name);

@@ -126,13 +126,15 @@ impl Primitives {
         ribbons.chain(self.tubes.iter().map(|ends| (*ends, true)))
     }
 
-    /// Direction of the lines at every vertex: the mean of the segments' that end there, whichever way they go; 0 where there are none.
+    /// Direction of the lines at every vertex: the mean of the segments' that end there, whichever way they go; 0 where there are none. Segments of
+    /// vertices that do not exist have no part in it.
     pub fn line_directions(&self) -> Vec<Vec3> {
         let mut directions = vec![Vec3::ZERO; self.len()];
         for ([from, to], _) in self.segments() {
-            let [from, to] = [from, to].map(|vertex| vertex as usize);
-            let along = (self.positions[to] - self.positions[from]).normalize_or_zero();
-            for vertex in [from, to] {
+            let ends = [from, to].map(|vertex| vertex as usize);
+            let [Some(a), Some(b)] = ends.map(|end| self.positions.get(end)) else { continue };
+            let along = (b - a).normalize_or_zero();
+            for vertex in ends {
                 let there = directions[vertex];
                 directions[vertex] += if there.dot(along) < 0.0 { -along } else { along };
             }
@@ -263,6 +265,8 @@ mod tests {
             "{directions:?}"
         );
         assert_eq!((directions[2].abs(), directions[3]), (Vec3::Y, Vec3::ZERO));
+        bent.tubes.push([3, 9]);
+        assert_eq!(bent.line_directions(), directions);
     }
 
     #[test]
