@@ -1,6 +1,5 @@
 //! Pull: a level of the pulled pyramid → the next coarser one (marroquim2008 §3.2; `pull.glsl`).
 
-use super::normalize::grid_over;
 use super::pyramid::over_pixels;
 use super::{PyramidSet, SplatLayout};
 use crate::error::Result;
@@ -27,10 +26,8 @@ impl Pull {
         targets: &Pyramids,
     ) {
         for level in 1..targets.levels() {
-            rec.pass("pull", &[targets.pulled.with(Access::COMPUTE_WRITE)], |enc| {
-                let push = [level, targets.levels()];
-                enc.dispatch(&self.0, &[frame, &set.0], push, grid_over(targets.level_pixels(level)));
-            });
+            let uses = [targets.pulled.with(Access::COMPUTE_WRITE)];
+            rec.pass("pull", &uses, |enc| set.visit(enc, &self.0, frame, targets, level));
         }
     }
 }

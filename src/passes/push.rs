@@ -1,6 +1,5 @@
 //! Push: the pulled pyramid → the final one, coarse to fine (marroquim2008 §3.3; `push.glsl`).
 
-use super::normalize::grid_over;
 use super::pyramid::over_pixels;
 use super::{PyramidSet, SplatLayout};
 use crate::error::Result;
@@ -29,10 +28,7 @@ impl Push {
         for level in (0..targets.levels()).rev() {
             let uses =
                 [targets.pulled.with(Access::COMPUTE_READ), targets.pushed.with(Access::COMPUTE_WRITE)];
-            rec.pass("push", &uses, |enc| {
-                let push = [level, targets.levels()];
-                enc.dispatch(&self.0, &[frame, &set.0], push, grid_over(targets.level_pixels(level)));
-            });
+            rec.pass("push", &uses, |enc| set.visit(enc, &self.0, frame, targets, level));
         }
     }
 }

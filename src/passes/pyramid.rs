@@ -1,11 +1,11 @@
 //! What project, fetch, pull, push and shade share (`lib/pyramid.glsl`).
 
 use super::SplatLayout;
-use super::normalize::frame_layout;
+use super::normalize::{frame_layout, grid_over};
 use crate::error::Result;
 use crate::targets::Pyramids;
 use crate::variant::Variant;
-use crate::vk::{Binding, ComputePipeline, DescriptorSet, Device, SetLayout};
+use crate::vk::{Binding, ComputePipeline, DescriptorSet, Device, Encoder, SetLayout};
 use ash::vk::{DescriptorType, ShaderStageFlags};
 use std::sync::Arc;
 
@@ -34,5 +34,18 @@ impl PyramidSet {
         let buffers = [&targets.nearest, &targets.pulled, &targets.pushed, &targets.picture.buffer];
         let bindings = buffers.map(|buffer| Binding::Storage(buffer, 0, buffer.size()));
         DescriptorSet::new(device, &layout.pyramids, &bindings).map(Self)
+    }
+
+    /// Runs such a pipeline over the pixels of a level of `targets`. `frame` is a set of the frame's numbers.
+    pub(super) fn visit(
+        &self,
+        enc: &mut Encoder<'_>,
+        pipeline: &ComputePipeline,
+        frame: &DescriptorSet,
+        targets: &Pyramids,
+        level: u32,
+    ) {
+        let grid = grid_over(targets.level_pixels(level));
+        enc.dispatch(pipeline, &[frame, &self.0], [level, targets.levels()], grid);
     }
 }

@@ -1,6 +1,6 @@
 //! Shade: the final level 0 → picture, normal, depth (marroquim2008 §3.4; `shade.glsl`).
 
-use super::normalize::{frame_layout, grid_over};
+use super::normalize::frame_layout;
 use super::pyramid::over_pixels;
 use super::{PyramidSet, SplatLayout};
 use crate::error::Result;
@@ -39,8 +39,6 @@ impl Shade {
     ) {
         let uses =
             [targets.pushed.with(Access::COMPUTE_READ), targets.picture.buffer.with(Access::COMPUTE_WRITE)];
-        rec.pass("shade", &uses, |enc| {
-            enc.dispatch(&self.pipeline, &[frame, &set.0], [0; 2], grid_over(targets.pixels()));
-        });
+        rec.pass("shade", &uses, |enc| set.visit(enc, &self.pipeline, frame, targets, 0));
     }
 }
