@@ -2,7 +2,7 @@
 
 #include "lib/double_float.glsl"
 #include "lib/pixel_row.glsl"
-#include "lib/srgb.glsl"
+#include "lib/colour_streams.glsl"
 
 layout(constant_id = 29) const uint VERTEX_COLOURS = 0; // how the scene holds their colours; see lib/sums.glsl
 
@@ -23,12 +23,7 @@ float distance_of(vec3 hi, vec3 lo) {
     return dot_double(hi, lo, frame.forward_hi.xyz, frame.forward_lo.xyz).x;
 }
 
-vec3 vertex_colour(uint i) {
-    if (VERTEX_COLOURS == COLOURS_NONE) return frame.albedo.rgb;
-    if (VERTEX_COLOURS == COLOURS_LINEAR)
-        return uintBitsToFloat(uvec3(vertex_colours[3 * i], vertex_colours[3 * i + 1], vertex_colours[3 * i + 2]));
-    return srgb_to_linear(unpackUnorm4x8(vertex_colours[i]).rgb);
-}
+DEFINE_COLOURS(vertex_colour, VERTEX_COLOURS, vertex_colours)
 
 Vertex vertex_of(uint i) {
     uint k = 7 * i;

@@ -1,7 +1,7 @@
 // What a pixel gets of a surfel: the vectors that the targets sum, see lib/sums.glsl.
 
 #include "lib/shading.glsl"
-#include "lib/srgb.glsl"
+#include "lib/colour_streams.glsl"
 
 layout(constant_id = 20) const bool SHADE_SPLATS = false; // what is summed as colour is light: splats are lit at their centres
 
@@ -9,12 +9,7 @@ layout(set = 0, binding = 2, std430) readonly buffer Positions { float positions
 layout(set = 0, binding = 3, std430) readonly buffer Normals { float normals[]; };
 layout(set = 0, binding = 5, std430) readonly buffer Colours { uint colours[]; };
 
-vec3 colour_of(uint i) {
-    if (COLOURS == COLOURS_NONE) return frame.albedo.rgb;
-    if (COLOURS == COLOURS_LINEAR)
-        return uintBitsToFloat(uvec3(colours[3 * i], colours[3 * i + 1], colours[3 * i + 2]));
-    return srgb_to_linear(unpackUnorm4x8(colours[i]).rgb);
-}
+DEFINE_COLOURS(colour_of, COLOURS, colours)
 
 // Unit vector from surfel i to the eye.
 vec3 to_eye_of(uint i) {
