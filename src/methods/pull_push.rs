@@ -2,7 +2,7 @@
 //! Computers & Graphics 2008.
 //!
 //! ```text
-//! surfels ─ project → the nearest point of each pixel ─ fetch → level 0
+//! surfels, lines, triangles ─ project → the nearest point of each pixel ─ fetch → level 0
 //! level 0 ─ pull → 1 ─ pull → … ─ pull → top           means of what is in front, fine to coarse
 //! picture ← shade ← 0 ← push ← 1 ← push ← … ← push     holes filled, hidden points replaced, coarse to fine
 //! ```
