@@ -4,7 +4,7 @@ mod primitives;
 mod weights;
 
 use crate::error::{Error, Result};
-use crate::geometry::{Bounds, Clip, ClipLine, Clips, Colours, Ellipse, Parts, Surfels, Weights};
+use crate::geometry::{Bounds, Clip, ClipLine, Clips, Colours, Ellipse, Parts, Primitives, Surfels, Weights};
 use crate::vk::shaders::layout::Splat;
 use crate::vk::{Binding, Buffer, Capabilities, Device, upload};
 use glam::DVec3;
@@ -326,12 +326,15 @@ fn colour_bytes(colours: Option<&Colours>) -> (ColourStream, &[u8]) {
 
 /// The bounds of what is valid, and the number of surfels that are not.
 fn usable(parts: &Parts<'_>) -> Result<(Bounds, usize)> {
-    let (count, invalid) = (parts.surfels.len(), parts.surfels.count_invalid());
     let Some(bounds) = parts.bounds() else {
-        let text = format!("a scene without surfels: {count} are given, and {invalid} of them are invalid");
+        let surfels = parts.surfels.len();
+        let primitives = parts.primitives.map_or(0, Primitives::count);
+        let text = format!(
+            "a scene with nothing to draw: none of {surfels} surfels, and of {primitives} segments and triangles, is valid"
+        );
         return Err(Error::Usage(text));
     };
-    Ok((bounds, invalid))
+    Ok((bounds, parts.surfels.count_invalid()))
 }
 
 fn warn_of_primitives(invalid: usize, count: usize) {
