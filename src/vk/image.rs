@@ -1,10 +1,9 @@
 //! Images that are rendered to.
 
-use super::{Device, memory};
+use super::Device;
+use super::memory::{self, Allocation, Location, MemoryRequest};
 use crate::error::{Error, Result};
 use ash::vk;
-use gpu_allocator::MemoryLocation;
-use gpu_allocator::vulkan::Allocation;
 use std::sync::Arc;
 
 /// What an image is used for beside being rendered to.
@@ -75,10 +74,10 @@ impl Image {
         let device = &self.device;
         // SAFETY: the image is the device's.
         let requirements = unsafe { device.raw.get_image_memory_requirements(self.raw) };
-        let allocation = memory::allocate(device, name, requirements, MemoryLocation::GpuOnly, false)?;
-        let allocation = self.allocation.insert(allocation);
+        let request = MemoryRequest { name, requirements, location: Location::Device, linear: false };
+        let (memory, offset) = self.allocation.insert(memory::allocate(device, &request)?).place();
         // SAFETY: the memory was allocated for this image's requirements and is bound once.
-        unsafe { device.raw.bind_image_memory(self.raw, allocation.memory(), allocation.offset()) }
+        unsafe { device.raw.bind_image_memory(self.raw, memory, offset) }
             .map_err(Error::vulkan("vkBindImageMemory"))
     }
 
