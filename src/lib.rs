@@ -64,6 +64,7 @@ pub mod scene;
 pub mod scenes;
 pub mod settings;
 pub mod splatting;
+mod stage;
 pub mod targets;
 pub mod truth;
 pub mod variant;

@@ -22,9 +22,10 @@ impl Buffer {
         Self::new(device, name, size, usage, Location::Device)
     }
 
-    /// A buffer that the CPU writes and shaders read as uniforms.
+    /// A buffer that shaders read as uniforms, and [`super::Recorder::update`] writes.
     pub fn uniform(device: &Arc<Device>, name: &str, size: u64) -> Result<Self> {
-        Self::new(device, name, size, vk::BufferUsageFlags::UNIFORM_BUFFER, Location::Upload)
+        let usage = vk::BufferUsageFlags::UNIFORM_BUFFER | vk::BufferUsageFlags::TRANSFER_DST;
+        Self::new(device, name, size, usage, Location::Device)
     }
 
     /// A buffer that the CPU writes and the GPU copies from.

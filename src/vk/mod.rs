@@ -40,4 +40,4 @@ pub use recorder::Recorder;
 pub use render_pass::{Attachment, Framebuffer, RenderPass};
 pub use requirements::{ABILITIES, API_VERSION, Abilities, Ability, Features, QUEUE};
 pub use timestamps::PassTime;
-pub use transfer::upload;
+pub use transfer::{Staging, Uploads};
