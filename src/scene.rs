@@ -192,6 +192,11 @@ impl Scene {
         Ok((scene, invalid))
     }
 
+    /// Whether it is on this device.
+    pub fn is_on(&self, device: &Arc<Device>) -> bool {
+        self.positions.is_on(device)
+    }
+
     /// Number of surfels.
     pub fn count(&self) -> u64 {
         self.count
@@ -405,6 +410,7 @@ mod tests {
             float_atomics: true,
             int64_atomics: true,
             fragment_writes: true,
+            independent_blend: true,
             timestamps: None,
             max_storage_buffer_range: 1 << 20,
             storage_buffer_alignment: 64,

@@ -28,6 +28,8 @@ pub(crate) struct Stage {
     pub(crate) options: RenderOptions,
     device: Arc<Device>,
     retired: Retired,
+    /// Number of targets made so far.
+    made: u64,
 }
 
 /// What happens to what frames no longer need.
@@ -50,6 +52,8 @@ pub(crate) enum Outgoing {
 
 /// Targets of the present variant.
 pub(crate) struct Present {
+    /// No other has it.
+    pub(crate) id: u64,
     pub(crate) variant: Variant,
     pub(crate) canvas: Canvas,
     pub(crate) readback: Vec<Buffer>,
@@ -87,6 +91,7 @@ impl Stage {
             options,
             device: device.clone(),
             retired,
+            made: 0,
         })
     }
 
@@ -173,7 +178,9 @@ impl Stage {
             let canvas =
                 pipelines.canvas(&self.device, &self.layout, &self.frame, &variant, self.options.size)?;
             let frame = self.frame.clone();
-            self.present = Some(Present { variant, canvas, readback: Vec::new(), _frame: frame });
+            self.made += 1;
+            self.present =
+                Some(Present { id: self.made, variant, canvas, readback: Vec::new(), _frame: frame });
         }
         match &mut self.present {
             Some(present) if read && present.readback.is_empty() => {

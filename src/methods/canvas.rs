@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::passes::{PixelSet, PyramidSet, SplatLayout, Splats};
 use crate::picture::Picture;
 use crate::splatting::Visibility;
-use crate::targets::{Buffers, Images, Pyramids, TargetInfo};
+use crate::targets::{Buffers, Images, PictureBuffer, Pyramids, TargetInfo};
 use crate::variant::{Rasterizer, Variant};
 use crate::vk::{Buffer, DescriptorSet, Device, Recorder};
 use std::sync::Arc;
@@ -67,6 +67,15 @@ enum Targets {
     Images(Arc<Images>),
     Buffers(Arc<Buffers>),
     Pyramids(Arc<Pyramids>),
+}
+
+/// A picture where a frame leaves it.
+#[derive(Clone, Copy)]
+pub enum Composited<'a> {
+    /// In images.
+    Images(&'a Images),
+    /// In a buffer.
+    Buffer(&'a PictureBuffer),
 }
 
 /// Passes with their views of some targets. Views go before what they view.
@@ -196,6 +205,15 @@ impl Canvas {
     /// Records a frame.
     pub fn record(&self, rec: &mut Recorder<'_>, splats: &Splats) {
         self.recorded.record(rec, splats);
+    }
+
+    /// The picture.
+    pub fn composited(&self) -> Composited<'_> {
+        match &self.targets {
+            Targets::Images(targets) => Composited::Images(targets),
+            Targets::Buffers(targets) => Composited::Buffer(&targets.picture),
+            Targets::Pyramids(targets) => Composited::Buffer(&targets.picture),
+        }
     }
 
     /// Every target that there is.

@@ -61,6 +61,11 @@ impl Buffer {
         Ok(buffer)
     }
 
+    /// Whether it is on this device.
+    pub fn is_on(&self, device: &Arc<Device>) -> bool {
+        Arc::ptr_eq(&self.device, device)
+    }
+
     /// Size, bytes.
     pub fn size(&self) -> u64 {
         self.size

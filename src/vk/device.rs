@@ -36,6 +36,9 @@ pub struct Device {
     pub(super) made: Made,
     capabilities: Capabilities,
     description: DeviceDescription,
+    /// Asks `physical` what it can do.
+    instance: ash::Instance,
+    physical: vk::PhysicalDevice,
     owner: Owner,
 }
 
@@ -129,6 +132,8 @@ impl Device {
             made: Made::default(),
             capabilities,
             description,
+            instance: instance.raw.clone(),
+            physical,
             owner: Owner::Engine { queue, family, instance },
         }))
     }
@@ -169,6 +174,8 @@ impl Device {
             made: Made::default(),
             capabilities,
             description,
+            instance: instance.clone(),
+            physical,
             owner: Owner::Host,
         }))
     }
@@ -182,6 +189,13 @@ impl Device {
                 self.description.name
             ))),
         }
+    }
+
+    /// What images of `format` can be used for.
+    pub fn format_features(&self, format: vk::Format) -> vk::FormatFeatureFlags {
+        // SAFETY: the physical device is the instance's, and both outlive this.
+        let found = unsafe { self.instance.get_physical_device_format_properties(self.physical, format) };
+        found.optimal_tiling_features
     }
 
     /// Name, kind and driver.

@@ -11,8 +11,8 @@ use std::sync::Arc;
 pub enum ImageUse {
     /// A later pass reads it.
     Sampled,
-    /// It is copied to the CPU.
-    Copied,
+    /// It is what a frame is for: copied to the CPU, or drawn over a host's target.
+    Output,
 }
 
 /// A two-dimensional render target with its memory and its one view.
@@ -50,7 +50,7 @@ impl Image {
         };
         let other = match also {
             ImageUse::Sampled => vk::ImageUsageFlags::SAMPLED,
-            ImageUse::Copied => vk::ImageUsageFlags::TRANSFER_SRC,
+            ImageUse::Output => vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::SAMPLED,
         };
         let info = vk::ImageCreateInfo::default()
             .image_type(vk::ImageType::TYPE_2D)

@@ -19,6 +19,8 @@ pub struct DeviceLimits {
     pub int64_atomics: Option<bool>,
     /// `false`: fragment shaders cannot write to buffers.
     pub fragment_writes: Option<bool>,
+    /// `false`: colour attachments of one subpass are all blended alike.
+    pub independent_blend: Option<bool>,
     /// `false`: the queue has no timestamps.
     pub timestamps: Option<bool>,
     /// Upper bound of `maxStorageBufferRange`, bytes.
@@ -36,6 +38,7 @@ impl DeviceLimits {
             float_atomics: self.float_atomics != Some(false),
             int64_atomics: self.int64_atomics != Some(false),
             fragment_writes: self.fragment_writes != Some(false),
+            independent_blend: self.independent_blend != Some(false),
         };
         abilities.and(left)
     }
@@ -52,6 +55,8 @@ pub struct Capabilities {
     pub int64_atomics: bool,
     /// Fragment shaders can write to storage buffers (the feature fragmentStoresAndAtomics).
     pub fragment_writes: bool,
+    /// Colour attachments of one subpass can be blended and masked in different ways (the feature independentBlend).
+    pub independent_blend: bool,
     /// Nanoseconds a timestamp tick, and the mask of valid bits; `None` without timestamps.
     pub timestamps: Option<(f32, u64)>,
     /// Largest range of a storage buffer that one descriptor may name, bytes.
@@ -108,6 +113,7 @@ impl Capabilities {
             float_atomics: enabled.float_atomics,
             int64_atomics: enabled.int64_atomics,
             fragment_writes: enabled.fragment_writes,
+            independent_blend: enabled.independent_blend,
             timestamps: timestamps
                 .then_some((limits.timestamp_period, u64::MAX >> (64 - valid_bits.clamp(1, 64)))),
             max_storage_buffer_range: u64::from(limits.max_storage_buffer_range)

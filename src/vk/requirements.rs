@@ -12,6 +12,8 @@ pub struct Abilities {
     pub int64_atomics: bool,
     /// Fragment shaders can write to storage buffers.
     pub fragment_writes: bool,
+    /// Colour attachments of one subpass can be blended and masked in different ways.
+    pub independent_blend: bool,
 }
 
 /// One of the [`Abilities`]: how Vulkan calls it, and what it buys.
@@ -35,7 +37,7 @@ pub const QUEUE: vk::QueueFlags =
     vk::QueueFlags::from_raw(vk::QueueFlags::GRAPHICS.as_raw() | vk::QueueFlags::COMPUTE.as_raw());
 
 /// All that the engine can make use of.
-pub const ABILITIES: [Ability; 3] = [
+pub const ABILITIES: [Ability; 4] = [
     Ability {
         extension: Some(ash::ext::shader_atomic_float::NAME),
         features: "shaderBufferFloat32AtomicAdd",
@@ -53,6 +55,12 @@ pub const ABILITIES: [Ability; 3] = [
         features: "fragmentStoresAndAtomics",
         buys: "coverage as α where splats are drawn",
         of: |abilities| abilities.fragment_writes,
+    },
+    Ability {
+        extension: None,
+        features: "independentBlend",
+        buys: "hosts whose subpass has several colour attachments",
+        of: |abilities| abilities.independent_blend,
     },
 ];
 
@@ -85,6 +93,7 @@ impl Abilities {
                 && features.integers.shader_buffer_int64_atomics == vk::TRUE
                 && core.shader_int64 == vk::TRUE,
             fragment_writes: core.fragment_stores_and_atomics == vk::TRUE,
+            independent_blend: core.independent_blend == vk::TRUE,
         }
     }
 
@@ -98,7 +107,8 @@ impl Abilities {
         Features {
             core: vk::PhysicalDeviceFeatures::default()
                 .shader_int64(self.int64_atomics)
-                .fragment_stores_and_atomics(self.fragment_writes),
+                .fragment_stores_and_atomics(self.fragment_writes)
+                .independent_blend(self.independent_blend),
             floats: vk::PhysicalDeviceShaderAtomicFloatFeaturesEXT::default()
                 .shader_buffer_float32_atomic_add(self.float_atomics),
             integers: vk::PhysicalDeviceShaderAtomicInt64Features::default()
@@ -112,6 +122,7 @@ impl Abilities {
             float_atomics: self.float_atomics && other.float_atomics,
             int64_atomics: self.int64_atomics && other.int64_atomics,
             fragment_writes: self.fragment_writes && other.fragment_writes,
+            independent_blend: self.independent_blend && other.independent_blend,
         }
     }
 }

@@ -1,7 +1,8 @@
 //! Copies to the GPU's own memory.
 
-use super::{Access, Buffer, Commands, Device, Recorder};
+use super::{Access, Buffer, Commands, Device, Recorder, Use};
 use crate::error::Result;
+use ash::vk;
 use std::cell::RefCell;
 use std::sync::Arc;
 
@@ -11,14 +12,22 @@ const CHUNK: usize = 32 << 20;
 /// Makes buffers with contents.
 pub struct Uploads<'a> {
     device: &'a Arc<Device>,
-    way: RefCell<Way<'a>>,
+    way: RefCell<Way>,
 }
 
-enum Way<'a> {
+enum Way {
     /// Submitted and waited for, chunk by chunk.
     Now(Commands),
-    /// Recorded.
-    Later(Recorder<'a>, Staging),
+    /// Noted, to be recorded when all has been made.
+    Later(Vec<Copy>),
+}
+
+/// A copy to be recorded: of all that is staged.
+struct Copy {
+    from: Buffer,
+    to: vk::Buffer,
+    written: Use,
+    read: Use,
 }
 
 /// What recorded copies are made from. It must stay until the GPU is done with them.
@@ -39,9 +48,9 @@ impl<'a> Uploads<'a> {
         Ok(Self { device, way: RefCell::new(Way::Now(Commands::new(device, false)?)) })
     }
 
-    /// Copies that `rec` records.
-    pub fn later(device: &'a Arc<Device>, rec: Recorder<'a>) -> Self {
-        Self { device, way: RefCell::new(Way::Later(rec, Staging::default())) }
+    /// Copies that [`Uploads::record`] records.
+    pub fn later(device: &'a Arc<Device>) -> Self {
+        Self { device, way: RefCell::new(Way::Later(Vec::new())) }
     }
 
     /// A new storage buffer with `bytes` in it, for shaders to read. An empty slice makes a buffer of 4 zero bytes, which can be bound.
@@ -50,28 +59,25 @@ impl<'a> Uploads<'a> {
         let buffer = Buffer::storage(self.device, name, bytes.len() as u64)?;
         match &mut *self.way.borrow_mut() {
             Way::Now(commands) => copy_now(self.device, commands, &buffer, bytes)?,
-            Way::Later(rec, staging) => {
-                let staged = self.staged(bytes)?;
-                copy(rec, &staged, &buffer, 0, bytes.len());
-                rec.wait(&[buffer.with(Access::SHADER_READ)]);
-                staging.0.push(staged);
+            Way::Later(copies) => {
+                let mut from = Buffer::staging(self.device, "staging", bytes.len() as u64)?;
+                from.bytes_mut().copy_from_slice(bytes);
+                let (written, read) = (buffer.with(Access::COPY_WRITE), buffer.with(Access::SHADER_READ));
+                copies.push(Copy { from, to: buffer.raw, written, read });
             }
         }
         Ok(buffer)
     }
 
-    fn staged(&self, bytes: &[u8]) -> Result<Buffer> {
-        let mut staging = Buffer::staging(self.device, "staging", bytes.len() as u64)?;
-        staging.bytes_mut().copy_from_slice(bytes);
-        Ok(staging)
-    }
-
-    /// What recorded copies are made from.
-    pub fn finish(self) -> Staging {
-        match self.way.into_inner() {
-            Way::Now(_) => Staging::default(),
-            Way::Later(_, staging) => staging,
-        }
+    /// Records the copies to all buffers that were made, which are alive; what they are made from must stay until the GPU is done.
+    pub fn record(self, rec: &mut Recorder<'_>) -> Staging {
+        let Way::Later(copies) = self.way.into_inner() else { return Staging::default() };
+        let uses = copies.iter().flat_map(|copy| [copy.from.with(Access::COPY_READ), copy.written]);
+        rec.pass("upload", &uses.collect::<Vec<_>>(), |enc| {
+            copies.iter().for_each(|copy| enc.copy_all(&copy.from, copy.to));
+        });
+        rec.wait(&copies.iter().map(|copy| copy.read).collect::<Vec<_>>());
+        Staging(copies.into_iter().map(|copy| copy.from).collect())
     }
 }
 
@@ -79,12 +85,12 @@ fn copy_now(device: &Arc<Device>, commands: &mut Commands, buffer: &Buffer, byte
     let mut staging = Buffer::staging(device, "staging", bytes.len().min(CHUNK) as u64)?;
     for (i, chunk) in bytes.chunks(CHUNK).enumerate() {
         staging.bytes_mut()[..chunk.len()].copy_from_slice(chunk);
-        commands.run(|rec| copy(rec, &staging, buffer, (i * CHUNK) as u64, chunk.len()))?;
+        let uses = [staging.with(Access::COPY_READ), buffer.with(Access::COPY_WRITE)];
+        commands.run(|rec| {
+            rec.pass("upload", &uses, |enc| {
+                enc.copy(&staging, buffer, (i * CHUNK) as u64, chunk.len() as u64);
+            });
+        })?;
     }
     Ok(())
-}
-
-fn copy(rec: &mut Recorder<'_>, staging: &Buffer, buffer: &Buffer, offset: u64, size: usize) {
-    let uses = [staging.with(Access::COPY_READ), buffer.with(Access::COPY_WRITE)];
-    rec.pass("upload", &uses, |enc| enc.copy(staging, buffer, offset, size as u64));
 }
