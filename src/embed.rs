@@ -31,6 +31,7 @@ use crate::vk::shaders::layout;
 use crate::vk::{DescriptorSet, Device, Draws, Recorder, Uploads};
 use ash::vk;
 use bytemuck::Zeroable;
+use std::any::Any;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
@@ -80,7 +81,8 @@ pub struct View {
 pub struct Renderer {
     // Fields are dropped in this order: views before what they view.
     shown: Option<Shown>,
-    held: VecDeque<(u64, Held)>,
+    /// What frames under way may use, with the number of the last one.
+    held: VecDeque<(u64, Outgoing)>,
     scene: Option<Arc<Scene>>,
     composites: Vec<Arc<Composite>>,
     stage: Stage,
@@ -98,14 +100,6 @@ struct Shown {
     composite: Arc<Composite>,
     place: layout::Composite,
     area: vk::Rect2D,
-}
-
-/// What a frame under way may use.
-#[expect(dead_code, reason = "kept for what it holds")]
-enum Held {
-    Made(Outgoing),
-    Scene(Arc<Scene>),
-    View(Arc<DescriptorSet>),
 }
 
 impl Renderer {
@@ -156,7 +150,7 @@ impl Renderer {
         let shown = self.make(scene, view, settings);
         // Also after an error: what it took the place of may be under way.
         let made = self.stage.outgoing();
-        made.into_iter().for_each(|made| self.hold(Held::Made(made)));
+        self.held.extend(made.into_iter().map(|made| (self.frame, made)));
         let (block, shown) = shown?;
         // SAFETY: by the caller.
         let mut rec = unsafe { Recorder::of_host(&self.device, cmd) };
@@ -200,7 +194,7 @@ impl Renderer {
         settings: &Settings,
     ) -> Result<(layout::Frame, Shown)> {
         let last = self.shown.take();
-        let last = last.inspect(|shown| self.hold(Held::View(shown.view.clone())));
+        let last = last.inspect(|shown| self.hold(shown.view.clone()));
         if !scene.is_on(&self.device) {
             return Err(Error::Usage(
                 "the scene is of another device: upload it to the one that this renderer is of".into(),
@@ -216,7 +210,7 @@ impl Renderer {
         let (block, variant) = self.stage.prepare(scene, &camera, &settings, false)?;
         if self.scene.as_ref().is_none_or(|held| !Arc::ptr_eq(held, scene)) {
             let old = self.scene.replace(scene.clone());
-            old.into_iter().for_each(|old| self.hold(Held::Scene(old)));
+            self.hold(old);
         }
         let composite =
             self.composite(variant.rasterizer, variant.pull_push.is_some(), variant.perspective)?;
@@ -256,8 +250,8 @@ impl Renderer {
         Ok(made)
     }
 
-    fn hold(&mut self, held: Held) {
-        self.held.push_back((self.frame, held));
+    fn hold(&mut self, held: impl Any + Send) {
+        self.held.push_back((self.frame, Box::new(held)));
     }
 
     /// Lets go of what frames that are over have used.

@@ -11,6 +11,7 @@ use crate::settings::Settings;
 use crate::variant::{Rasterizer, Variant};
 use crate::vk::shaders::layout::Frame;
 use crate::vk::{Buffer, Device, Recorder};
+use std::any::Any;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
 use std::sync::Arc;
@@ -40,15 +41,8 @@ pub(crate) enum Retired {
     Kept(Vec<Outgoing>),
 }
 
-/// What frames no longer need.
-pub(crate) enum Outgoing {
-    /// Targets.
-    #[expect(dead_code, reason = "kept for what it holds")]
-    Present(Present),
-    /// Splats.
-    #[expect(dead_code, reason = "kept for what it holds")]
-    Resident(Resident),
-}
+/// What frames no longer need, kept for what it holds.
+pub(crate) type Outgoing = Box<dyn Any + Send>;
 
 /// Targets of the present variant.
 pub(crate) struct Present {
@@ -71,9 +65,9 @@ pub(crate) struct Resident {
 }
 
 impl Retired {
-    fn take(&mut self, outgoing: Option<Outgoing>) {
+    fn take<T: Any + Send>(&mut self, outgoing: Option<T>) {
         if let (Self::Kept(list), Some(outgoing)) = (self, outgoing) {
-            list.push(outgoing);
+            list.push(Box::new(outgoing));
         }
     }
 }
@@ -116,7 +110,7 @@ impl Stage {
         if self.options.size != size {
             self.options.size = size;
             for old in [self.present.take(), self.previous.take()] {
-                self.retired.take(old.map(Outgoing::Present));
+                self.retired.take(old);
             }
         }
     }
@@ -156,7 +150,7 @@ impl Stage {
             .as_ref()
             .is_none_or(|resident| (resident.scene, resident.rasterizer) != (scene.id, rasterizer))
         {
-            self.retired.take(self.resident.take().map(Outgoing::Resident));
+            self.retired.take(self.resident.take());
             let splats = Splats::new(&self.device, &self.layout, &self.frame, scene, rasterizer)?;
             self.resident =
                 Some(Resident { scene: scene.id, rasterizer, splats, _frame: self.frame.clone() });
@@ -170,7 +164,7 @@ impl Stage {
             std::mem::swap(&mut self.present, &mut self.previous);
         }
         if is_other(&self.present) {
-            self.retired.take(self.present.take().map(Outgoing::Present));
+            self.retired.take(self.present.take());
             let pipelines = match self.pipelines.entry(variant) {
                 Entry::Occupied(made) => made.into_mut(),
                 Entry::Vacant(room) => room.insert(Pipelines::new(&self.device, &self.layout, &variant)?),

@@ -38,6 +38,12 @@ fn open(wanted: fn(Abilities) -> Abilities) -> Option<Host> {
     }
 }
 
+/// Hosts have threads.
+#[allow(dead_code, reason = "it compiles, or not")]
+fn a_renderer_goes_to_another_thread(renderer: Renderer) -> impl Send {
+    renderer
+}
+
 fn assert_silent(host: &Host) {
     let messages = host.messages();
     assert!(messages.is_empty(), "{} validation messages: {messages:#?}", messages.len());
@@ -445,7 +451,8 @@ fn what_cannot_be_served_is_refused_and_says_why() {
     let kind = Kind { way: Way::Subpass, colour: FLOATS, normals: false, samples: ONE, reversed: true };
     let mut stand = Stand::new(&host, kind, SIZE, None);
     let target = stand.frame.target();
-    let changes: [(fn(&mut embed::Target), &str); 7] = [
+    type Change = fn(&mut embed::Target);
+    let changes: [(Change, &str); 7] = [
         (|t| t.picture = 1, "location 1 of 1 colour attachments"),
         (|t| t.normal = Some(0), "both the picture and normals"),
         (|t| t.colours[0] = vk::Format::R32G32B32A32_UINT, "cannot blend R32G32B32A32_UINT"),

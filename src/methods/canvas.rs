@@ -12,9 +12,9 @@ use crate::vk::{Buffer, DescriptorSet, Device, Recorder};
 use std::sync::Arc;
 
 /// Passes that the device's own rasterizer runs.
-pub(super) trait Drawn: Sized {
+pub(super) trait Drawn: Sized + Send + Sync {
     /// What they draw to and read.
-    type Views;
+    type Views: Send + Sync;
 
     /// Makes the pipelines.
     fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self>;
@@ -27,7 +27,7 @@ pub(super) trait Drawn: Sized {
 }
 
 /// Passes that compute shaders run.
-pub(super) trait Computed: Sized {
+pub(super) trait Computed: Sized + Send + Sync {
     /// Makes the pipelines.
     fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self>;
 
@@ -79,7 +79,7 @@ pub enum Composited<'a> {
 }
 
 /// Passes with their views of some targets. Views go before what they view.
-trait Recorded {
+trait Recorded: Send + Sync {
     fn record(&self, rec: &mut Recorder<'_>, splats: &Splats);
 }
 

@@ -45,9 +45,16 @@ pub struct Device {
 /// Whose the device is.
 enum Owner {
     /// Opened by the engine, which submits to its queue, locked while it does.
-    Engine { queue: Mutex<vk::Queue>, family: u32, instance: Instance },
+    Engine(Box<Opened>),
     /// Lent by a host, which submits what is recorded, waits for it, and destroys the device last.
     Host,
+}
+
+/// What the engine opened beside the device.
+struct Opened {
+    queue: Mutex<vk::Queue>,
+    family: u32,
+    instance: Instance,
 }
 
 /// A device that a host lends: its own, to go on using while the engine does.
@@ -134,7 +141,7 @@ impl Device {
             description,
             instance: instance.raw.clone(),
             physical,
-            owner: Owner::Engine { queue, family, instance },
+            owner: Owner::Engine(Box::new(Opened { queue, family, instance })),
         }))
     }
 
@@ -183,7 +190,7 @@ impl Device {
     /// The queue that the engine submits to, and its family. A usage error on a device that a host lends: there the host submits.
     pub(super) fn queue(&self) -> Result<(&Mutex<vk::Queue>, u32)> {
         match &self.owner {
-            Owner::Engine { queue, family, .. } => Ok((queue, *family)),
+            Owner::Engine(opened) => Ok((&opened.queue, opened.family)),
             Owner::Host => Err(Error::Usage(format!(
                 "the device {} is lent by a host, which alone submits: record into its command buffers, see `embed`",
                 self.description.name
@@ -221,7 +228,7 @@ impl Device {
     /// Messages of the validation layers so far; empty unless [`DeviceOptions::validate`] was set. A host listens itself.
     pub fn validation_messages(&self) -> Vec<String> {
         match &self.owner {
-            Owner::Engine { instance, .. } => instance.messages.all(),
+            Owner::Engine(opened) => opened.instance.messages.all(),
             Owner::Host => Vec::new(),
         }
     }
@@ -232,14 +239,14 @@ impl Drop for Device {
         // SAFETY: everything made on the device holds an `Arc` of it, so nothing is left; the allocator and the cache go before the
         // device that they use, and the instance, a field, after it.
         unsafe {
-            if let Owner::Engine { .. } = self.owner {
+            if let Owner::Engine(_) = self.owner {
                 // A lost device has nothing left to wait for.
                 let _ = self.raw.device_wait_idle();
             }
             self.pipeline_cache.store_and_destroy(&self.raw);
             ManuallyDrop::drop(&mut self.pipeline_cache);
             ManuallyDrop::drop(&mut self.memory);
-            if let Owner::Engine { .. } = self.owner {
+            if let Owner::Engine(_) = self.owner {
                 self.raw.destroy_device(None);
             }
         }
