@@ -30,7 +30,6 @@ use crate::variant::{Outputs, Precision, Rasterizer};
 use crate::vk::shaders::layout;
 use crate::vk::{DescriptorSet, Device, Draws, Recorder, Uploads};
 use ash::vk;
-use bytemuck::Zeroable;
 use std::any::Any;
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -222,8 +221,7 @@ impl Renderer {
             Some(shown) => shown.view,
             None => Arc::new(composite.view(&self.device, present.canvas.composited())?),
         };
-        let place =
-            layout::Composite { origin: [area.offset.x, area.offset.y], size, depth, ..Zeroable::zeroed() };
+        let place = layout::Composite { origin: [area.offset.x, area.offset.y], size, depth };
         Ok((block, Shown { view: set, present: present.id, composite, place, area }))
     }
 

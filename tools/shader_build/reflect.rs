@@ -244,10 +244,7 @@ impl Ids {
 
     fn is_uniform_block(&self, id: u32) -> bool {
         self.variables.iter().any(|variable| {
-            let class = variable.operands.first();
-            let uniform = [StorageClass::Uniform, StorageClass::PushConstant]
-                .iter()
-                .any(|wanted| class == Some(&Operand::StorageClass(*wanted)));
+            let uniform = variable.operands.first() == Some(&Operand::StorageClass(StorageClass::Uniform));
             let pointer = variable.result_type.and_then(|pointer| self.values.get(&pointer));
             uniform && pointer.and_then(|pointer| pointer.operands.get(1)).map(literal) == Some(id)
         })
