@@ -8,6 +8,69 @@
 //!
 //! Nothing is submitted, waited for or stalled: the host submits what is recorded, to one queue. What the engine makes it also destroys, once
 //! as many frames have been prepared since as the host has in flight; what it borrows it leaves alone.
+//!
+//! ```no_run
+//! use ash::vk;
+//! use std::sync::Arc;
+//! use surfel::embed::{self, Abilities, Lent, Options, Pass, Renderer, Target, View};
+//! use surfel::geometry::{Camera, Surfels};
+//! use surfel::vk::{Device, DeviceLimits};
+//! use surfel::{Precision, Scene, Settings};
+//!
+//! /// What the host has.
+//! struct Host {
+//!     instance: ash::Instance,
+//!     physical: vk::PhysicalDevice,
+//!     device: ash::Device,
+//!     family: u32,
+//!     pass: vk::RenderPass,
+//! }
+//!
+//! /// Before the host makes its device: what to enable, as far as it is there. None of it is needed.
+//! fn wanted(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Abilities {
+//!     let abilities = unsafe { Abilities::of(instance, physical) };
+//!     // VkDeviceCreateInfo takes `abilities.extensions()`, `abilities.features().core`, and the rest by `Features::chain`.
+//!     abilities
+//! }
+//!
+//! /// Once. `cmd` is outside a render pass; `Staging` stays until the GPU has done it.
+//! unsafe fn load(host: &Host, enabled: Abilities, cmd: vk::CommandBuffer, surfels: &Surfels) -> surfel::Result<(Arc<Scene>, embed::Staging, Renderer)> {
+//!     let device = unsafe {
+//!         Device::borrow(Lent {
+//!             instance: &host.instance,
+//!             physical: host.physical,
+//!             device: &host.device,
+//!             queue_family: host.family,
+//!             enabled,
+//!             labels: false,
+//!             limits: DeviceLimits::default(),
+//!             memory: None,
+//!             pipeline_cache: None,
+//!         })?
+//!     };
+//!     let (scene, staging) = unsafe { embed::upload(&device, cmd, surfels)? };
+//!     let target = Target {
+//!         pass: Pass::Subpass { pass: host.pass, subpass: 0 },
+//!         colours: vec![vk::Format::B8G8R8A8_SRGB],
+//!         depth: Some(vk::Format::D32_SFLOAT),
+//!         stencil: vk::Format::UNDEFINED,
+//!         reversed: true,
+//!         samples: vk::SampleCountFlags::TYPE_1,
+//!         picture: 0,
+//!         normal: None,
+//!         encode: false,
+//!     };
+//!     let options = Options { target, frames_in_flight: 2, precision: Precision::Full, rasterizer: None };
+//!     Ok((Arc::new(scene), staging, unsafe { Renderer::new(&device, options)? }))
+//! }
+//!
+//! /// Each frame.
+//! unsafe fn frame(renderer: &mut Renderer, cmd: vk::CommandBuffer, scene: &Arc<Scene>, camera: Camera, viewport: vk::Viewport) -> surfel::Result<()> {
+//!     unsafe { renderer.prepare(cmd, scene, &View { camera, viewport }, &Settings::default())? };
+//!     // The host begins its render pass and draws what is its own.
+//!     unsafe { renderer.draw(cmd) }
+//! }
+//! ```
 #![allow(unsafe_code)]
 
 mod target;
