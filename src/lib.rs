@@ -17,6 +17,7 @@
 //! | [`passes`] | one file a pass, beside the shader of the same name |
 //! | [`methods`] | one file a method: its paper and its passes |
 //! | [`renderer`] | frames: make ready, record, submit, read back |
+//! | [`embed`] | the same frames within those of another renderer |
 //! | [`capture`] | normalization weights of surfels, from pictures of them |
 //! | [`reference`](mod@reference) | the float64 twin of every pass, on the CPU; judges pictures |
 //! | [`truth`] | exact images: rays against the surface itself |
@@ -47,6 +48,7 @@
 #[cfg(feature = "bench")]
 pub mod bench;
 pub mod capture;
+pub mod embed;
 pub mod error;
 mod frame;
 pub mod geometry;
@@ -64,6 +66,7 @@ pub mod scene;
 pub mod scenes;
 pub mod settings;
 pub mod splatting;
+mod stage;
 pub mod targets;
 pub mod truth;
 pub mod variant;

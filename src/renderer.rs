@@ -1,20 +1,17 @@
 //! Frames: makes what a frame needs when the scene or the settings change, records and submits it, reads it back.
 
 use crate::error::{Error, Result};
-use crate::frame::frame;
 use crate::geometry::Camera;
-use crate::methods::{Canvas, Pipelines};
-use crate::passes::{SplatLayout, Splats};
+use crate::passes::Splats;
 use crate::picture::Picture;
 use crate::scene::Scene;
 use crate::settings::{Alpha, Settings};
 use crate::splatting::Visibility;
+use crate::stage::{Retired, Stage};
 use crate::targets::{Buffers, Pyramids, TargetInfo, check_size};
-use crate::variant::{Outputs, Precision, Rasterizer, Variant};
-use crate::vk::shaders::layout::{Counts, Frame};
-use crate::vk::{Buffer, Commands, Device, DeviceDescription, PassTime};
-use std::collections::HashMap;
-use std::collections::hash_map::Entry;
+use crate::variant::{Outputs, Precision, Rasterizer};
+use crate::vk::shaders::layout::Counts;
+use crate::vk::{Commands, Device, DeviceDescription, PassTime};
 use std::sync::Arc;
 
 /// What stays the same from frame to frame.
@@ -62,55 +59,31 @@ pub struct SplatCounts {
 
 /// Renders frames of one size on one device. One frame is under way at a time.
 pub struct Renderer {
-    // Fields are dropped in this order: views before what they view.
-    present: Option<Present>,
-    /// What was before it: who switches to and fro, as in progressive rendering, makes nothing.
-    previous: Option<Present>,
-    resident: Option<Resident>,
-    pipelines: HashMap<Variant, Pipelines>,
-    layout: SplatLayout,
-    frame: Buffer,
+    stage: Stage,
     commands: Commands,
-    options: RenderOptions,
-    device: Arc<Device>,
 }
 
-/// Targets of the present variant.
-struct Present {
-    variant: Variant,
-    canvas: Canvas,
-    readback: Vec<Buffer>,
-}
-
-/// Splats of the present scene.
-struct Resident {
-    scene: u64,
-    /// What it makes splats for, if any.
-    rasterizer: Option<Rasterizer>,
-    splats: Splats,
+impl RenderOptions {
+    /// What `device` can do of it: it may not blend 32-bit floats. Refuses sizes that it has no targets of.
+    pub(crate) fn on(mut self, device: &Device) -> Result<Self> {
+        check_size(device, self.size)?;
+        let rasterizer = rasterizer_for(device, &self, true, Alpha::Mask)?;
+        let blends = device.capabilities().blend_float32;
+        if rasterizer == Rasterizer::Draw && self.precision == Precision::Full && !blends {
+            log::warn!("{} cannot blend 32-bit floats: sums are kept in 16 bits", device.description().name);
+            self.precision = Precision::Half;
+        }
+        Ok(self)
+    }
 }
 
 impl Renderer {
     /// A renderer that has made nothing for any scene yet.
     pub fn new(device: &Arc<Device>, options: RenderOptions) -> Result<Self> {
-        check_size(device, options.size)?;
-        let mut options = options;
-        let rasterizer = rasterizer_for(device, &options, true, Alpha::Mask)?;
-        let blends = device.capabilities().blend_float32;
-        if rasterizer == Rasterizer::Draw && options.precision == Precision::Full && !blends {
-            log::warn!("{} cannot blend 32-bit floats: sums are kept in 16 bits", device.description().name);
-            options.precision = Precision::Half;
-        }
+        let options = options.on(device)?;
         Ok(Self {
-            present: None,
-            previous: None,
-            resident: None,
-            pipelines: HashMap::new(),
-            layout: SplatLayout::new(device)?,
-            frame: Buffer::uniform(device, "frame", size_of::<Frame>() as u64)?,
+            stage: Stage::new(device, options, Retired::Dropped)?,
             commands: Commands::new(device, options.profile)?,
-            options,
-            device: device.clone(),
         })
     }
 
@@ -128,7 +101,7 @@ impl Renderer {
         settings: &Settings,
     ) -> Result<(Picture, FrameReport)> {
         let report = self.run(scene, camera, settings, true)?;
-        let picture = self.present.as_ref().map(|present| present.canvas.picture(&present.readback));
+        let picture = self.stage.present().map(|present| present.canvas.picture(&present.readback));
         Ok((picture.unwrap_or_default(), report))
     }
 
@@ -139,27 +112,27 @@ impl Renderer {
 
     /// Float width of the weighted sums in use.
     pub fn precision(&self) -> Precision {
-        self.options.precision
+        self.stage.options.precision
     }
 
     /// The targets of the last frame.
     pub fn targets(&self) -> Vec<TargetInfo> {
-        self.present.as_ref().map_or(Vec::new(), |present| present.canvas.targets())
+        self.stage.present().map_or(Vec::new(), |present| present.canvas.targets())
     }
 
     /// What visits the pixels in the last frame.
     pub fn rasterizer(&self) -> Option<Rasterizer> {
-        self.present.as_ref().map(|present| present.variant.rasterizer)
+        self.stage.present().map(|present| present.variant.rasterizer)
     }
 
     /// The splats of the last frame.
     pub fn splats(&self) -> Option<&Splats> {
-        self.resident.as_ref().map(|resident| &resident.splats)
+        self.stage.resident().map(|resident| &resident.splats)
     }
 
     /// The pyramids of the last frame, if it was pull–push's.
     pub fn pyramids(&self) -> Option<&Pyramids> {
-        self.present.as_ref().and_then(|present| present.canvas.pyramids())
+        self.stage.present().and_then(|present| present.canvas.pyramids())
     }
 
     fn run(
@@ -169,73 +142,31 @@ impl Renderer {
         settings: &Settings,
         read: bool,
     ) -> Result<FrameReport> {
-        settings.check()?;
-        settings.splatting.normalization.check_weights(scene.weights.is_some())?;
-        settings.check_primitives(scene.primitives.is_some())?;
-        let block = frame(camera, settings, self.options.size, scene.origin(), scene.bounds())?;
-        let blends = settings.splatting.visibility != Visibility::Nearest;
-        let rasterizer = match settings.pull_push {
-            Some(_) => projects(&self.device, &self.options)?,
-            None => rasterizer_for(&self.device, &self.options, blends, settings.alpha)?,
-        };
-        let perspective = camera.projection()?.perspective;
-        let variant = Variant::new(scene.streams(), perspective, settings, &self.options, rasterizer);
-        let splats = variant.pull_push.is_none().then_some(variant.rasterizer);
-        self.make_resident(scene, splats)?;
-        self.make_present(variant, read)?;
-        self.frame.bytes_mut().copy_from_slice(bytemuck::bytes_of(&block));
-
-        let (Some(present), Some(resident)) = (&self.present, &self.resident) else {
-            return Ok(FrameReport::default());
-        };
+        let (block, variant) = self.stage.prepare(scene, camera, settings, read)?;
         self.commands.run(|rec| {
-            present.canvas.record(rec, &resident.splats);
-            if read {
+            self.stage.record(rec, &block);
+            if let Some(present) = self.stage.present().filter(|_| read) {
                 present.canvas.record_readback(rec, &present.readback);
             }
         })?;
+        let counted = self.stage.resident().filter(|_| variant.count && variant.pull_push.is_none());
         Ok(FrameReport {
             pass_times: self.commands.pass_times()?,
-            counts: (variant.count && variant.pull_push.is_none())
-                .then(|| SplatCounts::new(scene.count(), resident.splats.counts())),
+            counts: counted.map(|resident| SplatCounts::new(scene.count(), resident.splats.counts())),
         })
     }
+}
 
-    fn make_resident(&mut self, scene: &Scene, rasterizer: Option<Rasterizer>) -> Result<()> {
-        if self
-            .resident
-            .as_ref()
-            .is_none_or(|resident| (resident.scene, resident.rasterizer) != (scene.id, rasterizer))
-        {
-            self.resident = None;
-            let splats = Splats::new(&self.device, &self.layout, &self.frame, scene, rasterizer)?;
-            self.resident = Some(Resident { scene: scene.id, rasterizer, splats });
-        }
-        Ok(())
-    }
-
-    fn make_present(&mut self, variant: Variant, read: bool) -> Result<()> {
-        let is_other = |present: &Option<Present>| present.as_ref().is_none_or(|p| p.variant != variant);
-        if is_other(&self.present) {
-            std::mem::swap(&mut self.present, &mut self.previous);
-        }
-        if is_other(&self.present) {
-            self.present = None;
-            let pipelines = match self.pipelines.entry(variant) {
-                Entry::Occupied(made) => made.into_mut(),
-                Entry::Vacant(room) => room.insert(Pipelines::new(&self.device, &self.layout, &variant)?),
-            };
-            let canvas =
-                pipelines.canvas(&self.device, &self.layout, &self.frame, &variant, self.options.size)?;
-            self.present = Some(Present { variant, canvas, readback: Vec::new() });
-        }
-        match &mut self.present {
-            Some(present) if read && present.readback.is_empty() => {
-                present.readback = present.canvas.make_readback(&self.device)?;
-            }
-            _ => {}
-        }
-        Ok(())
+/// What visits the pixels of a frame of these settings: what is asked for, or what is faster on `device`.
+pub(crate) fn rasterizer_of(
+    device: &Device,
+    options: &RenderOptions,
+    settings: &Settings,
+) -> Result<Rasterizer> {
+    let blends = settings.splatting.visibility != Visibility::Nearest;
+    match settings.pull_push {
+        Some(_) => projects(device, options),
+        None => rasterizer_for(device, options, blends, settings.alpha),
     }
 }
 

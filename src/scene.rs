@@ -6,7 +6,7 @@ mod weights;
 use crate::error::{Error, Result};
 use crate::geometry::{Bounds, Clip, ClipLine, Clips, Colours, Ellipse, Parts, Primitives, Surfels, Weights};
 use crate::vk::shaders::layout::Splat;
-use crate::vk::{Binding, Buffer, Capabilities, Device, upload};
+use crate::vk::{Binding, Buffer, Capabilities, Device, Uploads};
 use glam::DVec3;
 pub(crate) use primitives::{Elements, PrimitiveStreams};
 use std::borrow::Cow;
@@ -128,7 +128,12 @@ impl Scene {
     /// valid.
     pub fn upload<'a>(device: &Arc<Device>, parts: impl Into<Parts<'a>>) -> Result<Self> {
         let parts = parts.into();
-        let (scene, invalid) = Self::upload_silently(device, parts)?;
+        Self::new(device, &Uploads::now(device)?, parts)
+    }
+
+    /// [`Scene::upload`] by way of `uploads`, which are of `device`.
+    pub(crate) fn new(device: &Arc<Device>, uploads: &Uploads<'_>, parts: Parts<'_>) -> Result<Self> {
+        let (scene, invalid) = Self::new_silently(device, uploads, parts)?;
         if invalid > 0 {
             warn_of(invalid, parts.surfels.len());
         }
@@ -143,8 +148,11 @@ impl Scene {
         device: &Arc<Device>,
         parts: impl Into<Parts<'a>>,
     ) -> Result<(Self, usize)> {
+        Self::new_silently(device, &Uploads::now(device)?, parts.into())
+    }
+
+    fn new_silently(device: &Arc<Device>, uploads: &Uploads<'_>, parts: Parts<'_>) -> Result<(Self, usize)> {
         static NEXT: AtomicU64 = AtomicU64::new(0);
-        let parts = parts.into();
         let surfels = parts.surfels;
         parts.check()?;
         let (bounds, invalid) = usable(&parts)?;
@@ -152,34 +160,41 @@ impl Scene {
         let ellipses = surfels.ellipses.as_deref();
         let windows = windows(count, device.capabilities());
         let (colour_stream, colours) = colour_bytes(surfels.colours.as_ref());
-        let weights =
-            surfels.weights.as_ref().map(|weights| WeightBuffer::new(device, surfels, weights, &windows));
+        let weights = surfels
+            .weights
+            .as_ref()
+            .map(|weights| WeightBuffer::new(device, uploads, surfels, weights, &windows));
         let scene = Self {
             id: NEXT.fetch_add(1, Ordering::Relaxed),
-            positions: upload(device, "positions", bytemuck::cast_slice(&surfels.positions))?,
-            normals: upload(device, "normals", bytemuck::cast_slice(&surfels.normals))?,
-            radii: upload(device, "radii", bytemuck::cast_slice(&marked_radii(surfels, invalid)))?,
+            positions: uploads.buffer("positions", bytemuck::cast_slice(&surfels.positions))?,
+            normals: uploads.buffer("normals", bytemuck::cast_slice(&surfels.normals))?,
+            radii: uploads.buffer("radii", bytemuck::cast_slice(&marked_radii(surfels, invalid)))?,
             two_sided: surfels.two_sided.is_some(),
             ellipses: ellipses
-                .map(|ellipses| upload(device, "ellipses", bytemuck::cast_slice(ellipses)))
+                .map(|ellipses| uploads.buffer("ellipses", bytemuck::cast_slice(ellipses)))
                 .transpose()?,
             colours: (colour_stream != ColourStream::None)
-                .then(|| upload(device, "colours", colours))
+                .then(|| uploads.buffer("colours", colours))
                 .transpose()?,
             weights: weights.transpose()?,
             colour_stream,
             clips: surfels
                 .clips
                 .as_ref()
-                .map(|clips| ClipStream::new(device, clips, &windows))
+                .map(|clips| ClipStream::new(uploads, clips, &windows))
                 .transpose()?,
-            primitives: PrimitiveStreams::new(device, &parts)?,
+            primitives: PrimitiveStreams::new(device, uploads, &parts)?,
             windows,
             count,
             origin: parts.origin(),
             bounds,
         };
         Ok((scene, invalid))
+    }
+
+    /// Whether it is on this device.
+    pub fn is_on(&self, device: &Arc<Device>) -> bool {
+        self.positions.is_on(device)
     }
 
     /// Number of surfels.
@@ -270,7 +285,7 @@ impl Scene {
 }
 
 impl ClipStream {
-    fn new(device: &Arc<Device>, clips: &Clips, windows: &[Range<u64>]) -> Result<Self> {
+    fn new(uploads: &Uploads<'_>, clips: &Clips, windows: &[Range<u64>]) -> Result<Self> {
         let mut words: Vec<u32> = Vec::new();
         let mut parts = Vec::new();
         for window in windows {
@@ -289,7 +304,7 @@ impl ClipStream {
             // No device aligns ranges to more.
             words.resize(words.len().next_multiple_of(64), 0);
         }
-        Ok(Self { buffer: upload(device, "clips", bytemuck::cast_slice(&words))?, windows: parts })
+        Ok(Self { buffer: uploads.buffer("clips", bytemuck::cast_slice(&words))?, windows: parts })
     }
 }
 
@@ -298,14 +313,15 @@ const CONCAVE: u32 = 1 << 31;
 
 impl WeightBuffer {
     fn new(
-        device: &Arc<Device>,
+        device: &Device,
+        uploads: &Uploads<'_>,
         surfels: &Surfels,
         weights: &Weights,
         windows: &[Range<u64>],
     ) -> Result<Self> {
         let WeightStream { words, windows } =
             WeightStream::new(surfels, weights, windows, step(device.capabilities()));
-        let buffer = upload(device, "weights", bytemuck::cast_slice(&words))?;
+        let buffer = uploads.buffer("weights", bytemuck::cast_slice(&words))?;
         Ok(Self { buffer, windows, corners: !weights.corners.is_empty() })
     }
 
@@ -397,6 +413,7 @@ mod tests {
             float_atomics: true,
             int64_atomics: true,
             fragment_writes: true,
+            independent_blend: true,
             timestamps: None,
             max_storage_buffer_range: 1 << 20,
             storage_buffer_alignment: 64,

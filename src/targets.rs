@@ -170,9 +170,9 @@ impl Images {
             visibility: target("visibility", formats.visibility, ImageUse::Sampled)?,
             sums0: target("sums0", formats.sums0, ImageUse::Sampled)?,
             sums1: optional("sums1", formats.sums1, ImageUse::Sampled)?,
-            image: target("image", formats.image, ImageUse::Copied)?,
-            normal: optional("normal", formats.normal, ImageUse::Copied)?,
-            depth: optional("depth", formats.depth, ImageUse::Copied)?,
+            image: target("image", formats.image, ImageUse::Output)?,
+            normal: optional("normal", formats.normal, ImageUse::Output)?,
+            depth: optional("depth", formats.depth, ImageUse::Output)?,
             coverage: coverage(device, variant, size)?,
         })
     }

@@ -6,15 +6,15 @@ use crate::error::Result;
 use crate::passes::{PixelSet, PyramidSet, SplatLayout, Splats};
 use crate::picture::Picture;
 use crate::splatting::Visibility;
-use crate::targets::{Buffers, Images, Pyramids, TargetInfo};
+use crate::targets::{Buffers, Images, PictureBuffer, Pyramids, TargetInfo};
 use crate::variant::{Rasterizer, Variant};
 use crate::vk::{Buffer, DescriptorSet, Device, Recorder};
 use std::sync::Arc;
 
 /// Passes that the device's own rasterizer runs.
-pub(super) trait Drawn: Sized {
+pub(super) trait Drawn: Sized + Send + Sync {
     /// What they draw to and read.
-    type Views;
+    type Views: Send + Sync;
 
     /// Makes the pipelines.
     fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self>;
@@ -27,7 +27,7 @@ pub(super) trait Drawn: Sized {
 }
 
 /// Passes that compute shaders run.
-pub(super) trait Computed: Sized {
+pub(super) trait Computed: Sized + Send + Sync {
     /// Makes the pipelines.
     fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self>;
 
@@ -69,8 +69,17 @@ enum Targets {
     Pyramids(Arc<Pyramids>),
 }
 
+/// A picture where a frame leaves it.
+#[derive(Clone, Copy)]
+pub enum Composited<'a> {
+    /// In images.
+    Images(&'a Images),
+    /// In a buffer.
+    Buffer(&'a PictureBuffer),
+}
+
 /// Passes with their views of some targets. Views go before what they view.
-trait Recorded {
+trait Recorded: Send + Sync {
     fn record(&self, rec: &mut Recorder<'_>, splats: &Splats);
 }
 
@@ -196,6 +205,15 @@ impl Canvas {
     /// Records a frame.
     pub fn record(&self, rec: &mut Recorder<'_>, splats: &Splats) {
         self.recorded.record(rec, splats);
+    }
+
+    /// The picture.
+    pub fn composited(&self) -> Composited<'_> {
+        match &self.targets {
+            Targets::Images(targets) => Composited::Images(targets),
+            Targets::Buffers(targets) => Composited::Buffer(&targets.picture),
+            Targets::Pyramids(targets) => Composited::Buffer(&targets.picture),
+        }
     }
 
     /// Every target that there is.

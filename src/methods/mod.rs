@@ -10,7 +10,7 @@ pub mod perspective_ewa;
 pub mod pull_push;
 pub mod sprites;
 
-pub use canvas::{Canvas, Pipelines};
+pub use canvas::{Canvas, Composited, Pipelines};
 
 use crate::pull_push::PullPush;
 use crate::settings::{Cull, Settings, Widen};

@@ -3,6 +3,7 @@
 //! Visibility, attribute, nearest and normalize come in two kinds, one for each [`crate::variant::Rasterizer`].
 
 mod attribute;
+mod composite;
 mod coverage;
 mod footprint;
 mod nearest;
@@ -20,6 +21,7 @@ mod tiles;
 mod visibility;
 
 pub use attribute::{ComputeAttribute, DrawAttribute};
+pub use composite::{Composite, CompositeKind};
 pub use footprint::Footprint;
 pub use nearest::{ComputeNearest, DrawNearest, NearestViews};
 pub use normalize::{ComputeNormalize, DrawNormalize, NormalizeViews};

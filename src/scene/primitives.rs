@@ -3,8 +3,7 @@
 use super::{ColourStream, PrimitiveKinds, colour_bytes};
 use crate::error::{Error, Result};
 use crate::geometry::{Parts, Primitives};
-use crate::vk::{Buffer, Device, upload};
-use std::sync::Arc;
+use crate::vk::{Buffer, Device, Uploads};
 
 /// The bit of a segment's first vertex that tells a tube, as in `lib/line.glsl`.
 const TUBE: u32 = 1 << 31;
@@ -32,26 +31,26 @@ pub(crate) struct Elements {
 
 impl PrimitiveStreams {
     /// The streams of `parts`, which were checked; `None` if there are no lines and triangles.
-    pub fn new(device: &Arc<Device>, parts: &Parts<'_>) -> Result<Option<Self>> {
+    pub fn new(device: &Device, uploads: &Uploads<'_>, parts: &Parts<'_>) -> Result<Option<Self>> {
         let Some(primitives) = parts.primitives else { return Ok(None) };
         let surfels = parts.surfels.len();
         check_sizes(device, primitives, surfels)?;
         let vertices: Vec<f32> = (0..primitives.len()).flat_map(|i| vertex(primitives, i)).collect();
         let (colour_stream, colours) = colour_bytes(primitives.colours.as_ref());
         let alongs =
-            || upload(device, "line directions", bytemuck::cast_slice(&primitives.line_directions()));
+            || uploads.buffer("line directions", bytemuck::cast_slice(&primitives.line_directions()));
         let segments: Vec<[u32; 2]> =
             primitives.segments().map(|([a, b], tube)| [if tube { a | TUBE } else { a }, b]).collect();
         let elements = |name, indices: &[u32], count: usize, first: usize| {
-            let buffer = || upload(device, name, bytemuck::cast_slice(indices));
+            let buffer = || uploads.buffer(name, bytemuck::cast_slice(indices));
             let made = || Ok(Elements { buffer: buffer()?, count: count as u32, first: first as u32 });
             (count > 0).then(made).transpose()
         };
         Ok(Some(Self {
-            vertices: upload(device, "vertices", bytemuck::cast_slice(&vertices))?,
+            vertices: uploads.buffer("vertices", bytemuck::cast_slice(&vertices))?,
             alongs: (!segments.is_empty()).then(alongs).transpose()?,
             colours: (colour_stream != ColourStream::None)
-                .then(|| upload(device, "vertex colours", colours))
+                .then(|| uploads.buffer("vertex colours", colours))
                 .transpose()?,
             colour_stream,
             lines: elements("lines", segments.as_flattened(), segments.len(), surfels)?,

@@ -86,6 +86,10 @@ impl Access {
     /// Copied to, or filled.
     pub const COPY_WRITE: Self =
         Self::buffer(vk::PipelineStageFlags::TRANSFER, vk::AccessFlags::TRANSFER_WRITE, true);
+    /// Read by whatever shader.
+    pub const SHADER_READ: Self = Self::buffer(SHADER_STAGES, vk::AccessFlags::SHADER_READ, false);
+    /// Read as uniforms by whatever shader.
+    pub const UNIFORM_READ: Self = Self::buffer(SHADER_STAGES, vk::AccessFlags::UNIFORM_READ, false);
     /// Read by the CPU once the frame is over.
     pub const HOST_READ: Self = Self::buffer(vk::PipelineStageFlags::HOST, vk::AccessFlags::HOST_READ, false);
 
@@ -97,6 +101,12 @@ impl Access {
 const DEPTH_STAGES: vk::PipelineStageFlags = vk::PipelineStageFlags::from_raw(
     vk::PipelineStageFlags::EARLY_FRAGMENT_TESTS.as_raw()
         | vk::PipelineStageFlags::LATE_FRAGMENT_TESTS.as_raw(),
+);
+
+const SHADER_STAGES: vk::PipelineStageFlags = vk::PipelineStageFlags::from_raw(
+    vk::PipelineStageFlags::VERTEX_SHADER.as_raw()
+        | vk::PipelineStageFlags::FRAGMENT_SHADER.as_raw()
+        | vk::PipelineStageFlags::COMPUTE_SHADER.as_raw(),
 );
 
 /// A resource and how a pass touches it.

@@ -1,10 +1,9 @@
 //! Buffers.
 
-use super::{Device, memory};
+use super::Device;
+use super::memory::{self, Allocation, Location, MemoryRequest};
 use crate::error::{Error, Result};
 use ash::vk;
-use gpu_allocator::MemoryLocation;
-use gpu_allocator::vulkan::Allocation;
 use std::sync::Arc;
 
 /// A buffer with its memory.
@@ -20,23 +19,24 @@ impl Buffer {
     pub fn storage(device: &Arc<Device>, name: &str, size: u64) -> Result<Self> {
         use vk::BufferUsageFlags as Usage;
         let usage = Usage::STORAGE_BUFFER | Usage::TRANSFER_DST | Usage::TRANSFER_SRC;
-        Self::new(device, name, size, usage, MemoryLocation::GpuOnly)
+        Self::new(device, name, size, usage, Location::Device)
     }
 
-    /// A buffer that the CPU writes and shaders read as uniforms.
+    /// A buffer that shaders read as uniforms, and [`super::Recorder::update`] writes.
     pub fn uniform(device: &Arc<Device>, name: &str, size: u64) -> Result<Self> {
-        Self::new(device, name, size, vk::BufferUsageFlags::UNIFORM_BUFFER, MemoryLocation::CpuToGpu)
+        let usage = vk::BufferUsageFlags::UNIFORM_BUFFER | vk::BufferUsageFlags::TRANSFER_DST;
+        Self::new(device, name, size, usage, Location::Device)
     }
 
     /// A buffer that the CPU writes and the GPU copies from.
     pub fn staging(device: &Arc<Device>, name: &str, size: u64) -> Result<Self> {
-        Self::new(device, name, size, vk::BufferUsageFlags::TRANSFER_SRC, MemoryLocation::CpuToGpu)
+        Self::new(device, name, size, vk::BufferUsageFlags::TRANSFER_SRC, Location::Upload)
     }
 
     /// A buffer that the GPU writes, by copies or as storage, and the CPU reads.
     pub fn readback(device: &Arc<Device>, name: &str, size: u64) -> Result<Self> {
         let usage = vk::BufferUsageFlags::TRANSFER_DST | vk::BufferUsageFlags::STORAGE_BUFFER;
-        Self::new(device, name, size, usage, MemoryLocation::GpuToCpu)
+        Self::new(device, name, size, usage, Location::Readback)
     }
 
     fn new(
@@ -44,7 +44,7 @@ impl Buffer {
         name: &str,
         size: u64,
         usage: vk::BufferUsageFlags,
-        location: MemoryLocation,
+        location: Location,
     ) -> Result<Self> {
         let info = vk::BufferCreateInfo::default().size(size).usage(usage);
         // SAFETY: `info` is valid; the buffer is destroyed in `drop`.
@@ -53,12 +53,17 @@ impl Buffer {
         let mut buffer = Self { raw, size, allocation: None, device: device.clone() };
         // SAFETY: the buffer is the device's.
         let requirements = unsafe { device.raw.get_buffer_memory_requirements(raw) };
-        let allocation =
-            buffer.allocation.insert(memory::allocate(device, name, requirements, location, true)?);
+        let request = MemoryRequest { name, requirements, location, linear: true };
+        let (memory, offset) = buffer.allocation.insert(memory::allocate(device, &request)?).place();
         // SAFETY: the memory was allocated for this buffer's requirements and is bound once.
-        unsafe { device.raw.bind_buffer_memory(raw, allocation.memory(), allocation.offset()) }
+        unsafe { device.raw.bind_buffer_memory(raw, memory, offset) }
             .map_err(Error::vulkan("vkBindBufferMemory"))?;
         Ok(buffer)
+    }
+
+    /// Whether it is on this device.
+    pub fn is_on(&self, device: &Arc<Device>) -> bool {
+        Arc::ptr_eq(&self.device, device)
     }
 
     /// Size, bytes.
@@ -68,15 +73,14 @@ impl Buffer {
 
     /// The contents, for buffers that the CPU sees; nothing for others. The GPU must not be using it.
     pub fn bytes(&self) -> &[u8] {
-        let mapped = self.allocation.as_ref().and_then(|allocation| allocation.mapped_slice()).unwrap_or(&[]);
+        let mapped = self.allocation.as_ref().map_or(&[][..], Allocation::mapped);
         &mapped[..mapped.len().min(self.size as usize)]
     }
 
     /// As [`Buffer::bytes`], to write.
     pub fn bytes_mut(&mut self) -> &mut [u8] {
         let size = self.size as usize;
-        let mapped =
-            self.allocation.as_mut().and_then(|allocation| allocation.mapped_slice_mut()).unwrap_or(&mut []);
+        let mapped = self.allocation.as_mut().map_or(&mut [][..], Allocation::mapped_mut);
         let end = mapped.len().min(size);
         &mut mapped[..end]
     }

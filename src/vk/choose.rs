@@ -1,6 +1,7 @@
 //! Which of the machine's devices is used.
 
 use super::instance::Instance;
+use super::requirements::{API_VERSION, QUEUE};
 use crate::error::{Error, Result};
 use ash::vk;
 
@@ -89,44 +90,51 @@ fn candidates(instance: &Instance) -> Result<Vec<Candidate>> {
 
 fn candidate(instance: &Instance, physical: vk::PhysicalDevice) -> Candidate {
     // SAFETY: `physical` is one of the instance's devices.
-    let (properties, families) = unsafe {
-        (
-            instance.raw.get_physical_device_properties(physical),
-            instance.raw.get_physical_device_queue_family_properties(physical),
-        )
-    };
-    let new_enough = properties.api_version >= vk::API_VERSION_1_1;
-    let wanted = vk::QueueFlags::GRAPHICS | vk::QueueFlags::COMPUTE;
-    let family = families.iter().position(|family| family.queue_flags.contains(wanted));
-    let (kind, score) = match properties.device_type {
-        vk::PhysicalDeviceType::DISCRETE_GPU => ("discrete GPU", 4),
-        vk::PhysicalDeviceType::INTEGRATED_GPU => ("integrated GPU", 3),
-        vk::PhysicalDeviceType::VIRTUAL_GPU => ("virtual GPU", 2),
-        vk::PhysicalDeviceType::CPU => (DeviceDescription::CPU, 1),
-        _ => ("other", 0),
-    };
-    let refused = match (new_enough, family) {
-        (false, _) => Some("it is older than Vulkan 1.1"),
-        (true, None) => Some("no queue family does graphics and compute"),
-        (true, Some(_)) => None,
-    };
-    let description = DeviceDescription {
-        name: text(properties.device_name_as_c_str()),
-        kind,
-        driver: driver(instance, physical, new_enough, properties.driver_version),
-        api_version: version(properties.api_version),
-        refused,
-        score,
-    };
+    let families = unsafe { instance.raw.get_physical_device_queue_family_properties(physical) };
+    let family = families.iter().position(|family| family.queue_flags.contains(QUEUE));
+    // SAFETY: as above.
+    let description = unsafe { DeviceDescription::of(&instance.raw, physical, family.is_some()) };
     Candidate { physical, family: family.unwrap_or(0) as u32, description }
 }
 
-fn driver(instance: &Instance, physical: vk::PhysicalDevice, new_enough: bool, number: u32) -> String {
+impl DeviceDescription {
+    /// What `physical` is, if a queue family of it `serves`.
+    ///
+    /// # Safety
+    /// `physical` is a device of `instance`, which is of version [`API_VERSION`] at least.
+    pub(super) unsafe fn of(instance: &ash::Instance, physical: vk::PhysicalDevice, serves: bool) -> Self {
+        // SAFETY: by the caller.
+        let properties = unsafe { instance.get_physical_device_properties(physical) };
+        let new_enough = properties.api_version >= API_VERSION;
+        let (kind, score) = match properties.device_type {
+            vk::PhysicalDeviceType::DISCRETE_GPU => ("discrete GPU", 4),
+            vk::PhysicalDeviceType::INTEGRATED_GPU => ("integrated GPU", 3),
+            vk::PhysicalDeviceType::VIRTUAL_GPU => ("virtual GPU", 2),
+            vk::PhysicalDeviceType::CPU => (Self::CPU, 1),
+            _ => ("other", 0),
+        };
+        let refused = match (new_enough, serves) {
+            (false, _) => Some("it is older than Vulkan 1.1"),
+            (true, false) => Some("no queue family does graphics and compute"),
+            (true, true) => None,
+        };
+        Self {
+            name: text(properties.device_name_as_c_str()),
+            kind,
+            driver: driver(instance, physical, new_enough, properties.driver_version),
+            api_version: version(properties.api_version),
+            refused,
+            score,
+        }
+    }
+}
+
+fn driver(instance: &ash::Instance, physical: vk::PhysicalDevice, new_enough: bool, number: u32) -> String {
     let mut driver = vk::PhysicalDeviceDriverProperties::default();
     let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut driver);
     if new_enough {
         // SAFETY: `physical` is of version 1.1, which has this query; a driver that does not know the struct leaves it alone.
-        unsafe { instance.raw.get_physical_device_properties2(physical, &mut properties) };
+        unsafe { instance.get_physical_device_properties2(physical, &mut properties) };
     }
     let name = text(driver.driver_name_as_c_str());
     match name.is_empty() {

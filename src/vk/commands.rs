@@ -17,8 +17,9 @@ pub struct Commands {
 }
 
 impl Commands {
-    /// A slot; with `profile`, passes are timed where the device can.
+    /// A slot; with `profile`, passes are timed where the device can. Refused on a device that a host lends.
     pub fn new(device: &Arc<Device>, profile: bool) -> Result<Self> {
+        let (_, family) = device.queue()?;
         let timestamps = if profile { Timestamps::new(device)? } else { None };
         let mut commands = Self {
             pool: vk::CommandPool::null(),
@@ -28,7 +29,7 @@ impl Commands {
             timed: profile,
             device: device.clone(),
         };
-        let pool = vk::CommandPoolCreateInfo::default().queue_family_index(device.family);
+        let pool = vk::CommandPoolCreateInfo::default().queue_family_index(family);
         // SAFETY: all infos are valid; what is made is destroyed in `drop`.
         unsafe {
             commands.pool =
@@ -54,6 +55,7 @@ impl Commands {
 
     /// Records with `body`, submits, and waits until the GPU is done.
     pub fn run(&mut self, body: impl FnOnce(&mut Recorder<'_>)) -> Result<()> {
+        let (queue, _) = self.device.queue()?;
         let raw = &self.device.raw;
         let begin = vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
         // SAFETY: the last submission was waited for, so the pool's only buffer is free to be recorded anew.
@@ -69,7 +71,7 @@ impl Commands {
         unsafe {
             raw.end_command_buffer(self.cmd).map_err(Error::vulkan("vkEndCommandBuffer"))?;
             {
-                let queue = self.device.queue.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+                let queue = queue.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
                 raw.queue_submit(*queue, &submit, self.fence).map_err(Error::vulkan("vkQueueSubmit"))?;
             }
             raw.wait_for_fences(&[self.fence], true, u64::MAX).map_err(Error::vulkan("vkWaitForFences"))?;

@@ -3,10 +3,12 @@
 use super::choose::{DeviceDescription, choose};
 use super::instance::Instance;
 use super::limits::{Capabilities, DeviceLimits};
+use super::memory::{self, MemorySource};
 use super::pipeline_cache::PipelineCache;
+use super::requirements::{Abilities, QUEUE};
 use crate::error::{Error, Result};
 use ash::{ext::debug_utils, vk};
-use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
+use std::ffi::CStr;
 use std::mem::ManuallyDrop;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -28,16 +30,53 @@ pub struct DeviceOptions {
 /// An open device. Shared by everything that is made on it.
 pub struct Device {
     pub(super) raw: ash::Device,
-    /// Locked while work is submitted.
-    pub(super) queue: Mutex<vk::Queue>,
-    pub(super) family: u32,
-    pub(super) allocator: ManuallyDrop<Mutex<Allocator>>,
+    pub(super) memory: ManuallyDrop<memory::Source>,
     pub(super) pipeline_cache: ManuallyDrop<PipelineCache>,
     pub(super) labels: Option<debug_utils::Device>,
     pub(super) made: Made,
     capabilities: Capabilities,
     description: DeviceDescription,
+    /// Asks `physical` what it can do.
+    instance: ash::Instance,
+    physical: vk::PhysicalDevice,
+    owner: Owner,
+}
+
+/// Whose the device is.
+enum Owner {
+    /// Opened by the engine, which submits to its queue, locked while it does.
+    Engine(Box<Opened>),
+    /// Lent by a host, which submits what is recorded, waits for it, and destroys the device last.
+    Host,
+}
+
+/// What the engine opened beside the device.
+struct Opened {
+    queue: Mutex<vk::Queue>,
+    family: u32,
     instance: Instance,
+}
+
+/// A device that a host lends: its own, to go on using while the engine does.
+pub struct Lent<'a> {
+    /// The instance, of Vulkan 1.1 at least.
+    pub instance: &'a ash::Instance,
+    /// The device that `device` is of.
+    pub physical: vk::PhysicalDevice,
+    /// The device.
+    pub device: &'a ash::Device,
+    /// The family of the queue to which the host submits what is recorded; it does graphics and compute.
+    pub queue_family: u32,
+    /// What of [`Abilities::of`] the host has enabled.
+    pub enabled: Abilities,
+    /// Whether the instance has VK_EXT_debug_utils enabled: passes then have labels.
+    pub labels: bool,
+    /// What to hide of the device.
+    pub limits: DeviceLimits,
+    /// Where memory comes from; `None` takes the engine's own allocator.
+    pub memory: Option<Box<dyn MemorySource>>,
+    /// As [`DeviceOptions::pipeline_cache`].
+    pub pipeline_cache: Option<PathBuf>,
 }
 
 /// Counts of what was ever made; [`Device::usage`] reads them.
@@ -67,58 +106,103 @@ impl Device {
         let instance = Instance::new(options.validate)?;
         let chosen = choose(&instance, options.select.as_deref())?;
         let (physical, family, description) = (chosen.physical, chosen.family, chosen.description);
-        let capabilities = Capabilities::query(&instance, physical, family, &options.limits);
+        // SAFETY: the physical device and the family are the instance's, whose version is 1.1.
+        let (enabled, capabilities) = unsafe {
+            let enabled = options.limits.leave(Abilities::of(&instance.raw, physical));
+            (enabled, Capabilities::query(&instance.raw, physical, family, enabled, &options.limits))
+        };
         let queues =
             [vk::DeviceQueueCreateInfo::default().queue_family_index(family).queue_priorities(&[1.0])];
-        let mut floats =
-            vk::PhysicalDeviceShaderAtomicFloatFeaturesEXT::default().shader_buffer_float32_atomic_add(true);
-        let mut integers =
-            vk::PhysicalDeviceShaderAtomicInt64Features::default().shader_buffer_int64_atomics(true);
-        let features = vk::PhysicalDeviceFeatures::default()
-            .shader_int64(capabilities.int64_atomics)
-            .fragment_stores_and_atomics(capabilities.fragment_writes);
-        let mut extensions = Vec::new();
-        let mut info =
-            vk::DeviceCreateInfo::default().queue_create_infos(&queues).enabled_features(&features);
-        if capabilities.float_atomics {
-            extensions.push(ash::ext::shader_atomic_float::NAME.as_ptr());
-            info = info.push_next(&mut floats);
-        }
-        if capabilities.int64_atomics {
-            extensions.push(ash::khr::shader_atomic_int64::NAME.as_ptr());
-            info = info.push_next(&mut integers);
-        }
-        info = info.enabled_extension_names(&extensions);
+        let extensions: Vec<_> = enabled.extensions().map(CStr::as_ptr).collect();
+        let mut features = enabled.features();
+        let core = features.core;
+        let info = vk::DeviceCreateInfo::default()
+            .queue_create_infos(&queues)
+            .enabled_features(&core)
+            .enabled_extension_names(&extensions);
         // SAFETY: the physical device is the instance's, the family one of its own, and it has the extensions asked for.
-        let raw = unsafe { instance.raw.create_device(physical, &info, None) }
+        let raw = unsafe { instance.raw.create_device(physical, &features.chain(info), None) }
             .map_err(|result| Error::NoDevice(format!("{}: vkCreateDevice: {result}", description.name)))?;
         // SAFETY: the queue was asked for above.
-        let queue = unsafe { raw.get_device_queue(family, 0) };
-        let allocator = Allocator::new(&AllocatorCreateDesc {
-            instance: instance.raw.clone(),
-            device: raw.clone(),
-            physical_device: physical,
-            debug_settings: Default::default(),
-            buffer_device_address: false,
-            allocation_sizes: gpu_allocator::AllocationSizes::default(),
-        })
-        .map_err(|error| Error::NoDevice(format!("{}: {error}", description.name)))?;
+        let queue = Mutex::new(unsafe { raw.get_device_queue(family, 0) });
+        let memory = memory::Source::own(&instance.raw, &raw, physical)
+            .map_err(|error| Error::NoDevice(format!("{}: {error}", description.name)))?;
         let pipeline_cache =
-            PipelineCache::load(&instance, physical, &raw, options.pipeline_cache.as_deref())?;
+            PipelineCache::load(&instance.raw, physical, &raw, options.pipeline_cache.as_deref())?;
         let labels = instance.debug_utils.then(|| debug_utils::Device::new(&instance.raw, &raw));
         log::info!("device: {} ({}, {})", description.name, description.kind, description.driver);
         Ok(Arc::new(Self {
             raw,
-            queue: Mutex::new(queue),
-            family,
-            allocator: ManuallyDrop::new(Mutex::new(allocator)),
+            memory: ManuallyDrop::new(memory),
             pipeline_cache: ManuallyDrop::new(pipeline_cache),
             labels,
             made: Made::default(),
             capabilities,
             description,
-            instance,
+            instance: instance.raw.clone(),
+            physical,
+            owner: Owner::Engine(Box::new(Opened { queue, family, instance })),
         }))
+    }
+
+    /// The device of a host that renders surfels among its own geometry. The engine records into the host's command buffers; it never
+    /// submits, waits, or destroys what is lent.
+    ///
+    /// [`Error::NoDevice`] if the device is older than Vulkan 1.1, or the queue family does not do graphics and compute.
+    ///
+    /// # Safety
+    /// What `lent` says of the device is true, and the device outlives what is returned and all that is made on it.
+    pub unsafe fn borrow(lent: Lent<'_>) -> Result<Arc<Self>> {
+        let Lent { instance, physical, device, queue_family, enabled, .. } = lent;
+        // SAFETY: by the caller, here and below.
+        let families = unsafe { instance.get_physical_device_queue_family_properties(physical) };
+        let serves =
+            families.get(queue_family as usize).is_some_and(|family| family.queue_flags.contains(QUEUE));
+        // SAFETY: as above.
+        let description = unsafe { DeviceDescription::of(instance, physical, serves) };
+        if let Some(cause) = description.refused {
+            let name = &description.name;
+            return Err(Error::NoDevice(format!("{name}, queue family {queue_family}: {cause}")));
+        }
+        // SAFETY: as above.
+        let capabilities =
+            unsafe { Capabilities::query(instance, physical, queue_family, enabled, &lent.limits) };
+        let memory = match lent.memory {
+            Some(source) => memory::Source::Host(source),
+            None => memory::Source::own(instance, device, physical)
+                .map_err(|error| Error::NoDevice(format!("{}: {error}", description.name)))?,
+        };
+        let pipeline_cache = PipelineCache::load(instance, physical, device, lent.pipeline_cache.as_deref())?;
+        Ok(Arc::new(Self {
+            raw: device.clone(),
+            memory: ManuallyDrop::new(memory),
+            pipeline_cache: ManuallyDrop::new(pipeline_cache),
+            labels: lent.labels.then(|| debug_utils::Device::new(instance, device)),
+            made: Made::default(),
+            capabilities,
+            description,
+            instance: instance.clone(),
+            physical,
+            owner: Owner::Host,
+        }))
+    }
+
+    /// The queue that the engine submits to, and its family. A usage error on a device that a host lends: there the host submits.
+    pub(super) fn queue(&self) -> Result<(&Mutex<vk::Queue>, u32)> {
+        match &self.owner {
+            Owner::Engine(opened) => Ok((&opened.queue, opened.family)),
+            Owner::Host => Err(Error::Usage(format!(
+                "the device {} is lent by a host, which alone submits: record into its command buffers, see `embed`",
+                self.description.name
+            ))),
+        }
+    }
+
+    /// What images of `format` can be used for.
+    pub fn format_features(&self, format: vk::Format) -> vk::FormatFeatureFlags {
+        // SAFETY: the physical device is the instance's, and both outlive this.
+        let found = unsafe { self.instance.get_physical_device_format_properties(self.physical, format) };
+        found.optimal_tiling_features
     }
 
     /// Name, kind and driver.
@@ -141,9 +225,12 @@ impl Device {
         }
     }
 
-    /// Messages of the validation layers so far; empty unless [`DeviceOptions::validate`] was set.
+    /// Messages of the validation layers so far; empty unless [`DeviceOptions::validate`] was set. A host listens itself.
     pub fn validation_messages(&self) -> Vec<String> {
-        self.instance.messages.all()
+        match &self.owner {
+            Owner::Engine(opened) => opened.instance.messages.all(),
+            Owner::Host => Vec::new(),
+        }
     }
 }
 
@@ -152,12 +239,16 @@ impl Drop for Device {
         // SAFETY: everything made on the device holds an `Arc` of it, so nothing is left; the allocator and the cache go before the
         // device that they use, and the instance, a field, after it.
         unsafe {
-            // A lost device has nothing left to wait for.
-            let _ = self.raw.device_wait_idle();
+            if let Owner::Engine(_) = self.owner {
+                // A lost device has nothing left to wait for.
+                let _ = self.raw.device_wait_idle();
+            }
             self.pipeline_cache.store_and_destroy(&self.raw);
             ManuallyDrop::drop(&mut self.pipeline_cache);
-            ManuallyDrop::drop(&mut self.allocator);
-            self.raw.destroy_device(None);
+            ManuallyDrop::drop(&mut self.memory);
+            if let Owner::Engine(_) = self.owner {
+                self.raw.destroy_device(None);
+            }
         }
     }
 }

@@ -88,6 +88,13 @@ impl<'a> Encoder<'a> {
         unsafe { self.device.raw.cmd_copy_buffer(self.cmd, from.raw, to.raw, &[region]) };
     }
 
+    /// Copies all of `from` to the start of `to`, which is alive and as large.
+    pub(super) fn copy_all(&mut self, from: &Buffer, to: vk::Buffer) {
+        let region = vk::BufferCopy { src_offset: 0, dst_offset: 0, size: from.size() };
+        // SAFETY: recorded outside a render pass; both buffers are alive and large enough.
+        unsafe { self.device.raw.cmd_copy_buffer(self.cmd, from.raw, to, &[region]) };
+    }
+
     /// Copies all of `image` to `buffer`, rows without gaps.
     pub fn copy_image(&mut self, image: &Image, buffer: &Buffer) {
         let [width, height] = image.size();
@@ -113,7 +120,33 @@ pub struct Draws<'a> {
     cmd: vk::CommandBuffer,
 }
 
-impl Draws<'_> {
+impl<'a> Draws<'a> {
+    /// Draws inside a render pass that a host has begun, over the part of its target that is the picture's.
+    ///
+    /// # Safety
+    /// `cmd` is of `device`, and is being recorded inside the render pass for which the pipelines that draw were made.
+    pub unsafe fn of_host(
+        device: &'a Device,
+        cmd: vk::CommandBuffer,
+        viewport: vk::Viewport,
+        area: vk::Rect2D,
+    ) -> Self {
+        // SAFETY: by the caller.
+        unsafe {
+            device.raw.cmd_set_viewport(cmd, 0, &[viewport]);
+            device.raw.cmd_set_scissor(cmd, 0, &[area]);
+        }
+        Self { device, cmd }
+    }
+
+    /// Sets the push constants of `pipeline`'s fragment shader.
+    pub fn push(&mut self, pipeline: &DrawPipeline, constants: &[u8]) {
+        let (_, layout) = pipeline.raw();
+        let stage = vk::ShaderStageFlags::FRAGMENT;
+        // SAFETY: the command buffer is being recorded, and the layout has as many push constants.
+        unsafe { self.device.raw.cmd_push_constants(self.cmd, layout, stage, 0, constants) };
+    }
+
     /// Draws `vertices` vertices with `pipeline`, which was made for this render pass.
     pub fn draw(&mut self, pipeline: &DrawPipeline, sets: &[&DescriptorSet], vertices: u32) {
         let sets: Vec<_> = sets.iter().map(|set| set.raw).collect();

@@ -1,10 +1,9 @@
 //! Images that are rendered to.
 
-use super::{Device, memory};
+use super::Device;
+use super::memory::{self, Allocation, Location, MemoryRequest};
 use crate::error::{Error, Result};
 use ash::vk;
-use gpu_allocator::MemoryLocation;
-use gpu_allocator::vulkan::Allocation;
 use std::sync::Arc;
 
 /// What an image is used for beside being rendered to.
@@ -12,8 +11,8 @@ use std::sync::Arc;
 pub enum ImageUse {
     /// A later pass reads it.
     Sampled,
-    /// It is copied to the CPU.
-    Copied,
+    /// It is what a frame is for: copied to the CPU, or drawn over a host's target.
+    Output,
 }
 
 /// A two-dimensional render target with its memory and its one view.
@@ -51,7 +50,7 @@ impl Image {
         };
         let other = match also {
             ImageUse::Sampled => vk::ImageUsageFlags::SAMPLED,
-            ImageUse::Copied => vk::ImageUsageFlags::TRANSFER_SRC,
+            ImageUse::Output => vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::SAMPLED,
         };
         let info = vk::ImageCreateInfo::default()
             .image_type(vk::ImageType::TYPE_2D)
@@ -75,10 +74,10 @@ impl Image {
         let device = &self.device;
         // SAFETY: the image is the device's.
         let requirements = unsafe { device.raw.get_image_memory_requirements(self.raw) };
-        let allocation = memory::allocate(device, name, requirements, MemoryLocation::GpuOnly, false)?;
-        let allocation = self.allocation.insert(allocation);
+        let request = MemoryRequest { name, requirements, location: Location::Device, linear: false };
+        let (memory, offset) = self.allocation.insert(memory::allocate(device, &request)?).place();
         // SAFETY: the memory was allocated for this image's requirements and is bound once.
-        unsafe { device.raw.bind_image_memory(self.raw, allocation.memory(), allocation.offset()) }
+        unsafe { device.raw.bind_image_memory(self.raw, memory, offset) }
             .map_err(Error::vulkan("vkBindImageMemory"))
     }
 

@@ -1,8 +1,7 @@
 //! What a device can do, and a mask that hides part of it so that every fallback can be run on any machine.
 
-use super::instance::Instance;
+use super::requirements::Abilities;
 use ash::vk;
-use std::ffi::CStr;
 
 /// A mask over a device's abilities: a field that is `None` hides nothing. It only ever takes away.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -20,6 +19,8 @@ pub struct DeviceLimits {
     pub int64_atomics: Option<bool>,
     /// `false`: fragment shaders cannot write to buffers.
     pub fragment_writes: Option<bool>,
+    /// `false`: colour attachments of one subpass are all blended alike.
+    pub independent_blend: Option<bool>,
     /// `false`: the queue has no timestamps.
     pub timestamps: Option<bool>,
     /// Upper bound of `maxStorageBufferRange`, bytes.
@@ -28,6 +29,19 @@ pub struct DeviceLimits {
     pub max_storage_buffers: Option<u32>,
     /// Upper bound of the largest render target's side, px.
     pub max_image_side: Option<u32>,
+}
+
+impl DeviceLimits {
+    /// What the mask leaves of `abilities`.
+    pub(super) fn leave(&self, abilities: Abilities) -> Abilities {
+        let left = Abilities {
+            float_atomics: self.float_atomics != Some(false),
+            int64_atomics: self.int64_atomics != Some(false),
+            fragment_writes: self.fragment_writes != Some(false),
+            independent_blend: self.independent_blend != Some(false),
+        };
+        abilities.and(left)
+    }
 }
 
 /// What the engine asks of a device and may lack, after the mask.
@@ -41,6 +55,8 @@ pub struct Capabilities {
     pub int64_atomics: bool,
     /// Fragment shaders can write to storage buffers (the feature fragmentStoresAndAtomics).
     pub fragment_writes: bool,
+    /// Colour attachments of one subpass can be blended and masked in different ways (the feature independentBlend).
+    pub independent_blend: bool,
     /// Nanoseconds a timestamp tick, and the mask of valid bits; `None` without timestamps.
     pub timestamps: Option<(f32, u64)>,
     /// Largest range of a storage buffer that one descriptor may name, bytes.
@@ -59,24 +75,28 @@ pub struct Capabilities {
 const LARGEST_SIDE: u32 = 1 << 15;
 
 impl Capabilities {
-    pub(super) fn query(
-        instance: &Instance,
+    /// What `physical` can do where `enabled` is.
+    ///
+    /// # Safety
+    /// `physical` is one of the instance's devices, and `family` one of its queue families.
+    pub(super) unsafe fn query(
+        instance: &ash::Instance,
         physical: vk::PhysicalDevice,
         family: u32,
+        enabled: Abilities,
         mask: &DeviceLimits,
     ) -> Self {
-        // SAFETY: `physical` is one of the instance's devices.
-        let (properties, features, families) = unsafe {
+        // SAFETY: by the caller.
+        let (properties, families) = unsafe {
             (
-                instance.raw.get_physical_device_properties(physical),
-                instance.raw.get_physical_device_features(physical),
-                instance.raw.get_physical_device_queue_family_properties(physical),
+                instance.get_physical_device_properties(physical),
+                instance.get_physical_device_queue_family_properties(physical),
             )
         };
         let limits = properties.limits;
         let blends = |format| {
-            // SAFETY: as above.
-            let found = unsafe { instance.raw.get_physical_device_format_properties(physical, format) };
+            // SAFETY: by the caller.
+            let found = unsafe { instance.get_physical_device_format_properties(physical, format) };
             found.optimal_tiling_features.contains(vk::FormatFeatureFlags::COLOR_ATTACHMENT_BLEND)
         };
         let side = limits
@@ -84,15 +104,16 @@ impl Capabilities {
             .min(limits.max_framebuffer_width)
             .min(limits.max_framebuffer_height);
         let side = side.min(limits.max_viewport_dimensions[0]).min(limits.max_viewport_dimensions[1]);
+        let enabled = mask.leave(enabled);
         let valid_bits = families[family as usize].timestamp_valid_bits;
         let timestamps = valid_bits > 0 && mask.timestamps != Some(false);
         Self {
             blend_float32: [vk::Format::R32_SFLOAT, vk::Format::R32G32B32A32_SFLOAT].into_iter().all(blends)
                 && mask.blend_float32 != Some(false),
-            float_atomics: mask.float_atomics != Some(false) && has_float_atomics(instance, physical),
-            int64_atomics: mask.int64_atomics != Some(false) && has_int64_atomics(instance, physical),
-            fragment_writes: features.fragment_stores_and_atomics == vk::TRUE
-                && mask.fragment_writes != Some(false),
+            float_atomics: enabled.float_atomics,
+            int64_atomics: enabled.int64_atomics,
+            fragment_writes: enabled.fragment_writes,
+            independent_blend: enabled.independent_blend,
             timestamps: timestamps
                 .then_some((limits.timestamp_period, u64::MAX >> (64 - valid_bits.clamp(1, 64)))),
             max_storage_buffer_range: u64::from(limits.max_storage_buffer_range)
@@ -105,34 +126,4 @@ impl Capabilities {
             max_workgroups: limits.max_compute_work_group_count[0],
         }
     }
-}
-
-fn has_extension(instance: &Instance, physical: vk::PhysicalDevice, name: &CStr) -> bool {
-    // SAFETY: `physical` is one of the instance's devices.
-    let extensions =
-        unsafe { instance.raw.enumerate_device_extension_properties(physical) }.unwrap_or_default();
-    extensions.iter().any(|extension| extension.extension_name_as_c_str() == Ok(name))
-}
-
-fn has_float_atomics(instance: &Instance, physical: vk::PhysicalDevice) -> bool {
-    if !has_extension(instance, physical, ash::ext::shader_atomic_float::NAME) {
-        return false;
-    }
-    let mut atomics = vk::PhysicalDeviceShaderAtomicFloatFeaturesEXT::default();
-    let mut features = vk::PhysicalDeviceFeatures2::default().push_next(&mut atomics);
-    // SAFETY: `physical` is one of the instance's devices, and has the extension that the struct belongs to.
-    unsafe { instance.raw.get_physical_device_features2(physical, &mut features) };
-    atomics.shader_buffer_float32_atomic_add == vk::TRUE
-}
-
-fn has_int64_atomics(instance: &Instance, physical: vk::PhysicalDevice) -> bool {
-    if !has_extension(instance, physical, ash::khr::shader_atomic_int64::NAME) {
-        return false;
-    }
-    let mut atomics = vk::PhysicalDeviceShaderAtomicInt64Features::default();
-    let mut features = vk::PhysicalDeviceFeatures2::default().push_next(&mut atomics);
-    // SAFETY: as above.
-    unsafe { instance.raw.get_physical_device_features2(physical, &mut features) };
-    let wide = features.features.shader_int64 == vk::TRUE;
-    wide && atomics.shader_buffer_int64_atomics == vk::TRUE
 }

@@ -1,32 +1,194 @@
-//! Device memory of one buffer or image.
+//! Device memory of one buffer or image: from the engine's allocator, or from the host that lends the device.
 
 use super::Device;
 use crate::error::{Error, Result};
 use ash::vk;
 use gpu_allocator::MemoryLocation;
-use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
+use gpu_allocator::vulkan::{AllocationCreateDesc, AllocationScheme, Allocator, AllocatorCreateDesc};
+use std::ptr::NonNull;
+use std::sync::Mutex;
 use std::sync::atomic::Ordering;
 
-/// Allocates what `requirements` ask for; `linear` is true for buffers.
-pub(super) fn allocate(
-    device: &Device,
-    name: &str,
-    requirements: vk::MemoryRequirements,
-    location: MemoryLocation,
-    linear: bool,
-) -> Result<Allocation> {
-    let description = AllocationCreateDesc {
-        name,
-        requirements,
-        location,
-        linear,
-        allocation_scheme: AllocationScheme::GpuAllocatorManaged,
-    };
-    let mut allocator = device.allocator.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-    let allocation = allocator.allocate(&description).map_err(|error| Error::Memory {
-        what: name.to_owned(),
-        bytes: requirements.size,
-        cause: error.to_string(),
+/// What device memory is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Location {
+    /// The GPU alone touches it.
+    Device,
+    /// The CPU writes it in order and the GPU reads it. Host-visible and coherent, mapped.
+    Upload,
+    /// The GPU writes it and the CPU reads it. Host-visible and coherent, mapped, and cached if that can be had.
+    Readback,
+}
+
+/// A wish for device memory.
+#[derive(Clone, Copy, Debug)]
+pub struct MemoryRequest<'a> {
+    /// The buffer or image, for the host's tools.
+    pub name: &'a str,
+    /// Size and alignment, bytes, and the memory types that serve.
+    pub requirements: vk::MemoryRequirements,
+    /// What it is for.
+    pub location: Location,
+    /// Whether it is for a buffer; otherwise it is for an image of optimal tiling.
+    pub linear: bool,
+}
+
+/// A piece of device memory that a [`MemorySource`] gave.
+#[derive(Clone, Copy, Debug)]
+pub struct HostMemory {
+    /// The memory object.
+    pub memory: vk::DeviceMemory,
+    /// Where the piece starts in it, bytes.
+    pub offset: u64,
+    /// Its length, bytes.
+    pub size: u64,
+    /// Where it is mapped; for [`Location::Upload`] and [`Location::Readback`].
+    pub mapped: Option<NonNull<u8>>,
+    /// The source's own note, handed back when the piece is freed.
+    pub token: u64,
+}
+
+// SAFETY: the pointer is to memory that the source keeps mapped for whoever holds the piece.
+unsafe impl Send for HostMemory {}
+// SAFETY: as above; writing through it takes a unique borrow of the buffer.
+unsafe impl Sync for HostMemory {}
+
+/// Where a host wants the engine's device memory to come from.
+///
+/// # Safety
+/// What [`MemorySource::allocate`] gives fulfils the request, is of the device that is lent, overlaps nothing, and stays, mapped where it
+/// says so, until it is freed.
+pub unsafe trait MemorySource: Send + Sync {
+    /// Gives memory, or says why not.
+    fn allocate(&self, request: &MemoryRequest<'_>) -> Result<HostMemory, String>;
+
+    /// Takes it back.
+    fn free(&self, memory: HostMemory);
+}
+
+/// Where a device's memory comes from.
+pub(super) enum Source {
+    Own(Box<Mutex<Allocator>>),
+    Host(Box<dyn MemorySource>),
+}
+
+/// Memory of one buffer or image.
+pub(super) enum Allocation {
+    Own(gpu_allocator::vulkan::Allocation),
+    Host(HostMemory),
+}
+
+impl Source {
+    /// The engine's own allocator for `device`.
+    pub(super) fn own(
+        instance: &ash::Instance,
+        device: &ash::Device,
+        physical: vk::PhysicalDevice,
+    ) -> Result<Self, String> {
+        let allocator = Allocator::new(&AllocatorCreateDesc {
+            instance: instance.clone(),
+            device: device.clone(),
+            physical_device: physical,
+            debug_settings: Default::default(),
+            buffer_device_address: false,
+            allocation_sizes: gpu_allocator::AllocationSizes::default(),
+        });
+        allocator
+            .map(|allocator| Self::Own(Box::new(Mutex::new(allocator))))
+            .map_err(|error| error.to_string())
+    }
+
+    fn allocate(&self, request: &MemoryRequest<'_>) -> Result<Allocation, String> {
+        match self {
+            Self::Own(allocator) => {
+                let description = AllocationCreateDesc {
+                    name: request.name,
+                    requirements: request.requirements,
+                    location: request.location.own(),
+                    linear: request.linear,
+                    allocation_scheme: AllocationScheme::GpuAllocatorManaged,
+                };
+                let mut allocator = allocator.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+                allocator.allocate(&description).map(Allocation::Own).map_err(|error| error.to_string())
+            }
+            Self::Host(source) => source.allocate(request).map(Allocation::Host),
+        }
+    }
+
+    fn free(&self, allocation: Allocation) {
+        match (self, allocation) {
+            (Self::Own(allocator), Allocation::Own(allocation)) => {
+                let mut allocator = allocator.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+                if let Err(error) = allocator.free(allocation) {
+                    log::error!("freeing device memory: {error}");
+                }
+            }
+            (Self::Host(source), Allocation::Host(memory)) => source.free(memory),
+            // A device has one source from first to last.
+            (Self::Own(_), Allocation::Host(_)) | (Self::Host(_), Allocation::Own(_)) => {}
+        }
+    }
+}
+
+impl Location {
+    fn own(self) -> MemoryLocation {
+        match self {
+            Self::Device => MemoryLocation::GpuOnly,
+            Self::Upload => MemoryLocation::CpuToGpu,
+            Self::Readback => MemoryLocation::GpuToCpu,
+        }
+    }
+}
+
+impl Allocation {
+    /// The memory object and where in it the piece starts, bytes.
+    pub(super) fn place(&self) -> (vk::DeviceMemory, u64) {
+        match self {
+            // SAFETY: the object is only bound to, and the allocator outlives the resource.
+            Self::Own(allocation) => (unsafe { allocation.memory() }, allocation.offset()),
+            Self::Host(memory) => (memory.memory, memory.offset),
+        }
+    }
+
+    /// Bytes.
+    pub(super) fn size(&self) -> u64 {
+        match self {
+            Self::Own(allocation) => allocation.size(),
+            Self::Host(memory) => memory.size,
+        }
+    }
+
+    /// Its bytes, where the CPU sees them; none elsewhere.
+    pub(super) fn mapped(&self) -> &[u8] {
+        match self {
+            Self::Own(allocation) => allocation.mapped_slice().unwrap_or(&[]),
+            // SAFETY: the source keeps it mapped, all its bytes, until it is freed.
+            Self::Host(HostMemory { mapped: Some(start), size, .. }) => unsafe {
+                std::slice::from_raw_parts(start.as_ptr(), *size as usize)
+            },
+            Self::Host(_) => &[],
+        }
+    }
+
+    /// As [`Allocation::mapped`], to write.
+    pub(super) fn mapped_mut(&mut self) -> &mut [u8] {
+        match self {
+            Self::Own(allocation) => allocation.mapped_slice_mut().unwrap_or(&mut []),
+            // SAFETY: as above; the borrow is unique, and the piece overlaps no other.
+            Self::Host(HostMemory { mapped: Some(start), size, .. }) => unsafe {
+                std::slice::from_raw_parts_mut(start.as_ptr(), *size as usize)
+            },
+            Self::Host(_) => &mut [],
+        }
+    }
+}
+
+/// Allocates what `request` asks for.
+pub(super) fn allocate(device: &Device, request: &MemoryRequest<'_>) -> Result<Allocation> {
+    let allocation = device.memory.allocate(request).map_err(|cause| Error::Memory {
+        what: request.name.to_owned(),
+        bytes: request.requirements.size,
+        cause,
     })?;
     device.made.allocations.fetch_add(1, Ordering::Relaxed);
     device.made.bytes.fetch_add(allocation.size(), Ordering::Relaxed);
@@ -36,8 +198,5 @@ pub(super) fn allocate(
 /// Gives `allocation` back.
 pub(super) fn free(device: &Device, allocation: Allocation) {
     device.made.bytes.fetch_sub(allocation.size(), Ordering::Relaxed);
-    let mut allocator = device.allocator.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-    if let Err(error) = allocator.free(allocation) {
-        log::error!("freeing device memory: {error}");
-    }
+    device.memory.free(allocation);
 }

@@ -39,6 +39,11 @@ pub enum DepthTest {
     Nearest,
     /// What is not behind the target's depth passes; nothing is written.
     NotBehind,
+    /// What is not behind a host's depth is kept; whether that falls with distance.
+    Host {
+        /// Greater is nearer.
+        reversed: bool,
+    },
 }
 
 /// How fragments meet what is in the colour targets.
@@ -48,6 +53,8 @@ pub enum Blend {
     Replace,
     /// They are added.
     Add,
+    /// They cover it, as far as their α says, which has been multiplied into them.
+    Over,
 }
 
 /// Fixed-function state of a draw pipeline.
@@ -55,8 +62,23 @@ pub enum Blend {
 pub struct DrawState {
     /// Depth test.
     pub depth: DepthTest,
-    /// Blending, the same for all colour targets.
+    /// Blending, the same for all colour targets that are drawn to.
     pub blend: Blend,
+}
+
+/// Where a draw pipeline draws.
+#[derive(Clone, Copy, Debug)]
+pub struct Within<'a> {
+    /// The render pass; null for dynamic rendering, whose formats are then given.
+    pub pass: vk::RenderPass,
+    /// Its subpass.
+    pub subpass: u32,
+    /// A colour target each: how it is blended where not as the state says, or `None` if it is left alone.
+    pub colours: &'a [Option<Blend>],
+    /// Formats of colours, depth and stencil, for dynamic rendering.
+    pub rendering: Option<(&'a [vk::Format], vk::Format, vk::Format)>,
+    /// Samples a pixel.
+    pub samples: vk::SampleCountFlags,
 }
 
 /// What both kinds share.
@@ -65,6 +87,10 @@ struct Raw {
     layout: vk::PipelineLayout,
     device: Arc<Device>,
 }
+
+const DRAW_STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
+    vk::ShaderStageFlags::VERTEX.as_raw() | vk::ShaderStageFlags::FRAGMENT.as_raw(),
+);
 
 /// A compute pipeline, with two u32 of push constants.
 pub struct ComputePipeline(Raw);
@@ -80,7 +106,7 @@ impl ComputePipeline {
         code: &[u32],
         constants: &Constants,
     ) -> Result<Self> {
-        let mut raw = Raw::new(device, sets, vk::ShaderStageFlags::COMPUTE)?;
+        let mut raw = Raw::new(device, sets, vk::ShaderStageFlags::COMPUTE, 8)?;
         let module = Module::new(device, code)?;
         let specialization = constants.info();
         let info = vk::ComputePipelineCreateInfo::default()
@@ -102,12 +128,52 @@ impl DrawPipeline {
     pub fn new(
         device: &Arc<Device>,
         sets: &[&SetLayout],
-        [vertex, fragment]: [&[u32]; 2],
+        code: [&[u32]; 2],
         constants: &Constants,
         pass: &RenderPass,
         state: DrawState,
     ) -> Result<Self> {
-        let mut raw = Raw::new(device, sets, vk::ShaderStageFlags::VERTEX | vk::ShaderStageFlags::FRAGMENT)?;
+        let colours = vec![Some(state.blend); pass.colour_targets];
+        let within = Within {
+            pass: pass.raw,
+            subpass: 0,
+            colours: &colours,
+            rendering: None,
+            samples: vk::SampleCountFlags::TYPE_1,
+        };
+        let raw = Raw::new(device, sets, DRAW_STAGES, 0)?;
+        // SAFETY: the pass is alive and has these colours.
+        unsafe { Self::within(raw, code, constants, &within, state.depth) }
+    }
+
+    /// As [`DrawPipeline::new`], for a pass of a host, with `push` bytes of push constants for the fragment shader.
+    ///
+    /// # Safety
+    /// `within` is true of a render pass of `device`, or of what is drawn by dynamic rendering, which is then enabled.
+    pub unsafe fn of_host(
+        device: &Arc<Device>,
+        sets: &[&SetLayout],
+        code: [&[u32]; 2],
+        constants: &Constants,
+        within: &Within<'_>,
+        depth: DepthTest,
+        push: u32,
+    ) -> Result<Self> {
+        // SAFETY: by the caller.
+        unsafe { Self::within(Raw::new(device, sets, DRAW_STAGES, push)?, code, constants, within, depth) }
+    }
+
+    /// # Safety
+    /// As [`DrawPipeline::of_host`].
+    unsafe fn within(
+        mut raw: Raw,
+        [vertex, fragment]: [&[u32]; 2],
+        constants: &Constants,
+        within: &Within<'_>,
+        depth: DepthTest,
+    ) -> Result<Self> {
+        let device = raw.device.clone();
+        let device = &device;
         let modules = [Module::new(device, vertex)?, Module::new(device, fragment)?];
         let specialization = constants.info();
         let stages = [
@@ -122,14 +188,16 @@ impl DrawPipeline {
             .polygon_mode(vk::PolygonMode::FILL)
             .cull_mode(vk::CullModeFlags::NONE)
             .line_width(1.0);
-        let multisample = vk::PipelineMultisampleStateCreateInfo::default()
-            .rasterization_samples(vk::SampleCountFlags::TYPE_1);
-        let depth = state.depth.info();
-        let blends = vec![state.blend.info(); pass.colour_targets];
+        let multisample =
+            vk::PipelineMultisampleStateCreateInfo::default().rasterization_samples(within.samples);
+        let depth = depth.info();
+        let blends: Vec<_> =
+            within.colours.iter().map(|blend| blend.map_or_else(Default::default, Blend::info)).collect();
         let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends);
         let dynamic = vk::PipelineDynamicStateCreateInfo::default()
             .dynamic_states(&[vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR]);
-        let info = vk::GraphicsPipelineCreateInfo::default()
+        let mut rendering = vk::PipelineRenderingCreateInfo::default();
+        let mut info = vk::GraphicsPipelineCreateInfo::default()
             .stages(&stages)
             .vertex_input_state(&vertex_input)
             .input_assembly_state(&assembly)
@@ -140,7 +208,15 @@ impl DrawPipeline {
             .color_blend_state(&blend)
             .dynamic_state(&dynamic)
             .layout(raw.layout)
-            .render_pass(pass.raw);
+            .render_pass(within.pass)
+            .subpass(within.subpass);
+        if let Some((colours, depth, stencil)) = within.rendering {
+            rendering = rendering
+                .color_attachment_formats(colours)
+                .depth_attachment_format(depth)
+                .stencil_attachment_format(stencil);
+            info = info.push_next(&mut rendering);
+        }
         // SAFETY: all states, modules, the layout and the pass live until after the call; the pipeline is destroyed in `drop`.
         let made = unsafe { device.raw.create_graphics_pipelines(device.pipeline_cache.raw, &[info], None) };
         raw.pipeline = first(made, "vkCreateGraphicsPipelines")?;
@@ -155,26 +231,29 @@ impl DrawPipeline {
 impl DepthTest {
     fn info(self) -> vk::PipelineDepthStencilStateCreateInfo<'static> {
         let compare = match self {
-            Self::NotBehind => vk::CompareOp::GREATER_OR_EQUAL,
-            _ => vk::CompareOp::GREATER,
+            Self::NotBehind | Self::Host { reversed: true } => vk::CompareOp::GREATER_OR_EQUAL,
+            Self::Host { reversed: false } => vk::CompareOp::LESS_OR_EQUAL,
+            Self::None | Self::Nearest => vk::CompareOp::GREATER,
         };
         vk::PipelineDepthStencilStateCreateInfo::default()
             .depth_test_enable(self != Self::None)
-            .depth_write_enable(self == Self::Nearest)
+            .depth_write_enable(matches!(self, Self::Nearest | Self::Host { .. }))
             .depth_compare_op(compare)
     }
 }
 
 impl Blend {
     fn info(self) -> vk::PipelineColorBlendAttachmentState {
+        let below =
+            if self == Self::Over { vk::BlendFactor::ONE_MINUS_SRC_ALPHA } else { vk::BlendFactor::ONE };
         vk::PipelineColorBlendAttachmentState::default()
             .color_write_mask(vk::ColorComponentFlags::RGBA)
-            .blend_enable(self == Self::Add)
+            .blend_enable(self != Self::Replace)
             .src_color_blend_factor(vk::BlendFactor::ONE)
-            .dst_color_blend_factor(vk::BlendFactor::ONE)
+            .dst_color_blend_factor(below)
             .color_blend_op(vk::BlendOp::ADD)
             .src_alpha_blend_factor(vk::BlendFactor::ONE)
-            .dst_alpha_blend_factor(vk::BlendFactor::ONE)
+            .dst_alpha_blend_factor(below)
             .alpha_blend_op(vk::BlendOp::ADD)
     }
 }
@@ -195,12 +274,23 @@ fn check_storage_buffers(device: &Device, sets: &[&SetLayout]) -> Result<()> {
 }
 
 impl Raw {
-    fn new(device: &Arc<Device>, sets: &[&SetLayout], stages: vk::ShaderStageFlags) -> Result<Self> {
+    /// With `push` bytes of push constants, which a draw's fragment shader alone sees.
+    fn new(
+        device: &Arc<Device>,
+        sets: &[&SetLayout],
+        stages: vk::ShaderStageFlags,
+        push: u32,
+    ) -> Result<Self> {
         check_storage_buffers(device, sets)?;
         let sets: Vec<_> = sets.iter().map(|set| set.raw).collect();
-        let constants = [vk::PushConstantRange { stage_flags: stages, offset: 0, size: 8 }];
+        let seen_by = if stages == DRAW_STAGES {
+            vk::ShaderStageFlags::FRAGMENT
+        } else {
+            vk::ShaderStageFlags::COMPUTE
+        };
+        let constants = [vk::PushConstantRange { stage_flags: seen_by, offset: 0, size: push }];
         let mut info = vk::PipelineLayoutCreateInfo::default().set_layouts(&sets);
-        if stages == vk::ShaderStageFlags::COMPUTE {
+        if push > 0 {
             info = info.push_constant_ranges(&constants);
         }
         // SAFETY: the set layout is alive; the pipeline layout is destroyed in `drop`.

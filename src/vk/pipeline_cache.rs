@@ -1,6 +1,5 @@
 //! Compiled pipelines kept on disk between runs.
 
-use super::instance::Instance;
 use crate::error::{Error, Result};
 use ash::vk;
 use std::io::Write;
@@ -16,13 +15,13 @@ impl PipelineCache {
     /// An empty cache, or what an earlier run left in `folder` for this very device and driver. An unreadable file is no error: the
     /// pipelines are then compiled anew.
     pub(super) fn load(
-        instance: &Instance,
+        instance: &ash::Instance,
         physical: vk::PhysicalDevice,
         device: &ash::Device,
         folder: Option<&Path>,
     ) -> Result<Self> {
         // SAFETY: `physical` is one of the instance's devices.
-        let properties = unsafe { instance.raw.get_physical_device_properties(physical) };
+        let properties = unsafe { instance.get_physical_device_properties(physical) };
         let uuid: String = properties.pipeline_cache_uuid.iter().map(|byte| format!("{byte:02x}")).collect();
         let name = format!("pipelines-{:08x}-{:08x}-{uuid}.bin", properties.vendor_id, properties.device_id);
         let file = folder.map(|folder| folder.join(name));

@@ -1,8 +1,8 @@
 //! Recording of a frame: barrier, debug label and timestamp of a pass in one place.
 
-use super::access::{Barrier, Tracker, Use};
+use super::access::{Access, Barrier, Tracker, Use};
 use super::timestamps::Timestamps;
-use super::{Device, Encoder};
+use super::{Buffer, Device, Encoder};
 use ash::vk;
 use std::ffi::CString;
 
@@ -27,6 +27,15 @@ impl<'a> Recorder<'a> {
         recorder
     }
 
+    /// Records into a command buffer of a host.
+    ///
+    /// # Safety
+    /// `cmd` is of `device`, of the queue family that it was lent with, is being recorded outside a render pass, and is submitted before what
+    /// is recorded after it to the same queue.
+    pub unsafe fn of_host(device: &'a Device, cmd: vk::CommandBuffer) -> Self {
+        Self::new(device, cmd, None)
+    }
+
     /// Records a pass: waits for what `uses` need and no more, then `body`, under a debug label and, in a profiled frame, between
     /// timestamps.
     ///
@@ -42,6 +51,14 @@ impl<'a> Recorder<'a> {
             // SAFETY: the command buffer is being recorded, and a label was begun above.
             unsafe { labels.cmd_end_debug_utils_label(self.cmd) };
         }
+    }
+
+    /// Writes `bytes`, at most 65,536 and a multiple of 4, to `buffer`, for the passes that follow to read as uniforms.
+    pub fn update(&mut self, buffer: &Buffer, bytes: &[u8]) {
+        self.barrier(&[buffer.with(Access::COPY_WRITE)]);
+        // SAFETY: the command buffer is being recorded outside a render pass; the buffer is alive, can be copied to and is large enough.
+        unsafe { self.device.raw.cmd_update_buffer(self.cmd, buffer.raw, 0, bytes) };
+        self.barrier(&[buffer.with(Access::UNIFORM_READ)]);
     }
 
     fn begin_label(&self, label: &'static str) {

@@ -1,29 +1,96 @@
 //! Copies to the GPU's own memory.
 
-use super::{Access, Buffer, Commands, Device};
+use super::{Access, Buffer, Commands, Device, Recorder, Use};
 use crate::error::Result;
+use ash::vk;
+use std::cell::RefCell;
 use std::sync::Arc;
 
-/// Most bytes staged at once.
+/// Most bytes staged at once, where a copy is waited for.
 const CHUNK: usize = 32 << 20;
 
-/// A new storage buffer with `bytes` in it. An empty slice makes a buffer of 4 zero bytes, which can be bound.
-pub fn upload(device: &Arc<Device>, name: &str, bytes: &[u8]) -> Result<Buffer> {
-    let buffer = Buffer::storage(device, name, bytes.len().max(4) as u64)?;
-    let mut commands = Commands::new(device, false)?;
-    if bytes.is_empty() {
-        commands.run(|rec| rec.pass("zero", &[buffer.with(Access::COPY_WRITE)], |enc| enc.zero(&buffer)))?;
-        return Ok(buffer);
+/// Makes buffers with contents.
+pub struct Uploads<'a> {
+    device: &'a Arc<Device>,
+    way: RefCell<Way>,
+}
+
+enum Way {
+    /// Submitted and waited for, chunk by chunk.
+    Now(Commands),
+    /// Noted, to be recorded when all has been made.
+    Later(Vec<Copy>),
+}
+
+/// A copy to be recorded: of all that is staged.
+struct Copy {
+    from: Buffer,
+    to: vk::Buffer,
+    written: Use,
+    read: Use,
+}
+
+/// What recorded copies are made from. It must stay until the GPU is done with them.
+#[derive(Default)]
+#[must_use = "the copies are made from it once they are submitted: keep it until then"]
+pub struct Staging(Vec<Buffer>);
+
+impl Staging {
+    /// Memory that it holds, bytes.
+    pub fn bytes(&self) -> u64 {
+        self.0.iter().map(Buffer::size).sum()
     }
+}
+
+impl<'a> Uploads<'a> {
+    /// Copies that are made at once. Refused on a device that a host lends.
+    pub fn now(device: &'a Arc<Device>) -> Result<Self> {
+        Ok(Self { device, way: RefCell::new(Way::Now(Commands::new(device, false)?)) })
+    }
+
+    /// Copies that [`Uploads::record`] records.
+    pub fn later(device: &'a Arc<Device>) -> Self {
+        Self { device, way: RefCell::new(Way::Later(Vec::new())) }
+    }
+
+    /// A new storage buffer with `bytes` in it, for shaders to read. An empty slice makes a buffer of 4 zero bytes, which can be bound.
+    pub fn buffer(&self, name: &str, bytes: &[u8]) -> Result<Buffer> {
+        let bytes = if bytes.is_empty() { &[0; 4][..] } else { bytes };
+        let buffer = Buffer::storage(self.device, name, bytes.len() as u64)?;
+        match &mut *self.way.borrow_mut() {
+            Way::Now(commands) => copy_now(self.device, commands, &buffer, bytes)?,
+            Way::Later(copies) => {
+                let mut from = Buffer::staging(self.device, "staging", bytes.len() as u64)?;
+                from.bytes_mut().copy_from_slice(bytes);
+                let (written, read) = (buffer.with(Access::COPY_WRITE), buffer.with(Access::SHADER_READ));
+                copies.push(Copy { from, to: buffer.raw, written, read });
+            }
+        }
+        Ok(buffer)
+    }
+
+    /// Records the copies to all buffers that were made, which are alive; what they are made from must stay until the GPU is done.
+    pub fn record(self, rec: &mut Recorder<'_>) -> Staging {
+        let Way::Later(copies) = self.way.into_inner() else { return Staging::default() };
+        let uses = copies.iter().flat_map(|copy| [copy.from.with(Access::COPY_READ), copy.written]);
+        rec.pass("upload", &uses.collect::<Vec<_>>(), |enc| {
+            copies.iter().for_each(|copy| enc.copy_all(&copy.from, copy.to));
+        });
+        rec.wait(&copies.iter().map(|copy| copy.read).collect::<Vec<_>>());
+        Staging(copies.into_iter().map(|copy| copy.from).collect())
+    }
+}
+
+fn copy_now(device: &Arc<Device>, commands: &mut Commands, buffer: &Buffer, bytes: &[u8]) -> Result<()> {
     let mut staging = Buffer::staging(device, "staging", bytes.len().min(CHUNK) as u64)?;
     for (i, chunk) in bytes.chunks(CHUNK).enumerate() {
         staging.bytes_mut()[..chunk.len()].copy_from_slice(chunk);
         let uses = [staging.with(Access::COPY_READ), buffer.with(Access::COPY_WRITE)];
         commands.run(|rec| {
             rec.pass("upload", &uses, |enc| {
-                enc.copy(&staging, &buffer, (i * CHUNK) as u64, chunk.len() as u64);
+                enc.copy(&staging, buffer, (i * CHUNK) as u64, chunk.len() as u64);
             });
         })?;
     }
-    Ok(buffer)
+    Ok(())
 }

@@ -1,0 +1,94 @@
+// Composite: the picture over a host's target, with the depth that the host's own surfaces have (src/embed.rs).
+#version 450
+#pragma variant IMAGES
+#pragma variant NORMALS
+#pragma variant IMAGES_NORMALS
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+
+#ifdef VERTEX
+
+void main() {
+    gl_Position = vec4(gl_VertexIndex == 1 ? 3.0 : -1.0, gl_VertexIndex == 2 ? 3.0 : -1.0, 0.0, 1.0);
+}
+
+#endif
+#ifdef FRAGMENT
+
+layout(constant_id = 0) const bool PERSPECTIVE = true;
+layout(constant_id = 40) const bool HOST_DEPTH = false; // the host's target has depth
+layout(constant_id = 41) const bool ENCODE = false;     // the host's colours are sRGB-encoded by the shader that writes them
+
+layout(push_constant) uniform Composite {
+    ivec2 origin; // of the picture in the host's target, px
+    uvec2 size;   // of the picture, px
+    vec2 depth;   // the host's depth at distance z: depth.x + depth.y / z in perspective, depth.x + depth.y z otherwise
+} composite;
+
+#if defined(NORMALS) || defined(IMAGES_NORMALS)
+#define WITH_NORMALS
+#endif
+
+// The host's locations take the place of these.
+layout(location = 0) out vec4 out_image;
+#ifdef WITH_NORMALS
+layout(location = 1) out vec4 out_normal;
+#endif
+
+#if defined(IMAGES) || defined(IMAGES_NORMALS)
+
+layout(set = 0, binding = 0) uniform texture2D image;
+layout(set = 0, binding = 1) uniform texture2D normal;
+layout(set = 0, binding = 2) uniform texture2D depth;
+
+vec4 image_at(ivec2 at) { return texelFetch(image, at, 0); }
+vec3 normal_at(ivec2 at) { return texelFetch(normal, at, 0).xyz; }
+float depth_at(ivec2 at) { return texelFetch(depth, at, 0).r; }
+
+#else
+
+layout(set = 0, binding = 0, std430) readonly buffer Picture { float picture[]; }; // colour, then normals, then depths
+
+uint pixel(ivec2 at) { return uint(at.y) * composite.size.x + uint(at.x); }
+uint pixels() { return composite.size.x * composite.size.y; }
+
+vec4 image_at(ivec2 at) {
+    uint i = 4 * pixel(at);
+    return vec4(picture[i], picture[i + 1], picture[i + 2], picture[i + 3]);
+}
+
+vec3 normal_at(ivec2 at) {
+    uint i = 4 * pixels() + 3 * pixel(at);
+    return vec3(picture[i], picture[i + 1], picture[i + 2]);
+}
+
+float depth_at(ivec2 at) {
+#ifdef WITH_NORMALS
+    return picture[7 * pixels() + pixel(at)];
+#else
+    return picture[4 * pixels() + pixel(at)];
+#endif
+}
+
+#endif
+
+vec3 linear_to_srgb(vec3 c) {
+    return mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, greaterThan(c, vec3(0.0031308)));
+}
+
+void main() {
+    ivec2 at = ivec2(gl_FragCoord.xy) - composite.origin;
+    vec4 seen = image_at(at);
+    if (seen.a == 0.0) discard;
+    vec3 colour = ENCODE ? linear_to_srgb(clamp(seen.rgb, 0.0, 1.0)) : seen.rgb;
+    out_image = vec4(seen.a * colour, seen.a);
+#ifdef WITH_NORMALS
+    out_normal = vec4(normal_at(at), 1.0);
+#endif
+    if (HOST_DEPTH) {
+        float z = depth_at(at);
+        gl_FragDepth = composite.depth.x + composite.depth.y * (PERSPECTIVE ? 1.0 / z : z);
+    }
+}
+
+#endif

@@ -1,0 +1,358 @@
+//! Surfels among the geometry of another renderer, which owns instance, device, queue, command buffers and frame pacing.
+//!
+//! ```text
+//! once          Abilities::of ─ the host makes its device ─ Device::borrow ─ upload → Scene, Staging ─ Renderer::new
+//! each frame    Renderer::prepare: records every pass of the method, outside a render pass
+//!               Renderer::draw:    records a draw of the picture with its depth, inside a render pass of the host
+//! ```
+//!
+//! Nothing is submitted, waited for or stalled: the host submits what is recorded, to one queue. What the engine makes it also destroys, once
+//! as many frames have been prepared since as the host has in flight; what it borrows it leaves alone.
+//!
+//! ```no_run
+//! use ash::vk;
+//! use std::sync::Arc;
+//! use surfel::embed::{self, Abilities, Lent, Options, Pass, Renderer, Target, View};
+//! use surfel::geometry::{Camera, Surfels};
+//! use surfel::vk::{Device, DeviceLimits};
+//! use surfel::{Precision, Scene, Settings};
+//!
+//! /// What the host has.
+//! struct Host {
+//!     instance: ash::Instance,
+//!     physical: vk::PhysicalDevice,
+//!     device: ash::Device,
+//!     family: u32,
+//!     pass: vk::RenderPass,
+//! }
+//!
+//! /// Before the host makes its device: what to enable, as far as it is there. None of it is needed.
+//! fn wanted(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Abilities {
+//!     let abilities = unsafe { Abilities::of(instance, physical) };
+//!     // VkDeviceCreateInfo takes `abilities.extensions()`, `abilities.features().core`, and the rest by `Features::chain`.
+//!     abilities
+//! }
+//!
+//! /// Once. `cmd` is outside a render pass; `Staging` stays until the GPU has done it.
+//! unsafe fn load(host: &Host, enabled: Abilities, cmd: vk::CommandBuffer, surfels: &Surfels) -> surfel::Result<(Arc<Scene>, embed::Staging, Renderer)> {
+//!     let device = unsafe {
+//!         Device::borrow(Lent {
+//!             instance: &host.instance,
+//!             physical: host.physical,
+//!             device: &host.device,
+//!             queue_family: host.family,
+//!             enabled,
+//!             labels: false,
+//!             limits: DeviceLimits::default(),
+//!             memory: None,
+//!             pipeline_cache: None,
+//!         })?
+//!     };
+//!     let (scene, staging) = unsafe { embed::upload(&device, cmd, surfels)? };
+//!     let target = Target {
+//!         pass: Pass::Subpass { pass: host.pass, subpass: 0 },
+//!         colours: vec![vk::Format::B8G8R8A8_SRGB],
+//!         depth: Some(vk::Format::D32_SFLOAT),
+//!         stencil: vk::Format::UNDEFINED,
+//!         reversed: true,
+//!         samples: vk::SampleCountFlags::TYPE_1,
+//!         picture: 0,
+//!         normal: None,
+//!         encode: false,
+//!     };
+//!     let options = Options { target, frames_in_flight: 2, precision: Precision::Full, rasterizer: None };
+//!     Ok((Arc::new(scene), staging, unsafe { Renderer::new(&device, options)? }))
+//! }
+//!
+//! /// Each frame.
+//! unsafe fn frame(renderer: &mut Renderer, cmd: vk::CommandBuffer, scene: &Arc<Scene>, camera: Camera, viewport: vk::Viewport) -> surfel::Result<()> {
+//!     unsafe { renderer.prepare(cmd, scene, &View { camera, viewport }, &Settings::default())? };
+//!     // The host begins its render pass and draws what is its own.
+//!     unsafe { renderer.draw(cmd) }
+//! }
+//! ```
+#![allow(unsafe_code)]
+
+mod target;
+
+pub use crate::vk::{
+    ABILITIES, API_VERSION, Abilities, Ability, Features, HostMemory, Lent, Location, MemoryRequest,
+    MemorySource, QUEUE, Staging,
+};
+pub use target::{Pass, Target};
+
+use crate::error::{Error, Result};
+use crate::geometry::{Camera, Parts};
+use crate::passes::{Composite, CompositeKind};
+use crate::renderer::RenderOptions;
+use crate::scene::Scene;
+use crate::settings::Settings;
+use crate::stage::{Outgoing, Retired, Stage};
+use crate::targets::check_size;
+use crate::variant::{Outputs, Precision, Rasterizer};
+use crate::vk::shaders::layout;
+use crate::vk::{DescriptorSet, Device, Draws, Recorder, Uploads};
+use ash::vk;
+use std::any::Any;
+use std::collections::VecDeque;
+use std::sync::Arc;
+
+/// Records the upload of surfels, lines and triangles, as [`Scene::upload`] does it, into a command buffer of the host. The scene can be
+/// rendered by what is recorded later; the staging memory must stay until the GPU has done the copies. After an error nothing is recorded.
+///
+/// # Safety
+/// `cmd` is of `device`, of the queue family that it was lent with, is being recorded outside a render pass, and is submitted before what
+/// renders the scene, to the same queue.
+pub unsafe fn upload<'a>(
+    device: &Arc<Device>,
+    cmd: vk::CommandBuffer,
+    parts: impl Into<Parts<'a>>,
+) -> Result<(Scene, Staging)> {
+    let uploads = Uploads::later(device);
+    let scene = Scene::new(device, &uploads, parts.into())?;
+    // SAFETY: by the caller.
+    let mut rec = unsafe { Recorder::of_host(device, cmd) };
+    Ok((scene, uploads.record(&mut rec)))
+}
+
+/// What stays the same from frame to frame.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Where the picture is drawn.
+    pub target: Target,
+    /// How many frames of the host may be under way: when [`Renderer::prepare`] is called, the GPU is done with all that was recorded by the
+    /// calls before the last `frames_in_flight` of them. At least 1.
+    pub frames_in_flight: u32,
+    /// As [`RenderOptions::precision`].
+    pub precision: Precision,
+    /// As [`RenderOptions::rasterizer`].
+    pub rasterizer: Option<Rasterizer>,
+}
+
+/// How a frame is seen.
+#[derive(Clone, Copy, Debug)]
+pub struct View {
+    /// The host's view and projection. Its `reversed` is the target's.
+    pub camera: Camera,
+    /// The host's viewport: whole pixels, px from the target's top left. A height below 0 is that of a projection whose y points up, with the
+    /// viewport's y at its lower end.
+    pub viewport: vk::Viewport,
+}
+
+/// Renders scenes into frames of a host.
+pub struct Renderer {
+    // Fields are dropped in this order: views before what they view.
+    shown: Option<Shown>,
+    /// What frames under way may use, with the number of the last one.
+    held: VecDeque<(u64, Outgoing)>,
+    scene: Option<Arc<Scene>>,
+    composites: Vec<Arc<Composite>>,
+    stage: Stage,
+    target: Target,
+    frame: u64,
+    frames_in_flight: u64,
+    device: Arc<Device>,
+}
+
+/// The picture that is prepared.
+struct Shown {
+    view: Arc<DescriptorSet>,
+    /// Which targets it views.
+    present: u64,
+    composite: Arc<Composite>,
+    place: layout::Composite,
+    area: vk::Rect2D,
+}
+
+impl Renderer {
+    /// A renderer that has made nothing for any scene yet. Refuses a target that cannot be drawn to, and says why.
+    ///
+    /// # Safety
+    /// What `options.target` says of the render pass is true, and the pass outlives the renderer.
+    pub unsafe fn new(device: &Arc<Device>, options: Options) -> Result<Self> {
+        let Options { target, frames_in_flight, precision, rasterizer } = options;
+        target.check(device)?;
+        if frames_in_flight == 0 {
+            return Err(Error::Usage(
+                "0 frames in flight: a frame is under way when it is recorded, so give 1 or more".into(),
+            ));
+        }
+        let outputs = Outputs { normal: target.normal.is_some(), depth: target.depth.is_some() };
+        let options = RenderOptions { size: [1, 1], outputs, precision, rasterizer, ..Default::default() };
+        Ok(Self {
+            shown: None,
+            held: VecDeque::new(),
+            scene: None,
+            composites: Vec::new(),
+            stage: Stage::new(device, options.on(device)?, Retired::Kept(Vec::new()))?,
+            target,
+            frame: 0,
+            frames_in_flight: frames_in_flight.into(),
+            device: device.clone(),
+        })
+    }
+
+    /// Records a frame of `scene` up to its picture, which [`Renderer::draw`] then draws. The picture has the viewport's size; what has none
+    /// of the scene is transparent, whatever `settings.background` says.
+    ///
+    /// After an error nothing is recorded, and nothing is there to draw.
+    ///
+    /// # Safety
+    /// `cmd` is of the device, of the queue family that it was lent with, is being recorded outside a render pass, and is submitted to the
+    /// same queue as what was recorded before, after it. What [`Options::frames_in_flight`] says is true.
+    pub unsafe fn prepare(
+        &mut self,
+        cmd: vk::CommandBuffer,
+        scene: &Arc<Scene>,
+        view: &View,
+        settings: &Settings,
+    ) -> Result<()> {
+        self.frame += 1;
+        self.release();
+        let shown = self.make(scene, view, settings);
+        // Also after an error: what it took the place of may be under way.
+        let made = self.stage.outgoing();
+        self.held.extend(made.into_iter().map(|made| (self.frame, made)));
+        let (block, shown) = shown?;
+        // SAFETY: by the caller.
+        let mut rec = unsafe { Recorder::of_host(&self.device, cmd) };
+        self.stage.record(&mut rec, &block);
+        if let Some(present) = self.stage.present() {
+            rec.wait(&Composite::reads(present.canvas.composited()));
+        }
+        self.shown = Some(shown);
+        Ok(())
+    }
+
+    /// Records the draw of the picture that was prepared last, with its depth: it hides what is behind it, and is hidden by what is in front.
+    /// Sets viewport and scissor, and binds a pipeline and descriptor set 0.
+    ///
+    /// # Safety
+    /// `cmd` is of the device, and is being recorded inside the subpass, or the dynamic rendering, that is the target. It is submitted after what
+    /// prepared the picture, to the same queue, and before what prepares the next one.
+    pub unsafe fn draw(&self, cmd: vk::CommandBuffer) -> Result<()> {
+        let Some(Shown { view, composite, place, area, .. }) = &self.shown else {
+            return Err(Error::Usage("there is no picture to draw: prepare one, and heed its error".into()));
+        };
+        let viewport = vk::Viewport {
+            x: area.offset.x as f32,
+            y: area.offset.y as f32,
+            width: area.extent.width as f32,
+            height: area.extent.height as f32,
+            min_depth: 0.0,
+            max_depth: 1.0,
+        };
+        // SAFETY: by the caller.
+        let mut draws = unsafe { Draws::of_host(&self.device, cmd, viewport, *area) };
+        composite.draw(&mut draws, view, place);
+        Ok(())
+    }
+
+    /// Makes all that a frame needs: its numbers, and how its picture is drawn.
+    fn make(
+        &mut self,
+        scene: &Arc<Scene>,
+        view: &View,
+        settings: &Settings,
+    ) -> Result<(layout::Frame, Shown)> {
+        let last = self.shown.take();
+        let last = last.inspect(|shown| self.hold(shown.view.clone()));
+        if !scene.is_on(&self.device) {
+            return Err(Error::Usage(
+                "the scene is of another device: upload it to the one that this renderer is of".into(),
+            ));
+        }
+        let area = view.area()?;
+        let size = [area.extent.width, area.extent.height];
+        check_size(&self.device, size)?;
+        let camera = view.upright();
+        let depth = self.target.depths(&camera, view.viewport)?;
+        self.stage.resize(size);
+        let settings = Settings { background: None, ..settings.clone() };
+        let (block, variant) = self.stage.prepare(scene, &camera, &settings, false)?;
+        if self.scene.as_ref().is_none_or(|held| !Arc::ptr_eq(held, scene)) {
+            let old = self.scene.replace(scene.clone());
+            self.hold(old);
+        }
+        let composite =
+            self.composite(variant.rasterizer, variant.pull_push.is_some(), variant.perspective)?;
+        let Some(present) = self.stage.present() else {
+            return Err(Error::Usage("nothing was made of the scene".into()));
+        };
+        let same = |shown: &Shown| shown.present == present.id && Arc::ptr_eq(&shown.composite, &composite);
+        let set = match last.filter(same) {
+            Some(shown) => shown.view,
+            None => Arc::new(composite.view(&self.device, present.canvas.composited())?),
+        };
+        let place = layout::Composite { origin: [area.offset.x, area.offset.y], size, depth };
+        Ok((block, Shown { view: set, present: present.id, composite, place, area }))
+    }
+
+    fn composite(
+        &mut self,
+        rasterizer: Rasterizer,
+        pull_push: bool,
+        perspective: bool,
+    ) -> Result<Arc<Composite>> {
+        let kind = CompositeKind {
+            images: rasterizer == Rasterizer::Draw && !pull_push,
+            perspective,
+            picture: self.target.picture,
+            normal: self.target.normal,
+            reversed: self.target.depth.map(|_| self.target.reversed),
+            encode: self.target.encode,
+        };
+        if let Some(made) = self.composites.iter().find(|made| made.kind() == kind) {
+            return Ok(made.clone());
+        }
+        // SAFETY: whoever made the renderer answers for the target.
+        let made = Arc::new(unsafe { self.target.composite(&self.device, kind)? });
+        self.composites.push(made.clone());
+        Ok(made)
+    }
+
+    fn hold(&mut self, held: impl Any + Send) {
+        self.held.push_back((self.frame, Box::new(held)));
+    }
+
+    /// Lets go of what frames that are over have used.
+    fn release(&mut self) {
+        while self.held.front().is_some_and(|(frame, _)| frame + self.frames_in_flight <= self.frame) {
+            self.held.pop_front();
+        }
+    }
+}
+
+impl View {
+    /// The pixels of the viewport.
+    fn area(&self) -> Result<vk::Rect2D> {
+        let vk::Viewport { x, y, width, height, .. } = self.viewport;
+        let top = if height < 0.0 { y + height } else { y };
+        let whole = [x, top, width, height].iter().all(|side| side.fract() == 0.0 && side.abs() < 65536.0);
+        if !whole || width < 1.0 || height.abs() < 1.0 || x < 0.0 || top < 0.0 {
+            return Err(Error::Usage(format!(
+                "a viewport of {width}x{height} px at ({x}, {y}): give whole pixels, at least 1x1, within the target"
+            )));
+        }
+        Ok(vk::Rect2D {
+            offset: vk::Offset2D { x: x as i32, y: top as i32 },
+            extent: vk::Extent2D { width: width as u32, height: height.abs() as u32 },
+        })
+    }
+
+    /// The camera with rows of pixels from the top, whichever way the host's viewport has them.
+    fn upright(&self) -> Camera {
+        let mut camera = self.camera;
+        if self.viewport.height < 0.0 {
+            for column in [
+                &mut camera.projection.x_axis,
+                &mut camera.projection.y_axis,
+                &mut camera.projection.z_axis,
+                &mut camera.projection.w_axis,
+            ] {
+                column.y = -column.y;
+            }
+        }
+        camera
+    }
+}

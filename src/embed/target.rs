@@ -1,0 +1,139 @@
+//! Where a host wants the picture.
+
+use crate::error::{Error, Result};
+use crate::geometry::Camera;
+use crate::passes::{Composite, CompositeKind};
+use crate::vk::{Blend, Device, Within};
+use ash::vk;
+use std::sync::Arc;
+
+/// Most colour targets that a composite knows; every device allows as many.
+const MOST: usize = 4;
+
+/// The pass of a host in which the picture is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Pass {
+    /// A subpass of a render pass; any compatible render pass will do.
+    Subpass {
+        /// The render pass.
+        pass: vk::RenderPass,
+        /// Number of the subpass.
+        subpass: u32,
+    },
+    /// Dynamic rendering, which the device has enabled.
+    Rendering,
+}
+
+/// What of a host the picture is drawn to.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Target {
+    /// Its pass.
+    pub pass: Pass,
+    /// Formats of the pass's colour attachments, by location; undefined where a location has none.
+    pub colours: Vec<vk::Format>,
+    /// Format of its depth attachment. Without one, the picture covers what is there.
+    pub depth: Option<vk::Format>,
+    /// Format of its stencil attachment, for dynamic rendering; undefined where there is none.
+    pub stencil: vk::Format,
+    /// Whether its depth falls with distance, and greater is nearer.
+    pub reversed: bool,
+    /// Samples a pixel. All of a pixel's get its picture; those that the host's surfaces hide keep theirs.
+    pub samples: vk::SampleCountFlags,
+    /// The location that gets the picture, below 4: linear RGB times α over what is there.
+    pub picture: u32,
+    /// The location that gets unit normals, world space, if any, below 4.
+    pub normal: Option<u32>,
+    /// Whether the shader has to encode colours as sRGB, as where the format is UNORM and shown as it is. Formats of sRGB do it themselves.
+    pub encode: bool,
+}
+
+impl Target {
+    /// Refuses what cannot be drawn to on `device`.
+    pub(super) fn check(&self, device: &Device) -> Result<()> {
+        let refuse =
+            |cause: String| Err(Error::Usage(format!("the host's target cannot be drawn to: {cause}")));
+        if self.normal == Some(self.picture) {
+            return refuse(format!("location {} is given for both the picture and normals", self.picture));
+        }
+        for (what, location) in [("the picture", Some(self.picture)), ("normals", self.normal)] {
+            let Some(location) = location else { continue };
+            let Some(&format) = self.colours.get(location as usize).filter(|_| (location as usize) < MOST)
+            else {
+                return refuse(format!(
+                    "{what} want location {location} of {} colour attachments; give one below {MOST} that there is",
+                    self.colours.len()
+                ));
+            };
+            let features = device.format_features(format);
+            if !features.contains(vk::FormatFeatureFlags::COLOR_ATTACHMENT_BLEND) {
+                return refuse(format!(
+                    "{} cannot blend {format:?}, the format for {what}",
+                    device.description().name
+                ));
+            }
+        }
+        if self.encode && is_srgb(self.colours[self.picture as usize]) {
+            return refuse("its format encodes sRGB itself: leave `encode` out".into());
+        }
+        if self.colours.len() > 1 && !device.capabilities().independent_blend {
+            return refuse(
+                "it has several colour attachments, and the device was lent without the feature independentBlend: enable it".into(),
+            );
+        }
+        if let Some(format) = self.depth
+            && !device.format_features(format).contains(vk::FormatFeatureFlags::DEPTH_STENCIL_ATTACHMENT)
+        {
+            return refuse(format!("{} has no depth attachments of {format:?}", device.description().name));
+        }
+        if self.samples.as_raw().count_ones() != 1 {
+            return refuse(format!("{:?} is not one number of samples", self.samples));
+        }
+        Ok(())
+    }
+
+    /// What the shader makes the host's depth of: see `composite.glsl`. Refuses a camera whose depth is not the target's.
+    pub(super) fn depths(&self, camera: &Camera, viewport: vk::Viewport) -> Result<[f32; 2]> {
+        if self.depth.is_some() && camera.reversed != self.reversed {
+            let name = |reversed| if reversed { "falls" } else { "rises" };
+            return Err(Error::Usage(format!(
+                "the camera's depth {} with distance, the target's {}: give one convention",
+                name(camera.reversed),
+                name(self.reversed)
+            )));
+        }
+        let projection = camera.projection()?;
+        let (z, w) = (camera.projection.row(2), camera.projection.row(3));
+        let [first, by_distance] = match projection.perspective {
+            true => [z.z / w.z, z.w / w.z.abs()],
+            false => [z.w / w.w, projection.forward * z.z / w.w],
+        };
+        let (low, range) =
+            (f64::from(viewport.min_depth), f64::from(viewport.max_depth - viewport.min_depth));
+        Ok([(low + range * first) as f32, (range * by_distance) as f32])
+    }
+
+    /// The pass that draws pictures of this kind.
+    ///
+    /// # Safety
+    /// What this says of the pass is true.
+    pub(super) unsafe fn composite(&self, device: &Arc<Device>, kind: CompositeKind) -> Result<Composite> {
+        let blend = |location: usize| match location as u32 {
+            location if location == self.picture => Some(Blend::Over),
+            location if Some(location) == self.normal => Some(Blend::Replace),
+            _ => None,
+        };
+        let colours: Vec<_> = (0..self.colours.len()).map(blend).collect();
+        let formats = (&self.colours[..], self.depth.unwrap_or(vk::Format::UNDEFINED), self.stencil);
+        let (pass, subpass, rendering) = match self.pass {
+            Pass::Subpass { pass, subpass } => (pass, subpass, None),
+            Pass::Rendering => (vk::RenderPass::null(), 0, Some(formats)),
+        };
+        let within = Within { pass, subpass, colours: &colours, rendering, samples: self.samples };
+        // SAFETY: by the caller.
+        unsafe { Composite::new(device, kind, &within) }
+    }
+}
+
+fn is_srgb(format: vk::Format) -> bool {
+    format!("{format:?}").contains("SRGB")
+}

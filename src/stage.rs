@@ -1,0 +1,187 @@
+//! What frames are made with: pipelines, targets and splats, made when scene or settings change, and recorded in every frame.
+
+use crate::error::Result;
+use crate::frame::frame;
+use crate::geometry::Camera;
+use crate::methods::{Canvas, Pipelines};
+use crate::passes::{SplatLayout, Splats};
+use crate::renderer::{RenderOptions, rasterizer_of};
+use crate::scene::Scene;
+use crate::settings::Settings;
+use crate::variant::{Rasterizer, Variant};
+use crate::vk::shaders::layout::Frame;
+use crate::vk::{Buffer, Device, Recorder};
+use std::any::Any;
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
+use std::sync::Arc;
+
+/// Pipelines, targets and splats for frames of one size on one device.
+pub(crate) struct Stage {
+    // Fields are dropped in this order: views before what they view.
+    present: Option<Present>,
+    /// What was before it: who switches to and fro, as in progressive rendering, makes nothing.
+    previous: Option<Present>,
+    resident: Option<Resident>,
+    pipelines: HashMap<Variant, Pipelines>,
+    layout: SplatLayout,
+    frame: Arc<Buffer>,
+    pub(crate) options: RenderOptions,
+    device: Arc<Device>,
+    retired: Retired,
+    /// Number of targets made so far.
+    made: u64,
+}
+
+/// What happens to what frames no longer need.
+pub(crate) enum Retired {
+    /// It goes at once: every frame is waited for.
+    Dropped,
+    /// It is kept for who knows when the GPU is done with it.
+    Kept(Vec<Outgoing>),
+}
+
+/// What frames no longer need, kept for what it holds.
+pub(crate) type Outgoing = Box<dyn Any + Send>;
+
+/// Targets of the present variant.
+pub(crate) struct Present {
+    /// No other has it.
+    pub(crate) id: u64,
+    pub(crate) variant: Variant,
+    pub(crate) canvas: Canvas,
+    pub(crate) readback: Vec<Buffer>,
+    /// What the canvas reads.
+    _frame: Arc<Buffer>,
+}
+
+/// Splats of the present scene.
+pub(crate) struct Resident {
+    scene: u64,
+    /// What it makes splats for, if any.
+    rasterizer: Option<Rasterizer>,
+    pub(crate) splats: Splats,
+    _frame: Arc<Buffer>,
+}
+
+impl Retired {
+    fn take<T: Any + Send>(&mut self, outgoing: Option<T>) {
+        if let (Self::Kept(list), Some(outgoing)) = (self, outgoing) {
+            list.push(Box::new(outgoing));
+        }
+    }
+}
+
+impl Stage {
+    /// Nothing is made for any scene yet.
+    pub(crate) fn new(device: &Arc<Device>, options: RenderOptions, retired: Retired) -> Result<Self> {
+        Ok(Self {
+            present: None,
+            previous: None,
+            resident: None,
+            pipelines: HashMap::new(),
+            layout: SplatLayout::new(device)?,
+            frame: Arc::new(Buffer::uniform(device, "frame", size_of::<Frame>() as u64)?),
+            options,
+            device: device.clone(),
+            retired,
+            made: 0,
+        })
+    }
+
+    pub(crate) fn present(&self) -> Option<&Present> {
+        self.present.as_ref()
+    }
+
+    pub(crate) fn resident(&self) -> Option<&Resident> {
+        self.resident.as_ref()
+    }
+
+    /// What went since this was last asked.
+    pub(crate) fn outgoing(&mut self) -> Vec<Outgoing> {
+        match &mut self.retired {
+            Retired::Dropped => Vec::new(),
+            Retired::Kept(list) => std::mem::take(list),
+        }
+    }
+
+    /// Frames from now on have this size, px.
+    pub(crate) fn resize(&mut self, size: [u32; 2]) {
+        if self.options.size != size {
+            self.options.size = size;
+            for old in [self.present.take(), self.previous.take()] {
+                self.retired.take(old);
+            }
+        }
+    }
+
+    /// Makes what a frame needs and is not there, with buffers to read it back where it is `read`: the frame's numbers, and what it is.
+    pub(crate) fn prepare(
+        &mut self,
+        scene: &Scene,
+        camera: &Camera,
+        settings: &Settings,
+        read: bool,
+    ) -> Result<(Frame, Variant)> {
+        settings.check()?;
+        settings.splatting.normalization.check_weights(scene.weights.is_some())?;
+        settings.check_primitives(scene.primitives.is_some())?;
+        let block = frame(camera, settings, self.options.size, scene.origin(), scene.bounds())?;
+        let rasterizer = rasterizer_of(&self.device, &self.options, settings)?;
+        let perspective = camera.projection()?.perspective;
+        let variant = Variant::new(scene.streams(), perspective, settings, &self.options, rasterizer);
+        let splats = variant.pull_push.is_none().then_some(variant.rasterizer);
+        self.make_resident(scene, splats)?;
+        self.make_present(variant, read)?;
+        Ok((block, variant))
+    }
+
+    /// Records the frame that was prepared, with these numbers.
+    pub(crate) fn record(&self, rec: &mut Recorder<'_>, block: &Frame) {
+        rec.update(&self.frame, bytemuck::bytes_of(block));
+        if let (Some(present), Some(resident)) = (&self.present, &self.resident) {
+            present.canvas.record(rec, &resident.splats);
+        }
+    }
+
+    fn make_resident(&mut self, scene: &Scene, rasterizer: Option<Rasterizer>) -> Result<()> {
+        if self
+            .resident
+            .as_ref()
+            .is_none_or(|resident| (resident.scene, resident.rasterizer) != (scene.id, rasterizer))
+        {
+            self.retired.take(self.resident.take());
+            let splats = Splats::new(&self.device, &self.layout, &self.frame, scene, rasterizer)?;
+            self.resident =
+                Some(Resident { scene: scene.id, rasterizer, splats, _frame: self.frame.clone() });
+        }
+        Ok(())
+    }
+
+    fn make_present(&mut self, variant: Variant, read: bool) -> Result<()> {
+        let is_other = |present: &Option<Present>| present.as_ref().is_none_or(|p| p.variant != variant);
+        if is_other(&self.present) {
+            std::mem::swap(&mut self.present, &mut self.previous);
+        }
+        if is_other(&self.present) {
+            self.retired.take(self.present.take());
+            let pipelines = match self.pipelines.entry(variant) {
+                Entry::Occupied(made) => made.into_mut(),
+                Entry::Vacant(room) => room.insert(Pipelines::new(&self.device, &self.layout, &variant)?),
+            };
+            let canvas =
+                pipelines.canvas(&self.device, &self.layout, &self.frame, &variant, self.options.size)?;
+            let frame = self.frame.clone();
+            self.made += 1;
+            self.present =
+                Some(Present { id: self.made, variant, canvas, readback: Vec::new(), _frame: frame });
+        }
+        match &mut self.present {
+            Some(present) if read && present.readback.is_empty() => {
+                present.readback = present.canvas.make_readback(&self.device)?;
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+}

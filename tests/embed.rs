@@ -1,0 +1,514 @@
+//! Surfels in a host: the pictures are those of the engine's own frames, what is in front hides what is behind, and the host's state is its own.
+#![allow(unsafe_code, reason = "a host speaks Vulkan itself")]
+
+#[path = "../tools/hosts/host/mod.rs"]
+mod host;
+mod support;
+
+use ash::vk;
+use glam::{DMat4, DVec3, Vec3};
+use host::Host;
+use host::frame::{Frame, Kind, Way};
+use host::memory::Counted;
+use host::mesh::{Mesh, parallelogram};
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use support::sampling::{Random, bumpy_sphere};
+use surfel::embed::{self, Abilities, Options, Renderer, View};
+use surfel::geometry::{Camera, Surfels};
+use surfel::methods::Method;
+use surfel::splatting::Visibility;
+use surfel::vk::{Device, DeviceOptions};
+use surfel::{Error, Outputs, Picture, Precision, Rasterizer, RenderOptions, Scene, Settings};
+
+const SIZE: [u32; 2] = [160, 120];
+const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
+const ONE: vk::SampleCountFlags = vk::SampleCountFlags::TYPE_1;
+const FOUR: vk::SampleCountFlags = vk::SampleCountFlags::TYPE_4;
+
+/// A host; `None`, said aloud, where there is no device. With `SURFEL_REQUIRE_GPU` set, the lack of one is a failure.
+fn open(wanted: fn(Abilities) -> Abilities) -> Option<Host> {
+    match Host::open(wanted) {
+        Ok(host) => Some(host),
+        Err(error) if std::env::var_os("SURFEL_REQUIRE_GPU").is_some() => panic!("{error}"),
+        Err(error) => {
+            eprintln!("SKIPPED, not passed: {error}");
+            None
+        }
+    }
+}
+
+/// Hosts have threads.
+#[allow(dead_code, reason = "it compiles, or not")]
+fn a_renderer_goes_to_another_thread(renderer: Renderer) -> impl Send {
+    renderer
+}
+
+fn assert_silent(host: &Host) {
+    let messages = host.messages();
+    assert!(messages.is_empty(), "{} validation messages: {messages:#?}", messages.len());
+}
+
+fn surfels() -> Surfels {
+    sphere(20_000)
+}
+
+fn sphere(count: usize) -> Surfels {
+    bumpy_sphere(count, &mut Random(7))
+}
+
+fn camera() -> Camera {
+    let eye = DVec3::new(1.1, 0.9, 3.0);
+    Camera::look_at(eye, DVec3::ZERO, DVec3::Y, 0.8, 4.0 / 3.0, 0.1).unwrap()
+}
+
+/// The same with depth that rises with distance, from 0 at the near plane to 1 at the far one.
+fn rising() -> Camera {
+    let (near, far) = (0.1, 50.0);
+    let mut camera = camera();
+    camera.projection.z_axis.z = far / (far - near);
+    camera.projection.w_axis.z = -near * far / (far - near);
+    Camera { reversed: false, ..camera }
+}
+
+fn viewport([width, height]: [u32; 2]) -> vk::Viewport {
+    vk::Viewport {
+        x: 0.0,
+        y: 0.0,
+        width: width as f32,
+        height: height as f32,
+        min_depth: 0.0,
+        max_depth: 1.0,
+    }
+}
+
+/// What the engine's own frames show: colours, and distances, of what is seen.
+fn alone(settings: &Settings, camera: &Camera, rasterizer: Option<Rasterizer>) -> Picture {
+    let device = Device::open(&DeviceOptions::default()).unwrap();
+    let outputs = Outputs { normal: false, depth: true };
+    let options = RenderOptions { size: SIZE, outputs, rasterizer, ..Default::default() };
+    support::gpu::render(&device, &surfels(), camera, settings, options)
+}
+
+/// A host's frame with the renderer that draws into it.
+struct Stand {
+    frame: Frame,
+    renderer: Renderer,
+    scene: Arc<Scene>,
+    device: Arc<Device>,
+}
+
+impl Stand {
+    fn new(host: &Host, kind: Kind, size: [u32; 2], rasterizer: Option<Rasterizer>) -> Self {
+        let device = host.lend(None).unwrap();
+        let frame = Frame::new(host, kind, size).unwrap();
+        let options =
+            Options { target: frame.target(), frames_in_flight: 2, precision: Precision::Full, rasterizer };
+        // SAFETY: the target is the frame's.
+        let renderer = unsafe { Renderer::new(&device, options) }.unwrap();
+        let scene = upload(host, &device, &surfels());
+        Self { frame, renderer, scene, device }
+    }
+
+    /// A frame of the mesh, if there is one, and then the surfels.
+    fn render(
+        &mut self,
+        host: &Host,
+        view: &View,
+        settings: &Settings,
+        mesh: Option<&Mesh>,
+    ) -> (Vec<[f32; 4]>, Vec<f32>) {
+        let Self { frame, renderer, scene, .. } = self;
+        host.run(|cmd| {
+            // SAFETY: recorded outside and inside the frame's pass, submitted in order to the host's queue.
+            unsafe {
+                renderer.prepare(cmd, scene, view, settings)?;
+                frame.begin(host, cmd);
+                if let Some(mesh) = mesh {
+                    let world_to_clip = view.camera.world_to_clip().as_mat4();
+                    mesh.draw(host, cmd, view.viewport, world_to_clip, Vec3::Y);
+                }
+                renderer.draw(cmd)?;
+                frame.end(host, cmd);
+            }
+            Ok(())
+        })
+        .unwrap();
+        frame.read(host).unwrap()
+    }
+
+    fn destroy(self, host: &Host) {
+        drop(self.renderer);
+        self.frame.destroy(host);
+    }
+}
+
+fn upload(host: &Host, device: &Arc<Device>, surfels: &Surfels) -> Arc<Scene> {
+    // SAFETY: recorded outside a render pass, and waited for.
+    let (scene, staging) = host.run(|cmd| Ok(unsafe { embed::upload(device, cmd, surfels)? })).unwrap();
+    assert!(staging.bytes() > 0);
+    Arc::new(scene)
+}
+
+fn kinds() -> impl Iterator<Item = Kind> {
+    let ways = [Way::Subpass, Way::Rendering];
+    let samples = move |way| {
+        [ONE, FOUR].map(move |samples| Kind { way, colour: FLOATS, normals: false, samples, reversed: true })
+    };
+    ways.into_iter().flat_map(samples)
+}
+
+/// The methods by both rasterizers.
+fn frames() -> Vec<(Settings, Option<Rasterizer>)> {
+    let of = |name: &str| Method::named(name).unwrap().settings();
+    let both = [Rasterizer::Draw, Rasterizer::Compute].map(Some);
+    let splats = ["perspective-ewa", "sprites-unfiltered"].map(of);
+    let splats = splats.into_iter().flat_map(|settings| both.map(|by| (settings.clone(), by)));
+    splats
+        .chain([(of("pull-push"), None)])
+        .map(|(settings, by)| (Settings { background: None, ..settings }, by))
+        .collect()
+}
+
+#[test]
+fn an_embedded_picture_is_the_engines_own_bit_for_bit() {
+    let Some(host) = open(|all| all) else { return };
+    for (settings, rasterizer) in frames() {
+        let own = alone(&settings, &camera(), rasterizer);
+        let depth = own.depth.as_ref().unwrap();
+        assert!(own.colour.iter().filter(|colour| colour[3] == 1.0).count() > 5_000);
+        for kind in kinds() {
+            let mut stand = Stand::new(&host, kind, SIZE, rasterizer);
+            let view = View { camera: camera(), viewport: viewport(SIZE) };
+            let (colours, depths) = stand.render(&host, &view, &settings, None);
+            // Splats that are blended by atomic sums are added in whatever order.
+            let blended = rasterizer == Some(Rasterizer::Compute)
+                && settings.splatting.visibility != Visibility::Nearest;
+            let most = if blended { 2e-5 } else { 0.0 };
+            let near = |a: f32, b: f32| (a - b).abs() <= most;
+            let same = |(a, b): (&[f32; 4], &[f32; 4])| a.iter().zip(b).all(|(a, b)| near(*a, *b));
+            assert!(
+                colours.len() == own.colour.len() && colours.iter().zip(&own.colour).all(same),
+                "{kind:?} {rasterizer:?}"
+            );
+            // The near plane is at 0.1, and the depth is that over the distance.
+            for (found, distance) in depths.iter().zip(depth) {
+                let exact = if *distance == 0.0 { 0.0 } else { 0.1 / f64::from(*distance) };
+                assert!(
+                    (f64::from(*found) - exact).abs() <= (1.5e-7 + f64::from(most)) * exact,
+                    "{found} {exact}"
+                );
+            }
+            stand.destroy(&host);
+        }
+    }
+    assert_silent(&host);
+}
+
+#[test]
+fn pictures_and_normals_are_where_the_host_wants_them() {
+    let Some(host) = open(|all| all) else { return };
+    // Seen alone, splats have one picture whatever their order.
+    let settings = Settings { background: None, ..Method::named("sprites-unfiltered").unwrap().settings() };
+    // Within a larger target.
+    let larger = [SIZE[0] + 37, SIZE[1] + 11];
+    let at = vk::Viewport { x: 30.0, y: 8.0, ..viewport(SIZE) };
+    let device = Device::open(&DeviceOptions::default()).unwrap();
+    for (rasterizer, way) in
+        [Rasterizer::Draw, Rasterizer::Compute].into_iter().zip([Way::Rendering, Way::Subpass])
+    {
+        let outputs = Outputs { normal: true, depth: true };
+        let options =
+            RenderOptions { size: SIZE, outputs, rasterizer: Some(rasterizer), ..Default::default() };
+        let own = support::gpu::render(&device, &surfels(), &camera(), &settings, options);
+        let kind = Kind { way, colour: FLOATS, normals: true, samples: ONE, reversed: true };
+        let mut stand = Stand::new(&host, kind, larger, Some(rasterizer));
+        let (colours, _) = stand.render(&host, &View { camera: camera(), viewport: at }, &settings, None);
+        let normals = stand.frame.read_normals(&host).unwrap();
+        let (normal, mut seen) = (own.normal.unwrap(), 0);
+        for (i, colour) in colours.iter().enumerate() {
+            let [x, y] = [i % larger[0] as usize, i / larger[0] as usize].map(|place| place as i64);
+            let inside = (0..160).contains(&(x - 30)) && (0..120).contains(&(y - 8));
+            let there =
+                inside.then(|| ((y - 8) * 160 + x - 30) as usize).filter(|i| own.colour[*i][3] == 1.0);
+            let expected = there.map_or(([0.0; 4], [0.0; 4]), |i| {
+                (own.colour[i], [normal[i][0], normal[i][1], normal[i][2], 1.0])
+            });
+            assert_eq!((*colour, normals[i]), expected, "{rasterizer:?} {x} {y}");
+            seen += usize::from(there.is_some());
+        }
+        assert!(seen > 5_000);
+        stand.destroy(&host);
+    }
+    assert_silent(&host);
+}
+
+#[test]
+fn colours_are_encoded_by_the_shader_as_by_the_format() {
+    let Some(host) = open(|all| all) else { return };
+    let settings = Settings { background: None, ..Settings::default() };
+    let bytes = [vk::Format::R8G8B8A8_UNORM, vk::Format::R8G8B8A8_SRGB].map(|colour| {
+        let kind = Kind { way: Way::Subpass, colour, normals: false, samples: ONE, reversed: true };
+        let device = host.lend(None).unwrap();
+        let frame = Frame::new(&host, kind, SIZE).unwrap();
+        let target = embed::Target { encode: colour == vk::Format::R8G8B8A8_UNORM, ..frame.target() };
+        let options = Options { target, frames_in_flight: 1, precision: Precision::Full, rasterizer: None };
+        // SAFETY: the target is the frame's.
+        let mut renderer = unsafe { Renderer::new(&device, options) }.unwrap();
+        let scene = upload(&host, &device, &surfels());
+        let view = View { camera: camera(), viewport: viewport(SIZE) };
+        host.run(|cmd| {
+            // SAFETY: recorded outside and inside the frame's pass, and waited for.
+            unsafe {
+                renderer.prepare(cmd, &scene, &view, &settings)?;
+                frame.begin(&host, cmd);
+                renderer.draw(cmd)?;
+                frame.end(&host, cmd);
+            }
+            Ok(())
+        })
+        .unwrap();
+        let bytes = frame.read_bytes(&host, 4).unwrap();
+        frame.destroy(&host);
+        bytes
+    });
+    assert!(bytes[0].iter().filter(|byte| **byte > 100).count() > 20_000);
+    // Either rounds to the nearest code, of values that differ by the last bits of a power.
+    assert!(bytes[0].iter().zip(&bytes[1]).all(|(a, b)| a.abs_diff(*b) <= 1));
+    assert_silent(&host);
+}
+
+/// Distance from the eye plane and whether it is on the parallelogram, of what the ray through the middle of a pixel meets.
+fn meets(camera: &Camera, at: [u32; 2], centre: DVec3, sides: [DVec3; 2]) -> Option<f64> {
+    let back: DMat4 = camera.world_to_clip().inverse();
+    let clip = |depth: f64| {
+        let ndc = |i: usize| 2.0 * (f64::from(at[i]) + 0.5) / f64::from(SIZE[i]) - 1.0;
+        back.project_point3(DVec3::new(ndc(0), ndc(1), depth))
+    };
+    let (from, to) = (clip(1.0), clip(0.5));
+    let ray = to - from;
+    let normal = sides[0].cross(sides[1]);
+    let t = normal.dot(centre - from) / normal.dot(ray);
+    let point = from + t * ray;
+    let inside = sides.iter().all(|side| (point - centre).dot(*side).abs() <= side.length_squared());
+    (t > 0.0 && inside).then(|| camera.view.transform_point3(point).z)
+}
+
+#[test]
+fn what_is_in_front_hides_what_is_behind_either_way() {
+    let Some(host) = open(|all| all) else { return };
+    let (centre, sides) =
+        (DVec3::new(0.1, 0.05, 0.2), [DVec3::new(1.4, 0.2, 0.1), DVec3::new(0.0, 0.3, -1.1)]);
+    // Orthogonal, for the sake of `meets`.
+    let sides = [sides[0], sides[1] - sides[1].dot(sides[0]) / sides[0].length_squared() * sides[0]];
+    let corners = parallelogram(centre.as_vec3(), sides.map(|side| side.as_vec3()));
+    let settings = Settings { background: None, ..Method::named("perspective-ewa").unwrap().settings() };
+    let reference = surfel::reference::render(&surfels(), &camera(), SIZE, &settings, &()).unwrap();
+    let conventions = [(true, false, [0.0, 1.0]), (false, false, [0.0, 1.0]), (true, true, [0.25, 0.75])];
+    for (way, (reversed, up, range)) in
+        [Way::Subpass, Way::Rendering].into_iter().flat_map(|way| conventions.map(|c| (way, c)))
+    {
+        let mut camera = if reversed { camera() } else { rising() };
+        let [width, height] = SIZE.map(|side| side as f32);
+        let [min_depth, max_depth] = range;
+        let mut viewport = vk::Viewport { min_depth, max_depth, ..viewport(SIZE) };
+        if up {
+            // The host's y points up, and its viewport turns it over.
+            viewport = vk::Viewport { y: height, height: -height, ..viewport };
+            camera.projection = DMat4::from_scale(DVec3::new(1.0, -1.0, 1.0)) * camera.projection;
+        }
+        assert_eq!(viewport.width, width);
+        let kind = Kind { way, colour: FLOATS, normals: false, samples: ONE, reversed };
+        let mut stand = Stand::new(&host, kind, SIZE, None);
+        let mesh = Mesh::new(&host, &corners, stand.frame.place()).unwrap();
+        let (colours, _) = stand.render(&host, &View { camera, viewport }, &settings, Some(&mesh));
+        let mut counts = [[0; 2]; 2];
+        let mut wrong = 0;
+        for (i, colour) in colours.iter().enumerate() {
+            let at = [i as u32 % SIZE[0], i as u32 / SIZE[0]];
+            let surfel = reference.covered[i].then_some(reference.depth[i]);
+            let of_host = meets(&self::camera(), at, centre, sides);
+            let is_surfel = surfel.is_some_and(|z| of_host.is_none_or(|of_host| z <= of_host));
+            let is_host = !is_surfel && of_host.is_some();
+            // The mesh is blue; nothing else is.
+            let found = [
+                colour[3] > 0.0 && colour[2] <= 1.5 * colour[0],
+                colour[3] > 0.0 && colour[2] > 1.5 * colour[0],
+            ];
+            wrong += usize::from(found != [is_surfel, is_host]);
+            counts[usize::from(surfel.is_some() && of_host.is_some())][usize::from(is_host)] += 1;
+        }
+        println!("{way:?}, reversed {reversed}, up {up}: {wrong} px of {} differ", colours.len());
+        assert!(counts[1].iter().all(|count| *count > 500), "either hides the other: {counts:?}");
+        assert!(wrong * 1000 <= colours.len(), "{wrong} px");
+        mesh.destroy(&host);
+        stand.destroy(&host);
+    }
+    assert_silent(&host);
+}
+
+#[test]
+fn a_thousand_frames_of_all_sizes_and_scenes_leave_nothing() {
+    let Some(host) = open(|all| all) else { return };
+    let (memory, counts) = Counted::new(&host);
+    let device = host.lend(Some(Box::new(memory))).unwrap();
+    let kind = Kind { way: Way::Subpass, colour: FLOATS, normals: false, samples: ONE, reversed: true };
+    let frame = Frame::new(&host, kind, [64, 48]).unwrap();
+    {
+        let scenes = [500, 2_000].map(|count| upload(&host, &device, &sphere(count)));
+        let target = frame.target();
+        let options = Options { target, frames_in_flight: 2, precision: Precision::Full, rasterizer: None };
+        // SAFETY: the target is the frame's.
+        let mut renderer = unsafe { Renderer::new(&device, options) }.unwrap();
+        let settings =
+            ["perspective-ewa", "pull-push", "sprites"].map(|name| Method::named(name).unwrap().settings());
+        let mut under_way = std::collections::VecDeque::new();
+        let mut most = 0;
+        for number in 0..1000usize {
+            if under_way.len() == 2 {
+                host.wait(under_way.pop_front().unwrap()).unwrap();
+            }
+            // Sizes come and go, each for a while.
+            let size = [[64, 48], [33, 48], [64, 1]][number / 7 % 3];
+            let view = View { camera: camera(), viewport: viewport(size) };
+            let (submitted, ()) = host
+                .submit(|cmd| {
+                    // SAFETY: as `Options::frames_in_flight` says: two are under way at most.
+                    unsafe {
+                        renderer.prepare(cmd, &scenes[number / 5 % 2], &view, &settings[number / 11 % 3])?;
+                        frame.begin(&host, cmd);
+                        renderer.draw(cmd)?;
+                        frame.end(&host, cmd);
+                    }
+                    Ok(())
+                })
+                .unwrap();
+            under_way.push_back(submitted);
+            most = most.max(counts.alive.load(Ordering::SeqCst));
+        }
+        under_way.into_iter().for_each(|submitted| host.wait(submitted).unwrap());
+        assert!(most < 80, "{most} pieces of memory at once");
+    }
+    frame.destroy(&host);
+    assert_eq!(Arc::strong_count(&device), 1);
+    drop(device);
+    assert_eq!(counts.alive.load(Ordering::SeqCst), 0);
+    assert_silent(&host);
+}
+
+#[test]
+fn without_memory_there_is_an_error_and_then_there_is_memory() {
+    let Some(host) = open(|all| all) else { return };
+    let (memory, counts) = Counted::new(&host);
+    let device = host.lend(Some(Box::new(memory))).unwrap();
+    let kind = Kind { way: Way::Rendering, colour: FLOATS, normals: false, samples: ONE, reversed: true };
+    let frame = Frame::new(&host, kind, SIZE).unwrap();
+    let options =
+        Options { target: frame.target(), frames_in_flight: 1, precision: Precision::Full, rasterizer: None };
+    // SAFETY: the target is the frame's.
+    let mut renderer = unsafe { Renderer::new(&device, options) }.unwrap();
+    let scene = upload(&host, &device, &surfels());
+    let view = View { camera: camera(), viewport: viewport(SIZE) };
+    let mut refused = 0;
+    for left in 0.. {
+        counts.left.store(left, Ordering::SeqCst);
+        let before = counts.alive.load(Ordering::SeqCst);
+        // SAFETY: recorded outside a render pass, and waited for.
+        let made = host.run(|cmd| Ok(unsafe { embed::upload(&device, cmd, &surfels()) })).unwrap();
+        // SAFETY: as above.
+        let prepared = host
+            .run(|cmd| Ok(unsafe { renderer.prepare(cmd, &scene, &view, &Settings::default()) }))
+            .unwrap();
+        if made.is_ok() && prepared.is_ok() {
+            break;
+        }
+        for error in [made.err(), prepared.as_ref().err().map(|_| ()).and(None)].into_iter().flatten() {
+            assert!(
+                matches!(&error, Error::Memory { cause, .. } if cause.contains("no memory left")),
+                "{error}"
+            );
+        }
+        if let Err(error) = prepared {
+            assert!(matches!(error, Error::Memory { .. }), "{error}");
+            // SAFETY: nothing is recorded where there is nothing to draw.
+            let nothing = host.run(|cmd| Ok(unsafe { renderer.draw(cmd) })).unwrap();
+            assert!(nothing.unwrap_err().to_string().contains("no picture to draw"));
+        }
+        assert!(counts.alive.load(Ordering::SeqCst) >= before);
+        refused += 1;
+    }
+    assert!(refused > 5, "{refused}");
+    drop((renderer, scene));
+    assert_eq!(counts.alive.load(Ordering::SeqCst), 0);
+    frame.destroy(&host);
+    drop(device);
+    assert_silent(&host);
+}
+
+#[test]
+fn what_cannot_be_served_is_refused_and_says_why() {
+    let Some(host) = open(|all| Abilities { independent_blend: false, ..all }) else { return };
+    let kind = Kind { way: Way::Subpass, colour: FLOATS, normals: false, samples: ONE, reversed: true };
+    let mut stand = Stand::new(&host, kind, SIZE, None);
+    let target = stand.frame.target();
+    type Change = fn(&mut embed::Target);
+    let changes: [(Change, &str); 7] = [
+        (|t| t.picture = 1, "location 1 of 1 colour attachments"),
+        (|t| t.normal = Some(0), "both the picture and normals"),
+        (|t| t.colours[0] = vk::Format::R32G32B32A32_UINT, "cannot blend R32G32B32A32_UINT"),
+        (|t| t.colours.push(FLOATS), "independentBlend"),
+        (|t| t.depth = Some(FLOATS), "no depth attachments of R32G32B32A32_SFLOAT"),
+        (|t| t.samples = ONE | FOUR, "not one number of samples"),
+        (|t| (t.colours[0], t.encode) = (vk::Format::R8G8B8A8_SRGB, true), "encodes sRGB itself"),
+    ];
+    let make = |target, frames_in_flight| {
+        let options = Options { target, frames_in_flight, precision: Precision::Full, rasterizer: None };
+        // SAFETY: nothing is made of a target that is refused.
+        unsafe { Renderer::new(&stand.device, options) }
+    };
+    for (change, said) in changes {
+        let mut target = target.clone();
+        change(&mut target);
+        let text = make(target, 2).err().map(|error| error.to_string()).unwrap_or_default();
+        assert!(text.contains(said), "`{said}` is not in `{text}`");
+    }
+    assert!(make(target, 0).is_err_and(|error| error.to_string().contains("0 frames in flight")));
+
+    let other = host.lend(None).unwrap();
+    let elsewhere = upload(&host, &other, &surfels());
+    let good = View { camera: camera(), viewport: viewport(SIZE) };
+    let bad = |change: fn(&mut View)| {
+        let mut view = good;
+        change(&mut view);
+        view
+    };
+    let scene = stand.scene.clone();
+    for (scene, view, said) in [
+        (&elsewhere, good, "of another device"),
+        (&scene, bad(|view| view.viewport.width = 0.0), "0x120"),
+        (&scene, bad(|view| view.viewport.x = 0.5), "whole pixels"),
+        (&scene, bad(|view| view.viewport.height = f32::NAN), "whole pixels"),
+        (&scene, bad(|view| view.camera = rising()), "rises with distance, the target's falls"),
+        (&scene, bad(|view| view.camera.projection = DMat4::ZERO), "projection matrix"),
+    ] {
+        // SAFETY: recorded outside a render pass, and waited for.
+        let made = host
+            .run(|cmd| Ok(unsafe { stand.renderer.prepare(cmd, scene, &view, &Settings::default()) }))
+            .unwrap();
+        let text = made.unwrap_err().to_string();
+        assert!(text.contains(said), "`{said}` is not in `{text}`");
+    }
+    // What was refused leaves all as it was.
+    let (colours, _) =
+        stand.render(&host, &good, &Settings { background: None, ..Settings::default() }, None);
+    assert!(colours.iter().any(|colour| colour[3] == 1.0));
+    // The engine does not submit to what it borrows.
+    assert!(
+        Scene::upload(&stand.device, &surfels())
+            .is_err_and(|error| error.to_string().contains("lent by a host"))
+    );
+    drop(scene);
+    stand.destroy(&host);
+    drop((elsewhere, other));
+    assert_silent(&host);
+}

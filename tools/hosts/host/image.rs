@@ -1,0 +1,105 @@
+//! The host's targets.
+
+use super::{Host, Result};
+use ash::vk;
+
+/// A colour or depth target with its memory and view.
+pub struct Target {
+    pub image: vk::Image,
+    pub view: vk::ImageView,
+    pub format: vk::Format,
+    pub size: [u32; 2],
+    memory: vk::DeviceMemory,
+}
+
+impl Target {
+    /// A target of `size` px.
+    pub fn new(
+        host: &Host,
+        format: vk::Format,
+        size: [u32; 2],
+        samples: vk::SampleCountFlags,
+        usage: vk::ImageUsageFlags,
+    ) -> Result<Self> {
+        let info = vk::ImageCreateInfo::default()
+            .image_type(vk::ImageType::TYPE_2D)
+            .format(format)
+            .extent(vk::Extent3D { width: size[0], height: size[1], depth: 1 })
+            .mip_levels(1)
+            .array_layers(1)
+            .samples(samples)
+            .usage(usage);
+        // SAFETY: a plain use of Vulkan; `destroy` destroys what is made.
+        unsafe {
+            let image = host.device.create_image(&info, None)?;
+            let requirements = host.device.get_image_memory_requirements(image);
+            let memory = host.allocate(requirements, vk::MemoryPropertyFlags::DEVICE_LOCAL)?;
+            host.device.bind_image_memory(image, memory, 0)?;
+            let view = vk::ImageViewCreateInfo::default()
+                .image(image)
+                .view_type(vk::ImageViewType::TYPE_2D)
+                .format(format)
+                .subresource_range(range(format));
+            Ok(Self { image, view: host.device.create_image_view(&view, None)?, format, size, memory })
+        }
+    }
+
+    /// Records a copy of all of it, once it is in the layout of a copy's source, to `buffer`.
+    pub fn copy_to(&self, host: &Host, cmd: vk::CommandBuffer, buffer: vk::Buffer) {
+        let [width, height] = self.size;
+        let region = vk::BufferImageCopy::default()
+            .image_subresource(vk::ImageSubresourceLayers {
+                aspect_mask: aspect(self.format),
+                mip_level: 0,
+                base_array_layer: 0,
+                layer_count: 1,
+            })
+            .image_extent(vk::Extent3D { width, height, depth: 1 });
+        let layout = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
+        // SAFETY: the caller has it in this layout, and the buffer is large enough.
+        unsafe { host.device.cmd_copy_image_to_buffer(cmd, self.image, layout, buffer, &[region]) };
+    }
+
+    /// Brings it from one layout to another, after all that was recorded and before all that follows.
+    pub fn transition(&self, host: &Host, cmd: vk::CommandBuffer, [from, to]: [vk::ImageLayout; 2]) {
+        let all = vk::PipelineStageFlags::ALL_COMMANDS;
+        let barrier = vk::ImageMemoryBarrier::default()
+            .src_access_mask(vk::AccessFlags::MEMORY_WRITE)
+            .dst_access_mask(vk::AccessFlags::MEMORY_READ | vk::AccessFlags::MEMORY_WRITE)
+            .old_layout(from)
+            .new_layout(to)
+            .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+            .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+            .image(self.image)
+            .subresource_range(range(self.format));
+        let none = vk::DependencyFlags::empty();
+        // SAFETY: recorded outside a render pass.
+        unsafe { host.device.cmd_pipeline_barrier(cmd, all, all, none, &[], &[], &[barrier]) };
+    }
+
+    /// Destroys it, once the GPU is done with it.
+    pub fn destroy(self, host: &Host) {
+        // SAFETY: by the caller.
+        unsafe {
+            host.device.destroy_image_view(self.view, None);
+            host.device.destroy_image(self.image, None);
+            host.device.free_memory(self.memory, None);
+        }
+    }
+}
+
+fn aspect(format: vk::Format) -> vk::ImageAspectFlags {
+    match format {
+        vk::Format::D32_SFLOAT | vk::Format::D16_UNORM => vk::ImageAspectFlags::DEPTH,
+        _ => vk::ImageAspectFlags::COLOR,
+    }
+}
+
+fn range(format: vk::Format) -> vk::ImageSubresourceRange {
+    vk::ImageSubresourceRange {
+        aspect_mask: aspect(format),
+        level_count: 1,
+        layer_count: 1,
+        ..Default::default()
+    }
+}

@@ -1,0 +1,235 @@
+//! A small renderer of its own, as hosts are: it owns instance, device, queue and command buffers, and knows nothing of surfels but what it
+//! lends.
+
+#![allow(dead_code, reason = "no host uses all of it")]
+
+pub mod frame;
+pub mod image;
+pub mod memory;
+pub mod mesh;
+pub mod show;
+
+use ash::{ext, khr, vk};
+use std::error::Error;
+use std::ffi::{CStr, c_void};
+use std::sync::{Arc, Mutex};
+use surfel::embed::{Abilities, Lent, MemorySource};
+use surfel::vk::{Device, DeviceLimits};
+
+/// Whatever goes wrong.
+pub type Result<T> = std::result::Result<T, Box<dyn Error>>;
+
+/// What the host opened.
+pub struct Host {
+    pub device: ash::Device,
+    pub instance: ash::Instance,
+    pub physical: vk::PhysicalDevice,
+    pub queue: vk::Queue,
+    pub family: u32,
+    /// What it enabled of what surfels can use.
+    pub enabled: Abilities,
+    pub rendering: khr::dynamic_rendering::Device,
+    pool: vk::CommandPool,
+    messenger: vk::DebugUtilsMessengerEXT,
+    debug: ext::debug_utils::Instance,
+    messages: Box<Mutex<Vec<String>>>,
+    _entry: ash::Entry,
+}
+
+/// Commands under way.
+pub struct Submitted {
+    cmd: vk::CommandBuffer,
+    fence: vk::Fence,
+}
+
+const VALIDATION: &CStr = c"VK_LAYER_KHRONOS_validation";
+
+impl Host {
+    /// Opens the first device that does graphics and compute; under validation, where its layer is installed.
+    pub fn open(wanted: fn(Abilities) -> Abilities) -> Result<Self> {
+        // SAFETY: a plain use of Vulkan: every handle is made here, and destroyed in `drop`, after what was made of it.
+        unsafe {
+            let entry = ash::Entry::load()?;
+            let layers = entry.enumerate_instance_layer_properties()?;
+            let validates = layers.iter().any(|layer| layer.layer_name_as_c_str() == Ok(VALIDATION));
+            let layers: Vec<_> = validates.then_some(VALIDATION.as_ptr()).into_iter().collect();
+            let extensions = [ext::debug_utils::NAME.as_ptr()];
+            let application = vk::ApplicationInfo::default().api_version(vk::API_VERSION_1_2);
+            let synchronization = [vk::ValidationFeatureEnableEXT::SYNCHRONIZATION_VALIDATION];
+            let mut features =
+                vk::ValidationFeaturesEXT::default().enabled_validation_features(&synchronization);
+            let mut info = vk::InstanceCreateInfo::default()
+                .application_info(&application)
+                .enabled_layer_names(&layers)
+                .enabled_extension_names(&extensions);
+            if validates {
+                info = info.push_next(&mut features);
+            }
+            let instance = entry.create_instance(&info, None)?;
+            let messages = Box::new(Mutex::new(Vec::new()));
+            let debug = ext::debug_utils::Instance::new(&entry, &instance);
+            let messenger = debug.create_debug_utils_messenger(&messenger(&messages), None)?;
+            let (physical, family) = choose(&instance)?;
+            let enabled = wanted(Abilities::of(&instance, physical));
+            let device = create_device(&instance, physical, family, &enabled)?;
+            let pool = vk::CommandPoolCreateInfo::default()
+                .queue_family_index(family)
+                .flags(vk::CommandPoolCreateFlags::RESET_COMMAND_BUFFER);
+            Ok(Self {
+                pool: device.create_command_pool(&pool, None)?,
+                queue: device.get_device_queue(family, 0),
+                rendering: khr::dynamic_rendering::Device::new(&instance, &device),
+                device,
+                instance,
+                physical,
+                family,
+                enabled,
+                messenger,
+                debug,
+                messages,
+                _entry: entry,
+            })
+        }
+    }
+
+    /// The device as surfels borrow it.
+    pub fn lend(&self, memory: Option<Box<dyn MemorySource>>) -> surfel::Result<Arc<Device>> {
+        let lent = Lent {
+            instance: &self.instance,
+            physical: self.physical,
+            device: &self.device,
+            queue_family: self.family,
+            enabled: self.enabled,
+            labels: true,
+            limits: DeviceLimits::default(),
+            memory,
+            pipeline_cache: None,
+        };
+        // SAFETY: all of it is true, and hosts drop what they lend last.
+        unsafe { Device::borrow(lent) }
+    }
+
+    /// Records and submits commands; the GPU may still be at them.
+    pub fn submit<T>(&self, body: impl FnOnce(vk::CommandBuffer) -> Result<T>) -> Result<(Submitted, T)> {
+        // SAFETY: the command buffer is recorded whole, and freed once its fence is signalled.
+        unsafe {
+            let buffer =
+                vk::CommandBufferAllocateInfo::default().command_pool(self.pool).command_buffer_count(1);
+            let cmd = self.device.allocate_command_buffers(&buffer)?[0];
+            let once =
+                vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
+            self.device.begin_command_buffer(cmd, &once)?;
+            let made = body(cmd);
+            self.device.end_command_buffer(cmd)?;
+            let fence = self.device.create_fence(&vk::FenceCreateInfo::default(), None)?;
+            let commands = [cmd];
+            let submit = [vk::SubmitInfo::default().command_buffers(&commands)];
+            self.device.queue_submit(self.queue, &submit, fence)?;
+            let submitted = Submitted { cmd, fence };
+            match made {
+                Ok(made) => Ok((submitted, made)),
+                Err(error) => self.wait(submitted).and(Err(error)),
+            }
+        }
+    }
+
+    /// Waits until the GPU is done with what was submitted.
+    pub fn wait(&self, Submitted { cmd, fence }: Submitted) -> Result<()> {
+        // SAFETY: both are of this device, and done with after the wait.
+        unsafe {
+            self.device.wait_for_fences(&[fence], true, u64::MAX)?;
+            self.device.destroy_fence(fence, None);
+            self.device.free_command_buffers(self.pool, &[cmd]);
+        }
+        Ok(())
+    }
+
+    /// Records, submits and waits.
+    pub fn run<T>(&self, body: impl FnOnce(vk::CommandBuffer) -> Result<T>) -> Result<T> {
+        let (submitted, made) = self.submit(body)?;
+        self.wait(submitted)?;
+        Ok(made)
+    }
+
+    /// Messages of the validation layers so far.
+    pub fn messages(&self) -> Vec<String> {
+        self.messages.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).clone()
+    }
+}
+
+impl Drop for Host {
+    fn drop(&mut self) {
+        // SAFETY: what was made of them is gone.
+        unsafe {
+            let _ = self.device.device_wait_idle();
+            self.device.destroy_command_pool(self.pool, None);
+            self.device.destroy_device(None);
+            self.debug.destroy_debug_utils_messenger(self.messenger, None);
+            self.instance.destroy_instance(None);
+        }
+    }
+}
+
+unsafe fn choose(instance: &ash::Instance) -> Result<(vk::PhysicalDevice, u32)> {
+    // SAFETY: by the caller: the instance is alive.
+    unsafe {
+        for physical in instance.enumerate_physical_devices()? {
+            let families = instance.get_physical_device_queue_family_properties(physical);
+            let serves =
+                |family: &vk::QueueFamilyProperties| family.queue_flags.contains(surfel::embed::QUEUE);
+            if let Some(family) = families.iter().position(serves) {
+                return Ok((physical, family as u32));
+            }
+        }
+    }
+    Err("no Vulkan device does graphics and compute".into())
+}
+
+unsafe fn create_device(
+    instance: &ash::Instance,
+    physical: vk::PhysicalDevice,
+    family: u32,
+    enabled: &Abilities,
+) -> Result<ash::Device> {
+    let queues = [vk::DeviceQueueCreateInfo::default().queue_family_index(family).queue_priorities(&[1.0])];
+    let mut names: Vec<_> = enabled.extensions().map(CStr::as_ptr).collect();
+    // What this host wants itself.
+    names.extend(
+        [khr::dynamic_rendering::NAME, khr::depth_stencil_resolve::NAME, khr::create_renderpass2::NAME]
+            .map(CStr::as_ptr),
+    );
+    let mut rendering = vk::PhysicalDeviceDynamicRenderingFeatures::default().dynamic_rendering(true);
+    let mut features = enabled.features();
+    let core = features.core;
+    let info = vk::DeviceCreateInfo::default()
+        .queue_create_infos(&queues)
+        .enabled_extension_names(&names)
+        .enabled_features(&core)
+        .push_next(&mut rendering);
+    // SAFETY: by the caller: the device and its family are the instance's.
+    Ok(unsafe { instance.create_device(physical, &features.chain(info), None)? })
+}
+
+fn messenger(messages: &Mutex<Vec<String>>) -> vk::DebugUtilsMessengerCreateInfoEXT<'_> {
+    use vk::{DebugUtilsMessageSeverityFlagsEXT as Severity, DebugUtilsMessageTypeFlagsEXT as Type};
+    vk::DebugUtilsMessengerCreateInfoEXT::default()
+        .message_severity(Severity::WARNING | Severity::ERROR)
+        .message_type(Type::VALIDATION | Type::PERFORMANCE)
+        .pfn_user_callback(Some(collect))
+        .user_data(std::ptr::from_ref(messages) as *mut c_void)
+}
+
+unsafe extern "system" fn collect(
+    _severity: vk::DebugUtilsMessageSeverityFlagsEXT,
+    _kind: vk::DebugUtilsMessageTypeFlagsEXT,
+    data: *const vk::DebugUtilsMessengerCallbackDataEXT<'_>,
+    messages: *mut c_void,
+) -> vk::Bool32 {
+    // SAFETY: the layers pass valid data, and the messenger is destroyed before the list.
+    unsafe {
+        let text = (*data).message_as_c_str().map(|text| text.to_string_lossy().into_owned());
+        let messages = &*(messages as *const Mutex<Vec<String>>);
+        messages.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).push(text.unwrap_or_default());
+    }
+    vk::FALSE
+}
