@@ -216,7 +216,7 @@ impl Splats {
         enc.render(framebuffer, |draws| {
             for window in &self.windows {
                 let sets: Vec<_> = std::iter::once(&window.set).chain(more.iter().copied()).collect();
-                draws.draw(pipeline, &sets, 3 * window.count);
+                draws.draw(pipeline, &sets, window.push(), 3 * window.count);
             }
         });
     }

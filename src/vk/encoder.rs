@@ -114,8 +114,8 @@ pub struct Draws<'a> {
 }
 
 impl Draws<'_> {
-    /// Draws `vertices` vertices with `pipeline`, which was made for this render pass.
-    pub fn draw(&mut self, pipeline: &DrawPipeline, sets: &[&DescriptorSet], vertices: u32) {
+    /// Draws `vertices` vertices with `pipeline`, which was made for this render pass, and `push` as the push constants.
+    pub fn draw(&mut self, pipeline: &DrawPipeline, sets: &[&DescriptorSet], push: [u32; 2], vertices: u32) {
         let sets: Vec<_> = sets.iter().map(|set| set.raw).collect();
         let (pipeline, layout) = pipeline.raw();
         let point = vk::PipelineBindPoint::GRAPHICS;
@@ -124,6 +124,7 @@ impl Draws<'_> {
             let raw = &self.device.raw;
             raw.cmd_bind_pipeline(self.cmd, point, pipeline);
             raw.cmd_bind_descriptor_sets(self.cmd, point, layout, 0, &sets, &[]);
+            raw.cmd_push_constants(self.cmd, layout, DrawPipeline::STAGES, 0, bytemuck::bytes_of(&push));
             raw.cmd_draw(self.cmd, vertices, 1, 0, 0);
         }
     }

@@ -33,7 +33,7 @@ pub use device::{Device, DeviceOptions, Usage};
 pub use encoder::{Draws, Encoder};
 pub use image::{Image, ImageUse, pixel_bytes};
 pub use limits::{Capabilities, DeviceLimits};
-pub use pipeline::{Blend, ComputePipeline, Constants, DepthTest, DrawPipeline, DrawState};
+pub use pipeline::{Blend, ComputePipeline, Constants, DepthTest, DrawPipeline, DrawState, Topology};
 pub use recorder::Recorder;
 pub use render_pass::{Attachment, Framebuffer, RenderPass};
 pub use timestamps::PassTime;

@@ -30,6 +30,15 @@ impl Constants {
     }
 }
 
+/// What vertices make.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Topology {
+    /// Three of them a triangle.
+    Triangles,
+    /// Each a point, whose size the vertex shader writes.
+    Points,
+}
+
 /// What a draw does with the depth target. Depth is reversed: greater is nearer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DepthTest {
@@ -53,6 +62,8 @@ pub enum Blend {
 /// Fixed-function state of a draw pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DrawState {
+    /// What is drawn.
+    pub topology: Topology,
     /// Depth test.
     pub depth: DepthTest,
     /// Blending, the same for all colour targets.
@@ -69,7 +80,7 @@ struct Raw {
 /// A compute pipeline, with two u32 of push constants.
 pub struct ComputePipeline(Raw);
 
-/// A draw pipeline over triangles without vertex buffers; viewport and scissor are those of the framebuffer.
+/// A draw pipeline without vertex buffers, with two u32 of push constants; viewport and scissor are those of the framebuffer.
 pub struct DrawPipeline(Raw);
 
 impl ComputePipeline {
@@ -98,6 +109,11 @@ impl ComputePipeline {
 }
 
 impl DrawPipeline {
+    /// The stages that see its push constants.
+    pub(super) const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
+        vk::ShaderStageFlags::VERTEX.as_raw() | vk::ShaderStageFlags::FRAGMENT.as_raw(),
+    );
+
     /// A pipeline of the SPIR-V `[vertex, fragment]` for `pass`; `sets` are the layouts of its descriptor sets 0, 1, ….
     pub fn new(
         device: &Arc<Device>,
@@ -107,7 +123,7 @@ impl DrawPipeline {
         pass: &RenderPass,
         state: DrawState,
     ) -> Result<Self> {
-        let mut raw = Raw::new(device, sets, vk::ShaderStageFlags::VERTEX | vk::ShaderStageFlags::FRAGMENT)?;
+        let mut raw = Raw::new(device, sets, Self::STAGES)?;
         let modules = [Module::new(device, vertex)?, Module::new(device, fragment)?];
         let specialization = constants.info();
         let stages = [
@@ -115,8 +131,7 @@ impl DrawPipeline {
             modules[1].stage(vk::ShaderStageFlags::FRAGMENT, &specialization),
         ];
         let vertex_input = vk::PipelineVertexInputStateCreateInfo::default();
-        let assembly = vk::PipelineInputAssemblyStateCreateInfo::default()
-            .topology(vk::PrimitiveTopology::TRIANGLE_LIST);
+        let assembly = state.topology.info();
         let viewport = vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
         let rasterization = vk::PipelineRasterizationStateCreateInfo::default()
             .polygon_mode(vk::PolygonMode::FILL)
@@ -149,6 +164,15 @@ impl DrawPipeline {
 
     pub(super) fn raw(&self) -> (vk::Pipeline, vk::PipelineLayout) {
         (self.0.pipeline, self.0.layout)
+    }
+}
+
+impl Topology {
+    fn info(self) -> vk::PipelineInputAssemblyStateCreateInfo<'static> {
+        vk::PipelineInputAssemblyStateCreateInfo::default().topology(match self {
+            Self::Triangles => vk::PrimitiveTopology::TRIANGLE_LIST,
+            Self::Points => vk::PrimitiveTopology::POINT_LIST,
+        })
     }
 }
 
@@ -199,10 +223,8 @@ impl Raw {
         check_storage_buffers(device, sets)?;
         let sets: Vec<_> = sets.iter().map(|set| set.raw).collect();
         let constants = [vk::PushConstantRange { stage_flags: stages, offset: 0, size: 8 }];
-        let mut info = vk::PipelineLayoutCreateInfo::default().set_layouts(&sets);
-        if stages == vk::ShaderStageFlags::COMPUTE {
-            info = info.push_constant_ranges(&constants);
-        }
+        let info =
+            vk::PipelineLayoutCreateInfo::default().set_layouts(&sets).push_constant_ranges(&constants);
         // SAFETY: the set layout is alive; the pipeline layout is destroyed in `drop`.
         let layout = unsafe { device.raw.create_pipeline_layout(&info, None) }
             .map_err(Error::vulkan("vkCreatePipelineLayout"))?;
