@@ -212,15 +212,21 @@ fn every_size_and_depth_is_drawn_as_computed() {
             Shot { name, parts: (&sphere).into(), camera, size, settings }.is_one(&device);
         }
     }
-    // From the near plane to twenty orders of magnitude beyond, and neighbours of one unit in the last place.
-    let far = |i: u32| 0.25 * 1.06f64.powi(i as i32 - 1);
-    let apart = |z: f64| [z, f64::from((z as f32).next_up()), f64::from((z as f32).next_down())];
-    let list = (0..800u32).flat_map(|i| apart(far(i)).map(|z| [0.01 * z * f64::from(i % 7), 0.0, z]));
-    let deep = discs(list);
-    for camera in ahead([32, 32]) {
+    // From the near plane to fourteen orders of magnitude beyond, a pixel each, with neighbours of one unit in the last place.
+    let size = [32, 32];
+    for (camera, perspective) in ahead(size).into_iter().zip([true, false]) {
+        let of = |i: u32| {
+            let z = (0.25 * 1.034f64.powi(i as i32)) as f32;
+            let z = if perspective { z } else { 1.0 + z.log10() / 2.0 };
+            let height = if perspective { f64::from(z) } else { 1.0 };
+            let [x, y] = [i % 32, i / 32].map(|pixel| ((f64::from(pixel) + 0.5) / 32.0 - 0.5) * height);
+            [z, z.next_down(), z.next_up()].map(|z| [x, y, z.into()])
+        };
+        let deep = discs((0..1024).flat_map(of));
         let settings = Settings { cull: Cull::None, ..pull_push::METHOD.settings() };
         let name = "deep".into();
-        Shot { name, parts: (&deep).into(), camera, size: [32, 32], settings }.is_one(&device);
+        let made = Shot { name, parts: (&deep).into(), camera, size, settings }.is_one(&device);
+        assert!(made.pyramids[0][0].samples.iter().all(Option::is_some), "{perspective}");
     }
     assert_silent(&device);
 }
