@@ -1,10 +1,16 @@
-// Fetch: each pixel of level 0 takes what its nearest point is: of a surfel, a segment (LINES) or a triangle (TRIANGLES).
+// Fetch: each pixel of level 0 takes what its nearest point is: of a surfel, a segment (LINES) or a triangle (TRIANGLES). Surfels alone may
+// have been drawn (DRAWN_POINTS).
 #version 450
 #pragma variant LINES
 #pragma variant TRIANGLES
+#pragma variant DRAWN_POINTS
 #extension GL_GOOGLE_include_directive : require
 #ifdef COMPUTE
+#ifdef DRAWN_POINTS
+#extension GL_EXT_samplerless_texture_functions : require
+#else
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
+#endif
 
 #include "lib/frame.glsl"
 #include "lib/window.glsl"
@@ -12,7 +18,11 @@
 #define SAMPLES_ONLY
 #include "lib/pyramid.glsl"
 #include "lib/lens.glsl"
+#ifdef DRAWN_POINTS
+#include "lib/drawn_points.glsl"
+#else
 #include "lib/nearest_points.glsl"
+#endif
 
 layout(local_size_x = 64) in;
 
@@ -55,25 +65,55 @@ Sample sample_of(uint i, ivec2 at, uint nearest) {
 #include "lib/surface.glsl"
 #include "lib/point.glsl"
 
+layout(constant_id = 12) const bool ELLIPSES = false;
+
+layout(set = 0, binding = 8, std430) readonly buffer Ellipses { vec4 ellipses[]; };
+
 Sample sample_of(uint i, ivec2 at, uint nearest) {
-    Sample s;
-    point_of(i, at, s);
+    Point point;
+    point_of(i, point);
+    float radius = TWO_SIDED ? abs(radii[i]) : radii[i];
+    // A disc of the ellipse's area.
+    if (ELLIPSES) radius *= sqrt(ellipses[i].w);
+    vec3 normal = vec3(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]);
+    Sample s = NOTHING;
+    s.near = s.depth = point.distance;
+    s.far = point.distance + (PAPER ? 1.0 : 2.0) * radius;
+    s.radius = focal_scale() * radius / (PERSPECTIVE ? point.distance : 1.0);
+    s.displacement = PAPER ? vec2(0.0) : point.offset;
+    // Seen from behind, a disc is that of the opposite normal.
+    s.normal = point.facing > 0.0 ? -normal : normal;
     s.colour = colour_of(i);
     return s;
 }
 
 #endif
 
-void main() {
-    ivec2 size = ivec2(frame.viewport);
-    uint pixel = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
-    if (pixel >= uint(size.x) * uint(size.y)) return;
+// What is nearest at a pixel, and the bits of its distance; false where nothing is.
+bool nearest_at(uint pixel, ivec2 at, out uint number, out uint nearest) {
+#ifdef DRAWN_POINTS
+    float distance;
+    bool there = drawn_point(at, number, distance);
+    nearest = floatBitsToUint(distance);
+    return there;
+#else
     uint64_t point = nearest_points[pixel];
-    uint i = uint(point & 0xffffffffu) - window.first;
-    if (point == NO_POINT) {
+    number = uint(point & 0xffffffffu);
+    nearest = uint(point >> 32);
+    return point != NO_POINT;
+#endif
+}
+
+void main() {
+    uvec2 size = uvec2(frame.viewport);
+    uint pixel = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    if (pixel >= size.x * size.y) return;
+    ivec2 at = ivec2(pixel % size.x, pixel / size.x);
+    uint number, nearest;
+    if (!nearest_at(pixel, at, number, nearest)) {
         if (window.first == 0) store_pulled(pixel, NOTHING);
-    } else if (i < window.count) {
-        store_pulled(pixel, sample_of(i, ivec2(pixel % uint(size.x), pixel / uint(size.x)), uint(point >> 32)));
+    } else if (number - window.first < window.count) {
+        store_pulled(pixel, sample_of(number - window.first, at, nearest));
     }
 }
 

@@ -12,11 +12,11 @@
 #ifdef COMPUTE
 
 #include "lib/window.glsl"
+#include "lib/fates.glsl"
 
 layout(local_size_x = 64) in;
 
 layout(constant_id = 1) const bool CULL_BACK = false;
-layout(constant_id = 2) const bool COUNT = false;
 layout(constant_id = 11) const bool LIST_LARGE = false;
 layout(constant_id = 13) const bool TWO_SIDED = false;
 layout(constant_id = 21) const bool MOVED = false; // splats are of discs moved away from the eye along the camera's axis, by ε
@@ -24,18 +24,9 @@ layout(constant_id = 21) const bool MOVED = false; // splats are of discs moved 
 layout(set = 0, binding = 2, std430) readonly buffer Positions { float positions[]; };
 layout(set = 0, binding = 3, std430) readonly buffer Normals { float normals[]; };
 layout(set = 0, binding = 4, std430) readonly buffer Radii { float radii[]; }; // 0: invalid; TWO_SIDED: negative where it is
-layout(set = 0, binding = 6, std430) buffer Counts { uint culled[5]; };
 
 layout(set = 0, binding = 7, std430) buffer LargeSplats { uint large_count; uint large_padding[63]; uint large[]; };
 layout(set = 0, binding = 8, std430) readonly buffer Ellipses { vec4 ellipses[]; }; // major axis, aspect
-
-// Fates, the first five in the order of the counts.
-const uint BEHIND = 0;    // the centre is not in front of the eye
-const uint EYE_PLANE = 1; // the disc reaches the eye plane, or all but does
-const uint BACK = 2;      // the normal faces away, such are culled, and the surfel is not two-sided
-const uint OUTSIDE = 3;   // off the picture, or without an area on it
-const uint INVALID = 4;   // marked by a radius of 0, or with an image too large for floats
-const uint DRAWN = 5;
 
 // Least q, relative to (w / F)²: nearer the eye plane q has lost the digits that tell where the ellipse is.
 const float LEAST_CLEARANCE = 1e-3;
@@ -226,7 +217,7 @@ void main() {
     Splat splat = Splat(vec2(0.0), vec2(1.0, 0.0), 1.0, 0.0, 0, 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
     uint fate = footprint(i, splat);
     splats[i] = splat;
-    if (COUNT && fate != DRAWN) atomicAdd(culled[fate], 1);
+    count(fate);
 }
 
 #endif

@@ -1,27 +1,41 @@
-// Project: the nearest point of each pixel (marroquim2008 §3.1). A surfel is one point; segments (LINES) and TRIANGLES are several.
+// Project: the nearest point of each pixel (marroquim2008 §3.1). A surfel is one point; segments (LINES) and TRIANGLES are several, and meet
+// the surfels that were drawn where those are (DRAWN_POINTS). Surfels that are drawn are only counted (FATES).
 #version 450
 #pragma variant LINES
 #pragma variant TRIANGLES
+#pragma variant DRAWN_POINTS
+#pragma variant FATES
 #extension GL_GOOGLE_include_directive : require
 #ifdef COMPUTE
+#ifndef FATES
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #extension GL_EXT_shader_atomic_int64 : require
+#endif
+#ifdef DRAWN_POINTS
+#extension GL_EXT_samplerless_texture_functions : require
+#endif
 
 #include "lib/frame.glsl"
 #include "lib/window.glsl"
+#ifndef FATES
+#include "lib/nearest_points.glsl"
+#endif
+#if defined(LINES) || defined(TRIANGLES)
 #include "lib/sums.glsl"
 #define SAMPLES_ONLY
 #include "lib/pyramid.glsl"
 #include "lib/lens.glsl"
-#include "lib/nearest_points.glsl"
+#endif
 
 layout(local_size_x = 64) in;
 
+#ifndef FATES
 // Number i of the window has a point in a pixel.
-void project(uint i, ivec2 at, float nearest) {
-    uint64_t point = uint64_t(floatBitsToUint(nearest)) << 32 | uint64_t(window.first + i);
-    atomicMin(nearest_points[uint(at.y) * uint(frame.viewport.x) + uint(at.x)], point);
+void project(uint i, ivec2 at, float distance) {
+    uint pixel = uint(at.y) * uint(frame.viewport.x) + uint(at.x);
+    atomicMin(nearest_points[pixel], nearest_point(window.first + i, distance));
 }
+#endif
 
 #if defined(LINES)
 
@@ -81,6 +95,20 @@ void main() {
     else project_box(i, triangle, box, 0, 1);
 }
 
+#elif defined(DRAWN_POINTS)
+
+#include "lib/drawn_points.glsl"
+
+void main() {
+    uvec2 size = uvec2(frame.viewport);
+    uint pixel = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
+    if (pixel >= size.x * size.y) return;
+    uint number;
+    float distance;
+    bool there = drawn_point(ivec2(pixel % size.x, pixel / size.x), number, distance);
+    nearest_points[pixel] = there ? nearest_point(number, distance) : NO_POINT;
+}
+
 #else
 
 layout(set = 0, binding = 2, std430) readonly buffer Positions { float positions[]; };
@@ -89,9 +117,13 @@ layout(set = 0, binding = 3, std430) readonly buffer Normals { float normals[]; 
 
 void main() {
     uint i = gl_GlobalInvocationID.x;
-    ivec2 at;
-    Sample s;
-    if (i < window.count && point_of(i, at, s)) project(i, at, s.near);
+    if (i >= window.count) return;
+    Point point;
+    uint fate = point_of(i, point);
+    count(fate);
+#ifndef FATES
+    if (fate == DRAWN) project(i, point.at, point.distance);
+#endif
 }
 
 #endif

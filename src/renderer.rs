@@ -45,13 +45,13 @@ pub struct FrameReport {
 pub struct SplatCounts {
     /// Drawn.
     pub drawn: u32,
-    /// The centre is not in front of the eye.
+    /// The centre is not in front of the eye; by pull–push, not between the near and the far plane.
     pub behind: u32,
-    /// The disc reaches the eye plane, or comes within 1/20000 of its distance to it.
+    /// The disc reaches the eye plane, or comes within 1/20000 of its distance to it; by pull–push, none.
     pub eye_plane: u32,
     /// The normal faces away, and such are culled.
     pub back: u32,
-    /// Off the picture, or without an area on it: exactly edge-on, or too small to weigh anything.
+    /// Off the picture, by pull–push with the centre, or without an area on it: exactly edge-on, or too small to weigh anything.
     pub outside: u32,
     /// Not [valid](crate::geometry::Surfels::is_valid), or with an image too large for float32.
     pub invalid: u32,
@@ -149,7 +149,7 @@ impl Renderer {
                 present.canvas.record_readback(rec, &present.readback);
             }
         })?;
-        let counted = self.stage.resident().filter(|_| variant.count && variant.pull_push.is_none());
+        let counted = self.stage.resident().filter(|_| variant.count);
         Ok(FrameReport {
             pass_times: self.commands.pass_times()?,
             counts: counted.map(|resident| SplatCounts::new(scene.count(), resident.splats.counts())),
@@ -162,31 +162,42 @@ pub(crate) fn rasterizer_of(
     device: &Device,
     options: &RenderOptions,
     settings: &Settings,
+    scene: &Scene,
 ) -> Result<Rasterizer> {
     let blends = settings.splatting.visibility != Visibility::Nearest;
     match settings.pull_push {
-        Some(_) => projects(device, options),
+        Some(_) => rasterizer_of_points(device, options, scene),
         None => rasterizer_for(device, options, blends, settings.alpha),
     }
 }
 
-/// What projects points: compute shaders.
-fn projects(device: &Device, options: &RenderOptions) -> Result<Rasterizer> {
-    let name = &device.description().name;
+/// The faster of what `device` can do with the surfels of `scene` by pull–push; lines and triangles are computed.
+///
+/// Atomic minima are faster wherever they were measured: see README, Cost, and Schütz, Kerbl, Wimmer, *Rendering Point Clouds with Compute
+/// Shaders and Vertex Order Optimization*, 2021.
+fn rasterizer_of_points(device: &Device, options: &RenderOptions, scene: &Scene) -> Result<Rasterizer> {
+    let (capabilities, name) = (device.capabilities(), &device.description().name);
+    let refuse = |what, remedy| {
+        Err(Error::Usage(format!(
+            "pull-push needs 64-bit atomics in buffers for {what}, which {name} does not have: {remedy}"
+        )))
+    };
     match options.rasterizer {
-        Some(Rasterizer::Draw) => {
-            Err(Error::Usage("pull-push is computed alone: leave the rasterizer open".into()))
-        }
-        _ if !device.capabilities().int64_atomics => Err(Error::Usage(format!(
-            "pull-push needs 64-bit atomics in buffers, which {name} does not have: choose a method that splats"
-        ))),
-        _ if !Pyramids::fit(device.capabilities(), options.size) => Err(Error::Usage(format!(
+        _ if !Pyramids::fit(capabilities, options.size) => Err(Error::Usage(format!(
             "a pyramid of {}x{} px does not fit the {} bytes of a buffer that shaders of {name} can see: choose a smaller size",
-            options.size[0],
-            options.size[1],
-            device.capabilities().max_storage_buffer_range
+            options.size[0], options.size[1], capabilities.max_storage_buffer_range
         ))),
-        _ => Ok(Rasterizer::Compute),
+        _ if scene.primitives.is_some() && !capabilities.int64_atomics => {
+            refuse("lines and triangles", "leave them out, or choose another device")
+        }
+        Some(Rasterizer::Compute) if !capabilities.int64_atomics => {
+            refuse("computed points", "choose the draw rasterizer, or leave it open")
+        }
+        // Without surfels there is nothing to draw.
+        _ if scene.count() == 0 => Ok(Rasterizer::Compute),
+        Some(rasterizer) => Ok(rasterizer),
+        None if capabilities.int64_atomics => Ok(Rasterizer::Compute),
+        None => Ok(Rasterizer::Draw),
     }
 }
 

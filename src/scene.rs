@@ -89,6 +89,11 @@ pub struct PrimitiveKinds {
 impl PrimitiveKinds {
     /// Nothing but surfels.
     pub const NONE: Self = Self { lines: false, triangles: false, colours: ColourStream::None };
+
+    /// Whether it has any.
+    pub fn any(self) -> bool {
+        self.lines || self.triangles
+    }
 }
 
 /// How a scene holds its colours; the numbers are those of `shaders-glsl/lib/sums.glsl`.

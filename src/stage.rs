@@ -127,7 +127,7 @@ impl Stage {
         settings.splatting.normalization.check_weights(scene.weights.is_some())?;
         settings.check_primitives(scene.primitives.is_some())?;
         let block = frame(camera, settings, self.options.size, scene.origin(), scene.bounds())?;
-        let rasterizer = rasterizer_of(&self.device, &self.options, settings)?;
+        let rasterizer = rasterizer_of(&self.device, &self.options, settings, scene)?;
         let perspective = camera.projection()?.perspective;
         let variant = Variant::new(scene.streams(), perspective, settings, &self.options, rasterizer);
         let splats = variant.pull_push.is_none().then_some(variant.rasterizer);

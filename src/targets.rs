@@ -54,8 +54,10 @@ pub struct PictureBuffer {
 
 /// Targets of pull–push: `lib/pyramid.glsl`.
 pub struct Pyramids {
-    /// Distance and number of the nearest point of each pixel.
-    pub nearest: Buffer,
+    /// Distance and number of the nearest point of each pixel, where points are computed.
+    pub nearest: Option<Buffer>,
+    /// The same of surfels, where they are drawn.
+    pub drawn: Option<DrawnPoints>,
     /// Samples of all levels, fine to coarse.
     pub pulled: Buffer,
     /// The same where holes are filled and hidden samples replaced.
@@ -64,6 +66,14 @@ pub struct Pyramids {
     pub picture: PictureBuffer,
     /// Floats of a sample.
     pub(crate) floats: u64,
+}
+
+/// Targets of points that are drawn: `lib/drawn_points.glsl`.
+pub struct DrawnPoints {
+    /// A depth that tells the distance of the nearest one of each pixel, bit for bit.
+    pub nearest_depth: Image,
+    /// Its number, from 1 on; 0 where there is none.
+    pub nearest_number: Image,
 }
 
 /// Format of each image of a [`Variant`]; `None` where there is no such target.
@@ -299,8 +309,10 @@ impl Pyramids {
         let samples: u64 = (0..levels(size)).map(|level| level_pixels(size, level)).sum();
         let floats = Self::floats(variant);
         let bytes = 4 * floats * samples;
+        let nearest = || Buffer::storage(device, "nearest", 8 * picture.pixels());
         Ok(Self {
-            nearest: Buffer::storage(device, "nearest", 8 * picture.pixels())?,
+            nearest: variant.computes_points().then(nearest).transpose()?,
+            drawn: variant.draws_points().then(|| DrawnPoints::new(device, size)).transpose()?,
             pulled: Buffer::storage(device, "pulled", bytes)?,
             pushed: Buffer::storage(device, "pushed", bytes)?,
             picture,
@@ -323,7 +335,10 @@ impl Pyramids {
     pub fn per_pixel(variant: &Variant) -> PerPixel {
         let samples = 4.0 / 3.0 * 4.0 * Self::floats(variant) as f64;
         let picture = 4.0 * PictureBuffer::floats(variant.outputs) as f64;
-        vec![("nearest", 8.0), ("pulled", samples), ("pushed", samples), ("picture", picture)]
+        let nearest = variant.computes_points().then_some(("nearest", 8.0));
+        let drawn = variant.draws_points().then_some([("nearest_depth", 4.0), ("nearest_number", 4.0)]);
+        let always = [("pulled", samples), ("pushed", samples), ("picture", picture)];
+        nearest.into_iter().chain(drawn.into_iter().flatten()).chain(always).collect()
     }
 
     /// Number of levels: up to one of a single pixel.
@@ -349,10 +364,31 @@ impl Pyramids {
     /// Every target that there is.
     pub fn list(&self) -> Vec<TargetInfo> {
         let info = |name, buffer: &Buffer, format| TargetInfo { name, format, bytes: buffer.size() };
-        let nearest = info("nearest", &self.nearest, Format::R64_UINT);
+        let nearest = self.nearest.iter().map(|nearest| info("nearest", nearest, Format::R64_UINT));
+        let drawn = self.drawn.iter().flat_map(DrawnPoints::list);
         let samples = [("pulled", &self.pulled), ("pushed", &self.pushed)];
         let samples = samples.map(|(name, buffer)| info(name, buffer, Format::R32_SFLOAT));
-        [nearest].into_iter().chain(samples).chain([self.picture.info()]).collect()
+        nearest.chain(drawn).chain(samples).chain([self.picture.info()]).collect()
+    }
+}
+
+impl DrawnPoints {
+    /// Format of [`Self::nearest_depth`].
+    pub const DEPTH: Format = Format::D32_SFLOAT;
+    /// Format of [`Self::nearest_number`].
+    pub const NUMBER: Format = Format::R32_UINT;
+
+    fn new(device: &Arc<Device>, size: [u32; 2]) -> Result<Self> {
+        let target = |name, format| Image::target(device, name, format, size, ImageUse::Sampled);
+        Ok(Self {
+            nearest_depth: target("nearest_depth", Self::DEPTH)?,
+            nearest_number: target("nearest_number", Self::NUMBER)?,
+        })
+    }
+
+    fn list(&self) -> [TargetInfo; 2] {
+        let info = |name, image: &Image| TargetInfo { name, format: image.format(), bytes: image.bytes() };
+        [info("nearest_depth", &self.nearest_depth), info("nearest_number", &self.nearest_number)]
     }
 }
 

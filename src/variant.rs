@@ -59,16 +59,18 @@ pub struct Variant {
     pub outputs: Outputs,
     /// Float width of the sums.
     pub precision: Precision,
-    /// What visits the pixels.
+    /// What visits the pixels of splats and points; lines and triangles are always computed.
     pub rasterizer: Rasterizer,
 }
 
-/// What visits the pixels of a splat. Both make the same picture up to rounding.
+/// What visits the pixels of a splat, or of a point. Both make the same picture: of splats up to rounding, of points bit for bit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Rasterizer {
-    /// The device's own: triangles, depth test, blending. Works everywhere.
+    /// The device's own: triangles or points, depth test, blending. Works everywhere.
     Draw,
-    /// Compute shaders with atomic adds of floats: faster where fragments are slow. Sums of 32-bit floats only.
+    /// Compute shaders with atomic adds of floats, or minima of 64-bit integers: faster where fragments are slow. Sums of 32-bit floats
+    /// only.
     Compute,
 }
 
@@ -142,6 +144,16 @@ impl Variant {
             precision: options.precision,
             rasterizer,
         }
+    }
+
+    /// Whether pull–push draws surfels as points.
+    pub fn draws_points(&self) -> bool {
+        self.pull_push.is_some() && self.rasterizer == Rasterizer::Draw
+    }
+
+    /// Whether pull–push computes what is nearest: points that are not drawn, lines, triangles.
+    pub fn computes_points(&self) -> bool {
+        self.pull_push.is_some() && (self.rasterizer == Rasterizer::Compute || self.primitives.any())
     }
 
     /// Whether colours are summed: the scene's, light, or what stands in for them, where what is summed is not divided.

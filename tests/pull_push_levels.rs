@@ -21,8 +21,9 @@ const SIZES: [[u32; 2]; 5] = [[1, 1], [1, 1023], [640, 480], [1023, 769], [1024,
 /// What is nearer to another outcome is in doubt: a comparison of levels, relative.
 const DOUBT: f64 = 1e-5;
 
-/// The same of the projection: a coordinate is divided as Vulkan wants it, to 2½ units in the last place, after either part was rounded.
-const DOUBT_OF_POINTS: f64 = 3.5 / (1 << 23) as f64;
+/// The same of the projection. Two distances are compared after either was rounded, by half a unit in the last place: by 2⁻²⁴ of it at most.
+/// Which pixel a point is in, and which side it shows, is decided in twice the precision, with errors of some 2⁻⁴⁴: they are the hundredth.
+const DOUBT_OF_POINTS: f64 = 1.01 / (1 << 23) as f64;
 
 /// Largest difference of attributes that passes: of distances relative, of displacements and radii in radii or pixels of the level, of normals
 /// and colours absolute.

@@ -4,3 +4,7 @@
 layout(set = 1, binding = 0, std430) buffer Nearest { uint64_t nearest_points[]; };
 
 const uint64_t NO_POINT = ~uint64_t(0);
+
+uint64_t nearest_point(uint number, float distance) {
+    return uint64_t(floatBitsToUint(distance)) << 32 | uint64_t(number);
+}

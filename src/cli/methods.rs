@@ -10,6 +10,8 @@ use surfel::targets::{Buffers, Formats, PerPixel, Pyramids};
 use surfel::variant::Variant;
 use surfel::{Rasterizer, RenderOptions, Result};
 
+const WAYS: [(Rasterizer, &str); 2] = [(Rasterizer::Draw, "drawn"), (Rasterizer::Compute, "computed")];
+
 /// Lists the methods: paper, choices along the axes, and for coloured circles that are lit the passes and targets of either rasterizer.
 pub fn run() -> Result<()> {
     let mut text = String::from("bytes are those of a pixel, of a lit frame of coloured circles\n");
@@ -19,12 +21,14 @@ pub fn run() -> Result<()> {
 
 fn describe(text: &mut String, method: &Method) {
     if method.pull_push.is_some() {
-        let variant = variant(&method.settings(), Rasterizer::Compute);
         // Here and below: writing to a String cannot fail.
         let _ = writeln!(text, "\n{}: {}", method.name, method.paper);
         let _ = writeln!(text, "  settings --cull {}", method.cull.name());
-        let _ = writeln!(text, "  computed {}", passes(&variant).join(" → "));
-        let _ = writeln!(text, "           {}", told(&Pyramids::per_pixel(&variant)));
+        for (rasterizer, name) in WAYS {
+            let variant = variant(&method.settings(), rasterizer);
+            let _ = writeln!(text, "  {name:<8} {}", passes(&variant).join(" → "));
+            let _ = writeln!(text, "           {}", told(&Pyramids::per_pixel(&variant)));
+        }
         return;
     }
     let Splatting { footprint, kernel, filter, visibility, normalization, shade } = method.splatting;
@@ -44,7 +48,7 @@ fn describe(text: &mut String, method: &Method) {
         shade.name()
     );
     let _ = writeln!(text, "  settings --cutoff {cutoff} --cull {}{lowpass}", cull.name());
-    for (rasterizer, name) in [(Rasterizer::Draw, "drawn"), (Rasterizer::Compute, "computed")] {
+    for (rasterizer, name) in WAYS {
         let variant = variant(&method.settings(), rasterizer);
         let targets = match rasterizer {
             Rasterizer::Draw => Formats::of(&variant).per_pixel(),

@@ -78,7 +78,7 @@ pub fn run(args: &Render) -> Result<()> {
     let task = Task { scene, method, camera, settings, size, layers, frames, progress };
     let mut outcome = match args.place.reference {
         true => reference::render(&task)?,
-        false => vulkan::render(&task, &device, args.place.half, args.json.is_some() || args.times)?,
+        false => vulkan::render(&task, &device, &args.place, args.json.is_some() || args.times)?,
     };
     if !out.is_png() {
         keep_layers(&mut outcome.picture, task.layers);

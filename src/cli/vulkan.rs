@@ -1,6 +1,6 @@
 //! Rendering on a Vulkan device.
 
-use super::args::OnDevice;
+use super::args::{OnDevice, Place};
 use super::files::{cache_folder, read_json};
 use super::render::{Outcome, Task};
 use super::report::{Gpu, HalfError};
@@ -24,16 +24,16 @@ pub fn options(place: &OnDevice) -> Result<DeviceOptions> {
     })
 }
 
-/// Renders `task`; `measure` times the passes and counts the splats.
-pub fn render(task: &Task<'_>, options: &DeviceOptions, half: bool, measure: bool) -> Result<Outcome> {
+/// Renders `task` as `place` has it; `measure` times the passes and counts the surfels.
+pub fn render(task: &Task<'_>, options: &DeviceOptions, place: &Place, measure: bool) -> Result<Outcome> {
     let device = Device::open(options)?;
     let options = RenderOptions {
         size: task.size,
         outputs: outputs(task),
-        precision: if half { Precision::Half } else { Precision::Full },
+        precision: if place.half { Precision::Half } else { Precision::Full },
+        rasterizer: place.rasterizer,
         profile: measure,
         count: measure,
-        ..Default::default()
     };
     let mut renderer = Renderer::new(&device, options)?;
     let scene = Scene::upload(&device, task.scene)?;
@@ -50,7 +50,7 @@ pub fn render(task: &Task<'_>, options: &DeviceOptions, half: bool, measure: boo
     }
     task.progress.at(FRAMES, task.frames.into(), task.frames.into());
     let mut gpu = gpu(&device, &renderer, &scene);
-    if half {
+    if place.half {
         gpu.half_error = half_error(&device, task, &scene, options, &picture)?;
     }
     Ok(Outcome { picture, counts: report.counts, times, gpu: Some(gpu) })

@@ -1,9 +1,9 @@
 //! Passes with the targets that they write.
 
-use super::pull_push::PullPush;
+use super::pull_push::{PullPush, PullPushViews};
 use super::{blended, nearest};
 use crate::error::Result;
-use crate::passes::{PixelSet, PyramidSet, SplatLayout, Splats};
+use crate::passes::{PixelSet, SplatLayout, Splats};
 use crate::picture::Picture;
 use crate::splatting::Visibility;
 use crate::targets::{Buffers, Images, PictureBuffer, Pyramids, TargetInfo};
@@ -134,9 +134,8 @@ impl Pipelines {
             Kind::ComputeNearest(passes) => on_buffers(device, layout, frame, passes, buffers()?),
             Kind::PullPush(passes) => {
                 let targets = Pyramids::new(device, variant, size).map(Arc::new)?;
-                let set = PyramidSet::new(device, layout, &targets)?;
-                let frame = passes.frame_view(device, frame)?;
-                let recorded = OnPyramids { set, frame, targets: targets.clone(), passes: passes.clone() };
+                let views = passes.views(device, layout, frame, &targets)?;
+                let recorded = OnPyramids { views, targets: targets.clone(), passes: passes.clone() };
                 Ok(Canvas { recorded: Box::new(recorded), targets: Targets::Pyramids(targets) })
             }
         }
@@ -177,15 +176,14 @@ fn on_buffers<P: Computed + 'static>(
 }
 
 struct OnPyramids {
-    set: PyramidSet,
-    frame: DescriptorSet,
+    views: PullPushViews,
     targets: Arc<Pyramids>,
     passes: Arc<PullPush>,
 }
 
 impl Recorded for OnPyramids {
     fn record(&self, rec: &mut Recorder<'_>, splats: &Splats) {
-        self.passes.record(rec, splats, &self.frame, &self.set, &self.targets);
+        self.passes.record(rec, splats, &self.views, &self.targets);
     }
 }
 

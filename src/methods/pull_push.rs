@@ -9,7 +9,7 @@
 
 use super::{Method, perspective_ewa};
 use crate::error::Result;
-use crate::passes::{Project, Pull, Push, PyramidSet, Shade, SplatLayout, Splats};
+use crate::passes::{PointViews, Project, Pull, Push, PyramidSet, Shade, SplatLayout, Splats};
 use crate::pull_push::Rules;
 use crate::settings::Cull;
 use crate::targets::Pyramids;
@@ -44,6 +44,13 @@ pub struct PullPush {
     shade: Shade,
 }
 
+/// Their views of what a frame writes and reads.
+pub struct PullPushViews {
+    frame: DescriptorSet,
+    set: PyramidSet,
+    points: Option<PointViews>,
+}
+
 impl PullPush {
     /// Makes the pipelines.
     pub fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self> {
@@ -55,21 +62,25 @@ impl PullPush {
         })
     }
 
-    /// Their view of `frame`, which must outlive it.
-    pub fn frame_view(&self, device: &Arc<Device>, frame: &Buffer) -> Result<DescriptorSet> {
-        self.shade.view(device, frame)
+    /// Their views of `frame` and `targets`, which must outlive them.
+    pub fn views(
+        &self,
+        device: &Arc<Device>,
+        layout: &SplatLayout,
+        frame: &Buffer,
+        targets: &Pyramids,
+    ) -> Result<PullPushViews> {
+        Ok(PullPushViews {
+            frame: self.shade.view(device, frame)?,
+            set: PyramidSet::new(device, layout, targets)?,
+            points: self.project.views(device, layout, targets)?,
+        })
     }
 
     /// Records a frame.
-    pub fn record(
-        &self,
-        rec: &mut Recorder<'_>,
-        splats: &Splats,
-        frame: &DescriptorSet,
-        set: &PyramidSet,
-        targets: &Pyramids,
-    ) {
-        self.project.record(rec, splats, frame, set, targets);
+    pub fn record(&self, rec: &mut Recorder<'_>, splats: &Splats, views: &PullPushViews, targets: &Pyramids) {
+        let PullPushViews { frame, set, points } = views;
+        self.project.record(rec, splats, frame, set, points.as_ref(), targets);
         self.pull.record(rec, frame, set, targets);
         self.push.record(rec, frame, set, targets);
         self.shade.record(rec, frame, set, targets);

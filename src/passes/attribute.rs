@@ -6,7 +6,7 @@ use crate::targets::{Buffers, Formats, Images};
 use crate::variant::Variant;
 use crate::vk::{
     Access, Attachment, Blend, DepthTest, Device, DrawPipeline, DrawState, Framebuffer, Recorder, RenderPass,
-    Use, shaders,
+    Topology, Use, shaders,
 };
 use std::sync::Arc;
 
@@ -27,7 +27,8 @@ impl DrawAttribute {
         let depth = Attachment::Tested(formats.visibility);
         let pass = RenderPass::new(device, &[Attachment::Cleared(formats.sums0), sums1], Some(depth))?;
         let code = [shaders::ATTRIBUTE_VERTEX, shaders::ATTRIBUTE_FRAGMENT];
-        let state = DrawState { depth: DepthTest::NotBehind, blend: Blend::Add };
+        let state =
+            DrawState { topology: Topology::Triangles, depth: DepthTest::NotBehind, blend: Blend::Add };
         let pipeline =
             DrawPipeline::new(device, &[&layout.splats], code, &variant.constants(), &pass, state)?;
         Ok(Self { pass, pipeline })

@@ -96,8 +96,7 @@ impl Composite {
 
     /// A picture → the host's colours and depth.
     pub fn draw(&self, draws: &mut Draws<'_>, view: &DescriptorSet, place: &layout::Composite) {
-        draws.push(&self.pipeline, bytemuck::bytes_of(place));
-        draws.draw(&self.pipeline, &[view], 3);
+        draws.draw(&self.pipeline, &[view], place, 3);
     }
 }
 

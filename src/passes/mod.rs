@@ -1,6 +1,7 @@
 //! One file a pass, beside the shader of the same name: `new` makes the pipelines, `record` the commands.
 //!
-//! Visibility, attribute, nearest and normalize come in two kinds, one for each [`crate::variant::Rasterizer`].
+//! Visibility, attribute, nearest and normalize come in two kinds, one for each [`crate::variant::Rasterizer`]; so does what project does of
+//! points, which are drawn in a file of their own.
 
 mod attribute;
 mod composite;
@@ -8,6 +9,7 @@ mod coverage;
 mod footprint;
 mod nearest;
 mod normalize;
+mod points;
 mod primitives;
 mod project;
 mod pull;
@@ -25,6 +27,7 @@ pub use composite::{Composite, CompositeKind};
 pub use footprint::Footprint;
 pub use nearest::{ComputeNearest, DrawNearest, NearestViews};
 pub use normalize::{ComputeNormalize, DrawNormalize, NormalizeViews};
+pub use points::{DrawPoints, PointViews};
 pub use project::Project;
 pub use pull::Pull;
 pub use push::Push;

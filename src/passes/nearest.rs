@@ -7,7 +7,7 @@ use crate::targets::{Buffers, Formats, Images};
 use crate::variant::Variant;
 use crate::vk::{
     Access, Attachment, Blend, DepthTest, DescriptorSet, Device, DrawPipeline, DrawState, Framebuffer,
-    Recorder, RenderPass, shaders,
+    Recorder, RenderPass, Topology, shaders,
 };
 use std::sync::Arc;
 
@@ -40,7 +40,8 @@ impl DrawNearest {
         };
         let coverage = DrawnCoverage::new(device, variant)?;
         let sets: Vec<_> = std::iter::once(&layout.splats).chain(coverage.layout()).collect();
-        let state = DrawState { depth: DepthTest::Nearest, blend: Blend::Replace };
+        let state =
+            DrawState { topology: Topology::Triangles, depth: DepthTest::Nearest, blend: Blend::Replace };
         let pipeline = DrawPipeline::new(device, &sets, code, &variant.constants(), &pass, state)?;
         Ok(Self { pass, pipeline, coverage })
     }

@@ -7,7 +7,7 @@ use crate::targets::{Buffers, Formats, Images};
 use crate::variant::Variant;
 use crate::vk::{
     Access, Attachment, Binding, Blend, Buffer, ComputePipeline, DepthTest, DescriptorSet, Device,
-    DrawPipeline, DrawState, Framebuffer, Recorder, RenderPass, SetLayout, shaders,
+    DrawPipeline, DrawState, Framebuffer, Recorder, RenderPass, SetLayout, Topology, shaders,
 };
 use ash::vk::{DescriptorType, ShaderStageFlags};
 use std::sync::Arc;
@@ -68,7 +68,8 @@ impl DrawNormalize {
             false => [shaders::NORMALIZE_VERTEX, shaders::NORMALIZE_FRAGMENT],
             true => [shaders::NORMALIZE_COVERAGE_VERTEX, shaders::NORMALIZE_COVERAGE_FRAGMENT],
         };
-        let state = DrawState { depth: DepthTest::None, blend: Blend::Replace };
+        let state =
+            DrawState { topology: Topology::Triangles, depth: DepthTest::None, blend: Blend::Replace };
         let sets = [&frame_layout, &sums_layout];
         let pipeline = DrawPipeline::new(device, &sets, code, &variant.constants(), &pass, state)?;
         Ok(Self { frame_layout, sums_layout, pass, pipeline })
@@ -98,7 +99,7 @@ impl DrawNormalize {
         let uses: Vec<_> = read.chain(coverage).chain(written).collect();
         rec.pass("normalize", &uses, |enc| {
             enc.render(&views.framebuffer, |draws| {
-                draws.draw(&self.pipeline, &[&views.frame, &views.sums], 3);
+                draws.draw(&self.pipeline, &[&views.frame, &views.sums], &[0u32; 2], 3);
             });
         });
     }

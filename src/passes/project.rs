@@ -3,7 +3,7 @@
 
 use super::normalize::{frame_layout, grid_over};
 use super::primitives::ElementSet;
-use super::{PyramidSet, SplatLayout, Splats};
+use super::{DrawPoints, PointViews, PyramidSet, SplatLayout, Splats};
 use crate::error::Result;
 use crate::targets::Pyramids;
 use crate::variant::Variant;
@@ -16,14 +16,19 @@ const WORKGROUP: u32 = 64;
 /// Workgroups that share the large triangles.
 const LARGE_WORKGROUPS: u32 = 256;
 
-/// The project pass: atomic minima of distance and number, then the attributes of those that are left.
+/// The project pass: surfels are drawn, or compared by atomic minima of distance and number as lines and triangles are; then the attributes
+/// of those that are left.
 pub struct Project {
-    points: Kind,
+    drawn: Option<DrawPoints>,
+    /// Compares surfels that are not drawn, and counts.
+    points: Option<ComputePipeline>,
+    fetch: ComputePipeline,
     lines: Option<Kind>,
     triangles: Option<(Kind, ComputePipeline)>,
+    count: bool,
 }
 
-/// What projects and fetches points of one kind.
+/// What projects and fetches lines, or triangles.
 struct Kind {
     project: ComputePipeline,
     fetch: ComputePipeline,
@@ -47,7 +52,6 @@ impl Project {
         let constants = variant.constants();
         let frame = frame_layout(device)?;
         let sets = [&frame, &layout.pyramids, &layout.primitives];
-        let points = [shaders::PROJECT_COMPUTE, shaders::FETCH_COMPUTE];
         let lines = [shaders::PROJECT_LINES_COMPUTE, shaders::FETCH_LINES_COMPUTE];
         let triangles = [shaders::PROJECT_TRIANGLES_COMPUTE, shaders::FETCH_TRIANGLES_COMPUTE];
         let of_triangles = || {
@@ -57,14 +61,65 @@ impl Project {
         };
         let kinds = variant.primitives;
         Ok(Self {
-            points: Kind::new(device, &[&layout.splats, &layout.pyramids], points, &constants)?,
+            drawn: variant.draws_points().then(|| DrawPoints::new(device, layout, variant)).transpose()?,
+            points: points(device, layout, variant)?,
+            fetch: fetch(device, layout, variant)?,
             lines: kinds.lines.then(|| Kind::new(device, &sets, lines, &constants)).transpose()?,
             triangles: kinds.triangles.then(of_triangles).transpose()?,
+            count: variant.count,
         })
     }
 
-    /// What the scene has → level 0 of `targets.pulled`. `frame` is a set of the frame's numbers.
+    /// Views of points that are drawn; `targets` must outlive them.
+    pub fn views(
+        &self,
+        device: &Arc<Device>,
+        layout: &SplatLayout,
+        targets: &Pyramids,
+    ) -> Result<Option<PointViews>> {
+        let views = |(drawn, targets): (&DrawPoints, _)| drawn.views(device, layout, targets);
+        self.drawn.as_ref().zip(targets.drawn.as_ref()).map(views).transpose()
+    }
+
+    /// What the scene has → level 0 of `targets.pulled`, and the counts. `frame` is a set of the frame's numbers.
     pub fn record(
+        &self,
+        rec: &mut Recorder<'_>,
+        splats: &Splats,
+        frame: &DescriptorSet,
+        set: &PyramidSet,
+        drawn: Option<&PointViews>,
+        targets: &Pyramids,
+    ) {
+        self.clear(rec, splats, targets);
+        if let Some((draw, views)) = self.drawn.as_ref().zip(drawn) {
+            draw.record(rec, splats, frame, set, views, targets);
+        }
+        self.compute(rec, splats, frame, set, targets);
+        if self.count {
+            splats.record_counted(rec);
+        }
+        self.fetch(rec, splats, frame, set, drawn, targets);
+    }
+
+    /// Empties what points are compared in, unless drawn ones are its start, and lists and counts.
+    fn clear(&self, rec: &mut Recorder<'_>, splats: &Splats, targets: &Pyramids) {
+        splats.record_clear(rec, self.count);
+        let nearest = targets.nearest.as_ref().filter(|_| self.drawn.is_none());
+        let large = splats.primitives().and_then(|primitives| primitives.large.as_ref());
+        let uses: Vec<_> =
+            nearest.into_iter().chain(large).map(|buffer| buffer.with(Access::COPY_WRITE)).collect();
+        if uses.is_empty() {
+            return;
+        }
+        rec.pass("clear", &uses, |enc| {
+            nearest.into_iter().for_each(|nearest| enc.ones(nearest));
+            large.into_iter().for_each(|large| enc.zero_range(large, 0, 4));
+        });
+    }
+
+    /// What is not drawn → `targets.nearest`, and the counts.
+    fn compute(
         &self,
         rec: &mut Recorder<'_>,
         splats: &Splats,
@@ -72,18 +127,15 @@ impl Project {
         set: &PyramidSet,
         targets: &Pyramids,
     ) {
-        let primitives = splats.primitives();
-        let listed = |access| primitives.and_then(|primitives| primitives.listed(access));
-        let cleared =
-            std::iter::once(targets.nearest.with(Access::COPY_WRITE)).chain(listed(Access::COPY_WRITE));
-        rec.pass("clear", &cleared.collect::<Vec<_>>(), |enc| {
-            enc.ones(&targets.nearest);
-            if let Some(large) = primitives.and_then(|primitives| primitives.large.as_ref()) {
-                enc.zero_range(large, 0, 4);
-            }
-        });
         let write = Access::COMPUTE_WRITE;
-        let uses: Vec<_> = std::iter::once(targets.nearest.with(write)).chain(listed(write)).collect();
+        let primitives = splats.primitives();
+        let nearest = targets.nearest.as_ref().map(|nearest| nearest.with(write));
+        let listed = primitives.and_then(|primitives| primitives.listed(write));
+        let counted = self.count.then(|| splats.counted());
+        let uses: Vec<_> = nearest.into_iter().chain(listed).chain(counted).collect();
+        if uses.is_empty() {
+            return;
+        }
         rec.pass("project", &uses, |enc| self.project(enc, splats, frame, set));
         if let (Some((_, large)), Some(of)) = (&self.triangles, primitives.and_then(|p| p.triangles.as_ref()))
         {
@@ -91,36 +143,47 @@ impl Project {
                 enc.dispatch(large, &[frame, &set.0, &of.set], of.push(), [LARGE_WORKGROUPS, 1]);
             });
         }
-        let uses = [targets.nearest.with(Access::COMPUTE_READ), targets.pulled.with(write)];
-        rec.pass("fetch", &uses, |enc| self.fetch(enc, splats, frame, set, grid_over(targets.pixels())));
     }
 
     fn project(&self, enc: &mut Encoder<'_>, splats: &Splats, frame: &DescriptorSet, set: &PyramidSet) {
         let workgroups = |count: u32| [count.div_ceil(WORKGROUP), 1];
-        for window in splats.windows() {
-            let sets = [&window.set, &set.0];
-            enc.dispatch(&self.points.project, &sets, window.push(), workgroups(window.count));
+        if let Some(points) = &self.points {
+            for window in splats.windows() {
+                enc.dispatch(points, &[&window.set, &set.0], window.push(), workgroups(window.count));
+            }
         }
         for (kind, of) in self.primitives(splats) {
             enc.dispatch(&kind.project, &[frame, &set.0, &of.set], of.push(), workgroups(of.count));
         }
     }
 
-    /// The pixels of one window's points are not another's, so that their order does not matter.
+    /// The nearest points → level 0. The pixels of one window's points are not another's, so that their order does not matter.
     fn fetch(
         &self,
-        enc: &mut Encoder<'_>,
+        rec: &mut Recorder<'_>,
         splats: &Splats,
         frame: &DescriptorSet,
         set: &PyramidSet,
-        workgroups: [u32; 2],
+        drawn: Option<&PointViews>,
+        targets: &Pyramids,
     ) {
-        for window in splats.windows() {
-            enc.dispatch(&self.points.fetch, &[&window.set, &set.0], window.push(), workgroups);
-        }
-        for (kind, of) in self.primitives(splats) {
-            enc.dispatch(&kind.fetch, &[frame, &set.0, &of.set], of.push(), workgroups);
-        }
+        // Where lines or triangles are computed, drawn points are among what they were compared with.
+        let alone = targets.drawn.as_ref().zip(drawn).filter(|_| targets.nearest.is_none());
+        let nearest = targets.nearest.as_ref().map(|nearest| nearest.with(Access::COMPUTE_READ));
+        let images = alone.into_iter().flat_map(|(drawn, _)| drawn.fetched());
+        let written = targets.pulled.with(Access::COMPUTE_WRITE);
+        let uses: Vec<_> = nearest.into_iter().chain(images).chain([written]).collect();
+        let workgroups = grid_over(targets.pixels());
+        rec.pass("fetch", &uses, |enc| {
+            for window in splats.windows() {
+                let drawn = alone.map(|(_, views)| &views.set);
+                let sets: Vec<_> = [&window.set, &set.0].into_iter().chain(drawn).collect();
+                enc.dispatch(&self.fetch, &sets, window.push(), workgroups);
+            }
+            for (kind, of) in self.primitives(splats) {
+                enc.dispatch(&kind.fetch, &[frame, &set.0, &of.set], of.push(), workgroups);
+            }
+        });
     }
 
     /// Lines and triangles, as far as the scene has them.
@@ -130,4 +193,25 @@ impl Project {
         let triangles = self.triangles.as_ref().map(|(kind, _)| kind);
         lines.into_iter().chain(triangles.zip(sets.and_then(|sets| sets.triangles.as_ref())))
     }
+}
+
+/// Compares surfels, or where they are drawn counts them, if they are counted.
+fn points(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Option<ComputePipeline>> {
+    let code = match (variant.draws_points(), variant.count) {
+        (false, _) => shaders::PROJECT_COMPUTE,
+        (true, true) => shaders::PROJECT_FATES_COMPUTE,
+        (true, false) => return Ok(None),
+    };
+    let sets = [&layout.splats, &layout.pyramids];
+    ComputePipeline::new(device, &sets, code, &variant.constants()).map(Some)
+}
+
+/// Fetches surfels, from where they were compared or from where they were drawn.
+fn fetch(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<ComputePipeline> {
+    let (code, drawn) = match variant.computes_points() {
+        true => (shaders::FETCH_COMPUTE, None),
+        false => (shaders::FETCH_DRAWN_POINTS_COMPUTE, Some(&layout.drawn_points)),
+    };
+    let sets: Vec<_> = [&layout.splats, &layout.pyramids].into_iter().chain(drawn).collect();
+    ComputePipeline::new(device, &sets, code, &variant.constants())
 }

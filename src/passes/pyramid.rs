@@ -31,7 +31,9 @@ pub struct PyramidSet(pub(super) DescriptorSet);
 impl PyramidSet {
     /// A view of `targets`, which must outlive it.
     pub fn new(device: &Arc<Device>, layout: &SplatLayout, targets: &Pyramids) -> Result<Self> {
-        let buffers = [&targets.nearest, &targets.pulled, &targets.pushed, &targets.picture.buffer];
+        // What is absent is not touched; something must stand at its binding all the same.
+        let nearest = targets.nearest.as_ref().unwrap_or(&targets.pulled);
+        let buffers = [nearest, &targets.pulled, &targets.pushed, &targets.picture.buffer];
         let bindings = buffers.map(|buffer| Binding::Storage(buffer, 0, buffer.size()));
         DescriptorSet::new(device, &layout.pyramids, &bindings).map(Self)
     }

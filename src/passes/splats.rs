@@ -1,5 +1,6 @@
 //! The splats between the footprint pass, which writes them, and the passes that rasterize them.
 
+use super::points::drawn_layout;
 use super::primitives::{PrimitiveSets, primitive_layout};
 use super::pyramid::pyramid_layout;
 use super::scatter::pixel_layout;
@@ -21,6 +22,7 @@ pub struct SplatLayout {
     pub(super) pixels: SetLayout,
     pub(super) pyramids: SetLayout,
     pub(super) primitives: SetLayout,
+    pub(super) drawn_points: SetLayout,
 }
 
 /// A splat a surfel, with descriptor sets over windows of surfels and splats.
@@ -63,7 +65,7 @@ impl SplatLayout {
             storage(compute | vertex),                              // splats
             storage(compute | vertex),                              // positions
             storage(compute | vertex),                              // normals
-            storage(compute),                                       // radii
+            storage(compute | vertex),                              // radii
             storage(compute | vertex),                              // colours
             storage(compute),                                       // counts
             storage(compute),                                       // large splats
@@ -77,6 +79,7 @@ impl SplatLayout {
             pixels: pixel_layout(device)?,
             pyramids: pyramid_layout(device)?,
             primitives: primitive_layout(device)?,
+            drawn_points: drawn_layout(device)?,
         })
     }
 }
@@ -182,10 +185,15 @@ impl Splats {
         self.splats.with(access)
     }
 
+    /// The counts, as what counts touches them.
+    pub(super) fn counted(&self) -> Use {
+        self.counts.with(Access::COMPUTE_WRITE)
+    }
+
     /// What is touched when the splats are made: themselves, the counts where `count`, the lists where there are any.
     pub(super) fn made(&self, count: bool) -> Vec<Use> {
         let write = Access::COMPUTE_WRITE;
-        let counts = count.then(|| self.counts.with(write));
+        let counts = count.then(|| self.counted());
         let optional =
             [&self.large, &self.screen_clips].map(|made| made.as_ref().map(|made| made.with(write)));
         [Some(self.with(write)), counts].into_iter().chain(optional).flatten().collect()
@@ -216,7 +224,7 @@ impl Splats {
         enc.render(framebuffer, |draws| {
             for window in &self.windows {
                 let sets: Vec<_> = std::iter::once(&window.set).chain(more.iter().copied()).collect();
-                draws.draw(pipeline, &sets, 3 * window.count);
+                draws.draw(pipeline, &sets, &window.push(), 3 * window.count);
             }
         });
     }

@@ -27,6 +27,9 @@ impl Access {
     /// Read by a vertex shader.
     pub const VERTEX_READ: Self =
         Self::buffer(vk::PipelineStageFlags::VERTEX_SHADER, vk::AccessFlags::SHADER_READ, false);
+    /// Fetched from by a compute shader: an image.
+    pub const COMPUTE_FETCH: Self =
+        Self { layout: vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL, ..Self::COMPUTE_READ };
     /// Fetched from by a fragment shader.
     pub const FRAGMENT_READ: Self = Self {
         stages: vk::PipelineStageFlags::FRAGMENT_SHADER,

@@ -139,16 +139,14 @@ impl<'a> Draws<'a> {
         Self { device, cmd }
     }
 
-    /// Sets the push constants of `pipeline`'s fragment shader.
-    pub fn push(&mut self, pipeline: &DrawPipeline, constants: &[u8]) {
-        let (_, layout) = pipeline.raw();
-        let stage = vk::ShaderStageFlags::FRAGMENT;
-        // SAFETY: the command buffer is being recorded, and the layout has as many push constants.
-        unsafe { self.device.raw.cmd_push_constants(self.cmd, layout, stage, 0, constants) };
-    }
-
-    /// Draws `vertices` vertices with `pipeline`, which was made for this render pass.
-    pub fn draw(&mut self, pipeline: &DrawPipeline, sets: &[&DescriptorSet], vertices: u32) {
+    /// Draws `vertices` vertices with `pipeline`, which was made for this render pass, and `push` as the push constants.
+    pub fn draw(
+        &mut self,
+        pipeline: &DrawPipeline,
+        sets: &[&DescriptorSet],
+        push: &impl bytemuck::NoUninit,
+        vertices: u32,
+    ) {
         let sets: Vec<_> = sets.iter().map(|set| set.raw).collect();
         let (pipeline, layout) = pipeline.raw();
         let point = vk::PipelineBindPoint::GRAPHICS;
@@ -157,6 +155,7 @@ impl<'a> Draws<'a> {
             let raw = &self.device.raw;
             raw.cmd_bind_pipeline(self.cmd, point, pipeline);
             raw.cmd_bind_descriptor_sets(self.cmd, point, layout, 0, &sets, &[]);
+            raw.cmd_push_constants(self.cmd, layout, DrawPipeline::STAGES, 0, bytemuck::bytes_of(push));
             raw.cmd_draw(self.cmd, vertices, 1, 0, 0);
         }
     }

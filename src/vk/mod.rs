@@ -35,7 +35,7 @@ pub use encoder::{Draws, Encoder};
 pub use image::{Image, ImageUse, pixel_bytes};
 pub use limits::{Capabilities, DeviceLimits};
 pub use memory::{HostMemory, Location, MemoryRequest, MemorySource};
-pub use pipeline::{Blend, ComputePipeline, Constants, DepthTest, DrawPipeline, DrawState, Within};
+pub use pipeline::{Blend, ComputePipeline, Constants, DepthTest, DrawPipeline, DrawState, Topology, Within};
 pub use recorder::Recorder;
 pub use render_pass::{Attachment, Framebuffer, RenderPass};
 pub use requirements::{ABILITIES, API_VERSION, Abilities, Ability, Features, QUEUE};

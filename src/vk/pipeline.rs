@@ -30,6 +30,15 @@ impl Constants {
     }
 }
 
+/// What vertices make.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Topology {
+    /// Three of them a triangle.
+    Triangles,
+    /// Each a point, whose size the vertex shader writes.
+    Points,
+}
+
 /// What a draw does with the depth target. Depth is reversed: greater is nearer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DepthTest {
@@ -60,6 +69,8 @@ pub enum Blend {
 /// Fixed-function state of a draw pipeline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct DrawState {
+    /// What is drawn.
+    pub topology: Topology,
     /// Depth test.
     pub depth: DepthTest,
     /// Blending, the same for all colour targets that are drawn to.
@@ -88,14 +99,10 @@ struct Raw {
     device: Arc<Device>,
 }
 
-const DRAW_STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
-    vk::ShaderStageFlags::VERTEX.as_raw() | vk::ShaderStageFlags::FRAGMENT.as_raw(),
-);
-
 /// A compute pipeline, with two u32 of push constants.
 pub struct ComputePipeline(Raw);
 
-/// A draw pipeline over triangles without vertex buffers; viewport and scissor are those of the framebuffer.
+/// A draw pipeline without vertex buffers, with two u32 of push constants; viewport and scissor are those of the framebuffer.
 pub struct DrawPipeline(Raw);
 
 impl ComputePipeline {
@@ -124,6 +131,11 @@ impl ComputePipeline {
 }
 
 impl DrawPipeline {
+    /// The stages that see its push constants.
+    pub(super) const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
+        vk::ShaderStageFlags::VERTEX.as_raw() | vk::ShaderStageFlags::FRAGMENT.as_raw(),
+    );
+
     /// A pipeline of the SPIR-V `[vertex, fragment]` for `pass`; `sets` are the layouts of its descriptor sets 0, 1, ….
     pub fn new(
         device: &Arc<Device>,
@@ -141,12 +153,12 @@ impl DrawPipeline {
             rendering: None,
             samples: vk::SampleCountFlags::TYPE_1,
         };
-        let raw = Raw::new(device, sets, DRAW_STAGES, 0)?;
+        let raw = Raw::new(device, sets, Self::STAGES, 8)?;
         // SAFETY: the pass is alive and has these colours.
-        unsafe { Self::within(raw, code, constants, &within, state.depth) }
+        unsafe { Self::within(raw, code, constants, &within, (state.topology, state.depth)) }
     }
 
-    /// As [`DrawPipeline::new`], for a pass of a host, with `push` bytes of push constants for the fragment shader.
+    /// As [`DrawPipeline::new`], for a pass of a host, with `push` bytes of push constants.
     ///
     /// # Safety
     /// `within` is true of a render pass of `device`, or of what is drawn by dynamic rendering, which is then enabled.
@@ -160,7 +172,10 @@ impl DrawPipeline {
         push: u32,
     ) -> Result<Self> {
         // SAFETY: by the caller.
-        unsafe { Self::within(Raw::new(device, sets, DRAW_STAGES, push)?, code, constants, within, depth) }
+        unsafe {
+            let raw = Raw::new(device, sets, Self::STAGES, push)?;
+            Self::within(raw, code, constants, within, (Topology::Triangles, depth))
+        }
     }
 
     /// # Safety
@@ -170,7 +185,7 @@ impl DrawPipeline {
         [vertex, fragment]: [&[u32]; 2],
         constants: &Constants,
         within: &Within<'_>,
-        depth: DepthTest,
+        (topology, depth): (Topology, DepthTest),
     ) -> Result<Self> {
         let device = raw.device.clone();
         let device = &device;
@@ -181,8 +196,7 @@ impl DrawPipeline {
             modules[1].stage(vk::ShaderStageFlags::FRAGMENT, &specialization),
         ];
         let vertex_input = vk::PipelineVertexInputStateCreateInfo::default();
-        let assembly = vk::PipelineInputAssemblyStateCreateInfo::default()
-            .topology(vk::PrimitiveTopology::TRIANGLE_LIST);
+        let assembly = topology.info();
         let viewport = vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
         let rasterization = vk::PipelineRasterizationStateCreateInfo::default()
             .polygon_mode(vk::PolygonMode::FILL)
@@ -225,6 +239,15 @@ impl DrawPipeline {
 
     pub(super) fn raw(&self) -> (vk::Pipeline, vk::PipelineLayout) {
         (self.0.pipeline, self.0.layout)
+    }
+}
+
+impl Topology {
+    fn info(self) -> vk::PipelineInputAssemblyStateCreateInfo<'static> {
+        vk::PipelineInputAssemblyStateCreateInfo::default().topology(match self {
+            Self::Triangles => vk::PrimitiveTopology::TRIANGLE_LIST,
+            Self::Points => vk::PrimitiveTopology::POINT_LIST,
+        })
     }
 }
 
@@ -274,7 +297,7 @@ fn check_storage_buffers(device: &Device, sets: &[&SetLayout]) -> Result<()> {
 }
 
 impl Raw {
-    /// With `push` bytes of push constants, which a draw's fragment shader alone sees.
+    /// With `push` bytes of push constants.
     fn new(
         device: &Arc<Device>,
         sets: &[&SetLayout],
@@ -283,16 +306,9 @@ impl Raw {
     ) -> Result<Self> {
         check_storage_buffers(device, sets)?;
         let sets: Vec<_> = sets.iter().map(|set| set.raw).collect();
-        let seen_by = if stages == DRAW_STAGES {
-            vk::ShaderStageFlags::FRAGMENT
-        } else {
-            vk::ShaderStageFlags::COMPUTE
-        };
-        let constants = [vk::PushConstantRange { stage_flags: seen_by, offset: 0, size: push }];
-        let mut info = vk::PipelineLayoutCreateInfo::default().set_layouts(&sets);
-        if push > 0 {
-            info = info.push_constant_ranges(&constants);
-        }
+        let constants = [vk::PushConstantRange { stage_flags: stages, offset: 0, size: push }];
+        let info =
+            vk::PipelineLayoutCreateInfo::default().set_layouts(&sets).push_constant_ranges(&constants);
         // SAFETY: the set layout is alive; the pipeline layout is destroyed in `drop`.
         let layout = unsafe { device.raw.create_pipeline_layout(&info, None) }
             .map_err(Error::vulkan("vkCreatePipelineLayout"))?;

@@ -86,6 +86,26 @@ fn the_reference_reports_the_same_counts_and_no_device() {
 }
 
 #[test]
+fn points_are_counted_too_however_they_are_projected() {
+    let Some(program) = Program::with_device("points_are_counted_too_however_they_are_projected") else {
+        return;
+    };
+    program.write("a.ply", surfels(&FATES));
+    let camera = "--size 64x64 --eye 0,0,5 --target 0,0,0 --cull back --method pull-push";
+    for way in ["--reference", "--validate --rasterizer draw", "--validate --rasterizer compute"] {
+        let run = program.run(&format!("render a.ply -o a.png --json - {way} {camera}"));
+        let report: Value = serde_json::from_str(run.text()).unwrap();
+        let counts = &report["counts"];
+        // A point does not reach the eye plane; that one is edge-on.
+        let culled =
+            serde_json::json!({ "behind": 1, "eye_plane": 0, "back": 2, "outside": 1, "invalid": 0 });
+        assert_eq!((&counts["culled"], &counts["drawn"]), (&culled, &1.into()), "{way}");
+        let rasterizer = way.split(' ').nth(2).map_or(Value::Null, Value::from);
+        assert_eq!(report["rasterizer"], rasterizer, "{way}");
+    }
+}
+
+#[test]
 fn frames_make_nothing_new_and_the_first_does_not_count() {
     let Some(program) = Program::with_device("frames_make_nothing_new_and_the_first_does_not_count") else {
         return;

@@ -21,7 +21,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 use surfel::methods::Method;
 use surfel::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
-use surfel::{Outputs, Settings};
+use surfel::{Outputs, Rasterizer, Settings};
 
 /// Renders point-sampled surfaces with Vulkan.
 #[derive(Debug, Parser)]
@@ -236,6 +236,9 @@ pub struct Place {
     /// Renders with the float64 reference on the CPU, without Vulkan
     #[arg(long, conflicts_with_all = ["half", "device", "validate", "device_limits"])]
     pub reference: bool,
+    /// What visits the pixels: the device's own rasterizer, or compute shaders; what is faster on the device unless given
+    #[arg(long, value_enum, conflicts_with = "reference")]
+    pub rasterizer: Option<Rasterizer>,
     /// Keeps sums in 16-bit floats: half the memory, coarser
     #[arg(long)]
     pub half: bool,

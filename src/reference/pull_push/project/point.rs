@@ -11,13 +11,17 @@ impl Reconstruction {
         let position = projector.view.transform_point3(surfel.position);
         let normal = projector.view.transform_vector3(surfel.normal);
         let [near, far] = projector.planes();
-        if !(near..=far).contains(&projector.distance(position)) {
+        let distance = projector.distance(position);
+        if !(near..=far).contains(&distance) || distance <= 0.0 {
             return Err(Culled::Behind);
         }
         let towards = projector.facing(position, normal);
         let back = projector.settings.cull == Cull::Back && !surfel.two_sided;
-        if towards >= 0.0 && back || towards == 0.0 {
+        if towards >= 0.0 && back {
             return Err(Culled::Back);
+        }
+        if towards == 0.0 {
+            return Err(Culled::Outside);
         }
         let screen = self.pixel(position);
         let corner = screen.floor();

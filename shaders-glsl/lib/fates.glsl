@@ -1,0 +1,20 @@
+// What becomes of a surfel. All but the last are counted, in this order.
+
+const uint BEHIND = 0;    // the centre is not in front of the eye; a point's not between near and far plane
+const uint EYE_PLANE = 1; // the disc reaches the eye plane, or all but does
+const uint BACK = 2;      // the normal faces away, such are culled, and the surfel is not two-sided
+const uint OUTSIDE = 3;   // off the picture, or without an area on it
+const uint INVALID = 4;   // marked by a radius of 0, or with an image too large for floats
+const uint DRAWN = 5;
+
+#ifdef COMPUTE
+
+layout(constant_id = 2) const bool COUNT = false;
+
+layout(set = 0, binding = 6, std430) buffer Counts { uint culled[5]; };
+
+void count(uint fate) {
+    if (COUNT && fate != DRAWN) atomicAdd(culled[fate], 1);
+}
+
+#endif

@@ -1,0 +1,38 @@
+// Points: surfels drawn as points of one pixel, of which the depth test leaves the nearest, and of two as near the first (marroquim2008 §3.1).
+#version 450
+#extension GL_GOOGLE_include_directive : require
+
+#ifdef VERTEX
+
+#include "lib/frame.glsl"
+#include "lib/window.glsl"
+
+layout(set = 0, binding = 2, std430) readonly buffer Positions { float positions[]; };
+layout(set = 0, binding = 3, std430) readonly buffer Normals { float normals[]; };
+#include "lib/point.glsl"
+#include "lib/drawn_points.glsl"
+
+layout(location = 0) flat out uint number;
+
+void main() {
+    Point point;
+    bool drawn = point_of(gl_VertexIndex, point) == DRAWN;
+    // At the middle of its pixel, so that no rasterizer takes another; what is culled lies off the picture.
+    vec2 middle = 2.0 * (vec2(point.at) + 0.5) / frame.viewport - 1.0;
+    gl_Position = drawn ? vec4(middle, depth_of(point.distance), 1.0) : vec4(-3.0, -3.0, 0.0, 1.0);
+    gl_PointSize = 1.0;
+    number = window.first + gl_VertexIndex;
+}
+
+#endif
+#ifdef FRAGMENT
+
+layout(location = 0) flat in uint number;
+
+layout(location = 0) out uint nearest_number;
+
+void main() {
+    nearest_number = number + 1;
+}
+
+#endif

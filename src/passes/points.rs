@@ -1,0 +1,105 @@
+//! Points: surfels → the nearest of each pixel, as points of one pixel with a depth test (marroquim2008 §3.1; `points.glsl`). The part of
+//! project that the device's own rasterizer can do.
+
+use super::normalize::{frame_layout, grid_over};
+use super::{PyramidSet, SplatLayout, Splats};
+use crate::error::Result;
+use crate::targets::{DrawnPoints, Pyramids};
+use crate::variant::Variant;
+use crate::vk::{
+    Access, Attachment, Binding, Blend, ComputePipeline, DepthTest, DescriptorSet, Device, DrawPipeline,
+    DrawState, Framebuffer, Recorder, RenderPass, SetLayout, Topology, Use, shaders,
+};
+use ash::vk::{DescriptorType, ShaderStageFlags};
+use std::sync::Arc;
+
+/// Draws points, and hands them to what computes others.
+pub struct DrawPoints {
+    pass: RenderPass,
+    pipeline: DrawPipeline,
+    /// Makes of them what lines and triangles are compared with, where there are any.
+    hand_over: Option<ComputePipeline>,
+}
+
+/// What a [`DrawPoints`] draws to.
+pub struct PointViews {
+    framebuffer: Framebuffer,
+    /// Descriptor set 2 of what reads them.
+    pub(super) set: DescriptorSet,
+}
+
+/// Layout of descriptor set 2 of what reads drawn points: depth, number.
+pub(super) fn drawn_layout(device: &Arc<Device>) -> Result<SetLayout> {
+    SetLayout::new(device, &[(DescriptorType::SAMPLED_IMAGE, ShaderStageFlags::COMPUTE); 2])
+}
+
+impl DrawnPoints {
+    /// What reads them touches.
+    pub(super) fn fetched(&self) -> [Use; 2] {
+        [&self.nearest_depth, &self.nearest_number].map(|image| image.with(Access::COMPUTE_FETCH))
+    }
+}
+
+impl DrawPoints {
+    /// The pass for `variant`.
+    pub fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self> {
+        let number = Attachment::Cleared(DrawnPoints::NUMBER);
+        let pass = RenderPass::new(device, &[number], Some(Attachment::Cleared(DrawnPoints::DEPTH)))?;
+        let code = [shaders::POINTS_VERTEX, shaders::POINTS_FRAGMENT];
+        let state =
+            DrawState { topology: Topology::Points, depth: DepthTest::Nearest, blend: Blend::Replace };
+        let constants = variant.constants();
+        let pipeline = DrawPipeline::new(device, &[&layout.splats], code, &constants, &pass, state)?;
+        let hand_over = || {
+            let sets = [&frame_layout(device)?, &layout.pyramids, &layout.drawn_points];
+            ComputePipeline::new(device, &sets, shaders::PROJECT_DRAWN_POINTS_COMPUTE, &constants)
+        };
+        let hand_over = variant.primitives.any().then(hand_over).transpose()?;
+        Ok(Self { pass, pipeline, hand_over })
+    }
+
+    /// The pass's views of `targets`, which must outlive them.
+    pub fn views(
+        &self,
+        device: &Arc<Device>,
+        layout: &SplatLayout,
+        targets: &DrawnPoints,
+    ) -> Result<PointViews> {
+        let DrawnPoints { nearest_depth, nearest_number } = targets;
+        let bindings = [nearest_depth, nearest_number].map(Binding::Sampled);
+        Ok(PointViews {
+            framebuffer: Framebuffer::new(device, &self.pass, &[nearest_number, nearest_depth])?,
+            set: DescriptorSet::new(device, &layout.drawn_points, &bindings)?,
+        })
+    }
+
+    /// Surfels → `targets.drawn`, and `targets.nearest` where it is there. `frame` is a set of the frame's numbers.
+    pub fn record(
+        &self,
+        rec: &mut Recorder<'_>,
+        splats: &Splats,
+        frame: &DescriptorSet,
+        set: &PyramidSet,
+        views: &PointViews,
+        targets: &Pyramids,
+    ) {
+        let Some(drawn) = &targets.drawn else { return };
+        let DrawnPoints { nearest_depth, nearest_number } = drawn;
+        let uses = [nearest_depth.with(Access::DEPTH_WRITE), nearest_number.with(Access::COLOUR_WRITE)];
+        rec.pass("project", &uses, |enc| {
+            enc.render(&views.framebuffer, |draws| {
+                for window in splats.windows() {
+                    draws.draw(&self.pipeline, &[&window.set], &window.push(), window.count);
+                }
+            });
+        });
+        if let (Some(hand_over), Some(nearest)) = (&self.hand_over, &targets.nearest) {
+            let [depth, number] = drawn.fetched();
+            let uses = [depth, number, nearest.with(Access::COMPUTE_WRITE)];
+            let grid = grid_over(targets.pixels());
+            rec.pass("project", &uses, |enc| {
+                enc.dispatch(hand_over, &[frame, &set.0, &views.set], [0; 2], grid);
+            });
+        }
+    }
+}
