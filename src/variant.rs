@@ -135,7 +135,7 @@ impl Variant {
                 colours: if wants_colour { streams.primitives.colours } else { ColourStream::None },
                 ..streams.primitives
             },
-            coverage: settings.alpha == Alpha::Coverage && settings.pull_push.is_none(),
+            coverage: settings.alpha == Alpha::Coverage,
             shading,
             lights: if shading == Shading::Lit { settings.lighting.directional.len() as u32 } else { 0 },
             outputs: options.outputs,
@@ -175,6 +175,7 @@ impl Variant {
             .with(constant::ELLIPSES, self.ellipses)
             .with(constant::TWO_SIDED, self.two_sided)
             .with(constant::CLIPS, self.clips)
+            .with(constant::COVERAGE, self.coverage)
             .with(constant::BEYOND_CLIPS, self.coverage && self.clips)
             .with(constant::FOOTPRINT, self.footprint as u32)
             .with(constant::CONFETTI, self.confetti)

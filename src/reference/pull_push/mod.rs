@@ -10,6 +10,7 @@
 //! Level `l` has a pixel for every `2^l` × `2^l` of the picture's; the centre of its pixel `(i, j)` is at `2^l (i + ½, j + ½)` px. All
 //! lengths on the screen are px of the picture, whatever the level.
 
+mod coverage;
 mod lens;
 mod margin;
 mod paper;
@@ -26,7 +27,7 @@ use crate::geometry::{Camera, Parts, Surfels};
 use crate::pull_push::{PullPush, Rules};
 use crate::settings::Settings;
 use glam::{DVec2, DVec3};
-use lens::Lens;
+use lens::{Lens, Radii2};
 use margin::Margin;
 use rayon::prelude::*;
 
@@ -84,9 +85,14 @@ impl Sample {
 impl Level {
     /// The sample at these coordinates; `None` outside, too.
     pub fn at(&self, [x, y]: [i64; 2]) -> Option<Sample> {
+        let width = i64::from(self.size[0]);
+        self.is_within([x, y]).then(|| self.samples[(y * width + x) as usize]).flatten()
+    }
+
+    /// Whether it has a pixel at these coordinates.
+    pub fn is_within(&self, [x, y]: [i64; 2]) -> bool {
         let [width, height] = self.size.map(i64::from);
-        let inside = (0..width).contains(&x) && (0..height).contains(&y);
-        inside.then(|| self.samples[(y * width + x) as usize]).flatten()
+        (0..width).contains(&x) && (0..height).contains(&y)
     }
 
     /// Centre of the pixel at these coordinates, px.
@@ -168,6 +174,19 @@ impl Reconstruction {
         match self.pull_push.rules {
             Rules::Paper => paper::push(&self.lens, coarser, pulled),
             Rules::Robust => push::pass(&self.lens, coarser, pulled),
+        }
+    }
+
+    /// How near the decisions of [`Self::shade`] about the samples of α were to turning, by pixel.
+    pub fn margins_of_coverage(&self, pushed: &Level) -> Vec<f64> {
+        shade::margins(self, pushed)
+    }
+
+    /// Squared distance of `at` from a disc's centre, in its radii, its variance widened by `h`, px², unless as published.
+    fn radii2(&self, sample: &Sample, disc: DVec2, at: DVec2, h: f64) -> Radii2 {
+        match self.pull_push.rules {
+            Rules::Paper => paper::radii2(&self.lens, sample, disc, at),
+            Rules::Robust => self.lens.radii2(sample, disc, at, h),
         }
     }
 

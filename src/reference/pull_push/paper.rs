@@ -14,7 +14,7 @@ const LEAST_AXIS: f64 = 0.5;
 const RIM: f64 = 2.0;
 
 /// Squared distance of `at` from the centre of a disc's ellipse by parallel projection, in its radii.
-fn radii2(lens: &Lens, sample: &Sample, disc: DVec2, at: DVec2) -> Radii2 {
+pub fn radii2(lens: &Lens, sample: &Sample, disc: DVec2, at: DVec2) -> Radii2 {
     let e = at - disc;
     let normal = lens.normal(sample, disc);
     let along = normal.truncate().normalize_or(DVec2::X);
