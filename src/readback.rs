@@ -37,7 +37,7 @@ impl Images {
             padded.into_iter().map(|[x, y, z, _]| [x, y, z]).collect()
         });
         let depth = next(self.depth.is_some()).map(bytemuck::pod_collect_to_vec);
-        Picture { size: self.image.size(), colour, depth, normal }
+        Picture { size: self.image.size(), colour, depth, normal, id: None }
     }
 }
 
@@ -69,7 +69,7 @@ impl PictureBuffer {
         let colour = plane(true, 4).map(bytemuck::pod_collect_to_vec).unwrap_or_default();
         let normal = plane(self.outputs.normal, 3).map(bytemuck::pod_collect_to_vec);
         let depth = plane(self.outputs.depth, 1).map(bytemuck::pod_collect_to_vec);
-        Picture { size: self.size, colour, depth, normal }
+        Picture { size: self.size, colour, depth, normal, id: None }
     }
 }
 

@@ -65,6 +65,7 @@ pub fn run(args: &Render) -> Result<()> {
         simplify: None,
         voxel: None,
         colouring,
+        texture: args.colours.texture()?,
         quiet: args.quiet,
         progress: &*bars,
     })?;

@@ -51,6 +51,7 @@ fn bounds(args: &Truth, progress: &dyn Progress) -> Result<Bounds> {
         simplify: None,
         voxel: None,
         colouring: None,
+        texture: None,
         quiet: true,
         progress,
     })?;

@@ -54,6 +54,7 @@ impl Target {
             colour: places.clone().map(|at| [0, 1, 2, 3].map(|c| channel(c, at))).collect(),
             depth: self.outputs.depth.then(|| places.clone().map(|at| channel(depth, at)).collect()),
             normal: self.outputs.normal.then(|| places.map(|at| [4, 5, 6].map(|c| channel(c, at))).collect()),
+            id: None,
         }
     }
 

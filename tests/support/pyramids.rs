@@ -30,7 +30,9 @@ pub struct Made {
 impl Shot<'_> {
     /// The frame's twin.
     pub fn reconstruction(&self) -> Reconstruction {
-        Reconstruction::new(&self.camera, self.size, &self.settings, self.pull_push).unwrap()
+        Reconstruction::new(&self.camera, self.size, &self.settings, self.pull_push)
+            .unwrap()
+            .textured(self.parts)
     }
 
     /// By the twin, with as many levels as it needs.
@@ -71,6 +73,8 @@ impl Shot<'_> {
                 normal: to_eye * DVec3::from_array(sample.normal.map(f64::from)),
                 tube: sample.tube,
                 colour: DVec3::from_array(sample.colour.unwrap_or(albedo).map(f64::from)),
+                coordinates: DVec2::ZERO,
+                id: 0,
             }
         };
         let samples = made.samples.iter().map(|made| made.as_ref().map(sample)).collect();
@@ -87,6 +91,7 @@ fn frame_of(picture: &Picture) -> Frame {
         depth: depths.iter().copied().map(f64::from).collect(),
         normal: normals.iter().map(|normal| normal.map(f64::from)).collect(),
         covered: picture.colour.iter().map(|colour| colour[3] > 0.0).collect(),
+        id: picture.id.clone(),
         counts: Default::default(),
         dual_form: 0,
     }

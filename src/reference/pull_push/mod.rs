@@ -20,16 +20,18 @@ mod push;
 mod shade;
 #[cfg(test)]
 mod tests;
+mod texture;
 
 use super::{Frame, Projector};
 use crate::error::Result;
-use crate::geometry::{Camera, Parts, Surfels};
+use crate::geometry::{Camera, MipMap, Parts, Surfels};
 use crate::pull_push::{PullPush, Rules};
 use crate::settings::Settings;
 use glam::{DVec2, DVec3};
 use lens::{Lens, Radii2};
 use margin::Margin;
 use rayon::prelude::*;
+use std::sync::Arc;
 
 pub use margin::Decided;
 pub use project::Visible;
@@ -51,8 +53,12 @@ pub struct Sample {
     pub normal: DVec3,
     /// Whether it is of a tube: a disc that faces the eye, about a point of the axis.
     pub tube: bool,
-    /// Linear.
+    /// Linear; of no use where the surface has a texture.
     pub colour: DVec3,
+    /// Of the disc's centre in the texture, if the surface has one.
+    pub coordinates: DVec2,
+    /// Number of the point that it is, or that is nearest of those that it was made of: as in [`Visible::index`].
+    pub id: u32,
 }
 
 /// A level of a pyramid.
@@ -79,6 +85,12 @@ impl Sample {
     /// The normal, or the tangent, turned so that it points as that of `other` does: a tangent may as well be its opposite.
     fn direction_as(&self, other: &Self) -> DVec3 {
         if self.tube && self.normal.dot(other.normal) < 0.0 { -self.normal } else { self.normal }
+    }
+
+    /// The way to its coordinates in the texture from those of `other`: as the texture is repeated, the shortest.
+    fn turn_from(&self, other: &Self) -> DVec2 {
+        let way = self.coordinates - other.coordinates;
+        way - (way + 0.5).floor()
     }
 }
 
@@ -113,7 +125,7 @@ impl Decided {
         let count = width * i64::from(size[1]);
         let decide = |i| {
             let margin = Margin::new();
-            (sample([i % width, i / width], &margin), margin.least())
+            (sample([i % width, i / width], &margin), margin.nearest())
         };
         let (samples, margins) = (0..count).into_par_iter().map(decide).unzip();
         Self { level: Level { level, size, samples }, margins }
@@ -130,6 +142,7 @@ pub struct Reconstruction {
     projector: Projector,
     lens: Lens,
     pull_push: PullPush,
+    texture: Option<Arc<MipMap>>,
 }
 
 impl Reconstruction {
@@ -137,7 +150,13 @@ impl Reconstruction {
     pub fn new(camera: &Camera, size: [u32; 2], settings: &Settings, pull_push: PullPush) -> Result<Self> {
         let projector = Projector::new(camera, size, settings)?;
         let lens = Lens::new(&projector);
-        Ok(Self { projector, lens, pull_push })
+        Ok(Self { projector, lens, pull_push, texture: None })
+    }
+
+    /// The same frame of `parts` that have a texture: samples have coordinates in it then. As published, there are none.
+    pub fn textured<'a>(mut self, parts: impl Into<Parts<'a>>) -> Self {
+        self.texture = parts.into().texture().filter(|_| self.pull_push.rules == Rules::Robust).cloned();
+        self
     }
 
     /// Pass `project`: level 0 of the pulled pyramid, and what became of the surfels.
@@ -231,7 +250,10 @@ pub fn render<'a>(
 ) -> Result<Frame> {
     let parts = parts.into();
     parts.check()?;
-    let reconstruction = Reconstruction::new(camera, size, settings, pull_push)?;
+    let reconstruction = Reconstruction::new(camera, size, settings, pull_push)?.textured(parts);
+    if reconstruction.texture.is_none() && parts.has_texture() {
+        return render(&parts.baked(), camera, size, settings, pull_push);
+    }
     let visible = reconstruction.project(parts);
     let top = Reconstruction::top_level(&visible.level);
     let pyramid = reconstruction.pyramid(visible.level, top);

@@ -2,7 +2,7 @@
 
 use super::super::normalize::{Value, over_background, uncovered};
 use super::super::{Frame, line_normal, lit, lit_line};
-use super::{Level, Margin, Reconstruction, Sample, coverage};
+use super::{Level, Margin, Reconstruction, Sample, coverage, texture};
 use crate::pull_push::Rules;
 use crate::settings::{Alpha, Shading};
 use glam::{DVec2, DVec3};
@@ -12,12 +12,14 @@ pub fn pass(frame: &Reconstruction, pushed: &Level) -> Frame {
     let value = |(sample, at): (Option<Sample>, [i64; 2])| match sample {
         Some(sample) => {
             let alpha = alpha(frame, pushed, at, &Margin::new());
-            value(frame, &sample, pushed.centre(at), alpha)
+            let colour = texture::colour(frame, pushed, at, &sample);
+            value(frame, &Sample { colour, ..sample }, pushed.centre(at), alpha)
         }
         None => uncovered(&frame.projector),
     };
     let values: Vec<Value> = pixels(pushed).map(value).collect();
-    Frame::of(&values, pushed.size)
+    let id = pushed.samples.iter().map(|sample| sample.map_or(Frame::NOBODY, |sample| sample.id)).collect();
+    Frame { id: Some(id), ..Frame::of(&values, pushed.size) }
 }
 
 /// How near the decisions about the α of each pixel were to turning.
@@ -27,7 +29,7 @@ pub fn margins(frame: &Reconstruction, pushed: &Level) -> Vec<f64> {
         if sample.is_some() {
             alpha(frame, pushed, at, &margin);
         }
-        margin.least()
+        margin.nearest()
     };
     pixels(pushed).map(margin).collect()
 }

@@ -27,6 +27,8 @@ fn sample(near: f64, radius: f64) -> Sample {
         normal: DVec3::NEG_Z,
         tube: false,
         colour: DVec3::ONE,
+        coordinates: DVec2::ZERO,
+        id: 0,
     }
 }
 
