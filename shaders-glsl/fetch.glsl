@@ -14,6 +14,8 @@
 #include "lib/lens.glsl"
 #include "lib/nearest_points.glsl"
 
+DEFINE_PYRAMID(2, to)
+
 layout(local_size_x = 64) in;
 
 #if defined(LINES)
@@ -71,9 +73,9 @@ void main() {
     uint64_t point = nearest_points[pixel];
     uint i = uint(point & 0xffffffffu) - window.first;
     if (point == NO_POINT) {
-        if (window.first == 0) store_pulled(pixel, NOTHING);
+        if (window.first == 0) store_to(pixel, NOTHING);
     } else if (i < window.count) {
-        store_pulled(pixel, sample_of(i, ivec2(pixel % uint(size.x), pixel / uint(size.x)), uint(point >> 32)));
+        store_to(pixel, sample_of(i, ivec2(pixel % uint(size.x), pixel / uint(size.x)), uint(point >> 32)));
     }
 }
 

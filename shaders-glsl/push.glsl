@@ -8,7 +8,12 @@
 #include "lib/pyramid.glsl"
 #include "lib/lens.glsl"
 
+DEFINE_PYRAMID(1, from)
+DEFINE_PYRAMID(2, to)
+
 layout(local_size_x = 64) in;
+
+layout(constant_id = 32) const bool PING_PONG = false; // levels are kept in turns
 
 // What a disc's variance is widened by on level 0, px²; four times as much a level. Narrower ones leave holes between themselves.
 const float WIDENING = 0.25;
@@ -26,8 +31,9 @@ Sample candidate(int k, uint level, uint start, uint above, ivec2 at) {
     bool there = is_within(of, place);
     ivec2 known = there ? place : coarse ? at / 2 : at;
     Sample s = NOTHING;
-    if (coarse) s = load_pushed(place_in(of, above, known));
-    else s = load_pulled(place_in(of, start, known));
+    // In turns, what is final on the coarser level lies beside what was copied of this one.
+    if (coarse && !PING_PONG) s = load_to(place_in(of, above, known));
+    else s = load_from(place_in(of, coarse ? above : start, known));
     if (!there) s = NOTHING;
     // From whole numbers: a difference of positions on the picture would lose digits.
     s.displacement += (coarse ? vec2(2 * place - at) + 0.5 : vec2(place - at)) * float(1u << level);
@@ -43,7 +49,7 @@ void main() {
     float widening = PAPER ? 0.0 : WIDENING * float(1u << (2 * level));
     int count = PAPER ? 4 : 13;
 
-    Sample point = load_pulled(place_in(level, start, at));
+    Sample point = load_from(place_in(level, start, at));
     // The one that decides which others are its surface: the nearest; as published, of which kind, by the greatest weight.
     Sample front = NOTHING;
     float weights[13], first = PAPER ? 0.0 : -1e38;
@@ -104,7 +110,7 @@ void main() {
         point.normal = mean.normal;
         point.depth = mean.depth;
     }
-    store_pushed(place_in(level, start, at), point);
+    store_to(place_in(level, start, at), point);
 }
 
 #endif

@@ -9,6 +9,8 @@
 #include "lib/lens.glsl"
 #include "lib/shading.glsl"
 
+DEFINE_PYRAMID(1, from)
+
 layout(local_size_x = 64) in;
 
 layout(constant_id = 6) const uint SHADING = 0;
@@ -16,14 +18,14 @@ const uint LIT = 0, COLOUR = 1, NORMAL = 2, DEPTH = 3;
 layout(constant_id = 9) const bool OUT_NORMAL = false;
 layout(constant_id = 10) const bool OUT_DEPTH = false;
 
-layout(set = 1, binding = 3, std430) writeonly buffer Picture { float picture[]; }; // colour, then normals, then depths
+layout(set = 2, binding = 0, std430) writeonly buffer Picture { float picture[]; }; // colour, then normals, then depths
 
 void main() {
     ivec2 at = own_pixel(0);
     if (at.x < 0) return;
     uvec2 size = uvec2(frame.viewport);
     uint pixels = size.x * size.y, i = uint(at.y) * size.x + uint(at.x);
-    Sample s = load_pushed(i);
+    Sample s = load_from(i);
     vec4 image = frame.background;
     if (s.near > 0.0) {
         vec2 centre = vec2(at) + 0.5;

@@ -1,6 +1,6 @@
 //! What decides which pipelines and targets a frame needs.
 
-use crate::pull_push::Rules;
+use crate::pull_push::{PullPush, Rules, Storage};
 use crate::renderer::RenderOptions;
 use crate::scene::{ColourStream, PrimitiveKinds, Streams};
 use crate::settings::{Alpha, Cull, Settings, Shading, Widen};
@@ -27,8 +27,8 @@ pub struct Variant {
     pub confetti: bool,
     /// Which splats a pixel sees.
     pub visibility: Visibility,
-    /// Points, a pyramid of them, and its rules.
-    pub pull_push: Option<Rules>,
+    /// Points, pyramids of them, and their rules.
+    pub pull_push: Option<PullPush>,
     /// What the sums are divided by.
     pub normalization: Normalization,
     /// Kernels are multiplied by the scene's normalization weights.
@@ -117,7 +117,7 @@ impl Variant {
             footprint: splatting.footprint,
             confetti: splatting.kernel != Kernel::Gaussian,
             visibility: splatting.visibility,
-            pull_push: settings.pull_push.map(|pull_push| pull_push.rules),
+            pull_push: settings.pull_push,
             // How many there are, or what they weigh, is never divided.
             normalization: match shading {
                 Shading::Overlap | Shading::Weight => Normalization::Pixel,
@@ -183,7 +183,11 @@ impl Variant {
             .with(constant::CORNERS, self.corners)
             .with(constant::SHADE_SPLATS, self.shade_splats)
             .with(constant::NEAREST, self.visibility == Visibility::Nearest)
-            .with(constant::PAPER, self.pull_push == Some(Rules::Paper))
+            .with(constant::PAPER, self.pull_push.is_some_and(|pull_push| pull_push.rules == Rules::Paper))
+            .with(
+                constant::PING_PONG,
+                self.pull_push.is_some_and(|pull_push| pull_push.storage == Storage::PingPong),
+            )
             .with(constant::OVERLAP, self.shading == Shading::Overlap)
             .with(constant::WIDEN_SMALL, self.widen_small)
             .with(constant::COUNT, self.count)

@@ -234,7 +234,7 @@ fn shots<'a>(
     let each = sizes.iter().flat_map(|&size| cameras(size).map(|(kind, camera)| (size, kind, camera)));
     each.flat_map(move |(size, kind, camera)| {
         [Rules::Paper, Rules::Robust].map(|rules| {
-            let pull_push = PullPush { rules };
+            let pull_push = PullPush::of(rules);
             let settings =
                 Settings { cull: Cull::Back, shading, pull_push: Some(pull_push), ..Default::default() };
             let name = format!("{name} {kind} {}x{} {}", size[0], size[1], rules.name());

@@ -19,15 +19,7 @@ struct Sample {
     bool tube;         // it is of a tube: the disc faces the eye, about a point of the axis
 };
 
-layout(set = 1, binding = 1, std430) buffer Pulled { float pulled[]; };
-layout(set = 1, binding = 2, std430) buffer Pushed { float pushed[]; };
-
 const Sample NOTHING = Sample(0.0, 0.0, 0.0, 0.0, vec2(0.0), vec3(0.0), vec3(0.0), false);
-
-// Floats of a sample.
-uint sample_size() {
-    return SUM_COLOURS ? 12u : 9u;
-}
 
 // The normal, or the tangent, turned so that it points as that of `other` does: a tangent may as well be its opposite.
 vec3 direction_as(Sample s, Sample other) {
@@ -57,36 +49,52 @@ bool is_within(uint level, ivec2 at) {
     return all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, level_size(level)));
 }
 
-// The radius of a tube's sample is stored with a minus. What is not known is stored as zeros, and read like all else: where lanes differ in what
-// they know, branches cost more than what they leave out.
-#define DEFINE_PYRAMID(LOAD, STORE, FLOATS)                                                            \
-    Sample LOAD(uint place) {                                                                          \
-        uint i = place * sample_size();                                                                \
-        Sample s = NOTHING;                                                                            \
-        s.near = FLOATS[i];                                                                            \
-        s.far = FLOATS[i + 1];                                                                         \
-        s.depth = FLOATS[i + 2];                                                                       \
-        s.tube = floatBitsToUint(FLOATS[i + 3]) >> 31 != 0;                                            \
-        s.radius = abs(FLOATS[i + 3]);                                                                 \
-        s.displacement = vec2(FLOATS[i + 4], FLOATS[i + 5]);                                           \
-        s.normal = vec3(FLOATS[i + 6], FLOATS[i + 7], FLOATS[i + 8]);                                  \
-        if (SUM_COLOURS) s.colour = vec3(FLOATS[i + 9], FLOATS[i + 10], FLOATS[i + 11]);               \
-        return s;                                                                                      \
-    }                                                                                                  \
-    void STORE(uint place, Sample s) {                                                                 \
-        uint i = place * sample_size();                                                                \
-        FLOATS[i] = s.near;                                                                            \
-        FLOATS[i + 1] = s.far;                                                                         \
-        FLOATS[i + 2] = s.depth;                                                                       \
-        FLOATS[i + 3] = s.tube ? -s.radius : s.radius;                                                 \
-        FLOATS[i + 4] = s.displacement.x;                                                              \
-        FLOATS[i + 5] = s.displacement.y;                                                              \
-        for (uint k = 0; k < 3; k++) FLOATS[i + 6 + k] = s.normal[k];                                  \
-        if (SUM_COLOURS) for (uint k = 0; k < 3; k++) FLOATS[i + 9 + k] = s.colour[k];                 \
-    }
+// A sample as the planes of a pyramid hold it, in bits. The radius of a tube's has a minus.
+struct Planes {
+    uvec4 depths; // near, far, depth, radius
+    uvec2 place;  // displacement
+    uvec3 normal;
+    uvec3 colour; // where samples have one
+};
 
-DEFINE_PYRAMID(load_pulled, store_pulled, pulled)
-DEFINE_PYRAMID(load_pushed, store_pushed, pushed)
+Planes planes_of(Sample s) {
+    float radius = s.tube ? -s.radius : s.radius;
+    return Planes(floatBitsToUint(vec4(s.near, s.far, s.depth, radius)), floatBitsToUint(s.displacement), floatBitsToUint(s.normal),
+                  floatBitsToUint(s.colour));
+}
+
+// What is not known is stored as zeros, and read like all else: where lanes differ in what they know, branches cost more than what they leave
+// out.
+Sample sample_of_planes(Planes p) {
+    vec4 depths = uintBitsToFloat(p.depths);
+    bool tube = p.depths.w >> 31 != 0;
+    return Sample(depths.x, depths.y, depths.z, abs(depths.w), uintBitsToFloat(p.place), uintBitsToFloat(p.normal),
+                  uintBitsToFloat(p.colour), tube);
+}
+
+// load_NAME and store_NAME of the pyramid at descriptor set SET: planes of all samples, level after level, fine to coarse. A pass reads set 1,
+// `from`, and writes set 2, `to`.
+#define DEFINE_PYRAMID(SET, NAME)                                                                          \
+    layout(set = SET, binding = 0, std430) buffer NAME##Depths { uvec4 NAME##_depths[]; };                 \
+    layout(set = SET, binding = 1, std430) buffer NAME##Places { uvec2 NAME##_places[]; };                 \
+    layout(set = SET, binding = 2, std430) buffer NAME##Normals { uint NAME##_normals[]; };                \
+    layout(set = SET, binding = 3, std430) buffer NAME##Colours { uint NAME##_colours[]; };                \
+    Sample load_##NAME(uint i) {                                                                           \
+        Planes p;                                                                                          \
+        p.depths = NAME##_depths[i];                                                                       \
+        p.place = NAME##_places[i];                                                                        \
+        for (uint k = 0; k < 3; k++) p.normal[k] = NAME##_normals[3 * i + k];                              \
+        p.colour = uvec3(0);                                                                               \
+        if (SUM_COLOURS) for (uint k = 0; k < 3; k++) p.colour[k] = NAME##_colours[3 * i + k];             \
+        return sample_of_planes(p);                                                                        \
+    }                                                                                                      \
+    void store_##NAME(uint i, Sample s) {                                                                  \
+        Planes p = planes_of(s);                                                                           \
+        NAME##_depths[i] = p.depths;                                                                       \
+        NAME##_places[i] = p.place;                                                                        \
+        for (uint k = 0; k < 3; k++) NAME##_normals[3 * i + k] = p.normal[k];                              \
+        if (SUM_COLOURS) for (uint k = 0; k < 3; k++) NAME##_colours[3 * i + k] = p.colour[k];             \
+    }
 
 // The pixel of this invocation; below 0 beyond the level.
 ivec2 own_pixel(uint level) {

@@ -1,8 +1,8 @@
 //! Shade: the final level 0 → picture, normal, depth (marroquim2008 §3.4; `shade.glsl`).
 
 use super::normalize::frame_layout;
-use super::pyramid::over_pixels;
-use super::{PyramidSet, SplatLayout};
+use super::pyramid::{over_pixels, visit};
+use super::{PyramidSets, SplatLayout};
 use crate::error::Result;
 use crate::targets::Pyramids;
 use crate::variant::Variant;
@@ -20,7 +20,8 @@ pub struct Shade {
 impl Shade {
     /// The pass for `variant`.
     pub fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self> {
-        let pipeline = over_pixels(device, layout, variant, shaders::SHADE_COMPUTE)?;
+        let pipeline =
+            over_pixels(device, [&layout.pyramid, &layout.plain], variant, shaders::SHADE_COMPUTE)?;
         Ok(Self { frame_layout: frame_layout(device)?, pipeline })
     }
 
@@ -29,16 +30,18 @@ impl Shade {
         DescriptorSet::new(device, &self.frame_layout, &[Binding::Uniform(frame)])
     }
 
-    /// Level 0 of `targets.pushed` → `targets.picture`.
+    /// Level 0 of what is pushed → `targets.picture`.
     pub fn record(
         &self,
         rec: &mut Recorder<'_>,
         frame: &DescriptorSet,
-        set: &PyramidSet,
+        sets: &PyramidSets,
         targets: &Pyramids,
     ) {
-        let uses =
-            [targets.pushed.with(Access::COMPUTE_READ), targets.picture.buffer.with(Access::COMPUTE_WRITE)];
-        rec.pass("shade", &uses, |enc| set.visit(enc, &self.pipeline, frame, targets, 0));
+        let [_, pushed] = targets.storage.push(0);
+        let read = targets.pyramids[pushed].with(Access::COMPUTE_READ);
+        let uses: Vec<_> = read.chain([targets.picture.buffer.with(Access::COMPUTE_WRITE)]).collect();
+        let sets = [frame, &sets.pyramids[pushed], &sets.picture];
+        rec.pass("shade", &uses, |enc| visit(enc, &self.pipeline, sets, targets, 0));
     }
 }

@@ -1,7 +1,7 @@
 //! The splats between the footprint pass, which writes them, and the passes that rasterize them.
 
 use super::primitives::{PrimitiveSets, primitive_layout};
-use super::pyramid::pyramid_layout;
+use super::pyramid::{plain_layout, pyramid_layout};
 use super::scatter::pixel_layout;
 use crate::error::Result;
 use crate::scene::{ClipWindow, Scene};
@@ -15,11 +15,14 @@ use ash::vk::{DescriptorType, ShaderStageFlags};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Layouts of descriptor sets 0 and 1 of the footprint, visibility and attribute passes.
+/// Layouts of descriptor sets 0 and 1 of the footprint, visibility and attribute passes, and of those of pull–push.
 pub struct SplatLayout {
     pub(super) splats: SetLayout,
     pub(super) pixels: SetLayout,
-    pub(super) pyramids: SetLayout,
+    /// One buffer a pixel.
+    pub(super) plain: SetLayout,
+    /// The planes of a pyramid.
+    pub(super) pyramid: SetLayout,
     pub(super) primitives: SetLayout,
 }
 
@@ -75,7 +78,8 @@ impl SplatLayout {
         Ok(Self {
             splats: SetLayout::new(device, &bindings)?,
             pixels: pixel_layout(device)?,
-            pyramids: pyramid_layout(device)?,
+            plain: plain_layout(device)?,
+            pyramid: pyramid_layout(device)?,
             primitives: primitive_layout(device)?,
         })
     }
