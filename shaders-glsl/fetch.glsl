@@ -14,6 +14,8 @@
 #include "lib/lens.glsl"
 #include "lib/nearest_points.glsl"
 
+DEFINE_PYRAMID(2, to)
+
 layout(local_size_x = 64) in;
 
 #if defined(LINES)
@@ -59,6 +61,7 @@ Sample sample_of(uint i, ivec2 at, uint nearest) {
     Sample s;
     point_of(i, at, s);
     s.colour = colour_of(i);
+    if (TEXTURE) s.coordinates = coordinates_of(i);
     return s;
 }
 
@@ -71,9 +74,11 @@ void main() {
     uint64_t point = nearest_points[pixel];
     uint i = uint(point & 0xffffffffu) - window.first;
     if (point == NO_POINT) {
-        if (window.first == 0) store_pulled(pixel, NOTHING);
+        if (window.first == 0) store_to(pixel, NOTHING);
     } else if (i < window.count) {
-        store_pulled(pixel, sample_of(i, ivec2(pixel % uint(size.x), pixel / uint(size.x)), uint(point >> 32)));
+        Sample s = sample_of(i, ivec2(pixel % uint(size.x), pixel / uint(size.x)), uint(point >> 32));
+        s.id = window.first + i;
+        store_to(pixel, s);
     }
 }
 

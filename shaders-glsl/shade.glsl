@@ -1,5 +1,6 @@
 // Shade: the final level 0 → picture, normal, depth, lit pixel by pixel (marroquim2008 §3.4).
 #version 450
+#pragma variant TEXTURED
 #extension GL_GOOGLE_include_directive : require
 
 #ifdef COMPUTE
@@ -11,12 +12,19 @@
 #include "lib/background.glsl"
 #include "lib/lattice.glsl"
 
+DEFINE_PYRAMID(1, from)
+
+#ifdef TEXTURED
+#include "lib/texture.glsl"
+#endif
+
 layout(local_size_x = 64) in;
 
 layout(constant_id = 9) const bool OUT_NORMAL = false;
 layout(constant_id = 10) const bool OUT_DEPTH = false;
+layout(constant_id = 35) const bool OUT_ID = false;
 
-layout(set = 1, binding = 3, std430) writeonly buffer Picture { float picture[]; }; // colour, then normals, then depths
+layout(set = 2, binding = 0, std430) writeonly buffer Picture { uint picture[]; }; // bits: colour, then normals, then depths, then numbers
 
 layout(constant_id = 31) const bool COVERAGE = false; // α is the part of a pixel that is covered, not whether its centre is
 
@@ -38,13 +46,13 @@ float coverage_of(ivec2 at) {
     bool inner = true;
     for (int k = 0; k < 9; k++) {
         ivec2 place = at + ivec2(k % 3, k / 3) - 1;
-        if (is_within(0, place)) inner = inner && load_pushed(place_in(0, 0, place)).near > 0.0;
+        if (is_within(0, place)) inner = inner && load_from(place_in(0, 0, place)).near > 0.0;
     }
     if (inner) return 1.0;
     for (int k = 0; k < 9; k++) {
         ivec2 place = at + ivec2(k % 3, k / 3) - 1;
         if (!is_within(0, place)) continue;
-        Sample s = load_pushed(place_in(0, 0, place));
+        Sample s = load_from(place_in(0, 0, place));
         vec2 e = vec2(place - at) + s.displacement;
         if (s.near > 0.0) mask |= covered_by(s, level_centre(0, at) + e, e);
     }
@@ -56,13 +64,17 @@ void main() {
     if (at.x < 0) return;
     uvec2 size = uvec2(frame.viewport);
     uint pixels = size.x * size.y, i = uint(at.y) * size.x + uint(at.x);
-    Sample s = load_pushed(i);
+    Sample s = load_from(i);
     vec4 image = frame.background;
     if (s.near > 0.0) {
         vec2 centre = vec2(at) + 0.5;
         vec3 ray = centre.x * frame.ray_hi[0].xyz + centre.y * frame.ray_hi[1].xyz + frame.ray_hi[2].xyz;
         vec3 to_eye = PERSPECTIVE ? -normalize(ray) : -frame.forward_hi.xyz;
+#ifdef TEXTURED
+        vec3 colour = texture_at(at, s);
+#else
         vec3 colour = SUM_COLOURS ? s.colour : frame.albedo.rgb;
+#endif
         vec3 tangent = s.normal;
         if (s.tube && PAPER) s.normal = line_normal(tangent, to_eye);
         else if (s.tube) s.depth = on_tube(s, centre, -s.displacement, s.normal);
@@ -74,9 +86,10 @@ void main() {
         if (SHADING == DEPTH) shown = vec3(s.depth);
         image = over_background(shown, COVERAGE ? coverage_of(at) : 1.0);
     }
-    for (uint k = 0; k < 4; k++) picture[4 * i + k] = image[k];
-    if (OUT_NORMAL) for (uint k = 0; k < 3; k++) picture[4 * pixels + 3 * i + k] = s.normal[k];
-    if (OUT_DEPTH) picture[(OUT_NORMAL ? 7 : 4) * pixels + i] = s.depth;
+    for (uint k = 0; k < 4; k++) picture[4 * i + k] = floatBitsToUint(image[k]);
+    if (OUT_NORMAL) for (uint k = 0; k < 3; k++) picture[4 * pixels + 3 * i + k] = floatBitsToUint(s.normal[k]);
+    if (OUT_DEPTH) picture[(OUT_NORMAL ? 7 : 4) * pixels + i] = floatBitsToUint(s.depth);
+    if (OUT_ID) picture[((OUT_NORMAL ? 7 : 4) + (OUT_DEPTH ? 1 : 0)) * pixels + i] = s.id;
 }
 
 #endif

@@ -172,6 +172,7 @@ impl Renderer {
         settings.check()?;
         settings.splatting.normalization.check_weights(scene.weights.is_some())?;
         settings.check_primitives(scene.primitives.is_some())?;
+        settings.check_outputs(self.options.outputs)?;
         let block = frame(camera, settings, self.options.size, scene.origin(), scene.bounds())?;
         let blends = settings.splatting.visibility != Visibility::Nearest;
         let rasterizer = match settings.pull_push {
@@ -249,12 +250,16 @@ fn projects(device: &Device, options: &RenderOptions) -> Result<Rasterizer> {
         _ if !device.capabilities().int64_atomics => Err(Error::Usage(format!(
             "pull-push needs 64-bit atomics in buffers, which {name} does not have: choose a method that splats"
         ))),
-        _ if !Pyramids::fit(device.capabilities(), options.size) => Err(Error::Usage(format!(
-            "a pyramid of {}x{} px does not fit the {} bytes of a buffer that shaders of {name} can see: choose a smaller size",
-            options.size[0],
-            options.size[1],
-            device.capabilities().max_storage_buffer_range
-        ))),
+        _ if !Pyramids::fit(device.capabilities(), options.outputs, options.size) => {
+            let [width, height] = options.size;
+            let [most_width, most_height] =
+                Pyramids::largest(device.capabilities(), options.outputs, options.size);
+            Err(Error::Usage(format!(
+                "pyramids of {width}x{height} px do not fit the {} bytes of a buffer that shaders of {name} can see \
+                 (maxStorageBufferRange): choose at most {most_width}x{most_height} px",
+                device.capabilities().max_storage_buffer_range
+            )))
+        }
         _ => Ok(Rasterizer::Compute),
     }
 }

@@ -3,6 +3,7 @@
 use crate::error::{Error, Result};
 use crate::pull_push::PullPush;
 use crate::splatting::{Filter, Splatting};
+use crate::variant::Outputs;
 
 /// Settings of a frame that are not the camera's or the scene's.
 #[derive(Clone, Debug, PartialEq)]
@@ -74,6 +75,18 @@ impl Settings {
             false => Ok(()),
             true => Err(Error::Usage(
                 "lines and triangles are drawn by pull-push and pull-push-paper alone: choose one of them, or leave them out".into(),
+            )),
+        }
+    }
+
+    /// Refuses numbers of points where pixels are sums of several.
+    pub fn check_outputs(&self, outputs: Outputs) -> Result<()> {
+        match outputs.id && self.pull_push.is_none() {
+            false => Ok(()),
+            true => Err(Error::Usage(
+                "numbers of points are those of pull-push and pull-push-paper alone, as splats are summed: choose one of them, or \
+                 leave the numbers out"
+                    .into(),
             )),
         }
     }

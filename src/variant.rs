@@ -1,6 +1,6 @@
 //! What decides which pipelines and targets a frame needs.
 
-use crate::pull_push::Rules;
+use crate::pull_push::{PullPush, Rules, Storage};
 use crate::renderer::RenderOptions;
 use crate::scene::{ColourStream, PrimitiveKinds, Streams};
 use crate::settings::{Alpha, Cull, Settings, Shading, Widen};
@@ -27,8 +27,8 @@ pub struct Variant {
     pub confetti: bool,
     /// Which splats a pixel sees.
     pub visibility: Visibility,
-    /// Points, a pyramid of them, and its rules.
-    pub pull_push: Option<Rules>,
+    /// Points, pyramids of them, and their rules.
+    pub pull_push: Option<PullPush>,
     /// What the sums are divided by.
     pub normalization: Normalization,
     /// Kernels are multiplied by the scene's normalization weights.
@@ -49,6 +49,8 @@ pub struct Variant {
     pub colours: ColourStream,
     /// The scene's lines and triangles, with their colours in the same way.
     pub primitives: PrimitiveKinds,
+    /// Colours are looked up in a texture; how the scene holds its texels.
+    pub texture: Option<ColourStream>,
     /// α is the part of a pixel that is covered.
     pub coverage: bool,
     /// What the picture shows.
@@ -79,6 +81,8 @@ pub struct Outputs {
     pub normal: bool,
     /// Eye-space depth.
     pub depth: bool,
+    /// Numbers of the points that are shown ([`Picture::id`](crate::Picture::id)); by pull–push alone.
+    pub id: bool,
 }
 
 /// Width of the floats in which weighted sums are kept.
@@ -107,6 +111,9 @@ impl Variant {
         let shade_splats = shading == Shading::Lit && splatting.shade == Shade::Splat;
         let by_surfel = splatting.normalization == Normalization::Surfel && shading != Shading::Overlap;
         let weights = streams.weights.filter(|_| by_surfel);
+        let robust = settings.pull_push.is_some_and(|pull_push| pull_push.rules == Rules::Robust);
+        let texture = streams.texture.filter(|_| robust && wants_colour);
+        let blends_colours = wants_colour && texture.is_none();
         let lit_pixels = shading == Shading::Lit && !shade_splats;
         Self {
             perspective,
@@ -117,7 +124,7 @@ impl Variant {
             footprint: splatting.footprint,
             confetti: splatting.kernel != Kernel::Gaussian,
             visibility: splatting.visibility,
-            pull_push: settings.pull_push.map(|pull_push| pull_push.rules),
+            pull_push: settings.pull_push,
             // How many there are, or what they weigh, is never divided.
             normalization: match shading {
                 Shading::Overlap | Shading::Weight => Normalization::Pixel,
@@ -130,11 +137,12 @@ impl Variant {
             count: options.count,
             normals: lit_pixels || shading == Shading::Normal || options.outputs.normal,
             depth: shading == Shading::Depth || options.outputs.depth,
-            colours: if wants_colour { streams.colours } else { ColourStream::None },
+            colours: if blends_colours { streams.colours } else { ColourStream::None },
             primitives: PrimitiveKinds {
-                colours: if wants_colour { streams.primitives.colours } else { ColourStream::None },
+                colours: if blends_colours { streams.primitives.colours } else { ColourStream::None },
                 ..streams.primitives
             },
+            texture,
             coverage: settings.alpha == Alpha::Coverage,
             shading,
             lights: if shading == Shading::Lit { settings.lighting.directional.len() as u32 } else { 0 },
@@ -176,6 +184,10 @@ impl Variant {
             .with(constant::TWO_SIDED, self.two_sided)
             .with(constant::CLIPS, self.clips)
             .with(constant::COVERAGE, self.coverage)
+            .with(constant::TEXTURE, self.texture.is_some())
+            .with(constant::TEXELS, self.texture.map_or(0, |texels| texels as u32))
+            .with(constant::IDS, self.outputs.id)
+            .with(constant::OUT_ID, self.outputs.id)
             .with(constant::BEYOND_CLIPS, self.coverage && self.clips)
             .with(constant::FOOTPRINT, self.footprint as u32)
             .with(constant::CONFETTI, self.confetti)
@@ -184,7 +196,11 @@ impl Variant {
             .with(constant::CORNERS, self.corners)
             .with(constant::SHADE_SPLATS, self.shade_splats)
             .with(constant::NEAREST, self.visibility == Visibility::Nearest)
-            .with(constant::PAPER, self.pull_push == Some(Rules::Paper))
+            .with(constant::PAPER, self.pull_push.is_some_and(|pull_push| pull_push.rules == Rules::Paper))
+            .with(
+                constant::PING_PONG,
+                self.pull_push.is_some_and(|pull_push| pull_push.storage == Storage::PingPong),
+            )
             .with(constant::OVERLAP, self.shading == Shading::Overlap)
             .with(constant::WIDEN_SMALL, self.widen_small)
             .with(constant::COUNT, self.count)

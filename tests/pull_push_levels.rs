@@ -8,6 +8,7 @@ use std::sync::Arc;
 use support::gpu::{assert_silent, device};
 use support::pyramids::Shot;
 use support::scenes::{Case, cases};
+use support::texture::textured;
 use surfel::geometry::{Camera, Model, Parts, Surfels};
 use surfel::pull_push::{PullPush, Rules};
 use surfel::reference::Frame;
@@ -18,14 +19,16 @@ use surfel::{Settings, scenes};
 
 const SIZES: [[u32; 2]; 5] = [[1, 1], [1, 1023], [640, 480], [1023, 769], [1024, 1024]];
 
+const BOTH: [Rules; 2] = [Rules::Paper, Rules::Robust];
+
 /// What is nearer to another outcome is in doubt: a comparison of levels, relative.
 const DOUBT: f64 = 1e-5;
 
 /// The same of the projection: a coordinate is divided as Vulkan wants it, to 2½ units in the last place, after either part was rounded.
 const DOUBT_OF_POINTS: f64 = 3.5 / (1 << 23) as f64;
 
-/// Largest difference of attributes that passes: of distances relative, of displacements and radii in radii or pixels of the level, of normals
-/// and colours absolute.
+/// Largest difference of attributes that passes: of distances relative, of displacements and radii in radii or pixels of the level, of normals,
+/// colours and texture coordinates absolute.
 const LIMIT: f64 = 2e-4;
 
 /// Largest differences of attributes, in the units of [`LIMIT`].
@@ -37,6 +40,8 @@ struct Worst {
     place: f64,
     normal: f64,
     colour: f64,
+    /// In turns of the texture.
+    coordinates: f64,
 }
 
 impl Worst {
@@ -52,8 +57,13 @@ impl Worst {
                 .into_iter()
                 .fold(0.0, largest),
             place: apart / unit,
-            normal: if a.tube == b.tube { (turned - b.normal).abs().max_element() } else { f64::INFINITY },
+            normal: if a.tube == b.tube && a.id == b.id {
+                (turned - b.normal).abs().max_element()
+            } else {
+                f64::INFINITY
+            },
             colour: (a.colour - b.colour).abs().max_element(),
+            coordinates: (a.coordinates - b.coordinates).abs().max_element(),
         }
     }
 
@@ -62,17 +72,24 @@ impl Worst {
         self.place = largest(self.place, other.place);
         self.normal = largest(self.normal, other.normal);
         self.colour = largest(self.colour, other.colour);
+        self.coordinates = largest(self.coordinates, other.coordinates);
     }
 
     fn passes(&self) -> bool {
-        [self.distance, self.place, self.normal, self.colour].into_iter().all(|worst| worst <= LIMIT)
+        [self.distance, self.place, self.normal, self.colour, self.coordinates]
+            .into_iter()
+            .all(|worst| worst <= LIMIT)
     }
 }
 
 impl fmt::Display for Worst {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { distance, place, normal, colour } = self;
-        write!(f, "distances {distance:.1e}, places {place:.1e}, normals {normal:.1e}, colours {colour:.1e}")
+        let Self { distance, place, normal, colour, coordinates } = self;
+        write!(
+            f,
+            "distances {distance:.1e}, places {place:.1e}, normals {normal:.1e}, colours {colour:.1e}, "
+        )?;
+        write!(f, "coordinates {coordinates:.1e}")
     }
 }
 
@@ -168,7 +185,8 @@ fn compare(gpu: &Frame, twin: &Frame, in_doubt: impl Fn(usize) -> bool) -> (f64,
         if in_doubt(i) {
             return 0.0;
         }
-        if gpu.covered[i] != twin.covered[i] {
+        let id = |frame: &Frame| frame.id.as_ref().map(|id| id[i]);
+        if gpu.covered[i] != twin.covered[i] || id(gpu) != id(twin) {
             return f64::INFINITY;
         }
         let colours = gpu.colour[i].iter().zip(twin.colour[i]).map(|(a, b)| (a - b).abs());
@@ -237,13 +255,13 @@ fn cameras([width, height]: [u32; 2]) -> [(&'static str, Camera); 2] {
 fn shots<'a>(
     name: &'a str,
     parts: Parts<'a>,
-    (shading, alpha): (Shading, Alpha),
+    (shading, alpha, rules): (Shading, Alpha, &'a [Rules]),
     sizes: &'a [[u32; 2]],
 ) -> impl Iterator<Item = Shot<'a>> {
     let each = sizes.iter().flat_map(|&size| cameras(size).map(|(kind, camera)| (size, kind, camera)));
     each.flat_map(move |(size, kind, camera)| {
-        [Rules::Paper, Rules::Robust].map(|rules| {
-            let pull_push = PullPush { rules };
+        rules.iter().map(move |&rules| {
+            let pull_push = PullPush::of(rules);
             let settings = Settings {
                 cull: Cull::Back,
                 shading,
@@ -258,11 +276,12 @@ fn shots<'a>(
 }
 
 fn holds(list: impl IntoIterator<Item = (&'static str, impl Into<Model>, Shading)>, sizes: &[[u32; 2]]) {
-    holds_with(Alpha::Mask, list, sizes);
+    holds_with(Alpha::Mask, &BOTH, list, sizes);
 }
 
 fn holds_with(
     alpha: Alpha,
+    rules: &[Rules],
     list: impl IntoIterator<Item = (&'static str, impl Into<Model>, Shading)>,
     sizes: &[[u32; 2]],
 ) {
@@ -271,7 +290,7 @@ fn holds_with(
     let mut failures = Vec::new();
     for (name, model, shading) in list {
         let model = model.into();
-        for shot in shots(name, Parts::from(&model), (shading, alpha), sizes) {
+        for shot in shots(name, Parts::from(&model), (shading, alpha, rules), sizes) {
             failures.extend(test(&device, &shot, &mut kinds));
         }
     }
@@ -329,7 +348,22 @@ fn coverage() {
     let tree = scenes::model("scene:tree?segments=12&depth=2&primitives=on").unwrap();
     holds_with(
         Alpha::Coverage,
+        &BOTH,
         [("10 k", bumpy(10_000).into(), Shading::Lit), ("tree", tree, Shading::Colour)],
         &SIZES[..3],
     );
+}
+
+#[test]
+fn textures() {
+    let list = [
+        ("texture, 10 k", textured(bumpy(10_000)), Shading::Colour),
+        (
+            "texture, triangles",
+            textured(scenes::model("scene:mixed?segments=40&points=20000&primitives=on").unwrap()),
+            Shading::Lit,
+        ),
+    ];
+    // As published there are colours instead, which the twin's passes would have to be given.
+    holds_with(Alpha::Mask, &[Rules::Robust], list, &SIZES[1..3]);
 }

@@ -64,7 +64,7 @@ fn faults(truth: &[f32], made: &Made, behind: f64) -> Faults {
 }
 
 fn shot<'a>(subject: &Subject, surfels: &'a Surfels, rules: Rules) -> Shot<'a> {
-    let pull_push = PullPush { rules };
+    let pull_push = PullPush::of(rules);
     let settings = Settings { cull: Cull::Back, pull_push: Some(pull_push), ..Default::default() };
     let camera = subject.camera(&subject.viewpoint(), 0.0, SIZE).unwrap();
     Shot { name: subject.name.clone(), parts: surfels.into(), camera, size: SIZE, settings, pull_push }

@@ -72,6 +72,7 @@ pub fn run(args: &Render) -> Result<()> {
     let (method, scene) = (method(args.method, &loaded.model)?, &loaded.model);
     let settings = args.settings(&method);
     settings.check()?;
+    settings.check_outputs(args.outputs())?;
     let bounds = Parts::from(scene).bounds();
     let bounds = bounds.ok_or_else(|| Error::Usage("the inputs hold nothing that can be drawn".into()))?;
     let camera = camera::make(&args.camera, file, &bounds, args.size)?;
@@ -120,6 +121,7 @@ fn save(picture: &Picture, shading: Shading, bar: Option<&ColourBar>, out: &Outp
 pub fn keep_layers(picture: &mut Picture, layers: Outputs) {
     picture.normal.take_if(|_| !layers.normal);
     picture.depth.take_if(|_| !layers.depth);
+    picture.id.take_if(|_| !layers.id);
 }
 
 /// Refuses colours that would not be seen, and a bar where there is no place or nothing to tell.

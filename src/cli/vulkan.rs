@@ -82,10 +82,11 @@ fn half_error(
 fn outputs(task: &Task<'_>) -> Outputs {
     let opaque = task.settings.background.is_some();
     let shading = task.settings.shading;
-    let Outputs { normal, depth } = task.layers;
+    let Outputs { normal, depth, id } = task.layers;
     Outputs {
         normal: normal || opaque && shading == Shading::Normal,
         depth: depth || opaque && shading == Shading::Depth,
+        id,
     }
 }
 

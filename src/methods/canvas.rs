@@ -3,7 +3,7 @@
 use super::pull_push::PullPush;
 use super::{blended, nearest};
 use crate::error::Result;
-use crate::passes::{PixelSet, PyramidSet, SplatLayout, Splats};
+use crate::passes::{PixelSet, PyramidSets, SplatLayout, Splats};
 use crate::picture::Picture;
 use crate::splatting::Visibility;
 use crate::targets::{Buffers, Images, Pyramids, TargetInfo};
@@ -125,9 +125,9 @@ impl Pipelines {
             Kind::ComputeNearest(passes) => on_buffers(device, layout, frame, passes, buffers()?),
             Kind::PullPush(passes) => {
                 let targets = Pyramids::new(device, variant, size).map(Arc::new)?;
-                let set = PyramidSet::new(device, layout, &targets)?;
+                let sets = PyramidSets::new(device, layout, &targets)?;
                 let frame = passes.frame_view(device, frame)?;
-                let recorded = OnPyramids { set, frame, targets: targets.clone(), passes: passes.clone() };
+                let recorded = OnPyramids { sets, frame, targets: targets.clone(), passes: passes.clone() };
                 Ok(Canvas { recorded: Box::new(recorded), targets: Targets::Pyramids(targets) })
             }
         }
@@ -168,7 +168,7 @@ fn on_buffers<P: Computed + 'static>(
 }
 
 struct OnPyramids {
-    set: PyramidSet,
+    sets: PyramidSets,
     frame: DescriptorSet,
     targets: Arc<Pyramids>,
     passes: Arc<PullPush>,
@@ -176,7 +176,7 @@ struct OnPyramids {
 
 impl Recorded for OnPyramids {
     fn record(&self, rec: &mut Recorder<'_>, splats: &Splats) {
-        self.passes.record(rec, splats, &self.frame, &self.set, &self.targets);
+        self.passes.record(rec, splats, &self.frame, &self.sets, &self.targets);
     }
 }
 

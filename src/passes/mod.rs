@@ -3,6 +3,7 @@
 //! Visibility, attribute, nearest and normalize come in two kinds, one for each [`crate::variant::Rasterizer`].
 
 mod attribute;
+mod copy;
 mod coverage;
 mod footprint;
 mod nearest;
@@ -20,13 +21,14 @@ mod tiles;
 mod visibility;
 
 pub use attribute::{ComputeAttribute, DrawAttribute};
+pub use copy::copy;
 pub use footprint::Footprint;
 pub use nearest::{ComputeNearest, DrawNearest, NearestViews};
 pub use normalize::{ComputeNormalize, DrawNormalize, NormalizeViews};
 pub use project::Project;
 pub use pull::Pull;
 pub use push::Push;
-pub use pyramid::PyramidSet;
+pub use pyramid::PyramidSets;
 pub use resolve::Resolve;
 pub use scatter::{PixelSet, Scatter};
 pub use shade::Shade;

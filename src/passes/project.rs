@@ -3,7 +3,7 @@
 
 use super::normalize::{frame_layout, grid_over};
 use super::primitives::ElementSet;
-use super::{PyramidSet, SplatLayout, Splats};
+use super::{PyramidSets, SplatLayout, Splats};
 use crate::error::Result;
 use crate::targets::Pyramids;
 use crate::variant::Variant;
@@ -46,7 +46,7 @@ impl Project {
     pub fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self> {
         let constants = variant.constants();
         let frame = frame_layout(device)?;
-        let sets = [&frame, &layout.pyramids, &layout.primitives];
+        let sets = [&frame, &layout.plain, &layout.pyramid, &layout.primitives];
         let points = [shaders::PROJECT_COMPUTE, shaders::FETCH_COMPUTE];
         let lines = [shaders::PROJECT_LINES_COMPUTE, shaders::FETCH_LINES_COMPUTE];
         let triangles = [shaders::PROJECT_TRIANGLES_COMPUTE, shaders::FETCH_TRIANGLES_COMPUTE];
@@ -57,19 +57,19 @@ impl Project {
         };
         let kinds = variant.primitives;
         Ok(Self {
-            points: Kind::new(device, &[&layout.splats, &layout.pyramids], points, &constants)?,
+            points: Kind::new(device, &[&layout.splats, &layout.plain, &layout.pyramid], points, &constants)?,
             lines: kinds.lines.then(|| Kind::new(device, &sets, lines, &constants)).transpose()?,
             triangles: kinds.triangles.then(of_triangles).transpose()?,
         })
     }
 
-    /// What the scene has → level 0 of `targets.pulled`. `frame` is a set of the frame's numbers.
+    /// What the scene has → level 0 of what is pulled. `frame` is a set of the frame's numbers.
     pub fn record(
         &self,
         rec: &mut Recorder<'_>,
         splats: &Splats,
         frame: &DescriptorSet,
-        set: &PyramidSet,
+        sets: &PyramidSets,
         targets: &Pyramids,
     ) {
         let primitives = splats.primitives();
@@ -84,25 +84,35 @@ impl Project {
         });
         let write = Access::COMPUTE_WRITE;
         let uses: Vec<_> = std::iter::once(targets.nearest.with(write)).chain(listed(write)).collect();
-        rec.pass("project", &uses, |enc| self.project(enc, splats, frame, set));
+        let [_, to] = targets.storage.pull(0);
+        let own = [&sets.nearest, &sets.pyramids[to]];
+        rec.pass("project", &uses, |enc| self.project(enc, splats, frame, own));
         if let (Some((_, large)), Some(of)) = (&self.triangles, primitives.and_then(|p| p.triangles.as_ref()))
         {
             rec.pass("project", &uses, |enc| {
-                enc.dispatch(large, &[frame, &set.0, &of.set], of.push(), [LARGE_WORKGROUPS, 1]);
+                enc.dispatch(large, &[frame, own[0], own[1], &of.set], of.push(), [LARGE_WORKGROUPS, 1]);
             });
         }
-        let uses = [targets.nearest.with(Access::COMPUTE_READ), targets.pulled.with(write)];
-        rec.pass("fetch", &uses, |enc| self.fetch(enc, splats, frame, set, grid_over(targets.pixels())));
+        let made = targets.pyramids[to].with(write);
+        let uses: Vec<_> = made.chain([targets.nearest.with(Access::COMPUTE_READ)]).collect();
+        rec.pass("fetch", &uses, |enc| self.fetch(enc, splats, frame, own, grid_over(targets.pixels())));
     }
 
-    fn project(&self, enc: &mut Encoder<'_>, splats: &Splats, frame: &DescriptorSet, set: &PyramidSet) {
+    /// `own` are the nearest points, and the pyramid of level 0.
+    fn project(
+        &self,
+        enc: &mut Encoder<'_>,
+        splats: &Splats,
+        frame: &DescriptorSet,
+        own: [&DescriptorSet; 2],
+    ) {
         let workgroups = |count: u32| [count.div_ceil(WORKGROUP), 1];
         for window in splats.windows() {
-            let sets = [&window.set, &set.0];
+            let sets = [&window.set, own[0], own[1]];
             enc.dispatch(&self.points.project, &sets, window.push(), workgroups(window.count));
         }
         for (kind, of) in self.primitives(splats) {
-            enc.dispatch(&kind.project, &[frame, &set.0, &of.set], of.push(), workgroups(of.count));
+            enc.dispatch(&kind.project, &[frame, own[0], own[1], &of.set], of.push(), workgroups(of.count));
         }
     }
 
@@ -112,14 +122,14 @@ impl Project {
         enc: &mut Encoder<'_>,
         splats: &Splats,
         frame: &DescriptorSet,
-        set: &PyramidSet,
+        own: [&DescriptorSet; 2],
         workgroups: [u32; 2],
     ) {
         for window in splats.windows() {
-            enc.dispatch(&self.points.fetch, &[&window.set, &set.0], window.push(), workgroups);
+            enc.dispatch(&self.points.fetch, &[&window.set, own[0], own[1]], window.push(), workgroups);
         }
         for (kind, of) in self.primitives(splats) {
-            enc.dispatch(&kind.fetch, &[frame, &set.0, &of.set], of.push(), workgroups);
+            enc.dispatch(&kind.fetch, &[frame, own[0], own[1], &of.set], of.push(), workgroups);
         }
     }
 

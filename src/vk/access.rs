@@ -86,6 +86,14 @@ impl Access {
     /// Copied to, or filled.
     pub const COPY_WRITE: Self =
         Self::buffer(vk::PipelineStageFlags::TRANSFER, vk::AccessFlags::TRANSFER_WRITE, true);
+    /// Copied from and to, no part of it both ways.
+    pub const COPY_WITHIN: Self = Self::buffer(
+        vk::PipelineStageFlags::TRANSFER,
+        vk::AccessFlags::from_raw(
+            vk::AccessFlags::TRANSFER_READ.as_raw() | vk::AccessFlags::TRANSFER_WRITE.as_raw(),
+        ),
+        true,
+    );
     /// Read by the CPU once the frame is over.
     pub const HOST_READ: Self = Self::buffer(vk::PipelineStageFlags::HOST, vk::AccessFlags::HOST_READ, false);
 

@@ -65,7 +65,7 @@ impl Target {
 
     /// Blocks of all channels of a tile.
     fn stride(&self) -> usize {
-        let Outputs { normal, depth } = self.outputs;
+        let Outputs { normal, depth, .. } = self.outputs;
         BLOCKS * (4 + if normal { 3 } else { 0 } + usize::from(depth))
     }
 }
@@ -74,7 +74,7 @@ impl Slab<'_> {
     /// Writes four pixels.
     #[inline]
     pub fn put(&mut self, block: usize, pixels: &Shown) {
-        let Outputs { normal, depth } = self.outputs;
+        let Outputs { normal, depth, .. } = self.outputs;
         let normals = pixels.normal.iter().filter(|_| normal);
         let depths = std::iter::once(&pixels.depth).filter(|_| depth);
         let channels = pixels.colour.iter().chain(normals).chain(depths);

@@ -47,7 +47,7 @@ impl Shot<'_> {
     /// By the GPU.
     pub fn by_gpu(&self, device: &Arc<Device>) -> Made {
         let scene = Scene::upload(device, self.parts).unwrap();
-        let outputs = Outputs { normal: true, depth: true };
+        let outputs = Outputs { normal: true, depth: true, id: true };
         let options = RenderOptions { size: self.size, outputs, ..Default::default() };
         let mut renderer = Renderer::new(device, options).unwrap();
         let (picture, _) = renderer.render_picture(&scene, &self.camera, &self.settings).unwrap();
@@ -73,8 +73,8 @@ impl Shot<'_> {
                 normal: to_eye * DVec3::from_array(sample.normal.map(f64::from)),
                 tube: sample.tube,
                 colour: DVec3::from_array(sample.colour.unwrap_or(albedo).map(f64::from)),
-                coordinates: DVec2::ZERO,
-                id: 0,
+                coordinates: sample.coordinates.map_or(DVec2::ZERO, |at| DVec2::from(at.map(f64::from))),
+                id: sample.id.unwrap(),
             }
         };
         let samples = made.samples.iter().map(|made| made.as_ref().map(sample)).collect();

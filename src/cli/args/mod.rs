@@ -118,7 +118,7 @@ impl Render {
 /// The images that these layers are.
 fn outputs(layers: &[Layer]) -> Outputs {
     let asked = |layer| layers.contains(&layer);
-    Outputs { normal: asked(Layer::Normal), depth: asked(Layer::Depth) }
+    Outputs { normal: asked(Layer::Normal), depth: asked(Layer::Depth), id: asked(Layer::Id) }
 }
 
 /// The camera; the whole scene is framed unless it is given.

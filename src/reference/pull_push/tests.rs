@@ -13,7 +13,7 @@ fn camera() -> Camera {
 
 fn frame(rules: Rules) -> Reconstruction {
     let settings = Settings { shading: Shading::Colour, cull: Cull::Back, ..Default::default() };
-    Reconstruction::new(&camera(), [64, 64], &settings, PullPush { rules }).unwrap()
+    Reconstruction::new(&camera(), [64, 64], &settings, PullPush::of(rules)).unwrap()
 }
 
 /// A disc that faces the eye from the middle of the view.
@@ -216,7 +216,7 @@ fn a_tube_is_round() {
         let model =
             Model { primitives: Primitives { tubes: vec![[0, 1]], ..vertices(&ends) }, ..Default::default() };
         let settings = Settings { shading: Shading::Normal, ..Default::default() };
-        let pull_push = PullPush { rules: Rules::Robust };
+        let pull_push = PullPush::of(Rules::Robust);
         let picture = render(&model, &camera(), [64, 64], &settings, pull_push).unwrap();
         let lens = frame(Rules::Robust).lens;
         let mut seen = 0;
