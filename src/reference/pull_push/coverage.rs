@@ -22,7 +22,8 @@ pub fn of(frame: &Reconstruction, pushed: &Level, [x, y]: [i64; 2], margin: &Mar
     };
     // All are asked, so that all that is in doubt is known.
     let covered = |k: &u32| {
-        near.iter().flatten().fold(false, |covered, disc| covers(own + sample(*k), disc) || covered)
+        let each = near.iter().flatten().map(|disc| covers(own + sample(*k), disc));
+        each.max() == Some(true)
     };
     f64::from((0..SAMPLES).filter(covered).count().max(1) as u32) / f64::from(SAMPLES)
 }
