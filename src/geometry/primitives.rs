@@ -261,7 +261,7 @@ mod tests {
             |p| p.colours = Some(Colours::Linear(vec![])),
             |p| p.origin.x = f64::NAN,
         ];
-        let causes = ["vertex 2, and there are 2", "vertex 9", "[2, 1, 2]", "[2, 2, 0]", "finite"];
+        let causes = ["vertex 2, and there are 2", "vertex 9", "[2, 1, 2, 2]", "[2, 2, 0, 2]", "finite"];
         for (change, said) in changes.into_iter().zip(causes) {
             let mut primitives = two();
             change(&mut primitives);
