@@ -1,4 +1,4 @@
-// Shade: the final level 0 → picture, normal, depth, lit pixel by pixel (marroquim2008 §3.4).
+// Shade: the final level 0 → picture, normal, depth, number of the point, lit pixel by pixel (marroquim2008 §3.4).
 #version 450
 #pragma variant TEXTURED
 #extension GL_GOOGLE_include_directive : require

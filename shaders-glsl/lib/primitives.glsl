@@ -4,7 +4,7 @@
 #include "lib/pixel_row.glsl"
 #include "lib/colour_streams.glsl"
 
-layout(constant_id = 29) const uint VERTEX_COLOURS = 0; // how the scene holds their colours; see lib/sums.glsl
+layout(constant_id = 29) const uint VERTEX_COLOURS = 0; // how the scene holds their colours; see lib/colour_streams.glsl
 
 layout(set = 3, binding = 0, std430) readonly buffer Vertices { float vertices[]; };            // position, direction, radius
 layout(set = 3, binding = 1, std430) readonly buffer Alongs { float alongs[]; };                // directions of the lines
