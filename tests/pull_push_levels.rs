@@ -3,6 +3,7 @@
 mod support;
 
 use glam::DVec3;
+use std::f64::consts::SQRT_2;
 use std::fmt;
 use std::sync::Arc;
 use support::gpu::{assert_silent, device};
@@ -11,10 +12,10 @@ use support::scenes::{Case, cases};
 use surfel::geometry::{Camera, Model, Parts, Surfels};
 use surfel::pull_push::{PullPush, Rules};
 use surfel::reference::Frame;
-use surfel::reference::pull_push::{Decided, Level, Reconstruction, Sample};
+use surfel::reference::pull_push::{Compact, Decided, Level, Reconstruction, Sample, Steps};
 use surfel::settings::{Cull, Shading};
 use surfel::vk::{Device, DeviceLimits};
-use surfel::{Settings, scenes};
+use surfel::{Precision, Settings, scenes};
 
 const SIZES: [[u32; 2]; 5] = [[1, 1], [1, 1023], [640, 480], [1023, 769], [1024, 1024]];
 
@@ -40,20 +41,26 @@ struct Worst {
 }
 
 impl Worst {
-    /// Between two samples of a level.
-    fn between(a: &Sample, b: &Sample, level: u32) -> Self {
+    /// Between two samples of a level, beyond the steps to which both are rounded.
+    fn between(a: &Sample, b: &Sample, level: u32, steps: Steps) -> Self {
+        let beyond = |difference: f64, step: f64| (difference - step).max(0.0);
         let relative = |a: f64, b: f64| (a - b).abs() / b;
         let unit = b.radius.max(f64::from(level).exp2());
         // A tangent may as well be its opposite.
         let turned = if a.tube && a.normal.dot(b.normal) < 0.0 { -a.normal } else { a.normal };
-        let apart = (a.displacement - b.displacement).length().max((a.radius - b.radius).abs());
+        let moved = beyond((a.displacement - b.displacement).length(), SQRT_2 * steps.place);
+        let apart = largest(moved, beyond((a.radius - b.radius).abs(), steps.place));
+        let far = beyond((a.far - b.far).abs(), steps.far) / b.far;
         Self {
-            distance: [relative(a.near, b.near), relative(a.far, b.far), relative(a.depth, b.depth)]
+            distance: [relative(a.near, b.near), far, relative(a.depth, b.depth)]
                 .into_iter()
                 .fold(0.0, largest),
             place: apart / unit,
-            normal: if a.tube == b.tube { (turned - b.normal).abs().max_element() } else { f64::INFINITY },
-            colour: (a.colour - b.colour).abs().max_element(),
+            normal: match a.tube == b.tube {
+                true => beyond((turned - b.normal).abs().max_element(), steps.normal),
+                false => f64::INFINITY,
+            },
+            colour: beyond((a.colour - b.colour).abs().max_element(), steps.colour),
         }
     }
 
@@ -91,23 +98,31 @@ struct Verdict {
     failed: usize,
     /// The first of them.
     first: String,
+    /// Samples that pass and are not rounded to the twin's numbers, but to others next to them.
+    beside: usize,
     /// Over all samples that pass.
     worst: Worst,
 }
 
 impl Verdict {
-    fn of(gpu: &Level, twin: &Decided, doubt: f64) -> Self {
+    fn of(gpu: &Level, twin: &Decided, doubt: f64, compact: Option<Compact>) -> Self {
+        let steps = |sample: &Sample| compact.map_or(Steps::default(), |compact| compact.steps(sample));
         assert_eq!((gpu.size, gpu.samples.len()), (twin.level.size, twin.margins.len()));
         let mut found = Self { samples: gpu.samples.len(), ..Default::default() };
         let pairs = gpu.samples.iter().zip(&twin.level.samples).zip(&twin.margins);
         for (i, ((gpu, own), margin)) in pairs.enumerate() {
             let worst = match (gpu, own) {
-                (Some(gpu), Some(own)) => Some(Worst::between(gpu, own, twin.level.level)),
+                (Some(gpu), Some(own)) => Some(Worst::between(gpu, own, twin.level.level, steps(own))),
                 (None, None) => Some(Worst::default()),
                 _ => None,
             };
             match worst.filter(Worst::passes) {
-                Some(worst) => found.worst.widen(&worst),
+                Some(worst) => {
+                    found.worst.widen(&worst);
+                    let pair = gpu.as_ref().zip(own.as_ref()).filter(|_| compact.is_some());
+                    found.beside +=
+                        usize::from(pair.is_some_and(|(gpu, own)| is_beside(gpu, own, steps(own))));
+                }
                 None if *margin < doubt => found.excused += 1,
                 None => {
                     found.failed += 1;
@@ -122,6 +137,12 @@ impl Verdict {
     }
 }
 
+/// Whether two samples within a step of each other differ by half of one, of those numbers that are rounded most.
+fn is_beside(a: &Sample, b: &Sample, steps: Steps) -> bool {
+    let place = (a.displacement - b.displacement).abs().max_element().max((a.radius - b.radius).abs());
+    place > 0.5 * steps.place || (a.far - b.far).abs() > 0.5 * steps.far
+}
+
 /// Samples of a level of less than 3000 that may be excused: at one in 10⁵, which is more than are found, one level in 10⁵ has more of them.
 const FEW: usize = 2;
 
@@ -131,6 +152,7 @@ struct Summary {
     worst: Worst,
     excused: usize,
     samples: usize,
+    beside: usize,
     failures: Vec<String>,
 }
 
@@ -139,6 +161,7 @@ impl Summary {
         self.worst.widen(&verdict.worst);
         self.excused += verdict.excused;
         self.samples += verdict.samples;
+        self.beside += verdict.beside;
         let most = (verdict.samples / 1000).max(FEW);
         if verdict.failed > 0 || verdict.excused > most {
             let Verdict { samples, excused, failed, first, .. } = verdict;
@@ -189,19 +212,20 @@ fn beyond(coarsest: &Level) -> Level {
 /// Every pass of a frame, each kind's levels added to `kinds`: project, pull, push. What is wrong with the last, if anything.
 fn test(device: &Arc<Device>, shot: &Shot, kinds: &mut [Summary; 3]) -> Option<String> {
     let (made, twin, name) = (shot.by_gpu(device), shot.reconstruction(), &shot.name);
+    let compact = shot.compact();
     let [pulled, pushed] = [&made.pyramid.pulled, &made.pyramid.pushed];
 
     let points = projected(shot, &twin);
-    kinds[0].add(&format!("{name}: project"), &Verdict::of(&pulled[0], &points, DOUBT_OF_POINTS));
+    kinds[0].add(&format!("{name}: project"), &Verdict::of(&pulled[0], &points, DOUBT_OF_POINTS, compact));
     for (finer, level) in pulled.iter().zip(&pulled[1..]) {
         let name = format!("{name}: pull to {}", level.level);
-        kinds[1].add(&name, &Verdict::of(level, &twin.decide_pull(finer), DOUBT));
+        kinds[1].add(&name, &Verdict::of(level, &twin.decide_pull(finer), DOUBT, compact));
     }
     let beyond = beyond(&pulled[pulled.len() - 1]);
     for (level, known) in pushed.iter().zip(pulled) {
         let coarser = pushed.get(level.level as usize + 1).unwrap_or(&beyond);
         let name = format!("{name}: push to {}", level.level);
-        kinds[2].add(&name, &Verdict::of(level, &twin.decide_push(coarser, known), DOUBT));
+        kinds[2].add(&name, &Verdict::of(level, &twin.decide_push(coarser, known), DOUBT, compact));
     }
     let (shade, differ) = compare(&made.frame, &twin.shade(&pushed[0]));
 
@@ -230,6 +254,7 @@ fn shots<'a>(
     parts: Parts<'a>,
     shading: Shading,
     sizes: &'a [[u32; 2]],
+    precision: Precision,
 ) -> impl Iterator<Item = Shot<'a>> {
     let each = sizes.iter().flat_map(|&size| cameras(size).map(|(kind, camera)| (size, kind, camera)));
     each.flat_map(move |(size, kind, camera)| {
@@ -238,18 +263,22 @@ fn shots<'a>(
             let settings =
                 Settings { cull: Cull::Back, shading, pull_push: Some(pull_push), ..Default::default() };
             let name = format!("{name} {kind} {}x{} {}", size[0], size[1], rules.name());
-            Shot { name, parts, camera, size, settings, pull_push }
+            Shot { name, parts, camera, size, settings, pull_push, precision }
         })
     })
 }
 
-fn holds(list: impl IntoIterator<Item = (&'static str, impl Into<Model>, Shading)>, sizes: &[[u32; 2]]) {
+fn holds(
+    list: impl IntoIterator<Item = (&'static str, impl Into<Model>, Shading)>,
+    sizes: &[[u32; 2]],
+    precision: Precision,
+) {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let mut kinds: [Summary; 3] = Default::default();
     let mut failures = Vec::new();
     for (name, model, shading) in list {
         let model = model.into();
-        for shot in shots(name, Parts::from(&model), shading, sizes) {
+        for shot in shots(name, Parts::from(&model), shading, sizes, precision) {
             failures.extend(test(&device, &shot, &mut kinds));
         }
     }
@@ -259,6 +288,10 @@ fn holds(list: impl IntoIterator<Item = (&'static str, impl Into<Model>, Shading
             "{name}: {}, {} of {} samples excused, {excused:.4} %",
             kind.worst, kind.excused, kind.samples
         );
+        let beside = kind.beside as f64 / kind.samples as f64;
+        println!("{name}: {:.2} % are rounded to other numbers", 100.0 * beside);
+        // Rounded otherwise than to the nearest, half of each of the four numbers would be.
+        assert!(beside < 0.1, "{name}: {beside}");
         failures.extend(kind.failures);
     }
     assert!(failures.is_empty(), "{} failures: {:#?}", failures.len(), &failures[..failures.len().min(40)]);
@@ -271,12 +304,12 @@ fn bumpy(points: u32) -> Surfels {
 
 #[test]
 fn few_points() {
-    holds([("10 k", bumpy(10_000), Shading::Lit)], &SIZES);
+    holds([("10 k", bumpy(10_000), Shading::Lit)], &SIZES, Precision::Full);
 }
 
 #[test]
 fn many_points() {
-    holds([("100 k", bumpy(100_000), Shading::Colour)], &SIZES);
+    holds([("100 k", bumpy(100_000), Shading::Colour)], &SIZES, Precision::Full);
 }
 
 #[test]
@@ -287,7 +320,7 @@ fn ellipses_without_sides_and_what_has_no_colours() {
         ("ellipses", named("ellipses"), Shading::Colour),
         ("no colours", Surfels { colours: None, ..bumpy(10_000) }, Shading::Lit),
     ];
-    holds(list, &SIZES[2..3]);
+    holds(list, &SIZES[2..3], Precision::Full);
 }
 
 #[test]
@@ -299,5 +332,17 @@ fn ribbons_tubes_and_triangles() {
         ("helix", model("helix?segments=100"), Shading::Lit),
         ("ribbon", model("ribbon?segments=40"), Shading::Lit),
     ];
-    holds(list, &SIZES[2..3]);
+    holds(list, &SIZES[2..3], Precision::Full);
+}
+
+#[test]
+fn compact_samples() {
+    let mixed = scenes::model("scene:mixed?segments=200&points=30000&primitives=on").unwrap();
+    let list = [
+        ("10 k", bumpy(10_000).into(), Shading::Lit),
+        ("100 k", bumpy(100_000).into(), Shading::Colour),
+        ("no colours", Surfels { colours: None, ..bumpy(10_000) }.into(), Shading::Lit),
+        ("mixed", mixed, Shading::Lit),
+    ];
+    holds(list, &SIZES[1..3], Precision::Half);
 }

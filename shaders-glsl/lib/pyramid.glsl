@@ -8,6 +8,14 @@ layout(constant_id = 17) const bool SUM_COLOURS = false; // samples have colours
 layout(push_constant) uniform Step { uint level; uint levels; } pass;
 #endif
 
+layout(constant_id = 33) const bool COMPACT = false;           // samples are rounded to 24 bytes
+layout(constant_id = 34) const bool UNBOUNDED_COLOURS = false; // some colours may be beyond 1
+
+#include "lib/compact.glsl"
+
+// Elements of a sample in the planes of depths, and of normals and colours.
+const uint DEPTHS = COMPACT ? 1 : 2, WORDS = COMPACT ? 1 : 3;
+
 struct Sample {
     float near;        // least distance from which on the surface is; 0 where nothing is known
     float far;         // greatest distance up to which another surface is the same
@@ -49,51 +57,64 @@ bool is_within(uint level, ivec2 at) {
     return all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, level_size(level)));
 }
 
-// A sample as the planes of a pyramid hold it, in bits. The radius of a tube's has a minus.
+// A sample as the planes of a pyramid hold it, in bits; src/targets/pyramids.rs has their sizes.
 struct Planes {
-    uvec4 depths; // near, far, depth, radius
-    uvec2 place;  // displacement
-    uvec3 normal;
-    uvec3 colour; // where samples have one
+    uvec4 depths; // near, far, depth, radius; compact: near, depth
+    uvec2 place;  // displacement; compact: halves of it and the radius, and what far is beyond near
+    uvec3 normal; // compact: octahedral
+    uvec3 colour; // where samples have one; compact: square roots, or with a shared exponent where it may be beyond 1
 };
 
+// The radius of a tube's sample has a minus.
 Planes planes_of(Sample s) {
     float radius = s.tube ? -s.radius : s.radius;
-    return Planes(floatBitsToUint(vec4(s.near, s.far, s.depth, radius)), floatBitsToUint(s.displacement), floatBitsToUint(s.normal),
-                  floatBitsToUint(s.colour));
+    if (!COMPACT) {
+        vec4 depths = vec4(s.near, s.far, s.depth, radius);
+        return Planes(floatBitsToUint(depths), floatBitsToUint(s.displacement), floatBitsToUint(s.normal), floatBitsToUint(s.colour));
+    }
+    uvec4 depths = uvec4(floatBitsToUint(s.near), floatBitsToUint(s.depth), 0, 0);
+    uint size = pack_halves(vec2(radius, 0.0)) | pack_length(max(s.far - s.near, 0.0)) << 16;
+    uint colour = UNBOUNDED_COLOURS ? pack_shared(s.colour) : pack_roots(s.colour);
+    return Planes(depths, uvec2(pack_halves(s.displacement), size), uvec3(pack_direction(s.normal), 0, 0), uvec3(colour, 0, 0));
 }
 
 // What is not known is stored as zeros, and read like all else: where lanes differ in what they know, branches cost more than what they leave
 // out.
 Sample sample_of_planes(Planes p) {
     vec4 depths = uintBitsToFloat(p.depths);
-    bool tube = p.depths.w >> 31 != 0;
-    return Sample(depths.x, depths.y, depths.z, abs(depths.w), uintBitsToFloat(p.place), uintBitsToFloat(p.normal),
-                  uintBitsToFloat(p.colour), tube);
+    if (!COMPACT) {
+        bool tube = p.depths.w >> 31 != 0;
+        return Sample(depths.x, depths.y, depths.z, abs(depths.w), uintBitsToFloat(p.place), uintBitsToFloat(p.normal),
+                      uintBitsToFloat(p.colour), tube);
+    }
+    bool tube = (p.place.y >> 15 & 1) != 0;
+    float far = depths.x + unpack_length(p.place.y >> 16), radius = abs(unpackHalf2x16(p.place.y).x);
+    vec3 colour = UNBOUNDED_COLOURS ? unpack_shared(p.colour.x) : unpack_roots(p.colour.x);
+    return Sample(depths.x, far, depths.y, radius, unpackHalf2x16(p.place.x), unpack_direction(p.normal.x), colour, tube);
 }
 
 // load_NAME and store_NAME of the pyramid at descriptor set SET: planes of all samples, level after level, fine to coarse. A pass reads set 1,
 // `from`, and writes set 2, `to`.
 #define DEFINE_PYRAMID(SET, NAME)                                                                          \
-    layout(set = SET, binding = 0, std430) buffer NAME##Depths { uvec4 NAME##_depths[]; };                 \
+    layout(set = SET, binding = 0, std430) buffer NAME##Depths { uvec2 NAME##_depths[]; };                 \
     layout(set = SET, binding = 1, std430) buffer NAME##Places { uvec2 NAME##_places[]; };                 \
     layout(set = SET, binding = 2, std430) buffer NAME##Normals { uint NAME##_normals[]; };                \
     layout(set = SET, binding = 3, std430) buffer NAME##Colours { uint NAME##_colours[]; };                \
     Sample load_##NAME(uint i) {                                                                           \
-        Planes p;                                                                                          \
-        p.depths = NAME##_depths[i];                                                                       \
-        p.place = NAME##_places[i];                                                                        \
-        for (uint k = 0; k < 3; k++) p.normal[k] = NAME##_normals[3 * i + k];                              \
-        p.colour = uvec3(0);                                                                               \
-        if (SUM_COLOURS) for (uint k = 0; k < 3; k++) p.colour[k] = NAME##_colours[3 * i + k];             \
+        Planes p = Planes(uvec4(0), NAME##_places[i], uvec3(0), uvec3(0));                                 \
+        p.depths.xy = NAME##_depths[DEPTHS * i];                                                           \
+        if (DEPTHS > 1) p.depths.zw = NAME##_depths[DEPTHS * i + 1];                                       \
+        for (uint k = 0; k < WORDS; k++) p.normal[k] = NAME##_normals[WORDS * i + k];                      \
+        if (SUM_COLOURS) for (uint k = 0; k < WORDS; k++) p.colour[k] = NAME##_colours[WORDS * i + k];     \
         return sample_of_planes(p);                                                                        \
     }                                                                                                      \
     void store_##NAME(uint i, Sample s) {                                                                  \
         Planes p = planes_of(s);                                                                           \
-        NAME##_depths[i] = p.depths;                                                                       \
         NAME##_places[i] = p.place;                                                                        \
-        for (uint k = 0; k < 3; k++) NAME##_normals[3 * i + k] = p.normal[k];                              \
-        if (SUM_COLOURS) for (uint k = 0; k < 3; k++) NAME##_colours[3 * i + k] = p.colour[k];             \
+        NAME##_depths[DEPTHS * i] = p.depths.xy;                                                           \
+        if (DEPTHS > 1) NAME##_depths[DEPTHS * i + 1] = p.depths.zw;                                       \
+        for (uint k = 0; k < WORDS; k++) NAME##_normals[WORDS * i + k] = p.normal[k];                      \
+        if (SUM_COLOURS) for (uint k = 0; k < WORDS; k++) NAME##_colours[WORDS * i + k] = p.colour[k];     \
     }
 
 // The pixel of this invocation; below 0 beyond the level.
