@@ -11,8 +11,6 @@
 
 DEFINE_PYRAMID(1, from)
 
-layout(local_size_x = 64) in;
-
 layout(constant_id = 6) const uint SHADING = 0;
 const uint LIT = 0, COLOUR = 1, NORMAL = 2, DEPTH = 3;
 layout(constant_id = 9) const bool OUT_NORMAL = false;

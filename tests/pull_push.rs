@@ -12,7 +12,8 @@ use glam::DVec3;
 use support::gpu::{assert_silent, device, render};
 use support::pyramids::{Made, Shot};
 use support::truth::{Differences, Truth};
-use surfel::methods::{passes, pull_push};
+use surfel::geometry::{Camera, Surfels};
+use surfel::methods::{Method, passes, perspective_ewa, pull_push};
 use surfel::pull_push::{PullPush, Rules, Storage};
 use surfel::reference::pull_push::Reconstruction;
 use surfel::scenes::bumpy_sphere::Hit;
@@ -234,6 +235,50 @@ fn where_the_levels_are_kept_changes_nothing() {
             assert_eq!(apart.1[0], in_turns.1[0], "{rules:?} {side}: pulled");
             assert_eq!(apart.1[1], in_turns.1[1], "{rules:?} {side}: pushed");
         }
+    }
+    assert_silent(&device);
+}
+
+/// What is compact holds lengths in every unit: of a scene that is 2⁴⁰ times as large or as small the picture is the same.
+#[test]
+fn units_change_nothing() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let surfels = scenes::open("scene:bumpy-sphere?points=20000&seed=1").unwrap();
+    let picture = |unit: f64| {
+        let positions = surfels.positions.iter().map(|p| *p * unit as f32).collect();
+        let radii = surfels.radii.iter().map(|radius| radius * unit as f32).collect();
+        let scaled = Surfels { positions, radii, ..surfels.clone() };
+        let eye = 3.5 * unit * DVec3::new(1.0, 0.8, 1.6).normalize();
+        let camera = Camera::look_at(eye, DVec3::ZERO, DVec3::Y, 0.8, 1.0, 1e-3 * unit).unwrap();
+        let options = RenderOptions { size: [200; 2], precision: Precision::Half, ..Default::default() };
+        render(&device, &scaled, &camera, &pull_push::METHOD.settings(), options).colour
+    };
+    let one = picture(1.0);
+    assert!(one.iter().filter(|colour| colour[3] > 0.0).count() > 10_000);
+    for exponent in [-40, 40] {
+        assert!(picture(f64::from(exponent).exp2()) == one, "2^{exponent}");
+    }
+    assert_silent(&device);
+}
+
+#[test]
+fn samples_are_as_wide_as_asked_for_whatever_sums_are() {
+    let limits =
+        DeviceLimits { blend_float32: Some(false), float_atomics: Some(false), ..Default::default() };
+    let Some(device) = device(limits) else { return };
+    let surfels = scenes::open("scene:bumpy-sphere?points=2000&seed=1").unwrap();
+    let scene = Scene::upload(&device, &surfels).unwrap();
+    for (precision, bytes) in [(Precision::Full, 48), (Precision::Half, 24)] {
+        let options = RenderOptions { size: [64; 2], precision, ..Default::default() };
+        let mut renderer = Renderer::new(&device, options).unwrap();
+        let mut render = |method: Method| {
+            renderer.render(&scene, &Truth::new(64).camera(), &method.settings()).unwrap();
+            let samples = renderer.targets().into_iter().filter(|target| target.name.starts_with("pulled"));
+            (renderer.precision(), samples.map(|target| target.bytes).sum::<u64>())
+        };
+        assert_eq!(render(perspective_ewa::METHOD), (Precision::Half, 0));
+        // 64² px in all levels are 5461.
+        assert_eq!(render(pull_push::METHOD), (precision, bytes * 5461));
     }
     assert_silent(&device);
 }

@@ -117,6 +117,15 @@ Sample sample_of_planes(Planes p) {
         if (SUM_COLOURS) for (uint k = 0; k < WORDS; k++) NAME##_colours[WORDS * i + k] = p.colour[k];     \
     }
 
+uint place_in(uint level, uint start, ivec2 at) {
+    return start + uint(at.y * level_size(level).x + at.x);
+}
+
+#ifndef SAMPLES_ONLY
+
+// Before its size is used, which were 1 otherwise.
+layout(local_size_x = 64) in;
+
 // The pixel of this invocation; below 0 beyond the level.
 ivec2 own_pixel(uint level) {
     ivec2 size = level_size(level);
@@ -124,6 +133,4 @@ ivec2 own_pixel(uint level) {
     return i < uint(size.x * size.y) ? ivec2(i % uint(size.x), i / uint(size.x)) : ivec2(-1);
 }
 
-uint place_in(uint level, uint start, ivec2 at) {
-    return start + uint(at.y * level_size(level).x + at.x);
-}
+#endif
