@@ -2,7 +2,7 @@
 
 /// Two half floats, the first in the lower bits.
 pub fn halves(bits: u32) -> [f32; 2] {
-    [bits & 0xffff, bits >> 16].map(|bits| half(bits))
+    [bits & 0xffff, bits >> 16].map(half)
 }
 
 /// A finite half float: as a float its exponent is 112 too small.

@@ -66,7 +66,7 @@ fn storage(variant: &Variant) -> Storage {
     variant.pull_push.map_or(Storage::Apart, |pull_push| pull_push.storage)
 }
 
-/// What the planes of either pyramid are called.
+/// What the planes of either pyramid are called. In shaders they are `from_depths`, `to_depths` and so on, by what a pass does with them.
 fn names(storage: Storage) -> [[&'static str; PLANES]; 2] {
     match storage {
         Storage::Apart => [

@@ -6,6 +6,7 @@ use surfel::geometry::{Camera, Colours, Parts};
 use surfel::pull_push::PullPush;
 use surfel::reference::Frame;
 use surfel::reference::pull_push::{Compact, Level, Pyramid, Reconstruction, Sample};
+use surfel::scene::ColourStream;
 use surfel::vk::Device;
 use surfel::{
     Outputs, Picture, Precision, PyramidLevel, PyramidSample, RenderOptions, Renderer, Scene, Settings,
@@ -44,9 +45,13 @@ impl Shot<'_> {
     /// What its samples are rounded to, if they are.
     pub fn compact(&self) -> Option<Compact> {
         let primitives = self.parts.primitives.and_then(|primitives| primitives.colours.as_ref());
-        let colours = [self.parts.surfels.colours.as_ref(), primitives];
-        let unbounded_colours = colours.into_iter().flatten().any(|c| matches!(c, Colours::Linear(_)));
-        (self.precision == Precision::Half).then_some(Compact { unbounded_colours })
+        let given: Vec<_> = [self.parts.surfels.colours.as_ref(), primitives].into_iter().flatten().collect();
+        let colours = match given.iter().any(|colours| matches!(colours, Colours::Linear(_))) {
+            true => ColourStream::Linear,
+            false if given.is_empty() => ColourStream::None,
+            false => ColourStream::Srgb8,
+        };
+        (self.precision == Precision::Half).then_some(Compact { colours })
     }
 
     /// By the twin, with as many levels as it needs.

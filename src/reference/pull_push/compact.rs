@@ -1,6 +1,7 @@
 //! What a sample of the compact layout is rounded to: the numbers of `lib/compact.glsl`, in float64.
 
 use super::Sample;
+use crate::scene::ColourStream;
 use glam::{DVec2, DVec3};
 
 /// Greatest half float.
@@ -15,8 +16,8 @@ const ROOTS: f64 = 1023.0;
 /// The compact layout of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Compact {
-    /// Some colours may be beyond 1: they share an exponent, where others are kept as their square roots.
-    pub unbounded_colours: bool,
+    /// How the scene has its colours: linear ones may be beyond 1, and share an exponent where others are kept as their square roots.
+    pub colours: ColourStream,
 }
 
 /// How far apart the numbers are of which the layout has one, about those of a sample: what is rounded is off by half of it, and of two that
@@ -42,7 +43,11 @@ impl Compact {
             displacement: DVec2::new(x, y),
             radius: half(sample.radius),
             normal: direction(sample.normal),
-            colour: if self.unbounded_colours { shared(sample.colour) } else { roots(sample.colour) },
+            colour: match self.colours {
+                ColourStream::None => sample.colour,
+                ColourStream::Srgb8 => roots(sample.colour),
+                ColourStream::Linear => shared(sample.colour),
+            },
             ..*sample
         }
     }
@@ -56,9 +61,10 @@ impl Compact {
             place: half_step(longest),
             // A step of either coordinate moves a point of the octahedron by up to √6 of it, and one of the sphere by √3 times as much.
             normal: 18f64.sqrt() / CODES,
-            colour: match self.unbounded_colours {
-                true => shared_step(brightest),
-                false => 2.0 * brightest.clamp(0.0, 1.0).sqrt() / ROOTS + ROOTS.powi(-2),
+            colour: match self.colours {
+                ColourStream::None => 0.0,
+                ColourStream::Srgb8 => 2.0 * brightest.clamp(0.0, 1.0).sqrt() / ROOTS + ROOTS.powi(-2),
+                ColourStream::Linear => shared_step(brightest),
             },
         }
     }
@@ -152,8 +158,8 @@ mod tests {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
             (state >> 11) as f64 / (1u64 << 53) as f64 * 2.0 - 1.0
         };
-        for unbounded_colours in [false, true] {
-            let compact = Compact { unbounded_colours };
+        for colours in [ColourStream::None, ColourStream::Srgb8, ColourStream::Linear] {
+            let compact = Compact { colours };
             for _ in 0..10_000 {
                 let mut vector = || DVec3::new(number(), number(), number());
                 let (place, colour, depths) = (100.0 * vector(), vector().abs(), vector().abs());
