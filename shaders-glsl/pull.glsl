@@ -11,8 +11,6 @@
 DEFINE_PYRAMID(1, from)
 DEFINE_PYRAMID(2, to)
 
-layout(local_size_x = 64) in;
-
 void main() {
     uint level = pass.level, finer = level - 1;
     ivec2 at = own_pixel(level);

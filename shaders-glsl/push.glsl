@@ -11,8 +11,6 @@
 DEFINE_PYRAMID(1, from)
 DEFINE_PYRAMID(2, to)
 
-layout(local_size_x = 64) in;
-
 layout(constant_id = 32) const bool PING_PONG = false; // levels are kept in turns
 
 // What a disc's variance is widened by on level 0, px²; four times as much a level. Narrower ones leave holes between themselves.

@@ -18,8 +18,6 @@ DEFINE_PYRAMID(1, from)
 #include "lib/texture.glsl"
 #endif
 
-layout(local_size_x = 64) in;
-
 layout(constant_id = 9) const bool OUT_NORMAL = false;
 layout(constant_id = 10) const bool OUT_DEPTH = false;
 layout(constant_id = 35) const bool OUT_ID = false;

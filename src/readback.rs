@@ -1,5 +1,6 @@
 //! A frame's targets copied to the CPU.
 
+mod compact;
 mod pyramids;
 
 pub use pyramids::{PyramidLevel, PyramidSample};

@@ -24,7 +24,8 @@ pub struct RenderOptions {
     pub size: [u32; 2],
     /// Images beside the picture.
     pub outputs: Outputs,
-    /// Float width of the weighted sums. A device that cannot blend 32-bit floats gets 16, see [`Renderer::precision`].
+    /// Float width of the weighted sums, or of the samples of pull–push. A device that cannot blend 32-bit floats gets sums of 16, see
+    /// [`Renderer::precision`].
     pub precision: Precision,
     /// What visits the pixels; `None` takes what is faster on the device.
     pub rasterizer: Option<Rasterizer>,
@@ -72,6 +73,8 @@ pub struct Renderer {
     frame: Buffer,
     commands: Commands,
     options: RenderOptions,
+    /// Width of the weighted sums, which the device may not have as it was asked for.
+    sums: Precision,
     device: Arc<Device>,
 }
 
@@ -94,12 +97,12 @@ impl Renderer {
     /// A renderer that has made nothing for any scene yet.
     pub fn new(device: &Arc<Device>, options: RenderOptions) -> Result<Self> {
         check_size(device, options.size)?;
-        let mut options = options;
         let rasterizer = rasterizer_for(device, &options, true, Alpha::Mask)?;
         let blends = device.capabilities().blend_float32;
+        let mut sums = options.precision;
         if rasterizer == Rasterizer::Draw && options.precision == Precision::Full && !blends {
             log::warn!("{} cannot blend 32-bit floats: sums are kept in 16 bits", device.description().name);
-            options.precision = Precision::Half;
+            sums = Precision::Half;
         }
         Ok(Self {
             present: None,
@@ -110,6 +113,7 @@ impl Renderer {
             frame: Buffer::uniform(device, "frame", size_of::<Frame>() as u64)?,
             commands: Commands::new(device, options.profile)?,
             options,
+            sums,
             device: device.clone(),
         })
     }
@@ -137,9 +141,9 @@ impl Renderer {
         self.commands.time(on);
     }
 
-    /// Float width of the weighted sums in use.
+    /// Float width of the samples of the last frame, if it was pull–push's, else of the weighted sums.
     pub fn precision(&self) -> Precision {
-        self.options.precision
+        self.present.as_ref().map_or(self.sums, |present| present.variant.precision)
     }
 
     /// The targets of the last frame.
@@ -180,7 +184,9 @@ impl Renderer {
             None => rasterizer_for(&self.device, &self.options, blends, settings.alpha)?,
         };
         let perspective = camera.projection()?.perspective;
-        let variant = Variant::new(scene.streams(), perspective, settings, &self.options, rasterizer);
+        let precision = if settings.pull_push.is_some() { self.options.precision } else { self.sums };
+        let options = RenderOptions { precision, ..self.options };
+        let variant = Variant::new(scene.streams(), perspective, settings, &options, rasterizer);
         let splats = variant.pull_push.is_none().then_some(variant.rasterizer);
         self.make_resident(scene, splats)?;
         self.make_present(variant, read)?;
@@ -250,18 +256,27 @@ fn projects(device: &Device, options: &RenderOptions) -> Result<Rasterizer> {
         _ if !device.capabilities().int64_atomics => Err(Error::Usage(format!(
             "pull-push needs 64-bit atomics in buffers, which {name} does not have: choose a method that splats"
         ))),
-        _ if !Pyramids::fit(device.capabilities(), options.outputs, options.size) => {
-            let [width, height] = options.size;
-            let [most_width, most_height] =
-                Pyramids::largest(device.capabilities(), options.outputs, options.size);
-            Err(Error::Usage(format!(
-                "pyramids of {width}x{height} px do not fit the {} bytes of a buffer that shaders of {name} can see \
-                 (maxStorageBufferRange): choose at most {most_width}x{most_height} px",
-                device.capabilities().max_storage_buffer_range
-            )))
-        }
+        _ if !Pyramids::fit(device.capabilities(), options) => Err(too_large(device, options)),
         _ => Ok(Rasterizer::Compute),
     }
+}
+
+/// That pyramids do not fit the device, and what would.
+fn too_large(device: &Device, options: &RenderOptions) -> Error {
+    let capabilities = device.capabilities();
+    let half = RenderOptions { precision: Precision::Half, ..*options };
+    let halved = match Pyramids::fit(capabilities, &half) {
+        true => "samples of 16 bits (--half), or ",
+        false => "",
+    };
+    let ([width, height], [most_width, most_height]) =
+        (options.size, Pyramids::largest(capabilities, options));
+    Error::Usage(format!(
+        "pyramids of {width}x{height} px do not fit the {} bytes of a buffer that shaders of {} can see (maxStorageBufferRange): \
+         choose {halved}at most {most_width}x{most_height} px",
+        capabilities.max_storage_buffer_range,
+        device.description().name
+    ))
 }
 
 /// The faster of what `device` can do with these options, for frames that blend splats or do not.

@@ -59,7 +59,7 @@ pub struct Variant {
     pub lights: u32,
     /// Images beside the picture.
     pub outputs: Outputs,
-    /// Float width of the sums.
+    /// Float width of the sums, or of the samples.
     pub precision: Precision,
     /// What visits the pixels.
     pub rasterizer: Rasterizer,
@@ -85,13 +85,15 @@ pub struct Outputs {
     pub id: bool,
 }
 
-/// Width of the floats in which weighted sums are kept.
+/// Width of the floats in which weighted sums, or the samples of pull–push, are kept.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Precision {
     /// 32 bits.
     #[default]
     Full,
-    /// 16 bits: half the memory and bandwidth. Blending in it may truncate, so that sums of many splats come out low.
+    /// 16 bits: half the memory and bandwidth. Blending in it may truncate, so that sums of many splats come out low. Samples of pull–push keep
+    /// 32 bits of what is compared most closely, the distances, so that nothing is lost that can be seen; displacements and radii end at
+    /// 65504 px, and colours beyond 1 of scenes that have linear ones at 65408.
     Half,
 }
 
@@ -160,6 +162,12 @@ impl Variant {
         wanted && (undivided || self.shade_splats || coloured)
     }
 
+    /// Whether some of the colours may be beyond 1.
+    pub fn unbounded_colours(&self) -> bool {
+        let floats = |colours| matches!(colours, ColourStream::Linear | ColourStream::Textured);
+        floats(self.colours) || floats(self.primitives.colours)
+    }
+
     /// Whether target 0 sums a vector beside Σw.
     pub fn wide_sums0(&self) -> bool {
         self.normals || self.sums_colours()
@@ -201,6 +209,8 @@ impl Variant {
                 constant::PING_PONG,
                 self.pull_push.is_some_and(|pull_push| pull_push.storage == Storage::PingPong),
             )
+            .with(constant::COMPACT, self.pull_push.is_some() && self.precision == Precision::Half)
+            .with(constant::UNBOUNDED_COLOURS, self.unbounded_colours())
             .with(constant::OVERLAP, self.shading == Shading::Overlap)
             .with(constant::WIDEN_SMALL, self.widen_small)
             .with(constant::COUNT, self.count)

@@ -8,8 +8,15 @@ layout(constant_id = 17) const bool SUM_COLOURS = false; // samples have colours
 layout(push_constant) uniform Step { uint level; uint levels; } pass;
 #endif
 
-layout(constant_id = 33) const bool TEXTURE = false; // samples have coordinates in a texture instead
-layout(constant_id = 34) const bool IDS = false;     // samples have numbers
+layout(constant_id = 33) const bool COMPACT = false;           // samples are rounded to 24 bytes
+layout(constant_id = 34) const bool UNBOUNDED_COLOURS = false; // some colours may be beyond 1
+layout(constant_id = 38) const bool TEXTURE = false;           // samples have coordinates in a texture instead
+layout(constant_id = 39) const bool IDS = false;               // samples have numbers
+
+#include "lib/compact.glsl"
+
+// Elements of a sample in the planes of depths, of normals, and of colours or coordinates.
+const uint DEPTHS = COMPACT ? 1 : 2, WORDS = COMPACT ? 1 : 3, COLOUR_WORDS = TEXTURE ? 2 : SUM_COLOURS ? WORDS : 0;
 
 // The number of nothing.
 const uint NOBODY = 0xffffffffu;
@@ -63,61 +70,80 @@ bool is_within(uint level, ivec2 at) {
     return all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, level_size(level)));
 }
 
-// A sample as the planes of a pyramid hold it, in bits. The radius of a tube's has a minus.
+// A sample as the planes of a pyramid hold it, in bits; src/targets/pyramids.rs has their sizes.
 struct Planes {
-    uvec4 depths; // near, far, depth, radius
-    uvec2 place;  // displacement
-    uvec3 normal;
-    uvec3 colour; // where samples have one; where they have coordinates in a texture, these
+    uvec4 depths; // near, far, depth, radius; compact: near, depth
+    uvec2 place;  // displacement; compact: halves of it and the radius, and what far is beyond near
+    uvec3 normal; // compact: octahedral
+    uvec3 colour; // where samples have one; compact: square roots, or with a shared exponent where it may be beyond 1; or the coordinates
     uint id;      // where samples have one
 };
 
+// The radius of a tube's sample has a minus.
 Planes planes_of(Sample s) {
     float radius = s.tube ? -s.radius : s.radius;
-    return Planes(floatBitsToUint(vec4(s.near, s.far, s.depth, radius)), floatBitsToUint(s.displacement), floatBitsToUint(s.normal),
-                  floatBitsToUint(TEXTURE ? vec3(s.coordinates, 0.0) : s.colour), s.id);
+    uvec3 colour = floatBitsToUint(TEXTURE ? vec3(s.coordinates, 0.0) : s.colour);
+    if (!COMPACT) {
+        vec4 depths = vec4(s.near, s.far, s.depth, radius);
+        return Planes(floatBitsToUint(depths), floatBitsToUint(s.displacement), floatBitsToUint(s.normal), colour, s.id);
+    }
+    uvec4 depths = uvec4(floatBitsToUint(s.near), floatBitsToUint(s.depth), 0, 0);
+    uint size = pack_halves(vec2(radius, 0.0)) | pack_length(max(s.far - s.near, 0.0)) << 16;
+    if (!TEXTURE) colour.x = UNBOUNDED_COLOURS ? pack_shared(s.colour) : pack_roots(s.colour);
+    return Planes(depths, uvec2(pack_halves(s.displacement), size), uvec3(pack_direction(s.normal), 0, 0), colour, s.id);
 }
 
 // What is not known is stored as zeros, and read like all else: where lanes differ in what they know, branches cost more than what they leave
 // out.
 Sample sample_of_planes(Planes p) {
     vec4 depths = uintBitsToFloat(p.depths);
-    bool tube = p.depths.w >> 31 != 0;
     vec3 colour = uintBitsToFloat(p.colour);
-    return Sample(depths.x, depths.y, depths.z, abs(depths.w), uintBitsToFloat(p.place), uintBitsToFloat(p.normal), colour, tube,
-                  colour.xy, p.id);
+    if (!COMPACT) {
+        bool tube = p.depths.w >> 31 != 0;
+        return Sample(depths.x, depths.y, depths.z, abs(depths.w), uintBitsToFloat(p.place), uintBitsToFloat(p.normal), colour, tube,
+                      colour.xy, p.id);
+    }
+    bool tube = (p.place.y >> 15 & 1) != 0;
+    float far = depths.x + unpack_length(p.place.y >> 16), radius = abs(unpackHalf2x16(p.place.y).x);
+    if (!TEXTURE) colour = UNBOUNDED_COLOURS ? unpack_shared(p.colour.x) : unpack_roots(p.colour.x);
+    return Sample(depths.x, far, depths.y, radius, unpackHalf2x16(p.place.x), unpack_direction(p.normal.x), colour, tube, colour.xy, p.id);
 }
-
-// Words of a sample in the plane of colours.
-const uint COLOUR_WORDS = TEXTURE ? 2u : SUM_COLOURS ? 3u : 0u;
 
 // load_NAME and store_NAME of the pyramid at descriptor set SET: planes of all samples, level after level, fine to coarse. A pass reads set 1,
 // `from`, and writes set 2, `to`.
 #define DEFINE_PYRAMID(SET, NAME)                                                                          \
-    layout(set = SET, binding = 0, std430) buffer NAME##Depths { uvec4 NAME##_depths[]; };                 \
+    layout(set = SET, binding = 0, std430) buffer NAME##Depths { uvec2 NAME##_depths[]; };                 \
     layout(set = SET, binding = 1, std430) buffer NAME##Places { uvec2 NAME##_places[]; };                 \
     layout(set = SET, binding = 2, std430) buffer NAME##Normals { uint NAME##_normals[]; };                \
     layout(set = SET, binding = 3, std430) buffer NAME##Colours { uint NAME##_colours[]; };                \
     layout(set = SET, binding = 4, std430) buffer NAME##Ids { uint NAME##_ids[]; };                        \
     Sample load_##NAME(uint i) {                                                                           \
-        Planes p;                                                                                          \
-        p.depths = NAME##_depths[i];                                                                       \
-        p.place = NAME##_places[i];                                                                        \
-        for (uint k = 0; k < 3; k++) p.normal[k] = NAME##_normals[3 * i + k];                              \
-        p.colour = uvec3(0);                                                                               \
+        Planes p = Planes(uvec4(0), NAME##_places[i], uvec3(0), uvec3(0), NOBODY);                         \
+        p.depths.xy = NAME##_depths[DEPTHS * i];                                                           \
+        if (DEPTHS > 1) p.depths.zw = NAME##_depths[DEPTHS * i + 1];                                       \
+        for (uint k = 0; k < WORDS; k++) p.normal[k] = NAME##_normals[WORDS * i + k];                      \
         for (uint k = 0; k < COLOUR_WORDS; k++) p.colour[k] = NAME##_colours[COLOUR_WORDS * i + k];        \
-        p.id = NOBODY;                                                                                     \
         if (IDS) p.id = NAME##_ids[i];                                                                     \
         return sample_of_planes(p);                                                                        \
     }                                                                                                      \
     void store_##NAME(uint i, Sample s) {                                                                  \
         Planes p = planes_of(s);                                                                           \
-        NAME##_depths[i] = p.depths;                                                                       \
         NAME##_places[i] = p.place;                                                                        \
-        for (uint k = 0; k < 3; k++) NAME##_normals[3 * i + k] = p.normal[k];                              \
+        NAME##_depths[DEPTHS * i] = p.depths.xy;                                                           \
+        if (DEPTHS > 1) NAME##_depths[DEPTHS * i + 1] = p.depths.zw;                                       \
+        for (uint k = 0; k < WORDS; k++) NAME##_normals[WORDS * i + k] = p.normal[k];                      \
         for (uint k = 0; k < COLOUR_WORDS; k++) NAME##_colours[COLOUR_WORDS * i + k] = p.colour[k];        \
         if (IDS) NAME##_ids[i] = p.id;                                                                     \
     }
+
+uint place_in(uint level, uint start, ivec2 at) {
+    return start + uint(at.y * level_size(level).x + at.x);
+}
+
+#ifndef SAMPLES_ONLY
+
+// Before its size is used, which were 1 otherwise.
+layout(local_size_x = 64) in;
 
 // The pixel of this invocation; below 0 beyond the level.
 ivec2 own_pixel(uint level) {
@@ -126,6 +152,4 @@ ivec2 own_pixel(uint level) {
     return i < uint(size.x * size.y) ? ivec2(i % uint(size.x), i / uint(size.x)) : ivec2(-1);
 }
 
-uint place_in(uint level, uint start, ivec2 at) {
-    return start + uint(at.y * level_size(level).x + at.x);
-}
+#endif

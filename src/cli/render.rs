@@ -153,7 +153,9 @@ fn tell(args: &Render, loaded: &Inputs, outcome: &Outcome) {
         progress::say(outcome.times.to_string().trim_end());
     }
     if let Some(HalfError { largest, rms }) = outcome.gpu.as_ref().and_then(|gpu| gpu.half_error) {
-        progress::say(&format!("16-bit sums: linear colour is off by {largest:.1e} at most, {rms:.1e} RMS"));
+        progress::say(&format!(
+            "16-bit floats: linear colour is off by {largest:.1e} at most, {rms:.1e} RMS"
+        ));
     }
     if !args.quiet {
         let ([width, height], parts) = (args.size, summary::parts(&loaded.model));

@@ -1,5 +1,6 @@
 //! Pyramids copied to the CPU.
 
+use super::compact;
 use crate::error::Result;
 use crate::targets::{PLANES, Pyramid, Pyramids};
 use crate::vk::{Access, Buffer, Commands, Device, pixel_bytes};
@@ -44,7 +45,34 @@ type Words = [(usize, Vec<u32>); PLANES];
 
 impl PyramidSample {
     /// Of its words in each plane, as `lib/pyramid.glsl` has them.
-    fn of(words: [&[u32]; PLANES]) -> Option<Self> {
+    fn of(words: [&[u32]; PLANES], unbounded_colours: bool) -> Option<Self> {
+        match words {
+            [&[near, depth], &[place, size], &[normal], colour, id] => {
+                let near = f32::from_bits(near);
+                let [radius, _] = compact::halves(size);
+                let known = Self {
+                    near,
+                    far: near + compact::length(size >> 16),
+                    depth: f32::from_bits(depth),
+                    radius: radius.abs(),
+                    displacement: compact::halves(place),
+                    normal: compact::direction(normal),
+                    tube: size >> 15 & 1 != 0,
+                    colour: match (colour, unbounded_colours) {
+                        (&[bits], true) => Some(compact::shared(bits)),
+                        (&[bits], false) => Some(compact::roots(bits)),
+                        _ => None,
+                    },
+                    coordinates: all(colour.iter().copied().map(f32::from_bits)),
+                    id: id.first().copied(),
+                };
+                (near != 0.0).then_some(known)
+            }
+            _ => Self::of_floats(words),
+        }
+    }
+
+    fn of_floats(words: [&[u32]; PLANES]) -> Option<Self> {
         let id = words[4].first().copied();
         let [depths, place, normal, colour, _] = words.map(|words| words.iter().copied().map(f32::from_bits));
         let [near, far, depth, radius] = all(depths)?;
@@ -94,7 +122,8 @@ impl Pyramids {
     fn level_of(&self, pyramid: &Words, level: u32) -> PyramidLevel {
         let sample = |i: u64| {
             let i = i as usize;
-            PyramidSample::of(pyramid.each_ref().map(|(count, words)| &words[count * i..count * (i + 1)]))
+            let words = pyramid.each_ref().map(|(count, words)| &words[count * i..count * (i + 1)]);
+            PyramidSample::of(words, self.unbounded_colours())
         };
         PyramidLevel { size: self.level_size(level), samples: self.level_range(level).map(sample).collect() }
     }

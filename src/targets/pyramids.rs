@@ -3,7 +3,8 @@
 use super::{PerPixel, PictureBuffer, TargetInfo};
 use crate::error::Result;
 use crate::pull_push::Storage;
-use crate::variant::{Outputs, Variant};
+use crate::renderer::RenderOptions;
+use crate::variant::{Precision, Variant};
 use crate::vk::{Access, Buffer, Capabilities, Device, Encoder, Use, pixel_bytes};
 use ash::vk::Format;
 use std::ops::Range;
@@ -40,22 +41,43 @@ pub(crate) const PLANES: usize = 5;
 
 /// The planes of a pyramid of `variant`, each by the format of a sample.
 fn formats(variant: &Variant) -> [Option<Format>; PLANES] {
-    let colours = variant.sums_colours().then_some(Format::R32G32B32_SFLOAT);
-    [
-        Some(Format::R32G32B32A32_SFLOAT),
-        Some(Format::R32G32_SFLOAT),
-        Some(Format::R32G32B32_SFLOAT),
-        // A texture has the colours.
-        if variant.texture.is_some() { Some(Format::R32G32_SFLOAT) } else { colours },
-        variant.outputs.id.then_some(Format::R32_UINT),
-    ]
+    let [depths, places, normals, colours, ids] = match variant.precision {
+        Precision::Full => FULL,
+        Precision::Half => compact(variant.unbounded_colours()),
+    };
+    // A texture has the colours.
+    let coordinates = variant.texture.map(|_| Format::R32G32_SFLOAT);
+    let colours = coordinates.or_else(|| variant.sums_colours().then_some(colours));
+    [Some(depths), Some(places), Some(normals), colours, variant.outputs.id.then_some(ids)]
+}
+
+/// The plane of colours.
+const COLOURS: usize = 3;
+
+/// The planes of 32-bit floats: 48 bytes a sample, 36 without colours; and 4 for a number.
+const FULL: [Format; PLANES] = [
+    Format::R32G32B32A32_SFLOAT,
+    Format::R32G32_SFLOAT,
+    Format::R32G32B32_SFLOAT,
+    Format::R32G32B32_SFLOAT,
+    Format::R32_UINT,
+];
+
+/// The compact planes (`lib/compact.glsl`): 24 bytes a sample, 20 without colours, and 4 for a number. Of the places three numbers are half
+/// floats, and one has more exponent; bounded colours are square roots.
+fn compact(unbounded_colours: bool) -> [Format; PLANES] {
+    let colours = match unbounded_colours {
+        true => Format::E5B9G9R9_UFLOAT_PACK32,
+        false => Format::A2B10G10R10_UNORM_PACK32,
+    };
+    [Format::R32G32_SFLOAT, Format::R32G32_UINT, Format::R16G16_SNORM, colours, Format::R32_UINT]
 }
 
 fn storage(variant: &Variant) -> Storage {
     variant.pull_push.map_or(Storage::Apart, |pull_push| pull_push.storage)
 }
 
-/// What the planes of either pyramid are called.
+/// What the planes of either pyramid are called. In shaders they are `from_depths`, `to_depths` and so on, by what a pass does with them.
 fn names(storage: Storage) -> [[&'static str; PLANES]; 2] {
     match storage {
         Storage::Apart => [
@@ -112,21 +134,27 @@ impl Pyramids {
     }
 
     /// Whether pyramids of a picture of this size, with all planes, fit the buffers that shaders of the device can see.
-    pub fn fit(capabilities: &Capabilities, outputs: Outputs, size: [u32; 2]) -> bool {
-        let plane = samples(size) * pixel_bytes(Format::R32G32B32A32_SFLOAT);
-        let picture = 4 * PictureBuffer::floats(outputs) * level_pixels(size, 0);
+    pub fn fit(capabilities: &Capabilities, options: &RenderOptions) -> bool {
+        let size = options.size;
+        let formats = match options.precision {
+            Precision::Full => FULL,
+            Precision::Half => compact(true),
+        };
+        let plane = samples(size) * formats.map(pixel_bytes).into_iter().max().unwrap_or(0);
+        let picture = 4 * PictureBuffer::floats(options.outputs) * level_pixels(size, 0);
         plane.max(picture) <= capabilities.max_storage_buffer_range
     }
 
-    /// The largest picture of about the shape of one of this size whose pyramids fit; 1×1 if none does.
-    pub fn largest(capabilities: &Capabilities, outputs: Outputs, size: [u32; 2]) -> [u32; 2] {
+    /// The largest picture of about that shape whose pyramids fit; 1×1 if none does.
+    pub fn largest(capabilities: &Capabilities, options: &RenderOptions) -> [u32; 2] {
+        let size = options.size;
         let longest = size[0].max(size[1]);
         let shrunk =
             |side: u32| size.map(|own| (u64::from(own) * u64::from(side) / u64::from(longest)).max(1) as u32);
         let (mut fitting, mut beyond) = (1, longest + 1);
         while beyond - fitting > 1 {
             let middle = fitting + (beyond - fitting) / 2;
-            match Self::fit(capabilities, outputs, shrunk(middle)) {
+            match Self::fit(capabilities, &RenderOptions { size: shrunk(middle), ..*options }) {
                 true => fitting = middle,
                 false => beyond = middle,
             }
@@ -143,6 +171,12 @@ impl Pyramids {
         });
         let picture = 4.0 * PictureBuffer::floats(variant.outputs) as f64;
         [("nearest", 8.0)].into_iter().chain(planes).chain([("picture", picture)]).collect()
+    }
+
+    /// Whether colours, if they are rounded, share an exponent.
+    pub(crate) fn unbounded_colours(&self) -> bool {
+        let of = |plane: &Plane| plane.format == Format::E5B9G9R9_UFLOAT_PACK32;
+        self.pyramids[0].planes[COLOURS].as_ref().is_some_and(of)
     }
 
     /// Number of levels: up to one of a single pixel.

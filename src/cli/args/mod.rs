@@ -236,7 +236,7 @@ pub struct Place {
     /// Renders with the float64 reference on the CPU, without Vulkan
     #[arg(long, conflicts_with_all = ["half", "device", "validate", "device_limits"])]
     pub reference: bool,
-    /// Keeps sums in 16-bit floats: half the memory, coarser
+    /// Keeps sums, or the samples of pull-push, in 16-bit floats: half the memory, coarser
     #[arg(long)]
     pub half: bool,
     /// On which device

@@ -9,7 +9,10 @@
 //!
 //! Level `l` has a pixel for every `2^l` × `2^l` of the picture's; the centre of its pixel `(i, j)` is at `2^l (i + ½, j + ½)` px. All
 //! lengths on the screen are px of the picture, whatever the level.
+//!
+//! The paper's phase `copy` (section 3.5) is none here: levels are values, which nothing overwrites before it is read.
 
+mod compact;
 mod coverage;
 mod lens;
 mod margin;
@@ -33,6 +36,7 @@ use margin::Margin;
 use rayon::prelude::*;
 use std::sync::Arc;
 
+pub use compact::{Compact, Steps};
 pub use margin::Decided;
 pub use project::Visible;
 
@@ -143,6 +147,7 @@ pub struct Reconstruction {
     lens: Lens,
     pull_push: PullPush,
     texture: Option<Arc<MipMap>>,
+    compact: Option<Compact>,
 }
 
 impl Reconstruction {
@@ -150,7 +155,7 @@ impl Reconstruction {
     pub fn new(camera: &Camera, size: [u32; 2], settings: &Settings, pull_push: PullPush) -> Result<Self> {
         let projector = Projector::new(camera, size, settings)?;
         let lens = Lens::new(&projector);
-        Ok(Self { projector, lens, pull_push, texture: None })
+        Ok(Self { projector, lens, pull_push, texture: None, compact: None })
     }
 
     /// The same frame of `parts` that have a texture: samples have coordinates in it then. As published, there are none.
@@ -159,9 +164,26 @@ impl Reconstruction {
         self
     }
 
+    /// The same with the compact layout: what a pass makes is rounded before the next sees it.
+    pub fn with_compact(self, compact: Compact) -> Self {
+        Self { compact: Some(compact), ..self }
+    }
+
+    /// The level as its layout holds it.
+    fn stored(&self, mut level: Level) -> Level {
+        let Some(compact) = self.compact else { return level };
+        level.samples.par_iter_mut().flatten().for_each(|sample| {
+            let world = Sample { normal: self.projector.to_world(sample.normal), ..*sample };
+            let rounded = compact.round(&world);
+            *sample = Sample { normal: self.projector.view.transform_vector3(rounded.normal), ..rounded };
+        });
+        level
+    }
+
     /// Pass `project`: level 0 of the pulled pyramid, and what became of the surfels.
     pub fn project<'a>(&self, parts: impl Into<Parts<'a>>) -> Visible {
-        project::pass(self, parts.into())
+        let visible = project::pass(self, parts.into());
+        Visible { level: self.stored(visible.level), ..visible }
     }
 
     /// How near the projection of `surfels` to `visible` was to another outcome, by pixel: by a depth or a coordinate, relative, or by a
@@ -177,10 +199,11 @@ impl Reconstruction {
 
     /// The same with how near its decisions were.
     pub fn decide_pull(&self, finer: &Level) -> Decided {
-        match self.pull_push.rules {
+        let made = match self.pull_push.rules {
             Rules::Paper => paper::pull(&self.lens, finer),
             Rules::Robust => pull::pass(&self.lens, finer),
-        }
+        };
+        Decided { level: self.stored(made.level), ..made }
     }
 
     /// Pass `push`: the final level below `coarser`, which is final, from the pulled one.
@@ -190,10 +213,11 @@ impl Reconstruction {
 
     /// The same with how near its decisions were.
     pub fn decide_push(&self, coarser: &Level, pulled: &Level) -> Decided {
-        match self.pull_push.rules {
+        let made = match self.pull_push.rules {
             Rules::Paper => paper::push(&self.lens, coarser, pulled),
             Rules::Robust => push::pass(&self.lens, coarser, pulled),
-        }
+        };
+        Decided { level: self.stored(made.level), ..made }
     }
 
     /// How near the decisions of [`Self::shade`] about the samples of α were to turning, by pixel.
