@@ -24,6 +24,8 @@
 #include "lib/nearest_points.glsl"
 #endif
 
+DEFINE_PYRAMID(2, to)
+
 layout(local_size_x = 64) in;
 
 #if defined(LINES)
@@ -84,6 +86,7 @@ Sample sample_of(uint i, ivec2 at, uint nearest) {
     // Seen from behind, a disc is that of the opposite normal.
     s.normal = point.facing > 0.0 ? -normal : normal;
     s.colour = colour_of(i);
+    if (TEXTURE) s.coordinates = coordinates_of(i);
     return s;
 }
 
@@ -111,9 +114,11 @@ void main() {
     ivec2 at = ivec2(pixel % size.x, pixel / size.x);
     uint number, nearest;
     if (!nearest_at(pixel, at, number, nearest)) {
-        if (window.first == 0) store_pulled(pixel, NOTHING);
+        if (window.first == 0) store_to(pixel, NOTHING);
     } else if (number - window.first < window.count) {
-        store_pulled(pixel, sample_of(number - window.first, at, nearest));
+        Sample s = sample_of(number - window.first, at, nearest);
+        s.id = number;
+        store_to(pixel, s);
     }
 }
 

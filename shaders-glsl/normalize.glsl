@@ -7,9 +7,8 @@
 #include "lib/frame.glsl"
 #include "lib/sums.glsl"
 #include "lib/shading.glsl"
+#include "lib/background.glsl"
 
-layout(constant_id = 6) const uint SHADING = 0;
-const uint LIT = 0, COLOUR = 1, NORMAL = 2, DEPTH = 3, OVERLAPS = 4, WEIGHT = 5;
 layout(constant_id = 20) const bool SHADE_SPLATS = false; // colours are light already
 
 #ifdef COVERAGE
@@ -35,14 +34,6 @@ struct Pixel {
     vec3 normal;
     float depth;
 };
-
-// What is shown of a surface with the background, if there is one, behind it.
-vec4 over_background(vec3 shown, float alpha) {
-    if (frame.background.a == 0.0) return vec4(shown, alpha);
-    // Numbers are not mixed with a colour: the half decides.
-    if (SHADING != LIT && SHADING != COLOUR) alpha = step(0.5, alpha);
-    return vec4(mix(frame.background.rgb, shown, alpha), 1.0);
-}
 
 // The pixel at `centre` (px), of which `alpha` is covered, from what visibility and attribute left there.
 Pixel normalize_pixel(vec2 centre, bool visible, float alpha, vec4 s0, vec4 s1) {

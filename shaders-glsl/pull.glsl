@@ -8,7 +8,8 @@
 #include "lib/pyramid.glsl"
 #include "lib/lens.glsl"
 
-layout(local_size_x = 64) in;
+DEFINE_PYRAMID(1, from)
+DEFINE_PYRAMID(2, to)
 
 void main() {
     uint level = pass.level, finer = level - 1;
@@ -23,7 +24,7 @@ void main() {
     for (int k = 0; k < 4; k++) {
         ivec2 child = 2 * at + ivec2(k & 1, k >> 1);
         bool there = is_within(finer, child);
-        below[k] = load_pulled(there ? place_in(finer, start, child) : 0);
+        below[k] = load_from(there ? place_in(finer, start, child) : 0);
         if (!there) below[k].near = 0.0;
         // From whole numbers: a difference of positions on the picture would lose digits.
         vec2 e = (vec2(child - 2 * at) - 0.5) * float(1u << finer) + below[k].displacement;
@@ -37,7 +38,7 @@ void main() {
         }
     }
     Sample mean = NOTHING;
-    float count = 0.0;
+    float count = 0.0, nearest_centre = 1e38;
     for (int k = 0; k < 4; k++) {
         Sample s = below[k];
         // One surface, and as the nearest is of a tube or of none.
@@ -49,6 +50,12 @@ void main() {
         mean.displacement += s.displacement;
         mean.normal += direction_as(s, below[front]);
         mean.colour += s.colour;
+        mean.coordinates += turn_from(s, below[front]);
+        float centre = dot(s.displacement, s.displacement);
+        if (centre < nearest_centre) {
+            nearest_centre = centre;
+            mean.id = s.id;
+        }
     }
     if (count > 0.0) {
         mean.near = nearest;
@@ -58,8 +65,9 @@ void main() {
         mean.displacement /= count;
         mean.normal = dot(mean.normal, mean.normal) > 0.0 ? normalize(mean.normal) : vec3(0.0);
         mean.colour /= count;
+        mean.coordinates = below[front].coordinates + mean.coordinates / count;
     }
-    store_pulled(place_in(level, level_start(level), at), mean);
+    store_to(place_in(level, level_start(level), at), mean);
 }
 
 #endif

@@ -8,12 +8,19 @@
 #include "lib/pyramid.glsl"
 #include "lib/lens.glsl"
 
-layout(local_size_x = 64) in;
+DEFINE_PYRAMID(1, from)
+DEFINE_PYRAMID(2, to)
+
+layout(constant_id = 32) const bool PING_PONG = false; // levels are kept in turns
 
 // What a disc's variance is widened by on level 0, px²; four times as much a level. Narrower ones leave holes between themselves.
 const float WIDENING = 0.25;
 // ln of the weight at a disc's rim, negated: σ is a third of the radius; half of it as published.
 const float RIM = 4.5, PAPER_RIM = 2.0;
+
+// What the spread of the discs about a pixel is widened by, px²: a texture's gradient is not told from what is nearer than an eighth of a
+// pixel.
+const float SPREAD = 1.0 / 64.0;
 
 // Candidate k for pixel `at`: the four nearest coarser pixels, then the pixel and its neighbours, row by row. Its displacement is from `own`.
 Sample candidate(int k, uint level, uint start, uint above, ivec2 at) {
@@ -26,8 +33,9 @@ Sample candidate(int k, uint level, uint start, uint above, ivec2 at) {
     bool there = is_within(of, place);
     ivec2 known = there ? place : coarse ? at / 2 : at;
     Sample s = NOTHING;
-    if (coarse) s = load_pushed(place_in(of, above, known));
-    else s = load_pulled(place_in(of, start, known));
+    // In turns, what is final on the coarser level lies beside what was copied of this one.
+    if (coarse && !PING_PONG) s = load_to(place_in(of, above, known));
+    else s = load_from(place_in(of, coarse ? above : start, known));
     if (!there) s = NOTHING;
     // From whole numbers: a difference of positions on the picture would lose digits.
     s.displacement += (coarse ? vec2(2 * place - at) + 0.5 : vec2(place - at)) * float(1u << level);
@@ -43,7 +51,7 @@ void main() {
     float widening = PAPER ? 0.0 : WIDENING * float(1u << (2 * level));
     int count = PAPER ? 4 : 13;
 
-    Sample point = load_pulled(place_in(level, start, at));
+    Sample point = load_from(place_in(level, start, at));
     // The one that decides which others are its surface: the nearest; as published, of which kind, by the greatest weight.
     Sample front = NOTHING;
     float weights[13], first = PAPER ? 0.0 : -1e38;
@@ -62,7 +70,10 @@ void main() {
     if (!PAPER && level == 0 && weights[8] == 0.0) point.near = 0.0;
 
     Sample mean = NOTHING;
-    float total = 0.0;
+    float total = 0.0, most = 0.0;
+    // Products of displacements, and of these and coordinates.
+    vec3 spread = vec3(0.0);
+    vec2 by_x = vec2(0.0), by_y = vec2(0.0);
     for (int k = 0; k < (front.near > 0.0 ? count : 0); k++) {
         Sample s = candidate(k, level, start, above, at);
         float w = (PAPER || s.near <= front.far) && s.tube == front.tube ? weights[k] : 0.0;
@@ -75,6 +86,15 @@ void main() {
         mean.displacement += w * s.displacement;
         mean.normal += w * direction_as(s, front);
         mean.colour += w * s.colour;
+        vec2 e = s.displacement, turn = turn_from(s, front);
+        mean.coordinates += w * turn;
+        spread += w * vec3(e.x * e.x, e.x * e.y, e.y * e.y);
+        by_x += w * e.x * turn;
+        by_y += w * e.y * turn;
+        if (w > most) {
+            most = w;
+            mean.id = s.id;
+        }
     }
     if (total > 0.0) {
         mean.tube = front.tube;
@@ -85,6 +105,15 @@ void main() {
         mean.displacement /= total;
         mean.normal = dot(mean.normal, mean.normal) > 0.0 ? normalize(mean.normal) : vec3(0.0);
         mean.colour /= total;
+        mean.coordinates /= total;
+        if (TEXTURE && !PAPER && level == 0) {
+            // To first order, by least squares: a mean would be that at the mean of the discs' centres.
+            vec2 m = mean.displacement;
+            vec3 c = spread / total - vec3(m.x * m.x - SPREAD, m.x * m.y, m.y * m.y - SPREAD);
+            vec2 x = by_x / total - m.x * mean.coordinates, y = by_y / total - m.y * mean.coordinates;
+            mean.coordinates -= ((x * c.z - y * c.y) * m.x + (y * c.x - x * c.y) * m.y) / (c.x * c.z - c.y * c.y);
+        }
+        mean.coordinates += front.coordinates;
     }
     bool known = point.near > 0.0, made = total > 0.0;
     if (PAPER) {
@@ -101,10 +130,11 @@ void main() {
             point.radius = mean.radius;
         }
         point.colour = mean.colour;
+        point.coordinates = mean.coordinates;
         point.normal = mean.normal;
         point.depth = mean.depth;
     }
-    store_pushed(place_in(level, start, at), point);
+    store_to(place_in(level, start, at), point);
 }
 
 #endif

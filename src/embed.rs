@@ -177,14 +177,14 @@ impl Renderer {
                 "0 frames in flight: a frame is under way when it is recorded, so give 1 or more".into(),
             ));
         }
-        let outputs = Outputs { normal: target.normal.is_some(), depth: target.depth.is_some() };
+        let outputs = Outputs { normal: target.normal.is_some(), depth: target.depth.is_some(), id: false };
         let options = RenderOptions { size: [1, 1], outputs, precision, rasterizer, ..Default::default() };
         Ok(Self {
             shown: None,
             held: VecDeque::new(),
             scene: None,
             composites: Vec::new(),
-            stage: Stage::new(device, options.on(device)?, Retired::Kept(Vec::new()))?,
+            stage: Stage::new(device, options, Retired::Kept(Vec::new()))?,
             target,
             frame: 0,
             frames_in_flight: frames_in_flight.into(),

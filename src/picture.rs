@@ -12,4 +12,12 @@ pub struct Picture {
     pub depth: Option<Vec<f32>>,
     /// Unit normal in world space, towards the eye; 0 where no surface is. Present where it was asked for.
     pub normal: Option<Vec<[f32; 3]>>,
+    /// Number of the surfel, the segment of a ribbon or a tube, or the triangle that is shown: surfels come first, then these, each in the
+    /// order of the scene's parts; [`Picture::NOBODY`] where no surface is. Present where it was asked for.
+    pub id: Option<Vec<u32>>,
+}
+
+impl Picture {
+    /// The number in [`Picture::id`] where no surface is.
+    pub const NOBODY: u32 = u32::MAX;
 }

@@ -21,7 +21,8 @@ pub struct RenderOptions {
     pub size: [u32; 2],
     /// Images beside the picture.
     pub outputs: Outputs,
-    /// Float width of the weighted sums. A device that cannot blend 32-bit floats gets 16, see [`Renderer::precision`].
+    /// Float width of the weighted sums, or of the samples of pull–push. A device that cannot blend 32-bit floats gets sums of 16, see
+    /// [`Renderer::precision`].
     pub precision: Precision,
     /// What visits the pixels; `None` takes what is faster on the device.
     pub rasterizer: Option<Rasterizer>,
@@ -63,24 +64,21 @@ pub struct Renderer {
     commands: Commands,
 }
 
-impl RenderOptions {
-    /// What `device` can do of it: it may not blend 32-bit floats. Refuses sizes that it has no targets of.
-    pub(crate) fn on(mut self, device: &Device) -> Result<Self> {
-        check_size(device, self.size)?;
-        let rasterizer = rasterizer_for(device, &self, true, Alpha::Mask)?;
-        let blends = device.capabilities().blend_float32;
-        if rasterizer == Rasterizer::Draw && self.precision == Precision::Full && !blends {
-            log::warn!("{} cannot blend 32-bit floats: sums are kept in 16 bits", device.description().name);
-            self.precision = Precision::Half;
-        }
-        Ok(self)
+/// Width of weighted sums on `device`, which may not blend 32-bit floats. Refuses sizes that it has no targets of.
+pub(crate) fn width_of_sums(device: &Device, options: &RenderOptions) -> Result<Precision> {
+    check_size(device, options.size)?;
+    let rasterizer = rasterizer_for(device, options, true, Alpha::Mask)?;
+    let blends = device.capabilities().blend_float32;
+    if rasterizer == Rasterizer::Draw && options.precision == Precision::Full && !blends {
+        log::warn!("{} cannot blend 32-bit floats: sums are kept in 16 bits", device.description().name);
+        return Ok(Precision::Half);
     }
+    Ok(options.precision)
 }
 
 impl Renderer {
     /// A renderer that has made nothing for any scene yet.
     pub fn new(device: &Arc<Device>, options: RenderOptions) -> Result<Self> {
-        let options = options.on(device)?;
         Ok(Self {
             stage: Stage::new(device, options, Retired::Dropped)?,
             commands: Commands::new(device, options.profile)?,
@@ -110,9 +108,9 @@ impl Renderer {
         self.commands.time(on);
     }
 
-    /// Float width of the weighted sums in use.
+    /// Float width of the samples of the last frame, if it was pull–push's, else of the weighted sums.
     pub fn precision(&self) -> Precision {
-        self.stage.options.precision
+        self.stage.precision()
     }
 
     /// The targets of the last frame.
@@ -183,10 +181,7 @@ fn rasterizer_of_points(device: &Device, options: &RenderOptions, scene: &Scene)
         )))
     };
     match options.rasterizer {
-        _ if !Pyramids::fit(capabilities, options.size) => Err(Error::Usage(format!(
-            "a pyramid of {}x{} px does not fit the {} bytes of a buffer that shaders of {name} can see: choose a smaller size",
-            options.size[0], options.size[1], capabilities.max_storage_buffer_range
-        ))),
+        _ if !Pyramids::fit(capabilities, options) => Err(too_large(device, options)),
         _ if scene.primitives.is_some() && !capabilities.int64_atomics => {
             refuse("lines and triangles", "leave them out, or choose another device")
         }
@@ -199,6 +194,24 @@ fn rasterizer_of_points(device: &Device, options: &RenderOptions, scene: &Scene)
         None if capabilities.int64_atomics => Ok(Rasterizer::Compute),
         None => Ok(Rasterizer::Draw),
     }
+}
+
+/// That pyramids do not fit the device, and what would.
+fn too_large(device: &Device, options: &RenderOptions) -> Error {
+    let capabilities = device.capabilities();
+    let half = RenderOptions { precision: Precision::Half, ..*options };
+    let halved = match Pyramids::fit(capabilities, &half) {
+        true => "samples of 16 bits (--half), or ",
+        false => "",
+    };
+    let ([width, height], [most_width, most_height]) =
+        (options.size, Pyramids::largest(capabilities, options));
+    Error::Usage(format!(
+        "pyramids of {width}x{height} px do not fit the {} bytes of a buffer that shaders of {} can see (maxStorageBufferRange): \
+         choose {halved}at most {most_width}x{most_height} px",
+        capabilities.max_storage_buffer_range,
+        device.description().name
+    ))
 }
 
 /// The faster of what `device` can do with these options, for frames that blend splats or do not.

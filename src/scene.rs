@@ -1,18 +1,22 @@
 //! Geometry on the GPU: only the streams that the scene has.
 
 mod primitives;
+mod texture;
 mod weights;
 
 use crate::error::{Error, Result};
-use crate::geometry::{Bounds, Clip, ClipLine, Clips, Colours, Ellipse, Parts, Primitives, Surfels, Weights};
+use crate::geometry::{
+    Bounds, Clip, ClipLine, Clips, Colours, Ellipse, Parts, Primitives, Surfels, Texture, Weights,
+};
 use crate::vk::shaders::layout::Splat;
 use crate::vk::{Binding, Buffer, Capabilities, Device, Uploads};
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 pub(crate) use primitives::{Elements, PrimitiveStreams};
 use std::borrow::Cow;
 use std::ops::Range;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
+pub(crate) use texture::TextureStream;
 use weights::WeightStream;
 
 /// Surfels, lines and triangles resident on a device.
@@ -28,6 +32,7 @@ pub struct Scene {
     pub(crate) colours: Option<Buffer>,
     pub(crate) weights: Option<WeightBuffer>,
     pub(crate) primitives: Option<PrimitiveStreams>,
+    pub(crate) texture: Option<TextureStream>,
     colour_stream: ColourStream,
     windows: Vec<Range<u64>>,
     count: u64,
@@ -73,6 +78,8 @@ pub struct Streams {
     pub colours: ColourStream,
     /// What else there is than surfels.
     pub primitives: PrimitiveKinds,
+    /// How it holds the texels of its texture, if it has one.
+    pub texture: Option<ColourStream>,
 }
 
 /// Which lines and triangles a scene has.
@@ -96,7 +103,7 @@ impl PrimitiveKinds {
     }
 }
 
-/// How a scene holds its colours; the numbers are those of `shaders-glsl/lib/sums.glsl`.
+/// How a scene holds its colours; the numbers are those of `shaders-glsl/lib/colour_streams.glsl`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum ColourStream {
@@ -106,6 +113,8 @@ pub enum ColourStream {
     Srgb8 = 1,
     /// Linear float.
     Linear = 2,
+    /// Coordinates in a texture, and for methods that blend a colour a point that which is there, linear float.
+    Textured = 3,
 }
 
 impl ColourStream {
@@ -114,6 +123,7 @@ impl ColourStream {
             Self::None => 0,
             Self::Srgb8 => 4,
             Self::Linear => 12,
+            Self::Textured => 20,
         }
     }
 }
@@ -160,11 +170,17 @@ impl Scene {
         static NEXT: AtomicU64 = AtomicU64::new(0);
         let surfels = parts.surfels;
         parts.check()?;
+        let image = parts.texture();
+        if image.is_none() && parts.has_texture() {
+            return Self::new_silently(device, uploads, (&parts.baked()).into());
+        }
         let (bounds, invalid) = usable(&parts)?;
         let count = surfels.len() as u64;
         let ellipses = surfels.ellipses.as_deref();
         let windows = windows(count, device.capabilities());
-        let (colour_stream, colours) = colour_bytes(surfels.colours.as_ref());
+        let textured =
+            surfels.texture.as_ref().map(|texture| (texture, &surfels.positions[..], &surfels.radii[..]));
+        let (colour_stream, colours) = colour_bytes(surfels.colours.as_ref(), textured);
         let weights = surfels
             .weights
             .as_ref()
@@ -179,7 +195,7 @@ impl Scene {
                 .map(|ellipses| uploads.buffer("ellipses", bytemuck::cast_slice(ellipses)))
                 .transpose()?,
             colours: (colour_stream != ColourStream::None)
-                .then(|| uploads.buffer("colours", colours))
+                .then(|| uploads.buffer("colours", &colours))
                 .transpose()?,
             weights: weights.transpose()?,
             colour_stream,
@@ -189,6 +205,7 @@ impl Scene {
                 .map(|clips| ClipStream::new(uploads, clips, &windows))
                 .transpose()?,
             primitives: PrimitiveStreams::new(device, uploads, &parts)?,
+            texture: image.map(|image| TextureStream::new(device, uploads, image)).transpose()?,
             windows,
             count,
             origin: parts.origin(),
@@ -226,7 +243,8 @@ impl Scene {
     pub fn bytes(&self) -> u64 {
         let clips = self.clips.as_ref().map(|clips| &clips.buffer);
         let weights = self.weights.as_ref().map(|weights| &weights.buffer);
-        let optional = [self.ellipses.as_ref(), self.colours.as_ref(), clips, weights]
+        let texture = self.texture.as_ref().map(|texture| &texture.buffer);
+        let optional = [self.ellipses.as_ref(), self.colours.as_ref(), clips, weights, texture]
             .map(|stream| stream.map_or(0, Buffer::size));
         let primitives = self.primitives.as_ref().map_or(0, PrimitiveStreams::bytes);
         let always = self.positions.size() + self.normals.size() + self.radii.size();
@@ -247,6 +265,7 @@ impl Scene {
             weights: self.weights.as_ref().map(|weights| weights.corners),
             colours: self.colour_stream,
             primitives: self.primitives.as_ref().map_or(PrimitiveKinds::NONE, PrimitiveStreams::kinds),
+            texture: self.texture.as_ref().map(|texture| texture.texels),
         }
     }
 
@@ -336,12 +355,21 @@ impl WeightBuffer {
     }
 }
 
-/// How colours are held, and their bytes.
-fn colour_bytes(colours: Option<&Colours>) -> (ColourStream, &[u8]) {
+/// How colours are held, and their bytes; with a texture, of points at these positions with these radii, theirs.
+fn colour_bytes<'a>(
+    colours: Option<&'a Colours>,
+    texture: Option<(&Texture, &[Vec3], &[f32])>,
+) -> (ColourStream, Cow<'a, [u8]>) {
+    if let Some((texture, positions, radii)) = texture {
+        let colours = texture.colours(positions, Some(radii));
+        let each = texture.coordinates.iter().zip(colours);
+        let floats = each.map(|(at, [r, g, b])| [at.x, at.y, r, g, b]);
+        return (ColourStream::Textured, bytemuck::pod_collect_to_vec(&floats.collect::<Vec<_>>()).into());
+    }
     match colours {
-        None => (ColourStream::None, &[]),
-        Some(Colours::Srgb8(colours)) => (ColourStream::Srgb8, bytemuck::cast_slice(colours)),
-        Some(Colours::Linear(colours)) => (ColourStream::Linear, bytemuck::cast_slice(colours)),
+        None => (ColourStream::None, Cow::Borrowed(&[])),
+        Some(Colours::Srgb8(colours)) => (ColourStream::Srgb8, bytemuck::cast_slice(colours).into()),
+        Some(Colours::Linear(colours)) => (ColourStream::Linear, bytemuck::cast_slice(colours).into()),
     }
 }
 

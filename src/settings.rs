@@ -3,6 +3,7 @@
 use crate::error::{Error, Result};
 use crate::pull_push::PullPush;
 use crate::splatting::{Filter, Splatting};
+use crate::variant::Outputs;
 
 /// Settings of a frame that are not the camera's or the scene's.
 #[derive(Clone, Debug, PartialEq)]
@@ -78,13 +79,23 @@ impl Settings {
         }
     }
 
+    /// Refuses numbers of points where pixels are sums of several.
+    pub fn check_outputs(&self, outputs: Outputs) -> Result<()> {
+        match outputs.id && self.pull_push.is_none() {
+            false => Ok(()),
+            true => Err(Error::Usage(
+                "numbers of points are those of pull-push and pull-push-paper alone, as splats are summed: choose one of them, or \
+                 leave the numbers out"
+                    .into(),
+            )),
+        }
+    }
+
     /// Refuses what no frame can be made of.
     pub fn check(&self) -> Result<()> {
-        if self.pull_push.is_some() && (self.splatting != Splatting::default() || self.alpha != Alpha::Mask) {
+        if self.pull_push.is_some() && self.splatting != Splatting::default() {
             return Err(Error::Usage(
-                "pull-push makes no splats: it has no footprint, kernel, filter, visibility, normalization or shade to choose, and a \
-                 mask as α"
-                    .into(),
+                "pull-push makes no splats: it has no footprint, kernel, filter, visibility, normalization or shade to choose".into(),
             ));
         }
         self.splatting.check()?;
@@ -144,6 +155,7 @@ pub enum Alpha {
     /// and unfiltered: discs of radii 1.3 times as large as needed leave no holes then, and reach no further beyond an outline. Each also
     /// covers the sample nearest to its centre if it holds none in that pixel, so that what is drawn shows however small it is. A clip line
     /// parts the pixels that it cuts by their samples too; what it cuts off is drawn up to half a pixel beyond it where nothing else is.
+    /// Pull-push has a mask's pixels, and those next to an empty one have the samples within any disc that was made about them.
     Coverage,
 }
 

@@ -5,10 +5,10 @@ use crate::frame::frame;
 use crate::geometry::Camera;
 use crate::methods::{Canvas, Pipelines};
 use crate::passes::{SplatLayout, Splats};
-use crate::renderer::{RenderOptions, rasterizer_of};
+use crate::renderer::{RenderOptions, rasterizer_of, width_of_sums};
 use crate::scene::Scene;
 use crate::settings::Settings;
-use crate::variant::{Rasterizer, Variant};
+use crate::variant::{Precision, Rasterizer, Variant};
 use crate::vk::shaders::layout::Frame;
 use crate::vk::{Buffer, Device, Recorder};
 use std::any::Any;
@@ -26,7 +26,9 @@ pub(crate) struct Stage {
     pipelines: HashMap<Variant, Pipelines>,
     layout: SplatLayout,
     frame: Arc<Buffer>,
-    pub(crate) options: RenderOptions,
+    options: RenderOptions,
+    /// Width of the weighted sums, which the device may not have as it was asked for.
+    sums: Precision,
     device: Arc<Device>,
     retired: Retired,
     /// Number of targets made so far.
@@ -83,10 +85,16 @@ impl Stage {
             layout: SplatLayout::new(device)?,
             frame: Arc::new(Buffer::uniform(device, "frame", size_of::<Frame>() as u64)?),
             options,
+            sums: width_of_sums(device, &options)?,
             device: device.clone(),
             retired,
             made: 0,
         })
+    }
+
+    /// Width of the samples of the last frame, if it was pull–push's, else of the weighted sums.
+    pub(crate) fn precision(&self) -> Precision {
+        self.present.as_ref().map_or(self.sums, |present| present.variant.precision)
     }
 
     pub(crate) fn present(&self) -> Option<&Present> {
@@ -126,10 +134,13 @@ impl Stage {
         settings.check()?;
         settings.splatting.normalization.check_weights(scene.weights.is_some())?;
         settings.check_primitives(scene.primitives.is_some())?;
+        settings.check_outputs(self.options.outputs)?;
         let block = frame(camera, settings, self.options.size, scene.origin(), scene.bounds())?;
         let rasterizer = rasterizer_of(&self.device, &self.options, settings, scene)?;
         let perspective = camera.projection()?.perspective;
-        let variant = Variant::new(scene.streams(), perspective, settings, &self.options, rasterizer);
+        let precision = if settings.pull_push.is_some() { self.options.precision } else { self.sums };
+        let options = RenderOptions { precision, ..self.options };
+        let variant = Variant::new(scene.streams(), perspective, settings, &options, rasterizer);
         let splats = variant.pull_push.is_none().then_some(variant.rasterizer);
         self.make_resident(scene, splats)?;
         self.make_present(variant, read)?;

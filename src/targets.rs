@@ -1,5 +1,12 @@
 //! Every render target: name, format, and when a frame has it. Each name is that of the variable in the shaders.
 
+mod drawn_points;
+mod pyramids;
+
+pub use drawn_points::DrawnPoints;
+pub(crate) use pyramids::PLANES;
+pub use pyramids::{Pyramid, Pyramids};
+
 use crate::error::{Error, Result};
 use crate::splatting::Visibility;
 use crate::variant::{Outputs, Precision, Variant};
@@ -42,7 +49,7 @@ pub struct Buffers {
 }
 
 /// A picture that compute shaders write, pixel by pixel from the top left: all pixels' colour (4 floats), then all normals (3), then all
-/// depths (1), as far as they are asked for.
+/// depths (1), then all numbers of points (1, a word), as far as they are asked for.
 pub struct PictureBuffer {
     /// The floats.
     pub buffer: Buffer,
@@ -50,30 +57,6 @@ pub struct PictureBuffer {
     pub outputs: Outputs,
     /// Width and height, px.
     pub size: [u32; 2],
-}
-
-/// Targets of pull–push: `lib/pyramid.glsl`.
-pub struct Pyramids {
-    /// Distance and number of the nearest point of each pixel, where points are computed.
-    pub nearest: Option<Buffer>,
-    /// The same of surfels, where they are drawn.
-    pub drawn: Option<DrawnPoints>,
-    /// Samples of all levels, fine to coarse.
-    pub pulled: Buffer,
-    /// The same where holes are filled and hidden samples replaced.
-    pub pushed: Buffer,
-    /// The picture.
-    pub picture: PictureBuffer,
-    /// Floats of a sample.
-    pub(crate) floats: u64,
-}
-
-/// Targets of points that are drawn: `lib/drawn_points.glsl`.
-pub struct DrawnPoints {
-    /// A depth that tells the distance of the nearest one of each pixel, bit for bit.
-    pub nearest_depth: Image,
-    /// Its number, from 1 on; 0 where there is none.
-    pub nearest_number: Image,
 }
 
 /// Format of each image of a [`Variant`]; `None` where there is no such target.
@@ -289,7 +272,7 @@ impl PictureBuffer {
 
     /// Floats of a pixel.
     fn floats(outputs: Outputs) -> u64 {
-        4 + 3 * u64::from(outputs.normal) + u64::from(outputs.depth)
+        4 + 3 * u64::from(outputs.normal) + u64::from(outputs.depth) + u64::from(outputs.id)
     }
 
     /// Number of pixels.
@@ -300,107 +283,4 @@ impl PictureBuffer {
     fn info(&self) -> TargetInfo {
         TargetInfo { name: "picture", format: Format::R32_SFLOAT, bytes: self.buffer.size() }
     }
-}
-
-impl Pyramids {
-    /// The targets of `variant` at `size` px.
-    pub fn new(device: &Arc<Device>, variant: &Variant, size: [u32; 2]) -> Result<Self> {
-        let picture = PictureBuffer::new(device, variant.outputs, size)?;
-        let samples: u64 = (0..levels(size)).map(|level| level_pixels(size, level)).sum();
-        let floats = Self::floats(variant);
-        let bytes = 4 * floats * samples;
-        let nearest = || Buffer::storage(device, "nearest", 8 * picture.pixels());
-        Ok(Self {
-            nearest: variant.computes_points().then(nearest).transpose()?,
-            drawn: variant.draws_points().then(|| DrawnPoints::new(device, size)).transpose()?,
-            pulled: Buffer::storage(device, "pulled", bytes)?,
-            pushed: Buffer::storage(device, "pushed", bytes)?,
-            picture,
-            floats,
-        })
-    }
-
-    /// Floats of a sample.
-    fn floats(variant: &Variant) -> u64 {
-        if variant.sums_colours() { 12 } else { 9 }
-    }
-
-    /// Whether pyramids of a picture of this size, with colours, fit the buffers that shaders of the device can see.
-    pub fn fit(capabilities: &Capabilities, size: [u32; 2]) -> bool {
-        let samples: u64 = (0..levels(size)).map(|level| level_pixels(size, level)).sum();
-        4 * 12 * samples <= capabilities.max_storage_buffer_range
-    }
-
-    /// What the buffers take; a level has a quarter of the pixels of the one below.
-    pub fn per_pixel(variant: &Variant) -> PerPixel {
-        let samples = 4.0 / 3.0 * 4.0 * Self::floats(variant) as f64;
-        let picture = 4.0 * PictureBuffer::floats(variant.outputs) as f64;
-        let nearest = variant.computes_points().then_some(("nearest", 8.0));
-        let drawn = variant.draws_points().then_some([("nearest_depth", 4.0), ("nearest_number", 4.0)]);
-        let always = [("pulled", samples), ("pushed", samples), ("picture", picture)];
-        nearest.into_iter().chain(drawn.into_iter().flatten()).chain(always).collect()
-    }
-
-    /// Number of levels: up to one of a single pixel.
-    pub fn levels(&self) -> u32 {
-        levels(self.picture.size)
-    }
-
-    /// Width and height of a level, its pixels.
-    pub fn level_size(&self, level: u32) -> [u32; 2] {
-        level_size(self.picture.size, level)
-    }
-
-    /// Number of pixels of a level.
-    pub fn level_pixels(&self, level: u32) -> u64 {
-        level_pixels(self.picture.size, level)
-    }
-
-    /// Number of the picture's pixels.
-    pub fn pixels(&self) -> u64 {
-        self.picture.pixels()
-    }
-
-    /// Every target that there is.
-    pub fn list(&self) -> Vec<TargetInfo> {
-        let info = |name, buffer: &Buffer, format| TargetInfo { name, format, bytes: buffer.size() };
-        let nearest = self.nearest.iter().map(|nearest| info("nearest", nearest, Format::R64_UINT));
-        let drawn = self.drawn.iter().flat_map(DrawnPoints::list);
-        let samples = [("pulled", &self.pulled), ("pushed", &self.pushed)];
-        let samples = samples.map(|(name, buffer)| info(name, buffer, Format::R32_SFLOAT));
-        nearest.chain(drawn).chain(samples).chain([self.picture.info()]).collect()
-    }
-}
-
-impl DrawnPoints {
-    /// Format of [`Self::nearest_depth`].
-    pub const DEPTH: Format = Format::D32_SFLOAT;
-    /// Format of [`Self::nearest_number`].
-    pub const NUMBER: Format = Format::R32_UINT;
-
-    fn new(device: &Arc<Device>, size: [u32; 2]) -> Result<Self> {
-        let target = |name, format| Image::target(device, name, format, size, ImageUse::Sampled);
-        Ok(Self {
-            nearest_depth: target("nearest_depth", Self::DEPTH)?,
-            nearest_number: target("nearest_number", Self::NUMBER)?,
-        })
-    }
-
-    fn list(&self) -> [TargetInfo; 2] {
-        let info = |name, image: &Image| TargetInfo { name, format: image.format(), bytes: image.bytes() };
-        [info("nearest_depth", &self.nearest_depth), info("nearest_number", &self.nearest_number)]
-    }
-}
-
-fn levels(size: [u32; 2]) -> u32 {
-    let longest = size[0].max(size[1]);
-    1 + longest.next_power_of_two().trailing_zeros()
-}
-
-fn level_size(size: [u32; 2], level: u32) -> [u32; 2] {
-    size.map(|side| side.div_ceil(1 << level))
-}
-
-fn level_pixels(size: [u32; 2], level: u32) -> u64 {
-    level_size(size, level).map(u64::from).iter().product()
 }

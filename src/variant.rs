@@ -1,6 +1,6 @@
 //! What decides which pipelines and targets a frame needs.
 
-use crate::pull_push::Rules;
+use crate::pull_push::{PullPush, Rules, Storage};
 use crate::renderer::RenderOptions;
 use crate::scene::{ColourStream, PrimitiveKinds, Streams};
 use crate::settings::{Alpha, Cull, Settings, Shading, Widen};
@@ -27,8 +27,8 @@ pub struct Variant {
     pub confetti: bool,
     /// Which splats a pixel sees.
     pub visibility: Visibility,
-    /// Points, a pyramid of them, and its rules.
-    pub pull_push: Option<Rules>,
+    /// Points, pyramids of them, and their rules.
+    pub pull_push: Option<PullPush>,
     /// What the sums are divided by.
     pub normalization: Normalization,
     /// Kernels are multiplied by the scene's normalization weights.
@@ -49,6 +49,8 @@ pub struct Variant {
     pub colours: ColourStream,
     /// The scene's lines and triangles, with their colours in the same way.
     pub primitives: PrimitiveKinds,
+    /// Colours are looked up in a texture; how the scene holds its texels.
+    pub texture: Option<ColourStream>,
     /// α is the part of a pixel that is covered.
     pub coverage: bool,
     /// What the picture shows.
@@ -57,7 +59,7 @@ pub struct Variant {
     pub lights: u32,
     /// Images beside the picture.
     pub outputs: Outputs,
-    /// Float width of the sums.
+    /// Float width of the sums, or of the samples.
     pub precision: Precision,
     /// What visits the pixels of splats and points; lines and triangles are always computed.
     pub rasterizer: Rasterizer,
@@ -81,15 +83,19 @@ pub struct Outputs {
     pub normal: bool,
     /// Eye-space depth.
     pub depth: bool,
+    /// Numbers of the points that are shown ([`Picture::id`](crate::Picture::id)); by pull–push alone.
+    pub id: bool,
 }
 
-/// Width of the floats in which weighted sums are kept.
+/// Width of the floats in which weighted sums, or the samples of pull–push, are kept.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Precision {
     /// 32 bits.
     #[default]
     Full,
-    /// 16 bits: half the memory and bandwidth. Blending in it may truncate, so that sums of many splats come out low.
+    /// 16 bits: half the memory and bandwidth. Blending in it may truncate, so that sums of many splats come out low. Samples of pull–push keep
+    /// 32 bits of what is compared most closely, the distances, so that nothing is lost that can be seen; displacements and radii end at
+    /// 65504 px, and colours beyond 1 of scenes that have linear ones at 65408.
     Half,
 }
 
@@ -109,6 +115,9 @@ impl Variant {
         let shade_splats = shading == Shading::Lit && splatting.shade == Shade::Splat;
         let by_surfel = splatting.normalization == Normalization::Surfel && shading != Shading::Overlap;
         let weights = streams.weights.filter(|_| by_surfel);
+        let robust = settings.pull_push.is_some_and(|pull_push| pull_push.rules == Rules::Robust);
+        let texture = streams.texture.filter(|_| robust && wants_colour);
+        let blends_colours = wants_colour && texture.is_none();
         let lit_pixels = shading == Shading::Lit && !shade_splats;
         Self {
             perspective,
@@ -119,7 +128,7 @@ impl Variant {
             footprint: splatting.footprint,
             confetti: splatting.kernel != Kernel::Gaussian,
             visibility: splatting.visibility,
-            pull_push: settings.pull_push.map(|pull_push| pull_push.rules),
+            pull_push: settings.pull_push,
             // How many there are, or what they weigh, is never divided.
             normalization: match shading {
                 Shading::Overlap | Shading::Weight => Normalization::Pixel,
@@ -132,12 +141,13 @@ impl Variant {
             count: options.count,
             normals: lit_pixels || shading == Shading::Normal || options.outputs.normal,
             depth: shading == Shading::Depth || options.outputs.depth,
-            colours: if wants_colour { streams.colours } else { ColourStream::None },
+            colours: if blends_colours { streams.colours } else { ColourStream::None },
             primitives: PrimitiveKinds {
-                colours: if wants_colour { streams.primitives.colours } else { ColourStream::None },
+                colours: if blends_colours { streams.primitives.colours } else { ColourStream::None },
                 ..streams.primitives
             },
-            coverage: settings.alpha == Alpha::Coverage && settings.pull_push.is_none(),
+            texture,
+            coverage: settings.alpha == Alpha::Coverage,
             shading,
             lights: if shading == Shading::Lit { settings.lighting.directional.len() as u32 } else { 0 },
             outputs: options.outputs,
@@ -164,6 +174,12 @@ impl Variant {
         wanted && (undivided || self.shade_splats || coloured)
     }
 
+    /// Whether some of the colours may be beyond 1.
+    pub fn unbounded_colours(&self) -> bool {
+        let floats = |colours| matches!(colours, ColourStream::Linear | ColourStream::Textured);
+        floats(self.colours) || floats(self.primitives.colours)
+    }
+
     /// Whether target 0 sums a vector beside Σw.
     pub fn wide_sums0(&self) -> bool {
         self.normals || self.sums_colours()
@@ -187,6 +203,11 @@ impl Variant {
             .with(constant::ELLIPSES, self.ellipses)
             .with(constant::TWO_SIDED, self.two_sided)
             .with(constant::CLIPS, self.clips)
+            .with(constant::COVERAGE, self.coverage)
+            .with(constant::TEXTURE, self.texture.is_some())
+            .with(constant::TEXELS, self.texture.map_or(0, |texels| texels as u32))
+            .with(constant::IDS, self.outputs.id)
+            .with(constant::OUT_ID, self.outputs.id)
             .with(constant::BEYOND_CLIPS, self.coverage && self.clips)
             .with(constant::FOOTPRINT, self.footprint as u32)
             .with(constant::CONFETTI, self.confetti)
@@ -195,7 +216,13 @@ impl Variant {
             .with(constant::CORNERS, self.corners)
             .with(constant::SHADE_SPLATS, self.shade_splats)
             .with(constant::NEAREST, self.visibility == Visibility::Nearest)
-            .with(constant::PAPER, self.pull_push == Some(Rules::Paper))
+            .with(constant::PAPER, self.pull_push.is_some_and(|pull_push| pull_push.rules == Rules::Paper))
+            .with(
+                constant::PING_PONG,
+                self.pull_push.is_some_and(|pull_push| pull_push.storage == Storage::PingPong),
+            )
+            .with(constant::COMPACT, self.pull_push.is_some() && self.precision == Precision::Half)
+            .with(constant::UNBOUNDED_COLOURS, self.unbounded_colours())
             .with(constant::OVERLAP, self.shading == Shading::Overlap)
             .with(constant::WIDEN_SMALL, self.widen_small)
             .with(constant::COUNT, self.count)

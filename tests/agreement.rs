@@ -42,7 +42,7 @@ impl<'a> View<'a> {
     ) -> Picture {
         let options = RenderOptions {
             size: self.case.size,
-            outputs: Outputs { normal: true, depth: true },
+            outputs: Outputs { normal: true, depth: true, id: false },
             rasterizer: Some(rasterizer),
             ..Default::default()
         };

@@ -281,7 +281,7 @@ fn every_window_has_its_own_weights() {
     let size = [128, 128];
     let expected = Expected::new(&surfels, &camera, size, &settings, &Tolerance::default()).unwrap();
     for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
-        let outputs = Outputs { normal: true, depth: true };
+        let outputs = Outputs { normal: true, depth: true, id: false };
         let options = RenderOptions { size, outputs, rasterizer: Some(rasterizer), ..Default::default() };
         let judged = |surfels: &Surfels| {
             let picture: Picture = render(&device, surfels, &camera, &settings, options);

@@ -21,7 +21,7 @@ fn camera(eye: DVec3) -> Camera {
 }
 
 fn options(rasterizer: Rasterizer) -> RenderOptions {
-    let outputs = Outputs { normal: true, depth: true };
+    let outputs = Outputs { normal: true, depth: true, id: false };
     RenderOptions { size: SIZE, outputs, count: true, rasterizer: Some(rasterizer), ..Default::default() }
 }
 

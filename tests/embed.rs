@@ -85,7 +85,7 @@ fn viewport([width, height]: [u32; 2]) -> vk::Viewport {
 /// What the engine's own frames show: colours, and distances, of what is seen.
 fn alone(settings: &Settings, camera: &Camera, rasterizer: Option<Rasterizer>) -> Picture {
     let device = Device::open(&DeviceOptions::default()).unwrap();
-    let outputs = Outputs { normal: false, depth: true };
+    let outputs = Outputs { normal: false, depth: true, id: false };
     let options = RenderOptions { size: SIZE, outputs, rasterizer, ..Default::default() };
     support::gpu::render(&device, &surfels(), camera, settings, options)
 }
@@ -217,7 +217,7 @@ fn pictures_and_normals_are_where_the_host_wants_them() {
     for (rasterizer, way) in
         [Rasterizer::Draw, Rasterizer::Compute].into_iter().zip([Way::Rendering, Way::Subpass])
     {
-        let outputs = Outputs { normal: true, depth: true };
+        let outputs = Outputs { normal: true, depth: true, id: false };
         let options =
             RenderOptions { size: SIZE, outputs, rasterizer: Some(rasterizer), ..Default::default() };
         let own = support::gpu::render(&device, &surfels(), &camera(), &settings, options);

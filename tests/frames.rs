@@ -32,7 +32,7 @@ fn camera(size: [u32; 2]) -> Camera {
 }
 
 fn everything(rasterizer: Rasterizer) -> RenderOptions {
-    let outputs = Outputs { normal: true, depth: true };
+    let outputs = Outputs { normal: true, depth: true, id: false };
     RenderOptions { size: SIZE, outputs, rasterizer: Some(rasterizer), ..Default::default() }
 }
 

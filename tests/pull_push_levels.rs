@@ -3,20 +3,24 @@
 mod support;
 
 use glam::DVec3;
+use std::f64::consts::SQRT_2;
 use std::fmt;
 use std::sync::Arc;
 use support::gpu::{assert_silent, device};
 use support::pyramids::Shot;
 use support::scenes::{Case, cases};
+use support::texture::textured;
 use surfel::geometry::{Camera, Model, Parts, Surfels};
 use surfel::pull_push::{PullPush, Rules};
 use surfel::reference::Frame;
-use surfel::reference::pull_push::{Decided, Level, Reconstruction, Sample};
-use surfel::settings::{Cull, Shading};
+use surfel::reference::pull_push::{Compact, Decided, Level, Reconstruction, Sample, Steps};
+use surfel::settings::{Alpha, Cull, Shading};
 use surfel::vk::{Device, DeviceLimits};
-use surfel::{Settings, scenes};
+use surfel::{Precision, Settings, scenes};
 
 const SIZES: [[u32; 2]; 5] = [[1, 1], [1, 1023], [640, 480], [1023, 769], [1024, 1024]];
+
+const BOTH: [Rules; 2] = [Rules::Paper, Rules::Robust];
 
 /// What is nearer to another outcome is in doubt: a comparison of levels, relative.
 const DOUBT: f64 = 1e-5;
@@ -25,8 +29,8 @@ const DOUBT: f64 = 1e-5;
 /// Which pixel a point is in, and which side it shows, is decided in twice the precision, with errors of some 2⁻⁴⁴: they are the hundredth.
 const DOUBT_OF_POINTS: f64 = 1.01 / (1 << 23) as f64;
 
-/// Largest difference of attributes that passes: of distances relative, of displacements and radii in radii or pixels of the level, of normals
-/// and colours absolute.
+/// Largest difference of attributes that passes: of distances relative, of displacements and radii in radii or pixels of the level, of normals,
+/// colours and texture coordinates absolute.
 const LIMIT: f64 = 2e-4;
 
 /// Largest differences of attributes, in the units of [`LIMIT`].
@@ -38,23 +42,32 @@ struct Worst {
     place: f64,
     normal: f64,
     colour: f64,
+    /// In turns of the texture.
+    coordinates: f64,
 }
 
 impl Worst {
-    /// Between two samples of a level.
-    fn between(a: &Sample, b: &Sample, level: u32) -> Self {
+    /// Between two samples of a level, beyond the steps to which both are rounded.
+    fn between(a: &Sample, b: &Sample, level: u32, steps: Steps) -> Self {
+        let beyond = |difference: f64, step: f64| (difference - step).max(0.0);
         let relative = |a: f64, b: f64| (a - b).abs() / b;
         let unit = b.radius.max(f64::from(level).exp2());
         // A tangent may as well be its opposite.
         let turned = if a.tube && a.normal.dot(b.normal) < 0.0 { -a.normal } else { a.normal };
-        let apart = (a.displacement - b.displacement).length().max((a.radius - b.radius).abs());
+        let moved = beyond((a.displacement - b.displacement).length(), SQRT_2 * steps.place);
+        let apart = largest(moved, beyond((a.radius - b.radius).abs(), steps.place));
+        let far = beyond((a.far - b.far).abs(), steps.far) / b.far;
         Self {
-            distance: [relative(a.near, b.near), relative(a.far, b.far), relative(a.depth, b.depth)]
+            distance: [relative(a.near, b.near), far, relative(a.depth, b.depth)]
                 .into_iter()
                 .fold(0.0, largest),
             place: apart / unit,
-            normal: if a.tube == b.tube { (turned - b.normal).abs().max_element() } else { f64::INFINITY },
-            colour: (a.colour - b.colour).abs().max_element(),
+            normal: match a.tube == b.tube && a.id == b.id {
+                true => beyond((turned - b.normal).abs().max_element(), steps.normal),
+                false => f64::INFINITY,
+            },
+            colour: beyond((a.colour - b.colour).abs().max_element(), steps.colour),
+            coordinates: (a.coordinates - b.coordinates).abs().max_element(),
         }
     }
 
@@ -63,17 +76,24 @@ impl Worst {
         self.place = largest(self.place, other.place);
         self.normal = largest(self.normal, other.normal);
         self.colour = largest(self.colour, other.colour);
+        self.coordinates = largest(self.coordinates, other.coordinates);
     }
 
     fn passes(&self) -> bool {
-        [self.distance, self.place, self.normal, self.colour].into_iter().all(|worst| worst <= LIMIT)
+        [self.distance, self.place, self.normal, self.colour, self.coordinates]
+            .into_iter()
+            .all(|worst| worst <= LIMIT)
     }
 }
 
 impl fmt::Display for Worst {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { distance, place, normal, colour } = self;
-        write!(f, "distances {distance:.1e}, places {place:.1e}, normals {normal:.1e}, colours {colour:.1e}")
+        let Self { distance, place, normal, colour, coordinates } = self;
+        write!(
+            f,
+            "distances {distance:.1e}, places {place:.1e}, normals {normal:.1e}, colours {colour:.1e}, "
+        )?;
+        write!(f, "coordinates {coordinates:.1e}")
     }
 }
 
@@ -92,23 +112,34 @@ struct Verdict {
     failed: usize,
     /// The first of them.
     first: String,
+    /// Samples that pass where something is known.
+    known: usize,
+    /// Of those, how many are not rounded to the twin's numbers, but to others next to them.
+    beside: usize,
     /// Over all samples that pass.
     worst: Worst,
 }
 
 impl Verdict {
-    fn of(gpu: &Level, twin: &Decided, doubt: f64) -> Self {
+    fn of(gpu: &Level, twin: &Decided, doubt: f64, compact: Option<Compact>) -> Self {
+        let steps = |sample: &Sample| compact.map_or(Steps::default(), |compact| compact.steps(sample));
         assert_eq!((gpu.size, gpu.samples.len()), (twin.level.size, twin.margins.len()));
         let mut found = Self { samples: gpu.samples.len(), ..Default::default() };
         let pairs = gpu.samples.iter().zip(&twin.level.samples).zip(&twin.margins);
         for (i, ((gpu, own), margin)) in pairs.enumerate() {
             let worst = match (gpu, own) {
-                (Some(gpu), Some(own)) => Some(Worst::between(gpu, own, twin.level.level)),
+                (Some(gpu), Some(own)) => Some(Worst::between(gpu, own, twin.level.level, steps(own))),
                 (None, None) => Some(Worst::default()),
                 _ => None,
             };
             match worst.filter(Worst::passes) {
-                Some(worst) => found.worst.widen(&worst),
+                Some(worst) => {
+                    found.worst.widen(&worst);
+                    if let (Some(gpu), Some(own), true) = (gpu, own, compact.is_some()) {
+                        found.known += 1;
+                        found.beside += usize::from(is_beside(gpu, own, steps(own)));
+                    }
+                }
                 None if *margin < doubt => found.excused += 1,
                 None => {
                     found.failed += 1;
@@ -123,6 +154,14 @@ impl Verdict {
     }
 }
 
+/// Whether two samples within a step of each other differ by half of one, of those numbers that are rounded most.
+fn is_beside(a: &Sample, b: &Sample, steps: Steps) -> bool {
+    let place = (a.displacement - b.displacement).abs().max_element().max((a.radius - b.radius).abs());
+    // What far is beyond near is no longer exact where it was added.
+    let beyond = ((a.far - a.near) - (b.far - b.near)).abs() - 1e-6 * b.far;
+    place > 0.5 * steps.place || beyond > 0.5 * steps.far
+}
+
 /// Samples of a level of less than 3000 that may be excused: at one in 10⁵, which is more than are found, one level in 10⁵ has more of them.
 const FEW: usize = 2;
 
@@ -132,6 +171,8 @@ struct Summary {
     worst: Worst,
     excused: usize,
     samples: usize,
+    known: usize,
+    beside: usize,
     failures: Vec<String>,
 }
 
@@ -140,6 +181,8 @@ impl Summary {
         self.worst.widen(&verdict.worst);
         self.excused += verdict.excused;
         self.samples += verdict.samples;
+        self.known += verdict.known;
+        self.beside += verdict.beside;
         let most = (verdict.samples / 1000).max(FEW);
         if verdict.failed > 0 || verdict.excused > most {
             let Verdict { samples, excused, failed, first, .. } = verdict;
@@ -163,10 +206,14 @@ fn projected(shot: &Shot, twin: &Reconstruction) -> Decided {
 }
 
 /// Two frames' largest difference of colours, normals and distances (relative) where both show a surface, and the part of the pixels that
-/// differ by more than 2e-4 or in that.
-fn compare(gpu: &Frame, twin: &Frame) -> (f64, f64) {
+/// differ by more than 2e-4 or in that. A pixel that is in doubt does not count.
+fn compare(gpu: &Frame, twin: &Frame, in_doubt: impl Fn(usize) -> bool) -> (f64, f64) {
     let apart = |i: usize| {
-        if gpu.covered[i] != twin.covered[i] {
+        if in_doubt(i) {
+            return 0.0;
+        }
+        let id = |frame: &Frame| frame.id.as_ref().map(|id| id[i]);
+        if gpu.covered[i] != twin.covered[i] || id(gpu) != id(twin) {
             return f64::INFINITY;
         }
         let colours = gpu.colour[i].iter().zip(twin.colour[i]).map(|(a, b)| (a - b).abs());
@@ -190,25 +237,32 @@ fn beyond(coarsest: &Level) -> Level {
 /// Every pass of a frame, each kind's levels added to `kinds`: project, pull, push. What is wrong with the last, if anything.
 fn test(device: &Arc<Device>, shot: &Shot, kinds: &mut [Summary; 3]) -> Option<String> {
     let (made, twin, name) = (shot.by_gpu(device), shot.reconstruction(), &shot.name);
+    let compact = shot.compact();
     let [pulled, pushed] = [&made.pyramid.pulled, &made.pyramid.pushed];
 
     let points = projected(shot, &twin);
-    kinds[0].add(&format!("{name}: project"), &Verdict::of(&pulled[0], &points, DOUBT_OF_POINTS));
+    kinds[0].add(&format!("{name}: project"), &Verdict::of(&pulled[0], &points, DOUBT_OF_POINTS, compact));
     for (finer, level) in pulled.iter().zip(&pulled[1..]) {
         let name = format!("{name}: pull to {}", level.level);
-        kinds[1].add(&name, &Verdict::of(level, &twin.decide_pull(finer), DOUBT));
+        kinds[1].add(&name, &Verdict::of(level, &twin.decide_pull(finer), DOUBT, compact));
     }
     let beyond = beyond(&pulled[pulled.len() - 1]);
     for (level, known) in pushed.iter().zip(pulled) {
         let coarser = pushed.get(level.level as usize + 1).unwrap_or(&beyond);
         let name = format!("{name}: push to {}", level.level);
-        kinds[2].add(&name, &Verdict::of(level, &twin.decide_push(coarser, known), DOUBT));
+        kinds[2].add(&name, &Verdict::of(level, &twin.decide_push(coarser, known), DOUBT, compact));
     }
-    let (shade, differ) = compare(&made.frame, &twin.shade(&pushed[0]));
+    let margins = twin.margins_of_coverage(&pushed[0]);
+    let (shade, differ) = compare(&made.frame, &twin.shade(&pushed[0]), |i| margins[i] < DOUBT);
+    let excused = margins.iter().filter(|margin| **margin < DOUBT).count();
+    if excused > FEW + margins.len() / 1000 {
+        return Some(format!("{name}: shade: {excused} pixels in doubt"));
+    }
 
     // The twin makes as many levels as it needs, the GPU all: coarser ones change nothing.
     let top = Reconstruction::top_level(&points.level);
-    let (worst, other) = compare(&made.frame, &twin.shade(&twin.pyramid(points.level, top).pushed[0]));
+    let (worst, other) =
+        compare(&made.frame, &twin.shade(&twin.pyramid(points.level, top).pushed[0]), |_| false);
     let other = 100.0 * other;
     println!(
         "{name}: shade {shade:.1e}; of the whole chain {other:.4} % of pixels differ, by up to {worst:.1e}"
@@ -229,28 +283,47 @@ fn cameras([width, height]: [u32; 2]) -> [(&'static str, Camera); 2] {
 fn shots<'a>(
     name: &'a str,
     parts: Parts<'a>,
-    shading: Shading,
+    (shading, alpha, rules): (Shading, Alpha, &'a [Rules]),
     sizes: &'a [[u32; 2]],
+    precision: Precision,
 ) -> impl Iterator<Item = Shot<'a>> {
     let each = sizes.iter().flat_map(|&size| cameras(size).map(|(kind, camera)| (size, kind, camera)));
     each.flat_map(move |(size, kind, camera)| {
-        [Rules::Paper, Rules::Robust].map(|rules| {
-            let pull_push = PullPush { rules };
-            let settings =
-                Settings { cull: Cull::Back, shading, pull_push: Some(pull_push), ..Default::default() };
+        rules.iter().map(move |&rules| {
+            let pull_push = PullPush::of(rules);
+            let settings = Settings {
+                cull: Cull::Back,
+                shading,
+                alpha,
+                pull_push: Some(pull_push),
+                ..Default::default()
+            };
             let name = format!("{name} {kind} {}x{} {}", size[0], size[1], rules.name());
-            Shot { name, parts, camera, size, settings, pull_push }
+            Shot { name, parts, camera, size, settings, pull_push, precision }
         })
     })
 }
 
-fn holds(list: impl IntoIterator<Item = (&'static str, impl Into<Model>, Shading)>, sizes: &[[u32; 2]]) {
+fn holds(
+    list: impl IntoIterator<Item = (&'static str, impl Into<Model>, Shading)>,
+    sizes: &[[u32; 2]],
+    precision: Precision,
+) {
+    holds_with((Alpha::Mask, &BOTH), list, sizes, precision);
+}
+
+fn holds_with(
+    (alpha, rules): (Alpha, &[Rules]),
+    list: impl IntoIterator<Item = (&'static str, impl Into<Model>, Shading)>,
+    sizes: &[[u32; 2]],
+    precision: Precision,
+) {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let mut kinds: [Summary; 3] = Default::default();
     let mut failures = Vec::new();
     for (name, model, shading) in list {
         let model = model.into();
-        for shot in shots(name, Parts::from(&model), shading, sizes) {
+        for shot in shots(name, Parts::from(&model), (shading, alpha, rules), sizes, precision) {
             failures.extend(test(&device, &shot, &mut kinds));
         }
     }
@@ -260,6 +333,10 @@ fn holds(list: impl IntoIterator<Item = (&'static str, impl Into<Model>, Shading
             "{name}: {}, {} of {} samples excused, {excused:.4} %",
             kind.worst, kind.excused, kind.samples
         );
+        let beside = kind.beside as f64 / kind.known.max(1) as f64;
+        println!("{name}: {:.2} % are rounded to other numbers", 100.0 * beside);
+        // Rounded otherwise than to the nearest, half of each of the four numbers would be.
+        assert!(beside < 0.1, "{name}: {beside}");
         failures.extend(kind.failures);
     }
     assert!(failures.is_empty(), "{} failures: {:#?}", failures.len(), &failures[..failures.len().min(40)]);
@@ -272,12 +349,12 @@ fn bumpy(points: u32) -> Surfels {
 
 #[test]
 fn few_points() {
-    holds([("10 k", bumpy(10_000), Shading::Lit)], &SIZES);
+    holds([("10 k", bumpy(10_000), Shading::Lit)], &SIZES, Precision::Full);
 }
 
 #[test]
 fn many_points() {
-    holds([("100 k", bumpy(100_000), Shading::Colour)], &SIZES);
+    holds([("100 k", bumpy(100_000), Shading::Colour)], &SIZES, Precision::Full);
 }
 
 #[test]
@@ -288,7 +365,7 @@ fn ellipses_without_sides_and_what_has_no_colours() {
         ("ellipses", named("ellipses"), Shading::Colour),
         ("no colours", Surfels { colours: None, ..bumpy(10_000) }, Shading::Lit),
     ];
-    holds(list, &SIZES[2..3]);
+    holds(list, &SIZES[2..3], Precision::Full);
 }
 
 #[test]
@@ -300,5 +377,64 @@ fn ribbons_tubes_and_triangles() {
         ("helix", model("helix?segments=100"), Shading::Lit),
         ("ribbon", model("ribbon?segments=40"), Shading::Lit),
     ];
-    holds(list, &SIZES[2..3]);
+    holds(list, &SIZES[2..3], Precision::Full);
+}
+
+/// A dispatch has a second row of workgroups from 2²¹ px on.
+#[test]
+fn more_pixels_than_a_row_of_workgroups_has() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let surfels = bumpy(100_000);
+    let size = [2048, 1100];
+    let eye = 2.2 * DVec3::new(1.0, 0.8, 1.6).normalize();
+    let aspect = f64::from(size[0]) / f64::from(size[1]);
+    let camera = Camera::look_at(eye, DVec3::ZERO, DVec3::Y, 45f64.to_radians(), aspect, 1e-3).unwrap();
+    let pull_push = PullPush::of(Rules::Robust);
+    let settings = Settings { cull: Cull::Back, pull_push: Some(pull_push), ..Default::default() };
+    let (name, parts, precision) = ("2048x1100".into(), Parts::from(&surfels), Precision::Half);
+    let shot = Shot { name, parts, camera, size, settings, pull_push, precision };
+    let mut kinds: [Summary; 3] = Default::default();
+    assert_eq!(test(&device, &shot, &mut kinds), None);
+    let failures: Vec<_> = kinds.iter().flat_map(|kind| &kind.failures).collect();
+    assert!(failures.is_empty(), "{failures:#?}");
+    assert_silent(&device);
+}
+
+#[test]
+fn compact_samples() {
+    let mixed = scenes::model("scene:mixed?segments=200&points=30000&primitives=on").unwrap();
+    let list = [
+        ("10 k", bumpy(10_000).into(), Shading::Lit),
+        ("100 k", bumpy(100_000).into(), Shading::Colour),
+        ("no colours", Surfels { colours: None, ..bumpy(10_000) }.into(), Shading::Lit),
+        ("mixed", mixed, Shading::Lit),
+    ];
+    holds(list, &SIZES[1..3], Precision::Half);
+}
+
+#[test]
+fn coverage() {
+    let tree = scenes::model("scene:tree?segments=12&depth=2&primitives=on").unwrap();
+    holds_with(
+        (Alpha::Coverage, &BOTH),
+        [("10 k", bumpy(10_000).into(), Shading::Lit), ("tree", tree, Shading::Colour)],
+        &SIZES[..3],
+        Precision::Full,
+    );
+}
+
+#[test]
+fn textures() {
+    let list = [
+        ("texture, 10 k", textured(bumpy(10_000)), Shading::Colour),
+        (
+            "texture, triangles",
+            textured(scenes::model("scene:mixed?segments=40&points=20000&primitives=on").unwrap()),
+            Shading::Lit,
+        ),
+    ];
+    // As published there are colours instead, which the twin's passes would have to be given.
+    for precision in [Precision::Full, Precision::Half] {
+        holds_with((Alpha::Mask, &[Rules::Robust]), list.clone(), &SIZES[1..3], precision);
+    }
 }

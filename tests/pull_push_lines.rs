@@ -93,7 +93,7 @@ fn compare(name: &str, size: [u32; 2]) -> [Faults; 2] {
     let file = name.replace([':', '?', '&', '='], "-");
     write(&exact, &format!("{file}-exact.png"));
     [Rules::Paper, Rules::Robust].map(|rules| {
-        let pull_push = PullPush { rules };
+        let pull_push = PullPush::of(rules);
         let settings = Settings { pull_push: Some(pull_push), ..settings.clone() };
         let frame = surfel::reference::render(&model, &camera, size, &settings, &()).unwrap().to_picture();
         write(&frame, &format!("{file}-{}.png", rules.name()));
@@ -176,10 +176,10 @@ fn the_gpu_makes_the_references_picture() {
             for rules in [Rules::Paper, Rules::Robust] {
                 let settings = Settings {
                     shading: Shading::Lit,
-                    pull_push: Some(PullPush { rules }),
+                    pull_push: Some(PullPush::of(rules)),
                     ..Default::default()
                 };
-                let outputs = Outputs { normal: true, depth: true };
+                let outputs = Outputs { normal: true, depth: true, id: false };
                 let options = RenderOptions { size, outputs, ..Default::default() };
                 let picture = render(&device, &model, camera, &settings, options);
                 let file = name.replace([':', '?', '&', '='], "-");

@@ -50,7 +50,7 @@ struct Shot<'a> {
 impl Shot<'_> {
     fn by(&self, device: &Arc<Device>, rasterizer: Option<Rasterizer>) -> (Made, Rasterizer) {
         let scene = Scene::upload(device, self.parts).unwrap();
-        let outputs = Outputs { normal: true, depth: true };
+        let outputs = Outputs { normal: true, depth: true, id: true };
         let options =
             RenderOptions { size: self.size, outputs, rasterizer, count: true, ..Default::default() };
         let mut renderer = Renderer::new(device, options).unwrap();

@@ -19,7 +19,7 @@ use surfel::pull_push::{PullPush, Rules};
 use surfel::settings::Cull;
 use surfel::truth::{self, Filter, Options};
 use surfel::vk::{Device, DeviceLimits};
-use surfel::{Picture, Settings};
+use surfel::{Picture, Precision, Settings};
 
 const SIZE: [u32; 2] = [1024, 1024];
 
@@ -64,10 +64,11 @@ fn faults(truth: &[f32], made: &Made, behind: f64) -> Faults {
 }
 
 fn shot<'a>(subject: &Subject, surfels: &'a Surfels, rules: Rules) -> Shot<'a> {
-    let pull_push = PullPush { rules };
+    let pull_push = PullPush::of(rules);
     let settings = Settings { cull: Cull::Back, pull_push: Some(pull_push), ..Default::default() };
     let camera = subject.camera(&subject.viewpoint(), 0.0, SIZE).unwrap();
-    Shot { name: subject.name.clone(), parts: surfels.into(), camera, size: SIZE, settings, pull_push }
+    let (name, precision) = (subject.name.clone(), Precision::Full);
+    Shot { name, parts: surfels.into(), camera, size: SIZE, settings, pull_push, precision }
 }
 
 /// The faults of the reference and of the GPU, if there is one.

@@ -15,7 +15,7 @@ use surfel::{Error, Outputs, Picture, Settings};
 /// Share of the object's pixels that the reference may hold to be undecided.
 const MOST_DOUBT: f64 = 0.02;
 
-const ALL: Outputs = Outputs { normal: true, depth: true };
+const ALL: Outputs = Outputs { normal: true, depth: true, id: false };
 
 fn draw(kind: Kind, surfels: &Surfels, camera: &Camera, size: [u32; 2], settings: &Settings) -> Picture {
     let mut yardstick = Yardstick::new(surfels).unwrap();

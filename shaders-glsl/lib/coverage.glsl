@@ -7,7 +7,8 @@ const uint COVERAGE_BINDING = 0;
 #endif
 layout(set = 1, binding = COVERAGE_BINDING, std430) buffer Coverage { uint coverage[]; }; // the 16 samples of each pixel, a bit each
 
-const uint SAMPLES = 16;
+#include "lib/lattice.glsl"
+
 const uint ALL_SAMPLES = (1u << SAMPLES) - 1;
 
 // How much of a footprint is surface: discs are drawn 1.3 times as large as they need be to leave no holes.
@@ -16,11 +17,6 @@ const float SOLID = 0.77;
 const float LEAST_SOLID = 1e-12;
 // What discs on either side of an edge share of it, px: more than rounding can part them by.
 const float SEAM = 1.0 / 256.0;
-
-// Sample k relative to the pixel's centre, px: a lattice with one sample in each of 16 rows and of 16 columns, no two nearer than 0.19 px.
-vec2 sample_at(uint k) {
-    return (vec2(k, 13 * k % SAMPLES) + 0.5) / SAMPLES - 0.5;
-}
 
 uint nearest_sample(vec2 to) {
     uint nearest = 0;

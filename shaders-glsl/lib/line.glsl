@@ -51,6 +51,7 @@ End between(End a, End b, float t) {
     end.vertex.radius = mix(a.vertex.radius, b.vertex.radius, t);
     end.vertex.distance = mix(a.vertex.distance, b.vertex.distance, t);
     end.vertex.colour = mix(a.vertex.colour, b.vertex.colour, t);
+    end.vertex.coordinates = mix(a.vertex.coordinates, b.vertex.coordinates, t);
     end.along = mix(a.along, b.along, t);
     end.run_hi = mix(a.run_hi, b.run_hi, t);
     end.run_lo = mix(a.run_lo, b.run_lo, t);
@@ -208,8 +209,10 @@ Sample sample_at(Segment segment, Strand s, Place place) {
     // A ribbon shows the side that is seen; a tube's tangent has no sign.
     if (!segment.tube && facing_of(weights.x * a.hi + weights.y * b.hi, direction) > 0.0) direction = -direction;
     float radius = dot(weights, vec2(a.radius, b.radius));
-    vec3 colour = weights.x * a.colour + weights.y * b.colour;
     vec2 on_screen = PERSPECTIVE ? weights * vec2(a.distance, b.distance) / distance : weights;
     vec2 screen = on_screen.x * s.discs.xy + on_screen.y * s.discs.zw;
-    return disc_sample(vec2(place.at) + 0.5, screen, place.nearest, distance, radius, direction, colour, segment.tube);
+    Sample disc = disc_sample(vec2(place.at) + 0.5, screen, place.nearest, distance, radius, direction, segment.tube);
+    disc.colour = weights.x * a.colour + weights.y * b.colour;
+    disc.coordinates = weights.x * a.coordinates + weights.y * b.coordinates;
+    return disc;
 }

@@ -4,12 +4,12 @@
 #include "lib/pixel_row.glsl"
 #include "lib/colour_streams.glsl"
 
-layout(constant_id = 29) const uint VERTEX_COLOURS = 0; // how the scene holds their colours; see lib/sums.glsl
+layout(constant_id = 29) const uint VERTEX_COLOURS = 0; // how the scene holds their colours; see lib/colour_streams.glsl
 
-layout(set = 2, binding = 0, std430) readonly buffer Vertices { float vertices[]; };            // position, direction, radius
-layout(set = 2, binding = 1, std430) readonly buffer Alongs { float alongs[]; };                // directions of the lines
-layout(set = 2, binding = 2, std430) readonly buffer VertexColours { uint vertex_colours[]; };
-layout(set = 2, binding = 3, std430) readonly buffer Elements { uint elements[]; };             // vertices of lines, or of triangles
+layout(set = 3, binding = 0, std430) readonly buffer Vertices { float vertices[]; };            // position, direction, radius
+layout(set = 3, binding = 1, std430) readonly buffer Alongs { float alongs[]; };                // directions of the lines
+layout(set = 3, binding = 2, std430) readonly buffer VertexColours { uint vertex_colours[]; };
+layout(set = 3, binding = 3, std430) readonly buffer Elements { uint elements[]; };             // vertices of lines, or of triangles
 
 struct Vertex {
     vec3 hi, lo;     // position relative to the eye, the sum of both
@@ -17,6 +17,7 @@ struct Vertex {
     float radius;    // below 0 where it is invalid
     float distance;
     vec3 colour;     // linear
+    vec2 coordinates; // in the texture
 };
 
 float distance_of(vec3 hi, vec3 lo) {
@@ -24,6 +25,7 @@ float distance_of(vec3 hi, vec3 lo) {
 }
 
 DEFINE_COLOURS(vertex_colour, VERTEX_COLOURS, vertex_colours)
+DEFINE_COORDINATES(vertex_coordinates, vertex_colours)
 
 Vertex vertex_of(uint i) {
     uint k = 7 * i;
@@ -37,6 +39,8 @@ Vertex vertex_of(uint i) {
     v.radius = vertices[k + 6];
     v.distance = distance_of(v.hi, v.lo);
     v.colour = SUM_COLOURS ? vertex_colour(i) : vec3(0.0);
+    v.coordinates = vec2(0.0);
+    if (TEXTURE) v.coordinates = vertex_coordinates(i);
     return v;
 }
 
@@ -55,9 +59,10 @@ float facing_of(vec3 position, vec3 normal) {
     return dot(PERSPECTIVE ? position : frame.forward_hi.xyz, normal);
 }
 
-// The sample of the pixel with the centre `own` that a disc about `screen` is. What is nearest of it is at `nearest`.
-Sample disc_sample(vec2 own, vec2 screen, float nearest, float distance, float radius, vec3 direction, vec3 colour, bool tube) {
-    Sample s;
+// The sample of the pixel with the centre `own` that a disc about `screen` is. What is nearest of it is at `nearest`. Colour and coordinates
+// are left out.
+Sample disc_sample(vec2 own, vec2 screen, float nearest, float distance, float radius, vec3 direction, bool tube) {
+    Sample s = NOTHING;
     s.near = nearest;
     s.far = distance + (PAPER || tube ? 1.0 : 2.0) * radius;
     s.depth = distance;
@@ -65,6 +70,5 @@ Sample disc_sample(vec2 own, vec2 screen, float nearest, float distance, float r
     s.displacement = PAPER ? vec2(0.0) : screen - own;
     s.normal = dot(direction, direction) > 0.0 ? normalize(direction) : vec3(0.0);
     s.tube = tube;
-    s.colour = colour;
     return s;
 }

@@ -8,7 +8,6 @@ layout(constant_id = 17) const bool SUM_COLOURS = false;   // colours are summed
 layout(constant_id = 18) const uint NORMALIZATION = 0;     // as in src/splatting.rs
 layout(constant_id = 19) const bool OVERLAP = false;       // every splat weighs 1: Σw is their number
 
-const uint COLOURS_NONE = 0, COLOURS_SRGB8 = 1, COLOURS_LINEAR = 2;
 const uint PER_PIXEL = 0, PER_SURFEL = 1, NONE = 2;
 
 // Whether Σw is wanted: something is divided by it, or held against it.

@@ -10,6 +10,7 @@ layout(set = 0, binding = 3, std430) readonly buffer Normals { float normals[]; 
 layout(set = 0, binding = 5, std430) readonly buffer Colours { uint colours[]; };
 
 DEFINE_COLOURS(colour_of, COLOURS, colours)
+DEFINE_COORDINATES(coordinates_of, colours)
 
 // Unit vector from surfel i to the eye.
 vec3 to_eye_of(uint i) {

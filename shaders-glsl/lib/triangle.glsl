@@ -77,7 +77,9 @@ Sample sample_at(Triangle t, ivec2 at, vec3 weights, float distance) {
     bool is_front = dot(plane, t.a.direction + t.b.direction + t.c.direction) >= 0.0;
     if (facing_of(t.a.hi, is_front ? plane : -plane) > 0.0) direction = -direction;
     float radius = dot(weights, vec3(t.a.radius, t.b.radius, t.c.radius));
-    vec3 colour = weights.x * t.a.colour + weights.y * t.b.colour + weights.z * t.c.colour;
     vec2 own = vec2(at) + 0.5;
-    return disc_sample(own, own, distance, distance, radius, direction, colour, false);
+    Sample s = disc_sample(own, own, distance, distance, radius, direction, false);
+    s.colour = weights.x * t.a.colour + weights.y * t.b.colour + weights.z * t.c.colour;
+    s.coordinates = weights.x * t.a.coordinates + weights.y * t.b.coordinates + weights.z * t.c.coordinates;
+    return s;
 }

@@ -105,7 +105,7 @@ impl OnDevice {
         precision: Precision,
     ) -> Result<Self> {
         let lean = RenderOptions { size, rasterizer, precision, profile: true, ..Default::default() };
-        let outputs = Outputs { normal: true, depth: true };
+        let outputs = Outputs { normal: true, depth: true, id: false };
         let whole = RenderOptions { outputs, profile: false, ..lean };
         Ok(Self {
             scene: Scene::upload(device, parts)?,
@@ -158,7 +158,7 @@ impl Ready for OnHost {
     }
 
     fn picture(&mut self, camera: &Camera, settings: &Settings) -> Result<Picture> {
-        let outputs = Outputs { normal: true, depth: true };
+        let outputs = Outputs { normal: true, depth: true, id: false };
         self.yardstick.frame(self.kind, camera, self.size, settings, outputs)?;
         Ok(self.yardstick.picture())
     }

@@ -44,6 +44,7 @@ fn middle(picture: &Picture) -> Picture {
         colour: pixels().map(|i| picture.colour[i]).collect(),
         depth: picture.depth.as_ref().map(|depth| pixels().map(|i| depth[i]).collect()),
         normal: picture.normal.as_ref().map(|normal| pixels().map(|i| normal[i]).collect()),
+        id: picture.id.as_ref().map(|id| pixels().map(|i| id[i]).collect()),
     }
 }
 

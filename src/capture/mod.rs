@@ -114,7 +114,7 @@ fn complete(surfels: &Surfels, settings: &Settings, samples: Samples) -> (Weight
 }
 
 fn renderer(device: &Arc<Device>, size: [u32; 2]) -> Result<Renderer> {
-    let outputs = Outputs { normal: false, depth: true };
+    let outputs = Outputs { depth: true, ..Default::default() };
     Renderer::new(device, RenderOptions { size, outputs, ..Default::default() })
 }
 

@@ -77,6 +77,7 @@ impl Colouring {
         let scale = coloured.scale_or_grey(self.map);
         for cloud in clouds {
             let scalar = cloud.scalar.take();
+            cloud.texture = None;
             cloud.colours = scalar.map(|scalar| scale.colours(scalar.par_iter().copied()));
         }
         coloured

@@ -28,6 +28,7 @@ pub fn run(args: &Convert) -> Result<()> {
         simplify: args.simplify_lines,
         voxel: args.voxel,
         colouring: Colouring::new(&args.colours, args.up)?,
+        texture: args.colours.texture()?,
         quiet: args.quiet,
         progress: &*bars,
     })?;

@@ -5,8 +5,9 @@ use super::progress::say;
 use super::summary;
 use std::ffi::OsString;
 use std::path::Path;
+use std::sync::Arc;
 use surfel::geometry::estimate::{Estimate, Estimated};
-use surfel::geometry::{Cloud, Lined, Model, ToLines};
+use surfel::geometry::{Cloud, Lined, MipMap, Model, ToLines};
 use surfel::io::ply::{self, Dropped, Faces, Lines, Loaded, ReadOptions, Report};
 use surfel::{Error, Progress, Result, Settings, scenes};
 
@@ -26,6 +27,8 @@ pub struct Wanted<'a> {
     pub voxel: Option<f64>,
     /// What the points are coloured by, if not by their own colours.
     pub colouring: Option<Colouring>,
+    /// The texture that files' coordinates are of, rather than the one that they name.
+    pub texture: Option<Arc<MipMap>>,
     /// Whether nothing is said.
     pub quiet: bool,
     /// Is told how far it has come.
@@ -102,7 +105,11 @@ fn load_one(name: &OsString, wanted: &Wanted<'_>) -> Result<(Part, u64, Dropped)
         return Ok((Part { name: name.into(), cloud, drawn: true }, count, Dropped::default()));
     }
     let property = wanted.colouring.as_ref().and_then(Colouring::property);
-    let options = ReadOptions { scalar: property.map(str::to_owned), triangles: draws_faces(wanted) };
+    let options = ReadOptions {
+        scalar: property.map(str::to_owned),
+        triangles: draws_faces(wanted),
+        texture: wanted.texture.clone(),
+    };
     let Loaded { cloud, report } = ply::read(Path::new(name), &options, wanted.progress)?;
     let name = Path::new(name).display().to_string();
     warn(&name, &report);
@@ -143,6 +150,9 @@ fn warn(name: &str, report: &Report) {
             "{name}: {skipped} of {} segments of lines have no two ends that exist, at two places, and are left out",
             skipped + understood
         );
+    }
+    if let Some(cause) = &report.texture_missing {
+        log::warn!("{name}: drawn without its texture: {cause}");
     }
     if report.trailing > 0 {
         log::warn!("{name}: {} bytes after the last element mean nothing and are left out", report.trailing);

@@ -67,6 +67,7 @@ fn variant(settings: &Settings, rasterizer: Rasterizer) -> Variant {
         weights: None,
         colours: ColourStream::Srgb8,
         primitives: PrimitiveKinds::NONE,
+        texture: None,
     };
     let settings = Settings { shading: Shading::Lit, ..settings.clone() };
     Variant::new(streams, true, &settings, &RenderOptions::default(), rasterizer)

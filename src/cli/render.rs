@@ -65,12 +65,14 @@ pub fn run(args: &Render) -> Result<()> {
         simplify: None,
         voxel: None,
         colouring,
+        texture: args.colours.texture()?,
         quiet: args.quiet,
         progress: &*bars,
     })?;
     let (method, scene) = (method(args.method, &loaded.model)?, &loaded.model);
     let settings = args.settings(&method);
     settings.check()?;
+    settings.check_outputs(args.outputs())?;
     let bounds = Parts::from(scene).bounds();
     let bounds = bounds.ok_or_else(|| Error::Usage("the inputs hold nothing that can be drawn".into()))?;
     let camera = camera::make(&args.camera, file, &bounds, args.size)?;
@@ -119,6 +121,7 @@ fn save(picture: &Picture, shading: Shading, bar: Option<&ColourBar>, out: &Outp
 pub fn keep_layers(picture: &mut Picture, layers: Outputs) {
     picture.normal.take_if(|_| !layers.normal);
     picture.depth.take_if(|_| !layers.depth);
+    picture.id.take_if(|_| !layers.id);
 }
 
 /// Refuses colours that would not be seen, and a bar where there is no place or nothing to tell.
@@ -150,7 +153,9 @@ fn tell(args: &Render, loaded: &Inputs, outcome: &Outcome) {
         progress::say(outcome.times.to_string().trim_end());
     }
     if let Some(HalfError { largest, rms }) = outcome.gpu.as_ref().and_then(|gpu| gpu.half_error) {
-        progress::say(&format!("16-bit sums: linear colour is off by {largest:.1e} at most, {rms:.1e} RMS"));
+        progress::say(&format!(
+            "16-bit floats: linear colour is off by {largest:.1e} at most, {rms:.1e} RMS"
+        ));
     }
     if !args.quiet {
         let ([width, height], parts) = (args.size, summary::parts(&loaded.model));

@@ -37,7 +37,7 @@ pub struct Gpu {
     pub half_error: Option<HalfError>,
 }
 
-/// How far a picture of 16-bit sums is from that of 32-bit sums, over all channels of all pixels, linear.
+/// How far a picture of 16-bit sums or samples is from that of 32-bit ones, over all channels of all pixels, linear.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct HalfError {
     /// Largest difference.

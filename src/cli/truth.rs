@@ -17,6 +17,9 @@ use surfel::{Error, Progress, Result, Settings, scenes};
 pub fn run(args: &Truth) -> Result<()> {
     let out = Output::parse(&args.output);
     out.check()?;
+    if args.outputs().id {
+        return Err(Error::Usage("--layers id: rays meet surfaces, not points: leave it out".into()));
+    }
     if out.is_png() && !args.layers.is_empty() {
         return Err(Error::Usage("--layers are written to EXR alone: name the picture .exr".into()));
     }
@@ -51,6 +54,7 @@ fn bounds(args: &Truth, progress: &dyn Progress) -> Result<Bounds> {
         simplify: None,
         voxel: None,
         colouring: None,
+        texture: None,
         quiet: true,
         progress,
     })?;

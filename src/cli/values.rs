@@ -173,6 +173,8 @@ pub enum Layer {
     Normal,
     /// Distance from the eye along the view, as channel Z
     Depth,
+    /// Number of the point that is shown, as channel id of 32-bit whole numbers; by pull-push and pull-push-paper
+    Id,
 }
 
 /// What the anti-aliasing filter widens.

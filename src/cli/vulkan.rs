@@ -9,7 +9,7 @@ use std::time::Instant;
 use surfel::bench::Times;
 use surfel::settings::Shading;
 use surfel::vk::{Device, DeviceLimits, DeviceOptions};
-use surfel::{Outputs, Picture, Precision, RenderOptions, Renderer, Result, Scene};
+use surfel::{Error, Outputs, Picture, Precision, RenderOptions, Renderer, Result, Scene};
 
 /// The stage of rendering, for who is told about progress.
 const FRAMES: &str = "rendering frames";
@@ -56,7 +56,7 @@ pub fn render(task: &Task<'_>, options: &DeviceOptions, place: &Place, measure: 
     Ok(Outcome { picture, counts: report.counts, times, gpu: Some(gpu) })
 }
 
-/// How far `picture`, of 16-bit sums, is from that of 32-bit sums; `None` if the device has no such sums.
+/// How far `picture`, of 16-bit sums or samples, is from that of 32-bit ones; `None` if the device has no such, or no room for them.
 fn half_error(
     device: &Arc<Device>,
     task: &Task<'_>,
@@ -69,7 +69,11 @@ fn half_error(
     if renderer.precision() != Precision::Full {
         return Ok(None);
     }
-    let (full, _) = renderer.render_picture(scene, &task.camera, &task.settings)?;
+    let (full, _) = match renderer.render_picture(scene, &task.camera, &task.settings) {
+        // What fits in 16 bits need not in 32.
+        Err(Error::Usage(_)) => return Ok(None),
+        made => made?,
+    };
     let channels =
         |picture: &Picture| picture.colour.iter().flatten().map(|c| f64::from(*c)).collect::<Vec<_>>();
     let (ours, exact) = (channels(picture), channels(&full));
@@ -82,10 +86,11 @@ fn half_error(
 fn outputs(task: &Task<'_>) -> Outputs {
     let opaque = task.settings.background.is_some();
     let shading = task.settings.shading;
-    let Outputs { normal, depth } = task.layers;
+    let Outputs { normal, depth, id } = task.layers;
     Outputs {
         normal: normal || opaque && shading == Shading::Normal,
         depth: depth || opaque && shading == Shading::Depth,
+        id,
     }
 }
 

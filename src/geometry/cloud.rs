@@ -1,7 +1,7 @@
 //! A point cloud as files hold it: positions, and whatever else there is.
 
 use super::morton::order;
-use super::{Clips, Colours, Ellipse, Surfels, Weights};
+use super::{Clips, Colours, Ellipse, Surfels, Texture, Weights};
 use glam::{DVec3, Vec3};
 
 /// Points as a structure of arrays; every array that is there has one entry a point.
@@ -25,6 +25,8 @@ pub struct Cloud {
     pub weights: Option<Weights>,
     /// Colours.
     pub colours: Option<Colours>,
+    /// What has the colours in place of [`Cloud::colours`].
+    pub texture: Option<Texture>,
     /// A number a point, chosen on reading; not finite where there is none.
     pub scalar: Option<Vec<f64>>,
     /// Triangles between the points, counter-clockwise from outside; each index is one of a point.
@@ -116,10 +118,18 @@ impl Cloud {
                 weights
             }),
             colours: self.colours.as_ref().map(|colours| colours.gather(kept)),
+            texture: self.texture.as_ref().map(|texture| texture.gather(kept)),
             scalar: of(&self.scalar, kept),
             tangents: of(&self.tangents, kept),
             view: self.view,
             ..Default::default()
+        }
+    }
+
+    /// Puts the texture's colours at the points in its place, for what cannot keep coordinates.
+    pub fn bake_texture(&mut self) {
+        if let Some(texture) = self.texture.take() {
+            self.colours = Some(texture.baked(&self.positions, self.radii.as_deref()));
         }
     }
 
@@ -148,6 +158,7 @@ impl From<Surfels> for Cloud {
             clips: surfels.clips,
             weights: surfels.weights,
             colours: surfels.colours,
+            texture: surfels.texture,
             ..Default::default()
         }
     }

@@ -1,6 +1,6 @@
 //! Several sets of points as one.
 
-use super::{Bounds, Clips, Cloud, Colours, Ellipse, Model, Primitives, Surfels, View, Weights};
+use super::{Bounds, Clips, Cloud, Colours, Ellipse, Model, Primitives, Surfels, Texture, View, Weights};
 use crate::error::{Error, Result};
 use crate::io::srgb;
 use glam::{DVec3, Vec3};
@@ -12,6 +12,7 @@ impl Surfels {
     /// bounds, and positions are moved in float64. Where only some parts have colours, `albedo` (linear) is the others' colour; colours
     /// stay sRGB-encoded unless a part has linear ones. Where only some have shapes, the others' discs are circles; where only some
     /// name two-sided surfels, the others' are not; where only some have clips, the others' discs are whole;
+    /// where not all have the same texture, those that have one get its colours at their points;
     /// where only some have normalization weights, none has: there are none that would fit the others.
     ///
     /// # Errors
@@ -32,6 +33,7 @@ impl Surfels {
             clips: cloud.clips,
             weights: cloud.weights,
             colours: cloud.colours,
+            texture: cloud.texture,
         }
     }
 }
@@ -75,6 +77,7 @@ impl From<Primitives> for Cloud {
             normals: Some(primitives.directions),
             radii: Some(primitives.radii),
             colours: primitives.colours,
+            texture: primitives.texture,
             ribbons: primitives.ribbons,
             tubes: primitives.tubes,
             triangles: primitives.triangles,
@@ -92,6 +95,7 @@ impl Primitives {
             directions: cloud.normals.unwrap_or_default(),
             radii: cloud.radii.unwrap_or_default(),
             colours: cloud.colours,
+            texture: cloud.texture,
             ribbons: cloud.ribbons,
             tubes: cloud.tubes,
             triangles: cloud.triangles,
@@ -116,6 +120,7 @@ impl Cloud {
         let origin = common_origin(parts.iter());
         parts.iter_mut().for_each(|part| part.move_origin(origin));
         let parts = &mut parts[..];
+        let texture = join_textures(parts);
         Ok(Self {
             origin,
             view: common_view(parts),
@@ -123,6 +128,7 @@ impl Cloud {
             ribbons: join_corners(parts, |part| &mut part.ribbons),
             tubes: join_corners(parts, |part| &mut part.tubes),
             tangents: join(parts, |part| part.tangents.take(), |part| vec![Vec3::ZERO; part.len()]),
+            texture,
             colours: join_colours(parts, albedo),
             // Before the normals, which circles are made of.
             ellipses: join(parts, |part| part.ellipses.take(), circles),
@@ -207,6 +213,16 @@ fn join_corners<const N: usize>(
         first += part.len() as u32;
     }
     all
+}
+
+/// One texture, or colours in the place of several.
+fn join_textures(parts: &mut [Cloud]) -> Option<Texture> {
+    let texture = Texture::join(parts.iter().map(|part| part.texture.as_ref()));
+    parts.iter_mut().for_each(|part| match texture {
+        Some(_) => part.texture = None,
+        None => part.bake_texture(),
+    });
+    texture
 }
 
 fn join_colours(parts: &mut [Cloud], albedo: [f32; 3]) -> Option<Colours> {

@@ -1,8 +1,9 @@
 //! Lines and triangles: what pull–push draws beside surfels.
 
-use super::{Bounds, Cloud, Colours, Surfels};
+use super::{Bounds, Cloud, Colours, MipMap, Surfels, Texture};
 use crate::error::{Error, Result};
 use glam::{DVec3, Vec3};
+use std::sync::Arc;
 
 /// Ribbons, tubes and triangles between shared vertices (marroquim2008 sections 4 and 5). Every array of vertices has one entry a
 /// vertex.
@@ -21,6 +22,8 @@ pub struct Primitives {
     pub radii: Vec<f32>,
     /// Colours, where the input has them.
     pub colours: Option<Colours>,
+    /// What has the colours in place of [`Primitives::colours`].
+    pub texture: Option<Texture>,
     /// Segments of ribbons.
     pub ribbons: Vec<[u32; 2]>,
     /// Segments of tubes.
@@ -82,6 +85,35 @@ impl Parts<'_> {
                 "the surfels' origin is {a}, that of lines and triangles {b}: give one"
             ))),
         }
+    }
+
+    /// The texture of everything that is drawn; `None` where a part has none or another.
+    pub fn texture(&self) -> Option<&Arc<MipMap>> {
+        let of_surfels = (!self.surfels.is_empty()).then_some(self.surfels.texture.as_ref());
+        let of_primitives = self.primitives.map(|primitives| primitives.texture.as_ref());
+        let mut parts = of_surfels.into_iter().chain(of_primitives);
+        let first = &parts.next()??.image;
+        parts.all(|part| part.is_some_and(|part| part.image == *first)).then_some(first)
+    }
+
+    /// A copy in which textures are colours, one a point.
+    pub(crate) fn baked(&self) -> Model {
+        let mut model =
+            Model { surfels: self.surfels.clone(), primitives: self.primitives.cloned().unwrap_or_default() };
+        let Model { surfels: s, primitives: p } = &mut model;
+        if let Some(texture) = s.texture.take() {
+            s.colours = Some(Colours::Linear(texture.colours(&s.positions, Some(&s.radii))));
+        }
+        if let Some(texture) = p.texture.take() {
+            p.colours = Some(Colours::Linear(texture.colours(&p.positions, Some(&p.radii))));
+        }
+        model
+    }
+
+    /// Whether something has a texture.
+    pub(crate) fn has_texture(&self) -> bool {
+        self.surfels.texture.is_some()
+            || self.primitives.is_some_and(|primitives| primitives.texture.is_some())
     }
 
     /// What positions are relative to.
@@ -153,10 +185,11 @@ impl Primitives {
         }
         let count = self.len();
         let colours = self.colours.as_ref().map_or(count, Colours::len);
-        let lengths = [self.directions.len(), self.radii.len(), colours];
+        let textured = self.texture.as_ref().map_or(count, |texture| texture.coordinates.len());
+        let lengths = [self.directions.len(), self.radii.len(), colours, textured];
         if lengths.iter().any(|&length| length != count) {
             return Err(Error::Usage(format!(
-                "{count} vertices with {lengths:?} directions, radii and colours: give one each"
+                "{count} vertices with {lengths:?} directions, radii, colours and texture coordinates: give one each"
             )));
         }
         let ends = self.segments().flat_map(|(ends, _)| ends);
@@ -180,7 +213,11 @@ impl Primitives {
             Some(Colours::Srgb8(colours)) => vertex < colours.len(),
             None => true,
         };
-        placed && directed && sized && coloured
+        let textured = match &self.texture {
+            Some(texture) => texture.coordinates.get(vertex).is_some_and(|at| at.is_finite()),
+            None => true,
+        };
+        placed && directed && sized && coloured && textured
     }
 
     /// How many segments and triangles have a vertex that is not [valid](Primitives::is_valid).
@@ -224,7 +261,7 @@ mod tests {
             |p| p.colours = Some(Colours::Linear(vec![])),
             |p| p.origin.x = f64::NAN,
         ];
-        let causes = ["vertex 2, and there are 2", "vertex 9", "[2, 1, 2]", "[2, 2, 0]", "finite"];
+        let causes = ["vertex 2, and there are 2", "vertex 9", "[2, 1, 2, 2]", "[2, 2, 0, 2]", "finite"];
         for (change, said) in changes.into_iter().zip(causes) {
             let mut primitives = two();
             change(&mut primitives);

@@ -21,11 +21,13 @@ impl Surfels {
 
     /// Colours every surfel by its number among `values`, one a surfel.
     pub fn colour_by_values(&mut self, values: &[f64], scale: &ColourScale) {
+        self.texture = None;
         self.colours = Some(scale.colours(values.par_iter().copied()));
     }
 
     /// Colours every surfel by its normal: red, green and blue are x, y and z from −1 to 1.
     pub fn colour_by_normals(&mut self) {
+        self.texture = None;
         self.colours = Some(colours_of(&self.normals));
     }
 }
@@ -38,11 +40,13 @@ impl Primitives {
 
     /// Colours every vertex by its number among `values`, one a vertex.
     pub fn colour_by_values(&mut self, values: &[f64], scale: &ColourScale) {
+        self.texture = None;
         self.colours = Some(scale.colours(values.par_iter().copied()));
     }
 
     /// Colours every vertex by its direction, a normal or of tubes a tangent, as [`Surfels::colour_by_normals`] does.
     pub fn colour_by_directions(&mut self) {
+        self.texture = None;
         self.colours = Some(colours_of(&self.directions));
     }
 }

@@ -1,6 +1,6 @@
 //! A set of surfels: oriented discs that sample a surface.
 
-use super::{Clips, Weights};
+use super::{Clips, Texture, Weights};
 use crate::error::{Error, Result};
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
@@ -30,6 +30,8 @@ pub struct Surfels {
     pub weights: Option<Weights>,
     /// Colours, where the input has them.
     pub colours: Option<Colours>,
+    /// What has the colours in place of [`Surfels::colours`].
+    pub texture: Option<Texture>,
 }
 
 /// The shape of an elliptical disc whose longer semi-axis is the surfel's radius. The other axis is normal × major.
@@ -86,13 +88,14 @@ impl Surfels {
             self.clips.as_ref().map_or(count, |clips| clips.of.len()),
             self.weights.as_ref().map_or(count, |weights| weights.of.len()),
             self.colours.as_ref().map_or(count, Colours::len),
+            self.texture.as_ref().map_or(count, |texture| texture.coordinates.len()),
         ];
         if lengths.iter().all(|&length| length == count) {
             self.clips.as_ref().map_or(Ok(()), Clips::check)?;
             return self.weights.as_ref().map_or(Ok(()), Weights::check);
         }
         Err(Error::Usage(format!(
-            "{count} positions with {lengths:?} normals, radii, ellipses, sides, clips, weights and colours: give \
+            "{count} positions with {lengths:?} normals, radii, ellipses, sides, clips, weights, colours and texture coordinates: give \
              one each"
         )))
     }
@@ -110,6 +113,7 @@ impl Surfels {
         self.two_sided.iter_mut().for_each(|two_sided| gather(two_sided, order));
         self.clips.iter_mut().for_each(|clips| clips.permute(order));
         self.weights.iter_mut().for_each(|weights| weights.permute(order));
+        self.texture.iter_mut().for_each(|texture| gather(&mut texture.coordinates, order));
         match &mut self.colours {
             Some(Colours::Srgb8(colours)) => gather(colours, order),
             Some(Colours::Linear(colours)) => gather(colours, order),

@@ -16,13 +16,14 @@ impl Cloud {
     /// origin included.
     ///
     /// The point is the mean of its voxel's: of positions, of normals (0 where they cancel), of colours in linear light, of the finite
-    /// scalars. Radii, ellipses, clips, weights and triangles, which belonged to the closer points, are dropped: a normal that only the triangles told is
+    /// scalars. A texture becomes colours. Radii, ellipses, clips, weights and triangles, which belonged to the closer points, are dropped: a normal that only the triangles told is
     /// then estimated from the points. The points of lines and, if there are lines, of triangles stay as they are, before the others. The
     /// result does not depend on the number of threads.
     ///
     /// # Errors
     /// The cause, if `voxel` is not above 0 or too small for the coordinates.
-    pub fn thin(self, voxel: f64) -> Result<Self, String> {
+    pub fn thin(mut self, voxel: f64) -> Result<Self, String> {
+        self.bake_texture();
         if !self.has_lines() {
             return self.thin_points(voxel);
         }

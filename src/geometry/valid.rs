@@ -32,12 +32,16 @@ impl Surfels {
                 || clips.get(index).is_some_and(|clip| fits_clip(clip, normal))
         });
         let weighted = self.weights.as_ref().is_none_or(|weights| weights.is_valid(index, Self::LARGEST));
+        let textured = match &self.texture {
+            Some(texture) => texture.coordinates.get(index).is_some_and(|at| at.is_finite()),
+            None => true,
+        };
         let coloured = match &self.colours {
             Some(Colours::Linear(colours)) => colours.get(index).is_some_and(|&c| bounded(c.into())),
             Some(Colours::Srgb8(colours)) => index < colours.len(),
             None => true,
         };
-        bounded(position) && is_unit(normal) && sized && shaped && clipped && weighted && coloured
+        bounded(position) && is_unit(normal) && sized && shaped && clipped && weighted && coloured && textured
     }
 
     /// How many surfels are not [valid](Surfels::is_valid).
@@ -88,8 +92,10 @@ pub(super) fn is_unit(v: Vec3) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::geometry::{Clips, Ellipse, Weights};
-    use glam::DVec3;
+    use crate::geometry::{Clips, Ellipse, MipMap, Texture, Weights};
+    use crate::picture::Picture;
+    use glam::{DVec3, Vec2};
+    use std::sync::Arc;
 
     fn clip() -> Clip {
         Clip { lines: [ClipLine { outward: Vec3::Y, offset: -0.1 }, ClipLine::NONE], concave: false }
@@ -98,6 +104,12 @@ mod tests {
     /// The clip of the second surfel.
     fn second(surfels: &mut Surfels) -> &mut Clip {
         &mut surfels.clips.as_mut().unwrap().clips[1]
+    }
+
+    fn texture() -> Texture {
+        let image = Picture { size: [1, 1], colour: vec![[1.0; 4]], ..Default::default() };
+        let image = Arc::new(MipMap::new(&image).unwrap());
+        Texture { image, coordinates: vec![Vec2::new(-9.0, 0.5); 2] }
     }
 
     fn two() -> Surfels {
@@ -111,6 +123,7 @@ mod tests {
             clips: Clips::collect([Some(clip()), Some(clip())]),
             weights: Some(Weights::collect([(0.5, None), (0.25, Some([0.1, 0.2, 0.3, 0.4]))])),
             colours: Some(Colours::Linear(vec![[-1.0, 0.0, 1e14]; 2])),
+            texture: Some(texture()),
         }
     }
 
@@ -118,7 +131,7 @@ mod tests {
     fn what_is_out_of_bounds_is_invalid_and_bounds_leave_it_out() {
         let alone = two().bounds().unwrap();
         assert_eq!(two().count_invalid(), 0);
-        let changes: [fn(&mut Surfels); 26] = [
+        let changes: [fn(&mut Surfels); 28] = [
             |s| s.positions[1].y = f32::NAN,
             |s| s.positions[1].z = f32::NEG_INFINITY,
             |s| s.positions[1].x = -1.1e15,
@@ -145,6 +158,8 @@ mod tests {
             |s| s.weights.as_mut().unwrap().of.truncate(1),
             |s| s.colours = Some(Colours::Linear(vec![[0.0; 3], [0.0, f32::NAN, 0.0]])),
             |s| s.colours = Some(Colours::Srgb8(vec![[0; 4]])),
+            |s| s.texture.as_mut().unwrap().coordinates[1].y = f32::NAN,
+            |s| s.texture.as_mut().unwrap().coordinates.truncate(1),
         ];
         for (i, change) in changes.into_iter().enumerate() {
             let mut surfels = two();

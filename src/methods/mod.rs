@@ -75,8 +75,8 @@ impl Method {
 
 /// The passes of a frame, in their order; what only clears or reads back is none.
 pub fn passes(variant: &Variant) -> Vec<&'static str> {
-    if variant.pull_push.is_some() {
-        return pull_push::PASSES.into();
+    if let Some(PullPush { storage, .. }) = variant.pull_push {
+        return pull_push::passes(storage).into();
     }
     let computed = variant.rasterizer == Rasterizer::Compute;
     let list = match variant.visibility {

@@ -6,11 +6,20 @@
 //! level 0 ─ pull → 1 ─ pull → … ─ pull → top           means of what is in front, fine to coarse
 //! picture ← shade ← 0 ← push ← 1 ← push ← … ← push     holes filled, hidden points replaced, coarse to fine
 //! ```
+//!
+//! The push reads what was pulled of a level and what is final of the coarser one. `pull-push` keeps the two apart, in a pyramid each.
+//! `pull-push-paper` has them take turns as published (§3.5, figure 7), a level in the pyramid of its parity:
+//!
+//! ```text
+//! pull   even 0 → odd 1 → even 2 → odd 3
+//! copy   even 0 → odd, odd 1 → even, even 2 → odd, odd 3 → even     so that both have all levels
+//! push   even 3 → odd 3 → even 2 → odd 1 → even 0                     each reads two levels of one; shade reads the last
+//! ```
 
 use super::{Method, perspective_ewa};
 use crate::error::Result;
-use crate::passes::{PointViews, Project, Pull, Push, PyramidSet, Shade, SplatLayout, Splats};
-use crate::pull_push::Rules;
+use crate::passes::{PointViews, Project, Pull, Push, PyramidSets, Shade, SplatLayout, Splats, copy};
+use crate::pull_push::{Rules, Storage};
 use crate::settings::Cull;
 use crate::targets::Pyramids;
 use crate::variant::Variant;
@@ -18,23 +27,25 @@ use crate::vk::{Buffer, DescriptorSet, Device, Recorder};
 use std::sync::Arc;
 
 /// The preset that holds.
-pub const METHOD: Method = Method {
-    name: "pull-push",
-    pull_push: Some(crate::pull_push::PullPush { rules: Rules::Robust }),
-    ..PAPER
-};
+pub const METHOD: Method =
+    Method { name: "pull-push", pull_push: Some(crate::pull_push::PullPush::of(Rules::Robust)), ..PAPER };
 
 /// The preset as published.
 pub const PAPER: Method = Method {
     name: "pull-push-paper",
     paper: "Marroquim, Kraus, Cavalcanti, Efficient Image Reconstruction for Point-Based and Line-Based Rendering, 2008",
-    pull_push: Some(crate::pull_push::PullPush { rules: Rules::Paper }),
+    pull_push: Some(crate::pull_push::PullPush::of(Rules::Paper)),
     cull: Cull::Back,
     ..perspective_ewa::METHOD
 };
 
-/// Their names.
-pub const PASSES: [&str; 5] = ["project", "fetch", "pull", "push", "shade"];
+/// The passes' names, where the levels are so kept.
+pub fn passes(storage: Storage) -> &'static [&'static str] {
+    match storage {
+        Storage::Apart => &["project", "fetch", "pull", "push", "shade"],
+        Storage::PingPong => &["project", "fetch", "pull", "copy", "push", "shade"],
+    }
+}
 
 /// The passes.
 pub struct PullPush {
@@ -47,7 +58,7 @@ pub struct PullPush {
 /// Their views of what a frame writes and reads.
 pub struct PullPushViews {
     frame: DescriptorSet,
-    set: PyramidSet,
+    sets: PyramidSets,
     points: Option<PointViews>,
 }
 
@@ -72,17 +83,20 @@ impl PullPush {
     ) -> Result<PullPushViews> {
         Ok(PullPushViews {
             frame: self.shade.view(device, frame)?,
-            set: PyramidSet::new(device, layout, targets)?,
+            sets: PyramidSets::new(device, layout, targets)?,
             points: self.project.views(device, layout, targets)?,
         })
     }
 
     /// Records a frame.
     pub fn record(&self, rec: &mut Recorder<'_>, splats: &Splats, views: &PullPushViews, targets: &Pyramids) {
-        let PullPushViews { frame, set, points } = views;
-        self.project.record(rec, splats, frame, set, points.as_ref(), targets);
-        self.pull.record(rec, frame, set, targets);
-        self.push.record(rec, frame, set, targets);
-        self.shade.record(rec, frame, set, targets);
+        let PullPushViews { frame, sets, points } = views;
+        self.project.record(rec, splats, frame, sets, points.as_ref(), targets);
+        self.pull.record(rec, frame, sets, targets);
+        if targets.storage == Storage::PingPong {
+            copy(rec, targets);
+        }
+        self.push.record(rec, frame, sets, targets);
+        self.shade.record(rec, splats, frame, sets, targets);
     }
 }

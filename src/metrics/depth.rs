@@ -40,7 +40,7 @@ mod tests {
 
     fn picture(depths: Vec<f32>) -> Picture {
         let colour = vec![[1.0; 4]; depths.len()];
-        Picture { size: [depths.len() as u32, 1], colour, depth: Some(depths), normal: None }
+        Picture { size: [depths.len() as u32, 1], colour, depth: Some(depths), ..Default::default() }
     }
 
     fn of(picture: &Picture, truth: &Picture, size: f64) -> DepthError {

@@ -44,7 +44,7 @@ mod tests {
             size: [normals.len() as u32, 1],
             colour: vec![[1.0; 4]; normals.len()],
             normal: Some(normals.to_vec()),
-            depth: None,
+            ..Default::default()
         }
     }
 

@@ -257,6 +257,7 @@ mod tests {
             colour: (0..1024).map(|i| [0.5 * all(i), 0.25 * all(i), 0.75 * all(i), all(i)]).collect(),
             depth: Some((0..1024).map(|i| 5.0 * all(i)).collect()),
             normal: Some((0..1024).map(|i| [0.0, 0.0, all(i)]).collect()),
+            id: None,
         }
     }
 

@@ -5,6 +5,7 @@
 
 mod attribute;
 mod composite;
+mod copy;
 mod coverage;
 mod footprint;
 mod nearest;
@@ -24,6 +25,7 @@ mod visibility;
 
 pub use attribute::{ComputeAttribute, DrawAttribute};
 pub use composite::{Composite, CompositeKind};
+pub use copy::copy;
 pub use footprint::Footprint;
 pub use nearest::{ComputeNearest, DrawNearest, NearestViews};
 pub use normalize::{ComputeNormalize, DrawNormalize, NormalizeViews};
@@ -31,7 +33,7 @@ pub use points::{DrawPoints, PointViews};
 pub use project::Project;
 pub use pull::Pull;
 pub use push::Push;
-pub use pyramid::PyramidSet;
+pub use pyramid::PyramidSets;
 pub use resolve::Resolve;
 pub use scatter::{PixelSet, Scatter};
 pub use shade::Shade;

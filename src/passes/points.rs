@@ -2,7 +2,7 @@
 //! project that the device's own rasterizer can do.
 
 use super::normalize::{frame_layout, grid_over};
-use super::{PyramidSet, SplatLayout, Splats};
+use super::{SplatLayout, Splats};
 use crate::error::Result;
 use crate::targets::{DrawnPoints, Pyramids};
 use crate::variant::Variant;
@@ -24,11 +24,11 @@ pub struct DrawPoints {
 /// What a [`DrawPoints`] draws to.
 pub struct PointViews {
     framebuffer: Framebuffer,
-    /// Descriptor set 2 of what reads them.
+    /// Descriptor set 3 of what reads them.
     pub(super) set: DescriptorSet,
 }
 
-/// Layout of descriptor set 2 of what reads drawn points: depth, number.
+/// Layout of descriptor set 3 of what reads drawn points: depth, number.
 pub(super) fn drawn_layout(device: &Arc<Device>) -> Result<SetLayout> {
     SetLayout::new(device, &[(DescriptorType::SAMPLED_IMAGE, ShaderStageFlags::COMPUTE); 2])
 }
@@ -51,7 +51,7 @@ impl DrawPoints {
         let constants = variant.constants();
         let pipeline = DrawPipeline::new(device, &[&layout.splats], code, &constants, &pass, state)?;
         let hand_over = || {
-            let sets = [&frame_layout(device)?, &layout.pyramids, &layout.drawn_points];
+            let sets = [&frame_layout(device)?, &layout.plain, &layout.pyramid, &layout.drawn_points];
             ComputePipeline::new(device, &sets, shaders::PROJECT_DRAWN_POINTS_COMPUTE, &constants)
         };
         let hand_over = variant.primitives.any().then(hand_over).transpose()?;
@@ -73,13 +73,14 @@ impl DrawPoints {
         })
     }
 
-    /// Surfels → `targets.drawn`, and `targets.nearest` where it is there. `frame` is a set of the frame's numbers.
+    /// Surfels → `targets.drawn`, and `targets.nearest` where it is there. `frame` is a set of the frame's numbers; `own` are the nearest
+    /// points, and the pyramid of level 0.
     pub fn record(
         &self,
         rec: &mut Recorder<'_>,
         splats: &Splats,
         frame: &DescriptorSet,
-        set: &PyramidSet,
+        own: [&DescriptorSet; 2],
         views: &PointViews,
         targets: &Pyramids,
     ) {
@@ -98,7 +99,7 @@ impl DrawPoints {
             let uses = [depth, number, nearest.with(Access::COMPUTE_WRITE)];
             let grid = grid_over(targets.pixels());
             rec.pass("project", &uses, |enc| {
-                enc.dispatch(hand_over, &[frame, &set.0, &views.set], [0; 2], grid);
+                enc.dispatch(hand_over, &[frame, own[0], own[1], &views.set], [0; 2], grid);
             });
         }
     }

@@ -7,7 +7,7 @@ use crate::vk::{Access, Binding, Buffer, DescriptorSet, Device, SetLayout, Use};
 use ash::vk::{DescriptorType, ShaderStageFlags};
 use std::sync::Arc;
 
-/// Layout of descriptor set 2 of project and fetch: vertices, directions of lines, colours, elements, large triangles.
+/// Layout of descriptor set 3 of project and fetch: vertices, directions of lines, colours, elements, large triangles.
 pub(super) fn primitive_layout(device: &Arc<Device>) -> Result<SetLayout> {
     SetLayout::new(device, &[(DescriptorType::STORAGE_BUFFER, ShaderStageFlags::COMPUTE); 5])
 }

@@ -3,7 +3,7 @@
 
 use super::normalize::{frame_layout, grid_over};
 use super::primitives::ElementSet;
-use super::{DrawPoints, PointViews, PyramidSet, SplatLayout, Splats};
+use super::{DrawPoints, PointViews, PyramidSets, SplatLayout, Splats};
 use crate::error::Result;
 use crate::targets::Pyramids;
 use crate::variant::Variant;
@@ -51,7 +51,7 @@ impl Project {
     pub fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self> {
         let constants = variant.constants();
         let frame = frame_layout(device)?;
-        let sets = [&frame, &layout.pyramids, &layout.primitives];
+        let sets = [&frame, &layout.plain, &layout.pyramid, &layout.primitives];
         let lines = [shaders::PROJECT_LINES_COMPUTE, shaders::FETCH_LINES_COMPUTE];
         let triangles = [shaders::PROJECT_TRIANGLES_COMPUTE, shaders::FETCH_TRIANGLES_COMPUTE];
         let of_triangles = || {
@@ -81,25 +81,27 @@ impl Project {
         self.drawn.as_ref().zip(targets.drawn.as_ref()).map(views).transpose()
     }
 
-    /// What the scene has → level 0 of `targets.pulled`, and the counts. `frame` is a set of the frame's numbers.
+    /// What the scene has → level 0 of what is pulled, and the counts. `frame` is a set of the frame's numbers.
     pub fn record(
         &self,
         rec: &mut Recorder<'_>,
         splats: &Splats,
         frame: &DescriptorSet,
-        set: &PyramidSet,
+        sets: &PyramidSets,
         drawn: Option<&PointViews>,
         targets: &Pyramids,
     ) {
+        let [_, to] = targets.storage.pull(0);
+        let own = [&sets.nearest, &sets.pyramids[to]];
         self.clear(rec, splats, targets);
         if let Some((draw, views)) = self.drawn.as_ref().zip(drawn) {
-            draw.record(rec, splats, frame, set, views, targets);
+            draw.record(rec, splats, frame, own, views, targets);
         }
-        self.compute(rec, splats, frame, set, targets);
+        self.compute(rec, splats, frame, own, targets);
         if self.count {
             splats.record_counted(rec);
         }
-        self.fetch(rec, splats, frame, set, drawn, targets);
+        self.fetch(rec, splats, frame, own, drawn, targets);
     }
 
     /// Empties what points are compared in, unless drawn ones are its start, and lists and counts.
@@ -118,13 +120,13 @@ impl Project {
         });
     }
 
-    /// What is not drawn → `targets.nearest`, and the counts.
+    /// What is not drawn → `targets.nearest`, and the counts. `own` are the nearest points, and the pyramid of level 0.
     fn compute(
         &self,
         rec: &mut Recorder<'_>,
         splats: &Splats,
         frame: &DescriptorSet,
-        set: &PyramidSet,
+        own: [&DescriptorSet; 2],
         targets: &Pyramids,
     ) {
         let write = Access::COMPUTE_WRITE;
@@ -136,24 +138,32 @@ impl Project {
         if uses.is_empty() {
             return;
         }
-        rec.pass("project", &uses, |enc| self.project(enc, splats, frame, set));
+        rec.pass("project", &uses, |enc| self.project(enc, splats, frame, own));
         if let (Some((_, large)), Some(of)) = (&self.triangles, primitives.and_then(|p| p.triangles.as_ref()))
         {
             rec.pass("project", &uses, |enc| {
-                enc.dispatch(large, &[frame, &set.0, &of.set], of.push(), [LARGE_WORKGROUPS, 1]);
+                enc.dispatch(large, &[frame, own[0], own[1], &of.set], of.push(), [LARGE_WORKGROUPS, 1]);
             });
         }
     }
 
-    fn project(&self, enc: &mut Encoder<'_>, splats: &Splats, frame: &DescriptorSet, set: &PyramidSet) {
+    /// `own` are the nearest points, and the pyramid of level 0.
+    fn project(
+        &self,
+        enc: &mut Encoder<'_>,
+        splats: &Splats,
+        frame: &DescriptorSet,
+        own: [&DescriptorSet; 2],
+    ) {
         let workgroups = |count: u32| [count.div_ceil(WORKGROUP), 1];
         if let Some(points) = &self.points {
             for window in splats.windows() {
-                enc.dispatch(points, &[&window.set, &set.0], window.push(), workgroups(window.count));
+                let sets = [&window.set, own[0], own[1]];
+                enc.dispatch(points, &sets, window.push(), workgroups(window.count));
             }
         }
         for (kind, of) in self.primitives(splats) {
-            enc.dispatch(&kind.project, &[frame, &set.0, &of.set], of.push(), workgroups(of.count));
+            enc.dispatch(&kind.project, &[frame, own[0], own[1], &of.set], of.push(), workgroups(of.count));
         }
     }
 
@@ -163,7 +173,7 @@ impl Project {
         rec: &mut Recorder<'_>,
         splats: &Splats,
         frame: &DescriptorSet,
-        set: &PyramidSet,
+        own: [&DescriptorSet; 2],
         drawn: Option<&PointViews>,
         targets: &Pyramids,
     ) {
@@ -171,17 +181,18 @@ impl Project {
         let alone = targets.drawn.as_ref().zip(drawn).filter(|_| targets.nearest.is_none());
         let nearest = targets.nearest.as_ref().map(|nearest| nearest.with(Access::COMPUTE_READ));
         let images = alone.into_iter().flat_map(|(drawn, _)| drawn.fetched());
-        let written = targets.pulled.with(Access::COMPUTE_WRITE);
-        let uses: Vec<_> = nearest.into_iter().chain(images).chain([written]).collect();
+        let [_, to] = targets.storage.pull(0);
+        let written = targets.pyramids[to].with(Access::COMPUTE_WRITE);
+        let uses: Vec<_> = nearest.into_iter().chain(images).chain(written).collect();
         let workgroups = grid_over(targets.pixels());
         rec.pass("fetch", &uses, |enc| {
             for window in splats.windows() {
                 let drawn = alone.map(|(_, views)| &views.set);
-                let sets: Vec<_> = [&window.set, &set.0].into_iter().chain(drawn).collect();
+                let sets: Vec<_> = [&window.set, own[0], own[1]].into_iter().chain(drawn).collect();
                 enc.dispatch(&self.fetch, &sets, window.push(), workgroups);
             }
             for (kind, of) in self.primitives(splats) {
-                enc.dispatch(&kind.fetch, &[frame, &set.0, &of.set], of.push(), workgroups);
+                enc.dispatch(&kind.fetch, &[frame, own[0], own[1], &of.set], of.push(), workgroups);
             }
         });
     }
@@ -202,7 +213,7 @@ fn points(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Resu
         (true, true) => shaders::PROJECT_FATES_COMPUTE,
         (true, false) => return Ok(None),
     };
-    let sets = [&layout.splats, &layout.pyramids];
+    let sets = [&layout.splats, &layout.plain, &layout.pyramid];
     ComputePipeline::new(device, &sets, code, &variant.constants()).map(Some)
 }
 
@@ -212,6 +223,6 @@ fn fetch(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Resul
         true => (shaders::FETCH_COMPUTE, None),
         false => (shaders::FETCH_DRAWN_POINTS_COMPUTE, Some(&layout.drawn_points)),
     };
-    let sets: Vec<_> = [&layout.splats, &layout.pyramids].into_iter().chain(drawn).collect();
+    let sets: Vec<_> = [&layout.splats, &layout.plain, &layout.pyramid].into_iter().chain(drawn).collect();
     ComputePipeline::new(device, &sets, code, &variant.constants())
 }

@@ -1,53 +1,83 @@
-//! What project, fetch, pull, push and shade share (`lib/pyramid.glsl`).
+//! What project, fetch, pull, push and shade share (`lib/pyramid.glsl`): set 1 is what a pass reads, set 2 what it writes.
 
 use super::SplatLayout;
 use super::normalize::{frame_layout, grid_over};
 use crate::error::Result;
-use crate::targets::Pyramids;
+use crate::targets::{PLANES, Pyramid, Pyramids};
 use crate::variant::Variant;
-use crate::vk::{Binding, ComputePipeline, DescriptorSet, Device, Encoder, SetLayout};
+use crate::vk::{Binding, Buffer, ComputePipeline, DescriptorSet, Device, Encoder, SetLayout};
 use ash::vk::{DescriptorType, ShaderStageFlags};
 use std::sync::Arc;
 
-/// Layout of descriptor set 1 of pull–push: nearest, pulled, pushed, picture.
+/// Layout of a set of a pyramid's planes.
 pub(super) fn pyramid_layout(device: &Arc<Device>) -> Result<SetLayout> {
-    SetLayout::new(device, &[(DescriptorType::STORAGE_BUFFER, ShaderStageFlags::COMPUTE); 4])
+    SetLayout::new(device, &[(DescriptorType::STORAGE_BUFFER, ShaderStageFlags::COMPUTE); PLANES])
 }
 
-/// The pipeline of a pass over pixels, of the SPIR-V `code`: the frame's numbers are its descriptor set 0, the pyramids set 1.
+/// Layout of a set of one buffer: the nearest points, the picture, or a texture.
+pub(super) fn plain_layout(device: &Arc<Device>) -> Result<SetLayout> {
+    SetLayout::new(device, &[(DescriptorType::STORAGE_BUFFER, ShaderStageFlags::COMPUTE)])
+}
+
+/// The pipeline of a pass over pixels, of the SPIR-V `code`: the frame's numbers are its descriptor set 0, what it reads and writes the sets
+/// from 1 on.
 pub(super) fn over_pixels(
     device: &Arc<Device>,
-    layout: &SplatLayout,
+    sets: &[&SetLayout],
     variant: &Variant,
     code: &[u32],
 ) -> Result<ComputePipeline> {
-    let sets = [&frame_layout(device)?, &layout.pyramids];
+    let frame = frame_layout(device)?;
+    let sets: Vec<_> = [&frame].into_iter().chain(sets.iter().copied()).collect();
     ComputePipeline::new(device, &sets, code, &variant.constants())
 }
 
-/// Pull–push's view of its targets.
-pub struct PyramidSet(pub(super) DescriptorSet);
+/// Pull–push's views of its targets.
+pub struct PyramidSets {
+    pub(super) nearest: DescriptorSet,
+    pub(super) pyramids: [DescriptorSet; 2],
+    pub(super) picture: DescriptorSet,
+}
 
-impl PyramidSet {
-    /// A view of `targets`, which must outlive it.
+impl PyramidSets {
+    /// Views of `targets`, which must outlive them.
     pub fn new(device: &Arc<Device>, layout: &SplatLayout, targets: &Pyramids) -> Result<Self> {
-        // What is absent is not touched; something must stand at its binding all the same.
-        let nearest = targets.nearest.as_ref().unwrap_or(&targets.pulled);
-        let buffers = [nearest, &targets.pulled, &targets.pushed, &targets.picture.buffer];
-        let bindings = buffers.map(|buffer| Binding::Storage(buffer, 0, buffer.size()));
-        DescriptorSet::new(device, &layout.pyramids, &bindings).map(Self)
+        let whole = |buffer: &Buffer| {
+            let bindings = [Binding::Storage(buffer, 0, buffer.size())];
+            DescriptorSet::new(device, &layout.plain, &bindings)
+        };
+        let planes = |pyramid: &Pyramid| {
+            // Where there is no such plane another stands at its binding, and is not touched.
+            let any = pyramid.planes.iter().flatten().next().map(|plane| &plane.buffer);
+            let buffers = pyramid.planes.iter().filter_map(|plane| plane.as_ref().map(|p| &p.buffer).or(any));
+            let bindings: Vec<_> = buffers.map(|buffer| Binding::Storage(buffer, 0, buffer.size())).collect();
+            DescriptorSet::new(device, &layout.pyramid, &bindings)
+        };
+        let [first, second] = [0, 1].map(|i| planes(&targets.pyramids[i]));
+        // Points that are drawn are not there, and nothing is.
+        let picture = &targets.picture.buffer;
+        let [nearest, picture] = [targets.nearest.as_ref().unwrap_or(picture), picture].map(whole);
+        Ok(Self { nearest: nearest?, pyramids: [first?, second?], picture: picture? })
     }
 
-    /// Runs such a pipeline over the pixels of a level of `targets`. `frame` is a set of the frame's numbers.
-    pub(super) fn visit(
-        &self,
-        enc: &mut Encoder<'_>,
-        pipeline: &ComputePipeline,
-        frame: &DescriptorSet,
-        targets: &Pyramids,
-        level: u32,
-    ) {
-        let grid = grid_over(targets.level_pixels(level));
-        enc.dispatch(pipeline, &[frame, &self.0], [level, targets.levels()], grid);
+    /// What a pass sees that reads one of the pyramids and writes one. `frame` is a set of the frame's numbers.
+    pub(super) fn pair<'a>(
+        &'a self,
+        frame: &'a DescriptorSet,
+        [from, to]: [usize; 2],
+    ) -> [&'a DescriptorSet; 3] {
+        [frame, &self.pyramids[from], &self.pyramids[to]]
     }
+}
+
+/// Runs such a pipeline over the pixels of a level of `targets`.
+pub(super) fn visit(
+    enc: &mut Encoder<'_>,
+    pipeline: &ComputePipeline,
+    sets: &[&DescriptorSet],
+    targets: &Pyramids,
+    level: u32,
+) {
+    let grid = grid_over(targets.level_pixels(level));
+    enc.dispatch(pipeline, sets, [level, targets.levels()], grid);
 }

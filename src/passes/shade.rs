@@ -1,8 +1,8 @@
 //! Shade: the final level 0 → picture, normal, depth (marroquim2008 §3.4; `shade.glsl`).
 
 use super::normalize::frame_layout;
-use super::pyramid::over_pixels;
-use super::{PyramidSet, SplatLayout};
+use super::pyramid::{over_pixels, visit};
+use super::{PyramidSets, SplatLayout, Splats};
 use crate::error::Result;
 use crate::targets::Pyramids;
 use crate::variant::Variant;
@@ -15,13 +15,19 @@ use std::sync::Arc;
 pub struct Shade {
     frame_layout: SetLayout,
     pipeline: ComputePipeline,
+    /// Whether it looks colours up in a texture.
+    textured: bool,
 }
 
 impl Shade {
     /// The pass for `variant`.
     pub fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self> {
-        let pipeline = over_pixels(device, layout, variant, shaders::SHADE_COMPUTE)?;
-        Ok(Self { frame_layout: frame_layout(device)?, pipeline })
+        let sets = [&layout.pyramid, &layout.plain, &layout.plain];
+        let pipeline = match variant.texture {
+            Some(_) => over_pixels(device, &sets, variant, shaders::SHADE_TEXTURED_COMPUTE)?,
+            None => over_pixels(device, &sets[..2], variant, shaders::SHADE_COMPUTE)?,
+        };
+        Ok(Self { frame_layout: frame_layout(device)?, pipeline, textured: variant.texture.is_some() })
     }
 
     /// The set of the frame's numbers; `frame` must outlive it.
@@ -29,16 +35,21 @@ impl Shade {
         DescriptorSet::new(device, &self.frame_layout, &[Binding::Uniform(frame)])
     }
 
-    /// Level 0 of `targets.pushed` → `targets.picture`.
+    /// Level 0 of what is pushed, and the texture of `splats` → `targets.picture`.
     pub fn record(
         &self,
         rec: &mut Recorder<'_>,
+        splats: &Splats,
         frame: &DescriptorSet,
-        set: &PyramidSet,
+        sets: &PyramidSets,
         targets: &Pyramids,
     ) {
-        let uses =
-            [targets.pushed.with(Access::COMPUTE_READ), targets.picture.buffer.with(Access::COMPUTE_WRITE)];
-        rec.pass("shade", &uses, |enc| set.visit(enc, &self.pipeline, frame, targets, 0));
+        let [_, pushed] = targets.storage.push(0);
+        let read = targets.pyramids[pushed].with(Access::COMPUTE_READ);
+        let uses: Vec<_> = read.chain([targets.picture.buffer.with(Access::COMPUTE_WRITE)]).collect();
+        let texture = splats.texture().filter(|_| self.textured);
+        let sets: Vec<_> =
+            [frame, &sets.pyramids[pushed], &sets.picture].into_iter().chain(texture).collect();
+        rec.pass("shade", &uses, |enc| visit(enc, &self.pipeline, &sets, targets, 0));
     }
 }

@@ -2,7 +2,7 @@
 
 use super::points::drawn_layout;
 use super::primitives::{PrimitiveSets, primitive_layout};
-use super::pyramid::pyramid_layout;
+use super::pyramid::{plain_layout, pyramid_layout};
 use super::scatter::pixel_layout;
 use crate::error::Result;
 use crate::scene::{ClipWindow, Scene};
@@ -16,11 +16,14 @@ use ash::vk::{DescriptorType, ShaderStageFlags};
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Layouts of descriptor sets 0 and 1 of the footprint, visibility and attribute passes.
+/// Layouts of descriptor sets 0 and 1 of the footprint, visibility and attribute passes, and of those of pull–push.
 pub struct SplatLayout {
     pub(super) splats: SetLayout,
     pub(super) pixels: SetLayout,
-    pub(super) pyramids: SetLayout,
+    /// One buffer: a word or more a pixel, or a texture.
+    pub(super) plain: SetLayout,
+    /// The planes of a pyramid.
+    pub(super) pyramid: SetLayout,
     pub(super) primitives: SetLayout,
     pub(super) drawn_points: SetLayout,
 }
@@ -36,6 +39,7 @@ pub struct Splats {
     screen_clips: Option<Buffer>,
     windows: Vec<Window>,
     primitives: Option<PrimitiveSets>,
+    texture: Option<DescriptorSet>,
 }
 
 /// As many splats as one descriptor can name.
@@ -77,7 +81,8 @@ impl SplatLayout {
         Ok(Self {
             splats: SetLayout::new(device, &bindings)?,
             pixels: pixel_layout(device)?,
-            pyramids: pyramid_layout(device)?,
+            plain: plain_layout(device)?,
+            pyramid: pyramid_layout(device)?,
             primitives: primitive_layout(device)?,
             drawn_points: drawn_layout(device)?,
         })
@@ -170,7 +175,17 @@ impl Splats {
             .as_ref()
             .map(|streams| PrimitiveSets::new(device, layout, streams))
             .transpose()?;
-        Ok(Self { splats, counts, large, screen_clips, windows, primitives })
+        let texture = scene.texture.as_ref().map(|texture| {
+            let whole = Binding::Storage(&texture.buffer, 0, texture.buffer.size());
+            DescriptorSet::new(device, &layout.plain, &[whole])
+        });
+        let texture = texture.transpose()?;
+        Ok(Self { splats, counts, large, screen_clips, windows, primitives, texture })
+    }
+
+    /// The scene's texture, if it has one.
+    pub(super) fn texture(&self) -> Option<&DescriptorSet> {
+        self.texture.as_ref()
     }
 
     pub(super) fn primitives(&self) -> Option<&PrimitiveSets> {

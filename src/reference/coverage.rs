@@ -12,6 +12,9 @@ use std::ops::RangeInclusive;
 /// Samples of a pixel, a bit each.
 type Mask = u16;
 
+/// Their number.
+pub(super) const SAMPLES: u32 = Mask::BITS;
+
 /// How much of a splat's footprint is surface: discs are drawn 1.3 times as large as they need be to leave no holes.
 const SOLID: f64 = 0.77;
 
@@ -19,8 +22,8 @@ const SOLID: f64 = 0.77;
 const LEAST: f64 = 1e-12;
 
 /// Where sample `k` is in its pixel: a lattice, relative to the centre, px.
-fn sample(k: u32) -> DVec2 {
-    (DVec2::new(f64::from(k), f64::from(13 * k % Mask::BITS)) + 0.5) / f64::from(Mask::BITS) - 0.5
+pub(super) fn sample(k: u32) -> DVec2 {
+    (DVec2::new(f64::from(k), f64::from(13 * k % SAMPLES)) + 0.5) / f64::from(SAMPLES) - 0.5
 }
 
 /// How near an outline or a clip line a sample is in doubt: px, and so much more of the splat's size, as 8 half units in the last place of

@@ -66,6 +66,8 @@ pub struct Frame {
     pub normal: Vec<[f64; 3]>,
     /// Whether a surface is there.
     pub covered: Vec<bool>,
+    /// Number of what is seen, as [`Picture::id`] has it, by pull–push.
+    pub id: Option<Vec<u32>>,
     /// What became of the surfels.
     pub counts: Counts,
     /// How many drawn splats were too ill-conditioned for the inverse form of the conic and took the dual form.
@@ -73,6 +75,9 @@ pub struct Frame {
 }
 
 impl Frame {
+    /// The number in [`Frame::id`] where no surface is.
+    pub const NOBODY: u32 = Picture::NOBODY;
+
     /// The frame in single precision, with depth and normals.
     pub fn to_picture(&self) -> Picture {
         Picture {
@@ -80,6 +85,7 @@ impl Frame {
             colour: self.colour.iter().map(|c| c.map(|v| v as f32)).collect(),
             depth: Some(self.depth.iter().map(|&d| d as f32).collect()),
             normal: Some(self.normal.iter().map(|n| n.map(|v| v as f32)).collect()),
+            id: self.id.clone(),
         }
     }
 
@@ -101,6 +107,7 @@ impl Frame {
             depth: values.iter().map(|v| v.depth).collect(),
             normal: values.iter().map(|v| v.normal).collect(),
             covered: values.iter().map(|v| v.covered).collect(),
+            id: None,
             counts: Counts::default(),
             dual_form: 0,
         }
@@ -123,6 +130,9 @@ pub fn render<'a>(
     settings.check_primitives(parts.primitives.is_some())?;
     if let Some(rules) = settings.pull_push {
         return pull_push::render(parts, camera, size, settings, rules);
+    }
+    if parts.has_texture() {
+        return render(&parts.baked(), camera, size, settings, progress);
     }
     let projector = Projector::new(camera, size, settings)?;
     let scene = Scene::project(&projector, surfels);

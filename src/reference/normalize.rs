@@ -85,7 +85,7 @@ pub(super) fn resolve(projector: &Projector, at: DVec2, sums: Option<&Sums>, alp
 }
 
 /// What is shown of a surface with the background, if there is one, behind it.
-fn over_background(projector: &Projector, shown: DVec3, alpha: f64) -> [f64; 4] {
+pub(super) fn over_background(projector: &Projector, shown: DVec3, alpha: f64) -> [f64; 4] {
     let Some(background) = projector.settings.background else { return shown.extend(alpha).to_array() };
     let behind = DVec3::from_array(background.map(f64::from));
     // Numbers are not mixed with a colour: the half decides.

@@ -36,7 +36,9 @@ impl PrimitiveStreams {
         let surfels = parts.surfels.len();
         check_sizes(device, primitives, surfels)?;
         let vertices: Vec<f32> = (0..primitives.len()).flat_map(|i| vertex(primitives, i)).collect();
-        let (colour_stream, colours) = colour_bytes(primitives.colours.as_ref());
+        let textured =
+            primitives.texture.as_ref().map(|t| (t, &primitives.positions[..], &primitives.radii[..]));
+        let (colour_stream, colours) = colour_bytes(primitives.colours.as_ref(), textured);
         let alongs =
             || uploads.buffer("line directions", bytemuck::cast_slice(&primitives.line_directions()));
         let segments: Vec<[u32; 2]> =
@@ -50,7 +52,7 @@ impl PrimitiveStreams {
             vertices: uploads.buffer("vertices", bytemuck::cast_slice(&vertices))?,
             alongs: (!segments.is_empty()).then(alongs).transpose()?,
             colours: (colour_stream != ColourStream::None)
-                .then(|| uploads.buffer("vertex colours", colours))
+                .then(|| uploads.buffer("vertex colours", &colours))
                 .transpose()?,
             colour_stream,
             lines: elements("lines", segments.as_flattened(), segments.len(), surfels)?,

@@ -135,7 +135,8 @@ impl Sums {
         };
         let pixels = self.cells.iter().zip(&self.depths);
         let (colour, normal) = pixels.map(|(cell, depth)| resolve(cell, *depth, settings)).unzip();
-        let picture = Picture { size: self.size, colour, depth: Some(self.depths), normal: Some(normal) };
+        let picture =
+            Picture { size: self.size, colour, depth: Some(self.depths), normal: Some(normal), id: None };
         Truth { picture, error }
     }
 }

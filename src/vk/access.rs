@@ -93,6 +93,14 @@ impl Access {
     pub const SHADER_READ: Self = Self::buffer(SHADER_STAGES, vk::AccessFlags::SHADER_READ, false);
     /// Read as uniforms by whatever shader.
     pub const UNIFORM_READ: Self = Self::buffer(SHADER_STAGES, vk::AccessFlags::UNIFORM_READ, false);
+    /// Copied from and to, no part of it both ways.
+    pub const COPY_WITHIN: Self = Self::buffer(
+        vk::PipelineStageFlags::TRANSFER,
+        vk::AccessFlags::from_raw(
+            vk::AccessFlags::TRANSFER_READ.as_raw() | vk::AccessFlags::TRANSFER_WRITE.as_raw(),
+        ),
+        true,
+    );
     /// Read by the CPU once the frame is over.
     pub const HOST_READ: Self = Self::buffer(vk::PipelineStageFlags::HOST, vk::AccessFlags::HOST_READ, false);
 

@@ -95,6 +95,13 @@ impl<'a> Encoder<'a> {
         unsafe { self.device.raw.cmd_copy_buffer(self.cmd, from.raw, to, &[region]) };
     }
 
+    /// Copies `size` bytes of `from` from `offset` on to the same place of `to`.
+    pub fn copy_range(&mut self, from: &Buffer, to: &Buffer, offset: u64, size: u64) {
+        let region = vk::BufferCopy { src_offset: offset, dst_offset: offset, size };
+        // SAFETY: recorded outside a render pass; both buffers are alive and large enough.
+        unsafe { self.device.raw.cmd_copy_buffer(self.cmd, from.raw, to.raw, &[region]) };
+    }
+
     /// Copies all of `image` to `buffer`, rows without gaps.
     pub fn copy_image(&mut self, image: &Image, buffer: &Buffer) {
         let [width, height] = image.size();

@@ -29,7 +29,8 @@ pub struct Image {
 pub fn pixel_bytes(format: vk::Format) -> u64 {
     match format {
         vk::Format::R32G32B32A32_SFLOAT => 16,
-        vk::Format::R16G16B16A16_SFLOAT => 8,
+        vk::Format::R32G32B32_SFLOAT => 12,
+        vk::Format::R16G16B16A16_SFLOAT | vk::Format::R32G32_SFLOAT | vk::Format::R32G32_UINT => 8,
         vk::Format::R16_SFLOAT => 2,
         _ => 4,
     }

@@ -54,6 +54,7 @@ impl Target {
             colour: places.clone().map(|at| [0, 1, 2, 3].map(|c| channel(c, at))).collect(),
             depth: self.outputs.depth.then(|| places.clone().map(|at| channel(depth, at)).collect()),
             normal: self.outputs.normal.then(|| places.map(|at| [4, 5, 6].map(|c| channel(c, at))).collect()),
+            id: None,
         }
     }
 
@@ -64,7 +65,7 @@ impl Target {
 
     /// Blocks of all channels of a tile.
     fn stride(&self) -> usize {
-        let Outputs { normal, depth } = self.outputs;
+        let Outputs { normal, depth, .. } = self.outputs;
         BLOCKS * (4 + if normal { 3 } else { 0 } + usize::from(depth))
     }
 }
@@ -73,7 +74,7 @@ impl Slab<'_> {
     /// Writes four pixels.
     #[inline]
     pub fn put(&mut self, block: usize, pixels: &Shown) {
-        let Outputs { normal, depth } = self.outputs;
+        let Outputs { normal, depth, .. } = self.outputs;
         let normals = pixels.normal.iter().filter(|_| normal);
         let depths = std::iter::once(&pixels.depth).filter(|_| depth);
         let channels = pixels.colour.iter().chain(normals).chain(depths);

@@ -134,3 +134,58 @@ fn scans_are_rendered() {
         assert!((500..10_000).contains(&covered), "{name}: {covered} pixels");
     }
 }
+
+#[test]
+fn numbers_of_points_are_a_layer() {
+    let Some(program) = Program::with_device("numbers_of_points_are_a_layer") else { return };
+    let render = |more: &str| program.run(&format!("render {SPHERE} --size 64x64 --layers id {more}"));
+    let ids = |name: &str| surfel::io::image::read(&program.path(name)).unwrap().id.unwrap();
+    render("-o gpu.exr --method pull-push --validate").text();
+    render("-o cpu.exr --method pull-push --reference").text();
+    let [gpu, cpu] = ["gpu.exr", "cpu.exr"].map(ids);
+    let differ = gpu.iter().zip(&cpu).filter(|(a, b)| a != b).count();
+    assert!(differ < 10 && gpu[32 * 64 + 32] < 20_000 && gpu[0] == surfel::Picture::NOBODY, "{differ}");
+    for more in ["-o a.exr", "-o a.exr --reference"] {
+        assert!(render(more).error(2).contains("pull-push and pull-push-paper alone"));
+    }
+    assert!(program.run(&format!("truth {SPHERE} -o a.exr --layers id")).error(2).contains("leave it out"));
+}
+
+#[test]
+fn textures_come_from_the_file_or_the_command_line() {
+    let Some(program) = Program::with_device("textures_come_from_the_file_or_the_command_line") else {
+        return;
+    };
+    let picture =
+        |red: u8| image::RgbImage::from_fn(4, 4, |x, _| image::Rgb([red, if x < 2 { 0 } else { 200 }, 0]));
+    picture(0).save(program.path("own.png")).unwrap();
+    picture(250).save(program.path("given.png")).unwrap();
+    let corner =
+        |i: i32, j: i32| format!("{i} {j} 0 0 0 1 0.2 {} {}\n", f64::from(i) / 16.0, f64::from(j) / 16.0);
+    let points: String = (0..=16).flat_map(|j| (0..=16).map(move |i| corner(i, j))).collect();
+    let properties: String = ["x", "y", "z", "nx", "ny", "nz", "radius", "u", "v"]
+        .map(|p| format!("property float {p}\n"))
+        .concat();
+    let header = format!(
+        "ply\nformat ascii 1.0\ncomment TextureFile own.png\nelement vertex 289\n{properties}end_header\n"
+    );
+    program.write("points.ply", header + &points);
+    let common = "points.ply --radius-scale 5 --size 64x64 --shading color --eye 8,8,30 --target 8,8,0";
+    for method in ["pull-push", "perspective-ewa", "pull-push-paper"] {
+        for (texture, red) in [("", 0), ("--texture given.png", 250)] {
+            program.run(&format!("render {common} --method {method} {texture} -o a.png --validate")).text();
+            let picture = program.png("a.png");
+            let [left, right] = [22, 42].map(|x| picture.get_pixel(x, 32).0);
+            let near = |a: [u8; 4], b: [u8; 4]| a.iter().zip(b).all(|(a, b)| a.abs_diff(b) <= 2);
+            assert!(
+                near(left, [red, 0, 0, 255]) && near(right, [red, 200, 0, 255]),
+                "{method} {texture}: {left:?} {right:?}"
+            );
+        }
+    }
+    program.run("convert points.ply -o baked.ply").text();
+    assert!(program.run("info baked.ply").text().contains("red"));
+    std::fs::remove_file(program.path("own.png")).unwrap();
+    assert!(program.run(&format!("render {common} -o a.png")).err.contains("drawn without its texture"));
+    program.run(&format!("render {common} --texture given.png --color-by x -o a.png")).error(2);
+}

@@ -165,7 +165,7 @@ fn half_precision_tells_its_error() {
     let Some(program) = Program::with_device("half_precision_tells_its_error") else { return };
     let run = program
         .run("render scene:bumpy-sphere?points=2000 -o a.png --size 64x64 --validate --half --json r.json");
-    assert!(run.err.contains("16-bit sums: linear colour is off by"), "{}", run.err);
+    assert!(run.err.contains("16-bit floats: linear colour is off by"), "{}", run.err);
     let report: Value =
         serde_json::from_str(&std::fs::read_to_string(program.path("r.json")).unwrap()).unwrap();
     let [largest, rms] = ["largest", "rms"].map(|key| report["half_error"][key].as_f64().unwrap());

@@ -6,3 +6,4 @@ pub mod mesh;
 pub mod pyramids;
 pub mod sampling;
 pub mod scenes;
+pub mod texture;

@@ -2,12 +2,15 @@
 
 use glam::{DMat3, DVec2, DVec3};
 use std::sync::Arc;
-use surfel::geometry::{Camera, Parts};
+use surfel::geometry::{Camera, Colours, Parts};
 use surfel::pull_push::PullPush;
 use surfel::reference::Frame;
-use surfel::reference::pull_push::{Level, Pyramid, Reconstruction, Sample};
+use surfel::reference::pull_push::{Compact, Level, Pyramid, Reconstruction, Sample};
+use surfel::scene::ColourStream;
 use surfel::vk::Device;
-use surfel::{Outputs, Picture, PyramidLevel, PyramidSample, RenderOptions, Renderer, Scene, Settings};
+use surfel::{
+    Outputs, Picture, Precision, PyramidLevel, PyramidSample, RenderOptions, Renderer, Scene, Settings,
+};
 
 /// A frame to be taken apart.
 pub struct Shot<'a> {
@@ -19,6 +22,8 @@ pub struct Shot<'a> {
     pub size: [u32; 2],
     pub settings: Settings,
     pub pull_push: PullPush,
+    /// Of the samples.
+    pub precision: Precision,
 }
 
 /// What became of a frame.
@@ -30,7 +35,24 @@ pub struct Made {
 impl Shot<'_> {
     /// The frame's twin.
     pub fn reconstruction(&self) -> Reconstruction {
-        Reconstruction::new(&self.camera, self.size, &self.settings, self.pull_push).unwrap()
+        let full = Reconstruction::new(&self.camera, self.size, &self.settings, self.pull_push).unwrap();
+        let full = full.textured(self.parts);
+        match self.compact() {
+            Some(compact) => full.with_compact(compact),
+            None => full,
+        }
+    }
+
+    /// What its samples are rounded to, if they are.
+    pub fn compact(&self) -> Option<Compact> {
+        let primitives = self.parts.primitives.and_then(|primitives| primitives.colours.as_ref());
+        let given: Vec<_> = [self.parts.surfels.colours.as_ref(), primitives].into_iter().flatten().collect();
+        let colours = match given.iter().any(|colours| matches!(colours, Colours::Linear(_))) {
+            true => ColourStream::Linear,
+            false if given.is_empty() => ColourStream::None,
+            false => ColourStream::Srgb8,
+        };
+        (self.precision == Precision::Half).then_some(Compact { colours })
     }
 
     /// By the twin, with as many levels as it needs.
@@ -45,8 +67,9 @@ impl Shot<'_> {
     /// By the GPU.
     pub fn by_gpu(&self, device: &Arc<Device>) -> Made {
         let scene = Scene::upload(device, self.parts).unwrap();
-        let outputs = Outputs { normal: true, depth: true };
-        let options = RenderOptions { size: self.size, outputs, ..Default::default() };
+        let outputs = Outputs { normal: true, depth: true, id: true };
+        let options =
+            RenderOptions { size: self.size, outputs, precision: self.precision, ..Default::default() };
         let mut renderer = Renderer::new(device, options).unwrap();
         let (picture, _) = renderer.render_picture(&scene, &self.camera, &self.settings).unwrap();
         let levels = renderer.pyramids().unwrap().read(device).unwrap();
@@ -71,6 +94,8 @@ impl Shot<'_> {
                 normal: to_eye * DVec3::from_array(sample.normal.map(f64::from)),
                 tube: sample.tube,
                 colour: DVec3::from_array(sample.colour.unwrap_or(albedo).map(f64::from)),
+                coordinates: sample.coordinates.map_or(DVec2::ZERO, |at| DVec2::from(at.map(f64::from))),
+                id: sample.id.unwrap(),
             }
         };
         let samples = made.samples.iter().map(|made| made.as_ref().map(sample)).collect();
@@ -87,6 +112,7 @@ fn frame_of(picture: &Picture) -> Frame {
         depth: depths.iter().copied().map(f64::from).collect(),
         normal: normals.iter().map(|normal| normal.map(f64::from)).collect(),
         covered: picture.colour.iter().map(|colour| colour[3] > 0.0).collect(),
+        id: picture.id.clone(),
         counts: Default::default(),
         dual_form: 0,
     }

@@ -120,7 +120,7 @@ impl Way {
 
     fn options(self, size: [u32; 2]) -> RenderOptions {
         let rasterizer = if self == Self::Compute { Rasterizer::Compute } else { Rasterizer::Draw };
-        let (outputs, precision) = (Outputs { normal: true, depth: true }, self.precision());
+        let (outputs, precision) = (Outputs { normal: true, depth: true, id: false }, self.precision());
         RenderOptions { size, outputs, precision, rasterizer: Some(rasterizer), profile: false, count: true }
     }
 }

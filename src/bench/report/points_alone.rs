@@ -5,13 +5,14 @@ use super::plot::{Line, Plot, Scale, Style};
 use crate::bench::record::{Contender, Figure, Run, Session};
 use crate::bench::show;
 use crate::methods::{Method, perspective_ewa, pull_push};
+use crate::pull_push::Storage;
 use maud::{Markup, html};
 use std::io;
 
 /// Whose passes are shown.
 const METHODS: [Method; 2] = [pull_push::METHOD, pull_push::PAPER];
 /// The passes that go over pixels alone.
-const OVER_PIXELS: [&str; 2] = ["pull", "push"];
+const OVER_PIXELS: [&str; 3] = ["pull", "copy", "push"];
 
 /// A plot a preset, with what it says.
 pub fn plots(page: &mut Page<'_>, session: &Session) -> io::Result<Vec<Markup>> {
@@ -53,7 +54,7 @@ fn lines(runs: &[&Run]) -> Vec<Line> {
         let points: Vec<_> = runs.iter().filter_map(point).collect();
         (!points.is_empty()).then(|| Line::new(name, Style::nth(i), points))
     };
-    pull_push::PASSES.into_iter().enumerate().filter_map(line).collect()
+    pull_push::passes(Storage::PingPong).iter().copied().enumerate().filter_map(line).collect()
 }
 
 /// Median time of a pass, ms.
@@ -62,9 +63,10 @@ fn pass(run: &Run, name: &str) -> Option<f64> {
     passes.iter().find(|pass| pass.name == name).map(|pass| pass.ms.median)
 }
 
-/// What the passes over pixels take, ms.
+/// What the passes over pixels take, ms, as far as there are such.
 fn over_pixels(run: &Run) -> Option<f64> {
-    OVER_PIXELS.iter().map(|name| pass(run, name)).sum()
+    let found: Vec<_> = OVER_PIXELS.iter().filter_map(|name| pass(run, name)).collect();
+    (!found.is_empty()).then(|| found.iter().sum())
 }
 
 /// How much of what they take at most the passes over pixels take.

@@ -118,7 +118,7 @@ impl Render {
 /// The images that these layers are.
 fn outputs(layers: &[Layer]) -> Outputs {
     let asked = |layer| layers.contains(&layer);
-    Outputs { normal: asked(Layer::Normal), depth: asked(Layer::Depth) }
+    Outputs { normal: asked(Layer::Normal), depth: asked(Layer::Depth), id: asked(Layer::Id) }
 }
 
 /// The camera; the whole scene is framed unless it is given.
@@ -239,7 +239,7 @@ pub struct Place {
     /// What visits the pixels: the device's own rasterizer, or compute shaders; what is faster on the device unless given
     #[arg(long, value_enum, conflicts_with = "reference")]
     pub rasterizer: Option<Rasterizer>,
-    /// Keeps sums in 16-bit floats: half the memory, coarser
+    /// Keeps sums, or the samples of pull-push, in 16-bit floats: half the memory, coarser
     #[arg(long)]
     pub half: bool,
     /// On which device

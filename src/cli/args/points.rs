@@ -2,8 +2,12 @@
 
 use crate::cli::values::{ColourBy, colour_by, positive};
 use clap::Args;
-use surfel::geometry::ColourMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+use surfel::Result;
 use surfel::geometry::estimate::Estimate;
+use surfel::geometry::{ColourMap, MipMap};
+use surfel::io::image;
 
 /// How normals and radii are estimated.
 #[derive(Args, Debug)]
@@ -63,4 +67,15 @@ pub struct Colours {
         requires = "color_by"
     )]
     pub color_map: ColourMap,
+    /// The picture that the files' texture coordinates are of, rather than the one that they name: PNG, JPEG or EXR
+    #[arg(long, value_name = "FILE", conflicts_with = "color_by")]
+    pub texture: Option<PathBuf>,
+}
+
+impl Colours {
+    /// The texture that is given, if one is.
+    pub fn texture(&self) -> Result<Option<Arc<MipMap>>> {
+        let read = |path: &PathBuf| MipMap::new(&image::read(path)?).map(Arc::new);
+        self.texture.as_ref().map(read).transpose()
+    }
 }

@@ -29,6 +29,7 @@ impl Draft {
             clips: cloud.clips,
             weights: cloud.weights,
             colours: cloud.colours,
+            texture: cloud.texture,
         };
         surfels.check().map_err(|error| error.to_string())?;
         if u32::try_from(count).is_err() {

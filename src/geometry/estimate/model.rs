@@ -66,6 +66,7 @@ impl Cloud {
             positions: self.positions,
             radii,
             colours: self.colours,
+            texture: self.texture,
             ribbons: self.ribbons,
             tubes: self.tubes,
             triangles: self.triangles,
@@ -103,6 +104,9 @@ impl Primitives {
             self.positions.push(self.positions[i as usize]);
             self.directions.push(self.directions[i as usize]);
             self.radii.push(self.radii[i as usize]);
+            if let Some(texture) = &mut self.texture {
+                texture.coordinates.push(texture.coordinates[i as usize]);
+            }
             match &mut self.colours {
                 Some(Colours::Srgb8(codes)) => codes.push(codes[i as usize]),
                 Some(Colours::Linear(linear)) => linear.push(linear[i as usize]),

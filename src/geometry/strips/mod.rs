@@ -42,11 +42,16 @@ impl Cloud {
     /// Leaves and branches of the cloud's triangles as ribbons and tubes; triangles that are neither, lines and other points stay. Points
     /// that nothing uses any more go.
     ///
-    /// New vertices have the mean colour, in linear light, of those that they stand for; they have no scalar.
+    /// New vertices have the mean colour, in linear light, of those that they stand for; they have no scalar. A texture becomes colours.
     ///
     /// # Errors
     /// The cause, without the input's name, if there are more than 2³² − 1 points afterwards.
     pub fn to_lines(&self, how: &ToLines) -> Result<(Self, Lined), String> {
+        if self.texture.is_some() {
+            let mut coloured = self.clone();
+            coloured.bake_texture();
+            return coloured.to_lines(how);
+        }
         let welded = weld(&self.positions, &self.triangles);
         let thickest = how.thickest.map_or(THICKEST * welded.diagonal, f64::from);
         let mut made = Made::new(self, &welded);

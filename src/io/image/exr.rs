@@ -1,7 +1,7 @@
 //! OpenEXR: a picture's values as they are, linear light, in 32-bit floats.
 //!
 //! Channels `R G B A` hold [`Picture::colour`], with straight α; `Z` the depth, under the name that OpenEXR gives it; `N.X N.Y N.Z` the
-//! normal. What a picture does not have is not written.
+//! normal; `id`, in 32-bit whole numbers, [`Picture::id`]. What a picture does not have is not written.
 
 use crate::picture::Picture;
 use ::exr::error::{Error, Result as ExrResult};
@@ -12,6 +12,7 @@ use std::result::Result;
 const COLOUR: [&str; 4] = ["R", "G", "B", "A"];
 const DEPTH: &str = "Z";
 const NORMAL: [&str; 3] = ["N.X", "N.Y", "N.Z"];
+const ID: &str = "id";
 
 /// Writes a picture whose images fit its size.
 pub fn write(picture: &Picture, out: impl Write + Seek) -> io::Result<()> {
@@ -26,6 +27,8 @@ pub fn write(picture: &Picture, out: impl Write + Seek) -> io::Result<()> {
             channels.push(channel(name, normal.iter().map(|normal| normal[axis]).collect()));
         }
     }
+    let ids = |id: &Vec<u32>| AnyChannel::new(ID, FlatSamples::U32(id.clone()));
+    channels.extend(picture.id.iter().map(ids));
     let size = picture.size.map(|side| side as usize);
     let layer = Layer::new(
         Vec2(size[0], size[1]),
@@ -45,6 +48,13 @@ pub fn read(bytes: &[u8], most_pixels: u64) -> Result<Picture, String> {
     check(bytes, most_pixels).map_err(|error| error.to_string())??;
     let layer = first_layer(bytes).map_err(|error| error.to_string())?;
     let mut channels = layer.channel_data.list;
+    let id = channels.iter().position(|channel| channel.name.eq(ID)).and_then(|at| {
+        let channel = channels.swap_remove(at);
+        match channel.sample_data {
+            FlatSamples::U32(id) if channel.sampling == Vec2(1, 1) => Some(id),
+            _ => None,
+        }
+    });
     let mut take = |name: &str| {
         let at = channels.iter().position(|channel| channel.name.eq(name))?;
         let channel = channels.swap_remove(at);
@@ -62,7 +72,7 @@ pub fn read(bytes: &[u8], most_pixels: u64) -> Result<Picture, String> {
         _ => None,
     };
     let size = [layer.size.width(), layer.size.height()].map(|side| side as u32);
-    Ok(Picture { size, colour, depth: take(DEPTH), normal })
+    Ok(Picture { size, colour, depth: take(DEPTH), normal, id })
 }
 
 /// Looks at the header alone, before there is memory for what it promises.

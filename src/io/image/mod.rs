@@ -207,6 +207,7 @@ fn check(picture: &Picture) -> Result<()> {
         Some(picture.colour.len()),
         picture.depth.as_ref().map(Vec::len),
         picture.normal.as_ref().map(Vec::len),
+        picture.id.as_ref().map(Vec::len),
     ];
     match pixels > 0 && images.into_iter().all(fits) {
         true => Ok(()),

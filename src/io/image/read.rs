@@ -12,11 +12,12 @@ use std::path::Path;
 pub const MOST_PIXELS: u64 = 1 << 26;
 
 const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
+const JPEG: &[u8] = &[0xff, 0xd8, 0xff];
 const EXR: &[u8] = &[0x76, 0x2f, 0x31, 0x01];
 
-/// Reads a PNG or EXR file, told apart by its contents.
+/// Reads a PNG, JPEG or EXR file, told apart by its contents.
 ///
-/// PNG of 8 or 16 bits is taken as sRGB and decoded to linear light; its α is straight, as PNG has it, and 1 without one. Other colour
+/// PNG of 8 or 16 bits and JPEG are taken as sRGB and decoded to linear light; its α is straight, as PNG has it, and 1 without one. Other colour
 /// spaces that it may name are passed over. EXR is taken as [`super::write_exr`] writes it, with depth and normals if there are any; α
 /// is straight there too.
 ///
@@ -25,15 +26,16 @@ const EXR: &[u8] = &[0x76, 0x2f, 0x31, 0x01];
 pub fn read(path: &Path) -> Result<Picture> {
     let bytes = std::fs::read(path).map_err(Error::io(path, "cannot read"))?;
     let picture = match &bytes {
-        png if png.starts_with(PNG) => read_png(png),
+        png if png.starts_with(PNG) => read_codes(png, ImageFormat::Png),
+        jpeg if jpeg.starts_with(JPEG) => read_codes(jpeg, ImageFormat::Jpeg),
         exr if exr.starts_with(EXR) => exr::read(exr, MOST_PIXELS),
-        _ => Err("neither a PNG nor an EXR file: convert it to one of them".into()),
+        _ => Err("no PNG, JPEG or EXR file: convert it to one of them".into()),
     };
     picture.map_err(|cause| Error::input(path.display().to_string(), cause))
 }
 
-fn read_png(bytes: &[u8]) -> Result<Picture, String> {
-    let mut reader = ImageReader::with_format(Cursor::new(bytes), ImageFormat::Png);
+fn read_codes(bytes: &[u8], format: ImageFormat) -> Result<Picture, String> {
+    let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     reader.limits(Limits::no_limits());
     let decoder = reader.into_decoder().map_err(|error| error.to_string())?;
     let (width, height) = decoder.dimensions();
@@ -70,6 +72,8 @@ mod tests {
             colour: vec![[0.1, -2.0, 1e9, 0.5], [1e-6, 3.5, 0.0, 1.0], [0.0; 4], [0.25, 0.5, 0.75, 1.0]],
             depth: Some(vec![1.5, 2.0, 0.0, 1e-3]),
             normal: Some(vec![[0.0, 0.6, 0.8], [1.0, 0.0, 0.0], [0.0; 3], [-1.0, 0.0, 0.0]]),
+            // Of which f32 would round two.
+            id: Some(vec![0, 16_777_217, 4_000_000_001, Picture::NOBODY]),
         }
     }
 
@@ -77,7 +81,7 @@ mod tests {
     fn exr_comes_back_as_it_was_with_every_layer() {
         let whole = picture();
         let no_normal = Picture { normal: None, ..picture() };
-        let bare = Picture { depth: None, ..no_normal.clone() };
+        let bare = Picture { depth: None, id: None, ..no_normal.clone() };
         for picture in [whole, no_normal, bare] {
             in_folder(|folder| {
                 let path = folder.join("a.exr");
@@ -134,7 +138,7 @@ mod tests {
                 read(&path).unwrap_err().to_string()
             };
             for bytes in [&b""[..], b"P6 1 1 255 abc", b"\x89PNG"] {
-                assert!(refused(bytes).contains("neither a PNG nor an EXR file"));
+                assert!(refused(bytes).contains("no PNG, JPEG or EXR file"));
             }
             for name in ["a.png", "a.exr"] {
                 let whole = folder.join(name);

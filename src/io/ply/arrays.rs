@@ -1,10 +1,10 @@
 //! Where the points go: one array for each attribute that the file can have, filled piece by piece from several threads.
 
 use super::Parsed;
-use super::layout::{CORNERS, Layout, SCALAR, Shape, TANGENT, WEIGHT};
+use super::layout::{CORNERS, Layout, SCALAR, Shape, TANGENT, TEXTURE, WEIGHT};
 use super::source::room;
 use crate::geometry::{Clip, Ellipse};
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 
 macro_rules! arrays {
     ($($name:ident: $type:ty, $there:expr, $what:literal;)*) => {
@@ -59,6 +59,7 @@ arrays! {
     tangents: Vec3, |layout: &Layout| layout.fills(TANGENT), "Unit tangents or 0.";
     codes: [u8; 4], Layout::has_codes, "sRGB-encoded colours.";
     linear: [f32; 3], |layout: &Layout| layout.colour.is_some() && !layout.has_codes(), "Linear colours.";
+    coordinates: Vec2, |layout: &Layout| layout.fills(TEXTURE), "Coordinates in a texture.";
     scalar: f64, |layout: &Layout| layout.fills(SCALAR), "The chosen scalar.";
 }
 

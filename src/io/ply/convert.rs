@@ -4,13 +4,13 @@ use super::arrays::Slices;
 use super::block::Block;
 use super::layout::{
     AXES, CLIPS, COLOUR, CONCAVE, CORNERS, Colour, Layout, NORMAL, OPACITY, POSITION, RADIUS, ROTATION,
-    SCALAR, Shape, TANGENT, TWO_SIDED, WEIGHT,
+    SCALAR, Shape, TANGENT, TEXTURE, TWO_SIDED, WEIGHT,
 };
 use super::shape::{self, Disc};
 use super::types::Scalar;
 use crate::geometry::{Clip, ClipLine};
 use crate::io::srgb;
-use glam::{DVec3, Vec3};
+use glam::{DVec2, DVec3, Vec2, Vec3};
 
 /// Largest usable coordinate: differences of two stay finite in f32.
 const LARGEST: f64 = f32::MAX as f64 / 4.0;
@@ -70,6 +70,11 @@ pub(super) fn convert(block: &Block, layout: &Layout, out: &mut Slices) -> Tally
     tally.clip_lines = clips(block, out);
     tally.weights = weights(block, out);
     colours(block, layout, out);
+    for ((to, u), v) in out.coordinates.iter_mut().zip(block.column(TEXTURE)).zip(block.column(TEXTURE + 1)) {
+        let at = DVec2::new(*u, *v).as_vec2();
+        // What is nowhere has some place.
+        *to = if at.is_finite() { at } else { Vec2::ZERO };
+    }
     out.scalar.iter_mut().zip(block.column(SCALAR)).for_each(|(to, value)| *to = *value);
     // Here, as the entries are still in the cache.
     tally.lacking = !layout.has_normals() || !layout.has_radii();

@@ -17,6 +17,8 @@ pub(super) struct Header {
     pub payload: usize,
     /// Columns and rows of a range grid, from `obj_info num_cols` and `num_rows`.
     pub grid: [Option<u64>; 2],
+    /// Name of the first texture, from `comment TextureFile`.
+    pub texture: Option<String>,
 }
 
 pub(super) fn parse(bytes: &[u8]) -> Parsed<Header> {
@@ -24,13 +26,17 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Header> {
     if lines.first().trim_ascii_end() != b"ply" {
         return Err(sniff::name(bytes));
     }
-    let (mut format, mut elements, mut grid) = (None, Vec::new(), [None; 2]);
+    let (mut format, mut elements, mut grid, mut texture) = (None, Vec::new(), [None; 2], None);
     let mut names = HashSet::new();
     loop {
         let line = lines.next()?;
         let keyword = line.split(u8::is_ascii_whitespace).next().unwrap_or_default();
         let done = match keyword {
-            b"" | b"comment" => Ok(()),
+            b"" => Ok(()),
+            b"comment" => {
+                parse_comment(line, &mut texture);
+                Ok(())
+            }
             b"obj_info" => {
                 parse_info(line, &mut grid);
                 Ok(())
@@ -48,7 +54,16 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Header> {
     }
     let format =
         format.ok_or("the header has no `format` line: write the file again with a complete header")?;
-    Ok(Header { format, elements, payload: lines.at, grid })
+    Ok(Header { format, elements, payload: lines.at, grid, texture })
+}
+
+/// Free text as a rule; which texture coordinates are of is understood. A name may have blanks.
+fn parse_comment(line: &[u8], texture: &mut Option<String>) {
+    let text = String::from_utf8_lossy(line);
+    let name = text.trim_start_matches("comment").trim_start().strip_prefix("TextureFile").map(str::trim);
+    if let (None, Some(name)) = (&texture, name.filter(|name| !name.is_empty())) {
+        *texture = Some(name.into());
+    }
 }
 
 /// Free text as a rule; what range scanners say of their grids is understood.

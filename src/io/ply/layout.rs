@@ -31,8 +31,10 @@ pub(super) const WEIGHT: usize = 31;
 pub(super) const CORNERS: usize = 32;
 /// Column of tx; ty and tz follow.
 pub(super) const TANGENT: usize = 36;
+/// Column of u in a texture; v follows.
+pub(super) const TEXTURE: usize = 39;
 /// Column of the scalar that the caller has chosen.
-pub(super) const SCALAR: usize = 39;
+pub(super) const SCALAR: usize = 41;
 
 /// Names of the columns of two clip lines.
 pub(super) const CLIP_LINES: [[&str; 4]; 2] =
@@ -46,6 +48,7 @@ pub(super) const CORNER_NAMES: [&str; 4] =
     ["surfel_weight0", "surfel_weight1", "surfel_weight2", "surfel_weight3"];
 /// Names of the columns of tangents.
 pub(super) const TANGENT_NAMES: [&str; 3] = ["tx", "ty", "tz"];
+const TEXTURES: &[[&str; 2]] = &[["texture_u", "texture_v"], ["s", "t"], ["u", "v"]];
 const NORMALS: &[[&str; 3]] = &[["nx", "ny", "nz"], ["normal_x", "normal_y", "normal_z"]];
 const COLOURS: &[[&str; 3]] =
     &[["red", "green", "blue"], ["diffuse_red", "diffuse_green", "diffuse_blue"], ["r", "g", "b"]];
@@ -179,6 +182,14 @@ impl Layout {
         }
     }
 
+    /// Looks for coordinates in a texture. Without one, the same names may be anything.
+    pub fn find_texture(&mut self, vertex: &Element) {
+        let find = Finder { properties: &vertex.properties };
+        if let Some(place) = TEXTURES.iter().find_map(|names| find.all(*names)) {
+            self.fill(TEXTURE, place);
+        }
+    }
+
     fn find_colour(&mut self, find: &Finder) {
         let usable = |rgb: &[(usize, Scalar); 3]| rgb.iter().all(|(_, scalar)| is_colour(*scalar));
         if let Some(rgb) = COLOURS.iter().find_map(|names| find.all(*names).filter(usable)) {
@@ -309,11 +320,26 @@ mod tests {
         let of = |names: &str, lines| Layout::of(&vertex(names, Scalar::F32), None, lines).unwrap();
         let line = of("x y z diameter tx ty tz", true);
         assert_eq!((line.columns[RADIUS], line.diameters), (Some(3), true));
-        assert_eq!(line.columns[TANGENT..SCALAR], [4, 5, 6].map(Some));
+        assert_eq!(line.columns[TANGENT..TEXTURE], [4, 5, 6].map(Some));
         let point = of("x y z diameter tx ty tz", false);
         assert!(!point.fills(RADIUS) && !point.fills(TANGENT) && !point.diameters);
         let both = of("x y z diameter radius", true);
         assert_eq!((both.columns[RADIUS], both.diameters), (Some(4), false));
+    }
+
+    #[test]
+    fn coordinates_in_a_texture_have_many_names() {
+        for (names, found) in
+            [("x y z t s", [4, 3]), ("x y z u v", [3, 4]), ("x y z u v texture_v texture_u", [6, 5])]
+        {
+            let mut layout = layout(names, Scalar::F32);
+            assert!(!layout.fills(TEXTURE), "{names}: without a texture they are none");
+            layout.find_texture(&vertex(names, Scalar::F32));
+            assert_eq!(layout.columns[TEXTURE..SCALAR], found.map(Some), "{names}");
+        }
+        let mut half = layout("x y z u t", Scalar::F32);
+        half.find_texture(&vertex("x y z u t", Scalar::F32));
+        assert!(!half.fills(TEXTURE));
     }
 
     #[test]

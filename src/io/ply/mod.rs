@@ -19,6 +19,7 @@
 //! | `red green blue`, `diffuse_red diffuse_green diffuse_blue`, `r g b` | uchar, ushort | colour, sRGB-encoded |
 //! | | float, double | colour, linear light; 1 is white |
 //! | `f_dc_0..2 opacity scale_0..2 rot_0..3` | float | a 3D Gaussian (or 2D, without `scale_2`) with the INRIA layout's logarithms, logits and `rot_0` as the real part: the disc of two standard deviations across its smallest axis, two-sided unless there is a normal; less than a tenth opaque is none |
+//! | `texture_u texture_v`, `s t` or `u v` | any | coordinates in the texture that `comment TextureFile NAME` names, relative to the file, or [`ReadOptions`] give: u to the right, v upwards; without one they are numbers like others |
 //! | any | any | [`Cloud::scalar`], if [`ReadOptions`] names it |
 //!
 //! | element | property | becomes |
@@ -69,13 +70,15 @@ pub use write::write;
 
 use crate::Progress;
 use crate::error::{Error, Result};
-use crate::geometry::Cloud;
+use crate::geometry::{Cloud, MipMap, Texture};
+use crate::io::image;
 use elements::{Contents, File};
 use header::Header;
 use layout::{Layout, Shape};
 use meter::Meter;
 use source::Source;
 use std::path::Path;
+use std::sync::Arc;
 
 /// A file's points and what was made of the file.
 #[derive(Clone, Debug, PartialEq)]
@@ -88,12 +91,14 @@ pub struct Loaded {
 }
 
 /// What is looked for in a file.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct ReadOptions {
     /// Name of the vertices' property that becomes [`Cloud::scalar`]. A file whose vertices have no number of this name is refused.
     pub scalar: Option<String>,
     /// Whether triangles are kept where every point has a normal and a radius, too.
     pub triangles: bool,
+    /// What texture coordinates are of, in place of what the file names.
+    pub texture: Option<Arc<MipMap>>,
 }
 
 /// A file's header, and its points if they could be had.
@@ -115,7 +120,8 @@ pub fn inspect(path: &Path, options: &ReadOptions, progress: &dyn Progress) -> R
     let (name, source) = (path.display().to_string(), Source::open(path)?);
     let header = parse_header(&source).map_err(|cause| Error::input(name.as_str(), cause))?;
     let (format, elements) = (header.format, header.elements.clone());
-    let loaded = parse_records(&source, header, options, progress).map_err(|cause| Error::input(name, cause));
+    let loaded = parse_records(&source, header, options, path.parent(), progress)
+        .map_err(|cause| Error::input(name, cause));
     Ok(Inspected { format, elements, loaded })
 }
 
@@ -126,15 +132,16 @@ pub fn inspect(path: &Path, options: &ReadOptions, progress: &dyn Progress) -> R
 /// lacks what the options ask for.
 pub fn read(path: &Path, options: &ReadOptions, progress: &dyn Progress) -> Result<Loaded> {
     let source = Source::open(path)?;
-    parse(&source, options, progress).map_err(|cause| Error::input(path.display().to_string(), cause))
+    parse(&source, options, path.parent(), progress)
+        .map_err(|cause| Error::input(path.display().to_string(), cause))
 }
 
-/// [`read`] of a file's contents; `name` is what errors call it.
+/// [`read`] of a file's contents, without a texture that it names; `name` is what errors call it.
 ///
 /// # Errors
 /// [`Error::Input`], as [`read`].
 pub fn read_bytes(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Loaded> {
-    parse(&Source::of(bytes), options, &()).map_err(|cause| Error::input(name, cause))
+    parse(&Source::of(bytes), options, None, &()).map_err(|cause| Error::input(name, cause))
 }
 
 /// The cause of a failure, without the file's name.
@@ -145,29 +152,66 @@ fn parse_header(source: &Source) -> Parsed<Header> {
     header::parse(&source.part(0, source.size().min(header::LIMIT as u64 + 1))?)
 }
 
-fn parse(source: &Source, options: &ReadOptions, progress: &dyn Progress) -> Parsed<Loaded> {
-    parse_records(source, parse_header(source)?, options, progress)
+fn parse(
+    source: &Source,
+    options: &ReadOptions,
+    folder: Option<&Path>,
+    progress: &dyn Progress,
+) -> Parsed<Loaded> {
+    parse_records(source, parse_header(source)?, options, folder, progress)
 }
 
 fn parse_records(
     source: &Source,
     header: Header,
     options: &ReadOptions,
+    folder: Option<&Path>,
     progress: &dyn Progress,
 ) -> Parsed<Loaded> {
     header::refuse_duplicates(&header.elements)?;
     let vertex = layout::find_vertex(&header.elements)?;
     let lines = header.elements.iter().any(|element| element.count > 0 && lines::ends(element).is_some());
     let mut layout = Layout::of(&header.elements[vertex], options.scalar.as_deref(), lines)?;
+    let texture = find_texture(&header, vertex, &mut layout, options, folder);
     // Text keeps its digits, whatever type the header names.
     layout.narrow &= header.format != Format::Ascii;
     let meter = Meter::new(progress, source.size());
     let triangles = options.triangles;
     let file = File { source, header: &header, vertex, layout: &layout, meter: &meter, triangles, lines };
-    let contents = file.read()?;
+    let mut contents = file.read()?;
     meter.finish();
-    let report = report(header, vertex, &layout, &contents);
+    let mut report = report(header, vertex, &layout, &contents);
+    let coordinates = std::mem::take(&mut contents.points.coordinates);
+    match texture {
+        Ok(image) => contents.points.cloud.texture = image.map(|image| Texture { image, coordinates }),
+        Err(cause) => report.texture_missing = Some(cause),
+    }
     Ok(Loaded { cloud: contents.points.cloud, report })
+}
+
+/// The texture of a file whose vertices have coordinates, if it is known; why it is not.
+fn find_texture(
+    header: &Header,
+    vertex: usize,
+    layout: &mut Layout,
+    options: &ReadOptions,
+    folder: Option<&Path>,
+) -> Parsed<Option<Arc<MipMap>>> {
+    let named = header.texture.as_ref().zip(folder);
+    if options.texture.is_none() && named.is_none() {
+        return Ok(None);
+    }
+    layout.find_texture(&header.elements[vertex]);
+    if !layout.fills(layout::TEXTURE) {
+        return Err("its vertices have no coordinates texture_u texture_v, s t or u v; those of faces' corners are not read".into());
+    }
+    match (&options.texture, named) {
+        (None, Some((name, folder))) => {
+            let image = image::read(&folder.join(name)).and_then(|picture| MipMap::new(&picture));
+            image.map(|image| Some(Arc::new(image))).map_err(|error| error.to_string())
+        }
+        (given, _) => Ok(given.clone()),
+    }
 }
 
 fn report(header: Header, vertex: usize, layout: &Layout, contents: &Contents) -> Report {
@@ -188,6 +232,7 @@ fn report(header: Header, vertex: usize, layout: &Layout, contents: &Contents) -
         faces: contents.faces,
         lines: contents.lines,
         gaussians: matches!(layout.shape, Shape::Gaussian(_)),
+        texture_missing: None,
         trailing: contents.trailing,
         elements: header.elements,
     }

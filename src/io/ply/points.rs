@@ -4,7 +4,7 @@ use super::arrays::Arrays;
 use super::convert::Tally;
 use super::{Dropped, Parsed};
 use crate::geometry::{Clip, Clips, Cloud, Colours, Weights};
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Vec2, Vec3};
 use rayon::prelude::*;
 
 /// The origin is 0 unless the coordinates are more than this many times larger than the extent; then it is near the middle. So ordinary
@@ -34,6 +34,8 @@ pub(super) struct Points {
     pub clip_lines: u64,
     /// Normalization weights that are none.
     pub weights: u64,
+    /// Coordinates in a texture, if the file has some.
+    pub coordinates: Vec<Vec2>,
 }
 
 /// What stands in the map for a vertex that was dropped.
@@ -48,9 +50,10 @@ impl Points {
             return Err(nothing(count, dropped));
         }
         let map = (dropped.total() > 0).then(|| leave_out(&mut arrays));
+        let coordinates = std::mem::take(&mut arrays.coordinates);
         let cloud = cloud(arrays);
         let Tally { lacking, clip_lines, weights, .. } = tally;
-        Ok(Self { cloud, dropped, count, map, lacking, clip_lines, weights })
+        Ok(Self { cloud, dropped, count, map, lacking, clip_lines, weights, coordinates })
     }
 
     /// The point that a vertex has become; `None` if there is no such vertex, or if it was dropped.

@@ -29,6 +29,8 @@ pub struct Report {
     pub lines: Lines,
     /// Whether the vertices are 3D Gaussians, whose flat sides became discs.
     pub gaussians: bool,
+    /// Why a texture is of no use that the file names or the options give: it cannot be read, or the vertices have no coordinates.
+    pub texture_missing: Option<String>,
     /// Bytes after the last element, which mean nothing.
     pub trailing: u64,
 }

@@ -19,7 +19,7 @@ use std::path::Path;
 /// uchar; if there are clips, their lines clip0x clip0y clip0z clip0d clip1x clip1y clip1z clip1d as float, all 0 where there is none, and
 /// clip_concave as uchar; if there are normalization weights, surfel_weight as float, and if there are some at corners, surfel_weight0 to
 /// surfel_weight3 as float, all 0 where there are none; if there are tubes, their tangents tx ty tz as float, with which nx ny nz are 0;
-/// red green blue as uchar if sRGB-encoded, as float if linear.
+/// red green blue as uchar if sRGB-encoded, as float if linear; of a texture, its colours at the vertices.
 ///
 /// The surfels come first, then the vertices that lines and triangles use, in their order. If there are lines, an element edge has
 /// vertex1 and vertex2 and, as uchar, tube: ribbons first, then tubes. If there are triangles, an element face has the list
@@ -51,6 +51,8 @@ pub(super) struct Whole<'a> {
     /// Whether each is a tube's, a ribbon's or triangle's, or both.
     pub tangent: Vec<bool>,
     pub normal: Vec<bool>,
+    /// Colours of surfels and of vertices that have a texture.
+    baked: [Option<Colours>; 2],
 }
 
 impl<'a> Whole<'a> {
@@ -67,7 +69,11 @@ impl<'a> Whole<'a> {
         let first = parts.surfels.len();
         // Fits, as that many are refused.
         vertices.iter().zip(first as u32..).for_each(|(&i, to)| place[i as usize] = to);
-        Self { parts, vertices, place, tangent, normal }
+        let of_surfels = parts.surfels.texture.as_ref();
+        let of_surfels = of_surfels.map(|t| t.baked(&parts.surfels.positions, Some(&parts.surfels.radii)));
+        let of_vertices =
+            primitives.texture.as_ref().map(|t| t.baked(&primitives.positions, Some(&primitives.radii)));
+        Self { parts, vertices, place, tangent, normal, baked: [of_surfels, of_vertices] }
     }
 
     /// Number of vertices in the file.
@@ -85,8 +91,10 @@ impl<'a> Whole<'a> {
     }
 
     /// Colours of surfels and of vertices.
-    pub fn colours(&self) -> [Option<&'a Colours>; 2] {
-        [self.parts.surfels.colours.as_ref(), self.parts.primitives.and_then(|lines| lines.colours.as_ref())]
+    pub fn colours(&self) -> [Option<&Colours>; 2] {
+        let [of_surfels, of_vertices] = self.baked.each_ref().map(Option::as_ref);
+        let lines = || self.parts.primitives.and_then(|lines| lines.colours.as_ref());
+        [of_surfels.or(self.parts.surfels.colours.as_ref()), of_vertices.or_else(lines)]
     }
 }
 

@@ -41,12 +41,27 @@ impl Margin {
         value <= 1.0
     }
 
+    /// Which of these has the least value, the first of equal ones. To take another that is the same would be no other outcome.
+    pub fn least<T>(
+        &self,
+        all: &[T],
+        value: impl Fn(&T) -> f64,
+        same: impl Fn(&T, &T) -> bool,
+    ) -> Option<usize> {
+        let least = (0..all.len()).min_by(|&a, &b| value(&all[a]).total_cmp(&value(&all[b])))?;
+        let own = value(&all[least]);
+        let others =
+            all.iter().filter(|other| !same(other, &all[least])).map(value).filter(|other| *other > own);
+        others.for_each(|other| self.keep((other - own) / other.max(1.0)));
+        Some(least)
+    }
+
     fn keep(&self, margin: f64) {
-        self.0.set(self.least().min(margin));
+        self.0.set(self.nearest().min(margin));
     }
 
     /// How near the nearest decision was.
-    pub fn least(&self) -> f64 {
+    pub fn nearest(&self) -> f64 {
         self.0.get()
     }
 }

@@ -9,7 +9,11 @@
 //!
 //! Level `l` has a pixel for every `2^l` × `2^l` of the picture's; the centre of its pixel `(i, j)` is at `2^l (i + ½, j + ½)` px. All
 //! lengths on the screen are px of the picture, whatever the level.
+//!
+//! The paper's phase `copy` (section 3.5) is none here: levels are values, which nothing overwrites before it is read.
 
+mod compact;
+mod coverage;
 mod lens;
 mod margin;
 mod paper;
@@ -19,17 +23,20 @@ mod push;
 mod shade;
 #[cfg(test)]
 mod tests;
+mod texture;
 
 use super::{Frame, Projector};
 use crate::error::Result;
-use crate::geometry::{Camera, Parts, Surfels};
+use crate::geometry::{Camera, MipMap, Parts, Surfels};
 use crate::pull_push::{PullPush, Rules};
 use crate::settings::Settings;
 use glam::{DVec2, DVec3};
-use lens::Lens;
+use lens::{Lens, Radii2};
 use margin::Margin;
 use rayon::prelude::*;
+use std::sync::Arc;
 
+pub use compact::{Compact, Steps};
 pub use margin::Decided;
 pub use project::Visible;
 
@@ -50,8 +57,12 @@ pub struct Sample {
     pub normal: DVec3,
     /// Whether it is of a tube: a disc that faces the eye, about a point of the axis.
     pub tube: bool,
-    /// Linear.
+    /// Linear; of no use where the surface has a texture.
     pub colour: DVec3,
+    /// Of the disc's centre in the texture, if the surface has one.
+    pub coordinates: DVec2,
+    /// Number of the point that it is, or that is nearest of those that it was made of: as in [`Visible::index`].
+    pub id: u32,
 }
 
 /// A level of a pyramid.
@@ -79,14 +90,25 @@ impl Sample {
     fn direction_as(&self, other: &Self) -> DVec3 {
         if self.tube && self.normal.dot(other.normal) < 0.0 { -self.normal } else { self.normal }
     }
+
+    /// The way to its coordinates in the texture from those of `other`: as the texture is repeated, the shortest.
+    fn turn_from(&self, other: &Self) -> DVec2 {
+        let way = self.coordinates - other.coordinates;
+        way - (way + 0.5).floor()
+    }
 }
 
 impl Level {
     /// The sample at these coordinates; `None` outside, too.
     pub fn at(&self, [x, y]: [i64; 2]) -> Option<Sample> {
+        let width = i64::from(self.size[0]);
+        self.is_within([x, y]).then(|| self.samples[(y * width + x) as usize]).flatten()
+    }
+
+    /// Whether it has a pixel at these coordinates.
+    pub fn is_within(&self, [x, y]: [i64; 2]) -> bool {
         let [width, height] = self.size.map(i64::from);
-        let inside = (0..width).contains(&x) && (0..height).contains(&y);
-        inside.then(|| self.samples[(y * width + x) as usize]).flatten()
+        (0..width).contains(&x) && (0..height).contains(&y)
     }
 
     /// Centre of the pixel at these coordinates, px.
@@ -107,7 +129,7 @@ impl Decided {
         let count = width * i64::from(size[1]);
         let decide = |i| {
             let margin = Margin::new();
-            (sample([i % width, i / width], &margin), margin.least())
+            (sample([i % width, i / width], &margin), margin.nearest())
         };
         let (samples, margins) = (0..count).into_par_iter().map(decide).unzip();
         Self { level: Level { level, size, samples }, margins }
@@ -124,6 +146,8 @@ pub struct Reconstruction {
     projector: Projector,
     lens: Lens,
     pull_push: PullPush,
+    texture: Option<Arc<MipMap>>,
+    compact: Option<Compact>,
 }
 
 impl Reconstruction {
@@ -131,12 +155,35 @@ impl Reconstruction {
     pub fn new(camera: &Camera, size: [u32; 2], settings: &Settings, pull_push: PullPush) -> Result<Self> {
         let projector = Projector::new(camera, size, settings)?;
         let lens = Lens::new(&projector);
-        Ok(Self { projector, lens, pull_push })
+        Ok(Self { projector, lens, pull_push, texture: None, compact: None })
+    }
+
+    /// The same frame of `parts` that have a texture: samples have coordinates in it then. As published, there are none.
+    pub fn textured<'a>(mut self, parts: impl Into<Parts<'a>>) -> Self {
+        self.texture = parts.into().texture().filter(|_| self.pull_push.rules == Rules::Robust).cloned();
+        self
+    }
+
+    /// The same with the compact layout: what a pass makes is rounded before the next sees it.
+    pub fn with_compact(self, compact: Compact) -> Self {
+        Self { compact: Some(compact), ..self }
+    }
+
+    /// The level as its layout holds it.
+    fn stored(&self, mut level: Level) -> Level {
+        let Some(compact) = self.compact else { return level };
+        level.samples.par_iter_mut().flatten().for_each(|sample| {
+            let world = Sample { normal: self.projector.to_world(sample.normal), ..*sample };
+            let rounded = compact.round(&world);
+            *sample = Sample { normal: self.projector.view.transform_vector3(rounded.normal), ..rounded };
+        });
+        level
     }
 
     /// Pass `project`: level 0 of the pulled pyramid, and what became of the surfels.
     pub fn project<'a>(&self, parts: impl Into<Parts<'a>>) -> Visible {
-        project::pass(self, parts.into())
+        let visible = project::pass(self, parts.into());
+        Visible { level: self.stored(visible.level), ..visible }
     }
 
     /// How near the projection of `surfels` to `visible` was to another outcome, by pixel: by a depth or a coordinate, relative, or by a
@@ -152,10 +199,11 @@ impl Reconstruction {
 
     /// The same with how near its decisions were.
     pub fn decide_pull(&self, finer: &Level) -> Decided {
-        match self.pull_push.rules {
+        let made = match self.pull_push.rules {
             Rules::Paper => paper::pull(&self.lens, finer),
             Rules::Robust => pull::pass(&self.lens, finer),
-        }
+        };
+        Decided { level: self.stored(made.level), ..made }
     }
 
     /// Pass `push`: the final level below `coarser`, which is final, from the pulled one.
@@ -165,9 +213,23 @@ impl Reconstruction {
 
     /// The same with how near its decisions were.
     pub fn decide_push(&self, coarser: &Level, pulled: &Level) -> Decided {
-        match self.pull_push.rules {
+        let made = match self.pull_push.rules {
             Rules::Paper => paper::push(&self.lens, coarser, pulled),
             Rules::Robust => push::pass(&self.lens, coarser, pulled),
+        };
+        Decided { level: self.stored(made.level), ..made }
+    }
+
+    /// How near the decisions of [`Self::shade`] about the samples of α were to turning, by pixel.
+    pub fn margins_of_coverage(&self, pushed: &Level) -> Vec<f64> {
+        shade::margins(self, pushed)
+    }
+
+    /// Squared distance of `at` from a disc's centre, in its radii, its variance widened by `h`, px², unless as published.
+    fn radii2(&self, sample: &Sample, disc: DVec2, at: DVec2, h: f64) -> Radii2 {
+        match self.pull_push.rules {
+            Rules::Paper => paper::radii2(&self.lens, sample, disc, at),
+            Rules::Robust => self.lens.radii2(sample, disc, at, h),
         }
     }
 
@@ -212,7 +274,10 @@ pub fn render<'a>(
 ) -> Result<Frame> {
     let parts = parts.into();
     parts.check()?;
-    let reconstruction = Reconstruction::new(camera, size, settings, pull_push)?;
+    let reconstruction = Reconstruction::new(camera, size, settings, pull_push)?.textured(parts);
+    if reconstruction.texture.is_none() && parts.has_texture() {
+        return render(&parts.baked(), camera, size, settings, pull_push);
+    }
     let visible = reconstruction.project(parts);
     let top = Reconstruction::top_level(&visible.level);
     let pyramid = reconstruction.pyramid(visible.level, top);

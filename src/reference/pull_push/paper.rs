@@ -14,7 +14,7 @@ const LEAST_AXIS: f64 = 0.5;
 const RIM: f64 = 2.0;
 
 /// Squared distance of `at` from the centre of a disc's ellipse by parallel projection, in its radii.
-fn radii2(lens: &Lens, sample: &Sample, disc: DVec2, at: DVec2) -> Radii2 {
+pub fn radii2(lens: &Lens, sample: &Sample, disc: DVec2, at: DVec2) -> Radii2 {
     let e = at - disc;
     let normal = lens.normal(sample, disc);
     let along = normal.truncate().normalize_or(DVec2::X);
@@ -30,7 +30,7 @@ pub fn pull(lens: &Lens, finer: &Level) -> Decided {
     Decided::new(level, finer.coarser_size(), |at, margin| {
         let own = centre(level, at);
         let covers = |sample: &Sample, disc: DVec2| margin.covers(radii2(lens, sample, disc, own));
-        mean_of_front(own, &children(finer, at, covers))
+        mean_of_front(own, &children(finer, at, covers), margin)
     })
 }
 
@@ -53,23 +53,26 @@ fn blend(lens: &Lens, own: DVec2, margin: &Margin, coarser: &[Option<(Sample, DV
     let weighted = coarser.iter().flatten().filter_map(|(sample, centre)| {
         let disc = *centre + sample.displacement;
         let radii2 = radii2(lens, sample, disc, own);
-        margin.covers(radii2).then(|| (sample, disc, (-RIM * radii2.value).exp()))
+        margin.covers(radii2).then(|| (sample, disc, (-RIM * radii2.value).exp(), radii2.value))
     });
     let mut discs: Vec<_> = weighted.collect();
-    let (first, ..) = *discs.iter().reduce(|a, b| if b.2 > a.2 { b } else { a })?;
+    let least = margin.least(&discs, |disc| disc.3, |a, b| (a.0.id, a.0.tube) == (b.0.id, b.0.tube))?;
+    let first = discs[least].0;
     discs.retain(|(sample, ..)| sample.tube == first.tube);
-    let total: f64 = discs.iter().map(|(_, _, weight)| weight).sum();
-    let mean = |of: &dyn Fn(&Sample) -> f64| discs.iter().map(|(s, _, w)| w * of(s)).sum::<f64>() / total;
+    let total: f64 = discs.iter().map(|(_, _, weight, _)| weight).sum();
+    let mean = |of: &dyn Fn(&Sample) -> f64| discs.iter().map(|(s, _, w, _)| w * of(s)).sum::<f64>() / total;
     let mean3 =
-        |of: &dyn Fn(&Sample) -> DVec3| discs.iter().map(|(s, _, w)| *w * of(s)).sum::<DVec3>() / total;
+        |of: &dyn Fn(&Sample) -> DVec3| discs.iter().map(|(s, _, w, _)| *w * of(s)).sum::<DVec3>() / total;
     (total > 0.0).then(|| Sample {
         near: mean(&|sample| sample.near),
         far: mean(&|sample| sample.far),
         depth: mean(&|sample| sample.depth),
-        displacement: discs.iter().map(|(_, disc, w)| *w * (*disc - own)).sum::<DVec2>() / total,
+        displacement: discs.iter().map(|(_, disc, w, _)| *w * (*disc - own)).sum::<DVec2>() / total,
         radius: mean(&|sample| sample.radius),
         normal: mean3(&|sample| sample.direction_as(first)).normalize_or_zero(),
         tube: first.tube,
         colour: mean3(&|sample| sample.colour),
+        coordinates: DVec2::ZERO,
+        id: first.id,
     })
 }

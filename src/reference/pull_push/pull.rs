@@ -1,7 +1,7 @@
 //! Pass `pull`: the discs that a coarser pixel has in front (marroquim2008 section 3.2; a perspective ellipse, and true displacements).
 
 use super::lens::Lens;
-use super::{Decided, Level, Sample, centre};
+use super::{Decided, Level, Margin, Sample, centre};
 use glam::{DVec2, DVec3};
 
 pub fn pass(lens: &Lens, finer: &Level) -> Decided {
@@ -9,7 +9,7 @@ pub fn pass(lens: &Lens, finer: &Level) -> Decided {
     Decided::new(level, finer.coarser_size(), |at, margin| {
         let own = centre(level, at);
         let covers = |sample: &Sample, disc: DVec2| margin.covers(lens.radii2(sample, disc, own, 0.0));
-        mean_of_front(own, &children(finer, at, covers))
+        mean_of_front(own, &children(finer, at, covers), margin)
     })
 }
 
@@ -27,11 +27,13 @@ pub fn children(
     discs.filter(|(sample, disc)| covers(sample, *disc)).collect()
 }
 
-/// The mean of those discs that are one surface with the nearest, and as it is of a tube or of none, for the pixel with this centre.
-pub fn mean_of_front(own: DVec2, discs: &[(Sample, DVec2)]) -> Option<Sample> {
+/// The mean of those discs that are one surface with the nearest, and as it is of a tube or of none, for the pixel with this centre. Its
+/// number is that of the disc whose centre is nearest to the pixel's.
+pub fn mean_of_front(own: DVec2, discs: &[(Sample, DVec2)], margin: &Margin) -> Option<Sample> {
     let (front, _) = discs.iter().min_by(|a, b| a.0.near.total_cmp(&b.0.near))?;
     let one = |sample: &Sample| sample.near <= front.far && sample.tube == front.tube;
     let discs: Vec<_> = discs.iter().filter(|(sample, _)| one(sample)).collect();
+    let shown = margin.least(&discs, |(_, disc)| disc.distance_squared(own), |a, b| a.0.id == b.0.id)?;
     let count = discs.len() as f64;
     let mean = |of: &dyn Fn(&Sample) -> f64| discs.iter().map(|(sample, _)| of(sample)).sum::<f64>() / count;
     let mean3 =
@@ -45,5 +47,7 @@ pub fn mean_of_front(own: DVec2, discs: &[(Sample, DVec2)]) -> Option<Sample> {
         normal: mean3(&|sample| sample.direction_as(front)).normalize_or_zero(),
         tube: front.tube,
         colour: mean3(&|sample| sample.colour),
+        coordinates: front.coordinates + mean3(&|sample| sample.turn_from(front).extend(0.0)).truncate(),
+        id: discs[shown].0.id,
     })
 }

@@ -1,28 +1,55 @@
 //! Pass `shade`: the picture, lit pixel by pixel (marroquim2008 section 3.4).
 
-use super::super::normalize::{Value, uncovered};
+use super::super::normalize::{Value, over_background, uncovered};
 use super::super::{Frame, line_normal, lit, lit_line};
-use super::{Level, Reconstruction, Sample};
+use super::{Level, Margin, Reconstruction, Sample, coverage, texture};
 use crate::pull_push::Rules;
-use crate::settings::Shading;
+use crate::settings::{Alpha, Shading};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
 pub fn pass(frame: &Reconstruction, pushed: &Level) -> Frame {
-    let width = i64::from(pushed.size[0]);
-    let values: Vec<Value> = pushed
-        .samples
-        .par_iter()
-        .enumerate()
-        .map(|(i, sample)| match sample {
-            Some(sample) => value(frame, sample, pushed.centre([i as i64 % width, i as i64 / width])),
-            None => uncovered(&frame.projector),
-        })
-        .collect();
-    Frame::of(&values, pushed.size)
+    let value = |(sample, at): (Option<Sample>, [i64; 2])| match sample {
+        Some(sample) => {
+            let alpha = alpha(frame, pushed, at, &Margin::new());
+            let colour = texture::colour(frame, pushed, at, &sample);
+            value(frame, &Sample { colour, ..sample }, pushed.centre(at), alpha)
+        }
+        None => uncovered(&frame.projector),
+    };
+    let values: Vec<Value> = pixels(pushed).map(value).collect();
+    let id = pushed.samples.iter().map(|sample| sample.map_or(Frame::NOBODY, |sample| sample.id)).collect();
+    Frame { id: Some(id), ..Frame::of(&values, pushed.size) }
 }
 
-fn value(frame: &Reconstruction, sample: &Sample, at: DVec2) -> Value {
+/// How near the decisions about the α of each pixel were to turning.
+pub fn margins(frame: &Reconstruction, pushed: &Level) -> Vec<f64> {
+    let margin = |(sample, at): (Option<Sample>, [i64; 2])| {
+        let margin = Margin::new();
+        if sample.is_some() {
+            alpha(frame, pushed, at, &margin);
+        }
+        margin.nearest()
+    };
+    pixels(pushed).map(margin).collect()
+}
+
+/// The samples of a level, and where they are.
+fn pixels(level: &Level) -> impl IndexedParallelIterator<Item = (Option<Sample>, [i64; 2])> {
+    let width = i64::from(level.size[0]);
+    let place = move |i: usize| [i as i64 % width, i as i64 / width];
+    level.samples.par_iter().enumerate().map(move |(i, sample)| (*sample, place(i)))
+}
+
+/// α of a pixel that has a disc.
+fn alpha(frame: &Reconstruction, pushed: &Level, at: [i64; 2], margin: &Margin) -> f64 {
+    match frame.projector.settings.alpha {
+        Alpha::Mask => 1.0,
+        Alpha::Coverage => coverage::of(frame, pushed, at, margin),
+    }
+}
+
+fn value(frame: &Reconstruction, sample: &Sample, at: DVec2, alpha: f64) -> Value {
     let projector = &frame.projector;
     let viewer = projector.to_viewer(at);
     let (depth, normal) = match (sample.tube, frame.pull_push.rules) {
@@ -46,5 +73,6 @@ fn value(frame: &Reconstruction, sample: &Sample, at: DVec2) -> Value {
         // A pixel shows one point, or what is made of those about it.
         Shading::Overlap | Shading::Weight => DVec3::ONE,
     };
-    Value { covered: true, colour: shown.extend(1.0).to_array(), depth, normal: normal.to_array() }
+    let colour = over_background(projector, shown, alpha);
+    Value { covered: true, colour, depth, normal: normal.to_array() }
 }

@@ -13,7 +13,7 @@ fn camera() -> Camera {
 
 fn frame(rules: Rules) -> Reconstruction {
     let settings = Settings { shading: Shading::Colour, cull: Cull::Back, ..Default::default() };
-    Reconstruction::new(&camera(), [64, 64], &settings, PullPush { rules }).unwrap()
+    Reconstruction::new(&camera(), [64, 64], &settings, PullPush::of(rules)).unwrap()
 }
 
 /// A disc that faces the eye from the middle of the view.
@@ -27,6 +27,8 @@ fn sample(near: f64, radius: f64) -> Sample {
         normal: DVec3::NEG_Z,
         tube: false,
         colour: DVec3::ONE,
+        coordinates: DVec2::ZERO,
+        id: 0,
     }
 }
 
@@ -122,7 +124,7 @@ fn what_is_exactly_edge_on_faces_away_where_that_is_culled_and_has_no_area_elsew
     let edge = discs(&[(DVec3::Z, DVec3::X, 0.1)]);
     for (cull, fates) in [(Cull::Back, (1, 0)), (Cull::None, (0, 1))] {
         let settings = Settings { cull, ..Default::default() };
-        let rules = PullPush { rules: Rules::Robust };
+        let rules = PullPush::of(Rules::Robust);
         let frame = Reconstruction::new(&camera(), [64, 64], &settings, rules).unwrap();
         let c = frame.project(&edge).counts;
         assert_eq!((c.back, c.outside), fates, "{cull:?}");
@@ -226,7 +228,7 @@ fn a_tube_is_round() {
         let model =
             Model { primitives: Primitives { tubes: vec![[0, 1]], ..vertices(&ends) }, ..Default::default() };
         let settings = Settings { shading: Shading::Normal, ..Default::default() };
-        let pull_push = PullPush { rules: Rules::Robust };
+        let pull_push = PullPush::of(Rules::Robust);
         let picture = render(&model, &camera(), [64, 64], &settings, pull_push).unwrap();
         let lens = frame(Rules::Robust).lens;
         let mut seen = 0;

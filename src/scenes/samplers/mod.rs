@@ -85,6 +85,7 @@ fn surfels(query: &Query, drafts: Vec<Draft>) -> Surfels {
         positions: drafts.par_iter().map(|draft| draft.position.as_vec3()).collect(),
         normals: drafts.par_iter().map(|draft| draft.normal.as_vec3()).collect(),
         radii: drafts.par_iter().map(|draft| draft.radius as f32).collect(),
+        texture: None,
         ellipses: elliptical.then(|| drafts.par_iter().map(ellipse).collect()),
         two_sided: two_sided.then(|| drafts.par_iter().map(|draft| draft.two_sided).collect()),
         clips: clips(query, &drafts),

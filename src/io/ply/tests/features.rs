@@ -2,6 +2,8 @@
 
 use super::*;
 use crate::geometry::{Clip, ClipLine, Clips, View, Weights};
+use crate::picture::Picture;
+use glam::Vec2;
 
 const SQUARE: &str = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
 
@@ -269,4 +271,49 @@ fn progress_goes_from_nothing_to_all() {
     let log = log.0.into_inner().unwrap();
     assert_eq!((log[0], log[log.len() - 1]), ([0, size], [size, size]));
     assert!(log.iter().all(|[done, _]| *done <= size));
+}
+
+#[test]
+fn texture_coordinates_are_of_the_picture_that_the_file_or_the_caller_names() {
+    let picture =
+        |grey: f32| Picture { size: [1, 1], colour: vec![[grey, grey, grey, 1.0]], ..Default::default() };
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    image::write_exr(&picture(0.25), &at("a wall.exr")).unwrap();
+    let write = |name: &str, comment: &str, names: &str| {
+        let file = text(
+            &format!("{comment}\nelement vertex 3\n{XYZ}\n{names}"),
+            "0 0 0 0 0.5\nnan 0 0 1 1\n1 0 0 nan -2\n",
+        );
+        std::fs::write(at(name), file).unwrap();
+        at(name)
+    };
+    let names = "property float s\nproperty double t";
+    let read = |path: &Path, given: Option<&MipMap>| {
+        let texture = given.map(|image| Arc::new(image.clone()));
+        read(path, &ReadOptions { texture, ..Default::default() }, &()).unwrap()
+    };
+    let [named, other] = [0.25, 0.75].map(|grey| MipMap::new(&picture(grey)).unwrap());
+    let whole = write("whole.ply", "comment TextureFile a wall.exr", names);
+    for (given, image) in [(None, &named), (Some(&other), &other)] {
+        let Loaded { cloud, report } = read(&whole, given);
+        let texture = cloud.texture.unwrap();
+        // What has no position is left out, what is nowhere in the texture is in its corner.
+        assert_eq!(
+            (&*texture.image, &texture.coordinates[..]),
+            (image, &[Vec2::new(0.0, 0.5), Vec2::ZERO][..])
+        );
+        assert_eq!((report.skipped.len(), report.texture_missing), (0, None));
+    }
+    let lost = read(&write("lost.ply", "comment TextureFile no.png", names), None);
+    assert!(lost.report.texture_missing.unwrap().contains("no.png") && lost.cloud.texture.is_none());
+    let of_faces =
+        read(&write("faces.ply", "comment TextureFile a wall.exr", &names.replace(" s", " a")), None);
+    assert!(
+        of_faces.report.texture_missing.unwrap().contains("texture_u texture_v")
+            && of_faces.cloud.texture.is_none()
+    );
+    let plain = read(&write("plain.ply", "comment nothing", names), None);
+    assert_eq!((plain.cloud.texture, plain.report.skipped), (None, vec!["s".to_owned(), "t".to_owned()]));
+    assert_eq!(plain.report.texture_missing, None);
 }

@@ -3,6 +3,8 @@
 use super::*;
 use crate::geometry::estimate::Estimate;
 use crate::geometry::{Clip, ClipLine, Clips, Ellipse, Model, Primitives, Surfels, Weights};
+use crate::picture::Picture;
+use glam::Vec2;
 
 fn random_surfels(count: usize, origin: DVec3, colours: Option<Colours>) -> Surfels {
     let spread = |i: usize, k: f32| ((i as f32 * k).sin() * 1e3).fract();
@@ -116,6 +118,7 @@ fn everything(origin: DVec3, colours: impl Fn(usize) -> Option<Colours>) -> Mode
         directions: vertices.normals,
         radii: (0..50).map(|i| if i < 40 { vertices.radii[i] } else { 0.0 }).collect(),
         colours: vertices.colours,
+        texture: None,
         ribbons,
         tubes,
         triangles,
@@ -203,4 +206,22 @@ fn ellipses_and_sides_read_back() {
         assert!(b.aspect == 1.0 || a.major.dot(b.major).abs() > 1.0 - 1e-5, "{i}: {a:?} {b:?}");
         assert!(a.major.dot(surfels.normals[i]).abs() < 1e-6);
     }
+}
+
+#[test]
+fn a_texture_is_written_as_its_colours() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("baked.ply");
+    let picture =
+        Picture { size: [2, 1], colour: vec![[1.0; 4], [0.0, 0.0, 0.0, 1.0]], ..Default::default() };
+    let image = Arc::new(MipMap::new(&picture).unwrap());
+    let mut surfels = random_surfels(2, DVec3::ZERO, None);
+    surfels.texture = Some(Texture { image, coordinates: vec![Vec2::new(0.25, 0.5), Vec2::new(0.75, 0.5)] });
+    surfels.radii = vec![1e-6; 2];
+    write(&path, &surfels).unwrap();
+    let cloud = read_back(&path);
+    assert_eq!(
+        (cloud.texture, cloud.colours),
+        (None, Some(Colours::Srgb8(vec![[255, 255, 255, 0], [0; 4]])))
+    );
 }

@@ -10,7 +10,7 @@ mod triangle;
 use super::super::scene::Counts;
 use super::super::{Culled, Surfel, linear};
 use super::{Level, Reconstruction, Sample};
-use crate::geometry::{Colours, Parts, Primitives};
+use crate::geometry::{Colours, Parts, Primitives, Surfels, Texture};
 use crate::pull_push::Rules;
 use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
@@ -37,12 +37,15 @@ struct Vertex {
     direction: DVec3,
     radius: f64,
     colour: DVec3,
+    coordinates: DVec2,
 }
 
 pub fn pass(frame: &Reconstruction, parts: Parts<'_>) -> Visible {
     let surfels = parts.surfels;
     let point = |i: usize| match surfels.is_valid(i) {
-        true => frame.point(&Surfel::of(surfels, i)),
+        true => {
+            frame.point(&Surfel::of(surfels, i)).map(|(at, sample)| (at, frame.placed(sample, surfels, i)))
+        }
         false => Err(Culled::Invalid),
     };
     let points: Vec<_> = (0..surfels.len()).into_par_iter().map(point).collect();
@@ -66,7 +69,10 @@ pub fn pass(frame: &Reconstruction, parts: Parts<'_>) -> Visible {
         let pixels = |i: usize| frame.primitive(primitives, &along, i);
         let all: Vec<_> = (0..primitives.count()).into_par_iter().map(pixels).collect();
         for (i, pixels) in all.into_iter().enumerate() {
-            pixels.into_iter().for_each(|(at, sample)| nearest.add(surfels.len() + i, at, sample));
+            let id = surfels.len() + i;
+            pixels
+                .into_iter()
+                .for_each(|(at, sample)| nearest.add(id, at, Sample { id: id as u32, ..sample }));
         }
     }
     Visible { level: Level { level: 0, size, samples: nearest.samples }, index: nearest.index, counts }
@@ -95,6 +101,17 @@ impl Nearest {
 }
 
 impl Reconstruction {
+    /// The sample of surfel `i` with its number, and its place in the texture.
+    fn placed(&self, sample: Sample, surfels: &Surfels, i: usize) -> Sample {
+        Sample { id: i as u32, coordinates: self.coordinates(surfels.texture.as_ref(), i), ..sample }
+    }
+
+    fn coordinates(&self, texture: Option<&Texture>, i: usize) -> DVec2 {
+        texture
+            .filter(|_| self.texture.is_some())
+            .map_or(DVec2::ZERO, |texture| texture.coordinates[i].as_dvec2())
+    }
+
     /// The pixels of a segment or a triangle.
     fn primitive(&self, primitives: &Primitives, along: &[Vec3], number: usize) -> Vec<Point> {
         let [ribbons, tubes] = [&primitives.ribbons, &primitives.tubes].map(Vec::len);
@@ -132,6 +149,7 @@ impl Reconstruction {
             direction: view.transform_vector3(primitives.directions[index].as_dvec3().normalize_or_zero()),
             radius: primitives.radii[index].into(),
             colour,
+            coordinates: self.coordinates(primitives.texture.as_ref(), index),
         }
     }
 
@@ -178,6 +196,8 @@ impl Reconstruction {
             normal: disc.direction.normalize_or_zero(),
             tube,
             colour: disc.colour,
+            coordinates: disc.coordinates,
+            id: 0,
         }
     }
 
@@ -191,6 +211,8 @@ impl Reconstruction {
             direction: mean(&|vertex| vertex.direction),
             radius: vertices.iter().zip(weights).map(|(vertex, weight)| weight * vertex.radius).sum(),
             colour: mean(&|vertex| vertex.colour),
+            // Vertices tell turns of the texture, as the file has them.
+            coordinates: mean(&|vertex| vertex.coordinates.extend(0.0)).truncate(),
         }
     }
 

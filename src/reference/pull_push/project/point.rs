@@ -35,6 +35,7 @@ impl Reconstruction {
             // A disc of the ellipse's area.
             radius: surfel.radius * surfel.aspect.sqrt(),
             colour: surfel.colour.unwrap_or(self.albedo()),
+            coordinates: DVec2::ZERO,
         };
         let at = [corner.x as i64, corner.y as i64];
         Ok((at, self.sample(disc, screen, at, false)))

@@ -1,0 +1,121 @@
+//! A sphere with a texture against rays through it.
+
+#[allow(dead_code)] // of what is shared
+mod support {
+    pub mod gpu;
+    pub mod texture;
+}
+
+use glam::{DVec2, DVec3};
+use rayon::prelude::*;
+use std::f64::consts::{PI, TAU};
+use support::gpu::{assert_silent, device, render};
+use support::texture::{exact, textured};
+use surfel::geometry::{Camera, Colours, Model, Surfels};
+use surfel::methods::{Method, pull_push};
+use surfel::settings::{Settings, Shading};
+use surfel::vk::DeviceLimits;
+use surfel::{Picture, RenderOptions, reference, scenes};
+
+/// Width and height, px.
+const SIDE: u32 = 256;
+/// Rays along the side of a pixel.
+const RAYS: u32 = 6;
+
+fn eye() -> DVec3 {
+    3.0 * DVec3::new(0.3, 0.5, 1.0).normalize()
+}
+
+fn camera() -> Camera {
+    Camera::look_at(eye(), DVec3::ZERO, DVec3::Y, 45f64.to_radians(), 1.0, 0.1).unwrap()
+}
+
+/// Where a ray meets the sphere in the texture.
+fn meet(at: DVec2) -> Option<DVec2> {
+    let forward = -eye().normalize();
+    let right = forward.cross(DVec3::Y).normalize();
+    let half = 22.5f64.to_radians().tan();
+    let [x, y] = (half * (2.0 * at / f64::from(SIDE) - 1.0)).to_array();
+    let ray = (forward + x * right + y * forward.cross(right)).normalize();
+    let along = -eye().dot(ray);
+    let inside = 1.0 - (eye().length_squared() - along * along);
+    let p = eye() + (along - inside.max(0.0).sqrt()) * ray;
+    (inside > 0.0).then(|| DVec2::new(p.x.atan2(p.z) / TAU, 0.5 + p.y.clamp(-1.0, 1.0).asin() / PI))
+}
+
+/// The colour of each pixel whose rays all meet the sphere.
+fn truth() -> Vec<Option<DVec3>> {
+    let pixel = |i: u32| {
+        let corner = DVec2::new((i % SIDE).into(), (i / SIDE).into());
+        let ray = |k: u32| {
+            let at = DVec2::new((k % RAYS).into(), (k / RAYS).into()) + 0.5;
+            meet(corner + at / f64::from(RAYS)).map(|at| DVec3::from_array(exact(at).map(f64::from)))
+        };
+        (0..RAYS * RAYS).map(ray).sum::<Option<DVec3>>().map(|sum| sum / f64::from(RAYS * RAYS))
+    };
+    (0..SIDE * SIDE).into_par_iter().map(pixel).collect()
+}
+
+/// Root mean square difference of the colours, linear.
+fn rmse(truth: &[Option<DVec3>], picture: &Picture) -> f64 {
+    let square = |(exact, [r, g, b, _]): (&Option<DVec3>, &[f32; 4])| {
+        Some((exact.as_ref()? - DVec3::new((*r).into(), (*g).into(), (*b).into())).length_squared() / 3.0)
+    };
+    let squares: Vec<f64> = truth.iter().zip(&picture.colour).filter_map(square).collect();
+    (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
+}
+
+fn sphere(points: u32) -> Model {
+    textured(scenes::open(&format!("scene:sphere?points={points}&seed=1")).unwrap())
+}
+
+/// The same with the texture's exact colour at each point.
+fn coloured(model: &Model) -> Surfels {
+    let texture = model.surfels.texture.as_ref().unwrap();
+    let colours = texture.coordinates.iter().map(|at| exact(at.as_dvec2())).collect();
+    Surfels { texture: None, colours: Some(Colours::Linear(colours)), ..model.surfels.clone() }
+}
+
+fn settings(method: Method) -> Settings {
+    Settings { shading: Shading::Colour, ..method.settings() }
+}
+
+#[test]
+fn a_texture_is_sharper_than_the_points() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let truth = truth();
+    let options = RenderOptions { size: [SIDE; 2], ..Default::default() };
+    for (points, share, most) in [(3_000, 0.4, 0.06), (10_000, 0.4, 0.04), (100_000, 0.6, 0.035)] {
+        let model = sphere(points);
+        let settings = settings(pull_push::METHOD);
+        let own = reference::render(&model, &camera(), [SIDE; 2], &settings, &()).unwrap().to_picture();
+        let gpu = render(&device, &model, &camera(), &settings, options);
+        let colours = render(&device, &coloured(&model), &camera(), &settings, options);
+        let [own, gpu, colours] = [own, gpu, colours].map(|picture| rmse(&truth, &picture));
+        println!(
+            "{points} points: RMSE {gpu:.4} with a texture ({own:.4} by the reference), {colours:.4} with a colour a point"
+        );
+        assert!((own - gpu).abs() < 1e-3, "{points}: {own} {gpu}");
+        assert!(gpu < share * colours && gpu < most, "{points}: {gpu} {colours}");
+    }
+    assert_silent(&device);
+}
+
+#[test]
+fn every_method_shows_the_texture() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let truth = truth();
+    let options = RenderOptions { size: [SIDE; 2], ..Default::default() };
+    let model = sphere(100_000);
+    // The nearest splat alone is a tile.
+    let most = |method: &Method| if method.name == "sprites-unfiltered" { 0.2 } else { 0.12 };
+    for method in Method::ALL {
+        let settings = Settings { background: None, ..settings(method) };
+        let own = reference::render(&model, &camera(), [SIDE; 2], &settings, &()).unwrap().to_picture();
+        let gpu = render(&device, &model, &camera(), &settings, options);
+        let [own, gpu] = [own, gpu].map(|picture| rmse(&truth, &picture));
+        println!("{}: RMSE {gpu:.4}, {own:.4} by the reference", method.name);
+        assert!(gpu < most(&method) && (own - gpu).abs() < 1e-3, "{}: {gpu} {own}", method.name);
+    }
+    assert_silent(&device);
+}
