@@ -21,6 +21,8 @@ const float RIM = 4.5, PAPER_RIM = 2.0;
 // What the spread of the discs about a pixel is widened by, px²: a texture's gradient is not told from what is nearer than an eighth of a
 // pixel.
 const float SPREAD = 1.0 / 64.0;
+// And by this part of itself, so that what lies along a line has a gradient along it alone.
+const float ALONG = 1.0 / 4096.0;
 
 // Candidate k for pixel `at`: the four nearest coarser pixels, then the pixel and its neighbours, row by row. Its displacement is from `own`.
 Sample candidate(int k, uint level, uint start, uint above, ivec2 at) {
@@ -71,7 +73,8 @@ void main() {
 
     Sample mean = NOTHING;
     float total = 0.0, most = 0.0;
-    // Products of displacements, and of these and coordinates.
+    // Displacements from the front's, and products of these, and of these and coordinates.
+    vec2 apart = vec2(0.0);
     vec3 spread = vec3(0.0);
     vec2 by_x = vec2(0.0), by_y = vec2(0.0);
     for (int k = 0; k < (front.near > 0.0 ? count : 0); k++) {
@@ -86,8 +89,9 @@ void main() {
         mean.displacement += w * s.displacement;
         mean.normal += w * direction_as(s, front);
         mean.colour += w * s.colour;
-        vec2 e = s.displacement, turn = turn_from(s, front);
+        vec2 e = s.displacement - front.displacement, turn = turn_from(s, front);
         mean.coordinates += w * turn;
+        apart += w * e;
         spread += w * vec3(e.x * e.x, e.x * e.y, e.y * e.y);
         by_x += w * e.x * turn;
         by_y += w * e.y * turn;
@@ -108,9 +112,10 @@ void main() {
         mean.coordinates /= total;
         if (TEXTURE && !PAPER && level == 0) {
             // To first order, by least squares: a mean would be that at the mean of the discs' centres.
-            vec2 m = mean.displacement;
-            vec3 c = spread / total - vec3(m.x * m.x - SPREAD, m.x * m.y, m.y * m.y - SPREAD);
-            vec2 x = by_x / total - m.x * mean.coordinates, y = by_y / total - m.y * mean.coordinates;
+            vec2 m = mean.displacement, d = apart / total;
+            vec3 c = spread / total - vec3(d.x * d.x, d.x * d.y, d.y * d.y);
+            c.xz += SPREAD + ALONG * (c.x + c.z);
+            vec2 x = by_x / total - d.x * mean.coordinates, y = by_y / total - d.y * mean.coordinates;
             mean.coordinates -= ((x * c.z - y * c.y) * m.x + (y * c.x - x * c.y) * m.y) / (c.x * c.z - c.y * c.y);
         }
         mean.coordinates += front.coordinates;

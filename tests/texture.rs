@@ -6,12 +6,13 @@ mod support {
     pub mod texture;
 }
 
-use glam::{DVec2, DVec3};
+use glam::{DVec2, DVec3, Vec2, Vec3};
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
 use support::gpu::{assert_silent, device, render};
 use support::texture::{exact, textured};
-use surfel::geometry::{Camera, Colours, Model, Surfels};
+use surfel::geometry::{Camera, Colours, MipMap, Model, Surfels, Texture};
 use surfel::methods::{Method, pull_push};
 use surfel::settings::{Settings, Shading};
 use surfel::vk::DeviceLimits;
@@ -116,6 +117,36 @@ fn every_method_shows_the_texture() {
         let [own, gpu] = [own, gpu].map(|picture| rmse(&truth, &picture));
         println!("{}: RMSE {gpu:.4}, {own:.4} by the reference", method.name);
         assert!(gpu < most(&method) && (own - gpu).abs() < 1e-3, "{}: {gpu} {own}", method.name);
+    }
+    assert_silent(&device);
+}
+
+/// Of one disc, or of three in a line, as large as you like, the texture's gradient is not known, or known along the line alone: each pixel has
+/// the colour that is at the centre of the disc that covers it, or between two of them.
+#[test]
+fn a_disc_larger_than_the_picture_has_one_colour() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    for (places, radius) in [(vec![0.0], 40.0), (vec![-8.0, 0.0, 8.0], 12.0)] {
+        let positions: Vec<Vec3> = places.iter().map(|x| Vec3::new(*x, 0.3 * x, 0.0)).collect();
+        let count = positions.len();
+        let image = Arc::new(MipMap::new(&support::texture::picture()).unwrap());
+        // The middle of a square.
+        let coordinates = vec![Vec2::new(0.5 / 32.0, 0.5 / 16.0); count];
+        let surfels = Surfels {
+            positions,
+            normals: vec![Vec3::Z; count],
+            radii: vec![radius; count],
+            texture: Some(Texture { image, coordinates }),
+            ..Default::default()
+        };
+        let camera = Camera::look_at(2.0 * DVec3::Z, DVec3::ZERO, DVec3::Y, 0.8, 1.0, 0.1).unwrap();
+        let options = RenderOptions { size: [512; 2], ..Default::default() };
+        let picture = render(&device, &surfels, &camera, &settings(pull_push::METHOD), options);
+        let expected = support::texture::COLOURS[0];
+        for (i, colour) in picture.colour.iter().enumerate() {
+            let near = expected.iter().zip(colour).all(|(a, b)| (a - b).abs() < 1e-3);
+            assert!(colour[3] == 1.0 && near, "{count} discs, pixel {i}: {colour:?} {expected:?}");
+        }
     }
     assert_silent(&device);
 }

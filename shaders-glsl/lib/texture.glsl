@@ -18,7 +18,8 @@ vec3 bilinear(vec2 at, uint level) {
     uint start = 0;
     for (uint l = 0; l < level; l++) start += uint(texture_size(l).x * texture_size(l).y);
     ivec2 size = texture_size(level);
-    at -= floor(at);
+    // What is no number is somewhere, too.
+    at = clamp(at - floor(at), 0.0, 1.0);
     vec2 place = vec2(at.x, 1.0 - at.y) * vec2(size) - 0.5;
     vec2 part = fract(place);
     // Whole numbers from -1 on.

@@ -15,6 +15,9 @@ const RIM: f64 = 4.5;
 /// pixel.
 const SPREAD: f64 = 1.0 / 64.0;
 
+/// And by this part of itself, so that what lies along a line has a gradient along it alone.
+const ALONG: f64 = 1.0 / 4096.0;
+
 /// A disc that covers a pixel's centre.
 struct Candidate {
     sample: Sample,
@@ -128,6 +131,8 @@ fn coordinates_at(own: DVec2, surface: &[&Candidate], front: &Sample) -> DVec2 {
         DMat2::from_cols(x, y)
     };
     // Columns: of u and v by x, by y.
-    let gradient = products(&turn) * (products(&away) + SPREAD * DMat2::IDENTITY).inverse();
+    let spread = products(&away);
+    let widened = SPREAD + ALONG * (spread.x_axis.x + spread.y_axis.y);
+    let gradient = products(&turn) * (spread + widened * DMat2::IDENTITY).inverse();
     front.coordinates + coordinates - gradient * middle
 }
