@@ -8,7 +8,7 @@ use crate::scene::Scene;
 use crate::settings::{Alpha, Settings};
 use crate::splatting::Visibility;
 use crate::stage::{Retired, Stage};
-use crate::targets::{Buffers, Pyramids, TargetInfo, check_size};
+use crate::targets::{Buffers, Pyramids, TargetInfo};
 use crate::variant::{Outputs, Precision, Rasterizer};
 use crate::vk::shaders::layout::Counts;
 use crate::vk::{Commands, Device, DeviceDescription, PassTime};
@@ -64,16 +64,16 @@ pub struct Renderer {
     commands: Commands,
 }
 
-/// Width of weighted sums on `device`, which may not blend 32-bit floats. Refuses sizes that it has no targets of.
-pub(crate) fn width_of_sums(device: &Device, options: &RenderOptions) -> Result<Precision> {
-    check_size(device, options.size)?;
-    let rasterizer = rasterizer_for(device, options, true, Alpha::Mask)?;
-    let blends = device.capabilities().blend_float32;
-    if rasterizer == Rasterizer::Draw && options.precision == Precision::Full && !blends {
-        log::warn!("{} cannot blend 32-bit floats: sums are kept in 16 bits", device.description().name);
-        return Ok(Precision::Half);
-    }
-    Ok(options.precision)
+/// Width of the weighted sums that `rasterizer` keeps on `device`: drawing them blends, which the device may not do in 32 bits.
+pub(crate) fn width_of_sums(device: &Device, options: &RenderOptions, rasterizer: Rasterizer) -> Precision {
+    let blends = rasterizer == Rasterizer::Compute || device.capabilities().blend_float32;
+    if blends { options.precision } else { Precision::Half }
+}
+
+/// [`width_of_sums`] where it is not known yet what is rendered.
+pub(crate) fn width_of_blended_sums(device: &Device, options: &RenderOptions) -> Precision {
+    let rasterizer = rasterizer_for(device, options, true, Alpha::Mask);
+    rasterizer.map_or(options.precision, |rasterizer| width_of_sums(device, options, rasterizer))
 }
 
 impl Renderer {
@@ -201,7 +201,7 @@ fn too_large(device: &Device, options: &RenderOptions) -> Error {
     let capabilities = device.capabilities();
     let half = RenderOptions { precision: Precision::Half, ..*options };
     let halved = match Pyramids::fit(capabilities, &half) {
-        true => "samples of 16 bits (--half), or ",
+        true => "compact samples (Precision::Half, --half), or ",
         false => "",
     };
     let ([width, height], [most_width, most_height]) =

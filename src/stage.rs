@@ -5,9 +5,10 @@ use crate::frame::frame;
 use crate::geometry::Camera;
 use crate::methods::{Canvas, Pipelines};
 use crate::passes::{SplatLayout, Splats};
-use crate::renderer::{RenderOptions, rasterizer_of, width_of_sums};
+use crate::renderer::{RenderOptions, rasterizer_of, width_of_blended_sums, width_of_sums};
 use crate::scene::Scene;
 use crate::settings::Settings;
+use crate::targets::check_size;
 use crate::variant::{Precision, Rasterizer, Variant};
 use crate::vk::shaders::layout::Frame;
 use crate::vk::{Buffer, Device, Recorder};
@@ -27,8 +28,6 @@ pub(crate) struct Stage {
     layout: SplatLayout,
     frame: Arc<Buffer>,
     options: RenderOptions,
-    /// Width of the weighted sums, which the device may not have as it was asked for.
-    sums: Precision,
     device: Arc<Device>,
     retired: Retired,
     /// Number of targets made so far.
@@ -77,6 +76,7 @@ impl Retired {
 impl Stage {
     /// Nothing is made for any scene yet.
     pub(crate) fn new(device: &Arc<Device>, options: RenderOptions, retired: Retired) -> Result<Self> {
+        check_size(device, options.size)?;
         Ok(Self {
             present: None,
             previous: None,
@@ -85,7 +85,6 @@ impl Stage {
             layout: SplatLayout::new(device)?,
             frame: Arc::new(Buffer::uniform(device, "frame", size_of::<Frame>() as u64)?),
             options,
-            sums: width_of_sums(device, &options)?,
             device: device.clone(),
             retired,
             made: 0,
@@ -94,7 +93,8 @@ impl Stage {
 
     /// Width of the samples of the last frame, if it was pull–push's, else of the weighted sums.
     pub(crate) fn precision(&self) -> Precision {
-        self.present.as_ref().map_or(self.sums, |present| present.variant.precision)
+        let unknown = || width_of_blended_sums(&self.device, &self.options);
+        self.present.as_ref().map_or_else(unknown, |present| present.variant.precision)
     }
 
     pub(crate) fn present(&self) -> Option<&Present> {
@@ -138,7 +138,10 @@ impl Stage {
         let block = frame(camera, settings, self.options.size, scene.origin(), scene.bounds())?;
         let rasterizer = rasterizer_of(&self.device, &self.options, settings, scene)?;
         let perspective = camera.projection()?.perspective;
-        let precision = if settings.pull_push.is_some() { self.options.precision } else { self.sums };
+        let precision = match settings.pull_push {
+            Some(_) => self.options.precision,
+            None => width_of_sums(&self.device, &self.options, rasterizer),
+        };
         let options = RenderOptions { precision, ..self.options };
         let variant = Variant::new(scene.streams(), perspective, settings, &options, rasterizer);
         let splats = variant.pull_push.is_none().then_some(variant.rasterizer);
@@ -176,6 +179,10 @@ impl Stage {
         }
         if is_other(&self.present) {
             self.retired.take(self.present.take());
+            if variant.precision != self.options.precision {
+                let name = &self.device.description().name;
+                log::warn!("{name} cannot blend 32-bit floats: sums are kept in 16 bits");
+            }
             let pipelines = match self.pipelines.entry(variant) {
                 Entry::Occupied(made) => made.into_mut(),
                 Entry::Vacant(room) => room.insert(Pipelines::new(&self.device, &self.layout, &variant)?),

@@ -260,7 +260,9 @@ fn without_float_atomics_frames_are_drawn() {
     let surfels = sphere(5_000);
     let options = RenderOptions { rasterizer: None, ..everything(Rasterizer::Draw) };
     assert!(agrees(&picture_on(&device, &surfels, options), &surfels));
-    let refused = Renderer::new(&device, everything(Rasterizer::Compute));
+    let scene = Scene::upload(&device, &surfels).unwrap();
+    let mut computed = Renderer::new(&device, everything(Rasterizer::Compute)).unwrap();
+    let refused = computed.render(&scene, &camera(SIZE), &Settings::default());
     assert!(matches!(refused.err(), Some(Error::Usage(text)) if text.contains("float atomics")));
     assert_silent(&device);
 }

@@ -363,6 +363,10 @@ fn samples_are_as_wide_as_asked_for_whatever_sums_are() {
         assert_eq!(render(perspective_ewa::METHOD), (Precision::Half, 0));
         // 64² px in all levels are 5461.
         assert_eq!(render(pull_push::METHOD), (precision, bytes * 5461));
+        // Computed points sum nothing.
+        let computed = RenderOptions { rasterizer: Some(Rasterizer::Compute), ..options };
+        let mut renderer = Renderer::new(&device, computed).unwrap();
+        renderer.render(&scene, &Truth::new(64).camera(), &pull_push::METHOD.settings()).unwrap();
     }
     assert_silent(&device);
 }
@@ -385,7 +389,10 @@ fn what_cannot_be_is_refused() {
         .map(|bytes| DeviceLimits { max_storage_buffer_range: Some(bytes), ..Default::default() });
     let Some(large) = refused(narrow.clone(), open, |_| {}) else { return };
     assert!(large.contains("pyramids of 8x8 px do not fit the 1359 bytes"), "{large}");
-    assert!(large.ends_with("choose samples of 16 bits (--half), or at most 7x7 px"), "{large}");
+    assert!(
+        large.ends_with("choose compact samples (Precision::Half, --half), or at most 7x7 px"),
+        "{large}"
+    );
     let surfels = scenes::open("scene:bumpy-sphere?points=100&seed=1").unwrap();
     for (limits, precision) in [(wide, Precision::Full), (narrow, Precision::Half)] {
         let fitting = device(limits).unwrap();
