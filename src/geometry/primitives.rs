@@ -93,7 +93,8 @@ impl Parts<'_> {
         let of_primitives = self.primitives.map(|primitives| primitives.texture.as_ref());
         let mut parts = of_surfels.into_iter().chain(of_primitives);
         let first = &parts.next()??.image;
-        parts.all(|part| part.is_some_and(|part| part.image == *first)).then_some(first)
+        let same = |image: &Arc<MipMap>| Arc::ptr_eq(image, first) || image == first;
+        parts.all(|part| part.is_some_and(|part| same(&part.image))).then_some(first)
     }
 
     /// A copy in which textures are colours, one a point.

@@ -60,7 +60,8 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Header> {
 /// Free text as a rule; which texture coordinates are of is understood. A name may have blanks.
 fn parse_comment(line: &[u8], texture: &mut Option<String>) {
     let text = String::from_utf8_lossy(line);
-    let name = text.trim_start_matches("comment").trim_start().strip_prefix("TextureFile").map(str::trim);
+    let name = text.trim_start_matches("comment").trim_start().strip_prefix("TextureFile");
+    let name = name.filter(|name| name.starts_with(char::is_whitespace)).map(str::trim);
     if let (None, Some(name)) = (&texture, name.filter(|name| !name.is_empty())) {
         *texture = Some(name.into());
     }

@@ -207,7 +207,12 @@ fn find_texture(
     }
     match (&options.texture, named) {
         (None, Some((name, folder))) => {
-            let image = image::read(&folder.join(name)).and_then(|picture| MipMap::new(&picture));
+            // Whoever wrote the file names it: a device or a pipe may have no end.
+            let path = folder.join(name);
+            if path.exists() && !path.is_file() {
+                return Err(format!("{}: no regular file", path.display()));
+            }
+            let image = image::read(&path).and_then(|picture| MipMap::new(&picture));
             image.map(|image| Some(Arc::new(image))).map_err(|error| error.to_string())
         }
         (given, _) => Ok(given.clone()),
