@@ -22,7 +22,7 @@ layout(constant_id = 41) const bool ENCODE = false;     // the host's colours ar
 layout(push_constant) uniform Composite {
     ivec2 origin; // of the picture in the host's target, px
     uvec2 size;   // of the picture, px
-    vec2 depth;   // the host's depth at distance z: depth.x + depth.y / z in perspective, depth.x + depth.y z otherwise
+    vec4 depth;   // the host's depth at distance z: depth.x + depth.y / z in perspective, depth.x + depth.y z otherwise; its least and greatest
 } composite;
 
 #if defined(NORMALS) || defined(IMAGES_NORMALS)
@@ -87,7 +87,9 @@ void main() {
 #endif
     if (HOST_DEPTH) {
         float z = depth_at(at);
-        gl_FragDepth = composite.depth.x + composite.depth.y * (PERSPECTIVE ? 1.0 / z : z);
+        // A disc may be nearer at its rim than the near plane, by which its centre is cut off.
+        float depth = composite.depth.x + composite.depth.y * (PERSPECTIVE ? 1.0 / z : z);
+        gl_FragDepth = clamp(depth, composite.depth.z, composite.depth.w);
     }
 }
 

@@ -102,7 +102,7 @@ use std::sync::Arc;
 ///
 /// # Safety
 /// `cmd` is of `device`, of the queue family that it was lent with, is being recorded outside a render pass, and is submitted before what
-/// renders the scene, to the same queue.
+/// renders the scene, to the same queue. Scene and staging memory are dropped only when the GPU is done with what is recorded.
 pub unsafe fn upload<'a>(
     device: &Arc<Device>,
     cmd: vk::CommandBuffer,
@@ -120,8 +120,8 @@ pub unsafe fn upload<'a>(
 pub struct Options {
     /// Where the picture is drawn.
     pub target: Target,
-    /// How many frames of the host may be under way: when [`Renderer::prepare`] is called, the GPU is done with all that was recorded by the
-    /// calls before the last `frames_in_flight` of them. At least 1.
+    /// How many frames of the host may be under way: when [`Renderer::prepare`] is called, the GPU is done with all but the last
+    /// `frames_in_flight` - 1 frames that were prepared, without an error, before. At least 1.
     pub frames_in_flight: u32,
     /// As [`RenderOptions::precision`].
     pub precision: Precision,
@@ -168,7 +168,8 @@ impl Renderer {
     /// A renderer that has made nothing for any scene yet. Refuses a target that cannot be drawn to, and says why.
     ///
     /// # Safety
-    /// What `options.target` says of the render pass is true, and the pass outlives the renderer.
+    /// What `options.target` says of the render pass is true, and the pass outlives the renderer, which is dropped only when the GPU is done with
+    /// all that it recorded.
     pub unsafe fn new(device: &Arc<Device>, options: Options) -> Result<Self> {
         let Options { target, frames_in_flight, precision, rasterizer } = options;
         target.check(device)?;
@@ -207,13 +208,13 @@ impl Renderer {
         view: &View,
         settings: &Settings,
     ) -> Result<()> {
-        self.frame += 1;
-        self.release();
         let shown = self.make(scene, view, settings);
         // Also after an error: what it took the place of may be under way.
         let made = self.stage.outgoing();
         self.held.extend(made.into_iter().map(|made| (self.frame, made)));
         let (block, shown) = shown?;
+        self.frame += 1;
+        self.release();
         // SAFETY: by the caller.
         let mut rec = unsafe { Recorder::of_host(&self.device, cmd) };
         self.stage.record(&mut rec, &block);
@@ -243,8 +244,11 @@ impl Renderer {
             max_depth: 1.0,
         };
         // SAFETY: by the caller.
-        let mut draws = unsafe { Draws::of_host(&self.device, cmd, viewport, *area) };
-        composite.draw(&mut draws, view, place);
+        unsafe {
+            Draws::of_host(&self.device, cmd, "composite", viewport, *area, |draws| {
+                composite.draw(draws, view, place)
+            });
+        }
         Ok(())
     }
 

@@ -1,4 +1,5 @@
-//! Every render target: name, format, and when a frame has it. Each name is that of the variable in the shaders.
+//! Every render target: name, format, and when a frame has it. Each name is that of the variable in the shaders, but
+//! for planes of pyramids, which passes take in turns.
 
 mod drawn_points;
 mod pyramids;

@@ -92,7 +92,7 @@ impl Target {
     }
 
     /// What the shader makes the host's depth of: see `composite.glsl`. Refuses a camera whose depth is not the target's.
-    pub(super) fn depths(&self, camera: &Camera, viewport: vk::Viewport) -> Result<[f32; 2]> {
+    pub(super) fn depths(&self, camera: &Camera, viewport: vk::Viewport) -> Result<[f32; 4]> {
         if self.depth.is_some() && camera.reversed != self.reversed {
             let name = |reversed| if reversed { "falls" } else { "rises" };
             return Err(Error::Usage(format!(
@@ -109,7 +109,13 @@ impl Target {
         };
         let (low, range) =
             (f64::from(viewport.min_depth), f64::from(viewport.max_depth - viewport.min_depth));
-        Ok([(low + range * first) as f32, (range * by_distance) as f32])
+        let [least, greatest] = [viewport.min_depth, viewport.max_depth];
+        Ok([
+            (low + range * first) as f32,
+            (range * by_distance) as f32,
+            least.min(greatest),
+            least.max(greatest),
+        ])
     }
 
     /// The pass that draws pictures of this kind.

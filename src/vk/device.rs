@@ -8,7 +8,7 @@ use super::pipeline_cache::PipelineCache;
 use super::requirements::{Abilities, QUEUE};
 use crate::error::{Error, Result};
 use ash::{ext::debug_utils, vk};
-use std::ffi::CStr;
+use std::ffi::{CStr, CString};
 use std::mem::ManuallyDrop;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -185,6 +185,26 @@ impl Device {
             physical,
             owner: Owner::Host,
         }))
+    }
+
+    /// Begins a debug label, where there are any.
+    ///
+    /// # Safety
+    /// `cmd` is of the device and is being recorded; [`Device::end_label`] ends it.
+    pub(super) unsafe fn begin_label(&self, cmd: vk::CommandBuffer, label: &'static str) {
+        let (Some(labels), Ok(name)) = (&self.labels, CString::new(label)) else { return };
+        let info = vk::DebugUtilsLabelEXT::default().label_name(&name);
+        // SAFETY: by the caller.
+        unsafe { labels.cmd_begin_debug_utils_label(cmd, &info) };
+    }
+
+    /// # Safety
+    /// [`Device::begin_label`] began one.
+    pub(super) unsafe fn end_label(&self, cmd: vk::CommandBuffer) {
+        if let Some(labels) = &self.labels {
+            // SAFETY: by the caller.
+            unsafe { labels.cmd_end_debug_utils_label(cmd) };
+        }
     }
 
     /// The queue that the engine submits to, and its family. A usage error on a device that a host lends: there the host submits.

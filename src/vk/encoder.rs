@@ -128,22 +128,26 @@ pub struct Draws<'a> {
 }
 
 impl<'a> Draws<'a> {
-    /// Draws inside a render pass that a host has begun, over the part of its target that is the picture's.
+    /// Draws inside a render pass that a host has begun, over the part of its target that is the picture's, under a debug label.
     ///
     /// # Safety
     /// `cmd` is of `device`, and is being recorded inside the render pass for which the pipelines that draw were made.
     pub unsafe fn of_host(
         device: &'a Device,
         cmd: vk::CommandBuffer,
+        label: &'static str,
         viewport: vk::Viewport,
         area: vk::Rect2D,
-    ) -> Self {
-        // SAFETY: by the caller.
+        draws: impl FnOnce(&mut Draws<'_>),
+    ) {
+        // SAFETY: by the caller; begin and end of the label pair.
         unsafe {
+            device.begin_label(cmd, label);
             device.raw.cmd_set_viewport(cmd, 0, &[viewport]);
             device.raw.cmd_set_scissor(cmd, 0, &[area]);
+            draws(&mut Self { device, cmd });
+            device.end_label(cmd);
         }
-        Self { device, cmd }
     }
 
     /// Draws `vertices` vertices with `pipeline`, which was made for this render pass, and `push` as the push constants.

@@ -1,7 +1,8 @@
 //! The layer over raw Vulkan: the only place, beside the embedding and the swapchain, where `unsafe` is allowed.
 //!
 //! Everything that owns a Vulkan object holds an `Arc` of the [`Device`] and destroys the object when it is dropped; nothing is
-//! dropped while the GPU still uses it, because a frame is waited for before its resources can be.
+//! dropped while the GPU still uses it, because a frame is waited for before its resources can be; on a device that a host lends, because
+//! whoever records there keeps what a frame uses until the host says that it is over, see [`crate::embed`].
 #![allow(unsafe_code)]
 
 mod access;

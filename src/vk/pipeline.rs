@@ -102,7 +102,8 @@ struct Raw {
 /// A compute pipeline, with two u32 of push constants.
 pub struct ComputePipeline(Raw);
 
-/// A draw pipeline without vertex buffers, with two u32 of push constants; viewport and scissor are those of the framebuffer.
+/// A draw pipeline without vertex buffers, with two u32 of push constants, of a host as many bytes as it wants; viewport and scissor are set by
+/// whoever begins the pass.
 pub struct DrawPipeline(Raw);
 
 impl ComputePipeline {
@@ -336,7 +337,7 @@ struct Module<'a> {
 impl<'a> Module<'a> {
     fn new(device: &'a Device, code: &[u32]) -> Result<Self> {
         let info = vk::ShaderModuleCreateInfo::default().code(code);
-        // SAFETY: the code is SPIR-V that shaderc made in the build; the module is destroyed in `drop`.
+        // SAFETY: the code is SPIR-V that shaderc made in the build, at most with other locations; the module is destroyed in `drop`.
         let raw = unsafe { device.raw.create_shader_module(&info, None) }
             .map_err(Error::vulkan("vkCreateShaderModule"))?;
         Ok(Self { raw, device })

@@ -4,7 +4,6 @@ use super::access::{Access, Barrier, Tracker, Use};
 use super::timestamps::Timestamps;
 use super::{Buffer, Device, Encoder};
 use ash::vk;
-use std::ffi::CString;
 
 /// Records the passes of one frame. What it is given must stay alive until the frame is over.
 pub struct Recorder<'a> {
@@ -41,16 +40,15 @@ impl<'a> Recorder<'a> {
     ///
     /// In a profiled frame each stamp stands behind a full barrier, so that a pass's work is booked to it alone.
     pub fn pass(&mut self, label: &'static str, uses: &[Use], body: impl FnOnce(&mut Encoder<'_>)) {
-        self.begin_label(label);
+        // SAFETY: the command buffer is being recorded.
+        unsafe { self.device.begin_label(self.cmd, label) };
         let query = self.timestamps.as_mut().and_then(|timestamps| timestamps.begin_pass(label));
         self.stamp(query);
         self.barrier(uses);
         body(&mut Encoder::new(self.device, self.cmd));
         self.stamp(query.map(|first| first + 1));
-        if let Some(labels) = &self.device.labels {
-            // SAFETY: the command buffer is being recorded, and a label was begun above.
-            unsafe { labels.cmd_end_debug_utils_label(self.cmd) };
-        }
+        // SAFETY: the command buffer is being recorded, and a label was begun above.
+        unsafe { self.device.end_label(self.cmd) };
     }
 
     /// Writes `bytes`, at most 65,536 and a multiple of 4, to `buffer`, for the passes that follow to read as uniforms.
@@ -59,13 +57,6 @@ impl<'a> Recorder<'a> {
         // SAFETY: the command buffer is being recorded outside a render pass; the buffer is alive, can be copied to and is large enough.
         unsafe { self.device.raw.cmd_update_buffer(self.cmd, buffer.raw, 0, bytes) };
         self.barrier(&[buffer.with(Access::UNIFORM_READ)]);
-    }
-
-    fn begin_label(&self, label: &'static str) {
-        let (Some(labels), Ok(name)) = (&self.device.labels, CString::new(label)) else { return };
-        let info = vk::DebugUtilsLabelEXT::default().label_name(&name);
-        // SAFETY: the command buffer is being recorded.
-        unsafe { labels.cmd_begin_debug_utils_label(self.cmd, &info) };
     }
 
     fn stamp(&self, query: Option<u32>) {

@@ -47,7 +47,7 @@ pub const ABILITIES: [Ability; 4] = [
     Ability {
         extension: Some(ash::khr::shader_atomic_int64::NAME),
         features: "shaderInt64, shaderBufferInt64Atomics",
-        buys: "pull-push, and splats that are seen alone by compute shaders",
+        buys: "lines and triangles by pull-push; points by it, and splats that are seen alone, by compute shaders",
         of: |abilities| abilities.int64_atomics,
     },
     Ability {
@@ -128,7 +128,7 @@ impl Abilities {
 }
 
 /// Features of a device, as `vkCreateDevice` takes them: [`Features::core`] for the device's own, the rest for its chain.
-#[derive(Clone, Copy, Default)]
+#[derive(Default)]
 pub struct Features {
     /// Of Vulkan 1.0.
     pub core: vk::PhysicalDeviceFeatures,
@@ -136,12 +136,17 @@ pub struct Features {
     integers: vk::PhysicalDeviceShaderAtomicInt64Features<'static>,
 }
 
-// SAFETY: the chains are empty: nothing is pointed to.
+// SAFETY: what the chains point to is read while `chain`'s borrows last alone, and `chain` makes them anew.
 unsafe impl Send for Features {}
 
 impl Features {
     /// Adds what is beyond Vulkan 1.0 to the chain of `info`, as far as it is enabled: a struct of an extension that is not must not be there.
+    ///
+    /// A host that chains `VkPhysicalDeviceVulkan12Features` sets `shaderBufferInt64Atomics` there by [`Abilities::int64_atomics`] instead:
+    /// Vulkan does not want both.
     pub fn chain<'a>(&'a mut self, mut info: vk::DeviceCreateInfo<'a>) -> vk::DeviceCreateInfo<'a> {
+        // An earlier call left what it was chained to.
+        (self.floats.p_next, self.integers.p_next) = (std::ptr::null_mut(), std::ptr::null_mut());
         if self.floats.shader_buffer_float32_atomic_add == vk::TRUE {
             info = info.push_next(&mut self.floats);
         }

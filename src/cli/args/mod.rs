@@ -239,7 +239,7 @@ pub struct Place {
     /// What visits the pixels: the device's own rasterizer, or compute shaders; what is faster on the device unless given
     #[arg(long, value_enum, conflicts_with = "reference")]
     pub rasterizer: Option<Rasterizer>,
-    /// Keeps sums, or the samples of pull-push, in 16-bit floats: half the memory, coarser
+    /// Keeps sums in 16-bit floats, or the samples of pull-push in 24 bytes of 48: half the memory, coarser
     #[arg(long)]
     pub half: bool,
     /// On which device

@@ -45,14 +45,19 @@ pub struct Submitted {
 const VALIDATION: &CStr = c"VK_LAYER_KHRONOS_validation";
 
 impl Host {
-    /// Opens the first device that does graphics and compute; under validation, where its layer is installed.
-    pub fn open(wanted: fn(Abilities) -> Abilities) -> Result<Self> {
+    /// Opens the first device that does graphics and compute; under validation where its layer is installed, which it must be if `validates`.
+    pub fn open(wanted: fn(Abilities) -> Abilities, validates: bool) -> Result<Self> {
         // SAFETY: a plain use of Vulkan: every handle is made here, and destroyed in `drop`, after what was made of it.
         unsafe {
             let entry = ash::Entry::load()?;
             let layers = entry.enumerate_instance_layer_properties()?;
-            let validates = layers.iter().any(|layer| layer.layer_name_as_c_str() == Ok(VALIDATION));
-            let layers: Vec<_> = validates.then_some(VALIDATION.as_ptr()).into_iter().collect();
+            let there = layers.iter().any(|layer| layer.layer_name_as_c_str() == Ok(VALIDATION));
+            if validates && !there {
+                return Err(
+                    "VK_LAYER_KHRONOS_validation is not installed (Debian: vulkan-validationlayers)".into()
+                );
+            }
+            let layers: Vec<_> = there.then_some(VALIDATION.as_ptr()).into_iter().collect();
             let extensions = [ext::debug_utils::NAME.as_ptr()];
             let application = vk::ApplicationInfo::default().api_version(vk::API_VERSION_1_2);
             let synchronization = [vk::ValidationFeatureEnableEXT::SYNCHRONIZATION_VALIDATION];
@@ -62,7 +67,7 @@ impl Host {
                 .application_info(&application)
                 .enabled_layer_names(&layers)
                 .enabled_extension_names(&extensions);
-            if validates {
+            if there {
                 info = info.push_next(&mut features);
             }
             let instance = entry.create_instance(&info, None)?;

@@ -16,7 +16,7 @@ const SIZE: [u32; 2] = [960, 720];
 
 /// Renders a frame in this way and writes it to `file`, a PNG.
 pub fn picture(way: Way, file: &Path) -> Result<()> {
-    let host = Host::open(|all| all)?;
+    let host = Host::open(|all| all, false)?;
     let samples = vk::SampleCountFlags::TYPE_4;
     let kind = Kind { way, colour: vk::Format::R8G8B8A8_SRGB, normals: false, samples, reversed: true };
     let frame = Frame::new(&host, kind, SIZE)?;
