@@ -1,6 +1,7 @@
 //! Numbers and names as people read them.
 
 use super::record::{Contender, Figure, Made, Memory, Run, Session, Setting};
+use crate::methods::Method;
 
 /// With `digits` significant ones at most, and no zeros behind them; in powers of ten where it would be long.
 pub fn significant(value: f64, digits: usize) -> String {
@@ -159,6 +160,12 @@ pub fn differing<'a>(runs: impl IntoIterator<Item = &'a Run>) -> [bool; 7] {
 pub fn told(setting: &Setting, which: [bool; 7]) -> String {
     let chosen = settings(setting).into_iter().zip(which).filter(|(_, asked)| *asked);
     chosen.map(|(text, _)| text).collect::<Vec<_>>().join(", ")
+}
+
+/// Those of `run` that `which` asks for, as far as its method heeds them: what makes no splats has neither filter nor kernel nor ε.
+pub fn told_of(run: &Run, which: [bool; 7]) -> String {
+    let splats = Method::named(&run.contender.method).is_none_or(|method| method.pull_push.is_none());
+    told(&run.setting, std::array::from_fn(|i| which[i] && (splats || i >= 4)))
 }
 
 #[cfg(test)]

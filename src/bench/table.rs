@@ -143,7 +143,7 @@ fn cells(run: &Run, differing: [bool; 7]) -> Vec<String> {
         show::count(run.points),
         show::size(run.size),
         run.contender.label(),
-        show::told(&run.setting, differing),
+        show::told_of(run, differing),
         // Elsewhere it is the scene's own.
         run.overlap
             .filter(|_| run.figure == Figure::ScalingOverlap)

@@ -62,7 +62,7 @@ fn effect_lines(text: &mut String, effect: &Effect, runs: &[&Run]) {
 /// What tells a side from the others: the contender, and the settings and parameters in which they differ.
 pub(in crate::bench) fn side(run: &Run, runs: &[&Run]) -> String {
     let mut words = vec![run.contender.label()];
-    let settings = show::told(&run.setting, show::differing(runs.iter().copied()));
+    let settings = show::told_of(run, show::differing(runs.iter().copied()));
     words.extend(Some(settings).filter(|text| !text.is_empty()));
     if runs.iter().any(|other| other.scene != run.scene) {
         words.extend(run.scene.split_once('?').map(|(_, parameters)| parameters.to_owned()));

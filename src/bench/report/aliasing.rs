@@ -36,7 +36,7 @@ fn table(runs: &[&Run]) -> Markup {
                 th.number scope="col" { "ms" } th scope="col" { "RMSE" }
             } }
             tbody { @for run in runs { tr {
-                td { (run.contender.label()) } td { (show::told(&run.setting, differing)) }
+                td { (run.contender.label()) } td { (show::told_of(run, differing)) }
                 td.number { (show::count(run.points)) }
                 @for name in &taken {
                     td.number { (run.metric(name).map(|value| show::significant(value, 3)).unwrap_or_default()) }

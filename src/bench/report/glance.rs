@@ -89,5 +89,5 @@ fn unbroken(list: &str) -> String {
 fn unusual(run: &Run) -> String {
     let (own, preset) =
         (show::settings(&run.setting), show::settings(&Setting::preset(&run.contender.method)));
-    show::told(&run.setting, std::array::from_fn(|i| NAMED[i] && own[i] != preset[i]))
+    show::told_of(run, std::array::from_fn(|i| NAMED[i] && own[i] != preset[i]))
 }

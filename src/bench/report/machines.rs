@@ -43,7 +43,7 @@ fn runs(session: &Session) -> impl Iterator<Item = &Run> {
 }
 
 fn key(run: &Run) -> Key<'_> {
-    let settings = show::told(&run.setting, [true, true, true, true, true, false, false]);
+    let settings = show::told_of(run, [true, true, true, true, true, false, false]);
     (&run.scene, run.size, run.points, run.contender.label(), settings)
 }
 

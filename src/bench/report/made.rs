@@ -101,7 +101,7 @@ fn passes(session: &Session) -> Markup {
                 tbody { @for (run, time) in &timed { tr {
                     td { (show::figure(run.figure)) } td { (show::scene(&run.scene)) }
                     td.number { (show::count(run.points)) } td { (show::size(run.size)) }
-                    td { (run.contender.label()) } td { (show::told(&run.setting, [true, true, true, false, true, false, false])) }
+                    td { (run.contender.label()) } td { (show::told_of(run, [true, true, true, false, true, false, false])) }
                     @for name in &names {
                         @let pass = time.passes.iter().find(|pass| pass.name == *name);
                         td.number { @if let Some(pass) = pass { (spread(pass.ms)) } }

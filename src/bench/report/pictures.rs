@@ -46,7 +46,7 @@ fn caption(run: &Run) -> String {
     let mut words = vec![
         run.contender.label(),
         format!("{} points", show::count(run.points)),
-        show::told(&run.setting, [true, true, true, false, false, false, false]),
+        show::told_of(run, [true, true, true, false, false, false, false]),
     ];
     let metrics = [("rmse", "RMSE"), ("flip", "FLIP"), ("iou", "IoU")];
     let known = metrics.iter().filter_map(|(name, label)| Some((label, run.metric(name)?)));

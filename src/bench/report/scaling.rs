@@ -72,7 +72,7 @@ fn lines(page: &Page<'_>, runs: &[&Run], over: &Over) -> Vec<Line> {
     let mut lines: Vec<Line> = Vec::new();
     let settings = show::differing(runs.iter().copied());
     for ((contender, setting), runs) in
-        grouped(runs.iter().copied(), |run| (&run.contender, show::told(&run.setting, settings)))
+        grouped(runs.iter().copied(), |run| (&run.contender, show::told_of(run, settings)))
     {
         let mut points: Vec<_> = runs.iter().filter_map(|run| Some([(over.of)(run)?, run.ms()?])).collect();
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));

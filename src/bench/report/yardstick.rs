@@ -36,7 +36,7 @@ fn row(run: &Run, differing: [bool; 7]) -> Markup {
     let time = run.time.as_ref();
     html! { tr {
         td { (run.contender.label()) }
-        td { (show::told(&run.setting, differing)) }
+        td { (show::told_of(run, differing)) }
         @if let Some(why) = &run.refused { td colspan="3" { "refused: " (why) } }
         @else if let Some(time) = time {
             td.number { (show::ms(time.wall.median)) }

@@ -2,8 +2,9 @@
 
 use plotters::style::RGBColor;
 
-/// Colours that the colour-blind can tell apart: Okabe and Ito, *Color Universal Design*, 2008; without yellow, which white swallows.
-pub const COLOURS: [RGBColor; 7] = [
+/// Colours that the colour-blind can tell apart: Okabe and Ito, *Color Universal Design*, 2008; a dark one and a grey in the place of yellow,
+/// which white swallows.
+pub const COLOURS: [RGBColor; 9] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
     RGBColor(0, 158, 115),
@@ -11,6 +12,8 @@ pub const COLOURS: [RGBColor; 7] = [
     RGBColor(230, 159, 0),
     RGBColor(86, 180, 233),
     RGBColor(0, 0, 0),
+    RGBColor(120, 60, 20),
+    RGBColor(150, 150, 150),
 ];
 /// Text, and what is no data.
 pub const INK: RGBColor = RGBColor(40, 44, 52);
