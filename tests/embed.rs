@@ -454,7 +454,7 @@ fn what_cannot_be_served_is_refused_and_says_why() {
     let changes: [(Change, &str); 7] = [
         (|t| t.picture = 1, "location 1 of 1 colour attachments"),
         (|t| t.normal = Some(0), "both the picture and normals"),
-        (|t| t.colours[0] = vk::Format::R32G32B32A32_UINT, "cannot blend R32G32B32A32_UINT"),
+        (|t| t.colours[0] = vk::Format::R32G32B32A32_UINT, "cannot draw the picture to R32G32B32A32_UINT"),
         (|t| t.colours.push(FLOATS), "independentBlend"),
         (|t| t.depth = Some(FLOATS), "no depth attachments of R32G32B32A32_SFLOAT"),
         (|t| t.samples = ONE | FOUR, "not one number of samples"),

@@ -55,7 +55,12 @@ impl Target {
         if self.normal == Some(self.picture) {
             return refuse(format!("location {} is given for both the picture and normals", self.picture));
         }
-        for (what, location) in [("the picture", Some(self.picture)), ("normals", self.normal)] {
+        use vk::FormatFeatureFlags as Can;
+        let wanted = [
+            ("the picture", Some(self.picture), Can::COLOR_ATTACHMENT_BLEND),
+            ("normals", self.normal, Can::COLOR_ATTACHMENT),
+        ];
+        for (what, location, needed) in wanted {
             let Some(location) = location else { continue };
             let Some(&format) = self.colours.get(location as usize).filter(|_| (location as usize) < MOST)
             else {
@@ -64,12 +69,8 @@ impl Target {
                     self.colours.len()
                 ));
             };
-            let features = device.format_features(format);
-            if !features.contains(vk::FormatFeatureFlags::COLOR_ATTACHMENT_BLEND) {
-                return refuse(format!(
-                    "{} cannot blend {format:?}, the format for {what}",
-                    device.description().name
-                ));
+            if !device.format_features(format).contains(needed) || is_integer(format) {
+                return refuse(format!("{} cannot draw {what} to {format:?}", device.description().name));
             }
         }
         if self.encode && is_srgb(self.colours[self.picture as usize]) {
@@ -130,14 +131,19 @@ impl Target {
         };
         let colours: Vec<_> = (0..self.colours.len()).map(blend).collect();
         let formats = (&self.colours[..], self.depth.unwrap_or(vk::Format::UNDEFINED), self.stencil);
-        let (pass, subpass, rendering) = match self.pass {
-            Pass::Subpass { pass, subpass } => (pass, subpass, None),
-            Pass::Rendering => (vk::RenderPass::null(), 0, Some(formats)),
-        };
-        let within = Within { pass, subpass, colours: &colours, rendering, samples: self.samples };
         // SAFETY: by the caller.
-        unsafe { Composite::new(device, kind, &within) }
+        let within = unsafe {
+            match self.pass {
+                Pass::Subpass { pass, subpass } => Within::subpass((pass, subpass), &colours, self.samples),
+                Pass::Rendering => Within::rendering(formats, &colours, self.samples),
+            }
+        };
+        Composite::new(device, kind, &within)
     }
+}
+
+fn is_integer(format: vk::Format) -> bool {
+    ["UINT", "SINT"].iter().any(|kind| format!("{format:?}").contains(kind))
 }
 
 fn is_srgb(format: vk::Format) -> bool {

@@ -37,11 +37,7 @@ pub struct Composite {
 
 impl Composite {
     /// The pass for a host that draws `within`.
-    ///
-    /// # Safety
-    /// As [`DrawPipeline::of_host`].
-    #[expect(unsafe_code, reason = "the host's word is passed on")]
-    pub unsafe fn new(device: &Arc<Device>, kind: CompositeKind, within: &Within<'_>) -> Result<Self> {
+    pub fn new(device: &Arc<Device>, kind: CompositeKind, within: &Within<'_>) -> Result<Self> {
         let seen = match kind.images {
             true => vec![(DescriptorType::SAMPLED_IMAGE, ShaderStageFlags::FRAGMENT); 3],
             false => vec![(DescriptorType::STORAGE_BUFFER, ShaderStageFlags::FRAGMENT)],
@@ -61,9 +57,7 @@ impl Composite {
             .with(constant::ENCODE, kind.encode);
         let depth = kind.reversed.map_or(DepthTest::None, |reversed| DepthTest::Host { reversed });
         let push = size_of::<layout::Composite>() as u32;
-        // SAFETY: by the caller.
-        let pipeline =
-            unsafe { DrawPipeline::of_host(device, &[&layout], code, &constants, within, depth, push)? };
+        let pipeline = DrawPipeline::of_host(device, &[&layout], code, &constants, within, depth, push)?;
         Ok(Self { kind, layout, pipeline })
     }
 

@@ -1,11 +1,12 @@
 //! What project, fetch, pull, push and shade share (`lib/pyramid.glsl`): set 1 is what a pass reads, set 2 what it writes.
 
 use super::SplatLayout;
+use super::coverage::whole;
 use super::normalize::{frame_layout, grid_over};
 use crate::error::Result;
 use crate::targets::{PLANES, Pyramid, Pyramids};
 use crate::variant::Variant;
-use crate::vk::{Binding, Buffer, ComputePipeline, DescriptorSet, Device, Encoder, SetLayout};
+use crate::vk::{Buffer, ComputePipeline, DescriptorSet, Device, Encoder, SetLayout};
 use ash::vk::{DescriptorType, ShaderStageFlags};
 use std::sync::Arc;
 
@@ -42,21 +43,18 @@ pub struct PyramidSets {
 impl PyramidSets {
     /// Views of `targets`, which must outlive them.
     pub fn new(device: &Arc<Device>, layout: &SplatLayout, targets: &Pyramids) -> Result<Self> {
-        let whole = |buffer: &Buffer| {
-            let bindings = [Binding::Storage(buffer, 0, buffer.size())];
-            DescriptorSet::new(device, &layout.plain, &bindings)
-        };
+        let plain = |buffer: &Buffer| DescriptorSet::new(device, &layout.plain, &[whole(buffer)]);
         let planes = |pyramid: &Pyramid| {
             // Where there is no such plane another stands at its binding, and is not touched.
             let any = pyramid.planes.iter().flatten().next().map(|plane| &plane.buffer);
             let buffers = pyramid.planes.iter().filter_map(|plane| plane.as_ref().map(|p| &p.buffer).or(any));
-            let bindings: Vec<_> = buffers.map(|buffer| Binding::Storage(buffer, 0, buffer.size())).collect();
+            let bindings: Vec<_> = buffers.map(whole).collect();
             DescriptorSet::new(device, &layout.pyramid, &bindings)
         };
         let [first, second] = [0, 1].map(|i| planes(&targets.pyramids[i]));
         // Points that are drawn are not there, and nothing is.
         let picture = &targets.picture.buffer;
-        let [nearest, picture] = [targets.nearest.as_ref().unwrap_or(picture), picture].map(whole);
+        let [nearest, picture] = [targets.nearest.as_ref().unwrap_or(picture), picture].map(plain);
         Ok(Self { nearest: nearest?, pyramids: [first?, second?], picture: picture? })
     }
 

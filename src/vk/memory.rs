@@ -190,6 +190,16 @@ pub(super) fn allocate(device: &Device, request: &MemoryRequest<'_>) -> Result<A
         bytes: request.requirements.size,
         cause,
     })?;
+    let seen = request.location != Location::Device;
+    let least = request.requirements.size as usize;
+    if allocation.size() < request.requirements.size || seen && allocation.mapped().len() < least {
+        device.memory.free(allocation);
+        return Err(Error::Memory {
+            what: request.name.to_owned(),
+            bytes: request.requirements.size,
+            cause: "the host gave less, or did not map it".into(),
+        });
+    }
     device.made.allocations.fetch_add(1, Ordering::Relaxed);
     device.made.bytes.fetch_add(allocation.size(), Ordering::Relaxed);
     Ok(allocation)

@@ -80,16 +80,42 @@ pub struct DrawState {
 /// Where a draw pipeline draws.
 #[derive(Clone, Copy, Debug)]
 pub struct Within<'a> {
-    /// The render pass; null for dynamic rendering, whose formats are then given.
-    pub pass: vk::RenderPass,
-    /// Its subpass.
-    pub subpass: u32,
-    /// A colour target each: how it is blended where not as the state says, or `None` if it is left alone.
-    pub colours: &'a [Option<Blend>],
-    /// Formats of colours, depth and stencil, for dynamic rendering.
-    pub rendering: Option<(&'a [vk::Format], vk::Format, vk::Format)>,
-    /// Samples a pixel.
-    pub samples: vk::SampleCountFlags,
+    /// Null for dynamic rendering, whose formats are then given.
+    pass: vk::RenderPass,
+    subpass: u32,
+    colours: &'a [Option<Blend>],
+    rendering: Option<Formats<'a>>,
+    samples: vk::SampleCountFlags,
+}
+
+/// Formats of colours, depth and stencil.
+type Formats<'a> = (&'a [vk::Format], vk::Format, vk::Format);
+
+impl<'a> Within<'a> {
+    /// A subpass of a host's render pass, with so many samples a pixel. `colours` says of each colour target how it is blended, or that it is
+    /// left alone.
+    ///
+    /// # Safety
+    /// It is true of a render pass of the device for which pipelines are made, which outlives them.
+    pub unsafe fn subpass(
+        (pass, subpass): (vk::RenderPass, u32),
+        colours: &'a [Option<Blend>],
+        samples: vk::SampleCountFlags,
+    ) -> Self {
+        Self { pass, subpass, colours, rendering: None, samples }
+    }
+
+    /// A host's dynamic rendering to such formats, otherwise as [`Within::subpass`].
+    ///
+    /// # Safety
+    /// Dynamic rendering is enabled on the device for which pipelines are made.
+    pub unsafe fn rendering(
+        formats: Formats<'a>,
+        colours: &'a [Option<Blend>],
+        samples: vk::SampleCountFlags,
+    ) -> Self {
+        Self { pass: vk::RenderPass::null(), subpass: 0, colours, rendering: Some(formats), samples }
+    }
 }
 
 /// What both kinds share.
@@ -155,15 +181,11 @@ impl DrawPipeline {
             samples: vk::SampleCountFlags::TYPE_1,
         };
         let raw = Raw::new(device, sets, Self::STAGES, 8)?;
-        // SAFETY: the pass is alive and has these colours.
-        unsafe { Self::within(raw, code, constants, &within, (state.topology, state.depth)) }
+        Self::within(raw, code, constants, &within, (state.topology, state.depth))
     }
 
     /// As [`DrawPipeline::new`], for a pass of a host, with `push` bytes of push constants.
-    ///
-    /// # Safety
-    /// `within` is true of a render pass of `device`, or of what is drawn by dynamic rendering, which is then enabled.
-    pub unsafe fn of_host(
+    pub fn of_host(
         device: &Arc<Device>,
         sets: &[&SetLayout],
         code: [&[u32]; 2],
@@ -172,16 +194,11 @@ impl DrawPipeline {
         depth: DepthTest,
         push: u32,
     ) -> Result<Self> {
-        // SAFETY: by the caller.
-        unsafe {
-            let raw = Raw::new(device, sets, Self::STAGES, push)?;
-            Self::within(raw, code, constants, within, (Topology::Triangles, depth))
-        }
+        let raw = Raw::new(device, sets, Self::STAGES, push)?;
+        Self::within(raw, code, constants, within, (Topology::Triangles, depth))
     }
 
-    /// # Safety
-    /// As [`DrawPipeline::of_host`].
-    unsafe fn within(
+    fn within(
         mut raw: Raw,
         [vertex, fragment]: [&[u32]; 2],
         constants: &Constants,
@@ -232,7 +249,8 @@ impl DrawPipeline {
                 .stencil_attachment_format(stencil);
             info = info.push_next(&mut rendering);
         }
-        // SAFETY: all states, modules, the layout and the pass live until after the call; the pipeline is destroyed in `drop`.
+        // SAFETY: all states, modules, the layout and the pass, of which `within` is true, live until after the call; the pipeline is destroyed in
+        // `drop`.
         let made = unsafe { device.raw.create_graphics_pipelines(device.pipeline_cache.raw, &[info], None) };
         raw.pipeline = first(made, "vkCreateGraphicsPipelines")?;
         Ok(Self(raw))
