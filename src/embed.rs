@@ -142,6 +142,7 @@ pub struct View {
 /// Renders scenes into frames of a host.
 pub struct Renderer {
     // Fields are dropped in this order: views before what they view.
+    viewed: Option<Viewed>,
     shown: Option<Shown>,
     /// What frames under way may use, with the number of the last one.
     held: VecDeque<(u64, Outgoing)>,
@@ -154,12 +155,16 @@ pub struct Renderer {
     device: Arc<Device>,
 }
 
-/// The picture that is prepared.
-struct Shown {
-    view: Arc<DescriptorSet>,
-    /// Which targets it views.
+/// What draws the pictures of some targets.
+struct Viewed {
+    /// Which targets.
     present: u64,
+    set: DescriptorSet,
     composite: Arc<Composite>,
+}
+
+/// The picture that is prepared: where it is drawn.
+struct Shown {
     place: layout::Composite,
     area: vk::Rect2D,
 }
@@ -181,6 +186,7 @@ impl Renderer {
         let outputs = Outputs { normal: target.normal.is_some(), depth: target.depth.is_some(), id: false };
         let options = RenderOptions { size: [1, 1], outputs, precision, rasterizer, ..Default::default() };
         Ok(Self {
+            viewed: None,
             shown: None,
             held: VecDeque::new(),
             scene: None,
@@ -232,7 +238,7 @@ impl Renderer {
     /// `cmd` is of the device, and is being recorded inside the subpass, or the dynamic rendering, that is the target. It is submitted after what
     /// prepared the picture, to the same queue, and before what prepares the next one.
     pub unsafe fn draw(&self, cmd: vk::CommandBuffer) -> Result<()> {
-        let Some(Shown { view, composite, place, area, .. }) = &self.shown else {
+        let (Some(viewed), Some(Shown { place, area })) = (&self.viewed, &self.shown) else {
             return Err(Error::Usage("there is no picture to draw: prepare one, and heed its error".into()));
         };
         let viewport = vk::Viewport {
@@ -246,7 +252,7 @@ impl Renderer {
         // SAFETY: by the caller.
         unsafe {
             Draws::of_host(&self.device, cmd, "composite", viewport, *area, |draws| {
-                composite.draw(draws, view, place)
+                viewed.composite.draw(draws, &viewed.set, place)
             });
         }
         Ok(())
@@ -259,8 +265,7 @@ impl Renderer {
         view: &View,
         settings: &Settings,
     ) -> Result<(layout::Frame, Shown)> {
-        let last = self.shown.take();
-        let last = last.inspect(|shown| self.hold(shown.view.clone()));
+        self.shown = None;
         if !scene.is_on(&self.device) {
             return Err(Error::Usage(
                 "the scene is of another device: upload it to the one that this renderer is of".into(),
@@ -280,16 +285,22 @@ impl Renderer {
         }
         let composite =
             self.composite(variant.rasterizer, variant.pull_push.is_some(), variant.perspective)?;
-        let Some(present) = self.stage.present() else {
-            return Err(Error::Usage("nothing was made of the scene".into()));
-        };
-        let same = |shown: &Shown| shown.present == present.id && Arc::ptr_eq(&shown.composite, &composite);
-        let set = match last.filter(same) {
-            Some(shown) => shown.view,
-            None => Arc::new(composite.view(&self.device, present.canvas.composited())?),
-        };
+        self.view(composite)?;
         let place = layout::Composite { origin: [area.offset.x, area.offset.y], size, depth };
-        Ok((block, Shown { view: set, present: present.id, composite, place, area }))
+        Ok((block, Shown { place, area }))
+    }
+
+    /// Sees the present targets as `composite` does, if it does not already.
+    fn view(&mut self, composite: Arc<Composite>) -> Result<()> {
+        let Some(present) = self.stage.present() else { return Ok(()) };
+        let same =
+            |viewed: &Viewed| viewed.present == present.id && Arc::ptr_eq(&viewed.composite, &composite);
+        if !self.viewed.as_ref().is_some_and(same) {
+            let set = composite.view(&self.device, present.canvas.composited())?;
+            let old = self.viewed.replace(Viewed { present: present.id, set, composite });
+            self.hold(old);
+        }
+        Ok(())
     }
 
     fn composite(
