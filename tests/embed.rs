@@ -3,14 +3,16 @@
 
 #[path = "../tools/hosts/host/mod.rs"]
 mod host;
+#[path = "support/stand.rs"]
+mod stand;
 mod support;
 
 use ash::vk;
-use glam::{DMat4, DVec3, Vec3};
-use host::Host;
+use glam::{DMat4, DVec3};
 use host::frame::{Frame, Kind, Way};
 use host::memory::Counted;
 use host::mesh::{Mesh, parallelogram};
+use stand::{Stand, assert_silent, open, upload};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use support::sampling::{Random, bumpy_sphere};
@@ -26,27 +28,10 @@ const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 const ONE: vk::SampleCountFlags = vk::SampleCountFlags::TYPE_1;
 const FOUR: vk::SampleCountFlags = vk::SampleCountFlags::TYPE_4;
 
-/// A host; `None`, said aloud, where there is no device. With `SURFEL_REQUIRE_GPU` set, the lack of one is a failure.
-fn open(wanted: fn(Abilities) -> Abilities) -> Option<Host> {
-    match Host::open(wanted, true) {
-        Ok(host) => Some(host),
-        Err(error) if std::env::var_os("SURFEL_REQUIRE_GPU").is_some() => panic!("{error}"),
-        Err(error) => {
-            eprintln!("SKIPPED, not passed: {error}");
-            None
-        }
-    }
-}
-
 /// Hosts have threads.
 #[allow(dead_code, reason = "it compiles, or not")]
 fn a_renderer_goes_to_another_thread(renderer: Renderer) -> impl Send {
     renderer
-}
-
-fn assert_silent(host: &Host) {
-    let messages = host.messages();
-    assert!(messages.is_empty(), "{} validation messages: {messages:#?}", messages.len());
 }
 
 fn surfels() -> Surfels {
@@ -90,66 +75,6 @@ fn alone(settings: &Settings, camera: &Camera, rasterizer: Option<Rasterizer>) -
     support::gpu::render(&device, &surfels(), camera, settings, options)
 }
 
-/// A host's frame with the renderer that draws into it.
-struct Stand {
-    frame: Frame,
-    renderer: Renderer,
-    scene: Arc<Scene>,
-    device: Arc<Device>,
-}
-
-impl Stand {
-    fn new(host: &Host, kind: Kind, size: [u32; 2], rasterizer: Option<Rasterizer>) -> Self {
-        let device = host.lend(None).unwrap();
-        let frame = Frame::new(host, kind, size).unwrap();
-        let options =
-            Options { target: frame.target(), frames_in_flight: 2, precision: Precision::Full, rasterizer };
-        // SAFETY: the target is the frame's.
-        let renderer = unsafe { Renderer::new(&device, options) }.unwrap();
-        let scene = upload(host, &device, &surfels());
-        Self { frame, renderer, scene, device }
-    }
-
-    /// A frame of the mesh, if there is one, and then the surfels.
-    fn render(
-        &mut self,
-        host: &Host,
-        view: &View,
-        settings: &Settings,
-        mesh: Option<&Mesh>,
-    ) -> (Vec<[f32; 4]>, Vec<f32>) {
-        let Self { frame, renderer, scene, .. } = self;
-        host.run(|cmd| {
-            // SAFETY: recorded outside and inside the frame's pass, submitted in order to the host's queue.
-            unsafe {
-                renderer.prepare(cmd, scene, view, settings)?;
-                frame.begin(host, cmd);
-                if let Some(mesh) = mesh {
-                    let world_to_clip = view.camera.world_to_clip().as_mat4();
-                    mesh.draw(host, cmd, view.viewport, world_to_clip, Vec3::Y);
-                }
-                renderer.draw(cmd)?;
-                frame.end(host, cmd);
-            }
-            Ok(())
-        })
-        .unwrap();
-        frame.read(host).unwrap()
-    }
-
-    fn destroy(self, host: &Host) {
-        drop(self.renderer);
-        self.frame.destroy(host);
-    }
-}
-
-fn upload(host: &Host, device: &Arc<Device>, surfels: &Surfels) -> Arc<Scene> {
-    // SAFETY: recorded outside a render pass, and waited for.
-    let (scene, staging) = host.run(|cmd| Ok(unsafe { embed::upload(device, cmd, surfels)? })).unwrap();
-    assert!(staging.bytes() > 0);
-    Arc::new(scene)
-}
-
 fn kinds() -> impl Iterator<Item = Kind> {
     let ways = [Way::Subpass, Way::Rendering];
     let samples = move |way| {
@@ -178,7 +103,7 @@ fn an_embedded_picture_is_the_engines_own_bit_for_bit() {
         let depth = own.depth.as_ref().unwrap();
         assert!(own.colour.iter().filter(|colour| colour[3] == 1.0).count() > 5_000);
         for kind in kinds() {
-            let mut stand = Stand::new(&host, kind, SIZE, rasterizer);
+            let mut stand = Stand::new(&host, kind, SIZE, rasterizer, &surfels());
             let view = View { camera: camera(), viewport: viewport(SIZE) };
             let (colours, depths) = stand.render(&host, &view, &settings, None);
             // Splats that are blended by atomic sums are added in whatever order.
@@ -222,7 +147,7 @@ fn pictures_and_normals_are_where_the_host_wants_them() {
             RenderOptions { size: SIZE, outputs, rasterizer: Some(rasterizer), ..Default::default() };
         let own = support::gpu::render(&device, &surfels(), &camera(), &settings, options);
         let kind = Kind { way, colour: FLOATS, normals: true, samples: ONE, reversed: true };
-        let mut stand = Stand::new(&host, kind, larger, Some(rasterizer));
+        let mut stand = Stand::new(&host, kind, larger, Some(rasterizer), &surfels());
         let (colours, _) = stand.render(&host, &View { camera: camera(), viewport: at }, &settings, None);
         let normals = stand.frame.read_normals(&host).unwrap();
         let (normal, mut seen) = (own.normal.unwrap(), 0);
@@ -318,7 +243,7 @@ fn what_is_in_front_hides_what_is_behind_either_way() {
             camera.projection = DMat4::from_scale(DVec3::new(1.0, -1.0, 1.0)) * camera.projection;
         }
         let kind = Kind { way, colour: FLOATS, normals: false, samples: ONE, reversed };
-        let mut stand = Stand::new(&host, kind, SIZE, None);
+        let mut stand = Stand::new(&host, kind, SIZE, None, &surfels());
         let mesh = Mesh::new(&host, &corners, stand.frame.place()).unwrap();
         let (colours, _) = stand.render(&host, &View { camera, viewport }, &settings, Some(&mesh));
         let mut counts = [[0; 2]; 2];
@@ -448,7 +373,7 @@ fn without_memory_there_is_an_error_and_then_there_is_memory() {
 fn what_cannot_be_served_is_refused_and_says_why() {
     let Some(host) = open(|all| Abilities { independent_blend: false, ..all }) else { return };
     let kind = Kind { way: Way::Subpass, colour: FLOATS, normals: false, samples: ONE, reversed: true };
-    let mut stand = Stand::new(&host, kind, SIZE, None);
+    let mut stand = Stand::new(&host, kind, SIZE, None, &surfels());
     let target = stand.frame.target();
     type Change = fn(&mut embed::Target);
     let changes: [(Change, &str); 7] = [
