@@ -55,7 +55,7 @@ Pixel normalize_pixel(vec2 centre, bool visible, float alpha, vec4 s0, vec4 s1) 
     }
 
     vec3 shaded;
-    if (SHADING == LIT) shaded = SHADE_SPLATS ? colour : lit(colour, normal, to_eye);
+    if (SHADING == LIT) shaded = SHADE_SPLATS ? colour : lit(FRAME_SHINE, colour, normal, to_eye);
     if (SHADING == COLOUR) shaded = colour;
     if (SHADING == NORMAL) shaded = normal;
     if (SHADING == DEPTH) shaded = vec3(depth);

@@ -1,6 +1,6 @@
 // Shade: the final level 0 → picture, normal, depth, number of the point, lit pixel by pixel (marroquim2008 §3.4).
 #version 450
-#pragma variant TEXTURED
+#pragma variant LOOKUPS
 #extension GL_GOOGLE_include_directive : require
 
 #ifdef COMPUTE
@@ -14,8 +14,11 @@
 
 DEFINE_PYRAMID(1, from)
 
-#ifdef TEXTURED
+layout(constant_id = 25) const bool MATERIALS = false; // points shine in their own way
+
+#ifdef LOOKUPS
 #include "lib/texture.glsl"
+#include "lib/materials.glsl"
 #endif
 
 layout(constant_id = 9) const bool OUT_NORMAL = false;
@@ -68,17 +71,20 @@ void main() {
         vec2 centre = vec2(at) + 0.5;
         vec3 ray = centre.x * frame.ray_hi[0].xyz + centre.y * frame.ray_hi[1].xyz + frame.ray_hi[2].xyz;
         vec3 to_eye = PERSPECTIVE ? -normalize(ray) : -frame.forward_hi.xyz;
-#ifdef TEXTURED
-        vec3 colour = texture_at(at, s);
-#else
         vec3 colour = SUM_COLOURS ? s.colour : frame.albedo.rgb;
+        Shine shine = FRAME_SHINE;
+#ifdef LOOKUPS
+        if (TEXTURE) colour = texture_at(at, s);
+        if (MATERIALS) shine = shine_of(s.id);
 #endif
         vec3 tangent = s.normal;
         if (s.tube && PAPER) s.normal = line_normal(tangent, to_eye);
         else if (s.tube) s.depth = on_tube(s, centre, -s.displacement, s.normal);
         // A pixel shows one point, or what is made of those about it.
         vec3 shown = vec3(1.0);
-        if (SHADING == LIT) shown = s.tube && PAPER ? lit_line(colour, tangent, to_eye) : lit(colour, s.normal, to_eye);
+        if (SHADING == LIT) {
+            shown = s.tube && PAPER ? lit_line(shine, colour, tangent, to_eye) : lit(shine, colour, s.normal, to_eye);
+        }
         if (SHADING == COLOUR) shown = colour;
         if (SHADING == NORMAL) shown = s.normal;
         if (SHADING == DEPTH) shown = vec3(s.depth);

@@ -1,5 +1,6 @@
 //! Geometry on the GPU: only the streams that the scene has.
 
+mod materials;
 mod primitives;
 mod texture;
 mod weights;
@@ -11,6 +12,7 @@ use crate::geometry::{
 use crate::vk::shaders::layout::Splat;
 use crate::vk::{Binding, Buffer, Capabilities, Device, Uploads};
 use glam::{DVec3, Vec3};
+pub(crate) use materials::MaterialStream;
 pub(crate) use primitives::{Elements, PrimitiveStreams};
 use std::borrow::Cow;
 use std::ops::Range;
@@ -33,6 +35,7 @@ pub struct Scene {
     pub(crate) weights: Option<WeightBuffer>,
     pub(crate) primitives: Option<PrimitiveStreams>,
     pub(crate) texture: Option<TextureStream>,
+    pub(crate) materials: Option<MaterialStream>,
     colour_stream: ColourStream,
     windows: Vec<Range<u64>>,
     count: u64,
@@ -80,6 +83,8 @@ pub struct Streams {
     pub primitives: PrimitiveKinds,
     /// How it holds the texels of its texture, if it has one.
     pub texture: Option<ColourStream>,
+    /// Some points shine in their own way.
+    pub materials: bool,
 }
 
 /// Which lines and triangles a scene has.
@@ -206,6 +211,7 @@ impl Scene {
                 .transpose()?,
             primitives: PrimitiveStreams::new(device, uploads, &parts)?,
             texture: image.map(|image| TextureStream::new(device, uploads, image)).transpose()?,
+            materials: MaterialStream::new(device, uploads, &parts)?,
             windows,
             count,
             origin: parts.origin(),
@@ -244,7 +250,8 @@ impl Scene {
         let clips = self.clips.as_ref().map(|clips| &clips.buffer);
         let weights = self.weights.as_ref().map(|weights| &weights.buffer);
         let texture = self.texture.as_ref().map(|texture| &texture.buffer);
-        let optional = [self.ellipses.as_ref(), self.colours.as_ref(), clips, weights, texture]
+        let materials = self.materials.as_ref().map(|materials| &materials.buffer);
+        let optional = [self.ellipses.as_ref(), self.colours.as_ref(), clips, weights, texture, materials]
             .map(|stream| stream.map_or(0, Buffer::size));
         let primitives = self.primitives.as_ref().map_or(0, PrimitiveStreams::bytes);
         let always = self.positions.size() + self.normals.size() + self.radii.size();
@@ -266,6 +273,7 @@ impl Scene {
             colours: self.colour_stream,
             primitives: self.primitives.as_ref().map_or(PrimitiveKinds::NONE, PrimitiveStreams::kinds),
             texture: self.texture.as_ref().map(|texture| texture.texels),
+            materials: self.materials.is_some(),
         }
     }
 

@@ -51,6 +51,8 @@ pub struct Variant {
     pub primitives: PrimitiveKinds,
     /// Colours are looked up in a texture; how the scene holds its texels.
     pub texture: Option<ColourStream>,
+    /// Points shine in their own way, which is looked up by their numbers.
+    pub materials: bool,
     /// α is the part of a pixel that is covered.
     pub coverage: bool,
     /// What the picture shows.
@@ -147,6 +149,7 @@ impl Variant {
                 ..streams.primitives
             },
             texture,
+            materials: streams.materials && settings.pull_push.is_some() && shading == Shading::Lit,
             coverage: settings.alpha == Alpha::Coverage,
             shading,
             lights: if shading == Shading::Lit { settings.lighting.directional.len() as u32 } else { 0 },
@@ -164,6 +167,11 @@ impl Variant {
     /// Whether pull–push computes what is nearest: points that are not drawn, lines, triangles.
     pub fn computes_points(&self) -> bool {
         self.pull_push.is_some() && (self.rasterizer == Rasterizer::Compute || self.primitives.any())
+    }
+
+    /// Whether samples of pull–push have the numbers of points.
+    pub fn has_ids(&self) -> bool {
+        self.outputs.id || self.materials
     }
 
     /// Whether colours are summed: the scene's, light, or what stands in for them, where what is summed is not divided.
@@ -206,7 +214,8 @@ impl Variant {
             .with(constant::COVERAGE, self.coverage)
             .with(constant::TEXTURE, self.texture.is_some())
             .with(constant::TEXELS, self.texture.map_or(0, |texels| texels as u32))
-            .with(constant::IDS, self.outputs.id)
+            .with(constant::MATERIALS, self.materials)
+            .with(constant::IDS, self.has_ids())
             .with(constant::OUT_ID, self.outputs.id)
             .with(constant::BEYOND_CLIPS, self.coverage && self.clips)
             .with(constant::FOOTPRINT, self.footprint as u32)

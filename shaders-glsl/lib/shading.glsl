@@ -2,19 +2,27 @@
 
 layout(constant_id = 7) const uint LIGHTS = 0;
 
-vec3 blinn_phong(vec3 albedo, float lambert, float half_way, float diffuse) {
+// How a surface shines beside its colour: Blinn–Phong's specular factor and exponent.
+struct Shine {
+    vec3 specular;
+    float shininess;
+};
+
+#define FRAME_SHINE Shine(vec3(frame.specular), frame.shininess)
+
+vec3 blinn_phong(Shine shine, vec3 albedo, float lambert, float half_way, float diffuse) {
     if (lambert <= 0.0) return vec3(0.0);
-    float highlight = pow(max(half_way, 0.0), frame.shininess);
-    return diffuse * lambert * albedo + frame.specular * highlight;
+    float highlight = pow(max(half_way, 0.0), shine.shininess);
+    return diffuse * lambert * albedo + shine.specular * highlight;
 }
 
-vec3 lit(vec3 albedo, vec3 normal, vec3 view) {
+vec3 lit(Shine shine, vec3 albedo, vec3 normal, vec3 view) {
     float facing = dot(normal, view);
-    vec3 sum = frame.ambient * albedo + blinn_phong(albedo, facing, facing, frame.albedo.a);
+    vec3 sum = frame.ambient * albedo + blinn_phong(shine, albedo, facing, facing, frame.albedo.a);
     for (uint i = 0; i < LIGHTS; i++) {
         vec3 light = frame.to_light[i].xyz;
         float half_way = dot(normal, normalize(light + view));
-        sum += frame.radiance[i].rgb * blinn_phong(albedo, dot(normal, light), half_way, 1.0);
+        sum += frame.radiance[i].rgb * blinn_phong(shine, albedo, dot(normal, light), half_way, 1.0);
     }
     return sum;
 }
@@ -26,13 +34,13 @@ vec3 line_normal(vec3 tangent, vec3 towards) {
 }
 
 // A line has every normal across it: towards each light, the one that is brightest (marroquim2008 §4.2; its highlights likewise).
-vec3 lit_line(vec3 albedo, vec3 tangent, vec3 view) {
+vec3 lit_line(Shine shine, vec3 albedo, vec3 tangent, vec3 view) {
     float facing = dot(line_normal(tangent, view), view);
-    vec3 sum = frame.ambient * albedo + blinn_phong(albedo, facing, facing, frame.albedo.a);
+    vec3 sum = frame.ambient * albedo + blinn_phong(shine, albedo, facing, facing, frame.albedo.a);
     for (uint i = 0; i < LIGHTS; i++) {
         vec3 light = frame.to_light[i].xyz, middle = normalize(light + view);
         float lambert = dot(line_normal(tangent, light), light), half_way = dot(line_normal(tangent, middle), middle);
-        sum += frame.radiance[i].rgb * blinn_phong(albedo, lambert, half_way, 1.0);
+        sum += frame.radiance[i].rgb * blinn_phong(shine, albedo, lambert, half_way, 1.0);
     }
     return sum;
 }

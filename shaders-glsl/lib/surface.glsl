@@ -22,6 +22,6 @@ vec3 to_eye_of(uint i) {
 void surface_of(uint i, float epsilon, out vec3 first, out vec3 second) {
     vec3 normal = sign(epsilon) * vec3(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]);
     second = SUM_COLOURS ? colour_of(i) : vec3(0.0);
-    if (SHADE_SPLATS) second = lit(second, normal, to_eye_of(i));
+    if (SHADE_SPLATS) second = lit(FRAME_SHINE, second, normal, to_eye_of(i));
     first = SUM_NORMALS ? normal : second;
 }

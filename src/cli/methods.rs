@@ -68,6 +68,7 @@ fn variant(settings: &Settings, rasterizer: Rasterizer) -> Variant {
         colours: ColourStream::Srgb8,
         primitives: PrimitiveKinds::NONE,
         texture: None,
+        materials: false,
     };
     let settings = Settings { shading: Shading::Lit, ..settings.clone() };
     Variant::new(streams, true, &settings, &RenderOptions::default(), rasterizer)

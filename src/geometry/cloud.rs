@@ -1,7 +1,7 @@
 //! A point cloud as files hold it: positions, and whatever else there is.
 
 use super::morton::order;
-use super::{Clips, Colours, Ellipse, Surfels, Texture, Weights};
+use super::{Clips, Colours, Ellipse, Materials, Surfels, Texture, Weights};
 use glam::{DVec3, Vec3};
 
 /// Points as a structure of arrays; every array that is there has one entry a point.
@@ -27,6 +27,8 @@ pub struct Cloud {
     pub colours: Option<Colours>,
     /// What has the colours in place of [`Cloud::colours`].
     pub texture: Option<Texture>,
+    /// How points shine.
+    pub materials: Option<Materials>,
     /// A number a point, chosen on reading; not finite where there is none.
     pub scalar: Option<Vec<f64>>,
     /// Triangles between the points, counter-clockwise from outside; each index is one of a point.
@@ -119,6 +121,7 @@ impl Cloud {
             }),
             colours: self.colours.as_ref().map(|colours| colours.gather(kept)),
             texture: self.texture.as_ref().map(|texture| texture.gather(kept)),
+            materials: self.materials.as_ref().map(|materials| materials.gather(kept)),
             scalar: of(&self.scalar, kept),
             tangents: of(&self.tangents, kept),
             view: self.view,
@@ -159,6 +162,7 @@ impl From<Surfels> for Cloud {
             weights: surfels.weights,
             colours: surfels.colours,
             texture: surfels.texture,
+            materials: surfels.materials,
             ..Default::default()
         }
     }

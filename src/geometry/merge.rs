@@ -1,6 +1,8 @@
 //! Several sets of points as one.
 
-use super::{Bounds, Clips, Cloud, Colours, Ellipse, Model, Primitives, Surfels, Texture, View, Weights};
+use super::{
+    Bounds, Clips, Cloud, Colours, Ellipse, Materials, Model, Primitives, Surfels, Texture, View, Weights,
+};
 use crate::error::{Error, Result};
 use crate::io::srgb;
 use glam::{DVec3, Vec3};
@@ -13,10 +15,11 @@ impl Surfels {
     /// stay sRGB-encoded unless a part has linear ones. Where only some have shapes, the others' discs are circles; where only some
     /// name two-sided surfels, the others' are not; where only some have clips, the others' discs are whole;
     /// where not all have the same texture, those that have one get its colours at their points;
+    /// where only some have materials, the others' points have none;
     /// where only some have normalization weights, none has: there are none that would fit the others.
     ///
     /// # Errors
-    /// [`Error::Usage`] if there are more than 2³² − 1 surfels.
+    /// [`Error::Usage`] if there are more than 2³² − 1 surfels, or [`Materials::MOST`] materials.
     pub fn merge(parts: Vec<Self>, albedo: [f32; 3]) -> Result<Self> {
         Ok(Self::whole(Cloud::merge(parts.into_iter().map(Cloud::from).collect(), albedo)?))
     }
@@ -34,6 +37,7 @@ impl Surfels {
             weights: cloud.weights,
             colours: cloud.colours,
             texture: cloud.texture,
+            materials: cloud.materials,
         }
     }
 }
@@ -78,6 +82,7 @@ impl From<Primitives> for Cloud {
             radii: Some(primitives.radii),
             colours: primitives.colours,
             texture: primitives.texture,
+            materials: primitives.materials,
             ribbons: primitives.ribbons,
             tubes: primitives.tubes,
             triangles: primitives.triangles,
@@ -96,6 +101,7 @@ impl Primitives {
             radii: cloud.radii.unwrap_or_default(),
             colours: cloud.colours,
             texture: cloud.texture,
+            materials: cloud.materials,
             ribbons: cloud.ribbons,
             tubes: cloud.tubes,
             triangles: cloud.triangles,
@@ -121,6 +127,7 @@ impl Cloud {
         parts.iter_mut().for_each(|part| part.move_origin(origin));
         let parts = &mut parts[..];
         let texture = join_textures(parts);
+        let materials = join_materials(parts)?;
         Ok(Self {
             origin,
             view: common_view(parts),
@@ -129,6 +136,7 @@ impl Cloud {
             tubes: join_corners(parts, |part| &mut part.tubes),
             tangents: join(parts, |part| part.tangents.take(), |part| vec![Vec3::ZERO; part.len()]),
             texture,
+            materials,
             colours: join_colours(parts, albedo),
             // Before the normals, which circles are made of.
             ellipses: join(parts, |part| part.ellipses.take(), circles),
@@ -223,6 +231,11 @@ fn join_textures(parts: &mut [Cloud]) -> Option<Texture> {
         None => part.bake_texture(),
     });
     texture
+}
+
+fn join_materials(parts: &[Cloud]) -> Result<Option<Materials>> {
+    let each: Vec<_> = parts.iter().map(|part| (part.materials.as_ref(), part.len())).collect();
+    Materials::join(&each)
 }
 
 fn join_colours(parts: &mut [Cloud], albedo: [f32; 3]) -> Option<Colours> {

@@ -1,6 +1,6 @@
 //! Lines and triangles: what pull–push draws beside surfels.
 
-use super::{Bounds, Cloud, Colours, MipMap, Surfels, Texture};
+use super::{Bounds, Cloud, Colours, Materials, MipMap, Surfels, Texture};
 use crate::error::{Error, Result};
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
@@ -24,6 +24,8 @@ pub struct Primitives {
     pub colours: Option<Colours>,
     /// What has the colours in place of [`Primitives::colours`].
     pub texture: Option<Texture>,
+    /// How they shine: a segment or triangle as its first vertex does.
+    pub materials: Option<Materials>,
     /// Segments of ribbons.
     pub ribbons: Vec<[u32; 2]>,
     /// Segments of tubes.
@@ -97,6 +99,17 @@ impl Parts<'_> {
         parts.all(|part| part.is_some_and(|part| same(&part.image))).then_some(first)
     }
 
+    /// The materials of surfels, segments and triangles, one after the other as frames number them; `None` if there are none.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if there are more than [`Materials::MOST`].
+    pub(crate) fn materials(&self) -> Result<Option<Materials>> {
+        let elements = self.primitives.map(Primitives::element_materials);
+        let count = self.primitives.map_or(0, Primitives::count);
+        let surfels = (self.surfels.materials.as_ref(), self.surfels.len());
+        Materials::join(&[surfels, (elements.flatten().as_ref(), count)])
+    }
+
     /// A copy in which textures are colours, one a point.
     pub(crate) fn baked(&self) -> Model {
         let mut model =
@@ -159,6 +172,14 @@ impl Primitives {
         ribbons.chain(self.tubes.iter().map(|ends| (*ends, true)))
     }
 
+    /// The materials of segments, ribbons first, and triangles: those of their first vertices.
+    fn element_materials(&self) -> Option<Materials> {
+        let materials = self.materials.as_ref()?;
+        let segments = self.segments().map(|([first, _], _)| first);
+        let firsts: Vec<u32> = segments.chain(self.triangles.iter().map(|[first, ..]| *first)).collect();
+        Some(materials.gather(&firsts))
+    }
+
     /// Direction of the lines at every vertex: the mean of the segments' that end there, whichever way they go; 0 where there are none. Segments of
     /// vertices that do not exist have no part in it.
     pub fn line_directions(&self) -> Vec<Vec3> {
@@ -178,7 +199,7 @@ impl Primitives {
     /// Refuses arrays of unequal length, an origin that is not finite, and vertices that do not exist.
     ///
     /// # Errors
-    /// [`Error::Usage`], with the lengths, the origin or the vertex.
+    /// [`Error::Usage`], with the lengths, the origin, the material or the vertex.
     pub fn check(&self) -> Result<()> {
         if !self.origin.is_finite() {
             let text = format!("the origin of lines and triangles is {}: give a finite one", self.origin);
@@ -187,12 +208,14 @@ impl Primitives {
         let count = self.len();
         let colours = self.colours.as_ref().map_or(count, Colours::len);
         let textured = self.texture.as_ref().map_or(count, |texture| texture.coordinates.len());
-        let lengths = [self.directions.len(), self.radii.len(), colours, textured];
+        let materials = self.materials.as_ref().map_or(count, |materials| materials.of.len());
+        let lengths = [self.directions.len(), self.radii.len(), colours, textured, materials];
         if lengths.iter().any(|&length| length != count) {
             return Err(Error::Usage(format!(
-                "{count} vertices with {lengths:?} directions, radii, colours and texture coordinates: give one each"
+                "{count} vertices with {lengths:?} directions, radii, colours, texture coordinates and materials: give one each"
             )));
         }
+        self.materials.as_ref().map_or(Ok(()), Materials::check)?;
         let ends = self.segments().flat_map(|(ends, _)| ends);
         match ends.chain(self.triangles.iter().copied().flatten()).find(|&vertex| vertex as usize >= count) {
             None => Ok(()),
@@ -262,7 +285,8 @@ mod tests {
             |p| p.colours = Some(Colours::Linear(vec![])),
             |p| p.origin.x = f64::NAN,
         ];
-        let causes = ["vertex 2, and there are 2", "vertex 9", "[2, 1, 2, 2]", "[2, 2, 0, 2]", "finite"];
+        let causes =
+            ["vertex 2, and there are 2", "vertex 9", "[2, 1, 2, 2, 2]", "[2, 2, 0, 2, 2]", "finite"];
         for (change, said) in changes.into_iter().zip(causes) {
             let mut primitives = two();
             change(&mut primitives);

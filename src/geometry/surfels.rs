@@ -1,6 +1,6 @@
 //! A set of surfels: oriented discs that sample a surface.
 
-use super::{Clips, Texture, Weights};
+use super::{Clips, Materials, Texture, Weights};
 use crate::error::{Error, Result};
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
@@ -32,6 +32,8 @@ pub struct Surfels {
     pub colours: Option<Colours>,
     /// What has the colours in place of [`Surfels::colours`].
     pub texture: Option<Texture>,
+    /// How they shine, where pull–push lights them; all as the frame's lighting says where there are none.
+    pub materials: Option<Materials>,
 }
 
 /// The shape of an elliptical disc whose longer semi-axis is the surfel's radius. The other axis is normal × major.
@@ -71,10 +73,10 @@ impl Surfels {
         self.positions.is_empty()
     }
 
-    /// Refuses arrays of unequal length, an origin that is not finite, and clips and corners that do not exist.
+    /// Refuses arrays of unequal length, an origin that is not finite, and clips, corners and materials that do not exist.
     ///
     /// # Errors
-    /// [`Error::Usage`], with the lengths, the origin, the clip or the corners.
+    /// [`Error::Usage`], with the lengths, the origin, the clip, the corners or the material.
     pub fn check(&self) -> Result<()> {
         if !self.origin.is_finite() {
             return Err(Error::Usage(format!("the surfels' origin is {}: give a finite one", self.origin)));
@@ -89,14 +91,16 @@ impl Surfels {
             self.weights.as_ref().map_or(count, |weights| weights.of.len()),
             self.colours.as_ref().map_or(count, Colours::len),
             self.texture.as_ref().map_or(count, |texture| texture.coordinates.len()),
+            self.materials.as_ref().map_or(count, |materials| materials.of.len()),
         ];
         if lengths.iter().all(|&length| length == count) {
             self.clips.as_ref().map_or(Ok(()), Clips::check)?;
+            self.materials.as_ref().map_or(Ok(()), Materials::check)?;
             return self.weights.as_ref().map_or(Ok(()), Weights::check);
         }
         Err(Error::Usage(format!(
-            "{count} positions with {lengths:?} normals, radii, ellipses, sides, clips, weights, colours and texture coordinates: give \
-             one each"
+            "{count} positions with {lengths:?} normals, radii, ellipses, sides, clips, weights, colours, texture coordinates \
+             and materials: give one each"
         )))
     }
 
@@ -114,6 +118,7 @@ impl Surfels {
         self.clips.iter_mut().for_each(|clips| clips.permute(order));
         self.weights.iter_mut().for_each(|weights| weights.permute(order));
         self.texture.iter_mut().for_each(|texture| gather(&mut texture.coordinates, order));
+        self.materials.iter_mut().for_each(|materials| gather(&mut materials.of, order));
         match &mut self.colours {
             Some(Colours::Srgb8(colours)) => gather(colours, order),
             Some(Colours::Linear(colours)) => gather(colours, order),

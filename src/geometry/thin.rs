@@ -16,7 +16,7 @@ impl Cloud {
     /// origin included.
     ///
     /// The point is the mean of its voxel's: of positions, of normals (0 where they cancel), of colours in linear light, of the finite
-    /// scalars. A texture becomes colours. Radii, ellipses, clips, weights and triangles, which belonged to the closer points, are dropped: a normal that only the triangles told is
+    /// scalars; its material is the one that most of them have. A texture becomes colours. Radii, ellipses, clips, weights and triangles, which belonged to the closer points, are dropped: a normal that only the triangles told is
     /// then estimated from the points. The points of lines and, if there are lines, of triangles stay as they are, before the others. The
     /// result does not depend on the number of threads.
     ///
@@ -44,6 +44,9 @@ impl Cloud {
                 groups.par_iter().map(|group| members(group).any(|i| two_sided[i])).collect()
             }),
             colours: self.colours.as_ref().map(|colours| mean_colours(colours, &groups)),
+            materials: self.materials.as_ref().map(|materials| {
+                materials.of_groups(groups.iter().map(|group| group.iter().map(|&(_, index)| index)))
+            }),
             scalar: self.scalar.as_ref().map(|scalar| {
                 groups.par_iter().map(|group| mean_finite(members(group).map(|i| scalar[i]))).collect()
             }),

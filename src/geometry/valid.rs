@@ -124,6 +124,7 @@ mod tests {
             weights: Some(Weights::collect([(0.5, None), (0.25, Some([0.1, 0.2, 0.3, 0.4]))])),
             colours: Some(Colours::Linear(vec![[-1.0, 0.0, 1e14]; 2])),
             texture: Some(texture()),
+            materials: None,
         }
     }
 

@@ -15,9 +15,14 @@ pub(super) fn pyramid_layout(device: &Arc<Device>) -> Result<SetLayout> {
     SetLayout::new(device, &[(DescriptorType::STORAGE_BUFFER, ShaderStageFlags::COMPUTE); PLANES])
 }
 
-/// Layout of a set of one buffer: the nearest points, the picture, or a texture.
+/// Layout of a set of one buffer: the nearest points, or the picture.
 pub(super) fn plain_layout(device: &Arc<Device>) -> Result<SetLayout> {
     SetLayout::new(device, &[(DescriptorType::STORAGE_BUFFER, ShaderStageFlags::COMPUTE)])
+}
+
+/// Layout of a set of what shade looks up: a texture, materials.
+pub(super) fn lookups_layout(device: &Arc<Device>) -> Result<SetLayout> {
+    SetLayout::new(device, &[(DescriptorType::STORAGE_BUFFER, ShaderStageFlags::COMPUTE); 2])
 }
 
 /// The pipeline of a pass over pixels, of the SPIR-V `code`: the frame's numbers are its descriptor set 0, what it reads and writes the sets

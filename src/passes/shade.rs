@@ -15,19 +15,20 @@ use std::sync::Arc;
 pub struct Shade {
     frame_layout: SetLayout,
     pipeline: ComputePipeline,
-    /// Whether it looks colours up in a texture.
-    textured: bool,
+    /// Whether it looks colours up in a texture, or materials by the numbers of points.
+    looks_up: bool,
 }
 
 impl Shade {
     /// The pass for `variant`.
     pub fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self> {
-        let sets = [&layout.pyramid, &layout.plain, &layout.plain];
-        let pipeline = match variant.texture {
-            Some(_) => over_pixels(device, &sets, variant, shaders::SHADE_TEXTURED_COMPUTE)?,
-            None => over_pixels(device, &sets[..2], variant, shaders::SHADE_COMPUTE)?,
+        let sets = [&layout.pyramid, &layout.plain, &layout.lookups];
+        let looks_up = variant.texture.is_some() || variant.materials;
+        let pipeline = match looks_up {
+            true => over_pixels(device, &sets, variant, shaders::SHADE_LOOKUPS_COMPUTE)?,
+            false => over_pixels(device, &sets[..2], variant, shaders::SHADE_COMPUTE)?,
         };
-        Ok(Self { frame_layout: frame_layout(device)?, pipeline, textured: variant.texture.is_some() })
+        Ok(Self { frame_layout: frame_layout(device)?, pipeline, looks_up })
     }
 
     /// The set of the frame's numbers; `frame` must outlive it.
@@ -35,7 +36,7 @@ impl Shade {
         DescriptorSet::new(device, &self.frame_layout, &[Binding::Uniform(frame)])
     }
 
-    /// Level 0 of what is pushed, and the texture of `splats` → `targets.picture`.
+    /// Level 0 of what is pushed, and texture and materials of `splats` → `targets.picture`.
     pub fn record(
         &self,
         rec: &mut Recorder<'_>,
@@ -47,9 +48,9 @@ impl Shade {
         let [_, pushed] = targets.storage.push(0);
         let read = targets.pyramids[pushed].with(Access::COMPUTE_READ);
         let uses: Vec<_> = read.chain([targets.picture.buffer.with(Access::COMPUTE_WRITE)]).collect();
-        let texture = splats.texture().filter(|_| self.textured);
+        let lookups = splats.lookups().filter(|_| self.looks_up);
         let sets: Vec<_> =
-            [frame, &sets.pyramids[pushed], &sets.picture].into_iter().chain(texture).collect();
+            [frame, &sets.pyramids[pushed], &sets.picture].into_iter().chain(lookups).collect();
         rec.pass("shade", &uses, |enc| visit(enc, &self.pipeline, &sets, targets, 0));
     }
 }

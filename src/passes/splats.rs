@@ -1,8 +1,9 @@
 //! The splats between the footprint pass, which writes them, and the passes that rasterize them.
 
+use super::coverage::whole;
 use super::points::drawn_layout;
 use super::primitives::{PrimitiveSets, primitive_layout};
-use super::pyramid::{plain_layout, pyramid_layout};
+use super::pyramid::{lookups_layout, plain_layout, pyramid_layout};
 use super::scatter::pixel_layout;
 use crate::error::Result;
 use crate::scene::{ClipWindow, Scene};
@@ -20,8 +21,10 @@ use std::sync::Arc;
 pub struct SplatLayout {
     pub(super) splats: SetLayout,
     pub(super) pixels: SetLayout,
-    /// One buffer: a word or more a pixel, or a texture.
+    /// One buffer: a word or more a pixel.
     pub(super) plain: SetLayout,
+    /// What is looked up: a texture, materials.
+    pub(super) lookups: SetLayout,
     /// The planes of a pyramid.
     pub(super) pyramid: SetLayout,
     pub(super) primitives: SetLayout,
@@ -39,7 +42,7 @@ pub struct Splats {
     screen_clips: Option<Buffer>,
     windows: Vec<Window>,
     primitives: Option<PrimitiveSets>,
-    texture: Option<DescriptorSet>,
+    lookups: Option<DescriptorSet>,
 }
 
 /// As many splats as one descriptor can name.
@@ -82,6 +85,7 @@ impl SplatLayout {
             splats: SetLayout::new(device, &bindings)?,
             pixels: pixel_layout(device)?,
             plain: plain_layout(device)?,
+            lookups: lookups_layout(device)?,
             pyramid: pyramid_layout(device)?,
             primitives: primitive_layout(device)?,
             drawn_points: drawn_layout(device)?,
@@ -175,17 +179,20 @@ impl Splats {
             .as_ref()
             .map(|streams| PrimitiveSets::new(device, layout, streams))
             .transpose()?;
-        let texture = scene.texture.as_ref().map(|texture| {
-            let whole = Binding::Storage(&texture.buffer, 0, texture.buffer.size());
-            DescriptorSet::new(device, &layout.plain, &[whole])
+        let texture = scene.texture.as_ref().map(|texture| &texture.buffer);
+        let materials = scene.materials.as_ref().map(|materials| &materials.buffer);
+        // Where there is but one of them, it stands at the other's binding, too.
+        let lookups = texture.or(materials).zip(materials.or(texture));
+        let lookups = lookups.map(|(texture, materials)| {
+            DescriptorSet::new(device, &layout.lookups, &[texture, materials].map(whole))
         });
-        let texture = texture.transpose()?;
-        Ok(Self { splats, counts, large, screen_clips, windows, primitives, texture })
+        let lookups = lookups.transpose()?;
+        Ok(Self { splats, counts, large, screen_clips, windows, primitives, lookups })
     }
 
-    /// The scene's texture, if it has one.
-    pub(super) fn texture(&self) -> Option<&DescriptorSet> {
-        self.texture.as_ref()
+    /// The scene's texture and materials, if it has any.
+    pub(super) fn lookups(&self) -> Option<&DescriptorSet> {
+        self.lookups.as_ref()
     }
 
     pub(super) fn primitives(&self) -> Option<&PrimitiveSets> {

@@ -4,7 +4,7 @@ use super::Projector;
 use super::conic::clearance;
 use super::ellipse::Ellipse;
 use super::image::Disc;
-use super::shading::{linear, lit};
+use super::shading::{Shine, linear, lit};
 use crate::error::Result;
 use crate::geometry::{Camera, Clip, ClipLine, Colours, Surfels, square_axis};
 use crate::settings::{Cull, Settings, Shading};
@@ -247,7 +247,7 @@ impl Projector {
             true => centre - self.eye(),
             false => DVec3::new(0.0, 0.0, self.depth.forward),
         };
-        lit(lighting, albedo, normal, -self.to_world(away).normalize())
+        lit(lighting, Shine::of_frame(lighting), albedo, normal, -self.to_world(away).normalize())
     }
 
     /// The semi-axes of the covered disc, eye space.

@@ -39,7 +39,7 @@ pub use judge::{Channel, Tolerance, Worst};
 pub use normalize::Value;
 pub use projector::Projector;
 pub use scene::Counts;
-pub(crate) use shading::{line_normal, linear, lit, lit_line};
+pub(crate) use shading::{Shine, line_normal, linear, lit, lit_line};
 pub use slack::Slack;
 
 use crate::Progress;

@@ -4,7 +4,7 @@ use super::Projector;
 use super::attribute::Sums;
 use super::bands::Band;
 use super::rank::Rank;
-use super::shading::lit;
+use super::shading::{Shine, lit};
 use crate::settings::Shading;
 use crate::splatting::{Normalization, Shade};
 use glam::{DVec2, DVec3};
@@ -70,7 +70,7 @@ pub(super) fn resolve(projector: &Projector, at: DVec2, sums: Option<&Sums>, alp
     let shown = match settings.shading {
         // The splats are lit already.
         Shading::Lit if settings.splatting.shade == Shade::Splat => colour,
-        Shading::Lit => lit(&settings.lighting, colour, normal, viewer),
+        Shading::Lit => lit(&settings.lighting, Shine::of_frame(&settings.lighting), colour, normal, viewer),
         Shading::Colour => colour,
         Shading::Normal => normal,
         Shading::Depth => DVec3::splat(depth),

@@ -1,18 +1,48 @@
 //! Light: linear Blinn–Phong, and the decoding of colours.
 
+use crate::geometry::Material;
 use crate::settings::Lighting;
 use glam::DVec3;
 
+/// How a surface shines beside its colour.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Shine {
+    specular: DVec3,
+    shininess: f64,
+}
+
+impl Shine {
+    /// Of what has no material.
+    pub fn of_frame(lighting: &Lighting) -> Self {
+        Self { specular: DVec3::splat(lighting.specular.into()), shininess: lighting.shininess.into() }
+    }
+}
+
+impl From<Material> for Shine {
+    fn from(material: Material) -> Self {
+        Self {
+            specular: DVec3::from_array(material.specular.map(f64::from)),
+            shininess: material.shininess.into(),
+        }
+    }
+}
+
 /// The shade of a surface of linear colour `albedo`; `normal` and `viewer` (from the surface to the eye) are unit vectors in
 /// world space.
-pub(crate) fn lit(lighting: &Lighting, albedo: DVec3, normal: DVec3, viewer: DVec3) -> DVec3 {
-    by_cosines(lighting, albedo, viewer, |towards| normal.dot(towards))
+pub(crate) fn lit(lighting: &Lighting, shine: Shine, albedo: DVec3, normal: DVec3, viewer: DVec3) -> DVec3 {
+    by_cosines(lighting, shine, albedo, viewer, |towards| normal.dot(towards))
 }
 
 /// The shade of a line with a unit `tangent`, which has every normal across it: towards each light, the one that is brightest
 /// (marroquim2008 section 4.2; its highlights likewise).
-pub(crate) fn lit_line(lighting: &Lighting, albedo: DVec3, tangent: DVec3, viewer: DVec3) -> DVec3 {
-    by_cosines(lighting, albedo, viewer, |towards| line_normal(tangent, towards).dot(towards))
+pub(crate) fn lit_line(
+    lighting: &Lighting,
+    shine: Shine,
+    albedo: DVec3,
+    tangent: DVec3,
+    viewer: DVec3,
+) -> DVec3 {
+    by_cosines(lighting, shine, albedo, viewer, |towards| line_normal(tangent, towards).dot(towards))
 }
 
 /// Of all normals across a line, the one that is turned `towards`, both unit.
@@ -21,9 +51,14 @@ pub(crate) fn line_normal(tangent: DVec3, towards: DVec3) -> DVec3 {
 }
 
 /// Blinn–Phong, given the cosine of the angle between the surface's normal and a direction.
-fn by_cosines(lighting: &Lighting, albedo: DVec3, viewer: DVec3, cosine: impl Fn(DVec3) -> f64) -> DVec3 {
-    let [ambient, headlight, specular, shininess] =
-        [lighting.ambient, lighting.headlight, lighting.specular, lighting.shininess].map(f64::from);
+fn by_cosines(
+    lighting: &Lighting,
+    Shine { specular, shininess }: Shine,
+    albedo: DVec3,
+    viewer: DVec3,
+    cosine: impl Fn(DVec3) -> f64,
+) -> DVec3 {
+    let [ambient, headlight] = [lighting.ambient, lighting.headlight].map(f64::from);
     // The headlight stands at the eye: light, half-way and view direction are one.
     let facing = cosine(viewer).max(0.0);
     let mut light = albedo * (ambient + headlight * facing) + specular * facing.powf(shininess);
@@ -59,7 +94,7 @@ mod tests {
             Lighting { ambient: 0.1, headlight: 0.8, specular: 0.2, shininess: 2.0, ..Default::default() };
         let shade = |lighting: &Lighting, degrees: f64| {
             let (sin, cos) = degrees.to_radians().sin_cos();
-            lit(lighting, DVec3::splat(0.5), DVec3::new(sin, 0.0, cos), DVec3::Z)
+            lit(lighting, Shine::of_frame(lighting), DVec3::splat(0.5), DVec3::new(sin, 0.0, cos), DVec3::Z)
         };
         let near = |a: DVec3, b: [f64; 3]| a.abs_diff_eq(DVec3::from_array(b), 1e-7);
         assert!(near(shade(&lighting, 0.0), [0.65; 3]));

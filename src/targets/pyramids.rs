@@ -50,7 +50,7 @@ fn formats(variant: &Variant) -> [Option<Format>; PLANES] {
     // A texture has the colours.
     let coordinates = variant.texture.map(|_| Format::R32G32_SFLOAT);
     let colours = coordinates.or_else(|| variant.sums_colours().then_some(colours));
-    [Some(depths), Some(places), Some(normals), colours, variant.outputs.id.then_some(ids)]
+    [Some(depths), Some(places), Some(normals), colours, variant.has_ids().then_some(ids)]
 }
 
 /// The plane of colours.

@@ -3,7 +3,7 @@
 use super::scene::Scene;
 use crate::error::Result;
 use crate::geometry::Camera;
-use crate::reference::{Projector, lit};
+use crate::reference::{Projector, Shine, lit};
 use crate::settings::{Settings, Shading};
 use glam::{DVec2, DVec3};
 
@@ -48,7 +48,7 @@ impl<'a, S: Scene + ?Sized> Eye<'a, S> {
         let lighting = &self.settings.lighting;
         let albedo = DVec3::from(hit.albedo.unwrap_or(lighting.albedo.map(f64::from)));
         let colour = match self.settings.shading {
-            Shading::Lit => lit(lighting, albedo, normal, viewer),
+            Shading::Lit => lit(lighting, Shine::of_frame(lighting), albedo, normal, viewer),
             _ => albedo,
         };
         Some(Seen { colour, depth, normal })

@@ -36,7 +36,7 @@ impl Shot<'_> {
     /// The frame's twin.
     pub fn reconstruction(&self) -> Reconstruction {
         let full = Reconstruction::new(&self.camera, self.size, &self.settings, self.pull_push).unwrap();
-        let full = full.textured(self.parts);
+        let full = full.of(self.parts).unwrap();
         match self.compact() {
             Some(compact) => full.with_compact(compact),
             None => full,

@@ -30,6 +30,7 @@ impl Draft {
             weights: cloud.weights,
             colours: cloud.colours,
             texture: cloud.texture,
+            materials: cloud.materials,
         };
         surfels.check().map_err(|error| error.to_string())?;
         if u32::try_from(count).is_err() {

@@ -67,6 +67,7 @@ impl Cloud {
             radii,
             colours: self.colours,
             texture: self.texture,
+            materials: self.materials,
             ribbons: self.ribbons,
             tubes: self.tubes,
             triangles: self.triangles,
@@ -106,6 +107,9 @@ impl Primitives {
             self.radii.push(self.radii[i as usize]);
             if let Some(texture) = &mut self.texture {
                 texture.coordinates.push(texture.coordinates[i as usize]);
+            }
+            if let Some(materials) = &mut self.materials {
+                materials.of.push(materials.of[i as usize]);
             }
             match &mut self.colours {
                 Some(Colours::Srgb8(codes)) => codes.push(codes[i as usize]),

@@ -93,6 +93,9 @@ impl<'a> Made<'a> {
     pub fn finish(self, lined: &mut Lined) -> Result<Cloud, String> {
         let Self { cloud, mut new, sources, kept, .. } = self;
         new.colours = cloud.colours.as_ref().map(|colours| means(colours, &sources));
+        let materials = cloud.materials.as_ref();
+        new.materials =
+            materials.map(|materials| materials.of_groups(sources.iter().map(|group| group.iter().copied())));
         let mut was = vec![false; cloud.len()];
         cloud.triangles.iter().flatten().for_each(|&i| was[i as usize] = true);
         lined.vertices[0] = was.iter().filter(|was| **was).count() as u64;

@@ -42,7 +42,8 @@ impl Cloud {
     /// Leaves and branches of the cloud's triangles as ribbons and tubes; triangles that are neither, lines and other points stay. Points
     /// that nothing uses any more go.
     ///
-    /// New vertices have the mean colour, in linear light, of those that they stand for; they have no scalar. A texture becomes colours.
+    /// New vertices have the mean colour, in linear light, of those that they stand for, and the material that most of them have; they
+    /// have no scalar. A texture becomes colours.
     ///
     /// # Errors
     /// The cause, without the input's name, if there are more than 2³² − 1 points afterwards.

@@ -1,7 +1,7 @@
 //! Where the points go: one array for each attribute that the file can have, filled piece by piece from several threads.
 
 use super::Parsed;
-use super::layout::{CORNERS, Layout, SCALAR, Shape, TANGENT, TEXTURE, WEIGHT};
+use super::layout::{CORNERS, Layout, MATERIAL, SCALAR, Shape, TANGENT, TEXTURE, WEIGHT};
 use super::source::room;
 use crate::geometry::{Clip, Ellipse};
 use glam::{DVec3, Vec2, Vec3};
@@ -60,6 +60,7 @@ arrays! {
     codes: [u8; 4], Layout::has_codes, "sRGB-encoded colours.";
     linear: [f32; 3], |layout: &Layout| layout.colour.is_some() && !layout.has_codes(), "Linear colours.";
     coordinates: Vec2, |layout: &Layout| layout.fills(TEXTURE), "Coordinates in a texture.";
+    materials: u16, |layout: &Layout| layout.fills(MATERIAL), "Numbers of materials, `Materials::NONE` where there is none.";
     scalar: f64, |layout: &Layout| layout.fills(SCALAR), "The chosen scalar.";
 }
 

@@ -3,12 +3,12 @@
 use super::arrays::Slices;
 use super::block::Block;
 use super::layout::{
-    AXES, CLIPS, COLOUR, CONCAVE, CORNERS, Colour, Layout, NORMAL, OPACITY, POSITION, RADIUS, ROTATION,
-    SCALAR, Shape, TANGENT, TEXTURE, TWO_SIDED, WEIGHT,
+    AXES, CLIPS, COLOUR, CONCAVE, CORNERS, Colour, Layout, MATERIAL, NORMAL, OPACITY, POSITION, RADIUS,
+    ROTATION, SCALAR, Shape, TANGENT, TEXTURE, TWO_SIDED, WEIGHT,
 };
 use super::shape::{self, Disc};
 use super::types::Scalar;
-use crate::geometry::{Clip, ClipLine};
+use crate::geometry::{Clip, ClipLine, Materials};
 use crate::io::srgb;
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
@@ -74,6 +74,11 @@ pub(super) fn convert(block: &Block, layout: &Layout, out: &mut Slices) -> Tally
         let at = DVec2::new(*u, *v).as_vec2();
         // What is nowhere has some place.
         *to = if at.is_finite() { at } else { Vec2::ZERO };
+    }
+    for (to, number) in out.materials.iter_mut().zip(block.column(MATERIAL)) {
+        // Whole numbers of a table alone survive the way there and back.
+        let index = *number as u16;
+        *to = if f64::from(index) == *number { index } else { Materials::NONE };
     }
     out.scalar.iter_mut().zip(block.column(SCALAR)).for_each(|(to, value)| *to = *value);
     // Here, as the entries are still in the cache.

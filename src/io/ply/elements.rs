@@ -6,6 +6,7 @@ use super::binary::Cursor;
 use super::convert::Tally;
 use super::header::Header;
 use super::layout::Layout;
+use super::materials::Table;
 use super::meter::Meter;
 use super::others::{Found, Others};
 use super::points::Points;
@@ -22,6 +23,7 @@ pub(super) struct Contents {
     pub points: Points,
     pub faces: Faces,
     pub lines: Lines,
+    pub materials: Table,
     pub trailing: u64,
     /// Which elements were used.
     pub used: Vec<bool>,
@@ -129,11 +131,12 @@ impl File<'_> {
         for element in &elements[self.vertex + 1..] {
             used.push(others.read(&mut reader, element)?);
         }
-        let Found { cloud: Cloud { ribbons, tubes, triangles, view, .. }, faces, lines } = others.finish();
+        let Found { cloud: Cloud { ribbons, tubes, triangles, view, .. }, faces, lines, materials } =
+            others.finish();
         points.cloud = Cloud { ribbons, tubes, view, ..points.cloud };
         if told || points.cloud.has_lines() {
             points.cloud.triangles = triangles;
         }
-        Ok(Contents { points, faces, lines, trailing: reader.trailing() as u64, used })
+        Ok(Contents { points, faces, lines, materials, trailing: reader.trailing() as u64, used })
     }
 }

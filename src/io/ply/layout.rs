@@ -33,8 +33,10 @@ pub(super) const CORNERS: usize = 32;
 pub(super) const TANGENT: usize = 36;
 /// Column of u in a texture; v follows.
 pub(super) const TEXTURE: usize = 39;
+/// Column of material_index.
+pub(super) const MATERIAL: usize = 41;
 /// Column of the scalar that the caller has chosen.
-pub(super) const SCALAR: usize = 41;
+pub(super) const SCALAR: usize = 42;
 
 /// Names of the columns of two clip lines.
 pub(super) const CLIP_LINES: [[&str; 4]; 2] =
@@ -48,6 +50,8 @@ pub(super) const CORNER_NAMES: [&str; 4] =
     ["surfel_weight0", "surfel_weight1", "surfel_weight2", "surfel_weight3"];
 /// Names of the columns of tangents.
 pub(super) const TANGENT_NAMES: [&str; 3] = ["tx", "ty", "tz"];
+/// Name of the column that has the number of a material.
+pub(super) const MATERIAL_NAME: &str = "material_index";
 const TEXTURES: &[[&str; 2]] = &[["texture_u", "texture_v"], ["s", "t"], ["u", "v"]];
 const NORMALS: &[[&str; 3]] = &[["nx", "ny", "nz"], ["normal_x", "normal_y", "normal_z"]];
 const COLOURS: &[[&str; 3]] =
@@ -187,6 +191,13 @@ impl Layout {
         let find = Finder { properties: &vertex.properties };
         if let Some(place) = TEXTURES.iter().find_map(|names| find.all(*names)) {
             self.fill(TEXTURE, place);
+        }
+    }
+
+    /// Looks for numbers of materials. Where there are none, the same name may be anything.
+    pub fn find_materials(&mut self, vertex: &Element) {
+        if let Some(number) = (Finder { properties: &vertex.properties }).one(MATERIAL_NAME) {
+            self.fill(MATERIAL, [number]);
         }
     }
 
@@ -335,7 +346,7 @@ mod tests {
             let mut layout = layout(names, Scalar::F32);
             assert!(!layout.fills(TEXTURE), "{names}: without a texture they are none");
             layout.find_texture(&vertex(names, Scalar::F32));
-            assert_eq!(layout.columns[TEXTURE..SCALAR], found.map(Some), "{names}");
+            assert_eq!(layout.columns[TEXTURE..MATERIAL], found.map(Some), "{names}");
         }
         let mut half = layout("x y z u t", Scalar::F32);
         half.find_texture(&vertex("x y z u t", Scalar::F32));

@@ -20,6 +20,7 @@
 //! | | float, double | colour, linear light; 1 is white |
 //! | `f_dc_0..2 opacity scale_0..2 rot_0..3` | float | a 3D Gaussian (or 2D, without `scale_2`) with the INRIA layout's logarithms, logits and `rot_0` as the real part: the disc of two standard deviations across its smallest axis, two-sided unless there is a normal; less than a tenth opaque is none |
 //! | `texture_u texture_v`, `s t` or `u v` | any | coordinates in the texture that `comment TextureFile NAME` names, relative to the file, or [`ReadOptions`] give: u to the right, v upwards; without one they are numbers like others |
+//! | `material_index` | any | number of a record of the element `material`, from 0; others, such as −1, are that of none |
 //! | any | any | [`Cloud::scalar`], if [`ReadOptions`] names it |
 //!
 //! | element | property | becomes |
@@ -29,6 +30,8 @@
 //! | `edge` | `vertex1 vertex2`, or a list of two as of faces | a segment of a line, unless it is the side of a face and has no `tube` |
 //! | `polyline`, `linestrips` | list `vertex_indices` or `vertex_index` | lines; −1 begins another |
 //! | of these three | `tube`, any, written as uchar | not 0: a tube; 0: a ribbon. Where there is none, and where an end has no normal: a ribbon if both ends have normals, otherwise a tube |
+//! | `material` | `specular_red specular_green specular_blue`, `specular_coeff`, of which either may be absent; `specular_power` | how the points of this `material_index` shine ([`Cloud::materials`]): uchar is sRGB-encoded, floats are linear; the factor multiplies |
+//! | | `diffuse_red diffuse_green diffuse_blue`, `diffuse_coeff` | their colour, likewise, where vertices have none |
 //! | `range_grid` | list `vertex_indices` of no vertex or one; `obj_info num_cols`, `num_rows` | triangles between neighbours, where the surface is not torn; [`View::Towards`](crate::geometry::View::Towards) +z |
 //! | `camera` | `view_px view_py view_pz` | [`View::From`](crate::geometry::View::From); all 0, which is what some programs write of any cloud, is not known |
 //!
@@ -49,6 +52,7 @@ mod grid;
 mod header;
 mod layout;
 mod lines;
+mod materials;
 mod meter;
 mod others;
 mod points;
@@ -76,6 +80,7 @@ use elements::{Contents, File};
 use header::Header;
 use layout::{Layout, Shape};
 use meter::Meter;
+use points::Points;
 use source::Source;
 use std::path::Path;
 use std::sync::Arc;
@@ -172,6 +177,9 @@ fn parse_records(
     let vertex = layout::find_vertex(&header.elements)?;
     let lines = header.elements.iter().any(|element| element.count > 0 && lines::ends(element).is_some());
     let mut layout = Layout::of(&header.elements[vertex], options.scalar.as_deref(), lines)?;
+    if header.elements.iter().any(|element| materials::Columns::of(element).is_some()) {
+        layout.find_materials(&header.elements[vertex]);
+    }
     let texture = find_texture(&header, vertex, &mut layout, options, folder);
     // Text keeps its digits, whatever type the header names.
     layout.narrow &= header.format != Format::Ascii;
@@ -186,7 +194,9 @@ fn parse_records(
         Ok(image) => contents.points.cloud.texture = image.map(|image| Texture { image, coordinates }),
         Err(cause) => report.texture_missing = Some(cause),
     }
-    Ok(Loaded { cloud: contents.points.cloud, report })
+    let Points { mut cloud, materials, .. } = contents.points;
+    contents.materials.give(&mut cloud, materials);
+    Ok(Loaded { cloud, report })
 }
 
 /// The texture of a file whose vertices have coordinates, if it is known; why it is not.

@@ -4,6 +4,7 @@ use super::Parsed;
 use super::faces::Collector;
 use super::grid::Grid;
 use super::lines::{self, Ends, Segments, TUBE};
+use super::materials::{Columns, Table};
 use super::meter::Meter;
 use super::points::Points;
 use super::records::{Reader, walk};
@@ -20,6 +21,7 @@ pub(super) struct Others<'a> {
     points: &'a Points,
     collector: Collector<'a>,
     segments: Segments<'a>,
+    materials: Table,
     view: View,
 }
 
@@ -29,20 +31,23 @@ pub(super) struct Found {
     pub cloud: Cloud,
     pub faces: Faces,
     pub lines: Lines,
+    pub materials: Table,
 }
 
 impl<'a> Others<'a> {
     /// Triangles are looked at if they are asked for.
     pub fn new(grid: [Option<u64>; 2], meter: &'a Meter<'a>, points: &'a Points, triangles: bool) -> Self {
         let (collector, segments) = (Collector::new(points, triangles), Segments::new(points));
-        Self { grid, meter, points, collector, segments, view: View::Unknown }
+        let materials = Table::default();
+        Self { grid, meter, points, collector, segments, materials, view: View::Unknown }
     }
 
-    /// Faces, lines, and from where the points were seen.
+    /// Faces, lines, materials, and from where the points were seen.
     pub fn finish(self) -> Found {
         let Collector { triangles, faces, .. } = self.collector;
         let (found, lines) = self.segments.finish(&triangles);
-        Found { cloud: Cloud { triangles, view: self.view, ..found }, faces, lines }
+        let cloud = Cloud { triangles, view: self.view, ..found };
+        Found { cloud, faces, lines, materials: self.materials }
     }
 
     /// Reads an element, understood or not; says whether it was.
@@ -63,6 +68,9 @@ impl<'a> Others<'a> {
             _ => {
                 if let Some(ends) = lines::ends(element) {
                     return self.lines(reader, element, ends);
+                }
+                if let Some(columns) = Columns::of(element) {
+                    return self.materials(reader, element, &columns);
                 }
                 walk(reader, element, &vec![false; element.properties.len()], self.meter, |_, _| Ok(()))?;
                 Ok(false)
@@ -104,6 +112,16 @@ impl<'a> Others<'a> {
                 }
                 Ends::List(_) => segments.strip(list, tube),
             }
+            Ok(())
+        })?;
+        Ok(true)
+    }
+
+    fn materials<R: Reader>(&mut self, reader: &mut R, element: &Element, columns: &Columns) -> Parsed<bool> {
+        let wanted: Vec<bool> = (0..element.properties.len()).map(|index| columns.uses(index)).collect();
+        let table = &mut self.materials;
+        walk(reader, element, &wanted, self.meter, |numbers, _| {
+            columns.add(numbers, table);
             Ok(())
         })?;
         Ok(true)

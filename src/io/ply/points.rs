@@ -36,6 +36,8 @@ pub(super) struct Points {
     pub weights: u64,
     /// Coordinates in a texture, if the file has some.
     pub coordinates: Vec<Vec2>,
+    /// Numbers of materials, if the file has some.
+    pub materials: Vec<u16>,
 }
 
 /// What stands in the map for a vertex that was dropped.
@@ -51,9 +53,10 @@ impl Points {
         }
         let map = (dropped.total() > 0).then(|| leave_out(&mut arrays));
         let coordinates = std::mem::take(&mut arrays.coordinates);
+        let materials = std::mem::take(&mut arrays.materials);
         let cloud = cloud(arrays);
         let Tally { lacking, clip_lines, weights, .. } = tally;
-        Ok(Self { cloud, dropped, count, map, lacking, clip_lines, weights, coordinates })
+        Ok(Self { cloud, dropped, count, map, lacking, clip_lines, weights, coordinates, materials })
     }
 
     /// The point that a vertex has become; `None` if there is no such vertex, or if it was dropped.

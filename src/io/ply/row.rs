@@ -1,9 +1,10 @@
 //! Records, as ply-rs asks for them: by name and type.
 
-use super::layout::{CLIP_CONCAVE, CLIP_LINES, CORNER_NAMES, TANGENT_NAMES, WEIGHT_NAME};
+use super::layout::{CLIP_CONCAVE, CLIP_LINES, CORNER_NAMES, MATERIAL_NAME, TANGENT_NAMES, WEIGHT_NAME};
 use super::lines::TUBE;
+use super::materials;
 use super::write::Whole;
-use crate::geometry::{Clip, Colours, Ellipse, Primitives};
+use crate::geometry::{Clip, Colours, Ellipse, Material, Primitives};
 use crate::io::srgb;
 use crate::settings::Lighting;
 use glam::{DVec3, Vec3};
@@ -42,6 +43,7 @@ pub(super) struct Row {
     clip: Clip,
     weight: f32,
     corners: [f32; 4],
+    material: i32,
 }
 
 impl Row {
@@ -64,6 +66,7 @@ impl Row {
             clip: surfels.clips.as_ref().and_then(|clips| clips.get(i)).copied().unwrap_or_default(),
             weight: surfels.weights.as_ref().map_or(0.0, |weights| weights.of[i]),
             corners: surfels.weights.as_ref().and_then(|weights| weights.corners_of(i)).unwrap_or_default(),
+            material: whole.material(i),
         }
     }
 
@@ -79,6 +82,7 @@ impl Row {
             srgb,
             // Of no disc, but 0 would be counted as a weight that is none.
             weight: 1.0,
+            material: whole.material(whole.parts.surfels.len() + i),
             ..Default::default()
         }
     }
@@ -141,6 +145,10 @@ impl PropertyAccess for Row {
         }
     }
 
+    fn get_int(&self, name: &String) -> Option<i32> {
+        (name == MATERIAL_NAME).then_some(self.material)
+    }
+
     fn get_uchar(&self, name: &String) -> Option<u8> {
         if name == "two_sided" {
             return Some(self.two_sided.into());
@@ -149,6 +157,22 @@ impl PropertyAccess for Row {
             return Some(self.clip.concave.into());
         }
         Some(self.srgb[["red", "green", "blue"].iter().position(|channel| channel == name)?])
+    }
+}
+
+/// A material.
+pub(super) struct Shine(pub Material);
+
+impl PropertyAccess for Shine {
+    fn new() -> Self {
+        Self(Material { specular: [0.0; 3], shininess: 1.0 })
+    }
+
+    fn get_float(&self, name: &String) -> Option<f32> {
+        match materials::SPECULAR.iter().position(|channel| channel == name) {
+            Some(channel) => Some(self.0.specular[channel]),
+            None => (name == materials::POWER).then_some(self.0.shininess),
+        }
     }
 }
 

@@ -1,10 +1,11 @@
 //! Writing models, through ply-rs: its writer is sound for binary records, as long as the header's counts and the lists' lengths are ours.
 
-use super::layout::{CLIP_CONCAVE, CLIP_LINES, CORNER_NAMES, TANGENT_NAMES, WEIGHT_NAME};
+use super::layout::{CLIP_CONCAVE, CLIP_LINES, CORNER_NAMES, MATERIAL_NAME, TANGENT_NAMES, WEIGHT_NAME};
 use super::lines::TUBE;
-use super::row::{Line, Row, Triangle};
+use super::materials;
+use super::row::{Line, Row, Shine, Triangle};
 use crate::error::{Error, Result};
-use crate::geometry::{Colours, Parts, Primitives};
+use crate::geometry::{Colours, Materials, Parts, Primitives};
 use crate::io::atomic;
 use glam::DVec3;
 use ply_rs::ply::{
@@ -19,7 +20,9 @@ use std::path::Path;
 /// uchar; if there are clips, their lines clip0x clip0y clip0z clip0d clip1x clip1y clip1z clip1d as float, all 0 where there is none, and
 /// clip_concave as uchar; if there are normalization weights, surfel_weight as float, and if there are some at corners, surfel_weight0 to
 /// surfel_weight3 as float, all 0 where there are none; if there are tubes, their tangents tx ty tz as float, with which nx ny nz are 0;
-/// red green blue as uchar if sRGB-encoded, as float if linear; of a texture, its colours at the vertices.
+/// red green blue as uchar if sRGB-encoded, as float if linear; of a texture, its colours at the vertices;
+/// if there are materials, material_index as int, −1 where there is none, and an element material with specular_red specular_green
+/// specular_blue and specular_power as float, those of the surfels first.
 ///
 /// The surfels come first, then the vertices that lines and triangles use, in their order. If there are lines, an element edge has
 /// vertex1 and vertex2 and, as uchar, tube: ribbons first, then tubes. If there are triangles, an element face has the list
@@ -38,7 +41,8 @@ pub fn write<'a>(path: &Path, parts: impl Into<Parts<'a>>) -> Result<()> {
             "{count} surfels and vertices in one file: at most 2³² − 1 are read"
         )));
     }
-    atomic::write(path, |mut out| records(&mut out, &Whole::new(parts)))
+    let whole = Whole::new(parts)?;
+    atomic::write(path, |mut out| records(&mut out, &whole))
 }
 
 /// What is written.
@@ -53,10 +57,12 @@ pub(super) struct Whole<'a> {
     pub normal: Vec<bool>,
     /// Colours of surfels and of vertices that have a texture.
     baked: [Option<Colours>; 2],
+    /// Materials of surfels, and then of all vertices.
+    materials: Option<Materials>,
 }
 
 impl<'a> Whole<'a> {
-    fn new(parts: Parts<'a>) -> Self {
+    fn new(parts: Parts<'a>) -> Result<Self> {
         let none = Primitives::default();
         let primitives = parts.primitives.unwrap_or(&none);
         let (mut tangent, mut normal) = (vec![false; primitives.len()], vec![false; primitives.len()]);
@@ -73,7 +79,12 @@ impl<'a> Whole<'a> {
         let of_surfels = of_surfels.map(|t| t.baked(&parts.surfels.positions, Some(&parts.surfels.radii)));
         let of_vertices =
             primitives.texture.as_ref().map(|t| t.baked(&primitives.positions, Some(&primitives.radii)));
-        Self { parts, vertices, place, tangent, normal, baked: [of_surfels, of_vertices] }
+        let materials = Materials::join(&[
+            (parts.surfels.materials.as_ref(), parts.surfels.len()),
+            (primitives.materials.as_ref(), primitives.len()),
+        ])?;
+        let baked = [of_surfels, of_vertices];
+        Ok(Self { parts, vertices, place, tangent, normal, baked, materials })
     }
 
     /// Number of vertices in the file.
@@ -90,6 +101,12 @@ impl<'a> Whole<'a> {
         if i32::try_from(self.len()).is_ok() { ScalarType::Int } else { ScalarType::UInt }
     }
 
+    /// Number of the material of a surfel, or behind these of a vertex of lines and triangles; −1 if it has none.
+    pub fn material(&self, point: usize) -> i32 {
+        let number = self.materials.as_ref().map(|materials| materials.of[point]);
+        number.filter(|&number| number != Materials::NONE).map_or(-1, i32::from)
+    }
+
     /// Colours of surfels and of vertices.
     pub fn colours(&self) -> [Option<&Colours>; 2] {
         let [of_surfels, of_vertices] = self.baked.each_ref().map(Option::as_ref);
@@ -102,9 +119,11 @@ fn records(out: &mut impl Write, whole: &Whole) -> io::Result<()> {
     let none = Primitives::default();
     let primitives = whole.parts.primitives.unwrap_or(&none);
     let (vertex, edge, face) = (vertex(whole), edge(whole, primitives), face(whole, primitives));
+    let material = material(whole);
     let mut header = Header::new();
     header.encoding = Encoding::BinaryLittleEndian;
-    let there = [&vertex].into_iter().chain([&edge, &face].into_iter().filter(|element| element.count > 0));
+    let others = [&edge, &face, &material].into_iter().filter(|element| element.count > 0);
+    let there = [&vertex].into_iter().chain(others);
     there.for_each(|element| header.elements.add(element.clone()));
     Writer::<Row>::new().write_header(out, &header)?;
     // Record by record: a payload of its own would hold everything twice.
@@ -114,7 +133,9 @@ fn records(out: &mut impl Write, whole: &Whole) -> io::Result<()> {
     each(out, &edge, primitives.segments().map(|(ends, tube)| Line { ends: whole.place(&ends), tube }))?;
     // ply-rs takes the number of records for the length of each one's list.
     let face = ElementDef { count: 3, ..face };
-    each(out, &face, primitives.triangles.iter().map(|corners| Triangle::of(whole.place(corners))))
+    each(out, &face, primitives.triangles.iter().map(|corners| Triangle::of(whole.place(corners))))?;
+    let table = whole.materials.iter().flat_map(|materials| materials.table.iter());
+    each(out, &material, table.copied().map(Shine))
 }
 
 fn each<T: PropertyAccess>(
@@ -155,6 +176,9 @@ fn vertex(whole: &Whole) -> ElementDef {
         add(&[WEIGHT_NAME], ScalarType::Float);
         add(if weights.corners.is_empty() { &[] } else { &CORNER_NAMES }, ScalarType::Float);
     }
+    if whole.materials.is_some() {
+        add(&[MATERIAL_NAME], ScalarType::Int);
+    }
     if whole.tangent.contains(&true) {
         add(&TANGENT_NAMES, ScalarType::Float);
     }
@@ -174,6 +198,14 @@ fn edge(whole: &Whole, primitives: &Primitives) -> ElementDef {
     add(&mut edge, &["vertex1", "vertex2"], whole.index());
     add(&mut edge, &[TUBE], ScalarType::UChar);
     edge
+}
+
+fn material(whole: &Whole) -> ElementDef {
+    let mut material = ElementDef::new(materials::ELEMENT.into());
+    material.count = whole.materials.as_ref().map_or(0, |materials| materials.table.len());
+    add(&mut material, &materials::SPECULAR, ScalarType::Float);
+    add(&mut material, &[materials::POWER], ScalarType::Float);
+    material
 }
 
 fn face(whole: &Whole, primitives: &Primitives) -> ElementDef {

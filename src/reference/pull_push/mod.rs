@@ -27,7 +27,7 @@ mod texture;
 
 use super::{Frame, Projector};
 use crate::error::Result;
-use crate::geometry::{Camera, MipMap, Parts, Surfels};
+use crate::geometry::{Camera, Materials, MipMap, Parts, Surfels};
 use crate::pull_push::{PullPush, Rules};
 use crate::settings::Settings;
 use glam::{DVec2, DVec3};
@@ -147,6 +147,8 @@ pub struct Reconstruction {
     lens: Lens,
     pull_push: PullPush,
     texture: Option<Arc<MipMap>>,
+    /// By the numbers of points.
+    materials: Option<Materials>,
     compact: Option<Compact>,
 }
 
@@ -155,13 +157,19 @@ impl Reconstruction {
     pub fn new(camera: &Camera, size: [u32; 2], settings: &Settings, pull_push: PullPush) -> Result<Self> {
         let projector = Projector::new(camera, size, settings)?;
         let lens = Lens::new(&projector);
-        Ok(Self { projector, lens, pull_push, texture: None, compact: None })
+        Ok(Self { projector, lens, pull_push, texture: None, materials: None, compact: None })
     }
 
-    /// The same frame of `parts` that have a texture: samples have coordinates in it then. As published, there are none.
-    pub fn textured<'a>(mut self, parts: impl Into<Parts<'a>>) -> Self {
-        self.texture = parts.into().texture().filter(|_| self.pull_push.rules == Rules::Robust).cloned();
-        self
+    /// The same frame of `parts` that have a texture or materials: samples have coordinates in that then, which as published they have not, and
+    /// shine as these say.
+    ///
+    /// # Errors
+    /// [`Error::Usage`](crate::Error::Usage) if there are more than [`Materials::MOST`].
+    pub fn of<'a>(mut self, parts: impl Into<Parts<'a>>) -> Result<Self> {
+        let parts = parts.into();
+        self.texture = parts.texture().filter(|_| self.pull_push.rules == Rules::Robust).cloned();
+        self.materials = parts.materials()?;
+        Ok(self)
     }
 
     /// The same with the compact layout: what a pass makes is rounded before the next sees it.
@@ -274,7 +282,7 @@ pub fn render<'a>(
 ) -> Result<Frame> {
     let parts = parts.into();
     parts.check()?;
-    let reconstruction = Reconstruction::new(camera, size, settings, pull_push)?.textured(parts);
+    let reconstruction = Reconstruction::new(camera, size, settings, pull_push)?.of(parts)?;
     if reconstruction.texture.is_none() && parts.has_texture() {
         return render(&parts.baked(), camera, size, settings, pull_push);
     }

@@ -1,7 +1,7 @@
 //! Pass `shade`: the picture, lit pixel by pixel (marroquim2008 section 3.4).
 
 use super::super::normalize::{Value, over_background, uncovered};
-use super::super::{Frame, line_normal, lit, lit_line};
+use super::super::{Frame, Shine, line_normal, lit, lit_line};
 use super::{Level, Margin, Reconstruction, Sample, coverage, texture};
 use crate::pull_push::Rules;
 use crate::settings::{Alpha, Shading};
@@ -61,12 +61,15 @@ fn value(frame: &Reconstruction, sample: &Sample, at: DVec2, alpha: f64) -> Valu
         }
     };
     let settings = &projector.settings;
+    let lighting = &settings.lighting;
+    let material = frame.materials.as_ref().and_then(|materials| materials.material(sample.id as usize));
+    let shine = material.map_or(Shine::of_frame(lighting), Shine::from);
     let is_line = sample.tube && frame.pull_push.rules == Rules::Paper;
     let shown = match settings.shading {
         Shading::Lit if is_line => {
-            lit_line(&settings.lighting, sample.colour, projector.to_world(sample.normal), viewer)
+            lit_line(lighting, shine, sample.colour, projector.to_world(sample.normal), viewer)
         }
-        Shading::Lit => lit(&settings.lighting, sample.colour, normal, viewer),
+        Shading::Lit => lit(lighting, shine, sample.colour, normal, viewer),
         Shading::Colour => sample.colour,
         Shading::Normal => normal,
         Shading::Depth => DVec3::splat(depth),

@@ -1,8 +1,9 @@
 //! What is understood beyond positions, normals, radii and colours.
 
 use super::*;
-use crate::geometry::{Clip, ClipLine, Clips, View, Weights};
+use crate::geometry::{Clip, ClipLine, Clips, Material, View, Weights};
 use crate::picture::Picture;
+use crate::settings::Lighting;
 use glam::Vec2;
 
 const SQUARE: &str = "0 0 0\n1 0 0\n1 1 0\n0 1 0\n";
@@ -271,6 +272,44 @@ fn progress_goes_from_nothing_to_all() {
     let log = log.0.into_inner().unwrap();
     assert_eq!((log[0], log[log.len() - 1]), ([0, size], [size, size]));
     assert!(log.iter().all(|[done, _]| *done <= size));
+}
+
+#[test]
+fn materials_are_those_of_the_table_and_colour_what_has_no_colour() {
+    let vertices = |more: &str| format!("element vertex 4\n{XYZ}\nproperty short material_index\n{more}");
+    let points = "0 0 0 1\n1 0 0 -1\n2 0 0 0\n3 0 0 2\n";
+    let shine = "element material 2\nproperty uchar specular_red\nproperty uchar specular_green\nproperty uchar specular_blue\n\
+                 property float specular_coeff\nproperty float specular_power";
+    let paint = "property float diffuse_red\nproperty float diffuse_green\nproperty float diffuse_blue";
+    let records = "255 0 188 0.5 20 1 0.5 0\n255 255 255 -1 0 0 nan -2\n";
+    let materials = [
+        Material { specular: [0.5, 0.0, 0.251_443_23], shininess: 20.0 },
+        Material { specular: [0.0; 3], shininess: 1.0 },
+    ];
+    let none = Materials::NONE;
+    let expected = Materials { table: materials.into(), of: vec![1, none, 0, none] };
+    let grey = Lighting::default().albedo;
+    for first in [false, true] {
+        let table = format!("{shine}\n{paint}");
+        let file = match first {
+            false => text(&format!("{}{table}", vertices("")), &format!("{points}{records}")),
+            true => text(&format!("{table}\n{}", vertices("").trim_end()), &format!("{records}{points}")),
+        };
+        let Loaded { cloud, report } = read_bytes("a", &file, &ReadOptions::default()).unwrap();
+        assert_eq!(cloud.materials.as_ref(), Some(&expected), "{first}");
+        assert_eq!(cloud.colours, Some(Colours::Linear(vec![[0.0; 3], grey, [1.0, 0.5, 0.0], grey])));
+        assert_eq!((report.skipped.len(), report.skipped_elements.len()), (0, 0));
+    }
+    // Colours of their own come first; numbers of no table are numbers like others.
+    let own = text(
+        &format!("{}{paint}\nelement material 1\n{paint}", vertices("").replace("vertex 4", "vertex 1")),
+        "0 0 0 0 0.5 0.5 0.5\n1 1 1\n",
+    );
+    let cloud = read_bytes("a", &own, &ReadOptions::default()).unwrap().cloud;
+    assert_eq!((cloud.materials, cloud.colours), (None, Some(Colours::Linear(vec![[0.5; 3]]))));
+    let alone = read_bytes("a", &text(vertices("").trim_end(), points), &ReadOptions::default());
+    let Loaded { cloud, report } = alone.unwrap();
+    assert_eq!((cloud.materials, report.skipped), (None, vec!["material_index".to_owned()]));
 }
 
 #[test]

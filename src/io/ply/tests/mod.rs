@@ -8,6 +8,7 @@ mod written;
 
 use super::*;
 use crate::geometry::Colours;
+use crate::geometry::Materials;
 use glam::{DVec3, Vec3};
 use std::time::{Duration, Instant};
 

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::geometry::estimate::Estimate;
-use crate::geometry::{Clip, ClipLine, Clips, Ellipse, Model, Primitives, Surfels, Weights};
+use crate::geometry::{Clip, ClipLine, Clips, Ellipse, Material, Model, Primitives, Surfels, Weights};
 use crate::picture::Picture;
 use glam::Vec2;
 
@@ -119,6 +119,7 @@ fn everything(origin: DVec3, colours: impl Fn(usize) -> Option<Colours>) -> Mode
         radii: (0..50).map(|i| if i < 40 { vertices.radii[i] } else { 0.0 }).collect(),
         colours: vertices.colours,
         texture: None,
+        materials: None,
         ribbons,
         tubes,
         triangles,
@@ -151,6 +152,30 @@ fn models_read_back_bit_by_bit() {
             assert!(again == model, "{again:?}\n{model:?}");
         }
     }
+}
+
+#[test]
+fn materials_read_back_with_their_points() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("model.ply");
+    let mut model = everything(DVec3::ZERO, |_| None);
+    let material =
+        |i: u16| Material { specular: [0.1 * f32::from(i), 0.5, 2.0], shininess: 4.0 + f32::from(i) };
+    let table: Arc<[Material]> = (0..300).map(material).collect();
+    let of = |i: usize| if i.is_multiple_of(3) { Materials::NONE } else { 299 - i as u16 };
+    let materials = |count: usize| Some(Materials { table: table.clone(), of: (0..count).map(of).collect() });
+    (model.surfels.materials, model.primitives.materials) = (materials(100), materials(50));
+    write(&path, &model).unwrap();
+    let Loaded { cloud, report } = read(&path, &ReadOptions::default(), &()).unwrap();
+    assert_eq!((report.skipped.len(), report.skipped_elements.len()), (0, 0));
+    let (again, _) = cloud.into_model(false, &Estimate::default(), &()).unwrap();
+    assert!(again == model, "{again:?}\n{model:?}");
+    // Only some of what is drawn has any.
+    model.surfels.materials = None;
+    write(&path, &model).unwrap();
+    let (again, _) = read_back(&path).into_model(false, &Estimate::default(), &()).unwrap();
+    assert_eq!(again.primitives.materials, model.primitives.materials);
+    assert_eq!(again.surfels.materials.unwrap().of, [Materials::NONE; 100]);
 }
 
 #[test]

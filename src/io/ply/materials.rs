@@ -1,0 +1,137 @@
+//! The element `material`: how points shine, and their colours where they have none of their own.
+
+use super::lines::scalar;
+use super::types::{Element, Kind, Scalar};
+use crate::geometry::{Cloud, Colours, Material, Materials, Surfels};
+use crate::io::srgb;
+use crate::settings::Lighting;
+
+/// Name of the element.
+pub(super) const ELEMENT: &str = "material";
+/// Names of the specular factor's properties.
+pub(super) const SPECULAR: [&str; 3] = ["specular_red", "specular_green", "specular_blue"];
+/// Name of the exponent's.
+pub(super) const POWER: &str = "specular_power";
+const DIFFUSE: [&str; 3] = ["diffuse_red", "diffuse_green", "diffuse_blue"];
+
+/// Where the records have what is understood.
+pub(super) struct Columns {
+    specular: Colour,
+    diffuse: Colour,
+    power: Option<usize>,
+}
+
+/// A colour: its channels, and what they are multiplied by.
+struct Colour {
+    channels: Option<[(usize, Scalar); 3]>,
+    factor: Option<usize>,
+}
+
+/// The materials of a file.
+#[derive(Default)]
+pub(super) struct Table {
+    materials: Option<Vec<Material>>,
+    /// Linear.
+    colours: Option<Vec<[f32; 3]>>,
+}
+
+impl Colour {
+    fn of(element: &Element, names: [&str; 3], factor: &str) -> Self {
+        let channel = |name: &str| {
+            let index = scalar(element, name)?;
+            match element.properties[index].kind {
+                Kind::Scalar(scalar) => Some((index, scalar)),
+                Kind::List { .. } => None,
+            }
+        };
+        let channels = match names.map(channel) {
+            [Some(r), Some(g), Some(b)] => Some([r, g, b]),
+            _ => None,
+        };
+        Self { channels, factor: scalar(element, factor) }
+    }
+
+    fn is_there(&self) -> bool {
+        self.channels.is_some() || self.factor.is_some()
+    }
+
+    /// Linear light; what is no number, or below 0, is 0.
+    fn of_record(&self, numbers: &[f64]) -> [f32; 3] {
+        let factor = self.factor.map_or(1.0, |index| numbers[index]);
+        let linear = |(index, scalar): (usize, Scalar)| match scalar {
+            Scalar::U8 => srgb::decode(numbers[index] / 255.0),
+            _ => numbers[index],
+        };
+        let usable = |value: f64| {
+            let value = value as f32;
+            if (0.0..=Surfels::LARGEST).contains(&value) { value } else { 0.0 }
+        };
+        self.channels.map_or([1.0; 3], |channels| channels.map(linear)).map(|value| usable(factor * value))
+    }
+}
+
+impl Columns {
+    /// Of an element, if it is that of materials and something of it is understood.
+    pub fn of(element: &Element) -> Option<Self> {
+        let specular = Colour::of(element, SPECULAR, "specular_coeff");
+        let diffuse = Colour::of(element, DIFFUSE, "diffuse_coeff");
+        let found = Self { specular, diffuse, power: scalar(element, POWER) };
+        let any = found.specular.is_there() || found.diffuse.channels.is_some();
+        (element.name == ELEMENT && element.count > 0 && any).then_some(found)
+    }
+
+    /// Whether the property of this index is read.
+    pub fn uses(&self, index: usize) -> bool {
+        let of = |colour: &Colour| {
+            let channels = colour.channels.iter().flatten().map(|(channel, _)| *channel);
+            channels.chain(colour.factor).any(|channel| channel == index)
+        };
+        of(&self.specular) || of(&self.diffuse) || self.power == Some(index)
+    }
+
+    /// Adds a record to the table, as long as it has room.
+    pub fn add(&self, numbers: &[f64], table: &mut Table) {
+        if self.specular.is_there() {
+            let materials = table.materials.get_or_insert_default();
+            if materials.len() < Materials::MOST {
+                materials.push(self.material(numbers));
+            }
+        }
+        if self.diffuse.channels.is_some() {
+            let colours = table.colours.get_or_insert_default();
+            if colours.len() < Materials::MOST {
+                colours.push(self.diffuse.of_record(numbers));
+            }
+        }
+    }
+
+    /// An exponent of 0 is that of no highlight.
+    fn material(&self, numbers: &[f64]) -> Material {
+        let shininess =
+            self.power.map_or(Lighting::default().shininess, |index| numbers[index].min(1e6) as f32);
+        match shininess > 0.0 {
+            true => Material { specular: self.specular.of_record(numbers), shininess },
+            false => Material { specular: [0.0; 3], shininess: 1.0 },
+        }
+    }
+}
+
+impl Table {
+    /// Gives the points of a cloud the materials of these numbers, and where it has no colours, theirs. A number that is none of the table's
+    /// is that of no material.
+    pub fn give(self, cloud: &mut Cloud, mut numbers: Vec<u16>) {
+        if numbers.len() != cloud.len() {
+            return;
+        }
+        if let Some(colours) = self.colours.filter(|_| cloud.colours.is_none()) {
+            let albedo = Lighting::default().albedo;
+            let of = |number: &u16| colours.get(usize::from(*number)).copied().unwrap_or(albedo);
+            cloud.colours = Some(Colours::Linear(numbers.iter().map(of).collect()));
+        }
+        if let Some(table) = self.materials {
+            let none = |number: &&mut u16| usize::from(**number) >= table.len();
+            numbers.iter_mut().filter(none).for_each(|number| *number = Materials::NONE);
+            cloud.materials = Some(Materials { table: table.into(), of: numbers });
+        }
+    }
+}
