@@ -23,6 +23,8 @@ mod scenes;
 mod summary;
 mod truth;
 mod values;
+#[cfg(feature = "viewer")]
+mod view;
 mod vulkan;
 
 use args::{Command, Surfel};
@@ -38,6 +40,8 @@ pub fn run() -> ExitCode {
     };
     let done = match parsed.command {
         Command::Render(args) => render::run(&args),
+        #[cfg(feature = "viewer")]
+        Command::View(args) => view::run(*args),
         Command::Info(args) => info::run(&args),
         Command::Convert(args) => convert::run(&args),
         Command::Compare(args) => match compare::run(&args) {

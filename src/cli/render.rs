@@ -95,7 +95,7 @@ pub fn run(args: &Render) -> Result<()> {
 }
 
 /// The method that was asked for, or the one that is taken for such a scene.
-fn method(asked: Option<Method>, model: &Model) -> Result<Method> {
+pub fn method(asked: Option<Method>, model: &Model) -> Result<Method> {
     let splats = model.primitives.is_empty();
     match asked {
         Some(method) if !splats && method.pull_push.is_none() => Err(Error::Usage(format!(

@@ -35,7 +35,7 @@ pub(super) struct Candidate {
 
 /// Every device of this machine, in the order that `--device INDEX` counts. Errors if there is no Vulkan.
 pub fn describe_devices() -> Result<Vec<DeviceDescription>> {
-    let instance = Instance::new(false)?;
+    let instance = Instance::new(false, &[])?;
     Ok(candidates(&instance)?.into_iter().map(|candidate| candidate.description).collect())
 }
 

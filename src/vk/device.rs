@@ -6,6 +6,8 @@ use super::limits::{Capabilities, DeviceLimits};
 use super::memory::{self, MemorySource};
 use super::pipeline_cache::PipelineCache;
 use super::requirements::{Abilities, QUEUE};
+#[cfg(feature = "window")]
+use super::surface::{self, Surface, Window};
 use crate::error::{Error, Result};
 use ash::{ext::debug_utils, vk};
 use std::ffi::{CStr, CString};
@@ -54,7 +56,7 @@ enum Owner {
 struct Opened {
     queue: Mutex<vk::Queue>,
     family: u32,
-    instance: Instance,
+    instance: Arc<Instance>,
 }
 
 /// A device that a host lends: its own, to go on using while the engine does.
@@ -103,7 +105,28 @@ impl Device {
     ///
     /// [`Error::NoDevice`] if there is none, or no Vulkan, or no validation layer where it is wanted.
     pub fn open(options: &DeviceOptions) -> Result<Arc<Self>> {
-        let instance = Instance::new(options.validate)?;
+        Self::open_on(Arc::new(Instance::new(options.validate, &[])?), options, &[])
+    }
+
+    /// Opens the device that `options` ask for to present to `window`, and the window's surface.
+    ///
+    /// [`Error::NoDevice`] as of [`Device::open`], and if the device does not present to the window.
+    #[cfg(feature = "window")]
+    pub fn open_for(options: &DeviceOptions, window: Arc<dyn Window>) -> Result<(Arc<Self>, Surface)> {
+        let extensions = surface::instance_extensions(&*window)?;
+        let instance = Arc::new(Instance::new(options.validate, extensions)?);
+        let surface = Surface::new(&instance, window)?;
+        let device = Self::open_on(instance, options, &surface::DEVICE_EXTENSIONS)?;
+        let (_, family) = device.queue()?;
+        surface.check(device.physical, family, &device.description.name)?;
+        Ok((device, surface))
+    }
+
+    fn open_on(
+        instance: Arc<Instance>,
+        options: &DeviceOptions,
+        more: &[&'static CStr],
+    ) -> Result<Arc<Self>> {
         let chosen = choose(&instance, options.select.as_deref())?;
         let (physical, family, description) = (chosen.physical, chosen.family, chosen.description);
         // SAFETY: the physical device and the family are the instance's, whose version is 1.1.
@@ -113,7 +136,7 @@ impl Device {
         };
         let queues =
             [vk::DeviceQueueCreateInfo::default().queue_family_index(family).queue_priorities(&[1.0])];
-        let extensions: Vec<_> = enabled.extensions().map(CStr::as_ptr).collect();
+        let extensions: Vec<_> = enabled.extensions().chain(more.iter().copied()).map(CStr::as_ptr).collect();
         let mut features = enabled.features();
         let core = features.core;
         let info = vk::DeviceCreateInfo::default()
@@ -216,6 +239,26 @@ impl Device {
                 self.description.name
             ))),
         }
+    }
+
+    /// The instance that asks `physical`.
+    #[cfg(feature = "window")]
+    pub(super) fn instance(&self) -> &ash::Instance {
+        &self.instance
+    }
+
+    #[cfg(feature = "window")]
+    pub(super) fn physical(&self) -> vk::PhysicalDevice {
+        self.physical
+    }
+
+    /// Waits until the GPU has nothing left to do.
+    #[cfg(feature = "window")]
+    pub(super) fn wait_idle(&self) -> Result<()> {
+        let (queue, _) = self.queue()?;
+        let _locked = queue.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        // SAFETY: the device's only queue is locked.
+        unsafe { self.raw.device_wait_idle() }.map_err(Error::vulkan("vkDeviceWaitIdle"))
     }
 
     /// What images of `format` can be used for.

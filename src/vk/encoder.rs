@@ -119,6 +119,34 @@ impl<'a> Encoder<'a> {
             self.device.raw.cmd_copy_image_to_buffer(self.cmd, image.raw, layout, buffer.raw, &[region])
         };
     }
+
+    /// Copies `image`, scaled, over all of a window's image.
+    #[cfg(feature = "window")]
+    pub fn show(&mut self, image: &Image, window: &super::Presented) {
+        let layers = vk::ImageSubresourceLayers {
+            aspect_mask: vk::ImageAspectFlags::COLOR,
+            layer_count: 1,
+            ..Default::default()
+        };
+        let corners = |size: [u32; 2]| {
+            let [x, y] = size.map(|side| side as i32);
+            [vk::Offset3D::default(), vk::Offset3D { x, y, z: 1 }]
+        };
+        let region = vk::ImageBlit::default()
+            .src_subresource(layers)
+            .src_offsets(corners(image.size()))
+            .dst_subresource(layers)
+            .dst_offsets(corners(window.size));
+        // Pixels of the same size are copied as they are.
+        let filter = if image.size() == window.size { vk::Filter::NEAREST } else { vk::Filter::LINEAR };
+        use vk::ImageLayout as Layout;
+        let [from, to] = [Layout::TRANSFER_SRC_OPTIMAL, Layout::TRANSFER_DST_OPTIMAL];
+        // SAFETY: recorded outside a render pass; the pass's uses brought the image into this layout, and the window's is in its own.
+        unsafe {
+            let raw = &self.device.raw;
+            raw.cmd_blit_image(self.cmd, image.raw, from, window.image, to, &[region], filter);
+        }
+    }
 }
 
 /// Draws inside a render pass.

@@ -3,7 +3,7 @@
 use super::validation::{Messages, messenger_info};
 use crate::error::{Error, Result};
 use ash::{ext::debug_utils, vk};
-use std::ffi::CStr;
+use std::ffi::{CStr, c_char};
 
 const VALIDATION_LAYER: &CStr = c"VK_LAYER_KHRONOS_validation";
 
@@ -14,13 +14,13 @@ pub(super) struct Instance {
     pub(super) messages: Box<Messages>,
     messenger: Option<(debug_utils::Instance, vk::DebugUtilsMessengerEXT)>,
     // Unloads the Vulkan library: after everything else.
-    _entry: ash::Entry,
+    pub(super) entry: ash::Entry,
 }
 
 impl Instance {
-    /// Loads Vulkan and makes an instance of version 1.1; with `validate`, under the validation layer with synchronization
-    /// validation.
-    pub(super) fn new(validate: bool) -> Result<Self> {
+    /// Loads Vulkan and makes an instance of version 1.1 with these extensions; with `validate`, under the validation layer with
+    /// synchronization validation.
+    pub(super) fn new(validate: bool, extensions: &[*const c_char]) -> Result<Self> {
         // SAFETY: loading the system's Vulkan library runs its initialisers, which are trusted like any linked library's.
         let entry = unsafe { ash::Entry::load() }.map_err(|error| {
             Error::NoDevice(format!(
@@ -29,7 +29,8 @@ impl Instance {
         })?;
         let debug_utils = has_extension(&entry, None, debug_utils::NAME);
         let layer = if validate { vec![require_validation_layer(&entry)?.as_ptr()] } else { Vec::new() };
-        let extensions = if debug_utils { vec![debug_utils::NAME.as_ptr()] } else { Vec::new() };
+        let labels = debug_utils.then_some(debug_utils::NAME.as_ptr());
+        let extensions: Vec<_> = extensions.iter().copied().chain(labels).collect();
         let messages = Box::new(Messages::default());
         let application = vk::ApplicationInfo::default()
             .application_name(c"surfel")
@@ -48,7 +49,7 @@ impl Instance {
         // SAFETY: every pointer in `info` lives until after the call.
         let raw = unsafe { entry.create_instance(&info, None) }
             .map_err(|result| Error::NoDevice(format!("vkCreateInstance: {result}")))?;
-        let mut instance = Self { raw, debug_utils, messages, messenger: None, _entry: entry };
+        let mut instance = Self { raw, debug_utils, messages, messenger: None, entry };
         if validate {
             instance.listen()?;
         }
@@ -56,7 +57,7 @@ impl Instance {
     }
 
     fn listen(&mut self) -> Result<()> {
-        let loader = debug_utils::Instance::new(&self._entry, &self.raw);
+        let loader = debug_utils::Instance::new(&self.entry, &self.raw);
         // SAFETY: `messages` is boxed, so its address stays, and `drop` destroys the messenger before it.
         let messenger = unsafe { loader.create_debug_utils_messenger(&messenger_info(&self.messages), None) }
             .map_err(Error::vulkan("vkCreateDebugUtilsMessengerEXT"))?;

@@ -18,10 +18,18 @@ mod limits;
 mod memory;
 mod pipeline;
 mod pipeline_cache;
+#[cfg(feature = "window")]
+mod presenter;
 mod recorder;
 mod render_pass;
 mod requirements;
 pub mod shaders;
+#[cfg(feature = "window")]
+mod slot;
+#[cfg(feature = "window")]
+mod surface;
+#[cfg(feature = "window")]
+mod swapchain;
 mod timestamps;
 mod transfer;
 mod validation;
@@ -37,8 +45,12 @@ pub use image::{Image, ImageUse, pixel_bytes};
 pub use limits::{Capabilities, DeviceLimits};
 pub use memory::{HostMemory, Location, MemoryRequest, MemorySource};
 pub use pipeline::{Blend, ComputePipeline, Constants, DepthTest, DrawPipeline, DrawState, Topology, Within};
+#[cfg(feature = "window")]
+pub use presenter::{FRAMES_IN_FLIGHT, Presented, Presenter};
 pub use recorder::Recorder;
 pub use render_pass::{Attachment, Framebuffer, RenderPass};
 pub use requirements::{ABILITIES, API_VERSION, Abilities, Ability, Features, QUEUE};
+#[cfg(feature = "window")]
+pub use surface::{Surface, Window};
 pub use timestamps::PassTime;
 pub use transfer::{Staging, Uploads};

@@ -63,6 +63,13 @@ impl RenderPass {
     }
 }
 
+impl RenderPass {
+    /// Vulkan's handle, for who draws in it with pipelines of their own.
+    pub fn handle(&self) -> vk::RenderPass {
+        self.raw
+    }
+}
+
 impl Attachment {
     fn describe(&self) -> Option<vk::AttachmentDescription> {
         let (format, load) = match *self {

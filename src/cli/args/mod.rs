@@ -5,12 +5,16 @@ mod compare;
 mod convert;
 mod points;
 mod truth;
+#[cfg(feature = "viewer")]
+mod view;
 
 pub use bench::Bench;
 pub use compare::Compare;
 pub use convert::{Convert, Info};
 pub use points::{Colours, Points};
 pub use truth::Truth;
+#[cfg(feature = "viewer")]
+pub use view::View;
 
 use super::values::{
     Alpha, Background, Cull, Layer, Shading, Widen, background, kernel, method, size, vector,
@@ -37,6 +41,9 @@ pub struct Surfel {
 pub enum Command {
     /// Renders points to a picture
     Render(Box<Render>),
+    /// Opens a window to look at points and to move around them
+    #[cfg(feature = "viewer")]
+    View(Box<View>),
     /// Says what is in a file or scene, and what is estimated of it
     Info(Info),
     /// Makes surfels of points once and writes them to a PLY file
@@ -213,9 +220,16 @@ impl Axes {
 impl Render {
     /// The settings that this asks for of a method.
     pub fn settings(&self, method: &Method) -> Settings {
-        let (look, preset) = (&self.look, method.settings());
+        self.look.settings(&self.axes, method)
+    }
+}
+
+impl Look {
+    /// The settings that this asks for of a method, of which `axes` are changed.
+    fn settings(&self, axes: &Axes, method: &Method) -> Settings {
+        let (look, preset) = (self, method.settings());
         Settings {
-            splatting: self.axes.over(preset.splatting),
+            splatting: axes.over(preset.splatting),
             pull_push: preset.pull_push,
             cutoff: look.cutoff.unwrap_or(preset.cutoff),
             lowpass: look.lowpass.unwrap_or(preset.lowpass),

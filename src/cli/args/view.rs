@@ -1,0 +1,53 @@
+//! Options of `surfel view`.
+
+use super::{Axes, Camera, Colours, Look, OnDevice, Points};
+use crate::cli::values::{method, size};
+use clap::Args;
+use std::ffi::OsString;
+use surfel::methods::Method;
+use surfel::{Rasterizer, Settings};
+
+/// Options of `surfel view`.
+#[derive(Args, Debug)]
+pub struct View {
+    /// PLY files, or built-in scenes such as scene:bumpy-sphere; several become one scene
+    #[arg(required = true, value_name = "INPUT")]
+    pub inputs: Vec<OsString>,
+    /// How it is rendered at first; perspective-ewa unless given, pull-push where there are lines or triangles
+    #[arg(long, value_parser = method())]
+    pub method: Option<Method>,
+    /// What is changed of the method
+    #[command(flatten)]
+    pub axes: Axes,
+    /// Size of the window's picture, px
+    #[arg(long, value_name = "WxH", default_value = "1024x768", value_parser = size, allow_hyphen_values = true)]
+    pub size: [u32; 2],
+    /// How normals and radii are estimated
+    #[command(flatten)]
+    pub points: Points,
+    /// What points are coloured by
+    #[command(flatten)]
+    pub colours: Colours,
+    /// Where the camera stands at first
+    #[command(flatten)]
+    pub camera: Camera,
+    /// How surfels become a picture
+    #[command(flatten)]
+    pub look: Look,
+    /// What visits the pixels: the device's own rasterizer, or compute shaders; what is faster on the device unless given
+    #[arg(long, value_enum)]
+    pub rasterizer: Option<Rasterizer>,
+    /// On which device
+    #[command(flatten)]
+    pub device: OnDevice,
+    /// Prints nothing but warnings and errors
+    #[arg(short, long)]
+    pub quiet: bool,
+}
+
+impl View {
+    /// The settings that this asks for of a method.
+    pub fn settings(&self, method: &Method) -> Settings {
+        self.look.settings(&self.axes, method)
+    }
+}

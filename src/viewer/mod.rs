@@ -1,0 +1,51 @@
+//! The window: the first host of the engine, by its public interface alone.
+//!
+//! ```text
+//! load, on a thread of its own ─→ scene ─┐
+//! hands ─ orbit → camera ────────────────┴─ screen → window
+//! ```
+
+mod app;
+mod keys;
+mod load;
+mod orbit;
+mod screen;
+mod state;
+
+use glam::DVec3;
+use load::Load;
+use surfel::geometry::Model;
+use surfel::methods::Method;
+use surfel::vk::DeviceOptions;
+use surfel::{Rasterizer, Result, Settings};
+
+/// How the window is opened.
+pub struct Options {
+    /// Width and height of the picture, px.
+    pub size: [u32; 2],
+    /// Which device renders and presents.
+    pub device: DeviceOptions,
+    /// What visits the pixels; `None` takes what is faster on the device.
+    pub rasterizer: Option<Rasterizer>,
+    /// What is up in the world, of any length; the axis that is nearest is taken.
+    pub up: DVec3,
+}
+
+/// What is looked at.
+pub struct Loaded {
+    /// The scene.
+    pub model: Model,
+    /// How it is rendered at first.
+    pub method: Method,
+}
+
+/// The settings of a method.
+pub type Look = Box<dyn Fn(&Method) -> Settings>;
+
+/// Opens the window, and shows what `load` gives until it is closed.
+///
+/// # Errors
+/// That of `load`; [`surfel::Error::NoDevice`] where there is no display or no device; whatever rendering fails with.
+pub fn run(options: Options, load: Load, look: Look) -> Result<()> {
+    app::run(options, load, look)
+}

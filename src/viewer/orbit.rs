@@ -1,0 +1,411 @@
+//! The camera as hands move it: about a pivot, across the picture, towards what is under the cursor, or through the scene.
+//!
+//! Places on the picture are in px from its top left; angles are radians. Nothing glides on: what the hands do is what moves, and the same
+//! hand's way moves the same, however many frames it takes.
+
+use glam::{DMat3, DVec2, DVec3};
+use surfel::Result;
+use surfel::geometry::{Bounds, Camera};
+
+/// How far the camera turns on a way as long as the picture is high.
+const TURN: f64 = std::f64::consts::PI;
+/// What one step of the wheel leaves of the distance.
+const STEP: f64 = 0.85;
+/// Nearest to the pivot, and farthest from it, in radii of the scene.
+const REACH: [f64; 2] = [1e-6, 1e3];
+/// Speed of flight, distances to the pivot a second.
+const SPEED: f64 = 0.75;
+
+/// What is up in the world.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Up {
+    /// 0, 1, 2 for x, y, z.
+    pub axis: usize,
+    /// Whether it is the other way.
+    pub down: bool,
+}
+
+/// A side to look from; `Front` is where +z comes towards the viewer if y is up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    Front,
+    Back,
+    Left,
+    Right,
+    Top,
+    Bottom,
+}
+
+/// A picture that is being looked at.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lens {
+    /// Width and height, px.
+    pub size: [u32; 2],
+    /// Vertical angle of view.
+    pub fov_y: f64,
+    /// Rays are parallel; what is as far as the pivot is as large as in perspective.
+    pub parallel: bool,
+}
+
+/// Where the camera stands and looks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Orbit {
+    /// World space.
+    pub eye: DVec3,
+    /// What it is turned about, world space; in front of the eye, not always in the middle of the picture.
+    pub pivot: DVec3,
+    up: Up,
+    /// About what is up.
+    yaw: f64,
+    /// Above the horizon, from −π/2 to π/2: how far the camera looks down.
+    pitch: f64,
+}
+
+impl Up {
+    /// y.
+    pub const Y: Self = Self { axis: 1, down: false };
+
+    /// The unit vector.
+    pub fn vector(self) -> DVec3 {
+        let sign = if self.down { -1.0 } else { 1.0 };
+        sign * DVec3::AXES[self.axis]
+    }
+
+    /// What points to the right and towards the viewer at a yaw of 0, at right angles to it: right × up is towards the viewer.
+    fn level(self) -> [DVec3; 2] {
+        let right = DVec3::AXES[if self.axis == 0 { 1 } else { 0 }];
+        [right, right.cross(self.vector())]
+    }
+}
+
+impl Lens {
+    fn aspect(&self) -> f64 {
+        f64::from(self.size[0]) / f64::from(self.size[1])
+    }
+
+    /// World units a px, at a distance.
+    fn px(&self, distance: f64) -> f64 {
+        2.0 * distance * (0.5 * self.fov_y).tan() / f64::from(self.size[1])
+    }
+
+    /// From the middle of the picture, x to the right and y upwards, px.
+    fn from_middle(&self, at: DVec2) -> DVec2 {
+        let half = 0.5 * DVec2::from(self.size.map(f64::from));
+        (at - half) * DVec2::new(1.0, -1.0)
+    }
+}
+
+impl Orbit {
+    /// Looks at the middle of `bounds` from the front, a little from the right and above, from where all of it is seen.
+    pub fn framing(bounds: &Bounds, up: Up, lens: &Lens) -> Self {
+        let mut orbit = Self { eye: DVec3::ZERO, pivot: DVec3::ZERO, up, yaw: 0.56, pitch: 0.4 };
+        orbit.frame(bounds, lens);
+        orbit
+    }
+
+    /// What the camera looks along, to its right and up in the picture; unit vectors.
+    fn axes(&self) -> [DVec3; 3] {
+        let [right, towards] = self.up.level();
+        let (sin, cos) = self.yaw.sin_cos();
+        let away = sin * right + cos * towards;
+        let across = cos * right - sin * towards;
+        let (sin, cos) = self.pitch.sin_cos();
+        let forward = -(cos * away + sin * self.up.vector());
+        [forward, across, across.cross(forward)]
+    }
+
+    fn rotation(&self) -> DMat3 {
+        let [forward, right, up] = self.axes();
+        DMat3::from_cols(right, up, -forward)
+    }
+
+    /// Distance of the pivot ahead of the eye.
+    pub fn distance(&self) -> f64 {
+        self.axes()[0].dot(self.pivot - self.eye)
+    }
+
+    /// The camera, for a scene of these bounds.
+    pub fn camera(&self, lens: &Lens, bounds: &Bounds) -> Result<Camera> {
+        let [forward, _, up] = self.axes();
+        let reach = self.distance().max(f64::MIN_POSITIVE);
+        let target = self.eye + reach * forward;
+        if !lens.parallel {
+            let near = Camera::near_for(self.eye, bounds);
+            return Camera::look_at(self.eye, target, up, lens.fov_y, lens.aspect(), near);
+        }
+        let [middle, radius] = [forward.dot(bounds.centre() - self.eye), bounds.radius.max(reach)];
+        let height = lens.px(reach) * f64::from(lens.size[1]);
+        Camera::orthographic(
+            [self.eye, target, up],
+            height,
+            lens.aspect(),
+            [middle - 1.01 * radius, middle + 1.01 * radius],
+        )
+    }
+
+    /// Eye, what it looks at, and what is up in the picture.
+    pub fn look(&self) -> [DVec3; 3] {
+        let [forward, _, up] = self.axes();
+        [self.eye, self.eye + self.distance() * forward, up]
+    }
+
+    /// Turns about the pivot as the cursor moves by `way`: the surface follows it.
+    pub fn turn(&mut self, way: DVec2, lens: &Lens) {
+        let before = self.rotation();
+        let angles = TURN / f64::from(lens.size[1]) * way;
+        self.yaw -= angles.x;
+        self.pitch = (self.pitch + angles.y).clamp(-0.5 * std::f64::consts::PI, 0.5 * std::f64::consts::PI);
+        self.eye = self.pivot + self.rotation() * (before.transpose() * (self.eye - self.pivot));
+    }
+
+    /// Moves along the picture: what is as far as the pivot stays under the cursor, which moves by `way`.
+    pub fn pan(&mut self, way: DVec2, lens: &Lens) {
+        let [_, right, up] = self.axes();
+        let step = lens.px(self.distance()) * (way.x * right - way.y * up);
+        self.eye -= step;
+        self.pivot -= step;
+    }
+
+    /// So many steps of the wheel nearer to what is under the cursor, which stays there; `distance` is that of the surface at the cursor, or the
+    /// pivot's.
+    pub fn zoom(&mut self, steps: f64, at: DVec2, distance: Option<f64>, lens: &Lens, bounds: &Bounds) {
+        let [least, most] = REACH.map(|reach| reach * bounds.radius);
+        let reach = self.distance();
+        let part = (reach * STEP.powf(steps)).clamp(least, most.max(reach)) / reach;
+        let under = self.point(at, distance.unwrap_or(reach), lens);
+        self.eye = under + part * (self.eye - under);
+        self.pivot = under + part * (self.pivot - under);
+    }
+
+    /// The point at a distance ahead of the eye that is seen at `at`.
+    pub fn point(&self, at: DVec2, distance: f64, lens: &Lens) -> DVec3 {
+        let [forward, right, up] = self.axes();
+        let scale = lens.px(if lens.parallel { self.distance() } else { distance });
+        let at = scale * lens.from_middle(at);
+        self.eye + distance * forward + at.x * right + at.y * up
+    }
+
+    /// Turns about this point from now on; the picture stays.
+    pub fn set_pivot(&mut self, point: DVec3, lens: &Lens) {
+        let was = self.distance();
+        self.pivot = point;
+        if lens.parallel {
+            // Its distance has the picture's scale.
+            self.eye += (self.distance() - was) * self.axes()[0];
+        }
+    }
+
+    /// Looks about from where it stands, as the cursor moves by `way`.
+    pub fn look_about(&mut self, way: DVec2, lens: &Lens) {
+        let before = self.rotation();
+        let to_pivot = self.pivot - self.eye;
+        let angles = TURN / f64::from(lens.size[1]) * way;
+        self.yaw -= angles.x;
+        self.pitch = (self.pitch + angles.y).clamp(-0.5 * std::f64::consts::PI, 0.5 * std::f64::consts::PI);
+        self.pivot = self.eye + self.rotation() * (before.transpose() * to_pivot);
+    }
+
+    /// Flies for so many seconds; `way` is how much to the right, up and ahead, each from −1 to 1.
+    pub fn fly(&mut self, way: DVec3, seconds: f64) {
+        let [forward, right, up] = self.axes();
+        let step = SPEED * self.distance() * seconds * (way.x * right + way.y * up + way.z * forward);
+        self.eye += step;
+        self.pivot += step;
+    }
+
+    /// Looks at the pivot from a side, from as far as now.
+    pub fn side(&mut self, side: Side) {
+        let quarter = 0.5 * std::f64::consts::PI;
+        let reach = self.distance();
+        (self.yaw, self.pitch) = match side {
+            Side::Front => (0.0, 0.0),
+            Side::Right => (quarter, 0.0),
+            Side::Back => (2.0 * quarter, 0.0),
+            Side::Left => (-quarter, 0.0),
+            Side::Top => (0.0, quarter),
+            Side::Bottom => (0.0, -quarter),
+        };
+        self.eye = self.pivot - reach * self.axes()[0];
+    }
+
+    /// Makes something else up; looks at the pivot from as far as now, as it did from as far round.
+    pub fn set_up(&mut self, up: Up) {
+        let reach = self.distance();
+        self.up = up;
+        self.eye = self.pivot - reach * self.axes()[0];
+    }
+
+    /// What is up.
+    pub fn up(&self) -> Up {
+        self.up
+    }
+
+    /// Shows all of `bounds`, from where it looks.
+    pub fn frame(&mut self, bounds: &Bounds, lens: &Lens) {
+        let radius = if bounds.radius > 0.0 { 1.04 * bounds.radius } else { 1.0 };
+        let slope = (0.5 * lens.fov_y).tan();
+        // The sphere touches the narrower of the two fields of view.
+        let half = (slope * lens.aspect().min(1.0)).atan();
+        let reach = if lens.parallel { radius / half.tan() } else { radius / half.sin() };
+        self.pivot = bounds.centre();
+        self.eye = self.pivot - reach * self.axes()[0];
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec4;
+
+    const LENS: Lens = Lens { size: [640, 480], fov_y: 0.8, parallel: false };
+    const UPS: [Up; 6] = [
+        Up { axis: 0, down: false },
+        Up { axis: 1, down: false },
+        Up { axis: 2, down: false },
+        Up { axis: 0, down: true },
+        Up { axis: 1, down: true },
+        Up { axis: 2, down: true },
+    ];
+
+    fn bounds() -> Bounds {
+        Bounds::of_box(DVec3::new(-1.0, 5.0, 2.0), DVec3::new(3.0, 6.0, 9.0))
+    }
+
+    /// Where a point is on the picture.
+    fn seen(orbit: &Orbit, lens: &Lens, point: DVec3) -> DVec2 {
+        let clip: DVec4 = orbit.camera(lens, &bounds()).unwrap().world_to_clip() * point.extend(1.0);
+        (clip.truncate().truncate() / clip.w * 0.5 + 0.5) * DVec2::from(lens.size.map(f64::from))
+    }
+
+    fn lenses() -> [Lens; 2] {
+        [LENS, Lens { parallel: true, ..LENS }]
+    }
+
+    fn near(a: DVec2, b: DVec2) -> bool {
+        (a - b).length() < 1e-6
+    }
+
+    #[test]
+    fn what_is_up_is_up_and_all_is_seen() {
+        for up in UPS {
+            for lens in lenses() {
+                let orbit = Orbit::framing(&bounds(), up, &lens);
+                assert!(near(seen(&orbit, &lens, orbit.pivot), DVec2::new(320.0, 240.0)));
+                let above = seen(&orbit, &lens, orbit.pivot + 0.1 * up.vector());
+                assert!((above.x - 320.0).abs() < 1e-6 && above.y < 239.0, "{up:?} {above}");
+                for i in 0..8 {
+                    let corner = DVec3::from_array(std::array::from_fn(|axis| match i >> axis & 1 {
+                        0 => bounds().min[axis],
+                        _ => bounds().max[axis],
+                    }));
+                    let at = seen(&orbit, &lens, corner);
+                    assert!(at.min_element() > 0.0 && at.x < 640.0 && at.y < 480.0, "{up:?} {at}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn points_lie_where_they_are_seen_and_panning_takes_them_along() {
+        let (at, way) = (DVec2::new(100.0, 400.0), DVec2::new(33.0, -21.0));
+        for lens in lenses() {
+            let mut orbit = Orbit::framing(&bounds(), Up::Y, &lens);
+            let [there, deeper] = [1.0, 1.4].map(|part| orbit.point(at, part * orbit.distance(), &lens));
+            assert!(near(seen(&orbit, &lens, there), at) && near(seen(&orbit, &lens, deeper), at));
+            let before = orbit.distance();
+            orbit.pan(way, &lens);
+            assert!(near(seen(&orbit, &lens, there), at + way));
+            assert!((orbit.distance() - before).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn zooming_leaves_what_is_under_the_cursor() {
+        let at = DVec2::new(500.0, 60.0);
+        for lens in lenses() {
+            let mut orbit = Orbit::framing(&bounds(), Up::Y, &lens);
+            let (reach, surface) = (orbit.distance(), 0.7 * orbit.distance());
+            let there = orbit.point(at, surface, &lens);
+            orbit.zoom(3.0, at, Some(surface), &lens, &bounds());
+            assert!(near(seen(&orbit, &lens, there), at), "{lens:?}");
+            assert!((orbit.distance() / reach - STEP.powi(3)).abs() < 1e-12);
+            // One step at a time, and back, is the same.
+            let mut steps = orbit;
+            (0..4).for_each(|_| steps.zoom(-0.75, at, None, &lens, &bounds()));
+            orbit.zoom(-3.0, at, None, &lens, &bounds());
+            assert!(
+                (steps.eye - orbit.eye).length() < 1e-9 && (orbit.distance() / reach - 1.0).abs() < 1e-12
+            );
+            (0..10).for_each(|_| orbit.zoom(1e3, at, None, &lens, &bounds()));
+            assert!(orbit.distance() > 0.0 && orbit.camera(&lens, &bounds()).is_ok());
+        }
+    }
+
+    #[test]
+    fn turning_keeps_the_distance_and_the_pivot_wherever_it_is() {
+        for lens in lenses() {
+            let mut orbit = Orbit::framing(&bounds(), Up::Y, &lens);
+            let pivot = orbit.point(DVec2::new(200.0, 300.0), 0.8 * orbit.distance(), &lens);
+            let (before, other) = (seen(&orbit, &lens, pivot), DVec3::new(0.3, 5.5, 4.0));
+            let place = seen(&orbit, &lens, other);
+            orbit.set_pivot(pivot, &lens);
+            assert!(near(seen(&orbit, &lens, pivot), before), "{lens:?}");
+            if !lens.parallel {
+                assert!(near(seen(&orbit, &lens, other), place), "the picture stays");
+            }
+            let far = (orbit.eye - pivot).length();
+            let mut once = orbit;
+            once.turn(DVec2::new(80.0, 44.0), &lens);
+            (0..4).for_each(|_| orbit.turn(DVec2::new(20.0, 11.0), &lens));
+            assert!((once.eye - orbit.eye).length() < 1e-9, "one way, or four parts of it");
+            assert!(((orbit.eye - pivot).length() - far).abs() < 1e-9);
+            assert!(near(seen(&orbit, &lens, pivot), before), "the pivot stays where it is seen");
+            orbit.turn(DVec2::new(0.0, 1e5), &lens);
+            assert!(orbit.camera(&lens, &bounds()).is_ok(), "from straight above");
+        }
+    }
+
+    #[test]
+    fn what_is_in_front_follows_the_cursor_as_it_turns() {
+        let mut orbit = Orbit::framing(&bounds(), Up::Y, &LENS);
+        let front = orbit.pivot - 0.1 * orbit.axes()[0];
+        orbit.turn(DVec2::new(10.0, 10.0), &LENS);
+        let moved = seen(&orbit, &LENS, front) - DVec2::new(320.0, 240.0);
+        assert!(moved.x > 0.0 && moved.y > 0.0, "{moved}");
+    }
+
+    #[test]
+    fn sides_are_seen_from_where_they_are() {
+        for (side, from) in [
+            (Side::Front, DVec3::Z),
+            (Side::Back, DVec3::NEG_Z),
+            (Side::Right, DVec3::X),
+            (Side::Left, DVec3::NEG_X),
+            (Side::Top, DVec3::Y),
+            (Side::Bottom, DVec3::NEG_Y),
+        ] {
+            let mut orbit = Orbit::framing(&bounds(), Up::Y, &LENS);
+            let reach = orbit.distance();
+            orbit.side(side);
+            assert!((orbit.eye - (orbit.pivot + reach * from)).length() < 1e-9, "{side:?} {}", orbit.eye);
+            assert!(orbit.camera(&LENS, &bounds()).is_ok());
+        }
+        let mut orbit = Orbit::framing(&bounds(), Up { axis: 2, down: false }, &LENS);
+        orbit.side(Side::Front);
+        assert!((orbit.eye - orbit.pivot).normalize().abs_diff_eq(DVec3::NEG_Y, 1e-9), "z up: from −y");
+    }
+
+    #[test]
+    fn flight_and_looking_about_take_the_pivot_along() {
+        let mut orbit = Orbit::framing(&bounds(), Up::Y, &LENS);
+        let (eye, reach) = (orbit.eye, orbit.distance());
+        let mut parts = orbit;
+        orbit.fly(DVec3::new(0.0, 0.0, 1.0), 0.5);
+        (0..5).for_each(|_| parts.fly(DVec3::new(0.0, 0.0, 1.0), 0.1));
+        assert!((orbit.eye - parts.eye).length() < 1e-9, "whatever the frames");
+        assert!(((orbit.eye - eye).length() - 0.5 * SPEED * reach).abs() < 1e-9);
+        let eye = orbit.eye;
+        orbit.look_about(DVec2::new(50.0, -20.0), &LENS);
+        assert!(orbit.eye == eye && (orbit.distance() - reach).abs() < 1e-9);
+    }
+}

@@ -1,0 +1,108 @@
+//! What is looked at, and how: everything that the hands change.
+
+use super::keys::Action;
+use super::orbit::{Lens, Orbit, Up};
+use super::{Look, Options};
+use glam::{DVec2, DVec3};
+use std::sync::Arc;
+use surfel::geometry::Camera;
+use surfel::methods::Method;
+use surfel::settings::Shading;
+use surfel::{Result, Scene, Settings};
+
+/// Vertical angle of view, radians.
+const FOV: f64 = std::f64::consts::FRAC_PI_4;
+/// What the picture can show.
+const SHADINGS: [Shading; 4] = [Shading::Lit, Shading::Colour, Shading::Normal, Shading::Depth];
+
+/// What is looked at, and how.
+pub struct State {
+    pub lens: Lens,
+    up: Up,
+    look: Look,
+    shown: Option<Shown>,
+}
+
+struct Shown {
+    scene: Arc<Scene>,
+    orbit: Orbit,
+    method: Method,
+    settings: Settings,
+}
+
+impl State {
+    pub fn new(options: &Options, look: Look) -> Self {
+        let lens = Lens { size: options.size, fov_y: FOV, parallel: false };
+        Self { lens, up: nearest(options.up), look, shown: None }
+    }
+
+    /// Looks at a scene from the front.
+    pub fn show(&mut self, scene: Arc<Scene>, method: Method) {
+        let orbit = Orbit::framing(scene.bounds(), self.up, &self.lens);
+        let settings = (self.look)(&method);
+        self.shown = Some(Shown { scene, orbit, method, settings });
+    }
+
+    /// The scene, from where and how it is seen.
+    pub fn frame(&self) -> Option<Result<(&Arc<Scene>, Camera, &Settings)>> {
+        let Shown { scene, orbit, settings, .. } = self.shown.as_ref()?;
+        let camera = orbit.camera(&self.lens, scene.bounds());
+        Some(camera.map(|camera| (scene, camera, settings)))
+    }
+
+    /// The camera and the bounds of what it sees.
+    pub fn moving(&mut self) -> Option<(&mut Orbit, &Lens, &Scene)> {
+        let Self { shown: Some(Shown { orbit, scene, .. }), lens, .. } = self else { return None };
+        Some((orbit, lens, scene))
+    }
+
+    /// Nearer by so many steps of the wheel, to what is at `at`.
+    pub fn zoom(&mut self, steps: f64, at: DVec2) {
+        if let Some((orbit, lens, scene)) = self.moving() {
+            orbit.zoom(steps, at, None, lens, scene.bounds());
+        }
+    }
+
+    /// In a word: what is shown, and by which method.
+    pub fn title(&self) -> String {
+        match &self.shown {
+            Some(Shown { method, settings, scene, .. }) => {
+                format!("{} · {} · {} surfels", method.name, settings.shading.name(), scene.count())
+            }
+            None => "nothing yet".into(),
+        }
+    }
+
+    /// Does what a key asks for, but to quit.
+    pub fn act(&mut self, action: Action) {
+        let Some(shown) = &mut self.shown else { return };
+        match action {
+            Action::Quit => {}
+            Action::NextMethod => shown.turn_method(1, &self.look),
+            Action::PreviousMethod => shown.turn_method(Method::ALL.len() - 1, &self.look),
+            Action::NextShading => {
+                let now = SHADINGS.iter().position(|shading| *shading == shown.settings.shading);
+                shown.settings.shading = SHADINGS[now.map_or(0, |now| (now + 1) % SHADINGS.len())];
+            }
+            Action::Parallel => self.lens.parallel = !self.lens.parallel,
+            Action::Frame => shown.orbit.frame(shown.scene.bounds(), &self.lens),
+            Action::Side(side) => shown.orbit.side(side),
+        }
+    }
+}
+
+impl Shown {
+    /// The method so many further on, with the shading of this one.
+    fn turn_method(&mut self, steps: usize, look: &Look) {
+        let now = Method::ALL.iter().position(|method| method.name == self.method.name).unwrap_or(0);
+        self.method = Method::ALL[(now + steps) % Method::ALL.len()];
+        self.settings = Settings { shading: self.settings.shading, ..look(&self.method) };
+    }
+}
+
+/// The axis that is nearest to a direction.
+fn nearest(up: DVec3) -> Up {
+    let size = up.abs();
+    let axis = (0..3).max_by(|&a, &b| size[a].total_cmp(&size[b])).unwrap_or(1);
+    Up { axis, down: up[axis] < 0.0 }
+}

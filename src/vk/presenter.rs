@@ -1,0 +1,131 @@
+//! Frames to a window: a swapchain that follows the window, and two frames under way.
+
+use super::{Device, Surface, slot::Slot, swapchain::Swapchain};
+use crate::error::{Error, Result};
+use ash::{khr, vk};
+use std::sync::Arc;
+
+/// How many frames may be under way.
+pub const FRAMES_IN_FLIGHT: u32 = 2;
+
+/// Presents frames to a window.
+pub struct Presenter {
+    // Fields are dropped in this order: the surface goes last.
+    swapchain: Option<Swapchain>,
+    slots: Vec<Slot>,
+    /// Number of the slot that is next.
+    next: usize,
+    swapchains: khr::swapchain::Device,
+    format: vk::SurfaceFormatKHR,
+    modes: Vec<vk::PresentModeKHR>,
+    surface: Surface,
+    device: Arc<Device>,
+}
+
+/// A frame that is being recorded.
+#[derive(Clone, Copy, Debug)]
+pub struct Presented {
+    /// Is being recorded.
+    pub cmd: vk::CommandBuffer,
+    /// Of the window, in the layout in which copies write it; to be left in that.
+    pub image: vk::Image,
+    /// The same.
+    pub view: vk::ImageView,
+    /// Its format, which encodes sRGB.
+    pub format: vk::Format,
+    /// Width and height, px.
+    pub size: [u32; 2],
+}
+
+impl Presenter {
+    /// Presents from `device`, which was opened for the surface.
+    pub fn new(device: &Arc<Device>, surface: Surface) -> Result<Self> {
+        let physical = device.physical();
+        // SAFETY: the surface is of the device's instance.
+        let (formats, modes) = unsafe {
+            let formats = surface.loader.get_physical_device_surface_formats(physical, surface.raw);
+            let modes = surface.loader.get_physical_device_surface_present_modes(physical, surface.raw);
+            (
+                formats.map_err(Error::vulkan("vkGetPhysicalDeviceSurfaceFormatsKHR"))?,
+                modes.map_err(Error::vulkan("vkGetPhysicalDeviceSurfacePresentModesKHR"))?,
+            )
+        };
+        let encodes = [vk::Format::B8G8R8A8_SRGB, vk::Format::R8G8B8A8_SRGB];
+        let format = formats.iter().find(|found| encodes.contains(&found.format)).copied();
+        let format = format.ok_or_else(|| {
+            let name = &device.description().name;
+            Error::NoDevice(format!(
+                "{name} does not present 8-bit sRGB to this window, only {formats:?}: choose another device"
+            ))
+        })?;
+        let slots = (0..FRAMES_IN_FLIGHT).map(|_| Slot::new(device)).collect::<Result<_>>()?;
+        let swapchains = khr::swapchain::Device::new(device.instance(), &device.raw);
+        Ok(Self {
+            swapchain: None,
+            slots,
+            next: 0,
+            swapchains,
+            format,
+            modes,
+            surface,
+            device: device.clone(),
+        })
+    }
+
+    /// The window's size is another, or may be.
+    pub fn resized(&mut self) {
+        if let Some(swapchain) = &mut self.swapchain {
+            swapchain.stale = true;
+        }
+    }
+
+    /// Records a frame with `record` and presents it, in a window of `size` px; `None` where there is none to be seen. When it is recorded, the
+    /// GPU is done with all but the last [`FRAMES_IN_FLIGHT`] − 1 frames.
+    ///
+    /// After an error of `record` the frame is empty, and the next one can be presented.
+    pub fn present<R>(
+        &mut self,
+        size: [u32; 2],
+        record: impl FnOnce(&Presented) -> Result<R>,
+    ) -> Result<Option<R>> {
+        if self.swapchain.as_ref().is_none_or(|swapchain| swapchain.stale || swapchain.asked != size) {
+            self.remake(size)?;
+        }
+        let Some(swapchain) = &mut self.swapchain else { return Ok(None) };
+        let slot = &self.slots[self.next];
+        slot.wait()?;
+        let Some(index) = swapchain.acquire(slot.acquired)? else { return Ok(None) };
+        let target = swapchain.target(index, self.format.format, slot.cmd);
+        let recorded = slot.record(&target, record);
+        slot.submit(swapchain.drawn(index))?;
+        self.next = (self.next + 1) % self.slots.len();
+        swapchain.present(&self.device, index)?;
+        recorded.map(Some)
+    }
+
+    /// Waits for every frame, and makes a swapchain of this size in the place of the one that there is.
+    fn remake(&mut self, size: [u32; 2]) -> Result<()> {
+        self.slots.iter().try_for_each(Slot::wait)?;
+        // Presented images may be waited for by the queue yet.
+        self.device.wait_idle()?;
+        let old = self.swapchain.take();
+        let how = (&self.surface, self.format, self.mode());
+        self.swapchain = Swapchain::new(&self.device, &self.swapchains, how, size, old)?;
+        Ok(())
+    }
+
+    /// Without tearing, and without waiting for the screen where that can be.
+    fn mode(&self) -> vk::PresentModeKHR {
+        match self.modes.contains(&vk::PresentModeKHR::MAILBOX) {
+            true => vk::PresentModeKHR::MAILBOX,
+            false => vk::PresentModeKHR::FIFO,
+        }
+    }
+}
+
+impl Drop for Presenter {
+    fn drop(&mut self) {
+        // A lost device has nothing left to wait for.
+        let _ = self.device.wait_idle();
+    }
+}

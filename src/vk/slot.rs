@@ -1,0 +1,138 @@
+//! What a frame under way uses: a command buffer, a fence, a semaphore.
+
+use super::Device;
+use super::presenter::Presented;
+use crate::error::{Error, Result};
+use ash::vk;
+use std::sync::Arc;
+
+/// One of the frames under way.
+pub(super) struct Slot {
+    pool: vk::CommandPool,
+    pub(super) cmd: vk::CommandBuffer,
+    /// Signalled when the window's image is there.
+    pub(super) acquired: vk::Semaphore,
+    done: vk::Fence,
+    device: Arc<Device>,
+}
+
+impl Slot {
+    pub(super) fn new(device: &Arc<Device>) -> Result<Self> {
+        let (_, family) = device.queue()?;
+        let mut slot = Self {
+            pool: vk::CommandPool::null(),
+            cmd: vk::CommandBuffer::null(),
+            acquired: vk::Semaphore::null(),
+            done: vk::Fence::null(),
+            device: device.clone(),
+        };
+        let pool = vk::CommandPoolCreateInfo::default().queue_family_index(family);
+        let signalled = vk::FenceCreateInfo::default().flags(vk::FenceCreateFlags::SIGNALED);
+        let raw = &device.raw;
+        // SAFETY: all infos are valid; what is made is destroyed in `drop`.
+        unsafe {
+            slot.pool = raw.create_command_pool(&pool, None).map_err(Error::vulkan("vkCreateCommandPool"))?;
+            let buffer =
+                vk::CommandBufferAllocateInfo::default().command_pool(slot.pool).command_buffer_count(1);
+            let buffers = raw.allocate_command_buffers(&buffer);
+            slot.cmd = buffers.map_err(Error::vulkan("vkAllocateCommandBuffers"))?[0];
+            let semaphore = raw.create_semaphore(&vk::SemaphoreCreateInfo::default(), None);
+            slot.acquired = semaphore.map_err(Error::vulkan("vkCreateSemaphore"))?;
+            slot.done = raw.create_fence(&signalled, None).map_err(Error::vulkan("vkCreateFence"))?;
+        }
+        Ok(slot)
+    }
+
+    /// Waits until the GPU is done with its last frame.
+    pub(super) fn wait(&self) -> Result<()> {
+        // SAFETY: the fence is the device's.
+        unsafe { self.device.raw.wait_for_fences(&[self.done], true, u64::MAX) }
+            .map_err(Error::vulkan("vkWaitForFences"))
+    }
+
+    /// Records a frame, of which nothing but the image's transitions is left after an error of `body`. Its last frame was waited for.
+    pub(super) fn record<R>(
+        &self,
+        target: &Presented,
+        body: impl FnOnce(&Presented) -> Result<R>,
+    ) -> Result<R> {
+        self.begin(target.image)?;
+        let recorded = body(target);
+        if recorded.is_err() {
+            self.begin(target.image)?;
+        }
+        use vk::ImageLayout as Layout;
+        self.transition(target.image, [Layout::TRANSFER_DST_OPTIMAL, Layout::PRESENT_SRC_KHR]);
+        // SAFETY: it is being recorded.
+        unsafe { self.device.raw.end_command_buffer(self.cmd) }
+            .map_err(Error::vulkan("vkEndCommandBuffer"))?;
+        recorded
+    }
+
+    fn begin(&self, image: vk::Image) -> Result<()> {
+        let once = vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
+        let raw = &self.device.raw;
+        // SAFETY: nothing of the pool is under way.
+        unsafe {
+            raw.reset_command_pool(self.pool, vk::CommandPoolResetFlags::empty())
+                .map_err(Error::vulkan("vkResetCommandPool"))?;
+            raw.begin_command_buffer(self.cmd, &once).map_err(Error::vulkan("vkBeginCommandBuffer"))?;
+        }
+        self.transition(image, [vk::ImageLayout::UNDEFINED, vk::ImageLayout::TRANSFER_DST_OPTIMAL]);
+        Ok(())
+    }
+
+    /// Between what copies to the image, and what comes before and after.
+    fn transition(&self, image: vk::Image, [from, to]: [vk::ImageLayout; 2]) {
+        let range = vk::ImageSubresourceRange {
+            aspect_mask: vk::ImageAspectFlags::COLOR,
+            level_count: 1,
+            layer_count: 1,
+            ..Default::default()
+        };
+        let barrier = vk::ImageMemoryBarrier::default()
+            .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
+            .dst_access_mask(vk::AccessFlags::TRANSFER_WRITE)
+            .old_layout(from)
+            .new_layout(to)
+            .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+            .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
+            .image(image)
+            .subresource_range(range);
+        // What waits for the image, and for what is drawn, does so here.
+        let stage = vk::PipelineStageFlags::TRANSFER;
+        let none = vk::DependencyFlags::empty();
+        // SAFETY: the command buffer is being recorded outside a render pass; the image is the swapchain's.
+        unsafe {
+            self.device.raw.cmd_pipeline_barrier(self.cmd, stage, stage, none, &[], &[], &[barrier]);
+        }
+    }
+
+    /// Submits what was recorded, which waits for the image and then signals `drawn`.
+    pub(super) fn submit(&self, drawn: vk::Semaphore) -> Result<()> {
+        let (queue, _) = self.device.queue()?;
+        let (commands, waits, signals) = ([self.cmd], [self.acquired], [drawn]);
+        let submit = [vk::SubmitInfo::default()
+            .command_buffers(&commands)
+            .wait_semaphores(&waits)
+            .wait_dst_stage_mask(&[vk::PipelineStageFlags::TRANSFER])
+            .signal_semaphores(&signals)];
+        let queue = queue.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        // SAFETY: the buffer was recorded whole; the fence was waited for, and the queue is locked.
+        unsafe {
+            self.device.raw.reset_fences(&[self.done]).map_err(Error::vulkan("vkResetFences"))?;
+            self.device.raw.queue_submit(*queue, &submit, self.done).map_err(Error::vulkan("vkQueueSubmit"))
+        }
+    }
+}
+
+impl Drop for Slot {
+    fn drop(&mut self) {
+        // SAFETY: the presenter has waited for the device. Null handles are ignored.
+        unsafe {
+            self.device.raw.destroy_fence(self.done, None);
+            self.device.raw.destroy_semaphore(self.acquired, None);
+            self.device.raw.destroy_command_pool(self.pool, None);
+        }
+    }
+}

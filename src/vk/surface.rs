@@ -1,0 +1,67 @@
+//! What a window shows: its surface.
+
+use super::instance::Instance;
+use crate::error::{Error, Result};
+use ash::{khr, vk};
+use raw_window_handle::{HasDisplayHandle, HasWindowHandle};
+use std::ffi::{CStr, c_char};
+use std::sync::Arc;
+
+/// A window that frames can be presented to.
+pub trait Window: HasWindowHandle + HasDisplayHandle + Send + Sync {}
+
+impl<W: HasWindowHandle + HasDisplayHandle + Send + Sync> Window for W {}
+
+/// The surface of a window, which it keeps.
+pub struct Surface {
+    pub(super) raw: vk::SurfaceKHR,
+    pub(super) loader: khr::surface::Instance,
+    // After the surface: the instance, and the window.
+    _instance: Arc<Instance>,
+    _window: Arc<dyn Window>,
+}
+
+/// The device extensions that presenting needs.
+pub(super) const DEVICE_EXTENSIONS: [&CStr; 1] = [khr::swapchain::NAME];
+
+/// The instance extensions that presenting to `window` needs.
+pub(super) fn instance_extensions(window: &dyn Window) -> Result<&'static [*const c_char]> {
+    let display = window.display_handle().map_err(no_window)?;
+    ash_window::enumerate_required_extensions(display.as_raw()).map_err(no_window)
+}
+
+fn no_window(cause: impl std::fmt::Display) -> Error {
+    Error::NoDevice(format!("the window cannot be presented to: {cause}; `surfel render` needs none"))
+}
+
+impl Surface {
+    /// The surface of `window`, whose [`instance_extensions`] `instance` has.
+    pub(super) fn new(instance: &Arc<Instance>, window: Arc<dyn Window>) -> Result<Self> {
+        let display = window.display_handle().map_err(no_window)?.as_raw();
+        let handle = window.window_handle().map_err(no_window)?.as_raw();
+        // SAFETY: the handles are the window's, which is kept for longer than the surface; that is destroyed in `drop`.
+        let raw =
+            unsafe { ash_window::create_surface(&instance.entry, &instance.raw, display, handle, None) };
+        let loader = khr::surface::Instance::new(&instance.entry, &instance.raw);
+        Ok(Self { raw: raw.map_err(no_window)?, loader, _instance: instance.clone(), _window: window })
+    }
+
+    /// Refuses a queue family of a device, called `name`, that does not present to it.
+    pub(super) fn check(&self, physical: vk::PhysicalDevice, family: u32, name: &str) -> Result<()> {
+        // SAFETY: the device is of the surface's instance, and the family one of its own.
+        let served = unsafe { self.loader.get_physical_device_surface_support(physical, family, self.raw) };
+        match served {
+            Ok(true) => Ok(()),
+            _ => Err(Error::NoDevice(format!(
+                "{name} does not present to this window: choose another device, which `surfel devices` lists"
+            ))),
+        }
+    }
+}
+
+impl Drop for Surface {
+    fn drop(&mut self) {
+        // SAFETY: the swapchain, which holds it, is gone; the instance is alive.
+        unsafe { self.loader.destroy_surface(self.raw, None) };
+    }
+}

@@ -1,0 +1,178 @@
+//! A swapchain: the images of a window, of one size.
+
+use super::presenter::Presented;
+use super::{Device, Surface};
+use crate::error::{Error, Result};
+use ash::{khr, vk};
+use std::sync::Arc;
+
+/// The images of a window.
+pub(super) struct Swapchain {
+    raw: vk::SwapchainKHR,
+    images: Vec<Shown>,
+    size: [u32; 2],
+    /// The window's size when it was made: X11 tells another only later.
+    pub(super) asked: [u32; 2],
+    /// Whether the window is another by now.
+    pub(super) stale: bool,
+    loader: khr::swapchain::Device,
+    device: Arc<Device>,
+}
+
+struct Shown {
+    image: vk::Image,
+    view: vk::ImageView,
+    /// Signalled when it is drawn.
+    drawn: vk::Semaphore,
+}
+
+impl Swapchain {
+    /// A swapchain for a window of `size` px in the place of `old`, which nothing uses any more; none where the window has no extent.
+    pub(super) fn new(
+        device: &Arc<Device>,
+        loader: &khr::swapchain::Device,
+        (surface, format, mode): (&Surface, vk::SurfaceFormatKHR, vk::PresentModeKHR),
+        size: [u32; 2],
+        old: Option<Self>,
+    ) -> Result<Option<Self>> {
+        // SAFETY: the surface is of the device's instance.
+        let can = unsafe {
+            surface.loader.get_physical_device_surface_capabilities(device.physical(), surface.raw)
+        };
+        let can = can.map_err(Error::vulkan("vkGetPhysicalDeviceSurfaceCapabilitiesKHR"))?;
+        let extent = extent(&can, size);
+        if extent.width == 0 || extent.height == 0 || size.contains(&0) {
+            return Ok(None);
+        }
+        let count = can.min_image_count + 1;
+        let count = if can.max_image_count == 0 { count } else { count.min(can.max_image_count) };
+        let info = vk::SwapchainCreateInfoKHR::default()
+            .surface(surface.raw)
+            .min_image_count(count)
+            .image_format(format.format)
+            .image_color_space(format.color_space)
+            .image_extent(extent)
+            .image_array_layers(1)
+            .image_usage(vk::ImageUsageFlags::TRANSFER_DST | vk::ImageUsageFlags::COLOR_ATTACHMENT)
+            .pre_transform(can.current_transform)
+            .composite_alpha(vk::CompositeAlphaFlagsKHR::OPAQUE)
+            .present_mode(mode)
+            .clipped(true)
+            .old_swapchain(old.as_ref().map_or(vk::SwapchainKHR::null(), |old| old.raw));
+        // SAFETY: the surface can do what is asked for, and has no other swapchain than the one that is replaced.
+        let raw =
+            unsafe { loader.create_swapchain(&info, None) }.map_err(Error::vulkan("vkCreateSwapchainKHR"))?;
+        drop(old);
+        let mut made = Self {
+            raw,
+            images: Vec::new(),
+            size: [extent.width, extent.height],
+            asked: size,
+            stale: false,
+            loader: loader.clone(),
+            device: device.clone(),
+        };
+        // SAFETY: it was made just now.
+        let images = unsafe { loader.get_swapchain_images(raw) };
+        for image in images.map_err(Error::vulkan("vkGetSwapchainImagesKHR"))? {
+            made.add(image, format.format)?;
+        }
+        Ok(Some(made))
+    }
+
+    fn add(&mut self, image: vk::Image, format: vk::Format) -> Result<()> {
+        let (view, drawn) = (vk::ImageView::null(), vk::Semaphore::null());
+        self.images.push(Shown { image, view, drawn });
+        let Some(shown) = self.images.last_mut() else { return Ok(()) };
+        let range = vk::ImageSubresourceRange {
+            aspect_mask: vk::ImageAspectFlags::COLOR,
+            level_count: 1,
+            layer_count: 1,
+            ..Default::default()
+        };
+        let info = vk::ImageViewCreateInfo::default()
+            .image(image)
+            .view_type(vk::ImageViewType::TYPE_2D)
+            .format(format)
+            .subresource_range(range);
+        let raw = &self.device.raw;
+        // SAFETY: the image is the swapchain's; both are destroyed in `drop`.
+        unsafe {
+            shown.view = raw.create_image_view(&info, None).map_err(Error::vulkan("vkCreateImageView"))?;
+            let semaphore = raw.create_semaphore(&vk::SemaphoreCreateInfo::default(), None);
+            shown.drawn = semaphore.map_err(Error::vulkan("vkCreateSemaphore"))?;
+        }
+        Ok(())
+    }
+
+    /// The next image, which is there when `acquired` is signalled; none if the window is another by now.
+    pub(super) fn acquire(&mut self, acquired: vk::Semaphore) -> Result<Option<usize>> {
+        // SAFETY: the semaphore is unsignalled: what waits for it was waited for.
+        let found =
+            unsafe { self.loader.acquire_next_image(self.raw, u64::MAX, acquired, vk::Fence::null()) };
+        match found {
+            // Not the best, but acquired: the semaphore will be signalled.
+            Ok((index, suboptimal)) => {
+                self.stale |= suboptimal;
+                Ok(Some(index as usize))
+            }
+            Err(vk::Result::ERROR_OUT_OF_DATE_KHR) => {
+                self.stale = true;
+                Ok(None)
+            }
+            Err(result) => Err(Error::Vulkan { call: "vkAcquireNextImageKHR", result }),
+        }
+    }
+
+    /// What a frame records into.
+    pub(super) fn target(&self, index: usize, format: vk::Format, cmd: vk::CommandBuffer) -> Presented {
+        let Shown { image, view, .. } = self.images[index];
+        Presented { cmd, image, view, format, size: self.size }
+    }
+
+    /// Signalled when the image is drawn.
+    pub(super) fn drawn(&self, index: usize) -> vk::Semaphore {
+        self.images[index].drawn
+    }
+
+    /// Presents an image when it is drawn.
+    pub(super) fn present(&mut self, device: &Device, index: usize) -> Result<()> {
+        let (chains, waits, indices) = ([self.raw], [self.drawn(index)], [index as u32]);
+        let info =
+            vk::PresentInfoKHR::default().swapchains(&chains).wait_semaphores(&waits).image_indices(&indices);
+        let (queue, _) = device.queue()?;
+        let queue = queue.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        // SAFETY: the image was acquired, and what signals the semaphore is submitted; the queue is locked.
+        match unsafe { self.loader.queue_present(*queue, &info) } {
+            Ok(suboptimal) => self.stale |= suboptimal,
+            Err(vk::Result::ERROR_OUT_OF_DATE_KHR) => self.stale = true,
+            Err(result) => return Err(Error::Vulkan { call: "vkQueuePresentKHR", result }),
+        }
+        Ok(())
+    }
+}
+
+/// The extent of images in a window of `size` px: the surface's own, where it has one.
+fn extent(can: &vk::SurfaceCapabilitiesKHR, size: [u32; 2]) -> vk::Extent2D {
+    let [least, most, own] = [can.min_image_extent, can.max_image_extent, can.current_extent];
+    match own.width {
+        u32::MAX => vk::Extent2D {
+            width: size[0].clamp(least.width, most.width.max(least.width)),
+            height: size[1].clamp(least.height, most.height.max(least.height)),
+        },
+        _ => own,
+    }
+}
+
+impl Drop for Swapchain {
+    fn drop(&mut self) {
+        // SAFETY: the presenter has waited for the device. Null handles are ignored.
+        unsafe {
+            for Shown { view, drawn, .. } in &self.images {
+                self.device.raw.destroy_image_view(*view, None);
+                self.device.raw.destroy_semaphore(*drawn, None);
+            }
+            self.loader.destroy_swapchain(self.raw, None);
+        }
+    }
+}
