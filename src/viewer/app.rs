@@ -1,12 +1,15 @@
 //! The window's events: what the hands do, and what they see of it.
 
+use super::hud::Hud;
 use super::keys::{self, Action};
 use super::load::{self, Load, News};
+use super::panels::Told;
 use super::screen::Screen;
 use super::state::State;
 use super::{Look, Options};
 use glam::DVec2;
 use std::sync::Arc;
+use std::time::Instant;
 use surfel::vk::{Device, Presenter};
 use surfel::{Error, Result};
 use winit::application::ApplicationHandler;
@@ -32,6 +35,7 @@ pub fn run(options: Options, load: Load, look: Look) -> Result<()> {
     let mut app = App {
         state,
         hands,
+        told: Told::default(),
         load: Some(load),
         news: events.create_proxy(),
         options,
@@ -45,6 +49,7 @@ pub fn run(options: Options, load: Load, look: Look) -> Result<()> {
 struct App {
     state: State,
     hands: Hands,
+    told: Told,
     load: Option<Load>,
     news: EventLoopProxy<News>,
     options: Options,
@@ -64,6 +69,7 @@ struct Hands {
 struct Opened {
     // The presenter waits for all frames before anything that they use goes.
     presenter: Presenter,
+    hud: Hud,
     screen: Screen,
     window: Arc<Window>,
 }
@@ -80,18 +86,26 @@ impl Opened {
         let (device, surface) = Device::open_for(&options.device, window.clone())?;
         let presenter = Presenter::new(&device, surface)?;
         let screen = Screen::new(&device, options.rasterizer)?;
-        Ok((Self { presenter, screen, window }, device))
+        let hud = Hud::new(&device, &window, presenter.overlay())?;
+        Ok((Self { presenter, hud, screen, window }, device))
     }
 
-    fn draw(&mut self, state: &mut State) -> Result<()> {
+    fn draw(&mut self, state: &mut State, told: &mut Told) -> Result<()> {
         let PhysicalSize { width, height } = self.window.inner_size();
-        let Self { presenter, screen, .. } = self;
+        let start = Instant::now();
+        let Self { presenter, hud, screen, window } = self;
+        if hud.lay_out(window, state, told) {
+            window.request_redraw();
+        }
         presenter.present([width, height], |frame| {
             state.lens.size = frame.size;
             screen.resize(frame.size)?;
             let seen = state.frame().transpose()?;
-            screen.record(frame, seen.as_ref().map(|(scene, camera, settings)| (*scene, camera, *settings)))
+            let seen = seen.as_ref().map(|(scene, camera, settings)| (*scene, camera, *settings));
+            screen.record(frame, seen)?;
+            hud.record(frame)
         })?;
+        told.frame = 1e3 * start.elapsed().as_secs_f64();
         Ok(())
     }
 }
@@ -112,8 +126,12 @@ impl ApplicationHandler<News> for App {
 
     fn user_event(&mut self, events: &ActiveEventLoop, news: News) {
         match news {
-            News::At(stage, part) => self.say(&format!("{stage} {} %", part / 10)),
+            News::At(stage, part) => {
+                self.told.loading = Some((stage, part as f32 / 1000.0));
+                self.changed();
+            }
             News::Ready(scene, method) => {
+                self.told.loading = None;
                 self.state.show(scene, method);
                 self.changed();
             }
@@ -122,6 +140,15 @@ impl ApplicationHandler<News> for App {
     }
 
     fn window_event(&mut self, events: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        if let Some(opened) = &mut self.opened {
+            let [theirs, redraw] = opened.hud.tell(&opened.window, &event);
+            if redraw && event != WindowEvent::RedrawRequested {
+                opened.window.request_redraw();
+            }
+            if theirs {
+                return;
+            }
+        }
         match event {
             WindowEvent::CloseRequested => events.exit(),
             WindowEvent::Resized(_) | WindowEvent::ScaleFactorChanged { .. } => {
@@ -132,7 +159,7 @@ impl ApplicationHandler<News> for App {
             }
             WindowEvent::RedrawRequested => {
                 if let Some(opened) = &mut self.opened
-                    && let Err(error) = opened.draw(&mut self.state)
+                    && let Err(error) = opened.draw(&mut self.state, &mut self.told)
                 {
                     self.fail(events, error);
                 }
@@ -155,6 +182,10 @@ impl ApplicationHandler<News> for App {
             {
                 match keys::action(&logical_key) {
                     Some(Action::Quit) => events.exit(),
+                    Some(Action::Help) => {
+                        self.told.help = !self.told.help;
+                        self.changed();
+                    }
                     Some(action) => {
                         self.state.act(action);
                         self.changed();

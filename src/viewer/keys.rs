@@ -11,6 +11,7 @@ pub enum Action {
     NextShading,
     Parallel,
     Frame,
+    Help,
     Side(super::orbit::Side),
 }
 
@@ -27,7 +28,7 @@ const fn letter(key: &'static str, name: &'static str, does: &'static str, actio
 }
 
 /// All of them.
-pub const BINDINGS: [Binding; 13] = {
+pub const BINDINGS: [Binding; 14] = {
     use super::orbit::Side;
     [
         letter("m", "M", "next method", Action::NextMethod),
@@ -41,6 +42,7 @@ pub const BINDINGS: [Binding; 13] = {
         letter("4", "4", "from the right", Action::Side(Side::Right)),
         letter("5", "5", "from above", Action::Side(Side::Top)),
         letter("6", "6", "from below", Action::Side(Side::Bottom)),
+        letter("h", "H", "these keys", Action::Help),
         letter("q", "Q", "quit", Action::Quit),
         Binding { key: Key::Named(NamedKey::Escape), name: "Esc", does: "quit", action: Action::Quit },
     ]

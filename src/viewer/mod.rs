@@ -6,9 +6,11 @@
 //! ```
 
 mod app;
+mod hud;
 mod keys;
 mod load;
 mod orbit;
+mod panels;
 mod screen;
 mod state;
 

@@ -13,7 +13,7 @@ use surfel::{Result, Scene, Settings};
 /// Vertical angle of view, radians.
 const FOV: f64 = std::f64::consts::FRAC_PI_4;
 /// What the picture can show.
-const SHADINGS: [Shading; 4] = [Shading::Lit, Shading::Colour, Shading::Normal, Shading::Depth];
+pub const SHADINGS: [Shading; 4] = [Shading::Lit, Shading::Colour, Shading::Normal, Shading::Depth];
 
 /// What is looked at, and how.
 pub struct State {
@@ -73,11 +73,19 @@ impl State {
         }
     }
 
+    /// What can be chosen, where something is shown.
+    pub fn choices(&mut self) -> Option<Choices<'_>> {
+        let Self { shown: Some(Shown { method, settings, scene, .. }), lens, look, .. } = self else {
+            return None;
+        };
+        Some(Choices { method, settings, parallel: &mut lens.parallel, surfels: scene.count(), look })
+    }
+
     /// Does what a key asks for, but to quit.
     pub fn act(&mut self, action: Action) {
         let Some(shown) = &mut self.shown else { return };
         match action {
-            Action::Quit => {}
+            Action::Quit | Action::Help => {}
             Action::NextMethod => shown.turn_method(1, &self.look),
             Action::PreviousMethod => shown.turn_method(Method::ALL.len() - 1, &self.look),
             Action::NextShading => {
@@ -88,6 +96,23 @@ impl State {
             Action::Frame => shown.orbit.frame(shown.scene.bounds(), &self.lens),
             Action::Side(side) => shown.orbit.side(side),
         }
+    }
+}
+
+/// What the panels let one choose.
+pub struct Choices<'a> {
+    pub method: &'a mut Method,
+    pub settings: &'a mut Settings,
+    pub parallel: &'a mut bool,
+    pub surfels: u64,
+    look: &'a Look,
+}
+
+impl Choices<'_> {
+    /// Takes another method, with the shading of this one.
+    pub fn choose(&mut self, method: Method) {
+        *self.settings = Settings { shading: self.settings.shading, ..(self.look)(&method) };
+        *self.method = method;
     }
 }
 

@@ -241,15 +241,30 @@ impl Device {
         }
     }
 
-    /// The instance that asks `physical`.
+    /// Vulkan's own, for who makes things on the device by other means; nobody destroys it.
     #[cfg(feature = "window")]
-    pub(super) fn instance(&self) -> &ash::Instance {
+    pub fn handle(&self) -> &ash::Device {
+        &self.raw
+    }
+
+    /// The instance that asks [`Device::physical`].
+    #[cfg(feature = "window")]
+    pub fn instance(&self) -> &ash::Instance {
         &self.instance
     }
 
+    /// The physical device.
     #[cfg(feature = "window")]
-    pub(super) fn physical(&self) -> vk::PhysicalDevice {
+    pub fn physical(&self) -> vk::PhysicalDevice {
         self.physical
+    }
+
+    /// The queue, locked while `body` submits to it, and its family. A usage error on a device that a host lends.
+    #[cfg(feature = "window")]
+    pub fn submit<R>(&self, body: impl FnOnce(vk::Queue, u32) -> R) -> Result<R> {
+        let (queue, family) = self.queue()?;
+        let queue = queue.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+        Ok(body(*queue, family))
     }
 
     /// Waits until the GPU has nothing left to do.

@@ -16,6 +16,8 @@ mod image;
 mod instance;
 mod limits;
 mod memory;
+#[cfg(feature = "window")]
+mod overlay;
 mod pipeline;
 mod pipeline_cache;
 #[cfg(feature = "window")]

@@ -1,6 +1,6 @@
 //! Frames to a window: a swapchain that follows the window, and two frames under way.
 
-use super::{Device, Surface, slot::Slot, swapchain::Swapchain};
+use super::{Device, Surface, overlay::Overlay, slot::Slot, swapchain::Swapchain};
 use crate::error::{Error, Result};
 use ash::{khr, vk};
 use std::sync::Arc;
@@ -12,6 +12,7 @@ pub const FRAMES_IN_FLIGHT: u32 = 2;
 pub struct Presenter {
     // Fields are dropped in this order: the surface goes last.
     swapchain: Option<Swapchain>,
+    overlay: Overlay,
     slots: Vec<Slot>,
     /// Number of the slot that is next.
     next: usize,
@@ -29,10 +30,8 @@ pub struct Presented {
     pub cmd: vk::CommandBuffer,
     /// Of the window, in the layout in which copies write it; to be left in that.
     pub image: vk::Image,
-    /// The same.
-    pub view: vk::ImageView,
-    /// Its format, which encodes sRGB.
-    pub format: vk::Format,
+    pub(super) framebuffer: vk::Framebuffer,
+    pub(super) overlay: vk::RenderPass,
     /// Width and height, px.
     pub size: [u32; 2],
 }
@@ -59,9 +58,11 @@ impl Presenter {
             ))
         })?;
         let slots = (0..FRAMES_IN_FLIGHT).map(|_| Slot::new(device)).collect::<Result<_>>()?;
+        let overlay = Overlay::new(device, format.format)?;
         let swapchains = khr::swapchain::Device::new(device.instance(), &device.raw);
         Ok(Self {
             swapchain: None,
+            overlay,
             slots,
             next: 0,
             swapchains,
@@ -70,6 +71,11 @@ impl Presenter {
             surface,
             device: device.clone(),
         })
+    }
+
+    /// The render pass in which [`Recorder::over`](super::Recorder::over) draws, of one colour attachment, whose format encodes sRGB.
+    pub fn overlay(&self) -> vk::RenderPass {
+        self.overlay.raw
     }
 
     /// The window's size is another, or may be.
@@ -95,7 +101,7 @@ impl Presenter {
         let slot = &self.slots[self.next];
         slot.wait()?;
         let Some(index) = swapchain.acquire(slot.acquired)? else { return Ok(None) };
-        let target = swapchain.target(index, self.format.format, slot.cmd);
+        let target = swapchain.target(index, self.overlay.raw, slot.cmd);
         let recorded = slot.record(&target, record);
         slot.submit(swapchain.drawn(index))?;
         self.next = (self.next + 1) % self.slots.len();
@@ -110,7 +116,8 @@ impl Presenter {
         self.device.wait_idle()?;
         let old = self.swapchain.take();
         let how = (&self.surface, self.format, self.mode());
-        self.swapchain = Swapchain::new(&self.device, &self.swapchains, how, size, old)?;
+        let window = (&self.swapchains, &self.overlay);
+        self.swapchain = Swapchain::new(&self.device, window, how, size, old)?;
         Ok(())
     }
 

@@ -1,7 +1,7 @@
 //! A swapchain: the images of a window, of one size.
 
 use super::presenter::Presented;
-use super::{Device, Surface};
+use super::{Device, Surface, overlay::Overlay};
 use crate::error::{Error, Result};
 use ash::{khr, vk};
 use std::sync::Arc;
@@ -22,6 +22,7 @@ pub(super) struct Swapchain {
 struct Shown {
     image: vk::Image,
     view: vk::ImageView,
+    framebuffer: vk::Framebuffer,
     /// Signalled when it is drawn.
     drawn: vk::Semaphore,
 }
@@ -30,7 +31,7 @@ impl Swapchain {
     /// A swapchain for a window of `size` px in the place of `old`, which nothing uses any more; none where the window has no extent.
     pub(super) fn new(
         device: &Arc<Device>,
-        loader: &khr::swapchain::Device,
+        (loader, overlay): (&khr::swapchain::Device, &Overlay),
         (surface, format, mode): (&Surface, vk::SurfaceFormatKHR, vk::PresentModeKHR),
         size: [u32; 2],
         old: Option<Self>,
@@ -75,14 +76,14 @@ impl Swapchain {
         // SAFETY: it was made just now.
         let images = unsafe { loader.get_swapchain_images(raw) };
         for image in images.map_err(Error::vulkan("vkGetSwapchainImagesKHR"))? {
-            made.add(image, format.format)?;
+            made.add(image, format.format, overlay)?;
         }
         Ok(Some(made))
     }
 
-    fn add(&mut self, image: vk::Image, format: vk::Format) -> Result<()> {
-        let (view, drawn) = (vk::ImageView::null(), vk::Semaphore::null());
-        self.images.push(Shown { image, view, drawn });
+    fn add(&mut self, image: vk::Image, format: vk::Format, overlay: &Overlay) -> Result<()> {
+        let (view, framebuffer) = (vk::ImageView::null(), vk::Framebuffer::null());
+        self.images.push(Shown { image, view, framebuffer, drawn: vk::Semaphore::null() });
         let Some(shown) = self.images.last_mut() else { return Ok(()) };
         let range = vk::ImageSubresourceRange {
             aspect_mask: vk::ImageAspectFlags::COLOR,
@@ -96,12 +97,13 @@ impl Swapchain {
             .format(format)
             .subresource_range(range);
         let raw = &self.device.raw;
-        // SAFETY: the image is the swapchain's; both are destroyed in `drop`.
+        // SAFETY: the image is the swapchain's; what is made is destroyed in `drop`.
         unsafe {
             shown.view = raw.create_image_view(&info, None).map_err(Error::vulkan("vkCreateImageView"))?;
             let semaphore = raw.create_semaphore(&vk::SemaphoreCreateInfo::default(), None);
             shown.drawn = semaphore.map_err(Error::vulkan("vkCreateSemaphore"))?;
         }
+        shown.framebuffer = overlay.framebuffer(shown.view, self.size)?;
         Ok(())
     }
 
@@ -125,9 +127,9 @@ impl Swapchain {
     }
 
     /// What a frame records into.
-    pub(super) fn target(&self, index: usize, format: vk::Format, cmd: vk::CommandBuffer) -> Presented {
-        let Shown { image, view, .. } = self.images[index];
-        Presented { cmd, image, view, format, size: self.size }
+    pub(super) fn target(&self, index: usize, overlay: vk::RenderPass, cmd: vk::CommandBuffer) -> Presented {
+        let Shown { image, framebuffer, .. } = self.images[index];
+        Presented { cmd, image, framebuffer, overlay, size: self.size }
     }
 
     /// Signalled when the image is drawn.
@@ -168,7 +170,8 @@ impl Drop for Swapchain {
     fn drop(&mut self) {
         // SAFETY: the presenter has waited for the device. Null handles are ignored.
         unsafe {
-            for Shown { view, drawn, .. } in &self.images {
+            for Shown { view, framebuffer, drawn, .. } in &self.images {
+                self.device.raw.destroy_framebuffer(*framebuffer, None);
                 self.device.raw.destroy_image_view(*view, None);
                 self.device.raw.destroy_semaphore(*drawn, None);
             }
