@@ -3,7 +3,7 @@
 use super::args::View;
 use super::colouring::Colouring;
 use super::inputs::{self, Wanted};
-use super::{camera, progress, render, vulkan};
+use super::{camera, render, vulkan};
 use crate::viewer;
 use surfel::methods::Method;
 use surfel::{Progress, Result};
@@ -40,8 +40,7 @@ pub fn run(args: View) -> Result<()> {
         device: vulkan::options(&args.device)?,
         rasterizer: args.rasterizer,
         up,
+        budget: args.budget,
     };
-    let told = progress::bars(quiet);
-    drop(told);
     viewer::run(options, Box::new(load), Box::new(move |method| args.settings(method)))
 }

@@ -89,6 +89,16 @@ impl Camera {
         self.projection * self.view
     }
 
+    /// Eye-space distance, in front of the eye, of what has this depth, 0 to 1; infinite at an infinite far plane.
+    ///
+    /// # Errors
+    /// As [`Camera::projection`].
+    pub fn distance(&self, depth: f64) -> Result<f64> {
+        let forward = self.projection()?.forward;
+        let (z, w) = (self.projection.row(2), self.projection.row(3));
+        Ok(forward * (z.w - depth * w.w) / (depth * w.z - z.z))
+    }
+
     /// What the projection's depth rows say; refuses a projection that is of no supported kind.
     pub fn projection(&self) -> Result<Projection> {
         let (z, w) = (self.projection.row(2), self.projection.row(3));
@@ -185,6 +195,26 @@ mod tests {
             let p = camera(matrix, reversed).projection().unwrap();
             assert_eq!(p.forward, forward, "case {i}");
             assert!(close(p.near, near) && close(p.far, far), "case {i}: {p:?}");
+        }
+    }
+
+    #[test]
+    fn depths_have_their_distances() {
+        let (near, far) = (0.5, 80.0);
+        let cases = [
+            (rh::proj::directx::perspective(1.0, 1.5, near, far), false),
+            (lh::proj::directx::perspective(1.0, 1.5, far, near), true),
+            (rh::proj::directx::perspective_infinite_reverse(1.0, 1.5, near), true),
+            (rh::proj::directx::orthographic(-1.0, 1.0, -1.0, 1.0, far, near), true),
+            (lh::proj::directx::orthographic(-1.0, 1.0, -1.0, 1.0, near, far), false),
+        ];
+        for (matrix, reversed) in cases {
+            let camera = camera(matrix, reversed);
+            let forward = camera.projection().unwrap().forward;
+            for distance in [0.5, 3.0, 79.0] {
+                let clip = matrix * DVec4::new(0.0, 0.0, forward * distance, 1.0);
+                assert!(close(camera.distance(clip.z / clip.w).unwrap(), distance), "{matrix} {distance}");
+            }
         }
     }
 

@@ -1,23 +1,19 @@
 //! The window's events: what the hands do, and what they see of it.
 
-use super::hud::Hud;
+use super::hands::Hands;
 use super::keys::{self, Action};
 use super::load::{self, Load, News};
 use super::panels::Told;
-use super::screen::Screen;
 use super::state::State;
+use super::window::Opened;
 use super::{Look, Options};
 use glam::DVec2;
-use std::sync::Arc;
 use std::time::Instant;
-use surfel::vk::{Device, Presenter};
 use surfel::{Error, Result};
 use winit::application::ApplicationHandler;
-use winit::dpi::PhysicalSize;
-use winit::event::{ElementState, KeyEvent, MouseButton, MouseScrollDelta, WindowEvent};
-use winit::event_loop::{ActiveEventLoop, EventLoop, EventLoopProxy};
-use winit::keyboard::ModifiersState;
-use winit::window::{Window, WindowId};
+use winit::event::{ElementState, KeyEvent, MouseButton, MouseScrollDelta, StartCause, WindowEvent};
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
+use winit::window::WindowId;
 
 /// Px of a touchpad's scrolling that are a step of a wheel.
 const PX_A_STEP: f64 = 50.0;
@@ -57,59 +53,6 @@ struct App {
     failed: Option<Error>,
 }
 
-/// What is pressed, and where the cursor is.
-#[derive(Default)]
-struct Hands {
-    cursor: DVec2,
-    button: Option<MouseButton>,
-    modifiers: ModifiersState,
-}
-
-/// An open window.
-struct Opened {
-    // The presenter waits for all frames before anything that they use goes.
-    presenter: Presenter,
-    hud: Hud,
-    screen: Screen,
-    window: Arc<Window>,
-}
-
-impl Opened {
-    fn new(events: &ActiveEventLoop, options: &Options) -> Result<(Self, Arc<Device>)> {
-        let [width, height] = options.size;
-        let attributes =
-            Window::default_attributes().with_title("surfel").with_inner_size(PhysicalSize { width, height });
-        let window = events
-            .create_window(attributes)
-            .map_err(|cause| Error::NoDevice(format!("no window can be opened: {cause}")))?;
-        let window = Arc::new(window);
-        let (device, surface) = Device::open_for(&options.device, window.clone())?;
-        let presenter = Presenter::new(&device, surface)?;
-        let screen = Screen::new(&device, options.rasterizer)?;
-        let hud = Hud::new(&device, &window, presenter.overlay())?;
-        Ok((Self { presenter, hud, screen, window }, device))
-    }
-
-    fn draw(&mut self, state: &mut State, told: &mut Told) -> Result<()> {
-        let PhysicalSize { width, height } = self.window.inner_size();
-        let start = Instant::now();
-        let Self { presenter, hud, screen, window } = self;
-        if hud.lay_out(window, state, told) {
-            window.request_redraw();
-        }
-        presenter.present([width, height], |frame| {
-            state.lens.size = frame.size;
-            screen.resize(frame.size)?;
-            let seen = state.frame().transpose()?;
-            let seen = seen.as_ref().map(|(scene, camera, settings)| (*scene, camera, *settings));
-            screen.record(frame, seen)?;
-            hud.record(frame)
-        })?;
-        told.frame = 1e3 * start.elapsed().as_secs_f64();
-        Ok(())
-    }
-}
-
 impl ApplicationHandler<News> for App {
     fn resumed(&mut self, events: &ActiveEventLoop) {
         match Opened::new(events, &self.options) {
@@ -139,34 +82,35 @@ impl ApplicationHandler<News> for App {
         }
     }
 
+    fn new_events(&mut self, _: &ActiveEventLoop, cause: StartCause) {
+        // The hands have rested.
+        if let (StartCause::ResumeTimeReached { .. }, Some(opened)) = (cause, &self.opened) {
+            opened.window.request_redraw();
+        }
+    }
+
     fn window_event(&mut self, events: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
-        if let Some(opened) = &mut self.opened {
-            let [theirs, redraw] = opened.hud.tell(&opened.window, &event);
-            if redraw && event != WindowEvent::RedrawRequested {
-                opened.window.request_redraw();
-            }
-            if theirs {
-                return;
-            }
+        let Some(opened) = &mut self.opened else { return };
+        let [theirs, redraw] = opened.hud.tell(&opened.window, &event);
+        if redraw && event != WindowEvent::RedrawRequested {
+            opened.window.request_redraw();
+        }
+        // What is let go is let go wherever that is.
+        let ends = matches!(event, WindowEvent::MouseInput { state: ElementState::Released, .. });
+        if theirs && !ends {
+            return;
         }
         match event {
             WindowEvent::CloseRequested => events.exit(),
-            WindowEvent::Resized(_) | WindowEvent::ScaleFactorChanged { .. } => {
-                if let Some(opened) = &mut self.opened {
-                    opened.presenter.resized();
-                    opened.window.request_redraw();
-                }
-            }
-            WindowEvent::RedrawRequested => {
-                if let Some(opened) = &mut self.opened
-                    && let Err(error) = opened.draw(&mut self.state, &mut self.told)
-                {
-                    self.fail(events, error);
-                }
-            }
+            WindowEvent::Resized(_) | WindowEvent::ScaleFactorChanged { .. } => opened.resized(),
+            WindowEvent::RedrawRequested => self.draw(events),
+            WindowEvent::Focused(false) => self.hands.let_go(),
             WindowEvent::ModifiersChanged(modifiers) => self.hands.modifiers = modifiers.state(),
             WindowEvent::MouseInput { state, button, .. } => {
-                self.hands.button = (state == ElementState::Pressed).then_some(button);
+                if self.hands.press(button, state, Instant::now()) {
+                    self.state.pick = Some(self.hands.cursor);
+                    self.changed();
+                }
             }
             WindowEvent::CursorMoved { position, .. } => self.drag(DVec2::new(position.x, position.y)),
             WindowEvent::MouseWheel { delta, .. } => {
@@ -175,24 +119,9 @@ impl ApplicationHandler<News> for App {
                     MouseScrollDelta::PixelDelta(way) => way.y / PX_A_STEP,
                 };
                 self.state.zoom(steps, self.hands.cursor);
-                self.changed();
+                self.moved();
             }
-            WindowEvent::KeyboardInput { event: KeyEvent { logical_key, state, .. }, .. }
-                if state == ElementState::Pressed =>
-            {
-                match keys::action(&logical_key) {
-                    Some(Action::Quit) => events.exit(),
-                    Some(Action::Help) => {
-                        self.told.help = !self.told.help;
-                        self.changed();
-                    }
-                    Some(action) => {
-                        self.state.act(action);
-                        self.changed();
-                    }
-                    None => {}
-                }
-            }
+            WindowEvent::KeyboardInput { event, .. } => self.key(events, &event),
             _ => {}
         }
     }
@@ -203,6 +132,35 @@ impl ApplicationHandler<News> for App {
 }
 
 impl App {
+    fn draw(&mut self, events: &ActiveEventLoop) {
+        let Some(opened) = &mut self.opened else { return };
+        match opened.draw(&mut self.state, &self.hands, &mut self.told) {
+            Ok(next) => events.set_control_flow(next.map_or(ControlFlow::Wait, ControlFlow::WaitUntil)),
+            Err(error) => self.fail(events, error),
+        }
+    }
+
+    fn key(&mut self, events: &ActiveEventLoop, event: &KeyEvent) {
+        self.hands.hold(event.physical_key, event.state);
+        if self.hands.flight().is_some() {
+            self.moved();
+        }
+        let action = keys::action(&event.logical_key).filter(|_| event.state == ElementState::Pressed);
+        match action {
+            Some(Action::Quit) => events.exit(),
+            Some(Action::Help) => {
+                self.told.help = !self.told.help;
+                self.changed();
+            }
+            Some(action) => {
+                self.state.act(action);
+                self.told.wrong = None;
+                self.changed();
+            }
+            None => {}
+        }
+    }
+
     /// The cursor is somewhere else.
     fn drag(&mut self, to: DVec2) {
         let way = to - self.hands.cursor;
@@ -219,20 +177,22 @@ impl App {
             }
             _ => return,
         }
+        self.moved();
+    }
+
+    /// The camera is somewhere else, and may go on.
+    fn moved(&mut self) {
+        if let Some(opened) = &mut self.opened {
+            opened.pace.moved(Instant::now());
+        }
         self.changed();
     }
 
     /// The picture is another.
     fn changed(&self) {
-        self.say(&self.state.title());
         if let Some(opened) = &self.opened {
+            opened.window.set_title(&format!("surfel · {}", self.state.title()));
             opened.window.request_redraw();
-        }
-    }
-
-    fn say(&self, text: &str) {
-        if let Some(opened) = &self.opened {
-            opened.window.set_title(&format!("surfel · {text}"));
         }
     }
 

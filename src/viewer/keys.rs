@@ -12,6 +12,7 @@ pub enum Action {
     Parallel,
     Frame,
     Help,
+    Up(super::orbit::Up),
     Side(super::orbit::Side),
 }
 
@@ -28,8 +29,8 @@ const fn letter(key: &'static str, name: &'static str, does: &'static str, actio
 }
 
 /// All of them.
-pub const BINDINGS: [Binding; 14] = {
-    use super::orbit::Side;
+pub const BINDINGS: [Binding; 16] = {
+    use super::orbit::{Side, Up};
     [
         letter("m", "M", "next method", Action::NextMethod),
         letter("M", "Shift+M", "previous method", Action::PreviousMethod),
@@ -42,8 +43,10 @@ pub const BINDINGS: [Binding; 14] = {
         letter("4", "4", "from the right", Action::Side(Side::Right)),
         letter("5", "5", "from above", Action::Side(Side::Top)),
         letter("6", "6", "from below", Action::Side(Side::Bottom)),
+        letter("x", "X", "x is up, then −x", Action::Up(Up { axis: 0, down: false })),
+        letter("y", "Y", "y is up, then −y", Action::Up(Up { axis: 1, down: false })),
+        letter("z", "Z", "z is up, then −z", Action::Up(Up { axis: 2, down: false })),
         letter("h", "H", "these keys", Action::Help),
-        letter("q", "Q", "quit", Action::Quit),
         Binding { key: Key::Named(NamedKey::Escape), name: "Esc", does: "quit", action: Action::Quit },
     ]
 };

@@ -6,13 +6,16 @@
 //! ```
 
 mod app;
+mod hands;
 mod hud;
 mod keys;
 mod load;
 mod orbit;
+mod pace;
 mod panels;
 mod screen;
 mod state;
+mod window;
 
 use glam::DVec3;
 use load::Load;
@@ -31,6 +34,8 @@ pub struct Options {
     pub rasterizer: Option<Rasterizer>,
     /// What is up in the world, of any length; the axis that is nearest is taken.
     pub up: DVec3,
+    /// How long frames may take while the hands move, ms.
+    pub budget: f64,
 }
 
 /// What is looked at.

@@ -63,6 +63,7 @@ pub struct Orbit {
 
 impl Up {
     /// y.
+    #[cfg(test)]
     pub const Y: Self = Self { axis: 1, down: false };
 
     /// The unit vector.
@@ -143,12 +144,6 @@ impl Orbit {
         )
     }
 
-    /// Eye, what it looks at, and what is up in the picture.
-    pub fn look(&self) -> [DVec3; 3] {
-        let [forward, _, up] = self.axes();
-        [self.eye, self.eye + self.distance() * forward, up]
-    }
-
     /// Turns about the pivot as the cursor moves by `way`: the surface follows it.
     pub fn turn(&mut self, way: DVec2, lens: &Lens) {
         let before = self.rotation();
@@ -193,16 +188,6 @@ impl Orbit {
             // Its distance has the picture's scale.
             self.eye += (self.distance() - was) * self.axes()[0];
         }
-    }
-
-    /// Looks about from where it stands, as the cursor moves by `way`.
-    pub fn look_about(&mut self, way: DVec2, lens: &Lens) {
-        let before = self.rotation();
-        let to_pivot = self.pivot - self.eye;
-        let angles = TURN / f64::from(lens.size[1]) * way;
-        self.yaw -= angles.x;
-        self.pitch = (self.pitch + angles.y).clamp(-0.5 * std::f64::consts::PI, 0.5 * std::f64::consts::PI);
-        self.pivot = self.eye + self.rotation() * (before.transpose() * to_pivot);
     }
 
     /// Flies for so many seconds; `way` is how much to the right, up and ahead, each from −1 to 1.
@@ -396,7 +381,7 @@ mod tests {
     }
 
     #[test]
-    fn flight_and_looking_about_take_the_pivot_along() {
+    fn flight_takes_the_pivot_along() {
         let mut orbit = Orbit::framing(&bounds(), Up::Y, &LENS);
         let (eye, reach) = (orbit.eye, orbit.distance());
         let mut parts = orbit;
@@ -404,8 +389,5 @@ mod tests {
         (0..5).for_each(|_| parts.fly(DVec3::new(0.0, 0.0, 1.0), 0.1));
         assert!((orbit.eye - parts.eye).length() < 1e-9, "whatever the frames");
         assert!(((orbit.eye - eye).length() - 0.5 * SPEED * reach).abs() < 1e-9);
-        let eye = orbit.eye;
-        orbit.look_about(DVec2::new(50.0, -20.0), &LENS);
-        assert!(orbit.eye == eye && (orbit.distance() - reach).abs() < 1e-9);
     }
 }

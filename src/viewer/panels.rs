@@ -14,6 +14,8 @@ pub struct Told {
     pub wrong: Option<String>,
     /// How long the last frame took, ms.
     pub frame: f64,
+    /// Its side, as part of the window's.
+    pub side: f64,
     /// Whether keys are listed.
     pub help: bool,
 }
@@ -33,7 +35,11 @@ pub fn show(ui: &mut Ui, state: &mut State, told: &Told) {
 }
 
 fn choices(ui: &mut Ui, state: &mut State, told: &Told) {
-    ui.label(format!("{:.0} ms a frame", told.frame));
+    let quality = match told.side {
+        side if side < 1.0 => format!("{:.0} % of the pixels", 100.0 * side * side),
+        _ => "all pixels".into(),
+    };
+    ui.label(format!("{:.0} ms a frame, {quality}", told.frame));
     let Some(mut chosen) = state.choices() else { return };
     ui.label(format!("{} surfels", chosen.surfels));
     ui.separator();
@@ -77,8 +83,10 @@ fn help(ui: &mut Ui) {
     egui::Grid::new("keys").show(ui, |ui| {
         let mouse = [
             ("left", "turn"),
+            ("double left", "turn about this point from now on"),
             ("middle, Shift+left", "move across the picture"),
             ("wheel, right", "nearer and farther"),
+            ("W A S D, E Q", "fly ahead, left, back, right, up, down"),
         ];
         let bound = keys::BINDINGS.map(|binding| (binding.name, binding.does));
         for (name, does) in mouse.into_iter().chain(bound) {

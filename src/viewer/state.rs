@@ -21,6 +21,8 @@ pub struct State {
     up: Up,
     look: Look,
     shown: Option<Shown>,
+    /// The place whose surface is to be turned about, px.
+    pub pick: Option<DVec2>,
 }
 
 struct Shown {
@@ -33,7 +35,7 @@ struct Shown {
 impl State {
     pub fn new(options: &Options, look: Look) -> Self {
         let lens = Lens { size: options.size, fov_y: FOV, parallel: false };
-        Self { lens, up: nearest(options.up), look, shown: None }
+        Self { lens, up: nearest(options.up), look, shown: None, pick: None }
     }
 
     /// Looks at a scene from the front.
@@ -60,6 +62,14 @@ impl State {
     pub fn zoom(&mut self, steps: f64, at: DVec2) {
         if let Some((orbit, lens, scene)) = self.moving() {
             orbit.zoom(steps, at, None, lens, scene.bounds());
+        }
+    }
+
+    /// Turns from now on about what is at `at`, so far ahead of the eye; the picture stays. Nothing is infinitely far.
+    pub fn set_pivot(&mut self, at: DVec2, distance: f64) {
+        let Some((orbit, lens, _)) = self.moving() else { return };
+        if distance.is_finite() {
+            orbit.set_pivot(orbit.point(at, distance, lens), lens);
         }
     }
 
@@ -95,6 +105,11 @@ impl State {
             Action::Parallel => self.lens.parallel = !self.lens.parallel,
             Action::Frame => shown.orbit.frame(shown.scene.bounds(), &self.lens),
             Action::Side(side) => shown.orbit.side(side),
+            Action::Up(up) => {
+                let down = shown.orbit.up() == up;
+                self.up = Up { down, ..up };
+                shown.orbit.set_up(self.up);
+            }
         }
     }
 }

@@ -109,9 +109,14 @@ impl Presenter {
         recorded.map(Some)
     }
 
+    /// Waits until the GPU is done with every frame.
+    pub fn wait(&self) -> Result<()> {
+        self.slots.iter().try_for_each(Slot::wait)
+    }
+
     /// Waits for every frame, and makes a swapchain of this size in the place of the one that there is.
     fn remake(&mut self, size: [u32; 2]) -> Result<()> {
-        self.slots.iter().try_for_each(Slot::wait)?;
+        self.wait()?;
         // Presented images may be waited for by the queue yet.
         self.device.wait_idle()?;
         let old = self.swapchain.take();

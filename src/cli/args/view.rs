@@ -37,6 +37,9 @@ pub struct View {
     /// What visits the pixels: the device's own rasterizer, or compute shaders; what is faster on the device unless given
     #[arg(long, value_enum)]
     pub rasterizer: Option<Rasterizer>,
+    /// How long frames may take while the camera moves; they are coarser where whole ones take longer
+    #[arg(long, value_name = "MS", default_value_t = 60.0)]
+    pub budget: f64,
     /// On which device
     #[command(flatten)]
     pub device: OnDevice,
