@@ -16,13 +16,13 @@ void main() {
 #ifdef FRAGMENT
 
 layout(constant_id = 0) const bool PERSPECTIVE = true;
-layout(constant_id = 40) const bool HOST_DEPTH = false; // the host's target has depth
-layout(constant_id = 41) const bool ENCODE = false;     // the host's colours are sRGB-encoded by the shader that writes them
+
+#include "lib/host.glsl"
 
 layout(push_constant) uniform Composite {
     ivec2 origin; // of the picture in the host's target, px
     uvec2 size;   // of the picture, px
-    vec4 depth;   // the host's depth at distance z: depth.x + depth.y / z in perspective, depth.x + depth.y z otherwise; its least and greatest
+    vec4 depth;   // see host_depth
 } composite;
 
 #if defined(NORMALS) || defined(IMAGES_NORMALS)
@@ -72,25 +72,15 @@ float depth_at(ivec2 at) {
 
 #endif
 
-vec3 linear_to_srgb(vec3 c) {
-    return mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, greaterThan(c, vec3(0.0031308)));
-}
-
 void main() {
     ivec2 at = ivec2(gl_FragCoord.xy) - composite.origin;
     vec4 seen = image_at(at);
     if (seen.a == 0.0) discard;
-    vec3 colour = ENCODE ? linear_to_srgb(clamp(seen.rgb, 0.0, 1.0)) : seen.rgb;
-    out_image = vec4(seen.a * colour, seen.a);
+    out_image = over_host(seen);
 #ifdef WITH_NORMALS
     out_normal = vec4(normal_at(at), 1.0);
 #endif
-    if (HOST_DEPTH) {
-        float z = depth_at(at);
-        // A disc may be nearer at its rim than the near plane, by which its centre is cut off.
-        float depth = composite.depth.x + composite.depth.y * (PERSPECTIVE ? 1.0 / z : z);
-        gl_FragDepth = clamp(depth, composite.depth.z, composite.depth.w);
-    }
+    if (HOST_DEPTH) gl_FragDepth = host_depth(composite.depth, depth_at(at));
 }
 
 #endif

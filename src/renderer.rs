@@ -215,7 +215,7 @@ fn too_large(device: &Device, options: &RenderOptions) -> Error {
 }
 
 /// The faster of what `device` can do with these options, for frames that blend splats or do not.
-fn rasterizer_for(
+pub(crate) fn rasterizer_for(
     device: &Device,
     options: &RenderOptions,
     blends: bool,

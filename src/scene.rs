@@ -41,6 +41,8 @@ pub struct Scene {
     count: u64,
     origin: DVec3,
     bounds: Bounds,
+    /// The largest radius, where it is known.
+    pub(crate) largest: Option<f32>,
 }
 
 /// Clips as `lib/clip.glsl` wants them, window by window: for every surfel which clip it has, then the clips.
@@ -216,6 +218,7 @@ impl Scene {
             count,
             origin: parts.origin(),
             bounds,
+            largest: Some(surfels.radii.iter().copied().fold(0.0, f32::max)),
         };
         Ok((scene, invalid))
     }

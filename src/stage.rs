@@ -73,6 +73,29 @@ impl Retired {
     }
 }
 
+/// What a frame is: its numbers and its variant. Refuses what cannot be rendered.
+pub(crate) fn describe(
+    device: &Device,
+    options: &RenderOptions,
+    scene: &Scene,
+    camera: &Camera,
+    settings: &Settings,
+) -> Result<(Frame, Variant)> {
+    settings.check()?;
+    settings.splatting.normalization.check_weights(scene.weights.is_some())?;
+    settings.check_primitives(scene.primitives.is_some())?;
+    settings.check_outputs(options.outputs)?;
+    let block = frame(camera, settings, options.size, scene.origin(), scene.bounds())?;
+    let rasterizer = rasterizer_of(device, options, settings, scene)?;
+    let perspective = camera.projection()?.perspective;
+    let precision = match settings.pull_push {
+        Some(_) => options.precision,
+        None => width_of_sums(device, options, rasterizer),
+    };
+    let options = RenderOptions { precision, ..*options };
+    Ok((block, Variant::new(scene.streams(), perspective, settings, &options, rasterizer)))
+}
+
 impl Stage {
     /// Nothing is made for any scene yet.
     pub(crate) fn new(device: &Arc<Device>, options: RenderOptions, retired: Retired) -> Result<Self> {
@@ -131,19 +154,7 @@ impl Stage {
         settings: &Settings,
         read: bool,
     ) -> Result<(Frame, Variant)> {
-        settings.check()?;
-        settings.splatting.normalization.check_weights(scene.weights.is_some())?;
-        settings.check_primitives(scene.primitives.is_some())?;
-        settings.check_outputs(self.options.outputs)?;
-        let block = frame(camera, settings, self.options.size, scene.origin(), scene.bounds())?;
-        let rasterizer = rasterizer_of(&self.device, &self.options, settings, scene)?;
-        let perspective = camera.projection()?.perspective;
-        let precision = match settings.pull_push {
-            Some(_) => self.options.precision,
-            None => width_of_sums(&self.device, &self.options, rasterizer),
-        };
-        let options = RenderOptions { precision, ..self.options };
-        let variant = Variant::new(scene.streams(), perspective, settings, &options, rasterizer);
+        let (block, variant) = describe(&self.device, &self.options, scene, camera, settings)?;
         let splats = variant.pull_push.is_none().then_some(variant.rasterizer);
         self.make_resident(scene, splats)?;
         self.make_present(variant, read)?;

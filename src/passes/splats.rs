@@ -10,8 +10,8 @@ use crate::scene::{ClipWindow, Scene};
 use crate::variant::Rasterizer;
 use crate::vk::shaders::layout::{Counts, LargeSplats, ScreenClip, Splat};
 use crate::vk::{
-    Access, Binding, Buffer, Commands, DescriptorSet, Device, DrawPipeline, Encoder, Framebuffer, Recorder,
-    SetLayout, Use,
+    Access, Binding, Buffer, Commands, DescriptorSet, Device, DrawPipeline, Draws, Encoder, Framebuffer,
+    Recorder, SetLayout, Use,
 };
 use ash::vk::{DescriptorType, ShaderStageFlags};
 use std::ops::Range;
@@ -57,6 +57,8 @@ pub(super) struct Window {
 
 /// From one window's counts to the next, bytes; no device aligns to more.
 const COUNTS_STEP: u64 = 256;
+/// Bytes of the push constants of `lib/window.glsl`.
+pub(super) const WINDOW: u32 = 8;
 /// Bytes before the indices of a list of large splats.
 const LIST_HEADER: u64 = size_of::<LargeSplats>() as u64;
 
@@ -230,7 +232,7 @@ impl Splats {
     }
 
     /// What drawing reads.
-    pub(super) fn read_by_draws(&self) -> Vec<Use> {
+    pub(crate) fn read_by_draws(&self) -> Vec<Use> {
         let clips = self.screen_clips.as_ref().unwrap_or(&self.splats);
         vec![self.with(Access::VERTEX_READ), clips.with(Access::FRAGMENT_READ)]
     }
@@ -243,12 +245,15 @@ impl Splats {
         framebuffer: &Framebuffer,
         more: &[&DescriptorSet],
     ) {
-        enc.render(framebuffer, |draws| {
-            for window in &self.windows {
-                let sets: Vec<_> = std::iter::once(&window.set).chain(more.iter().copied()).collect();
-                draws.draw(pipeline, &sets, &window.push(), 3 * window.count);
-            }
-        });
+        enc.render(framebuffer, |draws| self.draw_in(draws, pipeline, more));
+    }
+
+    /// The same within a render pass that has begun.
+    pub(super) fn draw_in(&self, draws: &mut Draws<'_>, pipeline: &DrawPipeline, more: &[&DescriptorSet]) {
+        for window in &self.windows {
+            let sets: Vec<_> = std::iter::once(&window.set).chain(more.iter().copied()).collect();
+            draws.draw(pipeline, &sets, &window.push(), 3 * window.count);
+        }
     }
 
     /// Empties counts, where `count`, and lists.

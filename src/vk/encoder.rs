@@ -150,6 +150,15 @@ impl<'a> Draws<'a> {
         }
     }
 
+    /// Goes on to the next subpass of the render pass that a host has begun.
+    ///
+    /// # Safety
+    /// `cmd` is of `device`, and is being recorded inside a render pass, not in its last subpass.
+    pub unsafe fn next_subpass(device: &Device, cmd: vk::CommandBuffer) {
+        // SAFETY: by the caller.
+        unsafe { device.raw.cmd_next_subpass(cmd, vk::SubpassContents::INLINE) };
+    }
+
     /// Draws `vertices` vertices with `pipeline`, which was made for this render pass, and `push` as the push constants.
     pub fn draw(
         &mut self,

@@ -3,10 +3,12 @@
 
 #![allow(dead_code, reason = "no host uses all of it")]
 
+pub mod fog;
 pub mod frame;
 pub mod image;
 pub mod memory;
 pub mod mesh;
+pub mod native;
 pub mod show;
 
 use ash::{ext, khr, vk};

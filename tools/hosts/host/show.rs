@@ -62,7 +62,7 @@ fn render(host: &Host, frame: &Frame, mesh: &Mesh) -> Result<()> {
 }
 
 /// Surfels on the unit sphere, along a spiral, of two colours.
-fn sphere(count: u32) -> Surfels {
+pub fn sphere(count: u32) -> Surfels {
     let point = |i: u32| {
         let y = 1.0 - 2.0 * (f64::from(i) + 0.5) / f64::from(count);
         let (sin, cos) = (f64::from(i) * 2.399_963_229_728_653).sin_cos();
