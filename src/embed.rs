@@ -73,12 +73,15 @@
 //! ```
 #![allow(unsafe_code)]
 
+mod buffers;
 mod target;
 
+pub use crate::scene::Changes;
 pub use crate::vk::{
     ABILITIES, API_VERSION, Abilities, Ability, Features, HostMemory, Lent, Location, MemoryRequest,
     MemorySource, QUEUE, Staging,
 };
+pub use buffers::{Buffers, READ_ACCESS, READ_STAGES, Radii, Values, update};
 pub use target::{Pass, Target};
 
 use crate::error::{Error, Result};

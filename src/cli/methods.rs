@@ -3,7 +3,7 @@
 use super::files::print;
 use std::fmt::Write;
 use surfel::methods::{Method, passes};
-use surfel::scene::{ColourStream, PrimitiveKinds, Streams};
+use surfel::scene::{ColourStream, PrimitiveKinds, Streams, SurfelLayout};
 use surfel::settings::{Settings, Shading};
 use surfel::splatting::{Filter, Splatting};
 use surfel::targets::{Buffers, Formats, PerPixel, Pyramids};
@@ -68,6 +68,8 @@ fn variant(settings: &Settings, rasterizer: Rasterizer) -> Variant {
         colours: ColourStream::Srgb8,
         primitives: PrimitiveKinds::NONE,
         texture: None,
+        layout: SurfelLayout::side_by_side(ColourStream::Srgb8),
+        unchecked: false,
     };
     let settings = Settings { shading: Shading::Lit, ..settings.clone() };
     Variant::new(streams, true, &settings, &RenderOptions::default(), rasterizer)

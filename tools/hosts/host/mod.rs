@@ -99,6 +99,15 @@ impl Host {
 
     /// The device as surfels borrow it.
     pub fn lend(&self, memory: Option<Box<dyn MemorySource>>) -> surfel::Result<Arc<Device>> {
+        self.lend_within(DeviceLimits::default(), memory)
+    }
+
+    /// The same, less what `limits` hide.
+    pub fn lend_within(
+        &self,
+        limits: DeviceLimits,
+        memory: Option<Box<dyn MemorySource>>,
+    ) -> surfel::Result<Arc<Device>> {
         let lent = Lent {
             instance: &self.instance,
             physical: self.physical,
@@ -106,7 +115,7 @@ impl Host {
             queue_family: self.family,
             enabled: self.enabled,
             labels: true,
-            limits: DeviceLimits::default(),
+            limits,
             memory,
             pipeline_cache: None,
         };
