@@ -8,6 +8,7 @@ pub mod image;
 pub mod memory;
 pub mod mesh;
 pub mod show;
+pub mod simulation;
 
 use ash::{ext, khr, vk};
 use std::error::Error;
