@@ -3,36 +3,31 @@
 
 #[path = "../tools/hosts/host/mod.rs"]
 mod host;
+#[path = "support/rig.rs"]
+mod rig;
 #[path = "support/stand.rs"]
 mod stand;
 mod support;
 
 use ash::vk::{self, Format};
 use glam::{DVec3, Vec3};
-use host::frame::{Frame, Kind, Way};
+use host::frame::Frame;
 use host::memory::Counted;
 use host::{Host, Submitted};
+use rig::{Held, KIND, Rig, SIZE, Shown, lay, view};
 use stand::{assert_silent, open, upload};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use support::layouts::Layout;
 use support::sampling::{Random, bumpy_sphere, forget_sides, narrow, paint_linear, paint_srgb};
-use surfel::embed::{self, Buffers, Changes, Options, READ_ACCESS, READ_STAGES, Radii, Renderer, View};
-use surfel::geometry::{Bounds, Camera, Clip, Clips, Colours, Surfels, Weights};
+use surfel::embed::{self, Buffers, Changes, Options, READ_ACCESS, READ_STAGES, Radii, Renderer};
+use surfel::geometry::{Bounds, Clip, Clips, Colours, Surfels, Weights};
 use surfel::methods::Method;
 use surfel::splatting::Visibility;
 use surfel::vk::{Buffer, Device, DeviceLimits, Uploads};
 use surfel::{Picture, Precision, Rasterizer, RenderOptions, Scene, Settings, SplatCounts};
 
-const SIZE: [u32; 2] = [160, 120];
-const KIND: Kind = Kind {
-    way: Way::Rendering,
-    colour: Format::R32G32B32A32_SFLOAT,
-    normals: false,
-    samples: vk::SampleCountFlags::TYPE_1,
-    reversed: true,
-};
-/// So small that a scene of 20,000 surfels has several windows.
+/// Ranges so small that a scene of 20,000 surfels has several windows, which begin at far fewer places than the values of vertices do.
 const NARROW: DeviceLimits = DeviceLimits {
     max_storage_buffer_range: Some(512 << 10),
     blend_float32: None,
@@ -41,11 +36,10 @@ const NARROW: DeviceLimits = DeviceLimits {
     fragment_writes: None,
     independent_blend: None,
     timestamps: None,
+    storage_buffer_alignment: Some(256),
     max_storage_buffers: None,
     max_image_side: None,
 };
-
-type Shown = (Vec<[f32; 4]>, Vec<f32>);
 
 fn sphere(count: usize) -> Surfels {
     let mut random = Random(11);
@@ -64,102 +58,8 @@ fn ellipses(count: usize) -> Surfels {
     Surfels { origin: DVec3::new(0.125, -0.25, 0.0), ..surfels }
 }
 
-fn view() -> View {
-    let camera =
-        Camera::look_at(DVec3::new(1.1, 0.9, 3.0), DVec3::ZERO, DVec3::Y, 0.8, 4.0 / 3.0, 0.1).unwrap();
-    let [width, height] = SIZE.map(|side| side as f32);
-    View { camera, viewport: vk::Viewport { width, height, max_depth: 1.0, ..Default::default() } }
-}
-
 fn settings(method: Method) -> Settings {
     Settings { background: None, ..method.settings() }
-}
-
-/// A host's frames, and the renderer that draws into them.
-struct Rig {
-    renderer: Renderer,
-    device: Arc<Device>,
-    frame: Frame,
-}
-
-impl Rig {
-    fn new(host: &Host, rasterizer: Option<Rasterizer>, limits: DeviceLimits) -> Self {
-        let device = host.lend_within(limits, None).unwrap();
-        let frame = Frame::new(host, KIND, SIZE).unwrap();
-        let options =
-            Options { target: frame.target(), frames_in_flight: 8, precision: Precision::Full, rasterizer };
-        // SAFETY: the target is the frame's.
-        let renderer = unsafe { Renderer::new(&device, options) }.unwrap();
-        Self { renderer, device, frame }
-    }
-
-    fn record(
-        &mut self,
-        host: &Host,
-        cmd: vk::CommandBuffer,
-        to: Option<&Frame>,
-        scene: &Arc<Scene>,
-        settings: &Settings,
-    ) {
-        let frame = to.unwrap_or(&self.frame);
-        // SAFETY: recorded outside and inside the frame's pass, submitted in order to the host's queue.
-        unsafe {
-            self.renderer.prepare(cmd, scene, &view(), settings).unwrap();
-            frame.begin(host, cmd);
-            self.renderer.draw(cmd).unwrap();
-            frame.end(host, cmd);
-        }
-    }
-
-    fn show(&mut self, host: &Host, scene: &Arc<Scene>, settings: &Settings) -> Shown {
-        host.run(|cmd| {
-            self.record(host, cmd, None, scene, settings);
-            Ok(())
-        })
-        .unwrap();
-        self.frame.read(host).unwrap()
-    }
-
-    /// A frame of `surfels` uploaded anew. Depths are summed in a unit of about the scene's distance: its bounds have to be the same.
-    fn show_uploaded(&mut self, host: &Host, surfels: &Surfels, like: &Scene, settings: &Settings) -> Shown {
-        let scene = upload(host, &self.device, surfels);
-        scene.set_bounds(like.bounds()).unwrap();
-        self.show(host, &scene, settings)
-    }
-
-    fn destroy(self, host: &Host) {
-        drop(self.renderer);
-        self.frame.destroy(host);
-    }
-}
-
-/// A buffer of the host.
-struct Held(vk::Buffer, vk::DeviceMemory);
-
-impl Held {
-    fn new(host: &Host, bytes: &[u8]) -> Self {
-        let usage = vk::BufferUsageFlags::STORAGE_BUFFER
-            | vk::BufferUsageFlags::TRANSFER_DST
-            | vk::BufferUsageFlags::TRANSFER_SRC;
-        let (buffer, memory) = host.buffer(bytes, usage).unwrap();
-        Self(buffer, memory)
-    }
-
-    fn destroy(self, host: &Host) {
-        // SAFETY: the GPU is done with it.
-        unsafe {
-            host.device.destroy_buffer(self.0, None);
-            host.device.free_memory(self.1, None);
-        }
-    }
-}
-
-/// A scene of `surfels` in a buffer of the host, and that.
-fn lay(host: &Host, device: &Arc<Device>, layout: &Layout, surfels: &Surfels) -> (Arc<Scene>, Held) {
-    let held = Held::new(host, &layout.bytes(surfels));
-    // SAFETY: the buffer is the device's, was made for it, and is destroyed last.
-    let scene = unsafe { Scene::from_buffers(device, &layout.told(surfels, held.0)) }.unwrap();
-    (Arc::new(scene), held)
 }
 
 /// What may differ by whom a frame is made: splats that are blended by atomic sums are added in whatever order.
@@ -217,11 +117,11 @@ fn every_format_gives_what_it_holds() {
     let Some(host) = open(|all| all) else { return };
     let mut rig = Rig::new(&host, Some(Rasterizer::Draw), DeviceLimits::default());
     let base = Layout { colours: None, ..Layout::apart(6_000) };
-    let linear = |format, values: fn(Vec3) -> Vec3| {
+    let linear = |format, few, values: fn(Vec3) -> Vec3| {
         let mut surfels = sphere(6_000);
         let colours = surfels.positions.iter().map(|p| values(*p).to_array()).collect();
         surfels.colours = Some(Colours::Linear(colours));
-        (Layout { colours: Some((28 * 6_000, 16, format)), ..base }, surfels, 0)
+        (Layout { colours: Some((28 * 6_000, 16, format)), ..base }, surfels, few)
     };
     let normals = |format, stride, most| {
         (
@@ -234,12 +134,13 @@ fn every_format_gives_what_it_holds() {
     let cases = [
         (base, bare(), 0),
         (Layout { radii: None, ..base }, bare(), 0),
-        // Numbers that any of them holds to the bit.
-        linear(Format::R8G8B8A8_UNORM, |p| p.signum().max(Vec3::ZERO)),
-        linear(Format::R16G16B16A16_SFLOAT, |p| (64.0 * p).round() / 16.0),
-        linear(Format::R32G32B32_SFLOAT, |p| p),
-        linear(Format::R32G32B32A32_SFLOAT, |p| 3.0 * p),
-        // Unit vectors are rounded by whoever makes them such: few pixels at the rims of discs may turn.
+        // Numbers that half floats hold to the bit.
+        linear(Format::R16G16B16A16_SFLOAT, 0, |p| (64.0 * p).round() / 16.0),
+        linear(Format::R32G32B32_SFLOAT, 0, |p| p),
+        linear(Format::R32G32B32A32_SFLOAT, 0, |p| 3.0 * p),
+        // A quotient by 255 is rounded by whoever makes it.
+        linear(Format::R8G8B8A8_UNORM, 20, |p| (0.5 * p + 0.5).clamp(Vec3::ZERO, Vec3::ONE)),
+        // So are unit vectors: few pixels at the rims of discs may turn.
         normals(Format::R8G8B8A8_SNORM, 4, 20),
         normals(Format::R16G16B16A16_SNORM, 12, 20),
         normals(Format::R16G16B16A16_SFLOAT, 8, 20),

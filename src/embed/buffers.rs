@@ -1,9 +1,10 @@
 //! Scenes in buffers of a host, and new values for scenes that the engine holds.
 
+use super::formats::{COLOURS, NORMALS, SCALARS, SHAPES, VECTORS, format_of, one_radius, sizes, stream};
 use crate::error::{Error, Result};
 use crate::geometry::{Bounds, Surfels};
-use crate::scene::{Changes, ColourStream, NormalStream, Scene, Stream};
-use crate::vk::{Access, Buffer, Device, Recorder, Staging, Uploads};
+use crate::scene::{Changes, ColourStream, Scene};
+use crate::vk::{Access, Device, Recorder, Staging, Uploads};
 use ash::vk;
 use glam::DVec3;
 use std::sync::Arc;
@@ -159,91 +160,4 @@ impl Buffers {
         }
         Ok(())
     }
-}
-
-/// Formats with what they are to the shaders, and the bytes that these read of one.
-type Formats<T> = [(vk::Format, T, u64)];
-
-const VECTORS: &Formats<()> =
-    &[(vk::Format::R32G32B32_SFLOAT, (), 12), (vk::Format::R32G32B32A32_SFLOAT, (), 12)];
-const SCALARS: &[(vk::Format, u64)] = &[(vk::Format::R32_SFLOAT, 4)];
-const SHAPES: &[(vk::Format, u64)] = &[(vk::Format::R32G32B32A32_SFLOAT, 16)];
-const NORMALS: &Formats<NormalStream> = &[
-    (vk::Format::R32G32B32_SFLOAT, NormalStream::Float, 12),
-    (vk::Format::R32G32B32A32_SFLOAT, NormalStream::Float, 12),
-    (vk::Format::R8G8B8A8_SNORM, NormalStream::Snorm8, 4),
-    (vk::Format::R16G16B16A16_SNORM, NormalStream::Snorm16, 8),
-    (vk::Format::R16G16B16A16_SFLOAT, NormalStream::Half, 8),
-];
-const COLOURS: &Formats<ColourStream> = &[
-    (vk::Format::R8G8B8A8_SRGB, ColourStream::Srgb8, 4),
-    (vk::Format::R8G8B8A8_UNORM, ColourStream::Unorm8, 4),
-    (vk::Format::R16G16B16A16_SFLOAT, ColourStream::Half, 8),
-    (vk::Format::R32G32B32_SFLOAT, ColourStream::Linear, 12),
-    (vk::Format::R32G32B32A32_SFLOAT, ColourStream::Linear, 12),
-];
-
-fn sizes<T>(formats: &Formats<T>) -> Vec<(vk::Format, u64)> {
-    formats.iter().map(|(format, _, size)| (*format, *size)).collect()
-}
-
-fn refused(name: &str, what: impl std::fmt::Display) -> Error {
-    Error::Usage(format!("the host's {name} cannot be read: {what}"))
-}
-
-fn unknown<T>(name: &str, format: vk::Format, known: impl Iterator<Item = vk::Format>) -> Result<T> {
-    let known: Vec<_> = known.map(|format| format!("{format:?}")).collect();
-    Err(refused(name, format_args!("they are {format:?}: give {}", known.join(", "))))
-}
-
-/// What the format of `values` is to the shaders.
-fn format_of<T: Copy>(name: &str, values: &Values, formats: &Formats<T>) -> Result<T> {
-    match formats.iter().find(|(format, ..)| *format == values.format) {
-        Some((_, kind, _)) => Ok(*kind),
-        None => unknown(name, values.format, formats.iter().map(|(format, ..)| *format)),
-    }
-}
-
-/// `values` of as many surfels, in one of these formats with the bytes that shaders read of each.
-///
-/// # Safety
-/// As of [`Scene::from_buffers`].
-unsafe fn stream(
-    device: &Arc<Device>,
-    name: &str,
-    values: Values,
-    formats: &[(vk::Format, u64)],
-    capacity: u64,
-) -> Result<Stream> {
-    let Values { buffer, size: room, offset, stride, format } = values;
-    let Some((_, size)) = formats.iter().find(|(known, _)| *known == format) else {
-        return unknown(name, format, formats.iter().map(|(known, _)| *known));
-    };
-    let size = *size;
-    if offset % 4 != 0 || stride % 4 != 0 || stride < size || stride > u64::from(u32::MAX) {
-        let what = format_args!(
-            "they begin at byte {offset}, {stride} bytes apart: give multiples of 4, and a stride of {size} bytes or more"
-        );
-        return Err(refused(name, what));
-    }
-    let end = (capacity - 1).checked_mul(stride).and_then(|last| last.checked_add(offset)?.checked_add(size));
-    if end.is_none_or(|end| end > room) {
-        let what = format_args!(
-            "{capacity} of them, from byte {offset} on, {stride} bytes apart, do not fit {room} bytes"
-        );
-        return Err(refused(name, what));
-    }
-    if buffer == vk::Buffer::null() {
-        return Err(refused(name, "their buffer is null"));
-    }
-    // SAFETY: by the caller.
-    let buffer = unsafe { Buffer::of_host(device, buffer, room) };
-    Ok(Stream { buffer, offset, stride, size })
-}
-
-/// A radius that all surfels have.
-fn one_radius(device: &Arc<Device>, radius: f32) -> Result<Stream> {
-    let mut buffer = Buffer::parameters(device, "radius", 4)?;
-    buffer.bytes_mut().copy_from_slice(&radius.to_ne_bytes());
-    Ok(Stream { buffer, offset: 0, stride: 0, size: 4 })
 }

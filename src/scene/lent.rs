@@ -1,6 +1,7 @@
 //! Surfels in buffers of a host.
 
-use super::{ColourStream, NormalStream, Scene, Stream, check_bounds, next_id, step, windows};
+use super::live::check_bounds;
+use super::{ColourStream, NormalStream, Scene, Stream, next_id, step, windows};
 use crate::error::{Error, Result};
 use crate::geometry::Bounds;
 use crate::vk::Device;

@@ -1,5 +1,6 @@
 //! New values for surfels that are on the GPU.
 
+use super::live::check_bounds;
 use super::{ColourStream, Scene, Stream};
 use crate::error::{Error, Result};
 use crate::geometry::{Bounds, Colours, Ellipse, Surfels, is_unit};
@@ -48,7 +49,7 @@ impl Scene {
         let range = first..first.saturating_add(count);
         self.check(&range, changes)?;
         let bounds = changes.bounds.or_else(|| self.bounds_with(&range, changes));
-        bounds.as_ref().map_or(Ok(()), super::check_bounds)?;
+        bounds.as_ref().map_or(Ok(()), check_bounds)?;
         if changes.may_be_invalid(self.ellipses.is_some()) {
             // First: what is written may be drawn.
             self.unchecked.store(true, Ordering::Relaxed);
@@ -104,12 +105,17 @@ impl Scene {
 
     /// Bounds that hold new positions, too, or them alone.
     fn bounds_with(&self, range: &Range<u64>, changes: &Changes<'_>) -> Option<Bounds> {
-        let bounded = |p: &Vec3| p.abs().cmple(Vec3::splat(Surfels::LARGEST)).all();
-        let valid: Vec<Vec3> = changes.positions?.iter().copied().filter(bounded).collect();
-        let whole = *range == (0..self.capacity()) && self.primitives.is_none();
+        let positions = changes.positions?;
+        // A copy only where some are left out.
+        let valid: Vec<Vec3> = match positions.iter().all(is_bounded) {
+            true => Vec::new(),
+            false => positions.iter().copied().filter(is_bounded).collect(),
+        };
+        let of_positions = Bounds::of(if valid.is_empty() { positions } else { &valid })?;
         let radii = changes.radii.unwrap_or_default().iter().copied();
         let largest = radii.filter(|radius| *radius <= Surfels::LARGEST).fold(0.0, f32::max);
-        let added = Bounds::of(&valid)?.grown(largest.into()).translated(self.origin);
+        let added = of_positions.grown(largest.into()).translated(self.origin);
+        let whole = *range == (0..self.capacity()) && self.primitives.is_none();
         Some(if whole { added } else { self.bounds().with(&added) })
     }
 }
@@ -137,19 +143,22 @@ impl Changes<'_> {
 
     /// Whether some surfel may not be valid with them. Radii tell it themselves, as they are marked.
     fn may_be_invalid(&self, ellipses: bool) -> bool {
-        let bounded = |v: &Vec3| v.abs().cmple(Vec3::splat(Surfels::LARGEST)).all();
         let shaped = |e: &Ellipse| is_unit(e.major) && e.aspect > 0.0 && e.aspect <= 1.0;
         // An ellipse is at a right angle to its normal, which may be the old one.
         let turned = ellipses && (self.normals.is_some() || self.ellipses.is_some());
         turned
-            || !self.positions.unwrap_or_default().iter().all(bounded)
+            || !self.positions.unwrap_or_default().iter().all(is_bounded)
             || !self.normals.unwrap_or_default().iter().all(|normal| is_unit(*normal))
             || !self.ellipses.unwrap_or_default().iter().all(shaped)
             || match self.colours {
-                Some(Colours::Linear(colours)) => !colours.iter().all(|colour| bounded(&(*colour).into())),
+                Some(Colours::Linear(colours)) => !colours.iter().all(|colour| is_bounded(&(*colour).into())),
                 Some(Colours::Srgb8(_)) | None => false,
             }
     }
+}
+
+fn is_bounded(v: &Vec3) -> bool {
+    v.abs().cmple(Vec3::splat(Surfels::LARGEST)).all()
 }
 
 /// Radii as scenes hold them, those that are not valid 0.
