@@ -70,13 +70,12 @@ fn most(settings: &Settings, rasterizer: Rasterizer) -> f32 {
 
 /// The number of pixels in which two frames differ by more than `most`.
 fn differing((colours, depths): &Shown, (others, other_depths): &Shown, most: f32) -> usize {
-    let near = |a: f32, b: f32| (a - b).abs() <= most;
-    let pixels = colours.iter().zip(others).zip(depths.iter().zip(other_depths));
-    let same = |((a, b), (c, d)): &((&[f32; 4], &[f32; 4]), (&f32, &f32))| {
-        a.iter().zip(*b).all(|(a, b)| near(*a, *b)) && near(**c, **d)
-    };
     assert_eq!((colours.len(), depths.len()), (others.len(), other_depths.len()));
-    pixels.filter(|pixel| !same(pixel)).count()
+    let near = |a: f32, b: f32| (a - b).abs() <= most;
+    let same = |i: &usize| {
+        colours[*i].iter().zip(&others[*i]).all(|(a, b)| near(*a, *b)) && near(depths[*i], other_depths[*i])
+    };
+    (0..colours.len()).filter(|i| !same(i)).count()
 }
 
 fn covered((colours, _): &Shown) -> usize {
