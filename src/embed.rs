@@ -6,6 +6,9 @@
 //!               Renderer::draw:    records a draw of the picture with its depth, inside a render pass of the host
 //! ```
 //!
+//! Surfels may also stay in buffers of the host, which a simulation of its own writes every frame: [`Scene::from_buffers`] reads them in place.
+//! Those that were uploaded get new values by [`update`].
+//!
 //! Nothing is submitted, waited for or stalled: the host submits what is recorded, to one queue. What the engine makes it also destroys, once
 //! as many frames have been prepared since as the host has in flight; what it borrows it leaves alone.
 //!
@@ -73,14 +76,18 @@
 //! ```
 #![allow(unsafe_code)]
 
+mod buffers;
+mod formats;
 mod held;
 pub mod native;
 mod target;
 
+pub use crate::scene::Changes;
 pub use crate::vk::{
     ABILITIES, API_VERSION, Abilities, Ability, Features, HostMemory, Lent, Location, MemoryRequest,
     MemorySource, QUEUE, Staging,
 };
+pub use buffers::{Buffers, READ_ACCESS, READ_STAGES, Radii, Values, update};
 pub use target::{Pass, Target};
 use target::{check_convention, depths};
 

@@ -306,7 +306,7 @@ impl Renderer {
         let origin = [area.offset.x as f32, area.offset.y as f32];
         let block = Frame { origin, ..block };
         let format = self.made.plan.seeded().filter(|_| passes::can_seed(&variant));
-        let seed = format.zip(scene.largest).and_then(|(format, largest)| {
+        let seed = format.zip(scene.largest()).and_then(|(format, largest)| {
             seeding::seed(format, depth, (&block, variant.perspective), largest, variant.precision)
         });
         self.make_resident(scene, passes::moves(&variant))?;

@@ -48,7 +48,10 @@ pub struct Splats {
 /// As many splats as one descriptor can name.
 pub(super) struct Window {
     pub(super) set: DescriptorSet,
+    /// Surfels of this frame.
     pub(super) count: u32,
+    /// Surfels that there is room for.
+    capacity: u32,
     /// The number of its first surfel in the scene.
     first: u32,
     /// Where its list of large splats starts, bytes.
@@ -78,7 +81,7 @@ impl SplatLayout {
             storage(compute | vertex),                              // colours
             storage(compute),                                       // counts
             storage(compute),                                       // large splats
-            storage(compute),                                       // ellipses
+            storage(compute | vertex),                              // ellipses
             storage(compute | vertex | ShaderStageFlags::FRAGMENT), // clips
             storage(compute | ShaderStageFlags::FRAGMENT),          // screen clips
             storage(compute | vertex),                              // weights
@@ -112,10 +115,10 @@ impl Splats {
         rasterizer: Option<Rasterizer>,
     ) -> Result<Self> {
         let stride = size_of::<Splat>() as u64;
-        let room = if rasterizer.is_some() { scene.count() * stride } else { 0 }.max(COUNTS_STEP);
+        let room = if rasterizer.is_some() { scene.capacity() * stride } else { 0 }.max(COUNTS_STEP);
         let splats = Buffer::storage(device, "splats", room)?;
         let counts = Buffer::readback(device, "counts", (scene.windows().len() as u64).max(1) * COUNTS_STEP)?;
-        let lists = scene.windows().len() as u64 * LIST_HEADER + 4 * scene.count();
+        let lists = scene.windows().len() as u64 * LIST_HEADER + 4 * scene.capacity();
         let large = match rasterizer {
             None | Some(Rasterizer::Draw) => None,
             Some(Rasterizer::Compute) => Some(Buffer::storage(device, "large splats", lists)?),
@@ -173,7 +176,8 @@ impl Splats {
                 weights,
             ];
             let set = DescriptorSet::new(device, &layout.splats, &bindings)?;
-            Ok(Window { set, count: count as u32, first: range.start as u32, list })
+            let count = count as u32;
+            Ok(Window { set, count, capacity: count, first: range.start as u32, list })
         };
         let windows = (0..).zip(scene.windows()).map(window).collect::<Result<_>>()?;
         let primitives = scene
@@ -199,6 +203,19 @@ impl Splats {
 
     pub(super) fn primitives(&self) -> Option<&PrimitiveSets> {
         self.primitives.as_ref()
+    }
+
+    /// Frames from now on are of the first `count` surfels.
+    pub(crate) fn set_count(&mut self, count: u64) {
+        for window in &mut self.windows {
+            let here = count.saturating_sub(window.first.into()).min(window.capacity.into());
+            window.count = here as u32;
+        }
+    }
+
+    /// Surfels of this frame.
+    pub(crate) fn count(&self) -> u64 {
+        self.windows.iter().map(|window| u64::from(window.count)).sum()
     }
 
     pub(super) fn windows(&self) -> &[Window] {
@@ -295,7 +312,10 @@ impl Splats {
 
     /// Copies the splats of the last frame, one a surfel, to the CPU.
     pub fn read(&self, device: &Arc<Device>) -> Result<Vec<Splat>> {
-        let size = self.splats.size();
+        let size = (self.count() * size_of::<Splat>() as u64).min(self.splats.size());
+        if size == 0 {
+            return Ok(Vec::new());
+        }
         let target = Buffer::readback(device, "read splats", size)?;
         Commands::new(device, false)?.run(|rec| {
             let uses = [self.splats.with(Access::COPY_READ), target.with(Access::COPY_WRITE)];

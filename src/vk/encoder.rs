@@ -88,9 +88,9 @@ impl<'a> Encoder<'a> {
         unsafe { self.device.raw.cmd_copy_buffer(self.cmd, from.raw, to.raw, &[region]) };
     }
 
-    /// Copies all of `from` to the start of `to`, which is alive and as large.
-    pub(super) fn copy_all(&mut self, from: &Buffer, to: vk::Buffer) {
-        let region = vk::BufferCopy { src_offset: 0, dst_offset: 0, size: from.size() };
+    /// Copies all of `from` to `to`, which is alive and has room, from byte `at` on.
+    pub(super) fn copy_all(&mut self, from: &Buffer, to: vk::Buffer, at: u64) {
+        let region = vk::BufferCopy { src_offset: 0, dst_offset: at, size: from.size() };
         // SAFETY: recorded outside a render pass; both buffers are alive and large enough.
         unsafe { self.device.raw.cmd_copy_buffer(self.cmd, from.raw, to, &[region]) };
     }

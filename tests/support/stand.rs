@@ -1,4 +1,5 @@
 //! A host with a frame into which surfels are drawn.
+#![allow(dead_code, reason = "no test uses all of it")]
 
 use crate::host::Host;
 use crate::host::frame::{Frame, Kind};

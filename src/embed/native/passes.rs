@@ -44,6 +44,14 @@ pub(super) struct SplatPair {
     pub(super) moved: Option<Splats>,
 }
 
+impl SplatPair {
+    /// Frames from now on are of the first `count` surfels.
+    pub(super) fn set_count(&mut self, count: u64) {
+        let both = [Some(&mut self.splats), self.moved.as_mut()];
+        both.into_iter().flatten().for_each(|splats| splats.set_count(count));
+    }
+}
+
 /// The numbers of a frame that are pushed.
 #[derive(Clone, Copy)]
 pub(super) struct Numbers {

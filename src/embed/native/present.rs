@@ -77,7 +77,7 @@ impl Made {
 }
 
 impl Renderer {
-    /// Makes the splats of `scene`, if they are not there.
+    /// Makes the splats of `scene`, if they are not there, for as many surfels as it has now.
     pub(super) fn make_resident(&mut self, scene: &Arc<Scene>, moves: bool) -> Result<()> {
         let same = |resident: &Resident| {
             Arc::ptr_eq(&resident.scene, scene) && resident.splats.moved.is_some() == moves
@@ -86,6 +86,9 @@ impl Renderer {
             let old = self.resident.take();
             self.held.hold(old);
             self.resident = Some(self.made.resident(&self.device, scene, moves)?);
+        }
+        if let Some(Resident { splats, .. }) = &mut self.resident {
+            splats.set_count(scene.count());
         }
         Ok(())
     }

@@ -10,6 +10,7 @@ pub mod memory;
 pub mod mesh;
 pub mod native;
 pub mod show;
+pub mod simulation;
 
 use ash::{ext, khr, vk};
 use std::error::Error;
@@ -101,6 +102,15 @@ impl Host {
 
     /// The device as surfels borrow it.
     pub fn lend(&self, memory: Option<Box<dyn MemorySource>>) -> surfel::Result<Arc<Device>> {
+        self.lend_within(DeviceLimits::default(), memory)
+    }
+
+    /// The same, less what `limits` hide.
+    pub fn lend_within(
+        &self,
+        limits: DeviceLimits,
+        memory: Option<Box<dyn MemorySource>>,
+    ) -> surfel::Result<Arc<Device>> {
         let lent = Lent {
             instance: &self.instance,
             physical: self.physical,
@@ -108,7 +118,7 @@ impl Host {
             queue_family: self.family,
             enabled: self.enabled,
             labels: true,
-            limits: DeviceLimits::default(),
+            limits,
             memory,
             pipeline_cache: None,
         };
