@@ -227,6 +227,22 @@ impl Frame {
         found
     }
 
+    /// The image of the picture, which `end` leaves ready to be copied.
+    pub fn image(&self) -> vk::Image {
+        self.picture().image
+    }
+
+    /// Has `size` px from now on, and the same pass. The GPU is done with the frames before.
+    pub fn resize(&mut self, host: &Host, size: [u32; 2]) -> Result<()> {
+        let mut made = Self::new(host, self.kind, size)?;
+        // A framebuffer goes with every pass like its own.
+        if let (Some((new, _)), Some((old, _))) = (&mut made.pass, &mut self.pass) {
+            std::mem::swap(new, old);
+        }
+        std::mem::replace(self, made).destroy(host);
+        Ok(())
+    }
+
     /// Destroys it, once the GPU is done with it.
     pub fn destroy(self, host: &Host) {
         // SAFETY: by the caller.

@@ -7,11 +7,17 @@ pub mod frame;
 pub mod image;
 pub mod memory;
 pub mod mesh;
+pub mod options;
+#[cfg(feature = "viewer")]
+pub mod presenter;
+pub mod scene;
 pub mod show;
+#[cfg(feature = "viewer")]
+pub mod window;
 
 use ash::{ext, khr, vk};
 use std::error::Error;
-use std::ffi::{CStr, c_void};
+use std::ffi::{CStr, c_char, c_void};
 use std::sync::{Arc, Mutex};
 use surfel::embed::{Abilities, Lent, MemorySource};
 use surfel::vk::{Device, DeviceLimits};
@@ -47,6 +53,16 @@ const VALIDATION: &CStr = c"VK_LAYER_KHRONOS_validation";
 impl Host {
     /// Opens the first device that does graphics and compute; under validation where its layer is installed, which it must be if `validates`.
     pub fn open(wanted: fn(Abilities) -> Abilities, validates: bool) -> Result<Self> {
+        Self::open_with(wanted, validates, &[], &[])
+    }
+
+    /// The same with these extensions of the instance, by their raw names, and of the device.
+    pub fn open_with(
+        wanted: fn(Abilities) -> Abilities,
+        validates: bool,
+        of_instance: &[*const c_char],
+        of_device: &[&'static CStr],
+    ) -> Result<Self> {
         // SAFETY: a plain use of Vulkan: every handle is made here, and destroyed in `drop`, after what was made of it.
         unsafe {
             let entry = ash::Entry::load()?;
@@ -58,7 +74,8 @@ impl Host {
                 );
             }
             let layers: Vec<_> = there.then_some(VALIDATION.as_ptr()).into_iter().collect();
-            let extensions = [ext::debug_utils::NAME.as_ptr()];
+            let mut extensions = vec![ext::debug_utils::NAME.as_ptr()];
+            extensions.extend(of_instance);
             let application = vk::ApplicationInfo::default().api_version(vk::API_VERSION_1_2);
             let synchronization = [vk::ValidationFeatureEnableEXT::SYNCHRONIZATION_VALIDATION];
             let mut features =
@@ -76,7 +93,7 @@ impl Host {
             let messenger = debug.create_debug_utils_messenger(&messenger(&messages), None)?;
             let (physical, family) = choose(&instance)?;
             let enabled = wanted(Abilities::of(&instance, physical));
-            let device = create_device(&instance, physical, family, &enabled)?;
+            let device = create_device(&instance, physical, family, &enabled, of_device)?;
             let pool = vk::CommandPoolCreateInfo::default()
                 .queue_family_index(family)
                 .flags(vk::CommandPoolCreateFlags::RESET_COMMAND_BUFFER);
@@ -156,6 +173,12 @@ impl Host {
         Ok(made)
     }
 
+    /// An error if the validation layers have said anything.
+    pub fn silent(&self) -> Result<()> {
+        let messages = self.messages();
+        if messages.is_empty() { Ok(()) } else { Err(format!("validation: {}", messages.join("; ")).into()) }
+    }
+
     /// Messages of the validation layers so far.
     pub fn messages(&self) -> Vec<String> {
         self.messages.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).clone()
@@ -195,9 +218,10 @@ unsafe fn create_device(
     physical: vk::PhysicalDevice,
     family: u32,
     enabled: &Abilities,
+    more: &[&'static CStr],
 ) -> Result<ash::Device> {
     let queues = [vk::DeviceQueueCreateInfo::default().queue_family_index(family).queue_priorities(&[1.0])];
-    let mut names: Vec<_> = enabled.extensions().map(CStr::as_ptr).collect();
+    let mut names: Vec<_> = enabled.extensions().chain(more.iter().copied()).map(CStr::as_ptr).collect();
     // What this host wants itself.
     names.extend(
         [khr::dynamic_rendering::NAME, khr::depth_stencil_resolve::NAME, khr::create_renderpass2::NAME]
