@@ -42,6 +42,14 @@ pub struct Host {
     _entry: ash::Entry,
 }
 
+/// Whether the host runs under the validation layers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Validation {
+    Needed,
+    WhereThere,
+    Off,
+}
+
 /// Commands under way.
 pub struct Submitted {
     cmd: vk::CommandBuffer,
@@ -53,13 +61,14 @@ const VALIDATION: &CStr = c"VK_LAYER_KHRONOS_validation";
 impl Host {
     /// Opens the first device that does graphics and compute; under validation where its layer is installed, which it must be if `validates`.
     pub fn open(wanted: fn(Abilities) -> Abilities, validates: bool) -> Result<Self> {
-        Self::open_with(wanted, validates, &[], &[])
+        let validation = if validates { Validation::Needed } else { Validation::WhereThere };
+        Self::open_with(wanted, validation, &[], &[])
     }
 
     /// The same with these extensions of the instance, by their raw names, and of the device.
     pub fn open_with(
         wanted: fn(Abilities) -> Abilities,
-        validates: bool,
+        validation: Validation,
         of_instance: &[*const c_char],
         of_device: &[&'static CStr],
     ) -> Result<Self> {
@@ -68,11 +77,12 @@ impl Host {
             let entry = ash::Entry::load()?;
             let layers = entry.enumerate_instance_layer_properties()?;
             let there = layers.iter().any(|layer| layer.layer_name_as_c_str() == Ok(VALIDATION));
-            if validates && !there {
+            if validation == Validation::Needed && !there {
                 return Err(
                     "VK_LAYER_KHRONOS_validation is not installed (Debian: vulkan-validationlayers)".into()
                 );
             }
+            let there = there && validation != Validation::Off;
             let layers: Vec<_> = there.then_some(VALIDATION.as_ptr()).into_iter().collect();
             let mut extensions = vec![ext::debug_utils::NAME.as_ptr()];
             extensions.extend(of_instance);
@@ -152,6 +162,21 @@ impl Host {
                 Ok(made) => Ok((submitted, made)),
                 Err(error) => self.wait(submitted).and(Err(error)),
             }
+        }
+    }
+
+    /// Records what is not submitted.
+    pub fn record<T>(&self, body: impl FnOnce(vk::CommandBuffer) -> Result<T>) -> Result<T> {
+        // SAFETY: the command buffer is recorded whole, and freed.
+        unsafe {
+            let buffer =
+                vk::CommandBufferAllocateInfo::default().command_pool(self.pool).command_buffer_count(1);
+            let cmd = self.device.allocate_command_buffers(&buffer)?[0];
+            self.device.begin_command_buffer(cmd, &Default::default())?;
+            let made = body(cmd);
+            self.device.end_command_buffer(cmd)?;
+            self.device.free_command_buffers(self.pool, &[cmd]);
+            made
         }
     }
 

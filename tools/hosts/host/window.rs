@@ -4,7 +4,7 @@ use super::frame::Way;
 use super::presenter::{FRAMES_IN_FLIGHT, Presenter};
 use super::scene::{SIZE, camera};
 use super::show::Show;
-use super::{Host, Result};
+use super::{Host, Result, Validation};
 use ash::khr;
 use std::time::Instant;
 use winit::application::ApplicationHandler;
@@ -92,7 +92,7 @@ impl Opened {
         let attributes = Window::default_attributes().with_title("surfels in a host").with_inner_size(size);
         let window = events.create_window(attributes)?;
         let extensions = ash_window::enumerate_required_extensions(window.display_handle()?.as_raw())?;
-        let host = Host::open_with(|all| all, false, extensions, &[khr::swapchain::NAME])?;
+        let host = Host::open_with(|all| all, Validation::WhereThere, extensions, &[khr::swapchain::NAME])?;
         let presenter = Presenter::new(&host, &window)?;
         let show = Show::new(&host, way, SIZE, FRAMES_IN_FLIGHT)?;
         window.request_redraw();
