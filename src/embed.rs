@@ -58,6 +58,7 @@
 //!         samples: vk::SampleCountFlags::TYPE_1,
 //!         picture: 0,
 //!         normal: None,
+//!         id: None,
 //!         encode: false,
 //!     };
 //!     let options = Options { target, frames_in_flight: 2, precision: Precision::Full, rasterizer: None };
@@ -183,7 +184,11 @@ impl Renderer {
                 "0 frames in flight: a frame is under way when it is recorded, so give 1 or more".into(),
             ));
         }
-        let outputs = Outputs { normal: target.normal.is_some(), depth: target.depth.is_some(), id: false };
+        let outputs = Outputs {
+            normal: target.normal.is_some(),
+            depth: target.depth.is_some(),
+            id: target.id.is_some(),
+        };
         let options = RenderOptions { size: [1, 1], outputs, precision, rasterizer, ..Default::default() };
         Ok(Self {
             viewed: None,
@@ -314,6 +319,7 @@ impl Renderer {
             perspective,
             picture: self.target.picture,
             normal: self.target.normal,
+            id: self.target.id,
             reversed: self.target.depth.map(|_| self.target.reversed),
             encode: self.target.encode,
         };

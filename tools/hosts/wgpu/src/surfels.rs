@@ -67,6 +67,7 @@ impl Embedded {
             samples,
             picture: 0,
             normal: None,
+            id: None,
             encode: false,
         };
         let options = Options {
