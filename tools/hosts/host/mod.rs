@@ -13,6 +13,10 @@ pub mod presenter;
 pub mod scene;
 pub mod show;
 #[cfg(feature = "viewer")]
+pub mod surface;
+#[cfg(feature = "viewer")]
+pub mod swapchain;
+#[cfg(feature = "viewer")]
 pub mod window;
 
 use ash::{ext, khr, vk};

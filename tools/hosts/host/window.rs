@@ -54,13 +54,15 @@ impl ApplicationHandler for App {
                 event: KeyEvent { logical_key: Key::Named(NamedKey::Escape), .. },
                 ..
             } => events.exit(),
-            WindowEvent::Resized(_) => opened.presenter.resized(),
+            WindowEvent::Resized(_) => {
+                opened.presenter.resized();
+                opened.window.request_redraw();
+            }
             WindowEvent::RedrawRequested => {
                 self.left = self.left.map(|left| left.saturating_sub(1));
                 if self.left == Some(0) {
                     events.exit();
                 }
-                opened.window.request_redraw();
                 if let Err(error) = opened.draw() {
                     self.fail(events, error);
                 }
@@ -102,7 +104,9 @@ impl Opened {
     fn draw(&mut self) -> Result<()> {
         let Self { show, presenter, host, start, window } = self;
         let PhysicalSize { width, height } = window.inner_size();
+        // A window without extent draws nothing until it has one again.
         let Some(size) = presenter.ready(host, [width, height])? else { return Ok(()) };
+        window.request_redraw();
         if size != show.frame.size {
             show.frame.resize(host, size)?;
         }

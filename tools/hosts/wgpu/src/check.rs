@@ -102,8 +102,9 @@ fn among(ring: &Shot, surfels: &Shot, both: &Shot) -> Result<String> {
         let nearer = depths[0].max(depths[1]);
         let close = |a: f32, b: f32| (a - b).abs() <= ORDER * nearer;
         let is_of = |shot: &Shot| (0..3).all(|c| shot.colours[i][c].abs_diff(both.colours[i][c]) <= 1);
-        let of_ring = is_of(ring) && !(depths[1] > depths[0] && !close(depths[0], depths[1]));
-        let of_surfels = is_of(surfels) && !(depths[0] > depths[1] && !close(depths[0], depths[1]));
+        let tie = close(depths[0], depths[1]);
+        let of_ring = is_of(ring) && (depths[0] >= depths[1] || tie);
+        let of_surfels = is_of(surfels) && (depths[1] >= depths[0] || tie);
         wrong += usize::from(!(of_ring || of_surfels) || !close(both.depths[i], nearer));
         if depths[0].min(depths[1]) > 0.0 {
             hidden[usize::from(depths[0] > depths[1])] += 1;

@@ -14,11 +14,12 @@ use wgpu::hal::vulkan::Api as Vulkan;
 
 /// Surfels with what draws them into frames of wgpu. The GPU must be done with it when it is dropped.
 pub struct Embedded {
+    // Fields are dropped in this order: the pass after what is made of it, and wgpu's device last.
     renderer: Renderer,
     scene: Arc<Scene>,
     attached: Option<Attached>,
-    pass: vk::RenderPass,
-    device: ash::Device,
+    pass: RawPass,
+    _device: wgpu::Device,
 }
 
 /// A frame's textures as the render pass sees them.
@@ -26,6 +27,13 @@ struct Attached {
     framebuffer: vk::Framebuffer,
     _views: [wgpu::TextureView; 2],
     size: [u32; 2],
+    device: ash::Device,
+}
+
+/// The render pass.
+struct RawPass {
+    raw: vk::RenderPass,
+    device: ash::Device,
 }
 
 /// How many frames may be under way.
@@ -57,9 +65,9 @@ impl Embedded {
             (device.raw_device().clone(), adapter.texture_format_as_raw(COLOUR))
         };
         let samples = vk::SampleCountFlags::from_raw(samples);
-        let pass = render_pass(&device, colour, samples)?;
+        let pass = RawPass { raw: render_pass(&device, colour, samples)?, device };
         let target = Target {
-            pass: Pass::Subpass { pass, subpass: 0 },
+            pass: Pass::Subpass { pass: pass.raw, subpass: 0 },
             colours: vec![colour],
             depth: Some(DEPTH),
             stencil: vk::Format::UNDEFINED,
@@ -76,16 +84,14 @@ impl Embedded {
             precision: Precision::Full,
             rasterizer: None,
         };
-        // SAFETY: the target is this pass, which goes last.
-        let renderer = unsafe { Renderer::new(&borrowed, options) };
-        // SAFETY: nothing was made of the pass.
-        let renderer = renderer.inspect_err(|_| unsafe { device.destroy_render_pass(pass, None) })?;
-        Ok(Self { renderer, scene: Arc::new(scene), attached: None, pass, device })
+        // SAFETY: the target is this pass, which goes after the renderer.
+        let renderer = unsafe { Renderer::new(&borrowed, options)? };
+        let scene = Arc::new(scene);
+        Ok(Self { renderer, scene, attached: None, pass, _device: gpu.device.clone() })
     }
 
     /// From now on the surfels go into `frame`. The GPU is done with the one before.
     pub fn attach(&mut self, frame: &Frame) -> Result<()> {
-        self.detach();
         let views = [&frame.colour, &frame.depth].map(|texture| texture.create_view(&Default::default()));
         // SAFETY: wgpu's views are kept as long as the framebuffer.
         let raw = unsafe {
@@ -94,31 +100,26 @@ impl Embedded {
         };
         let [width, height] = frame.size;
         let info = vk::FramebufferCreateInfo::default()
-            .render_pass(self.pass)
+            .render_pass(self.pass.raw)
             .attachments(&raw)
             .width(width)
             .height(height)
             .layers(1);
-        // SAFETY: a plain use of Vulkan; `detach` destroys it.
-        let framebuffer = unsafe { self.device.create_framebuffer(&info, None)? };
-        self.attached = Some(Attached { framebuffer, _views: views, size: frame.size });
+        let device = self.pass.device.clone();
+        // SAFETY: a plain use of Vulkan; `drop` destroys it.
+        let framebuffer = unsafe { device.create_framebuffer(&info, None)? };
+        self.attached = Some(Attached { framebuffer, _views: views, size: frame.size, device });
         Ok(())
-    }
-
-    fn detach(&mut self) {
-        if let Some(Attached { framebuffer, .. }) = self.attached.take() {
-            // SAFETY: the callers of all that calls this say that the GPU is done with it.
-            unsafe { self.device.destroy_framebuffer(framebuffer, None) };
-        }
     }
 
     /// Commands that draw the surfels, to be submitted between a pass of wgpu on the frame and another: each leaves its textures as colour and
     /// depth target.
     pub fn record(&mut self, gpu: &Gpu, camera: &Camera, settings: &Settings) -> Result<wgpu::CommandBuffer> {
-        let Some(Attached { framebuffer, size: [width, height], .. }) = self.attached else {
+        let Some(Attached { framebuffer, size: [width, height], device, .. }) = &self.attached else {
             return Err("surfels without a frame".into());
         };
         // wgpu turns its viewports over: y points up.
+        let (width, height) = (*width, *height);
         let viewport = vk::Viewport {
             x: 0.0,
             y: height as f32,
@@ -130,8 +131,8 @@ impl Embedded {
         let view = View { camera: *camera, viewport };
         let area = vk::Rect2D { offset: vk::Offset2D::default(), extent: vk::Extent2D { width, height } };
         let begin = vk::RenderPassBeginInfo::default()
-            .render_pass(self.pass)
-            .framebuffer(framebuffer)
+            .render_pass(self.pass.raw)
+            .framebuffer(*framebuffer)
             .render_area(area);
         let mut encoder =
             gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("surfels") });
@@ -141,9 +142,9 @@ impl Embedded {
             encoder.as_hal_mut::<Vulkan, _, _>(|raw| {
                 let cmd = raw.ok_or("wgpu does not record")?.raw_handle();
                 self.renderer.prepare(cmd, &self.scene, &view, settings)?;
-                self.device.cmd_begin_render_pass(cmd, &begin, vk::SubpassContents::INLINE);
+                device.cmd_begin_render_pass(cmd, &begin, vk::SubpassContents::INLINE);
                 let drawn = self.renderer.draw(cmd);
-                self.device.cmd_end_render_pass(cmd);
+                device.cmd_end_render_pass(cmd);
                 Ok::<_, Box<dyn std::error::Error>>(drawn?)
             })?;
         }
@@ -151,11 +152,17 @@ impl Embedded {
     }
 }
 
-impl Drop for Embedded {
+impl Drop for Attached {
     fn drop(&mut self) {
-        self.detach();
-        // SAFETY: as for the framebuffer. The renderer makes nothing more of the pass, and destroys nothing of it.
-        unsafe { self.device.destroy_render_pass(self.pass, None) };
+        // SAFETY: whoever drops or replaces it says that the GPU is done with it.
+        unsafe { self.device.destroy_framebuffer(self.framebuffer, None) };
+    }
+}
+
+impl Drop for RawPass {
+    fn drop(&mut self) {
+        // SAFETY: as above, and what was made of it is gone.
+        unsafe { self.device.destroy_render_pass(self.raw, None) };
     }
 }
 

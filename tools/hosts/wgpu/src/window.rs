@@ -57,22 +57,23 @@ impl ApplicationHandler for Host {
     fn window_event(&mut self, events: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
         let Some(opened) = &mut self.opened else { return };
         let done = match event {
-            WindowEvent::CloseRequested => Ok(events.exit()),
-            WindowEvent::KeyboardInput {
-                event: KeyEvent { logical_key: Key::Named(NamedKey::Escape), .. },
-                ..
-            } => Ok(events.exit()),
-            WindowEvent::Resized(size) => opened.resize(size),
+            WindowEvent::Resized(size) => {
+                opened.window.request_redraw();
+                opened.resize(size)
+            }
             WindowEvent::RedrawRequested => {
-                let left = self.left.map(|left| left.saturating_sub(1));
-                self.left = left;
-                if left == Some(0) {
+                self.left = self.left.map(|left| left.saturating_sub(1));
+                if self.left == Some(0) {
                     events.exit();
                 }
-                opened.window.request_redraw();
                 opened.draw()
             }
-            _ => Ok(()),
+            _ => {
+                if is_end(&event) {
+                    events.exit();
+                }
+                Ok(())
+            }
         };
         if let Err(error) = done {
             self.fail(events, error);
@@ -81,6 +82,17 @@ impl ApplicationHandler for Host {
 
     fn exiting(&mut self, _: &ActiveEventLoop) {
         self.opened = None;
+    }
+}
+
+/// The window's button, or Escape.
+fn is_end(event: &WindowEvent) -> bool {
+    match event {
+        WindowEvent::CloseRequested => true,
+        WindowEvent::KeyboardInput { event: KeyEvent { logical_key, .. }, .. } => {
+            *logical_key == Key::Named(NamedKey::Escape)
+        }
+        _ => false,
     }
 }
 
@@ -134,6 +146,11 @@ impl Opened {
 
     fn draw(&mut self) -> Result<()> {
         use wgpu::CurrentSurfaceTexture as Current;
+        let PhysicalSize { width, height } = self.window.inner_size();
+        if width == 0 || height == 0 {
+            return Ok(());
+        }
+        self.window.request_redraw();
         if self.under_way.len() >= FRAMES_IN_FLIGHT as usize {
             self.gpu.wait(self.under_way.pop_front())?;
         }
