@@ -3,6 +3,8 @@
 #pragma variant IMAGES
 #pragma variant NORMALS
 #pragma variant IMAGES_NORMALS
+#pragma variant IDS
+#pragma variant NORMALS_IDS
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
@@ -25,14 +27,20 @@ layout(push_constant) uniform Composite {
     vec4 depth;   // see host_depth
 } composite;
 
-#if defined(NORMALS) || defined(IMAGES_NORMALS)
+#if defined(NORMALS) || defined(IMAGES_NORMALS) || defined(NORMALS_IDS)
 #define WITH_NORMALS
+#endif
+#if defined(IDS) || defined(NORMALS_IDS)
+#define WITH_IDS
 #endif
 
 // The host's locations take the place of these.
 layout(location = 0) out vec4 out_image;
 #ifdef WITH_NORMALS
 layout(location = 1) out vec4 out_normal;
+#endif
+#ifdef WITH_IDS
+layout(location = 2) out uint out_id;
 #endif
 
 #if defined(IMAGES) || defined(IMAGES_NORMALS)
@@ -47,28 +55,29 @@ float depth_at(ivec2 at) { return texelFetch(depth, at, 0).r; }
 
 #else
 
-layout(set = 0, binding = 0, std430) readonly buffer Picture { float picture[]; }; // colour, then normals, then depths
+layout(set = 0, binding = 0, std430) readonly buffer Picture { uint picture[]; }; // floats: colour, then normals, then depths; then numbers
 
 uint pixel(ivec2 at) { return uint(at.y) * composite.size.x + uint(at.x); }
 uint pixels() { return composite.size.x * composite.size.y; }
 
 vec4 image_at(ivec2 at) {
     uint i = 4 * pixel(at);
-    return vec4(picture[i], picture[i + 1], picture[i + 2], picture[i + 3]);
+    return uintBitsToFloat(uvec4(picture[i], picture[i + 1], picture[i + 2], picture[i + 3]));
 }
 
 vec3 normal_at(ivec2 at) {
     uint i = 4 * pixels() + 3 * pixel(at);
-    return vec3(picture[i], picture[i + 1], picture[i + 2]);
+    return uintBitsToFloat(uvec3(picture[i], picture[i + 1], picture[i + 2]));
 }
 
-float depth_at(ivec2 at) {
 #ifdef WITH_NORMALS
-    return picture[7 * pixels() + pixel(at)];
+const uint DEPTHS = 7;
 #else
-    return picture[4 * pixels() + pixel(at)];
+const uint DEPTHS = 4;
 #endif
-}
+
+float depth_at(ivec2 at) { return uintBitsToFloat(picture[DEPTHS * pixels() + pixel(at)]); }
+uint id_at(ivec2 at) { return picture[(DEPTHS + (HOST_DEPTH ? 1 : 0)) * pixels() + pixel(at)]; }
 
 #endif
 
@@ -79,6 +88,9 @@ void main() {
     out_image = over_host(seen);
 #ifdef WITH_NORMALS
     out_normal = vec4(normal_at(at), 1.0);
+#endif
+#ifdef WITH_IDS
+    out_id = id_at(at);
 #endif
     if (HOST_DEPTH) gl_FragDepth = host_depth(composite.depth, depth_at(at));
 }

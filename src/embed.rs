@@ -61,6 +61,7 @@
 //!         samples: vk::SampleCountFlags::TYPE_1,
 //!         picture: 0,
 //!         normal: None,
+//!         id: None,
 //!         encode: false,
 //!     };
 //!     let options = Options { target, frames_in_flight: 2, precision: Precision::Full, rasterizer: None };
@@ -184,7 +185,11 @@ impl Renderer {
     pub unsafe fn new(device: &Arc<Device>, options: Options) -> Result<Self> {
         let Options { target, frames_in_flight, precision, rasterizer } = options;
         target.check(device)?;
-        let outputs = Outputs { normal: target.normal.is_some(), depth: target.depth.is_some(), id: false };
+        let outputs = Outputs {
+            normal: target.normal.is_some(),
+            depth: target.depth.is_some(),
+            id: target.id.is_some(),
+        };
         let options = RenderOptions { size: [1, 1], outputs, precision, rasterizer, ..Default::default() };
         Ok(Self {
             viewed: None,
@@ -312,6 +317,7 @@ impl Renderer {
             perspective,
             picture: self.target.picture,
             normal: self.target.normal,
+            id: self.target.id,
             reversed: self.target.depth.map(|_| self.target.reversed),
             encode: self.target.encode,
         };

@@ -9,9 +9,11 @@ mod support;
 
 use ash::vk;
 use glam::{DMat4, DVec3};
-use host::frame::{Frame, Kind, Way};
+use host::Host;
+use host::frame::{Frame, IDS, Kind, Way};
 use host::memory::Counted;
-use host::mesh::{Mesh, parallelogram};
+use host::mesh::Mesh;
+use host::scene::parallelogram;
 use stand::{Stand, assert_silent, open, upload};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -169,6 +171,69 @@ fn pictures_and_normals_are_where_the_host_wants_them() {
 }
 
 #[test]
+fn numbers_are_the_engines_own() {
+    let Some(host) = open(|all| all) else { return };
+    let settings = Settings { background: None, ..Method::named("pull-push").unwrap().settings() };
+    let device = Device::open(&DeviceOptions::default()).unwrap();
+    let outputs = Outputs { normal: true, depth: true, id: true };
+    let options = RenderOptions { size: SIZE, outputs, ..Default::default() };
+    let own = support::gpu::render(&device, &surfels(), &camera(), &settings, options);
+    let (numbers, normals) = (own.id.unwrap(), own.normal.unwrap());
+    assert!(numbers.iter().filter(|number| **number < 20_000).count() > 5_000);
+    let formats: [&[vk::Format]; 3] = [&[IDS], &[IDS, FLOATS], &[FLOATS, IDS]];
+    for (more, way, has_depth) in [
+        (formats[0], Way::Subpass, true),
+        (formats[0], Way::Subpass, false),
+        (formats[1], Way::Rendering, true),
+        (formats[2], Way::Subpass, false),
+    ] {
+        let kind = Kind { way, colour: FLOATS, normals: false, samples: ONE, reversed: true };
+        let frame = Frame::with(&host, kind, SIZE, more).unwrap();
+        let device = host.lend(None).unwrap();
+        let depth = frame.target().depth.filter(|_| has_depth);
+        let target = embed::Target { depth, ..frame.target() };
+        let options = Options { target, frames_in_flight: 1, precision: Precision::Full, rasterizer: None };
+        // SAFETY: the target is the frame's.
+        let mut renderer = unsafe { Renderer::new(&device, options) }.unwrap();
+        let scene = upload(&host, &device, &surfels());
+        let view = View { camera: camera(), viewport: viewport(SIZE) };
+        draw(&host, &frame, &mut renderer, &scene, &view, &settings).unwrap();
+        assert!(frame.read_ids(&host).unwrap() == numbers, "{more:?} {way:?} {has_depth}");
+        assert!(frame.read(&host).unwrap().0 == own.colour);
+        for (found, own) in frame.read_normals(&host).unwrap().iter().zip(&normals) {
+            assert_eq!(found[..3], *own);
+        }
+        // Of sums there are no numbers.
+        let refused = draw(&host, &frame, &mut renderer, &scene, &view, &Settings::default());
+        assert!(refused.is_err_and(|error| error.to_string().contains("pull-push-paper alone")));
+        drop(renderer);
+        frame.destroy(&host);
+    }
+    assert_silent(&host);
+}
+
+/// A frame of surfels alone.
+fn draw(
+    host: &Host,
+    frame: &Frame,
+    renderer: &mut Renderer,
+    scene: &Arc<Scene>,
+    view: &View,
+    settings: &Settings,
+) -> host::Result<()> {
+    host.run(|cmd| {
+        // SAFETY: recorded outside and inside the frame's pass, and waited for.
+        unsafe {
+            renderer.prepare(cmd, scene, view, settings)?;
+            frame.begin(host, cmd);
+            let drawn = renderer.draw(cmd);
+            frame.end(host, cmd);
+            Ok(drawn?)
+        }
+    })
+}
+
+#[test]
 fn colours_are_encoded_by_the_shader_as_by_the_format() {
     let Some(host) = open(|all| all) else { return };
     let settings = Settings { background: None, ..Settings::default() };
@@ -182,17 +247,7 @@ fn colours_are_encoded_by_the_shader_as_by_the_format() {
         let mut renderer = unsafe { Renderer::new(&device, options) }.unwrap();
         let scene = upload(&host, &device, &surfels());
         let view = View { camera: camera(), viewport: viewport(SIZE) };
-        host.run(|cmd| {
-            // SAFETY: recorded outside and inside the frame's pass, and waited for.
-            unsafe {
-                renderer.prepare(cmd, &scene, &view, &settings)?;
-                frame.begin(&host, cmd);
-                renderer.draw(cmd)?;
-                frame.end(&host, cmd);
-            }
-            Ok(())
-        })
-        .unwrap();
+        draw(&host, &frame, &mut renderer, &scene, &view, &settings).unwrap();
         let bytes = frame.read_bytes(&host, 4).unwrap();
         frame.destroy(&host);
         bytes
@@ -376,9 +431,15 @@ fn what_cannot_be_served_is_refused_and_says_why() {
     let mut stand = Stand::new(&host, kind, SIZE, None, &surfels());
     let target = stand.frame.target();
     type Change = fn(&mut embed::Target);
-    let changes: [(Change, &str); 7] = [
+    let changes: [(Change, &str); 10] = [
         (|t| t.picture = 1, "location 1 of 1 colour attachments"),
         (|t| t.normal = Some(0), "both the picture and normals"),
+        (|t| t.id = Some(0), "both the picture and numbers"),
+        (|t| (t.colours, t.normal, t.id) = (vec![FLOATS, IDS], Some(1), Some(1)), "both normals and numbers"),
+        (
+            |t| (t.colours, t.id) = (vec![FLOATS; 2], Some(1)),
+            "numbers want R32_UINT, and location 1 is R32G32B32A32_SFLOAT",
+        ),
         (|t| t.colours[0] = vk::Format::R32G32B32A32_UINT, "cannot draw the picture to R32G32B32A32_UINT"),
         (|t| t.colours.push(FLOATS), "independentBlend"),
         (|t| t.depth = Some(FLOATS), "no depth attachments of R32G32B32A32_SFLOAT"),

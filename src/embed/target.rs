@@ -43,6 +43,10 @@ pub struct Target {
     pub picture: u32,
     /// The location that gets unit normals, world space, if any, below 4.
     pub normal: Option<u32>,
+    /// The location, of format R32_UINT, that gets the numbers of what is seen, as [`Picture::id`](crate::Picture::id) has them, if any, below 4.
+    /// Where no surface is, or the host's own is in front, it keeps what is there: clear it to [`Picture::NOBODY`](crate::Picture::NOBODY).
+    /// Methods that have no numbers are then refused.
+    pub id: Option<u32>,
     /// Whether the shader has to encode colours as sRGB, as where the format is UNORM and shown as it is. Formats of sRGB do it themselves.
     pub encode: bool,
 }
@@ -52,15 +56,19 @@ impl Target {
     pub(super) fn check(&self, device: &Device) -> Result<()> {
         let refuse =
             |cause: String| Err(Error::Usage(format!("the host's target cannot be drawn to: {cause}")));
-        if self.normal == Some(self.picture) {
-            return refuse(format!("location {} is given for both the picture and normals", self.picture));
-        }
         use vk::FormatFeatureFlags as Can;
         let wanted = [
-            ("the picture", Some(self.picture), Can::COLOR_ATTACHMENT_BLEND),
-            ("normals", self.normal, Can::COLOR_ATTACHMENT),
+            ("the picture", Some(self.picture), Can::COLOR_ATTACHMENT_BLEND, false),
+            ("normals", self.normal, Can::COLOR_ATTACHMENT, false),
+            ("numbers", self.id, Can::COLOR_ATTACHMENT, true),
         ];
-        for (what, location, needed) in wanted {
+        for [a, b] in [[0, 1], [0, 2], [1, 2]] {
+            let ((one, location, ..), (other, same, ..)) = (wanted[a], wanted[b]);
+            if let Some(location) = location.filter(|location| same == Some(*location)) {
+                return refuse(format!("location {location} is given for both {one} and {other}"));
+            }
+        }
+        for (what, location, needed, is_number) in wanted {
             let Some(location) = location else { continue };
             let Some(&format) = self.colours.get(location as usize).filter(|_| (location as usize) < MOST)
             else {
@@ -69,7 +77,10 @@ impl Target {
                     self.colours.len()
                 ));
             };
-            if !device.format_features(format).contains(needed) || is_integer(format) {
+            if is_number && format != vk::Format::R32_UINT {
+                return refuse(format!("numbers want R32_UINT, and location {location} is {format:?}"));
+            }
+            if !device.format_features(format).contains(needed) || is_integer(format) != is_number {
                 return refuse(format!("{} cannot draw {what} to {format:?}", device.description().name));
             }
         }
@@ -99,7 +110,7 @@ impl Target {
     pub(super) unsafe fn composite(&self, device: &Arc<Device>, kind: CompositeKind) -> Result<Composite> {
         let blend = |location: usize| match location as u32 {
             location if location == self.picture => Some(Blend::Over),
-            location if Some(location) == self.normal => Some(Blend::Replace),
+            location if [self.normal, self.id].contains(&Some(location)) => Some(Blend::Replace),
             _ => None,
         };
         let colours: Vec<_> = (0..self.colours.len()).map(blend).collect();
