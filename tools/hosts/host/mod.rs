@@ -101,6 +101,19 @@ impl Host {
 
     /// The device as surfels borrow it.
     pub fn lend(&self, memory: Option<Box<dyn MemorySource>>) -> surfel::Result<Arc<Device>> {
+        self.lend_so(memory, DeviceLimits::default())
+    }
+
+    /// The same, less what `limits` hide.
+    pub fn lend_less(&self, limits: DeviceLimits) -> surfel::Result<Arc<Device>> {
+        self.lend_so(None, limits)
+    }
+
+    fn lend_so(
+        &self,
+        memory: Option<Box<dyn MemorySource>>,
+        limits: DeviceLimits,
+    ) -> surfel::Result<Arc<Device>> {
         let lent = Lent {
             instance: &self.instance,
             physical: self.physical,
@@ -108,7 +121,7 @@ impl Host {
             queue_family: self.family,
             enabled: self.enabled,
             labels: true,
-            limits: DeviceLimits::default(),
+            limits,
             memory,
             pipeline_cache: None,
         };
@@ -207,7 +220,10 @@ unsafe fn create_device(
     );
     let mut rendering = vk::PhysicalDeviceDynamicRenderingFeatures::default().dynamic_rendering(true);
     let mut features = enabled.features();
-    let core = features.core;
+    // SAFETY: by the caller: the device is the instance's.
+    let there = unsafe { instance.get_physical_device_features(physical) };
+    // Its tests count fragments.
+    let core = features.core.occlusion_query_precise(there.occlusion_query_precise != vk::FALSE);
     let info = vk::DeviceCreateInfo::default()
         .queue_create_infos(&queues)
         .enabled_extension_names(&names)
