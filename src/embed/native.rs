@@ -44,7 +44,7 @@
 //!     let subpasses: Vec<_> = [meshes].into_iter().chain(plan.subpasses()).chain([glass]).collect();
 //!     let info = vk::RenderPassCreateInfo::default().attachments(&attachments).subpasses(&subpasses).dependencies(&dependencies);
 //!     let pass = unsafe { host.create_render_pass(&info, None) }.map_err(surfel::Error::vulkan("vkCreateRenderPass"))?;
-//!     unsafe { native::Renderer::new(device, plan.clone(), pass, 2) }
+//!     unsafe { native::Renderer::new(device, plan, pass, 2) }
 //! }
 //!
 //! /// Each size. `depth` sees the depth aspect alone.
