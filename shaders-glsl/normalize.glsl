@@ -132,7 +132,8 @@ layout(location = 0) out vec4 out_image;
 layout(location = 1) out vec4 out_normal;
 
 void main() {
-    vec2 centre = gl_FragCoord.xy - frame.origin;
+    // The middle of the pixel, whichever of its samples the host draws at.
+    vec2 centre = floor(gl_FragCoord.xy) + 0.5 - frame.origin;
     uvec2 at = uvec2(centre);
     vec4 s0 = subpassLoad(sums0);
     vec4 s1 = SUM_DEPTH || WIDE_SUMS1 ? subpassLoad(sums1) : vec4(0.0);

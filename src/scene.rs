@@ -285,7 +285,8 @@ impl Scene {
         let streams = [Some(&self.positions), Some(&self.normals), Some(&self.radii)];
         let streams = streams.into_iter().chain([self.ellipses.as_ref(), self.colours.as_ref()]);
         let streams = streams.map(|stream| stream.map(|stream| &stream.buffer));
-        let buffers = streams.chain([clips, weights, texture, materials]).flatten().filter(|buffer| !buffer.is_lent());
+        let buffers =
+            streams.chain([clips, weights, texture, materials]).flatten().filter(|buffer| !buffer.is_lent());
         let primitives = self.primitives.as_ref().map_or(0, PrimitiveStreams::bytes);
         buffers.map(Buffer::size).sum::<u64>() + primitives
     }

@@ -17,15 +17,15 @@ use host::scene::parallelogram;
 use stand::{Stand, assert_silent, open, upload};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use support::sampling::{Random, bumpy_sphere};
 use surfel::embed::{self, Abilities, Options, Renderer, View};
-use surfel::geometry::{Camera, Surfels};
+use surfel::geometry::Camera;
 use surfel::methods::Method;
 use surfel::splatting::Visibility;
 use surfel::vk::{Device, DeviceOptions};
 use surfel::{Error, Outputs, Picture, Precision, Rasterizer, RenderOptions, Scene, Settings};
 
-const SIZE: [u32; 2] = [160, 120];
+use stand::{SIZE, camera, meets, rising, sphere, surfels, viewport};
+
 const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 const ONE: vk::SampleCountFlags = vk::SampleCountFlags::TYPE_1;
 const FOUR: vk::SampleCountFlags = vk::SampleCountFlags::TYPE_4;
@@ -34,39 +34,6 @@ const FOUR: vk::SampleCountFlags = vk::SampleCountFlags::TYPE_4;
 #[allow(dead_code, reason = "it compiles, or not")]
 fn a_renderer_goes_to_another_thread(renderer: Renderer) -> impl Send {
     renderer
-}
-
-fn surfels() -> Surfels {
-    sphere(20_000)
-}
-
-fn sphere(count: usize) -> Surfels {
-    bumpy_sphere(count, &mut Random(7))
-}
-
-fn camera() -> Camera {
-    let eye = DVec3::new(1.1, 0.9, 3.0);
-    Camera::look_at(eye, DVec3::ZERO, DVec3::Y, 0.8, 4.0 / 3.0, 0.1).unwrap()
-}
-
-/// The same with depth that rises with distance, from 0 at the near plane to 1 at the far one.
-fn rising() -> Camera {
-    let (near, far) = (0.1, 50.0);
-    let mut camera = camera();
-    camera.projection.z_axis.z = far / (far - near);
-    camera.projection.w_axis.z = -near * far / (far - near);
-    Camera { reversed: false, ..camera }
-}
-
-fn viewport([width, height]: [u32; 2]) -> vk::Viewport {
-    vk::Viewport {
-        x: 0.0,
-        y: 0.0,
-        width: width as f32,
-        height: height as f32,
-        min_depth: 0.0,
-        max_depth: 1.0,
-    }
 }
 
 /// What the engine's own frames show: colours, and distances, of what is seen.
@@ -256,22 +223,6 @@ fn colours_are_encoded_by_the_shader_as_by_the_format() {
     // Either rounds to the nearest code, of values that differ by the last bits of a power.
     assert!(bytes[0].iter().zip(&bytes[1]).all(|(a, b)| a.abs_diff(*b) <= 1));
     assert_silent(&host);
-}
-
-/// Distance from the eye plane and whether it is on the parallelogram, of what the ray through the middle of a pixel meets.
-fn meets(camera: &Camera, at: [u32; 2], centre: DVec3, sides: [DVec3; 2]) -> Option<f64> {
-    let back: DMat4 = camera.world_to_clip().inverse();
-    let clip = |depth: f64| {
-        let ndc = |i: usize| 2.0 * (f64::from(at[i]) + 0.5) / f64::from(SIZE[i]) - 1.0;
-        back.project_point3(DVec3::new(ndc(0), ndc(1), depth))
-    };
-    let (from, to) = (clip(1.0), clip(0.5));
-    let ray = to - from;
-    let normal = sides[0].cross(sides[1]);
-    let t = normal.dot(centre - from) / normal.dot(ray);
-    let point = from + t * ray;
-    let inside = sides.iter().all(|side| (point - centre).dot(*side).abs() <= side.length_squared());
-    (t > 0.0 && inside).then(|| camera.view.transform_point3(point).z)
 }
 
 #[test]

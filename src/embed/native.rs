@@ -10,8 +10,8 @@
 //! `draw` goes from subpass to subpass itself: from the host's last one before into surfel's last, in which the host may draw, too.
 //!
 //! For the methods that draw splats; those that blend have the subpasses visibility, attribute and normalize, those that show the nearest
-//! alone nearest and normalize. The seed comes first where [`Depth::seed`] asks for it: the host's depth, moved back by ε, is what splats have to
-//! be in front of. The picture is [`embed::Renderer`](super::Renderer)'s, whatever the seed.
+//! alone nearest and normalize. The seed comes first where [`Depth::seed`] asks for it: the host's depth, moved back by several ε, is what splats
+//! have to be in front of. The picture is that of [`embed::Renderer`](super::Renderer), bit for bit.
 //!
 //! ```no_run
 //! use ash::vk;
@@ -44,7 +44,7 @@
 //!     let subpasses: Vec<_> = [meshes].into_iter().chain(plan.subpasses()).chain([glass]).collect();
 //!     let info = vk::RenderPassCreateInfo::default().attachments(&attachments).subpasses(&subpasses).dependencies(&dependencies);
 //!     let pass = unsafe { host.create_render_pass(&info, None) }.map_err(surfel::Error::vulkan("vkCreateRenderPass"))?;
-//!     unsafe { native::Renderer::new(device, plan.clone(), pass, 2) }
+//!     unsafe { native::Renderer::new(device, plan, pass, 2) }
 //! }
 //!
 //! /// Each size. `depth` sees the depth aspect alone.
@@ -97,6 +97,7 @@ use crate::vk::shaders::layout::{self, Frame};
 use crate::vk::{Device, Draws, HostDepth, Recorder};
 use ash::vk;
 use passes::Numbers;
+use plan::check_method;
 use present::{Made, Present, Resident};
 use std::sync::Arc;
 use targets::Targets;
@@ -300,6 +301,7 @@ impl Renderer {
         check_convention(self.made.plan.host.reversed, &camera)?;
         let depth = depths(&camera, view.viewport)?;
         let settings = Settings { background: None, ..settings.clone() };
+        check_method(&settings)?;
         let options = self.made.plan.options(size);
         let (block, variant) = describe(&self.device, &options, scene, &camera, &settings)?;
         self.made.plan.check(&variant)?;

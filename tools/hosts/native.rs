@@ -65,7 +65,8 @@ fn render(
         // SAFETY: prepared outside the pass and drawn inside it, submitted in this order, and waited for.
         unsafe {
             native.renderer.prepare(cmd, scene, &view, settings)?;
-            native.record(host, cmd, (Some(mesh), &view), |surfels| surfels.draw(cmd), true)
+            let lit = (mesh, Vec3::new(0.4, 0.8, 0.45).normalize());
+            native.record(host, cmd, (Some(lit), &view), |surfels| surfels.draw(cmd), true)
         }
     })
 }

@@ -31,8 +31,9 @@ pub struct Depth {
     pub attachment: u32,
     /// Whether it falls with distance, and greater is nearer.
     pub reversed: bool,
-    /// Whether splats far behind what the host has drawn before are left out as early as can be, which changes no picture: worth it where much is
-    /// hidden. The depth is then an input attachment, too.
+    /// Whether splats far behind what the host has drawn before are left out as early as can be: worth it where much is hidden. The depth is then
+    /// an input attachment, too. The picture stays the same, but for pixels where a surface of the host is between a disc, seen edge-on, and what
+    /// a filter has widened it to: they show the host.
     pub seed: bool,
 }
 
@@ -42,7 +43,7 @@ impl Place<'_> {
         use vk::FormatFeatureFlags as Can;
         let depth = self.depth.map(|depth| depth.attachment);
         let wanted = [
-            ("the picture", Some(self.picture), Can::COLOR_ATTACHMENT_BLEND),
+            ("the picture", Some(self.picture), Can::COLOR_ATTACHMENT | Can::COLOR_ATTACHMENT_BLEND),
             ("the resolved picture", self.resolve, Can::COLOR_ATTACHMENT),
             ("normals", self.normal, Can::COLOR_ATTACHMENT),
             ("depth", depth, Can::DEPTH_STENCIL_ATTACHMENT),
@@ -60,6 +61,14 @@ impl Place<'_> {
         if self.normal.is_some() && !device.capabilities().independent_blend {
             return refuse(
                 "normals beside a picture want the feature independentBlend, without which the device was lent: enable it".into(),
+            );
+        }
+        if let Some(depth) = self.depth.filter(|depth| depth.seed)
+            && self.subpasses[0] == 0
+            && self.attachments[depth.attachment as usize].load_op != vk::AttachmentLoadOp::LOAD
+        {
+            return refuse(
+                "splats are to start from a depth that nothing has been drawn to: leave `seed` out".into(),
             );
         }
         let layout = vk::Format::D32_SFLOAT_S8_UINT;
@@ -87,7 +96,8 @@ impl Place<'_> {
             ));
         };
         let format = description.format;
-        if !device.format_features(format).contains(needed) || is_integer(format) {
+        let drawn = needed.contains(vk::FormatFeatureFlags::COLOR_ATTACHMENT);
+        if !device.format_features(format).contains(needed) || drawn && is_integer(format) {
             let name = &device.description().name;
             return refuse(format!("{name} cannot draw {what} to {format:?}"));
         }

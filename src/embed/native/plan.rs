@@ -362,19 +362,25 @@ fn optional(attachment: Option<u32>, layout: vk::ImageLayout) -> vk::AttachmentR
     }
 }
 
+/// Refuses what is not drawn.
+pub(super) fn check_method(settings: &Settings) -> Result<()> {
+    match settings.pull_push {
+        None => Ok(()),
+        Some(_) => Err(Error::Usage(
+            "pull-push computes pyramids, which cannot be done within a render pass: draw its picture by `embed::Renderer`, or choose a \
+             method that draws splats"
+                .into(),
+        )),
+    }
+}
+
 fn variant(
     device: &Device,
     options: &RenderOptions,
     streams: Streams,
     settings: &Settings,
 ) -> Result<Variant> {
-    if settings.pull_push.is_some() {
-        return Err(Error::Usage(
-            "pull-push computes pyramids, which cannot be done within a render pass: draw its picture by `embed::Renderer`, or choose a \
-             method that draws splats"
-                .into(),
-        ));
-    }
+    check_method(settings)?;
     settings.check()?;
     settings.splatting.normalization.check_weights(streams.weights.is_some())?;
     settings.check_primitives(streams.primitives.any())?;

@@ -6,15 +6,16 @@
 //! changes nothing there. In perspective, ε is added to the distance `z` of a disc's centre and scales that of its points, which are at most
 //! `1 + √2` times as far as the centre, as no disc, nor parallelogram about it, reaches the eye: at `z` it is at most `(1 + √2) ε`.
 //!
-//! Where a filter has widened a disc that is seen edge-on, its plane goes on beyond the disc, which is what visibility heeds (`lib/splat.glsl`),
-//! and the mean may be in front of the disc: such pixels show the host if that is between the two.
+//! Where a filter has widened a disc that is seen edge-on, its plane goes on beyond the disc, which visibility does not follow
+//! (`lib/splat.glsl`), but the mean does. So the seed is moved four times as far; where the plane goes on further, to in front of a host's
+//! surface that is in front of the disc, the pixel shows the host.
 
 use crate::variant::Precision;
 use crate::vk::shaders::layout::{Frame, Seed};
 use ash::vk;
 
-/// What ε at a point of a disc is at most, over ε at its centre.
-const REACH: f64 = 2.42;
+/// What ε at a point of a disc is at most, over ε at its centre, four times.
+const REACH: f64 = 4.0 * 2.42;
 
 /// The numbers, where the host's depth of `format` is `depth` (see `host_depth` in `lib/host.glsl`) and no disc's radius is above
 /// `largest`; `None` if they say nothing.
@@ -37,7 +38,7 @@ pub(super) fn seed(
         Precision::Half => 0.25,
     };
     let epsilon = f64::from(block.epsilon) * f64::from(largest);
-    let behind = if perspective { REACH * epsilon / near } else { epsilon * slope };
+    let behind = REACH * epsilon * if perspective { 1.0 / near } else { slope };
     let seed = Seed {
         key: [scale as f32, offset as f32],
         resolution: (scale.abs() * step(format) + 2f64.powi(-20) * offset.abs()) as f32,

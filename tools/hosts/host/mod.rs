@@ -270,7 +270,10 @@ unsafe fn create_device(
     );
     let mut rendering = vk::PhysicalDeviceDynamicRenderingFeatures::default().dynamic_rendering(true);
     let mut features = enabled.features();
-    let core = features.core;
+    // SAFETY: by the caller: the device is the instance's.
+    let there = unsafe { instance.get_physical_device_features(physical) };
+    // Its tests count fragments.
+    let core = features.core.occlusion_query_precise(there.occlusion_query_precise != vk::FALSE);
     let info = vk::DeviceCreateInfo::default()
         .queue_create_infos(&queues)
         .enabled_extension_names(&names)

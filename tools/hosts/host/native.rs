@@ -166,12 +166,12 @@ impl Native {
         }
     }
 
-    /// Records the render pass: the mesh, if there is one, what `surfels` draw, and the fog, if it is wanted.
+    /// Records the render pass: the mesh, if there is one, and the direction to its light; what `surfels` draw, and the fog, if it is wanted.
     pub fn record(
         &self,
         host: &Host,
         cmd: vk::CommandBuffer,
-        (mesh, view): (Option<&Mesh>, &View),
+        (mesh, view): (Option<(&Mesh, Vec3)>, &View),
         surfels: impl FnOnce(&Renderer) -> surfel::Result<()>,
         foggy: bool,
     ) -> Result<()> {
@@ -183,8 +183,7 @@ impl Native {
             .clear_values(&self.clears);
         // SAFETY: recorded outside a render pass.
         unsafe { host.device.cmd_begin_render_pass(cmd, &info, vk::SubpassContents::INLINE) };
-        if let Some(mesh) = mesh.filter(|_| self.kind.around[0]) {
-            let to_light = Vec3::new(0.4, 0.8, 0.45).normalize();
+        if let Some((mesh, to_light)) = mesh.filter(|_| self.kind.around[0]) {
             mesh.draw(host, cmd, view.viewport, view.camera.world_to_clip().as_mat4(), to_light);
         }
         let drawn = surfels(&self.renderer);
@@ -310,22 +309,28 @@ fn render_pass(
         before.then_some(meshes).into_iter().chain(plan.subpasses()).chain(after.then_some(fog)).collect();
     let mut dependencies = plan.dependencies();
     // Frames take turns with the same targets, and are copied from.
-    let all = vk::PipelineStageFlags::ALL_COMMANDS;
-    let graphics = vk::PipelineStageFlags::ALL_GRAPHICS;
-    let memory = vk::AccessFlags::MEMORY_READ | vk::AccessFlags::MEMORY_WRITE;
-    let last = subpasses.len() as u32 - 1;
+    use vk::{AccessFlags as Access, PipelineStageFlags as Stages};
+    let tests = Stages::EARLY_FRAGMENT_TESTS | Stages::LATE_FRAGMENT_TESTS;
+    let drawing = Stages::COLOR_ATTACHMENT_OUTPUT | tests;
+    let drawn = Access::COLOR_ATTACHMENT_WRITE | Access::DEPTH_STENCIL_ATTACHMENT_WRITE;
+    let seen = Access::COLOR_ATTACHMENT_READ | Access::DEPTH_STENCIL_ATTACHMENT_READ;
     let outside = vk::SUBPASS_EXTERNAL;
-    for ([from, to], [done, waits]) in [([outside, 0], [all, graphics]), ([last, outside], [graphics, all])] {
-        dependencies.push(vk::SubpassDependency {
-            src_subpass: from,
-            dst_subpass: to,
-            src_stage_mask: done,
-            dst_stage_mask: waits,
-            src_access_mask: memory,
-            dst_access_mask: memory,
-            ..Default::default()
-        });
-    }
+    let last = subpasses.len() as u32 - 1;
+    let begin = vk::SubpassDependency::default()
+        .src_subpass(outside)
+        .src_stage_mask(Stages::TRANSFER | Stages::FRAGMENT_SHADER | drawing)
+        .src_access_mask(drawn)
+        .dst_subpass(0)
+        .dst_stage_mask(drawing)
+        .dst_access_mask(drawn | seen);
+    let end = vk::SubpassDependency::default()
+        .src_subpass(last)
+        .src_stage_mask(drawing)
+        .src_access_mask(drawn)
+        .dst_subpass(outside)
+        .dst_stage_mask(Stages::TRANSFER)
+        .dst_access_mask(Access::TRANSFER_READ);
+    dependencies.extend([begin, end]);
     let info = vk::RenderPassCreateInfo::default()
         .attachments(attachments)
         .subpasses(&subpasses)
