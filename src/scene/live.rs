@@ -43,7 +43,7 @@ impl Scene {
     }
 
     /// Declares the bounds, for who frames the scene by them. What is beyond them is drawn all the same: frames take from them no more than
-    /// about how far from the eye the scene is, to which 16-bit sums of depths are scaled.
+    /// about how far from the eye the scene is, to which sums of depths are scaled.
     ///
     /// # Errors
     /// [`Error::Usage`] if they are not finite.
