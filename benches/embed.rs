@@ -9,8 +9,9 @@ use ash::vk;
 use cpu_time::ProcessTime;
 use glam::{DVec3, Vec3};
 use host::frame::{self, Frame, Way};
-use host::mesh::{Corners, Mesh, parallelogram};
+use host::mesh::Mesh;
 use host::native::{Kind, Native};
+use host::scene::{Corners, parallelogram};
 use host::{Host, Result};
 use std::sync::Arc;
 use std::time::Instant;
@@ -79,7 +80,7 @@ impl<'a> Stage<'a> {
         // SAFETY: recorded outside a render pass; the staging memory stays until `run` has waited.
         let (scene, staging) = host.run(|cmd| Ok(unsafe { embed::upload(device, cmd, &surfels)? }))?;
         drop(staging);
-        let camera = Camera::framing(scene.bounds(), 45f64.to_radians(), 1.0)?;
+        let camera = Camera::framing(&scene.bounds(), 45f64.to_radians(), 1.0)?;
         let side = SIDE as f32;
         let viewport = vk::Viewport { width: side, height: side, max_depth: 1.0, ..Default::default() };
         let view = View { camera, viewport };
