@@ -12,7 +12,7 @@ use host::frame::{self, Frame, Way};
 use host::mesh::Mesh;
 use host::native::{Kind, Native};
 use host::scene::{Corners, parallelogram};
-use host::{Host, Result};
+use host::{Host, Result, Validation};
 use std::sync::Arc;
 use std::time::Instant;
 use surfel::embed::{self, Options, View};
@@ -30,9 +30,8 @@ const COLOUR: vk::Format = vk::Format::R8G8B8A8_SRGB;
 const ONE: vk::SampleCountFlags = vk::SampleCountFlags::TYPE_1;
 
 fn main() -> Result<()> {
-    // SAFETY: no other thread runs yet. The validation layers are not to be timed, so that none is found.
-    unsafe { std::env::set_var("VK_LAYER_PATH", env!("CARGO_MANIFEST_DIR")) };
-    let host = match Host::open(|all| all, false) {
+    // The validation layers are not to be timed.
+    let host = match Host::open_with(|all| all, Validation::Off, &[], &[]) {
         Ok(host) => host,
         Err(error) => {
             eprintln!("SKIPPED: {error}");

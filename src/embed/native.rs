@@ -10,8 +10,9 @@
 //! `draw` goes from subpass to subpass itself: from the host's last one before into surfel's last, in which the host may draw, too.
 //!
 //! For the methods that draw splats; those that blend have the subpasses visibility, attribute and normalize, those that show the nearest
-//! alone nearest and normalize. The seed comes first where [`Depth::seed`] asks for it: the host's depth, moved back by several ε, is what splats
-//! have to be in front of. The picture is that of [`embed::Renderer`](super::Renderer), bit for bit.
+//! alone nearest and normalize. The picture is that of [`embed::Renderer`](super::Renderer), bit for bit. The seed comes first where
+//! [`Depth::seed`] asks for it: the host's depth, moved back by several ε, is what splats have to be in front of; it may make a difference at
+//! discs that are seen edge-on.
 //!
 //! ```no_run
 //! use ash::vk;
