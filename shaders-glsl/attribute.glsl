@@ -27,10 +27,8 @@ float weight_of(uint i, Splat splat, vec2 variance, out vec4 corners, out mat2 s
     float at[8];
     for (uint k = 0; k < 8; k++) at[k] = uintBitsToFloat(weights[(weight & ~AT_CORNERS) + k]);
     corners = vec4(at[0], at[1], at[2], at[3]);
-    vec3 position = vec3(positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]);
-    vec3 normal = vec3(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]);
-    vec3 to_eye = frame.eye_hi.xyz - position + frame.eye_lo.xyz;
-    square = square_of(splat, vec3(at[4], at[5], at[6]), at[7], normal, to_eye);
+    vec3 to_eye = frame.eye_hi.xyz - position_of(i) + frame.eye_lo.xyz;
+    square = square_of(splat, vec3(at[4], at[5], at[6]), at[7], normal_of(i), to_eye);
     return amplitude;
 }
 

@@ -3,6 +3,8 @@
 #pragma variant IMAGES
 #pragma variant NORMALS
 #pragma variant IMAGES_NORMALS
+#pragma variant IDS
+#pragma variant NORMALS_IDS
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
@@ -16,23 +18,29 @@ void main() {
 #ifdef FRAGMENT
 
 layout(constant_id = 0) const bool PERSPECTIVE = true;
-layout(constant_id = 40) const bool HOST_DEPTH = false; // the host's target has depth
-layout(constant_id = 41) const bool ENCODE = false;     // the host's colours are sRGB-encoded by the shader that writes them
+
+#include "lib/host.glsl"
 
 layout(push_constant) uniform Composite {
     ivec2 origin; // of the picture in the host's target, px
     uvec2 size;   // of the picture, px
-    vec4 depth;   // the host's depth at distance z: depth.x + depth.y / z in perspective, depth.x + depth.y z otherwise; its least and greatest
+    vec4 depth;   // see host_depth
 } composite;
 
-#if defined(NORMALS) || defined(IMAGES_NORMALS)
+#if defined(NORMALS) || defined(IMAGES_NORMALS) || defined(NORMALS_IDS)
 #define WITH_NORMALS
+#endif
+#if defined(IDS) || defined(NORMALS_IDS)
+#define WITH_IDS
 #endif
 
 // The host's locations take the place of these.
 layout(location = 0) out vec4 out_image;
 #ifdef WITH_NORMALS
 layout(location = 1) out vec4 out_normal;
+#endif
+#ifdef WITH_IDS
+layout(location = 2) out uint out_id;
 #endif
 
 #if defined(IMAGES) || defined(IMAGES_NORMALS)
@@ -47,50 +55,44 @@ float depth_at(ivec2 at) { return texelFetch(depth, at, 0).r; }
 
 #else
 
-layout(set = 0, binding = 0, std430) readonly buffer Picture { float picture[]; }; // colour, then normals, then depths
+layout(set = 0, binding = 0, std430) readonly buffer Picture { uint picture[]; }; // floats: colour, then normals, then depths; then numbers
 
 uint pixel(ivec2 at) { return uint(at.y) * composite.size.x + uint(at.x); }
 uint pixels() { return composite.size.x * composite.size.y; }
 
 vec4 image_at(ivec2 at) {
     uint i = 4 * pixel(at);
-    return vec4(picture[i], picture[i + 1], picture[i + 2], picture[i + 3]);
+    return uintBitsToFloat(uvec4(picture[i], picture[i + 1], picture[i + 2], picture[i + 3]));
 }
 
 vec3 normal_at(ivec2 at) {
     uint i = 4 * pixels() + 3 * pixel(at);
-    return vec3(picture[i], picture[i + 1], picture[i + 2]);
+    return uintBitsToFloat(uvec3(picture[i], picture[i + 1], picture[i + 2]));
 }
 
-float depth_at(ivec2 at) {
 #ifdef WITH_NORMALS
-    return picture[7 * pixels() + pixel(at)];
+const uint DEPTHS = 7;
 #else
-    return picture[4 * pixels() + pixel(at)];
-#endif
-}
-
+const uint DEPTHS = 4;
 #endif
 
-vec3 linear_to_srgb(vec3 c) {
-    return mix(12.92 * c, 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055, greaterThan(c, vec3(0.0031308)));
-}
+float depth_at(ivec2 at) { return uintBitsToFloat(picture[DEPTHS * pixels() + pixel(at)]); }
+uint id_at(ivec2 at) { return picture[(DEPTHS + (HOST_DEPTH ? 1 : 0)) * pixels() + pixel(at)]; }
+
+#endif
 
 void main() {
     ivec2 at = ivec2(gl_FragCoord.xy) - composite.origin;
     vec4 seen = image_at(at);
     if (seen.a == 0.0) discard;
-    vec3 colour = ENCODE ? linear_to_srgb(clamp(seen.rgb, 0.0, 1.0)) : seen.rgb;
-    out_image = vec4(seen.a * colour, seen.a);
+    out_image = over_host(seen);
 #ifdef WITH_NORMALS
     out_normal = vec4(normal_at(at), 1.0);
 #endif
-    if (HOST_DEPTH) {
-        float z = depth_at(at);
-        // A disc may be nearer at its rim than the near plane, by which its centre is cut off.
-        float depth = composite.depth.x + composite.depth.y * (PERSPECTIVE ? 1.0 / z : z);
-        gl_FragDepth = clamp(depth, composite.depth.z, composite.depth.w);
-    }
+#ifdef WITH_IDS
+    out_id = id_at(at);
+#endif
+    if (HOST_DEPTH) gl_FragDepth = host_depth(composite.depth, depth_at(at));
 }
 
 #endif

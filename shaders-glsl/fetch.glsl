@@ -67,17 +67,13 @@ Sample sample_of(uint i, ivec2 at, uint nearest) {
 #include "lib/surface.glsl"
 #include "lib/point.glsl"
 
-layout(constant_id = 12) const bool ELLIPSES = false;
-
-layout(set = 0, binding = 8, std430) readonly buffer Ellipses { vec4 ellipses[]; };
-
 Sample sample_of(uint i, ivec2 at, uint nearest) {
     Point point;
     point_of(i, point);
-    float radius = TWO_SIDED ? abs(radii[i]) : radii[i];
+    float radius = radius_of(i);
     // A disc of the ellipse's area.
-    if (ELLIPSES) radius *= sqrt(ellipses[i].w);
-    vec3 normal = vec3(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]);
+    if (ELLIPSES) radius *= sqrt(ellipse_of(i).w);
+    vec3 normal = normal_of(i);
     Sample s = NOTHING;
     s.near = s.depth = point.distance;
     s.far = point.distance + (PAPER ? 1.0 : 2.0) * radius;

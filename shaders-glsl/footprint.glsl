@@ -6,6 +6,7 @@
 #define SPLAT_ACCESS writeonly
 #define CLIP_ACCESS writeonly
 #include "lib/splat.glsl"
+#include "lib/surfels.glsl"
 #include "lib/image.glsl"
 #include "lib/pixel_row.glsl"
 
@@ -18,15 +19,9 @@ layout(local_size_x = 64) in;
 
 layout(constant_id = 1) const bool CULL_BACK = false;
 layout(constant_id = 11) const bool LIST_LARGE = false;
-layout(constant_id = 13) const bool TWO_SIDED = false;
 layout(constant_id = 21) const bool MOVED = false; // splats are of discs moved away from the eye along the camera's axis, by ε
 
-layout(set = 0, binding = 2, std430) readonly buffer Positions { float positions[]; };
-layout(set = 0, binding = 3, std430) readonly buffer Normals { float normals[]; };
-layout(set = 0, binding = 4, std430) readonly buffer Radii { float radii[]; }; // 0: invalid; TWO_SIDED: negative where it is
-
 layout(set = 0, binding = 7, std430) buffer LargeSplats { uint large_count; uint large_padding[63]; uint large[]; };
-layout(set = 0, binding = 8, std430) readonly buffer Ellipses { vec4 ellipses[]; }; // major axis, aspect
 
 // Least q, relative to (w / F)²: nearer the eye plane q has lost the digits that tell where the ellipse is.
 const float LEAST_CLEARANCE = 1e-3;
@@ -131,11 +126,10 @@ void clip_splat(uint i, Disc disc, vec2 anchor) {
 
 // Reads surfel i and what becomes of it before its image is known.
 uint disc_of(uint i, out Disc disc) {
-    vec3 p = vec3(positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]);
-    vec3 n = vec3(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]);
-    float r = TWO_SIDED ? abs(radii[i]) : radii[i];
-    if (!(r > 0.0)) return INVALID;
-    vec4 shape = ELLIPSES ? ellipses[i] : vec4(vec3(0.0), 1.0);
+    if (!is_valid(i)) return INVALID;
+    vec3 p = position_of(i), n = normal_of(i);
+    float r = radius_of(i);
+    vec4 shape = ELLIPSES ? ellipse_of(i) : vec4(vec3(0.0), 1.0);
     disc.normal = n;
     disc.radius = r;
     disc.aspect = shape.w;
@@ -177,7 +171,7 @@ uint footprint(uint i, out Splat splat) {
     vec3 T = sigma * to_pixel(disc.axes[1]);
     float w = disc.w.x / frame.cutoff;
     if (!(clearance(disc, S, T) > LEAST_CLEARANCE * w * w)) return EYE_PLANE;
-    if (CULL_BACK && disc.facing.x >= 0.0 && !(TWO_SIDED && radii[i] < 0.0)) return BACK;
+    if (CULL_BACK && disc.facing.x >= 0.0 && !is_two_sided(i)) return BACK;
 
     disc.x = pixel_row(0, disc.hi, disc.lo);
     disc.y = pixel_row(1, disc.hi, disc.lo);

@@ -1,6 +1,8 @@
 // Normalize: divides the sums by Σw and shades (zwicker2004 §6, third pass; equation 2's normalization).
 #version 450
 #pragma variant COVERAGE
+#pragma variant SUBPASS
+#pragma variant SUBPASS_COVERAGE
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 
@@ -8,6 +10,14 @@
 #include "lib/sums.glsl"
 #include "lib/shading.glsl"
 #include "lib/background.glsl"
+
+// Within a pass of a host: the picture goes to the host's colours and depth.
+#if defined(SUBPASS) || defined(SUBPASS_COVERAGE)
+#define IN_SUBPASS
+#endif
+#ifdef SUBPASS_COVERAGE
+#define COVERAGE
+#endif
 
 layout(constant_id = 20) const bool SHADE_SPLATS = false; // colours are light already
 
@@ -104,7 +114,39 @@ void main() {
 }
 
 #endif
-#ifdef FRAGMENT
+#if defined(FRAGMENT) && defined(IN_SUBPASS)
+
+#include "lib/host.glsl"
+
+layout(constant_id = 42) const bool SUMS_TELL = false; // what visibility has not written has no sums
+
+layout(set = 1, binding = 0, input_attachment_index = 0) uniform subpassInput visibility;
+layout(set = 1, binding = 1, input_attachment_index = 1) uniform subpassInput sums0;
+layout(set = 1, binding = 2, input_attachment_index = 2) uniform subpassInput sums1;
+
+layout(push_constant) uniform Subpass {
+    vec4 depth; // see host_depth
+} host;
+
+layout(location = 0) out vec4 out_image;
+layout(location = 1) out vec4 out_normal;
+
+void main() {
+    // The middle of the pixel, whichever of its samples the host draws at.
+    vec2 centre = floor(gl_FragCoord.xy) + 0.5 - frame.origin;
+    uvec2 at = uvec2(centre);
+    vec4 s0 = subpassLoad(sums0);
+    vec4 s1 = SUM_DEPTH || WIDE_SUMS1 ? subpassLoad(sums1) : vec4(0.0);
+    bool visible = SUMS_TELL ? s0.x > 0.0 : subpassLoad(visibility).r > 0.0;
+    float alpha = alpha_of(at.y * uint(frame.viewport.x) + at.x);
+    Pixel pixel = normalize_pixel(centre, visible, alpha, s0, s1);
+    if (pixel.image.a == 0.0) discard;
+    out_image = over_host(pixel.image);
+    out_normal = vec4(pixel.normal, 1.0);
+    if (HOST_DEPTH) gl_FragDepth = host_depth(host.depth, pixel.depth);
+}
+
+#elif defined(FRAGMENT)
 
 layout(set = 1, binding = 0) uniform texture2D visibility;
 layout(set = 1, binding = 1) uniform texture2D sums0;

@@ -7,8 +7,7 @@
 #include "lib/frame.glsl"
 #include "lib/window.glsl"
 
-layout(set = 0, binding = 2, std430) readonly buffer Positions { float positions[]; };
-layout(set = 0, binding = 3, std430) readonly buffer Normals { float normals[]; };
+#include "lib/surfels.glsl"
 #include "lib/point.glsl"
 #include "lib/drawn_points.glsl"
 

@@ -111,8 +111,7 @@ void main() {
 
 #else
 
-layout(set = 0, binding = 2, std430) readonly buffer Positions { float positions[]; };
-layout(set = 0, binding = 3, std430) readonly buffer Normals { float normals[]; };
+#include "lib/surfels.glsl"
 #include "lib/point.glsl"
 
 void main() {

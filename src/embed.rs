@@ -6,6 +6,9 @@
 //!               Renderer::draw:    records a draw of the picture with its depth, inside a render pass of the host
 //! ```
 //!
+//! Surfels may also stay in buffers of the host, which a simulation of its own writes every frame: [`Scene::from_buffers`] reads them in place.
+//! Those that were uploaded get new values by [`update`].
+//!
 //! Nothing is submitted, waited for or stalled: the host submits what is recorded, to one queue. What the engine makes it also destroys, once
 //! as many frames have been prepared since as the host has in flight; what it borrows it leaves alone.
 //!
@@ -58,6 +61,7 @@
 //!         samples: vk::SampleCountFlags::TYPE_1,
 //!         picture: 0,
 //!         normal: None,
+//!         id: None,
 //!         encode: false,
 //!     };
 //!     let options = Options { target, frames_in_flight: 2, precision: Precision::Full, rasterizer: None };
@@ -73,13 +77,20 @@
 //! ```
 #![allow(unsafe_code)]
 
+mod buffers;
+mod formats;
+mod held;
+pub mod native;
 mod target;
 
+pub use crate::scene::Changes;
 pub use crate::vk::{
     ABILITIES, API_VERSION, Abilities, Ability, Features, HostMemory, Lent, Location, MemoryRequest,
     MemorySource, QUEUE, Staging,
 };
+pub use buffers::{Buffers, READ_ACCESS, READ_STAGES, Radii, Values, update};
 pub use target::{Pass, Target};
+use target::{check_convention, depths};
 
 use crate::error::{Error, Result};
 use crate::geometry::{Camera, Parts};
@@ -87,14 +98,13 @@ use crate::passes::{Composite, CompositeKind};
 use crate::renderer::RenderOptions;
 use crate::scene::Scene;
 use crate::settings::Settings;
-use crate::stage::{Outgoing, Retired, Stage};
+use crate::stage::{Retired, Stage};
 use crate::targets::check_size;
 use crate::variant::{Outputs, Precision, Rasterizer};
 use crate::vk::shaders::layout;
 use crate::vk::{DescriptorSet, Device, Draws, Recorder, Uploads};
 use ash::vk;
-use std::any::Any;
-use std::collections::VecDeque;
+use held::Held;
 use std::sync::Arc;
 
 /// Records the upload of surfels, lines and triangles, as [`Scene::upload`] does it, into a command buffer of the host. The scene can be
@@ -144,14 +154,11 @@ pub struct Renderer {
     // Fields are dropped in this order: views before what they view.
     viewed: Option<Viewed>,
     shown: Option<Shown>,
-    /// What frames under way may use, with the number of the last one.
-    held: VecDeque<(u64, Outgoing)>,
+    held: Held,
     scene: Option<Arc<Scene>>,
     composites: Vec<Arc<Composite>>,
     stage: Stage,
     target: Target,
-    frame: u64,
-    frames_in_flight: u64,
     device: Arc<Device>,
 }
 
@@ -178,23 +185,20 @@ impl Renderer {
     pub unsafe fn new(device: &Arc<Device>, options: Options) -> Result<Self> {
         let Options { target, frames_in_flight, precision, rasterizer } = options;
         target.check(device)?;
-        if frames_in_flight == 0 {
-            return Err(Error::Usage(
-                "0 frames in flight: a frame is under way when it is recorded, so give 1 or more".into(),
-            ));
-        }
-        let outputs = Outputs { normal: target.normal.is_some(), depth: target.depth.is_some(), id: false };
+        let outputs = Outputs {
+            normal: target.normal.is_some(),
+            depth: target.depth.is_some(),
+            id: target.id.is_some(),
+        };
         let options = RenderOptions { size: [1, 1], outputs, precision, rasterizer, ..Default::default() };
         Ok(Self {
             viewed: None,
             shown: None,
-            held: VecDeque::new(),
+            held: Held::new(frames_in_flight)?,
             scene: None,
             composites: Vec::new(),
             stage: Stage::new(device, options, Retired::Kept(Vec::new()))?,
             target,
-            frame: 0,
-            frames_in_flight: frames_in_flight.into(),
             device: device.clone(),
         })
     }
@@ -216,11 +220,9 @@ impl Renderer {
     ) -> Result<()> {
         let shown = self.make(scene, view, settings);
         // Also after an error: what it took the place of may be under way.
-        let made = self.stage.outgoing();
-        self.held.extend(made.into_iter().map(|made| (self.frame, made)));
+        self.held.extend(self.stage.outgoing());
         let (block, shown) = shown?;
-        self.frame += 1;
-        self.release();
+        self.held.advance();
         // SAFETY: by the caller.
         let mut rec = unsafe { Recorder::of_host(&self.device, cmd) };
         self.stage.record(&mut rec, &block);
@@ -275,13 +277,14 @@ impl Renderer {
         let size = [area.extent.width, area.extent.height];
         check_size(&self.device, size)?;
         let camera = view.upright();
-        let depth = self.target.depths(&camera, view.viewport)?;
+        check_convention(self.target.depth.map(|_| self.target.reversed), &camera)?;
+        let depth = depths(&camera, view.viewport)?;
         self.stage.resize(size);
         let settings = Settings { background: None, ..settings.clone() };
         let (block, variant) = self.stage.prepare(scene, &camera, &settings, false)?;
         if self.scene.as_ref().is_none_or(|held| !Arc::ptr_eq(held, scene)) {
             let old = self.scene.replace(scene.clone());
-            self.hold(old);
+            self.held.hold(old);
         }
         let composite =
             self.composite(variant.rasterizer, variant.pull_push.is_some(), variant.perspective)?;
@@ -298,7 +301,7 @@ impl Renderer {
         if !self.viewed.as_ref().is_some_and(same) {
             let set = composite.view(&self.device, present.canvas.composited())?;
             let old = self.viewed.replace(Viewed { present: present.id, set, composite });
-            self.hold(old);
+            self.held.hold(old);
         }
         Ok(())
     }
@@ -314,6 +317,7 @@ impl Renderer {
             perspective,
             picture: self.target.picture,
             normal: self.target.normal,
+            id: self.target.id,
             reversed: self.target.depth.map(|_| self.target.reversed),
             encode: self.target.encode,
         };
@@ -324,17 +328,6 @@ impl Renderer {
         let made = Arc::new(unsafe { self.target.composite(&self.device, kind)? });
         self.composites.push(made.clone());
         Ok(made)
-    }
-
-    fn hold(&mut self, held: impl Any + Send) {
-        self.held.push_back((self.frame, Box::new(held)));
-    }
-
-    /// Lets go of what frames that are over have used.
-    fn release(&mut self) {
-        while self.held.front().is_some_and(|(frame, _)| frame + self.frames_in_flight <= self.frame) {
-            self.held.pop_front();
-        }
     }
 }
 

@@ -38,7 +38,7 @@
 //! let device = Device::open(&DeviceOptions::default())?;
 //! let scene = Scene::upload(&device, &surfels)?;
 //! let mut renderer = Renderer::new(&device, RenderOptions { size: [800, 600], ..Default::default() })?;
-//! let camera = Camera::framing(scene.bounds(), 45f64.to_radians(), 800.0 / 600.0)?;
+//! let camera = Camera::framing(&scene.bounds(), 45f64.to_radians(), 800.0 / 600.0)?;
 //! let (picture, _report) = renderer.render_picture(&scene, &camera, &Settings::default())?;
 //! assert_eq!(picture.colour.len(), 800 * 600);
 //! # Ok(())

@@ -150,7 +150,8 @@ impl Renderer {
         let counted = self.stage.resident().filter(|_| variant.count);
         Ok(FrameReport {
             pass_times: self.commands.pass_times()?,
-            counts: counted.map(|resident| SplatCounts::new(scene.count(), resident.splats.counts())),
+            counts: counted
+                .map(|resident| SplatCounts::new(resident.splats.count(), resident.splats.counts())),
         })
     }
 }
@@ -189,7 +190,7 @@ fn rasterizer_of_points(device: &Device, options: &RenderOptions, scene: &Scene)
             refuse("computed points", "choose the draw rasterizer, or leave it open")
         }
         // Without surfels there is nothing to draw.
-        _ if scene.count() == 0 => Ok(Rasterizer::Compute),
+        _ if scene.capacity() == 0 => Ok(Rasterizer::Compute),
         Some(rasterizer) => Ok(rasterizer),
         None if capabilities.int64_atomics => Ok(Rasterizer::Compute),
         None => Ok(Rasterizer::Draw),
@@ -215,7 +216,7 @@ fn too_large(device: &Device, options: &RenderOptions) -> Error {
 }
 
 /// The faster of what `device` can do with these options, for frames that blend splats or do not.
-fn rasterizer_for(
+pub(crate) fn rasterizer_for(
     device: &Device,
     options: &RenderOptions,
     blends: bool,

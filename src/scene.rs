@@ -1,8 +1,12 @@
 //! Geometry on the GPU: only the streams that the scene has.
 
+mod lent;
+mod live;
 mod materials;
 mod primitives;
+mod stream;
 mod texture;
+mod update;
 mod weights;
 
 use crate::error::{Error, Result};
@@ -12,35 +16,50 @@ use crate::geometry::{
 use crate::vk::shaders::layout::Splat;
 use crate::vk::{Binding, Buffer, Capabilities, Device, Uploads};
 use glam::{DVec3, Vec3};
+pub(crate) use lent::Lent;
 pub(crate) use materials::MaterialStream;
 pub(crate) use primitives::{Elements, PrimitiveStreams};
 use std::borrow::Cow;
 use std::ops::Range;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex};
+pub(crate) use stream::Stream;
+pub use stream::{NormalStream, SurfelLayout, Words};
 pub(crate) use texture::TextureStream;
+pub use update::Changes;
 use weights::WeightStream;
 
 /// Surfels, lines and triangles resident on a device.
 pub struct Scene {
     pub(crate) id: u64,
-    pub(crate) positions: Buffer,
-    pub(crate) normals: Buffer,
+    positions: Stream,
+    normals: Stream,
+    normal_stream: NormalStream,
     /// Negative radii are those of two-sided surfels, in a scene that has such; 0 is that of an invalid surfel.
-    pub(crate) radii: Buffer,
-    pub(crate) two_sided: bool,
-    pub(crate) ellipses: Option<Buffer>,
+    radii: Stream,
+    two_sided: bool,
+    ellipses: Option<Stream>,
     clips: Option<ClipStream>,
-    pub(crate) colours: Option<Buffer>,
+    colours: Option<Stream>,
     pub(crate) weights: Option<WeightBuffer>,
     pub(crate) primitives: Option<PrimitiveStreams>,
     pub(crate) texture: Option<TextureStream>,
     pub(crate) materials: Option<MaterialStream>,
     colour_stream: ColourStream,
     windows: Vec<Range<u64>>,
-    count: u64,
+    /// Of what is bound, bytes.
+    alignment: u64,
     origin: DVec3,
-    bounds: Bounds,
+    /// The largest radius so far, as bits; none where it is not known.
+    largest: Option<AtomicU32>,
+    /// Whether a host owns the surfels' buffers.
+    of_host: bool,
+    /// Whether some surfels were invalid when they were uploaded.
+    had_invalid: bool,
+    /// Whether some may be now and have another radius than 0.
+    unchecked: AtomicBool,
+    count: AtomicU64,
+    bounds: Mutex<Bounds>,
 }
 
 /// Clips as `lib/clip.glsl` wants them, window by window: for every surfel which clip it has, then the clips.
@@ -85,6 +104,10 @@ pub struct Streams {
     pub texture: Option<ColourStream>,
     /// Some points shine in their own way.
     pub materials: bool,
+    /// Where it has its surfels' values.
+    pub layout: SurfelLayout,
+    /// Nobody has looked whether all of them can be drawn: the shaders have to.
+    pub unchecked: bool,
 }
 
 /// Which lines and triangles a scene has.
@@ -120,13 +143,19 @@ pub enum ColourStream {
     Linear = 2,
     /// Coordinates in a texture, and for methods that blend a colour a point that which is there, linear float.
     Textured = 3,
+    /// Linear, 8 bits a channel: in buffers of a host.
+    Unorm8 = 4,
+    /// Linear half floats, four: in buffers of a host.
+    Half = 5,
 }
 
 impl ColourStream {
-    fn stride(self) -> u64 {
+    /// Bytes of a colour.
+    pub(crate) fn bytes(self) -> u64 {
         match self {
             Self::None => 0,
-            Self::Srgb8 => 4,
+            Self::Srgb8 | Self::Unorm8 => 4,
+            Self::Half => 8,
             Self::Linear => 12,
             Self::Textured => 20,
         }
@@ -172,7 +201,6 @@ impl Scene {
     }
 
     fn new_silently(device: &Arc<Device>, uploads: &Uploads<'_>, parts: Parts<'_>) -> Result<(Self, usize)> {
-        static NEXT: AtomicU64 = AtomicU64::new(0);
         let surfels = parts.surfels;
         parts.check()?;
         let image = parts.texture();
@@ -182,7 +210,7 @@ impl Scene {
         let (bounds, invalid) = usable(&parts)?;
         let count = surfels.len() as u64;
         let ellipses = surfels.ellipses.as_deref();
-        let windows = windows(count, device.capabilities());
+        let windows = windows(count, device.capabilities(), 0);
         let textured =
             surfels.texture.as_ref().map(|texture| (texture, &surfels.positions[..], &surfels.radii[..]));
         let (colour_stream, colours) = colour_bytes(surfels.colours.as_ref(), textured);
@@ -190,17 +218,21 @@ impl Scene {
             .weights
             .as_ref()
             .map(|weights| WeightBuffer::new(device, uploads, surfels, weights, &windows));
+        let stream = |name, bytes: &[u8], size| {
+            uploads.buffer(name, bytes).map(|buffer| Stream::side_by_side(buffer, size))
+        };
         let scene = Self {
-            id: NEXT.fetch_add(1, Ordering::Relaxed),
-            positions: uploads.buffer("positions", bytemuck::cast_slice(&surfels.positions))?,
-            normals: uploads.buffer("normals", bytemuck::cast_slice(&surfels.normals))?,
-            radii: uploads.buffer("radii", bytemuck::cast_slice(&marked_radii(surfels, invalid)))?,
+            id: next_id(),
+            positions: stream("positions", bytemuck::cast_slice(&surfels.positions), VECTOR)?,
+            normals: stream("normals", bytemuck::cast_slice(&surfels.normals), VECTOR)?,
+            normal_stream: NormalStream::Float,
+            radii: stream("radii", bytemuck::cast_slice(&marked_radii(surfels, invalid)), SCALAR)?,
             two_sided: surfels.two_sided.is_some(),
             ellipses: ellipses
-                .map(|ellipses| uploads.buffer("ellipses", bytemuck::cast_slice(ellipses)))
+                .map(|ellipses| stream("ellipses", bytemuck::cast_slice(ellipses), ELLIPSE))
                 .transpose()?,
             colours: (colour_stream != ColourStream::None)
-                .then(|| uploads.buffer("colours", &colours))
+                .then(|| stream("colours", &colours, colour_stream.bytes()))
                 .transpose()?,
             weights: weights.transpose()?,
             colour_stream,
@@ -213,21 +245,25 @@ impl Scene {
             texture: image.map(|image| TextureStream::new(device, uploads, image)).transpose()?,
             materials: MaterialStream::new(device, uploads, &parts)?,
             windows,
-            count,
+            alignment: device.capabilities().storage_buffer_alignment,
             origin: parts.origin(),
-            bounds,
+            largest: Some(AtomicU32::new(largest(&surfels.radii).to_bits())),
+            of_host: false,
+            had_invalid: invalid > 0,
+            unchecked: AtomicBool::new(false),
+            count: AtomicU64::new(count),
+            bounds: Mutex::new(bounds),
         };
         Ok((scene, invalid))
     }
 
     /// Whether it is on this device.
     pub fn is_on(&self, device: &Arc<Device>) -> bool {
-        self.positions.is_on(device)
+        self.positions.buffer.is_on(device)
     }
 
-    /// Number of surfels.
-    pub fn count(&self) -> u64 {
-        self.count
+    pub(crate) fn device(&self) -> &Arc<Device> {
+        self.positions.buffer.device()
     }
 
     /// What the shaders' coordinates are relative to, world space.
@@ -235,27 +271,24 @@ impl Scene {
         self.origin
     }
 
-    /// Bounds in the world.
-    pub fn bounds(&self) -> &Bounds {
-        &self.bounds
-    }
-
     /// How it holds colours.
     pub fn colour_stream(&self) -> ColourStream {
         self.colour_stream
     }
 
-    /// Memory of its streams, bytes.
+    /// Memory of its streams, less what is a host's, bytes.
     pub fn bytes(&self) -> u64 {
         let clips = self.clips.as_ref().map(|clips| &clips.buffer);
         let weights = self.weights.as_ref().map(|weights| &weights.buffer);
         let texture = self.texture.as_ref().map(|texture| &texture.buffer);
         let materials = self.materials.as_ref().map(|materials| &materials.buffer);
-        let optional = [self.ellipses.as_ref(), self.colours.as_ref(), clips, weights, texture, materials]
-            .map(|stream| stream.map_or(0, Buffer::size));
+        let streams = [Some(&self.positions), Some(&self.normals), Some(&self.radii)];
+        let streams = streams.into_iter().chain([self.ellipses.as_ref(), self.colours.as_ref()]);
+        let streams = streams.map(|stream| stream.map(|stream| &stream.buffer));
+        let buffers =
+            streams.chain([clips, weights, texture, materials]).flatten().filter(|buffer| !buffer.is_lent());
         let primitives = self.primitives.as_ref().map_or(0, PrimitiveStreams::bytes);
-        let always = self.positions.size() + self.normals.size() + self.radii.size();
-        always + optional.iter().sum::<u64>() + primitives
+        buffers.map(Buffer::size).sum::<u64>() + primitives
     }
 
     /// Ranges of surfels that one descriptor set can name.
@@ -274,6 +307,21 @@ impl Scene {
             primitives: self.primitives.as_ref().map_or(PrimitiveKinds::NONE, PrimitiveStreams::kinds),
             texture: self.texture.as_ref().map(|texture| texture.texels),
             materials: self.materials.is_some(),
+            layout: self.layout(),
+            unchecked: self.unchecked.load(Ordering::Relaxed),
+        }
+    }
+
+    fn layout(&self) -> SurfelLayout {
+        let words = |stream: &Stream| stream.words(self.alignment);
+        let usual = SurfelLayout::side_by_side(self.colour_stream);
+        SurfelLayout {
+            positions: words(&self.positions),
+            normals: words(&self.normals),
+            normal_stream: self.normal_stream,
+            radii: words(&self.radii),
+            colours: self.colours.as_ref().map_or(usual.colours, words),
+            ellipses: self.ellipses.as_ref().map_or(usual.ellipses, words),
         }
     }
 
@@ -286,31 +334,30 @@ impl Scene {
     /// in for by the radii, which the shaders then do not read.
     pub(crate) fn bindings(&self, number: usize) -> [Binding<'_>; 7] {
         let window = &self.windows[number];
-        let part = |buffer, stride| {
-            Binding::Storage(buffer, window.start * stride, (window.end - window.start) * stride)
-        };
+        let [positions, normals, radii, colours, ellipses] = [
+            &self.positions,
+            &self.normals,
+            &self.radii,
+            self.colours.as_ref().unwrap_or(&self.radii),
+            self.ellipses.as_ref().unwrap_or(&self.radii),
+        ]
+        .map(|stream| stream.binding(window, self.alignment));
         [
-            part(&self.positions, VECTOR),
-            part(&self.normals, VECTOR),
-            part(&self.radii, SCALAR),
-            match &self.colours {
-                Some(colours) => part(colours, self.colour_stream.stride()),
-                None => part(&self.radii, SCALAR),
-            },
-            match &self.ellipses {
-                Some(ellipses) => part(ellipses, ELLIPSE),
-                None => part(&self.radii, SCALAR),
-            },
+            positions,
+            normals,
+            radii,
+            colours,
+            ellipses,
             match &self.clips {
                 Some(ClipStream { buffer, windows }) => {
                     let Range { start, end } = windows[number].bytes;
                     Binding::Storage(buffer, start, end - start)
                 }
-                None => part(&self.radii, SCALAR),
+                None => radii,
             },
             match &self.weights {
                 Some(weights) => weights.binding(number),
-                None => part(&self.radii, SCALAR),
+                None => radii,
             },
         ]
     }
@@ -381,6 +428,17 @@ fn colour_bytes<'a>(
     }
 }
 
+/// The largest radius of what is valid; 0 if nothing is.
+fn largest(radii: &[f32]) -> f32 {
+    radii.iter().copied().filter(|radius| *radius <= Surfels::LARGEST).fold(0.0, f32::max)
+}
+
+/// A number that no other scene has.
+fn next_id() -> u64 {
+    static NEXT: AtomicU64 = AtomicU64::new(0);
+    NEXT.fetch_add(1, Ordering::Relaxed)
+}
+
 /// The bounds of what is valid, and the number of surfels that are not.
 fn usable(parts: &Parts<'_>) -> Result<(Bounds, usize)> {
     let Some(bounds) = parts.bounds() else {
@@ -432,11 +490,12 @@ fn step(capabilities: &Capabilities) -> u64 {
 }
 
 /// Splits `count` surfels so that a window of any stream, the splats' included, fits a descriptor and starts aligned, and so that a
-/// window's workgroups and vertices can be counted.
-fn windows(count: u64, capabilities: &Capabilities) -> Vec<Range<u64>> {
+/// window's workgroups and vertices can be counted. A host's streams have values up to `stride` bytes apart, and may start anywhere.
+fn windows(count: u64, capabilities: &Capabilities, stride: u64) -> Vec<Range<u64>> {
     let step = step(capabilities);
-    let largest_stride = size_of::<Splat>() as u64;
-    let fitting = (capabilities.max_storage_buffer_range / largest_stride)
+    let range = capabilities.max_storage_buffer_range;
+    let fitting = (range / size_of::<Splat>() as u64)
+        .min(range.saturating_sub(capabilities.storage_buffer_alignment) / stride.max(1))
         .min(u64::from(capabilities.max_workgroups) * 64)
         .min(u64::from(u32::MAX) / 3);
     let size = (fitting / step * step).max(step);
@@ -463,7 +522,7 @@ mod tests {
             max_workgroups: 65535,
         };
         for count in [1, 255, 256, 21_504, 21_505, 1_000_000] {
-            let windows = windows(count, &capabilities);
+            let windows = windows(count, &capabilities, 0);
             assert_eq!(windows[0].start, 0);
             assert_eq!(windows[windows.len() - 1].end, count);
             assert!(windows.windows(2).all(|pair| pair[0].end == pair[1].start));

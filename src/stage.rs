@@ -23,7 +23,8 @@ pub(crate) struct Stage {
     present: Option<Present>,
     /// What was before it: who switches to and fro, as in progressive rendering, makes nothing.
     previous: Option<Present>,
-    resident: Option<Resident>,
+    /// Splats of the present scene first; behind it those of a host's other buffers, which take turns.
+    residents: Vec<Resident>,
     pipelines: HashMap<Variant, Pipelines>,
     layout: SplatLayout,
     frame: Arc<Buffer>,
@@ -32,7 +33,12 @@ pub(crate) struct Stage {
     retired: Retired,
     /// Number of targets made so far.
     made: u64,
+    /// Number of frames prepared so far.
+    frames: u64,
 }
+
+/// How many frames a host's buffers may go without being drawn and keep their splats: simulations write one while others are shown.
+const TURNS: u64 = 3;
 
 /// What happens to what frames no longer need.
 pub(crate) enum Retired {
@@ -59,6 +65,9 @@ pub(crate) struct Present {
 /// Splats of the present scene.
 pub(crate) struct Resident {
     scene: u64,
+    of_host: bool,
+    /// Number of the last frame that it was for.
+    frame: u64,
     /// What it makes splats for, if any.
     rasterizer: Option<Rasterizer>,
     pub(crate) splats: Splats,
@@ -73,6 +82,29 @@ impl Retired {
     }
 }
 
+/// What a frame is: its numbers and its variant. Refuses what cannot be rendered.
+pub(crate) fn describe(
+    device: &Device,
+    options: &RenderOptions,
+    scene: &Scene,
+    camera: &Camera,
+    settings: &Settings,
+) -> Result<(Frame, Variant)> {
+    settings.check()?;
+    settings.splatting.normalization.check_weights(scene.weights.is_some())?;
+    settings.check_primitives(scene.primitives.is_some())?;
+    settings.check_outputs(options.outputs)?;
+    let block = frame(camera, settings, options.size, scene.origin(), &scene.bounds())?;
+    let rasterizer = rasterizer_of(device, options, settings, scene)?;
+    let perspective = camera.projection()?.perspective;
+    let precision = match settings.pull_push {
+        Some(_) => options.precision,
+        None => width_of_sums(device, options, rasterizer),
+    };
+    let options = RenderOptions { precision, ..*options };
+    Ok((block, Variant::new(scene.streams(), perspective, settings, &options, rasterizer)))
+}
+
 impl Stage {
     /// Nothing is made for any scene yet.
     pub(crate) fn new(device: &Arc<Device>, options: RenderOptions, retired: Retired) -> Result<Self> {
@@ -80,7 +112,7 @@ impl Stage {
         Ok(Self {
             present: None,
             previous: None,
-            resident: None,
+            residents: Vec::new(),
             pipelines: HashMap::new(),
             layout: SplatLayout::new(device)?,
             frame: Arc::new(Buffer::uniform(device, "frame", size_of::<Frame>() as u64)?),
@@ -88,6 +120,7 @@ impl Stage {
             device: device.clone(),
             retired,
             made: 0,
+            frames: 0,
         })
     }
 
@@ -102,7 +135,7 @@ impl Stage {
     }
 
     pub(crate) fn resident(&self) -> Option<&Resident> {
-        self.resident.as_ref()
+        self.residents.first()
     }
 
     /// What went since this was last asked.
@@ -131,19 +164,7 @@ impl Stage {
         settings: &Settings,
         read: bool,
     ) -> Result<(Frame, Variant)> {
-        settings.check()?;
-        settings.splatting.normalization.check_weights(scene.weights.is_some())?;
-        settings.check_primitives(scene.primitives.is_some())?;
-        settings.check_outputs(self.options.outputs)?;
-        let block = frame(camera, settings, self.options.size, scene.origin(), scene.bounds())?;
-        let rasterizer = rasterizer_of(&self.device, &self.options, settings, scene)?;
-        let perspective = camera.projection()?.perspective;
-        let precision = match settings.pull_push {
-            Some(_) => self.options.precision,
-            None => width_of_sums(&self.device, &self.options, rasterizer),
-        };
-        let options = RenderOptions { precision, ..self.options };
-        let variant = Variant::new(scene.streams(), perspective, settings, &options, rasterizer);
+        let (block, variant) = describe(&self.device, &self.options, scene, camera, settings)?;
         let splats = variant.pull_push.is_none().then_some(variant.rasterizer);
         self.make_resident(scene, splats)?;
         self.make_present(variant, read)?;
@@ -153,22 +174,36 @@ impl Stage {
     /// Records the frame that was prepared, with these numbers.
     pub(crate) fn record(&self, rec: &mut Recorder<'_>, block: &Frame) {
         rec.update(&self.frame, bytemuck::bytes_of(block));
-        if let (Some(present), Some(resident)) = (&self.present, &self.resident) {
+        if let (Some(present), Some(resident)) = (&self.present, self.resident()) {
             present.canvas.record(rec, &resident.splats);
         }
     }
 
     fn make_resident(&mut self, scene: &Scene, rasterizer: Option<Rasterizer>) -> Result<()> {
-        if self
-            .resident
-            .as_ref()
-            .is_none_or(|resident| (resident.scene, resident.rasterizer) != (scene.id, rasterizer))
-        {
-            self.retired.take(self.resident.take());
-            let splats = Splats::new(&self.device, &self.layout, &self.frame, scene, rasterizer)?;
-            self.resident =
-                Some(Resident { scene: scene.id, rasterizer, splats, _frame: self.frame.clone() });
+        self.frames += 1;
+        let same = |resident: &Resident| (resident.scene, resident.rasterizer) == (scene.id, rasterizer);
+        let found = self.residents.iter().position(same).map(|place| self.residents.remove(place));
+        let others = std::mem::take(&mut self.residents);
+        for other in others {
+            match other.of_host && scene.is_of_host() && other.frame + TURNS >= self.frames {
+                true => self.residents.push(other),
+                false => self.retired.take(Some(other)),
+            }
         }
+        let mut resident = match found {
+            Some(resident) => resident,
+            None => Resident {
+                scene: scene.id,
+                of_host: scene.is_of_host(),
+                rasterizer,
+                splats: Splats::new(&self.device, &self.layout, &self.frame, scene, rasterizer)?,
+                frame: 0,
+                _frame: self.frame.clone(),
+            },
+        };
+        resident.frame = self.frames;
+        resident.splats.set_count(scene.count());
+        self.residents.insert(0, resident);
         Ok(())
     }
 

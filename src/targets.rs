@@ -144,7 +144,7 @@ pub fn check_size(device: &Device, size: [u32; 2]) -> Result<()> {
 }
 
 /// Where α is coverage, its target.
-fn coverage(device: &Arc<Device>, variant: &Variant, size: [u32; 2]) -> Result<Option<Buffer>> {
+pub(crate) fn coverage(device: &Arc<Device>, variant: &Variant, size: [u32; 2]) -> Result<Option<Buffer>> {
     let bytes = 4 * u64::from(size[0]) * u64::from(size[1]);
     variant.coverage.then(|| Buffer::storage(device, "coverage", bytes)).transpose()
 }

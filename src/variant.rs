@@ -2,7 +2,7 @@
 
 use crate::pull_push::{PullPush, Rules, Storage};
 use crate::renderer::RenderOptions;
-use crate::scene::{ColourStream, PrimitiveKinds, Streams};
+use crate::scene::{ColourStream, PrimitiveKinds, Streams, SurfelLayout};
 use crate::settings::{Alpha, Cull, Settings, Shading, Widen};
 use crate::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
 use crate::vk::Constants;
@@ -65,6 +65,10 @@ pub struct Variant {
     pub precision: Precision,
     /// What visits the pixels of splats and points; lines and triangles are always computed.
     pub rasterizer: Rasterizer,
+    /// Where the scene has its surfels' values.
+    pub layout: SurfelLayout,
+    /// How it holds colours that the shaders have to look at to know what is valid, and whether they have to look at anything.
+    pub unchecked: Option<ColourStream>,
 }
 
 /// What visits the pixels of a splat, or of a point. Both make the same picture: of splats up to rounding, of points bit for bit.
@@ -156,6 +160,15 @@ impl Variant {
             outputs: options.outputs,
             precision: options.precision,
             rasterizer,
+            // Where colours are is no matter to who does not read them.
+            layout: match blends_colours || streams.unchecked || texture.is_some() {
+                true => streams.layout,
+                false => SurfelLayout {
+                    colours: SurfelLayout::side_by_side(ColourStream::None).colours,
+                    ..streams.layout
+                },
+            },
+            unchecked: streams.unchecked.then_some(streams.colours),
         }
     }
 
@@ -184,7 +197,8 @@ impl Variant {
 
     /// Whether some of the colours may be beyond 1.
     pub fn unbounded_colours(&self) -> bool {
-        let floats = |colours| matches!(colours, ColourStream::Linear | ColourStream::Textured);
+        let floats =
+            |colours| matches!(colours, ColourStream::Linear | ColourStream::Textured | ColourStream::Half);
         floats(self.colours) || floats(self.primitives.colours)
     }
 
@@ -205,7 +219,10 @@ impl Variant {
 
     /// The same as specialization constants.
     pub fn constants(&self) -> Constants {
-        Constants::default()
+        let constants = self.layout.add_to(Constants::default());
+        constants
+            .with(constant::UNCHECKED, self.unchecked.is_some())
+            .with(constant::HELD_COLOURS, self.unchecked.map_or(0, |colours| colours as u32))
             .with(constant::PERSPECTIVE, self.perspective)
             .with(constant::CULL_BACK, self.cull_back)
             .with(constant::ELLIPSES, self.ellipses)

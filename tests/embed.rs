@@ -9,21 +9,23 @@ mod support;
 
 use ash::vk;
 use glam::{DMat4, DVec3};
-use host::frame::{Frame, Kind, Way};
+use host::Host;
+use host::frame::{Frame, IDS, Kind, Way};
 use host::memory::Counted;
-use host::mesh::{Mesh, parallelogram};
+use host::mesh::Mesh;
+use host::scene::parallelogram;
 use stand::{Stand, assert_silent, open, upload};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use support::sampling::{Random, bumpy_sphere};
 use surfel::embed::{self, Abilities, Options, Renderer, View};
-use surfel::geometry::{Camera, Surfels};
+use surfel::geometry::Camera;
 use surfel::methods::Method;
 use surfel::splatting::Visibility;
 use surfel::vk::{Device, DeviceOptions};
 use surfel::{Error, Outputs, Picture, Precision, Rasterizer, RenderOptions, Scene, Settings};
 
-const SIZE: [u32; 2] = [160, 120];
+use stand::{SIZE, camera, meets, rising, sphere, surfels, viewport};
+
 const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 const ONE: vk::SampleCountFlags = vk::SampleCountFlags::TYPE_1;
 const FOUR: vk::SampleCountFlags = vk::SampleCountFlags::TYPE_4;
@@ -32,39 +34,6 @@ const FOUR: vk::SampleCountFlags = vk::SampleCountFlags::TYPE_4;
 #[allow(dead_code, reason = "it compiles, or not")]
 fn a_renderer_goes_to_another_thread(renderer: Renderer) -> impl Send {
     renderer
-}
-
-fn surfels() -> Surfels {
-    sphere(20_000)
-}
-
-fn sphere(count: usize) -> Surfels {
-    bumpy_sphere(count, &mut Random(7))
-}
-
-fn camera() -> Camera {
-    let eye = DVec3::new(1.1, 0.9, 3.0);
-    Camera::look_at(eye, DVec3::ZERO, DVec3::Y, 0.8, 4.0 / 3.0, 0.1).unwrap()
-}
-
-/// The same with depth that rises with distance, from 0 at the near plane to 1 at the far one.
-fn rising() -> Camera {
-    let (near, far) = (0.1, 50.0);
-    let mut camera = camera();
-    camera.projection.z_axis.z = far / (far - near);
-    camera.projection.w_axis.z = -near * far / (far - near);
-    Camera { reversed: false, ..camera }
-}
-
-fn viewport([width, height]: [u32; 2]) -> vk::Viewport {
-    vk::Viewport {
-        x: 0.0,
-        y: 0.0,
-        width: width as f32,
-        height: height as f32,
-        min_depth: 0.0,
-        max_depth: 1.0,
-    }
 }
 
 /// What the engine's own frames show: colours, and distances, of what is seen.
@@ -169,6 +138,69 @@ fn pictures_and_normals_are_where_the_host_wants_them() {
 }
 
 #[test]
+fn numbers_are_the_engines_own() {
+    let Some(host) = open(|all| all) else { return };
+    let settings = Settings { background: None, ..Method::named("pull-push").unwrap().settings() };
+    let device = Device::open(&DeviceOptions::default()).unwrap();
+    let outputs = Outputs { normal: true, depth: true, id: true };
+    let options = RenderOptions { size: SIZE, outputs, ..Default::default() };
+    let own = support::gpu::render(&device, &surfels(), &camera(), &settings, options);
+    let (numbers, normals) = (own.id.unwrap(), own.normal.unwrap());
+    assert!(numbers.iter().filter(|number| **number < 20_000).count() > 5_000);
+    let formats: [&[vk::Format]; 3] = [&[IDS], &[IDS, FLOATS], &[FLOATS, IDS]];
+    for (more, way, has_depth) in [
+        (formats[0], Way::Subpass, true),
+        (formats[0], Way::Subpass, false),
+        (formats[1], Way::Rendering, true),
+        (formats[2], Way::Subpass, false),
+    ] {
+        let kind = Kind { way, colour: FLOATS, normals: false, samples: ONE, reversed: true };
+        let frame = Frame::with(&host, kind, SIZE, more).unwrap();
+        let device = host.lend(None).unwrap();
+        let depth = frame.target().depth.filter(|_| has_depth);
+        let target = embed::Target { depth, ..frame.target() };
+        let options = Options { target, frames_in_flight: 1, precision: Precision::Full, rasterizer: None };
+        // SAFETY: the target is the frame's.
+        let mut renderer = unsafe { Renderer::new(&device, options) }.unwrap();
+        let scene = upload(&host, &device, &surfels());
+        let view = View { camera: camera(), viewport: viewport(SIZE) };
+        draw(&host, &frame, &mut renderer, &scene, &view, &settings).unwrap();
+        assert!(frame.read_ids(&host).unwrap() == numbers, "{more:?} {way:?} {has_depth}");
+        assert!(frame.read(&host).unwrap().0 == own.colour);
+        for (found, own) in frame.read_normals(&host).unwrap().iter().zip(&normals) {
+            assert_eq!(found[..3], *own);
+        }
+        // Of sums there are no numbers.
+        let refused = draw(&host, &frame, &mut renderer, &scene, &view, &Settings::default());
+        assert!(refused.is_err_and(|error| error.to_string().contains("pull-push-paper alone")));
+        drop(renderer);
+        frame.destroy(&host);
+    }
+    assert_silent(&host);
+}
+
+/// A frame of surfels alone.
+fn draw(
+    host: &Host,
+    frame: &Frame,
+    renderer: &mut Renderer,
+    scene: &Arc<Scene>,
+    view: &View,
+    settings: &Settings,
+) -> host::Result<()> {
+    host.run(|cmd| {
+        // SAFETY: recorded outside and inside the frame's pass, and waited for.
+        unsafe {
+            renderer.prepare(cmd, scene, view, settings)?;
+            frame.begin(host, cmd);
+            let drawn = renderer.draw(cmd);
+            frame.end(host, cmd);
+            Ok(drawn?)
+        }
+    })
+}
+
+#[test]
 fn colours_are_encoded_by_the_shader_as_by_the_format() {
     let Some(host) = open(|all| all) else { return };
     let settings = Settings { background: None, ..Settings::default() };
@@ -182,17 +214,7 @@ fn colours_are_encoded_by_the_shader_as_by_the_format() {
         let mut renderer = unsafe { Renderer::new(&device, options) }.unwrap();
         let scene = upload(&host, &device, &surfels());
         let view = View { camera: camera(), viewport: viewport(SIZE) };
-        host.run(|cmd| {
-            // SAFETY: recorded outside and inside the frame's pass, and waited for.
-            unsafe {
-                renderer.prepare(cmd, &scene, &view, &settings)?;
-                frame.begin(&host, cmd);
-                renderer.draw(cmd)?;
-                frame.end(&host, cmd);
-            }
-            Ok(())
-        })
-        .unwrap();
+        draw(&host, &frame, &mut renderer, &scene, &view, &settings).unwrap();
         let bytes = frame.read_bytes(&host, 4).unwrap();
         frame.destroy(&host);
         bytes
@@ -201,22 +223,6 @@ fn colours_are_encoded_by_the_shader_as_by_the_format() {
     // Either rounds to the nearest code, of values that differ by the last bits of a power.
     assert!(bytes[0].iter().zip(&bytes[1]).all(|(a, b)| a.abs_diff(*b) <= 1));
     assert_silent(&host);
-}
-
-/// Distance from the eye plane and whether it is on the parallelogram, of what the ray through the middle of a pixel meets.
-fn meets(camera: &Camera, at: [u32; 2], centre: DVec3, sides: [DVec3; 2]) -> Option<f64> {
-    let back: DMat4 = camera.world_to_clip().inverse();
-    let clip = |depth: f64| {
-        let ndc = |i: usize| 2.0 * (f64::from(at[i]) + 0.5) / f64::from(SIZE[i]) - 1.0;
-        back.project_point3(DVec3::new(ndc(0), ndc(1), depth))
-    };
-    let (from, to) = (clip(1.0), clip(0.5));
-    let ray = to - from;
-    let normal = sides[0].cross(sides[1]);
-    let t = normal.dot(centre - from) / normal.dot(ray);
-    let point = from + t * ray;
-    let inside = sides.iter().all(|side| (point - centre).dot(*side).abs() <= side.length_squared());
-    (t > 0.0 && inside).then(|| camera.view.transform_point3(point).z)
 }
 
 #[test]
@@ -376,9 +382,15 @@ fn what_cannot_be_served_is_refused_and_says_why() {
     let mut stand = Stand::new(&host, kind, SIZE, None, &surfels());
     let target = stand.frame.target();
     type Change = fn(&mut embed::Target);
-    let changes: [(Change, &str); 7] = [
+    let changes: [(Change, &str); 10] = [
         (|t| t.picture = 1, "location 1 of 1 colour attachments"),
         (|t| t.normal = Some(0), "both the picture and normals"),
+        (|t| t.id = Some(0), "both the picture and numbers"),
+        (|t| (t.colours, t.normal, t.id) = (vec![FLOATS, IDS], Some(1), Some(1)), "both normals and numbers"),
+        (
+            |t| (t.colours, t.id) = (vec![FLOATS; 2], Some(1)),
+            "numbers want R32_UINT, and location 1 is R32G32B32A32_SFLOAT",
+        ),
         (|t| t.colours[0] = vk::Format::R32G32B32A32_UINT, "cannot draw the picture to R32G32B32A32_UINT"),
         (|t| t.colours.push(FLOATS), "independentBlend"),
         (|t| t.depth = Some(FLOATS), "no depth attachments of R32G32B32A32_SFLOAT"),

@@ -345,7 +345,7 @@ fn too_few_storage_buffers_are_an_error() {
     let options = RenderOptions { size: [64, 64], ..Default::default() };
     let made = Renderer::new(&device, options).and_then(|mut renderer| {
         let scene = Scene::upload(&device, &sphere(100))?;
-        renderer.render_picture(&scene, &Camera::framing(scene.bounds(), 0.8, 1.0)?, &Settings::default())
+        renderer.render_picture(&scene, &Camera::framing(&scene.bounds(), 0.8, 1.0)?, &Settings::default())
     });
     let cause = made.map(drop).unwrap_err().to_string();
     assert!(cause.contains("storage buffers, this one allows 4"), "{cause}");

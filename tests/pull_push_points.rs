@@ -26,6 +26,7 @@ const NO_ATOMICS: DeviceLimits = DeviceLimits {
     independent_blend: None,
     timestamps: None,
     max_storage_buffer_range: None,
+    storage_buffer_alignment: None,
     max_storage_buffers: None,
     max_image_side: None,
 };

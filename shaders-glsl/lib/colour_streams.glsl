@@ -1,19 +1,29 @@
-// Colours as a scene holds them: 8 bits of sRGB a channel in a word, three linear floats, or, with a texture, coordinates in it and for those
-// who do not look there the linear colour.
+// Colours as a scene holds them: 8 bits a channel in a word, of sRGB or linear, three linear floats, linear half floats in two words, or, with
+// a texture, coordinates in it and for those who do not look there the linear colour.
 
-const uint COLOURS_NONE = 0, COLOURS_SRGB8 = 1, COLOURS_LINEAR = 2, COLOURS_TEXTURED = 3;
+const uint COLOURS_NONE = 0, COLOURS_SRGB8 = 1, COLOURS_LINEAR = 2, COLOURS_TEXTURED = 3, COLOURS_UNORM8 = 4, COLOURS_HALF = 5;
+
+// Words from one to the next where they lie side by side.
+uint colour_words(uint kind) {
+    if (kind == COLOURS_LINEAR) return 3;
+    if (kind == COLOURS_TEXTURED) return 5;
+    return kind == COLOURS_HALF ? 2 : 1;
+}
 
 vec3 srgb_to_linear(vec3 c) {
     return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045)));
 }
 
-// NAME(i): colour i, linear, of a stream of this KIND in WORDS.
-#define DEFINE_COLOURS(NAME, KIND, WORDS)                                                  \
-    vec3 NAME(uint i) {                                                                    \
-        if (KIND == COLOURS_NONE) return frame.albedo.rgb;                                 \
-        if (KIND == COLOURS_SRGB8) return srgb_to_linear(unpackUnorm4x8(WORDS[i]).rgb);    \
-        uint k = KIND == COLOURS_LINEAR ? 3 * i : 5 * i + 2;                               \
-        return uintBitsToFloat(uvec3(WORDS[k], WORDS[k + 1], WORDS[k + 2]));               \
+// NAME(i): colour i, linear, of a stream of this KIND in WORDS, from OFFSET on, STRIDE words apart.
+#define DEFINE_COLOURS(NAME, KIND, WORDS, OFFSET, STRIDE)                                                              \
+    vec3 NAME(uint i) {                                                                                                \
+        if (KIND == COLOURS_NONE) return frame.albedo.rgb;                                                             \
+        uint k = OFFSET + STRIDE * i;                                                                                  \
+        if (KIND == COLOURS_SRGB8) return srgb_to_linear(unpackUnorm4x8(WORDS[k]).rgb);                                \
+        if (KIND == COLOURS_UNORM8) return unpackUnorm4x8(WORDS[k]).rgb;                                               \
+        if (KIND == COLOURS_HALF) return vec3(unpackHalf2x16(WORDS[k]), unpackHalf2x16(WORDS[k + 1]).x);               \
+        if (KIND == COLOURS_TEXTURED) k += 2;                                                                          \
+        return uintBitsToFloat(uvec3(WORDS[k], WORDS[k + 1], WORDS[k + 2]));                                           \
     }
 
 // NAME(i): coordinates i in the texture, of such a stream.

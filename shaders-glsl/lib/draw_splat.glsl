@@ -73,11 +73,12 @@ void drawn_fragment(out vec2 m, out float key, out float rank) {
     float key_centre = centre_key(plane_epsilon.xyz, plane_lo_disc.xyz, anchor_offset.zw);
     Ellipse ellipse = Ellipse(
         anchor_offset.xy, anchor_offset.zw, whitening, fine, plane_epsilon.xyz, plane_lo_disc.xyz, key_centre, clip);
-    if (!splat_fragment(ellipse, gl_FragCoord.xy, m, key, rank)) discard;
+    vec2 centre = gl_FragCoord.xy - frame.origin;
+    if (!splat_fragment(ellipse, centre, m, key, rank)) discard;
 #ifdef COVERAGE
-    uvec2 pixel = uvec2(gl_FragCoord.xy);
+    uvec2 pixel = uvec2(centre);
     ellipse.whitening = solid_whitening;
-    cover(pixel.y * uint(frame.viewport.x) + pixel.x, ellipse, gl_FragCoord.xy);
+    cover(pixel.y * uint(frame.viewport.x) + pixel.x, ellipse, centre);
 #endif
 }
 

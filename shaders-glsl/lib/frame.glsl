@@ -33,4 +33,5 @@ layout(set = 0, binding = 0, std140) uniform Frame {
     float kernel_n;
     vec4 to_light[4];
     vec4 radiance[4];
+    vec2 origin;             // of the picture in what is drawn to, px
 } frame;

@@ -2,8 +2,6 @@
 
 #include "lib/conic.glsl"
 
-layout(constant_id = 12) const bool ELLIPSES = false;
-
 // A disc in front of the eye; all vectors world space.
 struct Disc {
     vec3 hi, lo;      // centre relative to the eye

@@ -5,9 +5,6 @@
 #include "lib/pixel_row.glsl"
 
 layout(constant_id = 1) const bool CULL_BACK = false;
-layout(constant_id = 13) const bool TWO_SIDED = false;
-
-layout(set = 0, binding = 4, std430) readonly buffer Radii { float radii[]; }; // 0: invalid; TWO_SIDED: negative where it is
 
 struct Point {
     ivec2 at;       // the pixel that holds it
@@ -35,9 +32,8 @@ float whole_part(vec2 x, vec2 w, out float rest) {
 // Where surfel i is, and what becomes of it.
 uint point_of(uint i, out Point point) {
     point = Point(ivec2(-1), vec2(0.0), 0.0, 0.0);
-    vec3 p = vec3(positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]);
-    vec3 n = vec3(normals[3 * i], normals[3 * i + 1], normals[3 * i + 2]);
-    if (!((TWO_SIDED ? abs(radii[i]) : radii[i]) > 0.0)) return INVALID;
+    if (!is_valid(i)) return INVALID;
+    vec3 p = position_of(i), n = normal_of(i);
     vec2 dx = two_sum(p.x, -frame.eye_hi.x), dy = two_sum(p.y, -frame.eye_hi.y), dz = two_sum(p.z, -frame.eye_hi.z);
     vec3 hi = vec3(dx.x, dy.x, dz.x), lo = vec3(dx.y, dy.y, dz.y) - frame.eye_lo.xyz;
     float z = dot_double(hi, lo, frame.forward_hi.xyz, frame.forward_lo.xyz).x;
@@ -46,7 +42,7 @@ uint point_of(uint i, out Point point) {
     if ((PERSPECTIVE ? frame.near / z : 1.0 - (z - frame.near) * frame.key_slope) < frame.key_far) return BEHIND;
     point.distance = z;
     point.facing = (PERSPECTIVE ? dot_double(hi, lo, n, vec3(0.0)) : dot_double(n, vec3(0.0), frame.forward_hi.xyz, frame.forward_lo.xyz)).x;
-    if (CULL_BACK && !(TWO_SIDED && radii[i] < 0.0) && point.facing >= 0.0) return BACK;
+    if (CULL_BACK && !is_two_sided(i) && point.facing >= 0.0) return BACK;
     if (point.facing == 0.0) return OUTSIDE;
 
     vec2 w = PERSPECTIVE ? pixel_row(2, hi, lo) : vec2(1.0, 0.0);

@@ -24,7 +24,7 @@ float distance_of(vec3 hi, vec3 lo) {
     return dot_double(hi, lo, frame.forward_hi.xyz, frame.forward_lo.xyz).x;
 }
 
-DEFINE_COLOURS(vertex_colour, VERTEX_COLOURS, vertex_colours)
+DEFINE_COLOURS(vertex_colour, VERTEX_COLOURS, vertex_colours, 0, colour_words(VERTEX_COLOURS))
 DEFINE_COORDINATES(vertex_coordinates, vertex_colours)
 
 Vertex vertex_of(uint i) {

@@ -7,7 +7,7 @@ layout(constant_id = 36) const uint TEXELS = 0; // their kind, as of colours
 // Width and height of the finest level, number of levels; texels of all levels, fine to coarse, each row by row from the top left.
 layout(set = 3, binding = 0, std430) readonly buffer Texture { uint width; uint height; uint levels; uint texels[]; } image_of;
 
-DEFINE_COLOURS(texel, TEXELS, image_of.texels)
+DEFINE_COLOURS(texel, TEXELS, image_of.texels, 0, colour_words(TEXELS))
 
 ivec2 texture_size(uint level) {
     return max(ivec2(image_of.width, image_of.height) >> level, 1);

@@ -60,7 +60,7 @@ pub fn capture(
         return Err(Error::Usage("weights captured from no view: give 1 or more".into()));
     }
     let scene = Scene::upload(device, surfels)?;
-    let (size, cameras) = views::around(surfels, scene.bounds(), views)?;
+    let (size, cameras) = views::around(surfels, &scene.bounds(), views)?;
     let mut renderer = renderer(device, [size; 2])?;
     let settings = plain(settings);
     let mut samples = Samples::default();

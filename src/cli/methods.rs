@@ -3,7 +3,7 @@
 use super::files::print;
 use std::fmt::Write;
 use surfel::methods::{Method, passes};
-use surfel::scene::{ColourStream, PrimitiveKinds, Streams};
+use surfel::scene::{ColourStream, PrimitiveKinds, Streams, SurfelLayout};
 use surfel::settings::{Settings, Shading};
 use surfel::splatting::{Filter, Splatting};
 use surfel::targets::{Buffers, Formats, PerPixel, Pyramids};
@@ -69,6 +69,8 @@ fn variant(settings: &Settings, rasterizer: Rasterizer) -> Variant {
         primitives: PrimitiveKinds::NONE,
         texture: None,
         materials: false,
+        layout: SurfelLayout::side_by_side(ColourStream::Srgb8),
+        unchecked: false,
     };
     let settings = Settings { shading: Shading::Lit, ..settings.clone() };
     Variant::new(streams, true, &settings, &RenderOptions::default(), rasterizer)

@@ -43,6 +43,10 @@ pub struct Target {
     pub picture: u32,
     /// The location that gets unit normals, world space, if any, below 4.
     pub normal: Option<u32>,
+    /// The location, of format R32_UINT, that gets the numbers of what is seen, as [`Picture::id`](crate::Picture::id) has them, if any, below 4.
+    /// Where no surface is, or the host's own is in front, it keeps what is there: clear it to [`Picture::NOBODY`](crate::Picture::NOBODY).
+    /// Methods that have no numbers are then refused.
+    pub id: Option<u32>,
     /// Whether the shader has to encode colours as sRGB, as where the format is UNORM and shown as it is. Formats of sRGB do it themselves.
     pub encode: bool,
 }
@@ -52,15 +56,19 @@ impl Target {
     pub(super) fn check(&self, device: &Device) -> Result<()> {
         let refuse =
             |cause: String| Err(Error::Usage(format!("the host's target cannot be drawn to: {cause}")));
-        if self.normal == Some(self.picture) {
-            return refuse(format!("location {} is given for both the picture and normals", self.picture));
-        }
         use vk::FormatFeatureFlags as Can;
         let wanted = [
-            ("the picture", Some(self.picture), Can::COLOR_ATTACHMENT_BLEND),
-            ("normals", self.normal, Can::COLOR_ATTACHMENT),
+            ("the picture", Some(self.picture), Can::COLOR_ATTACHMENT_BLEND, false),
+            ("normals", self.normal, Can::COLOR_ATTACHMENT, false),
+            ("numbers", self.id, Can::COLOR_ATTACHMENT, true),
         ];
-        for (what, location, needed) in wanted {
+        for [a, b] in [[0, 1], [0, 2], [1, 2]] {
+            let ((one, location, ..), (other, same, ..)) = (wanted[a], wanted[b]);
+            if let Some(location) = location.filter(|location| same == Some(*location)) {
+                return refuse(format!("location {location} is given for both {one} and {other}"));
+            }
+        }
+        for (what, location, needed, is_number) in wanted {
             let Some(location) = location else { continue };
             let Some(&format) = self.colours.get(location as usize).filter(|_| (location as usize) < MOST)
             else {
@@ -69,7 +77,10 @@ impl Target {
                     self.colours.len()
                 ));
             };
-            if !device.format_features(format).contains(needed) || is_integer(format) {
+            if is_number && format != vk::Format::R32_UINT {
+                return refuse(format!("numbers want R32_UINT, and location {location} is {format:?}"));
+            }
+            if !device.format_features(format).contains(needed) || is_integer(format) != is_number {
                 return refuse(format!("{} cannot draw {what} to {format:?}", device.description().name));
             }
         }
@@ -92,33 +103,6 @@ impl Target {
         Ok(())
     }
 
-    /// What the shader makes the host's depth of: see `composite.glsl`. Refuses a camera whose depth is not the target's.
-    pub(super) fn depths(&self, camera: &Camera, viewport: vk::Viewport) -> Result<[f32; 4]> {
-        if self.depth.is_some() && camera.reversed != self.reversed {
-            let name = |reversed| if reversed { "falls" } else { "rises" };
-            return Err(Error::Usage(format!(
-                "the camera's depth {} with distance, the target's {}: give one convention",
-                name(camera.reversed),
-                name(self.reversed)
-            )));
-        }
-        let projection = camera.projection()?;
-        let (z, w) = (camera.projection.row(2), camera.projection.row(3));
-        let [first, by_distance] = match projection.perspective {
-            true => [z.z / w.z, z.w / w.z.abs()],
-            false => [z.w / w.w, projection.forward * z.z / w.w],
-        };
-        let (low, range) =
-            (f64::from(viewport.min_depth), f64::from(viewport.max_depth - viewport.min_depth));
-        let [least, greatest] = [viewport.min_depth, viewport.max_depth];
-        Ok([
-            (low + range * first) as f32,
-            (range * by_distance) as f32,
-            least.min(greatest),
-            least.max(greatest),
-        ])
-    }
-
     /// The pass that draws pictures of this kind.
     ///
     /// # Safety
@@ -126,7 +110,7 @@ impl Target {
     pub(super) unsafe fn composite(&self, device: &Arc<Device>, kind: CompositeKind) -> Result<Composite> {
         let blend = |location: usize| match location as u32 {
             location if location == self.picture => Some(Blend::Over),
-            location if Some(location) == self.normal => Some(Blend::Replace),
+            location if [self.normal, self.id].contains(&Some(location)) => Some(Blend::Replace),
             _ => None,
         };
         let colours: Vec<_> = (0..self.colours.len()).map(blend).collect();
@@ -142,10 +126,36 @@ impl Target {
     }
 }
 
-fn is_integer(format: vk::Format) -> bool {
+/// Refuses a camera whose depth is not the host's, which falls with distance, or does not, if there is any.
+pub(super) fn check_convention(reversed: Option<bool>, camera: &Camera) -> Result<()> {
+    let name = |reversed| if reversed { "falls" } else { "rises" };
+    match reversed {
+        Some(reversed) if camera.reversed != reversed => Err(Error::Usage(format!(
+            "the camera's depth {} with distance, the target's {}: give one convention",
+            name(camera.reversed),
+            name(reversed)
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// What the shader makes the host's depth of: see `host_depth` in `lib/host.glsl`.
+pub(super) fn depths(camera: &Camera, viewport: vk::Viewport) -> Result<[f32; 4]> {
+    let projection = camera.projection()?;
+    let (z, w) = (camera.projection.row(2), camera.projection.row(3));
+    let [first, by_distance] = match projection.perspective {
+        true => [z.z / w.z, z.w / w.z.abs()],
+        false => [z.w / w.w, projection.forward * z.z / w.w],
+    };
+    let (low, range) = (f64::from(viewport.min_depth), f64::from(viewport.max_depth - viewport.min_depth));
+    let [least, greatest] = [viewport.min_depth, viewport.max_depth];
+    Ok([(low + range * first) as f32, (range * by_distance) as f32, least.min(greatest), least.max(greatest)])
+}
+
+pub(super) fn is_integer(format: vk::Format) -> bool {
     ["UINT", "SINT"].iter().any(|kind| format!("{format:?}").contains(kind))
 }
 
-fn is_srgb(format: vk::Format) -> bool {
+pub(super) fn is_srgb(format: vk::Format) -> bool {
     format!("{format:?}").contains("SRGB")
 }

@@ -30,5 +30,6 @@ pub use quantity::Quantity;
 pub use strips::{Lined, ToLines};
 pub use surfels::{Colours, Ellipse, Surfels};
 pub use texture::{MipMap, Texture};
+pub(crate) use valid::is_unit;
 pub(crate) use weights::square_axis;
 pub use weights::{Corners, Weights, first_axis};

@@ -230,7 +230,7 @@ impl Primitives {
     pub fn is_valid(&self, vertex: usize) -> bool {
         let bounded = |v: Vec3| v.abs().cmple(Vec3::splat(Surfels::LARGEST)).all();
         let placed = self.positions.get(vertex).is_some_and(|&position| bounded(position));
-        let directed = self.directions.get(vertex).is_some_and(|&direction| super::valid::is_unit(direction));
+        let directed = self.directions.get(vertex).is_some_and(|&direction| super::is_unit(direction));
         let sized = self.radii.get(vertex).is_some_and(|radius| (0.0..=Surfels::LARGEST).contains(radius));
         let coloured = match &self.colours {
             Some(Colours::Linear(colours)) => colours.get(vertex).is_some_and(|&c| bounded(c.into())),

@@ -85,7 +85,7 @@ fn fits_clip(clip: &Clip, normal: Vec3) -> bool {
 }
 
 /// Whether `v` has length 1; NaN and infinity have not.
-pub(super) fn is_unit(v: Vec3) -> bool {
+pub(crate) fn is_unit(v: Vec3) -> bool {
     (v.length_squared() - 1.0).abs() <= UNIT
 }
 

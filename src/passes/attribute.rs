@@ -1,18 +1,24 @@
 //! Attribute: splats within ε of the nearest surface → weighted sums (zwicker2004 §6, second pass; `attribute.glsl`).
 
+use super::splats::WINDOW;
 use super::{PixelSet, Scatter, SplatLayout, Splats};
 use crate::error::Result;
 use crate::targets::{Buffers, Formats, Images};
 use crate::variant::Variant;
 use crate::vk::{
-    Access, Attachment, Blend, DepthTest, Device, DrawPipeline, DrawState, Framebuffer, Recorder, RenderPass,
-    Topology, Use, shaders,
+    Access, Attachment, Blend, DepthTest, Device, DrawPipeline, DrawState, Draws, Framebuffer, Recorder,
+    RenderPass, Topology, Use, Within, shaders,
 };
 use std::sync::Arc;
 
 /// The attribute pass as draws with additive blending.
 pub struct DrawAttribute {
     pass: RenderPass,
+    pipeline: DrawPipeline,
+}
+
+/// The attribute pass as draws in a subpass of a host.
+pub struct SubpassAttribute {
     pipeline: DrawPipeline,
 }
 
@@ -53,6 +59,28 @@ impl DrawAttribute {
         uses.push(targets.sums0.with(Access::COLOUR_WRITE));
         uses.extend(targets.sums1.as_ref().map(|image| image.with(Access::COLOUR_WRITE)));
         rec.pass("attribute", &uses, |enc| splats.draw(enc, &self.pipeline, framebuffer, &[]));
+    }
+}
+
+impl SubpassAttribute {
+    /// The pass for `variant`, drawn `within` a pass of a host; with `marked`, where visibility has marked the stencil alone.
+    pub fn new(
+        device: &Arc<Device>,
+        layout: &SplatLayout,
+        variant: &Variant,
+        within: &Within<'_>,
+        marked: bool,
+    ) -> Result<Self> {
+        let code = [shaders::ATTRIBUTE_VERTEX, shaders::ATTRIBUTE_FRAGMENT];
+        let (sets, constants) = ([&layout.splats], variant.constants());
+        let depth = if marked { DepthTest::Marked } else { DepthTest::NotBehind };
+        let pipeline = DrawPipeline::of_host(device, &sets, code, &constants, within, depth, WINDOW)?;
+        Ok(Self { pipeline })
+    }
+
+    /// `splats`, the subpass's depth → its colours, which are sums.
+    pub fn draw(&self, draws: &mut Draws<'_>, splats: &Splats) {
+        splats.draw_in(draws, &self.pipeline, &[]);
     }
 }
 

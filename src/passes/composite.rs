@@ -22,6 +22,8 @@ pub struct CompositeKind {
     pub picture: u32,
     /// Where it wants normals.
     pub normal: Option<u32>,
+    /// Where it wants numbers, which are of pictures in buffers alone.
+    pub id: Option<u32>,
     /// Whether its depth falls with distance; `None` if it has no depth.
     pub reversed: Option<bool>,
     /// Whether shaders encode its colours.
@@ -43,13 +45,16 @@ impl Composite {
             false => vec![(DescriptorType::STORAGE_BUFFER, ShaderStageFlags::FRAGMENT)],
         };
         let layout = SetLayout::new(device, &seen)?;
-        let fragment = match (kind.images, kind.normal) {
-            (true, None) => shaders::COMPOSITE_IMAGES_FRAGMENT,
-            (true, Some(_)) => shaders::COMPOSITE_IMAGES_NORMALS_FRAGMENT,
-            (false, None) => shaders::COMPOSITE_FRAGMENT,
-            (false, Some(_)) => shaders::COMPOSITE_NORMALS_FRAGMENT,
+        let fragment = match (kind.images, kind.normal, kind.id) {
+            (true, None, _) => shaders::COMPOSITE_IMAGES_FRAGMENT,
+            (true, Some(_), _) => shaders::COMPOSITE_IMAGES_NORMALS_FRAGMENT,
+            (false, None, None) => shaders::COMPOSITE_FRAGMENT,
+            (false, Some(_), None) => shaders::COMPOSITE_NORMALS_FRAGMENT,
+            (false, None, Some(_)) => shaders::COMPOSITE_IDS_FRAGMENT,
+            (false, Some(_), Some(_)) => shaders::COMPOSITE_NORMALS_IDS_FRAGMENT,
         };
-        let fragment = at_locations(fragment, [kind.picture, kind.normal.unwrap_or(1)]);
+        let places = [Some(kind.picture), kind.normal, kind.id];
+        let fragment = at_locations(fragment, places.map(Option::unwrap_or_default));
         let code = [shaders::COMPOSITE_VERTEX, &fragment];
         let constants = Constants::default()
             .with(constant::PERSPECTIVE, kind.perspective)
@@ -95,7 +100,7 @@ impl Composite {
 }
 
 /// The SPIR-V `code` with outputs at `locations` in the place of 0, 1, …: locations are no specialization constants.
-fn at_locations(code: &[u32], locations: [u32; 2]) -> Vec<u32> {
+fn at_locations(code: &[u32], locations: [u32; 3]) -> Vec<u32> {
     const HEADER: usize = 5;
     const OP_DECORATE: u32 = 71;
     const LOCATION: u32 = 30;
@@ -103,7 +108,7 @@ fn at_locations(code: &[u32], locations: [u32; 2]) -> Vec<u32> {
     let mut i = HEADER;
     while let Some(&word) = code.get(i) {
         if let (OP_DECORATE, Some([_, LOCATION, location])) = (word & 0xffff, code.get_mut(i + 1..i + 4)) {
-            *location = locations[*location as usize % 2];
+            *location = locations[*location as usize % 3];
         }
         i += (word >> 16).max(1) as usize;
     }

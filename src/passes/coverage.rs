@@ -1,7 +1,6 @@
 //! Coverage: the samples of each pixel that a surface covers (`lib/coverage.glsl`), beside visibility or nearest where α is coverage.
 
 use crate::error::Result;
-use crate::targets::Images;
 use crate::variant::Variant;
 use crate::vk::{Access, Binding, Buffer, DescriptorSet, Device, Recorder, SetLayout, Use};
 use ash::vk::{DescriptorType, ShaderStageFlags};
@@ -22,10 +21,10 @@ impl DrawnCoverage {
         self.0.as_ref()
     }
 
-    /// The set of `targets`, which must outlive it.
-    pub fn view(&self, device: &Arc<Device>, targets: &Images) -> Result<Option<DescriptorSet>> {
+    /// The set of `coverage`, which must outlive it.
+    pub fn view(&self, device: &Arc<Device>, coverage: Option<&Buffer>) -> Result<Option<DescriptorSet>> {
         let set = |(layout, buffer)| DescriptorSet::new(device, layout, &[whole(buffer)]);
-        self.0.as_ref().zip(targets.coverage.as_ref()).map(set).transpose()
+        self.0.as_ref().zip(coverage).map(set).transpose()
     }
 }
 
@@ -41,8 +40,8 @@ pub(super) fn clear<'a>(rec: &mut Recorder<'_>, buffers: impl Iterator<Item = &'
 }
 
 /// Zeroes the coverage that a draw is about to write, where there is any, and gives that use of it.
-pub(super) fn clear_drawn(rec: &mut Recorder<'_>, targets: &Images) -> Option<Use> {
-    let coverage = targets.coverage.as_ref()?;
+pub(crate) fn clear_drawn(rec: &mut Recorder<'_>, coverage: Option<&Buffer>) -> Option<Use> {
+    let coverage = coverage?;
     clear(rec, std::iter::once(coverage));
     Some(coverage.with(Access::FRAGMENT_WRITE))
 }

@@ -1,7 +1,7 @@
 //! One file a pass, beside the shader of the same name: `new` makes the pipelines, `record` the commands.
 //!
 //! Visibility, attribute, nearest and normalize come in two kinds, one for each [`crate::variant::Rasterizer`]; so does what project does of
-//! points, which are drawn in a file of their own.
+//! points, which are drawn in a file of their own. A third kind draws in subpasses of a host ([`crate::embed::native`]).
 
 mod attribute;
 mod composite;
@@ -18,17 +18,21 @@ mod push;
 mod pyramid;
 mod resolve;
 mod scatter;
+mod seed;
 mod shade;
 mod splats;
 mod tiles;
 mod visibility;
 
-pub use attribute::{ComputeAttribute, DrawAttribute};
+pub use attribute::{ComputeAttribute, DrawAttribute, SubpassAttribute};
 pub use composite::{Composite, CompositeKind};
 pub use copy::copy;
+pub(crate) use coverage::clear_drawn;
 pub use footprint::Footprint;
-pub use nearest::{ComputeNearest, DrawNearest, NearestViews};
-pub use normalize::{ComputeNormalize, DrawNormalize, NormalizeViews};
+pub use nearest::{ComputeNearest, DrawNearest, NearestViews, SubpassNearest};
+pub use normalize::{
+    ComputeNormalize, DrawNormalize, NormalizeViews, SubpassKind, SubpassNormalize, SubpassViews,
+};
 pub use points::{DrawPoints, PointViews};
 pub use project::Project;
 pub use pull::Pull;
@@ -36,7 +40,8 @@ pub use push::Push;
 pub use pyramid::PyramidSets;
 pub use resolve::Resolve;
 pub use scatter::{PixelSet, Scatter};
+pub use seed::Seed;
 pub use shade::Shade;
 pub use splats::{SplatLayout, Splats};
 pub use tiles::Tiles;
-pub use visibility::{ComputeVisibility, DrawVisibility, VisibilityViews};
+pub use visibility::{ComputeVisibility, DrawVisibility, SubpassVisibility, VisibilityViews};

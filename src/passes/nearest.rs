@@ -1,13 +1,14 @@
 //! Nearest: splats → the nearest one of each pixel, alone (zwicker2004 table 1; botsch2003 §3.2; `nearest.glsl`).
 
 use super::coverage::{DrawnCoverage, clear, clear_drawn};
+use super::splats::WINDOW;
 use super::{PixelSet, Scatter, SplatLayout, Splats};
 use crate::error::Result;
 use crate::targets::{Buffers, Formats, Images};
 use crate::variant::Variant;
 use crate::vk::{
-    Access, Attachment, Blend, DepthTest, DescriptorSet, Device, DrawPipeline, DrawState, Framebuffer,
-    Recorder, RenderPass, Topology, shaders,
+    Access, Attachment, Blend, Buffer, DepthTest, DescriptorSet, Device, DrawPipeline, DrawState, Draws,
+    Framebuffer, Recorder, RenderPass, Topology, Within, shaders,
 };
 use std::sync::Arc;
 
@@ -24,6 +25,12 @@ pub struct NearestViews {
     coverage: Option<DescriptorSet>,
 }
 
+/// The nearest pass as draws in a subpass of a host.
+pub struct SubpassNearest {
+    pipeline: DrawPipeline,
+    coverage: DrawnCoverage,
+}
+
 /// The nearest pass as a scatter with atomic maxima, which leaves which splat it is.
 pub struct ComputeNearest(Scatter);
 
@@ -34,15 +41,11 @@ impl DrawNearest {
         let sums1 = formats.sums1.map_or(Attachment::Absent, Attachment::Cleared);
         let depth = Attachment::Cleared(formats.visibility);
         let pass = RenderPass::new(device, &[Attachment::Cleared(formats.sums0), sums1], Some(depth))?;
-        let code = match variant.coverage {
-            false => [shaders::NEAREST_VERTEX, shaders::NEAREST_FRAGMENT],
-            true => [shaders::NEAREST_COVERAGE_VERTEX, shaders::NEAREST_COVERAGE_FRAGMENT],
-        };
         let coverage = DrawnCoverage::new(device, variant)?;
         let sets: Vec<_> = std::iter::once(&layout.splats).chain(coverage.layout()).collect();
         let state =
             DrawState { topology: Topology::Triangles, depth: DepthTest::Nearest, blend: Blend::Replace };
-        let pipeline = DrawPipeline::new(device, &sets, code, &variant.constants(), &pass, state)?;
+        let pipeline = DrawPipeline::new(device, &sets, code(variant), &variant.constants(), &pass, state)?;
         Ok(Self { pass, pipeline, coverage })
     }
 
@@ -51,7 +54,7 @@ impl DrawNearest {
         let images = [Some(&targets.sums0), targets.sums1.as_ref(), Some(&targets.visibility)];
         let images: Vec<_> = images.into_iter().flatten().collect();
         let framebuffer = Framebuffer::new(device, &self.pass, &images)?;
-        Ok(NearestViews { framebuffer, coverage: self.coverage.view(device, targets)? })
+        Ok(NearestViews { framebuffer, coverage: self.coverage.view(device, targets.coverage.as_ref())? })
     }
 
     /// `splats` → `targets.visibility`, `targets.sums0`, `targets.sums1`, `targets.coverage`.
@@ -60,9 +63,44 @@ impl DrawNearest {
         uses.push(targets.visibility.with(Access::DEPTH_WRITE));
         uses.push(targets.sums0.with(Access::COLOUR_WRITE));
         uses.extend(targets.sums1.as_ref().map(|image| image.with(Access::COLOUR_WRITE)));
-        uses.extend(clear_drawn(rec, targets));
+        uses.extend(clear_drawn(rec, targets.coverage.as_ref()));
         let more: Vec<_> = views.coverage.iter().collect();
         rec.pass("nearest", &uses, |enc| splats.draw(enc, &self.pipeline, &views.framebuffer, &more));
+    }
+}
+
+/// The shaders of a draw.
+fn code(variant: &Variant) -> [&'static [u32]; 2] {
+    match variant.coverage {
+        false => [shaders::NEAREST_VERTEX, shaders::NEAREST_FRAGMENT],
+        true => [shaders::NEAREST_COVERAGE_VERTEX, shaders::NEAREST_COVERAGE_FRAGMENT],
+    }
+}
+
+impl SubpassNearest {
+    /// The pass for `variant`, drawn `within` a pass of a host.
+    pub fn new(
+        device: &Arc<Device>,
+        layout: &SplatLayout,
+        variant: &Variant,
+        within: &Within<'_>,
+    ) -> Result<Self> {
+        let coverage = DrawnCoverage::new(device, variant)?;
+        let sets: Vec<_> = std::iter::once(&layout.splats).chain(coverage.layout()).collect();
+        let depth = DepthTest::Nearest;
+        let pipeline =
+            DrawPipeline::of_host(device, &sets, code(variant), &variant.constants(), within, depth, WINDOW)?;
+        Ok(Self { pipeline, coverage })
+    }
+
+    /// The pass's view of `coverage`, where α is coverage; that must outlive it.
+    pub fn view(&self, device: &Arc<Device>, coverage: Option<&Buffer>) -> Result<Option<DescriptorSet>> {
+        self.coverage.view(device, coverage)
+    }
+
+    /// `splats` → the subpass's targets, and the coverage that is viewed.
+    pub fn draw(&self, draws: &mut Draws<'_>, splats: &Splats, coverage: Option<&DescriptorSet>) {
+        splats.draw_in(draws, &self.pipeline, &coverage.into_iter().collect::<Vec<_>>());
     }
 }
 

@@ -5,9 +5,10 @@ use super::{PixelSet, SplatLayout};
 use crate::error::Result;
 use crate::targets::{Buffers, Formats, Images};
 use crate::variant::Variant;
+use crate::vk::shaders::{self, constant, layout};
 use crate::vk::{
     Access, Attachment, Binding, Blend, Buffer, ComputePipeline, DepthTest, DescriptorSet, Device,
-    DrawPipeline, DrawState, Framebuffer, Recorder, RenderPass, SetLayout, Topology, shaders,
+    DrawPipeline, DrawState, Draws, Framebuffer, Image, Recorder, RenderPass, SetLayout, Topology, Within,
 };
 use ash::vk::{DescriptorType, ShaderStageFlags};
 use std::sync::Arc;
@@ -30,6 +31,30 @@ pub struct NormalizeViews {
     framebuffer: Framebuffer,
     frame: DescriptorSet,
     sums: DescriptorSet,
+}
+
+/// The normalize pass as a draw in a subpass of a host: what it draws goes to the host's colours and depth.
+pub struct SubpassNormalize {
+    frame_layout: SetLayout,
+    inputs_layout: SetLayout,
+    pipeline: DrawPipeline,
+}
+
+/// What a [`SubpassNormalize`] reads and how a host wants its pictures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct SubpassKind {
+    /// Whether what visibility has not written has no sums; otherwise visibility is read.
+    pub sums_tell: bool,
+    /// Whether the host's depth falls with distance; `None` if it has no depth.
+    pub reversed: Option<bool>,
+    /// Whether shaders encode its colours.
+    pub encode: bool,
+}
+
+/// What a [`SubpassNormalize`] reads.
+pub struct SubpassViews {
+    frame: DescriptorSet,
+    inputs: DescriptorSet,
 }
 
 /// The normalize pass as an invocation a pixel.
@@ -102,6 +127,57 @@ impl DrawNormalize {
                 draws.draw(&self.pipeline, &[&views.frame, &views.sums], &[0u32; 2], 3);
             });
         });
+    }
+}
+
+impl SubpassNormalize {
+    /// The pass for `variant`, drawn `within` a pass of a host.
+    pub fn new(
+        device: &Arc<Device>,
+        variant: &Variant,
+        kind: SubpassKind,
+        within: &Within<'_>,
+    ) -> Result<Self> {
+        let frame_layout = frame_layout(device)?;
+        let input = (DescriptorType::INPUT_ATTACHMENT, ShaderStageFlags::FRAGMENT);
+        let coverage =
+            variant.coverage.then_some((DescriptorType::STORAGE_BUFFER, ShaderStageFlags::FRAGMENT));
+        let read: Vec<_> = [input; 3].into_iter().chain(coverage).collect();
+        let inputs_layout = SetLayout::new(device, &read)?;
+        let fragment = match variant.coverage {
+            false => shaders::NORMALIZE_SUBPASS_FRAGMENT,
+            true => shaders::NORMALIZE_SUBPASS_COVERAGE_FRAGMENT,
+        };
+        let constants = variant
+            .constants()
+            .with(constant::SUMS_TELL, kind.sums_tell)
+            .with(constant::HOST_DEPTH, kind.reversed.is_some())
+            .with(constant::ENCODE, kind.encode);
+        let depth = kind.reversed.map_or(DepthTest::None, |reversed| DepthTest::Host { reversed });
+        let push = size_of::<layout::Subpass>() as u32;
+        let (sets, code) = ([&frame_layout, &inputs_layout], [shaders::NORMALIZE_VERTEX, fragment]);
+        let pipeline = DrawPipeline::of_host(device, &sets, code, &constants, within, depth, push)?;
+        Ok(Self { frame_layout, inputs_layout, pipeline })
+    }
+
+    /// The pass's views of the subpass's inputs (visibility, sums 0, sums 1), `frame` and coverage, which must outlive them.
+    pub fn views(
+        &self,
+        device: &Arc<Device>,
+        frame: &Buffer,
+        inputs: [&Image; 3],
+        coverage: Option<&Buffer>,
+    ) -> Result<SubpassViews> {
+        let read: Vec<_> = inputs.map(Binding::Input).into_iter().chain(coverage.map(whole)).collect();
+        Ok(SubpassViews {
+            frame: DescriptorSet::new(device, &self.frame_layout, &[Binding::Uniform(frame)])?,
+            inputs: DescriptorSet::new(device, &self.inputs_layout, &read)?,
+        })
+    }
+
+    /// What is viewed → the host's colours and, as `host` says, depth.
+    pub fn draw(&self, draws: &mut Draws<'_>, views: &SubpassViews, host: &layout::Subpass) {
+        draws.draw(&self.pipeline, &[&views.frame, &views.inputs], host, 3);
     }
 }
 

@@ -10,8 +10,8 @@ use crate::scene::{ClipWindow, Scene};
 use crate::variant::Rasterizer;
 use crate::vk::shaders::layout::{Counts, LargeSplats, ScreenClip, Splat};
 use crate::vk::{
-    Access, Binding, Buffer, Commands, DescriptorSet, Device, DrawPipeline, Encoder, Framebuffer, Recorder,
-    SetLayout, Use,
+    Access, Binding, Buffer, Commands, DescriptorSet, Device, DrawPipeline, Draws, Encoder, Framebuffer,
+    Recorder, SetLayout, Use,
 };
 use ash::vk::{DescriptorType, ShaderStageFlags};
 use std::ops::Range;
@@ -48,7 +48,10 @@ pub struct Splats {
 /// As many splats as one descriptor can name.
 pub(super) struct Window {
     pub(super) set: DescriptorSet,
+    /// Surfels of this frame.
     pub(super) count: u32,
+    /// Surfels that there is room for.
+    capacity: u32,
     /// The number of its first surfel in the scene.
     first: u32,
     /// Where its list of large splats starts, bytes.
@@ -57,6 +60,8 @@ pub(super) struct Window {
 
 /// From one window's counts to the next, bytes; no device aligns to more.
 const COUNTS_STEP: u64 = 256;
+/// Bytes of the push constants of `lib/window.glsl`.
+pub(super) const WINDOW: u32 = 8;
 /// Bytes before the indices of a list of large splats.
 const LIST_HEADER: u64 = size_of::<LargeSplats>() as u64;
 
@@ -76,7 +81,7 @@ impl SplatLayout {
             storage(compute | vertex),                              // colours
             storage(compute),                                       // counts
             storage(compute),                                       // large splats
-            storage(compute),                                       // ellipses
+            storage(compute | vertex),                              // ellipses
             storage(compute | vertex | ShaderStageFlags::FRAGMENT), // clips
             storage(compute | ShaderStageFlags::FRAGMENT),          // screen clips
             storage(compute | vertex),                              // weights
@@ -110,10 +115,10 @@ impl Splats {
         rasterizer: Option<Rasterizer>,
     ) -> Result<Self> {
         let stride = size_of::<Splat>() as u64;
-        let room = if rasterizer.is_some() { scene.count() * stride } else { 0 }.max(COUNTS_STEP);
+        let room = if rasterizer.is_some() { scene.capacity() * stride } else { 0 }.max(COUNTS_STEP);
         let splats = Buffer::storage(device, "splats", room)?;
         let counts = Buffer::readback(device, "counts", (scene.windows().len() as u64).max(1) * COUNTS_STEP)?;
-        let lists = scene.windows().len() as u64 * LIST_HEADER + 4 * scene.count();
+        let lists = scene.windows().len() as u64 * LIST_HEADER + 4 * scene.capacity();
         let large = match rasterizer {
             None | Some(Rasterizer::Draw) => None,
             Some(Rasterizer::Compute) => Some(Buffer::storage(device, "large splats", lists)?),
@@ -171,7 +176,8 @@ impl Splats {
                 weights,
             ];
             let set = DescriptorSet::new(device, &layout.splats, &bindings)?;
-            Ok(Window { set, count: count as u32, first: range.start as u32, list })
+            let count = count as u32;
+            Ok(Window { set, count, capacity: count, first: range.start as u32, list })
         };
         let windows = (0..).zip(scene.windows()).map(window).collect::<Result<_>>()?;
         let primitives = scene
@@ -197,6 +203,19 @@ impl Splats {
 
     pub(super) fn primitives(&self) -> Option<&PrimitiveSets> {
         self.primitives.as_ref()
+    }
+
+    /// Frames from now on are of the first `count` surfels.
+    pub(crate) fn set_count(&mut self, count: u64) {
+        for window in &mut self.windows {
+            let here = count.saturating_sub(window.first.into()).min(window.capacity.into());
+            window.count = here as u32;
+        }
+    }
+
+    /// Surfels of this frame.
+    pub(crate) fn count(&self) -> u64 {
+        self.windows.iter().map(|window| u64::from(window.count)).sum()
     }
 
     pub(super) fn windows(&self) -> &[Window] {
@@ -230,7 +249,7 @@ impl Splats {
     }
 
     /// What drawing reads.
-    pub(super) fn read_by_draws(&self) -> Vec<Use> {
+    pub(crate) fn read_by_draws(&self) -> Vec<Use> {
         let clips = self.screen_clips.as_ref().unwrap_or(&self.splats);
         vec![self.with(Access::VERTEX_READ), clips.with(Access::FRAGMENT_READ)]
     }
@@ -243,12 +262,15 @@ impl Splats {
         framebuffer: &Framebuffer,
         more: &[&DescriptorSet],
     ) {
-        enc.render(framebuffer, |draws| {
-            for window in &self.windows {
-                let sets: Vec<_> = std::iter::once(&window.set).chain(more.iter().copied()).collect();
-                draws.draw(pipeline, &sets, &window.push(), 3 * window.count);
-            }
-        });
+        enc.render(framebuffer, |draws| self.draw_in(draws, pipeline, more));
+    }
+
+    /// The same within a render pass that has begun.
+    pub(super) fn draw_in(&self, draws: &mut Draws<'_>, pipeline: &DrawPipeline, more: &[&DescriptorSet]) {
+        for window in &self.windows {
+            let sets: Vec<_> = std::iter::once(&window.set).chain(more.iter().copied()).collect();
+            draws.draw(pipeline, &sets, &window.push(), 3 * window.count);
+        }
     }
 
     /// Empties counts, where `count`, and lists.
@@ -290,7 +312,10 @@ impl Splats {
 
     /// Copies the splats of the last frame, one a surfel, to the CPU.
     pub fn read(&self, device: &Arc<Device>) -> Result<Vec<Splat>> {
-        let size = self.splats.size();
+        let size = (self.count() * size_of::<Splat>() as u64).min(self.splats.size());
+        if size == 0 {
+            return Ok(Vec::new());
+        }
         let target = Buffer::readback(device, "read splats", size)?;
         Commands::new(device, false)?.run(|rec| {
             let uses = [self.splats.with(Access::COPY_READ), target.with(Access::COPY_WRITE)];

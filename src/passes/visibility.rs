@@ -1,13 +1,14 @@
 //! Visibility: splats → depth of the nearest surface, moved back by ε (zwicker2004 §6, first pass; `visibility.glsl`).
 
 use super::coverage::{DrawnCoverage, clear, clear_drawn};
+use super::splats::WINDOW;
 use super::{PixelSet, Scatter, SplatLayout, Splats};
 use crate::error::Result;
 use crate::targets::{Buffers, Formats, Images};
 use crate::variant::Variant;
 use crate::vk::{
-    Access, Attachment, Blend, DepthTest, DescriptorSet, Device, DrawPipeline, DrawState, Framebuffer,
-    Recorder, RenderPass, Topology, shaders,
+    Access, Attachment, Blend, Buffer, DepthTest, DescriptorSet, Device, DrawPipeline, DrawState, Draws,
+    Framebuffer, Recorder, RenderPass, Topology, Within, shaders,
 };
 use std::sync::Arc;
 
@@ -24,6 +25,12 @@ pub struct VisibilityViews {
     coverage: Option<DescriptorSet>,
 }
 
+/// The visibility pass as draws in a subpass of a host.
+pub struct SubpassVisibility {
+    pipeline: DrawPipeline,
+    coverage: DrawnCoverage,
+}
+
 /// The visibility pass as a scatter with atomic maxima.
 pub struct ComputeVisibility(Scatter);
 
@@ -32,31 +39,63 @@ impl DrawVisibility {
     pub fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self> {
         let depth = Attachment::Cleared(Formats::of(variant).visibility);
         let pass = RenderPass::new(device, &[], Some(depth))?;
-        let code = match variant.coverage {
-            false => [shaders::VISIBILITY_VERTEX, shaders::VISIBILITY_FRAGMENT],
-            true => [shaders::VISIBILITY_COVERAGE_VERTEX, shaders::VISIBILITY_COVERAGE_FRAGMENT],
-        };
         let coverage = DrawnCoverage::new(device, variant)?;
         let sets: Vec<_> = std::iter::once(&layout.splats).chain(coverage.layout()).collect();
         let state =
             DrawState { topology: Topology::Triangles, depth: DepthTest::Nearest, blend: Blend::Replace };
-        let pipeline = DrawPipeline::new(device, &sets, code, &variant.constants(), &pass, state)?;
+        let pipeline = DrawPipeline::new(device, &sets, code(variant), &variant.constants(), &pass, state)?;
         Ok(Self { pass, pipeline, coverage })
     }
 
     /// The pass's views of `targets`, which must outlive them.
     pub fn views(&self, device: &Arc<Device>, targets: &Images) -> Result<VisibilityViews> {
         let framebuffer = Framebuffer::new(device, &self.pass, &[&targets.visibility])?;
-        Ok(VisibilityViews { framebuffer, coverage: self.coverage.view(device, targets)? })
+        Ok(VisibilityViews { framebuffer, coverage: self.coverage.view(device, targets.coverage.as_ref())? })
     }
 
     /// `splats` → `targets.visibility`, `targets.coverage`.
     pub fn record(&self, rec: &mut Recorder<'_>, splats: &Splats, views: &VisibilityViews, targets: &Images) {
         let mut uses = splats.read_by_draws();
         uses.push(targets.visibility.with(Access::DEPTH_WRITE));
-        uses.extend(clear_drawn(rec, targets));
+        uses.extend(clear_drawn(rec, targets.coverage.as_ref()));
         let more: Vec<_> = views.coverage.iter().collect();
         rec.pass("visibility", &uses, |enc| splats.draw(enc, &self.pipeline, &views.framebuffer, &more));
+    }
+}
+
+/// The shaders of a draw.
+fn code(variant: &Variant) -> [&'static [u32]; 2] {
+    match variant.coverage {
+        false => [shaders::VISIBILITY_VERTEX, shaders::VISIBILITY_FRAGMENT],
+        true => [shaders::VISIBILITY_COVERAGE_VERTEX, shaders::VISIBILITY_COVERAGE_FRAGMENT],
+    }
+}
+
+impl SubpassVisibility {
+    /// The pass for `variant`, drawn `within` a pass of a host; with `marks`, what is drawn is marked in the stencil.
+    pub fn new(
+        device: &Arc<Device>,
+        layout: &SplatLayout,
+        variant: &Variant,
+        within: &Within<'_>,
+        marks: bool,
+    ) -> Result<Self> {
+        let coverage = DrawnCoverage::new(device, variant)?;
+        let sets: Vec<_> = std::iter::once(&layout.splats).chain(coverage.layout()).collect();
+        let depth = if marks { DepthTest::Marking } else { DepthTest::Nearest };
+        let pipeline =
+            DrawPipeline::of_host(device, &sets, code(variant), &variant.constants(), within, depth, WINDOW)?;
+        Ok(Self { pipeline, coverage })
+    }
+
+    /// The pass's view of `coverage`, where α is coverage; that must outlive it.
+    pub fn view(&self, device: &Arc<Device>, coverage: Option<&Buffer>) -> Result<Option<DescriptorSet>> {
+        self.coverage.view(device, coverage)
+    }
+
+    /// `splats` → the subpass's targets, and the coverage that is viewed.
+    pub fn draw(&self, draws: &mut Draws<'_>, splats: &Splats, coverage: Option<&DescriptorSet>) {
+        splats.draw_in(draws, &self.pipeline, &coverage.into_iter().collect::<Vec<_>>());
     }
 }
 

@@ -104,6 +104,16 @@ impl Access {
     /// Read by the CPU once the frame is over.
     pub const HOST_READ: Self = Self::buffer(vk::PipelineStageFlags::HOST, vk::AccessFlags::HOST_READ, false);
 
+    /// Where.
+    pub const fn stages(self) -> vk::PipelineStageFlags {
+        self.stages
+    }
+
+    /// How.
+    pub const fn mask(self) -> vk::AccessFlags {
+        self.mask
+    }
+
     const fn buffer(stages: vk::PipelineStageFlags, mask: vk::AccessFlags, write: bool) -> Self {
         Self { stages, mask, layout: vk::ImageLayout::UNDEFINED, write }
     }

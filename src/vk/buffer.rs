@@ -11,6 +11,8 @@ pub struct Buffer {
     pub(super) raw: vk::Buffer,
     size: u64,
     allocation: Option<Allocation>,
+    /// Whether a host owns it.
+    lent: bool,
     device: Arc<Device>,
 }
 
@@ -33,10 +35,23 @@ impl Buffer {
         Self::new(device, name, size, vk::BufferUsageFlags::TRANSFER_SRC, Location::Upload)
     }
 
+    /// A buffer that the CPU writes and shaders read where it is: for a few values.
+    pub fn parameters(device: &Arc<Device>, name: &str, size: u64) -> Result<Self> {
+        Self::new(device, name, size, vk::BufferUsageFlags::STORAGE_BUFFER, Location::Upload)
+    }
+
     /// A buffer that the GPU writes, by copies or as storage, and the CPU reads.
     pub fn readback(device: &Arc<Device>, name: &str, size: u64) -> Result<Self> {
         let usage = vk::BufferUsageFlags::TRANSFER_DST | vk::BufferUsageFlags::STORAGE_BUFFER;
         Self::new(device, name, size, usage, Location::Readback)
+    }
+
+    /// A buffer of a host, of `size` bytes, which is left alone when this goes.
+    ///
+    /// # Safety
+    /// It is of the device that `device` borrows, has memory, as many bytes and the uses that it is put to, and outlives this.
+    pub unsafe fn of_host(device: &Arc<Device>, raw: vk::Buffer, size: u64) -> Self {
+        Self { raw, size, allocation: None, lent: true, device: device.clone() }
     }
 
     fn new(
@@ -50,7 +65,7 @@ impl Buffer {
         // SAFETY: `info` is valid; the buffer is destroyed in `drop`.
         let raw =
             unsafe { device.raw.create_buffer(&info, None) }.map_err(Error::vulkan("vkCreateBuffer"))?;
-        let mut buffer = Self { raw, size, allocation: None, device: device.clone() };
+        let mut buffer = Self { raw, size, allocation: None, lent: false, device: device.clone() };
         // SAFETY: the buffer is the device's.
         let requirements = unsafe { device.raw.get_buffer_memory_requirements(raw) };
         let request = MemoryRequest { name, requirements, location, linear: true };
@@ -64,6 +79,21 @@ impl Buffer {
     /// Whether it is on this device.
     pub fn is_on(&self, device: &Arc<Device>) -> bool {
         Arc::ptr_eq(&self.device, device)
+    }
+
+    /// The handle, for what is not of this crate.
+    pub fn handle(&self) -> vk::Buffer {
+        self.raw
+    }
+
+    /// Whether a host owns it.
+    pub fn is_lent(&self) -> bool {
+        self.lent
+    }
+
+    /// What it is on.
+    pub fn device(&self) -> &Arc<Device> {
+        &self.device
     }
 
     /// Size, bytes.
@@ -88,6 +118,9 @@ impl Buffer {
 
 impl Drop for Buffer {
     fn drop(&mut self) {
+        if self.lent {
+            return;
+        }
         // SAFETY: the GPU is done with it (see the module's docs).
         unsafe { self.device.raw.destroy_buffer(self.raw, None) };
         if let Some(allocation) = self.allocation.take() {

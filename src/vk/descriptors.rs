@@ -1,6 +1,6 @@
 //! What shaders see of buffers and images.
 
-use super::{Buffer, Device, Image};
+use super::{Buffer, Device, Image, image::is_depth};
 use crate::error::{Error, Result};
 use ash::vk;
 use std::sync::Arc;
@@ -21,6 +21,22 @@ pub enum Binding<'a> {
     Storage(&'a Buffer, u64, u64),
     /// An image that the shader fetches from.
     Sampled(&'a Image),
+    /// An attachment that an earlier subpass wrote, at the pixel that is drawn.
+    Input(&'a Image),
+    /// The same of a host's depth.
+    HostDepth(HostDepth),
+}
+
+/// A host's depth as an input attachment.
+#[derive(Clone, Copy, Debug)]
+pub struct HostDepth(vk::ImageView);
+
+impl HostDepth {
+    /// # Safety
+    /// `view` is of the depth aspect alone of an attachment of the host, and outlives the sets that it is written to.
+    pub unsafe fn new(view: vk::ImageView) -> Self {
+        Self(view)
+    }
 }
 
 impl SetLayout {
@@ -117,15 +133,31 @@ impl DescriptorSet {
                         .buffer_info(&buffer(storage, offset, size)),
                 ),
                 Binding::Sampled(image) => {
-                    let info = [vk::DescriptorImageInfo {
-                        sampler: vk::Sampler::null(),
-                        image_view: image.view,
-                        image_layout: vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL,
-                    }];
+                    let info = seen(image.view, vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL);
                     update(write.descriptor_type(vk::DescriptorType::SAMPLED_IMAGE).image_info(&info));
+                }
+                Binding::Input(image) => {
+                    let info = seen(image.view, input_layout(image.format));
+                    update(write.descriptor_type(vk::DescriptorType::INPUT_ATTACHMENT).image_info(&info));
+                }
+                Binding::HostDepth(HostDepth(view)) => {
+                    let info = seen(view, vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL);
+                    update(write.descriptor_type(vk::DescriptorType::INPUT_ATTACHMENT).image_info(&info));
                 }
             }
         }
+    }
+}
+
+fn seen(image_view: vk::ImageView, image_layout: vk::ImageLayout) -> [vk::DescriptorImageInfo; 1] {
+    [vk::DescriptorImageInfo { sampler: vk::Sampler::null(), image_view, image_layout }]
+}
+
+/// The layout in which an image of `format` is an input attachment.
+pub fn input_layout(format: vk::Format) -> vk::ImageLayout {
+    match is_depth(format) {
+        true => vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL,
+        false => vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL,
     }
 }
 

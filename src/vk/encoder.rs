@@ -88,9 +88,9 @@ impl<'a> Encoder<'a> {
         unsafe { self.device.raw.cmd_copy_buffer(self.cmd, from.raw, to.raw, &[region]) };
     }
 
-    /// Copies all of `from` to the start of `to`, which is alive and as large.
-    pub(super) fn copy_all(&mut self, from: &Buffer, to: vk::Buffer) {
-        let region = vk::BufferCopy { src_offset: 0, dst_offset: 0, size: from.size() };
+    /// Copies all of `from` to `to`, which is alive and has room, from byte `at` on.
+    pub(super) fn copy_all(&mut self, from: &Buffer, to: vk::Buffer, at: u64) {
+        let region = vk::BufferCopy { src_offset: 0, dst_offset: at, size: from.size() };
         // SAFETY: recorded outside a render pass; both buffers are alive and large enough.
         unsafe { self.device.raw.cmd_copy_buffer(self.cmd, from.raw, to, &[region]) };
     }
@@ -176,6 +176,15 @@ impl<'a> Draws<'a> {
             draws(&mut Self { device, cmd });
             device.end_label(cmd);
         }
+    }
+
+    /// Goes on to the next subpass of the render pass that a host has begun.
+    ///
+    /// # Safety
+    /// `cmd` is of `device`, and is being recorded inside a render pass, not in its last subpass.
+    pub unsafe fn next_subpass(device: &Device, cmd: vk::CommandBuffer) {
+        // SAFETY: by the caller.
+        unsafe { device.raw.cmd_next_subpass(cmd, vk::SubpassContents::INLINE) };
     }
 
     /// Draws `vertices` vertices with `pipeline`, which was made for this render pass, and `push` as the push constants.

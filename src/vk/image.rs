@@ -11,6 +11,8 @@ use std::sync::Arc;
 pub enum ImageUse {
     /// A later pass reads it.
     Sampled,
+    /// Later subpasses of the same render pass read it at the same pixel, where they read it at all; it is not kept.
+    Transient,
     /// It is what a frame is for: copied to the CPU, or drawn over a host's target.
     Output,
 }
@@ -30,6 +32,7 @@ pub fn pixel_bytes(format: vk::Format) -> u64 {
     match format {
         vk::Format::R32G32B32A32_SFLOAT => 16,
         vk::Format::R32G32B32_SFLOAT => 12,
+        vk::Format::D32_SFLOAT_S8_UINT => 5,
         vk::Format::R16G16B16A16_SFLOAT | vk::Format::R32G32_SFLOAT | vk::Format::R32G32_UINT => 8,
         vk::Format::R16_SFLOAT => 2,
         _ => 4,
@@ -51,6 +54,9 @@ impl Image {
         };
         let other = match also {
             ImageUse::Sampled => vk::ImageUsageFlags::SAMPLED,
+            ImageUse::Transient => {
+                vk::ImageUsageFlags::TRANSIENT_ATTACHMENT | vk::ImageUsageFlags::INPUT_ATTACHMENT
+            }
             ImageUse::Output => vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::SAMPLED,
         };
         let info = vk::ImageCreateInfo::default()
@@ -66,16 +72,17 @@ impl Image {
         let raw = unsafe { device.raw.create_image(&info, None) }.map_err(Error::vulkan("vkCreateImage"))?;
         let mut image =
             Self { raw, view: vk::ImageView::null(), format, size, allocation: None, device: device.clone() };
-        image.bind(name)?;
+        let location = if also == ImageUse::Transient { Location::Transient } else { Location::Device };
+        image.bind(name, location)?;
         image.make_view()?;
         Ok(image)
     }
 
-    fn bind(&mut self, name: &str) -> Result<()> {
+    fn bind(&mut self, name: &str, location: Location) -> Result<()> {
         let device = &self.device;
         // SAFETY: the image is the device's.
         let requirements = unsafe { device.raw.get_image_memory_requirements(self.raw) };
-        let request = MemoryRequest { name, requirements, location: Location::Device, linear: false };
+        let request = MemoryRequest { name, requirements, location, linear: false };
         let (memory, offset) = self.allocation.insert(memory::allocate(device, &request)?).place();
         // SAFETY: the memory was allocated for this image's requirements and is bound once.
         unsafe { device.raw.bind_image_memory(self.raw, memory, offset) }
@@ -95,9 +102,10 @@ impl Image {
     }
 
     pub(super) fn aspect(&self) -> vk::ImageAspectFlags {
-        match is_depth(self.format) {
-            true => vk::ImageAspectFlags::DEPTH,
-            false => vk::ImageAspectFlags::COLOR,
+        match self.format {
+            vk::Format::D32_SFLOAT => vk::ImageAspectFlags::DEPTH,
+            vk::Format::D32_SFLOAT_S8_UINT => vk::ImageAspectFlags::DEPTH | vk::ImageAspectFlags::STENCIL,
+            _ => vk::ImageAspectFlags::COLOR,
         }
     }
 
@@ -109,6 +117,11 @@ impl Image {
             base_array_layer: 0,
             layer_count: 1,
         }
+    }
+
+    /// All of it, as an attachment.
+    pub fn view(&self) -> vk::ImageView {
+        self.view
     }
 
     /// Width and height, px.
@@ -146,5 +159,5 @@ impl Drop for Image {
 }
 
 pub(super) fn is_depth(format: vk::Format) -> bool {
-    format == vk::Format::D32_SFLOAT
+    matches!(format, vk::Format::D32_SFLOAT | vk::Format::D32_SFLOAT_S8_UINT)
 }

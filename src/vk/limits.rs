@@ -25,6 +25,8 @@ pub struct DeviceLimits {
     pub timestamps: Option<bool>,
     /// Upper bound of `maxStorageBufferRange`, bytes.
     pub max_storage_buffer_range: Option<u64>,
+    /// Lower bound of `minStorageBufferOffsetAlignment`, bytes, a power of two.
+    pub storage_buffer_alignment: Option<u64>,
     /// Upper bound of `maxPerStageDescriptorStorageBuffers`.
     pub max_storage_buffers: Option<u32>,
     /// Upper bound of the largest render target's side, px.
@@ -118,7 +120,9 @@ impl Capabilities {
                 .then_some((limits.timestamp_period, u64::MAX >> (64 - valid_bits.clamp(1, 64)))),
             max_storage_buffer_range: u64::from(limits.max_storage_buffer_range)
                 .min(mask.max_storage_buffer_range.unwrap_or(u64::MAX)),
-            storage_buffer_alignment: limits.min_storage_buffer_offset_alignment,
+            storage_buffer_alignment: limits
+                .min_storage_buffer_offset_alignment
+                .max(mask.storage_buffer_alignment.unwrap_or(1)),
             max_storage_buffers: limits
                 .max_per_stage_descriptor_storage_buffers
                 .min(mask.max_storage_buffers.unwrap_or(u32::MAX)),

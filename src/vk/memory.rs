@@ -14,6 +14,8 @@ use std::sync::atomic::Ordering;
 pub enum Location {
     /// The GPU alone touches it.
     Device,
+    /// As [`Location::Device`], within render passes alone: best lazily allocated, where there is such memory.
+    Transient,
     /// The CPU writes it in order and the GPU reads it. Host-visible and coherent, mapped.
     Upload,
     /// The GPU writes it and the CPU reads it. Host-visible and coherent, mapped, and cached if that can be had.
@@ -68,13 +70,23 @@ pub unsafe trait MemorySource: Send + Sync {
 
 /// Where a device's memory comes from.
 pub(super) enum Source {
-    Own(Box<Mutex<Allocator>>),
+    Own(Box<Own>),
     Host(Box<dyn MemorySource>),
+}
+
+/// The engine's own allocator, and what it does not see to.
+pub(super) struct Own {
+    allocator: Mutex<Allocator>,
+    device: ash::Device,
+    /// The memory types that are lazily allocated, a bit each.
+    lazy: u32,
 }
 
 /// Memory of one buffer or image.
 pub(super) enum Allocation {
     Own(gpu_allocator::vulkan::Allocation),
+    /// Lazily allocated: a memory object of so many bytes.
+    Lazy(vk::DeviceMemory, u64),
     Host(HostMemory),
 }
 
@@ -93,14 +105,23 @@ impl Source {
             buffer_device_address: false,
             allocation_sizes: gpu_allocator::AllocationSizes::default(),
         });
+        // SAFETY: the physical device is the instance's.
+        let types = unsafe { instance.get_physical_device_memory_properties(physical) };
+        let lazy = lazy_types(types.memory_types_as_slice());
         allocator
-            .map(|allocator| Self::Own(Box::new(Mutex::new(allocator))))
+            .map(|allocator| {
+                Self::Own(Box::new(Own { allocator: Mutex::new(allocator), device: device.clone(), lazy }))
+            })
             .map_err(|error| error.to_string())
     }
 
     fn allocate(&self, request: &MemoryRequest<'_>) -> Result<Allocation, String> {
         match self {
-            Self::Own(allocator) => {
+            Self::Own(own) => {
+                let lazy = own.lazy & request.requirements.memory_type_bits;
+                if request.location == Location::Transient && lazy != 0 {
+                    return own.allocate_lazily(request.requirements.size, lazy.trailing_zeros());
+                }
                 let description = AllocationCreateDesc {
                     name: request.name,
                     requirements: request.requirements,
@@ -108,7 +129,7 @@ impl Source {
                     linear: request.linear,
                     allocation_scheme: AllocationScheme::GpuAllocatorManaged,
                 };
-                let mut allocator = allocator.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+                let mut allocator = own.allocator.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
                 allocator.allocate(&description).map(Allocation::Own).map_err(|error| error.to_string())
             }
             Self::Host(source) => source.allocate(request).map(Allocation::Host),
@@ -117,23 +138,53 @@ impl Source {
 
     fn free(&self, allocation: Allocation) {
         match (self, allocation) {
-            (Self::Own(allocator), Allocation::Own(allocation)) => {
-                let mut allocator = allocator.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+            (Self::Own(own), Allocation::Own(allocation)) => {
+                let mut allocator = own.allocator.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
                 if let Err(error) = allocator.free(allocation) {
                     log::error!("freeing device memory: {error}");
                 }
             }
+            // SAFETY: it was allocated from this device, and nothing is bound to it any more.
+            (Self::Own(own), Allocation::Lazy(memory, _)) => unsafe {
+                own.device.free_memory(memory, None);
+            },
             (Self::Host(source), Allocation::Host(memory)) => source.free(memory),
             // A device has one source from first to last.
-            (Self::Own(_), Allocation::Host(_)) | (Self::Host(_), Allocation::Own(_)) => {}
+            (Self::Own(_), Allocation::Host(_))
+            | (Self::Host(_), Allocation::Own(_) | Allocation::Lazy(..)) => {}
         }
     }
 }
 
+impl Own {
+    fn allocate_lazily(&self, size: u64, index: u32) -> Result<Allocation, String> {
+        let info = vk::MemoryAllocateInfo::default().allocation_size(size).memory_type_index(index);
+        // SAFETY: the memory type is one of the device's; `Source::free` frees it.
+        unsafe { self.device.allocate_memory(&info, None) }
+            .map(|memory| Allocation::Lazy(memory, size))
+            .map_err(|error| format!("vkAllocateMemory: {error}"))
+    }
+}
+
+/// Those of the memory types that are lazily allocated, a bit each.
+fn lazy_types(types: &[vk::MemoryType]) -> u32 {
+    let lazy = |kind: &vk::MemoryType| {
+        let flags = kind.property_flags;
+        flags.contains(vk::MemoryPropertyFlags::LAZILY_ALLOCATED)
+            && !flags.contains(vk::MemoryPropertyFlags::PROTECTED)
+    };
+    types.iter().zip(0..).map(|(kind, i)| u32::from(lazy(kind)) << i).sum()
+}
+
 impl Location {
+    /// Whether the CPU sees it.
+    fn is_seen(self) -> bool {
+        matches!(self, Self::Upload | Self::Readback)
+    }
+
     fn own(self) -> MemoryLocation {
         match self {
-            Self::Device => MemoryLocation::GpuOnly,
+            Self::Device | Self::Transient => MemoryLocation::GpuOnly,
             Self::Upload => MemoryLocation::CpuToGpu,
             Self::Readback => MemoryLocation::GpuToCpu,
         }
@@ -146,6 +197,7 @@ impl Allocation {
         match self {
             // SAFETY: the object is only bound to, and the allocator outlives the resource.
             Self::Own(allocation) => (unsafe { allocation.memory() }, allocation.offset()),
+            Self::Lazy(memory, _) => (*memory, 0),
             Self::Host(memory) => (memory.memory, memory.offset),
         }
     }
@@ -154,6 +206,7 @@ impl Allocation {
     pub(super) fn size(&self) -> u64 {
         match self {
             Self::Own(allocation) => allocation.size(),
+            Self::Lazy(_, size) => *size,
             Self::Host(memory) => memory.size,
         }
     }
@@ -166,7 +219,7 @@ impl Allocation {
             Self::Host(HostMemory { mapped: Some(start), size, .. }) => unsafe {
                 std::slice::from_raw_parts(start.as_ptr(), *size as usize)
             },
-            Self::Host(_) => &[],
+            Self::Host(_) | Self::Lazy(..) => &[],
         }
     }
 
@@ -178,7 +231,7 @@ impl Allocation {
             Self::Host(HostMemory { mapped: Some(start), size, .. }) => unsafe {
                 std::slice::from_raw_parts_mut(start.as_ptr(), *size as usize)
             },
-            Self::Host(_) => &mut [],
+            Self::Host(_) | Self::Lazy(..) => &mut [],
         }
     }
 }
@@ -190,7 +243,7 @@ pub(super) fn allocate(device: &Device, request: &MemoryRequest<'_>) -> Result<A
         bytes: request.requirements.size,
         cause,
     })?;
-    let seen = request.location != Location::Device;
+    let seen = request.location.is_seen();
     let least = request.requirements.size as usize;
     if allocation.size() < request.requirements.size || seen && allocation.mapped().len() < least {
         device.memory.free(allocation);
@@ -209,4 +262,20 @@ pub(super) fn allocate(device: &Device, request: &MemoryRequest<'_>) -> Result<A
 pub(super) fn free(device: &Device, allocation: Allocation) {
     device.made.bytes.fetch_sub(allocation.size(), Ordering::Relaxed);
     device.memory.free(allocation);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_stays_on_tile_takes_memory_that_is_lazily_allocated() {
+        use vk::MemoryPropertyFlags as Flags;
+        let device = Flags::DEVICE_LOCAL;
+        let lazy = device | Flags::LAZILY_ALLOCATED;
+        let types = [device, lazy, Flags::HOST_VISIBLE, lazy | Flags::PROTECTED, lazy];
+        let types = types.map(|property_flags| vk::MemoryType { property_flags, heap_index: 0 });
+        assert_eq!(lazy_types(&types), 0b10010);
+        assert_eq!(lazy_types(&types[..1]), 0);
+    }
 }

@@ -40,7 +40,7 @@ pub use access::{Access, Use};
 pub use buffer::Buffer;
 pub use choose::{DeviceDescription, describe_devices, preferred};
 pub use commands::Commands;
-pub use descriptors::{Binding, DescriptorSet, SetLayout};
+pub use descriptors::{Binding, DescriptorSet, HostDepth, SetLayout, input_layout};
 pub use device::{Device, DeviceOptions, Lent, Usage};
 pub use encoder::{Draws, Encoder};
 pub use image::{Image, ImageUse, pixel_bytes};

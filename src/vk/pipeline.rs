@@ -48,6 +48,12 @@ pub enum DepthTest {
     Nearest,
     /// What is not behind the target's depth passes; nothing is written.
     NotBehind,
+    /// Everything is kept.
+    Always,
+    /// As [`DepthTest::Nearest`]; what is kept is marked in the target's stencil.
+    Marking,
+    /// As [`DepthTest::NotBehind`], where the target's stencil is marked.
+    Marked,
     /// What is not behind a host's depth is kept; whether that falls with distance.
     Host {
         /// Greater is nearer.
@@ -273,14 +279,35 @@ impl Topology {
 impl DepthTest {
     fn info(self) -> vk::PipelineDepthStencilStateCreateInfo<'static> {
         let compare = match self {
-            Self::NotBehind | Self::Host { reversed: true } => vk::CompareOp::GREATER_OR_EQUAL,
+            Self::NotBehind | Self::Marked | Self::Host { reversed: true } => vk::CompareOp::GREATER_OR_EQUAL,
             Self::Host { reversed: false } => vk::CompareOp::LESS_OR_EQUAL,
-            Self::None | Self::Nearest => vk::CompareOp::GREATER,
+            Self::None | Self::Nearest | Self::Marking => vk::CompareOp::GREATER,
+            Self::Always => vk::CompareOp::ALWAYS,
         };
+        let stencil = self.stencil();
         vk::PipelineDepthStencilStateCreateInfo::default()
             .depth_test_enable(self != Self::None)
-            .depth_write_enable(matches!(self, Self::Nearest | Self::Host { .. }))
+            .depth_write_enable(!matches!(self, Self::None | Self::NotBehind | Self::Marked))
             .depth_compare_op(compare)
+            .stencil_test_enable(stencil.is_some())
+            .front(stencil.unwrap_or_default())
+            .back(stencil.unwrap_or_default())
+    }
+
+    fn stencil(self) -> Option<vk::StencilOpState> {
+        let state = |compare_op, pass_op, write_mask| vk::StencilOpState {
+            compare_op,
+            pass_op,
+            compare_mask: 1,
+            write_mask,
+            reference: 1,
+            ..Default::default()
+        };
+        match self {
+            Self::Marking => Some(state(vk::CompareOp::ALWAYS, vk::StencilOp::REPLACE, 1)),
+            Self::Marked => Some(state(vk::CompareOp::EQUAL, vk::StencilOp::KEEP, 0)),
+            Self::None | Self::Nearest | Self::NotBehind | Self::Always | Self::Host { .. } => None,
+        }
     }
 }
 

@@ -9,7 +9,7 @@ use std::sync::Arc;
 /// Most bytes staged at once, where a copy is waited for.
 const CHUNK: usize = 32 << 20;
 
-/// Makes buffers with contents.
+/// Makes buffers with contents, and writes to buffers.
 pub struct Uploads<'a> {
     device: &'a Arc<Device>,
     way: RefCell<Way>,
@@ -22,10 +22,11 @@ enum Way {
     Later(Vec<Copy>),
 }
 
-/// A copy to be recorded: of all that is staged.
+/// A copy to be recorded: of all that is staged, to this offset, bytes.
 struct Copy {
     from: Buffer,
     to: vk::Buffer,
+    at: u64,
     written: Use,
     read: Use,
 }
@@ -57,38 +58,54 @@ impl<'a> Uploads<'a> {
     pub fn buffer(&self, name: &str, bytes: &[u8]) -> Result<Buffer> {
         let bytes = if bytes.is_empty() { &[0; 4][..] } else { bytes };
         let buffer = Buffer::storage(self.device, name, bytes.len() as u64)?;
+        self.write(&buffer, 0, bytes)?;
+        Ok(buffer)
+    }
+
+    /// Writes `bytes` to a buffer of the device from byte `at` on, for shaders to read; both are multiples of 4, and there is room. What is
+    /// recorded before reads what was there before.
+    pub fn write(&self, buffer: &Buffer, at: u64, bytes: &[u8]) -> Result<()> {
         match &mut *self.way.borrow_mut() {
-            Way::Now(commands) => copy_now(self.device, commands, &buffer, bytes)?,
+            Way::Now(commands) => copy_now(self.device, commands, buffer, at, bytes),
             Way::Later(copies) => {
                 let mut from = Buffer::staging(self.device, "staging", bytes.len() as u64)?;
                 from.bytes_mut().copy_from_slice(bytes);
                 let (written, read) = (buffer.with(Access::COPY_WRITE), buffer.with(Access::SHADER_READ));
-                copies.push(Copy { from, to: buffer.raw, written, read });
+                copies.push(Copy { from, to: buffer.raw, at, written, read });
+                Ok(())
             }
         }
-        Ok(buffer)
     }
 
-    /// Records the copies to all buffers that were made, which are alive; what they are made from must stay until the GPU is done.
+    /// Records the copies to all buffers that were made or written to, which are alive; what they are made from must stay until the GPU is done.
     pub fn record(self, rec: &mut Recorder<'_>) -> Staging {
         let Way::Later(copies) = self.way.into_inner() else { return Staging::default() };
         let uses = copies.iter().flat_map(|copy| [copy.from.with(Access::COPY_READ), copy.written]);
+        if copies.is_empty() {
+            return Staging::default();
+        }
         rec.pass("upload", &uses.collect::<Vec<_>>(), |enc| {
-            copies.iter().for_each(|copy| enc.copy_all(&copy.from, copy.to));
+            copies.iter().for_each(|copy| enc.copy_all(&copy.from, copy.to, copy.at));
         });
         rec.wait(&copies.iter().map(|copy| copy.read).collect::<Vec<_>>());
         Staging(copies.into_iter().map(|copy| copy.from).collect())
     }
 }
 
-fn copy_now(device: &Arc<Device>, commands: &mut Commands, buffer: &Buffer, bytes: &[u8]) -> Result<()> {
+fn copy_now(
+    device: &Arc<Device>,
+    commands: &mut Commands,
+    buffer: &Buffer,
+    at: u64,
+    bytes: &[u8],
+) -> Result<()> {
     let mut staging = Buffer::staging(device, "staging", bytes.len().min(CHUNK) as u64)?;
     for (i, chunk) in bytes.chunks(CHUNK).enumerate() {
         staging.bytes_mut()[..chunk.len()].copy_from_slice(chunk);
         let uses = [staging.with(Access::COPY_READ), buffer.with(Access::COPY_WRITE)];
         commands.run(|rec| {
             rec.pass("upload", &uses, |enc| {
-                enc.copy(&staging, buffer, (i * CHUNK) as u64, chunk.len() as u64);
+                enc.copy(&staging, buffer, at + (i * CHUNK) as u64, chunk.len() as u64);
             });
         })?;
     }

@@ -2,6 +2,7 @@
 #![allow(dead_code)]
 
 pub mod gpu;
+pub mod layouts;
 pub mod mesh;
 pub mod pyramids;
 pub mod sampling;

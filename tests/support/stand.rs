@@ -1,14 +1,20 @@
 //! A host with a frame into which surfels are drawn.
+#![allow(dead_code, reason = "no test uses all of it")]
 
 use crate::host::Host;
 use crate::host::frame::{Frame, Kind};
 use crate::host::mesh::Mesh;
-use glam::Vec3;
+use crate::support::sampling::{Random, bumpy_sphere};
+use ash::vk;
+use glam::{DMat4, DVec3, Vec3};
 use std::sync::Arc;
 use surfel::embed::{self, Abilities, Options, Renderer, View};
-use surfel::geometry::Surfels;
+use surfel::geometry::{Camera, Surfels};
 use surfel::vk::Device;
 use surfel::{Precision, Rasterizer, Scene, Settings};
+
+/// Width and height of what is drawn, px.
+pub const SIZE: [u32; 2] = [160, 120];
 
 /// A host; `None`, said aloud, where there is no device. With `SURFEL_REQUIRE_GPU` set, the lack of one is a failure.
 pub fn open(wanted: fn(Abilities) -> Abilities) -> Option<Host> {
@@ -91,4 +97,53 @@ pub fn upload(host: &Host, device: &Arc<Device>, surfels: &Surfels) -> Arc<Scene
     let (scene, staging) = host.run(|cmd| Ok(unsafe { embed::upload(device, cmd, surfels)? })).unwrap();
     assert!(staging.bytes() > 0);
     Arc::new(scene)
+}
+
+pub fn surfels() -> Surfels {
+    sphere(20_000)
+}
+
+pub fn sphere(count: usize) -> Surfels {
+    bumpy_sphere(count, &mut Random(7))
+}
+
+pub fn camera() -> Camera {
+    let eye = DVec3::new(1.1, 0.9, 3.0);
+    Camera::look_at(eye, DVec3::ZERO, DVec3::Y, 0.8, 4.0 / 3.0, 0.1).unwrap()
+}
+
+/// The same with depth that rises with distance, from 0 at the near plane to 1 at the far one.
+pub fn rising() -> Camera {
+    let (near, far) = (0.1, 50.0);
+    let mut camera = camera();
+    camera.projection.z_axis.z = far / (far - near);
+    camera.projection.w_axis.z = -near * far / (far - near);
+    Camera { reversed: false, ..camera }
+}
+
+pub fn viewport([width, height]: [u32; 2]) -> vk::Viewport {
+    vk::Viewport {
+        x: 0.0,
+        y: 0.0,
+        width: width as f32,
+        height: height as f32,
+        min_depth: 0.0,
+        max_depth: 1.0,
+    }
+}
+
+/// Distance from the eye plane and whether it is on the parallelogram, of what the ray through the middle of a pixel meets.
+pub fn meets(camera: &Camera, at: [u32; 2], centre: DVec3, sides: [DVec3; 2]) -> Option<f64> {
+    let back: DMat4 = camera.world_to_clip().inverse();
+    let clip = |depth: f64| {
+        let ndc = |i: usize| 2.0 * (f64::from(at[i]) + 0.5) / f64::from(SIZE[i]) - 1.0;
+        back.project_point3(DVec3::new(ndc(0), ndc(1), depth))
+    };
+    let (from, to) = (clip(1.0), clip(0.5));
+    let ray = to - from;
+    let normal = sides[0].cross(sides[1]);
+    let t = normal.dot(centre - from) / normal.dot(ray);
+    let point = from + t * ray;
+    let inside = sides.iter().all(|side| (point - centre).dot(*side).abs() <= side.length_squared());
+    (t > 0.0 && inside).then(|| camera.view.transform_point3(point).z)
 }

@@ -1,12 +1,9 @@
-//! A host that draws by dynamic rendering: `cargo run --example rendering -- FILE.png`.
+//! A host that draws by dynamic rendering: `cargo run --example rendering -- FILE.png`, or in a window,
+//! `cargo run --features viewer --example rendering`.
 #![allow(unsafe_code, reason = "a host speaks Vulkan itself")]
 
 mod host;
 
-use host::frame::Way;
-use std::path::Path;
-
 fn main() -> host::Result<()> {
-    let file = std::env::args_os().nth(1).ok_or("give the picture's file: rendering FILE.png")?;
-    host::show::picture(Way::Rendering, Path::new(&file))
+    host::show::run(host::frame::Way::Rendering)
 }

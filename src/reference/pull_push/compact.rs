@@ -45,8 +45,8 @@ impl Compact {
             normal: direction(sample.normal),
             colour: match self.colours {
                 ColourStream::None => sample.colour,
-                ColourStream::Srgb8 => roots(sample.colour),
-                ColourStream::Linear | ColourStream::Textured => shared(sample.colour),
+                ColourStream::Srgb8 | ColourStream::Unorm8 => roots(sample.colour),
+                ColourStream::Linear | ColourStream::Textured | ColourStream::Half => shared(sample.colour),
             },
             ..*sample
         }
@@ -63,8 +63,10 @@ impl Compact {
             normal: 18f64.sqrt() / CODES,
             colour: match self.colours {
                 ColourStream::None => 0.0,
-                ColourStream::Srgb8 => 2.0 * brightest.clamp(0.0, 1.0).sqrt() / ROOTS + ROOTS.powi(-2),
-                ColourStream::Linear | ColourStream::Textured => shared_step(brightest),
+                ColourStream::Srgb8 | ColourStream::Unorm8 => {
+                    2.0 * brightest.clamp(0.0, 1.0).sqrt() / ROOTS + ROOTS.powi(-2)
+                }
+                ColourStream::Linear | ColourStream::Textured | ColourStream::Half => shared_step(brightest),
             },
         }
     }

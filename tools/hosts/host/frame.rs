@@ -26,18 +26,12 @@ pub struct Kind {
     pub reversed: bool,
 }
 
-impl Kind {
-    /// Formats of the colour targets.
-    fn formats(&self) -> Vec<vk::Format> {
-        self.normals.then_some(NORMALS).into_iter().chain([self.colour]).collect()
-    }
-}
-
 /// Colour and depth of a frame.
 pub struct Frame {
     pub kind: Kind,
     pub size: [u32; 2],
-    normals: Option<Target>,
+    /// Colour targets before the first.
+    more: Vec<Target>,
     colour: Target,
     depth: Target,
     resolved: Option<Target>,
@@ -47,12 +41,20 @@ pub struct Frame {
 /// The host's format of depth.
 pub const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
 const NORMALS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
+/// The host's format of numbers.
+pub const IDS: vk::Format = vk::Format::R32_UINT;
 /// Where the picture is copied from.
 const SOURCE: vk::ImageLayout = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
 
 impl Frame {
     /// A frame of `size` px.
     pub fn new(host: &Host, kind: Kind, size: [u32; 2]) -> Result<Self> {
+        let normals = [NORMALS];
+        Self::with(host, kind, size, if kind.normals { &normals } else { &[] })
+    }
+
+    /// A frame with targets of these formats before that of the picture.
+    pub fn with(host: &Host, kind: Kind, size: [u32; 2], more: &[vk::Format]) -> Result<Self> {
         use vk::ImageUsageFlags as Usage;
         let one = vk::SampleCountFlags::TYPE_1;
         let drawn = Usage::COLOR_ATTACHMENT | Usage::TRANSFER_SRC;
@@ -61,16 +63,16 @@ impl Frame {
         let depth = Target::new(host, DEPTH, size, kind.samples, tested)?;
         let resolved =
             (kind.samples != one).then(|| Target::new(host, kind.colour, size, one, drawn)).transpose()?;
-        let normals =
-            kind.normals.then(|| Target::new(host, NORMALS, size, kind.samples, drawn)).transpose()?;
-        let views: Vec<_> = [normals.as_ref(), Some(&colour), Some(&depth), resolved.as_ref()]
-            .into_iter()
-            .flatten()
-            .map(|t| t.view)
-            .collect();
+        let formats: Vec<_> = more.iter().copied().chain([kind.colour]).collect();
+        let more = more
+            .iter()
+            .map(|format| Target::new(host, *format, size, kind.samples, drawn))
+            .collect::<Result<Vec<_>>>()?;
+        let views: Vec<_> =
+            more.iter().chain([&colour, &depth]).chain(&resolved).map(|target| target.view).collect();
         // SAFETY: a plain use of Vulkan; `destroy` destroys what is made.
         let make = || unsafe {
-            let pass = render_pass(host, kind)?;
+            let pass = render_pass(host, kind, &formats)?;
             let info = vk::FramebufferCreateInfo::default()
                 .render_pass(pass)
                 .attachments(&views)
@@ -80,7 +82,7 @@ impl Frame {
             Ok::<_, vk::Result>((pass, host.device.create_framebuffer(&info, None)?))
         };
         let pass = (kind.way == Way::Subpass).then(make).transpose()?;
-        Ok(Self { kind, size, normals, colour, depth, resolved, pass })
+        Ok(Self { kind, size, more, colour, depth, resolved, pass })
     }
 
     /// What surfels are told of it.
@@ -90,18 +92,24 @@ impl Frame {
                 Some((pass, _)) => embed::Pass::Subpass { pass, subpass: 0 },
                 None => embed::Pass::Rendering,
             },
-            colours: self.kind.formats(),
+            colours: self.more.iter().chain([&self.colour]).map(|target| target.format).collect(),
             depth: Some(DEPTH),
             stencil: vk::Format::UNDEFINED,
             reversed: self.kind.reversed,
             samples: self.kind.samples,
-            picture: u32::from(self.kind.normals),
-            normal: self.kind.normals.then_some(0),
+            picture: self.more.len() as u32,
+            normal: self.location(NORMALS),
+            id: self.location(IDS),
             encode: false,
         }
     }
 
-    /// What the host's own pipelines are told of it, where there are no normals.
+    /// The first location before the picture's that has this format.
+    fn location(&self, format: vk::Format) -> Option<u32> {
+        self.more.iter().position(|target| target.format == format).map(|location| location as u32)
+    }
+
+    /// What the host's own pipelines are told of it, where the picture is the only colour.
     pub fn place(&self) -> super::mesh::Where<'_> {
         let formats = (std::slice::from_ref(&self.kind.colour), DEPTH);
         super::mesh::Where {
@@ -120,8 +128,12 @@ impl Frame {
         let black = vk::ClearValue::default();
         let farthest =
             vk::ClearValue { depth_stencil: vk::ClearDepthStencilValue { depth: far, stencil: 0 } };
-        let normals = self.kind.normals.then_some(black);
-        let clears: Vec<_> = normals.into_iter().chain([black, farthest]).collect();
+        let nobody = vk::ClearColorValue { uint32: [surfel::Picture::NOBODY; 4] };
+        let cleared = |target: &Target| match target.format {
+            IDS => vk::ClearValue { color: nobody },
+            _ => black,
+        };
+        let clears: Vec<_> = self.more.iter().map(cleared).chain([black, farthest]).collect();
         let [width, height] = self.size;
         let area = vk::Rect2D { offset: vk::Offset2D::default(), extent: vk::Extent2D { width, height } };
         if let Some((pass, framebuffer)) = self.pass {
@@ -136,9 +148,7 @@ impl Frame {
         }
         let (drawn, tested) =
             (vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL, vk::ImageLayout::DEPTH_ATTACHMENT_OPTIMAL);
-        for target in
-            [self.normals.as_ref(), Some(&self.colour), self.resolved.as_ref()].into_iter().flatten()
-        {
+        for target in self.more.iter().chain([&self.colour]).chain(&self.resolved) {
             target.transition(host, cmd, [vk::ImageLayout::UNDEFINED, drawn]);
         }
         self.depth.transition(host, cmd, [vk::ImageLayout::UNDEFINED, tested]);
@@ -157,8 +167,8 @@ impl Frame {
                 .resolve_image_view(resolved.view)
                 .resolve_image_layout(drawn);
         }
-        let normals = self.normals.as_ref().map(|normals| attachment(normals, drawn, black));
-        let colours: Vec<_> = normals.into_iter().chain([colour]).collect();
+        let more = self.more.iter().map(|target| attachment(target, drawn, cleared(target)));
+        let colours: Vec<_> = more.chain([colour]).collect();
         let depth = attachment(&self.depth, tested, farthest);
         let info = vk::RenderingInfo::default()
             .render_area(area)
@@ -181,8 +191,8 @@ impl Frame {
         if self.pass.is_none() {
             self.picture().transition(host, cmd, [vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL, SOURCE]);
             self.depth.transition(host, cmd, [vk::ImageLayout::DEPTH_ATTACHMENT_OPTIMAL, SOURCE]);
-            if let Some(normals) = &self.normals {
-                normals.transition(host, cmd, [vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL, SOURCE]);
+            for target in &self.more {
+                target.transition(host, cmd, [vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL, SOURCE]);
             }
         }
     }
@@ -200,8 +210,20 @@ impl Frame {
 
     /// The normals, where there are any.
     pub fn read_normals(&self, host: &Host) -> Result<Vec<[f32; 4]>> {
-        let bytes = self.normals.as_ref().map(|normals| self.copy(host, normals, 16)).transpose()?;
-        Ok(bytemuck::pod_collect_to_vec(&bytes.unwrap_or_default()))
+        let bytes = self.read_more(host, NORMALS, 16)?;
+        Ok(bytemuck::pod_collect_to_vec(&bytes))
+    }
+
+    /// The numbers, where there are any.
+    pub fn read_ids(&self, host: &Host) -> Result<Vec<u32>> {
+        let bytes = self.read_more(host, IDS, 4)?;
+        Ok(bytemuck::pod_collect_to_vec(&bytes))
+    }
+
+    /// The first target before the picture's that has this format, of so many bytes a pixel; nothing without one.
+    fn read_more(&self, host: &Host, format: vk::Format, bytes: usize) -> Result<Vec<u8>> {
+        let target = self.more.iter().find(|target| target.format == format);
+        target.map_or(Ok(Vec::new()), |target| self.copy(host, target, bytes))
     }
 
     /// The bytes of the colours, `bytes` a pixel.
@@ -227,6 +249,23 @@ impl Frame {
         found
     }
 
+    /// The image of the picture, which `end` leaves ready to be copied.
+    pub fn image(&self) -> vk::Image {
+        self.picture().image
+    }
+
+    /// Has `size` px from now on, and the same pass. The GPU is done with the frames before.
+    pub fn resize(&mut self, host: &Host, size: [u32; 2]) -> Result<()> {
+        let more: Vec<_> = self.more.iter().map(|target| target.format).collect();
+        let mut made = Self::with(host, self.kind, size, &more)?;
+        // A framebuffer goes with every pass like its own.
+        if let (Some((new, _)), Some((old, _))) = (&mut made.pass, &mut self.pass) {
+            std::mem::swap(new, old);
+        }
+        std::mem::replace(self, made).destroy(host);
+        Ok(())
+    }
+
     /// Destroys it, once the GPU is done with it.
     pub fn destroy(self, host: &Host) {
         // SAFETY: by the caller.
@@ -236,10 +275,8 @@ impl Frame {
                 host.device.destroy_render_pass(pass, None);
             }
         }
-        [self.normals, Some(self.colour), Some(self.depth), self.resolved]
-            .into_iter()
-            .flatten()
-            .for_each(|t| t.destroy(host));
+        let rest = [Some(self.colour), Some(self.depth), self.resolved];
+        self.more.into_iter().chain(rest.into_iter().flatten()).for_each(|target| target.destroy(host));
     }
 }
 
@@ -254,7 +291,12 @@ fn host_reads(host: &Host, cmd: vk::CommandBuffer) {
     };
 }
 
-unsafe fn render_pass(host: &Host, kind: Kind) -> std::result::Result<vk::RenderPass, vk::Result> {
+/// The pass of a frame whose colour targets have these formats.
+unsafe fn render_pass(
+    host: &Host,
+    kind: Kind,
+    colours: &[vk::Format],
+) -> std::result::Result<vk::RenderPass, vk::Result> {
     let attachment = |format, samples, load| {
         vk::AttachmentDescription::default()
             .format(format)
@@ -264,7 +306,7 @@ unsafe fn render_pass(host: &Host, kind: Kind) -> std::result::Result<vk::Render
             .initial_layout(vk::ImageLayout::UNDEFINED)
             .final_layout(SOURCE)
     };
-    let drawn = kind.formats().into_iter().chain([DEPTH]);
+    let drawn = colours.iter().copied().chain([DEPTH]);
     let mut attachments: Vec<_> =
         drawn.map(|format| attachment(format, kind.samples, vk::AttachmentLoadOp::CLEAR)).collect();
     let reference = |attachment, layout| vk::AttachmentReference { attachment, layout };

@@ -49,7 +49,7 @@ impl Target {
         let [width, height] = self.size;
         let region = vk::BufferImageCopy::default()
             .image_subresource(vk::ImageSubresourceLayers {
-                aspect_mask: aspect(self.format),
+                aspect_mask: copied(self.format),
                 mip_level: 0,
                 base_array_layer: 0,
                 layer_count: 1,
@@ -58,6 +58,44 @@ impl Target {
         let layout = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
         // SAFETY: the caller has it in this layout, and the buffer is large enough.
         unsafe { host.device.cmd_copy_image_to_buffer(cmd, self.image, layout, buffer, &[region]) };
+    }
+
+    /// Its bytes, `bytes` a pixel, once it is in the layout of a copy's source; of depth and stencil, the depth's.
+    pub fn read(&self, host: &Host, bytes: usize) -> Result<Vec<u8>> {
+        let size = bytes * self.size[0] as usize * self.size[1] as usize;
+        let (buffer, memory) = host.buffer(&vec![0; size], vk::BufferUsageFlags::TRANSFER_DST)?;
+        let source = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
+        host.run(|cmd| {
+            self.transition(host, cmd, [source, source]);
+            self.copy_to(host, cmd, buffer);
+            let barrier = vk::MemoryBarrier::default()
+                .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
+                .dst_access_mask(vk::AccessFlags::HOST_READ);
+            let [from, to] = [vk::PipelineStageFlags::TRANSFER, vk::PipelineStageFlags::HOST];
+            let none = vk::DependencyFlags::empty();
+            // SAFETY: recorded outside a render pass.
+            unsafe { host.device.cmd_pipeline_barrier(cmd, from, to, none, &[barrier], &[], &[]) };
+            Ok(())
+        })?;
+        let found = host.read(memory, size);
+        // SAFETY: the copy was waited for.
+        unsafe {
+            host.device.destroy_buffer(buffer, None);
+            host.device.free_memory(memory, None);
+        }
+        found
+    }
+
+    /// A view of its depth alone, which the caller destroys.
+    pub fn depth_view(&self, host: &Host) -> Result<vk::ImageView> {
+        let depth = vk::ImageAspectFlags::DEPTH;
+        let info = vk::ImageViewCreateInfo::default()
+            .image(self.image)
+            .view_type(vk::ImageViewType::TYPE_2D)
+            .format(self.format)
+            .subresource_range(vk::ImageSubresourceRange { aspect_mask: depth, ..range(self.format) });
+        // SAFETY: a plain use of Vulkan.
+        Ok(unsafe { host.device.create_image_view(&info, None)? })
     }
 
     /// Brings it from one layout to another, after all that was recorded and before all that follows.
@@ -91,8 +129,16 @@ impl Target {
 fn aspect(format: vk::Format) -> vk::ImageAspectFlags {
     match format {
         vk::Format::D32_SFLOAT | vk::Format::D16_UNORM => vk::ImageAspectFlags::DEPTH,
+        vk::Format::D24_UNORM_S8_UINT | vk::Format::D32_SFLOAT_S8_UINT => {
+            vk::ImageAspectFlags::DEPTH | vk::ImageAspectFlags::STENCIL
+        }
         _ => vk::ImageAspectFlags::COLOR,
     }
+}
+
+/// What is copied at once.
+fn copied(format: vk::Format) -> vk::ImageAspectFlags {
+    aspect(format) & !vk::ImageAspectFlags::STENCIL
 }
 
 fn range(format: vk::Format) -> vk::ImageSubresourceRange {

@@ -105,7 +105,7 @@ unsafe impl MemorySource for Counted {
             return Err("the host has no memory left".into());
         }
         self.counts.left.fetch_sub(1, Ordering::SeqCst);
-        let is_mapped = request.location != Location::Device;
+        let is_mapped = matches!(request.location, Location::Upload | Location::Readback);
         let wanted = match is_mapped {
             true => vk::MemoryPropertyFlags::HOST_VISIBLE | vk::MemoryPropertyFlags::HOST_COHERENT,
             false => vk::MemoryPropertyFlags::DEVICE_LOCAL,

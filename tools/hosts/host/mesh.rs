@@ -23,9 +23,6 @@ void main() {
     colour = vec4(light * vec3(0.15, 0.35, 0.8), 1.0);
 }";
 
-/// Corners of triangles, three by three: position and normal.
-pub type Corners = Vec<[Vec3; 2]>;
-
 /// A mesh on the GPU with the pipeline that draws it.
 pub struct Mesh {
     buffer: vk::Buffer,
@@ -44,30 +41,6 @@ pub struct Where<'a> {
     pub samples: vk::SampleCountFlags,
     pub colours: usize,
     pub reversed: bool,
-}
-
-/// A ring of `segments` times `segments` quads about `centre`, its axis along y.
-pub fn torus(centre: Vec3, [large, small]: [f32; 2], segments: u32) -> Corners {
-    let angle = |i: u32| i as f32 / segments as f32 * std::f32::consts::TAU;
-    let corner = |i: u32, j: u32| {
-        let out = Vec3::new(angle(i).cos(), 0.0, angle(i).sin());
-        let normal = angle(j).cos() * out + angle(j).sin() * Vec3::Y;
-        [centre + large * out + small * normal, normal]
-    };
-    let quads = (0..segments).flat_map(|i| (0..segments).map(move |j| [i, j]));
-    let triangles = |[i, j]: [u32; 2]| {
-        let [a, b, c, d] = [corner(i, j), corner(i + 1, j), corner(i + 1, j + 1), corner(i, j + 1)];
-        [a, b, c, a, c, d]
-    };
-    quads.flat_map(triangles).collect()
-}
-
-/// A parallelogram about `centre`, with these halves of its sides.
-pub fn parallelogram(centre: Vec3, [u, v]: [Vec3; 2]) -> Corners {
-    let normal = u.cross(v).normalize();
-    let corner = |a: f32, b: f32| [centre + a * u + b * v, normal];
-    let [a, b, c, d] = [corner(-1.0, -1.0), corner(1.0, -1.0), corner(1.0, 1.0), corner(-1.0, 1.0)];
-    vec![a, b, c, a, c, d]
 }
 
 impl Mesh {

@@ -3,15 +3,28 @@
 
 #![allow(dead_code, reason = "no host uses all of it")]
 
+pub mod fog;
 pub mod frame;
 pub mod image;
 pub mod memory;
 pub mod mesh;
+pub mod native;
+pub mod options;
+#[cfg(feature = "viewer")]
+pub mod presenter;
+pub mod scene;
 pub mod show;
+pub mod simulation;
+#[cfg(feature = "viewer")]
+pub mod surface;
+#[cfg(feature = "viewer")]
+pub mod swapchain;
+#[cfg(feature = "viewer")]
+pub mod window;
 
 use ash::{ext, khr, vk};
 use std::error::Error;
-use std::ffi::{CStr, c_void};
+use std::ffi::{CStr, c_char, c_void};
 use std::sync::{Arc, Mutex};
 use surfel::embed::{Abilities, Lent, MemorySource};
 use surfel::vk::{Device, DeviceLimits};
@@ -36,6 +49,14 @@ pub struct Host {
     _entry: ash::Entry,
 }
 
+/// Whether the host runs under the validation layers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Validation {
+    Needed,
+    WhereThere,
+    Off,
+}
+
 /// Commands under way.
 pub struct Submitted {
     cmd: vk::CommandBuffer,
@@ -47,18 +68,31 @@ const VALIDATION: &CStr = c"VK_LAYER_KHRONOS_validation";
 impl Host {
     /// Opens the first device that does graphics and compute; under validation where its layer is installed, which it must be if `validates`.
     pub fn open(wanted: fn(Abilities) -> Abilities, validates: bool) -> Result<Self> {
+        let validation = if validates { Validation::Needed } else { Validation::WhereThere };
+        Self::open_with(wanted, validation, &[], &[])
+    }
+
+    /// The same with these extensions of the instance, by their raw names, and of the device.
+    pub fn open_with(
+        wanted: fn(Abilities) -> Abilities,
+        validation: Validation,
+        of_instance: &[*const c_char],
+        of_device: &[&'static CStr],
+    ) -> Result<Self> {
         // SAFETY: a plain use of Vulkan: every handle is made here, and destroyed in `drop`, after what was made of it.
         unsafe {
             let entry = ash::Entry::load()?;
             let layers = entry.enumerate_instance_layer_properties()?;
             let there = layers.iter().any(|layer| layer.layer_name_as_c_str() == Ok(VALIDATION));
-            if validates && !there {
+            if validation == Validation::Needed && !there {
                 return Err(
                     "VK_LAYER_KHRONOS_validation is not installed (Debian: vulkan-validationlayers)".into()
                 );
             }
+            let there = there && validation != Validation::Off;
             let layers: Vec<_> = there.then_some(VALIDATION.as_ptr()).into_iter().collect();
-            let extensions = [ext::debug_utils::NAME.as_ptr()];
+            let mut extensions = vec![ext::debug_utils::NAME.as_ptr()];
+            extensions.extend(of_instance);
             let application = vk::ApplicationInfo::default().api_version(vk::API_VERSION_1_2);
             let synchronization = [vk::ValidationFeatureEnableEXT::SYNCHRONIZATION_VALIDATION];
             let mut features =
@@ -76,7 +110,7 @@ impl Host {
             let messenger = debug.create_debug_utils_messenger(&messenger(&messages), None)?;
             let (physical, family) = choose(&instance)?;
             let enabled = wanted(Abilities::of(&instance, physical));
-            let device = create_device(&instance, physical, family, &enabled)?;
+            let device = create_device(&instance, physical, family, &enabled, of_device)?;
             let pool = vk::CommandPoolCreateInfo::default()
                 .queue_family_index(family)
                 .flags(vk::CommandPoolCreateFlags::RESET_COMMAND_BUFFER);
@@ -99,6 +133,15 @@ impl Host {
 
     /// The device as surfels borrow it.
     pub fn lend(&self, memory: Option<Box<dyn MemorySource>>) -> surfel::Result<Arc<Device>> {
+        self.lend_within(DeviceLimits::default(), memory)
+    }
+
+    /// The same, less what `limits` hide.
+    pub fn lend_within(
+        &self,
+        limits: DeviceLimits,
+        memory: Option<Box<dyn MemorySource>>,
+    ) -> surfel::Result<Arc<Device>> {
         let lent = Lent {
             instance: &self.instance,
             physical: self.physical,
@@ -106,7 +149,7 @@ impl Host {
             queue_family: self.family,
             enabled: self.enabled,
             labels: true,
-            limits: DeviceLimits::default(),
+            limits,
             memory,
             pipeline_cache: None,
         };
@@ -138,6 +181,21 @@ impl Host {
         }
     }
 
+    /// Records what is not submitted.
+    pub fn record<T>(&self, body: impl FnOnce(vk::CommandBuffer) -> Result<T>) -> Result<T> {
+        // SAFETY: the command buffer is recorded whole, and freed.
+        unsafe {
+            let buffer =
+                vk::CommandBufferAllocateInfo::default().command_pool(self.pool).command_buffer_count(1);
+            let cmd = self.device.allocate_command_buffers(&buffer)?[0];
+            self.device.begin_command_buffer(cmd, &Default::default())?;
+            let made = body(cmd);
+            self.device.end_command_buffer(cmd)?;
+            self.device.free_command_buffers(self.pool, &[cmd]);
+            made
+        }
+    }
+
     /// Waits until the GPU is done with what was submitted.
     pub fn wait(&self, Submitted { cmd, fence }: Submitted) -> Result<()> {
         // SAFETY: both are of this device, and done with after the wait.
@@ -154,6 +212,12 @@ impl Host {
         let (submitted, made) = self.submit(body)?;
         self.wait(submitted)?;
         Ok(made)
+    }
+
+    /// An error if the validation layers have said anything.
+    pub fn silent(&self) -> Result<()> {
+        let messages = self.messages();
+        if messages.is_empty() { Ok(()) } else { Err(format!("validation: {}", messages.join("; ")).into()) }
     }
 
     /// Messages of the validation layers so far.
@@ -195,9 +259,10 @@ unsafe fn create_device(
     physical: vk::PhysicalDevice,
     family: u32,
     enabled: &Abilities,
+    more: &[&'static CStr],
 ) -> Result<ash::Device> {
     let queues = [vk::DeviceQueueCreateInfo::default().queue_family_index(family).queue_priorities(&[1.0])];
-    let mut names: Vec<_> = enabled.extensions().map(CStr::as_ptr).collect();
+    let mut names: Vec<_> = enabled.extensions().chain(more.iter().copied()).map(CStr::as_ptr).collect();
     // What this host wants itself.
     names.extend(
         [khr::dynamic_rendering::NAME, khr::depth_stencil_resolve::NAME, khr::create_renderpass2::NAME]
@@ -205,7 +270,10 @@ unsafe fn create_device(
     );
     let mut rendering = vk::PhysicalDeviceDynamicRenderingFeatures::default().dynamic_rendering(true);
     let mut features = enabled.features();
-    let core = features.core;
+    // SAFETY: by the caller: the device is the instance's.
+    let there = unsafe { instance.get_physical_device_features(physical) };
+    // Its tests count fragments.
+    let core = features.core.occlusion_query_precise(there.occlusion_query_precise != vk::FALSE);
     let info = vk::DeviceCreateInfo::default()
         .queue_create_infos(&queues)
         .enabled_extension_names(&names)

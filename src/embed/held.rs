@@ -1,0 +1,45 @@
+//! What frames under way may use, kept until they are over.
+
+use crate::error::{Error, Result};
+use crate::stage::Outgoing;
+use std::any::Any;
+use std::collections::VecDeque;
+
+/// What frames under way may use.
+pub(super) struct Held {
+    /// Each with the number of the last frame that may use it.
+    list: VecDeque<(u64, Outgoing)>,
+    frame: u64,
+    frames_in_flight: u64,
+}
+
+impl Held {
+    /// Nothing yet; so many frames may be under way.
+    pub(super) fn new(frames_in_flight: u32) -> Result<Self> {
+        if frames_in_flight == 0 {
+            return Err(Error::Usage(
+                "0 frames in flight: a frame is under way when it is recorded, so give 1 or more".into(),
+            ));
+        }
+        Ok(Self { list: VecDeque::new(), frame: 0, frames_in_flight: frames_in_flight.into() })
+    }
+
+    /// Keeps `held`, which frames so far may use.
+    pub(super) fn hold(&mut self, held: impl Any + Send) {
+        self.extend([Box::new(held) as Outgoing]);
+    }
+
+    /// As [`Held::hold`].
+    pub(super) fn extend(&mut self, held: impl IntoIterator<Item = Outgoing>) {
+        let frame = self.frame;
+        self.list.extend(held.into_iter().map(|held| (frame, held)));
+    }
+
+    /// Begins another frame, and lets go of what frames that are over have used.
+    pub(super) fn advance(&mut self) {
+        self.frame += 1;
+        while self.list.front().is_some_and(|(frame, _)| frame + self.frames_in_flight <= self.frame) {
+            self.list.pop_front();
+        }
+    }
+}

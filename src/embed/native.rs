@@ -1,0 +1,335 @@
+//! Surfels in subpasses of a host's own render pass: visibility, sums and picture stay on the tile, and no picture is drawn elsewhere first.
+//!
+//! ```text
+//! once          Place ─ Plan::new → what to append to the render pass ─ the host makes it ─ Renderer::new
+//! each size     Renderer::resize → the views that follow in the framebuffer
+//! each frame    Renderer::prepare: footprints, outside the render pass
+//!               the host's subpasses ─ Renderer::draw: seed, visibility, attribute, normalize ─ the host's subpasses
+//! ```
+//!
+//! `draw` goes from subpass to subpass itself: from the host's last one before into surfel's last, in which the host may draw, too.
+//!
+//! For the methods that draw splats; those that blend have the subpasses visibility, attribute and normalize, those that show the nearest
+//! alone nearest and normalize. The picture is that of [`embed::Renderer`](super::Renderer), bit for bit. The seed comes first where
+//! [`Depth::seed`] asks for it: the host's depth, moved back by several ε, is what splats have to be in front of; it may make a difference at
+//! discs that are seen edge-on.
+//!
+//! ```no_run
+//! use ash::vk;
+//! use std::sync::Arc;
+//! use surfel::embed::{View, native};
+//! use surfel::vk::Device;
+//! use surfel::{Precision, Scene, Settings};
+//!
+//! /// Once. The host has attachments 0 (colour) and 1 (depth), a subpass that draws its meshes, and one that draws its glass.
+//! unsafe fn make(
+//!     host: &ash::Device,
+//!     device: &Arc<Device>,
+//!     scene: &Scene,
+//!     mut attachments: Vec<vk::AttachmentDescription>,
+//!     [meshes, glass]: [vk::SubpassDescription<'_>; 2],
+//!     mut dependencies: Vec<vk::SubpassDependency>,
+//! ) -> surfel::Result<native::Renderer> {
+//!     let place = native::Place {
+//!         attachments: &attachments,
+//!         subpasses: [1, 1],
+//!         picture: 0,
+//!         resolve: None,
+//!         normal: None,
+//!         depth: Some(native::Depth { attachment: 1, reversed: true, seed: true }),
+//!         encode: false,
+//!     };
+//!     let plan = native::Plan::new(device, &place, Precision::Full, &[(scene.streams(), &Settings::default())])?;
+//!     attachments.extend(plan.attachments());
+//!     dependencies.extend(plan.dependencies());
+//!     let subpasses: Vec<_> = [meshes].into_iter().chain(plan.subpasses()).chain([glass]).collect();
+//!     let info = vk::RenderPassCreateInfo::default().attachments(&attachments).subpasses(&subpasses).dependencies(&dependencies);
+//!     let pass = unsafe { host.create_render_pass(&info, None) }.map_err(surfel::Error::vulkan("vkCreateRenderPass"))?;
+//!     unsafe { native::Renderer::new(device, plan, pass, 2) }
+//! }
+//!
+//! /// Each size. `depth` sees the depth aspect alone.
+//! unsafe fn resize(renderer: &mut native::Renderer, size: [u32; 2], [colour, depth]: [vk::ImageView; 2]) -> surfel::Result<Vec<vk::ImageView>> {
+//!     Ok([colour, depth].into_iter().chain(unsafe { renderer.resize(size, Some(depth))? }).collect())
+//! }
+//!
+//! /// Each frame. Clear values follow the host's, too: `Plan::clear_values`.
+//! unsafe fn frame(
+//!     host: &ash::Device,
+//!     renderer: &mut native::Renderer,
+//!     cmd: vk::CommandBuffer,
+//!     begin: &vk::RenderPassBeginInfo<'_>,
+//!     scene: &Arc<Scene>,
+//!     view: &View,
+//! ) -> surfel::Result<()> {
+//!     unsafe {
+//!         renderer.prepare(cmd, scene, view, &Settings::default())?;
+//!         host.cmd_begin_render_pass(cmd, begin, vk::SubpassContents::INLINE);
+//!         // The host draws its meshes.
+//!         renderer.draw(cmd)?;
+//!         host.cmd_next_subpass(cmd, vk::SubpassContents::INLINE);
+//!         // The host draws its glass.
+//!         host.cmd_end_render_pass(cmd);
+//!     }
+//!     Ok(())
+//! }
+//! ```
+
+mod dependencies;
+mod passes;
+mod place;
+mod plan;
+mod present;
+mod seeding;
+mod targets;
+
+pub use place::{Depth, Place};
+pub use plan::Plan;
+
+use super::View;
+use super::held::Held;
+use super::target::{check_convention, depths};
+use crate::error::{Error, Result};
+use crate::scene::Scene;
+use crate::settings::Settings;
+use crate::stage::describe;
+use crate::targets::check_size;
+use crate::vk::shaders::layout::{self, Frame};
+use crate::vk::{Device, Draws, HostDepth, Recorder};
+use ash::vk;
+use passes::Numbers;
+use plan::check_method;
+use present::{Made, Present, Resident};
+use std::sync::Arc;
+use targets::Targets;
+
+/// Renders scenes in subpasses of a host.
+pub struct Renderer {
+    // Fields are dropped in this order: views before what they view.
+    shown: Option<Shown>,
+    present: Option<Present>,
+    /// What was before it: who switches to and fro makes nothing.
+    previous: Option<Present>,
+    held: Held,
+    resident: Option<Resident>,
+    made: Made,
+    targets: Option<Arc<Targets>>,
+    device: Arc<Device>,
+}
+
+/// The frame that is prepared.
+struct Shown {
+    numbers: Numbers,
+    area: vk::Rect2D,
+}
+
+impl Renderer {
+    /// A renderer in a render pass of the host, which has made nothing for any scene yet. As many frames may be under way as
+    /// [`Options::frames_in_flight`](super::Options::frames_in_flight) says.
+    ///
+    /// # Safety
+    /// `pass` is of the device, has the host's attachments, subpasses and dependencies as the plan's [`Place`] says, what the plan adds in its
+    /// place, and outlives the renderer, which is dropped only when the GPU is done with all that it recorded.
+    pub unsafe fn new(
+        device: &Arc<Device>,
+        plan: Plan,
+        pass: vk::RenderPass,
+        frames_in_flight: u32,
+    ) -> Result<Self> {
+        if pass == vk::RenderPass::null() {
+            return Err(Error::Usage(
+                "no render pass: make one of the host's parts and of what the plan adds".into(),
+            ));
+        }
+        Ok(Self {
+            shown: None,
+            present: None,
+            previous: None,
+            held: Held::new(frames_in_flight)?,
+            resident: None,
+            made: Made::new(device, plan, pass)?,
+            targets: None,
+            device: device.clone(),
+        })
+    }
+
+    /// What it adds to the render pass.
+    pub fn plan(&self) -> &Plan {
+        &self.made.plan
+    }
+
+    /// Makes attachments of `size` px, that of the framebuffer, and gives their views, which follow the host's in it. `depth` is the host's, where
+    /// [`Depth::seed`] asks for it. To be called again for another size, and for another depth. After an error all is as it was.
+    ///
+    /// The views are there until as many frames as may be under way have been prepared after the next call, or the renderer is dropped.
+    ///
+    /// # Safety
+    /// `depth` is a view of the depth aspect alone of the image that is the depth attachment of every framebuffer with these views. It is there until
+    /// the frames are over that are prepared before the next call.
+    pub unsafe fn resize(
+        &mut self,
+        size: [u32; 2],
+        depth: Option<vk::ImageView>,
+    ) -> Result<Vec<vk::ImageView>> {
+        check_size(&self.device, size)?;
+        let seeded = self.made.plan.seeded().is_some();
+        if seeded && depth.is_none_or(|depth| depth == vk::ImageView::null()) {
+            return Err(Error::Usage(
+                "splats are to start from the host's depth, and there is no view of it: give one, or make the plan without `seed`".into(),
+            ));
+        }
+        // SAFETY: by the caller.
+        let depth = depth.filter(|_| seeded).map(|depth| unsafe { HostDepth::new(depth) });
+        let targets = match &self.targets {
+            Some(targets) if targets.size == size => targets.beside(depth),
+            _ => Targets::new(&self.device, &self.made.plan, size, depth)?,
+        };
+        let views = targets.views();
+        self.shown = None;
+        let old = (self.present.take(), self.previous.take(), self.targets.replace(Arc::new(targets)));
+        self.held.hold(old);
+        Ok(views)
+    }
+
+    /// Records what a frame of `scene` needs before the render pass, of which [`Renderer::draw`] records the rest. The picture has the viewport's
+    /// size; what has none of the scene is transparent, whatever `settings.background` says.
+    ///
+    /// After an error nothing is recorded, and nothing is there to draw.
+    ///
+    /// # Safety
+    /// `cmd` is of the device, of the queue family that it was lent with, is being recorded outside a render pass, and is submitted to the
+    /// same queue as what was recorded before, after it. What was said of frames in flight is true.
+    pub unsafe fn prepare(
+        &mut self,
+        cmd: vk::CommandBuffer,
+        scene: &Arc<Scene>,
+        view: &View,
+        settings: &Settings,
+    ) -> Result<()> {
+        self.shown = None;
+        let (block, shown) = self.make(scene, view, settings)?;
+        self.held.advance();
+        // SAFETY: by the caller.
+        let mut rec = unsafe { Recorder::of_host(&self.device, cmd) };
+        rec.update(&self.made.frame, bytemuck::bytes_of(&block));
+        if let (Some(present), Some(resident)) = (&self.present, &self.resident) {
+            present.passes.record(&mut rec, &resident.splats, present.coverage.as_deref());
+        }
+        self.shown = Some(shown);
+        Ok(())
+    }
+
+    /// Records the subpasses, going from each to the next: the command buffer then is in the last one, [`Plan::last`]. Sets viewport and
+    /// scissor, and binds pipelines and descriptor sets 0 and 1.
+    ///
+    /// After an error nothing is recorded: [`Renderer::skip`] goes on all the same.
+    ///
+    /// # Safety
+    /// `cmd` is of the device, and is being recorded inside an instance of the render pass, with a framebuffer of the views that were given last, in
+    /// the subpass before the plan's first, or in that if none is before it. It is submitted after what prepared the frame, to the same queue, and
+    /// before what prepares the next one.
+    pub unsafe fn draw(&self, cmd: vk::CommandBuffer) -> Result<()> {
+        // SAFETY: by the caller.
+        unsafe {
+            self.draw_each(|subpass| {
+                self.enter(cmd, subpass);
+                cmd
+            })
+        }
+    }
+
+    /// Goes on to a subpass from the one before.
+    unsafe fn enter(&self, cmd: vk::CommandBuffer, subpass: u32) {
+        // The first one is entered where the render pass begins.
+        if subpass > 0 {
+            // SAFETY: by the caller.
+            unsafe { Draws::next_subpass(&self.device, cmd) };
+        }
+    }
+
+    /// As [`Renderer::draw`], for hosts that go from subpass to subpass themselves, or record each into a command buffer of its own: `next` is
+    /// called before each subpass, with its number, and gives what it is recorded to.
+    ///
+    /// # Safety
+    /// As that of [`Renderer::draw`], of the subpass for which `next` is called.
+    pub unsafe fn draw_each(&self, mut next: impl FnMut(u32) -> vk::CommandBuffer) -> Result<()> {
+        let there = (&self.shown, &self.present, &self.resident);
+        let (Some(Shown { numbers, area }), Some(present), Some(resident)) = there else {
+            return Err(Error::Usage("there is no frame to draw: prepare one, and heed its error".into()));
+        };
+        let viewport = vk::Viewport {
+            x: area.offset.x as f32,
+            y: area.offset.y as f32,
+            width: area.extent.width as f32,
+            height: area.extent.height as f32,
+            min_depth: 0.0,
+            max_depth: 1.0,
+        };
+        for (subpass, step) in self.made.plan.numbered() {
+            let cmd = next(subpass);
+            // SAFETY: by the caller.
+            unsafe {
+                Draws::of_host(&self.device, cmd, step.label(), viewport, *area, |draws| {
+                    present.passes.draw(step, draws, &present.views, &resident.splats, numbers);
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Goes through the subpasses and draws nothing, as in a frame that could not be prepared.
+    ///
+    /// # Safety
+    /// As that of [`Renderer::draw`].
+    pub unsafe fn skip(&self, cmd: vk::CommandBuffer) {
+        for (subpass, _) in self.made.plan.numbered() {
+            // SAFETY: by the caller.
+            unsafe { self.enter(cmd, subpass) };
+        }
+    }
+
+    /// Makes all that a frame needs: its numbers, and where it is drawn.
+    fn make(&mut self, scene: &Arc<Scene>, view: &View, settings: &Settings) -> Result<(Frame, Shown)> {
+        if !scene.is_on(&self.device) {
+            return Err(Error::Usage(
+                "the scene is of another device: upload it to the one that this renderer is of".into(),
+            ));
+        }
+        let area = view.area()?;
+        let targets = self.targets_of(area)?;
+        let size = [area.extent.width, area.extent.height];
+        let camera = view.upright();
+        check_convention(self.made.plan.host.reversed, &camera)?;
+        let depth = depths(&camera, view.viewport)?;
+        let settings = Settings { background: None, ..settings.clone() };
+        check_method(&settings)?;
+        let options = self.made.plan.options(size);
+        let (block, variant) = describe(&self.device, &options, scene, &camera, &settings)?;
+        self.made.plan.check(&variant)?;
+        let origin = [area.offset.x as f32, area.offset.y as f32];
+        let block = Frame { origin, ..block };
+        let format = self.made.plan.seeded().filter(|_| passes::can_seed(&variant));
+        let seed = format.zip(scene.largest()).and_then(|(format, largest)| {
+            seeding::seed(format, depth, (&block, variant.perspective), largest, variant.precision)
+        });
+        self.make_resident(scene, passes::moves(&variant))?;
+        self.make_present(&targets, variant)?;
+        Ok((block, Shown { numbers: Numbers { seed, host: layout::Subpass { depth } }, area }))
+    }
+
+    /// The attachments, if these pixels are within them.
+    fn targets_of(&self, area: vk::Rect2D) -> Result<Arc<Targets>> {
+        let Some(targets) = &self.targets else {
+            return Err(Error::Usage("there are no attachments: call `resize` first".into()));
+        };
+        let ends = [area.offset.x as u32 + area.extent.width, area.offset.y as u32 + area.extent.height];
+        let [width, height] = targets.size;
+        match ends[0] <= width && ends[1] <= height {
+            true => Ok(targets.clone()),
+            false => Err(Error::Usage(format!(
+                "the viewport ends at ({}, {}), and the attachments have {width}x{height} px: call `resize` with the framebuffer's size",
+                ends[0], ends[1]
+            ))),
+        }
+    }
+}

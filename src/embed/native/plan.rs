@@ -1,0 +1,391 @@
+//! What surfels add to a host's render pass: attachments, subpasses, dependencies.
+
+use super::Place;
+use super::dependencies::dependencies;
+use crate::error::{Error, Result};
+use crate::passes::SubpassKind;
+use crate::renderer::{RenderOptions, rasterizer_for, width_of_sums};
+use crate::scene::Streams;
+use crate::settings::Settings;
+use crate::splatting::Visibility;
+use crate::targets::Formats;
+use crate::variant::{Outputs, Precision, Rasterizer, Variant};
+use crate::vk::{Device, input_layout};
+use ash::vk;
+
+/// What surfels add to a host's render pass, after what is the host's own.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// What the host's attachments are for.
+    pub(super) host: HostSide,
+    pub(super) formats: PlanFormats,
+    pub(super) precision: Precision,
+    /// The steps, a subpass each.
+    pub(super) steps: Vec<Step>,
+    attachments: Vec<vk::AttachmentDescription>,
+    references: Vec<References>,
+}
+
+/// What a plan keeps of a [`Place`].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct HostSide {
+    /// The host's attachments.
+    attachments: u32,
+    /// The host's subpasses before and after.
+    pub(super) subpasses: [u32; 2],
+    pub(super) samples: vk::SampleCountFlags,
+    picture: u32,
+    resolve: Option<u32>,
+    pub(super) normal: Option<u32>,
+    depth: Option<(u32, vk::Format)>,
+    pub(super) reversed: Option<bool>,
+    pub(super) encode: bool,
+}
+
+/// Formats of surfel's attachments.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PlanFormats {
+    pub(super) visibility: vk::Format,
+    pub(super) sums0: vk::Format,
+    pub(super) sums1: Option<vk::Format>,
+}
+
+/// A subpass, by what it is called in shaders, labels and documents.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Step {
+    Seed,
+    Visibility,
+    Attribute,
+    Nearest,
+    Normalize,
+}
+
+/// What a subpass refers to.
+#[derive(Clone, Debug, Default)]
+struct References {
+    colours: Vec<vk::AttachmentReference>,
+    resolves: Vec<vk::AttachmentReference>,
+    inputs: Vec<vk::AttachmentReference>,
+    depth: Option<vk::AttachmentReference>,
+    preserved: Vec<u32>,
+}
+
+impl Step {
+    pub(super) fn label(self) -> &'static str {
+        match self {
+            Self::Seed => "seed",
+            Self::Visibility => "visibility",
+            Self::Attribute => "attribute",
+            Self::Nearest => "nearest",
+            Self::Normalize => "normalize",
+        }
+    }
+}
+
+impl Plan {
+    /// What frames of scenes that have these streams ([`Scene::streams`](crate::Scene::streams)) with these settings need in a render pass of
+    /// which `place` tells; frames that need no more will do with it, too. Refuses what cannot be served, and says why.
+    pub fn new(
+        device: &Device,
+        place: &Place<'_>,
+        precision: Precision,
+        frames: &[(Streams, &Settings)],
+    ) -> Result<Self> {
+        place.check(device)?;
+        let outputs = Outputs { normal: place.normal.is_some(), depth: place.depth.is_some(), id: false };
+        let options = RenderOptions {
+            size: [1, 1],
+            outputs,
+            precision,
+            rasterizer: Some(Rasterizer::Draw),
+            ..Default::default()
+        };
+        let variants: Vec<_> = frames
+            .iter()
+            .map(|(streams, settings)| variant(device, &options, *streams, settings))
+            .collect::<Result<_>>()?;
+        let Some(first) = variants.first() else {
+            return Err(Error::Usage("a plan of no frames: say which scenes and settings it is for".into()));
+        };
+        let blends = |variant: &Variant| variant.visibility != Visibility::Nearest;
+        if variants.iter().any(|variant| blends(variant) != blends(first)) {
+            return Err(Error::Usage(
+                "frames that blend splats and frames that show the nearest alone have not the same subpasses: make a plan for each".into(),
+            ));
+        }
+        let seeds = place.depth.is_some_and(|depth| depth.seed);
+        let formats = PlanFormats::of(&variants, seeds && blends(first));
+        let last = match blends(first) {
+            true => &[Step::Visibility, Step::Attribute, Step::Normalize][..],
+            false => &[Step::Nearest, Step::Normalize],
+        };
+        let steps: Vec<_> = seeds.then_some(Step::Seed).into_iter().chain(last.iter().copied()).collect();
+        let mut plan = Self {
+            host: HostSide::of(place),
+            formats,
+            precision,
+            attachments: formats.attachments(&steps),
+            references: Vec::new(),
+            steps,
+        };
+        plan.references = plan.steps.iter().map(|step| plan.references(*step)).collect();
+        Ok(plan)
+    }
+
+    /// The attachments that follow the host's. The framebuffer's views follow in the same order ([`Renderer::resize`](super::Renderer::resize)).
+    pub fn attachments(&self) -> &[vk::AttachmentDescription] {
+        &self.attachments
+    }
+
+    /// What they are cleared to.
+    pub fn clear_values(&self) -> Vec<vk::ClearValue> {
+        vec![vk::ClearValue::default(); self.attachments.len()]
+    }
+
+    /// The subpasses that follow the host's first ones. They keep all of the host's attachments.
+    pub fn subpasses(&self) -> Vec<vk::SubpassDescription<'_>> {
+        self.references.iter().map(References::describe).collect()
+    }
+
+    /// What is to be waited for between all these subpasses, and between them and those of the host before and after, of the host's picture,
+    /// normals and depth. What else the host's subpasses want of each other, and of what is outside the render pass, is the host's.
+    pub fn dependencies(&self) -> Vec<vk::SubpassDependency> {
+        dependencies(self)
+    }
+
+    /// The number of the subpass that writes the host's attachments, surfel's last.
+    pub fn last(&self) -> u32 {
+        self.number(Step::Normalize).unwrap_or_default()
+    }
+
+    /// Format of the host's depth, if splats start from it.
+    pub(super) fn seeded(&self) -> Option<vk::Format> {
+        self.host.depth.map(|(_, format)| format).filter(|_| self.steps.contains(&Step::Seed))
+    }
+
+    /// Whether visibility marks what it draws in the stencil.
+    pub(super) fn marks(&self) -> bool {
+        self.formats.visibility == vk::Format::D32_SFLOAT_S8_UINT
+    }
+
+    /// How its last subpass draws.
+    pub(super) fn kind(&self) -> SubpassKind {
+        let sums_tell = self.marks() || self.steps.contains(&Step::Nearest);
+        SubpassKind { sums_tell, reversed: self.host.reversed, encode: self.host.encode }
+    }
+
+    /// The number of a step's subpass.
+    pub(super) fn number(&self, step: Step) -> Option<u32> {
+        let found = self.steps.iter().position(|found| *found == step)?;
+        Some(self.host.subpasses[0] + found as u32)
+    }
+
+    /// The steps with the numbers of their subpasses.
+    pub(super) fn numbered(&self) -> impl Iterator<Item = (u32, Step)> {
+        (self.host.subpasses[0]..).zip(self.steps.iter().copied())
+    }
+
+    /// What frames are asked to be.
+    pub(super) fn options(&self, size: [u32; 2]) -> RenderOptions {
+        let outputs =
+            Outputs { normal: self.host.normal.is_some(), depth: self.host.depth.is_some(), id: false };
+        RenderOptions {
+            size,
+            outputs,
+            precision: self.precision,
+            rasterizer: Some(Rasterizer::Draw),
+            ..Default::default()
+        }
+    }
+
+    /// Refuses frames that need what this has not.
+    pub(super) fn check(&self, variant: &Variant) -> Result<()> {
+        let refuse = |needed: &str| {
+            Err(Error::Usage(format!(
+                "the frame needs {needed}, which the render pass was planned without: make the plan for such frames, too"
+            )))
+        };
+        if (variant.visibility == Visibility::Nearest) != self.steps.contains(&Step::Nearest) {
+            return refuse(if variant.visibility == Visibility::Nearest {
+                "a subpass for the nearest splat alone"
+            } else {
+                "subpasses that blend splats"
+            });
+        }
+        let needed = PlanFormats::of(&[*variant], self.marks());
+        if wider(needed.sums0, self.formats.sums0) != self.formats.sums0 {
+            return refuse("sums of normals or colours");
+        }
+        match (needed.sums1, self.formats.sums1) {
+            (Some(_), None) => refuse("sums of depths, or of colours beside normals"),
+            (Some(needed), Some(there)) if wider(needed, there) != there => {
+                refuse("sums of colours beside normals")
+            }
+            _ => Ok(()),
+        }
+    }
+
+    fn references(&self, step: Step) -> References {
+        use vk::ImageLayout as Layout;
+        let HostSide { attachments: first, picture, resolve, normal, depth, .. } = self.host;
+        let depth = depth.map(|(attachment, _)| attachment);
+        let [visibility, sums0, sums1] = [first, first + 1, first + 2];
+        let sums1 = self.formats.sums1.map(|_| sums1);
+        let drawn = |attachment| optional(attachment, Layout::COLOR_ATTACHMENT_OPTIMAL);
+        let tested = |attachment| reference(attachment, Layout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL);
+        let kept = |attachment| reference(attachment, Layout::DEPTH_STENCIL_READ_ONLY_OPTIMAL);
+        let read = |attachment| reference(attachment, Layout::SHADER_READ_ONLY_OPTIMAL);
+        let sums = vec![drawn(Some(sums0)), drawn(sums1)];
+        let mut all = match step {
+            Step::Seed => References {
+                inputs: depth.map(kept).into_iter().collect(),
+                depth: Some(tested(visibility)),
+                ..Default::default()
+            },
+            Step::Visibility => References { depth: Some(tested(visibility)), ..Default::default() },
+            Step::Attribute => {
+                References { colours: sums, depth: Some(kept(visibility)), ..Default::default() }
+            }
+            Step::Nearest => {
+                References { colours: sums, depth: Some(tested(visibility)), ..Default::default() }
+            }
+            Step::Normalize => References {
+                colours: vec![drawn(Some(picture)), drawn(normal)],
+                resolves: resolve.map_or(Vec::new(), |resolve| vec![drawn(Some(resolve)), drawn(None)]),
+                // What is not read is stood in for by sums 0.
+                inputs: vec![
+                    if self.kind().sums_tell { read(sums0) } else { kept(visibility) },
+                    read(sums0),
+                    read(sums1.unwrap_or(sums0)),
+                ],
+                depth: depth.map(tested),
+                ..Default::default()
+            },
+        };
+        all.preserved = (0..first).filter(|attachment| !all.names(*attachment)).collect();
+        all
+    }
+}
+
+impl References {
+    fn names(&self, attachment: u32) -> bool {
+        let all = [&self.colours, &self.resolves, &self.inputs];
+        all.into_iter().flatten().chain(&self.depth).any(|found| found.attachment == attachment)
+    }
+
+    fn describe(&self) -> vk::SubpassDescription<'_> {
+        let mut subpass = vk::SubpassDescription::default()
+            .pipeline_bind_point(vk::PipelineBindPoint::GRAPHICS)
+            .color_attachments(&self.colours)
+            .input_attachments(&self.inputs)
+            .preserve_attachments(&self.preserved);
+        if !self.resolves.is_empty() {
+            subpass = subpass.resolve_attachments(&self.resolves);
+        }
+        match &self.depth {
+            Some(depth) => subpass.depth_stencil_attachment(depth),
+            None => subpass,
+        }
+    }
+}
+
+impl HostSide {
+    fn of(place: &Place<'_>) -> Self {
+        Self {
+            attachments: place.attachments.len() as u32,
+            subpasses: place.subpasses,
+            samples: place.samples(),
+            picture: place.picture,
+            resolve: place.resolve,
+            normal: place.normal,
+            depth: place.depth.map(|depth| (depth.attachment, place.format(depth.attachment))),
+            reversed: place.depth.map(|depth| depth.reversed),
+            encode: place.encode,
+        }
+    }
+}
+
+impl PlanFormats {
+    /// What does for all of `variants`, with or without a stencil.
+    fn of(variants: &[Variant], marks: bool) -> Self {
+        let formats = variants.iter().map(Formats::of);
+        let sums0 = formats.clone().map(|formats| formats.sums0).reduce(wider);
+        Self {
+            visibility: if marks { vk::Format::D32_SFLOAT_S8_UINT } else { vk::Format::D32_SFLOAT },
+            sums0: sums0.unwrap_or_default(),
+            sums1: formats.filter_map(|formats| formats.sums1).reduce(wider),
+        }
+    }
+
+    pub(super) fn list(&self) -> impl Iterator<Item = vk::Format> {
+        [self.visibility, self.sums0].into_iter().chain(self.sums1)
+    }
+
+    /// Cleared and not kept.
+    fn attachments(&self, steps: &[Step]) -> Vec<vk::AttachmentDescription> {
+        let ends = |format| match format {
+            // As the last subpass that refers to it has it.
+            vk::Format::D32_SFLOAT if steps.contains(&Step::Nearest) => {
+                vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL
+            }
+            format => input_layout(format),
+        };
+        let describe = |format| {
+            vk::AttachmentDescription::default()
+                .format(format)
+                .samples(vk::SampleCountFlags::TYPE_1)
+                .load_op(vk::AttachmentLoadOp::CLEAR)
+                .store_op(vk::AttachmentStoreOp::DONT_CARE)
+                .stencil_load_op(vk::AttachmentLoadOp::CLEAR)
+                .stencil_store_op(vk::AttachmentStoreOp::DONT_CARE)
+                .initial_layout(vk::ImageLayout::UNDEFINED)
+                .final_layout(ends(format))
+        };
+        self.list().map(describe).collect()
+    }
+}
+
+/// The format of sums, of these two, that holds either's.
+fn wider(a: vk::Format, b: vk::Format) -> vk::Format {
+    let wide = [vk::Format::R32G32B32A32_SFLOAT, vk::Format::R16G16B16A16_SFLOAT];
+    if wide.contains(&a) { a } else { b }
+}
+
+fn reference(attachment: u32, layout: vk::ImageLayout) -> vk::AttachmentReference {
+    vk::AttachmentReference { attachment, layout }
+}
+
+fn optional(attachment: Option<u32>, layout: vk::ImageLayout) -> vk::AttachmentReference {
+    match attachment {
+        Some(attachment) => reference(attachment, layout),
+        None => reference(vk::ATTACHMENT_UNUSED, vk::ImageLayout::UNDEFINED),
+    }
+}
+
+/// Refuses what is not drawn.
+pub(super) fn check_method(settings: &Settings) -> Result<()> {
+    match settings.pull_push {
+        None => Ok(()),
+        Some(_) => Err(Error::Usage(
+            "pull-push computes pyramids, which cannot be done within a render pass: draw its picture by `embed::Renderer`, or choose a \
+             method that draws splats"
+                .into(),
+        )),
+    }
+}
+
+fn variant(
+    device: &Device,
+    options: &RenderOptions,
+    streams: Streams,
+    settings: &Settings,
+) -> Result<Variant> {
+    check_method(settings)?;
+    settings.check()?;
+    settings.splatting.normalization.check_weights(streams.weights.is_some())?;
+    settings.check_primitives(streams.primitives.any())?;
+    let blends = settings.splatting.visibility != Visibility::Nearest;
+    let rasterizer = rasterizer_for(device, options, blends, settings.alpha)?;
+    let options = RenderOptions { precision: width_of_sums(device, options, rasterizer), ..*options };
+    Ok(Variant::new(streams, true, settings, &options, rasterizer))
+}

@@ -1,0 +1,110 @@
+//! What frames are drawn with, made when scene, settings or attachments change.
+
+use super::passes::{Passes, SplatPair, Views};
+use super::targets::Targets;
+use super::{Plan, Renderer};
+use crate::error::Result;
+use crate::passes::{SplatLayout, Splats};
+use crate::scene::Scene;
+use crate::targets::coverage;
+use crate::variant::{Rasterizer, Variant};
+use crate::vk::shaders::layout::Frame;
+use crate::vk::{Buffer, Device};
+use ash::vk;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// What lasts as long as the renderer.
+pub(super) struct Made {
+    pub(super) plan: Plan,
+    pass: vk::RenderPass,
+    passes: HashMap<Variant, Arc<Passes>>,
+    layout: SplatLayout,
+    pub(super) frame: Arc<Buffer>,
+}
+
+/// What frames of a variant are drawn with.
+pub(super) struct Present {
+    // Fields are dropped in this order: views before what they view.
+    pub(super) views: Views,
+    variant: Variant,
+    pub(super) passes: Arc<Passes>,
+    pub(super) coverage: Option<Arc<Buffer>>,
+    _targets: Arc<Targets>,
+    _frame: Arc<Buffer>,
+}
+
+/// The splats of a scene.
+pub(super) struct Resident {
+    pub(super) splats: SplatPair,
+    scene: Arc<Scene>,
+    _frame: Arc<Buffer>,
+}
+
+impl Made {
+    pub(super) fn new(device: &Arc<Device>, plan: Plan, pass: vk::RenderPass) -> Result<Self> {
+        Ok(Self {
+            plan,
+            pass,
+            passes: HashMap::new(),
+            layout: SplatLayout::new(device)?,
+            frame: Arc::new(Buffer::uniform(device, "frame", size_of::<Frame>() as u64)?),
+        })
+    }
+
+    fn passes(&mut self, device: &Arc<Device>, variant: &Variant) -> Result<Arc<Passes>> {
+        if let Some(made) = self.passes.get(variant) {
+            return Ok(made.clone());
+        }
+        // SAFETY: whoever made the renderer answers for the render pass.
+        let made = unsafe { Passes::new(device, &self.layout, variant, &self.plan, self.pass)? };
+        Ok(self.passes.entry(*variant).or_insert(Arc::new(made)).clone())
+    }
+
+    fn present(&mut self, device: &Arc<Device>, targets: &Arc<Targets>, variant: Variant) -> Result<Present> {
+        let passes = self.passes(device, &variant)?;
+        let coverage = coverage(device, &variant, targets.size)?.map(Arc::new);
+        let views = passes.views(device, &self.frame, targets, coverage.as_deref())?;
+        let (_targets, _frame) = (targets.clone(), self.frame.clone());
+        Ok(Present { views, variant, passes, coverage, _targets, _frame })
+    }
+
+    fn resident(&self, device: &Arc<Device>, scene: &Arc<Scene>, moves: bool) -> Result<Resident> {
+        let splats = || Splats::new(device, &self.layout, &self.frame, scene, Some(Rasterizer::Draw));
+        let splats = SplatPair { splats: splats()?, moved: moves.then(splats).transpose()? };
+        Ok(Resident { splats, scene: scene.clone(), _frame: self.frame.clone() })
+    }
+}
+
+impl Renderer {
+    /// Makes the splats of `scene`, if they are not there, for as many surfels as it has now.
+    pub(super) fn make_resident(&mut self, scene: &Arc<Scene>, moves: bool) -> Result<()> {
+        let same = |resident: &Resident| {
+            Arc::ptr_eq(&resident.scene, scene) && resident.splats.moved.is_some() == moves
+        };
+        if !self.resident.as_ref().is_some_and(same) {
+            let old = self.resident.take();
+            self.held.hold(old);
+            self.resident = Some(self.made.resident(&self.device, scene, moves)?);
+        }
+        if let Some(Resident { splats, .. }) = &mut self.resident {
+            splats.set_count(scene.count());
+        }
+        Ok(())
+    }
+
+    /// Makes what frames of `variant` are drawn with, if it is not there.
+    pub(super) fn make_present(&mut self, targets: &Arc<Targets>, variant: Variant) -> Result<()> {
+        let is_other =
+            |present: &Option<Present>| present.as_ref().is_none_or(|present| present.variant != variant);
+        if is_other(&self.present) {
+            std::mem::swap(&mut self.present, &mut self.previous);
+        }
+        if is_other(&self.present) {
+            let old = self.present.take();
+            self.held.hold(old);
+            self.present = Some(self.made.present(&self.device, targets, variant)?);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,186 @@
+//! New values for surfels that are on the GPU.
+
+use super::live::check_bounds;
+use super::{ColourStream, Scene, Stream, largest};
+use crate::error::{Error, Result};
+use crate::geometry::{Bounds, Colours, Ellipse, Surfels, is_unit};
+use crate::vk::Uploads;
+use bytemuck::NoUninit;
+use glam::Vec3;
+use std::ops::Range;
+use std::sync::atomic::Ordering;
+
+/// New values of neighbouring surfels of a scene: of each stream one a surfel, or none where it stays as it is. A scene keeps the streams that
+/// it was uploaded with.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Changes<'a> {
+    /// Centres, relative to the scene's origin.
+    pub positions: Option<&'a [Vec3]>,
+    /// Unit normals.
+    pub normals: Option<&'a [Vec3]>,
+    /// Radii.
+    pub radii: Option<&'a [f32]>,
+    /// Which of them have no side, along with their radii, in a scene that has such.
+    pub two_sided: Option<&'a [bool]>,
+    /// Ellipses, in a scene that has them.
+    pub ellipses: Option<&'a [Ellipse]>,
+    /// Colours, in the form in which the scene has them.
+    pub colours: Option<&'a Colours>,
+    /// Bounds of the scene from now on, world space. Without them, those of new positions are added, or where all are new take their place.
+    pub bounds: Option<Bounds>,
+}
+
+impl Scene {
+    /// Gives surfels from number `first` on new values. Frames that are rendered later have them.
+    ///
+    /// What is not valid then ([`Surfels::is_valid`]) is not drawn, and counted as `invalid`: from the first change on that could bring such,
+    /// the shaders look at every surfel. In another renderer's frames, [`crate::embed::update`] does the same.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] where the arrays are of unequal length or go beyond the scene's end; for a stream that the scene has not or not in this
+    /// form; for normals, radii and ellipses that clip lines or weights depend on; for surfels in buffers of a host. Nothing is changed then.
+    pub fn update(&self, first: u64, changes: &Changes<'_>) -> Result<()> {
+        self.change(&Uploads::now(self.positions.buffer.device())?, first, changes)
+    }
+
+    /// [`Scene::update`] by way of `uploads`, which are of the same device.
+    pub(crate) fn change(&self, uploads: &Uploads<'_>, first: u64, changes: &Changes<'_>) -> Result<()> {
+        let count = changes.count()?;
+        let range = first..first.saturating_add(count);
+        self.check(&range, changes)?;
+        let bounds = changes.bounds.or_else(|| self.bounds_with(&range, changes));
+        bounds.as_ref().map_or(Ok(()), check_bounds)?;
+        if changes.may_be_invalid(self.ellipses.is_some()) {
+            // First: what is written may be drawn.
+            self.unchecked.store(true, Ordering::Relaxed);
+        }
+        if let (Some(known), Some(radii)) = (&self.largest, changes.radii) {
+            // Bits of numbers that are not below 0 are in their order.
+            known.fetch_max(largest(radii).to_bits(), Ordering::Relaxed);
+        }
+        write(uploads, Some(&self.positions), first, changes.positions)?;
+        write(uploads, Some(&self.normals), first, changes.normals)?;
+        let radii = changes.radii.map(|radii| marked(radii, changes.two_sided));
+        write(uploads, Some(&self.radii), first, radii.as_deref())?;
+        write(uploads, self.ellipses.as_ref(), first, changes.ellipses)?;
+        match changes.colours {
+            Some(Colours::Srgb8(colours)) => write(uploads, self.colours.as_ref(), first, Some(colours))?,
+            Some(Colours::Linear(colours)) => write(uploads, self.colours.as_ref(), first, Some(colours))?,
+            None => {}
+        }
+        bounds.map_or(Ok(()), |bounds| self.set_bounds(bounds))
+    }
+
+    fn check(&self, range: &Range<u64>, changes: &Changes<'_>) -> Result<()> {
+        let refuse = |what: &str| Err(Error::Usage(format!("surfels {range:?} cannot be updated: {what}")));
+        let kind = changes.colours.map(|colours| match colours {
+            Colours::Srgb8(_) => ColourStream::Srgb8,
+            Colours::Linear(_) => ColourStream::Linear,
+        });
+        let corners = self.weights.as_ref().is_some_and(|weights| weights.corners);
+        let turned = changes.normals.is_some() || changes.ellipses.is_some();
+        let marks = self.clips.is_some() || self.weights.is_some() || self.texture.is_some();
+        if self.of_host {
+            return refuse("they are in buffers of the host, who writes them itself");
+        } else if range.end > self.capacity() {
+            return refuse(&format!("the scene has room for {}", self.capacity()));
+        } else if changes.ellipses.is_some() && self.ellipses.is_none() {
+            return refuse("the scene has circles: upload it with ellipses");
+        } else if changes.two_sided.is_some() && (!self.two_sided || changes.radii.is_none()) {
+            return refuse(
+                "sides are given along with radii, in a scene that was uploaded with some that have none",
+            );
+        } else if self.two_sided && changes.radii.is_some() && changes.two_sided.is_none() {
+            return refuse("in a scene of which some surfels have no side, give two_sided along with radii");
+        } else if kind.is_some_and(|kind| kind != self.colour_stream) {
+            return refuse(&format!("the scene holds colours as {:?}: give such", self.colour_stream));
+        } else if changes.normals.is_some() && self.clips.is_some() {
+            return refuse("clip lines lie in the planes of the normals: upload surfels and clip lines anew");
+        } else if turned && corners {
+            return refuse("weights at corners lie along the discs' axes: upload surfels and weights anew");
+        } else if changes.radii.is_some() && self.had_invalid && marks {
+            return refuse(
+                "some were invalid when they were uploaded, and a radius would have them drawn with clip lines, weights or texture \
+                 coordinates that may be invalid: upload Surfels::valid",
+            );
+        }
+        Ok(())
+    }
+
+    /// Bounds that hold new positions, too, or them alone.
+    fn bounds_with(&self, range: &Range<u64>, changes: &Changes<'_>) -> Option<Bounds> {
+        let positions = changes.positions?;
+        // A copy only where some are left out.
+        let valid: Vec<Vec3> = match positions.iter().all(is_bounded) {
+            true => Vec::new(),
+            false => positions.iter().copied().filter(is_bounded).collect(),
+        };
+        let of_positions = Bounds::of(if valid.is_empty() { positions } else { &valid })?;
+        let largest = largest(changes.radii.unwrap_or_default());
+        let added = of_positions.grown(largest.into()).translated(self.origin);
+        let whole = *range == (0..self.capacity()) && self.primitives.is_none();
+        Some(if whole { added } else { self.bounds().with(&added) })
+    }
+}
+
+impl Changes<'_> {
+    /// Of how many surfels they are.
+    fn count(&self) -> Result<u64> {
+        let lengths = [
+            self.positions.map(<[_]>::len),
+            self.normals.map(<[_]>::len),
+            self.radii.map(<[_]>::len),
+            self.two_sided.map(<[_]>::len),
+            self.ellipses.map(<[_]>::len),
+            self.colours.map(Colours::len),
+        ];
+        let mut given = lengths.into_iter().flatten();
+        let first = given.next().unwrap_or(0);
+        match given.all(|length| length == first) {
+            true => Ok(first as u64),
+            false => Err(Error::Usage(format!(
+                "new positions, normals, radii, sides, ellipses, colours of unequal numbers {lengths:?}: give one a surfel"
+            ))),
+        }
+    }
+
+    /// Whether some surfel may not be valid with them. Radii tell it themselves, as they are marked.
+    fn may_be_invalid(&self, ellipses: bool) -> bool {
+        let shaped = |e: &Ellipse| is_unit(e.major) && e.aspect > 0.0 && e.aspect <= 1.0;
+        // An ellipse is at a right angle to its normal, which may be the old one.
+        let turned = ellipses && (self.normals.is_some() || self.ellipses.is_some());
+        turned
+            || !self.positions.unwrap_or_default().iter().all(is_bounded)
+            || !self.normals.unwrap_or_default().iter().all(|normal| is_unit(*normal))
+            || !self.ellipses.unwrap_or_default().iter().all(shaped)
+            || match self.colours {
+                Some(Colours::Linear(colours)) => !colours.iter().all(|colour| is_bounded(&(*colour).into())),
+                Some(Colours::Srgb8(_)) | None => false,
+            }
+    }
+}
+
+fn is_bounded(v: &Vec3) -> bool {
+    v.abs().cmple(Vec3::splat(Surfels::LARGEST)).all()
+}
+
+/// Radii as scenes hold them, those that are not valid 0.
+fn marked(radii: &[f32], two_sided: Option<&[bool]>) -> Vec<f32> {
+    let valid = |radius: f32| if radius > 0.0 && radius <= Surfels::LARGEST { radius } else { 0.0 };
+    let sign = |i: usize| if two_sided.is_some_and(|two_sided| two_sided[i]) { -1.0 } else { 1.0 };
+    radii.iter().enumerate().map(|(i, radius)| sign(i) * valid(*radius)).collect()
+}
+
+fn write<T: NoUninit>(
+    uploads: &Uploads<'_>,
+    stream: Option<&Stream>,
+    first: u64,
+    values: Option<&[T]>,
+) -> Result<()> {
+    match (stream, values) {
+        (Some(stream), Some(values)) if !values.is_empty() => {
+            uploads.write(&stream.buffer, first * stream.stride, bytemuck::cast_slice(values))
+        }
+        _ => Ok(()),
+    }
+}

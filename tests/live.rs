@@ -1,0 +1,652 @@
+//! Data that lives on the GPU: surfels in buffers of a host, in place, and new values for surfels that were uploaded.
+#![allow(unsafe_code, reason = "a host speaks Vulkan itself")]
+
+#[path = "../tools/hosts/host/mod.rs"]
+mod host;
+#[path = "support/rig.rs"]
+mod rig;
+#[path = "support/stand.rs"]
+mod stand;
+mod support;
+
+use ash::vk::{self, Format};
+use glam::{DVec3, Vec3};
+use host::frame::Frame;
+use host::memory::Counted;
+use host::{Host, Submitted};
+use rig::{Held, KIND, Rig, SIZE, Shown, lay, view};
+use stand::{assert_silent, open, upload};
+use std::sync::Arc;
+use std::sync::atomic::Ordering;
+use support::layouts::Layout;
+use support::sampling::{Random, bumpy_sphere, forget_sides, narrow, paint_linear, paint_srgb};
+use surfel::embed::{self, Buffers, Changes, Options, READ_ACCESS, READ_STAGES, Radii, Renderer};
+use surfel::geometry::{Bounds, Clip, Clips, Colours, Surfels, Weights};
+use surfel::methods::Method;
+use surfel::splatting::Visibility;
+use surfel::vk::{Buffer, Device, DeviceLimits, Uploads};
+use surfel::{Picture, Precision, Rasterizer, RenderOptions, Scene, Settings, SplatCounts};
+
+/// Ranges so small that a scene of 20,000 surfels has several windows, which begin at far fewer places than the values of vertices do.
+const NARROW: DeviceLimits = DeviceLimits {
+    max_storage_buffer_range: Some(512 << 10),
+    blend_float32: None,
+    float_atomics: None,
+    int64_atomics: None,
+    fragment_writes: None,
+    independent_blend: None,
+    timestamps: None,
+    storage_buffer_alignment: Some(256),
+    max_storage_buffers: None,
+    max_image_side: None,
+};
+
+fn sphere(count: usize) -> Surfels {
+    let mut random = Random(11);
+    let mut surfels = bumpy_sphere(count, &mut random);
+    paint_srgb(&mut surfels, &mut random);
+    surfels
+}
+
+/// Ellipses, of which some have no side, with linear colours.
+fn ellipses(count: usize) -> Surfels {
+    let mut random = Random(12);
+    let mut surfels = bumpy_sphere(count, &mut random);
+    paint_linear(&mut surfels, &mut random);
+    forget_sides(&mut surfels, 0.4, &mut random);
+    narrow(&mut surfels, &mut random);
+    Surfels { origin: DVec3::new(0.125, -0.25, 0.0), ..surfels }
+}
+
+fn settings(method: Method) -> Settings {
+    Settings { background: None, ..method.settings() }
+}
+
+/// What may differ by whom a frame is made: splats that are blended by atomic sums are added in whatever order.
+fn most(settings: &Settings, rasterizer: Rasterizer) -> f32 {
+    let blends = settings.pull_push.is_none() && settings.splatting.visibility != Visibility::Nearest;
+    if blends && rasterizer == Rasterizer::Compute { 2e-5 } else { 0.0 }
+}
+
+/// The number of pixels in which two frames differ by more than `most`.
+fn differing((colours, depths): &Shown, (others, other_depths): &Shown, most: f32) -> usize {
+    assert_eq!((colours.len(), depths.len()), (others.len(), other_depths.len()));
+    let near = |a: f32, b: f32| (a - b).abs() <= most;
+    let same = |i: &usize| {
+        colours[*i].iter().zip(&others[*i]).all(|(a, b)| near(*a, *b)) && near(depths[*i], other_depths[*i])
+    };
+    (0..colours.len()).filter(|i| !same(i)).count()
+}
+
+fn covered((colours, _): &Shown) -> usize {
+    colours.iter().filter(|colour| colour[3] > 0.0).count()
+}
+
+#[test]
+fn a_hosts_buffers_give_the_picture_of_an_upload_by_every_method() {
+    let Some(host) = open(|all| all) else { return };
+    let cases = [
+        (Layout::apart(6_000), sphere(6_000)),
+        (Layout::vertices(), sphere(6_000)),
+        (Layout::wide(), ellipses(6_000)),
+    ];
+    for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
+        let mut rig = Rig::new(&host, Some(rasterizer), DeviceLimits::default());
+        for (layout, surfels) in &cases {
+            let (lent, held) = lay(&host, &rig.device, layout, surfels);
+            let own = upload(&host, &rig.device, surfels);
+            assert!(lent.bytes() < 100 && own.bytes() > 100_000, "nothing is copied: {}", lent.bytes());
+            for method in Method::ALL {
+                let settings = settings(method);
+                let [found, expected] = [&lent, &own].map(|scene| rig.show(&host, scene, &settings));
+                assert!(covered(&expected) > 5_000);
+                let wrong = differing(&found, &expected, most(&settings, rasterizer));
+                assert_eq!(wrong, 0, "{} {rasterizer:?} {layout:?}", method.name);
+            }
+            drop(lent);
+            held.destroy(&host);
+        }
+        rig.destroy(&host);
+    }
+    assert_silent(&host);
+}
+
+#[test]
+fn every_format_gives_what_it_holds() {
+    let Some(host) = open(|all| all) else { return };
+    let mut rig = Rig::new(&host, Some(Rasterizer::Draw), DeviceLimits::default());
+    let base = Layout { colours: None, ..Layout::apart(6_000) };
+    let linear = |format, few, values: fn(Vec3) -> Vec3| {
+        let mut surfels = sphere(6_000);
+        let colours = surfels.positions.iter().map(|p| values(*p).to_array()).collect();
+        surfels.colours = Some(Colours::Linear(colours));
+        (Layout { colours: Some((28 * 6_000, 16, format)), ..base }, surfels, few)
+    };
+    let normals = |format, stride, most| {
+        (
+            Layout { normals: (32 * 6_000, stride, format), ..base },
+            Surfels { colours: None, ..sphere(6_000) },
+            most,
+        )
+    };
+    let bare = || Surfels { colours: None, ..sphere(6_000) };
+    let cases = [
+        (base, bare(), 0),
+        (Layout { radii: None, ..base }, bare(), 0),
+        // Numbers that half floats hold to the bit.
+        linear(Format::R16G16B16A16_SFLOAT, 0, |p| (64.0 * p).round() / 16.0),
+        linear(Format::R32G32B32_SFLOAT, 0, |p| p),
+        linear(Format::R32G32B32A32_SFLOAT, 0, |p| 3.0 * p),
+        // A quotient by 255 is rounded by whoever makes it.
+        linear(Format::R8G8B8A8_UNORM, 20, |p| (0.5 * p + 0.5).clamp(Vec3::ZERO, Vec3::ONE)),
+        // So are unit vectors: few pixels at the rims of discs may turn.
+        normals(Format::R8G8B8A8_SNORM, 4, 20),
+        normals(Format::R16G16B16A16_SNORM, 12, 20),
+        normals(Format::R16G16B16A16_SFLOAT, 8, 20),
+    ];
+    for name in ["sprites-unfiltered", "pull-push"] {
+        let settings = settings(Method::named(name).unwrap());
+        for (layout, surfels, few) in &cases {
+            let (lent, held) = lay(&host, &rig.device, layout, surfels);
+            let found = rig.show(&host, &lent, &settings);
+            let expected = rig.show_uploaded(&host, &layout.held(surfels.clone()), &lent, &settings);
+            assert!(covered(&expected) > 5_000);
+            let wrong = differing(&found, &expected, if *few > 0 { 1e-6 } else { 0.0 });
+            assert!(wrong <= *few, "{name} {layout:?}: {wrong} px");
+            if *few > 0 {
+                // The format is what was read: unrounded normals are others.
+                let rounded = rig.show_uploaded(&host, surfels, &lent, &settings);
+                assert!(differing(&found, &rounded, 1e-6) > 1_000, "{name} {layout:?}");
+            }
+            drop(lent);
+            held.destroy(&host);
+        }
+    }
+    rig.destroy(&host);
+    assert_silent(&host);
+}
+
+#[test]
+fn windows_of_interleaved_buffers_fit_and_count_as_they_are_told() {
+    let Some(host) = open(|all| all) else { return };
+    let (layout, surfels) = (Layout::wide(), ellipses(20_000));
+    for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
+        let mut rig = Rig::new(&host, Some(rasterizer), NARROW);
+        let (lent, held) = lay(&host, &rig.device, &layout, &surfels);
+        let own = upload(&host, &rig.device, &surfels);
+        assert!(lent.windows().len() > 2, "{:?}", lent.windows());
+        let border = lent.windows()[0].end;
+        for name in ["perspective-ewa", "sprites-unfiltered", "pull-push"] {
+            let settings = settings(Method::named(name).unwrap());
+            let most = most(&settings, rasterizer);
+            for count in [20_000, border + 1, border, border - 1, 1, 0] {
+                [&lent, &own].into_iter().for_each(|scene| scene.set_count(count).unwrap());
+                assert_eq!((lent.count(), lent.capacity()), (count, 20_000));
+                let [found, again] = [&lent, &own].map(|scene| rig.show(&host, scene, &settings));
+                assert_eq!(differing(&found, &again, most), 0, "{name} {rasterizer:?} {count}");
+                if count == 0 {
+                    assert_eq!(covered(&found), 0, "{name} {rasterizer:?}");
+                    continue;
+                }
+                let fresh = rig.show_uploaded(&host, &first(&surfels, count as usize), &lent, &settings);
+                assert_eq!(differing(&found, &fresh, most), 0, "{name} {rasterizer:?} {count}");
+                assert!(covered(&fresh) > 0);
+            }
+        }
+        drop(lent);
+        held.destroy(&host);
+        rig.destroy(&host);
+    }
+    assert_silent(&host);
+}
+
+/// The first surfels.
+fn first(surfels: &Surfels, count: usize) -> Surfels {
+    let mut part = surfels.clone();
+    part.positions.truncate(count);
+    part.normals.truncate(count);
+    part.radii.truncate(count);
+    part.ellipses.iter_mut().for_each(|ellipses| ellipses.truncate(count));
+    part.two_sided.iter_mut().for_each(|two_sided| two_sided.truncate(count));
+    match &mut part.colours {
+        Some(Colours::Srgb8(colours)) => colours.truncate(count),
+        Some(Colours::Linear(colours)) => colours.truncate(count),
+        None => {}
+    }
+    part
+}
+
+/// The sphere turned and swollen, as a simulation might.
+fn moved(surfels: &Surfels, step: usize) -> Surfels {
+    let (turn, swell) = (glam::Quat::from_rotation_y(0.3 * step as f32), 1.0 + 0.02 * step as f32);
+    let mut moved = surfels.clone();
+    moved.positions.iter_mut().for_each(|p| *p = swell * (turn * *p));
+    moved.normals.iter_mut().for_each(|n| *n = (turn * *n).normalize());
+    moved
+}
+
+/// Waits for the frames' readers, writes the buffer anew, and has the frames' readers wait for that.
+fn rewrite(host: &Host, cmd: vk::CommandBuffer, from: &Held, to: &Held, size: u64) {
+    let transfer = vk::PipelineStageFlags::TRANSFER;
+    let barrier = |from, to, memory: &[vk::MemoryBarrier<'_>]| {
+        // SAFETY: recorded outside a render pass.
+        unsafe {
+            host.device.cmd_pipeline_barrier(cmd, from, to, vk::DependencyFlags::empty(), memory, &[], &[])
+        };
+    };
+    barrier(READ_STAGES, transfer, &[]);
+    let region = vk::BufferCopy { size, ..Default::default() };
+    // SAFETY: both buffers are as large, and stay until all is done.
+    unsafe { host.device.cmd_copy_buffer(cmd, from.0, to.0, &[region]) };
+    let seen = vk::MemoryBarrier::default()
+        .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
+        .dst_access_mask(READ_ACCESS);
+    barrier(transfer, READ_STAGES, &[seen]);
+}
+
+#[test]
+fn what_moves_every_frame_is_seen_where_it_is_with_frames_in_flight() {
+    const FRAMES: usize = 6;
+    let Some(host) = open(|all| all) else { return };
+    let (layout, surfels) = (Layout::vertices(), sphere(6_000));
+    let steps: Vec<_> = (0..FRAMES).map(|step| moved(&surfels, step)).collect();
+    for (name, rasterizer) in [
+        ("sprites-unfiltered", Rasterizer::Draw),
+        ("perspective-ewa", Rasterizer::Draw),
+        ("perspective-ewa", Rasterizer::Compute),
+        ("pull-push", Rasterizer::Draw),
+        ("pull-push", Rasterizer::Compute),
+    ] {
+        let settings = settings(Method::named(name).unwrap());
+        let mut rig = Rig::new(&host, Some(rasterizer), DeviceLimits::default());
+        let (lent, held) = lay(&host, &rig.device, &layout, &surfels);
+        let sources: Vec<_> = steps.iter().map(|step| Held::new(&host, &layout.bytes(step))).collect();
+        let frames: Vec<_> = steps.iter().map(|_| Frame::new(&host, KIND, SIZE).unwrap()).collect();
+        let size = layout.bytes(&surfels).len() as u64;
+        let submit = |(source, frame): (&Held, &Frame)| -> Submitted {
+            let (submitted, ()) = host
+                .submit(|cmd| {
+                    rewrite(&host, cmd, source, &held, size);
+                    rig.record(&host, cmd, Some(frame), &lent, &settings);
+                    Ok(())
+                })
+                .unwrap();
+            submitted
+        };
+        let under_way: Vec<_> = sources.iter().zip(&frames).map(submit).collect();
+        under_way.into_iter().for_each(|submitted| host.wait(submitted).unwrap());
+        let mut before: Option<Shown> = None;
+        for (step, frame) in steps.iter().zip(&frames) {
+            let found = frame.read(&host).unwrap();
+            let expected = rig.show_uploaded(&host, step, &lent, &settings);
+            assert_eq!(differing(&found, &expected, most(&settings, rasterizer)), 0, "{name} {rasterizer:?}");
+            assert!(before.is_none_or(|before| differing(&before, &found, 1e-3) > 1_000), "it moves");
+            before = Some(found);
+        }
+        drop(lent);
+        frames.into_iter().for_each(|frame| frame.destroy(&host));
+        sources.into_iter().chain([held]).for_each(|held| held.destroy(&host));
+        rig.destroy(&host);
+    }
+    assert_silent(&host);
+}
+
+#[test]
+fn buffers_that_take_turns_make_nothing() {
+    let Some(host) = open(|all| all) else { return };
+    let (memory, counts) = Counted::new(&host);
+    let device = host.lend(Some(Box::new(memory))).unwrap();
+    let frame = Frame::new(&host, KIND, SIZE).unwrap();
+    let options =
+        Options { target: frame.target(), frames_in_flight: 2, precision: Precision::Full, rasterizer: None };
+    // SAFETY: the target is the frame's.
+    let mut rig = Rig { renderer: unsafe { Renderer::new(&device, options) }.unwrap(), device, frame };
+    let (layout, surfels) = (Layout::vertices(), sphere(2_000));
+    let scenes: Vec<_> =
+        (0..3).map(|step| lay(&host, &rig.device, &layout, &moved(&surfels, step))).collect();
+    let settings = settings(Method::named("perspective-ewa").unwrap());
+    let mut made = Vec::new();
+    for number in 0..12 {
+        let shown = rig.show(&host, &scenes[number % 3].0, &settings);
+        assert!(covered(&shown) > 5_000);
+        made.push(counts.left.load(Ordering::SeqCst));
+    }
+    assert!(made[3..].iter().all(|left| *left == made[3]), "{made:?}");
+    // What is no longer among them goes.
+    let alive = counts.alive.load(Ordering::SeqCst);
+    (0..8).for_each(|_| drop(rig.show(&host, &scenes[0].0, &settings)));
+    assert!(counts.alive.load(Ordering::SeqCst) < alive);
+    let (kept, held): (Vec<_>, Vec<_>) = scenes.into_iter().unzip();
+    drop(kept);
+    let Rig { renderer, device, frame } = rig;
+    drop(renderer);
+    assert_eq!((Arc::strong_count(&device), counts.alive.load(Ordering::SeqCst)), (1, 0));
+    drop(device);
+    frame.destroy(&host);
+    held.into_iter().for_each(|held| held.destroy(&host));
+    assert_silent(&host);
+}
+
+/// Surfels `range` of `surfels`, as changes of all streams.
+fn changes<'a>(surfels: &'a Surfels, range: std::ops::Range<usize>, colours: &'a Colours) -> Changes<'a> {
+    Changes {
+        positions: Some(&surfels.positions[range.clone()]),
+        normals: Some(&surfels.normals[range.clone()]),
+        radii: Some(&surfels.radii[range.clone()]),
+        two_sided: surfels.two_sided.as_ref().map(|two_sided| &two_sided[range.clone()]),
+        ellipses: surfels.ellipses.as_ref().map(|ellipses| &ellipses[range.clone()]),
+        colours: Some(colours),
+        bounds: None,
+    }
+}
+
+fn part(colours: Option<&Colours>, range: std::ops::Range<usize>) -> Colours {
+    match colours {
+        Some(Colours::Srgb8(colours)) => Colours::Srgb8(colours[range].to_vec()),
+        Some(Colours::Linear(colours)) => Colours::Linear(colours[range].to_vec()),
+        None => panic!("there are colours"),
+    }
+}
+
+/// `old` with a range of `new`.
+fn mixed(old: &Surfels, new: &Surfels, range: std::ops::Range<usize>) -> Surfels {
+    let mut mixed = old.clone();
+    mixed.positions[range.clone()].copy_from_slice(&new.positions[range.clone()]);
+    mixed.normals[range.clone()].copy_from_slice(&new.normals[range.clone()]);
+    mixed.radii[range.clone()].copy_from_slice(&new.radii[range.clone()]);
+    if let (Some(mixed), Some(new)) = (&mut mixed.two_sided, &new.two_sided) {
+        mixed[range.clone()].copy_from_slice(&new[range.clone()]);
+    }
+    if let (Some(mixed), Some(new)) = (&mut mixed.ellipses, &new.ellipses) {
+        mixed[range.clone()].copy_from_slice(&new[range.clone()]);
+    }
+    match (&mut mixed.colours, &new.colours) {
+        (Some(Colours::Srgb8(mixed)), Some(Colours::Srgb8(new))) => {
+            mixed[range.clone()].copy_from_slice(&new[range])
+        }
+        (Some(Colours::Linear(mixed)), Some(Colours::Linear(new))) => {
+            mixed[range.clone()].copy_from_slice(&new[range])
+        }
+        _ => panic!("colours are of one kind"),
+    }
+    mixed
+}
+
+/// Other values for the same surfels, all streams.
+fn others(surfels: &Surfels) -> Surfels {
+    let mut other = moved(surfels, 4);
+    other.radii.iter_mut().for_each(|radius| *radius *= 1.25);
+    other.two_sided.iter_mut().flatten().for_each(|two_sided| *two_sided = !*two_sided);
+    let random = &mut Random(99);
+    if other.ellipses.is_some() {
+        narrow(&mut other, random);
+    }
+    match other.colours {
+        Some(Colours::Linear(_)) => paint_linear(&mut other, random),
+        _ => paint_srgb(&mut other, random),
+    }
+    other
+}
+
+#[test]
+fn an_update_is_seen_by_the_frames_after_it_and_by_none_before() {
+    let Some(host) = open(|all| all) else { return };
+    for (surfels, rasterizer) in [(sphere(20_000), Rasterizer::Draw), (ellipses(20_000), Rasterizer::Compute)]
+    {
+        let new = others(&surfels);
+        let mut rig = Rig::new(&host, Some(rasterizer), NARROW);
+        let border = upload(&host, &rig.device, &surfels).windows()[0].end as usize;
+        for range in [border - 3..border + 5, 0..border, border..20_000, 0..20_000, 7..8] {
+            let settings = settings(Method::named("sprites-unfiltered").unwrap());
+            let scene = upload(&host, &rig.device, &surfels);
+            let [before, after] = [(); 2].map(|()| Frame::new(&host, KIND, SIZE).unwrap());
+            let colours = part(new.colours.as_ref(), range.clone());
+            let changes = changes(&new, range.clone(), &colours);
+            let (submitted, staging) = host
+                .submit(|cmd| {
+                    rig.record(&host, cmd, Some(&before), &scene, &settings);
+                    // SAFETY: recorded outside a render pass, between frames of the same queue.
+                    let staging =
+                        unsafe { embed::update(cmd, &scene, range.start as u64, &changes) }.unwrap();
+                    rig.record(&host, cmd, Some(&after), &scene, &settings);
+                    Ok(staging)
+                })
+                .unwrap();
+            assert!(staging.bytes() > 0);
+            host.wait(submitted).unwrap();
+            drop(staging);
+            let old = upload(&host, &rig.device, &surfels);
+            let later = mixed(&surfels, &new, range.clone());
+            for (frame, surfels, like) in [(before, &surfels, &old), (after, &later, &scene)] {
+                let found = frame.read(&host).unwrap();
+                let expected = rig.show_uploaded(&host, surfels, like, &settings);
+                assert_eq!(differing(&found, &expected, 0.0), 0, "{rasterizer:?} {range:?}");
+                frame.destroy(&host);
+            }
+        }
+        rig.destroy(&host);
+    }
+    assert_silent(&host);
+}
+
+/// A frame of the engine's own, of what is there and counted.
+fn alone(device: &Arc<Device>, scene: &Scene, name: &str, rasterizer: Rasterizer) -> (Picture, SplatCounts) {
+    let options =
+        RenderOptions { size: SIZE, rasterizer: Some(rasterizer), count: true, ..Default::default() };
+    let mut renderer = surfel::Renderer::new(device, options).unwrap();
+    let settings = settings(Method::named(name).unwrap());
+    let (picture, report) = renderer.render_picture(scene, &view().camera, &settings).unwrap();
+    (picture, report.counts.unwrap())
+}
+
+const ALONE: [(&str, Rasterizer); 3] = [
+    ("sprites-unfiltered", Rasterizer::Draw),
+    ("pull-push", Rasterizer::Draw),
+    ("pull-push", Rasterizer::Compute),
+];
+
+/// Surfels of which every 16th of some kind is invalid in another way.
+fn spoil(surfels: &mut Surfels) -> usize {
+    let spoils: [fn(&mut Surfels, usize); 12] = [
+        |s, i| s.positions[i].y = f32::NAN,
+        |s, i| s.positions[i].z = f32::NEG_INFINITY,
+        |s, i| s.positions[i].x = -1.1e15,
+        |s, i| s.normals[i] = Vec3::ZERO,
+        |s, i| s.normals[i] *= 1.01,
+        |s, i| s.normals[i].x = f32::NAN,
+        |s, i| s.radii[i] = 0.0,
+        |s, i| s.radii[i] = f32::NAN,
+        |s, i| s.radii[i] = f32::INFINITY,
+        |s, i| s.ellipses.as_mut().unwrap()[i].major = s.normals[i],
+        |s, i| s.ellipses.as_mut().unwrap()[i].aspect = 1.5,
+        |s, i| match &mut s.colours {
+            Some(Colours::Linear(colours)) => colours[i][2] = f32::NAN,
+            _ => panic!("colours are linear"),
+        },
+    ];
+    let spoiled: Vec<usize> = (0..surfels.len()).filter(|i| i % 16 < spoils.len()).collect();
+    spoiled.iter().for_each(|&i| spoils[i % 16](surfels, i));
+    spoiled.len()
+}
+
+#[test]
+fn what_is_invalid_in_a_hosts_buffer_is_culled_and_counted() {
+    let Some(device) = support::gpu::device(DeviceLimits::default()) else { return };
+    let mut surfels = ellipses(6_000);
+    let spoiled = spoil(&mut surfels);
+    assert_eq!(surfels.count_invalid(), spoiled);
+    let own = Scene::upload(&device, &surfels).unwrap();
+    let layout = Layout::wide();
+    let bytes = layout.bytes(&surfels);
+    let buffer = Buffer::storage(&device, "surfels", bytes.len() as u64).unwrap();
+    Uploads::now(&device).unwrap().write(&buffer, 0, &bytes).unwrap();
+    // SAFETY: the buffer is the device's, and goes last.
+    let lent = unsafe { Scene::from_buffers(&device, &layout.told(&surfels, buffer.handle())) }.unwrap();
+    for (name, rasterizer) in ALONE {
+        let [found, expected] = [&lent, &own].map(|scene| alone(&device, scene, name, rasterizer));
+        assert_eq!(expected.1.invalid as usize, spoiled);
+        assert_eq!(found.1, expected.1, "{name} {rasterizer:?}");
+        assert!(found.0 == expected.0, "{name} {rasterizer:?}");
+        assert!(found.0.colour.iter().filter(|colour| colour[3] > 0.0).count() > 2_000);
+    }
+    drop((own, lent));
+    support::gpu::assert_silent(&device);
+}
+
+#[test]
+fn what_an_update_makes_invalid_is_culled_and_what_it_mends_is_drawn() {
+    let Some(device) = support::gpu::device(DeviceLimits::default()) else { return };
+    let good = ellipses(6_000);
+    let mut bad = good.clone();
+    spoil(&mut bad);
+    for (from, to) in [(&good, &bad), (&bad, &good)] {
+        let scene = Scene::upload(&device, from).unwrap();
+        let colours = part(to.colours.as_ref(), 100..5_900);
+        scene.update(100, &changes(to, 100..5_900, &colours)).unwrap();
+        let expected = Scene::upload(&device, &mixed(from, to, 100..5_900)).unwrap();
+        for (name, rasterizer) in ALONE {
+            let [found, expected] = [&scene, &expected].map(|scene| alone(&device, scene, name, rasterizer));
+            assert!(expected.1.invalid > 50);
+            assert_eq!(found.1, expected.1, "{name} {rasterizer:?}");
+            assert!(found.0 == expected.0, "{name} {rasterizer:?}");
+        }
+    }
+    // One stream alone.
+    let scene = Scene::upload(&device, &good).unwrap();
+    scene.update(0, &Changes { positions: Some(&[Vec3::NAN, Vec3::ZERO]), ..Default::default() }).unwrap();
+    let (_, counts) = alone(&device, &scene, "pull-push", Rasterizer::Compute);
+    assert_eq!(counts.invalid, 1);
+    support::gpu::assert_silent(&device);
+}
+
+#[test]
+fn bounds_follow_positions_or_are_what_is_said() {
+    let Some(device) = support::gpu::device(DeviceLimits::default()) else { return };
+    let surfels = sphere(500);
+    let scene = Scene::upload(&device, &surfels).unwrap();
+    assert_eq!(scene.bounds(), surfels.bounds().unwrap());
+    let far = [Vec3::new(9.0, 0.0, 0.0), Vec3::NAN];
+    scene.update(3, &Changes { positions: Some(&far), ..Default::default() }).unwrap();
+    assert!(scene.bounds().max.x == 9.0 && scene.bounds().min == surfels.bounds().unwrap().min);
+    let all = moved(&surfels, 2);
+    let whole = Changes { positions: Some(&all.positions), radii: Some(&all.radii), ..Default::default() };
+    scene.update(0, &whole).unwrap();
+    assert_eq!(scene.bounds(), all.bounds().unwrap());
+    let said = Bounds::of_box(DVec3::splat(-2.0), DVec3::splat(5.0));
+    scene.update(0, &Changes { bounds: Some(said), ..whole }).unwrap();
+    assert_eq!(scene.bounds(), said);
+    assert!(scene.set_bounds(Bounds { radius: f64::NAN, ..said }).is_err());
+    support::gpu::assert_silent(&device);
+}
+
+fn refused<T>(made: surfel::Result<T>, said: &str) {
+    let text = made.err().map(|error| error.to_string()).unwrap_or_default();
+    assert!(text.contains(said), "`{said}` is not in `{text}`");
+}
+
+#[test]
+fn buffers_that_cannot_be_read_are_refused_and_named() {
+    let Some(host) = open(|all| all) else { return };
+    let device = host.lend_within(NARROW, None).unwrap();
+    let surfels = ellipses(1_000);
+    let layout = Layout::wide();
+    let held = Held::new(&host, &layout.bytes(&surfels));
+    let good = layout.told(&surfels, held.0);
+    type Change = fn(&mut Buffers);
+    let changes: [(Change, &str); 17] = [
+        (
+            |b| b.positions.format = Format::R16G16B16A16_SFLOAT,
+            "positions cannot be read: they are R16G16B16A16_SFLOAT",
+        ),
+        (|b| b.normals.format = Format::R8G8B8A8_UNORM, "normals cannot be read: they are R8G8B8A8_UNORM"),
+        (|b| b.colours.as_mut().unwrap().format = Format::R8G8B8_SRGB, "colours cannot be read"),
+        (|b| b.ellipses.as_mut().unwrap().format = Format::R32G32B32_SFLOAT, "give R32G32B32A32_SFLOAT"),
+        (|b| b.positions.stride = 70, "70 bytes apart: give multiples of 4"),
+        (|b| b.normals.offset = 38, "begin at byte 38"),
+        (|b| b.positions.stride = 8, "a stride of 12 bytes or more"),
+        (
+            |b| b.positions.size = 71_950,
+            "positions cannot be read: 1000 of them, from byte 20 on, 72 bytes apart, do not fit 71950",
+        ),
+        (|b| b.normals.offset = u64::MAX - 3, "do not fit"),
+        (|b| b.capacity = 0, "give room for 1"),
+        (|b| b.capacity = 1 << 40, "give room for 1"),
+        (|b| b.count = 1_001, "1001 of 1000"),
+        (|b| b.origin.y = f64::NAN, "origin"),
+        (|b| b.bounds.radius = f64::INFINITY, "bounds"),
+        (|b| b.radii = Radii::All(-1.0e16), "radius of -1"),
+        (|b| (b.radii, b.two_sided) = (Radii::All(-1.0), false), "radius of -1"),
+        (|b| b.normals.buffer = vk::Buffer::null(), "buffer is null"),
+    ];
+    for (change, said) in changes {
+        let mut buffers = good;
+        change(&mut buffers);
+        // SAFETY: nothing is made of what is refused.
+        refused(unsafe { Scene::from_buffers(&device, &buffers) }, said);
+    }
+    let mut sparse = good;
+    (sparse.positions.stride, sparse.positions.size) = (4 << 10, 4 << 20);
+    // SAFETY: as above.
+    refused(unsafe { Scene::from_buffers(&device, &sparse) }, "maxStorageBufferRange");
+    // SAFETY: the buffer is the device's, and goes last.
+    let scene = unsafe { Scene::from_buffers(&device, &good) }.unwrap();
+    refused(scene.set_count(1_001), "room for 1000");
+    let one = Changes { positions: Some(&[Vec3::ZERO]), ..Default::default() };
+    // SAFETY: recorded outside a render pass, and waited for.
+    let update = |scene: &Scene| host.run(|cmd| Ok(unsafe { embed::update(cmd, scene, 0, &one) })).unwrap();
+    refused(update(&scene), "buffers of the host");
+    assert!(update(&upload(&host, &device, &surfels)).is_ok());
+    drop(scene);
+    held.destroy(&host);
+    drop(device);
+    assert_silent(&host);
+}
+
+#[test]
+fn updates_that_cannot_be_made_are_refused_and_change_nothing() {
+    let Some(device) = support::gpu::device(DeviceLimits::default()) else { return };
+    let surfels = sphere(500);
+    let scene = |change: fn(&mut Surfels)| {
+        let mut surfels = surfels.clone();
+        change(&mut surfels);
+        Scene::upload(&device, &surfels).unwrap()
+    };
+    let none = Changes::default();
+    let (here, up, radius) = ([Vec3::ZERO; 2], [Vec3::Y; 2], [0.1f32; 2]);
+    let linear = Colours::Linear(vec![[0.0; 3]; 2]);
+    let plain = scene(|_| {});
+    refused(
+        plain.update(499, &Changes { positions: Some(&here), ..none }),
+        "surfels 499..501 cannot be updated",
+    );
+    refused(plain.update(u64::MAX, &Changes { positions: Some(&here), ..none }), "room for 500");
+    refused(
+        plain.update(0, &Changes { positions: Some(&here), radii: Some(&radius[..1]), ..none }),
+        "unequal",
+    );
+    refused(plain.update(0, &Changes { colours: Some(&linear), ..none }), "Srgb8");
+    refused(plain.update(0, &Changes { ellipses: Some(&[]), ..none }), "circles");
+    refused(plain.update(0, &Changes { two_sided: Some(&[true]), ..none }), "along with radii");
+    let sides = scene(|s| s.two_sided = Some(vec![true; 500]));
+    refused(sides.update(0, &Changes { radii: Some(&radius), ..none }), "two_sided");
+    let clipped = scene(|s| {
+        s.clips =
+            Clips::collect(vec![
+                Some(Clip { lines: [surfel::geometry::ClipLine::NONE; 2], concave: false });
+                500
+            ])
+    });
+    refused(clipped.update(0, &Changes { normals: Some(&up), ..none }), "clip lines");
+    refused(clipped.set_count(3), "clip lines");
+    let weighted = scene(|s| s.weights = Some(Weights::collect(vec![(1.0, Some([1.0; 4])); 500])));
+    refused(weighted.update(0, &Changes { normals: Some(&up), ..none }), "weights at corners");
+    let spoiled = scene(|s| {
+        s.weights = Some(Weights::collect(vec![(1.0, None); 500]));
+        s.radii[3] = f32::NAN;
+    });
+    refused(spoiled.update(0, &Changes { radii: Some(&radius), ..none }), "Surfels::valid");
+    let untouched = alone(&device, &plain, "pull-push", Rasterizer::Compute);
+    assert!(untouched == alone(&device, &scene(|_| {}), "pull-push", Rasterizer::Compute));
+    assert!(plain.update(3, &none).is_ok());
+    support::gpu::assert_silent(&device);
+}

@@ -1,0 +1,181 @@
+//! Fog: a later subpass of the host, which reads the depth that is there by then, whoever drew it.
+
+use super::mesh::compile;
+use super::{Host, Result};
+use ash::vk;
+
+const VERTEX: &str = "#version 450
+void main() {
+    gl_Position = vec4(gl_VertexIndex == 1 ? 3.0 : -1.0, gl_VertexIndex == 2 ? 3.0 : -1.0, 0.0, 1.0);
+}";
+
+const FRAGMENT: &str = "#version 450
+layout(location = 0) out vec4 colour;
+layout(push_constant) uniform Push { vec4 fog; float density; } push;
+#if SAMPLES > 1
+layout(set = 0, binding = 0, input_attachment_index = 0) uniform subpassInputMS depths;
+#else
+layout(set = 0, binding = 0, input_attachment_index = 0) uniform subpassInput depths;
+#endif
+// Depth falls with distance, from 1: as much fog as there is way behind it.
+float fog(float depth) { return exp(-push.density * depth); }
+void main() {
+    float f = 0.0;
+#if SAMPLES > 1
+    for (int k = 0; k < SAMPLES; k++) f += fog(subpassLoad(depths, k).r) / float(SAMPLES);
+#else
+    f = fog(subpassLoad(depths).r);
+#endif
+    colour = vec4(f * push.fog.rgb, f);
+}";
+
+/// How dense it is: at depth d, its part of the colour is exp(−DENSITY d).
+pub const DENSITY: f32 = 80.0;
+/// Its colour, linear.
+pub const COLOUR: [f32; 3] = [0.65, 0.7, 0.75];
+
+/// The pipeline that draws it and what that reads.
+pub struct Fog {
+    layout: vk::PipelineLayout,
+    set_layout: vk::DescriptorSetLayout,
+    pool: vk::DescriptorPool,
+    set: vk::DescriptorSet,
+    pipeline: vk::Pipeline,
+}
+
+impl Fog {
+    /// Fog in a subpass of a render pass.
+    pub fn new(
+        host: &Host,
+        (pass, subpass): (vk::RenderPass, u32),
+        samples: vk::SampleCountFlags,
+    ) -> Result<Self> {
+        let input = vk::DescriptorType::INPUT_ATTACHMENT;
+        let stage = vk::ShaderStageFlags::FRAGMENT;
+        let binding = [vk::DescriptorSetLayoutBinding::default()
+            .descriptor_type(input)
+            .descriptor_count(1)
+            .stage_flags(stage)];
+        let push = [vk::PushConstantRange { stage_flags: stage, offset: 0, size: 20 }];
+        let size = [vk::DescriptorPoolSize { ty: input, descriptor_count: 1 }];
+        // SAFETY: a plain use of Vulkan; `destroy` destroys what is made.
+        unsafe {
+            let device = &host.device;
+            let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&binding);
+            let set_layout = device.create_descriptor_set_layout(&info, None)?;
+            let layouts = [set_layout];
+            let info =
+                vk::PipelineLayoutCreateInfo::default().set_layouts(&layouts).push_constant_ranges(&push);
+            let layout = device.create_pipeline_layout(&info, None)?;
+            let info = vk::DescriptorPoolCreateInfo::default().max_sets(1).pool_sizes(&size);
+            let pool = device.create_descriptor_pool(&info, None)?;
+            let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool).set_layouts(&layouts);
+            let set = device.allocate_descriptor_sets(&info)?[0];
+            let pipeline = pipeline(host, layout, (pass, subpass), samples)?;
+            Ok(Self { layout, set_layout, pool, set, pipeline })
+        }
+    }
+
+    /// The depth that it reads from now on, of which no frame is under way.
+    pub fn read(&self, host: &Host, depth: vk::ImageView) {
+        let info = [vk::DescriptorImageInfo {
+            image_view: depth,
+            image_layout: vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL,
+            ..Default::default()
+        }];
+        let write = vk::WriteDescriptorSet::default()
+            .dst_set(self.set)
+            .descriptor_type(vk::DescriptorType::INPUT_ATTACHMENT)
+            .image_info(&info);
+        // SAFETY: by the caller.
+        unsafe { host.device.update_descriptor_sets(&[write], &[]) };
+    }
+
+    /// Draws it over all of `viewport`, inside its subpass.
+    pub fn draw(&self, host: &Host, cmd: vk::CommandBuffer, [width, height]: [u32; 2]) {
+        let [r, g, b] = COLOUR;
+        let push = [r, g, b, 1.0, DENSITY];
+        let area = vk::Rect2D { extent: vk::Extent2D { width, height }, ..Default::default() };
+        let viewport =
+            vk::Viewport { width: width as f32, height: height as f32, max_depth: 1.0, ..Default::default() };
+        let point = vk::PipelineBindPoint::GRAPHICS;
+        // SAFETY: recorded inside the subpass that the pipeline is for.
+        unsafe {
+            let device = &host.device;
+            device.cmd_set_viewport(cmd, 0, &[viewport]);
+            device.cmd_set_scissor(cmd, 0, &[area]);
+            device.cmd_bind_pipeline(cmd, point, self.pipeline);
+            device.cmd_bind_descriptor_sets(cmd, point, self.layout, 0, &[self.set], &[]);
+            let stage = vk::ShaderStageFlags::FRAGMENT;
+            device.cmd_push_constants(cmd, self.layout, stage, 0, bytemuck::cast_slice(&push));
+            device.cmd_draw(cmd, 3, 1, 0, 0);
+        }
+    }
+
+    /// Destroys it, once the GPU is done with it.
+    pub fn destroy(self, host: &Host) {
+        // SAFETY: by the caller.
+        unsafe {
+            host.device.destroy_pipeline(self.pipeline, None);
+            host.device.destroy_pipeline_layout(self.layout, None);
+            host.device.destroy_descriptor_pool(self.pool, None);
+            host.device.destroy_descriptor_set_layout(self.set_layout, None);
+        }
+    }
+}
+
+unsafe fn pipeline(
+    host: &Host,
+    layout: vk::PipelineLayout,
+    (pass, subpass): (vk::RenderPass, u32),
+    samples: vk::SampleCountFlags,
+) -> Result<vk::Pipeline> {
+    // SAFETY: by the caller: a plain use of Vulkan.
+    unsafe {
+        let module = |text: &str, kind| -> Result<vk::ShaderModule> {
+            let code = compile(text, kind)?;
+            Ok(host.device.create_shader_module(&vk::ShaderModuleCreateInfo::default().code(&code), None)?)
+        };
+        let fragment = FRAGMENT.replace("SAMPLES", &samples.as_raw().to_string());
+        let modules =
+            [module(VERTEX, shaderc::ShaderKind::Vertex)?, module(&fragment, shaderc::ShaderKind::Fragment)?];
+        let stage = |module, stage| {
+            vk::PipelineShaderStageCreateInfo::default().stage(stage).module(module).name(c"main")
+        };
+        let stages = [
+            stage(modules[0], vk::ShaderStageFlags::VERTEX),
+            stage(modules[1], vk::ShaderStageFlags::FRAGMENT),
+        ];
+        let vertices = vk::PipelineVertexInputStateCreateInfo::default();
+        let assembly = vk::PipelineInputAssemblyStateCreateInfo::default()
+            .topology(vk::PrimitiveTopology::TRIANGLE_LIST);
+        let viewport = vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
+        let rasterization = vk::PipelineRasterizationStateCreateInfo::default().line_width(1.0);
+        let multisample = vk::PipelineMultisampleStateCreateInfo::default().rasterization_samples(samples);
+        let over = [vk::PipelineColorBlendAttachmentState::default()
+            .blend_enable(true)
+            .src_color_blend_factor(vk::BlendFactor::ONE)
+            .dst_color_blend_factor(vk::BlendFactor::ONE_MINUS_SRC_ALPHA)
+            .src_alpha_blend_factor(vk::BlendFactor::ONE)
+            .dst_alpha_blend_factor(vk::BlendFactor::ONE_MINUS_SRC_ALPHA)
+            .color_write_mask(vk::ColorComponentFlags::RGBA)];
+        let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&over);
+        let dynamic = vk::PipelineDynamicStateCreateInfo::default()
+            .dynamic_states(&[vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR]);
+        let info = vk::GraphicsPipelineCreateInfo::default()
+            .stages(&stages)
+            .vertex_input_state(&vertices)
+            .input_assembly_state(&assembly)
+            .viewport_state(&viewport)
+            .rasterization_state(&rasterization)
+            .multisample_state(&multisample)
+            .color_blend_state(&blend)
+            .dynamic_state(&dynamic)
+            .layout(layout)
+            .render_pass(pass)
+            .subpass(subpass);
+        let made = host.device.create_graphics_pipelines(vk::PipelineCache::null(), &[info], None);
+        modules.into_iter().for_each(|module| host.device.destroy_shader_module(module, None));
+        Ok(made.map_err(|(_, error)| error)?[0])
+    }
+}

@@ -1,0 +1,183 @@
+//! Points that a compute shader of the host moves every frame: a torus with waves that run around its tube. Positions and normals are exact,
+//! of the surface's own formulas, so that there is nothing to upload and nothing to estimate.
+
+use super::mesh::compile;
+use super::{Host, Result};
+use ash::vk;
+use glam::DVec3;
+use surfel::embed::{Buffers, READ_ACCESS, READ_STAGES, Radii, Values};
+use surfel::geometry::Bounds;
+
+const COMPUTE: &str = "#version 450
+layout(local_size_x = 64) in;
+struct Vertex { vec3 position; float radius; vec3 normal; uint colour; };
+layout(set = 0, binding = 0, std430) writeonly buffer Vertices { Vertex vertices[]; };
+layout(push_constant) uniform Push { float time; uint side; } push;
+
+const float TAU = 6.2831853;
+
+// Every other bit of a number: along a curve through the grid, so that neighbours on the surface are neighbours in memory.
+uint every_other(uint x) {
+    x &= 0x55555555u;
+    x = (x | x >> 1) & 0x33333333u;
+    x = (x | x >> 2) & 0x0f0f0f0fu;
+    x = (x | x >> 4) & 0x00ff00ffu;
+    return (x | x >> 8) & 0x0000ffffu;
+}
+
+void main() {
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= push.side * push.side) return;
+    vec2 place = (vec2(every_other(i), every_other(i >> 1)) + 0.5) / float(push.side);
+    float u = TAU * place.x, v = TAU * place.y;
+    float wave = 7.0 * u + 2.0 * v - push.time;
+    float tube = 0.36 * (1.0 + 0.22 * sin(wave)), bend = 0.36 * 0.22 * cos(wave);
+    float reach = 1.0 + tube * cos(v);
+    vec3 outward = vec3(cos(u), 0.0, sin(u)), along = vec3(-sin(u), 0.0, cos(u)), up = vec3(0.0, 1.0, 0.0);
+    // Derivatives by u and by v.
+    vec3 swell = cos(v) * outward + sin(v) * up;
+    vec3 du = reach * along + 7.0 * bend * swell;
+    vec3 dv = tube * (cos(v) * up - sin(v) * outward) + 2.0 * bend * swell;
+    vec3 light = mix(vec3(0.9, 0.45, 0.1), vec3(0.95, 0.9, 0.8), step(0.0, sin(12.0 * u) * sin(6.0 * v)));
+    Vertex vertex;
+    vertex.position = reach * outward + tube * sin(v) * up;
+    vertex.radius = 0.75 * TAU / float(push.side) * length(vec2(length(du), length(dv)));
+    vertex.normal = normalize(cross(dv, du));
+    vertex.colour = packUnorm4x8(vec4(light, 1.0));
+    vertices[i] = vertex;
+}";
+
+/// Bytes of a vertex.
+const STRIDE: u64 = 32;
+
+/// The points, and what moves them.
+pub struct Simulation {
+    buffer: vk::Buffer,
+    memory: vk::DeviceMemory,
+    set_layout: vk::DescriptorSetLayout,
+    layout: vk::PipelineLayout,
+    pool: vk::DescriptorPool,
+    set: vk::DescriptorSet,
+    pipeline: vk::Pipeline,
+    /// Points along either direction of the surface; a power of two.
+    side: u32,
+}
+
+impl Simulation {
+    /// `side` times `side` points.
+    pub fn new(host: &Host, side: u32) -> Result<Self> {
+        let size = u64::from(side).pow(2) * STRIDE;
+        let info = vk::BufferCreateInfo::default().size(size).usage(vk::BufferUsageFlags::STORAGE_BUFFER);
+        let bindings = [vk::DescriptorSetLayoutBinding::default()
+            .descriptor_type(vk::DescriptorType::STORAGE_BUFFER)
+            .descriptor_count(1)
+            .stage_flags(vk::ShaderStageFlags::COMPUTE)];
+        let push = [vk::PushConstantRange { stage_flags: vk::ShaderStageFlags::COMPUTE, offset: 0, size: 8 }];
+        let sizes =
+            [vk::DescriptorPoolSize::default().ty(vk::DescriptorType::STORAGE_BUFFER).descriptor_count(1)];
+        // SAFETY: a plain use of Vulkan; `destroy` destroys what is made.
+        unsafe {
+            let device = &host.device;
+            let buffer = device.create_buffer(&info, None)?;
+            let requirements = device.get_buffer_memory_requirements(buffer);
+            let memory = host.allocate(requirements, vk::MemoryPropertyFlags::DEVICE_LOCAL)?;
+            device.bind_buffer_memory(buffer, memory, 0)?;
+            let set_layout = vk::DescriptorSetLayoutCreateInfo::default().bindings(&bindings);
+            let set_layout = device.create_descriptor_set_layout(&set_layout, None)?;
+            let set_layouts = [set_layout];
+            let layout =
+                vk::PipelineLayoutCreateInfo::default().set_layouts(&set_layouts).push_constant_ranges(&push);
+            let layout = device.create_pipeline_layout(&layout, None)?;
+            let pool = vk::DescriptorPoolCreateInfo::default().max_sets(1).pool_sizes(&sizes);
+            let pool = device.create_descriptor_pool(&pool, None)?;
+            let sets =
+                vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool).set_layouts(&set_layouts);
+            let set = device.allocate_descriptor_sets(&sets)?[0];
+            let whole = [vk::DescriptorBufferInfo { buffer, offset: 0, range: size }];
+            let write = vk::WriteDescriptorSet::default()
+                .dst_set(set)
+                .descriptor_type(vk::DescriptorType::STORAGE_BUFFER)
+                .buffer_info(&whole);
+            device.update_descriptor_sets(&[write], &[]);
+            let pipeline = pipeline(host, layout)?;
+            Ok(Self { buffer, memory, set_layout, layout, pool, set, pipeline, side })
+        }
+    }
+
+    /// What surfels are told of the points.
+    pub fn told(&self) -> Buffers {
+        let count = u64::from(self.side).pow(2);
+        let values = |offset, format| Values {
+            buffer: self.buffer,
+            size: count * STRIDE,
+            offset,
+            stride: STRIDE,
+            format,
+        };
+        Buffers {
+            positions: values(0, vk::Format::R32G32B32_SFLOAT),
+            radii: Radii::Each(values(12, vk::Format::R32_SFLOAT)),
+            normals: values(16, vk::Format::R32G32B32_SFLOAT),
+            colours: Some(values(28, vk::Format::R8G8B8A8_SRGB)),
+            ellipses: None,
+            two_sided: false,
+            capacity: count,
+            count,
+            origin: DVec3::ZERO,
+            bounds: Bounds::of_box(DVec3::new(-1.5, -0.5, -1.5), DVec3::new(1.5, 0.5, 1.5)),
+        }
+    }
+
+    /// Records that the points are moved to where they are at a time, between frames that show them.
+    pub fn step(&self, host: &Host, cmd: vk::CommandBuffer, time: f32) {
+        let compute = vk::PipelineStageFlags::COMPUTE_SHADER;
+        let seen = vk::MemoryBarrier::default()
+            .src_access_mask(vk::AccessFlags::SHADER_WRITE)
+            .dst_access_mask(READ_ACCESS);
+        let push = [time.to_bits(), self.side];
+        // SAFETY: recorded outside a render pass, with what is alive until the GPU is done.
+        unsafe {
+            let (device, none) = (&host.device, vk::DependencyFlags::empty());
+            // The frame before may still be reading.
+            device.cmd_pipeline_barrier(cmd, READ_STAGES, compute, none, &[], &[], &[]);
+            device.cmd_bind_pipeline(cmd, vk::PipelineBindPoint::COMPUTE, self.pipeline);
+            let point = vk::PipelineBindPoint::COMPUTE;
+            device.cmd_bind_descriptor_sets(cmd, point, self.layout, 0, &[self.set], &[]);
+            let stage = vk::ShaderStageFlags::COMPUTE;
+            device.cmd_push_constants(cmd, self.layout, stage, 0, bytemuck::cast_slice(&push));
+            device.cmd_dispatch(cmd, self.side.pow(2).div_ceil(64), 1, 1);
+            device.cmd_pipeline_barrier(cmd, compute, READ_STAGES, none, &[seen], &[], &[]);
+        }
+    }
+
+    /// Destroys it, once the GPU is done with it.
+    pub fn destroy(self, host: &Host) {
+        // SAFETY: by the caller.
+        unsafe {
+            let device = &host.device;
+            device.destroy_pipeline(self.pipeline, None);
+            device.destroy_descriptor_pool(self.pool, None);
+            device.destroy_pipeline_layout(self.layout, None);
+            device.destroy_descriptor_set_layout(self.set_layout, None);
+            device.destroy_buffer(self.buffer, None);
+            device.free_memory(self.memory, None);
+        }
+    }
+}
+
+unsafe fn pipeline(host: &Host, layout: vk::PipelineLayout) -> Result<vk::Pipeline> {
+    let code = compile(COMPUTE, shaderc::ShaderKind::Compute)?;
+    // SAFETY: by the caller: a plain use of Vulkan.
+    unsafe {
+        let module =
+            host.device.create_shader_module(&vk::ShaderModuleCreateInfo::default().code(&code), None)?;
+        let stage = vk::PipelineShaderStageCreateInfo::default()
+            .stage(vk::ShaderStageFlags::COMPUTE)
+            .module(module)
+            .name(c"main");
+        let info = vk::ComputePipelineCreateInfo::default().stage(stage).layout(layout);
+        let made = host.device.create_compute_pipelines(vk::PipelineCache::null(), &[info], None);
+        host.device.destroy_shader_module(module, None);
+        Ok(made.map_err(|(_, error)| error)?[0])
+    }
+}

@@ -1,0 +1,107 @@
+//! wgpu's device, and how surfels borrow it.
+
+use crate::Result;
+use ash::ext;
+use std::sync::Arc;
+use surfel::embed::{Abilities, Lent};
+use surfel::vk::{Device, DeviceLimits};
+use wgpu::hal::vulkan::Api as Vulkan;
+use wgpu::{DownlevelFlags, Features};
+
+/// What of wgpu all of this host uses.
+pub struct Gpu {
+    pub device: wgpu::Device,
+    pub queue: wgpu::Queue,
+    pub adapter: wgpu::Adapter,
+}
+
+/// wgpu's names of what surfels can use of a device.
+const FLOAT_ATOMICS: Features = Features::SHADER_FLOAT32_ATOMIC;
+const INT64_ATOMICS: Features = Features::SHADER_INT64.union(Features::SHADER_INT64_ATOMIC_MIN_MAX);
+
+/// wgpu on Vulkan, under the validation layers where they are installed, to which it listens.
+pub fn instance() -> Result<wgpu::Instance> {
+    use wgpu::hal;
+    let descriptor = hal::InstanceDescriptor {
+        name: "surfels in wgpu",
+        // The flag DEBUG would listen, too, but name WGSL in shaders, which older layers take for an error.
+        flags: wgpu::InstanceFlags::VALIDATION,
+        memory_budget_thresholds: wgpu::MemoryBudgetThresholds::default(),
+        backend_options: wgpu::BackendOptions::default(),
+        telemetry: None,
+        display: None,
+    };
+    let listening: Box<hal::vulkan::CreateInstanceCallback<'_>> = Box::new(|args| {
+        // SAFETY: the entry points are loaded.
+        let there = unsafe { args.entry.enumerate_instance_extension_properties(None) }.unwrap_or_default();
+        let name = ext::debug_utils::NAME;
+        if there.iter().any(|extension| extension.extension_name_as_c_str() == Ok(name)) {
+            args.extensions.push(name);
+        }
+    });
+    // SAFETY: the callback turns nothing off; wgpu owns the instance from here on.
+    unsafe {
+        let made = hal::vulkan::Instance::init_with_callback(&descriptor, Some(listening))?;
+        Ok(wgpu::Instance::from_hal::<Vulkan>(made))
+    }
+}
+
+impl Gpu {
+    /// A device that can present to `surface`, if one is given.
+    pub fn open(instance: &wgpu::Instance, surface: Option<&wgpu::Surface<'_>>) -> Result<Self> {
+        let options = wgpu::RequestAdapterOptions {
+            power_preference: wgpu::PowerPreference::HighPerformance,
+            compatible_surface: surface,
+            ..Default::default()
+        };
+        let adapter = pollster::block_on(instance.request_adapter(&options))?;
+        let wanted = wgpu::DeviceDescriptor {
+            label: Some("host"),
+            // wgpu enables what surfels can use by features of its own.
+            required_features: adapter.features() & (FLOAT_ATOMICS | INT64_ATOMICS),
+            required_limits: wgpu::Limits::default().using_resolution(adapter.limits()),
+            ..Default::default()
+        };
+        let (device, queue) = pollster::block_on(adapter.request_device(&wanted))?;
+        Ok(Self { device, queue, adapter })
+    }
+
+    /// The device as surfels borrow it. What is returned, and all that is made on it, must be gone before the device.
+    pub fn lend(&self) -> Result<Arc<Device>> {
+        // SAFETY: nothing of wgpu's is destroyed, and what is said of the device is true.
+        unsafe {
+            let device = self.device.as_hal::<Vulkan>().ok_or("wgpu does not use Vulkan")?;
+            let shared = device.shared_instance();
+            let lent = Lent {
+                instance: shared.raw_instance(),
+                physical: device.raw_physical_device(),
+                device: device.raw_device(),
+                queue_family: device.queue_family_index(),
+                enabled: self.enabled(),
+                labels: shared.extensions().contains(&ext::debug_utils::NAME),
+                limits: DeviceLimits::default(),
+                memory: None,
+                pipeline_cache: None,
+            };
+            Ok(Device::borrow(lent)?)
+        }
+    }
+
+    /// What wgpu has enabled: features where they were asked for, and what its downlevel flags stand for wherever it is there.
+    fn enabled(&self) -> Abilities {
+        let features = self.device.features();
+        let flags = self.adapter.get_downlevel_capabilities().flags;
+        Abilities {
+            float_atomics: features.contains(FLOAT_ATOMICS),
+            int64_atomics: features.contains(INT64_ATOMICS),
+            fragment_writes: flags.contains(DownlevelFlags::FRAGMENT_WRITABLE_STORAGE),
+            independent_blend: flags.contains(DownlevelFlags::INDEPENDENT_BLEND),
+        }
+    }
+
+    /// Waits until the GPU has done what was submitted: all of it, or up to `index`.
+    pub fn wait(&self, index: Option<wgpu::SubmissionIndex>) -> Result<()> {
+        self.device.poll(wgpu::PollType::Wait { submission_index: index, timeout: None })?;
+        Ok(())
+    }
+}
