@@ -173,7 +173,7 @@ impl App {
             Some(MouseButton::Right) => {
                 let steps = -way.y / PX_A_STEP;
                 let middle = 0.5 * DVec2::from(lens.size.map(f64::from));
-                orbit.zoom(steps, middle, None, lens, scene.bounds());
+                orbit.zoom(steps, middle, None, lens, &scene.bounds());
             }
             _ => return,
         }

@@ -55,6 +55,7 @@ impl Screen {
             samples: vk::SampleCountFlags::TYPE_1,
             picture: 0,
             normal: None,
+            id: None,
             encode: false,
         };
         let options =

@@ -40,7 +40,7 @@ impl State {
 
     /// Looks at a scene from the front.
     pub fn show(&mut self, scene: Arc<Scene>, method: Method) {
-        let orbit = Orbit::framing(scene.bounds(), self.up, &self.lens);
+        let orbit = Orbit::framing(&scene.bounds(), self.up, &self.lens);
         let settings = (self.look)(&method);
         self.shown = Some(Shown { scene, orbit, method, settings });
     }
@@ -48,7 +48,7 @@ impl State {
     /// The scene, from where and how it is seen.
     pub fn frame(&self) -> Option<Result<(&Arc<Scene>, Camera, &Settings)>> {
         let Shown { scene, orbit, settings, .. } = self.shown.as_ref()?;
-        let camera = orbit.camera(&self.lens, scene.bounds());
+        let camera = orbit.camera(&self.lens, &scene.bounds());
         Some(camera.map(|camera| (scene, camera, settings)))
     }
 
@@ -61,7 +61,7 @@ impl State {
     /// Nearer by so many steps of the wheel, to what is at `at`.
     pub fn zoom(&mut self, steps: f64, at: DVec2) {
         if let Some((orbit, lens, scene)) = self.moving() {
-            orbit.zoom(steps, at, None, lens, scene.bounds());
+            orbit.zoom(steps, at, None, lens, &scene.bounds());
         }
     }
 
@@ -103,7 +103,7 @@ impl State {
                 shown.settings.shading = SHADINGS[now.map_or(0, |now| (now + 1) % SHADINGS.len())];
             }
             Action::Parallel => self.lens.parallel = !self.lens.parallel,
-            Action::Frame => shown.orbit.frame(shown.scene.bounds(), &self.lens),
+            Action::Frame => shown.orbit.frame(&shown.scene.bounds(), &self.lens),
             Action::Side(side) => shown.orbit.side(side),
             Action::Up(up) => {
                 let down = shown.orbit.up() == up;
