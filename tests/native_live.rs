@@ -94,8 +94,10 @@ fn first(surfels: &Surfels, count: usize) -> Surfels {
 #[test]
 fn a_seed_heeds_radii_that_grow() {
     let Some(host) = open(|all| all) else { return };
-    let small = sphere(20_000);
-    let radii: Vec<f32> = small.radii.iter().map(|radius| 12.0 * radius).collect();
+    let usual = sphere(20_000);
+    let scaled = |by: f32| usual.radii.iter().map(|radius| by * radius).collect::<Vec<_>>();
+    // Seeds reach some ten times as far as the largest disc does.
+    let (small, radii) = (Surfels { radii: scaled(0.02), ..usual.clone() }, scaled(12.0));
     let settings = settings(Visibility::Ray);
     let mut shown = [true, false].map(|seed| Shown::new(&host, seed, &small, &settings));
     let pictures = shown.each_mut().map(|shown| {
@@ -111,8 +113,8 @@ fn a_seed_heeds_radii_that_grow() {
     let [seeded, plain] = &pictures;
     let different = seeded.iter().zip(plain).filter(|(a, b)| a != b).count();
     println!("{different} px differ by the seed");
-    // As many as in scenes that are hard to draw, where filters widen discs.
-    assert!(10_000 * different <= 20 * plain.len(), "{different}");
+    // Where a filter widens discs that are seen edge-on.
+    assert!(different <= 5, "{different}");
     shown.into_iter().for_each(Shown::destroy);
     assert_silent(&host);
 }
