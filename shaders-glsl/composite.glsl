@@ -9,11 +9,7 @@
 #extension GL_EXT_samplerless_texture_functions : require
 
 #ifdef VERTEX
-
-void main() {
-    gl_Position = vec4(gl_VertexIndex == 1 ? 3.0 : -1.0, gl_VertexIndex == 2 ? 3.0 : -1.0, 0.0, 1.0);
-}
-
+#include "lib/full_screen.glsl"
 #endif
 #ifdef FRAGMENT
 

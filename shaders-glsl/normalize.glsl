@@ -108,11 +108,7 @@ void main() {
 
 #endif
 #ifdef VERTEX
-
-void main() {
-    gl_Position = vec4(gl_VertexIndex == 1 ? 3.0 : -1.0, gl_VertexIndex == 2 ? 3.0 : -1.0, 0.0, 1.0);
-}
-
+#include "lib/full_screen.glsl"
 #endif
 #if defined(FRAGMENT) && defined(IN_SUBPASS)
 

@@ -2,13 +2,10 @@
 // (src/embed/native.rs).
 #version 450
 #pragma variant MULTISAMPLED
+#extension GL_GOOGLE_include_directive : require
 
 #ifdef VERTEX
-
-void main() {
-    gl_Position = vec4(gl_VertexIndex == 1 ? 3.0 : -1.0, gl_VertexIndex == 2 ? 3.0 : -1.0, 0.0, 1.0);
-}
-
+#include "lib/full_screen.glsl"
 #endif
 #ifdef FRAGMENT
 

@@ -243,17 +243,9 @@ impl Renderer {
         let (Some(viewed), Some(Shown { place, area })) = (&self.viewed, &self.shown) else {
             return Err(Error::Usage("there is no picture to draw: prepare one, and heed its error".into()));
         };
-        let viewport = vk::Viewport {
-            x: area.offset.x as f32,
-            y: area.offset.y as f32,
-            width: area.extent.width as f32,
-            height: area.extent.height as f32,
-            min_depth: 0.0,
-            max_depth: 1.0,
-        };
         // SAFETY: by the caller.
         unsafe {
-            Draws::of_host(&self.device, cmd, "composite", viewport, *area, |draws| {
+            Draws::of_host(&self.device, cmd, "composite", *area, |draws| {
                 viewed.composite.draw(draws, &viewed.set, place)
             });
         }
@@ -268,11 +260,7 @@ impl Renderer {
         settings: &Settings,
     ) -> Result<(layout::Frame, Shown)> {
         self.shown = None;
-        if !scene.is_on(&self.device) {
-            return Err(Error::Usage(
-                "the scene is of another device: upload it to the one that this renderer is of".into(),
-            ));
-        }
+        scene.check_device(&self.device)?;
         let area = view.area()?;
         let size = [area.extent.width, area.extent.height];
         check_size(&self.device, size)?;

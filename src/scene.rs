@@ -266,6 +266,16 @@ impl Scene {
         self.positions.buffer.device()
     }
 
+    /// Refuses another device.
+    pub(crate) fn check_device(&self, device: &Arc<Device>) -> Result<()> {
+        match self.is_on(device) {
+            true => Ok(()),
+            false => Err(Error::Usage(
+                "the scene is of another device: upload it to the one that this renderer is of".into(),
+            )),
+        }
+    }
+
     /// What the shaders' coordinates are relative to, world space.
     pub fn origin(&self) -> DVec3 {
         self.origin

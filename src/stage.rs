@@ -1,5 +1,7 @@
 //! What frames are made with: pipelines, targets and splats, made when scene or settings change, and recorded in every frame.
 
+mod residents;
+
 use crate::error::Result;
 use crate::frame::frame;
 use crate::geometry::Camera;
@@ -12,6 +14,7 @@ use crate::targets::check_size;
 use crate::variant::{Precision, Rasterizer, Variant};
 use crate::vk::shaders::layout::Frame;
 use crate::vk::{Buffer, Device, Recorder};
+pub(crate) use residents::Residents;
 use std::any::Any;
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -23,8 +26,7 @@ pub(crate) struct Stage {
     present: Option<Present>,
     /// What was before it: who switches to and fro, as in progressive rendering, makes nothing.
     previous: Option<Present>,
-    /// Splats of the present scene first; behind it those of a host's other buffers, which take turns.
-    residents: Vec<Resident>,
+    residents: Residents<Resident>,
     pipelines: HashMap<Variant, Pipelines>,
     layout: SplatLayout,
     frame: Arc<Buffer>,
@@ -33,12 +35,7 @@ pub(crate) struct Stage {
     retired: Retired,
     /// Number of targets made so far.
     made: u64,
-    /// Number of frames prepared so far.
-    frames: u64,
 }
-
-/// How many frames a host's buffers may go without being drawn and keep their splats: simulations write one while others are shown.
-const TURNS: u64 = 3;
 
 /// What happens to what frames no longer need.
 pub(crate) enum Retired {
@@ -62,12 +59,8 @@ pub(crate) struct Present {
     _frame: Arc<Buffer>,
 }
 
-/// Splats of the present scene.
+/// Splats of a scene.
 pub(crate) struct Resident {
-    scene: u64,
-    of_host: bool,
-    /// Number of the last frame that it was for.
-    frame: u64,
     /// What it makes splats for, if any.
     rasterizer: Option<Rasterizer>,
     pub(crate) splats: Splats,
@@ -112,7 +105,7 @@ impl Stage {
         Ok(Self {
             present: None,
             previous: None,
-            residents: Vec::new(),
+            residents: Residents::default(),
             pipelines: HashMap::new(),
             layout: SplatLayout::new(device)?,
             frame: Arc::new(Buffer::uniform(device, "frame", size_of::<Frame>() as u64)?),
@@ -120,7 +113,6 @@ impl Stage {
             device: device.clone(),
             retired,
             made: 0,
-            frames: 0,
         })
     }
 
@@ -135,7 +127,7 @@ impl Stage {
     }
 
     pub(crate) fn resident(&self) -> Option<&Resident> {
-        self.residents.first()
+        self.residents.present()
     }
 
     /// What went since this was last asked.
@@ -180,30 +172,16 @@ impl Stage {
     }
 
     fn make_resident(&mut self, scene: &Scene, rasterizer: Option<Rasterizer>) -> Result<()> {
-        self.frames += 1;
-        let same = |resident: &Resident| (resident.scene, resident.rasterizer) == (scene.id, rasterizer);
-        let found = self.residents.iter().position(same).map(|place| self.residents.remove(place));
-        let others = std::mem::take(&mut self.residents);
-        for other in others {
-            match other.of_host && scene.is_of_host() && other.frame + TURNS >= self.frames {
-                true => self.residents.push(other),
-                false => self.retired.take(Some(other)),
-            }
-        }
-        let mut resident = match found {
-            Some(resident) => resident,
-            None => Resident {
-                scene: scene.id,
-                of_host: scene.is_of_host(),
-                rasterizer,
-                splats: Splats::new(&self.device, &self.layout, &self.frame, scene, rasterizer)?,
-                frame: 0,
-                _frame: self.frame.clone(),
-            },
+        let Self { residents, retired, device, layout, frame, .. } = self;
+        let make = || {
+            let splats = Splats::new(device, layout, frame, scene, rasterizer)?;
+            Ok(Resident { rasterizer, splats, _frame: frame.clone() })
         };
-        resident.frame = self.frames;
-        resident.splats.set_count(scene.count());
-        self.residents.insert(0, resident);
+        let fits = |resident: &Resident| resident.rasterizer == rasterizer;
+        residents.turn(scene, fits, make, |gone| retired.take(Some(gone)))?;
+        if let Some(resident) = residents.present_mut() {
+            resident.splats.set_count(scene.count());
+        }
         Ok(())
     }
 

@@ -511,6 +511,20 @@ fn what_an_update_makes_invalid_is_culled_and_what_it_mends_is_drawn() {
             assert!(found.0 == expected.0, "{name} {rasterizer:?}");
         }
     }
+    // A radius has a surfel drawn again that was left out for another reason.
+    let mut circles = sphere(500);
+    circles.colours = Some(Colours::Linear(vec![[0.5; 3]; 500]));
+    if let Some(Colours::Linear(colours)) = &mut circles.colours {
+        colours[5][1] = f32::NAN;
+    }
+    circles.normals[7] = Vec3::NAN;
+    let scene = Scene::upload(&device, &circles).unwrap();
+    scene.update(4, &Changes { radii: Some(&[0.1; 4]), ..Default::default() }).unwrap();
+    for (name, rasterizer) in ALONE {
+        let (picture, counts) = alone(&device, &scene, name, rasterizer);
+        assert_eq!(counts.invalid, 2, "{name} {rasterizer:?}");
+        assert!(picture.colour.iter().flatten().all(|value| value.is_finite()));
+    }
     // One stream alone.
     let scene = Scene::upload(&device, &good).unwrap();
     scene.update(0, &Changes { positions: Some(&[Vec3::NAN, Vec3::ZERO]), ..Default::default() }).unwrap();
@@ -527,7 +541,14 @@ fn bounds_follow_positions_or_are_what_is_said() {
     assert_eq!(scene.bounds(), surfels.bounds().unwrap());
     let far = [Vec3::new(9.0, 0.0, 0.0), Vec3::NAN];
     scene.update(3, &Changes { positions: Some(&far), ..Default::default() }).unwrap();
-    assert!(scene.bounds().max.x == 9.0 && scene.bounds().min == surfels.bounds().unwrap().min);
+    let reach = f64::from(surfels.radii.iter().copied().fold(0.0, f32::max));
+    assert!(scene.bounds().max.x == 9.0 + reach && scene.bounds().min == surfels.bounds().unwrap().min);
+    // What is nowhere changes nothing of them.
+    let before = scene.bounds();
+    for nowhere in [vec![Vec3::NAN], vec![Vec3::INFINITY; 500]] {
+        scene.update(0, &Changes { positions: Some(&nowhere), ..Default::default() }).unwrap();
+        assert_eq!(scene.bounds(), before);
+    }
     let all = moved(&surfels, 2);
     let whole = Changes { positions: Some(&all.positions), radii: Some(&all.radii), ..Default::default() };
     scene.update(0, &whole).unwrap();

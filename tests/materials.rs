@@ -8,7 +8,7 @@ use surfel::geometry::{Camera, Colours, Material, Materials, Model, Parts, Surfe
 use surfel::methods::{Method, perspective_ewa, pull_push};
 use surfel::settings::{DirectionalLight, Lighting, Settings};
 use surfel::vk::DeviceLimits;
-use surfel::{Outputs, Picture, Precision, Rasterizer, RenderOptions, scenes};
+use surfel::{Outputs, Picture, Precision, Rasterizer, RenderOptions, Renderer, Scene, scenes};
 
 /// Width and height, px.
 const SIDE: u32 = 256;
@@ -177,6 +177,40 @@ fn lines_polygons_and_points_shine_as_the_reference_says() {
         let [other, changed] = [differences(&found, &twin), differences(&twin, &without)];
         println!("{name}: {other} of {object} differ; materials change {changed}");
         assert!(200 * other <= object && 4 * changed > object, "{name}: {other} {changed} of {object}");
+    }
+    assert_silent(&device);
+}
+
+/// Segments and triangles keep their numbers, and with these their materials, however many surfels are drawn before them.
+#[test]
+fn fewer_surfels_leave_the_others_their_materials() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let name = "scene:mixed?primitives=on&segments=50&points=20000";
+    let model = motley(scenes::model(name).unwrap());
+    let camera = scenes::camera(name).unwrap().camera(1.0, &Parts::from(&model).bounds().unwrap()).unwrap();
+    let settings = Settings { lighting: lighting(), ..pull_push::METHOD.settings() };
+    let count = 7_001;
+    let mut fewer = model.clone();
+    let Surfels { positions, normals, radii, colours, materials, .. } = &mut fewer.surfels;
+    positions.truncate(count);
+    normals.truncate(count);
+    radii.truncate(count);
+    match colours {
+        Some(Colours::Srgb8(codes)) => codes.truncate(count),
+        Some(Colours::Linear(linear)) => linear.truncate(count),
+        None => {}
+    }
+    materials.as_mut().unwrap().of.truncate(count);
+    for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
+        let options = RenderOptions { size: [SIDE; 2], rasterizer: Some(rasterizer), ..Default::default() };
+        let scene = Scene::upload(&device, &model).unwrap();
+        scene.set_count(count as u64).unwrap();
+        let mut renderer = Renderer::new(&device, options).unwrap();
+        let (found, _) = renderer.render_picture(&scene, &camera, &settings).unwrap();
+        assert!(
+            found.colour == render(&device, &fewer, &camera, &settings, options).colour,
+            "{rasterizer:?}"
+        );
     }
     assert_silent(&device);
 }

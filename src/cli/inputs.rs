@@ -137,6 +137,12 @@ fn warn(name: &str, report: &Report) {
             report.weights_dropped
         );
     }
+    if report.materials_dropped > 0 {
+        log::warn!(
+            "{name}: {} materials are more than can be read; points of theirs have none",
+            report.materials_dropped
+        );
+    }
     let Faces { understood, skipped } = report.faces;
     if skipped > 0 {
         log::warn!(

@@ -22,7 +22,8 @@ pub struct Values {
     pub buffer: vk::Buffer,
     /// Its size, bytes.
     pub size: u64,
-    /// Where the first surfel's value is, bytes, a multiple of 4.
+    /// Where the first surfel's value is, bytes, a multiple of 4. Scenes whose offsets are the same modulo the device's
+    /// `minStorageBufferOffsetAlignment` share pipelines and targets; for others these are made anew.
     pub offset: u64,
     /// From one surfel's value to the next one's, bytes, a multiple of 4.
     pub stride: u64,
@@ -56,7 +57,8 @@ pub struct Buffers {
     pub ellipses: Option<Values>,
     /// Colours: `R8G8B8A8_SRGB`, or linear light as `R8G8B8A8_UNORM`, `R16G16B16A16_SFLOAT`, `R32G32B32_SFLOAT` or `R32G32B32A32_SFLOAT`.
     pub colours: Option<Values>,
-    /// How many surfels there is room for, at least 1.
+    /// How many surfels there is room for, at least 1. Each renderer of splats keeps 64 bytes for each, drawn or not. A number that the GPU alone
+    /// knows is served by radii of 0 behind the last one.
     pub capacity: u64,
     /// How many are drawn, from the first one on, until [`Scene::set_count`].
     pub count: u64,
@@ -73,7 +75,7 @@ impl Scene {
     /// waits for these stages. Frames of one queue see what was written before them in its order, however many are under way.
     ///
     /// Surfels are best in Morton order. Those that are not valid ([`Surfels::is_valid`]; of packed normals the squared length may be off by
-    /// 0.03) are not drawn, and counted as `invalid`.
+    /// 0.03) are not drawn, and in the reports of [`crate::Renderer`] counted as `invalid`.
     ///
     /// # Errors
     /// [`Error::Usage`], naming the stream, for formats, offsets and strides other than those, values beyond a buffer's end, values so far apart
@@ -92,10 +94,10 @@ impl Scene {
             Some(colours) => format_of("colours", colours, COLOURS)?,
             None => ColourStream::None,
         };
-        let (radii, two_sided) = (buffers.radii, buffers.two_sided);
-        let radii = match radii {
-            Radii::Each(radii) => stream("radii", radii, SCALARS)?,
-            Radii::All(radius) => one_radius(device, radius)?,
+        let two_sided = buffers.two_sided;
+        let (radii, largest) = match buffers.radii {
+            Radii::Each(radii) => (stream("radii", radii, SCALARS)?, None),
+            Radii::All(radius) => (one_radius(device, radius)?, Some(radius.abs())),
         };
         Self::of_streams(
             device,
@@ -104,6 +106,7 @@ impl Scene {
                 normals: stream("normals", normals, &sizes(NORMALS))?,
                 normal_stream,
                 radii,
+                largest,
                 two_sided,
                 ellipses: ellipses.map(|ellipses| stream("ellipses", ellipses, SHAPES)).transpose()?,
                 colours: colours.map(|colours| stream("colours", colours, &sizes(COLOURS))).transpose()?,
@@ -119,7 +122,8 @@ impl Scene {
 
 /// Records new values of surfels of a scene that the engine holds, as [`Scene::update`] gives them, into a command buffer of the host. Frames
 /// that were recorded before have the old values, those that are recorded later the new ones, however many are under way; the staging memory
-/// must stay until the GPU has done the copies. After an error nothing is recorded.
+/// must stay until the GPU has done the copies. A frame of [`super::native`] is recorded from its `prepare` to the end of its `draw`. After an error
+/// nothing is recorded.
 ///
 /// # Errors
 /// Those of [`Scene::update`], and a lack of memory.
@@ -155,7 +159,10 @@ impl Buffers {
         if let Radii::All(radius) = self.radii {
             let size = if self.two_sided { radius.abs() } else { radius };
             if !(size > 0.0 && size <= Surfels::LARGEST) {
-                return refuse(format!("all have a radius of {radius}: give one above 0"));
+                return refuse(format!(
+                    "all have a radius of {radius}: give one above 0, up to {:e}",
+                    Surfels::LARGEST
+                ));
             }
         }
         Ok(())

@@ -10,7 +10,8 @@
 //! `draw` goes from subpass to subpass itself: from the host's last one before into surfel's last, in which the host may draw, too.
 //!
 //! For the methods that draw splats; those that blend have the subpasses visibility, attribute and normalize, those that show the nearest
-//! alone nearest and normalize. The picture is that of [`embed::Renderer`](super::Renderer), bit for bit. The seed comes first where
+//! alone nearest and normalize. The picture is that of [`embed::Renderer`](super::Renderer) by
+//! [`Rasterizer::Draw`](crate::Rasterizer::Draw), bit for bit. The seed comes first where
 //! [`Depth::seed`] asks for it: the host's depth, moved back by several ε, is what splats have to be in front of; it may make a difference at
 //! discs that are seen edge-on.
 //!
@@ -92,7 +93,7 @@ use super::target::{check_convention, depths};
 use crate::error::{Error, Result};
 use crate::scene::Scene;
 use crate::settings::Settings;
-use crate::stage::describe;
+use crate::stage::{Residents, describe};
 use crate::targets::check_size;
 use crate::vk::shaders::layout::{self, Frame};
 use crate::vk::{Device, Draws, HostDepth, Recorder};
@@ -111,7 +112,7 @@ pub struct Renderer {
     /// What was before it: who switches to and fro makes nothing.
     previous: Option<Present>,
     held: Held,
-    resident: Option<Resident>,
+    residents: Residents<Resident>,
     made: Made,
     targets: Option<Arc<Targets>>,
     device: Arc<Device>,
@@ -146,7 +147,7 @@ impl Renderer {
             present: None,
             previous: None,
             held: Held::new(frames_in_flight)?,
-            resident: None,
+            residents: Residents::default(),
             made: Made::new(device, plan, pass)?,
             targets: None,
             device: device.clone(),
@@ -159,7 +160,8 @@ impl Renderer {
     }
 
     /// Makes attachments of `size` px, that of the framebuffer, and gives their views, which follow the host's in it. `depth` is the host's, where
-    /// [`Depth::seed`] asks for it. To be called again for another size, and for another depth. After an error all is as it was.
+    /// [`Depth::seed`] asks for it. To be called again for another size, and for another depth, once before the
+    /// next frame: what was made is kept until frames come. After an error all is as it was.
     ///
     /// The views are there until as many frames as may be under way have been prepared after the next call, or the renderer is dropped.
     ///
@@ -212,7 +214,7 @@ impl Renderer {
         // SAFETY: by the caller.
         let mut rec = unsafe { Recorder::of_host(&self.device, cmd) };
         rec.update(&self.made.frame, bytemuck::bytes_of(&block));
-        if let (Some(present), Some(resident)) = (&self.present, &self.resident) {
+        if let (Some(present), Some(resident)) = (&self.present, self.residents.present()) {
             present.passes.record(&mut rec, &resident.splats, present.coverage.as_deref());
         }
         self.shown = Some(shown);
@@ -253,23 +255,15 @@ impl Renderer {
     /// # Safety
     /// As that of [`Renderer::draw`], of the subpass for which `next` is called.
     pub unsafe fn draw_each(&self, mut next: impl FnMut(u32) -> vk::CommandBuffer) -> Result<()> {
-        let there = (&self.shown, &self.present, &self.resident);
+        let there = (&self.shown, &self.present, self.residents.present());
         let (Some(Shown { numbers, area }), Some(present), Some(resident)) = there else {
             return Err(Error::Usage("there is no frame to draw: prepare one, and heed its error".into()));
-        };
-        let viewport = vk::Viewport {
-            x: area.offset.x as f32,
-            y: area.offset.y as f32,
-            width: area.extent.width as f32,
-            height: area.extent.height as f32,
-            min_depth: 0.0,
-            max_depth: 1.0,
         };
         for (subpass, step) in self.made.plan.numbered() {
             let cmd = next(subpass);
             // SAFETY: by the caller.
             unsafe {
-                Draws::of_host(&self.device, cmd, step.label(), viewport, *area, |draws| {
+                Draws::of_host(&self.device, cmd, step.label(), *area, |draws| {
                     present.passes.draw(step, draws, &present.views, &resident.splats, numbers);
                 });
             }
@@ -290,11 +284,7 @@ impl Renderer {
 
     /// Makes all that a frame needs: its numbers, and where it is drawn.
     fn make(&mut self, scene: &Arc<Scene>, view: &View, settings: &Settings) -> Result<(Frame, Shown)> {
-        if !scene.is_on(&self.device) {
-            return Err(Error::Usage(
-                "the scene is of another device: upload it to the one that this renderer is of".into(),
-            ));
-        }
+        scene.check_device(&self.device)?;
         let area = view.area()?;
         let targets = self.targets_of(area)?;
         let size = [area.extent.width, area.extent.height];

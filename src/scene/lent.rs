@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::geometry::Bounds;
 use crate::vk::Device;
 use glam::DVec3;
-use std::sync::atomic::{AtomicBool, AtomicU64};
+use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64};
 use std::sync::{Arc, Mutex};
 
 /// What a scene in a host's buffers is made of; see [`crate::embed::Buffers`].
@@ -15,6 +15,8 @@ pub(crate) struct Lent {
     pub normals: Stream,
     pub normal_stream: NormalStream,
     pub radii: Stream,
+    /// The largest radius, if it is known.
+    pub largest: Option<f32>,
     pub two_sided: bool,
     pub ellipses: Option<Stream>,
     pub colours: Option<Stream>,
@@ -56,7 +58,7 @@ impl Scene {
             primitives: None,
             texture: None,
             materials: None,
-            largest: None,
+            largest: lent.largest.map(|radius| AtomicU32::new(radius.to_bits())),
             colour_stream: lent.colour_stream,
             windows: windows(lent.capacity, capabilities, stride),
             alignment: capabilities.storage_buffer_alignment,

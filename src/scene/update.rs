@@ -33,12 +33,14 @@ pub struct Changes<'a> {
 impl Scene {
     /// Gives surfels from number `first` on new values. Frames that are rendered later have them.
     ///
+    /// Normalization weights stay, which are those of the surfels as they were.
+    ///
     /// What is not valid then ([`Surfels::is_valid`]) is not drawn, and counted as `invalid`: from the first change on that could bring such,
     /// the shaders look at every surfel. In another renderer's frames, [`crate::embed::update`] does the same.
     ///
     /// # Errors
     /// [`Error::Usage`] where the arrays are of unequal length or go beyond the scene's end; for a stream that the scene has not or not in this
-    /// form; for normals, radii and ellipses that clip lines or weights depend on; for surfels in buffers of a host. Nothing is changed then.
+    /// form; for normals and ellipses that clip lines or weights at corners depend on; for surfels in buffers of a host. Nothing is changed then.
     pub fn update(&self, first: u64, changes: &Changes<'_>) -> Result<()> {
         self.change(&Uploads::now(self.positions.buffer.device())?, first, changes)
     }
@@ -50,7 +52,9 @@ impl Scene {
         self.check(&range, changes)?;
         let bounds = changes.bounds.or_else(|| self.bounds_with(&range, changes));
         bounds.as_ref().map_or(Ok(()), check_bounds)?;
-        if changes.may_be_invalid(self.ellipses.is_some()) {
+        // A radius has a surfel drawn that was left out for whatever else of it.
+        let revived = self.had_invalid && changes.radii.is_some();
+        if revived || changes.may_be_invalid(self.ellipses.is_some()) {
             // First: what is written may be drawn.
             self.unchecked.store(true, Ordering::Relaxed);
         }
@@ -115,8 +119,10 @@ impl Scene {
             true => Vec::new(),
             false => positions.iter().copied().filter(is_bounded).collect(),
         };
+        // What is nowhere changes nothing.
+        positions.iter().any(is_bounded).then_some(())?;
         let of_positions = Bounds::of(if valid.is_empty() { positions } else { &valid })?;
-        let largest = largest(changes.radii.unwrap_or_default());
+        let largest = changes.radii.map(largest).or(self.largest()).unwrap_or_default();
         let added = of_positions.grown(largest.into()).translated(self.origin);
         let whole = *range == (0..self.capacity()) && self.primitives.is_none();
         Some(if whole { added } else { self.bounds().with(&added) })

@@ -164,10 +164,17 @@ impl<'a> Draws<'a> {
         device: &'a Device,
         cmd: vk::CommandBuffer,
         label: &'static str,
-        viewport: vk::Viewport,
         area: vk::Rect2D,
         draws: impl FnOnce(&mut Draws<'_>),
     ) {
+        let viewport = vk::Viewport {
+            x: area.offset.x as f32,
+            y: area.offset.y as f32,
+            width: area.extent.width as f32,
+            height: area.extent.height as f32,
+            min_depth: 0.0,
+            max_depth: 1.0,
+        };
         // SAFETY: by the caller; begin and end of the label pair.
         unsafe {
             device.begin_label(cmd, label);

@@ -107,6 +107,7 @@ fn copy_now(
             rec.pass("upload", &uses, |enc| {
                 enc.copy(&staging, buffer, at + (i * CHUNK) as u64, chunk.len() as u64);
             });
+            rec.wait(&[buffer.with(Access::SHADER_READ)]);
         })?;
     }
     Ok(())

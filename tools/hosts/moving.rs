@@ -33,6 +33,9 @@ fn main() -> Result<()> {
     let mut arguments = std::env::args().skip(1);
     let file = arguments.next().ok_or("give the picture's file: moving FILE.png [FRAMES [METHOD]]")?;
     let frames: u32 = arguments.next().map_or(Ok(60), |frames| frames.parse())?;
+    if frames == 0 {
+        return Err("0 frames show nothing: give 1 or more".into());
+    }
     let name = arguments.next().unwrap_or_else(|| "perspective-ewa".into());
     let method = Method::named(&name).ok_or_else(|| format!("{name} is no method: see surfel methods"))?;
     let host = Host::open(|all| all, false)?;

@@ -34,6 +34,9 @@ pub struct Depth {
     /// Whether splats far behind what the host has drawn before are left out as early as can be: worth it where much is hidden. The depth is then
     /// an input attachment, too. The picture stays the same, but for pixels where a surface of the host is between a disc, seen edge-on, and what
     /// a filter has widened it to: they show the host.
+    ///
+    /// Where the largest radius is not known, as of radii in buffers of a host, with visibility by axis, and with clip lines where α is coverage,
+    /// nothing is left out early.
     pub seed: bool,
 }
 

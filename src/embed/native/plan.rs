@@ -92,14 +92,8 @@ impl Plan {
         frames: &[(Streams, &Settings)],
     ) -> Result<Self> {
         place.check(device)?;
-        let outputs = Outputs { normal: place.normal.is_some(), depth: place.depth.is_some(), id: false };
-        let options = RenderOptions {
-            size: [1, 1],
-            outputs,
-            precision,
-            rasterizer: Some(Rasterizer::Draw),
-            ..Default::default()
-        };
+        let host = HostSide::of(place);
+        let options = host.options([1, 1], precision);
         let variants: Vec<_> = frames
             .iter()
             .map(|(streams, settings)| variant(device, &options, *streams, settings))
@@ -121,7 +115,7 @@ impl Plan {
         };
         let steps: Vec<_> = seeds.then_some(Step::Seed).into_iter().chain(last.iter().copied()).collect();
         let mut plan = Self {
-            host: HostSide::of(place),
+            host,
             formats,
             precision,
             attachments: formats.attachments(&steps),
@@ -187,15 +181,7 @@ impl Plan {
 
     /// What frames are asked to be.
     pub(super) fn options(&self, size: [u32; 2]) -> RenderOptions {
-        let outputs =
-            Outputs { normal: self.host.normal.is_some(), depth: self.host.depth.is_some(), id: false };
-        RenderOptions {
-            size,
-            outputs,
-            precision: self.precision,
-            rasterizer: Some(Rasterizer::Draw),
-            ..Default::default()
-        }
+        self.host.options(size, self.precision)
     }
 
     /// Refuses frames that need what this has not.
@@ -290,6 +276,12 @@ impl References {
 }
 
 impl HostSide {
+    /// What frames in it are asked to be.
+    fn options(&self, size: [u32; 2], precision: Precision) -> RenderOptions {
+        let outputs = Outputs { normal: self.normal.is_some(), depth: self.depth.is_some(), id: false };
+        RenderOptions { size, outputs, precision, rasterizer: Some(Rasterizer::Draw), ..Default::default() }
+    }
+
     fn of(place: &Place<'_>) -> Self {
         Self {
             attachments: place.attachments.len() as u32,

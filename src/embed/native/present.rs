@@ -37,7 +37,7 @@ pub(super) struct Present {
 /// The splats of a scene.
 pub(super) struct Resident {
     pub(super) splats: SplatPair,
-    scene: Arc<Scene>,
+    _scene: Arc<Scene>,
     _frame: Arc<Buffer>,
 }
 
@@ -72,22 +72,17 @@ impl Made {
     fn resident(&self, device: &Arc<Device>, scene: &Arc<Scene>, moves: bool) -> Result<Resident> {
         let splats = || Splats::new(device, &self.layout, &self.frame, scene, Some(Rasterizer::Draw));
         let splats = SplatPair { splats: splats()?, moved: moves.then(splats).transpose()? };
-        Ok(Resident { splats, scene: scene.clone(), _frame: self.frame.clone() })
+        Ok(Resident { splats, _scene: scene.clone(), _frame: self.frame.clone() })
     }
 }
 
 impl Renderer {
     /// Makes the splats of `scene`, if they are not there, for as many surfels as it has now.
     pub(super) fn make_resident(&mut self, scene: &Arc<Scene>, moves: bool) -> Result<()> {
-        let same = |resident: &Resident| {
-            Arc::ptr_eq(&resident.scene, scene) && resident.splats.moved.is_some() == moves
-        };
-        if !self.resident.as_ref().is_some_and(same) {
-            let old = self.resident.take();
-            self.held.hold(old);
-            self.resident = Some(self.made.resident(&self.device, scene, moves)?);
-        }
-        if let Some(Resident { splats, .. }) = &mut self.resident {
+        let Self { residents, held, made, device, .. } = self;
+        let fits = |resident: &Resident| resident.splats.moved.is_some() == moves;
+        residents.turn(scene, fits, || made.resident(device, scene, moves), |gone| held.hold(gone))?;
+        if let Some(Resident { splats, .. }) = residents.present_mut() {
             splats.set_count(scene.count());
         }
         Ok(())

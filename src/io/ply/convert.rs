@@ -202,7 +202,7 @@ fn colours(block: &Block, layout: &Layout, out: &mut Slices) {
 }
 
 /// Linear light of a channel: integers are sRGB-encoded, floats linear already. What is no colour (negative, not finite) is black.
-fn linear(value: f64, scalar: Scalar) -> f32 {
+pub(super) fn linear(value: f64, scalar: Scalar) -> f32 {
     let linear = match scalar {
         Scalar::U8 => srgb::decode(value / 255.0),
         Scalar::U16 => srgb::decode(value / 65535.0),

@@ -249,7 +249,7 @@ impl Layout {
 }
 
 /// Integers of other sizes have no agreed range as colours.
-fn is_colour(scalar: Scalar) -> bool {
+pub(super) fn is_colour(scalar: Scalar) -> bool {
     matches!(scalar, Scalar::U8 | Scalar::U16) || scalar.is_float()
 }
 

@@ -1,9 +1,10 @@
 //! The element `material`: how points shine, and their colours where they have none of their own.
 
+use super::convert;
+use super::layout::is_colour;
 use super::lines::scalar;
 use super::types::{Element, Kind, Scalar};
 use crate::geometry::{Cloud, Colours, Material, Materials, Surfels};
-use crate::io::srgb;
 use crate::settings::Lighting;
 
 /// Name of the element.
@@ -30,6 +31,8 @@ struct Colour {
 /// The materials of a file.
 #[derive(Default)]
 pub(super) struct Table {
+    /// How many there are in the file.
+    records: u64,
     materials: Option<Vec<Material>>,
     /// Linear.
     colours: Option<Vec<[f32; 3]>>,
@@ -40,8 +43,8 @@ impl Colour {
         let channel = |name: &str| {
             let index = scalar(element, name)?;
             match element.properties[index].kind {
-                Kind::Scalar(scalar) => Some((index, scalar)),
-                Kind::List { .. } => None,
+                Kind::Scalar(scalar) if is_colour(scalar) => Some((index, scalar)),
+                _ => None,
             }
         };
         let channels = match names.map(channel) {
@@ -57,15 +60,9 @@ impl Colour {
 
     /// Linear light; what is no number, or below 0, is 0.
     fn of_record(&self, numbers: &[f64]) -> [f32; 3] {
-        let factor = self.factor.map_or(1.0, |index| numbers[index]);
-        let linear = |(index, scalar): (usize, Scalar)| match scalar {
-            Scalar::U8 => srgb::decode(numbers[index] / 255.0),
-            _ => numbers[index],
-        };
-        let usable = |value: f64| {
-            let value = value as f32;
-            if (0.0..=Surfels::LARGEST).contains(&value) { value } else { 0.0 }
-        };
+        let factor = self.factor.map_or(1.0, |index| numbers[index]) as f32;
+        let linear = |(index, scalar): (usize, Scalar)| convert::linear(numbers[index], scalar);
+        let usable = |value: f32| if (0.0..=Surfels::LARGEST).contains(&value) { value } else { 0.0 };
         self.channels.map_or([1.0; 3], |channels| channels.map(linear)).map(|value| usable(factor * value))
     }
 }
@@ -91,24 +88,22 @@ impl Columns {
 
     /// Adds a record to the table, as long as it has room.
     pub fn add(&self, numbers: &[f64], table: &mut Table) {
+        table.records += 1;
+        if table.records > Materials::MOST as u64 {
+            return;
+        }
         if self.specular.is_there() {
-            let materials = table.materials.get_or_insert_default();
-            if materials.len() < Materials::MOST {
-                materials.push(self.material(numbers));
-            }
+            table.materials.get_or_insert_default().push(self.material(numbers));
         }
         if self.diffuse.channels.is_some() {
-            let colours = table.colours.get_or_insert_default();
-            if colours.len() < Materials::MOST {
-                colours.push(self.diffuse.of_record(numbers));
-            }
+            table.colours.get_or_insert_default().push(self.diffuse.of_record(numbers));
         }
     }
 
-    /// An exponent of 0 is that of no highlight.
+    /// An exponent of 0 is that of no highlight; one that is not finite is none.
     fn material(&self, numbers: &[f64]) -> Material {
-        let shininess =
-            self.power.map_or(Lighting::default().shininess, |index| numbers[index].min(1e6) as f32);
+        let power = self.power.map(|index| numbers[index]).filter(|power| power.is_finite());
+        let shininess = power.map_or(Lighting::default().shininess, |power| power.min(1e6) as f32);
         match shininess > 0.0 {
             true => Material { specular: self.specular.of_record(numbers), shininess },
             false => Material { specular: [0.0; 3], shininess: 1.0 },
@@ -117,6 +112,11 @@ impl Columns {
 }
 
 impl Table {
+    /// How many of the file's are not in the table.
+    pub fn dropped(&self) -> u64 {
+        self.records.saturating_sub(Materials::MOST as u64)
+    }
+
     /// Gives the points of a cloud the materials of these numbers, and where it has no colours, theirs. A number that is none of the table's
     /// is that of no material.
     pub fn give(self, cloud: &mut Cloud, mut numbers: Vec<u16>) {

@@ -244,6 +244,7 @@ fn report(header: Header, vertex: usize, layout: &Layout, contents: &Contents) -
         dropped: contents.points.dropped,
         clip_lines_dropped: contents.points.clip_lines,
         weights_dropped: contents.points.weights,
+        materials_dropped: contents.materials.dropped(),
         faces: contents.faces,
         lines: contents.lines,
         gaussians: matches!(layout.shape, Shape::Gaussian(_)),

@@ -23,6 +23,8 @@ pub struct Report {
     pub clip_lines_dropped: u64,
     /// Normalization weights of no use: not finite, or not above 0.
     pub weights_dropped: u64,
+    /// Materials beyond [`Materials::MOST`](crate::geometry::Materials::MOST), which are not read: points of theirs have none.
+    pub materials_dropped: u64,
     /// Faces, triangle strips and cells of range grids.
     pub faces: Faces,
     /// Segments of edges and polylines.

@@ -300,6 +300,19 @@ fn materials_are_those_of_the_table_and_colour_what_has_no_colour() {
         assert_eq!(cloud.colours, Some(Colours::Linear(vec![[0.0; 3], grey, [1.0, 0.5, 0.0], grey])));
         assert_eq!((report.skipped.len(), report.skipped_elements.len()), (0, 0));
     }
+    // ushort is sRGB, other integers are no colours; an exponent that is none is none.
+    let odd = text(
+        &format!(
+            "{}{}",
+            vertices("").replace("vertex 4", "vertex 1"),
+            shine.replace("uchar specular", "ushort specular").replace("material 2", "material 1")
+        ),
+        "0 0 0 0\n65535 0 0 1 nan\n",
+    );
+    let cloud = read_bytes("a", &odd, &ReadOptions::default()).unwrap().cloud;
+    let usual = Lighting::default().shininess;
+    let expected = Material { specular: [1.0, 0.0, 0.0], shininess: usual };
+    assert_eq!(cloud.materials.unwrap().table[..], [expected]);
     // Colours of their own come first; numbers of no table are numbers like others.
     let own = text(
         &format!("{}{paint}\nelement material 1\n{paint}", vertices("").replace("vertex 4", "vertex 1")),
