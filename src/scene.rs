@@ -193,6 +193,7 @@ impl Scene {
     }
 
     /// [`Scene::upload`] without the warnings, and the number of invalid surfels.
+    #[cfg(feature = "bench")]
     pub(crate) fn upload_silently<'a>(
         device: &Arc<Device>,
         parts: impl Into<Parts<'a>>,
