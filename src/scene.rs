@@ -1,5 +1,6 @@
 //! Geometry on the GPU: only the streams that the scene has.
 
+mod clips;
 mod lent;
 mod live;
 mod materials;
@@ -10,11 +11,11 @@ mod update;
 mod weights;
 
 use crate::error::{Error, Result};
-use crate::geometry::{
-    Bounds, Clip, ClipLine, Clips, Colours, Ellipse, Parts, Primitives, Surfels, Texture, Weights,
-};
+use crate::geometry::{Bounds, Colours, Ellipse, Parts, Primitives, Surfels, Texture};
 use crate::vk::shaders::layout::Splat;
 use crate::vk::{Binding, Buffer, Capabilities, Device, Uploads};
+use clips::ClipStream;
+pub(crate) use clips::ClipWindow;
 use glam::{DVec3, Vec3};
 pub(crate) use lent::Lent;
 pub(crate) use materials::MaterialStream;
@@ -27,7 +28,7 @@ pub(crate) use stream::Stream;
 pub use stream::{NormalStream, SurfelLayout, Words};
 pub(crate) use texture::TextureStream;
 pub use update::Changes;
-use weights::WeightStream;
+use weights::WeightBuffer;
 
 /// Surfels, lines and triangles resident on a device.
 pub struct Scene {
@@ -60,29 +61,6 @@ pub struct Scene {
     unchecked: AtomicBool,
     count: AtomicU64,
     bounds: Mutex<Bounds>,
-}
-
-/// Clips as `lib/clip.glsl` wants them, window by window: for every surfel which clip it has, then the clips.
-struct ClipStream {
-    buffer: Buffer,
-    windows: Vec<ClipWindow>,
-}
-
-/// Where a window's clips are.
-pub(crate) struct ClipWindow {
-    /// Bytes of the stream.
-    bytes: Range<u64>,
-    /// Number of its clips.
-    pub(crate) count: u64,
-}
-
-/// Normalization weights of a scene.
-pub(crate) struct WeightBuffer {
-    buffer: Buffer,
-    /// Where each window of surfels has its words, in words.
-    windows: Vec<Range<u64>>,
-    /// Whether some surfels have weights at the corners of their squares.
-    pub corners: bool,
 }
 
 /// What a scene has beside positions, normals and radii.
@@ -193,6 +171,7 @@ impl Scene {
     }
 
     /// [`Scene::upload`] without the warnings, and the number of invalid surfels.
+    #[cfg(feature = "bench")]
     pub(crate) fn upload_silently<'a>(
         device: &Arc<Device>,
         parts: impl Into<Parts<'a>>,
@@ -358,65 +337,9 @@ impl Scene {
             radii,
             colours,
             ellipses,
-            match &self.clips {
-                Some(ClipStream { buffer, windows }) => {
-                    let Range { start, end } = windows[number].bytes;
-                    Binding::Storage(buffer, start, end - start)
-                }
-                None => radii,
-            },
-            match &self.weights {
-                Some(weights) => weights.binding(number),
-                None => radii,
-            },
+            self.clips.as_ref().map_or(radii, |clips| clips.binding(number)),
+            self.weights.as_ref().map_or(radii, |weights| weights.binding(number)),
         ]
-    }
-}
-
-impl ClipStream {
-    fn new(uploads: &Uploads<'_>, clips: &Clips, windows: &[Range<u64>]) -> Result<Self> {
-        let mut words: Vec<u32> = Vec::new();
-        let mut parts = Vec::new();
-        for window in windows {
-            let start = 4 * words.len() as u64;
-            let surfels = window.start as usize..window.end as usize;
-            let mut named: Vec<&Clip> = Vec::new();
-            for surfel in surfels {
-                let clip = clips.get(surfel);
-                named.extend(clip);
-                let corner = clip.map_or(0, |clip| if clip.concave { CONCAVE } else { 0 });
-                words.push(clip.map_or(0, |_| named.len() as u32 | corner));
-            }
-            let lines = named.iter().flat_map(|clip| clip.lines);
-            words.extend(lines.flat_map(bytemuck::cast::<ClipLine, [u32; 4]>));
-            parts.push(ClipWindow { bytes: start..4 * words.len() as u64, count: named.len() as u64 });
-            // No device aligns ranges to more.
-            words.resize(words.len().next_multiple_of(64), 0);
-        }
-        Ok(Self { buffer: uploads.buffer("clips", bytemuck::cast_slice(&words))?, windows: parts })
-    }
-}
-
-/// The bit of a surfel's clip that tells a concave corner, as in `lib/clip.glsl`.
-const CONCAVE: u32 = 1 << 31;
-
-impl WeightBuffer {
-    fn new(
-        device: &Device,
-        uploads: &Uploads<'_>,
-        surfels: &Surfels,
-        weights: &Weights,
-        windows: &[Range<u64>],
-    ) -> Result<Self> {
-        let WeightStream { words, windows } =
-            WeightStream::new(surfels, weights, windows, step(device.capabilities()));
-        let buffer = uploads.buffer("weights", bytemuck::cast_slice(&words))?;
-        Ok(Self { buffer, windows, corners: !weights.corners.is_empty() })
-    }
-
-    fn binding(&self, window: usize) -> Binding<'_> {
-        let Range { start, end } = self.windows[window];
-        Binding::Storage(&self.buffer, start * SCALAR, (end - start) * SCALAR)
     }
 }
 

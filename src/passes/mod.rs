@@ -21,6 +21,7 @@ mod scatter;
 mod seed;
 mod shade;
 mod splats;
+mod surface;
 mod tiles;
 mod visibility;
 
@@ -29,7 +30,7 @@ pub use composite::{Composite, CompositeKind};
 pub use copy::copy;
 pub(crate) use coverage::clear_drawn;
 pub use footprint::Footprint;
-pub use nearest::{ComputeNearest, DrawNearest, NearestViews, SubpassNearest};
+pub use nearest::{ComputeNearest, DrawNearest, NearestViews};
 pub use normalize::{
     ComputeNormalize, DrawNormalize, NormalizeViews, SubpassKind, SubpassNormalize, SubpassViews,
 };
@@ -43,5 +44,6 @@ pub use scatter::{PixelSet, Scatter};
 pub use seed::Seed;
 pub use shade::Shade;
 pub use splats::{SplatLayout, Splats};
+pub use surface::SubpassSurface;
 pub use tiles::Tiles;
-pub use visibility::{ComputeVisibility, DrawVisibility, SubpassVisibility, VisibilityViews};
+pub use visibility::{ComputeVisibility, DrawVisibility, VisibilityViews};

@@ -1,14 +1,13 @@
 //! Nearest: splats → the nearest one of each pixel, alone (zwicker2004 table 1; botsch2003 §3.2; `nearest.glsl`).
 
 use super::coverage::{DrawnCoverage, clear, clear_drawn};
-use super::splats::WINDOW;
-use super::{PixelSet, Scatter, SplatLayout, Splats};
+use super::{PixelSet, Scatter, SplatLayout, Splats, SubpassSurface};
 use crate::error::Result;
 use crate::targets::{Buffers, Formats, Images};
 use crate::variant::Variant;
 use crate::vk::{
-    Access, Attachment, Blend, Buffer, DepthTest, DescriptorSet, Device, DrawPipeline, DrawState, Draws,
-    Framebuffer, Recorder, RenderPass, Topology, Within, shaders,
+    Access, Attachment, Blend, DepthTest, DescriptorSet, Device, DrawPipeline, DrawState, Framebuffer,
+    Recorder, RenderPass, Topology, Within, shaders,
 };
 use std::sync::Arc;
 
@@ -23,12 +22,6 @@ pub struct DrawNearest {
 pub struct NearestViews {
     framebuffer: Framebuffer,
     coverage: Option<DescriptorSet>,
-}
-
-/// The nearest pass as draws in a subpass of a host.
-pub struct SubpassNearest {
-    pipeline: DrawPipeline,
-    coverage: DrawnCoverage,
 }
 
 /// The nearest pass as a scatter with atomic maxima, which leaves which splat it is.
@@ -77,30 +70,15 @@ fn code(variant: &Variant) -> [&'static [u32]; 2] {
     }
 }
 
-impl SubpassNearest {
-    /// The pass for `variant`, drawn `within` a pass of a host.
-    pub fn new(
+impl SubpassSurface {
+    /// The nearest pass for `variant`, drawn `within` a pass of a host.
+    pub fn nearest(
         device: &Arc<Device>,
         layout: &SplatLayout,
         variant: &Variant,
         within: &Within<'_>,
     ) -> Result<Self> {
-        let coverage = DrawnCoverage::new(device, variant)?;
-        let sets: Vec<_> = std::iter::once(&layout.splats).chain(coverage.layout()).collect();
-        let depth = DepthTest::Nearest;
-        let pipeline =
-            DrawPipeline::of_host(device, &sets, code(variant), &variant.constants(), within, depth, WINDOW)?;
-        Ok(Self { pipeline, coverage })
-    }
-
-    /// The pass's view of `coverage`, where α is coverage; that must outlive it.
-    pub fn view(&self, device: &Arc<Device>, coverage: Option<&Buffer>) -> Result<Option<DescriptorSet>> {
-        self.coverage.view(device, coverage)
-    }
-
-    /// `splats` → the subpass's targets, and the coverage that is viewed.
-    pub fn draw(&self, draws: &mut Draws<'_>, splats: &Splats, coverage: Option<&DescriptorSet>) {
-        splats.draw_in(draws, &self.pipeline, &coverage.into_iter().collect::<Vec<_>>());
+        Self::new(device, layout, variant, code(variant), within, DepthTest::Nearest)
     }
 }
 

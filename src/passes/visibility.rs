@@ -1,14 +1,13 @@
 //! Visibility: splats → depth of the nearest surface, moved back by ε (zwicker2004 §6, first pass; `visibility.glsl`).
 
 use super::coverage::{DrawnCoverage, clear, clear_drawn};
-use super::splats::WINDOW;
-use super::{PixelSet, Scatter, SplatLayout, Splats};
+use super::{PixelSet, Scatter, SplatLayout, Splats, SubpassSurface};
 use crate::error::Result;
 use crate::targets::{Buffers, Formats, Images};
 use crate::variant::Variant;
 use crate::vk::{
-    Access, Attachment, Blend, Buffer, DepthTest, DescriptorSet, Device, DrawPipeline, DrawState, Draws,
-    Framebuffer, Recorder, RenderPass, Topology, Within, shaders,
+    Access, Attachment, Blend, DepthTest, DescriptorSet, Device, DrawPipeline, DrawState, Framebuffer,
+    Recorder, RenderPass, Topology, Within, shaders,
 };
 use std::sync::Arc;
 
@@ -23,12 +22,6 @@ pub struct DrawVisibility {
 pub struct VisibilityViews {
     framebuffer: Framebuffer,
     coverage: Option<DescriptorSet>,
-}
-
-/// The visibility pass as draws in a subpass of a host.
-pub struct SubpassVisibility {
-    pipeline: DrawPipeline,
-    coverage: DrawnCoverage,
 }
 
 /// The visibility pass as a scatter with atomic maxima.
@@ -71,31 +64,17 @@ fn code(variant: &Variant) -> [&'static [u32]; 2] {
     }
 }
 
-impl SubpassVisibility {
-    /// The pass for `variant`, drawn `within` a pass of a host; with `marks`, what is drawn is marked in the stencil.
-    pub fn new(
+impl SubpassSurface {
+    /// The visibility pass for `variant`, drawn `within` a pass of a host; with `marks`, what is drawn is marked in the stencil.
+    pub fn visibility(
         device: &Arc<Device>,
         layout: &SplatLayout,
         variant: &Variant,
         within: &Within<'_>,
         marks: bool,
     ) -> Result<Self> {
-        let coverage = DrawnCoverage::new(device, variant)?;
-        let sets: Vec<_> = std::iter::once(&layout.splats).chain(coverage.layout()).collect();
         let depth = if marks { DepthTest::Marking } else { DepthTest::Nearest };
-        let pipeline =
-            DrawPipeline::of_host(device, &sets, code(variant), &variant.constants(), within, depth, WINDOW)?;
-        Ok(Self { pipeline, coverage })
-    }
-
-    /// The pass's view of `coverage`, where α is coverage; that must outlive it.
-    pub fn view(&self, device: &Arc<Device>, coverage: Option<&Buffer>) -> Result<Option<DescriptorSet>> {
-        self.coverage.view(device, coverage)
-    }
-
-    /// `splats` → the subpass's targets, and the coverage that is viewed.
-    pub fn draw(&self, draws: &mut Draws<'_>, splats: &Splats, coverage: Option<&DescriptorSet>) {
-        splats.draw_in(draws, &self.pipeline, &coverage.into_iter().collect::<Vec<_>>());
+        Self::new(device, layout, variant, code(variant), within, depth)
     }
 }
 

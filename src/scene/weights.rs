@@ -1,20 +1,54 @@
 //! The stream of normalization weights, as `shaders-glsl/lib/weights.glsl` reads it.
 
+use super::{SCALAR, step};
+use crate::error::Result;
 use crate::geometry::{Surfels, Weights, square_axis};
+use crate::vk::{Binding, Buffer, Device, Uploads};
 use std::ops::Range;
 
 /// Set in an entry that is where a surfel's corners are, not its weight, whose sign bit never is.
 const AT_CORNERS: u32 = 1 << 31;
 
+/// Normalization weights of a scene.
+pub(crate) struct WeightBuffer {
+    pub(super) buffer: Buffer,
+    /// Where each window of surfels has its words, in words.
+    windows: Vec<Range<u64>>,
+    /// Whether some surfels have weights at the corners of their squares.
+    pub corners: bool,
+}
+
 /// The words of every window of surfels, one window after the other, and where each has them.
-pub(super) struct WeightStream {
-    pub words: Vec<u32>,
-    pub windows: Vec<Range<u64>>,
+struct WeightStream {
+    words: Vec<u32>,
+    windows: Vec<Range<u64>>,
+}
+
+impl WeightBuffer {
+    /// Those of `surfels`.
+    pub(super) fn new(
+        device: &Device,
+        uploads: &Uploads<'_>,
+        surfels: &Surfels,
+        weights: &Weights,
+        windows: &[Range<u64>],
+    ) -> Result<Self> {
+        let WeightStream { words, windows } =
+            WeightStream::new(surfels, weights, windows, step(device.capabilities()));
+        let buffer = uploads.buffer("weights", bytemuck::cast_slice(&words))?;
+        Ok(Self { buffer, windows, corners: !weights.corners.is_empty() })
+    }
+
+    /// A window's.
+    pub(super) fn binding(&self, window: usize) -> Binding<'_> {
+        let Range { start, end } = self.windows[window];
+        Binding::Storage(&self.buffer, start * SCALAR, (end - start) * SCALAR)
+    }
 }
 
 impl WeightStream {
     /// Of `weights`, those of `surfels`. A window's words start at a multiple of `step`: an entry a surfel, then what is at corners.
-    pub fn new(surfels: &Surfels, weights: &Weights, windows: &[Range<u64>], step: u64) -> Self {
+    fn new(surfels: &Surfels, weights: &Weights, windows: &[Range<u64>], step: u64) -> Self {
         let mut stream = Self { words: Vec::new(), windows: Vec::new() };
         for window in windows {
             let first = stream.words.len();

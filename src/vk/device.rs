@@ -10,7 +10,7 @@ use super::requirements::{Abilities, QUEUE};
 use super::surface::{self, Surface, Window};
 use crate::error::{Error, Result};
 use ash::{ext::debug_utils, vk};
-use std::ffi::{CStr, CString};
+use std::ffi::CStr;
 use std::mem::ManuallyDrop;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -215,8 +215,13 @@ impl Device {
     /// # Safety
     /// `cmd` is of the device and is being recorded; [`Device::end_label`] ends it.
     pub(super) unsafe fn begin_label(&self, cmd: vk::CommandBuffer, label: &'static str) {
-        let (Some(labels), Ok(name)) = (&self.labels, CString::new(label)) else { return };
-        let info = vk::DebugUtilsLabelEXT::default().label_name(&name);
+        let Some(labels) = &self.labels else { return };
+        // In every pass of every frame: on the stack.
+        let mut name = [0; 32];
+        let length = label.len().min(name.len() - 1);
+        name[..length].copy_from_slice(&label.as_bytes()[..length]);
+        let Ok(name) = CStr::from_bytes_until_nul(&name) else { return };
+        let info = vk::DebugUtilsLabelEXT::default().label_name(name);
         // SAFETY: by the caller.
         unsafe { labels.cmd_begin_debug_utils_label(cmd, &info) };
     }

@@ -4,8 +4,8 @@ use super::plan::{Plan, Step};
 use super::targets::Targets;
 use crate::error::Result;
 use crate::passes::{
-    Footprint, Seed, SplatLayout, Splats, SubpassAttribute, SubpassNearest, SubpassNormalize, SubpassViews,
-    SubpassVisibility, clear_drawn,
+    Footprint, Seed, SplatLayout, Splats, SubpassAttribute, SubpassNormalize, SubpassSurface, SubpassViews,
+    clear_drawn,
 };
 use crate::splatting::Visibility;
 use crate::variant::Variant;
@@ -26,8 +26,8 @@ pub(super) struct Passes {
 
 /// What finds the nearest surface and what is there.
 enum Surface {
-    Blended { visibility: SubpassVisibility, attribute: SubpassAttribute },
-    Nearest(SubpassNearest),
+    Blended { visibility: SubpassSurface, attribute: SubpassAttribute },
+    Nearest(SubpassSurface),
 }
 
 /// What they read beside splats.
@@ -97,7 +97,7 @@ impl Passes {
         let surface = match variant.visibility {
             Visibility::Nearest => {
                 let within = within(Step::Nearest, &[Some(Blend::Replace); 2], one);
-                Surface::Nearest(SubpassNearest::new(device, layout, variant, &within)?)
+                Surface::Nearest(SubpassSurface::nearest(device, layout, variant, &within)?)
             }
             Visibility::Ray | Visibility::Axis => {
                 let marks = plan.marks();
@@ -106,7 +106,7 @@ impl Passes {
                     within(Step::Attribute, &[Some(Blend::Add); 2], one),
                 );
                 Surface::Blended {
-                    visibility: SubpassVisibility::new(device, layout, variant, &seen, marks)?,
+                    visibility: SubpassSurface::visibility(device, layout, variant, &seen, marks)?,
                     attribute: SubpassAttribute::new(device, layout, variant, &summed, marks)?,
                 }
             }

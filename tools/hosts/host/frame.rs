@@ -203,8 +203,8 @@ impl Frame {
 
     /// The colours, of RGBA floats, and the depths, where there is one sample.
     pub fn read(&self, host: &Host) -> Result<(Vec<[f32; 4]>, Vec<f32>)> {
-        let colours = self.copy(host, self.picture(), 16)?;
-        let depths = if self.resolved.is_none() { self.copy(host, &self.depth, 4)? } else { Vec::new() };
+        let colours = self.picture().read(host, 16)?;
+        let depths = if self.resolved.is_none() { self.depth.read(host, 4)? } else { Vec::new() };
         Ok((bytemuck::pod_collect_to_vec(&colours), bytemuck::pod_collect_to_vec(&depths)))
     }
 
@@ -223,30 +223,12 @@ impl Frame {
     /// The first target before the picture's that has this format, of so many bytes a pixel; nothing without one.
     fn read_more(&self, host: &Host, format: vk::Format, bytes: usize) -> Result<Vec<u8>> {
         let target = self.more.iter().find(|target| target.format == format);
-        target.map_or(Ok(Vec::new()), |target| self.copy(host, target, bytes))
+        target.map_or(Ok(Vec::new()), |target| target.read(host, bytes))
     }
 
     /// The bytes of the colours, `bytes` a pixel.
     pub fn read_bytes(&self, host: &Host, bytes: usize) -> Result<Vec<u8>> {
-        self.copy(host, self.picture(), bytes)
-    }
-
-    fn copy(&self, host: &Host, target: &Target, bytes: usize) -> Result<Vec<u8>> {
-        let size = bytes * self.size[0] as usize * self.size[1] as usize;
-        let (buffer, memory) = host.buffer(&vec![0; size], vk::BufferUsageFlags::TRANSFER_DST)?;
-        host.run(|cmd| {
-            target.transition(host, cmd, [SOURCE, SOURCE]);
-            target.copy_to(host, cmd, buffer);
-            host_reads(host, cmd);
-            Ok(())
-        })?;
-        let found = host.read(memory, size);
-        // SAFETY: the copy was waited for.
-        unsafe {
-            host.device.destroy_buffer(buffer, None);
-            host.device.free_memory(memory, None);
-        }
-        found
+        self.picture().read(host, bytes)
     }
 
     /// The image of the picture, which `end` leaves ready to be copied.
@@ -278,17 +260,6 @@ impl Frame {
         let rest = [Some(self.colour), Some(self.depth), self.resolved];
         self.more.into_iter().chain(rest.into_iter().flatten()).for_each(|target| target.destroy(host));
     }
-}
-
-fn host_reads(host: &Host, cmd: vk::CommandBuffer) {
-    let barrier = vk::MemoryBarrier::default()
-        .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
-        .dst_access_mask(vk::AccessFlags::HOST_READ);
-    let [from, to] = [vk::PipelineStageFlags::TRANSFER, vk::PipelineStageFlags::HOST];
-    // SAFETY: recorded outside a render pass.
-    unsafe {
-        host.device.cmd_pipeline_barrier(cmd, from, to, vk::DependencyFlags::empty(), &[barrier], &[], &[])
-    };
 }
 
 /// The pass of a frame whose colour targets have these formats.
