@@ -9,6 +9,7 @@ use surfel::io::colour_bar::ColourBar;
 use surfel::{Error, Result};
 
 /// What points are coloured by.
+#[derive(Clone)]
 pub struct Colouring {
     name: String,
     source: Source,
@@ -17,6 +18,7 @@ pub struct Colouring {
 }
 
 /// Where the colours come from.
+#[derive(Clone)]
 enum Source {
     /// A property of the files.
     Property,

@@ -5,6 +5,8 @@ use super::colouring::Colouring;
 use super::inputs::{self, Wanted};
 use super::{camera, render, vulkan};
 use crate::viewer;
+use std::ffi::OsString;
+use std::sync::Arc;
 use surfel::methods::Method;
 use surfel::{Progress, Result};
 
@@ -15,19 +17,18 @@ pub fn run(args: View) -> Result<()> {
     let up = camera::up(&args.camera, file);
     let colouring = Colouring::new(&args.colours, up)?;
     let texture = args.colours.texture()?;
-    let (names, estimate, polygons, quiet) =
-        (args.inputs.clone(), args.points.estimate(), args.points.polygons, args.quiet);
+    let (estimate, polygons, quiet) = (args.points.estimate(), args.points.polygons, args.quiet);
     let asked = args.method;
-    let load = move |progress: &dyn Progress| {
+    let load = move |names: &[OsString], progress: &dyn Progress| {
         let wanted = Wanted {
-            names: &names,
-            estimate,
+            names,
+            estimate: estimate.clone(),
             polygons,
             lines: None,
             simplify: None,
             voxel: None,
-            colouring,
-            texture,
+            colouring: colouring.clone(),
+            texture: texture.clone(),
             quiet,
             progress,
         };
@@ -36,11 +37,12 @@ pub fn run(args: View) -> Result<()> {
         Ok(viewer::Loaded { model, method })
     };
     let options = viewer::Options {
+        inputs: args.inputs.clone(),
         size: args.size,
         device: vulkan::options(&args.device)?,
         rasterizer: args.rasterizer,
         up,
         budget: args.budget,
     };
-    viewer::run(options, Box::new(load), Box::new(move |method| args.settings(method)))
+    viewer::run(options, Arc::new(load), Box::new(move |method| args.settings(method)))
 }

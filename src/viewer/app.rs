@@ -8,7 +8,10 @@ use super::state::State;
 use super::window::Opened;
 use super::{Look, Options};
 use glam::DVec2;
+use std::ffi::OsString;
+use std::sync::Arc;
 use std::time::Instant;
+use surfel::vk::Device;
 use surfel::{Error, Result};
 use winit::application::ApplicationHandler;
 use winit::event::{ElementState, KeyEvent, MouseButton, MouseScrollDelta, StartCause, WindowEvent};
@@ -32,10 +35,12 @@ pub fn run(options: Options, load: Load, look: Look) -> Result<()> {
         state,
         hands,
         told: Told::default(),
-        load: Some(load),
+        load,
+        dropped: Vec::new(),
         news: events.create_proxy(),
         options,
         opened: None,
+        device: None,
         failed: None,
     };
     events.run_app(&mut app).map_err(no_display)?;
@@ -46,10 +51,13 @@ struct App {
     state: State,
     hands: Hands,
     told: Told,
-    load: Option<Load>,
+    load: Load,
+    /// Files that were dropped on the window, and are loaded when all of them are.
+    dropped: Vec<OsString>,
     news: EventLoopProxy<News>,
     options: Options,
     opened: Option<Opened>,
+    device: Option<Arc<Device>>,
     failed: Option<Error>,
 }
 
@@ -59,9 +67,8 @@ impl ApplicationHandler<News> for App {
             Ok((opened, device)) => {
                 opened.window.request_redraw();
                 self.opened = Some(opened);
-                if let Some(load) = self.load.take() {
-                    load::start(load, device, self.news.clone());
-                }
+                self.device = Some(device);
+                self.open(self.options.inputs.clone());
             }
             Err(error) => self.fail(events, error),
         }
@@ -74,11 +81,22 @@ impl ApplicationHandler<News> for App {
                 self.changed();
             }
             News::Ready(scene, method) => {
-                self.told.loading = None;
+                (self.told.loading, self.told.wrong) = (None, None);
                 self.state.show(scene, method);
                 self.changed();
             }
-            News::Failed(error) => self.fail(events, error),
+            News::Failed(error) if self.state.moving().is_none() => self.fail(events, error),
+            News::Failed(error) => {
+                (self.told.loading, self.told.wrong) = (None, Some(error.to_string()));
+                self.changed();
+            }
+        }
+    }
+
+    fn about_to_wait(&mut self, _: &ActiveEventLoop) {
+        if !self.dropped.is_empty() {
+            let dropped = std::mem::take(&mut self.dropped);
+            self.open(dropped);
         }
     }
 
@@ -102,6 +120,7 @@ impl ApplicationHandler<News> for App {
         }
         match event {
             WindowEvent::CloseRequested => events.exit(),
+            WindowEvent::DroppedFile(path) => self.dropped.push(path.into()),
             WindowEvent::Resized(_) | WindowEvent::ScaleFactorChanged { .. } => opened.resized(),
             WindowEvent::RedrawRequested => self.draw(events),
             WindowEvent::Focused(false) => self.hands.let_go(),
@@ -127,11 +146,18 @@ impl ApplicationHandler<News> for App {
     }
 
     fn exiting(&mut self, _: &ActiveEventLoop) {
-        self.opened = None;
+        (self.opened, self.device) = (None, None);
     }
 }
 
 impl App {
+    /// Looks at these inputs from now on, once they are loaded.
+    fn open(&mut self, inputs: Vec<OsString>) {
+        if let Some(device) = &self.device {
+            load::start(self.load.clone(), inputs, device.clone(), self.news.clone());
+        }
+    }
+
     fn draw(&mut self, events: &ActiveEventLoop) {
         let Some(opened) = &mut self.opened else { return };
         match opened.draw(&mut self.state, &self.hands, &mut self.told) {

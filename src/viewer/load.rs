@@ -1,6 +1,7 @@
 //! Loading, while the window is there.
 
 use super::Loaded;
+use std::ffi::OsString;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::thread::{self, JoinHandle};
@@ -9,8 +10,8 @@ use surfel::vk::Device;
 use surfel::{Progress, Result, Scene};
 use winit::event_loop::EventLoopProxy;
 
-/// Gives the scene, and tells how far it has come.
-pub type Load = Box<dyn FnOnce(&dyn Progress) -> Result<Loaded> + Send>;
+/// Gives the scene that inputs make, and tells how far it has come.
+pub type Load = Arc<dyn Fn(&[OsString], &dyn Progress) -> Result<Loaded> + Send + Sync>;
 
 /// What the window is told.
 pub enum News {
@@ -22,11 +23,16 @@ pub enum News {
     Failed(surfel::Error),
 }
 
-/// Loads a scene and puts it on the device, on a thread of its own.
-pub fn start(load: Load, device: Arc<Device>, window: EventLoopProxy<News>) -> JoinHandle<()> {
+/// Loads `inputs` as one scene and puts it on the device, on a thread of its own.
+pub fn start(
+    load: Load,
+    inputs: Vec<OsString>,
+    device: Arc<Device>,
+    window: EventLoopProxy<News>,
+) -> JoinHandle<()> {
     thread::spawn(move || {
         let told = Told { window: window.clone(), last: AtomicU64::new(u64::MAX) };
-        let ready = load(&told).and_then(|Loaded { model, method }| {
+        let ready = load(&inputs, &told).and_then(|Loaded { model, method }| {
             let scene = Scene::upload(&device, &model)?;
             Ok(News::Ready(Arc::new(scene), method))
         });

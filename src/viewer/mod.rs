@@ -19,6 +19,7 @@ mod window;
 
 use glam::DVec3;
 use load::Load;
+use std::ffi::OsString;
 use surfel::geometry::Model;
 use surfel::methods::Method;
 use surfel::vk::DeviceOptions;
@@ -26,6 +27,8 @@ use surfel::{Rasterizer, Result, Settings};
 
 /// How the window is opened.
 pub struct Options {
+    /// Files and scenes that are looked at first.
+    pub inputs: Vec<OsString>,
     /// Width and height of the picture, px.
     pub size: [u32; 2],
     /// Which device renders and presents.
@@ -49,10 +52,10 @@ pub struct Loaded {
 /// The settings of a method.
 pub type Look = Box<dyn Fn(&Method) -> Settings>;
 
-/// Opens the window, and shows what `load` gives until it is closed.
+/// Opens the window, and shows what `load` makes of the inputs, and of files dropped on it, until it is closed.
 ///
 /// # Errors
-/// That of `load`; [`surfel::Error::NoDevice`] where there is no display or no device; whatever rendering fails with.
+/// That of `load`, if it is the first scene's; [`surfel::Error::NoDevice`] where there is no display or no device; whatever rendering fails with.
 pub fn run(options: Options, load: Load, look: Look) -> Result<()> {
     app::run(options, load, look)
 }
