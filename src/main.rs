@@ -1,5 +1,6 @@
 //! The `surfel` program: what it does is in `cli`.
 
+mod camera_file;
 mod cli;
 #[cfg(feature = "viewer")]
 mod viewer;

@@ -93,6 +93,19 @@ pub struct Outputs {
     pub id: bool,
 }
 
+impl Outputs {
+    /// With what a PNG of frames of these settings needs beside: on an opaque background α does not tell where a surface is.
+    #[must_use]
+    pub fn with_mask(self, settings: &Settings) -> Self {
+        let opaque = settings.background.is_some();
+        Self {
+            normal: self.normal || opaque && settings.shading == Shading::Normal,
+            depth: self.depth || opaque && settings.shading == Shading::Depth,
+            id: self.id,
+        }
+    }
+}
+
 /// Width of the floats in which weighted sums, or the samples of pull–push, are kept.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Precision {

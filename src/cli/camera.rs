@@ -1,56 +1,57 @@
 //! The camera that the arguments ask for.
 
 use super::args;
-use super::files::read_json;
+use crate::camera_file;
 use glam::DVec3;
 use std::path::Path;
-use surfel::geometry::{Bounds, Camera};
+use surfel::geometry::{Bounds, Camera, Pose, Span};
 use surfel::{Error, Result};
 
 /// Vertical angle of view unless another is given, degrees.
-const FOV: f64 = 45.0;
-
-/// A camera file.
-#[derive(Clone, Copy, Debug, serde::Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct File {
-    eye: [f64; 3],
-    target: [f64; 3],
-    up: [f64; 3],
-    fov_y_deg: f64,
-}
+pub const FOV: f64 = 45.0;
 
 /// The contents of the camera file, if one is named: read before anything large is.
-pub fn read(args: &args::Camera) -> Result<Option<(&Path, File)>> {
-    args.file.as_deref().map(|path| Ok((path, read_json(path)?))).transpose()
+pub fn read(args: &args::Camera) -> Result<Option<(&Path, Pose)>> {
+    args.file.as_deref().map(|path| Ok((path, camera_file::read(path)?))).transpose()
 }
 
 /// The camera of `file`, or else of the arguments: what is not given is as if the whole of `bounds` were framed.
 pub fn make(
     args: &args::Camera,
-    file: Option<(&Path, File)>,
+    file: Option<(&Path, Pose)>,
     bounds: &Bounds,
     size: [u32; 2],
 ) -> Result<Camera> {
-    let aspect = f64::from(size[0]) / f64::from(size[1]);
-    let look_at = |eye, target, up, fov: f64| {
-        Camera::look_at(eye, target, up, fov.to_radians(), aspect, Camera::near_for(eye, bounds))
-    };
-    if let Some((path, File { eye, target, up, fov_y_deg })) = file {
-        return look_at(eye.into(), target.into(), up.into(), fov_y_deg)
-            .map_err(|error| Error::input(path.display().to_string(), error.to_string()));
+    let made = pose(args, file.map(|(_, pose)| pose), bounds, size)?.camera(bounds, aspect(size));
+    match file {
+        Some((path, _)) => {
+            made.map_err(|error| Error::input(path.display().to_string(), error.to_string()))
+        }
+        None => made,
+    }
+}
+
+/// The same before near and far planes are known.
+pub fn pose(args: &args::Camera, file: Option<Pose>, bounds: &Bounds, size: [u32; 2]) -> Result<Pose> {
+    if let Some(pose) = file {
+        return Ok(pose);
     }
     let fov = args.fov.unwrap_or(FOV);
     let eye = match args.eye {
         Some(eye) => eye,
-        None => framed_eye(bounds, fov, aspect)?,
+        None => framed_eye(bounds, fov, aspect(size))?,
     };
-    look_at(eye, args.target.unwrap_or(bounds.centre()), up(args, None), fov)
+    let span = args.parallel.map_or(Span::Angle(fov), Span::Height);
+    Ok(Pose { eye, target: args.target.unwrap_or(bounds.centre()), up: up(args, None), span })
 }
 
 /// What is up in the picture, as far as the arguments say; not of unit length.
-pub fn up(args: &args::Camera, file: Option<(&Path, File)>) -> DVec3 {
-    file.map(|(_, file)| file.up.into()).or(args.up).unwrap_or(DVec3::Y)
+pub fn up(args: &args::Camera, file: Option<(&Path, Pose)>) -> DVec3 {
+    file.map(|(_, pose)| pose.up).or(args.up).unwrap_or(DVec3::Y)
+}
+
+fn aspect(size: [u32; 2]) -> f64 {
+    f64::from(size[0]) / f64::from(size[1])
 }
 
 /// Where a camera stands that shows the whole of `bounds`.

@@ -1,17 +1,20 @@
 //! `surfel view`.
 
-use super::args::View;
+use super::args::{self, View};
 use super::colouring::Colouring;
 use super::inputs::{self, Wanted};
 use super::{camera, render, vulkan};
 use crate::viewer;
 use std::ffi::OsString;
 use std::sync::Arc;
+use std::time::Instant;
+use surfel::geometry::Bounds;
 use surfel::methods::Method;
 use surfel::{Progress, Result};
 
 /// Opens the window, which loads the inputs while it is there.
 pub fn run(args: View) -> Result<()> {
+    let start = Instant::now();
     args.settings(&args.method.unwrap_or(Method::ALL[0])).check()?;
     let file = camera::read(&args.camera)?;
     let up = camera::up(&args.camera, file);
@@ -36,6 +39,13 @@ pub fn run(args: View) -> Result<()> {
         let method = render::method(asked, &model)?;
         Ok(viewer::Loaded { model, method })
     };
+    let given = {
+        let args::Camera { eye, target, fov, parallel, file, .. } = &args.camera;
+        eye.is_some() || target.is_some() || fov.is_some() || parallel.is_some() || file.is_some()
+    };
+    let (cameras, pose) = (args.camera.clone(), file.map(|(_, pose)| pose));
+    let place =
+        move |bounds: &Bounds, size| given.then(|| camera::pose(&cameras, pose, bounds, size));
     let options = viewer::Options {
         inputs: args.inputs.clone(),
         size: args.size,
@@ -43,6 +53,10 @@ pub fn run(args: View) -> Result<()> {
         rasterizer: args.rasterizer,
         up,
         budget: args.budget,
+        fov_y_deg: args.camera.fov.unwrap_or(camera::FOV),
+        place: Box::new(place),
+        events: viewer::Events::new(start, args.json),
+        keep: viewer::Folder { path: args.shots.clone(), tell: !(args.quiet || args.json) },
     };
     viewer::run(options, Arc::new(load), Box::new(move |method| args.settings(method)))
 }

@@ -7,9 +7,8 @@ use super::report::{Gpu, HalfError};
 use std::sync::Arc;
 use std::time::Instant;
 use surfel::bench::Times;
-use surfel::settings::Shading;
 use surfel::vk::{Device, DeviceLimits, DeviceOptions};
-use surfel::{Error, Outputs, Picture, Precision, RenderOptions, Renderer, Result, Scene};
+use surfel::{Error, Picture, Precision, RenderOptions, Renderer, Result, Scene};
 
 /// The stage of rendering, for who is told about progress.
 const FRAMES: &str = "rendering frames";
@@ -29,7 +28,7 @@ pub fn render(task: &Task<'_>, options: &DeviceOptions, place: &Place, measure: 
     let device = Device::open(options)?;
     let options = RenderOptions {
         size: task.size,
-        outputs: outputs(task),
+        outputs: task.layers.with_mask(&task.settings),
         precision: if place.half { Precision::Half } else { Precision::Full },
         rasterizer: place.rasterizer,
         profile: measure,
@@ -80,18 +79,6 @@ fn half_error(
     let errors = || ours.iter().zip(&exact).map(|(a, b)| (a - b).abs());
     let mean_square = errors().map(|e| e * e).sum::<f64>() / ours.len() as f64;
     Ok(Some(HalfError { largest: errors().fold(0.0, f64::max), rms: mean_square.sqrt() }))
-}
-
-/// The layers; and what PNGs of normals and depths need, as on an opaque background α does not tell where a surface is.
-fn outputs(task: &Task<'_>) -> Outputs {
-    let opaque = task.settings.background.is_some();
-    let shading = task.settings.shading;
-    let Outputs { normal, depth, id } = task.layers;
-    Outputs {
-        normal: normal || opaque && shading == Shading::Normal,
-        depth: depth || opaque && shading == Shading::Depth,
-        id,
-    }
 }
 
 fn gpu(device: &Arc<Device>, renderer: &Renderer, scene: &Scene) -> Gpu {

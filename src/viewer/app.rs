@@ -1,16 +1,23 @@
 //! The window's events: what the hands do, and what they see of it.
 
+mod files;
+
+use super::events::Event;
 use super::hands::Hands;
+use super::keep::Keep;
 use super::keys::{self, Action};
 use super::load::{self, Load, News};
 use super::panels::Told;
+use super::retry::Retry;
 use super::state::State;
 use super::window::Opened;
 use super::{Look, Options};
 use glam::DVec2;
 use std::ffi::OsString;
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
+use surfel::geometry::Pose;
 use surfel::vk::Device;
 use surfel::{Error, Result};
 use winit::application::ApplicationHandler;
@@ -37,10 +44,15 @@ pub fn run(options: Options, load: Load, look: Look) -> Result<()> {
         told: Told::default(),
         load,
         dropped: Vec::new(),
+        next: None,
+        keep: Keep::new(options.keep.clone()),
         news: events.create_proxy(),
+        inputs: options.inputs.clone(),
         options,
         opened: None,
         device: None,
+        pending: None,
+        retry: Retry::default(),
         failed: None,
     };
     events.run_app(&mut app).map_err(no_display)?;
@@ -53,11 +65,19 @@ struct App {
     told: Told,
     load: Load,
     /// Files that were dropped on the window, and are loaded when all of them are.
-    dropped: Vec<OsString>,
+    dropped: Vec<PathBuf>,
+    /// From where the scene is seen that comes next.
+    next: Option<Pose>,
+    keep: Keep,
     news: EventLoopProxy<News>,
     options: Options,
     opened: Option<Opened>,
     device: Option<Arc<Device>>,
+    /// What is looked at.
+    inputs: Vec<OsString>,
+    /// What is being loaded.
+    pending: Option<Vec<OsString>>,
+    retry: Retry,
     failed: Option<Error>,
 }
 
@@ -65,6 +85,7 @@ impl ApplicationHandler<News> for App {
     fn resumed(&mut self, events: &ActiveEventLoop) {
         match Opened::new(events, &self.options) {
             Ok((opened, device)) => {
+                self.options.events.tell(&Event::Window { device: &device.description().name });
                 opened.window.request_redraw();
                 self.opened = Some(opened);
                 self.device = Some(device);
@@ -82,13 +103,18 @@ impl ApplicationHandler<News> for App {
             }
             News::Ready(scene, method) => {
                 (self.told.loading, self.told.wrong) = (None, None);
-                self.state.show(scene, method);
-                self.changed();
+                self.inputs = self.pending.take().unwrap_or(std::mem::take(&mut self.inputs));
+                self.options.events.tell(&Event::Ready { surfels: scene.count() });
+                match self.show(scene, method) {
+                    Ok(()) => self.changed(),
+                    Err(error) => self.fail(events, error),
+                }
             }
+            News::Kept => self.written(),
             News::Failed(error) if self.state.moving().is_none() => self.fail(events, error),
             News::Failed(error) => {
-                (self.told.loading, self.told.wrong) = (None, Some(error.to_string()));
-                self.changed();
+                (self.told.loading, self.pending) = (None, None);
+                self.wrong(&error);
             }
         }
     }
@@ -96,7 +122,7 @@ impl ApplicationHandler<News> for App {
     fn about_to_wait(&mut self, _: &ActiveEventLoop) {
         if !self.dropped.is_empty() {
             let dropped = std::mem::take(&mut self.dropped);
-            self.open(dropped);
+            self.take(dropped);
         }
     }
 
@@ -120,7 +146,7 @@ impl ApplicationHandler<News> for App {
         }
         match event {
             WindowEvent::CloseRequested => events.exit(),
-            WindowEvent::DroppedFile(path) => self.dropped.push(path.into()),
+            WindowEvent::DroppedFile(path) => self.dropped.push(path),
             WindowEvent::Resized(_) | WindowEvent::ScaleFactorChanged { .. } => opened.resized(),
             WindowEvent::RedrawRequested => self.draw(events),
             WindowEvent::Focused(false) => self.hands.let_go(),
@@ -146,6 +172,8 @@ impl ApplicationHandler<News> for App {
     }
 
     fn exiting(&mut self, _: &ActiveEventLoop) {
+        self.keep.finish();
+        self.written();
         (self.opened, self.device) = (None, None);
     }
 }
@@ -154,16 +182,18 @@ impl App {
     /// Looks at these inputs from now on, once they are loaded.
     fn open(&mut self, inputs: Vec<OsString>) {
         if let Some(device) = &self.device {
+            self.pending = Some(inputs.clone());
             load::start(self.load.clone(), inputs, device.clone(), self.news.clone());
         }
     }
 
     fn draw(&mut self, events: &ActiveEventLoop) {
         let Some(opened) = &mut self.opened else { return };
-        match opened.draw(&mut self.state, &self.hands, &mut self.told) {
+        match opened.draw(&mut self.state, &self.hands, &mut self.told, &self.options.events) {
             Ok(next) => events.set_control_flow(next.map_or(ControlFlow::Wait, ControlFlow::WaitUntil)),
-            Err(error) => self.fail(events, error),
+            Err(error) => return self.fail(events, error),
         }
+        self.answer();
     }
 
     fn key(&mut self, events: &ActiveEventLoop, event: &KeyEvent) {
@@ -171,16 +201,30 @@ impl App {
         if self.hands.flight().is_some() {
             self.moved();
         }
-        let action = keys::action(&event.logical_key).filter(|_| event.state == ElementState::Pressed);
+        let pressed = event.state == ElementState::Pressed;
+        let action = keys::action(&event.logical_key, self.hands.modifiers).filter(|_| pressed);
+        if action.is_some() {
+            (self.told.wrong, self.told.done) = (None, None);
+        }
         match action {
             Some(Action::Quit) => events.exit(),
+            Some(
+                action @ (Action::Open
+                | Action::Keep(_)
+                | Action::SaveCamera
+                | Action::CopyCamera
+                | Action::PasteCamera),
+            ) if !event.repeat => {
+                if let Err(error) = self.keep(action) {
+                    self.wrong(&error);
+                }
+            }
             Some(Action::Help) => {
                 self.told.help = !self.told.help;
                 self.changed();
             }
             Some(action) => {
                 self.state.act(action);
-                self.told.wrong = None;
                 self.changed();
             }
             None => {}
@@ -214,6 +258,24 @@ impl App {
         self.changed();
     }
 
+    /// Opens a device in the place of a lost one, and loads anew what was looked at.
+    fn reopen(&mut self) -> Result<()> {
+        let Some(opened) = self.opened.take() else { return Ok(()) };
+        self.options.events.tell(&Event::Lost);
+        log::warn!("the device was lost: another one is opened");
+        let window = opened.window.clone();
+        self.next = self.state.leave().or(self.next);
+        drop(opened);
+        self.device = None;
+        let (opened, device) = Opened::of(window, &self.options)?;
+        (self.opened, self.device) = (Some(opened), Some(device));
+        self.told.done = Some("the device was lost; this is another one".into());
+        let inputs = self.pending.take().unwrap_or_else(|| self.inputs.clone());
+        self.open(inputs);
+        self.changed();
+        Ok(())
+    }
+
     /// The picture is another.
     fn changed(&self) {
         if let Some(opened) = &self.opened {
@@ -222,7 +284,23 @@ impl App {
         }
     }
 
+    /// Says what went wrong; what was shown stays.
+    fn wrong(&mut self, error: &Error) {
+        let text = error.to_string();
+        self.options.events.tell(&Event::Wrong { error: &text });
+        self.told.wrong = Some(text);
+        self.changed();
+    }
+
+    /// Ends the program, unless it can go on on another device.
     fn fail(&mut self, events: &ActiveEventLoop, error: Error) {
+        let error = match error.is_device_lost() && self.retry.lost(Instant::now()) {
+            true => match self.reopen() {
+                Ok(()) => return,
+                Err(error) => error,
+            },
+            false => error,
+        };
         self.failed.get_or_insert(error);
         events.exit();
     }

@@ -1,6 +1,7 @@
 //! What keys do.
 
-use winit::keyboard::{Key, NamedKey};
+use super::keep::What;
+use winit::keyboard::{Key, ModifiersState, NamedKey};
 
 /// What a key does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,6 +13,11 @@ pub enum Action {
     Parallel,
     Frame,
     Help,
+    Open,
+    Keep(What),
+    SaveCamera,
+    CopyCamera,
+    PasteCamera,
     Up(super::orbit::Up),
     Side(super::orbit::Side),
 }
@@ -19,17 +25,37 @@ pub enum Action {
 /// A key, what it is called, and what it does.
 pub struct Binding {
     pub key: Key<&'static str>,
+    /// Held with it: Ctrl, Alt and the system's; Shift for keys that it makes no other letter of.
+    pub held: ModifiersState,
     pub name: &'static str,
     pub does: &'static str,
     pub action: Action,
 }
 
+const NONE: ModifiersState = ModifiersState::empty();
+const CONTROL: ModifiersState = ModifiersState::CONTROL;
+const SHIFT: ModifiersState = ModifiersState::SHIFT;
+
 const fn letter(key: &'static str, name: &'static str, does: &'static str, action: Action) -> Binding {
-    Binding { key: Key::Character(key), name, does, action }
+    Binding { key: Key::Character(key), held: NONE, name, does, action }
+}
+
+const fn control(key: &'static str, name: &'static str, does: &'static str, action: Action) -> Binding {
+    Binding { key: Key::Character(key), held: CONTROL, name, does, action }
+}
+
+const fn named(
+    key: NamedKey,
+    held: ModifiersState,
+    name: &'static str,
+    does: &'static str,
+    action: Action,
+) -> Binding {
+    Binding { key: Key::Named(key), held, name, does, action }
 }
 
 /// All of them.
-pub const BINDINGS: [Binding; 16] = {
+pub const BINDINGS: [Binding; 23] = {
     use super::orbit::{Side, Up};
     [
         letter("m", "M", "next method", Action::NextMethod),
@@ -46,13 +72,66 @@ pub const BINDINGS: [Binding; 16] = {
         letter("x", "X", "x is up, then −x", Action::Up(Up { axis: 0, down: false })),
         letter("y", "Y", "y is up, then −y", Action::Up(Up { axis: 1, down: false })),
         letter("z", "Z", "z is up, then −z", Action::Up(Up { axis: 2, down: false })),
+        control("o", "Ctrl+O", "open a scene or a camera; or drop files here", Action::Open),
+        named(NamedKey::F12, NONE, "F12", "save the picture, PNG", Action::Keep(What::Picture)),
+        named(NamedKey::F12, SHIFT, "Shift+F12", "save the window, panels and all", Action::Keep(What::Window)),
+        named(NamedKey::F12, CONTROL, "Ctrl+F12", "save the picture's values, EXR", Action::Keep(What::Values)),
+        control("s", "Ctrl+S", "save the camera", Action::SaveCamera),
+        control("c", "Ctrl+C", "copy the camera", Action::CopyCamera),
+        control("v", "Ctrl+V", "paste a camera", Action::PasteCamera),
         letter("h", "H", "these keys", Action::Help),
-        Binding { key: Key::Named(NamedKey::Escape), name: "Esc", does: "quit", action: Action::Quit },
+        named(NamedKey::Escape, NONE, "Esc", "quit", Action::Quit),
     ]
 };
 
-/// What a pressed key does, if anything.
-pub fn action(key: &Key) -> Option<Action> {
-    let key = key.as_ref();
-    BINDINGS.iter().find(|binding| binding.key == key).map(|binding| binding.action)
+/// What a pressed key does while `held` are held, if anything.
+pub fn action(key: &Key, held: ModifiersState) -> Option<Action> {
+    let key = match key {
+        // With Ctrl it is a key, not a letter: Caps Lock changes nothing.
+        Key::Character(text) if held.control_key() => Key::Character(text.to_lowercase()),
+        Key::Character(text) => Key::Character(text.to_string()),
+        Key::Named(named) => Key::Named(*named),
+        _ => return None,
+    };
+    // Shift is in the letter.
+    let held = if matches!(key, Key::Character(_)) { held.difference(SHIFT) } else { held };
+    let pressed = |binding: &&Binding| {
+        binding.held == held
+            && match (&binding.key, &key) {
+                (Key::Character(one), Key::Character(other)) => one == other,
+                (Key::Named(one), Key::Named(other)) => one == other,
+                _ => false,
+            }
+    };
+    BINDINGS.iter().find(pressed).map(|binding| binding.action)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashSet;
+
+    #[test]
+    fn keys_do_what_their_names_say() {
+        let letter = |text: &str| Key::Character(text.into());
+        let f12 = Key::Named(NamedKey::F12);
+        for (key, held, expected) in [
+            (letter("m"), NONE, Some(Action::NextMethod)),
+            (letter("M"), SHIFT, Some(Action::PreviousMethod)),
+            (letter("s"), NONE, None),
+            (letter("s"), CONTROL, Some(Action::SaveCamera)),
+            (letter("S"), CONTROL, Some(Action::SaveCamera)),
+            (letter("f"), CONTROL, None),
+            (letter("m"), ModifiersState::ALT, None),
+            (f12.clone(), NONE, Some(Action::Keep(What::Picture))),
+            (f12.clone(), SHIFT, Some(Action::Keep(What::Window))),
+            (f12.clone(), CONTROL, Some(Action::Keep(What::Values))),
+            (f12, CONTROL | SHIFT, None),
+            (Key::Dead(None), NONE, None),
+        ] {
+            assert_eq!(action(&key, held), expected, "{key:?} {held:?}");
+        }
+        let names: HashSet<_> = BINDINGS.iter().map(|binding| binding.name).collect();
+        assert_eq!(names.len(), BINDINGS.len(), "two of one name");
+    }
 }

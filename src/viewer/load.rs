@@ -21,6 +21,8 @@ pub enum News {
     Ready(Arc<Scene>, Method),
     /// It cannot be loaded.
     Failed(surfel::Error),
+    /// A picture is in its file, or cannot be.
+    Kept,
 }
 
 /// Loads `inputs` as one scene and puts it on the device, on a thread of its own.

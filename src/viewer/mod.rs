@@ -6,21 +6,27 @@
 //! ```
 
 mod app;
+mod events;
 mod hands;
 mod hud;
+mod keep;
 mod keys;
 mod load;
+mod open;
 mod orbit;
 mod pace;
 mod panels;
+mod retry;
 mod screen;
 mod state;
 mod window;
 
+pub use events::Events;
 use glam::DVec3;
+pub use keep::Folder;
 use load::Load;
 use std::ffi::OsString;
-use surfel::geometry::Model;
+use surfel::geometry::{Bounds, Model, Pose};
 use surfel::methods::Method;
 use surfel::vk::DeviceOptions;
 use surfel::{Rasterizer, Result, Settings};
@@ -39,6 +45,14 @@ pub struct Options {
     pub up: DVec3,
     /// How long frames may take while the hands move, ms.
     pub budget: f64,
+    /// Vertical angle of view where the camera does not say another, degrees.
+    pub fov_y_deg: f64,
+    /// Where the camera stands at first.
+    pub place: Place,
+    /// Who is told what happens.
+    pub events: Events,
+    /// Where pictures and cameras are kept.
+    pub keep: Folder,
 }
 
 /// What is looked at.
@@ -48,6 +62,9 @@ pub struct Loaded {
     /// How it is rendered at first.
     pub method: Method,
 }
+
+/// The camera to begin with, for a scene of these bounds and a picture of this size, px; `None` shows all of it.
+pub type Place = Box<dyn Fn(&Bounds, [u32; 2]) -> Option<Result<Pose>>>;
 
 /// The settings of a method.
 pub type Look = Box<dyn Fn(&Method) -> Settings>;

@@ -4,8 +4,7 @@
 //! hand's way moves the same, however many frames it takes.
 
 use glam::{DMat3, DVec2, DVec3};
-use surfel::Result;
-use surfel::geometry::{Bounds, Camera};
+use surfel::geometry::{Bounds, Pose, Span};
 
 /// How far the camera turns on a way as long as the picture is high.
 const TURN: f64 = std::f64::consts::PI;
@@ -15,6 +14,9 @@ const STEP: f64 = 0.85;
 const REACH: [f64; 2] = [1e-6, 1e3];
 /// Speed of flight, distances to the pivot a second.
 const SPEED: f64 = 0.75;
+/// Cosine of the angle from the horizon beyond which the camera looks straight up or down, where what is up in the world tells nothing of
+/// what is up in the picture.
+const STRAIGHT: f64 = 1e-6;
 
 /// What is up in the world.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -41,8 +43,8 @@ pub enum Side {
 pub struct Lens {
     /// Width and height, px.
     pub size: [u32; 2],
-    /// Vertical angle of view.
-    pub fov_y: f64,
+    /// Vertical angle of view, degrees.
+    pub fov_y_deg: f64,
     /// Rays are parallel; what is as far as the pivot is as large as in perspective.
     pub parallel: bool,
 }
@@ -54,7 +56,8 @@ pub struct Orbit {
     pub eye: DVec3,
     /// What it is turned about, world space; in front of the eye, not always in the middle of the picture.
     pub pivot: DVec3,
-    up: Up,
+    /// What is up in the world, of unit length.
+    up: DVec3,
     /// About what is up.
     yaw: f64,
     /// Above the horizon, from −π/2 to π/2: how far the camera looks down.
@@ -71,22 +74,30 @@ impl Up {
         let sign = if self.down { -1.0 } else { 1.0 };
         sign * DVec3::AXES[self.axis]
     }
+}
 
-    /// What points to the right and towards the viewer at a yaw of 0, at right angles to it: right × up is towards the viewer.
-    fn level(self) -> [DVec3; 2] {
-        let right = DVec3::AXES[if self.axis == 0 { 1 } else { 0 }];
-        [right, right.cross(self.vector())]
-    }
+/// What points to the right and towards the viewer at a yaw of 0, at right angles to `up`: right × up is towards the viewer.
+fn level(up: DVec3) -> [DVec3; 2] {
+    let most = up.abs().max_element();
+    let axis = DVec3::AXES[if up.x.abs() == most { 1 } else { 0 }];
+    let right = (axis - axis.dot(up) * up).normalize();
+    [right, right.cross(up)]
 }
 
 impl Lens {
-    fn aspect(&self) -> f64 {
+    /// Width over height.
+    pub fn aspect(&self) -> f64 {
         f64::from(self.size[0]) / f64::from(self.size[1])
+    }
+
+    /// Half the height of what is seen at a distance of 1.
+    fn slope(&self) -> f64 {
+        (0.5 * self.fov_y_deg.to_radians()).tan()
     }
 
     /// World units a px, at a distance.
     fn px(&self, distance: f64) -> f64 {
-        2.0 * distance * (0.5 * self.fov_y).tan() / f64::from(self.size[1])
+        2.0 * distance * self.slope() / f64::from(self.size[1])
     }
 
     /// From the middle of the picture, x to the right and y upwards, px.
@@ -99,19 +110,47 @@ impl Lens {
 impl Orbit {
     /// Looks at the middle of `bounds` from the front, a little from the right and above, from where all of it is seen.
     pub fn framing(bounds: &Bounds, up: Up, lens: &Lens) -> Self {
-        let mut orbit = Self { eye: DVec3::ZERO, pivot: DVec3::ZERO, up, yaw: 0.56, pitch: 0.4 };
+        let (eye, pivot) = (DVec3::ZERO, DVec3::ZERO);
+        let mut orbit = Self { eye, pivot, up: up.vector(), yaw: 0.56, pitch: 0.4 };
         orbit.frame(bounds, lens);
+        orbit
+    }
+
+    /// Looks from where `pose` does, about its target; `lens` sees what it sees. What is up in the picture is up in the world, unless the
+    /// camera looks straight along `upright`: then that is.
+    pub fn of(pose: &Pose, upright: DVec3, lens: &mut Lens) -> Self {
+        let forward = (pose.target - pose.eye).normalize();
+        let up = match forward.cross(upright).length() < STRAIGHT {
+            true => upright,
+            false => pose.up.normalize(),
+        };
+        let [right, towards] = level(up);
+        let across = forward.cross(pose.up).normalize();
+        let yaw = f64::atan2(-across.dot(towards), across.dot(right));
+        let pitch = f64::atan2(-forward.dot(up), forward.cross(up).length());
+        let mut orbit = Self { eye: pose.eye, pivot: pose.target, up, yaw, pitch };
+        lens.parallel = match pose.span {
+            Span::Angle(degrees) => {
+                lens.fov_y_deg = degrees;
+                false
+            }
+            // Parallel rays show the same from anywhere along them.
+            Span::Height(height) => {
+                orbit.eye = pose.target - 0.5 * height / lens.slope() * forward;
+                true
+            }
+        };
         orbit
     }
 
     /// What the camera looks along, to its right and up in the picture; unit vectors.
     fn axes(&self) -> [DVec3; 3] {
-        let [right, towards] = self.up.level();
+        let [right, towards] = level(self.up);
         let (sin, cos) = self.yaw.sin_cos();
         let away = sin * right + cos * towards;
         let across = cos * right - sin * towards;
         let (sin, cos) = self.pitch.sin_cos();
-        let forward = -(cos * away + sin * self.up.vector());
+        let forward = -(cos * away + sin * self.up);
         [forward, across, across.cross(forward)]
     }
 
@@ -125,23 +164,16 @@ impl Orbit {
         self.axes()[0].dot(self.pivot - self.eye)
     }
 
-    /// The camera, for a scene of these bounds.
-    pub fn camera(&self, lens: &Lens, bounds: &Bounds) -> Result<Camera> {
-        let [forward, _, up] = self.axes();
+    /// Where it stands and looks, as a camera file has it.
+    pub fn pose(&self, lens: &Lens) -> Pose {
+        let [forward, _, above] = self.axes();
         let reach = self.distance().max(f64::MIN_POSITIVE);
-        let target = self.eye + reach * forward;
-        if !lens.parallel {
-            let near = Camera::near_for(self.eye, bounds);
-            return Camera::look_at(self.eye, target, up, lens.fov_y, lens.aspect(), near);
-        }
-        let [middle, radius] = [forward.dot(bounds.centre() - self.eye), bounds.radius.max(reach)];
-        let height = lens.px(reach) * f64::from(lens.size[1]);
-        Camera::orthographic(
-            [self.eye, target, up],
-            height,
-            lens.aspect(),
-            [middle - 1.01 * radius, middle + 1.01 * radius],
-        )
+        let span = match lens.parallel {
+            true => Span::Height(lens.px(reach) * f64::from(lens.size[1])),
+            false => Span::Angle(lens.fov_y_deg),
+        };
+        let up = if self.pitch.cos() < STRAIGHT { above } else { self.up };
+        Pose { eye: self.eye, target: self.eye + reach * forward, up, span }
     }
 
     /// Turns about the pivot as the cursor moves by `way`: the surface follows it.
@@ -216,19 +248,19 @@ impl Orbit {
     /// Makes something else up; looks at the pivot from as far as now, as it did from as far round.
     pub fn set_up(&mut self, up: Up) {
         let reach = self.distance();
-        self.up = up;
+        self.up = up.vector();
         self.eye = self.pivot - reach * self.axes()[0];
     }
 
-    /// What is up.
-    pub fn up(&self) -> Up {
+    /// What is up in the world, of unit length.
+    pub fn up(&self) -> DVec3 {
         self.up
     }
 
     /// Shows all of `bounds`, from where it looks.
     pub fn frame(&mut self, bounds: &Bounds, lens: &Lens) {
         let radius = if bounds.radius > 0.0 { 1.04 * bounds.radius } else { 1.0 };
-        let slope = (0.5 * lens.fov_y).tan();
+        let slope = lens.slope();
         // The sphere touches the narrower of the two fields of view.
         let half = (slope * lens.aspect().min(1.0)).atan();
         let reach = if lens.parallel { radius / half.tan() } else { radius / half.sin() };
@@ -241,8 +273,10 @@ impl Orbit {
 mod tests {
     use super::*;
     use glam::DVec4;
+    use surfel::Result;
+    use surfel::geometry::Camera;
 
-    const LENS: Lens = Lens { size: [640, 480], fov_y: 0.8, parallel: false };
+    const LENS: Lens = Lens { size: [640, 480], fov_y_deg: 46.0, parallel: false };
     const UPS: [Up; 6] = [
         Up { axis: 0, down: false },
         Up { axis: 1, down: false },
@@ -254,6 +288,12 @@ mod tests {
 
     fn bounds() -> Bounds {
         Bounds::of_box(DVec3::new(-1.0, 5.0, 2.0), DVec3::new(3.0, 6.0, 9.0))
+    }
+
+    impl Orbit {
+        fn camera(&self, lens: &Lens, bounds: &Bounds) -> Result<Camera> {
+            self.pose(lens).camera(bounds, lens.aspect())
+        }
     }
 
     /// Where a point is on the picture.
@@ -389,5 +429,48 @@ mod tests {
         (0..5).for_each(|_| parts.fly(DVec3::new(0.0, 0.0, 1.0), 0.1));
         assert!((orbit.eye - parts.eye).length() < 1e-9, "whatever the frames");
         assert!(((orbit.eye - eye).length() - 0.5 * SPEED * reach).abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_a_pose_shows_is_shown_and_turns_upright() {
+        let points = [DVec3::new(0.3, 5.5, 4.0), DVec3::new(2.0, 5.1, 7.0), DVec3::new(-1.0, 6.0, 2.0)];
+        let spans = [Span::Angle(31.0), Span::Height(7.0)];
+        for up in [DVec3::Y, DVec3::NEG_Z, DVec3::new(0.2, -1.0, 0.7), DVec3::new(5.0, 0.0, 0.1)] {
+            for span in spans {
+                let pose = Pose { eye: DVec3::new(9.0, 8.0, -11.0), target: points[0], up, span };
+                let mut lens = LENS;
+                let orbit = Orbit::of(&pose, DVec3::Y, &mut lens);
+                let camera = pose.camera(&bounds(), lens.aspect()).unwrap();
+                for point in points {
+                    let clip: DVec4 = camera.world_to_clip() * point.extend(1.0);
+                    let at = (clip.truncate().truncate() / clip.w * 0.5 + 0.5) * DVec2::new(640.0, 480.0);
+                    assert!(near(seen(&orbit, &lens, point), at), "{pose:?}");
+                }
+                let mut turned = orbit;
+                turned.turn(DVec2::new(50.0, 30.0), &lens);
+                let above = seen(&turned, &lens, turned.pivot + 0.1 * up.normalize());
+                assert!((above.x - 320.0).abs() < 1e-6, "{up}: upright still, {above}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_camera_that_was_kept_goes_on_as_it_was() {
+        for up in UPS {
+            for start in lenses() {
+                for way in [DVec2::new(70.0, -20.0), DVec2::new(-30.0, 1e5)] {
+                    let mut orbit = Orbit::framing(&bounds(), up, &start);
+                    orbit.turn(way, &start);
+                    let mut lens = Lens { parallel: !start.parallel, ..start };
+                    let mut again = Orbit::of(&orbit.pose(&start), up.vector(), &mut lens);
+                    assert_eq!(lens.parallel, start.parallel);
+                    assert!((again.eye - orbit.eye).length() < 1e-9, "{up:?} {way}");
+                    let next = DVec2::new(11.0, -40.0);
+                    again.turn(next, &lens);
+                    orbit.turn(next, &start);
+                    assert!((again.eye - orbit.eye).length() < 1e-6, "{up:?} {way} {start:?}");
+                }
+            }
+        }
     }
 }

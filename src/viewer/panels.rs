@@ -12,6 +12,8 @@ pub struct Told {
     pub loading: Option<(&'static str, f32)>,
     /// What went wrong last.
     pub wrong: Option<String>,
+    /// What was done last, for who asked for it.
+    pub done: Option<String>,
     /// How long the last frame took, ms.
     pub frame: f64,
     /// Its side, as part of the window's.
@@ -25,12 +27,18 @@ pub fn show(ui: &mut Ui, state: &mut State, told: &Told) {
     if let Some((stage, part)) = told.loading {
         Panel::bottom("loading").show(ui, |ui| ui.add(ProgressBar::new(part).text(stage)));
     }
+    if let Some(done) = &told.done {
+        Panel::bottom("done").show(ui, |ui| ui.label(done));
+    }
     if let Some(wrong) = &told.wrong {
         Panel::top("wrong").show(ui, |ui| ui.colored_label(ui.visuals().error_fg_color, wrong));
     }
     Panel::right("choices").show(ui, |ui| choices(ui, state, told));
     if told.help {
         Window::new("Keys and mouse").show(ui.ctx(), help);
+    }
+    if let Some(opening) = &mut state.opening {
+        state.answer = opening.show(ui);
     }
 }
 

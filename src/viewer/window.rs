@@ -2,7 +2,9 @@
 
 use super::Options;
 use super::hands::Hands;
+use super::events::{Event, Events, Shown};
 use super::hud::Hud;
+use super::keep::Shot;
 use super::pace::Pace;
 use super::panels::Told;
 use super::screen::{Pick, Screen};
@@ -35,7 +37,11 @@ impl Opened {
             Window::default_attributes().with_title("surfel").with_inner_size(PhysicalSize { width, height });
         let window = events.create_window(attributes);
         let window = window.map_err(|cause| Error::NoDevice(format!("no window can be opened: {cause}")))?;
-        let window = Arc::new(window);
+        Self::of(Arc::new(window), options)
+    }
+
+    /// Opens a device that presents to a window, which no other one does any more.
+    pub fn of(window: Arc<Window>, options: &Options) -> Result<(Self, Arc<Device>)> {
         let (device, surface) = Device::open_for(&options.device, window.clone())?;
         let presenter = Presenter::new(&device, surface)?;
         let screen = Screen::new(&device, options.rasterizer)?;
@@ -50,8 +56,29 @@ impl Opened {
         self.window.request_redraw();
     }
 
+    /// What the window shows, panels and all, from a whole picture.
+    pub fn capture(&mut self, state: &mut State, told: &mut Told) -> Result<Shot> {
+        told.side = 1.0;
+        self.hud.lay_out(&self.window, state, told);
+        let Self { presenter, hud, screen, .. } = self;
+        let size = state.lens.size;
+        let seen = state.frame().transpose()?;
+        let seen = seen.as_ref().map(|(scene, camera, settings)| (*scene, camera, *settings));
+        let pixels = presenter.capture(size, |frame| {
+            screen.record(frame, size, seen)?;
+            hud.record(frame)
+        })?;
+        Shot::of_window(size, pixels)
+    }
+
     /// Draws a frame; when another is to follow without an event.
-    pub fn draw(&mut self, state: &mut State, hands: &Hands, told: &mut Told) -> Result<Option<Instant>> {
+    pub fn draw(
+        &mut self,
+        state: &mut State,
+        hands: &Hands,
+        told: &mut Told,
+        events: &Events,
+    ) -> Result<Option<Instant>> {
         let start = Instant::now();
         self.fly(state, hands, start);
         let side = self.pace.side(start);
@@ -62,6 +89,10 @@ impl Opened {
         if shown {
             told.frame = ms;
             self.pace.took(side, ms);
+            if let Some((camera, [method, shading])) = state.pose().zip(state.names()) {
+                let (size, camera) = (state.lens.size, camera.into());
+                events.tell(&Event::Picture(Shown { method, shading, size, side, took_ms: ms, camera }));
+            }
         }
         if state.pick.is_some() {
             self.pick(state)?;

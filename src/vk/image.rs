@@ -13,6 +13,9 @@ pub enum ImageUse {
     Sampled,
     /// Later subpasses of the same render pass read it at the same pixel, where they read it at all; it is not kept.
     Transient,
+    /// It stands for a window's: copied to, drawn over, copied to the CPU.
+    #[cfg(feature = "window")]
+    Window,
     /// It is what a frame is for: copied to the CPU, or drawn over a host's target.
     Output,
 }
@@ -57,6 +60,8 @@ impl Image {
             ImageUse::Transient => {
                 vk::ImageUsageFlags::TRANSIENT_ATTACHMENT | vk::ImageUsageFlags::INPUT_ATTACHMENT
             }
+            #[cfg(feature = "window")]
+            ImageUse::Window => vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::TRANSFER_DST,
             ImageUse::Output => vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::SAMPLED,
         };
         let info = vk::ImageCreateInfo::default()

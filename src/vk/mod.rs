@@ -7,6 +7,8 @@
 
 mod access;
 mod buffer;
+#[cfg(feature = "window")]
+mod capture;
 mod choose;
 mod commands;
 mod descriptors;

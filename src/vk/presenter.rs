@@ -1,6 +1,6 @@
 //! Frames to a window: a swapchain that follows the window, and two frames under way.
 
-use super::{Device, Surface, overlay::Overlay, slot::Slot, swapchain::Swapchain};
+use super::{Device, Surface, capture::Capture, overlay::Overlay, slot::Slot, swapchain::Swapchain};
 use crate::error::{Error, Result};
 use ash::{khr, vk};
 use std::sync::Arc;
@@ -94,19 +94,52 @@ impl Presenter {
         size: [u32; 2],
         record: impl FnOnce(&Presented) -> Result<R>,
     ) -> Result<Option<R>> {
-        if self.swapchain.as_ref().is_none_or(|swapchain| swapchain.stale || swapchain.asked != size) {
-            self.remake(size)?;
-        }
+        let Some(index) = self.acquire(size)? else { return Ok(None) };
         let Some(swapchain) = &mut self.swapchain else { return Ok(None) };
         let slot = &self.slots[self.next];
-        slot.wait()?;
-        let Some(index) = swapchain.acquire(slot.acquired)? else { return Ok(None) };
         let target = swapchain.target(index, self.overlay.raw, slot.cmd);
-        let recorded = slot.record(&target, record);
-        slot.submit(swapchain.drawn(index))?;
+        use vk::ImageLayout as Layout;
+        let recorded = slot.record(&target, record, |slot| {
+            slot.transition(target.image, [Layout::TRANSFER_DST_OPTIMAL, Layout::PRESENT_SRC_KHR]);
+        });
+        slot.submit(Some(swapchain.drawn(index)))?;
         self.next = (self.next + 1) % self.slots.len();
         swapchain.present(&self.device, index)?;
         recorded.map(Some)
+    }
+
+    /// The next image of a swapchain that fits the window, once the next slot is free; `None` where there is none to be seen.
+    fn acquire(&mut self, size: [u32; 2]) -> Result<Option<usize>> {
+        // A window may change between any two calls: then it is tried once more, and with the next frame again.
+        for _ in 0..2 {
+            if self.swapchain.as_ref().is_none_or(|swapchain| swapchain.stale || swapchain.asked != size) {
+                self.remake(size)?;
+            }
+            let Some(swapchain) = &mut self.swapchain else { return Ok(None) };
+            let slot = &self.slots[self.next];
+            slot.wait()?;
+            if let Some(index) = swapchain.acquire(slot.acquired)? {
+                return Ok(Some(index));
+            }
+        }
+        Ok(None)
+    }
+
+    /// Records a frame of `size` px as [`Presenter::present`] does, but not for the window: its pixels, sRGB and α, 8 bits each, row by row
+    /// from the top left. Waits for the GPU.
+    pub fn capture(
+        &mut self,
+        size: [u32; 2],
+        record: impl FnOnce(&Presented) -> Result<()>,
+    ) -> Result<Vec<[u8; 4]>> {
+        self.wait()?;
+        let capture = Capture::new(&self.device, &self.overlay, self.format.format, size)?;
+        let slot = &self.slots[self.next];
+        let recorded =
+            slot.record(&capture.target(&self.overlay, slot.cmd), record, |slot| capture.end(slot));
+        slot.submit(None)?;
+        slot.wait()?;
+        recorded.map(|()| capture.pixels())
     }
 
     /// Waits until the GPU is done with every frame.

@@ -50,19 +50,20 @@ impl Slot {
             .map_err(Error::vulkan("vkWaitForFences"))
     }
 
-    /// Records a frame, of which nothing but the image's transitions is left after an error of `body`. Its last frame was waited for.
+    /// Records a frame, of which nothing but the image's first transition and `end` is left after an error of `body`. Its last frame was
+    /// waited for.
     pub(super) fn record<R>(
         &self,
         target: &Presented,
         body: impl FnOnce(&Presented) -> Result<R>,
+        end: impl FnOnce(&Self),
     ) -> Result<R> {
         self.begin(target.image)?;
         let recorded = body(target);
         if recorded.is_err() {
             self.begin(target.image)?;
         }
-        use vk::ImageLayout as Layout;
-        self.transition(target.image, [Layout::TRANSFER_DST_OPTIMAL, Layout::PRESENT_SRC_KHR]);
+        end(self);
         // SAFETY: it is being recorded.
         unsafe { self.device.raw.end_command_buffer(self.cmd) }
             .map_err(Error::vulkan("vkEndCommandBuffer"))?;
@@ -83,7 +84,11 @@ impl Slot {
     }
 
     /// Between what copies to the image, and what comes before and after.
-    fn transition(&self, image: vk::Image, [from, to]: [vk::ImageLayout; 2]) {
+    pub(super) fn transition(&self, image: vk::Image, [from, to]: [vk::ImageLayout; 2]) {
+        let next = match to {
+            vk::ImageLayout::TRANSFER_SRC_OPTIMAL => vk::AccessFlags::TRANSFER_READ,
+            _ => vk::AccessFlags::TRANSFER_WRITE,
+        };
         let range = vk::ImageSubresourceRange {
             aspect_mask: vk::ImageAspectFlags::COLOR,
             level_count: 1,
@@ -92,7 +97,7 @@ impl Slot {
         };
         let barrier = vk::ImageMemoryBarrier::default()
             .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
-            .dst_access_mask(vk::AccessFlags::TRANSFER_WRITE)
+            .dst_access_mask(next)
             .old_layout(from)
             .new_layout(to)
             .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
@@ -108,15 +113,16 @@ impl Slot {
         }
     }
 
-    /// Submits what was recorded, which waits for the image and then signals `drawn`.
-    pub(super) fn submit(&self, drawn: vk::Semaphore) -> Result<()> {
+    /// Submits what was recorded, which waits for the window's image, if it is of one, and then signals `drawn`.
+    pub(super) fn submit(&self, drawn: Option<vk::Semaphore>) -> Result<()> {
         let (queue, _) = self.device.queue()?;
-        let (commands, waits, signals) = ([self.cmd], [self.acquired], [drawn]);
+        let (commands, stages) = ([self.cmd], [vk::PipelineStageFlags::TRANSFER]);
+        let (waits, signals) = (drawn.map(|_| self.acquired), drawn);
         let submit = [vk::SubmitInfo::default()
             .command_buffers(&commands)
-            .wait_semaphores(&waits)
-            .wait_dst_stage_mask(&[vk::PipelineStageFlags::TRANSFER])
-            .signal_semaphores(&signals)];
+            .wait_semaphores(waits.as_slice())
+            .wait_dst_stage_mask(&stages[..waits.as_slice().len()])
+            .signal_semaphores(signals.as_slice())];
         let queue = queue.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         // SAFETY: the buffer was recorded whole; the fence was waited for, and the queue is locked.
         unsafe {

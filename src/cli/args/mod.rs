@@ -129,7 +129,7 @@ fn outputs(layers: &[Layer]) -> Outputs {
 }
 
 /// The camera; the whole scene is framed unless it is given.
-#[derive(Args, Debug)]
+#[derive(Args, Clone, Debug)]
 pub struct Camera {
     /// Where it stands
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
@@ -143,8 +143,11 @@ pub struct Camera {
     /// Vertical angle of view; 45 unless given
     #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
     pub fov: Option<f64>,
-    /// The camera from a file: {"eye":[0,0,3],"target":[0,0,0],"up":[0,1,0],"fov_y_deg":45}
-    #[arg(long = "camera", value_name = "FILE.json", conflicts_with_all = ["eye", "target", "up", "fov"])]
+    /// Makes rays parallel: height of the picture, in the positions' unit
+    #[arg(long, value_name = "HEIGHT", conflicts_with = "fov", allow_hyphen_values = true)]
+    pub parallel: Option<f64>,
+    /// The camera from a file: {"eye":[0,0,3],"target":[0,0,0],"up":[0,1,0],"fov_y_deg":45}, or "height":2 for parallel rays
+    #[arg(long = "camera", value_name = "FILE.json", conflicts_with_all = ["eye", "target", "up", "fov", "parallel"])]
     pub file: Option<PathBuf>,
 }
 

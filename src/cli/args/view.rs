@@ -4,6 +4,7 @@ use super::{Axes, Camera, Colours, Look, OnDevice, Points};
 use crate::cli::values::{method, size};
 use clap::Args;
 use std::ffi::OsString;
+use std::path::PathBuf;
 use surfel::methods::Method;
 use surfel::{Rasterizer, Settings};
 
@@ -43,6 +44,12 @@ pub struct View {
     /// On which device
     #[command(flatten)]
     pub device: OnDevice,
+    /// Says what happens on standard output, one JSON object a line, for programs that wait for it
+    #[arg(long)]
+    pub json: bool,
+    /// Folder in which pictures and cameras are kept; the current one unless given
+    #[arg(long, value_name = "FOLDER", default_value = ".")]
+    pub shots: PathBuf,
     /// Prints nothing but warnings and errors
     #[arg(short, long)]
     pub quiet: bool,

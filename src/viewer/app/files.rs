@@ -1,0 +1,137 @@
+//! What is opened, and what is kept.
+
+use super::App;
+use crate::camera_file;
+use crate::viewer::events::Event;
+use crate::viewer::keep::{Shot, What};
+use crate::viewer::keys::Action;
+use crate::viewer::load::News;
+use crate::viewer::open::{Answer, Opening};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use surfel::methods::Method;
+use surfel::{Result, Scene};
+
+impl App {
+    /// Shows a scene: from where is asked for, or from the front.
+    pub(super) fn show(&mut self, scene: Arc<Scene>, method: Method) -> Result<()> {
+        let first = self.state.moving().is_none();
+        let asked = (self.options.place)(&scene.bounds(), self.state.lens.size).filter(|_| first);
+        let pose = self.next.take().map(Ok).or(asked).transpose()?;
+        if let Some(pose) = &pose {
+            pose.check()?;
+        }
+        self.state.show(scene, method);
+        if let Some(pose) = pose {
+            self.state.look_from(pose);
+        }
+        Ok(())
+    }
+
+    /// Opens files together: a camera's is looked through, the others become the scene.
+    pub(super) fn take(&mut self, files: Vec<PathBuf>) {
+        let (cameras, scenes): (Vec<_>, Vec<_>) = files.into_iter().partition(|path| is_camera(path));
+        let waits = !scenes.is_empty() || self.state.moving().is_none();
+        for path in cameras {
+            match camera_file::read(&path) {
+                Ok(pose) => {
+                    self.options.events.tell(&Event::Camera { file: &path });
+                    match waits {
+                        true => self.next = Some(pose),
+                        false => self.state.look_from(pose),
+                    }
+                    self.changed();
+                }
+                Err(error) => self.wrong(&error),
+            }
+        }
+        if !scenes.is_empty() {
+            self.open(scenes.into_iter().map(Into::into).collect());
+        }
+    }
+
+    /// Opens what was asked for by name, if there is an answer.
+    pub(super) fn answer(&mut self) {
+        let Some(answer) = self.state.answer.take() else { return };
+        self.state.opening = None;
+        if let Answer::Open(name) = answer {
+            self.take(vec![name.into()]);
+        }
+        self.changed();
+    }
+
+    /// Keeps, copies or asks for what `action` says.
+    pub(super) fn keep(&mut self, action: Action) -> Result<()> {
+        if action == Action::Open {
+            self.hands.let_go();
+            self.state.opening = Some(Opening::at(&self.options.keep.path));
+            self.changed();
+            return Ok(());
+        }
+        let (Some(pose), Some(opened)) = (self.state.pose(), &self.opened) else { return Ok(()) };
+        match action {
+            Action::Keep(what) => return self.shoot(what),
+            Action::SaveCamera => {
+                let kept = self.keep.camera(&pose);
+                self.done(kept);
+            }
+            Action::CopyCamera => {
+                self.keep.copy(&pose, &opened.window);
+                self.options.events.tell(&Event::Copied);
+                self.told.done = Some("the camera is on the clipboard".into());
+            }
+            Action::PasteCamera => {
+                let pose = self.keep.paste(&opened.window)?;
+                self.state.look_from(pose);
+            }
+            _ => {}
+        }
+        self.changed();
+        Ok(())
+    }
+
+    /// Makes a picture of what is seen, and has it written.
+    fn shoot(&mut self, what: What) -> Result<()> {
+        let Self { state, opened: Some(opened), device: Some(device), told, .. } = self else {
+            return Ok(());
+        };
+        let shot = match what {
+            What::Window => opened.capture(state, told)?,
+            What::Picture | What::Values => {
+                let size = state.lens.size;
+                let Some(seen) = state.frame() else { return Ok(()) };
+                let (scene, camera, settings) = seen?;
+                let how = (size, self.options.rasterizer);
+                Shot::render(device, scene, (&camera, settings), how, what == What::Values)?
+            }
+        };
+        let window = self.news.clone();
+        self.keep.picture(shot, move || {
+            // When the window is closed all are waited for.
+            let _ = window.send_event(News::Kept);
+        });
+        Ok(())
+    }
+
+    /// Says which pictures were written.
+    pub(super) fn written(&mut self) {
+        self.keep.written().into_iter().for_each(|kept| self.done(kept));
+    }
+
+    /// Says which file was written, or why not.
+    fn done(&mut self, kept: Result<PathBuf>) {
+        match kept {
+            Ok(path) => {
+                self.keep.say(&path);
+                self.options.events.tell(&Event::Wrote { file: &path });
+                self.told.done = Some(format!("saved {}", path.display()));
+                self.changed();
+            }
+            Err(error) => self.wrong(&error),
+        }
+    }
+}
+
+fn is_camera(path: &Path) -> bool {
+    path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("json"))
+}

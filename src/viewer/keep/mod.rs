@@ -1,0 +1,102 @@
+//! What is kept of what is seen: pictures and cameras, in files and on the clipboard.
+
+mod names;
+mod shot;
+
+pub use shot::{Shot, What};
+
+use crate::camera_file;
+use egui_winit::clipboard::Clipboard;
+use names::Names;
+use std::io::Write;
+use std::path::PathBuf;
+use std::sync::mpsc::{self, Receiver, Sender};
+use std::thread::{self, JoinHandle};
+use surfel::geometry::Pose;
+use surfel::io::atomic;
+use surfel::{Error, Result};
+use winit::raw_window_handle::HasDisplayHandle;
+use winit::window::Window;
+
+/// Where files are kept.
+#[derive(Clone, Debug)]
+pub struct Folder {
+    pub path: PathBuf,
+    /// Whether their names are printed on standard output.
+    pub tell: bool,
+}
+
+/// Keeps pictures and cameras.
+pub struct Keep {
+    folder: Folder,
+    names: Names,
+    /// Made when it is needed.
+    clipboard: Option<Clipboard>,
+    writing: Vec<JoinHandle<()>>,
+    /// Files that were written, and errors.
+    written: (Sender<Result<PathBuf>>, Receiver<Result<PathBuf>>),
+}
+
+impl Keep {
+    pub fn new(folder: Folder) -> Self {
+        Self { folder, names: Names::default(), clipboard: None, writing: Vec::new(), written: mpsc::channel() }
+    }
+
+    /// Writes a picture, without being waited for; then `wake` is called, on another thread.
+    pub fn picture(&mut self, shot: Shot, wake: impl FnOnce() + Send + 'static) {
+        let path = self.names.next(&self.folder.path, shot.extension());
+        let written = self.written.0.clone();
+        self.writing.retain(|thread| !thread.is_finished());
+        self.writing.push(thread::spawn(move || {
+            // The receiver waits for the thread.
+            let _ = written.send(shot.write(&path).map(|()| path));
+            wake();
+        }));
+    }
+
+    /// Pictures that are in their files by now, or cannot be.
+    pub fn written(&self) -> Vec<Result<PathBuf>> {
+        self.written.1.try_iter().collect()
+    }
+
+    /// Writes a camera, and says where.
+    pub fn camera(&mut self, pose: &Pose) -> Result<PathBuf> {
+        let path = self.names.next(&self.folder.path, "json");
+        atomic::write(&path, |out| out.write_all(camera_file::text(pose).as_bytes()))?;
+        Ok(path)
+    }
+
+    /// Prints a file's name, for who has no eye on the window.
+    pub fn say(&self, path: &std::path::Path) {
+        if self.folder.tell {
+            // Whoever has stopped listening wants no more.
+            let _ = writeln!(std::io::stdout(), "{}", path.display());
+        }
+    }
+
+    /// Puts a camera on the clipboard, as a file has it.
+    pub fn copy(&mut self, pose: &Pose, window: &Window) {
+        self.clipboard(window).set_text(camera_file::text(pose));
+    }
+
+    /// The camera on the clipboard.
+    pub fn paste(&mut self, window: &Window) -> Result<Pose> {
+        let text = self.clipboard(window).get().unwrap_or_default();
+        let wrong = |cause| Error::input("the clipboard", format!("it holds no camera: {cause}"));
+        camera_file::parse(text.as_bytes()).map_err(wrong)
+    }
+
+    fn clipboard(&mut self, window: &Window) -> &mut Clipboard {
+        let display = || window.display_handle().ok().map(|handle| handle.as_raw());
+        self.clipboard.get_or_insert_with(|| Clipboard::new(display()))
+    }
+
+    /// Waits until every picture is in its file; the clipboard goes before the display does.
+    pub fn finish(&mut self) {
+        self.clipboard = None;
+        for thread in self.writing.drain(..) {
+            // What it wrote, it has told.
+            let _ = thread.join();
+        }
+    }
+}

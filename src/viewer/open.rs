@@ -1,0 +1,115 @@
+//! Opening what is named: a scene's file, a built-in scene, a camera.
+
+use egui::{Id, Key, ScrollArea, TextEdit, Ui, Window};
+use std::path::{Path, PathBuf};
+
+/// A name that is being typed.
+#[derive(Default)]
+pub struct Opening {
+    text: String,
+    /// The folder that was looked into last, and what of it can be opened.
+    folder: Option<PathBuf>,
+    there: Vec<String>,
+}
+
+/// What came of it.
+pub enum Answer {
+    Open(String),
+    Nothing,
+}
+
+impl Opening {
+    /// Starts in a folder.
+    pub fn at(folder: &Path) -> Self {
+        let text = if folder == Path::new(".") { String::new() } else { format!("{}/", folder.display()) };
+        Self { text, ..Self::default() }
+    }
+
+    /// Asks, until there is an answer.
+    pub fn show(&mut self, ui: &mut Ui) -> Option<Answer> {
+        self.look();
+        let mut answer = None;
+        Window::new("Open").collapsible(false).default_width(420.0).show(ui.ctx(), |ui| {
+            ui.label("a PLY file, a camera's .json file, or a scene such as scene:bumpy-sphere");
+            let field = TextEdit::singleline(&mut self.text).id(Id::new("open")).desired_width(f32::INFINITY);
+            let field = ui.add(field);
+            if field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter)) && !self.text.is_empty() {
+                answer = Some(Answer::Open(self.text.clone()));
+            } else if ui.input(|input| input.key_pressed(Key::Escape)) {
+                answer = Some(Answer::Nothing);
+            } else if !field.has_focus() {
+                field.request_focus();
+            }
+            answer = self.list(ui).or(answer.take());
+        });
+        answer
+    }
+
+    /// What begins as the text does.
+    fn list(&mut self, ui: &mut Ui) -> Option<Answer> {
+        let (_, begin) = split(&self.text);
+        let found = self.there.iter().filter(|name| name.starts_with(begin));
+        let mut chosen = None;
+        ScrollArea::vertical().max_height(240.0).show(ui, |ui| {
+            for name in found {
+                if ui.selectable_label(false, name).clicked() {
+                    chosen = Some(name.clone());
+                }
+            }
+        });
+        let name = chosen?;
+        let (folder, _) = split(&self.text);
+        self.text = format!("{folder}{name}");
+        (!name.ends_with('/')).then(|| Answer::Open(self.text.clone()))
+    }
+
+    /// Looks into the folder of the text, if it is another than before.
+    fn look(&mut self) {
+        let (folder, _) = split(&self.text);
+        let folder = PathBuf::from(if folder.is_empty() { "." } else { folder });
+        if self.folder.as_ref() != Some(&folder) {
+            self.there = there(&folder);
+            self.folder = Some(folder);
+        }
+    }
+}
+
+/// The folder with its slash, and the rest.
+fn split(text: &str) -> (&str, &str) {
+    text.split_at(text.rfind('/').map_or(0, |slash| slash + 1))
+}
+
+/// Folders, and what can be opened, by their names.
+fn there(folder: &Path) -> Vec<String> {
+    let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
+    let mut names: Vec<_> = entries
+        .filter_map(|entry| {
+            let name = entry.file_name().into_string().ok().filter(|name| !name.starts_with('.'))?;
+            if entry.path().is_dir() {
+                return Some(format!("{name}/"));
+            }
+            let extension = Path::new(&name).extension()?.to_ascii_lowercase();
+            (extension == "ply" || extension == "json").then_some(name)
+        })
+        .collect();
+    names.sort();
+    names
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_can_be_opened_is_listed_by_name() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::create_dir(folder.path().join("scans")).unwrap();
+        for name in ["b.PLY", "a.json", "c.txt", ".hidden.ply", "none"] {
+            std::fs::write(folder.path().join(name), "").unwrap();
+        }
+        assert_eq!(there(folder.path()), ["a.json", "b.PLY", "scans/"]);
+        assert!(there(&folder.path().join("not there")).is_empty());
+        assert_eq!(split("a/b/c"), ("a/b/", "c"));
+        assert_eq!(split("c"), ("", "c"));
+    }
+}

@@ -1,0 +1,131 @@
+//! Pictures and cameras that are kept.
+
+use crate::display::key;
+use crate::view::View;
+use crate::{SPHERE, stage};
+use serde_json::Value;
+
+#[test]
+fn kept_pictures_are_those_of_render_and_of_the_window() {
+    let Some((display, program)) = stage("kept_pictures_are_those_of_render_and_of_the_window") else { return };
+    let mut view = View::open(&display, &program, &format!("{SPHERE} --size 640x480 --shots ."));
+    view.picture(|_| true);
+    for (held, extension) in [(&[][..], "png"), (&[key::CONTROL][..], "exr")] {
+        display.press(&[key::CONTROL], u32::from('s'));
+        let camera = view.wrote();
+        display.press(held, key::F12);
+        let shot = view.wrote();
+        assert!(camera.ends_with(".json") && shot.ends_with(extension), "{camera} {shot}");
+        let render = format!("render {SPHERE} --size 640x480 --camera {camera} -o headless.{extension}");
+        program.run(&render).text();
+        let [ours, headless] = [shot, format!("headless.{extension}")]
+            .map(|name| std::fs::read(program.path(&name)).unwrap());
+        assert!(ours == headless, "{extension}: another file than `{render}` writes");
+    }
+    display.press(&[key::SHIFT], key::F12);
+    let window = program.png(&view.wrote());
+    let picture = program.png("headless.png");
+    assert_eq!(window.dimensions(), (640, 480));
+    let shown = display.pixels(view.window);
+    let mut seen = 0;
+    for (x, y) in (160..320).flat_map(|x| (120..360).map(move |y| (x, y))) {
+        let expected = picture.get_pixel(x, y).0;
+        let expected = if expected[3] == 0 { [0; 4] } else { expected };
+        for (name, found) in [("window", shown.get_pixel(x, y).0), ("panels", rgb(window.get_pixel(x, y)))] {
+            let apart = (0..3).map(|i| expected[i].abs_diff(found[i])).max().unwrap();
+            assert!(apart <= 1, "{name}: {found:?} and not {expected:?} at {x}, {y}");
+        }
+        seen += u32::from(expected[3] > 0);
+    }
+    assert!(seen > 5000, "{seen} px of the sphere");
+    // Of the panels something is to be seen: it is not the picture alone.
+    let apart = |(x, y): (u32, u32)| rgb(window.get_pixel(x, y)) != rgb(picture.get_pixel(x, y));
+    let panels = (0..640).flat_map(|x| (0..480).map(move |y| (x, y))).filter(|at| apart(*at)).count();
+    assert!(panels > 10_000, "{panels} px of panels");
+    view.close();
+}
+
+fn rgb(pixel: &image::Rgba<u8>) -> [u8; 3] {
+    [pixel.0[0], pixel.0[1], pixel.0[2]]
+}
+
+#[test]
+fn cameras_come_back_from_files_and_from_the_clipboard() {
+    let Some((display, program)) = stage("cameras_come_back_from_files_and_from_the_clipboard") else { return };
+    let mut view = View::open(&display, &program, &format!("{SPHERE} --size 640x480"));
+    let camera = |event: &Value| event["camera"].clone();
+    let first = camera(&view.picture(|_| true));
+    display.press(&[key::CONTROL], u32::from('s'));
+    let saved = view.wrote();
+    let file: Value = serde_json::from_slice(&std::fs::read(program.path(&saved)).unwrap()).unwrap();
+    assert_eq!(file, first, "a camera file, and where the window says that it looks from");
+    display.press(&[key::CONTROL], u32::from('c'));
+    view.until("copied", |_| true);
+    let copied: Value = serde_json::from_str(&display.clipboard()).unwrap();
+    assert_eq!(copied, first);
+
+    let turn = [[200, 200], [220, 210], [260, 230]];
+    display.drag(view.window, 1, &turn);
+    let turned = camera(&view.picture(|event| camera(event) != first));
+    display.press(&[key::CONTROL], u32::from('v'));
+    view.picture(|event| camera(event) == first);
+
+    // Rays that are parallel stay so.
+    display.press(&[], u32::from('p'));
+    let parallel = camera(&view.picture(|event| camera(event)["height"].is_f64()));
+    display.press(&[key::CONTROL], u32::from('s'));
+    let saved_parallel = view.wrote();
+    display.press(&[], u32::from('p'));
+    view.picture(|event| camera(event) == first);
+    display.drag(view.window, 1, &turn);
+    view.picture(|event| camera(event) == turned);
+    display.press(&[key::CONTROL], u32::from('o'));
+    display.type_text(&saved_parallel);
+    display.press(&[], key::RETURN);
+    view.until("camera", |event| event["file"] == saved_parallel);
+    view.picture(|event| camera(event) == parallel);
+    view.close();
+
+    let mut again = View::open(&display, &program, &format!("{SPHERE} --size 640x480 --camera {saved_parallel}"));
+    assert_eq!(camera(&again.picture(|_| true)), parallel);
+    again.close();
+    let placed = "--eye 1,2,3 --target 0.1,0,0 --fov 30";
+    let mut placed = View::open(&display, &program, &format!("{SPHERE} --size 640x480 {placed}"));
+    let expected = serde_json::json!({"eye": [1.0, 2.0, 3.0], "target": [0.1, 0.0, 0.0], "up": [0.0, 1.0, 0.0], "fov_y_deg": 30.0});
+    assert_eq!(camera(&placed.picture(|_| true)), expected);
+    placed.close();
+}
+
+#[test]
+fn dropped_files_are_a_scene_or_a_camera_or_a_message() {
+    let Some((display, program)) = stage("dropped_files_are_a_scene_or_a_camera_or_a_message") else { return };
+    for (name, points) in [("one.ply", 300), ("two.ply", 500)] {
+        program.run(&format!("convert scene:bumpy-sphere?points={points} -o {name}")).text();
+    }
+    program.write("broken.ply", "ply\nformat ascii 1.0\nelement vertex 5\n");
+    program.write("wrong.json", r#"{"eye":[0,0,3]}"#);
+    let camera = serde_json::json!({"eye": [0.5, 0.25, 4.0], "target": [0.0, 0.0, 0.0], "up": [0.0, 1.0, 0.0], "fov_y_deg": 40.0});
+    program.write("camera.json", camera.to_string());
+    let path = |name: &str| program.path(name).canonicalize().unwrap();
+    let mut view = View::open(&display, &program, &format!("{SPHERE} --size 320x240"));
+    view.picture(|_| true);
+    let take = |view: &View, names: &[&str]| {
+        let files: Vec<_> = names.iter().map(|name| path(name)).collect();
+        assert!(display.drop_files(view.window, &files.iter().map(|file| file.as_path()).collect::<Vec<_>>()));
+    };
+    take(&view, &["camera.json"]);
+    view.picture(|event| event["camera"] == camera);
+    for name in ["broken.ply", "wrong.json"] {
+        take(&view, &[name]);
+        let error = view.until("wrong", |_| true)["error"].as_str().unwrap().to_owned();
+        assert!(error.contains(name), "{error}");
+        view.picture(|event| event["camera"] == camera);
+    }
+    take(&view, &["one.ply", "two.ply"]);
+    assert_eq!(view.until("ready", |_| true)["surfels"], 800);
+    view.picture(|event| event["camera"] != camera);
+    take(&view, &["two.ply", "camera.json"]);
+    assert_eq!(view.until("ready", |_| true)["surfels"], 500);
+    view.picture(|event| event["camera"] == camera);
+    view.close();
+}

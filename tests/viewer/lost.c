@@ -1,0 +1,121 @@
+/* A Vulkan layer that loses devices: the first LOST_DEVICES of them, each after LOST_AFTER submissions. Works on one device at a time. */
+
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { LOADER_INSTANCE_INFO = 47, LOADER_DEVICE_INFO = 48, LINK = 0, ERROR_INITIALIZATION_FAILED = -3, ERROR_DEVICE_LOST = -4 };
+
+typedef void (*Function)(void);
+typedef Function (*GetProc)(void *, const char *);
+/* VkLayerInstanceLink and VkLayerDeviceLink, which look the same. */
+typedef struct Link {
+  struct Link *next;
+  GetProc instance_proc;
+  GetProc other_proc;
+} Link;
+/* VkLayerInstanceCreateInfo and VkLayerDeviceCreateInfo. */
+typedef struct Info {
+  uint32_t type;
+  struct Info *next;
+  uint32_t function;
+  Link *link;
+} Info;
+
+static GetProc next_instance, next_device;
+static void *instance, *device;
+static int devices, submissions, gone;
+
+static int number(const char *name) {
+  const char *text = getenv(name);
+  return text ? atoi(text) : 0;
+}
+
+static Link *take_link(const void *create, uint32_t type) {
+  /* Every Vulkan struct begins with its type and the next one. */
+  for (Info *info = ((Info *)create)->next; info; info = info->next)
+    if (info->type == type && info->function == LINK) {
+      Link *link = info->link;
+      info->link = link->next;
+      return link;
+    }
+  return NULL;
+}
+
+static int32_t create_instance(const void *create, const void *allocator, void **made) {
+  Link *link = take_link(create, LOADER_INSTANCE_INFO);
+  if (!link) return ERROR_INITIALIZATION_FAILED;
+  next_instance = link->instance_proc;
+  int32_t (*next)(const void *, const void *, void **) = (void *)next_instance(NULL, "vkCreateInstance");
+  int32_t result = next(create, allocator, made);
+  instance = *made;
+  return result;
+}
+
+static int32_t create_device(void *physical, const void *create, const void *allocator, void **made) {
+  Link *link = take_link(create, LOADER_DEVICE_INFO);
+  if (!link) return ERROR_INITIALIZATION_FAILED;
+  next_device = link->other_proc;
+  int32_t (*next)(void *, const void *, const void *, void **) =
+      (void *)link->instance_proc(instance, "vkCreateDevice");
+  int32_t result = next(physical, create, allocator, made);
+  device = *made;
+  devices++;
+  submissions = gone = 0;
+  return result;
+}
+
+static int32_t wait_idle(void *of) {
+  int32_t (*next)(void *) = (void *)next_device(device, "vkDeviceWaitIdle");
+  int32_t result = next(of);
+  return gone ? ERROR_DEVICE_LOST : result;
+}
+
+static int32_t queue_wait_idle(void *queue) {
+  int32_t (*next)(void *) = (void *)next_device(device, "vkQueueWaitIdle");
+  int32_t result = next(queue);
+  return gone ? ERROR_DEVICE_LOST : result;
+}
+
+static int32_t submit(void *queue, uint32_t count, const void *what, uint64_t fence) {
+  if (!gone && devices <= number("LOST_DEVICES") && ++submissions > number("LOST_AFTER")) {
+    /* What is under way ends: a driver that has lost its device does not use anything any more. */
+    queue_wait_idle(queue);
+    gone = 1;
+  }
+  if (gone) return ERROR_DEVICE_LOST;
+  int32_t (*next)(void *, uint32_t, const void *, uint64_t) = (void *)next_device(device, "vkQueueSubmit");
+  return next(queue, count, what, fence);
+}
+
+static int32_t wait_for_fences(void *of, uint32_t count, const uint64_t *fences, uint32_t all, uint64_t timeout) {
+  if (gone) return ERROR_DEVICE_LOST;
+  int32_t (*next)(void *, uint32_t, const uint64_t *, uint32_t, uint64_t) =
+      (void *)next_device(device, "vkWaitForFences");
+  return next(of, count, fences, all, timeout);
+}
+
+Function lost_instance_proc(void *of, const char *name);
+Function lost_device_proc(void *of, const char *name);
+
+static Function own(const char *name) {
+  const struct { const char *name; Function function; } all[] = {
+    {"vkGetInstanceProcAddr", (Function)lost_instance_proc}, {"vkGetDeviceProcAddr", (Function)lost_device_proc},
+    {"vkCreateInstance", (Function)create_instance},         {"vkCreateDevice", (Function)create_device},
+    {"vkQueueSubmit", (Function)submit},                     {"vkWaitForFences", (Function)wait_for_fences},
+    {"vkDeviceWaitIdle", (Function)wait_idle},               {"vkQueueWaitIdle", (Function)queue_wait_idle},
+  };
+  for (size_t i = 0; i < sizeof all / sizeof *all; i++)
+    if (!strcmp(all[i].name, name)) return all[i].function;
+  return NULL;
+}
+
+Function lost_instance_proc(void *of, const char *name) {
+  Function found = own(name);
+  return found ? found : next_instance ? next_instance(of, name) : NULL;
+}
+
+Function lost_device_proc(void *of, const char *name) {
+  Function found = own(name);
+  return found ? found : next_device ? next_device(of, name) : NULL;
+}

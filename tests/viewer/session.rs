@@ -1,0 +1,69 @@
+//! A whole session: what a person does from opening a scan to keeping a picture.
+
+use crate::display::key;
+use crate::program::scan;
+use crate::view::View;
+use crate::{SPHERE, stage};
+use surfel::methods::Method;
+
+#[test]
+fn a_scene_is_looked_at_and_kept() {
+    session("a_scene_is_looked_at_and_kept", SPHERE);
+}
+
+#[test]
+fn the_bunny_is_looked_at_and_kept() {
+    let test = "the_bunny_is_looked_at_and_kept";
+    if let Some(bunny) = scan(test, "stanford/bunny/bun_zipper.ply") {
+        session(test, bunny.to_str().unwrap());
+    }
+}
+
+/// Opens, turns, tries every method, resizes 50 times, drops a broken file, saves camera and picture; that is the headless one, bit for bit.
+fn session(test: &str, input: &str) {
+    let Some((display, program)) = stage(test) else { return };
+    let mut view = View::open(&display, &program, &format!("{input} --size 400x300"));
+    let first = view.picture(|_| true);
+    display.drag(view.window, 1, &[[150, 150], [170, 140], [200, 120]]);
+    view.picture(|event| event["camera"] != first["camera"]);
+    display.click(view.window, [150, 150], 4, 2);
+    let start = Method::ALL.iter().position(|method| method.name == first["method"]).unwrap();
+    for turn in 1..=Method::ALL.len() {
+        display.press(&[], u32::from('m'));
+        let next = Method::ALL[(start + turn) % Method::ALL.len()].name;
+        view.picture(|event| event["method"] == next);
+    }
+    resize(&mut view);
+    program.write("broken.ply", "ply\nformat binary_little_endian 1.0\nelement vertex 10\nproperty float x\n");
+    let broken = program.path("broken.ply").canonicalize().unwrap();
+    assert!(display.drop_files(view.window, &[&broken]));
+    view.until("wrong", |event| event["error"].as_str().unwrap().contains("broken.ply"));
+    display.press(&[], u32::from('m'));
+    let last = view.picture(|event| event["method"] != first["method"]);
+    display.press(&[key::CONTROL], u32::from('s'));
+    let camera = view.wrote();
+    display.press(&[], key::F12);
+    let shot = view.wrote();
+    view.close();
+    let (method, size) = (last["method"].as_str().unwrap(), &last["size"]);
+    let render =
+        format!("render {input} --method {method} --size {}x{} --camera {camera} -o headless.png", size[0], size[1]);
+    program.run(&render).text();
+    let [ours, headless] = [program.png(&shot), program.png("headless.png")];
+    assert!(headless.pixels().any(|pixel| pixel.0 != headless.get_pixel(0, 0).0), "nothing is seen");
+    assert!(ours == headless, "not what `{render}` writes");
+}
+
+/// Fifty sizes, each of which comes to be a picture; the smallest that there is among them.
+fn resize(view: &mut View) {
+    for i in 0..50u32 {
+        let size = match i % 10 {
+            3 => [1, 1],
+            6 => [1, 200 + i],
+            8 => [300 + i, 1],
+            _ => [200 + (37 * i) % 300, 150 + (53 * i) % 200],
+        };
+        view.display.resize(view.window, size);
+        view.picture(|event| event["size"] == serde_json::json!(size));
+    }
+}

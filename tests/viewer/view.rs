@@ -1,0 +1,124 @@
+//! `surfel view` on a display, and what it tells.
+
+use crate::display::{Display, PATIENCE};
+use crate::program::Program;
+use serde_json::Value;
+use std::io::{BufRead, BufReader, Read};
+use std::process::{Child, Command, Stdio};
+use std::sync::mpsc::{Receiver, channel};
+use std::thread::{self, JoinHandle};
+use std::time::Instant;
+use x11rb::protocol::xproto::Window;
+
+/// A program with its window open.
+pub struct View<'a> {
+    pub display: &'a Display,
+    pub window: Window,
+    child: Child,
+    lines: Receiver<String>,
+    errors: Option<JoinHandle<String>>,
+}
+
+/// How it ended.
+pub struct End {
+    pub code: i32,
+    pub errors: String,
+}
+
+/// The program in the folder of `program`, under the validation layers, which tells what happens.
+pub fn command(program: &Program, display: &str, arguments: &str) -> Command {
+    command_on(program, display, &format!("{arguments} --json --validate"))
+}
+
+/// The program in the folder of `program` on a display.
+pub fn command_on(program: &Program, display: &str, arguments: &str) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_surfel"));
+    command
+        .arg("view")
+        .args(arguments.split_whitespace())
+        .current_dir(program.path("."))
+        .env_remove("RUST_LOG")
+        .env_remove("WAYLAND_DISPLAY")
+        .env_remove("WAYLAND_SOCKET")
+        .env("DISPLAY", display)
+        .env("XDG_CACHE_HOME", program.path(".cache"))
+        .env("XDG_CONFIG_HOME", program.path(".config"));
+    command
+}
+
+impl<'a> View<'a> {
+    /// Opens a window and waits until it is there.
+    pub fn open(display: &'a Display, program: &Program, arguments: &str) -> Self {
+        Self::start(display, command(program, &display.name, arguments))
+    }
+
+    /// [`View::open`] of a command.
+    pub fn start(display: &'a Display, mut command: Command) -> Self {
+        let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let (out, mut errors) = (child.stdout.take().unwrap(), child.stderr.take().unwrap());
+        let (send, lines) = channel();
+        thread::spawn(move || BufReader::new(out).lines().map_while(Result::ok).try_for_each(|line| send.send(line)));
+        let errors = thread::spawn(move || {
+            let mut text = String::new();
+            let _ = errors.read_to_string(&mut text);
+            text
+        });
+        let mut view = Self { display, window: 0, child, lines, errors: Some(errors) };
+        view.until("window", |_| true);
+        view.window = display.window("surfel");
+        display.focus(view.window);
+        view
+    }
+
+    /// The next event of this name that fits.
+    pub fn until(&mut self, name: &str, fits: impl Fn(&Value) -> bool) -> Value {
+        let start = Instant::now();
+        loop {
+            let left = PATIENCE.saturating_sub(start.elapsed());
+            let Ok(line) = self.lines.recv_timeout(left) else {
+                let _ = self.child.kill();
+                let errors = self.errors.take().map(|errors| errors.join().unwrap());
+                panic!("no `{name}` that fits: {}", errors.unwrap_or_default());
+            };
+            let event: Value = serde_json::from_str(&line).unwrap_or_else(|_| panic!("no JSON: {line}"));
+            if event["event"] == name && fits(&event) {
+                return event;
+            }
+        }
+    }
+
+    /// The next whole picture that fits.
+    pub fn picture(&mut self, fits: impl Fn(&Value) -> bool) -> Value {
+        self.until("picture", |event| event["side"] == 1.0 && fits(event))
+    }
+
+    /// Waits for a file's name.
+    pub fn wrote(&mut self) -> String {
+        self.until("wrote", |_| true)["file"].as_str().unwrap().to_owned()
+    }
+
+    /// Waits until the program has ended.
+    pub fn end(mut self) -> End {
+        // Its output ends when it does.
+        let start = Instant::now();
+        while self.lines.recv_timeout(PATIENCE.saturating_sub(start.elapsed())).is_ok() {}
+        assert!(start.elapsed() < PATIENCE, "it does not end");
+        let code = self.child.wait().unwrap().code().unwrap_or(-1);
+        let errors = self.errors.take().map(|errors| errors.join().unwrap()).unwrap_or_default();
+        End { code, errors }
+    }
+
+    /// Closes the window: without a message of the validation layers, of which leaks are some, or of anything else.
+    pub fn close(self) {
+        self.display.close(self.window);
+        let End { code, errors } = self.end();
+        assert_eq!((code, errors.as_str()), (0, ""));
+    }
+}
+
+impl Drop for View<'_> {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}

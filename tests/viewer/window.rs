@@ -1,0 +1,62 @@
+//! The window's life: sizes, sight, displays that are not there, and its end.
+
+use crate::program::{Program, surfels};
+use crate::view::{View, command};
+use crate::{SPHERE, stage};
+use std::process::Output;
+
+#[test]
+fn a_window_that_is_hidden_comes_back() {
+    let Some((display, program)) = stage("a_window_that_is_hidden_comes_back") else { return };
+    let mut view = View::open(&display, &program, &format!("{SPHERE} --size 320x240"));
+    view.picture(|_| true);
+    for size in [[300, 200], [320, 240]] {
+        display.map(view.window, false);
+        // While nobody sees it, too.
+        display.resize(view.window, size);
+        display.map(view.window, true);
+        view.picture(|event| event["size"] == serde_json::json!(size));
+    }
+    view.close();
+}
+
+#[test]
+fn a_window_may_be_closed_while_it_loads() {
+    let Some((display, program)) = stage("a_window_may_be_closed_while_it_loads") else { return };
+    View::open(&display, &program, "scene:bumpy-sphere?points=300000 --size 320x240").close();
+}
+
+#[test]
+fn dense_screens_have_larger_panels() {
+    let Some((display, program)) = stage("dense_screens_have_larger_panels") else { return };
+    let mut command = command(&program, &display.name, &format!("{SPHERE} --size 640x480"));
+    command.env("WINIT_X11_SCALE_FACTOR", "2");
+    let mut view = View::start(&display, command);
+    assert_eq!(view.picture(|_| true)["size"], serde_json::json!([640, 480]), "px are px");
+    view.close();
+}
+
+#[test]
+fn without_a_display_the_way_out_is_said() {
+    let program = Program::new();
+    program.write("a.ply", surfels(&["0 0 0 0 0 1 1"]));
+    for display in [None, Some(":987654")] {
+        let mut command = command(&program, "", "a.ply");
+        command.env_remove("DISPLAY");
+        display.map(|name| command.env("DISPLAY", name));
+        let Output { status, stderr, .. } = command.output().unwrap();
+        let text = String::from_utf8(stderr).unwrap();
+        assert_eq!(status.code(), Some(3), "{text}");
+        assert!(text.contains("display") && text.contains("surfel render"), "{text}");
+        assert_eq!(text.lines().count(), 1, "{text}");
+    }
+}
+
+#[test]
+fn a_device_that_does_not_serve_is_named() {
+    let Some((display, program)) = stage("a_device_that_does_not_serve_is_named") else { return };
+    let Output { status, stderr, .. } =
+        command(&program, &display.name, &format!("{SPHERE} --device none-such")).output().unwrap();
+    let text = String::from_utf8(stderr).unwrap();
+    assert!(status.code() == Some(3) && text.contains("none-such"), "{text}");
+}
