@@ -141,7 +141,9 @@ impl ApplicationHandler<News> for App {
         }
         // What is let go is let go wherever that is.
         let ends = matches!(event, WindowEvent::MouseInput { state: ElementState::Released, .. });
-        if theirs && !ends {
+        // A name that is typed is the panels', even before they have drawn the field for it.
+        let typed = matches!(event, WindowEvent::KeyboardInput { .. }) && self.state.opening.is_some();
+        if theirs && !ends || typed {
             return;
         }
         match event {

@@ -1,7 +1,10 @@
 //! Opening what is named: a scene's file, a built-in scene, a camera.
 
-use egui::{Id, Key, ScrollArea, TextEdit, Ui, Window};
+use egui::{Event, Id, Key, ScrollArea, TextEdit, Ui, Window};
 use std::path::{Path, PathBuf};
+
+/// The field that the name is typed in.
+const FIELD: &str = "open";
 
 /// A name that is being typed.
 #[derive(Default)]
@@ -31,9 +34,11 @@ impl Opening {
         let mut answer = None;
         Window::new("Open").collapsible(false).default_width(420.0).show(ui.ctx(), |ui| {
             ui.label("a PLY file, a camera's .json file, or a scene such as scene:bumpy-sphere");
-            let field = TextEdit::singleline(&mut self.text).id(Id::new("open")).desired_width(f32::INFINITY);
+            let early = self.take_early(ui);
+            let field = TextEdit::singleline(&mut self.text).id(Id::new(FIELD)).desired_width(f32::INFINITY);
             let field = ui.add(field);
-            if field.lost_focus() && ui.input(|input| input.key_pressed(Key::Enter)) && !self.text.is_empty() {
+            let enter = ui.input(|input| input.key_pressed(Key::Enter));
+            if enter && (early || field.lost_focus()) && !self.text.is_empty() {
                 answer = Some(Answer::Open(self.text.clone()));
             } else if ui.input(|input| input.key_pressed(Key::Escape)) {
                 answer = Some(Answer::Nothing);
@@ -43,6 +48,21 @@ impl Opening {
             answer = self.list(ui).or(answer.take());
         });
         answer
+    }
+
+    /// Takes what is typed before the field does, if it does not yet: a frame may take long.
+    fn take_early(&mut self, ui: &Ui) -> bool {
+        let early = !ui.memory(|memory| memory.has_focus(Id::new(FIELD)));
+        if early {
+            ui.input(|input| {
+                for event in &input.events {
+                    if let Event::Text(text) = event {
+                        self.text.push_str(text);
+                    }
+                }
+            });
+        }
+        early
     }
 
     /// What begins as the text does.

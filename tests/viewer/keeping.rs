@@ -2,13 +2,14 @@
 
 use crate::display::key;
 use crate::view::View;
-use crate::{SPHERE, stage};
+use crate::{DRAW, SPHERE, stage};
 use serde_json::Value;
 
 #[test]
 fn kept_pictures_are_those_of_render_and_of_the_window() {
     let Some((display, program)) = stage("kept_pictures_are_those_of_render_and_of_the_window") else { return };
-    let mut view = View::open(&display, &program, &format!("{SPHERE} --size 640x480 --shots ."));
+    let what = format!("{SPHERE} --size 640x480 {DRAW}");
+    let mut view = View::open(&display, &program, &format!("{what} --shots ."));
     view.picture(|_| true);
     for (held, extension) in [(&[][..], "png"), (&[key::CONTROL][..], "exr")] {
         display.press(&[key::CONTROL], u32::from('s'));
@@ -16,7 +17,7 @@ fn kept_pictures_are_those_of_render_and_of_the_window() {
         display.press(held, key::F12);
         let shot = view.wrote();
         assert!(camera.ends_with(".json") && shot.ends_with(extension), "{camera} {shot}");
-        let render = format!("render {SPHERE} --size 640x480 --camera {camera} -o headless.{extension}");
+        let render = format!("render {what} --camera {camera} -o headless.{extension}");
         program.run(&render).text();
         let [ours, headless] = [shot, format!("headless.{extension}")]
             .map(|name| std::fs::read(program.path(&name)).unwrap());

@@ -3,7 +3,7 @@
 use crate::display::key;
 use crate::program::scan;
 use crate::view::View;
-use crate::{SPHERE, stage};
+use crate::{DRAW, SPHERE, stage};
 use surfel::methods::Method;
 
 #[test]
@@ -22,7 +22,7 @@ fn the_bunny_is_looked_at_and_kept() {
 /// Opens, turns, tries every method, resizes 50 times, drops a broken file, saves camera and picture; that is the headless one, bit for bit.
 fn session(test: &str, input: &str) {
     let Some((display, program)) = stage(test) else { return };
-    let mut view = View::open(&display, &program, &format!("{input} --size 400x300"));
+    let mut view = View::open(&display, &program, &format!("{input} --size 400x300 {DRAW} --quiet"));
     let first = view.picture(|_| true);
     display.drag(view.window, 1, &[[150, 150], [170, 140], [200, 120]]);
     view.picture(|event| event["camera"] != first["camera"]);
@@ -47,7 +47,7 @@ fn session(test: &str, input: &str) {
     view.close();
     let (method, size) = (last["method"].as_str().unwrap(), &last["size"]);
     let render =
-        format!("render {input} --method {method} --size {}x{} --camera {camera} -o headless.png", size[0], size[1]);
+        format!("render {input} {DRAW} --method {method} --size {}x{} --camera {camera} -o headless.png", size[0], size[1]);
     program.run(&render).text();
     let [ours, headless] = [program.png(&shot), program.png("headless.png")];
     assert!(headless.pixels().any(|pixel| pixel.0 != headless.get_pixel(0, 0).0), "nothing is seen");

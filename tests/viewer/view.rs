@@ -70,29 +70,39 @@ impl<'a> View<'a> {
         view
     }
 
-    /// The next event of this name that fits.
-    pub fn until(&mut self, name: &str, fits: impl Fn(&Value) -> bool) -> Value {
-        let start = Instant::now();
+    /// The next event of one of these names that fits.
+    #[track_caller]
+    pub fn next(&mut self, names: &[&str], fits: impl Fn(&Value) -> bool) -> Value {
+        let (start, mut last) = (Instant::now(), String::new());
         loop {
             let left = PATIENCE.saturating_sub(start.elapsed());
             let Ok(line) = self.lines.recv_timeout(left) else {
                 let _ = self.child.kill();
                 let errors = self.errors.take().map(|errors| errors.join().unwrap());
-                panic!("no `{name}` that fits: {}", errors.unwrap_or_default());
+                panic!("no {names:?} that fits, at last {last}: {}", errors.unwrap_or_default());
             };
             let event: Value = serde_json::from_str(&line).unwrap_or_else(|_| panic!("no JSON: {line}"));
-            if event["event"] == name && fits(&event) {
+            if names.iter().any(|name| event["event"] == *name) && fits(&event) {
                 return event;
             }
+            last = line;
         }
     }
 
+    /// The next event of this name that fits.
+    #[track_caller]
+    pub fn until(&mut self, name: &str, fits: impl Fn(&Value) -> bool) -> Value {
+        self.next(&[name], fits)
+    }
+
     /// The next whole picture that fits.
+    #[track_caller]
     pub fn picture(&mut self, fits: impl Fn(&Value) -> bool) -> Value {
         self.until("picture", |event| event["side"] == 1.0 && fits(event))
     }
 
     /// Waits for a file's name.
+    #[track_caller]
     pub fn wrote(&mut self) -> String {
         self.until("wrote", |_| true)["file"].as_str().unwrap().to_owned()
     }
@@ -108,6 +118,7 @@ impl<'a> View<'a> {
         End { code, errors }
     }
 
+    #[track_caller]
     /// Closes the window: without a message of the validation layers, of which leaks are some, or of anything else.
     pub fn close(self) {
         self.display.close(self.window);
