@@ -7,11 +7,14 @@ use super::{camera, render, vulkan};
 use crate::viewer;
 use std::ffi::OsString;
 use std::sync::Arc;
+use std::time::Instant;
 use surfel::methods::Method;
-use surfel::{Progress, Result};
+use surfel::Result;
+use surfel::geometry::Model;
 
 /// Opens the window, which loads the inputs while it is there.
 pub fn run(args: View) -> Result<()> {
+    let start = Instant::now();
     args.settings(&args.method.unwrap_or(Method::ALL[0])).check()?;
     let file = camera::read(&args.camera)?;
     let up = camera::up(&args.camera, file);
@@ -19,7 +22,12 @@ pub fn run(args: View) -> Result<()> {
     let texture = args.colours.texture()?;
     let (estimate, polygons, quiet) = (args.points.estimate(), args.points.polygons, args.quiet);
     let asked = args.method;
-    let load = move |names: &[OsString], progress: &dyn Progress| {
+    let load = move |names: &[OsString], window: &dyn viewer::Loading| {
+        let sketch = |model: Model| {
+            if let Ok(method) = render::method(asked, &model) {
+                window.sketch(viewer::Loaded { model, method });
+            }
+        };
         let wanted = Wanted {
             names,
             estimate: estimate.clone(),
@@ -30,7 +38,8 @@ pub fn run(args: View) -> Result<()> {
             colouring: colouring.clone(),
             texture: texture.clone(),
             quiet,
-            progress,
+            progress: window,
+            sketch: Some(&sketch),
         };
         let model = inputs::load(&wanted)?.model;
         let method = render::method(asked, &model)?;
@@ -43,6 +52,7 @@ pub fn run(args: View) -> Result<()> {
         rasterizer: args.rasterizer,
         up,
         budget: args.budget,
+        events: viewer::Events::new(start, args.json),
     };
     viewer::run(options, Arc::new(load), Box::new(move |method| args.settings(method)))
 }

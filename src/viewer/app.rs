@@ -2,20 +2,19 @@
 
 use super::hands::Hands;
 use super::keys::{self, Action};
-use super::load::{self, Load, News};
+use super::events::Event;
+use super::load::{Load, Loader, News, What};
 use super::panels::Told;
-use super::state::State;
+use super::state::{Of, State};
 use super::window::Opened;
 use super::{Look, Options};
 use glam::DVec2;
 use std::ffi::OsString;
-use std::sync::Arc;
 use std::time::Instant;
-use surfel::vk::Device;
 use surfel::{Error, Result};
 use winit::application::ApplicationHandler;
 use winit::event::{ElementState, KeyEvent, MouseButton, MouseScrollDelta, StartCause, WindowEvent};
-use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy};
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop};
 use winit::window::WindowId;
 
 /// Px of a touchpad's scrolling that are a step of a wheel.
@@ -31,16 +30,17 @@ pub fn run(options: Options, load: Load, look: Look) -> Result<()> {
     let events = EventLoop::<News>::with_user_event().build().map_err(no_display)?;
     let state = State::new(&options, look);
     let hands = Hands::default();
+    let mut loader = Loader::new(load, events.create_proxy(), options.events);
+    // The window opens meanwhile.
+    loader.start(options.inputs.clone());
     let mut app = App {
         state,
         hands,
         told: Told::default(),
-        load,
+        loader,
         dropped: Vec::new(),
-        news: events.create_proxy(),
         options,
         opened: None,
-        device: None,
         failed: None,
     };
     events.run_app(&mut app).map_err(no_display)?;
@@ -51,13 +51,11 @@ struct App {
     state: State,
     hands: Hands,
     told: Told,
-    load: Load,
+    loader: Loader,
     /// Files that were dropped on the window, and are loaded when all of them are.
     dropped: Vec<OsString>,
-    news: EventLoopProxy<News>,
     options: Options,
     opened: Option<Opened>,
-    device: Option<Arc<Device>>,
     failed: Option<Error>,
 }
 
@@ -67,36 +65,46 @@ impl ApplicationHandler<News> for App {
             Ok((opened, device)) => {
                 opened.window.request_redraw();
                 self.opened = Some(opened);
-                self.device = Some(device);
-                self.open(self.options.inputs.clone());
+                self.loader.use_device(&device);
             }
             Err(error) => self.fail(events, error),
         }
     }
 
     fn user_event(&mut self, events: &ActiveEventLoop, news: News) {
-        match news {
-            News::At(stage, part) => {
-                self.told.loading = Some((stage, part as f32 / 1000.0));
-                self.changed();
+        if !self.loader.is_present(&news) {
+            return;
+        }
+        let (load, tell) = (news.load, self.options.events);
+        match news.what {
+            What::At(stage, part) => self.told.loading = Some((stage, part as f32 / 1000.0)),
+            What::Sketch(scene, method) => {
+                tell.tell(&Event::Sketch { surfels: scene.count() });
+                self.state.show(scene, method, Of { load, sketch: true });
             }
-            News::Ready(scene, method) => {
+            What::Ready(scene, method) => {
+                tell.tell(&Event::Ready { surfels: scene.count() });
                 (self.told.loading, self.told.wrong) = (None, None);
-                self.state.show(scene, method);
-                self.changed();
+                self.state.show(scene, method, Of { load, sketch: false });
             }
-            News::Failed(error) if self.state.moving().is_none() => self.fail(events, error),
-            News::Failed(error) => {
-                (self.told.loading, self.told.wrong) = (None, Some(error.to_string()));
-                self.changed();
+            What::Coarser(scenes) => return self.state.add_coarser(scenes),
+            What::Failed(error) => {
+                self.state.leave_sketch();
+                if self.state.moving().is_none() {
+                    return self.fail(events, error);
+                }
+                let error = error.to_string();
+                tell.tell(&Event::Wrong { error: &error });
+                (self.told.loading, self.told.wrong) = (None, Some(error));
             }
         }
+        self.changed();
     }
 
     fn about_to_wait(&mut self, _: &ActiveEventLoop) {
         if !self.dropped.is_empty() {
             let dropped = std::mem::take(&mut self.dropped);
-            self.open(dropped);
+            self.loader.start(dropped);
         }
     }
 
@@ -146,18 +154,11 @@ impl ApplicationHandler<News> for App {
     }
 
     fn exiting(&mut self, _: &ActiveEventLoop) {
-        (self.opened, self.device) = (None, None);
+        self.opened = None;
     }
 }
 
 impl App {
-    /// Looks at these inputs from now on, once they are loaded.
-    fn open(&mut self, inputs: Vec<OsString>) {
-        if let Some(device) = &self.device {
-            load::start(self.load.clone(), inputs, device.clone(), self.news.clone());
-        }
-    }
-
     fn draw(&mut self, events: &ActiveEventLoop) {
         let Some(opened) = &mut self.opened else { return };
         match opened.draw(&mut self.state, &self.hands, &mut self.told) {

@@ -6,6 +6,8 @@
 //! ```
 
 mod app;
+mod cost;
+mod events;
 mod hands;
 mod hud;
 mod keys;
@@ -17,8 +19,9 @@ mod screen;
 mod state;
 mod window;
 
+pub use events::Events;
 use glam::DVec3;
-use load::Load;
+pub use load::{Load, Loading};
 use std::ffi::OsString;
 use surfel::geometry::Model;
 use surfel::methods::Method;
@@ -39,6 +42,8 @@ pub struct Options {
     pub up: DVec3,
     /// How long frames may take while the hands move, ms.
     pub budget: f64,
+    /// Who is told what happens.
+    pub events: Events,
 }
 
 /// What is looked at.

@@ -85,7 +85,7 @@ impl Lens {
     }
 
     /// World units a px, at a distance.
-    fn px(&self, distance: f64) -> f64 {
+    pub fn px(&self, distance: f64) -> f64 {
         2.0 * distance * (0.5 * self.fov_y).tan() / f64::from(self.size[1])
     }
 

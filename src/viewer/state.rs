@@ -2,12 +2,15 @@
 
 use super::keys::Action;
 use super::orbit::{Lens, Orbit, Up};
+use super::pace::Sight;
 use super::{Look, Options};
 use glam::{DVec2, DVec3};
+use std::borrow::Cow;
 use std::sync::Arc;
 use surfel::geometry::Camera;
 use surfel::methods::Method;
 use surfel::settings::Shading;
+use surfel::splatting::Normalization;
 use surfel::{Result, Scene, Settings};
 
 /// Vertical angle of view, radians.
@@ -25,8 +28,28 @@ pub struct State {
     pub pick: Option<DVec2>,
 }
 
+/// What a scene is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Of {
+    /// Number of the load.
+    pub load: u64,
+    /// Whether it is some of the points, until all are there.
+    pub sketch: bool,
+}
+
+impl Of {
+    fn sketch_of(self) -> Self {
+        Self { sketch: true, ..self }
+    }
+}
+
 struct Shown {
     scene: Arc<Scene>,
+    of: Of,
+    /// Ever fewer and larger surfels of it.
+    coarser: Vec<Arc<Scene>>,
+    /// What is looked at again where a sketch is all that ever comes.
+    before: Option<Box<Shown>>,
     orbit: Orbit,
     method: Method,
     settings: Settings,
@@ -38,18 +61,67 @@ impl State {
         Self { lens, up: nearest(options.up), look, shown: None, pick: None }
     }
 
-    /// Looks at a scene from the front.
-    pub fn show(&mut self, scene: Arc<Scene>, method: Method) {
-        let orbit = Orbit::framing(&scene.bounds(), self.up, &self.lens);
+    /// Looks at the scene of a load from the front; or at all of what was a sketch as at that.
+    pub fn show(&mut self, scene: Arc<Scene>, method: Method, of: Of) {
+        let mut orbit = Orbit::framing(&scene.bounds(), self.up, &self.lens);
         let settings = (self.look)(&method);
-        self.shown = Some(Shown { scene, orbit, method, settings });
+        let before = self.shown.take();
+        let new = match before {
+            Some(sketch) if sketch.of == Of::sketch_of(of) => {
+                if sketch.orbit != Orbit::framing(&sketch.scene.bounds(), self.up, &self.lens) {
+                    orbit = sketch.orbit;
+                }
+                Shown { scene, of, orbit, coarser: Vec::new(), ..sketch }
+            }
+            // Of one that is not whole there was something before.
+            Some(Shown { of: Of { sketch: true, .. }, before, .. }) => Shown { scene, of, orbit, method, settings, before, coarser: Vec::new() },
+            before => {
+                let before = before.map(Box::new);
+                Shown { scene, of, orbit, method, settings, before, coarser: Vec::new() }
+            },
+        };
+        let before = new.before.filter(|_| of.sketch);
+        self.shown = Some(Shown { before, ..new });
     }
 
-    /// The scene, from where and how it is seen.
-    pub fn frame(&self) -> Option<Result<(&Arc<Scene>, Camera, &Settings)>> {
-        let Shown { scene, orbit, settings, .. } = self.shown.as_ref()?;
+    /// Looks at what was before the sketch, if that is what is looked at.
+    pub fn leave_sketch(&mut self) {
+        if let Some(Shown { before, .. }) = self.shown.take_if(|shown| shown.of.sketch) {
+            self.shown = before.map(|before| *before);
+        }
+    }
+
+    /// Shows fewer surfels of the scene while the hands move, if that has to be.
+    pub fn add_coarser(&mut self, scenes: Vec<Arc<Scene>>) {
+        if let Some(shown) = &mut self.shown {
+            shown.coarser = scenes;
+        }
+    }
+
+    /// What there is to be seen, for who chooses how much of it is.
+    pub fn sight(&self) -> Option<Sight> {
+        let Shown { scene, coarser, orbit, .. } = self.shown.as_ref()?;
+        let [width, height] = self.lens.size.map(f64::from);
+        let scenes = std::iter::once(scene).chain(coarser);
+        Some(Sight {
+            pixels: width * height,
+            surfels: scenes.map(|scene| scene.count() as f64).collect(),
+            across: 2.0 * scene.bounds().radius / self.lens.px(orbit.distance()),
+        })
+    }
+
+    /// Whether what is shown is some of the points, until all are there.
+    pub fn is_sketch(&self) -> bool {
+        self.shown.as_ref().is_some_and(|shown| shown.of.sketch)
+    }
+
+    /// The scene, or the coarser one of this number, from where and how it is seen.
+    pub fn frame(&self, number: usize) -> Option<Result<(&Arc<Scene>, Camera, Cow<'_, Settings>)>> {
+        let Shown { scene, coarser, orbit, settings, .. } = self.shown.as_ref()?;
         let camera = orbit.camera(&self.lens, &scene.bounds());
-        Some(camera.map(|camera| (scene, camera, settings)))
+        let fewer = number.checked_sub(1).and_then(|number| coarser.get(number));
+        let seen = fewer.map_or((scene, Cow::Borrowed(settings)), |fewer| (fewer, quick(settings)));
+        Some(camera.map(|camera| (seen.0, camera, seen.1)))
     }
 
     /// The camera and the bounds of what it sees.
@@ -138,6 +210,15 @@ impl Shown {
         self.method = Method::ALL[(now + steps) % Method::ALL.len()];
         self.settings = Settings { shading: self.settings.shading, ..look(&self.method) };
     }
+}
+
+/// The settings for surfels that stand for others, whose normalization weights they have not.
+fn quick(settings: &Settings) -> Cow<'_, Settings> {
+    let mut quick = Cow::Borrowed(settings);
+    if settings.splatting.normalization == Normalization::Surfel {
+        quick.to_mut().splatting.normalization = Normalization::Pixel;
+    }
+    quick
 }
 
 /// The axis that is nearest to a direction.

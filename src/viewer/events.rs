@@ -1,0 +1,99 @@
+//! What happens in the window, one JSON object a line on standard output, for programs that wait for it.
+
+use serde::Serialize;
+use std::io::Write;
+use std::time::Instant;
+
+/// Something that has happened.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[serde(tag = "event", rename_all = "kebab-case")]
+pub enum Event<'a> {
+    /// The window is open, on this device.
+    Window {
+        device: &'a str,
+    },
+    /// All inputs are read, and what they lacked is estimated.
+    Loaded {
+        surfels: u64,
+    },
+    /// Some of the points are on the device, and are shown until all are.
+    Sketch {
+        surfels: u64,
+    },
+    /// A scene is on the device, and is shown from now on.
+    Ready {
+        surfels: u64,
+    },
+    /// What is being loaded is given up.
+    Cancelled,
+    /// A picture of the scene went to the window.
+    Picture(Shown),
+    /// What the window says went wrong; what was shown before stays.
+    Wrong {
+        error: &'a str,
+    },
+}
+
+/// What a picture shows.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Shown {
+    /// Of the window's picture, px.
+    pub size: [u32; 2],
+    /// Side of what was drawn, as part of the window's: 1 is the whole picture.
+    pub side: f64,
+    /// How many surfels there were.
+    pub surfels: u64,
+    /// Whether they are some of what is being loaded.
+    pub sketch: bool,
+    /// Whether the camera moved.
+    pub moving: bool,
+    /// How long it took, ms.
+    pub took_ms: f64,
+}
+
+/// Tells what happens, where somebody wants to know.
+#[derive(Clone, Copy, Debug)]
+pub struct Events {
+    start: Instant,
+    on: bool,
+}
+
+#[derive(Serialize)]
+struct Line<'a> {
+    /// Since the program began, ms.
+    ms: f64,
+    #[serde(flatten)]
+    event: &'a Event<'a>,
+}
+
+impl Events {
+    /// Counts from `start`; says nothing unless `on`.
+    pub fn new(start: Instant, on: bool) -> Self {
+        Self { start, on }
+    }
+
+    /// Says what has happened just now.
+    pub fn tell(&self, event: &Event<'_>) {
+        if !self.on {
+            return;
+        }
+        let ms = (1e6 * self.start.elapsed().as_secs_f64()).round() / 1e3;
+        let Ok(mut line) = serde_json::to_string(&Line { ms, event }) else { return };
+        line.push('\n');
+        let mut out = std::io::stdout().lock();
+        // Whoever has stopped listening wants no more.
+        let _ = out.write_all(line.as_bytes()).and_then(|()| out.flush());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_event_is_a_line_of_json() {
+        let event = Event::Ready { surfels: 3 };
+        let line = serde_json::to_string(&Line { ms: 1.5, event: &event }).unwrap();
+        assert_eq!(line, r#"{"ms":1.5,"event":"ready","surfels":3}"#);
+    }
+}
