@@ -53,6 +53,7 @@ pub mod error;
 mod frame;
 pub mod geometry;
 pub mod io;
+mod memory;
 pub mod methods;
 pub mod metrics;
 pub mod passes;

@@ -5,6 +5,7 @@ mod lent;
 mod live;
 mod materials;
 mod primitives;
+mod room;
 mod stream;
 mod texture;
 mod update;
@@ -186,6 +187,7 @@ impl Scene {
         if image.is_none() && parts.has_texture() {
             return Self::new_silently(device, uploads, (&parts.baked()).into());
         }
+        room::check(device, &parts)?;
         let (bounds, invalid) = usable(&parts)?;
         let count = surfels.len() as u64;
         let ellipses = surfels.ellipses.as_deref();
@@ -453,6 +455,7 @@ mod tests {
             max_image_side: 4096,
             max_storage_buffers: 16,
             max_workgroups: 65535,
+            memory: 1 << 30,
         };
         for count in [1, 255, 256, 21_504, 21_505, 1_000_000] {
             let windows = windows(count, &capabilities, 0);

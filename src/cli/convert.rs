@@ -31,6 +31,7 @@ pub fn run(args: &Convert) -> Result<()> {
         texture: args.colours.texture()?,
         quiet: args.quiet,
         progress: &*bars,
+        sketch: None,
     })?;
     if let Some(views) = args.weights {
         refuse_lines(&loaded.model)?;

@@ -33,7 +33,14 @@ pub struct Wanted<'a> {
     pub quiet: bool,
     /// Is told how far it has come.
     pub progress: &'a dyn Progress,
+    /// Is given a sketch of many points, once they are read.
+    pub sketch: Option<&'a dyn Fn(Model)>,
 }
+
+/// Points of a sketch.
+const SKETCH: usize = 20_000;
+/// How many times as many points have a sketch: fewer are whole as soon.
+const WORTH_A_SKETCH: usize = 5;
 
 /// What the inputs together hold.
 pub struct Inputs {
@@ -78,6 +85,9 @@ pub fn load(wanted: &Wanted<'_>) -> Result<Inputs> {
             wanted.quiet,
         )
     });
+    if let Some(show) = wanted.sketch {
+        sketch(&parts, wanted).into_iter().for_each(show);
+    }
     let (model, estimated) = merge(parts, wanted)?;
     let mut inputs = Inputs { model, read, dropped, estimated, coloured };
     if let (Some(colouring), None) = (&wanted.colouring, &inputs.coloured) {
@@ -205,6 +215,27 @@ fn merge(parts: Vec<Part>, wanted: &Wanted<'_>) -> Result<(Model, Estimated)> {
     Ok((model, total))
 }
 
+/// Some of the points, with normals and radii of their own, if there are many; none where more than points is drawn.
+fn sketch(parts: &[Part], wanted: &Wanted<'_>) -> Option<Model> {
+    let all: usize = parts.iter().map(|part| part.cloud.len()).sum();
+    let faces = |part: &Part| {
+        part.cloud.has_lines() || (part.drawn || draws_faces(wanted)) && !part.cloud.triangles.is_empty()
+    };
+    if all < WORTH_A_SKETCH * SKETCH || parts.iter().any(faces) {
+        return None;
+    }
+    let some = |part: &Part| part.cloud.some((part.cloud.len() * SKETCH).div_ceil(all));
+    let clouds = parts.iter().map(some).collect();
+    let cloud = Cloud::merge(clouds, Settings::default().lighting.albedo).ok()?;
+    let how = Estimate { outliers: None, sharp: None, ..wanted.estimate.clone() };
+    // What a few points do not tell, all of them may.
+    let (mut model, _) = cloud.into_model(false, &how, &()).ok()?;
+    if let Some(colouring) = wanted.colouring.as_ref().filter(|colouring| colouring.property().is_none()) {
+        colouring.colour_model(&mut model, true);
+    }
+    Some(model)
+}
+
 fn estimate(part: Part, wanted: &Wanted<'_>) -> Result<(Model, Estimated)> {
     let Part { name, cloud, drawn } = part;
     let cloud = match &wanted.lines {
@@ -212,7 +243,10 @@ fn estimate(part: Part, wanted: &Wanted<'_>) -> Result<(Model, Estimated)> {
         None => cloud,
     };
     let made = cloud.into_model(drawn || draws_faces(wanted), &wanted.estimate, wanted.progress);
-    let (model, estimated) = made.map_err(|cause| Error::input(name.as_str(), cause))?;
+    let (model, estimated) = made.map_err(|cause| match wanted.progress.is_cancelled() {
+        true => Error::Cancelled,
+        false => Error::input(name.as_str(), cause),
+    })?;
     if let (false, Some(text)) = (wanted.quiet, summary::estimated(&estimated)) {
         say(&format!("{name}: {text}"));
     }

@@ -68,6 +68,7 @@ pub fn run(args: &Render) -> Result<()> {
         texture: args.colours.texture()?,
         quiet: args.quiet,
         progress: &*bars,
+        sketch: None,
     })?;
     let (method, scene) = (method(args.method, &loaded.model)?, &loaded.model);
     let settings = args.settings(&method);

@@ -57,6 +57,7 @@ fn bounds(args: &Truth, progress: &dyn Progress) -> Result<Bounds> {
         texture: None,
         quiet: true,
         progress,
+        sketch: None,
     })?;
     Parts::from(&loaded.model).bounds().ok_or_else(|| Error::Usage("the input holds no points".into()))
 }

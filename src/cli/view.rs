@@ -8,9 +8,9 @@ use crate::viewer;
 use std::ffi::OsString;
 use std::sync::Arc;
 use std::time::Instant;
-use surfel::geometry::Bounds;
+use surfel::Result;
+use surfel::geometry::{Bounds, Model};
 use surfel::methods::Method;
-use surfel::{Progress, Result};
 
 /// Opens the window, which loads the inputs while it is there.
 pub fn run(args: View) -> Result<()> {
@@ -22,7 +22,12 @@ pub fn run(args: View) -> Result<()> {
     let texture = args.colours.texture()?;
     let (estimate, polygons, quiet) = (args.points.estimate(), args.points.polygons, args.quiet);
     let asked = args.method;
-    let load = move |names: &[OsString], progress: &dyn Progress| {
+    let load = move |names: &[OsString], window: &dyn viewer::Loading| {
+        let sketch = |model: Model| {
+            if let Ok(method) = render::method(asked, &model) {
+                window.sketch(viewer::Loaded { model, method });
+            }
+        };
         let wanted = Wanted {
             names,
             estimate: estimate.clone(),
@@ -33,7 +38,8 @@ pub fn run(args: View) -> Result<()> {
             colouring: colouring.clone(),
             texture: texture.clone(),
             quiet,
-            progress,
+            progress: window,
+            sketch: Some(&sketch),
         };
         let model = inputs::load(&wanted)?.model;
         let method = render::method(asked, &model)?;
@@ -44,8 +50,7 @@ pub fn run(args: View) -> Result<()> {
         eye.is_some() || target.is_some() || fov.is_some() || parallel.is_some() || file.is_some()
     };
     let (cameras, pose) = (args.camera.clone(), file.map(|(_, pose)| pose));
-    let place =
-        move |bounds: &Bounds, size| given.then(|| camera::pose(&cameras, pose, bounds, size));
+    let place = move |bounds: &Bounds, size| given.then(|| camera::pose(&cameras, pose, bounds, size));
     let options = viewer::Options {
         inputs: args.inputs.clone(),
         size: args.size,

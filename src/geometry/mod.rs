@@ -4,6 +4,7 @@ mod bounds;
 mod camera;
 mod clips;
 mod cloud;
+mod coarser;
 mod colour_map;
 pub mod estimate;
 mod materials;

@@ -17,6 +17,11 @@ impl Surfels {
 
 /// The points' indices in the order of the Z-curve of their bounds; where codes are equal, in their own.
 pub(super) fn order(positions: &[Vec3]) -> Vec<u32> {
+    keys(positions).into_par_iter().map(|(_, i)| i).collect()
+}
+
+/// The points' codes along the Z-curve of their bounds, 63 bits, with their indices, sorted.
+pub(super) fn keys(positions: &[Vec3]) -> Vec<(u64, u32)> {
     let Some(bounds) = Bounds::of(positions) else { return Vec::new() };
     let extent = (bounds.max - bounds.min).max_element();
     let cells = f64::from((1u32 << BITS) - 1);
@@ -27,7 +32,7 @@ pub(super) fn order(positions: &[Vec3]) -> Vec<u32> {
         .map(|(p, i)| (code(*p, bounds.min, scale), i))
         .collect();
     keys.par_sort_unstable();
-    keys.into_par_iter().map(|(_, i)| i).collect()
+    keys
 }
 
 fn code(p: Vec3, min: DVec3, scale: f64) -> u64 {

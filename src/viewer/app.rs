@@ -6,10 +6,10 @@ use super::events::Event;
 use super::hands::Hands;
 use super::keep::Keep;
 use super::keys::{self, Action};
-use super::load::{self, Load, News};
+use super::load::{Load, Loader, News, What};
 use super::panels::Told;
 use super::retry::Retry;
-use super::state::State;
+use super::state::{Of, State};
 use super::window::Opened;
 use super::{Look, Options};
 use glam::DVec2;
@@ -38,20 +38,24 @@ pub fn run(options: Options, load: Load, look: Look) -> Result<()> {
     let events = EventLoop::<News>::with_user_event().build().map_err(no_display)?;
     let state = State::new(&options, look);
     let hands = Hands::default();
+    let mut loader = Loader::new(load, events.create_proxy(), options.events);
+    // The window opens meanwhile.
+    loader.start(options.inputs.clone());
     let mut app = App {
         state,
         hands,
         told: Told::default(),
-        load,
+        loader,
         dropped: Vec::new(),
         next: None,
+        is_first: true,
         keep: Keep::new(options.keep.clone()),
         news: events.create_proxy(),
         inputs: options.inputs.clone(),
+        pending: Some(options.inputs.clone()),
         options,
         opened: None,
         device: None,
-        pending: None,
         retry: Retry::default(),
         failed: None,
     };
@@ -63,12 +67,14 @@ struct App {
     state: State,
     hands: Hands,
     told: Told,
-    load: Load,
+    loader: Loader,
     /// Files that were dropped on the window, and are loaded when all of them are.
     dropped: Vec<PathBuf>,
     /// From where the scene is seen that comes next.
     next: Option<Pose>,
     keep: Keep,
+    /// Whether no scene was shown whole yet.
+    is_first: bool,
     news: EventLoopProxy<News>,
     options: Options,
     opened: Option<Opened>,
@@ -87,36 +93,49 @@ impl ApplicationHandler<News> for App {
             Ok((opened, device)) => {
                 self.options.events.tell(&Event::Window { device: &device.description().name });
                 opened.window.request_redraw();
-                self.opened = Some(opened);
-                self.device = Some(device);
-                self.open(self.options.inputs.clone());
+                self.loader.use_device(&device);
+                (self.opened, self.device) = (Some(opened), Some(device));
             }
             Err(error) => self.fail(events, error),
         }
     }
 
     fn user_event(&mut self, events: &ActiveEventLoop, news: News) {
-        match news {
-            News::At(stage, part) => {
-                self.told.loading = Some((stage, part as f32 / 1000.0));
-                self.changed();
-            }
-            News::Ready(scene, method) => {
-                (self.told.loading, self.told.wrong) = (None, None);
-                self.inputs = self.pending.take().unwrap_or(std::mem::take(&mut self.inputs));
-                self.options.events.tell(&Event::Ready { surfels: scene.count() });
-                match self.show(scene, method) {
-                    Ok(()) => self.changed(),
-                    Err(error) => self.fail(events, error),
+        let (load, what) = match news {
+            News::Kept => return self.written(),
+            News::Load(load, what) => (load, what),
+        };
+        if !self.loader.is_present(load) {
+            return;
+        }
+        let tell = self.options.events;
+        match what {
+            What::At(stage, part) => self.told.loading = Some((stage, part as f32 / 1000.0)),
+            What::Sketch(scene, method) => {
+                tell.tell(&Event::Sketch { surfels: scene.count() });
+                if let Err(error) = self.show(scene, method, Of { load, sketch: true }) {
+                    return self.fail(events, error);
                 }
             }
-            News::Kept => self.written(),
-            News::Failed(error) if self.state.moving().is_none() => self.fail(events, error),
-            News::Failed(error) => {
+            What::Ready(scene, method) => {
+                tell.tell(&Event::Ready { surfels: scene.count() });
+                (self.told.loading, self.told.wrong) = (None, None);
+                self.inputs = self.pending.take().unwrap_or(std::mem::take(&mut self.inputs));
+                if let Err(error) = self.show(scene, method, Of { load, sketch: false }) {
+                    return self.fail(events, error);
+                }
+            }
+            What::Coarser(scenes) => return self.state.add_coarser(scenes),
+            What::Failed(error) => {
                 (self.told.loading, self.pending) = (None, None);
+                self.state.leave_sketch();
+                if self.state.moving().is_none() {
+                    return self.fail(events, error);
+                }
                 self.wrong(&error);
             }
         }
+        self.changed();
     }
 
     fn about_to_wait(&mut self, _: &ActiveEventLoop) {
@@ -183,10 +202,8 @@ impl ApplicationHandler<News> for App {
 impl App {
     /// Looks at these inputs from now on, once they are loaded.
     fn open(&mut self, inputs: Vec<OsString>) {
-        if let Some(device) = &self.device {
-            self.pending = Some(inputs.clone());
-            load::start(self.load.clone(), inputs, device.clone(), self.news.clone());
-        }
+        self.pending = Some(inputs.clone());
+        self.loader.start(inputs);
     }
 
     fn draw(&mut self, events: &ActiveEventLoop) {
@@ -269,7 +286,9 @@ impl App {
         self.next = self.state.leave().or(self.next);
         drop(opened);
         self.device = None;
+        self.loader.leave_device();
         let (opened, device) = Opened::of(window, &self.options)?;
+        self.loader.use_device(&device);
         (self.opened, self.device) = (Some(opened), Some(device));
         self.told.done = Some("the device was lost; this is another one".into());
         let inputs = self.pending.take().unwrap_or_else(|| self.inputs.clone());

@@ -11,29 +11,25 @@ use std::time::Instant;
 #[serde(tag = "event", rename_all = "kebab-case")]
 pub enum Event<'a> {
     /// The window is open, on this device.
-    Window {
-        device: &'a str,
-    },
+    Window { device: &'a str },
+    /// All inputs are read, and what they lacked is estimated.
+    Loaded { surfels: u64 },
+    /// Some of the points are on the device, and are shown until all are.
+    Sketch { surfels: u64 },
     /// A scene is on the device, and is shown from now on.
-    Ready {
-        surfels: u64,
-    },
+    Ready { surfels: u64 },
+    /// What is being loaded is given up.
+    Cancelled,
     /// A picture of the scene went to the window.
     Picture(Shown<'a>),
     /// A picture or a camera is in a file.
-    Wrote {
-        file: &'a Path,
-    },
+    Wrote { file: &'a Path },
     /// A camera was taken from a file.
-    Camera {
-        file: &'a Path,
-    },
+    Camera { file: &'a Path },
     /// The camera is on the clipboard.
     Copied,
     /// What the window says went wrong; what was shown before stays.
-    Wrong {
-        error: &'a str,
-    },
+    Wrong { error: &'a str },
     /// The device was lost, and another one is opened.
     Lost,
 }
@@ -47,6 +43,12 @@ pub struct Shown<'a> {
     pub size: [u32; 2],
     /// Side of what was drawn, as part of the window's: 1 is the whole picture.
     pub side: f64,
+    /// How many surfels there were.
+    pub surfels: u64,
+    /// Whether they are some of what is being loaded.
+    pub sketch: bool,
+    /// Whether the camera moved.
+    pub moving: bool,
     /// How long it took, ms.
     pub took_ms: f64,
     /// From where it is seen.

@@ -1,59 +1,218 @@
-//! Loading, while the window is there.
+//! Loading, while the window is there: a sketch of many points first, then all of them, then fewer of them for while the hands move.
 
 use super::Loaded;
+use super::events::{Event, Events};
+use std::borrow::Cow;
 use std::ffi::OsString;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::{Arc, OnceLock};
 use std::thread::{self, JoinHandle};
+use surfel::geometry::Model;
 use surfel::methods::Method;
 use surfel::vk::Device;
-use surfel::{Progress, Result, Scene};
+use surfel::{Error, Progress, Result, Scene};
 use winit::event_loop::EventLoopProxy;
 
-/// Gives the scene that inputs make, and tells how far it has come.
-pub type Load = Arc<dyn Fn(&[OsString], &dyn Progress) -> Result<Loaded> + Send + Sync>;
+/// How many times as many surfels each scene has as the next coarser one.
+const FEWER: f64 = 1.6;
+/// The coarsest one has about as many.
+const FEWEST: usize = 4000;
+/// Part of all surfels that coarser ones still are made of.
+const ENOUGH: usize = 4;
+
+/// Gives the scene that inputs make, shows a sketch of it before where that takes long, and tells how far it has come.
+pub type Load = Arc<dyn Fn(&[OsString], &dyn Loading) -> Result<Loaded> + Send + Sync>;
+
+/// Whoever waits for a scene.
+pub trait Loading: Progress {
+    /// Shows some of its points until all are there.
+    fn sketch(&self, loaded: Loaded);
+}
 
 /// What the window is told.
 pub enum News {
-    /// So much of a stage is done, thousandths.
-    At(&'static str, u64),
-    /// The scene is on the device.
-    Ready(Arc<Scene>, Method),
-    /// It cannot be loaded.
-    Failed(surfel::Error),
+    /// Of the load of this number.
+    Load(u64, What),
     /// A picture is in its file, or cannot be.
     Kept,
 }
 
-/// Loads `inputs` as one scene and puts it on the device, on a thread of its own.
-pub fn start(
-    load: Load,
-    inputs: Vec<OsString>,
-    device: Arc<Device>,
-    window: EventLoopProxy<News>,
-) -> JoinHandle<()> {
-    thread::spawn(move || {
-        let told = Told { window: window.clone(), last: AtomicU64::new(u64::MAX) };
-        let ready = load(&inputs, &told).and_then(|Loaded { model, method }| {
-            let scene = Scene::upload(&device, &model)?;
-            Ok(News::Ready(Arc::new(scene), method))
-        });
-        // Whoever has closed the window wants no news.
-        let _ = window.send_event(ready.unwrap_or_else(News::Failed));
-    })
+/// What is new.
+pub enum What {
+    /// So much of a stage is done, thousandths.
+    At(&'static str, u64),
+    /// Some of the points are on the device.
+    Sketch(Arc<Scene>, Method),
+    /// The scene is on the device.
+    Ready(Arc<Scene>, Method),
+    /// And so are fewer and larger surfels of it, ever fewer.
+    Coarser(Vec<Arc<Scene>>),
+    /// It cannot be loaded.
+    Failed(Error),
 }
 
-/// Tells the window of every hundredth.
-struct Told {
+/// Loads one scene after another, each on a thread of its own.
+pub struct Loader {
+    load: Load,
     window: EventLoopProxy<News>,
+    events: Events,
+    /// `None` where there will never be one.
+    device: Arc<OnceLock<Option<Arc<Device>>>>,
+    /// Number of the last load.
+    last: u64,
+    under_way: Vec<UnderWay>,
+}
+
+struct UnderWay {
+    cancelled: Arc<AtomicBool>,
+    thread: JoinHandle<()>,
+}
+
+impl Loader {
+    /// Nothing is loaded yet.
+    pub fn new(load: Load, window: EventLoopProxy<News>, events: Events) -> Self {
+        Self { load, window, events, device: Arc::default(), last: 0, under_way: Vec::new() }
+    }
+
+    /// Scenes are for this device from now on; what is loaded before waits for it.
+    pub fn use_device(&mut self, device: &Arc<Device>) {
+        if self.device.set(Some(device.clone())).is_err() {
+            self.device = Arc::new(Some(device.clone()).into());
+        }
+    }
+
+    /// Gives up what is being loaded, and what is loaded next waits for another device.
+    pub fn leave_device(&mut self) {
+        self.cancel();
+        self.device = Arc::default();
+    }
+
+    /// Loads `inputs` as one scene, in place of what is being loaded.
+    pub fn start(&mut self, inputs: Vec<OsString>) {
+        self.cancel();
+        self.under_way.retain(|load| !load.thread.is_finished());
+        self.last += 1;
+        let cancelled = Arc::new(AtomicBool::new(false));
+        let told = Told {
+            number: self.last,
+            window: self.window.clone(),
+            events: self.events,
+            device: self.device.clone(),
+            cancelled: cancelled.clone(),
+            last: AtomicU64::new(u64::MAX),
+        };
+        let load = self.load.clone();
+        let thread = thread::spawn(move || {
+            if let Err(error) = told.load(&load, &inputs) {
+                told.send(What::Failed(error));
+            }
+        });
+        self.under_way.push(UnderWay { cancelled, thread });
+    }
+
+    /// Gives up what is being loaded; whether something was.
+    pub fn cancel(&mut self) -> bool {
+        let cancel =
+            |load: &UnderWay| !load.cancelled.swap(true, Ordering::Relaxed) && !load.thread.is_finished();
+        self.under_way.iter().map(cancel).fold(false, |any, one| any | one)
+    }
+
+    /// Whether this is the present load, which is not cancelled.
+    pub fn is_present(&self, load: u64) -> bool {
+        let cancelled = || self.under_way.last().is_some_and(|load| load.cancelled.load(Ordering::Relaxed));
+        load == self.last && !cancelled()
+    }
+}
+
+impl Drop for Loader {
+    /// Nothing is put on the device any more.
+    fn drop(&mut self) {
+        self.cancel();
+        let _ = self.device.set(None);
+        for load in self.under_way.drain(..) {
+            // It has said what was wrong.
+            let _ = load.thread.join();
+        }
+    }
+}
+
+/// Tells the window of a load.
+struct Told {
+    number: u64,
+    window: EventLoopProxy<News>,
+    events: Events,
+    device: Arc<OnceLock<Option<Arc<Device>>>>,
+    cancelled: Arc<AtomicBool>,
+    /// Thousandths of the stage that were told last.
     last: AtomicU64,
 }
 
+impl Told {
+    fn load(&self, load: &Load, inputs: &[OsString]) -> Result<()> {
+        let Loaded { model, method } = load(inputs, self)?;
+        self.events.tell(&Event::Loaded { surfels: model.surfels.len() as u64 });
+        let Some(device) = self.device() else { return Ok(()) };
+        self.at("uploading", 0, 1);
+        let scene = Arc::new(Scene::upload(device, &model)?);
+        self.send(What::Ready(scene, method));
+        let coarser = self.coarser(device, &model);
+        self.send(What::Coarser(coarser));
+        Ok(())
+    }
+
+    /// Ever fewer and larger surfels; none where there are lines or triangles, which have all to be there.
+    fn coarser(&self, device: &Arc<Device>, model: &Model) -> Vec<Arc<Scene>> {
+        let (mut scenes, all) = (Vec::new(), model.surfels.len());
+        if !model.primitives.is_empty() {
+            return scenes;
+        }
+        let (mut of, mut count) = (Cow::Borrowed(&model.surfels), all);
+        while count > FEWEST && !self.is_cancelled() {
+            let fewer = of.coarser((count as f64 / FEWER) as usize);
+            count = fewer.len();
+            // Without them, frames have fewer pixels yet.
+            let Ok(scene) = Scene::upload(device, &fewer) else { return scenes };
+            scenes.push(Arc::new(scene));
+            // From all of them the discs fit best; from fewer it takes no time.
+            if count < all / ENOUGH && of.len() == all {
+                of = Cow::Owned(fewer);
+            }
+        }
+        scenes
+    }
+
+    /// The device, once it is there, if the scene is wanted yet.
+    fn device(&self) -> Option<&Arc<Device>> {
+        let device = self.device.wait().as_ref();
+        device.filter(|_| !self.is_cancelled())
+    }
+
+    fn send(&self, what: What) {
+        // Whoever has closed the window wants no news.
+        let _ = self.window.send_event(News::Load(self.number, what));
+    }
+}
+
 impl Progress for Told {
+    /// Tells of every hundredth.
     fn at(&self, stage: &'static str, done: u64, total: u64) {
         let part = 1000 * done / total.max(1);
         if part / 10 != self.last.swap(part, Ordering::Relaxed) / 10 {
-            let _ = self.window.send_event(News::At(stage, part));
+            self.send(What::At(stage, part));
+        }
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.cancelled.load(Ordering::Relaxed)
+    }
+}
+
+impl Loading for Told {
+    fn sketch(&self, Loaded { model, method }: Loaded) {
+        let Some(device) = self.device() else { return };
+        // What is wrong with it is wrong with the whole scene, which says so.
+        if let Ok(scene) = Scene::upload(device, &model) {
+            self.send(What::Sketch(Arc::new(scene), method));
         }
     }
 }

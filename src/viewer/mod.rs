@@ -6,6 +6,7 @@
 //! ```
 
 mod app;
+mod cost;
 mod events;
 mod hands;
 mod hud;
@@ -24,7 +25,7 @@ mod window;
 pub use events::Events;
 use glam::DVec3;
 pub use keep::Folder;
-use load::Load;
+pub use load::{Load, Loading};
 use std::ffi::OsString;
 use surfel::geometry::{Bounds, Model, Pose};
 use surfel::methods::Method;

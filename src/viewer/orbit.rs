@@ -96,7 +96,7 @@ impl Lens {
     }
 
     /// World units a px, at a distance.
-    fn px(&self, distance: f64) -> f64 {
+    pub fn px(&self, distance: f64) -> f64 {
         2.0 * distance * self.slope() / f64::from(self.size[1])
     }
 

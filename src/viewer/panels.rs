@@ -18,6 +18,8 @@ pub struct Told {
     pub frame: f64,
     /// Its side, as part of the window's.
     pub side: f64,
+    /// How many surfels it had.
+    pub surfels: f64,
     /// Whether keys are listed.
     pub help: bool,
 }
@@ -49,7 +51,10 @@ fn choices(ui: &mut Ui, state: &mut State, told: &Told) {
     };
     ui.label(format!("{:.0} ms a frame, {quality}", told.frame));
     let Some(mut chosen) = state.choices() else { return };
-    ui.label(format!("{} surfels", chosen.surfels));
+    ui.label(match told.surfels as u64 {
+        fewer if fewer < chosen.surfels => format!("{fewer} of {} surfels", chosen.surfels),
+        _ => format!("{} surfels", chosen.surfels),
+    });
     ui.separator();
     ComboBox::from_label("method").selected_text(chosen.method.name).show_ui(ui, |ui| {
         for method in Method::ALL {

@@ -3,12 +3,15 @@
 use super::keys::Action;
 use super::open::{Answer, Opening};
 use super::orbit::{Lens, Orbit, Up};
+use super::pace::Sight;
 use super::{Look, Options};
 use glam::{DVec2, DVec3};
+use std::borrow::Cow;
 use std::sync::Arc;
 use surfel::geometry::{Camera, Pose};
 use surfel::methods::Method;
 use surfel::settings::Shading;
+use surfel::splatting::Normalization;
 use surfel::{Result, Scene, Settings};
 
 /// What the picture can show.
@@ -21,7 +24,7 @@ pub struct State {
     look: Look,
     shown: Option<Shown>,
     /// How the scene was shown that the last device had.
-    before: Option<(Method, Settings)>,
+    left: Option<(Method, Settings)>,
     /// The place whose surface is to be turned about, px.
     pub pick: Option<DVec2>,
     /// What is to be opened, while it is asked for, and the answer.
@@ -29,8 +32,28 @@ pub struct State {
     pub answer: Option<Answer>,
 }
 
+/// What a scene is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Of {
+    /// Number of the load.
+    pub load: u64,
+    /// Whether it is some of the points, until all are there.
+    pub sketch: bool,
+}
+
+impl Of {
+    fn sketch_of(self) -> Self {
+        Self { sketch: true, ..self }
+    }
+}
+
 struct Shown {
     scene: Arc<Scene>,
+    of: Of,
+    /// Ever fewer and larger surfels of it.
+    coarser: Vec<Arc<Scene>>,
+    /// What is looked at again where a sketch is all that ever comes.
+    before: Option<Box<Shown>>,
     orbit: Orbit,
     /// The camera that the hands were given, and what they have made of it: until they move it is that, bit for bit.
     given: Option<(Orbit, Lens, Pose)>,
@@ -41,21 +64,49 @@ struct Shown {
 impl State {
     pub fn new(options: &Options, look: Look) -> Self {
         let lens = Lens { size: options.size, fov_y_deg: options.fov_y_deg, parallel: false };
-        Self { lens, up: nearest(options.up), look, shown: None, before: None, pick: None, opening: None, answer: None }
+        Self {
+            lens,
+            up: nearest(options.up),
+            look,
+            shown: None,
+            left: None,
+            pick: None,
+            opening: None,
+            answer: None,
+        }
     }
 
-    /// Looks at a scene from the front.
-    pub fn show(&mut self, scene: Arc<Scene>, method: Method) {
-        let orbit = Orbit::framing(&scene.bounds(), self.up, &self.lens);
-        let before = self.before.take();
-        let (method, settings) = before.unwrap_or_else(|| (method, (self.look)(&method)));
-        self.shown = Some(Shown { scene, orbit, given: None, method, settings });
+    /// Looks at the scene of a load from the front; or at all of what was a sketch as at that.
+    pub fn show(&mut self, scene: Arc<Scene>, method: Method, of: Of) {
+        let framed = |scene: &Scene| Orbit::framing(&scene.bounds(), self.up, &self.lens);
+        let (orbit, left) = (framed(&scene), self.left.take());
+        let (method, settings) = left.unwrap_or_else(|| (method, (self.look)(&method)));
+        let (coarser, given) = (Vec::new(), None);
+        self.shown = Some(match self.shown.take() {
+            Some(sketch) if sketch.of == of.sketch_of() => {
+                let moved = sketch.given.is_some() || sketch.orbit != framed(&sketch.scene);
+                let orbit = if moved { sketch.orbit } else { orbit };
+                Shown { scene, of, orbit, coarser, before: None, ..sketch }
+            }
+            before => {
+                // Of one that is not whole there was something before.
+                let whole = |shown: Shown| if shown.of.sketch { shown.before } else { Some(Box::new(shown)) };
+                let before = before.filter(|_| of.sketch).and_then(whole);
+                Shown { scene, of, coarser, before, orbit, given, method, settings }
+            }
+        });
+    }
+
+    /// Whether hands have moved the camera before a sketch of this load.
+    pub fn has_moved_sketch(&self, load: u64) -> bool {
+        let sketch = self.shown.as_ref().filter(|shown| shown.of == Of { load, sketch: true });
+        sketch.is_some_and(|shown| shown.given(&self.lens).is_none())
     }
 
     /// Leaves the scene, with all that the device has of it; the next one is shown as this one was. From where it was seen.
     pub fn leave(&mut self) -> Option<Pose> {
         let pose = self.pose();
-        self.before = self.shown.take().map(|shown| (shown.method, shown.settings)).or(self.before.take());
+        self.left = self.shown.take().map(|shown| (shown.method, shown.settings)).or(self.left.take());
         pose
     }
 
@@ -66,20 +117,50 @@ impl State {
         shown.given = Some((shown.orbit, *lens, pose));
     }
 
-    /// From where the scene is seen.
-    pub fn pose(&self) -> Option<Pose> {
-        let Shown { orbit, given, .. } = self.shown.as_ref()?;
-        let still = |(was, lens, _): &(Orbit, Lens, Pose)| {
-            was == orbit && Lens { size: lens.size, ..self.lens } == *lens
-        };
-        Some(given.filter(still).map_or_else(|| orbit.pose(&self.lens), |(.., pose)| pose))
+    /// Looks at what was before the sketch, if that is what is looked at.
+    pub fn leave_sketch(&mut self) {
+        if let Some(Shown { before, .. }) = self.shown.take_if(|shown| shown.of.sketch) {
+            self.shown = before.map(|before| *before);
+        }
     }
 
-    /// The scene, from where and how it is seen.
-    pub fn frame(&self) -> Option<Result<(&Arc<Scene>, Camera, &Settings)>> {
-        let Shown { scene, settings, .. } = self.shown.as_ref()?;
+    /// Shows fewer surfels of the scene while the hands move, if that has to be.
+    pub fn add_coarser(&mut self, scenes: Vec<Arc<Scene>>) {
+        if let Some(shown) = &mut self.shown {
+            shown.coarser = scenes;
+        }
+    }
+
+    /// What there is to be seen, for who chooses how much of it is.
+    pub fn sight(&self) -> Option<Sight> {
+        let Shown { scene, coarser, orbit, .. } = self.shown.as_ref()?;
+        let [width, height] = self.lens.size.map(f64::from);
+        let scenes = std::iter::once(scene).chain(coarser);
+        Some(Sight {
+            pixels: width * height,
+            surfels: scenes.map(|scene| scene.count() as f64).collect(),
+            across: 2.0 * scene.bounds().radius / self.lens.px(orbit.distance()),
+        })
+    }
+
+    /// Whether what is shown is some of the points, until all are there.
+    pub fn is_sketch(&self) -> bool {
+        self.shown.as_ref().is_some_and(|shown| shown.of.sketch)
+    }
+
+    /// From where the scene is seen.
+    pub fn pose(&self) -> Option<Pose> {
+        let shown = self.shown.as_ref()?;
+        Some(shown.given(&self.lens).unwrap_or_else(|| shown.orbit.pose(&self.lens)))
+    }
+
+    /// The scene, or the coarser one of this number, from where and how it is seen.
+    pub fn frame(&self, number: usize) -> Option<Result<(&Arc<Scene>, Camera, Cow<'_, Settings>)>> {
+        let Shown { scene, coarser, settings, .. } = self.shown.as_ref()?;
         let camera = self.pose()?.camera(&scene.bounds(), self.lens.aspect());
-        Some(camera.map(|camera| (scene, camera, settings)))
+        let fewer = number.checked_sub(1).and_then(|number| coarser.get(number));
+        let seen = fewer.map_or((scene, Cow::Borrowed(settings)), |fewer| (fewer, quick(settings)));
+        Some(camera.map(|camera| (seen.0, camera, seen.1)))
     }
 
     /// The camera and the bounds of what it sees.
@@ -169,12 +250,29 @@ impl Choices<'_> {
 }
 
 impl Shown {
+    /// The camera that the hands were given, until they move it.
+    fn given(&self, lens: &Lens) -> Option<Pose> {
+        let still = |(orbit, was, _): &(Orbit, Lens, Pose)| {
+            *orbit == self.orbit && Lens { size: was.size, ..*lens } == *was
+        };
+        self.given.filter(still).map(|(.., pose)| pose)
+    }
+
     /// The method so many further on, with the shading of this one.
     fn turn_method(&mut self, steps: usize, look: &Look) {
         let now = Method::ALL.iter().position(|method| method.name == self.method.name).unwrap_or(0);
         self.method = Method::ALL[(now + steps) % Method::ALL.len()];
         self.settings = Settings { shading: self.settings.shading, ..look(&self.method) };
     }
+}
+
+/// The settings for surfels that stand for others, whose normalization weights they have not.
+fn quick(settings: &Settings) -> Cow<'_, Settings> {
+    let mut quick = Cow::Borrowed(settings);
+    if settings.splatting.normalization == Normalization::Surfel {
+        quick.to_mut().splatting.normalization = Normalization::Pixel;
+    }
+    quick
 }
 
 /// The axis that is nearest to a direction.

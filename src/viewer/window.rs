@@ -1,11 +1,11 @@
 //! An open window: a frame of it, and what it costs.
 
 use super::Options;
-use super::hands::Hands;
 use super::events::{Event, Events, Shown};
+use super::hands::Hands;
 use super::hud::Hud;
 use super::keep::Shot;
-use super::pace::Pace;
+use super::pace::{Pace, Quality};
 use super::panels::Told;
 use super::screen::{Pick, Screen};
 use super::state::State;
@@ -26,6 +26,7 @@ pub struct Opened {
     pub pace: Pace,
     /// When the last frame began, if it was followed at once by this one.
     last: Option<Instant>,
+    events: Events,
     pub window: Arc<Window>,
 }
 
@@ -47,7 +48,9 @@ impl Opened {
         let screen = Screen::new(&device, options.rasterizer)?;
         let hud = Hud::new(&device, &window, presenter.overlay())?;
         let pace = Pace::new(options.budget);
-        Ok((Self { presenter, hud, screen, pace, last: None, window }, device))
+        let events = options.events;
+        events.tell(&Event::Window { device: &device.description().name });
+        Ok((Self { presenter, hud, screen, pace, last: None, events, window }, device))
     }
 
     /// The window's size is another, or may be.
@@ -62,8 +65,8 @@ impl Opened {
         self.hud.lay_out(&self.window, state, told);
         let Self { presenter, hud, screen, .. } = self;
         let size = state.lens.size;
-        let seen = state.frame().transpose()?;
-        let seen = seen.as_ref().map(|(scene, camera, settings)| (*scene, camera, *settings));
+        let seen = state.frame(0).transpose()?;
+        let seen = seen.as_ref().map(|(scene, camera, settings)| (*scene, camera, &**settings));
         let pixels = presenter.capture(size, |frame| {
             screen.record(frame, size, seen)?;
             hud.record(frame)
@@ -81,17 +84,34 @@ impl Opened {
     ) -> Result<Option<Instant>> {
         let start = Instant::now();
         self.fly(state, hands, start);
-        let side = self.pace.side(start);
-        told.side = side;
+        let sight = state.sight();
+        let moving = self.pace.moves(start);
+        let quality = sight.as_ref().map_or(Quality::WHOLE, |sight| self.pace.quality(start, sight));
+        told.side = quality.side;
+        told.surfels =
+            sight.as_ref().and_then(|sight| sight.surfels.get(quality.scene)).copied().unwrap_or(0.0);
         let again = self.hud.lay_out(&self.window, state, told);
-        let shown = self.present(state, told, side)?;
+        let shown = self.present(state, told, quality)?;
+        // A frame's time is its own, and the next one shows where the hands are when it begins.
+        self.presenter.wait()?;
         let ms = 1e3 * start.elapsed().as_secs_f64();
         if shown {
             told.frame = ms;
-            self.pace.took(side, ms);
+            if let Some(sight) = &sight {
+                self.pace.took(quality, sight, ms, moving);
+            }
             if let Some((camera, [method, shading])) = state.pose().zip(state.names()) {
-                let (size, camera) = (state.lens.size, camera.into());
-                events.tell(&Event::Picture(Shown { method, shading, size, side, took_ms: ms, camera }));
+                events.tell(&Event::Picture(Shown {
+                    method,
+                    shading,
+                    size: state.lens.size,
+                    side: quality.side,
+                    surfels: told.surfels as u64,
+                    sketch: state.is_sketch(),
+                    moving,
+                    took_ms: ms,
+                    camera: camera.into(),
+                }));
             }
         }
         if state.pick.is_some() {
@@ -113,15 +133,15 @@ impl Opened {
     }
 
     /// Whether there was a picture of something.
-    fn present(&mut self, state: &mut State, told: &mut Told, side: f64) -> Result<bool> {
+    fn present(&mut self, state: &mut State, told: &mut Told, quality: Quality) -> Result<bool> {
         let PhysicalSize { width, height } = self.window.inner_size();
         let Self { presenter, hud, screen, .. } = self;
         let shown = presenter.present([width, height], |frame| {
             state.lens.size = frame.size;
-            let size = frame.size.map(|length| ((f64::from(length) * side).round() as u32).max(1));
-            let seen = state.frame().transpose()?;
+            let size = frame.size.map(|length| ((f64::from(length) * quality.side).round() as u32).max(1));
+            let seen = state.frame(quality.scene).transpose()?;
             let there = seen.is_some();
-            let seen = seen.as_ref().map(|(scene, camera, settings)| (*scene, camera, *settings));
+            let seen = seen.as_ref().map(|(scene, camera, settings)| (*scene, camera, &**settings));
             match screen.record(frame, size, seen) {
                 // Other settings may do: the window stays.
                 Err(error @ (Error::Usage(_) | Error::Memory { .. })) => told.wrong = Some(error.to_string()),
@@ -138,7 +158,7 @@ impl Opened {
         let Some(at) = state.pick.take() else { return Ok(()) };
         self.presenter.wait()?;
         let depth = self.screen.pick(Pick { at, size: state.lens.size });
-        if let (Some(depth), Some(seen)) = (depth, state.frame().transpose()?) {
+        if let (Some(depth), Some(seen)) = (depth, state.frame(0).transpose()?) {
             let distance = seen.1.distance(depth)?;
             state.set_pivot(at, distance);
             self.window.request_redraw();

@@ -31,6 +31,8 @@ pub struct DeviceLimits {
     pub max_storage_buffers: Option<u32>,
     /// Upper bound of the largest render target's side, px.
     pub max_image_side: Option<u32>,
+    /// Upper bound of the largest heap of device-local memory, bytes.
+    pub memory: Option<u64>,
 }
 
 impl DeviceLimits {
@@ -71,6 +73,8 @@ pub struct Capabilities {
     pub max_image_side: u32,
     /// Most workgroups of a dispatch.
     pub max_workgroups: u32,
+    /// Largest heap of device-local memory, bytes.
+    pub memory: u64,
 }
 
 /// Largest side of a picture: a splat keeps its anchor pixel in 15 bits a coordinate (`lib/splat.glsl`).
@@ -101,6 +105,11 @@ impl Capabilities {
             let found = unsafe { instance.get_physical_device_format_properties(physical, format) };
             found.optimal_tiling_features.contains(vk::FormatFeatureFlags::COLOR_ATTACHMENT_BLEND)
         };
+        // SAFETY: by the caller.
+        let memory = unsafe { instance.get_physical_device_memory_properties(physical) };
+        let heaps = memory.memory_heaps_as_slice().iter();
+        let local = heaps.filter(|heap| heap.flags.contains(vk::MemoryHeapFlags::DEVICE_LOCAL));
+        let memory = local.map(|heap| heap.size).max().unwrap_or(u64::MAX);
         let side = limits
             .max_image_dimension2_d
             .min(limits.max_framebuffer_width)
@@ -128,6 +137,7 @@ impl Capabilities {
                 .min(mask.max_storage_buffers.unwrap_or(u32::MAX)),
             max_image_side: side.min(LARGEST_SIDE).min(mask.max_image_side.unwrap_or(u32::MAX)),
             max_workgroups: limits.max_compute_work_group_count[0],
+            memory: memory.min(mask.memory.unwrap_or(u64::MAX)),
         }
     }
 }

@@ -41,12 +41,12 @@ pub struct View {
     /// How long frames may take while the camera moves; they are coarser where whole ones take longer
     #[arg(long, value_name = "MS", default_value_t = 60.0)]
     pub budget: f64,
-    /// On which device
-    #[command(flatten)]
-    pub device: OnDevice,
     /// Says what happens on standard output, one JSON object a line, for programs that wait for it
     #[arg(long)]
     pub json: bool,
+    /// On which device
+    #[command(flatten)]
+    pub device: OnDevice,
     /// Folder in which pictures and cameras are kept; the current one unless given
     #[arg(long, value_name = "FOLDER", default_value = ".")]
     pub shots: PathBuf,

@@ -164,7 +164,9 @@ impl Cloud {
             draft.keep(&kept);
         }
         draft.count_given();
+        progress.go_on()?;
         faces::fill(&mut draft, how);
+        progress.go_on()?;
         if draft.lacks_anything() {
             neighbours::fill(&mut draft, view, how, progress)?;
         }

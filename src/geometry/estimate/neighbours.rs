@@ -30,8 +30,9 @@ pub(super) fn fill(
 ) -> Result<(), String> {
     let surfels = &draft.surfels;
     let sites = Sites::new(&surfels.positions, progress)?;
-    let survey = Survey::new(&sites, wanted(surfels, &sites), how, progress);
+    let survey = Survey::new(&sites, wanted(surfels, &sites), how, progress)?;
     let (normals, unknown) = normals(surfels, &sites, &survey, view, progress);
+    progress.go_on()?;
     let radii = radii(surfels, &sites, &survey);
     let is_estimated: Vec<bool> = surfels.radii.iter().map(|radius| *radius == 0.0).collect();
     put(draft, &sites, &normals, &unknown, &radii);
@@ -89,12 +90,12 @@ struct Survey {
 }
 
 impl Survey {
-    fn new(sites: &Sites, wanted: Vec<u32>, how: &Estimate, progress: &dyn Progress) -> Self {
+    fn new(sites: &Sites, wanted: Vec<u32>, how: &Estimate, progress: &dyn Progress) -> Result<Self, String> {
         let mut patches = vec![Patch::default(); wanted.len()];
         let mut edges = vec![0; wanted.len() * EDGES];
         let (done, total) = (AtomicU64::new(0), wanted.len() as u64);
         let pieces = patches.par_chunks_mut(PIECE).zip(edges.par_chunks_mut(PIECE * EDGES));
-        pieces.zip(wanted.par_chunks(PIECE)).for_each(|((patches, edges), wanted)| {
+        pieces.zip(wanted.par_chunks(PIECE)).try_for_each(|((patches, edges), wanted)| {
             let mut surveyor = Surveyor::new(sites, how.neighbours, how.elliptical);
             for ((patch, edges), &site) in patches.iter_mut().zip(edges.chunks_mut(EDGES)).zip(wanted) {
                 *patch = surveyor.survey(site, edges);
@@ -105,8 +106,9 @@ impl Survey {
                 done.fetch_add(piece, Ordering::Relaxed) + piece,
                 total,
             );
-        });
-        Self { sites: wanted, patches, edges }
+            progress.go_on()
+        })?;
+        Ok(Self { sites: wanted, patches, edges })
     }
 
     /// The sites that are next to each other, each pair once, without those that are both `known`.

@@ -114,6 +114,9 @@ impl Oriented<'_> {
         for (done, index) in (1..).zip(surest_first(edges)) {
             if done % PERIOD == 0 || done == total {
                 progress.at("orienting normals", done, total);
+                if progress.is_cancelled() {
+                    break;
+                }
             }
             let Edge { a, b, disagree, .. } = edges[index as usize];
             forest.join(a, b, disagree);

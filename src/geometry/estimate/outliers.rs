@@ -20,7 +20,7 @@ pub(super) fn kept(
     progress: &dyn Progress,
 ) -> Result<Vec<u32>, String> {
     let sites = Sites::new(positions, progress)?;
-    let distances = distances(&sites, how.neighbours, progress);
+    let distances = distances(&sites, how.neighbours, progress)?;
     let count = distances.len() as f64;
     let mean = distances.iter().sum::<f64>() / count;
     let variance = distances.iter().map(|distance| (distance - mean).powi(2)).sum::<f64>() / count;
@@ -30,7 +30,7 @@ pub(super) fn kept(
 }
 
 /// The mean distance of each site from its neighbours.
-fn distances(sites: &Sites, neighbours: usize, progress: &dyn Progress) -> Vec<f64> {
+fn distances(sites: &Sites, neighbours: usize, progress: &dyn Progress) -> Result<Vec<f64>, String> {
     let mean = |site: u32| {
         let each =
             sites.nearest(site, neighbours).map(|other| f64::from(sites.at(site).distance(sites.at(other))));
@@ -39,11 +39,12 @@ fn distances(sites: &Sites, neighbours: usize, progress: &dyn Progress) -> Vec<f
     };
     let mut distances = vec![0.0; sites.len()];
     let (done, total) = (AtomicU64::new(0), sites.len() as u64);
-    distances.par_chunks_mut(PIECE).enumerate().for_each(|(piece, distances)| {
+    distances.par_chunks_mut(PIECE).enumerate().try_for_each(|(piece, distances)| {
         let first = (piece * PIECE) as u32;
         distances.iter_mut().zip(first..).for_each(|(distance, site)| *distance = mean(site));
         let piece = distances.len() as u64;
         progress.at("looking for outliers", done.fetch_add(piece, Ordering::Relaxed) + piece, total);
-    });
-    distances
+        progress.go_on()
+    })?;
+    Ok(distances)
 }

@@ -4,6 +4,7 @@ use super::Parsed;
 use super::layout::{CORNERS, Layout, MATERIAL, SCALAR, Shape, TANGENT, TEXTURE, WEIGHT};
 use super::source::room;
 use crate::geometry::{Clip, Ellipse};
+use crate::memory;
 use glam::{DVec3, Vec2, Vec3};
 
 macro_rules! arrays {
@@ -22,6 +23,8 @@ macro_rules! arrays {
         impl Arrays {
             /// Zeros. `count` has been checked against the bytes of the file.
             pub fn new(count: u64, layout: &Layout) -> Parsed<Self> {
+                let each = 0 $(+ if $there(layout) { size_of::<$type>() as u64 } else { 0 })*;
+                memory::check(&format!("its {count} vertices"), count.saturating_mul(each))?;
                 Ok(Self { $($name: room(if $there(layout) { count } else { 0 })?,)* })
             }
 

@@ -17,12 +17,13 @@ impl<'a> Meter<'a> {
         Self { progress, total, done: AtomicU64::new(0) }
     }
 
-    /// Some bytes have been read, perhaps not for the first time; the end is left to [`Meter::finish`].
-    pub fn add(&self, bytes: u64) {
+    /// Some bytes have been read, perhaps not for the first time; the end is left to [`Meter::finish`]. An error if nobody wants more.
+    pub fn add(&self, bytes: u64) -> Result<(), String> {
         let done = self.done.fetch_add(bytes, Ordering::Relaxed).saturating_add(bytes);
         if done < self.total {
             self.progress.at("reading", done, self.total);
         }
+        self.progress.go_on()
     }
 
     /// All of the file has been read.

@@ -126,7 +126,7 @@ pub fn inspect(path: &Path, options: &ReadOptions, progress: &dyn Progress) -> R
     let header = parse_header(&source).map_err(|cause| Error::input(name.as_str(), cause))?;
     let (format, elements) = (header.format, header.elements.clone());
     let loaded = parse_records(&source, header, options, path.parent(), progress)
-        .map_err(|cause| Error::input(name, cause));
+        .map_err(|cause| progress.failed(name, cause));
     Ok(Inspected { format, elements, loaded })
 }
 
@@ -134,11 +134,11 @@ pub fn inspect(path: &Path, options: &ReadOptions, progress: &dyn Progress) -> R
 ///
 /// # Errors
 /// [`Error::Io`] if the file cannot be opened; [`Error::Input`] if it is no PLY file, is damaged or truncated anywhere, has no vertices, or
-/// lacks what the options ask for.
+/// lacks what the options ask for; [`Error::Cancelled`] if the progress has it given up.
 pub fn read(path: &Path, options: &ReadOptions, progress: &dyn Progress) -> Result<Loaded> {
     let source = Source::open(path)?;
     parse(&source, options, path.parent(), progress)
-        .map_err(|cause| Error::input(path.display().to_string(), cause))
+        .map_err(|cause| progress.failed(path.display().to_string(), cause))
 }
 
 /// [`read`] of a file's contents, without a texture that it names; `name` is what errors call it.

@@ -53,12 +53,11 @@ pub(super) fn walk<R: Reader>(
             .map_err(|(index, cause)| at(element, record, index, &cause))?;
         each(&numbers, &list)?;
         if record % REPORT == REPORT - 1 {
-            meter.add((left - reader.left()) as u64);
+            meter.add((left - reader.left()) as u64)?;
             left = reader.left();
         }
     }
-    meter.add((left - reader.left()) as u64);
-    Ok(())
+    meter.add((left - reader.left()) as u64)
 }
 
 /// Reads one record; an error comes with the property's index.

@@ -50,7 +50,7 @@ pub(super) fn read(
             }
             tally = tally.merge(convert(block, layout, &mut piece.out.split(block.rows())));
         }
-        meter.add(bytes.len() as u64);
+        meter.add(bytes.len() as u64)?;
         Ok(tally)
     };
     let pieces = pieces(&mut arrays, vertex.count as usize, stride, records.start);

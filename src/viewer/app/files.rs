@@ -7,21 +7,25 @@ use crate::viewer::keep::{Shot, What};
 use crate::viewer::keys::Action;
 use crate::viewer::load::News;
 use crate::viewer::open::{Answer, Opening};
+use crate::viewer::state::Of;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use surfel::methods::Method;
 use surfel::{Result, Scene};
 
 impl App {
-    /// Shows a scene: from where is asked for, or from the front.
-    pub(super) fn show(&mut self, scene: Arc<Scene>, method: Method) -> Result<()> {
-        let first = self.state.moving().is_none();
-        let asked = (self.options.place)(&scene.bounds(), self.state.lens.size).filter(|_| first);
-        let pose = self.next.take().map(Ok).or(asked).transpose()?;
+    /// Shows a scene of a load: from where is asked for, or from the front. All of a sketch has other bounds than that, which is why its
+    /// camera is asked for again, unless hands have moved it.
+    pub(super) fn show(&mut self, scene: Arc<Scene>, method: Method, of: Of) -> Result<()> {
+        let moved = self.state.has_moved_sketch(of.load);
+        self.is_first &= self.state.moving().is_none() || self.state.is_sketch();
+        let asked = (self.options.place)(&scene.bounds(), self.state.lens.size).filter(|_| self.is_first);
+        let next = if of.sketch { self.next } else { self.next.take() };
+        let pose = next.map(Ok).or(asked).filter(|_| !moved).transpose()?;
         if let Some(pose) = &pose {
             pose.check()?;
         }
-        self.state.show(scene, method);
+        self.state.show(scene, method, of);
         if let Some(pose) = pose {
             self.state.look_from(pose);
         }
@@ -99,10 +103,10 @@ impl App {
             What::Window => opened.capture(state, told)?,
             What::Picture | What::Values => {
                 let size = state.lens.size;
-                let Some(seen) = state.frame() else { return Ok(()) };
+                let Some(seen) = state.frame(0) else { return Ok(()) };
                 let (scene, camera, settings) = seen?;
                 let how = (size, self.options.rasterizer);
-                Shot::render(device, scene, (&camera, settings), how, what == What::Values)?
+                Shot::render(device, scene, (&camera, &settings), how, what == What::Values)?
             }
         };
         let window = self.news.clone();
