@@ -52,6 +52,7 @@ pub fn run(args: View) -> Result<()> {
         rasterizer: args.rasterizer,
         up,
         budget: args.budget,
+        watch: args.watch,
         events: viewer::Events::new(start, args.json),
     };
     viewer::run(options, Arc::new(load), Box::new(move |method| args.settings(method)))

@@ -7,6 +7,7 @@ use super::load::{Load, Loader, News, What};
 use super::panels::Told;
 use super::state::{Of, State};
 use super::window::Opened;
+use super::watch::Watch;
 use super::{Look, Options};
 use glam::DVec2;
 use std::ffi::OsString;
@@ -33,11 +34,14 @@ pub fn run(options: Options, load: Load, look: Look) -> Result<()> {
     let mut loader = Loader::new(load, events.create_proxy(), options.events);
     // The window opens meanwhile.
     loader.start(options.inputs.clone());
+    let watch = options.watch.then(|| Watch::new(events.create_proxy()));
+    watch.iter().for_each(|watch| watch.look_at(&options.inputs));
     let mut app = App {
         state,
         hands,
         told: Told::default(),
         loader,
+        watch,
         dropped: Vec::new(),
         options,
         opened: None,
@@ -52,6 +56,7 @@ struct App {
     hands: Hands,
     told: Told,
     loader: Loader,
+    watch: Option<Watch>,
     /// Files that were dropped on the window, and are loaded when all of them are.
     dropped: Vec<OsString>,
     options: Options,
@@ -72,6 +77,9 @@ impl ApplicationHandler<News> for App {
     }
 
     fn user_event(&mut self, events: &ActiveEventLoop, news: News) {
+        if matches!(news.what, What::Changed) {
+            return self.loader.repeat();
+        }
         if !self.loader.is_present(&news) {
             return;
         }
@@ -80,13 +88,14 @@ impl ApplicationHandler<News> for App {
             What::At(stage, part) => self.told.loading = Some((stage, part as f32 / 1000.0)),
             What::Sketch(scene, method) => {
                 tell.tell(&Event::Sketch { surfels: scene.count() });
-                self.state.show(scene, method, Of { load, sketch: true });
+                self.state.show(scene, method, Of { load, sketch: true, again: false });
             }
             What::Ready(scene, method) => {
                 tell.tell(&Event::Ready { surfels: scene.count() });
                 (self.told.loading, self.told.wrong) = (None, None);
-                self.state.show(scene, method, Of { load, sketch: false });
+                self.state.show(scene, method, Of { load, sketch: false, again: self.loader.is_again() });
             }
+            What::Changed => {}
             What::Coarser(scenes) => return self.state.add_coarser(scenes),
             What::Failed(error) => {
                 self.state.leave_sketch();
@@ -104,6 +113,7 @@ impl ApplicationHandler<News> for App {
     fn about_to_wait(&mut self, _: &ActiveEventLoop) {
         if !self.dropped.is_empty() {
             let dropped = std::mem::take(&mut self.dropped);
+            self.watch.iter().for_each(|watch| watch.look_at(&dropped));
             self.loader.start(dropped);
         }
     }
@@ -162,7 +172,12 @@ impl App {
     fn draw(&mut self, events: &ActiveEventLoop) {
         let Some(opened) = &mut self.opened else { return };
         match opened.draw(&mut self.state, &self.hands, &mut self.told) {
-            Ok(next) => events.set_control_flow(next.map_or(ControlFlow::Wait, ControlFlow::WaitUntil)),
+            Ok(next) => {
+                events.set_control_flow(next.map_or(ControlFlow::Wait, ControlFlow::WaitUntil));
+                if std::mem::take(&mut self.state.cancel) {
+                    self.cancel();
+                }
+            }
             Err(error) => self.fail(events, error),
         }
     }
@@ -174,6 +189,7 @@ impl App {
         }
         let action = keys::action(&event.logical_key).filter(|_| event.state == ElementState::Pressed);
         match action {
+            Some(Action::Quit) if self.cancel() => {}
             Some(Action::Quit) => events.exit(),
             Some(Action::Help) => {
                 self.told.help = !self.told.help;
@@ -186,6 +202,17 @@ impl App {
             }
             None => {}
         }
+    }
+
+    /// Gives up what is being loaded, and shows what was shown before; whether something was.
+    fn cancel(&mut self) -> bool {
+        let cancelled = self.loader.cancel() && self.told.loading.take().is_some();
+        if cancelled {
+            self.options.events.tell(&Event::Cancelled);
+            self.state.leave_sketch();
+            self.changed();
+        }
+        cancelled
     }
 
     /// The cursor is somewhere else.

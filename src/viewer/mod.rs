@@ -17,6 +17,7 @@ mod pace;
 mod panels;
 mod screen;
 mod state;
+mod watch;
 mod window;
 
 pub use events::Events;
@@ -42,6 +43,8 @@ pub struct Options {
     pub up: DVec3,
     /// How long frames may take while the hands move, ms.
     pub budget: f64,
+    /// Whether files are loaded again when they change.
+    pub watch: bool,
     /// Who is told what happens.
     pub events: Events,
 }

@@ -26,6 +26,8 @@ pub struct State {
     shown: Option<Shown>,
     /// The place whose surface is to be turned about, px.
     pub pick: Option<DVec2>,
+    /// What is being loaded is to be given up.
+    pub cancel: bool,
 }
 
 /// What a scene is of.
@@ -35,6 +37,8 @@ pub struct Of {
     pub load: u64,
     /// Whether it is some of the points, until all are there.
     pub sketch: bool,
+    /// Whether it is another state of what is shown, which is looked at as that is.
+    pub again: bool,
 }
 
 impl Of {
@@ -58,7 +62,7 @@ struct Shown {
 impl State {
     pub fn new(options: &Options, look: Look) -> Self {
         let lens = Lens { size: options.size, fov_y: FOV, parallel: false };
-        Self { lens, up: nearest(options.up), look, shown: None, pick: None }
+        Self { lens, up: nearest(options.up), look, shown: None, pick: None, cancel: false }
     }
 
     /// Looks at the scene of a load from the front; or at all of what was a sketch as at that.
@@ -73,6 +77,7 @@ impl State {
                 }
                 Shown { scene, of, orbit, coarser: Vec::new(), ..sketch }
             }
+            Some(shown) if of.again && !shown.of.sketch => Shown { scene, of, coarser: Vec::new(), ..shown },
             // Of one that is not whole there was something before.
             Some(Shown { of: Of { sketch: true, .. }, before, .. }) => Shown { scene, of, orbit, method, settings, before, coarser: Vec::new() },
             before => {
@@ -96,6 +101,11 @@ impl State {
         if let Some(shown) = &mut self.shown {
             shown.coarser = scenes;
         }
+    }
+
+    /// The scene, and how it is rendered.
+    pub fn look(&self) -> Option<(Arc<Scene>, Settings)> {
+        self.shown.as_ref().map(|shown| (shown.scene.clone(), shown.settings.clone()))
     }
 
     /// What there is to be seen, for who chooses how much of it is.

@@ -11,7 +11,7 @@ use super::state::State;
 use std::sync::Arc;
 use std::time::Instant;
 use surfel::vk::{Device, Presenter};
-use surfel::{Error, Result};
+use surfel::{Error, Result, Scene, Settings};
 use winit::dpi::PhysicalSize;
 use winit::event_loop::ActiveEventLoop;
 use winit::window::Window;
@@ -26,6 +26,8 @@ pub struct Opened {
     /// When the last frame began, if it was followed at once by this one.
     last: Option<Instant>,
     events: Events,
+    /// What the pace knows the times of.
+    look: Option<(Arc<Scene>, Settings)>,
     pub window: Arc<Window>,
 }
 
@@ -45,7 +47,7 @@ impl Opened {
         let pace = Pace::new(options.budget);
         let events = options.events;
         events.tell(&Event::Window { device: &device.description().name });
-        Ok((Self { presenter, hud, screen, pace, last: None, events, window }, device))
+        Ok((Self { presenter, hud, screen, pace, last: None, events, look: None, window }, device))
     }
 
     /// The window's size is another, or may be.
@@ -58,6 +60,11 @@ impl Opened {
     pub fn draw(&mut self, state: &mut State, hands: &Hands, told: &mut Told) -> Result<Option<Instant>> {
         let start = Instant::now();
         self.fly(state, hands, start);
+        let look = state.look();
+        if !self.look.as_ref().zip(look.as_ref()).is_some_and(|(a, b)| Arc::ptr_eq(&a.0, &b.0) && a.1 == b.1) {
+            self.pace.forget();
+            self.look = look;
+        }
         let sight = state.sight();
         let moving = self.pace.moves(start);
         let quality = sight.as_ref().map_or(Quality::WHOLE, |sight| self.pace.quality(start, sight));
