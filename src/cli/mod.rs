@@ -22,6 +22,7 @@ mod report;
 mod scenes;
 mod summary;
 mod truth;
+mod turntable;
 mod values;
 #[cfg(feature = "viewer")]
 mod view;

@@ -1,9 +1,11 @@
 //! Rendering without Vulkan.
 
 use super::render::{Outcome, Task};
+use super::turntable;
 use std::time::Instant;
 use surfel::bench::Times;
-use surfel::{Error, Result, SplatCounts, reference};
+use surfel::geometry::Camera;
+use surfel::{Error, Picture, Result, SplatCounts, reference};
 
 /// Most pixels of a picture: they take some 5 GiB in float64, and running out of memory would stop the process.
 const MOST_PIXELS: u64 = 1 << 26;
@@ -26,6 +28,21 @@ pub fn render(task: &Task<'_>) -> Result<Outcome> {
     let picture = frame.as_ref().map(reference::Frame::to_picture).unwrap_or_default();
     let counts = frame.map(|frame| counts(&frame.counts));
     Ok(Outcome { picture, counts, times, gpu: None })
+}
+
+/// Renders `task` from other cameras, and gives each picture to `save` with the camera's number.
+pub fn turn(
+    task: &Task<'_>,
+    cameras: &[Camera],
+    mut save: impl FnMut(usize, Picture) -> Result<()>,
+) -> Result<()> {
+    for (number, camera) in cameras.iter().enumerate() {
+        turntable::tell(task, number, cameras.len());
+        let frame = reference::render(task.scene, camera, task.size, &task.settings, &())?;
+        save(number, frame.to_picture())?;
+    }
+    turntable::tell(task, cameras.len(), cameras.len());
+    Ok(())
 }
 
 fn counts(counts: &reference::Counts) -> SplatCounts {

@@ -4,7 +4,7 @@ use super::args::Render;
 use super::colouring::{Coloured, Colouring};
 use super::inputs::{Inputs, Wanted};
 use super::report::{Gpu, HalfError, Report};
-use super::{camera, files, inputs, progress, reference, summary, vulkan};
+use super::{camera, files, inputs, progress, reference, summary, turntable, vulkan};
 use std::path::Path;
 use surfel::bench::Times;
 use surfel::geometry::{Camera, Model, Parts};
@@ -49,7 +49,7 @@ pub struct Outcome {
 /// Renders inputs to a picture. Arguments, files and places to write to are looked at first, cheap ones before large ones and all of
 /// them before the device.
 pub fn run(args: &Render) -> Result<()> {
-    let out = Output::parse(&args.output);
+    let out = turntable::first(args)?;
     check_outputs(args, &out)?;
     args.settings(&args.method.unwrap_or(Method::ALL[0])).check()?;
     let device = vulkan::options(&args.place.device)?;
@@ -88,6 +88,21 @@ pub fn run(args: &Render) -> Result<()> {
     }
     let bar = loaded.coloured.as_ref().filter(|_| args.color_bar).and_then(Coloured::bar);
     save(&outcome.picture, task.settings.shading, bar.as_ref(), &out)?;
+    if let Some((count, pattern)) = args.turntable.zip(turntable::pattern(args)?) {
+        let cameras = turntable::cameras(&camera, bounds.centre(), camera::up(&args.camera, file), count);
+        let others = &cameras[1..];
+        let save = |number: usize, mut picture: Picture| {
+            if !out.is_png() {
+                keep_layers(&mut picture, task.layers);
+            }
+            let out = Output::parse(&pattern.file(number as u32 + 1));
+            save(&picture, task.settings.shading, bar.as_ref(), &out)
+        };
+        match args.place.reference {
+            true => reference::turn(&task, others, save)?,
+            false => vulkan::turn(&task, &device, &args.place, others, save)?,
+        }
+    }
     if let Some(place) = &args.json {
         files::write_text(place, &Report::new(args, &loaded, &task, &outcome).to_json()?)?;
     }

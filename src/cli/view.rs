@@ -60,6 +60,7 @@ pub fn run(args: View) -> Result<()> {
         budget: args.budget,
         fov_y_deg: args.camera.fov.unwrap_or(camera::FOV),
         place: Box::new(place),
+        watch: args.watch,
         events: viewer::Events::new(start, args.json),
         keep: viewer::Folder { path: args.shots.clone(), tell: !(args.quiet || args.json) },
     };

@@ -4,9 +4,11 @@ use super::args::{OnDevice, Place};
 use super::files::{cache_folder, read_json};
 use super::render::{Outcome, Task};
 use super::report::{Gpu, HalfError};
+use super::turntable;
 use std::sync::Arc;
 use std::time::Instant;
 use surfel::bench::Times;
+use surfel::geometry::Camera;
 use surfel::vk::{Device, DeviceLimits, DeviceOptions};
 use surfel::{Error, Picture, Precision, RenderOptions, Renderer, Result, Scene};
 
@@ -53,6 +55,34 @@ pub fn render(task: &Task<'_>, options: &DeviceOptions, place: &Place, measure: 
         gpu.half_error = half_error(&device, task, &scene, options, &picture)?;
     }
     Ok(Outcome { picture, counts: report.counts, times, gpu: Some(gpu) })
+}
+
+/// Renders `task` from other cameras, and gives each picture to `save` with the camera's number.
+pub fn turn(
+    task: &Task<'_>,
+    options: &DeviceOptions,
+    place: &Place,
+    cameras: &[Camera],
+    mut save: impl FnMut(usize, Picture) -> Result<()>,
+) -> Result<()> {
+    let device = Device::open(options)?;
+    let options = RenderOptions {
+        size: task.size,
+        outputs: task.layers.with_mask(&task.settings),
+        precision: if place.half { Precision::Half } else { Precision::Full },
+        rasterizer: place.rasterizer,
+        profile: false,
+        count: false,
+    };
+    let mut renderer = Renderer::new(&device, options)?;
+    let scene = Scene::upload(&device, task.scene)?;
+    for (number, camera) in cameras.iter().enumerate() {
+        turntable::tell(task, number, cameras.len());
+        let (picture, _) = renderer.render_picture(&scene, camera, &task.settings)?;
+        save(number, picture)?;
+    }
+    turntable::tell(task, cameras.len(), cameras.len());
+    Ok(())
 }
 
 /// How far `picture`, of 16-bit sums or samples, is from that of 32-bit ones; `None` if the device has no such, or no room for them.

@@ -10,6 +10,7 @@ use super::load::{Load, Loader, News, What};
 use super::panels::Told;
 use super::retry::Retry;
 use super::state::{Of, State};
+use super::watch::Watch;
 use super::window::Opened;
 use super::{Look, Options};
 use glam::DVec2;
@@ -41,11 +42,14 @@ pub fn run(options: Options, load: Load, look: Look) -> Result<()> {
     let mut loader = Loader::new(load, events.create_proxy(), options.events);
     // The window opens meanwhile.
     loader.start(options.inputs.clone());
+    let watch = options.watch.then(|| Watch::new(events.create_proxy()));
+    watch.iter().for_each(|watch| watch.look_at(&options.inputs));
     let mut app = App {
         state,
         hands,
         told: Told::default(),
         loader,
+        watch,
         dropped: Vec::new(),
         next: None,
         is_first: true,
@@ -68,6 +72,7 @@ struct App {
     hands: Hands,
     told: Told,
     loader: Loader,
+    watch: Option<Watch>,
     /// Files that were dropped on the window, and are loaded when all of them are.
     dropped: Vec<PathBuf>,
     /// From where the scene is seen that comes next.
@@ -103,6 +108,7 @@ impl ApplicationHandler<News> for App {
     fn user_event(&mut self, events: &ActiveEventLoop, news: News) {
         let (load, what) = match news {
             News::Kept => return self.written(),
+            News::Changed => return self.loader.repeat(),
             News::Load(load, what) => (load, what),
         };
         if !self.loader.is_present(load) {
@@ -113,7 +119,7 @@ impl ApplicationHandler<News> for App {
             What::At(stage, part) => self.told.loading = Some((stage, part as f32 / 1000.0)),
             What::Sketch(scene, method) => {
                 tell.tell(&Event::Sketch { surfels: scene.count() });
-                if let Err(error) = self.show(scene, method, Of { load, sketch: true }) {
+                if let Err(error) = self.show(scene, method, Of { load, sketch: true, again: false }) {
                     return self.fail(events, error);
                 }
             }
@@ -121,7 +127,8 @@ impl ApplicationHandler<News> for App {
                 tell.tell(&Event::Ready { surfels: scene.count() });
                 (self.told.loading, self.told.wrong) = (None, None);
                 self.inputs = self.pending.take().unwrap_or(std::mem::take(&mut self.inputs));
-                if let Err(error) = self.show(scene, method, Of { load, sketch: false }) {
+                let of = Of { load, sketch: false, again: self.loader.is_again() };
+                if let Err(error) = self.show(scene, method, of) {
                     return self.fail(events, error);
                 }
             }
@@ -203,6 +210,7 @@ impl App {
     /// Looks at these inputs from now on, once they are loaded.
     fn open(&mut self, inputs: Vec<OsString>) {
         self.pending = Some(inputs.clone());
+        self.watch.iter().for_each(|watch| watch.look_at(&inputs));
         self.loader.start(inputs);
     }
 
@@ -211,6 +219,9 @@ impl App {
         match opened.draw(&mut self.state, &self.hands, &mut self.told, &self.options.events) {
             Ok(next) => events.set_control_flow(next.map_or(ControlFlow::Wait, ControlFlow::WaitUntil)),
             Err(error) => return self.fail(events, error),
+        }
+        if std::mem::take(&mut self.state.cancel) {
+            self.cancel();
         }
         self.answer();
     }
@@ -226,6 +237,7 @@ impl App {
             (self.told.wrong, self.told.done) = (None, None);
         }
         match action {
+            Some(Action::Quit) if self.cancel() => {}
             Some(Action::Quit) => events.exit(),
             Some(
                 action @ (Action::Open
@@ -248,6 +260,17 @@ impl App {
             }
             None => {}
         }
+    }
+
+    /// Gives up what is being loaded, and shows what was shown before; whether something was.
+    fn cancel(&mut self) -> bool {
+        let cancelled = self.loader.cancel() && self.told.loading.take().is_some();
+        if cancelled {
+            self.options.events.tell(&Event::Cancelled);
+            self.state.leave_sketch();
+            self.changed();
+        }
+        cancelled
     }
 
     /// The cursor is somewhere else.

@@ -19,7 +19,7 @@ pub struct Cost {
 }
 
 /// Of a computer without a GPU: the first frame is guessed rather too quick than too slow to come.
-const GUESS: [f64; 3] = [4.0, 3e-5, 3e-4];
+const GUESS: [f64; 3] = [15.0, 1e-4, 3e-4];
 /// How much of it a part keeps at least as a frame is quicker: one frame does not tell which part it was.
 const LEAST_KEPT: f64 = 0.2;
 

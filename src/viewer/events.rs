@@ -1,10 +1,11 @@
 //! What happens in the window, one JSON object a line on standard output, for programs that wait for it.
 
 use crate::camera_file::Fields;
+use cpu_time::ProcessTime;
 use serde::Serialize;
 use std::io::Write;
 use std::path::Path;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// Something that has happened.
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -66,6 +67,8 @@ pub struct Events {
 struct Line<'a> {
     /// Since the program began, ms.
     ms: f64,
+    /// Processor time of the program so far, ms, which other programs do not change.
+    cpu_ms: f64,
     #[serde(flatten)]
     event: &'a Event<'a>,
 }
@@ -81,8 +84,9 @@ impl Events {
         if !self.on {
             return;
         }
-        let ms = (1e6 * self.start.elapsed().as_secs_f64()).round() / 1e3;
-        let Ok(mut line) = serde_json::to_string(&Line { ms, event }) else { return };
+        let rounded = |time: Duration| (1e6 * time.as_secs_f64()).round() / 1e3;
+        let (ms, cpu_ms) = (rounded(self.start.elapsed()), rounded(ProcessTime::now().as_duration()));
+        let Ok(mut line) = serde_json::to_string(&Line { ms, cpu_ms, event }) else { return };
         line.push('\n');
         let mut out = std::io::stdout().lock();
         // Whoever has stopped listening wants no more.
@@ -97,9 +101,9 @@ mod tests {
     #[test]
     fn an_event_is_a_line_of_json() {
         let event = Event::Wrote { file: Path::new("a b.png") };
-        let line = serde_json::to_string(&Line { ms: 1.5, event: &event }).unwrap();
-        assert_eq!(line, r#"{"ms":1.5,"event":"wrote","file":"a b.png"}"#);
-        let line = serde_json::to_string(&Line { ms: 2.0, event: &Event::Copied }).unwrap();
-        assert_eq!(line, r#"{"ms":2.0,"event":"copied"}"#);
+        let line = serde_json::to_string(&Line { ms: 1.5, cpu_ms: 2.5, event: &event }).unwrap();
+        assert_eq!(line, r#"{"ms":1.5,"cpu_ms":2.5,"event":"wrote","file":"a b.png"}"#);
+        let line = serde_json::to_string(&Line { ms: 2.0, cpu_ms: 1.0, event: &Event::Copied }).unwrap();
+        assert_eq!(line, r#"{"ms":2.0,"cpu_ms":1.0,"event":"copied"}"#);
     }
 }

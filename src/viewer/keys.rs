@@ -92,7 +92,7 @@ pub const BINDINGS: [Binding; 23] = {
         control("c", "Ctrl+C", "copy the camera", Action::CopyCamera),
         control("v", "Ctrl+V", "paste a camera", Action::PasteCamera),
         letter("h", "H", "these keys", Action::Help),
-        named(NamedKey::Escape, NONE, "Esc", "quit", Action::Quit),
+        named(NamedKey::Escape, NONE, "Esc", "give up loading; quit", Action::Quit),
     ]
 };
 

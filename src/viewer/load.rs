@@ -33,6 +33,8 @@ pub trait Loading: Progress {
 pub enum News {
     /// Of the load of this number.
     Load(u64, What),
+    /// Files that are watched have changed.
+    Changed,
     /// A picture is in its file, or cannot be.
     Kept,
 }
@@ -58,8 +60,11 @@ pub struct Loader {
     events: Events,
     /// `None` where there will never be one.
     device: Arc<OnceLock<Option<Arc<Device>>>>,
-    /// Number of the last load.
+    /// Number of the last load, and what it is of.
     last: u64,
+    inputs: Vec<OsString>,
+    /// Whether the scene of the last load takes the place of an earlier state of it.
+    again: bool,
     under_way: Vec<UnderWay>,
 }
 
@@ -71,7 +76,16 @@ struct UnderWay {
 impl Loader {
     /// Nothing is loaded yet.
     pub fn new(load: Load, window: EventLoopProxy<News>, events: Events) -> Self {
-        Self { load, window, events, device: Arc::default(), last: 0, under_way: Vec::new() }
+        Self {
+            load,
+            window,
+            events,
+            device: Arc::default(),
+            last: 0,
+            inputs: Vec::new(),
+            again: false,
+            under_way: Vec::new(),
+        }
     }
 
     /// Scenes are for this device from now on; what is loaded before waits for it.
@@ -89,6 +103,23 @@ impl Loader {
 
     /// Loads `inputs` as one scene, in place of what is being loaded.
     pub fn start(&mut self, inputs: Vec<OsString>) {
+        self.inputs = inputs;
+        self.again = false;
+        self.begin();
+    }
+
+    /// Loads the same once more, as it is now.
+    pub fn repeat(&mut self) {
+        self.again = true;
+        self.begin();
+    }
+
+    /// Whether it is another state of what is shown.
+    pub fn is_again(&self) -> bool {
+        self.again
+    }
+
+    fn begin(&mut self) {
         self.cancel();
         self.under_way.retain(|load| !load.thread.is_finished());
         self.last += 1;
@@ -99,9 +130,10 @@ impl Loader {
             events: self.events,
             device: self.device.clone(),
             cancelled: cancelled.clone(),
+            again: self.again,
             last: AtomicU64::new(u64::MAX),
         };
-        let load = self.load.clone();
+        let (load, inputs) = (self.load.clone(), self.inputs.clone());
         let thread = thread::spawn(move || {
             if let Err(error) = told.load(&load, &inputs) {
                 told.send(What::Failed(error));
@@ -143,6 +175,7 @@ struct Told {
     events: Events,
     device: Arc<OnceLock<Option<Arc<Device>>>>,
     cancelled: Arc<AtomicBool>,
+    again: bool,
     /// Thousandths of the stage that were told last.
     last: AtomicU64,
 }
@@ -209,7 +242,8 @@ impl Progress for Told {
 
 impl Loading for Told {
     fn sketch(&self, Loaded { model, method }: Loaded) {
-        let Some(device) = self.device() else { return };
+        // Until all of it is there, its earlier state stays.
+        let Some(device) = self.device().filter(|_| !self.again) else { return };
         // What is wrong with it is wrong with the whole scene, which says so.
         if let Ok(scene) = Scene::upload(device, &model) {
             self.send(What::Sketch(Arc::new(scene), method));

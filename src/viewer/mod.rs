@@ -20,6 +20,7 @@ mod panels;
 mod retry;
 mod screen;
 mod state;
+mod watch;
 mod window;
 
 pub use events::Events;
@@ -50,6 +51,8 @@ pub struct Options {
     pub fov_y_deg: f64,
     /// Where the camera stands at first.
     pub place: Place,
+    /// Whether files are loaded again when they change.
+    pub watch: bool,
     /// Who is told what happens.
     pub events: Events,
     /// Where pictures and cameras are kept.

@@ -27,7 +27,13 @@ pub struct Told {
 /// All panels.
 pub fn show(ui: &mut Ui, state: &mut State, told: &Told) {
     if let Some((stage, part)) = told.loading {
-        Panel::bottom("loading").show(ui, |ui| ui.add(ProgressBar::new(part).text(stage)));
+        Panel::bottom("loading").show(ui, |ui| {
+            ui.horizontal(|ui| {
+                state.cancel |=
+                    ui.button("give up").on_hover_text("Esc; what was shown before stays").clicked();
+                ui.add(ProgressBar::new(part).text(stage));
+            })
+        });
     }
     if let Some(done) = &told.done {
         Panel::bottom("done").show(ui, |ui| ui.label(done));
@@ -50,7 +56,10 @@ fn choices(ui: &mut Ui, state: &mut State, told: &Told) {
         _ => "all pixels".into(),
     };
     ui.label(format!("{:.0} ms a frame, {quality}", told.frame));
-    let Some(mut chosen) = state.choices() else { return };
+    let Some(mut chosen) = state.choices() else {
+        ui.label("Drop files on the window to look at them.");
+        return;
+    };
     ui.label(match told.surfels as u64 {
         fewer if fewer < chosen.surfels => format!("{fewer} of {} surfels", chosen.surfels),
         _ => format!("{} surfels", chosen.surfels),

@@ -30,6 +30,8 @@ pub struct State {
     /// What is to be opened, while it is asked for, and the answer.
     pub opening: Option<Opening>,
     pub answer: Option<Answer>,
+    /// What is being loaded is to be given up.
+    pub cancel: bool,
 }
 
 /// What a scene is of.
@@ -39,6 +41,8 @@ pub struct Of {
     pub load: u64,
     /// Whether it is some of the points, until all are there.
     pub sketch: bool,
+    /// Whether it is another state of what is shown, which is looked at as that is.
+    pub again: bool,
 }
 
 impl Of {
@@ -73,6 +77,7 @@ impl State {
             pick: None,
             opening: None,
             answer: None,
+            cancel: false,
         }
     }
 
@@ -88,6 +93,7 @@ impl State {
                 let orbit = if moved { sketch.orbit } else { orbit };
                 Shown { scene, of, orbit, coarser, before: None, ..sketch }
             }
+            Some(shown) if of.again && !shown.of.sketch => Shown { scene, of, coarser, ..shown },
             before => {
                 // Of one that is not whole there was something before.
                 let whole = |shown: Shown| if shown.of.sketch { shown.before } else { Some(Box::new(shown)) };
@@ -99,7 +105,7 @@ impl State {
 
     /// Whether hands have moved the camera before a sketch of this load.
     pub fn has_moved_sketch(&self, load: u64) -> bool {
-        let sketch = self.shown.as_ref().filter(|shown| shown.of == Of { load, sketch: true });
+        let sketch = self.shown.as_ref().filter(|shown| (shown.of.load, shown.of.sketch) == (load, true));
         sketch.is_some_and(|shown| shown.given(&self.lens).is_none())
     }
 
@@ -129,6 +135,11 @@ impl State {
         if let Some(shown) = &mut self.shown {
             shown.coarser = scenes;
         }
+    }
+
+    /// The scene, and how it is rendered.
+    pub fn look(&self) -> Option<(Arc<Scene>, Settings)> {
+        self.shown.as_ref().map(|shown| (shown.scene.clone(), shown.settings.clone()))
     }
 
     /// What there is to be seen, for who chooses how much of it is.

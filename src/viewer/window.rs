@@ -12,7 +12,7 @@ use super::state::State;
 use std::sync::Arc;
 use std::time::Instant;
 use surfel::vk::{Device, Presenter};
-use surfel::{Error, Result};
+use surfel::{Error, Result, Scene, Settings};
 use winit::dpi::PhysicalSize;
 use winit::event_loop::ActiveEventLoop;
 use winit::window::Window;
@@ -26,7 +26,8 @@ pub struct Opened {
     pub pace: Pace,
     /// When the last frame began, if it was followed at once by this one.
     last: Option<Instant>,
-    events: Events,
+    /// What the pace knows the times of.
+    look: Option<(Arc<Scene>, Settings)>,
     pub window: Arc<Window>,
 }
 
@@ -48,9 +49,8 @@ impl Opened {
         let screen = Screen::new(&device, options.rasterizer)?;
         let hud = Hud::new(&device, &window, presenter.overlay())?;
         let pace = Pace::new(options.budget);
-        let events = options.events;
         events.tell(&Event::Window { device: &device.description().name });
-        Ok((Self { presenter, hud, screen, pace, last: None, events, window }, device))
+        Ok((Self { presenter, hud, screen, pace, last: None, look: None, window }, device))
     }
 
     /// The window's size is another, or may be.
@@ -84,6 +84,12 @@ impl Opened {
     ) -> Result<Option<Instant>> {
         let start = Instant::now();
         self.fly(state, hands, start);
+        let look = state.look();
+        if !self.look.as_ref().zip(look.as_ref()).is_some_and(|(a, b)| Arc::ptr_eq(&a.0, &b.0) && a.1 == b.1)
+        {
+            self.pace.forget();
+            self.look = look;
+        }
         let sight = state.sight();
         let moving = self.pace.moves(start);
         let quality = sight.as_ref().map_or(Quality::WHOLE, |sight| self.pace.quality(start, sight));

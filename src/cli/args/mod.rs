@@ -71,6 +71,9 @@ pub struct Render {
     /// The picture: .png (sRGB, or `-` for standard output) or .exr (linear light)
     #[arg(short, long, value_name = "OUT")]
     pub output: OsString,
+    /// Renders N pictures all around, about the up axis through the middle of the scene: OUT has a place for their numbers, as frames/%04d.png
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub turntable: Option<u32>,
     /// How it is rendered; perspective-ewa unless given, pull-push where there are lines or triangles; `surfel methods` tells more
     #[arg(long, value_parser = method())]
     pub method: Option<Method>,

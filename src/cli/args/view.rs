@@ -41,6 +41,9 @@ pub struct View {
     /// How long frames may take while the camera moves; they are coarser where whole ones take longer
     #[arg(long, value_name = "MS", default_value_t = 60.0)]
     pub budget: f64,
+    /// Loads files again when they change; the camera stays
+    #[arg(long)]
+    pub watch: bool,
     /// Says what happens on standard output, one JSON object a line, for programs that wait for it
     #[arg(long)]
     pub json: bool,
