@@ -49,11 +49,13 @@ pub fn parse(text: &[u8]) -> Result<Pose, String> {
         (Some(degrees), None) => Span::Angle(degrees),
         (None, Some(height)) => Span::Height(height),
         _ => {
-            return Err("it needs either `fov_y_deg`, in degrees, or `height`, for parallel rays: correct the file".into());
+            return Err(
+                "it needs either `fov_y_deg`, in degrees, or `height`, for parallel rays: correct the file"
+                    .into(),
+            );
         }
     };
-    let pose =
-        Pose { eye: fields.eye.into(), target: fields.target.into(), up: fields.up.into(), span };
+    let pose = Pose { eye: fields.eye.into(), target: fields.target.into(), up: fields.up.into(), span };
     pose.check().map(|()| pose).map_err(|error| error.to_string())
 }
 

@@ -24,9 +24,7 @@ pub fn make(
 ) -> Result<Camera> {
     let made = pose(args, file.map(|(_, pose)| pose), bounds, size)?.camera(bounds, aspect(size));
     match file {
-        Some((path, _)) => {
-            made.map_err(|error| Error::input(path.display().to_string(), error.to_string()))
-        }
+        Some((path, _)) => made.map_err(|error| Error::input(path.display().to_string(), error.to_string())),
         None => made,
     }
 }

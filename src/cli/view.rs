@@ -44,8 +44,7 @@ pub fn run(args: View) -> Result<()> {
         eye.is_some() || target.is_some() || fov.is_some() || parallel.is_some() || file.is_some()
     };
     let (cameras, pose) = (args.camera.clone(), file.map(|(_, pose)| pose));
-    let place =
-        move |bounds: &Bounds, size| given.then(|| camera::pose(&cameras, pose, bounds, size));
+    let place = move |bounds: &Bounds, size| given.then(|| camera::pose(&cameras, pose, bounds, size));
     let options = viewer::Options {
         inputs: args.inputs.clone(),
         size: args.size,

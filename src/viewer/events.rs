@@ -11,29 +11,19 @@ use std::time::Instant;
 #[serde(tag = "event", rename_all = "kebab-case")]
 pub enum Event<'a> {
     /// The window is open, on this device.
-    Window {
-        device: &'a str,
-    },
+    Window { device: &'a str },
     /// A scene is on the device, and is shown from now on.
-    Ready {
-        surfels: u64,
-    },
+    Ready { surfels: u64 },
     /// A picture of the scene went to the window.
     Picture(Shown<'a>),
     /// A picture or a camera is in a file.
-    Wrote {
-        file: &'a Path,
-    },
+    Wrote { file: &'a Path },
     /// A camera was taken from a file.
-    Camera {
-        file: &'a Path,
-    },
+    Camera { file: &'a Path },
     /// The camera is on the clipboard.
     Copied,
     /// What the window says went wrong; what was shown before stays.
-    Wrong {
-        error: &'a str,
-    },
+    Wrong { error: &'a str },
     /// The device was lost, and another one is opened.
     Lost,
 }

@@ -41,7 +41,16 @@ struct Shown {
 impl State {
     pub fn new(options: &Options, look: Look) -> Self {
         let lens = Lens { size: options.size, fov_y_deg: options.fov_y_deg, parallel: false };
-        Self { lens, up: nearest(options.up), look, shown: None, before: None, pick: None, opening: None, answer: None }
+        Self {
+            lens,
+            up: nearest(options.up),
+            look,
+            shown: None,
+            before: None,
+            pick: None,
+            opening: None,
+            answer: None,
+        }
     }
 
     /// Looks at a scene from the front.

@@ -1,8 +1,8 @@
 //! An open window: a frame of it, and what it costs.
 
 use super::Options;
-use super::hands::Hands;
 use super::events::{Event, Events, Shown};
+use super::hands::Hands;
 use super::hud::Hud;
 use super::keep::Shot;
 use super::pace::Pace;
@@ -102,7 +102,12 @@ impl Opened {
         if again || flies || state.pick.is_some() {
             self.window.request_redraw();
         }
-        Ok(self.pace.refines(Instant::now()))
+        let now = Instant::now();
+        if side < self.pace.side(now) {
+            // The hands came to rest within this frame, and nothing else has the picture drawn whole.
+            self.window.request_redraw();
+        }
+        Ok(self.pace.refines(now))
     }
 
     fn fly(&mut self, state: &mut State, hands: &Hands, now: Instant) {

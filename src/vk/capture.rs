@@ -64,7 +64,8 @@ impl Capture {
     /// What was copied, which the GPU is done with.
     pub(super) fn pixels(&self) -> Vec<[u8; 4]> {
         let swapped = self.image.format == vk::Format::B8G8R8A8_SRGB;
-        let pixels = self.pixels.bytes().chunks_exact(4).map(|pixel| [pixel[0], pixel[1], pixel[2], pixel[3]]);
+        let pixels =
+            self.pixels.bytes().chunks_exact(4).map(|pixel| [pixel[0], pixel[1], pixel[2], pixel[3]]);
         pixels.map(|[r, g, b, a]| if swapped { [b, g, r, a] } else { [r, g, b, a] }).collect()
     }
 }

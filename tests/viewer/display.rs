@@ -6,7 +6,9 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 use x11rb::connection::Connection;
 use x11rb::protocol::Event;
-use x11rb::protocol::xproto::{self, Atom, ClientMessageEvent, ConfigureWindowAux, ConnectionExt as _, Window};
+use x11rb::protocol::xproto::{
+    self, Atom, ClientMessageEvent, ConfigureWindowAux, ConnectionExt as _, Window,
+};
 use x11rb::protocol::xtest::ConnectionExt as _;
 use x11rb::rust_connection::RustConnection;
 

@@ -7,7 +7,9 @@ use serde_json::Value;
 
 #[test]
 fn kept_pictures_are_those_of_render_and_of_the_window() {
-    let Some((display, program)) = stage("kept_pictures_are_those_of_render_and_of_the_window") else { return };
+    let Some((display, program)) = stage("kept_pictures_are_those_of_render_and_of_the_window") else {
+        return;
+    };
     let what = format!("{SPHERE} --size 640x480 {DRAW}");
     let mut view = View::open(&display, &program, &format!("{what} --shots ."));
     view.picture(|_| true);
@@ -19,8 +21,8 @@ fn kept_pictures_are_those_of_render_and_of_the_window() {
         assert!(camera.ends_with(".json") && shot.ends_with(extension), "{camera} {shot}");
         let render = format!("render {what} --camera {camera} -o headless.{extension}");
         program.run(&render).text();
-        let [ours, headless] = [shot, format!("headless.{extension}")]
-            .map(|name| std::fs::read(program.path(&name)).unwrap());
+        let [ours, headless] =
+            [shot, format!("headless.{extension}")].map(|name| std::fs::read(program.path(&name)).unwrap());
         assert!(ours == headless, "{extension}: another file than `{render}` writes");
     }
     display.press(&[key::SHIFT], key::F12);
@@ -52,7 +54,9 @@ fn rgb(pixel: &image::Rgba<u8>) -> [u8; 3] {
 
 #[test]
 fn cameras_come_back_from_files_and_from_the_clipboard() {
-    let Some((display, program)) = stage("cameras_come_back_from_files_and_from_the_clipboard") else { return };
+    let Some((display, program)) = stage("cameras_come_back_from_files_and_from_the_clipboard") else {
+        return;
+    };
     let mut view = View::open(&display, &program, &format!("{SPHERE} --size 640x480"));
     let camera = |event: &Value| event["camera"].clone();
     let first = camera(&view.picture(|_| true));
@@ -87,7 +91,8 @@ fn cameras_come_back_from_files_and_from_the_clipboard() {
     view.picture(|event| camera(event) == parallel);
     view.close();
 
-    let mut again = View::open(&display, &program, &format!("{SPHERE} --size 640x480 --camera {saved_parallel}"));
+    let mut again =
+        View::open(&display, &program, &format!("{SPHERE} --size 640x480 --camera {saved_parallel}"));
     assert_eq!(camera(&again.picture(|_| true)), parallel);
     again.close();
     let placed = "--eye 1,2,3 --target 0.1,0,0 --fov 30";
@@ -99,7 +104,9 @@ fn cameras_come_back_from_files_and_from_the_clipboard() {
 
 #[test]
 fn dropped_files_are_a_scene_or_a_camera_or_a_message() {
-    let Some((display, program)) = stage("dropped_files_are_a_scene_or_a_camera_or_a_message") else { return };
+    let Some((display, program)) = stage("dropped_files_are_a_scene_or_a_camera_or_a_message") else {
+        return;
+    };
     for (name, points) in [("one.ply", 300), ("two.ply", 500)] {
         program.run(&format!("convert scene:bumpy-sphere?points={points} -o {name}")).text();
     }
@@ -112,7 +119,9 @@ fn dropped_files_are_a_scene_or_a_camera_or_a_message() {
     view.picture(|_| true);
     let take = |view: &View, names: &[&str]| {
         let files: Vec<_> = names.iter().map(|name| path(name)).collect();
-        assert!(display.drop_files(view.window, &files.iter().map(|file| file.as_path()).collect::<Vec<_>>()));
+        assert!(
+            display.drop_files(view.window, &files.iter().map(|file| file.as_path()).collect::<Vec<_>>())
+        );
     };
     take(&view, &["camera.json"]);
     view.picture(|event| event["camera"] == camera);

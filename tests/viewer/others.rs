@@ -17,7 +17,8 @@ impl Display {
     /// Drops files on a window, as a file manager does; whether it took them.
     pub fn drop_files(&self, window: Window, files: &[&Path]) -> bool {
         let source = self.own();
-        let names = ["XdndSelection", "XdndEnter", "XdndPosition", "XdndDrop", "XdndFinished", "XdndActionCopy"];
+        let names =
+            ["XdndSelection", "XdndEnter", "XdndPosition", "XdndDrop", "XdndFinished", "XdndActionCopy"];
         let [selection, enter, position, drop, finished, copy] = names.map(|name| self.atom(name));
         let uris = self.atom("text/uri-list");
         self.x.set_selection_owner(source, selection, 0u32).unwrap().check().unwrap();

@@ -34,7 +34,8 @@ fn session(test: &str, input: &str) {
         view.picture(|event| event["method"] == next);
     }
     resize(&mut view);
-    program.write("broken.ply", "ply\nformat binary_little_endian 1.0\nelement vertex 10\nproperty float x\n");
+    program
+        .write("broken.ply", "ply\nformat binary_little_endian 1.0\nelement vertex 10\nproperty float x\n");
     let broken = program.path("broken.ply").canonicalize().unwrap();
     assert!(display.drop_files(view.window, &[&broken]));
     view.until("wrong", |event| event["error"].as_str().unwrap().contains("broken.ply"));
@@ -46,8 +47,10 @@ fn session(test: &str, input: &str) {
     let shot = view.wrote();
     view.close();
     let (method, size) = (last["method"].as_str().unwrap(), &last["size"]);
-    let render =
-        format!("render {input} {DRAW} --method {method} --size {}x{} --camera {camera} -o headless.png", size[0], size[1]);
+    let render = format!(
+        "render {input} {DRAW} --method {method} --size {}x{} --camera {camera} -o headless.png",
+        size[0], size[1]
+    );
     program.run(&render).text();
     let [ours, headless] = [program.png(&shot), program.png("headless.png")];
     assert!(headless.pixels().any(|pixel| pixel.0 != headless.get_pixel(0, 0).0), "nothing is seen");

@@ -27,15 +27,11 @@ pub struct End {
 
 /// The program in the folder of `program`, under the validation layers, which tells what happens.
 pub fn command(program: &Program, display: &str, arguments: &str) -> Command {
-    command_on(program, display, &format!("{arguments} --json --validate"))
-}
-
-/// The program in the folder of `program` on a display.
-pub fn command_on(program: &Program, display: &str, arguments: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_surfel"));
     command
         .arg("view")
         .args(arguments.split_whitespace())
+        .args(["--json", "--validate"])
         .current_dir(program.path("."))
         .env_remove("RUST_LOG")
         .env_remove("WAYLAND_DISPLAY")
@@ -57,7 +53,9 @@ impl<'a> View<'a> {
         let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         let (out, mut errors) = (child.stdout.take().unwrap(), child.stderr.take().unwrap());
         let (send, lines) = channel();
-        thread::spawn(move || BufReader::new(out).lines().map_while(Result::ok).try_for_each(|line| send.send(line)));
+        thread::spawn(move || {
+            BufReader::new(out).lines().map_while(Result::ok).try_for_each(|line| send.send(line))
+        });
         let errors = thread::spawn(move || {
             let mut text = String::new();
             let _ = errors.read_to_string(&mut text);

@@ -39,7 +39,13 @@ pub struct Keep {
 
 impl Keep {
     pub fn new(folder: Folder) -> Self {
-        Self { folder, names: Names::default(), clipboard: None, writing: Vec::new(), written: mpsc::channel() }
+        Self {
+            folder,
+            names: Names::default(),
+            clipboard: None,
+            writing: Vec::new(),
+            written: mpsc::channel(),
+        }
     }
 
     /// Writes a picture, without being waited for; then `wake` is called, on another thread.
