@@ -9,9 +9,6 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// Where the library reports what the validation layers say.
 const VALIDATION: &str = "surfel::vk::validation";
 
-/// Who asks the display for windows.
-const WINDOWS: &str = "winit";
-
 static MESSAGES: AtomicUsize = AtomicUsize::new(0);
 
 /// Warnings and errors, or what `RUST_LOG` asks for; the validation layers' messages always.
@@ -19,8 +16,9 @@ pub fn start() {
     Builder::new()
         .filter_level(LevelFilter::Warn)
         .filter_module(VALIDATION, LevelFilter::Error)
-        // What it warns of is the display's business, and what follows from it is an error here.
-        .filter_module(WINDOWS, LevelFilter::Error)
+        // What these warn of is the display's business; what follows from it is an error here.
+        .filter_module("winit", LevelFilter::Error)
+        .filter_module("arboard", LevelFilter::Error)
         .parse_default_env()
         .target(Target::Pipe(Box::new(progress::Log)))
         .format(|out, record| {

@@ -179,12 +179,7 @@ impl ApplicationHandler<News> for App {
             WindowEvent::RedrawRequested => self.draw(events),
             WindowEvent::Focused(false) => self.hands.let_go(),
             WindowEvent::ModifiersChanged(modifiers) => self.hands.modifiers = modifiers.state(),
-            WindowEvent::MouseInput { state, button, .. } => {
-                if self.hands.press(button, state, Instant::now()) {
-                    self.state.pick = Some(self.hands.cursor);
-                    self.changed();
-                }
-            }
+            WindowEvent::MouseInput { state, button, .. } => self.press(button, state),
             WindowEvent::CursorMoved { position, .. } => self.drag(DVec2::new(position.x, position.y)),
             WindowEvent::MouseWheel { delta, .. } => {
                 let steps = match delta {
@@ -271,6 +266,14 @@ impl App {
             self.changed();
         }
         cancelled
+    }
+
+    /// A button goes down or up: the surface under a double press is turned about.
+    fn press(&mut self, button: MouseButton, state: ElementState) {
+        if self.hands.press(button, state, Instant::now()) {
+            self.state.pick = Some(self.hands.cursor);
+            self.changed();
+        }
     }
 
     /// The cursor is somewhere else.

@@ -55,7 +55,11 @@ impl Opening {
         let early = !ui.memory(|memory| memory.has_focus(Id::new(FIELD)));
         if early {
             ui.input(|input| {
-                for event in &input.events {
+                // Not what was typed before the key that asked.
+                let asked = input.events.iter().rposition(|event| {
+                    matches!(event, Event::Key { key: Key::O, pressed: true, modifiers, .. } if modifiers.command)
+                });
+                for event in &input.events[asked.map_or(0, |asked| asked + 1)..] {
                     if let Event::Text(text) = event {
                         self.text.push_str(text);
                     }

@@ -101,7 +101,7 @@ impl Lens {
     }
 
     /// From the middle of the picture, x to the right and y upwards, px.
-    fn from_middle(&self, at: DVec2) -> DVec2 {
+    fn off_middle(&self, at: DVec2) -> DVec2 {
         let half = 0.5 * DVec2::from(self.size.map(f64::from));
         (at - half) * DVec2::new(1.0, -1.0)
     }
@@ -208,7 +208,7 @@ impl Orbit {
     pub fn point(&self, at: DVec2, distance: f64, lens: &Lens) -> DVec3 {
         let [forward, right, up] = self.axes();
         let scale = lens.px(if lens.parallel { self.distance() } else { distance });
-        let at = scale * lens.from_middle(at);
+        let at = scale * lens.off_middle(at);
         self.eye + distance * forward + at.x * right + at.y * up
     }
 

@@ -49,7 +49,6 @@ impl Opened {
         let screen = Screen::new(&device, options.rasterizer)?;
         let hud = Hud::new(&device, &window, presenter.overlay())?;
         let pace = Pace::new(options.budget);
-        events.tell(&Event::Window { device: &device.description().name });
         Ok((Self { presenter, hud, screen, pace, last: None, look: None, window }, device))
     }
 
@@ -128,7 +127,12 @@ impl Opened {
         if again || flies || state.pick.is_some() {
             self.window.request_redraw();
         }
-        Ok(self.pace.refines(Instant::now()))
+        let now = Instant::now();
+        if side < self.pace.side(now) {
+            // The hands came to rest within this frame, and nothing else has the picture drawn whole.
+            self.window.request_redraw();
+        }
+        Ok(self.pace.refines(now))
     }
 
     fn fly(&mut self, state: &mut State, hands: &Hands, now: Instant) {

@@ -2,8 +2,8 @@
 #![cfg(target_os = "linux")]
 
 mod display;
+mod faults;
 mod keeping;
-mod lost;
 mod others;
 #[allow(dead_code, reason = "what of it other tests use")]
 #[path = "../cli/program.rs"]

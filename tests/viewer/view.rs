@@ -27,15 +27,11 @@ pub struct End {
 
 /// The program in the folder of `program`, under the validation layers, which tells what happens.
 pub fn command(program: &Program, display: &str, arguments: &str) -> Command {
-    command_on(program, display, &format!("{arguments} --json --validate"))
-}
-
-/// The program in the folder of `program` on a display.
-pub fn command_on(program: &Program, display: &str, arguments: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_surfel"));
     command
         .arg("view")
         .args(arguments.split_whitespace())
+        .args(["--json", "--validate"])
         .current_dir(program.path("."))
         .env_remove("RUST_LOG")
         .env_remove("WAYLAND_DISPLAY")

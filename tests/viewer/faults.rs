@@ -1,21 +1,21 @@
-//! A device that is lost, by a layer of Vulkan between the program and the driver.
+//! What a driver may do at any time: lose the device, find the swapchain out of date. A layer of Vulkan between program and driver does it.
 
 use crate::program::{Program, say_skipped};
-use crate::view::{End, View, command_on};
+use crate::view::{End, View, command};
 use crate::{SPHERE, stage};
 use std::process::Command;
 
-const MANIFEST: &str = r#"{"file_format_version": "1.0.0", "layer": {"name": "VK_LAYER_SURFEL_lost", "type": "GLOBAL",
-    "library_path": "./liblost.so", "api_version": "1.1.0", "implementation_version": "1", "description": "loses devices",
-    "functions": {"vkGetInstanceProcAddr": "lost_instance_proc", "vkGetDeviceProcAddr": "lost_device_proc"}}}"#;
+const MANIFEST: &str = r#"{"file_format_version": "1.0.0", "layer": {"name": "VK_LAYER_SURFEL_faults", "type": "GLOBAL",
+    "library_path": "./libfaults.so", "api_version": "1.1.0", "implementation_version": "1", "description": "makes faults",
+    "functions": {"vkGetInstanceProcAddr": "faults_instance_proc", "vkGetDeviceProcAddr": "faults_device_proc"}}}"#;
 
 /// The loader lets go of the layer with the instance; what it counts stays.
 const CC: [&str; 5] = ["-shared", "-fPIC", "-Wl,-z,nodelete", "-Wall", "-o"];
 
-/// The program under a layer that loses its first devices; `None`, said aloud, where there is no C compiler.
-fn losing(test: &str, program: &Program, display: &str, devices: u32) -> Option<Command> {
-    let source = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/viewer/lost.c");
-    let library = program.path("liblost.so");
+/// The program under the layer, which these variables tell what to do; `None`, said aloud, where there is no C compiler.
+fn faulty(test: &str, program: &Program, display: &str, faults: &[(&str, &str)]) -> Option<Command> {
+    let source = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/viewer/faults.c");
+    let library = program.path("libfaults.so");
     match Command::new("cc").args(CC).arg(&library).arg(source).status() {
         Ok(status) => assert!(status.success(), "{source} does not compile"),
         Err(error) => {
@@ -24,21 +24,24 @@ fn losing(test: &str, program: &Program, display: &str, devices: u32) -> Option<
             return None;
         }
     }
-    program.write("lost.json", MANIFEST);
-    let mut command = command_on(program, display, &format!("{SPHERE} --size 320x240 --json"));
+    program.write("faults.json", MANIFEST);
+    let mut command = command(program, display, &format!("{SPHERE} --size 320x240"));
     command
-        .env("VK_LAYER_PATH", program.path("."))
-        .env("VK_INSTANCE_LAYERS", "VK_LAYER_SURFEL_lost")
-        .env("LOST_DEVICES", devices.to_string())
-        .env("LOST_AFTER", "12");
+        .env("VK_ADD_LAYER_PATH", program.path("."))
+        .env("VK_INSTANCE_LAYERS", "VK_LAYER_SURFEL_faults")
+        .envs(faults.iter().copied());
     Some(command)
 }
+
+const LATER: (&str, &str) = ("LOST_AFTER", "6");
 
 #[test]
 fn a_lost_device_is_replaced_once() {
     let test = "a_lost_device_is_replaced_once";
     let Some((display, program)) = stage(test) else { return };
-    let Some(command) = losing(test, &program, &display.name, 1) else { return };
+    let Some(command) = faulty(test, &program, &display.name, &[("LOST_DEVICES", "1"), LATER]) else {
+        return;
+    };
     let mut view = View::start(&display, command);
     let first = view.picture(|_| true);
     display.press(&[], u32::from('l'));
@@ -59,7 +62,9 @@ fn a_lost_device_is_replaced_once() {
 fn a_device_that_is_lost_again_ends_the_program() {
     let test = "a_device_that_is_lost_again_ends_the_program";
     let Some((display, program)) = stage(test) else { return };
-    let Some(command) = losing(test, &program, &display.name, 9) else { return };
+    let Some(command) = faulty(test, &program, &display.name, &[("LOST_DEVICES", "9"), LATER]) else {
+        return;
+    };
     let mut view = View::start(&display, command);
     lose(&mut view);
     view.picture(|_| true);
@@ -80,4 +85,20 @@ fn lose(view: &mut View) {
             return;
         }
     }
+}
+
+#[test]
+fn a_swapchain_that_is_out_of_date_is_made_anew() {
+    let test = "a_swapchain_that_is_out_of_date_is_made_anew";
+    let Some((display, program)) = stage(test) else { return };
+    let Some(command) = faulty(test, &program, &display.name, &[("STALE_EVERY", "3")]) else { return };
+    let mut view = View::start(&display, command);
+    let mut before = view.picture(|_| true);
+    for key in ["1", "2", "3", "4"].iter().cycle().take(24) {
+        display.type_text(key);
+        before = view.picture(|event| event["camera"] != before["camera"]);
+    }
+    display.resize(view.window, [200, 100]);
+    view.picture(|event| event["size"] == serde_json::json!([200, 100]));
+    view.close();
 }

@@ -1,10 +1,12 @@
-/* A Vulkan layer that loses devices: the first LOST_DEVICES of them, each after LOST_AFTER submissions. Works on one device at a time. */
+/* A Vulkan layer that makes faults: it loses the first LOST_DEVICES devices, each after LOST_AFTER frames, and says of every
+   STALE_EVERYth image that is acquired or presented that its swapchain is out of date, or suboptimal. Works on one device at a time. */
 
 #include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { LOADER_INSTANCE_INFO = 47, LOADER_DEVICE_INFO = 48, LINK = 0, ERROR_INITIALIZATION_FAILED = -3, ERROR_DEVICE_LOST = -4 };
+enum { LOADER_INSTANCE_INFO = 47, LOADER_DEVICE_INFO = 48, LINK = 0, ERROR_INITIALIZATION_FAILED = -3, ERROR_DEVICE_LOST = -4,
+  SUBOPTIMAL = 1000001003, ERROR_OUT_OF_DATE = -1000001004 };
 
 typedef void (*Function)(void);
 typedef Function (*GetProc)(void *, const char *);
@@ -22,9 +24,21 @@ typedef struct Info {
   Link *link;
 } Info;
 
+/* VkSubmitInfo. */
+typedef struct Submit {
+  uint32_t type;
+  const void *next;
+  uint32_t waits;
+  const void *waited_for, *stages;
+  uint32_t buffers;
+  const void *buffer;
+  uint32_t signals;
+  const void *signalled;
+} Submit;
+
 static GetProc next_instance, next_device;
 static void *instance, *device;
-static int devices, submissions, gone;
+static int devices, frames, gone, images;
 
 static int number(const char *name) {
   const char *text = getenv(name);
@@ -61,7 +75,7 @@ static int32_t create_device(void *physical, const void *create, const void *all
   int32_t result = next(physical, create, allocator, made);
   device = *made;
   devices++;
-  submissions = gone = 0;
+  frames = gone = 0;
   return result;
 }
 
@@ -77,8 +91,10 @@ static int32_t queue_wait_idle(void *queue) {
   return gone ? ERROR_DEVICE_LOST : result;
 }
 
-static int32_t submit(void *queue, uint32_t count, const void *what, uint64_t fence) {
-  if (!gone && devices <= number("LOST_DEVICES") && ++submissions > number("LOST_AFTER")) {
+static int32_t submit(void *queue, uint32_t count, const Submit *what, uint64_t fence) {
+  /* What signals a semaphore is a frame for the window. */
+  int frame = count && what->signals;
+  if (frame && !gone && devices <= number("LOST_DEVICES") && ++frames > number("LOST_AFTER")) {
     /* What is under way ends: a driver that has lost its device does not use anything any more. */
     queue_wait_idle(queue);
     gone = 1;
@@ -95,14 +111,39 @@ static int32_t wait_for_fences(void *of, uint32_t count, const uint64_t *fences,
   return next(of, count, fences, all, timeout);
 }
 
-Function lost_instance_proc(void *of, const char *name);
-Function lost_device_proc(void *of, const char *name);
+/* 0, or what to say of the next image instead of that all is well: one and the other in turn. */
+static int32_t stale(void) {
+  int every = number("STALE_EVERY");
+  if (!every || ++images % every) return 0;
+  return images / every % 2 ? ERROR_OUT_OF_DATE : SUBOPTIMAL;
+}
+
+static int32_t acquire(void *of, uint64_t chain, uint64_t timeout, uint64_t semaphore, uint64_t fence, uint32_t *index) {
+  int32_t (*next)(void *, uint64_t, uint64_t, uint64_t, uint64_t, uint32_t *) =
+      (void *)next_device(device, "vkAcquireNextImageKHR");
+  int32_t said = stale();
+  /* Of what is out of date nothing is acquired. */
+  if (said == ERROR_OUT_OF_DATE) return said;
+  int32_t result = next(of, chain, timeout, semaphore, fence, index);
+  return result ? result : said;
+}
+
+static int32_t present(void *queue, const void *what) {
+  if (gone) return ERROR_DEVICE_LOST;
+  int32_t (*next)(void *, const void *) = (void *)next_device(device, "vkQueuePresentKHR");
+  int32_t result = next(queue, what);
+  return result ? result : stale();
+}
+
+Function faults_instance_proc(void *of, const char *name);
+Function faults_device_proc(void *of, const char *name);
 
 static Function own(const char *name) {
   const struct { const char *name; Function function; } all[] = {
-    {"vkGetInstanceProcAddr", (Function)lost_instance_proc}, {"vkGetDeviceProcAddr", (Function)lost_device_proc},
+    {"vkGetInstanceProcAddr", (Function)faults_instance_proc}, {"vkGetDeviceProcAddr", (Function)faults_device_proc},
     {"vkCreateInstance", (Function)create_instance},         {"vkCreateDevice", (Function)create_device},
     {"vkQueueSubmit", (Function)submit},                     {"vkWaitForFences", (Function)wait_for_fences},
+    {"vkAcquireNextImageKHR", (Function)acquire},            {"vkQueuePresentKHR", (Function)present},
     {"vkDeviceWaitIdle", (Function)wait_idle},               {"vkQueueWaitIdle", (Function)queue_wait_idle},
   };
   for (size_t i = 0; i < sizeof all / sizeof *all; i++)
@@ -110,12 +151,12 @@ static Function own(const char *name) {
   return NULL;
 }
 
-Function lost_instance_proc(void *of, const char *name) {
+Function faults_instance_proc(void *of, const char *name) {
   Function found = own(name);
   return found ? found : next_instance ? next_instance(of, name) : NULL;
 }
 
-Function lost_device_proc(void *of, const char *name) {
+Function faults_device_proc(void *of, const char *name) {
   Function found = own(name);
   return found ? found : next_device ? next_device(of, name) : NULL;
 }
