@@ -128,7 +128,7 @@ impl Opened {
             self.window.request_redraw();
         }
         let now = Instant::now();
-        if side < self.pace.side(now) {
+        if quality != Quality::WHOLE && !self.pace.moves(now) {
             // The hands came to rest within this frame, and nothing else has the picture drawn whole.
             self.window.request_redraw();
         }
