@@ -40,6 +40,9 @@ pub enum Error {
         /// Its result code.
         result: ash::vk::Result,
     },
+    /// The work was given up because its caller [wanted that](crate::Progress::is_cancelled).
+    #[error("given up")]
+    Cancelled,
     /// Device memory ran out or could not be bound.
     #[error("cannot allocate {bytes} bytes for {what}: {cause}; use fewer points or a smaller picture")]
     Memory {

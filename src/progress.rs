@@ -4,6 +4,11 @@
 pub trait Progress: Sync {
     /// `done` of `total` units of the work named `stage` are done. A stage begins with its first call and ends with `done == total`.
     fn at(&self, stage: &'static str, done: u64, total: u64);
+
+    /// Whether the work is to be given up. Where it says that it can be, it then fails with [`Error::Cancelled`](crate::Error::Cancelled).
+    fn is_cancelled(&self) -> bool {
+        false
+    }
 }
 
 /// Nobody is told.

@@ -60,7 +60,11 @@ fn code(error: &Error) -> u8 {
         _ if error.is_device_lost() => LOST,
         Error::Usage(_) => USAGE,
         Error::NoDevice(_) => NO_DEVICE,
-        Error::Input { .. } | Error::Io { .. } | Error::Memory { .. } | Error::Vulkan { .. } => DATA,
+        Error::Input { .. }
+        | Error::Io { .. }
+        | Error::Memory { .. }
+        | Error::Vulkan { .. }
+        | Error::Cancelled => DATA,
     }
 }
 
