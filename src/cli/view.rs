@@ -2,6 +2,7 @@
 
 use super::args::View;
 use super::colouring::Colouring;
+use super::files::config_folder;
 use super::inputs::{self, Wanted};
 use super::{camera, render, vulkan};
 use crate::viewer;
@@ -19,6 +20,8 @@ pub fn run(args: View) -> Result<()> {
     let texture = args.colours.texture()?;
     let (estimate, polygons, quiet) = (args.points.estimate(), args.points.polygons, args.quiet);
     let asked = args.method;
+    // Colours that are not the surface's are not what rays see.
+    let is_exact = colouring.is_none();
     let load = move |names: &[OsString], progress: &dyn Progress| {
         let wanted = Wanted {
             names,
@@ -34,7 +37,11 @@ pub fn run(args: View) -> Result<()> {
         };
         let model = inputs::load(&wanted)?.model;
         let method = render::method(asked, &model)?;
-        Ok(viewer::Loaded { model, method })
+        let surface = match names {
+            [one] if is_exact => inputs::scene(one).map(Into::into),
+            _ => None,
+        };
+        Ok(viewer::Loaded { model, surface, method })
     };
     let options = viewer::Options {
         inputs: args.inputs.clone(),
@@ -43,6 +50,9 @@ pub fn run(args: View) -> Result<()> {
         rasterizer: args.rasterizer,
         up,
         budget: args.budget,
+        remembered: config_folder().filter(|_| !args.fresh).map(|folder| folder.join("viewer.json")),
+        asked: args.method.is_some()
+            || Method::ALL.iter().any(|method| args.settings(method) != method.settings()),
     };
     viewer::run(options, Arc::new(load), Box::new(move |method| args.settings(method)))
 }

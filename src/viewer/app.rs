@@ -4,6 +4,7 @@ use super::hands::Hands;
 use super::keys::{self, Action};
 use super::load::{self, Load, News};
 use super::panels::Told;
+use super::remember::Remembered;
 use super::state::State;
 use super::window::Opened;
 use super::{Look, Options};
@@ -29,12 +30,15 @@ pub fn run(options: Options, load: Load, look: Look) -> Result<()> {
         ))
     };
     let events = EventLoop::<News>::with_user_event().build().map_err(no_display)?;
-    let state = State::new(&options, look);
+    let remembered = options.remembered.as_deref().and_then(Remembered::read);
+    let told = Told::new(remembered.as_ref().is_some_and(|known| known.hidden));
+    let known = remembered.filter(|_| !options.asked).and_then(|known| known.settings());
+    let state = State::new(&options, look, known);
     let hands = Hands::default();
     let mut app = App {
         state,
         hands,
-        told: Told::default(),
+        told,
         load,
         dropped: Vec::new(),
         news: events.create_proxy(),
@@ -80,9 +84,9 @@ impl ApplicationHandler<News> for App {
                 self.told.loading = Some((stage, part as f32 / 1000.0));
                 self.changed();
             }
-            News::Ready(scene, method) => {
+            News::Ready(scene, method, source) => {
                 (self.told.loading, self.told.wrong) = (None, None);
-                self.state.show(scene, method);
+                self.state.show(scene, method, source);
                 self.changed();
             }
             News::Failed(error) if self.state.moving().is_none() => self.fail(events, error),
@@ -146,6 +150,7 @@ impl ApplicationHandler<News> for App {
     }
 
     fn exiting(&mut self, _: &ActiveEventLoop) {
+        self.remember();
         (self.opened, self.device) = (None, None);
     }
 }
@@ -155,6 +160,17 @@ impl App {
     fn open(&mut self, inputs: Vec<OsString>) {
         if let Some(device) = &self.device {
             load::start(self.load.clone(), inputs, device.clone(), self.news.clone());
+        }
+    }
+
+    fn remember(&self) {
+        let Some((path, known)) =
+            self.options.remembered.as_ref().zip(Remembered::of(&self.state, &self.told))
+        else {
+            return;
+        };
+        if let Err(error) = known.write(path) {
+            log::warn!("settings are not remembered: {error}");
         }
     }
 
@@ -176,6 +192,10 @@ impl App {
             Some(Action::Quit) => events.exit(),
             Some(Action::Help) => {
                 self.told.help = !self.told.help;
+                self.changed();
+            }
+            Some(Action::Panels) => {
+                self.told.hidden = !self.told.hidden;
                 self.changed();
             }
             Some(action) => {

@@ -12,6 +12,7 @@ pub enum Action {
     Parallel,
     Frame,
     Help,
+    Panels,
     Up(super::orbit::Up),
     Side(super::orbit::Side),
 }
@@ -29,7 +30,7 @@ const fn letter(key: &'static str, name: &'static str, does: &'static str, actio
 }
 
 /// All of them.
-pub const BINDINGS: [Binding; 16] = {
+pub const BINDINGS: [Binding; 17] = {
     use super::orbit::{Side, Up};
     [
         letter("m", "M", "next method", Action::NextMethod),
@@ -47,6 +48,12 @@ pub const BINDINGS: [Binding; 16] = {
         letter("y", "Y", "y is up, then −y", Action::Up(Up { axis: 1, down: false })),
         letter("z", "Z", "z is up, then −z", Action::Up(Up { axis: 2, down: false })),
         letter("h", "H", "these keys", Action::Help),
+        Binding {
+            key: Key::Named(NamedKey::Tab),
+            name: "Tab",
+            does: "hide or show the panel",
+            action: Action::Panels,
+        },
         Binding { key: Key::Named(NamedKey::Escape), name: "Esc", does: "quit", action: Action::Quit },
     ]
 };

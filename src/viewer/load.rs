@@ -1,6 +1,7 @@
 //! Loading, while the window is there.
 
 use super::Loaded;
+use super::source::Source;
 use std::ffi::OsString;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -18,7 +19,7 @@ pub enum News {
     /// So much of a stage is done, thousandths.
     At(&'static str, u64),
     /// The scene is on the device.
-    Ready(Arc<Scene>, Method),
+    Ready(Arc<Scene>, Method, Source),
     /// It cannot be loaded.
     Failed(surfel::Error),
 }
@@ -32,9 +33,9 @@ pub fn start(
 ) -> JoinHandle<()> {
     thread::spawn(move || {
         let told = Told { window: window.clone(), last: AtomicU64::new(u64::MAX) };
-        let ready = load(&inputs, &told).and_then(|Loaded { model, method }| {
+        let ready = load(&inputs, &told).and_then(|Loaded { model, surface, method }| {
             let scene = Scene::upload(&device, &model)?;
-            Ok(News::Ready(Arc::new(scene), method))
+            Ok(News::Ready(Arc::new(scene), method, Source::new(model, surface)))
         });
         // Whoever has closed the window wants no news.
         let _ = window.send_event(ready.unwrap_or_else(News::Failed));

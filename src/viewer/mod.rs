@@ -8,18 +8,23 @@
 mod app;
 mod hands;
 mod hud;
+mod job;
 mod keys;
 mod load;
 mod orbit;
 mod pace;
 mod panels;
+mod remember;
 mod screen;
+mod side;
+mod source;
 mod state;
 mod window;
 
 use glam::DVec3;
 use load::Load;
 use std::ffi::OsString;
+use std::path::PathBuf;
 use surfel::geometry::Model;
 use surfel::methods::Method;
 use surfel::vk::DeviceOptions;
@@ -39,12 +44,18 @@ pub struct Options {
     pub up: DVec3,
     /// How long frames may take while the hands move, ms.
     pub budget: f64,
+    /// Where settings are remembered, if they are.
+    pub remembered: Option<PathBuf>,
+    /// Whether a method or something of it is asked for, so that what is remembered of them does not count.
+    pub asked: bool,
 }
 
 /// What is looked at.
 pub struct Loaded {
     /// The scene.
     pub model: Model,
+    /// The built-in scene that it is, if its surface is known exactly and nothing of it is changed.
+    pub surface: Option<String>,
     /// How it is rendered at first.
     pub method: Method,
 }

@@ -57,11 +57,15 @@ impl Opened {
         let side = self.pace.side(start);
         told.side = side;
         let again = self.hud.lay_out(&self.window, state, told);
+        self.screen.ask(told.asked(state));
         let shown = self.present(state, told, side)?;
         let ms = 1e3 * start.elapsed().as_secs_f64();
         if shown {
             told.frame = ms;
             self.pace.took(side, ms);
+        }
+        if told.times.is_open() {
+            self.measure(told)?;
         }
         if state.pick.is_some() {
             self.pick(state)?;
@@ -71,7 +75,17 @@ impl Opened {
         if again || flies || state.pick.is_some() {
             self.window.request_redraw();
         }
-        Ok(self.pace.refines(Instant::now()))
+        let wakes = [self.pace.refines(Instant::now()), self.hud.wakes()];
+        Ok(wakes.into_iter().flatten().min())
+    }
+
+    /// Takes what a frame that is over by then tells, and shows it.
+    fn measure(&mut self, told: &mut Told) -> Result<()> {
+        self.presenter.wait()?;
+        if told.times.push(self.screen.reports()?) {
+            self.window.request_redraw();
+        }
+        Ok(())
     }
 
     fn fly(&mut self, state: &mut State, hands: &Hands, now: Instant) {
@@ -81,7 +95,7 @@ impl Opened {
         self.pace.moved(now);
     }
 
-    /// Whether there was a picture of something.
+    /// Whether a picture of something was drawn anew.
     fn present(&mut self, state: &mut State, told: &mut Told, side: f64) -> Result<bool> {
         let PhysicalSize { width, height } = self.window.inner_size();
         let Self { presenter, hud, screen, .. } = self;
@@ -89,7 +103,6 @@ impl Opened {
             state.lens.size = frame.size;
             let size = frame.size.map(|length| ((f64::from(length) * side).round() as u32).max(1));
             let seen = state.frame().transpose()?;
-            let there = seen.is_some();
             let seen = seen.as_ref().map(|(scene, camera, settings)| (*scene, camera, *settings));
             match screen.record(frame, size, seen) {
                 // Other settings may do: the window stays.
@@ -97,7 +110,7 @@ impl Opened {
                 recorded => recorded?,
             }
             hud.record(frame)?;
-            Ok(there)
+            Ok(screen.drew())
         })?;
         Ok(shown == Some(true))
     }

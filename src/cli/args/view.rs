@@ -40,6 +40,9 @@ pub struct View {
     /// How long frames may take while the camera moves; they are coarser where whole ones take longer
     #[arg(long, value_name = "MS", default_value_t = 60.0)]
     pub budget: f64,
+    /// Begins with the method's own settings, rather than with those of the last time, and remembers nothing
+    #[arg(long)]
+    pub fresh: bool,
     /// On which device
     #[command(flatten)]
     pub device: OnDevice,
