@@ -81,6 +81,7 @@ mod buffers;
 mod formats;
 mod held;
 pub mod native;
+mod reports;
 mod target;
 
 pub use crate::scene::Changes;
@@ -89,13 +90,15 @@ pub use crate::vk::{
     MemorySource, QUEUE, Staging,
 };
 pub use buffers::{Buffers, READ_ACCESS, READ_STAGES, Radii, Values, update};
+pub use reports::Measured;
+use reports::Reports;
 pub use target::{Pass, Target};
 use target::{check_convention, depths};
 
 use crate::error::{Error, Result};
 use crate::geometry::{Camera, Parts};
 use crate::passes::{Composite, CompositeKind};
-use crate::renderer::RenderOptions;
+use crate::renderer::{FrameReport, RenderOptions};
 use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::stage::{Retired, Stage};
@@ -154,6 +157,7 @@ pub struct Renderer {
     // Fields are dropped in this order: views before what they view.
     viewed: Option<Viewed>,
     shown: Option<Shown>,
+    reports: Reports,
     held: Held,
     scene: Option<Arc<Scene>>,
     composites: Vec<Arc<Composite>>,
@@ -195,6 +199,7 @@ impl Renderer {
             viewed: None,
             shown: None,
             held: Held::new(frames_in_flight)?,
+            reports: Reports::new(frames_in_flight),
             scene: None,
             composites: Vec::new(),
             stage: Stage::new(device, options, Retired::Kept(Vec::new()))?,
@@ -222,10 +227,16 @@ impl Renderer {
         // Also after an error: what it took the place of may be under way.
         self.held.extend(self.stage.outgoing());
         let (block, shown) = shown?;
+        let splats = self.stage.resident().map(|resident| &resident.splats);
+        self.reports.begin(&self.device, splats)?;
         self.held.advance();
-        // SAFETY: by the caller.
-        let mut rec = unsafe { Recorder::of_host(&self.device, cmd) };
+        // SAFETY: by the caller; the reports have one for each frame under way.
+        let (timestamps, counts) = self.reports.present();
+        let mut rec = unsafe { Recorder::of_host_timed(&self.device, cmd, timestamps) };
         self.stage.record(&mut rec, &block);
+        if let Some((splats, counts)) = splats.zip(counts) {
+            splats.record_counts(&mut rec, counts);
+        }
         if let Some(present) = self.stage.present() {
             rec.wait(&Composite::reads(present.canvas.composited()));
         }
@@ -250,6 +261,28 @@ impl Renderer {
             });
         }
         Ok(())
+    }
+
+    /// What frames that are prepared from now on tell of themselves: nothing, unless this is called. Shaders that count are others than those
+    /// that do not: either are made when they are first needed.
+    pub fn measure(&mut self, measured: Measured) {
+        self.reports.measure(measured);
+        self.stage.count(measured.counts);
+    }
+
+    /// What the last frame that is known to be over tells, without waiting for one: that of [`Options::frames_in_flight`] frames before the one
+    /// that was prepared last, or after [`Renderer::finish`] that one. `None` where it was not [measured](Renderer::measure). The draw of the
+    /// picture is none of the passes: it is within the host's own.
+    pub fn report(&self) -> Option<&FrameReport> {
+        self.reports.last()
+    }
+
+    /// Tells the renderer that every frame is over, so that [`Renderer::report`] is that of the last one.
+    ///
+    /// # Safety
+    /// The GPU is done with every frame that was prepared without an error.
+    pub unsafe fn finish(&mut self) -> Result<()> {
+        self.reports.finish()
     }
 
     /// Makes all that a frame needs: its numbers, and how its picture is drawn.

@@ -260,7 +260,7 @@ pub(crate) fn rasterizer_for(
 }
 
 impl SplatCounts {
-    fn new(surfels: u64, Counts { culled }: Counts) -> Self {
+    pub(crate) fn new(surfels: u64, Counts { culled }: Counts) -> Self {
         let [behind, eye_plane, back, outside, invalid] = culled;
         let drawn = surfels as u32 - culled.iter().sum::<u32>();
         Self { drawn, behind, eye_plane, back, outside, invalid }

@@ -148,6 +148,11 @@ impl Stage {
         }
     }
 
+    /// Whether frames from now on count their surfels.
+    pub(crate) fn count(&mut self, on: bool) {
+        self.options.count = on;
+    }
+
     /// Makes what a frame needs and is not there, with buffers to read it back where it is `read`: the frame's numbers, and what it is.
     pub(crate) fn prepare(
         &mut self,

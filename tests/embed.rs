@@ -17,12 +17,14 @@ use host::scene::parallelogram;
 use stand::{Stand, assert_silent, open, upload};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use surfel::embed::{self, Abilities, Options, Renderer, View};
+use std::time::Instant;
+use surfel::embed::{self, Abilities, Measured, Options, Renderer, View};
 use surfel::geometry::Camera;
 use surfel::methods::Method;
+use surfel::settings::Cull;
 use surfel::splatting::Visibility;
 use surfel::vk::{Device, DeviceOptions};
-use surfel::{Error, Outputs, Picture, Precision, Rasterizer, RenderOptions, Scene, Settings};
+use surfel::{Error, FrameReport, Outputs, Picture, Precision, Rasterizer, RenderOptions, Scene, Settings};
 
 use stand::{SIZE, camera, meets, rising, sphere, surfels, viewport};
 
@@ -274,6 +276,85 @@ fn what_is_in_front_hides_what_is_behind_either_way() {
         mesh.destroy(&host);
         stand.destroy(&host);
     }
+    assert_silent(&host);
+}
+
+/// The `number`th camera: each sees other parts of the sphere.
+fn nearer(number: usize) -> Camera {
+    let eye = DVec3::new(0.4, 0.3, 1.6 + 0.2 * number as f64);
+    Camera::look_at(eye, DVec3::new(0.5, 0.2, 0.0), DVec3::Y, 0.6, 4.0 / 3.0, 0.1).unwrap()
+}
+
+/// What the engine's own frames from these cameras tell.
+fn reports(settings: &Settings, rasterizer: Option<Rasterizer>, count: bool) -> Vec<FrameReport> {
+    let device = Device::open(&DeviceOptions::default()).unwrap();
+    let scene = Scene::upload(&device, &surfels()).unwrap();
+    let outputs = Outputs { normal: false, depth: true, id: false };
+    let options =
+        RenderOptions { size: SIZE, outputs, rasterizer, profile: true, count, ..Default::default() };
+    let mut renderer = surfel::Renderer::new(&device, options).unwrap();
+    (0..5).map(|number| renderer.render(&scene, &nearer(number), settings).unwrap()).collect()
+}
+
+fn labels(report: &FrameReport) -> Vec<&str> {
+    report.pass_times.iter().map(|time| time.label).collect()
+}
+
+#[test]
+fn frames_that_are_over_tell_what_is_asked_for() {
+    let Some(host) = open(|all| all) else { return };
+    let both = Measured { times: true, counts: true };
+    for (settings, rasterizer) in frames() {
+        let settings = Settings { cull: Cull::Back, ..settings };
+        let [own, uncounted] = [true, false].map(|count| reports(&settings, rasterizer, count));
+        let kind = Kind { way: Way::Subpass, colour: FLOATS, normals: false, samples: ONE, reversed: true };
+        let mut stand = Stand::new(&host, kind, SIZE, rasterizer, &surfels());
+        let mut render = |number, measured| {
+            stand.renderer.measure(measured);
+            let (start, view) = (Instant::now(), View { camera: nearer(number), viewport: viewport(SIZE) });
+            stand.render(&host, &view, &settings, None);
+            // SAFETY: the frame was waited for.
+            unsafe { stand.renderer.finish() }.unwrap();
+            (stand.renderer.report().cloned(), 1e3 * start.elapsed().as_secs_f64())
+        };
+        let (report, wall) = render(0, both);
+        let report = report.unwrap();
+        assert_eq!(report.counts, own[0].counts);
+        assert_eq!(labels(&report), [labels(&own[0]), vec!["read back"]].concat());
+        assert!(report.pass_times.iter().all(|time| time.milliseconds > 0.0));
+        let sum: f64 = report.pass_times.iter().map(|time| time.milliseconds).sum();
+        assert!(sum < wall, "{sum} ms of {wall} ms");
+
+        let (times, _) = render(1, Measured { counts: false, ..both });
+        let times = times.unwrap();
+        assert_eq!((times.counts, labels(&times)), (None, labels(&uncounted[1])));
+        let (counts, _) = render(2, Measured { times: false, ..both });
+        assert_eq!(counts, Some(FrameReport { pass_times: vec![], counts: own[2].counts }));
+        assert_eq!(render(3, Measured::default()).0, None);
+        stand.destroy(&host);
+    }
+    assert_silent(&host);
+}
+
+#[test]
+fn a_report_is_of_the_frame_that_must_be_over_by_now() {
+    let Some(host) = open(|all| all) else { return };
+    let settings = Settings { cull: Cull::Back, ..Method::named("pull-push").unwrap().settings() };
+    let own: Vec<_> = reports(&settings, None, true).iter().map(|report| report.counts).collect();
+    assert!(own.windows(2).all(|pair| pair[0] != pair[1]));
+    let kind = Kind { way: Way::Subpass, colour: FLOATS, normals: false, samples: ONE, reversed: true };
+    let mut stand = Stand::new(&host, kind, SIZE, None, &surfels());
+    stand.renderer.measure(Measured { times: false, counts: true });
+    let told: Vec<_> = (0..5)
+        .map(|number| {
+            let view = View { camera: nearer(number), viewport: viewport(SIZE) };
+            stand.render(&host, &view, &settings, None);
+            stand.renderer.report().map(|report| report.counts)
+        })
+        .collect();
+    // Two may be under way: when the third is recorded, the first is over.
+    assert_eq!(told, [None, None, Some(own[0]), Some(own[1]), Some(own[2])]);
+    stand.destroy(&host);
     assert_silent(&host);
 }
 

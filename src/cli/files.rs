@@ -42,8 +42,19 @@ pub fn is_same(a: &OsString, b: &OsString) -> bool {
 
 /// Where compiled pipelines are kept; `None` where the user has no home.
 pub fn cache_folder() -> Option<PathBuf> {
-    // The XDG specification has relative paths ignored.
+    folder("XDG_CACHE_HOME", ".cache")
+}
+
+/// Where settings are remembered; `None` where the user has no home.
+#[cfg(feature = "viewer")]
+pub fn config_folder() -> Option<PathBuf> {
+    folder("XDG_CONFIG_HOME", ".config")
+}
+
+/// A folder by its variable of the XDG specification, or within the user's home.
+fn folder(variable: &str, in_home: &str) -> Option<PathBuf> {
+    // The specification has relative paths ignored.
     let absolute = |name| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
-    let base = absolute("XDG_CACHE_HOME").or_else(|| Some(absolute("HOME")?.join(".cache")))?;
+    let base = absolute(variable).or_else(|| Some(absolute("HOME")?.join(in_home)))?;
     Some(base.join("surfel"))
 }

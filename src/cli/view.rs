@@ -2,6 +2,7 @@
 
 use super::args::{self, View};
 use super::colouring::Colouring;
+use super::files::config_folder;
 use super::inputs::{self, Wanted};
 use super::{camera, render, vulkan};
 use crate::viewer;
@@ -22,10 +23,12 @@ pub fn run(args: View) -> Result<()> {
     let texture = args.colours.texture()?;
     let (estimate, polygons, quiet) = (args.points.estimate(), args.points.polygons, args.quiet);
     let asked = args.method;
+    // Colours that are not the surface's are not what rays see.
+    let is_exact = colouring.is_none();
     let load = move |names: &[OsString], window: &dyn viewer::Loading| {
         let sketch = |model: Model| {
             if let Ok(method) = render::method(asked, &model) {
-                window.sketch(viewer::Loaded { model, method });
+                window.sketch(viewer::Loaded { model, surface: None, method });
             }
         };
         let wanted = Wanted {
@@ -43,7 +46,11 @@ pub fn run(args: View) -> Result<()> {
         };
         let model = inputs::load(&wanted)?.model;
         let method = render::method(asked, &model)?;
-        Ok(viewer::Loaded { model, method })
+        let surface = match names {
+            [one] if is_exact => inputs::scene(one).map(Into::into),
+            _ => None,
+        };
+        Ok(viewer::Loaded { model, surface, method })
     };
     let given = {
         let args::Camera { eye, target, fov, parallel, file, .. } = &args.camera;
@@ -63,6 +70,9 @@ pub fn run(args: View) -> Result<()> {
         watch: args.watch,
         events: viewer::Events::new(start, args.json),
         keep: viewer::Folder { path: args.shots.clone(), tell: !(args.quiet || args.json) },
+        remembered: config_folder().filter(|_| !args.fresh).map(|folder| folder.join("viewer.json")),
+        asked: args.method.is_some()
+            || Method::ALL.iter().any(|method| args.settings(method) != method.settings()),
     };
     viewer::run(options, Arc::new(load), Box::new(move |method| args.settings(method)))
 }

@@ -295,9 +295,26 @@ impl Splats {
         rec.wait(&[self.counts.with(Access::HOST_READ)]);
     }
 
+    /// Bytes of the counts.
+    pub(crate) fn counts_size(&self) -> u64 {
+        self.counts.size()
+    }
+
+    /// Copies the counts to `to`, which has [`Splats::counts_size`] bytes or more: the next frame empties them.
+    pub(crate) fn record_counts(&self, rec: &mut Recorder<'_>, to: &Buffer) {
+        let uses = [self.counts.with(Access::COPY_READ), to.with(Access::COPY_WRITE)];
+        rec.pass("read back", &uses, |enc| enc.copy(&self.counts, to, 0, self.counts.size()));
+        rec.wait(&[to.with(Access::HOST_READ)]);
+    }
+
     /// Culled surfels of the last counted frame, by reason; it must be over.
     pub fn counts(&self) -> Counts {
-        let windows = self.counts.bytes().chunks_exact(COUNTS_STEP as usize);
+        Self::counts_in(self.counts.bytes())
+    }
+
+    /// The same of counts that were copied.
+    pub(crate) fn counts_in(bytes: &[u8]) -> Counts {
+        let windows = bytes.chunks_exact(COUNTS_STEP as usize);
         let culled = windows
             .map(|window| bytemuck::pod_read_unaligned::<Counts>(&window[..size_of::<Counts>()]).culled);
         let add = |sum: [u32; 5], counts: [u32; 5]| std::array::from_fn(|i| sum[i] + counts[i]);

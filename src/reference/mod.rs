@@ -43,7 +43,7 @@ pub(crate) use shading::{Shine, line_normal, linear, lit, lit_line};
 pub use slack::Slack;
 
 use crate::Progress;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::geometry::{Camera, Parts};
 use crate::picture::Picture;
 use crate::settings::Settings;
@@ -116,7 +116,8 @@ impl Frame {
 
 /// Renders `parts` as `camera` sees them, `size` = width and height in px.
 ///
-/// Fails on settings, sizes and cameras of which no picture can be made, and on lines and triangles where splats are drawn.
+/// Fails on settings, sizes and cameras of which no picture can be made, and on lines and triangles where splats are drawn. Splats can be given up
+/// by way of `progress`.
 pub fn render<'a>(
     parts: impl Into<Parts<'a>>,
     camera: &Camera,
@@ -136,7 +137,8 @@ pub fn render<'a>(
     }
     let projector = Projector::new(camera, size, settings)?;
     let scene = Scene::project(&projector, surfels);
-    Ok(draw(&projector, &scene, &Bands::new(&projector, &scene, size), progress))
+    let frame = draw(&projector, &scene, &Bands::new(&projector, &scene, size), progress);
+    if progress.is_cancelled() { Err(Error::Cancelled) } else { Ok(frame) }
 }
 
 /// The pixels of a band.
@@ -156,6 +158,8 @@ fn draw(projector: &Projector, scene: &Scene, bands: &Bands, progress: &dyn Prog
     bands.tell(progress, 0);
     let values: Vec<Value> = bands
         .par_iter()
+        // Of what is given up nobody sees the picture.
+        .filter(|_| !progress.is_cancelled())
         .flat_map(|band| {
             let values = values(projector, scene, &band);
             bands.tell(progress, done.fetch_add(1, Ordering::Relaxed) + 1);

@@ -78,7 +78,7 @@ const AHEAD: usize = 4;
 /// threads.
 ///
 /// # Errors
-/// [`Error::Usage`] for options, settings, sizes and cameras of which no image can be made.
+/// [`Error::Usage`] for options, settings, sizes and cameras of which no image can be made; [`Error::Cancelled`] where `progress` has it given up.
 pub fn render<S: Scene + ?Sized>(
     scene: &S,
     camera: &Camera,
@@ -100,6 +100,9 @@ pub fn render<S: Scene + ?Sized>(
     let (bands, done) = (plan.bands(), AtomicU64::new(0));
     progress.at(STAGE, 0, bands.len() as u64);
     for some in bands.chunks(AHEAD * rayon::current_num_threads()) {
+        if progress.is_cancelled() {
+            return Err(Error::Cancelled);
+        }
         let traced: Vec<_> = some
             .par_iter()
             .map(|rows| {

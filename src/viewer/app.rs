@@ -8,6 +8,7 @@ use super::keep::Keep;
 use super::keys::{self, Action};
 use super::load::{Load, Loader, News, What};
 use super::panels::Told;
+use super::remember::Remembered;
 use super::retry::Retry;
 use super::state::{Of, State};
 use super::watch::Watch;
@@ -17,7 +18,7 @@ use glam::DVec2;
 use std::ffi::OsString;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 use surfel::geometry::Pose;
 use surfel::vk::Device;
 use surfel::{Error, Result};
@@ -29,6 +30,9 @@ use winit::window::WindowId;
 /// Px of a touchpad's scrolling that are a step of a wheel.
 const PX_A_STEP: f64 = 50.0;
 
+/// Surfels that were changed, and not again for so long, stay.
+const SETTLED: Duration = Duration::from_millis(400);
+
 /// Opens the window and shows what `load` gives until it is closed.
 pub fn run(options: Options, load: Load, look: Look) -> Result<()> {
     let no_display = |cause: winit::error::EventLoopError| {
@@ -37,7 +41,10 @@ pub fn run(options: Options, load: Load, look: Look) -> Result<()> {
         ))
     };
     let events = EventLoop::<News>::with_user_event().build().map_err(no_display)?;
-    let state = State::new(&options, look);
+    let remembered = options.remembered.as_deref().and_then(Remembered::read);
+    let told = Told::new(remembered.as_ref().is_some_and(|known| known.hidden));
+    let known = remembered.filter(|_| !options.asked).and_then(|known| known.settings());
+    let state = State::new(&options, look, known);
     let hands = Hands::default();
     let mut loader = Loader::new(load, events.create_proxy(), options.events);
     // The window opens meanwhile.
@@ -47,7 +54,7 @@ pub fn run(options: Options, load: Load, look: Look) -> Result<()> {
     let mut app = App {
         state,
         hands,
-        told: Told::default(),
+        told,
         loader,
         watch,
         dropped: Vec::new(),
@@ -61,6 +68,7 @@ pub fn run(options: Options, load: Load, look: Look) -> Result<()> {
         opened: None,
         device: None,
         retry: Retry::default(),
+        changed: (0, None),
         failed: None,
     };
     events.run_app(&mut app).map_err(no_display)?;
@@ -89,6 +97,8 @@ struct App {
     /// What is being loaded.
     pending: Option<Vec<OsString>>,
     retry: Retry,
+    /// The last version of the surfels, and when it counts as one that stays.
+    changed: (u64, Option<Instant>),
     failed: Option<Error>,
 }
 
@@ -117,18 +127,20 @@ impl ApplicationHandler<News> for App {
         let tell = self.options.events;
         match what {
             What::At(stage, part) => self.told.loading = Some((stage, part as f32 / 1000.0)),
-            What::Sketch(scene, method) => {
+            What::Sketch(scene, method, source) => {
                 tell.tell(&Event::Sketch { surfels: scene.count() });
-                if let Err(error) = self.show(scene, method, Of { load, sketch: true, again: false }) {
+                if let Err(error) =
+                    self.show(scene, (method, source), Of { load, sketch: true, again: false })
+                {
                     return self.fail(events, error);
                 }
             }
-            What::Ready(scene, method) => {
+            What::Ready(scene, method, source) => {
                 tell.tell(&Event::Ready { surfels: scene.count() });
                 (self.told.loading, self.told.wrong) = (None, None);
                 self.inputs = self.pending.take().unwrap_or(std::mem::take(&mut self.inputs));
                 let of = Of { load, sketch: false, again: self.loader.is_again() };
-                if let Err(error) = self.show(scene, method, of) {
+                if let Err(error) = self.show(scene, (method, source), of) {
                     return self.fail(events, error);
                 }
             }
@@ -195,6 +207,7 @@ impl ApplicationHandler<News> for App {
     }
 
     fn exiting(&mut self, _: &ActiveEventLoop) {
+        self.remember();
         self.keep.finish();
         self.written();
         (self.opened, self.device) = (None, None);
@@ -209,16 +222,45 @@ impl App {
         self.loader.start(inputs);
     }
 
+    fn remember(&self) {
+        let Some((path, known)) =
+            self.options.remembered.as_ref().zip(Remembered::of(&self.state, &self.told))
+        else {
+            return;
+        };
+        if let Err(error) = known.write(path) {
+            log::warn!("settings are not remembered: {error}");
+        }
+    }
+
     fn draw(&mut self, events: &ActiveEventLoop) {
         let Some(opened) = &mut self.opened else { return };
-        match opened.draw(&mut self.state, &self.hands, &mut self.told, &self.options.events) {
-            Ok(next) => events.set_control_flow(next.map_or(ControlFlow::Wait, ControlFlow::WaitUntil)),
+        let next = match opened.draw(&mut self.state, &self.hands, &mut self.told, &self.options.events) {
+            Ok(next) => next.into_iter().chain(self.coarsen(Instant::now())).min(),
             Err(error) => return self.fail(events, error),
-        }
+        };
+        events.set_control_flow(next.map_or(ControlFlow::Wait, ControlFlow::WaitUntil));
         if std::mem::take(&mut self.state.cancel) {
             self.cancel();
         }
         self.answer();
+    }
+
+    /// Has coarser scenes made of surfels that are others than they were, once they stay as they are; when that is to be looked at again.
+    fn coarsen(&mut self, now: Instant) -> Option<Instant> {
+        let version = self.state.version();
+        if self.changed.0 != version {
+            self.changed = (version, Some(now + SETTLED));
+        }
+        let due = self.changed.1?;
+        if now < due {
+            return Some(due);
+        }
+        self.changed.1 = None;
+        if let Some(source) = self.state.without_coarser() {
+            self.loader.coarsen(source);
+        }
+        None
     }
 
     fn key(&mut self, events: &ActiveEventLoop, event: &KeyEvent) {
@@ -247,6 +289,10 @@ impl App {
             }
             Some(Action::Help) => {
                 self.told.help = !self.told.help;
+                self.changed();
+            }
+            Some(Action::Panels) => {
+                self.told.hidden = !self.told.hidden;
                 self.changed();
             }
             Some(action) => {

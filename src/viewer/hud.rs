@@ -8,6 +8,7 @@ use egui::{ClippedPrimitive, TexturesDelta};
 use egui_ash_renderer::allocator::DefaultAllocator;
 use egui_ash_renderer::{Options, RenderMode, Renderer, RendererError};
 use std::sync::Arc;
+use std::time::{Duration, Instant};
 use surfel::vk::{Device, FRAMES_IN_FLIGHT, Presented, Recorder};
 use surfel::{Error, Result};
 use winit::event::WindowEvent;
@@ -21,6 +22,8 @@ pub struct Hud {
     hands: egui_winit::State,
     textures: TexturesDelta,
     shapes: Vec<ClippedPrimitive>,
+    /// When the panels want to be drawn again.
+    wakes: Option<Instant>,
     device: Arc<Device>,
 }
 
@@ -52,7 +55,7 @@ impl Hud {
         })?;
         let pool = pool.map_err(Error::vulkan("vkCreateCommandPool"))?;
         let (textures, shapes) = (TexturesDelta::default(), Vec::new());
-        Ok(Self { renderer, pool, context, hands, textures, shapes, device: device.clone() })
+        Ok(Self { renderer, pool, context, hands, textures, shapes, wakes: None, device: device.clone() })
     }
 
     /// Tells the panels of an event; whether it is theirs, and whether they look different now.
@@ -62,13 +65,22 @@ impl Hud {
     }
 
     /// Lays the panels out; whether they want to be drawn again at once.
-    pub fn lay_out(&mut self, window: &Window, state: &mut State, told: &Told) -> bool {
+    pub fn lay_out(&mut self, window: &Window, state: &mut State, told: &mut Told) -> bool {
         let input = self.hands.take_egui_input(window);
-        let output = self.context.run_ui(input, |ui| panels::show(ui, state, told));
+        let device = &self.device;
+        let output = self.context.run_ui(input, |ui| panels::show(ui, state, told, device));
         self.hands.handle_platform_output(window, output.platform_output);
         self.shapes = self.context.tessellate(output.shapes, output.pixels_per_point);
         self.textures.append(output.textures_delta);
-        output.viewport_output.values().any(|viewport| viewport.repaint_delay.is_zero())
+        let delay = output.viewport_output.values().map(|viewport| viewport.repaint_delay).min();
+        let delay = delay.unwrap_or(Duration::MAX);
+        self.wakes = Instant::now().checked_add(delay).filter(|_| delay < Duration::from_secs(3600));
+        delay.is_zero()
+    }
+
+    /// When the panels want to be drawn again, if nothing happens before.
+    pub fn wakes(&self) -> Option<Instant> {
+        self.wakes
     }
 
     /// Records the panels over the window's picture, when the GPU is done with all but the last frame.

@@ -18,6 +18,7 @@ pub enum Action {
     SaveCamera,
     CopyCamera,
     PasteCamera,
+    Panels,
     Up(super::orbit::Up),
     Side(super::orbit::Side),
 }
@@ -55,7 +56,7 @@ const fn named(
 }
 
 /// All of them.
-pub const BINDINGS: [Binding; 23] = {
+pub const BINDINGS: [Binding; 24] = {
     use super::orbit::{Side, Up};
     [
         letter("m", "M", "next method", Action::NextMethod),
@@ -92,6 +93,7 @@ pub const BINDINGS: [Binding; 23] = {
         control("c", "Ctrl+C", "copy the camera", Action::CopyCamera),
         control("v", "Ctrl+V", "paste a camera", Action::PasteCamera),
         letter("h", "H", "these keys", Action::Help),
+        named(NamedKey::Tab, NONE, "Tab", "hide or show the panel", Action::Panels),
         named(NamedKey::Escape, NONE, "Esc", "give up loading; quit", Action::Quit),
     ]
 };

@@ -2,6 +2,7 @@
 
 use super::Loaded;
 use super::events::{Event, Events};
+use super::source::Source;
 use std::borrow::Cow;
 use std::ffi::OsString;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -44,9 +45,9 @@ pub enum What {
     /// So much of a stage is done, thousandths.
     At(&'static str, u64),
     /// Some of the points are on the device.
-    Sketch(Arc<Scene>, Method),
+    Sketch(Arc<Scene>, Method, Source),
     /// The scene is on the device.
-    Ready(Arc<Scene>, Method),
+    Ready(Arc<Scene>, Method, Source),
     /// And so are fewer and larger surfels of it, ever fewer.
     Coarser(Vec<Arc<Scene>>),
     /// It cannot be loaded.
@@ -120,9 +121,28 @@ impl Loader {
     }
 
     fn begin(&mut self) {
+        self.last += 1;
+        let (load, inputs) = (self.load.clone(), self.inputs.clone());
+        self.work(move |told| {
+            if let Err(error) = told.load(&load, &inputs) {
+                told.send(What::Failed(error));
+            }
+        });
+    }
+
+    /// Makes the coarser scenes of the last load's anew, of what its surfels are now.
+    pub fn coarsen(&mut self, source: Source) {
+        self.work(move |told| {
+            if let Some(device) = told.device() {
+                told.coarsen(device, &source.shown());
+            }
+        });
+    }
+
+    /// Does work for the last load on a thread of its own, in place of what is under way.
+    fn work(&mut self, body: impl FnOnce(&Told) + Send + 'static) {
         self.cancel();
         self.under_way.retain(|load| !load.thread.is_finished());
-        self.last += 1;
         let cancelled = Arc::new(AtomicBool::new(false));
         let told = Told {
             number: self.last,
@@ -133,12 +153,7 @@ impl Loader {
             again: self.again,
             last: AtomicU64::new(u64::MAX),
         };
-        let (load, inputs) = (self.load.clone(), self.inputs.clone());
-        let thread = thread::spawn(move || {
-            if let Err(error) = told.load(&load, &inputs) {
-                told.send(What::Failed(error));
-            }
-        });
+        let thread = thread::spawn(move || body(&told));
         self.under_way.push(UnderWay { cancelled, thread });
     }
 
@@ -182,15 +197,23 @@ struct Told {
 
 impl Told {
     fn load(&self, load: &Load, inputs: &[OsString]) -> Result<()> {
-        let Loaded { model, method } = load(inputs, self)?;
+        let Loaded { model, surface, method } = load(inputs, self)?;
         self.events.tell(&Event::Loaded { surfels: model.surfels.len() as u64 });
         let Some(device) = self.device() else { return Ok(()) };
         self.at("uploading", 0, 1);
         let scene = Arc::new(Scene::upload(device, &model)?);
-        self.send(What::Ready(scene, method));
-        let coarser = self.coarser(device, &model);
-        self.send(What::Coarser(coarser));
+        let source = Source::new(model, surface);
+        let model = source.shown();
+        self.send(What::Ready(scene, method, source));
+        self.coarsen(device, &model);
         Ok(())
+    }
+
+    fn coarsen(&self, device: &Arc<Device>, model: &Model) {
+        let coarser = self.coarser(device, model);
+        if !self.is_cancelled() {
+            self.send(What::Coarser(coarser));
+        }
     }
 
     /// Ever fewer and larger surfels; none where there are lines or triangles, which have all to be there.
@@ -241,12 +264,12 @@ impl Progress for Told {
 }
 
 impl Loading for Told {
-    fn sketch(&self, Loaded { model, method }: Loaded) {
+    fn sketch(&self, Loaded { model, surface, method }: Loaded) {
         // Until all of it is there, its earlier state stays.
         let Some(device) = self.device().filter(|_| !self.again) else { return };
         // What is wrong with it is wrong with the whole scene, which says so.
         if let Ok(scene) = Scene::upload(device, &model) {
-            self.send(What::Sketch(Arc::new(scene), method));
+            self.send(What::Sketch(Arc::new(scene), method, Source::new(model, surface)));
         }
     }
 }

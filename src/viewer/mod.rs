@@ -10,6 +10,7 @@ mod cost;
 mod events;
 mod hands;
 mod hud;
+mod job;
 mod keep;
 mod keys;
 mod load;
@@ -17,8 +18,11 @@ mod open;
 mod orbit;
 mod pace;
 mod panels;
+mod remember;
 mod retry;
 mod screen;
+mod side;
+mod source;
 mod state;
 mod watch;
 mod window;
@@ -28,6 +32,7 @@ use glam::DVec3;
 pub use keep::Folder;
 pub use load::{Load, Loading};
 use std::ffi::OsString;
+use std::path::PathBuf;
 use surfel::geometry::{Bounds, Model, Pose};
 use surfel::methods::Method;
 use surfel::vk::DeviceOptions;
@@ -57,12 +62,18 @@ pub struct Options {
     pub events: Events,
     /// Where pictures and cameras are kept.
     pub keep: Folder,
+    /// Where settings are remembered, if they are.
+    pub remembered: Option<PathBuf>,
+    /// Whether a method or something of it is asked for, so that what is remembered of them does not count.
+    pub asked: bool,
 }
 
 /// What is looked at.
 pub struct Loaded {
     /// The scene.
     pub model: Model,
+    /// The built-in scene that it is, if its surface is known exactly and nothing of it is changed.
+    pub surface: Option<String>,
     /// How it is rendered at first.
     pub method: Method,
 }

@@ -4,6 +4,7 @@ use super::keys::Action;
 use super::open::{Answer, Opening};
 use super::orbit::{Lens, Orbit, Up};
 use super::pace::Sight;
+use super::source::Source;
 use super::{Look, Options};
 use glam::{DVec2, DVec3};
 use std::borrow::Cow;
@@ -12,16 +13,34 @@ use surfel::geometry::{Camera, Pose};
 use surfel::methods::Method;
 use surfel::settings::Shading;
 use surfel::splatting::Normalization;
-use surfel::{Result, Scene, Settings};
+use surfel::vk::Device;
+use surfel::{Rasterizer, Result, Scene, Settings};
 
 /// What the picture can show.
 pub const SHADINGS: [Shading; 4] = [Shading::Lit, Shading::Colour, Shading::Normal, Shading::Depth];
+
+/// What a shading shows.
+pub fn shading_text(shading: Shading) -> &'static str {
+    match shading {
+        Shading::Lit => "lit by a lamp at the eye",
+        Shading::Colour => "the points' colours as they are",
+        Shading::Normal => "normals in world space: x, y, z as red, green, blue; below 0 is black",
+        Shading::Depth => "distance from the eye, in the positions' unit: 1 and above is white",
+        Shading::Overlap => "how many splats are blended",
+        Shading::Weight => "what the splats' weights add up to",
+    }
+}
 
 /// What is looked at, and how.
 pub struct State {
     pub lens: Lens,
     up: Up,
     look: Look,
+    rasterizer: Option<Rasterizer>,
+    /// How the first scene is seen, if it can be.
+    remembered: Option<(Method, Settings)>,
+    /// Another for scenes with other contents.
+    version: u64,
     shown: Option<Shown>,
     /// How the scene was shown that the last device had.
     left: Option<(Method, Settings)>,
@@ -58,6 +77,7 @@ struct Shown {
     coarser: Vec<Arc<Scene>>,
     /// What is looked at again where a sketch is all that ever comes.
     before: Option<Box<Shown>>,
+    source: Source,
     orbit: Orbit,
     /// The camera that the hands were given, and what they have made of it: until they move it is that, bit for bit.
     given: Option<(Orbit, Lens, Pose)>,
@@ -66,12 +86,15 @@ struct Shown {
 }
 
 impl State {
-    pub fn new(options: &Options, look: Look) -> Self {
+    pub fn new(options: &Options, look: Look, remembered: Option<(Method, Settings)>) -> Self {
         let lens = Lens { size: options.size, fov_y_deg: options.fov_y_deg, parallel: false };
         Self {
             lens,
             up: nearest(options.up),
             look,
+            rasterizer: options.rasterizer,
+            remembered,
+            version: 0,
             shown: None,
             left: None,
             pick: None,
@@ -81,26 +104,59 @@ impl State {
         }
     }
 
-    /// Looks at the scene of a load from the front; or at all of what was a sketch as at that.
-    pub fn show(&mut self, scene: Arc<Scene>, method: Method, of: Of) {
+    /// Looks at the scene of a load from the front; or at all of what was a sketch as at that, and so at what is loaded again.
+    pub fn show(&mut self, scene: Arc<Scene>, (method, mut source): (Method, Source), of: Of) {
         let framed = |scene: &Scene| Orbit::framing(&scene.bounds(), self.up, &self.lens);
-        let (orbit, left) = (framed(&scene), self.left.take());
-        let (method, settings) = left.unwrap_or_else(|| (method, (self.look)(&method)));
-        let (coarser, given) = (Vec::new(), None);
+        let (orbit, coarser, given) = (framed(&scene), Vec::new(), None);
+        let known = self.left.take().or(self.remembered.take_if(|known| suits(&scene, &known.1)));
+        let (method, settings) = known.unwrap_or_else(|| (method, (self.look)(&method)));
+        if !of.sketch {
+            self.remembered = None;
+        }
         self.shown = Some(match self.shown.take() {
             Some(sketch) if sketch.of == of.sketch_of() => {
                 let moved = sketch.given.is_some() || sketch.orbit != framed(&sketch.scene);
                 let orbit = if moved { sketch.orbit } else { orbit };
-                Shown { scene, of, orbit, coarser, before: None, ..sketch }
+                source.changed = sketch.source.changed;
+                Shown { scene, source, of, orbit, coarser, before: None, ..sketch }
             }
-            Some(shown) if of.again && !shown.of.sketch => Shown { scene, of, coarser, ..shown },
+            Some(shown) if of.again && !shown.of.sketch => {
+                source.changed = shown.source.changed;
+                Shown { scene, source, of, coarser, ..shown }
+            }
             before => {
                 // Of one that is not whole there was something before.
                 let whole = |shown: Shown| if shown.of.sketch { shown.before } else { Some(Box::new(shown)) };
                 let before = before.filter(|_| of.sketch).and_then(whole);
-                Shown { scene, of, coarser, before, orbit, given, method, settings }
+                Shown { scene, source, of, coarser, before, orbit, given, method, settings }
             }
         });
+    }
+
+    /// How it is seen, if something is.
+    pub fn settings(&self) -> Option<&Settings> {
+        self.shown.as_ref().map(|shown| &shown.settings)
+    }
+
+    /// Another for scenes with other contents.
+    pub fn version(&self) -> u64 {
+        self.version
+    }
+
+    /// Makes the scene what its source is to be. The coarser ones are not that, and go.
+    pub fn apply(&mut self, device: &Arc<Device>) -> Result<()> {
+        let Some(Shown { scene, source, coarser, .. }) = &mut self.shown else { return Ok(()) };
+        if source.apply(scene, device)? {
+            self.version += 1;
+            coarser.clear();
+        }
+        Ok(())
+    }
+
+    /// What coarser scenes are to be made of, if there are none of what is shown whole.
+    pub fn without_coarser(&self) -> Option<Source> {
+        let shown = self.shown.as_ref().filter(|shown| !shown.of.sketch && shown.coarser.is_empty())?;
+        Some(shown.source.clone())
     }
 
     /// Whether hands have moved the camera before a sketch of this load.
@@ -213,17 +269,32 @@ impl State {
 
     /// What can be chosen, where something is shown.
     pub fn choices(&mut self) -> Option<Choices<'_>> {
-        let Self { shown: Some(Shown { method, settings, scene, .. }), lens, look, .. } = self else {
+        let camera = self.frame(0).map(|frame| frame.map(|(_, camera, _)| camera));
+        let Self { shown: Some(Shown { method, settings, scene, source, .. }), lens, look, .. } = self else {
             return None;
         };
-        Some(Choices { method, settings, parallel: &mut lens.parallel, surfels: scene.count(), look })
+        let streams = scene.streams();
+        Some(Choices {
+            method,
+            settings,
+            source,
+            surfels: scene.count(),
+            primitives: streams.primitives.any(),
+            weighted: streams.weights.is_some(),
+            scene,
+            camera,
+            size: lens.size,
+            parallel: &mut lens.parallel,
+            rasterizer: self.rasterizer,
+            look,
+        })
     }
 
     /// Does what a key asks for, of what is looked at.
     pub fn act(&mut self, action: Action) {
         let Some(shown) = &mut self.shown else { return };
         match action {
-            Action::Quit | Action::Help | Action::Open => {}
+            Action::Quit | Action::Help | Action::Panels | Action::Open => {}
             Action::Keep(_) | Action::SaveCamera | Action::CopyCamera | Action::PasteCamera => {}
             Action::NextMethod => shown.turn_method(1, &self.look),
             Action::PreviousMethod => shown.turn_method(Method::ALL.len() - 1, &self.look),
@@ -247,17 +318,38 @@ impl State {
 pub struct Choices<'a> {
     pub method: &'a mut Method,
     pub settings: &'a mut Settings,
+    pub source: &'a mut Source,
     pub parallel: &'a mut bool,
     pub surfels: u64,
+    /// Whether there are lines or triangles.
+    pub primitives: bool,
+    /// Whether there are normalization weights.
+    pub weighted: bool,
+    pub scene: &'a Arc<Scene>,
+    pub camera: Option<Result<Camera>>,
+    /// Width and height of the window's picture, px.
+    pub size: [u32; 2],
+    pub rasterizer: Option<Rasterizer>,
     look: &'a Look,
 }
 
 impl Choices<'_> {
-    /// Takes another method, with the shading of this one.
+    /// Takes another method; what is seen stays.
     pub fn choose(&mut self, method: Method) {
-        *self.settings = Settings { shading: self.settings.shading, ..(self.look)(&method) };
+        *self.settings = self.settings_of(&method);
         *self.method = method;
     }
+
+    /// The settings of a method; what is seen stays.
+    pub fn settings_of(&self, method: &Method) -> Settings {
+        seen_alike((self.look)(method), self.settings)
+    }
+}
+
+/// Settings with what those before let one see.
+fn seen_alike(settings: Settings, before: &Settings) -> Settings {
+    let Settings { shading, background, alpha, .. } = *before;
+    Settings { shading, background, alpha, ..settings }
 }
 
 impl Shown {
@@ -269,11 +361,11 @@ impl Shown {
         self.given.filter(still).map(|(.., pose)| pose)
     }
 
-    /// The method so many further on, with the shading of this one.
+    /// The method so many further on; what is seen stays.
     fn turn_method(&mut self, steps: usize, look: &Look) {
         let now = Method::ALL.iter().position(|method| method.name == self.method.name).unwrap_or(0);
         self.method = Method::ALL[(now + steps) % Method::ALL.len()];
-        self.settings = Settings { shading: self.settings.shading, ..look(&self.method) };
+        self.settings = seen_alike(look(&self.method), &self.settings);
     }
 }
 
@@ -284,6 +376,13 @@ fn quick(settings: &Settings) -> Cow<'_, Settings> {
         quick.to_mut().splatting.normalization = Normalization::Pixel;
     }
     quick
+}
+
+/// Whether a scene can be rendered so.
+fn suits(scene: &Scene, settings: &Settings) -> bool {
+    let streams = scene.streams();
+    let weighted = settings.splatting.normalization.check_weights(streams.weights.is_some());
+    settings.check_primitives(streams.primitives.any()).and(weighted).is_ok()
 }
 
 /// The axis that is nearest to a direction.

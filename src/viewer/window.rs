@@ -96,6 +96,7 @@ impl Opened {
         told.surfels =
             sight.as_ref().and_then(|sight| sight.surfels.get(quality.scene)).copied().unwrap_or(0.0);
         let again = self.hud.lay_out(&self.window, state, told);
+        self.screen.ask(told.asked(state));
         let shown = self.present(state, told, quality)?;
         // A frame's time is its own, and the next one shows where the hands are when it begins.
         self.presenter.wait()?;
@@ -119,6 +120,9 @@ impl Opened {
                 }));
             }
         }
+        if told.times.is_open() {
+            self.measure(told)?;
+        }
         if state.pick.is_some() {
             self.pick(state)?;
         }
@@ -132,7 +136,16 @@ impl Opened {
             // The hands came to rest within this frame, and nothing else has the picture drawn whole.
             self.window.request_redraw();
         }
-        Ok(self.pace.refines(now))
+        let wakes = [self.pace.refines(now), self.hud.wakes()];
+        Ok(wakes.into_iter().flatten().min())
+    }
+
+    /// Takes what the last frame, which is over, tells, and shows it.
+    fn measure(&mut self, told: &mut Told) -> Result<()> {
+        if told.times.push(self.screen.reports()?) {
+            self.window.request_redraw();
+        }
+        Ok(())
     }
 
     fn fly(&mut self, state: &mut State, hands: &Hands, now: Instant) {
@@ -142,7 +155,7 @@ impl Opened {
         self.pace.moved(now);
     }
 
-    /// Whether there was a picture of something.
+    /// Whether a picture of something was drawn anew.
     fn present(&mut self, state: &mut State, told: &mut Told, quality: Quality) -> Result<bool> {
         let PhysicalSize { width, height } = self.window.inner_size();
         let Self { presenter, hud, screen, .. } = self;
@@ -150,7 +163,6 @@ impl Opened {
             state.lens.size = frame.size;
             let size = frame.size.map(|length| ((f64::from(length) * quality.side).round() as u32).max(1));
             let seen = state.frame(quality.scene).transpose()?;
-            let there = seen.is_some();
             let seen = seen.as_ref().map(|(scene, camera, settings)| (*scene, camera, &**settings));
             match screen.record(frame, size, seen) {
                 // Other settings may do: the window stays.
@@ -158,7 +170,7 @@ impl Opened {
                 recorded => recorded?,
             }
             hud.record(frame)?;
-            Ok(there)
+            Ok(screen.drew())
         })?;
         Ok(shown == Some(true))
     }

@@ -192,6 +192,13 @@ impl Tracker {
         (barrier.target != none).then_some(barrier)
     }
 
+    /// Notes how an earlier frame left resources: images keep their contents then.
+    pub(super) fn left(&mut self, uses: &[Use]) {
+        for used in uses {
+            self.state_of(used.resource).layout = used.access.layout;
+        }
+    }
+
     fn state_of(&mut self, resource: Resource) -> &mut State {
         let index = self.0.iter().position(|state| state.resource == resource).unwrap_or_else(|| {
             // An earlier frame or an upload may still be at it.
@@ -301,5 +308,16 @@ mod tests {
         assert_eq!(sampled.images[0].old_layout, vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL);
         assert_eq!(sampled.images[0].new_layout, vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL);
         assert!(barrier(image, Access::FRAGMENT_READ).is_none());
+
+        let kept = Use { resource: image, access: Access::COPY_READ };
+        let mut next = Tracker::default();
+        next.left(&[kept]);
+        let read = next.barrier(&[kept]).unwrap();
+        assert_eq!(
+            read.source,
+            vk::PipelineStageFlags::ALL_COMMANDS,
+            "whatever wrote it, in an earlier frame"
+        );
+        assert!(read.images.is_empty(), "it stays in its layout");
     }
 }

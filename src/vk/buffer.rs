@@ -40,9 +40,10 @@ impl Buffer {
         Self::new(device, name, size, vk::BufferUsageFlags::STORAGE_BUFFER, Location::Upload)
     }
 
-    /// A buffer that the GPU writes, by copies or as storage, and the CPU reads.
+    /// A buffer that the GPU writes, by copies or as storage, and the CPU reads, or the GPU copies from.
     pub fn readback(device: &Arc<Device>, name: &str, size: u64) -> Result<Self> {
-        let usage = vk::BufferUsageFlags::TRANSFER_DST | vk::BufferUsageFlags::STORAGE_BUFFER;
+        use vk::BufferUsageFlags as Usage;
+        let usage = Usage::STORAGE_BUFFER | Usage::TRANSFER_DST | Usage::TRANSFER_SRC;
         Self::new(device, name, size, usage, Location::Readback)
     }
 

@@ -38,8 +38,19 @@ impl<'a> Encoder<'a> {
 
     /// Draws into all of `framebuffer`; cleared targets start at 0.
     pub fn render(&mut self, framebuffer: &Framebuffer, draws: impl FnOnce(&mut Draws<'_>)) {
+        self.render_over(framebuffer, [0.0; 4], draws);
+    }
+
+    /// The same; the first target, of colours, starts as `colour` if it is cleared.
+    pub fn render_over(
+        &mut self,
+        framebuffer: &Framebuffer,
+        colour: [f32; 4],
+        draws: impl FnOnce(&mut Draws<'_>),
+    ) {
         let area = vk::Rect2D { offset: vk::Offset2D::default(), extent: framebuffer.extent };
-        let clears = vec![vk::ClearValue::default(); framebuffer.attachments];
+        let mut clears = vec![vk::ClearValue::default(); framebuffer.attachments];
+        clears[0].color.float32 = colour;
         let info = vk::RenderPassBeginInfo::default()
             .render_pass(framebuffer.render_pass)
             .framebuffer(framebuffer.raw)
@@ -123,20 +134,30 @@ impl<'a> Encoder<'a> {
     /// Copies `image`, scaled, over all of a window's image.
     #[cfg(feature = "window")]
     pub fn show(&mut self, image: &Image, window: &super::Presented) {
+        self.show_part(image, window, [0.0, 1.0]);
+    }
+
+    /// The same of the columns between two parts of the width, from 0 to 1.
+    #[cfg(feature = "window")]
+    pub fn show_part(&mut self, image: &Image, window: &super::Presented, columns: [f64; 2]) {
         let layers = vk::ImageSubresourceLayers {
             aspect_mask: vk::ImageAspectFlags::COLOR,
             layer_count: 1,
             ..Default::default()
         };
         let corners = |size: [u32; 2]| {
-            let [x, y] = size.map(|side| side as i32);
-            [vk::Offset3D::default(), vk::Offset3D { x, y, z: 1 }]
+            let [from, to] = columns.map(|part| (part.clamp(0.0, 1.0) * f64::from(size[0])).round() as i32);
+            [vk::Offset3D { x: from, y: 0, z: 0 }, vk::Offset3D { x: to, y: size[1] as i32, z: 1 }]
         };
+        let [source, target] = [image.size(), window.size].map(corners);
+        if [source, target].iter().any(|[from, to]| from.x >= to.x) {
+            return;
+        }
         let region = vk::ImageBlit::default()
             .src_subresource(layers)
-            .src_offsets(corners(image.size()))
+            .src_offsets(source)
             .dst_subresource(layers)
-            .dst_offsets(corners(window.size));
+            .dst_offsets(target);
         // Pixels of the same size are copied as they are.
         let filter = if image.size() == window.size { vk::Filter::NEAREST } else { vk::Filter::LINEAR };
         use vk::ImageLayout as Layout;

@@ -35,6 +35,18 @@ impl<'a> Recorder<'a> {
         Self::new(device, cmd, None)
     }
 
+    /// The same, with every pass timed by `timestamps`, if they are given.
+    ///
+    /// # Safety
+    /// As for [`Recorder::of_host`]; and the frame that `timestamps` timed before is over, or was never submitted.
+    pub unsafe fn of_host_timed(
+        device: &'a Device,
+        cmd: vk::CommandBuffer,
+        timestamps: Option<&'a mut Timestamps>,
+    ) -> Self {
+        Self::new(device, cmd, timestamps)
+    }
+
     /// Records a pass: waits for what `uses` need and no more, then `body`, under a debug label and, in a profiled frame, between
     /// timestamps.
     ///
@@ -76,6 +88,11 @@ impl<'a> Recorder<'a> {
             self.device.raw.cmd_end_render_pass(self.cmd);
             self.device.end_label(self.cmd);
         }
+    }
+
+    /// Says how an earlier frame left these: images keep what is in them, unless they are written.
+    pub fn left(&mut self, uses: &[Use]) {
+        self.tracker.left(uses);
     }
 
     fn stamp(&self, query: Option<u32>) {

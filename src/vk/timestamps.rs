@@ -17,9 +17,10 @@ pub struct PassTime {
     pub milliseconds: f64,
 }
 
-pub(super) struct Timestamps {
+/// Queries for the times of one frame after another, each of which is over when the next one is recorded.
+pub struct Timestamps {
     pub(super) pool: vk::QueryPool,
-    pub(super) labels: Vec<&'static str>,
+    labels: Vec<&'static str>,
     nanoseconds: f32,
     mask: u64,
     device: Arc<Device>,
@@ -27,7 +28,7 @@ pub(super) struct Timestamps {
 
 impl Timestamps {
     /// `None` if the device has no timestamps.
-    pub(super) fn new(device: &Arc<Device>) -> Result<Option<Self>> {
+    pub fn new(device: &Arc<Device>) -> Result<Option<Self>> {
         let Some((nanoseconds, mask)) = device.capabilities().timestamps else { return Ok(None) };
         let info =
             vk::QueryPoolCreateInfo::default().query_type(vk::QueryType::TIMESTAMP).query_count(2 * PASSES);
@@ -59,17 +60,18 @@ impl Timestamps {
         Some(query)
     }
 
-    /// The last frame's times; it must be over. Passes of one label are summed.
-    pub(super) fn read(&self) -> Result<Vec<PassTime>> {
+    /// The last frame's times; it must be over. Passes of one label are summed. Nothing if it was never submitted.
+    pub fn read(&self) -> Result<Vec<PassTime>> {
         let mut stamps = vec![0u64; 2 * self.labels.len()];
         if stamps.is_empty() {
             return Ok(Vec::new());
         }
+        let flags = vk::QueryResultFlags::TYPE_64;
         // SAFETY: the frame that wrote these queries is over.
-        unsafe {
-            self.device.raw.get_query_pool_results(self.pool, 0, &mut stamps, vk::QueryResultFlags::TYPE_64)
+        match unsafe { self.device.raw.get_query_pool_results(self.pool, 0, &mut stamps, flags) } {
+            Err(vk::Result::NOT_READY) => return Ok(Vec::new()),
+            read => read.map_err(Error::vulkan("vkGetQueryPoolResults"))?,
         }
-        .map_err(Error::vulkan("vkGetQueryPoolResults"))?;
         let mut times: Vec<PassTime> = Vec::new();
         for (&label, stamp) in self.labels.iter().zip(stamps.chunks_exact(2)) {
             let ticks = stamp[1].wrapping_sub(stamp[0]) & self.mask;

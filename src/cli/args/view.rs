@@ -47,6 +47,9 @@ pub struct View {
     /// Says what happens on standard output, one JSON object a line, for programs that wait for it
     #[arg(long)]
     pub json: bool,
+    /// Begins with the method's own settings, rather than with those of the last time, and remembers nothing
+    #[arg(long)]
+    pub fresh: bool,
     /// On which device
     #[command(flatten)]
     pub device: OnDevice,

@@ -7,6 +7,7 @@ use crate::viewer::keep::{Shot, What};
 use crate::viewer::keys::Action;
 use crate::viewer::load::News;
 use crate::viewer::open::{Answer, Opening};
+use crate::viewer::source::Source;
 use crate::viewer::state::Of;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -16,7 +17,7 @@ use surfel::{Result, Scene};
 impl App {
     /// Shows a scene of a load: from where is asked for, or from the front. All of a sketch has other bounds than that, which is why its
     /// camera is asked for again, unless hands have moved it.
-    pub(super) fn show(&mut self, scene: Arc<Scene>, method: Method, of: Of) -> Result<()> {
+    pub(super) fn show(&mut self, scene: Arc<Scene>, made: (Method, Source), of: Of) -> Result<()> {
         let moved = self.state.has_moved_sketch(of.load);
         self.is_first &= self.state.moving().is_none() || self.state.is_sketch();
         let asked = (self.options.place)(&scene.bounds(), self.state.lens.size).filter(|_| self.is_first);
@@ -25,7 +26,7 @@ impl App {
         if let Some(pose) = &pose {
             pose.check()?;
         }
-        self.state.show(scene, method, of);
+        self.state.show(scene, made, of);
         if let Some(pose) = pose {
             self.state.look_from(pose);
         }

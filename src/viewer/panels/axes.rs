@@ -1,0 +1,146 @@
+//! What is changed of a method along the axes.
+
+use egui::{ComboBox, Ui};
+use surfel::Result;
+use surfel::splatting::{Filter, Footprint, Normalization, Shade, Splatting, Visibility};
+
+/// A choice: its name, what it means, and what it makes of the others.
+type Choice = (&'static str, &'static str, Splatting);
+
+/// A box for each axis; `weighted` tells whether the scene has normalization weights.
+pub fn show(ui: &mut Ui, splatting: &mut Splatting, weighted: bool) {
+    let now = *splatting;
+    let axes: [(&str, &str, Vec<Choice>); 5] = [
+        ("footprint", now.footprint.name(), footprints(now)),
+        ("filter", now.filter.name(), filters(now)),
+        ("visibility", now.visibility.name(), visibilities(now)),
+        ("normalization", now.normalization.name(), normalizations(now)),
+        ("shade", shade_name(now.shade), shades(now)),
+    ];
+    for (axis, name, choices) in axes {
+        ComboBox::from_label(axis).selected_text(name).show_ui(ui, |ui| {
+            for (name, text, made) in choices {
+                choice(ui, splatting, (name, text, made), weighted);
+            }
+        });
+    }
+}
+
+/// What makes no sense with the rest is grey and says why.
+fn choice(ui: &mut Ui, splatting: &mut Splatting, (name, text, made): Choice, weighted: bool) {
+    let refused = check(&made, weighted).err();
+    ui.add_enabled_ui(refused.is_none(), |ui| {
+        let label = ui.selectable_label(*splatting == made, name).on_hover_text(text);
+        if let Some(cause) = refused {
+            label.on_disabled_hover_text(cause.to_string());
+        } else if label.clicked() {
+            *splatting = made;
+        }
+    });
+}
+
+fn check(splatting: &Splatting, weighted: bool) -> Result<()> {
+    splatting.check()?;
+    splatting.normalization.check_weights(weighted)
+}
+
+fn footprints(now: Splatting) -> Vec<Choice> {
+    let texts = [
+        (Footprint::Conic, "the ellipse that the disc projects to, exactly"),
+        (Footprint::Affine, "an affine approximation at the disc's centre: holes under strong perspective"),
+        (Footprint::Parallelogram, "a parallelogram in the tangent plane, with the kernel on it"),
+        (Footprint::Disc, "the disc in the tangent plane, with the kernel on it"),
+        (Footprint::Sprite, "an ellipse as of parallel projection, with a slope in depth"),
+        (Footprint::WholeSprite, "a sprite whose width is a whole number of px"),
+        (Footprint::Square, "a square that faces the image plane: size without shape"),
+    ];
+    texts.map(|(footprint, text)| (footprint.name(), text, Splatting { footprint, ..now })).to_vec()
+}
+
+fn filters(now: Splatting) -> Vec<Choice> {
+    let texts = [
+        (Filter::None, "no anti-aliasing filter"),
+        (Filter::Screen, "the projected kernel is widened on the screen"),
+        (Filter::Object, "the kernel is widened in the tangent plane before it is projected"),
+    ];
+    texts.map(|(filter, text)| (filter.name(), text, Splatting { filter, ..now })).to_vec()
+}
+
+fn visibilities(now: Splatting) -> Vec<Choice> {
+    let texts = [
+        (Visibility::Ray, "all within ε behind the nearest splat, along the ray"),
+        (Visibility::Axis, "all within ε behind it, along the camera's axis: hides too much at silhouettes"),
+        (Visibility::Nearest, "the nearest splat alone: nothing is blended, so nothing is normalized"),
+    ];
+    let made = |visibility: Visibility| {
+        // One splat alone has nothing to normalize; several have.
+        let normalization = match (visibility, now.visibility) {
+            (Visibility::Nearest, _) => Normalization::None,
+            (_, Visibility::Nearest) => Normalization::Pixel,
+            _ => now.normalization,
+        };
+        Splatting { visibility, normalization, ..now }
+    };
+    texts.map(|(visibility, text)| (visibility.name(), text, made(visibility))).to_vec()
+}
+
+fn normalizations(now: Splatting) -> Vec<Choice> {
+    let texts = [
+        (Normalization::Pixel, "a division by the sum of weights at every pixel"),
+        (Normalization::Surfel, "a factor of each surfel, captured beforehand (surfel convert --weights)"),
+        (Normalization::None, "none: brightness varies with the overlap"),
+    ];
+    let made = |normalization| Splatting { normalization, ..now };
+    texts.map(|(normalization, text)| (normalization.name(), text, made(normalization))).to_vec()
+}
+
+fn shade_name(shade: Shade) -> &'static str {
+    shade.name()
+}
+
+fn shades(now: Splatting) -> Vec<Choice> {
+    let texts = [
+        (Shade::Pixel, "normals and colours are blended, and pixels are lit"),
+        (Shade::Splat, "splats are lit at their centres, and light is blended"),
+    ];
+    texts.map(|(shade, text)| (shade.name(), text, Splatting { shade, ..now })).to_vec()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn from_every_choice_the_first_method_can_be_reached_again() {
+        let all = |now| {
+            [footprints(now), filters(now), visibilities(now), normalizations(now), shades(now)].concat()
+        };
+        let next = |now| all(now).into_iter().map(|(.., made)| made).filter(|made| check(made, true).is_ok());
+        let (mut seen, mut new) = (vec![Splatting::default()], vec![Splatting::default()]);
+        while let Some(now) = new.pop() {
+            for made in next(now) {
+                if !seen.contains(&made) {
+                    seen.push(made);
+                    new.push(made);
+                }
+            }
+        }
+        // Every choice that makes sense with the Gaussian is among them, and from each there is a way back.
+        for footprint in footprints(Splatting::default()) {
+            assert!(seen.iter().any(|seen| seen.footprint.name() == footprint.0), "{}", footprint.0);
+        }
+        let mut back = vec![Splatting::default()];
+        loop {
+            let more: Vec<_> = seen
+                .iter()
+                .filter(|from| !back.contains(from) && next(**from).any(|made| back.contains(&made)))
+                .copied()
+                .collect();
+            if more.is_empty() {
+                break;
+            }
+            back.extend(more);
+        }
+        assert_eq!(back.len(), seen.len());
+    }
+}

@@ -1,0 +1,266 @@
+//! How far the picture is from what it should be: from the same frame in float64, or from the surface itself.
+
+use super::raster::{Raster, Values};
+use crate::viewer::job::Job;
+use crate::viewer::state::Choices;
+use egui::{Button, ComboBox, Context, Grid, ProgressBar, Slider, Ui};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+use surfel::geometry::{Camera, ColourMap, Model};
+use surfel::metrics;
+use surfel::reference::{self, Tolerance};
+use surfel::vk::Device;
+use surfel::{Error, Picture, Progress, RenderOptions, Renderer, Result, Scene, Settings, scenes, truth};
+
+/// How often progress is looked at.
+const OFTEN: Duration = Duration::from_millis(200);
+
+/// What the picture is held against.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Against {
+    Reference,
+    Truth,
+}
+
+impl Against {
+    const fn told(self) -> [&'static str; 2] {
+        match self {
+            Self::Reference => [
+                "float64 reference",
+                "the same method, camera and settings, in float64 on the CPU: what rounding and the GPU cost",
+            ],
+            Self::Truth => [
+                "exact surface",
+                "rays against the surface itself: what points, method and filter cost; edges count",
+            ],
+        }
+    }
+}
+
+/// The section, and what it found.
+pub struct Errors {
+    against: Against,
+    job: Option<Job<Found>>,
+    found: Option<Found>,
+    wrong: Option<String>,
+    /// Largest difference of a channel that passes.
+    tolerance: f32,
+    shown: bool,
+    raster: Option<Raster>,
+}
+
+/// What is compared.
+struct Task {
+    against: Against,
+    device: Arc<Device>,
+    scene: Arc<Scene>,
+    model: Arc<Model>,
+    surface: Option<String>,
+    camera: Camera,
+    settings: Settings,
+    size: [u32; 2],
+    options: RenderOptions,
+}
+
+/// How far a picture is off.
+struct Found {
+    against: Against,
+    camera: Camera,
+    settings: Settings,
+    size: [u32; 2],
+    rmse: f64,
+    /// The largest difference of a channel of each pixel.
+    errors: Vec<f32>,
+    worst: (f32, [u32; 2]),
+    took: Duration,
+}
+
+impl Default for Errors {
+    fn default() -> Self {
+        let tolerance = Tolerance::default().colour as f32;
+        let (job, found, wrong, raster) = (None, None, None, None);
+        Self { against: Against::Reference, job, found, wrong, tolerance, shown: false, raster }
+    }
+}
+
+impl Errors {
+    /// What can be asked, and what was found.
+    pub fn show(&mut self, ui: &mut Ui, chosen: &Choices<'_>, device: &Arc<Device>) {
+        self.look(ui);
+        match &self.job {
+            Some(job) => {
+                let (stage, part) = job.at();
+                ui.add(ProgressBar::new(part).text(stage));
+                if ui
+                    .button("give up")
+                    .on_hover_text("pull-push's reference goes on to its end all the same")
+                    .clicked()
+                {
+                    job.cancel();
+                }
+            }
+            None => self.ask(ui, chosen, device),
+        }
+        if let Some(wrong) = &self.wrong {
+            ui.colored_label(ui.visuals().error_fg_color, wrong);
+        }
+        self.tell(ui, chosen);
+    }
+
+    /// Takes what is done.
+    fn look(&mut self, ui: &Ui) {
+        let Some(job) = &mut self.job else { return };
+        match job.take() {
+            None => ui.ctx().request_repaint_after(OFTEN),
+            Some(outcome) => {
+                self.job = None;
+                match outcome {
+                    Ok(found) => {
+                        let values = Values::Numbers(found.errors.clone());
+                        let name = "largest difference of a channel, linear";
+                        self.raster = Some(Raster::new(name, found.size, values).with(ColourMap::Magma, 0.0));
+                        self.found = Some(found);
+                    }
+                    Err(Error::Cancelled) => {}
+                    Err(error) => self.wrong = Some(error.to_string()),
+                }
+            }
+        }
+    }
+
+    fn ask(&mut self, ui: &mut Ui, chosen: &Choices<'_>, device: &Arc<Device>) {
+        let exact = chosen.source.surface().is_some();
+        if !exact {
+            self.against = Against::Reference;
+        }
+        let [name, text] = self.against.told();
+        let choice = ComboBox::from_label("against").selected_text(name).show_ui(ui, |ui| {
+            for against in [Against::Reference, Against::Truth] {
+                let [name, text] = against.told();
+                ui.add_enabled_ui(exact || against == Against::Reference, |ui| {
+                    ui.selectable_value(&mut self.against, against, name)
+                        .on_hover_text(text)
+                        .on_disabled_hover_text(
+                            "only built-in scenes in their own colours have an exact surface",
+                        );
+                });
+            }
+        });
+        choice.response.on_hover_text(text);
+        let Some(Ok(camera)) = &chosen.camera else { return };
+        let button = ui.add(Button::new("compare this picture"));
+        if button.on_hover_text("Renders the picture once more, whole, and again by what it is held against; takes seconds to minutes.").clicked() {
+            self.wrong = None;
+            let task = Task {
+                against: self.against,
+                device: device.clone(),
+                scene: chosen.scene.clone(),
+                model: chosen.source.shown(),
+                surface: chosen.source.surface().map(Into::into),
+                camera: *camera,
+                settings: chosen.settings.clone(),
+                size: chosen.size,
+                options: RenderOptions { size: chosen.size, rasterizer: chosen.rasterizer, ..Default::default() },
+            };
+            self.job = Some(Job::start(move |progress| task.run(progress)));
+        }
+    }
+
+    fn tell(&mut self, ui: &mut Ui, chosen: &Choices<'_>) {
+        let Some(found) = &self.found else { return };
+        let same = matches!(&chosen.camera, Some(Ok(camera)) if *camera == found.camera)
+            && *chosen.settings == found.settings;
+        ui.separator();
+        ui.label(format!(
+            "against the {}{}",
+            found.against.told()[0],
+            if same { "" } else { ", of an earlier picture" }
+        ));
+        let beyond = found.errors.iter().filter(|error| **error > self.tolerance).count();
+        let (worst, [x, y]) = found.worst;
+        Grid::new("errors").num_columns(2).show(ui, |ui| {
+            let rows = [
+                ("RMSE", format!("{:.3e}", found.rmse), "root of the mean square of all differences, of linear colours over the background; 1 is white from black"),
+                ("worst", format!("{worst:.3e} at ({x}, {y})"), "largest difference of a channel, and its pixel from the top left"),
+                ("beyond", format!("{:.4} %, {beyond} px", 100.0 * beyond as f64 / found.errors.len().max(1) as f64), "pixels of which a channel is off by more than the tolerance"),
+                ("took", format!("{:.1} s", found.took.as_secs_f64()), "the float64 picture, or the exact one"),
+            ];
+            for (name, value, text) in rows {
+                ui.label(name).on_hover_text(text);
+                ui.monospace(value);
+                ui.end_row();
+            }
+        });
+        ui.add(Slider::new(&mut self.tolerance, 1e-7..=1.0).logarithmic(true).text("tolerance"))
+            .on_hover_text("Largest difference of a channel that passes, in linear light.");
+        ui.checkbox(&mut self.shown, "show as a picture");
+    }
+
+    /// The error of every pixel, in a window of its own.
+    pub fn picture(&mut self, context: &Context) {
+        if let Some(raster) = self.raster.as_mut().filter(|_| self.shown) {
+            raster.show(context, "error", &mut self.shown);
+        }
+    }
+}
+
+impl Task {
+    fn run(self, progress: &dyn Progress) -> Result<Found> {
+        let Self { against, device, scene, model, surface, camera, settings, size, options } = self;
+        let (picture, _) = Renderer::new(&device, options)?.render_picture(&scene, &camera, &settings)?;
+        let start = Instant::now();
+        let truth = match (against, surface) {
+            (Against::Truth, Some(surface)) => {
+                let surface = scenes::surface(&surface)?;
+                truth::render(&*surface, &camera, &settings, size, &truth::Options::default(), progress)?
+                    .picture
+            }
+            _ => reference::render(&*model, &camera, size, &settings, progress)?.to_picture(),
+        };
+        if progress.is_cancelled() {
+            return Err(Error::Cancelled);
+        }
+        let took = start.elapsed();
+        let over = settings.background.unwrap_or_default();
+        let [picture, truth] = [picture, truth].map(|picture| laid_over(&picture, over));
+        let rmse = metrics::rmse::rmse(&picture, &truth);
+        let errors = differences(&picture, &truth);
+        let worst = errors.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1));
+        let worst =
+            worst.map_or((0.0, [0, 0]), |(i, error)| (*error, [i as u32 % size[0], i as u32 / size[0]]));
+        Ok(Found { against, camera, settings, size, rmse, errors, worst, took })
+    }
+}
+
+/// Colours over a background, as the window shows them.
+fn laid_over(picture: &Picture, over: [f32; 3]) -> Vec<[f64; 3]> {
+    let pixel = |[r, g, b, a]: &[f32; 4]| {
+        let channel =
+            |i: usize, c: f32| f64::from(c) * f64::from(*a) + f64::from(over[i]) * (1.0 - f64::from(*a));
+        [channel(0, *r), channel(1, *g), channel(2, *b)]
+    };
+    picture.colour.iter().map(pixel).collect()
+}
+
+fn differences(a: &[[f64; 3]], b: &[[f64; 3]]) -> Vec<f32> {
+    let largest =
+        |(a, b): (&[f64; 3], &[f64; 3])| (0..3).map(|i| (a[i] - b[i]).abs()).fold(0.0, f64::max) as f32;
+    a.iter().zip(b).map(largest).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pictures_are_laid_over_the_background_and_the_largest_difference_counts() {
+        let picture = Picture {
+            size: [2, 1],
+            colour: vec![[1.0, 0.5, 0.0, 1.0], [1.0, 1.0, 1.0, 0.25]],
+            ..Default::default()
+        };
+        let over = laid_over(&picture, [0.0, 1.0, 0.5]);
+        assert_eq!(over, [[1.0, 0.5, 0.0], [0.25, 1.0, 0.625]]);
+        assert_eq!(differences(&over, &[[1.0, 0.0, 0.25], [0.25, 1.0, 0.625]]), [0.5, 0.0]);
+    }
+}

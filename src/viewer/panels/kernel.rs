@@ -1,0 +1,89 @@
+//! How a splat's weight falls off: a choice, and its curve.
+
+use egui::{Align2, Color32, ComboBox, FontId, Pos2, Sense, Shape, Slider, Stroke, Ui, vec2};
+use surfel::splatting::{Kernel, Splatting};
+
+/// Size of the curve, points.
+const SIZE: [f32; 2] = [240.0, 90.0];
+/// Places at which the curve is drawn.
+const STEPS: u32 = 100;
+/// Of the paper's figure 18.
+const CONFETTI: Kernel = Kernel::Confetti { a: 6.0, n: 3.0 };
+
+/// The choice, with the curve up to the cut-off, in σ.
+pub fn show(ui: &mut Ui, splatting: &mut Splatting, cutoff: f32) {
+    let name = match splatting.kernel {
+        Kernel::Gaussian => "gaussian",
+        Kernel::Confetti { .. } => "confetti",
+    };
+    ComboBox::from_label("kernel").selected_text(name).show_ui(ui, |ui| {
+        for (name, kernel, text) in [
+            ("gaussian", Kernel::Gaussian, "exp(−½ m²), m σ from the centre, up to the cut-off"),
+            ("confetti", CONFETTI, "exp(−a tⁿ / (1 − tⁿ)), t from 0 at the centre to 1 at the rim"),
+        ] {
+            let refused = Splatting { kernel, ..*splatting }.check().err();
+            ui.add_enabled_ui(refused.is_none(), |ui| {
+                let same = std::mem::discriminant(&kernel) == std::mem::discriminant(&splatting.kernel);
+                let label = ui.selectable_label(same, name).on_hover_text(text);
+                if let Some(cause) = refused {
+                    label.on_disabled_hover_text(cause.to_string());
+                } else if label.clicked() && !same {
+                    splatting.kernel = kernel;
+                }
+            });
+        }
+    });
+    if let Kernel::Confetti { a, n } = &mut splatting.kernel {
+        ui.add(Slider::new(a, 0.1..=20.0).logarithmic(true).text("a"))
+            .on_hover_text("The larger, the narrower.");
+        ui.add(Slider::new(n, 0.5..=12.0).text("n")).on_hover_text("The larger, the more like a plateau.");
+    }
+    curve(ui, splatting.kernel, cutoff);
+}
+
+/// The weight at a part of the way from the centre to the rim.
+fn weight(kernel: Kernel, cutoff: f32, part: f32) -> f32 {
+    match kernel {
+        Kernel::Gaussian => (-0.5 * (cutoff * part).powi(2)).exp(),
+        Kernel::Confetti { .. } if part >= 1.0 => 0.0,
+        Kernel::Confetti { a, n } => (-a * part.powf(n) / (1.0 - part.powf(n))).exp(),
+    }
+}
+
+fn curve(ui: &mut Ui, kernel: Kernel, cutoff: f32) {
+    let (response, painter) = ui.allocate_painter(vec2(SIZE[0], SIZE[1]), Sense::hover());
+    let (ink, font) = (ui.visuals().weak_text_color(), FontId::proportional(10.0));
+    let rect = response.rect.shrink2(vec2(14.0, 12.0));
+    let place = |part: f32, weight: f32| -> Pos2 {
+        rect.left_bottom() + vec2(part * rect.width(), -weight * rect.height())
+    };
+    let axis = Stroke::new(1.0, ink);
+    painter.line_segment([place(0.0, 0.0), place(1.0, 0.0)], axis);
+    painter.line_segment([place(0.0, 0.0), place(0.0, 1.0)], axis);
+    painter.text(place(0.0, 1.0), Align2::RIGHT_CENTER, "1 ", font.clone(), ink);
+    painter.text(place(0.0, 0.0), Align2::CENTER_TOP, "centre", font.clone(), ink);
+    let rim = match kernel {
+        Kernel::Gaussian => format!("rim, {cutoff:.2} σ"),
+        Kernel::Confetti { .. } => "rim".into(),
+    };
+    painter.text(place(1.0, 0.0), Align2::RIGHT_TOP, rim, font, ink);
+    let points = (0..=STEPS).map(|step| step as f32 / STEPS as f32);
+    let points: Vec<_> = points.map(|part| place(part, weight(kernel, cutoff, part))).collect();
+    painter.add(Shape::line(points, Stroke::new(1.5, Color32::from_rgb(90, 170, 250))));
+    response.on_hover_text("Weight of a splat, from its centre to its rim, before any filter.");
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn curves_fall_from_one_to_the_rim() {
+        for (kernel, rim) in [(Kernel::Gaussian, (-3.125f32).exp()), (CONFETTI, 0.0)] {
+            let curve: Vec<_> = (0..=STEPS).map(|i| weight(kernel, 2.5, i as f32 / STEPS as f32)).collect();
+            assert_eq!(curve[0], 1.0);
+            assert!((curve[STEPS as usize] - rim).abs() < 1e-6);
+            assert!(curve.windows(2).all(|pair| pair[1] <= pair[0]));
+        }
+    }
+}

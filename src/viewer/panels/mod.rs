@@ -1,0 +1,122 @@
+//! The panels: what they say, and what they let one choose.
+
+mod axes;
+mod buffers;
+mod error;
+mod help;
+mod kernel;
+mod look;
+mod method;
+mod raster;
+mod split;
+mod times;
+
+use super::screen::Asked;
+use super::state::State;
+use buffers::Buffers;
+use egui::{CollapsingHeader, Panel, ProgressBar, ScrollArea, Ui};
+use error::Errors;
+use split::Split;
+use std::sync::Arc;
+use surfel::vk::Device;
+use times::Times;
+
+/// What the panels tell beside what they let one choose.
+#[derive(Default)]
+pub struct Told {
+    /// A stage of loading, and how much of it is done.
+    pub loading: Option<(&'static str, f32)>,
+    /// What went wrong last.
+    pub wrong: Option<String>,
+    /// What was done last, for who asked for it.
+    pub done: Option<String>,
+    /// How long the last frame took, ms.
+    pub frame: f64,
+    /// Its side, as part of the window's.
+    pub side: f64,
+    /// How many surfels it had.
+    pub surfels: f64,
+    /// Whether keys are listed.
+    pub help: bool,
+    /// Whether the panel beside the picture is hidden.
+    pub hidden: bool,
+    /// What frames tell.
+    pub times: Times,
+    errors: Errors,
+    split: Split,
+    buffers: Buffers,
+}
+
+impl Told {
+    /// Nothing is told yet; the panel may be hidden.
+    pub fn new(hidden: bool) -> Self {
+        Self { hidden, ..Self::default() }
+    }
+
+    /// What is asked of the next frame.
+    pub fn asked(&self, state: &State) -> Asked {
+        let split = state.settings().and_then(|settings| self.split.asked(settings));
+        Asked { measured: self.times.is_open(), version: state.version(), split }
+    }
+}
+
+/// All panels.
+pub fn show(ui: &mut Ui, state: &mut State, told: &mut Told, device: &Arc<Device>) {
+    let whole = ui.max_rect();
+    if let Some((stage, part)) = told.loading {
+        Panel::bottom("loading").show(ui, |ui| {
+            ui.horizontal(|ui| {
+                state.cancel |=
+                    ui.button("give up").on_hover_text("Esc; what was shown before stays").clicked();
+                ui.add(ProgressBar::new(part).text(stage));
+            })
+        });
+    }
+    if let Some(done) = &told.done {
+        Panel::bottom("done").show(ui, |ui| ui.label(done));
+    }
+    if let Some(wrong) = &told.wrong {
+        Panel::top("wrong").show(ui, |ui| ui.colored_label(ui.visuals().error_fg_color, wrong));
+    }
+    if !told.hidden {
+        Panel::right("choices").default_size(300.0).show(ui, |ui| {
+            ScrollArea::vertical()
+                .auto_shrink([false, false])
+                .show(ui, |ui| choices(ui, state, told, device));
+        });
+    }
+    told.split.divider(ui, whole, state, &told.times);
+    told.errors.picture(ui.ctx());
+    told.buffers.picture(ui.ctx());
+    if told.help {
+        help::show(ui.ctx());
+    }
+    if let Some(opening) = &mut state.opening {
+        state.answer = opening.show(ui);
+    }
+    if let Err(error) = state.apply(device) {
+        told.wrong = Some(error.to_string());
+    }
+}
+
+fn choices(ui: &mut Ui, state: &mut State, told: &mut Told, device: &Arc<Device>) {
+    ui.label("Tab hides this panel, H lists keys and mouse").on_hover_text("Tab shows it again");
+    let Some(chosen) = &mut state.choices() else {
+        ui.label("Drop files on the window to look at them.");
+        return;
+    };
+    // Beside the scroll bar.
+    ui.set_max_width(ui.available_width() - 10.0);
+    CollapsingHeader::new("Method").default_open(true).show(ui, |ui| method::show(ui, chosen));
+    CollapsingHeader::new("Look").default_open(true).show(ui, |ui| look::show(ui, chosen));
+    let quality = times::Quality {
+        size: chosen.size,
+        side: told.side,
+        surfels: told.surfels as u64,
+        of: chosen.surfels,
+    };
+    told.times.show(ui, &quality, chosen.settings, told.frame);
+    ui.collapsing("Side by side", |ui| told.split.show(ui, chosen));
+    ui.collapsing("Error", |ui| told.errors.show(ui, chosen, device));
+    ui.collapsing("Buffers", |ui| told.buffers.show(ui, chosen, device));
+}

@@ -1,0 +1,185 @@
+//! Numbers of pixels, shown as a picture with a range.
+
+use super::look;
+use egui::{
+    Align2, ColorImage, Context, FontId, Image, Rect, Sense, TextureHandle, TextureOptions, Ui, Window, pos2,
+    vec2,
+};
+use surfel::geometry::{ColourMap, ColourScale, ValueRange};
+
+/// Columns of a colour bar.
+const BAR: usize = 64;
+
+/// A number, or a colour, of every pixel.
+pub struct Raster {
+    /// What the numbers are, with their unit.
+    name: String,
+    /// Width and height, px.
+    size: [u32; 2],
+    values: Values,
+    map: ColourMap,
+    range: ValueRange,
+    usual: Option<ValueRange>,
+    /// The picture of this map and range.
+    texture: Option<(TextureHandle, ColourScale)>,
+}
+
+/// Row by row from the top left.
+pub enum Values {
+    /// NaN where there is none.
+    Numbers(Vec<f32>),
+    /// Vectors with coordinates from −1 to 1, shown as red, green and blue; 0 where there is none.
+    Directions(Vec<[f32; 3]>),
+}
+
+impl Raster {
+    /// Shown in its usual range at first.
+    pub fn new(name: impl Into<String>, size: [u32; 2], values: Values) -> Self {
+        let usual = match &values {
+            Values::Numbers(numbers) => ValueRange::of(numbers.iter().copied().map(f64::from)),
+            Values::Directions(_) => None,
+        };
+        let usual = usual.map(|(range, _)| range);
+        let range = usual.unwrap_or(ValueRange { min: 0.0, max: 1.0 });
+        Self { name: name.into(), size, values, map: ColourMap::default(), range, usual, texture: None }
+    }
+
+    /// Shown by these colours, from `min` on.
+    pub fn with(mut self, map: ColourMap, min: f64) -> Self {
+        self.map = map;
+        self.range.min = min;
+        self
+    }
+
+    /// A window with the picture, until it is closed.
+    pub fn show(&mut self, context: &Context, id: &str, open: &mut bool) {
+        let title = format!("{}, {}x{}", self.name, self.size[0], self.size[1]);
+        Window::new(title)
+            .id(egui::Id::new(id))
+            .open(open)
+            .resizable(true)
+            .default_size([520.0, 460.0])
+            .show(context, |ui| {
+                if let Values::Numbers(_) = self.values {
+                    look::map(ui, &mut self.map);
+                    look::range(ui, &mut self.range, self.usual);
+                    colour_bar(ui, &self.scale());
+                }
+                self.picture(ui);
+            });
+    }
+
+    fn scale(&self) -> ColourScale {
+        ColourScale { map: self.map, range: self.range }
+    }
+
+    fn picture(&mut self, ui: &mut Ui) {
+        let scale = self.scale();
+        if self.texture.as_ref().is_none_or(|(_, made)| *made != scale) {
+            let image = ColorImage::from_rgb(self.size.map(|side| side as usize), &self.pixels(&scale));
+            let texture = ui.ctx().load_texture("raster", image, TextureOptions::NEAREST);
+            self.texture = Some((texture, scale));
+        }
+        let Some((texture, _)) = &self.texture else { return };
+        let own = vec2(self.size[0] as f32, self.size[1] as f32);
+        let room = vec2(ui.available_width(), (ui.available_height() - 20.0).max(64.0));
+        let size = own * (room.x / own.x).min(room.y / own.y);
+        let response = ui.add(Image::new(texture).fit_to_exact_size(size).sense(Sense::hover()));
+        let at = response.hover_pos().map(|at| (at - response.rect.min) / size * own);
+        let told = at.and_then(|at| self.told([at.x as u32, at.y as u32]));
+        ui.monospace(told.unwrap_or_else(|| "the cursor tells a pixel's value".into()));
+    }
+
+    fn pixels(&self, scale: &ColourScale) -> Vec<u8> {
+        let code = |coordinate: f32| ((0.5 * coordinate + 0.5).clamp(0.0, 1.0) * 255.0).round() as u8;
+        match &self.values {
+            Values::Numbers(numbers) => numbers
+                .iter()
+                .flat_map(|number| if number.is_nan() { [0; 3] } else { scale.at((*number).into()) })
+                .collect(),
+            Values::Directions(all) => {
+                all.iter().flat_map(|v| if *v == [0.0; 3] { [0; 3] } else { v.map(code) }).collect()
+            }
+        }
+    }
+
+    /// What is at a pixel.
+    fn told(&self, [x, y]: [u32; 2]) -> Option<String> {
+        let [width, height] = self.size;
+        let index = (x < width && y < height).then_some((y * width + x) as usize)?;
+        Some(match &self.values {
+            Values::Numbers(numbers) if numbers[index].is_nan() => format!("({x}, {y})  nothing"),
+            Values::Numbers(numbers) => format!("({x}, {y})  {}", numbers[index]),
+            Values::Directions(all) if all[index] == [0.0; 3] => format!("({x}, {y})  nothing"),
+            Values::Directions(all) => {
+                let [a, b, c] = all[index];
+                format!("({x}, {y})  {a:.5} {b:.5} {c:.5}")
+            }
+        })
+    }
+}
+
+/// The colours of a scale, with the numbers at both ends.
+pub fn colour_bar(ui: &mut Ui, scale: &ColourScale) {
+    let (response, painter) =
+        ui.allocate_painter(vec2(ui.available_width().min(300.0), 26.0), Sense::hover());
+    let rect = response.rect;
+    let width = rect.width() / BAR as f32;
+    for column in 0..BAR {
+        let [r, g, b] = scale.map.at((column as f64 + 0.5) / BAR as f64);
+        let left = rect.left() + column as f32 * width;
+        let bar = Rect::from_min_max(pos2(left, rect.top()), pos2(left + width + 0.5, rect.top() + 12.0));
+        painter.rect_filled(bar, 0.0, egui::Color32::from_rgb(r, g, b));
+    }
+    let (ink, font) = (ui.visuals().text_color(), FontId::proportional(10.0));
+    let ValueRange { min, max } = scale.range;
+    let ends = [
+        (0.0, Align2::LEFT_BOTTOM, min),
+        (0.5, Align2::CENTER_BOTTOM, 0.5 * (min + max)),
+        (1.0, Align2::RIGHT_BOTTOM, max),
+    ];
+    for (part, align, value) in ends {
+        let at = pos2(rect.left() + part * rect.width(), rect.bottom());
+        painter.text(at, align, short(value), font.clone(), ink);
+    }
+}
+
+/// Four significant digits.
+pub fn short(value: f64) -> String {
+    match value.abs() {
+        0.0 => "0".into(),
+        size if (1e-3..1e5).contains(&size) => {
+            let digits = (3 - size.log10().floor() as i32).max(0) as usize;
+            format!("{value:.digits$}")
+        }
+        _ => format!("{value:.3e}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_their_colours_and_what_is_none_is_black() {
+        let values = vec![0.0, 1.0, f32::NAN, 2.0];
+        let raster = Raster::new("x", [2, 2], Values::Numbers(values)).with(ColourMap::Magma, 0.0);
+        let pixels =
+            raster.pixels(&ColourScale { map: ColourMap::Magma, range: ValueRange { min: 0.0, max: 2.0 } });
+        assert_eq!(pixels[..3], ColourMap::Magma.at(0.0));
+        assert_eq!(pixels[3..6], ColourMap::Magma.at(0.5));
+        assert_eq!(pixels[6..9], [0; 3]);
+        assert_eq!(pixels[9..], ColourMap::Magma.at(1.0));
+        assert_eq!(raster.told([0, 1]).unwrap(), "(0, 1)  nothing");
+        assert_eq!(raster.told([1, 1]).unwrap(), "(1, 1)  2");
+        assert_eq!(raster.told([2, 0]), None);
+    }
+
+    #[test]
+    fn numbers_are_short() {
+        assert_eq!(
+            [0.0, 1.0, 0.012345, 123456.0, -2.5].map(short),
+            ["0", "1.000", "0.01234", "1.235e5", "-2.500"]
+        );
+    }
+}
