@@ -3,8 +3,7 @@
 mod support;
 
 use glam::{DVec3, Vec3};
-use std::sync::Arc;
-use support::gpu::{assert_silent, device, render};
+use support::gpu::{Renderers, assert_silent, device};
 use support::sampling::Random;
 use support::scenes::{Case, cases};
 use surfel::geometry::{Camera, Clip, Ellipse, Surfels, Weights};
@@ -12,7 +11,7 @@ use surfel::methods::{Method, object_ewa, sprites};
 use surfel::reference::{Comparison, Expected, Surfel, Tolerance};
 use surfel::settings::{Alpha, Widen};
 use surfel::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
-use surfel::vk::{Device, DeviceLimits};
+use surfel::vk::DeviceLimits;
 use surfel::{Outputs, Picture, Rasterizer, RenderOptions, Settings};
 
 /// Share of the object's pixels that the reference may hold to be undecided.
@@ -35,7 +34,7 @@ impl<'a> View<'a> {
     /// The device's picture of maybe other surfels with maybe other settings.
     fn picture(
         &self,
-        device: &Arc<Device>,
+        renderers: &Renderers,
         rasterizer: Rasterizer,
         surfels: &Surfels,
         settings: &Settings,
@@ -46,18 +45,18 @@ impl<'a> View<'a> {
             rasterizer: Some(rasterizer),
             ..Default::default()
         };
-        render(device, surfels, &self.camera, settings, options)
+        renderers.render(surfels, &self.camera, settings, options)
     }
 
     /// The verdict on the device's picture of maybe other surfels with maybe other settings.
     fn judge(
         &self,
-        device: &Arc<Device>,
+        renderers: &Renderers,
         rasterizer: Rasterizer,
         surfels: &Surfels,
         settings: &Settings,
     ) -> Comparison {
-        self.expected.compare(&self.picture(device, rasterizer, surfels, settings)).unwrap()
+        self.expected.compare(&self.picture(renderers, rasterizer, surfels, settings)).unwrap()
     }
 }
 
@@ -190,12 +189,13 @@ fn assert_agree(failed: Vec<String>) {
 /// Where a camera's picture by either rasterizer is not the reference's.
 fn failures(cases: &[Case], how: &str) -> Vec<String> {
     let Some(device) = device(DeviceLimits::default()) else { return Vec::new() };
+    let renderers = Renderers::new(&device);
     let mut failed = Vec::new();
     for case in cases {
         for (i, &camera) in case.cameras.iter().enumerate() {
             let view = View::new(case, camera);
             for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
-                let verdict = view.judge(&device, rasterizer, &case.surfels, &case.settings);
+                let verdict = view.judge(&renderers, rasterizer, &case.surfels, &case.settings);
                 let doubt = verdict.doubtful as f64 / verdict.object_pixels as f64;
                 println!(
                     "{how}, {} {i} {rasterizer:?}: {} of {} object pixels failed, {:.2} % in doubt, worst {:?}",
@@ -224,6 +224,7 @@ fn failures(cases: &[Case], how: &str) -> Vec<String> {
 #[test]
 fn small_mutations_fail() {
     let Some(device) = device(DeviceLimits::default()) else { return };
+    let renderers = Renderers::new(&device);
     for case in &cases() {
         let view = View::new(case, case.cameras[0]);
         let settings = &case.settings;
@@ -232,7 +233,7 @@ fn small_mutations_fail() {
         let small = Settings { widen: Widen::Small, ..settings.clone() };
         let moved = moved(&case.surfels, &view.camera, 0.02, case.size);
         for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
-            let failed = |surfels, settings| view.judge(&device, rasterizer, surfels, settings).failed;
+            let failed = |surfels, settings| view.judge(&renderers, rasterizer, surfels, settings).failed;
             let [h, s, e] = [&lowpass, &small, &epsilon].map(|settings| failed(&case.surfels, settings));
             let c = failed(&moved, settings);
             println!(
@@ -251,6 +252,7 @@ fn small_mutations_fail() {
 #[test]
 fn another_coverage_fails() {
     let Some(device) = device(DeviceLimits::default()) else { return };
+    let renderers = Renderers::new(&device);
     let cases =
         with_axes(|case| Settings { alpha: Alpha::Coverage, background: None, ..case.settings.clone() });
     let mut noticed = 0;
@@ -259,8 +261,8 @@ fn another_coverage_fails() {
         let mut larger = case.surfels.clone();
         larger.radii.iter_mut().for_each(|radius| *radius *= 1.02);
         for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
-            let mut picture = view.picture(&device, rasterizer, &case.surfels, &case.settings);
-            let other = view.picture(&device, rasterizer, &larger, &case.settings);
+            let mut picture = view.picture(&renderers, rasterizer, &case.surfels, &case.settings);
+            let other = view.picture(&renderers, rasterizer, &larger, &case.settings);
             let differ = |(own, other): (&mut [f32; 4], &[f32; 4])| {
                 let partial = own[3] > 0.0 && own[3] < 1.0 && other[3] > 0.0;
                 own[3] = if partial { other[3] } else { own[3] };
@@ -282,6 +284,7 @@ fn another_coverage_fails() {
 #[test]
 fn other_clip_lines_fail() {
     let Some(device) = device(DeviceLimits::default()) else { return };
+    let renderers = Renderers::new(&device);
     for case in cases().iter().filter(|case| case.surfels.clips.is_some()) {
         let view = View::new(case, case.cameras[0]);
         let changed = |by: &dyn Fn(&mut Clip)| {
@@ -293,7 +296,7 @@ fn other_clip_lines_fail() {
         let convex = changed(&|clip| clip.concave = false);
         let whole = Surfels { clips: None, ..case.surfels.clone() };
         for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
-            let failed = |surfels| view.judge(&device, rasterizer, surfels, &case.settings).failed;
+            let failed = |surfels| view.judge(&renderers, rasterizer, surfels, &case.settings).failed;
             let [m, c, w] = [&moved, &convex, &whole].map(failed);
             println!("{} {rasterizer:?}: lines moved {m}, all convex {c}, none {w} pixels", case.name);
             assert!(m > 0 && c > 0 && w > 0, "{}: a mutation went unseen", case.name);
@@ -305,6 +308,7 @@ fn other_clip_lines_fail() {
 #[test]
 fn other_shapes_and_sides_fail() {
     let Some(device) = device(DeviceLimits::default()) else { return };
+    let renderers = Renderers::new(&device);
     for case in cases().iter().filter(|case| case.surfels.ellipses.is_some()) {
         let view = View::new(case, case.cameras[0]);
         let slimmer = reshaped(&case.surfels, |e, _| Ellipse { aspect: 0.99 * e.aspect, ..e });
@@ -312,7 +316,7 @@ fn other_shapes_and_sides_fail() {
             reshaped(&case.surfels, |e, n| Ellipse { major: e.major + 0.01 * n.cross(e.major), ..e });
         let one_sided = Surfels { two_sided: None, ..case.surfels.clone() };
         for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
-            let failed = |surfels| view.judge(&device, rasterizer, surfels, &case.settings).failed;
+            let failed = |surfels| view.judge(&renderers, rasterizer, surfels, &case.settings).failed;
             let [a, t, o] = [&slimmer, &turned, &one_sided].map(failed);
             println!(
                 "{} {rasterizer:?}: aspect × 0.99 {a}, turned by 0.01 {t}, one-sided {o} pixels",

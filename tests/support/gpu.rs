@@ -1,5 +1,6 @@
 //! A device under validation, for tests that need one.
 
+use std::cell::RefCell;
 use std::sync::Arc;
 use surfel::geometry::{Camera, Parts};
 use surfel::vk::{Device, DeviceLimits, DeviceOptions};
@@ -35,4 +36,35 @@ pub fn render<'a>(
     let scene = Scene::upload(device, parts).unwrap();
     let mut renderer = Renderer::new(device, options).unwrap();
     renderer.render_picture(&scene, camera, settings).unwrap().0
+}
+
+/// Renderers that keep what they have made from picture to picture: pipelines cost more than small pictures do.
+#[allow(dead_code, reason = "some tests render a single picture")]
+pub struct Renderers {
+    device: Arc<Device>,
+    made: RefCell<Vec<(RenderOptions, Renderer)>>,
+}
+
+#[allow(dead_code, reason = "some tests render a single picture")]
+impl Renderers {
+    pub fn new(device: &Arc<Device>) -> Self {
+        Self { device: device.clone(), made: RefCell::default() }
+    }
+
+    /// [`render`], by the renderer of these options.
+    pub fn render<'a>(
+        &self,
+        parts: impl Into<Parts<'a>>,
+        camera: &Camera,
+        settings: &Settings,
+        options: RenderOptions,
+    ) -> Picture {
+        let scene = Scene::upload(&self.device, parts).unwrap();
+        let mut made = self.made.borrow_mut();
+        let place = made.iter().position(|(of, _)| *of == options).unwrap_or_else(|| {
+            made.push((options, Renderer::new(&self.device, options).unwrap()));
+            made.len() - 1
+        });
+        made[place].1.render_picture(&scene, camera, settings).unwrap().0
+    }
 }

@@ -1,6 +1,6 @@
 //! What the host draws into: colour and depth, in a subpass of a render pass or by dynamic rendering, resolved where it is multisampled.
 
-use super::image::Target;
+use super::image::{Target, has_stencil};
 use super::{Host, Result};
 use ash::vk;
 use surfel::embed;
@@ -44,6 +44,7 @@ const NORMALS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 /// The host's format of numbers.
 pub const IDS: vk::Format = vk::Format::R32_UINT;
 /// Where the picture is copied from.
+const TESTED: vk::ImageLayout = vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
 const SOURCE: vk::ImageLayout = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
 
 impl Frame {
@@ -55,12 +56,23 @@ impl Frame {
 
     /// A frame with targets of these formats before that of the picture.
     pub fn with(host: &Host, kind: Kind, size: [u32; 2], more: &[vk::Format]) -> Result<Self> {
+        Self::with_depth(host, kind, size, more, DEPTH)
+    }
+
+    /// The same with a format of depth of its own.
+    pub fn with_depth(
+        host: &Host,
+        kind: Kind,
+        size: [u32; 2],
+        more: &[vk::Format],
+        depth: vk::Format,
+    ) -> Result<Self> {
         use vk::ImageUsageFlags as Usage;
         let one = vk::SampleCountFlags::TYPE_1;
         let drawn = Usage::COLOR_ATTACHMENT | Usage::TRANSFER_SRC;
         let tested = Usage::DEPTH_STENCIL_ATTACHMENT | Usage::TRANSFER_SRC;
         let colour = Target::new(host, kind.colour, size, kind.samples, drawn)?;
-        let depth = Target::new(host, DEPTH, size, kind.samples, tested)?;
+        let depth = Target::new(host, depth, size, kind.samples, tested)?;
         let resolved =
             (kind.samples != one).then(|| Target::new(host, kind.colour, size, one, drawn)).transpose()?;
         let formats: Vec<_> = more.iter().copied().chain([kind.colour]).collect();
@@ -72,7 +84,7 @@ impl Frame {
             more.iter().chain([&colour, &depth]).chain(&resolved).map(|target| target.view).collect();
         // SAFETY: a plain use of Vulkan; `destroy` destroys what is made.
         let make = || unsafe {
-            let pass = render_pass(host, kind, &formats)?;
+            let pass = render_pass(host, kind, &formats, depth.format)?;
             let info = vk::FramebufferCreateInfo::default()
                 .render_pass(pass)
                 .attachments(&views)
@@ -93,8 +105,8 @@ impl Frame {
                 None => embed::Pass::Rendering,
             },
             colours: self.more.iter().chain([&self.colour]).map(|target| target.format).collect(),
-            depth: Some(DEPTH),
-            stencil: vk::Format::UNDEFINED,
+            depth: Some(self.depth.format),
+            stencil: self.stencil(),
             reversed: self.kind.reversed,
             samples: self.kind.samples,
             picture: self.more.len() as u32,
@@ -104,6 +116,11 @@ impl Frame {
         }
     }
 
+    /// Format of its stencil, which is its depth's, if that has any.
+    fn stencil(&self) -> vk::Format {
+        if has_stencil(self.depth.format) { self.depth.format } else { vk::Format::UNDEFINED }
+    }
+
     /// The first location before the picture's that has this format.
     fn location(&self, format: vk::Format) -> Option<u32> {
         self.more.iter().position(|target| target.format == format).map(|location| location as u32)
@@ -111,7 +128,7 @@ impl Frame {
 
     /// What the host's own pipelines are told of it, where the picture is the only colour.
     pub fn place(&self) -> super::mesh::Where<'_> {
-        let formats = (std::slice::from_ref(&self.kind.colour), DEPTH);
+        let formats = (std::slice::from_ref(&self.kind.colour), self.depth.format);
         super::mesh::Where {
             pass: self.pass.map_or(vk::RenderPass::null(), |(pass, _)| pass),
             subpass: 0,
@@ -124,6 +141,11 @@ impl Frame {
 
     /// Begins the pass: colour is 0, depth the farthest.
     pub fn begin(&self, host: &Host, cmd: vk::CommandBuffer) {
+        self.begin_with(host, cmd, false);
+    }
+
+    /// The same, for commands that are in secondary command buffers, or are not.
+    pub fn begin_with(&self, host: &Host, cmd: vk::CommandBuffer, secondaries: bool) {
         let far = if self.kind.reversed { 0.0 } else { 1.0 };
         let black = vk::ClearValue::default();
         let farthest =
@@ -142,12 +164,15 @@ impl Frame {
                 .framebuffer(framebuffer)
                 .render_area(area)
                 .clear_values(&clears);
+            let contents = match secondaries {
+                true => vk::SubpassContents::SECONDARY_COMMAND_BUFFERS,
+                false => vk::SubpassContents::INLINE,
+            };
             // SAFETY: recorded outside a render pass; `end` ends it.
-            unsafe { host.device.cmd_begin_render_pass(cmd, &info, vk::SubpassContents::INLINE) };
+            unsafe { host.device.cmd_begin_render_pass(cmd, &info, contents) };
             return;
         }
-        let (drawn, tested) =
-            (vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL, vk::ImageLayout::DEPTH_ATTACHMENT_OPTIMAL);
+        let (drawn, tested) = (vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL, TESTED);
         for target in self.more.iter().chain([&self.colour]).chain(&self.resolved) {
             target.transition(host, cmd, [vk::ImageLayout::UNDEFINED, drawn]);
         }
@@ -170,11 +195,19 @@ impl Frame {
         let more = self.more.iter().map(|target| attachment(target, drawn, cleared(target)));
         let colours: Vec<_> = more.chain([colour]).collect();
         let depth = attachment(&self.depth, tested, farthest);
-        let info = vk::RenderingInfo::default()
+        let flags = match secondaries {
+            true => vk::RenderingFlags::CONTENTS_SECONDARY_COMMAND_BUFFERS,
+            false => vk::RenderingFlags::empty(),
+        };
+        let mut info = vk::RenderingInfo::default()
+            .flags(flags)
             .render_area(area)
             .layer_count(1)
             .color_attachments(&colours)
             .depth_attachment(&depth);
+        if has_stencil(self.depth.format) {
+            info = info.stencil_attachment(&depth);
+        }
         // SAFETY: as above.
         unsafe { host.rendering.cmd_begin_rendering(cmd, &info) };
     }
@@ -190,7 +223,7 @@ impl Frame {
         }
         if self.pass.is_none() {
             self.picture().transition(host, cmd, [vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL, SOURCE]);
-            self.depth.transition(host, cmd, [vk::ImageLayout::DEPTH_ATTACHMENT_OPTIMAL, SOURCE]);
+            self.depth.transition(host, cmd, [TESTED, SOURCE]);
             for target in &self.more {
                 target.transition(host, cmd, [vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL, SOURCE]);
             }
@@ -236,10 +269,35 @@ impl Frame {
         self.picture().image
     }
 
+    /// The depths, of any format, where there is one sample.
+    pub fn read_depths(&self, host: &Host) -> Result<Vec<f64>> {
+        self.depth.read_depths(host)
+    }
+
+    /// A secondary command buffer of what is drawn in its pass; the caller frees it.
+    pub fn secondary(
+        &self,
+        host: &Host,
+        draw: impl FnOnce(vk::CommandBuffer) -> Result<()>,
+    ) -> Result<vk::CommandBuffer> {
+        let colours: Vec<_> = self.more.iter().chain([&self.colour]).map(|target| target.format).collect();
+        let mut rendering = vk::CommandBufferInheritanceRenderingInfo::default()
+            .color_attachment_formats(&colours)
+            .depth_attachment_format(self.depth.format)
+            .stencil_attachment_format(self.stencil())
+            .rasterization_samples(self.kind.samples);
+        let inherited = vk::CommandBufferInheritanceInfo::default();
+        let inherited = match self.pass {
+            Some((pass, framebuffer)) => inherited.render_pass(pass).framebuffer(framebuffer),
+            None => inherited.push_next(&mut rendering),
+        };
+        host.record_secondary(&inherited, draw)
+    }
+
     /// Has `size` px from now on, and the same pass. The GPU is done with the frames before.
     pub fn resize(&mut self, host: &Host, size: [u32; 2]) -> Result<()> {
         let more: Vec<_> = self.more.iter().map(|target| target.format).collect();
-        let mut made = Self::with(host, self.kind, size, &more)?;
+        let mut made = Self::with_depth(host, self.kind, size, &more, self.depth.format)?;
         // A framebuffer goes with every pass like its own.
         if let (Some((new, _)), Some((old, _))) = (&mut made.pass, &mut self.pass) {
             std::mem::swap(new, old);
@@ -267,6 +325,7 @@ unsafe fn render_pass(
     host: &Host,
     kind: Kind,
     colours: &[vk::Format],
+    depth: vk::Format,
 ) -> std::result::Result<vk::RenderPass, vk::Result> {
     let attachment = |format, samples, load| {
         vk::AttachmentDescription::default()
@@ -277,7 +336,7 @@ unsafe fn render_pass(
             .initial_layout(vk::ImageLayout::UNDEFINED)
             .final_layout(SOURCE)
     };
-    let drawn = colours.iter().copied().chain([DEPTH]);
+    let drawn = colours.iter().copied().chain([depth]);
     let mut attachments: Vec<_> =
         drawn.map(|format| attachment(format, kind.samples, vk::AttachmentLoadOp::CLEAR)).collect();
     let reference = |attachment, layout| vk::AttachmentReference { attachment, layout };

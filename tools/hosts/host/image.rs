@@ -9,6 +9,7 @@ pub struct Target {
     pub view: vk::ImageView,
     pub format: vk::Format,
     pub size: [u32; 2],
+    samples: vk::SampleCountFlags,
     memory: vk::DeviceMemory,
 }
 
@@ -40,7 +41,8 @@ impl Target {
                 .view_type(vk::ImageViewType::TYPE_2D)
                 .format(format)
                 .subresource_range(range(format));
-            Ok(Self { image, view: host.device.create_image_view(&view, None)?, format, size, memory })
+            let view = host.device.create_image_view(&view, None)?;
+            Ok(Self { image, view, format, size, samples, memory })
         }
     }
 
@@ -60,8 +62,15 @@ impl Target {
         unsafe { host.device.cmd_copy_image_to_buffer(cmd, self.image, layout, buffer, &[region]) };
     }
 
-    /// Its bytes, `bytes` a pixel, once it is in the layout of a copy's source; of depth and stencil, the depth's.
+    /// Its bytes, `bytes` a pixel, once it is in the layout of a copy's source; of depth and stencil, the depth's; of several samples of
+    /// integers, one's.
     pub fn read(&self, host: &Host, bytes: usize) -> Result<Vec<u8>> {
+        if self.samples != vk::SampleCountFlags::TYPE_1 {
+            let one = self.resolved(host)?;
+            let read = one.read(host, bytes);
+            one.destroy(host);
+            return read;
+        }
         let size = bytes * self.size[0] as usize * self.size[1] as usize;
         let (buffer, memory) = host.buffer(&vec![0; size], vk::BufferUsageFlags::TRANSFER_DST)?;
         let source = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
@@ -84,6 +93,57 @@ impl Target {
             host.device.free_memory(memory, None);
         }
         found
+    }
+
+    /// Its depths, once it is in the layout of a copy's source.
+    pub fn read_depths(&self, host: &Host) -> Result<Vec<f64>> {
+        let bytes = if self.format == vk::Format::D16_UNORM { 2 } else { 4 };
+        let value = |depth: &[u8]| match (self.format, depth) {
+            (vk::Format::D16_UNORM, &[a, b]) => f64::from(u16::from_ne_bytes([a, b])) / 65_535.0,
+            (vk::Format::X8_D24_UNORM_PACK32 | vk::Format::D24_UNORM_S8_UINT, &[a, b, c, d]) => {
+                f64::from(u32::from_ne_bytes([a, b, c, d]) & 0xff_ffff) / f64::from(0xff_ffff)
+            }
+            (_, &[a, b, c, d]) => f32::from_ne_bytes([a, b, c, d]).into(),
+            _ => f64::NAN,
+        };
+        Ok(self.read(host, bytes)?.chunks_exact(bytes).map(value).collect())
+    }
+
+    /// A copy with one sample a pixel, in the layout of a copy's source.
+    fn resolved(&self, host: &Host) -> Result<Self> {
+        use vk::ImageLayout as Layout;
+        let usage = vk::ImageUsageFlags::TRANSFER_SRC
+            | vk::ImageUsageFlags::TRANSFER_DST
+            | vk::ImageUsageFlags::COLOR_ATTACHMENT;
+        let one = Self::new(host, self.format, self.size, vk::SampleCountFlags::TYPE_1, usage)?;
+        let [width, height] = self.size;
+        let layers = vk::ImageSubresourceLayers {
+            aspect_mask: copied(self.format),
+            layer_count: 1,
+            ..Default::default()
+        };
+        let region = vk::ImageResolve::default()
+            .src_subresource(layers)
+            .dst_subresource(layers)
+            .extent(vk::Extent3D { width, height, depth: 1 });
+        let (source, target) = (Layout::TRANSFER_SRC_OPTIMAL, Layout::TRANSFER_DST_OPTIMAL);
+        let resolved = host.run(|cmd| {
+            self.transition(host, cmd, [source, source]);
+            one.transition(host, cmd, [Layout::UNDEFINED, target]);
+            // SAFETY: both are in these layouts.
+            unsafe {
+                host.device.cmd_resolve_image(cmd, self.image, source, one.image, target, &[region]);
+            }
+            one.transition(host, cmd, [target, source]);
+            Ok(())
+        });
+        match resolved {
+            Ok(()) => Ok(one),
+            Err(error) => {
+                one.destroy(host);
+                Err(error)
+            }
+        }
     }
 
     /// A view of its depth alone, which the caller destroys.
@@ -126,12 +186,17 @@ impl Target {
     }
 }
 
+/// Whether a format of depth has stencil, too.
+pub fn has_stencil(format: vk::Format) -> bool {
+    [vk::Format::D24_UNORM_S8_UINT, vk::Format::D32_SFLOAT_S8_UINT].contains(&format)
+}
+
 fn aspect(format: vk::Format) -> vk::ImageAspectFlags {
     match format {
-        vk::Format::D32_SFLOAT | vk::Format::D16_UNORM => vk::ImageAspectFlags::DEPTH,
-        vk::Format::D24_UNORM_S8_UINT | vk::Format::D32_SFLOAT_S8_UINT => {
-            vk::ImageAspectFlags::DEPTH | vk::ImageAspectFlags::STENCIL
+        vk::Format::D32_SFLOAT | vk::Format::D16_UNORM | vk::Format::X8_D24_UNORM_PACK32 => {
+            vk::ImageAspectFlags::DEPTH
         }
+        _ if has_stencil(format) => vk::ImageAspectFlags::DEPTH | vk::ImageAspectFlags::STENCIL,
         _ => vk::ImageAspectFlags::COLOR,
     }
 }

@@ -196,6 +196,42 @@ impl Host {
         }
     }
 
+    /// Records a secondary command buffer that goes on with a pass; the caller frees it.
+    pub fn record_secondary(
+        &self,
+        inherited: &vk::CommandBufferInheritanceInfo<'_>,
+        body: impl FnOnce(vk::CommandBuffer) -> Result<()>,
+    ) -> Result<vk::CommandBuffer> {
+        let buffer = vk::CommandBufferAllocateInfo::default()
+            .command_pool(self.pool)
+            .level(vk::CommandBufferLevel::SECONDARY)
+            .command_buffer_count(1);
+        let within = vk::CommandBufferBeginInfo::default()
+            .flags(vk::CommandBufferUsageFlags::RENDER_PASS_CONTINUE)
+            .inheritance_info(inherited);
+        // SAFETY: the command buffer is recorded whole.
+        unsafe {
+            let cmd = self.device.allocate_command_buffers(&buffer)?[0];
+            self.device.begin_command_buffer(cmd, &within)?;
+            let made = body(cmd);
+            self.device.end_command_buffer(cmd)?;
+            made.map(|()| cmd)
+        }
+    }
+
+    /// Frees a command buffer that the GPU is done with.
+    pub fn free(&self, cmd: vk::CommandBuffer) {
+        // SAFETY: by the caller; it is of this pool.
+        unsafe { self.device.free_command_buffers(self.pool, &[cmd]) };
+    }
+
+    /// Whether images of this format can be depth attachments.
+    pub fn has_depth(&self, format: vk::Format) -> bool {
+        // SAFETY: the device is the instance's.
+        let can = unsafe { self.instance.get_physical_device_format_properties(self.physical, format) };
+        can.optimal_tiling_features.contains(vk::FormatFeatureFlags::DEPTH_STENCIL_ATTACHMENT)
+    }
+
     /// Waits until the GPU is done with what was submitted.
     pub fn wait(&self, Submitted { cmd, fence }: Submitted) -> Result<()> {
         // SAFETY: both are of this device, and done with after the wait.

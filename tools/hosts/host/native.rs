@@ -216,6 +216,12 @@ impl Native {
         self.framed.targets[number as usize].read(host, bytes)
     }
 
+    /// The depths, of any format.
+    pub fn read_depths(&self, host: &Host) -> Result<Vec<f64>> {
+        let number = self.kind.numbers().depth.ok_or("there is no depth")?;
+        self.framed.targets[number as usize].read_depths(host)
+    }
+
     /// The normals' bytes.
     pub fn normals(&self, host: &Host) -> Result<Vec<u8>> {
         let number = self.kind.numbers().normals.ok_or("there are no normals")?;
