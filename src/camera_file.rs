@@ -86,7 +86,7 @@ mod tests {
     fn what_is_written_is_read_bit_for_bit() {
         for span in [Span::Angle(44.999_999_999_999_99), Span::Height(1.0 / 3.0)] {
             let pose = Pose {
-                eye: DVec3::new(0.1, -1e-17, 1e300),
+                eye: DVec3::new(0.1, -1e-17, 1e30),
                 target: DVec3::new(1.0 / 7.0, 2.0, -3.5e-5),
                 up: DVec3::new(0.0, 0.6, -0.8),
                 span,

@@ -32,6 +32,9 @@ pub enum Error {
     /// No Vulkan device serves; the text says which were looked at and why each was refused.
     #[error("no usable Vulkan device: {0}")]
     NoDevice(String),
+    /// No window can be opened or presented to; the text says why, and what needs none.
+    #[error("no window: {0}")]
+    NoWindow(String),
     /// A Vulkan call failed.
     #[error("{call}: {result} ({result:?})")]
     Vulkan {

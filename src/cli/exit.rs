@@ -7,7 +7,7 @@ use surfel::Error;
 const DATA: u8 = 1;
 /// The command line is wrong.
 const USAGE: u8 = 2;
-/// No usable Vulkan device, or no validation layer where one is asked for.
+/// No usable Vulkan device, no display for a window, or no validation layer where one is asked for.
 const NO_DEVICE: u8 = 3;
 /// A picture is not as good as the command line demands.
 const VIOLATED: u8 = 4;
@@ -59,7 +59,7 @@ fn code(error: &Error) -> u8 {
     match error {
         _ if error.is_device_lost() => LOST,
         Error::Usage(_) => USAGE,
-        Error::NoDevice(_) => NO_DEVICE,
+        Error::NoDevice(_) | Error::NoWindow(_) => NO_DEVICE,
         Error::Input { .. }
         | Error::Io { .. }
         | Error::Memory { .. }

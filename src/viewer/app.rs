@@ -35,11 +35,6 @@ const SETTLED: Duration = Duration::from_millis(400);
 
 /// Opens the window and shows what `load` gives until it is closed.
 pub fn run(options: Options, load: Load, look: Look) -> Result<()> {
-    let no_display = |cause: winit::error::EventLoopError| {
-        Error::NoDevice(format!(
-            "there is no display to open a window on ({cause}): `surfel render` needs none"
-        ))
-    };
     let events = EventLoop::<News>::with_user_event().build().map_err(no_display)?;
     let remembered = options.remembered.as_deref().and_then(Remembered::read);
     let told = Told::new(remembered.as_ref().is_some_and(|known| known.hidden));
@@ -73,6 +68,14 @@ pub fn run(options: Options, load: Load, look: Look) -> Result<()> {
     };
     events.run_app(&mut app).map_err(no_display)?;
     app.failed.map_or(Ok(()), Err)
+}
+
+/// That there is no display, without the place in the source of who says so.
+fn no_display(error: winit::error::EventLoopError) -> Error {
+    let text = error.to_string();
+    let cause = text.split_once(".rs:").and_then(|(_, rest)| rest.split_once(": "));
+    let cause = cause.map_or(text.as_str(), |(_, cause)| cause).trim_end_matches('.');
+    Error::NoWindow(format!("there is no display to open one on: {cause}; `surfel render` needs none"))
 }
 
 struct App {

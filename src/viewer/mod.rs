@@ -87,7 +87,7 @@ pub type Look = Box<dyn Fn(&Method) -> Settings>;
 /// Opens the window, and shows what `load` makes of the inputs, and of files dropped on it, until it is closed.
 ///
 /// # Errors
-/// That of `load`, if it is the first scene's; [`surfel::Error::NoDevice`] where there is no display or no device; whatever rendering fails with.
+/// That of `load`, if it is the first scene's; [`surfel::Error::NoWindow`] where there is no display, [`surfel::Error::NoDevice`] where there is no device; whatever rendering fails with.
 pub fn run(options: Options, load: Load, look: Look) -> Result<()> {
     app::run(options, load, look)
 }

@@ -38,7 +38,8 @@ impl Opened {
         let attributes =
             Window::default_attributes().with_title("surfel").with_inner_size(PhysicalSize { width, height });
         let window = events.create_window(attributes);
-        let window = window.map_err(|cause| Error::NoDevice(format!("no window can be opened: {cause}")))?;
+        let window =
+            window.map_err(|cause| Error::NoWindow(format!("{cause}; `surfel render` needs none")))?;
         Self::of(Arc::new(window), options)
     }
 

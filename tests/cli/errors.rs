@@ -64,6 +64,7 @@ fn wrong_arguments_exit_with_2_before_anything_is_read() {
         ("--epsilon nan", "epsilon is NaN"),
         ("--frames 0", "--frames"),
         ("--camera a.json --fov 20", "cannot be used with"),
+        ("--parallel 2 --fov 20", "cannot be used with"),
         ("--reference --device 0", "cannot be used with"),
     ];
     let program = Program::new();
@@ -111,6 +112,9 @@ fn camera_files_are_checked() {
         (good.replace("45", "180"), "the field of view is 180°"),
         (good.replace("[0,0,3]", "[0,0,0]"), "stands on its target"),
         (good.replace("[0,0,3]", "[0,3]"), "length"),
+        (good.replace(r#","fov_y_deg":45"#, ""), "either `fov_y_deg`"),
+        (good.replace("}", r#","height":2}"#), "either `fov_y_deg`"),
+        (good.replace(r#""fov_y_deg":45"#, r#""height":0"#), "height of the picture is 0"),
         (String::new(), "EOF"),
     ] {
         program.write("camera.json", &contents);

@@ -1,6 +1,7 @@
 //! The `surfel` program as its user meets it: arguments in; exit code, streams and files out.
 
 mod bench;
+mod cameras;
 mod colours;
 mod compare;
 mod convert;

@@ -1,5 +1,6 @@
 /* A Vulkan layer that makes faults: it loses the first LOST_DEVICES devices, each after LOST_AFTER frames, and says of every
-   STALE_EVERYth image that is acquired or presented that its swapchain is out of date, or suboptimal. Works on one device at a time. */
+   STALE_EVERYth image that is acquired or presented that its swapchain is out of date, or suboptimal. With BLIND no device presents.
+   Works on one device at a time. */
 
 #include <stdint.h>
 #include <stdlib.h>
@@ -135,6 +136,14 @@ static int32_t present(void *queue, const void *what) {
   return result ? result : stale();
 }
 
+static int32_t presents(void *physical, uint32_t family, uint64_t surface, uint32_t *does) {
+  int32_t (*next)(void *, uint32_t, uint64_t, uint32_t *) =
+      (void *)next_instance(instance, "vkGetPhysicalDeviceSurfaceSupportKHR");
+  int32_t result = next(physical, family, surface, does);
+  if (number("BLIND")) *does = 0;
+  return result;
+}
+
 Function faults_instance_proc(void *of, const char *name);
 Function faults_device_proc(void *of, const char *name);
 
@@ -144,6 +153,7 @@ static Function own(const char *name) {
     {"vkCreateInstance", (Function)create_instance},         {"vkCreateDevice", (Function)create_device},
     {"vkQueueSubmit", (Function)submit},                     {"vkWaitForFences", (Function)wait_for_fences},
     {"vkAcquireNextImageKHR", (Function)acquire},            {"vkQueuePresentKHR", (Function)present},
+    {"vkGetPhysicalDeviceSurfaceSupportKHR", (Function)presents},
     {"vkDeviceWaitIdle", (Function)wait_idle},               {"vkQueueWaitIdle", (Function)queue_wait_idle},
   };
   for (size_t i = 0; i < sizeof all / sizeof *all; i++)

@@ -3,7 +3,7 @@
 use crate::program::{Program, say_skipped};
 use crate::view::{End, View, command};
 use crate::{SPHERE, stage};
-use std::process::Command;
+use std::process::{Command, Output};
 
 const MANIFEST: &str = r#"{"file_format_version": "1.0.0", "layer": {"name": "VK_LAYER_SURFEL_faults", "type": "GLOBAL",
     "library_path": "./libfaults.so", "api_version": "1.1.0", "implementation_version": "1", "description": "makes faults",
@@ -67,10 +67,12 @@ fn a_device_that_is_lost_again_ends_the_program() {
     };
     let mut view = View::start(&display, command);
     lose(&mut view);
-    view.picture(|_| true);
-    // Nobody tells of the second one: it ends the program.
-    for _ in 0..20 {
-        ["2", "3"].iter().for_each(|key| display.type_text(key));
+    // Nobody tells of the second time: it ends the program.
+    for key in ["2", "3"].iter().cycle() {
+        if view.ends() {
+            break;
+        }
+        display.type_text(key);
     }
     let End { code, errors } = view.end();
     let last = errors.lines().last().unwrap_or_default();
@@ -101,4 +103,14 @@ fn a_swapchain_that_is_out_of_date_is_made_anew() {
     display.resize(view.window, [200, 100]);
     view.picture(|event| event["size"] == serde_json::json!([200, 100]));
     view.close();
+}
+
+#[test]
+fn a_device_that_does_not_present_is_named() {
+    let test = "a_device_that_does_not_present_is_named";
+    let Some((display, program)) = stage(test) else { return };
+    let Some(mut command) = faulty(test, &program, &display.name, &[("BLIND", "1")]) else { return };
+    let Output { status, stderr, .. } = command.output().unwrap();
+    let text = String::from_utf8(stderr).unwrap();
+    assert!(status.code() == Some(3) && text.contains("does not present to this window"), "{text}");
 }

@@ -5,7 +5,7 @@ use crate::program::Program;
 use serde_json::Value;
 use std::io::{BufRead, BufReader, Read};
 use std::process::{Child, Command, Stdio};
-use std::sync::mpsc::{Receiver, channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, channel};
 use std::thread::{self, JoinHandle};
 use std::time::Instant;
 use x11rb::protocol::xproto::Window;
@@ -84,6 +84,18 @@ impl<'a> View<'a> {
                 return event;
             }
             last = line;
+        }
+    }
+
+    /// Waits for another picture; whether the program has ended instead.
+    pub fn ends(&mut self) -> bool {
+        loop {
+            match self.lines.recv_timeout(PATIENCE) {
+                Ok(line) if line.contains(r#""event":"picture""#) => return false,
+                Ok(_) => {}
+                Err(RecvTimeoutError::Disconnected) => return true,
+                Err(RecvTimeoutError::Timeout) => panic!("neither a picture nor an end for {PATIENCE:?}"),
+            }
         }
     }
 
