@@ -48,7 +48,10 @@ mod tests {
         assert_eq!(check_against("points", 5 << 30, Some(5 << 30)), Ok(()));
         let cause = check_against("7 points", 5 << 30, Some(3 << 29)).unwrap_err();
         assert!(cause.contains("7 points take 5.0 GiB") && cause.contains("1.5 GiB left"), "{cause}");
-        assert_eq!([size(0), size(1023), size(1024), size(3 << 20)], ["0 bytes", "1023 bytes", "1.0 KiB", "3.0 MiB"]);
+        assert_eq!(
+            [size(0), size(1023), size(1024), size(3 << 20)],
+            ["0 bytes", "1023 bytes", "1.0 KiB", "3.0 MiB"]
+        );
     }
 
     #[test]

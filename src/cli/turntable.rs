@@ -69,7 +69,8 @@ pub fn cameras(camera: &Camera, middle: DVec3, up: DVec3, count: u32) -> Vec<Cam
         }
         // The world turns the other way.
         let back = DQuat::from_axis_angle(axis, -TAU * f64::from(number) / f64::from(count));
-        let about = DMat4::from_translation(middle) * DMat4::from_quat(back) * DMat4::from_translation(-middle);
+        let about =
+            DMat4::from_translation(middle) * DMat4::from_quat(back) * DMat4::from_translation(-middle);
         Camera { view: camera.view * about, ..*camera }
     };
     (0..count).map(turned).collect()
@@ -90,7 +91,8 @@ mod tests {
         assert_eq!(file("frames/%04d.png", 7), "frames/0007.png");
         assert_eq!(file("%d.exr", 12), "12.exr");
         assert_eq!(file("a%02db.png", 123), "a123b.png");
-        for bad in ["a.png", "-", "%.png", "%4d.png", "%0d.png", "%s.png", "%d%d.png", "%d%.png", "%099d.png"] {
+        for bad in ["a.png", "-", "%.png", "%4d.png", "%0d.png", "%s.png", "%d%d.png", "%d%.png", "%099d.png"]
+        {
             let error = Pattern::parse(bad.as_ref()).map(|_| ()).unwrap_err().to_string();
             assert!(error.contains("%04d") && error.contains(bad), "{error}");
         }

@@ -30,8 +30,10 @@ impl Surfels {
         let bits = bits(&keys, count);
         let cells: Vec<&[(u64, u32)]> = keys.chunk_by(|a, b| prefix(a.0 ^ b.0, bits) == 0).collect();
         let light = decode_table();
-        let merged: Vec<Merged> =
-            cells.par_iter().flat_map_iter(|cell| self.merge_cell(cell, &light).into_iter().flatten()).collect();
+        let merged: Vec<Merged> = cells
+            .par_iter()
+            .flat_map_iter(|cell| self.merge_cell(cell, &light).into_iter().flatten())
+            .collect();
         self.of_merged(&merged)
     }
 
@@ -114,10 +116,7 @@ impl Surfels {
                 .ellipses
                 .is_some()
                 .then(|| merged.iter().map(|disc| Ellipse::circle(disc.normal)).collect()),
-            two_sided: self
-                .two_sided
-                .is_some()
-                .then(|| merged.iter().map(|disc| disc.two_sided).collect()),
+            two_sided: self.two_sided.is_some().then(|| merged.iter().map(|disc| disc.two_sided).collect()),
             colours: self.colours.as_ref().map(|colours| match colours {
                 Colours::Srgb8(_) => Colours::Srgb8(merged.par_iter().map(code).collect()),
                 Colours::Linear(_) => Colours::Linear(merged.iter().map(|disc| disc.colour).collect()),
@@ -144,10 +143,12 @@ fn bits(keys: &[(u64, u32)], count: usize) -> u32 {
     }
     let mut boxes = 1;
     // Keys have 63 bits, the first of 64 is 0.
-    (0..63).take_while(|bit| {
-        boxes += differ[*bit as usize + 1];
-        boxes <= count
-    }).count() as u32
+    (0..63)
+        .take_while(|bit| {
+            boxes += differ[*bit as usize + 1];
+            boxes <= count
+        })
+        .count() as u32
 }
 
 fn decode_table() -> [f32; 256] {

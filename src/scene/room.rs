@@ -16,7 +16,12 @@ pub(super) fn check(device: &Device, parts: &Parts<'_>) -> Result<()> {
     Err(Error::Memory {
         what: format!("{} surfels and {primitives} vertices of lines and triangles", parts.surfels.len()),
         bytes,
-        cause: format!("{} has {} of memory, and they take {}", device.description().name, size(most), size(bytes)),
+        cause: format!(
+            "{} has {} of memory, and they take {}",
+            device.description().name,
+            size(most),
+            size(bytes)
+        ),
     })
 }
 
@@ -32,8 +37,8 @@ fn least_bytes(parts: &Parts<'_>) -> u64 {
     };
     let surfels = parts.surfels;
     let of_surfels = surfels.len() as u64 * each(surfels.colours.as_ref(), surfels.ellipses.is_some());
-    let of_primitives = parts.primitives.map_or(0, |primitives| {
-        primitives.len() as u64 * each(primitives.colours.as_ref(), false)
-    });
+    let of_primitives = parts
+        .primitives
+        .map_or(0, |primitives| primitives.len() as u64 * each(primitives.colours.as_ref(), false));
     of_surfels + of_primitives
 }

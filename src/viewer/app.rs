@@ -1,16 +1,17 @@
 //! The window's events: what the hands do, and what they see of it.
 
+use super::events::Event;
 use super::hands::Hands;
 use super::keys::{self, Action};
-use super::events::Event;
 use super::load::{Load, Loader, News, What};
 use super::panels::Told;
 use super::state::{Of, State};
-use super::window::Opened;
 use super::watch::Watch;
+use super::window::Opened;
 use super::{Look, Options};
 use glam::DVec2;
 use std::ffi::OsString;
+use std::sync::Arc;
 use std::time::Instant;
 use surfel::{Error, Result};
 use winit::application::ApplicationHandler;
@@ -31,7 +32,10 @@ pub fn run(options: Options, load: Load, look: Look) -> Result<()> {
     let events = EventLoop::<News>::with_user_event().build().map_err(no_display)?;
     let state = State::new(&options, look);
     let hands = Hands::default();
-    let mut loader = Loader::new(load, events.create_proxy(), options.events);
+    let window = events.create_proxy();
+    // Whoever has closed the window wants no news.
+    let tell = move |news| drop(window.send_event(news));
+    let mut loader = Loader::new(load, Arc::new(tell), options.events);
     // The window opens meanwhile.
     loader.start(options.inputs.clone());
     let watch = options.watch.then(|| Watch::new(events.create_proxy()));

@@ -97,7 +97,12 @@ mod tests {
             works.iter().for_each(|work| cost.learn(*work, truth(*work)));
         }
         for work in works {
-            assert!((cost.of(work) / truth(work) - 1.0).abs() < 0.15, "{work:?}: {} {}", cost.of(work), truth(work));
+            assert!(
+                (cost.of(work) / truth(work) - 1.0).abs() < 0.15,
+                "{work:?}: {} {}",
+                cost.of(work),
+                truth(work)
+            );
         }
     }
 

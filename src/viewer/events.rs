@@ -10,29 +10,19 @@ use std::time::{Duration, Instant};
 #[serde(tag = "event", rename_all = "kebab-case")]
 pub enum Event<'a> {
     /// The window is open, on this device.
-    Window {
-        device: &'a str,
-    },
+    Window { device: &'a str },
     /// All inputs are read, and what they lacked is estimated.
-    Loaded {
-        surfels: u64,
-    },
+    Loaded { surfels: u64 },
     /// Some of the points are on the device, and are shown until all are.
-    Sketch {
-        surfels: u64,
-    },
+    Sketch { surfels: u64 },
     /// A scene is on the device, and is shown from now on.
-    Ready {
-        surfels: u64,
-    },
+    Ready { surfels: u64 },
     /// What is being loaded is given up.
     Cancelled,
     /// A picture of the scene went to the window.
     Picture(Shown),
     /// What the window says went wrong; what was shown before stays.
-    Wrong {
-        error: &'a str,
-    },
+    Wrong { error: &'a str },
 }
 
 /// What a picture shows.

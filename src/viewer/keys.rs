@@ -47,7 +47,12 @@ pub const BINDINGS: [Binding; 16] = {
         letter("y", "Y", "y is up, then −y", Action::Up(Up { axis: 1, down: false })),
         letter("z", "Z", "z is up, then −z", Action::Up(Up { axis: 2, down: false })),
         letter("h", "H", "these keys", Action::Help),
-        Binding { key: Key::Named(NamedKey::Escape), name: "Esc", does: "give up loading; quit", action: Action::Quit },
+        Binding {
+            key: Key::Named(NamedKey::Escape),
+            name: "Esc",
+            does: "give up loading; quit",
+            action: Action::Quit,
+        },
     ]
 };
 

@@ -39,7 +39,8 @@ impl Quality {
     /// Whether it has a step more of surfels or of pixels at most: what frames took tells what others like them will.
     fn is_next_to(&self, other: Self) -> bool {
         let step = |side: f64| SIDES.iter().position(|one| *one == side).unwrap_or(0);
-        let [pixels, surfels] = [step(other.side).saturating_sub(step(self.side)), other.scene.saturating_sub(self.scene)];
+        let [pixels, surfels] =
+            [step(other.side).saturating_sub(step(self.side)), other.scene.saturating_sub(self.scene)];
         pixels + surfels <= 1
     }
 }
@@ -88,6 +89,8 @@ pub struct Pace {
     moved: Option<Instant>,
     /// How long the last frame while the hands moved took, ms.
     last: f64,
+    /// What was chosen until a frame took too long, which may have been other programs' doing.
+    good: Option<Quality>,
     /// Frames in a row that left time for finer ones.
     quick: u32,
     patience: u32,
@@ -106,6 +109,7 @@ impl Pace {
             chosen: Quality::WHOLE,
             moved: None,
             last: 0.0,
+            good: None,
             quick: 0,
             patience: PATIENCE,
             since: PROVED,
@@ -182,21 +186,24 @@ impl Pace {
                 // What was finer did not last.
                 (self.patience, self.since) = ((2 * self.patience).min(MOST_PATIENCE), PROVED);
             }
+            self.good.get_or_insert(self.chosen);
             (self.chosen, self.quick) = (self.coarser(sight), 0);
             return;
         }
-        let next = self.finest(sight, |quality| quality.is_next_to(self.chosen));
+        let back = self.good.filter(|good| self.expected(sight, *good) <= AIM);
+        let next = back.or_else(|| self.finest(sight, |quality| quality.is_next_to(self.chosen)));
         let finer = next.filter(|next| sight.blur(*next) < FINER * sight.blur(self.chosen));
         let finer = finer.filter(|_| self.last <= ROOM * self.budget);
         self.quick = if finer.is_some() { self.quick + 1 } else { 0 };
         if let Some(finer) = finer.filter(|_| self.quick >= self.patience) {
-            (self.chosen, self.quick, self.since) = (finer, 0, 0);
+            (self.chosen, self.quick, self.since, self.good) = (finer, 0, 0, None);
         }
     }
 
     /// The finest that has no more of anything and should keep to its time; the quickest if none does.
     fn coarser(&self, sight: &Sight) -> Quality {
-        let no_more = |quality: &Quality| quality.side <= self.chosen.side && quality.scene >= self.chosen.scene;
+        let no_more =
+            |quality: &Quality| quality.side <= self.chosen.side && quality.scene >= self.chosen.scene;
         let quickest = || least(sight.choices(), |quality| self.cost.of(sight.work(quality)));
         self.finest(sight, no_more).or_else(quickest).unwrap_or(Quality::WHOLE)
     }
@@ -285,7 +292,9 @@ mod tests {
     #[test]
     fn what_is_quick_enough_is_whole() {
         let load = LOADS[0];
-        assert!(frames(&mut started(load), |_| load, 50).iter().all(|(quality, _)| *quality == Quality::WHOLE));
+        assert!(
+            frames(&mut started(load), |_| load, 50).iter().all(|(quality, _)| *quality == Quality::WHOLE)
+        );
         assert_eq!(started(load).refines(Instant::now()), None);
     }
 

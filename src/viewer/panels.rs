@@ -27,7 +27,8 @@ pub fn show(ui: &mut Ui, state: &mut State, told: &Told) {
     if let Some((stage, part)) = told.loading {
         Panel::bottom("loading").show(ui, |ui| {
             ui.horizontal(|ui| {
-                state.cancel |= ui.button("give up").on_hover_text("Esc; what was shown before stays").clicked();
+                state.cancel |=
+                    ui.button("give up").on_hover_text("Esc; what was shown before stays").clicked();
                 ui.add(ProgressBar::new(part).text(stage));
             })
         });

@@ -22,7 +22,9 @@ impl Watch {
     /// Tells `window` when inputs have changed.
     pub fn new(window: EventLoopProxy<News>) -> Self {
         let (inputs, given) = channel();
-        thread::spawn(move || watch(&given, || window.send_event(News { load: 0, what: What::Changed }).is_ok()));
+        thread::spawn(move || {
+            watch(&given, || window.send_event(News { load: 0, what: What::Changed }).is_ok())
+        });
         Self(inputs)
     }
 

@@ -61,7 +61,8 @@ impl Opened {
         let start = Instant::now();
         self.fly(state, hands, start);
         let look = state.look();
-        if !self.look.as_ref().zip(look.as_ref()).is_some_and(|(a, b)| Arc::ptr_eq(&a.0, &b.0) && a.1 == b.1) {
+        if !self.look.as_ref().zip(look.as_ref()).is_some_and(|(a, b)| Arc::ptr_eq(&a.0, &b.0) && a.1 == b.1)
+        {
             self.pace.forget();
             self.look = look;
         }
@@ -69,7 +70,8 @@ impl Opened {
         let moving = self.pace.moves(start);
         let quality = sight.as_ref().map_or(Quality::WHOLE, |sight| self.pace.quality(start, sight));
         told.side = quality.side;
-        told.surfels = sight.as_ref().and_then(|sight| sight.surfels.get(quality.scene)).copied().unwrap_or(0.0);
+        told.surfels =
+            sight.as_ref().and_then(|sight| sight.surfels.get(quality.scene)).copied().unwrap_or(0.0);
         let again = self.hud.lay_out(&self.window, state, told);
         let shown = self.present(state, told, quality)?;
         // A frame's time is its own, and the next one shows where the hands are when it begins.

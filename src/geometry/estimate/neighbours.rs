@@ -90,12 +90,7 @@ struct Survey {
 }
 
 impl Survey {
-    fn new(
-        sites: &Sites,
-        wanted: Vec<u32>,
-        how: &Estimate,
-        progress: &dyn Progress,
-    ) -> Result<Self, String> {
+    fn new(sites: &Sites, wanted: Vec<u32>, how: &Estimate, progress: &dyn Progress) -> Result<Self, String> {
         let mut patches = vec![Patch::default(); wanted.len()];
         let mut edges = vec![0; wanted.len() * EDGES];
         let (done, total) = (AtomicU64::new(0), wanted.len() as u64);
