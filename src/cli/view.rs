@@ -6,6 +6,7 @@ use super::files::config_folder;
 use super::inputs::{self, Wanted};
 use super::{camera, render, vulkan};
 use crate::viewer;
+use glam::DVec3;
 use std::ffi::OsString;
 use std::sync::Arc;
 use std::time::Instant;
@@ -19,39 +20,6 @@ pub fn run(args: View) -> Result<()> {
     args.settings(&args.method.unwrap_or(Method::ALL[0])).check()?;
     let file = camera::read(&args.camera)?;
     let up = camera::up(&args.camera, file);
-    let colouring = Colouring::new(&args.colours, up)?;
-    let texture = args.colours.texture()?;
-    let (estimate, polygons, quiet) = (args.points.estimate(), args.points.polygons, args.quiet);
-    let asked = args.method;
-    // Colours that are not the surface's are not what rays see.
-    let is_exact = colouring.is_none();
-    let load = move |names: &[OsString], window: &dyn viewer::Loading| {
-        let sketch = |model: Model| {
-            if let Ok(method) = render::method(asked, &model) {
-                window.sketch(viewer::Loaded { model, surface: None, method });
-            }
-        };
-        let wanted = Wanted {
-            names,
-            estimate: estimate.clone(),
-            polygons,
-            lines: None,
-            simplify: None,
-            voxel: None,
-            colouring: colouring.clone(),
-            texture: texture.clone(),
-            quiet,
-            progress: window,
-            sketch: Some(&sketch),
-        };
-        let model = inputs::load(&wanted)?.model;
-        let method = render::method(asked, &model)?;
-        let surface = match names {
-            [one] if is_exact => inputs::scene(one).map(Into::into),
-            _ => None,
-        };
-        Ok(viewer::Loaded { model, surface, method })
-    };
     let given = {
         let args::Camera { eye, target, fov, parallel, file, .. } = &args.camera;
         eye.is_some() || target.is_some() || fov.is_some() || parallel.is_some() || file.is_some()
@@ -74,5 +42,141 @@ pub fn run(args: View) -> Result<()> {
         asked: args.method.is_some()
             || Method::ALL.iter().any(|method| args.settings(method) != method.settings()),
     };
-    viewer::run(options, Arc::new(load), Box::new(move |method| args.settings(method)))
+    let load = load(&args, up)?;
+    viewer::run(options, load, Box::new(move |method| args.settings(method)))
+}
+
+/// How inputs are loaded, as the arguments say.
+fn load(args: &View, up: DVec3) -> Result<viewer::Load> {
+    let colouring = Colouring::new(&args.colours, up)?;
+    let texture = args.colours.texture()?;
+    let (estimate, polygons, quiet) = (args.points.estimate(), args.points.polygons, args.quiet);
+    let asked = args.method;
+    // Colours that are not the surface's are not what rays see.
+    let is_exact = colouring.is_none();
+    Ok(Arc::new(move |names: &[OsString], window: &dyn viewer::Loading| {
+        let sketch = |model: Model| {
+            // What is wrong with it is wrong with all of it, which says so.
+            if let Ok(method) = render::method(asked, &model) {
+                window.sketch(viewer::Loaded { model, surface: None, method });
+            }
+        };
+        let model = inputs::load(&Wanted {
+            names,
+            estimate: estimate.clone(),
+            polygons,
+            lines: None,
+            simplify: None,
+            voxel: None,
+            colouring: colouring.clone(),
+            texture: texture.clone(),
+            quiet,
+            progress: window,
+            sketch: Some(&sketch),
+        })?
+        .model;
+        let method = render::method(asked, &model)?;
+        let surface = match names {
+            [one] if is_exact => inputs::scene(one).map(Into::into),
+            _ => None,
+        };
+        Ok(viewer::Loaded { model, surface, method })
+    }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cli::args::{Command, Surfel};
+    use clap::Parser;
+    use std::sync::Mutex;
+    use surfel::{Error, Progress};
+
+    /// Keeps what it is shown, and gives up where it is told to.
+    #[derive(Default)]
+    struct Window {
+        sketches: Mutex<Vec<usize>>,
+        /// The stage at which it gives up.
+        until: Option<&'static str>,
+        stages: Mutex<Vec<&'static str>>,
+    }
+
+    impl Progress for Window {
+        fn at(&self, stage: &'static str, _: u64, _: u64) {
+            self.stages.lock().unwrap().push(stage);
+        }
+
+        fn is_cancelled(&self) -> bool {
+            self.until.is_some_and(|until| self.stages.lock().unwrap().contains(&until))
+        }
+    }
+
+    impl viewer::Loading for Window {
+        fn sketch(&self, loaded: viewer::Loaded) {
+            self.sketches.lock().unwrap().push(loaded.model.surfels.len());
+        }
+    }
+
+    fn loaded(input: impl Into<OsString>, window: &Window) -> Result<viewer::Loaded> {
+        let input = [input.into()];
+        let command = ["surfel", "view", "-q", "x.ply"];
+        let Command::View(args) = Surfel::try_parse_from(command).unwrap().command else { panic!("no view") };
+        load(&args, DVec3::Y)?(&input, window)
+    }
+
+    #[test]
+    fn what_cannot_be_read_is_an_error_that_names_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let header = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
+        let files = [
+            ("none.ply", None),
+            ("empty.ply", Some(String::new())),
+            ("text.ply", Some("hello".into())),
+            ("cut.ply", Some(format!("{header}0 0 0\n1 0 0\n"))),
+            ("heap.ply", Some(format!("{header}{}", "1 2 3\n".repeat(4)))),
+            ("huge.ply", Some(header.replace("vertex 4", "vertex 4000000000000"))),
+        ];
+        for (name, text) in files {
+            let path = folder.path().join(name);
+            text.into_iter().for_each(|text| std::fs::write(&path, text).unwrap());
+            let error = loaded(&path, &Window::default()).err().unwrap().to_string();
+            assert!(error.contains(name) && !error.contains('\n'), "{error}");
+        }
+        let error = loaded(folder.path(), &Window::default()).err().unwrap().to_string();
+        assert!(error.contains(&folder.path().display().to_string()), "{error}");
+    }
+
+    #[test]
+    fn many_points_are_sketched_and_few_are_not() {
+        let window = Window::default();
+        let all = loaded("scene:sphere?points=120000", &window).unwrap();
+        assert_eq!((all.model.surfels.len(), window.sketches.into_inner().unwrap()), (120_000, vec![20_000]));
+        let window = Window::default();
+        loaded("scene:sphere?points=50000", &window).unwrap();
+        assert_eq!(window.sketches.into_inner().unwrap(), []);
+    }
+
+    #[test]
+    fn loading_is_given_up_while_it_reads_and_while_it_estimates() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("points.ply");
+        let count = 40_000;
+        let mut text = format!(
+            "ply\nformat ascii 1.0\nelement vertex {count}\nproperty float x\nproperty float y\nproperty float z\nend_header\n"
+        );
+        (0..count).for_each(|i| text += &format!("{} {} {}\n", i % 200, i / 200, i % 7));
+        std::fs::write(&path, text).unwrap();
+        let last = [
+            ("reading", "reading"),
+            ("building the search tree", "estimating normals and radii"),
+            ("estimating normals and radii", "estimating normals and radii"),
+        ];
+        for (until, last) in last {
+            let window = Window { until: Some(until), ..Default::default() };
+            let given_up = loaded(&path, &window);
+            assert!(matches!(given_up, Err(Error::Cancelled)), "{until}");
+            assert_eq!(window.stages.into_inner().unwrap().last(), Some(&last), "{until}");
+        }
+        assert_eq!(loaded(&path, &Window::default()).unwrap().model.surfels.len(), count);
+    }
 }

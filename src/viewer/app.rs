@@ -41,7 +41,10 @@ pub fn run(options: Options, load: Load, look: Look) -> Result<()> {
     let known = remembered.filter(|_| !options.asked).and_then(|known| known.settings());
     let state = State::new(&options, look, known);
     let hands = Hands::default();
-    let mut loader = Loader::new(load, events.create_proxy(), options.events);
+    let window = events.create_proxy();
+    // Whoever has closed the window wants no news.
+    let tell = move |news| drop(window.send_event(news));
+    let mut loader = Loader::new(load, Arc::new(tell), options.events);
     // The window opens meanwhile.
     loader.start(options.inputs.clone());
     let watch = options.watch.then(|| Watch::new(events.create_proxy()));

@@ -12,7 +12,9 @@ use surfel::geometry::Model;
 use surfel::methods::Method;
 use surfel::vk::Device;
 use surfel::{Error, Progress, Result, Scene};
-use winit::event_loop::EventLoopProxy;
+
+/// Who is told of loads, from any thread.
+pub type Window = Arc<dyn Fn(News) + Send + Sync>;
 
 /// How many times as many surfels each scene has as the next coarser one.
 const FEWER: f64 = 1.6;
@@ -57,7 +59,7 @@ pub enum What {
 /// Loads one scene after another, each on a thread of its own.
 pub struct Loader {
     load: Load,
-    window: EventLoopProxy<News>,
+    window: Window,
     events: Events,
     /// `None` where there will never be one.
     device: Arc<OnceLock<Option<Arc<Device>>>>,
@@ -76,7 +78,7 @@ struct UnderWay {
 
 impl Loader {
     /// Nothing is loaded yet.
-    pub fn new(load: Load, window: EventLoopProxy<News>, events: Events) -> Self {
+    pub fn new(load: Load, window: Window, events: Events) -> Self {
         Self {
             load,
             window,
@@ -186,7 +188,7 @@ impl Drop for Loader {
 /// Tells the window of a load.
 struct Told {
     number: u64,
-    window: EventLoopProxy<News>,
+    window: Window,
     events: Events,
     device: Arc<OnceLock<Option<Arc<Device>>>>,
     cancelled: Arc<AtomicBool>,
@@ -244,8 +246,7 @@ impl Told {
     }
 
     fn send(&self, what: What) {
-        // Whoever has closed the window wants no news.
-        let _ = self.window.send_event(News::Load(self.number, what));
+        (self.window)(News::Load(self.number, what));
     }
 }
 
@@ -271,5 +272,116 @@ impl Loading for Told {
         if let Ok(scene) = Scene::upload(device, &model) {
             self.send(What::Sketch(Arc::new(scene), method, Source::new(model, surface)));
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::viewer::tests::device;
+    use std::sync::mpsc::{Receiver, channel};
+    use std::time::{Duration, Instant};
+    use surfel::scenes;
+
+    /// A loader, and what it tells.
+    fn loader(
+        load: impl Fn(&[OsString], &dyn Loading) -> Result<Loaded> + Send + Sync + 'static,
+    ) -> (Loader, Receiver<News>) {
+        let (send, news) = channel();
+        let tell = Arc::new(move |told| drop(send.send(told)));
+        (Loader::new(Arc::new(load), tell, Events::new(Instant::now(), false)), news)
+    }
+
+    fn loaded(points: u32) -> Result<Loaded> {
+        let surfels = scenes::open(&format!("scene:sphere?points={points}"))?;
+        Ok(Loaded { model: surfels.into(), method: Method::ALL[0] })
+    }
+
+    /// News of a load until its last, less how far it has come.
+    fn until_coarser(loader: &Loader, news: &Receiver<News>) -> Vec<What> {
+        let mut all = Vec::new();
+        while !matches!(all.last(), Some(What::Coarser(_) | What::Failed(_))) {
+            let told = news.recv_timeout(Duration::from_secs(60)).unwrap();
+            if loader.is_present(&told) && !matches!(told.what, What::At(..)) {
+                all.push(told.what);
+            }
+        }
+        all
+    }
+
+    #[test]
+    fn a_sketch_comes_first_and_fewer_surfels_last() {
+        let Some(device) = device("a_sketch_comes_first_and_fewer_surfels_last") else { return };
+        let (mut loader, news) = loader(|_, window| {
+            window.sketch(loaded(100)?);
+            loaded(30_000)
+        });
+        loader.start(Vec::new());
+        loader.use_device(&device);
+        let all = until_coarser(&loader, &news);
+        let [What::Sketch(sketch, _), What::Ready(whole, _), What::Coarser(coarser)] = &all[..] else {
+            panic!("{} news", all.len())
+        };
+        assert_eq!((sketch.count(), whole.count()), (100, 30_000));
+        let counts: Vec<u64> = coarser.iter().map(|scene| scene.count()).collect();
+        assert!(counts.windows(2).all(|pair| pair[1] < pair[0]), "{counts:?}");
+        assert!(counts[0] > 10_000 && counts[counts.len() - 1] <= FEWEST as u64, "{counts:?}");
+    }
+
+    #[test]
+    fn what_is_given_up_is_not_shown_and_another_load_takes_its_place() {
+        let Some(device) = device("what_is_given_up_is_not_shown_and_another_load_takes_its_place") else {
+            return;
+        };
+        let (mut loader, news) = loader(|inputs, window| {
+            while inputs[0] == "slow" {
+                if window.is_cancelled() {
+                    return Err(Error::Cancelled);
+                }
+                std::thread::yield_now();
+            }
+            loaded(1000)
+        });
+        loader.use_device(&device);
+        loader.start(vec!["slow".into()]);
+        assert!(loader.cancel() && !loader.cancel(), "there is one to give up");
+        loader.under_way.pop().unwrap().thread.join().unwrap();
+        assert!(news.try_iter().all(|told| !loader.is_present(&told)));
+        loader.start(vec!["slow".into()]);
+        loader.start(vec!["quick".into()]);
+        let all = until_coarser(&loader, &news);
+        assert!(matches!(&all[..], [What::Ready(scene, _), What::Coarser(_)] if scene.count() == 1000));
+    }
+
+    #[test]
+    fn nobody_waits_for_a_device_that_never_comes() {
+        let (mut loader, _news) = loader(|_, _| loaded(1000));
+        loader.start(Vec::new());
+        drop(loader);
+    }
+
+    #[test]
+    fn a_scene_beyond_the_devices_memory_is_refused_with_the_sizes() {
+        let Some(device) = device("a_scene_beyond_the_devices_memory_is_refused_with_the_sizes") else {
+            return;
+        };
+        let options = surfel::vk::DeviceOptions {
+            limits: surfel::vk::DeviceLimits { memory: Some(20_000), ..Default::default() },
+            ..Default::default()
+        };
+        drop(device);
+        let device = Device::open(&options).unwrap();
+        let (mut loader, news) = loader(|_, _| loaded(1000));
+        loader.use_device(&device);
+        loader.start(Vec::new());
+        let all = until_coarser(&loader, &news);
+        let [What::Failed(error @ Error::Memory { bytes: 40_000, .. })] = &all[..] else {
+            panic!("it is loaded")
+        };
+        let text = error.to_string();
+        assert!(
+            text.contains("1000 surfels") && text.contains("19.5 KiB") && text.contains("39.1 KiB"),
+            "{text}"
+        );
     }
 }

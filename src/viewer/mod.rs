@@ -91,3 +91,21 @@ pub type Look = Box<dyn Fn(&Method) -> Settings>;
 pub fn run(options: Options, load: Load, look: Look) -> Result<()> {
     app::run(options, load, look)
 }
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+    use surfel::vk::{Device, DeviceOptions};
+
+    /// A device under the validation layers; `None`, said aloud, where there is none and none is required.
+    pub fn device(test: &str) -> Option<Arc<Device>> {
+        match Device::open(&DeviceOptions { validate: true, ..Default::default() }) {
+            Ok(device) => Some(device),
+            Err(error) => {
+                assert_ne!(std::env::var("SURFEL_REQUIRE_GPU").as_deref(), Ok("1"), "{test}: {error}");
+                eprintln!("{test}: skipped: {error}");
+                None
+            }
+        }
+    }
+}

@@ -89,6 +89,8 @@ pub struct Pace {
     moved: Option<Instant>,
     /// How long the last frame while the hands moved took, ms.
     last: f64,
+    /// What was chosen until a frame took too long, which may have been other programs' doing.
+    good: Option<Quality>,
     /// Frames in a row that left time for finer ones.
     quick: u32,
     patience: u32,
@@ -107,6 +109,7 @@ impl Pace {
             chosen: Quality::WHOLE,
             moved: None,
             last: 0.0,
+            good: None,
             quick: 0,
             patience: PATIENCE,
             since: PROVED,
@@ -183,15 +186,17 @@ impl Pace {
                 // What was finer did not last.
                 (self.patience, self.since) = ((2 * self.patience).min(MOST_PATIENCE), PROVED);
             }
+            self.good.get_or_insert(self.chosen);
             (self.chosen, self.quick) = (self.coarser(sight), 0);
             return;
         }
-        let next = self.finest(sight, |quality| quality.is_next_to(self.chosen));
+        let back = self.good.filter(|good| self.expected(sight, *good) <= AIM);
+        let next = back.or_else(|| self.finest(sight, |quality| quality.is_next_to(self.chosen)));
         let finer = next.filter(|next| sight.blur(*next) < FINER * sight.blur(self.chosen));
         let finer = finer.filter(|_| self.last <= ROOM * self.budget);
         self.quick = if finer.is_some() { self.quick + 1 } else { 0 };
         if let Some(finer) = finer.filter(|_| self.quick >= self.patience) {
-            (self.chosen, self.quick, self.since) = (finer, 0, 0);
+            (self.chosen, self.quick, self.since, self.good) = (finer, 0, 0, None);
         }
     }
 

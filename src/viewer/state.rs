@@ -391,3 +391,75 @@ fn nearest(up: DVec3) -> Up {
     let axis = (0..3).max_by(|&a, &b| size[a].total_cmp(&size[b])).unwrap_or(1);
     Up { axis, down: up[axis] < 0.0 }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::viewer::tests::device;
+    use crate::viewer::{Events, Folder};
+    use std::time::Instant;
+    use surfel::geometry::Surfels;
+    use surfel::scenes;
+    use surfel::vk::DeviceOptions;
+
+    fn state() -> State {
+        let options = Options {
+            inputs: Vec::new(),
+            size: [640, 480],
+            device: DeviceOptions::default(),
+            rasterizer: None,
+            up: DVec3::Y,
+            budget: 60.0,
+            fov_y_deg: 45.0,
+            place: Box::new(|_, _| None),
+            watch: false,
+            events: Events::new(Instant::now(), false),
+            keep: Folder { path: ".".into(), tell: false },
+            remembered: None,
+            asked: false,
+        };
+        State::new(&options, Box::new(Method::settings), None)
+    }
+
+    fn of(load: u64, sketch: bool) -> Of {
+        Of { load, sketch, again: false }
+    }
+
+    #[test]
+    fn a_sketch_is_left_for_what_was_before_or_for_the_whole_scene() {
+        let Some(device) = device("a_sketch_is_left_for_what_was_before_or_for_the_whole_scene") else {
+            return;
+        };
+        let scene = |points: u32| {
+            let surfels = scenes::open(&format!("scene:sphere?points={points}")).unwrap();
+            Arc::new(Scene::upload(&device, &surfels).unwrap())
+        };
+        let made = || (Method::ALL[0], Source::new(Surfels::default().into(), None));
+        let shown = |state: &State| state.look().map(|(scene, _)| scene.count());
+        let mut state = state();
+        state.show(scene(10), made(), of(1, true));
+        assert_eq!((shown(&state), state.is_sketch()), (Some(10), true));
+        state.leave_sketch();
+        assert_eq!(shown(&state), None, "there was nothing before");
+        state.show(scene(10), made(), of(2, true));
+        let eye = |state: &mut State| state.moving().unwrap().0.eye;
+        // Who has turned the sketch sees the whole scene from there.
+        state.moving().unwrap().0.side(super::super::orbit::Side::Top);
+        let above = eye(&mut state);
+        state.show(scene(100), made(), of(2, false));
+        assert_eq!((shown(&state), state.is_sketch(), eye(&mut state)), (Some(100), false, above));
+        state.show(scene(10), made(), of(3, true));
+        state.show(scene(20), made(), of(4, true));
+        assert_ne!(eye(&mut state), above);
+        state.leave_sketch();
+        assert_eq!((shown(&state), eye(&mut state)), (Some(100), above));
+        // Another state of the same files is looked at as the one before.
+        state.show(scene(50), made(), Of { load: 5, sketch: false, again: true });
+        assert_eq!((shown(&state), eye(&mut state)), (Some(50), above));
+        state.add_coarser(vec![scene(5)]);
+        assert_eq!(state.sight().unwrap().surfels, [50.0, 5.0]);
+        state.show(scene(30), made(), of(6, false));
+        assert_eq!(state.sight().unwrap().surfels, [30.0]);
+        assert_ne!(eye(&mut state), above);
+    }
+}

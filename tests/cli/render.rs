@@ -189,3 +189,25 @@ fn textures_come_from_the_file_or_the_command_line() {
     assert!(program.run(&format!("render {common} -o a.png")).err.contains("drawn without its texture"));
     program.run(&format!("render {common} --texture given.png --color-by x -o a.png")).error(2);
 }
+
+#[test]
+fn a_turntable_goes_all_around_from_the_ordinary_picture() {
+    let Some(program) = Program::with_device("a_turntable_goes_all_around_from_the_ordinary_picture") else {
+        return;
+    };
+    let common = "render scene:helix --size 64x48 --validate -q --eye 0,1,6 --target 0,0,0";
+    program.run(&format!("{common} -o one.png")).text();
+    program.run(&format!("{common} --turntable 4 -o turn-%02d.png")).text();
+    let files = ["one.png", "turn-00.png", "turn-01.png", "turn-02.png", "turn-03.png"];
+    assert_eq!(program.files(), files);
+    assert_eq!(program.png("turn-00.png"), program.png("one.png"));
+    // From the other side, through the middle of the scene's bounds and not the origin, all of it is another picture.
+    let sides: Vec<_> = files[1..].iter().map(|file| program.png(file)).collect();
+    for (i, a) in sides.iter().enumerate() {
+        assert!(sides[..i].iter().all(|b| difference(a, b) > 1.0), "{i}");
+    }
+    program.run(&format!("{common} --turntable 2 --reference -o cpu-%d.png")).text();
+    assert!(difference(&program.png("cpu-1.png"), &program.png("turn-02.png")) < 0.2);
+    let run = program.run(&format!("{common} --turntable 4 -o turn.png"));
+    assert!(run.error(2).contains("frames/%04d.png"), "{}", run.err);
+}
