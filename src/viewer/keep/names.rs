@@ -17,6 +17,7 @@ impl Names {
     }
 
     fn at(&mut self, folder: &Path, extension: &str, time: &str) -> PathBuf {
+        let folder = folder.strip_prefix(".").unwrap_or(folder);
         let name = |number: u32| match number {
             1 => folder.join(format!("surfel-{time}.{extension}")),
             _ => folder.join(format!("surfel-{time}-{number}.{extension}")),
@@ -43,5 +44,6 @@ mod tests {
         let found = [next("png"), next("png"), next("json"), next("png")];
         let expected = ["surfel-T.png", "surfel-T-3.png", "surfel-T.json", "surfel-T-4.png"];
         assert_eq!(found, expected.map(|name| folder.path().join(name)));
+        assert_eq!(names.at(Path::new("."), "png", "T"), Path::new("surfel-T.png"));
     }
 }
