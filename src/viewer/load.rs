@@ -139,6 +139,8 @@ impl Loader {
 
     /// Gives up what is being loaded; whether something was.
     pub fn cancel(&mut self) -> bool {
+        // What it tells from now on is of no load.
+        self.last += 1;
         let cancel =
             |load: &UnderWay| !load.cancelled.swap(true, Ordering::Relaxed) && !load.thread.is_finished();
         self.under_way.iter().map(cancel).fold(false, |any, one| any | one)
@@ -146,8 +148,7 @@ impl Loader {
 
     /// Whether news is of the present load, which is not cancelled.
     pub fn is_present(&self, news: &News) -> bool {
-        let cancelled = || self.under_way.last().is_some_and(|load| load.cancelled.load(Ordering::Relaxed));
-        news.load == self.last && !cancelled()
+        news.load == self.last
     }
 }
 
