@@ -259,8 +259,9 @@ impl App {
             self.changed = (version, Some(now + SETTLED));
         }
         let due = self.changed.1?;
-        if now < due {
-            return Some(due);
+        if now < due || self.pending.is_some() {
+            // A load makes its own, or leaves the surfels as they are.
+            return Some(due.max(now + SETTLED));
         }
         self.changed.1 = None;
         if let Some(source) = self.state.without_coarser() {

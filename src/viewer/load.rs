@@ -123,7 +123,6 @@ impl Loader {
     }
 
     fn begin(&mut self) {
-        self.last += 1;
         let (load, inputs) = (self.load.clone(), self.inputs.clone());
         self.work(move |told| {
             if let Err(error) = told.load(&load, &inputs) {
@@ -161,6 +160,8 @@ impl Loader {
 
     /// Gives up what is being loaded; whether something was.
     pub fn cancel(&mut self) -> bool {
+        // What it tells from now on is of no load.
+        self.last += 1;
         let cancel =
             |load: &UnderWay| !load.cancelled.swap(true, Ordering::Relaxed) && !load.thread.is_finished();
         self.under_way.iter().map(cancel).fold(false, |any, one| any | one)
@@ -168,8 +169,7 @@ impl Loader {
 
     /// Whether this is the present load, which is not cancelled.
     pub fn is_present(&self, load: u64) -> bool {
-        let cancelled = || self.under_way.last().is_some_and(|load| load.cancelled.load(Ordering::Relaxed));
-        load == self.last && !cancelled()
+        load == self.last
     }
 }
 
