@@ -48,12 +48,7 @@ pub const BINDINGS: [Binding; 17] = {
         letter("y", "Y", "y is up, then −y", Action::Up(Up { axis: 1, down: false })),
         letter("z", "Z", "z is up, then −z", Action::Up(Up { axis: 2, down: false })),
         letter("h", "H", "these keys", Action::Help),
-        Binding {
-            key: Key::Named(NamedKey::Tab),
-            name: "Tab",
-            does: "hide or show the panel",
-            action: Action::Panels,
-        },
+        letter("g", "G", "hide or show the panel", Action::Panels),
         Binding { key: Key::Named(NamedKey::Escape), name: "Esc", does: "quit", action: Action::Quit },
     ]
 };

@@ -33,9 +33,9 @@ pub fn start(
 ) -> JoinHandle<()> {
     thread::spawn(move || {
         let told = Told { window: window.clone(), last: AtomicU64::new(u64::MAX) };
-        let ready = load(&inputs, &told).and_then(|Loaded { model, surface, method }| {
+        let ready = load(&inputs, &told).and_then(|Loaded { model, surface, numbers, method }| {
             let scene = Scene::upload(&device, &model)?;
-            Ok(News::Ready(Arc::new(scene), method, Source::new(model, surface)))
+            Ok(News::Ready(Arc::new(scene), method, Source::new(model, surface, numbers)))
         });
         // Whoever has closed the window wants no news.
         let _ = window.send_event(ready.unwrap_or_else(News::Failed));

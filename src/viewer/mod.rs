@@ -25,10 +25,11 @@ use glam::DVec3;
 use load::Load;
 use std::ffi::OsString;
 use std::path::PathBuf;
+use std::sync::Arc;
 use surfel::geometry::Model;
 use surfel::methods::Method;
 use surfel::vk::DeviceOptions;
-use surfel::{Rasterizer, Result, Settings};
+use surfel::{Progress, Rasterizer, Result, Settings};
 
 /// How the window is opened.
 pub struct Options {
@@ -56,9 +57,23 @@ pub struct Loaded {
     pub model: Model,
     /// The built-in scene that it is, if its surface is known exactly and nothing of it is changed.
     pub surface: Option<String>,
+    /// What else is known of its points.
+    pub numbers: Numbers,
     /// How it is rendered at first.
     pub method: Method,
 }
+
+/// Numbers of points of which nothing is made, for colours to show.
+#[derive(Clone)]
+pub struct Numbers {
+    /// Their names.
+    pub names: Vec<String>,
+    /// Reads those of a name.
+    pub read: ReadNumbers,
+}
+
+/// Gives the numbers of a name, of every surfel, and of every vertex of lines and triangles; NaN where there is none.
+pub type ReadNumbers = Arc<dyn Fn(&str, &dyn Progress) -> Result<[Vec<f32>; 2]> + Send + Sync>;
 
 /// The settings of a method.
 pub type Look = Box<dyn Fn(&Method) -> Settings>;
