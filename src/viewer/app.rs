@@ -86,7 +86,7 @@ impl ApplicationHandler<News> for App {
             }
             News::Ready(scene, method, source) => {
                 (self.told.loading, self.told.wrong) = (None, None);
-                self.state.show(scene, method, source);
+                self.state.show(scene, method, *source);
                 self.changed();
             }
             News::Failed(error) if self.state.moving().is_none() => self.fail(events, error),

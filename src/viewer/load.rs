@@ -19,7 +19,7 @@ pub enum News {
     /// So much of a stage is done, thousandths.
     At(&'static str, u64),
     /// The scene is on the device.
-    Ready(Arc<Scene>, Method, Source),
+    Ready(Arc<Scene>, Method, Box<Source>),
     /// It cannot be loaded.
     Failed(surfel::Error),
 }
@@ -35,7 +35,7 @@ pub fn start(
         let told = Told { window: window.clone(), last: AtomicU64::new(u64::MAX) };
         let ready = load(&inputs, &told).and_then(|Loaded { model, surface, numbers, method }| {
             let scene = Scene::upload(&device, &model)?;
-            Ok(News::Ready(Arc::new(scene), method, Source::new(model, surface, numbers)))
+            Ok(News::Ready(Arc::new(scene), method, Box::new(Source::new(model, surface, numbers))))
         });
         // Whoever has closed the window wants no news.
         let _ = window.send_event(ready.unwrap_or_else(News::Failed));
