@@ -87,9 +87,10 @@ impl Commands {
 
 impl Drop for Commands {
     fn drop(&mut self) {
+        // A lost device has nothing left to wait for.
+        let _ = self.device.wait_idle();
         // SAFETY: every run is waited for; after a failed one the device is idle or lost. Null handles are ignored.
         unsafe {
-            let _ = self.device.raw.device_wait_idle();
             self.device.raw.destroy_fence(self.fence, None);
             self.device.raw.destroy_command_pool(self.pool, None);
         }

@@ -272,8 +272,7 @@ impl Device {
         Ok(body(*queue, family))
     }
 
-    /// Waits until the GPU has nothing left to do.
-    #[cfg(feature = "window")]
+    /// Waits until the GPU has nothing left to do: for the queue, too, while others submit to it.
     pub(super) fn wait_idle(&self) -> Result<()> {
         let (queue, _) = self.queue()?;
         let _locked = queue.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
