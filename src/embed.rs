@@ -230,8 +230,8 @@ impl Renderer {
         let splats = self.stage.resident().map(|resident| &resident.splats);
         self.reports.begin(&self.device, splats)?;
         self.held.advance();
-        // SAFETY: by the caller; the reports have one for each frame under way.
         let (timestamps, counts) = self.reports.present();
+        // SAFETY: by the caller; the reports have one for each frame under way.
         let mut rec = unsafe { Recorder::of_host_timed(&self.device, cmd, timestamps) };
         self.stage.record(&mut rec, &block);
         if let Some((splats, counts)) = splats.zip(counts) {

@@ -4,6 +4,8 @@ use super::args;
 use super::progress::say;
 use glam::DVec3;
 use rayon::prelude::*;
+#[cfg(feature = "viewer")]
+use surfel::geometry::Colours;
 use surfel::geometry::{Cloud, ColourMap, ColourScale, Model, Quantity, ValueRange};
 use surfel::io::colour_bar::ColourBar;
 use surfel::{Error, Result};
@@ -22,6 +24,9 @@ pub struct Colouring {
 enum Source {
     /// A property of the files.
     Property,
+    /// The same, with the numbers themselves in the place of colours.
+    #[cfg(feature = "viewer")]
+    Numbers,
     /// A number that the surfels have.
     Quantity(Quantity),
     /// The surfels' normals.
@@ -61,9 +66,18 @@ impl Colouring {
         Ok(Some(Self { name: by.name.clone(), source, map: args.color_map, range: by.range }))
     }
 
+    /// No colours, but a property itself, three times as linear light: for who makes colours of it later.
+    #[cfg(feature = "viewer")]
+    pub fn numbers(name: &str) -> Self {
+        Self { name: name.into(), source: Source::Numbers, map: ColourMap::default(), range: None }
+    }
+
     /// The property that is to be read from the files.
     pub fn property(&self) -> Option<&str> {
-        matches!(self.source, Source::Property).then_some(self.name.as_str())
+        match self.source {
+            Source::Quantity(_) | Source::Normal => None,
+            _ => Some(self.name.as_str()),
+        }
     }
 
     /// Whether there are values for a bar to tell.
@@ -73,6 +87,11 @@ impl Colouring {
 
     /// Colours clouds by the property that was read from their files.
     pub fn colour_clouds(&self, clouds: &mut [&mut Cloud], quiet: bool) -> Coloured {
+        #[cfg(feature = "viewer")]
+        if matches!(self.source, Source::Numbers) {
+            clouds.iter_mut().for_each(|cloud| take_numbers(cloud));
+            return Coloured { name: self.name.clone(), scale: None };
+        }
         let scalars = || clouds.iter().filter_map(|cloud| cloud.scalar.as_ref());
         let count = scalars().map(|scalar| scalar.len() as u64).sum();
         let coloured = self.scale(scalars().flatten().copied(), count, quiet);
@@ -90,6 +109,8 @@ impl Colouring {
         let Model { surfels, primitives } = model;
         match self.source {
             Source::Property => None,
+            #[cfg(feature = "viewer")]
+            Source::Numbers => None,
             Source::Normal => {
                 surfels.colour_by_normals();
                 primitives.colour_by_directions();
@@ -139,6 +160,16 @@ impl Coloured {
     fn scale_or_grey(&self, map: ColourMap) -> ColourScale {
         self.scale.unwrap_or(ColourScale { map, range: ValueRange { min: 0.0, max: 0.0 } })
     }
+}
+
+/// Puts a cloud's numbers in the place of its colours, NaN where there are none.
+#[cfg(feature = "viewer")]
+fn take_numbers(cloud: &mut Cloud) {
+    let count = cloud.len();
+    let numbers = cloud.scalar.take().unwrap_or_else(|| vec![f64::NAN; count]);
+    let single = |number: &f64| [*number as f32; 3];
+    cloud.texture = None;
+    cloud.colours = Some(Colours::Linear(numbers.iter().map(single).collect()));
 }
 
 /// A number without the digits that its conversion to f64 or a sum added.

@@ -54,6 +54,8 @@ pub struct Inputs {
     pub estimated: Estimated,
     /// What the points were coloured by, if not by their own colours.
     pub coloured: Option<Coloured>,
+    /// Properties of the files' points of which nothing is made.
+    pub skipped: Vec<String>,
 }
 
 /// An input as it was read.
@@ -68,9 +70,11 @@ struct Part {
 pub fn load(wanted: &Wanted<'_>) -> Result<Inputs> {
     refuse_scenes(wanted)?;
     let (mut parts, mut read, mut dropped) = (Vec::new(), 0, Dropped::default());
+    let mut skipped: Vec<String> = Vec::new();
     for name in wanted.names {
-        let (part, points, lost) = load_one(name, wanted)?;
+        let (part, points, lost, others) = load_one(name, wanted)?;
         parts.push(part);
+        skipped.extend(others);
         read += points;
         dropped.position += lost.position;
         dropped.transparent += lost.transparent;
@@ -89,7 +93,9 @@ pub fn load(wanted: &Wanted<'_>) -> Result<Inputs> {
         sketch(&parts, wanted).into_iter().for_each(show);
     }
     let (model, estimated) = merge(parts, wanted)?;
-    let mut inputs = Inputs { model, read, dropped, estimated, coloured };
+    skipped.sort();
+    skipped.dedup();
+    let mut inputs = Inputs { model, read, dropped, estimated, coloured, skipped };
     if let (Some(colouring), None) = (&wanted.colouring, &inputs.coloured) {
         inputs.coloured = colouring.colour_model(&mut inputs.model, wanted.quiet);
     }
@@ -107,12 +113,12 @@ fn refuse_scenes(wanted: &Wanted<'_>) -> Result<()> {
     }
 }
 
-/// What is in an input, its number of points, and how many of them were dropped.
-fn load_one(name: &OsString, wanted: &Wanted<'_>) -> Result<(Part, u64, Dropped)> {
+/// What is in an input, its number of points, how many of them were dropped, and what was skipped of them.
+fn load_one(name: &OsString, wanted: &Wanted<'_>) -> Result<(Part, u64, Dropped, Vec<String>)> {
     if let Some(name) = scene(name) {
         let cloud = scene_cloud(name)?;
         let count = cloud.len() as u64;
-        return Ok((Part { name: name.into(), cloud, drawn: true }, count, Dropped::default()));
+        return Ok((Part { name: name.into(), cloud, drawn: true }, count, Dropped::default(), Vec::new()));
     }
     let property = wanted.colouring.as_ref().and_then(Colouring::property);
     let options = ReadOptions {
@@ -123,7 +129,7 @@ fn load_one(name: &OsString, wanted: &Wanted<'_>) -> Result<(Part, u64, Dropped)
     let Loaded { cloud, report } = ply::read(Path::new(name), &options, wanted.progress)?;
     let name = Path::new(name).display().to_string();
     warn(&name, &report);
-    Ok((Part { name, cloud, drawn: false }, report.points, report.dropped))
+    Ok((Part { name, cloud, drawn: false }, report.points, report.dropped, report.skipped))
 }
 
 /// Says what of a file is left out, and what may be damage.

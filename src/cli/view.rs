@@ -10,9 +10,10 @@ use glam::DVec3;
 use std::ffi::OsString;
 use std::sync::Arc;
 use std::time::Instant;
-use surfel::Result;
-use surfel::geometry::{Bounds, Model};
+use surfel::geometry::estimate::Estimate;
+use surfel::geometry::{Bounds, Colours, MipMap, Model};
 use surfel::methods::Method;
+use surfel::{Progress, Result};
 
 /// Opens the window, which loads the inputs while it is there.
 pub fn run(args: View) -> Result<()> {
@@ -49,39 +50,80 @@ pub fn run(args: View) -> Result<()> {
 /// How inputs are loaded, as the arguments say.
 fn load(args: &View, up: DVec3) -> Result<viewer::Load> {
     let colouring = Colouring::new(&args.colours, up)?;
-    let texture = args.colours.texture()?;
-    let (estimate, polygons, quiet) = (args.points.estimate(), args.points.polygons, args.quiet);
+    let reader = Reader {
+        estimate: args.points.estimate(),
+        polygons: args.points.polygons,
+        texture: args.colours.texture()?,
+        quiet: args.quiet,
+    };
     let asked = args.method;
-    // Colours that are not the surface's are not what rays see.
-    let is_exact = colouring.is_none();
     Ok(Arc::new(move |names: &[OsString], window: &dyn viewer::Loading| {
         let sketch = |model: Model| {
             // What is wrong with it is wrong with all of it, which says so.
             if let Ok(method) = render::method(asked, &model) {
-                window.sketch(viewer::Loaded { model, surface: None, method });
+                window.sketch(viewer::Loaded::sketch(model, method));
             }
         };
-        let model = inputs::load(&Wanted {
+        let inputs = reader.load(names, colouring.clone(), window, Some(&sketch))?;
+        let method = render::method(asked, &inputs.model)?;
+        let surface = match names {
+            // Colours that are not the surface's are not what rays see.
+            [one] if colouring.is_none() => inputs::scene(one).map(Into::into),
+            _ => None,
+        };
+        // A built-in scene has none, and no other beside one.
+        let skipped =
+            if names.iter().any(|name| inputs::scene(name).is_some()) { vec![] } else { inputs.skipped };
+        let (reader, own) = (reader.clone(), names.to_vec());
+        let read = move |name: &str, progress: &dyn Progress| reader.numbers(&own, name, progress);
+        let numbers = viewer::Numbers { names: skipped, read: Arc::new(read) };
+        Ok(viewer::Loaded { model: inputs.model, surface, numbers, method })
+    }))
+}
+
+/// How inputs are read.
+#[derive(Clone)]
+struct Reader {
+    estimate: Estimate,
+    polygons: bool,
+    texture: Option<Arc<MipMap>>,
+    quiet: bool,
+}
+
+impl Reader {
+    fn load(
+        &self,
+        names: &[OsString],
+        colouring: Option<Colouring>,
+        progress: &dyn Progress,
+        sketch: Option<&dyn Fn(Model)>,
+    ) -> Result<inputs::Inputs> {
+        inputs::load(&Wanted {
             names,
-            estimate: estimate.clone(),
-            polygons,
+            estimate: self.estimate.clone(),
+            polygons: self.polygons,
             lines: None,
             simplify: None,
             voxel: None,
-            colouring: colouring.clone(),
-            texture: texture.clone(),
-            quiet,
-            progress: window,
-            sketch: Some(&sketch),
-        })?
-        .model;
-        let method = render::method(asked, &model)?;
-        let surface = match names {
-            [one] if is_exact => inputs::scene(one).map(Into::into),
-            _ => None,
+            colouring,
+            texture: self.texture.clone(),
+            quiet: self.quiet,
+            progress,
+            sketch,
+        })
+    }
+
+    /// A property of every surfel, and of every vertex of lines and triangles.
+    fn numbers(&self, names: &[OsString], name: &str, progress: &dyn Progress) -> Result<[Vec<f32>; 2]> {
+        let quiet = Self { quiet: true, ..self.clone() };
+        let Model { surfels, primitives } =
+            quiet.load(names, Some(Colouring::numbers(name)), progress, None)?.model;
+        let numbers = |colours| match colours {
+            Some(Colours::Linear(numbers)) => numbers.into_iter().map(|[number, ..]| number).collect(),
+            _ => Vec::new(),
         };
-        Ok(viewer::Loaded { model, surface, method })
-    }))
+        Ok([surfels.colours, primitives.colours].map(numbers))
+    }
 }
 
 #[cfg(test)]

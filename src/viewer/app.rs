@@ -136,7 +136,7 @@ impl ApplicationHandler<News> for App {
             What::Sketch(scene, method, source) => {
                 tell.tell(&Event::Sketch { surfels: scene.count() });
                 if let Err(error) =
-                    self.show(scene, (method, source), Of { load, sketch: true, again: false })
+                    self.show(scene, (method, *source), Of { load, sketch: true, again: false })
                 {
                     return self.fail(events, error);
                 }
@@ -146,7 +146,7 @@ impl ApplicationHandler<News> for App {
                 (self.told.loading, self.told.wrong) = (None, None);
                 self.inputs = self.pending.take().unwrap_or(std::mem::take(&mut self.inputs));
                 let of = Of { load, sketch: false, again: self.loader.is_again() };
-                if let Err(error) = self.show(scene, (method, source), of) {
+                if let Err(error) = self.show(scene, (method, *source), of) {
                     return self.fail(events, error);
                 }
             }

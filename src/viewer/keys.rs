@@ -93,7 +93,7 @@ pub const BINDINGS: [Binding; 24] = {
         control("c", "Ctrl+C", "copy the camera", Action::CopyCamera),
         control("v", "Ctrl+V", "paste a camera", Action::PasteCamera),
         letter("h", "H", "these keys", Action::Help),
-        named(NamedKey::Tab, NONE, "Tab", "hide or show the panel", Action::Panels),
+        letter("g", "G", "hide or show the panel", Action::Panels),
         named(NamedKey::Escape, NONE, "Esc", "give up loading; quit", Action::Quit),
     ]
 };

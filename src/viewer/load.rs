@@ -47,9 +47,9 @@ pub enum What {
     /// So much of a stage is done, thousandths.
     At(&'static str, u64),
     /// Some of the points are on the device.
-    Sketch(Arc<Scene>, Method, Source),
+    Sketch(Arc<Scene>, Method, Box<Source>),
     /// The scene is on the device.
-    Ready(Arc<Scene>, Method, Source),
+    Ready(Arc<Scene>, Method, Box<Source>),
     /// And so are fewer and larger surfels of it, ever fewer.
     Coarser(Vec<Arc<Scene>>),
     /// It cannot be loaded.
@@ -199,12 +199,12 @@ struct Told {
 
 impl Told {
     fn load(&self, load: &Load, inputs: &[OsString]) -> Result<()> {
-        let Loaded { model, surface, method } = load(inputs, self)?;
+        let Loaded { model, surface, numbers, method } = load(inputs, self)?;
         self.events.tell(&Event::Loaded { surfels: model.surfels.len() as u64 });
         let Some(device) = self.device() else { return Ok(()) };
         self.at("uploading", 0, 1);
         let scene = Arc::new(Scene::upload(device, &model)?);
-        let source = Source::new(model, surface);
+        let source = Box::new(Source::new(model, surface, numbers));
         let model = source.shown();
         self.send(What::Ready(scene, method, source));
         self.coarsen(device, &model);
@@ -265,12 +265,13 @@ impl Progress for Told {
 }
 
 impl Loading for Told {
-    fn sketch(&self, Loaded { model, surface, method }: Loaded) {
+    fn sketch(&self, Loaded { model, surface, numbers, method }: Loaded) {
         // Until all of it is there, its earlier state stays.
         let Some(device) = self.device().filter(|_| !self.again) else { return };
         // What is wrong with it is wrong with the whole scene, which says so.
         if let Ok(scene) = Scene::upload(device, &model) {
-            self.send(What::Sketch(Arc::new(scene), method, Source::new(model, surface)));
+            let source = Box::new(Source::new(model, surface, numbers));
+            self.send(What::Sketch(Arc::new(scene), method, source));
         }
     }
 }

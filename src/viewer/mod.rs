@@ -33,10 +33,11 @@ pub use keep::Folder;
 pub use load::{Load, Loading};
 use std::ffi::OsString;
 use std::path::PathBuf;
+use std::sync::Arc;
 use surfel::geometry::{Bounds, Model, Pose};
 use surfel::methods::Method;
 use surfel::vk::DeviceOptions;
-use surfel::{Rasterizer, Result, Settings};
+use surfel::{Progress, Rasterizer, Result, Settings};
 
 /// How the window is opened.
 pub struct Options {
@@ -74,12 +75,35 @@ pub struct Loaded {
     pub model: Model,
     /// The built-in scene that it is, if its surface is known exactly and nothing of it is changed.
     pub surface: Option<String>,
+    /// What else is known of its points.
+    pub numbers: Numbers,
     /// How it is rendered at first.
     pub method: Method,
 }
 
+impl Loaded {
+    /// Some of the points of a scene that is loaded later.
+    pub fn sketch(model: Model, method: Method) -> Self {
+        let read = |_: &str, _: &dyn Progress| Ok([Vec::new(), Vec::new()]);
+        let numbers = Numbers { names: Vec::new(), read: Arc::new(read) };
+        Self { model, surface: None, numbers, method }
+    }
+}
+
 /// The camera to begin with, for a scene of these bounds and a picture of this size, px; `None` shows all of it.
 pub type Place = Box<dyn Fn(&Bounds, [u32; 2]) -> Option<Result<Pose>>>;
+
+/// Numbers of points of which nothing is made, for colours to show.
+#[derive(Clone)]
+pub struct Numbers {
+    /// Their names.
+    pub names: Vec<String>,
+    /// Reads those of a name.
+    pub read: ReadNumbers,
+}
+
+/// Gives the numbers of a name, of every surfel, and of every vertex of lines and triangles; NaN where there is none.
+pub type ReadNumbers = Arc<dyn Fn(&str, &dyn Progress) -> Result<[Vec<f32>; 2]> + Send + Sync>;
 
 /// The settings of a method.
 pub type Look = Box<dyn Fn(&Method) -> Settings>;

@@ -1,20 +1,27 @@
 //! What a scene was made of, and what is changed of it since: colours, radii.
 
+use super::Numbers;
+use super::job::Job;
 use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::Arc;
 use surfel::geometry::{ColourMap, ColourScale, Colours, Model, Quantity, Surfels, ValueRange};
 use surfel::scene::{Changes, ColourStream};
 use surfel::vk::Device;
-use surfel::{Result, Scene};
+use surfel::{Error, Progress, Result, Scene};
 
 /// What a scene was made of.
-#[derive(Clone)]
 pub struct Source {
     /// As it was loaded.
     model: Arc<Model>,
     /// The built-in scene that it is, if that is known exactly.
     surface: Option<String>,
+    /// What else is known of its points.
+    numbers: Numbers,
+    /// Those that were read, of surfels and of vertices, each with its number among the names.
+    read: Vec<(usize, [Vec<f32>; 2])>,
+    /// Those that are being read.
+    reading: Option<(usize, Job<[Vec<f32>; 2]>)>,
     /// What it is to be.
     pub changed: Changed,
     /// What the scene is.
@@ -43,10 +50,12 @@ pub enum By {
     Z,
     Radius,
     Normal,
+    /// Numbers of the file, by their place among the names.
+    Number(usize),
 }
 
 impl By {
-    /// All of them, with what they are called and what they mean.
+    /// All that every scene has, with what they are called and what they mean.
     pub const ALL: [(Self, &'static str, &'static str); 6] = [
         (Self::Own, "own", "the points' own colours; grey where they have none"),
         (Self::X, "x", "the place along x, in the positions' unit"),
@@ -62,29 +71,26 @@ impl By {
             Self::Y => Some(Quantity::Along(DVec3::Y)),
             Self::Z => Some(Quantity::Along(DVec3::Z)),
             Self::Radius => Some(Quantity::Radius),
-            Self::Own | Self::Normal => None,
+            Self::Own | Self::Normal | Self::Number(_) => None,
         }
-    }
-
-    /// What it is called.
-    pub fn name(self) -> &'static str {
-        Self::ALL.iter().find(|(by, ..)| *by == self).map_or("", |(_, name, _)| name)
     }
 }
 
 impl Changed {
     /// The scale of the colours, where they show numbers.
     pub fn scale(&self) -> Option<ColourScale> {
-        self.by.quantity().map(|_| ColourScale { map: self.map, range: self.range })
+        let shows = !matches!(self.by, By::Own | By::Normal);
+        shows.then_some(ColourScale { map: self.map, range: self.range })
     }
 }
 
 impl Source {
     /// Of a model as it was loaded.
-    pub fn new(model: Model, surface: Option<String>) -> Self {
+    pub fn new(model: Model, surface: Option<String>, numbers: Numbers) -> Self {
         let range = ValueRange { min: 0.0, max: 1.0 };
         let own = Changed { by: By::Own, map: ColourMap::default(), range, radii: 1.0 };
-        Self { model: Arc::new(model), surface, changed: own, applied: own, usual: Vec::new() }
+        let (read, reading, usual) = (Vec::new(), None, Vec::new());
+        Self { model: Arc::new(model), surface, numbers, read, reading, changed: own, applied: own, usual }
     }
 
     /// The built-in scene whose surface the picture should show.
@@ -92,34 +98,107 @@ impl Source {
         self.surface.as_deref().filter(|_| self.applied.by == By::Own)
     }
 
-    /// Whether radii can be scaled: weights and clip lines would stay those of the discs as they were.
+    /// Whether radii can be scaled: weights would stay those of the discs as they were.
     pub fn has_fixed_radii(&self) -> bool {
         self.model.surfels.weights.is_some() || self.model.surfels.is_empty()
     }
 
-    /// Colours by this from now on, in its usual range.
+    /// Names of the file's numbers.
+    pub fn names(&self) -> &[String] {
+        &self.numbers.names
+    }
+
+    /// What colours are made of is called.
+    pub fn name(&self, by: By) -> &str {
+        match by {
+            By::Number(number) => self.numbers.names.get(number).map_or("", String::as_str),
+            _ => By::ALL.iter().find(|(known, ..)| *known == by).map_or("", |(_, name, _)| name),
+        }
+    }
+
+    /// Colours by this from now on, in its usual range; by numbers of the file once they are read.
     pub fn colour_by(&mut self, by: By) {
+        if let By::Number(number) = by
+            && !self.read.iter().any(|(known, _)| *known == number)
+        {
+            let (read, name) = (self.numbers.read.clone(), self.name(by).to_owned());
+            self.reading = Some((number, Job::start(move |progress: &dyn Progress| read(&name, progress))));
+            return;
+        }
         self.changed.by = by;
         if let Some(range) = self.usual(by) {
             self.changed.range = range;
         }
     }
 
-    /// From the 1st to the 99th percentile of a quantity.
-    pub fn usual(&mut self, by: By) -> Option<ValueRange> {
+    /// A stage of what is being read, and how much of it is done.
+    pub fn reading(&self) -> Option<(&'static str, f32)> {
+        self.reading.as_ref().map(|(_, job)| job.at())
+    }
+
+    /// Takes what was read, and colours by it.
+    fn take(&mut self) -> Result<()> {
+        let Some((number, job)) = &mut self.reading else { return Ok(()) };
+        let (number, Some(outcome)) = (*number, job.take()) else { return Ok(()) };
+        self.reading = None;
+        let read = outcome?;
+        let (surfels, vertices) = (self.model.surfels.len(), self.model.primitives.positions.len());
+        if read.each_ref().map(Vec::len) != [surfels, vertices] {
+            return Err(Error::Usage("the file has changed since it was loaded: load it anew".into()));
+        }
+        self.read.push((number, read));
+        self.colour_by(By::Number(number));
+        Ok(())
+    }
+
+    /// The numbers that colours are made of, of surfels and of vertices; none where they are made of none.
+    fn values(&self, by: By) -> Option<[Vec<f64>; 2]> {
+        if let By::Number(number) = by {
+            let (_, read) = self.read.iter().find(|(known, _)| *known == number)?;
+            return Some(read.each_ref().map(|numbers| numbers.iter().copied().map(f64::from).collect()));
+        }
         let quantity = by.quantity()?;
+        Some([self.model.surfels.values(quantity), self.model.primitives.values(quantity)])
+    }
+
+    /// From the 1st to the 99th percentile of what colours are made of.
+    pub fn usual(&mut self, by: By) -> Option<ValueRange> {
         if let Some((_, known)) = self.usual.iter().find(|(known, _)| *known == by) {
             return *known;
         }
-        let (surfels, primitives) = (&self.model.surfels, &self.model.primitives);
-        let values = surfels.values(quantity).into_iter().chain(primitives.values(quantity));
-        let range = ValueRange::of(values).map(|(range, _)| range);
+        let [surfels, vertices] = self.values(by)?;
+        let range = ValueRange::of(surfels.into_iter().chain(vertices)).map(|(range, _)| range);
         self.usual.push((by, range));
         range
     }
 
+    /// Changes as much as of another state of the scene; numbers of the file are read anew.
+    pub fn change_as(&mut self, other: &Self) {
+        self.changed = other.changed;
+        if let By::Number(number) = other.changed.by {
+            self.changed.by = By::Own;
+            if other.numbers.names.get(number) == self.numbers.names.get(number) {
+                self.colour_by(other.changed.by);
+            }
+        }
+    }
+
+    /// As it is now, for another thread; nothing is being read.
+    pub fn snapshot(&self) -> Self {
+        Self {
+            model: self.model.clone(),
+            surface: self.surface.clone(),
+            numbers: self.numbers.clone(),
+            read: self.read.clone(),
+            reading: None,
+            usual: self.usual.clone(),
+            ..*self
+        }
+    }
+
     /// Makes the scene what it is to be; whether it was not. After an error all is as before.
     pub fn apply(&mut self, scene: &mut Arc<Scene>, device: &Arc<Device>) -> Result<bool> {
+        self.take()?;
         let (old, new) = (self.applied, self.changed);
         if new == old {
             return Ok(false);
@@ -159,18 +238,15 @@ impl Source {
     /// The surfels' colours.
     fn colours(&self) -> Option<Colours> {
         let surfels = &self.model.surfels;
-        match (self.applied.by.quantity(), self.applied.by) {
-            (Some(quantity), _) => {
-                let scale = ColourScale { map: self.applied.map, range: self.applied.range };
-                Some(scale.colours(surfels.values(quantity).into_par_iter()))
-            }
-            (None, By::Normal) => {
-                let mut alone = Surfels { normals: surfels.normals.clone(), ..Default::default() };
-                alone.colour_by_normals();
-                alone.colours
-            }
-            (None, _) => surfels.colours.clone(),
+        if let Some((scale, [values, _])) = self.applied.scale().zip(self.values(self.applied.by)) {
+            return Some(scale.colours(values.into_par_iter()));
         }
+        if self.applied.by == By::Normal {
+            let mut alone = Surfels { normals: surfels.normals.clone(), ..Default::default() };
+            alone.colour_by_normals();
+            return alone.colours;
+        }
+        surfels.colours.clone()
     }
 
     /// The model as the scene shows it.
@@ -185,14 +261,78 @@ impl Source {
             model.surfels.texture = None;
             model.surfels.colours = self.colours();
         }
-        match self.applied.scale().zip(by.quantity()) {
-            Some((scale, quantity)) => {
-                let values = model.primitives.values(quantity);
-                model.primitives.colour_by_values(&values, &scale);
-            }
+        match self.applied.scale().zip(self.values(by)) {
+            Some((scale, [_, values])) => model.primitives.colour_by_values(&values, &scale),
             None if by == By::Normal => model.primitives.colour_by_directions(),
             None => {}
         }
         Arc::new(model)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::Vec3;
+
+    /// Three points in a row with numbers of the file.
+    fn source(read: [Vec<f32>; 2]) -> Source {
+        let surfels = Surfels {
+            positions: [0.0, 1.0, 2.0].map(|x| Vec3::new(x, 0.0, 0.0)).to_vec(),
+            normals: vec![Vec3::Z; 3],
+            radii: vec![0.5; 3],
+            ..Default::default()
+        };
+        let model = Model { surfels, ..Default::default() };
+        let read = Arc::new(move |_: &str, _: &dyn Progress| Ok(read.clone()));
+        Source::new(model, Some("scene:none".into()), Numbers { names: vec!["heat".into()], read })
+    }
+
+    fn wait(source: &mut Source) -> Result<()> {
+        while source.reading.is_some() {
+            source.take()?;
+        }
+        Ok(())
+    }
+
+    #[test]
+    fn points_are_coloured_by_places_and_by_numbers_of_the_file() {
+        let mut source = source([vec![5.0, f32::NAN, 7.0], vec![]]);
+        source.colour_by(By::X);
+        source.applied = source.changed;
+        assert_eq!(source.changed.range, ValueRange { min: 0.0, max: 2.0 });
+        let map = ColourMap::default();
+        let codes = |parts: [Option<f64>; 3]| {
+            let code = |part: Option<f64>| part.map_or([128; 3], |part| map.at(part));
+            Some(Colours::Srgb8(parts.map(code).map(|[r, g, b]| [r, g, b, 0]).to_vec()))
+        };
+        assert_eq!(source.shown().surfels.colours, codes([Some(0.0), Some(0.5), Some(1.0)]));
+        assert_eq!(source.surface(), None, "its colours are not the surface's");
+        source.colour_by(By::Number(0));
+        wait(&mut source).unwrap();
+        source.applied = source.changed;
+        assert_eq!(source.name(source.changed.by), "heat");
+        assert_eq!(source.shown().surfels.colours, codes([Some(0.0), None, Some(1.0)]));
+        source.colour_by(By::Own);
+        source.applied = source.changed;
+        assert_eq!(source.shown().surfels.colours, None);
+        assert_eq!(source.surface(), Some("scene:none"));
+    }
+
+    #[test]
+    fn numbers_of_another_file_are_refused() {
+        let mut source = source([vec![1.0; 4], vec![]]);
+        source.colour_by(By::Number(0));
+        assert!(wait(&mut source).unwrap_err().to_string().contains("changed"));
+        assert_eq!(source.changed.by, By::Own);
+    }
+
+    #[test]
+    fn radii_are_scaled_of_what_is_shown_alone() {
+        let mut source = source([vec![], vec![]]);
+        source.changed.radii = 3.0;
+        source.applied = source.changed;
+        assert_eq!(source.shown().surfels.radii, [1.5; 3]);
+        assert_eq!(source.model.surfels.radii, [0.5; 3]);
     }
 }

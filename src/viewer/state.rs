@@ -117,11 +117,11 @@ impl State {
             Some(sketch) if sketch.of == of.sketch_of() => {
                 let moved = sketch.given.is_some() || sketch.orbit != framed(&sketch.scene);
                 let orbit = if moved { sketch.orbit } else { orbit };
-                source.changed = sketch.source.changed;
+                source.change_as(&sketch.source);
                 Shown { scene, source, of, orbit, coarser, before: None, ..sketch }
             }
             Some(shown) if of.again && !shown.of.sketch => {
-                source.changed = shown.source.changed;
+                source.change_as(&shown.source);
                 Shown { scene, source, of, coarser, ..shown }
             }
             before => {
@@ -156,7 +156,7 @@ impl State {
     /// What coarser scenes are to be made of, if there are none of what is shown whole.
     pub fn without_coarser(&self) -> Option<Source> {
         let shown = self.shown.as_ref().filter(|shown| !shown.of.sketch && shown.coarser.is_empty())?;
-        Some(shown.source.clone())
+        Some(shown.source.snapshot())
     }
 
     /// Whether hands have moved the camera before a sketch of this load.
@@ -396,7 +396,7 @@ fn nearest(up: DVec3) -> Up {
 mod tests {
     use super::*;
     use crate::viewer::tests::device;
-    use crate::viewer::{Events, Folder};
+    use crate::viewer::{Events, Folder, Loaded};
     use std::time::Instant;
     use surfel::geometry::Surfels;
     use surfel::scenes;
@@ -434,7 +434,13 @@ mod tests {
             let surfels = scenes::open(&format!("scene:sphere?points={points}")).unwrap();
             Arc::new(Scene::upload(&device, &surfels).unwrap())
         };
-        let made = || (Method::ALL[0], Source::new(Surfels::default().into(), None));
+        let made = || {
+            (Method::ALL[0], {
+                let Loaded { model, surface, numbers, method: _ } =
+                    Loaded::sketch(Surfels::default().into(), Method::ALL[0]);
+                Source::new(model, surface, numbers)
+            })
+        };
         let shown = |state: &State| state.look().map(|(scene, _)| scene.count());
         let mut state = state();
         state.show(scene(10), made(), of(1, true));

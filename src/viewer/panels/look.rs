@@ -3,7 +3,8 @@
 use super::raster::{colour_bar, short};
 use crate::viewer::source::By;
 use crate::viewer::state::{Choices, SHADINGS, shading_text};
-use egui::{ComboBox, DragValue, Slider, Ui};
+use egui::{ComboBox, DragValue, ProgressBar, Slider, Ui};
+use std::time::Duration;
 use surfel::geometry::{ColourMap, ValueRange};
 use surfel::settings::{Alpha, Cull};
 
@@ -45,14 +46,26 @@ pub fn show(ui: &mut Ui, chosen: &mut Choices<'_>) {
 /// What surfels are coloured by, with the range and a bar where that is a number.
 fn colours(ui: &mut Ui, chosen: &mut Choices<'_>) {
     let source = &mut *chosen.source;
-    ComboBox::from_label("colour by").selected_text(source.changed.by.name()).show_ui(ui, |ui| {
-        for (by, name, text) in By::ALL {
-            let label = ui.selectable_label(source.changed.by == by, name).on_hover_text(text);
-            if label.clicked() {
-                source.colour_by(by);
+    let mut picked = None;
+    ComboBox::from_label("colour by").selected_text(source.name(source.changed.by)).show_ui(ui, |ui| {
+        let own = By::ALL.map(|(by, name, text)| (by, name, text));
+        let of_file = source.names().iter().enumerate();
+        let of_file = of_file.map(|(i, name)| {
+            (By::Number(i), name.as_str(), "a number of the file's points, read when it is wanted")
+        });
+        for (by, name, text) in own.into_iter().chain(of_file) {
+            if ui.selectable_label(source.changed.by == by, name).on_hover_text(text).clicked() {
+                picked = Some(by);
             }
         }
     });
+    if let Some(by) = picked {
+        source.colour_by(by);
+    }
+    if let Some((stage, part)) = source.reading() {
+        ui.add(ProgressBar::new(part).text(stage));
+        ui.ctx().request_repaint_after(Duration::from_millis(100));
+    }
     let Some(scale) = source.changed.scale() else { return };
     map(ui, &mut source.changed.map);
     let usual = source.usual(source.changed.by);

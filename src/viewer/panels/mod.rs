@@ -100,7 +100,7 @@ pub fn show(ui: &mut Ui, state: &mut State, told: &mut Told, device: &Arc<Device
 }
 
 fn choices(ui: &mut Ui, state: &mut State, told: &mut Told, device: &Arc<Device>) {
-    ui.label("Tab hides this panel, H lists keys and mouse").on_hover_text("Tab shows it again");
+    ui.label("G hides this panel, H lists keys and mouse").on_hover_text("G shows it again");
     let Some(chosen) = &mut state.choices() else {
         ui.label("Drop files on the window to look at them.");
         return;
