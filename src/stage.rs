@@ -11,7 +11,7 @@ use crate::renderer::{RenderOptions, rasterizer_of, width_of_blended_sums, width
 use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::targets::check_size;
-use crate::variant::{Precision, Rasterizer, Variant};
+use crate::variant::{Precision, Rasterizer, SceneVariant, Variant};
 use crate::vk::shaders::layout::Frame;
 use crate::vk::{Buffer, Device, Recorder};
 pub(crate) use residents::Residents;
@@ -82,7 +82,7 @@ pub(crate) fn describe(
     scene: &Scene,
     camera: &Camera,
     settings: &Settings,
-) -> Result<(Frame, Variant)> {
+) -> Result<(Frame, SceneVariant)> {
     settings.check()?;
     settings.splatting.normalization.check_weights(scene.weights.is_some())?;
     settings.check_primitives(scene.primitives.is_some())?;
@@ -95,7 +95,9 @@ pub(crate) fn describe(
         None => width_of_sums(device, options, rasterizer),
     };
     let options = RenderOptions { precision, ..*options };
-    Ok((block, Variant::new(scene.streams(), perspective, settings, &options, rasterizer)))
+    let streams = scene.streams();
+    let variant = Variant::new(&[streams], perspective, settings, &options, rasterizer);
+    Ok((block, SceneVariant::new(variant, streams)))
 }
 
 impl Stage {
@@ -156,10 +158,14 @@ impl Stage {
         settings: &Settings,
         read: bool,
     ) -> Result<(Frame, Variant)> {
-        let (block, variant) = describe(&self.device, &self.options, scene, camera, settings)?;
+        let (block, own) = describe(&self.device, &self.options, scene, camera, settings)?;
+        let variant = own.frame;
         let splats = variant.pull_push.is_none().then_some(variant.rasterizer);
         self.make_resident(scene, splats)?;
         self.make_present(variant, read)?;
+        if let Some(present) = &mut self.present {
+            present.canvas.show(&self.device, &self.layout, &[own])?;
+        }
         Ok((block, variant))
     }
 
@@ -167,7 +173,7 @@ impl Stage {
     pub(crate) fn record(&self, rec: &mut Recorder<'_>, block: &Frame) {
         rec.update(&self.frame, bytemuck::bytes_of(block));
         if let (Some(present), Some(resident)) = (&self.present, self.resident()) {
-            present.canvas.record(rec, &resident.splats);
+            present.canvas.record(rec, &[&resident.splats]);
         }
     }
 

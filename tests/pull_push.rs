@@ -272,7 +272,7 @@ fn passes_and_targets_are_those_that_are_told() {
         for (method, shading) in frames {
             let settings = Settings { shading, ..method.settings() };
             let report = renderer.render(&scene, &truth.camera(), &settings).unwrap();
-            let variant = Variant::new(scene.streams(), true, &settings, &options, rasterizer);
+            let variant = Variant::new(&[scene.streams()], true, &settings, &options, rasterizer);
             let timed = report.pass_times.iter().map(|time| time.label).filter(|label| *label != "clear");
             assert_eq!(timed.collect::<Vec<_>>(), passes(&variant));
             let told = Pyramids::per_pixel(&variant);

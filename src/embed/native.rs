@@ -215,7 +215,8 @@ impl Renderer {
         let mut rec = unsafe { Recorder::of_host(&self.device, cmd) };
         rec.update(&self.made.frame, bytemuck::bytes_of(&block));
         if let (Some(present), Some(resident)) = (&self.present, self.residents.present()) {
-            present.passes.record(&mut rec, &resident.splats, present.coverage.as_deref());
+            let scenes = [(&*present.scenes[0], &resident.splats)];
+            passes::record(&mut rec, &scenes, present.coverage.as_deref());
         }
         self.shown = Some(shown);
         Ok(())
@@ -264,7 +265,8 @@ impl Renderer {
             // SAFETY: by the caller.
             unsafe {
                 Draws::of_host(&self.device, cmd, step.label(), *area, |draws| {
-                    present.passes.draw(step, draws, &present.views, &resident.splats, numbers);
+                    let scenes = [(&*present.scenes[0], &resident.splats)];
+                    present.passes.draw(step, draws, &present.views, &scenes, numbers);
                 });
             }
         }
@@ -294,16 +296,17 @@ impl Renderer {
         let settings = Settings { background: None, ..settings.clone() };
         check_method(&settings)?;
         let options = self.made.plan.options(size);
-        let (block, variant) = describe(&self.device, &options, scene, &camera, &settings)?;
+        let (block, own) = describe(&self.device, &options, scene, &camera, &settings)?;
+        let variant = own.frame;
         self.made.plan.check(&variant)?;
         let origin = [area.offset.x as f32, area.offset.y as f32];
         let block = Frame { origin, ..block };
-        let format = self.made.plan.seeded().filter(|_| passes::can_seed(&variant));
+        let format = self.made.plan.seeded().filter(|_| passes::can_seed(&own));
         let seed = format.zip(scene.largest()).and_then(|(format, largest)| {
             seeding::seed(format, depth, (&block, variant.perspective), largest, variant.precision)
         });
         self.make_resident(scene, passes::moves(&variant))?;
-        self.make_present(&targets, variant)?;
+        self.make_present(&targets, variant, &[own])?;
         Ok((block, Shown { numbers: Numbers { seed, host: layout::Subpass { depth } }, area }))
     }
 

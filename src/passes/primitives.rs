@@ -14,6 +14,8 @@ pub(super) fn primitive_layout(device: &Arc<Device>) -> Result<SetLayout> {
 
 /// Views of lines and of triangles, as far as there are any.
 pub(super) struct PrimitiveSets {
+    /// Of the numbers that the scene is seen by.
+    pub frame: DescriptorSet,
     pub lines: Option<ElementSet>,
     pub triangles: Option<ElementSet>,
     /// Numbers of triangles of many pixels, after how many there are.
@@ -35,8 +37,14 @@ impl ElementSet {
 }
 
 impl PrimitiveSets {
-    /// Views of `streams`, which must outlive them.
-    pub fn new(device: &Arc<Device>, layout: &SplatLayout, streams: &PrimitiveStreams) -> Result<Self> {
+    /// Views of `frame` and `streams`, which must outlive them.
+    pub fn new(
+        device: &Arc<Device>,
+        layout: &SplatLayout,
+        frame: &Buffer,
+        streams: &PrimitiveStreams,
+    ) -> Result<Self> {
+        let frame = DescriptorSet::new(device, &layout.frame, &[Binding::Uniform(frame)])?;
         let list = |triangles: &Elements| {
             Buffer::storage(device, "large triangles", 4 * (1 + u64::from(triangles.count)))
         };
@@ -60,7 +68,7 @@ impl PrimitiveSets {
         let [lines, triangles] =
             [&streams.lines, &streams.triangles].map(|elements| elements.as_ref().map(view).transpose());
         let (lines, triangles) = (lines?, triangles?);
-        Ok(Self { lines, triangles, large })
+        Ok(Self { frame, lines, triangles, large })
     }
 
     /// The list, as a pass uses it.

@@ -1,6 +1,7 @@
 //! The splats between the footprint pass, which writes them, and the passes that rasterize them.
 
 use super::coverage::whole;
+use super::normalize::frame_layout;
 use super::points::drawn_layout;
 use super::primitives::{PrimitiveSets, primitive_layout};
 use super::pyramid::{lookups_layout, plain_layout, pyramid_layout};
@@ -20,6 +21,8 @@ use std::sync::Arc;
 /// Layouts of descriptor sets 0 and 1 of the footprint, visibility and attribute passes, and of those of pull–push.
 pub struct SplatLayout {
     pub(super) splats: SetLayout,
+    /// The frame's numbers alone.
+    pub(super) frame: SetLayout,
     pub(super) pixels: SetLayout,
     /// One buffer: a word or more a pixel.
     pub(super) plain: SetLayout,
@@ -88,6 +91,7 @@ impl SplatLayout {
         ];
         Ok(Self {
             splats: SetLayout::new(device, &bindings)?,
+            frame: frame_layout(device)?,
             pixels: pixel_layout(device)?,
             plain: plain_layout(device)?,
             lookups: lookups_layout(device)?,
@@ -183,7 +187,7 @@ impl Splats {
         let primitives = scene
             .primitives
             .as_ref()
-            .map(|streams| PrimitiveSets::new(device, layout, streams))
+            .map(|streams| PrimitiveSets::new(device, layout, frame, streams))
             .transpose()?;
         let texture = scene.texture.as_ref().map(|texture| &texture.buffer);
         let materials = scene.materials.as_ref().map(|materials| &materials.buffer);
@@ -254,15 +258,16 @@ impl Splats {
         vec![self.with(Access::VERTEX_READ), clips.with(Access::FRAGMENT_READ)]
     }
 
-    /// Draws every splat's triangle into `framebuffer`, with `more` at the descriptor sets from 1 on.
+    /// Draws the triangle of every splat of each scene, by its pipeline, into `framebuffer`, with `more` at the descriptor sets from 1 on.
     pub(super) fn draw(
-        &self,
         enc: &mut Encoder<'_>,
-        pipeline: &DrawPipeline,
+        scenes: &[(&DrawPipeline, &Self)],
         framebuffer: &Framebuffer,
         more: &[&DescriptorSet],
     ) {
-        enc.render(framebuffer, |draws| self.draw_in(draws, pipeline, more));
+        enc.render(framebuffer, |draws| {
+            scenes.iter().for_each(|(pipeline, splats)| splats.draw_in(draws, pipeline, more));
+        });
     }
 
     /// The same within a render pass that has begun.
@@ -273,26 +278,35 @@ impl Splats {
         }
     }
 
-    /// Empties counts, where `count`, and lists.
-    pub(super) fn record_clear(&self, rec: &mut Recorder<'_>, count: bool) {
-        let uses = [count.then_some(&self.counts), self.large.as_ref()].into_iter().flatten();
-        let uses: Vec<_> = uses.map(|buffer| buffer.with(Access::COPY_WRITE)).collect();
+    /// Empties the lists of each, and the counts of those that are counted.
+    pub(super) fn record_clear<'a>(
+        rec: &mut Recorder<'_>,
+        scenes: impl Iterator<Item = (&'a Self, bool)> + Clone,
+    ) {
+        let cleared = |(splats, counted): (&'a Self, bool)| {
+            [counted.then_some(&splats.counts), splats.large.as_ref()].into_iter().flatten()
+        };
+        let cleared = scenes.clone().flat_map(cleared);
+        let uses: Vec<_> = cleared.map(|buffer| buffer.with(Access::COPY_WRITE)).collect();
         if uses.is_empty() {
             return;
         }
-        rec.pass("clear", &uses, |enc| {
-            if count {
-                enc.zero(&self.counts);
-            }
-            if let Some(large) = &self.large {
-                self.windows.iter().for_each(|window| enc.zero_range(large, window.list, 4));
-            }
-        });
+        rec.pass("clear", &uses, |enc| scenes.for_each(|(splats, counted)| splats.clear(enc, counted)));
+    }
+
+    fn clear(&self, enc: &mut Encoder<'_>, counted: bool) {
+        if counted {
+            enc.zero(&self.counts);
+        }
+        if let Some(large) = &self.large {
+            self.windows.iter().for_each(|window| enc.zero_range(large, window.list, 4));
+        }
     }
 
     /// Leaves the counts ready for the CPU.
-    pub(super) fn record_counted(&self, rec: &mut Recorder<'_>) {
-        rec.wait(&[self.counts.with(Access::HOST_READ)]);
+    pub(super) fn record_counted<'a>(rec: &mut Recorder<'_>, scenes: impl Iterator<Item = &'a Self>) {
+        let uses: Vec<_> = scenes.map(|splats| splats.counts.with(Access::HOST_READ)).collect();
+        rec.wait(&uses);
     }
 
     /// Culled surfels of the last counted frame, by reason; it must be over.

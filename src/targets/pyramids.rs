@@ -45,11 +45,11 @@ pub(crate) const PLANES: usize = 5;
 fn formats(variant: &Variant) -> [Option<Format>; PLANES] {
     let [depths, places, normals, colours, ids] = match variant.precision {
         Precision::Full => FULL,
-        Precision::Half => compact(variant.unbounded_colours()),
+        Precision::Half => compact(variant.unbounded_colours),
     };
     // A texture has the colours.
     let coordinates = variant.texture.map(|_| Format::R32G32_SFLOAT);
-    let colours = coordinates.or_else(|| variant.sums_colours().then_some(colours));
+    let colours = coordinates.or_else(|| variant.colours.then_some(colours));
     [Some(depths), Some(places), Some(normals), colours, variant.has_ids().then_some(ids)]
 }
 

@@ -1,13 +1,13 @@
 //! What frames are drawn with, made when scene, settings or attachments change.
 
-use super::passes::{Passes, SplatPair, Views};
+use super::passes::{Passes, ScenePasses, SplatPair, Views};
 use super::targets::Targets;
 use super::{Plan, Renderer};
 use crate::error::Result;
 use crate::passes::{SplatLayout, Splats};
 use crate::scene::Scene;
 use crate::targets::coverage;
-use crate::variant::{Rasterizer, Variant};
+use crate::variant::{Rasterizer, SceneVariant, Variant};
 use crate::vk::shaders::layout::Frame;
 use crate::vk::{Buffer, Device};
 use ash::vk;
@@ -19,6 +19,7 @@ pub(super) struct Made {
     pub(super) plan: Plan,
     pass: vk::RenderPass,
     passes: HashMap<Variant, Arc<Passes>>,
+    scenes: HashMap<SceneVariant, Arc<ScenePasses>>,
     layout: SplatLayout,
     pub(super) frame: Arc<Buffer>,
 }
@@ -29,6 +30,8 @@ pub(super) struct Present {
     pub(super) views: Views,
     variant: Variant,
     pub(super) passes: Arc<Passes>,
+    /// What is drawn, scene by scene.
+    pub(super) scenes: Vec<Arc<ScenePasses>>,
     pub(super) coverage: Option<Arc<Buffer>>,
     _targets: Arc<Targets>,
     _frame: Arc<Buffer>,
@@ -47,6 +50,7 @@ impl Made {
             plan,
             pass,
             passes: HashMap::new(),
+            scenes: HashMap::new(),
             layout: SplatLayout::new(device)?,
             frame: Arc::new(Buffer::uniform(device, "frame", size_of::<Frame>() as u64)?),
         })
@@ -57,8 +61,17 @@ impl Made {
             return Ok(made.clone());
         }
         // SAFETY: whoever made the renderer answers for the render pass.
-        let made = unsafe { Passes::new(device, &self.layout, variant, &self.plan, self.pass)? };
+        let made = unsafe { Passes::new(device, variant, &self.plan, self.pass)? };
         Ok(self.passes.entry(*variant).or_insert(Arc::new(made)).clone())
+    }
+
+    fn scene(&mut self, device: &Arc<Device>, variant: &SceneVariant) -> Result<Arc<ScenePasses>> {
+        if let Some(made) = self.scenes.get(variant) {
+            return Ok(made.clone());
+        }
+        // SAFETY: whoever made the renderer answers for the render pass.
+        let made = unsafe { ScenePasses::new(device, &self.layout, variant, &self.plan, self.pass)? };
+        Ok(self.scenes.entry(*variant).or_insert(Arc::new(made)).clone())
     }
 
     fn present(&mut self, device: &Arc<Device>, targets: &Arc<Targets>, variant: Variant) -> Result<Present> {
@@ -66,7 +79,7 @@ impl Made {
         let coverage = coverage(device, &variant, targets.size)?.map(Arc::new);
         let views = passes.views(device, &self.frame, targets, coverage.as_deref())?;
         let (_targets, _frame) = (targets.clone(), self.frame.clone());
-        Ok(Present { views, variant, passes, coverage, _targets, _frame })
+        Ok(Present { views, variant, passes, scenes: Vec::new(), coverage, _targets, _frame })
     }
 
     fn resident(&self, device: &Arc<Device>, scene: &Arc<Scene>, moves: bool) -> Result<Resident> {
@@ -88,8 +101,13 @@ impl Renderer {
         Ok(())
     }
 
-    /// Makes what frames of `variant` are drawn with, if it is not there.
-    pub(super) fn make_present(&mut self, targets: &Arc<Targets>, variant: Variant) -> Result<()> {
+    /// Makes what frames of `variant` with such scenes are drawn with, if it is not there.
+    pub(super) fn make_present(
+        &mut self,
+        targets: &Arc<Targets>,
+        variant: Variant,
+        scenes: &[SceneVariant],
+    ) -> Result<()> {
         let is_other =
             |present: &Option<Present>| present.as_ref().is_none_or(|present| present.variant != variant);
         if is_other(&self.present) {
@@ -99,6 +117,11 @@ impl Renderer {
             let old = self.present.take();
             self.held.hold(old);
             self.present = Some(self.made.present(&self.device, targets, variant)?);
+        }
+        let scenes = scenes.iter().map(|variant| self.made.scene(&self.device, variant));
+        let scenes = scenes.collect::<Result<_>>()?;
+        if let Some(present) = &mut self.present {
+            present.scenes = scenes;
         }
         Ok(())
     }
