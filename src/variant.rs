@@ -85,6 +85,8 @@ pub struct SceneVariant {
     pub layout: SurfelLayout,
     /// How it holds colours that the shaders have to look at to know what is valid, and whether they have to look at anything.
     pub unchecked: Option<ColourStream>,
+    /// It is seen in axes and a unit of its own.
+    pub placed: bool,
 }
 
 /// What visits the pixels of a splat, or of a point. Both make the same picture: of splats up to rounding, of points bit for bit.
@@ -253,8 +255,8 @@ impl Variant {
 }
 
 impl SceneVariant {
-    /// What a frame needs of a scene that has `streams`.
-    pub fn new(frame: Variant, streams: Streams) -> Self {
+    /// What a frame needs of a scene that has `streams`, and may be `placed` elsewhere than where it is.
+    pub fn new(frame: Variant, streams: Streams, placed: bool) -> Self {
         let weights = streams.weights.filter(|_| frame.weights);
         let blended = |colours| if frame.blends_colours() { colours } else { ColourStream::None };
         Self {
@@ -275,6 +277,7 @@ impl SceneVariant {
                 },
             },
             unchecked: streams.unchecked.then_some(streams.colours),
+            placed,
         }
     }
 
@@ -292,5 +295,6 @@ impl SceneVariant {
             .with(constant::CORNERS, self.corners)
             .with(constant::COLOURS, self.colours as u32)
             .with(constant::VERTEX_COLOURS, self.primitives.colours as u32)
+            .with(constant::PLACED, self.placed)
     }
 }

@@ -26,6 +26,9 @@ pub(super) struct PrimitiveSets {
 pub(super) struct ElementSet {
     pub set: DescriptorSet,
     pub count: u32,
+    /// The number of the first one in the scene.
+    start: u32,
+    /// That in the frame.
     first: u32,
 }
 
@@ -63,12 +66,19 @@ impl PrimitiveSets {
                 Binding::Storage(buffer, 0, buffer.size())
             });
             let set = DescriptorSet::new(device, &layout.primitives, &bindings)?;
-            Ok(ElementSet { set, count: elements.count, first: elements.first })
+            Ok(ElementSet { set, count: elements.count, start: elements.first, first: elements.first })
         };
         let [lines, triangles] =
             [&streams.lines, &streams.triangles].map(|elements| elements.as_ref().map(view).transpose());
         let (lines, triangles) = (lines?, triangles?);
         Ok(Self { frame, lines, triangles, large })
+    }
+
+    /// The scene's points have numbers from `first` on.
+    pub fn set_first(&mut self, first: u32) {
+        for elements in [&mut self.lines, &mut self.triangles].into_iter().flatten() {
+            elements.first = first + elements.start;
+        }
     }
 
     /// The list, as a pass uses it.

@@ -164,7 +164,8 @@ impl Project {
     }
 }
 
-/// The nearest points → level 0. The pixels of one window's points are not another's, so that their order does not matter.
+/// The nearest points → level 0. The pixels of one window's points are not another's, so that their order does not matter; the first window of
+/// the first scene clears what nobody's are.
 fn record_fetch(
     rec: &mut Recorder<'_>,
     scenes: &[(&ProjectScene, &Splats)],
@@ -172,11 +173,16 @@ fn record_fetch(
     drawn: Option<&PointViews>,
     targets: &Pyramids,
 ) {
+    let [_, to] = targets.storage.pull(0);
+    if scenes.is_empty() {
+        let uses: Vec<_> = targets.pyramids[to].with(Access::COPY_WRITE).collect();
+        rec.pass("clear", &uses, |enc| targets.pyramids[to].clear(enc));
+        return;
+    }
     // Where lines or triangles are computed, drawn points are among what they were compared with.
     let alone = targets.drawn.as_ref().zip(drawn).filter(|_| targets.nearest.is_none());
     let nearest = targets.nearest.as_ref().map(|nearest| nearest.with(Access::COMPUTE_READ));
     let images = alone.into_iter().flat_map(|(drawn, _)| drawn.fetched());
-    let [_, to] = targets.storage.pull(0);
     let written = targets.pyramids[to].with(Access::COMPUTE_WRITE);
     let uses: Vec<_> = nearest.into_iter().chain(images).chain(written).collect();
     let workgroups = grid_over(targets.pixels());

@@ -1,5 +1,6 @@
 //! Resolve: the number of each pixel's nearest splat → what it is (`resolve.glsl`), for the compute rasterizer.
 
+use super::coverage::clear;
 use super::normalize::grid_over;
 use super::{PixelSet, SplatLayout, Splats};
 use crate::error::Result;
@@ -18,8 +19,12 @@ impl Resolve {
         ComputePipeline::new(device, &sets, shaders::RESOLVE_COMPUTE, &variant.constants()).map(Self)
     }
 
-    /// The splats of all scenes, `targets.visibility` → `targets.sums0`, `targets.sums1`.
+    /// The splats of all scenes, of which the first clears, `targets.visibility` → `targets.sums0`, `targets.sums1`.
     pub fn record(rec: &mut Recorder<'_>, scenes: &[(&Self, &Splats)], pixels: &PixelSet, targets: &Buffers) {
+        if scenes.is_empty() {
+            clear(rec, std::iter::once(&targets.sums0));
+            return;
+        }
         let sums = [Some(&targets.sums0), targets.sums1.as_ref()].into_iter().flatten();
         let mut uses: Vec<_> = sums.map(|buffer| buffer.with(Access::COMPUTE_WRITE)).collect();
         uses.extend(scenes.iter().map(|(_, splats)| splats.with(Access::COMPUTE_READ)));

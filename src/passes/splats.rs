@@ -55,7 +55,9 @@ pub(super) struct Window {
     pub(super) count: u32,
     /// Surfels that there is room for.
     capacity: u32,
-    /// The number of its first surfel in the scene.
+    /// Where its first surfel is in the scene.
+    start: u32,
+    /// The number of that in the frame.
     first: u32,
     /// Where its list of large splats starts, bytes.
     list: u64,
@@ -181,7 +183,8 @@ impl Splats {
             ];
             let set = DescriptorSet::new(device, &layout.splats, &bindings)?;
             let count = count as u32;
-            Ok(Window { set, count, capacity: count, first: range.start as u32, list })
+            let start = range.start as u32;
+            Ok(Window { set, count, capacity: count, start, first: start, list })
         };
         let windows = (0..).zip(scene.windows()).map(window).collect::<Result<_>>()?;
         let primitives = scene
@@ -212,8 +215,18 @@ impl Splats {
     /// Frames from now on are of the first `count` surfels.
     pub(crate) fn set_count(&mut self, count: u64) {
         for window in &mut self.windows {
-            let here = count.saturating_sub(window.first.into()).min(window.capacity.into());
+            let here = count.saturating_sub(window.start.into()).min(window.capacity.into());
             window.count = here as u32;
+        }
+    }
+
+    /// The scene's points have numbers from `first` on in frames from now on.
+    pub(crate) fn set_first(&mut self, first: u32) {
+        for window in &mut self.windows {
+            window.first = first + window.start;
+        }
+        if let Some(primitives) = &mut self.primitives {
+            primitives.set_first(first);
         }
     }
 

@@ -109,6 +109,13 @@ impl Pyramid {
         Ok(Self { planes })
     }
 
+    /// Leaves nothing in any sample.
+    pub(crate) fn clear(&self, enc: &mut Encoder<'_>) {
+        let [of_points @ .., ids] = &self.planes;
+        of_points.iter().flatten().for_each(|plane| enc.zero(&plane.buffer));
+        ids.iter().for_each(|plane| enc.ones(&plane.buffer));
+    }
+
     /// Copies a range of samples to the same place of `other`.
     pub(crate) fn copy(&self, enc: &mut Encoder<'_>, other: &Self, samples: Range<u64>) {
         for (from, to) in self.planes.iter().flatten().zip(other.planes.iter().flatten()) {

@@ -6,6 +6,7 @@ use super::{Plan, Renderer};
 use crate::error::Result;
 use crate::passes::{SplatLayout, Splats};
 use crate::scene::Scene;
+use crate::stage::Numbers;
 use crate::targets::coverage;
 use crate::variant::{Rasterizer, SceneVariant, Variant};
 use crate::vk::shaders::layout::Frame;
@@ -40,8 +41,8 @@ pub(super) struct Present {
 /// The splats of a scene.
 pub(super) struct Resident {
     pub(super) splats: SplatPair,
+    pub(super) frame: Numbers,
     _scene: Arc<Scene>,
-    _frame: Arc<Buffer>,
 }
 
 impl Made {
@@ -82,21 +83,27 @@ impl Made {
         Ok(Present { views, variant, passes, scenes: Vec::new(), coverage, _targets, _frame })
     }
 
-    fn resident(&self, device: &Arc<Device>, scene: &Arc<Scene>, moves: bool) -> Result<Resident> {
-        let splats = || Splats::new(device, &self.layout, &self.frame, scene, Some(Rasterizer::Draw));
+    /// With numbers of the scene's `own`, or those of the view.
+    fn resident(&self, device: &Arc<Device>, scene: &Arc<Scene>, moves: bool, own: bool) -> Result<Resident> {
+        let frame = Numbers::new(device, &self.frame, own)?;
+        let splats = || Splats::new(device, &self.layout, frame.buffer(), scene, Some(Rasterizer::Draw));
         let splats = SplatPair { splats: splats()?, moved: moves.then(splats).transpose()? };
-        Ok(Resident { splats, _scene: scene.clone(), _frame: self.frame.clone() })
+        Ok(Resident { splats, frame, _scene: scene.clone() })
     }
 }
 
 impl Renderer {
-    /// Makes the splats of `scene`, if they are not there, for as many surfels as it has now.
-    pub(super) fn make_resident(&mut self, scene: &Arc<Scene>, moves: bool) -> Result<()> {
+    /// Makes the splats of these scenes that are not there, for as many surfels as each has now; with numbers of each scene's `own`, or those
+    /// of the view.
+    pub(super) fn make_residents(&mut self, scenes: &[&Arc<Scene>], moves: bool, own: bool) -> Result<()> {
         let Self { residents, held, made, device, .. } = self;
-        let fits = |resident: &Resident| resident.splats.moved.is_some() == moves;
-        residents.turn(scene, fits, || made.resident(device, scene, moves), |gone| held.hold(gone))?;
-        if let Some(Resident { splats, .. }) = residents.present_mut() {
-            splats.set_count(scene.count());
+        let fits =
+            |resident: &Resident| resident.splats.moved.is_some() == moves && resident.frame.is_own() == own;
+        let list: Vec<&Scene> = scenes.iter().map(|scene| &***scene).collect();
+        let make = |place: usize| made.resident(device, scenes[place], moves, own);
+        residents.turn(&list, fits, make, |gone| held.hold(gone))?;
+        for (resident, scene) in residents.present_mut().zip(scenes) {
+            resident.splats.set_count(scene.count());
         }
         Ok(())
     }
