@@ -18,7 +18,7 @@ use surfel::geometry::estimate::Estimate;
 use surfel::geometry::{Bounds, Camera, Surfels};
 use surfel::methods::Method;
 use surfel::settings::{DirectionalLight, Lighting};
-use surfel::{Instance, Precision, Scene, Settings, io, scenes};
+use surfel::{Instance, Precision, Settings, io, scenes};
 
 /// Width and height, px.
 const SIZE: [u32; 2] = [960, 720];
