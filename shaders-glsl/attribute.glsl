@@ -14,6 +14,7 @@
 
 #ifndef FRAGMENT
 
+#include "lib/placed.glsl"
 #include "lib/surface.glsl"
 
 // What scales a splat's kernel everywhere, and what scales it further at the corners of the surfel's square.

@@ -18,6 +18,7 @@
 #define SAMPLES_ONLY
 #include "lib/pyramid.glsl"
 #include "lib/lens.glsl"
+#include "lib/placed.glsl"
 #ifdef DRAWN_POINTS
 #include "lib/drawn_points.glsl"
 #else
@@ -43,7 +44,7 @@ Sample sample_of(uint i, ivec2 at, uint nearest) {
         if (!strand_of(segment, k, strand) || !place_of(segment, strand, at[strand.steep], place)) continue;
         ivec2 columns = columns_of(strand);
         bool reached = at[strand.steep] >= columns.x && at[strand.steep] <= columns.y;
-        if (reached && place.at == at && floatBitsToUint(place.nearest) == nearest) return sample_at(segment, strand, place);
+        if (reached && place.at == at && floatBitsToUint(world_distance(place.nearest)) == nearest) return sample_at(segment, strand, place);
     }
     return NOTHING;
 }
@@ -59,7 +60,7 @@ Sample sample_of(uint i, ivec2 at, uint nearest) {
     vec3 weights;
     float distance;
     weights_at(triangle, at, weights, distance);
-    return sample_at(triangle, at, weights, uintBitsToFloat(nearest));
+    return sample_at(triangle, at, weights, PLACED ? distance : uintBitsToFloat(nearest));
 }
 
 #else
@@ -88,6 +89,16 @@ Sample sample_of(uint i, ivec2 at, uint nearest) {
 
 #endif
 
+// A sample of the scene's as the scenes share it.
+Sample shared_sample(Sample s) {
+    if (!PLACED || s.near == 0.0) return s;
+    s.near = world_distance(s.near);
+    s.far *= frame.scale;
+    s.depth *= frame.scale;
+    s.normal = in_world(s.normal);
+    return s;
+}
+
 // What is nearest at a pixel, and the bits of its distance; false where nothing is.
 bool nearest_at(uint pixel, ivec2 at, out uint number, out uint nearest) {
 #ifdef DRAWN_POINTS
@@ -112,7 +123,7 @@ void main() {
     if (!nearest_at(pixel, at, number, nearest)) {
         if (window.first == 0) store_to(pixel, NOTHING);
     } else if (number - window.first < window.count) {
-        Sample s = sample_of(number - window.first, at, nearest);
+        Sample s = shared_sample(sample_of(number - window.first, at, nearest));
         s.id = number;
         store_to(pixel, s);
     }

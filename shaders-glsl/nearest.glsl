@@ -58,6 +58,7 @@ void main() {
 #endif
 #ifdef VERTEX
 
+#include "lib/placed.glsl"
 #include "lib/surface.glsl"
 
 layout(location = 4) flat out vec3 first;

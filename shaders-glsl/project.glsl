@@ -18,6 +18,7 @@
 #include "lib/frame.glsl"
 #include "lib/window.glsl"
 #ifndef FATES
+#include "lib/placed.glsl"
 #include "lib/nearest_points.glsl"
 #endif
 #if defined(LINES) || defined(TRIANGLES)
@@ -33,7 +34,7 @@ layout(local_size_x = 64) in;
 // Number i of the window has a point in a pixel.
 void project(uint i, ivec2 at, float distance) {
     uint pixel = uint(at.y) * uint(frame.viewport.x) + uint(at.x);
-    atomicMin(nearest_points[pixel], nearest_point(window.first + i, distance));
+    atomicMin(nearest_points[pixel], nearest_point(window.first + i, world_distance(distance)));
 }
 #endif
 

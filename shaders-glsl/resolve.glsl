@@ -10,6 +10,7 @@
 #define SPLAT_ACCESS readonly
 #define CLIP_ACCESS readonly
 #include "lib/splat.glsl"
+#include "lib/placed.glsl"
 #include "lib/surface.glsl"
 
 #ifdef COMPUTE

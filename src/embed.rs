@@ -96,8 +96,10 @@ pub use target::{Pass, Target};
 use target::{check_convention, depths};
 
 use crate::error::{Error, Result};
+use crate::frame::Blocks;
 use crate::geometry::{Camera, Parts};
-use crate::passes::{Composite, CompositeKind};
+use crate::instance::Instances;
+use crate::passes::{Composite, CompositeKind, Splats};
 use crate::renderer::{FrameReport, RenderOptions};
 use crate::scene::Scene;
 use crate::settings::Settings;
@@ -159,7 +161,8 @@ pub struct Renderer {
     shown: Option<Shown>,
     reports: Reports,
     held: Held,
-    scene: Option<Arc<Scene>>,
+    /// Of the present frame.
+    scenes: Vec<Arc<Scene>>,
     composites: Vec<Arc<Composite>>,
     stage: Stage,
     target: Target,
@@ -200,7 +203,7 @@ impl Renderer {
             shown: None,
             held: Held::new(frames_in_flight)?,
             reports: Reports::new(frames_in_flight),
-            scene: None,
+            scenes: Vec::new(),
             composites: Vec::new(),
             stage: Stage::new(device, options, Retired::Kept(Vec::new()))?,
             target,
@@ -208,34 +211,34 @@ impl Renderer {
         })
     }
 
-    /// Records a frame of `scene` up to its picture, which [`Renderer::draw`] then draws. The picture has the viewport's size; what has none
-    /// of the scene is transparent, whatever `settings.background` says.
+    /// Records a frame of a scene, or of several where they are placed, up to its picture, which [`Renderer::draw`] then draws. The picture has
+    /// the viewport's size; what has none of the scenes is transparent, whatever `settings.background` says.
     ///
     /// After an error nothing is recorded, and nothing is there to draw.
     ///
     /// # Safety
     /// `cmd` is of the device, of the queue family that it was lent with, is being recorded outside a render pass, and is submitted to the
     /// same queue as what was recorded before, after it. What [`Options::frames_in_flight`] says is true.
-    pub unsafe fn prepare(
+    pub unsafe fn prepare<'a>(
         &mut self,
         cmd: vk::CommandBuffer,
-        scene: &Arc<Scene>,
+        scenes: impl Into<Instances<'a>>,
         view: &View,
         settings: &Settings,
     ) -> Result<()> {
-        let shown = self.make(scene, view, settings);
+        let shown = self.make(scenes.into(), view, settings);
         // Also after an error: what it took the place of may be under way.
         self.held.extend(self.stage.outgoing());
-        let (block, shown) = shown?;
-        let splats = self.stage.resident().map(|resident| &resident.splats);
-        self.reports.begin(&self.device, splats)?;
+        let (blocks, shown) = shown?;
+        let splats: Vec<_> = self.stage.residents().map(|resident| &resident.splats).collect();
+        self.reports.begin(&self.device, &splats)?;
         self.held.advance();
         let (timestamps, counts) = self.reports.present();
         // SAFETY: by the caller; the reports have one for each frame under way.
         let mut rec = unsafe { Recorder::of_host_timed(&self.device, cmd, timestamps) };
-        self.stage.record(&mut rec, &block);
-        if let Some((splats, counts)) = splats.zip(counts) {
-            splats.record_counts(&mut rec, counts);
+        self.stage.record(&mut rec, &blocks);
+        if let Some(counts) = counts {
+            Splats::record_counts(&splats, &mut rec, counts);
         }
         if let Some(present) = self.stage.present() {
             rec.wait(&Composite::reads(present.canvas.composited()));
@@ -286,14 +289,9 @@ impl Renderer {
     }
 
     /// Makes all that a frame needs: its numbers, and how its picture is drawn.
-    fn make(
-        &mut self,
-        scene: &Arc<Scene>,
-        view: &View,
-        settings: &Settings,
-    ) -> Result<(layout::Frame, Shown)> {
+    fn make(&mut self, scenes: Instances<'_>, view: &View, settings: &Settings) -> Result<(Blocks, Shown)> {
         self.shown = None;
-        scene.check_device(&self.device)?;
+        let placed = scenes.placed(&self.device)?;
         let area = view.area()?;
         let size = [area.extent.width, area.extent.height];
         check_size(&self.device, size)?;
@@ -302,16 +300,16 @@ impl Renderer {
         let depth = depths(&camera, view.viewport)?;
         self.stage.resize(size);
         let settings = Settings { background: None, ..settings.clone() };
-        let (block, variant) = self.stage.prepare(scene, &camera, &settings, false)?;
-        if self.scene.as_ref().is_none_or(|held| !Arc::ptr_eq(held, scene)) {
-            let old = self.scene.replace(scene.clone());
+        let (blocks, variant) = self.stage.prepare(&placed, &camera, &settings, false)?;
+        if !scenes.scenes().map(Arc::as_ptr).eq(self.scenes.iter().map(Arc::as_ptr)) {
+            let old = std::mem::replace(&mut self.scenes, scenes.scenes().cloned().collect());
             self.held.hold(old);
         }
         let composite =
             self.composite(variant.rasterizer, variant.pull_push.is_some(), variant.perspective)?;
         self.view(composite)?;
         let place = layout::Composite { origin: [area.offset.x, area.offset.y], size, depth };
-        Ok((block, Shown { place, area }))
+        Ok((blocks, Shown { place, area }))
     }
 
     /// Sees the present targets as `composite` does, if it does not already.

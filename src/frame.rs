@@ -2,19 +2,77 @@
 
 use crate::error::{Error, Result};
 use crate::geometry::{Bounds, Camera, Projection};
+use crate::instance::{Placed, Similarity};
 use crate::settings::Settings;
 use crate::splatting::Kernel;
 use crate::vk::shaders::layout::Frame;
 use bytemuck::Zeroable;
-use glam::{DMat3, DVec3, DVec4};
+use glam::{DMat3, DVec3, DVec4, Vec3};
 
-/// The frame block for positions relative to `origin`; `bounds` are the scene's, in the camera's world.
-pub(crate) fn frame(
+/// The numbers of a frame.
+pub(crate) struct Blocks {
+    /// Those of passes over pixels, and of the only scene if that stands as it is.
+    pub(crate) view: Frame,
+    /// Otherwise each scene's own.
+    pub(crate) scenes: Vec<Frame>,
+}
+
+impl Blocks {
+    /// Those of a frame of these scenes.
+    pub(crate) fn new(
+        camera: &Camera,
+        settings: &Settings,
+        size: [u32; 2],
+        scenes: &[Placed<'_>],
+    ) -> Result<Self> {
+        let bounds = scenes.iter().map(Placed::bounds).reduce(|all, bounds| all.with(&bounds));
+        if let [Placed { scene, placement: None }] = scenes {
+            let view = frame(camera, settings, size, scene.origin(), bounds.as_ref())?;
+            return Ok(Self { view, scenes: Vec::new() });
+        }
+        let view = frame(camera, settings, size, DVec3::ZERO, bounds.as_ref())?;
+        let own = |placed: &Placed<'_>| {
+            let origin = placed.scene.origin();
+            let camera = placed.placement.map_or(*camera, |placement| placement.seen_by(camera));
+            let mut block = frame(&camera, settings, size, origin, None)?;
+            block.key_gain = view.key_gain;
+            if let Some(placement) = &placed.placement {
+                place(&mut block, &view, settings, placement);
+            }
+            Ok(block)
+        };
+        let scenes = scenes.iter().map(own).collect::<Result<_>>()?;
+        Ok(Self { view, scenes })
+    }
+
+    /// Each block.
+    pub(crate) fn each(&mut self) -> impl Iterator<Item = &mut Frame> {
+        std::iter::once(&mut self.view).chain(&mut self.scenes)
+    }
+}
+
+/// What of a placed scene's block tells of the world, and what of the world comes to it turned.
+fn place(block: &mut Frame, view: &Frame, settings: &Settings, placement: &Similarity) {
+    let turn = placement.rotation();
+    block.scale = placement.scale() as f32;
+    block.world_near = view.near;
+    block.world_key_slope = view.key_slope;
+    for (column, axis) in block.turn.iter_mut().zip([turn.x_axis, turn.y_axis, turn.z_axis]) {
+        column[..3].copy_from_slice(&axis.as_vec3().to_array());
+    }
+    for (own, light) in block.to_light.iter_mut().zip(&settings.lighting.directional) {
+        let to_light = turn.transpose() * Vec3::from_array(light.to_light).as_dvec3();
+        own[..3].copy_from_slice(&to_light.as_vec3().to_array());
+    }
+}
+
+/// The frame block for positions relative to `origin`; `bounds` are those of all that is seen, in the camera's world.
+fn frame(
     camera: &Camera,
     settings: &Settings,
     size: [u32; 2],
     origin: DVec3,
-    bounds: &Bounds,
+    bounds: Option<&Bounds>,
 ) -> Result<Frame> {
     let projection = camera.projection()?;
     let lens = Lens::new(camera, &projection, size)?;
@@ -38,7 +96,8 @@ pub(crate) fn frame(
     frame.near = projection.near as f32;
     frame.key_slope = key.slope as f32;
     frame.key_far = key.far as f32;
-    frame.key_gain = key.gain(&projection, lens.distance(bounds.centre())) as f32;
+    let distance = bounds.map_or(projection.near, |bounds| lens.distance(bounds.centre()));
+    frame.key_gain = key.gain(&projection, distance) as f32;
     frame.cutoff = settings.cutoff;
     frame.epsilon = settings.epsilon;
     if let Kernel::Confetti { a, n } = settings.splatting.kernel {

@@ -13,6 +13,7 @@
 //! | [`scenes`] | built-in scenes with exact ground truth |
 //! | [`settings`], [`splatting`] | what a frame is asked to be, and how surfels become pixels |
 //! | [`scene`] | geometry on the GPU: only the streams that it has |
+//! | [`instance`] | scenes where they are placed: several in a frame |
 //! | [`variant`], [`targets`] | which pipelines and images a frame needs, and no more |
 //! | [`passes`] | one file a pass, beside the shader of the same name |
 //! | [`methods`] | one file a method: its paper and its passes |
@@ -52,6 +53,7 @@ pub mod embed;
 pub mod error;
 mod frame;
 pub mod geometry;
+pub mod instance;
 pub mod io;
 mod memory;
 pub mod methods;
@@ -75,6 +77,7 @@ pub mod vk;
 pub mod yardstick;
 
 pub use error::{Error, Result};
+pub use instance::{Instance, Instances};
 pub use picture::Picture;
 pub use progress::Progress;
 pub use readback::{PyramidLevel, PyramidSample};

@@ -2,12 +2,13 @@
 
 use crate::error::{Error, Result};
 use crate::geometry::Camera;
+use crate::instance::{Instances, Placed};
 use crate::passes::Splats;
 use crate::picture::Picture;
 use crate::scene::Scene;
 use crate::settings::{Alpha, Settings};
 use crate::splatting::Visibility;
-use crate::stage::{Retired, Stage};
+use crate::stage::{Resident, Retired, Stage};
 use crate::targets::{Buffers, Pyramids, TargetInfo};
 use crate::variant::{Outputs, Precision, Rasterizer};
 use crate::vk::shaders::layout::Counts;
@@ -85,20 +86,25 @@ impl Renderer {
         })
     }
 
-    /// Renders a frame and waits for it. Makes nothing that an earlier frame of the same scene and kind has made,
-    /// if no more than one other kind came between.
-    pub fn render(&mut self, scene: &Scene, camera: &Camera, settings: &Settings) -> Result<FrameReport> {
-        self.run(scene, camera, settings, false)
+    /// Renders a frame of a scene, or of several where they are placed, and waits for it. Makes nothing that an earlier frame of the same
+    /// scenes and kind has made, if no more than one other kind came between.
+    pub fn render<'a>(
+        &mut self,
+        scenes: impl Into<Instances<'a, Scene>>,
+        camera: &Camera,
+        settings: &Settings,
+    ) -> Result<FrameReport> {
+        self.run(scenes.into(), camera, settings, false)
     }
 
     /// Renders a frame and reads it back.
-    pub fn render_picture(
+    pub fn render_picture<'a>(
         &mut self,
-        scene: &Scene,
+        scenes: impl Into<Instances<'a, Scene>>,
         camera: &Camera,
         settings: &Settings,
     ) -> Result<(Picture, FrameReport)> {
-        let report = self.run(scene, camera, settings, true)?;
+        let report = self.run(scenes.into(), camera, settings, true)?;
         let picture = self.stage.present().map(|present| present.canvas.picture(&present.readback));
         Ok((picture.unwrap_or_default(), report))
     }
@@ -123,9 +129,9 @@ impl Renderer {
         self.stage.present().map(|present| present.variant.rasterizer)
     }
 
-    /// The splats of the last frame.
-    pub fn splats(&self) -> Option<&Splats> {
-        self.stage.resident().map(|resident| &resident.splats)
+    /// The splats of the last frame, scene by scene.
+    pub fn splats(&self) -> impl Iterator<Item = &Splats> {
+        self.stage.residents().map(|resident| &resident.splats)
     }
 
     /// The pyramids of the last frame, if it was pull–push's.
@@ -135,23 +141,22 @@ impl Renderer {
 
     fn run(
         &mut self,
-        scene: &Scene,
+        scenes: Instances<'_, Scene>,
         camera: &Camera,
         settings: &Settings,
         read: bool,
     ) -> Result<FrameReport> {
-        let (block, variant) = self.stage.prepare(scene, camera, settings, read)?;
+        let placed = scenes.placed(self.stage.device())?;
+        let (blocks, variant) = self.stage.prepare(&placed, camera, settings, read)?;
         self.commands.run(|rec| {
-            self.stage.record(rec, &block);
+            self.stage.record(rec, &blocks);
             if let Some(present) = self.stage.present().filter(|_| read) {
                 present.canvas.record_readback(rec, &present.readback);
             }
         })?;
-        let counted = self.stage.resident().filter(|_| variant.count);
         Ok(FrameReport {
             pass_times: self.commands.pass_times()?,
-            counts: counted
-                .map(|resident| SplatCounts::new(resident.splats.count(), resident.splats.counts())),
+            counts: variant.count.then(|| SplatCounts::of(self.stage.residents())),
         })
     }
 }
@@ -161,20 +166,24 @@ pub(crate) fn rasterizer_of(
     device: &Device,
     options: &RenderOptions,
     settings: &Settings,
-    scene: &Scene,
+    scenes: &[Placed<'_>],
 ) -> Result<Rasterizer> {
     let blends = settings.splatting.visibility != Visibility::Nearest;
     match settings.pull_push {
-        Some(_) => rasterizer_of_points(device, options, scene),
+        Some(_) => rasterizer_of_points(device, options, scenes),
         None => rasterizer_for(device, options, blends, settings.alpha),
     }
 }
 
-/// The faster of what `device` can do with the surfels of `scene` by pull–push; lines and triangles are computed.
+/// The faster of what `device` can do with the surfels of `scenes` by pull–push; lines and triangles are computed.
 ///
 /// Atomic minima are faster wherever they were measured: see README, Cost, and Schütz, Kerbl, Wimmer, *Rendering Point Clouds with Compute
 /// Shaders and Vertex Order Optimization*, 2021.
-fn rasterizer_of_points(device: &Device, options: &RenderOptions, scene: &Scene) -> Result<Rasterizer> {
+fn rasterizer_of_points(
+    device: &Device,
+    options: &RenderOptions,
+    scenes: &[Placed<'_>],
+) -> Result<Rasterizer> {
     let (capabilities, name) = (device.capabilities(), &device.description().name);
     let refuse = |what, remedy| {
         Err(Error::Usage(format!(
@@ -183,14 +192,14 @@ fn rasterizer_of_points(device: &Device, options: &RenderOptions, scene: &Scene)
     };
     match options.rasterizer {
         _ if !Pyramids::fit(capabilities, options) => Err(too_large(device, options)),
-        _ if scene.primitives.is_some() && !capabilities.int64_atomics => {
+        _ if scenes.iter().any(|placed| placed.scene.primitives.is_some()) && !capabilities.int64_atomics => {
             refuse("lines and triangles", "leave them out, or choose another device")
         }
         Some(Rasterizer::Compute) if !capabilities.int64_atomics => {
             refuse("computed points", "choose the draw rasterizer, or leave it open")
         }
         // Without surfels there is nothing to draw.
-        _ if scene.capacity() == 0 => Ok(Rasterizer::Compute),
+        _ if scenes.iter().all(|placed| placed.scene.capacity() == 0) => Ok(Rasterizer::Compute),
         Some(rasterizer) => Ok(rasterizer),
         None if capabilities.int64_atomics => Ok(Rasterizer::Compute),
         None => Ok(Rasterizer::Draw),
@@ -260,9 +269,17 @@ pub(crate) fn rasterizer_for(
 }
 
 impl SplatCounts {
+    /// Of so many surfels, of which these are culled.
     pub(crate) fn new(surfels: u64, Counts { culled }: Counts) -> Self {
         let [behind, eye_plane, back, outside, invalid] = culled;
         let drawn = surfels as u32 - culled.iter().sum::<u32>();
         Self { drawn, behind, eye_plane, back, outside, invalid }
+    }
+
+    /// Those of all scenes together.
+    fn of<'a>(scenes: impl Iterator<Item = &'a Resident> + Clone) -> Self {
+        let add = |sum: [u32; 5], counts: Counts| std::array::from_fn(|i| sum[i] + counts.culled[i]);
+        let culled = scenes.clone().map(|scene| scene.splats.counts()).fold([0; 5], add);
+        Self::new(scenes.map(|scene| scene.splats.count()).sum(), Counts { culled })
     }
 }

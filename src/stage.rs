@@ -2,16 +2,16 @@
 
 mod residents;
 
-use crate::error::Result;
-use crate::frame::frame;
+use crate::error::{Error, Result};
+use crate::frame::Blocks;
 use crate::geometry::Camera;
+use crate::instance::{Placed, first_numbers};
 use crate::methods::{Canvas, Pipelines};
 use crate::passes::{SplatLayout, Splats};
 use crate::renderer::{RenderOptions, rasterizer_of, width_of_blended_sums, width_of_sums};
-use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::targets::check_size;
-use crate::variant::{Precision, Rasterizer, Variant};
+use crate::variant::{Precision, Rasterizer, SceneVariant, Variant};
 use crate::vk::shaders::layout::Frame;
 use crate::vk::{Buffer, Device, Recorder};
 pub(crate) use residents::Residents;
@@ -64,7 +64,50 @@ pub(crate) struct Resident {
     /// What it makes splats for, if any.
     rasterizer: Option<Rasterizer>,
     pub(crate) splats: Splats,
-    _frame: Arc<Buffer>,
+    frame: Numbers,
+}
+
+/// The buffer of the numbers that a scene is seen by.
+#[derive(Clone)]
+pub(crate) enum Numbers {
+    /// That of passes over pixels.
+    View(Arc<Buffer>),
+    /// One of its own.
+    Own(Arc<Buffer>),
+}
+
+impl Numbers {
+    /// The view's, or another of the scene's `own`.
+    pub(crate) fn new(device: &Arc<Device>, view: &Arc<Buffer>, own: bool) -> Result<Self> {
+        if !own {
+            return Ok(Self::View(view.clone()));
+        }
+        let buffer = Buffer::uniform(device, "frame of a scene", size_of::<Frame>() as u64)?;
+        Ok(Self::Own(Arc::new(buffer)))
+    }
+
+    pub(crate) fn buffer(&self) -> &Buffer {
+        match self {
+            Self::View(buffer) | Self::Own(buffer) => buffer,
+        }
+    }
+
+    pub(crate) fn is_own(&self) -> bool {
+        matches!(self, Self::Own(_))
+    }
+}
+
+/// Records the writing of a frame's numbers, of `scenes` where they have their own.
+pub(crate) fn update<'a>(
+    rec: &mut Recorder<'_>,
+    view: &'a Buffer,
+    scenes: impl Iterator<Item = &'a Numbers>,
+    blocks: &'a Blocks,
+) {
+    let own = scenes.map(Numbers::buffer).zip(&blocks.scenes);
+    let all = std::iter::once((view, &blocks.view)).chain(own);
+    let updates: Vec<_> = all.map(|(buffer, block)| (buffer, bytemuck::bytes_of(block))).collect();
+    rec.update(&updates);
 }
 
 impl Retired {
@@ -75,27 +118,63 @@ impl Retired {
     }
 }
 
-/// What a frame is: its numbers and its variant. Refuses what cannot be rendered.
+/// What a frame is.
+pub(crate) struct Description {
+    pub(crate) blocks: Blocks,
+    pub(crate) variant: Variant,
+    /// What each of its scenes is.
+    pub(crate) scenes: Vec<SceneVariant>,
+}
+
+/// What a frame of these scenes is. Refuses what cannot be rendered.
 pub(crate) fn describe(
     device: &Device,
     options: &RenderOptions,
-    scene: &Scene,
+    scenes: &[Placed<'_>],
     camera: &Camera,
     settings: &Settings,
-) -> Result<(Frame, Variant)> {
+) -> Result<Description> {
     settings.check()?;
-    settings.splatting.normalization.check_weights(scene.weights.is_some())?;
-    settings.check_primitives(scene.primitives.is_some())?;
+    for Placed { scene, .. } in scenes {
+        settings.splatting.normalization.check_weights(scene.weights.is_some())?;
+        settings.check_primitives(scene.primitives.is_some())?;
+    }
     settings.check_outputs(options.outputs)?;
-    let block = frame(camera, settings, options.size, scene.origin(), &scene.bounds())?;
-    let rasterizer = rasterizer_of(device, options, settings, scene)?;
+    let blocks = Blocks::new(camera, settings, options.size, scenes)?;
+    let rasterizer = rasterizer_of(device, options, settings, scenes)?;
     let perspective = camera.projection()?.perspective;
     let precision = match settings.pull_push {
         Some(_) => options.precision,
         None => width_of_sums(device, options, rasterizer),
     };
     let options = RenderOptions { precision, ..*options };
-    Ok((block, Variant::new(scene.streams(), perspective, settings, &options, rasterizer)))
+    let streams: Vec<_> = scenes.iter().map(|placed| placed.scene.streams()).collect();
+    let variant = Variant::new(&streams, perspective, settings, &options, rasterizer);
+    check_lookups(&variant, scenes)?;
+    let own =
+        |(streams, placed): (_, &Placed<'_>)| SceneVariant::new(variant, streams, placed.placement.is_some());
+    let scenes = streams.into_iter().zip(scenes).map(own).collect();
+    Ok(Description { blocks, variant, scenes })
+}
+
+/// Refuses several scenes of which one has what is looked up pixel by pixel, where there is but one table of it.
+fn check_lookups(variant: &Variant, scenes: &[Placed<'_>]) -> Result<()> {
+    let refuse = |what: &str| {
+        Err(Error::Usage(format!(
+            "{} scenes in a frame of pull-push, of which one has {what}, which its pixels look up as if all were of that scene: leave {what} \
+             out, show the scene alone, or choose a method that splats",
+            scenes.len()
+        )))
+    };
+    // Coordinates are the same wherever the scene stands; the numbers of its points are not.
+    let alike = scenes.windows(2).all(|pair| pair[0].scene.id == pair[1].scene.id);
+    if variant.texture.is_some() && !alike {
+        return refuse("a texture");
+    }
+    if variant.materials && scenes.len() > 1 {
+        return refuse("materials");
+    }
+    Ok(())
 }
 
 impl Stage {
@@ -122,11 +201,16 @@ impl Stage {
         self.present.as_ref().map_or_else(unknown, |present| present.variant.precision)
     }
 
+    pub(crate) fn device(&self) -> &Arc<Device> {
+        &self.device
+    }
+
     pub(crate) fn present(&self) -> Option<&Present> {
         self.present.as_ref()
     }
 
-    pub(crate) fn resident(&self) -> Option<&Resident> {
+    /// What is made for the scenes of the last frame, in their order.
+    pub(crate) fn residents(&self) -> impl Iterator<Item = &Resident> + Clone {
         self.residents.present()
     }
 
@@ -156,36 +240,51 @@ impl Stage {
     /// Makes what a frame needs and is not there, with buffers to read it back where it is `read`: the frame's numbers, and what it is.
     pub(crate) fn prepare(
         &mut self,
-        scene: &Scene,
+        scenes: &[Placed<'_>],
         camera: &Camera,
         settings: &Settings,
         read: bool,
-    ) -> Result<(Frame, Variant)> {
-        let (block, variant) = describe(&self.device, &self.options, scene, camera, settings)?;
+    ) -> Result<(Blocks, Variant)> {
+        let Description { blocks, variant, scenes: own } =
+            describe(&self.device, &self.options, scenes, camera, settings)?;
         let splats = variant.pull_push.is_none().then_some(variant.rasterizer);
-        self.make_resident(scene, splats)?;
+        self.make_residents(scenes, splats, !blocks.scenes.is_empty())?;
         self.make_present(variant, read)?;
-        Ok((block, variant))
+        if let Some(present) = &mut self.present {
+            present.canvas.show(&self.device, &self.layout, &own)?;
+        }
+        Ok((blocks, variant))
     }
 
     /// Records the frame that was prepared, with these numbers.
-    pub(crate) fn record(&self, rec: &mut Recorder<'_>, block: &Frame) {
-        rec.update(&self.frame, bytemuck::bytes_of(block));
-        if let (Some(present), Some(resident)) = (&self.present, self.resident()) {
-            present.canvas.record(rec, &resident.splats);
+    pub(crate) fn record(&self, rec: &mut Recorder<'_>, blocks: &Blocks) {
+        update(rec, &self.frame, self.residents().map(|resident| &resident.frame), blocks);
+        if let Some(present) = &self.present {
+            let splats: Vec<_> = self.residents().map(|resident| &resident.splats).collect();
+            present.canvas.record(rec, &splats);
         }
     }
 
-    fn make_resident(&mut self, scene: &Scene, rasterizer: Option<Rasterizer>) -> Result<()> {
+    /// Makes the splats of these scenes that are not there, for as many surfels as each has now; with numbers of each scene's `own`, or those
+    /// of the view.
+    fn make_residents(
+        &mut self,
+        scenes: &[Placed<'_>],
+        rasterizer: Option<Rasterizer>,
+        own: bool,
+    ) -> Result<()> {
         let Self { residents, retired, device, layout, frame, .. } = self;
-        let make = || {
-            let splats = Splats::new(device, layout, frame, scene, rasterizer)?;
-            Ok(Resident { rasterizer, splats, _frame: frame.clone() })
+        let list: Vec<_> = scenes.iter().map(|placed| placed.scene).collect();
+        let make = |place: usize| {
+            let frame = Numbers::new(device, frame, own)?;
+            let splats = Splats::new(device, layout, frame.buffer(), list[place], rasterizer)?;
+            Ok(Resident { rasterizer, splats, frame })
         };
-        let fits = |resident: &Resident| resident.rasterizer == rasterizer;
-        residents.turn(scene, fits, make, |gone| retired.take(Some(gone)))?;
-        if let Some(resident) = residents.present_mut() {
+        let fits = |resident: &Resident| resident.rasterizer == rasterizer && resident.frame.is_own() == own;
+        residents.turn(&list, fits, make, |gone| retired.take(Some(gone)))?;
+        for ((resident, scene), first) in residents.present_mut().zip(&list).zip(first_numbers(scenes)) {
             resident.splats.set_count(scene.count());
+            resident.splats.set_first(first);
         }
         Ok(())
     }

@@ -8,19 +8,14 @@ use crate::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splattin
 use crate::vk::Constants;
 use crate::vk::shaders::constant;
 
-/// The key of pipelines and targets: everything that the scene has and the frame wants, and nothing that changes from frame to frame.
+/// The key of targets, and of the pipelines that visit pixels: what the scenes of a frame have together and what the frame wants, and nothing
+/// that changes from frame to frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Variant {
     /// Perspective or orthographic.
     pub perspective: bool,
     /// Splats whose normal faces away are dropped.
     pub cull_back: bool,
-    /// The scene's discs are ellipses.
-    pub ellipses: bool,
-    /// Some of the scene's discs end at clip lines.
-    pub clips: bool,
-    /// The scene has surfels that are never dropped for facing away.
-    pub two_sided: bool,
     /// The image of a disc.
     pub footprint: Footprint,
     /// The kernel is Confetti's.
@@ -31,10 +26,8 @@ pub struct Variant {
     pub pull_push: Option<PullPush>,
     /// What the sums are divided by.
     pub normalization: Normalization,
-    /// Kernels are multiplied by the scene's normalization weights.
+    /// Kernels are multiplied by normalization weights.
     pub weights: bool,
-    /// Some of these are at the corners of surfels' squares.
-    pub corners: bool,
     /// Splats are lit, not pixels.
     pub shade_splats: bool,
     /// Only axes that are shorter than the low-pass filter are widened by it.
@@ -45,10 +38,12 @@ pub struct Variant {
     pub normals: bool,
     /// Depths are summed.
     pub depth: bool,
-    /// The colours that are summed, in the form in which the scene holds them.
-    pub colours: ColourStream,
-    /// The scene's lines and triangles, with their colours in the same way.
-    pub primitives: PrimitiveKinds,
+    /// Colours are summed: a scene's, light, or what stands in for them, where what is summed is not divided.
+    pub colours: bool,
+    /// Some of the colours may be beyond 1.
+    pub unbounded_colours: bool,
+    /// There are lines or triangles.
+    pub primitives: bool,
     /// Colours are looked up in a texture; how the scene holds its texels.
     pub texture: Option<ColourStream>,
     /// Points shine in their own way, which is looked up by their numbers.
@@ -65,10 +60,33 @@ pub struct Variant {
     pub precision: Precision,
     /// What visits the pixels of splats and points; lines and triangles are always computed.
     pub rasterizer: Rasterizer,
+}
+
+/// The key of the pipelines that visit a scene's own surfels, lines and triangles: what it has and what the frame wants of it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct SceneVariant {
+    /// That of the frame.
+    pub frame: Variant,
+    /// Discs are ellipses.
+    pub ellipses: bool,
+    /// Some discs end at clip lines.
+    pub clips: bool,
+    /// Some surfels are never dropped for facing away.
+    pub two_sided: bool,
+    /// Kernels are multiplied by the scene's normalization weights.
+    pub weights: bool,
+    /// Some of these are at the corners of surfels' squares.
+    pub corners: bool,
+    /// The colours that are summed, in the form in which the scene holds them.
+    pub colours: ColourStream,
+    /// Lines and triangles, with their colours in the same way.
+    pub primitives: PrimitiveKinds,
     /// Where the scene has its surfels' values.
     pub layout: SurfelLayout,
     /// How it holds colours that the shaders have to look at to know what is valid, and whether they have to look at anything.
     pub unchecked: Option<ColourStream>,
+    /// It is seen in axes and a unit of its own.
+    pub placed: bool,
 }
 
 /// What visits the pixels of a splat, or of a point. Both make the same picture: of splats up to rounding, of points bit for bit.
@@ -119,9 +137,9 @@ pub enum Precision {
 }
 
 impl Variant {
-    /// What a frame of a scene that has `streams` needs.
+    /// What a frame of scenes that have these `streams` needs.
     pub fn new(
-        streams: Streams,
+        streams: &[Streams],
         perspective: bool,
         settings: &Settings,
         options: &RenderOptions,
@@ -132,56 +150,48 @@ impl Variant {
         let splatting = if settings.pull_push.is_some() { Splatting::default() } else { settings.splatting };
         let wants_colour = matches!(shading, Shading::Lit | Shading::Colour);
         let shade_splats = shading == Shading::Lit && splatting.shade == Shade::Splat;
-        let by_surfel = splatting.normalization == Normalization::Surfel && shading != Shading::Overlap;
-        let weights = streams.weights.filter(|_| by_surfel);
         let robust = settings.pull_push.is_some_and(|pull_push| pull_push.rules == Rules::Robust);
-        let texture = streams.texture.filter(|_| robust && wants_colour);
-        let blends_colours = wants_colour && texture.is_none();
+        let texture = streams.iter().find_map(|streams| streams.texture).filter(|_| robust && wants_colour);
+        let held: Vec<_> = match wants_colour && texture.is_none() {
+            true => streams.iter().flat_map(|own| [own.colours, own.primitives.colours]).collect(),
+            false => Vec::new(),
+        };
+        // How many there are, or what they weigh, is never divided.
+        let normalization = match shading {
+            Shading::Overlap | Shading::Weight => Normalization::Pixel,
+            _ => splatting.normalization,
+        };
+        let undivided = normalization != Normalization::Pixel && splatting.visibility != Visibility::Nearest;
+        let coloured = held.iter().any(|colours| *colours != ColourStream::None);
+        let floats = [ColourStream::Linear, ColourStream::Textured, ColourStream::Half];
         let lit_pixels = shading == Shading::Lit && !shade_splats;
         Self {
             perspective,
             cull_back: settings.cull == Cull::Back,
-            ellipses: streams.ellipses,
-            clips: streams.clips,
-            two_sided: streams.two_sided,
             footprint: splatting.footprint,
             confetti: splatting.kernel != Kernel::Gaussian,
             visibility: splatting.visibility,
             pull_push: settings.pull_push,
-            // How many there are, or what they weigh, is never divided.
-            normalization: match shading {
-                Shading::Overlap | Shading::Weight => Normalization::Pixel,
-                _ => splatting.normalization,
-            },
-            weights: weights.is_some(),
-            corners: weights == Some(true),
+            normalization,
+            weights: splatting.normalization == Normalization::Surfel && shading != Shading::Overlap,
             shade_splats,
             widen_small: settings.widen == Widen::Small && splatting.filter != Filter::None,
             count: options.count,
             normals: lit_pixels || shading == Shading::Normal || options.outputs.normal,
             depth: shading == Shading::Depth || options.outputs.depth,
-            colours: if blends_colours { streams.colours } else { ColourStream::None },
-            primitives: PrimitiveKinds {
-                colours: if blends_colours { streams.primitives.colours } else { ColourStream::None },
-                ..streams.primitives
-            },
+            colours: wants_colour && (undivided || shade_splats || coloured),
+            unbounded_colours: held.iter().any(|colours| floats.contains(colours)),
+            primitives: streams.iter().any(|streams| streams.primitives.any()),
             texture,
-            materials: streams.materials && settings.pull_push.is_some() && shading == Shading::Lit,
+            materials: streams.iter().any(|streams| streams.materials)
+                && settings.pull_push.is_some()
+                && shading == Shading::Lit,
             coverage: settings.alpha == Alpha::Coverage,
             shading,
             lights: if shading == Shading::Lit { settings.lighting.directional.len() as u32 } else { 0 },
             outputs: options.outputs,
             precision: options.precision,
             rasterizer,
-            // Where colours are is no matter to who does not read them.
-            layout: match blends_colours || streams.unchecked || texture.is_some() {
-                true => streams.layout,
-                false => SurfelLayout {
-                    colours: SurfelLayout::side_by_side(ColourStream::None).colours,
-                    ..streams.layout
-                },
-            },
-            unchecked: streams.unchecked.then_some(streams.colours),
         }
     }
 
@@ -192,7 +202,7 @@ impl Variant {
 
     /// Whether pull–push computes what is nearest: points that are not drawn, lines, triangles.
     pub fn computes_points(&self) -> bool {
-        self.pull_push.is_some() && (self.rasterizer == Rasterizer::Compute || self.primitives.any())
+        self.pull_push.is_some() && (self.rasterizer == Rasterizer::Compute || self.primitives)
     }
 
     /// Whether samples of pull–push have the numbers of points.
@@ -200,24 +210,14 @@ impl Variant {
         self.outputs.id || self.materials
     }
 
-    /// Whether colours are summed: the scene's, light, or what stands in for them, where what is summed is not divided.
-    pub fn sums_colours(&self) -> bool {
-        let undivided = self.normalization != Normalization::Pixel && self.visibility != Visibility::Nearest;
-        let wanted = matches!(self.shading, Shading::Lit | Shading::Colour);
-        let coloured = [self.colours, self.primitives.colours] != [ColourStream::None; 2];
-        wanted && (undivided || self.shade_splats || coloured)
-    }
-
-    /// Whether some of the colours may be beyond 1.
-    pub fn unbounded_colours(&self) -> bool {
-        let floats =
-            |colours| matches!(colours, ColourStream::Linear | ColourStream::Textured | ColourStream::Half);
-        floats(self.colours) || floats(self.primitives.colours)
+    /// Whether scenes' own colours are summed.
+    fn blends_colours(&self) -> bool {
+        matches!(self.shading, Shading::Lit | Shading::Colour) && self.texture.is_none()
     }
 
     /// Whether target 0 sums a vector beside Σw.
     pub fn wide_sums0(&self) -> bool {
-        self.normals || self.sums_colours()
+        self.normals || self.colours
     }
 
     /// Whether there is a target 1.
@@ -227,32 +227,23 @@ impl Variant {
 
     /// Whether target 1 sums colours beside the depth.
     pub fn wide_sums1(&self) -> bool {
-        self.normals && self.sums_colours()
+        self.normals && self.colours
     }
 
     /// The same as specialization constants.
     pub fn constants(&self) -> Constants {
-        let constants = self.layout.add_to(Constants::default());
-        constants
-            .with(constant::UNCHECKED, self.unchecked.is_some())
-            .with(constant::HELD_COLOURS, self.unchecked.map_or(0, |colours| colours as u32))
+        Constants::default()
             .with(constant::PERSPECTIVE, self.perspective)
             .with(constant::CULL_BACK, self.cull_back)
-            .with(constant::ELLIPSES, self.ellipses)
-            .with(constant::TWO_SIDED, self.two_sided)
-            .with(constant::CLIPS, self.clips)
             .with(constant::COVERAGE, self.coverage)
             .with(constant::TEXTURE, self.texture.is_some())
             .with(constant::TEXELS, self.texture.map_or(0, |texels| texels as u32))
             .with(constant::MATERIALS, self.materials)
             .with(constant::IDS, self.has_ids())
             .with(constant::OUT_ID, self.outputs.id)
-            .with(constant::BEYOND_CLIPS, self.coverage && self.clips)
             .with(constant::FOOTPRINT, self.footprint as u32)
             .with(constant::CONFETTI, self.confetti)
             .with(constant::NORMALIZATION, self.normalization as u32)
-            .with(constant::WEIGHTS, self.weights)
-            .with(constant::CORNERS, self.corners)
             .with(constant::SHADE_SPLATS, self.shade_splats)
             .with(constant::NEAREST, self.visibility == Visibility::Nearest)
             .with(constant::PAPER, self.pull_push.is_some_and(|pull_push| pull_push.rules == Rules::Paper))
@@ -261,19 +252,62 @@ impl Variant {
                 self.pull_push.is_some_and(|pull_push| pull_push.storage == Storage::PingPong),
             )
             .with(constant::COMPACT, self.pull_push.is_some() && self.precision == Precision::Half)
-            .with(constant::UNBOUNDED_COLOURS, self.unbounded_colours())
+            .with(constant::UNBOUNDED_COLOURS, self.unbounded_colours)
             .with(constant::OVERLAP, self.shading == Shading::Overlap)
             .with(constant::WIDEN_SMALL, self.widen_small)
             .with(constant::COUNT, self.count)
             .with(constant::SUM_NORMALS, self.normals)
             .with(constant::SUM_DEPTH, self.depth)
-            .with(constant::COLOURS, self.colours as u32)
-            .with(constant::VERTEX_COLOURS, self.primitives.colours as u32)
-            .with(constant::SUM_COLOURS, self.sums_colours())
+            .with(constant::SUM_COLOURS, self.colours)
             .with(constant::SHADING, self.shading as u32)
             .with(constant::LIGHTS, self.lights)
             .with(constant::OUT_NORMAL, self.outputs.normal)
             .with(constant::OUT_DEPTH, self.outputs.depth)
             .with(constant::LIST_LARGE, self.rasterizer == Rasterizer::Compute)
+    }
+}
+
+impl SceneVariant {
+    /// What a frame needs of a scene that has `streams`, and may be `placed` elsewhere than where it is.
+    pub fn new(frame: Variant, streams: Streams, placed: bool) -> Self {
+        let weights = streams.weights.filter(|_| frame.weights);
+        let blended = |colours| if frame.blends_colours() { colours } else { ColourStream::None };
+        Self {
+            frame,
+            ellipses: streams.ellipses,
+            clips: streams.clips,
+            two_sided: streams.two_sided,
+            weights: weights.is_some(),
+            corners: weights == Some(true),
+            colours: blended(streams.colours),
+            primitives: PrimitiveKinds { colours: blended(streams.primitives.colours), ..streams.primitives },
+            // Where colours are is no matter to who does not read them.
+            layout: match frame.blends_colours() || streams.unchecked || frame.texture.is_some() {
+                true => streams.layout,
+                false => SurfelLayout {
+                    colours: SurfelLayout::side_by_side(ColourStream::None).colours,
+                    ..streams.layout
+                },
+            },
+            unchecked: streams.unchecked.then_some(streams.colours),
+            placed,
+        }
+    }
+
+    /// The same as specialization constants, with the frame's.
+    pub fn constants(&self) -> Constants {
+        self.layout
+            .add_to(self.frame.constants())
+            .with(constant::UNCHECKED, self.unchecked.is_some())
+            .with(constant::HELD_COLOURS, self.unchecked.map_or(0, |colours| colours as u32))
+            .with(constant::ELLIPSES, self.ellipses)
+            .with(constant::TWO_SIDED, self.two_sided)
+            .with(constant::CLIPS, self.clips)
+            .with(constant::BEYOND_CLIPS, self.frame.coverage && self.clips)
+            .with(constant::WEIGHTS, self.weights)
+            .with(constant::CORNERS, self.corners)
+            .with(constant::COLOURS, self.colours as u32)
+            .with(constant::VERTEX_COLOURS, self.primitives.colours as u32)
+            .with(constant::PLACED, self.placed)
     }
 }

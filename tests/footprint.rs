@@ -145,7 +145,7 @@ fn compare(elliptical: bool, widen: Widen) {
     let options = RenderOptions { size: [SIZE; 2], ..Default::default() };
     let mut renderer = Renderer::new(&device, options).unwrap();
     renderer.render(&scene, &camera, &settings).unwrap();
-    let splats = renderer.splats().unwrap().read(&device).unwrap();
+    let splats = renderer.splats().next().unwrap().read(&device).unwrap();
     assert_silent(&device);
 
     let projector = Projector::new(&camera, [SIZE; 2], &settings).unwrap();

@@ -119,7 +119,7 @@ fn passes_and_targets_are_those_that_are_told() {
             };
             let mut renderer = Renderer::new(&device, options).unwrap();
             let report = renderer.render(&scene, &camera(SIZE), &settings).unwrap();
-            let variant = Variant::new(scene.streams(), true, &settings, &options, rasterizer);
+            let variant = Variant::new(&[scene.streams()], true, &settings, &options, rasterizer);
             let mut told = passes(&variant);
             // Passes of one name are timed together.
             if settings.splatting == axis {

@@ -87,7 +87,7 @@ impl<'a> Drawn<'a> {
             for _ in 0..2 {
                 // SAFETY: prepared outside the pass, drawn inside it, and waited for.
                 unsafe {
-                    native.renderer.prepare(cmd, scene, view, settings)?;
+                    native.renderer.prepare(cmd, &*scene, view, settings)?;
                     native.record(host, cmd, (mesh, view), |surfels| surfels.draw(cmd), foggy)?;
                 }
             }
@@ -384,7 +384,7 @@ fn count_fragments(drawn: &mut Drawn<'_>, view: &View, settings: &Settings, mesh
         let pool = device.create_query_pool(&info, None).unwrap();
         host.run(|cmd| {
             device.cmd_reset_query_pool(cmd, pool, 0, count);
-            native.renderer.prepare(cmd, scene, view, settings)?;
+            native.renderer.prepare(cmd, &*scene, view, settings)?;
             let mesh = Some((mesh, Vec3::Y));
             let each = |surfels: &Renderer| {
                 surfels.draw_each(|subpass| {

@@ -1,11 +1,12 @@
 // The nearest surfel of each pixel where surfels are drawn: a depth, and a number from 1 on.
 //
-// Depth is 1 at the near plane and falls by one float for every float that a distance is beyond: nothing is rounded, and two distances have
+// Depth is of distances in the world: 1 at the near plane and falls by one float for every float that a distance is beyond: nothing is rounded, and two distances have
 // two depths, as far as 2^126 times as far as the near plane.
 
 // Of parallel rays, whose near plane may be at the eye or behind it, what is 10⁻³⁰ of the far plane's distance is as near as can be.
 uint least_distance() {
-    return floatBitsToUint(PERSPECTIVE ? frame.near : max(frame.near, 1e-30 / frame.key_slope));
+    float near = PLACED ? frame.world_near : frame.near, key_slope = PLACED ? frame.world_key_slope : frame.key_slope;
+    return floatBitsToUint(PERSPECTIVE ? near : max(near, 1e-30 / key_slope));
 }
 
 const uint AT_NEAR_PLANE = 0x3f800000; // 1.0

@@ -1,5 +1,5 @@
 // What every pass knows of the camera and of the settings; src/frame.rs fills it, once a frame.
-// World space here is relative to the scene's origin. κ, the depth key, is near / z in perspective and linear in z otherwise:
+// World space here is relative to the scene's origin; for passes over a scene that is placed it is that scene's own space, with its own unit. κ, the depth key, is near / z in perspective and linear in z otherwise:
 // 1 at the near plane, falling with distance, and affine on the screen for every plane.
 
 layout(constant_id = 0) const bool PERSPECTIVE = true;
@@ -34,4 +34,8 @@ layout(set = 0, binding = 0, std140) uniform Frame {
     vec4 to_light[4];
     vec4 radiance[4];
     vec2 origin;             // of the picture in what is drawn to, px
+    float scale;             // of a scene that is placed (lib/placed.glsl): a unit of its own in the world's, and
+    float world_near;        //   near and key_slope as the world has them
+    float world_key_slope;
+    vec4 turn[3];            // columns: directions of its own axes in the world's
 } frame;

@@ -18,5 +18,5 @@ void surface_of(uint i, float epsilon, out vec3 first, out vec3 second) {
     vec3 normal = sign(epsilon) * normal_of(i);
     second = SUM_COLOURS ? colour_of(i) : vec3(0.0);
     if (SHADE_SPLATS) second = lit(FRAME_SHINE, second, normal, to_eye_of(i));
-    first = SUM_NORMALS ? normal : second;
+    first = SUM_NORMALS ? in_world(normal) : second;
 }

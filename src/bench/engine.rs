@@ -128,7 +128,7 @@ impl Ready for OnDevice {
     fn memory(&self) -> Memory {
         Memory {
             scene: self.scene.bytes(),
-            splats: self.lean.splats().map_or(0, Splats::bytes),
+            splats: self.lean.splats().map(Splats::bytes).sum(),
             targets: self.lean.targets().iter().map(|target| target.bytes).sum(),
         }
     }

@@ -73,7 +73,7 @@ fn variant(settings: &Settings, rasterizer: Rasterizer) -> Variant {
         unchecked: false,
     };
     let settings = Settings { shading: Shading::Lit, ..settings.clone() };
-    Variant::new(streams, true, &settings, &RenderOptions::default(), rasterizer)
+    Variant::new(&[streams], true, &settings, &RenderOptions::default(), rasterizer)
 }
 
 fn told(targets: &PerPixel) -> String {

@@ -118,7 +118,7 @@ fn gpu(device: &Arc<Device>, renderer: &Renderer, scene: &Scene) -> Gpu {
         rasterizer: renderer.rasterizer(),
         targets: renderer.targets(),
         scene_bytes: scene.bytes(),
-        splat_bytes: renderer.splats().map_or(0, surfel::passes::Splats::bytes),
+        splat_bytes: renderer.splats().map(surfel::passes::Splats::bytes).sum(),
         usage: device.usage(),
         half_error: None,
         validation_messages: device.validation_messages(),

@@ -91,14 +91,15 @@ use super::View;
 use super::held::Held;
 use super::target::{check_convention, depths};
 use crate::error::{Error, Result};
-use crate::scene::Scene;
+use crate::frame::Blocks;
+use crate::instance::Instances;
 use crate::settings::Settings;
-use crate::stage::{Residents, describe};
+use crate::stage::{Description, Residents, describe, update};
 use crate::targets::check_size;
-use crate::vk::shaders::layout::{self, Frame};
+use crate::vk::shaders::layout;
 use crate::vk::{Device, Draws, HostDepth, Recorder};
 use ash::vk;
-use passes::Numbers;
+use passes::{Numbers, ScenePasses, SplatPair};
 use plan::check_method;
 use present::{Made, Present, Resident};
 use std::sync::Arc;
@@ -193,29 +194,30 @@ impl Renderer {
         Ok(views)
     }
 
-    /// Records what a frame of `scene` needs before the render pass, of which [`Renderer::draw`] records the rest. The picture has the viewport's
-    /// size; what has none of the scene is transparent, whatever `settings.background` says.
+    /// Records what a frame of a scene, or of several where they are placed, needs before the render pass, of which [`Renderer::draw`] records
+    /// the rest. The picture has the viewport's size; what has none of the scenes is transparent, whatever `settings.background` says.
     ///
     /// After an error nothing is recorded, and nothing is there to draw.
     ///
     /// # Safety
     /// `cmd` is of the device, of the queue family that it was lent with, is being recorded outside a render pass, and is submitted to the
     /// same queue as what was recorded before, after it. What was said of frames in flight is true.
-    pub unsafe fn prepare(
+    pub unsafe fn prepare<'a>(
         &mut self,
         cmd: vk::CommandBuffer,
-        scene: &Arc<Scene>,
+        scenes: impl Into<Instances<'a>>,
         view: &View,
         settings: &Settings,
     ) -> Result<()> {
         self.shown = None;
-        let (block, shown) = self.make(scene, view, settings)?;
+        let (blocks, shown) = self.make(scenes.into(), view, settings)?;
         self.held.advance();
         // SAFETY: by the caller.
         let mut rec = unsafe { Recorder::of_host(&self.device, cmd) };
-        rec.update(&self.made.frame, bytemuck::bytes_of(&block));
-        if let (Some(present), Some(resident)) = (&self.present, self.residents.present()) {
-            present.passes.record(&mut rec, &resident.splats, present.coverage.as_deref());
+        let numbers = self.residents.present().map(|resident| &resident.frame);
+        update(&mut rec, &self.made.frame, numbers, &blocks);
+        if let Some(present) = &self.present {
+            passes::record(&mut rec, &self.scenes(present), present.coverage.as_deref());
         }
         self.shown = Some(shown);
         Ok(())
@@ -255,16 +257,16 @@ impl Renderer {
     /// # Safety
     /// As that of [`Renderer::draw`], of the subpass for which `next` is called.
     pub unsafe fn draw_each(&self, mut next: impl FnMut(u32) -> vk::CommandBuffer) -> Result<()> {
-        let there = (&self.shown, &self.present, self.residents.present());
-        let (Some(Shown { numbers, area }), Some(present), Some(resident)) = there else {
+        let (Some(Shown { numbers, area }), Some(present)) = (&self.shown, &self.present) else {
             return Err(Error::Usage("there is no frame to draw: prepare one, and heed its error".into()));
         };
+        let scenes = self.scenes(present);
         for (subpass, step) in self.made.plan.numbered() {
             let cmd = next(subpass);
             // SAFETY: by the caller.
             unsafe {
                 Draws::of_host(&self.device, cmd, step.label(), *area, |draws| {
-                    present.passes.draw(step, draws, &present.views, &resident.splats, numbers);
+                    present.passes.draw(step, draws, &present.views, &scenes, numbers);
                 });
             }
         }
@@ -283,8 +285,8 @@ impl Renderer {
     }
 
     /// Makes all that a frame needs: its numbers, and where it is drawn.
-    fn make(&mut self, scene: &Arc<Scene>, view: &View, settings: &Settings) -> Result<(Frame, Shown)> {
-        scene.check_device(&self.device)?;
+    fn make(&mut self, scenes: Instances<'_>, view: &View, settings: &Settings) -> Result<(Blocks, Shown)> {
+        let placed = scenes.placed(&self.device)?;
         let area = view.area()?;
         let targets = self.targets_of(area)?;
         let size = [area.extent.width, area.extent.height];
@@ -294,17 +296,26 @@ impl Renderer {
         let settings = Settings { background: None, ..settings.clone() };
         check_method(&settings)?;
         let options = self.made.plan.options(size);
-        let (block, variant) = describe(&self.device, &options, scene, &camera, &settings)?;
+        let Description { mut blocks, variant, scenes: own } =
+            describe(&self.device, &options, &placed, &camera, &settings)?;
         self.made.plan.check(&variant)?;
         let origin = [area.offset.x as f32, area.offset.y as f32];
-        let block = Frame { origin, ..block };
-        let format = self.made.plan.seeded().filter(|_| passes::can_seed(&variant));
-        let seed = format.zip(scene.largest()).and_then(|(format, largest)| {
-            seeding::seed(format, depth, (&block, variant.perspective), largest, variant.precision)
+        blocks.each().for_each(|block| block.origin = origin);
+        let format = self.made.plan.seeded().filter(|_| own.iter().all(passes::can_seed));
+        let largest = placed.iter().map(|placed| placed.largest()).reduce(|a, b| Some(a?.max(b?))).flatten();
+        let seed = format.zip(largest).and_then(|(format, largest)| {
+            seeding::seed(format, depth, (&blocks.view, variant.perspective), largest, variant.precision)
         });
-        self.make_resident(scene, passes::moves(&variant))?;
-        self.make_present(&targets, variant)?;
-        Ok((block, Shown { numbers: Numbers { seed, host: layout::Subpass { depth } }, area }))
+        let list: Vec<_> = scenes.scenes().collect();
+        self.make_residents(&list, passes::moves(&variant), !blocks.scenes.is_empty())?;
+        self.make_present(&targets, variant, &own)?;
+        Ok((blocks, Shown { numbers: Numbers { seed, host: layout::Subpass { depth } }, area }))
+    }
+
+    /// What is drawn, scene by scene.
+    fn scenes<'a>(&'a self, present: &'a Present) -> Vec<(&'a ScenePasses, &'a SplatPair)> {
+        let splats = self.residents.present().map(|resident| &resident.splats);
+        present.scenes.iter().map(Arc::as_ref).zip(splats).collect()
     }
 
     /// The attachments, if these pixels are within them.

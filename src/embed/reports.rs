@@ -61,15 +61,16 @@ impl Reports {
     }
 
     /// Begins a frame of these splats: as many frames ago, one is over now.
-    pub(super) fn begin(&mut self, device: &Arc<Device>, splats: Option<&Splats>) -> Result<()> {
+    pub(super) fn begin(&mut self, device: &Arc<Device>, splats: &[&Splats]) -> Result<()> {
         let (next, measured) = ((self.present + 1) % self.slots.len(), self.measured);
         let slot = &mut self.slots[next];
         self.last = slot.read()?;
         if measured.times && slot.timestamps.is_none() {
             slot.timestamps = Timestamps::new(device)?;
         }
-        let counted = splats.filter(|_| measured.counts);
-        let counts = counted.map(|splats| (splats.count(), splats.counts_size()));
+        let all = |of: fn(&Splats) -> u64| splats.iter().map(|splats| of(splats)).sum();
+        let counted = measured.counts && !splats.is_empty();
+        let counts: Option<(u64, u64)> = counted.then(|| (all(Splats::count), all(Splats::counts_size)));
         let room = counts.map_or(0, |(_, size)| size);
         if slot.counts.as_ref().map_or(0, Buffer::size) < room {
             slot.counts = Some(Buffer::readback(device, "frame counts", room)?);

@@ -7,7 +7,7 @@
 //!
 //! Where ε is measured along the camera's axis, visibility has footprints of its own, of the discs moved away.
 
-use super::canvas::{Computed, Drawn};
+use super::canvas::{Computed, Drawn, PerScene, each};
 use crate::error::Result;
 use crate::passes::{
     ComputeAttribute, ComputeNormalize, ComputeVisibility, DrawAttribute, DrawNormalize, DrawVisibility,
@@ -15,17 +15,22 @@ use crate::passes::{
 };
 use crate::splatting::Visibility;
 use crate::targets::{Buffers, Images};
-use crate::variant::Variant;
-use crate::vk::{Buffer, DescriptorSet, Device, Framebuffer, Recorder};
+use crate::variant::{SceneVariant, Variant};
+use crate::vk::{Buffer, DescriptorSet, Device, DrawPipeline, Framebuffer, Recorder};
 use std::sync::Arc;
 
 /// The passes, drawn.
 pub struct Draw {
-    moved: Option<Footprint>,
-    footprint: Footprint,
     visibility: DrawVisibility,
     attribute: DrawAttribute,
     normalize: DrawNormalize,
+}
+
+/// What [`Draw`] draws a scene with.
+pub struct DrawScene {
+    footprints: Footprints,
+    visibility: DrawPipeline,
+    attribute: DrawPipeline,
 }
 
 /// What [`Draw`] draws to.
@@ -37,29 +42,68 @@ pub struct DrawViews {
 
 /// The passes, computed.
 pub struct Compute {
-    moved: Option<Footprint>,
-    footprint: Footprint,
-    visibility: ComputeVisibility,
     tiles: Tiles,
-    attribute: ComputeAttribute,
     normalize: ComputeNormalize,
 }
 
-/// The footprints of discs moved away by ε, where visibility wants them.
-fn moved(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Option<Footprint>> {
-    let wanted = variant.visibility == Visibility::Axis;
-    wanted.then(|| Footprint::moved(device, layout, variant)).transpose()
+/// What [`Compute`] visits a scene with.
+pub struct ComputeScene {
+    footprints: Footprints,
+    visibility: ComputeVisibility,
+    attribute: ComputeAttribute,
+}
+
+struct Footprints {
+    /// The footprints of discs moved away by ε, where visibility wants them.
+    moved: Option<Footprint>,
+    footprint: Footprint,
+}
+
+impl Footprints {
+    fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &SceneVariant) -> Result<Self> {
+        let moved = variant.frame.visibility == Visibility::Axis;
+        Ok(Self {
+            moved: moved.then(|| Footprint::moved(device, layout, variant)).transpose()?,
+            footprint: Footprint::new(device, layout, variant)?,
+        })
+    }
+
+    /// Those that visibility wants.
+    fn first(&self) -> &Footprint {
+        self.moved.as_ref().unwrap_or(&self.footprint)
+    }
+}
+
+/// Footprints for attribute, where those for visibility were others.
+fn record_second<S>(
+    rec: &mut Recorder<'_>,
+    scenes: &[(&S, &Splats)],
+    footprints: impl Fn(&S) -> &Footprints,
+) {
+    if scenes.iter().any(|(scene, _)| footprints(scene).moved.is_some()) {
+        Footprint::record(rec, &each(scenes, |scene| &footprints(scene).footprint));
+    }
+}
+
+impl PerScene for Draw {
+    type Scene = DrawScene;
+
+    fn scene(&self, device: &Arc<Device>, layout: &SplatLayout, variant: &SceneVariant) -> Result<DrawScene> {
+        Ok(DrawScene {
+            footprints: Footprints::new(device, layout, variant)?,
+            visibility: self.visibility.pipeline(device, layout, variant)?,
+            attribute: self.attribute.pipeline(device, layout, variant)?,
+        })
+    }
 }
 
 impl Drawn for Draw {
     type Views = DrawViews;
 
-    fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self> {
+    fn new(device: &Arc<Device>, variant: &Variant) -> Result<Self> {
         Ok(Self {
-            moved: moved(device, layout, variant)?,
-            footprint: Footprint::new(device, layout, variant)?,
-            visibility: DrawVisibility::new(device, layout, variant)?,
-            attribute: DrawAttribute::new(device, layout, variant)?,
+            visibility: DrawVisibility::new(device, variant)?,
+            attribute: DrawAttribute::new(device, variant)?,
             normalize: DrawNormalize::new(device, variant)?,
         })
     }
@@ -72,25 +116,42 @@ impl Drawn for Draw {
         })
     }
 
-    fn record(&self, rec: &mut Recorder<'_>, splats: &Splats, views: &DrawViews, targets: &Images) {
-        self.moved.as_ref().unwrap_or(&self.footprint).record(rec, splats);
-        self.visibility.record(rec, splats, &views.visibility, targets);
-        if self.moved.is_some() {
-            self.footprint.record(rec, splats);
-        }
-        self.attribute.record(rec, splats, &views.attribute, targets);
+    fn record(
+        &self,
+        rec: &mut Recorder<'_>,
+        scenes: &[(&DrawScene, &Splats)],
+        views: &DrawViews,
+        targets: &Images,
+    ) {
+        Footprint::record(rec, &each(scenes, |scene| scene.footprints.first()));
+        self.visibility.record(rec, &each(scenes, |scene| &scene.visibility), &views.visibility, targets);
+        record_second(rec, scenes, |scene| &scene.footprints);
+        self.attribute.record(rec, &each(scenes, |scene| &scene.attribute), &views.attribute, targets);
         self.normalize.record(rec, &views.normalize, targets);
+    }
+}
+
+impl PerScene for Compute {
+    type Scene = ComputeScene;
+
+    fn scene(
+        &self,
+        device: &Arc<Device>,
+        layout: &SplatLayout,
+        variant: &SceneVariant,
+    ) -> Result<ComputeScene> {
+        Ok(ComputeScene {
+            footprints: Footprints::new(device, layout, variant)?,
+            visibility: ComputeVisibility::new(device, layout, variant)?,
+            attribute: ComputeAttribute::new(device, layout, variant)?,
+        })
     }
 }
 
 impl Computed for Compute {
     fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self> {
         Ok(Self {
-            moved: moved(device, layout, variant)?,
-            footprint: Footprint::new(device, layout, variant)?,
-            visibility: ComputeVisibility::new(device, layout, variant)?,
             tiles: Tiles::new(device, layout, variant)?,
-            attribute: ComputeAttribute::new(device, layout, variant)?,
             normalize: ComputeNormalize::new(device, layout, variant)?,
         })
     }
@@ -102,18 +163,16 @@ impl Computed for Compute {
     fn record(
         &self,
         rec: &mut Recorder<'_>,
-        splats: &Splats,
+        scenes: &[(&ComputeScene, &Splats)],
         frame: &DescriptorSet,
         pixels: &PixelSet,
         targets: &Buffers,
     ) {
-        self.moved.as_ref().unwrap_or(&self.footprint).record(rec, splats);
-        self.visibility.record(rec, splats, pixels, targets);
+        Footprint::record(rec, &each(scenes, |scene| scene.footprints.first()));
+        ComputeVisibility::record(rec, &each(scenes, |scene| &scene.visibility), pixels, targets);
         self.tiles.record(rec, frame, pixels, targets);
-        if self.moved.is_some() {
-            self.footprint.record(rec, splats);
-        }
-        self.attribute.record(rec, splats, pixels, targets);
+        record_second(rec, scenes, |scene| &scene.footprints);
+        ComputeAttribute::record(rec, &each(scenes, |scene| &scene.attribute), pixels, targets);
         self.normalize.record(rec, frame, pixels, targets);
     }
 }

@@ -7,28 +7,49 @@ use crate::passes::{PixelSet, SplatLayout, Splats};
 use crate::picture::Picture;
 use crate::splatting::Visibility;
 use crate::targets::{Buffers, Images, PictureBuffer, Pyramids, TargetInfo};
-use crate::variant::{Rasterizer, Variant};
+use crate::variant::{Rasterizer, SceneVariant, Variant};
 use crate::vk::{Buffer, DescriptorSet, Device, Recorder};
-use std::sync::Arc;
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// Passes of which each scene of a frame has pipelines of its own.
+pub(super) trait PerScene: Sized + Send + Sync {
+    /// The pipelines of a scene.
+    type Scene: Send + Sync;
+
+    /// Makes the pipelines of a scene of `variant`.
+    fn scene(
+        &self,
+        device: &Arc<Device>,
+        layout: &SplatLayout,
+        variant: &SceneVariant,
+    ) -> Result<Self::Scene>;
+}
 
 /// Passes that the device's own rasterizer runs.
-pub(super) trait Drawn: Sized + Send + Sync {
+pub(super) trait Drawn: PerScene {
     /// What they draw to and read.
     type Views: Send + Sync;
 
-    /// Makes the pipelines.
-    fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self>;
+    /// Makes what all scenes share.
+    fn new(device: &Arc<Device>, variant: &Variant) -> Result<Self>;
 
     /// Their views of `targets`, which must outlive them, as must `frame`.
     fn views(&self, device: &Arc<Device>, frame: &Buffer, targets: &Images) -> Result<Self::Views>;
 
     /// Records a frame.
-    fn record(&self, rec: &mut Recorder<'_>, splats: &Splats, views: &Self::Views, targets: &Images);
+    fn record(
+        &self,
+        rec: &mut Recorder<'_>,
+        scenes: &[(&Self::Scene, &Splats)],
+        views: &Self::Views,
+        targets: &Images,
+    );
 }
 
 /// Passes that compute shaders run.
-pub(super) trait Computed: Sized + Send + Sync {
-    /// Makes the pipelines.
+pub(super) trait Computed: PerScene {
+    /// Makes what all scenes share.
     fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self>;
 
     /// Their view of `frame`, which must outlive it.
@@ -38,22 +59,36 @@ pub(super) trait Computed: Sized + Send + Sync {
     fn record(
         &self,
         rec: &mut Recorder<'_>,
-        splats: &Splats,
+        scenes: &[(&Self::Scene, &Splats)],
         frame: &DescriptorSet,
         pixels: &PixelSet,
         targets: &Buffers,
     );
 }
 
-/// The pipelines of a method for one [`Variant`].
+/// One pass of each scene.
+pub(super) fn each<'a, S, P>(
+    scenes: &[(&'a S, &'a Splats)],
+    pass: impl Fn(&'a S) -> &'a P,
+) -> Vec<(&'a P, &'a Splats)> {
+    scenes.iter().map(|(scene, splats)| (pass(scene), *splats)).collect()
+}
+
+/// The pipelines of a method for one [`Variant`], and for the scenes that were seen in its frames.
 pub struct Pipelines(Kind);
 
 enum Kind {
-    DrawBlended(Arc<blended::Draw>),
-    DrawNearest(Arc<nearest::Draw>),
-    ComputeBlended(Arc<blended::Compute>),
-    ComputeNearest(Arc<nearest::Compute>),
-    PullPush(Arc<PullPush>),
+    DrawBlended(Arc<Made<blended::Draw>>),
+    DrawNearest(Arc<Made<nearest::Draw>>),
+    ComputeBlended(Arc<Made<blended::Compute>>),
+    ComputeNearest(Arc<Made<nearest::Compute>>),
+    PullPush(Arc<Made<PullPush>>),
+}
+
+/// Passes, and what scenes have of them.
+struct Made<P: PerScene> {
+    scenes: Mutex<HashMap<SceneVariant, Arc<P::Scene>>>,
+    passes: P,
 }
 
 /// Targets with the passes that write them.
@@ -78,40 +113,54 @@ pub enum Composited<'a> {
     Buffer(&'a PictureBuffer),
 }
 
-/// Passes with their views of some targets. Views go before what they view.
+/// Passes with their views of some targets.
 trait Recorded: Send + Sync {
-    fn record(&self, rec: &mut Recorder<'_>, splats: &Splats);
+    fn show(&mut self, device: &Arc<Device>, layout: &SplatLayout, scenes: &[SceneVariant]) -> Result<()>;
+    fn record(&self, rec: &mut Recorder<'_>, splats: &[&Splats]);
 }
 
+/// The scenes of a frame, each with what its passes are.
+struct Shown<P: PerScene> {
+    variants: Vec<SceneVariant>,
+    scenes: Vec<Arc<P::Scene>>,
+    made: Arc<Made<P>>,
+}
+
+// Views go before what they view.
 struct OnImages<P: Drawn> {
     views: P::Views,
     targets: Arc<Images>,
-    passes: Arc<P>,
+    shown: Shown<P>,
 }
 
 struct OnBuffers<P: Computed> {
     pixels: PixelSet,
     frame: DescriptorSet,
     targets: Arc<Buffers>,
-    passes: Arc<P>,
+    shown: Shown<P>,
+}
+
+struct OnPyramids {
+    views: PullPushViews,
+    targets: Arc<Pyramids>,
+    shown: Shown<PullPush>,
 }
 
 impl Pipelines {
-    /// Makes the pipelines.
+    /// Makes the pipelines that scenes share.
     pub fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self> {
         if variant.pull_push.is_some() {
-            return PullPush::new(device, layout, variant)
-                .map(|passes| Self(Kind::PullPush(Arc::new(passes))));
+            return Made::new(PullPush::new(device, layout, variant)).map(|made| Self(Kind::PullPush(made)));
         }
         let alone = variant.visibility == Visibility::Nearest;
         Ok(Self(match (variant.rasterizer, alone) {
-            (Rasterizer::Draw, false) => Kind::DrawBlended(made(device, layout, variant, Drawn::new)?),
-            (Rasterizer::Draw, true) => Kind::DrawNearest(made(device, layout, variant, Drawn::new)?),
+            (Rasterizer::Draw, false) => Kind::DrawBlended(Made::new(Drawn::new(device, variant))?),
+            (Rasterizer::Draw, true) => Kind::DrawNearest(Made::new(Drawn::new(device, variant))?),
             (Rasterizer::Compute, false) => {
-                Kind::ComputeBlended(made(device, layout, variant, Computed::new)?)
+                Kind::ComputeBlended(Made::new(Computed::new(device, layout, variant))?)
             }
             (Rasterizer::Compute, true) => {
-                Kind::ComputeNearest(made(device, layout, variant, Computed::new)?)
+                Kind::ComputeNearest(Made::new(Computed::new(device, layout, variant))?)
             }
         }))
     }
@@ -128,37 +177,28 @@ impl Pipelines {
         let images = || Images::new(device, variant, size).map(Arc::new);
         let buffers = || Buffers::new(device, variant, size).map(Arc::new);
         match &self.0 {
-            Kind::DrawBlended(passes) => on_images(device, frame, passes, images()?),
-            Kind::DrawNearest(passes) => on_images(device, frame, passes, images()?),
-            Kind::ComputeBlended(passes) => on_buffers(device, layout, frame, passes, buffers()?),
-            Kind::ComputeNearest(passes) => on_buffers(device, layout, frame, passes, buffers()?),
-            Kind::PullPush(passes) => {
+            Kind::DrawBlended(made) => on_images(device, frame, made, images()?),
+            Kind::DrawNearest(made) => on_images(device, frame, made, images()?),
+            Kind::ComputeBlended(made) => on_buffers(device, layout, frame, made, buffers()?),
+            Kind::ComputeNearest(made) => on_buffers(device, layout, frame, made, buffers()?),
+            Kind::PullPush(made) => {
                 let targets = Pyramids::new(device, variant, size).map(Arc::new)?;
-                let views = passes.views(device, layout, frame, &targets)?;
-                let recorded = OnPyramids { views, targets: targets.clone(), passes: passes.clone() };
+                let views = made.passes.views(device, layout, frame, &targets)?;
+                let recorded = OnPyramids { views, targets: targets.clone(), shown: Shown::nothing(made) };
                 Ok(Canvas { recorded: Box::new(recorded), targets: Targets::Pyramids(targets) })
             }
         }
     }
 }
 
-fn made<P>(
-    device: &Arc<Device>,
-    layout: &SplatLayout,
-    variant: &Variant,
-    new: fn(&Arc<Device>, &SplatLayout, &Variant) -> Result<P>,
-) -> Result<Arc<P>> {
-    new(device, layout, variant).map(Arc::new)
-}
-
 fn on_images<P: Drawn + 'static>(
     device: &Arc<Device>,
     frame: &Buffer,
-    passes: &Arc<P>,
+    made: &Arc<Made<P>>,
     targets: Arc<Images>,
 ) -> Result<Canvas> {
-    let views = passes.views(device, frame, &targets)?;
-    let recorded = OnImages { views, targets: targets.clone(), passes: passes.clone() };
+    let views = made.passes.views(device, frame, &targets)?;
+    let recorded = OnImages { views, targets: targets.clone(), shown: Shown::nothing(made) };
     Ok(Canvas { recorded: Box::new(recorded), targets: Targets::Images(targets) })
 }
 
@@ -166,42 +206,100 @@ fn on_buffers<P: Computed + 'static>(
     device: &Arc<Device>,
     layout: &SplatLayout,
     frame: &Buffer,
-    passes: &Arc<P>,
+    made: &Arc<Made<P>>,
     targets: Arc<Buffers>,
 ) -> Result<Canvas> {
     let pixels = PixelSet::new(device, layout, &targets)?;
-    let frame = passes.frame_view(device, frame)?;
-    let recorded = OnBuffers { pixels, frame, targets: targets.clone(), passes: passes.clone() };
+    let frame = made.passes.frame_view(device, frame)?;
+    let recorded = OnBuffers { pixels, frame, targets: targets.clone(), shown: Shown::nothing(made) };
     Ok(Canvas { recorded: Box::new(recorded), targets: Targets::Buffers(targets) })
 }
 
-struct OnPyramids {
-    views: PullPushViews,
-    targets: Arc<Pyramids>,
-    passes: Arc<PullPush>,
+impl<P: PerScene> Made<P> {
+    fn new(passes: Result<P>) -> Result<Arc<Self>> {
+        Ok(Arc::new(Self { scenes: Mutex::default(), passes: passes? }))
+    }
+
+    /// What a scene of `variant` has of the passes.
+    fn scene(
+        &self,
+        device: &Arc<Device>,
+        layout: &SplatLayout,
+        variant: &SceneVariant,
+    ) -> Result<Arc<P::Scene>> {
+        let mut scenes = self.scenes.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(made) = scenes.get(variant) {
+            return Ok(made.clone());
+        }
+        let made = Arc::new(self.passes.scene(device, layout, variant)?);
+        scenes.insert(*variant, made.clone());
+        Ok(made)
+    }
+}
+
+impl<P: PerScene> Shown<P> {
+    fn nothing(made: &Arc<Made<P>>) -> Self {
+        Self { variants: Vec::new(), scenes: Vec::new(), made: made.clone() }
+    }
+
+    fn show(&mut self, device: &Arc<Device>, layout: &SplatLayout, variants: &[SceneVariant]) -> Result<()> {
+        if self.variants != variants {
+            let made = variants.iter().map(|variant| self.made.scene(device, layout, variant));
+            self.scenes = made.collect::<Result<_>>()?;
+            self.variants = variants.to_vec();
+        }
+        Ok(())
+    }
+
+    fn with<'a>(&'a self, splats: &[&'a Splats]) -> Vec<(&'a P::Scene, &'a Splats)> {
+        self.scenes.iter().map(Arc::as_ref).zip(splats.iter().copied()).collect()
+    }
 }
 
 impl Recorded for OnPyramids {
-    fn record(&self, rec: &mut Recorder<'_>, splats: &Splats) {
-        self.passes.record(rec, splats, &self.views, &self.targets);
+    fn show(&mut self, device: &Arc<Device>, layout: &SplatLayout, scenes: &[SceneVariant]) -> Result<()> {
+        self.shown.show(device, layout, scenes)
+    }
+
+    fn record(&self, rec: &mut Recorder<'_>, splats: &[&Splats]) {
+        self.shown.made.passes.record(rec, &self.shown.with(splats), &self.views, &self.targets);
     }
 }
 
 impl<P: Drawn> Recorded for OnImages<P> {
-    fn record(&self, rec: &mut Recorder<'_>, splats: &Splats) {
-        self.passes.record(rec, splats, &self.views, &self.targets);
+    fn show(&mut self, device: &Arc<Device>, layout: &SplatLayout, scenes: &[SceneVariant]) -> Result<()> {
+        self.shown.show(device, layout, scenes)
+    }
+
+    fn record(&self, rec: &mut Recorder<'_>, splats: &[&Splats]) {
+        self.shown.made.passes.record(rec, &self.shown.with(splats), &self.views, &self.targets);
     }
 }
 
 impl<P: Computed> Recorded for OnBuffers<P> {
-    fn record(&self, rec: &mut Recorder<'_>, splats: &Splats) {
-        self.passes.record(rec, splats, &self.frame, &self.pixels, &self.targets);
+    fn show(&mut self, device: &Arc<Device>, layout: &SplatLayout, scenes: &[SceneVariant]) -> Result<()> {
+        self.shown.show(device, layout, scenes)
+    }
+
+    fn record(&self, rec: &mut Recorder<'_>, splats: &[&Splats]) {
+        let scenes = self.shown.with(splats);
+        self.shown.made.passes.record(rec, &scenes, &self.frame, &self.pixels, &self.targets);
     }
 }
 
 impl Canvas {
-    /// Records a frame.
-    pub fn record(&self, rec: &mut Recorder<'_>, splats: &Splats) {
+    /// Frames from now on are of such scenes: makes the pipelines that they have of their own, if they are not there.
+    pub fn show(
+        &mut self,
+        device: &Arc<Device>,
+        layout: &SplatLayout,
+        scenes: &[SceneVariant],
+    ) -> Result<()> {
+        self.recorded.show(device, layout, scenes)
+    }
+
+    /// Records a frame of the scenes that are shown, which have these splats.
+    pub fn record(&self, rec: &mut Recorder<'_>, splats: &[&Splats]) {
         self.recorded.record(rec, splats);
     }
 

@@ -6,22 +6,27 @@
 //!
 //! Computed, `nearest` leaves the number of the splat, and `resolve` what it is.
 
-use super::canvas::{Computed, Drawn};
+use super::canvas::{Computed, Drawn, PerScene, each};
 use crate::error::Result;
 use crate::passes::{
     ComputeNearest, ComputeNormalize, DrawNearest, DrawNormalize, Footprint, NearestViews, NormalizeViews,
     PixelSet, Resolve, SplatLayout, Splats,
 };
 use crate::targets::{Buffers, Images};
-use crate::variant::Variant;
-use crate::vk::{Buffer, DescriptorSet, Device, Recorder};
+use crate::variant::{SceneVariant, Variant};
+use crate::vk::{Buffer, DescriptorSet, Device, DrawPipeline, Recorder};
 use std::sync::Arc;
 
 /// The passes, drawn.
 pub struct Draw {
-    footprint: Footprint,
     nearest: DrawNearest,
     normalize: DrawNormalize,
+}
+
+/// What [`Draw`] draws a scene with.
+pub struct DrawScene {
+    footprint: Footprint,
+    nearest: DrawPipeline,
 }
 
 /// What [`Draw`] draws to.
@@ -32,19 +37,33 @@ pub struct DrawViews {
 
 /// The passes, computed.
 pub struct Compute {
+    normalize: ComputeNormalize,
+}
+
+/// What [`Compute`] visits a scene with.
+pub struct ComputeScene {
     footprint: Footprint,
     nearest: ComputeNearest,
     resolve: Resolve,
-    normalize: ComputeNormalize,
+}
+
+impl PerScene for Draw {
+    type Scene = DrawScene;
+
+    fn scene(&self, device: &Arc<Device>, layout: &SplatLayout, variant: &SceneVariant) -> Result<DrawScene> {
+        Ok(DrawScene {
+            footprint: Footprint::new(device, layout, variant)?,
+            nearest: self.nearest.pipeline(device, layout, variant)?,
+        })
+    }
 }
 
 impl Drawn for Draw {
     type Views = DrawViews;
 
-    fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self> {
+    fn new(device: &Arc<Device>, variant: &Variant) -> Result<Self> {
         Ok(Self {
-            footprint: Footprint::new(device, layout, variant)?,
-            nearest: DrawNearest::new(device, layout, variant)?,
+            nearest: DrawNearest::new(device, variant)?,
             normalize: DrawNormalize::new(device, variant)?,
         })
     }
@@ -56,21 +75,39 @@ impl Drawn for Draw {
         })
     }
 
-    fn record(&self, rec: &mut Recorder<'_>, splats: &Splats, views: &DrawViews, targets: &Images) {
-        self.footprint.record(rec, splats);
-        self.nearest.record(rec, splats, &views.nearest, targets);
+    fn record(
+        &self,
+        rec: &mut Recorder<'_>,
+        scenes: &[(&DrawScene, &Splats)],
+        views: &DrawViews,
+        targets: &Images,
+    ) {
+        Footprint::record(rec, &each(scenes, |scene| &scene.footprint));
+        self.nearest.record(rec, &each(scenes, |scene| &scene.nearest), &views.nearest, targets);
         self.normalize.record(rec, &views.normalize, targets);
+    }
+}
+
+impl PerScene for Compute {
+    type Scene = ComputeScene;
+
+    fn scene(
+        &self,
+        device: &Arc<Device>,
+        layout: &SplatLayout,
+        variant: &SceneVariant,
+    ) -> Result<ComputeScene> {
+        Ok(ComputeScene {
+            footprint: Footprint::new(device, layout, variant)?,
+            nearest: ComputeNearest::new(device, layout, variant)?,
+            resolve: Resolve::new(device, layout, variant)?,
+        })
     }
 }
 
 impl Computed for Compute {
     fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self> {
-        Ok(Self {
-            footprint: Footprint::new(device, layout, variant)?,
-            nearest: ComputeNearest::new(device, layout, variant)?,
-            resolve: Resolve::new(device, layout, variant)?,
-            normalize: ComputeNormalize::new(device, layout, variant)?,
-        })
+        Ok(Self { normalize: ComputeNormalize::new(device, layout, variant)? })
     }
 
     fn frame_view(&self, device: &Arc<Device>, frame: &Buffer) -> Result<DescriptorSet> {
@@ -80,14 +117,14 @@ impl Computed for Compute {
     fn record(
         &self,
         rec: &mut Recorder<'_>,
-        splats: &Splats,
+        scenes: &[(&ComputeScene, &Splats)],
         frame: &DescriptorSet,
         pixels: &PixelSet,
         targets: &Buffers,
     ) {
-        self.footprint.record(rec, splats);
-        self.nearest.record(rec, splats, pixels, targets);
-        self.resolve.record(rec, splats, pixels, targets);
+        Footprint::record(rec, &each(scenes, |scene| &scene.footprint));
+        ComputeNearest::record(rec, &each(scenes, |scene| &scene.nearest), pixels, targets);
+        Resolve::record(rec, &each(scenes, |scene| &scene.resolve), pixels, targets);
         self.normalize.record(rec, frame, pixels, targets);
     }
 }

@@ -16,13 +16,16 @@
 //! push   even 3 → odd 3 → even 2 → odd 1 → even 0                     each reads two levels of one; shade reads the last
 //! ```
 
+use super::canvas::PerScene;
 use super::{Method, perspective_ewa};
 use crate::error::Result;
-use crate::passes::{PointViews, Project, Pull, Push, PyramidSets, Shade, SplatLayout, Splats, copy};
+use crate::passes::{
+    PointViews, Project, ProjectScene, Pull, Push, PyramidSets, Shade, SplatLayout, Splats, copy,
+};
 use crate::pull_push::{Rules, Storage};
 use crate::settings::Cull;
 use crate::targets::Pyramids;
-use crate::variant::Variant;
+use crate::variant::{SceneVariant, Variant};
 use crate::vk::{Buffer, DescriptorSet, Device, Recorder};
 use std::sync::Arc;
 
@@ -62,6 +65,19 @@ pub struct PullPushViews {
     points: Option<PointViews>,
 }
 
+impl PerScene for PullPush {
+    type Scene = ProjectScene;
+
+    fn scene(
+        &self,
+        device: &Arc<Device>,
+        layout: &SplatLayout,
+        variant: &SceneVariant,
+    ) -> Result<ProjectScene> {
+        self.project.scene(device, layout, variant)
+    }
+}
+
 impl PullPush {
     /// Makes the pipelines.
     pub fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self> {
@@ -89,14 +105,20 @@ impl PullPush {
     }
 
     /// Records a frame.
-    pub fn record(&self, rec: &mut Recorder<'_>, splats: &Splats, views: &PullPushViews, targets: &Pyramids) {
+    pub fn record(
+        &self,
+        rec: &mut Recorder<'_>,
+        scenes: &[(&ProjectScene, &Splats)],
+        views: &PullPushViews,
+        targets: &Pyramids,
+    ) {
         let PullPushViews { frame, sets, points } = views;
-        self.project.record(rec, splats, frame, sets, points.as_ref(), targets);
+        self.project.record(rec, scenes, frame, sets, points.as_ref(), targets);
         self.pull.record(rec, frame, sets, targets);
         if targets.storage == Storage::PingPong {
             copy(rec, targets);
         }
         self.push.record(rec, frame, sets, targets);
-        self.shade.record(rec, splats, frame, sets, targets);
+        self.shade.record(rec, scenes.iter().map(|(_, splats)| *splats), frame, sets, targets);
     }
 }

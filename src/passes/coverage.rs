@@ -7,7 +7,7 @@ use ash::vk::{DescriptorType, ShaderStageFlags};
 use std::sync::Arc;
 
 /// Descriptor set 1 of a draw that writes coverage; nothing in a frame without.
-pub(super) struct DrawnCoverage(Option<SetLayout>);
+pub(crate) struct DrawnCoverage(Option<SetLayout>);
 
 impl DrawnCoverage {
     /// As `variant` wants it.

@@ -28,14 +28,14 @@ mod visibility;
 pub use attribute::{ComputeAttribute, DrawAttribute, SubpassAttribute};
 pub use composite::{Composite, CompositeKind};
 pub use copy::copy;
-pub(crate) use coverage::clear_drawn;
+pub(crate) use coverage::{DrawnCoverage, clear_drawn};
 pub use footprint::Footprint;
 pub use nearest::{ComputeNearest, DrawNearest, NearestViews};
 pub use normalize::{
     ComputeNormalize, DrawNormalize, NormalizeViews, SubpassKind, SubpassNormalize, SubpassViews,
 };
 pub use points::{DrawPoints, PointViews};
-pub use project::Project;
+pub use project::{Project, ProjectScene};
 pub use pull::Pull;
 pub use push::Push;
 pub use pyramid::PyramidSets;

@@ -4,7 +4,7 @@ use super::coverage::{DrawnCoverage, clear, clear_drawn};
 use super::{PixelSet, Scatter, SplatLayout, Splats, SubpassSurface};
 use crate::error::Result;
 use crate::targets::{Buffers, Formats, Images};
-use crate::variant::Variant;
+use crate::variant::{SceneVariant, Variant};
 use crate::vk::{
     Access, Attachment, Blend, DepthTest, DescriptorSet, Device, DrawPipeline, DrawState, Framebuffer,
     Recorder, RenderPass, Topology, Within, shaders,
@@ -14,7 +14,6 @@ use std::sync::Arc;
 /// The nearest pass as draws with a depth test, which leave what the splat is.
 pub struct DrawNearest {
     pass: RenderPass,
-    pipeline: DrawPipeline,
     coverage: DrawnCoverage,
 }
 
@@ -28,18 +27,26 @@ pub struct NearestViews {
 pub struct ComputeNearest(Scatter);
 
 impl DrawNearest {
-    /// The pass for `variant`.
-    pub fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self> {
+    /// The pass for frames of `variant`.
+    pub fn new(device: &Arc<Device>, variant: &Variant) -> Result<Self> {
         let formats = Formats::of(variant);
         let sums1 = formats.sums1.map_or(Attachment::Absent, Attachment::Cleared);
         let depth = Attachment::Cleared(formats.visibility);
         let pass = RenderPass::new(device, &[Attachment::Cleared(formats.sums0), sums1], Some(depth))?;
-        let coverage = DrawnCoverage::new(device, variant)?;
-        let sets: Vec<_> = std::iter::once(&layout.splats).chain(coverage.layout()).collect();
+        Ok(Self { pass, coverage: DrawnCoverage::new(device, variant)? })
+    }
+
+    /// What draws a scene of `variant`.
+    pub fn pipeline(
+        &self,
+        device: &Arc<Device>,
+        layout: &SplatLayout,
+        variant: &SceneVariant,
+    ) -> Result<DrawPipeline> {
+        let sets: Vec<_> = std::iter::once(&layout.splats).chain(self.coverage.layout()).collect();
         let state =
             DrawState { topology: Topology::Triangles, depth: DepthTest::Nearest, blend: Blend::Replace };
-        let pipeline = DrawPipeline::new(device, &sets, code(variant), &variant.constants(), &pass, state)?;
-        Ok(Self { pass, pipeline, coverage })
+        DrawPipeline::new(device, &sets, code(&variant.frame), &variant.constants(), &self.pass, state)
     }
 
     /// The pass's views of `targets`, which must outlive them.
@@ -50,15 +57,21 @@ impl DrawNearest {
         Ok(NearestViews { framebuffer, coverage: self.coverage.view(device, targets.coverage.as_ref())? })
     }
 
-    /// `splats` → `targets.visibility`, `targets.sums0`, `targets.sums1`, `targets.coverage`.
-    pub fn record(&self, rec: &mut Recorder<'_>, splats: &Splats, views: &NearestViews, targets: &Images) {
-        let mut uses = splats.read_by_draws();
+    /// The splats of all scenes → `targets.visibility`, `targets.sums0`, `targets.sums1`, `targets.coverage`.
+    pub fn record(
+        &self,
+        rec: &mut Recorder<'_>,
+        scenes: &[(&DrawPipeline, &Splats)],
+        views: &NearestViews,
+        targets: &Images,
+    ) {
+        let mut uses: Vec<_> = scenes.iter().flat_map(|(_, splats)| splats.read_by_draws()).collect();
         uses.push(targets.visibility.with(Access::DEPTH_WRITE));
         uses.push(targets.sums0.with(Access::COLOUR_WRITE));
         uses.extend(targets.sums1.as_ref().map(|image| image.with(Access::COLOUR_WRITE)));
         uses.extend(clear_drawn(rec, targets.coverage.as_ref()));
         let more: Vec<_> = views.coverage.iter().collect();
-        rec.pass("nearest", &uses, |enc| splats.draw(enc, &self.pipeline, &views.framebuffer, &more));
+        rec.pass("nearest", &uses, |enc| Splats::draw(enc, scenes, &views.framebuffer, &more));
     }
 }
 
@@ -71,33 +84,35 @@ fn code(variant: &Variant) -> [&'static [u32]; 2] {
 }
 
 impl SubpassSurface {
-    /// The nearest pass for `variant`, drawn `within` a pass of a host.
+    /// The nearest pass for a scene of `variant`, drawn `within` a pass of a host.
     pub fn nearest(
         device: &Arc<Device>,
         layout: &SplatLayout,
-        variant: &Variant,
+        variant: &SceneVariant,
         within: &Within<'_>,
     ) -> Result<Self> {
-        Self::new(device, layout, variant, code(variant), within, DepthTest::Nearest)
+        Self::new(device, layout, variant, code(&variant.frame), within, DepthTest::Nearest)
     }
 }
 
 impl ComputeNearest {
-    /// The pass for `variant`.
-    pub fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self> {
-        let code = match variant.coverage {
+    /// The pass for a scene of `variant`.
+    pub fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &SceneVariant) -> Result<Self> {
+        let code = match variant.frame.coverage {
             false => shaders::NEAREST_COMPUTE,
             true => shaders::NEAREST_COVERAGE_COMPUTE,
         };
         Scatter::new(device, layout, code, variant).map(Self)
     }
 
-    /// `splats` → `targets.visibility`, `targets.coverage`, which are cleared before.
-    pub fn record(&self, rec: &mut Recorder<'_>, splats: &Splats, pixels: &PixelSet, targets: &Buffers) {
+    /// The splats of all scenes → `targets.visibility`, `targets.coverage`, which are cleared before.
+    pub fn record(rec: &mut Recorder<'_>, scenes: &[(&Self, &Splats)], pixels: &PixelSet, targets: &Buffers) {
         let written = || std::iter::once(&targets.visibility).chain(&targets.coverage);
         clear(rec, written());
-        let mut uses = splats.read_by_scatter();
+        let mut uses: Vec<_> = scenes.iter().flat_map(|(_, splats)| splats.read_by_scatter()).collect();
         uses.extend(written().map(|buffer| buffer.with(Access::COMPUTE_WRITE)));
-        rec.pass("nearest", &uses, |enc| self.0.record(enc, splats, pixels));
+        rec.pass("nearest", &uses, |enc| {
+            scenes.iter().for_each(|(pass, splats)| pass.0.record(enc, splats, pixels));
+        });
     }
 }

@@ -1,11 +1,11 @@
 //! Points: surfels → the nearest of each pixel, as points of one pixel with a depth test (marroquim2008 §3.1; `points.glsl`). The part of
 //! project that the device's own rasterizer can do.
 
-use super::normalize::{frame_layout, grid_over};
+use super::normalize::grid_over;
 use super::{SplatLayout, Splats};
 use crate::error::Result;
 use crate::targets::{DrawnPoints, Pyramids};
-use crate::variant::Variant;
+use crate::variant::{SceneVariant, Variant};
 use crate::vk::{
     Access, Attachment, Binding, Blend, ComputePipeline, DepthTest, DescriptorSet, Device, DrawPipeline,
     DrawState, Framebuffer, Recorder, RenderPass, SetLayout, Topology, Use, shaders,
@@ -16,7 +16,6 @@ use std::sync::Arc;
 /// Draws points, and hands them to what computes others.
 pub struct DrawPoints {
     pass: RenderPass,
-    pipeline: DrawPipeline,
     /// Makes of them what lines and triangles are compared with, where there are any.
     hand_over: Option<ComputePipeline>,
 }
@@ -41,21 +40,30 @@ impl DrawnPoints {
 }
 
 impl DrawPoints {
-    /// The pass for `variant`.
+    /// The pass for frames of `variant`.
     pub fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self> {
         let number = Attachment::Cleared(DrawnPoints::NUMBER);
         let pass = RenderPass::new(device, &[number], Some(Attachment::Cleared(DrawnPoints::DEPTH)))?;
+        let hand_over = || {
+            let sets = [&layout.frame, &layout.plain, &layout.pyramid, &layout.drawn_points];
+            let code = shaders::PROJECT_DRAWN_POINTS_COMPUTE;
+            ComputePipeline::new(device, &sets, code, &variant.constants())
+        };
+        let hand_over = variant.primitives.then(hand_over).transpose()?;
+        Ok(Self { pass, hand_over })
+    }
+
+    /// What draws a scene of `variant`.
+    pub fn pipeline(
+        &self,
+        device: &Arc<Device>,
+        layout: &SplatLayout,
+        variant: &SceneVariant,
+    ) -> Result<DrawPipeline> {
         let code = [shaders::POINTS_VERTEX, shaders::POINTS_FRAGMENT];
         let state =
             DrawState { topology: Topology::Points, depth: DepthTest::Nearest, blend: Blend::Replace };
-        let constants = variant.constants();
-        let pipeline = DrawPipeline::new(device, &[&layout.splats], code, &constants, &pass, state)?;
-        let hand_over = || {
-            let sets = [&frame_layout(device)?, &layout.plain, &layout.pyramid, &layout.drawn_points];
-            ComputePipeline::new(device, &sets, shaders::PROJECT_DRAWN_POINTS_COMPUTE, &constants)
-        };
-        let hand_over = variant.primitives.any().then(hand_over).transpose()?;
-        Ok(Self { pass, pipeline, hand_over })
+        DrawPipeline::new(device, &[&layout.splats], code, &variant.constants(), &self.pass, state)
     }
 
     /// The pass's views of `targets`, which must outlive them.
@@ -73,12 +81,12 @@ impl DrawPoints {
         })
     }
 
-    /// Surfels → `targets.drawn`, and `targets.nearest` where it is there. `frame` is a set of the frame's numbers; `own` are the nearest
+    /// Surfels of all scenes → `targets.drawn`, and `targets.nearest` where it is there. `frame` is a set of the frame's numbers; `own` are the nearest
     /// points, and the pyramid of level 0.
     pub fn record(
         &self,
         rec: &mut Recorder<'_>,
-        splats: &Splats,
+        scenes: &[(&DrawPipeline, &Splats)],
         frame: &DescriptorSet,
         own: [&DescriptorSet; 2],
         views: &PointViews,
@@ -89,8 +97,10 @@ impl DrawPoints {
         let uses = [nearest_depth.with(Access::DEPTH_WRITE), nearest_number.with(Access::COLOUR_WRITE)];
         rec.pass("project", &uses, |enc| {
             enc.render(&views.framebuffer, |draws| {
-                for window in splats.windows() {
-                    draws.draw(&self.pipeline, &[&window.set], &window.push(), window.count);
+                for (pipeline, splats) in scenes {
+                    for window in splats.windows() {
+                        draws.draw(pipeline, &[&window.set], &window.push(), window.count);
+                    }
                 }
             });
         });

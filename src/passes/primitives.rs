@@ -14,6 +14,8 @@ pub(super) fn primitive_layout(device: &Arc<Device>) -> Result<SetLayout> {
 
 /// Views of lines and of triangles, as far as there are any.
 pub(super) struct PrimitiveSets {
+    /// Of the numbers that the scene is seen by.
+    pub frame: DescriptorSet,
     pub lines: Option<ElementSet>,
     pub triangles: Option<ElementSet>,
     /// Numbers of triangles of many pixels, after how many there are.
@@ -24,6 +26,9 @@ pub(super) struct PrimitiveSets {
 pub(super) struct ElementSet {
     pub set: DescriptorSet,
     pub count: u32,
+    /// The number of the first one in the scene.
+    start: u32,
+    /// That in the frame.
     first: u32,
 }
 
@@ -35,8 +40,14 @@ impl ElementSet {
 }
 
 impl PrimitiveSets {
-    /// Views of `streams`, which must outlive them.
-    pub fn new(device: &Arc<Device>, layout: &SplatLayout, streams: &PrimitiveStreams) -> Result<Self> {
+    /// Views of `frame` and `streams`, which must outlive them.
+    pub fn new(
+        device: &Arc<Device>,
+        layout: &SplatLayout,
+        frame: &Buffer,
+        streams: &PrimitiveStreams,
+    ) -> Result<Self> {
+        let frame = DescriptorSet::new(device, &layout.frame, &[Binding::Uniform(frame)])?;
         let list = |triangles: &Elements| {
             Buffer::storage(device, "large triangles", 4 * (1 + u64::from(triangles.count)))
         };
@@ -55,12 +66,19 @@ impl PrimitiveSets {
                 Binding::Storage(buffer, 0, buffer.size())
             });
             let set = DescriptorSet::new(device, &layout.primitives, &bindings)?;
-            Ok(ElementSet { set, count: elements.count, first: elements.first })
+            Ok(ElementSet { set, count: elements.count, start: elements.first, first: elements.first })
         };
         let [lines, triangles] =
             [&streams.lines, &streams.triangles].map(|elements| elements.as_ref().map(view).transpose());
         let (lines, triangles) = (lines?, triangles?);
-        Ok(Self { lines, triangles, large })
+        Ok(Self { frame, lines, triangles, large })
+    }
+
+    /// The scene's points have numbers from `first` on.
+    pub fn set_first(&mut self, first: u32) {
+        for elements in [&mut self.lines, &mut self.triangles].into_iter().flatten() {
+            elements.first = first + elements.start;
+        }
     }
 
     /// The list, as a pass uses it.

@@ -3,7 +3,7 @@
 use super::{SplatLayout, Splats};
 use crate::error::Result;
 use crate::targets::Buffers;
-use crate::variant::Variant;
+use crate::variant::SceneVariant;
 use crate::vk::shaders::constant;
 use crate::vk::{Binding, ComputePipeline, DescriptorSet, Device, Encoder, SetLayout};
 use ash::vk::{DescriptorType, ShaderStageFlags};
@@ -40,8 +40,13 @@ pub struct Scatter {
 }
 
 impl Scatter {
-    /// The pass of the SPIR-V `code`.
-    pub fn new(device: &Arc<Device>, layout: &SplatLayout, code: &[u32], variant: &Variant) -> Result<Self> {
+    /// The pass of the SPIR-V `code` for a scene of `variant`.
+    pub fn new(
+        device: &Arc<Device>,
+        layout: &SplatLayout,
+        code: &[u32],
+        variant: &SceneVariant,
+    ) -> Result<Self> {
         let sets = [&layout.splats, &layout.pixels];
         let pipeline = |large: bool| {
             let constants = variant.constants().with(constant::LARGE_SPLATS, large);

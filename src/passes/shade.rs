@@ -36,11 +36,11 @@ impl Shade {
         DescriptorSet::new(device, &self.frame_layout, &[Binding::Uniform(frame)])
     }
 
-    /// Level 0 of what is pushed, and texture and materials of `splats` → `targets.picture`.
-    pub fn record(
+    /// Level 0 of what is pushed, and texture and materials of the scenes with these splats → `targets.picture`.
+    pub fn record<'a>(
         &self,
         rec: &mut Recorder<'_>,
-        splats: &Splats,
+        splats: impl IntoIterator<Item = &'a Splats>,
         frame: &DescriptorSet,
         sets: &PyramidSets,
         targets: &Pyramids,
@@ -48,7 +48,7 @@ impl Shade {
         let [_, pushed] = targets.storage.push(0);
         let read = targets.pyramids[pushed].with(Access::COMPUTE_READ);
         let uses: Vec<_> = read.chain([targets.picture.buffer.with(Access::COMPUTE_WRITE)]).collect();
-        let lookups = splats.lookups().filter(|_| self.looks_up);
+        let lookups = splats.into_iter().find_map(Splats::lookups).filter(|_| self.looks_up);
         let sets: Vec<_> =
             [frame, &sets.pyramids[pushed], &sets.picture].into_iter().chain(lookups).collect();
         rec.pass("shade", &uses, |enc| visit(enc, &self.pipeline, &sets, targets, 0));

@@ -1,6 +1,7 @@
 //! The splats between the footprint pass, which writes them, and the passes that rasterize them.
 
 use super::coverage::whole;
+use super::normalize::frame_layout;
 use super::points::drawn_layout;
 use super::primitives::{PrimitiveSets, primitive_layout};
 use super::pyramid::{lookups_layout, plain_layout, pyramid_layout};
@@ -20,6 +21,8 @@ use std::sync::Arc;
 /// Layouts of descriptor sets 0 and 1 of the footprint, visibility and attribute passes, and of those of pull–push.
 pub struct SplatLayout {
     pub(super) splats: SetLayout,
+    /// The frame's numbers alone.
+    pub(super) frame: SetLayout,
     pub(super) pixels: SetLayout,
     /// One buffer: a word or more a pixel.
     pub(super) plain: SetLayout,
@@ -52,7 +55,9 @@ pub(super) struct Window {
     pub(super) count: u32,
     /// Surfels that there is room for.
     capacity: u32,
-    /// The number of its first surfel in the scene.
+    /// Where its first surfel is in the scene.
+    start: u32,
+    /// The number of that in the frame.
     first: u32,
     /// Where its list of large splats starts, bytes.
     list: u64,
@@ -88,6 +93,7 @@ impl SplatLayout {
         ];
         Ok(Self {
             splats: SetLayout::new(device, &bindings)?,
+            frame: frame_layout(device)?,
             pixels: pixel_layout(device)?,
             plain: plain_layout(device)?,
             lookups: lookups_layout(device)?,
@@ -177,13 +183,14 @@ impl Splats {
             ];
             let set = DescriptorSet::new(device, &layout.splats, &bindings)?;
             let count = count as u32;
-            Ok(Window { set, count, capacity: count, first: range.start as u32, list })
+            let start = range.start as u32;
+            Ok(Window { set, count, capacity: count, start, first: start, list })
         };
         let windows = (0..).zip(scene.windows()).map(window).collect::<Result<_>>()?;
         let primitives = scene
             .primitives
             .as_ref()
-            .map(|streams| PrimitiveSets::new(device, layout, streams))
+            .map(|streams| PrimitiveSets::new(device, layout, frame, streams))
             .transpose()?;
         let texture = scene.texture.as_ref().map(|texture| &texture.buffer);
         let materials = scene.materials.as_ref().map(|materials| &materials.buffer);
@@ -208,8 +215,18 @@ impl Splats {
     /// Frames from now on are of the first `count` surfels.
     pub(crate) fn set_count(&mut self, count: u64) {
         for window in &mut self.windows {
-            let here = count.saturating_sub(window.first.into()).min(window.capacity.into());
+            let here = count.saturating_sub(window.start.into()).min(window.capacity.into());
             window.count = here as u32;
+        }
+    }
+
+    /// The scene's points have numbers from `first` on in frames from now on.
+    pub(crate) fn set_first(&mut self, first: u32) {
+        for window in &mut self.windows {
+            window.first = first + window.start;
+        }
+        if let Some(primitives) = &mut self.primitives {
+            primitives.set_first(first);
         }
     }
 
@@ -254,15 +271,16 @@ impl Splats {
         vec![self.with(Access::VERTEX_READ), clips.with(Access::FRAGMENT_READ)]
     }
 
-    /// Draws every splat's triangle into `framebuffer`, with `more` at the descriptor sets from 1 on.
+    /// Draws the triangle of every splat of each scene, by its pipeline, into `framebuffer`, with `more` at the descriptor sets from 1 on.
     pub(super) fn draw(
-        &self,
         enc: &mut Encoder<'_>,
-        pipeline: &DrawPipeline,
+        scenes: &[(&DrawPipeline, &Self)],
         framebuffer: &Framebuffer,
         more: &[&DescriptorSet],
     ) {
-        enc.render(framebuffer, |draws| self.draw_in(draws, pipeline, more));
+        enc.render(framebuffer, |draws| {
+            scenes.iter().for_each(|(pipeline, splats)| splats.draw_in(draws, pipeline, more));
+        });
     }
 
     /// The same within a render pass that has begun.
@@ -273,26 +291,35 @@ impl Splats {
         }
     }
 
-    /// Empties counts, where `count`, and lists.
-    pub(super) fn record_clear(&self, rec: &mut Recorder<'_>, count: bool) {
-        let uses = [count.then_some(&self.counts), self.large.as_ref()].into_iter().flatten();
-        let uses: Vec<_> = uses.map(|buffer| buffer.with(Access::COPY_WRITE)).collect();
+    /// Empties the lists of each, and the counts of those that are counted.
+    pub(super) fn record_clear<'a>(
+        rec: &mut Recorder<'_>,
+        scenes: impl Iterator<Item = (&'a Self, bool)> + Clone,
+    ) {
+        let cleared = |(splats, counted): (&'a Self, bool)| {
+            [counted.then_some(&splats.counts), splats.large.as_ref()].into_iter().flatten()
+        };
+        let cleared = scenes.clone().flat_map(cleared);
+        let uses: Vec<_> = cleared.map(|buffer| buffer.with(Access::COPY_WRITE)).collect();
         if uses.is_empty() {
             return;
         }
-        rec.pass("clear", &uses, |enc| {
-            if count {
-                enc.zero(&self.counts);
-            }
-            if let Some(large) = &self.large {
-                self.windows.iter().for_each(|window| enc.zero_range(large, window.list, 4));
-            }
-        });
+        rec.pass("clear", &uses, |enc| scenes.for_each(|(splats, counted)| splats.clear(enc, counted)));
+    }
+
+    fn clear(&self, enc: &mut Encoder<'_>, counted: bool) {
+        if counted {
+            enc.zero(&self.counts);
+        }
+        if let Some(large) = &self.large {
+            self.windows.iter().for_each(|window| enc.zero_range(large, window.list, 4));
+        }
     }
 
     /// Leaves the counts ready for the CPU.
-    pub(super) fn record_counted(&self, rec: &mut Recorder<'_>) {
-        rec.wait(&[self.counts.with(Access::HOST_READ)]);
+    pub(super) fn record_counted<'a>(rec: &mut Recorder<'_>, scenes: impl Iterator<Item = &'a Self>) {
+        let uses: Vec<_> = scenes.map(|splats| splats.counts.with(Access::HOST_READ)).collect();
+        rec.wait(&uses);
     }
 
     /// Bytes of the counts.
@@ -300,10 +327,18 @@ impl Splats {
         self.counts.size()
     }
 
-    /// Copies the counts to `to`, which has [`Splats::counts_size`] bytes or more: the next frame empties them.
-    pub(crate) fn record_counts(&self, rec: &mut Recorder<'_>, to: &Buffer) {
-        let uses = [self.counts.with(Access::COPY_READ), to.with(Access::COPY_WRITE)];
-        rec.pass("read back", &uses, |enc| enc.copy(&self.counts, to, 0, self.counts.size()));
+    /// Copies the counts of all of these to `to`, one after the other, which has room for the [sizes](Splats::counts_size) of all: the next
+    /// frame empties them.
+    pub(crate) fn record_counts(list: &[&Self], rec: &mut Recorder<'_>, to: &Buffer) {
+        let from = list.iter().map(|splats| splats.counts.with(Access::COPY_READ));
+        let uses: Vec<_> = from.chain([to.with(Access::COPY_WRITE)]).collect();
+        rec.pass("read back", &uses, |enc| {
+            let mut at = 0;
+            for Self { counts, .. } in list {
+                enc.copy(counts, to, at, counts.size());
+                at += counts.size();
+            }
+        });
         rec.wait(&[to.with(Access::HOST_READ)]);
     }
 

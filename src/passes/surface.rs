@@ -1,39 +1,33 @@
 //! What is seen first in a subpass of a host: the visibility pass, or the nearest one.
 
-use super::coverage::DrawnCoverage;
+use super::DrawnCoverage;
 use super::splats::WINDOW;
 use super::{SplatLayout, Splats};
 use crate::error::Result;
-use crate::variant::Variant;
-use crate::vk::{Buffer, DepthTest, DescriptorSet, Device, DrawPipeline, Draws, Within};
+use crate::variant::SceneVariant;
+use crate::vk::{DepthTest, DescriptorSet, Device, DrawPipeline, Draws, Within};
 use std::sync::Arc;
 
 /// The visibility pass, or the nearest one, as draws in a subpass of a host.
 pub struct SubpassSurface {
     pipeline: DrawPipeline,
-    coverage: DrawnCoverage,
 }
 
 impl SubpassSurface {
-    /// The pass of these shaders for `variant`, drawn `within` a pass of a host.
+    /// The pass of these shaders for a scene of `variant`, drawn `within` a pass of a host.
     pub(super) fn new(
         device: &Arc<Device>,
         layout: &SplatLayout,
-        variant: &Variant,
+        variant: &SceneVariant,
         code: [&[u32]; 2],
         within: &Within<'_>,
         depth: DepthTest,
     ) -> Result<Self> {
-        let coverage = DrawnCoverage::new(device, variant)?;
+        let coverage = DrawnCoverage::new(device, &variant.frame)?;
         let sets: Vec<_> = std::iter::once(&layout.splats).chain(coverage.layout()).collect();
         let pipeline =
             DrawPipeline::of_host(device, &sets, code, &variant.constants(), within, depth, WINDOW)?;
-        Ok(Self { pipeline, coverage })
-    }
-
-    /// The pass's view of `coverage`, where α is coverage; that must outlive it.
-    pub fn view(&self, device: &Arc<Device>, coverage: Option<&Buffer>) -> Result<Option<DescriptorSet>> {
-        self.coverage.view(device, coverage)
+        Ok(Self { pipeline })
     }
 
     /// `splats` → the subpass's targets, and the coverage that is viewed.

@@ -4,7 +4,7 @@ use super::coverage::{DrawnCoverage, clear, clear_drawn};
 use super::{PixelSet, Scatter, SplatLayout, Splats, SubpassSurface};
 use crate::error::Result;
 use crate::targets::{Buffers, Formats, Images};
-use crate::variant::Variant;
+use crate::variant::{SceneVariant, Variant};
 use crate::vk::{
     Access, Attachment, Blend, DepthTest, DescriptorSet, Device, DrawPipeline, DrawState, Framebuffer,
     Recorder, RenderPass, Topology, Within, shaders,
@@ -14,7 +14,6 @@ use std::sync::Arc;
 /// The visibility pass as draws with a depth test.
 pub struct DrawVisibility {
     pass: RenderPass,
-    pipeline: DrawPipeline,
     coverage: DrawnCoverage,
 }
 
@@ -28,16 +27,24 @@ pub struct VisibilityViews {
 pub struct ComputeVisibility(Scatter);
 
 impl DrawVisibility {
-    /// The pass for `variant`.
-    pub fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self> {
+    /// The pass for frames of `variant`.
+    pub fn new(device: &Arc<Device>, variant: &Variant) -> Result<Self> {
         let depth = Attachment::Cleared(Formats::of(variant).visibility);
         let pass = RenderPass::new(device, &[], Some(depth))?;
-        let coverage = DrawnCoverage::new(device, variant)?;
-        let sets: Vec<_> = std::iter::once(&layout.splats).chain(coverage.layout()).collect();
+        Ok(Self { pass, coverage: DrawnCoverage::new(device, variant)? })
+    }
+
+    /// What draws a scene of `variant`.
+    pub fn pipeline(
+        &self,
+        device: &Arc<Device>,
+        layout: &SplatLayout,
+        variant: &SceneVariant,
+    ) -> Result<DrawPipeline> {
+        let sets: Vec<_> = std::iter::once(&layout.splats).chain(self.coverage.layout()).collect();
         let state =
             DrawState { topology: Topology::Triangles, depth: DepthTest::Nearest, blend: Blend::Replace };
-        let pipeline = DrawPipeline::new(device, &sets, code(variant), &variant.constants(), &pass, state)?;
-        Ok(Self { pass, pipeline, coverage })
+        DrawPipeline::new(device, &sets, code(&variant.frame), &variant.constants(), &self.pass, state)
     }
 
     /// The pass's views of `targets`, which must outlive them.
@@ -46,13 +53,19 @@ impl DrawVisibility {
         Ok(VisibilityViews { framebuffer, coverage: self.coverage.view(device, targets.coverage.as_ref())? })
     }
 
-    /// `splats` → `targets.visibility`, `targets.coverage`.
-    pub fn record(&self, rec: &mut Recorder<'_>, splats: &Splats, views: &VisibilityViews, targets: &Images) {
-        let mut uses = splats.read_by_draws();
+    /// The splats of all scenes → `targets.visibility`, `targets.coverage`.
+    pub fn record(
+        &self,
+        rec: &mut Recorder<'_>,
+        scenes: &[(&DrawPipeline, &Splats)],
+        views: &VisibilityViews,
+        targets: &Images,
+    ) {
+        let mut uses: Vec<_> = scenes.iter().flat_map(|(_, splats)| splats.read_by_draws()).collect();
         uses.push(targets.visibility.with(Access::DEPTH_WRITE));
         uses.extend(clear_drawn(rec, targets.coverage.as_ref()));
         let more: Vec<_> = views.coverage.iter().collect();
-        rec.pass("visibility", &uses, |enc| splats.draw(enc, &self.pipeline, &views.framebuffer, &more));
+        rec.pass("visibility", &uses, |enc| Splats::draw(enc, scenes, &views.framebuffer, &more));
     }
 }
 
@@ -65,35 +78,37 @@ fn code(variant: &Variant) -> [&'static [u32]; 2] {
 }
 
 impl SubpassSurface {
-    /// The visibility pass for `variant`, drawn `within` a pass of a host; with `marks`, what is drawn is marked in the stencil.
+    /// The visibility pass for `variant`, of a scene, drawn `within` a pass of a host; with `marks`, what is drawn is marked in the stencil.
     pub fn visibility(
         device: &Arc<Device>,
         layout: &SplatLayout,
-        variant: &Variant,
+        variant: &SceneVariant,
         within: &Within<'_>,
         marks: bool,
     ) -> Result<Self> {
         let depth = if marks { DepthTest::Marking } else { DepthTest::Nearest };
-        Self::new(device, layout, variant, code(variant), within, depth)
+        Self::new(device, layout, variant, code(&variant.frame), within, depth)
     }
 }
 
 impl ComputeVisibility {
-    /// The pass for `variant`.
-    pub fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self> {
-        let code = match variant.coverage {
+    /// The pass for a scene of `variant`.
+    pub fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &SceneVariant) -> Result<Self> {
+        let code = match variant.frame.coverage {
             false => shaders::VISIBILITY_COMPUTE,
             true => shaders::VISIBILITY_COVERAGE_COMPUTE,
         };
         Scatter::new(device, layout, code, variant).map(Self)
     }
 
-    /// `splats` → `targets.visibility`, `targets.coverage`, which are cleared before.
-    pub fn record(&self, rec: &mut Recorder<'_>, splats: &Splats, pixels: &PixelSet, targets: &Buffers) {
+    /// The splats of all scenes → `targets.visibility`, `targets.coverage`, which are cleared before.
+    pub fn record(rec: &mut Recorder<'_>, scenes: &[(&Self, &Splats)], pixels: &PixelSet, targets: &Buffers) {
         let written = || std::iter::once(&targets.visibility).chain(&targets.coverage);
         clear(rec, written());
-        let mut uses = splats.read_by_scatter();
+        let mut uses: Vec<_> = scenes.iter().flat_map(|(_, splats)| splats.read_by_scatter()).collect();
         uses.extend(written().map(|buffer| buffer.with(Access::COMPUTE_WRITE)));
-        rec.pass("visibility", &uses, |enc| self.0.record(enc, splats, pixels));
+        rec.pass("visibility", &uses, |enc| {
+            scenes.iter().for_each(|(pass, splats)| pass.0.record(enc, splats, pixels));
+        });
     }
 }

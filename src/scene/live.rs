@@ -1,6 +1,6 @@
 //! What may change of a scene from frame to frame, beside its surfels' values.
 
-use super::Scene;
+use super::{PrimitiveStreams, Scene};
 use crate::error::{Error, Result};
 use crate::geometry::Bounds;
 use std::sync::PoisonError;
@@ -15,6 +15,15 @@ impl Scene {
     /// Number of surfels that there is room for.
     pub fn capacity(&self) -> u64 {
         self.windows.last().map_or(0, |window| window.end)
+    }
+
+    /// Number of surfels, segments and triangles that there is room for: as many points have numbers.
+    pub(crate) fn numbers(&self) -> u64 {
+        let elements = |primitives: &PrimitiveStreams| {
+            let kinds = [&primitives.lines, &primitives.triangles];
+            kinds.into_iter().flatten().map(|elements| u64::from(elements.count)).sum::<u64>()
+        };
+        self.capacity() + self.primitives.as_ref().map_or(0, elements)
     }
 
     /// Frames that are prepared from now on draw the first `count` surfels.

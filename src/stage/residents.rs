@@ -1,4 +1,4 @@
-//! What is made for scenes, kept for the present one, and for those of a host's buffers that take turns with it.
+//! What is made for scenes, kept for the present ones, and for those of a host's buffers that take turns with them.
 
 use crate::error::Result;
 use crate::scene::Scene;
@@ -6,9 +6,11 @@ use crate::scene::Scene;
 /// How many frames a host's buffers may go without being drawn and keep what is theirs: simulations write one while others are shown.
 const TURNS: u64 = 3;
 
-/// What is made for scenes: the present one's first.
+/// What is made for the scenes of frames: that of the present ones first, in their order.
 pub(crate) struct Residents<T> {
     list: Vec<Resident<T>>,
+    /// How many of them are of present scenes.
+    present: usize,
     /// Number of frames so far.
     frames: u64,
 }
@@ -23,44 +25,61 @@ struct Resident<T> {
 
 impl<T> Default for Residents<T> {
     fn default() -> Self {
-        Self { list: Vec::new(), frames: 0 }
+        Self { list: Vec::new(), present: 0, frames: 0 }
     }
 }
 
 impl<T> Residents<T> {
-    /// That of the present scene.
-    pub(crate) fn present(&self) -> Option<&T> {
-        self.list.first().map(|resident| &resident.held)
+    /// Those of the present scenes, in their order.
+    pub(crate) fn present(&self) -> impl Iterator<Item = &T> + Clone {
+        self.list[..self.present].iter().map(|resident| &resident.held)
     }
 
-    /// Brings to the front what is there for `scene` and `fits`, or else what `make` makes. Tells `gone` of what goes, also if that fails.
+    /// Those of the present scenes, to be changed.
+    pub(crate) fn present_mut(&mut self) -> impl Iterator<Item = &mut T> {
+        self.list[..self.present].iter_mut().map(|resident| &mut resident.held)
+    }
+
+    /// Brings to the front what is there for each scene, one for each place in which it stands, and `fits`, or else what `make` makes of its
+    /// place in the list. Tells `gone` of what goes, also if that fails; nothing is present then.
     pub(crate) fn turn(
         &mut self,
-        scene: &Scene,
+        scenes: &[&Scene],
         fits: impl Fn(&T) -> bool,
-        make: impl FnOnce() -> Result<T>,
+        mut make: impl FnMut(usize) -> Result<T>,
         mut gone: impl FnMut(T),
     ) -> Result<()> {
         self.frames += 1;
-        let (id, of_host) = (scene.id, scene.is_of_host());
-        let same = |resident: &Resident<T>| resident.scene == id && fits(&resident.held);
-        let found = self.list.iter().position(same).map(|place| self.list.remove(place).held);
-        for other in std::mem::take(&mut self.list) {
+        self.present = 0;
+        let mut old: Vec<_> = std::mem::take(&mut self.list).into_iter().map(Some).collect();
+        let mut take = |scene: &&Scene| {
+            let same = |resident: &Resident<T>| resident.scene == scene.id && fits(&resident.held);
+            let found = old.iter_mut().find(|resident| resident.as_ref().is_some_and(same))?;
+            found.take().map(|resident| resident.held)
+        };
+        let mut held: Vec<_> = scenes.iter().map(&mut take).collect();
+        let of_host = scenes.iter().any(|scene| scene.is_of_host());
+        for other in old.into_iter().flatten() {
             match other.of_host && of_host && other.frame + TURNS >= self.frames {
                 true => self.list.push(other),
                 false => gone(other.held),
             }
         }
-        let held = match found {
-            Some(held) => held,
-            None => make()?,
+        let missing = held.iter_mut().enumerate().filter(|(_, held)| held.is_none());
+        let made = missing.map(|(place, held)| make(place).map(|made| *held = Some(made)));
+        if let Err(error) = made.collect::<Result<()>>() {
+            held.into_iter().flatten().for_each(gone);
+            return Err(error);
+        }
+        let resident = |(scene, held): (&&Scene, T)| Resident {
+            scene: scene.id,
+            of_host: scene.is_of_host(),
+            frame: self.frames,
+            held,
         };
-        self.list.insert(0, Resident { scene: id, of_host, frame: self.frames, held });
+        let present: Vec<_> = scenes.iter().zip(held.into_iter().flatten()).map(resident).collect();
+        self.present = present.len();
+        self.list.splice(..0, present);
         Ok(())
-    }
-
-    /// That of the present scene, to be changed.
-    pub(crate) fn present_mut(&mut self) -> Option<&mut T> {
-        self.list.first_mut().map(|resident| &mut resident.held)
     }
 }

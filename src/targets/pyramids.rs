@@ -45,11 +45,11 @@ pub(crate) const PLANES: usize = 5;
 fn formats(variant: &Variant) -> [Option<Format>; PLANES] {
     let [depths, places, normals, colours, ids] = match variant.precision {
         Precision::Full => FULL,
-        Precision::Half => compact(variant.unbounded_colours()),
+        Precision::Half => compact(variant.unbounded_colours),
     };
     // A texture has the colours.
     let coordinates = variant.texture.map(|_| Format::R32G32_SFLOAT);
-    let colours = coordinates.or_else(|| variant.sums_colours().then_some(colours));
+    let colours = coordinates.or_else(|| variant.colours.then_some(colours));
     [Some(depths), Some(places), Some(normals), colours, variant.has_ids().then_some(ids)]
 }
 
@@ -107,6 +107,13 @@ impl Pyramid {
             *plane = Some(Plane { name, format, buffer });
         }
         Ok(Self { planes })
+    }
+
+    /// Leaves nothing in any sample.
+    pub(crate) fn clear(&self, enc: &mut Encoder<'_>) {
+        let [of_points @ .., ids] = &self.planes;
+        of_points.iter().flatten().for_each(|plane| enc.zero(&plane.buffer));
+        ids.iter().for_each(|plane| enc.ones(&plane.buffer));
     }
 
     /// Copies a range of samples to the same place of `other`.

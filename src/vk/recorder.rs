@@ -63,12 +63,15 @@ impl<'a> Recorder<'a> {
         unsafe { self.device.end_label(self.cmd) };
     }
 
-    /// Writes `bytes`, at most 65,536 and a multiple of 4, to `buffer`, for the passes that follow to read as uniforms.
-    pub fn update(&mut self, buffer: &Buffer, bytes: &[u8]) {
-        self.barrier(&[buffer.with(Access::COPY_WRITE)]);
-        // SAFETY: the command buffer is being recorded outside a render pass; the buffer is alive, can be copied to and is large enough.
-        unsafe { self.device.raw.cmd_update_buffer(self.cmd, buffer.raw, 0, bytes) };
-        self.barrier(&[buffer.with(Access::UNIFORM_READ)]);
+    /// Writes to each buffer its bytes, at most 65,536 and a multiple of 4, for the passes that follow to read as uniforms.
+    pub fn update(&mut self, updates: &[(&Buffer, &[u8])]) {
+        let all = |access| updates.iter().map(|(buffer, _)| buffer.with(access)).collect::<Vec<_>>();
+        self.barrier(&all(Access::COPY_WRITE));
+        for (buffer, bytes) in updates {
+            // SAFETY: the command buffer is being recorded outside a render pass; the buffer is alive, can be copied to and is large enough.
+            unsafe { self.device.raw.cmd_update_buffer(self.cmd, buffer.raw, 0, bytes) };
+        }
+        self.barrier(&all(Access::UNIFORM_READ));
     }
 
     /// Draws over a window's picture with `body`, inside [`Presenter::overlay`](super::Presenter::overlay).

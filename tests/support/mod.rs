@@ -4,6 +4,7 @@
 pub mod gpu;
 pub mod layouts;
 pub mod mesh;
+pub mod placing;
 pub mod pyramids;
 pub mod sampling;
 pub mod scenes;

@@ -71,7 +71,7 @@ impl Stand {
         host.run(|cmd| {
             // SAFETY: recorded outside and inside the frame's pass, submitted in order to the host's queue.
             unsafe {
-                renderer.prepare(cmd, scene, view, settings)?;
+                renderer.prepare(cmd, &*scene, view, settings)?;
                 frame.begin(host, cmd);
                 if let Some(mesh) = mesh {
                     let world_to_clip = view.camera.world_to_clip().as_mat4();

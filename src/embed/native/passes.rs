@@ -4,24 +4,29 @@ use super::plan::{Plan, Step};
 use super::targets::Targets;
 use crate::error::Result;
 use crate::passes::{
-    Footprint, Seed, SplatLayout, Splats, SubpassAttribute, SubpassNormalize, SubpassSurface, SubpassViews,
-    clear_drawn,
+    DrawnCoverage, Footprint, Seed, SplatLayout, Splats, SubpassAttribute, SubpassNormalize, SubpassSurface,
+    SubpassViews, clear_drawn,
 };
 use crate::splatting::Visibility;
-use crate::variant::Variant;
+use crate::variant::{SceneVariant, Variant};
 use crate::vk::shaders::layout;
 use crate::vk::{Blend, Buffer, DescriptorSet, Device, Draws, Recorder, Within};
 use ash::vk;
 use std::sync::Arc;
 
-/// The pipelines of a variant.
+/// The pipelines of a variant that its scenes share.
 pub(super) struct Passes {
+    seed: Option<Seed>,
+    coverage: DrawnCoverage,
+    normalize: SubpassNormalize,
+}
+
+/// The pipelines of a scene.
+pub(super) struct ScenePasses {
     /// The footprints of discs moved away by ε, where visibility wants them.
     moved: Option<Footprint>,
     footprint: Footprint,
-    seed: Option<Seed>,
     surface: Surface,
-    normalize: SubpassNormalize,
 }
 
 /// What finds the nearest surface and what is there.
@@ -67,8 +72,8 @@ pub(super) fn moves(variant: &Variant) -> bool {
 
 /// Whether what is hidden behind a surface, and more than the reach of ε, cannot be seen: not if discs are moved before they are projected,
 /// which at a pixel may move them any way, or if what is beyond clip lines counts as behind everything.
-pub(super) fn can_seed(variant: &Variant) -> bool {
-    !(moves(variant) || variant.coverage && variant.clips)
+pub(super) fn can_seed(variant: &SceneVariant) -> bool {
+    !(moves(&variant.frame) || variant.frame.coverage && variant.clips)
 }
 
 impl Passes {
@@ -78,48 +83,28 @@ impl Passes {
     /// `pass` is as `plan` says, and outlives them.
     pub(super) unsafe fn new(
         device: &Arc<Device>,
-        layout: &SplatLayout,
         variant: &Variant,
         plan: &Plan,
         pass: vk::RenderPass,
     ) -> Result<Self> {
-        let one = vk::SampleCountFlags::TYPE_1;
         let within = |step, colours, samples| {
             let subpass = plan.number(step).unwrap_or_default();
             // SAFETY: by the caller.
             unsafe { Within::subpass((pass, subpass), colours, samples) }
         };
         let samples = plan.host.samples;
-        let seed = plan
-            .seeded()
-            .filter(|_| can_seed(variant))
-            .map(|_| Seed::new(device, variant.perspective, samples.as_raw(), &within(Step::Seed, &[], one)));
-        let surface = match variant.visibility {
-            Visibility::Nearest => {
-                let within = within(Step::Nearest, &[Some(Blend::Replace); 2], one);
-                Surface::Nearest(SubpassSurface::nearest(device, layout, variant, &within)?)
-            }
-            Visibility::Ray | Visibility::Axis => {
-                let marks = plan.marks();
-                let (seen, summed) = (
-                    within(Step::Visibility, &[], one),
-                    within(Step::Attribute, &[Some(Blend::Add); 2], one),
-                );
-                Surface::Blended {
-                    visibility: SubpassSurface::visibility(device, layout, variant, &seen, marks)?,
-                    attribute: SubpassAttribute::new(device, layout, variant, &summed, marks)?,
-                }
-            }
+        let seed = || {
+            let within = within(Step::Seed, &[], vk::SampleCountFlags::TYPE_1);
+            Seed::new(device, variant.perspective, samples.as_raw(), &within)
         };
+        let seeds = plan.seeded().is_some() && !moves(variant);
         // Where there are no normals, the blending of what is not there is like the picture's: another takes a feature.
         let normal = if plan.host.normal.is_some() { Blend::Replace } else { Blend::Over };
         let colours = [Some(Blend::Over), Some(normal)];
         let shown = within(Step::Normalize, &colours, samples);
         Ok(Self {
-            moved: moves(variant).then(|| Footprint::moved(device, layout, variant)).transpose()?,
-            footprint: Footprint::new(device, layout, variant)?,
-            seed: seed.transpose()?,
-            surface,
+            seed: seeds.then(seed).transpose()?,
+            coverage: DrawnCoverage::new(device, variant)?,
             normalize: SubpassNormalize::new(device, variant, plan.kind(), &shown)?,
         })
     }
@@ -135,42 +120,73 @@ impl Passes {
         let seed = self.seed.as_ref().zip(targets.host_depth);
         Ok(Views {
             seed: seed.map(|(seed, depth)| seed.view(device, depth)).transpose()?,
-            coverage: match &self.surface {
-                Surface::Blended { visibility, .. } => visibility.view(device, coverage)?,
-                Surface::Nearest(nearest) => nearest.view(device, coverage)?,
-            },
+            coverage: self.coverage.view(device, coverage)?,
             normalize: self.normalize.views(device, frame, targets.inputs(), coverage)?,
         })
     }
 
-    /// Records what is done before the render pass: footprints, and empty coverage.
-    pub(super) fn record(&self, rec: &mut Recorder<'_>, pair: &SplatPair, coverage: Option<&Buffer>) {
-        let mut uses = Vec::new();
-        if let (Some(footprint), Some(splats)) = (&self.moved, &pair.moved) {
-            footprint.record(rec, splats);
-            uses.extend(splats.read_by_draws());
-        }
-        self.footprint.record(rec, &pair.splats);
-        uses.extend(pair.splats.read_by_draws());
-        uses.extend(clear_drawn(rec, coverage));
-        rec.wait(&uses);
-    }
-
-    /// Draws the step whose subpass it is.
+    /// Draws the step whose subpass it is, of all scenes.
     pub(super) fn draw(
         &self,
         step: Step,
         draws: &mut Draws<'_>,
         views: &Views,
-        pair: &SplatPair,
+        scenes: &[(&ScenePasses, &SplatPair)],
         numbers: &Numbers,
     ) {
-        match (step, &self.surface) {
-            (Step::Seed, _) => {
+        match step {
+            Step::Seed => {
                 if let (Some(seed), Some(view), Some(numbers)) = (&self.seed, &views.seed, &numbers.seed) {
                     seed.draw(draws, view, numbers);
                 }
             }
+            Step::Visibility | Step::Attribute | Step::Nearest => {
+                scenes.iter().for_each(|(passes, pair)| passes.draw(step, draws, views, pair));
+            }
+            Step::Normalize => self.normalize.draw(draws, &views.normalize, &numbers.host),
+        }
+    }
+}
+
+impl ScenePasses {
+    /// Makes the pipelines.
+    ///
+    /// # Safety
+    /// `pass` is as `plan` says, and outlives them.
+    pub(super) unsafe fn new(
+        device: &Arc<Device>,
+        layout: &SplatLayout,
+        variant: &SceneVariant,
+        plan: &Plan,
+        pass: vk::RenderPass,
+    ) -> Result<Self> {
+        let within = |step, colours| {
+            let subpass = plan.number(step).unwrap_or_default();
+            // SAFETY: by the caller.
+            unsafe { Within::subpass((pass, subpass), colours, vk::SampleCountFlags::TYPE_1) }
+        };
+        let surface = match variant.frame.visibility {
+            Visibility::Nearest => {
+                let within = within(Step::Nearest, &[Some(Blend::Replace); 2]);
+                Surface::Nearest(SubpassSurface::nearest(device, layout, variant, &within)?)
+            }
+            Visibility::Ray | Visibility::Axis => {
+                let marks = plan.marks();
+                let (seen, summed) =
+                    (within(Step::Visibility, &[]), within(Step::Attribute, &[Some(Blend::Add); 2]));
+                Surface::Blended {
+                    visibility: SubpassSurface::visibility(device, layout, variant, &seen, marks)?,
+                    attribute: SubpassAttribute::new(device, layout, variant, &summed, marks)?,
+                }
+            }
+        };
+        let moved = moves(&variant.frame).then(|| Footprint::moved(device, layout, variant));
+        Ok(Self { moved: moved.transpose()?, footprint: Footprint::new(device, layout, variant)?, surface })
+    }
+
+    /// Draws what a scene has of the step whose subpass it is.
+    fn draw(&self, step: Step, draws: &mut Draws<'_>, views: &Views, pair: &SplatPair) {
+        match (step, &self.surface) {
             (Step::Visibility, Surface::Blended { visibility, .. }) => {
                 let splats = pair.moved.as_ref().unwrap_or(&pair.splats);
                 visibility.draw(draws, splats, views.coverage.as_ref());
@@ -179,10 +195,26 @@ impl Passes {
             (Step::Nearest, Surface::Nearest(nearest)) => {
                 nearest.draw(draws, &pair.splats, views.coverage.as_ref());
             }
-            (Step::Normalize, _) => self.normalize.draw(draws, &views.normalize, &numbers.host),
-            // A plan has the steps of its frames.
-            (Step::Visibility | Step::Attribute, Surface::Nearest(_))
-            | (Step::Nearest, Surface::Blended { .. }) => {}
+            // A plan has the steps of its frames, and what is left is of no scene.
+            _ => {}
         }
     }
+}
+
+/// Records what is done before the render pass: footprints of all scenes, and empty coverage.
+pub(super) fn record(
+    rec: &mut Recorder<'_>,
+    scenes: &[(&ScenePasses, &SplatPair)],
+    coverage: Option<&Buffer>,
+) {
+    let moved = scenes.iter().filter_map(|(passes, pair)| passes.moved.as_ref().zip(pair.moved.as_ref()));
+    let moved: Vec<_> = moved.collect();
+    if !moved.is_empty() {
+        Footprint::record(rec, &moved);
+    }
+    let own: Vec<_> = scenes.iter().map(|(passes, pair)| (&passes.footprint, &pair.splats)).collect();
+    Footprint::record(rec, &own);
+    let mut uses: Vec<_> = moved.iter().chain(&own).flat_map(|(_, splats)| splats.read_by_draws()).collect();
+    uses.extend(clear_drawn(rec, coverage));
+    rec.wait(&uses);
 }

@@ -379,5 +379,5 @@ fn variant(
     let blends = settings.splatting.visibility != Visibility::Nearest;
     let rasterizer = rasterizer_for(device, options, blends, settings.alpha)?;
     let options = RenderOptions { precision: width_of_sums(device, options, rasterizer), ..*options };
-    Ok(Variant::new(streams, true, settings, &options, rasterizer))
+    Ok(Variant::new(&[streams], true, settings, &options, rasterizer))
 }

@@ -1,13 +1,14 @@
 //! What frames are drawn with, made when scene, settings or attachments change.
 
-use super::passes::{Passes, SplatPair, Views};
+use super::passes::{Passes, ScenePasses, SplatPair, Views};
 use super::targets::Targets;
 use super::{Plan, Renderer};
 use crate::error::Result;
 use crate::passes::{SplatLayout, Splats};
 use crate::scene::Scene;
+use crate::stage::Numbers;
 use crate::targets::coverage;
-use crate::variant::{Rasterizer, Variant};
+use crate::variant::{Rasterizer, SceneVariant, Variant};
 use crate::vk::shaders::layout::Frame;
 use crate::vk::{Buffer, Device};
 use ash::vk;
@@ -19,6 +20,7 @@ pub(super) struct Made {
     pub(super) plan: Plan,
     pass: vk::RenderPass,
     passes: HashMap<Variant, Arc<Passes>>,
+    scenes: HashMap<SceneVariant, Arc<ScenePasses>>,
     layout: SplatLayout,
     pub(super) frame: Arc<Buffer>,
 }
@@ -29,6 +31,8 @@ pub(super) struct Present {
     pub(super) views: Views,
     variant: Variant,
     pub(super) passes: Arc<Passes>,
+    /// What is drawn, scene by scene.
+    pub(super) scenes: Vec<Arc<ScenePasses>>,
     pub(super) coverage: Option<Arc<Buffer>>,
     _targets: Arc<Targets>,
     _frame: Arc<Buffer>,
@@ -37,8 +41,8 @@ pub(super) struct Present {
 /// The splats of a scene.
 pub(super) struct Resident {
     pub(super) splats: SplatPair,
+    pub(super) frame: Numbers,
     _scene: Arc<Scene>,
-    _frame: Arc<Buffer>,
 }
 
 impl Made {
@@ -47,6 +51,7 @@ impl Made {
             plan,
             pass,
             passes: HashMap::new(),
+            scenes: HashMap::new(),
             layout: SplatLayout::new(device)?,
             frame: Arc::new(Buffer::uniform(device, "frame", size_of::<Frame>() as u64)?),
         })
@@ -57,8 +62,17 @@ impl Made {
             return Ok(made.clone());
         }
         // SAFETY: whoever made the renderer answers for the render pass.
-        let made = unsafe { Passes::new(device, &self.layout, variant, &self.plan, self.pass)? };
+        let made = unsafe { Passes::new(device, variant, &self.plan, self.pass)? };
         Ok(self.passes.entry(*variant).or_insert(Arc::new(made)).clone())
+    }
+
+    fn scene(&mut self, device: &Arc<Device>, variant: &SceneVariant) -> Result<Arc<ScenePasses>> {
+        if let Some(made) = self.scenes.get(variant) {
+            return Ok(made.clone());
+        }
+        // SAFETY: whoever made the renderer answers for the render pass.
+        let made = unsafe { ScenePasses::new(device, &self.layout, variant, &self.plan, self.pass)? };
+        Ok(self.scenes.entry(*variant).or_insert(Arc::new(made)).clone())
     }
 
     fn present(&mut self, device: &Arc<Device>, targets: &Arc<Targets>, variant: Variant) -> Result<Present> {
@@ -66,30 +80,41 @@ impl Made {
         let coverage = coverage(device, &variant, targets.size)?.map(Arc::new);
         let views = passes.views(device, &self.frame, targets, coverage.as_deref())?;
         let (_targets, _frame) = (targets.clone(), self.frame.clone());
-        Ok(Present { views, variant, passes, coverage, _targets, _frame })
+        Ok(Present { views, variant, passes, scenes: Vec::new(), coverage, _targets, _frame })
     }
 
-    fn resident(&self, device: &Arc<Device>, scene: &Arc<Scene>, moves: bool) -> Result<Resident> {
-        let splats = || Splats::new(device, &self.layout, &self.frame, scene, Some(Rasterizer::Draw));
+    /// With numbers of the scene's `own`, or those of the view.
+    fn resident(&self, device: &Arc<Device>, scene: &Arc<Scene>, moves: bool, own: bool) -> Result<Resident> {
+        let frame = Numbers::new(device, &self.frame, own)?;
+        let splats = || Splats::new(device, &self.layout, frame.buffer(), scene, Some(Rasterizer::Draw));
         let splats = SplatPair { splats: splats()?, moved: moves.then(splats).transpose()? };
-        Ok(Resident { splats, _scene: scene.clone(), _frame: self.frame.clone() })
+        Ok(Resident { splats, frame, _scene: scene.clone() })
     }
 }
 
 impl Renderer {
-    /// Makes the splats of `scene`, if they are not there, for as many surfels as it has now.
-    pub(super) fn make_resident(&mut self, scene: &Arc<Scene>, moves: bool) -> Result<()> {
+    /// Makes the splats of these scenes that are not there, for as many surfels as each has now; with numbers of each scene's `own`, or those
+    /// of the view.
+    pub(super) fn make_residents(&mut self, scenes: &[&Arc<Scene>], moves: bool, own: bool) -> Result<()> {
         let Self { residents, held, made, device, .. } = self;
-        let fits = |resident: &Resident| resident.splats.moved.is_some() == moves;
-        residents.turn(scene, fits, || made.resident(device, scene, moves), |gone| held.hold(gone))?;
-        if let Some(Resident { splats, .. }) = residents.present_mut() {
-            splats.set_count(scene.count());
+        let fits =
+            |resident: &Resident| resident.splats.moved.is_some() == moves && resident.frame.is_own() == own;
+        let list: Vec<&Scene> = scenes.iter().map(|scene| &***scene).collect();
+        let make = |place: usize| made.resident(device, scenes[place], moves, own);
+        residents.turn(&list, fits, make, |gone| held.hold(gone))?;
+        for (resident, scene) in residents.present_mut().zip(scenes) {
+            resident.splats.set_count(scene.count());
         }
         Ok(())
     }
 
-    /// Makes what frames of `variant` are drawn with, if it is not there.
-    pub(super) fn make_present(&mut self, targets: &Arc<Targets>, variant: Variant) -> Result<()> {
+    /// Makes what frames of `variant` with such scenes are drawn with, if it is not there.
+    pub(super) fn make_present(
+        &mut self,
+        targets: &Arc<Targets>,
+        variant: Variant,
+        scenes: &[SceneVariant],
+    ) -> Result<()> {
         let is_other =
             |present: &Option<Present>| present.as_ref().is_none_or(|present| present.variant != variant);
         if is_other(&self.present) {
@@ -99,6 +124,11 @@ impl Renderer {
             let old = self.present.take();
             self.held.hold(old);
             self.present = Some(self.made.present(&self.device, targets, variant)?);
+        }
+        let scenes = scenes.iter().map(|variant| self.made.scene(&self.device, variant));
+        let scenes = scenes.collect::<Result<_>>()?;
+        if let Some(present) = &mut self.present {
+            present.scenes = scenes;
         }
         Ok(())
     }

@@ -18,12 +18,12 @@ use ash::vk;
 const REACH: f64 = 4.0 * 2.42;
 
 /// The numbers, where the host's depth of `format` is `depth` (see `host_depth` in `lib/host.glsl`) and no disc's radius is above
-/// `largest`; `None` if they say nothing.
+/// `largest` in the world; `None` if they say nothing.
 pub(super) fn seed(
     format: vk::Format,
     depth: [f32; 4],
     (block, perspective): (&Frame, bool),
-    largest: f32,
+    largest: f64,
     precision: Precision,
 ) -> Option<Seed> {
     let [first, by_distance] = [depth[0], depth[1]].map(f64::from);
@@ -37,7 +37,7 @@ pub(super) fn seed(
         Precision::Full => 2f64.powi(-16),
         Precision::Half => 0.25,
     };
-    let epsilon = f64::from(block.epsilon) * f64::from(largest);
+    let epsilon = f64::from(block.epsilon) * largest;
     let behind = REACH * epsilon * if perspective { 1.0 / near } else { slope };
     let seed = Seed {
         key: [scale as f32, offset as f32],

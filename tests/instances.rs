@@ -1,0 +1,361 @@
+//! Scenes where they are placed: one that stands as it is makes the frame that it makes alone; placed, and several together, they make the
+//! float64 reference's picture of one cloud.
+
+mod support;
+
+use glam::{DMat4, DVec3};
+use std::sync::Arc;
+use support::gpu::{assert_silent, device};
+use support::placing::{exact, lines, merged, moved_lines, painted, plain, rich, turned, weighted};
+use surfel::geometry::{Camera, Model, Primitives, Surfels};
+use surfel::methods::Method;
+use surfel::reference::{self, Expected, Tolerance};
+use surfel::settings::{Alpha, DirectionalLight, Lighting, Shading};
+use surfel::splatting::{Normalization, Splatting, Visibility};
+use surfel::vk::{Device, DeviceLimits};
+use surfel::{
+    FrameReport, Instance, Outputs, Picture, Precision, Rasterizer, RenderOptions, Renderer, Scene, Settings,
+};
+
+const SIZE: [u32; 2] = [256, 256];
+const BOTH: [Rasterizer; 2] = [Rasterizer::Draw, Rasterizer::Compute];
+
+fn perspective() -> Camera {
+    Camera::look_at(DVec3::new(2.1, 1.7, 5.0), DVec3::new(0.5, 0.2, 0.0), DVec3::Y, 0.8, 1.0, 0.1).unwrap()
+}
+
+fn parallel() -> Camera {
+    let look = [DVec3::new(2.1, 1.7, 5.0), DVec3::new(0.5, 0.2, 0.0), DVec3::Y];
+    Camera::orthographic(look, 4.4, 1.0, [0.5, 20.0]).unwrap()
+}
+
+/// Depth that rises with distance, to a far plane that cuts something off.
+fn rising() -> Camera {
+    let (near, far) = (0.1, 6.0);
+    let mut camera = perspective();
+    camera.projection.z_axis.z = far / (far - near);
+    camera.projection.w_axis.z = -near * far / (far - near);
+    Camera { reversed: false, ..camera }
+}
+
+/// A method's, with a light beside the headlight.
+fn settings(name: &str) -> Settings {
+    let settings = Method::named(name).unwrap().settings();
+    let to_light = DVec3::new(-0.6, 0.7, 0.4).normalize().as_vec3().to_array();
+    let directional = vec![DirectionalLight { to_light, radiance: [0.5, 0.4, 0.3] }];
+    // What is left of it where a merged cloud has colours of bytes.
+    let albedo = [((200.0f32 / 255.0 + 0.055) / 1.055).powf(2.4); 3];
+    let lighting = Lighting { directional, albedo, ..settings.lighting.clone() };
+    Settings { background: None, lighting, ..settings }
+}
+
+fn options(rasterizer: Rasterizer) -> RenderOptions {
+    let outputs = Outputs { normal: true, depth: true, id: false };
+    RenderOptions { size: SIZE, outputs, rasterizer: Some(rasterizer), ..Default::default() }
+}
+
+/// Scenes of some surfels, and a renderer.
+struct Rig {
+    device: Arc<Device>,
+    renderer: Renderer,
+}
+
+impl Rig {
+    fn new(device: &Arc<Device>, options: RenderOptions) -> Self {
+        Self { device: device.clone(), renderer: Renderer::new(device, options).unwrap() }
+    }
+
+    fn instances(&self, parts: &[(&Surfels, DMat4)]) -> Vec<Instance> {
+        let each = parts.iter();
+        each.map(|(surfels, transform)| {
+            Instance::new(&Arc::new(Scene::upload(&self.device, *surfels).unwrap()), *transform)
+        })
+        .collect()
+    }
+
+    fn show(
+        &mut self,
+        parts: &[(&Surfels, DMat4)],
+        camera: &Camera,
+        settings: &Settings,
+    ) -> (Picture, FrameReport) {
+        let instances = self.instances(parts);
+        self.renderer.render_picture(&instances, camera, settings).unwrap()
+    }
+}
+
+/// Two spheres that run through each other, of other sizes, each turned its own way.
+fn apart<'a>(a: &'a Surfels, b: &'a Surfels) -> [(&'a Surfels, DMat4); 2] {
+    [(a, exact(1.0, [1.0, 0.0, 2.0], [0.0; 3])), (b, exact(0.5, [0.0, 3.0, 1.0], [1.0, 0.0, 0.0]))]
+}
+
+/// Fails where the pictures of these parts are not the reference's of one cloud.
+fn assert_agree(device: &Arc<Device>, parts: &[(&Surfels, DMat4)], settings: &Settings, what: &str) {
+    let one = merged(parts, settings.lighting.albedo);
+    for (name, camera) in [("perspective", perspective()), ("parallel", parallel()), ("rising", rising())] {
+        let expected = Expected::new(&one, &camera, SIZE, settings, &Tolerance::default()).unwrap();
+        for rasterizer in BOTH {
+            let (picture, _) = Rig::new(device, options(rasterizer)).show(parts, &camera, settings);
+            let verdict = expected.compare(&picture).unwrap();
+            let doubt = verdict.doubtful as f64 / verdict.object_pixels as f64;
+            println!(
+                "{what}, {name}, {rasterizer:?}: {} of {} object pixels failed, {:.2} % in doubt, worst {:?}",
+                verdict.failed,
+                verdict.object_pixels,
+                100.0 * doubt,
+                verdict.worst
+            );
+            assert!(verdict.object_pixels > 10_000 && doubt < 0.02, "{what}, {name}, {rasterizer:?}");
+            assert!(verdict.passed(), "{what}, {name}, {rasterizer:?}: {:?}", verdict.failures.first());
+        }
+    }
+}
+
+#[test]
+fn a_scene_that_stands_as_it_is_makes_the_frame_that_it_makes_alone() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let surfels = rich(3_000);
+    let scene = Arc::new(Scene::upload(&device, &surfels).unwrap());
+    for method in Method::ALL {
+        // Sums of atomics are added in whatever order.
+        for rasterizer in BOTH {
+            let blended = method.pull_push.is_none() && method.splatting.visibility != Visibility::Nearest;
+            if blended && rasterizer == Rasterizer::Compute {
+                continue;
+            }
+            let mut renderer = Renderer::new(&device, options(rasterizer)).unwrap();
+            let settings = settings(method.name);
+            let (alone, _) = renderer.render_picture(&scene, &perspective(), &settings).unwrap();
+            let before = device.usage();
+            let instance = Instance::new(&scene, DMat4::IDENTITY);
+            let (placed, _) = renderer.render_picture(&instance, &perspective(), &settings).unwrap();
+            assert!(alone == placed, "{} {rasterizer:?}", method.name);
+            assert_eq!(device.usage(), before, "it costs nothing");
+            assert!(alone.colour.iter().filter(|colour| colour[3] > 0.0).count() > 10_000);
+        }
+    }
+    assert_silent(&device);
+}
+
+#[test]
+fn a_placed_scene_is_the_reference_of_its_surfels_moved() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let surfels = rich(3_000);
+    let places = [
+        ("exact", exact(2.0, [1.0, 2.0, 3.0], [0.0, 0.0, -1.0])),
+        ("turned", turned(1.3, [0.3, -1.0, 0.4], 2.2, [0.3, 0.1, -0.4])),
+    ];
+    for (name, place) in places {
+        assert_agree(&device, &[(&surfels, place)], &settings("perspective-ewa"), name);
+    }
+    assert_silent(&device);
+}
+
+#[test]
+fn scenes_that_run_through_each_other_are_one_cloud_by_every_method() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let (a, b) = (painted(3_000), rich(1_500));
+    for method in Method::SPLATTING {
+        assert_agree(&device, &apart(&a, &b), &settings(method.name), method.name);
+    }
+    assert_silent(&device);
+}
+
+#[test]
+fn unlike_scenes_are_one_cloud() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let (bare, bytes, all) = (plain(3_000), painted(2_000), rich(1_500));
+    let turns = [exact(1.0, [0.0; 3], [0.0; 3]), exact(0.5, [2.0, 1.0, 0.0], [1.0, 0.0, 0.0])];
+    let with = |change: &dyn Fn(&mut Settings)| {
+        let mut settings = settings("perspective-ewa");
+        change(&mut settings);
+        settings
+    };
+    let axis = Splatting { visibility: Visibility::Axis, ..Splatting::default() };
+    let frames = [
+        ("lit", with(&|_| {})),
+        ("colours", with(&|s| s.shading = Shading::Colour)),
+        ("normals", with(&|s| s.shading = Shading::Normal)),
+        ("depths", with(&|s| s.shading = Shading::Depth)),
+        ("coverage", with(&|s| s.alpha = Alpha::Coverage)),
+        ("axis", with(&|s| s.splatting = axis)),
+    ];
+    for (name, settings) in frames {
+        let [first, second] = turns;
+        // One of them without colours, either way round; the first with the identity.
+        assert_agree(&device, &[(&bare, first), (&all, second)], &settings, name);
+        assert_agree(&device, &[(&bytes, first), (&bare, second)], &settings, name);
+    }
+    let by_surfel = Splatting { normalization: Normalization::Surfel, ..Splatting::default() };
+    let [a, b] = [bare, all].map(weighted);
+    assert_agree(&device, &apart(&a, &b), &with(&|s| s.splatting = by_surfel), "weights");
+    assert_silent(&device);
+}
+
+/// Points fall into one pixel or another by rounding alone where they are at a border, and what is pulled of them follows.
+fn differing(a: &Picture, b: &Picture) -> usize {
+    let near = |a: &[f32], b: &[f32]| a.iter().zip(b).all(|(a, b)| (a - b).abs() <= 2e-3);
+    a.colour.iter().zip(&b.colour).filter(|(a, b)| !near(&a[..], &b[..])).count()
+}
+
+#[test]
+fn points_lines_and_triangles_are_one_model_by_pull_push() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let (a, b) = (painted(20_000), plain(12_000));
+    for method in ["pull-push", "pull-push-paper"] {
+        let settings = settings(method);
+        let one = merged(&apart(&a, &b), settings.lighting.albedo);
+        for camera in [perspective(), parallel(), rising()] {
+            let expected = reference::render(&one, &camera, SIZE, &settings, &()).unwrap().to_picture();
+            for rasterizer in BOTH {
+                for precision in [Precision::Full, Precision::Half] {
+                    let options = RenderOptions { precision, ..options(rasterizer) };
+                    let (picture, _) = Rig::new(&device, options).show(&apart(&a, &b), &camera, &settings);
+                    let (own, _) =
+                        Rig::new(&device, options).show(&[(&one, DMat4::IDENTITY)], &camera, &settings);
+                    let [twins, merged] = [&expected, &own].map(|other| differing(&picture, other));
+                    let seen = own.colour.iter().filter(|colour| colour[3] > 0.0).count();
+                    println!(
+                        "{method} {rasterizer:?} {precision:?}: of {seen} px {twins} are not the reference's, {merged} not the merged cloud's"
+                    );
+                    let most = if precision == Precision::Full { seen / 500 } else { usize::MAX };
+                    assert!(seen > 10_000 && merged <= seen / 500 && twins <= most);
+                }
+            }
+        }
+    }
+    assert_silent(&device);
+}
+
+#[test]
+fn lines_and_triangles_are_placed_as_surfels_are() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let surfels = painted(12_000);
+    let place = exact(0.5, [0.0, 3.0, 1.0], [1.0, 0.0, 0.0]);
+    let (own, there) = (lines(), moved_lines(&lines(), &place));
+    let settings = settings("pull-push");
+    for camera in [perspective(), parallel()] {
+        for rasterizer in BOTH {
+            let mut renderer = Renderer::new(&device, options(rasterizer)).unwrap();
+            let upload = |surfels: &Surfels, primitives: &Primitives| {
+                let model = Model { surfels: surfels.clone(), primitives: primitives.clone() };
+                Arc::new(Scene::upload(&device, &model).unwrap())
+            };
+            let none = Surfels::default();
+            let alone = upload(&surfels, &there);
+            let (alone, _) = renderer.render_picture(&alone, &camera, &settings).unwrap();
+            let list = [
+                Instance::new(&Arc::new(Scene::upload(&device, &surfels).unwrap()), DMat4::IDENTITY),
+                Instance::new(&upload(&none, &own), place),
+            ];
+            let (placed, _) = renderer.render_picture(&list, &camera, &settings).unwrap();
+            let (without, _) = renderer.render_picture(&list[..1], &camera, &settings).unwrap();
+            let [same, shown] = [&alone, &without].map(|other| differing(&placed, other));
+            println!("{rasterizer:?}: {same} px differ, {shown} show lines or triangles");
+            assert!(shown > 300 && same <= shown / 100);
+        }
+    }
+    assert_silent(&device);
+}
+
+#[test]
+fn numbers_are_counted_on_from_scene_to_scene() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let (a, b) = (painted(20_000), plain(12_000));
+    let settings = settings("pull-push");
+    let one = merged(&apart(&a, &b), settings.lighting.albedo);
+    for rasterizer in BOTH {
+        let outputs = Outputs { id: true, ..options(rasterizer).outputs };
+        let mut rig = Rig::new(&device, RenderOptions { outputs, ..options(rasterizer) });
+        let (placed, _) = rig.show(&apart(&a, &b), &perspective(), &settings);
+        let (alone, _) = rig.show(&[(&one, DMat4::IDENTITY)], &perspective(), &settings);
+        let [placed, alone] = [placed, alone].map(|picture| picture.id.unwrap());
+        let of = |range: std::ops::Range<u32>| placed.iter().filter(|id| range.contains(id)).count();
+        assert!(of(0..20_000) > 5_000 && of(20_000..32_000) > 1_000, "both are seen");
+        let differ = placed.iter().zip(&alone).filter(|(a, b)| a != b).count();
+        println!("{rasterizer:?}: {differ} numbers differ");
+        assert!(differ < 40, "{differ}");
+        let list = rig.instances(&apart(&a, &b));
+        assert_eq!(surfel::Instances::<Scene>::from(&list).numbers(), [0, 20_000]);
+    }
+    assert_silent(&device);
+}
+
+#[test]
+fn counts_are_summed_and_passes_are_as_many() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let (a, b) = (painted(3_000), rich(1_500));
+    for name in ["perspective-ewa", "sprites-unfiltered", "pull-push"] {
+        for rasterizer in BOTH {
+            let options = RenderOptions { count: true, profile: true, ..options(rasterizer) };
+            let settings = settings(name);
+            let one = merged(&apart(&a, &b), settings.lighting.albedo);
+            let mut rig = Rig::new(&device, options);
+            let (_, placed) = rig.show(&apart(&a, &b), &perspective(), &settings);
+            let (_, alone) = rig.show(&[(&one, DMat4::IDENTITY)], &perspective(), &settings);
+            assert_eq!(placed.counts, alone.counts, "{name} {rasterizer:?}");
+            let labels =
+                |report: &FrameReport| report.pass_times.iter().map(|time| time.label).collect::<Vec<_>>();
+            assert_eq!(labels(&placed), labels(&alone), "{name} {rasterizer:?}");
+        }
+    }
+    assert_silent(&device);
+}
+
+#[test]
+fn one_scene_stands_in_many_places_and_none_shows_nothing() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let surfels = painted(2_000);
+    let scene = Arc::new(Scene::upload(&device, &surfels).unwrap());
+    let places = [-1.0, 0.0, 1.0].map(|x| exact(0.5, [0.0, 1.0 + x, 0.0], [x, 0.0, 0.5 * x]));
+    let list = places.map(|place| Instance::new(&scene, place));
+    for method in Method::ALL {
+        for rasterizer in BOTH {
+            let settings = settings(method.name);
+            let mut renderer = Renderer::new(&device, options(rasterizer)).unwrap();
+            let (picture, _) = renderer.render_picture(&list, &perspective(), &settings).unwrap();
+            let parts = places.map(|place| (&surfels, place));
+            let one = merged(&parts, settings.lighting.albedo);
+            let (own, _) = Rig::new(&device, options(rasterizer)).show(
+                &[(&one, DMat4::IDENTITY)],
+                &perspective(),
+                &settings,
+            );
+            let seen = own.colour.iter().filter(|colour| colour[3] > 0.0).count();
+            let differ = differing(&picture, &own);
+            println!("{} {rasterizer:?}: {differ} of {seen} px differ", method.name);
+            assert!(seen > 5_000 && differ <= seen / 500);
+            let nothing: [Instance; 0] = [];
+            let (picture, _) = renderer.render_picture(&nothing, &perspective(), &settings).unwrap();
+            assert!(picture.colour.iter().all(|colour| *colour == [0.0; 4]), "{}", method.name);
+            assert!(picture.depth.unwrap().iter().all(|depth| *depth == 0.0));
+            // And what was there before is there again.
+            let (again, _) = renderer.render_picture(&list, &perspective(), &settings).unwrap();
+            assert!(differing(&again, &own) <= seen / 500);
+        }
+    }
+    assert_silent(&device);
+}
+
+#[test]
+fn what_no_scene_can_be_placed_by_is_refused() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let scene = Arc::new(Scene::upload(&device, &painted(500)).unwrap());
+    let mut renderer = Renderer::new(&device, options(Rasterizer::Draw)).unwrap();
+    for (transform, said) in [
+        (DMat4::from_scale(DVec3::new(1.0, 1.1, 1.0)), "instance 1 scales by 1 along one axis"),
+        (DMat4::from_scale(DVec3::new(1.0, 1.0, -1.0)), "instance 1 mirrors"),
+        (DMat4::from_translation(DVec3::NAN), "instance 1 holds a value that is not finite"),
+    ] {
+        let list = [Instance::new(&scene, DMat4::IDENTITY), Instance::new(&scene, transform)];
+        let error = renderer.render(&list, &perspective(), &settings("perspective-ewa")).unwrap_err();
+        assert!(error.to_string().contains(said), "{error}");
+        assert!(error.to_string().contains("uniform scale above 0"), "{error}");
+        assert!(list[1].bounds().is_err());
+    }
+    let placed = Instance::new(&scene, exact(2.0, [0.0; 3], [3.0, 0.0, 0.0])).bounds().unwrap();
+    let own = scene.bounds();
+    assert!((placed.radius - 2.0 * own.radius).abs() < 1e-9);
+    assert!((placed.centre() - 2.0 * own.centre() - 3.0 * DVec3::X).length() < 1e-9);
+    assert_silent(&device);
+}
