@@ -116,7 +116,7 @@ fn record(host: &Host, stand: &mut Stand, view: &View, settings: &Settings) {
     let recorded = host.run(|cmd| {
         // SAFETY: recorded outside and inside the frame's pass, and waited for.
         unsafe {
-            renderer.prepare(cmd, scene, view, settings)?;
+            renderer.prepare(cmd, &*scene, view, settings)?;
             frame.begin(host, cmd);
             let drawn = renderer.draw(cmd);
             frame.end(host, cmd);

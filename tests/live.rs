@@ -39,6 +39,7 @@ const NARROW: DeviceLimits = DeviceLimits {
     storage_buffer_alignment: Some(256),
     max_storage_buffers: None,
     max_image_side: None,
+    memory: None,
 };
 
 fn sphere(count: usize) -> Surfels {

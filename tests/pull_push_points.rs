@@ -29,6 +29,7 @@ const NO_ATOMICS: DeviceLimits = DeviceLimits {
     storage_buffer_alignment: None,
     max_storage_buffers: None,
     max_image_side: None,
+    memory: None,
 };
 
 /// Everything that a frame leaves.

@@ -295,7 +295,7 @@ mod tests {
 
     fn loaded(points: u32) -> Result<Loaded> {
         let surfels = scenes::open(&format!("scene:sphere?points={points}"))?;
-        Ok(Loaded { model: surfels.into(), method: Method::ALL[0] })
+        Ok(Loaded::sketch(surfels.into(), Method::ALL[0]))
     }
 
     /// News of a load until its last, less how far it has come.
@@ -303,8 +303,9 @@ mod tests {
         let mut all = Vec::new();
         while !matches!(all.last(), Some(What::Coarser(_) | What::Failed(_))) {
             let told = news.recv_timeout(Duration::from_secs(60)).unwrap();
-            if loader.is_present(&told) && !matches!(told.what, What::At(..)) {
-                all.push(told.what);
+            let News::Load(load, what) = told else { panic!("nothing else is told") };
+            if loader.is_present(load) && !matches!(what, What::At(..)) {
+                all.push(what);
             }
         }
         all
@@ -320,7 +321,7 @@ mod tests {
         loader.start(Vec::new());
         loader.use_device(&device);
         let all = until_coarser(&loader, &news);
-        let [What::Sketch(sketch, _), What::Ready(whole, _), What::Coarser(coarser)] = &all[..] else {
+        let [What::Sketch(sketch, ..), What::Ready(whole, ..), What::Coarser(coarser)] = &all[..] else {
             panic!("{} news", all.len())
         };
         assert_eq!((sketch.count(), whole.count()), (100, 30_000));
@@ -335,23 +336,23 @@ mod tests {
             return;
         };
         let (mut loader, news) = loader(|inputs, window| {
-            while inputs[0] == "slow" {
-                if window.is_cancelled() {
-                    return Err(Error::Cancelled);
-                }
+            if inputs[0] != "slow" {
+                return loaded(1000);
+            }
+            while !window.is_cancelled() {
                 std::thread::yield_now();
             }
-            loaded(1000)
+            Err(Error::Cancelled)
         });
         loader.use_device(&device);
         loader.start(vec!["slow".into()]);
         assert!(loader.cancel() && !loader.cancel(), "there is one to give up");
         loader.under_way.pop().unwrap().thread.join().unwrap();
-        assert!(news.try_iter().all(|told| !loader.is_present(&told)));
+        assert!(news.try_iter().all(|told| matches!(told, News::Load(load, _) if !loader.is_present(load))));
         loader.start(vec!["slow".into()]);
         loader.start(vec!["quick".into()]);
         let all = until_coarser(&loader, &news);
-        assert!(matches!(&all[..], [What::Ready(scene, _), What::Coarser(_)] if scene.count() == 1000));
+        assert!(matches!(&all[..], [What::Ready(scene, ..), What::Coarser(_)] if scene.count() == 1000));
     }
 
     #[test]

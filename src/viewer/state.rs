@@ -53,6 +53,9 @@ pub struct State {
     pub cancel: bool,
 }
 
+/// A scene, from where it is seen, and how.
+type Seen<'a> = (&'a Arc<Scene>, Camera, Cow<'a, Settings>);
+
 /// What a scene is of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Of {
@@ -222,7 +225,7 @@ impl State {
     }
 
     /// The scene, or the coarser one of this number, from where and how it is seen.
-    pub fn frame(&self, number: usize) -> Option<Result<(&Arc<Scene>, Camera, Cow<'_, Settings>)>> {
+    pub fn frame(&self, number: usize) -> Option<Result<Seen<'_>>> {
         let Shown { scene, coarser, settings, .. } = self.shown.as_ref()?;
         let camera = self.pose()?.camera(&scene.bounds(), self.lens.aspect());
         let fewer = number.checked_sub(1).and_then(|number| coarser.get(number));
