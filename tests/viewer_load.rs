@@ -22,6 +22,7 @@ impl View {
         for program in ["Xvfb", "xdotool"] {
             let found = Command::new("which").arg(program).stdout(Stdio::null()).status();
             if !found.is_ok_and(|status| status.success()) {
+                assert!(std::env::var_os("SURFEL_REQUIRE_GPU").is_none(), "{test}: there is no {program}");
                 eprintln!("{test}: skipped: there is no {program}");
                 return None;
             }

@@ -13,12 +13,18 @@ use std::time::Instant;
 use surfel::geometry::estimate::Estimate;
 use surfel::geometry::{Bounds, Colours, MipMap, Model};
 use surfel::methods::Method;
-use surfel::{Progress, Result};
+use surfel::{Error, Progress, Result};
 
 /// Opens the window, which loads the inputs while it is there.
 pub fn run(args: View) -> Result<()> {
     let start = Instant::now();
     args.settings(&args.method.unwrap_or(Method::ALL[0])).check()?;
+    if !(args.budget > 0.0 && args.budget.is_finite()) {
+        return Err(Error::Usage(format!(
+            "frames cannot take {} ms: give --budget a number above 0",
+            args.budget
+        )));
+    }
     let file = camera::read(&args.camera)?;
     let up = camera::up(&args.camera, file);
     let given = {

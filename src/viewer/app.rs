@@ -30,6 +30,9 @@ use winit::window::WindowId;
 /// Px of a touchpad's scrolling that are a step of a wheel.
 const PX_A_STEP: f64 = 50.0;
 
+/// Number of the load that the program begins with.
+const FIRST: u64 = 1;
+
 /// Surfels that were changed, and not again for so long, stay.
 const SETTLED: Duration = Duration::from_millis(400);
 
@@ -60,7 +63,8 @@ pub fn run(options: Options, load: Load, look: Look) -> Result<()> {
         is_first: true,
         keep: Keep::new(options.keep.clone()),
         news: events.create_proxy(),
-        inputs: options.inputs.clone(),
+        inputs: Vec::new(),
+        tried: None,
         pending: Some(options.inputs.clone()),
         options,
         opened: None,
@@ -102,6 +106,8 @@ struct App {
     inputs: Vec<OsString>,
     /// What is being loaded.
     pending: Option<Vec<OsString>>,
+    /// What could not be loaded last.
+    tried: Option<Vec<OsString>>,
     retry: Retry,
     /// The last version of the surfels, and when it counts as one that stays.
     changed: (u64, Option<Instant>),
@@ -124,7 +130,7 @@ impl ApplicationHandler<News> for App {
     fn user_event(&mut self, events: &ActiveEventLoop, news: News) {
         let (load, what) = match news {
             News::Kept => return self.written(),
-            News::Changed => return self.loader.repeat(),
+            News::Changed => return self.reload(),
             News::Load(load, what) => (load, what),
         };
         if !self.loader.is_present(load) {
@@ -145,16 +151,24 @@ impl ApplicationHandler<News> for App {
                 tell.tell(&Event::Ready { surfels: scene.count() });
                 (self.told.loading, self.told.wrong) = (None, None);
                 self.inputs = self.pending.take().unwrap_or(std::mem::take(&mut self.inputs));
+                self.tried = None;
                 let of = Of { load, sketch: false, again: self.loader.is_again() };
                 if let Err(error) = self.show(scene, (method, *source), of) {
                     return self.fail(events, error);
                 }
             }
-            What::Coarser(scenes) => return self.state.add_coarser(scenes),
+            What::Coarser(scenes) => {
+                // Of surfels that were changed since, there will be others.
+                if self.changed.1.is_none() {
+                    self.state.add_coarser(scenes);
+                }
+                return;
+            }
             What::Failed(error) => {
-                (self.told.loading, self.pending) = (None, None);
+                (self.told.loading, self.next) = (None, None);
+                self.tried = self.pending.take();
                 self.state.leave_sketch();
-                if self.state.moving().is_none() {
+                if load == FIRST && self.state.moving().is_none() {
                     return self.fail(events, error);
                 }
                 self.wrong(&error);
@@ -223,9 +237,19 @@ impl ApplicationHandler<News> for App {
 impl App {
     /// Looks at these inputs from now on, once they are loaded.
     fn open(&mut self, inputs: Vec<OsString>) {
-        self.pending = Some(inputs.clone());
+        (self.pending, self.tried) = (Some(inputs.clone()), None);
         self.watch.iter().for_each(|watch| watch.look_at(&inputs));
         self.loader.start(inputs);
+    }
+
+    /// Loads anew what has changed: what is being loaded, what could not be, or what is shown, which is looked at as before.
+    fn reload(&mut self) {
+        let changed = self.pending.take().or(self.tried.take()).unwrap_or_else(|| self.inputs.clone());
+        if changed != self.inputs || !self.state.is_whole() {
+            return self.open(changed);
+        }
+        self.pending = Some(changed.clone());
+        self.loader.repeat(changed);
     }
 
     fn remember(&self) {
@@ -276,7 +300,8 @@ impl App {
             self.moved();
         }
         let pressed = event.state == ElementState::Pressed;
-        let action = keys::action(&event.logical_key, self.hands.modifiers).filter(|_| pressed);
+        let action =
+            keys::action(&event.logical_key, self.hands.modifiers).filter(|_| pressed && !event.repeat);
         if action.is_some() {
             (self.told.wrong, self.told.done) = (None, None);
         }
@@ -289,7 +314,7 @@ impl App {
                 | Action::SaveCamera
                 | Action::CopyCamera
                 | Action::PasteCamera),
-            ) if !event.repeat => {
+            ) => {
                 if let Err(error) = self.keep(action) {
                     self.wrong(&error);
                 }
@@ -312,8 +337,11 @@ impl App {
 
     /// Gives up what is being loaded, and shows what was shown before; whether something was.
     fn cancel(&mut self) -> bool {
-        let cancelled = self.loader.cancel() && self.told.loading.take().is_some();
+        let cancelled = self.told.loading.take().is_some();
         if cancelled {
+            self.loader.cancel();
+            (self.pending, self.tried, self.next) = (None, None, None);
+            self.watch.iter().for_each(|watch| watch.look_at(&self.inputs));
             self.options.events.tell(&Event::Cancelled);
             self.state.leave_sketch();
             self.changed();
@@ -359,10 +387,12 @@ impl App {
     /// Opens a device in the place of a lost one, and loads anew what was looked at.
     fn reopen(&mut self) -> Result<()> {
         let Some(opened) = self.opened.take() else { return Ok(()) };
+        self.told.leave_context();
         self.options.events.tell(&Event::Lost);
         log::warn!("the device was lost: another one is opened");
         let window = opened.window.clone();
-        self.next = self.state.leave().or(self.next);
+        let same = self.pending.as_ref().is_none_or(|pending| *pending == self.inputs);
+        self.next = self.state.leave(same).or(self.next);
         drop(opened);
         self.device = None;
         self.loader.leave_device();
@@ -371,7 +401,9 @@ impl App {
         (self.opened, self.device) = (Some(opened), Some(device));
         self.told.done = Some("the device was lost; this is another one".into());
         let inputs = self.pending.take().unwrap_or_else(|| self.inputs.clone());
-        self.open(inputs);
+        if !inputs.is_empty() {
+            self.open(inputs);
+        }
         self.changed();
         Ok(())
     }
@@ -394,7 +426,8 @@ impl App {
 
     /// Ends the program, unless it can go on on another device.
     fn fail(&mut self, events: &ActiveEventLoop, error: Error) {
-        let error = match error.is_device_lost() && self.retry.lost(Instant::now()) {
+        let again = error.is_device_lost() && self.opened.is_some();
+        let error = match again && self.retry.lost(Instant::now()) {
             true => match self.reopen() {
                 Ok(()) => return,
                 Err(error) => error,

@@ -111,8 +111,9 @@ impl Loader {
         self.begin();
     }
 
-    /// Loads the same once more, as it is now.
-    pub fn repeat(&mut self) {
+    /// Loads what is shown once more, as it is now.
+    pub fn repeat(&mut self, inputs: Vec<OsString>) {
+        self.inputs = inputs;
         self.again = true;
         self.begin();
     }
@@ -224,15 +225,20 @@ impl Told {
         if !model.primitives.is_empty() {
             return scenes;
         }
-        let (mut of, mut count) = (Cow::Borrowed(&model.surfels), all);
-        while count > FEWEST && !self.is_cancelled() {
-            let fewer = of.coarser((count as f64 / FEWER) as usize);
-            count = fewer.len();
+        let (mut of, mut wanted, mut fewest) = (Cow::Borrowed(&model.surfels), all, all);
+        while wanted > FEWEST && !self.is_cancelled() {
+            wanted = (wanted as f64 / FEWER) as usize;
+            let fewer = of.coarser(wanted);
+            // Discs of other sides do not merge: of a thin sheet with two, there may be no fewer.
+            if fewer.len() >= fewest {
+                continue;
+            }
+            fewest = fewer.len();
             // Without them, frames have fewer pixels yet.
             let Ok(scene) = Scene::upload(device, &fewer) else { return scenes };
             scenes.push(Arc::new(scene));
             // From all of them the discs fit best; from fewer it takes no time.
-            if count < all / ENOUGH && of.len() == all {
+            if fewest < all / ENOUGH && of.len() == all {
                 of = Cow::Owned(fewer);
             }
         }
@@ -328,6 +334,29 @@ mod tests {
         let counts: Vec<u64> = coarser.iter().map(|scene| scene.count()).collect();
         assert!(counts.windows(2).all(|pair| pair[1] < pair[0]), "{counts:?}");
         assert!(counts[0] > 10_000 && counts[counts.len() - 1] <= FEWEST as u64, "{counts:?}");
+    }
+
+    #[test]
+    fn of_a_thin_sheet_with_two_sides_there_is_an_end_of_fewer_surfels() {
+        let Some(device) = device("of_a_thin_sheet_with_two_sides_there_is_an_end_of_fewer_surfels") else {
+            return;
+        };
+        let (mut loader, news) = loader(|_, _| {
+            let mut loaded = loaded(10_000)?;
+            let surfels = &mut loaded.model.surfels;
+            surfels.positions.extend_from_within(..);
+            surfels.radii.extend_from_within(..);
+            let other: Vec<_> = surfels.normals.iter().map(|normal| -*normal).collect();
+            surfels.normals.extend(other);
+            surfels.colours = None;
+            Ok(loaded)
+        });
+        loader.use_device(&device);
+        loader.start(Vec::new());
+        let all = until_coarser(&loader, &news);
+        let [What::Ready(whole, ..), What::Coarser(coarser)] = &all[..] else { panic!("{} news", all.len()) };
+        let counts: Vec<u64> = std::iter::once(whole).chain(coarser).map(|scene| scene.count()).collect();
+        assert!(counts.windows(2).all(|pair| pair[1] < pair[0]), "{counts:?}");
     }
 
     #[test]

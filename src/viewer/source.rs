@@ -172,11 +172,18 @@ impl Source {
         range
     }
 
+    /// Changes so much, but for colours by numbers of the file.
+    pub fn change_to(&mut self, changed: Changed) {
+        self.changed = changed;
+        if let By::Number(_) = changed.by {
+            self.changed.by = By::Own;
+        }
+    }
+
     /// Changes as much as of another state of the scene; numbers of the file are read anew.
     pub fn change_as(&mut self, other: &Self) {
-        self.changed = other.changed;
+        self.change_to(other.changed);
         if let By::Number(number) = other.changed.by {
-            self.changed.by = By::Own;
             if other.numbers.names.get(number) == self.numbers.names.get(number) {
                 self.colour_by(other.changed.by);
             }

@@ -4,7 +4,7 @@ use super::keys::Action;
 use super::open::{Answer, Opening};
 use super::orbit::{Lens, Orbit, Up};
 use super::pace::Sight;
-use super::source::Source;
+use super::source::{Changed, Source};
 use super::{Look, Options};
 use glam::{DVec2, DVec3};
 use std::borrow::Cow;
@@ -43,7 +43,7 @@ pub struct State {
     version: u64,
     shown: Option<Shown>,
     /// How the scene was shown that the last device had.
-    left: Option<(Method, Settings)>,
+    left: Option<(Method, Settings, Changed)>,
     /// The place whose surface is to be turned about, px.
     pub pick: Option<DVec2>,
     /// What is to be opened, while it is asked for, and the answer.
@@ -111,7 +111,11 @@ impl State {
     pub fn show(&mut self, scene: Arc<Scene>, (method, mut source): (Method, Source), of: Of) {
         let framed = |scene: &Scene| Orbit::framing(&scene.bounds(), self.up, &self.lens);
         let (orbit, coarser, given) = (framed(&scene), Vec::new(), None);
-        let known = self.left.take().or(self.remembered.take_if(|known| suits(&scene, &known.1)));
+        let left = self.left.take().map(|(method, settings, changed)| {
+            source.change_to(changed);
+            (method, settings)
+        });
+        let known = left.or(self.remembered.take_if(|known| suits(&scene, &known.1)));
         let (method, settings) = known.unwrap_or_else(|| (method, (self.look)(&method)));
         if !of.sketch {
             self.remembered = None;
@@ -121,11 +125,13 @@ impl State {
                 let moved = sketch.given.is_some() || sketch.orbit != framed(&sketch.scene);
                 let orbit = if moved { sketch.orbit } else { orbit };
                 source.change_as(&sketch.source);
-                Shown { scene, source, of, orbit, coarser, before: None, ..sketch }
+                let (method, settings) = sketch.seen_by(&scene, (method, settings));
+                Shown { scene, source, of, orbit, coarser, before: None, method, settings, ..sketch }
             }
             Some(shown) if of.again && !shown.of.sketch => {
                 source.change_as(&shown.source);
-                Shown { scene, source, of, coarser, ..shown }
+                let (method, settings) = shown.seen_by(&scene, (method, settings));
+                Shown { scene, source, of, coarser, method, settings, ..shown }
             }
             before => {
                 // Of one that is not whole there was something before.
@@ -168,10 +174,12 @@ impl State {
         sketch.is_some_and(|shown| shown.given(&self.lens).is_none())
     }
 
-    /// Leaves the scene, with all that the device has of it; the next one is shown as this one was. From where it was seen.
-    pub fn leave(&mut self) -> Option<Pose> {
-        let pose = self.pose();
-        self.left = self.shown.take().map(|shown| (shown.method, shown.settings)).or(self.left.take());
+    /// Leaves the scene, with all that the device has of it; the next one, if it is the `same`, is shown as this one was. From where that was seen.
+    pub fn leave(&mut self, same: bool) -> Option<Pose> {
+        let pose = self.pose().filter(|_| same);
+        let left = self.shown.take().filter(|_| same);
+        let left = left.map(|shown| (shown.method, shown.settings, shown.source.changed));
+        self.left = left.or(self.left.take());
         pose
     }
 
@@ -211,6 +219,11 @@ impl State {
             surfels: scenes.map(|scene| scene.count() as f64).collect(),
             across: 2.0 * scene.bounds().radius / self.lens.px(orbit.distance()),
         })
+    }
+
+    /// Whether a whole scene is shown.
+    pub fn is_whole(&self) -> bool {
+        self.shown.as_ref().is_some_and(|shown| !shown.of.sketch)
     }
 
     /// Whether what is shown is some of the points, until all are there.
@@ -356,6 +369,11 @@ fn seen_alike(settings: Settings, before: &Settings) -> Settings {
 }
 
 impl Shown {
+    /// How another state of the scene is seen: as this one, or otherwise where that cannot be.
+    fn seen_by(&self, scene: &Scene, otherwise: (Method, Settings)) -> (Method, Settings) {
+        if suits(scene, &self.settings) { (self.method, self.settings.clone()) } else { otherwise }
+    }
+
     /// The camera that the hands were given, until they move it.
     fn given(&self, lens: &Lens) -> Option<Pose> {
         let still = |(orbit, was, _): &(Orbit, Lens, Pose)| {
@@ -373,7 +391,7 @@ impl Shown {
 }
 
 /// The settings for surfels that stand for others, whose normalization weights they have not.
-fn quick(settings: &Settings) -> Cow<'_, Settings> {
+pub fn quick(settings: &Settings) -> Cow<'_, Settings> {
     let mut quick = Cow::Borrowed(settings);
     if settings.splatting.normalization == Normalization::Surfel {
         quick.to_mut().splatting.normalization = Normalization::Pixel;

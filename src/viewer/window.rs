@@ -97,7 +97,7 @@ impl Opened {
         told.surfels =
             sight.as_ref().and_then(|sight| sight.surfels.get(quality.scene)).copied().unwrap_or(0.0);
         let again = self.hud.lay_out(&self.window, state, told);
-        self.screen.ask(told.asked(state));
+        self.screen.ask(told.asked(state, quality.scene > 0));
         let shown = self.present(state, told, quality)?;
         // A frame's time is its own, and the next one shows where the hands are when it begins.
         self.presenter.wait()?;
@@ -160,19 +160,25 @@ impl Opened {
     fn present(&mut self, state: &mut State, told: &mut Told, quality: Quality) -> Result<bool> {
         let PhysicalSize { width, height } = self.window.inner_size();
         let Self { presenter, hud, screen, .. } = self;
+        let mut refused = told.refused.clone();
         let shown = presenter.present([width, height], |frame| {
             state.lens.size = frame.size;
             let size = frame.size.map(|length| ((f64::from(length) * quality.side).round() as u32).max(1));
             let seen = state.frame(quality.scene).transpose()?;
             let seen = seen.as_ref().map(|(scene, camera, settings)| (*scene, camera, &**settings));
-            match screen.record(frame, size, seen) {
+            refused = match screen.record(frame, size, seen) {
                 // Other settings may do: the window stays.
-                Err(error @ (Error::Usage(_) | Error::Memory { .. })) => told.wrong = Some(error.to_string()),
-                recorded => recorded?,
-            }
+                Err(error @ (Error::Usage(_) | Error::Memory { .. })) => Some(error.to_string()),
+                recorded => recorded.map(|()| None)?,
+            };
             hud.record(frame)?;
             Ok(screen.drew())
         })?;
+        if refused != told.refused {
+            // The panels were laid out before it was known.
+            told.refused = refused;
+            self.window.request_redraw();
+        }
         Ok(shown == Some(true))
     }
 

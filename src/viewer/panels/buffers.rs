@@ -101,6 +101,11 @@ impl Buffers {
         }
     }
 
+    /// Nothing is kept that belongs to a context that goes.
+    pub fn leave_context(&mut self) {
+        self.raster.iter_mut().for_each(Raster::leave_context);
+    }
+
     /// What was read, in a window of its own.
     pub fn picture(&mut self, context: &Context) {
         if let Some(raster) = self.raster.as_mut().filter(|_| self.shown) {

@@ -3,7 +3,7 @@
 use super::raster::{Raster, Values};
 use crate::viewer::job::Job;
 use crate::viewer::state::Choices;
-use egui::{Button, ComboBox, Context, Grid, ProgressBar, Slider, Ui};
+use egui::{Button, ComboBox, Context, Grid, ProgressBar, Slider, SliderClamping, Ui};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use surfel::geometry::{Camera, ColourMap, Model};
@@ -191,9 +191,19 @@ impl Errors {
                 ui.end_row();
             }
         });
-        ui.add(Slider::new(&mut self.tolerance, 1e-7..=1.0).logarithmic(true).text("tolerance"))
-            .on_hover_text("Largest difference of a channel that passes, in linear light.");
+        ui.add(
+            Slider::new(&mut self.tolerance, 1e-7..=1.0)
+                .logarithmic(true)
+                .clamping(SliderClamping::Edits)
+                .text("tolerance"),
+        )
+        .on_hover_text("Largest difference of a channel that passes, in linear light.");
         ui.checkbox(&mut self.shown, "show as a picture");
+    }
+
+    /// Nothing is kept that belongs to a context that goes.
+    pub fn leave_context(&mut self) {
+        self.raster.iter_mut().for_each(Raster::leave_context);
     }
 
     /// The error of every pixel, in a window of its own.

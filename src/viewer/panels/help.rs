@@ -8,7 +8,7 @@ const MOUSE: [(&str, &str); 5] = [
     ("left", "turn"),
     ("double left", "turn about this point from now on"),
     ("middle, Shift+left", "move across the picture"),
-    ("wheel, right", "nearer and farther"),
+    ("wheel; right", "nearer and farther, to the cursor; to the middle"),
     ("W A S D, E Q", "fly ahead, left, back, right, up, down"),
 ];
 

@@ -1,6 +1,6 @@
 //! How a splat's weight falls off: a choice, and its curve.
 
-use egui::{Align2, Color32, ComboBox, FontId, Pos2, Sense, Shape, Slider, Stroke, Ui, vec2};
+use egui::{Align2, Color32, ComboBox, FontId, Pos2, Sense, Shape, Slider, SliderClamping, Stroke, Ui, vec2};
 use surfel::splatting::{Kernel, Splatting};
 
 /// Size of the curve, points.
@@ -34,9 +34,10 @@ pub fn show(ui: &mut Ui, splatting: &mut Splatting, cutoff: f32) {
         }
     });
     if let Kernel::Confetti { a, n } = &mut splatting.kernel {
-        ui.add(Slider::new(a, 0.1..=20.0).logarithmic(true).text("a"))
+        ui.add(Slider::new(a, 0.1..=20.0).logarithmic(true).clamping(SliderClamping::Edits).text("a"))
             .on_hover_text("The larger, the narrower.");
-        ui.add(Slider::new(n, 0.5..=12.0).text("n")).on_hover_text("The larger, the more like a plateau.");
+        ui.add(Slider::new(n, 0.5..=12.0).clamping(SliderClamping::Edits).text("n"))
+            .on_hover_text("The larger, the more like a plateau.");
     }
     curve(ui, splatting.kernel, cutoff);
 }

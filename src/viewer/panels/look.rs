@@ -3,7 +3,7 @@
 use super::raster::{colour_bar, short};
 use crate::viewer::source::By;
 use crate::viewer::state::{Choices, SHADINGS, shading_text};
-use egui::{ComboBox, DragValue, ProgressBar, Slider, Ui};
+use egui::{ComboBox, DragValue, ProgressBar, Slider, SliderClamping, Ui};
 use std::time::Duration;
 use surfel::geometry::{ColourMap, ValueRange};
 use surfel::settings::{Alpha, Cull};
@@ -116,13 +116,15 @@ fn radii(ui: &mut Ui, chosen: &mut Choices<'_>) {
     let fixed = chosen.source.has_fixed_radii();
     ui.add_enabled_ui(!fixed, |ui| {
         let factor = &mut chosen.source.changed.radii;
-        ui.add(Slider::new(factor, 0.25..=4.0).logarithmic(true).text("radii ×"))
-            .on_hover_text(
-                "Factor of every surfel's radius: below 1 discs may leave holes, above 1 they overlap more.",
-            )
-            .on_disabled_hover_text(
-                "There are no surfels, or their normalization weights are those of these discs.",
-            );
+        ui.add(
+            Slider::new(factor, 0.25..=4.0).logarithmic(true).clamping(SliderClamping::Edits).text("radii ×"),
+        )
+        .on_hover_text(
+            "Factor of every surfel's radius: below 1 discs may leave holes, above 1 they overlap more.",
+        )
+        .on_disabled_hover_text(
+            "There are no surfels, or their normalization weights are those of these discs.",
+        );
     });
     if chosen.primitives && !fixed {
         ui.weak("Lines keep their widths.");

@@ -2,7 +2,7 @@
 
 use super::{axes, kernel};
 use crate::viewer::state::Choices;
-use egui::{ComboBox, Slider, Ui};
+use egui::{ComboBox, Slider, SliderClamping, Ui};
 use std::ops::RangeInclusive;
 use surfel::methods::Method;
 use surfel::pull_push::Storage;
@@ -64,7 +64,7 @@ fn choose(ui: &mut Ui, chosen: &mut Choices<'_>) {
 
 fn numbers(ui: &mut Ui, settings: &mut Settings) {
     let slider = |ui: &mut Ui, value: &mut f32, range: RangeInclusive<f32>, name: &str, text: &str| {
-        ui.add(Slider::new(value, range).text(name)).on_hover_text(text);
+        ui.add(Slider::new(value, range).clamping(SliderClamping::Edits).text(name)).on_hover_text(text);
     };
     let Settings { splatting, cutoff, lowpass, epsilon, widen, .. } = settings;
     slider(

@@ -12,7 +12,7 @@ mod split;
 mod times;
 
 use super::screen::Asked;
-use super::state::State;
+use super::state::{State, quick};
 use buffers::Buffers;
 use egui::{CollapsingHeader, Panel, ProgressBar, ScrollArea, Ui};
 use error::Errors;
@@ -28,6 +28,8 @@ pub struct Told {
     pub loading: Option<(&'static str, f32)>,
     /// What went wrong last.
     pub wrong: Option<String>,
+    /// Why the last frame could not be rendered, if it could not.
+    pub refused: Option<String>,
     /// What was done last, for who asked for it.
     pub done: Option<String>,
     /// How long the last frame took, ms.
@@ -53,9 +55,19 @@ impl Told {
         Self { hidden, ..Self::default() }
     }
 
-    /// What is asked of the next frame.
-    pub fn asked(&self, state: &State) -> Asked {
+    /// Nothing is kept that belongs to a context that goes.
+    pub fn leave_context(&mut self) {
+        self.errors.leave_context();
+        self.buffers.leave_context();
+    }
+
+    /// What is asked of the next frame, which may be of surfels that stand for others.
+    pub fn asked(&self, state: &State, coarser: bool) -> Asked {
         let split = state.settings().and_then(|settings| self.split.asked(settings));
+        let split = split.map(|(settings, at)| match coarser {
+            true => (quick(&settings).into_owned(), at),
+            false => (settings, at),
+        });
         Asked { measured: self.times.is_open(), version: state.version(), split }
     }
 }
@@ -75,7 +87,7 @@ pub fn show(ui: &mut Ui, state: &mut State, told: &mut Told, device: &Arc<Device
     if let Some(done) = &told.done {
         Panel::bottom("done").show(ui, |ui| ui.label(done));
     }
-    if let Some(wrong) = &told.wrong {
+    if let Some(wrong) = told.wrong.as_ref().or(told.refused.as_ref()) {
         Panel::top("wrong").show(ui, |ui| ui.colored_label(ui.visuals().error_fg_color, wrong));
     }
     if !told.hidden {

@@ -51,6 +51,11 @@ impl Raster {
         self
     }
 
+    /// The picture is made anew when it is shown next.
+    pub fn leave_context(&mut self) {
+        self.texture = None;
+    }
+
     /// A window with the picture, until it is closed.
     pub fn show(&mut self, context: &Context, id: &str, open: &mut bool) {
         let title = format!("{}, {}x{}", self.name, self.size[0], self.size[1]);
