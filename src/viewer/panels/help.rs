@@ -12,9 +12,14 @@ const MOUSE: [(&str, &str); 5] = [
     ("W A S D, E Q", "fly ahead, left, back, right, up, down"),
 ];
 
+/// Height of the window at first, points: all of it fits.
+const HEIGHT: f32 = 680.0;
+
 /// A window with all of it.
 pub fn show(context: &Context) {
-    Window::new("Keys and mouse").show(context, |ui| ScrollArea::vertical().show(ui, list));
+    Window::new("Keys and mouse")
+        .default_height(HEIGHT)
+        .show(context, |ui| ScrollArea::vertical().show(ui, list));
 }
 
 fn list(ui: &mut Ui) {
