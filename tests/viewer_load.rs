@@ -34,7 +34,7 @@ impl View {
         BufReader::new(server.stdout.take().unwrap()).read_line(&mut number).unwrap();
         let display = format!(":{}", number.trim());
         let mut program = Command::new(env!("CARGO_BIN_EXE_surfel"));
-        program.args(["view", "--json", "--validate", "-q", "--size", "320x240"]).args(arguments);
+        program.args(["view", "--json", "--validate", "-q", "--size", "640x480"]).args(arguments);
         let mut program = program.env("DISPLAY", &display).stdout(Stdio::piped()).spawn().unwrap();
         let (send, events) = channel();
         let lines = BufReader::new(program.stdout.take().unwrap()).lines();

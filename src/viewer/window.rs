@@ -98,15 +98,17 @@ impl Opened {
             sight.as_ref().and_then(|sight| sight.surfels.get(quality.scene)).copied().unwrap_or(0.0);
         let again = self.hud.lay_out(&self.window, state, told);
         self.screen.ask(told.asked(state, quality.scene > 0));
-        let shown = self.present(state, told, quality)?;
+        let [shown, drawn] = self.present(state, told, quality)?;
         // A frame's time is its own, and the next one shows where the hands are when it begins.
         self.presenter.wait()?;
         let ms = 1e3 * start.elapsed().as_secs_f64();
-        if shown {
+        if drawn {
             told.frame = ms;
             if let Some(sight) = &sight {
                 self.pace.took(quality, sight, ms, moving);
             }
+        }
+        if shown {
             if let Some((camera, [method, shading])) = state.pose().zip(state.names()) {
                 events.tell(&Event::Picture(Shown {
                     method,
@@ -156,8 +158,8 @@ impl Opened {
         self.pace.moved(now);
     }
 
-    /// Whether a picture of something was drawn anew.
-    fn present(&mut self, state: &mut State, told: &mut Told, quality: Quality) -> Result<bool> {
+    /// Whether a picture of something was shown, and whether it was drawn anew.
+    fn present(&mut self, state: &mut State, told: &mut Told, quality: Quality) -> Result<[bool; 2]> {
         let PhysicalSize { width, height } = self.window.inner_size();
         let Self { presenter, hud, screen, .. } = self;
         let mut refused = told.refused.clone();
@@ -172,14 +174,14 @@ impl Opened {
                 recorded => recorded.map(|()| None)?,
             };
             hud.record(frame)?;
-            Ok(screen.drew())
+            Ok([seen.is_some(), screen.drew()])
         })?;
         if refused != told.refused {
             // The panels were laid out before it was known.
             told.refused = refused;
             self.window.request_redraw();
         }
-        Ok(shown == Some(true))
+        Ok(shown.unwrap_or_default())
     }
 
     /// Turns about what is under the cursor from now on, if something is.
