@@ -183,10 +183,10 @@ impl Source {
     /// Changes as much as of another state of the scene; numbers of the file are read anew.
     pub fn change_as(&mut self, other: &Self) {
         self.change_to(other.changed);
-        if let By::Number(number) = other.changed.by {
-            if other.numbers.names.get(number) == self.numbers.names.get(number) {
-                self.colour_by(other.changed.by);
-            }
+        if let By::Number(number) = other.changed.by
+            && other.numbers.names.get(number) == self.numbers.names.get(number)
+        {
+            self.colour_by(other.changed.by);
         }
     }
 

@@ -108,20 +108,18 @@ impl Opened {
                 self.pace.took(quality, sight, ms, moving);
             }
         }
-        if shown {
-            if let Some((camera, [method, shading])) = state.pose().zip(state.names()) {
-                events.tell(&Event::Picture(Shown {
-                    method,
-                    shading,
-                    size: state.lens.size,
-                    side: quality.side,
-                    surfels: told.surfels as u64,
-                    sketch: state.is_sketch(),
-                    moving,
-                    took_ms: ms,
-                    camera: camera.into(),
-                }));
-            }
+        if let (true, Some((camera, [method, shading]))) = (shown, state.pose().zip(state.names())) {
+            events.tell(&Event::Picture(Shown {
+                method,
+                shading,
+                size: state.lens.size,
+                side: quality.side,
+                surfels: told.surfels as u64,
+                sketch: state.is_sketch(),
+                moving,
+                took_ms: ms,
+                camera: camera.into(),
+            }));
         }
         if told.times.is_open() {
             self.measure(told)?;
