@@ -50,6 +50,8 @@ pub struct Shown<'a> {
     pub sketch: bool,
     /// Whether the camera moved.
     pub moving: bool,
+    /// Whether it was drawn anew, and not there already.
+    pub drawn: bool,
     /// How long it took, ms.
     pub took_ms: f64,
     /// From where it is seen.

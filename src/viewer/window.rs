@@ -117,6 +117,7 @@ impl Opened {
                 surfels: told.surfels as u64,
                 sketch: state.is_sketch(),
                 moving,
+                drawn,
                 took_ms: ms,
                 camera: camera.into(),
             }));
