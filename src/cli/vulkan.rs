@@ -25,17 +25,22 @@ pub fn options(place: &OnDevice) -> Result<DeviceOptions> {
     })
 }
 
-/// Renders `task` as `place` has it; `measure` times the passes and counts the surfels.
-pub fn render(task: &Task<'_>, options: &DeviceOptions, place: &Place, measure: bool) -> Result<Outcome> {
-    let device = Device::open(options)?;
-    let options = RenderOptions {
+/// How `task` is rendered as `place` has it; `measure` times the passes and counts the surfels.
+fn render_options(task: &Task<'_>, place: &Place, measure: bool) -> RenderOptions {
+    RenderOptions {
         size: task.size,
         outputs: task.layers.with_mask(&task.settings),
         precision: if place.half { Precision::Half } else { Precision::Full },
         rasterizer: place.rasterizer,
         profile: measure,
         count: measure,
-    };
+    }
+}
+
+/// Renders `task` as `place` has it; `measure` times the passes and counts the surfels.
+pub fn render(task: &Task<'_>, options: &DeviceOptions, place: &Place, measure: bool) -> Result<Outcome> {
+    let device = Device::open(options)?;
+    let options = render_options(task, place, measure);
     let mut renderer = Renderer::new(&device, options)?;
     let scene = Scene::upload(&device, task.scene)?;
     let mut times = Times::default();
@@ -66,14 +71,7 @@ pub fn turn(
     mut save: impl FnMut(usize, Picture) -> Result<()>,
 ) -> Result<()> {
     let device = Device::open(options)?;
-    let options = RenderOptions {
-        size: task.size,
-        outputs: task.layers.with_mask(&task.settings),
-        precision: if place.half { Precision::Half } else { Precision::Full },
-        rasterizer: place.rasterizer,
-        profile: false,
-        count: false,
-    };
+    let options = render_options(task, place, false);
     let mut renderer = Renderer::new(&device, options)?;
     let scene = Scene::upload(&device, task.scene)?;
     for (number, camera) in cameras.iter().enumerate() {
