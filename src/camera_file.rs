@@ -60,6 +60,7 @@ pub fn parse(text: &[u8]) -> Result<Pose, String> {
 }
 
 /// The text of a file, a field a line.
+#[cfg(any(feature = "viewer", test))]
 pub fn text(pose: &Pose) -> String {
     let fields = Fields::from(*pose);
     let line = |name: &str, value: String| format!("\"{name}\": {value}");

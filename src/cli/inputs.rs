@@ -55,6 +55,7 @@ pub struct Inputs {
     /// What the points were coloured by, if not by their own colours.
     pub coloured: Option<Coloured>,
     /// Properties of the files' points of which nothing is made.
+    #[cfg_attr(not(feature = "viewer"), allow(dead_code, reason = "the window alone offers them"))]
     pub skipped: Vec<String>,
 }
 
