@@ -1,8 +1,12 @@
 //! Coverage: the samples of each pixel that a surface covers (`lib/coverage.glsl`), beside visibility or nearest where α is coverage.
 
+use super::SplatLayout;
 use crate::error::Result;
-use crate::variant::Variant;
-use crate::vk::{Access, Binding, Buffer, DescriptorSet, Device, Recorder, SetLayout, Use};
+use crate::variant::{SceneVariant, Variant};
+use crate::vk::{
+    Access, Binding, Blend, Buffer, DepthTest, DescriptorSet, Device, DrawPipeline, DrawState, Recorder,
+    RenderPass, SetLayout, Topology, Use,
+};
 use ash::vk::{DescriptorType, ShaderStageFlags};
 use std::sync::Arc;
 
@@ -16,9 +20,23 @@ impl DrawnCoverage {
         variant.coverage.then(|| SetLayout::new(device, &binding)).transpose().map(Self)
     }
 
-    /// Its layout.
-    pub fn layout(&self) -> Option<&SetLayout> {
-        self.0.as_ref()
+    /// The sets of a draw of splats with its coverage beside.
+    pub fn sets<'a>(&'a self, layout: &'a SplatLayout) -> Vec<&'a SetLayout> {
+        std::iter::once(&layout.splats).chain(&self.0).collect()
+    }
+
+    /// What draws the nearest splats of a scene of `variant` into `pass`, with its coverage beside.
+    pub fn pipeline(
+        &self,
+        device: &Arc<Device>,
+        layout: &SplatLayout,
+        variant: &SceneVariant,
+        code: [&'static [u32]; 2],
+        pass: &RenderPass,
+    ) -> Result<DrawPipeline> {
+        let state =
+            DrawState { topology: Topology::Triangles, depth: DepthTest::Nearest, blend: Blend::Replace };
+        DrawPipeline::new(device, &self.sets(layout), code, &variant.constants(), pass, state)
     }
 
     /// The set of `coverage`, which must outlive it.

@@ -24,7 +24,7 @@ impl SubpassSurface {
         depth: DepthTest,
     ) -> Result<Self> {
         let coverage = DrawnCoverage::new(device, &variant.frame)?;
-        let sets: Vec<_> = std::iter::once(&layout.splats).chain(coverage.layout()).collect();
+        let sets = coverage.sets(layout);
         let pipeline =
             DrawPipeline::of_host(device, &sets, code, &variant.constants(), within, depth, WINDOW)?;
         Ok(Self { pipeline })

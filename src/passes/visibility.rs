@@ -6,8 +6,8 @@ use crate::error::Result;
 use crate::targets::{Buffers, Formats, Images};
 use crate::variant::{SceneVariant, Variant};
 use crate::vk::{
-    Access, Attachment, Blend, DepthTest, DescriptorSet, Device, DrawPipeline, DrawState, Framebuffer,
-    Recorder, RenderPass, Topology, Within, shaders,
+    Access, Attachment, DepthTest, DescriptorSet, Device, DrawPipeline, Framebuffer, Recorder, RenderPass,
+    Within, shaders,
 };
 use std::sync::Arc;
 
@@ -41,10 +41,7 @@ impl DrawVisibility {
         layout: &SplatLayout,
         variant: &SceneVariant,
     ) -> Result<DrawPipeline> {
-        let sets: Vec<_> = std::iter::once(&layout.splats).chain(self.coverage.layout()).collect();
-        let state =
-            DrawState { topology: Topology::Triangles, depth: DepthTest::Nearest, blend: Blend::Replace };
-        DrawPipeline::new(device, &sets, code(&variant.frame), &variant.constants(), &self.pass, state)
+        self.coverage.pipeline(device, layout, variant, code(&variant.frame), &self.pass)
     }
 
     /// The pass's views of `targets`, which must outlive them.
