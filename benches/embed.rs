@@ -80,9 +80,7 @@ impl<'a> Stage<'a> {
         let (scene, staging) = host.run(|cmd| Ok(unsafe { embed::upload(device, cmd, &surfels)? }))?;
         drop(staging);
         let camera = Camera::framing(&scene.bounds(), 45f64.to_radians(), 1.0)?;
-        let side = SIDE as f32;
-        let viewport = vk::Viewport { width: side, height: side, max_depth: 1.0, ..Default::default() };
-        let view = View { camera, viewport };
+        let view = View::whole(camera, [SIDE; 2]);
         Ok(Self { host, device: device.clone(), scene: Arc::new(scene), view })
     }
 

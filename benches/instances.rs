@@ -188,10 +188,7 @@ impl Stand<'_> {
         settings: &Settings,
         number: usize,
     ) -> Result<Duration> {
-        let camera = camera(1e-3 * number as f64, SIZE)?;
-        let [width, height] = SIZE.map(|side| side as f32);
-        let view =
-            View { camera, viewport: vk::Viewport { width, height, max_depth: 1.0, ..Default::default() } };
+        let view = View::whole(camera(1e-3 * number as f64, SIZE)?, SIZE);
         // SAFETY: prepared outside the frame's pass and drawn inside it; what is submitted is waited for.
         unsafe {
             let start = ThreadTime::now();

@@ -91,10 +91,7 @@ impl Stand<'_> {
         settings: &Settings,
         number: usize,
     ) -> Result<[u64; 2]> {
-        let camera = camera(1e-3 * number as f64, SIZE)?;
-        let [width, height] = SIZE.map(|side| side as f32);
-        let viewport = vk::Viewport { width, height, max_depth: 1.0, ..Default::default() };
-        let view = View { camera, viewport };
+        let view = View::whole(camera(1e-3 * number as f64, SIZE)?, SIZE);
         // SAFETY: prepared outside the frame's pass and drawn inside it; only the first frame is submitted, and waited for.
         unsafe {
             let start = ThreadTime::now();

@@ -154,6 +154,14 @@ pub struct View {
     pub viewport: vk::Viewport,
 }
 
+impl View {
+    /// Seen in the whole of a target of `size` px, at depths from 0 to 1.
+    pub fn whole(camera: Camera, size: [u32; 2]) -> Self {
+        let [width, height] = size.map(|side| side as f32);
+        Self { camera, viewport: vk::Viewport { width, height, max_depth: 1.0, ..Default::default() } }
+    }
+}
+
 /// Renders scenes into frames of a host.
 pub struct Renderer {
     // Fields are dropped in this order: views before what they view.

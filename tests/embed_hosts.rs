@@ -14,7 +14,7 @@ use host::frame::{Frame, IDS, Kind, Way};
 use host::mesh::Mesh;
 use host::native::{self, Native};
 use host::scene::{Corners, parallelogram};
-use stand::{SIZE, Stand, assert_silent, camera, open, rising, sphere, surfels, upload, viewport};
+use stand::{SIZE, Stand, assert_silent, camera, open, rising, sphere, surfels, upload};
 use std::sync::Arc;
 use surfel::embed::{self, Changes, Options, Renderer, View};
 use surfel::geometry::{Camera, Surfels};
@@ -52,7 +52,7 @@ fn renderer(device: &Arc<Device>, frame: &Frame, rasterizer: Option<Rasterizer>)
 }
 
 fn view(camera: Camera) -> View {
-    View { camera, viewport: viewport(SIZE) }
+    View::whole(camera, SIZE)
 }
 
 /// The formats of depth that the device has, from one depth of which to the next there is so much, beside what rounds floats.

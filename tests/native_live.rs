@@ -17,7 +17,7 @@ use host::mesh::Mesh;
 use host::native::{Kind, Native};
 use host::scene::parallelogram;
 use rig::lay;
-use stand::{SIZE, assert_silent, camera, open, sphere, upload, viewport};
+use stand::{SIZE, assert_silent, camera, open, sphere, upload};
 use std::sync::Arc;
 use support::layouts::Layout;
 use surfel::embed::{self, Changes, View};
@@ -65,7 +65,7 @@ impl<'a> Shown<'a> {
 
     fn frame(&mut self, scene: &Arc<Scene>, settings: &Settings) -> Vec<[f32; 4]> {
         let Self { host, native, mesh, .. } = self;
-        let view = View { camera: camera(), viewport: viewport(SIZE) };
+        let view = View::whole(camera(), SIZE);
         host.run(|cmd| {
             // SAFETY: prepared outside the pass, drawn inside it, and waited for.
             unsafe {

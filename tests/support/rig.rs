@@ -25,8 +25,7 @@ pub type Shown = (Vec<[f32; 4]>, Vec<f32>);
 pub fn view() -> View {
     let camera =
         Camera::look_at(DVec3::new(1.1, 0.9, 3.0), DVec3::ZERO, DVec3::Y, 0.8, 4.0 / 3.0, 0.1).unwrap();
-    let [width, height] = SIZE.map(|side| side as f32);
-    View { camera, viewport: vk::Viewport { width, height, max_depth: 1.0, ..Default::default() } }
+    View::whole(camera, SIZE)
 }
 
 /// A host's frames, and the renderer that draws into them.
