@@ -14,6 +14,7 @@ use host::frame::{Frame, IDS, Kind, Way};
 use host::memory::Counted;
 use host::mesh::Mesh;
 use host::scene::parallelogram;
+use host::under_way::UnderWay;
 use stand::{Stand, assert_silent, open, upload};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
@@ -75,7 +76,7 @@ fn an_embedded_picture_is_the_engines_own_bit_for_bit() {
         assert!(own.colour.iter().filter(|colour| colour[3] == 1.0).count() > 5_000);
         for kind in kinds() {
             let mut stand = Stand::new(&host, kind, SIZE, rasterizer, &surfels());
-            let view = View { camera: camera(), viewport: viewport(SIZE) };
+            let view = View::whole(camera(), SIZE);
             let (colours, depths) = stand.render(&host, &view, &settings, None);
             // Splats that are blended by atomic sums are added in whatever order.
             let blended = rasterizer == Some(Rasterizer::Compute)
@@ -165,7 +166,7 @@ fn numbers_are_the_engines_own() {
         // SAFETY: the target is the frame's.
         let mut renderer = unsafe { Renderer::new(&device, options) }.unwrap();
         let scene = upload(&host, &device, &surfels());
-        let view = View { camera: camera(), viewport: viewport(SIZE) };
+        let view = View::whole(camera(), SIZE);
         draw(&host, &frame, &mut renderer, &scene, &view, &settings).unwrap();
         assert!(frame.read_ids(&host).unwrap() == numbers, "{more:?} {way:?} {has_depth}");
         assert!(frame.read(&host).unwrap().0 == own.colour);
@@ -215,7 +216,7 @@ fn colours_are_encoded_by_the_shader_as_by_the_format() {
         // SAFETY: the target is the frame's.
         let mut renderer = unsafe { Renderer::new(&device, options) }.unwrap();
         let scene = upload(&host, &device, &surfels());
-        let view = View { camera: camera(), viewport: viewport(SIZE) };
+        let view = View::whole(camera(), SIZE);
         draw(&host, &frame, &mut renderer, &scene, &view, &settings).unwrap();
         let bytes = frame.read_bytes(&host, 4).unwrap();
         frame.destroy(&host);
@@ -311,7 +312,7 @@ fn frames_that_are_over_tell_what_is_asked_for() {
         let mut stand = Stand::new(&host, kind, SIZE, rasterizer, &surfels());
         let mut render = |number, measured| {
             stand.renderer.measure(measured);
-            let (start, view) = (Instant::now(), View { camera: nearer(number), viewport: viewport(SIZE) });
+            let (start, view) = (Instant::now(), View::whole(nearer(number), SIZE));
             stand.render(&host, &view, &settings, None);
             // SAFETY: the frame was waited for.
             unsafe { stand.renderer.finish() }.unwrap();
@@ -347,7 +348,7 @@ fn a_report_is_of_the_frame_that_must_be_over_by_now() {
     stand.renderer.measure(Measured { times: false, counts: true });
     let told: Vec<_> = (0..5)
         .map(|number| {
-            let view = View { camera: nearer(number), viewport: viewport(SIZE) };
+            let view = View::whole(nearer(number), SIZE);
             stand.render(&host, &view, &settings, None);
             stand.renderer.report().map(|report| report.counts)
         })
@@ -373,17 +374,14 @@ fn a_thousand_frames_of_all_sizes_and_scenes_leave_nothing() {
         let mut renderer = unsafe { Renderer::new(&device, options) }.unwrap();
         let settings =
             ["perspective-ewa", "pull-push", "sprites"].map(|name| Method::named(name).unwrap().settings());
-        let mut under_way = std::collections::VecDeque::new();
+        let mut under_way = UnderWay::new(2);
         let mut most = 0;
         for number in 0..1000usize {
-            if under_way.len() == 2 {
-                host.wait(under_way.pop_front().unwrap()).unwrap();
-            }
             // Sizes come and go, each for a while.
             let size = [[64, 48], [33, 48], [64, 1]][number / 7 % 3];
-            let view = View { camera: camera(), viewport: viewport(size) };
-            let (submitted, ()) = host
-                .submit(|cmd| {
+            let view = View::whole(camera(), size);
+            under_way
+                .submit(&host, |cmd| {
                     // SAFETY: as `Options::frames_in_flight` says: two are under way at most.
                     unsafe {
                         renderer.prepare(cmd, &scenes[number / 5 % 2], &view, &settings[number / 11 % 3])?;
@@ -394,10 +392,9 @@ fn a_thousand_frames_of_all_sizes_and_scenes_leave_nothing() {
                     Ok(())
                 })
                 .unwrap();
-            under_way.push_back(submitted);
             most = most.max(counts.alive.load(Ordering::SeqCst));
         }
-        under_way.into_iter().for_each(|submitted| host.wait(submitted).unwrap());
+        under_way.finish(&host).unwrap();
         assert!(most < 80, "{most} pieces of memory at once");
     }
     frame.destroy(&host);
@@ -419,7 +416,7 @@ fn without_memory_there_is_an_error_and_then_there_is_memory() {
     // SAFETY: the target is the frame's.
     let mut renderer = unsafe { Renderer::new(&device, options) }.unwrap();
     let scene = upload(&host, &device, &surfels());
-    let view = View { camera: camera(), viewport: viewport(SIZE) };
+    let view = View::whole(camera(), SIZE);
     let mut refused = 0;
     for left in 0.. {
         counts.left.store(left, Ordering::SeqCst);
@@ -493,7 +490,7 @@ fn what_cannot_be_served_is_refused_and_says_why() {
 
     let other = host.lend(None).unwrap();
     let elsewhere = upload(&host, &other, &surfels());
-    let good = View { camera: camera(), viewport: viewport(SIZE) };
+    let good = View::whole(camera(), SIZE);
     let bad = |change: fn(&mut View)| {
         let mut view = good;
         change(&mut view);

@@ -13,8 +13,8 @@ use host::Host;
 use host::frame::{Frame, Kind, Way};
 use host::memory::Counted;
 use host::native::{self, Native};
-use stand::{SIZE, assert_silent, camera, open, upload, viewport};
-use std::collections::VecDeque;
+use host::under_way::UnderWay;
+use stand::{SIZE, assert_silent, camera, open, upload};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use support::placing::{exact, painted, plain, rich, turned};
@@ -44,7 +44,7 @@ fn method(name: &str) -> Settings {
 }
 
 fn view() -> View {
-    View { camera: camera(), viewport: viewport(SIZE) }
+    View::whole(camera(), SIZE)
 }
 
 /// Two clouds that run through each other, one of them without colours.
@@ -209,13 +209,10 @@ fn lists_that_change_with_every_frame_leave_nothing() {
         let mut renderer = unsafe { Renderer::new(&device, options(&frame, None)) }.unwrap();
         let names = ["perspective-ewa", "pull-push", "sprites-unfiltered"];
         let settings = names.map(method);
-        let mut under_way = VecDeque::new();
+        let mut under_way = UnderWay::new(2);
         for number in 0..60 {
-            if under_way.len() == 2 {
-                host.wait(under_way.pop_front().unwrap()).unwrap();
-            }
-            let (submitted, ()) = host
-                .submit(|cmd| {
+            under_way
+                .submit(&host, |cmd| {
                     // SAFETY: two frames are under way at most, as was said.
                     unsafe {
                         let list = list(number, &scenes);
@@ -227,9 +224,8 @@ fn lists_that_change_with_every_frame_leave_nothing() {
                     Ok(())
                 })
                 .unwrap();
-            under_way.push_back(submitted);
         }
-        under_way.into_iter().for_each(|submitted| host.wait(submitted).unwrap());
+        under_way.finish(&host).unwrap();
         drop(renderer);
         assert_eq!(counts.alive.load(Ordering::SeqCst), start);
     }

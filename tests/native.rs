@@ -15,8 +15,8 @@ use host::memory::Counted;
 use host::mesh::Mesh;
 use host::native::{Kind, Native};
 use host::scene::{Corners, parallelogram};
+use host::under_way::UnderWay;
 use stand::{SIZE, Stand, assert_silent, camera, meets, open, rising, sphere, surfels, upload, viewport};
-use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use support::sampling::{self, Random};
@@ -126,7 +126,7 @@ fn count_different(a: &[[f32; 4]], b: &[[f32; 4]]) -> usize {
 #[test]
 fn subpasses_draw_the_engines_own_picture_bit_for_bit() {
     let Some(host) = open(|all| all) else { return };
-    let view = View { camera: camera(), viewport: viewport(SIZE) };
+    let view = View::whole(camera(), SIZE);
     let stencilled = Some(vk::Format::D32_SFLOAT_S8_UINT);
     let kinds = [
         PLAIN,
@@ -189,7 +189,7 @@ fn clips_coverage_normals_and_parallel_rays_are_the_engines_own_too() {
             let own = alone(surfels, &settings, &camera, normals, kind.depth.is_some());
             let kind = Kind { normals, ..kind };
             let mut drawn = Drawn::new(&host, kind, SIZE, surfels, &settings);
-            drawn.render(&View { camera, viewport: viewport(SIZE) }, &settings, None, false);
+            drawn.render(&View::whole(camera, SIZE), &settings, None, false);
             let expected = multiplied(&own.colour);
             assert!(expected.iter().filter(|colour| colour[3] > 0.0).count() > 4_000);
             assert_eq!(count_different(&drawn.colours(), &expected), 0, "{name} {settings:?} {kind:?}");
@@ -327,7 +327,7 @@ fn in_hard_scenes_the_picture_is_the_composites() {
             let sides = [DVec3::X, DVec3::new(0.0, 0.7, 0.7)];
             let sides = sides.map(|side| (size * back.transform_vector3(side)).as_vec3());
             let corners = parallelogram(bounds.centre().as_vec3(), sides);
-            let view = View { camera: *camera, viewport: viewport(SIZE) };
+            let view = View::whole(*camera, SIZE);
             let kind = Kind { reversed: camera.reversed, ..PLAIN };
             let other = composited(&host, kind, &view, &settings, &case.surfels, &corners);
             for seed in [true, false] {
@@ -356,7 +356,7 @@ fn in_hard_scenes_the_picture_is_the_composites() {
 #[test]
 fn a_later_subpass_of_the_host_sees_the_depth_of_surfels() {
     let Some(host) = open(|all| all) else { return };
-    let (settings, view) = (method("perspective-ewa"), View { camera: camera(), viewport: viewport(SIZE) });
+    let (settings, view) = (method("perspective-ewa"), View::whole(camera(), SIZE));
     let mut drawn = Drawn::new(&host, PLAIN, SIZE, &surfels(), &settings);
     drawn.render(&view, &settings, None, false);
     let (clear, depths) = (drawn.colours(), drawn.depths());
@@ -412,7 +412,7 @@ fn count_fragments(drawn: &mut Drawn<'_>, view: &View, settings: &Settings, mesh
 #[test]
 fn splats_that_the_host_hides_are_left_out_early() {
     let Some(host) = open(|all| all) else { return };
-    let view = View { camera: camera(), viewport: viewport(SIZE) };
+    let view = View::whole(camera(), SIZE);
     // Half of the view, in front of all.
     let before = camera().view.inverse();
     let centre = before.transform_point3(DVec3::new(-1.0, 0.0, 1.0)).as_vec3();
@@ -455,20 +455,17 @@ fn a_thousand_frames_of_all_sizes_and_scenes_leave_nothing() {
         let frames: Vec<_> = settings.iter().map(|settings| (scenes[0].streams(), settings)).collect();
         let kind = Kind { samples: FOUR, ..PLAIN };
         let mut native = Native::new(&host, &device, kind, [64, 48], &frames).unwrap();
-        let (mut under_way, mut most) = (VecDeque::new(), 0);
+        let (mut under_way, mut most) = (UnderWay::new(2), 0);
         for number in 0..1000usize {
-            let resized = number > 0 && number % 7 == 0;
-            while under_way.len() == 2 || resized && !under_way.is_empty() {
-                host.wait(under_way.pop_front().unwrap()).unwrap();
-            }
             // Sizes come and go, each for a while.
             let size = [[64, 48], [33, 48], [64, 1]][number / 7 % 3];
-            if resized {
+            if number > 0 && number % 7 == 0 {
+                under_way.finish(&host).unwrap();
                 native.resize(&host, size).unwrap();
             }
-            let view = View { camera: camera(), viewport: viewport(size) };
-            let (submitted, ()) = host
-                .submit(|cmd| {
+            let view = View::whole(camera(), size);
+            under_way
+                .submit(&host, |cmd| {
                     let (scene, settings) = (&scenes[number / 5 % 2], &settings[number / 11 % 4]);
                     // SAFETY: two are under way at most.
                     unsafe {
@@ -477,10 +474,9 @@ fn a_thousand_frames_of_all_sizes_and_scenes_leave_nothing() {
                     }
                 })
                 .unwrap();
-            under_way.push_back(submitted);
             most = most.max(counts.alive.load(Ordering::SeqCst));
         }
-        under_way.into_iter().for_each(|submitted| host.wait(submitted).unwrap());
+        under_way.finish(&host).unwrap();
         assert!(most < 80, "{most} pieces of memory at once");
         native.destroy(&host);
     }
@@ -497,7 +493,7 @@ fn without_memory_there_is_an_error_and_then_there_is_memory() {
     let device = host.lend(Some(Box::new(memory))).unwrap();
     let scene = upload(&host, &device, &surfels());
     let settings = Settings { alpha: Alpha::Coverage, ..method("perspective-ewa") };
-    let view = View { camera: camera(), viewport: viewport(SIZE) };
+    let view = View::whole(camera(), SIZE);
     let frames = [(scene.streams(), &settings)];
     let mut native = Native::new(&host, &device, PLAIN, [8, 8], &frames).unwrap();
     let (mut sized, mut refused, mut left) = (false, 0, 0);
@@ -614,7 +610,7 @@ fn frames_that_cannot_be_served_are_refused_and_say_why() {
     let mut painted = surfels();
     sampling::paint_linear(&mut painted, &mut Random(5));
     let painted = upload(&host, &drawn.device, &painted);
-    let good = View { camera: camera(), viewport: viewport(SIZE) };
+    let good = View::whole(camera(), SIZE);
     let bad = |change: fn(&mut View)| {
         let mut view = good;
         change(&mut view);
@@ -666,7 +662,7 @@ fn a_plan_for_several_frames_serves_each() {
     let settings = ["perspective-ewa", "sprites"].map(method);
     let frames = [(scenes[0].streams(), &settings[1]), (scenes[1].streams(), &settings[0])];
     let mut native = Native::new(&host, &device, PLAIN, SIZE, &frames).unwrap();
-    let view = View { camera: camera(), viewport: viewport(SIZE) };
+    let view = View::whole(camera(), SIZE);
     for (surfels, scene) in both.iter().zip(&scenes) {
         for settings in &settings {
             let own = alone(surfels, settings, &camera(), false, true);
@@ -702,7 +698,7 @@ fn sums_of_16_bits_are_the_engines_own_too() {
     let scene = upload(&host, &device, &surfels());
     let frames = [(scene.streams(), &settings)];
     let mut native = Native::new(&host, &device, PLAIN, SIZE, &frames).unwrap();
-    let view = View { camera: camera(), viewport: viewport(SIZE) };
+    let view = View::whole(camera(), SIZE);
     host.run(|cmd| {
         // SAFETY: prepared outside the pass, drawn inside it, and waited for.
         unsafe {

@@ -4,6 +4,10 @@
 
 mod host;
 
+use host::composite::Composite;
+use host::frame::Way;
+use host::sphere::Sphere;
+
 fn main() -> host::Result<()> {
-    host::show::run(host::frame::Way::Rendering)
+    host::show::run(|host, asked| Composite::<Sphere>::new(host, Way::Rendering, asked))
 }

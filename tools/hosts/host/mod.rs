@@ -3,11 +3,13 @@
 
 #![allow(dead_code, reason = "no host uses all of it")]
 
+pub mod composite;
 pub mod fog;
 pub mod frame;
 pub mod image;
 pub mod memory;
 pub mod mesh;
+pub mod models;
 pub mod native;
 pub mod options;
 #[cfg(feature = "viewer")]
@@ -15,10 +17,14 @@ pub mod presenter;
 pub mod scene;
 pub mod show;
 pub mod simulation;
+pub mod sphere;
 #[cfg(feature = "viewer")]
 pub mod surface;
 #[cfg(feature = "viewer")]
 pub mod swapchain;
+#[cfg(feature = "viewer")]
+pub mod tour;
+pub mod under_way;
 #[cfg(feature = "viewer")]
 pub mod window;
 
@@ -45,7 +51,7 @@ pub struct Host {
     pool: vk::CommandPool,
     messenger: vk::DebugUtilsMessengerEXT,
     debug: ext::debug_utils::Instance,
-    messages: Box<Mutex<Vec<String>>>,
+    messages: Arc<Mutex<Vec<String>>>,
     _entry: ash::Entry,
 }
 
@@ -105,7 +111,7 @@ impl Host {
                 info = info.push_next(&mut features);
             }
             let instance = entry.create_instance(&info, None)?;
-            let messages = Box::new(Mutex::new(Vec::new()));
+            let messages = Arc::new(Mutex::new(Vec::new()));
             let debug = ext::debug_utils::Instance::new(&entry, &instance);
             let messenger = debug.create_debug_utils_messenger(&messenger(&messages), None)?;
             let (physical, family) = choose(&instance)?;
@@ -250,9 +256,11 @@ impl Host {
         Ok(made)
     }
 
-    /// An error if the validation layers have said anything.
-    pub fn silent(&self) -> Result<()> {
-        let messages = self.messages();
+    /// Ends it: an error if the validation layers have said anything, of what is left over on the device, too.
+    pub fn close(self) -> Result<()> {
+        let messages = self.messages.clone();
+        drop(self);
+        let messages = messages.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         if messages.is_empty() { Ok(()) } else { Err(format!("validation: {}", messages.join("; ")).into()) }
     }
 

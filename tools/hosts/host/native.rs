@@ -206,8 +206,16 @@ impl Native {
 
     /// The picture's bytes, `bytes` a pixel.
     pub fn picture(&self, host: &Host, bytes: usize) -> Result<Vec<u8>> {
-        let number = self.kind.numbers().resolved.unwrap_or(0);
-        self.framed.targets[number as usize].read(host, bytes)
+        self.framed.targets[self.picture_number()].read(host, bytes)
+    }
+
+    /// The image of the picture, which is ready to be copied after the pass.
+    pub fn image(&self) -> vk::Image {
+        self.framed.targets[self.picture_number()].image
+    }
+
+    fn picture_number(&self) -> usize {
+        self.kind.numbers().resolved.unwrap_or(0) as usize
     }
 
     /// The depths' bytes, `bytes` a pixel, where there is one sample.

@@ -1,44 +1,96 @@
 //! The hosts' command lines.
 
+use std::ffi::OsString;
 use std::path::PathBuf;
+use surfel::Settings;
+use surfel::methods::Method;
 
 /// What a host is asked to do.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Wanted {
     /// A picture in a file, a PNG.
     Picture(PathBuf),
-    /// A window, for so many frames or until it is closed.
-    Window(Option<u64>),
+    /// A window, until it is closed.
+    #[default]
+    Window,
+    /// A window that changes its size and what it shows by itself.
+    Tour,
     /// A comparison with the engine's own frames.
     Check,
 }
 
-/// Reads the arguments: a file, `--window`, `--frames` with a number, `--check`. The window, if there are none.
-pub fn wanted(arguments: impl IntoIterator<Item = std::ffi::OsString>) -> Result<Wanted, String> {
-    let mut wanted = None;
-    let mut frames = None;
-    let mut arguments = arguments.into_iter().skip(1);
-    while let Some(argument) = arguments.next() {
-        let next = match argument.to_str() {
-            Some("--window") => Wanted::Window(None),
-            Some("--check") => Wanted::Check,
-            Some("--frames") => {
-                let number = arguments.next().and_then(|number| number.to_str()?.parse().ok());
-                frames = Some(number.ok_or("--frames wants a number")?);
-                continue;
+/// What a command line asks for.
+#[derive(Clone, Debug, Default)]
+pub struct Asked {
+    pub wanted: Wanted,
+    pub method: Option<Method>,
+    /// A PLY in the place of the host's own surfels.
+    pub model: Option<PathBuf>,
+    /// Number of the host's own surfels.
+    pub points: Option<u32>,
+    /// Frames until it ends; the last one is the picture.
+    pub frames: Option<u64>,
+}
+
+const USAGE: &str = "give FILE.png, --window, --tour or --check; \
+    and --method NAME, --model FILE.ply, --points N, --frames N where they are wanted";
+
+impl Asked {
+    /// Reads the program's arguments: the window, if there are none.
+    pub fn of_program() -> Result<Self, String> {
+        Self::of(std::env::args_os().skip(1))
+    }
+
+    fn of(arguments: impl IntoIterator<Item = OsString>) -> Result<Self, String> {
+        let (mut asked, mut wanted) = (Self::default(), None);
+        let mut arguments = arguments.into_iter();
+        while let Some(argument) = arguments.next() {
+            let name = argument.to_str().unwrap_or_default().to_owned();
+            let mut value = || arguments.next().ok_or_else(|| format!("{name} wants a value: {USAGE}"));
+            let next = match name.as_str() {
+                "--window" => Wanted::Window,
+                "--tour" => Wanted::Tour,
+                "--check" => Wanted::Check,
+                "--method" => {
+                    asked.method = Some(method(&value()?)?);
+                    continue;
+                }
+                "--model" => {
+                    asked.model = Some(value()?.into());
+                    continue;
+                }
+                "--points" => {
+                    asked.points = Some(number(&name, &value()?)?);
+                    continue;
+                }
+                "--frames" => {
+                    asked.frames = Some(number(&name, &value()?)?);
+                    continue;
+                }
+                option if option.starts_with('-') => return Err(format!("{option} is no option: {USAGE}")),
+                _ => Wanted::Picture(argument.into()),
+            };
+            if wanted.replace(next).is_some() {
+                return Err(format!("one thing at a time: {USAGE}"));
             }
-            Some(option) if option.starts_with('-') => {
-                return Err(format!("{option} is no option: give FILE.png, --window or --check"));
-            }
-            _ => Wanted::Picture(argument.into()),
-        };
-        if wanted.replace(next).is_some() {
-            return Err("give one of FILE.png, --window and --check".into());
         }
+        Ok(Self { wanted: wanted.unwrap_or_default(), ..asked })
     }
-    match (wanted.unwrap_or(Wanted::Window(None)), frames) {
-        (Wanted::Window(_), frames) => Ok(Wanted::Window(frames)),
-        (wanted, None) => Ok(wanted),
-        (_, Some(_)) => Err("--frames is for --window".into()),
+
+    /// How surfels are rendered.
+    pub fn settings(&self) -> Settings {
+        self.method.map_or_else(Settings::default, |method| method.settings())
     }
+}
+
+fn method(name: &OsString) -> Result<Method, String> {
+    let found = name.to_str().and_then(Method::named);
+    let names = || Method::ALL.map(|method| method.name).join(", ");
+    found.ok_or_else(|| format!("{} is no method: give one of {}", name.display(), names()))
+}
+
+/// A number above 0.
+fn number<T: std::str::FromStr + Default + PartialEq>(name: &str, text: &OsString) -> Result<T, String> {
+    let number = text.to_str().and_then(|text| text.parse().ok()).filter(|number| *number != T::default());
+    number.ok_or_else(|| format!("{name} wants a whole number above 0, not {}", text.display()))
 }

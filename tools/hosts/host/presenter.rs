@@ -1,13 +1,11 @@
 //! Pictures to a window, with two frames under way.
 
+use super::show::FRAMES_IN_FLIGHT;
 use super::surface::Surface;
 use super::swapchain::Swapchain;
 use super::{Host, Result};
 use ash::vk;
 use winit::window::Window;
-
-/// How many frames may be under way.
-pub const FRAMES_IN_FLIGHT: u32 = 2;
 
 /// Presents to a window.
 pub struct Presenter {
@@ -51,21 +49,23 @@ impl Presenter {
         Ok(self.swapchain.as_ref().map(|swapchain| swapchain.size))
     }
 
-    /// Records a frame with `body`, which leaves its picture ready to be copied in an image that it names, and presents that.
+    /// Records a frame with `body`, which leaves its picture ready to be copied in an image that it names, and presents that; whether there was
+    /// one.
     pub fn present(
         &mut self,
         host: &Host,
         body: impl FnOnce(vk::CommandBuffer) -> Result<vk::Image>,
-    ) -> Result<()> {
-        let Some(swapchain) = &mut self.swapchain else { return Ok(()) };
+    ) -> Result<bool> {
+        let Some(swapchain) = &mut self.swapchain else { return Ok(false) };
         let slot = &self.slots[self.next];
         slot.wait(host)?;
-        let Some(acquired) = swapchain.acquire(slot.acquired)? else { return Ok(()) };
+        let Some(acquired) = swapchain.acquire(slot.acquired)? else { return Ok(false) };
         slot.record(host, acquired.image, swapchain.size, body)?;
         // SAFETY: it was recorded whole, and what the slot did last was waited for.
         unsafe { slot.submit(host, acquired.drawn)? };
         self.next = (self.next + 1) % self.slots.len();
-        swapchain.present(host, acquired)
+        swapchain.present(host, acquired)?;
+        Ok(true)
     }
 
     /// Destroys it, before the window.

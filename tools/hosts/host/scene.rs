@@ -1,4 +1,4 @@
-//! What each host shows: surfels on a sphere, and a ring of triangles that goes through it.
+//! What hosts show: surfels on a sphere or an egg, and a ring of triangles that goes through them.
 
 use glam::{DVec3, Vec3};
 use surfel::geometry::{Camera, Colours, Surfels};
@@ -39,6 +39,18 @@ pub fn sphere(count: u32) -> Surfels {
         colours: Some(Colours::Linear(positions.iter().map(colour).collect())),
         positions,
         ..Default::default()
+    }
+}
+
+/// Surfels on an egg within the unit sphere, along a spiral, without colours.
+pub fn egg(count: u32) -> Surfels {
+    let axes = Vec3::new(0.7, 0.95, 0.6);
+    let round = sphere(count);
+    Surfels {
+        normals: round.normals.iter().map(|normal| (*normal / axes).normalize()).collect(),
+        positions: round.positions.iter().map(|position| *position * axes).collect(),
+        colours: None,
+        ..round
     }
 }
 

@@ -1,46 +1,50 @@
 //! A host's window: the camera goes round, and frames follow the window's size.
 
-use super::frame::Way;
-use super::presenter::{FRAMES_IN_FLIGHT, Presenter};
-use super::scene::{SIZE, camera};
-use super::show::Show;
+use super::options::{Asked, Wanted};
+use super::presenter::Presenter;
+use super::scene::SIZE;
+use super::show::{New, STEP, Show};
+use super::tour::{FRAMES, Step, Tour};
 use super::{Host, Result, Validation};
 use ash::khr;
 use std::time::Instant;
 use winit::application::ApplicationHandler;
 use winit::dpi::PhysicalSize;
-use winit::event::{KeyEvent, WindowEvent};
+use winit::event::{ElementState, KeyEvent, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, EventLoop};
 use winit::keyboard::{Key, NamedKey};
 use winit::raw_window_handle::HasDisplayHandle;
 use winit::window::{Window, WindowId};
 
-/// Opens a window of a host of this way, for so many frames or until it is closed.
-pub fn open(way: Way, frames: Option<u64>) -> Result<()> {
-    let mut app = App { way, opened: None, left: frames, failed: None };
+/// Opens a window, until it is closed or has shown the frames that are asked for. The space bar shows other surfels, Escape closes it.
+pub fn open<S: Show>(new: New<S>, asked: Asked) -> Result<()> {
+    let tour = (asked.wanted == Wanted::Tour).then(|| Tour::new(asked.frames.unwrap_or(FRAMES)));
+    let mut app = App { new, asked, tour, opened: None, failed: None };
     EventLoop::new()?.run_app(&mut app)?;
     app.failed.map_or(Ok(()), Err)
 }
 
-struct App {
-    way: Way,
-    opened: Option<Opened>,
-    /// Frames until it ends.
-    left: Option<u64>,
+struct App<S> {
+    new: New<S>,
+    asked: Asked,
+    opened: Option<Opened<S>>,
+    tour: Option<Tour>,
     failed: Option<Box<dyn std::error::Error>>,
 }
 
-struct Opened {
-    show: Show,
+struct Opened<S> {
+    show: S,
     presenter: Presenter,
     host: Host,
     start: Instant,
+    /// Frames that were drawn.
+    drawn: u64,
     window: Window,
 }
 
-impl ApplicationHandler for App {
+impl<S: Show> ApplicationHandler for App<S> {
     fn resumed(&mut self, events: &ActiveEventLoop) {
-        match Opened::new(events, self.way) {
+        match Opened::new(events, self.new, &self.asked) {
             Ok(opened) => self.opened = Some(opened),
             Err(error) => self.fail(events, error),
         }
@@ -48,26 +52,32 @@ impl ApplicationHandler for App {
 
     fn window_event(&mut self, events: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
         let Some(opened) = &mut self.opened else { return };
-        match event {
-            WindowEvent::CloseRequested => events.exit(),
+        let done = match event {
+            WindowEvent::CloseRequested => {
+                events.exit();
+                Ok(())
+            }
             WindowEvent::KeyboardInput {
-                event: KeyEvent { logical_key: Key::Named(NamedKey::Escape), .. },
+                event: KeyEvent { logical_key: Key::Named(key), state: ElementState::Pressed, .. },
                 ..
-            } => events.exit(),
+            } => match key {
+                NamedKey::Space => opened.show.change(&opened.host),
+                NamedKey::Escape => {
+                    events.exit();
+                    Ok(())
+                }
+                _ => Ok(()),
+            },
             WindowEvent::Resized(_) => {
                 opened.presenter.resized();
                 opened.window.request_redraw();
+                Ok(())
             }
-            WindowEvent::RedrawRequested => {
-                self.left = self.left.map(|left| left.saturating_sub(1));
-                if self.left == Some(0) {
-                    events.exit();
-                }
-                if let Err(error) = opened.draw() {
-                    self.fail(events, error);
-                }
-            }
-            _ => {}
+            WindowEvent::RedrawRequested => self.draw(events),
+            _ => Ok(()),
+        };
+        if let Err(error) = done {
+            self.fail(events, error);
         }
     }
 
@@ -77,44 +87,84 @@ impl ApplicationHandler for App {
         {
             self.fail(events, error);
         }
+        if let (Some(tour), None) = (&self.tour, &self.failed) {
+            match tour.end() {
+                Ok(told) => println!("{told}: nothing to complain of, nothing left over"),
+                Err(error) => self.fail(events, error.into()),
+            }
+        }
     }
 }
 
-impl App {
+impl<S: Show> App<S> {
     fn fail(&mut self, events: &ActiveEventLoop, error: Box<dyn std::error::Error>) {
         self.failed.get_or_insert(error);
         events.exit();
     }
+
+    /// Draws a frame, and does what comes after it.
+    fn draw(&mut self, events: &ActiveEventLoop) -> Result<()> {
+        let Some(opened) = &mut self.opened else { return Ok(()) };
+        let seconds = match self.tour {
+            Some(_) => STEP * opened.drawn as f64,
+            None => opened.start.elapsed().as_secs_f64(),
+        };
+        if !opened.draw(seconds)? {
+            return Ok(());
+        }
+        let step = match &mut self.tour {
+            Some(tour) => tour.next(opened.show.size()),
+            None => (self.asked.frames != Some(opened.drawn)).then_some(Step::STAY),
+        };
+        match step {
+            None => events.exit(),
+            Some(Step { size, change }) => {
+                if let Some([width, height]) = size {
+                    let _ = opened.window.request_inner_size(PhysicalSize { width, height });
+                }
+                if change {
+                    opened.show.change(&opened.host)?;
+                }
+            }
+        }
+        Ok(())
+    }
 }
 
-impl Opened {
-    fn new(events: &ActiveEventLoop, way: Way) -> Result<Self> {
+impl<S: Show> Opened<S> {
+    fn new(events: &ActiveEventLoop, new: New<S>, asked: &Asked) -> Result<Self> {
         let [width, height] = SIZE;
         let size = PhysicalSize { width, height };
         let attributes = Window::default_attributes().with_title("surfels in a host").with_inner_size(size);
         let window = events.create_window(attributes)?;
         let extensions = ash_window::enumerate_required_extensions(window.display_handle()?.as_raw())?;
-        let host = Host::open_with(|all| all, Validation::WhereThere, extensions, &[khr::swapchain::NAME])?;
+        let validation = match asked.wanted {
+            Wanted::Tour => Validation::Needed,
+            _ => Validation::WhereThere,
+        };
+        let host = Host::open_with(|all| all, validation, extensions, &[khr::swapchain::NAME])?;
         let presenter = Presenter::new(&host, &window)?;
-        let show = Show::new(&host, way, SIZE, FRAMES_IN_FLIGHT)?;
+        let show = new(&host, asked)?;
         window.request_redraw();
-        Ok(Self { show, presenter, host, start: Instant::now(), window })
+        Ok(Self { show, presenter, host, start: Instant::now(), drawn: 0, window })
     }
 
-    fn draw(&mut self) -> Result<()> {
-        let Self { show, presenter, host, start, window } = self;
+    /// Draws what is seen after so many seconds; whether anything was.
+    fn draw(&mut self, seconds: f64) -> Result<bool> {
+        let Self { show, presenter, host, drawn, window, .. } = self;
         let PhysicalSize { width, height } = window.inner_size();
         // A window without extent draws nothing until it has one again.
-        let Some(size) = presenter.ready(host, [width, height])? else { return Ok(()) };
+        let Some(size) = presenter.ready(host, [width, height])? else { return Ok(false) };
         window.request_redraw();
-        if size != show.frame.size {
-            show.frame.resize(host, size)?;
+        if size != show.size() {
+            show.resize(host, size)?;
         }
-        let camera = camera(0.5 * start.elapsed().as_secs_f64(), size)?;
-        presenter.present(host, |cmd| {
-            show.record(host, cmd, &camera)?;
-            Ok(show.frame.image())
-        })
+        let shown = presenter.present(host, |cmd| {
+            show.record(host, cmd, seconds)?;
+            Ok(show.image())
+        })?;
+        *drawn += u64::from(shown);
+        Ok(shown)
     }
 
     /// Ends it: an error if the validation layers have said anything.
@@ -122,6 +172,6 @@ impl Opened {
         let Self { show, presenter, host, .. } = self;
         presenter.destroy(&host);
         show.destroy(&host);
-        host.silent()
+        host.close()
     }
 }

@@ -3,6 +3,7 @@
 use crate::Result;
 use crate::frame::Frame;
 use crate::gpu::{Gpu, instance};
+use crate::options::Asked;
 use crate::scene::{SIZE, camera, sphere};
 use crate::show::{PANE, Parts, SURFELS, Show};
 use glam::DVec3;
@@ -33,7 +34,7 @@ pub fn all() -> Result<()> {
         let own = own(&device, &settings)?;
         for samples in [1, 4] {
             let frame = Frame::new(&gpu, SIZE, samples);
-            let mut show = Show::new(&gpu, samples)?;
+            let mut show = Show::new(&gpu, &Asked::default(), samples)?;
             show.settings = settings.clone();
             show.embedded.attach(&frame)?;
             let mut shoot = |parts| shot(&gpu, &frame, &mut show, parts);

@@ -1,5 +1,5 @@
 //! A host that draws with wgpu, and surfels among what it draws:
-//! `cargo run --manifest-path tools/hosts/wgpu/Cargo.toml -- [FILE.png | --window | --check]`.
+//! `cargo run --manifest-path tools/hosts/wgpu/Cargo.toml -- [FILE.png | --window | --tour | --check]`.
 
 mod check;
 mod frame;
@@ -12,18 +12,24 @@ mod options;
 mod scene;
 mod show;
 mod surfels;
+#[path = "../../host/tour.rs"]
+mod tour;
 mod window;
 
-use options::Wanted;
+use options::{Asked, Wanted};
 
 /// Whatever goes wrong.
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
 fn main() -> Result<()> {
     let listener = listen::install()?;
-    match options::wanted(std::env::args_os())? {
-        Wanted::Picture(file) => show::picture(&file)?,
-        Wanted::Window(frames) => window::open(frames)?,
+    let asked = Asked::of_program()?;
+    if asked.model.is_some() {
+        return Err("this host shows models of its own: leave --model out".into());
+    }
+    match &asked.wanted {
+        Wanted::Picture(file) => show::picture(&asked, file)?,
+        Wanted::Window | Wanted::Tour => window::open(&asked)?,
         Wanted::Check => check::all()?,
     }
     listener.silent()

@@ -4,17 +4,20 @@ use crate::Result;
 use crate::frame::Frame;
 use crate::gpu::{Gpu, instance};
 use crate::mesh::{Look, Mesh};
-use crate::scene::{SIZE, camera, parallelogram, sphere, torus};
+use crate::options::Asked;
+use crate::scene::{SIZE, camera, egg, parallelogram, sphere, torus};
 use crate::surfels::Embedded;
 use glam::{DMat4, DVec3, Vec3};
 use std::path::Path;
 use surfel::Settings;
-use surfel::geometry::Camera;
+use surfel::geometry::{Camera, Surfels};
 
 /// All that a frame shows.
 pub struct Show {
     pub embedded: Embedded,
     pub settings: Settings,
+    /// The surfels that are shown, and those that are not.
+    models: [Surfels; 2],
     ring: Mesh,
     glass: Mesh,
 }
@@ -27,23 +30,32 @@ pub struct Parts {
     pub glass: bool,
 }
 
-/// Number of surfels.
+/// Number of surfels, if none is asked for.
 pub const SURFELS: u32 = 200_000;
 
 /// The pane: its centre and the halves of its sides, which are at right angles.
 pub const PANE: [Vec3; 3] = [Vec3::new(0.6, 0.1, 0.75), Vec3::new(0.6, 0.0, -0.3), Vec3::new(0.0, 0.55, 0.0)];
 
 impl Show {
-    /// What is shown in frames of so many samples a pixel.
-    pub fn new(gpu: &Gpu, samples: u32) -> Result<Self> {
+    /// What is asked for, in frames of so many samples a pixel.
+    pub fn new(gpu: &Gpu, asked: &Asked, samples: u32) -> Result<Self> {
         let [centre, u, v] = PANE;
         let ring = torus(Vec3::ZERO, [1.0, 0.22], 96);
+        let count = asked.points.unwrap_or(SURFELS);
+        let models = [sphere(count), egg(count.div_ceil(3))];
         Ok(Self {
-            embedded: Embedded::new(gpu, &sphere(SURFELS), samples)?,
-            settings: Settings::default(),
+            embedded: Embedded::new(gpu, &models[0], samples)?,
+            settings: asked.settings(),
+            models,
             ring: Mesh::new(gpu, &ring, Look::Lit, samples),
             glass: Mesh::new(gpu, &parallelogram(centre, [u, v]), Look::Glass, samples),
         })
+    }
+
+    /// The other surfels from the next frame on.
+    pub fn change(&mut self, gpu: &Gpu) -> Result<()> {
+        self.models.reverse();
+        self.embedded.show(gpu, &self.models[0])
     }
 
     /// Records a frame: commands to be submitted at once, in this order.
@@ -80,10 +92,10 @@ fn upwards(camera: &Camera) -> Camera {
 }
 
 /// Renders a frame and writes it to `file`, a PNG.
-pub fn picture(file: &Path) -> Result<()> {
+pub fn picture(asked: &Asked, file: &Path) -> Result<()> {
     let gpu = Gpu::open(&instance()?, None)?;
     let frame = Frame::new(&gpu, SIZE, 4);
-    let mut show = Show::new(&gpu, frame.samples)?;
+    let mut show = Show::new(&gpu, asked, frame.samples)?;
     show.embedded.attach(&frame)?;
     let all = Parts { ring: true, surfels: true, glass: true };
     gpu.queue.submit(show.record(&gpu, &frame, &camera(0.0, SIZE)?, all)?);

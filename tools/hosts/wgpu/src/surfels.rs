@@ -9,6 +9,7 @@ use ash::vk;
 use std::sync::Arc;
 use surfel::embed::{self, Options, Pass, Renderer, Target, View};
 use surfel::geometry::{Camera, Surfels};
+use surfel::vk::Device;
 use surfel::{Precision, Scene, Settings};
 use wgpu::hal::vulkan::Api as Vulkan;
 
@@ -17,6 +18,8 @@ pub struct Embedded {
     // Fields are dropped in this order: the pass after what is made of it, and wgpu's device last.
     renderer: Renderer,
     scene: Arc<Scene>,
+    /// The device as it was lent.
+    borrowed: Arc<Device>,
     attached: Option<Attached>,
     pass: RawPass,
     _device: wgpu::Device,
@@ -47,17 +50,7 @@ impl Embedded {
     /// Uploads `surfels`, for frames of so many samples a pixel.
     pub fn new(gpu: &Gpu, surfels: &Surfels, samples: u32) -> Result<Self> {
         let borrowed = gpu.lend()?;
-        let mut encoder = gpu.device.create_command_encoder(&Default::default());
-        // SAFETY: recorded outside a render pass; the staging memory stays until the GPU is done.
-        let (scene, staging) = unsafe {
-            encoder.as_hal_mut::<Vulkan, _, _>(|raw| {
-                let cmd = raw.ok_or("wgpu does not record")?.raw_handle();
-                Ok::<_, Box<dyn std::error::Error>>(embed::upload(&borrowed, cmd, surfels)?)
-            })?
-        };
-        gpu.queue.submit([encoder.finish()]);
-        gpu.wait(None)?;
-        drop(staging);
+        let scene = upload(gpu, &borrowed, surfels)?;
         // SAFETY: nothing of wgpu's is destroyed.
         let (device, colour) = unsafe {
             let device = gpu.device.as_hal::<Vulkan>().ok_or("wgpu does not use Vulkan")?;
@@ -86,8 +79,13 @@ impl Embedded {
         };
         // SAFETY: the target is this pass, which goes after the renderer.
         let renderer = unsafe { Renderer::new(&borrowed, options)? };
-        let scene = Arc::new(scene);
-        Ok(Self { renderer, scene, attached: None, pass, _device: gpu.device.clone() })
+        Ok(Self { renderer, scene, borrowed, attached: None, pass, _device: gpu.device.clone() })
+    }
+
+    /// Shows other surfels from the next frame on; the renderer keeps those of frames that are under way.
+    pub fn show(&mut self, gpu: &Gpu, surfels: &Surfels) -> Result<()> {
+        self.scene = upload(gpu, &self.borrowed, surfels)?;
+        Ok(())
     }
 
     /// From now on the surfels go into `frame`. The GPU is done with the one before.
@@ -150,6 +148,22 @@ impl Embedded {
         }
         Ok(encoder.finish())
     }
+}
+
+/// Surfels on the device.
+fn upload(gpu: &Gpu, borrowed: &Arc<Device>, surfels: &Surfels) -> Result<Arc<Scene>> {
+    let mut encoder = gpu.device.create_command_encoder(&Default::default());
+    // SAFETY: recorded outside a render pass; the staging memory stays until the GPU is done.
+    let (scene, staging) = unsafe {
+        encoder.as_hal_mut::<Vulkan, _, _>(|raw| {
+            let cmd = raw.ok_or("wgpu does not record")?.raw_handle();
+            Ok::<_, Box<dyn std::error::Error>>(embed::upload(borrowed, cmd, surfels)?)
+        })?
+    };
+    gpu.queue.submit([encoder.finish()]);
+    gpu.wait(None)?;
+    drop(staging);
+    Ok(Arc::new(scene))
 }
 
 impl Drop for Attached {

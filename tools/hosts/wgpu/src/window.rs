@@ -3,30 +3,37 @@
 use crate::Result;
 use crate::frame::Frame;
 use crate::gpu::{Gpu, instance};
+use crate::options::{Asked, Wanted};
 use crate::scene::{SIZE, camera};
 use crate::show::{Parts, Show};
 use crate::surfels::FRAMES_IN_FLIGHT;
+use crate::tour::{FRAMES, Step, Tour};
 use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::Instant;
 use winit::application::ApplicationHandler;
 use winit::dpi::PhysicalSize;
-use winit::event::{KeyEvent, WindowEvent};
+use winit::event::{ElementState, KeyEvent, WindowEvent};
 use winit::event_loop::{ActiveEventLoop, EventLoop};
 use winit::keyboard::{Key, NamedKey};
 use winit::window::{Window, WindowId};
 
-/// Opens a window, for so many frames or until it is closed.
-pub fn open(frames: Option<u64>) -> Result<()> {
-    let mut host = Host { opened: None, left: frames, failed: None };
+/// Opens a window, until it is closed or has shown the frames that are asked for. The space bar shows other surfels, Escape closes it.
+pub fn open(asked: &Asked) -> Result<()> {
+    let tour = (asked.wanted == Wanted::Tour).then(|| Tour::new(asked.frames.unwrap_or(FRAMES)));
+    let mut host = Host { asked, opened: None, tour, failed: None };
     EventLoop::new()?.run_app(&mut host)?;
-    host.failed.map_or(Ok(()), Err)
+    host.failed.map_or(Ok(()), Err)?;
+    if let Some(tour) = host.tour {
+        println!("{}", tour.end()?);
+    }
+    Ok(())
 }
 
-struct Host {
+struct Host<'a> {
+    asked: &'a Asked,
     opened: Option<Opened>,
-    /// Frames until it ends.
-    left: Option<u64>,
+    tour: Option<Tour>,
     failed: Option<Box<dyn std::error::Error>>,
 }
 
@@ -40,15 +47,17 @@ struct Opened {
     configuration: wgpu::SurfaceConfiguration,
     gpu: Gpu,
     start: Instant,
+    /// Frames that were drawn.
+    drawn: u64,
     window: Arc<Window>,
 }
 
 const SAMPLES: u32 = 4;
 const ALL: Parts = Parts { ring: true, surfels: true, glass: true };
 
-impl ApplicationHandler for Host {
+impl ApplicationHandler for Host<'_> {
     fn resumed(&mut self, events: &ActiveEventLoop) {
-        match Opened::new(events) {
+        match Opened::new(events, self.asked) {
             Ok(opened) => self.opened = Some(opened),
             Err(error) => self.fail(events, error),
         }
@@ -57,23 +66,27 @@ impl ApplicationHandler for Host {
     fn window_event(&mut self, events: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
         let Some(opened) = &mut self.opened else { return };
         let done = match event {
+            WindowEvent::CloseRequested => {
+                events.exit();
+                Ok(())
+            }
+            WindowEvent::KeyboardInput {
+                event: KeyEvent { logical_key: Key::Named(key), state: ElementState::Pressed, .. },
+                ..
+            } => match key {
+                NamedKey::Space => opened.show.change(&opened.gpu),
+                NamedKey::Escape => {
+                    events.exit();
+                    Ok(())
+                }
+                _ => Ok(()),
+            },
             WindowEvent::Resized(size) => {
                 opened.window.request_redraw();
                 opened.resize(size)
             }
-            WindowEvent::RedrawRequested => {
-                self.left = self.left.map(|left| left.saturating_sub(1));
-                if self.left == Some(0) {
-                    events.exit();
-                }
-                opened.draw()
-            }
-            _ => {
-                if is_end(&event) {
-                    events.exit();
-                }
-                Ok(())
-            }
+            WindowEvent::RedrawRequested => self.draw(events),
+            _ => Ok(()),
         };
         if let Err(error) = done {
             self.fail(events, error);
@@ -85,26 +98,39 @@ impl ApplicationHandler for Host {
     }
 }
 
-/// The window's button, or Escape.
-fn is_end(event: &WindowEvent) -> bool {
-    match event {
-        WindowEvent::CloseRequested => true,
-        WindowEvent::KeyboardInput { event: KeyEvent { logical_key, .. }, .. } => {
-            *logical_key == Key::Named(NamedKey::Escape)
-        }
-        _ => false,
-    }
-}
-
-impl Host {
+impl Host<'_> {
     fn fail(&mut self, events: &ActiveEventLoop, error: Box<dyn std::error::Error>) {
-        self.failed = Some(error);
+        self.failed.get_or_insert(error);
         events.exit();
+    }
+
+    /// Draws a frame, and does what comes after it.
+    fn draw(&mut self, events: &ActiveEventLoop) -> Result<()> {
+        let Some(opened) = &mut self.opened else { return Ok(()) };
+        if !opened.draw()? {
+            return Ok(());
+        }
+        let step = match &mut self.tour {
+            Some(tour) => tour.next(opened.frame.size),
+            None => (self.asked.frames != Some(opened.drawn)).then_some(Step::STAY),
+        };
+        match step {
+            None => events.exit(),
+            Some(Step { size, change }) => {
+                if let Some([width, height]) = size {
+                    let _ = opened.window.request_inner_size(PhysicalSize { width, height });
+                }
+                if change {
+                    opened.show.change(&opened.gpu)?;
+                }
+            }
+        }
+        Ok(())
     }
 }
 
 impl Opened {
-    fn new(events: &ActiveEventLoop) -> Result<Self> {
+    fn new(events: &ActiveEventLoop, asked: &Asked) -> Result<Self> {
         let [width, height] = SIZE;
         let size = PhysicalSize { width, height };
         let attributes = Window::default_attributes().with_title("surfels in wgpu").with_inner_size(size);
@@ -121,13 +147,13 @@ impl Opened {
         configuration.format = configuration.format.add_srgb_suffix();
         surface.configure(&gpu.device, &configuration);
         let frame = Frame::new(&gpu, [configuration.width, configuration.height], SAMPLES);
-        let mut show = Show::new(&gpu, SAMPLES)?;
+        let mut show = Show::new(&gpu, asked, SAMPLES)?;
         show.embedded.attach(&frame)?;
         let blitter = wgpu::util::TextureBlitter::new(&gpu.device, configuration.format);
         let under_way = VecDeque::new();
         let start = Instant::now();
         window.request_redraw();
-        Ok(Self { show, frame, blitter, under_way, surface, configuration, gpu, start, window })
+        Ok(Self { show, frame, blitter, under_way, surface, configuration, gpu, start, drawn: 0, window })
     }
 
     /// Frames have the window's size from now on; a window without extent shows none.
@@ -144,11 +170,12 @@ impl Opened {
         self.show.embedded.attach(&self.frame)
     }
 
-    fn draw(&mut self) -> Result<()> {
+    /// Draws a frame; whether there was one.
+    fn draw(&mut self) -> Result<bool> {
         use wgpu::CurrentSurfaceTexture as Current;
         let PhysicalSize { width, height } = self.window.inner_size();
         if width == 0 || height == 0 {
-            return Ok(());
+            return Ok(false);
         }
         self.window.request_redraw();
         if self.under_way.len() >= FRAMES_IN_FLIGHT as usize {
@@ -156,10 +183,10 @@ impl Opened {
         }
         let shown = match self.surface.get_current_texture() {
             Current::Success(shown) | Current::Suboptimal(shown) => shown,
-            Current::Timeout | Current::Occluded => return Ok(()),
+            Current::Timeout | Current::Occluded => return Ok(false),
             Current::Outdated => {
                 self.surface.configure(&self.gpu.device, &self.configuration);
-                return Ok(());
+                return Ok(false);
             }
             Current::Lost | Current::Validation => return Err("the window has nothing to draw to".into()),
         };
@@ -172,7 +199,8 @@ impl Opened {
         commands.push(encoder.finish());
         self.under_way.push_back(self.gpu.queue.submit(commands));
         self.gpu.queue.present(shown);
-        Ok(())
+        self.drawn += 1;
+        Ok(true)
     }
 }
 

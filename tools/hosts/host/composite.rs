@@ -1,0 +1,123 @@
+//! Surfels that are composed into the host's own pass: in its subpass, or by dynamic rendering.
+
+use super::frame::{Frame, Kind, Way};
+use super::mesh::Mesh;
+use super::options::Asked;
+use super::scene::{Corners, SIZE, TO_LIGHT};
+use super::show::{FRAMES_IN_FLIGHT, Show};
+use super::{Host, Result};
+use ash::vk;
+use std::sync::Arc;
+use surfel::embed::{Options, Renderer, View};
+use surfel::geometry::Camera;
+use surfel::vk::Device;
+use surfel::{Instance, Precision, Settings};
+
+/// What is composed.
+pub trait Content: Sized {
+    /// Samples a pixel.
+    const SAMPLES: vk::SampleCountFlags = vk::SampleCountFlags::TYPE_4;
+
+    /// What surfels there are.
+    fn new(host: &Host, device: &Arc<Device>, asked: &Asked) -> Result<Self>;
+
+    /// How they are rendered.
+    fn settings(asked: &Asked) -> Settings {
+        asked.settings()
+    }
+
+    /// The host's own triangles, three corners each.
+    fn triangles() -> Corners;
+
+    /// From where all is seen after so many seconds.
+    fn camera(seconds: f64, size: [u32; 2]) -> surfel::Result<Camera>;
+
+    /// Others from the next frame on.
+    fn change(&mut self, host: &Host, device: &Arc<Device>) -> Result<()>;
+
+    /// Records, outside a render pass, what a frame needs of them; where they stand in it. The GPU is done with all frames but the last.
+    fn stand(&mut self, host: &Host, cmd: vk::CommandBuffer, seconds: f64) -> Result<Vec<Instance>>;
+
+    /// Destroys what is the host's own, once the GPU is done with it.
+    fn destroy(self, host: &Host);
+}
+
+/// Content, a mesh, and the frame that they are drawn to.
+pub struct Composite<C> {
+    content: C,
+    frame: Frame,
+    mesh: Mesh,
+    renderer: Renderer,
+    settings: Settings,
+    device: Arc<Device>,
+}
+
+impl<C: Content> Composite<C> {
+    /// What is asked for, in a host that draws in this way.
+    pub fn new(host: &Host, way: Way, asked: &Asked) -> Result<Self> {
+        let device = host.lend(None)?;
+        let content = C::new(host, &device, asked)?;
+        let kind = Kind {
+            way,
+            colour: vk::Format::R8G8B8A8_SRGB,
+            normals: false,
+            samples: C::SAMPLES,
+            reversed: true,
+        };
+        let frame = Frame::new(host, kind, SIZE)?;
+        let mesh = Mesh::new(host, &C::triangles(), frame.place())?;
+        let options = Options {
+            target: frame.target(),
+            frames_in_flight: FRAMES_IN_FLIGHT,
+            precision: Precision::Full,
+            rasterizer: None,
+        };
+        // SAFETY: the target is the frame's, which is destroyed after the renderer, and keeps its pass through all sizes.
+        let renderer = unsafe { Renderer::new(&device, options)? };
+        Ok(Self { content, frame, mesh, renderer, settings: C::settings(asked), device })
+    }
+}
+
+impl<C: Content> Show for Composite<C> {
+    fn size(&self) -> [u32; 2] {
+        self.frame.size
+    }
+
+    fn resize(&mut self, host: &Host, size: [u32; 2]) -> Result<()> {
+        self.frame.resize(host, size)
+    }
+
+    fn change(&mut self, host: &Host) -> Result<()> {
+        self.content.change(host, &self.device)
+    }
+
+    fn record(&mut self, host: &Host, cmd: vk::CommandBuffer, seconds: f64) -> Result<()> {
+        let camera = C::camera(seconds, self.frame.size)?;
+        let view = View::whole(camera, self.frame.size);
+        let list = self.content.stand(host, cmd, seconds)?;
+        // SAFETY: prepared outside the pass and drawn inside it; the callers submit frames in order, no more at once than was said.
+        unsafe {
+            self.renderer.prepare(cmd, &list, &view, &self.settings)?;
+            self.frame.begin(host, cmd);
+            self.mesh.draw(host, cmd, view.viewport, camera.world_to_clip().as_mat4(), TO_LIGHT);
+            let drawn = self.renderer.draw(cmd);
+            self.frame.end(host, cmd);
+            Ok(drawn?)
+        }
+    }
+
+    fn image(&self) -> vk::Image {
+        self.frame.image()
+    }
+
+    fn read(&self, host: &Host) -> Result<Vec<u8>> {
+        self.frame.read_bytes(host, 4)
+    }
+
+    fn destroy(self, host: &Host) {
+        drop(self.renderer);
+        self.content.destroy(host);
+        self.mesh.destroy(host);
+        self.frame.destroy(host);
+    }
+}

@@ -1,0 +1,91 @@
+//! Surfels that a host shows one after another, each uploaded by the frame that shows it first.
+
+use super::options::Asked;
+use super::show::FRAMES_IN_FLIGHT;
+use super::{Host, Result, scene};
+use ash::vk;
+use glam::{DMat4, DVec3};
+use std::collections::VecDeque;
+use std::path::Path;
+use std::sync::Arc;
+use surfel::embed::{self, Staging};
+use surfel::geometry::estimate::Estimate;
+use surfel::geometry::{Bounds, Surfels};
+use surfel::scene::Streams;
+use surfel::vk::Device;
+use surfel::{Scene, io};
+
+/// Models, of which one is shown.
+pub struct Models {
+    device: Arc<Device>,
+    all: [Surfels; 2],
+    /// Whether the first is of a file, and stands wherever that says.
+    is_file: bool,
+    shown: usize,
+    scene: Option<Arc<Scene>>,
+    /// What uploads read, oldest first, and for how many frames yet.
+    staging: VecDeque<(Staging, u32)>,
+}
+
+impl Models {
+    /// The file's that is asked for, or else the host's `own` of so many surfels; and another of fewer.
+    pub fn new(
+        device: &Arc<Device>,
+        asked: &Asked,
+        own: impl FnOnce(u32) -> Result<Surfels>,
+        count: u32,
+    ) -> Result<Self> {
+        let count = asked.points.unwrap_or(count);
+        let first = asked.model.as_deref().map_or_else(|| own(count), read)?;
+        let all = [first, scene::egg(count.div_ceil(3))];
+        let (is_file, staging) = (asked.model.is_some(), VecDeque::new());
+        Ok(Self { device: device.clone(), all, is_file, shown: 0, scene: None, staging })
+    }
+
+    /// What each of them has, for plans.
+    pub fn streams(&self, host: &Host) -> Result<[Streams; 2]> {
+        let mut streams = Vec::new();
+        for surfels in &self.all {
+            // SAFETY: recorded outside a render pass; both stay until `run` has waited.
+            let (scene, _staging) =
+                host.run(|cmd| Ok(unsafe { embed::upload(&self.device, cmd, surfels)? }))?;
+            streams.push(scene.streams());
+        }
+        streams.try_into().map_err(|_| "two models have two streams".into())
+    }
+
+    /// The other one from now on.
+    pub fn change(&mut self) {
+        self.shown = (self.shown + 1) % self.all.len();
+        self.scene = None;
+    }
+
+    /// The scene of a frame that is being recorded, outside a render pass; the GPU is done with all frames but the last.
+    pub fn scene(&mut self, cmd: vk::CommandBuffer) -> Result<Arc<Scene>> {
+        self.staging.iter_mut().for_each(|(_, frames)| *frames -= 1);
+        self.staging.retain(|(_, frames)| *frames > 0);
+        if let Some(scene) = &self.scene {
+            return Ok(scene.clone());
+        }
+        // SAFETY: by the caller; the frame that copies is over before the staging memory goes, and whoever renders keeps the scene.
+        let (scene, staging) = unsafe { embed::upload(&self.device, cmd, &self.all[self.shown])? };
+        self.staging.push_back((staging, FRAMES_IN_FLIGHT));
+        Ok(self.scene.insert(Arc::new(scene)).clone())
+    }
+
+    /// What brings a model with these bounds to the origin, at a radius of 1.
+    pub fn to_unit(&self, bounds: &Bounds) -> DMat4 {
+        match self.is_file && self.shown == 0 {
+            true => {
+                DMat4::from_scale(DVec3::splat(1.0 / bounds.radius))
+                    * DMat4::from_translation(-bounds.centre())
+            }
+            false => DMat4::IDENTITY,
+        }
+    }
+}
+
+fn read(file: &Path) -> Result<Surfels> {
+    let loaded = io::ply::read(file, &Default::default(), &())?;
+    Ok(loaded.cloud.into_surfels(&Estimate::default(), &())?.0)
+}

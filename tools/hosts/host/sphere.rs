@@ -1,0 +1,63 @@
+//! A sphere of surfels, and a ring of triangles that goes through it.
+
+use super::composite::Content;
+use super::models::Models;
+use super::options::Asked;
+use super::scene::{self, Corners};
+use super::{Host, Result};
+use ash::vk;
+use glam::Vec3;
+use std::sync::Arc;
+use surfel::Instance;
+use surfel::geometry::Camera;
+use surfel::vk::Device;
+
+/// Number of surfels, if none is asked for.
+const COUNT: u32 = 200_000;
+
+/// The sphere, or another model in its place.
+pub struct Sphere(Models);
+
+/// The models of it.
+pub fn models(device: &Arc<Device>, asked: &Asked) -> Result<Models> {
+    Models::new(device, asked, |count| Ok(scene::sphere(count)), COUNT)
+}
+
+/// The ring.
+pub fn ring() -> Corners {
+    scene::torus(Vec3::ZERO, [1.0, 0.22], 96)
+}
+
+/// How fast it is gone round, rad/s.
+const SPEED: f64 = 0.5;
+
+/// From where it is seen after so many seconds.
+pub fn camera(seconds: f64, size: [u32; 2]) -> surfel::Result<Camera> {
+    scene::camera(SPEED * seconds, size)
+}
+
+impl Content for Sphere {
+    fn new(_: &Host, device: &Arc<Device>, asked: &Asked) -> Result<Self> {
+        Ok(Self(models(device, asked)?))
+    }
+
+    fn triangles() -> Corners {
+        ring()
+    }
+
+    fn camera(seconds: f64, size: [u32; 2]) -> surfel::Result<Camera> {
+        camera(seconds, size)
+    }
+
+    fn change(&mut self, _: &Host, _: &Arc<Device>) -> Result<()> {
+        self.0.change();
+        Ok(())
+    }
+
+    fn stand(&mut self, _: &Host, cmd: vk::CommandBuffer, _: f64) -> Result<Vec<Instance>> {
+        let scene = self.0.scene(cmd)?;
+        Ok(vec![Instance::new(&scene, self.0.to_unit(&scene.bounds()))])
+    }
+
+    fn destroy(self, _: &Host) {}
+}

@@ -1,0 +1,76 @@
+//! A tour of what happens to a window: other sizes, other surfels, many frames.
+
+use std::collections::BTreeSet;
+
+/// So many frames have the same size.
+const SIZE_EVERY: u64 = 20;
+/// So many frames show the same surfels: changes of both fall together now and then, and mostly do not.
+const SURFELS_EVERY: u64 = 25;
+/// Frames of a tour of which nothing else is said.
+pub const FRAMES: u64 = 1000;
+
+/// What comes before the next frame.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Step {
+    /// Px that the window is to have.
+    pub size: Option<[u32; 2]>,
+    /// Whether the surfels are to be others.
+    pub change: bool,
+}
+
+impl Step {
+    /// All stays as it is.
+    pub const STAY: Self = Self { size: None, change: false };
+}
+
+/// How far a tour is.
+#[derive(Clone, Debug)]
+pub struct Tour {
+    frames: u64,
+    drawn: u64,
+    changes: u64,
+    asked: BTreeSet<[u32; 2]>,
+    seen: BTreeSet<[u32; 2]>,
+}
+
+impl Tour {
+    /// A tour of so many frames.
+    pub fn new(frames: u64) -> Self {
+        Self { frames, drawn: 0, changes: 0, asked: BTreeSet::new(), seen: BTreeSet::new() }
+    }
+
+    /// What comes after a frame of `size` px; `None` at the end.
+    pub fn next(&mut self, size: [u32; 2]) -> Option<Step> {
+        self.drawn += 1;
+        self.seen.insert(size);
+        if self.drawn == self.frames {
+            return None;
+        }
+        let size = self.drawn.is_multiple_of(SIZE_EVERY).then(|| size_of(self.drawn / SIZE_EVERY));
+        self.asked.extend(size);
+        let change = self.drawn.is_multiple_of(SURFELS_EVERY);
+        self.changes += u64::from(change);
+        Some(Step { size, change })
+    }
+
+    /// What was seen; an error where the window did not follow.
+    pub fn end(&self) -> Result<String, String> {
+        // The last size may come too late.
+        let missed = self.asked.difference(&self.seen).count();
+        if missed > 1 {
+            return Err(format!("the window did not take {missed} of {} sizes", self.asked.len()));
+        }
+        let Self { drawn, seen, changes, .. } = self;
+        Ok(format!("{drawn} frames, {} sizes, surfels changed {changes} times", seen.len()))
+    }
+}
+
+/// The sizes in turns, px; the smallest that there is among them.
+fn size_of(turn: u64) -> [u32; 2] {
+    let turn = turn as u32;
+    match turn % 10 {
+        3 => [1, 1],
+        7 => [1, 90 + turn],
+        _ => [160 + 37 * turn % 320, 120 + 53 * turn % 240],
+    }
+}

@@ -1,0 +1,42 @@
+//! Frames that the GPU is at while the next ones are recorded.
+
+use super::{Host, Result, Submitted};
+use ash::vk;
+use std::collections::VecDeque;
+
+/// Frames under way, so many at most.
+pub struct UnderWay {
+    most: usize,
+    frames: VecDeque<Submitted>,
+}
+
+impl UnderWay {
+    /// None yet, of so many.
+    pub fn new(most: u32) -> Self {
+        Self { most: most as usize, frames: VecDeque::new() }
+    }
+
+    /// Records and submits a frame, once the GPU is done with all but the last.
+    pub fn submit<T>(&mut self, host: &Host, body: impl FnOnce(vk::CommandBuffer) -> Result<T>) -> Result<T> {
+        while self.frames.len() >= self.most {
+            self.wait(host)?;
+        }
+        let (submitted, made) = host.submit(body)?;
+        self.frames.push_back(submitted);
+        Ok(made)
+    }
+
+    /// Waits for the oldest; whether there was one.
+    pub fn wait(&mut self, host: &Host) -> Result<bool> {
+        let oldest = self.frames.pop_front();
+        let is_some = oldest.is_some();
+        oldest.map_or(Ok(()), |oldest| host.wait(oldest))?;
+        Ok(is_some)
+    }
+
+    /// Waits for all.
+    pub fn finish(&mut self, host: &Host) -> Result<()> {
+        while self.wait(host)? {}
+        Ok(())
+    }
+}
