@@ -107,7 +107,7 @@ use crate::stage::{Retired, Stage};
 use crate::targets::check_size;
 use crate::variant::{Outputs, Precision, Rasterizer};
 use crate::vk::shaders::layout;
-use crate::vk::{DescriptorSet, Device, Draws, Recorder, Uploads};
+use crate::vk::{DescriptorSet, Device, Draws, HostPass, Recorder, Uploads};
 use ash::vk;
 use held::Held;
 use std::sync::Arc;
@@ -166,7 +166,7 @@ impl View {
 pub struct Renderer {
     // Fields are dropped in this order: views before what they view.
     viewed: Option<Viewed>,
-    shown: Option<Shown>,
+    shown: Option<(Shown, HostPass)>,
     reports: Reports,
     held: Held,
     /// Of the present frame.
@@ -251,7 +251,7 @@ impl Renderer {
         if let Some(present) = self.stage.present() {
             rec.wait(&Composite::reads(present.canvas.composited()));
         }
-        self.shown = Some(shown);
+        self.shown = Some((shown, rec.later("composite")));
         Ok(())
     }
 
@@ -262,12 +262,12 @@ impl Renderer {
     /// `cmd` is of the device, and is being recorded inside the subpass, or the dynamic rendering, that is the target. It is submitted after what
     /// prepared the picture, to the same queue, and before what prepares the next one.
     pub unsafe fn draw(&self, cmd: vk::CommandBuffer) -> Result<()> {
-        let (Some(viewed), Some(Shown { place, area })) = (&self.viewed, &self.shown) else {
+        let (Some(viewed), Some((Shown { place, area }, pass))) = (&self.viewed, &self.shown) else {
             return Err(Error::Usage("there is no picture to draw: prepare one, and heed its error".into()));
         };
         // SAFETY: by the caller.
         unsafe {
-            Draws::of_host(&self.device, cmd, "composite", *area, |draws| {
+            Draws::of_host(&self.device, cmd, pass, *area, |draws| {
                 viewed.composite.draw(draws, &viewed.set, place)
             });
         }
@@ -282,8 +282,8 @@ impl Renderer {
     }
 
     /// What the last frame that is known to be over tells, without waiting for one: that of [`Options::frames_in_flight`] frames before the one
-    /// that was prepared last, or after [`Renderer::finish`] that one. `None` where it was not [measured](Renderer::measure). The draw of the
-    /// picture is none of the passes: it is within the host's own.
+    /// that was prepared last, or after [`Renderer::finish`] that one. `None` where it was not [measured](Renderer::measure). The last of the
+    /// passes, `composite`, is within the host's own.
     pub fn report(&self) -> Option<&FrameReport> {
         self.reports.last()
     }

@@ -89,17 +89,20 @@ pub use plan::Plan;
 
 use super::View;
 use super::held::Held;
+use super::reports::{Measured, Reports};
 use super::target::{check_convention, depths};
 use crate::error::{Error, Result};
 use crate::frame::Blocks;
 use crate::instance::Instances;
+use crate::passes::Splats;
+use crate::renderer::{FrameReport, RenderOptions};
 use crate::settings::Settings;
 use crate::stage::{Description, Residents, describe, update};
 use crate::targets::check_size;
 use crate::vk::shaders::layout;
-use crate::vk::{Device, Draws, HostDepth, Recorder};
+use crate::vk::{Device, Draws, HostDepth, HostPass, Recorder};
 use ash::vk;
-use passes::{Numbers, ScenePasses, SplatPair};
+use passes::Numbers;
 use plan::check_method;
 use present::{Made, Present, Resident};
 use std::sync::Arc;
@@ -112,6 +115,7 @@ pub struct Renderer {
     present: Option<Present>,
     /// What was before it: who switches to and fro makes nothing.
     previous: Option<Present>,
+    reports: Reports,
     held: Held,
     residents: Residents<Resident>,
     made: Made,
@@ -123,6 +127,8 @@ pub struct Renderer {
 struct Shown {
     numbers: Numbers,
     area: vk::Rect2D,
+    /// Of the subpasses, in their order.
+    passes: Vec<HostPass>,
 }
 
 impl Renderer {
@@ -147,6 +153,7 @@ impl Renderer {
             shown: None,
             present: None,
             previous: None,
+            reports: Reports::new(frames_in_flight),
             held: Held::new(frames_in_flight)?,
             residents: Residents::default(),
             made: Made::new(device, plan, pass)?,
@@ -210,16 +217,23 @@ impl Renderer {
         settings: &Settings,
     ) -> Result<()> {
         self.shown = None;
-        let (blocks, shown) = self.make(scenes.into(), view, settings)?;
+        let (blocks, numbers, area) = self.make(scenes.into(), view, settings)?;
+        let splats: Vec<_> = self.residents.present().map(|resident| &resident.splats.splats).collect();
+        self.reports.begin(&self.device, &splats)?;
         self.held.advance();
-        // SAFETY: by the caller.
-        let mut rec = unsafe { Recorder::of_host(&self.device, cmd) };
-        let numbers = self.residents.present().map(|resident| &resident.frame);
-        update(&mut rec, &self.made.frame, numbers, &blocks);
+        let (timestamps, counts) = self.reports.present();
+        // SAFETY: by the caller; the reports have one for each frame under way.
+        let mut rec = unsafe { Recorder::of_host_timed(&self.device, cmd, timestamps) };
+        let own = self.residents.present().map(|resident| &resident.frame);
+        update(&mut rec, &self.made.frame, own, &blocks);
         if let Some(present) = &self.present {
-            passes::record(&mut rec, &self.scenes(present), present.coverage.as_deref());
+            passes::record(&mut rec, &present.with(&self.residents), present.coverage.as_deref());
         }
-        self.shown = Some(shown);
+        if let Some(counts) = counts {
+            Splats::record_counts(&splats, &mut rec, counts);
+        }
+        let passes = self.made.plan.numbered().map(|(_, step)| rec.later(step.label())).collect();
+        self.shown = Some(Shown { numbers, area, passes });
         Ok(())
     }
 
@@ -257,15 +271,15 @@ impl Renderer {
     /// # Safety
     /// As that of [`Renderer::draw`], of the subpass for which `next` is called.
     pub unsafe fn draw_each(&self, mut next: impl FnMut(u32) -> vk::CommandBuffer) -> Result<()> {
-        let (Some(Shown { numbers, area }), Some(present)) = (&self.shown, &self.present) else {
+        let (Some(Shown { numbers, area, passes }), Some(present)) = (&self.shown, &self.present) else {
             return Err(Error::Usage("there is no frame to draw: prepare one, and heed its error".into()));
         };
-        let scenes = self.scenes(present);
-        for (subpass, step) in self.made.plan.numbered() {
+        let scenes = present.with(&self.residents);
+        for ((subpass, step), pass) in self.made.plan.numbered().zip(passes) {
             let cmd = next(subpass);
             // SAFETY: by the caller.
             unsafe {
-                Draws::of_host(&self.device, cmd, step.label(), *area, |draws| {
+                Draws::of_host(&self.device, cmd, pass, *area, |draws| {
                     present.passes.draw(step, draws, &present.views, &scenes, numbers);
                 });
             }
@@ -284,8 +298,32 @@ impl Renderer {
         }
     }
 
-    /// Makes all that a frame needs: its numbers, and where it is drawn.
-    fn make(&mut self, scenes: Instances<'_>, view: &View, settings: &Settings) -> Result<(Blocks, Shown)> {
+    /// As [`embed::Renderer::measure`](super::Renderer::measure).
+    pub fn measure(&mut self, measured: Measured) {
+        self.reports.measure(measured);
+    }
+
+    /// As [`embed::Renderer::report`](super::Renderer::report). A subpass takes from when the work before it is done to when its own is; on a GPU
+    /// that draws tile by tile, whose subpasses overlap, only the sum of them says something.
+    pub fn report(&self) -> Option<&FrameReport> {
+        self.reports.last()
+    }
+
+    /// As [`embed::Renderer::finish`](super::Renderer::finish).
+    ///
+    /// # Safety
+    /// The GPU is done with every frame that was prepared without an error.
+    pub unsafe fn finish(&mut self) -> Result<()> {
+        self.reports.finish()
+    }
+
+    /// Makes all that a frame needs: its numbers, those that are pushed, and where it is drawn.
+    fn make(
+        &mut self,
+        scenes: Instances<'_>,
+        view: &View,
+        settings: &Settings,
+    ) -> Result<(Blocks, Numbers, vk::Rect2D)> {
         let placed = scenes.placed(&self.device)?;
         let area = view.area()?;
         let targets = self.targets_of(area)?;
@@ -295,7 +333,7 @@ impl Renderer {
         let depth = depths(&camera, view.viewport)?;
         let settings = Settings { background: None, ..settings.clone() };
         check_method(&settings)?;
-        let options = self.made.plan.options(size);
+        let options = RenderOptions { count: self.reports.counts(), ..self.made.plan.options(size) };
         let Description { mut blocks, variant, scenes: own } =
             describe(&self.device, &options, &placed, &camera, &settings)?;
         self.made.plan.check(&variant)?;
@@ -309,13 +347,7 @@ impl Renderer {
         let list: Vec<_> = scenes.scenes().collect();
         self.make_residents(&list, passes::moves(&variant), !blocks.scenes.is_empty())?;
         self.make_present(&targets, variant, &own)?;
-        Ok((blocks, Shown { numbers: Numbers { seed, host: layout::Subpass { depth } }, area }))
-    }
-
-    /// What is drawn, scene by scene.
-    fn scenes<'a>(&'a self, present: &'a Present) -> Vec<(&'a ScenePasses, &'a SplatPair)> {
-        let splats = self.residents.present().map(|resident| &resident.splats);
-        present.scenes.iter().map(Arc::as_ref).zip(splats).collect()
+        Ok((blocks, Numbers { seed, host: layout::Subpass { depth } }, area))
     }
 
     /// The attachments, if these pixels are within them.

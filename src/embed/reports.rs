@@ -55,6 +55,11 @@ impl Reports {
         }
     }
 
+    /// Whether frames that are begun from now on are counted.
+    pub(super) fn counts(&self) -> bool {
+        self.measured.counts
+    }
+
     /// Of the last frame that is known to be over, if it was measured.
     pub(super) fn last(&self) -> Option<&FrameReport> {
         self.last.as_ref()

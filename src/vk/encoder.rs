@@ -1,6 +1,6 @@
 //! The commands of one pass.
 
-use super::{Buffer, ComputePipeline, DescriptorSet, Device, DrawPipeline, Framebuffer, Image};
+use super::{Buffer, ComputePipeline, DescriptorSet, Device, DrawPipeline, Framebuffer, HostPass, Image};
 use ash::vk;
 
 /// Records the commands of one pass.
@@ -177,14 +177,15 @@ pub struct Draws<'a> {
 }
 
 impl<'a> Draws<'a> {
-    /// Draws inside a render pass that a host has begun, over the part of its target that is the picture's, under a debug label.
+    /// Draws `pass` inside a render pass that a host has begun, over the part of its target that is the picture's, under a debug label.
     ///
     /// # Safety
-    /// `cmd` is of `device`, and is being recorded inside the render pass for which the pipelines that draw were made.
+    /// `cmd` is of `device`, is being recorded inside the render pass for which the pipelines that draw were made, and is submitted after what
+    /// prepared `pass`.
     pub unsafe fn of_host(
         device: &'a Device,
         cmd: vk::CommandBuffer,
-        label: &'static str,
+        pass: &HostPass,
         area: vk::Rect2D,
         draws: impl FnOnce(&mut Draws<'_>),
     ) {
@@ -196,12 +197,22 @@ impl<'a> Draws<'a> {
             min_depth: 0.0,
             max_depth: 1.0,
         };
+        let queries = pass.once();
+        let stamp = |number: u32| {
+            if let Some((pool, first)) = queries {
+                let done = vk::PipelineStageFlags::BOTTOM_OF_PIPE;
+                // SAFETY: by the caller: the query was reset by what prepared the pass, and is written once.
+                unsafe { device.raw.cmd_write_timestamp(cmd, done, pool, first + number) };
+            }
+        };
         // SAFETY: by the caller; begin and end of the label pair.
         unsafe {
-            device.begin_label(cmd, label);
+            device.begin_label(cmd, pass.label);
+            stamp(0);
             device.raw.cmd_set_viewport(cmd, 0, &[viewport]);
             device.raw.cmd_set_scissor(cmd, 0, &[area]);
             draws(&mut Self { device, cmd });
+            stamp(1);
             device.end_label(cmd);
         }
     }

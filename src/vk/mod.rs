@@ -56,5 +56,5 @@ pub use render_pass::{Attachment, Framebuffer, RenderPass};
 pub use requirements::{ABILITIES, API_VERSION, Abilities, Ability, Features, QUEUE};
 #[cfg(feature = "window")]
 pub use surface::{Surface, Window};
-pub use timestamps::{PassTime, Timestamps};
+pub use timestamps::{HostPass, PassTime, Timestamps};
 pub use transfer::{Staging, Uploads};

@@ -1,7 +1,7 @@
 //! Recording of a frame: barrier, debug label and timestamp of a pass in one place.
 
 use super::access::{Access, Barrier, Tracker, Use};
-use super::timestamps::Timestamps;
+use super::timestamps::{HostPass, Timestamps};
 use super::{Buffer, Device, Encoder};
 use ash::vk;
 
@@ -61,6 +61,15 @@ impl<'a> Recorder<'a> {
         self.stamp(query.map(|first| first + 1));
         // SAFETY: the command buffer is being recorded, and a label was begun above.
         unsafe { self.device.end_label(self.cmd) };
+    }
+
+    /// Prepares a pass that [`Draws::of_host`](super::Draws::of_host) records within a render pass of the host: in a profiled frame it is timed
+    /// there from when the work before it is done to when its own is.
+    pub fn later(&mut self, label: &'static str) -> HostPass {
+        let timestamps = self.timestamps.as_mut();
+        let queries = timestamps
+            .and_then(|timestamps| timestamps.begin_pass(label).map(|first| (timestamps.pool, first)));
+        HostPass::new(label, queries)
     }
 
     /// Writes to each buffer its bytes, at most 65,536 and a multiple of 4, for the passes that follow to read as uniforms.

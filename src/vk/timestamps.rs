@@ -4,6 +4,7 @@ use super::Device;
 use crate::error::{Error, Result};
 use ash::vk;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Most passes of a profiled frame; further ones are not timed.
 const PASSES: u32 = 64;
@@ -24,6 +25,26 @@ pub struct Timestamps {
     nanoseconds: f32,
     mask: u64,
     device: Arc<Device>,
+}
+
+/// A pass that is recorded later, within a render pass of a host.
+pub struct HostPass {
+    pub(super) label: &'static str,
+    /// The first of its two queries, in a profiled frame.
+    queries: Option<(vk::QueryPool, u32)>,
+    /// Whether its queries are written: a pass that is recorded again is not timed again.
+    stamped: AtomicBool,
+}
+
+impl HostPass {
+    pub(super) fn new(label: &'static str, queries: Option<(vk::QueryPool, u32)>) -> Self {
+        Self { label, queries, stamped: AtomicBool::new(false) }
+    }
+
+    /// Its queries, the first time.
+    pub(super) fn once(&self) -> Option<(vk::QueryPool, u32)> {
+        self.queries.filter(|_| !self.stamped.swap(true, Ordering::Relaxed))
+    }
 }
 
 impl Timestamps {

@@ -6,7 +6,7 @@ use super::{Plan, Renderer};
 use crate::error::Result;
 use crate::passes::{SplatLayout, Splats};
 use crate::scene::Scene;
-use crate::stage::Numbers;
+use crate::stage::{Numbers, Residents};
 use crate::targets::coverage;
 use crate::variant::{Rasterizer, SceneVariant, Variant};
 use crate::vk::shaders::layout::Frame;
@@ -89,6 +89,20 @@ impl Made {
         let splats = || Splats::new(device, &self.layout, frame.buffer(), scene, Some(Rasterizer::Draw));
         let splats = SplatPair { splats: splats()?, moved: moves.then(splats).transpose()? };
         Ok(Resident { splats, frame, _scene: scene.clone() })
+    }
+}
+
+impl Present {
+    /// What is drawn, scene by scene, of these splats.
+    pub(super) fn with<'a>(
+        &'a self,
+        residents: &'a Residents<Resident>,
+    ) -> Vec<(&'a ScenePasses, &'a SplatPair)> {
+        self.scenes
+            .iter()
+            .map(Arc::as_ref)
+            .zip(residents.present().map(|resident| &resident.splats))
+            .collect()
     }
 }
 
