@@ -1,20 +1,14 @@
 //! Hosts differ: formats of depth, samples a pixel, secondary command buffers, how much they record in a command buffer.
-#![allow(unsafe_code, reason = "a host speaks Vulkan itself")]
 
-#[path = "../tools/hosts/host/mod.rs"]
-mod host;
-#[path = "support/stand.rs"]
-mod stand;
-mod support;
-
+use crate::host::Host;
+use crate::host::frame::{Frame, IDS, Kind, Way};
+use crate::host::mesh::Mesh;
+use crate::host::native::{self, Native};
+use crate::host::scene::{Corners, parallelogram};
+use crate::stand::{SIZE, Stand, assert_silent, camera, open, rising, sphere, surfels, upload};
+use crate::{FLOATS, FOUR, ONE};
 use ash::vk;
 use glam::{DVec3, Vec3};
-use host::Host;
-use host::frame::{Frame, IDS, Kind, Way};
-use host::mesh::Mesh;
-use host::native::{self, Native};
-use host::scene::{Corners, parallelogram};
-use stand::{SIZE, Stand, assert_silent, camera, open, rising, sphere, surfels, upload};
 use std::sync::Arc;
 use surfel::embed::{self, Changes, Options, Renderer, View};
 use surfel::geometry::{Camera, Surfels};
@@ -22,9 +16,6 @@ use surfel::methods::Method;
 use surfel::vk::{Device, DeviceOptions};
 use surfel::{Outputs, Picture, Precision, Rasterizer, RenderOptions, Scene, Settings};
 
-const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
-const ONE: vk::SampleCountFlags = vk::SampleCountFlags::TYPE_1;
-const FOUR: vk::SampleCountFlags = vk::SampleCountFlags::TYPE_4;
 const PLAIN: Kind = Kind { way: Way::Subpass, colour: FLOATS, normals: false, samples: ONE, reversed: true };
 
 fn settings(name: &str) -> Settings {
@@ -40,7 +31,7 @@ fn alone(
 ) -> Picture {
     let device = Device::open(&DeviceOptions::default()).unwrap();
     let options = RenderOptions { size: SIZE, outputs, rasterizer, ..Default::default() };
-    support::gpu::render(&device, surfels, &camera(), settings, options)
+    crate::support::gpu::render(&device, surfels, &camera(), settings, options)
 }
 
 /// A renderer for a frame.

@@ -1,37 +1,25 @@
 //! Surfels in a host: the pictures are those of the engine's own frames, what is in front hides what is behind, and the host's state is its own.
-#![allow(unsafe_code, reason = "a host speaks Vulkan itself")]
 
-#[path = "../tools/hosts/host/mod.rs"]
-mod host;
-#[path = "support/stand.rs"]
-mod stand;
-mod support;
-
+use crate::host::Host;
+use crate::host::frame::{Frame, IDS, Kind, Way};
+use crate::host::memory::Counted;
+use crate::host::mesh::Mesh;
+use crate::host::scene::parallelogram;
+use crate::host::under_way::UnderWay;
+use crate::stand::{Stand, assert_silent, open, upload};
+use crate::{FLOATS, FOUR, ONE};
 use ash::vk;
 use glam::{DMat4, DVec3};
-use host::Host;
-use host::frame::{Frame, IDS, Kind, Way};
-use host::memory::Counted;
-use host::mesh::Mesh;
-use host::scene::parallelogram;
-use host::under_way::UnderWay;
-use stand::{Stand, assert_silent, open, upload};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use std::time::Instant;
-use surfel::embed::{self, Abilities, Measured, Options, Renderer, View};
+use surfel::embed::{self, Abilities, Options, Renderer, View};
 use surfel::geometry::Camera;
 use surfel::methods::Method;
-use surfel::settings::Cull;
 use surfel::splatting::Visibility;
 use surfel::vk::{Device, DeviceOptions};
-use surfel::{Error, FrameReport, Outputs, Picture, Precision, Rasterizer, RenderOptions, Scene, Settings};
+use surfel::{Error, Outputs, Picture, Precision, Rasterizer, RenderOptions, Scene, Settings};
 
-use stand::{SIZE, camera, meets, rising, sphere, surfels, viewport};
-
-const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
-const ONE: vk::SampleCountFlags = vk::SampleCountFlags::TYPE_1;
-const FOUR: vk::SampleCountFlags = vk::SampleCountFlags::TYPE_4;
+use crate::stand::{SIZE, camera, meets, rising, sphere, surfels, viewport};
 
 /// Hosts have threads.
 #[allow(dead_code, reason = "it compiles, or not")]
@@ -44,7 +32,7 @@ fn alone(settings: &Settings, camera: &Camera, rasterizer: Option<Rasterizer>) -
     let device = Device::open(&DeviceOptions::default()).unwrap();
     let outputs = Outputs { normal: false, depth: true, id: false };
     let options = RenderOptions { size: SIZE, outputs, rasterizer, ..Default::default() };
-    support::gpu::render(&device, &surfels(), camera, settings, options)
+    crate::support::gpu::render(&device, &surfels(), camera, settings, options)
 }
 
 fn kinds() -> impl Iterator<Item = Kind> {
@@ -56,7 +44,7 @@ fn kinds() -> impl Iterator<Item = Kind> {
 }
 
 /// The methods by both rasterizers.
-fn frames() -> Vec<(Settings, Option<Rasterizer>)> {
+pub fn frames() -> Vec<(Settings, Option<Rasterizer>)> {
     let of = |name: &str| Method::named(name).unwrap().settings();
     let both = [Rasterizer::Draw, Rasterizer::Compute].map(Some);
     let splats = ["perspective-ewa", "sprites-unfiltered"].map(of);
@@ -117,7 +105,7 @@ fn pictures_and_normals_are_where_the_host_wants_them() {
         let outputs = Outputs { normal: true, depth: true, id: false };
         let options =
             RenderOptions { size: SIZE, outputs, rasterizer: Some(rasterizer), ..Default::default() };
-        let own = support::gpu::render(&device, &surfels(), &camera(), &settings, options);
+        let own = crate::support::gpu::render(&device, &surfels(), &camera(), &settings, options);
         let kind = Kind { way, colour: FLOATS, normals: true, samples: ONE, reversed: true };
         let mut stand = Stand::new(&host, kind, larger, Some(rasterizer), &surfels());
         let (colours, _) = stand.render(&host, &View { camera: camera(), viewport: at }, &settings, None);
@@ -147,7 +135,7 @@ fn numbers_are_the_engines_own() {
     let device = Device::open(&DeviceOptions::default()).unwrap();
     let outputs = Outputs { normal: true, depth: true, id: true };
     let options = RenderOptions { size: SIZE, outputs, ..Default::default() };
-    let own = support::gpu::render(&device, &surfels(), &camera(), &settings, options);
+    let own = crate::support::gpu::render(&device, &surfels(), &camera(), &settings, options);
     let (numbers, normals) = (own.id.unwrap(), own.normal.unwrap());
     assert!(numbers.iter().filter(|number| **number < 20_000).count() > 5_000);
     let formats: [&[vk::Format]; 3] = [&[IDS], &[IDS, FLOATS], &[FLOATS, IDS]];
@@ -190,7 +178,7 @@ fn draw(
     scene: &Arc<Scene>,
     view: &View,
     settings: &Settings,
-) -> host::Result<()> {
+) -> crate::host::Result<()> {
     host.run(|cmd| {
         // SAFETY: recorded outside and inside the frame's pass, and waited for.
         unsafe {
@@ -277,85 +265,6 @@ fn what_is_in_front_hides_what_is_behind_either_way() {
         mesh.destroy(&host);
         stand.destroy(&host);
     }
-    assert_silent(&host);
-}
-
-/// The `number`th camera: each sees other parts of the sphere.
-fn nearer(number: usize) -> Camera {
-    let eye = DVec3::new(0.4, 0.3, 1.6 + 0.2 * number as f64);
-    Camera::look_at(eye, DVec3::new(0.5, 0.2, 0.0), DVec3::Y, 0.6, 4.0 / 3.0, 0.1).unwrap()
-}
-
-/// What the engine's own frames from these cameras tell.
-fn reports(settings: &Settings, rasterizer: Option<Rasterizer>, count: bool) -> Vec<FrameReport> {
-    let device = Device::open(&DeviceOptions::default()).unwrap();
-    let scene = Scene::upload(&device, &surfels()).unwrap();
-    let outputs = Outputs { normal: false, depth: true, id: false };
-    let options =
-        RenderOptions { size: SIZE, outputs, rasterizer, profile: true, count, ..Default::default() };
-    let mut renderer = surfel::Renderer::new(&device, options).unwrap();
-    (0..5).map(|number| renderer.render(&scene, &nearer(number), settings).unwrap()).collect()
-}
-
-fn labels(report: &FrameReport) -> Vec<&str> {
-    report.pass_times.iter().map(|time| time.label).collect()
-}
-
-#[test]
-fn frames_that_are_over_tell_what_is_asked_for() {
-    let Some(host) = open(|all| all) else { return };
-    let both = Measured { times: true, counts: true };
-    for (settings, rasterizer) in frames() {
-        let settings = Settings { cull: Cull::Back, ..settings };
-        let [own, uncounted] = [true, false].map(|count| reports(&settings, rasterizer, count));
-        let kind = Kind { way: Way::Subpass, colour: FLOATS, normals: false, samples: ONE, reversed: true };
-        let mut stand = Stand::new(&host, kind, SIZE, rasterizer, &surfels());
-        let mut render = |number, measured| {
-            stand.renderer.measure(measured);
-            let (start, view) = (Instant::now(), View::whole(nearer(number), SIZE));
-            stand.render(&host, &view, &settings, None);
-            // SAFETY: the frame was waited for.
-            unsafe { stand.renderer.finish() }.unwrap();
-            (stand.renderer.report().cloned(), 1e3 * start.elapsed().as_secs_f64())
-        };
-        let (report, wall) = render(0, both);
-        let report = report.unwrap();
-        assert_eq!(report.counts, own[0].counts);
-        assert_eq!(labels(&report), [labels(&own[0]), vec!["read back"]].concat());
-        assert!(report.pass_times.iter().all(|time| time.milliseconds > 0.0));
-        let sum: f64 = report.pass_times.iter().map(|time| time.milliseconds).sum();
-        assert!(sum < wall, "{sum} ms of {wall} ms");
-
-        let (times, _) = render(1, Measured { counts: false, ..both });
-        let times = times.unwrap();
-        assert_eq!((times.counts, labels(&times)), (None, labels(&uncounted[1])));
-        let (counts, _) = render(2, Measured { times: false, ..both });
-        assert_eq!(counts, Some(FrameReport { pass_times: vec![], counts: own[2].counts }));
-        assert_eq!(render(3, Measured::default()).0, None);
-        stand.destroy(&host);
-    }
-    assert_silent(&host);
-}
-
-#[test]
-fn a_report_is_of_the_frame_that_must_be_over_by_now() {
-    let Some(host) = open(|all| all) else { return };
-    let settings = Settings { cull: Cull::Back, ..Method::named("pull-push").unwrap().settings() };
-    let own: Vec<_> = reports(&settings, None, true).iter().map(|report| report.counts).collect();
-    assert!(own.windows(2).all(|pair| pair[0] != pair[1]));
-    let kind = Kind { way: Way::Subpass, colour: FLOATS, normals: false, samples: ONE, reversed: true };
-    let mut stand = Stand::new(&host, kind, SIZE, None, &surfels());
-    stand.renderer.measure(Measured { times: false, counts: true });
-    let told: Vec<_> = (0..5)
-        .map(|number| {
-            let view = View::whole(nearer(number), SIZE);
-            stand.render(&host, &view, &settings, None);
-            stand.renderer.report().map(|report| report.counts)
-        })
-        .collect();
-    // Two may be under way: when the third is recorded, the first is over.
-    assert_eq!(told, [None, None, Some(own[0]), Some(own[1]), Some(own[2])]);
-    stand.destroy(&host);
     assert_silent(&host);
 }
 

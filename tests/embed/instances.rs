@@ -1,23 +1,17 @@
 //! Several scenes where they are placed, in frames of hosts: the pictures are the engine's own, whatever the list is from frame to frame.
-#![allow(unsafe_code, reason = "a host speaks Vulkan itself")]
 
-#[path = "../tools/hosts/host/mod.rs"]
-mod host;
-#[path = "support/stand.rs"]
-mod stand;
-mod support;
-
+use crate::host::Host;
+use crate::host::frame::{Frame, Kind, Way};
+use crate::host::memory::Counted;
+use crate::host::native::{self, Native};
+use crate::host::under_way::UnderWay;
+use crate::stand::{SIZE, assert_silent, camera, open, upload};
+use crate::support::placing::{exact, painted, plain, rich, turned};
+use crate::{FLOATS, ONE};
 use ash::vk;
 use glam::{DMat4, DVec3};
-use host::Host;
-use host::frame::{Frame, Kind, Way};
-use host::memory::Counted;
-use host::native::{self, Native};
-use host::under_way::UnderWay;
-use stand::{SIZE, assert_silent, camera, open, upload};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use support::placing::{exact, painted, plain, rich, turned};
 use surfel::embed::{Options, Renderer, View};
 use surfel::geometry::Surfels;
 use surfel::methods::Method;
@@ -25,8 +19,6 @@ use surfel::splatting::Visibility;
 use surfel::vk::{Device, DeviceOptions};
 use surfel::{Instance, Outputs, Picture, Precision, Rasterizer, RenderOptions, Scene, Settings};
 
-const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
-const ONE: vk::SampleCountFlags = vk::SampleCountFlags::TYPE_1;
 const KIND: Kind = Kind { way: Way::Subpass, colour: FLOATS, normals: false, samples: ONE, reversed: true };
 /// Splats start from the host's depth.
 const NATIVE: native::Kind = native::Kind {

@@ -1,25 +1,16 @@
 //! Data that lives on the GPU: surfels in buffers of a host, in place, and new values for surfels that were uploaded.
-#![allow(unsafe_code, reason = "a host speaks Vulkan itself")]
 
-#[path = "../tools/hosts/host/mod.rs"]
-mod host;
-#[path = "support/rig.rs"]
-mod rig;
-#[path = "support/stand.rs"]
-mod stand;
-mod support;
-
+use crate::host::frame::Frame;
+use crate::host::memory::Counted;
+use crate::host::{Host, Submitted};
+use crate::rig::{Held, KIND, Rig, SIZE, Shown, lay, view};
+use crate::stand::{assert_silent, open, upload};
+use crate::support::layouts::Layout;
+use crate::support::sampling::{Random, bumpy_sphere, forget_sides, narrow, paint_linear, paint_srgb};
 use ash::vk::{self, Format};
 use glam::{DVec3, Vec3};
-use host::frame::Frame;
-use host::memory::Counted;
-use host::{Host, Submitted};
-use rig::{Held, KIND, Rig, SIZE, Shown, lay, view};
-use stand::{assert_silent, open, upload};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use support::layouts::Layout;
-use support::sampling::{Random, bumpy_sphere, forget_sides, narrow, paint_linear, paint_srgb};
 use surfel::embed::{self, Buffers, Changes, Options, READ_ACCESS, READ_STAGES, Radii, Renderer};
 use surfel::geometry::{Bounds, Clip, Clips, Colours, Surfels, Weights};
 use surfel::methods::Method;
@@ -472,7 +463,7 @@ fn spoil(surfels: &mut Surfels) -> usize {
 
 #[test]
 fn what_is_invalid_in_a_hosts_buffer_is_culled_and_counted() {
-    let Some(device) = support::gpu::device(DeviceLimits::default()) else { return };
+    let Some(device) = crate::support::gpu::device(DeviceLimits::default()) else { return };
     let mut surfels = ellipses(6_000);
     let spoiled = spoil(&mut surfels);
     assert_eq!(surfels.count_invalid(), spoiled);
@@ -491,12 +482,12 @@ fn what_is_invalid_in_a_hosts_buffer_is_culled_and_counted() {
         assert!(found.0.colour.iter().filter(|colour| colour[3] > 0.0).count() > 2_000);
     }
     drop((own, lent));
-    support::gpu::assert_silent(&device);
+    crate::support::gpu::assert_silent(&device);
 }
 
 #[test]
 fn what_an_update_makes_invalid_is_culled_and_what_it_mends_is_drawn() {
-    let Some(device) = support::gpu::device(DeviceLimits::default()) else { return };
+    let Some(device) = crate::support::gpu::device(DeviceLimits::default()) else { return };
     let good = ellipses(6_000);
     let mut bad = good.clone();
     spoil(&mut bad);
@@ -531,12 +522,12 @@ fn what_an_update_makes_invalid_is_culled_and_what_it_mends_is_drawn() {
     scene.update(0, &Changes { positions: Some(&[Vec3::NAN, Vec3::ZERO]), ..Default::default() }).unwrap();
     let (_, counts) = alone(&device, &scene, "pull-push", Rasterizer::Compute);
     assert_eq!(counts.invalid, 1);
-    support::gpu::assert_silent(&device);
+    crate::support::gpu::assert_silent(&device);
 }
 
 #[test]
 fn bounds_follow_positions_or_are_what_is_said() {
-    let Some(device) = support::gpu::device(DeviceLimits::default()) else { return };
+    let Some(device) = crate::support::gpu::device(DeviceLimits::default()) else { return };
     let surfels = sphere(500);
     let scene = Scene::upload(&device, &surfels).unwrap();
     assert_eq!(scene.bounds(), surfels.bounds().unwrap());
@@ -558,7 +549,7 @@ fn bounds_follow_positions_or_are_what_is_said() {
     scene.update(0, &Changes { bounds: Some(said), ..whole }).unwrap();
     assert_eq!(scene.bounds(), said);
     assert!(scene.set_bounds(Bounds { radius: f64::NAN, ..said }).is_err());
-    support::gpu::assert_silent(&device);
+    crate::support::gpu::assert_silent(&device);
 }
 
 fn refused<T>(made: surfel::Result<T>, said: &str) {
@@ -626,7 +617,7 @@ fn buffers_that_cannot_be_read_are_refused_and_named() {
 
 #[test]
 fn updates_that_cannot_be_made_are_refused_and_change_nothing() {
-    let Some(device) = support::gpu::device(DeviceLimits::default()) else { return };
+    let Some(device) = crate::support::gpu::device(DeviceLimits::default()) else { return };
     let surfels = sphere(500);
     let scene = |change: fn(&mut Surfels)| {
         let mut surfels = surfels.clone();
@@ -670,5 +661,5 @@ fn updates_that_cannot_be_made_are_refused_and_change_nothing() {
     let untouched = alone(&device, &plain, "pull-push", Rasterizer::Compute);
     assert!(untouched == alone(&device, &scene(|_| {}), "pull-push", Rasterizer::Compute));
     assert!(plain.update(3, &none).is_ok());
-    support::gpu::assert_silent(&device);
+    crate::support::gpu::assert_silent(&device);
 }

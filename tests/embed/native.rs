@@ -1,25 +1,21 @@
 //! Surfels in subpasses of a host's own render pass: the picture is the engine's own and the composite's, whatever it starts from.
-#![allow(unsafe_code, reason = "a host speaks Vulkan itself")]
 
-#[path = "../tools/hosts/host/mod.rs"]
-mod host;
-#[path = "support/stand.rs"]
-mod stand;
-mod support;
-
+use crate::host::Host;
+use crate::host::frame::{self, Way};
+use crate::host::memory::Counted;
+use crate::host::mesh::Mesh;
+use crate::host::native::{Kind, Native};
+use crate::host::scene::{Corners, parallelogram};
+use crate::host::under_way::UnderWay;
+use crate::stand::{
+    SIZE, Stand, assert_silent, camera, meets, open, rising, sphere, surfels, upload, viewport,
+};
+use crate::support::sampling::{self, Random};
+use crate::{FOUR, ONE};
 use ash::vk;
 use glam::{DMat4, DVec3, Vec3};
-use host::Host;
-use host::frame::{self, Way};
-use host::memory::Counted;
-use host::mesh::Mesh;
-use host::native::{Kind, Native};
-use host::scene::{Corners, parallelogram};
-use host::under_way::UnderWay;
-use stand::{SIZE, Stand, assert_silent, camera, meets, open, rising, sphere, surfels, upload, viewport};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use support::sampling::{self, Random};
 use surfel::embed::native::{Place, Plan, Renderer};
 use surfel::embed::{Abilities, View};
 use surfel::geometry::{Camera, Surfels};
@@ -29,8 +25,6 @@ use surfel::splatting::{Splatting, Visibility};
 use surfel::vk::{Device, DeviceLimits, DeviceOptions};
 use surfel::{Error, Outputs, Picture, Precision, Rasterizer, RenderOptions, Scene, Settings};
 
-const ONE: vk::SampleCountFlags = vk::SampleCountFlags::TYPE_1;
-const FOUR: vk::SampleCountFlags = vk::SampleCountFlags::TYPE_4;
 const D32: vk::Format = vk::Format::D32_SFLOAT;
 
 /// Hosts have threads.
@@ -60,7 +54,7 @@ fn alone(surfels: &Surfels, settings: &Settings, camera: &Camera, normal: bool, 
     let outputs = Outputs { normal, depth, id: false };
     let rasterizer = Some(Rasterizer::Draw);
     let options = RenderOptions { size: SIZE, outputs, rasterizer, ..Default::default() };
-    support::gpu::render(&device, surfels, camera, settings, options)
+    crate::support::gpu::render(&device, surfels, camera, settings, options)
 }
 
 /// A frame of a native host.
@@ -317,7 +311,7 @@ fn is_blue(colour: &[f32; 4]) -> bool {
 #[test]
 fn in_hard_scenes_the_picture_is_the_composites() {
     let Some(host) = open(|all| all) else { return };
-    for case in support::scenes::cases() {
+    for case in crate::support::scenes::cases() {
         let settings = Settings { background: None, ..case.settings.clone() };
         let [mut different, mut shown] = [0; 2];
         for camera in case.cameras.iter().take(2) {
@@ -362,9 +356,9 @@ fn a_later_subpass_of_the_host_sees_the_depth_of_surfels() {
     let (clear, depths) = (drawn.colours(), drawn.depths());
     drawn.render(&view, &settings, None, true);
     for ((foggy, clear), depth) in drawn.colours().iter().zip(clear).zip(depths) {
-        let fog = (-host::fog::DENSITY * depth).exp();
+        let fog = (-crate::host::fog::DENSITY * depth).exp();
         for k in 0..3 {
-            let expected = fog * host::fog::COLOUR[k] + (1.0 - fog) * clear[k];
+            let expected = fog * crate::host::fog::COLOUR[k] + (1.0 - fog) * clear[k];
             assert!((foggy[k] - expected).abs() < 1e-5, "{foggy:?} {clear:?} {depth}");
         }
     }
@@ -692,7 +686,7 @@ fn sums_of_16_bits_are_the_engines_own_too() {
     let outputs = Outputs { depth: true, ..Outputs::default() };
     let (precision, rasterizer) = (Precision::Half, Some(Rasterizer::Draw));
     let options = RenderOptions { size: SIZE, outputs, precision, rasterizer, ..Default::default() };
-    let own = support::gpu::render(&own, &surfels(), &camera(), &settings, options);
+    let own = crate::support::gpu::render(&own, &surfels(), &camera(), &settings, options);
     let limits = DeviceLimits { blend_float32: Some(false), ..Default::default() };
     let device = host.lend_within(limits, None).unwrap();
     let scene = upload(&host, &device, &surfels());

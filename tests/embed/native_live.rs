@@ -1,25 +1,15 @@
 //! Surfels that change, in subpasses of a host: radii that grow, surfels that are fewer, buffers that take turns.
-#![allow(unsafe_code, reason = "a host speaks Vulkan itself")]
 
-#[path = "../tools/hosts/host/mod.rs"]
-mod host;
-#[path = "support/rig.rs"]
-#[allow(dead_code, reason = "of its frames none is needed here")]
-mod rig;
-#[path = "support/stand.rs"]
-mod stand;
-mod support;
-
+use crate::host::Host;
+use crate::host::mesh::Mesh;
+use crate::host::native::{Kind, Native};
+use crate::host::scene::parallelogram;
+use crate::rig::lay;
+use crate::stand::{SIZE, assert_silent, camera, open, sphere, upload};
+use crate::support::layouts::Layout;
 use ash::vk;
 use glam::Vec3;
-use host::Host;
-use host::mesh::Mesh;
-use host::native::{Kind, Native};
-use host::scene::parallelogram;
-use rig::lay;
-use stand::{SIZE, assert_silent, camera, open, sphere, upload};
 use std::sync::Arc;
-use support::layouts::Layout;
 use surfel::embed::{self, Changes, View};
 use surfel::geometry::Surfels;
 use surfel::methods::Method;

@@ -1,0 +1,22 @@
+//! Surfels in hosts, each of which is a small renderer of its own.
+#![allow(unsafe_code, reason = "a host speaks Vulkan itself")]
+
+mod composite;
+#[path = "../../tools/hosts/host/mod.rs"]
+mod host;
+mod hosts;
+mod instances;
+mod live;
+mod native;
+mod native_live;
+mod reports;
+mod rig;
+mod stand;
+#[path = "../support/mod.rs"]
+mod support;
+
+use ash::vk;
+
+const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
+const ONE: vk::SampleCountFlags = vk::SampleCountFlags::TYPE_1;
+const FOUR: vk::SampleCountFlags = vk::SampleCountFlags::TYPE_4;

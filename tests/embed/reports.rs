@@ -1,0 +1,173 @@
+//! What frames tell when they are over: times of passes, counts of surfels.
+
+use crate::composite::frames;
+use crate::host::Host;
+use crate::host::frame::{Kind, Way};
+use crate::host::native::{self, Native};
+use crate::stand::{SIZE, Stand, assert_silent, open, surfels, upload};
+use crate::{FLOATS, ONE};
+use glam::DVec3;
+use std::sync::Arc;
+use std::time::Instant;
+use surfel::embed::{Measured, View};
+use surfel::geometry::Camera;
+use surfel::methods::Method;
+use surfel::settings::Cull;
+use surfel::vk::{Device, DeviceOptions, PassTime};
+use surfel::{FrameReport, Outputs, Rasterizer, RenderOptions, Scene, Settings};
+
+/// The `number`th camera: each sees other parts of the sphere.
+fn nearer(number: usize) -> Camera {
+    let eye = DVec3::new(0.4, 0.3, 1.6 + 0.2 * number as f64);
+    Camera::look_at(eye, DVec3::new(0.5, 0.2, 0.0), DVec3::Y, 0.6, 4.0 / 3.0, 0.1).unwrap()
+}
+
+/// What the engine's own frames from these cameras tell.
+fn reports(settings: &Settings, rasterizer: Option<Rasterizer>, count: bool) -> Vec<FrameReport> {
+    let device = Device::open(&DeviceOptions::default()).unwrap();
+    let scene = Scene::upload(&device, &surfels()).unwrap();
+    let outputs = Outputs { normal: false, depth: true, id: false };
+    let options =
+        RenderOptions { size: SIZE, outputs, rasterizer, profile: true, count, ..Default::default() };
+    let mut renderer = surfel::Renderer::new(&device, options).unwrap();
+    (0..5).map(|number| renderer.render(&scene, &nearer(number), settings).unwrap()).collect()
+}
+
+fn labels(report: &FrameReport) -> Vec<&str> {
+    report.pass_times.iter().map(|time| time.label).collect()
+}
+
+#[test]
+fn frames_that_are_over_tell_what_is_asked_for() {
+    let Some(host) = open(|all| all) else { return };
+    let both = Measured { times: true, counts: true };
+    for (settings, rasterizer) in frames() {
+        let settings = Settings { cull: Cull::Back, ..settings };
+        let [own, uncounted] = [true, false].map(|count| reports(&settings, rasterizer, count));
+        let kind = Kind { way: Way::Subpass, colour: FLOATS, normals: false, samples: ONE, reversed: true };
+        let mut stand = Stand::new(&host, kind, SIZE, rasterizer, &surfels());
+        let mut render = |number, measured| {
+            stand.renderer.measure(measured);
+            let (start, view) = (Instant::now(), View::whole(nearer(number), SIZE));
+            stand.render(&host, &view, &settings, None);
+            // SAFETY: the frame was waited for.
+            unsafe { stand.renderer.finish() }.unwrap();
+            (stand.renderer.report().cloned(), 1e3 * start.elapsed().as_secs_f64())
+        };
+        let (report, wall) = render(0, both);
+        let report = report.unwrap();
+        assert_eq!(report.counts, own[0].counts);
+        assert_eq!(labels(&report), [labels(&own[0]), vec!["read back", "composite"]].concat());
+        assert!(report.pass_times.iter().all(|time| time.milliseconds > 0.0));
+        let sum: f64 = report.pass_times.iter().map(|time| time.milliseconds).sum();
+        assert!(sum < wall, "{sum} ms of {wall} ms");
+
+        let (times, _) = render(1, Measured { counts: false, ..both });
+        let times = times.unwrap();
+        assert_eq!(
+            (times.counts, labels(&times)),
+            (None, [labels(&uncounted[1]), vec!["composite"]].concat())
+        );
+        let (counts, _) = render(2, Measured { times: false, ..both });
+        assert_eq!(counts, Some(FrameReport { pass_times: vec![], counts: own[2].counts }));
+        assert_eq!(render(3, Measured::default()).0, None);
+        stand.destroy(&host);
+    }
+    assert_silent(&host);
+}
+
+#[test]
+fn a_report_is_of_the_frame_that_must_be_over_by_now() {
+    let Some(host) = open(|all| all) else { return };
+    let settings = Settings { cull: Cull::Back, ..Method::named("pull-push").unwrap().settings() };
+    let own: Vec<_> = reports(&settings, None, true).iter().map(|report| report.counts).collect();
+    assert!(own.windows(2).all(|pair| pair[0] != pair[1]));
+    let kind = Kind { way: Way::Subpass, colour: FLOATS, normals: false, samples: ONE, reversed: true };
+    let mut stand = Stand::new(&host, kind, SIZE, None, &surfels());
+    stand.renderer.measure(Measured { times: false, counts: true });
+    let told: Vec<_> = (0..5)
+        .map(|number| {
+            let view = View::whole(nearer(number), SIZE);
+            stand.render(&host, &view, &settings, None);
+            stand.renderer.report().map(|report| report.counts)
+        })
+        .collect();
+    // Two may be under way: when the third is recorded, the first is over.
+    assert_eq!(told, [None, None, Some(own[0]), Some(own[1]), Some(own[2])]);
+    stand.destroy(&host);
+    assert_silent(&host);
+}
+
+/// A frame of a native host that is recorded so many times after it was prepared once; what it tells, and how long it took, ms.
+fn native_report(
+    host: &Host,
+    native: &mut Native,
+    (scene, view, settings): (&Arc<Scene>, &View, &Settings),
+    times: u32,
+) -> (Option<FrameReport>, f64) {
+    let start = Instant::now();
+    host.run(|cmd| {
+        // SAFETY: prepared outside the pass, drawn inside it, and waited for.
+        unsafe {
+            native.renderer.prepare(cmd, scene, view, settings)?;
+            (0..times)
+                .try_for_each(|_| native.record(host, cmd, (None, view), |surfels| surfels.draw(cmd), false))
+        }
+    })
+    .unwrap();
+    // SAFETY: the frame was waited for.
+    unsafe { native.renderer.finish() }.unwrap();
+    (native.renderer.report().cloned(), 1e3 * start.elapsed().as_secs_f64())
+}
+
+#[test]
+fn subpasses_tell_what_is_asked_for() {
+    let Some(host) = open(|all| all) else { return };
+    let both = Measured { times: true, counts: true };
+    let names = ["perspective-ewa", "sprites", "sprites-unfiltered"];
+    for (name, seed) in names.into_iter().flat_map(|name| [(name, false), (name, true)]) {
+        let settings = Settings { cull: Cull::Back, ..Method::named(name).unwrap().settings() };
+        let settings = Settings { background: None, ..settings };
+        let own = reports(&settings, Some(Rasterizer::Draw), true);
+        let device = host.lend(None).unwrap();
+        let scene = upload(&host, &device, &surfels());
+        let kind = native::Kind {
+            colour: FLOATS,
+            depth: Some(ash::vk::Format::D32_SFLOAT),
+            normals: false,
+            samples: ONE,
+            reversed: true,
+            seed,
+            around: [true, false],
+        };
+        let mut native = Native::new(&host, &device, kind, SIZE, &[(scene.streams(), &settings)]).unwrap();
+        let mut render = |number, measured, times| {
+            native.renderer.measure(measured);
+            let view = View::whole(nearer(number), SIZE);
+            native_report(&host, &mut native, (&scene, &view, &settings), times)
+        };
+        let (report, wall) = render(0, both, 1);
+        let report = report.unwrap();
+        assert_eq!(report.counts, own[0].counts, "{name}");
+        let (outside, inside): (Vec<_>, Vec<_>) =
+            labels(&own[0]).into_iter().partition(|label| ["clear", "footprint"].contains(label));
+        let seeded: &[&str] = if seed { &["seed"] } else { &[] };
+        assert_eq!(labels(&report), [&outside[..], &["read back"], seeded, &inside].concat(), "{name}");
+        assert!(report.pass_times.iter().all(|time| time.milliseconds >= 0.0));
+        let drawn = |time: &&PassTime| ["visibility", "nearest"].contains(&time.label);
+        assert!(report.pass_times.iter().find(drawn).unwrap().milliseconds > 0.0);
+        let sum: f64 = report.pass_times.iter().map(|time| time.milliseconds).sum();
+        assert!(sum < wall, "{sum} ms of {wall} ms");
+
+        // Drawn again, it is not timed again; not drawn at all, it has no times.
+        let (counts, _) = render(2, Measured { times: false, ..both }, 2);
+        assert_eq!(counts, Some(FrameReport { pass_times: vec![], counts: own[2].counts }));
+        let twice = render(3, both, 2).0.unwrap();
+        assert_eq!((labels(&twice), twice.counts), (labels(&report), own[3].counts));
+        let (never, _) = render(4, both, 0);
+        assert_eq!(never, Some(FrameReport { pass_times: vec![], counts: own[4].counts }));
+        assert_eq!(render(1, Measured::default(), 1).0, None);
+        native.destroy(&host);
+    }
+    assert_silent(&host);
+}
