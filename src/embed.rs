@@ -83,6 +83,7 @@ mod held;
 pub mod native;
 mod reports;
 mod target;
+mod view;
 
 pub use crate::scene::Changes;
 pub use crate::vk::{
@@ -93,11 +94,12 @@ pub use buffers::{Buffers, READ_ACCESS, READ_STAGES, Radii, Values, update};
 pub use reports::Measured;
 use reports::Reports;
 pub use target::{Pass, Target};
-use target::{check_convention, depths};
+use view::Seen;
+pub use view::View;
 
 use crate::error::{Error, Result};
 use crate::frame::Blocks;
-use crate::geometry::{Camera, Parts};
+use crate::geometry::Parts;
 use crate::instance::Instances;
 use crate::passes::{Composite, CompositeKind, Splats};
 use crate::renderer::{FrameReport, RenderOptions};
@@ -142,24 +144,6 @@ pub struct Options {
     pub precision: Precision,
     /// As [`RenderOptions::rasterizer`].
     pub rasterizer: Option<Rasterizer>,
-}
-
-/// How a frame is seen.
-#[derive(Clone, Copy, Debug)]
-pub struct View {
-    /// The host's view and projection. Its `reversed` is the target's.
-    pub camera: Camera,
-    /// The host's viewport: whole pixels, px from the target's top left. A height below 0 is that of a projection whose y points up, with the
-    /// viewport's y at its lower end.
-    pub viewport: vk::Viewport,
-}
-
-impl View {
-    /// Seen in the whole of a target of `size` px, at depths from 0 to 1.
-    pub fn whole(camera: Camera, size: [u32; 2]) -> Self {
-        let [width, height] = size.map(|side| side as f32);
-        Self { camera, viewport: vk::Viewport { width, height, max_depth: 1.0, ..Default::default() } }
-    }
 }
 
 /// Renders scenes into frames of a host.
@@ -274,6 +258,22 @@ impl Renderer {
         Ok(())
     }
 
+    /// Makes the pipelines of frames like this one, so that the first of them does not stop to make them: while a level is loaded, or before a
+    /// method is offered. Nothing is recorded, and what was prepared stays. Takes as long as drivers take to compile shaders; another renderer,
+    /// on another thread, can do so meanwhile, and leave them in the device's pipeline cache.
+    pub fn make_pipelines<'a>(
+        &mut self,
+        scenes: impl Into<Instances<'a>>,
+        view: &View,
+        settings: &Settings,
+    ) -> Result<()> {
+        let placed = scenes.into().placed(&self.device)?;
+        let seen = self.seen(view)?;
+        let variant =
+            self.stage.make_pipelines(&placed, &seen.camera, &without_background(settings), seen.size)?;
+        self.composite(variant.rasterizer, variant.pull_push.is_some(), variant.perspective).map(drop)
+    }
+
     /// What frames that are prepared from now on tell of themselves: nothing, unless this is called. Shaders that count are others than those
     /// that do not: either are made when they are first needed.
     pub fn measure(&mut self, measured: Measured) {
@@ -300,15 +300,9 @@ impl Renderer {
     fn make(&mut self, scenes: Instances<'_>, view: &View, settings: &Settings) -> Result<(Blocks, Shown)> {
         self.shown = None;
         let placed = scenes.placed(&self.device)?;
-        let area = view.area()?;
-        let size = [area.extent.width, area.extent.height];
-        check_size(&self.device, size)?;
-        let camera = view.upright();
-        check_convention(self.target.depth.map(|_| self.target.reversed), &camera)?;
-        let depth = depths(&camera, view.viewport)?;
+        let Seen { area, size, camera, depth } = self.seen(view)?;
         self.stage.resize(size);
-        let settings = Settings { background: None, ..settings.clone() };
-        let (blocks, variant) = self.stage.prepare(&placed, &camera, &settings, false)?;
+        let (blocks, variant) = self.stage.prepare(&placed, &camera, &without_background(settings), false)?;
         if !scenes.scenes().map(Arc::as_ptr).eq(self.scenes.iter().map(Arc::as_ptr)) {
             let old = std::mem::replace(&mut self.scenes, scenes.scenes().cloned().collect());
             self.held.hold(old);
@@ -318,6 +312,13 @@ impl Renderer {
         self.view(composite)?;
         let place = layout::Composite { origin: [area.offset.x, area.offset.y], size, depth };
         Ok((blocks, Shown { place, area }))
+    }
+
+    /// The view, of a target that can be made.
+    fn seen(&self, view: &View) -> Result<Seen> {
+        let seen = view.seen(self.target.depth.map(|_| self.target.reversed))?;
+        check_size(&self.device, seen.size)?;
+        Ok(seen)
     }
 
     /// Sees the present targets as `composite` does, if it does not already.
@@ -358,36 +359,7 @@ impl Renderer {
     }
 }
 
-impl View {
-    /// The pixels of the viewport.
-    fn area(&self) -> Result<vk::Rect2D> {
-        let vk::Viewport { x, y, width, height, .. } = self.viewport;
-        let top = if height < 0.0 { y + height } else { y };
-        let whole = [x, top, width, height].iter().all(|side| side.fract() == 0.0 && side.abs() < 65536.0);
-        if !whole || width < 1.0 || height.abs() < 1.0 || x < 0.0 || top < 0.0 {
-            return Err(Error::Usage(format!(
-                "a viewport of {width}x{height} px at ({x}, {y}): give whole pixels, at least 1x1, within the target"
-            )));
-        }
-        Ok(vk::Rect2D {
-            offset: vk::Offset2D { x: x as i32, y: top as i32 },
-            extent: vk::Extent2D { width: width as u32, height: height.abs() as u32 },
-        })
-    }
-
-    /// The camera with rows of pixels from the top, whichever way the host's viewport has them.
-    fn upright(&self) -> Camera {
-        let mut camera = self.camera;
-        if self.viewport.height < 0.0 {
-            for column in [
-                &mut camera.projection.x_axis,
-                &mut camera.projection.y_axis,
-                &mut camera.projection.z_axis,
-                &mut camera.projection.w_axis,
-            ] {
-                column.y = -column.y;
-            }
-        }
-        camera
-    }
+/// As hosts have them: the picture is composed over what is there.
+fn without_background(settings: &Settings) -> Settings {
+    Settings { background: None, ..settings.clone() }
 }

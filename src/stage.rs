@@ -157,6 +157,19 @@ pub(crate) fn describe(
     Ok(Description { blocks, variant, scenes })
 }
 
+/// Those of a variant, which are made if they are not there.
+fn pipelines_of<'a>(
+    made: &'a mut HashMap<Variant, Pipelines>,
+    device: &Arc<Device>,
+    layout: &SplatLayout,
+    variant: Variant,
+) -> Result<&'a Pipelines> {
+    Ok(match made.entry(variant) {
+        Entry::Occupied(made) => made.into_mut(),
+        Entry::Vacant(room) => room.insert(Pipelines::new(device, layout, &variant)?),
+    })
+}
+
 /// Refuses several scenes of which one has what is looked up pixel by pixel, where there is but one table of it.
 fn check_lookups(variant: &Variant, scenes: &[Placed<'_>]) -> Result<()> {
     let refuse = |what: &str| {
@@ -256,6 +269,21 @@ impl Stage {
         Ok((blocks, variant))
     }
 
+    /// Makes the pipelines of a frame like this one of `size` px, and nothing else; what it is.
+    pub(crate) fn make_pipelines(
+        &mut self,
+        scenes: &[Placed<'_>],
+        camera: &Camera,
+        settings: &Settings,
+        size: [u32; 2],
+    ) -> Result<Variant> {
+        let options = RenderOptions { size, ..self.options };
+        let Description { variant, scenes, .. } = describe(&self.device, &options, scenes, camera, settings)?;
+        let Self { pipelines, layout, device, .. } = self;
+        pipelines_of(pipelines, device, layout, variant)?.show(device, layout, &scenes)?;
+        Ok(variant)
+    }
+
     /// Records the frame that was prepared, with these numbers.
     pub(crate) fn record(&self, rec: &mut Recorder<'_>, blocks: &Blocks) {
         update(rec, &self.frame, self.residents().map(|resident| &resident.frame), blocks);
@@ -300,10 +328,7 @@ impl Stage {
                 let name = &self.device.description().name;
                 log::warn!("{name} cannot blend 32-bit floats: sums are kept in 16 bits");
             }
-            let pipelines = match self.pipelines.entry(variant) {
-                Entry::Occupied(made) => made.into_mut(),
-                Entry::Vacant(room) => room.insert(Pipelines::new(&self.device, &self.layout, &variant)?),
-            };
+            let pipelines = pipelines_of(&mut self.pipelines, &self.device, &self.layout, variant)?;
             let canvas =
                 pipelines.canvas(&self.device, &self.layout, &self.frame, &variant, self.options.size)?;
             let frame = self.frame.clone();

@@ -87,10 +87,10 @@ mod targets;
 pub use place::{Depth, Place};
 pub use plan::Plan;
 
-use super::View;
 use super::held::Held;
 use super::reports::{Measured, Reports};
-use super::target::{check_convention, depths};
+use super::view::Seen;
+use super::{View, without_background};
 use crate::error::{Error, Result};
 use crate::frame::Blocks;
 use crate::instance::Instances;
@@ -298,6 +298,23 @@ impl Renderer {
         }
     }
 
+    /// As [`embed::Renderer::make_pipelines`](super::Renderer::make_pipelines).
+    pub fn make_pipelines<'a>(
+        &mut self,
+        scenes: impl Into<Instances<'a>>,
+        view: &View,
+        settings: &Settings,
+    ) -> Result<()> {
+        let placed = scenes.into().placed(&self.device)?;
+        let Seen { size, camera, .. } = view.seen(self.made.plan.host.reversed)?;
+        let settings = without_background(settings);
+        check_method(&settings)?;
+        let Description { variant, scenes, .. } =
+            describe(&self.device, &self.options(size), &placed, &camera, &settings)?;
+        self.made.plan.check(&variant)?;
+        self.made.make_pipelines(&self.device, variant, &scenes).map(drop)
+    }
+
     /// As [`embed::Renderer::measure`](super::Renderer::measure).
     pub fn measure(&mut self, measured: Measured) {
         self.reports.measure(measured);
@@ -325,15 +342,11 @@ impl Renderer {
         settings: &Settings,
     ) -> Result<(Blocks, Numbers, vk::Rect2D)> {
         let placed = scenes.placed(&self.device)?;
-        let area = view.area()?;
+        let Seen { area, size, camera, depth } = view.seen(self.made.plan.host.reversed)?;
         let targets = self.targets_of(area)?;
-        let size = [area.extent.width, area.extent.height];
-        let camera = view.upright();
-        check_convention(self.made.plan.host.reversed, &camera)?;
-        let depth = depths(&camera, view.viewport)?;
-        let settings = Settings { background: None, ..settings.clone() };
+        let settings = without_background(settings);
         check_method(&settings)?;
-        let options = RenderOptions { count: self.reports.counts(), ..self.made.plan.options(size) };
+        let options = self.options(size);
         let Description { mut blocks, variant, scenes: own } =
             describe(&self.device, &options, &placed, &camera, &settings)?;
         self.made.plan.check(&variant)?;
@@ -348,6 +361,11 @@ impl Renderer {
         self.make_residents(&list, passes::moves(&variant), !blocks.scenes.is_empty())?;
         self.make_present(&targets, variant, &own)?;
         Ok((blocks, Numbers { seed, host: layout::Subpass { depth } }, area))
+    }
+
+    /// Those of frames of `size` px.
+    fn options(&self, size: [u32; 2]) -> RenderOptions {
+        RenderOptions { count: self.reports.counts(), ..self.made.plan.options(size) }
     }
 
     /// The attachments, if these pixels are within them.

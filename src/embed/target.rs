@@ -1,7 +1,6 @@
 //! Where a host wants the picture.
 
 use crate::error::{Error, Result};
-use crate::geometry::Camera;
 use crate::passes::{Composite, CompositeKind};
 use crate::vk::{Blend, Device, Within};
 use ash::vk;
@@ -124,32 +123,6 @@ impl Target {
         };
         Composite::new(device, kind, &within)
     }
-}
-
-/// Refuses a camera whose depth is not the host's, which falls with distance, or does not, if there is any.
-pub(super) fn check_convention(reversed: Option<bool>, camera: &Camera) -> Result<()> {
-    let name = |reversed| if reversed { "falls" } else { "rises" };
-    match reversed {
-        Some(reversed) if camera.reversed != reversed => Err(Error::Usage(format!(
-            "the camera's depth {} with distance, the target's {}: give one convention",
-            name(camera.reversed),
-            name(reversed)
-        ))),
-        _ => Ok(()),
-    }
-}
-
-/// What the shader makes the host's depth of: see `host_depth` in `lib/host.glsl`.
-pub(super) fn depths(camera: &Camera, viewport: vk::Viewport) -> Result<[f32; 4]> {
-    let projection = camera.projection()?;
-    let (z, w) = (camera.projection.row(2), camera.projection.row(3));
-    let [first, by_distance] = match projection.perspective {
-        true => [z.z / w.z, z.w / w.z.abs()],
-        false => [z.w / w.w, projection.forward * z.z / w.w],
-    };
-    let (low, range) = (f64::from(viewport.min_depth), f64::from(viewport.max_depth - viewport.min_depth));
-    let [least, greatest] = [viewport.min_depth, viewport.max_depth];
-    Ok([(low + range * first) as f32, (range * by_distance) as f32, least.min(greatest), least.max(greatest)])
 }
 
 pub(super) fn is_integer(format: vk::Format) -> bool {

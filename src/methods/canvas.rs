@@ -165,6 +165,17 @@ impl Pipelines {
         }))
     }
 
+    /// Makes the pipelines that such scenes have of their own, if they are not there.
+    pub fn show(&self, device: &Arc<Device>, layout: &SplatLayout, scenes: &[SceneVariant]) -> Result<()> {
+        match &self.0 {
+            Kind::DrawBlended(made) => made.all(device, layout, scenes).map(drop),
+            Kind::DrawNearest(made) => made.all(device, layout, scenes).map(drop),
+            Kind::ComputeBlended(made) => made.all(device, layout, scenes).map(drop),
+            Kind::ComputeNearest(made) => made.all(device, layout, scenes).map(drop),
+            Kind::PullPush(made) => made.all(device, layout, scenes).map(drop),
+        }
+    }
+
     /// Makes targets of `size` px for `variant`, whose pipelines these are. `frame` must outlive them.
     pub fn canvas(
         &self,
@@ -235,6 +246,16 @@ impl<P: PerScene> Made<P> {
         scenes.insert(*variant, made.clone());
         Ok(made)
     }
+
+    /// What each scene has of the passes.
+    fn all(
+        &self,
+        device: &Arc<Device>,
+        layout: &SplatLayout,
+        variants: &[SceneVariant],
+    ) -> Result<Vec<Arc<P::Scene>>> {
+        variants.iter().map(|variant| self.scene(device, layout, variant)).collect()
+    }
 }
 
 impl<P: PerScene> Shown<P> {
@@ -244,8 +265,7 @@ impl<P: PerScene> Shown<P> {
 
     fn show(&mut self, device: &Arc<Device>, layout: &SplatLayout, variants: &[SceneVariant]) -> Result<()> {
         if self.variants != variants {
-            let made = variants.iter().map(|variant| self.made.scene(device, layout, variant));
-            self.scenes = made.collect::<Result<_>>()?;
+            self.scenes = self.made.all(device, layout, variants)?;
             self.variants = variants.to_vec();
         }
         Ok(())

@@ -9,6 +9,7 @@ mod instances;
 mod live;
 mod native;
 mod native_live;
+mod pipelines;
 mod reports;
 mod rig;
 mod stand;

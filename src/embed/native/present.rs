@@ -66,6 +66,17 @@ impl Made {
         Ok(self.passes.entry(*variant).or_insert(Arc::new(made)).clone())
     }
 
+    /// Makes what frames of `variant` with such scenes are drawn with, if it is not there; what the scenes have.
+    pub(super) fn make_pipelines(
+        &mut self,
+        device: &Arc<Device>,
+        variant: Variant,
+        scenes: &[SceneVariant],
+    ) -> Result<Vec<Arc<ScenePasses>>> {
+        self.passes(device, &variant)?;
+        scenes.iter().map(|variant| self.scene(device, variant)).collect()
+    }
+
     fn scene(&mut self, device: &Arc<Device>, variant: &SceneVariant) -> Result<Arc<ScenePasses>> {
         if let Some(made) = self.scenes.get(variant) {
             return Ok(made.clone());
@@ -139,8 +150,7 @@ impl Renderer {
             self.held.hold(old);
             self.present = Some(self.made.present(&self.device, targets, variant)?);
         }
-        let scenes = scenes.iter().map(|variant| self.made.scene(&self.device, variant));
-        let scenes = scenes.collect::<Result<_>>()?;
+        let scenes = self.made.make_pipelines(&self.device, variant, scenes)?;
         if let Some(present) = &mut self.present {
             present.scenes = scenes;
         }

@@ -1,0 +1,102 @@
+//! How a frame is seen: the host's camera and viewport, and what shaders take of them.
+
+use crate::error::{Error, Result};
+use crate::geometry::Camera;
+use ash::vk;
+
+/// How a frame is seen.
+#[derive(Clone, Copy, Debug)]
+pub struct View {
+    /// The host's view and projection. Its `reversed` is the target's.
+    pub camera: Camera,
+    /// The host's viewport: whole pixels, px from the target's top left. A height below 0 is that of a projection whose y points up, with the
+    /// viewport's y at its lower end.
+    pub viewport: vk::Viewport,
+}
+
+impl View {
+    /// Seen in the whole of a target of `size` px, at depths from 0 to 1.
+    pub fn whole(camera: Camera, size: [u32; 2]) -> Self {
+        let [width, height] = size.map(|side| side as f32);
+        Self { camera, viewport: vk::Viewport { width, height, max_depth: 1.0, ..Default::default() } }
+    }
+
+    /// As a target takes it, whose depth falls with distance where it is `reversed`, if it has any. Refuses what that cannot show.
+    pub(super) fn seen(&self, reversed: Option<bool>) -> Result<Seen> {
+        let area = self.area()?;
+        let camera = self.upright();
+        check_convention(reversed, &camera)?;
+        let depth = depths(&camera, self.viewport)?;
+        Ok(Seen { area, size: [area.extent.width, area.extent.height], camera, depth })
+    }
+
+    /// The pixels of the viewport.
+    fn area(&self) -> Result<vk::Rect2D> {
+        let vk::Viewport { x, y, width, height, .. } = self.viewport;
+        let top = if height < 0.0 { y + height } else { y };
+        let whole = [x, top, width, height].iter().all(|side| side.fract() == 0.0 && side.abs() < 65536.0);
+        if !whole || width < 1.0 || height.abs() < 1.0 || x < 0.0 || top < 0.0 {
+            return Err(Error::Usage(format!(
+                "a viewport of {width}x{height} px at ({x}, {y}): give whole pixels, at least 1x1, within the target"
+            )));
+        }
+        Ok(vk::Rect2D {
+            offset: vk::Offset2D { x: x as i32, y: top as i32 },
+            extent: vk::Extent2D { width: width as u32, height: height.abs() as u32 },
+        })
+    }
+
+    /// The camera with rows of pixels from the top, whichever way the host's viewport has them.
+    fn upright(&self) -> Camera {
+        let mut camera = self.camera;
+        if self.viewport.height < 0.0 {
+            for column in [
+                &mut camera.projection.x_axis,
+                &mut camera.projection.y_axis,
+                &mut camera.projection.z_axis,
+                &mut camera.projection.w_axis,
+            ] {
+                column.y = -column.y;
+            }
+        }
+        camera
+    }
+}
+
+/// A view as a target takes it.
+pub(super) struct Seen {
+    /// The picture's pixels among the target's.
+    pub(super) area: vk::Rect2D,
+    /// Their width and height.
+    pub(super) size: [u32; 2],
+    /// With rows of pixels from the top.
+    pub(super) camera: Camera,
+    /// What the shader makes the host's depth of.
+    pub(super) depth: [f32; 4],
+}
+
+/// Refuses a camera whose depth is not the host's, which falls with distance, or does not, if there is any.
+fn check_convention(reversed: Option<bool>, camera: &Camera) -> Result<()> {
+    let name = |reversed| if reversed { "falls" } else { "rises" };
+    match reversed {
+        Some(reversed) if camera.reversed != reversed => Err(Error::Usage(format!(
+            "the camera's depth {} with distance, the target's {}: give one convention",
+            name(camera.reversed),
+            name(reversed)
+        ))),
+        _ => Ok(()),
+    }
+}
+
+/// What the shader makes the host's depth of: see `host_depth` in `lib/host.glsl`.
+fn depths(camera: &Camera, viewport: vk::Viewport) -> Result<[f32; 4]> {
+    let projection = camera.projection()?;
+    let (z, w) = (camera.projection.row(2), camera.projection.row(3));
+    let [first, by_distance] = match projection.perspective {
+        true => [z.z / w.z, z.w / w.z.abs()],
+        false => [z.w / w.w, projection.forward * z.z / w.w],
+    };
+    let (low, range) = (f64::from(viewport.min_depth), f64::from(viewport.max_depth - viewport.min_depth));
+    let [least, greatest] = [viewport.min_depth, viewport.max_depth];
+    Ok([(low + range * first) as f32, (range * by_distance) as f32, least.min(greatest), least.max(greatest)])
+}

@@ -1,0 +1,182 @@
+//! Pipelines are made when a host likes, and then not again.
+
+use crate::host::Host;
+use crate::host::frame::{Frame, Kind, Way};
+use crate::host::native::{self, Native};
+use crate::stand::{SIZE, assert_silent, camera, open, surfels, upload};
+use crate::{FLOATS, ONE};
+use ash::vk;
+use std::ffi::{CStr, c_void};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::{Mutex, OnceLock};
+use surfel::embed::{Lent, Options, Renderer, View};
+use surfel::methods::Method;
+use surfel::vk::{Device, DeviceLimits};
+use surfel::{Precision, Settings};
+
+/// Pipelines that were made by the one host here, whose own functions these are.
+static MADE: AtomicU64 = AtomicU64::new(0);
+static GRAPHICS: OnceLock<vk::PFN_vkCreateGraphicsPipelines> = OnceLock::new();
+static COMPUTE: OnceLock<vk::PFN_vkCreateComputePipelines> = OnceLock::new();
+/// One test at a time counts.
+static COUNTING: Mutex<()> = Mutex::new(());
+
+unsafe extern "system" fn graphics(
+    device: vk::Device,
+    cache: vk::PipelineCache,
+    count: u32,
+    infos: *const vk::GraphicsPipelineCreateInfo<'_>,
+    allocator: *const vk::AllocationCallbacks<'_>,
+    pipelines: *mut vk::Pipeline,
+) -> vk::Result {
+    MADE.fetch_add(count.into(), Ordering::SeqCst);
+    // SAFETY: what is called was asked of the device.
+    unsafe { GRAPHICS.get().unwrap()(device, cache, count, infos, allocator, pipelines) }
+}
+
+unsafe extern "system" fn compute(
+    device: vk::Device,
+    cache: vk::PipelineCache,
+    count: u32,
+    infos: *const vk::ComputePipelineCreateInfo<'_>,
+    allocator: *const vk::AllocationCallbacks<'_>,
+    pipelines: *mut vk::Pipeline,
+) -> vk::Result {
+    MADE.fetch_add(count.into(), Ordering::SeqCst);
+    // SAFETY: as above.
+    unsafe { COMPUTE.get().unwrap()(device, cache, count, infos, allocator, pipelines) }
+}
+
+/// The host's device, lent with functions that count.
+fn lend(host: &Host) -> Arc<Device> {
+    let find = |name: &CStr| {
+        let device = host.device.handle();
+        // SAFETY: the device is alive.
+        let found = unsafe { host.instance.get_device_proc_addr(device, name.as_ptr()) };
+        found.map_or(std::ptr::null(), |found| found as *const c_void)
+    };
+    let table = host.device.fp_v1_0();
+    let _ = GRAPHICS.set(table.create_graphics_pipelines);
+    let _ = COMPUTE.set(table.create_compute_pipelines);
+    let load = |name: &CStr| match name.to_bytes() {
+        b"vkCreateGraphicsPipelines" => graphics as *const c_void,
+        b"vkCreateComputePipelines" => compute as *const c_void,
+        _ => find(name),
+    };
+    // SAFETY: the functions are the device's, or call it; it outlives what is lent.
+    unsafe {
+        let counting = ash::Device::load_with(load, host.device.handle());
+        let lent = Lent {
+            instance: &host.instance,
+            physical: host.physical,
+            device: &counting,
+            queue_family: host.family,
+            enabled: host.enabled,
+            labels: true,
+            limits: DeviceLimits::default(),
+            memory: None,
+            pipeline_cache: None,
+        };
+        Device::borrow(lent).unwrap()
+    }
+}
+
+fn settings(name: &str) -> Settings {
+    Settings { background: None, ..Method::named(name).unwrap().settings() }
+}
+
+/// Pipelines that `body` makes.
+fn made(body: impl FnOnce()) -> u64 {
+    let before = MADE.load(Ordering::SeqCst);
+    body();
+    MADE.load(Ordering::SeqCst) - before
+}
+
+#[test]
+fn a_frame_whose_pipelines_are_there_makes_none() {
+    let Some(host) = open(|all| all) else { return };
+    let _alone = COUNTING.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+    let device = lend(&host);
+    let kind = Kind { way: Way::Subpass, colour: FLOATS, normals: false, samples: ONE, reversed: true };
+    let frame = Frame::new(&host, kind, SIZE).unwrap();
+    let scene = upload(&host, &device, &surfels());
+    let options =
+        Options { target: frame.target(), frames_in_flight: 1, precision: Precision::Full, rasterizer: None };
+    let view = View::whole(camera(), SIZE);
+    for name in Method::ALL.map(|method| method.name) {
+        let (first, next) = (settings("sprites-unfiltered"), settings(name));
+        // SAFETY: the target is the frame's; what is recorded is waited for.
+        unsafe {
+            let mut renderer = Renderer::new(&device, options.clone()).unwrap();
+            let show = |renderer: &mut Renderer, settings: &Settings, body: &dyn Fn(&mut Renderer)| {
+                host.run(|cmd| {
+                    renderer.prepare(cmd, &scene, &view, settings)?;
+                    body(renderer);
+                    frame.begin(&host, cmd);
+                    let drawn = renderer.draw(cmd);
+                    frame.end(&host, cmd);
+                    Ok(drawn?)
+                })
+                .unwrap();
+            };
+            show(&mut renderer, &first, &|_| {});
+            let ahead = made(|| {
+                // What is prepared is drawn all the same.
+                show(&mut renderer, &first, &|renderer| {
+                    renderer.make_pipelines(&scene, &view, &next).unwrap();
+                });
+            });
+            assert_eq!(ahead == 0, name == "sprites-unfiltered", "{name}: {ahead}");
+            let later = made(|| {
+                show(&mut renderer, &next, &|_| {});
+                renderer.make_pipelines(&scene, &view, &first).unwrap();
+                show(&mut renderer, &first, &|_| {});
+            });
+            assert_eq!(later, 0, "{name}");
+            assert!(renderer.make_pipelines(&scene, &View::whole(camera(), [0, 1]), &first).is_err());
+        }
+    }
+    drop(scene);
+    frame.destroy(&host);
+    assert_silent(&host);
+}
+
+#[test]
+fn subpasses_whose_pipelines_are_there_make_none() {
+    let Some(host) = open(|all| all) else { return };
+    let _alone = COUNTING.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+    let device = lend(&host);
+    let kind = native::Kind {
+        colour: FLOATS,
+        depth: Some(vk::Format::D32_SFLOAT),
+        normals: false,
+        samples: ONE,
+        reversed: true,
+        seed: true,
+        around: [true, false],
+    };
+    let view = View::whole(camera(), SIZE);
+    for name in ["perspective-ewa", "object-ewa", "sprites", "confetti"] {
+        let scene = upload(&host, &device, &surfels());
+        let settings = settings(name);
+        let mut native = Native::new(&host, &device, kind, SIZE, &[(scene.streams(), &settings)]).unwrap();
+        let ahead = made(|| native.renderer.make_pipelines(&scene, &view, &settings).unwrap());
+        assert!(ahead > 3, "{name}: {ahead}");
+        let later = made(|| {
+            host.run(|cmd| {
+                // SAFETY: prepared outside the pass, drawn inside it, and waited for.
+                unsafe {
+                    native.renderer.prepare(cmd, &scene, &view, &settings)?;
+                    native.record(&host, cmd, (None, &view), |surfels| surfels.draw(cmd), false)
+                }
+            })
+            .unwrap();
+        });
+        assert_eq!(later, 0, "{name}");
+        let refused = native.renderer.make_pipelines(&scene, &view, &self::settings("pull-push"));
+        assert!(refused.unwrap_err().to_string().contains("pull"), "a method without splats");
+        native.destroy(&host);
+    }
+    assert_silent(&host);
+}
