@@ -12,14 +12,14 @@ use glam::{DVec3, Vec3};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use surfel::embed::{self, Buffers, Changes, Options, READ_ACCESS, READ_STAGES, Radii, Renderer};
-use surfel::geometry::{Bounds, Clip, Clips, Colours, Surfels, Weights};
+use surfel::geometry::{Bounds, Colours, Surfels};
 use surfel::methods::Method;
 use surfel::splatting::Visibility;
 use surfel::vk::{Buffer, Device, DeviceLimits, Uploads};
 use surfel::{Picture, Precision, Rasterizer, RenderOptions, Scene, Settings, SplatCounts};
 
 /// Ranges so small that a scene of 20,000 surfels has several windows, which begin at far fewer places than the values of vertices do.
-const NARROW: DeviceLimits = DeviceLimits {
+pub const NARROW: DeviceLimits = DeviceLimits {
     max_storage_buffer_range: Some(512 << 10),
     blend_float32: None,
     float_atomics: None,
@@ -33,7 +33,7 @@ const NARROW: DeviceLimits = DeviceLimits {
     memory: None,
 };
 
-fn sphere(count: usize) -> Surfels {
+pub fn sphere(count: usize) -> Surfels {
     let mut random = Random(11);
     let mut surfels = bumpy_sphere(count, &mut random);
     paint_srgb(&mut surfels, &mut random);
@@ -41,7 +41,7 @@ fn sphere(count: usize) -> Surfels {
 }
 
 /// Ellipses, of which some have no side, with linear colours.
-fn ellipses(count: usize) -> Surfels {
+pub fn ellipses(count: usize) -> Surfels {
     let mut random = Random(12);
     let mut surfels = bumpy_sphere(count, &mut random);
     paint_linear(&mut surfels, &mut random);
@@ -50,7 +50,7 @@ fn ellipses(count: usize) -> Surfels {
     Surfels { origin: DVec3::new(0.125, -0.25, 0.0), ..surfels }
 }
 
-fn settings(method: Method) -> Settings {
+pub fn settings(method: Method) -> Settings {
     Settings { background: None, ..method.settings() }
 }
 
@@ -61,7 +61,7 @@ fn most(settings: &Settings, rasterizer: Rasterizer) -> f32 {
 }
 
 /// The number of pixels in which two frames differ by more than `most`.
-fn differing((colours, depths): &Shown, (others, other_depths): &Shown, most: f32) -> usize {
+pub fn differing((colours, depths): &Shown, (others, other_depths): &Shown, most: f32) -> usize {
     assert_eq!((colours.len(), depths.len()), (others.len(), other_depths.len()));
     let near = |a: f32, b: f32| (a - b).abs() <= most;
     let same = |i: &usize| {
@@ -209,7 +209,7 @@ fn first(surfels: &Surfels, count: usize) -> Surfels {
 }
 
 /// The sphere turned and swollen, as a simulation might.
-fn moved(surfels: &Surfels, step: usize) -> Surfels {
+pub fn moved(surfels: &Surfels, step: usize) -> Surfels {
     let (turn, swell) = (glam::Quat::from_rotation_y(0.3 * step as f32), 1.0 + 0.02 * step as f32);
     let mut moved = surfels.clone();
     moved.positions.iter_mut().for_each(|p| *p = swell * (turn * *p));
@@ -319,110 +319,13 @@ fn buffers_that_take_turns_make_nothing() {
     assert_silent(&host);
 }
 
-/// Surfels `range` of `surfels`, as changes of all streams.
-fn changes<'a>(surfels: &'a Surfels, range: std::ops::Range<usize>, colours: &'a Colours) -> Changes<'a> {
-    Changes {
-        positions: Some(&surfels.positions[range.clone()]),
-        normals: Some(&surfels.normals[range.clone()]),
-        radii: Some(&surfels.radii[range.clone()]),
-        two_sided: surfels.two_sided.as_ref().map(|two_sided| &two_sided[range.clone()]),
-        ellipses: surfels.ellipses.as_ref().map(|ellipses| &ellipses[range.clone()]),
-        colours: Some(colours),
-        bounds: None,
-    }
-}
-
-fn part(colours: Option<&Colours>, range: std::ops::Range<usize>) -> Colours {
-    match colours {
-        Some(Colours::Srgb8(colours)) => Colours::Srgb8(colours[range].to_vec()),
-        Some(Colours::Linear(colours)) => Colours::Linear(colours[range].to_vec()),
-        None => panic!("there are colours"),
-    }
-}
-
-/// `old` with a range of `new`.
-fn mixed(old: &Surfels, new: &Surfels, range: std::ops::Range<usize>) -> Surfels {
-    let mut mixed = old.clone();
-    mixed.positions[range.clone()].copy_from_slice(&new.positions[range.clone()]);
-    mixed.normals[range.clone()].copy_from_slice(&new.normals[range.clone()]);
-    mixed.radii[range.clone()].copy_from_slice(&new.radii[range.clone()]);
-    if let (Some(mixed), Some(new)) = (&mut mixed.two_sided, &new.two_sided) {
-        mixed[range.clone()].copy_from_slice(&new[range.clone()]);
-    }
-    if let (Some(mixed), Some(new)) = (&mut mixed.ellipses, &new.ellipses) {
-        mixed[range.clone()].copy_from_slice(&new[range.clone()]);
-    }
-    match (&mut mixed.colours, &new.colours) {
-        (Some(Colours::Srgb8(mixed)), Some(Colours::Srgb8(new))) => {
-            mixed[range.clone()].copy_from_slice(&new[range])
-        }
-        (Some(Colours::Linear(mixed)), Some(Colours::Linear(new))) => {
-            mixed[range.clone()].copy_from_slice(&new[range])
-        }
-        _ => panic!("colours are of one kind"),
-    }
-    mixed
-}
-
-/// Other values for the same surfels, all streams.
-fn others(surfels: &Surfels) -> Surfels {
-    let mut other = moved(surfels, 4);
-    other.radii.iter_mut().for_each(|radius| *radius *= 1.25);
-    other.two_sided.iter_mut().flatten().for_each(|two_sided| *two_sided = !*two_sided);
-    let random = &mut Random(99);
-    if other.ellipses.is_some() {
-        narrow(&mut other, random);
-    }
-    match other.colours {
-        Some(Colours::Linear(_)) => paint_linear(&mut other, random),
-        _ => paint_srgb(&mut other, random),
-    }
-    other
-}
-
-#[test]
-fn an_update_is_seen_by_the_frames_after_it_and_by_none_before() {
-    let Some(host) = open(|all| all) else { return };
-    for (surfels, rasterizer) in [(sphere(20_000), Rasterizer::Draw), (ellipses(20_000), Rasterizer::Compute)]
-    {
-        let new = others(&surfels);
-        let mut rig = Rig::new(&host, Some(rasterizer), NARROW);
-        let border = upload(&host, &rig.device, &surfels).windows()[0].end as usize;
-        for range in [border - 3..border + 5, 0..border, border..20_000, 0..20_000, 7..8] {
-            let settings = settings(Method::named("sprites-unfiltered").unwrap());
-            let scene = upload(&host, &rig.device, &surfels);
-            let [before, after] = [(); 2].map(|()| Frame::new(&host, KIND, SIZE).unwrap());
-            let colours = part(new.colours.as_ref(), range.clone());
-            let changes = changes(&new, range.clone(), &colours);
-            let (submitted, staging) = host
-                .submit(|cmd| {
-                    rig.record(&host, cmd, Some(&before), &scene, &settings);
-                    // SAFETY: recorded outside a render pass, between frames of the same queue.
-                    let staging =
-                        unsafe { embed::update(cmd, &scene, range.start as u64, &changes) }.unwrap();
-                    rig.record(&host, cmd, Some(&after), &scene, &settings);
-                    Ok(staging)
-                })
-                .unwrap();
-            assert!(staging.bytes() > 0);
-            host.wait(submitted).unwrap();
-            drop(staging);
-            let old = upload(&host, &rig.device, &surfels);
-            let later = mixed(&surfels, &new, range.clone());
-            for (frame, surfels, like) in [(before, &surfels, &old), (after, &later, &scene)] {
-                let found = frame.read(&host).unwrap();
-                let expected = rig.show_uploaded(&host, surfels, like, &settings);
-                assert_eq!(differing(&found, &expected, 0.0), 0, "{rasterizer:?} {range:?}");
-                frame.destroy(&host);
-            }
-        }
-        rig.destroy(&host);
-    }
-    assert_silent(&host);
-}
-
 /// A frame of the engine's own, of what is there and counted.
-fn alone(device: &Arc<Device>, scene: &Scene, name: &str, rasterizer: Rasterizer) -> (Picture, SplatCounts) {
+pub fn alone(
+    device: &Arc<Device>,
+    scene: &Scene,
+    name: &str,
+    rasterizer: Rasterizer,
+) -> (Picture, SplatCounts) {
     let options =
         RenderOptions { size: SIZE, rasterizer: Some(rasterizer), count: true, ..Default::default() };
     let mut renderer = surfel::Renderer::new(device, options).unwrap();
@@ -431,14 +334,14 @@ fn alone(device: &Arc<Device>, scene: &Scene, name: &str, rasterizer: Rasterizer
     (picture, report.counts.unwrap())
 }
 
-const ALONE: [(&str, Rasterizer); 3] = [
+pub const ALONE: [(&str, Rasterizer); 3] = [
     ("sprites-unfiltered", Rasterizer::Draw),
     ("pull-push", Rasterizer::Draw),
     ("pull-push", Rasterizer::Compute),
 ];
 
 /// Surfels of which every 16th of some kind is invalid in another way.
-fn spoil(surfels: &mut Surfels) -> usize {
+pub fn spoil(surfels: &mut Surfels) -> usize {
     let spoils: [fn(&mut Surfels, usize); 12] = [
         |s, i| s.positions[i].y = f32::NAN,
         |s, i| s.positions[i].z = f32::NEG_INFINITY,
@@ -486,46 +389,6 @@ fn what_is_invalid_in_a_hosts_buffer_is_culled_and_counted() {
 }
 
 #[test]
-fn what_an_update_makes_invalid_is_culled_and_what_it_mends_is_drawn() {
-    let Some(device) = crate::support::gpu::device(DeviceLimits::default()) else { return };
-    let good = ellipses(6_000);
-    let mut bad = good.clone();
-    spoil(&mut bad);
-    for (from, to) in [(&good, &bad), (&bad, &good)] {
-        let scene = Scene::upload(&device, from).unwrap();
-        let colours = part(to.colours.as_ref(), 100..5_900);
-        scene.update(100, &changes(to, 100..5_900, &colours)).unwrap();
-        let expected = Scene::upload(&device, &mixed(from, to, 100..5_900)).unwrap();
-        for (name, rasterizer) in ALONE {
-            let [found, expected] = [&scene, &expected].map(|scene| alone(&device, scene, name, rasterizer));
-            assert!(expected.1.invalid > 50);
-            assert_eq!(found.1, expected.1, "{name} {rasterizer:?}");
-            assert!(found.0 == expected.0, "{name} {rasterizer:?}");
-        }
-    }
-    // A radius has a surfel drawn again that was left out for another reason.
-    let mut circles = sphere(500);
-    circles.colours = Some(Colours::Linear(vec![[0.5; 3]; 500]));
-    if let Some(Colours::Linear(colours)) = &mut circles.colours {
-        colours[5][1] = f32::NAN;
-    }
-    circles.normals[7] = Vec3::NAN;
-    let scene = Scene::upload(&device, &circles).unwrap();
-    scene.update(4, &Changes { radii: Some(&[0.1; 4]), ..Default::default() }).unwrap();
-    for (name, rasterizer) in ALONE {
-        let (picture, counts) = alone(&device, &scene, name, rasterizer);
-        assert_eq!(counts.invalid, 2, "{name} {rasterizer:?}");
-        assert!(picture.colour.iter().flatten().all(|value| value.is_finite()));
-    }
-    // One stream alone.
-    let scene = Scene::upload(&device, &good).unwrap();
-    scene.update(0, &Changes { positions: Some(&[Vec3::NAN, Vec3::ZERO]), ..Default::default() }).unwrap();
-    let (_, counts) = alone(&device, &scene, "pull-push", Rasterizer::Compute);
-    assert_eq!(counts.invalid, 1);
-    crate::support::gpu::assert_silent(&device);
-}
-
-#[test]
 fn bounds_follow_positions_or_are_what_is_said() {
     let Some(device) = crate::support::gpu::device(DeviceLimits::default()) else { return };
     let surfels = sphere(500);
@@ -552,7 +415,7 @@ fn bounds_follow_positions_or_are_what_is_said() {
     crate::support::gpu::assert_silent(&device);
 }
 
-fn refused<T>(made: surfel::Result<T>, said: &str) {
+pub fn refused<T>(made: surfel::Result<T>, said: &str) {
     let text = made.err().map(|error| error.to_string()).unwrap_or_default();
     assert!(text.contains(said), "`{said}` is not in `{text}`");
 }
@@ -613,53 +476,4 @@ fn buffers_that_cannot_be_read_are_refused_and_named() {
     held.destroy(&host);
     drop(device);
     assert_silent(&host);
-}
-
-#[test]
-fn updates_that_cannot_be_made_are_refused_and_change_nothing() {
-    let Some(device) = crate::support::gpu::device(DeviceLimits::default()) else { return };
-    let surfels = sphere(500);
-    let scene = |change: fn(&mut Surfels)| {
-        let mut surfels = surfels.clone();
-        change(&mut surfels);
-        Scene::upload(&device, &surfels).unwrap()
-    };
-    let none = Changes::default();
-    let (here, up, radius) = ([Vec3::ZERO; 2], [Vec3::Y; 2], [0.1f32; 2]);
-    let linear = Colours::Linear(vec![[0.0; 3]; 2]);
-    let plain = scene(|_| {});
-    refused(
-        plain.update(499, &Changes { positions: Some(&here), ..none }),
-        "surfels 499..501 cannot be updated",
-    );
-    refused(plain.update(u64::MAX, &Changes { positions: Some(&here), ..none }), "room for 500");
-    refused(
-        plain.update(0, &Changes { positions: Some(&here), radii: Some(&radius[..1]), ..none }),
-        "unequal",
-    );
-    refused(plain.update(0, &Changes { colours: Some(&linear), ..none }), "Srgb8");
-    refused(plain.update(0, &Changes { ellipses: Some(&[]), ..none }), "circles");
-    refused(plain.update(0, &Changes { two_sided: Some(&[true]), ..none }), "along with radii");
-    let sides = scene(|s| s.two_sided = Some(vec![true; 500]));
-    refused(sides.update(0, &Changes { radii: Some(&radius), ..none }), "two_sided");
-    let clipped = scene(|s| {
-        s.clips =
-            Clips::collect(vec![
-                Some(Clip { lines: [surfel::geometry::ClipLine::NONE; 2], concave: false });
-                500
-            ])
-    });
-    refused(clipped.update(0, &Changes { normals: Some(&up), ..none }), "clip lines");
-    refused(clipped.set_count(3), "clip lines");
-    let weighted = scene(|s| s.weights = Some(Weights::collect(vec![(1.0, Some([1.0; 4])); 500])));
-    refused(weighted.update(0, &Changes { normals: Some(&up), ..none }), "weights at corners");
-    let spoiled = scene(|s| {
-        s.weights = Some(Weights::collect(vec![(1.0, None); 500]));
-        s.radii[3] = f32::NAN;
-    });
-    refused(spoiled.update(0, &Changes { radii: Some(&radius), ..none }), "Surfels::valid");
-    let untouched = alone(&device, &plain, "pull-push", Rasterizer::Compute);
-    assert!(untouched == alone(&device, &scene(|_| {}), "pull-push", Rasterizer::Compute));
-    assert!(plain.update(3, &none).is_ok());
-    crate::support::gpu::assert_silent(&device);
 }

@@ -9,12 +9,14 @@ mod instances;
 mod live;
 mod native;
 mod native_live;
+mod native_refused;
 mod pipelines;
 mod reports;
 mod rig;
 mod stand;
 #[path = "../support/mod.rs"]
 mod support;
+mod updates;
 
 use ash::vk;
 

@@ -16,16 +16,16 @@ use ash::vk;
 use glam::{DMat4, DVec3, Vec3};
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
-use surfel::embed::native::{Place, Plan, Renderer};
-use surfel::embed::{Abilities, View};
+use surfel::embed::View;
+use surfel::embed::native::Renderer;
 use surfel::geometry::{Camera, Surfels};
 use surfel::methods::Method;
 use surfel::settings::Alpha;
 use surfel::splatting::{Splatting, Visibility};
 use surfel::vk::{Device, DeviceLimits, DeviceOptions};
-use surfel::{Error, Outputs, Picture, Precision, Rasterizer, RenderOptions, Scene, Settings};
+use surfel::{Outputs, Picture, Precision, Rasterizer, RenderOptions, Scene, Settings};
 
-const D32: vk::Format = vk::Format::D32_SFLOAT;
+pub const D32: vk::Format = vk::Format::D32_SFLOAT;
 
 /// Hosts have threads.
 #[allow(dead_code, reason = "it compiles, or not")]
@@ -34,7 +34,7 @@ fn a_renderer_goes_to_another_thread(renderer: Renderer) -> impl Send {
 }
 
 /// Colours of floats, one sample, depth that falls with distance, which splats start from, between a mesh and fog.
-const PLAIN: Kind = Kind {
+pub const PLAIN: Kind = Kind {
     colour: vk::Format::R32G32B32A32_SFLOAT,
     depth: Some(D32),
     normals: false,
@@ -44,7 +44,7 @@ const PLAIN: Kind = Kind {
     around: [true, true],
 };
 
-fn method(name: &str) -> Settings {
+pub fn method(name: &str) -> Settings {
     Settings { background: None, ..Method::named(name).unwrap().settings() }
 }
 
@@ -58,15 +58,15 @@ fn alone(surfels: &Surfels, settings: &Settings, camera: &Camera, normal: bool, 
 }
 
 /// A frame of a native host.
-struct Drawn<'a> {
-    host: &'a Host,
-    native: Native,
-    scene: Arc<Scene>,
-    device: Arc<Device>,
+pub struct Drawn<'a> {
+    pub host: &'a Host,
+    pub native: Native,
+    pub scene: Arc<Scene>,
+    pub device: Arc<Device>,
 }
 
 impl<'a> Drawn<'a> {
-    fn new(host: &'a Host, kind: Kind, size: [u32; 2], surfels: &Surfels, settings: &Settings) -> Self {
+    pub fn new(host: &'a Host, kind: Kind, size: [u32; 2], surfels: &Surfels, settings: &Settings) -> Self {
         let device = host.lend(None).unwrap();
         let scene = upload(host, &device, surfels);
         let native = Native::new(host, &device, kind, size, &[(scene.streams(), settings)]).unwrap();
@@ -74,7 +74,7 @@ impl<'a> Drawn<'a> {
     }
 
     /// The same frame twice in a command buffer, so that validation sees how they wait for each other.
-    fn render(&mut self, view: &View, settings: &Settings, mesh: Option<&Mesh>, foggy: bool) {
+    pub fn render(&mut self, view: &View, settings: &Settings, mesh: Option<&Mesh>, foggy: bool) {
         let Self { host, native, scene, .. } = self;
         let mesh = mesh.map(|mesh| (mesh, Vec3::Y));
         host.run(|cmd| {
@@ -90,19 +90,19 @@ impl<'a> Drawn<'a> {
         .unwrap();
     }
 
-    fn colours(&self) -> Vec<[f32; 4]> {
+    pub fn colours(&self) -> Vec<[f32; 4]> {
         bytemuck::pod_collect_to_vec(&self.native.picture(self.host, 16).unwrap())
     }
 
-    fn depths(&self) -> Vec<f32> {
+    pub fn depths(&self) -> Vec<f32> {
         bytemuck::pod_collect_to_vec(&self.native.depths(self.host, 4).unwrap())
     }
 
-    fn normals(&self) -> Vec<[f32; 4]> {
+    pub fn normals(&self) -> Vec<[f32; 4]> {
         bytemuck::pod_collect_to_vec(&self.native.normals(self.host).unwrap())
     }
 
-    fn destroy(self) {
+    pub fn destroy(self) {
         self.native.destroy(self.host);
     }
 }
@@ -477,170 +477,6 @@ fn a_thousand_frames_of_all_sizes_and_scenes_leave_nothing() {
     assert_eq!(Arc::strong_count(&device), 1);
     drop(device);
     assert_eq!(counts.alive.load(Ordering::SeqCst), 0);
-    assert_silent(&host);
-}
-
-#[test]
-fn without_memory_there_is_an_error_and_then_there_is_memory() {
-    let Some(host) = open(|all| all) else { return };
-    let (memory, counts) = Counted::new(&host);
-    let device = host.lend(Some(Box::new(memory))).unwrap();
-    let scene = upload(&host, &device, &surfels());
-    let settings = Settings { alpha: Alpha::Coverage, ..method("perspective-ewa") };
-    let view = View::whole(camera(), SIZE);
-    let frames = [(scene.streams(), &settings)];
-    let mut native = Native::new(&host, &device, PLAIN, [8, 8], &frames).unwrap();
-    let (mut sized, mut refused, mut left) = (false, 0, 0);
-    loop {
-        counts.left.store(left, Ordering::SeqCst);
-        let before = counts.alive.load(Ordering::SeqCst);
-        if !sized {
-            sized = match native.resize(&host, SIZE) {
-                Ok(()) => {
-                    left = 0;
-                    counts.left.store(0, Ordering::SeqCst);
-                    true
-                }
-                Err(error) => {
-                    assert!(error.to_string().contains("no memory left"), "{error}");
-                    assert_eq!(counts.alive.load(Ordering::SeqCst), before);
-                    false
-                }
-            };
-        }
-        // SAFETY: recorded outside a render pass, and waited for.
-        let prepared =
-            host.run(|cmd| Ok(unsafe { native.renderer.prepare(cmd, &scene, &view, &settings) })).unwrap();
-        match prepared {
-            Ok(()) if sized => break,
-            Ok(()) => panic!("a frame was prepared for attachments that are not there"),
-            Err(Error::Memory { .. }) => {}
-            Err(error) => assert!(error.to_string().contains("attachments have 8x8 px"), "{error}"),
-        }
-        // The host goes through its render pass all the same.
-        let drawn = host.run(|cmd| {
-            // SAFETY: as it is recorded whole, and waited for.
-            native.record(&host, cmd, (None, &view), |surfels| unsafe { surfels.draw(cmd) }, true)
-        });
-        assert!(drawn.unwrap_err().to_string().contains("no frame to draw"));
-        (refused, left) = (refused + 1, left + 1);
-    }
-    assert!(refused > 5, "{refused}");
-    counts.left.store(-1, Ordering::SeqCst);
-    native.destroy(&host);
-    drop(scene);
-    assert_eq!(counts.alive.load(Ordering::SeqCst), 0);
-    drop(device);
-    assert_silent(&host);
-}
-
-/// Says that `made` was refused for this reason.
-fn assert_refused<T>(made: surfel::Result<T>, said: &str) {
-    let text = made.err().map(|error| error.to_string()).unwrap_or_default();
-    assert!(text.contains(said), "`{said}` is not in `{text}`");
-}
-
-#[test]
-fn render_passes_that_cannot_be_served_are_refused_and_say_why() {
-    let Some(host) = open(|all| Abilities { independent_blend: false, ..all }) else { return };
-    let device = host.lend(None).unwrap();
-    let streams = upload(&host, &device, &surfels()).streams();
-    let (settings, nearest, pulled) =
-        (method("perspective-ewa"), method("sprites-unfiltered"), method("pull-push"));
-    let kind = Kind { samples: FOUR, around: [true, false], ..PLAIN };
-    let attachments = kind.attachments();
-    let plan =
-        |attachments: &[vk::AttachmentDescription], change: fn(&mut Place<'_>), frames: &[&Settings]| {
-            let mut place = kind.place(attachments);
-            change(&mut place);
-            let frames: Vec<_> = frames.iter().map(|settings| (streams, *settings)).collect();
-            Plan::new(&device, &place, Precision::Full, &frames)
-        };
-    type Change = fn(&mut Place<'_>);
-    let changes: [(Change, &str); 7] = [
-        (|place| place.subpasses = [0, 1], "nothing has been drawn to"),
-        (|place| place.picture = 7, "the picture wants attachment 7 of 3"),
-        (|place| place.normal = Some(0), "attachment 0 is given twice, for normals, too"),
-        (|place| place.picture = 1, "cannot draw the picture to D32_SFLOAT"),
-        (|place| place.depth.as_mut().unwrap().attachment = 0, "attachment 0 is given twice"),
-        (|place| (place.picture, place.resolve) = (2, None), "depth has TYPE_4 samples in attachment 1"),
-        (
-            |place| (place.resolve, place.normal) = (None, Some(2)),
-            "normals has TYPE_1 samples in attachment 2",
-        ),
-    ];
-    for (change, said) in changes {
-        assert_refused(plan(&attachments, change, &[&settings]), said);
-    }
-    let coloured = |format, samples| {
-        let mut attachments = kind.attachments();
-        (attachments[0].format, attachments[2].format) = (format, format);
-        attachments.push(vk::AttachmentDescription { samples, ..attachments[0] });
-        attachments
-    };
-    let whole = coloured(vk::Format::R8G8B8A8_UINT, FOUR);
-    assert_refused(plan(&whole, |_| (), &[&settings]), "cannot draw the picture to R8G8B8A8_UINT");
-    let encoded = coloured(vk::Format::R8G8B8A8_SRGB, FOUR);
-    assert_refused(plan(&encoded, |place| place.encode = true, &[&settings]), "encodes sRGB itself");
-    assert_refused(plan(&encoded, |place| place.normal = Some(3), &[&settings]), "independentBlend");
-    let same: fn(&mut Place<'_>) = |_| ();
-    assert_refused(plan(&attachments, same, &[&pulled]), "within a render pass");
-    assert_refused(plan(&attachments, same, &[&settings, &nearest]), "make a plan for each");
-    assert_refused(plan(&attachments, same, &[]), "a plan of no frames");
-    let good = plan(&attachments, same, &[&settings]).unwrap();
-    // SAFETY: nothing is made of what is refused.
-    let made = |frames| unsafe { Renderer::new(&device, good.clone(), vk::RenderPass::null(), frames) };
-    assert_refused(made(2), "no render pass");
-    assert_silent(&host);
-}
-
-#[test]
-fn frames_that_cannot_be_served_are_refused_and_say_why() {
-    let Some(host) = open(|all| all) else { return };
-    let settings = method("perspective-ewa");
-    let mut drawn = Drawn::new(&host, PLAIN, SIZE, &surfels(), &settings);
-    let other = host.lend(None).unwrap();
-    let elsewhere = upload(&host, &other, &surfels());
-    let mut painted = surfels();
-    sampling::paint_linear(&mut painted, &mut Random(5));
-    let painted = upload(&host, &drawn.device, &painted);
-    let good = View::whole(camera(), SIZE);
-    let bad = |change: fn(&mut View)| {
-        let mut view = good;
-        change(&mut view);
-        view
-    };
-    let scene = drawn.scene.clone();
-    // SAFETY: nothing is recorded.
-    assert_refused(unsafe { drawn.native.renderer.draw(vk::CommandBuffer::null()) }, "no frame to draw");
-    for (scene, view, settings, said) in [
-        (&elsewhere, good, &settings, "of another device"),
-        (&painted, good, &settings, "planned without"),
-        (&scene, good, &method("sprites-unfiltered"), "a subpass for the nearest splat alone"),
-        (&scene, good, &method("pull-push"), "pull-push"),
-        (&scene, bad(|view| view.viewport.width = 0.0), &settings, "0x120"),
-        (&scene, bad(|view| view.viewport.x = 1.0), &settings, "the attachments have 160x120 px"),
-        (&scene, bad(|view| view.camera = rising()), &settings, "rises with distance, the target's falls"),
-    ] {
-        // SAFETY: recorded outside a render pass, and waited for.
-        let made = host
-            .run(|cmd| Ok(unsafe { drawn.native.renderer.prepare(cmd, scene, &view, settings) }))
-            .unwrap();
-        assert_refused(made, said);
-        // SAFETY: nothing is recorded.
-        assert_refused(unsafe { drawn.native.renderer.draw(vk::CommandBuffer::null()) }, "no frame to draw");
-    }
-    // SAFETY: nothing is made.
-    unsafe {
-        assert_refused(drawn.native.renderer.resize([0, 4], None), "0x4");
-        assert_refused(drawn.native.renderer.resize(SIZE, None), "there is no view of it");
-    }
-    // What was refused leaves all as it was.
-    drawn.render(&good, &settings, None, false);
-    assert!(drawn.colours().iter().any(|colour| colour[3] == 1.0));
-    drop(scene);
-    drawn.destroy();
-    drop((elsewhere, other, painted));
     assert_silent(&host);
 }
 
