@@ -10,12 +10,15 @@ use super::panels::Told;
 use super::screen::{Pick, Screen};
 use super::state::State;
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 use surfel::vk::{Device, Presenter};
 use surfel::{Error, Result, Scene, Settings};
 use winit::dpi::PhysicalSize;
 use winit::event_loop::ActiveEventLoop;
 use winit::window::Window;
+
+/// When a window that could not be drawn to is tried again: not every one tells that it can be.
+const AGAIN: Duration = Duration::from_millis(50);
 
 /// An open window.
 pub struct Opened {
@@ -108,7 +111,8 @@ impl Opened {
                 self.pace.took(quality, sight, ms, moving);
             }
         }
-        if let (true, Some((camera, [method, shading]))) = (shown, state.pose().zip(state.names())) {
+        let behind = self.presenter.is_behind();
+        if let (true, Some((camera, [method, shading]))) = (shown && !behind, state.pose().zip(state.names())) {
             events.tell(&Event::Picture(Shown {
                 method,
                 shading,
@@ -122,14 +126,19 @@ impl Opened {
                 camera: camera.into(),
             }));
         }
+        let flies = hands.flight().is_some();
+        self.last = flies.then_some(start);
+        if behind {
+            // A window without an extent tells when it has one again.
+            let PhysicalSize { width, height } = self.window.inner_size();
+            return Ok((width > 0 && height > 0).then(|| Instant::now() + AGAIN));
+        }
         if told.times.is_open() {
             self.measure(told)?;
         }
         if state.pick.is_some() {
             self.pick(state)?;
         }
-        let flies = hands.flight().is_some();
-        self.last = flies.then_some(start);
         if again || flies || state.pick.is_some() {
             self.window.request_redraw();
         }

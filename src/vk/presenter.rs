@@ -5,6 +5,9 @@ use crate::error::{Error, Result};
 use ash::{khr, vk};
 use std::sync::Arc;
 
+/// How often in a row a window may refuse a swapchain that it should be able to have: it may have changed since it was asked.
+const REFUSALS: u32 = 100;
+
 /// How many frames may be under way.
 pub const FRAMES_IN_FLIGHT: u32 = 2;
 
@@ -16,6 +19,10 @@ pub struct Presenter {
     slots: Vec<Slot>,
     /// Number of the slot that is next.
     next: usize,
+    /// Whether the last frame did not come to the window.
+    behind: bool,
+    /// How often in a row the window has refused a swapchain.
+    refused: u32,
     swapchains: khr::swapchain::Device,
     format: vk::SurfaceFormatKHR,
     modes: Vec<vk::PresentModeKHR>,
@@ -65,6 +72,8 @@ impl Presenter {
             overlay,
             slots,
             next: 0,
+            behind: false,
+            refused: 0,
             swapchains,
             format,
             modes,
@@ -85,6 +94,12 @@ impl Presenter {
         }
     }
 
+    /// Whether the window does not show the last frame: it has no extent, or has changed meanwhile. Another frame may come to it later, of which
+    /// not every window tells.
+    pub fn is_behind(&self) -> bool {
+        self.behind
+    }
+
     /// Records a frame with `record` and presents it, in a window of `size` px; `None` where there is none to be seen. When it is recorded, the
     /// GPU is done with all but the last [`FRAMES_IN_FLIGHT`] − 1 frames.
     ///
@@ -94,6 +109,7 @@ impl Presenter {
         size: [u32; 2],
         record: impl FnOnce(&Presented) -> Result<R>,
     ) -> Result<Option<R>> {
+        self.behind = true;
         let Some(index) = self.acquire(size)? else { return Ok(None) };
         let Some(swapchain) = &mut self.swapchain else { return Ok(None) };
         let slot = &self.slots[self.next];
@@ -104,7 +120,7 @@ impl Presenter {
         });
         slot.submit(Some(swapchain.drawn(index)))?;
         self.next = (self.next + 1) % self.slots.len();
-        swapchain.present(&self.device, index)?;
+        self.behind = !swapchain.present(&self.device, index)?;
         recorded.map(Some)
     }
 
@@ -147,7 +163,8 @@ impl Presenter {
         self.slots.iter().try_for_each(Slot::wait)
     }
 
-    /// Waits for every frame, and makes a swapchain of this size in the place of the one that there is.
+    /// Waits for every frame, and makes a swapchain of this size in the place of the one that there is; none where the window has no extent, or
+    /// is another than it just was.
     fn remake(&mut self, size: [u32; 2]) -> Result<()> {
         self.wait()?;
         // Presented images may be waited for by the queue yet.
@@ -155,7 +172,10 @@ impl Presenter {
         let old = self.swapchain.take();
         let how = (&self.surface, self.format, self.mode());
         let window = (&self.swapchains, &self.overlay);
-        self.swapchain = Swapchain::new(&self.device, window, how, size, old)?;
+        let made = Swapchain::new(&self.device, window, how, size, old);
+        let refused = made.as_ref().is_err_and(Swapchain::is_refusal);
+        self.refused = if refused { self.refused + 1 } else { 0 };
+        self.swapchain = if refused && self.refused < REFUSALS { None } else { made? };
         Ok(())
     }
 
