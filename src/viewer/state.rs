@@ -4,7 +4,7 @@ use super::keys::Action;
 use super::open::{Answer, Opening};
 use super::orbit::{Lens, Orbit, Up};
 use super::pace::Sight;
-use super::source::{Changed, Source};
+use super::source::{Source, Wish};
 use super::{Look, Options};
 use glam::{DVec2, DVec3};
 use std::borrow::Cow;
@@ -43,7 +43,7 @@ pub struct State {
     version: u64,
     shown: Option<Shown>,
     /// How the scene was shown that the last device had.
-    left: Option<(Method, Settings, Changed)>,
+    left: Option<(Method, Settings, Wish)>,
     /// The place whose surface is to be turned about, px.
     pub pick: Option<DVec2>,
     /// What is to be opened, while it is asked for, and the answer.
@@ -111,8 +111,8 @@ impl State {
     pub fn show(&mut self, scene: Arc<Scene>, (method, mut source): (Method, Source), of: Of) {
         let framed = |scene: &Scene| Orbit::framing(&scene.bounds(), self.up, &self.lens);
         let (orbit, coarser, given) = (framed(&scene), Vec::new(), None);
-        let left = self.left.take().map(|(method, settings, changed)| {
-            source.change_to(changed);
+        let left = self.left.take().map(|(method, settings, wish)| {
+            source.change_as(&wish);
             (method, settings)
         });
         let known = left.or(self.remembered.take_if(|known| suits(&scene, &known.1)));
@@ -124,12 +124,12 @@ impl State {
             Some(sketch) if sketch.of == of.sketch_of() => {
                 let moved = sketch.given.is_some() || sketch.orbit != framed(&sketch.scene);
                 let orbit = if moved { sketch.orbit } else { orbit };
-                source.change_as(&sketch.source);
+                source.change_as(&sketch.source.wish());
                 let (method, settings) = sketch.seen_by(&scene, (method, settings));
                 Shown { scene, source, of, orbit, coarser, before: None, method, settings, ..sketch }
             }
             Some(shown) if of.again && !shown.of.sketch => {
-                source.change_as(&shown.source);
+                source.change_as(&shown.source.wish());
                 let (method, settings) = shown.seen_by(&scene, (method, settings));
                 Shown { scene, source, of, coarser, method, settings, ..shown }
             }
@@ -178,7 +178,7 @@ impl State {
     pub fn leave(&mut self, same: bool) -> Option<Pose> {
         let pose = self.pose().filter(|_| same);
         let left = self.shown.take().filter(|_| same);
-        let left = left.map(|shown| (shown.method, shown.settings, shown.source.changed));
+        let left = left.map(|shown| (shown.method, shown.settings, shown.source.wish()));
         self.left = left.or(self.left.take());
         pose
     }
