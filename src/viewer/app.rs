@@ -117,7 +117,9 @@ struct App {
 impl ApplicationHandler<News> for App {
     fn resumed(&mut self, events: &ActiveEventLoop) {
         match Opened::new(events, &self.options) {
-            Ok((opened, device)) => {
+            Ok((mut opened, device)) => {
+                // Scenes are framed beside the panel from the first on.
+                opened.hud.lay_out(&opened.window, &mut self.state, &mut self.told);
                 self.options.events.tell(&Event::Window { device: &device.description().name });
                 opened.window.request_redraw();
                 self.loader.use_device(&device);
@@ -368,8 +370,7 @@ impl App {
             Some(MouseButton::Left | MouseButton::Middle) => orbit.pan(way, lens),
             Some(MouseButton::Right) => {
                 let steps = -way.y / PX_A_STEP;
-                let middle = 0.5 * DVec2::from(lens.size.map(f64::from));
-                orbit.zoom(steps, middle, None, lens, &scene.bounds());
+                orbit.zoom(steps, lens.middle(), None, lens, &scene.bounds());
             }
             _ => return,
         }

@@ -90,12 +90,15 @@ pub fn show(ui: &mut Ui, state: &mut State, told: &mut Told, device: &Arc<Device
     if let Some(wrong) = told.wrong.as_ref().or(told.refused.as_ref()) {
         Panel::top("wrong").show(ui, |ui| ui.colored_label(ui.visuals().error_fg_color, wrong));
     }
+    state.lens.covered = 0.0;
     if !told.hidden {
-        Panel::right("choices").default_size(300.0).show(ui, |ui| {
+        let panel = Panel::right("choices").default_size(300.0).show(ui, |ui| {
             ScrollArea::vertical()
                 .auto_shrink([false, false])
                 .show(ui, |ui| choices(ui, state, told, device));
         });
+        let points = whole.right() - panel.response.rect.left();
+        state.lens.covered = f64::from(points * ui.pixels_per_point());
     }
     told.split.divider(ui, whole, state, &told.times);
     told.errors.picture(ui.ctx());
