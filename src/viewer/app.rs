@@ -6,6 +6,7 @@ use super::events::Event;
 use super::hands::Hands;
 use super::keep::Keep;
 use super::keys::{self, Action};
+use super::layout::Press;
 use super::load::{Load, Loader, News, What};
 use super::panels::Told;
 use super::remember::Remembered;
@@ -297,13 +298,17 @@ impl App {
     }
 
     fn key(&mut self, events: &ActiveEventLoop, event: &KeyEvent) {
+        if event.repeat {
+            return;
+        }
         self.hands.hold(event.physical_key, event.state);
         if self.hands.flight().is_some() {
             self.moved();
         }
+        let press = Press::of(event);
+        self.told.layout.learn(&press);
         let pressed = event.state == ElementState::Pressed;
-        let action =
-            keys::action(&event.logical_key, self.hands.modifiers).filter(|_| pressed && !event.repeat);
+        let action = keys::action(&press, self.hands.modifiers).filter(|_| pressed);
         if action.is_some() {
             (self.told.wrong, self.told.done) = (None, None);
         }

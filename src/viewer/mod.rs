@@ -13,6 +13,7 @@ mod hud;
 mod job;
 mod keep;
 mod keys;
+mod layout;
 mod load;
 mod open;
 mod orbit;

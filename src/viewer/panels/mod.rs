@@ -11,6 +11,8 @@ mod raster;
 mod split;
 mod times;
 
+use super::keys::{Action, BINDINGS};
+use super::layout::Layout;
 use super::screen::Asked;
 use super::state::{State, quick};
 use buffers::Buffers;
@@ -40,6 +42,8 @@ pub struct Told {
     pub surfels: f64,
     /// Whether keys are listed.
     pub help: bool,
+    /// What is known of the keyboard.
+    pub layout: Layout,
     /// Whether the panel beside the picture is hidden.
     pub hidden: bool,
     /// What frames tell.
@@ -104,7 +108,7 @@ pub fn show(ui: &mut Ui, state: &mut State, told: &mut Told, device: &Arc<Device
     told.errors.picture(ui.ctx());
     told.buffers.picture(ui.ctx());
     if told.help {
-        help::show(ui.ctx());
+        help::show(ui.ctx(), &told.layout);
     }
     if let Some(opening) = &mut state.opening {
         state.answer = opening.show(ui);
@@ -115,7 +119,12 @@ pub fn show(ui: &mut Ui, state: &mut State, told: &mut Told, device: &Arc<Device
 }
 
 fn choices(ui: &mut Ui, state: &mut State, told: &mut Told, device: &Arc<Device>) {
-    ui.label("G hides this panel, H lists keys and mouse").on_hover_text("G shows it again");
+    let [hide, help] = [Action::Panels, Action::Help].map(|action| {
+        let binding = BINDINGS.iter().find(|binding| binding.action == action);
+        binding.map_or(String::new(), |binding| told.layout.name(binding))
+    });
+    ui.label(format!("{hide} hides this panel, {help} lists keys and mouse"))
+        .on_hover_text(format!("{hide} shows it again"));
     let Some(chosen) = &mut state.choices() else {
         ui.label("Drop files on the window to look at them.");
         return;
