@@ -318,6 +318,35 @@ mod tests {
     }
 
     #[test]
+    fn who_was_too_slow_again_and_again_waits_ever_longer() {
+        // Light for long enough that it is tried, and heavy for long enough that it fails.
+        let load = |i: usize| if i % 60 < 30 { LOADS[0] } else { LOADS[1] };
+        let frames = frames(&mut started(LOADS[1]), load, 1800);
+        let slow = |part: &[(Quality, f64)]| part.iter().filter(|(_, time)| *time > 90.0).count();
+        let [first, last] = [slow(&frames[..300]), slow(&frames[300..])];
+        assert!(first > 0 && last == 0, "{first} at first, {last} later");
+    }
+
+    #[test]
+    fn what_is_too_slow_gets_less_and_more_of_nothing() {
+        for load in LOADS {
+            let mut pace = started(load);
+            let all = || sight().choices().map(|quality| (quality, load.time(quality)));
+            (0..50).for_each(|_| all().for_each(|(quality, ms)| pace.took(quality, &sight(), ms, true)));
+            let slow: Vec<_> =
+                all().filter(|(quality, _)| pace.expected(&sight(), *quality) > MOST).collect();
+            for (chosen, _) in slow {
+                pace.chosen = chosen;
+                let next = pace.coarser(&sight());
+                let is_less = |next: Quality| next.side <= chosen.side && next.scene >= chosen.scene;
+                let fits = |quality| pace.expected(&sight(), quality) <= AIM;
+                let none = !all().any(|(quality, _)| is_less(quality) && fits(quality));
+                assert!(none || is_less(next) && fits(next), "{chosen:?} {next:?}");
+            }
+        }
+    }
+
+    #[test]
     fn the_first_frames_of_a_slow_device_are_coarse_even_if_none_was_before() {
         let frames = frames(&mut Pace::new(60.0), |_| LOADS[1], 10);
         assert!(frames.iter().all(|(_, time)| *time <= 90.0), "{frames:?}");
