@@ -4,6 +4,7 @@
 //! load, on a thread of its own ─→ scene ─┐
 //! hands ─ orbit → camera ────────────────┴─ screen → window
 //! ```
+#![forbid(unsafe_code)]
 
 mod app;
 mod cost;

@@ -50,7 +50,7 @@ impl Opened {
     pub fn of(window: Arc<Window>, options: &Options) -> Result<(Self, Arc<Device>)> {
         let (device, surface) = Device::open_for(&options.device, window.clone())?;
         let presenter = Presenter::new(&device, surface)?;
-        let screen = Screen::new(&device, options.rasterizer)?;
+        let screen = Screen::new(&presenter, options.rasterizer)?;
         let hud = Hud::new(&device, &window, presenter.overlay())?;
         let pace = Pace::new(options.budget);
         Ok((Self { presenter, hud, screen, pace, last: None, look: None, window }, device))
@@ -112,7 +112,8 @@ impl Opened {
             }
         }
         let behind = self.presenter.is_behind();
-        if let (true, Some((camera, [method, shading]))) = (shown && !behind, state.pose().zip(state.names())) {
+        if let (true, Some((camera, [method, shading]))) = (shown && !behind, state.pose().zip(state.names()))
+        {
             events.tell(&Event::Picture(Shown {
                 method,
                 shading,
@@ -153,7 +154,7 @@ impl Opened {
 
     /// Takes what the last frame, which is over, tells, and shows it.
     fn measure(&mut self, told: &mut Told) -> Result<()> {
-        if told.times.push(self.screen.reports()?) {
+        if told.times.push(self.screen.reports(&self.presenter)?) {
             self.window.request_redraw();
         }
         Ok(())
@@ -195,8 +196,7 @@ impl Opened {
     /// Turns about what is under the cursor from now on, if something is.
     fn pick(&mut self, state: &mut State) -> Result<()> {
         let Some(at) = state.pick.take() else { return Ok(()) };
-        self.presenter.wait()?;
-        let depth = self.screen.pick(Pick { at, size: state.lens.size });
+        let depth = self.screen.pick(Pick { at, size: state.lens.size }, &self.presenter)?;
         if let (Some(depth), Some(seen)) = (depth, state.frame(0).transpose()?) {
             let distance = seen.1.distance(depth)?;
             state.set_pivot(at, distance);

@@ -1,6 +1,6 @@
 //! A swapchain: the images of a window, of one size.
 
-use super::presenter::Presented;
+use super::presenter::Target;
 use super::{Device, Surface, overlay::Overlay};
 use crate::error::{Error, Result};
 use ash::{khr, vk};
@@ -63,8 +63,7 @@ impl Swapchain {
             .clipped(true)
             .old_swapchain(old.as_ref().map_or(vk::SwapchainKHR::null(), |old| old.raw));
         // SAFETY: the surface can do what is asked for, and has no other swapchain than the one that is replaced.
-        let raw =
-            unsafe { loader.create_swapchain(&info, None) }.map_err(Error::vulkan(CREATE))?;
+        let raw = unsafe { loader.create_swapchain(&info, None) }.map_err(Error::vulkan(CREATE))?;
         drop(old);
         let mut made = Self {
             raw,
@@ -135,9 +134,9 @@ impl Swapchain {
     }
 
     /// What a frame records into.
-    pub(super) fn target(&self, index: usize, overlay: vk::RenderPass, cmd: vk::CommandBuffer) -> Presented {
+    pub(super) fn target(&self, index: usize) -> Target {
         let Shown { image, framebuffer, .. } = self.images[index];
-        Presented { cmd, image, framebuffer, overlay, size: self.size }
+        Target { image, framebuffer, size: self.size }
     }
 
     /// Signalled when the image is drawn.
