@@ -52,6 +52,7 @@ impl Pane {
     /// A picture in frames of `presenter`; nothing is drawn yet.
     pub fn new(presenter: &Presenter, rasterizer: Option<Rasterizer>) -> Result<Self> {
         let device = presenter.device();
+        presenter.rehearse(COLOUR)?;
         let pass = RenderPass::new(device, &[Attachment::Cleared(COLOUR)], Some(Attachment::Cleared(DEPTH)))?;
         let target = Target {
             pass: Pass::Subpass { pass: pass.handle(), subpass: 0 },

@@ -94,6 +94,11 @@ impl Screen {
         self.drew
     }
 
+    /// Whether things had to be made for that.
+    pub fn made(&self) -> bool {
+        self.left.made() || self.right.made()
+    }
+
     /// What the last frame tells, once; nothing where it was not measured.
     pub fn reports(&mut self, presenter: &Presenter) -> Result<Reports> {
         Ok(Reports { left: self.left.report(presenter)?, right: self.right.report(presenter)? })

@@ -11,6 +11,8 @@ pub struct Side {
     pane: Pane,
     /// What it shows.
     drawn: Option<Seen>,
+    /// Whether things had to be made for that.
+    made: bool,
 }
 
 /// What is to be seen.
@@ -28,6 +30,11 @@ pub struct Seen {
 }
 
 impl Seen {
+    /// Whether what another picture needed is all that this one needs.
+    fn needs_what(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.scene, &other.scene) && self.size == other.size && self.settings == other.settings
+    }
+
     fn is_as(&self, other: &Self) -> bool {
         let frame = |seen: &Self| (seen.camera, seen.size, seen.version);
         Arc::ptr_eq(&self.scene, &other.scene)
@@ -39,7 +46,12 @@ impl Seen {
 
 impl Side {
     pub fn new(presenter: &Presenter, rasterizer: Option<Rasterizer>) -> Result<Self> {
-        Ok(Self { pane: Pane::new(presenter, rasterizer)?, drawn: None })
+        Ok(Self { pane: Pane::new(presenter, rasterizer)?, drawn: None, made: false })
+    }
+
+    /// Whether things had to be made for the last picture: it was of another size or scene than the one before, or otherwise rendered.
+    pub fn made(&self) -> bool {
+        self.made
     }
 
     /// Records the picture, unless it is there; whether it was not. After an error it is empty.
@@ -48,7 +60,8 @@ impl Side {
         if same {
             return Ok(false);
         }
-        self.drawn = None;
+        let drawn = self.drawn.take();
+        self.made = !seen.zip(drawn.as_ref()).is_some_and(|(seen, drawn)| seen.needs_what(drawn));
         let size = seen.map_or(window.size, |seen| seen.size);
         let shown = seen.map(|seen| (&seen.scene, &seen.camera, &seen.settings));
         self.pane.draw(window, size, shown, seen.is_some_and(|seen| seen.measured))?;

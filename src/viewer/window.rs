@@ -5,7 +5,7 @@ use super::events::{Event, Events, Shown};
 use super::hands::Hands;
 use super::hud::Hud;
 use super::keep::Shot;
-use super::pace::{Pace, Quality};
+use super::pace::{Frame, Pace, Quality};
 use super::panels::Told;
 use super::screen::{Pick, Screen};
 use super::state::State;
@@ -108,7 +108,7 @@ impl Opened {
         if drawn {
             told.frame = ms;
             if let Some(sight) = &sight {
-                self.pace.took(quality, sight, ms, moving);
+                self.pace.took(quality, sight, Frame { ms, moving, made: self.screen.made() });
             }
         }
         let behind = self.presenter.is_behind();

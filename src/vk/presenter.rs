@@ -1,7 +1,8 @@
 //! Frames to a window: a swapchain that follows the window, and two frames under way.
 
 use super::{
-    Device, Recorder, Surface, capture::Capture, overlay::Overlay, slot::Slot, swapchain::Swapchain,
+    Access, Commands, Device, Image, ImageUse, Recorder, Surface, capture::Capture, overlay::Overlay,
+    slot::Slot, swapchain::Swapchain,
 };
 use crate::error::{Error, Result};
 use ash::{khr, vk};
@@ -155,6 +156,22 @@ impl Presenter {
         if let Some(swapchain) = &mut self.swapchain {
             swapchain.stale = true;
         }
+    }
+
+    /// Scales pictures of `format` to the window's once in each way that drivers tell apart, some by whether sides are powers of two: what they
+    /// compile for it as it is first done is there when it is needed.
+    pub fn rehearse(&self, format: vk::Format) -> Result<()> {
+        let target = |format, size, also| Image::target(&self.device, "rehearsed", format, size, also);
+        let to = target(self.format.format, [5, 5], ImageUse::Window)?;
+        let sizes = [[3, 3], [4, 3], [3, 4], [4, 4]];
+        let from: Vec<_> =
+            sizes.into_iter().map(|size| target(format, size, ImageUse::Output)).collect::<Result<_>>()?;
+        Commands::new(&self.device, false)?.run(|rec| {
+            for from in &from {
+                let uses = [from.with(Access::COPY_READ), to.with(Access::SCALE_WRITE)];
+                rec.pass("rehearse", &uses, |enc| enc.scale(from, (to.raw, to.size()), [0.0, 1.0]));
+            }
+        })
     }
 
     /// Whether the window does not show the last frame: it has no extent, or has changed meanwhile. Another frame may come to it later, of which
