@@ -13,8 +13,9 @@ pub struct Screen {
     /// Where there are two pictures.
     right: Side,
     asked: Asked,
-    /// Whether the last frame drew something anew.
+    /// Whether the last frame drew something anew, and whether things had to be made for that.
     drew: bool,
+    made: bool,
 }
 
 /// What is asked of frames beside the scene.
@@ -48,7 +49,7 @@ impl Screen {
     /// Nothing is there yet to be shown by `presenter`; nothing is asked.
     pub fn new(presenter: &Presenter, rasterizer: Option<Rasterizer>) -> Result<Self> {
         let [left, right] = [Side::new(presenter, rasterizer)?, Side::new(presenter, rasterizer)?];
-        Ok(Self { left, right, asked: Asked::default(), drew: false })
+        Ok(Self { left, right, asked: Asked::default(), drew: false, made: false })
     }
 
     /// What is asked of frames from now on.
@@ -74,12 +75,14 @@ impl Screen {
         });
         let drawn = self.left.record(window, seen.as_ref());
         self.drew = *drawn.as_ref().unwrap_or(&false);
+        self.made = self.left.made();
         let mut drawn = drawn.map(|_| ());
         let (other, divider) = split.filter(|_| seen.is_some()).unzip();
         let divider = divider.unwrap_or(1.0);
         if let Some((seen, settings)) = seen.zip(other) {
             let right = self.right.record(window, Some(&Seen { settings, ..seen }));
             self.drew |= *right.as_ref().unwrap_or(&false);
+            self.made |= self.right.made();
             drawn = drawn.and(right.map(|_| ()));
         }
         self.left.show(window, [0.0, divider])?;
@@ -96,7 +99,7 @@ impl Screen {
 
     /// Whether things had to be made for that.
     pub fn made(&self) -> bool {
-        self.left.made() || self.right.made()
+        self.made
     }
 
     /// What the last frame tells, once; nothing where it was not measured.

@@ -56,6 +56,7 @@ impl Side {
 
     /// Records the picture, unless it is there; whether it was not. After an error it is empty.
     pub fn record(&mut self, window: &Presented, seen: Option<&Seen>) -> Result<bool> {
+        self.made = false;
         let same = seen.zip(self.drawn.as_ref()).is_some_and(|(seen, drawn)| seen.is_as(drawn));
         if same {
             return Ok(false);

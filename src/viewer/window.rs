@@ -112,20 +112,8 @@ impl Opened {
             }
         }
         let behind = self.presenter.is_behind();
-        if let (true, Some((camera, [method, shading]))) = (shown && !behind, state.pose().zip(state.names()))
-        {
-            events.tell(&Event::Picture(Shown {
-                method,
-                shading,
-                size: state.lens.size,
-                side: quality.side,
-                surfels: told.surfels as u64,
-                sketch: state.is_sketch(),
-                moving,
-                drawn,
-                took_ms: ms,
-                camera: camera.into(),
-            }));
+        if let Some(picture) = picture(state, told, [moving, drawn], ms).filter(|_| shown && !behind) {
+            events.tell(&Event::Picture(picture));
         }
         let flies = hands.flight().is_some();
         self.last = flies.then_some(start);
@@ -204,4 +192,21 @@ impl Opened {
         }
         Ok(())
     }
+}
+
+/// What a picture tells, whether the hands moved, and whether it was drawn anew.
+fn picture<'a>(state: &State, told: &Told, [moving, drawn]: [bool; 2], took_ms: f64) -> Option<Shown<'a>> {
+    let (camera, [method, shading]) = state.pose().zip(state.names())?;
+    Some(Shown {
+        method,
+        shading,
+        size: state.lens.size,
+        side: told.side,
+        surfels: told.surfels as u64,
+        sketch: state.is_sketch(),
+        moving,
+        drawn,
+        took_ms,
+        camera: camera.into(),
+    })
 }
