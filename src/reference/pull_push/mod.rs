@@ -180,7 +180,7 @@ impl Reconstruction {
     /// shine as these say.
     ///
     /// # Errors
-    /// [`Error::Usage`](crate::Error::Usage) if there are more than [`Materials::MOST`].
+    /// [`Error::Usage`] if there are more than [`Materials::MOST`].
     pub fn of<'a>(mut self, parts: impl Into<Parts<'a>>) -> Result<Self> {
         let parts = parts.into();
         self.texture = parts.texture().filter(|_| self.pull_push.rules == Rules::Robust).cloned();
