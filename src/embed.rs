@@ -81,6 +81,8 @@ mod buffers;
 mod formats;
 mod held;
 pub mod native;
+#[cfg(feature = "window")]
+mod pane;
 mod reports;
 mod target;
 mod view;
@@ -91,6 +93,8 @@ pub use crate::vk::{
     MemorySource, QUEUE, Staging,
 };
 pub use buffers::{Buffers, READ_ACCESS, READ_STAGES, Radii, Values, update};
+#[cfg(feature = "window")]
+pub use pane::Pane;
 pub use reports::Measured;
 use reports::Reports;
 pub use target::{Pass, Target};

@@ -116,8 +116,8 @@ impl Frame {
 
 /// Renders `parts` as `camera` sees them, `size` = width and height in px.
 ///
-/// Fails on settings, sizes and cameras of which no picture can be made, and on lines and triangles where splats are drawn. Splats can be given up
-/// by way of `progress`.
+/// Fails on settings, sizes and cameras of which no picture can be made, and on lines and triangles where splats are drawn. It can be given up by
+/// way of `progress`.
 pub fn render<'a>(
     parts: impl Into<Parts<'a>>,
     camera: &Camera,
@@ -130,7 +130,7 @@ pub fn render<'a>(
     settings.splatting.normalization.check_weights(surfels.weights.is_some())?;
     settings.check_primitives(parts.primitives.is_some())?;
     if let Some(rules) = settings.pull_push {
-        return pull_push::render(parts, camera, size, settings, rules);
+        return pull_push::render(parts, camera, size, settings, rules, progress);
     }
     if parts.has_texture() {
         return render(&parts.baked(), camera, size, settings, progress);

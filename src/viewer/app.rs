@@ -6,6 +6,7 @@ use super::events::Event;
 use super::hands::Hands;
 use super::keep::Keep;
 use super::keys::{self, Action};
+use super::layout::Press;
 use super::load::{Load, Loader, News, What};
 use super::panels::Told;
 use super::remember::Remembered;
@@ -117,7 +118,9 @@ struct App {
 impl ApplicationHandler<News> for App {
     fn resumed(&mut self, events: &ActiveEventLoop) {
         match Opened::new(events, &self.options) {
-            Ok((opened, device)) => {
+            Ok((mut opened, device)) => {
+                // Scenes are framed beside the panel from the first on.
+                opened.hud.lay_out(&opened.window, &mut self.state, &mut self.told);
                 self.options.events.tell(&Event::Window { device: &device.description().name });
                 opened.window.request_redraw();
                 self.loader.use_device(&device);
@@ -295,13 +298,17 @@ impl App {
     }
 
     fn key(&mut self, events: &ActiveEventLoop, event: &KeyEvent) {
+        if event.repeat {
+            return;
+        }
         self.hands.hold(event.physical_key, event.state);
         if self.hands.flight().is_some() {
             self.moved();
         }
+        let press = Press::of(event);
+        self.told.layout.learn(&press);
         let pressed = event.state == ElementState::Pressed;
-        let action =
-            keys::action(&event.logical_key, self.hands.modifiers).filter(|_| pressed && !event.repeat);
+        let action = keys::action(&press, self.hands.modifiers).filter(|_| pressed);
         if action.is_some() {
             (self.told.wrong, self.told.done) = (None, None);
         }
@@ -368,8 +375,7 @@ impl App {
             Some(MouseButton::Left | MouseButton::Middle) => orbit.pan(way, lens),
             Some(MouseButton::Right) => {
                 let steps = -way.y / PX_A_STEP;
-                let middle = 0.5 * DVec2::from(lens.size.map(f64::from));
-                orbit.zoom(steps, middle, None, lens, &scene.bounds());
+                orbit.zoom(steps, lens.middle(), None, lens, &scene.bounds());
             }
             _ => return,
         }

@@ -10,15 +10,31 @@ use winit::keyboard::{KeyCode, ModifiersState, PhysicalKey};
 const DOUBLE: Duration = Duration::from_millis(350);
 /// And so near, px.
 const NEAR: f64 = 4.0;
-/// Keys of flight, by their places, and where they fly to: right, up, ahead.
-const FLIGHT: [(KeyCode, DVec3); 6] = [
-    (KeyCode::KeyA, DVec3::NEG_X),
-    (KeyCode::KeyD, DVec3::X),
-    (KeyCode::KeyQ, DVec3::NEG_Y),
-    (KeyCode::KeyE, DVec3::Y),
-    (KeyCode::KeyS, DVec3::NEG_Z),
-    (KeyCode::KeyW, DVec3::Z),
+
+/// A key of flight.
+pub struct Flight {
+    /// Its place.
+    pub key: KeyCode,
+    /// What a US keyboard has there.
+    pub name: &'static str,
+    /// Where it flies to: right, up, ahead.
+    way: DVec3,
+}
+
+/// All of them: ahead, left, back, right, up, down.
+pub const FLIGHT: [Flight; 6] = [
+    Flight { key: KeyCode::KeyW, name: "W", way: DVec3::Z },
+    Flight { key: KeyCode::KeyA, name: "A", way: DVec3::NEG_X },
+    Flight { key: KeyCode::KeyS, name: "S", way: DVec3::NEG_Z },
+    Flight { key: KeyCode::KeyD, name: "D", way: DVec3::X },
+    Flight { key: KeyCode::KeyE, name: "E", way: DVec3::Y },
+    Flight { key: KeyCode::KeyQ, name: "Q", way: DVec3::NEG_Y },
 ];
+
+/// Whether a key is one of flight, by its place.
+pub fn is_flight(place: PhysicalKey) -> bool {
+    FLIGHT.iter().any(|flight| PhysicalKey::Code(flight.key) == place)
+}
 
 /// What is held.
 #[derive(Default)]
@@ -45,13 +61,19 @@ impl Hands {
         double
     }
 
-    /// A key goes down or up.
+    /// A key goes down or up; with Ctrl, Alt or the system's key it is not held, even when that is let go first.
     pub fn hold(&mut self, key: PhysicalKey, state: ElementState) {
         let PhysicalKey::Code(key) = key else { return };
-        match state {
-            ElementState::Pressed => self.held.insert(key),
-            ElementState::Released => self.held.remove(&key),
-        };
+        if state == ElementState::Released {
+            self.held.remove(&key);
+        } else if self.is_alone() {
+            self.held.insert(key);
+        }
+    }
+
+    /// Whether keys are what they are alone, or with Shift: Ctrl+S is no flight.
+    fn is_alone(&self) -> bool {
+        !(self.modifiers.control_key() || self.modifiers.alt_key() || self.modifiers.super_key())
     }
 
     /// Nothing is held: the window does not see any more what is let go.
@@ -62,10 +84,8 @@ impl Hands {
 
     /// Where the keys fly to, right, up and ahead, each from −1 to 1; `None` if they do not.
     pub fn flight(&self) -> Option<DVec3> {
-        // Ctrl+S is no flight.
-        let alone = !(self.modifiers.control_key() || self.modifiers.alt_key() || self.modifiers.super_key());
-        let held = FLIGHT.iter().filter(|(key, _)| alone && self.held.contains(key));
-        let way: DVec3 = held.map(|(_, way)| way).sum();
+        let held = FLIGHT.iter().filter(|flight| self.is_alone() && self.held.contains(&flight.key));
+        let way: DVec3 = held.map(|flight| flight.way).sum();
         (way != DVec3::ZERO).then_some(way)
     }
 }
@@ -97,9 +117,12 @@ mod tests {
         hands.hold(key(KeyCode::KeyW), ElementState::Released);
         assert_eq!(hands.flight(), None);
         hands.hold(key(KeyCode::KeyA), ElementState::Released);
+        assert_eq!(hands.flight(), Some(DVec3::X));
         hands.modifiers = ModifiersState::CONTROL;
         assert_eq!(hands.flight(), None);
+        hands.hold(key(KeyCode::KeyS), ElementState::Pressed);
         hands.modifiers = ModifiersState::empty();
+        assert_eq!(hands.flight(), Some(DVec3::X), "Ctrl was let go before S");
         hands.let_go();
         assert_eq!(hands.flight(), None);
     }

@@ -1,5 +1,4 @@
 //! Panels over the picture: what is shown, how, and what keys do.
-#![allow(unsafe_code, reason = "egui's renderer records by Vulkan's own handles")]
 
 use super::panels::{self, Told};
 use super::state::State;
@@ -9,7 +8,7 @@ use egui_ash_renderer::allocator::DefaultAllocator;
 use egui_ash_renderer::{Options, RenderMode, Renderer, RendererError};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
-use surfel::vk::{Device, FRAMES_IN_FLIGHT, Presented, Recorder};
+use surfel::vk::{CommandPool, Device, FRAMES_IN_FLIGHT, Presented};
 use surfel::{Error, Result};
 use winit::event::WindowEvent;
 use winit::window::Window;
@@ -17,7 +16,7 @@ use winit::window::Window;
 /// The panels of a window.
 pub struct Hud {
     renderer: Renderer<DefaultAllocator>,
-    pool: vk::CommandPool,
+    pool: CommandPool,
     context: egui::Context,
     hands: egui_winit::State,
     textures: TexturesDelta,
@@ -48,12 +47,7 @@ impl Hud {
         let renderer =
             Renderer::with_default_allocator(device.instance(), device.physical(), raw, mode, options);
         let renderer = renderer.map_err(|error| failed(&error))?;
-        let pool = device.submit(|_, family| {
-            let info = vk::CommandPoolCreateInfo::default().queue_family_index(family);
-            // SAFETY: the family is the device's; the pool is destroyed in `drop`.
-            unsafe { device.handle().create_command_pool(&info, None) }
-        })?;
-        let pool = pool.map_err(Error::vulkan("vkCreateCommandPool"))?;
+        let pool = CommandPool::new(device)?;
         let (textures, shapes) = (TexturesDelta::default(), Vec::new());
         Ok(Self { renderer, pool, context, hands, textures, shapes, wakes: None, device: device.clone() })
     }
@@ -84,41 +78,38 @@ impl Hud {
     }
 
     /// Records the panels over the window's picture, when the GPU is done with all but the last frame.
-    pub fn record(&mut self, window: &Presented) -> Result<()> {
+    pub fn record(&mut self, window: &mut Presented) -> Result<()> {
         self.take_textures()?;
         let [width, height] = window.size;
         let (extent, scale) = (vk::Extent2D { width, height }, self.context.pixels_per_point());
         let (renderer, shapes) = (&mut self.renderer, &self.shapes);
         let mut drawn = Ok(());
-        // SAFETY: the presenter's command buffer is being recorded, and it submits in order.
-        let mut rec = unsafe { Recorder::of_host(&self.device, window.cmd) };
-        rec.over("hud", window, || drawn = renderer.cmd_draw(window.cmd, extent, scale, shapes));
+        window.over("hud", |cmd| drawn = renderer.cmd_draw(cmd, extent, scale, shapes));
         drawn.map_err(|error| failed(&error))
     }
 
     /// Brings the panels' textures up to date: each is set behind everything that was submitted, which is waited for.
     fn take_textures(&mut self) -> Result<()> {
         let mut textures = std::mem::take(&mut self.textures);
-        let (renderer, pool) = (&mut self.renderer, self.pool);
-        if textures.set.is_empty() && textures.free.is_empty() {
+        let set: Vec<_> = textures.set.drain().collect();
+        let free: Vec<_> = textures.free.drain().collect();
+        if set.is_empty() && free.is_empty() {
             return Ok(());
         }
-        let device = self.device.handle();
-        let done = self.device.submit(|queue, _| -> Result<(), RendererError> {
-            for (id, deltas) in textures.set.drain() {
-                deltas.iter().try_for_each(|delta| renderer.set_texture(queue, pool, id, delta))?;
-            }
-            // SAFETY: the queue is locked.
-            unsafe { device.queue_wait_idle(queue)? };
-            textures.free.drain().try_for_each(|id| renderer.free_texture(id))
+        let (renderer, pool) = (&mut self.renderer, self.pool.handle());
+        let done = self.device.submit(|queue, _| {
+            let mut all = set.iter().flat_map(|(id, deltas)| deltas.iter().map(move |delta| (*id, delta)));
+            all.try_for_each(|(id, delta)| renderer.set_texture(queue, pool, id, delta))
         })?;
-        done.map_err(|error| failed(&error))
+        done.map_err(|error| failed(&error))?;
+        self.device.wait_idle()?;
+        free.into_iter().try_for_each(|id| renderer.free_texture(id)).map_err(|error| failed(&error))
     }
 }
 
 impl Drop for Hud {
     fn drop(&mut self) {
-        // SAFETY: the presenter has waited for the device.
-        unsafe { self.device.handle().destroy_command_pool(self.pool, None) };
+        // Of a window that closes nobody sees them.
+        self.textures.clear();
     }
 }

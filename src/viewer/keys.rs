@@ -1,6 +1,7 @@
 //! What keys do.
 
 use super::keep::What;
+use super::layout::Press;
 use winit::keyboard::{Key, ModifiersState, NamedKey};
 
 /// What a key does.
@@ -26,7 +27,7 @@ pub enum Action {
 /// A key, what it is called, and what it does.
 pub struct Binding {
     pub key: Key<&'static str>,
-    /// Held with it: Ctrl, Alt and the system's; Shift for keys that it makes no other letter of.
+    /// Held with it: Ctrl, Alt, the system's, and Shift.
     pub held: ModifiersState,
     pub name: &'static str,
     pub does: &'static str,
@@ -39,6 +40,10 @@ const SHIFT: ModifiersState = ModifiersState::SHIFT;
 
 const fn letter(key: &'static str, name: &'static str, does: &'static str, action: Action) -> Binding {
     Binding { key: Key::Character(key), held: NONE, name, does, action }
+}
+
+const fn shift(key: &'static str, name: &'static str, does: &'static str, action: Action) -> Binding {
+    Binding { key: Key::Character(key), held: SHIFT, name, does, action }
 }
 
 const fn control(key: &'static str, name: &'static str, does: &'static str, action: Action) -> Binding {
@@ -56,11 +61,11 @@ const fn named(
 }
 
 /// All of them.
-pub const BINDINGS: [Binding; 24] = {
+pub static BINDINGS: [Binding; 24] = {
     use super::orbit::{Side, Up};
     [
         letter("m", "M", "next method", Action::NextMethod),
-        letter("M", "Shift+M", "previous method", Action::PreviousMethod),
+        shift("m", "Shift+M", "previous method", Action::PreviousMethod),
         letter("l", "L", "next shading: light, colour, normal, depth", Action::NextShading),
         letter("p", "P", "perspective or parallel rays", Action::Parallel),
         letter("f", "F", "show all", Action::Frame),
@@ -99,31 +104,27 @@ pub const BINDINGS: [Binding; 24] = {
 };
 
 /// What a pressed key does while `held` are held, if anything.
-pub fn action(key: &Key, held: ModifiersState) -> Option<Action> {
-    let key = match key {
-        // With Ctrl it is a key, not a letter: Caps Lock changes nothing.
-        Key::Character(text) if held.control_key() => Key::Character(text.to_lowercase()),
-        Key::Character(text) => Key::Character(text.to_string()),
-        Key::Named(named) => Key::Named(*named),
-        _ => return None,
+pub fn action(press: &Press, held: ModifiersState) -> Option<Action> {
+    let means = |(key, held): (Key, ModifiersState)| {
+        let same = |binding: &&Binding| binding.held == held && is_same(&binding.key, &key);
+        BINDINGS.iter().find(same).map(|binding| binding.action)
     };
-    // Shift is in the letter.
-    let held = if matches!(key, Key::Character(_)) { held.difference(SHIFT) } else { held };
-    let pressed = |binding: &&Binding| {
-        binding.held == held
-            && match (&binding.key, &key) {
-                (Key::Character(one), Key::Character(other)) => one == other,
-                (Key::Named(one), Key::Named(other)) => one == other,
-                _ => false,
-            }
-    };
-    BINDINGS.iter().find(pressed).map(|binding| binding.action)
+    press.meanings(held).into_iter().find_map(means)
+}
+
+fn is_same(one: &Key<&str>, other: &Key) -> bool {
+    match (one, other) {
+        (Key::Character(one), Key::Character(other)) => one == other,
+        (Key::Named(one), Key::Named(other)) => one == other,
+        _ => false,
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use std::collections::HashSet;
+    use winit::keyboard::{KeyCode, PhysicalKey};
 
     #[test]
     fn keys_do_what_their_names_say() {
@@ -143,7 +144,9 @@ mod tests {
             (f12, CONTROL | SHIFT, None),
             (Key::Dead(None), NONE, None),
         ] {
-            assert_eq!(action(&key, held), expected, "{key:?} {held:?}");
+            let place = PhysicalKey::Code(KeyCode::F24);
+            let press = Press { place, bare: key.clone(), key };
+            assert_eq!(action(&press, held), expected, "{press:?} {held:?}");
         }
         let names: HashSet<_> = BINDINGS.iter().map(|binding| binding.name).collect();
         assert_eq!(names.len(), BINDINGS.len(), "two of one name");

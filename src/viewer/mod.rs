@@ -4,6 +4,7 @@
 //! load, on a thread of its own ─→ scene ─┐
 //! hands ─ orbit → camera ────────────────┴─ screen → window
 //! ```
+#![forbid(unsafe_code)]
 
 mod app;
 mod cost;
@@ -13,6 +14,7 @@ mod hud;
 mod job;
 mod keep;
 mod keys;
+mod layout;
 mod load;
 mod open;
 mod orbit;

@@ -14,6 +14,9 @@ const STEP: f64 = 0.85;
 const REACH: [f64; 2] = [1e-6, 1e3];
 /// Speed of flight, distances to the pivot a second.
 const SPEED: f64 = 0.75;
+/// Least part of the picture's width in which scenes are framed beside what covers the rest: a narrower one shows less of them than the whole
+/// picture, covered as it is.
+const LEAST_FREE: f64 = 1.0 / 3.0;
 /// Cosine of the angle from the horizon beyond which the camera looks straight up or down, where what is up in the world tells nothing of
 /// what is up in the picture.
 const STRAIGHT: f64 = 1e-6;
@@ -47,6 +50,8 @@ pub struct Lens {
     pub fov_y_deg: f64,
     /// Rays are parallel; what is as far as the pivot is as large as in perspective.
     pub parallel: bool,
+    /// Width of what lies over the picture on its right, px.
+    pub covered: f64,
 }
 
 /// Where the camera stands and looks.
@@ -98,6 +103,25 @@ impl Lens {
     /// World units a px, at a distance.
     pub fn px(&self, distance: f64) -> f64 {
         2.0 * distance * self.slope() / f64::from(self.size[1])
+    }
+
+    /// The middle of what is not covered, px.
+    pub fn middle(&self) -> DVec2 {
+        0.5 * DVec2::new(self.free(), self.size[1].into())
+    }
+
+    /// Width of what is not covered, on the left, px; all of it if that is too narrow.
+    fn free(&self) -> f64 {
+        let width = f64::from(self.size[0]);
+        let free = width - self.covered;
+        if free < LEAST_FREE * width { width } else { free }
+    }
+
+    /// Slopes of the sight at both sides of what is not covered, and half its height.
+    fn slopes(&self) -> [f64; 3] {
+        let px = self.px(1.0);
+        let middle = 0.5 * f64::from(self.size[0]);
+        [-middle * px, (self.free() - middle) * px, self.slope()]
     }
 
     /// From the middle of the picture, x to the right and y upwards, px.
@@ -230,8 +254,15 @@ impl Orbit {
         self.pivot += step;
     }
 
+    /// Stands so far from the pivot that it is seen in the middle of what is not covered.
+    fn stand_back(&mut self, reach: f64, lens: &Lens) {
+        let [left, right, _] = lens.slopes();
+        let [forward, across, _] = self.axes();
+        self.eye = self.pivot - reach * (forward + 0.5 * (left + right) * across);
+    }
+
     /// Looks at the pivot from a side, from as far as now.
-    pub fn side(&mut self, side: Side) {
+    pub fn side(&mut self, side: Side, lens: &Lens) {
         let quarter = 0.5 * std::f64::consts::PI;
         let reach = self.distance();
         (self.yaw, self.pitch) = match side {
@@ -242,14 +273,14 @@ impl Orbit {
             Side::Top => (0.0, quarter),
             Side::Bottom => (0.0, -quarter),
         };
-        self.eye = self.pivot - reach * self.axes()[0];
+        self.stand_back(reach, lens);
     }
 
     /// Makes something else up; looks at the pivot from as far as now, as it did from as far round.
-    pub fn set_up(&mut self, up: Up) {
+    pub fn set_up(&mut self, up: Up, lens: &Lens) {
         let reach = self.distance();
         self.up = up.vector();
-        self.eye = self.pivot - reach * self.axes()[0];
+        self.stand_back(reach, lens);
     }
 
     /// What is up in the world, of unit length.
@@ -257,15 +288,16 @@ impl Orbit {
         self.up
     }
 
-    /// Shows all of `bounds`, from where it looks.
+    /// Shows all of `bounds`, from where it looks, in what is not covered.
     pub fn frame(&mut self, bounds: &Bounds, lens: &Lens) {
         let radius = if bounds.radius > 0.0 { 1.04 * bounds.radius } else { 1.0 };
-        let slope = lens.slope();
-        // The sphere touches the narrower of the two fields of view.
-        let half = (slope * lens.aspect().min(1.0)).atan();
-        let reach = if lens.parallel { radius / half.tan() } else { radius / half.sin() };
+        let [left, right, height] = lens.slopes();
+        // The way from a sphere's centre to the edge of the view beside it: at right angles to that.
+        let slant = |slope: f64| if lens.parallel { 1.0 } else { slope.hypot(1.0) };
+        let across = slant(left).max(slant(right)) / (0.5 * (right - left));
+        let reach = radius * across.max(slant(height) / height);
         self.pivot = bounds.centre();
-        self.eye = self.pivot - reach * self.axes()[0];
+        self.stand_back(reach, lens);
     }
 }
 
@@ -276,7 +308,7 @@ mod tests {
     use surfel::Result;
     use surfel::geometry::Camera;
 
-    const LENS: Lens = Lens { size: [640, 480], fov_y_deg: 46.0, parallel: false };
+    const LENS: Lens = Lens { size: [640, 480], fov_y_deg: 46.0, parallel: false, covered: 0.0 };
     const UPS: [Up; 6] = [
         Up { axis: 0, down: false },
         Up { axis: 1, down: false },
@@ -328,6 +360,54 @@ mod tests {
                 }
             }
         }
+    }
+
+    #[test]
+    fn what_is_framed_is_in_the_middle_of_what_is_not_covered_and_touches_its_edges() {
+        // Width and height, what is covered, and what is left, px.
+        for (size, covered, free) in [
+            ([640, 480], 0.0, 640.0),
+            ([640, 480], 316.0, 324.0),
+            ([1200, 850], 316.0, 884.0),
+            ([1200, 300], 632.0, 568.0),
+            ([480, 900], 316.0, 164.0),
+            ([400, 300], 316.0, 400.0),
+            ([200, 300], 316.0, 200.0),
+        ] {
+            for lens in lenses() {
+                let lens = Lens { size, covered, ..lens };
+                let mut orbit = Orbit::framing(&bounds(), Up::Y, &lens);
+                let middle = DVec2::new(0.5 * free, 0.5 * f64::from(size[1]));
+                let reach = orbit.distance();
+                for turned in 0..3 {
+                    assert!(near(seen(&orbit, &lens, orbit.pivot), middle), "{lens:?} {turned}");
+                    // Whatever is within 1.04 radii is seen, and something there only just.
+                    let least = ball(&orbit).map(|point| {
+                        let at = seen(&orbit, &lens, point);
+                        at.min_element().min(free - at.x).min(f64::from(size[1]) - at.y)
+                    });
+                    let least = least.fold(f64::INFINITY, f64::min);
+                    assert!((-1e-6..0.01 * free).contains(&least), "{lens:?} {turned} {least}");
+                    assert!((orbit.distance() / reach - 1.0).abs() < 1e-9);
+                    match turned {
+                        0 => orbit.side(Side::Left, &lens),
+                        _ => orbit.set_up(Up { axis: 2, down: true }, &lens),
+                    }
+                }
+            }
+        }
+    }
+
+    /// Points all over the sphere that is framed.
+    fn ball(orbit: &Orbit) -> impl Iterator<Item = DVec3> {
+        let (pivot, radius) = (orbit.pivot, 1.04 * bounds().radius);
+        let count = 40_000;
+        (0..count).map(move |i| {
+            let (z, angle) = (1.0 - (2 * i + 1) as f64 / count as f64, 2.399963 * f64::from(i));
+            pivot
+                + radius * DVec2::from_angle(angle).extend(0.0) * (1.0 - z * z).sqrt()
+                + radius * z * DVec3::Z
+        })
     }
 
     #[test]
@@ -411,12 +491,12 @@ mod tests {
         ] {
             let mut orbit = Orbit::framing(&bounds(), Up::Y, &LENS);
             let reach = orbit.distance();
-            orbit.side(side);
+            orbit.side(side, &LENS);
             assert!((orbit.eye - (orbit.pivot + reach * from)).length() < 1e-9, "{side:?} {}", orbit.eye);
             assert!(orbit.camera(&LENS, &bounds()).is_ok());
         }
         let mut orbit = Orbit::framing(&bounds(), Up { axis: 2, down: false }, &LENS);
-        orbit.side(Side::Front);
+        orbit.side(Side::Front, &LENS);
         assert!((orbit.eye - orbit.pivot).normalize().abs_diff_eq(DVec3::NEG_Y, 1e-9), "z up: from −y");
     }
 

@@ -75,6 +75,17 @@ impl Sight {
     }
 }
 
+/// What a frame took.
+#[derive(Clone, Copy, Debug)]
+pub struct Frame {
+    /// How long, ms.
+    pub ms: f64,
+    /// Whether the hands moved.
+    pub moving: bool,
+    /// Whether targets or buffers had to be made for it.
+    pub made: bool,
+}
+
 /// Chooses how fine frames are.
 #[derive(Clone, Debug)]
 pub struct Pace {
@@ -151,10 +162,16 @@ impl Pace {
         (self.chosen != Quality::WHOLE && now < rests).then_some(rests)
     }
 
-    /// A frame took so long, ms.
-    pub fn took(&mut self, quality: Quality, sight: &Sight, ms: f64, moving: bool) {
+    /// What a frame took.
+    pub fn took(&mut self, quality: Quality, sight: &Sight, Frame { ms, moving, made }: Frame) {
+        let known = self.moving_known || self.whole.is_some();
         if !moving && quality == Quality::WHOLE {
-            self.whole = Some(ms.clamp(0.0, 1e6));
+            let most = self.whole.filter(|_| made).unwrap_or(f64::INFINITY);
+            self.whole = Some(ms.clamp(0.0, 1e6).min(most));
+        }
+        // The next one like it tells what it takes without that.
+        if made && known {
+            return;
         }
         let work = sight.work(quality);
         if let Some(whole) = self.whole.filter(|_| moving) {
@@ -253,6 +270,11 @@ mod tests {
         Load { fixed: 0.1, pixels: 0.5, surfels: 1.0 },
     ];
 
+    /// A frame while the hands move.
+    fn of(ms: f64) -> Frame {
+        Frame { ms, moving: true, made: false }
+    }
+
     /// The qualities and times of `count` frames while the hands move.
     fn frames(pace: &mut Pace, load: impl Fn(usize) -> Load, count: usize) -> Vec<(Quality, f64)> {
         let now = Instant::now();
@@ -260,7 +282,7 @@ mod tests {
         let mut frame = |i: usize| {
             let quality = pace.quality(now, &sight());
             let time = load(i).time(quality);
-            pace.took(quality, &sight(), time, true);
+            pace.took(quality, &sight(), of(time));
             (quality, time)
         };
         (0..count).map(&mut frame).collect()
@@ -269,7 +291,7 @@ mod tests {
     /// A pace that has seen the whole picture, as the first one is.
     fn started(load: Load) -> Pace {
         let mut pace = Pace::new(60.0);
-        pace.took(Quality::WHOLE, &sight(), load.time(Quality::WHOLE), false);
+        pace.took(Quality::WHOLE, &sight(), Frame { moving: false, ..of(load.time(Quality::WHOLE)) });
         pace
     }
 
@@ -318,6 +340,68 @@ mod tests {
     }
 
     #[test]
+    fn what_making_things_takes_tells_nothing_of_frames() {
+        for load in LOADS {
+            let choices = |making: f64| {
+                let mut pace = Pace::new(60.0);
+                let whole = load.time(Quality::WHOLE);
+                for (ms, made) in [(whole, false), (whole + making, true)] {
+                    pace.took(Quality::WHOLE, &sight(), Frame { ms, moving: false, made });
+                }
+                let (now, mut before) = (Instant::now(), Quality::WHOLE);
+                pace.moved(now);
+                let mut frame = |_| {
+                    let quality = pace.quality(now, &sight());
+                    let made = std::mem::replace(&mut before, quality) != quality;
+                    let ms = load.time(quality) + if made { making } else { 0.0 };
+                    pace.took(quality, &sight(), Frame { made, ..of(ms) });
+                    quality
+                };
+                (0..200).map(&mut frame).collect::<Vec<_>>()
+            };
+            let other = choices(0.0).into_iter().zip(choices(200.0)).position(|(one, other)| one != other);
+            assert_eq!(other, None);
+        }
+        let mut pace = Pace::new(60.0);
+        pace.took(Quality::WHOLE, &sight(), Frame { made: true, moving: false, ..of(500.0) });
+        pace.moved(Instant::now());
+        assert_ne!(
+            pace.quality(Instant::now(), &sight()),
+            Quality::WHOLE,
+            "where nothing else is known, it is believed"
+        );
+    }
+
+    #[test]
+    fn who_was_too_slow_again_and_again_waits_ever_longer() {
+        // Light for long enough that it is tried, and heavy for long enough that it fails.
+        let load = |i: usize| if i % 60 < 30 { LOADS[0] } else { LOADS[1] };
+        let frames = frames(&mut started(LOADS[1]), load, 1800);
+        let slow = |part: &[(Quality, f64)]| part.iter().filter(|(_, time)| *time > 90.0).count();
+        let [first, last] = [slow(&frames[..300]), slow(&frames[300..])];
+        assert!(first > 0 && last == 0, "{first} at first, {last} later");
+    }
+
+    #[test]
+    fn what_is_too_slow_gets_less_and_more_of_nothing() {
+        for load in LOADS {
+            let mut pace = started(load);
+            let all = || sight().choices().map(|quality| (quality, load.time(quality)));
+            (0..50).for_each(|_| all().for_each(|(quality, ms)| pace.took(quality, &sight(), of(ms))));
+            let slow: Vec<_> =
+                all().filter(|(quality, _)| pace.expected(&sight(), *quality) > MOST).collect();
+            for (chosen, _) in slow {
+                pace.chosen = chosen;
+                let next = pace.coarser(&sight());
+                let is_less = |next: Quality| next.side <= chosen.side && next.scene >= chosen.scene;
+                let fits = |quality| pace.expected(&sight(), quality) <= AIM;
+                let none = !all().any(|(quality, _)| is_less(quality) && fits(quality));
+                assert!(none || is_less(next) && fits(next), "{chosen:?} {next:?}");
+            }
+        }
+    }
+
+    #[test]
     fn the_first_frames_of_a_slow_device_are_coarse_even_if_none_was_before() {
         let frames = frames(&mut Pace::new(60.0), |_| LOADS[1], 10);
         assert!(frames.iter().all(|(_, time)| *time <= 90.0), "{frames:?}");
@@ -332,7 +416,7 @@ mod tests {
             pace.moved(now);
             for _ in 0..100 {
                 let quality = pace.quality(now, &sight);
-                pace.took(quality, &sight, load.time(quality), true);
+                pace.took(quality, &sight, of(load.time(quality)));
             }
             pace.quality(now, &sight)
         };

@@ -1,25 +1,21 @@
 //! What the window shows beneath its panels: a picture of the scene, or two side by side.
-#![allow(unsafe_code, reason = "it is a host of `embed`, which is one of Vulkan")]
 
-use super::side::{COLOUR, DEPTH, Seen, Side};
+use super::side::{Seen, Side};
 use glam::DVec2;
 use std::sync::Arc;
 use surfel::geometry::Camera;
-use surfel::vk::{Attachment, Device, Presented, Recorder, RenderPass};
+use surfel::vk::{Presented, Presenter};
 use surfel::{FrameReport, Rasterizer, Result, Scene, Settings};
 
 /// Renders scenes and shows them.
 pub struct Screen {
-    // Fields are dropped in this order: what frames under way may use goes when the presenter, which waits for them, is gone.
     left: Side,
-    /// Where there have been two pictures.
-    right: Option<Side>,
+    /// Where there are two pictures.
+    right: Side,
     asked: Asked,
-    /// Whether the last frame drew something anew.
+    /// Whether the last frame drew something anew, and whether things had to be made for that.
     drew: bool,
-    rasterizer: Option<Rasterizer>,
-    pass: RenderPass,
-    device: Arc<Device>,
+    made: bool,
 }
 
 /// What is asked of frames beside the scene.
@@ -50,11 +46,10 @@ pub struct Pick {
 }
 
 impl Screen {
-    pub fn new(device: &Arc<Device>, rasterizer: Option<Rasterizer>) -> Result<Self> {
-        let pass = RenderPass::new(device, &[Attachment::Cleared(COLOUR)], Some(Attachment::Cleared(DEPTH)))?;
-        let left = Side::new(device, &pass, rasterizer)?;
-        let (asked, device) = (Asked::default(), device.clone());
-        Ok(Self { left, right: None, asked, drew: false, rasterizer, pass, device })
+    /// Nothing is there yet to be shown by `presenter`; nothing is asked.
+    pub fn new(presenter: &Presenter, rasterizer: Option<Rasterizer>) -> Result<Self> {
+        let [left, right] = [Side::new(presenter, rasterizer)?, Side::new(presenter, rasterizer)?];
+        Ok(Self { left, right, asked: Asked::default(), drew: false, made: false })
     }
 
     /// What is asked of frames from now on.
@@ -78,31 +73,23 @@ impl Screen {
             version,
             measured,
         });
-        let drawn = self.left.record(window, &self.pass, seen.as_ref());
+        let drawn = self.left.record(window, seen.as_ref());
         self.drew = *drawn.as_ref().unwrap_or(&false);
+        self.made = self.left.made();
         let mut drawn = drawn.map(|_| ());
         let (other, divider) = split.filter(|_| seen.is_some()).unzip();
         let divider = divider.unwrap_or(1.0);
         if let Some((seen, settings)) = seen.zip(other) {
-            let right = self.record_right(window, &Seen { settings, ..seen });
-            drawn = drawn.and(right);
+            let right = self.right.record(window, Some(&Seen { settings, ..seen }));
+            self.drew |= *right.as_ref().unwrap_or(&false);
+            self.made |= self.right.made();
+            drawn = drawn.and(right.map(|_| ()));
         }
-        // SAFETY: the presenter's command buffer is being recorded, and it submits in order.
-        let mut rec = unsafe { Recorder::of_host(&self.device, window.cmd) };
-        self.left.show(&mut rec, window, [0.0, divider]);
-        if let Some(right) = self.right.as_ref().filter(|_| divider < 1.0) {
-            right.show(&mut rec, window, [divider, 1.0]);
+        self.left.show(window, [0.0, divider])?;
+        if divider < 1.0 {
+            self.right.show(window, [divider, 1.0])?;
         }
         drawn
-    }
-
-    fn record_right(&mut self, window: &Presented, seen: &Seen) -> Result<()> {
-        let right = match &mut self.right {
-            Some(right) => right,
-            none => none.insert(Side::new(&self.device, &self.pass, self.rasterizer)?),
-        };
-        self.drew |= right.record(window, &self.pass, Some(seen))?;
-        Ok(())
     }
 
     /// Whether the last frame drew a picture anew, rather than show one that was there.
@@ -110,22 +97,26 @@ impl Screen {
         self.drew
     }
 
-    /// What the last frame, which must be over, tells, once; nothing where it was not measured.
-    pub fn reports(&mut self) -> Result<Reports> {
-        let right = self.right.as_mut().map_or(Ok(None), Side::report)?;
-        Ok(Reports { left: self.left.report()?, right })
+    /// Whether things had to be made for that.
+    pub fn made(&self) -> bool {
+        self.made
     }
 
-    /// The depth of the last frame at a place, which must be over; `None` where nothing is.
-    pub fn pick(&self, Pick { at, size }: Pick) -> Option<f64> {
-        let (own, depths) = self.left.depths()?;
+    /// What the last frame tells, once; nothing where it was not measured.
+    pub fn reports(&mut self, presenter: &Presenter) -> Result<Reports> {
+        Ok(Reports { left: self.left.report(presenter)?, right: self.right.report(presenter)? })
+    }
+
+    /// The depth of the last frame at a place; `None` where nothing is.
+    pub fn pick(&self, Pick { at, size }: Pick, presenter: &Presenter) -> Result<Option<f64>> {
+        let Some((own, depths)) = self.left.depths(presenter)? else { return Ok(None) };
         let part = at / DVec2::from(size.map(f64::from));
         let [x, y] = [0, 1].map(|axis| {
             let place = (part[axis] * f64::from(own[axis])).floor();
             (place >= 0.0 && place < f64::from(own[axis])).then_some(place as usize)
         });
-        let first = 4 * (y? * own[0] as usize + x?);
-        let depth = f32::from_ne_bytes(depths.get(first..first + 4)?.try_into().ok()?);
-        (depth > 0.0).then_some(depth.into())
+        let first = x.zip(y).map(|(x, y)| 4 * (y * own[0] as usize + x));
+        let bytes = first.and_then(|first| depths.get(first..first + 4)?.try_into().ok());
+        Ok(bytes.map(f32::from_ne_bytes).filter(|depth| *depth > 0.0).map(f64::from))
     }
 }

@@ -21,13 +21,34 @@ pub struct Source {
     /// Those that were read, of surfels and of vertices, each with its number among the names.
     read: Vec<(usize, [Vec<f32>; 2])>,
     /// Those that are being read.
-    reading: Option<(usize, Job<[Vec<f32>; 2]>)>,
+    reading: Option<Reading>,
+    /// What colours should be made of, and is not there: numbers of this name, and the range that is chosen for them.
+    missing: Option<(String, Option<ValueRange>)>,
     /// What it is to be.
     pub changed: Changed,
     /// What the scene is.
     applied: Changed,
     /// The usual range of each quantity that was looked at.
     usual: Vec<(By, Option<ValueRange>)>,
+}
+
+/// Numbers that are being read.
+struct Reading {
+    /// Which, by their place among the names.
+    number: usize,
+    job: Job<[Vec<f32>; 2]>,
+    /// The range that hands have chosen for them.
+    range: Option<ValueRange>,
+}
+
+/// What is changed of a scene, for another state of it to be changed alike.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Wish {
+    changed: Changed,
+    /// The name of the file's numbers that surfels are coloured by.
+    number: Option<String>,
+    /// The range, where hands have chosen it.
+    range: Option<ValueRange>,
 }
 
 /// What is changed of a scene.
@@ -89,8 +110,17 @@ impl Source {
     pub fn new(model: Model, surface: Option<String>, numbers: Numbers) -> Self {
         let range = ValueRange { min: 0.0, max: 1.0 };
         let own = Changed { by: By::Own, map: ColourMap::default(), range, radii: 1.0 };
-        let (read, reading, usual) = (Vec::new(), None, Vec::new());
-        Self { model: Arc::new(model), surface, numbers, read, reading, changed: own, applied: own, usual }
+        Self {
+            model: Arc::new(model),
+            surface,
+            numbers,
+            read: Vec::new(),
+            reading: None,
+            missing: None,
+            changed: own,
+            applied: own,
+            usual: Vec::new(),
+        }
     }
 
     /// The built-in scene whose surface the picture should show.
@@ -118,28 +148,35 @@ impl Source {
 
     /// Colours by this from now on, in its usual range; by numbers of the file once they are read.
     pub fn colour_by(&mut self, by: By) {
+        self.colour_within(by, None);
+    }
+
+    /// The same within a range, if one is chosen.
+    fn colour_within(&mut self, by: By, range: Option<ValueRange>) {
+        (self.reading, self.missing) = (None, None);
         if let By::Number(number) = by
             && !self.read.iter().any(|(known, _)| *known == number)
         {
             let (read, name) = (self.numbers.read.clone(), self.name(by).to_owned());
-            self.reading = Some((number, Job::start(move |progress: &dyn Progress| read(&name, progress))));
+            let job = Job::start(move |progress: &dyn Progress| read(&name, progress));
+            self.reading = Some(Reading { number, job, range });
             return;
         }
         self.changed.by = by;
-        if let Some(range) = self.usual(by) {
+        if let Some(range) = range.or_else(|| self.usual(by)) {
             self.changed.range = range;
         }
     }
 
     /// A stage of what is being read, and how much of it is done.
     pub fn reading(&self) -> Option<(&'static str, f32)> {
-        self.reading.as_ref().map(|(_, job)| job.at())
+        self.reading.as_ref().map(|reading| reading.job.at())
     }
 
     /// Takes what was read, and colours by it.
     fn take(&mut self) -> Result<()> {
-        let Some((number, job)) = &mut self.reading else { return Ok(()) };
-        let (number, Some(outcome)) = (*number, job.take()) else { return Ok(()) };
+        let Some(Reading { number, job, range }) = &mut self.reading else { return Ok(()) };
+        let (number, range, Some(outcome)) = (*number, *range, job.take()) else { return Ok(()) };
         self.reading = None;
         let read = outcome?;
         let (surfels, vertices) = (self.model.surfels.len(), self.model.primitives.positions.len());
@@ -147,7 +184,7 @@ impl Source {
             return Err(Error::Usage("the file has changed since it was loaded: load it anew".into()));
         }
         self.read.push((number, read));
-        self.colour_by(By::Number(number));
+        self.colour_within(By::Number(number), range);
         Ok(())
     }
 
@@ -172,21 +209,34 @@ impl Source {
         range
     }
 
-    /// Changes so much, but for colours by numbers of the file.
-    pub fn change_to(&mut self, changed: Changed) {
-        self.changed = changed;
-        if let By::Number(_) = changed.by {
-            self.changed.by = By::Own;
+    /// What is changed of it, and is to be once it is read.
+    pub fn wish(&self) -> Wish {
+        if let Some((name, range)) = &self.missing {
+            return Wish { changed: self.changed, number: Some(name.clone()), range: *range };
         }
+        let (by, range) = match &self.reading {
+            Some(Reading { number, range, .. }) => (By::Number(*number), *range),
+            None => (self.changed.by, self.chosen_range()),
+        };
+        let number = matches!(by, By::Number(_)).then(|| self.name(by).to_owned());
+        Wish { changed: Changed { by, ..self.changed }, number, range }
     }
 
-    /// Changes as much as of another state of the scene; numbers of the file are read anew.
-    pub fn change_as(&mut self, other: &Self) {
-        self.change_to(other.changed);
-        if let By::Number(number) = other.changed.by
-            && other.numbers.names.get(number) == self.numbers.names.get(number)
-        {
-            self.colour_by(other.changed.by);
+    /// The range of the colours, where it is not the usual one.
+    fn chosen_range(&self) -> Option<ValueRange> {
+        let Changed { by, range, .. } = self.changed;
+        let usual = self.usual.iter().find(|(known, _)| *known == by).and_then(|(_, usual)| *usual);
+        (self.changed.scale().is_some() && usual != Some(range)).then_some(range)
+    }
+
+    /// Changes as much as another state of the scene was changed. Numbers of the file are read anew; where it has none of the name, as a sketch
+    /// has not, colours are the points' own.
+    pub fn change_as(&mut self, Wish { changed, number, range }: &Wish) {
+        self.changed = Changed { by: By::Own, ..*changed };
+        let Some(name) = number else { return self.colour_within(changed.by, *range) };
+        match self.numbers.names.iter().position(|known| known == name) {
+            Some(number) => self.colour_within(By::Number(number), *range),
+            None => self.missing = Some((name.clone(), *range)),
         }
     }
 
@@ -198,6 +248,7 @@ impl Source {
             numbers: self.numbers.clone(),
             read: self.read.clone(),
             reading: None,
+            missing: None,
             usual: self.usual.clone(),
             ..*self
         }
@@ -284,6 +335,10 @@ mod tests {
 
     /// Three points in a row with numbers of the file.
     fn source(read: [Vec<f32>; 2]) -> Source {
+        source_of("heat", read)
+    }
+
+    fn source_of(name: &str, read: [Vec<f32>; 2]) -> Source {
         let surfels = Surfels {
             positions: [0.0, 1.0, 2.0].map(|x| Vec3::new(x, 0.0, 0.0)).to_vec(),
             normals: vec![Vec3::Z; 3],
@@ -292,7 +347,7 @@ mod tests {
         };
         let model = Model { surfels, ..Default::default() };
         let read = Arc::new(move |_: &str, _: &dyn Progress| Ok(read.clone()));
-        Source::new(model, Some("scene:none".into()), Numbers { names: vec!["heat".into()], read })
+        Source::new(model, Some("scene:none".into()), Numbers { names: vec![name.into()], read })
     }
 
     fn wait(source: &mut Source) -> Result<()> {
@@ -332,6 +387,47 @@ mod tests {
         source.colour_by(By::Number(0));
         assert!(wait(&mut source).unwrap_err().to_string().contains("changed"));
         assert_eq!(source.changed.by, By::Own);
+    }
+
+    #[test]
+    fn a_range_that_hands_have_chosen_is_that_of_the_next_state_too() {
+        let range = |min, max| ValueRange { min, max };
+        let next = |wish: &Wish| {
+            let mut next = source([vec![1.0, 2.0, 9.0], vec![]]);
+            next.change_as(wish);
+            wait(&mut next).unwrap();
+            next.changed
+        };
+        for by in [By::Number(0), By::X] {
+            let mut old = source([vec![5.0, 6.0, 7.0], vec![]]);
+            old.colour_by(by);
+            let reading = old.wish();
+            wait(&mut old).unwrap();
+            old.changed.map = ColourMap::Turbo;
+            let usual = next(&old.wish());
+            assert_eq!((usual.by, usual.map), (by, ColourMap::Turbo));
+            let expected = if by == By::X { range(0.0, 2.0) } else { range(1.0, 9.0) };
+            assert_eq!(usual.range, expected, "of the numbers as they are now");
+            assert_eq!(next(&reading).by, by, "what was being read is read anew");
+            old.changed.range = range(-3.0, 4.0);
+            assert_eq!(next(&old.wish()).range, range(-3.0, 4.0));
+            // Changed twice before it could be read, or with a state between that has no such numbers.
+            for name in ["heat", "cold"] {
+                let mut between = source_of(name, [vec![1.0, 2.0, 9.0], vec![]]);
+                between.change_as(&old.wish());
+                assert!(name == "heat" || by == By::X || between.changed.by == By::Own);
+                assert_eq!(next(&between.wish()), Changed { by, ..old.changed });
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_chosen_last_is_what_colours_are_made_of() {
+        let mut source = source([vec![5.0, 6.0, 7.0], vec![]]);
+        source.colour_by(By::Number(0));
+        source.colour_by(By::Y);
+        wait(&mut source).unwrap();
+        assert_eq!(source.changed.by, By::Y);
     }
 
     #[test]

@@ -4,7 +4,7 @@ use super::keys::Action;
 use super::open::{Answer, Opening};
 use super::orbit::{Lens, Orbit, Up};
 use super::pace::Sight;
-use super::source::{Changed, Source};
+use super::source::{Source, Wish};
 use super::{Look, Options};
 use glam::{DVec2, DVec3};
 use std::borrow::Cow;
@@ -43,7 +43,7 @@ pub struct State {
     version: u64,
     shown: Option<Shown>,
     /// How the scene was shown that the last device had.
-    left: Option<(Method, Settings, Changed)>,
+    left: Option<(Method, Settings, Wish)>,
     /// The place whose surface is to be turned about, px.
     pub pick: Option<DVec2>,
     /// What is to be opened, while it is asked for, and the answer.
@@ -82,6 +82,8 @@ struct Shown {
     before: Option<Box<Shown>>,
     source: Source,
     orbit: Orbit,
+    /// As it was framed.
+    framed: Orbit,
     /// The camera that the hands were given, and what they have made of it: until they move it is that, bit for bit.
     given: Option<(Orbit, Lens, Pose)>,
     method: Method,
@@ -90,7 +92,7 @@ struct Shown {
 
 impl State {
     pub fn new(options: &Options, look: Look, remembered: Option<(Method, Settings)>) -> Self {
-        let lens = Lens { size: options.size, fov_y_deg: options.fov_y_deg, parallel: false };
+        let lens = Lens { size: options.size, fov_y_deg: options.fov_y_deg, parallel: false, covered: 0.0 };
         Self {
             lens,
             up: nearest(options.up),
@@ -109,10 +111,10 @@ impl State {
 
     /// Looks at the scene of a load from the front; or at all of what was a sketch as at that, and so at what is loaded again.
     pub fn show(&mut self, scene: Arc<Scene>, (method, mut source): (Method, Source), of: Of) {
-        let framed = |scene: &Scene| Orbit::framing(&scene.bounds(), self.up, &self.lens);
-        let (orbit, coarser, given) = (framed(&scene), Vec::new(), None);
-        let left = self.left.take().map(|(method, settings, changed)| {
-            source.change_to(changed);
+        let framed = Orbit::framing(&scene.bounds(), self.up, &self.lens);
+        let (coarser, given) = (Vec::new(), None);
+        let left = self.left.take().map(|(method, settings, wish)| {
+            source.change_as(&wish);
             (method, settings)
         });
         let known = left.or(self.remembered.take_if(|known| suits(&scene, &known.1)));
@@ -122,14 +124,14 @@ impl State {
         }
         self.shown = Some(match self.shown.take() {
             Some(sketch) if sketch.of == of.sketch_of() => {
-                let moved = sketch.given.is_some() || sketch.orbit != framed(&sketch.scene);
-                let orbit = if moved { sketch.orbit } else { orbit };
-                source.change_as(&sketch.source);
+                let moved = sketch.given.is_some() || sketch.orbit != sketch.framed;
+                let orbit = if moved { sketch.orbit } else { framed };
+                source.change_as(&sketch.source.wish());
                 let (method, settings) = sketch.seen_by(&scene, (method, settings));
-                Shown { scene, source, of, orbit, coarser, before: None, method, settings, ..sketch }
+                Shown { scene, source, of, orbit, framed, coarser, before: None, method, settings, ..sketch }
             }
             Some(shown) if of.again && !shown.of.sketch => {
-                source.change_as(&shown.source);
+                source.change_as(&shown.source.wish());
                 let (method, settings) = shown.seen_by(&scene, (method, settings));
                 Shown { scene, source, of, coarser, method, settings, ..shown }
             }
@@ -137,7 +139,7 @@ impl State {
                 // Of one that is not whole there was something before.
                 let whole = |shown: Shown| if shown.of.sketch { shown.before } else { Some(Box::new(shown)) };
                 let before = before.filter(|_| of.sketch).and_then(whole);
-                Shown { scene, source, of, coarser, before, orbit, given, method, settings }
+                Shown { scene, source, of, coarser, before, orbit: framed, framed, given, method, settings }
             }
         });
     }
@@ -178,15 +180,22 @@ impl State {
     pub fn leave(&mut self, same: bool) -> Option<Pose> {
         let pose = self.pose().filter(|_| same);
         let left = self.shown.take().filter(|_| same);
-        let left = left.map(|shown| (shown.method, shown.settings, shown.source.changed));
+        let left = left.map(|shown| (shown.method, shown.settings, shown.source.wish()));
         self.left = left.or(self.left.take());
         pose
     }
 
-    /// Looks from where this camera does.
+    /// Looks from where this camera does, and turns about its target; or, of a camera that looks past the scene as it is framed beside a panel,
+    /// about what is in the middle there.
     pub fn look_from(&mut self, pose: Pose) {
         let Self { shown: Some(shown), lens, .. } = self else { return };
-        shown.orbit = Orbit::of(&pose, shown.orbit.up(), lens);
+        let mut orbit = Orbit::of(&pose, shown.orbit.up(), lens);
+        let (beside, centre) =
+            (orbit.point(lens.middle(), orbit.distance(), lens), shown.scene.bounds().centre());
+        if beside.distance(centre) < orbit.pivot.distance(centre) {
+            orbit.set_pivot(beside, lens);
+        }
+        shown.orbit = orbit;
         shown.given = Some((shown.orbit, *lens, pose));
     }
 
@@ -320,11 +329,11 @@ impl State {
             }
             Action::Parallel => self.lens.parallel = !self.lens.parallel,
             Action::Frame => shown.orbit.frame(&shown.scene.bounds(), &self.lens),
-            Action::Side(side) => shown.orbit.side(side),
+            Action::Side(side) => shown.orbit.side(side, &self.lens),
             Action::Up(up) => {
                 let down = shown.orbit.up() == up.vector();
                 self.up = Up { down, ..up };
-                shown.orbit.set_up(self.up);
+                shown.orbit.set_up(self.up, &self.lens);
             }
         }
     }
@@ -377,7 +386,7 @@ impl Shown {
     /// The camera that the hands were given, until they move it.
     fn given(&self, lens: &Lens) -> Option<Pose> {
         let still = |(orbit, was, _): &(Orbit, Lens, Pose)| {
-            *orbit == self.orbit && Lens { size: was.size, ..*lens } == *was
+            *orbit == self.orbit && Lens { size: was.size, covered: was.covered, ..*lens } == *was
         };
         self.given.filter(still).map(|(.., pose)| pose)
     }
@@ -471,7 +480,8 @@ mod tests {
         state.show(scene(10), made(), of(2, true));
         let eye = |state: &mut State| state.moving().unwrap().0.eye;
         // Who has turned the sketch sees the whole scene from there.
-        state.moving().unwrap().0.side(super::super::orbit::Side::Top);
+        let (orbit, lens, _) = state.moving().unwrap();
+        orbit.side(super::super::orbit::Side::Top, lens);
         let above = eye(&mut state);
         state.show(scene(100), made(), of(2, false));
         assert_eq!((shown(&state), state.is_sketch(), eye(&mut state)), (Some(100), false, above));

@@ -5,17 +5,20 @@ use super::events::{Event, Events, Shown};
 use super::hands::Hands;
 use super::hud::Hud;
 use super::keep::Shot;
-use super::pace::{Pace, Quality};
+use super::pace::{Frame, Pace, Quality};
 use super::panels::Told;
 use super::screen::{Pick, Screen};
 use super::state::State;
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 use surfel::vk::{Device, Presenter};
 use surfel::{Error, Result, Scene, Settings};
 use winit::dpi::PhysicalSize;
 use winit::event_loop::ActiveEventLoop;
 use winit::window::Window;
+
+/// When a window that could not be drawn to is tried again: not every one tells that it can be.
+const AGAIN: Duration = Duration::from_millis(50);
 
 /// An open window.
 pub struct Opened {
@@ -47,7 +50,7 @@ impl Opened {
     pub fn of(window: Arc<Window>, options: &Options) -> Result<(Self, Arc<Device>)> {
         let (device, surface) = Device::open_for(&options.device, window.clone())?;
         let presenter = Presenter::new(&device, surface)?;
-        let screen = Screen::new(&device, options.rasterizer)?;
+        let screen = Screen::new(&presenter, options.rasterizer)?;
         let hud = Hud::new(&device, &window, presenter.overlay())?;
         let pace = Pace::new(options.budget);
         Ok((Self { presenter, hud, screen, pace, last: None, look: None, window }, device))
@@ -105,22 +108,19 @@ impl Opened {
         if drawn {
             told.frame = ms;
             if let Some(sight) = &sight {
-                self.pace.took(quality, sight, ms, moving);
+                self.pace.took(quality, sight, Frame { ms, moving, made: self.screen.made() });
             }
         }
-        if let (true, Some((camera, [method, shading]))) = (shown, state.pose().zip(state.names())) {
-            events.tell(&Event::Picture(Shown {
-                method,
-                shading,
-                size: state.lens.size,
-                side: quality.side,
-                surfels: told.surfels as u64,
-                sketch: state.is_sketch(),
-                moving,
-                drawn,
-                took_ms: ms,
-                camera: camera.into(),
-            }));
+        let behind = self.presenter.is_behind();
+        if let Some(picture) = picture(state, told, [moving, drawn], ms).filter(|_| shown && !behind) {
+            events.tell(&Event::Picture(picture));
+        }
+        let flies = hands.flight().is_some();
+        self.last = flies.then_some(start);
+        if behind {
+            // A window without an extent tells when it has one again.
+            let PhysicalSize { width, height } = self.window.inner_size();
+            return Ok((width > 0 && height > 0).then(|| Instant::now() + AGAIN));
         }
         if told.times.is_open() {
             self.measure(told)?;
@@ -128,8 +128,6 @@ impl Opened {
         if state.pick.is_some() {
             self.pick(state)?;
         }
-        let flies = hands.flight().is_some();
-        self.last = flies.then_some(start);
         if again || flies || state.pick.is_some() {
             self.window.request_redraw();
         }
@@ -144,7 +142,7 @@ impl Opened {
 
     /// Takes what the last frame, which is over, tells, and shows it.
     fn measure(&mut self, told: &mut Told) -> Result<()> {
-        if told.times.push(self.screen.reports()?) {
+        if told.times.push(self.screen.reports(&self.presenter)?) {
             self.window.request_redraw();
         }
         Ok(())
@@ -186,8 +184,7 @@ impl Opened {
     /// Turns about what is under the cursor from now on, if something is.
     fn pick(&mut self, state: &mut State) -> Result<()> {
         let Some(at) = state.pick.take() else { return Ok(()) };
-        self.presenter.wait()?;
-        let depth = self.screen.pick(Pick { at, size: state.lens.size });
+        let depth = self.screen.pick(Pick { at, size: state.lens.size }, &self.presenter)?;
         if let (Some(depth), Some(seen)) = (depth, state.frame(0).transpose()?) {
             let distance = seen.1.distance(depth)?;
             state.set_pivot(at, distance);
@@ -195,4 +192,21 @@ impl Opened {
         }
         Ok(())
     }
+}
+
+/// What a picture tells, whether the hands moved, and whether it was drawn anew.
+fn picture<'a>(state: &State, told: &Told, [moving, drawn]: [bool; 2], took_ms: f64) -> Option<Shown<'a>> {
+    let (camera, [method, shading]) = state.pose().zip(state.names())?;
+    Some(Shown {
+        method,
+        shading,
+        size: state.lens.size,
+        side: told.side,
+        surfels: told.surfels as u64,
+        sketch: state.is_sketch(),
+        moving,
+        drawn,
+        took_ms,
+        camera: camera.into(),
+    })
 }

@@ -89,6 +89,9 @@ impl Access {
     /// Copied to, or filled.
     pub const COPY_WRITE: Self =
         Self::buffer(vk::PipelineStageFlags::TRANSFER, vk::AccessFlags::TRANSFER_WRITE, true);
+    /// The same of an image, its old contents dropped.
+    #[cfg(feature = "window")]
+    pub const SCALE_WRITE: Self = Self { layout: vk::ImageLayout::TRANSFER_DST_OPTIMAL, ..Self::COPY_WRITE };
     /// Read by whatever shader.
     pub const SHADER_READ: Self = Self::buffer(SHADER_STAGES, vk::AccessFlags::SHADER_READ, false);
     /// Read as uniforms by whatever shader.

@@ -1,6 +1,6 @@
 //! A picture of what a window shows, panels and all, for the CPU.
 
-use super::presenter::Presented;
+use super::presenter::Target;
 use super::slot::Slot;
 use super::{Buffer, Device, Image, ImageUse, overlay::Overlay};
 use crate::error::Result;
@@ -31,9 +31,8 @@ impl Capture {
     }
 
     /// What the frame records into.
-    pub(super) fn target(&self, overlay: &Overlay, cmd: vk::CommandBuffer) -> Presented {
-        let (image, size) = (self.image.raw, self.image.size());
-        Presented { cmd, image, framebuffer: self.framebuffer, overlay: overlay.raw, size }
+    pub(super) fn target(&self) -> Target {
+        Target { image: self.image.raw, framebuffer: self.framebuffer, size: self.image.size() }
     }
 
     /// Records the copy, when the frame is drawn.

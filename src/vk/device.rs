@@ -273,7 +273,7 @@ impl Device {
     }
 
     /// Waits until the GPU has nothing left to do: for the queue, too, while others submit to it.
-    pub(super) fn wait_idle(&self) -> Result<()> {
+    pub fn wait_idle(&self) -> Result<()> {
         let (queue, _) = self.queue()?;
         let _locked = queue.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         // SAFETY: the device's only queue is locked.

@@ -140,6 +140,12 @@ impl<'a> Encoder<'a> {
     /// The same of the columns between two parts of the width, from 0 to 1.
     #[cfg(feature = "window")]
     pub fn show_part(&mut self, image: &Image, window: &super::Presented, columns: [f64; 2]) {
+        self.scale(image, (window.image, window.size), columns);
+    }
+
+    /// Copies columns of `image`, scaled, over those of another image, of so many px, in the layout in which copies write it.
+    #[cfg(feature = "window")]
+    pub(super) fn scale(&mut self, image: &Image, (to, size): (vk::Image, [u32; 2]), columns: [f64; 2]) {
         let layers = vk::ImageSubresourceLayers {
             aspect_mask: vk::ImageAspectFlags::COLOR,
             layer_count: 1,
@@ -149,7 +155,7 @@ impl<'a> Encoder<'a> {
             let [from, to] = columns.map(|part| (part.clamp(0.0, 1.0) * f64::from(size[0])).round() as i32);
             [vk::Offset3D { x: from, y: 0, z: 0 }, vk::Offset3D { x: to, y: size[1] as i32, z: 1 }]
         };
-        let [source, target] = [image.size(), window.size].map(corners);
+        let [source, target] = [image.size(), size].map(corners);
         if [source, target].iter().any(|[from, to]| from.x >= to.x) {
             return;
         }
@@ -159,13 +165,13 @@ impl<'a> Encoder<'a> {
             .dst_subresource(layers)
             .dst_offsets(target);
         // Pixels of the same size are copied as they are.
-        let filter = if image.size() == window.size { vk::Filter::NEAREST } else { vk::Filter::LINEAR };
+        let filter = if image.size() == size { vk::Filter::NEAREST } else { vk::Filter::LINEAR };
         use vk::ImageLayout as Layout;
-        let [from, to] = [Layout::TRANSFER_SRC_OPTIMAL, Layout::TRANSFER_DST_OPTIMAL];
-        // SAFETY: recorded outside a render pass; the pass's uses brought the image into this layout, and the window's is in its own.
+        let layouts = [Layout::TRANSFER_SRC_OPTIMAL, Layout::TRANSFER_DST_OPTIMAL];
+        // SAFETY: recorded outside a render pass; the pass's uses brought the image into this layout, and the other is in its own.
         unsafe {
             let raw = &self.device.raw;
-            raw.cmd_blit_image(self.cmd, image.raw, from, window.image, to, &[region], filter);
+            raw.cmd_blit_image(self.cmd, image.raw, layouts[0], to, layouts[1], &[region], filter);
         }
     }
 }

@@ -10,6 +10,8 @@ mod buffer;
 #[cfg(feature = "window")]
 mod capture;
 mod choose;
+#[cfg(feature = "window")]
+mod command_pool;
 mod commands;
 mod descriptors;
 mod device;
@@ -41,6 +43,8 @@ mod validation;
 pub use access::{Access, Use};
 pub use buffer::Buffer;
 pub use choose::{DeviceDescription, describe_devices, preferred};
+#[cfg(feature = "window")]
+pub use command_pool::CommandPool;
 pub use commands::Commands;
 pub use descriptors::{Binding, DescriptorSet, HostDepth, SetLayout, input_layout};
 pub use device::{Device, DeviceOptions, Lent, Usage};

@@ -1,9 +1,16 @@
 //! Frames to a window: a swapchain that follows the window, and two frames under way.
 
-use super::{Device, Surface, capture::Capture, overlay::Overlay, slot::Slot, swapchain::Swapchain};
+use super::{
+    Access, Commands, Device, Image, ImageUse, Recorder, Surface, capture::Capture, overlay::Overlay,
+    slot::Slot, swapchain::Swapchain,
+};
 use crate::error::{Error, Result};
 use ash::{khr, vk};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// How often in a row a window may refuse a swapchain that it should be able to have: it may have changed since it was asked.
+const REFUSALS: u32 = 100;
 
 /// How many frames may be under way.
 pub const FRAMES_IN_FLIGHT: u32 = 2;
@@ -16,6 +23,13 @@ pub struct Presenter {
     slots: Vec<Slot>,
     /// Number of the slot that is next.
     next: usize,
+    /// Which one it is, and how many frames there were.
+    number: u64,
+    frames: u64,
+    /// Whether the last frame did not come to the window.
+    behind: bool,
+    /// How often in a row the window has refused a swapchain.
+    refused: u32,
     swapchains: khr::swapchain::Device,
     format: vk::SurfaceFormatKHR,
     modes: Vec<vk::PresentModeKHR>,
@@ -23,17 +37,62 @@ pub struct Presenter {
     device: Arc<Device>,
 }
 
-/// A frame that is being recorded.
-#[derive(Clone, Copy, Debug)]
+/// A frame that is being recorded, which goes to the queue after all that were before it. It is there for as long as that takes.
 pub struct Presented {
-    /// Is being recorded.
+    /// Is being recorded, outside a render pass.
     pub cmd: vk::CommandBuffer,
     /// Of the window, in the layout in which copies write it; to be left in that.
     pub image: vk::Image,
-    pub(super) framebuffer: vk::Framebuffer,
-    pub(super) overlay: vk::RenderPass,
+    framebuffer: vk::Framebuffer,
+    overlay: vk::RenderPass,
     /// Width and height, px.
     pub size: [u32; 2],
+    /// Its number among the frames of its presenter, and that one's own.
+    pub(crate) number: u64,
+    pub(crate) presenter: u64,
+    device: Arc<Device>,
+}
+
+/// What a frame is drawn to.
+pub(super) struct Target {
+    pub(super) image: vk::Image,
+    pub(super) framebuffer: vk::Framebuffer,
+    pub(super) size: [u32; 2],
+}
+
+impl Presented {
+    /// Records passes.
+    pub fn recorder(&self) -> Recorder<'_> {
+        // SAFETY: the presenter submits what is being recorded before what is recorded later, to one queue; nothing else is recorded inside
+        // `over`, which has the frame for itself.
+        unsafe { Recorder::of_host(&self.device, self.cmd) }
+    }
+
+    /// Draws over the picture with `body`, which is given the command buffer inside [`Presenter::overlay`].
+    pub fn over(&mut self, label: &'static str, body: impl FnOnce(vk::CommandBuffer)) {
+        let [width, height] = self.size;
+        let info = vk::RenderPassBeginInfo::default()
+            .render_pass(self.overlay)
+            .framebuffer(self.framebuffer)
+            .render_area(vk::Rect2D {
+                offset: vk::Offset2D::default(),
+                extent: vk::Extent2D { width, height },
+            });
+        // SAFETY: the command buffer is being recorded outside a render pass; begin and end pair.
+        unsafe {
+            self.device.begin_label(self.cmd, label);
+            self.device.raw.cmd_begin_render_pass(self.cmd, &info, vk::SubpassContents::INLINE);
+            body(self.cmd);
+            self.device.raw.cmd_end_render_pass(self.cmd);
+            self.device.end_label(self.cmd);
+        }
+    }
+}
+
+/// A number that no other presenter has.
+fn next_number() -> u64 {
+    static NEXT: AtomicU64 = AtomicU64::new(0);
+    NEXT.fetch_add(1, Ordering::Relaxed)
 }
 
 impl Presenter {
@@ -65,6 +124,10 @@ impl Presenter {
             overlay,
             slots,
             next: 0,
+            number: next_number(),
+            frames: 0,
+            behind: false,
+            refused: 0,
             swapchains,
             format,
             modes,
@@ -73,7 +136,17 @@ impl Presenter {
         })
     }
 
-    /// The render pass in which [`Recorder::over`](super::Recorder::over) draws, of one colour attachment, whose format encodes sRGB.
+    /// The device that presents.
+    pub fn device(&self) -> &Arc<Device> {
+        &self.device
+    }
+
+    /// Which one it is: no other has this number.
+    pub(crate) fn number(&self) -> u64 {
+        self.number
+    }
+
+    /// The render pass in which [`Presented::over`] draws, of one colour attachment, whose format encodes sRGB.
     pub fn overlay(&self) -> vk::RenderPass {
         self.overlay.raw
     }
@@ -85,6 +158,28 @@ impl Presenter {
         }
     }
 
+    /// Scales pictures of `format` to the window's once in each way that drivers tell apart, some by whether sides are powers of two: what they
+    /// compile for it as it is first done is there when it is needed.
+    pub fn rehearse(&self, format: vk::Format) -> Result<()> {
+        let target = |format, size, also| Image::target(&self.device, "rehearsed", format, size, also);
+        let to = target(self.format.format, [5, 5], ImageUse::Window)?;
+        let sizes = [[3, 3], [4, 3], [3, 4], [4, 4]];
+        let from: Vec<_> =
+            sizes.into_iter().map(|size| target(format, size, ImageUse::Output)).collect::<Result<_>>()?;
+        Commands::new(&self.device, false)?.run(|rec| {
+            for from in &from {
+                let uses = [from.with(Access::COPY_READ), to.with(Access::SCALE_WRITE)];
+                rec.pass("rehearse", &uses, |enc| enc.scale(from, (to.raw, to.size()), [0.0, 1.0]));
+            }
+        })
+    }
+
+    /// Whether the window does not show the last frame: it has no extent, or has changed meanwhile. Another frame may come to it later, of which
+    /// not every window tells.
+    pub fn is_behind(&self) -> bool {
+        self.behind
+    }
+
     /// Records a frame with `record` and presents it, in a window of `size` px; `None` where there is none to be seen. When it is recorded, the
     /// GPU is done with all but the last [`FRAMES_IN_FLIGHT`] − 1 frames.
     ///
@@ -92,20 +187,40 @@ impl Presenter {
     pub fn present<R>(
         &mut self,
         size: [u32; 2],
-        record: impl FnOnce(&Presented) -> Result<R>,
+        record: impl FnOnce(&mut Presented) -> Result<R>,
     ) -> Result<Option<R>> {
+        self.behind = true;
         let Some(index) = self.acquire(size)? else { return Ok(None) };
+        let Some(target) = self.swapchain.as_ref().map(|swapchain| swapchain.target(index)) else {
+            return Ok(None);
+        };
+        let image = target.image;
+        let frame = self.frame(target);
         let Some(swapchain) = &mut self.swapchain else { return Ok(None) };
         let slot = &self.slots[self.next];
-        let target = swapchain.target(index, self.overlay.raw, slot.cmd);
         use vk::ImageLayout as Layout;
-        let recorded = slot.record(&target, record, |slot| {
-            slot.transition(target.image, [Layout::TRANSFER_DST_OPTIMAL, Layout::PRESENT_SRC_KHR]);
+        let recorded = slot.record(frame, record, |slot| {
+            slot.transition(image, [Layout::TRANSFER_DST_OPTIMAL, Layout::PRESENT_SRC_KHR]);
         });
         slot.submit(Some(swapchain.drawn(index)))?;
         self.next = (self.next + 1) % self.slots.len();
-        swapchain.present(&self.device, index)?;
+        self.behind = !swapchain.present(&self.device, index)?;
         recorded.map(Some)
+    }
+
+    /// The next frame, of the next slot.
+    fn frame(&mut self, Target { image, framebuffer, size }: Target) -> Presented {
+        self.frames += 1;
+        Presented {
+            cmd: self.slots[self.next].cmd,
+            image,
+            framebuffer,
+            overlay: self.overlay.raw,
+            size,
+            number: self.frames,
+            presenter: self.number,
+            device: self.device.clone(),
+        }
     }
 
     /// The next image of a swapchain that fits the window, once the next slot is free; `None` where there is none to be seen.
@@ -130,13 +245,13 @@ impl Presenter {
     pub fn capture(
         &mut self,
         size: [u32; 2],
-        record: impl FnOnce(&Presented) -> Result<()>,
+        record: impl FnOnce(&mut Presented) -> Result<()>,
     ) -> Result<Vec<[u8; 4]>> {
         self.wait()?;
         let capture = Capture::new(&self.device, &self.overlay, self.format.format, size)?;
+        let frame = self.frame(capture.target());
         let slot = &self.slots[self.next];
-        let recorded =
-            slot.record(&capture.target(&self.overlay, slot.cmd), record, |slot| capture.end(slot));
+        let recorded = slot.record(frame, record, |slot| capture.end(slot));
         slot.submit(None)?;
         slot.wait()?;
         recorded.map(|()| capture.pixels())
@@ -147,7 +262,8 @@ impl Presenter {
         self.slots.iter().try_for_each(Slot::wait)
     }
 
-    /// Waits for every frame, and makes a swapchain of this size in the place of the one that there is.
+    /// Waits for every frame, and makes a swapchain of this size in the place of the one that there is; none where the window has no extent, or
+    /// is another than it just was.
     fn remake(&mut self, size: [u32; 2]) -> Result<()> {
         self.wait()?;
         // Presented images may be waited for by the queue yet.
@@ -155,7 +271,10 @@ impl Presenter {
         let old = self.swapchain.take();
         let how = (&self.surface, self.format, self.mode());
         let window = (&self.swapchains, &self.overlay);
-        self.swapchain = Swapchain::new(&self.device, window, how, size, old)?;
+        let made = Swapchain::new(&self.device, window, how, size, old);
+        let refused = made.as_ref().is_err_and(Swapchain::is_refusal);
+        self.refused = if refused { self.refused + 1 } else { 0 };
+        self.swapchain = if refused && self.refused < REFUSALS { None } else { made? };
         Ok(())
     }
 

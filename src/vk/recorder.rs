@@ -83,25 +83,6 @@ impl<'a> Recorder<'a> {
         self.barrier(&all(Access::UNIFORM_READ));
     }
 
-    /// Draws over a window's picture with `body`, inside [`Presenter::overlay`](super::Presenter::overlay).
-    #[cfg(feature = "window")]
-    pub fn over(&mut self, label: &'static str, window: &super::Presented, body: impl FnOnce()) {
-        let [width, height] = window.size;
-        let extent = vk::Extent2D { width, height };
-        let info = vk::RenderPassBeginInfo::default()
-            .render_pass(window.overlay)
-            .framebuffer(window.framebuffer)
-            .render_area(vk::Rect2D { offset: vk::Offset2D::default(), extent });
-        // SAFETY: the command buffer is being recorded outside a render pass; begin and end pair.
-        unsafe {
-            self.device.begin_label(self.cmd, label);
-            self.device.raw.cmd_begin_render_pass(self.cmd, &info, vk::SubpassContents::INLINE);
-            body();
-            self.device.raw.cmd_end_render_pass(self.cmd);
-            self.device.end_label(self.cmd);
-        }
-    }
-
     /// Says how an earlier frame left these: images keep what is in them, unless they are written.
     pub fn left(&mut self, uses: &[Use]) {
         self.tracker.left(uses);

@@ -54,14 +54,14 @@ impl Slot {
     /// waited for.
     pub(super) fn record<R>(
         &self,
-        target: &Presented,
-        body: impl FnOnce(&Presented) -> Result<R>,
+        mut frame: Presented,
+        body: impl FnOnce(&mut Presented) -> Result<R>,
         end: impl FnOnce(&Self),
     ) -> Result<R> {
-        self.begin(target.image)?;
-        let recorded = body(target);
+        self.begin(frame.image)?;
+        let recorded = body(&mut frame);
         if recorded.is_err() {
-            self.begin(target.image)?;
+            self.begin(frame.image)?;
         }
         end(self);
         // SAFETY: it is being recorded.

@@ -1,10 +1,12 @@
 //! A swapchain: the images of a window, of one size.
 
-use super::presenter::Presented;
+use super::presenter::Target;
 use super::{Device, Surface, overlay::Overlay};
 use crate::error::{Error, Result};
 use ash::{khr, vk};
 use std::sync::Arc;
+
+const CREATE: &str = "vkCreateSwapchainKHR";
 
 /// The images of a window.
 pub(super) struct Swapchain {
@@ -61,8 +63,7 @@ impl Swapchain {
             .clipped(true)
             .old_swapchain(old.as_ref().map_or(vk::SwapchainKHR::null(), |old| old.raw));
         // SAFETY: the surface can do what is asked for, and has no other swapchain than the one that is replaced.
-        let raw =
-            unsafe { loader.create_swapchain(&info, None) }.map_err(Error::vulkan("vkCreateSwapchainKHR"))?;
+        let raw = unsafe { loader.create_swapchain(&info, None) }.map_err(Error::vulkan(CREATE))?;
         drop(old);
         let mut made = Self {
             raw,
@@ -79,6 +80,12 @@ impl Swapchain {
             made.add(image, format.format, overlay)?;
         }
         Ok(Some(made))
+    }
+
+    /// Whether a window that has changed since it was asked may be what a swapchain could not be made for.
+    pub(super) fn is_refusal(error: &Error) -> bool {
+        let results = [vk::Result::ERROR_INITIALIZATION_FAILED, vk::Result::ERROR_OUT_OF_DATE_KHR];
+        matches!(error, Error::Vulkan { call: CREATE, result } if results.contains(result))
     }
 
     fn add(&mut self, image: vk::Image, format: vk::Format, overlay: &Overlay) -> Result<()> {
@@ -127,9 +134,9 @@ impl Swapchain {
     }
 
     /// What a frame records into.
-    pub(super) fn target(&self, index: usize, overlay: vk::RenderPass, cmd: vk::CommandBuffer) -> Presented {
+    pub(super) fn target(&self, index: usize) -> Target {
         let Shown { image, framebuffer, .. } = self.images[index];
-        Presented { cmd, image, framebuffer, overlay, size: self.size }
+        Target { image, framebuffer, size: self.size }
     }
 
     /// Signalled when the image is drawn.
@@ -137,8 +144,8 @@ impl Swapchain {
         self.images[index].drawn
     }
 
-    /// Presents an image when it is drawn.
-    pub(super) fn present(&mut self, device: &Device, index: usize) -> Result<()> {
+    /// Presents an image when it is drawn; whether the window shows it then.
+    pub(super) fn present(&mut self, device: &Device, index: usize) -> Result<bool> {
         let (chains, waits, indices) = ([self.raw], [self.drawn(index)], [index as u32]);
         let info =
             vk::PresentInfoKHR::default().swapchains(&chains).wait_semaphores(&waits).image_indices(&indices);
@@ -146,11 +153,16 @@ impl Swapchain {
         let queue = queue.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         // SAFETY: the image was acquired, and what signals the semaphore is submitted; the queue is locked.
         match unsafe { self.loader.queue_present(*queue, &info) } {
-            Ok(suboptimal) => self.stale |= suboptimal,
-            Err(vk::Result::ERROR_OUT_OF_DATE_KHR) => self.stale = true,
-            Err(result) => return Err(Error::Vulkan { call: "vkQueuePresentKHR", result }),
+            Ok(suboptimal) => {
+                self.stale |= suboptimal;
+                Ok(true)
+            }
+            Err(vk::Result::ERROR_OUT_OF_DATE_KHR) => {
+                self.stale = true;
+                Ok(false)
+            }
+            Err(result) => Err(Error::Vulkan { call: "vkQueuePresentKHR", result }),
         }
-        Ok(())
     }
 }
 

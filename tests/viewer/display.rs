@@ -30,6 +30,7 @@ pub mod key {
     pub const F12: u32 = 0xffc9;
     pub const SHIFT: u32 = 0xffe1;
     pub const CONTROL: u32 = 0xffe3;
+    pub const ALT: u32 = 0xffe9;
 }
 
 impl Display {
@@ -87,6 +88,21 @@ impl Display {
         let keys: Vec<_> = held.iter().chain([&symbol]).map(|symbol| self.code(*symbol)).collect();
         keys.iter().for_each(|code| self.fake(xproto::KEY_PRESS_EVENT, *code, [0; 2]));
         keys.iter().rev().for_each(|code| self.fake(xproto::KEY_RELEASE_EVENT, *code, [0; 2]));
+    }
+
+    /// Presses a key, or lets it go.
+    pub fn hold(&self, symbol: u32, down: bool) {
+        let kind = if down { xproto::KEY_PRESS_EVENT } else { xproto::KEY_RELEASE_EVENT };
+        self.fake(kind, self.code(symbol), [0; 2]);
+    }
+
+    /// Exchanges two letters of the keyboard, for programs that begin after that.
+    pub fn exchange(&self, letters: [char; 2]) {
+        let keys = letters.map(|letter| self.code(letter.into()));
+        for (key, letter) in keys.into_iter().zip([letters[1], letters[0]]) {
+            let symbols = [letter, letter.to_ascii_uppercase()].map(u32::from);
+            self.x.change_keyboard_mapping(1, key, 2, &symbols).unwrap().check().unwrap();
+        }
     }
 
     /// Types a text of a US keyboard.

@@ -1,8 +1,10 @@
 /* A Vulkan layer that makes faults: it loses the first LOST_DEVICES devices, each after LOST_AFTER frames, and says of every
    STALE_EVERYth image that is acquired or presented that its swapchain is out of date, or suboptimal. With BLIND no device presents.
-   Works on one device at a time. */
+   While there is a file HIDDEN, windows have no extent, and while there is a file REFUSED, they get no swapchains, as one that has changed just
+   now; such a file grows by a byte each time. Works on one device at a time. */
 
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -144,6 +146,33 @@ static int32_t presents(void *physical, uint32_t family, uint64_t surface, uint3
   return result;
 }
 
+/* Whether there is the file that a variable names, which then grows. */
+static int is_there(const char *variable) {
+  const char *path = getenv(variable);
+  FILE *file = path ? fopen(path, "r+") : NULL;
+  if (!file) return 0;
+  fseek(file, 0, SEEK_END);
+  fputc('.', file);
+  fclose(file);
+  return 1;
+}
+
+/* VkSurfaceCapabilitiesKHR begins with the least and the greatest number of images, and the present, least and greatest extent. */
+static int32_t capabilities(void *physical, uint64_t surface, uint32_t *can) {
+  int32_t (*next)(void *, uint64_t, uint32_t *) =
+      (void *)next_instance(instance, "vkGetPhysicalDeviceSurfaceCapabilitiesKHR");
+  int32_t result = next(physical, surface, can);
+  if (is_there("HIDDEN")) memset(can + 2, 0, 6 * sizeof *can);
+  return result;
+}
+
+static int32_t create_swapchain(void *of, const void *create, const void *allocator, uint64_t *made) {
+  static int refused;
+  if (is_there("REFUSED")) return refused++ % 2 ? ERROR_OUT_OF_DATE : ERROR_INITIALIZATION_FAILED;
+  int32_t (*next)(void *, const void *, const void *, uint64_t *) = (void *)next_device(device, "vkCreateSwapchainKHR");
+  return next(of, create, allocator, made);
+}
+
 Function faults_instance_proc(void *of, const char *name);
 Function faults_device_proc(void *of, const char *name);
 
@@ -154,6 +183,8 @@ static Function own(const char *name) {
     {"vkQueueSubmit", (Function)submit},                     {"vkWaitForFences", (Function)wait_for_fences},
     {"vkAcquireNextImageKHR", (Function)acquire},            {"vkQueuePresentKHR", (Function)present},
     {"vkGetPhysicalDeviceSurfaceSupportKHR", (Function)presents},
+    {"vkGetPhysicalDeviceSurfaceCapabilitiesKHR", (Function)capabilities},
+    {"vkCreateSwapchainKHR", (Function)create_swapchain},
     {"vkDeviceWaitIdle", (Function)wait_idle},               {"vkQueueWaitIdle", (Function)queue_wait_idle},
   };
   for (size_t i = 0; i < sizeof all / sizeof *all; i++)

@@ -1,9 +1,14 @@
 //! What a driver may do at any time: lose the device, find the swapchain out of date. A layer of Vulkan between program and driver does it.
 
+use crate::display::PATIENCE;
 use crate::program::{Program, say_skipped};
+use crate::stage;
 use crate::view::{End, View, command};
-use crate::{SPHERE, stage};
-use std::process::{Command, Output};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 
 const MANIFEST: &str = r#"{"file_format_version": "1.0.0", "layer": {"name": "VK_LAYER_SURFEL_faults", "type": "GLOBAL",
     "library_path": "./libfaults.so", "api_version": "1.1.0", "implementation_version": "1", "description": "makes faults",
@@ -13,7 +18,13 @@ const MANIFEST: &str = r#"{"file_format_version": "1.0.0", "layer": {"name": "VK
 const CC: [&str; 5] = ["-shared", "-fPIC", "-Wl,-z,nodelete", "-Wall", "-o"];
 
 /// The program under the layer, which these variables tell what to do; `None`, said aloud, where there is no C compiler.
-fn faulty(test: &str, program: &Program, display: &str, faults: &[(&str, &str)]) -> Option<Command> {
+pub fn faulty(
+    test: &str,
+    program: &Program,
+    display: &str,
+    arguments: &str,
+    faults: &[(&str, &str)],
+) -> Option<Command> {
     let source = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/viewer/faults.c");
     let library = program.path("libfaults.so");
     match Command::new("cc").args(CC).arg(&library).arg(source).status() {
@@ -25,7 +36,7 @@ fn faulty(test: &str, program: &Program, display: &str, faults: &[(&str, &str)])
         }
     }
     program.write("faults.json", MANIFEST);
-    let mut command = command(program, display, &format!("{SPHERE} --size 320x240"));
+    let mut command = command(program, display, arguments);
     command
         .env("VK_ADD_LAYER_PATH", program.path("."))
         .env("VK_INSTANCE_LAYERS", "VK_LAYER_SURFEL_faults")
@@ -33,13 +44,14 @@ fn faulty(test: &str, program: &Program, display: &str, faults: &[(&str, &str)])
     Some(command)
 }
 
+const SMALL: &str = "scene:bumpy-sphere?points=5000 --size 320x240";
 const LATER: (&str, &str) = ("LOST_AFTER", "6");
 
 #[test]
 fn a_lost_device_is_replaced_once() {
     let test = "a_lost_device_is_replaced_once";
     let Some((display, program)) = stage(test) else { return };
-    let Some(command) = faulty(test, &program, &display.name, &[("LOST_DEVICES", "1"), LATER]) else {
+    let Some(command) = faulty(test, &program, &display.name, SMALL, &[("LOST_DEVICES", "1"), LATER]) else {
         return;
     };
     let mut view = View::start(&display, command);
@@ -62,7 +74,7 @@ fn a_lost_device_is_replaced_once() {
 fn a_device_that_is_lost_again_ends_the_program() {
     let test = "a_device_that_is_lost_again_ends_the_program";
     let Some((display, program)) = stage(test) else { return };
-    let Some(command) = faulty(test, &program, &display.name, &[("LOST_DEVICES", "9"), LATER]) else {
+    let Some(command) = faulty(test, &program, &display.name, SMALL, &[("LOST_DEVICES", "9"), LATER]) else {
         return;
     };
     let mut view = View::start(&display, command);
@@ -93,24 +105,95 @@ fn lose(view: &mut View) {
 fn a_swapchain_that_is_out_of_date_is_made_anew() {
     let test = "a_swapchain_that_is_out_of_date_is_made_anew";
     let Some((display, program)) = stage(test) else { return };
-    let Some(command) = faulty(test, &program, &display.name, &[("STALE_EVERY", "3")]) else { return };
+    let Some(command) = faulty(test, &program, &display.name, SMALL, &[("STALE_EVERY", "3")]) else { return };
     let mut view = View::start(&display, command);
-    let mut before = view.picture(|_| true);
+    let (mut before, mut late) = (view.picture(|_| true), 0);
     for key in ["1", "2", "3", "4"].iter().cycle().take(24) {
         display.type_text(key);
         before = view.picture(|event| event["camera"] != before["camera"]);
+        late += u32::from(before["drawn"] == false);
     }
+    assert!(
+        late > 0,
+        "some were drawn in a frame that did not come to the window, and were shown by the next one"
+    );
     display.resize(view.window, [200, 100]);
     view.picture(|event| event["size"] == serde_json::json!([200, 100]));
     view.close();
+}
+
+/// What the layer does while there is a file.
+pub struct Fault(PathBuf);
+
+impl Fault {
+    /// The layer begins.
+    pub fn begin(path: &Path) -> Self {
+        fs::write(path, "").unwrap();
+        Self(path.to_owned())
+    }
+
+    /// How often it has done it.
+    fn times(&self) -> u64 {
+        fs::metadata(&self.0).unwrap().len()
+    }
+
+    /// Waits until it has done it so often.
+    pub fn wait(&self, times: u64) {
+        let start = Instant::now();
+        while self.times() < times {
+            assert!(start.elapsed() < PATIENCE, "{}: {} of {times} times", self.0.display(), self.times());
+            sleep(Duration::from_millis(1));
+        }
+    }
+
+    /// And ends.
+    pub fn end(self) {
+        fs::remove_file(self.0).unwrap();
+    }
+}
+
+#[test]
+fn a_window_that_cannot_be_drawn_to_is_tried_now_and_then_and_drawn_when_it_can() {
+    let test = "a_window_that_cannot_be_drawn_to_is_tried_now_and_then_and_drawn_when_it_can";
+    let Some((display, program)) = stage(test) else { return };
+    let paths = ["HIDDEN", "REFUSED"].map(|name| (name, program.path(name)));
+    let faults = paths.each_ref().map(|(name, path)| (*name, path.to_str().unwrap()));
+    let Some(command) = faulty(test, &program, &display.name, SMALL, &faults) else { return };
+    let mut view = View::start(&display, command);
+    view.picture(|_| true);
+    for (i, (_, path)) in paths.iter().cycle().take(4).enumerate() {
+        let size = [200 + 10 * i as u32, 150];
+        let fault = Fault::begin(path);
+        display.resize(view.window, size);
+        // Nobody tells it to try again.
+        fault.wait(3);
+        let (before, start) = (fault.times(), Instant::now());
+        sleep(Duration::from_millis(300));
+        let often = (fault.times() - before) as f64 / start.elapsed().as_secs_f64();
+        assert!(often < 50.0, "tried {often} times a second");
+        fault.end();
+        view.picture(|event| event["size"] == serde_json::json!(size));
+    }
+    view.close();
+}
+
+#[test]
+fn a_window_that_gets_no_swapchain_for_long_ends_the_program() {
+    let test = "a_window_that_gets_no_swapchain_for_long_ends_the_program";
+    let Some((display, program)) = stage(test) else { return };
+    let path = program.path("REFUSED");
+    let faults = [("REFUSED", path.to_str().unwrap())];
+    let Some(command) = faulty(test, &program, &display.name, SMALL, &faults) else { return };
+    let _refused = Fault::begin(&path);
+    let End { code, errors } = View::start(&display, command).end();
+    assert!(code != 0 && errors.contains("vkCreateSwapchainKHR"), "{code} {errors}");
 }
 
 #[test]
 fn a_device_that_does_not_present_is_named() {
     let test = "a_device_that_does_not_present_is_named";
     let Some((display, program)) = stage(test) else { return };
-    let Some(mut command) = faulty(test, &program, &display.name, &[("BLIND", "1")]) else { return };
-    let Output { status, stderr, .. } = command.output().unwrap();
-    let text = String::from_utf8(stderr).unwrap();
-    assert!(status.code() == Some(3) && text.contains("does not present to this window"), "{text}");
+    let Some(command) = faulty(test, &program, &display.name, SMALL, &[("BLIND", "1")]) else { return };
+    let End { code, errors } = View::begin(&display, command).end();
+    assert!(code == 3 && errors.contains("does not present to this window"), "{code} {errors}");
 }

@@ -4,6 +4,7 @@
 mod display;
 mod faults;
 mod keeping;
+mod keys;
 mod others;
 #[allow(dead_code, reason = "what of it other tests use")]
 #[path = "../cli/program.rs"]

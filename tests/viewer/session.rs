@@ -1,9 +1,11 @@
 //! A whole session: what a person does from opening a scan to keeping a picture.
 
 use crate::display::key;
+use crate::faults::{Fault, faulty};
 use crate::program::scan;
 use crate::view::View;
 use crate::{DRAW, SPHERE, stage};
+use std::path::Path;
 use surfel::methods::Method;
 
 #[test]
@@ -22,7 +24,10 @@ fn the_bunny_is_looked_at_and_kept() {
 /// Opens, turns, tries every method, resizes 50 times, drops a broken file, saves camera and picture; that is the headless one, bit for bit.
 fn session(test: &str, input: &str) {
     let Some((display, program)) = stage(test) else { return };
-    let mut view = View::open(&display, &program, &format!("{input} --size 400x300 {DRAW} --quiet"));
+    let (arguments, hidden) = (format!("{input} --size 400x300 {DRAW} --quiet"), program.path("HIDDEN"));
+    let faults = [("HIDDEN", hidden.to_str().unwrap())];
+    let Some(command) = faulty(test, &program, &display.name, &arguments, &faults) else { return };
+    let mut view = View::start(&display, command);
     let first = view.picture(|_| true);
     display.drag(view.window, 1, &[[150, 150], [170, 140], [200, 120]]);
     view.picture(|event| event["camera"] != first["camera"]);
@@ -33,7 +38,7 @@ fn session(test: &str, input: &str) {
         let next = Method::ALL[(start + turn) % Method::ALL.len()].name;
         view.picture(|event| event["method"] == next);
     }
-    resize(&mut view);
+    resize(&mut view, &hidden);
     program
         .write("broken.ply", "ply\nformat binary_little_endian 1.0\nelement vertex 10\nproperty float x\n");
     let broken = program.path("broken.ply").canonicalize().unwrap();
@@ -57,9 +62,11 @@ fn session(test: &str, input: &str) {
     assert!(ours == headless, "not what `{render}` writes");
 }
 
-/// Fifty sizes, each of which comes to be a picture; the smallest that there is among them.
-fn resize(view: &mut View) {
+/// Fifty sizes, each of which comes to be a picture; the smallest that there is among them. On the way to some of them the window has no extent,
+/// while there is the file `hidden`.
+fn resize(view: &mut View, hidden: &Path) {
     for i in 0..50u32 {
+        let none = (i % 10 == 5).then(|| Fault::begin(hidden));
         let size = match i % 10 {
             3 => [1, 1],
             6 => [1, 200 + i],
@@ -67,6 +74,10 @@ fn resize(view: &mut View) {
             _ => [200 + (37 * i) % 300, 150 + (53 * i) % 200],
         };
         view.display.resize(view.window, size);
+        if let Some(none) = none {
+            none.wait(1 + u64::from(i / 10));
+            none.end();
+        }
         view.picture(|event| event["size"] == serde_json::json!(size));
     }
 }

@@ -49,7 +49,16 @@ impl<'a> View<'a> {
     }
 
     /// [`View::open`] of a command.
-    pub fn start(display: &'a Display, mut command: Command) -> Self {
+    pub fn start(display: &'a Display, command: Command) -> Self {
+        let mut view = Self::begin(display, command);
+        view.until("window", |_| true);
+        view.window = display.window("surfel");
+        display.focus(view.window);
+        view
+    }
+
+    /// A command whose window is not waited for: there may be none.
+    pub fn begin(display: &'a Display, mut command: Command) -> Self {
         let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         let (out, mut errors) = (child.stdout.take().unwrap(), child.stderr.take().unwrap());
         let (send, lines) = channel();
@@ -61,11 +70,7 @@ impl<'a> View<'a> {
             let _ = errors.read_to_string(&mut text);
             text
         });
-        let mut view = Self { display, window: 0, child, lines, errors: Some(errors) };
-        view.until("window", |_| true);
-        view.window = display.window("surfel");
-        display.focus(view.window);
-        view
+        Self { display, window: 0, child, lines, errors: Some(errors) }
     }
 
     /// The next event of one of these names that fits.

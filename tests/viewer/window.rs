@@ -1,7 +1,7 @@
 //! The window's life: sizes, sight, displays that are not there, and its end.
 
 use crate::program::{Program, surfels};
-use crate::view::{View, command};
+use crate::view::{End, View, command};
 use crate::{SPHERE, stage};
 use std::process::Output;
 
@@ -55,8 +55,7 @@ fn without_a_display_the_way_out_is_said() {
 #[test]
 fn a_device_that_does_not_serve_is_named() {
     let Some((display, program)) = stage("a_device_that_does_not_serve_is_named") else { return };
-    let Output { status, stderr, .. } =
-        command(&program, &display.name, &format!("{SPHERE} --device none-such")).output().unwrap();
-    let text = String::from_utf8(stderr).unwrap();
-    assert!(status.code() == Some(3) && text.contains("none-such"), "{text}");
+    let command = command(&program, &display.name, &format!("{SPHERE} --device none-such"));
+    let End { code, errors } = View::begin(&display, command).end();
+    assert!(code == 3 && errors.contains("none-such"), "{code} {errors}");
 }

@@ -24,9 +24,11 @@ mod shade;
 #[cfg(test)]
 mod tests;
 mod texture;
+mod watch;
 
 use super::{Frame, Projector};
-use crate::error::Result;
+use crate::Progress;
+use crate::error::{Error, Result};
 use crate::geometry::{Camera, Materials, MipMap, Parts, Surfels};
 use crate::pull_push::{PullPush, Rules};
 use crate::settings::Settings;
@@ -35,6 +37,7 @@ use lens::{Lens, Radii2};
 use margin::Margin;
 use rayon::prelude::*;
 use std::sync::Arc;
+use watch::Watch;
 
 pub use compact::{Compact, Steps};
 pub use margin::Decided;
@@ -123,13 +126,26 @@ impl Level {
 }
 
 impl Decided {
-    /// Makes a level of so many pixels, each by its coordinates.
-    fn new(level: u32, size: [u32; 2], sample: impl Fn([i64; 2], &Margin) -> Option<Sample> + Sync) -> Self {
+    /// Makes a level of so many pixels, each by its coordinates; of no use once the frame is given up.
+    fn new(
+        level: u32,
+        size: [u32; 2],
+        watch: &Watch<'_>,
+        sample: impl Fn([i64; 2], &Margin) -> Option<Sample> + Sync,
+    ) -> Self {
         let width = i64::from(size[0]);
         let count = width * i64::from(size[1]);
         let decide = |i| {
             let margin = Margin::new();
-            (sample([i % width, i / width], &margin), margin.nearest())
+            if watch.is_over() {
+                return (None, margin.nearest());
+            }
+            let [x, y] = [i % width, i / width];
+            let decided = (sample([x, y], &margin), margin.nearest());
+            if x == width - 1 {
+                watch.made(width as u64);
+            }
+            decided
         };
         let (samples, margins) = (0..count).into_par_iter().map(decide).unzip();
         Self { level: Level { level, size, samples }, margins }
@@ -164,7 +180,7 @@ impl Reconstruction {
     /// shine as these say.
     ///
     /// # Errors
-    /// [`Error::Usage`](crate::Error::Usage) if there are more than [`Materials::MOST`].
+    /// [`Error::Usage`] if there are more than [`Materials::MOST`].
     pub fn of<'a>(mut self, parts: impl Into<Parts<'a>>) -> Result<Self> {
         let parts = parts.into();
         self.texture = parts.texture().filter(|_| self.pull_push.rules == Rules::Robust).cloned();
@@ -190,7 +206,11 @@ impl Reconstruction {
 
     /// Pass `project`: level 0 of the pulled pyramid, and what became of the surfels.
     pub fn project<'a>(&self, parts: impl Into<Parts<'a>>) -> Visible {
-        let visible = project::pass(self, parts.into());
+        self.watched_project(parts.into(), &())
+    }
+
+    fn watched_project(&self, parts: Parts<'_>, progress: &dyn Progress) -> Visible {
+        let visible = project::pass(self, parts, progress);
         Visible { level: self.stored(visible.level), ..visible }
     }
 
@@ -207,9 +227,13 @@ impl Reconstruction {
 
     /// The same with how near its decisions were.
     pub fn decide_pull(&self, finer: &Level) -> Decided {
+        self.watched_pull(finer, &Watch::nobody())
+    }
+
+    fn watched_pull(&self, finer: &Level, watch: &Watch<'_>) -> Decided {
         let made = match self.pull_push.rules {
-            Rules::Paper => paper::pull(&self.lens, finer),
-            Rules::Robust => pull::pass(&self.lens, finer),
+            Rules::Paper => paper::pull(&self.lens, finer, watch),
+            Rules::Robust => pull::pass(&self.lens, finer, watch),
         };
         Decided { level: self.stored(made.level), ..made }
     }
@@ -221,9 +245,13 @@ impl Reconstruction {
 
     /// The same with how near its decisions were.
     pub fn decide_push(&self, coarser: &Level, pulled: &Level) -> Decided {
+        self.watched_push(coarser, pulled, &Watch::nobody())
+    }
+
+    fn watched_push(&self, coarser: &Level, pulled: &Level, watch: &Watch<'_>) -> Decided {
         let made = match self.pull_push.rules {
-            Rules::Paper => paper::push(&self.lens, coarser, pulled),
-            Rules::Robust => push::pass(&self.lens, coarser, pulled),
+            Rules::Paper => paper::push(&self.lens, coarser, pulled, watch),
+            Rules::Robust => push::pass(&self.lens, coarser, pulled, watch),
         };
         Decided { level: self.stored(made.level), ..made }
     }
@@ -243,7 +271,7 @@ impl Reconstruction {
 
     /// Pass `shade`: the picture, from the final level 0.
     pub fn shade(&self, pushed: &Level) -> Frame {
-        shade::pass(self, pushed)
+        shade::pass(self, pushed, &Watch::nobody())
     }
 
     /// The level above which coarser ones change nothing.
@@ -258,36 +286,59 @@ impl Reconstruction {
 
     /// Both pyramids, up to the level `top`.
     pub fn pyramid(&self, finest: Level, top: u32) -> Pyramid {
+        self.watched_pyramid(finest, top, &Watch::nobody())
+    }
+
+    fn watched_pyramid(&self, finest: Level, top: u32, watch: &Watch<'_>) -> Pyramid {
         let mut pulled = vec![finest];
         while pulled.len() <= top as usize {
-            pulled.push(self.pull(&pulled[pulled.len() - 1]));
+            pulled.push(self.watched_pull(&pulled[pulled.len() - 1], watch).level);
         }
         // What is known of the coarsest level is final.
         let mut pushed = vec![pulled[pulled.len() - 1].clone()];
         for level in pulled.iter().rev().skip(1) {
-            pushed.push(self.push(&pushed[pushed.len() - 1], level));
+            pushed.push(self.watched_push(&pushed[pushed.len() - 1], level, watch).level);
         }
         pushed.reverse();
         Pyramid { pulled, pushed }
     }
 }
 
-/// Renders `parts` as `camera` sees them, `size` = width and height in px; fails as [`Projector::new`] and [`Parts::check`].
+/// Pixels that are made above level 0: of each level up to `top` one is pulled, and of each below it one pushed; and those of the picture.
+fn pixels_made(mut size: [u32; 2], top: u32) -> u64 {
+    let count = |[width, height]: [u32; 2]| u64::from(width) * u64::from(height);
+    let mut pixels = count(size);
+    for _ in 0..top {
+        let finer = count(size);
+        size = size.map(|side| side.div_ceil(2));
+        pixels += finer + count(size);
+    }
+    pixels
+}
+
+/// Renders `parts` as `camera` sees them, `size` = width and height in px; fails as [`Projector::new`] and [`Parts::check`], and where it is given
+/// up by way of `progress`.
 pub fn render<'a>(
     parts: impl Into<Parts<'a>>,
     camera: &Camera,
     size: [u32; 2],
     settings: &Settings,
     pull_push: PullPush,
+    progress: &dyn Progress,
 ) -> Result<Frame> {
     let parts = parts.into();
     parts.check()?;
     let reconstruction = Reconstruction::new(camera, size, settings, pull_push)?.of(parts)?;
     if reconstruction.texture.is_none() && parts.has_texture() {
-        return render(&parts.baked(), camera, size, settings, pull_push);
+        return render(&parts.baked(), camera, size, settings, pull_push, progress);
     }
-    let visible = reconstruction.project(parts);
+    let visible = reconstruction.watched_project(parts, progress);
     let top = Reconstruction::top_level(&visible.level);
-    let pyramid = reconstruction.pyramid(visible.level, top);
-    Ok(Frame { counts: visible.counts, ..reconstruction.shade(&pyramid.pushed[0]) })
+    let watch = Watch::new(progress, pixels_made(size, top));
+    let pyramid = reconstruction.watched_pyramid(visible.level, top, &watch);
+    let frame = shade::pass(&reconstruction, &pyramid.pushed[0], &watch);
+    match progress.is_cancelled() {
+        true => Err(Error::Cancelled),
+        false => Ok(Frame { counts: visible.counts, ..frame }),
+    }
 }

@@ -4,7 +4,7 @@ use super::lens::{Lens, Radii2};
 use super::margin::Margin;
 use super::pull::{children, mean_of_front};
 use super::push::nearest_four;
-use super::{Decided, Level, Sample, centre};
+use super::{Decided, Level, Sample, Watch, centre};
 use glam::{DVec2, DVec3};
 
 /// Least minor semi-axis of an ellipse, px.
@@ -25,9 +25,9 @@ pub fn radii2(lens: &Lens, sample: &Sample, disc: DVec2, at: DVec2) -> Radii2 {
 }
 
 /// Fine to coarse.
-pub fn pull(lens: &Lens, finer: &Level) -> Decided {
+pub fn pull(lens: &Lens, finer: &Level, watch: &Watch<'_>) -> Decided {
     let level = finer.level + 1;
-    Decided::new(level, finer.coarser_size(), |at, margin| {
+    Decided::new(level, finer.coarser_size(), watch, |at, margin| {
         let own = centre(level, at);
         let covers = |sample: &Sample, disc: DVec2| margin.covers(radii2(lens, sample, disc, own));
         mean_of_front(own, &children(finer, at, covers), margin)
@@ -35,8 +35,8 @@ pub fn pull(lens: &Lens, finer: &Level) -> Decided {
 }
 
 /// Coarse to fine: a pixel that is empty, or behind what the coarser one has, is made anew.
-pub fn push(lens: &Lens, coarser: &Level, pulled: &Level) -> Decided {
-    Decided::new(pulled.level, pulled.size, |at, margin| {
+pub fn push(lens: &Lens, coarser: &Level, pulled: &Level, watch: &Watch<'_>) -> Decided {
+    Decided::new(pulled.level, pulled.size, watch, |at, margin| {
         let own = centre(pulled.level, at);
         let around = nearest_four(at);
         let point = pulled.at(at);

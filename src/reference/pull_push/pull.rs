@@ -1,12 +1,12 @@
 //! Pass `pull`: the discs that a coarser pixel has in front (marroquim2008 section 3.2; a perspective ellipse, and true displacements).
 
 use super::lens::Lens;
-use super::{Decided, Level, Margin, Sample, centre};
+use super::{Decided, Level, Margin, Sample, Watch, centre};
 use glam::{DVec2, DVec3};
 
-pub fn pass(lens: &Lens, finer: &Level) -> Decided {
+pub fn pass(lens: &Lens, finer: &Level, watch: &Watch<'_>) -> Decided {
     let level = finer.level + 1;
-    Decided::new(level, finer.coarser_size(), |at, margin| {
+    Decided::new(level, finer.coarser_size(), watch, |at, margin| {
         let own = centre(level, at);
         let covers = |sample: &Sample, disc: DVec2| margin.covers(lens.radii2(sample, disc, own, 0.0));
         mean_of_front(own, &children(finer, at, covers), margin)

@@ -2,7 +2,7 @@
 //! surface alone, and with neighbours of the same level, without which steep surfaces have holes).
 
 use super::lens::Lens;
-use super::{Decided, Level, Margin, Sample, centre};
+use super::{Decided, Level, Margin, Sample, Watch, centre};
 use glam::{DMat2, DVec2, DVec3};
 
 /// What a disc's variance is widened by on level 0, px²; four times as much a level. Narrower ones leave holes between themselves.
@@ -28,9 +28,9 @@ struct Candidate {
     radii2: f64,
 }
 
-pub fn pass(lens: &Lens, coarser: &Level, pulled: &Level) -> Decided {
+pub fn pass(lens: &Lens, coarser: &Level, pulled: &Level, watch: &Watch<'_>) -> Decided {
     let widening = WIDENING * f64::from(pulled.level).exp2().powi(2);
-    Decided::new(pulled.level, pulled.size, |at, margin| {
+    Decided::new(pulled.level, pulled.size, watch, |at, margin| {
         let own = centre(pulled.level, at);
         let candidate = |level: &Level, at: [i64; 2]| {
             let sample = level.at(at)?;

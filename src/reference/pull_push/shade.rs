@@ -2,22 +2,23 @@
 
 use super::super::normalize::{Value, over_background, uncovered};
 use super::super::{Frame, Shine, line_normal, lit, lit_line};
-use super::{Level, Margin, Reconstruction, Sample, coverage, texture};
+use super::{Level, Margin, Reconstruction, Sample, Watch, coverage, texture};
 use crate::pull_push::Rules;
 use crate::settings::{Alpha, Shading};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
-pub fn pass(frame: &Reconstruction, pushed: &Level) -> Frame {
+pub fn pass(frame: &Reconstruction, pushed: &Level, watch: &Watch<'_>) -> Frame {
     let value = |(sample, at): (Option<Sample>, [i64; 2])| match sample {
-        Some(sample) => {
+        Some(sample) if !watch.is_over() => {
             let alpha = alpha(frame, pushed, at, &Margin::new());
             let colour = texture::colour(frame, pushed, at, &sample);
             value(frame, &Sample { colour, ..sample }, pushed.centre(at), alpha)
         }
-        None => uncovered(&frame.projector),
+        _ => uncovered(&frame.projector),
     };
     let values: Vec<Value> = pixels(pushed).map(value).collect();
+    watch.made(values.len() as u64);
     let id = pushed.samples.iter().map(|sample| sample.map_or(Frame::NOBODY, |sample| sample.id)).collect();
     Frame { id: Some(id), ..Frame::of(&values, pushed.size) }
 }

@@ -4,6 +4,8 @@ use super::*;
 use crate::geometry::{Model, Primitives, Surfels};
 use crate::settings::{Cull, Shading};
 use glam::DVec3;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Looks along +z from the origin; one unit at distance 1 is 64 px.
 fn camera() -> Camera {
@@ -36,7 +38,7 @@ fn sample(near: f64, radius: f64) -> Sample {
 fn level(level: u32, known: &[([i64; 2], Sample)]) -> Level {
     let side = 64 >> level;
     let find = |at: [i64; 2]| known.iter().find(|(place, _)| *place == at).map(|(_, sample)| *sample);
-    Decided::new(level, [side; 2], |at, _| find(at)).level
+    Decided::new(level, [side; 2], &Watch::nobody(), |at, _| find(at)).level
 }
 
 fn discs(list: &[(DVec3, DVec3, f32)]) -> Surfels {
@@ -229,7 +231,7 @@ fn a_tube_is_round() {
             Model { primitives: Primitives { tubes: vec![[0, 1]], ..vertices(&ends) }, ..Default::default() };
         let settings = Settings { shading: Shading::Normal, ..Default::default() };
         let pull_push = PullPush::of(Rules::Robust);
-        let picture = render(&model, &camera(), [64, 64], &settings, pull_push).unwrap();
+        let picture = render(&model, &camera(), [64, 64], &settings, pull_push, &()).unwrap();
         let lens = frame(Rules::Robust).lens;
         let mut seen = 0;
         for (i, [x, y]) in (0..64 * 64).map(|k| (k as usize, [k % 64, k / 64])) {
@@ -258,4 +260,60 @@ fn a_tube_is_round() {
         }
         assert!(seen > 100, "{seen}");
     }
+}
+
+/// Gives up after it has been told so often, and counts on.
+struct Impatient {
+    told: AtomicU64,
+    after: u64,
+}
+
+impl Progress for Impatient {
+    fn at(&self, _: &'static str, done: u64, total: u64) {
+        assert!(done <= total, "{done} of {total}");
+        self.told.fetch_add(1, Ordering::Relaxed);
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.told.load(Ordering::Relaxed) >= self.after
+    }
+}
+
+#[test]
+fn a_frame_that_is_given_up_ends_wherever_it_is() {
+    let surfels = discs(&[(DVec3::new(0.0, 0.0, 2.0), DVec3::NEG_Z, 0.2)]);
+    for rules in [Rules::Robust, Rules::Paper] {
+        let render = |after| {
+            let progress = Impatient { told: AtomicU64::new(0), after };
+            let settings = Settings::default();
+            let made = render(&surfels, &camera(), [64, 64], &settings, PullPush::of(rules), &progress);
+            (made, progress.told.into_inner())
+        };
+        let (whole, all) = render(u64::MAX);
+        assert!(whole.is_ok() && all > 100, "{all}");
+        for after in [0, 1, 2, all / 2, all - 2, all - 1] {
+            let (made, told) = render(after);
+            assert!(matches!(made, Err(Error::Cancelled)), "after {after} of {all}");
+            // Rows that are being made then, and that the passes are through.
+            let more = told - after;
+            assert!(more <= 2 + rayon::current_num_threads() as u64, "{more} more after {after} of {all}");
+        }
+    }
+}
+
+#[test]
+fn all_pixels_are_told_of() {
+    struct Last(Mutex<(u64, u64)>);
+    impl Progress for Last {
+        fn at(&self, _: &'static str, done: u64, total: u64) {
+            let mut last = self.0.lock().unwrap();
+            *last = (last.0.max(done), total);
+        }
+    }
+    let surfels = discs(&[(DVec3::new(0.0, 0.0, 2.0), DVec3::NEG_Z, 0.2)]);
+    let last = Last(Mutex::new((0, 1)));
+    let pull_push = PullPush::of(Rules::Robust);
+    render(&surfels, &camera(), [63, 64], &Settings::default(), pull_push, &last).unwrap();
+    let (done, total) = last.0.into_inner().unwrap();
+    assert_eq!(done, total);
 }

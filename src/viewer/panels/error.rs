@@ -91,11 +91,7 @@ impl Errors {
             Some(job) => {
                 let (stage, part) = job.at();
                 ui.add(ProgressBar::new(part).text(stage));
-                if ui
-                    .button("give up")
-                    .on_hover_text("pull-push's reference goes on to its end all the same")
-                    .clicked()
-                {
+                if ui.button("give up").clicked() {
                     job.cancel();
                 }
             }

@@ -11,6 +11,8 @@ mod raster;
 mod split;
 mod times;
 
+use super::keys::{Action, BINDINGS};
+use super::layout::Layout;
 use super::screen::Asked;
 use super::state::{State, quick};
 use buffers::Buffers;
@@ -40,6 +42,8 @@ pub struct Told {
     pub surfels: f64,
     /// Whether keys are listed.
     pub help: bool,
+    /// What is known of the keyboard.
+    pub layout: Layout,
     /// Whether the panel beside the picture is hidden.
     pub hidden: bool,
     /// What frames tell.
@@ -90,18 +94,21 @@ pub fn show(ui: &mut Ui, state: &mut State, told: &mut Told, device: &Arc<Device
     if let Some(wrong) = told.wrong.as_ref().or(told.refused.as_ref()) {
         Panel::top("wrong").show(ui, |ui| ui.colored_label(ui.visuals().error_fg_color, wrong));
     }
+    state.lens.covered = 0.0;
     if !told.hidden {
-        Panel::right("choices").default_size(300.0).show(ui, |ui| {
+        let panel = Panel::right("choices").default_size(300.0).show(ui, |ui| {
             ScrollArea::vertical()
                 .auto_shrink([false, false])
                 .show(ui, |ui| choices(ui, state, told, device));
         });
+        let points = whole.right() - panel.response.rect.left();
+        state.lens.covered = f64::from(points * ui.pixels_per_point());
     }
     told.split.divider(ui, whole, state, &told.times);
     told.errors.picture(ui.ctx());
     told.buffers.picture(ui.ctx());
     if told.help {
-        help::show(ui.ctx());
+        help::show(ui.ctx(), &told.layout);
     }
     if let Some(opening) = &mut state.opening {
         state.answer = opening.show(ui);
@@ -112,7 +119,12 @@ pub fn show(ui: &mut Ui, state: &mut State, told: &mut Told, device: &Arc<Device
 }
 
 fn choices(ui: &mut Ui, state: &mut State, told: &mut Told, device: &Arc<Device>) {
-    ui.label("G hides this panel, H lists keys and mouse").on_hover_text("G shows it again");
+    let [hide, help] = [Action::Panels, Action::Help].map(|action| {
+        let binding = BINDINGS.iter().find(|binding| binding.action == action);
+        binding.map_or(String::new(), |binding| told.layout.name(binding))
+    });
+    ui.label(format!("{hide} hides this panel, {help} lists keys and mouse"))
+        .on_hover_text(format!("{hide} shows it again"));
     let Some(chosen) = &mut state.choices() else {
         ui.label("Drop files on the window to look at them.");
         return;

@@ -10,6 +10,7 @@ mod triangle;
 use super::super::scene::Counts;
 use super::super::{Culled, Surfel, linear};
 use super::{Level, Reconstruction, Sample};
+use crate::Progress;
 use crate::geometry::{Colours, Parts, Primitives, Surfels, Texture};
 use crate::pull_push::Rules;
 use glam::{DVec2, DVec3, Vec3};
@@ -40,9 +41,11 @@ struct Vertex {
     coordinates: DVec2,
 }
 
-pub fn pass(frame: &Reconstruction, parts: Parts<'_>) -> Visible {
+pub fn pass(frame: &Reconstruction, parts: Parts<'_>, progress: &dyn Progress) -> Visible {
     let surfels = parts.surfels;
-    let point = |i: usize| match surfels.is_valid(i) {
+    // Of what is given up nobody sees the points.
+    let wanted = || !progress.is_cancelled();
+    let point = |i: usize| match surfels.is_valid(i) && wanted() {
         true => {
             frame.point(&Surfel::of(surfels, i)).map(|(at, sample)| (at, frame.placed(sample, surfels, i)))
         }
@@ -66,7 +69,7 @@ pub fn pass(frame: &Reconstruction, parts: Parts<'_>) -> Visible {
     }
     if let Some(primitives) = parts.primitives {
         let along = primitives.line_directions();
-        let pixels = |i: usize| frame.primitive(primitives, &along, i);
+        let pixels = |i: usize| if wanted() { frame.primitive(primitives, &along, i) } else { Vec::new() };
         let all: Vec<_> = (0..primitives.count()).into_par_iter().map(pixels).collect();
         for (i, pixels) in all.into_iter().enumerate() {
             let id = surfels.len() + i;

@@ -1,0 +1,221 @@
+//! A picture of a scene in frames that go to a window: colours in linear float, and depth, of any size.
+
+use super::{Measured, Options, Pass, Renderer, Target, View};
+use crate::error::{Error, Result};
+use crate::geometry::Camera;
+use crate::renderer::FrameReport;
+use crate::scene::Scene;
+use crate::settings::Settings;
+use crate::variant::{Precision, Rasterizer};
+use crate::vk::{
+    Access, Attachment, Buffer, Device, FRAMES_IN_FLIGHT, Framebuffer, Image, ImageUse, Presented, Presenter,
+    Recorder, RenderPass, Timestamps,
+};
+use ash::vk;
+use std::sync::Arc;
+
+/// Formats of the targets.
+const COLOUR: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
+const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
+
+/// A picture in frames of one [`Presenter`], which stays until it is drawn anew. What is unsafe of [`Renderer`] it sees to itself: it draws in
+/// frames of that presenter alone, once in each, and is waited for before it goes.
+pub struct Pane {
+    // Fields are dropped in this order: views before what they view, and the pass after all that draws in it.
+    renderer: Renderer,
+    targets: Option<Targets>,
+    /// What the frame before may use, where its size was another.
+    old: Option<Targets>,
+    timestamps: Option<Timestamps>,
+    /// Whether a frame that is measured has not told yet.
+    measured: bool,
+    /// Number of the frame in which it was drawn last.
+    drawn: Option<u64>,
+    /// Number of the presenter.
+    presenter: u64,
+    pass: RenderPass,
+    device: Arc<Device>,
+}
+
+/// A scene, from where it is seen, and how.
+pub type Shown<'a> = (&'a Arc<Scene>, &'a Camera, &'a Settings);
+
+struct Targets {
+    framebuffer: Framebuffer,
+    colour: Image,
+    depth: Image,
+    /// Where depths are read back.
+    depths: Buffer,
+}
+
+impl Pane {
+    /// A picture in frames of `presenter`; nothing is drawn yet.
+    pub fn new(presenter: &Presenter, rasterizer: Option<Rasterizer>) -> Result<Self> {
+        let device = presenter.device();
+        presenter.rehearse(COLOUR)?;
+        let pass = RenderPass::new(device, &[Attachment::Cleared(COLOUR)], Some(Attachment::Cleared(DEPTH)))?;
+        let target = Target {
+            pass: Pass::Subpass { pass: pass.handle(), subpass: 0 },
+            colours: vec![COLOUR],
+            depth: Some(DEPTH),
+            stencil: vk::Format::UNDEFINED,
+            reversed: true,
+            samples: vk::SampleCountFlags::TYPE_1,
+            picture: 0,
+            normal: None,
+            id: None,
+            encode: false,
+        };
+        let options =
+            Options { target, frames_in_flight: FRAMES_IN_FLIGHT, precision: Precision::Full, rasterizer };
+        // SAFETY: the target is this pass, which goes after the renderer; `drop` waits for the GPU.
+        let renderer = unsafe { Renderer::new(device, options)? };
+        Ok(Self {
+            renderer,
+            targets: None,
+            old: None,
+            timestamps: None,
+            measured: false,
+            drawn: None,
+            presenter: presenter.number(),
+            pass,
+            device: device.clone(),
+        })
+    }
+
+    /// Records a picture of `size` px over the settings' background, or of that alone where nothing is shown. If it is `measured` it tells the GPU
+    /// times of its passes and counts of surfels, unless another one has yet to tell. After an error it shows nothing.
+    ///
+    /// # Errors
+    /// Those of [`Renderer::prepare`]; [`Error::Usage`] in a frame of another presenter, and a second time in one frame.
+    pub fn draw(
+        &mut self,
+        frame: &Presented,
+        size: [u32; 2],
+        shown: Option<Shown<'_>>,
+        measured: bool,
+    ) -> Result<()> {
+        self.check(frame)?;
+        if self.drawn.replace(frame.number) == Some(frame.number) {
+            return Err(Error::Usage("a pane is drawn twice in a frame: make one for each picture".into()));
+        }
+        // The GPU is done with all but the last frame.
+        self.old = None;
+        if self.targets.as_ref().is_none_or(|targets| targets.colour.size() != size) {
+            let made = Targets::new(&self.device, &self.pass, size)?;
+            self.old = self.targets.replace(made);
+        }
+        self.record(frame, shown, measured)
+    }
+
+    fn record(&mut self, frame: &Presented, shown: Option<Shown<'_>>, measured: bool) -> Result<()> {
+        let Some(targets) = &self.targets else { return Ok(()) };
+        let measured = shown.is_some() && measured && !self.measured;
+        let mut drawn = Ok(());
+        if let Some((scene, camera, settings)) = shown {
+            let view = View::whole(*camera, targets.colour.size());
+            self.renderer.measure(Measured { times: measured, counts: measured });
+            // SAFETY: the presenter's command buffer is being recorded, outside a render pass, and it submits in order; once a frame, so that as
+            // many are under way as it says.
+            drawn = unsafe { self.renderer.prepare(frame.cmd, scene, &view, settings) };
+        }
+        if measured && self.timestamps.is_none() {
+            self.timestamps = Timestamps::new(&self.device)?;
+        }
+        self.measured |= measured;
+        let timestamps = self.timestamps.as_mut().filter(|_| measured);
+        // SAFETY: as above; what was measured before has told, so that it is over.
+        let mut rec = unsafe { Recorder::of_host_timed(&self.device, frame.cmd, timestamps) };
+        let Targets { framebuffer, colour, depth, depths } = targets;
+        let uses = [colour.with(Access::COLOUR_WRITE), depth.with(Access::DEPTH_WRITE)];
+        let [r, g, b] = shown.and_then(|(.., settings)| settings.background).unwrap_or_default();
+        rec.pass("screen", &uses, |enc| {
+            enc.render_over(framebuffer, [r, g, b, 1.0], |_| {
+                if shown.is_some() && drawn.is_ok() {
+                    // SAFETY: within the renderer's target.
+                    drawn = unsafe { self.renderer.draw(frame.cmd) };
+                }
+            });
+        });
+        let uses = [depth.with(Access::COPY_READ), depths.with(Access::COPY_WRITE)];
+        rec.pass("depths", &uses, |enc| enc.copy_image(depth, depths));
+        rec.wait(&[depths.with(Access::HOST_READ), colour.with(Access::COPY_READ)]);
+        drawn
+    }
+
+    /// Shows the columns between two parts of the picture's width, from 0 to 1, in those of the window, scaled.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] in a frame of another presenter.
+    pub fn show(&self, frame: &Presented, columns: [f64; 2]) -> Result<()> {
+        self.check(frame)?;
+        let Some(Targets { colour, .. }) = &self.targets else { return Ok(()) };
+        let uses = [colour.with(Access::COPY_READ)];
+        let mut rec = frame.recorder();
+        rec.left(&uses);
+        rec.pass("show", &uses, |enc| enc.show_part(colour, frame, columns));
+        Ok(())
+    }
+
+    /// What the last picture that was measured tells, once; waits for it.
+    pub fn report(&mut self, presenter: &Presenter) -> Result<Option<FrameReport>> {
+        self.wait(presenter)?;
+        if !std::mem::take(&mut self.measured) {
+            return Ok(None);
+        }
+        // SAFETY: every frame is over.
+        unsafe { self.renderer.finish()? };
+        let own = self.timestamps.as_ref().map_or(Ok(Vec::new()), Timestamps::read)?;
+        let report = self.renderer.report().cloned();
+        Ok(report.map(|mut report| {
+            // It is within `screen`.
+            report.pass_times.retain(|time| time.label != "composite");
+            report.pass_times.extend(own);
+            report
+        }))
+    }
+
+    /// Width and height of the picture, px, and its depths as the camera's projection has them, reversed: a float of 4 bytes a pixel, row by row
+    /// from the top left, 0 where nothing is. Waits for it.
+    pub fn depths(&self, presenter: &Presenter) -> Result<Option<([u32; 2], &[u8])>> {
+        self.wait(presenter)?;
+        Ok(self.targets.as_ref().map(|targets| (targets.colour.size(), targets.depths.bytes())))
+    }
+
+    fn wait(&self, presenter: &Presenter) -> Result<()> {
+        self.check_presenter(presenter.number())?;
+        presenter.wait()
+    }
+
+    fn check(&self, frame: &Presented) -> Result<()> {
+        self.check_presenter(frame.presenter)
+    }
+
+    fn check_presenter(&self, number: u64) -> Result<()> {
+        match number == self.presenter {
+            true => Ok(()),
+            false => Err(Error::Usage("a pane is used with another window than it was made for".into())),
+        }
+    }
+}
+
+impl Drop for Pane {
+    fn drop(&mut self) {
+        // A lost device has nothing left to wait for.
+        let _ = self.device.wait_idle();
+    }
+}
+
+impl Targets {
+    fn new(device: &Arc<Device>, pass: &RenderPass, size: [u32; 2]) -> Result<Self> {
+        let colour = Image::target(device, "screen", COLOUR, size, ImageUse::Output)?;
+        let depth = Image::target(device, "screen depth", DEPTH, size, ImageUse::Output)?;
+        let pixels = u64::from(size[0]) * u64::from(size[1]);
+        Ok(Self {
+            framebuffer: Framebuffer::new(device, pass, &[&colour, &depth])?,
+            depths: Buffer::readback(device, "screen depths", 4 * pixels)?,
+            colour,
+            depth,
+        })
+    }
+}
