@@ -3,14 +3,15 @@
 use super::panels::{self, Told};
 use super::state::State;
 use ash::vk;
-use egui::{ClippedPrimitive, TexturesDelta};
+use egui::{ClippedPrimitive, LayerId, Pos2, Rect, TexturesDelta};
 use egui_ash_renderer::allocator::DefaultAllocator;
 use egui_ash_renderer::{Options, RenderMode, Renderer, RendererError};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use surfel::vk::{CommandPool, Device, FRAMES_IN_FLIGHT, Presented};
 use surfel::{Error, Result};
-use winit::event::WindowEvent;
+use winit::dpi::{LogicalPosition, PhysicalPosition};
+use winit::event::{ElementState, MouseButton, WindowEvent};
 use winit::window::Window;
 
 /// The panels of a window.
@@ -23,6 +24,12 @@ pub struct Hud {
     shapes: Vec<ClippedPrimitive>,
     /// When the panels want to be drawn again.
     wakes: Option<Instant>,
+    /// Where no panel is beside the picture, points.
+    free: Rect,
+    /// Where the cursor is, px.
+    cursor: PhysicalPosition<f64>,
+    /// Buttons that went down over the panels, and are theirs until they are let go.
+    held: Vec<MouseButton>,
     device: Arc<Device>,
 }
 
@@ -49,20 +56,63 @@ impl Hud {
         let renderer = renderer.map_err(|error| failed(&error))?;
         let pool = CommandPool::new(device)?;
         let (textures, shapes) = (TexturesDelta::default(), Vec::new());
-        Ok(Self { renderer, pool, context, hands, textures, shapes, wakes: None, device: device.clone() })
+        Ok(Self {
+            renderer,
+            pool,
+            context,
+            hands,
+            textures,
+            shapes,
+            wakes: None,
+            free: Rect::EVERYTHING,
+            cursor: PhysicalPosition::default(),
+            held: Vec::new(),
+            device: device.clone(),
+        })
     }
 
     /// Tells the panels of an event; whether it is theirs, and whether they look different now.
     pub fn tell(&mut self, window: &Window, event: &WindowEvent) -> [bool; 2] {
         let response = self.hands.on_window_event(window, event);
-        [response.consumed, response.repaint]
+        [self.is_theirs(event).unwrap_or(response.consumed), response.repaint]
+    }
+
+    /// Whether the mouse's events are the panels': by where the cursor is now. Their own answer is of where it was when they were laid out, and a
+    /// quick hand has left them since.
+    fn is_theirs(&mut self, event: &WindowEvent) -> Option<bool> {
+        match event {
+            WindowEvent::CursorMoved { position, .. } => self.cursor = *position,
+            WindowEvent::MouseWheel { .. } => return Some(self.is_over()),
+            WindowEvent::MouseInput { state: ElementState::Pressed, button, .. } => {
+                let theirs = !self.held.is_empty() || self.is_over();
+                self.held.extend(theirs.then_some(*button));
+                return Some(theirs);
+            }
+            WindowEvent::MouseInput { state: ElementState::Released, button, .. } => {
+                self.held.retain(|held| held != button);
+            }
+            _ => return None,
+        }
+        Some(!self.held.is_empty())
+    }
+
+    /// Whether the cursor is over a panel, or over what can be taken hold of.
+    fn is_over(&self) -> bool {
+        let LogicalPosition { x, y } = self.cursor.to_logical(self.context.pixels_per_point().into());
+        let at = Pos2::new(x, y);
+        let floats = |layer| layer != LayerId::background();
+        !self.free.contains(at) || self.context.layer_id_at(at).is_some_and(floats)
     }
 
     /// Lays the panels out; whether they want to be drawn again at once.
     pub fn lay_out(&mut self, window: &Window, state: &mut State, told: &mut Told) -> bool {
         let input = self.hands.take_egui_input(window);
         let device = &self.device;
-        let output = self.context.run_ui(input, |ui| panels::show(ui, state, told, device));
+        let free = &mut self.free;
+        let output = self.context.run_ui(input, |ui| {
+            panels::show(ui, state, told, device);
+            *free = ui.available_rect_before_wrap();
+        });
         self.hands.handle_platform_output(window, output.platform_output);
         self.shapes = self.context.tessellate(output.shapes, output.pixels_per_point);
         self.textures.append(output.textures_delta);

@@ -21,6 +21,28 @@ fn a_window_that_is_hidden_comes_back() {
 }
 
 #[test]
+fn hands_go_from_the_panel_to_the_picture_and_back_at_once() {
+    let Some((display, program)) = stage("hands_go_from_the_panel_to_the_picture_and_back_at_once") else {
+        return;
+    };
+    let mut view = View::open(&display, &program, &format!("{SPHERE} --size 640x480"));
+    let mut before = view.picture(|_| true);
+    let (panel, way) = ([600, 300], [[100, 150], [200, 170], [160, 200]]);
+    for _ in 0..3 {
+        // Before the window has drawn another frame.
+        display.click(view.window, panel, 1, 1);
+        display.drag(view.window, 1, &way);
+        before = view.picture(|event| event["camera"] != before["camera"]);
+    }
+    // What begins on the panel is the panel's wherever it goes.
+    display.drag(view.window, 1, &[panel, way[0], way[1]]);
+    display.type_text("l");
+    let after = view.picture(|event| event["shading"] != before["shading"]);
+    view.close();
+    assert_eq!(after["camera"], before["camera"]);
+}
+
+#[test]
 fn a_window_may_be_closed_while_it_loads() {
     let Some((display, program)) = stage("a_window_may_be_closed_while_it_loads") else { return };
     View::open(&display, &program, "scene:bumpy-sphere?points=300000 --size 320x240").close();
