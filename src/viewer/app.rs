@@ -118,13 +118,13 @@ struct App {
 impl ApplicationHandler<News> for App {
     fn resumed(&mut self, events: &ActiveEventLoop) {
         match Opened::new(events, &self.options) {
-            Ok((mut opened, device)) => {
-                // Scenes are framed beside the panel from the first on.
-                opened.hud.lay_out(&opened.window, &mut self.state, &mut self.told);
+            Ok((opened, device)) => {
                 self.options.events.tell(&Event::Window { device: &device.description().name });
                 opened.window.request_redraw();
+                (self.opened, self.device) = (Some(opened), Some(device.clone()));
+                // Scenes are framed beside the panel from the first on.
+                self.lay_out();
                 self.loader.use_device(&device);
-                (self.opened, self.device) = (Some(opened), Some(device));
             }
             Err(error) => self.fail(events, error),
         }
@@ -332,6 +332,7 @@ impl App {
             }
             Some(Action::Panels) => {
                 self.told.hidden = !self.told.hidden;
+                self.lay_out();
                 self.changed();
             }
             Some(action) => {
@@ -339,6 +340,13 @@ impl App {
                 self.changed();
             }
             None => {}
+        }
+    }
+
+    /// Lays the panels out, so that what comes before the next frame knows what they cover.
+    fn lay_out(&mut self) {
+        if let Some(opened) = &mut self.opened {
+            opened.hud.lay_out(&opened.window, &mut self.state, &mut self.told);
         }
     }
 

@@ -162,7 +162,7 @@ impl Opened {
         let mut refused = told.refused.clone();
         let shown = presenter.present([width, height], |frame| {
             state.lens.size = frame.size;
-            let size = frame.size.map(|length| ((f64::from(length) * quality.side).round() as u32).max(1));
+            let size = frame.size.map(|length| side_of(length, quality.side));
             let seen = state.frame(quality.scene).transpose()?;
             let seen = seen.as_ref().map(|(scene, camera, settings)| (*scene, camera, &**settings));
             refused = match screen.record(frame, size, seen) {
@@ -209,4 +209,12 @@ fn picture<'a>(state: &State, told: &Told, [moving, drawn]: [bool; 2], took_ms: 
         took_ms,
         camera: camera.into(),
     })
+}
+
+/// Px of a side of a picture that has this part of the window's. Odd where it is scaled, and so no power of two: see [`Presenter::rehearse`].
+fn side_of(window: u32, part: f64) -> u32 {
+    match part < 1.0 {
+        true => ((f64::from(window) * part).round() as u32 | 1).min(window),
+        false => window,
+    }
 }

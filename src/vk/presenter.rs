@@ -158,19 +158,15 @@ impl Presenter {
         }
     }
 
-    /// Scales pictures of `format` to the window's once in each way that drivers tell apart, some by whether sides are powers of two: what they
-    /// compile for it as it is first done is there when it is needed.
+    /// Scales a picture of `format` to the window's once: what a driver compiles for that as it is first done is there when it is needed. Some
+    /// compile anew for sides that are powers of two, which its are not.
     pub fn rehearse(&self, format: vk::Format) -> Result<()> {
         let target = |format, size, also| Image::target(&self.device, "rehearsed", format, size, also);
+        let from = target(format, [3, 3], ImageUse::Output)?;
         let to = target(self.format.format, [5, 5], ImageUse::Window)?;
-        let sizes = [[3, 3], [4, 3], [3, 4], [4, 4]];
-        let from: Vec<_> =
-            sizes.into_iter().map(|size| target(format, size, ImageUse::Output)).collect::<Result<_>>()?;
         Commands::new(&self.device, false)?.run(|rec| {
-            for from in &from {
-                let uses = [from.with(Access::COPY_READ), to.with(Access::SCALE_WRITE)];
-                rec.pass("rehearse", &uses, |enc| enc.scale(from, (to.raw, to.size()), [0.0, 1.0]));
-            }
+            let uses = [from.with(Access::COPY_READ), to.with(Access::SCALE_WRITE)];
+            rec.pass("rehearse", &uses, |enc| enc.scale(&from, (to.raw, to.size()), [0.0, 1.0]));
         })
     }
 

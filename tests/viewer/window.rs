@@ -1,5 +1,6 @@
 //! The window's life: sizes, sight, displays that are not there, and its end.
 
+use crate::display::Display;
 use crate::program::{Program, surfels};
 use crate::view::{End, View, command};
 use crate::{SPHERE, stage};
@@ -80,4 +81,35 @@ fn a_device_that_does_not_serve_is_named() {
     let command = command(&program, &display.name, &format!("{SPHERE} --device none-such"));
     let End { code, errors } = View::begin(&display, command).end();
     assert!(code == 3 && errors.contains("none-such"), "{code} {errors}");
+}
+
+#[test]
+fn a_scene_is_framed_beside_the_panel_or_in_the_whole_window_without_it() {
+    let test = "a_scene_is_framed_beside_the_panel_or_in_the_whole_window_without_it";
+    let Some((display, program)) = stage(test) else { return };
+    let mut view = View::open(&display, &program, "scene:sphere?points=20000 --size 640x480");
+    view.picture(|_| true);
+    // The panel's edge: its grey is nowhere else in the first row.
+    let row: Vec<_> = display.pixels(view.window).rows().next().unwrap().map(|pixel| pixel.0).collect();
+    let edge = row.iter().position(|pixel| *pixel != [0; 3]).unwrap();
+    assert!((200..500).contains(&edge), "{edge}");
+    assert!(margins(&display, &view, edge).iter().all(|margin| *margin > 2));
+    // Perspective makes more of what is farther from the middle of the window.
+    display.type_text("p");
+    let mut before = view.picture(|event| event["camera"]["height"].is_f64());
+    for (keys, columns) in [("f", edge), ("gf", 640)] {
+        display.type_text(keys);
+        before = view.picture(|event| event["camera"] != before["camera"]);
+        let [left, right] = margins(&display, &view, columns);
+        assert!(left > 2 && left.abs_diff(right) <= 2, "{left} and {right} px of {columns}");
+    }
+    view.close();
+}
+
+/// Columns on the left and on the right of what is seen in the first so many, which is none of them.
+fn margins(display: &Display, view: &View<'_>, columns: usize) -> [usize; 2] {
+    let pixels = display.pixels(view.window);
+    let seen = |x: &usize| (0..pixels.height()).any(|y| pixels.get_pixel(*x as u32, y).0 != [0; 3]);
+    let [first, last] = [(0..columns).find(seen), (0..columns).rfind(seen)].map(Option::unwrap);
+    [first, columns - 1 - last]
 }
