@@ -9,9 +9,10 @@ use crate::settings::Settings;
 use crate::variant::{Precision, Rasterizer};
 use crate::vk::{
     Access, Attachment, Buffer, Device, FRAMES_IN_FLIGHT, Framebuffer, Image, ImageUse, Presented, Presenter,
-    Recorder, RenderPass, Timestamps,
+    Recorder, RenderPass, Stake, Timestamps,
 };
 use ash::vk;
+use std::cell::RefCell;
 use std::sync::Arc;
 
 /// Formats of the targets.
@@ -19,18 +20,20 @@ const COLOUR: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
 
 /// A picture in frames of one [`Presenter`], which stays until it is drawn anew. What is unsafe of [`Renderer`] it sees to itself: it draws in
-/// frames of that presenter alone, once in each, and is waited for before it goes.
+/// frames of that presenter alone, once in each, and is waited for before it goes; a frame that is being recorded meanwhile is not submitted.
 pub struct Pane {
     // Fields are dropped in this order: views before what they view, and the pass after all that draws in it.
     renderer: Renderer,
     targets: Option<Targets>,
-    /// What the frame before may use, where its size was another.
-    old: Option<Targets>,
+    /// What frames under way may use, each with the number of the last one that may.
+    old: Vec<(u64, Targets)>,
     timestamps: Option<Timestamps>,
     /// Whether a frame that is measured has not told yet.
     measured: bool,
     /// Number of the frame in which it was drawn last.
     drawn: Option<u64>,
+    /// Its stake in the last frame that it recorded into, and the number of that.
+    stake: RefCell<Option<(u64, Arc<Stake>)>>,
     /// Number of the presenter.
     presenter: u64,
     pass: RenderPass,
@@ -73,10 +76,11 @@ impl Pane {
         Ok(Self {
             renderer,
             targets: None,
-            old: None,
+            old: Vec::new(),
             timestamps: None,
             measured: false,
             drawn: None,
+            stake: RefCell::default(),
             presenter: presenter.number(),
             pass,
             device: device.clone(),
@@ -99,13 +103,42 @@ impl Pane {
         if self.drawn.replace(frame.number) == Some(frame.number) {
             return Err(Error::Usage("a pane is drawn twice in a frame: make one for each picture".into()));
         }
-        // The GPU is done with all but the last frame.
-        self.old = None;
+        self.forget_thrown();
+        self.take_part(frame);
+        // The GPU is done with all but the last frames.
+        self.old.retain(|(last, _)| last + u64::from(FRAMES_IN_FLIGHT) > frame.number);
         if self.targets.as_ref().is_none_or(|targets| targets.colour.size() != size) {
-            let made = Targets::new(&self.device, &self.pass, size)?;
-            self.old = self.targets.replace(made);
+            self.old.extend(self.targets.take().map(|targets| (frame.number, targets)));
+            self.targets = Some(Targets::new(&self.device, &self.pass, size)?);
         }
         self.record(frame, shown, measured)
+    }
+
+    /// Whether there is nothing to show, not even a background.
+    pub fn is_empty(&self) -> bool {
+        self.targets.is_none() || self.is_thrown()
+    }
+
+    /// Whether the last frame that it recorded into was thrown away.
+    fn is_thrown(&self) -> bool {
+        self.stake.borrow().as_ref().is_some_and(|(_, stake)| stake.is_thrown())
+    }
+
+    /// What was recorded into a frame that was thrown away is not there.
+    fn forget_thrown(&mut self) {
+        if self.is_thrown() {
+            let last = self.stake.take().map_or(0, |(last, _)| last);
+            self.old.extend(self.targets.take().map(|targets| (last, targets)));
+            self.measured = false;
+        }
+    }
+
+    /// Records into `frame` from now on.
+    fn take_part(&self, frame: &Presented) {
+        let mut stake = self.stake.borrow_mut();
+        if stake.as_ref().is_none_or(|(number, _)| *number != frame.number) {
+            *stake = Some((frame.number, frame.stake()));
+        }
     }
 
     fn record(&mut self, frame: &Presented, shown: Option<Shown<'_>>, measured: bool) -> Result<()> {
@@ -149,7 +182,10 @@ impl Pane {
     /// [`Error::Usage`] in a frame of another presenter.
     pub fn show(&self, frame: &Presented, columns: [f64; 2]) -> Result<()> {
         self.check(frame)?;
-        let Some(Targets { colour, .. }) = &self.targets else { return Ok(()) };
+        let Some(Targets { colour, .. }) = self.targets.as_ref().filter(|_| !self.is_thrown()) else {
+            return Ok(());
+        };
+        self.take_part(frame);
         let uses = [colour.with(Access::COPY_READ)];
         let mut rec = frame.recorder();
         rec.left(&uses);
@@ -160,6 +196,7 @@ impl Pane {
     /// What the last picture that was measured tells, once; waits for it.
     pub fn report(&mut self, presenter: &Presenter) -> Result<Option<FrameReport>> {
         self.wait(presenter)?;
+        self.forget_thrown();
         if !std::mem::take(&mut self.measured) {
             return Ok(None);
         }
@@ -179,7 +216,8 @@ impl Pane {
     /// from the top left, 0 where nothing is. Waits for it.
     pub fn depths(&self, presenter: &Presenter) -> Result<Option<([u32; 2], &[u8])>> {
         self.wait(presenter)?;
-        Ok(self.targets.as_ref().map(|targets| (targets.colour.size(), targets.depths.bytes())))
+        let targets = self.targets.as_ref().filter(|_| !self.is_thrown());
+        Ok(targets.map(|targets| (targets.colour.size(), targets.depths.bytes())))
     }
 
     fn wait(&self, presenter: &Presenter) -> Result<()> {
@@ -201,6 +239,9 @@ impl Pane {
 
 impl Drop for Pane {
     fn drop(&mut self) {
+        if let Some((_, stake)) = self.stake.get_mut() {
+            stake.go();
+        }
         // A lost device has nothing left to wait for.
         let _ = self.device.wait_idle();
     }

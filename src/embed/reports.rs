@@ -9,7 +9,9 @@ use std::sync::Arc;
 /// What frames tell of themselves. What is not asked for is in no frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Measured {
-    /// GPU time by pass, where the device has timestamps. No pass overlaps with the one before it then, so that a frame may take longer.
+    /// GPU time by pass, where the device has timestamps. No pass overlaps with the one before it then, so that a frame may take longer; but for
+    /// those within a render pass of the host, which are timed from when the work before them is done, and have no times in a frame that was
+    /// prepared and not drawn.
     pub times: bool,
     /// Surfels by their fate.
     pub counts: bool,
@@ -95,9 +97,13 @@ impl Reports {
 
     /// All frames are over.
     pub(super) fn finish(&mut self) -> Result<()> {
-        let told = self.slots[self.present].read()?;
-        self.slots.iter_mut().for_each(|slot| slot.told = None);
-        self.last = told.or(self.last.take());
+        // The oldest first: the last one that tells counts.
+        for back in (0..self.slots.len()).rev() {
+            let slot = (self.present + self.slots.len() - back) % self.slots.len();
+            if let Some(told) = self.slots[slot].read()? {
+                self.last = Some(told);
+            }
+        }
         Ok(())
     }
 }

@@ -28,7 +28,8 @@ pub struct Hud {
     free: Rect,
     /// Where the cursor is, px.
     cursor: PhysicalPosition<f64>,
-    /// Buttons that went down over the panels, and are theirs until they are let go.
+    /// Buttons that are down, and those of them that are the panels' until they are let go: they went down over one, or have hold of something.
+    down: Vec<MouseButton>,
     held: Vec<MouseButton>,
     device: Arc<Device>,
 }
@@ -66,6 +67,7 @@ impl Hud {
             wakes: None,
             free: Rect::EVERYTHING,
             cursor: PhysicalPosition::default(),
+            down: Vec::new(),
             held: Vec::new(),
             device: device.clone(),
         })
@@ -85,11 +87,19 @@ impl Hud {
             WindowEvent::MouseWheel { .. } => return Some(self.is_over()),
             WindowEvent::MouseInput { state: ElementState::Pressed, button, .. } => {
                 let theirs = !self.held.is_empty() || self.is_over();
+                self.down.push(*button);
                 self.held.extend(theirs.then_some(*button));
                 return Some(theirs);
             }
             WindowEvent::MouseInput { state: ElementState::Released, button, .. } => {
+                self.down.retain(|down| down != button);
                 self.held.retain(|held| held != button);
+            }
+            // What is let go now nobody tells.
+            WindowEvent::Focused(false) => {
+                self.down.clear();
+                self.held.clear();
+                return None;
             }
             _ => return None,
         }
@@ -113,6 +123,10 @@ impl Hud {
             panels::show(ui, state, told, device);
             *free = ui.available_rect_before_wrap();
         });
+        if self.context.egui_is_using_pointer() {
+            // An edge is taken hold of from a little beside it, too.
+            self.held.clone_from(&self.down);
+        }
         self.hands.handle_platform_output(window, output.platform_output);
         self.shapes = self.context.tessellate(output.shapes, output.pixels_per_point);
         self.textures.append(output.textures_delta);
@@ -130,7 +144,7 @@ impl Hud {
     /// Records the panels over the window's picture, when the GPU is done with all but the last frame.
     pub fn record(&mut self, window: &mut Presented) -> Result<()> {
         self.take_textures()?;
-        let [width, height] = window.size;
+        let [width, height] = window.size();
         let (extent, scale) = (vk::Extent2D { width, height }, self.context.pixels_per_point());
         let (renderer, shapes) = (&mut self.renderer, &self.shapes);
         let mut drawn = Ok(());

@@ -94,8 +94,8 @@ pub struct Pace {
     cost: Cost,
     /// Whether a frame told what it costs while the hands moved: then whole ones tell nothing new.
     moving_known: bool,
-    /// What a whole frame took, ms, which does not tell whether for its pixels or its surfels.
-    whole: Option<f64>,
+    /// What a whole frame had to do and took, ms, which does not tell whether for its pixels or its surfels.
+    whole: Option<(Work, f64)>,
     chosen: Quality,
     moved: Option<Instant>,
     /// How long the last frame while the hands moved took, ms.
@@ -153,7 +153,7 @@ impl Pace {
 
     /// Who rests for a moment only is not made to wait for a whole frame.
     fn rest(&self) -> Duration {
-        REST.max(Duration::from_secs_f64(1e-3 * self.whole.unwrap_or(0.0)).min(4 * REST))
+        REST.max(Duration::from_secs_f64(1e-3 * self.whole.map_or(0.0, |(_, ms)| ms)).min(4 * REST))
     }
 
     /// When the picture is to be drawn once more, whole.
@@ -166,18 +166,19 @@ impl Pace {
     pub fn took(&mut self, quality: Quality, sight: &Sight, Frame { ms, moving, made }: Frame) {
         let known = self.moving_known || self.whole.is_some();
         if !moving && quality == Quality::WHOLE {
-            let most = self.whole.filter(|_| made).unwrap_or(f64::INFINITY);
-            self.whole = Some(ms.clamp(0.0, 1e6).min(most));
+            let work = sight.work(quality);
+            let like = self.whole.filter(|(known, _)| made && *known == work);
+            self.whole = Some((work, ms.clamp(0.0, 1e6).min(like.map_or(f64::INFINITY, |(_, ms)| ms))));
         }
         // The next one like it tells what it takes without that.
         if made && known {
             return;
         }
         let work = sight.work(quality);
-        if let Some(whole) = self.whole.filter(|_| moving) {
+        if let Some((of, whole)) = self.whole.filter(|_| moving) {
             // The two together tell pixels from surfels; if the device has more to do than it had, it would have for that, too.
             let busier = (ms / self.cost.of(work)).max(1.0);
-            self.cost.learn(sight.work(Quality::WHOLE), busier * whole);
+            self.cost.learn(of, busier * whole);
         }
         if moving || !self.moving_known {
             self.cost.learn(work, ms);
@@ -188,7 +189,7 @@ impl Pace {
     fn expected(&self, sight: &Sight, quality: Quality) -> f64 {
         let (work, whole) = (sight.work(quality), sight.work(Quality::WHOLE));
         let part = (work.pixels / whole.pixels).max(work.surfels / whole.surfels.max(1.0));
-        let most = self.whole.filter(|_| !self.moving_known).map_or(0.0, |whole| part * whole);
+        let most = self.whole.filter(|_| !self.moving_known).map_or(0.0, |(_, whole)| part * whole);
         self.cost.of(work).max(most) / self.budget
     }
 
@@ -370,6 +371,17 @@ mod tests {
             Quality::WHOLE,
             "where nothing else is known, it is believed"
         );
+    }
+
+    #[test]
+    fn a_larger_window_has_whole_frames_of_its_own() {
+        let (mut pace, now) = (Pace::new(60.0), Instant::now());
+        let small = Sight { pixels: 0.01 * sight().pixels, ..sight() };
+        let rest = |ms, made| Frame { ms, moving: false, made };
+        pace.took(Quality::WHOLE, &small, rest(5.0, false));
+        pace.took(Quality::WHOLE, &sight(), rest(500.0, true));
+        pace.moved(now);
+        assert_ne!(pace.quality(now, &sight()), Quality::WHOLE);
     }
 
     #[test]

@@ -10,8 +10,9 @@ use surfel::{FrameReport, Rasterizer, Result, Scene, Settings};
 /// Renders scenes and shows them.
 pub struct Screen {
     left: Side,
-    /// Where there are two pictures.
-    right: Side,
+    /// Where there have been two pictures.
+    right: Option<Side>,
+    rasterizer: Option<Rasterizer>,
     asked: Asked,
     /// Whether the last frame drew something anew, and whether things had to be made for that.
     drew: bool,
@@ -48,13 +49,17 @@ pub struct Pick {
 impl Screen {
     /// Nothing is there yet to be shown by `presenter`; nothing is asked.
     pub fn new(presenter: &Presenter, rasterizer: Option<Rasterizer>) -> Result<Self> {
-        let [left, right] = [Side::new(presenter, rasterizer)?, Side::new(presenter, rasterizer)?];
-        Ok(Self { left, right, asked: Asked::default(), drew: false, made: false })
+        let left = Side::new(presenter, rasterizer)?;
+        Ok(Self { left, right: None, rasterizer, asked: Asked::default(), drew: false, made: false })
     }
 
-    /// What is asked of frames from now on.
-    pub fn ask(&mut self, asked: Asked) {
+    /// What is asked of frames of `presenter` from now on.
+    pub fn ask(&mut self, asked: Asked, presenter: &Presenter) -> Result<()> {
+        if asked.split.is_some() && self.right.is_none() {
+            self.right = Some(Side::new(presenter, self.rasterizer)?);
+        }
         self.asked = asked;
+        Ok(())
     }
 
     /// Records a frame of `scene`, if there is one, of `size` px into the window's. After an error that is empty.
@@ -79,15 +84,19 @@ impl Screen {
         let mut drawn = drawn.map(|_| ());
         let (other, divider) = split.filter(|_| seen.is_some()).unzip();
         let divider = divider.unwrap_or(1.0);
-        if let Some((seen, settings)) = seen.zip(other) {
-            let right = self.right.record(window, Some(&Seen { settings, ..seen }));
+        if let Some(((seen, settings), side)) = seen.zip(other).zip(self.right.as_mut()) {
+            let right = side.record(window, Some(&Seen { settings, ..seen }));
             self.drew |= *right.as_ref().unwrap_or(&false);
-            self.made |= self.right.made();
+            self.made |= side.made();
             drawn = drawn.and(right.map(|_| ()));
         }
+        let right = self.right.as_ref().filter(|_| divider < 1.0);
+        if [Some(&self.left), right].into_iter().flatten().any(Side::is_empty) {
+            window.clear();
+        }
         self.left.show(window, [0.0, divider])?;
-        if divider < 1.0 {
-            self.right.show(window, [divider, 1.0])?;
+        if let Some(right) = right {
+            right.show(window, [divider, 1.0])?;
         }
         drawn
     }
@@ -104,7 +113,8 @@ impl Screen {
 
     /// What the last frame tells, once; nothing where it was not measured.
     pub fn reports(&mut self, presenter: &Presenter) -> Result<Reports> {
-        Ok(Reports { left: self.left.report(presenter)?, right: self.right.report(presenter)? })
+        let right = self.right.as_mut().map_or(Ok(None), |right| right.report(presenter))?;
+        Ok(Reports { left: self.left.report(presenter)?, right })
     }
 
     /// The depth of the last frame at a place; `None` where nothing is.

@@ -63,11 +63,16 @@ impl Side {
         }
         let drawn = self.drawn.take();
         self.made = !seen.zip(drawn.as_ref()).is_some_and(|(seen, drawn)| seen.needs_what(drawn));
-        let size = seen.map_or(window.size, |seen| seen.size);
+        let size = seen.map_or(window.size(), |seen| seen.size);
         let shown = seen.map(|seen| (&seen.scene, &seen.camera, &seen.settings));
         self.pane.draw(window, size, shown, seen.is_some_and(|seen| seen.measured))?;
         self.drawn = seen.cloned();
         Ok(seen.is_some())
+    }
+
+    /// Whether there is nothing to show, not even a background.
+    pub fn is_empty(&self) -> bool {
+        self.pane.is_empty()
     }
 
     /// Shows the columns between two parts of the width in the window.

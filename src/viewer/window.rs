@@ -30,8 +30,24 @@ pub struct Opened {
     /// When the last frame began, if it was followed at once by this one.
     last: Option<Instant>,
     /// What the pace knows the times of.
-    look: Option<(Arc<Scene>, Settings)>,
+    look: Option<Look>,
     pub window: Arc<Window>,
+}
+
+/// What frames are of.
+struct Look {
+    scene: Arc<Scene>,
+    settings: Settings,
+    /// Those of the picture beside it.
+    beside: Option<Settings>,
+}
+
+impl PartialEq for Look {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.scene, &other.scene)
+            && self.settings == other.settings
+            && self.beside == other.beside
+    }
 }
 
 impl Opened {
@@ -87,9 +103,8 @@ impl Opened {
     ) -> Result<Option<Instant>> {
         let start = Instant::now();
         self.fly(state, hands, start);
-        let look = state.look();
-        if !self.look.as_ref().zip(look.as_ref()).is_some_and(|(a, b)| Arc::ptr_eq(&a.0, &b.0) && a.1 == b.1)
-        {
+        let look = state.look().map(|(scene, settings)| Look { scene, settings, beside: told.beside(state) });
+        if self.look != look {
             self.pace.forget();
             self.look = look;
         }
@@ -100,7 +115,7 @@ impl Opened {
         told.surfels =
             sight.as_ref().and_then(|sight| sight.surfels.get(quality.scene)).copied().unwrap_or(0.0);
         let again = self.hud.lay_out(&self.window, state, told);
-        self.screen.ask(told.asked(state, quality.scene > 0));
+        self.screen.ask(told.asked(state, quality.scene > 0), &self.presenter)?;
         let [shown, drawn] = self.present(state, told, quality)?;
         // A frame's time is its own, and the next one shows where the hands are when it begins.
         self.presenter.wait()?;
@@ -161,8 +176,8 @@ impl Opened {
         let Self { presenter, hud, screen, .. } = self;
         let mut refused = told.refused.clone();
         let shown = presenter.present([width, height], |frame| {
-            state.lens.size = frame.size;
-            let size = frame.size.map(|length| side_of(length, quality.side));
+            state.lens.size = frame.size();
+            let size = frame.size().map(|length| side_of(length, quality.side));
             let seen = state.frame(quality.scene).transpose()?;
             let seen = seen.as_ref().map(|(scene, camera, settings)| (*scene, camera, &**settings));
             refused = match screen.record(frame, size, seen) {

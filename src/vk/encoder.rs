@@ -140,7 +140,7 @@ impl<'a> Encoder<'a> {
     /// The same of the columns between two parts of the width, from 0 to 1.
     #[cfg(feature = "window")]
     pub fn show_part(&mut self, image: &Image, window: &super::Presented, columns: [f64; 2]) {
-        self.scale(image, (window.image, window.size), columns);
+        self.scale(image, (window.image, window.size()), columns);
     }
 
     /// Copies columns of `image`, scaled, over those of another image, of so many px, in the layout in which copies write it.

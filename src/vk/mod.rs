@@ -54,6 +54,8 @@ pub use limits::{Capabilities, DeviceLimits};
 pub use memory::{HostMemory, Location, MemoryRequest, MemorySource};
 pub use pipeline::{Blend, ComputePipeline, Constants, DepthTest, DrawPipeline, DrawState, Topology, Within};
 #[cfg(feature = "window")]
+pub(crate) use presenter::Stake;
+#[cfg(feature = "window")]
 pub use presenter::{FRAMES_IN_FLIGHT, Presented, Presenter};
 pub use recorder::Recorder;
 pub use render_pass::{Attachment, Framebuffer, RenderPass};

@@ -6,8 +6,9 @@ use super::{
 };
 use crate::error::{Error, Result};
 use ash::{khr, vk};
+use std::cell::RefCell;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 /// How often in a row a window may refuse a swapchain that it should be able to have: it may have changed since it was asked.
 const REFUSALS: u32 = 100;
@@ -40,17 +41,39 @@ pub struct Presenter {
 /// A frame that is being recorded, which goes to the queue after all that were before it. It is there for as long as that takes.
 pub struct Presented {
     /// Is being recorded, outside a render pass.
-    pub cmd: vk::CommandBuffer,
+    pub(crate) cmd: vk::CommandBuffer,
     /// Of the window, in the layout in which copies write it; to be left in that.
-    pub image: vk::Image,
+    pub(super) image: vk::Image,
     framebuffer: vk::Framebuffer,
     overlay: vk::RenderPass,
-    /// Width and height, px.
-    pub size: [u32; 2],
+    size: [u32; 2],
     /// Its number among the frames of its presenter, and that one's own.
     pub(crate) number: u64,
     pub(crate) presenter: u64,
+    /// Of those who have recorded into it.
+    stakes: RefCell<Vec<Arc<Stake>>>,
     device: Arc<Device>,
+}
+
+/// What a frame that is being recorded and who records into it have to know of each other.
+#[derive(Default)]
+pub(crate) struct Stake {
+    /// The commands were thrown away.
+    thrown: AtomicBool,
+    /// What the commands use is gone.
+    gone: AtomicBool,
+}
+
+impl Stake {
+    /// Whether the commands were thrown away.
+    pub(crate) fn is_thrown(&self) -> bool {
+        self.thrown.load(Ordering::Relaxed)
+    }
+
+    /// What the commands use goes: if they are being recorded yet, they are not submitted.
+    pub(crate) fn go(&self) {
+        self.gone.store(true, Ordering::Relaxed);
+    }
 }
 
 /// What a frame is drawn to.
@@ -61,6 +84,55 @@ pub(super) struct Target {
 }
 
 impl Presented {
+    /// Width and height, px.
+    pub fn size(&self) -> [u32; 2] {
+        self.size
+    }
+
+    /// For who records into it.
+    pub(crate) fn stake(&self) -> Arc<Stake> {
+        let stake = Arc::new(Stake::default());
+        self.stakes.borrow_mut().push(stake.clone());
+        stake
+    }
+
+    /// An error if what was recorded uses what is gone.
+    pub(super) fn check(&self) -> Result<()> {
+        match self.stakes.borrow().iter().any(|stake| stake.gone.load(Ordering::Relaxed)) {
+            true => {
+                Err(Error::Usage("what draws in a frame is dropped while that is recorded: keep it".into()))
+            }
+            false => Ok(()),
+        }
+    }
+
+    /// The commands are thrown away.
+    pub(super) fn throw(&self) {
+        self.stakes.borrow().iter().for_each(|stake| stake.thrown.store(true, Ordering::Relaxed));
+    }
+
+    /// Makes all of it black.
+    pub fn clear(&self) {
+        let range = vk::ImageSubresourceRange {
+            aspect_mask: vk::ImageAspectFlags::COLOR,
+            level_count: 1,
+            layer_count: 1,
+            ..Default::default()
+        };
+        let black = vk::ClearColorValue { float32: [0.0, 0.0, 0.0, 1.0] };
+        let layout = vk::ImageLayout::TRANSFER_DST_OPTIMAL;
+        let before = vk::MemoryBarrier::default()
+            .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
+            .dst_access_mask(vk::AccessFlags::TRANSFER_WRITE);
+        let (copies, none) = (vk::PipelineStageFlags::TRANSFER, vk::DependencyFlags::empty());
+        // SAFETY: the command buffer is being recorded outside a render pass, and the image is in this layout.
+        unsafe {
+            let raw = &self.device.raw;
+            raw.cmd_clear_color_image(self.cmd, self.image, layout, &black, &[range]);
+            raw.cmd_pipeline_barrier(self.cmd, copies, copies, none, &[before], &[], &[]);
+        }
+    }
+
     /// Records passes.
     pub fn recorder(&self) -> Recorder<'_> {
         // SAFETY: the presenter submits what is being recorded before what is recorded later, to one queue; nothing else is recorded inside
@@ -215,6 +287,7 @@ impl Presenter {
             size,
             number: self.frames,
             presenter: self.number,
+            stakes: RefCell::default(),
             device: self.device.clone(),
         }
     }

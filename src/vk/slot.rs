@@ -59,8 +59,9 @@ impl Slot {
         end: impl FnOnce(&Self),
     ) -> Result<R> {
         self.begin(frame.image)?;
-        let recorded = body(&mut frame);
+        let recorded = body(&mut frame).and_then(|made| frame.check().map(|()| made));
         if recorded.is_err() {
+            frame.throw();
             self.begin(frame.image)?;
         }
         end(self);

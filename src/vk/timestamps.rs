@@ -81,21 +81,26 @@ impl Timestamps {
         Some(query)
     }
 
-    /// The last frame's times; it must be over. Passes of one label are summed. Nothing if it was never submitted.
+    /// The last frame's times; it must be over. Passes of one label are summed. Passes that were never submitted are left out.
     pub fn read(&self) -> Result<Vec<PassTime>> {
-        let mut stamps = vec![0u64; 2 * self.labels.len()];
+        // Each with whether it is there.
+        let mut stamps = vec![[0u64; 2]; 2 * self.labels.len()];
         if stamps.is_empty() {
             return Ok(Vec::new());
         }
-        let flags = vk::QueryResultFlags::TYPE_64;
+        let flags = vk::QueryResultFlags::TYPE_64 | vk::QueryResultFlags::WITH_AVAILABILITY;
         // SAFETY: the frame that wrote these queries is over.
         match unsafe { self.device.raw.get_query_pool_results(self.pool, 0, &mut stamps, flags) } {
-            Err(vk::Result::NOT_READY) => return Ok(Vec::new()),
+            Err(vk::Result::NOT_READY) => {}
             read => read.map_err(Error::vulkan("vkGetQueryPoolResults"))?,
         }
         let mut times: Vec<PassTime> = Vec::new();
         for (&label, stamp) in self.labels.iter().zip(stamps.chunks_exact(2)) {
-            let ticks = stamp[1].wrapping_sub(stamp[0]) & self.mask;
+            let [[begin, begun], [end, ended]] = [stamp[0], stamp[1]];
+            if begun == 0 || ended == 0 {
+                continue;
+            }
+            let ticks = end.wrapping_sub(begin) & self.mask;
             let milliseconds = ticks as f64 * f64::from(self.nanoseconds) * 1e-6;
             match times.iter_mut().find(|time| time.label == label) {
                 Some(time) => time.milliseconds += milliseconds,

@@ -8,19 +8,24 @@ use crate::{FLOATS, ONE};
 use ash::vk;
 use std::ffi::{CStr, c_void};
 use std::sync::Arc;
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Mutex, OnceLock};
 use surfel::embed::{Lent, Options, Renderer, View};
 use surfel::methods::Method;
 use surfel::vk::{Device, DeviceLimits};
 use surfel::{Precision, Settings};
 
-/// Pipelines that were made by the one host here, whose own functions these are.
+/// Pipelines that were made by the one host that counts.
 static MADE: AtomicU64 = AtomicU64::new(0);
-static GRAPHICS: OnceLock<vk::PFN_vkCreateGraphicsPipelines> = OnceLock::new();
-static COMPUTE: OnceLock<vk::PFN_vkCreateComputePipelines> = OnceLock::new();
+/// What its device makes them with.
+static MAKING: Mutex<Option<(vk::PFN_vkCreateGraphicsPipelines, vk::PFN_vkCreateComputePipelines)>> =
+    Mutex::new(None);
 /// One test at a time counts.
 static COUNTING: Mutex<()> = Mutex::new(());
+
+fn making() -> (vk::PFN_vkCreateGraphicsPipelines, vk::PFN_vkCreateComputePipelines) {
+    MAKING.lock().unwrap_or_else(|poisoned| poisoned.into_inner()).unwrap()
+}
 
 unsafe extern "system" fn graphics(
     device: vk::Device,
@@ -32,7 +37,7 @@ unsafe extern "system" fn graphics(
 ) -> vk::Result {
     MADE.fetch_add(count.into(), Ordering::SeqCst);
     // SAFETY: what is called was asked of the device.
-    unsafe { GRAPHICS.get().unwrap()(device, cache, count, infos, allocator, pipelines) }
+    unsafe { making().0(device, cache, count, infos, allocator, pipelines) }
 }
 
 unsafe extern "system" fn compute(
@@ -45,7 +50,7 @@ unsafe extern "system" fn compute(
 ) -> vk::Result {
     MADE.fetch_add(count.into(), Ordering::SeqCst);
     // SAFETY: as above.
-    unsafe { COMPUTE.get().unwrap()(device, cache, count, infos, allocator, pipelines) }
+    unsafe { making().1(device, cache, count, infos, allocator, pipelines) }
 }
 
 /// The host's device, lent with functions that count.
@@ -57,8 +62,8 @@ fn lend(host: &Host) -> Arc<Device> {
         found.map_or(std::ptr::null(), |found| found as *const c_void)
     };
     let table = host.device.fp_v1_0();
-    let _ = GRAPHICS.set(table.create_graphics_pipelines);
-    let _ = COMPUTE.set(table.create_compute_pipelines);
+    *MAKING.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) =
+        Some((table.create_graphics_pipelines, table.create_compute_pipelines));
     let load = |name: &CStr| match name.to_bytes() {
         b"vkCreateGraphicsPipelines" => graphics as *const c_void,
         b"vkCreateComputePipelines" => compute as *const c_void,

@@ -3,7 +3,7 @@
 use crate::display::key;
 use crate::faults::{Fault, faulty};
 use crate::program::scan;
-use crate::view::View;
+use crate::view::{View, command};
 use crate::{DRAW, SPHERE, stage};
 use std::path::Path;
 use surfel::methods::Method;
@@ -26,7 +26,9 @@ fn session(test: &str, input: &str) {
     let Some((display, program)) = stage(test) else { return };
     let (arguments, hidden) = (format!("{input} --size 400x300 {DRAW} --quiet"), program.path("HIDDEN"));
     let faults = [("HIDDEN", hidden.to_str().unwrap())];
-    let Some(command) = faulty(test, &program, &display.name, &arguments, &faults) else { return };
+    let layered = faulty(test, &program, &display.name, &arguments, &faults);
+    let hidden = layered.is_some().then_some(hidden.as_path());
+    let command = layered.unwrap_or_else(|| command(&program, &display.name, &arguments));
     let mut view = View::start(&display, command);
     let first = view.picture(|_| true);
     // Beside the panel, which leaves little of so small a window.
@@ -39,7 +41,7 @@ fn session(test: &str, input: &str) {
         let next = Method::ALL[(start + turn) % Method::ALL.len()].name;
         view.picture(|event| event["method"] == next);
     }
-    resize(&mut view, &hidden);
+    resize(&mut view, hidden);
     program
         .write("broken.ply", "ply\nformat binary_little_endian 1.0\nelement vertex 10\nproperty float x\n");
     let broken = program.path("broken.ply").canonicalize().unwrap();
@@ -65,9 +67,9 @@ fn session(test: &str, input: &str) {
 
 /// Fifty sizes, each of which comes to be a picture; the smallest that there is among them. On the way to some of them the window has no extent,
 /// while there is the file `hidden`.
-fn resize(view: &mut View, hidden: &Path) {
+fn resize(view: &mut View, hidden: Option<&Path>) {
     for i in 0..50u32 {
-        let none = (i % 10 == 5).then(|| Fault::begin(hidden));
+        let none = hidden.filter(|_| i % 10 == 5).map(Fault::begin);
         let size = match i % 10 {
             3 => [1, 1],
             6 => [1, 200 + i],

@@ -1,10 +1,11 @@
 //! The window's life: sizes, sight, displays that are not there, and its end.
 
-use crate::display::Display;
+use crate::display::PATIENCE;
 use crate::program::{Program, surfels};
 use crate::view::{End, View, command};
 use crate::{SPHERE, stage};
 use std::process::Output;
+use std::time::{Duration, Instant};
 
 #[test]
 fn a_window_that_is_hidden_comes_back() {
@@ -89,27 +90,42 @@ fn a_scene_is_framed_beside_the_panel_or_in_the_whole_window_without_it() {
     let Some((display, program)) = stage(test) else { return };
     let mut view = View::open(&display, &program, "scene:sphere?points=20000 --size 640x480");
     view.picture(|_| true);
-    // The panel's edge: its grey is nowhere else in the first row.
-    let row: Vec<_> = display.pixels(view.window).rows().next().unwrap().map(|pixel| pixel.0).collect();
-    let edge = row.iter().position(|pixel| *pixel != [0; 3]).unwrap();
-    assert!((200..500).contains(&edge), "{edge}");
-    assert!(margins(&display, &view, edge).iter().all(|margin| *margin > 2));
+    let edge = edge(&view);
+    margins(&view, edge, |margins| margins.iter().all(|margin| *margin > 2));
     // Perspective makes more of what is farther from the middle of the window.
     display.type_text("p");
     let mut before = view.picture(|event| event["camera"]["height"].is_f64());
     for (keys, columns) in [("f", edge), ("gf", 640)] {
         display.type_text(keys);
         before = view.picture(|event| event["camera"] != before["camera"]);
-        let [left, right] = margins(&display, &view, columns);
-        assert!(left > 2 && left.abs_diff(right) <= 2, "{left} and {right} px of {columns}");
+        margins(&view, columns, |[left, right]| left > 2 && left.abs_diff(right) <= 2);
     }
     view.close();
 }
 
-/// Columns on the left and on the right of what is seen in the first so many, which is none of them.
-fn margins(display: &Display, view: &View<'_>, columns: usize) -> [usize; 2] {
-    let pixels = display.pixels(view.window);
-    let seen = |x: &usize| (0..pixels.height()).any(|y| pixels.get_pixel(*x as u32, y).0 != [0; 3]);
-    let [first, last] = [(0..columns).find(seen), (0..columns).rfind(seen)].map(Option::unwrap);
-    [first, columns - 1 - last]
+/// The first column of the panel, whose grey is nowhere else in the first row.
+fn edge(view: &View<'_>) -> usize {
+    let first = |pixels: &image::RgbImage| (0..640).find(|x| pixels.get_pixel(*x, 0).0 != [0; 3]);
+    seen(view, |pixels| first(pixels).map(|edge| edge as usize).filter(|edge| (200..500).contains(edge)))
+}
+
+/// What `take` finds in the window: a picture that was presented need not be there yet.
+fn seen<R>(view: &View<'_>, take: impl Fn(&image::RgbImage) -> Option<R>) -> R {
+    let start = Instant::now();
+    loop {
+        if let Some(found) = take(&view.display.pixels(view.window)) {
+            return found;
+        }
+        assert!(start.elapsed() < PATIENCE, "it is not seen");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+}
+
+/// Waits until the columns on the left and on the right of what is seen in the first so many fit.
+fn margins(view: &View<'_>, columns: usize, fit: impl Fn([usize; 2]) -> bool) {
+    seen(view, |pixels| {
+        let seen = |x: &usize| (0..pixels.height()).any(|y| pixels.get_pixel(*x as u32, y).0 != [0; 3]);
+        let (first, last) = (0..columns).find(seen).zip((0..columns).rfind(seen))?;
+        fit([first, columns - 1 - last]).then_some(())
+    });
 }

@@ -20,6 +20,7 @@ use egui::{CollapsingHeader, Panel, ProgressBar, ScrollArea, Ui};
 use error::Errors;
 use split::Split;
 use std::sync::Arc;
+use surfel::Settings;
 use surfel::vk::Device;
 use times::Times;
 
@@ -63,6 +64,12 @@ impl Told {
     pub fn leave_context(&mut self) {
         self.errors.leave_context();
         self.buffers.leave_context();
+    }
+
+    /// How the picture beside the first is rendered, if there is one.
+    pub fn beside(&self, state: &State) -> Option<Settings> {
+        let asked = state.settings().and_then(|settings| self.split.asked(settings));
+        asked.map(|(settings, _)| settings)
     }
 
     /// What is asked of the next frame, which may be of surfels that stand for others.

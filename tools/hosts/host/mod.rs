@@ -110,8 +110,10 @@ impl Host {
             if there {
                 info = info.push_next(&mut features);
             }
-            let instance = entry.create_instance(&info, None)?;
             let messages = Arc::new(Mutex::new(Vec::new()));
+            // It hears what is said of the instance itself, too.
+            let mut whole = messenger(&messages);
+            let instance = entry.create_instance(&info.push_next(&mut whole), None)?;
             let debug = ext::debug_utils::Instance::new(&entry, &instance);
             let messenger = debug.create_debug_utils_messenger(&messenger(&messages), None)?;
             let (physical, family) = choose(&instance)?;
@@ -256,7 +258,7 @@ impl Host {
         Ok(made)
     }
 
-    /// Ends it: an error if the validation layers have said anything, of what is left over on the device, too.
+    /// Ends it: an error if the validation layers have said anything, of what is left over, too.
     pub fn close(self) -> Result<()> {
         let messages = self.messages.clone();
         drop(self);

@@ -75,12 +75,18 @@ fn picture<S: Show>(new: New<S>, asked: &Asked, file: &Path) -> Result<()> {
 fn frames<S: Show>(host: &Host, show: &mut S, frames: u64) -> Result<f64> {
     let mut under_way = UnderWay::new(FRAMES_IN_FLIGHT);
     let mut ends = vec![Instant::now()];
-    for number in 0..frames {
-        under_way.submit(host, |cmd| show.record(host, cmd, STEP * number as f64))?;
+    let mut draw = |number: u64, under_way: &mut UnderWay| -> Result<()> {
+        if under_way.is_full() {
+            under_way.wait(host)?;
+            ends.push(Instant::now());
+        }
+        under_way.submit(host, |cmd| show.record(host, cmd, STEP * number as f64))
+    };
+    let drawn = (0..frames).try_for_each(|number| draw(number, &mut under_way));
+    while under_way.wait(host)? {
         ends.push(Instant::now());
     }
-    under_way.finish(host)?;
-    ends.push(Instant::now());
+    drawn?;
     let mut times: Vec<_> = ends.windows(2).map(|pair| (pair[1] - pair[0]).as_secs_f64() * 1e3).collect();
     times.sort_by(f64::total_cmp);
     Ok(times[times.len() / 2])

@@ -18,12 +18,17 @@ impl UnderWay {
 
     /// Records and submits a frame, once the GPU is done with all but the last.
     pub fn submit<T>(&mut self, host: &Host, body: impl FnOnce(vk::CommandBuffer) -> Result<T>) -> Result<T> {
-        while self.frames.len() >= self.most {
+        while self.is_full() {
             self.wait(host)?;
         }
         let (submitted, made) = host.submit(body)?;
         self.frames.push_back(submitted);
         Ok(made)
+    }
+
+    /// Whether the next has to wait for the oldest.
+    pub fn is_full(&self) -> bool {
+        self.frames.len() >= self.most
     }
 
     /// Waits for the oldest; whether there was one.

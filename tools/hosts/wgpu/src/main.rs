@@ -27,7 +27,14 @@ fn main() -> Result<()> {
     if asked.model.is_some() {
         return Err("this host shows models of its own: leave --model out".into());
     }
+    let chosen = asked.method.is_some() || asked.points.is_some();
     match &asked.wanted {
+        Wanted::Check if chosen || asked.frames.is_some() => {
+            return Err("--check has methods, surfels and frames of its own: leave the rest out".into());
+        }
+        Wanted::Picture(_) if asked.frames.is_some() => {
+            return Err("a picture of this host is its only frame: leave --frames out".into());
+        }
         Wanted::Picture(file) => show::picture(&asked, file)?,
         Wanted::Window | Wanted::Tour => window::open(&asked)?,
         Wanted::Check => check::all()?,
