@@ -15,6 +15,7 @@ mod job;
 mod keep;
 mod keys;
 mod layout;
+mod lens;
 mod load;
 mod open;
 mod orbit;

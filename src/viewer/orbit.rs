@@ -3,6 +3,7 @@
 //! Places on the picture are in px from its top left; angles are radians. Nothing glides on: what the hands do is what moves, and the same
 //! hand's way moves the same, however many frames it takes.
 
+use super::lens::Lens;
 use glam::{DMat3, DVec2, DVec3};
 use surfel::geometry::{Bounds, Pose, Span};
 
@@ -14,9 +15,6 @@ const STEP: f64 = 0.85;
 const REACH: [f64; 2] = [1e-6, 1e3];
 /// Speed of flight, distances to the pivot a second.
 const SPEED: f64 = 0.75;
-/// Least part of the picture's width in which scenes are framed beside what covers the rest: a narrower one shows less of them than the whole
-/// picture, covered as it is.
-const LEAST_FREE: f64 = 1.0 / 3.0;
 /// Cosine of the angle from the horizon beyond which the camera looks straight up or down, where what is up in the world tells nothing of
 /// what is up in the picture.
 const STRAIGHT: f64 = 1e-6;
@@ -39,19 +37,6 @@ pub enum Side {
     Right,
     Top,
     Bottom,
-}
-
-/// A picture that is being looked at.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Lens {
-    /// Width and height, px.
-    pub size: [u32; 2],
-    /// Vertical angle of view, degrees.
-    pub fov_y_deg: f64,
-    /// Rays are parallel; what is as far as the pivot is as large as in perspective.
-    pub parallel: bool,
-    /// Width of what lies over the picture on its right, px.
-    pub covered: f64,
 }
 
 /// Where the camera stands and looks.
@@ -87,48 +72,6 @@ fn level(up: DVec3) -> [DVec3; 2] {
     let axis = DVec3::AXES[if up.x.abs() == most { 1 } else { 0 }];
     let right = (axis - axis.dot(up) * up).normalize();
     [right, right.cross(up)]
-}
-
-impl Lens {
-    /// Width over height.
-    pub fn aspect(&self) -> f64 {
-        f64::from(self.size[0]) / f64::from(self.size[1])
-    }
-
-    /// Half the height of what is seen at a distance of 1.
-    fn slope(&self) -> f64 {
-        (0.5 * self.fov_y_deg.to_radians()).tan()
-    }
-
-    /// World units a px, at a distance.
-    pub fn px(&self, distance: f64) -> f64 {
-        2.0 * distance * self.slope() / f64::from(self.size[1])
-    }
-
-    /// The middle of what is not covered, px.
-    pub fn middle(&self) -> DVec2 {
-        0.5 * DVec2::new(self.free(), self.size[1].into())
-    }
-
-    /// Width of what is not covered, on the left, px; all of it if that is too narrow.
-    fn free(&self) -> f64 {
-        let width = f64::from(self.size[0]);
-        let free = width - self.covered;
-        if free < LEAST_FREE * width { width } else { free }
-    }
-
-    /// Slopes of the sight at both sides of what is not covered, and half its height.
-    fn slopes(&self) -> [f64; 3] {
-        let px = self.px(1.0);
-        let middle = 0.5 * f64::from(self.size[0]);
-        [-middle * px, (self.free() - middle) * px, self.slope()]
-    }
-
-    /// From the middle of the picture, x to the right and y upwards, px.
-    fn off_middle(&self, at: DVec2) -> DVec2 {
-        let half = 0.5 * DVec2::from(self.size.map(f64::from));
-        (at - half) * DVec2::new(1.0, -1.0)
-    }
 }
 
 impl Orbit {

@@ -1,8 +1,9 @@
 //! What is looked at, and how: everything that the hands change.
 
 use super::keys::Action;
+use super::lens::Lens;
 use super::open::{Answer, Opening};
-use super::orbit::{Lens, Orbit, Up};
+use super::orbit::{Orbit, Up};
 use super::pace::Sight;
 use super::source::{Source, Wish};
 use super::{Look, Options};
