@@ -1,20 +1,26 @@
-//! Compiles `shaders-glsl/*.glsl` and writes `OUT_DIR/shaders.rs`: the SPIR-V, the structs that shaders and Rust share, the ids of the
+//! Writes `OUT_DIR/shaders.rs` and the SPIR-V that it includes: the compiled shaders, the structs that shaders and Rust share, the ids of the
 //! specialization constants. GLSL is the truth: a field that is renamed, swapped or gone there does not build here.
 //!
-//! Tells the program which code it is of: `SURFEL_CODE` and `SURFEL_COMMIT`.
+//! The SPIR-V is that of `shaders-glsl/compiled`, and must be of this GLSL; with the feature `compile-shaders` it is compiled here, into
+//! `OUT_DIR`. Nothing is written outside of that.
 
+#[cfg(feature = "bench")]
 #[path = "tools/code_digest.rs"]
 pub mod code_digest;
 #[path = "tools/shader_build/mod.rs"]
 pub mod shader_build;
 
-use std::path::Path;
+use shader_build::bundle::Bundle;
+use shader_build::digest;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    // Cargo watches every file below a folder, so the includes are covered.
+    // Cargo watches every file below a folder.
+    println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-changed=shaders-glsl");
-    match write_table().and_then(|()| code_digest::tell()) {
+    println!("cargo::rerun-if-changed=tools/shader_build");
+    match shaders().and_then(|()| code()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(message) => {
             message.lines().for_each(|line| println!("cargo::error={line}"));
@@ -23,10 +29,39 @@ fn main() -> ExitCode {
     }
 }
 
-fn write_table() -> Result<(), String> {
-    let table = shader_build::generate(Path::new("shaders-glsl"))?;
-    table.warnings.iter().for_each(|line| println!("cargo::warning={line}"));
+fn shaders() -> Result<(), String> {
     let out = std::env::var_os("OUT_DIR").ok_or("OUT_DIR is not set: cargo runs this program")?;
-    let path = Path::new(&out).join("shaders.rs");
-    std::fs::write(&path, table.rust).map_err(|error| format!("{}: {error}", path.display()))
+    let out = PathBuf::from(out);
+    bundle(&digest::sources(Path::new("."))?, &out)?.unpack(&out)
+}
+
+/// The shaders, compiled, and written to `OUT_DIR/compiled` as `shaders-glsl/compiled` should be.
+#[cfg(feature = "compile-shaders")]
+fn bundle(sources: &str, out: &Path) -> Result<Bundle, String> {
+    println!("cargo::rerun-if-env-changed={}", shader_build::compile::COMPILER);
+    let shaders = shader_build::compile_folder(Path::new("shaders-glsl"), sources.to_owned())?;
+    shaders.warnings.iter().for_each(|line| println!("cargo::warning={line}"));
+    shaders.bundle.write(&out.join("compiled"))?;
+    Ok(shaders.bundle)
+}
+
+/// The shaders as they were compiled before.
+#[cfg(not(feature = "compile-shaders"))]
+fn bundle(sources: &str, _: &Path) -> Result<Bundle, String> {
+    let bundle = Bundle::read(Path::new("shaders-glsl/compiled"))?;
+    if bundle.sources == sources {
+        return Ok(bundle);
+    }
+    Err("shaders-glsl/compiled is not of this GLSL: run tools/shaders, or build with --features compile-shaders".into())
+}
+
+/// Tells the program which code it is built from, where it measures.
+#[cfg(feature = "bench")]
+fn code() -> Result<(), String> {
+    code_digest::tell()
+}
+
+#[cfg(not(feature = "bench"))]
+fn code() -> Result<(), String> {
+    Ok(())
 }

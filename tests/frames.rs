@@ -84,7 +84,8 @@ fn pipelines_are_few_and_made_once_a_variant() {
         Settings { widen: Widen::All, ..Default::default() },
         lit,
     ];
-    for (rasterizer, most) in [(Rasterizer::Draw, 4), (Rasterizer::Compute, 7)] {
+    // What the constants that each module reads tell apart.
+    for (rasterizer, most) in [(Rasterizer::Draw, 17), (Rasterizer::Compute, 26)] {
         let options = RenderOptions { size: SIZE, rasterizer: Some(rasterizer), ..Default::default() };
         let mut renderer = Renderer::new(&device, options).unwrap();
         let before = device.usage().pipelines;
@@ -92,8 +93,8 @@ fn pipelines_are_few_and_made_once_a_variant() {
             renderer.render(&scene, &camera(SIZE), settings).unwrap();
         }
         let made = device.usage().pipelines - before;
-        println!("{rasterizer:?}: {made} pipelines for {} variants", frames.len());
-        assert_eq!(made, most * frames.len() as u64, "{rasterizer:?}");
+        println!("{rasterizer:?}: {made} pipelines for {} settings", frames.len());
+        assert_eq!(made, most, "{rasterizer:?}");
     }
     assert_silent(&device);
 }

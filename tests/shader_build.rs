@@ -4,8 +4,9 @@
 #[path = "../build.rs"]
 mod build;
 
-use build::shader_build::generate;
-use std::path::Path;
+use build::shader_build::bundle::Bundle;
+use build::shader_build::{Shaders, compile_folder, digest};
+use std::path::{Path, PathBuf};
 
 const BLOCK: &str =
     "layout(push_constant) uniform Frame { vec3 eye; float epsilon; mat4 view; uint count; } frame;";
@@ -17,15 +18,32 @@ fn pass(block: &str, expression: &str) -> String {
     )
 }
 
-/// Runs the build on these files in `shaders-glsl` of a folder of their own.
-fn build(files: &[(&str, &str)]) -> Result<String, String> {
+/// A folder with these files in `shaders-glsl`.
+fn folder(files: &[(&str, &str)]) -> tempfile::TempDir {
     let root = tempfile::tempdir().expect("a temporary folder");
     let folder = root.path().join("shaders-glsl");
     std::fs::create_dir_all(folder.join("lib")).expect("a folder for the includes");
     for (name, source) in files {
         std::fs::write(folder.join(name), source).expect("a shader");
     }
-    generate(&folder).map(|table| table.rust)
+    root
+}
+
+/// Compiles these files in `shaders-glsl` of a folder of their own.
+fn build(files: &[(&str, &str)]) -> Result<String, String> {
+    let root = folder(files);
+    let folder = root.path().join("shaders-glsl");
+    compile(&folder).map(|shaders| shaders.bundle.reflection)
+}
+
+fn compile(folder: &Path) -> Result<Shaders, String> {
+    compile_folder(folder, String::new())
+}
+
+/// The bundle of these files.
+fn bundle(files: &[(&str, &str)]) -> Bundle {
+    let root = folder(files);
+    compile(&root.path().join("shaders-glsl")).expect("it builds").bundle
 }
 
 fn error(files: &[(&str, &str)]) -> String {
@@ -41,7 +59,7 @@ fn contains(text: &str, wanted: &[&str]) {
 #[test]
 fn nothing_to_compile() {
     contains(&build(&[]).expect("an empty folder builds"), &["pub mod layout {", "pub mod constant {"]);
-    assert!(generate(Path::new("no/such/folder")).is_ok());
+    assert!(compile(Path::new("no/such/folder")).is_ok());
 }
 
 #[test]
@@ -52,24 +70,26 @@ fn every_stage_of_a_file_is_embedded() {
     contains(
         &rust,
         &[
-            "pub const DISC_VERTEX: &[u32]",
-            "pub const DISC_FRAGMENT: &[u32]",
-            "pub const POINT_FILL_COMPUTE: &[u32]",
+            "pub static DISC_VERTEX: Module",
+            "pub static DISC_FRAGMENT: Module",
+            "pub static POINT_FILL_COMPUTE: Module",
+            "/// The fragment stage of `shaders-glsl/disc.glsl`.",
+            "stage: ShaderStageFlags::FRAGMENT",
         ],
     );
-    // SPIR-V 1.3: what Vulkan 1.1 takes.
-    contains(
-        &rust,
-        &["0x07230203, 0x00010300,", "/// SPIR-V of the fragment stage of `shaders-glsl/disc.glsl`."],
-    );
     assert!(!rust.contains("DISC_COMPUTE"));
+    let bundle = bundle(&[("disc.glsl", both)]);
+    let names: Vec<_> = bundle.spirv.iter().map(|module| &*module.name).collect();
+    assert_eq!(names, ["disc_vertex", "disc_fragment"]);
+    // SPIR-V 1.3: what Vulkan 1.1 takes.
+    assert!(bundle.spirv.iter().all(|module| module.words[..2] == [0x0723_0203, 0x0001_0300]));
 }
 
 #[test]
 fn a_variant_is_compiled_beside_the_file() {
     let buffer = "#ifdef FULL\nlayout(set = 0, binding = 1) readonly buffer Extra { float extra[]; };\n#endif\n#pragma variant FULL";
     let plain = build(&[("a.glsl", &pass(buffer, "1.0"))]).expect("it builds");
-    contains(&plain, &["pub const A_COMPUTE: &[u32]", "pub const A_FULL_COMPUTE: &[u32]"]);
+    contains(&plain, &["pub static A_COMPUTE: Module", "pub static A_FULL_COMPUTE: Module"]);
     // What the variant has the file itself has not.
     let message = error(&[("a.glsl", &pass(buffer, "extra[0]"))]);
     contains(&message, &["shaders-glsl/a.glsl:", "'extra'"]);
@@ -216,4 +236,82 @@ fn specialization_constants_have_one_id() {
         &message,
         &["shaders-glsl/there.glsl: error: constant HAS_COLOUR has id 4, but 3 in shaders-glsl/here.glsl"],
     );
+}
+
+#[test]
+fn a_module_names_the_constants_that_it_reads() {
+    let constants = "layout(constant_id = 9) const uint UNREAD = 1;
+        layout(constant_id = 5) const float B = 1.0;
+        layout(constant_id = 2) const float A = 1.0;";
+    let rust = build(&[("a.glsl", &pass(constants, "A + B"))]).expect("it builds");
+    contains(&rust, &["constants: &[2, 5],"]);
+}
+
+#[test]
+fn a_bundle_is_read_as_it_was_written() {
+    let written = Bundle {
+        sources: "1f".into(),
+        compiler: "a compiler".into(),
+        ..bundle(&[("a.glsl", &pass("", "1.0"))])
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path().join("compiled");
+    written.write(&at).unwrap();
+    assert_eq!(Bundle::read(&at).unwrap(), written);
+    let out = folder.path().join("out");
+    written.unpack(&out).unwrap();
+    let bytes = std::fs::read(out.join("a_compute.spv")).unwrap();
+    assert_eq!(bytes.len(), 4 * written.spirv[0].words.len());
+    assert_eq!(std::fs::read_to_string(out.join("shaders.rs")).unwrap(), written.reflection);
+
+    let packed = at.join("a_compute.spv.z");
+    let bytes = std::fs::read(&packed).unwrap();
+    std::fs::write(&packed, &bytes[..bytes.len() / 2]).unwrap();
+    contains(&Bundle::read(&at).unwrap_err(), &["a_compute.spv.z is damaged"]);
+    std::fs::remove_file(at.join("digest")).unwrap();
+    contains(&Bundle::read(&at).unwrap_err(), &["cannot read", "digest"]);
+}
+
+#[test]
+fn the_digest_is_of_the_glsl_and_not_of_its_line_ends() {
+    let of = |files: &[(&str, &str)]| digest::sources(folder(files).path()).unwrap();
+    let first = of(&[("a.glsl", "a\nb\n")]);
+    assert_eq!(first.len(), 32);
+    assert_eq!(of(&[("a.glsl", "a\r\nb\r\n"), ("notes.txt", "x"), (".a.glsl", "x")]), first);
+    for other in [("a.glsl", "a\nc\n"), ("b.glsl", "a\nb\n"), ("lib/a.glsl", "a\nb\n")] {
+        assert_ne!(of(&[other]), first, "{other:?}");
+    }
+}
+
+/// Every file of a bundle.
+fn files(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+    let entries = folder.read_dir().unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
+    let paths = entries.map(|entry| entry.unwrap().path());
+    let mut files: Vec<_> =
+        paths.map(|path| (path.file_name().unwrap().into(), std::fs::read(&path).unwrap())).collect();
+    files.sort();
+    files
+}
+
+#[test]
+fn compiled_shaders_are_current() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let (kept, made) = (root.join("shaders-glsl/compiled"), Path::new(env!("OUT_DIR")).join("compiled"));
+    let [old, new] = [&kept, &made].map(|folder| Bundle::read(folder).unwrap());
+    let remedy = "shaders-glsl/compiled is not of this GLSL: run tools/shaders and commit what it writes";
+    assert_eq!(old.sources, new.sources, "{remedy}");
+    assert_eq!(old.sources, digest::sources(root).unwrap(), "{remedy}");
+    if old.compiler != new.compiler {
+        println!(
+            "SKIPPED: {} compiled it, here it is {}: SPIR-V is not compared",
+            old.compiler, new.compiler
+        );
+        return;
+    }
+    let [kept, made] = [&kept, &made].map(|folder| files(folder));
+    let names = |files: &[(PathBuf, Vec<u8>)]| files.iter().map(|(name, _)| name.clone()).collect::<Vec<_>>();
+    assert_eq!(names(&kept), names(&made), "{remedy}");
+    for ((name, kept), (_, made)) in kept.iter().zip(&made) {
+        assert!(kept == made, "{}: {remedy}", name.display());
+    }
 }

@@ -3,6 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use xxhash_rust::xxh3::Xxh3;
 
 /// Everything that a measurement can depend on, but for the machine and its compiler.
 const CODE: [&str; 7] = [
@@ -38,15 +39,17 @@ pub fn digest(root: &Path) -> Result<String, String> {
         collect(path, &mut files)?;
     }
     files.sort();
-    let mut hash = blake3::Hasher::new();
+    let mut hash = Xxh3::new();
     hash.update(std::env::var("OPT_LEVEL").unwrap_or_default().as_bytes());
     for path in files {
         let bytes = fs::read(&path).map_err(|error| format!("{}: {error}", path.display()))?;
         let name = path.strip_prefix(root).unwrap_or(&path).to_string_lossy().replace('\\', "/");
-        hash.update(&(name.len() as u64).to_le_bytes()).update(name.as_bytes());
-        hash.update(&(bytes.len() as u64).to_le_bytes()).update(&bytes);
+        for part in [name.as_bytes(), &bytes] {
+            hash.update(&(part.len() as u64).to_le_bytes());
+            hash.update(part);
+        }
     }
-    Ok(hash.finalize().to_hex()[..16].to_owned())
+    Ok(format!("{:016x}", hash.digest()))
 }
 
 fn collect(path: &Path, files: &mut Vec<PathBuf>) -> Result<(), String> {

@@ -40,7 +40,7 @@ impl DrawAttribute {
         layout: &SplatLayout,
         variant: &SceneVariant,
     ) -> Result<DrawPipeline> {
-        let code = [shaders::ATTRIBUTE_VERTEX, shaders::ATTRIBUTE_FRAGMENT];
+        let code = [&shaders::ATTRIBUTE_VERTEX, &shaders::ATTRIBUTE_FRAGMENT];
         let state =
             DrawState { topology: Topology::Triangles, depth: DepthTest::NotBehind, blend: Blend::Add };
         DrawPipeline::new(device, &[&layout.splats], code, &variant.constants(), &self.pass, state)
@@ -77,7 +77,7 @@ impl SubpassAttribute {
         within: &Within<'_>,
         marked: bool,
     ) -> Result<Self> {
-        let code = [shaders::ATTRIBUTE_VERTEX, shaders::ATTRIBUTE_FRAGMENT];
+        let code = [&shaders::ATTRIBUTE_VERTEX, &shaders::ATTRIBUTE_FRAGMENT];
         let (sets, constants) = ([&layout.splats], variant.constants());
         let depth = if marked { DepthTest::Marked } else { DepthTest::NotBehind };
         let pipeline = DrawPipeline::of_host(device, &sets, code, &constants, within, depth, WINDOW)?;
@@ -93,7 +93,7 @@ impl SubpassAttribute {
 impl ComputeAttribute {
     /// The pass for a scene of `variant`.
     pub fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &SceneVariant) -> Result<Self> {
-        Scatter::new(device, layout, shaders::ATTRIBUTE_COMPUTE, variant).map(Self)
+        Scatter::new(device, layout, &shaders::ATTRIBUTE_COMPUTE, variant).map(Self)
     }
 
     /// The splats of all scenes, `targets.visibility`, `tiles` → `targets.sums0`, `targets.sums1`, which are cleared before.

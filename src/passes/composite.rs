@@ -6,7 +6,8 @@ use crate::methods::Composited;
 use crate::targets::PictureBuffer;
 use crate::vk::shaders::{self, constant, layout};
 use crate::vk::{
-    Access, Binding, Constants, DepthTest, DescriptorSet, Device, DrawPipeline, Draws, SetLayout, Use, Within,
+    Access, Binding, Code, Constants, DepthTest, DescriptorSet, Device, DrawPipeline, Draws, SetLayout, Use,
+    Within,
 };
 use ash::vk::{DescriptorType, ShaderStageFlags};
 use std::sync::Arc;
@@ -46,16 +47,16 @@ impl Composite {
         };
         let layout = SetLayout::new(device, &seen)?;
         let fragment = match (kind.images, kind.normal, kind.id) {
-            (true, None, _) => shaders::COMPOSITE_IMAGES_FRAGMENT,
-            (true, Some(_), _) => shaders::COMPOSITE_IMAGES_NORMALS_FRAGMENT,
-            (false, None, None) => shaders::COMPOSITE_FRAGMENT,
-            (false, Some(_), None) => shaders::COMPOSITE_NORMALS_FRAGMENT,
-            (false, None, Some(_)) => shaders::COMPOSITE_IDS_FRAGMENT,
-            (false, Some(_), Some(_)) => shaders::COMPOSITE_NORMALS_IDS_FRAGMENT,
+            (true, None, _) => &shaders::COMPOSITE_IMAGES_FRAGMENT,
+            (true, Some(_), _) => &shaders::COMPOSITE_IMAGES_NORMALS_FRAGMENT,
+            (false, None, None) => &shaders::COMPOSITE_FRAGMENT,
+            (false, Some(_), None) => &shaders::COMPOSITE_NORMALS_FRAGMENT,
+            (false, None, Some(_)) => &shaders::COMPOSITE_IDS_FRAGMENT,
+            (false, Some(_), Some(_)) => &shaders::COMPOSITE_NORMALS_IDS_FRAGMENT,
         };
         let places = [Some(kind.picture), kind.normal, kind.id];
-        let fragment = at_locations(fragment, places.map(Option::unwrap_or_default));
-        let code = [shaders::COMPOSITE_VERTEX, &fragment];
+        let fragment = Code::from(fragment).at_locations(places.map(Option::unwrap_or_default));
+        let code = [Code::from(&shaders::COMPOSITE_VERTEX), fragment];
         let constants = Constants::default()
             .with(constant::PERSPECTIVE, kind.perspective)
             .with(constant::HOST_DEPTH, kind.reversed.is_some())
@@ -97,20 +98,4 @@ impl Composite {
     pub fn draw(&self, draws: &mut Draws<'_>, view: &DescriptorSet, place: &layout::Composite) {
         draws.draw(&self.pipeline, &[view], place, 3);
     }
-}
-
-/// The SPIR-V `code` with outputs at `locations` in the place of 0, 1, …: locations are no specialization constants.
-fn at_locations(code: &[u32], locations: [u32; 3]) -> Vec<u32> {
-    const HEADER: usize = 5;
-    const OP_DECORATE: u32 = 71;
-    const LOCATION: u32 = 30;
-    let mut code = code.to_vec();
-    let mut i = HEADER;
-    while let Some(&word) = code.get(i) {
-        if let (OP_DECORATE, Some([_, LOCATION, location])) = (word & 0xffff, code.get_mut(i + 1..i + 4)) {
-            *location = locations[*location as usize % 3];
-        }
-        i += (word >> 16).max(1) as usize;
-    }
-    code
 }

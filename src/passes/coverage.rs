@@ -3,6 +3,7 @@
 use super::SplatLayout;
 use crate::error::Result;
 use crate::variant::{SceneVariant, Variant};
+use crate::vk::shaders::Module;
 use crate::vk::{
     Access, Binding, Blend, Buffer, DepthTest, DescriptorSet, Device, DrawPipeline, DrawState, Recorder,
     RenderPass, SetLayout, Topology, Use,
@@ -31,7 +32,7 @@ impl DrawnCoverage {
         device: &Arc<Device>,
         layout: &SplatLayout,
         variant: &SceneVariant,
-        code: [&'static [u32]; 2],
+        code: [&'static Module; 2],
         pass: &RenderPass,
     ) -> Result<DrawPipeline> {
         let state =

@@ -30,7 +30,7 @@ impl Footprint {
     }
 
     fn with(device: &Arc<Device>, layout: &SplatLayout, constants: Constants, count: bool) -> Result<Self> {
-        let code = shaders::FOOTPRINT_COMPUTE;
+        let code = &shaders::FOOTPRINT_COMPUTE;
         Ok(Self { pipeline: ComputePipeline::new(device, &[&layout.splats], code, &constants)?, count })
     }
 

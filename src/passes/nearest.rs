@@ -73,10 +73,10 @@ impl DrawNearest {
 }
 
 /// The shaders of a draw.
-fn code(variant: &Variant) -> [&'static [u32]; 2] {
+fn code(variant: &Variant) -> [&'static shaders::Module; 2] {
     match variant.coverage {
-        false => [shaders::NEAREST_VERTEX, shaders::NEAREST_FRAGMENT],
-        true => [shaders::NEAREST_COVERAGE_VERTEX, shaders::NEAREST_COVERAGE_FRAGMENT],
+        false => [&shaders::NEAREST_VERTEX, &shaders::NEAREST_FRAGMENT],
+        true => [&shaders::NEAREST_COVERAGE_VERTEX, &shaders::NEAREST_COVERAGE_FRAGMENT],
     }
 }
 
@@ -96,8 +96,8 @@ impl ComputeNearest {
     /// The pass for a scene of `variant`.
     pub fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &SceneVariant) -> Result<Self> {
         let code = match variant.frame.coverage {
-            false => shaders::NEAREST_COMPUTE,
-            true => shaders::NEAREST_COVERAGE_COMPUTE,
+            false => &shaders::NEAREST_COMPUTE,
+            true => &shaders::NEAREST_COVERAGE_COMPUTE,
         };
         Scatter::new(device, layout, code, variant).map(Self)
     }

@@ -90,8 +90,8 @@ impl DrawNormalize {
             [Attachment::Overwritten(formats.image), optional(formats.normal), optional(formats.depth)];
         let pass = RenderPass::new(device, &outputs, None)?;
         let code = match variant.coverage {
-            false => [shaders::NORMALIZE_VERTEX, shaders::NORMALIZE_FRAGMENT],
-            true => [shaders::NORMALIZE_COVERAGE_VERTEX, shaders::NORMALIZE_COVERAGE_FRAGMENT],
+            false => [&shaders::NORMALIZE_VERTEX, &shaders::NORMALIZE_FRAGMENT],
+            true => [&shaders::NORMALIZE_COVERAGE_VERTEX, &shaders::NORMALIZE_COVERAGE_FRAGMENT],
         };
         let state =
             DrawState { topology: Topology::Triangles, depth: DepthTest::None, blend: Blend::Replace };
@@ -145,8 +145,8 @@ impl SubpassNormalize {
         let read: Vec<_> = [input; 3].into_iter().chain(coverage).collect();
         let inputs_layout = SetLayout::new(device, &read)?;
         let fragment = match variant.coverage {
-            false => shaders::NORMALIZE_SUBPASS_FRAGMENT,
-            true => shaders::NORMALIZE_SUBPASS_COVERAGE_FRAGMENT,
+            false => &shaders::NORMALIZE_SUBPASS_FRAGMENT,
+            true => &shaders::NORMALIZE_SUBPASS_COVERAGE_FRAGMENT,
         };
         let constants = variant
             .constants()
@@ -155,7 +155,7 @@ impl SubpassNormalize {
             .with(constant::ENCODE, kind.encode);
         let depth = kind.reversed.map_or(DepthTest::None, |reversed| DepthTest::Host { reversed });
         let push = size_of::<layout::Subpass>() as u32;
-        let (sets, code) = ([&frame_layout, &inputs_layout], [shaders::NORMALIZE_VERTEX, fragment]);
+        let (sets, code) = ([&frame_layout, &inputs_layout], [&shaders::NORMALIZE_VERTEX, fragment]);
         let pipeline = DrawPipeline::of_host(device, &sets, code, &constants, within, depth, push)?;
         Ok(Self { frame_layout, inputs_layout, pipeline })
     }
@@ -187,8 +187,8 @@ impl ComputeNormalize {
         let frame_layout = frame_layout(device)?;
         let sets = [&frame_layout, &layout.pixels];
         let code = match variant.coverage {
-            false => shaders::NORMALIZE_COMPUTE,
-            true => shaders::NORMALIZE_COVERAGE_COMPUTE,
+            false => &shaders::NORMALIZE_COMPUTE,
+            true => &shaders::NORMALIZE_COVERAGE_COMPUTE,
         };
         let pipeline = ComputePipeline::new(device, &sets, code, &variant.constants())?;
         Ok(Self { frame_layout, pipeline })

@@ -46,7 +46,7 @@ impl DrawPoints {
         let pass = RenderPass::new(device, &[number], Some(Attachment::Cleared(DrawnPoints::DEPTH)))?;
         let hand_over = || {
             let sets = [&layout.frame, &layout.plain, &layout.pyramid, &layout.drawn_points];
-            let code = shaders::PROJECT_DRAWN_POINTS_COMPUTE;
+            let code = &shaders::PROJECT_DRAWN_POINTS_COMPUTE;
             ComputePipeline::new(device, &sets, code, &variant.constants())
         };
         let hand_over = variant.primitives.then(hand_over).transpose()?;
@@ -60,7 +60,7 @@ impl DrawPoints {
         layout: &SplatLayout,
         variant: &SceneVariant,
     ) -> Result<DrawPipeline> {
-        let code = [shaders::POINTS_VERTEX, shaders::POINTS_FRAGMENT];
+        let code = [&shaders::POINTS_VERTEX, &shaders::POINTS_FRAGMENT];
         let state =
             DrawState { topology: Topology::Points, depth: DepthTest::Nearest, blend: Blend::Replace };
         DrawPipeline::new(device, &[&layout.splats], code, &variant.constants(), &self.pass, state)

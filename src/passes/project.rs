@@ -45,7 +45,7 @@ impl Kind {
     fn new(
         device: &Arc<Device>,
         sets: &[&SetLayout],
-        [project, fetch]: [&[u32]; 2],
+        [project, fetch]: [&'static shaders::Module; 2],
         constants: &Constants,
     ) -> Result<Self> {
         let pipeline = |code| ComputePipeline::new(device, sets, code, constants);
@@ -69,11 +69,11 @@ impl Project {
     ) -> Result<ProjectScene> {
         let constants = variant.constants();
         let sets = [&layout.frame, &layout.plain, &layout.pyramid, &layout.primitives];
-        let lines = [shaders::PROJECT_LINES_COMPUTE, shaders::FETCH_LINES_COMPUTE];
-        let triangles = [shaders::PROJECT_TRIANGLES_COMPUTE, shaders::FETCH_TRIANGLES_COMPUTE];
+        let lines = [&shaders::PROJECT_LINES_COMPUTE, &shaders::FETCH_LINES_COMPUTE];
+        let triangles = [&shaders::PROJECT_TRIANGLES_COMPUTE, &shaders::FETCH_TRIANGLES_COMPUTE];
         let of_triangles = || {
             let large = constants.clone().with(constant::LARGE_TRIANGLES, true);
-            let large = ComputePipeline::new(device, &sets, shaders::PROJECT_TRIANGLES_COMPUTE, &large)?;
+            let large = ComputePipeline::new(device, &sets, &shaders::PROJECT_TRIANGLES_COMPUTE, &large)?;
             Ok((Kind::new(device, &sets, triangles, &constants)?, large))
         };
         let kinds = variant.primitives;
@@ -244,8 +244,8 @@ fn points(
     variant: &SceneVariant,
 ) -> Result<Option<ComputePipeline>> {
     let code = match (variant.frame.draws_points(), variant.frame.count) {
-        (false, _) => shaders::PROJECT_COMPUTE,
-        (true, true) => shaders::PROJECT_FATES_COMPUTE,
+        (false, _) => &shaders::PROJECT_COMPUTE,
+        (true, true) => &shaders::PROJECT_FATES_COMPUTE,
         (true, false) => return Ok(None),
     };
     let sets = [&layout.splats, &layout.plain, &layout.pyramid];
@@ -255,8 +255,8 @@ fn points(
 /// Fetches surfels, from where they were compared or from where they were drawn.
 fn fetch(device: &Arc<Device>, layout: &SplatLayout, variant: &SceneVariant) -> Result<ComputePipeline> {
     let (code, drawn) = match variant.frame.computes_points() {
-        true => (shaders::FETCH_COMPUTE, None),
-        false => (shaders::FETCH_DRAWN_POINTS_COMPUTE, Some(&layout.drawn_points)),
+        true => (&shaders::FETCH_COMPUTE, None),
+        false => (&shaders::FETCH_DRAWN_POINTS_COMPUTE, Some(&layout.drawn_points)),
     };
     let sets: Vec<_> = [&layout.splats, &layout.plain, &layout.pyramid].into_iter().chain(drawn).collect();
     ComputePipeline::new(device, &sets, code, &variant.constants())

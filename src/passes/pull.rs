@@ -14,7 +14,7 @@ pub struct Pull(ComputePipeline);
 impl Pull {
     /// The pass for `variant`.
     pub fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self> {
-        over_pixels(device, &[&layout.pyramid; 2], variant, shaders::PULL_COMPUTE).map(Self)
+        over_pixels(device, &[&layout.pyramid; 2], variant, &shaders::PULL_COMPUTE).map(Self)
     }
 
     /// Level 0 of what is pulled → all others. `frame` is a set of the frame's numbers.

@@ -14,7 +14,7 @@ pub struct Push(ComputePipeline);
 impl Push {
     /// The pass for `variant`.
     pub fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self> {
-        over_pixels(device, &[&layout.pyramid; 2], variant, shaders::PUSH_COMPUTE).map(Self)
+        over_pixels(device, &[&layout.pyramid; 2], variant, &shaders::PUSH_COMPUTE).map(Self)
     }
 
     /// What is pulled of all levels → what is pushed. `frame` is a set of the frame's numbers.

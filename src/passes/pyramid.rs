@@ -6,6 +6,7 @@ use super::normalize::{frame_layout, grid_over};
 use crate::error::Result;
 use crate::targets::{PLANES, Pyramid, Pyramids};
 use crate::variant::Variant;
+use crate::vk::shaders::Module;
 use crate::vk::{Buffer, ComputePipeline, DescriptorSet, Device, Encoder, SetLayout};
 use ash::vk::{DescriptorType, ShaderStageFlags};
 use std::sync::Arc;
@@ -31,7 +32,7 @@ pub(super) fn over_pixels(
     device: &Arc<Device>,
     sets: &[&SetLayout],
     variant: &Variant,
-    code: &[u32],
+    code: &'static Module,
 ) -> Result<ComputePipeline> {
     let frame = frame_layout(device)?;
     let sets: Vec<_> = [&frame].into_iter().chain(sets.iter().copied()).collect();

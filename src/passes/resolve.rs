@@ -16,7 +16,7 @@ impl Resolve {
     /// The pass for a scene of `variant`.
     pub fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &SceneVariant) -> Result<Self> {
         let sets = [&layout.splats, &layout.pixels];
-        ComputePipeline::new(device, &sets, shaders::RESOLVE_COMPUTE, &variant.constants()).map(Self)
+        ComputePipeline::new(device, &sets, &shaders::RESOLVE_COMPUTE, &variant.constants()).map(Self)
     }
 
     /// The splats of all scenes, of which the first clears, `targets.visibility` → `targets.sums0`, `targets.sums1`.

@@ -4,6 +4,7 @@ use super::{SplatLayout, Splats};
 use crate::error::Result;
 use crate::targets::Buffers;
 use crate::variant::SceneVariant;
+use crate::vk::shaders::Module;
 use crate::vk::shaders::constant;
 use crate::vk::{Binding, ComputePipeline, DescriptorSet, Device, Encoder, SetLayout};
 use ash::vk::{DescriptorType, ShaderStageFlags};
@@ -44,7 +45,7 @@ impl Scatter {
     pub fn new(
         device: &Arc<Device>,
         layout: &SplatLayout,
-        code: &[u32],
+        code: &'static Module,
         variant: &SceneVariant,
     ) -> Result<Self> {
         let sets = [&layout.splats, &layout.pixels];

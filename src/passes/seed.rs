@@ -20,13 +20,13 @@ impl Seed {
         let layout =
             SetLayout::new(device, &[(DescriptorType::INPUT_ATTACHMENT, ShaderStageFlags::FRAGMENT)])?;
         let fragment = match samples {
-            1 => shaders::SEED_FRAGMENT,
-            _ => shaders::SEED_MULTISAMPLED_FRAGMENT,
+            1 => &shaders::SEED_FRAGMENT,
+            _ => &shaders::SEED_MULTISAMPLED_FRAGMENT,
         };
         let constants = Constants::default()
             .with(constant::PERSPECTIVE, perspective)
             .with(constant::HOST_SAMPLES, samples);
-        let (code, push) = ([shaders::SEED_VERTEX, fragment], size_of::<layout::Seed>() as u32);
+        let (code, push) = ([&shaders::SEED_VERTEX, fragment], size_of::<layout::Seed>() as u32);
         let depth = DepthTest::Always;
         let pipeline = DrawPipeline::of_host(device, &[&layout], code, &constants, within, depth, push)?;
         Ok(Self { layout, pipeline })

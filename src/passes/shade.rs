@@ -25,8 +25,8 @@ impl Shade {
         let sets = [&layout.pyramid, &layout.plain, &layout.lookups];
         let looks_up = variant.texture.is_some() || variant.materials;
         let pipeline = match looks_up {
-            true => over_pixels(device, &sets, variant, shaders::SHADE_LOOKUPS_COMPUTE)?,
-            false => over_pixels(device, &sets[..2], variant, shaders::SHADE_COMPUTE)?,
+            true => over_pixels(device, &sets, variant, &shaders::SHADE_LOOKUPS_COMPUTE)?,
+            false => over_pixels(device, &sets[..2], variant, &shaders::SHADE_COMPUTE)?,
         };
         Ok(Self { frame_layout: frame_layout(device)?, pipeline, looks_up })
     }

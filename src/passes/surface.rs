@@ -5,6 +5,7 @@ use super::splats::WINDOW;
 use super::{SplatLayout, Splats};
 use crate::error::Result;
 use crate::variant::SceneVariant;
+use crate::vk::shaders::Module;
 use crate::vk::{DepthTest, DescriptorSet, Device, DrawPipeline, Draws, Within};
 use std::sync::Arc;
 
@@ -19,7 +20,7 @@ impl SubpassSurface {
         device: &Arc<Device>,
         layout: &SplatLayout,
         variant: &SceneVariant,
-        code: [&[u32]; 2],
+        code: [&'static Module; 2],
         within: &Within<'_>,
         depth: DepthTest,
     ) -> Result<Self> {

@@ -18,7 +18,7 @@ impl Tiles {
     /// The pass for `variant`.
     pub fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &Variant) -> Result<Self> {
         let sets = [&frame_layout(device)?, &layout.pixels];
-        ComputePipeline::new(device, &sets, shaders::TILES_COMPUTE, &variant.constants()).map(Self)
+        ComputePipeline::new(device, &sets, &shaders::TILES_COMPUTE, &variant.constants()).map(Self)
     }
 
     /// `targets.visibility` → `targets.tiles`. `frame` is a set of the frame's numbers.

@@ -67,10 +67,10 @@ impl DrawVisibility {
 }
 
 /// The shaders of a draw.
-fn code(variant: &Variant) -> [&'static [u32]; 2] {
+fn code(variant: &Variant) -> [&'static shaders::Module; 2] {
     match variant.coverage {
-        false => [shaders::VISIBILITY_VERTEX, shaders::VISIBILITY_FRAGMENT],
-        true => [shaders::VISIBILITY_COVERAGE_VERTEX, shaders::VISIBILITY_COVERAGE_FRAGMENT],
+        false => [&shaders::VISIBILITY_VERTEX, &shaders::VISIBILITY_FRAGMENT],
+        true => [&shaders::VISIBILITY_COVERAGE_VERTEX, &shaders::VISIBILITY_COVERAGE_FRAGMENT],
     }
 }
 
@@ -92,8 +92,8 @@ impl ComputeVisibility {
     /// The pass for a scene of `variant`.
     pub fn new(device: &Arc<Device>, layout: &SplatLayout, variant: &SceneVariant) -> Result<Self> {
         let code = match variant.frame.coverage {
-            false => shaders::VISIBILITY_COMPUTE,
-            true => shaders::VISIBILITY_COVERAGE_COMPUTE,
+            false => &shaders::VISIBILITY_COMPUTE,
+            true => &shaders::VISIBILITY_COVERAGE_COMPUTE,
         };
         Scatter::new(device, layout, code, variant).map(Self)
     }

@@ -14,6 +14,7 @@ use glam::DVec3;
 use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use xxhash_rust::xxh3::{Xxh3, xxh3_128};
 
 /// Rises whenever the tracer makes other images of the same request.
 const VERSION: u32 = 1;
@@ -71,7 +72,7 @@ impl Cache {
         size: [u32; 2],
         options: &Options,
     ) -> PathBuf {
-        let mut hash = blake3::Hasher::new();
+        let mut hash = Xxh3::new();
         hash.update(&VERSION.to_le_bytes());
         text(&mut hash, &surface_of(name));
         fingerprint(&mut hash, scene);
@@ -89,13 +90,13 @@ impl Cache {
         // Neither matters to single rays.
         let (error, most_samples) = if *filter == Filter::Point { (&0.0, &0) } else { (error, most_samples) };
         text(&mut hash, &format!("{filter:?} {error:?} {most_samples}"));
-        self.folder.join(format!("{}.exr", hash.finalize().to_hex()))
+        self.folder.join(format!("{:032x}.exr", hash.digest128()))
     }
 
     fn store(&self, path: &Path, truth: &Truth) -> Result<()> {
         fs::create_dir_all(&self.folder).map_err(Error::io(&self.folder, "cannot make the folder"))?;
         image::write_exr(&truth.picture, path)?;
-        let sum = blake3::hash(&fs::read(path).map_err(Error::io(path, "cannot read"))?).to_hex();
+        let sum = digest(&fs::read(path).map_err(Error::io(path, "cannot read"))?);
         let Achieved { rms, max, above } = truth.error;
         atomic::write(&path.with_extension("txt"), |out| write!(out, "{sum} {rms:?} {max:?} {above}"))
     }
@@ -105,13 +106,18 @@ impl Cache {
 fn load(path: &Path) -> Option<Truth> {
     let note = fs::read_to_string(path.with_extension("txt")).ok()?;
     let mut words = note.split(' ');
-    if words.next()? != blake3::hash(&fs::read(path).ok()?).to_hex().as_str() {
+    if words.next()? != digest(&fs::read(path).ok()?) {
         return None;
     }
     let mut number = || words.next()?.parse().ok();
     let (rms, max) = (number()?, number()?);
     let above = words.next()?.parse().ok()?;
     Some(Truth { picture: image::read(path).ok()?, error: Achieved { rms, max, above } })
+}
+
+/// Of a file, 32 hexadecimal digits.
+fn digest(bytes: &[u8]) -> String {
+    format!("{:032x}", xxh3_128(bytes))
 }
 
 /// A scene's text without the parameters of its samples.
@@ -125,7 +131,7 @@ fn surface_of(name: &str) -> String {
 }
 
 /// What rays through the scene meet, bit by bit.
-fn fingerprint<S: Scene + ?Sized>(hash: &mut blake3::Hasher, scene: &S) {
+fn fingerprint<S: Scene + ?Sized>(hash: &mut Xxh3, scene: &S) {
     let bounds = scene.bounds();
     numbers(hash, &[bounds.min, bounds.max].map(|corner| corner.to_array()).concat());
     let mut random = Random::new(1, 1);
@@ -141,12 +147,13 @@ fn fingerprint<S: Scene + ?Sized>(hash: &mut blake3::Hasher, scene: &S) {
     }
 }
 
-fn numbers(hash: &mut blake3::Hasher, numbers: &[f64]) {
+fn numbers(hash: &mut Xxh3, numbers: &[f64]) {
     numbers.iter().for_each(|number| {
         hash.update(&number.to_le_bytes());
     });
 }
 
-fn text(hash: &mut blake3::Hasher, text: &str) {
-    hash.update(&(text.len() as u64).to_le_bytes()).update(text.as_bytes());
+fn text(hash: &mut Xxh3, text: &str) {
+    hash.update(&(text.len() as u64).to_le_bytes());
+    hash.update(text.as_bytes());
 }

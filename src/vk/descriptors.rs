@@ -63,6 +63,11 @@ impl SetLayout {
         Ok(Self { raw, bindings: bindings.to_vec(), device: device.clone() })
     }
 
+    /// Kind and stages of each binding.
+    pub(super) fn bindings(&self) -> &[(vk::DescriptorType, vk::ShaderStageFlags)] {
+        &self.bindings
+    }
+
     /// How many storage buffers a stage sees.
     pub(super) fn storage_buffers(&self, stage: vk::ShaderStageFlags) -> u32 {
         let seen = |(kind, stages): &&(vk::DescriptorType, vk::ShaderStageFlags)| {

@@ -5,6 +5,7 @@ use super::instance::Instance;
 use super::limits::{Capabilities, DeviceLimits};
 use super::memory::{self, MemorySource};
 use super::pipeline_cache::PipelineCache;
+use super::pipeline_pool::PipelinePool;
 use super::requirements::{Abilities, QUEUE};
 #[cfg(feature = "window")]
 use super::surface::{self, Surface, Window};
@@ -34,6 +35,8 @@ pub struct Device {
     pub(super) raw: ash::Device,
     pub(super) memory: ManuallyDrop<memory::Source>,
     pub(super) pipeline_cache: ManuallyDrop<PipelineCache>,
+    /// The pipelines that are alive.
+    pub(super) pipelines: PipelinePool,
     pub(super) labels: Option<debug_utils::Device>,
     pub(super) made: Made,
     capabilities: Capabilities,
@@ -158,6 +161,7 @@ impl Device {
             raw,
             memory: ManuallyDrop::new(memory),
             pipeline_cache: ManuallyDrop::new(pipeline_cache),
+            pipelines: PipelinePool::default(),
             labels,
             made: Made::default(),
             capabilities,
@@ -200,6 +204,7 @@ impl Device {
             raw: device.clone(),
             memory: ManuallyDrop::new(memory),
             pipeline_cache: ManuallyDrop::new(pipeline_cache),
+            pipelines: PipelinePool::default(),
             labels: lent.labels.then(|| debug_utils::Device::new(instance, device)),
             made: Made::default(),
             capabilities,

@@ -24,11 +24,13 @@ mod memory;
 mod overlay;
 mod pipeline;
 mod pipeline_cache;
+mod pipeline_pool;
 #[cfg(feature = "window")]
 mod presenter;
 mod recorder;
 mod render_pass;
 mod requirements;
+mod shader_stage;
 pub mod shaders;
 #[cfg(feature = "window")]
 mod slot;
@@ -52,7 +54,7 @@ pub use encoder::{Draws, Encoder};
 pub use image::{Image, ImageUse, pixel_bytes};
 pub use limits::{Capabilities, DeviceLimits};
 pub use memory::{HostMemory, Location, MemoryRequest, MemorySource};
-pub use pipeline::{Blend, ComputePipeline, Constants, DepthTest, DrawPipeline, DrawState, Topology, Within};
+pub use pipeline::{Blend, ComputePipeline, DepthTest, DrawPipeline, DrawState, Topology, Within};
 #[cfg(feature = "window")]
 pub(crate) use presenter::Stake;
 #[cfg(feature = "window")]
@@ -60,6 +62,7 @@ pub use presenter::{FRAMES_IN_FLIGHT, Presented, Presenter};
 pub use recorder::Recorder;
 pub use render_pass::{Attachment, Framebuffer, RenderPass};
 pub use requirements::{ABILITIES, API_VERSION, Abilities, Ability, Features, QUEUE};
+pub use shader_stage::{Code, Constants};
 #[cfg(feature = "window")]
 pub use surface::{Surface, Window};
 pub use timestamps::{HostPass, PassTime, Timestamps};

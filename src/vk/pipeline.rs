@@ -1,37 +1,16 @@
 //! Compute and draw pipelines.
 
+use super::pipeline_pool::{DrawKey, PassKey, PipelineKey};
+use super::shader_stage::{Code, Constants, with_infos};
+use super::shaders::Module;
 use super::{Device, RenderPass, SetLayout};
 use crate::error::{Error, Result};
 use ash::vk;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-/// Values of specialization constants.
-#[derive(Clone, Default)]
-pub struct Constants {
-    entries: Vec<vk::SpecializationMapEntry>,
-    data: Vec<u32>,
-}
-
-impl Constants {
-    /// Adds a constant by its number, one of [`super::shaders::constant`]. Shaders without it ignore it.
-    pub fn with(mut self, id: u32, value: impl Into<u32>) -> Self {
-        self.entries.push(vk::SpecializationMapEntry {
-            constant_id: id,
-            offset: 4 * self.data.len() as u32,
-            size: 4,
-        });
-        self.data.push(value.into());
-        self
-    }
-
-    fn info(&self) -> vk::SpecializationInfo<'_> {
-        vk::SpecializationInfo::default().map_entries(&self.entries).data(bytemuck::cast_slice(&self.data))
-    }
-}
-
 /// What vertices make.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Topology {
     /// Three of them a triangle.
     Triangles,
@@ -40,7 +19,7 @@ pub enum Topology {
 }
 
 /// What a draw does with the depth target. Depth is reversed: greater is nearer.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum DepthTest {
     /// There is none.
     None,
@@ -62,7 +41,7 @@ pub enum DepthTest {
 }
 
 /// How fragments meet what is in the colour targets.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Blend {
     /// They replace it.
     Replace,
@@ -73,7 +52,7 @@ pub enum Blend {
 }
 
 /// Fixed-function state of a draw pipeline.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct DrawState {
     /// What is drawn.
     pub topology: Topology,
@@ -83,32 +62,37 @@ pub struct DrawState {
     pub blend: Blend,
 }
 
-/// Where a draw pipeline draws.
+/// Where in a host's frame a draw pipeline draws.
 #[derive(Clone, Copy, Debug)]
 pub struct Within<'a> {
-    /// Null for dynamic rendering, whose formats are then given.
-    pass: vk::RenderPass,
-    subpass: u32,
-    colours: &'a [Option<Blend>],
-    rendering: Option<Formats<'a>>,
+    target: HostTarget<'a>,
+    /// Of each colour target; `None` leaves it alone.
+    blends: &'a [Option<Blend>],
     samples: vk::SampleCountFlags,
+}
+
+/// What a host draws to.
+#[derive(Clone, Copy, Debug)]
+enum HostTarget<'a> {
+    Subpass(vk::RenderPass, u32),
+    Rendering(Formats<'a>),
 }
 
 /// Formats of colours, depth and stencil.
 type Formats<'a> = (&'a [vk::Format], vk::Format, vk::Format);
 
 impl<'a> Within<'a> {
-    /// A subpass of a host's render pass, with so many samples a pixel. `colours` says of each colour target how it is blended, or that it is
+    /// A subpass of a host's render pass, with so many samples a pixel. `blends` says of each colour target how it is blended, or that it is
     /// left alone.
     ///
     /// # Safety
     /// It is true of a render pass of the device for which pipelines are made, which outlives them.
     pub unsafe fn subpass(
         (pass, subpass): (vk::RenderPass, u32),
-        colours: &'a [Option<Blend>],
+        blends: &'a [Option<Blend>],
         samples: vk::SampleCountFlags,
     ) -> Self {
-        Self { pass, subpass, colours, rendering: None, samples }
+        Self { target: HostTarget::Subpass(pass, subpass), blends, samples }
     }
 
     /// A host's dynamic rendering to such formats, otherwise as [`Within::subpass`].
@@ -117,45 +101,55 @@ impl<'a> Within<'a> {
     /// Dynamic rendering is enabled on the device for which pipelines are made.
     pub unsafe fn rendering(
         formats: Formats<'a>,
-        colours: &'a [Option<Blend>],
+        blends: &'a [Option<Blend>],
         samples: vk::SampleCountFlags,
     ) -> Self {
-        Self { pass: vk::RenderPass::null(), subpass: 0, colours, rendering: Some(formats), samples }
+        Self { target: HostTarget::Rendering(formats), blends, samples }
+    }
+
+    /// The render pass and its subpass; null for dynamic rendering.
+    fn pass(&self) -> (vk::RenderPass, u32) {
+        match self.target {
+            HostTarget::Subpass(pass, subpass) => (pass, subpass),
+            HostTarget::Rendering(_) => (vk::RenderPass::null(), 0),
+        }
+    }
+
+    fn key(&self) -> PassKey {
+        match self.target {
+            HostTarget::Subpass(pass, subpass) => PassKey::Subpass(pass, subpass),
+            HostTarget::Rendering((colours, depth, stencil)) => {
+                PassKey::Rendering(colours.to_vec(), depth, stencil)
+            }
+        }
     }
 }
 
-/// What both kinds share.
-struct Raw {
+/// A pipeline and its layout.
+pub(super) struct Raw {
     pipeline: vk::Pipeline,
     layout: vk::PipelineLayout,
     device: Arc<Device>,
 }
 
-/// A compute pipeline, with two u32 of push constants.
-pub struct ComputePipeline(Raw);
+/// A compute pipeline, with two u32 of push constants. Pipelines of the same stage and bindings are one.
+pub struct ComputePipeline(Arc<Raw>);
 
 /// A draw pipeline without vertex buffers, with two u32 of push constants, of a host as many bytes as it wants; viewport and scissor are set by
-/// whoever begins the pass.
-pub struct DrawPipeline(Raw);
+/// whoever begins the pass. Pipelines of the same stages, bindings, state and formats are one.
+pub struct DrawPipeline(Arc<Raw>);
 
 impl ComputePipeline {
-    /// A pipeline of the SPIR-V `code`; `sets` are the layouts of its descriptor sets 0, 1, ….
+    /// A pipeline of `module`; `sets` are the layouts of its descriptor sets 0, 1, ….
     pub fn new(
         device: &Arc<Device>,
         sets: &[&SetLayout],
-        code: &[u32],
+        module: &'static Module,
         constants: &Constants,
     ) -> Result<Self> {
-        let mut raw = Raw::new(device, sets, vk::ShaderStageFlags::COMPUTE, 8)?;
-        let module = Module::new(device, code)?;
-        let specialization = constants.info();
-        let info = vk::ComputePipelineCreateInfo::default()
-            .stage(module.stage(vk::ShaderStageFlags::COMPUTE, &specialization))
-            .layout(raw.layout);
-        // SAFETY: layout and module are alive and belong together; the pipeline is destroyed in `drop`.
-        let made = unsafe { device.raw.create_compute_pipelines(device.pipeline_cache.raw, &[info], None) };
-        raw.pipeline = first(made, "vkCreateComputePipelines")?;
-        Ok(Self(raw))
+        let stages = vec![Code::from(module).specialized(constants)];
+        let key = PipelineKey { stages, sets: bindings(sets), push: 8, draw: None };
+        device.pipelines.get(key, |key| Raw::compute(device, sets, key)).map(Self)
     }
 
     pub(super) fn raw(&self) -> (vk::Pipeline, vk::PipelineLayout) {
@@ -169,102 +163,66 @@ impl DrawPipeline {
         vk::ShaderStageFlags::VERTEX.as_raw() | vk::ShaderStageFlags::FRAGMENT.as_raw(),
     );
 
-    /// A pipeline of the SPIR-V `[vertex, fragment]` for `pass`; `sets` are the layouts of its descriptor sets 0, 1, ….
+    /// A pipeline of the modules `[vertex, fragment]` for `pass`; `sets` are the layouts of its descriptor sets 0, 1, ….
     pub fn new(
         device: &Arc<Device>,
         sets: &[&SetLayout],
-        code: [&[u32]; 2],
+        modules: [&'static Module; 2],
         constants: &Constants,
         pass: &RenderPass,
         state: DrawState,
     ) -> Result<Self> {
-        let colours = vec![Some(state.blend); pass.colour_targets];
-        let within = Within {
-            pass: pass.raw,
-            subpass: 0,
-            colours: &colours,
-            rendering: None,
+        let draw = DrawKey {
+            topology: state.topology,
+            depth: state.depth,
+            blends: vec![Some(state.blend); pass.colour_targets()],
+            pass: pass.key(),
             samples: vk::SampleCountFlags::TYPE_1,
         };
-        let raw = Raw::new(device, sets, Self::STAGES, 8)?;
-        Self::within(raw, code, constants, &within, (state.topology, state.depth))
+        Self::get(device, sets, modules.map(Code::from), constants, 8, draw, (pass.raw, 0))
     }
 
     /// As [`DrawPipeline::new`], for a pass of a host, with `push` bytes of push constants.
     pub fn of_host(
         device: &Arc<Device>,
         sets: &[&SetLayout],
-        code: [&[u32]; 2],
+        code: [impl Into<Code>; 2],
         constants: &Constants,
         within: &Within<'_>,
         depth: DepthTest,
         push: u32,
     ) -> Result<Self> {
-        let raw = Raw::new(device, sets, Self::STAGES, push)?;
-        Self::within(raw, code, constants, within, (Topology::Triangles, depth))
+        let draw = DrawKey {
+            topology: Topology::Triangles,
+            depth,
+            blends: within.blends.to_vec(),
+            pass: within.key(),
+            samples: within.samples,
+        };
+        Self::get(device, sets, code.map(Into::into), constants, push, draw, within.pass())
     }
 
-    fn within(
-        mut raw: Raw,
-        [vertex, fragment]: [&[u32]; 2],
+    fn get(
+        device: &Arc<Device>,
+        sets: &[&SetLayout],
+        code: [Code; 2],
         constants: &Constants,
-        within: &Within<'_>,
-        (topology, depth): (Topology, DepthTest),
+        push: u32,
+        draw: DrawKey,
+        pass: (vk::RenderPass, u32),
     ) -> Result<Self> {
-        let device = raw.device.clone();
-        let device = &device;
-        let modules = [Module::new(device, vertex)?, Module::new(device, fragment)?];
-        let specialization = constants.info();
-        let stages = [
-            modules[0].stage(vk::ShaderStageFlags::VERTEX, &specialization),
-            modules[1].stage(vk::ShaderStageFlags::FRAGMENT, &specialization),
-        ];
-        let vertex_input = vk::PipelineVertexInputStateCreateInfo::default();
-        let assembly = topology.info();
-        let viewport = vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
-        let rasterization = vk::PipelineRasterizationStateCreateInfo::default()
-            .polygon_mode(vk::PolygonMode::FILL)
-            .cull_mode(vk::CullModeFlags::NONE)
-            .line_width(1.0);
-        let multisample =
-            vk::PipelineMultisampleStateCreateInfo::default().rasterization_samples(within.samples);
-        let depth = depth.info();
-        let blends: Vec<_> =
-            within.colours.iter().map(|blend| blend.map_or_else(Default::default, Blend::info)).collect();
-        let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends);
-        let dynamic = vk::PipelineDynamicStateCreateInfo::default()
-            .dynamic_states(&[vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR]);
-        let mut rendering = vk::PipelineRenderingCreateInfo::default();
-        let mut info = vk::GraphicsPipelineCreateInfo::default()
-            .stages(&stages)
-            .vertex_input_state(&vertex_input)
-            .input_assembly_state(&assembly)
-            .viewport_state(&viewport)
-            .rasterization_state(&rasterization)
-            .multisample_state(&multisample)
-            .depth_stencil_state(&depth)
-            .color_blend_state(&blend)
-            .dynamic_state(&dynamic)
-            .layout(raw.layout)
-            .render_pass(within.pass)
-            .subpass(within.subpass);
-        if let Some((colours, depth, stencil)) = within.rendering {
-            rendering = rendering
-                .color_attachment_formats(colours)
-                .depth_attachment_format(depth)
-                .stencil_attachment_format(stencil);
-            info = info.push_next(&mut rendering);
-        }
-        // SAFETY: all states, modules, the layout and the pass, of which `within` is true, live until after the call; the pipeline is destroyed in
-        // `drop`.
-        let made = unsafe { device.raw.create_graphics_pipelines(device.pipeline_cache.raw, &[info], None) };
-        raw.pipeline = first(made, "vkCreateGraphicsPipelines")?;
-        Ok(Self(raw))
+        let stages = code.map(|code| code.specialized(constants)).to_vec();
+        let key = PipelineKey { stages, sets: bindings(sets), push, draw: Some(draw.clone()) };
+        device.pipelines.get(key, |key| Raw::draw(device, sets, key, &draw, pass)).map(Self)
     }
 
     pub(super) fn raw(&self) -> (vk::Pipeline, vk::PipelineLayout) {
         (self.0.pipeline, self.0.layout)
     }
+}
+
+fn bindings(sets: &[&SetLayout]) -> Vec<Vec<(vk::DescriptorType, vk::ShaderStageFlags)>> {
+    sets.iter().map(|set| set.bindings().to_vec()).collect()
 }
 
 impl Topology {
@@ -343,7 +301,7 @@ fn check_storage_buffers(device: &Device, sets: &[&SetLayout]) -> Result<()> {
 }
 
 impl Raw {
-    /// With `push` bytes of push constants.
+    /// The layout of a pipeline that is yet to be made.
     fn new(
         device: &Arc<Device>,
         sets: &[&SetLayout],
@@ -361,6 +319,72 @@ impl Raw {
         device.made.pipelines.fetch_add(1, Ordering::Relaxed);
         Ok(Self { pipeline: vk::Pipeline::null(), layout, device: device.clone() })
     }
+
+    fn compute(device: &Arc<Device>, sets: &[&SetLayout], key: &PipelineKey) -> Result<Self> {
+        let mut raw = Self::new(device, sets, vk::ShaderStageFlags::COMPUTE, key.push)?;
+        let made = with_infos(device, &key.stages, |stages| {
+            let info = vk::ComputePipelineCreateInfo::default().stage(stages[0]).layout(raw.layout);
+            // SAFETY: layout and module are alive and belong together; the pipeline is destroyed in `drop`.
+            unsafe { device.raw.create_compute_pipelines(device.pipeline_cache.raw, &[info], None) }
+        })?;
+        raw.pipeline = first(made, "vkCreateComputePipelines")?;
+        Ok(raw)
+    }
+
+    fn draw(
+        device: &Arc<Device>,
+        sets: &[&SetLayout],
+        key: &PipelineKey,
+        draw: &DrawKey,
+        (pass, subpass): (vk::RenderPass, u32),
+    ) -> Result<Self> {
+        let mut raw = Self::new(device, sets, DrawPipeline::STAGES, key.push)?;
+        let vertex_input = vk::PipelineVertexInputStateCreateInfo::default();
+        let assembly = draw.topology.info();
+        let viewport = vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
+        let rasterization = vk::PipelineRasterizationStateCreateInfo::default()
+            .polygon_mode(vk::PolygonMode::FILL)
+            .cull_mode(vk::CullModeFlags::NONE)
+            .line_width(1.0);
+        let multisample =
+            vk::PipelineMultisampleStateCreateInfo::default().rasterization_samples(draw.samples);
+        let depth = draw.depth.info();
+        let blends: Vec<_> =
+            draw.blends.iter().map(|blend| blend.map_or_else(Default::default, Blend::info)).collect();
+        let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends);
+        let dynamic = vk::PipelineDynamicStateCreateInfo::default()
+            .dynamic_states(&[vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR]);
+        let mut rendering = vk::PipelineRenderingCreateInfo::default();
+        let mut info = vk::GraphicsPipelineCreateInfo::default()
+            .vertex_input_state(&vertex_input)
+            .input_assembly_state(&assembly)
+            .viewport_state(&viewport)
+            .rasterization_state(&rasterization)
+            .multisample_state(&multisample)
+            .depth_stencil_state(&depth)
+            .color_blend_state(&blend)
+            .dynamic_state(&dynamic)
+            .layout(raw.layout)
+            .render_pass(pass)
+            .subpass(subpass);
+        if let PassKey::Rendering(colours, depth, stencil) = &draw.pass {
+            rendering = rendering
+                .color_attachment_formats(colours)
+                .depth_attachment_format(*depth)
+                .stencil_attachment_format(*stencil);
+            info = info.push_next(&mut rendering);
+        }
+        let made = with_infos(device, &key.stages, |stages| {
+            // SAFETY: all states, modules, the layout and the pass live until after the call, and the pass is what `draw` says; the pipeline
+            // is destroyed in `drop`.
+            unsafe {
+                let infos = [info.stages(stages)];
+                device.raw.create_graphics_pipelines(device.pipeline_cache.raw, &infos, None)
+            }
+        })?;
+        raw.pipeline = first(made, "vkCreateGraphicsPipelines")?;
+        Ok(raw)
+    }
 }
 
 impl Drop for Raw {
@@ -370,41 +394,6 @@ impl Drop for Raw {
             self.device.raw.destroy_pipeline(self.pipeline, None);
             self.device.raw.destroy_pipeline_layout(self.layout, None);
         }
-    }
-}
-
-/// A shader module, needed only until its pipeline is made.
-struct Module<'a> {
-    raw: vk::ShaderModule,
-    device: &'a Device,
-}
-
-impl<'a> Module<'a> {
-    fn new(device: &'a Device, code: &[u32]) -> Result<Self> {
-        let info = vk::ShaderModuleCreateInfo::default().code(code);
-        // SAFETY: the code is SPIR-V that shaderc made in the build, at most with other locations; the module is destroyed in `drop`.
-        let raw = unsafe { device.raw.create_shader_module(&info, None) }
-            .map_err(Error::vulkan("vkCreateShaderModule"))?;
-        Ok(Self { raw, device })
-    }
-
-    fn stage<'b>(
-        &self,
-        stage: vk::ShaderStageFlags,
-        specialization: &'b vk::SpecializationInfo<'b>,
-    ) -> vk::PipelineShaderStageCreateInfo<'b> {
-        vk::PipelineShaderStageCreateInfo::default()
-            .stage(stage)
-            .module(self.raw)
-            .name(c"main")
-            .specialization_info(specialization)
-    }
-}
-
-impl Drop for Module<'_> {
-    fn drop(&mut self) {
-        // SAFETY: modules may go as soon as their pipelines are made.
-        unsafe { self.device.raw.destroy_shader_module(self.raw, None) };
     }
 }
 

@@ -1,5 +1,6 @@
 //! Render passes of one subpass, and framebuffers.
 
+use super::pipeline_pool::PassKey;
 use super::{Device, Image, image::is_depth};
 use crate::error::{Error, Result};
 use ash::vk;
@@ -21,7 +22,8 @@ pub enum Attachment {
 /// A render pass whose images come in and go out in the layout of their use: the recorder does all transitions.
 pub struct RenderPass {
     pub(super) raw: vk::RenderPass,
-    pub(super) colour_targets: usize,
+    /// Of colours and depth.
+    formats: (Vec<Option<vk::Format>>, Option<vk::Format>),
     attachments: usize,
     device: Arc<Device>,
 }
@@ -56,7 +58,10 @@ impl RenderPass {
             .map_err(Error::vulkan("vkCreateRenderPass"))?;
         Ok(Self {
             raw,
-            colour_targets: colours.len(),
+            formats: (
+                colours.iter().map(Attachment::format).collect(),
+                depth.as_ref().and_then(Attachment::format),
+            ),
             attachments: descriptions.len(),
             device: device.clone(),
         })
@@ -64,6 +69,14 @@ impl RenderPass {
 }
 
 impl RenderPass {
+    pub(super) fn colour_targets(&self) -> usize {
+        self.formats.0.len()
+    }
+
+    pub(super) fn key(&self) -> PassKey {
+        PassKey::Formats(self.formats.0.clone(), self.formats.1)
+    }
+
     /// Vulkan's handle, for who draws in it with pipelines of their own.
     pub fn handle(&self) -> vk::RenderPass {
         self.raw
@@ -71,6 +84,10 @@ impl RenderPass {
 }
 
 impl Attachment {
+    fn format(&self) -> Option<vk::Format> {
+        self.describe().map(|description| description.format)
+    }
+
     fn describe(&self) -> Option<vk::AttachmentDescription> {
         let (format, load) = match *self {
             Self::Absent => return None,

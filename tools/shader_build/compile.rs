@@ -22,6 +22,22 @@ pub struct Module {
     pub warnings: String,
 }
 
+impl Module {
+    /// Name of the module's file, without extension: `footprint_compute`.
+    pub fn file_name(&self) -> String {
+        self.constant.to_lowercase()
+    }
+}
+
+/// Environment variable that names the compiler, set by tools/setup where the system's shaderc is linked.
+pub const COMPILER: &str = "SURFEL_SHADERC";
+
+/// The compiler in words: equal words, equal SPIR-V.
+pub fn compiler() -> String {
+    let built = "built by the crate shaderc-sys";
+    std::env::var(COMPILER).ok().filter(|name| !name.is_empty()).unwrap_or_else(|| built.to_owned())
+}
+
 /// Compiles every stage of every variant of every `folder/*.glsl`, in the order of their names. A folder that does not exist has no shaders.
 pub fn folder(folder: &Path) -> Result<Vec<Module>, String> {
     let compiler = Compiler::new().map_err(|error| error.to_string())?;

@@ -1,7 +1,7 @@
 //! The Rust text of `shaders.rs`.
 
 use super::compile::Module;
-use super::reflect::{Interface, Kind, Struct};
+use super::reflect::{Interface, Kind, Struct, specialization_ids};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
@@ -10,23 +10,27 @@ type Sizes<'a> = BTreeMap<&'a str, (u32, u32)>;
 
 /// The whole file.
 pub fn rust(modules: &[Module], interface: &Interface) -> Result<String, String> {
-    let mut text = String::from("// Made by build.rs from shaders-glsl.\n");
-    modules.iter().for_each(|module| code(&mut text, module));
+    let mut text = String::from("// Made from shaders-glsl; see tools/shader_build.\n");
+    for module in modules {
+        code(&mut text, module)?;
+    }
     constants(&mut text, interface);
     layouts(&mut text, interface)?;
     Ok(text)
 }
 
-/// `u32` words, because Vulkan wants SPIR-V aligned to four bytes.
-fn code(text: &mut String, module: &Module) {
+/// A module, whose SPIR-V the file that includes this has from `NAME.spv` beside it.
+fn code(text: &mut String, module: &Module) -> Result<(), String> {
     let stage = module.constant.rsplit('_').next().unwrap_or_default().to_lowercase();
-    line(text, format_args!("\n/// SPIR-V of the {stage} stage of `{}`.", module.file));
-    line(text, format_args!("pub const {}: &[u32] = &[", module.constant));
-    for words in module.optimised.chunks(10) {
-        let words: Vec<_> = words.iter().map(|word| format!("{word:#010x},")).collect();
-        line(text, format_args!("    {}", words.join(" ")));
-    }
-    text.push_str("];\n");
+    let (constant, name) = (&module.constant, module.file_name());
+    line(text, format_args!("\n/// The {stage} stage of `{}`.", module.file));
+    line(text, format_args!("pub static {constant}: Module = Module {{"));
+    line(text, format_args!("    name: \"{name}\","));
+    line(text, format_args!("    stage: ShaderStageFlags::{},", stage.to_uppercase()));
+    line(text, format_args!("    spirv: spirv!(\"{name}.spv\"),"));
+    line(text, format_args!("    constants: &{:?},", specialization_ids(module)?));
+    text.push_str("};\n");
+    Ok(())
 }
 
 fn constants(text: &mut String, interface: &Interface) {

@@ -102,6 +102,19 @@ impl Struct {
     }
 }
 
+/// Ids of the specialization constants that the optimised module reads, ascending.
+pub fn specialization_ids(module: &Module) -> Result<Vec<u32>, String> {
+    let parsed = rspirv::dr::load_words(&module.optimised)
+        .map_err(|error| format!("{}: error: cannot reflect: {error}", module.file))?;
+    let id = |instruction: &Instruction| match instruction.operands[..] {
+        [_, Operand::Decoration(Decoration::SpecId), Operand::LiteralBit32(id)] => Some(id),
+        _ => None,
+    };
+    let mut ids: Vec<_> = parsed.annotations.iter().filter_map(id).collect();
+    ids.sort_unstable();
+    Ok(ids)
+}
+
 /// A module's names, decorations and types by id.
 struct Ids {
     names: BTreeMap<u32, String>,

@@ -10,6 +10,7 @@ use crate::reference::linear;
 use glam::DVec3;
 use hierarchy::Hierarchy;
 use rayon::prelude::*;
+use xxhash_rust::xxh3::Xxh3;
 
 /// A triangle mesh, seen from both sides. Normals and colours are interpolated between the corners: the points' own or, where one has
 /// no normal, the mean of its triangles', weighted by their angles there.
@@ -63,8 +64,8 @@ impl Mesh {
 
     /// A text that is the same for the same mesh alone.
     pub fn digest(&self) -> String {
-        let mut hash = blake3::Hasher::new();
-        let vectors = |hash: &mut blake3::Hasher, all: &[DVec3]| {
+        let mut hash = Xxh3::new();
+        let vectors = |hash: &mut Xxh3, all: &[DVec3]| {
             hash.update(&all.len().to_le_bytes());
             all.iter().flat_map(DVec3::to_array).for_each(|value| {
                 hash.update(&value.to_le_bytes());
@@ -76,7 +77,7 @@ impl Mesh {
         self.triangles.iter().flatten().for_each(|corner| {
             hash.update(&corner.to_le_bytes());
         });
-        format!("mesh:{}", hash.finalize().to_hex())
+        format!("mesh:{:032x}", hash.digest128())
     }
 
     fn mean(&self, of: &[DVec3], triangle: usize, weights: DVec3) -> DVec3 {

@@ -1,0 +1,900 @@
+// Made from shaders-glsl; see tools/shader_build.
+
+/// The vertex stage of `shaders-glsl/attribute.glsl`.
+pub static ATTRIBUTE_VERTEX: Module = Module {
+    name: "attribute_vertex",
+    stage: ShaderStageFlags::VERTEX,
+    spirv: spirv!("attribute_vertex.spv"),
+    constants: &[0, 3, 5, 7, 14, 15, 16, 17, 19, 20, 23, 26, 27, 37, 50, 51, 52, 53, 54, 57, 58],
+};
+
+/// The fragment stage of `shaders-glsl/attribute.glsl`.
+pub static ATTRIBUTE_FRAGMENT: Module = Module {
+    name: "attribute_fragment",
+    stage: ShaderStageFlags::FRAGMENT,
+    spirv: spirv!("attribute_fragment.spv"),
+    constants: &[0, 4, 15, 16, 19, 23, 24, 27],
+};
+
+/// The compute stage of `shaders-glsl/attribute.glsl`.
+pub static ATTRIBUTE_COMPUTE: Module = Module {
+    name: "attribute_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("attribute_compute.spv"),
+    constants: &[0, 3, 4, 5, 7, 8, 12, 13, 14, 15, 16, 17, 18, 19, 20, 23, 24, 26, 27, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
+};
+
+/// The vertex stage of `shaders-glsl/composite.glsl`.
+pub static COMPOSITE_VERTEX: Module = Module {
+    name: "composite_vertex",
+    stage: ShaderStageFlags::VERTEX,
+    spirv: spirv!("composite_vertex.spv"),
+    constants: &[],
+};
+
+/// The fragment stage of `shaders-glsl/composite.glsl`.
+pub static COMPOSITE_FRAGMENT: Module = Module {
+    name: "composite_fragment",
+    stage: ShaderStageFlags::FRAGMENT,
+    spirv: spirv!("composite_fragment.spv"),
+    constants: &[0, 40, 41],
+};
+
+/// The vertex stage of `shaders-glsl/composite.glsl`.
+pub static COMPOSITE_IMAGES_VERTEX: Module = Module {
+    name: "composite_images_vertex",
+    stage: ShaderStageFlags::VERTEX,
+    spirv: spirv!("composite_images_vertex.spv"),
+    constants: &[],
+};
+
+/// The fragment stage of `shaders-glsl/composite.glsl`.
+pub static COMPOSITE_IMAGES_FRAGMENT: Module = Module {
+    name: "composite_images_fragment",
+    stage: ShaderStageFlags::FRAGMENT,
+    spirv: spirv!("composite_images_fragment.spv"),
+    constants: &[0, 40, 41],
+};
+
+/// The vertex stage of `shaders-glsl/composite.glsl`.
+pub static COMPOSITE_NORMALS_VERTEX: Module = Module {
+    name: "composite_normals_vertex",
+    stage: ShaderStageFlags::VERTEX,
+    spirv: spirv!("composite_normals_vertex.spv"),
+    constants: &[],
+};
+
+/// The fragment stage of `shaders-glsl/composite.glsl`.
+pub static COMPOSITE_NORMALS_FRAGMENT: Module = Module {
+    name: "composite_normals_fragment",
+    stage: ShaderStageFlags::FRAGMENT,
+    spirv: spirv!("composite_normals_fragment.spv"),
+    constants: &[0, 40, 41],
+};
+
+/// The vertex stage of `shaders-glsl/composite.glsl`.
+pub static COMPOSITE_IMAGES_NORMALS_VERTEX: Module = Module {
+    name: "composite_images_normals_vertex",
+    stage: ShaderStageFlags::VERTEX,
+    spirv: spirv!("composite_images_normals_vertex.spv"),
+    constants: &[],
+};
+
+/// The fragment stage of `shaders-glsl/composite.glsl`.
+pub static COMPOSITE_IMAGES_NORMALS_FRAGMENT: Module = Module {
+    name: "composite_images_normals_fragment",
+    stage: ShaderStageFlags::FRAGMENT,
+    spirv: spirv!("composite_images_normals_fragment.spv"),
+    constants: &[0, 40, 41],
+};
+
+/// The vertex stage of `shaders-glsl/composite.glsl`.
+pub static COMPOSITE_IDS_VERTEX: Module = Module {
+    name: "composite_ids_vertex",
+    stage: ShaderStageFlags::VERTEX,
+    spirv: spirv!("composite_ids_vertex.spv"),
+    constants: &[],
+};
+
+/// The fragment stage of `shaders-glsl/composite.glsl`.
+pub static COMPOSITE_IDS_FRAGMENT: Module = Module {
+    name: "composite_ids_fragment",
+    stage: ShaderStageFlags::FRAGMENT,
+    spirv: spirv!("composite_ids_fragment.spv"),
+    constants: &[0, 40, 41],
+};
+
+/// The vertex stage of `shaders-glsl/composite.glsl`.
+pub static COMPOSITE_NORMALS_IDS_VERTEX: Module = Module {
+    name: "composite_normals_ids_vertex",
+    stage: ShaderStageFlags::VERTEX,
+    spirv: spirv!("composite_normals_ids_vertex.spv"),
+    constants: &[],
+};
+
+/// The fragment stage of `shaders-glsl/composite.glsl`.
+pub static COMPOSITE_NORMALS_IDS_FRAGMENT: Module = Module {
+    name: "composite_normals_ids_fragment",
+    stage: ShaderStageFlags::FRAGMENT,
+    spirv: spirv!("composite_normals_ids_fragment.spv"),
+    constants: &[0, 40, 41],
+};
+
+/// The compute stage of `shaders-glsl/fetch.glsl`.
+pub static FETCH_COMPUTE: Module = Module {
+    name: "fetch_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("fetch_compute.spv"),
+    constants: &[0, 1, 5, 12, 13, 17, 28, 33, 34, 37, 38, 39, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
+};
+
+/// The compute stage of `shaders-glsl/fetch.glsl`.
+pub static FETCH_LINES_COMPUTE: Module = Module {
+    name: "fetch_lines_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("fetch_lines_compute.spv"),
+    constants: &[0, 17, 28, 29, 33, 34, 37, 38, 39],
+};
+
+/// The compute stage of `shaders-glsl/fetch.glsl`.
+pub static FETCH_TRIANGLES_COMPUTE: Module = Module {
+    name: "fetch_triangles_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("fetch_triangles_compute.spv"),
+    constants: &[0, 17, 28, 29, 33, 34, 37, 38, 39],
+};
+
+/// The compute stage of `shaders-glsl/fetch.glsl`.
+pub static FETCH_DRAWN_POINTS_COMPUTE: Module = Module {
+    name: "fetch_drawn_points_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("fetch_drawn_points_compute.spv"),
+    constants: &[0, 1, 5, 12, 13, 17, 28, 33, 34, 37, 38, 39, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
+};
+
+/// The compute stage of `shaders-glsl/footprint.glsl`.
+pub static FOOTPRINT_COMPUTE: Module = Module {
+    name: "footprint_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("footprint_compute.spv"),
+    constants: &[0, 1, 2, 11, 12, 13, 14, 15, 16, 21, 23, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
+};
+
+/// The vertex stage of `shaders-glsl/nearest.glsl`.
+pub static NEAREST_VERTEX: Module = Module {
+    name: "nearest_vertex",
+    stage: ShaderStageFlags::VERTEX,
+    spirv: spirv!("nearest_vertex.spv"),
+    constants: &[0, 3, 5, 7, 15, 16, 17, 20, 23, 37, 50, 51, 52, 53, 54, 57, 58],
+};
+
+/// The fragment stage of `shaders-glsl/nearest.glsl`.
+pub static NEAREST_FRAGMENT: Module = Module {
+    name: "nearest_fragment",
+    stage: ShaderStageFlags::FRAGMENT,
+    spirv: spirv!("nearest_fragment.spv"),
+    constants: &[0, 4, 15, 16, 23, 24],
+};
+
+/// The compute stage of `shaders-glsl/nearest.glsl`.
+pub static NEAREST_COMPUTE: Module = Module {
+    name: "nearest_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("nearest_compute.spv"),
+    constants: &[0, 8, 15, 16, 23, 24],
+};
+
+/// The vertex stage of `shaders-glsl/nearest.glsl`.
+pub static NEAREST_COVERAGE_VERTEX: Module = Module {
+    name: "nearest_coverage_vertex",
+    stage: ShaderStageFlags::VERTEX,
+    spirv: spirv!("nearest_coverage_vertex.spv"),
+    constants: &[0, 3, 5, 7, 15, 16, 17, 20, 23, 37, 50, 51, 52, 53, 54, 57, 58],
+};
+
+/// The fragment stage of `shaders-glsl/nearest.glsl`.
+pub static NEAREST_COVERAGE_FRAGMENT: Module = Module {
+    name: "nearest_coverage_fragment",
+    stage: ShaderStageFlags::FRAGMENT,
+    spirv: spirv!("nearest_coverage_fragment.spv"),
+    constants: &[0, 4, 15, 16, 23, 24],
+};
+
+/// The compute stage of `shaders-glsl/nearest.glsl`.
+pub static NEAREST_COVERAGE_COMPUTE: Module = Module {
+    name: "nearest_coverage_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("nearest_coverage_compute.spv"),
+    constants: &[0, 8, 15, 16, 23, 24],
+};
+
+/// The vertex stage of `shaders-glsl/normalize.glsl`.
+pub static NORMALIZE_VERTEX: Module = Module {
+    name: "normalize_vertex",
+    stage: ShaderStageFlags::VERTEX,
+    spirv: spirv!("normalize_vertex.spv"),
+    constants: &[],
+};
+
+/// The fragment stage of `shaders-glsl/normalize.glsl`.
+pub static NORMALIZE_FRAGMENT: Module = Module {
+    name: "normalize_fragment",
+    stage: ShaderStageFlags::FRAGMENT,
+    spirv: spirv!("normalize_fragment.spv"),
+    constants: &[0, 3, 4, 6, 7, 17, 18, 20],
+};
+
+/// The compute stage of `shaders-glsl/normalize.glsl`.
+pub static NORMALIZE_COMPUTE: Module = Module {
+    name: "normalize_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("normalize_compute.spv"),
+    constants: &[0, 3, 4, 6, 7, 9, 10, 17, 18, 20, 22],
+};
+
+/// The vertex stage of `shaders-glsl/normalize.glsl`.
+pub static NORMALIZE_COVERAGE_VERTEX: Module = Module {
+    name: "normalize_coverage_vertex",
+    stage: ShaderStageFlags::VERTEX,
+    spirv: spirv!("normalize_coverage_vertex.spv"),
+    constants: &[],
+};
+
+/// The fragment stage of `shaders-glsl/normalize.glsl`.
+pub static NORMALIZE_COVERAGE_FRAGMENT: Module = Module {
+    name: "normalize_coverage_fragment",
+    stage: ShaderStageFlags::FRAGMENT,
+    spirv: spirv!("normalize_coverage_fragment.spv"),
+    constants: &[0, 3, 4, 6, 7, 17, 18, 20],
+};
+
+/// The compute stage of `shaders-glsl/normalize.glsl`.
+pub static NORMALIZE_COVERAGE_COMPUTE: Module = Module {
+    name: "normalize_coverage_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("normalize_coverage_compute.spv"),
+    constants: &[0, 3, 4, 6, 7, 9, 10, 17, 18, 20, 22],
+};
+
+/// The vertex stage of `shaders-glsl/normalize.glsl`.
+pub static NORMALIZE_SUBPASS_VERTEX: Module = Module {
+    name: "normalize_subpass_vertex",
+    stage: ShaderStageFlags::VERTEX,
+    spirv: spirv!("normalize_subpass_vertex.spv"),
+    constants: &[],
+};
+
+/// The fragment stage of `shaders-glsl/normalize.glsl`.
+pub static NORMALIZE_SUBPASS_FRAGMENT: Module = Module {
+    name: "normalize_subpass_fragment",
+    stage: ShaderStageFlags::FRAGMENT,
+    spirv: spirv!("normalize_subpass_fragment.spv"),
+    constants: &[0, 3, 4, 6, 7, 17, 18, 20, 40, 41, 42],
+};
+
+/// The compute stage of `shaders-glsl/normalize.glsl`.
+pub static NORMALIZE_SUBPASS_COMPUTE: Module = Module {
+    name: "normalize_subpass_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("normalize_subpass_compute.spv"),
+    constants: &[0, 3, 4, 6, 7, 9, 10, 17, 18, 20, 22],
+};
+
+/// The vertex stage of `shaders-glsl/normalize.glsl`.
+pub static NORMALIZE_SUBPASS_COVERAGE_VERTEX: Module = Module {
+    name: "normalize_subpass_coverage_vertex",
+    stage: ShaderStageFlags::VERTEX,
+    spirv: spirv!("normalize_subpass_coverage_vertex.spv"),
+    constants: &[],
+};
+
+/// The fragment stage of `shaders-glsl/normalize.glsl`.
+pub static NORMALIZE_SUBPASS_COVERAGE_FRAGMENT: Module = Module {
+    name: "normalize_subpass_coverage_fragment",
+    stage: ShaderStageFlags::FRAGMENT,
+    spirv: spirv!("normalize_subpass_coverage_fragment.spv"),
+    constants: &[0, 3, 4, 6, 7, 17, 18, 20, 40, 41, 42],
+};
+
+/// The compute stage of `shaders-glsl/normalize.glsl`.
+pub static NORMALIZE_SUBPASS_COVERAGE_COMPUTE: Module = Module {
+    name: "normalize_subpass_coverage_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("normalize_subpass_coverage_compute.spv"),
+    constants: &[0, 3, 4, 6, 7, 9, 10, 17, 18, 20, 22],
+};
+
+/// The vertex stage of `shaders-glsl/points.glsl`.
+pub static POINTS_VERTEX: Module = Module {
+    name: "points_vertex",
+    stage: ShaderStageFlags::VERTEX,
+    spirv: spirv!("points_vertex.spv"),
+    constants: &[0, 1, 12, 13, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
+};
+
+/// The fragment stage of `shaders-glsl/points.glsl`.
+pub static POINTS_FRAGMENT: Module = Module {
+    name: "points_fragment",
+    stage: ShaderStageFlags::FRAGMENT,
+    spirv: spirv!("points_fragment.spv"),
+    constants: &[],
+};
+
+/// The compute stage of `shaders-glsl/project.glsl`.
+pub static PROJECT_COMPUTE: Module = Module {
+    name: "project_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("project_compute.spv"),
+    constants: &[0, 1, 2, 12, 13, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
+};
+
+/// The compute stage of `shaders-glsl/project.glsl`.
+pub static PROJECT_LINES_COMPUTE: Module = Module {
+    name: "project_lines_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("project_lines_compute.spv"),
+    constants: &[0, 28, 37],
+};
+
+/// The compute stage of `shaders-glsl/project.glsl`.
+pub static PROJECT_TRIANGLES_COMPUTE: Module = Module {
+    name: "project_triangles_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("project_triangles_compute.spv"),
+    constants: &[0, 30, 37],
+};
+
+/// The compute stage of `shaders-glsl/project.glsl`.
+pub static PROJECT_DRAWN_POINTS_COMPUTE: Module = Module {
+    name: "project_drawn_points_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("project_drawn_points_compute.spv"),
+    constants: &[0, 37],
+};
+
+/// The compute stage of `shaders-glsl/project.glsl`.
+pub static PROJECT_FATES_COMPUTE: Module = Module {
+    name: "project_fates_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("project_fates_compute.spv"),
+    constants: &[0, 1, 2, 12, 13, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
+};
+
+/// The compute stage of `shaders-glsl/pull.glsl`.
+pub static PULL_COMPUTE: Module = Module {
+    name: "pull_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("pull_compute.spv"),
+    constants: &[0, 17, 28, 33, 34, 38, 39],
+};
+
+/// The compute stage of `shaders-glsl/push.glsl`.
+pub static PUSH_COMPUTE: Module = Module {
+    name: "push_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("push_compute.spv"),
+    constants: &[0, 17, 28, 32, 33, 34, 38, 39],
+};
+
+/// The compute stage of `shaders-glsl/resolve.glsl`.
+pub static RESOLVE_COMPUTE: Module = Module {
+    name: "resolve_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("resolve_compute.spv"),
+    constants: &[0, 3, 4, 5, 7, 15, 17, 20, 37, 50, 51, 52, 53, 54, 57, 58],
+};
+
+/// The vertex stage of `shaders-glsl/seed.glsl`.
+pub static SEED_VERTEX: Module = Module {
+    name: "seed_vertex",
+    stage: ShaderStageFlags::VERTEX,
+    spirv: spirv!("seed_vertex.spv"),
+    constants: &[],
+};
+
+/// The fragment stage of `shaders-glsl/seed.glsl`.
+pub static SEED_FRAGMENT: Module = Module {
+    name: "seed_fragment",
+    stage: ShaderStageFlags::FRAGMENT,
+    spirv: spirv!("seed_fragment.spv"),
+    constants: &[0],
+};
+
+/// The vertex stage of `shaders-glsl/seed.glsl`.
+pub static SEED_MULTISAMPLED_VERTEX: Module = Module {
+    name: "seed_multisampled_vertex",
+    stage: ShaderStageFlags::VERTEX,
+    spirv: spirv!("seed_multisampled_vertex.spv"),
+    constants: &[],
+};
+
+/// The fragment stage of `shaders-glsl/seed.glsl`.
+pub static SEED_MULTISAMPLED_FRAGMENT: Module = Module {
+    name: "seed_multisampled_fragment",
+    stage: ShaderStageFlags::FRAGMENT,
+    spirv: spirv!("seed_multisampled_fragment.spv"),
+    constants: &[0, 43],
+};
+
+/// The compute stage of `shaders-glsl/shade.glsl`.
+pub static SHADE_COMPUTE: Module = Module {
+    name: "shade_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("shade_compute.spv"),
+    constants: &[0, 6, 7, 9, 10, 17, 28, 31, 33, 34, 35, 38, 39],
+};
+
+/// The compute stage of `shaders-glsl/shade.glsl`.
+pub static SHADE_LOOKUPS_COMPUTE: Module = Module {
+    name: "shade_lookups_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("shade_lookups_compute.spv"),
+    constants: &[0, 6, 7, 9, 10, 17, 25, 28, 31, 33, 34, 35, 36, 38, 39],
+};
+
+/// The compute stage of `shaders-glsl/tiles.glsl`.
+pub static TILES_COMPUTE: Module = Module {
+    name: "tiles_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("tiles_compute.spv"),
+    constants: &[],
+};
+
+/// The vertex stage of `shaders-glsl/visibility.glsl`.
+pub static VISIBILITY_VERTEX: Module = Module {
+    name: "visibility_vertex",
+    stage: ShaderStageFlags::VERTEX,
+    spirv: spirv!("visibility_vertex.spv"),
+    constants: &[0, 15, 16, 23],
+};
+
+/// The fragment stage of `shaders-glsl/visibility.glsl`.
+pub static VISIBILITY_FRAGMENT: Module = Module {
+    name: "visibility_fragment",
+    stage: ShaderStageFlags::FRAGMENT,
+    spirv: spirv!("visibility_fragment.spv"),
+    constants: &[0, 15, 16, 23, 24],
+};
+
+/// The compute stage of `shaders-glsl/visibility.glsl`.
+pub static VISIBILITY_COMPUTE: Module = Module {
+    name: "visibility_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("visibility_compute.spv"),
+    constants: &[0, 8, 15, 16, 23, 24],
+};
+
+/// The vertex stage of `shaders-glsl/visibility.glsl`.
+pub static VISIBILITY_COVERAGE_VERTEX: Module = Module {
+    name: "visibility_coverage_vertex",
+    stage: ShaderStageFlags::VERTEX,
+    spirv: spirv!("visibility_coverage_vertex.spv"),
+    constants: &[0, 15, 16, 23],
+};
+
+/// The fragment stage of `shaders-glsl/visibility.glsl`.
+pub static VISIBILITY_COVERAGE_FRAGMENT: Module = Module {
+    name: "visibility_coverage_fragment",
+    stage: ShaderStageFlags::FRAGMENT,
+    spirv: spirv!("visibility_coverage_fragment.spv"),
+    constants: &[0, 15, 16, 23, 24],
+};
+
+/// The compute stage of `shaders-glsl/visibility.glsl`.
+pub static VISIBILITY_COVERAGE_COMPUTE: Module = Module {
+    name: "visibility_coverage_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("visibility_coverage_compute.spv"),
+    constants: &[0, 8, 15, 16, 23, 24],
+};
+
+/// Ids of the specialization constants, one id for each name in all shaders.
+pub mod constant {
+    /// `BEYOND_CLIPS`, first in `shaders-glsl/attribute.glsl`.
+    pub const BEYOND_CLIPS: u32 = 24;
+    /// `CLIPS`, first in `shaders-glsl/attribute.glsl`.
+    pub const CLIPS: u32 = 23;
+    /// `COLOURS`, first in `shaders-glsl/attribute.glsl`.
+    pub const COLOURS: u32 = 5;
+    /// `COLOUR_OFFSET`, first in `shaders-glsl/attribute.glsl`.
+    pub const COLOUR_OFFSET: u32 = 57;
+    /// `COLOUR_STRIDE`, first in `shaders-glsl/attribute.glsl`.
+    pub const COLOUR_STRIDE: u32 = 58;
+    /// `COMPACT`, first in `shaders-glsl/fetch.glsl`.
+    pub const COMPACT: u32 = 33;
+    /// `CONFETTI`, first in `shaders-glsl/attribute.glsl`.
+    pub const CONFETTI: u32 = 16;
+    /// `CORNERS`, first in `shaders-glsl/attribute.glsl`.
+    pub const CORNERS: u32 = 27;
+    /// `COUNT`, first in `shaders-glsl/fetch.glsl`.
+    pub const COUNT: u32 = 2;
+    /// `COVERAGE`, first in `shaders-glsl/shade.glsl`.
+    pub const COVERAGE: u32 = 31;
+    /// `CULL_BACK`, first in `shaders-glsl/fetch.glsl`.
+    pub const CULL_BACK: u32 = 1;
+    /// `ELLIPSES`, first in `shaders-glsl/attribute.glsl`.
+    pub const ELLIPSES: u32 = 12;
+    /// `ELLIPSE_OFFSET`, first in `shaders-glsl/attribute.glsl`.
+    pub const ELLIPSE_OFFSET: u32 = 59;
+    /// `ELLIPSE_STRIDE`, first in `shaders-glsl/attribute.glsl`.
+    pub const ELLIPSE_STRIDE: u32 = 60;
+    /// `ENCODE`, first in `shaders-glsl/composite.glsl`.
+    pub const ENCODE: u32 = 41;
+    /// `FOOTPRINT`, first in `shaders-glsl/attribute.glsl`.
+    pub const FOOTPRINT: u32 = 15;
+    /// `HELD_COLOURS`, first in `shaders-glsl/attribute.glsl`.
+    pub const HELD_COLOURS: u32 = 62;
+    /// `HOST_DEPTH`, first in `shaders-glsl/composite.glsl`.
+    pub const HOST_DEPTH: u32 = 40;
+    /// `HOST_SAMPLES`, first in `shaders-glsl/seed.glsl`.
+    pub const HOST_SAMPLES: u32 = 43;
+    /// `IDS`, first in `shaders-glsl/fetch.glsl`.
+    pub const IDS: u32 = 39;
+    /// `LARGE_SPLATS`, first in `shaders-glsl/attribute.glsl`.
+    pub const LARGE_SPLATS: u32 = 8;
+    /// `LARGE_TRIANGLES`, first in `shaders-glsl/project.glsl`.
+    pub const LARGE_TRIANGLES: u32 = 30;
+    /// `LIGHTS`, first in `shaders-glsl/attribute.glsl`.
+    pub const LIGHTS: u32 = 7;
+    /// `LIST_LARGE`, first in `shaders-glsl/footprint.glsl`.
+    pub const LIST_LARGE: u32 = 11;
+    /// `MATERIALS`, first in `shaders-glsl/shade.glsl`.
+    pub const MATERIALS: u32 = 25;
+    /// `MOVED`, first in `shaders-glsl/footprint.glsl`.
+    pub const MOVED: u32 = 21;
+    /// `NEAREST`, first in `shaders-glsl/normalize.glsl`.
+    pub const NEAREST: u32 = 22;
+    /// `NORMALIZATION`, first in `shaders-glsl/attribute.glsl`.
+    pub const NORMALIZATION: u32 = 18;
+    /// `NORMALS`, first in `shaders-glsl/attribute.glsl`.
+    pub const NORMALS: u32 = 54;
+    /// `NORMAL_OFFSET`, first in `shaders-glsl/attribute.glsl`.
+    pub const NORMAL_OFFSET: u32 = 52;
+    /// `NORMAL_STRIDE`, first in `shaders-glsl/attribute.glsl`.
+    pub const NORMAL_STRIDE: u32 = 53;
+    /// `OUT_DEPTH`, first in `shaders-glsl/normalize.glsl`.
+    pub const OUT_DEPTH: u32 = 10;
+    /// `OUT_ID`, first in `shaders-glsl/shade.glsl`.
+    pub const OUT_ID: u32 = 35;
+    /// `OUT_NORMAL`, first in `shaders-glsl/normalize.glsl`.
+    pub const OUT_NORMAL: u32 = 9;
+    /// `OVERLAP`, first in `shaders-glsl/attribute.glsl`.
+    pub const OVERLAP: u32 = 19;
+    /// `PAPER`, first in `shaders-glsl/fetch.glsl`.
+    pub const PAPER: u32 = 28;
+    /// `PERSPECTIVE`, first in `shaders-glsl/attribute.glsl`.
+    pub const PERSPECTIVE: u32 = 0;
+    /// `PING_PONG`, first in `shaders-glsl/push.glsl`.
+    pub const PING_PONG: u32 = 32;
+    /// `PLACED`, first in `shaders-glsl/attribute.glsl`.
+    pub const PLACED: u32 = 37;
+    /// `POSITION_OFFSET`, first in `shaders-glsl/attribute.glsl`.
+    pub const POSITION_OFFSET: u32 = 50;
+    /// `POSITION_STRIDE`, first in `shaders-glsl/attribute.glsl`.
+    pub const POSITION_STRIDE: u32 = 51;
+    /// `RADIUS_OFFSET`, first in `shaders-glsl/attribute.glsl`.
+    pub const RADIUS_OFFSET: u32 = 55;
+    /// `RADIUS_STRIDE`, first in `shaders-glsl/attribute.glsl`.
+    pub const RADIUS_STRIDE: u32 = 56;
+    /// `SHADE_SPLATS`, first in `shaders-glsl/attribute.glsl`.
+    pub const SHADE_SPLATS: u32 = 20;
+    /// `SHADING`, first in `shaders-glsl/normalize.glsl`.
+    pub const SHADING: u32 = 6;
+    /// `SUMS_TELL`, first in `shaders-glsl/normalize.glsl`.
+    pub const SUMS_TELL: u32 = 42;
+    /// `SUM_COLOURS`, first in `shaders-glsl/attribute.glsl`.
+    pub const SUM_COLOURS: u32 = 17;
+    /// `SUM_DEPTH`, first in `shaders-glsl/attribute.glsl`.
+    pub const SUM_DEPTH: u32 = 4;
+    /// `SUM_NORMALS`, first in `shaders-glsl/attribute.glsl`.
+    pub const SUM_NORMALS: u32 = 3;
+    /// `TEXELS`, first in `shaders-glsl/shade.glsl`.
+    pub const TEXELS: u32 = 36;
+    /// `TEXTURE`, first in `shaders-glsl/fetch.glsl`.
+    pub const TEXTURE: u32 = 38;
+    /// `TWO_SIDED`, first in `shaders-glsl/attribute.glsl`.
+    pub const TWO_SIDED: u32 = 13;
+    /// `UNBOUNDED_COLOURS`, first in `shaders-glsl/fetch.glsl`.
+    pub const UNBOUNDED_COLOURS: u32 = 34;
+    /// `UNCHECKED`, first in `shaders-glsl/attribute.glsl`.
+    pub const UNCHECKED: u32 = 61;
+    /// `VERTEX_COLOURS`, first in `shaders-glsl/fetch.glsl`.
+    pub const VERTEX_COLOURS: u32 = 29;
+    /// `WEIGHTS`, first in `shaders-glsl/attribute.glsl`.
+    pub const WEIGHTS: u32 = 26;
+    /// `WIDEN_SMALL`, first in `shaders-glsl/attribute.glsl`.
+    pub const WIDEN_SMALL: u32 = 14;
+}
+
+/// The blocks and structs of the shaders, byte for byte.
+#[allow(non_snake_case, non_camel_case_types)]
+pub mod layout {
+    /// `Composite`, 32 bytes, first in `shaders-glsl/composite.glsl`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+    pub struct Composite {
+        /// Byte 0.
+        pub origin: [i32; 2],
+        /// Byte 8.
+        pub size: [u32; 2],
+        /// Byte 16.
+        pub depth: [f32; 4],
+    }
+    const _: () = assert!(std::mem::offset_of!(Composite, origin) == 0);
+    const _: () = assert!(std::mem::offset_of!(Composite, size) == 8);
+    const _: () = assert!(std::mem::offset_of!(Composite, depth) == 16);
+    const _: () = assert!(std::mem::size_of::<Composite>() == 32);
+
+    /// `Counts`, 20 bytes, first in `shaders-glsl/fetch.glsl`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+    pub struct Counts {
+        /// Byte 0.
+        pub culled: [u32; 5],
+    }
+    const _: () = assert!(std::mem::offset_of!(Counts, culled) == 0);
+    const _: () = assert!(std::mem::size_of::<Counts>() == 20);
+
+    /// `Frame`, 592 bytes, first in `shaders-glsl/attribute.glsl`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+    pub struct Frame {
+        /// Byte 0.
+        pub rows_hi: [[f32; 4]; 3],
+        /// Byte 48.
+        pub rows_lo: [[f32; 4]; 3],
+        /// Byte 96.
+        pub eye_hi: [f32; 4],
+        /// Byte 112.
+        pub eye_lo: [f32; 4],
+        /// Byte 128.
+        pub ray_hi: [[f32; 4]; 3],
+        /// Byte 176.
+        pub ray_lo: [[f32; 4]; 3],
+        /// Byte 224.
+        pub forward_hi: [f32; 4],
+        /// Byte 240.
+        pub forward_lo: [f32; 4],
+        /// Byte 256.
+        pub flat_rows: [[f32; 4]; 2],
+        /// Byte 288.
+        pub viewport: [f32; 2],
+        /// Byte 296.
+        pub jacobian: f32,
+        /// Byte 300.
+        pub near: f32,
+        /// Byte 304.
+        pub key_slope: f32,
+        /// Byte 308.
+        pub key_far: f32,
+        /// Byte 312.
+        pub key_gain: f32,
+        /// Byte 316.
+        pub cutoff: f32,
+        /// Byte 320.
+        pub epsilon: f32,
+        /// Byte 324.
+        pub visibility_lowpass: f32,
+        /// Byte 328.
+        pub attribute_lowpass: f32,
+        /// Byte 332.
+        pub ambient: f32,
+        /// Byte 336.
+        pub background: [f32; 4],
+        /// Byte 352.
+        pub albedo: [f32; 4],
+        /// Byte 368.
+        pub specular: f32,
+        /// Byte 372.
+        pub shininess: f32,
+        /// Byte 376.
+        pub kernel_a: f32,
+        /// Byte 380.
+        pub kernel_n: f32,
+        /// Byte 384.
+        pub to_light: [[f32; 4]; 4],
+        /// Byte 448.
+        pub radiance: [[f32; 4]; 4],
+        /// Byte 512.
+        pub origin: [f32; 2],
+        /// Byte 520.
+        pub scale: f32,
+        /// Byte 524.
+        pub world_near: f32,
+        /// Byte 528.
+        pub world_key_slope: f32,
+        /// Unused: the layout leaves a gap here.
+        pub _pad32: [u8; 12],
+        /// Byte 544.
+        pub turn: [[f32; 4]; 3],
+    }
+    const _: () = assert!(std::mem::offset_of!(Frame, rows_hi) == 0);
+    const _: () = assert!(std::mem::offset_of!(Frame, rows_lo) == 48);
+    const _: () = assert!(std::mem::offset_of!(Frame, eye_hi) == 96);
+    const _: () = assert!(std::mem::offset_of!(Frame, eye_lo) == 112);
+    const _: () = assert!(std::mem::offset_of!(Frame, ray_hi) == 128);
+    const _: () = assert!(std::mem::offset_of!(Frame, ray_lo) == 176);
+    const _: () = assert!(std::mem::offset_of!(Frame, forward_hi) == 224);
+    const _: () = assert!(std::mem::offset_of!(Frame, forward_lo) == 240);
+    const _: () = assert!(std::mem::offset_of!(Frame, flat_rows) == 256);
+    const _: () = assert!(std::mem::offset_of!(Frame, viewport) == 288);
+    const _: () = assert!(std::mem::offset_of!(Frame, jacobian) == 296);
+    const _: () = assert!(std::mem::offset_of!(Frame, near) == 300);
+    const _: () = assert!(std::mem::offset_of!(Frame, key_slope) == 304);
+    const _: () = assert!(std::mem::offset_of!(Frame, key_far) == 308);
+    const _: () = assert!(std::mem::offset_of!(Frame, key_gain) == 312);
+    const _: () = assert!(std::mem::offset_of!(Frame, cutoff) == 316);
+    const _: () = assert!(std::mem::offset_of!(Frame, epsilon) == 320);
+    const _: () = assert!(std::mem::offset_of!(Frame, visibility_lowpass) == 324);
+    const _: () = assert!(std::mem::offset_of!(Frame, attribute_lowpass) == 328);
+    const _: () = assert!(std::mem::offset_of!(Frame, ambient) == 332);
+    const _: () = assert!(std::mem::offset_of!(Frame, background) == 336);
+    const _: () = assert!(std::mem::offset_of!(Frame, albedo) == 352);
+    const _: () = assert!(std::mem::offset_of!(Frame, specular) == 368);
+    const _: () = assert!(std::mem::offset_of!(Frame, shininess) == 372);
+    const _: () = assert!(std::mem::offset_of!(Frame, kernel_a) == 376);
+    const _: () = assert!(std::mem::offset_of!(Frame, kernel_n) == 380);
+    const _: () = assert!(std::mem::offset_of!(Frame, to_light) == 384);
+    const _: () = assert!(std::mem::offset_of!(Frame, radiance) == 448);
+    const _: () = assert!(std::mem::offset_of!(Frame, origin) == 512);
+    const _: () = assert!(std::mem::offset_of!(Frame, scale) == 520);
+    const _: () = assert!(std::mem::offset_of!(Frame, world_near) == 524);
+    const _: () = assert!(std::mem::offset_of!(Frame, world_key_slope) == 528);
+    const _: () = assert!(std::mem::offset_of!(Frame, turn) == 544);
+    const _: () = assert!(std::mem::size_of::<Frame>() == 592);
+
+    /// `Large`, 4 bytes, first in `shaders-glsl/project.glsl`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+    pub struct Large {
+        /// Byte 0.
+        pub large_count: u32,
+    }
+    const _: () = assert!(std::mem::offset_of!(Large, large_count) == 0);
+    const _: () = assert!(std::mem::size_of::<Large>() == 4);
+
+    /// `LargeSplats`, 256 bytes, first in `shaders-glsl/attribute.glsl`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+    pub struct LargeSplats {
+        /// Byte 0.
+        pub large_count: u32,
+        /// Byte 4.
+        pub large_padding: [u32; 63],
+    }
+    const _: () = assert!(std::mem::offset_of!(LargeSplats, large_count) == 0);
+    const _: () = assert!(std::mem::offset_of!(LargeSplats, large_padding) == 4);
+    const _: () = assert!(std::mem::size_of::<LargeSplats>() == 256);
+
+    /// `Materials`, 4 bytes, first in `shaders-glsl/shade.glsl`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+    pub struct Materials {
+        /// Byte 0.
+        pub count: u32,
+    }
+    const _: () = assert!(std::mem::offset_of!(Materials, count) == 0);
+    const _: () = assert!(std::mem::size_of::<Materials>() == 4);
+
+    /// `ScreenClip`, 32 bytes, first in `shaders-glsl/attribute.glsl`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+    pub struct ScreenClip {
+        /// Byte 0.
+        pub first: [f32; 4],
+        /// Byte 16.
+        pub second: [f32; 4],
+    }
+    const _: () = assert!(std::mem::offset_of!(ScreenClip, first) == 0);
+    const _: () = assert!(std::mem::offset_of!(ScreenClip, second) == 16);
+    const _: () = assert!(std::mem::size_of::<ScreenClip>() == 32);
+
+    /// `Seed`, 20 bytes, first in `shaders-glsl/seed.glsl`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+    pub struct Seed {
+        /// Byte 0.
+        pub key: [f32; 2],
+        /// Byte 8.
+        pub resolution: f32,
+        /// Byte 12.
+        pub rounding: f32,
+        /// Byte 16.
+        pub behind: f32,
+    }
+    const _: () = assert!(std::mem::offset_of!(Seed, key) == 0);
+    const _: () = assert!(std::mem::offset_of!(Seed, resolution) == 8);
+    const _: () = assert!(std::mem::offset_of!(Seed, rounding) == 12);
+    const _: () = assert!(std::mem::offset_of!(Seed, behind) == 16);
+    const _: () = assert!(std::mem::size_of::<Seed>() == 20);
+
+    /// `Splat`, 64 bytes, first in `shaders-glsl/attribute.glsl`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+    pub struct Splat {
+        /// Byte 0.
+        pub offset: [f32; 2],
+        /// Byte 8.
+        pub axis: [f32; 2],
+        /// Byte 16.
+        pub variance: f32,
+        /// Byte 20.
+        pub turn: f32,
+        /// Byte 24.
+        pub place: u32,
+        /// Byte 28.
+        pub epsilon: f32,
+        /// Byte 32.
+        pub plane_hi: [f32; 3],
+        /// Byte 44.
+        pub sqrt_det: f32,
+        /// Byte 48.
+        pub plane_lo: [f32; 3],
+        /// Byte 60.
+        pub key_disc: f32,
+    }
+    const _: () = assert!(std::mem::offset_of!(Splat, offset) == 0);
+    const _: () = assert!(std::mem::offset_of!(Splat, axis) == 8);
+    const _: () = assert!(std::mem::offset_of!(Splat, variance) == 16);
+    const _: () = assert!(std::mem::offset_of!(Splat, turn) == 20);
+    const _: () = assert!(std::mem::offset_of!(Splat, place) == 24);
+    const _: () = assert!(std::mem::offset_of!(Splat, epsilon) == 28);
+    const _: () = assert!(std::mem::offset_of!(Splat, plane_hi) == 32);
+    const _: () = assert!(std::mem::offset_of!(Splat, sqrt_det) == 44);
+    const _: () = assert!(std::mem::offset_of!(Splat, plane_lo) == 48);
+    const _: () = assert!(std::mem::offset_of!(Splat, key_disc) == 60);
+    const _: () = assert!(std::mem::size_of::<Splat>() == 64);
+
+    /// `Step`, 8 bytes, first in `shaders-glsl/pull.glsl`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+    pub struct Step {
+        /// Byte 0.
+        pub level: u32,
+        /// Byte 4.
+        pub levels: u32,
+    }
+    const _: () = assert!(std::mem::offset_of!(Step, level) == 0);
+    const _: () = assert!(std::mem::offset_of!(Step, levels) == 4);
+    const _: () = assert!(std::mem::size_of::<Step>() == 8);
+
+    /// `Subpass`, 16 bytes, first in `shaders-glsl/normalize.glsl`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+    pub struct Subpass {
+        /// Byte 0.
+        pub depth: [f32; 4],
+    }
+    const _: () = assert!(std::mem::offset_of!(Subpass, depth) == 0);
+    const _: () = assert!(std::mem::size_of::<Subpass>() == 16);
+
+    /// `Texture`, 12 bytes, first in `shaders-glsl/shade.glsl`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+    pub struct Texture {
+        /// Byte 0.
+        pub width: u32,
+        /// Byte 4.
+        pub height: u32,
+        /// Byte 8.
+        pub levels: u32,
+    }
+    const _: () = assert!(std::mem::offset_of!(Texture, width) == 0);
+    const _: () = assert!(std::mem::offset_of!(Texture, height) == 4);
+    const _: () = assert!(std::mem::offset_of!(Texture, levels) == 8);
+    const _: () = assert!(std::mem::size_of::<Texture>() == 12);
+
+    /// `Window`, 8 bytes, first in `shaders-glsl/attribute.glsl`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+    pub struct Window {
+        /// Byte 0.
+        pub count: u32,
+        /// Byte 4.
+        pub first: u32,
+    }
+    const _: () = assert!(std::mem::offset_of!(Window, count) == 0);
+    const _: () = assert!(std::mem::offset_of!(Window, first) == 4);
+    const _: () = assert!(std::mem::size_of::<Window>() == 8);
+
+}
