@@ -6,7 +6,7 @@ use super::limits::{Capabilities, DeviceLimits};
 use super::memory::{self, MemorySource};
 use super::pipeline_cache::PipelineCache;
 use super::pipeline_pool::PipelinePool;
-use super::requirements::{Abilities, QUEUE};
+use super::requirements::{Abilities, QUEUE, portability_subset};
 #[cfg(feature = "window")]
 use super::surface::{self, Surface, Window};
 use crate::error::{Error, Result};
@@ -139,7 +139,10 @@ impl Device {
         };
         let queues =
             [vk::DeviceQueueCreateInfo::default().queue_family_index(family).queue_priorities(&[1.0])];
-        let extensions: Vec<_> = enabled.extensions().chain(more.iter().copied()).map(CStr::as_ptr).collect();
+        // SAFETY: the physical device is the instance's.
+        let subset = unsafe { portability_subset(&instance.raw, physical) };
+        let extensions: Vec<_> =
+            enabled.extensions().chain(more.iter().copied()).chain(subset).map(CStr::as_ptr).collect();
         let mut features = enabled.features();
         let core = features.core;
         let info = vk::DeviceCreateInfo::default()

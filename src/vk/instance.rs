@@ -2,6 +2,7 @@
 
 use super::validation::{Messages, messenger_info};
 use crate::error::{Error, Result};
+use ash::khr::portability_enumeration;
 use ash::{ext::debug_utils, vk};
 use std::ffi::{CStr, c_char};
 
@@ -30,7 +31,14 @@ impl Instance {
         let debug_utils = has_extension(&entry, None, debug_utils::NAME);
         let layer = if validate { vec![require_validation_layer(&entry)?.as_ptr()] } else { Vec::new() };
         let labels = debug_utils.then_some(debug_utils::NAME.as_ptr());
-        let extensions: Vec<_> = extensions.iter().copied().chain(labels).collect();
+        // Without it the loader hides devices like MoltenVK's, whose Vulkan is not whole.
+        let portability = has_extension(&entry, None, portability_enumeration::NAME);
+        let flags = match portability {
+            true => vk::InstanceCreateFlags::ENUMERATE_PORTABILITY_KHR,
+            false => vk::InstanceCreateFlags::empty(),
+        };
+        let portability = portability.then_some(portability_enumeration::NAME.as_ptr());
+        let extensions: Vec<_> = extensions.iter().copied().chain(labels).chain(portability).collect();
         let messages = Box::new(Messages::default());
         let application = vk::ApplicationInfo::default()
             .application_name(c"surfel")
@@ -40,6 +48,7 @@ impl Instance {
         let enabled = [vk::ValidationFeatureEnableEXT::SYNCHRONIZATION_VALIDATION];
         let mut features = vk::ValidationFeaturesEXT::default().enabled_validation_features(&enabled);
         let mut info = vk::InstanceCreateInfo::default()
+            .flags(flags)
             .application_info(&application)
             .enabled_layer_names(&layer)
             .enabled_extension_names(&extensions);

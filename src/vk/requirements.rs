@@ -64,6 +64,20 @@ pub const ABILITIES: [Ability; 4] = [
     },
 ];
 
+/// VK_KHR_portability_subset, which must be enabled where a device has it. None of the features that it makes optional is known to be used.
+///
+/// # Safety
+/// `physical` is a device of `instance`.
+pub(super) unsafe fn portability_subset(
+    instance: &ash::Instance,
+    physical: vk::PhysicalDevice,
+) -> Option<&'static CStr> {
+    const NAME: &CStr = ash::khr::portability_subset::NAME;
+    // SAFETY: by the caller.
+    let extensions = unsafe { instance.enumerate_device_extension_properties(physical) }.unwrap_or_default();
+    extensions.iter().any(|found| found.extension_name_as_c_str() == Ok(NAME)).then_some(NAME)
+}
+
 impl Abilities {
     /// What `physical` has.
     ///
