@@ -184,7 +184,7 @@ impl Renderer {
     ///
     /// # Safety
     /// What `options.target` says of the render pass is true, and the pass outlives the renderer, which is dropped only when the GPU is done with
-    /// all that it recorded.
+    /// all that it recorded: pipelines are found again by the handle of the pass.
     pub unsafe fn new(device: &Arc<Device>, options: Options) -> Result<Self> {
         let Options { target, frames_in_flight, precision, rasterizer } = options;
         target.check(device)?;

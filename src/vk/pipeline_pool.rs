@@ -58,6 +58,11 @@ impl PipelinePool {
         // Without the lock: drivers take their time, and other threads may make other pipelines meanwhile.
         let made = Arc::new(make(&key)?);
         let mut pool = self.lock();
+        if let Some(alive) = pool.get(&key).and_then(Weak::upgrade) {
+            // Another thread was as quick; what was made here is destroyed without the lock.
+            drop(pool);
+            return Ok(alive);
+        }
         pool.retain(|_, pipeline| pipeline.strong_count() > 0);
         pool.insert(key, Arc::downgrade(&made));
         Ok(made)
