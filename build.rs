@@ -48,11 +48,13 @@ fn bundle(sources: &str, out: &Path) -> Result<Bundle, String> {
 /// The shaders as they were compiled before.
 #[cfg(not(feature = "compile-shaders"))]
 fn bundle(sources: &str, _: &Path) -> Result<Bundle, String> {
-    let bundle = Bundle::read(Path::new("shaders-glsl/compiled"))?;
+    let remedy =
+        |cause: String| format!("{cause}\nrun tools/shaders, or build with --features compile-shaders");
+    let bundle = Bundle::read(Path::new("shaders-glsl/compiled")).map_err(remedy)?;
     if bundle.sources == sources {
         return Ok(bundle);
     }
-    Err("shaders-glsl/compiled is not of this GLSL: run tools/shaders, or build with --features compile-shaders".into())
+    Err(remedy("shaders-glsl/compiled is not of this GLSL".into()))
 }
 
 /// Tells the program which code it is built from, where it measures.

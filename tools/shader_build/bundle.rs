@@ -2,7 +2,7 @@
 //!
 //! | file | contents |
 //! |---|---|
-//! | `digest` | two lines: the digest of the sources, the name of the compiler |
+//! | `digest` | three lines: the digest of the sources, the name of the compiler, the digest of what was compiled |
 //! | `reflection.rs` | Rust: modules, ids of specialization constants, shared structs |
 //! | `NAME.spv.z` | the SPIR-V of a module, little-endian, zlib |
 
@@ -11,6 +11,7 @@ use miniz_oxide::deflate::compress_to_vec_zlib;
 use miniz_oxide::inflate::decompress_to_vec_zlib_with_limit;
 use std::fs;
 use std::path::Path;
+use xxhash_rust::xxh3::Xxh3;
 
 /// Extension of a compressed module.
 const COMPRESSED: &str = "spv.z";
@@ -69,7 +70,24 @@ impl Bundle {
             }
         }
         spirv.sort_by(|a, b| a.name.cmp(&b.name));
-        Ok(Self { sources, compiler, reflection, spirv })
+        let bundle = Self { sources, compiler, reflection, spirv };
+        if line("contents ") != Some(bundle.contents()) {
+            return Err(format!("{}: files are missing, damaged or of another build", folder.display()));
+        }
+        Ok(bundle)
+    }
+
+    /// Digest of the reflection and the SPIR-V.
+    fn contents(&self) -> String {
+        let mut hash = Xxh3::new();
+        let names = self.spirv.iter().map(|module| (module.name.as_bytes().to_vec(), bytes(&module.words)));
+        for (name, contents) in names.chain([(Vec::new(), self.reflection.clone().into_bytes())]) {
+            for part in [name, contents] {
+                hash.update(&(part.len() as u64).to_le_bytes());
+                hash.update(&part);
+            }
+        }
+        format!("{:032x}", hash.digest128())
     }
 
     /// Writes the bundle to `folder`, in place of what is there.
@@ -82,7 +100,8 @@ impl Bundle {
             fs::remove_dir_all(folder)
                 .map_err(|error| format!("cannot empty {}: {error}", folder.display()))?;
         }
-        let digest = format!("sources {}\ncompiler {}\n", self.sources, self.compiler);
+        let digest =
+            format!("sources {}\ncompiler {}\ncontents {}\n", self.sources, self.compiler, self.contents());
         write(folder, DIGEST, digest.as_bytes())?;
         write(folder, REFLECTION, self.reflection.as_bytes())?;
         for module in &self.spirv {

@@ -47,7 +47,9 @@ mod compiled {
         let reflection = emit::rust(&modules, &interface)?;
         let spirv =
             modules.into_iter().map(|module| Spirv { name: module.file_name(), words: module.optimised });
-        let bundle = Bundle { sources, compiler: compile::compiler(), reflection, spirv: spirv.collect() };
+        let mut spirv: Vec<_> = spirv.collect();
+        spirv.sort_by(|a, b| a.name.cmp(&b.name));
+        let bundle = Bundle { sources, compiler: compile::compiler(), reflection, spirv };
         Ok(Shaders { bundle, warnings })
     }
 }
