@@ -6,26 +6,27 @@
 //! file ─ io, scenes → geometry ─ scene → buffers ─ methods, passes → targets ─ readback → picture
 //! ```
 //!
-//! | module | |
-//! |---|---|
-//! | [`geometry`] | what a scene is made of: surfels, lines, triangles, bounds, cameras; plain CPU data |
-//! | [`io`] | PLY, PNG, EXR |
-//! | [`scenes`] | built-in scenes with exact ground truth |
-//! | [`settings`], [`splatting`] | what a frame is asked to be, and how surfels become pixels |
-//! | [`scene`] | geometry on the GPU: only the streams that it has |
-//! | [`instance`] | scenes where they are placed: several in a frame |
-//! | [`variant`], [`targets`] | which pipelines and images a frame needs, and no more |
-//! | [`passes`] | one file a pass, beside the shader of the same name |
-//! | [`methods`] | one file a method: its paper and its passes |
-//! | [`renderer`] | frames: make ready, record, submit, read back |
-//! | [`embed`] | the same frames within those of another renderer |
-//! | [`capture`] | normalization weights of surfels, from pictures of them |
-//! | [`reference`](mod@reference) | the float64 twin of every pass, on the CPU; judges pictures |
-//! | [`truth`] | exact images: rays against the surface itself |
-//! | [`metrics`] | how far a picture is from the truth |
-//! | [`yardstick`] | the same frames by a plain native program: what times are multiples of |
-//! | `bench` | speed against error (feature `bench`) |
-//! | [`vk`] | the layer over raw Vulkan |
+//! | module | | feature |
+//! |---|---|---|
+//! | [`geometry`] | what a scene is made of: surfels, lines, triangles, bounds, cameras; plain CPU data | `estimate` for its module of that name |
+//! | [`io`] | PLY, PNG, EXR | `io` |
+//! | [`scenes`] | built-in scenes with exact ground truth | `scenes` |
+//! | [`settings`], [`splatting`] | what a frame is asked to be, and how surfels become pixels | |
+//! | [`scene`] | geometry on the GPU: only the streams that it has | |
+//! | [`instance`] | scenes where they are placed: several in a frame | |
+//! | [`variant`], [`targets`] | which pipelines and images a frame needs, and no more | |
+//! | [`passes`] | one file a pass, beside the shader of the same name | |
+//! | [`methods`] | one file a method: its paper and its passes | |
+//! | [`renderer`] | frames: make ready, record, submit, read back | |
+//! | [`embed`] | the same frames within those of another renderer | |
+//! | [`times`] | statistics of how long frames and passes take | |
+//! | [`capture`] | normalization weights of surfels, from pictures of them | `reference` |
+//! | [`reference`](mod@reference) | the float64 twin of every pass, on the CPU; judges pictures | `reference` |
+//! | [`truth`] | exact images: rays against the surface itself | `truth` |
+//! | [`metrics`] | how far a picture is from the truth | `metrics` |
+//! | [`yardstick`] | the same frames by a plain native program: what times are multiples of | `bench` |
+//! | [`bench`](mod@bench) | speed against error | `bench` |
+//! | [`vk`] | the layer over raw Vulkan | `window` for presenting |
 //!
 //! ```no_run
 //! use surfel::geometry::Camera;
@@ -46,37 +47,52 @@
 //! # }
 //! ```
 
+// Every item is used by some feature; the lints run with all of them.
+#![cfg_attr(not(all(feature = "bench", feature = "viewer")), allow(dead_code))]
+
 #[cfg(feature = "bench")]
 pub mod bench;
+#[cfg(feature = "reference")]
 pub mod capture;
 pub mod embed;
 pub mod error;
 mod frame;
 pub mod geometry;
 pub mod instance;
+#[cfg(feature = "io")]
 pub mod io;
 mod memory;
 pub mod methods;
+#[cfg(feature = "metrics")]
 pub mod metrics;
 pub mod passes;
 pub mod picture;
 mod progress;
 pub mod pull_push;
 mod readback;
+#[cfg(feature = "reference")]
 pub mod reference;
 pub mod renderer;
 pub mod scene;
+#[cfg(feature = "scenes")]
 pub mod scenes;
 pub mod settings;
 pub mod splatting;
 mod stage;
 pub mod targets;
+pub mod times;
+#[cfg(feature = "truth")]
 pub mod truth;
 pub mod variant;
 pub mod vk;
+#[cfg(feature = "bench")]
 pub mod yardstick;
 
+/// The version of ash whose handles [`embed`] takes.
+pub use ash;
 pub use error::{Error, Result};
+/// The version of glam whose vectors and matrices the interface takes.
+pub use glam;
 pub use instance::{Instance, Instances};
 pub use picture::Picture;
 pub use progress::Progress;

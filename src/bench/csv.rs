@@ -1,9 +1,9 @@
 //! Results as flat rows, for spreadsheets and scripts. A cell without a value is empty; no rows at all have no header either.
 
 use super::record::{Agreement, Memory, Results, Run, Session, SweepPoint};
-use super::times::Statistics;
 use crate::error::{Error, Result};
 use crate::metrics::Metric;
+use crate::times::Statistics;
 use std::collections::BTreeSet;
 
 /// A cell with the name of its column.

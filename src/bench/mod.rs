@@ -39,10 +39,8 @@ pub mod subject;
 pub mod suites;
 mod table;
 pub mod terms;
-mod times;
 
 pub use record::Results;
 pub use session::{Wanted, measure};
 pub use suites::Suite;
 pub use table::table;
-pub use times::{Statistics, Times};

@@ -1,11 +1,11 @@
 //! What was measured, as it is kept in JSON: times in milliseconds, memory in bytes, colours linear, errors as their
 //! [metrics](crate::metrics) define them.
 
-use super::times::Statistics;
 use crate::methods::Method;
 use crate::reference::Comparison;
 use crate::settings::{Alpha, Settings};
 use crate::splatting::Splatting;
+use crate::times::Statistics;
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

@@ -2,10 +2,10 @@
 
 use super::engine::Ready;
 use super::record::{Pass, Time};
-use super::times::{Statistics, Times};
 use crate::error::Result;
 use crate::geometry::Camera;
 use crate::settings::Settings;
+use crate::times::{Statistics, Times};
 use cpu_time::ProcessTime;
 use std::time::{Duration, Instant};
 

@@ -1,6 +1,7 @@
 //! The command line: the library knows nothing of it.
 
 mod args;
+#[cfg(feature = "bench")]
 mod bench;
 mod camera;
 mod colouring;
@@ -50,6 +51,7 @@ pub fn run() -> ExitCode {
             compared => compared.map(drop),
         },
         Command::Truth(args) => truth::run(&args),
+        #[cfg(feature = "bench")]
         Command::Bench(args) => bench::run(&args),
         Command::Devices => devices::run(),
         Command::Methods => methods::run(),

@@ -3,8 +3,8 @@
 use super::render::{Outcome, Task};
 use super::turntable;
 use std::time::Instant;
-use surfel::bench::Times;
 use surfel::geometry::Camera;
+use surfel::times::Times;
 use surfel::{Error, Picture, Result, SplatCounts, reference};
 
 /// Most pixels of a picture: they take some 5 GiB in float64, and running out of memory would stop the process.

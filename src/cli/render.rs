@@ -6,12 +6,12 @@ use super::inputs::{Inputs, Wanted};
 use super::report::{Gpu, HalfError, Report};
 use super::{camera, files, inputs, progress, reference, summary, turntable, vulkan};
 use std::path::Path;
-use surfel::bench::Times;
 use surfel::geometry::{Camera, Model, Parts};
 use surfel::io::colour_bar::ColourBar;
 use surfel::io::image::{Encoded, Output, write};
 use surfel::methods::{Method, pull_push};
 use surfel::settings::Shading;
+use surfel::times::Times;
 use surfel::{Error, Outputs, Picture, Progress, Result, Settings, SplatCounts};
 
 /// What is to be rendered, wherever that happens.

@@ -6,12 +6,12 @@ use super::inputs::Inputs;
 use super::render::{Outcome, Task};
 use serde_json::{Map, Value, json};
 use std::path::Path;
-use surfel::bench::Statistics;
 use surfel::geometry::estimate::Estimated;
 use surfel::io::ply::Dropped;
 use surfel::settings::{DirectionalLight, Lighting};
 use surfel::splatting::Splatting;
 use surfel::targets::TargetInfo;
+use surfel::times::Statistics;
 use surfel::vk::{DeviceDescription, Usage};
 use surfel::{Error, Precision, Rasterizer, Result, Settings, SplatCounts};
 

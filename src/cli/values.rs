@@ -5,10 +5,10 @@ use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use glam::DVec3;
 use std::str::FromStr;
 use surfel::geometry::ValueRange;
-use surfel::io::srgb;
+use surfel::geometry::srgb;
 use surfel::methods::Method;
+use surfel::settings;
 use surfel::splatting::Kernel;
-use surfel::{bench, settings};
 
 /// `WxH`, px.
 pub fn size(text: &str) -> Result<[u32; 2], String> {
@@ -227,36 +227,6 @@ impl From<Cull> for settings::Cull {
         match cull {
             Cull::None => Self::None,
             Cull::Back => Self::Back,
-        }
-    }
-}
-
-/// What is measured together.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Suite {
-    /// A first impression of everything, in a minute on two cores
-    Quick,
-    /// Every scene, from 10⁴ to 10⁶ points
-    Full,
-    /// Where numbers get difficult: float32 against float64
-    Hard,
-    /// Time against points, pixels and overlap
-    Scaling,
-    /// Every way to render, as multiples of what a plain program on the CPU takes
-    Yardstick,
-    /// What the papers show, say and measured: their effects, costs and tables
-    Papers,
-}
-
-impl From<Suite> for bench::Suite {
-    fn from(suite: Suite) -> Self {
-        match suite {
-            Suite::Quick => Self::Quick,
-            Suite::Full => Self::Full,
-            Suite::Hard => Self::Hard,
-            Suite::Scaling => Self::Scaling,
-            Suite::Yardstick => Self::Yardstick,
-            Suite::Papers => Self::Papers,
         }
     }
 }

@@ -7,8 +7,8 @@ use super::report::{Gpu, HalfError};
 use super::turntable;
 use std::sync::Arc;
 use std::time::Instant;
-use surfel::bench::Times;
 use surfel::geometry::Camera;
+use surfel::times::Times;
 use surfel::vk::{Device, DeviceLimits, DeviceOptions};
 use surfel::{Error, Picture, Precision, RenderOptions, Renderer, Result, Scene};
 

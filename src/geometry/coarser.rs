@@ -1,7 +1,7 @@
 //! Fewer and larger surfels for the same surface, for pictures that have to be quick.
 
 use super::{Colours, Ellipse, Surfels, morton};
-use crate::io::srgb;
+use crate::geometry::srgb;
 use glam::Vec3;
 use rayon::prelude::*;
 use std::array;

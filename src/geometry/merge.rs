@@ -4,7 +4,7 @@ use super::{
     Bounds, Clips, Cloud, Colours, Ellipse, Materials, Model, Primitives, Surfels, Texture, View, Weights,
 };
 use crate::error::{Error, Result};
-use crate::io::srgb;
+use crate::geometry::srgb;
 use glam::{DVec3, Vec3};
 
 impl Surfels {

@@ -6,6 +6,7 @@ mod clips;
 mod cloud;
 mod coarser;
 mod colour_map;
+#[cfg(feature = "estimate")]
 pub mod estimate;
 mod materials;
 mod merge;
@@ -14,6 +15,7 @@ mod pose;
 mod primitives;
 mod quantity;
 mod simplify;
+pub mod srgb;
 mod strips;
 mod surfels;
 mod texture;

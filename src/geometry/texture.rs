@@ -2,7 +2,7 @@
 
 use super::Colours;
 use crate::error::{Error, Result};
-use crate::io::srgb;
+use crate::geometry::srgb;
 use crate::picture::Picture;
 use glam::{DVec2, DVec3, Vec2, Vec3};
 use rayon::prelude::*;

@@ -1,7 +1,7 @@
 //! Fewer points: one a voxel.
 
 use super::{Bounds, Cloud, Colours};
-use crate::io::srgb;
+use crate::geometry::srgb;
 use glam::{DVec3, I64Vec3, Vec3};
 use rayon::prelude::*;
 

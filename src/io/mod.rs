@@ -4,4 +4,3 @@ pub mod atomic;
 pub mod colour_bar;
 pub mod image;
 pub mod ply;
-pub mod srgb;

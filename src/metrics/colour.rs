@@ -1,6 +1,6 @@
 //! Colours as they are compared: on a background, linear or as a display gets them.
 
-use crate::io::srgb;
+use crate::geometry::srgb;
 use crate::picture::Picture;
 use rayon::prelude::*;
 

@@ -1,7 +1,7 @@
 //! Albedos: procedural textures of any frequency.
 
 use super::shapes::Spot;
-use crate::io::srgb;
+use crate::geometry::srgb;
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 

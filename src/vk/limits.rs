@@ -6,7 +6,7 @@ use ash::vk;
 /// A mask over a device's abilities: a field that is `None` hides nothing. It only ever takes away.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(
-    feature = "cli",
+    feature = "serde",
     derive(serde::Deserialize),
     serde(default, deny_unknown_fields, rename_all = "snake_case")
 )]

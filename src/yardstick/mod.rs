@@ -30,8 +30,8 @@ mod tile;
 mod view;
 
 use crate::error::{Error, Result};
+use crate::geometry::srgb;
 use crate::geometry::{Camera, Clips, Colours, Surfels};
-use crate::io::srgb;
 use crate::picture::Picture;
 use crate::settings::{Settings, Shading};
 use crate::splatting::Splatting;

@@ -5,6 +5,9 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use tempfile::TempDir;
 
+/// Where Mesa keeps compiled shaders: what it compiles for one run of the program serves all others, those of the next test run too.
+pub const SHADER_CACHE: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/shaders");
+
 /// What came of a run.
 pub struct Run {
     pub code: i32,
@@ -63,6 +66,7 @@ impl Program {
             .current_dir(self.folder.path())
             .env_remove("RUST_LOG")
             .env("XDG_CACHE_HOME", self.folder.path().join(".cache"))
+            .env("MESA_SHADER_CACHE_DIR", SHADER_CACHE)
             .envs(variables.iter().copied())
             .output()
             .unwrap();

@@ -1,8 +1,9 @@
 //! Results as a bench could have measured them.
 
 use std::collections::BTreeMap;
+use surfel::bench::Results;
 use surfel::bench::record::*;
-use surfel::bench::{Results, Statistics};
+use surfel::times::Statistics;
 
 /// Digest of the code that the results are by.
 pub const CODE: &str = "c0de";

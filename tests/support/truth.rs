@@ -3,7 +3,7 @@
 use glam::DVec3;
 use rayon::prelude::*;
 use surfel::geometry::Camera;
-use surfel::io::srgb;
+use surfel::geometry::srgb;
 use surfel::scenes::bumpy_sphere::{Hit, trace};
 
 /// The checker's two colours, sRGB-encoded.

@@ -5,6 +5,7 @@ mod display;
 mod faults;
 mod keeping;
 mod keys;
+mod load;
 mod others;
 #[allow(dead_code, reason = "what of it other tests use")]
 #[path = "../cli/program.rs"]

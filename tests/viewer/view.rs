@@ -1,7 +1,7 @@
 //! `surfel view` on a display, and what it tells.
 
 use crate::display::{Display, PATIENCE};
-use crate::program::Program;
+use crate::program::{Program, SHADER_CACHE};
 use serde_json::Value;
 use std::io::{BufRead, BufReader, Read};
 use std::process::{Child, Command, Stdio};
@@ -38,6 +38,7 @@ pub fn command(program: &Program, display: &str, arguments: &str) -> Command {
         .env_remove("WAYLAND_SOCKET")
         .env("DISPLAY", display)
         .env("XDG_CACHE_HOME", program.path(".cache"))
+        .env("MESA_SHADER_CACHE_DIR", SHADER_CACHE)
         .env("XDG_CONFIG_HOME", program.path(".config"));
     command
 }

@@ -1,5 +1,5 @@
 //! A host that shows a model three times, turned, scaled, and running through each other and a mesh of the host:
-//! `cargo run --release --example instances -- FILE.png [--method NAME] [--model FILE.ply]`, or in a window, with `--features viewer`.
+//! `cargo run --release --example instances -- FILE.png [--method NAME] [--model FILE.ply]`, or in a window without FILE.png.
 //!
 //! The model is on the device once; `prepare` is given a list of where it stands.
 #![allow(unsafe_code, reason = "a host speaks Vulkan itself")]

@@ -1,5 +1,5 @@
 //! A host whose million points move on the GPU, seen where they are:
-//! `cargo run --release --example moving -- FILE.png [--frames 60] [--method NAME]`, or in a window, with `--features viewer`.
+//! `cargo run --release --example moving -- FILE.png [--frames 60] [--method NAME]`, or in a window without FILE.png.
 //!
 //! The host's own compute shader writes its vertices every frame; surfels are read from the same buffer, beside a mesh of the host, with two
 //! frames in flight.

@@ -1,5 +1,5 @@
 //! A host whose render pass has surfels' passes among its own subpasses: `cargo run --example native -- FILE.png`, or in a window,
-//! `cargo run --features viewer --example native`.
+//! `cargo run --example native`.
 #![allow(unsafe_code, reason = "a host speaks Vulkan itself")]
 
 mod host;

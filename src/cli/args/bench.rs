@@ -1,10 +1,11 @@
 //! Options of `surfel bench`.
 
 use super::OnDevice;
-use crate::cli::values::{Suite, size};
-use clap::Args;
+use crate::cli::values::size;
+use clap::{Args, ValueEnum};
 use std::ffi::OsString;
 use std::path::PathBuf;
+use surfel::bench;
 
 /// Options of `surfel bench`.
 #[derive(Args, Debug)]
@@ -45,4 +46,34 @@ pub struct Bench {
     /// Prints nothing but warnings and errors
     #[arg(short, long)]
     pub quiet: bool,
+}
+
+/// What is measured together.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Suite {
+    /// A first impression of everything, in a minute on two cores
+    Quick,
+    /// Every scene, from 10⁴ to 10⁶ points
+    Full,
+    /// Where numbers get difficult: float32 against float64
+    Hard,
+    /// Time against points, pixels and overlap
+    Scaling,
+    /// Every way to render, as multiples of what a plain program on the CPU takes
+    Yardstick,
+    /// What the papers show, say and measured: their effects, costs and tables
+    Papers,
+}
+
+impl From<Suite> for bench::Suite {
+    fn from(suite: Suite) -> Self {
+        match suite {
+            Suite::Quick => Self::Quick,
+            Suite::Full => Self::Full,
+            Suite::Hard => Self::Hard,
+            Suite::Scaling => Self::Scaling,
+            Suite::Yardstick => Self::Yardstick,
+            Suite::Papers => Self::Papers,
+        }
+    }
 }

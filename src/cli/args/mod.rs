@@ -1,5 +1,6 @@
 //! What the program can be asked.
 
+#[cfg(feature = "bench")]
 mod bench;
 mod compare;
 mod convert;
@@ -8,6 +9,7 @@ mod truth;
 #[cfg(feature = "viewer")]
 mod view;
 
+#[cfg(feature = "bench")]
 pub use bench::Bench;
 pub use compare::Compare;
 pub use convert::{Convert, Info};
@@ -53,6 +55,7 @@ pub enum Command {
     /// Traces the exact picture of a built-in scene or a mesh, without Vulkan
     Truth(Box<Truth>),
     /// Measures speed against error, and makes a page of it
+    #[cfg(feature = "bench")]
     Bench(Box<Bench>),
     /// Lists the Vulkan devices; * marks the one that is used unless --device names another
     Devices,

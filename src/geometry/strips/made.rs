@@ -4,8 +4,8 @@ use super::Lined;
 use super::branch::Tubes;
 use super::leaf::Row;
 use super::weld::Welded;
+use crate::geometry::srgb;
 use crate::geometry::{Cloud, Colours};
-use crate::io::srgb;
 use glam::{DVec3, Vec3};
 use std::collections::HashMap;
 

@@ -1,7 +1,7 @@
 //! Drawing into a finished picture: rectangles and text, blended in linear light.
 
+use crate::geometry::srgb;
 use crate::io::image::Encoded;
-use crate::io::srgb;
 use noto_sans_mono_bitmap::{FontWeight, RasterHeight, RasterizedChar, get_raster, get_raster_width};
 
 /// A part of a picture, px.

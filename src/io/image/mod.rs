@@ -5,9 +5,10 @@ mod read;
 
 pub use read::{MOST_PIXELS, read};
 
-use super::{atomic, srgb};
+use super::atomic;
 use crate::error::{Error, Result};
 use crate::geometry::ColourMap;
+use crate::geometry::srgb;
 use crate::picture::Picture;
 use crate::settings::Shading;
 use image::codecs::png::PngEncoder;

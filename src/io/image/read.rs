@@ -2,7 +2,7 @@
 
 use super::exr;
 use crate::error::{Error, Result};
-use crate::io::srgb;
+use crate::geometry::srgb;
 use crate::picture::Picture;
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
 use std::io::Cursor;

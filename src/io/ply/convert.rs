@@ -8,8 +8,8 @@ use super::layout::{
 };
 use super::shape::{self, Disc};
 use super::types::Scalar;
+use crate::geometry::srgb;
 use crate::geometry::{Clip, ClipLine, Materials};
-use crate::io::srgb;
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
 /// Largest usable coordinate: differences of two stay finite in f32.

@@ -4,8 +4,8 @@ use super::layout::{CLIP_CONCAVE, CLIP_LINES, CORNER_NAMES, MATERIAL_NAME, TANGE
 use super::lines::TUBE;
 use super::materials;
 use super::write::Whole;
+use crate::geometry::srgb;
 use crate::geometry::{Clip, Colours, Ellipse, Material, Primitives};
-use crate::io::srgb;
 use crate::settings::Lighting;
 use glam::{DVec3, Vec3};
 use ply_rs::ply::PropertyAccess;

@@ -135,7 +135,7 @@ fn shared(colour: DVec3) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::io::srgb;
+    use crate::geometry::srgb;
 
     #[test]
     fn numbers_are_rounded_to_their_formats() {

@@ -1,11 +1,7 @@
 //! Pull–push of ribbons, tubes and polygons: the float64 reference against rays through the exact surface.
 
-mod support {
-    pub mod gpu;
-}
-
+use crate::support::gpu::{assert_silent, device, render};
 use glam::{DVec3, Vec3};
-use support::gpu::{assert_silent, device, render};
 use surfel::geometry::{Camera, Model, Parts};
 use surfel::pull_push::{PullPush, Rules};
 use surfel::settings::{Settings, Shading};
@@ -167,6 +163,7 @@ fn cameras(name: &str, model: &Model) -> [Camera; 3] {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn the_gpu_makes_the_references_picture() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let size = [512, 512];

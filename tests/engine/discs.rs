@@ -1,11 +1,9 @@
 //! Shapes and sides of discs: ellipses against circles, surfels without a back, what of both a scene keeps and refuses.
 
-mod support;
-
+use crate::support::gpu::{assert_silent, device, render};
+use crate::support::sampling::{Random, bumpy_sphere, forget_sides, narrow, push, stretch};
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
-use support::gpu::{assert_silent, device, render};
-use support::sampling::{Random, bumpy_sphere, forget_sides, narrow, push, stretch};
 use surfel::geometry::{Camera, Ellipse, Surfels};
 use surfel::reference::{Expected, Tolerance};
 use surfel::settings::Cull;

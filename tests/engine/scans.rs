@@ -1,14 +1,12 @@
 //! Real scans, from file to picture, against their meshes.
 
-mod support;
-
+use crate::support::{gpu, mesh};
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
-use support::{gpu, mesh};
 use surfel::geometry::estimate::Estimate;
+use surfel::geometry::srgb;
 use surfel::geometry::{Bounds, Camera, Cloud, Surfels};
 use surfel::io::ply::{self, ReadOptions};
-use surfel::io::srgb;
 use surfel::vk::{Device, DeviceLimits};
 use surfel::{Picture, RenderOptions, Settings};
 

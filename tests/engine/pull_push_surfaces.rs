@@ -1,18 +1,12 @@
 //! Pull–push, the float64 reference and the GPU, where a surface hides another: a scan, and two layers a few radii apart, against rays through
 //! the exact surface.
 
+use crate::support::gpu::{assert_silent, device};
+use crate::support::mesh;
+use crate::support::pyramids::{Made, Shot};
 #[allow(dead_code)] // of what is shared
-mod support {
-    pub mod gpu;
-    pub mod mesh;
-    pub mod pyramids;
-}
-
 use glam::DVec3;
 use std::sync::Arc;
-use support::gpu::{assert_silent, device};
-use support::mesh;
-use support::pyramids::{Made, Shot};
 use surfel::bench::subject::Subject;
 use surfel::geometry::{Cloud, Surfels};
 use surfel::pull_push::{PullPush, Rules};
@@ -114,6 +108,7 @@ fn a_scan_has_no_holes_and_does_not_leak() {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn nothing_shines_through_a_layer() {
     let device = device(DeviceLimits::default());
     for gap in [0.06, 0.1, 0.2] {

@@ -1,9 +1,7 @@
 //! What the papers' figures show is there to be measured: each effect's sides differ as expected.
 
-mod support;
-
+use crate::support::gpu::{assert_silent, device};
 use std::time::Duration;
-use support::gpu::{assert_silent, device};
 use surfel::bench::papers::effects::{ALL, Effect, value};
 use surfel::bench::record::Run;
 use surfel::bench::runner::{Options, Runner};
@@ -35,8 +33,8 @@ fn check(name: &str) {
 
 /// A test an effect, of its name.
 macro_rules! effects {
-    ($($test:ident: $name:literal;)*) => {
-        $(#[test] fn $test() { check($name); })*
+    ($($(#[$attribute:meta])* $test:ident: $name:literal;)*) => {
+        $(#[test] $(#[$attribute])* fn $test() { check($name); })*
 
         #[test]
         fn every_effect_has_a_test() {
@@ -50,19 +48,29 @@ effects! {
     an_offset_along_the_axis_hides_too_much: "axis-offset";
     squares_thicken_contours: "thickening";
     footprints_that_are_right_at_their_centre_alone_leave_holes: "perspective-holes";
+    #[ignore = "takes long: tools/test --all"]
     without_a_low_pass_filter_a_checkerboard_flickers: "moire";
+    #[ignore = "takes long: tools/test --all"]
     wide_kernels_blur: "kernel-blur";
     narrow_kernels_show_facets: "kernel-facets";
     filters_add_to_the_overlap: "overlap";
+    #[ignore = "takes long: tools/test --all"]
     without_normalization_brightness_varies: "no-normalization";
     means_of_all_around_let_hidden_surfaces_through: "layers";
+    #[ignore = "takes long: tools/test --all"]
     sprites_of_whole_sizes_are_too_large: "whole-sizes";
+    #[ignore = "takes long: tools/test --all"]
     a_ribbon_is_as_wide_as_it_is: "ribbon";
+    #[ignore = "takes long: tools/test --all"]
     a_tube_is_round: "tubes";
     a_branch_has_leaves: "leaf-and-branch";
+    #[ignore = "takes long: tools/test --all"]
     a_tree_is_lines: "tree";
+    #[ignore = "takes long: tools/test --all"]
     ten_trees_are_lines: "ten-trees";
+    #[ignore = "takes long: tools/test --all"]
     points_lines_and_polygons_hide_each_other: "kinds";
+    #[ignore = "takes long: tools/test --all"]
     triangles_go_on_as_points: "hybrid";
 }
 

@@ -1,13 +1,11 @@
 //! The bench measures what is there, and says so where nothing can be measured.
 
-mod support;
-
+use crate::support::gpu::{assert_silent, device};
 use base64::prelude::{BASE64_STANDARD, Engine as _};
 use std::f64::consts::PI;
 use std::path::Path;
 use std::rc::Rc;
 use std::time::Duration;
-use support::gpu::{assert_silent, device};
 use surfel::bench::engine::Engine;
 use surfel::bench::plan::{Plan, Wants};
 use surfel::bench::record::{Figure, Run};
@@ -113,6 +111,7 @@ fn a_run_knows_its_time_its_error_and_what_that_is_made_of() {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn on_smooth_scenes_the_error_falls_as_points_rise() {
     let Some(mut runner) = runner(Vec::new()) else { return };
     for scene in ["sphere", "bumpy-sphere", "torus", "relief", "helix", "ribbon"] {
@@ -127,6 +126,7 @@ fn on_smooth_scenes_the_error_falls_as_points_rise() {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn without_the_low_pass_the_horizon_aliases_and_the_error_says_so() {
     let Some(mut runner) = runner(Vec::new()) else { return };
     let mut with = |lowpass| {

@@ -1,12 +1,7 @@
 //! A million splats of the bumpy sphere show what rays through the exact surface meet.
 
-mod support {
-    pub mod gpu;
-    pub mod truth;
-}
-
-use support::gpu::{assert_silent, device, render};
-use support::truth::{Differences, Truth};
+use crate::support::gpu::{assert_silent, device, render};
+use crate::support::truth::{Differences, Truth};
 use surfel::settings::{Alpha, Shading};
 use surfel::vk::DeviceLimits;
 use surfel::{Picture, Rasterizer, RenderOptions, Settings, scenes};

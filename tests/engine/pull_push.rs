@@ -1,17 +1,11 @@
 //! Pull–push on the bumpy sphere, from ten thousand to a million points: the float64 reference and the GPU against rays through the exact
 //! surface.
 
+use crate::support::gpu::{assert_silent, device, render};
+use crate::support::pyramids::{Made, Shot};
+use crate::support::truth::{Differences, Truth};
 #[allow(dead_code)] // of what is shared
-mod support {
-    pub mod gpu;
-    pub mod pyramids;
-    pub mod truth;
-}
-
 use glam::DVec3;
-use support::gpu::{assert_silent, device, render};
-use support::pyramids::{Made, Shot};
-use support::truth::{Differences, Truth};
 use surfel::geometry::{Camera, Surfels};
 use surfel::methods::{Method, passes, perspective_ewa, pull_push};
 use surfel::pull_push::{PullPush, Rules, Storage};
@@ -169,11 +163,13 @@ fn coarser_levels_than_the_largest_disc_change_nothing() {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn the_reference_reaches_what_was_measured() {
     reaches_what_was_measured(&|shot| shot.by_twin());
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn the_gpu_reaches_what_was_measured() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     reaches_what_was_measured(&|shot| shot.by_gpu(&device));

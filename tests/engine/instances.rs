@@ -1,12 +1,11 @@
 //! Scenes where they are placed: one that stands as it is makes the frame that it makes alone; placed, and several together, they make the
 //! float64 reference's picture of one cloud.
 
-mod support;
-
+use crate::support::gpu::{assert_silent, device};
+use crate::support::if_whole;
+use crate::support::placing::{exact, lines, merged, moved_lines, painted, plain, rich, turned, weighted};
 use glam::{DMat4, DVec3};
 use std::sync::Arc;
-use support::gpu::{assert_silent, device};
-use support::placing::{exact, lines, merged, moved_lines, painted, plain, rich, turned, weighted};
 use surfel::geometry::{Camera, Model, Primitives, Surfels};
 use surfel::methods::Method;
 use surfel::reference::{self, Expected, Tolerance};
@@ -180,11 +179,13 @@ fn unlike_scenes_are_one_cloud() {
         ("coverage", with(&|s| s.alpha = Alpha::Coverage)),
         ("axis", with(&|s| s.splatting = axis)),
     ];
-    for (name, settings) in frames {
+    for (i, (name, settings)) in frames.into_iter().enumerate() {
         let [first, second] = turns;
         // One of them without colours, either way round; the first with the identity.
-        assert_agree(&device, &[(&bare, first), (&all, second)], &settings, name);
-        assert_agree(&device, &[(&bytes, first), (&bare, second)], &settings, name);
+        let pairs = [[(&bare, first), (&all, second)], [(&bytes, first), (&bare, second)]];
+        for pair in &pairs[if_whole(0..2, i % 2..i % 2 + 1)] {
+            assert_agree(&device, pair, &settings, name);
+        }
     }
     let by_surfel = Splatting { normalization: Normalization::Surfel, ..Splatting::default() };
     let [a, b] = [bare, all].map(weighted);

@@ -1,10 +1,8 @@
 //! Normalization weights: captured ones are those of the sums that they stand for, and make of weights a partition of unity.
 
-mod support;
-
+use crate::support::gpu::{assert_silent, device, render};
 use glam::{DVec2, DVec3, Vec3};
 use std::sync::Arc;
-use support::gpu::{assert_silent, device, render};
 use surfel::capture::{Captured, VIEWS, capture, capture_region, overlaps};
 use surfel::geometry::{Camera, Surfels, Weights};
 use surfel::methods::object_ewa;
@@ -177,6 +175,7 @@ fn captured_weights_are_those_of_the_sums_over_the_neighbours() {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn weights_even_out_the_sums_by_either_rasterizer() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let irregular = scenes::open("scene:torus?points=20000&sampler=scanner").unwrap();

@@ -1,10 +1,8 @@
 //! Frames: what they make and do not make, the fallbacks of lesser devices, sizes, the two rasterizers side by side.
 
-mod support;
-
+use crate::support::gpu::{assert_silent, device, render};
 use glam::DVec3;
 use std::sync::Arc;
-use support::gpu::{assert_silent, device, render};
 use surfel::geometry::{Camera, Surfels, Weights};
 use surfel::methods::object_ewa::{self, Progressive};
 use surfel::methods::{Method, passes};

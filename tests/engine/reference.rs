@@ -1,11 +1,9 @@
 //! The float64 reference judges pictures rightly: it passes its own, and those that differ by no more than float32's rounding,
 //! and lets no small mutation through. Needs no GPU.
 
-mod support;
-
+use crate::support::sampling::Random;
+use crate::support::scenes::{Case, cases};
 use std::sync::LazyLock;
-use support::sampling::Random;
-use support::scenes::{Case, cases};
 use surfel::geometry::{Camera, Surfels};
 use surfel::reference::{Channel, Comparison, Culled, Expected, Projector, Surfel, Tolerance, render};
 use surfel::{Picture, Settings};

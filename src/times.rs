@@ -15,7 +15,8 @@ pub struct Times {
 }
 
 /// Milliseconds over the frames that count.
-#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Statistics {
     /// The middle one; the mean of the two in the middle if there is none.
     pub median: f64,

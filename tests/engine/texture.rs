@@ -1,17 +1,12 @@
 //! A sphere with a texture against rays through it.
 
+use crate::support::gpu::{assert_silent, device, render};
+use crate::support::texture::{exact, textured};
 #[allow(dead_code)] // of what is shared
-mod support {
-    pub mod gpu;
-    pub mod texture;
-}
-
 use glam::{DVec2, DVec3, Vec2, Vec3};
 use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
-use support::gpu::{assert_silent, device, render};
-use support::texture::{exact, textured};
 use surfel::geometry::{Camera, Colours, MipMap, Model, Surfels, Texture};
 use surfel::methods::{Method, pull_push};
 use surfel::settings::{Settings, Shading};
@@ -129,7 +124,7 @@ fn a_disc_larger_than_the_picture_has_one_colour() {
     for (places, radius) in [(vec![0.0], 40.0), (vec![-8.0, 0.0, 8.0], 12.0)] {
         let positions: Vec<Vec3> = places.iter().map(|x| Vec3::new(*x, 0.3 * x, 0.0)).collect();
         let count = positions.len();
-        let image = Arc::new(MipMap::new(&support::texture::picture()).unwrap());
+        let image = Arc::new(MipMap::new(&crate::support::texture::picture()).unwrap());
         // The middle of a square.
         let coordinates = vec![Vec2::new(0.5 / 32.0, 0.5 / 16.0); count];
         let surfels = Surfels {
@@ -142,7 +137,7 @@ fn a_disc_larger_than_the_picture_has_one_colour() {
         let camera = Camera::look_at(2.0 * DVec3::Z, DVec3::ZERO, DVec3::Y, 0.8, 1.0, 0.1).unwrap();
         let options = RenderOptions { size: [512; 2], ..Default::default() };
         let picture = render(&device, &surfels, &camera, &settings(pull_push::METHOD), options);
-        let expected = support::texture::COLOURS[0];
+        let expected = crate::support::texture::COLOURS[0];
         for (i, colour) in picture.colour.iter().enumerate() {
             let near = expected.iter().zip(colour).all(|(a, b)| (a - b).abs() < 1e-3);
             assert!(colour[3] == 1.0 && near, "{count} discs, pixel {i}: {colour:?} {expected:?}");

@@ -1,9 +1,6 @@
 //! What the bench shows: advice, table, CSV and page, of results as they could have been measured.
 
-#[path = "support/results.rs"]
-mod results;
-
-use results::*;
+use crate::support::results::*;
 use std::collections::BTreeMap;
 use surfel::bench::advice::{Advice, front, offers, within_error, within_time};
 use surfel::bench::record::*;

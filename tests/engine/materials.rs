@@ -1,9 +1,7 @@
 //! Points that shine in their own way: against the closed form, and against the float64 reference.
 
-mod support;
-
+use crate::support::gpu::{assert_silent, device, render};
 use glam::{DVec2, DVec3, Vec3};
-use support::gpu::{assert_silent, device, render};
 use surfel::geometry::{Camera, Colours, Material, Materials, Model, Parts, Surfels};
 use surfel::methods::{Method, perspective_ewa, pull_push};
 use surfel::settings::{DirectionalLight, Lighting, Settings};

@@ -1,5 +1,6 @@
 //! What `surfel view` shows while it loads, while the camera moves, and when a file changes, in a window that nobody sees.
 
+use crate::program::SHADER_CACHE;
 use serde_json::Value;
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, Stdio};
@@ -35,7 +36,12 @@ impl View {
         let display = format!(":{}", number.trim());
         let mut program = Command::new(env!("CARGO_BIN_EXE_surfel"));
         program.args(["view", "--json", "--validate", "-q", "--size", "640x480"]).args(arguments);
-        let mut program = program.env("DISPLAY", &display).stdout(Stdio::piped()).spawn().unwrap();
+        let mut program = program
+            .env("DISPLAY", &display)
+            .env("MESA_SHADER_CACHE_DIR", SHADER_CACHE)
+            .stdout(Stdio::piped())
+            .spawn()
+            .unwrap();
         let (send, events) = channel();
         let lines = BufReader::new(program.stdout.take().unwrap()).lines();
         std::thread::spawn(move || {

@@ -1,11 +1,9 @@
 //! Normals and radii that are estimated, against surfaces whose own are known.
 
-mod support;
-
+use crate::support::mesh;
+use crate::support::sampling::Random;
 use glam::Vec3;
 use std::collections::HashMap;
-use support::mesh;
-use support::sampling::Random;
 use surfel::geometry::estimate::{Estimate, Estimated};
 use surfel::geometry::{Cloud, Surfels};
 use surfel::scenes::bumpy_sphere;

@@ -1,10 +1,6 @@
 //! The digest of the code changes with the code, and with nothing else.
 
-#[path = "../tools/code_digest.rs"]
-#[allow(dead_code, reason = "the build tells the compiler, a test does not")]
-mod code_digest;
-
-use code_digest::digest;
+use crate::build::code_digest::digest;
 use std::path::Path;
 
 fn write(root: &Path, name: &str, text: &str) {

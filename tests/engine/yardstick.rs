@@ -1,11 +1,9 @@
 //! The yardstick's splats are the float64 reference's, pixel by pixel, and its points those that a search finds; what is off by a
 //! little is not.
 
-mod support;
-
+use crate::support::sampling::{Random, bumpy_sphere, paint_linear, push};
+use crate::support::scenes::{Case, cases};
 use glam::{DVec3, Vec3};
-use support::sampling::{Random, bumpy_sphere, paint_linear, push};
-use support::scenes::{Case, cases};
 use surfel::geometry::{Camera, Colours, Surfels};
 use surfel::reference::{Comparison, Expected, Tolerance};
 use surfel::settings::{Alpha, Cull, Shading, Widen};

@@ -1,0 +1,30 @@
+//! The library: pictures against the float64 reference and exact truth, files, estimates, measurements. One program, whose tests run side by
+//! side.
+
+mod agreement;
+mod bench;
+mod bench_report;
+mod capture;
+mod creases;
+mod discs;
+mod estimate;
+mod footprint;
+mod frames;
+mod hard;
+mod instances;
+mod lines;
+mod materials;
+mod papers;
+mod ply_edge;
+mod pull_push;
+mod pull_push_levels;
+mod pull_push_lines;
+mod pull_push_points;
+mod pull_push_surfaces;
+mod reference;
+mod scans;
+mod sphere;
+#[path = "../support/mod.rs"]
+mod support;
+mod texture;
+mod yardstick;

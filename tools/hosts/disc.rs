@@ -1,0 +1,30 @@
+//! The least host: draws one disc from arrays into a picture and counts its pixels.
+
+use surfel::geometry::{Camera, Surfels};
+use surfel::glam::{DVec3, Vec3};
+use surfel::vk::{Device, DeviceOptions};
+use surfel::{RenderOptions, Renderer, Scene, Settings};
+
+const SIZE: [u32; 2] = [64, 64];
+
+fn main() -> surfel::Result<()> {
+    let disc = Surfels {
+        positions: vec![Vec3::ZERO],
+        normals: vec![Vec3::Z],
+        radii: vec![1.0],
+        ..Surfels::default()
+    };
+    let device = Device::open(&DeviceOptions::default())?;
+    let scene = Scene::upload(&device, &disc)?;
+    let mut renderer = Renderer::new(&device, RenderOptions { size: SIZE, ..RenderOptions::default() })?;
+    // The disc, of radius 1, fills the middle half of the picture's height: tan(fov / 2) = 1, from 2 away.
+    let camera = Camera::look_at(2.0 * DVec3::Z, DVec3::ZERO, DVec3::Y, 90f64.to_radians(), 1.0, 1e-3)?;
+    let (picture, _) = renderer.render_picture(&scene, &camera, &Settings::default())?;
+    let covered = picture.colour.iter().filter(|pixel| pixel[3] > 0.5).count();
+    // π · 16² = 804 px.
+    if !(750..=860).contains(&covered) {
+        return Err(surfel::Error::Usage(format!("a disc of 804 px covers {covered}")));
+    }
+    println!("a disc of {covered} px on {}", device.description().name);
+    Ok(())
+}
