@@ -1,7 +1,12 @@
 //! What `build.rs` makes: compiled shaders, their reflection as Rust, the digest of the code.
 
-#[allow(dead_code)]
-#[path = "../../build.rs"]
-mod build;
 mod code_digest;
+mod hosts;
 mod shaders;
+
+#[allow(dead_code)]
+#[path = "../../tools/code_digest.rs"]
+mod build_code_digest;
+#[allow(dead_code)]
+#[path = "../../tools/shader_build/mod.rs"]
+mod shader_build;

@@ -1,33 +1,7 @@
 //! Fog: a later subpass of the host, which reads the depth that is there by then, whoever drew it.
 
-use super::mesh::compile;
 use super::{Host, Result};
 use ash::vk;
-
-const VERTEX: &str = "#version 450
-void main() {
-    gl_Position = vec4(gl_VertexIndex == 1 ? 3.0 : -1.0, gl_VertexIndex == 2 ? 3.0 : -1.0, 0.0, 1.0);
-}";
-
-const FRAGMENT: &str = "#version 450
-layout(location = 0) out vec4 colour;
-layout(push_constant) uniform Push { vec4 fog; float density; } push;
-#if SAMPLES > 1
-layout(set = 0, binding = 0, input_attachment_index = 0) uniform subpassInputMS depths;
-#else
-layout(set = 0, binding = 0, input_attachment_index = 0) uniform subpassInput depths;
-#endif
-// Depth falls with distance, from 1: as much fog as there is way behind it.
-float fog(float depth) { return exp(-push.density * depth); }
-void main() {
-    float f = 0.0;
-#if SAMPLES > 1
-    for (int k = 0; k < SAMPLES; k++) f += fog(subpassLoad(depths, k).r) / float(SAMPLES);
-#else
-    f = fog(subpassLoad(depths).r);
-#endif
-    colour = vec4(f * push.fog.rgb, f);
-}";
 
 /// How dense it is: at depth d, its part of the colour is exp(−DENSITY d).
 pub const DENSITY: f32 = 80.0;
@@ -132,19 +106,18 @@ unsafe fn pipeline(
 ) -> Result<vk::Pipeline> {
     // SAFETY: by the caller: a plain use of Vulkan.
     unsafe {
-        let module = |text: &str, kind| -> Result<vk::ShaderModule> {
-            let code = compile(text, kind)?;
-            Ok(host.device.create_shader_module(&vk::ShaderModuleCreateInfo::default().code(&code), None)?)
-        };
-        let fragment = FRAGMENT.replace("SAMPLES", &samples.as_raw().to_string());
-        let modules =
-            [module(VERTEX, shaderc::ShaderKind::Vertex)?, module(&fragment, shaderc::ShaderKind::Fragment)?];
+        let many = samples != vk::SampleCountFlags::TYPE_1;
+        let fragment = if many { shader!("fog_multisampled_fragment") } else { shader!("fog_fragment") };
+        let modules = [host.shader(shader!("fog_vertex"))?, host.shader(fragment)?];
+        let count = samples.as_raw().to_ne_bytes();
+        let entries = [vk::SpecializationMapEntry { constant_id: 0, offset: 0, size: count.len() }];
+        let constants = vk::SpecializationInfo::default().map_entries(&entries).data(&count);
         let stage = |module, stage| {
             vk::PipelineShaderStageCreateInfo::default().stage(stage).module(module).name(c"main")
         };
         let stages = [
             stage(modules[0], vk::ShaderStageFlags::VERTEX),
-            stage(modules[1], vk::ShaderStageFlags::FRAGMENT),
+            stage(modules[1], vk::ShaderStageFlags::FRAGMENT).specialization_info(&constants),
         ];
         let vertices = vk::PipelineVertexInputStateCreateInfo::default();
         let assembly = vk::PipelineInputAssemblyStateCreateInfo::default()

@@ -4,25 +4,6 @@ use super::{Host, Result};
 use ash::vk;
 use glam::{Mat4, Vec3};
 
-const VERTEX: &str = "#version 450
-layout(location = 0) in vec3 position;
-layout(location = 1) in vec3 normal;
-layout(location = 0) out vec3 out_normal;
-layout(push_constant) uniform Push { mat4 world_to_clip; vec4 to_light; } push;
-void main() {
-    gl_Position = push.world_to_clip * vec4(position, 1.0);
-    out_normal = normal;
-}";
-
-const FRAGMENT: &str = "#version 450
-layout(location = 0) in vec3 normal;
-layout(location = 0) out vec4 colour;
-layout(push_constant) uniform Push { mat4 world_to_clip; vec4 to_light; } push;
-void main() {
-    float light = 0.15 + 0.85 * max(dot(normalize(normal), push.to_light.xyz), 0.0);
-    colour = vec4(light * vec3(0.15, 0.35, 0.8), 1.0);
-}";
-
 /// A mesh on the GPU with the pipeline that draws it.
 pub struct Mesh {
     buffer: vk::Buffer,
@@ -101,21 +82,10 @@ impl Mesh {
     }
 }
 
-/// SPIR-V of a shader of the host.
-pub fn compile(text: &str, kind: shaderc::ShaderKind) -> Result<Vec<u32>> {
-    let compiler = shaderc::Compiler::new()?;
-    Ok(compiler.compile_into_spirv(text, kind, "host", "main", None)?.as_binary().to_vec())
-}
-
 unsafe fn pipeline(host: &Host, layout: vk::PipelineLayout, place: Where<'_>) -> Result<vk::Pipeline> {
     // SAFETY: by the caller: a plain use of Vulkan.
     unsafe {
-        let module = |text, kind| -> Result<vk::ShaderModule> {
-            let code = compile(text, kind)?;
-            Ok(host.device.create_shader_module(&vk::ShaderModuleCreateInfo::default().code(&code), None)?)
-        };
-        let modules =
-            [module(VERTEX, shaderc::ShaderKind::Vertex)?, module(FRAGMENT, shaderc::ShaderKind::Fragment)?];
+        let modules = [host.shader(shader!("mesh_vertex"))?, host.shader(shader!("mesh_fragment"))?];
         let stage = |module, stage| {
             vk::PipelineShaderStageCreateInfo::default().stage(stage).module(module).name(c"main")
         };

@@ -3,6 +3,9 @@
 
 #![allow(dead_code, reason = "no host uses all of it")]
 
+#[macro_use]
+mod shader;
+
 pub mod composite;
 pub mod fog;
 pub mod frame;
