@@ -10,6 +10,7 @@ const USAGE: u8 = 2;
 /// No usable Vulkan device, no display for a window, or no validation layer where one is asked for.
 const NO_DEVICE: u8 = 3;
 /// A picture is not as good as the command line demands.
+#[cfg(feature = "metrics")]
 const VIOLATED: u8 = 4;
 /// The device was lost.
 const LOST: u8 = 5;
@@ -36,6 +37,7 @@ pub fn of_messages(count: usize) -> ExitCode {
 }
 
 /// Says which limits were crossed; there is at least one.
+#[cfg(feature = "metrics")]
 pub fn of_violations(violations: &[String]) -> ExitCode {
     say(&violations.join("; "));
     ExitCode::from(VIOLATED)

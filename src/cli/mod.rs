@@ -5,6 +5,7 @@ mod args;
 mod bench;
 mod camera;
 mod colouring;
+#[cfg(feature = "metrics")]
 mod compare;
 mod convert;
 mod devices;
@@ -12,9 +13,11 @@ mod exit;
 mod files;
 mod info;
 mod inputs;
+#[cfg(feature = "metrics")]
 mod limits;
 mod log;
 mod methods;
+#[cfg(feature = "metrics")]
 mod number;
 mod progress;
 mod reference;
@@ -22,6 +25,7 @@ mod render;
 mod report;
 mod scenes;
 mod summary;
+#[cfg(feature = "truth")]
 mod truth;
 mod turntable;
 mod values;
@@ -46,10 +50,12 @@ pub fn run() -> ExitCode {
         Command::View(args) => view::run(*args),
         Command::Info(args) => info::run(&args),
         Command::Convert(args) => convert::run(&args),
+        #[cfg(feature = "metrics")]
         Command::Compare(args) => match compare::run(&args) {
             Ok(violations) if !violations.is_empty() => return exit::of_violations(&violations),
             compared => compared.map(drop),
         },
+        #[cfg(feature = "truth")]
         Command::Truth(args) => truth::run(&args),
         #[cfg(feature = "bench")]
         Command::Bench(args) => bench::run(&args),

@@ -1,6 +1,6 @@
 //! The digest of the code changes with the code, and with nothing else.
 
-use crate::build::code_digest::digest;
+use crate::build_code_digest::digest;
 use std::path::Path;
 
 fn write(root: &Path, name: &str, text: &str) {

@@ -23,6 +23,8 @@ mod pull_push_points;
 mod pull_push_surfaces;
 mod reference;
 mod scans;
+#[cfg(feature = "compile-shaders")]
+mod shaders;
 mod sphere;
 #[path = "../support/mod.rs"]
 mod support;

@@ -2,18 +2,22 @@
 
 #[cfg(feature = "bench")]
 mod bench;
+#[cfg(feature = "metrics")]
 mod compare;
 mod convert;
 mod points;
+#[cfg(feature = "truth")]
 mod truth;
 #[cfg(feature = "viewer")]
 mod view;
 
 #[cfg(feature = "bench")]
 pub use bench::Bench;
+#[cfg(feature = "metrics")]
 pub use compare::Compare;
 pub use convert::{Convert, Info};
 pub use points::{Colours, Points};
+#[cfg(feature = "truth")]
 pub use truth::Truth;
 #[cfg(feature = "viewer")]
 pub use view::View;
@@ -51,8 +55,10 @@ pub enum Command {
     /// Makes surfels of points once and writes them to a PLY file
     Convert(Box<Convert>),
     /// Compares picture A with the truth B: colours, silhouette, normals, depths
+    #[cfg(feature = "metrics")]
     Compare(Box<Compare>),
     /// Traces the exact picture of a built-in scene or a mesh, without Vulkan
+    #[cfg(feature = "truth")]
     Truth(Box<Truth>),
     /// Measures speed against error, and makes a page of it
     #[cfg(feature = "bench")]
