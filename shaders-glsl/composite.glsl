@@ -1,10 +1,10 @@
 // Composite: the picture over a host's target, with the depth that the host's own surfaces have (src/embed.rs).
 #version 450
-#pragma variant IMAGES
-#pragma variant NORMALS
-#pragma variant IMAGES_NORMALS
-#pragma variant IDS
-#pragma variant NORMALS_IDS
+#pragma variant IMAGES FRAGMENT
+#pragma variant NORMALS FRAGMENT
+#pragma variant IMAGES_NORMALS FRAGMENT
+#pragma variant IDS FRAGMENT
+#pragma variant NORMALS_IDS FRAGMENT
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 

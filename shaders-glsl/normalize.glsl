@@ -1,8 +1,8 @@
 // Normalize: divides the sums by Σw and shades (zwicker2004 §6, third pass; equation 2's normalization).
 #version 450
 #pragma variant COVERAGE
-#pragma variant SUBPASS
-#pragma variant SUBPASS_COVERAGE
+#pragma variant SUBPASS FRAGMENT
+#pragma variant SUBPASS_COVERAGE FRAGMENT
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 

@@ -1,7 +1,7 @@
 // Seed: the depth of a host's surfaces, moved back so far that no splat behind it can be seen, as what visibility starts from
 // (src/embed/native.rs).
 #version 450
-#pragma variant MULTISAMPLED
+#pragma variant MULTISAMPLED FRAGMENT
 #extension GL_GOOGLE_include_directive : require
 
 #ifdef VERTEX

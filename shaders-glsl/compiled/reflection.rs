@@ -40,28 +40,12 @@ pub static COMPOSITE_FRAGMENT: Module = Module {
     constants: &[0, 40, 41],
 };
 
-/// The vertex stage of `shaders-glsl/composite.glsl`.
-pub static COMPOSITE_IMAGES_VERTEX: Module = Module {
-    name: "composite_images_vertex",
-    stage: ShaderStageFlags::VERTEX,
-    spirv: spirv!("composite_images_vertex.spv"),
-    constants: &[],
-};
-
 /// The fragment stage of `shaders-glsl/composite.glsl`.
 pub static COMPOSITE_IMAGES_FRAGMENT: Module = Module {
     name: "composite_images_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("composite_images_fragment.spv"),
     constants: &[0, 40, 41],
-};
-
-/// The vertex stage of `shaders-glsl/composite.glsl`.
-pub static COMPOSITE_NORMALS_VERTEX: Module = Module {
-    name: "composite_normals_vertex",
-    stage: ShaderStageFlags::VERTEX,
-    spirv: spirv!("composite_normals_vertex.spv"),
-    constants: &[],
 };
 
 /// The fragment stage of `shaders-glsl/composite.glsl`.
@@ -72,14 +56,6 @@ pub static COMPOSITE_NORMALS_FRAGMENT: Module = Module {
     constants: &[0, 40, 41],
 };
 
-/// The vertex stage of `shaders-glsl/composite.glsl`.
-pub static COMPOSITE_IMAGES_NORMALS_VERTEX: Module = Module {
-    name: "composite_images_normals_vertex",
-    stage: ShaderStageFlags::VERTEX,
-    spirv: spirv!("composite_images_normals_vertex.spv"),
-    constants: &[],
-};
-
 /// The fragment stage of `shaders-glsl/composite.glsl`.
 pub static COMPOSITE_IMAGES_NORMALS_FRAGMENT: Module = Module {
     name: "composite_images_normals_fragment",
@@ -88,28 +64,12 @@ pub static COMPOSITE_IMAGES_NORMALS_FRAGMENT: Module = Module {
     constants: &[0, 40, 41],
 };
 
-/// The vertex stage of `shaders-glsl/composite.glsl`.
-pub static COMPOSITE_IDS_VERTEX: Module = Module {
-    name: "composite_ids_vertex",
-    stage: ShaderStageFlags::VERTEX,
-    spirv: spirv!("composite_ids_vertex.spv"),
-    constants: &[],
-};
-
 /// The fragment stage of `shaders-glsl/composite.glsl`.
 pub static COMPOSITE_IDS_FRAGMENT: Module = Module {
     name: "composite_ids_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("composite_ids_fragment.spv"),
     constants: &[0, 40, 41],
-};
-
-/// The vertex stage of `shaders-glsl/composite.glsl`.
-pub static COMPOSITE_NORMALS_IDS_VERTEX: Module = Module {
-    name: "composite_normals_ids_vertex",
-    stage: ShaderStageFlags::VERTEX,
-    spirv: spirv!("composite_normals_ids_vertex.spv"),
-    constants: &[],
 };
 
 /// The fragment stage of `shaders-glsl/composite.glsl`.
@@ -256,14 +216,6 @@ pub static NORMALIZE_COVERAGE_COMPUTE: Module = Module {
     constants: &[0, 3, 4, 6, 7, 9, 10, 17, 18, 20, 22],
 };
 
-/// The vertex stage of `shaders-glsl/normalize.glsl`.
-pub static NORMALIZE_SUBPASS_VERTEX: Module = Module {
-    name: "normalize_subpass_vertex",
-    stage: ShaderStageFlags::VERTEX,
-    spirv: spirv!("normalize_subpass_vertex.spv"),
-    constants: &[],
-};
-
 /// The fragment stage of `shaders-glsl/normalize.glsl`.
 pub static NORMALIZE_SUBPASS_FRAGMENT: Module = Module {
     name: "normalize_subpass_fragment",
@@ -272,36 +224,12 @@ pub static NORMALIZE_SUBPASS_FRAGMENT: Module = Module {
     constants: &[0, 3, 4, 6, 7, 17, 18, 20, 40, 41, 42],
 };
 
-/// The compute stage of `shaders-glsl/normalize.glsl`.
-pub static NORMALIZE_SUBPASS_COMPUTE: Module = Module {
-    name: "normalize_subpass_compute",
-    stage: ShaderStageFlags::COMPUTE,
-    spirv: spirv!("normalize_subpass_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 17, 18, 20, 22],
-};
-
-/// The vertex stage of `shaders-glsl/normalize.glsl`.
-pub static NORMALIZE_SUBPASS_COVERAGE_VERTEX: Module = Module {
-    name: "normalize_subpass_coverage_vertex",
-    stage: ShaderStageFlags::VERTEX,
-    spirv: spirv!("normalize_subpass_coverage_vertex.spv"),
-    constants: &[],
-};
-
 /// The fragment stage of `shaders-glsl/normalize.glsl`.
 pub static NORMALIZE_SUBPASS_COVERAGE_FRAGMENT: Module = Module {
     name: "normalize_subpass_coverage_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("normalize_subpass_coverage_fragment.spv"),
     constants: &[0, 3, 4, 6, 7, 17, 18, 20, 40, 41, 42],
-};
-
-/// The compute stage of `shaders-glsl/normalize.glsl`.
-pub static NORMALIZE_SUBPASS_COVERAGE_COMPUTE: Module = Module {
-    name: "normalize_subpass_coverage_compute",
-    stage: ShaderStageFlags::COMPUTE,
-    spirv: spirv!("normalize_subpass_coverage_compute.spv"),
-    constants: &[0, 3, 4, 6, 7, 9, 10, 17, 18, 20, 22],
 };
 
 /// The vertex stage of `shaders-glsl/points.glsl`.
@@ -398,14 +326,6 @@ pub static SEED_FRAGMENT: Module = Module {
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("seed_fragment.spv"),
     constants: &[0],
-};
-
-/// The vertex stage of `shaders-glsl/seed.glsl`.
-pub static SEED_MULTISAMPLED_VERTEX: Module = Module {
-    name: "seed_multisampled_vertex",
-    stage: ShaderStageFlags::VERTEX,
-    spirv: spirv!("seed_multisampled_vertex.spv"),
-    constants: &[],
 };
 
 /// The fragment stage of `shaders-glsl/seed.glsl`.

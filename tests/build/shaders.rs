@@ -95,6 +95,15 @@ fn a_variant_is_compiled_beside_the_file() {
 }
 
 #[test]
+fn a_variant_may_change_one_stage_alone() {
+    let source = "#version 460\n#pragma variant WIDE FRAGMENT\n#ifdef VERTEX\nvoid main() { gl_Position = vec4(0.0); }\n#endif\n\
+        #ifdef FRAGMENT\nlayout(location = 0) out vec4 colour;\nvoid main() { colour = vec4(1.0); }\n#endif\n";
+    let bundle = bundle(&[("disc.glsl", source)]);
+    let names: Vec<_> = bundle.spirv.iter().map(|module| &*module.name).collect();
+    assert_eq!(names, ["disc_fragment", "disc_vertex", "disc_wide_fragment"]);
+}
+
+#[test]
 fn a_wrong_shader_names_file_and_line() {
     let message = error(&[("attribute.glsl", &pass("", "radius"))]);
     assert!(message.starts_with("shaders-glsl/attribute.glsl:6: error: 'radius'"), "{message}");

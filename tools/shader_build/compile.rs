@@ -73,15 +73,26 @@ fn file(compiler: &Compiler, folder: &Path, path: &Path) -> Result<Vec<Module>, 
             "{name}:1: error: no stage: give it an #ifdef VERTEX, FRAGMENT or COMPUTE, or move it to lib/"
         ));
     }
-    let variants = std::iter::once(None).chain(variants(&source).map(Some));
-    let both = variants.flat_map(|variant| stages.iter().map(move |stage| (variant, *stage)));
-    both.map(|(variant, stage)| module(compiler, folder, &name, &source, variant, stage)).collect()
+    let mut modules = Vec::new();
+    for stage in &stages {
+        modules.push(module(compiler, folder, &name, &source, None, *stage)?);
+    }
+    for (variant, wanted) in variants(&source) {
+        for stage in stages.iter().filter(|(stage, _)| wanted.is_empty() || wanted.contains(stage)) {
+            modules.push(module(compiler, folder, &name, &source, Some(variant), *stage)?);
+        }
+    }
+    Ok(modules)
 }
 
-/// The names that a file is compiled with beside being compiled without any: those of its lines `#pragma variant NAME`. For what a
-/// specialization constant cannot take away, such as a buffer.
-fn variants(source: &str) -> impl Iterator<Item = &str> {
-    source.lines().filter_map(|line| line.strip_prefix("#pragma variant ")).map(str::trim)
+/// The names that a file is compiled with beside being compiled without any, each with the stages that it changes, none for all: those of its
+/// lines `#pragma variant NAME STAGE…`. For what a specialization constant cannot take away, such as a buffer.
+fn variants(source: &str) -> impl Iterator<Item = (&str, Vec<&str>)> {
+    let lines = source.lines().filter_map(|line| line.strip_prefix("#pragma variant "));
+    lines.filter_map(|line| {
+        let mut words = line.split_whitespace();
+        Some((words.next()?, words.collect()))
+    })
 }
 
 fn module(

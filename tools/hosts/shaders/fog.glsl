@@ -1,6 +1,6 @@
 // Fog over what is drawn, by its depth (host/fog.rs).
 #version 450
-#pragma variant MULTISAMPLED
+#pragma variant MULTISAMPLED FRAGMENT
 
 #ifdef VERTEX
 void main() {
