@@ -4,6 +4,7 @@ use crate::error::{Error, Result};
 use ash::vk;
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use xxhash_rust::xxh3::xxh3_128;
 
 pub(super) struct PipelineCache {
     pub(super) raw: vk::PipelineCache,
@@ -25,8 +26,8 @@ impl PipelineCache {
         let uuid: String = properties.pipeline_cache_uuid.iter().map(|byte| format!("{byte:02x}")).collect();
         let name = format!("pipelines-{:08x}-{:08x}-{uuid}.bin", properties.vendor_id, properties.device_id);
         let file = folder.map(|folder| folder.join(name));
-        let loaded = file.as_ref().and_then(|file| std::fs::read(file).ok()).unwrap_or_default();
-        let loaded = if is_for(&loaded, &properties) { loaded } else { Vec::new() };
+        let read = file.as_ref().and_then(|file| std::fs::read(file).ok()).unwrap_or_default();
+        let loaded = unsealed(&read).filter(|data| is_for(data, &properties)).unwrap_or_default().to_vec();
         let info = vk::PipelineCacheCreateInfo::default().initial_data(&loaded);
         // SAFETY: the data's header names this device and driver.
         let raw = unsafe { device.create_pipeline_cache(&info, None) }
@@ -51,6 +52,26 @@ impl PipelineCache {
     }
 }
 
+/// What a file begins with.
+const MAGIC: &[u8; 8] = b"surfel\x00\x01";
+/// Bytes of what stands before the data: magic, length, digest.
+const SEAL: usize = 8 + 8 + 16;
+
+/// What stands before the data: a driver may crash on what was cut short or altered.
+fn seal(data: &[u8]) -> [u8; SEAL] {
+    let mut seal = [0; SEAL];
+    seal[..8].copy_from_slice(MAGIC);
+    seal[8..16].copy_from_slice(&(data.len() as u64).to_le_bytes());
+    seal[16..].copy_from_slice(&xxh3_128(data).to_le_bytes());
+    seal
+}
+
+/// The data of a file that is whole.
+fn unsealed(file: &[u8]) -> Option<&[u8]> {
+    let (found, data) = file.split_at_checked(SEAL)?;
+    (found == seal(data)).then_some(data)
+}
+
 /// Whether `data` begins with a version-one header of this device. Drivers must check it themselves; not all of them do.
 fn is_for(data: &[u8], properties: &vk::PhysicalDeviceProperties) -> bool {
     let word = |i: usize| data.get(4 * i..4 * i + 4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]));
@@ -65,7 +86,30 @@ fn write(file: &Path, data: &[u8]) -> std::io::Result<()> {
     std::fs::create_dir_all(folder)?;
     // Another process may read or write it at the same time.
     let mut temporary = tempfile::NamedTempFile::new_in(folder)?;
+    temporary.write_all(&seal(data))?;
     temporary.write_all(data)?;
     temporary.persist(file)?;
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_that_is_not_whole_is_not_passed_on() {
+        let data = b"a driver's own".repeat(9);
+        let file = [&seal(&data)[..], &data].concat();
+        assert_eq!(unsealed(&file), Some(&data[..]));
+        for end in 0..file.len() {
+            assert_eq!(unsealed(&file[..end]), None, "{end} bytes of it");
+        }
+        for byte in 0..file.len() {
+            let mut altered = file.clone();
+            altered[byte] ^= 1;
+            assert_eq!(unsealed(&altered), None, "byte {byte} altered");
+        }
+        assert_eq!(unsealed(&[file, vec![0]].concat()), None);
+        assert_eq!(unsealed(&data), None);
+    }
 }
