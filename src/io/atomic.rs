@@ -93,8 +93,11 @@ fn temporary_in(folder: &Path) -> io::Result<NamedTempFile> {
 }
 
 fn advise(folder: &Path, error: io::Error) -> io::Error {
+    let exists = folder.is_dir();
     let folder = folder.display();
     let text = match error.kind() {
+        // As of /proc, which a kernel makes up.
+        ErrorKind::NotFound if exists => format!("the folder {folder} takes no new files: write elsewhere"),
         ErrorKind::NotFound => format!("the folder {folder} does not exist: create it or write elsewhere"),
         ErrorKind::NotADirectory => format!("{folder} is not a folder: write elsewhere"),
         ErrorKind::PermissionDenied => {

@@ -1,7 +1,7 @@
 //! Text records: numbers between white space, wherever the lines break.
 
 use super::records::Reader;
-use super::types::{Element, Scalar};
+use super::types::{Element, Kind, Scalar};
 use super::{Parsed, shown};
 
 /// A place among numbers that are spelled out.
@@ -67,6 +67,32 @@ impl Reader for Tokens<'_> {
             ));
         }
         Ok(length as u64)
+    }
+
+    /// Numbers run on from line to line. Two lines with as many, more than a record has and not those of several, are of another table.
+    fn check(&self, element: &Element) -> Parsed<()> {
+        let declared = element.properties.len();
+        let scalars = element.properties.iter().all(|property| matches!(property.kind, Kind::Scalar(_)));
+        let lines = self.rest.split(|byte| matches!(byte, b'\n' | b'\r')).map(<[u8]>::trim_ascii);
+        let is_text = |line: &&[u8]| {
+            !line.is_empty() && !line.starts_with(b"comment") && !line.starts_with(b"obj_info")
+        };
+        let count = |line: &[u8]| line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).count();
+        let mut counts = lines.filter(is_text).map(count);
+        let (words, next) = (counts.next().unwrap_or(0), counts.next());
+        if element.count < 2
+            || !scalars
+            || words <= declared
+            || words.is_multiple_of(declared)
+            || next != Some(words)
+        {
+            return Ok(());
+        }
+        let name = shown(element.name.as_bytes());
+        Err(format!(
+            "its rows of element {name} have {words} values, and the header declares {declared} properties: add a `property` line for each of \
+             the others"
+        ))
     }
 
     fn trailing(&self) -> usize {

@@ -1,7 +1,7 @@
 //! The header, parsed byte by byte: it may hold comments in any encoding, and no claim of it is trusted.
 
 use super::types::{Element, Format, Kind, Property, Scalar};
-use super::{Parsed, shown, sniff};
+use super::{Parsed, shown};
 use std::collections::HashSet;
 
 /// Longest header, bytes. The longest known ones hold a few hundred properties.
@@ -21,11 +21,15 @@ pub(super) struct Header {
     pub texture: Option<String>,
 }
 
+/// Whether a file that begins so is a PLY file.
+pub(super) fn is_ply(bytes: &[u8]) -> bool {
+    Lines::new(bytes).first().trim_ascii_end() == b"ply"
+}
+
+/// The header of a PLY file, which begins so.
 pub(super) fn parse(bytes: &[u8]) -> Parsed<Header> {
     let mut lines = Lines::new(bytes);
-    if lines.first().trim_ascii_end() != b"ply" {
-        return Err(sniff::name(bytes));
-    }
+    lines.first();
     let (mut format, mut elements, mut grid, mut texture) = (None, Vec::new(), [None; 2], None);
     let mut names = HashSet::new();
     loop {

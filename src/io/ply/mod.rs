@@ -123,7 +123,7 @@ pub struct Inspected {
 /// [`Error::Io`] if the file cannot be read; [`Error::Input`] if its header cannot.
 pub fn inspect(path: &Path, options: &ReadOptions, progress: &dyn Progress) -> Result<Inspected> {
     let (name, source) = (path.display().to_string(), Source::open(path)?);
-    let header = parse_header(&source).map_err(|cause| Error::input(name.as_str(), cause))?;
+    let header = parse_header(&source, &name).map_err(|cause| Error::input(name.as_str(), cause))?;
     let (format, elements) = (header.format, header.elements.clone());
     let loaded = parse_records(&source, header, options, path.parent(), progress)
         .map_err(|cause| progress.failed(name, cause));
@@ -137,8 +137,8 @@ pub fn inspect(path: &Path, options: &ReadOptions, progress: &dyn Progress) -> R
 /// lacks what the options ask for; [`Error::Cancelled`] if the progress has it given up.
 pub fn read(path: &Path, options: &ReadOptions, progress: &dyn Progress) -> Result<Loaded> {
     let source = Source::open(path)?;
-    parse(&source, options, path.parent(), progress)
-        .map_err(|cause| progress.failed(path.display().to_string(), cause))
+    let name = path.display().to_string();
+    parse(&source, &name, options, path.parent(), progress).map_err(|cause| progress.failed(name, cause))
 }
 
 /// [`read`] of a file's contents, without a texture that it names; `name` is what errors call it.
@@ -146,24 +146,29 @@ pub fn read(path: &Path, options: &ReadOptions, progress: &dyn Progress) -> Resu
 /// # Errors
 /// [`Error::Input`], as [`read`].
 pub fn read_bytes(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Loaded> {
-    parse(&Source::of(bytes), options, None, &()).map_err(|cause| Error::input(name, cause))
+    parse(&Source::of(bytes), name, options, None, &()).map_err(|cause| Error::input(name, cause))
 }
 
 /// The cause of a failure, without the file's name.
 type Parsed<T> = Result<T, String>;
 
-fn parse_header(source: &Source) -> Parsed<Header> {
+fn parse_header(source: &Source, name: &str) -> Parsed<Header> {
     // One byte more than allowed, so that a header which is too long shows.
-    header::parse(&source.part(0, source.size().min(header::LIMIT as u64 + 1))?)
+    let beginning = source.part(0, source.size().min(header::LIMIT as u64 + 1))?;
+    match header::is_ply(&beginning) {
+        true => header::parse(&beginning),
+        false => Err(sniff::name(name, &beginning, source.size())),
+    }
 }
 
 fn parse(
     source: &Source,
+    name: &str,
     options: &ReadOptions,
     folder: Option<&Path>,
     progress: &dyn Progress,
 ) -> Parsed<Loaded> {
-    parse_records(source, parse_header(source)?, options, folder, progress)
+    parse_records(source, parse_header(source, name)?, options, folder, progress)
 }
 
 fn parse_records(

@@ -26,6 +26,11 @@ pub(super) trait Reader: Clone {
         false
     }
 
+    /// Refuses records that cannot be what the element declares, as far as its first one tells.
+    fn check(&self, _: &Element) -> Parsed<()> {
+        Ok(())
+    }
+
     /// Bytes left that mean something.
     fn trailing(&self) -> usize;
 }
@@ -46,6 +51,7 @@ pub(super) fn walk<R: Reader>(
     if element.properties.is_empty() || !wanted.contains(&true) && reader.leap(element) {
         return Ok(());
     }
+    reader.check(element)?;
     let (mut numbers, mut list) = (vec![0.0; element.properties.len()], Vec::new());
     let mut left = reader.left();
     for record in 0..element.count {

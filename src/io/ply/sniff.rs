@@ -27,8 +27,24 @@ const KNOWN: &[(&[u8], &str)] = &[
     (b"\xfe\xff", "text in UTF-16: save it as ASCII or UTF-8"),
 ];
 
-/// Says that the file is no PLY file, and what it is where its beginning tells.
-pub(super) fn name(bytes: &[u8]) -> String {
+/// Extensions of binary formats without a signature, or with that of what packs them.
+const EXTENSIONS: &[(&str, &str)] = &[
+    ("splat", "3D Gaussians (.splat): convert them to PLY"),
+    ("ksplat", "3D Gaussians (.ksplat): convert them to PLY"),
+    ("spz", "3D Gaussians (.spz): convert them to PLY"),
+    ("sog", "3D Gaussians (.sog): convert them to PLY"),
+];
+
+/// Says that the file of this name and of `size` bytes is no PLY file, and what it is where its beginning tells, or its extension.
+pub(super) fn name(file: &str, bytes: &[u8], size: u64) -> String {
+    let extension = file.rsplit_once('.').map(|(_, extension)| extension.to_ascii_lowercase());
+    let known = EXTENSIONS.iter().find(|(known, _)| extension.as_deref() == Some(known));
+    if let Some((_, what)) = known.filter(|_| !bytes.is_empty()) {
+        return format!("not a PLY file, but {what}");
+    }
+    if is_binary_stl(bytes, size) {
+        return "not a PLY file, but a binary STL mesh: convert it to PLY with normals and radii".into();
+    }
     let beginning = bytes.trim_ascii_start();
     if beginning.is_empty() {
         return "the file is empty: fetch or write it again".into();
@@ -41,6 +57,12 @@ pub(super) fn name(bytes: &[u8]) -> String {
         Some(what) => format!("not a PLY file, but {what}"),
         None => format!("not a PLY file: it begins with {} instead of `ply`; give a PLY file", shown(line)),
     }
+}
+
+/// Whether it has the length that a binary STL mesh of as many triangles as it says has: 80 bytes of whatever, their number, 50 bytes each.
+fn is_binary_stl(bytes: &[u8], size: u64) -> bool {
+    let count = bytes.get(80..84).map(|count| u32::from_le_bytes([count[0], count[1], count[2], count[3]]));
+    count.is_some_and(|count| count > 0 && 84 + 50 * u64::from(count) == size)
 }
 
 /// Text formats without a signature, told by their first lines that are no comments.
@@ -57,13 +79,33 @@ fn text(beginning: &[u8]) -> Option<&'static str> {
         _ if words.iter().all(|word| word.trim_end_matches(',').parse::<f64>().is_ok()) => {
             Some("a table of numbers (XYZ, PTS): convert it to PLY")
         }
+        _ if is_table_head(line) => Some("a table with named columns (CSV): convert it to PLY"),
         _ => None,
     }
+}
+
+/// Whether a line is the names of a table's columns, three of which are x, y and z.
+fn is_table_head(line: &[u8]) -> bool {
+    let line = String::from_utf8_lossy(line).to_ascii_lowercase();
+    let names: Vec<_> = line.split([',', ';', '\t']).map(|name| name.trim().trim_matches('"')).collect();
+    ["x", "y", "z"].iter().all(|axis| names.contains(axis))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn what_has_no_signature_is_told_by_its_length_its_columns_or_its_name() {
+        let stl = [&[0; 80][..], &2u32.to_le_bytes(), &[0; 100]].concat();
+        assert!(name("a.ply", &stl, 184).contains("binary STL") && !name("a.ply", &stl, 183).contains("STL"));
+        let cause = name("a.csv", b"\"X\",Y,Z,intensity\n1,2,3,4\n", 30);
+        assert!(cause.contains("CSV"), "{cause}");
+        for (file, what) in [("a.splat", ".splat"), ("b.SPZ", ".spz")] {
+            let cause = name(file, b"\x1f\x8b\x08\0", 4);
+            assert!(cause.contains("3D Gaussians") && cause.contains(what), "{cause}");
+        }
+    }
 
     #[test]
     fn other_files_are_named() {
@@ -80,7 +122,7 @@ mod tests {
             (b"\0\0\0\0", "begins with `\\x00"),
         ];
         for (bytes, expected) in cases {
-            let cause = name(bytes);
+            let cause = name("a.ply", bytes, bytes.len() as u64);
             assert!(cause.contains(expected) && !cause.contains('\n'), "{cause}");
         }
     }

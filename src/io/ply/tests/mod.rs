@@ -151,6 +151,13 @@ fn text_records_need_no_lines_of_their_own() {
 }
 
 #[test]
+fn rows_of_another_table_are_told_apart_from_damage() {
+    let text = cause(&ascii(3, "", "1 2 3 0 0 1 .5 9\n\n3 2 1 1 0 0 .5 9\n3 2 2 1 0 0 .5 9\n"));
+    assert!(text.contains("have 8 values") && text.contains("declares 7 properties"), "{text}");
+    assert!(!text.contains("damaged"), "{text}");
+}
+
+#[test]
 fn what_has_no_position_is_dropped_and_what_is_missing_is_0() {
     let records = "nan 0 0 0 0 1 1\n0 inf 0 0 0 0 0\n1e39 0 0 0 0 1 1\n0 0 0 0 0 1 0\n0 0 0 0 0 1 -1\n0 0 0 0 0 1 1e-60\n\
                    0 0 0 0 0 1 nan\n0 0 0 0 0 0 1\n0 0 0 0 nan 1 1\n0 0 0 1e-300 0 0 1\n0 0 0 0 -1e300 0 2\n";
