@@ -1,5 +1,7 @@
 //! Exit codes, and the line that says why.
 
+use super::args::Surfel;
+use clap::CommandFactory;
 use std::process::ExitCode;
 use surfel::Error;
 
@@ -51,7 +53,12 @@ pub fn of_arguments(error: &clap::Error) -> ExitCode {
             // Nothing can be said where the help itself cannot be shown.
             let _ = error.print();
         }
-        _ => say(&format!("{}; `surfel --help` and `surfel render --help` say more", first_paragraph(error))),
+        _ => {
+            let command =
+                std::env::args().nth(1).filter(|name| Surfel::command().find_subcommand(name).is_some());
+            let help = command.map_or("`surfel --help`".into(), |name| format!("`surfel {name} --help`"));
+            say(&format!("{}; {help} says more", in_one_line(&error.render().to_string())));
+        }
     }
     // clap's own code: 2 for mistakes, 0 for help.
     ExitCode::from(error.exit_code() as u8)
@@ -81,11 +88,14 @@ fn remedy(error: &Error) -> &'static str {
     }
 }
 
-/// clap explains itself in several paragraphs: the first says what is wrong.
-fn first_paragraph(error: &clap::Error) -> String {
-    let text = error.render().to_string();
-    let words = text.split("\n\n").next().unwrap_or_default().split_whitespace();
-    words.collect::<Vec<_>>().join(" ").trim_start_matches("error: ").to_owned()
+/// clap explains itself in several paragraphs: the first says what is wrong, tips say what may have been meant.
+fn in_one_line(text: &str) -> String {
+    let mut paragraphs =
+        text.split("\n\n").map(|paragraph| paragraph.split_whitespace().collect::<Vec<_>>().join(" "));
+    let cause = paragraphs.next().unwrap_or_default();
+    let tips: String =
+        paragraphs.filter_map(|text| Some(format!("; {}", text.strip_prefix("tip: ")?))).collect();
+    format!("{}{tips}", cause.trim_start_matches("error: "))
 }
 
 fn say(text: &str) {

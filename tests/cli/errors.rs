@@ -61,6 +61,8 @@ fn wrong_arguments_exit_with_2_before_anything_is_read() {
         ("--widen none", "possible values: all, small"),
         ("--lowpass -1", "low-pass variance is -1"),
         ("--cutoff 0", "cut-off is 0"),
+        ("--cutoff 12", "from 0.1 to 8"),
+        ("--lowpass 1e6", "from 0 to 100"),
         ("--epsilon nan", "epsilon is NaN"),
         ("--frames 0", "--frames"),
         ("--camera a.json --fov 20", "cannot be used with"),
@@ -81,6 +83,24 @@ fn wrong_arguments_exit_with_2_before_anything_is_read() {
     assert!(run.error(2).contains("at most 67108864 pixels"), "{}", run.err);
     assert_eq!(program.run("").code, 2);
     assert!(program.files().is_empty());
+}
+
+#[test]
+fn what_may_have_been_meant_is_said_and_whose_help_says_more() {
+    let program = Program::new();
+    for (arguments, meant, help) in [
+        ("rendr a.ply", "'render'", "`surfel --help`"),
+        ("render a.ply -o a.png --metod sprites", "'--method'", "`surfel render --help`"),
+        ("bench --suite quik", "'quick'", "`surfel bench --help`"),
+        ("truth scene:bumpy-sphere -o a.exr --filtr box", "'--filter'", "`surfel truth --help`"),
+    ] {
+        let run = program.run(arguments);
+        let line = run.error(2);
+        assert!(
+            line.contains("similar") && line.contains(meant) && line.contains(help),
+            "{arguments}: {line}"
+        );
+    }
 }
 
 #[test]
