@@ -4,6 +4,7 @@ use crate::error::{Error, Result};
 use crate::pull_push::PullPush;
 use crate::splatting::{Filter, Splatting};
 use crate::variant::Outputs;
+use std::ops::RangeInclusive;
 
 /// Settings of a frame that are not the camera's or the scene's.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,9 +13,9 @@ pub struct Settings {
     pub splatting: Splatting,
     /// Makes the picture of points one pixel large instead; what is said of splats, kernels and filters is of no use then.
     pub pull_push: Option<PullPush>,
-    /// Kernel cut-off `F`, in σ: the splat ends at `u² + v² = F²`.
+    /// Kernel cut-off `F`, in σ: the splat ends at `u² + v² = F²`. In [`Settings::CUTOFFS`].
     pub cutoff: f32,
-    /// Variance of the low-pass filter `H = lowpass · I`, px². Never less than what makes each splat own a pixel centre
+    /// Variance of the low-pass filter `H = lowpass · I`, px², at most [`Settings::MOST_LOWPASS`]. Never less than what makes each splat own a pixel centre
     /// ([`Settings::least_lowpass`]).
     pub lowpass: f32,
     /// What the low-pass filter widens.
@@ -54,6 +55,12 @@ impl Default for Settings {
 }
 
 impl Settings {
+    /// Cut-offs, σ. A Gaussian is below 10⁻¹³ beyond 8 σ, and what is lit are sums of normals, whose squares must not underflow in float32:
+    /// those of weights below 10⁻¹⁹ do.
+    pub const CUTOFFS: RangeInclusive<f32> = 0.1..=8.0;
+    /// Largest low-pass variance, px²: a splat is no wider for its filter than 10 px a σ, however many there are.
+    pub const MOST_LOWPASS: f32 = 100.0;
+
     /// The least low-pass variance that leaves no splat without a pixel centre, px²: `(0.71 / F)²`, so that the cut-off radius is at
     /// least √½ px. It is the low-pass of the visibility footprint.
     pub fn least_lowpass(&self) -> f32 {
@@ -103,19 +110,26 @@ impl Settings {
             true => Ok(()),
             false => Err(Error::Usage(format!("{name} is {value}: give a finite number above 0"))),
         };
-        positive("the cut-off", self.cutoff)?;
-        positive("epsilon", self.epsilon)?;
-        if !(self.lowpass.is_finite() && self.lowpass >= 0.0) {
+        if !Self::CUTOFFS.contains(&self.cutoff) {
+            let (least, most) = (Self::CUTOFFS.start(), Self::CUTOFFS.end());
             return Err(Error::Usage(format!(
-                "the low-pass variance is {}: give a finite number of px², 0 or more",
-                self.lowpass
+                "the cut-off is {}: give a number of standard deviations from {least} to {most}",
+                self.cutoff
             )));
         }
-        if self.lighting.directional.len() > Lighting::MAX_DIRECTIONAL {
+        positive("epsilon", self.epsilon)?;
+        if !(0.0..=Self::MOST_LOWPASS).contains(&self.lowpass) {
             return Err(Error::Usage(format!(
-                "{} directional lights: at most {} are drawn",
-                self.lighting.directional.len(),
-                Lighting::MAX_DIRECTIONAL
+                "the low-pass variance is {}: give a number of px² from 0 to {}",
+                self.lowpass,
+                Self::MOST_LOWPASS
+            )));
+        }
+        self.lighting.check()?;
+        if self.background.is_some_and(|colour| !colour.iter().all(|channel| channel.is_finite())) {
+            return Err(Error::Usage(format!(
+                "the background is {:?}: give finite numbers",
+                self.background
             )));
         }
         Ok(())
@@ -249,6 +263,23 @@ pub struct DirectionalLight {
 impl Lighting {
     /// Most directional lights beside the headlight.
     pub const MAX_DIRECTIONAL: usize = 4;
+
+    /// Refuses what no surface can be lit by.
+    fn check(&self) -> Result<()> {
+        let lights = self.directional.len();
+        if lights > Self::MAX_DIRECTIONAL {
+            let most = Self::MAX_DIRECTIONAL;
+            return Err(Error::Usage(format!("{lights} directional lights: at most {most} are drawn")));
+        }
+        let factors = [self.ambient, self.headlight, self.specular, self.shininess];
+        let directions = self.directional.iter().flat_map(|light| [light.to_light, light.radiance]).flatten();
+        match self.albedo.into_iter().chain(factors).chain(directions).find(|number| !number.is_finite()) {
+            Some(number) => Err(Error::Usage(format!(
+                "a number of the lights or the material is {number}: give finite ones"
+            ))),
+            None => Ok(()),
+        }
+    }
 }
 
 impl Default for Lighting {
