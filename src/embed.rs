@@ -105,7 +105,7 @@ use crate::error::{Error, Result};
 use crate::frame::Blocks;
 use crate::geometry::Parts;
 use crate::instance::Instances;
-use crate::passes::{Composite, CompositeKind, Splats};
+use crate::passes::{Composite, CompositeKind};
 use crate::renderer::{FrameReport, RenderOptions};
 use crate::scene::Scene;
 use crate::settings::Settings;
@@ -229,13 +229,11 @@ impl Renderer {
         let splats: Vec<_> = self.stage.residents().map(|resident| &resident.splats).collect();
         self.reports.begin(&self.device, &splats)?;
         self.held.advance();
-        let (timestamps, counts) = self.reports.present();
+        let (timestamps, tail) = self.reports.present();
         // SAFETY: by the caller; the reports have one for each frame under way.
         let mut rec = unsafe { Recorder::of_host_timed(&self.device, cmd, timestamps) };
         self.stage.record(&mut rec, &blocks);
-        if let Some(counts) = counts {
-            Splats::record_counts(&splats, &mut rec, counts);
-        }
+        tail.record(&mut rec, &splats);
         if let Some(present) = self.stage.present() {
             rec.wait(&Composite::reads(present.canvas.composited()));
         }

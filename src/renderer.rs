@@ -272,7 +272,7 @@ impl SplatCounts {
     /// Of so many surfels, of which these are culled.
     pub(crate) fn new(surfels: u64, Counts { culled }: Counts) -> Self {
         let [behind, eye_plane, back, outside, invalid] = culled;
-        let drawn = (surfels as u32).saturating_sub(culled.iter().sum());
+        let drawn = surfels.saturating_sub(culled.iter().copied().map(u64::from).sum()) as u32;
         Self { drawn, behind, eye_plane, back, outside, invalid }
     }
 

@@ -94,7 +94,6 @@ use super::{View, without_background};
 use crate::error::{Error, Result};
 use crate::frame::Blocks;
 use crate::instance::Instances;
-use crate::passes::Splats;
 use crate::renderer::{FrameReport, RenderOptions};
 use crate::settings::Settings;
 use crate::stage::{Description, Residents, describe, update};
@@ -221,7 +220,7 @@ impl Renderer {
         let splats: Vec<_> = self.residents.present().map(|resident| &resident.splats.splats).collect();
         self.reports.begin(&self.device, &splats)?;
         self.held.advance();
-        let (timestamps, counts) = self.reports.present();
+        let (timestamps, tail) = self.reports.present();
         // SAFETY: by the caller; the reports have one for each frame under way.
         let mut rec = unsafe { Recorder::of_host_timed(&self.device, cmd, timestamps) };
         let own = self.residents.present().map(|resident| &resident.frame);
@@ -229,9 +228,7 @@ impl Renderer {
         if let Some(present) = &self.present {
             passes::record(&mut rec, &present.with(&self.residents), present.coverage.as_deref());
         }
-        if let Some(counts) = counts {
-            Splats::record_counts(&splats, &mut rec, counts);
-        }
+        tail.record(&mut rec, &splats);
         let passes = self.made.plan.numbered().map(|(_, step)| rec.later(step.label())).collect();
         self.shown = Some(Shown { numbers, area, passes });
         Ok(())

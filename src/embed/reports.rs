@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::passes::Splats;
 use crate::renderer::{FrameReport, SplatCounts};
-use crate::vk::{Buffer, Device, Timestamps};
+use crate::vk::{Buffer, Device, Recorder, Timestamps};
 use std::sync::Arc;
 
 /// What frames tell of themselves. What is not asked for is in no frame.
@@ -23,6 +23,8 @@ pub(super) struct Reports {
     slots: Vec<Slot>,
     /// Number of the slot whose frame was prepared last.
     present: usize,
+    /// Frames so far; 0 again after very many.
+    frames: u32,
     last: Option<FrameReport>,
 }
 
@@ -31,12 +33,22 @@ pub(super) struct Reports {
 struct Slot {
     timestamps: Option<Timestamps>,
     counts: Option<Buffer>,
+    /// Has the number of the last frame that the GPU has done, of those that were measured: one that was prepared may never be submitted.
+    done: Option<Buffer>,
     told: Option<Told>,
+}
+
+/// What a measured frame records last.
+pub(super) struct Tail<'a> {
+    counts: Option<&'a Buffer>,
+    done: Option<(&'a Buffer, u32)>,
 }
 
 /// What a frame tells.
 #[derive(Clone, Copy)]
 struct Told {
+    /// Of the frame.
+    number: u32,
     times: bool,
     /// Surfels, and bytes of their counts.
     counts: Option<(u64, u64)>,
@@ -46,7 +58,7 @@ impl Reports {
     /// Nothing is told yet of frames of which so many are under way.
     pub(super) fn new(frames_in_flight: u32) -> Self {
         let slots = (0..frames_in_flight).map(|_| Slot::default()).collect();
-        Self { measured: Measured::default(), slots, present: 0, last: None }
+        Self { measured: Measured::default(), slots, present: 0, frames: 0, last: None }
     }
 
     /// What frames tell from now on.
@@ -82,17 +94,27 @@ impl Reports {
         if slot.counts.as_ref().map_or(0, Buffer::size) < room {
             slot.counts = Some(Buffer::readback(device, "frame counts", room)?);
         }
-        slot.told = (measured != Measured::default()).then_some(Told { times: measured.times, counts });
+        self.frames = self.frames.wrapping_add(1);
+        let told = Told { number: self.frames, times: measured.times, counts };
+        slot.told = (measured != Measured::default()).then_some(told);
+        if slot.told.is_some() && slot.done.is_none() {
+            let mut done = Buffer::readback(device, "frame done", size_of::<u32>() as u64)?;
+            // No frame's soon.
+            done.bytes_mut().copy_from_slice(&self.frames.wrapping_sub(1).to_ne_bytes());
+            slot.done = Some(done);
+        }
         self.present = next;
         Ok(())
     }
 
-    /// What times the frame that was begun, and where its counts are to go, as far as that was asked for.
-    pub(super) fn present(&mut self) -> (Option<&mut Timestamps>, Option<&Buffer>) {
-        let Slot { timestamps, counts, told } = &mut self.slots[self.present];
+    /// What times the frame that was begun, and what is to be recorded last in it, as far as that was asked for.
+    pub(super) fn present(&mut self) -> (Option<&mut Timestamps>, Tail<'_>) {
+        let Slot { timestamps, counts, done, told } = &mut self.slots[self.present];
         let times = told.is_some_and(|told| told.times);
         let counted = told.is_some_and(|told| told.counts.is_some());
-        (timestamps.as_mut().filter(|_| times), counts.as_ref().filter(|_| counted))
+        let done = done.as_ref().zip(told.map(|told| told.number));
+        let tail = Tail { counts: counts.as_ref().filter(|_| counted), done };
+        (timestamps.as_mut().filter(|_| times), tail)
     }
 
     /// All frames are over.
@@ -108,10 +130,25 @@ impl Reports {
     }
 }
 
+impl Tail<'_> {
+    /// Copies the counts of the frame's splats, and says that it is over.
+    pub(super) fn record(&self, rec: &mut Recorder<'_>, splats: &[&Splats]) {
+        if let Some(counts) = self.counts {
+            Splats::record_counts(splats, rec, counts);
+        }
+        if let Some((done, number)) = self.done {
+            rec.mark(done, number);
+        }
+    }
+}
+
 impl Slot {
     /// What its frame, which is over, tells, once.
     fn read(&mut self) -> Result<Option<FrameReport>> {
-        let Some(Told { times, counts }) = self.told.take() else { return Ok(None) };
+        let Some(Told { number, times, counts }) = self.told.take() else { return Ok(None) };
+        if self.done.as_ref().is_none_or(|done| done.bytes() != number.to_ne_bytes()) {
+            return Ok(None);
+        }
         let counted = self.counts.as_ref().zip(counts);
         let counts = counted.map(|(buffer, (surfels, size))| {
             let bytes = &buffer.bytes()[..size as usize];

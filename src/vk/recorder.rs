@@ -83,6 +83,14 @@ impl<'a> Recorder<'a> {
         self.barrier(&all(Access::UNIFORM_READ));
     }
 
+    /// Sets every word of `buffer` to `word`, for the CPU to read: no pass, which would be timed.
+    pub fn mark(&mut self, buffer: &Buffer, word: u32) {
+        self.barrier(&[buffer.with(Access::COPY_WRITE)]);
+        // SAFETY: the command buffer is being recorded outside a render pass; the buffer is alive and can be copied to.
+        unsafe { self.device.raw.cmd_fill_buffer(self.cmd, buffer.raw, 0, vk::WHOLE_SIZE, word) };
+        self.barrier(&[buffer.with(Access::HOST_READ)]);
+    }
+
     /// Says how an earlier frame left these: images keep what is in them, unless they are written.
     pub fn left(&mut self, uses: &[Use]) {
         self.tracker.left(uses);

@@ -98,6 +98,37 @@ fn a_report_is_of_the_frame_that_must_be_over_by_now() {
     assert_silent(&host);
 }
 
+#[test]
+fn a_frame_that_was_never_submitted_tells_nothing() {
+    let Some(host) = open(|all| all) else { return };
+    let settings = Settings { cull: Cull::Back, ..Method::named("sprites").unwrap().settings() };
+    let own = reports(&settings, None, true);
+    let kind = Kind { way: Way::Subpass, colour: FLOATS, normals: false, samples: ONE, reversed: true };
+    let mut stand = Stand::new(&host, kind, SIZE, None, &surfels());
+    stand.renderer.measure(Measured { times: true, counts: true });
+    // Each slot is first used by a frame that is thrown away, and once more after one that was not.
+    for (number, submitted) in [false, false, true, true, false].into_iter().enumerate() {
+        let view = View::whole(nearer(number), SIZE);
+        if submitted {
+            stand.render(&host, &view, &settings, None);
+        } else {
+            host.record(|cmd| {
+                // SAFETY: recorded outside a render pass, and never submitted.
+                unsafe { stand.renderer.prepare(cmd, &stand.scene, &view, &settings)? };
+                Ok(())
+            })
+            .unwrap();
+        }
+        // SAFETY: what was submitted was waited for.
+        unsafe { stand.renderer.finish() }.unwrap();
+        let report = stand.renderer.report();
+        assert_eq!(report.map(|report| report.counts), submitted.then_some(own[number].counts), "{number}");
+        assert_eq!(report.is_some_and(|report| !report.pass_times.is_empty()), submitted, "{number}");
+    }
+    stand.destroy(&host);
+    assert_silent(&host);
+}
+
 /// A frame of a native host that is recorded so many times after it was prepared once; what it tells, and how long it took, ms.
 fn native_report(
     host: &Host,
