@@ -2,6 +2,8 @@
 
 use super::{Buffer, Image};
 use ash::vk;
+use std::collections::HashMap;
+use std::sync::{Mutex, MutexGuard};
 
 /// How a pass touches a resource.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -140,7 +142,7 @@ pub struct Use {
     access: Access,
 }
 
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
 enum Resource {
     Buffer(vk::Buffer),
     Image(vk::Image, vk::ImageAspectFlags),
@@ -160,6 +162,61 @@ impl Image {
     }
 }
 
+/// What frames so far have done to the resources of a device. It outlasts command buffers, some of which a host may never submit: so it only ever
+/// grows, until the resource goes.
+#[derive(Default)]
+pub(super) struct History(Mutex<HashMap<Resource, Past>>);
+
+/// What frames so far have done to a resource.
+#[derive(Clone, Copy, Default)]
+struct Past {
+    /// What a read of a later frame waits for.
+    writes: (vk::PipelineStageFlags, vk::AccessFlags),
+    /// What a write waits for beside that.
+    stages: vk::PipelineStageFlags,
+    /// What writes it has had at all.
+    mask: vk::AccessFlags,
+}
+
+impl History {
+    /// That what was written is visible to every shader from now on, as after an upload.
+    pub(super) fn settle(&self, uses: &[Use]) {
+        let mut all = self.lock();
+        for used in uses {
+            let past = all.entry(used.resource).or_default();
+            past.writes = Default::default();
+            // Another thread may record what reads it.
+            past.stages |= SHADER_STAGES;
+        }
+    }
+
+    /// The resource goes.
+    pub(super) fn forget_buffer(&self, buffer: vk::Buffer) {
+        self.lock().remove(&Resource::Buffer(buffer));
+    }
+
+    /// As [`History::forget_buffer`].
+    pub(super) fn forget_image(&self, image: vk::Image) {
+        self.lock().retain(|resource, _| !matches!(resource, Resource::Image(found, _) if *found == image));
+    }
+
+    fn lock(&self) -> MutexGuard<'_, HashMap<Resource, Past>> {
+        self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+    }
+}
+
+impl Past {
+    fn note(&mut self, access: Access) {
+        // The CPU reads what is over.
+        self.stages |= access.stages & !vk::PipelineStageFlags::HOST;
+        if access.write {
+            self.writes.0 |= access.stages;
+            self.writes.1 |= access.mask;
+            self.mask |= access.mask;
+        }
+    }
+}
+
 /// What was done to each resource in this frame.
 #[derive(Default)]
 pub(super) struct Tracker(Vec<State>);
@@ -174,12 +231,16 @@ pub(super) struct Barrier {
 
 impl Tracker {
     /// Notes what a pass does, and gives the barrier that it needs before; `None` if earlier ones cover it.
-    pub(super) fn barrier(&mut self, uses: &[Use]) -> Option<Barrier> {
+    pub(super) fn barrier(&mut self, history: &History, uses: &[Use]) -> Option<Barrier> {
+        let mut history = history.lock();
         let none = vk::PipelineStageFlags::empty();
         let mut barrier =
             Barrier { source: none, target: none, memory: vk::MemoryBarrier::default(), images: Vec::new() };
         for used in uses {
-            let Some(change) = self.state_of(used.resource).advance(used.access) else { continue };
+            let past = history.entry(used.resource).or_default();
+            let change = self.state_of(used.resource, past).advance(used.access);
+            past.note(used.access);
+            let Some(change) = change else { continue };
             barrier.source |= change.stages;
             barrier.target |= used.access.stages;
             match used.resource {
@@ -192,22 +253,27 @@ impl Tracker {
                 }
             }
         }
+        if barrier.source == none {
+            barrier.source = vk::PipelineStageFlags::TOP_OF_PIPE;
+        }
         (barrier.target != none).then_some(barrier)
     }
 
     /// Notes how an earlier frame left resources: images keep their contents then.
-    pub(super) fn left(&mut self, uses: &[Use]) {
+    pub(super) fn left(&mut self, history: &History, uses: &[Use]) {
+        let mut history = history.lock();
         for used in uses {
-            self.state_of(used.resource).layout = used.access.layout;
+            let past = history.entry(used.resource).or_default();
+            self.state_of(used.resource, past).layout = used.access.layout;
         }
     }
 
-    fn state_of(&mut self, resource: Resource) -> &mut State {
+    fn state_of(&mut self, resource: Resource, past: &Past) -> &mut State {
         let index = self.0.iter().position(|state| state.resource == resource).unwrap_or_else(|| {
-            // An earlier frame or an upload may still be at it.
-            let write = (vk::PipelineStageFlags::ALL_COMMANDS, vk::AccessFlags::MEMORY_WRITE);
-            let reads = (vk::PipelineStageFlags::empty(), vk::AccessFlags::empty());
-            self.0.push(State { resource, write, reads, layout: vk::ImageLayout::UNDEFINED });
+            // An earlier frame may still be at it.
+            let reads = (past.stages, vk::AccessFlags::empty());
+            let (write, written) = (past.writes, past.mask);
+            self.0.push(State { resource, write, written, reads, layout: vk::ImageLayout::UNDEFINED });
             self.0.len() - 1
         });
         &mut self.0[index]
@@ -217,9 +283,11 @@ impl Tracker {
 /// What was last done to a resource in this frame.
 struct State {
     resource: Resource,
-    /// The last write, or at first all that earlier frames may have done.
+    /// The last write, or at first all those of earlier frames that are not yet visible.
     write: (vk::PipelineStageFlags, vk::AccessFlags),
-    /// All reads since.
+    /// Writes that a write must wait for.
+    written: vk::AccessFlags,
+    /// All reads since; of earlier frames where, not how.
     reads: (vk::PipelineStageFlags, vk::AccessFlags),
     layout: vk::ImageLayout,
 }
@@ -233,27 +301,30 @@ struct Change {
 }
 
 impl State {
-    /// Notes `access` and says what it must wait for; `None` if an earlier barrier already covers it.
+    /// Notes `access` and says what it must wait for; `None` if that is nothing, or an earlier barrier already covers it.
     fn advance(&mut self, access: Access) -> Option<Change> {
         let same_layout = self.layout == access.layout;
         let seen = self.reads.0.contains(access.stages) && self.reads.1.contains(access.mask);
         if !access.write && same_layout && seen {
             return None;
         }
+        let alters = access.write || !same_layout;
         // A write drops an image's contents: all targets are cleared or wholly covered.
         let old = if access.write { vk::ImageLayout::UNDEFINED } else { self.layout };
-        let change =
-            Change { stages: self.write.0 | self.reads.0, mask: self.write.1, from: self.layout, old };
-        if access.write || !same_layout {
+        let reads = if alters { self.reads.0 } else { vk::PipelineStageFlags::empty() };
+        let mask = if alters { self.write.1 | self.written } else { self.write.1 };
+        let change = Change { stages: self.write.0 | reads, mask, from: self.layout, old };
+        if alters {
             // A transition is a write of its own, which later accesses must wait for through this one's stages.
             self.write = (access.stages, access.mask);
+            self.written = vk::AccessFlags::empty();
             self.reads = (vk::PipelineStageFlags::empty(), vk::AccessFlags::empty());
         }
         if !access.write {
             self.reads = (self.reads.0 | access.stages, self.reads.1 | access.mask);
         }
         self.layout = access.layout;
-        Some(change)
+        (!same_layout || change.stages != vk::PipelineStageFlags::empty()).then_some(change)
     }
 }
 
@@ -285,28 +356,33 @@ fn image_barrier(
 mod tests {
     use super::*;
     use ash::vk::Handle;
+    use vk::PipelineStageFlags as Stages;
+
+    fn buffer() -> Resource {
+        Resource::Buffer(vk::Buffer::from_raw(1))
+    }
 
     #[test]
     fn a_barrier_stands_where_it_is_needed_and_nowhere_else() {
-        let buffer = Resource::Buffer(vk::Buffer::from_raw(1));
         let image = Resource::Image(vk::Image::from_raw(2), vk::ImageAspectFlags::COLOR);
-        let mut tracker = Tracker::default();
-        let mut barrier = |resource, access| tracker.barrier(&[Use { resource, access }]);
+        let (history, mut tracker) = (History::default(), Tracker::default());
+        let mut barrier = |resource, access| tracker.barrier(&history, &[Use { resource, access }]);
 
-        let first = barrier(buffer, Access::COMPUTE_WRITE).unwrap();
-        assert_eq!(first.source, vk::PipelineStageFlags::ALL_COMMANDS, "an earlier frame may still read it");
-        let read = barrier(buffer, Access::VERTEX_READ).unwrap();
-        assert_eq!(read.source, vk::PipelineStageFlags::COMPUTE_SHADER);
-        assert_eq!(read.target, vk::PipelineStageFlags::VERTEX_SHADER);
+        assert!(barrier(buffer(), Access::COMPUTE_WRITE).is_none(), "nobody has touched it");
+        let read = barrier(buffer(), Access::VERTEX_READ).unwrap();
+        assert_eq!((read.source, read.target), (Stages::COMPUTE_SHADER, Stages::VERTEX_SHADER));
         assert!(read.memory.src_access_mask.contains(vk::AccessFlags::SHADER_WRITE));
-        assert!(barrier(buffer, Access::VERTEX_READ).is_none(), "it was read there already");
-        let other = barrier(buffer, Access::COMPUTE_READ).unwrap();
-        assert!(other.source.contains(vk::PipelineStageFlags::COMPUTE_SHADER));
-        let write = barrier(buffer, Access::COMPUTE_WRITE).unwrap();
-        assert!(write.source.contains(vk::PipelineStageFlags::VERTEX_SHADER), "a reader may not be done");
+        assert!(barrier(buffer(), Access::VERTEX_READ).is_none(), "it was read there already");
+        let other = barrier(buffer(), Access::COMPUTE_READ).unwrap();
+        assert_eq!(other.source, Stages::COMPUTE_SHADER, "reads do not wait for reads");
+        let write = barrier(buffer(), Access::COMPUTE_WRITE).unwrap();
+        assert!(write.source.contains(Stages::VERTEX_SHADER), "a reader may not be done");
 
         let drawn = barrier(image, Access::COLOUR_WRITE).unwrap();
-        assert_eq!(drawn.images[0].old_layout, vk::ImageLayout::UNDEFINED);
+        assert_eq!(
+            (drawn.source, drawn.images[0].old_layout),
+            (Stages::TOP_OF_PIPE, vk::ImageLayout::UNDEFINED)
+        );
         let sampled = barrier(image, Access::FRAGMENT_READ).unwrap();
         assert_eq!(sampled.images[0].old_layout, vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL);
         assert_eq!(sampled.images[0].new_layout, vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL);
@@ -314,13 +390,47 @@ mod tests {
 
         let kept = Use { resource: image, access: Access::COPY_READ };
         let mut next = Tracker::default();
-        next.left(&[kept]);
-        let read = next.barrier(&[kept]).unwrap();
-        assert_eq!(
-            read.source,
-            vk::PipelineStageFlags::ALL_COMMANDS,
-            "whatever wrote it, in an earlier frame"
-        );
+        next.left(&history, &[kept]);
+        let read = next.barrier(&history, &[kept]).unwrap();
+        assert_eq!(read.source, Stages::COLOR_ATTACHMENT_OUTPUT, "what wrote it in the frame before");
         assert!(read.images.is_empty(), "it stays in its layout");
+    }
+
+    #[test]
+    fn a_frame_waits_for_what_all_earlier_ones_did_and_for_nothing_else() {
+        let history = History::default();
+        let frame = |accesses: &[Access]| {
+            let mut tracker = Tracker::default();
+            let sources = accesses.iter().map(|access| {
+                let barrier = tracker.barrier(&history, &[Use { resource: buffer(), access: *access }]);
+                barrier.map(|barrier| (barrier.source, barrier.memory.src_access_mask))
+            });
+            sources.collect::<Vec<_>>()
+        };
+        frame(&[Access::COMPUTE_WRITE, Access::FRAGMENT_LOAD]);
+        // This one may never be submitted: the fragments of the first one are waited for all the same.
+        frame(&[Access::COMPUTE_WRITE]);
+        let third = frame(&[Access::COMPUTE_WRITE]);
+        let (source, mask) = third[0].unwrap();
+        assert_eq!(source, Stages::COMPUTE_SHADER | Stages::FRAGMENT_SHADER);
+        assert!(mask.contains(vk::AccessFlags::SHADER_WRITE));
+        history.forget_buffer(vk::Buffer::from_raw(1));
+        assert_eq!(frame(&[Access::COMPUTE_WRITE]), [None]);
+    }
+
+    #[test]
+    fn what_was_uploaded_is_read_without_waiting_and_written_after_every_reader() {
+        let history = History::default();
+        let used = |access| [Use { resource: buffer(), access }];
+        let mut upload = Tracker::default();
+        upload.barrier(&history, &used(Access::COPY_WRITE));
+        assert!(upload.barrier(&history, &used(Access::SHADER_READ)).is_some());
+        history.settle(&used(Access::SHADER_READ));
+        for _ in 0..2 {
+            assert!(Tracker::default().barrier(&history, &used(Access::COMPUTE_READ)).is_none());
+        }
+        let update = Tracker::default().barrier(&history, &used(Access::COPY_WRITE)).unwrap();
+        assert!(update.source.contains(SHADER_STAGES) && update.source.contains(Stages::TRANSFER));
+        assert!(update.memory.src_access_mask.contains(vk::AccessFlags::TRANSFER_WRITE));
     }
 }

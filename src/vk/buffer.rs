@@ -120,6 +120,7 @@ impl Buffer {
 impl Drop for Buffer {
     fn drop(&mut self) {
         if self.lent {
+        self.device.history.forget_buffer(self.raw);
             return;
         }
         // SAFETY: the GPU is done with it (see the module's docs).

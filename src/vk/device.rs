@@ -1,5 +1,6 @@
 //! The logical device: one graphics queue, the memory allocator, the pipeline cache, and counters of what was made.
 
+use super::access::History;
 use super::choose::{DeviceDescription, choose};
 use super::instance::Instance;
 use super::limits::{Capabilities, DeviceLimits};
@@ -40,6 +41,7 @@ pub struct Device {
     pub(super) labels: Option<debug_utils::Device>,
     pub(super) made: Made,
     capabilities: Capabilities,
+    pub(super) history: History,
     description: DeviceDescription,
     /// Asks `physical` what it can do.
     instance: ash::Instance,
@@ -172,6 +174,7 @@ impl Device {
             instance: instance.raw.clone(),
             physical,
             owner: Owner::Engine(Box::new(Opened { queue, family, instance })),
+            history: History::default(),
         }))
     }
 
@@ -223,6 +226,7 @@ impl Device {
     /// # Safety
     /// `cmd` is of the device and is being recorded; [`Device::end_label`] ends it.
     pub(super) unsafe fn begin_label(&self, cmd: vk::CommandBuffer, label: &'static str) {
+            history: History::default(),
         let Some(labels) = &self.labels else { return };
         // In every pass of every frame: on the stack.
         let mut name = [0; 32];

@@ -93,7 +93,7 @@ impl<'a> Recorder<'a> {
 
     /// Says how an earlier frame left these: images keep what is in them, unless they are written.
     pub fn left(&mut self, uses: &[Use]) {
-        self.tracker.left(uses);
+        self.tracker.left(&self.device.history, uses);
     }
 
     fn stamp(&self, query: Option<u32>) {
@@ -115,9 +115,16 @@ impl<'a> Recorder<'a> {
         self.barrier(uses);
     }
 
+    /// Makes what was written to these, which shaders read, visible to every one of what is recorded later.
+    pub fn settle(&mut self, uses: &[Use]) {
+        self.barrier(uses);
+        self.device.history.settle(uses);
+    }
+
     /// One barrier for everything that a pass touches.
     fn barrier(&mut self, uses: &[Use]) {
-        let Some(Barrier { source, target, memory, images }) = self.tracker.barrier(uses) else { return };
+        let found = self.tracker.barrier(&self.device.history, uses);
+        let Some(Barrier { source, target, memory, images }) = found else { return };
         // SAFETY: the command buffer is being recorded outside a render pass, and the images are alive.
         unsafe {
             let none = vk::DependencyFlags::empty();

@@ -87,7 +87,7 @@ impl<'a> Uploads<'a> {
         rec.pass("upload", &uses.collect::<Vec<_>>(), |enc| {
             copies.iter().for_each(|copy| enc.copy_all(&copy.from, copy.to, copy.at));
         });
-        rec.wait(&copies.iter().map(|copy| copy.read).collect::<Vec<_>>());
+        rec.settle(&copies.iter().map(|copy| copy.read).collect::<Vec<_>>());
         Staging(copies.into_iter().map(|copy| copy.from).collect())
     }
 }
@@ -107,7 +107,7 @@ fn copy_now(
             rec.pass("upload", &uses, |enc| {
                 enc.copy(&staging, buffer, at + (i * CHUNK) as u64, chunk.len() as u64);
             });
-            rec.wait(&[buffer.with(Access::SHADER_READ)]);
+            rec.settle(&[buffer.with(Access::SHADER_READ)]);
         })?;
     }
     Ok(())

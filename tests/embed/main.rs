@@ -1,6 +1,7 @@
 //! Surfels in hosts, each of which is a small renderer of its own.
 #![allow(unsafe_code, reason = "a host speaks Vulkan itself")]
 
+mod barriers;
 mod composite;
 #[path = "../../tools/hosts/host/mod.rs"]
 mod host;

@@ -1,0 +1,122 @@
+//! What frames wait for: never for all that the host has submitted before.
+
+use crate::host::Host;
+use crate::host::frame::{Frame, Kind, Way};
+use crate::live::settings;
+use crate::stand::{SIZE, assert_silent, camera, open, surfels, upload};
+use crate::{FLOATS, ONE};
+use ash::vk;
+use std::ffi::{CStr, c_void};
+use std::sync::{Arc, Mutex};
+use surfel::embed::{Lent, Options, Renderer, View};
+use surfel::methods::Method;
+use surfel::vk::{Device, DeviceLimits};
+use surfel::{Precision, Rasterizer};
+
+/// Stages that the barriers of the one host that listens wait for.
+static WAITED_FOR: Mutex<Vec<vk::PipelineStageFlags>> = Mutex::new(Vec::new());
+/// What its device records them with.
+static RECORDING: Mutex<Option<vk::PFN_vkCmdPipelineBarrier>> = Mutex::new(None);
+
+unsafe extern "system" fn barrier(
+    cmd: vk::CommandBuffer,
+    source: vk::PipelineStageFlags,
+    target: vk::PipelineStageFlags,
+    dependencies: vk::DependencyFlags,
+    memories: u32,
+    memory: *const vk::MemoryBarrier<'_>,
+    buffers: u32,
+    buffer: *const vk::BufferMemoryBarrier<'_>,
+    images: u32,
+    image: *const vk::ImageMemoryBarrier<'_>,
+) {
+    WAITED_FOR.lock().unwrap().push(source);
+    let record = RECORDING.lock().unwrap().unwrap();
+    // SAFETY: what is called was asked of the device.
+    unsafe {
+        record(cmd, source, target, dependencies, memories, memory, buffers, buffer, images, image);
+    }
+}
+
+/// The host's device, lent with a function that listens.
+fn lend(host: &Host) -> Arc<Device> {
+    *RECORDING.lock().unwrap() = Some(host.device.fp_v1_0().cmd_pipeline_barrier);
+    let load = |name: &CStr| match name.to_bytes() {
+        b"vkCmdPipelineBarrier" => barrier as *const c_void,
+        _ => {
+            let device = host.device.handle();
+            // SAFETY: the device is alive.
+            let found = unsafe { host.instance.get_device_proc_addr(device, name.as_ptr()) };
+            found.map_or(std::ptr::null(), |found| found as *const c_void)
+        }
+    };
+    // SAFETY: the functions are the device's, or call it; it outlives what is lent.
+    unsafe {
+        let listening = ash::Device::load_with(load, host.device.handle());
+        let lent = Lent {
+            instance: &host.instance,
+            physical: host.physical,
+            device: &listening,
+            queue_family: host.family,
+            enabled: host.enabled,
+            dynamic_rendering: true,
+            labels: true,
+            limits: DeviceLimits::default(),
+            memory: None,
+            memory_blocks: Default::default(),
+            pipeline_cache: None,
+        };
+        Device::borrow(lent).unwrap()
+    }
+}
+
+#[test]
+fn no_barrier_waits_for_everything() {
+    let Some(host) = open(|all| all) else { return };
+    let device = lend(&host);
+    let scene = upload(&host, &device, &surfels());
+    let kind = Kind { way: Way::Subpass, colour: FLOATS, normals: false, samples: ONE, reversed: true };
+    let frame = Frame::new(&host, kind, SIZE).unwrap();
+    for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
+        let options = Options {
+            target: frame.target(),
+            frames_in_flight: 2,
+            precision: Precision::Full,
+            rasterizer: Some(rasterizer),
+        };
+        // SAFETY: the target is the frame's.
+        let mut renderer = unsafe { Renderer::new(&device, options) }.unwrap();
+        for method in Method::ALL {
+            let settings = settings(method);
+            for number in 0..3 {
+                WAITED_FOR.lock().unwrap().clear();
+                host.run(|cmd| {
+                    // SAFETY: recorded outside and inside the frame's pass, and waited for.
+                    unsafe {
+                        renderer.prepare(cmd, &scene, &View::whole(camera(), SIZE), &settings)?;
+                        frame.begin(&host, cmd);
+                        renderer.draw(cmd)?;
+                        frame.end(&host, cmd);
+                    }
+                    Ok(())
+                })
+                .unwrap();
+                let waited_for = WAITED_FOR.lock().unwrap().clone();
+                let too_much = vk::PipelineStageFlags::ALL_COMMANDS | vk::PipelineStageFlags::ALL_GRAPHICS;
+                assert!(
+                    !waited_for.is_empty() && !waited_for.iter().any(|stages| stages.intersects(too_much)),
+                    "{} {rasterizer:?}, frame {number}: {waited_for:?}",
+                    method.name
+                );
+                // What is computed does not wait for what the host has drawn to its attachments.
+                let attachments = vk::PipelineStageFlags::COLOR_ATTACHMENT_OUTPUT;
+                let drawn = waited_for.iter().any(|stages| stages.intersects(attachments));
+                assert!(!drawn || rasterizer == Rasterizer::Draw, "{}: {waited_for:?}", method.name);
+            }
+        }
+    }
+    frame.destroy(&host);
+    drop(scene);
+    drop(device);
+    assert_silent(&host);
+}
