@@ -67,6 +67,7 @@ impl Buffer {
         let raw =
             unsafe { device.raw.create_buffer(&info, None) }.map_err(Error::vulkan("vkCreateBuffer"))?;
         let mut buffer = Self { raw, size, allocation: None, lent: false, device: device.clone() };
+        device.name(raw, name);
         // SAFETY: the buffer is the device's.
         let requirements = unsafe { device.raw.get_buffer_memory_requirements(raw) };
         let request = MemoryRequest { name, requirements, location, linear: true };

@@ -12,7 +12,7 @@ use super::requirements::{Abilities, QUEUE, portability_subset};
 use super::surface::{self, Surface, Window};
 use crate::error::{Error, Result};
 use ash::{ext::debug_utils, vk};
-use std::ffi::CStr;
+use std::ffi::{CStr, CString};
 use std::mem::ManuallyDrop;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -236,6 +236,14 @@ impl Device {
         let info = vk::DebugUtilsLabelEXT::default().label_name(name);
         // SAFETY: by the caller.
         unsafe { labels.cmd_begin_debug_utils_label(cmd, &info) };
+    /// Names an object of the device for debuggers and the validation layers, where they listen.
+    pub(super) fn name(&self, object: impl vk::Handle, name: &str) {
+        let Some((labels, name)) = self.labels.as_ref().zip(CString::new(name).ok()) else { return };
+        let info = vk::DebugUtilsObjectNameInfoEXT::default().object_handle(object).object_name(&name);
+        // SAFETY: the object is the device's, and alive. A name that cannot be given is no loss.
+        let _ = unsafe { labels.set_debug_utils_object_name(&info) };
+    }
+
     }
 
     /// # Safety

@@ -80,6 +80,8 @@ impl Image {
         let location = if also == ImageUse::Transient { Location::Transient } else { Location::Device };
         image.bind(name, location)?;
         image.make_view()?;
+        device.name(image.raw, name);
+        device.name(image.view, name);
         Ok(image)
     }
 

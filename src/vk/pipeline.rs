@@ -1,7 +1,7 @@
 //! Compute and draw pipelines.
 
 use super::pipeline_pool::{DrawKey, PassKey, PipelineKey};
-use super::shader_stage::{Code, Constants, with_infos};
+use super::shader_stage::{Code, Constants, ShaderStage, with_infos};
 use super::shaders::Module;
 use super::{Device, RenderPass, SetLayout};
 use crate::error::{Error, Result};
@@ -320,6 +320,12 @@ impl Raw {
         Ok(Self { pipeline: vk::Pipeline::null(), layout, device: device.clone() })
     }
 
+    /// Names the pipeline after its stages.
+    fn name(&self, key: &PipelineKey) {
+        let names: Vec<_> = key.stages.iter().map(ShaderStage::name).collect();
+        self.device.name(self.pipeline, &names.join(" "));
+    }
+
     fn compute(device: &Arc<Device>, sets: &[&SetLayout], key: &PipelineKey) -> Result<Self> {
         let mut raw = Self::new(device, sets, vk::ShaderStageFlags::COMPUTE, key.push)?;
         let made = with_infos(device, &key.stages, |stages| {
@@ -328,6 +334,7 @@ impl Raw {
             unsafe { device.raw.create_compute_pipelines(device.pipeline_cache.raw, &[info], None) }
         })?;
         raw.pipeline = first(made, "vkCreateComputePipelines")?;
+        raw.name(key);
         Ok(raw)
     }
 
@@ -383,6 +390,7 @@ impl Raw {
             }
         })?;
         raw.pipeline = first(made, "vkCreateGraphicsPipelines")?;
+        raw.name(key);
         Ok(raw)
     }
 }

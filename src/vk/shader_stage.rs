@@ -22,12 +22,29 @@ impl Constants {
 #[derive(Clone, PartialEq, Eq, Hash)]
 pub(super) struct ShaderStage {
     stage: vk::ShaderStageFlags,
+    name: Name,
     words: Cow<'static, [u32]>,
     ids: Vec<u32>,
     values: Vec<u32>,
 }
 
 /// The module of a stage, or a copy of it with other output locations, which are no specialization constants.
+/// What a module is called: stages of equal code are equal.
+#[derive(Clone, Copy)]
+struct Name(&'static str);
+
+impl PartialEq for Name {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+impl Eq for Name {}
+
+impl Hash for Name {
+    fn hash<H: Hasher>(&self, _: &mut H) {}
+}
+
 #[derive(Clone)]
 pub struct Code {
     module: &'static Module,
@@ -62,12 +79,18 @@ impl Code {
     pub(super) fn specialized(self, constants: &Constants) -> ShaderStage {
         let read = |(id, _): &&(u32, u32)| self.module.constants.contains(id);
         let (ids, values) = constants.0.iter().filter(read).copied().unzip();
-        ShaderStage { stage: self.module.stage, words: self.words, ids, values }
+        let name = Name(self.module.name);
+        ShaderStage { name, stage: self.module.stage, words: self.words, ids, values }
     }
 }
 
 impl ShaderStage {
     fn entries(&self) -> Vec<vk::SpecializationMapEntry> {
+    /// Of the module.
+    pub(super) fn name(&self) -> &'static str {
+        self.name.0
+    }
+
         let entry = |(id, index): (&u32, u32)| vk::SpecializationMapEntry {
             constant_id: *id,
             offset: 4 * index,
