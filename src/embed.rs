@@ -15,7 +15,7 @@
 //! ```no_run
 //! use ash::vk;
 //! use std::sync::Arc;
-//! use surfel::embed::{self, Abilities, Lent, Options, Pass, Renderer, Target, View};
+//! use surfel::embed::{self, Abilities, Lent, MemoryBlocks, Options, Pass, Renderer, Target, View};
 //! use surfel::geometry::{Camera, Surfels};
 //! use surfel::vk::{Device, DeviceLimits};
 //! use surfel::{Precision, Scene, Settings};
@@ -49,6 +49,7 @@
 //!             limits: DeviceLimits::default(),
 //!             memory: None,
 //!             pipeline_cache: None,
+//!             memory_blocks: MemoryBlocks::default(),
 //!         })?
 //!     };
 //!     let (scene, staging) = unsafe { embed::upload(&device, cmd, surfels)? };
@@ -89,8 +90,8 @@ mod view;
 
 pub use crate::scene::Changes;
 pub use crate::vk::{
-    ABILITIES, API_VERSION, Abilities, Ability, Features, HostMemory, Lent, Location, MemoryRequest,
-    MemorySource, QUEUE, Staging,
+    ABILITIES, API_VERSION, Abilities, Ability, Features, HostMemory, Lent, Location, MemoryBlocks,
+    MemoryRequest, MemorySource, QUEUE, Staging,
 };
 pub use buffers::{Buffers, READ_ACCESS, READ_STAGES, Radii, Values, update};
 #[cfg(feature = "window")]

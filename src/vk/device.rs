@@ -4,7 +4,7 @@ use super::access::History;
 use super::choose::{DeviceDescription, choose};
 use super::instance::Instance;
 use super::limits::{Capabilities, DeviceLimits};
-use super::memory::{self, MemorySource};
+use super::memory::{self, MemoryBlocks, MemorySource};
 use super::pipeline_cache::PipelineCache;
 use super::pipeline_pool::PipelinePool;
 use super::requirements::{Abilities, QUEUE, portability_subset};
@@ -29,6 +29,8 @@ pub struct DeviceOptions {
     pub limits: DeviceLimits,
     /// Folder in which compiled pipelines are kept between runs; `None` keeps none.
     pub pipeline_cache: Option<PathBuf>,
+    /// Sizes in which device memory is allocated.
+    pub memory_blocks: MemoryBlocks,
 }
 
 /// An open device. Shared by everything that is made on it.
@@ -84,6 +86,8 @@ pub struct Lent<'a> {
     pub memory: Option<Box<dyn MemorySource>>,
     /// As [`DeviceOptions::pipeline_cache`].
     pub pipeline_cache: Option<PathBuf>,
+    /// As [`DeviceOptions::memory_blocks`], of the engine's own allocator.
+    pub memory_blocks: MemoryBlocks,
 }
 
 /// Counts of what was ever made; [`Device::usage`] reads them.
@@ -156,7 +160,7 @@ impl Device {
             .map_err(|result| Error::NoDevice(format!("{}: vkCreateDevice: {result}", description.name)))?;
         // SAFETY: the queue was asked for above.
         let queue = Mutex::new(unsafe { raw.get_device_queue(family, 0) });
-        let memory = memory::Source::own(&instance.raw, &raw, physical)
+        let memory = memory::Source::own(&instance.raw, &raw, physical, options.memory_blocks)
             .map_err(|error| Error::NoDevice(format!("{}: {error}", description.name)))?;
         let pipeline_cache =
             PipelineCache::load(&instance.raw, physical, &raw, options.pipeline_cache.as_deref())?;
@@ -202,7 +206,7 @@ impl Device {
             unsafe { Capabilities::query(instance, physical, queue_family, enabled, &lent.limits) };
         let memory = match lent.memory {
             Some(source) => memory::Source::Host(source),
-            None => memory::Source::own(instance, device, physical)
+            None => memory::Source::own(instance, device, physical, lent.memory_blocks)
                 .map_err(|error| Error::NoDevice(format!("{}: {error}", description.name)))?,
         };
         let pipeline_cache = PipelineCache::load(instance, physical, device, lent.pipeline_cache.as_deref())?;

@@ -3,7 +3,6 @@
 use super::Device;
 use crate::error::{Error, Result};
 use ash::vk;
-use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::{AllocationCreateDesc, AllocationScheme, Allocator, AllocatorCreateDesc};
 use std::ptr::NonNull;
 use std::sync::Mutex;
@@ -67,6 +66,35 @@ pub unsafe trait MemorySource: Send + Sync {
     /// Takes it back.
     fn free(&self, memory: HostMemory);
 }
+/// Sizes of the blocks of device memory in which buffers and images are placed: a memory object each. The first block of a memory type has the
+/// least size, each further one twice that of the one before, up to the largest; what is larger has a block of its own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct MemoryBlocks {
+    /// The first block, bytes: a multiple of 4 MiB from 4 to 256 MiB, to which it is rounded up.
+    pub least: u64,
+    /// The largest block, bytes; likewise.
+    pub largest: u64,
+}
+
+impl Default for MemoryBlocks {
+    /// From 4 to 256 MiB.
+    fn default() -> Self {
+        Self { least: MemoryBlocks::STEP, largest: 64 * MemoryBlocks::STEP }
+    }
+}
+
+impl MemoryBlocks {
+    const STEP: u64 = 4 << 20;
+
+    fn sizes(self) -> AllocationSizes {
+        let size = |bytes: u64| bytes.clamp(Self::STEP, 64 * Self::STEP).next_multiple_of(Self::STEP);
+        let (least, largest) = (size(self.least), size(self.largest));
+        AllocationSizes::new(least, least)
+            .with_max_device_memblock_size(largest)
+            .with_max_host_memblock_size(largest)
+    }
+}
+
 
 /// Where a device's memory comes from.
 pub(super) enum Source {
@@ -95,6 +123,7 @@ impl Source {
     pub(super) fn own(
         instance: &ash::Instance,
         device: &ash::Device,
+        blocks: MemoryBlocks,
         physical: vk::PhysicalDevice,
     ) -> Result<Self, String> {
         let allocator = Allocator::new(&AllocatorCreateDesc {
@@ -103,7 +132,7 @@ impl Source {
             physical_device: physical,
             debug_settings: Default::default(),
             buffer_device_address: false,
-            allocation_sizes: gpu_allocator::AllocationSizes::default(),
+            allocation_sizes: blocks.sizes(),
         });
         // SAFETY: the physical device is the instance's.
         let types = unsafe { instance.get_physical_device_memory_properties(physical) };

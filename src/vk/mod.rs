@@ -53,8 +53,8 @@ pub use device::{Device, DeviceOptions, Lent, Usage};
 pub use encoder::{Draws, Encoder};
 pub use image::{Image, ImageUse, pixel_bytes};
 pub use limits::{Capabilities, DeviceLimits};
-pub use memory::{HostMemory, Location, MemoryRequest, MemorySource};
-pub use pipeline::{Blend, ComputePipeline, DepthTest, DrawPipeline, DrawState, Topology, Within};
+pub use memory::{HostMemory, Location, MemoryBlocks, MemoryRequest, MemorySource};
+pub(crate) use pipeline::{Blend, ComputePipeline, DepthTest, DrawPipeline, DrawState, Topology, Within};
 #[cfg(feature = "window")]
 pub(crate) use presenter::Stake;
 #[cfg(feature = "window")]

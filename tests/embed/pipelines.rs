@@ -82,6 +82,7 @@ fn lend(host: &Host) -> Arc<Device> {
             limits: DeviceLimits::default(),
             memory: None,
             pipeline_cache: None,
+            memory_blocks: Default::default(),
         };
         Device::borrow(lent).unwrap()
     }

@@ -163,6 +163,7 @@ impl Host {
             limits,
             memory,
             pipeline_cache: None,
+            memory_blocks: Default::default(),
         };
         // SAFETY: all of it is true, and hosts drop what they lend last.
         unsafe { Device::borrow(lent) }

@@ -82,6 +82,7 @@ impl Gpu {
                 limits: DeviceLimits::default(),
                 memory: None,
                 pipeline_cache: None,
+                memory_blocks: Default::default(),
             };
             Ok(Device::borrow(lent)?)
         }
