@@ -45,6 +45,7 @@
 //!             device: &host.device,
 //!             queue_family: host.family,
 //!             enabled,
+//!             dynamic_rendering: false,
 //!             labels: false,
 //!             limits: DeviceLimits::default(),
 //!             memory: None,
@@ -78,6 +79,7 @@
 //! ```
 #![allow(unsafe_code)]
 
+mod attachments;
 mod buffers;
 mod formats;
 mod held;
@@ -143,7 +145,7 @@ pub struct Options {
     /// Where the picture is drawn.
     pub target: Target,
     /// How many frames of the host may be under way: when [`Renderer::prepare`] is called, the GPU is done with all but the last
-    /// `frames_in_flight` - 1 frames that were prepared, without an error, before. At least 1.
+    /// `frames_in_flight` - 1 frames that were prepared, without an error, before. From 1 to 64.
     pub frames_in_flight: u32,
     /// As [`RenderOptions::precision`].
     pub precision: Precision,
@@ -319,7 +321,7 @@ impl Renderer {
 
     /// The view, of a target that can be made.
     fn seen(&self, view: &View) -> Result<Seen> {
-        let seen = view.seen(self.target.depth.map(|_| self.target.reversed))?;
+        let seen = view.seen(&self.device, self.target.depth.map(|_| self.target.reversed))?;
         check_size(&self.device, seen.size)?;
         Ok(seen)
     }

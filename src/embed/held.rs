@@ -5,6 +5,9 @@ use crate::stage::Outgoing;
 use std::any::Any;
 use std::collections::VecDeque;
 
+/// Most frames under way: what each uses is kept.
+const MOST: u32 = 64;
+
 /// What frames under way may use.
 pub(super) struct Held {
     /// Each with the number of the last frame that may use it.
@@ -16,10 +19,10 @@ pub(super) struct Held {
 impl Held {
     /// Nothing yet; so many frames may be under way.
     pub(super) fn new(frames_in_flight: u32) -> Result<Self> {
-        if frames_in_flight == 0 {
-            return Err(Error::Usage(
-                "0 frames in flight: a frame is under way when it is recorded, so give 1 or more".into(),
-            ));
+        if !(1..=MOST).contains(&frames_in_flight) {
+            return Err(Error::Usage(format!(
+                "{frames_in_flight} frames in flight: a frame is under way when it is recorded, so give 1 or more, and at most {MOST}"
+            )));
         }
         Ok(Self { list: VecDeque::new(), frame: 0, frames_in_flight: frames_in_flight.into() })
     }

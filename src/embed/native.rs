@@ -152,8 +152,8 @@ impl Renderer {
             shown: None,
             present: None,
             previous: None,
-            reports: Reports::new(frames_in_flight),
             held: Held::new(frames_in_flight)?,
+            reports: Reports::new(frames_in_flight),
             residents: Residents::default(),
             made: Made::new(device, plan, pass)?,
             targets: None,
@@ -303,7 +303,7 @@ impl Renderer {
         settings: &Settings,
     ) -> Result<()> {
         let placed = scenes.into().placed(&self.device)?;
-        let Seen { size, camera, .. } = view.seen(self.made.plan.host.reversed)?;
+        let Seen { size, camera, .. } = view.seen(&self.device, self.made.plan.host.reversed)?;
         let settings = without_background(settings);
         check_method(&settings)?;
         let Description { variant, scenes, .. } =
@@ -339,7 +339,7 @@ impl Renderer {
         settings: &Settings,
     ) -> Result<(Blocks, Numbers, vk::Rect2D)> {
         let placed = scenes.placed(&self.device)?;
-        let Seen { area, size, camera, depth } = view.seen(self.made.plan.host.reversed)?;
+        let Seen { area, size, camera, depth } = view.seen(&self.device, self.made.plan.host.reversed)?;
         let targets = self.targets_of(area)?;
         let settings = without_background(settings);
         check_method(&settings)?;

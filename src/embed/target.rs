@@ -1,5 +1,6 @@
 //! Where a host wants the picture.
 
+use super::attachments::{self, Purpose, is_srgb};
 use crate::error::{Error, Result};
 use crate::passes::{Composite, CompositeKind};
 use crate::vk::{Blend, Device, Within};
@@ -55,34 +56,8 @@ impl Target {
     pub(super) fn check(&self, device: &Device) -> Result<()> {
         let refuse =
             |cause: String| Err(Error::Usage(format!("the host's target cannot be drawn to: {cause}")));
-        use vk::FormatFeatureFlags as Can;
-        let wanted = [
-            ("the picture", Some(self.picture), Can::COLOR_ATTACHMENT_BLEND, false),
-            ("normals", self.normal, Can::COLOR_ATTACHMENT, false),
-            ("numbers", self.id, Can::COLOR_ATTACHMENT, true),
-        ];
-        for [a, b] in [[0, 1], [0, 2], [1, 2]] {
-            let ((one, location, ..), (other, same, ..)) = (wanted[a], wanted[b]);
-            if let Some(location) = location.filter(|location| same == Some(*location)) {
-                return refuse(format!("location {location} is given for both {one} and {other}"));
-            }
-        }
-        for (what, location, needed, is_number) in wanted {
-            let Some(location) = location else { continue };
-            let Some(&format) = self.colours.get(location as usize).filter(|_| (location as usize) < MOST)
-            else {
-                return refuse(format!(
-                    "{what} want location {location} of {} colour attachments; give one below {MOST} that there is",
-                    self.colours.len()
-                ));
-            };
-            if is_number && format != vk::Format::R32_UINT {
-                return refuse(format!("numbers want R32_UINT, and location {location} is {format:?}"));
-            }
-            if !device.format_features(format).contains(needed) || is_integer(format) != is_number {
-                return refuse(format!("{} cannot draw {what} to {format:?}", device.description().name));
-            }
-        }
+        self.check_pass(device).or_else(refuse)?;
+        self.check_locations(device).or_else(refuse)?;
         if self.encode && is_srgb(self.colours[self.picture as usize]) {
             return refuse("its format encodes sRGB itself: leave `encode` out".into());
         }
@@ -91,15 +66,79 @@ impl Target {
                 "it has several colour attachments, and the device was lent without the feature independentBlend: enable it".into(),
             );
         }
-        if let Some(format) = self.depth
-            && !device.format_features(format).contains(vk::FormatFeatureFlags::DEPTH_STENCIL_ATTACHMENT)
-        {
-            return refuse(format!("{} has no depth attachments of {format:?}", device.description().name));
+        self.check_depth(device).or_else(refuse)
+    }
+
+    fn check_pass(&self, device: &Device) -> Result<(), String> {
+        match self.pass {
+            Pass::Subpass { pass, .. } if pass == vk::RenderPass::null() => Err("there is no render pass".into()),
+            Pass::Rendering if !device.capabilities().dynamic_rendering => Err(
+                "dynamic rendering wants the feature dynamicRendering, without which the device was lent: enable it, and say so, or draw in a \
+                 render pass"
+                    .into(),
+            ),
+            _ => Ok(()),
         }
-        if self.samples.as_raw().count_ones() != 1 {
-            return refuse(format!("{:?} is not one number of samples", self.samples));
+    }
+
+    fn check_locations(&self, device: &Device) -> Result<(), String> {
+        let most = device.capabilities().max_colour_attachments;
+        if self.colours.len() > most as usize {
+            let (name, asked) = (&device.description().name, self.colours.len());
+            return Err(format!("{asked} colour attachments, and {name} draws to at most {most}"));
+        }
+        let wanted = [
+            ("the picture", Some(self.picture), Purpose::Blended),
+            ("normals", self.normal, Purpose::Replaced),
+            ("numbers", self.id, Purpose::Numbers),
+        ];
+        for [a, b] in [[0, 1], [0, 2], [1, 2]] {
+            let ((one, location, ..), (other, same, ..)) = (wanted[a], wanted[b]);
+            if let Some(location) = location.filter(|location| same == Some(*location)) {
+                return Err(format!("location {location} is given for both {one} and {other}"));
+            }
+        }
+        for (what, location, _) in wanted {
+            let Some(location) = location.map(|location| location as usize) else { continue };
+            if location >= self.colours.len().min(MOST) {
+                return Err(format!(
+                    "{what} want location {location} of {} colour attachments; give one below {MOST} that there is",
+                    self.colours.len()
+                ));
+            }
+        }
+        for (location, &format) in (0..).zip(&self.colours) {
+            let ours = wanted.iter().find(|(_, wanted, _)| *wanted == Some(location));
+            let (what, purpose) =
+                ours.map_or(("an attachment", Purpose::Other), |(what, _, purpose)| (what, *purpose));
+            if ours.is_some() || format != vk::Format::UNDEFINED {
+                attachments::check(
+                    device,
+                    &format!("{what} at location {location}"),
+                    purpose,
+                    format,
+                    self.samples,
+                )?;
+            }
         }
         Ok(())
+    }
+
+    fn check_depth(&self, device: &Device) -> Result<(), String> {
+        if let Some(depth) = self.depth {
+            attachments::check(device, "depth", Purpose::Depth, depth, self.samples)?;
+        }
+        if self.stencil == vk::Format::UNDEFINED {
+            return Ok(());
+        }
+        attachments::check(device, "the stencil", Purpose::Stencil, self.stencil, self.samples)?;
+        match self.depth {
+            Some(depth) if depth != self.stencil => Err(format!(
+                "depth is {depth:?} and the stencil {:?}: one attachment has both, so give one format",
+                self.stencil
+            )),
+            _ => Ok(()),
+        }
     }
 
     /// The pass that draws pictures of this kind.
@@ -123,12 +162,4 @@ impl Target {
         };
         Composite::new(device, kind, &within)
     }
-}
-
-pub(super) fn is_integer(format: vk::Format) -> bool {
-    ["UINT", "SINT"].iter().any(|kind| format!("{format:?}").contains(kind))
-}
-
-pub(super) fn is_srgb(format: vk::Format) -> bool {
-    format!("{format:?}").contains("SRGB")
 }

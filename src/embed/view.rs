@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::geometry::Camera;
+use crate::vk::Device;
 use ash::vk;
 
 /// How a frame is seen.
@@ -22,22 +23,30 @@ impl View {
     }
 
     /// As a target takes it, whose depth falls with distance where it is `reversed`, if it has any. Refuses what that cannot show.
-    pub(super) fn seen(&self, reversed: Option<bool>) -> Result<Seen> {
-        let area = self.area()?;
+    pub(super) fn seen(&self, device: &Device, reversed: Option<bool>) -> Result<Seen> {
+        let area = self.area(device.capabilities().max_framebuffer)?;
+        check_depths(self.viewport)?;
         let camera = self.upright();
         check_convention(reversed, &camera)?;
         let depth = depths(&camera, self.viewport)?;
         Ok(Seen { area, size: [area.extent.width, area.extent.height], camera, depth })
     }
 
-    /// The pixels of the viewport.
-    fn area(&self) -> Result<vk::Rect2D> {
+    /// The pixels of the viewport, in a framebuffer of at most so many px.
+    fn area(&self, most: [u32; 2]) -> Result<vk::Rect2D> {
         let vk::Viewport { x, y, width, height, .. } = self.viewport;
         let top = if height < 0.0 { y + height } else { y };
         let whole = [x, top, width, height].iter().all(|side| side.fract() == 0.0 && side.abs() < 65536.0);
         if !whole || width < 1.0 || height.abs() < 1.0 || x < 0.0 || top < 0.0 {
             return Err(Error::Usage(format!(
                 "a viewport of {width}x{height} px at ({x}, {y}): give whole pixels, at least 1x1, within the target"
+            )));
+        }
+        let ends = [x + width, top + height.abs()];
+        if ends.iter().zip(most).any(|(end, most)| *end > most as f32) {
+            let [widest, highest] = most;
+            return Err(Error::Usage(format!(
+                "a viewport of {width}x{height} px at ({x}, {y}): no target of the device is larger than {widest}x{highest}"
             )));
         }
         Ok(vk::Rect2D {
@@ -73,6 +82,18 @@ pub(super) struct Seen {
     pub(super) camera: Camera,
     /// What the shader makes the host's depth of.
     pub(super) depth: [f32; 4],
+}
+
+/// Refuses a range of depths that is not one of Vulkan's.
+fn check_depths(viewport: vk::Viewport) -> Result<()> {
+    let range = [viewport.min_depth, viewport.max_depth];
+    match range.iter().all(|depth| (0.0..=1.0).contains(depth)) {
+        true => Ok(()),
+        false => Err(Error::Usage(format!(
+            "depths of the viewport from {} to {}: give numbers from 0 to 1",
+            range[0], range[1]
+        ))),
+    }
 }
 
 /// Refuses a camera whose depth is not the host's, which falls with distance, or does not, if there is any.

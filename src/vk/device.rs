@@ -78,6 +78,8 @@ pub struct Lent<'a> {
     pub queue_family: u32,
     /// What of [`Abilities::of`] the host has enabled.
     pub enabled: Abilities,
+    /// Whether the host has enabled the feature dynamicRendering, for [`Pass::Rendering`](crate::embed::Pass::Rendering).
+    pub dynamic_rendering: bool,
     /// Whether the instance has VK_EXT_debug_utils enabled: passes then have labels.
     pub labels: bool,
     /// What to hide of the device.
@@ -185,7 +187,8 @@ impl Device {
     /// The device of a host that renders surfels among its own geometry. The engine records into the host's command buffers; it never
     /// submits, waits, or destroys what is lent.
     ///
-    /// [`Error::NoDevice`] if the device is older than Vulkan 1.1, or the queue family does not do graphics and compute.
+    /// [`Error::NoDevice`] if the device is older than Vulkan 1.1, or the queue family does not do graphics and compute; [`Error::Usage`] if there
+    /// is no such family.
     ///
     /// # Safety
     /// What `lent` says of the device is true, and the device outlives what is returned and all that is made on it.
@@ -193,8 +196,13 @@ impl Device {
         let Lent { instance, physical, device, queue_family, enabled, .. } = lent;
         // SAFETY: by the caller, here and below.
         let families = unsafe { instance.get_physical_device_queue_family_properties(physical) };
-        let serves =
-            families.get(queue_family as usize).is_some_and(|family| family.queue_flags.contains(QUEUE));
+        let Some(family) = families.get(queue_family as usize) else {
+            let count = families.len();
+            return Err(Error::Usage(format!(
+                "queue family {queue_family}: the device has {count}, numbered from 0"
+            )));
+        };
+        let serves = family.queue_flags.contains(QUEUE);
         // SAFETY: as above.
         let description = unsafe { DeviceDescription::of(instance, physical, serves) };
         if let Some(cause) = description.refused {
@@ -204,6 +212,8 @@ impl Device {
         // SAFETY: as above.
         let capabilities =
             unsafe { Capabilities::query(instance, physical, queue_family, enabled, &lent.limits) };
+        let dynamic_rendering = lent.dynamic_rendering && capabilities.dynamic_rendering;
+        let capabilities = Capabilities { dynamic_rendering, ..capabilities };
         let memory = match lent.memory {
             Some(source) => memory::Source::Host(source),
             None => memory::Source::own(instance, device, physical, lent.memory_blocks)
@@ -307,6 +317,34 @@ impl Device {
     /// What images of `format` can be used for.
     pub fn format_features(&self, format: vk::Format) -> vk::FormatFeatureFlags {
         // SAFETY: the physical device is the instance's, and both outlive this.
+    /// How many samples a pixel an attachment of `format` can have in framebuffers; none where it cannot be one.
+    pub(crate) fn attachment_samples(
+        &self,
+        format: vk::Format,
+        usage: vk::ImageUsageFlags,
+    ) -> vk::SampleCountFlags {
+        let (kind, tiling) = (vk::ImageType::TYPE_2D, vk::ImageTiling::OPTIMAL);
+        // SAFETY: the physical device is the instance's, and both outlive this.
+        let (limits, found) = unsafe {
+            let limits = self.instance.get_physical_device_properties(self.physical).limits;
+            let flags = vk::ImageCreateFlags::empty();
+            let found = self.instance.get_physical_device_image_format_properties(
+                self.physical,
+                format,
+                kind,
+                tiling,
+                usage,
+                flags,
+            );
+            (limits, found)
+        };
+        let framebuffer = match usage.contains(vk::ImageUsageFlags::COLOR_ATTACHMENT) {
+            true => limits.framebuffer_color_sample_counts,
+            false => limits.framebuffer_depth_sample_counts | limits.framebuffer_stencil_sample_counts,
+        };
+        found.map_or(vk::SampleCountFlags::empty(), |found| found.sample_counts & framebuffer)
+    }
+
         let found = unsafe { self.instance.get_physical_device_format_properties(self.physical, format) };
         found.optimal_tiling_features
     }

@@ -21,6 +21,8 @@ pub struct DeviceLimits {
     pub fragment_writes: Option<bool>,
     /// `false`: colour attachments of one subpass are all blended alike.
     pub independent_blend: Option<bool>,
+    /// `false`: a host cannot draw without a render pass.
+    pub dynamic_rendering: Option<bool>,
     /// `false`: the queue has no timestamps.
     pub timestamps: Option<bool>,
     /// Upper bound of `maxStorageBufferRange`, bytes.
@@ -71,6 +73,12 @@ pub struct Capabilities {
     pub max_storage_buffers: u32,
     /// Largest side of a render target, px.
     pub max_image_side: u32,
+    /// Largest width and height of a framebuffer of a host, px: nothing is hidden of it.
+    pub max_framebuffer: [u32; 2],
+    /// Most colour attachments of a subpass.
+    pub max_colour_attachments: u32,
+    /// A host that says so can draw without a render pass (the feature dynamicRendering).
+    pub dynamic_rendering: bool,
     /// Most workgroups of a dispatch.
     pub max_workgroups: u32,
     /// Largest heap of device-local memory, bytes.
@@ -136,6 +144,9 @@ impl Capabilities {
                 .max_per_stage_descriptor_storage_buffers
                 .min(mask.max_storage_buffers.unwrap_or(u32::MAX)),
             max_image_side: side.min(LARGEST_SIDE).min(mask.max_image_side.unwrap_or(u32::MAX)),
+            max_framebuffer: [limits.max_framebuffer_width, limits.max_framebuffer_height],
+            max_colour_attachments: limits.max_color_attachments,
+            dynamic_rendering: mask.dynamic_rendering != Some(false),
             max_workgroups: limits.max_compute_work_group_count[0],
             memory: memory.min(mask.memory.unwrap_or(u64::MAX)),
         }

@@ -16,7 +16,7 @@ use surfel::embed::{self, Abilities, Options, Renderer, View};
 use surfel::geometry::Camera;
 use surfel::methods::Method;
 use surfel::splatting::Visibility;
-use surfel::vk::{Device, DeviceOptions};
+use surfel::vk::{Device, DeviceLimits, DeviceOptions};
 use surfel::{Error, Outputs, Picture, Precision, Rasterizer, RenderOptions, Scene, Settings};
 
 use crate::stand::{SIZE, camera, meets, rising, sphere, surfels, viewport};
@@ -369,19 +369,29 @@ fn what_cannot_be_served_is_refused_and_says_why() {
     let mut stand = Stand::new(&host, kind, SIZE, None, &surfels());
     let target = stand.frame.target();
     type Change = fn(&mut embed::Target);
-    let changes: [(Change, &str); 10] = [
+    let changes: [(Change, &str); 17] = [
         (|t| t.picture = 1, "location 1 of 1 colour attachments"),
         (|t| t.normal = Some(0), "both the picture and normals"),
         (|t| t.id = Some(0), "both the picture and numbers"),
         (|t| (t.colours, t.normal, t.id) = (vec![FLOATS, IDS], Some(1), Some(1)), "both normals and numbers"),
         (
             |t| (t.colours, t.id) = (vec![FLOATS; 2], Some(1)),
-            "numbers want R32_UINT, and location 1 is R32G32B32A32_SFLOAT",
+            "numbers at location 1 want R32_UINT, and their format is R32G32B32A32_SFLOAT",
         ),
-        (|t| t.colours[0] = vk::Format::R32G32B32A32_UINT, "cannot draw the picture to R32G32B32A32_UINT"),
+        (
+            |t| t.colours[0] = vk::Format::R32G32B32A32_UINT,
+            "cannot draw the picture at location 0 to R32G32B32A32_UINT",
+        ),
         (|t| t.colours.push(FLOATS), "independentBlend"),
-        (|t| t.depth = Some(FLOATS), "no depth attachments of R32G32B32A32_SFLOAT"),
-        (|t| t.samples = ONE | FOUR, "not one number of samples"),
+        (|t| t.depth = Some(FLOATS), "cannot draw depth to R32G32B32A32_SFLOAT"),
+        (|t| t.depth = Some(vk::Format::S8_UINT), "cannot draw depth to S8_UINT"),
+        (|t| t.stencil = FLOATS, "cannot draw the stencil to R32G32B32A32_SFLOAT"),
+        (|t| t.stencil = vk::Format::D32_SFLOAT_S8_UINT, "one attachment has both"),
+        (|t| t.samples = ONE | FOUR, "1, 4 samples a pixel"),
+        (|t| t.samples = vk::SampleCountFlags::empty(), "no samples a pixel"),
+        (|t| t.samples = vk::SampleCountFlags::TYPE_64, "has 64 samples a pixel, and"),
+        (|t| t.colours = vec![FLOATS; 9], "9 colour attachments, and"),
+        (|t| t.pass = embed::Pass::Subpass { pass: vk::RenderPass::null(), subpass: 0 }, "no render pass"),
         (|t| (t.colours[0], t.encode) = (vk::Format::R8G8B8A8_SRGB, true), "encodes sRGB itself"),
     ];
     let make = |target, frames_in_flight| {
@@ -395,7 +405,19 @@ fn what_cannot_be_served_is_refused_and_says_why() {
         let text = make(target, 2).err().map(|error| error.to_string()).unwrap_or_default();
         assert!(text.contains(said), "`{said}` is not in `{text}`");
     }
-    assert!(make(target, 0).is_err_and(|error| error.to_string().contains("0 frames in flight")));
+    let hidden = host
+        .lend_within(DeviceLimits { dynamic_rendering: Some(false), ..Default::default() }, None)
+        .unwrap();
+    let rendering = embed::Target { pass: embed::Pass::Rendering, ..target.clone() };
+    let options =
+        Options { target: rendering, frames_in_flight: 2, precision: Precision::Full, rasterizer: None };
+    // SAFETY: nothing is made of a target that is refused.
+    let refused = unsafe { Renderer::new(&hidden, options) }.err().unwrap().to_string();
+    assert!(refused.contains("the feature dynamicRendering"), "{refused}");
+    for frames in [0, u32::MAX] {
+        let said = format!("{frames} frames in flight");
+        assert!(make(target.clone(), frames).is_err_and(|error| error.to_string().contains(&said)));
+    }
 
     let other = host.lend(None).unwrap();
     let elsewhere = upload(&host, &other, &surfels());
@@ -411,6 +433,9 @@ fn what_cannot_be_served_is_refused_and_says_why() {
         (&scene, bad(|view| view.viewport.width = 0.0), "0x120"),
         (&scene, bad(|view| view.viewport.x = 0.5), "whole pixels"),
         (&scene, bad(|view| view.viewport.height = f32::NAN), "whole pixels"),
+        (&scene, bad(|view| view.viewport.x = 60_000.0), "no target of the device is larger"),
+        (&scene, bad(|view| view.viewport.max_depth = f32::NAN), "from 0 to 1"),
+        (&scene, bad(|view| (view.viewport.min_depth, view.viewport.max_depth) = (-1.0, 2.0)), "from 0 to 1"),
         (&scene, bad(|view| view.camera = rising()), "rises with distance, the target's falls"),
         (&scene, bad(|view| view.camera.projection = DMat4::ZERO), "projection matrix"),
     ] {

@@ -26,6 +26,7 @@ pub const NARROW: DeviceLimits = DeviceLimits {
     int64_atomics: None,
     fragment_writes: None,
     independent_blend: None,
+    dynamic_rendering: None,
     timestamps: None,
     storage_buffer_alignment: Some(256),
     max_storage_buffers: None,

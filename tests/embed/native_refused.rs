@@ -90,11 +90,12 @@ fn render_passes_that_cannot_be_served_are_refused_and_say_why() {
             Plan::new(&device, &place, Precision::Full, &frames)
         };
     type Change = fn(&mut Place<'_>);
-    let changes: [(Change, &str); 7] = [
+    let changes: [(Change, &str); 8] = [
         (|place| place.subpasses = [0, 1], "nothing has been drawn to"),
+        (|place| place.subpasses = [u32::MAX, 1], "4294967295 subpasses before"),
         (|place| place.picture = 7, "the picture wants attachment 7 of 3"),
         (|place| place.normal = Some(0), "attachment 0 is given twice, for normals, too"),
-        (|place| place.picture = 1, "cannot draw the picture to D32_SFLOAT"),
+        (|place| place.picture = 1, "cannot draw the picture in attachment 1 to D32_SFLOAT"),
         (|place| place.depth.as_mut().unwrap().attachment = 0, "attachment 0 is given twice"),
         (|place| (place.picture, place.resolve) = (2, None), "depth has TYPE_4 samples in attachment 1"),
         (
@@ -112,7 +113,27 @@ fn render_passes_that_cannot_be_served_are_refused_and_say_why() {
         attachments
     };
     let whole = coloured(vk::Format::R8G8B8A8_UINT, FOUR);
-    assert_refused(plan(&whole, |_| (), &[&settings]), "cannot draw the picture to R8G8B8A8_UINT");
+    assert_refused(
+        plan(&whole, |_| (), &[&settings]),
+        "cannot draw the picture in attachment 0 to R8G8B8A8_UINT",
+    );
+    let many = |change: fn(&mut [vk::AttachmentDescription])| {
+        let mut attachments = kind.attachments();
+        change(&mut attachments);
+        plan(&attachments, |_| (), &[&settings])
+    };
+    assert_refused(
+        many(|all| {
+            all.iter_mut()
+                .filter(|one| one.samples == FOUR)
+                .for_each(|one| one.samples = vk::SampleCountFlags::TYPE_64);
+        }),
+        "has 64 samples a pixel, and",
+    );
+    assert_refused(
+        many(|all| all[1].format = vk::Format::S8_UINT),
+        "cannot draw depth in attachment 1 to S8_UINT",
+    );
     let encoded = coloured(vk::Format::R8G8B8A8_SRGB, FOUR);
     assert_refused(plan(&encoded, |place| place.encode = true, &[&settings]), "encodes sRGB itself");
     assert_refused(plan(&encoded, |place| place.normal = Some(3), &[&settings]), "independentBlend");

@@ -78,6 +78,7 @@ fn lend(host: &Host) -> Arc<Device> {
             device: &counting,
             queue_family: host.family,
             enabled: host.enabled,
+            dynamic_rendering: true,
             labels: true,
             limits: DeviceLimits::default(),
             memory: None,

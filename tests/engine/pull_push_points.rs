@@ -23,6 +23,7 @@ const NO_ATOMICS: DeviceLimits = DeviceLimits {
     float_atomics: None,
     fragment_writes: None,
     independent_blend: None,
+    dynamic_rendering: None,
     timestamps: None,
     max_storage_buffer_range: None,
     storage_buffer_alignment: None,
@@ -56,7 +57,7 @@ impl Shot<'_> {
             RenderOptions { size: self.size, outputs, rasterizer, count: true, ..Default::default() };
         let mut renderer = Renderer::new(device, options).unwrap();
         let (picture, report) = renderer.render_picture(&scene, &self.camera, &self.settings).unwrap();
-        let pyramids = renderer.pyramids().unwrap().read(device).unwrap();
+        let pyramids = renderer.read_pyramids().unwrap().unwrap();
         let made = Made { picture, pyramids, counts: report.counts.unwrap() };
         (made, renderer.rasterizer().unwrap())
     }

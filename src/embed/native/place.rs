@@ -1,9 +1,12 @@
 //! Where in a host's render pass surfels are drawn.
 
-use crate::embed::target::{is_integer, is_srgb};
+use crate::embed::attachments::{self, Purpose, is_srgb};
 use crate::error::{Error, Result};
 use crate::vk::Device;
 use ash::vk;
+
+/// Most subpasses of a host before and after.
+const MOST_SUBPASSES: u32 = 1 << 16;
 
 /// Where in a render pass surfels are drawn.
 #[derive(Clone, Debug)]
@@ -43,20 +46,26 @@ pub struct Depth {
 impl Place<'_> {
     /// Refuses what cannot be drawn to on `device`.
     pub(super) fn check(&self, device: &Device) -> Result<()> {
-        use vk::FormatFeatureFlags as Can;
+        // More would overflow the numbers of subpasses; no driver takes as many.
+        if self.subpasses.iter().any(|count| *count > MOST_SUBPASSES) {
+            let [before, after] = self.subpasses;
+            return refuse(format!(
+                "{before} subpasses before and {after} after: at most {MOST_SUBPASSES} are known"
+            ));
+        }
         let depth = self.depth.map(|depth| depth.attachment);
         let wanted = [
-            ("the picture", Some(self.picture), Can::COLOR_ATTACHMENT | Can::COLOR_ATTACHMENT_BLEND),
-            ("the resolved picture", self.resolve, Can::COLOR_ATTACHMENT),
-            ("normals", self.normal, Can::COLOR_ATTACHMENT),
-            ("depth", depth, Can::DEPTH_STENCIL_ATTACHMENT),
+            ("the picture", Some(self.picture), Purpose::Blended),
+            ("the resolved picture", self.resolve, Purpose::Replaced),
+            ("normals", self.normal, Purpose::Replaced),
+            ("depth", depth, Purpose::Depth),
         ];
-        for (i, (what, attachment, needed)) in wanted.into_iter().enumerate() {
+        for (i, (what, attachment, purpose)) in wanted.into_iter().enumerate() {
             let Some(attachment) = attachment else { continue };
             if wanted[..i].iter().any(|(_, other, _)| *other == Some(attachment)) {
                 return refuse(format!("attachment {attachment} is given twice, for {what}, too"));
             }
-            self.check_attachment(device, what, attachment, needed)?;
+            self.check_attachment(device, what, attachment, purpose)?;
         }
         if self.encode && is_srgb(self.format(self.picture)) {
             return refuse("its format encodes sRGB itself: leave `encode` out".into());
@@ -75,7 +84,7 @@ impl Place<'_> {
             );
         }
         let layout = vk::Format::D32_SFLOAT_S8_UINT;
-        let marks = device.format_features(layout).contains(Can::DEPTH_STENCIL_ATTACHMENT);
+        let marks = device.format_features(layout).contains(vk::FormatFeatureFlags::DEPTH_STENCIL_ATTACHMENT);
         if self.depth.is_some_and(|depth| depth.seed) && !marks {
             return refuse(format!(
                 "{} has no depth attachments of {layout:?}, in which what is seeded is told apart: leave `seed` out",
@@ -85,13 +94,7 @@ impl Place<'_> {
         Ok(())
     }
 
-    fn check_attachment(
-        &self,
-        device: &Device,
-        what: &str,
-        attachment: u32,
-        needed: vk::FormatFeatureFlags,
-    ) -> Result<()> {
+    fn check_attachment(&self, device: &Device, what: &str, attachment: u32, purpose: Purpose) -> Result<()> {
         let Some(description) = self.attachments.get(attachment as usize) else {
             let count = self.attachments.len();
             return refuse(format!(
@@ -99,20 +102,17 @@ impl Place<'_> {
             ));
         };
         let format = description.format;
-        let drawn = needed.contains(vk::FormatFeatureFlags::COLOR_ATTACHMENT);
-        if !device.format_features(format).contains(needed) || drawn && is_integer(format) {
-            let name = &device.description().name;
-            return refuse(format!("{name} cannot draw {what} to {format:?}"));
-        }
         let one = vk::SampleCountFlags::TYPE_1;
         let resolved = self.resolve == Some(attachment);
         let samples = if resolved { one } else { self.samples() };
-        if description.samples != samples || samples.as_raw().count_ones() != 1 {
+        if description.samples != samples {
             return refuse(format!(
                 "{what} has {:?} samples in attachment {attachment}, where {samples:?} are wanted",
                 description.samples
             ));
         }
+        let what = format!("{what} in attachment {attachment}");
+        attachments::check(device, &what, purpose, format, samples).or_else(refuse)?;
         match resolved && (self.samples() == one || format != self.format(self.picture)) {
             true => refuse("only a multisampled picture is resolved, to the same format".into()),
             false => Ok(()),

@@ -159,6 +159,7 @@ impl Host {
             device: &self.device,
             queue_family: self.family,
             enabled: self.enabled,
+            dynamic_rendering: true,
             labels: true,
             limits,
             memory,

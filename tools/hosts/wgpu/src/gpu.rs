@@ -78,6 +78,7 @@ impl Gpu {
                 device: device.raw_device(),
                 queue_family: device.queue_family_index(),
                 enabled: self.enabled(),
+                dynamic_rendering: false,
                 labels: shared.extensions().contains(&ext::debug_utils::NAME),
                 limits: DeviceLimits::default(),
                 memory: None,

@@ -1,0 +1,118 @@
+//! What attachments of a host a device can draw to.
+
+use crate::vk::Device;
+use ash::vk;
+
+/// What an attachment is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Purpose {
+    /// Colours that are blended.
+    Blended,
+    /// Colours or normals that replace what is there.
+    Replaced,
+    /// Numbers that replace what is there.
+    Numbers,
+    /// Colours of the host's own.
+    Other,
+    /// Depths.
+    Depth,
+    /// A stencil.
+    Stencil,
+}
+
+/// Refuses, with the cause, a format whose attachments of so many samples `device` cannot draw `what` to.
+pub(super) fn check(
+    device: &Device,
+    what: &str,
+    purpose: Purpose,
+    format: vk::Format,
+    samples: vk::SampleCountFlags,
+) -> Result<(), String> {
+    use vk::FormatFeatureFlags as Can;
+    let name = &device.description().name;
+    let (needed, usage) = match purpose {
+        Purpose::Blended => {
+            (Can::COLOR_ATTACHMENT | Can::COLOR_ATTACHMENT_BLEND, vk::ImageUsageFlags::COLOR_ATTACHMENT)
+        }
+        Purpose::Replaced | Purpose::Numbers | Purpose::Other => {
+            (Can::COLOR_ATTACHMENT, vk::ImageUsageFlags::COLOR_ATTACHMENT)
+        }
+        Purpose::Depth | Purpose::Stencil => {
+            (Can::DEPTH_STENCIL_ATTACHMENT, vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT)
+        }
+    };
+    let fits = match purpose {
+        Purpose::Blended | Purpose::Replaced => !is_integer(format),
+        Purpose::Numbers => format == vk::Format::R32_UINT,
+        Purpose::Other => true,
+        Purpose::Depth => has_depth(format),
+        Purpose::Stencil => has_stencil(format),
+    };
+    if !fits && purpose == Purpose::Numbers {
+        return Err(format!("{what} want R32_UINT, and their format is {format:?}"));
+    }
+    if !fits || !device.format_features(format).contains(needed) {
+        return Err(format!("{name} cannot draw {what} to {format:?}"));
+    }
+    if samples.as_raw().count_ones() != 1 {
+        return Err(format!("{what} has {} samples a pixel: give one number of them", told(samples)));
+    }
+    let there = device.attachment_samples(format, usage);
+    if !there.contains(samples) {
+        return Err(format!(
+            "{what} has {} samples a pixel, and {name} draws to {format:?} with {}",
+            told(samples),
+            told(there)
+        ));
+    }
+    Ok(())
+}
+
+/// Numbers of samples in words.
+fn told(samples: vk::SampleCountFlags) -> String {
+    let there = (0..32).map(|bit| 1 << bit).filter(|bit| samples.as_raw() & bit != 0);
+    let list: Vec<_> = there.map(|bit| bit.to_string()).collect();
+    if list.is_empty() { "no".into() } else { list.join(", ") }
+}
+
+pub(super) fn is_integer(format: vk::Format) -> bool {
+    ["UINT", "SINT"].iter().any(|kind| format!("{format:?}").contains(kind))
+}
+
+pub(super) fn is_srgb(format: vk::Format) -> bool {
+    format!("{format:?}").contains("SRGB")
+}
+
+fn has_depth(format: vk::Format) -> bool {
+    let name = format!("{format:?}");
+    ["D16_", "D24_", "D32_", "X8_D24"].iter().any(|kind| name.starts_with(kind))
+}
+
+fn has_stencil(format: vk::Format) -> bool {
+    format!("{format:?}").contains("S8_UINT")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use vk::{Format, SampleCountFlags as Samples};
+
+    #[test]
+    fn formats_have_the_aspects_of_their_names() {
+        let depths =
+            [Format::D16_UNORM, Format::X8_D24_UNORM_PACK32, Format::D32_SFLOAT, Format::D16_UNORM_S8_UINT];
+        assert!(
+            depths.into_iter().all(has_depth)
+                && !has_depth(Format::S8_UINT)
+                && !has_depth(Format::R32_SFLOAT)
+        );
+        let stencils = [Format::S8_UINT, Format::D24_UNORM_S8_UINT, Format::D32_SFLOAT_S8_UINT];
+        assert!(stencils.into_iter().all(has_stencil) && !has_stencil(Format::D32_SFLOAT));
+    }
+
+    #[test]
+    fn samples_are_numbers() {
+        assert_eq!(told(Samples::empty()), "no");
+        assert_eq!(told(Samples::TYPE_1 | Samples::TYPE_4 | Samples::TYPE_64), "1, 4, 64");
+    }
+}
