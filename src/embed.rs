@@ -49,8 +49,8 @@
 //!             labels: false,
 //!             limits: DeviceLimits::default(),
 //!             memory: None,
-//!             pipeline_cache: None,
 //!             memory_blocks: MemoryBlocks::default(),
+//!             pipeline_cache: None,
 //!         })?
 //!     };
 //!     let (scene, staging) = unsafe { embed::upload(&device, cmd, surfels)? };

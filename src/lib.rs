@@ -14,8 +14,8 @@
 //! | [`settings`], [`splatting`] | what a frame is asked to be, and how surfels become pixels | |
 //! | [`scene`] | geometry on the GPU: only the streams that it has | |
 //! | [`instance`] | scenes where they are placed: several in a frame | |
-//! | [`variant`], [`targets`] | which pipelines and images a frame needs, and no more | |
-//! | [`passes`] | one file a pass, beside the shader of the same name | |
+//! | `variant`, `targets` | which pipelines and images a frame needs, and no more | |
+//! | `passes` | one file a pass, beside the shader of the same name | |
 //! | [`methods`] | one file a method: its paper and its passes | |
 //! | [`renderer`] | frames: make ready, record, submit, read back | |
 //! | [`embed`] | the same frames within those of another renderer | |
@@ -65,7 +65,7 @@ mod memory;
 pub mod methods;
 #[cfg(feature = "metrics")]
 pub mod metrics;
-pub mod passes;
+mod passes;
 pub mod picture;
 mod progress;
 pub mod pull_push;
@@ -79,11 +79,11 @@ pub mod scenes;
 pub mod settings;
 pub mod splatting;
 mod stage;
-pub mod targets;
+mod targets;
 pub mod times;
 #[cfg(feature = "truth")]
 pub mod truth;
-pub mod variant;
+mod variant;
 pub mod vk;
 #[cfg(feature = "bench")]
 pub mod yardstick;
@@ -100,4 +100,5 @@ pub use readback::{PyramidLevel, PyramidSample};
 pub use renderer::{FrameReport, RenderOptions, Renderer, SplatCounts};
 pub use scene::Scene;
 pub use settings::Settings;
+pub use targets::TargetInfo;
 pub use variant::{Outputs, Precision, Rasterizer};

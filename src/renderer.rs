@@ -5,6 +5,7 @@ use crate::geometry::Camera;
 use crate::instance::{Instances, Placed};
 use crate::passes::Splats;
 use crate::picture::Picture;
+use crate::readback::PyramidLevel;
 use crate::scene::Scene;
 use crate::settings::{Alpha, Settings};
 use crate::splatting::Visibility;
@@ -12,6 +13,7 @@ use crate::stage::{Resident, Retired, Stage};
 use crate::targets::{Buffers, Pyramids, TargetInfo};
 use crate::variant::{Outputs, Precision, Rasterizer};
 use crate::vk::shaders::layout::Counts;
+pub use crate::vk::shaders::layout::Splat;
 use crate::vk::{Commands, Device, DeviceDescription, PassTime};
 use std::sync::Arc;
 
@@ -129,14 +131,25 @@ impl Renderer {
         self.stage.present().map(|present| present.variant.rasterizer)
     }
 
-    /// The splats of the last frame, scene by scene.
-    pub fn splats(&self) -> impl Iterator<Item = &Splats> {
-        self.stage.residents().map(|resident| &resident.splats)
+    /// Memory of the splats of the last frame and what belongs to them, bytes.
+    pub fn splat_bytes(&self) -> u64 {
+        self.splats().map(Splats::bytes).sum()
     }
 
-    /// The pyramids of the last frame, if it was pull–push's.
-    pub fn pyramids(&self) -> Option<&Pyramids> {
-        self.stage.present().and_then(|present| present.canvas.pyramids())
+    /// Copies the splats of the last frame to the CPU: one a surfel, scene by scene; none if it was pull–push's.
+    pub fn read_splats(&self) -> Result<Vec<Vec<Splat>>> {
+        self.splats().map(|splats| splats.read(self.stage.device())).collect()
+    }
+
+    /// Copies the levels of the last frame's pyramids to the CPU, fine to coarse, as they were pulled and as they were pushed; `None` if it was
+    /// not pull–push's.
+    pub fn read_pyramids(&self) -> Result<Option<[Vec<PyramidLevel>; 2]>> {
+        let pyramids = self.stage.present().and_then(|present| present.canvas.pyramids());
+        pyramids.map(|pyramids| pyramids.read(self.stage.device())).transpose()
+    }
+
+    fn splats(&self) -> impl Iterator<Item = &Splats> {
+        self.stage.residents().map(|resident| &resident.splats)
     }
 
     fn run(

@@ -4,7 +4,6 @@ use super::record::{Axes, Contender, Memory, PIXELS, SPLATS};
 use crate::error::Result;
 use crate::geometry::{Camera, Parts, Surfels};
 use crate::methods::Method;
-use crate::passes::Splats;
 use crate::picture::Picture;
 use crate::settings::Settings;
 use crate::vk::{Device, PassTime};
@@ -128,7 +127,7 @@ impl Ready for OnDevice {
     fn memory(&self) -> Memory {
         Memory {
             scene: self.scene.bytes(),
-            splats: self.lean.splats().map(Splats::bytes).sum(),
+            splats: self.lean.splat_bytes(),
             targets: self.lean.targets().iter().map(|target| target.bytes).sum(),
         }
     }

@@ -2,12 +2,10 @@
 
 use super::files::print;
 use std::fmt::Write;
-use surfel::methods::{Method, passes};
+use surfel::methods::{FramePlan, Method};
 use surfel::scene::{ColourStream, PrimitiveKinds, Streams, SurfelLayout};
 use surfel::settings::{Settings, Shading};
 use surfel::splatting::{Filter, Splatting};
-use surfel::targets::{Buffers, Formats, PerPixel, Pyramids};
-use surfel::variant::Variant;
 use surfel::{Rasterizer, RenderOptions, Result};
 
 const WAYS: [(Rasterizer, &str); 2] = [(Rasterizer::Draw, "drawn"), (Rasterizer::Compute, "computed")];
@@ -24,11 +22,7 @@ fn describe(text: &mut String, method: &Method) {
         // Here and below: writing to a String cannot fail.
         let _ = writeln!(text, "\n{}: {}", method.name, method.paper);
         let _ = writeln!(text, "  settings --cull {}", method.cull.name());
-        for (rasterizer, name) in WAYS {
-            let variant = variant(&method.settings(), rasterizer);
-            let _ = writeln!(text, "  {name:<8} {}", passes(&variant).join(" → "));
-            let _ = writeln!(text, "           {}", told(&Pyramids::per_pixel(&variant)));
-        }
+        describe_frames(text, method);
         return;
     }
     let Splatting { footprint, kernel, filter, visibility, normalization, shade } = method.splatting;
@@ -48,18 +42,18 @@ fn describe(text: &mut String, method: &Method) {
         shade.name()
     );
     let _ = writeln!(text, "  settings --cutoff {cutoff} --cull {}{lowpass}", cull.name());
+    describe_frames(text, method);
+}
+
+fn describe_frames(text: &mut String, method: &Method) {
     for (rasterizer, name) in WAYS {
-        let variant = variant(&method.settings(), rasterizer);
-        let targets = match rasterizer {
-            Rasterizer::Draw => Formats::of(&variant).per_pixel(),
-            Rasterizer::Compute => Buffers::per_pixel(&variant),
-        };
-        let _ = writeln!(text, "  {name:<8} {}", passes(&variant).join(" → "));
+        let FramePlan { passes, targets } = plan(&method.settings(), rasterizer);
+        let _ = writeln!(text, "  {name:<8} {}", passes.join(" → "));
         let _ = writeln!(text, "           {}", told(&targets));
     }
 }
 
-fn variant(settings: &Settings, rasterizer: Rasterizer) -> Variant {
+fn plan(settings: &Settings, rasterizer: Rasterizer) -> FramePlan {
     let streams = Streams {
         ellipses: false,
         two_sided: false,
@@ -73,10 +67,10 @@ fn variant(settings: &Settings, rasterizer: Rasterizer) -> Variant {
         unchecked: false,
     };
     let settings = Settings { shading: Shading::Lit, ..settings.clone() };
-    Variant::new(&[streams], true, &settings, &RenderOptions::default(), rasterizer)
+    FramePlan::new(&[streams], true, &settings, &RenderOptions::default(), rasterizer)
 }
 
-fn told(targets: &PerPixel) -> String {
+fn told(targets: &[(&str, f64)]) -> String {
     let each: Vec<_> = targets.iter().map(|(name, bytes)| format!("{name} {bytes}")).collect();
     let sum: f64 = targets.iter().map(|(_, bytes)| bytes).sum();
     format!("{}: {sum} bytes", each.join(", "))

@@ -10,10 +10,9 @@ use surfel::geometry::estimate::Estimated;
 use surfel::io::ply::Dropped;
 use surfel::settings::{DirectionalLight, Lighting};
 use surfel::splatting::Splatting;
-use surfel::targets::TargetInfo;
 use surfel::times::Statistics;
 use surfel::vk::{DeviceDescription, Usage};
-use surfel::{Error, Precision, Rasterizer, Result, Settings, SplatCounts};
+use surfel::{Error, Precision, Rasterizer, Result, Settings, SplatCounts, TargetInfo};
 
 /// What is known of the device and of what was made on it.
 pub struct Gpu {

@@ -22,6 +22,7 @@ pub fn options(place: &OnDevice) -> Result<DeviceOptions> {
         validate: place.validate,
         limits: place.device_limits.as_deref().map_or(Ok(DeviceLimits::default()), read_json)?,
         pipeline_cache: cache_folder(),
+        ..Default::default()
     })
 }
 
@@ -116,7 +117,7 @@ fn gpu(device: &Arc<Device>, renderer: &Renderer, scene: &Scene) -> Gpu {
         rasterizer: renderer.rasterizer(),
         targets: renderer.targets(),
         scene_bytes: scene.bytes(),
-        splat_bytes: renderer.splats().map(surfel::passes::Splats::bytes).sum(),
+        splat_bytes: renderer.splat_bytes(),
         usage: device.usage(),
         half_error: None,
         validation_messages: device.validation_messages(),

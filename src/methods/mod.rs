@@ -1,21 +1,22 @@
 //! One short file a method: its paper, its pipeline figure, and what it chooses along the axes of [`Splatting`]; and the passes that the
-//! choices lead to, [`blended`] or [`nearest`]; or a [`pull_push`] of points.
+//! choices lead to, `blended` or `nearest`; or a [`pull_push`] of points.
 
-pub mod blended;
+mod blended;
 mod canvas;
 pub mod confetti;
-pub mod nearest;
+mod nearest;
 pub mod object_ewa;
 pub mod perspective_ewa;
+mod plan;
 pub mod pull_push;
 pub mod sprites;
 
-pub use canvas::{Canvas, Composited, Pipelines};
+pub(crate) use canvas::{Canvas, Composited, Pipelines};
+pub use plan::FramePlan;
 
 use crate::pull_push::PullPush;
 use crate::settings::{Cull, Settings, Widen};
-use crate::splatting::{Splatting, Visibility};
-use crate::variant::{Rasterizer, Variant};
+use crate::splatting::Splatting;
 
 /// A method as its paper has it, or as measurements improve on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,25 +72,6 @@ impl Method {
             ..Default::default()
         }
     }
-}
-
-/// The passes of a frame, in their order; what only clears or reads back is none.
-pub fn passes(variant: &Variant) -> Vec<&'static str> {
-    if let Some(PullPush { storage, .. }) = variant.pull_push {
-        return pull_push::passes(storage).into();
-    }
-    let computed = variant.rasterizer == Rasterizer::Compute;
-    let list = match variant.visibility {
-        Visibility::Nearest if computed => &["footprint", "nearest", "resolve", "normalize"][..],
-        Visibility::Nearest => &["footprint", "nearest", "normalize"],
-        Visibility::Ray if computed => &["footprint", "visibility", "tiles", "attribute", "normalize"],
-        Visibility::Ray => &["footprint", "visibility", "attribute", "normalize"],
-        Visibility::Axis if computed => {
-            &["footprint", "visibility", "tiles", "footprint", "attribute", "normalize"]
-        }
-        Visibility::Axis => &["footprint", "visibility", "footprint", "attribute", "normalize"],
-    };
-    list.to_vec()
 }
 
 #[cfg(test)]

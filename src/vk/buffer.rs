@@ -120,8 +120,8 @@ impl Buffer {
 
 impl Drop for Buffer {
     fn drop(&mut self) {
-        if self.lent {
         self.device.history.forget_buffer(self.raw);
+        if self.lent {
             return;
         }
         // SAFETY: the GPU is done with it (see the module's docs).

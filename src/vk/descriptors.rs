@@ -94,6 +94,7 @@ pub struct DescriptorSet {
 impl DescriptorSet {
     /// A set of `layout` with one entry of `bindings` a binding. What they name must outlive the set's last use.
     pub fn new(device: &Arc<Device>, layout: &SetLayout, bindings: &[Binding<'_>]) -> Result<Self> {
+        assert_eq!(layout.bindings.len(), bindings.len(), "one entry a binding");
         let sizes: Vec<_> = layout
             .bindings
             .iter()

@@ -41,9 +41,9 @@ pub struct Device {
     /// The pipelines that are alive.
     pub(super) pipelines: PipelinePool,
     pub(super) labels: Option<debug_utils::Device>,
+    pub(super) history: History,
     pub(super) made: Made,
     capabilities: Capabilities,
-    pub(super) history: History,
     description: DeviceDescription,
     /// Asks `physical` what it can do.
     instance: ash::Instance,
@@ -86,10 +86,10 @@ pub struct Lent<'a> {
     pub limits: DeviceLimits,
     /// Where memory comes from; `None` takes the engine's own allocator.
     pub memory: Option<Box<dyn MemorySource>>,
-    /// As [`DeviceOptions::pipeline_cache`].
-    pub pipeline_cache: Option<PathBuf>,
     /// As [`DeviceOptions::memory_blocks`], of the engine's own allocator.
     pub memory_blocks: MemoryBlocks,
+    /// As [`DeviceOptions::pipeline_cache`].
+    pub pipeline_cache: Option<PathBuf>,
 }
 
 /// Counts of what was ever made; [`Device::usage`] reads them.
@@ -174,13 +174,13 @@ impl Device {
             pipeline_cache: ManuallyDrop::new(pipeline_cache),
             pipelines: PipelinePool::default(),
             labels,
+            history: History::default(),
             made: Made::default(),
             capabilities,
             description,
             instance: instance.raw.clone(),
             physical,
             owner: Owner::Engine(Box::new(Opened { queue, family, instance })),
-            history: History::default(),
         }))
     }
 
@@ -226,6 +226,7 @@ impl Device {
             pipeline_cache: ManuallyDrop::new(pipeline_cache),
             pipelines: PipelinePool::default(),
             labels: lent.labels.then(|| debug_utils::Device::new(instance, device)),
+            history: History::default(),
             made: Made::default(),
             capabilities,
             description,
@@ -235,12 +236,19 @@ impl Device {
         }))
     }
 
+    /// Names an object of the device for debuggers and the validation layers, where they listen.
+    pub(super) fn name(&self, object: impl vk::Handle, name: &str) {
+        let Some((labels, name)) = self.labels.as_ref().zip(CString::new(name).ok()) else { return };
+        let info = vk::DebugUtilsObjectNameInfoEXT::default().object_handle(object).object_name(&name);
+        // SAFETY: the object is the device's, and alive. A name that cannot be given is no loss.
+        let _ = unsafe { labels.set_debug_utils_object_name(&info) };
+    }
+
     /// Begins a debug label, where there are any.
     ///
     /// # Safety
     /// `cmd` is of the device and is being recorded; [`Device::end_label`] ends it.
     pub(super) unsafe fn begin_label(&self, cmd: vk::CommandBuffer, label: &'static str) {
-            history: History::default(),
         let Some(labels) = &self.labels else { return };
         // In every pass of every frame: on the stack.
         let mut name = [0; 32];
@@ -250,14 +258,6 @@ impl Device {
         let info = vk::DebugUtilsLabelEXT::default().label_name(name);
         // SAFETY: by the caller.
         unsafe { labels.cmd_begin_debug_utils_label(cmd, &info) };
-    /// Names an object of the device for debuggers and the validation layers, where they listen.
-    pub(super) fn name(&self, object: impl vk::Handle, name: &str) {
-        let Some((labels, name)) = self.labels.as_ref().zip(CString::new(name).ok()) else { return };
-        let info = vk::DebugUtilsObjectNameInfoEXT::default().object_handle(object).object_name(&name);
-        // SAFETY: the object is the device's, and alive. A name that cannot be given is no loss.
-        let _ = unsafe { labels.set_debug_utils_object_name(&info) };
-    }
-
     }
 
     /// # Safety
@@ -281,25 +281,21 @@ impl Device {
     }
 
     /// Vulkan's own, for who makes things on the device by other means; nobody destroys it.
-    #[cfg(feature = "window")]
     pub fn handle(&self) -> &ash::Device {
         &self.raw
     }
 
     /// The instance that asks [`Device::physical`].
-    #[cfg(feature = "window")]
     pub fn instance(&self) -> &ash::Instance {
         &self.instance
     }
 
     /// The physical device.
-    #[cfg(feature = "window")]
     pub fn physical(&self) -> vk::PhysicalDevice {
         self.physical
     }
 
     /// The queue, locked while `body` submits to it, and its family. A usage error on a device that a host lends.
-    #[cfg(feature = "window")]
     pub fn submit<R>(&self, body: impl FnOnce(vk::Queue, u32) -> R) -> Result<R> {
         let (queue, family) = self.queue()?;
         let queue = queue.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
@@ -317,6 +313,10 @@ impl Device {
     /// What images of `format` can be used for.
     pub fn format_features(&self, format: vk::Format) -> vk::FormatFeatureFlags {
         // SAFETY: the physical device is the instance's, and both outlive this.
+        let found = unsafe { self.instance.get_physical_device_format_properties(self.physical, format) };
+        found.optimal_tiling_features
+    }
+
     /// How many samples a pixel an attachment of `format` can have in framebuffers; none where it cannot be one.
     pub(crate) fn attachment_samples(
         &self,
@@ -343,10 +343,6 @@ impl Device {
             false => limits.framebuffer_depth_sample_counts | limits.framebuffer_stencil_sample_counts,
         };
         found.map_or(vk::SampleCountFlags::empty(), |found| found.sample_counts & framebuffer)
-    }
-
-        let found = unsafe { self.instance.get_physical_device_format_properties(self.physical, format) };
-        found.optimal_tiling_features
     }
 
     /// Name, kind and driver.

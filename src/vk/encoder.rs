@@ -9,6 +9,11 @@ pub struct Encoder<'a> {
     cmd: vk::CommandBuffer,
 }
 
+/// Whether a buffer has so many bytes from `offset` on.
+fn fits(offset: u64, size: u64, buffer: &Buffer) -> bool {
+    offset.checked_add(size).is_some_and(|end| end <= buffer.size())
+}
+
 impl<'a> Encoder<'a> {
     pub(super) fn new(device: &'a Device, cmd: vk::CommandBuffer) -> Self {
         Self { device, cmd }
@@ -88,12 +93,14 @@ impl<'a> Encoder<'a> {
 
     /// Sets `size` bytes of `buffer` from `offset` on to 0; both are multiples of 4.
     pub fn zero_range(&mut self, buffer: &Buffer, offset: u64, size: u64) {
+        assert!(size == vk::WHOLE_SIZE || fits(offset, size, buffer), "a fill past the end of a buffer");
         // SAFETY: recorded outside a render pass; the buffer is alive and can be copied to.
         unsafe { self.device.raw.cmd_fill_buffer(self.cmd, buffer.raw, offset, size, 0) };
     }
 
     /// Copies `size` bytes from the start of `from` to the start of `to`.
     pub fn copy(&mut self, from: &Buffer, to: &Buffer, to_offset: u64, size: u64) {
+        assert!(fits(0, size, from) && fits(to_offset, size, to), "a copy past the end of a buffer");
         let region = vk::BufferCopy { src_offset: 0, dst_offset: to_offset, size };
         // SAFETY: recorded outside a render pass; both buffers are alive and large enough.
         unsafe { self.device.raw.cmd_copy_buffer(self.cmd, from.raw, to.raw, &[region]) };
@@ -108,6 +115,7 @@ impl<'a> Encoder<'a> {
 
     /// Copies `size` bytes of `from` from `offset` on to the same place of `to`.
     pub fn copy_range(&mut self, from: &Buffer, to: &Buffer, offset: u64, size: u64) {
+        assert!(fits(offset, size, from) && fits(offset, size, to), "a copy past the end of a buffer");
         let region = vk::BufferCopy { src_offset: offset, dst_offset: offset, size };
         // SAFETY: recorded outside a render pass; both buffers are alive and large enough.
         unsafe { self.device.raw.cmd_copy_buffer(self.cmd, from.raw, to.raw, &[region]) };

@@ -154,9 +154,9 @@ impl Image {
 
 impl Drop for Image {
     fn drop(&mut self) {
+        self.device.history.forget_image(self.raw);
         // SAFETY: the GPU is done with it (see the module's docs); a null view is ignored.
         unsafe {
-        self.device.history.forget_image(self.raw);
             self.device.raw.destroy_image_view(self.view, None);
             self.device.raw.destroy_image(self.raw, None);
         }

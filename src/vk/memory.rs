@@ -4,6 +4,7 @@ use super::Device;
 use crate::error::{Error, Result};
 use ash::vk;
 use gpu_allocator::vulkan::{AllocationCreateDesc, AllocationScheme, Allocator, AllocatorCreateDesc};
+use gpu_allocator::{AllocationSizes, MemoryLocation};
 use std::ptr::NonNull;
 use std::sync::Mutex;
 use std::sync::atomic::Ordering;
@@ -66,6 +67,7 @@ pub unsafe trait MemorySource: Send + Sync {
     /// Takes it back.
     fn free(&self, memory: HostMemory);
 }
+
 /// Sizes of the blocks of device memory in which buffers and images are placed: a memory object each. The first block of a memory type has the
 /// least size, each further one twice that of the one before, up to the largest; what is larger has a block of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -95,7 +97,6 @@ impl MemoryBlocks {
     }
 }
 
-
 /// Where a device's memory comes from.
 pub(super) enum Source {
     Own(Box<Own>),
@@ -123,8 +124,8 @@ impl Source {
     pub(super) fn own(
         instance: &ash::Instance,
         device: &ash::Device,
-        blocks: MemoryBlocks,
         physical: vk::PhysicalDevice,
+        blocks: MemoryBlocks,
     ) -> Result<Self, String> {
         let allocator = Allocator::new(&AllocatorCreateDesc {
             instance: instance.clone(),

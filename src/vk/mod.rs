@@ -1,4 +1,5 @@
-//! The layer over raw Vulkan: the only place, beside the embedding and the swapchain, where `unsafe` is allowed.
+//! The layer over raw Vulkan: the only place, beside the embedding, where `unsafe` is allowed. Devices, their limits and what presents to a
+//! window are public; buffers, pipelines and recording are the crate's own.
 //!
 //! Everything that owns a Vulkan object holds an `Arc` of the [`Device`] and destroys the object when it is dropped; nothing is
 //! dropped while the GPU still uses it, because a frame is waited for before its resources can be; on a device that a host lends, because
@@ -31,7 +32,7 @@ mod recorder;
 mod render_pass;
 mod requirements;
 mod shader_stage;
-pub mod shaders;
+pub(crate) mod shaders;
 #[cfg(feature = "window")]
 mod slot;
 #[cfg(feature = "window")]
@@ -42,16 +43,16 @@ mod timestamps;
 mod transfer;
 mod validation;
 
-pub use access::{Access, Use};
-pub use buffer::Buffer;
+pub(crate) use access::{Access, Use};
+pub(crate) use buffer::Buffer;
 pub use choose::{DeviceDescription, describe_devices, preferred};
 #[cfg(feature = "window")]
 pub use command_pool::CommandPool;
-pub use commands::Commands;
-pub use descriptors::{Binding, DescriptorSet, HostDepth, SetLayout, input_layout};
+pub(crate) use commands::Commands;
+pub(crate) use descriptors::{Binding, DescriptorSet, HostDepth, SetLayout, input_layout};
 pub use device::{Device, DeviceOptions, Lent, Usage};
-pub use encoder::{Draws, Encoder};
-pub use image::{Image, ImageUse, pixel_bytes};
+pub(crate) use encoder::{Draws, Encoder};
+pub(crate) use image::{Image, ImageUse, pixel_bytes};
 pub use limits::{Capabilities, DeviceLimits};
 pub use memory::{HostMemory, Location, MemoryBlocks, MemoryRequest, MemorySource};
 pub(crate) use pipeline::{Blend, ComputePipeline, DepthTest, DrawPipeline, DrawState, Topology, Within};
@@ -59,11 +60,13 @@ pub(crate) use pipeline::{Blend, ComputePipeline, DepthTest, DrawPipeline, DrawS
 pub(crate) use presenter::Stake;
 #[cfg(feature = "window")]
 pub use presenter::{FRAMES_IN_FLIGHT, Presented, Presenter};
-pub use recorder::Recorder;
-pub use render_pass::{Attachment, Framebuffer, RenderPass};
+pub(crate) use recorder::Recorder;
+pub(crate) use render_pass::{Attachment, Framebuffer, RenderPass};
 pub use requirements::{ABILITIES, API_VERSION, Abilities, Ability, Features, QUEUE};
-pub use shader_stage::{Code, Constants};
+pub(crate) use shader_stage::{Code, Constants};
 #[cfg(feature = "window")]
 pub use surface::{Surface, Window};
-pub use timestamps::{HostPass, PassTime, Timestamps};
-pub use transfer::{Staging, Uploads};
+pub use timestamps::PassTime;
+pub(crate) use timestamps::{HostPass, Timestamps};
+pub use transfer::Staging;
+pub(crate) use transfer::Uploads;

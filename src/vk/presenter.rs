@@ -168,8 +168,13 @@ fn next_number() -> u64 {
 }
 
 impl Presenter {
-    /// Presents from `device`, which was opened for the surface.
+    /// Presents from `device`, which was opened for the surface; another one is refused.
     pub fn new(device: &Arc<Device>, surface: Surface) -> Result<Self> {
+        if !surface.is_of(device) {
+            let message =
+                "the surface is another device's: take that which Device::open_for returns beside it";
+            return Err(Error::Usage(message.into()));
+        }
         let physical = device.physical();
         // SAFETY: the surface is of the device's instance.
         let (formats, modes) = unsafe {

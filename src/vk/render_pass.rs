@@ -133,7 +133,9 @@ pub struct Framebuffer {
 impl Framebuffer {
     /// One image an attachment that is not absent: colours in their order, then depth. All have one size.
     pub fn new(device: &Arc<Device>, pass: &RenderPass, images: &[&Image]) -> Result<Self> {
-        debug_assert_eq!(images.len(), pass.attachments);
+        assert_eq!(images.len(), pass.attachments, "one image an attachment");
+        let sizes = images.windows(2).all(|pair| pair[0].size() == pair[1].size());
+        assert!(sizes, "images of one size");
         let views: Vec<_> = images.iter().map(|image| image.view).collect();
         let [width, height] = images.first().map_or([1, 1], |image| image.size());
         let info = vk::FramebufferCreateInfo::default()

@@ -5,6 +5,7 @@ use super::shaders::Module;
 use crate::error::{Error, Result};
 use ash::vk;
 use std::borrow::Cow;
+use std::hash::{Hash, Hasher};
 
 /// Values of specialization constants, of which a module takes those that it reads.
 #[derive(Clone, Debug, Default)]
@@ -21,14 +22,13 @@ impl Constants {
 /// SPIR-V of a stage and its specialization: equal ones compile to the same code.
 #[derive(Clone, PartialEq, Eq, Hash)]
 pub(super) struct ShaderStage {
-    stage: vk::ShaderStageFlags,
     name: Name,
+    stage: vk::ShaderStageFlags,
     words: Cow<'static, [u32]>,
     ids: Vec<u32>,
     values: Vec<u32>,
 }
 
-/// The module of a stage, or a copy of it with other output locations, which are no specialization constants.
 /// What a module is called: stages of equal code are equal.
 #[derive(Clone, Copy)]
 struct Name(&'static str);
@@ -45,6 +45,7 @@ impl Hash for Name {
     fn hash<H: Hasher>(&self, _: &mut H) {}
 }
 
+/// The module of a stage, or a copy of it with other output locations, which are no specialization constants.
 #[derive(Clone)]
 pub struct Code {
     module: &'static Module,
@@ -85,12 +86,12 @@ impl Code {
 }
 
 impl ShaderStage {
-    fn entries(&self) -> Vec<vk::SpecializationMapEntry> {
     /// Of the module.
     pub(super) fn name(&self) -> &'static str {
         self.name.0
     }
 
+    fn entries(&self) -> Vec<vk::SpecializationMapEntry> {
         let entry = |(id, index): (&u32, u32)| vk::SpecializationMapEntry {
             constant_id: *id,
             offset: 4 * index,

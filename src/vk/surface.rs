@@ -1,5 +1,6 @@
 //! What a window shows: its surface.
 
+use super::Device;
 use super::instance::Instance;
 use crate::error::{Error, Result};
 use ash::{khr, vk};
@@ -17,7 +18,7 @@ pub struct Surface {
     pub(super) raw: vk::SurfaceKHR,
     pub(super) loader: khr::surface::Instance,
     // After the surface: the instance, and the window.
-    _instance: Arc<Instance>,
+    instance: Arc<Instance>,
     _window: Arc<dyn Window>,
 }
 
@@ -43,7 +44,12 @@ impl Surface {
         let raw =
             unsafe { ash_window::create_surface(&instance.entry, &instance.raw, display, handle, None) };
         let loader = khr::surface::Instance::new(&instance.entry, &instance.raw);
-        Ok(Self { raw: raw.map_err(no_window)?, loader, _instance: instance.clone(), _window: window })
+        Ok(Self { raw: raw.map_err(no_window)?, loader, instance: instance.clone(), _window: window })
+    }
+
+    /// Whether the device was opened for it.
+    pub(super) fn is_of(&self, device: &Device) -> bool {
+        device.instance().handle() == self.instance.raw.handle()
     }
 
     /// Refuses a queue family of a device, called `name`, that does not present to it.

@@ -15,7 +15,7 @@ use surfel::embed::{self, Buffers, Changes, Options, READ_ACCESS, READ_STAGES, R
 use surfel::geometry::{Bounds, Colours, Surfels};
 use surfel::methods::Method;
 use surfel::splatting::Visibility;
-use surfel::vk::{Buffer, Device, DeviceLimits, Uploads};
+use surfel::vk::{Device, DeviceLimits};
 use surfel::{Picture, Precision, Rasterizer, RenderOptions, Scene, Settings, SplatCounts};
 
 /// Ranges so small that a scene of 20,000 surfels has several windows, which begin at far fewer places than the values of vertices do.
@@ -374,10 +374,9 @@ fn what_is_invalid_in_a_hosts_buffer_is_culled_and_counted() {
     let own = Scene::upload(&device, &surfels).unwrap();
     let layout = Layout::wide();
     let bytes = layout.bytes(&surfels);
-    let buffer = Buffer::storage(&device, "surfels", bytes.len() as u64).unwrap();
-    Uploads::now(&device).unwrap().write(&buffer, 0, &bytes).unwrap();
+    let buffer = Foreign::new(&device, &bytes);
     // SAFETY: the buffer is the device's, and goes last.
-    let lent = unsafe { Scene::from_buffers(&device, &layout.told(&surfels, buffer.handle())) }.unwrap();
+    let lent = unsafe { Scene::from_buffers(&device, &layout.told(&surfels, buffer.buffer)) }.unwrap();
     for (name, rasterizer) in ALONE {
         let [found, expected] = [&lent, &own].map(|scene| alone(&device, scene, name, rasterizer));
         assert_eq!(expected.1.invalid as usize, spoiled);
@@ -385,8 +384,51 @@ fn what_is_invalid_in_a_hosts_buffer_is_culled_and_counted() {
         assert!(found.0 == expected.0, "{name} {rasterizer:?}");
         assert!(found.0.colour.iter().filter(|colour| colour[3] > 0.0).count() > 2_000);
     }
-    drop((own, lent));
+    drop((own, lent, buffer));
     crate::support::gpu::assert_silent(&device);
+}
+
+/// A buffer of shaders that the engine has not made, on its own device.
+struct Foreign {
+    buffer: vk::Buffer,
+    memory: vk::DeviceMemory,
+    device: Arc<Device>,
+}
+
+impl Foreign {
+    fn new(device: &Arc<Device>, bytes: &[u8]) -> Self {
+        let raw = device.handle();
+        let info = vk::BufferCreateInfo::default()
+            .size(bytes.len() as u64)
+            .usage(vk::BufferUsageFlags::STORAGE_BUFFER);
+        let seen = vk::MemoryPropertyFlags::HOST_VISIBLE | vk::MemoryPropertyFlags::HOST_COHERENT;
+        // SAFETY: a plain use of Vulkan; `drop` destroys what is made.
+        unsafe {
+            let buffer = raw.create_buffer(&info, None).unwrap();
+            let needs = raw.get_buffer_memory_requirements(buffer);
+            let types = device.instance().get_physical_device_memory_properties(device.physical());
+            let kind = types.memory_types_as_slice().iter().enumerate().position(|(i, kind)| {
+                needs.memory_type_bits & 1 << i != 0 && kind.property_flags.contains(seen)
+            });
+            let kind = kind.expect("every device has such a type") as u32;
+            let info = vk::MemoryAllocateInfo::default().allocation_size(needs.size).memory_type_index(kind);
+            let memory = raw.allocate_memory(&info, None).unwrap();
+            raw.bind_buffer_memory(buffer, memory, 0).unwrap();
+            let mapped = raw.map_memory(memory, 0, vk::WHOLE_SIZE, vk::MemoryMapFlags::empty()).unwrap();
+            mapped.cast::<u8>().copy_from_nonoverlapping(bytes.as_ptr(), bytes.len());
+            Self { buffer, memory, device: device.clone() }
+        }
+    }
+}
+
+impl Drop for Foreign {
+    fn drop(&mut self) {
+        // SAFETY: every frame that reads it was waited for.
+        unsafe {
+            self.device.handle().destroy_buffer(self.buffer, None);
+            self.device.handle().free_memory(self.memory, None);
+        }
+    }
 }
 
 #[test]

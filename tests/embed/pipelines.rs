@@ -82,8 +82,8 @@ fn lend(host: &Host) -> Arc<Device> {
             labels: true,
             limits: DeviceLimits::default(),
             memory: None,
-            pipeline_cache: None,
             memory_blocks: Default::default(),
+            pipeline_cache: None,
         };
         Device::borrow(lent).unwrap()
     }

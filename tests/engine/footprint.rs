@@ -9,8 +9,7 @@ use surfel::geometry::{Camera, Surfels};
 use surfel::reference::{Culled, Projector, Splat, Surfel};
 use surfel::settings::Widen;
 use surfel::vk::DeviceLimits;
-use surfel::vk::shaders::layout;
-use surfel::{RenderOptions, Renderer, Scene, Settings};
+use surfel::{RenderOptions, Renderer, Scene, Settings, renderer};
 
 /// Surfels of a test.
 fn count() -> usize {
@@ -28,7 +27,7 @@ struct Drawn {
 
 impl Drawn {
     /// `None` if it was culled.
-    fn new(splat: &layout::Splat) -> Option<Self> {
+    fn new(splat: &renderer::Splat) -> Option<Self> {
         let anchor = [splat.place & 0x7fff, splat.place >> 15 & 0x7fff].map(|p| f64::from(p) + 0.5);
         let pair = |v: [f32; 2]| DVec2::from_array(v.map(f64::from));
         let [major, sqrt_det] = [splat.variance, splat.sqrt_det].map(f64::from);
@@ -148,7 +147,7 @@ fn compare(elliptical: bool, widen: Widen) {
     let options = RenderOptions { size: [SIZE; 2], ..Default::default() };
     let mut renderer = Renderer::new(&device, options).unwrap();
     renderer.render(&scene, &camera, &settings).unwrap();
-    let splats = renderer.splats().next().unwrap().read(&device).unwrap();
+    let splats = renderer.read_splats().unwrap().remove(0);
     assert_silent(&device);
 
     let projector = Projector::new(&camera, [SIZE; 2], &settings).unwrap();

@@ -5,13 +5,11 @@ use glam::DVec3;
 use std::sync::Arc;
 use surfel::geometry::{Camera, Surfels, Weights};
 use surfel::methods::object_ewa::{self, Progressive};
-use surfel::methods::{Method, passes};
+use surfel::methods::{FramePlan, Method};
 use surfel::reference::{Expected, Tolerance};
 use surfel::scenes::bumpy_sphere;
 use surfel::settings::{Alpha, Cull, DirectionalLight, Shading, Widen};
 use surfel::splatting::{Normalization, Splatting, Visibility};
-use surfel::targets::{Buffers, Formats};
-use surfel::variant::Variant;
 use surfel::vk::{Device, DeviceLimits};
 use surfel::{Error, Outputs, Picture, Precision, Rasterizer, RenderOptions, Renderer, Scene, Settings};
 
@@ -118,8 +116,8 @@ fn passes_and_targets_are_those_that_are_told() {
             };
             let mut renderer = Renderer::new(&device, options).unwrap();
             let report = renderer.render(&scene, &camera(SIZE), &settings).unwrap();
-            let variant = Variant::new(&[scene.streams()], true, &settings, &options, rasterizer);
-            let mut told = passes(&variant);
+            let plan = FramePlan::new(&[scene.streams()], true, &settings, &options, rasterizer);
+            let mut told = plan.passes;
             // Passes of one name are timed together.
             if settings.splatting == axis {
                 let last = told.iter().rposition(|pass| *pass == "footprint").unwrap();
@@ -128,10 +126,7 @@ fn passes_and_targets_are_those_that_are_told() {
             let timed: Vec<_> = report.pass_times.iter().map(|time| time.label).collect();
             let timed: Vec<_> = timed.into_iter().filter(|label| *label != "clear").collect();
             assert_eq!(timed, told, "{rasterizer:?}");
-            let per_pixel = match rasterizer {
-                Rasterizer::Draw => Formats::of(&variant).per_pixel(),
-                Rasterizer::Compute => Buffers::per_pixel(&variant),
-            };
+            let per_pixel = plan.targets;
             let names: Vec<_> = per_pixel.iter().map(|(name, _)| *name).collect();
             let mut made: Vec<_> = renderer.targets().iter().map(|target| target.name).collect();
             made.sort_by_key(|name| names.iter().position(|told| told == name));

@@ -7,14 +7,12 @@ use crate::support::truth::{Differences, Truth};
 #[allow(dead_code)] // of what is shared
 use glam::DVec3;
 use surfel::geometry::{Camera, Surfels};
-use surfel::methods::{Method, passes, perspective_ewa, pull_push};
+use surfel::methods::{FramePlan, Method, perspective_ewa, pull_push};
 use surfel::pull_push::{PullPush, Rules, Storage};
 use surfel::reference::pull_push::Reconstruction;
 use surfel::scenes::bumpy_sphere::Hit;
 use surfel::settings::{Alpha, Cull, Settings, Shading};
 use surfel::splatting::Footprint;
-use surfel::targets::Pyramids;
-use surfel::variant::Variant;
 use surfel::vk::DeviceLimits;
 use surfel::{Outputs, Picture, Precision, Rasterizer, RenderOptions, Renderer, Scene, scenes};
 
@@ -268,10 +266,10 @@ fn passes_and_targets_are_those_that_are_told() {
         for (method, shading) in frames {
             let settings = Settings { shading, ..method.settings() };
             let report = renderer.render(&scene, &truth.camera(), &settings).unwrap();
-            let variant = Variant::new(&[scene.streams()], true, &settings, &options, rasterizer);
+            let plan = FramePlan::new(&[scene.streams()], true, &settings, &options, rasterizer);
             let timed = report.pass_times.iter().map(|time| time.label).filter(|label| *label != "clear");
-            assert_eq!(timed.collect::<Vec<_>>(), passes(&variant));
-            let told = Pyramids::per_pixel(&variant);
+            assert_eq!(timed.collect::<Vec<_>>(), plan.passes);
+            let told = plan.targets;
             for (target, (name, bytes)) in renderer.targets().iter().zip(&told) {
                 let [made, told] = [target.bytes as f64, bytes * 1e4];
                 assert!(
@@ -287,7 +285,7 @@ fn passes_and_targets_are_those_that_are_told() {
             assert_eq!(nearest, if drawn { &["nearest_depth", "nearest_number"][..] } else { &["nearest"] });
         }
         // No splats are made.
-        let bytes = renderer.splats().next().unwrap().bytes();
+        let bytes = renderer.splat_bytes();
         assert!(bytes < 10_000, "{bytes}");
     }
     assert_silent(&device);
@@ -309,7 +307,7 @@ fn where_the_levels_are_kept_changes_nothing() {
                 let settings = Settings { cull: Cull::Back, pull_push, ..Default::default() };
                 let (picture, _) =
                     renderer.render_picture(&scene, &Truth::new(side).camera(), &settings).unwrap();
-                (picture, renderer.pyramids().unwrap().read(&device).unwrap())
+                (picture, renderer.read_pyramids().unwrap().unwrap())
             });
             assert!(side < 64 || apart.0.colour.iter().any(|colour| colour[3] > 0.0), "nothing is seen");
             assert_eq!(apart.0, in_turns.0, "{rules:?} {side}");

@@ -72,7 +72,7 @@ impl Shot<'_> {
             RenderOptions { size: self.size, outputs, precision: self.precision, ..Default::default() };
         let mut renderer = Renderer::new(device, options).unwrap();
         let (picture, _) = renderer.render_picture(&scene, &self.camera, &self.settings).unwrap();
-        let levels = renderer.pyramids().unwrap().read(device).unwrap();
+        let levels = renderer.read_pyramids().unwrap().unwrap();
         let as_twins =
             |levels: Vec<PyramidLevel>| (0..).zip(levels).map(|(i, l)| self.level(i, &l)).collect();
         let [pulled, pushed] = levels.map(as_twins);

@@ -127,8 +127,8 @@ impl Buffers {
         let mut renderer = Renderer::new(device, options)?;
         let (picture, _) = renderer.render_picture(chosen.scene, &camera, &settings)?;
         let name = self.buffer.told()[0];
-        if let Some(pyramids) = renderer.pyramids().filter(|_| self.buffer.is_level()) {
-            let [pulled, pushed] = pyramids.read(device)?;
+        let pyramids = if self.buffer.is_level() { renderer.read_pyramids()? } else { None };
+        if let Some([pulled, pushed]) = pyramids {
             let levels = if self.buffer == Buffer::Pulled { pulled } else { pushed };
             let level = (self.level as usize).min(levels.len().saturating_sub(1));
             return Ok(distances(&format!("{name} {level}: distance"), &levels[level]));

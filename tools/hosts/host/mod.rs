@@ -163,8 +163,8 @@ impl Host {
             labels: true,
             limits,
             memory,
-            pipeline_cache: None,
             memory_blocks: Default::default(),
+            pipeline_cache: None,
         };
         // SAFETY: all of it is true, and hosts drop what they lend last.
         unsafe { Device::borrow(lent) }

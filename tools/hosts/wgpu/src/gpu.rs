@@ -82,8 +82,8 @@ impl Gpu {
                 labels: shared.extensions().contains(&ext::debug_utils::NAME),
                 limits: DeviceLimits::default(),
                 memory: None,
-                pipeline_cache: None,
                 memory_blocks: Default::default(),
+                pipeline_cache: None,
             };
             Ok(Device::borrow(lent)?)
         }
