@@ -13,6 +13,7 @@ use crate::picture::Picture;
 use crate::settings::Shading;
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder, ImageError};
+use rayon::prelude::*;
 use std::ffi::OsStr;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -225,7 +226,7 @@ fn encode(picture: &Picture, shading: Shading) -> Vec<[u8; 4]> {
     };
     let pixels = picture.colour.iter().enumerate();
     match shading {
-        Shading::Lit | Shading::Colour => picture.colour.iter().map(colour).collect(),
+        Shading::Lit | Shading::Colour => picture.colour.par_iter().map(colour).collect(),
         Shading::Normal => {
             let normal = |pixel: &[f32; 4]| {
                 let [x, y, z] = [0, 1, 2].map(|axis: usize| unit(0.5 * pixel[axis] + 0.5));
