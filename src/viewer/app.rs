@@ -313,7 +313,7 @@ impl App {
             (self.told.wrong, self.told.done) = (None, None);
         }
         match action {
-            Some(Action::Quit) if self.cancel() => {}
+            Some(Action::Close) => self.close(),
             Some(Action::Quit) => events.exit(),
             Some(
                 action @ (Action::Open
@@ -362,6 +362,17 @@ impl App {
             self.changed();
         }
         cancelled
+    }
+
+    /// Closes what is on top of the picture, or else gives up what is being loaded.
+    fn close(&mut self) {
+        // An open list closes itself.
+        let listed = self.opened.as_ref().is_some_and(|opened| opened.hud.has_open_list());
+        if listed || self.told.close() {
+            self.changed();
+        } else {
+            self.cancel();
+        }
     }
 
     /// A button goes down or up: the surface under a double press is turned about.

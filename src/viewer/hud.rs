@@ -3,7 +3,7 @@
 use super::panels::{self, Told};
 use super::state::State;
 use ash::vk;
-use egui::{ClippedPrimitive, LayerId, Pos2, Rect, TexturesDelta};
+use egui::{ClippedPrimitive, LayerId, Popup, Pos2, Rect, TexturesDelta};
 use egui_ash_renderer::allocator::DefaultAllocator;
 use egui_ash_renderer::{Options, RenderMode, Renderer, RendererError};
 use std::sync::Arc;
@@ -134,6 +134,11 @@ impl Hud {
         let delay = delay.unwrap_or(Duration::MAX);
         self.wakes = Instant::now().checked_add(delay).filter(|_| delay < Duration::from_secs(3600));
         delay.is_zero()
+    }
+
+    /// Whether a drop-down list or a menu is open.
+    pub fn has_open_list(&self) -> bool {
+        Popup::is_any_open(&self.context)
     }
 
     /// When the panels want to be drawn again, if nothing happens before.

@@ -7,6 +7,7 @@ use winit::keyboard::{Key, ModifiersState, NamedKey};
 /// What a key does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
+    Close,
     Quit,
     NextMethod,
     PreviousMethod,
@@ -61,7 +62,7 @@ const fn named(
 }
 
 /// All of them.
-pub static BINDINGS: [Binding; 24] = {
+pub static BINDINGS: [Binding; 25] = {
     use super::orbit::{Side, Up};
     [
         letter("m", "M", "next method", Action::NextMethod),
@@ -99,7 +100,8 @@ pub static BINDINGS: [Binding; 24] = {
         control("v", "Ctrl+V", "paste a camera", Action::PasteCamera),
         letter("h", "H", "these keys", Action::Help),
         letter("g", "G", "hide or show the panel", Action::Panels),
-        named(NamedKey::Escape, NONE, "Esc", "give up loading; quit", Action::Quit),
+        named(NamedKey::Escape, NONE, "Esc", "close what is on top; give up loading", Action::Close),
+        control("q", "Ctrl+Q", "quit", Action::Quit),
     ]
 };
 

@@ -61,7 +61,7 @@ fn small(key: &Key) -> Key {
 }
 
 /// What a US keyboard has on keys whose letters or digits do something.
-const PLACES: [(KeyCode, &str); 19] = [
+const PLACES: [(KeyCode, &str); 20] = [
     (KeyCode::Digit1, "1"),
     (KeyCode::Digit2, "2"),
     (KeyCode::Digit3, "3"),
@@ -76,6 +76,7 @@ const PLACES: [(KeyCode, &str); 19] = [
     (KeyCode::KeyM, "m"),
     (KeyCode::KeyO, "o"),
     (KeyCode::KeyP, "p"),
+    (KeyCode::KeyQ, "q"),
     (KeyCode::KeyS, "s"),
     (KeyCode::KeyV, "v"),
     (KeyCode::KeyX, "x"),

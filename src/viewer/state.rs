@@ -320,7 +320,7 @@ impl State {
     pub fn act(&mut self, action: Action) {
         let Some(shown) = &mut self.shown else { return };
         match action {
-            Action::Quit | Action::Help | Action::Panels | Action::Open => {}
+            Action::Close | Action::Quit | Action::Help | Action::Panels | Action::Open => {}
             Action::Keep(_) | Action::SaveCamera | Action::CopyCamera | Action::PasteCamera => {}
             Action::NextMethod => shown.turn_method(1, &self.look),
             Action::PreviousMethod => shown.turn_method(Method::ALL.len() - 1, &self.look),

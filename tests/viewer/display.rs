@@ -27,6 +27,7 @@ pub struct Display {
 /// Keys by their X names.
 pub mod key {
     pub const RETURN: u32 = 0xff0d;
+    pub const ESCAPE: u32 = 0xff1b;
     pub const F12: u32 = 0xffc9;
     pub const SHIFT: u32 = 0xffe1;
     pub const CONTROL: u32 = 0xffe3;
@@ -178,6 +179,24 @@ impl Display {
         let shown = self.x.get_image(format, window, 0, 0, width, height, !0).unwrap().reply().unwrap();
         let pixels = shown.data.chunks_exact(4).flat_map(|pixel| [pixel[2], pixel[1], pixel[0]]).collect();
         image::RgbImage::from_raw(width.into(), height.into(), pixels).unwrap()
+    }
+
+    /// Waits until a window looks as is wanted; how it looks.
+    pub fn pixels_that(
+        &self,
+        window: Window,
+        what: &str,
+        fit: impl Fn(&image::RgbImage) -> bool,
+    ) -> image::RgbImage {
+        let start = Instant::now();
+        loop {
+            let pixels = self.pixels(window);
+            if fit(&pixels) {
+                return pixels;
+            }
+            assert!(start.elapsed() < PATIENCE, "the window never {what}");
+            std::thread::sleep(Duration::from_millis(50));
+        }
     }
 
     /// The next event that `take` wants.

@@ -30,3 +30,32 @@ fn keys_of_flight_lie_where_they_lie_whatever_stands_on_them() {
     view.picture(|event| event["camera"]["up"] == json!([0.0, 0.0, 1.0]));
     view.close();
 }
+
+/// The drop-down list of methods in a window of 1000 x 700 px.
+const LIST: [i16; 2] = [785, 53];
+
+#[test]
+fn escape_closes_what_is_on_top_and_never_the_window() {
+    let Some((display, program)) = stage("escape_closes_what_is_on_top_and_never_the_window") else { return };
+    let mut view = View::open(&display, &program, &format!("{SPHERE} --size 1000x700"));
+    let first = view.picture(|_| true)["method"].clone();
+    let before = display.pixels(view.window);
+    display.press(&[], u32::from('h'));
+    display.pixels_that(view.window, "lists its keys", |pixels| *pixels != before);
+    display.press(&[], key::ESCAPE);
+    display.pixels_that(view.window, "closes the list", |pixels| *pixels == before);
+    // A drop-down list.
+    display.click(view.window, LIST, 1, 1);
+    let [x, y] = [LIST[0] as u32, LIST[1] as u32];
+    let open = display.pixels_that(view.window, "opens the list", |pixels| {
+        (y + 30..y + 60).any(|below| pixels.get_pixel(x, below) != before.get_pixel(x, below))
+    });
+    display.press(&[], key::ESCAPE);
+    display.pixels_that(view.window, "closes the drop-down list", |pixels| *pixels != open);
+    display.press(&[], key::ESCAPE);
+    display.press(&[], u32::from('m'));
+    view.picture(|event| event["method"] != first);
+    display.press(&[key::CONTROL], u32::from('q'));
+    let end = view.end();
+    assert_eq!((end.code, end.errors.as_str()), (0, ""));
+}

@@ -106,6 +106,11 @@ impl Buffers {
         self.raster.iter_mut().for_each(Raster::leave_context);
     }
 
+    /// Closes the picture of a buffer, if it is there.
+    pub fn close(&mut self) -> bool {
+        self.raster.is_some() && std::mem::take(&mut self.shown)
+    }
+
     /// What was read, in a window of its own.
     pub fn picture(&mut self, context: &Context) {
         if let Some(raster) = self.raster.as_mut().filter(|_| self.shown) {

@@ -16,7 +16,7 @@ use super::layout::Layout;
 use super::screen::Asked;
 use super::state::{State, quick};
 use buffers::Buffers;
-use egui::{CollapsingHeader, Panel, ProgressBar, ScrollArea, Ui};
+use egui::{Button, CollapsingHeader, Panel, ProgressBar, ScrollArea, Ui};
 use error::Errors;
 use split::Split;
 use std::sync::Arc;
@@ -58,6 +58,11 @@ impl Told {
     /// Nothing is told yet; the panel may be hidden.
     pub fn new(hidden: bool) -> Self {
         Self { hidden, ..Self::default() }
+    }
+
+    /// Closes the window on top of the picture, if there is one.
+    pub fn close(&mut self) -> bool {
+        std::mem::take(&mut self.help) || self.errors.close() || self.buffers.close()
     }
 
     /// Nothing is kept that belongs to a context that goes.
@@ -130,8 +135,13 @@ fn choices(ui: &mut Ui, state: &mut State, told: &mut Told, device: &Arc<Device>
         let binding = BINDINGS.iter().find(|binding| binding.action == action);
         binding.map_or(String::new(), |binding| told.layout.name(binding))
     });
-    ui.label(format!("{hide} hides this panel, {help} lists keys and mouse"))
-        .on_hover_text(format!("{hide} shows it again"));
+    ui.horizontal(|ui| {
+        let listed = ui.add(Button::new("Keys and mouse").selected(told.help));
+        if listed.on_hover_text(format!("{help}; Esc closes them")).clicked() {
+            told.help = !told.help;
+        }
+        ui.label(format!("{hide} hides this panel")).on_hover_text(format!("{hide} shows it again"));
+    });
     let Some(chosen) = &mut state.choices() else {
         ui.label("Drop files on the window to look at them.");
         return;
