@@ -87,7 +87,7 @@ pub enum Visibility {
 pub enum Normalization {
     /// Division by their sum at every pixel.
     Pixel = 0,
-    /// A factor of each surfel, captured beforehand ([`crate::capture`]; ren2002 §7).
+    /// A factor of each surfel, captured beforehand (ren2002 §7).
     Surfel = 1,
     /// Nothing: brightness varies with the overlap (ren2002 figure 10a).
     None = 2,

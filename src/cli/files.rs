@@ -34,6 +34,11 @@ pub fn print(text: &str) -> Result<()> {
     done.map_err(Error::io(Path::new("-"), "cannot write to standard output"))
 }
 
+/// Writes JSON to standard output.
+pub fn print_json(value: &serde_json::Value) -> Result<()> {
+    print(&format!("{value:#}\n"))
+}
+
 /// Whether both name one file; standard output is none.
 pub fn is_same(a: &OsString, b: &OsString) -> bool {
     let real = |name: &OsString| std::fs::canonicalize(name).ok();

@@ -1,5 +1,7 @@
 //! `surfel info`.
 
+mod value;
+
 use super::args::Info;
 use super::files::print;
 use super::inputs::{scene, scene_cloud};
@@ -16,6 +18,9 @@ const MOST_NAMES: usize = 8;
 
 /// Says what is in a file or scene. Of a file whose points cannot be drawn it tells what there is, and the error why.
 pub fn run(args: &Info) -> Result<()> {
+    if args.json {
+        return value::run(args);
+    }
     if let Some(name) = scene(&args.input) {
         return scene_text(name, &args.points.estimate()).and_then(|text| print(&text));
     }

@@ -1,6 +1,7 @@
 //! `surfel methods`.
 
-use super::files::print;
+use super::files::{print, print_json};
+use serde_json::{Value, json};
 use std::fmt::Write;
 use surfel::methods::{FramePlan, Method};
 use surfel::scene::{ColourStream, PrimitiveKinds, Streams, SurfelLayout};
@@ -11,10 +12,38 @@ use surfel::{Rasterizer, RenderOptions, Result};
 const WAYS: [(Rasterizer, &str); 2] = [(Rasterizer::Draw, "drawn"), (Rasterizer::Compute, "computed")];
 
 /// Lists the methods: paper, choices along the axes, and for coloured circles that are lit the passes and targets of either rasterizer.
-pub fn run() -> Result<()> {
+pub fn run(json: bool) -> Result<()> {
+    if json {
+        return print_json(&Method::ALL.iter().map(value).collect());
+    }
     let mut text = String::from("bytes are those of a pixel, of a lit frame of coloured circles\n");
     Method::ALL.iter().for_each(|method| describe(&mut text, method));
     print(&text)
+}
+
+fn value(method: &Method) -> Value {
+    let Splatting { footprint, kernel, filter, visibility, normalization, shade } = method.splatting;
+    let axes = method.pull_push.is_none().then(|| {
+        json!({
+            "footprint": footprint.name(), "kernel": kernel.to_string(), "filter": filter.name(), "visibility": visibility.name(),
+            "normalization": normalization.name(), "shade": shade.name(),
+        })
+    });
+    let frames: serde_json::Map<_, _> = WAYS
+        .into_iter()
+        .map(|(rasterizer, name)| {
+            let FramePlan { passes, targets } = plan(&method.settings(), rasterizer);
+            let targets: Value = targets
+                .iter()
+                .map(|(name, bytes)| json!({ "name": name, "bytes_per_pixel": bytes }))
+                .collect();
+            (name.to_owned(), json!({ "passes": passes, "targets": targets }))
+        })
+        .collect();
+    let settings = json!({
+        "cutoff": method.cutoff, "lowpass": method.lowpass, "widen": method.widen.name(), "cull": method.cull.name(),
+    });
+    json!({ "name": method.name, "paper": method.paper, "axes": axes, "settings": settings, "frames": frames })
 }
 
 fn describe(text: &mut String, method: &Method) {

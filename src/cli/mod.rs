@@ -16,6 +16,7 @@ mod inputs;
 #[cfg(feature = "metrics")]
 mod limits;
 mod log;
+mod manual;
 mod methods;
 #[cfg(feature = "metrics")]
 mod number;
@@ -33,7 +34,7 @@ mod values;
 mod view;
 mod vulkan;
 
-use args::{Command, Surfel};
+use args::{Command, Listing, Surfel};
 use clap::Parser;
 use std::process::ExitCode;
 
@@ -59,9 +60,11 @@ pub fn run() -> ExitCode {
         Command::Truth(args) => truth::run(&args),
         #[cfg(feature = "bench")]
         Command::Bench(args) => bench::run(&args),
-        Command::Devices => devices::run(),
-        Command::Methods => methods::run(),
-        Command::Scenes => scenes::run(),
+        Command::Devices(Listing { json }) => devices::run(json),
+        Command::Methods(Listing { json }) => methods::run(json),
+        Command::Scenes(Listing { json }) => scenes::run(json),
+        Command::Completions(args) => manual::completions(&args),
+        Command::Man(args) => manual::man(&args),
     };
     // By now the device is gone, and with it what the layers had to say about its end.
     match done {

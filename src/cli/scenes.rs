@@ -1,16 +1,33 @@
 //! `surfel scenes`.
 
-use super::files::print;
+use super::files::{print, print_json};
+use serde_json::{Value, json};
 use std::fmt::Write;
 use surfel::Result;
 use surfel::scenes::{self, Parameter, SAMPLING, Scene};
 
 /// Lists the built-in scenes: what each shows, a camera for it, its parameters with their defaults and values.
-pub fn run() -> Result<()> {
+pub fn run(json: bool) -> Result<()> {
+    if json {
+        let scenes: Value = scenes::list().iter().map(value).collect();
+        return print_json(&json!({ "every_scene": values(SAMPLING), "scenes": scenes }));
+    }
     let mut text = String::from("scene:NAME?parameter=value&…; every scene takes\n");
     parameters(&mut text, SAMPLING);
     scenes::list().iter().for_each(|scene| describe(&mut text, scene));
     print(&text)
+}
+
+fn value(scene: &Scene) -> Value {
+    let view = &scene.viewpoint;
+    let camera =
+        json!({ "eye": view.eye, "target": view.target, "up": view.up, "fov_y_deg": view.fov_y_deg });
+    json!({ "name": scene.name, "summary": scene.summary, "camera": camera, "parameters": values(scene.own) })
+}
+
+fn values(parameters: &[Parameter]) -> Value {
+    let value = |Parameter { name, default, values, meaning }: &Parameter| json!({ "name": name, "default": default.to_string(), "values": values.to_string(), "meaning": meaning });
+    parameters.iter().map(value).collect()
 }
 
 fn describe(text: &mut String, scene: &Scene) {

@@ -108,13 +108,19 @@ pub fn background(text: &str) -> Result<Background, String> {
     }
 }
 
-/// `R,G,B` as sRGB codes of 8 bits, the numbers that a colour picker shows and that the PNG then holds; as linear light.
+/// `R,G,B` as sRGB codes of 8 bits, the numbers that a colour picker shows and that the PNG then holds, or an opaque colour of CSS; as linear
+/// light.
 pub fn opaque(text: &str) -> Result<[f32; 3], String> {
     let codes: Option<Vec<u8>> = text.split(',').map(|code| code.trim().parse().ok()).collect();
-    match codes.as_deref() {
-        Some(&[r, g, b]) => Ok([r, g, b].map(|code| srgb::decode(f64::from(code) / 255.0) as f32)),
-        _ => Err("give R,G,B, each from 0 to 255 (sRGB), for example 255,255,255".into()),
-    }
+    let css = || csscolorparser::parse(text).ok().filter(|colour| colour.a == 1.0);
+    let code = match codes.as_deref() {
+        Some(&[r, g, b]) => Some([r, g, b]),
+        _ => css().map(|colour| colour.to_rgba8()).map(|[r, g, b, _]| [r, g, b]),
+    };
+    let linear = |codes: [u8; 3]| codes.map(|code| srgb::decode(f64::from(code) / 255.0) as f32);
+    code.map(linear).ok_or_else(|| {
+        "give R,G,B, each from 0 to 255 (sRGB), for example 255,255,255, or a colour as CSS has it: #fff, white".into()
+    })
 }
 
 /// A preset by its name.
@@ -247,7 +253,8 @@ mod tests {
         }
         assert_eq!(background("transparent").map(Background::linear), Ok(None));
         assert_eq!(background("255,0,255").map(Background::linear), Ok(Some([1.0, 0.0, 1.0])));
-        for text in ["256,0,0", "0.5,0,0", "white", "1,2", "-1,0,0"] {
+        assert_eq!(background("white").map(Background::linear), Ok(Some([1.0; 3])));
+        for text in ["256,0,0", "0.5,0,0", "oranje", "#fff8", "1,2", "-1,0,0"] {
             assert!(background(text).is_err(), "{text}");
         }
     }

@@ -9,6 +9,7 @@ mod errors;
 mod info;
 mod inputs;
 mod lines;
+mod listings;
 mod program;
 mod render;
 mod report;

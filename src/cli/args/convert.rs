@@ -74,4 +74,7 @@ pub struct Info {
     /// How normals and radii are estimated
     #[command(flatten)]
     pub points: Points,
+    /// Prints JSON
+    #[arg(long)]
+    pub json: bool,
 }

@@ -26,6 +26,7 @@ use super::values::{
     Alpha, Background, Cull, Layer, Shading, Widen, background, kernel, method, size, vector,
 };
 use clap::{Args, Parser, Subcommand};
+use clap_complete::Shell;
 use glam::DVec3;
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -64,11 +65,37 @@ pub enum Command {
     #[cfg(feature = "bench")]
     Bench(Box<Bench>),
     /// Lists the Vulkan devices; * marks the one that is used unless --device names another
-    Devices,
+    Devices(Listing),
     /// Lists the methods: paper, choices along the axes, passes, targets
-    Methods,
+    Methods(Listing),
     /// Lists the built-in scenes with their parameters
-    Scenes,
+    Scenes(Listing),
+    /// Prints completions for a shell, to be put where that looks for them
+    Completions(Completions),
+    /// Writes the manual's pages, surfel.1 and one for each command, to a folder
+    Man(Man),
+}
+
+/// Options of the commands that list what there is.
+#[derive(Args, Debug)]
+pub struct Listing {
+    /// Prints JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+/// Options of `surfel completions`.
+#[derive(Args, Debug)]
+pub struct Completions {
+    /// For which shell
+    pub shell: Shell,
+}
+
+/// Options of `surfel man`.
+#[derive(Args, Debug)]
+pub struct Man {
+    /// The folder, which exists
+    pub folder: PathBuf,
 }
 
 /// Options of `surfel render`.
@@ -87,16 +114,16 @@ pub struct Render {
     #[arg(long, value_parser = method())]
     pub method: Option<Method>,
     /// What is changed of the method
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Method, changed")]
     pub axes: Axes,
     /// Size of the picture, px
     #[arg(long, value_name = "WxH", default_value = "1024x1024", value_parser = size, allow_hyphen_values = true)]
     pub size: [u32; 2],
     /// How normals and radii are estimated
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Points")]
     pub points: Points,
     /// What points are coloured by
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Colours")]
     pub colours: Colours,
     /// Draws a bar with the colours of --color-by and their values into the PNG
     #[arg(long, alias = "colour-bar", requires = "color_by")]
@@ -105,13 +132,13 @@ pub struct Render {
     #[arg(long, value_enum, value_delimiter = ',', value_name = "LAYER,…")]
     pub layers: Vec<Layer>,
     /// Where the camera stands
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Camera")]
     pub camera: Camera,
     /// How surfels become a picture
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Picture")]
     pub look: Look,
     /// Where it is rendered
-    #[command(flatten)]
+    #[command(flatten, next_help_heading = "Device")]
     pub place: Place,
     /// Writes a report: device, settings, counts, times; `-` for standard output
     #[arg(long, value_name = "FILE")]
@@ -143,13 +170,13 @@ fn outputs(layers: &[Layer]) -> Outputs {
 /// The camera; the whole scene is framed unless it is given.
 #[derive(Args, Clone, Debug)]
 pub struct Camera {
-    /// Where it stands
+    /// The eye, in the positions' unit
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     pub eye: Option<DVec3>,
-    /// Where it looks; the middle of the scene unless given
+    /// The point that it looks at; the middle of the scene unless given
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     pub target: Option<DVec3>,
-    /// What is up; 0,1,0 unless given
+    /// The direction that is up in the picture; 0,1,0 unless given
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     pub up: Option<DVec3>,
     /// Vertical angle of view; 45 unless given
@@ -172,8 +199,8 @@ pub struct Look {
     /// What α says of a pixel
     #[arg(long, value_enum, default_value = "mask")]
     pub alpha: Alpha,
-    /// Colour where nothing is: transparent, or sRGB codes from 0 to 255
-    #[arg(long, value_name = "R,G,B|transparent", default_value = "transparent", value_parser = background, allow_hyphen_values = true)]
+    /// Colour where nothing is: transparent, sRGB codes from 0 to 255, or as CSS has it: #fff, white
+    #[arg(long, value_name = "R,G,B|COLOR|transparent", default_value = "transparent", value_parser = background, allow_hyphen_values = true)]
     pub background: Background,
     /// Variance of the anti-aliasing filter, px²; the method's unless given, 1 of most
     #[arg(long, value_name = "VARIANCE_PX2", allow_hyphen_values = true)]

@@ -38,8 +38,8 @@ pub struct Truth {
     /// What the picture shows
     #[arg(long, value_enum, default_value = "lit")]
     pub shading: Shading,
-    /// Colour where nothing is: transparent, or sRGB codes from 0 to 255
-    #[arg(long, value_name = "R,G,B|transparent", default_value = "transparent", value_parser = background, allow_hyphen_values = true)]
+    /// Colour where nothing is: transparent, sRGB codes from 0 to 255, or as CSS has it: #fff, white
+    #[arg(long, value_name = "R,G,B|COLOR|transparent", default_value = "transparent", value_parser = background, allow_hyphen_values = true)]
     pub background: Background,
     /// Traces the picture even if it has been before, and does not keep it
     #[arg(long)]

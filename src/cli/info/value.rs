@@ -1,0 +1,135 @@
+//! `surfel info --json`.
+
+use crate::cli::args::Info;
+use crate::cli::files::print_json;
+use crate::cli::inputs::{scene, scene_cloud};
+use crate::cli::progress;
+use serde_json::{Map, Value, json};
+use std::path::Path;
+use surfel::geometry::estimate::{Estimated, spacing};
+use surfel::geometry::{Cloud, Colours, Model, Parts, View};
+use surfel::io::ply::{self, Dropped, Element, Inspected, Loaded, ReadOptions, Report};
+use surfel::{Error, Result};
+
+/// An object with its entries.
+type Object = Map<String, Value>;
+
+/// As `surfel info` tells it. Of a file whose points cannot be drawn it has what the header declares, and the error says why.
+pub(super) fn run(args: &Info) -> Result<()> {
+    let mut all = Object::new();
+    all.insert("input".into(), args.input.to_string_lossy().into());
+    let found = match scene(&args.input) {
+        Some(name) => scene_cloud(name).and_then(|cloud| {
+            let points = cloud.len() as u64;
+            model(&mut all, args, (name, points), cloud)
+        }),
+        None => file(&mut all, args),
+    };
+    // Of an input that cannot be opened there is nothing to tell.
+    if all.len() > 1 {
+        print_json(&Value::Object(all))?;
+    }
+    found
+}
+
+fn file(all: &mut Object, args: &Info) -> Result<()> {
+    let path = Path::new(&args.input);
+    let options = ReadOptions { triangles: args.points.polygons, ..Default::default() };
+    let Inspected { format, elements, loaded } = ply::inspect(path, &options, &*progress::bars(false))?;
+    all.insert("format".into(), format.to_string().into());
+    all.insert("elements".into(), elements.iter().map(element).collect());
+    let Loaded { cloud, report } = loaded?;
+    read(all, &report, &cloud);
+    model(all, args, (&path.display().to_string(), report.points), cloud)
+}
+
+fn element(element: &Element) -> Value {
+    let properties = element.properties.iter();
+    let properties: Value = properties
+        .map(|property| json!({ "name": property.name, "kind": property.kind.to_string() }))
+        .collect();
+    json!({ "name": element.name, "count": element.count, "properties": properties })
+}
+
+fn read(all: &mut Object, report: &Report, cloud: &Cloud) {
+    let Dropped { position, transparent } = report.dropped;
+    let seen = match cloud.view {
+        View::Unknown => Value::Null,
+        View::From(eye) => json!({ "from": (cloud.origin + eye.as_dvec3()).to_array() }),
+        View::Towards(direction) => json!({ "along": direction.to_array() }),
+    };
+    let Value::Object(read) = json!({
+        "understood": report.understood,
+        "skipped": report.skipped,
+        "skipped_elements": report.skipped_elements,
+        "gaussians": report.gaussians,
+        "origin": cloud.origin.to_array(),
+        "seen": seen,
+        "faces": { "understood": report.faces.understood, "skipped": report.faces.skipped },
+        "lines": { "understood": report.lines.understood, "skipped": report.lines.skipped, "sides_of_faces": report.lines.sides },
+        "left_out": { "without_position": position, "transparent": transparent },
+        "trailing_bytes": report.trailing,
+    }) else {
+        return;
+    };
+    all.extend(read);
+}
+
+/// What is drawn of so many points, and where its normals and radii are from.
+fn model(all: &mut Object, args: &Info, (name, points): (&str, u64), cloud: Cloud) -> Result<()> {
+    let polygons = args.points.polygons || scene(&args.input).is_some();
+    let made = cloud.into_model(polygons, &args.points.estimate(), &*progress::bars(false));
+    let (model, estimated) = made.map_err(|cause| Error::input(name, cause))?;
+    let Model { surfels, primitives } = &model;
+    let bounds = Parts::from(&model).bounds();
+    let colours = match surfels.colours.as_ref().or(primitives.colours.as_ref()) {
+        None => Value::Null,
+        Some(Colours::Srgb8(_)) => "srgb8".into(),
+        Some(Colours::Linear(_)) => "linear".into(),
+    };
+    let Value::Object(model) = json!({
+        "points": points,
+        "surfels": surfels.len(),
+        "ribbons": primitives.ribbons.len(),
+        "tubes": primitives.tubes.len(),
+        "triangles": primitives.triangles.len(),
+        "bounds": bounds.map(|bounds| json!({ "min": bounds.min.to_array(), "max": bounds.max.to_array() })),
+        "spacing": spacing(&surfels.positions),
+        "radius": range(&surfels.radii),
+        "radius_of_lines": range(&primitives.radii),
+        "colours": colours,
+        "estimated": sources(&estimated),
+    }) else {
+        return Ok(());
+    };
+    all.extend(model);
+    Ok(())
+}
+
+/// Least, greatest and median; null if there are none.
+fn range(radii: &[f32]) -> Value {
+    let mut radii = radii.to_vec();
+    radii.sort_unstable_by(f32::total_cmp);
+    match (radii.first(), radii.last()) {
+        (Some(min), Some(max)) => json!({ "min": min, "max": max, "median": radii[radii.len() / 2] }),
+        _ => Value::Null,
+    }
+}
+
+fn sources(estimated: &Estimated) -> Value {
+    json!({
+        "normals": {
+            "given": estimated.normals_given, "from_faces": estimated.normals_from_faces,
+            "from_neighbours": estimated.normals_from_neighbours, "two_sided": estimated.two_sided,
+        },
+        "radii": {
+            "given": estimated.radii_given, "from_faces": estimated.radii_from_faces,
+            "from_neighbours": estimated.radii_from_neighbours,
+        },
+        "radii_of_lines": {
+            "given": estimated.line_radii_given, "from_lines": estimated.line_radii_from_lines,
+            "from_extent": estimated.line_radii_from_extent,
+        },
+        "outliers": estimated.outliers,
+    })
+}

@@ -1,0 +1,107 @@
+//! What lists and explains: as JSON, as completions of shells, as pages of the manual.
+
+use crate::program::{Program, surfels};
+use serde_json::Value;
+
+fn json(program: &Program, arguments: &str) -> Value {
+    let run = program.run(arguments);
+    serde_json::from_str(run.text()).unwrap_or_else(|error| panic!("{arguments}: {error}: {}", run.text()))
+}
+
+#[test]
+fn lists_are_json_where_that_is_asked_for() {
+    let program = Program::new();
+    let methods = json(&program, "methods --json");
+    let first = &methods[0];
+    assert_eq!(first["name"], "perspective-ewa");
+    assert_eq!(first["axes"]["footprint"], "conic");
+    assert_eq!(first["frames"]["drawn"]["passes"][0], "footprint");
+    assert!(first["frames"]["computed"]["targets"][0]["bytes_per_pixel"].as_f64().unwrap() > 0.0);
+    assert_eq!(methods.as_array().unwrap().len(), surfel::methods::Method::ALL.len());
+    assert!(methods.as_array().unwrap().iter().any(|method| method["axes"].is_null()), "pull-push has none");
+
+    let scenes = json(&program, "scenes --json");
+    assert_eq!(scenes["scenes"].as_array().unwrap().len(), surfel::scenes::list().len());
+    assert!(scenes["scenes"][0]["camera"]["eye"][2].is_number());
+    assert!(scenes["every_scene"].as_array().unwrap().iter().any(|parameter| parameter["name"] == "seed"));
+
+    let devices = json(&program, "devices --json");
+    assert_eq!(devices.as_array().unwrap().iter().filter(|device| device["chosen"] == true).count(), 1);
+}
+
+#[test]
+fn a_file_is_described_in_json() {
+    let program = Program::new();
+    program.write("a.ply", surfels(&["0 0 0 0 0 1 1", "4 0 0 0 0 1 3", "2 0 0 0 0 1 2", "0 nan 0 0 0 1 1"]));
+    let info = json(&program, "info a.ply --json");
+    assert_eq!((&info["input"], &info["format"]), (&"a.ply".into(), &"ascii".into()));
+    assert_eq!((&info["points"], &info["surfels"]), (&4.into(), &3.into()));
+    assert_eq!(info["elements"][0]["properties"][3], serde_json::json!({ "name": "nx", "kind": "float" }));
+    assert_eq!(info["bounds"]["max"], serde_json::json!([7.0, 3.0, 3.0]));
+    assert_eq!(info["radius"], serde_json::json!({ "min": 1.0, "max": 3.0, "median": 2.0 }));
+    assert_eq!(info["estimated"]["normals"]["given"], 3);
+    assert_eq!(info["left_out"]["without_position"], 1);
+    let scene = json(&program, "info scene:torus?points=500 --json");
+    assert_eq!((&scene["surfels"], &scene["elements"]), (&500.into(), &Value::Null));
+
+    program.write("b.ply", surfels(&["0 0 0 0 0 1 1"]).replace("radius", "confidence"));
+    let run = program.run("info b.ply --json");
+    assert!(run.error(1).contains("give a radius"), "{}", run.err);
+    let told: Value = serde_json::from_slice(&run.out).unwrap();
+    assert_eq!(told["elements"][0]["count"], 1);
+    let run = program.run("info missing.ply --json");
+    assert!(run.error(1).contains("there is no such file") && run.out.is_empty());
+}
+
+#[test]
+fn shells_complete_and_the_manual_has_a_page_for_each_command() {
+    let program = Program::new();
+    for (shell, has) in [("bash", "complete -F"), ("zsh", "#compdef surfel"), ("fish", "complete -c surfel")]
+    {
+        let run = program.run(&format!("completions {shell}"));
+        assert!(run.text().contains(has) && run.text().contains("turntable"), "{shell}: {}", run.text());
+    }
+    assert!(program.run("completions cmd").error(2).contains("possible values"));
+    std::fs::create_dir(program.path("man")).unwrap();
+    program.run("man man").text();
+    for page in ["man/surfel.1", "man/surfel-render.1", "man/surfel-view.1"] {
+        let text = std::fs::read_to_string(program.path(page)).unwrap();
+        assert!(text.contains(".TH"), "{page}: {text}");
+    }
+    assert!(program.run("man no/such").error(1).contains("cannot write the manual"));
+}
+
+#[test]
+fn colours_are_those_of_css_too() {
+    let program = Program::new();
+    let render = |background: &str| {
+        let run = program.run(&format!(
+            "render scene:torus?points=500 -o - --size 32x32 --quiet --reference --background {background}"
+        ));
+        assert_eq!(run.code, 0, "{background}: {}", run.err);
+        run.out
+    };
+    let expected = render("255,165,0");
+    for background in ["#ffa500", "orange", "#FFA500FF"] {
+        assert!(render(background) == expected, "{background}");
+    }
+    for background in ["#ffa50080", "oranje", "#ff"] {
+        let run = program.run(&format!("render scene:torus -o a.png --background {background}"));
+        assert!(run.error(2).contains("#fff, white"), "{background}: {}", run.err);
+    }
+}
+
+#[test]
+fn help_is_in_groups_and_speaks_of_nothing_else() {
+    let program = Program::new();
+    let run = program.run("render --help");
+    let help = run.text();
+    for heading in ["Options:", "Method, changed:", "Points:", "Colours:", "Camera:", "Picture:", "Device:"] {
+        assert!(help.lines().any(|line| line == heading), "no `{heading}` in\n{help}");
+    }
+    // Links of the library's documentation.
+    for command in ["render", "view", "info", "convert", "compare", "truth", "bench", "man", "completions"] {
+        let run = program.run(&format!("{command} --help"));
+        assert!(!run.text().contains("](") && !run.text().contains("[`"), "{command}:\n{}", run.text());
+    }
+}
