@@ -60,6 +60,7 @@ impl<'a> View<'a> {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn every_case_through_every_camera() {
     assert_agree(failures(&cases(), &all_views, ""));
 }
@@ -280,6 +281,7 @@ fn small_mutations_fail() {
 
 /// The α of discs that are a little larger, in a picture that is right otherwise.
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn another_coverage_fails() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let renderers = Renderers::new(&device);

@@ -151,6 +151,7 @@ fn a_placed_scene_is_the_reference_of_its_surfels_moved() {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn scenes_that_run_through_each_other_are_one_cloud_by_every_method() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let (a, b) = (painted(3_000), rich(1_500));

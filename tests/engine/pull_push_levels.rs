@@ -374,6 +374,7 @@ fn ellipses_without_sides_and_what_has_no_colours() {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn ribbons_tubes_and_triangles() {
     let model = |name: &str| scenes::model(&format!("scene:{name}&primitives=on")).unwrap();
     let list = [

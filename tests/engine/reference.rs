@@ -141,6 +141,7 @@ fn another_low_pass_fails() {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn another_epsilon_fails() {
     all_fail(100, |view| {
         let settings = Settings { epsilon: view.case.settings.epsilon * 0.5, ..view.case.settings.clone() };

@@ -71,6 +71,7 @@ fn coverage_is_what_the_surface_covers() {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn a_million_splats_show_what_rays_meet() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let truth = Truth::new(1024);

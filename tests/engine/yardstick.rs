@@ -33,6 +33,7 @@ fn print(name: &str, verdict: &Comparison) {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn every_case_through_every_camera() {
     all_agree(&cases());
 }
@@ -45,6 +46,7 @@ fn every_case_with_only_small_splats_widened() {
 }
 
 #[test]
+#[ignore = "takes long: tools/test --all"]
 fn every_case_with_coverage() {
     let mut cases = cases();
     cases.iter_mut().for_each(|case| case.settings.alpha = Alpha::Coverage);
