@@ -206,10 +206,11 @@ impl History {
 }
 
 impl Past {
-    fn note(&mut self, access: Access) {
+    /// Notes an access; `moves` says whether it changes an image's layout, which is a write before the access's stages.
+    fn note(&mut self, access: Access, moves: bool) {
         // The CPU reads what is over.
         self.stages |= access.stages & !vk::PipelineStageFlags::HOST;
-        if access.write {
+        if access.write || moves {
             self.writes.0 |= access.stages;
             self.writes.1 |= access.mask;
             self.mask |= access.mask;
@@ -239,7 +240,8 @@ impl Tracker {
         for used in uses {
             let past = history.entry(used.resource).or_default();
             let change = self.state_of(used.resource, past).advance(used.access);
-            past.note(used.access);
+            let moves = change.as_ref().is_some_and(|change| change.from != used.access.layout);
+            past.note(used.access, moves);
             let Some(change) = change else { continue };
             barrier.source |= change.stages;
             barrier.target |= used.access.stages;
@@ -392,7 +394,8 @@ mod tests {
         let mut next = Tracker::default();
         next.left(&history, &[kept]);
         let read = next.barrier(&history, &[kept]).unwrap();
-        assert_eq!(read.source, Stages::COLOR_ATTACHMENT_OUTPUT, "what wrote it in the frame before");
+        let wrote = Stages::COLOR_ATTACHMENT_OUTPUT | Stages::FRAGMENT_SHADER;
+        assert_eq!(read.source, wrote, "what wrote it in the frame before, and what changed its layout");
         assert!(read.images.is_empty(), "it stays in its layout");
     }
 
