@@ -8,9 +8,9 @@ use crate::{FLOATS, ONE};
 use ash::vk;
 use std::ffi::{CStr, c_void};
 use std::sync::{Arc, Mutex};
-use surfel::embed::{Lent, Options, Renderer, View};
+use surfel::embed::{Options, Renderer, View};
 use surfel::methods::Method;
-use surfel::vk::{Device, DeviceLimits};
+use surfel::vk::Device;
 use surfel::{Precision, Rasterizer};
 
 /// Stages that the barriers of the one host that listens wait for.
@@ -41,33 +41,8 @@ unsafe extern "system" fn barrier(
 /// The host's device, lent with a function that listens.
 fn lend(host: &Host) -> Arc<Device> {
     *RECORDING.lock().unwrap() = Some(host.device.fp_v1_0().cmd_pipeline_barrier);
-    let load = |name: &CStr| match name.to_bytes() {
-        b"vkCmdPipelineBarrier" => barrier as *const c_void,
-        _ => {
-            let device = host.device.handle();
-            // SAFETY: the device is alive.
-            let found = unsafe { host.instance.get_device_proc_addr(device, name.as_ptr()) };
-            found.map_or(std::ptr::null(), |found| found as *const c_void)
-        }
-    };
-    // SAFETY: the functions are the device's, or call it; it outlives what is lent.
-    unsafe {
-        let listening = ash::Device::load_with(load, host.device.handle());
-        let lent = Lent {
-            instance: &host.instance,
-            physical: host.physical,
-            device: &listening,
-            queue_family: host.family,
-            enabled: host.enabled,
-            dynamic_rendering: true,
-            labels: true,
-            limits: DeviceLimits::default(),
-            memory: None,
-            memory_blocks: Default::default(),
-            pipeline_cache: None,
-        };
-        Device::borrow(lent).unwrap()
-    }
+    let replace = |name: &CStr| (name == c"vkCmdPipelineBarrier").then_some(barrier as *const c_void);
+    host.lend_replaced(replace).unwrap()
 }
 
 #[test]

@@ -10,9 +10,9 @@ use std::ffi::{CStr, c_void};
 use std::sync::Arc;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
-use surfel::embed::{Lent, Options, Renderer, View};
+use surfel::embed::{Options, Renderer, View};
 use surfel::methods::Method;
-use surfel::vk::{Device, DeviceLimits};
+use surfel::vk::Device;
 use surfel::{Precision, Settings};
 
 /// Pipelines that were made by the one host that counts.
@@ -55,38 +55,15 @@ unsafe extern "system" fn compute(
 
 /// The host's device, lent with functions that count.
 fn lend(host: &Host) -> Arc<Device> {
-    let find = |name: &CStr| {
-        let device = host.device.handle();
-        // SAFETY: the device is alive.
-        let found = unsafe { host.instance.get_device_proc_addr(device, name.as_ptr()) };
-        found.map_or(std::ptr::null(), |found| found as *const c_void)
-    };
     let table = host.device.fp_v1_0();
     *MAKING.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) =
         Some((table.create_graphics_pipelines, table.create_compute_pipelines));
-    let load = |name: &CStr| match name.to_bytes() {
-        b"vkCreateGraphicsPipelines" => graphics as *const c_void,
-        b"vkCreateComputePipelines" => compute as *const c_void,
-        _ => find(name),
+    let replace = |name: &CStr| match name.to_bytes() {
+        b"vkCreateGraphicsPipelines" => Some(graphics as *const c_void),
+        b"vkCreateComputePipelines" => Some(compute as *const c_void),
+        _ => None,
     };
-    // SAFETY: the functions are the device's, or call it; it outlives what is lent.
-    unsafe {
-        let counting = ash::Device::load_with(load, host.device.handle());
-        let lent = Lent {
-            instance: &host.instance,
-            physical: host.physical,
-            device: &counting,
-            queue_family: host.family,
-            enabled: host.enabled,
-            dynamic_rendering: true,
-            labels: true,
-            limits: DeviceLimits::default(),
-            memory: None,
-            memory_blocks: Default::default(),
-            pipeline_cache: None,
-        };
-        Device::borrow(lent).unwrap()
-    }
+    host.lend_replaced(replace).unwrap()
 }
 
 fn settings(name: &str) -> Settings {

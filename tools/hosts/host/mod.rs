@@ -153,10 +153,36 @@ impl Host {
         limits: DeviceLimits,
         memory: Option<Box<dyn MemorySource>>,
     ) -> surfel::Result<Arc<Device>> {
+        self.lend_as(&self.device, limits, memory)
+    }
+
+    /// The device with some of its functions replaced by what `replace` gives for their names, each of which calls what it replaces.
+    pub fn lend_replaced(
+        &self,
+        replace: impl Fn(&CStr) -> Option<*const c_void>,
+    ) -> surfel::Result<Arc<Device>> {
+        let find = |name: &CStr| {
+            // SAFETY: the device is alive.
+            let found = unsafe { self.instance.get_device_proc_addr(self.device.handle(), name.as_ptr()) };
+            found.map_or(std::ptr::null(), |found| found as *const c_void)
+        };
+        // SAFETY: the functions are the device's, or call it.
+        let device = unsafe {
+            ash::Device::load_with(|name| replace(name).unwrap_or_else(|| find(name)), self.device.handle())
+        };
+        self.lend_as(&device, DeviceLimits::default(), None)
+    }
+
+    fn lend_as(
+        &self,
+        device: &ash::Device,
+        limits: DeviceLimits,
+        memory: Option<Box<dyn MemorySource>>,
+    ) -> surfel::Result<Arc<Device>> {
         let lent = Lent {
             instance: &self.instance,
             physical: self.physical,
-            device: &self.device,
+            device,
             queue_family: self.family,
             enabled: self.enabled,
             dynamic_rendering: true,
