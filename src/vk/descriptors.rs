@@ -88,6 +88,7 @@ impl Drop for SetLayout {
 pub struct DescriptorSet {
     pub(super) raw: vk::DescriptorSet,
     pool: vk::DescriptorPool,
+    kinds: Vec<vk::DescriptorType>,
     device: Arc<Device>,
 }
 
@@ -95,22 +96,9 @@ impl DescriptorSet {
     /// A set of `layout` with one entry of `bindings` a binding. What they name must outlive the set's last use.
     pub fn new(device: &Arc<Device>, layout: &SetLayout, bindings: &[Binding<'_>]) -> Result<Self> {
         assert_eq!(layout.bindings.len(), bindings.len(), "one entry a binding");
-        let sizes: Vec<_> = layout
-            .bindings
-            .iter()
-            .map(|(kind, _)| vk::DescriptorPoolSize::default().ty(*kind).descriptor_count(1))
-            .collect();
-        let info = vk::DescriptorPoolCreateInfo::default().max_sets(1).pool_sizes(&sizes);
-        // SAFETY: `info` is valid; the pool, and the set with it, is destroyed in `drop`.
-        let pool = unsafe { device.raw.create_descriptor_pool(&info, None) }
-            .map_err(Error::vulkan("vkCreateDescriptorPool"))?;
-        let mut set = Self { raw: vk::DescriptorSet::null(), pool, device: device.clone() };
-        let layouts = [layout.raw];
-        let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool).set_layouts(&layouts);
-        // SAFETY: the pool was made for one set of this layout.
-        let sets = unsafe { device.raw.allocate_descriptor_sets(&info) }
-            .map_err(Error::vulkan("vkAllocateDescriptorSets"))?;
-        set.raw = sets[0];
+        let kinds: Vec<_> = layout.bindings.iter().map(|(kind, _)| *kind).collect();
+        let (raw, pool) = device.descriptor_pools.allocate(&device.raw, layout.raw, &kinds)?;
+        let set = Self { raw, pool, kinds, device: device.clone() };
         set.write(bindings);
         Ok(set)
     }
@@ -169,7 +157,8 @@ pub fn input_layout(format: vk::Format) -> vk::ImageLayout {
 
 impl Drop for DescriptorSet {
     fn drop(&mut self) {
-        // SAFETY: the GPU is done with it (see the module's docs).
-        unsafe { self.device.raw.destroy_descriptor_pool(self.pool, None) };
+        let Self { raw, pool, kinds, device } = self;
+        // SAFETY: it was given with these; the GPU is done with it (see the module's docs).
+        unsafe { device.descriptor_pools.free(&device.raw, (*raw, *pool), kinds) };
     }
 }

@@ -2,6 +2,7 @@
 
 use super::access::History;
 use super::choose::{DeviceDescription, choose};
+use super::descriptor_pool::DescriptorPools;
 use super::instance::Instance;
 use super::limits::{Capabilities, DeviceLimits};
 use super::memory::{self, MemoryBlocks, MemorySource};
@@ -42,6 +43,7 @@ pub struct Device {
     pub(super) pipelines: PipelinePool,
     pub(super) labels: Option<debug_utils::Device>,
     pub(super) history: History,
+    pub(super) descriptor_pools: DescriptorPools,
     pub(super) made: Made,
     capabilities: Capabilities,
     description: DeviceDescription,
@@ -102,6 +104,7 @@ pub(super) struct Made {
 
 /// What a device holds and has made, to prove that a frame makes nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Usage {
     /// Buffers and images ever allocated.
     pub allocations: u64,
@@ -109,6 +112,8 @@ pub struct Usage {
     pub pipelines: u64,
     /// Device memory bound now, bytes.
     pub bytes: u64,
+    /// Pools of descriptor sets that are there now.
+    pub descriptor_pools: usize,
 }
 
 impl Device {
@@ -175,6 +180,7 @@ impl Device {
             pipelines: PipelinePool::default(),
             labels,
             history: History::default(),
+            descriptor_pools: DescriptorPools::default(),
             made: Made::default(),
             capabilities,
             description,
@@ -227,6 +233,7 @@ impl Device {
             pipelines: PipelinePool::default(),
             labels: lent.labels.then(|| debug_utils::Device::new(instance, device)),
             history: History::default(),
+            descriptor_pools: DescriptorPools::default(),
             made: Made::default(),
             capabilities,
             description,
@@ -362,6 +369,7 @@ impl Device {
             allocations: read(&self.made.allocations),
             pipelines: read(&self.made.pipelines),
             bytes: read(&self.made.bytes),
+            descriptor_pools: self.descriptor_pools.count(),
         }
     }
 
@@ -383,6 +391,7 @@ impl Drop for Device {
                 // A lost device has nothing left to wait for.
                 let _ = self.raw.device_wait_idle();
             }
+            self.descriptor_pools.destroy(&self.raw);
             self.pipeline_cache.store_and_destroy(&self.raw);
             ManuallyDrop::drop(&mut self.pipeline_cache);
             ManuallyDrop::drop(&mut self.memory);

@@ -14,6 +14,7 @@ mod choose;
 #[cfg(feature = "window")]
 mod command_pool;
 mod commands;
+mod descriptor_pool;
 mod descriptors;
 mod device;
 mod encoder;
@@ -32,6 +33,7 @@ mod recorder;
 mod render_pass;
 mod requirements;
 mod shader_stage;
+#[cfg_attr(not(feature = "window"), allow(dead_code, reason = "some are for windows alone"))]
 pub(crate) mod shaders;
 #[cfg(feature = "window")]
 mod slot;

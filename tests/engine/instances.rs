@@ -137,6 +137,24 @@ fn a_scene_that_stands_as_it_is_makes_the_frame_that_it_makes_alone() {
 }
 
 #[test]
+fn many_places_share_pools_of_descriptor_sets() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let scene = Arc::new(Scene::upload(&device, &plain(50)).unwrap());
+    let mut renderer = Renderer::new(&device, options(Rasterizer::Compute)).unwrap();
+    let mut pools = |count: usize| {
+        let place =
+            |i: usize| exact(0.5, [0.0; 3], [(i % 20) as f64 / 8.0 - 1.0, (i / 20) as f64 / 8.0, 0.0]);
+        let instances: Vec<_> = (0..count).map(|i| Instance::new(&scene, place(i))).collect();
+        renderer.render(&instances[..], &perspective(), &settings("perspective-ewa")).unwrap();
+        device.usage().descriptor_pools
+    };
+    let [one, many, again, few] = [1, 500, 500, 1].map(&mut pools);
+    assert!(one == 1 && many <= 8 && again == many, "{one}, {many}, {again}");
+    assert!(few <= 2, "pools whose sets went are kept: {few}");
+    assert_silent(&device);
+}
+
+#[test]
 fn a_placed_scene_is_the_reference_of_its_surfels_moved() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let surfels = rich(3_000);

@@ -1,0 +1,194 @@
+//! Pools of descriptor sets, shared by everything on a device: a scene that stands in thousands of places has thousands of sets.
+
+use crate::error::{Error, Result};
+use ash::vk;
+use std::sync::{Mutex, MutexGuard};
+
+/// Kinds of descriptors, with how many a set of a pool has of each, on average.
+const KINDS: [(vk::DescriptorType, u32); 4] = [
+    (vk::DescriptorType::UNIFORM_BUFFER, 1),
+    (vk::DescriptorType::STORAGE_BUFFER, 11),
+    (vk::DescriptorType::SAMPLED_IMAGE, 3),
+    (vk::DescriptorType::INPUT_ATTACHMENT, 4),
+];
+/// Sets of the first pool; each further one has twice as many as the one before, up to the most.
+const SETS: [u32; 2] = [32, 1024];
+
+/// All pools of a device.
+#[derive(Default)]
+pub(super) struct DescriptorPools(Mutex<Vec<Pool>>);
+
+/// A pool, and what is left of it.
+struct Pool {
+    raw: vk::DescriptorPool,
+    sets: u32,
+    left: Room,
+}
+
+/// A number of sets, and of descriptors of each kind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Room {
+    sets: u32,
+    descriptors: [u32; KINDS.len()],
+}
+
+impl Room {
+    /// All of a pool of so many sets.
+    fn of_pool(sets: u32) -> Self {
+        Self { sets, descriptors: KINDS.map(|(_, each)| sets * each) }
+    }
+
+    /// What a set with these bindings takes.
+    fn of_set(bindings: &[vk::DescriptorType]) -> Self {
+        let of_kind = |(kind, _)| bindings.iter().filter(|binding| **binding == kind).count() as u32;
+        Self { sets: 1, descriptors: KINDS.map(of_kind) }
+    }
+
+    /// What is left without another; `None` if it is not in this.
+    fn without(self, other: Self) -> Option<Self> {
+        let mut left = Self { sets: self.sets.checked_sub(other.sets)?, ..self };
+        for (left, taken) in left.descriptors.iter_mut().zip(other.descriptors) {
+            *left = left.checked_sub(taken)?;
+        }
+        Some(left)
+    }
+
+    fn with(self, other: Self) -> Self {
+        let mut both = Self { sets: self.sets + other.sets, ..self };
+        both.descriptors.iter_mut().zip(other.descriptors).for_each(|(sum, more)| *sum += more);
+        both
+    }
+}
+
+impl DescriptorPools {
+    /// A new set of `layout`, whose bindings are of these kinds, and the pool that it is of.
+    pub(super) fn allocate(
+        &self,
+        device: &ash::Device,
+        layout: vk::DescriptorSetLayout,
+        bindings: &[vk::DescriptorType],
+    ) -> Result<(vk::DescriptorSet, vk::DescriptorPool)> {
+        let (mut pools, wanted) = (self.lock(), Room::of_set(bindings));
+        for pool in pools.iter_mut() {
+            let Some(left) = pool.left.without(wanted) else { continue };
+            // Sets that came and went may have left it in pieces.
+            if let Some(set) = allocate(device, pool.raw, layout)? {
+                pool.left = left;
+                return Ok((set, pool.raw));
+            }
+        }
+        let [least, most] = SETS;
+        // The largest set of all has to be in it.
+        let descriptors = bindings.len() as u32;
+        let sets = pools.last().map_or(least, |last| (2 * last.sets).min(most)).max(descriptors);
+        let mut pool = Pool::new(device, sets)?;
+        let set = allocate(device, pool.raw, layout);
+        let left = pool.left.without(wanted);
+        let out = || Error::vulkan("vkAllocateDescriptorSets")(vk::Result::ERROR_OUT_OF_POOL_MEMORY);
+        match set.and_then(|set| set.zip(left).ok_or_else(out)) {
+            Ok((set, left)) => {
+                pool.left = left;
+                let raw = pool.raw;
+                pools.push(pool);
+                Ok((set, raw))
+            }
+            Err(error) => {
+                // SAFETY: it is the device's, and nothing uses it.
+                unsafe { device.destroy_descriptor_pool(pool.raw, None) };
+                Err(error)
+            }
+        }
+    }
+
+    /// Takes a set back; a pool that has no other goes, unless it is the only one.
+    ///
+    /// # Safety
+    /// The set was given by [`DescriptorPools::allocate`] of this `device` with these `bindings` and this `pool`, and the GPU is done with it.
+    pub(super) unsafe fn free(
+        &self,
+        device: &ash::Device,
+        (set, pool): (vk::DescriptorSet, vk::DescriptorPool),
+        bindings: &[vk::DescriptorType],
+    ) {
+        let mut pools = self.lock();
+        let Some(place) = pools.iter().position(|own| own.raw == pool) else { return };
+        // SAFETY: by the caller; the pool is locked. Freeing cannot fail.
+        let _ = unsafe { device.free_descriptor_sets(pool, &[set]) };
+        pools[place].left = pools[place].left.with(Room::of_set(bindings));
+        if pools[place].left.sets == pools[place].sets && pools.len() > 1 {
+            let empty = pools.remove(place);
+            // SAFETY: none of its sets is there any more.
+            unsafe { device.destroy_descriptor_pool(empty.raw, None) };
+        }
+    }
+
+    /// How many there are.
+    pub(super) fn count(&self) -> usize {
+        self.lock().len()
+    }
+
+    /// Destroys all pools.
+    ///
+    /// # Safety
+    /// No set of theirs is used any more.
+    pub(super) unsafe fn destroy(&self, device: &ash::Device) {
+        for pool in self.lock().drain(..) {
+            // SAFETY: by the caller.
+            unsafe { device.destroy_descriptor_pool(pool.raw, None) };
+        }
+    }
+
+    fn lock(&self) -> MutexGuard<'_, Vec<Pool>> {
+        self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+    }
+}
+
+impl Pool {
+    fn new(device: &ash::Device, sets: u32) -> Result<Self> {
+        let left = Room::of_pool(sets);
+        let sizes =
+            KINDS.map(|(kind, each)| vk::DescriptorPoolSize { ty: kind, descriptor_count: sets * each });
+        let info = vk::DescriptorPoolCreateInfo::default()
+            .flags(vk::DescriptorPoolCreateFlags::FREE_DESCRIPTOR_SET)
+            .max_sets(sets)
+            .pool_sizes(&sizes);
+        // SAFETY: `info` is valid; the pool is destroyed in `DescriptorPools::free` or `destroy`.
+        let raw = unsafe { device.create_descriptor_pool(&info, None) }
+            .map_err(Error::vulkan("vkCreateDescriptorPool"))?;
+        Ok(Self { raw, sets, left })
+    }
+}
+
+/// A set of a pool; `None` if that has no room in one piece.
+fn allocate(
+    device: &ash::Device,
+    pool: vk::DescriptorPool,
+    layout: vk::DescriptorSetLayout,
+) -> Result<Option<vk::DescriptorSet>> {
+    let layouts = [layout];
+    let info = vk::DescriptorSetAllocateInfo::default().descriptor_pool(pool).set_layouts(&layouts);
+    // SAFETY: layout and pool are alive and the device's; the pool is locked, or not yet shared.
+    match unsafe { device.allocate_descriptor_sets(&info) } {
+        Ok(sets) => Ok(sets.first().copied()),
+        Err(vk::Result::ERROR_FRAGMENTED_POOL | vk::Result::ERROR_OUT_OF_POOL_MEMORY) => Ok(None),
+        Err(error) => Err(Error::vulkan("vkAllocateDescriptorSets")(error)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_taken_from_a_pool_comes_back() {
+        use vk::DescriptorType as Kind;
+        let all = Room::of_pool(2);
+        let set = Room::of_set(&[Kind::UNIFORM_BUFFER, Kind::STORAGE_BUFFER, Kind::STORAGE_BUFFER]);
+        assert_eq!(set, Room { sets: 1, descriptors: [1, 2, 0, 0] });
+        let one = all.without(set).unwrap();
+        assert_eq!(one.with(set), all);
+        assert_eq!(one.without(set).unwrap().without(set), None);
+        let large = Room::of_set(&[Kind::STORAGE_BUFFER; 23]);
+        assert_eq!(all.without(large), None);
+    }
+}
