@@ -7,6 +7,7 @@ pub type Result<T, E = Error> = std::result::Result<T, E>;
 
 /// Everything that can go wrong, by whose turn it is to act.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum Error {
     /// The contents of an input cannot be used: `name` is the file or scene, `cause` says what is wrong with it and what to do.
     #[error("{name}: {cause}")]
@@ -17,7 +18,7 @@ pub enum Error {
         cause: String,
     },
     /// A file could not be opened, read or written.
-    #[error("{}: {action}: {source}", path.display())]
+    #[error("{}: {action}: {}", path.display(), in_words(source))]
     Io {
         /// The file.
         path: PathBuf,
@@ -77,5 +78,28 @@ impl Error {
     /// Whether the device is gone and only a new one can go on.
     pub fn is_device_lost(&self) -> bool {
         matches!(self, Self::Vulkan { result: ash::vk::Result::ERROR_DEVICE_LOST, .. })
+    }
+}
+
+/// What the operating system says, without its number.
+fn in_words(error: &std::io::Error) -> String {
+    let text = error.to_string();
+    text.split(" (os error ").next().unwrap_or(&text).to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_system_speaks_in_words() {
+        let missing = std::fs::File::open("/nowhere/a.ply").unwrap_err();
+        let text = Error::io(Path::new("a.ply"), "cannot open")(missing).to_string();
+        assert_eq!(text, "a.ply: cannot open: No such file or directory");
+        let other = std::io::Error::other("it is full");
+        assert_eq!(
+            Error::io(Path::new("a"), "cannot write")(other).to_string(),
+            "a: cannot write: it is full"
+        );
     }
 }

@@ -37,6 +37,7 @@ pub struct RenderOptions {
 
 /// What is known of a rendered frame.
 #[derive(Clone, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct FrameReport {
     /// GPU time by pass, if the frame was profiled and the device has timestamps.
     pub pass_times: Vec<PassTime>,
@@ -224,7 +225,7 @@ fn too_large(device: &Device, options: &RenderOptions) -> Error {
     let capabilities = device.capabilities();
     let half = RenderOptions { precision: Precision::Half, ..*options };
     let halved = match Pyramids::fit(capabilities, &half) {
-        true => "compact samples (Precision::Half, --half), or ",
+        true => "half precision, or ",
         false => "",
     };
     let ([width, height], [most_width, most_height]) =

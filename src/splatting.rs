@@ -181,7 +181,7 @@ impl Normalization {
     pub fn check_weights(self, there: bool) -> Result<()> {
         match self {
             Self::Surfel if !there => refuse(
-                "normalization by surfel needs surfels with normalization weights: capture them with `surfel convert --weights`, or \
+                "normalization by surfel needs surfels with normalization weights: capture them beforehand, or \
                  choose the normalization pixel",
             ),
             _ => Ok(()),

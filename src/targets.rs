@@ -81,6 +81,7 @@ pub struct Formats {
 
 /// A target as a report shows it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct TargetInfo {
     /// Its name.
     pub name: &'static str,

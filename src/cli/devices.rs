@@ -23,7 +23,7 @@ pub fn run(json: bool) -> Result<()> {
 }
 
 fn value(index: usize, device: &DeviceDescription, chosen: Option<usize>) -> Value {
-    let DeviceDescription { name, kind, driver, api_version, refused, score } = device;
+    let DeviceDescription { name, kind, driver, api_version, refused, score, .. } = device;
     json!({
         "index": index, "name": name, "kind": kind, "driver": driver, "api_version": api_version, "score": score, "refused": refused,
         "chosen": chosen == Some(index),

@@ -69,17 +69,19 @@ fn code(error: &Error) -> u8 {
         _ if error.is_device_lost() => LOST,
         Error::Usage(_) => USAGE,
         Error::NoDevice(_) | Error::NoWindow(_) => NO_DEVICE,
-        Error::Input { .. }
-        | Error::Io { .. }
-        | Error::Memory { .. }
-        | Error::Vulkan { .. }
-        | Error::Cancelled => DATA,
+        _ => DATA,
     }
 }
 
-/// What to do about a failed Vulkan call; every other error says it itself.
+/// By which option or command what an error asks for can be had; what to do about a failed Vulkan call.
 fn remedy(error: &Error) -> &'static str {
     match error {
+        Error::Usage(text) if text.contains("normalization weights: capture") => {
+            " (`surfel convert --weights` captures them)"
+        }
+        Error::Usage(text) if text.contains("choose half precision") => " (--half is half precision)",
+        Error::NoDevice(text) if text.ends_with("choose another device") => " with --device",
+        Error::NoWindow(_) => "; `surfel render` needs no display",
         _ if error.is_device_lost() => {
             "; the driver gave up: try fewer points, or another device with --device"
         }

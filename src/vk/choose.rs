@@ -7,6 +7,7 @@ use ash::vk;
 
 /// A device of this machine as the user sees it.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct DeviceDescription {
     /// The device's own name.
     pub name: String,
@@ -33,7 +34,7 @@ pub(super) struct Candidate {
     pub(super) description: DeviceDescription,
 }
 
-/// Every device of this machine, in the order that `--device INDEX` counts. Errors if there is no Vulkan.
+/// Every device of this machine, in the order of their numbers. Errors if there is no Vulkan.
 pub fn describe_devices() -> Result<Vec<DeviceDescription>> {
     let instance = Instance::new(false, &[])?;
     Ok(candidates(&instance)?.into_iter().map(|candidate| candidate.description).collect())

@@ -52,6 +52,7 @@ impl DeviceLimits {
 
 /// What the engine asks of a device and may lack, after the mask.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct Capabilities {
     /// R32F and RGBA32F render targets can be blended.
     pub blend_float32: bool,

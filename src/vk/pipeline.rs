@@ -293,7 +293,8 @@ fn check_storage_buffers(device: &Device, sets: &[&SetLayout]) -> Result<()> {
         let needed: u32 = sets.iter().map(|set| set.storage_buffers(stage)).sum();
         if needed > most {
             return Err(Error::NoDevice(format!(
-                "a shader needs {needed} storage buffers, this one allows {most}: name another with --device"
+                "a shader needs {needed} storage buffers, and {} allows {most}: choose another device",
+                device.description().name
             )));
         }
     }

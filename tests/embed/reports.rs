@@ -69,7 +69,8 @@ fn frames_that_are_over_tell_what_is_asked_for() {
             (None, [labels(&uncounted[1]), vec!["composite"]].concat())
         );
         let (counts, _) = render(2, Measured { times: false, ..both });
-        assert_eq!(counts, Some(FrameReport { pass_times: vec![], counts: own[2].counts }));
+        assert_eq!(counts.as_ref().and_then(|report| report.counts), own[2].counts);
+        assert!(counts.is_some_and(|report| report.pass_times.is_empty()));
         assert_eq!(render(3, Measured::default()).0, None);
         stand.destroy(&host);
     }
@@ -210,7 +211,8 @@ fn subpasses_tell_what_is_asked_for() {
 
         // Drawn again, it is not timed again; not drawn at all, it has the times of what was prepared.
         let (counts, _) = render(2, Measured { times: false, ..both }, 2);
-        assert_eq!(counts, Some(FrameReport { pass_times: vec![], counts: own[2].counts }));
+        assert_eq!(counts.as_ref().and_then(|report| report.counts), own[2].counts);
+        assert!(counts.is_some_and(|report| report.pass_times.is_empty()));
         let twice = render(3, both, 2).0.unwrap();
         assert_eq!((labels(&twice), twice.counts), (labels(&report), own[3].counts));
         let (never, _) = render(4, both, 0);

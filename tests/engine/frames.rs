@@ -193,7 +193,7 @@ fn normalization_by_surfel_needs_weights() {
     let scene = Scene::upload(&device, &sphere(500)).unwrap();
     let mut renderer = Renderer::new(&device, everything(Rasterizer::Draw)).unwrap();
     let refused = renderer.render(&scene, &camera(SIZE), &object_ewa::progressive(true));
-    assert!(matches!(refused.err(), Some(Error::Usage(text)) if text.contains("`surfel convert --weights`")));
+    assert!(matches!(refused.err(), Some(Error::Usage(text)) if text.contains("normalization weights")));
     renderer.render(&scene, &camera(SIZE), &object_ewa::progressive(false)).unwrap();
     assert_silent(&device);
 }
@@ -342,7 +342,7 @@ fn too_few_storage_buffers_are_an_error() {
         renderer.render_picture(&scene, &Camera::framing(&scene.bounds(), 0.8, 1.0)?, &Settings::default())
     });
     let cause = made.map(drop).unwrap_err().to_string();
-    assert!(cause.contains("storage buffers, this one allows 4"), "{cause}");
+    assert!(cause.contains("storage buffers") && cause.contains("allows 4"), "{cause}");
     assert_silent(&device);
 }
 

@@ -384,10 +384,7 @@ fn what_cannot_be_is_refused() {
         .map(|bytes| DeviceLimits { max_storage_buffer_range: Some(bytes), ..Default::default() });
     let Some(large) = refused(narrow.clone(), open, |_| {}) else { return };
     assert!(large.contains("pyramids of 8x8 px do not fit the 1359 bytes"), "{large}");
-    assert!(
-        large.ends_with("choose compact samples (Precision::Half, --half), or at most 7x7 px"),
-        "{large}"
-    );
+    assert!(large.ends_with("choose half precision, or at most 7x7 px"), "{large}");
     let surfels = scenes::open("scene:bumpy-sphere?points=100&seed=1").unwrap();
     for (limits, precision) in [(wide, Precision::Full), (narrow, Precision::Half)] {
         let fitting = device(limits).unwrap();

@@ -33,6 +33,12 @@ impl Draft {
             materials: cloud.materials,
         };
         surfels.check().map_err(|error| error.to_string())?;
+        if let Some(i) = surfels.positions.iter().position(|position| !position.is_finite()) {
+            return Err(format!(
+                "point {i} is at {}: leave out points whose coordinates are not finite",
+                surfels.positions[i]
+            ));
+        }
         if u32::try_from(count).is_err() {
             return Err(format!("{count} points: at most 2³² − 1 are drawn"));
         }

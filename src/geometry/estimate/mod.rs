@@ -183,6 +183,15 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_position_that_is_no_place_is_named() {
+        use glam::Vec3;
+        let positions = vec![Vec3::ZERO, Vec3::new(0.0, f32::NAN, 0.0), Vec3::ONE, Vec3::X];
+        let cloud = Cloud { positions, ..Default::default() };
+        let refused = cloud.into_surfels(&Estimate::default(), &()).unwrap_err();
+        assert!(refused.starts_with("point 1 is at [0, NaN, 0]"), "{refused}");
+    }
+
+    #[test]
     fn every_count_is_added() {
         let one = Estimated {
             normals_given: 1,
