@@ -46,7 +46,7 @@ pub(crate) enum Retired {
 }
 
 /// What frames no longer need, kept for what it holds.
-pub(crate) type Outgoing = Box<dyn Any + Send>;
+pub(crate) type Outgoing = Box<dyn Any + Send + Sync>;
 
 /// Targets of the present variant.
 pub(crate) struct Present {
@@ -111,7 +111,7 @@ pub(crate) fn update<'a>(
 }
 
 impl Retired {
-    fn take<T: Any + Send>(&mut self, outgoing: Option<T>) {
+    fn take<T: Any + Send + Sync>(&mut self, outgoing: Option<T>) {
         if let (Self::Kept(list), Some(outgoing)) = (self, outgoing) {
             list.push(Box::new(outgoing));
         }

@@ -28,7 +28,7 @@ impl Held {
     }
 
     /// Keeps `held`, which frames so far may use.
-    pub(super) fn hold(&mut self, held: impl Any + Send) {
+    pub(super) fn hold(&mut self, held: impl Any + Send + Sync) {
         self.extend([Box::new(held) as Outgoing]);
     }
 

@@ -21,6 +21,14 @@ mod updates;
 
 use ash::vk;
 
+/// What hosts may share among threads, and give from one to another.
+const _: () = {
+    const fn shared<T: Send + Sync>() {}
+    shared::<surfel::embed::Renderer>();
+    shared::<surfel::embed::native::Renderer>();
+    shared::<surfel::Scene>();
+};
+
 const FLOATS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 const ONE: vk::SampleCountFlags = vk::SampleCountFlags::TYPE_1;
 const FOUR: vk::SampleCountFlags = vk::SampleCountFlags::TYPE_4;
