@@ -6,6 +6,7 @@ use super::inputs::{Inputs, Wanted};
 use super::report::{Gpu, HalfError, Report};
 use super::{camera, files, inputs, progress, reference, summary, turntable, vulkan};
 use std::path::Path;
+use surfel::embed::Measured;
 use surfel::geometry::{Camera, Model, Parts};
 use surfel::io::colour_bar::ColourBar;
 use surfel::io::image::{Encoded, Output, write};
@@ -79,9 +80,11 @@ pub fn run(args: &Render) -> Result<()> {
     let camera = camera::make(&args.camera, file, &bounds, args.size)?;
     let (layers, size, frames, progress) = (args.outputs(), args.size, args.frames, &*bars);
     let task = Task { scene, method, camera, settings, size, layers, frames, progress };
+    let counts = args.json.is_some();
+    let wanted = Measured { times: counts || args.times, counts };
     let mut outcome = match args.place.reference {
         true => reference::render(&task)?,
-        false => vulkan::render(&task, &device, &args.place, args.json.is_some() || args.times)?,
+        false => vulkan::render(&task, &device, &args.place, wanted)?,
     };
     if !out.is_png() {
         keep_layers(&mut outcome.picture, task.layers);

@@ -7,10 +7,11 @@ use super::report::{Gpu, HalfError};
 use super::turntable;
 use std::sync::Arc;
 use std::time::Instant;
+use surfel::embed::Measured;
 use surfel::geometry::Camera;
 use surfel::times::Times;
 use surfel::vk::{Device, DeviceLimits, DeviceOptions};
-use surfel::{Error, Picture, Precision, RenderOptions, Renderer, Result, Scene};
+use surfel::{Error, Picture, Precision, RenderOptions, Renderer, Result, Scene, SplatCounts};
 
 /// The stage of rendering, for who is told about progress.
 const FRAMES: &str = "rendering frames";
@@ -26,22 +27,22 @@ pub fn options(place: &OnDevice) -> Result<DeviceOptions> {
     })
 }
 
-/// How `task` is rendered as `place` has it; `measure` times the passes and counts the surfels.
-fn render_options(task: &Task<'_>, place: &Place, measure: bool) -> RenderOptions {
+/// How `task` is rendered as `place` has it; `profile` times the passes.
+fn render_options(task: &Task<'_>, place: &Place, profile: bool) -> RenderOptions {
     RenderOptions {
         size: task.size,
         outputs: task.layers.with_mask(&task.settings),
         precision: if place.half { Precision::Half } else { Precision::Full },
         rasterizer: place.rasterizer,
-        profile: measure,
-        count: measure,
+        profile,
+        count: false,
     }
 }
 
-/// Renders `task` as `place` has it; `measure` times the passes and counts the surfels.
-pub fn render(task: &Task<'_>, options: &DeviceOptions, place: &Place, measure: bool) -> Result<Outcome> {
+/// Renders `task` as `place` has it, and finds out what is `wanted` of it.
+pub fn render(task: &Task<'_>, options: &DeviceOptions, place: &Place, wanted: Measured) -> Result<Outcome> {
     let device = Device::open(options)?;
-    let options = render_options(task, place, measure);
+    let options = render_options(task, place, wanted.times);
     let mut renderer = Renderer::new(&device, options)?;
     let scene = Scene::upload(&device, task.scene)?;
     let mut times = Times::default();
@@ -60,7 +61,19 @@ pub fn render(task: &Task<'_>, options: &DeviceOptions, place: &Place, measure: 
     if place.half {
         gpu.half_error = half_error(&device, task, &scene, options, &picture)?;
     }
-    Ok(Outcome { picture, counts: report.counts, times, gpu: Some(gpu) })
+    let counts = if wanted.counts { count(&device, task, &scene, options)? } else { None };
+    Ok(Outcome { picture, counts, times, gpu: Some(gpu) })
+}
+
+/// Counts the surfels of `task`, in a frame of its own: counting takes atomics, which the frames that are timed are without.
+fn count(
+    device: &Arc<Device>,
+    task: &Task<'_>,
+    scene: &Scene,
+    options: RenderOptions,
+) -> Result<Option<SplatCounts>> {
+    let options = RenderOptions { profile: false, count: true, ..options };
+    Ok(Renderer::new(device, options)?.render(scene, &task.camera, &task.settings)?.counts)
 }
 
 /// Renders `task` from other cameras, and gives each picture to `save` with the camera's number.

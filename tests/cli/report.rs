@@ -138,6 +138,18 @@ fn times_are_a_table_on_standard_error() {
 }
 
 #[test]
+fn frames_that_are_timed_count_nothing() {
+    let Some(program) = Program::with_device("frames_that_are_timed_count_nothing") else { return };
+    let what = "render scene:bumpy-sphere?points=1000 -o a.png --size 32x32 --validate --rasterizer compute";
+    let counted = |run: crate::program::Run| run.err.contains("drawn");
+    assert!(!counted(program.run(&format!("{what} --times"))), "counting takes atomics");
+    program.run(&format!("{what} --json r.json")).text();
+    let report: Value = serde_json::from_slice(&std::fs::read(program.path("r.json")).unwrap()).unwrap();
+    assert!(report["counts"]["drawn"].as_u64().unwrap() > 100, "{report}");
+    assert!(report["passes"].as_array().unwrap().iter().all(|pass| pass["label"] != "read back"));
+}
+
+#[test]
 fn without_timestamps_only_the_frame_is_timed() {
     let Some(program) = Program::with_device("without_timestamps_only_the_frame_is_timed") else { return };
     program.write("limits.json", r#"{"timestamps":false}"#);
