@@ -118,7 +118,8 @@ impl Outputs {
         let opaque = settings.background.is_some();
         Self {
             normal: self.normal || opaque && settings.shading == Shading::Normal,
-            depth: self.depth || opaque && settings.shading == Shading::Depth,
+            depth: self.depth
+                || opaque && matches!(settings.shading, Shading::Depth | Shading::Overlap | Shading::Weight),
             id: self.id,
         }
     }

@@ -24,6 +24,22 @@ pub static ATTRIBUTE_COMPUTE: Module = Module {
     constants: &[0, 3, 4, 5, 7, 8, 12, 13, 14, 15, 16, 17, 18, 19, 20, 23, 24, 26, 27, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
 };
 
+/// The vertex stage of `shaders-glsl/colour_map.glsl`.
+pub static COLOUR_MAP_VERTEX: Module = Module {
+    name: "colour_map_vertex",
+    stage: ShaderStageFlags::VERTEX,
+    spirv: spirv!("colour_map_vertex.spv"),
+    constants: &[],
+};
+
+/// The fragment stage of `shaders-glsl/colour_map.glsl`.
+pub static COLOUR_MAP_FRAGMENT: Module = Module {
+    name: "colour_map_fragment",
+    stage: ShaderStageFlags::FRAGMENT,
+    spirv: spirv!("colour_map_fragment.spv"),
+    constants: &[6],
+};
+
 /// The vertex stage of `shaders-glsl/composite.glsl`.
 pub static COMPOSITE_VERTEX: Module = Module {
     name: "composite_vertex",
@@ -304,6 +320,14 @@ pub static PUSH_COMPUTE: Module = Module {
     constants: &[0, 17, 28, 32, 33, 34, 38, 39],
 };
 
+/// The compute stage of `shaders-glsl/range.glsl`.
+pub static RANGE_COMPUTE: Module = Module {
+    name: "range_compute",
+    stage: ShaderStageFlags::COMPUTE,
+    spirv: spirv!("range_compute.spv"),
+    constants: &[],
+};
+
 /// The compute stage of `shaders-glsl/resolve.glsl`.
 pub static RESOLVE_COMPUTE: Module = Module {
     name: "resolve_compute",
@@ -498,7 +522,7 @@ pub mod constant {
     pub const RADIUS_STRIDE: u32 = 56;
     /// `SHADE_SPLATS`, first in `shaders-glsl/attribute.glsl`.
     pub const SHADE_SPLATS: u32 = 20;
-    /// `SHADING`, first in `shaders-glsl/normalize.glsl`.
+    /// `SHADING`, first in `shaders-glsl/colour_map.glsl`.
     pub const SHADING: u32 = 6;
     /// `SUMS_TELL`, first in `shaders-glsl/normalize.glsl`.
     pub const SUMS_TELL: u32 = 42;
@@ -695,6 +719,32 @@ pub mod layout {
     }
     const _: () = assert!(std::mem::offset_of!(Materials, count) == 0);
     const _: () = assert!(std::mem::size_of::<Materials>() == 4);
+
+    /// `NumberRange`, 8 bytes, first in `shaders-glsl/colour_map.glsl`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+    pub struct NumberRange {
+        /// Byte 0.
+        pub least: u32,
+        /// Byte 4.
+        pub greatest: u32,
+    }
+    const _: () = assert!(std::mem::offset_of!(NumberRange, least) == 0);
+    const _: () = assert!(std::mem::offset_of!(NumberRange, greatest) == 4);
+    const _: () = assert!(std::mem::size_of::<NumberRange>() == 8);
+
+    /// `Numbers`, 8 bytes, first in `shaders-glsl/colour_map.glsl`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+    pub struct Numbers {
+        /// Byte 0.
+        pub least_alpha: f32,
+        /// Byte 4.
+        pub opaque: u32,
+    }
+    const _: () = assert!(std::mem::offset_of!(Numbers, least_alpha) == 0);
+    const _: () = assert!(std::mem::offset_of!(Numbers, opaque) == 4);
+    const _: () = assert!(std::mem::size_of::<Numbers>() == 8);
 
     /// `ScreenClip`, 32 bytes, first in `shaders-glsl/attribute.glsl`.
     #[repr(C)]

@@ -72,6 +72,15 @@ impl Colouring {
         Self { name: name.into(), source: Source::Numbers, map: ColourMap::default(), range: None }
     }
 
+    /// Whether numbers stand in the place of colours, and nothing else of the points counts.
+    pub fn keeps_numbers(&self) -> bool {
+        match self.source {
+            #[cfg(feature = "viewer")]
+            Source::Numbers => true,
+            _ => false,
+        }
+    }
+
     /// The property that is to be read from the files.
     pub fn property(&self) -> Option<&str> {
         match self.source {

@@ -3,6 +3,7 @@
 use super::colouring::{Coloured, Colouring};
 use super::progress::say;
 use super::summary;
+use glam::Vec3;
 use std::ffi::OsString;
 use std::path::Path;
 use std::sync::Arc;
@@ -249,6 +250,8 @@ fn estimate(part: Part, wanted: &Wanted<'_>) -> Result<(Model, Estimated)> {
         Some(how) => to_lines(&name, &cloud, how, wanted.quiet)?,
         None => cloud,
     };
+    let keeps_numbers = wanted.colouring.as_ref().is_some_and(Colouring::keeps_numbers);
+    let cloud = if keeps_numbers { numbers_alone(cloud) } else { cloud };
     let made = cloud.into_model(drawn || draws_faces(wanted), &wanted.estimate, wanted.progress);
     let (model, estimated) = made.map_err(|cause| match wanted.progress.is_cancelled() {
         true => Error::Cancelled,
@@ -258,6 +261,19 @@ fn estimate(part: Part, wanted: &Wanted<'_>) -> Result<(Model, Estimated)> {
         say(&format!("{name}: {text}"));
     }
     Ok((model, estimated))
+}
+
+/// A cloud of which the numbers alone are wanted, in the order that its surfels and vertices have: nothing of it is to be estimated.
+fn numbers_alone(cloud: Cloud) -> Cloud {
+    let count = cloud.len();
+    Cloud {
+        normals: Some(vec![Vec3::Z; count]),
+        radii: Some(vec![1.0; count]),
+        ellipses: None,
+        clips: None,
+        weights: None,
+        ..cloud
+    }
 }
 
 /// The points of a built-in scene, and its lines and triangles if it wants some.

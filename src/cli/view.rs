@@ -4,8 +4,8 @@ use super::args::{self, View};
 use super::colouring::Colouring;
 use super::files::config_folder;
 use super::inputs::{self, Wanted};
-use super::{camera, render, vulkan};
-use crate::viewer;
+use super::{camera, render, summary, vulkan};
+use crate::viewer::{self, About, Loaded};
 use glam::DVec3;
 use std::ffi::OsString;
 use std::sync::Arc;
@@ -55,36 +55,55 @@ pub fn run(args: View) -> Result<()> {
 
 /// How inputs are loaded, as the arguments say.
 fn load(args: &View, up: DVec3) -> Result<viewer::Load> {
-    let colouring = Colouring::new(&args.colours, up)?;
+    // What is wrong with it is said before the window opens.
+    Colouring::new(&args.colours, up)?;
+    let colour_by = args.colours.color_by.as_ref().map(|by| viewer::ColourBy {
+        name: by.name.clone(),
+        map: args.colours.color_map,
+        range: by.range,
+    });
     let reader = Reader {
         estimate: args.points.estimate(),
         polygons: args.points.polygons,
         texture: args.colours.texture()?,
         quiet: args.quiet,
     };
-    let asked = args.method;
+    let (asked, up) = (args.method, up.normalize_or(DVec3::Y));
     Ok(Arc::new(move |names: &[OsString], window: &dyn viewer::Loading| {
-        let sketch = |model: Model| {
-            // What is wrong with it is wrong with all of it, which says so.
-            if let Ok(method) = render::method(asked, &model) {
-                window.sketch(viewer::Loaded::sketch(model, method));
-            }
+        let loaded = |model: Model| -> Result<Loaded> {
+            let method = render::method(asked, &model)?;
+            let about = About { names: names.iter().map(shown).collect(), ..Default::default() };
+            Ok(Loaded { colour_by: colour_by.clone(), about, up, ..Loaded::new(model, method) })
         };
-        let inputs = reader.load(names, colouring.clone(), window, Some(&sketch))?;
-        let method = render::method(asked, &inputs.model)?;
-        let surface = match names {
-            // Colours that are not the surface's are not what rays see.
-            [one] if colouring.is_none() => inputs::scene(one).map(Into::into),
-            _ => None,
-        };
-        // A built-in scene has none, and no other beside one.
-        let skipped =
-            if names.iter().any(|name| inputs::scene(name).is_some()) { vec![] } else { inputs.skipped };
+        // What is wrong with a sketch is wrong with all of it, which says so.
+        let sketch = |model: Model| loaded(model).into_iter().for_each(|sketch| window.sketch(sketch));
+        let inputs = reader.load(names, None, window, Some(&sketch))?;
+        let whole = loaded(inputs.model)?;
+        // A built-in scene has no properties, and no other input beside one.
+        let scene = names.iter().any(|name| inputs::scene(name).is_some());
         let (reader, own) = (reader.clone(), names.to_vec());
         let read = move |name: &str, progress: &dyn Progress| reader.numbers(&own, name, progress);
-        let numbers = viewer::Numbers { names: skipped, read: Arc::new(read) };
-        Ok(viewer::Loaded { model: inputs.model, surface, numbers, method })
+        let skipped = if scene { vec![] } else { inputs.skipped };
+        Ok(Loaded {
+            surface: match names {
+                [one] => inputs::scene(one).map(Into::into),
+                _ => None,
+            },
+            numbers: Some(viewer::Numbers { names: skipped, read: Arc::new(read) }),
+            about: About {
+                points: inputs.read,
+                dropped: inputs.dropped.position + inputs.dropped.transparent,
+                estimated: summary::estimated(&inputs.estimated),
+                ..whole.about
+            },
+            ..whole
+        })
     }))
+}
+
+/// An input's name for who looks.
+fn shown(name: &OsString) -> String {
+    name.to_string_lossy().into_owned()
 }
 
 /// How inputs are read.
@@ -121,7 +140,8 @@ impl Reader {
 
     /// A property of every surfel, and of every vertex of lines and triangles.
     fn numbers(&self, names: &[OsString], name: &str, progress: &dyn Progress) -> Result<[Vec<f32>; 2]> {
-        let quiet = Self { quiet: true, ..self.clone() };
+        let estimate = Estimate { radius: None, sharp: None, ..self.estimate.clone() };
+        let quiet = Self { quiet: true, estimate, ..self.clone() };
         let Model { surfels, primitives } =
             quiet.load(names, Some(Colouring::numbers(name)), progress, None)?.model;
         let numbers = |colours| match colours {
@@ -202,6 +222,41 @@ mod tests {
         let window = Window::default();
         loaded("scene:sphere?points=50000", &window).unwrap();
         assert!(window.sketches.into_inner().unwrap().is_empty());
+    }
+
+    #[test]
+    fn a_property_is_read_in_the_order_of_the_surfels_and_nothing_is_estimated() {
+        let folder = tempfile::tempdir().unwrap();
+        let names: Vec<OsString> = ["a.ply", "b.ply"].map(|name| folder.path().join(name).into()).to_vec();
+        for (file, name) in names.iter().enumerate() {
+            let mut text = String::from(
+                "ply\nformat ascii 1.0\nelement vertex 900\nproperty float x\nproperty float y\nproperty float z\nproperty float heat\nend_header\n",
+            );
+            for i in 0..900 {
+                let x = (i * 7919 % 900) as f32 / 3.0 + 400.0 * file as f32;
+                text += &format!("{x} {} 0 {x}\n", i % 31);
+            }
+            std::fs::write(name, text).unwrap();
+        }
+        let command = ["surfel", "view", "-q", "--color-by", "heat", "--color-map", "magma", "x.ply"];
+        let Command::View(args) = Surfel::try_parse_from(command).unwrap().command else { panic!("no view") };
+        let load = load(&args, DVec3::Y).unwrap();
+        for inputs in [&names[..1], &names[..]] {
+            let loaded = load(inputs, &Window::default()).unwrap();
+            let by = loaded.colour_by.unwrap();
+            assert_eq!((by.name.as_str(), by.map), ("heat", surfel::geometry::ColourMap::Magma));
+            assert!(loaded.model.surfels.colours.is_none(), "the panel colours them");
+            assert!(loaded.about.estimated.is_some() && loaded.about.points == 900 * inputs.len() as u64);
+            let numbers = loaded.numbers.unwrap();
+            assert_eq!(numbers.names, ["heat"]);
+            let window = Window::default();
+            let [heat, _] = (numbers.read)("heat", &window).unwrap();
+            let surfels = loaded.model.surfels;
+            let places = surfels.positions.iter().map(|p| (surfels.origin + p.as_dvec3()).x as f32);
+            assert!(places.zip(&heat).all(|(x, heat)| (x - heat).abs() < 1e-3));
+            let stages = window.stages.into_inner().unwrap();
+            assert!(stages.iter().all(|stage| !stage.contains("estimating")), "{stages:?}");
+        }
     }
 
     #[test]

@@ -1,8 +1,10 @@
 //! A picture of a scene in frames that go to a window: colours in linear float, and depth, of any size.
 
+mod numbers;
+
 use super::{Measured, Options, Pass, Renderer, Target, View};
 use crate::error::{Error, Result};
-use crate::geometry::Camera;
+use crate::geometry::{Camera, ValueRange};
 use crate::renderer::FrameReport;
 use crate::scene::Scene;
 use crate::settings::Settings;
@@ -12,6 +14,7 @@ use crate::vk::{
     Recorder, RenderPass, Stake, Timestamps,
 };
 use ash::vk;
+use numbers::{Numbers, shows_numbers};
 use std::cell::RefCell;
 use std::sync::Arc;
 
@@ -24,9 +27,11 @@ const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
 pub struct Pane {
     // Fields are dropped in this order: views before what they view, and the pass after all that draws in it.
     renderer: Renderer,
+    /// The colours of a picture of numbers, where it is one.
+    numbers: Option<Numbers>,
     targets: Option<Targets>,
     /// What frames under way may use, each with the number of the last one that may.
-    old: Vec<(u64, Targets)>,
+    old: Vec<(u64, Retired)>,
     timestamps: Option<Timestamps>,
     /// Whether a frame that is measured has not told yet.
     measured: bool,
@@ -42,6 +47,13 @@ pub struct Pane {
 
 /// A scene, from where it is seen, and how.
 pub type Shown<'a> = (&'a Arc<Scene>, &'a Camera, &'a Settings);
+
+/// What is not drawn to any more.
+struct Retired {
+    // Views before what they view.
+    _numbers: Option<Numbers>,
+    _targets: Option<Targets>,
+}
 
 struct Targets {
     framebuffer: Framebuffer,
@@ -75,6 +87,7 @@ impl Pane {
         let renderer = unsafe { Renderer::new(device, options)? };
         Ok(Self {
             renderer,
+            numbers: None,
             targets: None,
             old: Vec::new(),
             timestamps: None,
@@ -108,10 +121,24 @@ impl Pane {
         // The GPU is done with all but the last frames.
         self.old.retain(|(last, _)| last + u64::from(FRAMES_IN_FLIGHT) > frame.number);
         if self.targets.as_ref().is_none_or(|targets| targets.colour.size() != size) {
-            self.old.extend(self.targets.take().map(|targets| (frame.number, targets)));
+            self.retire(frame.number, true);
             self.targets = Some(Targets::new(&self.device, &self.pass, size)?);
         }
+        let shading = shown.map(|(.., settings)| settings.shading).filter(|shading| shows_numbers(*shading));
+        if self.numbers.as_ref().map(|numbers| numbers.shading) != shading {
+            self.retire(frame.number, false);
+            let picture = self.targets.as_ref().map(|targets| &targets.colour);
+            let made = shading.zip(picture).map(|(shading, of)| Numbers::new(&self.device, shading, of));
+            self.numbers = made.transpose()?;
+        }
         self.record(frame, shown, measured)
+    }
+
+    /// Keeps what frames up to this one may use, until they are over: the colours of numbers, and the targets if they go, too.
+    fn retire(&mut self, last: u64, with_targets: bool) {
+        let targets = if with_targets { self.targets.take() } else { None };
+        let retired = Retired { _numbers: self.numbers.take(), _targets: targets };
+        self.old.push((last, retired));
     }
 
     /// Whether there is nothing to show, not even a background.
@@ -128,7 +155,7 @@ impl Pane {
     fn forget_thrown(&mut self) {
         if self.is_thrown() {
             let last = self.stake.take().map_or(0, |(last, _)| last);
-            self.old.extend(self.targets.take().map(|targets| (last, targets)));
+            self.retire(last, true);
             self.measured = false;
         }
     }
@@ -162,8 +189,10 @@ impl Pane {
         let Targets { framebuffer, colour, depth, depths } = targets;
         let uses = [colour.with(Access::COLOUR_WRITE), depth.with(Access::DEPTH_WRITE)];
         let [r, g, b] = shown.and_then(|(.., settings)| settings.background).unwrap_or_default();
+        // Numbers become colours before there is something behind them.
+        let behind = if self.numbers.is_some() { [0.0; 4] } else { [r, g, b, 1.0] };
         rec.pass("screen", &uses, |enc| {
-            enc.render_over(framebuffer, [r, g, b, 1.0], |_| {
+            enc.render_over(framebuffer, behind, |_| {
                 if shown.is_some() && drawn.is_ok() {
                     // SAFETY: within the renderer's target.
                     drawn = unsafe { self.renderer.draw(frame.cmd) };
@@ -172,25 +201,42 @@ impl Pane {
         });
         let uses = [depth.with(Access::COPY_READ), depths.with(Access::COPY_WRITE)];
         rec.pass("depths", &uses, |enc| enc.copy_image(depth, depths));
-        rec.wait(&[depths.with(Access::HOST_READ), colour.with(Access::COPY_READ)]);
+        let mut results = vec![depths.with(Access::HOST_READ)];
+        match self.numbers.as_ref().zip(shown) {
+            Some((numbers, (.., settings))) => {
+                numbers.record(&mut rec, colour, settings);
+                results.extend(numbers.results());
+            }
+            None => results.push(colour.with(Access::COPY_READ)),
+        }
+        rec.wait(&results);
         drawn
     }
 
-    /// Shows the columns between two parts of the picture's width, from 0 to 1, in those of the window, scaled.
+    /// Shows the columns between two parts of the picture's width, from 0 to 1, in those of the `area` px of the window at its top left, scaled.
+    /// Depths, normals, overlaps and weights are shown in the colours that a PNG has for them.
     ///
     /// # Errors
     /// [`Error::Usage`] in a frame of another presenter.
-    pub fn show(&self, frame: &Presented, columns: [f64; 2]) -> Result<()> {
+    pub fn show(&self, frame: &Presented, area: [u32; 2], columns: [f64; 2]) -> Result<()> {
         self.check(frame)?;
         let Some(Targets { colour, .. }) = self.targets.as_ref().filter(|_| !self.is_thrown()) else {
             return Ok(());
         };
+        let image = self.numbers.as_ref().map_or(colour, Numbers::image);
         self.take_part(frame);
-        let uses = [colour.with(Access::COPY_READ)];
+        let uses = [image.with(Access::COPY_READ)];
         let mut rec = frame.recorder();
         rec.left(&uses);
-        rec.pass("show", &uses, |enc| enc.show_part(colour, frame, columns));
+        rec.pass("show", &uses, |enc| enc.show_part(image, frame, area, columns));
         Ok(())
+    }
+
+    /// The least and the greatest depth, overlap or weight of the last picture, if it is of such numbers and shows a surface. Waits for it.
+    pub fn range(&self, presenter: &Presenter) -> Result<Option<ValueRange>> {
+        self.wait(presenter)?;
+        let numbers = self.numbers.as_ref().filter(|_| !self.is_thrown());
+        Ok(numbers.and_then(Numbers::range))
     }
 
     /// What the last picture that was measured tells, once; waits for it.

@@ -4,6 +4,8 @@
 //! points, which are drawn in a file of their own. A third kind draws in subpasses of a host ([`crate::embed::native`]).
 
 mod attribute;
+#[cfg(feature = "window")]
+mod colour_map;
 mod composite;
 mod copy;
 mod coverage;
@@ -16,6 +18,8 @@ mod project;
 mod pull;
 mod push;
 mod pyramid;
+#[cfg(feature = "window")]
+mod range;
 mod resolve;
 mod scatter;
 mod seed;
@@ -26,6 +30,8 @@ mod tiles;
 mod visibility;
 
 pub use attribute::{ComputeAttribute, DrawAttribute, SubpassAttribute};
+#[cfg(feature = "window")]
+pub use colour_map::{ColourMap, ColourMapViews};
 pub use composite::{Composite, CompositeKind};
 pub use copy::copy;
 pub(crate) use coverage::{DrawnCoverage, clear_drawn};
@@ -39,6 +45,8 @@ pub use project::{Project, ProjectScene};
 pub use pull::Pull;
 pub use push::Push;
 pub use pyramid::PyramidSets;
+#[cfg(feature = "window")]
+pub use range::{Range, range_of};
 pub use resolve::Resolve;
 pub use scatter::{PixelSet, Scatter};
 pub use seed::Seed;

@@ -31,9 +31,6 @@ use winit::window::WindowId;
 /// Px of a touchpad's scrolling that are a step of a wheel.
 const PX_A_STEP: f64 = 50.0;
 
-/// Number of the load that the program begins with.
-const FIRST: u64 = 1;
-
 /// Surfels that were changed, and not again for so long, stay.
 const SETTLED: Duration = Duration::from_millis(400);
 
@@ -50,7 +47,9 @@ pub fn run(options: Options, load: Load, look: Look) -> Result<()> {
     let tell = move |news| drop(window.send_event(news));
     let mut loader = Loader::new(load, Arc::new(tell), options.events);
     // The window opens meanwhile.
-    loader.start(options.inputs.clone());
+    if !options.inputs.is_empty() {
+        loader.start(options.inputs.clone());
+    }
     let watch = options.watch.then(|| Watch::new(events.create_proxy()));
     watch.iter().for_each(|watch| watch.look_at(&options.inputs));
     let mut app = App {
@@ -66,7 +65,7 @@ pub fn run(options: Options, load: Load, look: Look) -> Result<()> {
         news: events.create_proxy(),
         inputs: Vec::new(),
         tried: None,
-        pending: Some(options.inputs.clone()),
+        pending: Some(options.inputs.clone()).filter(|inputs| !inputs.is_empty()),
         options,
         opened: None,
         device: None,
@@ -83,7 +82,7 @@ fn no_display(error: winit::error::EventLoopError) -> Error {
     let text = error.to_string();
     let cause = text.split_once(".rs:").and_then(|(_, rest)| rest.split_once(": "));
     let cause = cause.map_or(text.as_str(), |(_, cause)| cause).trim_end_matches('.');
-    Error::NoWindow(format!("there is no display to open one on: {cause}; `surfel render` needs none"))
+    Error::NoWindow(format!("there is no display to open one on: {cause}"))
 }
 
 struct App {
@@ -171,7 +170,7 @@ impl ApplicationHandler<News> for App {
                 (self.told.loading, self.next) = (None, None);
                 self.tried = self.pending.take();
                 self.state.leave_sketch();
-                if load == FIRST && self.state.moving().is_none() {
+                if error.is_device_lost() {
                     return self.fail(events, error);
                 }
                 self.wrong(&error);
@@ -436,7 +435,7 @@ impl App {
     /// The picture is another.
     fn changed(&self) {
         if let Some(opened) = &self.opened {
-            opened.window.set_title(&format!("surfel · {}", self.state.title()));
+            opened.window.set_title(&self.state.title());
             opened.window.request_redraw();
         }
     }

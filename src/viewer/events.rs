@@ -40,9 +40,11 @@ pub enum Event<'a> {
 pub struct Shown<'a> {
     pub method: &'a str,
     pub shading: &'a str,
-    /// Of the window's picture, px.
+    /// Of the window, px.
     pub size: [u32; 2],
-    /// Side of what was drawn, as part of the window's: 1 is the whole picture.
+    /// Of the picture, which is all of the window that the panel leaves, px.
+    pub picture: [u32; 2],
+    /// Side of what was drawn, as part of the picture's: 1 is the whole one.
     pub side: f64,
     /// How many surfels there were.
     pub surfels: u64,

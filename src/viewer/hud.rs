@@ -2,6 +2,7 @@
 
 use super::panels::{self, Told};
 use super::state::State;
+use super::style;
 use ash::vk;
 use egui::{ClippedPrimitive, LayerId, Popup, Pos2, Rect, TexturesDelta};
 use egui_ash_renderer::allocator::DefaultAllocator;
@@ -10,7 +11,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 use surfel::vk::{CommandPool, Device, FRAMES_IN_FLIGHT, Presented};
 use surfel::{Error, Result};
-use winit::dpi::{LogicalPosition, PhysicalPosition};
+use winit::dpi::{LogicalPosition, PhysicalPosition, PhysicalSize};
 use winit::event::{ElementState, MouseButton, WindowEvent};
 use winit::window::Window;
 
@@ -24,8 +25,10 @@ pub struct Hud {
     shapes: Vec<ClippedPrimitive>,
     /// When the panels want to be drawn again.
     wakes: Option<Instant>,
-    /// Where no panel is beside the picture, points.
+    /// Where no panel is over the picture or beside it, points.
     free: Rect,
+    /// Width of the panel beside the picture, points.
+    covered: f32,
     /// Where the cursor is, px.
     cursor: PhysicalPosition<f64>,
     /// Buttons that are down, and those of them that are the panels' until they are let go: they went down over one, or have hold of something.
@@ -45,6 +48,7 @@ impl Hud {
     /// Panels drawn within the render pass `overlay`.
     pub fn new(device: &Arc<Device>, window: &Window, overlay: vk::RenderPass) -> Result<Self> {
         let context = egui::Context::default();
+        style::apply(&context);
         let hands = egui_winit::State::new(context.clone(), egui::ViewportId::ROOT, window, None, None, None);
         let options = Options {
             in_flight_frames: FRAMES_IN_FLIGHT as usize,
@@ -66,6 +70,7 @@ impl Hud {
             shapes,
             wakes: None,
             free: Rect::EVERYTHING,
+            covered: 0.0,
             cursor: PhysicalPosition::default(),
             down: Vec::new(),
             held: Vec::new(),
@@ -114,15 +119,17 @@ impl Hud {
         !self.free.contains(at) || self.context.layer_id_at(at).is_some_and(floats)
     }
 
-    /// Lays the panels out; whether they want to be drawn again at once.
+    /// Lays the panels out, beside which the picture is; whether they want to be drawn again at once.
     pub fn lay_out(&mut self, window: &Window, state: &mut State, told: &mut Told) -> bool {
         let input = self.hands.take_egui_input(window);
         let device = &self.device;
-        let free = &mut self.free;
+        let (free, covered) = (&mut self.free, &mut self.covered);
         let output = self.context.run_ui(input, |ui| {
-            panels::show(ui, state, told, device);
+            *covered = panels::show(ui, state, told, device);
             *free = ui.available_rect_before_wrap();
         });
+        let PhysicalSize { width, height } = window.inner_size();
+        state.lens.size = self.beside([width, height].map(|side| side.max(1)));
         if self.context.egui_is_using_pointer() {
             // An edge is taken hold of from a little beside it, too.
             self.held.clone_from(&self.down);
@@ -134,6 +141,12 @@ impl Hud {
         let delay = delay.unwrap_or(Duration::MAX);
         self.wakes = Instant::now().checked_add(delay).filter(|_| delay < Duration::from_secs(3600));
         delay.is_zero()
+    }
+
+    /// Width and height of the picture in a window of so many px: what the panel on the right leaves of it, as it was laid out last.
+    pub fn beside(&self, [width, height]: [u32; 2]) -> [u32; 2] {
+        let covered = (f64::from(self.covered * self.context.pixels_per_point())).floor() as u32;
+        [width.saturating_sub(covered).max(1), height]
     }
 
     /// Whether a drop-down list or a menu is open.

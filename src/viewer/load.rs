@@ -18,8 +18,9 @@ pub type Window = Arc<dyn Fn(News) + Send + Sync>;
 
 /// How many times as many surfels each scene has as the next coarser one.
 const FEWER: f64 = 1.6;
-/// The coarsest one has about as many.
+/// The coarsest one has no more than this, where surfels can be merged, and no fewer than the least.
 const FEWEST: usize = 4000;
+pub const LEAST_SURFELS: usize = 2500;
 /// Part of all surfels that coarser ones still are made of.
 const ENOUGH: usize = 4;
 
@@ -200,12 +201,11 @@ struct Told {
 
 impl Told {
     fn load(&self, load: &Load, inputs: &[OsString]) -> Result<()> {
-        let Loaded { model, surface, numbers, method } = load(inputs, self)?;
-        self.events.tell(&Event::Loaded { surfels: model.surfels.len() as u64 });
+        let loaded = load(inputs, self)?;
+        self.events.tell(&Event::Loaded { surfels: loaded.model.surfels.len() as u64 });
         let Some(device) = self.device() else { return Ok(()) };
         self.at("uploading", 0, 1);
-        let scene = Arc::new(Scene::upload(device, &model)?);
-        let source = Box::new(Source::new(model, surface, numbers));
+        let (scene, method, source) = put(loaded, device)?;
         let model = source.shown();
         self.send(What::Ready(scene, method, source));
         self.coarsen(device, &model);
@@ -230,7 +230,7 @@ impl Told {
             wanted = (wanted as f64 / FEWER) as usize;
             let fewer = of.coarser(wanted);
             // Discs of other sides do not merge: of a thin sheet with two, there may be no fewer.
-            if fewer.len() >= fewest {
+            if fewer.len() >= fewest || fewer.len() < LEAST_SURFELS {
                 continue;
             }
             fewest = fewer.len();
@@ -271,15 +271,23 @@ impl Progress for Told {
 }
 
 impl Loading for Told {
-    fn sketch(&self, Loaded { model, surface, numbers, method }: Loaded) {
+    fn sketch(&self, loaded: Loaded) {
         // Until all of it is there, its earlier state stays.
         let Some(device) = self.device().filter(|_| !self.again) else { return };
         // What is wrong with it is wrong with the whole scene, which says so.
-        if let Ok(scene) = Scene::upload(device, &model) {
-            let source = Box::new(Source::new(model, surface, numbers));
-            self.send(What::Sketch(Arc::new(scene), method, source));
+        if let Ok((scene, method, source)) = put(loaded, device) {
+            self.send(What::Sketch(scene, method, source));
         }
     }
+}
+
+/// Puts what was loaded on the device, coloured as is asked for.
+fn put(loaded: Loaded, device: &Arc<Device>) -> Result<(Arc<Scene>, Method, Box<Source>)> {
+    let mut scene = Arc::new(Scene::upload(device, &loaded.model)?);
+    let method = loaded.method;
+    let mut source = Box::new(Source::new(loaded));
+    source.apply(&mut scene, device)?;
+    Ok((scene, method, source))
 }
 
 #[cfg(test)]
@@ -301,7 +309,7 @@ mod tests {
 
     fn loaded(points: u32) -> Result<Loaded> {
         let surfels = scenes::open(&format!("scene:sphere?points={points}"))?;
-        Ok(Loaded::sketch(surfels.into(), Method::ALL[0]))
+        Ok(Loaded::new(surfels.into(), Method::ALL[0]))
     }
 
     /// News of a load until its last, less how far it has come.
@@ -333,7 +341,8 @@ mod tests {
         assert_eq!((sketch.count(), whole.count()), (100, 30_000));
         let counts: Vec<u64> = coarser.iter().map(|scene| scene.count()).collect();
         assert!(counts.windows(2).all(|pair| pair[1] < pair[0]), "{counts:?}");
-        assert!(counts[0] > 10_000 && counts[counts.len() - 1] <= FEWEST as u64, "{counts:?}");
+        let last = counts[counts.len() - 1] as usize;
+        assert!(counts[0] > 10_000 && (LEAST_SURFELS..=2 * FEWEST).contains(&last), "{counts:?}");
     }
 
     #[test]

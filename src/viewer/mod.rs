@@ -6,6 +6,7 @@
 //! ```
 #![forbid(unsafe_code)]
 
+mod about;
 mod app;
 mod cost;
 mod events;
@@ -27,9 +28,11 @@ mod screen;
 mod side;
 mod source;
 mod state;
+mod style;
 mod watch;
 mod window;
 
+pub use about::About;
 pub use events::Events;
 use glam::DVec3;
 pub use keep::Folder;
@@ -37,14 +40,14 @@ pub use load::{Load, Loading};
 use std::ffi::OsString;
 use std::path::PathBuf;
 use std::sync::Arc;
-use surfel::geometry::{Bounds, Model, Pose};
+use surfel::geometry::{Bounds, ColourMap, Model, Pose, ValueRange};
 use surfel::methods::Method;
 use surfel::vk::DeviceOptions;
 use surfel::{Progress, Rasterizer, Result, Settings};
 
 /// How the window is opened.
 pub struct Options {
-    /// Files and scenes that are looked at first.
+    /// Files and scenes that are looked at first; there may be none.
     pub inputs: Vec<OsString>,
     /// Width and height of the picture, px.
     pub size: [u32; 2],
@@ -78,19 +81,42 @@ pub struct Loaded {
     pub model: Model,
     /// The built-in scene that it is, if its surface is known exactly and nothing of it is changed.
     pub surface: Option<String>,
-    /// What else is known of its points.
-    pub numbers: Numbers,
+    /// What else is known of its points; of a sketch nothing is.
+    pub numbers: Option<Numbers>,
+    /// What its points are coloured by at first, if not by their own colours.
+    pub colour_by: Option<ColourBy>,
     /// How it is rendered at first.
     pub method: Method,
+    /// What is known of it, for who looks.
+    pub about: About,
+    /// What is up in the world, a unit vector.
+    pub up: DVec3,
 }
 
 impl Loaded {
-    /// Some of the points of a scene that is loaded later.
-    pub fn sketch(model: Model, method: Method) -> Self {
-        let read = |_: &str, _: &dyn Progress| Ok([Vec::new(), Vec::new()]);
-        let numbers = Numbers { names: Vec::new(), read: Arc::new(read) };
-        Self { model, surface: None, numbers, method }
+    /// A scene of which nothing else is known; y is up.
+    pub fn new(model: Model, method: Method) -> Self {
+        Self {
+            model,
+            surface: None,
+            numbers: None,
+            colour_by: None,
+            method,
+            about: About::default(),
+            up: DVec3::Y,
+        }
     }
+}
+
+/// What points are coloured by.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ColourBy {
+    /// The quantity, or the property of the files.
+    pub name: String,
+    /// Which colours numbers have.
+    pub map: ColourMap,
+    /// The numbers at both ends of the colours; the usual range unless given.
+    pub range: Option<ValueRange>,
 }
 
 /// The camera to begin with, for a scene of these bounds and a picture of this size, px; `None` shows all of it.
@@ -111,10 +137,11 @@ pub type ReadNumbers = Arc<dyn Fn(&str, &dyn Progress) -> Result<[Vec<f32>; 2]> 
 /// The settings of a method.
 pub type Look = Box<dyn Fn(&Method) -> Settings>;
 
-/// Opens the window, and shows what `load` makes of the inputs, and of files dropped on it, until it is closed.
+/// Opens the window, and shows what `load` makes of the inputs, and of files dropped on it, until it is closed. What cannot be loaded is a
+/// message.
 ///
 /// # Errors
-/// That of `load`, if it is the first scene's; [`surfel::Error::NoWindow`] where there is no display, [`surfel::Error::NoDevice`] where there is no device; whatever rendering fails with.
+/// [`surfel::Error::NoWindow`] where there is no display, [`surfel::Error::NoDevice`] where there is no device; whatever rendering fails with.
 pub fn run(options: Options, load: Load, look: Look) -> Result<()> {
     app::run(options, load, look)
 }

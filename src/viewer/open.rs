@@ -39,7 +39,7 @@ impl Opening {
             let field = ui.add(field);
             let enter = ui.input(|input| input.key_pressed(Key::Enter));
             if enter && (early || field.lost_focus()) && !self.text.is_empty() {
-                answer = Some(Answer::Open(self.text.clone()));
+                answer = Some(Answer::Open(at_home(&self.text)));
             } else if ui.input(|input| input.key_pressed(Key::Escape)) {
                 answer = Some(Answer::Nothing);
             } else if !field.has_focus() {
@@ -84,17 +84,26 @@ impl Opening {
         let name = chosen?;
         let (folder, _) = split(&self.text);
         self.text = format!("{folder}{name}");
-        (!name.ends_with('/')).then(|| Answer::Open(self.text.clone()))
+        (!name.ends_with('/')).then(|| Answer::Open(at_home(&self.text)))
     }
 
     /// Looks into the folder of the text, if it is another than before.
     fn look(&mut self) {
         let (folder, _) = split(&self.text);
-        let folder = PathBuf::from(if folder.is_empty() { "." } else { folder });
+        let folder = PathBuf::from(if folder.is_empty() { ".".into() } else { at_home(folder) });
         if self.folder.as_ref() != Some(&folder) {
             self.there = there(&folder);
             self.folder = Some(folder);
         }
+    }
+}
+
+/// A name with the user's own folder in the place of a leading `~`, as a shell has it.
+fn at_home(name: &str) -> String {
+    let below = name.strip_prefix('~').filter(|below| below.is_empty() || below.starts_with('/'));
+    match below.zip(std::env::home_dir()) {
+        Some((below, home)) => format!("{}{below}", home.display()),
+        None => name.into(),
     }
 }
 
@@ -123,6 +132,16 @@ fn there(folder: &Path) -> Vec<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_tilde_is_the_users_own_folder() {
+        let home = std::env::home_dir().unwrap().display().to_string();
+        assert_eq!(at_home("~/a.ply"), format!("{home}/a.ply"));
+        assert_eq!(
+            ["~", "a/~/b", "~b.ply", "scene:sphere"].map(at_home),
+            [&home, "a/~/b", "~b.ply", "scene:sphere"]
+        );
+    }
 
     #[test]
     fn what_can_be_opened_is_listed_by_name() {

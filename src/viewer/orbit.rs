@@ -197,15 +197,13 @@ impl Orbit {
         self.pivot += step;
     }
 
-    /// Stands so far from the pivot that it is seen in the middle of what is not covered.
-    fn stand_back(&mut self, reach: f64, lens: &Lens) {
-        let [left, right, _] = lens.slopes();
-        let [forward, across, _] = self.axes();
-        self.eye = self.pivot - reach * (forward + 0.5 * (left + right) * across);
+    /// Stands so far from the pivot that it is seen in the middle.
+    fn stand_back(&mut self, reach: f64) {
+        self.eye = self.pivot - reach * self.axes()[0];
     }
 
     /// Looks at the pivot from a side, from as far as now.
-    pub fn side(&mut self, side: Side, lens: &Lens) {
+    pub fn side(&mut self, side: Side) {
         let quarter = 0.5 * std::f64::consts::PI;
         let reach = self.distance();
         (self.yaw, self.pitch) = match side {
@@ -216,14 +214,14 @@ impl Orbit {
             Side::Top => (0.0, quarter),
             Side::Bottom => (0.0, -quarter),
         };
-        self.stand_back(reach, lens);
+        self.stand_back(reach);
     }
 
     /// Makes something else up; looks at the pivot from as far as now, as it did from as far round.
-    pub fn set_up(&mut self, up: Up, lens: &Lens) {
+    pub fn set_up(&mut self, up: Up) {
         let reach = self.distance();
         self.up = up.vector();
-        self.stand_back(reach, lens);
+        self.stand_back(reach);
     }
 
     /// What is up in the world, of unit length.
@@ -231,16 +229,15 @@ impl Orbit {
         self.up
     }
 
-    /// Shows all of `bounds`, from where it looks, in what is not covered.
+    /// Shows all of `bounds`, from where it looks.
     pub fn frame(&mut self, bounds: &Bounds, lens: &Lens) {
         let radius = if bounds.radius > 0.0 { 1.04 * bounds.radius } else { 1.0 };
-        let [left, right, height] = lens.slopes();
+        let slope = lens.slopes().into_iter().fold(f64::INFINITY, f64::min);
         // The way from a sphere's centre to the edge of the view beside it: at right angles to that.
-        let slant = |slope: f64| if lens.parallel { 1.0 } else { slope.hypot(1.0) };
-        let across = slant(left).max(slant(right)) / (0.5 * (right - left));
-        let reach = radius * across.max(slant(height) / height);
+        let slant = if lens.parallel { 1.0 } else { slope.hypot(1.0) };
+        let reach = radius * slant / slope;
         self.pivot = bounds.centre();
-        self.stand_back(reach, lens);
+        self.stand_back(reach);
     }
 }
 
@@ -251,7 +248,7 @@ mod tests {
     use surfel::Result;
     use surfel::geometry::Camera;
 
-    const LENS: Lens = Lens { size: [640, 480], fov_y_deg: 46.0, parallel: false, covered: 0.0 };
+    const LENS: Lens = Lens { size: [640, 480], fov_y_deg: 46.0, parallel: false };
     const UPS: [Up; 6] = [
         Up { axis: 0, down: false },
         Up { axis: 1, down: false },
@@ -306,35 +303,27 @@ mod tests {
     }
 
     #[test]
-    fn what_is_framed_is_in_the_middle_of_what_is_not_covered_and_touches_its_edges() {
-        // Width and height, what is covered, and what is left, px.
-        for (size, covered, free) in [
-            ([640, 480], 0.0, 640.0),
-            ([640, 480], 316.0, 324.0),
-            ([1200, 850], 316.0, 884.0),
-            ([1200, 300], 632.0, 568.0),
-            ([480, 900], 316.0, 164.0),
-            ([400, 300], 316.0, 400.0),
-            ([200, 300], 316.0, 200.0),
-        ] {
+    fn what_is_framed_is_in_the_middle_and_touches_the_edges() {
+        for size in [[640, 480], [324, 480], [884, 850], [568, 300], [164, 900], [400, 300], [200, 300]] {
             for lens in lenses() {
-                let lens = Lens { size, covered, ..lens };
+                let lens = Lens { size, ..lens };
                 let mut orbit = Orbit::framing(&bounds(), Up::Y, &lens);
-                let middle = DVec2::new(0.5 * free, 0.5 * f64::from(size[1]));
+                let [width, height] = size.map(f64::from);
+                let middle = 0.5 * DVec2::new(width, height);
                 let reach = orbit.distance();
                 for turned in 0..3 {
                     assert!(near(seen(&orbit, &lens, orbit.pivot), middle), "{lens:?} {turned}");
                     // Whatever is within 1.04 radii is seen, and something there only just.
                     let least = ball(&orbit).map(|point| {
                         let at = seen(&orbit, &lens, point);
-                        at.min_element().min(free - at.x).min(f64::from(size[1]) - at.y)
+                        at.min_element().min(width - at.x).min(height - at.y)
                     });
                     let least = least.fold(f64::INFINITY, f64::min);
-                    assert!((-1e-6..0.01 * free).contains(&least), "{lens:?} {turned} {least}");
+                    assert!((-1e-6..0.01 * width).contains(&least), "{lens:?} {turned} {least}");
                     assert!((orbit.distance() / reach - 1.0).abs() < 1e-9);
                     match turned {
-                        0 => orbit.side(Side::Left, &lens),
-                        _ => orbit.set_up(Up { axis: 2, down: true }, &lens),
+                        0 => orbit.side(Side::Left),
+                        _ => orbit.set_up(Up { axis: 2, down: true }),
                     }
                 }
             }
@@ -434,12 +423,12 @@ mod tests {
         ] {
             let mut orbit = Orbit::framing(&bounds(), Up::Y, &LENS);
             let reach = orbit.distance();
-            orbit.side(side, &LENS);
+            orbit.side(side);
             assert!((orbit.eye - (orbit.pivot + reach * from)).length() < 1e-9, "{side:?} {}", orbit.eye);
             assert!(orbit.camera(&LENS, &bounds()).is_ok());
         }
         let mut orbit = Orbit::framing(&bounds(), Up { axis: 2, down: false }, &LENS);
-        orbit.side(Side::Front, &LENS);
+        orbit.side(Side::Front);
         assert!((orbit.eye - orbit.pivot).normalize().abs_diff_eq(DVec3::NEG_Y, 1e-9), "z up: from −y");
     }
 

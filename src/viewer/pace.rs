@@ -5,7 +5,9 @@ use std::time::{Duration, Instant};
 
 /// Sides of the pictures, parts of the window's: each has 1.6 times the pixels of the next one, so that no step to a finer picture makes a
 /// frame that keeps to its time exceed it by half.
-const SIDES: [f64; 7] = [1.0, 0.8, 0.63, 0.5, 0.4, 0.32, 0.25];
+const SIDES: [f64; 7] = [1.0, 0.8, 0.63, 0.5, 0.4, 0.32, LEAST_SIDE];
+/// The least of them: below it a picture tells nothing.
+pub const LEAST_SIDE: f64 = 0.25;
 /// How long the hands rest at least before the picture is whole.
 const REST: Duration = Duration::from_millis(180);
 /// Part of the budget that a frame may be expected to take as it is chosen: the rest is for what no frame before has told.

@@ -3,7 +3,7 @@
 use super::side::{Seen, Side};
 use glam::DVec2;
 use std::sync::Arc;
-use surfel::geometry::Camera;
+use surfel::geometry::{Camera, ValueRange};
 use surfel::vk::{Presented, Presenter};
 use surfel::{FrameReport, Rasterizer, Result, Scene, Settings};
 
@@ -62,11 +62,11 @@ impl Screen {
         Ok(())
     }
 
-    /// Records a frame of `scene`, if there is one, of `size` px into the window's. After an error that is empty.
+    /// Records a frame of `scene`, if there is one, of `size` px, into an area of the window, px from its top left. After an error that is empty.
     pub fn record(
         &mut self,
         window: &Presented,
-        size: [u32; 2],
+        (area, size): ([u32; 2], [u32; 2]),
         scene: Option<(&Arc<Scene>, &Camera, &Settings)>,
     ) -> Result<()> {
         let Asked { measured, version, split } = self.asked.clone();
@@ -91,12 +91,13 @@ impl Screen {
             drawn = drawn.and(right.map(|_| ()));
         }
         let right = self.right.as_ref().filter(|_| divider < 1.0);
-        if [Some(&self.left), right].into_iter().flatten().any(Side::is_empty) {
+        // Beside the area is the panel, but its edge may be within a px.
+        if area != window.size() || [Some(&self.left), right].into_iter().flatten().any(Side::is_empty) {
             window.clear();
         }
-        self.left.show(window, [0.0, divider])?;
+        self.left.show(window, area, [0.0, divider])?;
         if let Some(right) = right {
-            right.show(window, [divider, 1.0])?;
+            right.show(window, area, [divider, 1.0])?;
         }
         drawn
     }
@@ -109,6 +110,13 @@ impl Screen {
     /// Whether things had to be made for that.
     pub fn made(&self) -> bool {
         self.made
+    }
+
+    /// The least and the greatest number that the pictures show, left and right, where they show numbers.
+    pub fn ranges(&self, presenter: &Presenter) -> Result<[Option<ValueRange>; 2]> {
+        let right = self.right.as_ref().filter(|_| self.asked.split.is_some());
+        let right = right.map_or(Ok(None), |right| right.range(presenter))?;
+        Ok([self.left.range(presenter)?, right])
     }
 
     /// What the last frame tells, once; nothing where it was not measured.

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 use surfel::embed::Pane;
-use surfel::geometry::Camera;
+use surfel::geometry::{Camera, ValueRange};
 use surfel::vk::{Presented, Presenter};
 use surfel::{FrameReport, Rasterizer, Result, Scene, Settings};
 
@@ -75,9 +75,14 @@ impl Side {
         self.pane.is_empty()
     }
 
-    /// Shows the columns between two parts of the width in the window.
-    pub fn show(&self, window: &Presented, columns: [f64; 2]) -> Result<()> {
-        self.pane.show(window, columns)
+    /// Shows the columns between two parts of the width in an area of the window, px from its top left.
+    pub fn show(&self, window: &Presented, area: [u32; 2], columns: [f64; 2]) -> Result<()> {
+        self.pane.show(window, area, columns)
+    }
+
+    /// The least and the greatest number that the last picture shows, if it shows numbers.
+    pub fn range(&self, presenter: &Presenter) -> Result<Option<ValueRange>> {
+        self.pane.range(presenter)
     }
 
     /// What the last picture tells, once; `None` where it was not measured.

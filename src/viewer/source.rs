@@ -1,7 +1,8 @@
 //! What a scene was made of, and what is changed of it since: colours, radii.
 
-use super::Numbers;
+use super::about::About;
 use super::job::Job;
+use super::{ColourBy, Loaded, Numbers};
 use glam::DVec3;
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -16,8 +17,8 @@ pub struct Source {
     model: Arc<Model>,
     /// The built-in scene that it is, if that is known exactly.
     surface: Option<String>,
-    /// What else is known of its points.
-    numbers: Numbers,
+    /// What else is known of its points; of a sketch nothing is.
+    numbers: Option<Numbers>,
     /// Those that were read, of surfels and of vertices, each with its number among the names.
     read: Vec<(usize, [Vec<f32>; 2])>,
     /// Those that are being read.
@@ -30,6 +31,9 @@ pub struct Source {
     applied: Changed,
     /// The usual range of each quantity that was looked at.
     usual: Vec<(By, Option<ValueRange>)>,
+    about: About,
+    /// What is up in the world, a unit vector.
+    up: DVec3,
 }
 
 /// Numbers that are being read.
@@ -69,6 +73,7 @@ pub enum By {
     X,
     Y,
     Z,
+    Height,
     Radius,
     Normal,
     /// Numbers of the file, by their place among the names.
@@ -77,17 +82,19 @@ pub enum By {
 
 impl By {
     /// All that every scene has, with what they are called and what they mean.
-    pub const ALL: [(Self, &'static str, &'static str); 6] = [
+    pub const ALL: [(Self, &'static str, &'static str); 7] = [
         (Self::Own, "own", "the points' own colours; grey where they have none"),
         (Self::X, "x", "the place along x, in the positions' unit"),
         (Self::Y, "y", "the place along y, in the positions' unit"),
         (Self::Z, "z", "the place along z, in the positions' unit"),
+        (Self::Height, "height", "the place along what is up, in the positions' unit"),
         (Self::Radius, "radius", "the disc's radius, in the positions' unit"),
         (Self::Normal, "normal", "the normal: x, y, z from −1 to 1 as red, green, blue"),
     ];
 
-    fn quantity(self) -> Option<Quantity> {
+    fn quantity(self, up: DVec3) -> Option<Quantity> {
         match self {
+            Self::Height => Some(Quantity::Along(up)),
             Self::X => Some(Quantity::Along(DVec3::X)),
             Self::Y => Some(Quantity::Along(DVec3::Y)),
             Self::Z => Some(Quantity::Along(DVec3::Z)),
@@ -106,11 +113,11 @@ impl Changed {
 }
 
 impl Source {
-    /// Of a model as it was loaded.
-    pub fn new(model: Model, surface: Option<String>, numbers: Numbers) -> Self {
+    /// Of what was loaded.
+    pub fn new(Loaded { model, surface, numbers, colour_by, about, up, method: _ }: Loaded) -> Self {
         let range = ValueRange { min: 0.0, max: 1.0 };
         let own = Changed { by: By::Own, map: ColourMap::default(), range, radii: 1.0 };
-        Self {
+        let mut source = Self {
             model: Arc::new(model),
             surface,
             numbers,
@@ -120,7 +127,40 @@ impl Source {
             changed: own,
             applied: own,
             usual: Vec::new(),
+            about,
+            up,
+        };
+        if let Some(colour_by) = colour_by {
+            source.colour_as(colour_by);
         }
+        source
+    }
+
+    /// Colours as is asked for: by numbers of the file where the name is none that every scene has.
+    fn colour_as(&mut self, ColourBy { name, map, range }: ColourBy) {
+        self.changed.map = map;
+        let own = By::ALL.iter().find(|(_, own, _)| *own == name).map(|(by, ..)| *by);
+        let by = match (own, &mut self.numbers) {
+            (Some(by), _) => by,
+            (None, None) => {
+                self.missing = Some((name, range));
+                return;
+            }
+            (None, Some(Numbers { names, .. })) => {
+                let known = names.iter().position(|known| *known == name);
+                By::Number(known.unwrap_or_else(|| {
+                    // Something was made of them, or they are not there, which reading them says.
+                    names.push(name);
+                    names.len() - 1
+                }))
+            }
+        };
+        self.colour_within(by, range);
+    }
+
+    /// What is known of it.
+    pub fn about(&self) -> &About {
+        &self.about
     }
 
     /// The built-in scene whose surface the picture should show.
@@ -135,13 +175,13 @@ impl Source {
 
     /// Names of the file's numbers.
     pub fn names(&self) -> &[String] {
-        &self.numbers.names
+        self.numbers.as_ref().map_or(&[], |numbers| &numbers.names)
     }
 
     /// What colours are made of is called.
     pub fn name(&self, by: By) -> &str {
         match by {
-            By::Number(number) => self.numbers.names.get(number).map_or("", String::as_str),
+            By::Number(number) => self.names().get(number).map_or("", String::as_str),
             _ => By::ALL.iter().find(|(known, ..)| *known == by).map_or("", |(_, name, _)| name),
         }
     }
@@ -156,8 +196,9 @@ impl Source {
         (self.reading, self.missing) = (None, None);
         if let By::Number(number) = by
             && !self.read.iter().any(|(known, _)| *known == number)
+            && let Some(numbers) = &self.numbers
         {
-            let (read, name) = (self.numbers.read.clone(), self.name(by).to_owned());
+            let (read, name) = (numbers.read.clone(), self.name(by).to_owned());
             let job = Job::start(move |progress: &dyn Progress| read(&name, progress));
             self.reading = Some(Reading { number, job, range });
             return;
@@ -194,7 +235,7 @@ impl Source {
             let (_, read) = self.read.iter().find(|(known, _)| *known == number)?;
             return Some(read.each_ref().map(|numbers| numbers.iter().copied().map(f64::from).collect()));
         }
-        let quantity = by.quantity()?;
+        let quantity = by.quantity(self.up)?;
         Some([self.model.surfels.values(quantity), self.model.primitives.values(quantity)])
     }
 
@@ -234,7 +275,7 @@ impl Source {
     pub fn change_as(&mut self, Wish { changed, number, range }: &Wish) {
         self.changed = Changed { by: By::Own, ..*changed };
         let Some(name) = number else { return self.colour_within(changed.by, *range) };
-        match self.numbers.names.iter().position(|known| known == name) {
+        match self.names().iter().position(|known| known == name) {
             Some(number) => self.colour_within(By::Number(number), *range),
             None => self.missing = Some((name.clone(), *range)),
         }
@@ -250,6 +291,7 @@ impl Source {
             reading: None,
             missing: None,
             usual: self.usual.clone(),
+            about: self.about.clone(),
             ..*self
         }
     }
@@ -332,6 +374,7 @@ impl Source {
 mod tests {
     use super::*;
     use glam::Vec3;
+    use surfel::methods::Method;
 
     /// Three points in a row with numbers of the file.
     fn source(read: [Vec<f32>; 2]) -> Source {
@@ -347,7 +390,12 @@ mod tests {
         };
         let model = Model { surfels, ..Default::default() };
         let read = Arc::new(move |_: &str, _: &dyn Progress| Ok(read.clone()));
-        Source::new(model, Some("scene:none".into()), Numbers { names: vec![name.into()], read })
+        let numbers = Some(Numbers { names: vec![name.into()], read });
+        Source::new(Loaded {
+            surface: Some("scene:none".into()),
+            numbers,
+            ..Loaded::new(model, Method::ALL[0])
+        })
     }
 
     fn wait(source: &mut Source) -> Result<()> {

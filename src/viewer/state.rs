@@ -1,5 +1,6 @@
 //! What is looked at, and how: everything that the hands change.
 
+use super::about::thousands;
 use super::keys::Action;
 use super::lens::Lens;
 use super::open::{Answer, Opening};
@@ -10,7 +11,7 @@ use super::{Look, Options};
 use glam::{DVec2, DVec3};
 use std::borrow::Cow;
 use std::sync::Arc;
-use surfel::geometry::{Camera, Pose};
+use surfel::geometry::{Camera, ColourScale, Pose};
 use surfel::methods::Method;
 use surfel::settings::Shading;
 use surfel::splatting::Normalization;
@@ -18,17 +19,20 @@ use surfel::vk::Device;
 use surfel::{Rasterizer, Result, Scene, Settings};
 
 /// What the picture can show.
-pub const SHADINGS: [Shading; 4] = [Shading::Lit, Shading::Colour, Shading::Normal, Shading::Depth];
+pub const SHADINGS: [Shading; 6] =
+    [Shading::Lit, Shading::Colour, Shading::Normal, Shading::Depth, Shading::Overlap, Shading::Weight];
 
 /// What a shading shows.
 pub fn shading_text(shading: Shading) -> &'static str {
     match shading {
         Shading::Lit => "lit by a lamp at the eye",
         Shading::Colour => "the points' colours as they are",
-        Shading::Normal => "normals in world space: x, y, z as red, green, blue; below 0 is black",
-        Shading::Depth => "distance from the eye, in the positions' unit: 1 and above is white",
-        Shading::Overlap => "how many splats are blended",
-        Shading::Weight => "what the splats' weights add up to",
+        Shading::Normal => "normals in world space: x, y, z from −1 to 1 as red, green, blue",
+        Shading::Depth => {
+            "distance from the eye along the view, in the positions' unit: white at the nearest surface"
+        }
+        Shading::Overlap => "how many splats are blended; 1 by pull-push",
+        Shading::Weight => "what the splats' weights add up to; 1 by pull-push",
     }
 }
 
@@ -93,7 +97,7 @@ struct Shown {
 
 impl State {
     pub fn new(options: &Options, look: Look, remembered: Option<(Method, Settings)>) -> Self {
-        let lens = Lens { size: options.size, fov_y_deg: options.fov_y_deg, parallel: false, covered: 0.0 };
+        let lens = Lens { size: options.size, fov_y_deg: options.fov_y_deg, parallel: false };
         Self {
             lens,
             up: nearest(options.up),
@@ -186,17 +190,10 @@ impl State {
         pose
     }
 
-    /// Looks from where this camera does, and turns about its target; or, of a camera that looks past the scene as it is framed beside a panel,
-    /// about what is in the middle there.
+    /// Looks from where this camera does, and turns about its target.
     pub fn look_from(&mut self, pose: Pose) {
         let Self { shown: Some(shown), lens, .. } = self else { return };
-        let mut orbit = Orbit::of(&pose, shown.orbit.up(), lens);
-        let (beside, centre) =
-            (orbit.point(lens.middle(), orbit.distance(), lens), shown.scene.bounds().centre());
-        if beside.distance(centre) < orbit.pivot.distance(centre) {
-            orbit.set_pivot(beside, lens);
-        }
-        shown.orbit = orbit;
+        shown.orbit = Orbit::of(&pose, shown.orbit.up(), lens);
         shown.given = Some((shown.orbit, *lens, pose));
     }
 
@@ -283,14 +280,17 @@ impl State {
         Some([method.name, settings.shading.name()])
     }
 
-    /// In a word: what is shown, and by which method.
+    /// What is shown, how much of it, and by which method: the window's title.
     pub fn title(&self) -> String {
-        match &self.shown {
-            Some(Shown { method, settings, scene, .. }) => {
-                format!("{} · {} · {} surfels", method.name, settings.shading.name(), scene.count())
-            }
-            None => "nothing yet".into(),
-        }
+        let Some(Shown { method, settings, scene, source, .. }) = &self.shown else { return "surfel".into() };
+        let (about, surfels) = (source.about().title(), thousands(scene.count()));
+        format!("{about} · {surfels} surfels · {}, {} · surfel", method.name, settings.shading.name())
+    }
+
+    /// What surfels' colours stand for, where they stand for numbers.
+    pub fn colour_scale(&self) -> Option<(String, ColourScale)> {
+        let Shown { source, .. } = self.shown.as_ref()?;
+        Some((source.name(source.changed.by).to_owned(), source.changed.scale()?))
     }
 
     /// What can be chosen, where something is shown.
@@ -330,11 +330,11 @@ impl State {
             }
             Action::Parallel => self.lens.parallel = !self.lens.parallel,
             Action::Frame => shown.orbit.frame(&shown.scene.bounds(), &self.lens),
-            Action::Side(side) => shown.orbit.side(side, &self.lens),
+            Action::Side(side) => shown.orbit.side(side),
             Action::Up(up) => {
                 let down = shown.orbit.up() == up.vector();
                 self.up = Up { down, ..up };
-                shown.orbit.set_up(self.up, &self.lens);
+                shown.orbit.set_up(self.up);
             }
         }
     }
@@ -387,7 +387,7 @@ impl Shown {
     /// The camera that the hands were given, until they move it.
     fn given(&self, lens: &Lens) -> Option<Pose> {
         let still = |(orbit, was, _): &(Orbit, Lens, Pose)| {
-            *orbit == self.orbit && Lens { size: was.size, covered: was.covered, ..*lens } == *was
+            *orbit == self.orbit && Lens { size: was.size, ..*lens } == *was
         };
         self.given.filter(still).map(|(.., pose)| pose)
     }
@@ -465,13 +465,7 @@ mod tests {
             let surfels = scenes::open(&format!("scene:sphere?points={points}")).unwrap();
             Arc::new(Scene::upload(&device, &surfels).unwrap())
         };
-        let made = || {
-            (Method::ALL[0], {
-                let Loaded { model, surface, numbers, method: _ } =
-                    Loaded::sketch(Surfels::default().into(), Method::ALL[0]);
-                Source::new(model, surface, numbers)
-            })
-        };
+        let made = || (Method::ALL[0], Source::new(Loaded::new(Surfels::default().into(), Method::ALL[0])));
         let shown = |state: &State| state.look().map(|(scene, _)| scene.count());
         let mut state = state();
         state.show(scene(10), made(), of(1, true));
@@ -481,8 +475,8 @@ mod tests {
         state.show(scene(10), made(), of(2, true));
         let eye = |state: &mut State| state.moving().unwrap().0.eye;
         // Who has turned the sketch sees the whole scene from there.
-        let (orbit, lens, _) = state.moving().unwrap();
-        orbit.side(super::super::orbit::Side::Top, lens);
+        let (orbit, ..) = state.moving().unwrap();
+        orbit.side(super::super::orbit::Side::Top);
         let above = eye(&mut state);
         state.show(scene(100), made(), of(2, false));
         assert_eq!((shown(&state), state.is_sketch(), eye(&mut state)), (Some(100), false, above));

@@ -57,8 +57,7 @@ impl Opened {
         let attributes =
             Window::default_attributes().with_title("surfel").with_inner_size(PhysicalSize { width, height });
         let window = events.create_window(attributes);
-        let window =
-            window.map_err(|cause| Error::NoWindow(format!("{cause}; `surfel render` needs none")))?;
+        let window = window.map_err(|cause| Error::NoWindow(cause.to_string()))?;
         Self::of(Arc::new(window), options)
     }
 
@@ -82,15 +81,16 @@ impl Opened {
     pub fn capture(&mut self, state: &mut State, told: &mut Told) -> Result<Shot> {
         told.side = 1.0;
         self.hud.lay_out(&self.window, state, told);
-        let Self { presenter, hud, screen, .. } = self;
-        let size = state.lens.size;
+        let Self { presenter, hud, screen, window, .. } = self;
+        let PhysicalSize { width, height } = window.inner_size();
+        let (whole, size) = ([width, height].map(|side| side.max(1)), state.lens.size);
         let seen = state.frame(0).transpose()?;
         let seen = seen.as_ref().map(|(scene, camera, settings)| (*scene, camera, &**settings));
-        let pixels = presenter.capture(size, |frame| {
-            screen.record(frame, size, seen)?;
+        let pixels = presenter.capture(whole, |frame| {
+            screen.record(frame, (size, size), seen)?;
             hud.record(frame)
         })?;
-        Shot::of_window(size, pixels)
+        Shot::of_window(whole, pixels)
     }
 
     /// Draws a frame; when another is to follow without an event.
@@ -119,6 +119,12 @@ impl Opened {
         let [shown, drawn] = self.present(state, told, quality)?;
         // A frame's time is its own, and the next one shows where the hands are when it begins.
         self.presenter.wait()?;
+        let ranges = self.screen.ranges(&self.presenter)?;
+        if told.ranges != ranges {
+            // The panels were laid out before they were known.
+            told.ranges = ranges;
+            self.window.request_redraw();
+        }
         let ms = 1e3 * start.elapsed().as_secs_f64();
         if drawn {
             told.frame = ms;
@@ -127,14 +133,15 @@ impl Opened {
             }
         }
         let behind = self.presenter.is_behind();
-        if let Some(picture) = picture(state, told, [moving, drawn], ms).filter(|_| shown && !behind) {
+        let PhysicalSize { width, height } = self.window.inner_size();
+        let picture = picture(state, told, [moving, drawn], ([width, height], ms));
+        if let Some(picture) = picture.filter(|_| shown && !behind) {
             events.tell(&Event::Picture(picture));
         }
         let flies = hands.flight().is_some();
         self.last = flies.then_some(start);
         if behind {
             // A window without an extent tells when it has one again.
-            let PhysicalSize { width, height } = self.window.inner_size();
             return Ok((width > 0 && height > 0).then(|| Instant::now() + AGAIN));
         }
         if told.times.is_open() {
@@ -176,11 +183,12 @@ impl Opened {
         let Self { presenter, hud, screen, .. } = self;
         let mut refused = told.refused.clone();
         let shown = presenter.present([width, height], |frame| {
-            state.lens.size = frame.size();
-            let size = frame.size().map(|length| side_of(length, quality.side));
+            let area = hud.beside(frame.size());
+            state.lens.size = area;
+            let size = area.map(|length| side_of(length, quality.side));
             let seen = state.frame(quality.scene).transpose()?;
             let seen = seen.as_ref().map(|(scene, camera, settings)| (*scene, camera, &**settings));
-            refused = match screen.record(frame, size, seen) {
+            refused = match screen.record(frame, (area, size), seen) {
                 // Other settings may do: the window stays.
                 Err(error @ (Error::Usage(_) | Error::Memory { .. })) => Some(error.to_string()),
                 recorded => recorded.map(|()| None)?,
@@ -209,13 +217,19 @@ impl Opened {
     }
 }
 
-/// What a picture tells, whether the hands moved, and whether it was drawn anew.
-fn picture<'a>(state: &State, told: &Told, [moving, drawn]: [bool; 2], took_ms: f64) -> Option<Shown<'a>> {
+/// What a picture tells, whether the hands moved, whether it was drawn anew, in a window of which size, and how long it took, ms.
+fn picture<'a>(
+    state: &State,
+    told: &Told,
+    [moving, drawn]: [bool; 2],
+    (size, took_ms): ([u32; 2], f64),
+) -> Option<Shown<'a>> {
     let (camera, [method, shading]) = state.pose().zip(state.names())?;
     Some(Shown {
         method,
         shading,
-        size: state.lens.size,
+        size,
+        picture: state.lens.size,
         side: told.side,
         surfels: told.surfels as u64,
         sketch: state.is_sketch(),
@@ -226,7 +240,7 @@ fn picture<'a>(state: &State, told: &Told, [moving, drawn]: [bool; 2], took_ms: 
     })
 }
 
-/// Px of a side of a picture that has this part of the window's. Odd where it is scaled, and so no power of two: see [`Presenter::rehearse`].
+/// Px of a side of a picture that has this part of the whole one's. Odd where it is scaled, and so no power of two: see [`Presenter::rehearse`].
 fn side_of(window: u32, part: f64) -> u32 {
     match part < 1.0 {
         true => ((f64::from(window) * part).round() as u32 | 1).min(window),

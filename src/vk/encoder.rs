@@ -139,19 +139,14 @@ impl<'a> Encoder<'a> {
         };
     }
 
-    /// Copies `image`, scaled, over all of a window's image.
+    /// Copies the columns of `image` between two parts of its width, from 0 to 1, scaled, over those of the `area` px at a window's top left.
     #[cfg(feature = "window")]
-    pub fn show(&mut self, image: &Image, window: &super::Presented) {
-        self.show_part(image, window, [0.0, 1.0]);
+    pub fn show_part(&mut self, image: &Image, window: &super::Presented, area: [u32; 2], columns: [f64; 2]) {
+        let [width, height] = window.size();
+        self.scale(image, (window.image, [area[0].min(width), area[1].min(height)]), columns);
     }
 
-    /// The same of the columns between two parts of the width, from 0 to 1.
-    #[cfg(feature = "window")]
-    pub fn show_part(&mut self, image: &Image, window: &super::Presented, columns: [f64; 2]) {
-        self.scale(image, (window.image, window.size()), columns);
-    }
-
-    /// Copies columns of `image`, scaled, over those of another image, of so many px, in the layout in which copies write it.
+    /// Copies columns of `image`, scaled, over those of so many px at the top left of another image, in the layout in which copies write it.
     #[cfg(feature = "window")]
     pub(super) fn scale(&mut self, image: &Image, (to, size): (vk::Image, [u32; 2]), columns: [f64; 2]) {
         let layers = vk::ImageSubresourceLayers {

@@ -64,15 +64,15 @@ impl Display {
         self.x.intern_atom(false, name.as_bytes()).unwrap().reply().unwrap().atom
     }
 
-    /// The window whose name begins so.
-    pub fn window(&self, begin: &str) -> Window {
+    /// The window whose name has this part.
+    pub fn window(&self, part: &str) -> Window {
         let tree = self.x.query_tree(self.root).unwrap().reply().unwrap();
         let (name, any) = (self.atom("_NET_WM_NAME"), 0u32);
         let named = |window: &Window| {
             let found = self.x.get_property(false, *window, name, any, 0, 64).unwrap().reply().unwrap();
-            String::from_utf8_lossy(&found.value).starts_with(begin)
+            String::from_utf8_lossy(&found.value).contains(part)
         };
-        tree.children.into_iter().find(named).unwrap_or_else(|| panic!("no window is called {begin}…"))
+        tree.children.into_iter().find(named).unwrap_or_else(|| panic!("no window is called …{part}…"))
     }
 
     /// Keys go to this window from now on.

@@ -10,9 +10,10 @@ fn kept_pictures_are_those_of_render_and_of_the_window() {
     let Some((display, program)) = stage("kept_pictures_are_those_of_render_and_of_the_window") else {
         return;
     };
-    let what = format!("{SPHERE} --size 640x480 {DRAW}");
-    let mut view = View::open(&display, &program, &format!("{what} --shots ."));
-    view.picture(|_| true);
+    let mut view = View::open(&display, &program, &format!("{SPHERE} --size 640x480 {DRAW} --shots ."));
+    let [width, height] = picture_size(&view.picture(|_| true));
+    assert!((320..640).contains(&width) && height == 480, "what the panel leaves: {width}x{height}");
+    let what = format!("{SPHERE} --size {width}x{height} {DRAW}");
     for (held, extension) in [(&[][..], "png"), (&[key::CONTROL][..], "exr")] {
         display.press(&[key::CONTROL], u32::from('s'));
         let camera = view.wrote();
@@ -41,11 +42,80 @@ fn kept_pictures_are_those_of_render_and_of_the_window() {
         seen += u32::from(expected[3] > 0);
     }
     assert!(seen > 5000, "{seen} px of the sphere");
-    // Of the panels something is to be seen: it is not the picture alone.
-    let apart = |(x, y): (u32, u32)| rgb(window.get_pixel(x, y)) != rgb(picture.get_pixel(x, y));
-    let panels = (0..640).flat_map(|x| (0..480).map(move |y| (x, y))).filter(|at| apart(*at)).count();
+    // Of the panels something is to be seen beside the picture.
+    let beside = (width..640).flat_map(|x| (0..480).map(move |y| (x, y)));
+    let panels = beside.filter(|(x, y)| rgb(window.get_pixel(*x, *y)) != [0; 3]).count();
     assert!(panels > 10_000, "{panels} px of panels");
     view.close();
+}
+
+/// Width and height of the picture that an event is of, px.
+fn picture_size(event: &Value) -> [u32; 2] {
+    [0, 1].map(|axis| event["picture"][axis].as_u64().unwrap() as u32)
+}
+
+#[test]
+fn the_first_colours_are_those_of_the_command_line() {
+    let Some((display, program)) = stage("the_first_colours_are_those_of_the_command_line") else { return };
+    let mut text = String::from(
+        "ply\nformat ascii 1.0\nelement vertex 400\nproperty float x\nproperty float y\nproperty float z\nproperty float heat\nend_header\n",
+    );
+    (0..400).for_each(|i| text += &format!("{} {} 0 {}\n", i % 20, i / 20, (i * 37) % 400));
+    program.write("a.ply", text);
+    for by in ["heat", "x", "height", "heat:50,300"] {
+        let what = format!("a.ply {DRAW} --size 320x240 --color-by {by} --shading color");
+        let mut view = View::open(&display, &program, &format!("{what} -q --shots ."));
+        view.picture(|_| true);
+        display.press(&[key::CONTROL], u32::from('s'));
+        let camera = view.wrote();
+        program.run(&format!("render {what} --camera {camera} -o headless.png")).text();
+        let expected = program.png("headless.png");
+        // The numbers of a file are read when the window is there.
+        let fits = (0..40).any(|_| {
+            display.press(&[], key::F12);
+            std::thread::sleep(std::time::Duration::from_millis(100));
+            program.png(&view.wrote()) == expected
+        });
+        assert!(fits, "{by}: the window has other colours than `render`");
+        view.close();
+    }
+}
+
+#[test]
+fn normals_depths_overlaps_and_weights_are_shown_as_they_are_kept() {
+    let Some((display, program)) = stage("normals_depths_overlaps_and_weights_are_shown_as_they_are_kept")
+    else {
+        return;
+    };
+    for background in ["", "--background #336699"] {
+        let what = format!("{SPHERE} --size 400x300 {DRAW} {background} --shots .");
+        let mut view = View::open(&display, &program, &what);
+        let mut shading = view.picture(|_| true)["shading"].clone();
+        for _ in 0..6 {
+            display.press(&[], key::F12);
+            let kept = program.png(&view.wrote());
+            let [width, height] = [400, 300];
+            assert_eq!(kept.dimensions(), (width, height), "no panel is beside so small a picture");
+            let worst = |pixels: &image::RgbImage| {
+                // The legend is in the lower left, what was saved below.
+                let all = (0..width).flat_map(|x| (0..200).map(move |y| (x, y)));
+                let apart = all.map(|(x, y)| {
+                    let expected = kept.get_pixel(x, y).0;
+                    let expected = if expected[3] == 0 { [0; 4] } else { expected };
+                    (0..3).map(|i| expected[i].abs_diff(pixels.get_pixel(x, y).0[i])).max().unwrap()
+                });
+                apart.max().unwrap()
+            };
+            display.pixels_that(view.window, &format!("shows {shading} {background}"), |pixels| {
+                worst(pixels) <= 1
+            });
+            let colours: std::collections::HashSet<_> = kept.pixels().map(|pixel| pixel.0).collect();
+            assert!(colours.len() > 5, "{shading}: {} colours", colours.len());
+            display.press(&[], u32::from('l'));
+            shading = view.picture(|event| event["shading"] != shading)["shading"].clone();
+        }
+        view.close();
+    }
 }
 
 /// Whether these are the same but for the last bits of numbers.

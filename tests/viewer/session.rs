@@ -54,7 +54,7 @@ fn session(test: &str, input: &str) {
     display.press(&[], key::F12);
     let shot = view.wrote();
     view.close();
-    let (method, size) = (last["method"].as_str().unwrap(), &last["size"]);
+    let (method, size) = (last["method"].as_str().unwrap(), &last["picture"]);
     let render = format!(
         "render {input} {DRAW} --method {method} --size {}x{} --camera {camera} -o headless.png",
         size[0], size[1]

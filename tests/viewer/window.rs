@@ -45,6 +45,48 @@ fn hands_go_from_the_panel_to_the_picture_and_back_at_once() {
 }
 
 #[test]
+fn an_empty_window_waits_and_a_bad_first_file_is_a_message() {
+    let Some((display, program)) = stage("an_empty_window_waits_and_a_bad_first_file_is_a_message") else {
+        return;
+    };
+    program.write("a.ply", surfels(&["0 0 0 0 0 1 1", "1 0 0 0 0 1 1"]));
+    let file = program.path("a.ply").canonicalize().unwrap();
+    for arguments in ["", "no-such.ply"] {
+        let mut view = View::open(&display, &program, &format!("{arguments} --size 640x480"));
+        if !arguments.is_empty() {
+            let error = view.until("wrong", |_| true)["error"].as_str().unwrap().to_owned();
+            assert!(error.contains("no-such.ply"), "{error}");
+        }
+        // It says how to begin, in the middle of what the panel leaves.
+        seen(&view, |pixels| {
+            let lit = (100..300).flat_map(|x| (180..300).map(move |y| (x, y)));
+            (lit.filter(|(x, y)| pixels.get_pixel(*x, *y).0 != [0; 3]).count() > 300).then_some(())
+        });
+        assert!(display.drop_files(view.window, &[&file]));
+        view.picture(|event| event["surfels"] == 2);
+        // The title names it.
+        assert_eq!(display.window("a.ply · 2 surfels"), view.window);
+        view.close();
+    }
+}
+
+#[test]
+fn a_panel_keeps_its_width_or_is_not_there() {
+    let Some((display, program)) = stage("a_panel_keeps_its_width_or_is_not_there") else { return };
+    let mut view = View::open(&display, &program, &format!("{SPHERE} --size 100x60"));
+    view.picture(|event| event["picture"] == serde_json::json!([100, 60]));
+    for (size, widths) in [([1200u16, 900u16], 290..=310), ([640, 480], 240..=320), ([400, 300], 0..=0)] {
+        display.resize(view.window, size.map(u32::from));
+        // A frame that was laid out before the window had this size may come first.
+        view.picture(|event| {
+            let panel = u64::from(size[0]).checked_sub(event["picture"][0].as_u64().unwrap());
+            event["size"] == serde_json::json!(size) && panel.is_some_and(|panel| widths.contains(&panel))
+        });
+    }
+    view.close();
+}
+
+#[test]
 fn a_window_may_be_closed_while_it_loads() {
     let Some((display, program)) = stage("a_window_may_be_closed_while_it_loads") else { return };
     View::open(&display, &program, "scene:bumpy-sphere?points=300000 --size 320x240").close();

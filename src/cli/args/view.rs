@@ -11,8 +11,8 @@ use surfel::{Rasterizer, Settings};
 /// Options of `surfel view`.
 #[derive(Args, Debug)]
 pub struct View {
-    /// PLY files, or built-in scenes such as scene:bumpy-sphere; several become one scene
-    #[arg(required = true, value_name = "INPUT")]
+    /// PLY files, or built-in scenes such as scene:bumpy-sphere; several become one scene; the window begins empty without any
+    #[arg(value_name = "INPUT")]
     pub inputs: Vec<OsString>,
     /// How it is rendered at first; perspective-ewa unless given, pull-push where there are lines or triangles
     #[arg(long, value_parser = method())]

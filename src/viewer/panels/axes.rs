@@ -10,19 +10,31 @@ type Choice = (&'static str, &'static str, Splatting);
 /// A box for each axis; `weighted` tells whether the scene has normalization weights.
 pub fn show(ui: &mut Ui, splatting: &mut Splatting, weighted: bool) {
     let now = *splatting;
-    let axes: [(&str, &str, Vec<Choice>); 5] = [
-        ("footprint", now.footprint.name(), footprints(now)),
-        ("filter", now.filter.name(), filters(now)),
-        ("visibility", now.visibility.name(), visibilities(now)),
-        ("normalization", now.normalization.name(), normalizations(now)),
-        ("shade", shade_name(now.shade), shades(now)),
+    let axes: [(&str, &str, &str, Vec<Choice>); 5] = [
+        ("footprint", "What a surfel becomes on the screen.", now.footprint.name(), footprints(now)),
+        ("filter", "What is done against aliasing.", now.filter.name(), filters(now)),
+        (
+            "visibility",
+            "Which of the splats at a pixel are blended.",
+            now.visibility.name(),
+            visibilities(now),
+        ),
+        (
+            "normalization",
+            "What the blended sum is divided by.",
+            now.normalization.name(),
+            normalizations(now),
+        ),
+        ("shade", "What is lit: pixels or splats.", shade_name(now.shade), shades(now)),
     ];
-    for (axis, name, choices) in axes {
-        ComboBox::from_label(axis).selected_text(name).show_ui(ui, |ui| {
+    for (axis, means, name, choices) in axes {
+        let chosen = choices.iter().find(|(choice, ..)| *choice == name).map_or("", |(_, text, _)| text);
+        let shown = ComboBox::from_label(axis).selected_text(name).show_ui(ui, |ui| {
             for (name, text, made) in choices {
                 choice(ui, splatting, (name, text, made), weighted);
             }
         });
+        shown.response.on_hover_text(format!("{means}\n{name}: {chosen}"));
     }
 }
 

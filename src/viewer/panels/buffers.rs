@@ -68,12 +68,13 @@ impl Buffers {
         if !all.contains(&self.buffer) {
             self.buffer = Buffer::Depth;
         }
-        ComboBox::from_label("buffer").selected_text(self.buffer.told()[0]).show_ui(ui, |ui| {
+        let shown = ComboBox::from_label("buffer").selected_text(self.buffer.told()[0]).show_ui(ui, |ui| {
             for buffer in all {
                 let [name, text] = buffer.told();
                 ui.selectable_value(&mut self.buffer, buffer, name).on_hover_text(text);
             }
         });
+        shown.response.on_hover_text(self.buffer.told()[1]);
         ui.weak(self.buffer.told()[1]);
         if self.buffer.is_level() {
             let top = chosen.size[0].max(chosen.size[1]).next_power_of_two().trailing_zeros();

@@ -3,7 +3,7 @@
 use egui::{Align2, Color32, ComboBox, FontId, Pos2, Sense, Shape, Slider, SliderClamping, Stroke, Ui, vec2};
 use surfel::splatting::{Kernel, Splatting};
 
-/// Size of the curve, points.
+/// Width of the curve at most, and its height, points.
 const SIZE: [f32; 2] = [240.0, 90.0];
 /// Places at which the curve is drawn.
 const STEPS: u32 = 100;
@@ -16,7 +16,7 @@ pub fn show(ui: &mut Ui, splatting: &mut Splatting, cutoff: f32) {
         Kernel::Gaussian => "gaussian",
         Kernel::Confetti { .. } => "confetti",
     };
-    ComboBox::from_label("kernel").selected_text(name).show_ui(ui, |ui| {
+    let shown = ComboBox::from_label("kernel").selected_text(name).show_ui(ui, |ui| {
         for (name, kernel, text) in [
             ("gaussian", Kernel::Gaussian, "exp(−½ m²), m σ from the centre, up to the cut-off"),
             ("confetti", CONFETTI, "exp(−a tⁿ / (1 − tⁿ)), t from 0 at the centre to 1 at the rim"),
@@ -33,6 +33,7 @@ pub fn show(ui: &mut Ui, splatting: &mut Splatting, cutoff: f32) {
             });
         }
     });
+    shown.response.on_hover_text("How a splat's weight falls off from its centre to its rim.");
     if let Kernel::Confetti { a, n } = &mut splatting.kernel {
         ui.add(Slider::new(a, 0.1..=20.0).logarithmic(true).clamping(SliderClamping::Edits).text("a"))
             .on_hover_text("The larger, the narrower.");
@@ -52,7 +53,8 @@ fn weight(kernel: Kernel, cutoff: f32, part: f32) -> f32 {
 }
 
 fn curve(ui: &mut Ui, kernel: Kernel, cutoff: f32) {
-    let (response, painter) = ui.allocate_painter(vec2(SIZE[0], SIZE[1]), Sense::hover());
+    let (response, painter) =
+        ui.allocate_painter(vec2(ui.available_width().min(SIZE[0]), SIZE[1]), Sense::hover());
     let (ink, font) = (ui.visuals().weak_text_color(), FontId::proportional(10.0));
     let rect = response.rect.shrink2(vec2(14.0, 12.0));
     let place = |part: f32, weight: f32| -> Pos2 {

@@ -1,6 +1,6 @@
 //! What the picture shows of the scene: shading, colours, background, radii.
 
-use super::raster::{colour_bar, short};
+use super::raster::short;
 use crate::viewer::source::By;
 use crate::viewer::state::{Choices, SHADINGS, shading_text};
 use egui::{ComboBox, DragValue, ProgressBar, Slider, SliderClamping, Ui};
@@ -21,12 +21,13 @@ pub const MAPS: [(ColourMap, &str); 6] = [
 /// All of it.
 pub fn show(ui: &mut Ui, chosen: &mut Choices<'_>) {
     let settings = &mut *chosen.settings;
-    ComboBox::from_label("shading").selected_text(settings.shading.name()).show_ui(ui, |ui| {
+    let shown = ComboBox::from_label("shading").selected_text(settings.shading.name()).show_ui(ui, |ui| {
         for shading in SHADINGS {
             ui.selectable_value(&mut settings.shading, shading, shading.name())
                 .on_hover_text(shading_text(shading));
         }
     });
+    shown.response.on_hover_text(shading_text(settings.shading));
     colours(ui, chosen);
     background(ui, chosen);
     radii(ui, chosen);
@@ -47,18 +48,20 @@ pub fn show(ui: &mut Ui, chosen: &mut Choices<'_>) {
 fn colours(ui: &mut Ui, chosen: &mut Choices<'_>) {
     let source = &mut *chosen.source;
     let mut picked = None;
-    ComboBox::from_label("colour by").selected_text(source.name(source.changed.by)).show_ui(ui, |ui| {
-        let own = By::ALL.map(|(by, name, text)| (by, name, text));
-        let of_file = source.names().iter().enumerate();
-        let of_file = of_file.map(|(i, name)| {
-            (By::Number(i), name.as_str(), "a number of the file's points, read when it is wanted")
-        });
-        for (by, name, text) in own.into_iter().chain(of_file) {
-            if ui.selectable_label(source.changed.by == by, name).on_hover_text(text).clicked() {
-                picked = Some(by);
+    let shown =
+        ComboBox::from_label("colour by").selected_text(source.name(source.changed.by)).show_ui(ui, |ui| {
+            let own = By::ALL.map(|(by, name, text)| (by, name, text));
+            let of_file = source.names().iter().enumerate();
+            let of_file = of_file.map(|(i, name)| {
+                (By::Number(i), name.as_str(), "a number of the file's points, read when it is wanted")
+            });
+            for (by, name, text) in own.into_iter().chain(of_file) {
+                if ui.selectable_label(source.changed.by == by, name).on_hover_text(text).clicked() {
+                    picked = Some(by);
+                }
             }
-        }
-    });
+        });
+    shown.response.on_hover_text("What the points' colours show.");
     if let Some(by) = picked {
         source.colour_by(by);
     }
@@ -66,22 +69,24 @@ fn colours(ui: &mut Ui, chosen: &mut Choices<'_>) {
         ui.add(ProgressBar::new(part).text(stage));
         ui.ctx().request_repaint_after(Duration::from_millis(100));
     }
-    let Some(scale) = source.changed.scale() else { return };
+    if source.changed.scale().is_none() {
+        return;
+    }
     map(ui, &mut source.changed.map);
     let usual = source.usual(source.changed.by);
     range(ui, &mut source.changed.range, usual);
-    colour_bar(ui, &scale);
     ui.weak("Under shading `color` the surfels have exactly these colours.");
 }
 
 /// Which colours numbers have.
 pub fn map(ui: &mut Ui, map: &mut ColourMap) {
     let name = MAPS.iter().find(|(other, _)| other == map).map_or("", |(_, name)| name);
-    ComboBox::from_label("colours").selected_text(name).show_ui(ui, |ui| {
+    let shown = ComboBox::from_label("colours").selected_text(name).show_ui(ui, |ui| {
         for (other, name) in MAPS {
             ui.selectable_value(map, other, name);
         }
     });
+    shown.response.on_hover_text("Which colours numbers have.");
 }
 
 /// The numbers at both ends of the colours.

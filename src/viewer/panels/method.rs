@@ -25,13 +25,13 @@ pub fn show(ui: &mut Ui, chosen: &mut Choices<'_>) {
     let mut storage = pull_push.storage;
     let text =
         "Where the levels of the pyramid are kept. The picture stays the same; times and memory change.";
-    ComboBox::from_label("storage").selected_text(storage_name(storage)).show_ui(ui, |ui| {
+    let shown = ComboBox::from_label("storage").selected_text(storage_name(storage)).show_ui(ui, |ui| {
         ui.selectable_value(&mut storage, Storage::Apart, storage_name(Storage::Apart))
             .on_hover_text("pulled levels in one pyramid, pushed ones in the other: nothing is copied");
         ui.selectable_value(&mut storage, Storage::PingPong, storage_name(Storage::PingPong))
             .on_hover_text("as published: even levels in one, odd ones in the other, and a pass that copies");
     });
-    ui.weak(text);
+    shown.response.on_hover_text(text);
     settings.pull_push = Some(surfel::pull_push::PullPush { storage, ..pull_push });
 }
 
@@ -47,7 +47,7 @@ fn choose(ui: &mut Ui, chosen: &mut Choices<'_>) {
     let splats = chosen.settings.pull_push.is_none();
     let changed = splats && preset != Some(chosen.settings.splatting);
     let text = if changed { format!("{}, changed", chosen.method.name) } else { chosen.method.name.into() };
-    ComboBox::from_label("method").selected_text(text).show_ui(ui, |ui| {
+    let shown = ComboBox::from_label("method").selected_text(text).show_ui(ui, |ui| {
         for method in methods::Method::ALL {
             let splats = method.pull_push.is_none();
             ui.add_enabled_ui(!(splats && chosen.primitives), |ui| {
@@ -60,6 +60,7 @@ fn choose(ui: &mut Ui, chosen: &mut Choices<'_>) {
             });
         }
     });
+    shown.response.on_hover_text(chosen.method.paper);
 }
 
 fn numbers(ui: &mut Ui, settings: &mut Settings) {
@@ -76,11 +77,12 @@ fn numbers(ui: &mut Ui, settings: &mut Settings) {
     );
     ui.add_enabled_ui(splatting.filter != Filter::None, |ui| {
         slider(ui, lowpass, 0.0..=4.0, "low-pass, px²", "Variance of the anti-aliasing filter: against flicker and moiré where splats are smaller than pixels.");
-        ComboBox::from_label("widens").selected_text(widen.name()).show_ui(ui, |ui| {
+        let shown = ComboBox::from_label("widens").selected_text(widen.name()).show_ui(ui, |ui| {
             ui.selectable_value(widen, Widen::All, "all").on_hover_text("every splat, as the paper does");
             ui.selectable_value(widen, Widen::Small, "small")
                 .on_hover_text("only what is smaller than the filter: the rest stays sharper");
         });
+        shown.response.on_hover_text("Which splats the low-pass filter widens.");
     });
     ui.add_enabled_ui(splatting.visibility != Visibility::Nearest, |ui| {
         slider(

@@ -5,24 +5,36 @@ mod buffers;
 mod error;
 mod help;
 mod kernel;
+mod legend;
 mod look;
 mod method;
 mod raster;
 mod split;
+mod start;
 mod times;
 
+use super::about::{short_name, thousands};
 use super::keys::{Action, BINDINGS};
 use super::layout::Layout;
 use super::screen::Asked;
-use super::state::{State, quick};
+use super::state::{Choices, State, quick};
 use buffers::Buffers;
-use egui::{Button, CollapsingHeader, Panel, ProgressBar, ScrollArea, Ui};
+use egui::{Button, CollapsingHeader, Label, Panel, ProgressBar, Rect, RichText, ScrollArea, Ui, pos2};
 use error::Errors;
 use split::Split;
 use std::sync::Arc;
 use surfel::Settings;
+use surfel::geometry::ValueRange;
 use surfel::vk::Device;
 use times::Times;
+
+/// Width of the panel at first, as part of the window; and its least and usual one, points.
+const PART: f32 = 0.3;
+const WIDTH: [f32; 2] = [240.0, 300.0];
+/// Part of the window that the panel takes at most: a window in which that is less than its least width has none.
+const MOST: f32 = 0.5;
+/// What stands beside a slider at most: its number and its name, points.
+const SLIDER: f32 = 150.0;
 
 /// What the panels tell beside what they let one choose.
 #[derive(Default)]
@@ -41,6 +53,8 @@ pub struct Told {
     pub side: f64,
     /// How many surfels it had.
     pub surfels: f64,
+    /// The least and the greatest number that the pictures show, left and right, where they show numbers.
+    pub ranges: [Option<ValueRange>; 2],
     /// Whether keys are listed.
     pub help: bool,
     /// What is known of the keyboard.
@@ -88,8 +102,8 @@ impl Told {
     }
 }
 
-/// All panels.
-pub fn show(ui: &mut Ui, state: &mut State, told: &mut Told, device: &Arc<Device>) {
+/// All panels; gives the width of the one beside the picture, points.
+pub fn show(ui: &mut Ui, state: &mut State, told: &mut Told, device: &Arc<Device>) -> f32 {
     let whole = ui.max_rect();
     if let Some((stage, part)) = told.loading {
         Panel::bottom("loading").show(ui, |ui| {
@@ -106,28 +120,42 @@ pub fn show(ui: &mut Ui, state: &mut State, told: &mut Told, device: &Arc<Device
     if let Some(wrong) = told.wrong.as_ref().or(told.refused.as_ref()) {
         Panel::top("wrong").show(ui, |ui| ui.colored_label(ui.visuals().error_fg_color, wrong));
     }
-    state.lens.covered = 0.0;
-    if !told.hidden {
-        let panel = Panel::right("choices").default_size(300.0).show(ui, |ui| {
-            ScrollArea::vertical()
-                .auto_shrink([false, false])
-                .show(ui, |ui| choices(ui, state, told, device));
-        });
-        let points = whole.right() - panel.response.rect.left();
-        state.lens.covered = f64::from(points * ui.pixels_per_point());
+    let covered = beside(ui, state, told, device);
+    let picture = Rect { max: pos2(whole.right() - covered, whole.bottom()), ..whole };
+    told.split.divider(ui, picture, state, &told.times);
+    let free = ui.available_rect_before_wrap();
+    match state.names() {
+        Some(_) => legend::show(ui, free, picture, state, told),
+        None if told.loading.is_none() => start::show(ui, free, state, &told.layout),
+        None => {}
     }
-    told.split.divider(ui, whole, state, &told.times);
     told.errors.picture(ui.ctx());
     told.buffers.picture(ui.ctx());
     if told.help {
         help::show(ui.ctx(), &told.layout);
     }
     if let Some(opening) = &mut state.opening {
-        state.answer = opening.show(ui);
+        state.answer = opening.show(ui).or(state.answer.take());
     }
     if let Err(error) = state.apply(device) {
         told.wrong = Some(error.to_string());
     }
+    covered
+}
+
+/// The panel on the right, unless it is hidden or the window is too narrow; gives its width, points.
+fn beside(ui: &mut Ui, state: &mut State, told: &mut Told, device: &Arc<Device>) -> f32 {
+    let (whole, [least, usual]) = (ui.max_rect(), WIDTH);
+    let most = MOST * whole.width();
+    if told.hidden || most < least {
+        return 0.0;
+    }
+    let first = (PART * whole.width()).clamp(least, usual);
+    let panel = Panel::right("choices").default_size(first).size_range(least..=most);
+    let panel = panel.show(ui, |ui| {
+        ScrollArea::vertical().auto_shrink([false, false]).show(ui, |ui| choices(ui, state, told, device));
+    });
+    (whole.right() - panel.response.rect.left()).max(0.0)
 }
 
 fn choices(ui: &mut Ui, state: &mut State, told: &mut Told, device: &Arc<Device>) {
@@ -142,12 +170,11 @@ fn choices(ui: &mut Ui, state: &mut State, told: &mut Told, device: &Arc<Device>
         }
         ui.label(format!("{hide} hides this panel")).on_hover_text(format!("{hide} shows it again"));
     });
-    let Some(chosen) = &mut state.choices() else {
-        ui.label("Drop files on the window to look at them.");
-        return;
-    };
+    let Some(chosen) = &mut state.choices() else { return };
     // Beside the scroll bar.
     ui.set_max_width(ui.available_width() - 10.0);
+    ui.spacing_mut().slider_width = (ui.available_width() - SLIDER).clamp(40.0, 100.0);
+    about(ui, chosen);
     CollapsingHeader::new("Method").default_open(true).show(ui, |ui| method::show(ui, chosen));
     CollapsingHeader::new("Look").default_open(true).show(ui, |ui| look::show(ui, chosen));
     let quality = times::Quality {
@@ -160,4 +187,21 @@ fn choices(ui: &mut Ui, state: &mut State, told: &mut Told, device: &Arc<Device>
     ui.collapsing("Side by side", |ui| told.split.show(ui, chosen));
     ui.collapsing("Error", |ui| told.errors.show(ui, chosen, device));
     ui.collapsing("Buffers", |ui| told.buffers.show(ui, chosen, device));
+}
+
+/// What is looked at: names, how many points, what of them is estimated.
+fn about(ui: &mut Ui, chosen: &Choices<'_>) {
+    let about = chosen.source.about();
+    for name in &about.names {
+        ui.add(Label::new(RichText::new(short_name(name)).strong()).truncate()).on_hover_text(name);
+    }
+    let counted = match (about.points, about.dropped) {
+        (0, _) => format!("{} surfels", thousands(chosen.surfels)),
+        (points, 0) => format!("{} points", thousands(points)),
+        (points, dropped) => format!("{} points, {} left out", thousands(points), thousands(dropped)),
+    };
+    ui.label(counted);
+    if let Some(estimated) = &about.estimated {
+        ui.label(format!("Estimated: {estimated}"));
+    }
 }

@@ -2,8 +2,8 @@
 
 use super::look;
 use egui::{
-    Align2, ColorImage, Context, FontId, Image, Rect, Sense, TextureHandle, TextureOptions, Ui, Window, pos2,
-    vec2,
+    Align2, Color32, ColorImage, Context, FontId, Image, Painter, Rect, Sense, TextureHandle, TextureOptions,
+    Ui, Window, pos2, vec2,
 };
 use surfel::geometry::{ColourMap, ColourScale, ValueRange};
 
@@ -129,13 +129,9 @@ pub fn colour_bar(ui: &mut Ui, scale: &ColourScale) {
     let (response, painter) =
         ui.allocate_painter(vec2(ui.available_width().min(300.0), 26.0), Sense::hover());
     let rect = response.rect;
-    let width = rect.width() / BAR as f32;
-    for column in 0..BAR {
-        let [r, g, b] = scale.map.at((column as f64 + 0.5) / BAR as f64);
-        let left = rect.left() + column as f32 * width;
-        let bar = Rect::from_min_max(pos2(left, rect.top()), pos2(left + width + 0.5, rect.top() + 12.0));
-        painter.rect_filled(bar, 0.0, egui::Color32::from_rgb(r, g, b));
-    }
+    paint_bar(&painter, Rect { max: pos2(rect.right(), rect.top() + 12.0), ..rect }, |part| {
+        scale.map.at(part)
+    });
     let (ink, font) = (ui.visuals().text_color(), FontId::proportional(10.0));
     let ValueRange { min, max } = scale.range;
     let ends = [
@@ -146,6 +142,17 @@ pub fn colour_bar(ui: &mut Ui, scale: &ColourScale) {
     for (part, align, value) in ends {
         let at = pos2(rect.left() + part * rect.width(), rect.bottom());
         painter.text(at, align, short(value), font.clone(), ink);
+    }
+}
+
+/// Fills a rectangle with the colours of the numbers from 0 to 1, sRGB, from its left to its right.
+pub fn paint_bar(painter: &Painter, rect: Rect, colour: impl Fn(f64) -> [u8; 3]) {
+    let width = rect.width() / BAR as f32;
+    for column in 0..BAR {
+        let [r, g, b] = colour((column as f64 + 0.5) / BAR as f64);
+        let left = rect.left() + column as f32 * width;
+        let bar = Rect::from_min_max(pos2(left, rect.top()), pos2(left + width + 0.5, rect.bottom()));
+        painter.rect_filled(bar, 0.0, Color32::from_rgb(r, g, b));
     }
 }
 

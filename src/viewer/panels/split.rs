@@ -8,7 +8,7 @@ use egui::{
 use surfel::methods::Method;
 use surfel::{FrameReport, Settings};
 
-/// Nearest to an edge of the window that the divider comes, as part of the width.
+/// Nearest to an edge of the picture that the divider comes, as part of the width.
 const MARGIN: f64 = 0.02;
 /// How wide it is to the hand, points.
 const WIDTH: f32 = 14.0;
@@ -19,7 +19,7 @@ pub struct Split {
     /// What the right picture is called, and how it is made.
     name: String,
     settings: Option<Settings>,
-    /// Where it begins, as part of the width.
+    /// Where it begins, as part of the width of both.
     at: f64,
 }
 
@@ -45,7 +45,11 @@ impl Split {
         if !self.on {
             return;
         }
-        ComboBox::from_label("on the right").selected_text(&self.name).show_ui(ui, |ui| {
+        if self.settings.is_none() {
+            let method = other_than(chosen.method, chosen.primitives);
+            (self.name, self.settings) = (method.name.into(), Some(chosen.settings_of(&method)));
+        }
+        let shown = ComboBox::from_label("on the right").selected_text(&self.name).show_ui(ui, |ui| {
             for method in Method::ALL {
                 ui.add_enabled_ui(method.pull_push.is_some() || !chosen.primitives, |ui| {
                     let label = ui.selectable_label(self.name == method.name, method.name);
@@ -58,16 +62,17 @@ impl Split {
                 });
             }
         });
+        shown.response.on_hover_text("The method of the picture on the right.");
         let keep = ui.button("keep what is on the left").on_hover_text(
             "The right picture is made from now on as the left one is now: change something on the left to see what it does.",
         );
-        if keep.clicked() || self.settings.is_none() {
+        if keep.clicked() {
             self.name = format!("{} as it was", chosen.method.name);
             self.settings = Some(chosen.settings.clone());
         }
     }
 
-    /// The divider, and above the pictures what they are.
+    /// The divider of the picture in `whole`, and above both sides what they are.
     pub fn divider(&mut self, ui: &mut Ui, whole: Rect, state: &State, times: &Times) {
         let Some([left, _]) = state.names().filter(|_| self.on && self.settings.is_some()) else { return };
         let x = whole.left() + self.at as f32 * whole.width();
@@ -101,10 +106,32 @@ impl Split {
     }
 }
 
+/// The first method that is another, as two pictures of one would be the same; of a scene that may have lines or triangles.
+fn other_than(method: &Method, primitives: bool) -> Method {
+    let others = Method::ALL.into_iter().filter(|other| other.name != method.name);
+    others.into_iter().find(|other| other.pull_push.is_some() || !primitives).unwrap_or(*method)
+}
+
 /// A picture's name, with its time where there is one.
 fn title(name: &str, report: Option<&FrameReport>) -> String {
     match report {
-        Some(report) => format!("{name} · {:.2} ms", times::sum(report)),
+        Some(report) => format!("{name} · {}", times::ms(times::sum(report))),
         None => name.into(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_pictures_are_of_two_methods() {
+        for method in Method::ALL {
+            for primitives in [false, true] {
+                let other = other_than(&method, primitives);
+                assert_ne!(other.name, method.name);
+                assert!(other.pull_push.is_some() || !primitives, "{}", other.name);
+            }
+        }
     }
 }

@@ -1,5 +1,8 @@
 //! What frames cost: times of their passes on the GPU, as they went by, and what became of the surfels.
 
+use crate::viewer::about::thousands;
+use crate::viewer::load::LEAST_SURFELS;
+use crate::viewer::pace::LEAST_SIDE;
 use crate::viewer::screen::Reports;
 use egui::{Align2, Color32, FontId, Grid, Pos2, Rect, Sense, Ui, vec2};
 use std::collections::VecDeque;
@@ -41,9 +44,9 @@ struct Frame {
 
 /// How good the picture is that one looks at.
 pub struct Quality {
-    /// Width and height of the window's picture, px.
+    /// Width and height of the whole picture, px.
     pub size: [u32; 2],
-    /// Side of what is rendered, as part of the window's.
+    /// Side of what is rendered, as part of that.
     pub side: f64,
     /// Surfels that are rendered, of how many.
     pub surfels: u64,
@@ -53,6 +56,16 @@ pub struct Quality {
 /// The sum of a frame's passes, ms.
 pub fn sum(report: &FrameReport) -> f64 {
     report.pass_times.iter().map(|pass| pass.milliseconds).sum()
+}
+
+/// A time with as many digits as mean something: two, and none below 10 µs.
+pub fn ms(milliseconds: f64) -> String {
+    let decimals = match milliseconds {
+        large if large >= 9.95 => 0,
+        middle if middle >= 0.995 => 1,
+        _ => 2,
+    };
+    format!("{milliseconds:.decimals$} ms")
 }
 
 impl Times {
@@ -160,12 +173,12 @@ impl Times {
                 let (response, painter) = ui.allocate_painter(vec2(10.0, 10.0), Sense::hover());
                 painter.rect_filled(response.rect, 1.0, self.colour(pass.label));
                 ui.label(pass.label).on_hover_text(pass_text(pass.label));
-                ui.monospace(format!("{:8.3} ms", pass.milliseconds));
+                ui.monospace(format!("{:>9}", ms(pass.milliseconds)));
                 ui.end_row();
             }
             ui.label("");
             ui.strong("all passes").on_hover_text("on the GPU's clock; panels and presenting are not in it");
-            ui.monospace(format!("{:8.3} ms", sum(last)));
+            ui.monospace(format!("{:>9}", ms(sum(last))));
             ui.end_row();
         });
     }
@@ -177,10 +190,10 @@ impl Frame {
     }
 
     fn tell(&self, ui: &mut Ui) {
-        for (label, ms) in &self.passes {
-            ui.monospace(format!("{label:<12}{ms:8.3} ms"));
+        for (label, time) in &self.passes {
+            ui.monospace(format!("{label:<12}{:>9}", ms(*time)));
         }
-        ui.monospace(format!("{:<12}{:8.3} ms", "all", self.sum()));
+        ui.monospace(format!("{:<12}{:>9}", "all", ms(self.sum())));
     }
 }
 
@@ -192,12 +205,16 @@ fn nice(number: f64) -> f64 {
 
 fn tell_quality(ui: &mut Ui, quality: &Quality, settings: &Settings, frame: f64) {
     let size = quality.size.map(|side| (f64::from(side) * quality.side).round());
-    ui.label(format!("{frame:.0} ms a frame, {:.0}x{:.0} px", size[0], size[1]))
-        .on_hover_text("From the frame's start until it is handed over. While the camera moves, pictures have fewer pixels, and surfels, where whole ones would take longer than they may.");
+    ui.label(format!("{} a frame, {:.0}x{:.0} px", ms(frame), size[0], size[1])).on_hover_text(format!(
+        "From the frame's start until it is handed over. While the camera moves, pictures have fewer pixels, and surfels, where whole ones \
+         would take longer than they may: never less than {:.0} % of the pixels, nor fewer than {} surfels, or all.",
+        100.0 * LEAST_SIDE * LEAST_SIDE,
+        thousands(LEAST_SURFELS as u64)
+    ));
     let part = if quality.side < 1.0 {
-        format!("{:.0} % of the window's pixels", 100.0 * quality.side * quality.side)
+        format!("{:.0} % of the picture's pixels", 100.0 * quality.side * quality.side)
     } else {
-        "all of the window's pixels".into()
+        "all of the picture's pixels".into()
     };
     ui.label(part);
     let normalized = match settings.pull_push {
@@ -205,8 +222,8 @@ fn tell_quality(ui: &mut Ui, quality: &Quality, settings: &Settings, frame: f64)
         None => format!("normalized by {}", settings.splatting.normalization.name()),
     };
     let surfels = match (quality.surfels, quality.of) {
-        (fewer, of) if fewer < of => format!("{fewer} of {of} surfels"),
-        (_, of) => format!("{of} surfels"),
+        (fewer, of) if fewer < of => format!("{} of {} surfels", thousands(fewer), thousands(of)),
+        (_, of) => format!("{} surfels", thousands(of)),
     };
     ui.label(format!("{surfels}, {normalized}"));
 }
@@ -248,6 +265,8 @@ fn pass_text(label: &str) -> &'static str {
         "shade" => "level 0 to the picture",
         "read back" => "the counts for this panel",
         "screen" => "the picture over the background",
+        "range" => "the least and the greatest of the picture's numbers",
+        "colour map" => "numbers to colours",
         "depths" => "depths, by which the cursor finds the surface",
         _ => "a pass of the frame",
     }
@@ -260,7 +279,9 @@ mod tests {
 
     fn report(milliseconds: f64) -> Reports {
         let pass_times = ["a", "b", "a"].map(|label| PassTime { label, milliseconds }).to_vec();
-        Reports { left: Some(FrameReport { pass_times, counts: None }), right: None }
+        let mut left = FrameReport::default();
+        left.pass_times.extend(pass_times);
+        Reports { left: Some(left), right: None }
     }
 
     #[test]
@@ -273,6 +294,13 @@ mod tests {
         assert_eq!((times.frames.len(), &times.passes[..]), (FRAMES, &["a", "b"][..]));
         assert_eq!(times.frames[0].sum(), 21.0);
         assert_ne!(times.colour("a"), times.colour("b"));
+    }
+
+    #[test]
+    fn times_have_the_digits_that_mean_something() {
+        let all = [123.456, 42.9, 9.96, 9.94, 1.04, 0.996, 0.994, 0.0123, 0.001].map(ms);
+        let expected = ["123", "43", "10", "9.9", "1.0", "1.0", "0.99", "0.01", "0.00"];
+        assert_eq!(all, expected.map(|text| format!("{text} ms")));
     }
 
     #[test]

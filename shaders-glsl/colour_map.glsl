@@ -1,0 +1,64 @@
+// Colour map: a picture of numbers as the colours that a PNG has for them (src/io/image/mod.rs).
+#version 450
+#extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
+
+#ifdef VERTEX
+#include "lib/full_screen.glsl"
+#endif
+#ifdef FRAGMENT
+
+layout(constant_id = 6) const uint SHADING = 0;
+const uint NORMAL = 2, DEPTH = 3;
+
+layout(push_constant) uniform Numbers {
+    float least_alpha;
+    uint opaque;
+} numbers;
+
+layout(set = 0, binding = 0) uniform texture2D picture; // numbers times α, α
+layout(set = 0, binding = 1, std430) readonly buffer NumberRange {
+    uint least;
+    uint greatest;
+} range;
+layout(set = 0, binding = 2, std430) readonly buffer MapColours { uint map_colours[]; }; // sRGB codes from 0 to 1, red lowest
+
+layout(location = 0) out vec4 colour;
+
+// The number with these bits: range.glsl has the other way.
+float number_of(uint bits) {
+    return uintBitsToFloat((bits & 0x80000000u) != 0u ? bits & 0x7fffffffu : ~bits);
+}
+
+vec3 map_at(float share) {
+    int last = map_colours.length() - 1;
+    float place = clamp(share, 0.0, 1.0) * float(last);
+    int i = min(int(place), last - 1);
+    return mix(unpackUnorm4x8(map_colours[i]).rgb, unpackUnorm4x8(map_colours[i + 1]).rgb, place - float(i));
+}
+
+// sRGB codes, from 0 to 1.
+vec3 codes_of(vec3 value) {
+    if (SHADING == NORMAL) return 0.5 * value + 0.5;
+    float greatest = number_of(~range.greatest);
+    if (SHADING == DEPTH) {
+        float least = number_of(range.least);
+        float scale = greatest > least ? 0.9 / (greatest - least) : 0.0;
+        return vec3(1.0 - (value.x - least) * scale);
+    }
+    return map_at(value.x / max(greatest, 1.0));
+}
+
+vec3 srgb_to_linear(vec3 c) {
+    return mix(c / 12.92, pow((c + 0.055) / 1.055, vec3(2.4)), greaterThan(c, vec3(0.04045)));
+}
+
+void main() {
+    vec4 seen = texelFetch(picture, ivec2(gl_FragCoord.xy), 0);
+    if (seen.a < numbers.least_alpha) discard;
+    vec3 shown = srgb_to_linear(clamp(codes_of(seen.rgb / seen.a), 0.0, 1.0));
+    float alpha = numbers.opaque != 0u ? 1.0 : seen.a;
+    colour = vec4(alpha * shown, alpha);
+}
+
+#endif

@@ -1,0 +1,63 @@
+//! What is known of what is looked at, in words.
+
+use std::path::Path;
+
+/// What is known of what is looked at.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct About {
+    /// Files and built-in scenes, as they were asked for.
+    pub names: Vec<String>,
+    /// Points of all of them; 0 where that is not known yet.
+    pub points: u64,
+    /// Points that are no surfels.
+    pub dropped: u64,
+    /// What of the surfels was estimated, in words, if something was.
+    pub estimated: Option<String>,
+}
+
+impl About {
+    /// The names in short: `bunny.ply`, `a.ply, b.ply`, `a.ply and 3 more`.
+    pub fn title(&self) -> String {
+        match &self.names[..] {
+            [] => "surfels".into(),
+            [first, second] => format!("{}, {}", short_name(first), short_name(second)),
+            [one] => short_name(one).into(),
+            [first, others @ ..] => format!("{} and {} more", short_name(first), others.len()),
+        }
+    }
+}
+
+/// A file without its folders.
+pub fn short_name(name: &str) -> &str {
+    Path::new(name).file_name().and_then(|name| name.to_str()).unwrap_or(name)
+}
+
+/// A count with its thousands apart: `1,234,567`.
+pub fn thousands(count: u64) -> String {
+    let digits = count.to_string();
+    let first = digits.len() % 3;
+    let (first, rest) = digits.split_at(first);
+    let groups = rest.as_bytes().chunks(3).map(|group| String::from_utf8_lossy(group).into_owned());
+    let all: Vec<_> =
+        Some(first.to_owned()).filter(|first| !first.is_empty()).into_iter().chain(groups).collect();
+    all.join(",")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_short_and_counts_are_legible() {
+        let title = |names: &[&str]| {
+            About { names: names.iter().map(|&name| name.to_owned()).collect(), ..Default::default() }.title()
+        };
+        assert_eq!(title(&["/scans/bunny.ply"]), "bunny.ply");
+        assert_eq!(title(&["a/b.ply", "scene:sphere?points=5"]), "b.ply, scene:sphere?points=5");
+        assert_eq!(title(&["b.ply", "c.ply", "d.ply"]), "b.ply and 2 more");
+        assert_eq!(
+            [0, 999, 1000, 35_947, 1_234_567].map(thousands),
+            ["0", "999", "1,000", "35,947", "1,234,567"]
+        );
+    }
+}
