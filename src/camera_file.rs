@@ -10,11 +10,11 @@
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use surfel::geometry::{Pose, Span};
-use surfel::{Error, Result};
+use surfel::{Error, Result, io};
 
 /// What a file holds.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
-#[serde(deny_unknown_fields)]
+#[serde(deny_unknown_fields, expecting = "an object with eye, target, up, and fov_y_deg or height")]
 pub struct Fields {
     eye: [f64; 3],
     target: [f64; 3],
@@ -37,7 +37,7 @@ impl From<Pose> for Fields {
 
 /// Reads a file; the error names it and, by serde, the field.
 pub fn read(path: &Path) -> Result<Pose> {
-    let text = std::fs::read(path).map_err(Error::io(path, "cannot read"))?;
+    let text = io::read_small(path)?;
     parse(&text).map_err(|cause| Error::input(path.display().to_string(), cause))
 }
 

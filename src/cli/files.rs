@@ -2,16 +2,21 @@
 
 use serde::de::DeserializeOwned;
 use std::ffi::OsString;
-use std::io::Write;
+use std::fs::File;
+use std::io::{BufReader, Write};
 use std::path::{Path, PathBuf};
 use surfel::io::atomic;
 use surfel::{Error, Result};
 
 /// Reads a JSON file; the error names the file and, by serde, the field.
 pub fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T> {
-    let text = std::fs::read(path).map_err(Error::io(path, "cannot read"))?;
-    let wrong = |error| Error::input(path.display().to_string(), format!("{error}: correct the file"));
-    serde_json::from_slice(&text).map_err(wrong)
+    let file = File::open(path).map_err(Error::io(path, "cannot read"))?;
+    // Read as it is understood: a device need not end.
+    let wrong = |error: serde_json::Error| match error.is_io() {
+        true => Error::io(path, "cannot read")(error.into()),
+        false => Error::input(path.display().to_string(), format!("{error}: correct the file")),
+    };
+    serde_json::from_reader(BufReader::new(file)).map_err(wrong)
 }
 
 /// Refuses a place where [`write_text`] could not write.

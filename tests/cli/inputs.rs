@@ -104,3 +104,22 @@ fn exr_holds_linear_light() {
     let depth = picture.get_pixel(20, 20)[0];
     assert!((depth - 5.0).abs() < 1e-4, "{depth}");
 }
+
+/// What never ends is not read to its end, and what is there in its place is said.
+#[test]
+#[cfg(unix)]
+fn devices_without_an_end_are_refused() {
+    let program = Program::new();
+    program.write("a.ply", surfels(&["0 0 0 0 0 1 1"]));
+    for command in [
+        "render /dev/zero -o b.png --reference",
+        "info /dev/zero",
+        "convert /dev/full -o b.ply",
+        "compare /dev/zero /dev/zero",
+        "render a.ply -o b.png --reference --camera /dev/zero",
+        "render a.ply -o b.png --device-limits /dev/zero",
+    ] {
+        let run = program.run(command);
+        assert!(run.code == 1 && run.err.contains("/dev/"), "{command}: {} {}", run.code, run.err);
+    }
+}

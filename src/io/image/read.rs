@@ -5,7 +5,8 @@ use crate::error::{Error, Result};
 use crate::geometry::srgb;
 use crate::picture::Picture;
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
-use std::io::Cursor;
+use std::fs::File;
+use std::io::{Cursor, Read};
 use std::path::Path;
 
 /// Most pixels of a picture that is read: a gibibyte of colours.
@@ -24,7 +25,7 @@ const EXR: &[u8] = &[0x76, 0x2f, 0x31, 0x01];
 /// # Errors
 /// [`Error::Io`] if the file cannot be read, [`Error::Input`] if it is neither, is damaged, or has more than [`MOST_PIXELS`].
 pub fn read(path: &Path) -> Result<Picture> {
-    let bytes = std::fs::read(path).map_err(Error::io(path, "cannot read"))?;
+    let bytes = beginning_as_picture(path).map_err(Error::io(path, "cannot read"))?;
     let picture = match &bytes {
         png if png.starts_with(PNG) => read_codes(png, ImageFormat::Png),
         jpeg if jpeg.starts_with(JPEG) => read_codes(jpeg, ImageFormat::Jpeg),
@@ -32,6 +33,16 @@ pub fn read(path: &Path) -> Result<Picture> {
         _ => Err("no PNG, JPEG or EXR file: convert it to one of them".into()),
     };
     picture.map_err(|cause| Error::input(path.display().to_string(), cause))
+}
+
+/// All of a file that begins as a picture does; of another one the beginning, as it need not end.
+fn beginning_as_picture(path: &Path) -> std::io::Result<Vec<u8>> {
+    let (mut file, mut bytes) = (File::open(path)?, Vec::new());
+    file.by_ref().take(PNG.len() as u64).read_to_end(&mut bytes)?;
+    if [PNG, JPEG, EXR].iter().any(|beginning| bytes.starts_with(beginning)) {
+        file.read_to_end(&mut bytes)?;
+    }
+    Ok(bytes)
 }
 
 fn read_codes(bytes: &[u8], format: ImageFormat) -> Result<Picture, String> {

@@ -1,6 +1,6 @@
 //! A file's bytes, in memory or where they lie.
 
-use super::Parsed;
+use super::{Parsed, header};
 use crate::error::{Error, Result};
 use std::borrow::Cow;
 use std::fs::File;
@@ -17,7 +17,7 @@ pub(super) enum Source<'a> {
 }
 
 impl<'a> Source<'a> {
-    /// Opens a file. Of what has no size, such as a pipe, everything is read.
+    /// Opens a file. Of what has no size, such as a pipe, everything is read if it begins as a PLY file does: a device need not end.
     pub fn open(path: &Path) -> Result<Source<'static>> {
         let mut file = File::open(path).map_err(|error| Error::io(path, "cannot open")(advise(error)))?;
         let about = file.metadata().map_err(Error::io(path, "cannot read"))?;
@@ -25,7 +25,11 @@ impl<'a> Source<'a> {
             return Ok(Source::File { file, size: about.len() });
         }
         let mut bytes = Vec::new();
-        file.read_to_end(&mut bytes).map_err(Error::io(path, "cannot read"))?;
+        let beginning = file.by_ref().take(header::LIMIT as u64 + 1).read_to_end(&mut bytes);
+        beginning.map_err(Error::io(path, "cannot read"))?;
+        if header::is_ply(&bytes) {
+            file.read_to_end(&mut bytes).map_err(Error::io(path, "cannot read"))?;
+        }
         Ok(Source::Bytes(bytes.into()))
     }
 
