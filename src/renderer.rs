@@ -255,12 +255,17 @@ pub(crate) fn rasterizer_for(
     let covers = capabilities.fragment_writes && Buffers::fit_coverage(capabilities, options.size);
     let can_draw = alpha == Alpha::Mask || covers;
     match options.rasterizer {
-        Some(Rasterizer::Compute) if !can_compute => Err(Error::Usage(format!(
-            "the compute rasterizer needs {needed} in buffers, 32-bit sums and a picture within {} bytes, which {} does \
-             not have at this size: choose the draw rasterizer",
-            capabilities.max_storage_buffer_range,
-            device.description().name
-        ))),
+        Some(Rasterizer::Compute) if !can_compute => {
+            let (name, most) = (&device.description().name, capabilities.max_storage_buffer_range);
+            let cause = match (atomics, fits) {
+                (false, _) => format!("{needed} in buffers, which {name} does not have"),
+                (true, false) => {
+                    format!("a picture within the {most} bytes of a buffer that shaders of {name} see")
+                }
+                (true, true) => "32-bit sums, and half precision is wanted".into(),
+            };
+            Err(Error::Usage(format!("the compute rasterizer needs {cause}: choose the draw rasterizer")))
+        }
         Some(Rasterizer::Draw) | None if !can_draw && (options.rasterizer.is_some() || !can_compute) => {
             Err(Error::Usage(format!(
                 "coverage by the draw rasterizer needs buffers that fragment shaders write to (fragmentStoresAndAtomics), and 4 bytes a \

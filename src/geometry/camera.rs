@@ -2,7 +2,7 @@
 
 use super::Bounds;
 use crate::error::{Error, Result};
-use glam::{DMat4, DVec3, DVec4};
+use glam::{DMat3, DMat4, DVec3, DVec4};
 
 /// A view and a projection matrix, in Vulkan's clip space (x right, y down, `0 ≤ z ≤ w`), for column vectors.
 ///
@@ -99,12 +99,20 @@ impl Camera {
         Ok(forward * (z.w - depth * w.w) / (depth * w.z - z.z))
     }
 
-    /// What the projection's depth rows say; refuses a projection that is of no supported kind.
+    /// What the projection's depth rows say.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for a view that is no rotation, mirrored or not, and translation, and for a projection that is of no supported kind.
     pub fn projection(&self) -> Result<Projection> {
         let (z, w) = (self.projection.row(2), self.projection.row(3));
         let refuse = |cause: &str| Err(Error::Usage(format!("the projection matrix {cause}")));
         if !self.projection.is_finite() || !self.view.is_finite() {
             return refuse("or the view matrix holds a value that is not finite");
+        }
+        if !is_rigid(&self.view) {
+            return Err(Error::Usage(
+                "the view matrix scales or shears: give a rotation and a translation, and scale what is seen, or the projection".into(),
+            ));
         }
         if z.x != 0.0 || z.y != 0.0 {
             return refuse("has an oblique near plane: use one whose depth rows depend on z alone");
@@ -134,6 +142,16 @@ impl Camera {
     }
 }
 
+/// Most that lengths and right angles may be off in a view of floats.
+const LEAST_RIGID: f64 = 1e-4;
+
+/// Whether lengths and angles stay.
+fn is_rigid(view: &DMat4) -> bool {
+    let turn = DMat3::from_mat4(*view);
+    let off = turn.transpose() * turn - DMat3::IDENTITY;
+    off.to_cols_array().iter().all(|entry| entry.abs() < LEAST_RIGID) && view.row(3) == DVec4::W
+}
+
 fn infinite_reversed(focal_x: f64, focal_y: f64, near: f64) -> DMat4 {
     DMat4::from_cols(
         DVec4::new(focal_x, 0.0, 0.0, 0.0),
@@ -150,7 +168,11 @@ fn look_at_view(eye: DVec3, target: DVec3, up: DVec3) -> Result<DMat4> {
     if !(eye.is_finite() && target.is_finite() && up.is_finite()) {
         return Err(usage("has a coordinate that is not finite"));
     }
-    let forward = (target - eye).try_normalize().ok_or_else(|| usage("stands on its target"))?;
+    let away = target - eye;
+    if !away.length_squared().is_finite() {
+        return Err(usage("is too far from its target for float64"));
+    }
+    let forward = away.try_normalize().ok_or_else(|| usage("stands on its target"))?;
     let right = forward.cross(up).try_normalize().ok_or_else(|| usage("looks along its up vector"))?;
     let down = forward.cross(right);
     let rotation = glam::DMat3::from_cols(right, down, forward).transpose();

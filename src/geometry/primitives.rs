@@ -209,11 +209,15 @@ impl Primitives {
         let colours = self.colours.as_ref().map_or(count, Colours::len);
         let textured = self.texture.as_ref().map_or(count, |texture| texture.coordinates.len());
         let materials = self.materials.as_ref().map_or(count, |materials| materials.of.len());
-        let lengths = [self.directions.len(), self.radii.len(), colours, textured, materials];
-        if lengths.iter().any(|&length| length != count) {
-            return Err(Error::Usage(format!(
-                "{count} vertices with {lengths:?} directions, radii, colours, texture coordinates and materials: give one each"
-            )));
+        let lengths = [
+            ("directions", self.directions.len()),
+            ("radii", self.radii.len()),
+            ("colours", colours),
+            ("texture coordinates", textured),
+            ("materials", materials),
+        ];
+        if let Some((what, length)) = lengths.iter().find(|(_, length)| *length != count) {
+            return Err(Error::Usage(format!("{count} vertices and {length} {what}: give one a vertex")));
         }
         self.materials.as_ref().map_or(Ok(()), Materials::check)?;
         let ends = self.segments().flat_map(|(ends, _)| ends);
@@ -286,7 +290,7 @@ mod tests {
             |p| p.origin.x = f64::NAN,
         ];
         let causes =
-            ["vertex 2, and there are 2", "vertex 9", "[2, 1, 2, 2, 2]", "[2, 2, 0, 2, 2]", "finite"];
+            ["vertex 2, and there are 2", "vertex 9", "2 vertices and 1 radii", "and 0 colours", "finite"];
         for (change, said) in changes.into_iter().zip(causes) {
             let mut primitives = two();
             change(&mut primitives);

@@ -76,32 +76,29 @@ impl Surfels {
     /// Refuses arrays of unequal length, an origin that is not finite, and clips, corners and materials that do not exist.
     ///
     /// # Errors
-    /// [`Error::Usage`], with the lengths, the origin, the clip, the corners or the material.
+    /// [`Error::Usage`], with the array, the origin, the clip, the corners or the material.
     pub fn check(&self) -> Result<()> {
         if !self.origin.is_finite() {
             return Err(Error::Usage(format!("the surfels' origin is {}: give a finite one", self.origin)));
         }
         let count = self.len();
         let lengths = [
-            self.normals.len(),
-            self.radii.len(),
-            self.ellipses.as_ref().map_or(count, Vec::len),
-            self.two_sided.as_ref().map_or(count, Vec::len),
-            self.clips.as_ref().map_or(count, |clips| clips.of.len()),
-            self.weights.as_ref().map_or(count, |weights| weights.of.len()),
-            self.colours.as_ref().map_or(count, Colours::len),
-            self.texture.as_ref().map_or(count, |texture| texture.coordinates.len()),
-            self.materials.as_ref().map_or(count, |materials| materials.of.len()),
+            ("normals", self.normals.len()),
+            ("radii", self.radii.len()),
+            ("ellipses", self.ellipses.as_ref().map_or(count, Vec::len)),
+            ("sides", self.two_sided.as_ref().map_or(count, Vec::len)),
+            ("clips", self.clips.as_ref().map_or(count, |clips| clips.of.len())),
+            ("weights", self.weights.as_ref().map_or(count, |weights| weights.of.len())),
+            ("colours", self.colours.as_ref().map_or(count, Colours::len)),
+            ("texture coordinates", self.texture.as_ref().map_or(count, |texture| texture.coordinates.len())),
+            ("materials", self.materials.as_ref().map_or(count, |materials| materials.of.len())),
         ];
-        if lengths.iter().all(|&length| length == count) {
-            self.clips.as_ref().map_or(Ok(()), Clips::check)?;
-            self.materials.as_ref().map_or(Ok(()), Materials::check)?;
-            return self.weights.as_ref().map_or(Ok(()), Weights::check);
+        if let Some((what, length)) = lengths.iter().find(|(_, length)| *length != count) {
+            return Err(Error::Usage(format!("{count} positions and {length} {what}: give one a position")));
         }
-        Err(Error::Usage(format!(
-            "{count} positions with {lengths:?} normals, radii, ellipses, sides, clips, weights, colours, texture coordinates \
-             and materials: give one each"
-        )))
+        self.clips.as_ref().map_or(Ok(()), Clips::check)?;
+        self.materials.as_ref().map_or(Ok(()), Materials::check)?;
+        self.weights.as_ref().map_or(Ok(()), Weights::check)
     }
 
     /// Reorders every array: entry `i` of the result is entry `order[i]` of `self`.

@@ -82,7 +82,7 @@ fn every_case_by_every_method() {
             widen: method.widen,
             ..case.settings.clone()
         });
-        failures(&cases, &some_in_turn(i, 2), method.name)
+        failures(&cases, &some_in_turn(i, 3), method.name)
     };
     assert_agree(Method::SPLATTING[1..].iter().enumerate().flat_map(by).collect());
 }
@@ -133,7 +133,13 @@ fn every_footprint_under_every_visibility_with_coverage() {
         let some = (i + i / 3) % 2;
         cases.retain(|case| both[if_whole(0..2, some..some + 1)].contains(&case.name));
         assert_eq!(cases.len(), if_whole(2, 1));
-        failures(&cases, &views_in_turn(i + i / 3), &format!("coverage, {splatting:?}"))
+        // By the other rasterizer where the next one meets the same case.
+        let views = move |number| {
+            let mut views = views_in_turn(i + i / 3)(number);
+            views.retain(|(_, rasterizer)| if_whole(true, *rasterizer == RASTERIZERS[(i / 2) % 2]));
+            views
+        };
+        failures(&cases, &views, &format!("coverage, {splatting:?}"))
     };
     let all: Vec<Splatting> = all.collect();
     assert_eq!(all.len(), 19);
@@ -162,7 +168,7 @@ fn every_case_by_other_axes() {
     ];
     let by = |(i, splatting): (usize, Splatting)| {
         let cases = with_axes(|case| Settings { splatting, ..case.settings.clone() });
-        failures(&cases, &some_in_turn(i, 3), &format!("{splatting:?}"))
+        failures(&cases, &some_in_turn(i, 6), &format!("{splatting:?}"))
     };
     assert_agree(all.into_iter().enumerate().flat_map(by).collect());
 }

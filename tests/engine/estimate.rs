@@ -317,7 +317,7 @@ fn what_makes_no_sense_is_refused() {
         assert!(error.contains(cause), "{error}");
     }
     let ragged = Cloud { radii: Some(vec![1.0; 3]), ..bare(lines(2, 2, 1.0)) };
-    assert!(ragged.into_surfels(&Estimate::default(), &()).unwrap_err().contains("give one each"));
+    assert!(ragged.into_surfels(&Estimate::default(), &()).unwrap_err().contains("4 positions and 3 radii"));
     let dangling = Cloud { triangles: vec![[0, 1, 4]], ..bare(lines(2, 2, 1.0)) };
     assert!(dangling.into_surfels(&Estimate::default(), &()).unwrap_err().contains("none of the 4 points"));
 }

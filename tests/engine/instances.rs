@@ -225,14 +225,14 @@ fn points_lines_and_triangles_are_one_model_by_pull_push() {
     for method in ["pull-push", "pull-push-paper"] {
         let settings = settings(method);
         let one = merged(&apart(&a, &b), settings.lighting.albedo);
-        for camera in [perspective(), parallel(), rising()] {
-            let expected = reference::render(&one, &camera, SIZE, &settings, &()).unwrap().to_picture();
+        for camera in &[perspective(), parallel(), rising()][if_whole(0..3, 0..1)] {
+            let expected = reference::render(&one, camera, SIZE, &settings, &()).unwrap().to_picture();
             for rasterizer in BOTH {
                 for precision in [Precision::Full, Precision::Half] {
                     let options = RenderOptions { precision, ..options(rasterizer) };
-                    let (picture, _) = Rig::new(&device, options).show(&apart(&a, &b), &camera, &settings);
+                    let (picture, _) = Rig::new(&device, options).show(&apart(&a, &b), camera, &settings);
                     let (own, _) =
-                        Rig::new(&device, options).show(&[(&one, DMat4::IDENTITY)], &camera, &settings);
+                        Rig::new(&device, options).show(&[(&one, DMat4::IDENTITY)], camera, &settings);
                     let [twins, merged] = [&expected, &own].map(|other| differing(&picture, other));
                     let seen = own.colour.iter().filter(|colour| colour[3] > 0.0).count();
                     println!(

@@ -11,6 +11,7 @@ mod estimate;
 mod footprint;
 mod frames;
 mod hard;
+mod hostile;
 mod instances;
 mod lines;
 mod materials;
