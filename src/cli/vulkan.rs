@@ -61,6 +61,8 @@ pub fn render(task: &Task<'_>, options: &DeviceOptions, place: &Place, wanted: M
     if place.half {
         gpu.half_error = half_error(&device, task, &scene, options, &picture)?;
     }
+    // Its targets would be there twice.
+    drop(renderer);
     let counts = if wanted.counts { count(&device, task, &scene, options)? } else { None };
     Ok(Outcome { picture, counts, times, gpu: Some(gpu) })
 }

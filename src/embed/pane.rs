@@ -129,7 +129,14 @@ impl Pane {
             self.retire(frame.number, false);
             let picture = self.targets.as_ref().map(|targets| &targets.colour);
             let made = shading.zip(picture).map(|(shading, of)| Numbers::new(&self.device, shading, of));
-            self.numbers = made.transpose()?;
+            match made.transpose() {
+                Ok(made) => self.numbers = made,
+                Err(error) => {
+                    // Nothing is drawn to the targets, which may be new.
+                    self.retire(frame.number, true);
+                    return Err(error);
+                }
+            }
         }
         self.record(frame, shown, measured)
     }

@@ -47,7 +47,7 @@ impl Range {
         range: &Buffer,
         numbers: layout::Numbers,
     ) {
-        rec.pass("clear", &[range.with(Access::COPY_WRITE)], |enc| enc.ones(range));
+        rec.pass("clear range", &[range.with(Access::COPY_WRITE)], |enc| enc.ones(range));
         let uses = [picture.with(Access::COMPUTE_FETCH), range.with(Access::COMPUTE_WRITE)];
         let blocks = picture.size().map(|side| side.div_ceil(BLOCK));
         let push = bytemuck::cast(numbers);

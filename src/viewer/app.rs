@@ -31,6 +31,9 @@ use winit::window::WindowId;
 /// Px of a touchpad's scrolling that are a step of a wheel.
 const PX_A_STEP: f64 = 50.0;
 
+/// What is told of a load that has told nothing yet.
+const LOADING: (&str, f32) = ("loading", 0.0);
+
 /// Surfels that were changed, and not again for so long, stay.
 const SETTLED: Duration = Duration::from_millis(400);
 
@@ -38,7 +41,8 @@ const SETTLED: Duration = Duration::from_millis(400);
 pub fn run(options: Options, load: Load, look: Look) -> Result<()> {
     let events = EventLoop::<News>::with_user_event().build().map_err(no_display)?;
     let remembered = options.remembered.as_deref().and_then(Remembered::read);
-    let told = Told::new(remembered.as_ref().is_some_and(|known| known.hidden));
+    let mut told = Told::new(remembered.as_ref().is_some_and(|known| known.hidden));
+    told.loading = (!options.inputs.is_empty()).then_some(LOADING);
     let known = remembered.filter(|_| !options.asked).and_then(|known| known.settings());
     let state = State::new(&options, look, known);
     let hands = Hands::default();
@@ -166,13 +170,11 @@ impl ApplicationHandler<News> for App {
                 }
                 return;
             }
+            What::Failed(error) if error.is_device_lost() => return self.fail(events, error),
             What::Failed(error) => {
                 (self.told.loading, self.next) = (None, None);
                 self.tried = self.pending.take();
                 self.state.leave_sketch();
-                if error.is_device_lost() {
-                    return self.fail(events, error);
-                }
                 self.wrong(&error);
             }
         }
@@ -240,6 +242,7 @@ impl App {
     /// Looks at these inputs from now on, once they are loaded.
     fn open(&mut self, inputs: Vec<OsString>) {
         (self.pending, self.tried) = (Some(inputs.clone()), None);
+        self.told.loading = Some(LOADING);
         self.watch.iter().for_each(|watch| watch.look_at(&inputs));
         self.loader.start(inputs);
     }

@@ -1,4 +1,4 @@
-//! Panels over the picture: what is shown, how, and what keys do.
+//! Panels over the picture and beside it: what is shown, how, and what keys do.
 
 use super::panels::{self, Told};
 use super::state::State;

@@ -67,7 +67,7 @@ pub static BINDINGS: [Binding; 25] = {
     [
         letter("m", "M", "next method", Action::NextMethod),
         shift("m", "Shift+M", "previous method", Action::PreviousMethod),
-        letter("l", "L", "next shading: light, colour, normal, depth", Action::NextShading),
+        letter("l", "L", "next shading: light, colour, normal, depth, overlap, weight", Action::NextShading),
         letter("p", "P", "perspective or parallel rays", Action::Parallel),
         letter("f", "F", "show all", Action::Frame),
         letter("1", "1", "from the front", Action::Side(Side::Front)),

@@ -18,8 +18,9 @@ pub type Window = Arc<dyn Fn(News) + Send + Sync>;
 
 /// How many times as many surfels each scene has as the next coarser one.
 const FEWER: f64 = 1.6;
-/// The coarsest one has no more than this, where surfels can be merged, and no fewer than the least.
+/// The coarsest one has about as many.
 const FEWEST: usize = 4000;
+/// And no coarser one has fewer.
 pub const LEAST_SURFELS: usize = 2500;
 /// Part of all surfels that coarser ones still are made of.
 const ENOUGH: usize = 4;

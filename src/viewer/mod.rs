@@ -49,7 +49,7 @@ use surfel::{Progress, Rasterizer, Result, Settings};
 pub struct Options {
     /// Files and scenes that are looked at first; there may be none.
     pub inputs: Vec<OsString>,
-    /// Width and height of the picture, px.
+    /// Width and height of the window, px.
     pub size: [u32; 2],
     /// Which device renders and presents.
     pub device: DeviceOptions,

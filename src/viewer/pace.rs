@@ -3,7 +3,7 @@
 use super::cost::{Cost, Work};
 use std::time::{Duration, Instant};
 
-/// Sides of the pictures, parts of the window's: each has 1.6 times the pixels of the next one, so that no step to a finer picture makes a
+/// Sides of the pictures, parts of the whole one's: each has 1.6 times the pixels of the next one, so that no step to a finer picture makes a
 /// frame that keeps to its time exceed it by half.
 const SIDES: [f64; 7] = [1.0, 0.8, 0.63, 0.5, 0.4, 0.32, LEAST_SIDE];
 /// The least of them: below it a picture tells nothing.
@@ -28,7 +28,7 @@ const FINER: f64 = 0.97;
 /// How fine a frame is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quality {
-    /// Side of the picture, as part of the window's.
+    /// Side of the picture, as part of the whole one's.
     pub side: f64,
     /// Which of the scenes: 0 has all surfels, each further one fewer.
     pub scene: usize,
@@ -132,6 +132,11 @@ impl Pace {
     /// Something else is shown, or otherwise: what frames took tells nothing any more.
     pub fn forget(&mut self) {
         *self = Self { moved: self.moved, ..Self::new(self.budget) };
+    }
+
+    /// Whether a frame has told what it costs.
+    pub fn is_known(&self) -> bool {
+        self.whole.is_some() || self.moving_known
     }
 
     /// The hands move.

@@ -4,6 +4,7 @@ use super::side::{Seen, Side};
 use glam::DVec2;
 use std::sync::Arc;
 use surfel::geometry::{Camera, ValueRange};
+use surfel::settings::Shading;
 use surfel::vk::{Presented, Presenter};
 use surfel::{FrameReport, Rasterizer, Result, Scene, Settings};
 
@@ -112,8 +113,8 @@ impl Screen {
         self.made
     }
 
-    /// The least and the greatest number that the pictures show, left and right, where they show numbers.
-    pub fn ranges(&self, presenter: &Presenter) -> Result<[Option<ValueRange>; 2]> {
+    /// The least and the greatest number that the pictures show, left and right, where they show numbers, and what these are.
+    pub fn ranges(&self, presenter: &Presenter) -> Result<[Option<(Shading, ValueRange)>; 2]> {
         let right = self.right.as_ref().filter(|_| self.asked.split.is_some());
         let right = right.map_or(Ok(None), |right| right.range(presenter))?;
         Ok([self.left.range(presenter)?, right])

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use surfel::embed::Pane;
 use surfel::geometry::{Camera, ValueRange};
+use surfel::settings::Shading;
 use surfel::vk::{Presented, Presenter};
 use surfel::{FrameReport, Rasterizer, Result, Scene, Settings};
 
@@ -80,9 +81,10 @@ impl Side {
         self.pane.show(window, area, columns)
     }
 
-    /// The least and the greatest number that the last picture shows, if it shows numbers.
-    pub fn range(&self, presenter: &Presenter) -> Result<Option<ValueRange>> {
-        self.pane.range(presenter)
+    /// What numbers the last picture shows, if it shows some, and the least and the greatest of them.
+    pub fn range(&self, presenter: &Presenter) -> Result<Option<(Shading, ValueRange)>> {
+        let shading = self.drawn.as_ref().map(|drawn| drawn.settings.shading);
+        Ok(shading.zip(self.pane.range(presenter)?))
     }
 
     /// What the last picture tells, once; `None` where it was not measured.

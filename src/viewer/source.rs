@@ -87,7 +87,7 @@ impl By {
         (Self::X, "x", "the place along x, in the positions' unit"),
         (Self::Y, "y", "the place along y, in the positions' unit"),
         (Self::Z, "z", "the place along z, in the positions' unit"),
-        (Self::Height, "height", "the place along what is up, in the positions' unit"),
+        (Self::Height, "height", "the place along what --up says, y otherwise, in the positions' unit"),
         (Self::Radius, "radius", "the disc's radius, in the positions' unit"),
         (Self::Normal, "normal", "the normal: x, y, z from −1 to 1 as red, green, blue"),
     ];
@@ -219,7 +219,15 @@ impl Source {
         let Some(Reading { number, job, range }) = &mut self.reading else { return Ok(()) };
         let (number, range, Some(outcome)) = (*number, *range, job.take()) else { return Ok(()) };
         self.reading = None;
-        let read = outcome?;
+        let read = match outcome {
+            Ok(read) => read,
+            Err(error) => {
+                // A name that was asked for, and is none of the file's, is the last one.
+                let last = self.numbers.as_mut().filter(|numbers| number + 1 == numbers.names.len());
+                last.map(|numbers| numbers.names.pop());
+                return Err(error);
+            }
+        };
         let (surfels, vertices) = (self.model.surfels.len(), self.model.primitives.positions.len());
         if read.each_ref().map(Vec::len) != [surfels, vertices] {
             return Err(Error::Usage("the file has changed since it was loaded: load it anew".into()));
@@ -275,9 +283,11 @@ impl Source {
     pub fn change_as(&mut self, Wish { changed, number, range }: &Wish) {
         self.changed = Changed { by: By::Own, ..*changed };
         let Some(name) = number else { return self.colour_within(changed.by, *range) };
-        match self.names().iter().position(|known| known == name) {
-            Some(number) => self.colour_within(By::Number(number), *range),
-            None => self.missing = Some((name.clone(), *range)),
+        let number = self.names().iter().position(|known| known == name);
+        match (number, &mut self.reading) {
+            (Some(number), Some(reading)) if reading.number == number => reading.range = *range,
+            (Some(number), _) => self.colour_within(By::Number(number), *range),
+            (None, _) => (self.reading, self.missing) = (None, Some((name.clone(), *range))),
         }
     }
 

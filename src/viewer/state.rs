@@ -287,6 +287,11 @@ impl State {
         format!("{about} · {surfels} surfels · {}, {} · surfel", method.name, settings.shading.name())
     }
 
+    /// Whether numbers are being read for colours to show.
+    pub fn is_reading(&self) -> bool {
+        self.shown.as_ref().is_some_and(|shown| shown.source.reading().is_some())
+    }
+
     /// What surfels' colours stand for, where they stand for numbers.
     pub fn colour_scale(&self) -> Option<(String, ColourScale)> {
         let Shown { source, .. } = self.shown.as_ref()?;

@@ -80,6 +80,17 @@ impl Opened {
     /// What the window shows, panels and all, from a whole picture.
     pub fn capture(&mut self, state: &mut State, told: &mut Told) -> Result<Shot> {
         told.side = 1.0;
+        let shot = self.captured(state, told)?;
+        let ranges = self.screen.ranges(&self.presenter)?;
+        if told.ranges == ranges {
+            return Ok(shot);
+        }
+        // The panels were laid out before they were known; the picture is there.
+        told.ranges = ranges;
+        self.captured(state, told)
+    }
+
+    fn captured(&mut self, state: &mut State, told: &mut Told) -> Result<Shot> {
         self.hud.lay_out(&self.window, state, told);
         let Self { presenter, hud, screen, window, .. } = self;
         let PhysicalSize { width, height } = window.inner_size();
@@ -114,7 +125,12 @@ impl Opened {
         told.side = quality.side;
         told.surfels =
             sight.as_ref().and_then(|sight| sight.surfels.get(quality.scene)).copied().unwrap_or(0.0);
+        let size = state.lens.size;
         let again = self.hud.lay_out(&self.window, state, told);
+        if state.lens.size != size && self.pace.is_known() {
+            // An edge is dragged: whole pictures come when it rests.
+            self.pace.moved(start);
+        }
         self.screen.ask(told.asked(state, quality.scene > 0), &self.presenter)?;
         let [shown, drawn] = self.present(state, told, quality)?;
         // A frame's time is its own, and the next one shows where the hands are when it begins.

@@ -105,6 +105,22 @@ fn exr_holds_linear_light() {
     assert!((depth - 5.0).abs() < 1e-4, "{depth}");
 }
 
+#[test]
+fn errors_say_by_which_option_there_is_a_way_out() {
+    let Some(program) = Program::with_device("errors_say_by_which_option_there_is_a_way_out") else { return };
+    program.write("few.json", r#"{"max_storage_buffers":4}"#);
+    program.write("small.json", r#"{"max_storage_buffer_range":80000}"#);
+    let sphere = "render scene:sphere?points=200 -o a.png --size 64x64";
+    for (more, way) in [
+        ("--device-limits few.json --rasterizer compute", "choose another device with --device"),
+        ("--device-limits small.json --method pull-push", "(--half is half precision)"),
+        ("--normalization surfel", "(`surfel convert --weights` captures them)"),
+    ] {
+        let run = program.run(&format!("{sphere} {more}"));
+        assert!(run.code != 0 && run.err.contains(way), "{more}: {}", run.err);
+    }
+}
+
 /// What never ends is not read to its end, and what is there in its place is said.
 #[test]
 #[cfg(unix)]

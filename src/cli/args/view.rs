@@ -20,7 +20,7 @@ pub struct View {
     /// What is changed of the method
     #[command(flatten)]
     pub axes: Axes,
-    /// Size of the window's picture, px
+    /// Size of the window, px; the picture is what the panel leaves of it
     #[arg(long, value_name = "WxH", default_value = "1024x768", value_parser = size, allow_hyphen_values = true)]
     pub size: [u32; 2],
     /// How normals and radii are estimated

@@ -61,7 +61,7 @@ impl Numbers {
         self.map.record(rec, &self.views, (picture, &self.range, &self.image), background, numbers);
         if self.has_range() {
             let uses = [self.range.with(Access::COPY_READ), self.told.with(Access::COPY_WRITE)];
-            rec.pass("read back", &uses, |enc| enc.copy(&self.range, &self.told, 0, self.range.size()));
+            rec.pass("read range", &uses, |enc| enc.copy(&self.range, &self.told, 0, self.range.size()));
         }
     }
 

@@ -3,18 +3,21 @@
 use super::Told;
 use super::raster::{paint_bar, short};
 use crate::viewer::state::State;
-use egui::{Align2, Color32, FontId, Painter, Pos2, Rect, Ui, pos2, vec2};
+use egui::{Align2, Color32, FontId, Rect, Ui, pos2, vec2};
 use surfel::geometry::{ColourMap, ColourScale, ValueRange};
 use surfel::settings::Shading;
 
-/// Width of a bar, and height of all that is said of it, points.
-const SIZE: [f32; 2] = [200.0, 52.0];
+/// Width of a bar at most, and its height with its numbers, points.
+const SIZE: [f32; 2] = [200.0, 34.0];
+/// Least width that anything can be said in, points.
+const LEAST: f32 = 90.0;
 /// How far it is from the edges, points.
 const MARGIN: f32 = 8.0;
 /// Colours of depths: the nearest surface is white, the farthest has a tenth of that.
 const FARTHEST: u8 = 26;
 
 /// What colours mean.
+#[derive(PartialEq)]
 struct Legend {
     name: String,
     /// What is told at the ends; of directions nothing.
@@ -22,64 +25,71 @@ struct Legend {
     colours: Colours,
 }
 
+#[derive(PartialEq)]
 enum Colours {
     Map(ColourMap),
     Greys,
     None,
 }
 
-/// Says what the colours of the picture, or of both pictures, mean: at its lower left, in what panels leave `free`.
+/// Says what the colours of the picture, or of both pictures, mean: at the lower left of each, in what panels leave `free`.
 pub fn show(ui: &Ui, free: Rect, picture: Rect, state: &State, told: &Told) {
-    let painter = ui.painter().with_clip_rect(picture);
     let right = state.settings().and_then(|settings| told.split.asked(settings)).map(|(_, at)| at);
-    let lefts = [Some(picture.left()), right.map(|at| picture.left() + at as f32 * picture.width())];
-    for (left, range) in lefts.into_iter().zip(told.ranges) {
-        let Some((left, legend)) = left.zip(legend_of(state, range)) else { continue };
-        legend.paint(&painter, pos2(left + MARGIN, free.bottom().min(picture.bottom()) - MARGIN));
-    }
+    let bottom = free.bottom().min(picture.bottom());
+    let whole = Rect { max: pos2(picture.right(), bottom), ..picture };
+    let [first, second] = told.ranges.map(|range| legend_of(state, range));
+    let Some(at) = right.map(|at| picture.left() + at as f32 * picture.width()) else {
+        first.iter().for_each(|legend| legend.paint(ui, whole));
+        return;
+    };
+    let (left, right) = whole.split_left_right_at_x(at);
+    first.iter().for_each(|legend| legend.paint(ui, left));
+    // What is the same on both sides is said once.
+    second.iter().filter(|second| first.as_ref() != Some(second)).for_each(|legend| legend.paint(ui, right));
 }
 
 /// What the colours mean, if that is not what surfels look like.
-fn legend_of(state: &State, range: Option<ValueRange>) -> Option<Legend> {
-    let numbers = |name: &str, colours| Some(Legend { name: name.into(), range: Some(range?), colours });
-    let viridis = Colours::Map(ColourMap::Viridis);
+fn legend_of(state: &State, range: Option<(Shading, ValueRange)>) -> Option<Legend> {
+    let shading = state.settings()?.shading;
+    // What is known may be of a picture before.
+    let range = range.filter(|(of, _)| *of == shading).map(|(_, range)| range);
     let from_0 = |range: ValueRange| ValueRange { min: 0.0, max: range.max.max(1.0) };
-    match state.settings()?.shading {
+    let (name, range, colours) = match shading {
         Shading::Lit | Shading::Colour => {
             let (name, ColourScale { map, range }) = state.colour_scale()?;
-            Some(Legend { name, range: Some(range), colours: Colours::Map(map) })
+            return Some(Legend { name, range: Some(range), colours: Colours::Map(map) });
         }
-        Shading::Normal => {
-            let name = "normal: x, y, z from −1 to 1 as red, green, blue".into();
-            Some(Legend { name, range: None, colours: Colours::None })
-        }
-        Shading::Depth => numbers("depth, the positions' unit", Colours::Greys),
-        Shading::Overlap => {
-            Some(Legend { range: Some(from_0(range?)), ..numbers("overlap, splats", viridis)? })
-        }
-        Shading::Weight => {
-            Some(Legend { range: Some(from_0(range?)), ..numbers("sum of weights", viridis)? })
-        }
-    }
+        Shading::Normal => ("normal: x, y, z from −1 to 1 as red, green, blue", None, Colours::None),
+        Shading::Depth => ("depth, the positions' unit", Some(range?), Colours::Greys),
+        Shading::Overlap => ("overlap, splats", Some(from_0(range?)), Colours::Map(ColourMap::Viridis)),
+        Shading::Weight => ("sum of weights", Some(from_0(range?)), Colours::Map(ColourMap::Viridis)),
+    };
+    Some(Legend { name: name.into(), range, colours })
 }
 
 impl Legend {
-    /// Paints it with this lower left corner.
-    fn paint(&self, painter: &Painter, corner: Pos2) {
+    /// Paints it at the lower left of a rectangle, no wider than that.
+    fn paint(&self, ui: &Ui, side: Rect) {
+        let painter = ui.painter().with_clip_rect(side);
+        let room = side.width() - 2.0 * MARGIN;
+        if room < LEAST {
+            return;
+        }
         let ink = Color32::WHITE;
-        let name = painter.layout_no_wrap(self.name.clone(), FontId::proportional(13.0), ink);
-        let height = if self.range.is_some() { SIZE[1] } else { name.size().y };
-        let width = name.size().x.max(if self.range.is_some() { SIZE[0] } else { 0.0 });
-        let rect = Rect::from_min_size(corner - vec2(0.0, height), vec2(width, height));
+        let name = painter.layout(self.name.clone(), FontId::proportional(13.0), ink, room);
+        let bar = if self.range.is_some() { SIZE } else { [0.0; 2] };
+        let size = vec2(name.size().x.max(bar[0].min(room)), name.size().y + bar[1]);
+        let corner = side.left_bottom() + vec2(MARGIN, -MARGIN);
+        let rect = Rect::from_min_size(corner - vec2(0.0, size.y), size);
         painter.rect_filled(rect.expand(5.0), 3.0, Color32::from_black_alpha(190));
         let below = rect.top() + name.size().y + 3.0;
         painter.galley(rect.min, name, ink);
         let Some(ValueRange { min, max }) = self.range else { return };
-        let bar = Rect::from_min_size(pos2(rect.left(), below), vec2(SIZE[0], 12.0));
+        let bar = Rect::from_min_size(pos2(rect.left(), below), vec2(bar[0].min(room), 12.0));
         match &self.colours {
-            Colours::Map(map) => paint_bar(painter, bar, |part| map.at(part)),
+            Colours::Map(map) => paint_bar(&painter, bar, |part| map.at(part)),
             // Nearest first.
-            Colours::Greys => paint_bar(painter, bar, |part| {
+            Colours::Greys => paint_bar(&painter, bar, |part| {
                 [(255.0 + part * (f64::from(FARTHEST) - 255.0)).round() as u8; 3]
             }),
             Colours::None => {}

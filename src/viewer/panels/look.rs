@@ -4,7 +4,6 @@ use super::raster::short;
 use crate::viewer::source::By;
 use crate::viewer::state::{Choices, SHADINGS, shading_text};
 use egui::{ComboBox, DragValue, ProgressBar, Slider, SliderClamping, Ui};
-use std::time::Duration;
 use surfel::geometry::{ColourMap, ValueRange};
 use surfel::settings::{Alpha, Cull};
 
@@ -67,7 +66,6 @@ fn colours(ui: &mut Ui, chosen: &mut Choices<'_>) {
     }
     if let Some((stage, part)) = source.reading() {
         ui.add(ProgressBar::new(part).text(stage));
-        ui.ctx().request_repaint_after(Duration::from_millis(100));
     }
     if source.changed.scale().is_none() {
         return;

@@ -23,8 +23,10 @@ use egui::{Button, CollapsingHeader, Label, Panel, ProgressBar, Rect, RichText, 
 use error::Errors;
 use split::Split;
 use std::sync::Arc;
+use std::time::Duration;
 use surfel::Settings;
 use surfel::geometry::ValueRange;
+use surfel::settings::Shading;
 use surfel::vk::Device;
 use times::Times;
 
@@ -33,6 +35,10 @@ const PART: f32 = 0.3;
 const WIDTH: [f32; 2] = [240.0, 300.0];
 /// Part of the window that the panel takes at most: a window in which that is less than its least width has none.
 const MOST: f32 = 0.5;
+/// How often numbers that are being read are asked for.
+const OFTEN: Duration = Duration::from_millis(100);
+/// How many inputs are listed by name.
+const LISTED: usize = 4;
 /// What stands beside a slider at most: its number and its name, points.
 const SLIDER: f32 = 150.0;
 
@@ -49,12 +55,12 @@ pub struct Told {
     pub done: Option<String>,
     /// How long the last frame took, ms.
     pub frame: f64,
-    /// Its side, as part of the window's.
+    /// Its side, as part of the whole picture's.
     pub side: f64,
     /// How many surfels it had.
     pub surfels: f64,
-    /// The least and the greatest number that the pictures show, left and right, where they show numbers.
-    pub ranges: [Option<ValueRange>; 2],
+    /// The least and the greatest number that the pictures show, left and right, where they show numbers, and what these are.
+    pub ranges: [Option<(Shading, ValueRange)>; 2],
     /// Whether keys are listed.
     pub help: bool,
     /// What is known of the keyboard.
@@ -140,6 +146,9 @@ pub fn show(ui: &mut Ui, state: &mut State, told: &mut Told, device: &Arc<Device
     if let Err(error) = state.apply(device) {
         told.wrong = Some(error.to_string());
     }
+    if state.is_reading() {
+        ui.ctx().request_repaint_after(OFTEN);
+    }
     covered
 }
 
@@ -192,8 +201,11 @@ fn choices(ui: &mut Ui, state: &mut State, told: &mut Told, device: &Arc<Device>
 /// What is looked at: names, how many points, what of them is estimated.
 fn about(ui: &mut Ui, chosen: &Choices<'_>) {
     let about = chosen.source.about();
-    for name in &about.names {
+    for name in about.names.iter().take(LISTED) {
         ui.add(Label::new(RichText::new(short_name(name)).strong()).truncate()).on_hover_text(name);
+    }
+    if let Some(others) = about.names.get(LISTED..).filter(|others| !others.is_empty()) {
+        ui.label(format!("and {} more", others.len())).on_hover_text(others.join("\n"));
     }
     let counted = match (about.points, about.dropped) {
         (0, _) => format!("{} surfels", thousands(chosen.surfels)),

@@ -265,6 +265,8 @@ fn pass_text(label: &str) -> &'static str {
         "shade" => "level 0 to the picture",
         "read back" => "the counts for this panel",
         "screen" => "the picture over the background",
+        "clear range" => "nothing is the least and the greatest yet",
+        "read range" => "both for the legend",
         "range" => "the least and the greatest of the picture's numbers",
         "colour map" => "numbers to colours",
         "depths" => "depths, by which the cursor finds the surface",
