@@ -354,12 +354,12 @@ fn updates_that_do_not_fit() {
     let nowhere = Bounds { min: DVec3::NAN, max: DVec3::NAN, radius: f64::NAN };
     let all = Changes { positions: Some(&positions), radii: Some(&radii), ..Default::default() };
     let attacks = [
-        ("beyond the end", 595, all.clone()),
-        ("far beyond the end", u64::MAX, all.clone()),
-        ("of unequal lengths", 0, Changes { normals: Some(&normals), ..all.clone() }),
+        ("beyond the end", 595, all),
+        ("far beyond the end", u64::MAX, all),
+        ("of unequal lengths", 0, Changes { normals: Some(&normals), ..all }),
         ("with colours of another kind", 0, Changes { colours: Some(&linear), ..Default::default() }),
         ("with ellipses of discs", 0, Changes { ellipses: Some(&ellipses), ..Default::default() }),
-        ("with bounds that are none", 0, Changes { bounds: Some(nowhere), ..all.clone() }),
+        ("with bounds that are none", 0, Changes { bounds: Some(nowhere), ..all }),
     ];
     let mut renderer = Renderer::new(&device, options(Rasterizer::Draw)).unwrap();
     let mut picture = || renderer.render_picture(&scene, &camera(), &Settings::default()).unwrap().0;
