@@ -93,7 +93,7 @@ fn describe(model: &Model, points: u64) -> String {
         let (ribbons, tubes) = (primitives.ribbons.len(), primitives.tubes.len());
         let (triangles, vertices) = (primitives.triangles.len(), primitives.len());
         let _ = writeln!(text, "ribbons: {ribbons}\ntubes: {tubes}\ndrawn triangles: {triangles}");
-        let _ = writeln!(text, "vertices of these: {vertices}, {}", range(&primitives.radii));
+        let _ = writeln!(text, "vertices of these: {vertices}, {}", range_text(&primitives.radii));
     }
     if let Some(bounds) = Parts::from(model).bounds() {
         let _ = writeln!(text, "bounds: {} to {}", bounds.min, bounds.max);
@@ -102,7 +102,7 @@ fn describe(model: &Model, points: u64) -> String {
         let _ = writeln!(text, "spacing: {spacing}, the median distance to the nearest point");
     }
     if !surfels.is_empty() {
-        let _ = writeln!(text, "{}", range(&surfels.radii));
+        let _ = writeln!(text, "{}", range_text(&surfels.radii));
     }
     let colours = match surfels.colours.as_ref().or(primitives.colours.as_ref()) {
         None => "none",
@@ -113,14 +113,16 @@ fn describe(model: &Model, points: u64) -> String {
     text
 }
 
-/// Least, greatest and median radius; empty if there are none.
-fn range(radii: &[f32]) -> String {
+/// The least, the greatest and the median of radii; `None` if there are none.
+fn range(radii: &[f32]) -> Option<[f32; 3]> {
     let mut radii = radii.to_vec();
     radii.sort_unstable_by(f32::total_cmp);
-    match (radii.first(), radii.last()) {
-        (Some(min), Some(max)) => format!("radius: {min} to {max}, median {}", radii[radii.len() / 2]),
-        _ => String::new(),
-    }
+    Some([*radii.first()?, *radii.last()?, radii[radii.len() / 2]])
+}
+
+fn range_text(radii: &[f32]) -> String {
+    range(radii)
+        .map_or(String::new(), |[min, max, median]| format!("radius: {min} to {max}, median {median}"))
 }
 
 /// What positions are relative to, from where they were seen, and how the points are connected.

@@ -106,14 +106,10 @@ fn model(all: &mut Object, args: &Info, (name, points): (&str, u64), cloud: Clou
     Ok(())
 }
 
-/// Least, greatest and median; null if there are none.
+/// The least, the greatest and the median; null if there are none.
 fn range(radii: &[f32]) -> Value {
-    let mut radii = radii.to_vec();
-    radii.sort_unstable_by(f32::total_cmp);
-    match (radii.first(), radii.last()) {
-        (Some(min), Some(max)) => json!({ "min": min, "max": max, "median": radii[radii.len() / 2] }),
-        _ => Value::Null,
-    }
+    super::range(radii)
+        .map_or(Value::Null, |[min, max, median]| json!({ "min": min, "max": max, "median": median }))
 }
 
 fn sources(estimated: &Estimated) -> Value {
