@@ -1,5 +1,6 @@
 // Attribute: weighted sums over the splats within ε of the nearest surface (zwicker2004 §6, second pass).
 #version 450
+#pragma variant CLIP_LINES VERTEX FRAGMENT
 #extension GL_GOOGLE_include_directive : require
 #ifdef COMPUTE
 #extension GL_EXT_shader_atomic_float : require
@@ -37,6 +38,7 @@ float weight_of(uint i, Splat splat, vec2 variance, out vec4 corners, out mat2 s
 #ifdef COMPUTE
 
 #include "lib/window.glsl"
+#define SUMS_ACCESS
 #include "lib/pixels.glsl"
 
 float splat_weight;

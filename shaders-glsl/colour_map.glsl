@@ -16,7 +16,7 @@ layout(push_constant) uniform Numbers {
     uint opaque;
 } numbers;
 
-layout(set = 0, binding = 0) uniform texture2D picture; // numbers times α, α
+layout(set = 0, binding = 0) uniform texture2D screen; // numbers times α, α
 layout(set = 0, binding = 1, std430) readonly buffer NumberRange {
     uint least;
     uint greatest;
@@ -54,7 +54,7 @@ vec3 srgb_to_linear(vec3 c) {
 }
 
 void main() {
-    vec4 seen = texelFetch(picture, ivec2(gl_FragCoord.xy), 0);
+    vec4 seen = texelFetch(screen, ivec2(gl_FragCoord.xy), 0);
     if (seen.a < numbers.least_alpha) discard;
     vec3 shown = srgb_to_linear(clamp(codes_of(seen.rgb / seen.a), 0.0, 1.0));
     float alpha = numbers.opaque != 0u ? 1.0 : seen.a;

@@ -41,17 +41,17 @@ layout(location = 2) out uint out_id;
 
 #if defined(IMAGES) || defined(IMAGES_NORMALS)
 
-layout(set = 0, binding = 0) uniform texture2D image;
-layout(set = 0, binding = 1) uniform texture2D normal;
-layout(set = 0, binding = 2) uniform texture2D depth;
+layout(set = 0, binding = 1) uniform texture2D picture_image;
+layout(set = 0, binding = 2) uniform texture2D normal_image;
+layout(set = 0, binding = 3) uniform texture2D depth_image;
 
-vec4 image_at(ivec2 at) { return texelFetch(image, at, 0); }
-vec3 normal_at(ivec2 at) { return texelFetch(normal, at, 0).xyz; }
-float depth_at(ivec2 at) { return texelFetch(depth, at, 0).r; }
+vec4 image_at(ivec2 at) { return texelFetch(picture_image, at, 0); }
+vec3 normal_at(ivec2 at) { return texelFetch(normal_image, at, 0).xyz; }
+float depth_at(ivec2 at) { return texelFetch(depth_image, at, 0).r; }
 
 #else
 
-layout(set = 0, binding = 0, std430) readonly buffer Picture { uint picture[]; }; // floats: colour, then normals, then depths; then numbers
+layout(set = 0, binding = 0, std430) readonly buffer FramePicture { uint picture[]; }; // floats: colour, then normals, then depths; then numbers
 
 uint pixel(ivec2 at) { return uint(at.y) * composite.size.x + uint(at.x); }
 uint pixels() { return composite.size.x * composite.size.y; }

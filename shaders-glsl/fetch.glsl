@@ -22,10 +22,12 @@
 #ifdef DRAWN_POINTS
 #include "lib/drawn_points.glsl"
 #else
+#define NEAREST_ACCESS readonly
 #include "lib/nearest_points.glsl"
 #endif
 
-DEFINE_PYRAMID(2, to)
+PYRAMID(2, to, writeonly)
+STORED(to)
 
 layout(local_size_x = 64) in;
 

@@ -1,6 +1,7 @@
 // Nearest: the nearest splat of each pixel, alone and whole: one pass, nothing is blended (zwicker2004 table 1; botsch2003 §3.2).
 #version 450
 #pragma variant COVERAGE
+#pragma variant CLIP_LINES VERTEX FRAGMENT
 #extension GL_GOOGLE_include_directive : require
 #ifdef COMPUTE
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
@@ -19,6 +20,7 @@
 #ifdef COMPUTE
 
 #include "lib/window.glsl"
+#define WINNER_ACCESS
 #include "lib/winners.glsl"
 
 uint splat_index;

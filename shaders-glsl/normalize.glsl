@@ -22,12 +22,7 @@
 layout(constant_id = 20) const bool SHADE_SPLATS = false; // colours are light already
 
 #ifdef COVERAGE
-#ifdef COMPUTE
-const uint COVERAGE_BINDING = 5;
-#else
-const uint COVERAGE_BINDING = 3;
-#endif
-layout(set = 1, binding = COVERAGE_BINDING, std430) readonly buffer Coverage { uint coverage[]; }; // a bit a sample
+layout(set = 1, binding = 5, std430) readonly buffer Coverage { uint coverage[]; }; // a bit a sample
 #endif
 
 // The part of pixel i that is covered, where there is something.
@@ -77,6 +72,8 @@ Pixel normalize_pixel(vec2 centre, bool visible, float alpha, vec4 s0, vec4 s1) 
 
 #include "lib/pixels.glsl"
 
+layout(set = 1, binding = 3, std430) writeonly buffer Picture { float picture[]; }; // colour, then normals, then depths
+
 layout(local_size_x = 64) in;
 
 layout(constant_id = 9) const bool OUT_NORMAL = false;
@@ -116,9 +113,9 @@ void main() {
 
 layout(constant_id = 42) const bool SUMS_TELL = false; // what visibility has not written has no sums
 
-layout(set = 1, binding = 0, input_attachment_index = 0) uniform subpassInput visibility;
-layout(set = 1, binding = 1, input_attachment_index = 1) uniform subpassInput sums0;
-layout(set = 1, binding = 2, input_attachment_index = 2) uniform subpassInput sums1;
+layout(set = 1, binding = 12, input_attachment_index = 0) uniform subpassInput visibility_input;
+layout(set = 1, binding = 13, input_attachment_index = 1) uniform subpassInput sums0_input;
+layout(set = 1, binding = 14, input_attachment_index = 2) uniform subpassInput sums1_input;
 
 layout(push_constant) uniform Subpass {
     vec4 depth; // see host_depth
@@ -131,9 +128,9 @@ void main() {
     // The middle of the pixel, whichever of its samples the host draws at.
     vec2 centre = floor(gl_FragCoord.xy) + 0.5 - frame.origin;
     uvec2 at = uvec2(centre);
-    vec4 s0 = subpassLoad(sums0);
-    vec4 s1 = SUM_DEPTH || WIDE_SUMS1 ? subpassLoad(sums1) : vec4(0.0);
-    bool visible = SUMS_TELL ? s0.x > 0.0 : subpassLoad(visibility).r > 0.0;
+    vec4 s0 = subpassLoad(sums0_input);
+    vec4 s1 = SUM_DEPTH || WIDE_SUMS1 ? subpassLoad(sums1_input) : vec4(0.0);
+    bool visible = SUMS_TELL ? s0.x > 0.0 : subpassLoad(visibility_input).r > 0.0;
     float alpha = alpha_of(at.y * uint(frame.viewport.x) + at.x);
     Pixel pixel = normalize_pixel(centre, visible, alpha, s0, s1);
     if (pixel.image.a == 0.0) discard;
@@ -144,9 +141,9 @@ void main() {
 
 #elif defined(FRAGMENT)
 
-layout(set = 1, binding = 0) uniform texture2D visibility;
-layout(set = 1, binding = 1) uniform texture2D sums0;
-layout(set = 1, binding = 2) uniform texture2D sums1;
+layout(set = 1, binding = 9) uniform texture2D visibility_image;
+layout(set = 1, binding = 10) uniform texture2D sums0_image;
+layout(set = 1, binding = 11) uniform texture2D sums1_image;
 
 layout(location = 0) out vec4 image;
 layout(location = 1) out vec4 out_normal;
@@ -154,10 +151,10 @@ layout(location = 2) out float out_depth;
 
 void main() {
     ivec2 at = ivec2(gl_FragCoord.xy);
-    bool visible = texelFetch(visibility, at, 0).r > 0.0;
-    vec4 s1 = SUM_DEPTH || WIDE_SUMS1 ? texelFetch(sums1, at, 0) : vec4(0.0);
+    bool visible = texelFetch(visibility_image, at, 0).r > 0.0;
+    vec4 s1 = SUM_DEPTH || WIDE_SUMS1 ? texelFetch(sums1_image, at, 0) : vec4(0.0);
     float alpha = alpha_of(at.y * uint(frame.viewport.x) + at.x);
-    Pixel pixel = normalize_pixel(gl_FragCoord.xy, visible, alpha, texelFetch(sums0, at, 0), s1);
+    Pixel pixel = normalize_pixel(gl_FragCoord.xy, visible, alpha, texelFetch(sums0_image, at, 0), s1);
     image = pixel.image;
     out_normal = vec4(pixel.normal, 0.0);
     out_depth = pixel.depth;

@@ -19,6 +19,7 @@
 #include "lib/window.glsl"
 #ifndef FATES
 #include "lib/placed.glsl"
+#define NEAREST_ACCESS
 #include "lib/nearest_points.glsl"
 #endif
 #if defined(LINES) || defined(TRIANGLES)
@@ -66,7 +67,7 @@ void main() {
 // Triangles of more pixels than an invocation should visit, which are left to a second dispatch with a workgroup a triangle.
 layout(constant_id = 30) const bool LARGE_TRIANGLES = false;
 const uint MOST = 64; // pixels of the box about one that is not large
-layout(set = 3, binding = 4, std430) buffer Large { uint large_count; uint large[]; };
+layout(set = 0, binding = 16, std430) buffer LargeTriangles { uint large_count; uint large[]; };
 
 void project_box(uint i, Triangle triangle, ivec4 box, uint first, uint step) {
     uint width = uint(box.z - box.x + 1), area = width * uint(box.w - box.y + 1);

@@ -8,8 +8,10 @@
 #include "lib/pyramid.glsl"
 #include "lib/lens.glsl"
 
-DEFINE_PYRAMID(1, from)
-DEFINE_PYRAMID(2, to)
+PYRAMID(3, from, readonly)
+LOADED(from)
+PYRAMID(2, to, writeonly)
+STORED(to)
 
 void main() {
     uint level = pass.level, finer = level - 1;

@@ -8,8 +8,11 @@
 #include "lib/pyramid.glsl"
 #include "lib/lens.glsl"
 
-DEFINE_PYRAMID(1, from)
-DEFINE_PYRAMID(2, to)
+PYRAMID(3, from, readonly)
+LOADED(from)
+PYRAMID(2, to, )
+LOADED(to)
+STORED(to)
 
 layout(constant_id = 32) const bool PING_PONG = false; // levels are kept in turns
 

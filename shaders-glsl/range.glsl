@@ -11,7 +11,7 @@ layout(push_constant) uniform Numbers {
     uint opaque;       // whether one that is covered shows nothing else
 } numbers;
 
-layout(set = 0, binding = 0) uniform texture2D picture; // red times α, α
+layout(set = 0, binding = 0) uniform texture2D screen; // red times α, α
 layout(set = 0, binding = 1, std430) buffer NumberRange {
     uint least;    // bits_of the least number
     uint greatest; // the complement of those of the greatest: both fall from all ones
@@ -27,13 +27,13 @@ uint bits_of(float number) {
 }
 
 void main() {
-    ivec2 size = textureSize(picture, 0);
+    ivec2 size = textureSize(screen, 0);
     ivec2 low = SIDE * ivec2(gl_GlobalInvocationID.xy);
     ivec2 high = min(low + SIDE, size);
     uint least = 0xffffffffu, greatest = 0xffffffffu;
     for (int y = low.y; y < high.y; y++) {
         for (int x = low.x; x < high.x; x++) {
-            vec4 seen = texelFetch(picture, ivec2(x, y), 0);
+            vec4 seen = texelFetch(screen, ivec2(x, y), 0);
             if (seen.a < numbers.least_alpha) continue;
             uint bits = bits_of(seen.r / seen.a);
             least = min(least, bits);

@@ -16,6 +16,7 @@
 #ifdef COMPUTE
 
 #include "lib/window.glsl"
+#define WINNER_ACCESS readonly
 #include "lib/winners.glsl"
 
 layout(local_size_x = 64) in;

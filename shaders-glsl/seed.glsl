@@ -20,9 +20,9 @@ layout(push_constant) uniform Seed {
 } seed;
 
 #ifdef MULTISAMPLED
-layout(set = 0, binding = 0, input_attachment_index = 0) uniform subpassInputMS host_depth;
+layout(set = 1, binding = 15, input_attachment_index = 0) uniform subpassInputMS host_depth;
 #else
-layout(set = 0, binding = 0, input_attachment_index = 0) uniform subpassInput host_depth;
+layout(set = 1, binding = 15, input_attachment_index = 0) uniform subpassInput host_depth;
 #endif
 
 // κ of the host's surface, at most.

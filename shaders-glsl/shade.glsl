@@ -12,7 +12,8 @@
 #include "lib/background.glsl"
 #include "lib/lattice.glsl"
 
-DEFINE_PYRAMID(1, from)
+PYRAMID(2, final, readonly)
+LOADED(final)
 
 layout(constant_id = 25) const bool MATERIALS = false; // points shine in their own way
 
@@ -25,7 +26,7 @@ layout(constant_id = 9) const bool OUT_NORMAL = false;
 layout(constant_id = 10) const bool OUT_DEPTH = false;
 layout(constant_id = 35) const bool OUT_ID = false;
 
-layout(set = 2, binding = 0, std430) writeonly buffer Picture { uint picture[]; }; // bits: colour, then normals, then depths, then numbers
+layout(set = 1, binding = 3, std430) writeonly buffer Picture { uint picture[]; }; // bits: colour, then normals, then depths, then numbers
 
 layout(constant_id = 31) const bool COVERAGE = false; // α is the part of a pixel that is covered, not whether its centre is
 
@@ -47,13 +48,13 @@ float coverage_of(ivec2 at) {
     bool inner = true;
     for (int k = 0; k < 9; k++) {
         ivec2 place = at + ivec2(k % 3, k / 3) - 1;
-        if (is_within(0, place)) inner = inner && load_from(place_in(0, 0, place)).near > 0.0;
+        if (is_within(0, place)) inner = inner && load_final(place_in(0, 0, place)).near > 0.0;
     }
     if (inner) return 1.0;
     for (int k = 0; k < 9; k++) {
         ivec2 place = at + ivec2(k % 3, k / 3) - 1;
         if (!is_within(0, place)) continue;
-        Sample s = load_from(place_in(0, 0, place));
+        Sample s = load_final(place_in(0, 0, place));
         vec2 e = vec2(place - at) + s.displacement;
         if (s.near > 0.0) mask |= covered_by(s, level_centre(0, at) + e, e);
     }
@@ -65,7 +66,7 @@ void main() {
     if (at.x < 0) return;
     uvec2 size = uvec2(frame.viewport);
     uint pixels = size.x * size.y, i = uint(at.y) * size.x + uint(at.x);
-    Sample s = load_from(i);
+    Sample s = load_final(i);
     vec4 image = frame.background;
     if (s.near > 0.0) {
         vec2 centre = vec2(at) + 0.5;

@@ -3,6 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 
 #include "lib/frame.glsl"
+#define TILES_ACCESS writeonly
 #include "lib/pixels.glsl"
 
 #ifdef COMPUTE

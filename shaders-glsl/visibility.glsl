@@ -1,6 +1,7 @@
 // Visibility: the depth of the nearest surface, moved back by ε along the viewing rays (zwicker2004 §6, first pass).
 #version 450
 #pragma variant COVERAGE
+#pragma variant CLIP_LINES VERTEX FRAGMENT
 #extension GL_GOOGLE_include_directive : require
 
 #include "lib/frame.glsl"
@@ -14,6 +15,7 @@
 #ifdef COMPUTE
 
 #include "lib/window.glsl"
+#define VISIBILITY_ACCESS
 #include "lib/pixels.glsl"
 
 float splat_epsilon, splat_key_disc;

@@ -81,6 +81,7 @@
 
 mod attachments;
 mod buffers;
+mod composite;
 mod formats;
 mod held;
 pub mod native;
@@ -105,19 +106,19 @@ use view::Seen;
 pub use view::View;
 
 use crate::error::{Error, Result};
-use crate::frame::Blocks;
+use crate::frame::resources::{FrameResources, Retired};
+use crate::frame::targets::check_size;
+use crate::frame::uniforms::Blocks;
+use crate::frame::variant::Variant;
+use crate::frame::{FrameReport, Outputs, Precision, Rasterizer, RenderOptions};
 use crate::geometry::Parts;
 use crate::instance::Instances;
-use crate::passes::{Composite, CompositeKind};
-use crate::renderer::{FrameReport, RenderOptions};
 use crate::scene::Scene;
 use crate::settings::Settings;
-use crate::stage::{Retired, Stage};
-use crate::targets::check_size;
-use crate::variant::{Outputs, Precision, Rasterizer};
 use crate::vk::shaders::layout;
 use crate::vk::{DescriptorSet, Device, Draws, HostPass, Recorder, Uploads};
 use ash::vk;
+use composite::{Composite, CompositeKind};
 use held::Held;
 use std::sync::Arc;
 
@@ -163,7 +164,7 @@ pub struct Renderer {
     /// Of the present frame.
     scenes: Vec<Arc<Scene>>,
     composites: Vec<Arc<Composite>>,
-    stage: Stage,
+    frame: FrameResources,
     target: Target,
     device: Arc<Device>,
 }
@@ -204,7 +205,7 @@ impl Renderer {
             reports: Reports::new(frames_in_flight),
             scenes: Vec::new(),
             composites: Vec::new(),
-            stage: Stage::new(device, options, Retired::Kept(Vec::new()))?,
+            frame: FrameResources::new(device, options, Retired::Kept(Vec::new()), None)?,
             target,
             device: device.clone(),
         })
@@ -227,18 +228,18 @@ impl Renderer {
     ) -> Result<()> {
         let shown = self.make(scenes.into(), view, settings);
         // Also after an error: what it took the place of may be under way.
-        self.held.extend(self.stage.outgoing());
+        self.held.extend(self.frame.outgoing());
         let (blocks, shown) = shown?;
-        let splats: Vec<_> = self.stage.residents().map(|resident| &resident.splats).collect();
-        self.reports.begin(&self.device, &splats)?;
+        let scenes: Vec<_> = self.frame.scenes().collect();
+        self.reports.begin(&self.device, &scenes)?;
         self.held.advance();
         let (timestamps, tail) = self.reports.present();
         // SAFETY: by the caller; the reports have one for each frame under way.
         let mut rec = unsafe { Recorder::of_host_timed(&self.device, cmd, timestamps) };
-        self.stage.record(&mut rec, &blocks);
-        tail.record(&mut rec, &splats);
-        if let Some(present) = self.stage.present() {
-            rec.wait(&Composite::reads(present.canvas.composited()));
+        self.frame.record(&mut rec, &blocks);
+        tail.record(&mut rec, &scenes);
+        if let Some(present) = self.frame.present() {
+            rec.wait(&Composite::reads(&present.targets));
         }
         self.shown = Some((shown, rec.later("composite")));
         Ok(())
@@ -255,11 +256,8 @@ impl Renderer {
             return Err(Error::Usage("there is no picture to draw: prepare one, and heed its error".into()));
         };
         // SAFETY: by the caller.
-        unsafe {
-            Draws::of_host(&self.device, cmd, pass, *area, |draws| {
-                viewed.composite.draw(draws, &viewed.set, place)
-            });
-        }
+        let mut draws = unsafe { Draws::of_host(&self.device, cmd, pass, *area) };
+        viewed.composite.draw(&mut draws, &viewed.set, place);
         Ok(())
     }
 
@@ -274,16 +272,16 @@ impl Renderer {
     ) -> Result<()> {
         let placed = scenes.into().placed(&self.device)?;
         let seen = self.seen(view)?;
-        let variant =
-            self.stage.make_pipelines(&placed, &seen.camera, &without_background(settings), seen.size)?;
-        self.composite(variant.rasterizer, variant.pull_push.is_some(), variant.perspective).map(drop)
+        let frame = self.frame.describe(&placed, &seen.camera, &without_background(settings), seen.size)?;
+        self.frame.make_pipelines(&frame)?;
+        self.composite(&frame.variant).map(drop)
     }
 
     /// What frames that are prepared from now on tell of themselves: nothing, unless this is called. Shaders that count are others than those
     /// that do not: either are made when they are first needed.
     pub fn measure(&mut self, measured: Measured) {
         self.reports.measure(measured);
-        self.stage.count(measured.counts);
+        self.frame.count(measured.counts);
     }
 
     /// What the last frame that is known to be over tells, without waiting for one: that of [`Options::frames_in_flight`] frames before the one
@@ -306,14 +304,13 @@ impl Renderer {
         self.shown = None;
         let placed = scenes.placed(&self.device)?;
         let Seen { area, size, camera, depth } = self.seen(view)?;
-        self.stage.resize(size);
-        let (blocks, variant) = self.stage.prepare(&placed, &camera, &without_background(settings), false)?;
+        self.frame.resize(size);
+        let (blocks, variant) = self.frame.prepare(&placed, &camera, &without_background(settings), false)?;
         if !scenes.scenes().map(Arc::as_ptr).eq(self.scenes.iter().map(Arc::as_ptr)) {
             let old = std::mem::replace(&mut self.scenes, scenes.scenes().cloned().collect());
             self.held.hold(old);
         }
-        let composite =
-            self.composite(variant.rasterizer, variant.pull_push.is_some(), variant.perspective)?;
+        let composite = self.composite(&variant)?;
         self.view(composite)?;
         let place = layout::Composite { origin: [area.offset.x, area.offset.y], size, depth };
         Ok((blocks, Shown { place, area }))
@@ -328,26 +325,21 @@ impl Renderer {
 
     /// Sees the present targets as `composite` does, if it does not already.
     fn view(&mut self, composite: Arc<Composite>) -> Result<()> {
-        let Some(present) = self.stage.present() else { return Ok(()) };
+        let Some(present) = self.frame.present() else { return Ok(()) };
         let same =
             |viewed: &Viewed| viewed.present == present.id && Arc::ptr_eq(&viewed.composite, &composite);
         if !self.viewed.as_ref().is_some_and(same) {
-            let set = composite.view(&self.device, present.canvas.composited())?;
+            let set = composite.view(&self.device, &present.targets)?;
             let old = self.viewed.replace(Viewed { present: present.id, set, composite });
             self.held.hold(old);
         }
         Ok(())
     }
 
-    fn composite(
-        &mut self,
-        rasterizer: Rasterizer,
-        pull_push: bool,
-        perspective: bool,
-    ) -> Result<Arc<Composite>> {
+    fn composite(&mut self, variant: &Variant) -> Result<Arc<Composite>> {
         let kind = CompositeKind {
-            images: rasterizer == Rasterizer::Draw && !pull_push,
-            perspective,
+            images: variant.rasterizer == Rasterizer::Draw && variant.pull_push.is_none(),
+            perspective: variant.perspective,
             picture: self.target.picture,
             normal: self.target.normal,
             id: self.target.id,

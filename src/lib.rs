@@ -3,7 +3,7 @@
 //! The way of the data, and where each step lives:
 //!
 //! ```text
-//! file ─ io, scenes → geometry ─ scene → buffers ─ methods, passes → targets ─ readback → picture
+//! file ─ io, scenes → geometry ─ scene → buffers ─ frame: methods, passes → targets → picture
 //! ```
 //!
 //! | module | | feature |
@@ -14,10 +14,8 @@
 //! | [`settings`], [`splatting`] | what a frame is asked to be, and how surfels become pixels | |
 //! | [`scene`] | geometry on the GPU: only the streams that it has | |
 //! | [`instance`] | scenes where they are placed: several in a frame | |
-//! | `variant`, `targets` | which pipelines and images a frame needs, and no more | |
-//! | `passes` | one file a pass, beside the shader of the same name | |
-//! | [`methods`] | one file a method: its paper and its passes | |
-//! | [`renderer`] | frames: make ready, record, submit, read back | |
+//! | [`methods`] | the methods: their papers, and what each chooses | |
+//! | [`mod@frame`] | frames: what one needs and no more, one file a pass beside the shader of the same name, recording, reading back | |
 //! | [`embed`] | the same frames within those of another renderer | |
 //! | [`times`] | statistics of how long frames and passes take | |
 //! | [`capture`] | normalization weights of surfels, from pictures of them | `reference` |
@@ -56,7 +54,7 @@ pub mod bench;
 pub mod capture;
 pub mod embed;
 pub mod error;
-mod frame;
+pub mod frame;
 pub mod geometry;
 pub mod instance;
 #[cfg(feature = "io")]
@@ -65,25 +63,19 @@ mod memory;
 pub mod methods;
 #[cfg(feature = "metrics")]
 pub mod metrics;
-mod passes;
 pub mod picture;
 mod progress;
 pub mod pull_push;
-mod readback;
 #[cfg(feature = "reference")]
 pub mod reference;
-pub mod renderer;
 pub mod scene;
 #[cfg(feature = "scenes")]
 pub mod scenes;
 pub mod settings;
 pub mod splatting;
-mod stage;
-mod targets;
 pub mod times;
 #[cfg(feature = "truth")]
 pub mod truth;
-mod variant;
 pub mod vk;
 #[cfg(feature = "bench")]
 pub mod yardstick;
@@ -91,14 +83,14 @@ pub mod yardstick;
 /// The version of ash whose handles [`embed`] takes.
 pub use ash;
 pub use error::{Error, Result};
+pub use frame::{
+    FrameReport, Outputs, Precision, PyramidLevel, PyramidSample, Rasterizer, RenderOptions, Renderer,
+    SplatCounts, TargetInfo,
+};
 /// The version of glam whose vectors and matrices the interface takes.
 pub use glam;
 pub use instance::{Instance, Instances};
 pub use picture::Picture;
 pub use progress::Progress;
-pub use readback::{PyramidLevel, PyramidSample};
-pub use renderer::{FrameReport, RenderOptions, Renderer, SplatCounts};
 pub use scene::Scene;
 pub use settings::Settings;
-pub use targets::TargetInfo;
-pub use variant::{Outputs, Precision, Rasterizer};

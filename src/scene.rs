@@ -14,6 +14,7 @@ mod weights;
 use crate::error::{Error, Result};
 use crate::geometry::{Bounds, Colours, Ellipse, Parts, Primitives, Surfels, Texture};
 use crate::vk::shaders::layout::Splat;
+use crate::vk::shaders::{Resource, resource};
 use crate::vk::{Binding, Buffer, Capabilities, Device, Uploads};
 use clips::ClipStream;
 pub(crate) use clips::ClipWindow;
@@ -321,27 +322,39 @@ impl Scene {
         self.clips.as_ref().map(|clips| clips.windows.as_slice())
     }
 
-    /// Window `number` of each stream: positions, normals, radii, colours, ellipses, clips, weights. A stream that the scene lacks is stood
-    /// in for by the radii, which the shaders then do not read.
-    pub(crate) fn bindings(&self, number: usize) -> [Binding<'_>; 7] {
+    /// Window `number` of each stream that it has, where shaders see it.
+    pub(crate) fn bindings(&self, number: usize) -> Vec<(&'static Resource, Binding<'_>)> {
         let window = &self.windows[number];
-        let [positions, normals, radii, colours, ellipses] = [
-            &self.positions,
-            &self.normals,
-            &self.radii,
-            self.colours.as_ref().unwrap_or(&self.radii),
-            self.ellipses.as_ref().unwrap_or(&self.radii),
-        ]
-        .map(|stream| stream.binding(window, self.alignment));
-        [
-            positions,
-            normals,
-            radii,
-            colours,
-            ellipses,
-            self.clips.as_ref().map_or(radii, |clips| clips.binding(number)),
-            self.weights.as_ref().map_or(radii, |weights| weights.binding(number)),
-        ]
+        let streams = [
+            (&resource::POSITIONS, Some(&self.positions)),
+            (&resource::NORMALS, Some(&self.normals)),
+            (&resource::RADII, Some(&self.radii)),
+            (&resource::COLOURS, self.colours.as_ref()),
+            (&resource::ELLIPSES, self.ellipses.as_ref()),
+        ];
+        let there = streams.into_iter().filter_map(|(resource, stream)| Some((resource, stream?)));
+        let mut list: Vec<_> =
+            there.map(|(resource, stream)| (resource, stream.binding(window, self.alignment))).collect();
+        list.extend(self.clips.as_ref().map(|clips| (&resource::CLIPS, clips.binding(number))));
+        list.extend(self.weights.as_ref().map(|weights| (&resource::WEIGHTS, weights.binding(number))));
+        list
+    }
+
+    /// The streams of its lines, or of its triangles if `kind` is 1, where shaders see them.
+    pub(crate) fn element_bindings(&self, kind: usize) -> Vec<(&'static Resource, Binding<'_>)> {
+        let Some(PrimitiveStreams { vertices, alongs, colours, lines, triangles, .. }) = &self.primitives
+        else {
+            return Vec::new();
+        };
+        let elements = [lines, triangles][kind].as_ref().map(|elements| &elements.buffer);
+        let streams = [
+            (&resource::VERTICES, Some(vertices)),
+            (&resource::ALONGS, alongs.as_ref()),
+            (&resource::VERTEX_COLOURS, colours.as_ref()),
+            (&resource::ELEMENTS, elements),
+        ];
+        let there = streams.into_iter().filter_map(|(resource, buffer)| Some((resource, buffer?)));
+        there.map(|(resource, buffer)| (resource, Binding::whole(buffer))).collect()
     }
 }
 

@@ -1,9 +1,9 @@
 //! What a frame is asked to be: shared by the Vulkan methods and the float64 reference.
 
 use crate::error::{Error, Result};
+use crate::frame::Outputs;
 use crate::pull_push::PullPush;
 use crate::splatting::{Filter, Splatting};
-use crate::variant::Outputs;
 use std::ops::RangeInclusive;
 
 /// Settings of a frame that are not the camera's or the scene's.

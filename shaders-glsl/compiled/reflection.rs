@@ -5,7 +5,9 @@ pub static ATTRIBUTE_VERTEX: Module = Module {
     name: "attribute_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("attribute_vertex.spv"),
-    constants: &[0, 3, 5, 7, 14, 15, 16, 17, 19, 20, 23, 26, 27, 37, 50, 51, 52, 53, 54, 57, 58],
+    constants: &[0, 3, 5, 7, 14, 15, 16, 17, 19, 20, 26, 27, 37, 50, 51, 52, 53, 54, 57, 58],
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::WEIGHTS, false)],
+    push: 0,
 };
 
 /// The fragment stage of `shaders-glsl/attribute.glsl`.
@@ -13,7 +15,9 @@ pub static ATTRIBUTE_FRAGMENT: Module = Module {
     name: "attribute_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("attribute_fragment.spv"),
-    constants: &[0, 4, 15, 16, 19, 23, 24, 27],
+    constants: &[0, 4, 15, 16, 19, 27],
+    resources: &[(&resource::FRAME, false)],
+    push: 0,
 };
 
 /// The compute stage of `shaders-glsl/attribute.glsl`.
@@ -22,6 +26,28 @@ pub static ATTRIBUTE_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("attribute_compute.spv"),
     constants: &[0, 3, 4, 5, 7, 8, 12, 13, 14, 15, 16, 17, 18, 19, 20, 23, 24, 26, 27, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::LARGE_SPLATS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, false), (&resource::WEIGHTS, false), (&resource::VISIBILITY, false), (&resource::SUMS0, true), (&resource::SUMS1, true), (&resource::TILES, false)],
+    push: size_of::<layout::Window>() as u32,
+};
+
+/// The vertex stage of `shaders-glsl/attribute.glsl`.
+pub static ATTRIBUTE_CLIP_LINES_VERTEX: Module = Module {
+    name: "attribute_clip_lines_vertex",
+    stage: ShaderStageFlags::VERTEX,
+    spirv: spirv!("attribute_clip_lines_vertex.spv"),
+    constants: &[0, 3, 5, 7, 14, 15, 16, 17, 19, 20, 23, 26, 27, 37, 50, 51, 52, 53, 54, 57, 58],
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::CLIPS, false), (&resource::WEIGHTS, false)],
+    push: 0,
+};
+
+/// The fragment stage of `shaders-glsl/attribute.glsl`.
+pub static ATTRIBUTE_CLIP_LINES_FRAGMENT: Module = Module {
+    name: "attribute_clip_lines_fragment",
+    stage: ShaderStageFlags::FRAGMENT,
+    spirv: spirv!("attribute_clip_lines_fragment.spv"),
+    constants: &[0, 4, 15, 16, 19, 23, 24, 27],
+    resources: &[(&resource::FRAME, false), (&resource::SCREEN_CLIPS, false)],
+    push: 0,
 };
 
 /// The vertex stage of `shaders-glsl/colour_map.glsl`.
@@ -30,6 +56,8 @@ pub static COLOUR_MAP_VERTEX: Module = Module {
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("colour_map_vertex.spv"),
     constants: &[],
+    resources: &[],
+    push: 0,
 };
 
 /// The fragment stage of `shaders-glsl/colour_map.glsl`.
@@ -38,6 +66,8 @@ pub static COLOUR_MAP_FRAGMENT: Module = Module {
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("colour_map_fragment.spv"),
     constants: &[6],
+    resources: &[(&resource::SCREEN, false), (&resource::NUMBER_RANGE, false), (&resource::MAP_COLOURS, false)],
+    push: size_of::<layout::Numbers>() as u32,
 };
 
 /// The vertex stage of `shaders-glsl/composite.glsl`.
@@ -46,6 +76,8 @@ pub static COMPOSITE_VERTEX: Module = Module {
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("composite_vertex.spv"),
     constants: &[],
+    resources: &[],
+    push: 0,
 };
 
 /// The fragment stage of `shaders-glsl/composite.glsl`.
@@ -54,6 +86,8 @@ pub static COMPOSITE_FRAGMENT: Module = Module {
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("composite_fragment.spv"),
     constants: &[0, 40, 41],
+    resources: &[(&resource::FRAME_PICTURE, false)],
+    push: size_of::<layout::Composite>() as u32,
 };
 
 /// The fragment stage of `shaders-glsl/composite.glsl`.
@@ -62,6 +96,8 @@ pub static COMPOSITE_IMAGES_FRAGMENT: Module = Module {
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("composite_images_fragment.spv"),
     constants: &[0, 40, 41],
+    resources: &[(&resource::PICTURE_IMAGE, false), (&resource::DEPTH_IMAGE, false)],
+    push: size_of::<layout::Composite>() as u32,
 };
 
 /// The fragment stage of `shaders-glsl/composite.glsl`.
@@ -70,6 +106,8 @@ pub static COMPOSITE_NORMALS_FRAGMENT: Module = Module {
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("composite_normals_fragment.spv"),
     constants: &[0, 40, 41],
+    resources: &[(&resource::FRAME_PICTURE, false)],
+    push: size_of::<layout::Composite>() as u32,
 };
 
 /// The fragment stage of `shaders-glsl/composite.glsl`.
@@ -78,6 +116,8 @@ pub static COMPOSITE_IMAGES_NORMALS_FRAGMENT: Module = Module {
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("composite_images_normals_fragment.spv"),
     constants: &[0, 40, 41],
+    resources: &[(&resource::PICTURE_IMAGE, false), (&resource::NORMAL_IMAGE, false), (&resource::DEPTH_IMAGE, false)],
+    push: size_of::<layout::Composite>() as u32,
 };
 
 /// The fragment stage of `shaders-glsl/composite.glsl`.
@@ -86,6 +126,8 @@ pub static COMPOSITE_IDS_FRAGMENT: Module = Module {
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("composite_ids_fragment.spv"),
     constants: &[0, 40, 41],
+    resources: &[(&resource::FRAME_PICTURE, false)],
+    push: size_of::<layout::Composite>() as u32,
 };
 
 /// The fragment stage of `shaders-glsl/composite.glsl`.
@@ -94,6 +136,8 @@ pub static COMPOSITE_NORMALS_IDS_FRAGMENT: Module = Module {
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("composite_normals_ids_fragment.spv"),
     constants: &[0, 40, 41],
+    resources: &[(&resource::FRAME_PICTURE, false)],
+    push: size_of::<layout::Composite>() as u32,
 };
 
 /// The compute stage of `shaders-glsl/fetch.glsl`.
@@ -102,6 +146,8 @@ pub static FETCH_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("fetch_compute.spv"),
     constants: &[0, 1, 5, 12, 13, 17, 28, 33, 34, 37, 38, 39, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
+    resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::NEAREST, false), (&resource::TO_DEPTHS, true), (&resource::TO_PLACES, true), (&resource::TO_NORMALS, true), (&resource::TO_COLOURS, true), (&resource::TO_IDS, true)],
+    push: size_of::<layout::Window>() as u32,
 };
 
 /// The compute stage of `shaders-glsl/fetch.glsl`.
@@ -110,6 +156,8 @@ pub static FETCH_LINES_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("fetch_lines_compute.spv"),
     constants: &[0, 17, 28, 29, 33, 34, 37, 38, 39],
+    resources: &[(&resource::FRAME, false), (&resource::VERTICES, false), (&resource::ALONGS, false), (&resource::VERTEX_COLOURS, false), (&resource::ELEMENTS, false), (&resource::NEAREST, false), (&resource::TO_DEPTHS, true), (&resource::TO_PLACES, true), (&resource::TO_NORMALS, true), (&resource::TO_COLOURS, true), (&resource::TO_IDS, true)],
+    push: size_of::<layout::Window>() as u32,
 };
 
 /// The compute stage of `shaders-glsl/fetch.glsl`.
@@ -118,6 +166,8 @@ pub static FETCH_TRIANGLES_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("fetch_triangles_compute.spv"),
     constants: &[0, 17, 28, 29, 33, 34, 37, 38, 39],
+    resources: &[(&resource::FRAME, false), (&resource::VERTICES, false), (&resource::VERTEX_COLOURS, false), (&resource::ELEMENTS, false), (&resource::NEAREST, false), (&resource::TO_DEPTHS, true), (&resource::TO_PLACES, true), (&resource::TO_NORMALS, true), (&resource::TO_COLOURS, true), (&resource::TO_IDS, true)],
+    push: size_of::<layout::Window>() as u32,
 };
 
 /// The compute stage of `shaders-glsl/fetch.glsl`.
@@ -126,6 +176,8 @@ pub static FETCH_DRAWN_POINTS_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("fetch_drawn_points_compute.spv"),
     constants: &[0, 1, 5, 12, 13, 17, 28, 33, 34, 37, 38, 39, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
+    resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::NEAREST_NUMBER, false), (&resource::TO_DEPTHS, true), (&resource::TO_PLACES, true), (&resource::TO_NORMALS, true), (&resource::TO_COLOURS, true), (&resource::TO_IDS, true)],
+    push: size_of::<layout::Window>() as u32,
 };
 
 /// The compute stage of `shaders-glsl/footprint.glsl`.
@@ -134,6 +186,8 @@ pub static FOOTPRINT_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("footprint_compute.spv"),
     constants: &[0, 1, 2, 11, 12, 13, 14, 15, 16, 21, 23, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, true), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::LARGE_SPLATS, true), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, true), (&resource::COUNTS, true)],
+    push: size_of::<layout::Window>() as u32,
 };
 
 /// The vertex stage of `shaders-glsl/nearest.glsl`.
@@ -141,7 +195,9 @@ pub static NEAREST_VERTEX: Module = Module {
     name: "nearest_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("nearest_vertex.spv"),
-    constants: &[0, 3, 5, 7, 15, 16, 17, 20, 23, 37, 50, 51, 52, 53, 54, 57, 58],
+    constants: &[0, 3, 5, 7, 15, 16, 17, 20, 37, 50, 51, 52, 53, 54, 57, 58],
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false)],
+    push: 0,
 };
 
 /// The fragment stage of `shaders-glsl/nearest.glsl`.
@@ -149,7 +205,9 @@ pub static NEAREST_FRAGMENT: Module = Module {
     name: "nearest_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("nearest_fragment.spv"),
-    constants: &[0, 4, 15, 16, 23, 24],
+    constants: &[0, 4, 15, 16],
+    resources: &[(&resource::FRAME, false)],
+    push: 0,
 };
 
 /// The compute stage of `shaders-glsl/nearest.glsl`.
@@ -158,6 +216,8 @@ pub static NEAREST_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("nearest_compute.spv"),
     constants: &[0, 8, 15, 16, 23, 24],
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::LARGE_SPLATS, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, false), (&resource::WINNERS, true)],
+    push: size_of::<layout::Window>() as u32,
 };
 
 /// The vertex stage of `shaders-glsl/nearest.glsl`.
@@ -166,6 +226,8 @@ pub static NEAREST_COVERAGE_VERTEX: Module = Module {
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("nearest_coverage_vertex.spv"),
     constants: &[0, 3, 5, 7, 15, 16, 17, 20, 23, 37, 50, 51, 52, 53, 54, 57, 58],
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::CLIPS, false)],
+    push: 0,
 };
 
 /// The fragment stage of `shaders-glsl/nearest.glsl`.
@@ -174,6 +236,8 @@ pub static NEAREST_COVERAGE_FRAGMENT: Module = Module {
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("nearest_coverage_fragment.spv"),
     constants: &[0, 4, 15, 16, 23, 24],
+    resources: &[(&resource::FRAME, false), (&resource::SCREEN_CLIPS, false), (&resource::COVERAGE, true)],
+    push: 0,
 };
 
 /// The compute stage of `shaders-glsl/nearest.glsl`.
@@ -182,6 +246,28 @@ pub static NEAREST_COVERAGE_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("nearest_coverage_compute.spv"),
     constants: &[0, 8, 15, 16, 23, 24],
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::LARGE_SPLATS, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, false), (&resource::WINNERS, true), (&resource::COVERAGE, true)],
+    push: size_of::<layout::Window>() as u32,
+};
+
+/// The vertex stage of `shaders-glsl/nearest.glsl`.
+pub static NEAREST_CLIP_LINES_VERTEX: Module = Module {
+    name: "nearest_clip_lines_vertex",
+    stage: ShaderStageFlags::VERTEX,
+    spirv: spirv!("nearest_clip_lines_vertex.spv"),
+    constants: &[0, 3, 5, 7, 15, 16, 17, 20, 23, 37, 50, 51, 52, 53, 54, 57, 58],
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::CLIPS, false)],
+    push: 0,
+};
+
+/// The fragment stage of `shaders-glsl/nearest.glsl`.
+pub static NEAREST_CLIP_LINES_FRAGMENT: Module = Module {
+    name: "nearest_clip_lines_fragment",
+    stage: ShaderStageFlags::FRAGMENT,
+    spirv: spirv!("nearest_clip_lines_fragment.spv"),
+    constants: &[0, 4, 15, 16, 23, 24],
+    resources: &[(&resource::FRAME, false), (&resource::SCREEN_CLIPS, false)],
+    push: 0,
 };
 
 /// The vertex stage of `shaders-glsl/normalize.glsl`.
@@ -190,6 +276,8 @@ pub static NORMALIZE_VERTEX: Module = Module {
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("normalize_vertex.spv"),
     constants: &[],
+    resources: &[],
+    push: 0,
 };
 
 /// The fragment stage of `shaders-glsl/normalize.glsl`.
@@ -198,6 +286,8 @@ pub static NORMALIZE_FRAGMENT: Module = Module {
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("normalize_fragment.spv"),
     constants: &[0, 3, 4, 6, 7, 17, 18, 20],
+    resources: &[(&resource::FRAME, false), (&resource::VISIBILITY_IMAGE, false), (&resource::SUMS0_IMAGE, false), (&resource::SUMS1_IMAGE, false)],
+    push: 0,
 };
 
 /// The compute stage of `shaders-glsl/normalize.glsl`.
@@ -206,6 +296,8 @@ pub static NORMALIZE_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("normalize_compute.spv"),
     constants: &[0, 3, 4, 6, 7, 9, 10, 17, 18, 20, 22],
+    resources: &[(&resource::FRAME, false), (&resource::VISIBILITY, false), (&resource::SUMS0, false), (&resource::SUMS1, false), (&resource::PICTURE, true)],
+    push: 0,
 };
 
 /// The vertex stage of `shaders-glsl/normalize.glsl`.
@@ -214,6 +306,8 @@ pub static NORMALIZE_COVERAGE_VERTEX: Module = Module {
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("normalize_coverage_vertex.spv"),
     constants: &[],
+    resources: &[],
+    push: 0,
 };
 
 /// The fragment stage of `shaders-glsl/normalize.glsl`.
@@ -222,6 +316,8 @@ pub static NORMALIZE_COVERAGE_FRAGMENT: Module = Module {
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("normalize_coverage_fragment.spv"),
     constants: &[0, 3, 4, 6, 7, 17, 18, 20],
+    resources: &[(&resource::FRAME, false), (&resource::COVERAGE, false), (&resource::VISIBILITY_IMAGE, false), (&resource::SUMS0_IMAGE, false), (&resource::SUMS1_IMAGE, false)],
+    push: 0,
 };
 
 /// The compute stage of `shaders-glsl/normalize.glsl`.
@@ -230,6 +326,8 @@ pub static NORMALIZE_COVERAGE_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("normalize_coverage_compute.spv"),
     constants: &[0, 3, 4, 6, 7, 9, 10, 17, 18, 20, 22],
+    resources: &[(&resource::FRAME, false), (&resource::VISIBILITY, false), (&resource::SUMS0, false), (&resource::SUMS1, false), (&resource::PICTURE, true), (&resource::COVERAGE, false)],
+    push: 0,
 };
 
 /// The fragment stage of `shaders-glsl/normalize.glsl`.
@@ -238,6 +336,8 @@ pub static NORMALIZE_SUBPASS_FRAGMENT: Module = Module {
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("normalize_subpass_fragment.spv"),
     constants: &[0, 3, 4, 6, 7, 17, 18, 20, 40, 41, 42],
+    resources: &[(&resource::FRAME, false), (&resource::VISIBILITY_INPUT, false), (&resource::SUMS0_INPUT, false), (&resource::SUMS1_INPUT, false)],
+    push: size_of::<layout::Subpass>() as u32,
 };
 
 /// The fragment stage of `shaders-glsl/normalize.glsl`.
@@ -246,6 +346,8 @@ pub static NORMALIZE_SUBPASS_COVERAGE_FRAGMENT: Module = Module {
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("normalize_subpass_coverage_fragment.spv"),
     constants: &[0, 3, 4, 6, 7, 17, 18, 20, 40, 41, 42],
+    resources: &[(&resource::FRAME, false), (&resource::COVERAGE, false), (&resource::VISIBILITY_INPUT, false), (&resource::SUMS0_INPUT, false), (&resource::SUMS1_INPUT, false)],
+    push: size_of::<layout::Subpass>() as u32,
 };
 
 /// The vertex stage of `shaders-glsl/points.glsl`.
@@ -254,6 +356,8 @@ pub static POINTS_VERTEX: Module = Module {
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("points_vertex.spv"),
     constants: &[0, 1, 12, 13, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
+    resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false)],
+    push: size_of::<layout::Window>() as u32,
 };
 
 /// The fragment stage of `shaders-glsl/points.glsl`.
@@ -262,6 +366,8 @@ pub static POINTS_FRAGMENT: Module = Module {
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("points_fragment.spv"),
     constants: &[],
+    resources: &[],
+    push: 0,
 };
 
 /// The compute stage of `shaders-glsl/project.glsl`.
@@ -270,6 +376,8 @@ pub static PROJECT_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("project_compute.spv"),
     constants: &[0, 1, 2, 12, 13, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
+    resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::NEAREST, true), (&resource::COUNTS, true)],
+    push: size_of::<layout::Window>() as u32,
 };
 
 /// The compute stage of `shaders-glsl/project.glsl`.
@@ -278,6 +386,8 @@ pub static PROJECT_LINES_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("project_lines_compute.spv"),
     constants: &[0, 28, 37],
+    resources: &[(&resource::FRAME, false), (&resource::VERTICES, false), (&resource::ALONGS, false), (&resource::ELEMENTS, false), (&resource::NEAREST, true)],
+    push: size_of::<layout::Window>() as u32,
 };
 
 /// The compute stage of `shaders-glsl/project.glsl`.
@@ -286,6 +396,8 @@ pub static PROJECT_TRIANGLES_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("project_triangles_compute.spv"),
     constants: &[0, 30, 37],
+    resources: &[(&resource::FRAME, false), (&resource::VERTICES, false), (&resource::ELEMENTS, false), (&resource::LARGE_TRIANGLES, true), (&resource::NEAREST, true)],
+    push: size_of::<layout::Window>() as u32,
 };
 
 /// The compute stage of `shaders-glsl/project.glsl`.
@@ -294,6 +406,8 @@ pub static PROJECT_DRAWN_POINTS_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("project_drawn_points_compute.spv"),
     constants: &[0, 37],
+    resources: &[(&resource::FRAME, false), (&resource::NEAREST, true), (&resource::NEAREST_DEPTH, false), (&resource::NEAREST_NUMBER, false)],
+    push: 0,
 };
 
 /// The compute stage of `shaders-glsl/project.glsl`.
@@ -302,6 +416,8 @@ pub static PROJECT_FATES_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("project_fates_compute.spv"),
     constants: &[0, 1, 2, 12, 13, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
+    resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::COUNTS, true)],
+    push: size_of::<layout::Window>() as u32,
 };
 
 /// The compute stage of `shaders-glsl/pull.glsl`.
@@ -310,6 +426,8 @@ pub static PULL_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("pull_compute.spv"),
     constants: &[0, 17, 28, 33, 34, 38, 39],
+    resources: &[(&resource::FRAME, false), (&resource::TO_DEPTHS, true), (&resource::TO_PLACES, true), (&resource::TO_NORMALS, true), (&resource::TO_COLOURS, true), (&resource::TO_IDS, true), (&resource::FROM_DEPTHS, false), (&resource::FROM_PLACES, false), (&resource::FROM_NORMALS, false), (&resource::FROM_COLOURS, false), (&resource::FROM_IDS, false)],
+    push: size_of::<layout::Step>() as u32,
 };
 
 /// The compute stage of `shaders-glsl/push.glsl`.
@@ -318,6 +436,8 @@ pub static PUSH_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("push_compute.spv"),
     constants: &[0, 17, 28, 32, 33, 34, 38, 39],
+    resources: &[(&resource::FRAME, false), (&resource::TO_DEPTHS, true), (&resource::TO_PLACES, true), (&resource::TO_NORMALS, true), (&resource::TO_COLOURS, true), (&resource::TO_IDS, true), (&resource::FROM_DEPTHS, false), (&resource::FROM_PLACES, false), (&resource::FROM_NORMALS, false), (&resource::FROM_COLOURS, false), (&resource::FROM_IDS, false)],
+    push: size_of::<layout::Step>() as u32,
 };
 
 /// The compute stage of `shaders-glsl/range.glsl`.
@@ -326,6 +446,8 @@ pub static RANGE_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("range_compute.spv"),
     constants: &[],
+    resources: &[(&resource::SCREEN, false), (&resource::NUMBER_RANGE, true)],
+    push: size_of::<layout::Numbers>() as u32,
 };
 
 /// The compute stage of `shaders-glsl/resolve.glsl`.
@@ -334,6 +456,8 @@ pub static RESOLVE_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("resolve_compute.spv"),
     constants: &[0, 3, 4, 5, 7, 15, 17, 20, 37, 50, 51, 52, 53, 54, 57, 58],
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::WINNERS, false), (&resource::SUMS0, true), (&resource::SUMS1, true)],
+    push: size_of::<layout::Window>() as u32,
 };
 
 /// The vertex stage of `shaders-glsl/seed.glsl`.
@@ -342,6 +466,8 @@ pub static SEED_VERTEX: Module = Module {
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("seed_vertex.spv"),
     constants: &[],
+    resources: &[],
+    push: 0,
 };
 
 /// The fragment stage of `shaders-glsl/seed.glsl`.
@@ -350,6 +476,8 @@ pub static SEED_FRAGMENT: Module = Module {
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("seed_fragment.spv"),
     constants: &[0],
+    resources: &[(&resource::HOST_DEPTH, false)],
+    push: size_of::<layout::Seed>() as u32,
 };
 
 /// The fragment stage of `shaders-glsl/seed.glsl`.
@@ -358,6 +486,8 @@ pub static SEED_MULTISAMPLED_FRAGMENT: Module = Module {
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("seed_multisampled_fragment.spv"),
     constants: &[0, 43],
+    resources: &[(&resource::HOST_DEPTH, false)],
+    push: size_of::<layout::Seed>() as u32,
 };
 
 /// The compute stage of `shaders-glsl/shade.glsl`.
@@ -366,6 +496,8 @@ pub static SHADE_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("shade_compute.spv"),
     constants: &[0, 6, 7, 9, 10, 17, 28, 31, 33, 34, 35, 38, 39],
+    resources: &[(&resource::FRAME, false), (&resource::PICTURE, true), (&resource::FINAL_DEPTHS, false), (&resource::FINAL_PLACES, false), (&resource::FINAL_NORMALS, false), (&resource::FINAL_COLOURS, false), (&resource::FINAL_IDS, false)],
+    push: 0,
 };
 
 /// The compute stage of `shaders-glsl/shade.glsl`.
@@ -374,6 +506,8 @@ pub static SHADE_LOOKUPS_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("shade_lookups_compute.spv"),
     constants: &[0, 6, 7, 9, 10, 17, 25, 28, 31, 33, 34, 35, 36, 38, 39],
+    resources: &[(&resource::FRAME, false), (&resource::TEXTURE, false), (&resource::MATERIALS, false), (&resource::PICTURE, true), (&resource::FINAL_DEPTHS, false), (&resource::FINAL_PLACES, false), (&resource::FINAL_NORMALS, false), (&resource::FINAL_COLOURS, false), (&resource::FINAL_IDS, false)],
+    push: 0,
 };
 
 /// The compute stage of `shaders-glsl/tiles.glsl`.
@@ -382,6 +516,8 @@ pub static TILES_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("tiles_compute.spv"),
     constants: &[],
+    resources: &[(&resource::FRAME, false), (&resource::VISIBILITY, false), (&resource::TILES, true)],
+    push: 0,
 };
 
 /// The vertex stage of `shaders-glsl/visibility.glsl`.
@@ -389,7 +525,9 @@ pub static VISIBILITY_VERTEX: Module = Module {
     name: "visibility_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("visibility_vertex.spv"),
-    constants: &[0, 15, 16, 23],
+    constants: &[0, 15, 16],
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false)],
+    push: 0,
 };
 
 /// The fragment stage of `shaders-glsl/visibility.glsl`.
@@ -397,7 +535,9 @@ pub static VISIBILITY_FRAGMENT: Module = Module {
     name: "visibility_fragment",
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("visibility_fragment.spv"),
-    constants: &[0, 15, 16, 23, 24],
+    constants: &[0, 15, 16],
+    resources: &[(&resource::FRAME, false)],
+    push: 0,
 };
 
 /// The compute stage of `shaders-glsl/visibility.glsl`.
@@ -406,6 +546,8 @@ pub static VISIBILITY_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("visibility_compute.spv"),
     constants: &[0, 8, 15, 16, 23, 24],
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::LARGE_SPLATS, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, false), (&resource::VISIBILITY, true)],
+    push: size_of::<layout::Window>() as u32,
 };
 
 /// The vertex stage of `shaders-glsl/visibility.glsl`.
@@ -414,6 +556,8 @@ pub static VISIBILITY_COVERAGE_VERTEX: Module = Module {
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("visibility_coverage_vertex.spv"),
     constants: &[0, 15, 16, 23],
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::CLIPS, false)],
+    push: 0,
 };
 
 /// The fragment stage of `shaders-glsl/visibility.glsl`.
@@ -422,6 +566,8 @@ pub static VISIBILITY_COVERAGE_FRAGMENT: Module = Module {
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("visibility_coverage_fragment.spv"),
     constants: &[0, 15, 16, 23, 24],
+    resources: &[(&resource::FRAME, false), (&resource::SCREEN_CLIPS, false), (&resource::COVERAGE, true)],
+    push: 0,
 };
 
 /// The compute stage of `shaders-glsl/visibility.glsl`.
@@ -430,6 +576,28 @@ pub static VISIBILITY_COVERAGE_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("visibility_coverage_compute.spv"),
     constants: &[0, 8, 15, 16, 23, 24],
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::LARGE_SPLATS, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, false), (&resource::VISIBILITY, true), (&resource::COVERAGE, true)],
+    push: size_of::<layout::Window>() as u32,
+};
+
+/// The vertex stage of `shaders-glsl/visibility.glsl`.
+pub static VISIBILITY_CLIP_LINES_VERTEX: Module = Module {
+    name: "visibility_clip_lines_vertex",
+    stage: ShaderStageFlags::VERTEX,
+    spirv: spirv!("visibility_clip_lines_vertex.spv"),
+    constants: &[0, 15, 16, 23],
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::CLIPS, false)],
+    push: 0,
+};
+
+/// The fragment stage of `shaders-glsl/visibility.glsl`.
+pub static VISIBILITY_CLIP_LINES_FRAGMENT: Module = Module {
+    name: "visibility_clip_lines_fragment",
+    stage: ShaderStageFlags::FRAGMENT,
+    spirv: spirv!("visibility_clip_lines_fragment.spv"),
+    constants: &[0, 15, 16, 23, 24],
+    resources: &[(&resource::FRAME, false), (&resource::SCREEN_CLIPS, false)],
+    push: 0,
 };
 
 /// Ids of the specialization constants, one id for each name in all shaders.
@@ -548,6 +716,542 @@ pub mod constant {
     pub const WEIGHTS: u32 = 26;
     /// `WIDEN_SMALL`, first in `shaders-glsl/attribute.glsl`.
     pub const WIDEN_SMALL: u32 = 14;
+}
+
+/// What shaders see at the bindings of their descriptor sets.
+pub mod resource {
+    use super::{DescriptorType, Resource, ShaderStageFlags};
+
+    /// `Alongs`, first in `shaders-glsl/fetch.glsl`.
+    pub static ALONGS: Resource = Resource {
+        name: "Alongs",
+        set: 0,
+        binding: 13,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `Clips`, first in `shaders-glsl/attribute.glsl`.
+    pub static CLIPS: Resource = Resource {
+        name: "Clips",
+        set: 0,
+        binding: 9,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::VERTEX.as_raw()),
+    };
+
+    /// `Colours`, first in `shaders-glsl/attribute.glsl`.
+    pub static COLOURS: Resource = Resource {
+        name: "Colours",
+        set: 0,
+        binding: 5,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::VERTEX.as_raw()),
+    };
+
+    /// `Counts`, first in `shaders-glsl/footprint.glsl`.
+    pub static COUNTS: Resource = Resource {
+        name: "Counts",
+        set: 2,
+        binding: 5,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `Coverage`, first in `shaders-glsl/nearest.glsl`.
+    pub static COVERAGE: Resource = Resource {
+        name: "Coverage",
+        set: 1,
+        binding: 5,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::FRAGMENT.as_raw()),
+    };
+
+    /// `Elements`, first in `shaders-glsl/fetch.glsl`.
+    pub static ELEMENTS: Resource = Resource {
+        name: "Elements",
+        set: 0,
+        binding: 15,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `EllipseWords`, first in `shaders-glsl/attribute.glsl`.
+    pub static ELLIPSE_WORDS: Resource = Resource {
+        name: "EllipseWords",
+        set: 0,
+        binding: 8,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::VERTEX.as_raw()),
+    };
+
+    /// `Ellipses`, first in `shaders-glsl/attribute.glsl`.
+    pub static ELLIPSES: Resource = Resource {
+        name: "Ellipses",
+        set: 0,
+        binding: 8,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::VERTEX.as_raw()),
+    };
+
+    /// `Frame`, first in `shaders-glsl/attribute.glsl`.
+    pub static FRAME: Resource = Resource {
+        name: "Frame",
+        set: 0,
+        binding: 0,
+        kind: DescriptorType::UNIFORM_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::FRAGMENT.as_raw() | ShaderStageFlags::VERTEX.as_raw()),
+    };
+
+    /// `FramePicture`, first in `shaders-glsl/composite.glsl`.
+    pub static FRAME_PICTURE: Resource = Resource {
+        name: "FramePicture",
+        set: 0,
+        binding: 0,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::FRAGMENT.as_raw()),
+    };
+
+    /// `LargeSplats`, first in `shaders-glsl/attribute.glsl`.
+    pub static LARGE_SPLATS: Resource = Resource {
+        name: "LargeSplats",
+        set: 0,
+        binding: 7,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `LargeTriangles`, first in `shaders-glsl/project.glsl`.
+    pub static LARGE_TRIANGLES: Resource = Resource {
+        name: "LargeTriangles",
+        set: 0,
+        binding: 16,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `MapColours`, first in `shaders-glsl/colour_map.glsl`.
+    pub static MAP_COLOURS: Resource = Resource {
+        name: "MapColours",
+        set: 0,
+        binding: 2,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::FRAGMENT.as_raw()),
+    };
+
+    /// `Materials`, first in `shaders-glsl/shade.glsl`.
+    pub static MATERIALS: Resource = Resource {
+        name: "Materials",
+        set: 0,
+        binding: 18,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `Nearest`, first in `shaders-glsl/fetch.glsl`.
+    pub static NEAREST: Resource = Resource {
+        name: "Nearest",
+        set: 1,
+        binding: 6,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `Normals`, first in `shaders-glsl/attribute.glsl`.
+    pub static NORMALS: Resource = Resource {
+        name: "Normals",
+        set: 0,
+        binding: 3,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::VERTEX.as_raw()),
+    };
+
+    /// `NumberRange`, first in `shaders-glsl/colour_map.glsl`.
+    pub static NUMBER_RANGE: Resource = Resource {
+        name: "NumberRange",
+        set: 0,
+        binding: 1,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::FRAGMENT.as_raw()),
+    };
+
+    /// `Picture`, first in `shaders-glsl/normalize.glsl`.
+    pub static PICTURE: Resource = Resource {
+        name: "Picture",
+        set: 1,
+        binding: 3,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `Positions`, first in `shaders-glsl/attribute.glsl`.
+    pub static POSITIONS: Resource = Resource {
+        name: "Positions",
+        set: 0,
+        binding: 2,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::VERTEX.as_raw()),
+    };
+
+    /// `Radii`, first in `shaders-glsl/attribute.glsl`.
+    pub static RADII: Resource = Resource {
+        name: "Radii",
+        set: 0,
+        binding: 4,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::VERTEX.as_raw()),
+    };
+
+    /// `ScreenClips`, first in `shaders-glsl/attribute.glsl`.
+    pub static SCREEN_CLIPS: Resource = Resource {
+        name: "ScreenClips",
+        set: 0,
+        binding: 10,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::FRAGMENT.as_raw()),
+    };
+
+    /// `Splats`, first in `shaders-glsl/attribute.glsl`.
+    pub static SPLATS: Resource = Resource {
+        name: "Splats",
+        set: 0,
+        binding: 1,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::VERTEX.as_raw()),
+    };
+
+    /// `Sums0`, first in `shaders-glsl/attribute.glsl`.
+    pub static SUMS0: Resource = Resource {
+        name: "Sums0",
+        set: 1,
+        binding: 1,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `Sums1`, first in `shaders-glsl/attribute.glsl`.
+    pub static SUMS1: Resource = Resource {
+        name: "Sums1",
+        set: 1,
+        binding: 2,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `Texture`, first in `shaders-glsl/shade.glsl`.
+    pub static TEXTURE: Resource = Resource {
+        name: "Texture",
+        set: 0,
+        binding: 17,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `Tiles`, first in `shaders-glsl/attribute.glsl`.
+    pub static TILES: Resource = Resource {
+        name: "Tiles",
+        set: 1,
+        binding: 4,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `VertexColours`, first in `shaders-glsl/fetch.glsl`.
+    pub static VERTEX_COLOURS: Resource = Resource {
+        name: "VertexColours",
+        set: 0,
+        binding: 14,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `Vertices`, first in `shaders-glsl/fetch.glsl`.
+    pub static VERTICES: Resource = Resource {
+        name: "Vertices",
+        set: 0,
+        binding: 12,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `Visibility`, first in `shaders-glsl/attribute.glsl`.
+    pub static VISIBILITY: Resource = Resource {
+        name: "Visibility",
+        set: 1,
+        binding: 0,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `Weights`, first in `shaders-glsl/attribute.glsl`.
+    pub static WEIGHTS: Resource = Resource {
+        name: "Weights",
+        set: 0,
+        binding: 11,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::VERTEX.as_raw()),
+    };
+
+    /// `Winners`, first in `shaders-glsl/nearest.glsl`.
+    pub static WINNERS: Resource = Resource {
+        name: "Winners",
+        set: 1,
+        binding: 0,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `depth_image`, first in `shaders-glsl/composite.glsl`.
+    pub static DEPTH_IMAGE: Resource = Resource {
+        name: "depth_image",
+        set: 0,
+        binding: 3,
+        kind: DescriptorType::SAMPLED_IMAGE,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::FRAGMENT.as_raw()),
+    };
+
+    /// `finalColours`, first in `shaders-glsl/shade.glsl`.
+    pub static FINAL_COLOURS: Resource = Resource {
+        name: "finalColours",
+        set: 2,
+        binding: 3,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `finalDepths`, first in `shaders-glsl/shade.glsl`.
+    pub static FINAL_DEPTHS: Resource = Resource {
+        name: "finalDepths",
+        set: 2,
+        binding: 0,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `finalIds`, first in `shaders-glsl/shade.glsl`.
+    pub static FINAL_IDS: Resource = Resource {
+        name: "finalIds",
+        set: 2,
+        binding: 4,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `finalNormals`, first in `shaders-glsl/shade.glsl`.
+    pub static FINAL_NORMALS: Resource = Resource {
+        name: "finalNormals",
+        set: 2,
+        binding: 2,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `finalPlaces`, first in `shaders-glsl/shade.glsl`.
+    pub static FINAL_PLACES: Resource = Resource {
+        name: "finalPlaces",
+        set: 2,
+        binding: 1,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `fromColours`, first in `shaders-glsl/pull.glsl`.
+    pub static FROM_COLOURS: Resource = Resource {
+        name: "fromColours",
+        set: 3,
+        binding: 3,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `fromDepths`, first in `shaders-glsl/pull.glsl`.
+    pub static FROM_DEPTHS: Resource = Resource {
+        name: "fromDepths",
+        set: 3,
+        binding: 0,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `fromIds`, first in `shaders-glsl/pull.glsl`.
+    pub static FROM_IDS: Resource = Resource {
+        name: "fromIds",
+        set: 3,
+        binding: 4,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `fromNormals`, first in `shaders-glsl/pull.glsl`.
+    pub static FROM_NORMALS: Resource = Resource {
+        name: "fromNormals",
+        set: 3,
+        binding: 2,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `fromPlaces`, first in `shaders-glsl/pull.glsl`.
+    pub static FROM_PLACES: Resource = Resource {
+        name: "fromPlaces",
+        set: 3,
+        binding: 1,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `host_depth`, first in `shaders-glsl/seed.glsl`.
+    pub static HOST_DEPTH: Resource = Resource {
+        name: "host_depth",
+        set: 1,
+        binding: 15,
+        kind: DescriptorType::INPUT_ATTACHMENT,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::FRAGMENT.as_raw()),
+    };
+
+    /// `nearest_depth`, first in `shaders-glsl/project.glsl`.
+    pub static NEAREST_DEPTH: Resource = Resource {
+        name: "nearest_depth",
+        set: 1,
+        binding: 7,
+        kind: DescriptorType::SAMPLED_IMAGE,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `nearest_number`, first in `shaders-glsl/fetch.glsl`.
+    pub static NEAREST_NUMBER: Resource = Resource {
+        name: "nearest_number",
+        set: 1,
+        binding: 8,
+        kind: DescriptorType::SAMPLED_IMAGE,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `normal_image`, first in `shaders-glsl/composite.glsl`.
+    pub static NORMAL_IMAGE: Resource = Resource {
+        name: "normal_image",
+        set: 0,
+        binding: 2,
+        kind: DescriptorType::SAMPLED_IMAGE,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::FRAGMENT.as_raw()),
+    };
+
+    /// `picture_image`, first in `shaders-glsl/composite.glsl`.
+    pub static PICTURE_IMAGE: Resource = Resource {
+        name: "picture_image",
+        set: 0,
+        binding: 1,
+        kind: DescriptorType::SAMPLED_IMAGE,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::FRAGMENT.as_raw()),
+    };
+
+    /// `screen`, first in `shaders-glsl/colour_map.glsl`.
+    pub static SCREEN: Resource = Resource {
+        name: "screen",
+        set: 0,
+        binding: 0,
+        kind: DescriptorType::SAMPLED_IMAGE,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::FRAGMENT.as_raw()),
+    };
+
+    /// `sums0_image`, first in `shaders-glsl/normalize.glsl`.
+    pub static SUMS0_IMAGE: Resource = Resource {
+        name: "sums0_image",
+        set: 1,
+        binding: 10,
+        kind: DescriptorType::SAMPLED_IMAGE,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::FRAGMENT.as_raw()),
+    };
+
+    /// `sums0_input`, first in `shaders-glsl/normalize.glsl`.
+    pub static SUMS0_INPUT: Resource = Resource {
+        name: "sums0_input",
+        set: 1,
+        binding: 13,
+        kind: DescriptorType::INPUT_ATTACHMENT,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::FRAGMENT.as_raw()),
+    };
+
+    /// `sums1_image`, first in `shaders-glsl/normalize.glsl`.
+    pub static SUMS1_IMAGE: Resource = Resource {
+        name: "sums1_image",
+        set: 1,
+        binding: 11,
+        kind: DescriptorType::SAMPLED_IMAGE,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::FRAGMENT.as_raw()),
+    };
+
+    /// `sums1_input`, first in `shaders-glsl/normalize.glsl`.
+    pub static SUMS1_INPUT: Resource = Resource {
+        name: "sums1_input",
+        set: 1,
+        binding: 14,
+        kind: DescriptorType::INPUT_ATTACHMENT,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::FRAGMENT.as_raw()),
+    };
+
+    /// `toColours`, first in `shaders-glsl/fetch.glsl`.
+    pub static TO_COLOURS: Resource = Resource {
+        name: "toColours",
+        set: 2,
+        binding: 3,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `toDepths`, first in `shaders-glsl/fetch.glsl`.
+    pub static TO_DEPTHS: Resource = Resource {
+        name: "toDepths",
+        set: 2,
+        binding: 0,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `toIds`, first in `shaders-glsl/fetch.glsl`.
+    pub static TO_IDS: Resource = Resource {
+        name: "toIds",
+        set: 2,
+        binding: 4,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `toNormals`, first in `shaders-glsl/fetch.glsl`.
+    pub static TO_NORMALS: Resource = Resource {
+        name: "toNormals",
+        set: 2,
+        binding: 2,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `toPlaces`, first in `shaders-glsl/fetch.glsl`.
+    pub static TO_PLACES: Resource = Resource {
+        name: "toPlaces",
+        set: 2,
+        binding: 1,
+        kind: DescriptorType::STORAGE_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `visibility_image`, first in `shaders-glsl/normalize.glsl`.
+    pub static VISIBILITY_IMAGE: Resource = Resource {
+        name: "visibility_image",
+        set: 1,
+        binding: 9,
+        kind: DescriptorType::SAMPLED_IMAGE,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::FRAGMENT.as_raw()),
+    };
+
+    /// `visibility_input`, first in `shaders-glsl/normalize.glsl`.
+    pub static VISIBILITY_INPUT: Resource = Resource {
+        name: "visibility_input",
+        set: 1,
+        binding: 12,
+        kind: DescriptorType::INPUT_ATTACHMENT,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::FRAGMENT.as_raw()),
+    };
 }
 
 /// The blocks and structs of the shaders, byte for byte.
@@ -687,16 +1391,6 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(Frame, turn) == 544);
     const _: () = assert!(std::mem::size_of::<Frame>() == 592);
 
-    /// `Large`, 4 bytes, first in `shaders-glsl/project.glsl`.
-    #[repr(C)]
-    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
-    pub struct Large {
-        /// Byte 0.
-        pub large_count: u32,
-    }
-    const _: () = assert!(std::mem::offset_of!(Large, large_count) == 0);
-    const _: () = assert!(std::mem::size_of::<Large>() == 4);
-
     /// `LargeSplats`, 256 bytes, first in `shaders-glsl/attribute.glsl`.
     #[repr(C)]
     #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
@@ -709,6 +1403,16 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(LargeSplats, large_count) == 0);
     const _: () = assert!(std::mem::offset_of!(LargeSplats, large_padding) == 4);
     const _: () = assert!(std::mem::size_of::<LargeSplats>() == 256);
+
+    /// `LargeTriangles`, 4 bytes, first in `shaders-glsl/project.glsl`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+    pub struct LargeTriangles {
+        /// Byte 0.
+        pub large_count: u32,
+    }
+    const _: () = assert!(std::mem::offset_of!(LargeTriangles, large_count) == 0);
+    const _: () = assert!(std::mem::size_of::<LargeTriangles>() == 4);
 
     /// `Materials`, 4 bytes, first in `shaders-glsl/shade.glsl`.
     #[repr(C)]

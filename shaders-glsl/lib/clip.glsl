@@ -1,6 +1,15 @@
 // Clip lines: where splats end at sharp edges and corners (zwicker2004 §5). On the screen a line of the tangent plane stays a line.
 
+// Draws see none of this, unless they are compiled with CLIP_LINES: their fragments have no other buffer.
+#if defined(COMPUTE) || defined(CLIP_LINES) || defined(COVERAGE)
+#define SEES_CLIPS
+#endif
+
+#ifdef SEES_CLIPS
 layout(constant_id = 23) const bool CLIPS = false;
+#else
+const bool CLIPS = false;
+#endif
 layout(constant_id = 24) const bool BEYOND_CLIPS = false; // α is coverage, and of a pixel that a line cuts either part may be covered
 
 // How far beyond a line there are fragments then, px: as far as a pixel that it cuts can have its centre.
@@ -17,17 +26,30 @@ struct ScreenClip {
 
 const vec4 NO_LINE = vec4(1e30, 0.0, 0.0, 0.0);
 
+#ifdef SEES_CLIPS
 // The scene's: for every surfel of the window 0, or 1 + the number of its clip with CONCAVE if its corner is; then the clips, each two
 // lines of outward (3 floats) and offset.
 layout(set = 0, binding = 9, std430) readonly buffer Clips { uint clips[]; };
 // The same on the screen, by the footprint pass.
 layout(set = 0, binding = 10, std430) CLIP_ACCESS buffer ScreenClips { ScreenClip screen_clips[]; };
+#endif
+
+ScreenClip screen_clip(uint number) {
+#ifdef SEES_CLIPS
+    return screen_clips[number];
+#else
+    return ScreenClip(NO_LINE, NO_LINE);
+#endif
+}
 
 const uint CONCAVE = 0x80000000u;
 
 // Number of surfel i's clip in the window, or ~0 if its disc is whole.
 uint clip_number(uint i) {
-    return CLIPS ? (clips[i] & ~CONCAVE) - 1u : ~0u;
+#ifdef SEES_CLIPS
+    if (CLIPS) return (clips[i] & ~CONCAVE) - 1u;
+#endif
+    return ~0u;
 }
 
 bool has_clip(uint number) {

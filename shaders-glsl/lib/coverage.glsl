@@ -1,11 +1,6 @@
 // Coverage: which of 16 samples of each pixel lie on a surface, hidden or not: neighbouring splats together cover what none covers alone.
 
-#ifdef COMPUTE
-const uint COVERAGE_BINDING = 5;
-#else
-const uint COVERAGE_BINDING = 0;
-#endif
-layout(set = 1, binding = COVERAGE_BINDING, std430) buffer Coverage { uint coverage[]; }; // the 16 samples of each pixel, a bit each
+layout(set = 1, binding = 5, std430) buffer Coverage { uint coverage[]; }; // the 16 samples of each pixel, a bit each
 
 #include "lib/lattice.glsl"
 
@@ -49,7 +44,7 @@ uint coverage_mask(Ellipse solid, vec2 pixel) {
         vec2 u = vec2(dot(solid.whitening.xy, e + s), dot(solid.whitening.zw, e + s));
         if (on_plane()) u /= clamp(nearness.x + dot(nearness.yz, s), 1.0 / MOST_STRETCH, MOST_STRETCH);
         bool inside = rim() > 1.0 ? max(abs(u.x), abs(u.y)) <= limit : dot(u, u) <= limit * limit;
-        if (has_clip(solid.clip)) inside = inside && clip_distance(screen_clips[solid.clip], d + s) >= -SEAM;
+        if (has_clip(solid.clip)) inside = inside && clip_distance(screen_clip(solid.clip), d + s) >= -SEAM;
         mask |= uint(inside) << k;
     }
     // Where a splat is, there is surface, however little.

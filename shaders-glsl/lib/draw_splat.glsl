@@ -6,7 +6,9 @@ layout(location = 0) flat out vec4 anchor_offset;
 layout(location = 1) flat out vec4 whitening;
 layout(location = 2) flat out vec4 plane_epsilon;
 layout(location = 3) flat out vec4 plane_lo_disc;
-layout(location = 9) flat out uint clip;
+#ifdef SEES_CLIPS
+layout(location = 9) flat out uint clip_out;
+#endif
 layout(location = 11) flat out mat2x4 fine;
 #ifdef COVERAGE
 layout(location = 10) flat out vec4 solid_whitening;
@@ -19,7 +21,10 @@ const float LARGEST = 8192.0;
 
 // Places a corner of splat i's footprint of the given variance.
 void place_splat(uint i, Splat splat, vec2 variance, int corner) {
-    clip = clip_number(i);
+    uint clip = clip_number(i);
+#ifdef SEES_CLIPS
+    clip_out = clip;
+#endif
     Ellipse ellipse = ellipse_of(splat, variance, clip);
     anchor_offset = vec4(ellipse.anchor, ellipse.offset);
     whitening = ellipse.whitening;
@@ -57,7 +62,11 @@ layout(location = 0) flat in vec4 anchor_offset;
 layout(location = 1) flat in vec4 whitening;
 layout(location = 2) flat in vec4 plane_epsilon;
 layout(location = 3) flat in vec4 plane_lo_disc;
+#ifdef SEES_CLIPS
 layout(location = 9) flat in uint clip;
+#else
+const uint clip = ~0u;
+#endif
 layout(location = 11) flat in mat2x4 fine;
 #ifdef COVERAGE
 layout(location = 10) flat in vec4 solid_whitening;

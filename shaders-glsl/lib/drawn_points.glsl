@@ -19,8 +19,8 @@ float depth_of(float distance) {
 
 #ifdef COMPUTE
 
-layout(set = 3, binding = 0) uniform texture2D nearest_depth;
-layout(set = 3, binding = 1) uniform utexture2D nearest_number;
+layout(set = 1, binding = 7) uniform texture2D nearest_depth;
+layout(set = 1, binding = 8) uniform utexture2D nearest_number;
 
 float distance_of(float depth) {
     return uintBitsToFloat(least_distance() + (AT_NEAR_PLANE - floatBitsToUint(depth)));

@@ -11,7 +11,7 @@ const uint DRAWN = 5;
 
 layout(constant_id = 2) const bool COUNT = false;
 
-layout(set = 0, binding = 6, std430) buffer Counts { uint culled[5]; };
+layout(set = 2, binding = 5, std430) buffer Counts { uint culled[5]; };
 
 void count(uint fate) {
     if (COUNT && fate != DRAWN) atomicAdd(culled[fate], 1);

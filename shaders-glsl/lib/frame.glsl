@@ -1,4 +1,4 @@
-// What every pass knows of the camera and of the settings; src/frame.rs fills it, once a frame.
+// What every pass knows of the camera and of the settings; src/frame/uniforms.rs fills it, once a frame.
 // World space here is relative to the scene's origin; for passes over a scene that is placed it is that scene's own space, with its own unit. κ, the depth key, is near / z in perspective and linear in z otherwise:
 // 1 at the near plane, falling with distance, and affine on the screen for every plane.
 

@@ -1,7 +1,7 @@
 // Materials of points: a table, and by the number of each surfel, segment and triangle which of it it has.
 
 // Number of materials; of each the specular factor and the exponent; then the numbers, two to a word, the first in its lower half.
-layout(set = 3, binding = 1, std430) readonly buffer Materials { uint count; uint words[]; } materials;
+layout(set = 0, binding = 18, std430) readonly buffer Materials { uint count; uint words[]; } materials;
 
 Shine shine_of(uint point) {
     uint number = materials.words[4 * materials.count + point / 2] >> 16 * (point % 2) & 0xffffu;

@@ -6,10 +6,10 @@
 
 layout(constant_id = 29) const uint VERTEX_COLOURS = 0; // how the scene holds their colours; see lib/colour_streams.glsl
 
-layout(set = 3, binding = 0, std430) readonly buffer Vertices { float vertices[]; };            // position, direction, radius
-layout(set = 3, binding = 1, std430) readonly buffer Alongs { float alongs[]; };                // directions of the lines
-layout(set = 3, binding = 2, std430) readonly buffer VertexColours { uint vertex_colours[]; };
-layout(set = 3, binding = 3, std430) readonly buffer Elements { uint elements[]; };             // vertices of lines, or of triangles
+layout(set = 0, binding = 12, std430) readonly buffer Vertices { float vertices[]; };            // position, direction, radius
+layout(set = 0, binding = 13, std430) readonly buffer Alongs { float alongs[]; };                // directions of the lines
+layout(set = 0, binding = 14, std430) readonly buffer VertexColours { uint vertex_colours[]; };
+layout(set = 0, binding = 15, std430) readonly buffer Elements { uint elements[]; };             // vertices of lines, or of triangles
 
 struct Vertex {
     vec3 hi, lo;     // position relative to the eye, the sum of both

@@ -70,7 +70,7 @@ bool is_within(uint level, ivec2 at) {
     return all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, level_size(level)));
 }
 
-// A sample as the planes of a pyramid hold it, in bits; src/targets/pyramids.rs has their sizes.
+// A sample as the planes of a pyramid hold it, in bits; src/frame/pyramids.rs has their sizes.
 struct Planes {
     uvec4 depths; // near, far, depth, radius; compact: near, depth
     uvec2 place;  // displacement; compact: halves of it and the radius, and what far is beyond near
@@ -109,14 +109,17 @@ Sample sample_of_planes(Planes p) {
     return Sample(depths.x, far, depths.y, radius, unpackHalf2x16(p.place.x), unpack_direction(p.normal.x), colour, tube, colour.xy, p.id);
 }
 
-// load_NAME and store_NAME of the pyramid at descriptor set SET: planes of all samples, level after level, fine to coarse. A pass reads set 1,
-// `from`, and writes set 2, `to`.
-#define DEFINE_PYRAMID(SET, NAME)                                                                          \
-    layout(set = SET, binding = 0, std430) buffer NAME##Depths { uvec2 NAME##_depths[]; };                 \
-    layout(set = SET, binding = 1, std430) buffer NAME##Places { uvec2 NAME##_places[]; };                 \
-    layout(set = SET, binding = 2, std430) buffer NAME##Normals { uint NAME##_normals[]; };                \
-    layout(set = SET, binding = 3, std430) buffer NAME##Colours { uint NAME##_colours[]; };                \
-    layout(set = SET, binding = 4, std430) buffer NAME##Ids { uint NAME##_ids[]; };                        \
+// The planes of the pyramid at descriptor set SET: all samples, level after level, fine to coarse. Passes write the one of set 2, `to`, and
+// read that of set 3, `from`; shade reads that of set 2, `final`.
+#define PYRAMID(SET, NAME, ACCESS)                                                                         \
+    layout(set = SET, binding = 0, std430) ACCESS buffer NAME##Depths { uvec2 NAME##_depths[]; };          \
+    layout(set = SET, binding = 1, std430) ACCESS buffer NAME##Places { uvec2 NAME##_places[]; };          \
+    layout(set = SET, binding = 2, std430) ACCESS buffer NAME##Normals { uint NAME##_normals[]; };         \
+    layout(set = SET, binding = 3, std430) ACCESS buffer NAME##Colours { uint NAME##_colours[]; };         \
+    layout(set = SET, binding = 4, std430) ACCESS buffer NAME##Ids { uint NAME##_ids[]; };
+
+// load_NAME: sample i of a pyramid.
+#define LOADED(NAME)                                                                                       \
     Sample load_##NAME(uint i) {                                                                           \
         Planes p = Planes(uvec4(0), NAME##_places[i], uvec3(0), uvec3(0), NOBODY);                         \
         p.depths.xy = NAME##_depths[DEPTHS * i];                                                           \
@@ -125,7 +128,10 @@ Sample sample_of_planes(Planes p) {
         for (uint k = 0; k < COLOUR_WORDS; k++) p.colour[k] = NAME##_colours[COLOUR_WORDS * i + k];        \
         if (IDS) p.id = NAME##_ids[i];                                                                     \
         return sample_of_planes(p);                                                                        \
-    }                                                                                                      \
+    }
+
+// store_NAME: the same, written.
+#define STORED(NAME)                                                                                       \
     void store_##NAME(uint i, Sample s) {                                                                  \
         Planes p = planes_of(s);                                                                           \
         NAME##_places[i] = p.place;                                                                        \

@@ -209,7 +209,7 @@ bool splat_fragment(Ellipse ellipse, vec2 pixel, out vec2 m, out float key, out 
     bool inside =
         rim() > 1.0 ? max(abs(m.x), abs(m.y)) <= frame.cutoff : dot(m, m) <= frame.cutoff * frame.cutoff;
     rank = 1.0;
-    if (has_clip(ellipse.clip)) rank = clip_rank(screen_clips[ellipse.clip], d);
+    if (has_clip(ellipse.clip)) rank = clip_rank(screen_clip(ellipse.clip), d);
     return inside && rank > 0.0 && key > frame.key_far && key <= 1.0;
 }
 

@@ -5,7 +5,7 @@
 layout(constant_id = 36) const uint TEXELS = 0; // their kind, as of colours
 
 // Width and height of the finest level, number of levels; texels of all levels, fine to coarse, each row by row from the top left.
-layout(set = 3, binding = 0, std430) readonly buffer Texture { uint width; uint height; uint levels; uint texels[]; } image_of;
+layout(set = 0, binding = 17, std430) readonly buffer Texture { uint width; uint height; uint levels; uint texels[]; } image_of;
 
 DEFINE_COLOURS(texel, TEXELS, image_of.texels, 0, colour_words(TEXELS))
 
@@ -37,7 +37,7 @@ vec2 texture_step(ivec2 at, ivec2 step, Sample own) {
     for (int side = -1; side <= 1; side += 2) {
         ivec2 place = at + side * step;
         if (!is_within(0, place)) continue;
-        Sample other = load_from(place_in(0, 0, place));
+        Sample other = load_final(place_in(0, 0, place));
         bool one = other.near > 0.0 && other.near <= own.far && own.near <= other.far && other.tube == own.tube;
         if (!one) continue;
         sum += float(side) * turn_from(other, own);

@@ -1,6 +1,6 @@
 // The nearest splat of each pixel: its κ, whose bits order like it, above the complement of its index, so that the lowest wins a tie.
 
-layout(set = 1, binding = 0, std430) buffer Winners { uint64_t winners[]; };
+layout(set = 1, binding = 0, std430) WINNER_ACCESS buffer Winners { uint64_t winners[]; };
 
 uint pixel_index(ivec2 pixel) {
     return uint(pixel.y) * uint(frame.viewport.x) + uint(pixel.x);

@@ -3,7 +3,8 @@
 use super::files::{print, print_json};
 use serde_json::{Value, json};
 use std::fmt::Write;
-use surfel::methods::{FramePlan, Method};
+use surfel::frame::FramePlan;
+use surfel::methods::Method;
 use surfel::scene::{ColourStream, PrimitiveKinds, Streams, SurfelLayout};
 use surfel::settings::{Settings, Shading};
 use surfel::splatting::{Filter, Splatting};

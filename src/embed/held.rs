@@ -1,7 +1,7 @@
 //! What frames under way may use, kept until they are over.
 
 use crate::error::{Error, Result};
-use crate::stage::Outgoing;
+use crate::frame::resources::Outgoing;
 use std::any::Any;
 use std::collections::VecDeque;
 

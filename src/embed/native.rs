@@ -77,11 +77,10 @@
 //! ```
 
 mod dependencies;
-mod passes;
 mod place;
 mod plan;
-mod present;
 mod seeding;
+mod subpasses;
 mod targets;
 
 pub use place::{Depth, Place};
@@ -92,18 +91,20 @@ use super::reports::{Measured, Reports};
 use super::view::Seen;
 use super::{View, without_background};
 use crate::error::{Error, Result};
-use crate::frame::Blocks;
+use crate::frame::FrameReport;
+use crate::frame::description::Description;
+use crate::frame::resources::{FrameResources, Retired};
+use crate::frame::targets::check_size;
+use crate::frame::uniforms::Blocks;
+use crate::frame::variant::SceneVariant;
 use crate::instance::Instances;
-use crate::renderer::{FrameReport, RenderOptions};
+use crate::scene::Scene;
 use crate::settings::Settings;
-use crate::stage::{Description, Residents, describe, update};
-use crate::targets::check_size;
+use crate::splatting::Visibility;
 use crate::vk::shaders::layout;
 use crate::vk::{Device, Draws, HostDepth, HostPass, Recorder};
 use ash::vk;
-use passes::Numbers;
-use plan::check_method;
-use present::{Made, Present, Resident};
+use plan::{Step, check_method};
 use std::sync::Arc;
 use targets::Targets;
 
@@ -111,14 +112,13 @@ use targets::Targets;
 pub struct Renderer {
     // Fields are dropped in this order: views before what they view.
     shown: Option<Shown>,
-    present: Option<Present>,
-    /// What was before it: who switches to and fro makes nothing.
-    previous: Option<Present>,
+    frame: FrameResources,
     reports: Reports,
     held: Held,
-    residents: Residents<Resident>,
-    made: Made,
+    /// Of the present frame.
+    scenes: Vec<Arc<Scene>>,
     targets: Option<Arc<Targets>>,
+    plan: Plan,
     device: Arc<Device>,
 }
 
@@ -128,6 +128,20 @@ struct Shown {
     area: vk::Rect2D,
     /// Of the subpasses, in their order.
     passes: Vec<HostPass>,
+}
+
+/// The numbers of a frame that are pushed.
+#[derive(Clone, Copy)]
+struct Numbers {
+    /// What splats start from; nothing if the seed is not drawn.
+    seed: Option<layout::Seed>,
+    host: layout::Subpass,
+}
+
+/// Whether what is hidden behind a surface, and more than the reach of ε, cannot be seen: not if discs are moved before they are projected,
+/// which at a pixel may move them any way, or if what is beyond clip lines counts as behind everything.
+fn can_seed(variant: &SceneVariant) -> bool {
+    !(variant.frame.visibility == Visibility::Axis || variant.frame.coverage && variant.clips)
 }
 
 impl Renderer {
@@ -148,22 +162,24 @@ impl Renderer {
                 "no render pass: make one of the host's parts and of what the plan adds".into(),
             ));
         }
+        // SAFETY: by the caller.
+        let host = unsafe { subpasses::host(&plan, pass) };
+        let options = plan.options([1, 1]);
         Ok(Self {
             shown: None,
-            present: None,
-            previous: None,
+            frame: FrameResources::new(device, options, Retired::Kept(Vec::new()), Some(host))?,
             held: Held::new(frames_in_flight)?,
             reports: Reports::new(frames_in_flight),
-            residents: Residents::default(),
-            made: Made::new(device, plan, pass)?,
+            scenes: Vec::new(),
             targets: None,
+            plan,
             device: device.clone(),
         })
     }
 
     /// What it adds to the render pass.
     pub fn plan(&self) -> &Plan {
-        &self.made.plan
+        &self.plan
     }
 
     /// Makes attachments of `size` px, that of the framebuffer, and gives their views, which follow the host's in it. `depth` is the host's, where
@@ -181,7 +197,7 @@ impl Renderer {
         depth: Option<vk::ImageView>,
     ) -> Result<Vec<vk::ImageView>> {
         check_size(&self.device, size)?;
-        let seeded = self.made.plan.seeded().is_some();
+        let seeded = self.plan.seeded().is_some();
         if seeded && depth.is_none_or(|depth| depth == vk::ImageView::null()) {
             return Err(Error::Usage(
                 "splats are to start from the host's depth, and there is no view of it: give one, or make the plan without `seed`".into(),
@@ -191,11 +207,13 @@ impl Renderer {
         let depth = depth.filter(|_| seeded).map(|depth| unsafe { HostDepth::new(depth) });
         let targets = match &self.targets {
             Some(targets) if targets.size == size => targets.beside(depth),
-            _ => Targets::new(&self.device, &self.made.plan, size, depth)?,
+            _ => Targets::new(&self.device, &self.plan, size, depth)?,
         };
         let views = targets.views();
         self.shown = None;
-        let old = (self.present.take(), self.previous.take(), self.targets.replace(Arc::new(targets)));
+        self.frame.forget_targets();
+        self.held.extend(self.frame.outgoing());
+        let old = self.targets.replace(Arc::new(targets));
         self.held.hold(old);
         Ok(views)
     }
@@ -216,20 +234,19 @@ impl Renderer {
         settings: &Settings,
     ) -> Result<()> {
         self.shown = None;
-        let (blocks, numbers, area) = self.make(scenes.into(), view, settings)?;
-        let splats: Vec<_> = self.residents.present().map(|resident| &resident.splats.splats).collect();
-        self.reports.begin(&self.device, &splats)?;
+        let made = self.make(scenes.into(), view, settings);
+        // Also after an error: what it took the place of may be under way.
+        self.held.extend(self.frame.outgoing());
+        let (blocks, numbers, area) = made?;
+        let scenes: Vec<_> = self.frame.scenes().collect();
+        self.reports.begin(&self.device, &scenes)?;
         self.held.advance();
         let (timestamps, tail) = self.reports.present();
         // SAFETY: by the caller; the reports have one for each frame under way.
         let mut rec = unsafe { Recorder::of_host_timed(&self.device, cmd, timestamps) };
-        let own = self.residents.present().map(|resident| &resident.frame);
-        update(&mut rec, &self.made.frame, own, &blocks);
-        if let Some(present) = &self.present {
-            passes::record(&mut rec, &present.with(&self.residents), present.coverage.as_deref());
-        }
-        tail.record(&mut rec, &splats);
-        let passes = self.made.plan.numbered().map(|(_, step)| rec.later(step.label())).collect();
+        self.frame.record(&mut rec, &blocks);
+        tail.record(&mut rec, &scenes);
+        let passes = self.plan.numbered().map(|(_, step)| rec.later(step.pass().name)).collect();
         self.shown = Some(Shown { numbers, area, passes });
         Ok(())
     }
@@ -268,17 +285,23 @@ impl Renderer {
     /// # Safety
     /// As that of [`Renderer::draw`], of the subpass for which `next` is called.
     pub unsafe fn draw_each(&self, mut next: impl FnMut(u32) -> vk::CommandBuffer) -> Result<()> {
-        let (Some(Shown { numbers, area, passes }), Some(present)) = (&self.shown, &self.present) else {
+        let (Some(Shown { numbers, area, passes }), Some((present, frame))) =
+            (&self.shown, self.frame.frame())
+        else {
             return Err(Error::Usage("there is no frame to draw: prepare one, and heed its error".into()));
         };
-        let scenes = present.with(&self.residents);
-        for ((subpass, step), pass) in self.made.plan.numbered().zip(passes) {
+        for ((subpass, step), pass) in self.plan.numbered().zip(passes) {
             let cmd = next(subpass);
             // SAFETY: by the caller.
-            unsafe {
-                Draws::of_host(&self.device, cmd, pass, *area, |draws| {
-                    present.passes.draw(step, draws, &present.views, &scenes, numbers);
-                });
+            let mut draws = unsafe { Draws::of_host(&self.device, cmd, pass, *area) };
+            let Some(prepared) = present.pass(step.pass()) else { continue };
+            match (step, &numbers.seed) {
+                (Step::Seed, Some(seed)) => prepared.draw(&mut draws, &frame, seed),
+                (Step::Seed, None) => {}
+                (Step::Normalize, _) => prepared.draw(&mut draws, &frame, &numbers.host),
+                (Step::Visibility | Step::Attribute | Step::Nearest, _) => {
+                    prepared.draw(&mut draws, &frame, &());
+                }
             }
         }
         Ok(())
@@ -289,7 +312,7 @@ impl Renderer {
     /// # Safety
     /// As that of [`Renderer::draw`].
     pub unsafe fn skip(&self, cmd: vk::CommandBuffer) {
-        for (subpass, _) in self.made.plan.numbered() {
+        for (subpass, _) in self.plan.numbered() {
             // SAFETY: by the caller.
             unsafe { self.enter(cmd, subpass) };
         }
@@ -303,18 +326,18 @@ impl Renderer {
         settings: &Settings,
     ) -> Result<()> {
         let placed = scenes.into().placed(&self.device)?;
-        let Seen { size, camera, .. } = view.seen(&self.device, self.made.plan.host.reversed)?;
+        let Seen { size, camera, .. } = view.seen(&self.device, self.plan.host.reversed)?;
         let settings = without_background(settings);
         check_method(&settings)?;
-        let Description { variant, scenes, .. } =
-            describe(&self.device, &self.options(size), &placed, &camera, &settings)?;
-        self.made.plan.check(&variant)?;
-        self.made.make_pipelines(&self.device, variant, &scenes).map(drop)
+        let frame = self.frame.describe(&placed, &camera, &settings, size)?;
+        self.plan.check(&frame.variant)?;
+        self.frame.make_pipelines(&frame)
     }
 
     /// As [`embed::Renderer::measure`](super::Renderer::measure).
     pub fn measure(&mut self, measured: Measured) {
         self.reports.measure(measured);
+        self.frame.count(measured.counts);
     }
 
     /// As [`embed::Renderer::report`](super::Renderer::report). A subpass takes from when the work before it is done to when its own is; on a GPU
@@ -339,30 +362,27 @@ impl Renderer {
         settings: &Settings,
     ) -> Result<(Blocks, Numbers, vk::Rect2D)> {
         let placed = scenes.placed(&self.device)?;
-        let Seen { area, size, camera, depth } = view.seen(&self.device, self.made.plan.host.reversed)?;
+        let Seen { area, size, camera, depth } = view.seen(&self.device, self.plan.host.reversed)?;
         let targets = self.targets_of(area)?;
         let settings = without_background(settings);
         check_method(&settings)?;
-        let options = self.options(size);
-        let Description { mut blocks, variant, scenes: own } =
-            describe(&self.device, &options, &placed, &camera, &settings)?;
-        self.made.plan.check(&variant)?;
+        let mut frame = self.frame.describe(&placed, &camera, &settings, size)?;
+        self.plan.check(&frame.variant)?;
         let origin = [area.offset.x as f32, area.offset.y as f32];
-        blocks.each().for_each(|block| block.origin = origin);
-        let format = self.made.plan.seeded().filter(|_| own.iter().all(passes::can_seed));
+        frame.blocks.each().for_each(|block| block.origin = origin);
+        let Description { blocks, variant, scenes: own } = &frame;
+        let format = self.plan.seeded().filter(|_| own.iter().all(can_seed));
         let largest = placed.iter().map(|placed| placed.largest()).reduce(|a, b| Some(a?.max(b?))).flatten();
         let seed = format.zip(largest).and_then(|(format, largest)| {
             seeding::seed(format, depth, (&blocks.view, variant.perspective), largest, variant.precision)
         });
-        let list: Vec<_> = scenes.scenes().collect();
-        self.make_residents(&list, passes::moves(&variant), !blocks.scenes.is_empty())?;
-        self.make_present(&targets, variant, &own)?;
-        Ok((blocks, Numbers { seed, host: layout::Subpass { depth } }, area))
-    }
-
-    /// Those of frames of `size` px.
-    fn options(&self, size: [u32; 2]) -> RenderOptions {
-        RenderOptions { count: self.reports.counts(), ..self.made.plan.options(size) }
+        let bindings = targets.bindings(&subpasses::inputs(&self.plan));
+        self.frame.make(&placed, &frame, targets.size, &bindings)?;
+        if !scenes.scenes().map(Arc::as_ptr).eq(self.scenes.iter().map(Arc::as_ptr)) {
+            let old = std::mem::replace(&mut self.scenes, scenes.scenes().cloned().collect());
+            self.held.hold(old);
+        }
+        Ok((frame.blocks, Numbers { seed, host: layout::Subpass { depth } }, area))
     }
 
     /// The attachments, if these pixels are within them.

@@ -1,14 +1,16 @@
 //! A picture of a scene in frames that go to a window: colours in linear float, and depth, of any size.
 
+mod colour_map;
 mod numbers;
+mod range;
 
 use super::{Measured, Options, Pass, Renderer, Target, View};
 use crate::error::{Error, Result};
+use crate::frame::FrameReport;
+use crate::frame::{Precision, Rasterizer};
 use crate::geometry::{Camera, ValueRange};
-use crate::renderer::FrameReport;
 use crate::scene::Scene;
 use crate::settings::Settings;
-use crate::variant::{Precision, Rasterizer};
 use crate::vk::{
     Access, Attachment, Buffer, Device, FRAMES_IN_FLIGHT, Framebuffer, Image, ImageUse, Presented, Presenter,
     Recorder, RenderPass, Stake, Timestamps,
@@ -198,16 +200,16 @@ impl Pane {
         let [r, g, b] = shown.and_then(|(.., settings)| settings.background).unwrap_or_default();
         // Numbers become colours before there is something behind them.
         let behind = if self.numbers.is_some() { [0.0; 4] } else { [r, g, b, 1.0] };
-        rec.pass("screen", &uses, |enc| {
-            enc.render_over(framebuffer, behind, |_| {
-                if shown.is_some() && drawn.is_ok() {
-                    // SAFETY: within the renderer's target.
-                    drawn = unsafe { self.renderer.draw(frame.cmd) };
-                }
-            });
-        });
+        let mut enc = rec.pass("screen", &uses);
+        let draws = enc.render_over(framebuffer, behind);
+        if shown.is_some() && drawn.is_ok() {
+            // SAFETY: within the renderer's target.
+            drawn = unsafe { self.renderer.draw(frame.cmd) };
+        }
+        drop(draws);
+        drop(enc);
         let uses = [depth.with(Access::COPY_READ), depths.with(Access::COPY_WRITE)];
-        rec.pass("depths", &uses, |enc| enc.copy_image(depth, depths));
+        rec.pass("depths", &uses).copy_image(depth, depths);
         let mut results = vec![depths.with(Access::HOST_READ)];
         match self.numbers.as_ref().zip(shown) {
             Some((numbers, (.., settings))) => {
@@ -235,7 +237,7 @@ impl Pane {
         let uses = [image.with(Access::COPY_READ)];
         let mut rec = frame.recorder();
         rec.left(&uses);
-        rec.pass("show", &uses, |enc| enc.show_part(image, frame, area, columns));
+        rec.pass("show", &uses).show_part(image, frame, area, columns);
         Ok(())
     }
 

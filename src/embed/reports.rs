@@ -1,9 +1,10 @@
 //! What frames tell of themselves: kept for each frame under way, and read when it is over, so that nothing is waited for.
 
 use crate::error::Result;
-use crate::passes::Splats;
-use crate::renderer::{FrameReport, SplatCounts};
-use crate::vk::{Buffer, Device, Recorder, Timestamps};
+use crate::frame::resource::Resource;
+use crate::frame::scene_resources::{SceneResources, counts_in};
+use crate::frame::{FrameReport, SplatCounts};
+use crate::vk::{Access, Buffer, Device, Recorder, Timestamps};
 use std::sync::Arc;
 
 /// What frames tell of themselves. What is not asked for is in no frame.
@@ -69,27 +70,23 @@ impl Reports {
         }
     }
 
-    /// Whether frames that are begun from now on are counted.
-    pub(super) fn counts(&self) -> bool {
-        self.measured.counts
-    }
-
     /// Of the last frame that is known to be over, if it was measured.
     pub(super) fn last(&self) -> Option<&FrameReport> {
         self.last.as_ref()
     }
 
-    /// Begins a frame of these splats: as many frames ago, one is over now.
-    pub(super) fn begin(&mut self, device: &Arc<Device>, splats: &[&Splats]) -> Result<()> {
+    /// Begins a frame of these scenes: as many frames ago, one is over now.
+    pub(super) fn begin(&mut self, device: &Arc<Device>, scenes: &[&SceneResources]) -> Result<()> {
         let (next, measured) = ((self.present + 1) % self.slots.len(), self.measured);
         let slot = &mut self.slots[next];
         self.last = slot.read()?;
         if measured.times && slot.timestamps.is_none() {
             slot.timestamps = Timestamps::new(device)?;
         }
-        let all = |of: fn(&Splats) -> u64| splats.iter().map(|splats| of(splats)).sum();
-        let counted = measured.counts && !splats.is_empty();
-        let counts: Option<(u64, u64)> = counted.then(|| (all(Splats::count), all(Splats::counts_size)));
+        let all = |of: fn(&SceneResources) -> u64| scenes.iter().map(|scene| of(scene)).sum();
+        let counted = measured.counts && !scenes.is_empty();
+        let counts: Option<(u64, u64)> =
+            counted.then(|| (all(SceneResources::count), all(SceneResources::counts_size)));
         let room = counts.map_or(0, |(_, size)| size);
         if slot.counts.as_ref().map_or(0, Buffer::size) < room {
             slot.counts = Some(Buffer::readback(device, "frame counts", room)?);
@@ -131,15 +128,30 @@ impl Reports {
 }
 
 impl Tail<'_> {
-    /// Copies the counts of the frame's splats, and says that it is over.
-    pub(super) fn record(&self, rec: &mut Recorder<'_>, splats: &[&Splats]) {
+    /// Copies the counts of the frame's scenes, and says that it is over.
+    pub(super) fn record(&self, rec: &mut Recorder<'_>, scenes: &[&SceneResources]) {
         if let Some(counts) = self.counts {
-            Splats::record_counts(splats, rec, counts);
+            copy_counts(scenes, rec, counts);
         }
         if let Some((done, number)) = self.done {
             rec.mark(done, number);
         }
     }
+}
+
+/// Copies the counts of all of these to `to`, one after the other, which has room for all: the next frame empties them.
+fn copy_counts(scenes: &[&SceneResources], rec: &mut Recorder<'_>, to: &Buffer) {
+    let counts: Vec<_> = scenes.iter().flat_map(|scene| scene.buffers(Resource::Counts)).collect();
+    let from = counts.iter().map(|counts| counts.with(Access::COPY_READ));
+    let uses: Vec<_> = from.chain([to.with(Access::COPY_WRITE)]).collect();
+    let mut enc = rec.pass("read back", &uses);
+    let mut at = 0;
+    for counts in counts {
+        enc.copy(counts, to, at, counts.size());
+        at += counts.size();
+    }
+    drop(enc);
+    rec.wait(&[to.with(Access::HOST_READ)]);
 }
 
 impl Slot {
@@ -152,7 +164,7 @@ impl Slot {
         let counted = self.counts.as_ref().zip(counts);
         let counts = counted.map(|(buffer, (surfels, size))| {
             let bytes = &buffer.bytes()[..size as usize];
-            SplatCounts::new(surfels, Splats::counts_in(bytes))
+            SplatCounts::new(surfels, counts_in(bytes))
         });
         let timed = self.timestamps.as_ref().filter(|_| times);
         Ok(Some(FrameReport { pass_times: timed.map_or(Ok(Vec::new()), Timestamps::read)?, counts }))

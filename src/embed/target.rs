@@ -1,8 +1,8 @@
 //! Where a host wants the picture.
 
 use super::attachments::{self, Purpose, is_srgb};
+use super::composite::{Composite, CompositeKind};
 use crate::error::{Error, Result};
-use crate::passes::{Composite, CompositeKind};
 use crate::vk::{Blend, Device, Within};
 use ash::vk;
 use std::sync::Arc;

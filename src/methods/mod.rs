@@ -1,18 +1,10 @@
-//! One short file a method: its paper, its pipeline figure, and what it chooses along the axes of [`Splatting`]; and the passes that the
-//! choices lead to, `blended` or `nearest`; or a [`pull_push`] of points.
+//! One short file a method: its paper, its pipeline figure, and what it chooses along the axes of [`Splatting`]; or a [`pull_push`] of points.
 
-mod blended;
-mod canvas;
 pub mod confetti;
-mod nearest;
 pub mod object_ewa;
 pub mod perspective_ewa;
-mod plan;
 pub mod pull_push;
 pub mod sprites;
-
-pub(crate) use canvas::{Canvas, Composited, Pipelines};
-pub use plan::FramePlan;
 
 use crate::pull_push::PullPush;
 use crate::settings::{Cull, Settings, Widen};

@@ -109,6 +109,27 @@ impl Access {
     /// Read by the CPU once the frame is over.
     pub const HOST_READ: Self = Self::buffer(vk::PipelineStageFlags::HOST, vk::AccessFlags::HOST_READ, false);
 
+    /// Read, or written and maybe read, by these shaders.
+    pub fn of_shader(shaders: vk::ShaderStageFlags, write: bool) -> Self {
+        let pairs = [
+            (vk::ShaderStageFlags::COMPUTE, vk::PipelineStageFlags::COMPUTE_SHADER),
+            (vk::ShaderStageFlags::VERTEX, vk::PipelineStageFlags::VERTEX_SHADER),
+            (vk::ShaderStageFlags::FRAGMENT, vk::PipelineStageFlags::FRAGMENT_SHADER),
+        ];
+        let all = pairs.iter().filter(|(shader, _)| shaders.contains(*shader)).map(|(_, stage)| *stage);
+        let stages = all.fold(vk::PipelineStageFlags::empty(), |stages, stage| stages | stage);
+        let written = if write { vk::AccessFlags::SHADER_WRITE } else { vk::AccessFlags::empty() };
+        Self::buffer(stages, vk::AccessFlags::SHADER_READ | written, write)
+    }
+
+    /// The same of an image, if it is said of a buffer: shaders fetch from images.
+    pub fn of_image(self) -> Self {
+        match self.layout {
+            vk::ImageLayout::UNDEFINED => Self { layout: vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL, ..self },
+            _ => self,
+        }
+    }
+
     /// Where.
     pub const fn stages(self) -> vk::PipelineStageFlags {
         self.stages
@@ -220,7 +241,7 @@ impl Past {
 
 /// What was done to each resource in this frame.
 #[derive(Default)]
-pub(super) struct Tracker(Vec<State>);
+pub(super) struct Tracker(HashMap<Resource, State>);
 
 /// A pipeline barrier.
 pub(super) struct Barrier {
@@ -271,20 +292,16 @@ impl Tracker {
     }
 
     fn state_of(&mut self, resource: Resource, past: &Past) -> &mut State {
-        let index = self.0.iter().position(|state| state.resource == resource).unwrap_or_else(|| {
+        self.0.entry(resource).or_insert_with(|| {
             // An earlier frame may still be at it.
             let reads = (past.stages, vk::AccessFlags::empty());
-            let (write, written) = (past.writes, past.mask);
-            self.0.push(State { resource, write, written, reads, layout: vk::ImageLayout::UNDEFINED });
-            self.0.len() - 1
-        });
-        &mut self.0[index]
+            State { write: past.writes, written: past.mask, reads, layout: vk::ImageLayout::UNDEFINED }
+        })
     }
 }
 
 /// What was last done to a resource in this frame.
 struct State {
-    resource: Resource,
     /// The last write, or at first all those of earlier frames that are not yet visible.
     write: (vk::PipelineStageFlags, vk::AccessFlags),
     /// Writes that a write must wait for.

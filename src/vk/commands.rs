@@ -13,6 +13,8 @@ pub struct Commands {
     fence: vk::Fence,
     timestamps: Option<Timestamps>,
     timed: bool,
+    /// Whether something was begun and not submitted.
+    recording: bool,
     device: Arc<Device>,
 }
 
@@ -27,6 +29,7 @@ impl Commands {
             fence: vk::Fence::null(),
             timestamps,
             timed: profile,
+            recording: false,
             device: device.clone(),
         };
         let pool = vk::CommandPoolCreateInfo::default().queue_family_index(family);
@@ -53,9 +56,8 @@ impl Commands {
         self.timed = on;
     }
 
-    /// Records with `body`, submits, and waits until the GPU is done.
-    pub fn run(&mut self, body: impl FnOnce(&mut Recorder<'_>)) -> Result<()> {
-        let (queue, _) = self.device.queue()?;
+    /// Begins to record, in place of what was recorded before.
+    pub fn begin(&mut self) -> Result<Recorder<'_>> {
         let raw = &self.device.raw;
         let begin = vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
         // SAFETY: the last submission was waited for, so the pool's only buffer is free to be recorded anew.
@@ -64,10 +66,20 @@ impl Commands {
                 .map_err(Error::vulkan("vkResetCommandPool"))?;
             raw.begin_command_buffer(self.cmd, &begin).map_err(Error::vulkan("vkBeginCommandBuffer"))?;
         }
-        body(&mut Recorder::new(&self.device, self.cmd, self.timestamps.as_mut().filter(|_| self.timed)));
+        self.recording = true;
+        Ok(Recorder::new(&self.device, self.cmd, self.timestamps.as_mut().filter(|_| self.timed)))
+    }
+
+    /// Submits what was recorded since [`Commands::begin`], once, and waits until the GPU is done.
+    pub fn submit(&mut self) -> Result<()> {
+        if !std::mem::take(&mut self.recording) {
+            return Ok(());
+        }
+        let (queue, _) = self.device.queue()?;
+        let raw = &self.device.raw;
         let buffers = [self.cmd];
         let submit = [vk::SubmitInfo::default().command_buffers(&buffers)];
-        // SAFETY: the buffer was recorded whole, the fence is unsignalled, and both are waited for before they are used again.
+        // SAFETY: the buffer was begun and recorded, the fence is unsignalled, and both are waited for before they are used again.
         unsafe {
             raw.end_command_buffer(self.cmd).map_err(Error::vulkan("vkEndCommandBuffer"))?;
             {
@@ -77,6 +89,12 @@ impl Commands {
             raw.wait_for_fences(&[self.fence], true, u64::MAX).map_err(Error::vulkan("vkWaitForFences"))?;
             raw.reset_fences(&[self.fence]).map_err(Error::vulkan("vkResetFences"))
         }
+    }
+
+    /// Records with `body`, submits, and waits until the GPU is done.
+    pub fn run(&mut self, body: impl FnOnce(&mut Recorder<'_>)) -> Result<()> {
+        body(&mut self.begin()?);
+        self.submit()
     }
 
     /// Times of the passes of the last run; empty if it was not profiled.

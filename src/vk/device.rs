@@ -9,6 +9,7 @@ use super::memory::{self, MemoryBlocks, MemorySource};
 use super::pipeline_cache::PipelineCache;
 use super::pipeline_pool::PipelinePool;
 use super::requirements::{Abilities, QUEUE, portability_subset};
+use super::set_layout::SetLayouts;
 #[cfg(feature = "window")]
 use super::surface::{self, Surface, Window};
 use crate::error::{Error, Result};
@@ -44,6 +45,8 @@ pub struct Device {
     pub(super) labels: Option<debug_utils::Device>,
     pub(super) history: History,
     pub(super) descriptor_pools: DescriptorPools,
+    /// The layouts of descriptor sets that are alive.
+    pub(super) set_layouts: SetLayouts,
     pub(super) made: Made,
     capabilities: Capabilities,
     description: DeviceDescription,
@@ -181,6 +184,7 @@ impl Device {
             labels,
             history: History::default(),
             descriptor_pools: DescriptorPools::default(),
+            set_layouts: SetLayouts::default(),
             made: Made::default(),
             capabilities,
             description,
@@ -234,6 +238,7 @@ impl Device {
             labels: lent.labels.then(|| debug_utils::Device::new(instance, device)),
             history: History::default(),
             descriptor_pools: DescriptorPools::default(),
+            set_layouts: SetLayouts::default(),
             made: Made::default(),
             capabilities,
             description,

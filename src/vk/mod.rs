@@ -32,6 +32,7 @@ mod presenter;
 mod recorder;
 mod render_pass;
 mod requirements;
+mod set_layout;
 mod shader_stage;
 #[cfg_attr(not(feature = "window"), allow(dead_code, reason = "some are for windows alone"))]
 pub(crate) mod shaders;
@@ -51,7 +52,7 @@ pub use choose::{DeviceDescription, describe_devices, preferred};
 #[cfg(feature = "window")]
 pub use command_pool::CommandPool;
 pub(crate) use commands::Commands;
-pub(crate) use descriptors::{Binding, DescriptorSet, HostDepth, SetLayout, input_layout};
+pub(crate) use descriptors::{Binding, DescriptorSet, HostDepth, input_layout};
 pub use device::{Device, DeviceOptions, Lent, Usage};
 pub(crate) use encoder::{Draws, Encoder};
 pub(crate) use image::{Image, ImageUse, pixel_bytes};
@@ -65,6 +66,7 @@ pub use presenter::{FRAMES_IN_FLIGHT, Presented, Presenter};
 pub(crate) use recorder::Recorder;
 pub(crate) use render_pass::{Attachment, Framebuffer, RenderPass};
 pub use requirements::{ABILITIES, API_VERSION, Abilities, Ability, Features, QUEUE};
+pub(crate) use set_layout::SetLayout;
 pub(crate) use shader_stage::{Code, Constants};
 #[cfg(feature = "window")]
 pub use surface::{Surface, Window};

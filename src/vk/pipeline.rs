@@ -1,9 +1,10 @@
 //! Compute and draw pipelines.
 
 use super::pipeline_pool::{DrawKey, PassKey, PipelineKey};
+use super::set_layout::{SetBinding, SetLayout};
 use super::shader_stage::{Code, Constants, ShaderStage, with_infos};
 use super::shaders::Module;
-use super::{Device, RenderPass, SetLayout};
+use super::{Device, RenderPass};
 use crate::error::{Error, Result};
 use ash::vk;
 use std::sync::Arc;
@@ -63,25 +64,15 @@ pub struct DrawState {
 }
 
 /// Where in a host's frame a draw pipeline draws.
-#[derive(Clone, Copy, Debug)]
-pub struct Within<'a> {
-    target: HostTarget<'a>,
+#[derive(Clone, Debug)]
+pub struct Within {
+    pass: PassKey,
     /// Of each colour target; `None` leaves it alone.
-    blends: &'a [Option<Blend>],
+    blends: Vec<Option<Blend>>,
     samples: vk::SampleCountFlags,
 }
 
-/// What a host draws to.
-#[derive(Clone, Copy, Debug)]
-enum HostTarget<'a> {
-    Subpass(vk::RenderPass, u32),
-    Rendering(Formats<'a>),
-}
-
-/// Formats of colours, depth and stencil.
-type Formats<'a> = (&'a [vk::Format], vk::Format, vk::Format);
-
-impl<'a> Within<'a> {
+impl Within {
     /// A subpass of a host's render pass, with so many samples a pixel. `blends` says of each colour target how it is blended, or that it is
     /// left alone.
     ///
@@ -89,71 +80,71 @@ impl<'a> Within<'a> {
     /// It is true of a render pass of the device for which pipelines are made, which outlives them.
     pub unsafe fn subpass(
         (pass, subpass): (vk::RenderPass, u32),
-        blends: &'a [Option<Blend>],
+        blends: &[Option<Blend>],
         samples: vk::SampleCountFlags,
     ) -> Self {
-        Self { target: HostTarget::Subpass(pass, subpass), blends, samples }
+        Self { pass: PassKey::Subpass(pass, subpass), blends: blends.to_vec(), samples }
     }
 
-    /// A host's dynamic rendering to such formats, otherwise as [`Within::subpass`].
+    /// A host's dynamic rendering to colours, depth and stencil of such formats, otherwise as [`Within::subpass`].
     ///
     /// # Safety
     /// Dynamic rendering is enabled on the device for which pipelines are made.
     pub unsafe fn rendering(
-        formats: Formats<'a>,
-        blends: &'a [Option<Blend>],
+        (colours, depth, stencil): (&[vk::Format], vk::Format, vk::Format),
+        blends: &[Option<Blend>],
         samples: vk::SampleCountFlags,
     ) -> Self {
-        Self { target: HostTarget::Rendering(formats), blends, samples }
+        Self { pass: PassKey::Rendering(colours.to_vec(), depth, stencil), blends: blends.to_vec(), samples }
     }
 
     /// The render pass and its subpass; null for dynamic rendering.
     fn pass(&self) -> (vk::RenderPass, u32) {
-        match self.target {
-            HostTarget::Subpass(pass, subpass) => (pass, subpass),
-            HostTarget::Rendering(_) => (vk::RenderPass::null(), 0),
-        }
-    }
-
-    fn key(&self) -> PassKey {
-        match self.target {
-            HostTarget::Subpass(pass, subpass) => PassKey::Subpass(pass, subpass),
-            HostTarget::Rendering((colours, depth, stencil)) => {
-                PassKey::Rendering(colours.to_vec(), depth, stencil)
-            }
+        match self.pass {
+            PassKey::Subpass(pass, subpass) => (pass, subpass),
+            PassKey::Formats(..) | PassKey::Rendering(..) => (vk::RenderPass::null(), 0),
         }
     }
 }
 
 /// A pipeline and its layout.
 pub(super) struct Raw {
-    pipeline: vk::Pipeline,
-    layout: vk::PipelineLayout,
+    pub(super) pipeline: vk::Pipeline,
+    pub(super) layout: vk::PipelineLayout,
+    /// Its descriptor sets.
+    pub(super) sets: usize,
+    /// Bytes of its push constants.
+    pub(super) push: u32,
     device: Arc<Device>,
 }
 
-/// A compute pipeline, with two u32 of push constants. Pipelines of the same stage and bindings are one.
+/// A compute pipeline. Pipelines of the same stage and bindings are one.
 pub struct ComputePipeline(Arc<Raw>);
 
-/// A draw pipeline without vertex buffers, with two u32 of push constants, of a host as many bytes as it wants; viewport and scissor are set by
-/// whoever begins the pass. Pipelines of the same stages, bindings, state and formats are one.
+/// A draw pipeline without vertex buffers; viewport and scissor are set by whoever begins the pass. Pipelines of the same stages, bindings,
+/// state and formats are one.
 pub struct DrawPipeline(Arc<Raw>);
 
+/// The layouts of a pipeline's descriptor sets 0, 1, …
+pub type Sets<'a> = [&'a SetLayout];
+
 impl ComputePipeline {
-    /// A pipeline of `module`; `sets` are the layouts of its descriptor sets 0, 1, ….
+    /// A pipeline of `module` for sets of these layouts.
     pub fn new(
         device: &Arc<Device>,
-        sets: &[&SetLayout],
+        sets: &Sets<'_>,
         module: &'static Module,
         constants: &Constants,
     ) -> Result<Self> {
-        let stages = vec![Code::from(module).specialized(constants)];
-        let key = PipelineKey { stages, sets: bindings(sets), push: 8, draw: None };
+        let code = Code::from(module).bound(sets)?;
+        let push = code.push();
+        let key =
+            PipelineKey { stages: vec![code.specialized(constants)], sets: bindings(sets), push, draw: None };
         device.pipelines.get(key, |key| Raw::compute(device, sets, key)).map(Self)
     }
 
-    pub(super) fn raw(&self) -> (vk::Pipeline, vk::PipelineLayout) {
-        (self.0.pipeline, self.0.layout)
+    pub(super) fn raw(&self) -> &Raw {
+        &self.0
     }
 }
 
@@ -163,10 +154,10 @@ impl DrawPipeline {
         vk::ShaderStageFlags::VERTEX.as_raw() | vk::ShaderStageFlags::FRAGMENT.as_raw(),
     );
 
-    /// A pipeline of the modules `[vertex, fragment]` for `pass`; `sets` are the layouts of its descriptor sets 0, 1, ….
+    /// A pipeline of the modules `[vertex, fragment]` for `pass` and sets of these layouts.
     pub fn new(
         device: &Arc<Device>,
-        sets: &[&SetLayout],
+        sets: &Sets<'_>,
         modules: [&'static Module; 2],
         constants: &Constants,
         pass: &RenderPass,
@@ -179,50 +170,50 @@ impl DrawPipeline {
             pass: pass.key(),
             samples: vk::SampleCountFlags::TYPE_1,
         };
-        Self::get(device, sets, modules.map(Code::from), constants, 8, draw, (pass.raw, 0))
+        Self::get(device, sets, modules.map(Code::from), constants, draw, (pass.raw, 0))
     }
 
-    /// As [`DrawPipeline::new`], for a pass of a host, with `push` bytes of push constants.
+    /// As [`DrawPipeline::new`], for a pass of a host.
     pub fn of_host(
         device: &Arc<Device>,
-        sets: &[&SetLayout],
+        sets: &Sets<'_>,
         code: [impl Into<Code>; 2],
         constants: &Constants,
-        within: &Within<'_>,
+        within: &Within,
         depth: DepthTest,
-        push: u32,
     ) -> Result<Self> {
         let draw = DrawKey {
             topology: Topology::Triangles,
             depth,
-            blends: within.blends.to_vec(),
-            pass: within.key(),
+            blends: within.blends.clone(),
+            pass: within.pass.clone(),
             samples: within.samples,
         };
-        Self::get(device, sets, code.map(Into::into), constants, push, draw, within.pass())
+        Self::get(device, sets, code.map(Into::into), constants, draw, within.pass())
     }
 
     fn get(
         device: &Arc<Device>,
-        sets: &[&SetLayout],
-        code: [Code; 2],
+        sets: &Sets<'_>,
+        [vertex, fragment]: [Code; 2],
         constants: &Constants,
-        push: u32,
         draw: DrawKey,
         pass: (vk::RenderPass, u32),
     ) -> Result<Self> {
+        let code = [vertex.bound(sets)?, fragment.bound(sets)?];
+        let push = code.each_ref().map(Code::push).into_iter().max().unwrap_or_default();
         let stages = code.map(|code| code.specialized(constants)).to_vec();
         let key = PipelineKey { stages, sets: bindings(sets), push, draw: Some(draw.clone()) };
         device.pipelines.get(key, |key| Raw::draw(device, sets, key, &draw, pass)).map(Self)
     }
 
-    pub(super) fn raw(&self) -> (vk::Pipeline, vk::PipelineLayout) {
-        (self.0.pipeline, self.0.layout)
+    pub(super) fn raw(&self) -> &Raw {
+        &self.0
     }
 }
 
-fn bindings(sets: &[&SetLayout]) -> Vec<Vec<(vk::DescriptorType, vk::ShaderStageFlags)>> {
-    sets.iter().map(|set| set.bindings().to_vec()).collect()
+fn bindings(sets: &Sets<'_>) -> Vec<Vec<SetBinding>> {
+    sets.iter().map(|set| set.bindings.clone()).collect()
 }
 
 impl Topology {
@@ -286,7 +277,7 @@ impl Blend {
 }
 
 /// Vulkan promises four storage buffers a stage; devices that draw have far more, but one that has not must say so.
-fn check_storage_buffers(device: &Device, sets: &[&SetLayout]) -> Result<()> {
+fn check_storage_buffers(device: &Device, sets: &Sets<'_>) -> Result<()> {
     let most = device.capabilities().max_storage_buffers;
     for stage in [vk::ShaderStageFlags::VERTEX, vk::ShaderStageFlags::FRAGMENT, vk::ShaderStageFlags::COMPUTE]
     {
@@ -303,22 +294,19 @@ fn check_storage_buffers(device: &Device, sets: &[&SetLayout]) -> Result<()> {
 
 impl Raw {
     /// The layout of a pipeline that is yet to be made.
-    fn new(
-        device: &Arc<Device>,
-        sets: &[&SetLayout],
-        stages: vk::ShaderStageFlags,
-        push: u32,
-    ) -> Result<Self> {
+    fn new(device: &Arc<Device>, sets: &Sets<'_>, stages: vk::ShaderStageFlags, push: u32) -> Result<Self> {
         check_storage_buffers(device, sets)?;
-        let sets: Vec<_> = sets.iter().map(|set| set.raw).collect();
+        let layouts: Vec<_> = sets.iter().map(|set| set.raw).collect();
         let constants = [vk::PushConstantRange { stage_flags: stages, offset: 0, size: push }];
+        let constants = if push == 0 { &[][..] } else { &constants };
         let info =
-            vk::PipelineLayoutCreateInfo::default().set_layouts(&sets).push_constant_ranges(&constants);
+            vk::PipelineLayoutCreateInfo::default().set_layouts(&layouts).push_constant_ranges(constants);
         // SAFETY: the set layout is alive; the pipeline layout is destroyed in `drop`.
         let layout = unsafe { device.raw.create_pipeline_layout(&info, None) }
             .map_err(Error::vulkan("vkCreatePipelineLayout"))?;
         device.made.pipelines.fetch_add(1, Ordering::Relaxed);
-        Ok(Self { pipeline: vk::Pipeline::null(), layout, device: device.clone() })
+        let (sets, device) = (sets.len(), device.clone());
+        Ok(Self { pipeline: vk::Pipeline::null(), layout, sets, push, device })
     }
 
     /// Names the pipeline after its stages.
@@ -327,7 +315,7 @@ impl Raw {
         self.device.name(self.pipeline, &names.join(" "));
     }
 
-    fn compute(device: &Arc<Device>, sets: &[&SetLayout], key: &PipelineKey) -> Result<Self> {
+    fn compute(device: &Arc<Device>, sets: &Sets<'_>, key: &PipelineKey) -> Result<Self> {
         let mut raw = Self::new(device, sets, vk::ShaderStageFlags::COMPUTE, key.push)?;
         let made = with_infos(device, &key.stages, |stages| {
             let info = vk::ComputePipelineCreateInfo::default().stage(stages[0]).layout(raw.layout);
@@ -341,7 +329,7 @@ impl Raw {
 
     fn draw(
         device: &Arc<Device>,
-        sets: &[&SetLayout],
+        sets: &Sets<'_>,
         key: &PipelineKey,
         draw: &DrawKey,
         (pass, subpass): (vk::RenderPass, u32),

@@ -1,6 +1,7 @@
 //! The pipelines of a device that are alive, by everything that they are made from: equal requests share one.
 
 use super::pipeline::{Blend, DepthTest, Raw, Topology};
+use super::set_layout::SetBinding;
 use super::shader_stage::ShaderStage;
 use ash::vk;
 use std::collections::HashMap;
@@ -12,7 +13,7 @@ pub(super) struct PipelineKey {
     /// A compute stage, or a vertex and a fragment stage.
     pub(super) stages: Vec<ShaderStage>,
     /// The bindings of each descriptor set.
-    pub(super) sets: Vec<Vec<(vk::DescriptorType, vk::ShaderStageFlags)>>,
+    pub(super) sets: Vec<Vec<SetBinding>>,
     /// Size of the push constants, bytes.
     pub(super) push: u32,
     /// Of a draw pipeline.
@@ -31,7 +32,7 @@ pub(super) struct DrawKey {
 }
 
 /// A render pass, as far as pipelines must be compatible with it.
-#[derive(Clone, PartialEq, Eq, Hash)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(super) enum PassKey {
     /// Formats of the colour targets and of depth, of a pass with one subpass.
     Formats(Vec<Option<vk::Format>>, Option<vk::Format>),

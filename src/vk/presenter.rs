@@ -243,7 +243,7 @@ impl Presenter {
         let to = target(self.format.format, [5, 5], ImageUse::Window)?;
         Commands::new(&self.device, false)?.run(|rec| {
             let uses = [from.with(Access::COPY_READ), to.with(Access::SCALE_WRITE)];
-            rec.pass("rehearse", &uses, |enc| enc.scale(&from, (to.raw, to.size()), [0.0, 1.0]));
+            rec.pass("rehearse", &uses).scale(&from, (to.raw, to.size()), [0.0, 1.0]);
         })
     }
 

@@ -7,8 +7,8 @@ use ash::vk;
 
 /// Records the passes of one frame. What it is given must stay alive until the frame is over.
 pub struct Recorder<'a> {
-    device: &'a Device,
-    cmd: vk::CommandBuffer,
+    pub(super) device: &'a Device,
+    pub(super) cmd: vk::CommandBuffer,
     tracker: Tracker,
     timestamps: Option<&'a mut Timestamps>,
 }
@@ -47,19 +47,23 @@ impl<'a> Recorder<'a> {
         Self::new(device, cmd, timestamps)
     }
 
-    /// Records a pass: waits for what `uses` need and no more, then `body`, under a debug label and, in a profiled frame, between
-    /// timestamps.
+    /// Begins a pass: waits for what `uses` need and no more, under a debug label and, in a profiled frame, between timestamps. It ends where the
+    /// encoder of its commands goes.
     ///
     /// In a profiled frame each stamp stands behind a full barrier, so that a pass's work is booked to it alone.
-    pub fn pass(&mut self, label: &'static str, uses: &[Use], body: impl FnOnce(&mut Encoder<'_>)) {
+    pub fn pass(&mut self, label: &'static str, uses: &[Use]) -> Encoder<'_, 'a> {
         // SAFETY: the command buffer is being recorded.
         unsafe { self.device.begin_label(self.cmd, label) };
         let query = self.timestamps.as_mut().and_then(|timestamps| timestamps.begin_pass(label));
         self.stamp(query);
         self.barrier(uses);
-        body(&mut Encoder::new(self.device, self.cmd));
-        self.stamp(query.map(|first| first + 1));
-        // SAFETY: the command buffer is being recorded, and a label was begun above.
+        Encoder::new(self, query.map(|first| first + 1))
+    }
+
+    /// Ends a pass, with its second query.
+    pub(super) fn end_pass(&mut self, query: Option<u32>) {
+        self.stamp(query);
+        // SAFETY: the command buffer is being recorded, and the label was begun with the pass.
         unsafe { self.device.end_label(self.cmd) };
     }
 
@@ -72,13 +76,18 @@ impl<'a> Recorder<'a> {
         HostPass::new(label, queries)
     }
 
-    /// Writes to each buffer its bytes, at most 65,536 and a multiple of 4, for the passes that follow to read as uniforms.
+    /// Writes to each buffer its bytes, a multiple of 4, for the passes that follow to read as uniforms.
     pub fn update(&mut self, updates: &[(&Buffer, &[u8])]) {
+        /// What one command writes at most, bytes.
+        const MOST: usize = 65_536;
         let all = |access| updates.iter().map(|(buffer, _)| buffer.with(access)).collect::<Vec<_>>();
         self.barrier(&all(Access::COPY_WRITE));
         for (buffer, bytes) in updates {
-            // SAFETY: the command buffer is being recorded outside a render pass; the buffer is alive, can be copied to and is large enough.
-            unsafe { self.device.raw.cmd_update_buffer(self.cmd, buffer.raw, 0, bytes) };
+            assert!(bytes.len() as u64 <= buffer.size(), "an update past the end of a buffer");
+            for (chunk, at) in bytes.chunks(MOST).zip((0..).step_by(MOST)) {
+                // SAFETY: the command buffer is being recorded outside a render pass; the buffer is alive, can be copied to and is large enough.
+                unsafe { self.device.raw.cmd_update_buffer(self.cmd, buffer.raw, at, chunk) };
+            }
         }
         self.barrier(&all(Access::UNIFORM_READ));
     }

@@ -1,10 +1,11 @@
 //! A shader stage with the values of the specialization constants that its module reads.
 
-use super::Device;
-use super::shaders::Module;
+use super::shaders::{Module, Resource};
+use super::{Device, SetLayout};
 use crate::error::{Error, Result};
 use ash::vk;
 use std::borrow::Cow;
+use std::collections::HashMap;
 use std::hash::{Hash, Hasher};
 
 /// Values of specialization constants, of which a module takes those that it reads.
@@ -12,10 +13,16 @@ use std::hash::{Hash, Hasher};
 pub struct Constants(Vec<(u32, u32)>);
 
 impl Constants {
-    /// Adds a constant by its id, one of [`super::shaders::constant`].
+    /// Sets a constant by its id, one of [`super::shaders::constant`].
     pub fn with(mut self, id: u32, value: impl Into<u32>) -> Self {
+        self.0.retain(|(known, _)| *known != id);
         self.0.push((id, value.into()));
         self
+    }
+
+    /// Sets those of `others`.
+    pub fn and(self, others: &Self) -> Self {
+        others.0.iter().fold(self, |all, (id, value)| all.with(*id, *value))
     }
 }
 
@@ -45,7 +52,7 @@ impl Hash for Name {
     fn hash<H: Hasher>(&self, _: &mut H) {}
 }
 
-/// The module of a stage, or a copy of it with other output locations, which are no specialization constants.
+/// The module of a stage, or a copy of it with other decorations, which are no specialization constants.
 #[derive(Clone)]
 pub struct Code {
     module: &'static Module,
@@ -58,22 +65,59 @@ impl From<&'static Module> for Code {
     }
 }
 
+/// SPIR-V's numbers of decorations.
+mod decoration {
+    pub const LOCATION: u32 = 30;
+    pub const BINDING: u32 = 33;
+    pub const DESCRIPTOR_SET: u32 = 34;
+    pub const INPUT_ATTACHMENT_INDEX: u32 = 43;
+}
+
+/// Calls `each` with what is decorated, how, and the decoration's number, of every decoration that has one.
+fn decorations(words: &mut [u32], mut each: impl FnMut(u32, u32, &mut u32)) {
+    const HEADER: usize = 5;
+    const OP_DECORATE: u32 = 71;
+    let mut i = HEADER;
+    while let Some(&word) = words.get(i) {
+        let length = (word >> 16).max(1) as usize;
+        if let (OP_DECORATE, Some([id, which, number])) = (word & 0xffff, words.get_mut(i + 1..i + length)) {
+            each(*id, *which, number);
+        }
+        i += length;
+    }
+}
+
 impl Code {
     /// The same with outputs at `locations` in place of 0, 1, …
     pub fn at_locations(mut self, locations: [u32; 3]) -> Self {
-        const HEADER: usize = 5;
-        const OP_DECORATE: u32 = 71;
-        const LOCATION: u32 = 30;
-        let words = self.words.to_mut();
-        let mut i = HEADER;
-        while let Some(&word) = words.get(i) {
-            if let (OP_DECORATE, Some([_, LOCATION, location])) = (word & 0xffff, words.get_mut(i + 1..i + 4))
-            {
+        decorations(self.words.to_mut(), |_, which, location| {
+            if which == decoration::LOCATION {
                 *location = locations[*location as usize % 3];
             }
-            i += (word >> 16).max(1) as usize;
-        }
+        });
         self
+    }
+
+    /// The same for descriptor sets of these layouts. What of the module's resources is at none of their bindings is declared to be at
+    /// another's of its kind: Vulkan wants each to be somewhere, and specialization takes away what would read it.
+    pub(super) fn bound(mut self, sets: &[&SetLayout]) -> Result<Self> {
+        let is_there =
+            |resource: &Resource| sets.get(resource.set as usize).is_some_and(|layout| layout.has(resource));
+        let all = self.module.resources;
+        for (absent, writes) in all.iter().filter(|(resource, _)| !is_there(resource)) {
+            let others = all.iter().filter(|(other, _)| other.kind == absent.kind && is_there(other));
+            // Validation takes for touched what is declared, and how.
+            let alike = others.clone().find(|(_, others)| others == writes);
+            let stand_in = alike.or(others.clone().next()).map(|(other, _)| other);
+            let stand_in = stand_in.ok_or_else(|| {
+                Error::Usage(format!(
+                    "{} reads {}, which the frame does not have",
+                    self.module.name, absent.name
+                ))
+            })?;
+            move_to(self.words.to_mut(), [absent, stand_in]);
+        }
+        Ok(self)
     }
 
     /// The stage with those of `constants` that the module reads.
@@ -83,6 +127,37 @@ impl Code {
         let name = Name(self.module.name);
         ShaderStage { name, stage: self.module.stage, words: self.words, ids, values }
     }
+
+    /// Bytes of its push constants.
+    pub(super) fn push(&self) -> u32 {
+        self.module.push
+    }
+}
+
+/// Declares what is at the binding of one resource to be at that of the other.
+fn move_to(words: &mut [u32], [from, to]: [&Resource; 2]) {
+    let mut places: HashMap<u32, [Option<u32>; 3]> = HashMap::new();
+    decorations(words, |id, which, number| {
+        let kinds = [decoration::DESCRIPTOR_SET, decoration::BINDING, decoration::INPUT_ATTACHMENT_INDEX];
+        if let Some(kind) = kinds.iter().position(|kind| *kind == which) {
+            places.entry(id).or_default()[kind] = Some(*number);
+        }
+    });
+    let is_at = |resource: &Resource, [set, binding, _]: &[Option<u32>; 3]| {
+        (*set, *binding) == (Some(resource.set), Some(resource.binding))
+    };
+    let input = places.values().find(|place| is_at(to, place)).and_then(|place| place[2]);
+    decorations(words, |id, which, number| {
+        if !places.get(&id).is_some_and(|place| is_at(from, place)) {
+            return;
+        }
+        match which {
+            decoration::DESCRIPTOR_SET => *number = to.set,
+            decoration::BINDING => *number = to.binding,
+            decoration::INPUT_ATTACHMENT_INDEX => *number = input.unwrap_or(*number),
+            _ => {}
+        }
+    });
 }
 
 impl ShaderStage {

@@ -1,7 +1,7 @@
-//! Shader modules, layouts of the structs that they share with Rust, and ids of their specialization constants: `OUT_DIR/shaders.rs`, written
-//! by `build.rs`.
+//! Shader modules, what they see at their bindings, layouts of the structs that they share with Rust, and ids of their specialization
+//! constants: `OUT_DIR/shaders.rs`, written by `build.rs`.
 
-use ash::vk::ShaderStageFlags;
+use ash::vk::{DescriptorType, ShaderStageFlags};
 
 /// One stage of a shader of the crate.
 #[derive(Debug)]
@@ -12,6 +12,10 @@ pub struct Module {
     pub stage: ShaderStageFlags,
     /// Ids of the specialization constants that it reads, ascending.
     pub constants: &'static [u32],
+    /// What it declares at bindings, by set and binding, and whether it may write there.
+    pub resources: &'static [(&'static Resource, bool)],
+    /// Bytes of its push constants.
+    pub push: u32,
     spirv: &'static [u8],
 }
 
@@ -20,6 +24,21 @@ impl Module {
     pub fn words(&self) -> &'static [u32] {
         bytemuck::cast_slice(self.spirv)
     }
+}
+
+/// A buffer, an image or an input attachment as shaders see it. A name has one place in all shaders.
+#[derive(Debug, PartialEq, Eq, Hash)]
+pub struct Resource {
+    /// Name of the block, or of the image.
+    pub name: &'static str,
+    /// Number of the descriptor set.
+    pub set: u32,
+    /// Number of the binding.
+    pub binding: u32,
+    /// What stands there.
+    pub kind: DescriptorType,
+    /// The stages that see it, of all shaders.
+    pub stages: ShaderStageFlags,
 }
 
 /// Bytes that start where a word may.

@@ -84,9 +84,9 @@ impl<'a> Uploads<'a> {
         if copies.is_empty() {
             return Staging::default();
         }
-        rec.pass("upload", &uses.collect::<Vec<_>>(), |enc| {
-            copies.iter().for_each(|copy| enc.copy_all(&copy.from, copy.to, copy.at));
-        });
+        let mut enc = rec.pass("upload", &uses.collect::<Vec<_>>());
+        copies.iter().for_each(|copy| enc.copy_all(&copy.from, copy.to, copy.at));
+        drop(enc);
         rec.settle(&copies.iter().map(|copy| copy.read).collect::<Vec<_>>());
         Staging(copies.into_iter().map(|copy| copy.from).collect())
     }
@@ -104,9 +104,7 @@ fn copy_now(
         staging.bytes_mut()[..chunk.len()].copy_from_slice(chunk);
         let uses = [staging.with(Access::COPY_READ), buffer.with(Access::COPY_WRITE)];
         commands.run(|rec| {
-            rec.pass("upload", &uses, |enc| {
-                enc.copy(&staging, buffer, at + (i * CHUNK) as u64, chunk.len() as u64);
-            });
+            rec.pass("upload", &uses).copy(&staging, buffer, at + (i * CHUNK) as u64, chunk.len() as u64);
             rec.settle(&[buffer.with(Access::SHADER_READ)]);
         })?;
     }

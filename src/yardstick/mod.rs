@@ -30,12 +30,12 @@ mod tile;
 mod view;
 
 use crate::error::{Error, Result};
+use crate::frame::Outputs;
 use crate::geometry::srgb;
 use crate::geometry::{Camera, Clips, Colours, Surfels};
 use crate::picture::Picture;
 use crate::settings::{Settings, Shading};
 use crate::splatting::Splatting;
-use crate::variant::Outputs;
 use crate::vk::PassTime;
 use clock::Stages;
 use pixels::Pixels;

@@ -1,9 +1,9 @@
 //! Which weighted sums a frame keeps, and what surfels contribute to them.
 
 use super::splat::FLIPPED;
+use crate::frame::Outputs;
 use crate::geometry::{Colours, Surfels};
 use crate::settings::{Settings, Shading};
-use crate::variant::Outputs;
 
 /// Where in the sums what is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

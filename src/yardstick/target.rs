@@ -3,8 +3,8 @@
 use super::shade::Shown;
 use super::tile::{BLOCKS, LANES, SIDE};
 use crate::error::{Error, Result};
+use crate::frame::Outputs;
 use crate::picture::Picture;
-use crate::variant::Outputs;
 use rayon::prelude::*;
 
 /// Colour, α, and what the outputs ask for, of all pixels.

@@ -244,6 +244,39 @@ fn specialization_constants_have_one_id() {
 }
 
 #[test]
+fn a_module_names_what_it_sees_at_its_bindings() {
+    let blocks = "layout(set = 1, binding = 4, std430) readonly buffer OldPlaces { float old[]; };
+layout(set = 0, binding = 2, std430) buffer NewPlaces { float made[]; };
+layout(set = 0, binding = 9, std430) buffer Unused { float unused[]; };
+layout(push_constant) uniform Push { uint first; uint last; } push;";
+    let rust =
+        build(&[("a.glsl", &shader(blocks, "made[push.first] = old[push.last];"))]).expect("it builds");
+    contains(&rust, &["resources: &[(&resource::NEW_PLACES, true), (&resource::OLD_PLACES, false)],"]);
+    contains(&rust, &["push: size_of::<layout::Push>() as u32,", "pub static OLD_PLACES: Resource"]);
+    contains(&rust, &["set: 1,", "binding: 4,", "kind: DescriptorType::STORAGE_BUFFER,"]);
+    contains(&rust, &["stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),"]);
+}
+
+#[test]
+fn one_name_has_one_binding() {
+    let at = |binding: u32| {
+        let block =
+            format!("layout(set = 0, binding = {binding}, std430) buffer Places {{ float places[]; }};");
+        shader(&block, "places[0] = 1.0;")
+    };
+    let message = build(&[("a.glsl", &at(1)), ("b.glsl", &at(2))]).expect_err("they disagree");
+    contains(
+        &message,
+        &["b.glsl: error: Places is STORAGE_BUFFER 2 of set 0, but STORAGE_BUFFER 1 of set 0 in"],
+    );
+}
+
+/// A compute shader with these declarations that does this.
+fn shader(declarations: &str, statement: &str) -> String {
+    format!("#version 450\n{declarations}\n#ifdef COMPUTE\nvoid main() {{ {statement} }}\n#endif\n")
+}
+
+#[test]
 fn a_module_names_the_constants_that_it_reads() {
     let constants = "layout(constant_id = 9) const uint UNREAD = 1;
         layout(constant_id = 5) const float B = 1.0;

@@ -9,7 +9,7 @@ use surfel::geometry::{Camera, Surfels};
 use surfel::reference::{Culled, Projector, Splat, Surfel};
 use surfel::settings::Widen;
 use surfel::vk::DeviceLimits;
-use surfel::{RenderOptions, Renderer, Scene, Settings, renderer};
+use surfel::{RenderOptions, Renderer, Scene, Settings, frame};
 
 /// Surfels of a test.
 fn count() -> usize {
@@ -27,7 +27,7 @@ struct Drawn {
 
 impl Drawn {
     /// `None` if it was culled.
-    fn new(splat: &renderer::Splat) -> Option<Self> {
+    fn new(splat: &frame::Splat) -> Option<Self> {
         let anchor = [splat.place & 0x7fff, splat.place >> 15 & 0x7fff].map(|p| f64::from(p) + 0.5);
         let pair = |v: [f32; 2]| DVec2::from_array(v.map(f64::from));
         let [major, sqrt_det] = [splat.variance, splat.sqrt_det].map(f64::from);

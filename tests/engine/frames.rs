@@ -3,9 +3,10 @@
 use crate::support::gpu::{assert_silent, device, render};
 use glam::DVec3;
 use std::sync::Arc;
+use surfel::frame::FramePlan;
 use surfel::geometry::{Camera, Surfels, Weights};
+use surfel::methods::Method;
 use surfel::methods::object_ewa::{self, Progressive};
-use surfel::methods::{FramePlan, Method};
 use surfel::reference::{Expected, Tolerance};
 use surfel::scenes::bumpy_sphere;
 use surfel::settings::{Alpha, Cull, DirectionalLight, Shading, Widen};
@@ -81,7 +82,7 @@ fn pipelines_are_few_and_made_once_a_variant() {
         lit,
     ];
     // What the constants that each module reads tell apart.
-    for (rasterizer, most) in [(Rasterizer::Draw, 17), (Rasterizer::Compute, 26)] {
+    for (rasterizer, most) in [(Rasterizer::Draw, 17), (Rasterizer::Compute, 29)] {
         let options = RenderOptions { size: SIZE, rasterizer: Some(rasterizer), ..Default::default() };
         let mut renderer = Renderer::new(&device, options).unwrap();
         let before = device.usage().pipelines;

@@ -137,6 +137,33 @@ fn a_scene_that_stands_as_it_is_makes_the_frame_that_it_makes_alone() {
 }
 
 #[test]
+fn places_of_a_scene_share_allocations() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let scene = Arc::new(Scene::upload(&device, &plain(50)).unwrap());
+    let instances = |count: usize| -> Vec<_> {
+        let place =
+            |i: usize| exact(0.5, [0.0; 3], [(i % 40) as f64 / 8.0 - 1.0, (i / 40) as f64 / 8.0, 0.0]);
+        (0..count).map(|i| Instance::new(&scene, place(i))).collect()
+    };
+    for (rasterizer, blended) in [(Rasterizer::Draw, 0), (Rasterizer::Compute, 1)] {
+        let mut renderer = Renderer::new(&device, options(rasterizer)).unwrap();
+        let settings = settings("perspective-ewa");
+        renderer.render(&instances(1)[..], &perspective(), &settings).unwrap();
+        let before = device.usage();
+        renderer.render(&instances(2000)[..], &perspective(), &settings).unwrap();
+        let made = device.usage();
+        // Splats, the places' numbers, and what the compute rasterizer lists.
+        assert_eq!(made.allocations - before.allocations, 2 + blended, "{rasterizer:?}");
+        let splats = 2000 * 50 * size_of::<surfel::frame::Splat>() as u64;
+        assert!(
+            made.bytes - before.bytes < 2 * splats + (4 << 20),
+            "{rasterizer:?}: {made:?} after {before:?}"
+        );
+    }
+    assert_silent(&device);
+}
+
+#[test]
 fn many_places_share_pools_of_descriptor_sets() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let scene = Arc::new(Scene::upload(&device, &plain(50)).unwrap());

@@ -6,8 +6,9 @@ use crate::support::pyramids::{Made, Shot};
 use crate::support::truth::{Differences, Truth};
 #[allow(dead_code)] // of what is shared
 use glam::DVec3;
+use surfel::frame::FramePlan;
 use surfel::geometry::{Camera, Surfels};
-use surfel::methods::{FramePlan, Method, perspective_ewa, pull_push};
+use surfel::methods::{Method, perspective_ewa, pull_push};
 use surfel::pull_push::{PullPush, Rules, Storage};
 use surfel::reference::pull_push::Reconstruction;
 use surfel::scenes::bumpy_sphere::Hit;

@@ -27,6 +27,11 @@ impl Module {
     pub fn file_name(&self) -> String {
         self.constant.to_lowercase()
     }
+
+    /// Vulkan's name of its stage.
+    pub fn stage(&self) -> String {
+        self.constant.rsplit('_').next().unwrap_or_default().to_owned()
+    }
 }
 
 /// Environment variable that names the compiler, set by tools/setup where the system's shaderc is linked.

@@ -1,7 +1,7 @@
 //! The Rust text of `shaders.rs`.
 
 use super::compile::Module;
-use super::reflect::{Interface, Kind, Struct, specialization_ids};
+use super::reflect::{Interface, Kind, Resource, Struct, push_constants, resources, specialization_ids};
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
@@ -15,13 +15,14 @@ pub fn rust(modules: &[Module], interface: &Interface) -> Result<String, String>
         code(&mut text, module)?;
     }
     constants(&mut text, interface);
+    for_descriptors(&mut text, interface);
     layouts(&mut text, interface)?;
     Ok(text)
 }
 
 /// A module, whose SPIR-V the file that includes this has from `NAME.spv` beside it.
 fn code(text: &mut String, module: &Module) -> Result<(), String> {
-    let stage = module.constant.rsplit('_').next().unwrap_or_default().to_lowercase();
+    let stage = module.stage().to_lowercase();
     let (constant, name) = (&module.constant, module.file_name());
     line(text, format_args!("\n/// The {stage} stage of `{}`.", module.file));
     line(text, format_args!("pub static {constant}: Module = Module {{"));
@@ -29,8 +30,46 @@ fn code(text: &mut String, module: &Module) -> Result<(), String> {
     line(text, format_args!("    stage: ShaderStageFlags::{},", stage.to_uppercase()));
     line(text, format_args!("    spirv: spirv!(\"{name}.spv\"),"));
     line(text, format_args!("    constants: &{:?},", specialization_ids(module)?));
+    let declared = resources(module)?;
+    let each = declared.iter().map(|found| format!("(&resource::{}, {})", upper(&found.name), found.writes));
+    line(text, format_args!("    resources: &[{}],", each.collect::<Vec<_>>().join(", ")));
+    let push =
+        push_constants(module)?.map_or("0".into(), |block| format!("size_of::<layout::{block}>() as u32"));
+    line(text, format_args!("    push: {push},"));
     text.push_str("};\n");
     Ok(())
+}
+
+/// `LARGE_SPLATS` of `LargeSplats`, `FROM_DEPTHS` of `from_Depths`.
+fn upper(name: &str) -> String {
+    let mut text = String::new();
+    let mut before = '_';
+    for letter in name.chars() {
+        if letter.is_uppercase() && before != '_' && !before.is_uppercase() {
+            text.push('_');
+        }
+        text.extend(letter.to_uppercase());
+        before = letter;
+    }
+    text
+}
+
+fn for_descriptors(text: &mut String, interface: &Interface) {
+    text.push_str("\n/// What shaders see at the bindings of their descriptor sets.\npub mod resource {\n");
+    text.push_str("    use super::{DescriptorType, Resource, ShaderStageFlags};\n");
+    for (name, Resource { file, set, binding, kind, stages }) in &interface.resources {
+        let stages: Vec<_> =
+            stages.iter().map(|stage| format!("ShaderStageFlags::{stage}.as_raw()")).collect();
+        line(text, format_args!("\n    /// `{name}`, first in `{file}`."));
+        line(text, format_args!("    pub static {}: Resource = Resource {{", upper(name)));
+        line(text, format_args!("        name: \"{name}\","));
+        line(text, format_args!("        set: {set},"));
+        line(text, format_args!("        binding: {binding},"));
+        line(text, format_args!("        kind: DescriptorType::{kind},"));
+        line(text, format_args!("        stages: ShaderStageFlags::from_raw({}),", stages.join(" | ")));
+        text.push_str("    };\n");
+    }
+    text.push_str("}\n");
 }
 
 fn constants(text: &mut String, interface: &Interface) {

@@ -1,9 +1,10 @@
-//! What a module asks of its caller: the layouts of blocks and of the structs in them, and the ids of specialization constants.
+//! What a module asks of its caller: the layouts of blocks and of the structs in them, the ids of specialization constants, and what stands
+//! at which binding of which descriptor set.
 
 use super::compile::Module;
 use rspirv::dr::{Instruction, Operand};
-use rspirv::spirv::{Decoration, Op, StorageClass};
-use std::collections::BTreeMap;
+use rspirv::spirv::{Decoration, Dim, Op, StorageClass};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The interface of all modules together.
 #[derive(Default)]
@@ -12,6 +13,34 @@ pub struct Interface {
     pub structs: BTreeMap<String, Struct>,
     /// Specialization constants: name → id and the file that said so first.
     pub constants: BTreeMap<String, (u32, String)>,
+    /// Buffers, images and input attachments by name.
+    pub resources: BTreeMap<String, Resource>,
+}
+
+/// What stands at a binding of a descriptor set.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Resource {
+    /// The file that declared it first.
+    pub file: String,
+    /// Number of the descriptor set.
+    pub set: u32,
+    /// Number of the binding.
+    pub binding: u32,
+    /// Vulkan's name of its descriptor type.
+    pub kind: &'static str,
+    /// Vulkan's names of the stages that see it, those of all modules.
+    pub stages: BTreeSet<String>,
+}
+
+/// A resource as a module declares it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Declared {
+    /// Name of the block, or of the image.
+    pub name: String,
+    /// What it is.
+    pub resource: Resource,
+    /// Whether it is not `readonly`.
+    pub writes: bool,
 }
 
 /// A block, or a struct inside one, with explicit offsets.
@@ -61,6 +90,23 @@ impl Interface {
             found.file.clone_from(&module.file);
             self.add_struct(name, found)?;
         }
+        for declared in resources(module)? {
+            self.add_resource(declared.name, declared.resource)?;
+        }
+        Ok(())
+    }
+
+    fn add_resource(&mut self, name: String, found: Resource) -> Result<(), String> {
+        let Some(known) = self.resources.get_mut(&name) else {
+            self.resources.insert(name, found);
+            return Ok(());
+        };
+        let place = |at: &Resource| format!("{} {} of set {}", at.kind, at.binding, at.set);
+        if place(known) != place(&found) {
+            let (ours, theirs) = (place(&found), place(known));
+            return Err(format!("{}: error: {name} is {ours}, but {theirs} in {}", found.file, known.file));
+        }
+        known.stages.extend(found.stages);
         Ok(())
     }
 
@@ -113,6 +159,34 @@ pub fn specialization_ids(module: &Module) -> Result<Vec<u32>, String> {
     let mut ids: Vec<_> = parsed.annotations.iter().filter_map(id).collect();
     ids.sort_unstable();
     Ok(ids)
+}
+
+/// What the optimised module declares, by set and binding; the names are those of the other.
+pub fn resources(module: &Module) -> Result<Vec<Declared>, String> {
+    let ids = |words| Ids::new(words).map_err(|cause| format!("{}: error: {cause}", module.file));
+    let left: BTreeSet<_> = ids(&module.optimised)?.bound().map(|(_, place)| place).collect();
+    let named = ids(&module.named)?;
+    let mut found = Vec::new();
+    for (variable, place) in named.bound().filter(|(_, place)| left.contains(place)) {
+        found.push(named.declared(variable, place, module)?);
+    }
+    found.sort_by(|a, b| {
+        (a.resource.set, a.resource.binding, &a.name).cmp(&(b.resource.set, b.resource.binding, &b.name))
+    });
+    Ok(found)
+}
+
+/// Name and bytes of the push constants that the optimised module declares.
+pub fn push_constants(module: &Module) -> Result<Option<String>, String> {
+    let ids = |words| Ids::new(words).map_err(|cause| format!("{}: error: {cause}", module.file));
+    let pushed = |ids: &Ids| {
+        let storage = Operand::StorageClass(StorageClass::PushConstant);
+        let variable = ids.variables.iter().find(|variable| variable.operands.first() == Some(&storage));
+        variable.and_then(|variable| ids.pointee(variable))
+    };
+    let used = pushed(&ids(&module.optimised)?).is_some();
+    let named = ids(&module.named)?;
+    Ok(pushed(&named).filter(|_| used).map(|block| named.name(block)))
 }
 
 /// A module's names, decorations and types by id.
@@ -240,6 +314,52 @@ impl Ids {
             Op::TypePointer => Ok(Kind::Scalar("u64", 8)),
             other => Err(format!("{other:?} has no Rust spelling")),
         }
+    }
+
+    /// Every variable with a binding, with its set and that.
+    fn bound(&self) -> impl Iterator<Item = (&Instruction, (u32, u32))> {
+        self.variables.iter().filter_map(|variable| {
+            let decoration = |which| self.decorations.get(&(variable.result_id?, which)).copied();
+            Some((variable, (decoration(Decoration::DescriptorSet)?, decoration(Decoration::Binding)?)))
+        })
+    }
+
+    /// The type that a variable is of.
+    fn pointee(&self, variable: &Instruction) -> Option<u32> {
+        self.values.get(&variable.result_type?)?.operands.get(1).map(literal)
+    }
+
+    fn declared(
+        &self,
+        variable: &Instruction,
+        (set, binding): (u32, u32),
+        module: &Module,
+    ) -> Result<Declared, String> {
+        let kind = self.pointee(variable).unwrap_or_default();
+        let image = self.values.get(&kind).filter(|value| value.class.opcode == Op::TypeImage);
+        let storage = variable.operands.first();
+        let name = self.name(if image.is_some() { variable.result_id.unwrap_or_default() } else { kind });
+        let kind_name = match (image, storage) {
+            (Some(image), _) if image.operands.contains(&Operand::Dim(Dim::DimSubpassData)) => {
+                "INPUT_ATTACHMENT"
+            }
+            (Some(_), _) => "SAMPLED_IMAGE",
+            (None, Some(Operand::StorageClass(StorageClass::Uniform))) => "UNIFORM_BUFFER",
+            (None, Some(Operand::StorageClass(StorageClass::StorageBuffer))) => "STORAGE_BUFFER",
+            _ => return Err(format!("{}: error: {name} is of no kind that is known", module.file)),
+        };
+        let members = self.values.get(&kind).map_or(0, |block| block.operands.len() as u32);
+        let readonly =
+            |member| self.member_decorations.contains_key(&(kind, member, Decoration::NonWritable));
+        let resource = Resource {
+            file: module.file.clone(),
+            set,
+            binding,
+            kind: kind_name,
+            stages: BTreeSet::from([module.stage()]),
+        };
+        let writes = kind_name == "STORAGE_BUFFER" && !(0..members).all(readonly);
+        Ok(Declared { name, resource, writes })
     }
 
     fn name(&self, id: u32) -> String {

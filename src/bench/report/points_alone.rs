@@ -5,7 +5,6 @@ use super::plot::{Line, Plot, Scale, Style};
 use crate::bench::record::{Contender, Figure, Run, Session};
 use crate::bench::show;
 use crate::methods::{Method, perspective_ewa, pull_push};
-use crate::pull_push::Storage;
 use maud::{Markup, html};
 use std::io;
 
@@ -13,6 +12,8 @@ use std::io;
 const METHODS: [Method; 2] = [pull_push::METHOD, pull_push::PAPER];
 /// The passes that go over pixels alone.
 const OVER_PIXELS: [&str; 3] = ["pull", "copy", "push"];
+/// The passes of pull–push, those that take turns included.
+const PASSES: [&str; 6] = ["project", "fetch", "pull", "copy", "push", "shade"];
 
 /// A plot a preset, with what it says.
 pub fn plots(page: &mut Page<'_>, session: &Session) -> io::Result<Vec<Markup>> {
@@ -54,7 +55,7 @@ fn lines(runs: &[&Run]) -> Vec<Line> {
         let points: Vec<_> = runs.iter().filter_map(point).collect();
         (!points.is_empty()).then(|| Line::new(name, Style::nth(i), points))
     };
-    pull_push::passes(Storage::PingPong).iter().copied().enumerate().filter_map(line).collect()
+    PASSES.iter().copied().enumerate().filter_map(line).collect()
 }
 
 /// Median time of a pass, ms.

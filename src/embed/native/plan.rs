@@ -3,13 +3,13 @@
 use super::Place;
 use super::dependencies::dependencies;
 use crate::error::{Error, Result};
-use crate::passes::SubpassKind;
-use crate::renderer::{RenderOptions, rasterizer_for, width_of_sums};
+use crate::frame::rasterizer::{rasterizer_for, width_of_sums};
+use crate::frame::targets::sums_format;
+use crate::frame::variant::Variant;
+use crate::frame::{Outputs, Precision, Rasterizer, RenderOptions};
 use crate::scene::Streams;
 use crate::settings::Settings;
 use crate::splatting::Visibility;
-use crate::targets::Formats;
-use crate::variant::{Outputs, Precision, Rasterizer, Variant};
 use crate::vk::{Device, input_layout};
 use ash::vk;
 
@@ -68,18 +68,6 @@ struct References {
     inputs: Vec<vk::AttachmentReference>,
     depth: Option<vk::AttachmentReference>,
     preserved: Vec<u32>,
-}
-
-impl Step {
-    pub(super) fn label(self) -> &'static str {
-        match self {
-            Self::Seed => "seed",
-            Self::Visibility => "visibility",
-            Self::Attribute => "attribute",
-            Self::Nearest => "nearest",
-            Self::Normalize => "normalize",
-        }
-    }
 }
 
 impl Plan {
@@ -162,10 +150,9 @@ impl Plan {
         self.formats.visibility == vk::Format::D32_SFLOAT_S8_UINT
     }
 
-    /// How its last subpass draws.
-    pub(super) fn kind(&self) -> SubpassKind {
-        let sums_tell = self.marks() || self.steps.contains(&Step::Nearest);
-        SubpassKind { sums_tell, reversed: self.host.reversed, encode: self.host.encode }
+    /// Whether what visibility has not written has no sums; otherwise the last subpass reads visibility.
+    pub(super) fn sums_tell(&self) -> bool {
+        self.marks() || self.steps.contains(&Step::Nearest)
     }
 
     /// The number of a step's subpass.
@@ -238,12 +225,13 @@ impl Plan {
             Step::Normalize => References {
                 colours: vec![drawn(Some(picture)), drawn(normal)],
                 resolves: resolve.map_or(Vec::new(), |resolve| vec![drawn(Some(resolve)), drawn(None)]),
-                // What is not read is stood in for by sums 0.
-                inputs: vec![
-                    if self.kind().sums_tell { read(sums0) } else { kept(visibility) },
+                inputs: [
+                    if self.sums_tell() { optional(None, Layout::UNDEFINED) } else { kept(visibility) },
                     read(sums0),
-                    read(sums1.unwrap_or(sums0)),
-                ],
+                ]
+                .into_iter()
+                .chain(sums1.map(read))
+                .collect(),
                 depth: depth.map(tested),
                 ..Default::default()
             },
@@ -300,12 +288,13 @@ impl HostSide {
 impl PlanFormats {
     /// What does for all of `variants`, with or without a stencil.
     fn of(variants: &[Variant], marks: bool) -> Self {
-        let formats = variants.iter().map(Formats::of);
-        let sums0 = formats.clone().map(|formats| formats.sums0).reduce(wider);
+        let sums0 = variants.iter().map(|variant| sums_format(variant.precision, variant.wide_sums0()));
+        let sums1 = variants.iter().filter(|variant| variant.has_sums1());
+        let sums1 = sums1.map(|variant| sums_format(variant.precision, variant.wide_sums1()));
         Self {
             visibility: if marks { vk::Format::D32_SFLOAT_S8_UINT } else { vk::Format::D32_SFLOAT },
-            sums0: sums0.unwrap_or_default(),
-            sums1: formats.filter_map(|formats| formats.sums1).reduce(wider),
+            sums0: sums0.reduce(wider).unwrap_or_default(),
+            sums1: sums1.reduce(wider),
         }
     }
 

@@ -2,7 +2,8 @@
 
 use super::Plan;
 use crate::error::Result;
-use crate::vk::{Device, HostDepth, Image, ImageUse};
+use crate::vk::shaders::{self, resource};
+use crate::vk::{Binding, Device, HostDepth, Image, ImageUse};
 use ash::vk;
 use std::sync::Arc;
 
@@ -11,7 +12,6 @@ pub(super) struct Targets {
     pub(super) size: [u32; 2],
     pub(super) host_depth: Option<HostDepth>,
     images: Arc<Images>,
-    sums_tell: bool,
 }
 
 struct Images {
@@ -35,7 +35,7 @@ impl Targets {
             sums0: image("sums0", formats.sums0)?,
             sums1: formats.sums1.map(|format| image("sums1", format)).transpose()?,
         };
-        Ok(Self { size, host_depth, images: Arc::new(images), sums_tell: plan.kind().sums_tell })
+        Ok(Self { size, host_depth, images: Arc::new(images) })
     }
 
     /// The same beside another depth of the host.
@@ -49,9 +49,19 @@ impl Targets {
         [Some(visibility), Some(sums0), sums1.as_ref()].into_iter().flatten().map(Image::view).collect()
     }
 
-    /// What normalize reads: visibility, sums 0, sums 1; what it does not read is stood in for by sums 0.
-    pub(super) fn inputs(&self) -> [&Image; 3] {
+    /// What shaders see of them, and of the host's depth, of these.
+    pub(super) fn bindings(
+        &self,
+        seen: &[&'static shaders::Resource],
+    ) -> Vec<(&'static shaders::Resource, Binding<'_>)> {
         let Images { visibility, sums0, sums1 } = &*self.images;
-        [if self.sums_tell { sums0 } else { visibility }, sums0, sums1.as_ref().unwrap_or(sums0)]
+        let all = [
+            (&resource::VISIBILITY_INPUT, Some(Binding::Input(visibility))),
+            (&resource::SUMS0_INPUT, Some(Binding::Input(sums0))),
+            (&resource::SUMS1_INPUT, sums1.as_ref().map(Binding::Input)),
+            (&resource::HOST_DEPTH, self.host_depth.map(Binding::HostDepth)),
+        ];
+        let wanted = all.into_iter().filter(|(resource, _)| seen.contains(resource));
+        wanted.filter_map(|(resource, binding)| Some((resource, binding?))).collect()
     }
 }

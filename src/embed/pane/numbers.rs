@@ -1,9 +1,10 @@
 //! A picture of numbers, such as depths, as colours.
 
 use super::COLOUR;
+use super::colour_map::{ColourMap, ColourMapViews};
+use super::range::{Range, range_of};
 use crate::error::Result;
 use crate::geometry::ValueRange;
-use crate::passes::{ColourMap, ColourMapViews, Range, range_of};
 use crate::settings::{Settings, Shading};
 use crate::vk::shaders::layout;
 use crate::vk::{
@@ -42,7 +43,7 @@ impl Numbers {
         let image = Image::target(device, "screen colours", COLOUR, picture.size(), ImageUse::Output)?;
         let range = Range::buffer(device)?;
         let views = map.views(device, picture, &range, (&pass, &image))?;
-        let range_view = range_pass.view(device, picture, &range)?;
+        let range_view = Range::view(device, picture, &range)?;
         let told = Buffer::readback(device, "screen range", range.size())?;
         Ok(Self { views, range_view, image, range, told, map, range_pass, shading, _pass: pass })
     }
@@ -61,7 +62,7 @@ impl Numbers {
         self.map.record(rec, &self.views, (picture, &self.range, &self.image), background, numbers);
         if self.has_range() {
             let uses = [self.range.with(Access::COPY_READ), self.told.with(Access::COPY_WRITE)];
-            rec.pass("read range", &uses, |enc| enc.copy(&self.range, &self.told, 0, self.range.size()));
+            rec.pass("read range", &uses).copy(&self.range, &self.told, 0, self.range.size());
         }
     }
 

@@ -1,0 +1,100 @@
+//! Composite: the picture over the target of a host, among whose surfaces it has its depth (`composite.glsl`).
+
+use crate::error::Result;
+use crate::frame::resource::Resource;
+use crate::frame::targets::RenderTargets;
+use crate::vk::shaders::{self, constant, layout, resource};
+use crate::vk::{
+    Access, Binding, Code, Constants, DepthTest, DescriptorSet, Device, DrawPipeline, Draws, SetLayout, Use,
+    Within,
+};
+use std::sync::Arc;
+
+/// What pictures and host a composite is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct CompositeKind {
+    /// The picture is drawn to images, not written to a buffer.
+    pub images: bool,
+    /// Its distances are of rays that meet in the eye.
+    pub perspective: bool,
+    /// Where the host wants the picture: which of its colour targets.
+    pub picture: u32,
+    /// Where it wants normals.
+    pub normal: Option<u32>,
+    /// Where it wants numbers, which are of pictures in buffers alone.
+    pub id: Option<u32>,
+    /// Whether its depth falls with distance; `None` if it has no depth.
+    pub reversed: Option<bool>,
+    /// Whether shaders encode its colours.
+    pub encode: bool,
+}
+
+/// The composite pass: a draw within a pass of the host.
+pub struct Composite {
+    kind: CompositeKind,
+    pipeline: DrawPipeline,
+}
+
+impl CompositeKind {
+    /// What it sees of a frame's targets.
+    fn resources(&self) -> Vec<(&'static shaders::Resource, Resource)> {
+        if !self.images {
+            return vec![(&resource::FRAME_PICTURE, Resource::Picture)];
+        }
+        let normal = self.normal.map(|_| (&resource::NORMAL_IMAGE, Resource::Normal));
+        let depth = self.reversed.map(|_| (&resource::DEPTH_IMAGE, Resource::Depth));
+        [Some((&resource::PICTURE_IMAGE, Resource::Image)), normal, depth].into_iter().flatten().collect()
+    }
+}
+
+impl Composite {
+    /// The pass for a host that draws `within`.
+    pub fn new(device: &Arc<Device>, kind: CompositeKind, within: &Within) -> Result<Self> {
+        let layout = SetLayout::of(device, kind.resources().into_iter().map(|(resource, _)| resource))?;
+        let fragment = match (kind.images, kind.normal, kind.id) {
+            (true, None, _) => &shaders::COMPOSITE_IMAGES_FRAGMENT,
+            (true, Some(_), _) => &shaders::COMPOSITE_IMAGES_NORMALS_FRAGMENT,
+            (false, None, None) => &shaders::COMPOSITE_FRAGMENT,
+            (false, Some(_), None) => &shaders::COMPOSITE_NORMALS_FRAGMENT,
+            (false, None, Some(_)) => &shaders::COMPOSITE_IDS_FRAGMENT,
+            (false, Some(_), Some(_)) => &shaders::COMPOSITE_NORMALS_IDS_FRAGMENT,
+        };
+        let places = [Some(kind.picture), kind.normal, kind.id];
+        let fragment = Code::from(fragment).at_locations(places.map(Option::unwrap_or_default));
+        let code = [Code::from(&shaders::COMPOSITE_VERTEX), fragment];
+        let constants = Constants::default()
+            .with(constant::PERSPECTIVE, kind.perspective)
+            .with(constant::HOST_DEPTH, kind.reversed.is_some())
+            .with(constant::ENCODE, kind.encode);
+        let depth = kind.reversed.map_or(DepthTest::None, |reversed| DepthTest::Host { reversed });
+        let pipeline = DrawPipeline::of_host(device, &[&layout], code, &constants, within, depth)?;
+        Ok(Self { kind, pipeline })
+    }
+
+    /// The pass's view of a picture, which must outlive it.
+    pub fn view(&self, device: &Arc<Device>, targets: &RenderTargets) -> Result<DescriptorSet> {
+        let binding = |(resource, target)| {
+            let image = targets.image(target).map(Binding::Sampled);
+            Some((resource, image.or_else(|| targets.buffer(target).map(Binding::whole))?))
+        };
+        let bindings: Vec<_> = self.kind.resources().into_iter().filter_map(binding).collect();
+        DescriptorSet::new(device, &bindings)
+    }
+
+    /// What it reads.
+    pub fn reads(targets: &RenderTargets) -> Vec<Use> {
+        let read = Access::of_shader(ash::vk::ShaderStageFlags::FRAGMENT, false);
+        let picture = targets.buffer(Resource::Picture).map(|buffer| buffer.with(read));
+        picture.into_iter().chain(targets.outputs().map(|image| image.with(read.of_image()))).collect()
+    }
+
+    /// What it is for.
+    pub fn kind(&self) -> CompositeKind {
+        self.kind
+    }
+
+    /// A picture → the host's colours and depth.
+    pub fn draw(&self, draws: &mut Draws<'_>, view: &DescriptorSet, place: &layout::Composite) {
+        draws.draw(&self.pipeline, &[view], place, 3);
+    }
+}

@@ -1,0 +1,87 @@
+//! The passes that are drawn in subpasses of a plan.
+
+use super::plan::{Plan, Step};
+use crate::frame::pass::Pass;
+use crate::frame::passes::{attribute, nearest, normalize, seed, visibility};
+use crate::frame::pipelines::{Host, HostDraw};
+use crate::vk::shaders::{self, SEED_MULTISAMPLED_FRAGMENT, constant, resource};
+use crate::vk::{Blend, Constants, DepthTest, Within};
+use ash::vk;
+
+impl Step {
+    /// The pass.
+    pub(super) fn pass(self) -> &'static Pass {
+        match self {
+            Self::Seed => &seed::SEED,
+            Self::Visibility => &visibility::DRAWN,
+            Self::Attribute => &attribute::DRAWN,
+            Self::Nearest => &nearest::DRAWN,
+            Self::Normalize => &normalize::IN_SUBPASS,
+        }
+    }
+}
+
+/// Where the passes of `plan` are drawn.
+///
+/// # Safety
+/// `pass` is as `plan` says, and outlives all pipelines that are made for it.
+pub(super) unsafe fn host(plan: &Plan, pass: vk::RenderPass) -> Host {
+    let draw = |(subpass, step)| {
+        let one = vk::SampleCountFlags::TYPE_1;
+        let samples = if step == Step::Normalize { plan.host.samples } else { one };
+        // SAFETY: by the caller.
+        let within = unsafe { Within::subpass((pass, subpass), &blends(plan, step), samples) };
+        let multisampled = step == Step::Seed && plan.host.samples != one;
+        HostDraw {
+            pass: step.pass(),
+            within,
+            depth: depth_test(plan, step),
+            constants: constants(plan, step),
+            fragment: multisampled.then_some(&SEED_MULTISAMPLED_FRAGMENT),
+        }
+    };
+    Host { draws: plan.numbered().map(draw).collect(), resources: inputs(plan) }
+}
+
+/// What shaders see of the attachments.
+pub(super) fn inputs(plan: &Plan) -> Vec<&'static shaders::Resource> {
+    let visibility = (!plan.sums_tell()).then_some(&resource::VISIBILITY_INPUT);
+    let sums1 = plan.formats.sums1.map(|_| &resource::SUMS1_INPUT);
+    let depth = plan.seeded().map(|_| &resource::HOST_DEPTH);
+    [visibility, Some(&resource::SUMS0_INPUT), sums1, depth].into_iter().flatten().collect()
+}
+
+fn blends(plan: &Plan, step: Step) -> Vec<Option<Blend>> {
+    match step {
+        Step::Seed | Step::Visibility => Vec::new(),
+        Step::Attribute => vec![Some(Blend::Add); 2],
+        Step::Nearest => vec![Some(Blend::Replace); 2],
+        // Where there are no normals, the blending of what is not there is like the picture's: another takes a feature.
+        Step::Normalize if plan.host.normal.is_some() => vec![Some(Blend::Over), Some(Blend::Replace)],
+        Step::Normalize => vec![Some(Blend::Over); 2],
+    }
+}
+
+fn depth_test(plan: &Plan, step: Step) -> DepthTest {
+    match step {
+        Step::Seed => DepthTest::Always,
+        Step::Visibility if plan.marks() => DepthTest::Marking,
+        Step::Visibility | Step::Nearest => DepthTest::Nearest,
+        Step::Attribute if plan.marks() => DepthTest::Marked,
+        Step::Attribute => DepthTest::NotBehind,
+        Step::Normalize => {
+            plan.host.reversed.map_or(DepthTest::None, |reversed| DepthTest::Host { reversed })
+        }
+    }
+}
+
+fn constants(plan: &Plan, step: Step) -> Constants {
+    match step {
+        Step::Seed => Constants::default().with(constant::HOST_SAMPLES, plan.host.samples.as_raw()),
+        Step::Normalize => Constants::default()
+            .with(constant::SUMS_TELL, plan.sums_tell())
+            .with(constant::HOST_DEPTH, plan.host.reversed.is_some())
+            .with(constant::ENCODE, plan.host.encode),
+        Step::Visibility | Step::Attribute | Step::Nearest => Constants::default(),
+    }
+}

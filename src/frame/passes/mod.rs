@@ -1,0 +1,171 @@
+//! One file a pass, beside the shader of the same name: what the pass reads and writes, its shaders, what it is computed over or draws to.
+//!
+//! Visibility, attribute, nearest and normalize come in two kinds, one for each [`crate::Rasterizer`]; so does what project does of surfels.
+//! What is drawn is drawn in subpasses of a host, too ([`crate::embed::native`]).
+
+pub mod attribute;
+pub mod copy;
+pub mod fetch;
+pub mod footprint;
+pub mod nearest;
+pub mod normalize;
+pub mod project;
+pub mod pull;
+pub mod push;
+pub mod resolve;
+pub mod seed;
+pub mod shade;
+pub mod tiles;
+pub mod visibility;
+
+use crate::frame::pass::{Over, Program};
+use crate::vk::shaders::{Module, constant};
+
+/// The two programs of a pass over every fragment of every splat (`lib/scatter_splat.glsl`): splats of many pixels, which would hold their
+/// neighbours up, are shared by workgroups.
+fn scatter(module: &'static Module) -> Vec<Program> {
+    vec![
+        Program::compute(module, Over::Surfels).with(constant::LARGE_SPLATS, false),
+        Program::compute(module, Over::LargeSplats).with(constant::LARGE_SPLATS, true),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::RenderOptions;
+    use crate::frame::pass::{Commands, Pass, Programs};
+    use crate::frame::resource::Resource;
+    use crate::frame::variant::{Rasterizer, SceneVariant, Variant};
+    use crate::scene::{ColourStream, PrimitiveKinds, Streams, SurfelLayout};
+    use crate::settings::{Alpha, Settings};
+
+    const ALL: [&Pass; 22] = [
+        &footprint::FOOTPRINT,
+        &footprint::MOVED,
+        &visibility::COMPUTED,
+        &visibility::DRAWN,
+        &tiles::TILES,
+        &attribute::COMPUTED,
+        &attribute::DRAWN,
+        &nearest::COMPUTED,
+        &nearest::DRAWN,
+        &resolve::RESOLVE,
+        &normalize::COMPUTED,
+        &normalize::DRAWN,
+        &normalize::IN_SUBPASS,
+        &seed::SEED,
+        &project::COMPUTED,
+        &project::LARGE,
+        &project::DRAWN,
+        &project::HANDED_OVER,
+        &project::BESIDE_DRAWN,
+        &fetch::FETCH,
+        &shade::SHADE,
+        &copy::COPY,
+    ];
+
+    const RESOURCES: [Resource; 16] = [
+        Resource::Splats,
+        Resource::LargeSplats,
+        Resource::ScreenClips,
+        Resource::Counts,
+        Resource::LargeTriangles,
+        Resource::Visibility,
+        Resource::Sums0,
+        Resource::Sums1,
+        Resource::Tiles,
+        Resource::Coverage,
+        Resource::Nearest,
+        Resource::NearestDepth,
+        Resource::NearestNumber,
+        Resource::Pulled,
+        Resource::Pushed,
+        Resource::Picture,
+    ];
+
+    /// Frames in which passes have all that they may have, and such in which they have as little as they can.
+    fn variants() -> Vec<SceneVariant> {
+        let mut list = Vec::new();
+        for rich in [false, true] {
+            let streams = Streams {
+                ellipses: rich,
+                two_sided: rich,
+                clips: rich,
+                weights: rich.then_some(true),
+                colours: if rich { ColourStream::Linear } else { ColourStream::None },
+                primitives: PrimitiveKinds { lines: rich, triangles: rich, colours: ColourStream::None },
+                texture: None,
+                materials: rich,
+                layout: SurfelLayout::side_by_side(ColourStream::None),
+                unchecked: rich,
+            };
+            for (alpha, rasterizer) in [Alpha::Mask, Alpha::Coverage]
+                .into_iter()
+                .flat_map(|alpha| [(alpha, Rasterizer::Draw), (alpha, Rasterizer::Compute)])
+            {
+                for pull_push in [None, crate::methods::pull_push::METHOD.pull_push] {
+                    let settings = Settings { alpha, pull_push, ..Default::default() };
+                    let options = RenderOptions { count: rich, ..Default::default() };
+                    let frame = Variant::new(&[streams], true, &settings, &options, rasterizer);
+                    list.push(SceneVariant::new(frame, streams, rich));
+                }
+            }
+        }
+        list
+    }
+
+    fn programs(pass: &Pass, variant: &SceneVariant) -> Vec<Program> {
+        match pass.programs {
+            Programs::None => Vec::new(),
+            Programs::OfFrame(programs) => programs(&variant.frame),
+            Programs::OfScene(programs) => programs(variant),
+        }
+    }
+
+    #[test]
+    fn passes_declare_what_their_shaders_read_and_write() {
+        for pass in ALL {
+            let mut seen = Vec::new();
+            for program in variants().iter().flat_map(|variant| programs(pass, variant)) {
+                for (declared, writes) in program.modules().iter().flat_map(|module| module.resources) {
+                    let known = RESOURCES.iter().find(|resource| resource.is_seen_as(declared));
+                    // Moved discs are not counted: a constant takes that away.
+                    let uncounted = std::ptr::eq(pass, &raw const footprint::MOVED);
+                    let known = known.filter(|known| !(uncounted && **known == Resource::Counts));
+                    seen.extend(known.map(|resource| (*resource, *writes)));
+                }
+            }
+            if matches!(pass.commands, Commands::Steps(_)) {
+                continue;
+            }
+            for (resource, writes) in &seen {
+                let list = if *writes { pass.writes } else { pass.reads };
+                let name = pass.name;
+                assert!(list.contains(resource), "{name} does not declare {resource:?}, written: {writes}");
+            }
+            for resource in pass.reads.iter().chain(pass.writes) {
+                let there = seen.iter().any(|(seen, _)| seen == resource);
+                assert!(there, "{} declares {resource:?}, which none of its shaders sees", pass.name);
+            }
+            assert!(pass.clears.iter().all(|cleared| pass.writes.contains(cleared)), "{}", pass.name);
+        }
+    }
+
+    #[test]
+    fn a_pass_has_the_name_of_its_shader() {
+        for pass in ALL {
+            for program in variants().iter().flat_map(|variant| programs(pass, variant)) {
+                for module in program.modules() {
+                    let drawn = pass.name == "project" && module.name.starts_with("points_");
+                    assert!(
+                        module.name.starts_with(pass.name) || drawn,
+                        "{} runs {}",
+                        pass.name,
+                        module.name
+                    );
+                }
+            }
+        }
+    }
+}

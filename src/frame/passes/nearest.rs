@@ -1,0 +1,48 @@
+//! Nearest: splats → the nearest one of each pixel, alone (zwicker2004 table 1; botsch2003 §3.2; `nearest.glsl`).
+
+use super::scatter;
+use crate::frame::pass::{Commands, Over, Pass, Program, Programs, Start, Targets};
+use crate::frame::resource::Resource::{
+    Coverage, LargeSplats, ScreenClips, Splats, Sums0, Sums1, Visibility,
+};
+use crate::vk::shaders::{
+    NEAREST_CLIP_LINES_FRAGMENT, NEAREST_CLIP_LINES_VERTEX, NEAREST_COMPUTE, NEAREST_COVERAGE_COMPUTE,
+    NEAREST_COVERAGE_FRAGMENT, NEAREST_COVERAGE_VERTEX, NEAREST_FRAGMENT, NEAREST_VERTEX,
+};
+use crate::vk::{Blend, DepthTest, Topology};
+
+/// A scatter with atomic maxima, which leaves which splat it is.
+pub static COMPUTED: Pass = Pass {
+    name: "nearest",
+    reads: &[Splats, LargeSplats, ScreenClips],
+    writes: &[Visibility, Coverage],
+    clears: &[Visibility, Coverage],
+    programs: Programs::OfScene(|variant| match variant.frame.coverage {
+        false => scatter(&NEAREST_COMPUTE),
+        true => scatter(&NEAREST_COVERAGE_COMPUTE),
+    }),
+    commands: Commands::Dispatches,
+};
+
+/// Draws with a depth test, which leave what the splat is.
+pub static DRAWN: Pass = Pass {
+    name: "nearest",
+    reads: &[Splats, ScreenClips],
+    writes: &[Coverage],
+    clears: &[Coverage],
+    programs: Programs::OfScene(|variant| {
+        let modules = match (variant.frame.coverage, variant.clips) {
+            (true, _) => [&NEAREST_COVERAGE_VERTEX, &NEAREST_COVERAGE_FRAGMENT],
+            (false, true) => [&NEAREST_CLIP_LINES_VERTEX, &NEAREST_CLIP_LINES_FRAGMENT],
+            (false, false) => [&NEAREST_VERTEX, &NEAREST_FRAGMENT],
+        };
+        vec![Program::draw(modules, Over::SplatTriangles)]
+    }),
+    commands: Commands::Draws(Targets {
+        colours: &[(Sums0, Start::Cleared), (Sums1, Start::Cleared)],
+        depth: Some((Visibility, Start::Cleared)),
+        topology: Topology::Triangles,
+        test: DepthTest::Nearest,
+        blend: Blend::Replace,
+    }),
+};

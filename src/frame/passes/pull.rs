@@ -1,0 +1,26 @@
+//! Pull: a level of the pulled pyramid → the next coarser one (marroquim2008 §3.2; `pull.glsl`).
+
+use crate::frame::pass::{Commands, Over, Pass, Program, Programs, Steps};
+use crate::frame::resource::Resource::Pulled;
+use crate::vk::Recorder;
+use crate::vk::shaders::PULL_COMPUTE;
+
+/// Level 0 of what is pulled → all others.
+pub static PULL: Pass = Pass {
+    name: "pull",
+    reads: &[],
+    writes: &[Pulled],
+    clears: &[],
+    programs: Programs::OfFrame(|_| vec![Program::compute(&PULL_COMPUTE, Over::Level)]),
+    commands: Commands::Steps(record),
+};
+
+fn record(steps: &Steps<'_>, rec: &mut Recorder<'_>) {
+    let Steps { pipeline: Some(pipeline), frame } = steps else { return };
+    let Some(pyramids) = &frame.targets.pyramids else { return };
+    for level in 1..pyramids.levels() {
+        let pair = pyramids.storage.pull(level);
+        let mut enc = rec.pass(PULL.name, &pyramids.uses(pair));
+        enc.dispatch(pipeline, &frame.pyramid_sets(pair), &pyramids.step(level), pyramids.grid(level));
+    }
+}

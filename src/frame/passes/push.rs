@@ -1,0 +1,26 @@
+//! Push: the pulled pyramid → the final one, coarse to fine (marroquim2008 §3.3; `push.glsl`).
+
+use crate::frame::pass::{Commands, Over, Pass, Program, Programs, Steps};
+use crate::frame::resource::Resource::{Pulled, Pushed};
+use crate::vk::Recorder;
+use crate::vk::shaders::PUSH_COMPUTE;
+
+/// What is pulled of all levels → what is pushed.
+pub static PUSH: Pass = Pass {
+    name: "push",
+    reads: &[Pulled],
+    writes: &[Pushed],
+    clears: &[],
+    programs: Programs::OfFrame(|_| vec![Program::compute(&PUSH_COMPUTE, Over::Level)]),
+    commands: Commands::Steps(record),
+};
+
+fn record(steps: &Steps<'_>, rec: &mut Recorder<'_>) {
+    let Steps { pipeline: Some(pipeline), frame } = steps else { return };
+    let Some(pyramids) = &frame.targets.pyramids else { return };
+    for level in (0..pyramids.levels()).rev() {
+        let pair = pyramids.storage.push(level);
+        let mut enc = rec.pass(PUSH.name, &pyramids.uses(pair));
+        enc.dispatch(pipeline, &frame.pyramid_sets(pair), &pyramids.step(level), pyramids.grid(level));
+    }
+}

@@ -1,0 +1,47 @@
+//! Visibility: splats → depth of the nearest surface, moved back by ε (zwicker2004 §6, first pass; `visibility.glsl`).
+
+use super::scatter;
+use crate::frame::pass::{Commands, Over, Pass, Program, Programs, Start, Targets};
+use crate::frame::resource::Resource::{Coverage, LargeSplats, ScreenClips, Splats, Visibility};
+use crate::vk::shaders::{
+    VISIBILITY_CLIP_LINES_FRAGMENT, VISIBILITY_CLIP_LINES_VERTEX, VISIBILITY_COMPUTE,
+    VISIBILITY_COVERAGE_COMPUTE, VISIBILITY_COVERAGE_FRAGMENT, VISIBILITY_COVERAGE_VERTEX,
+    VISIBILITY_FRAGMENT, VISIBILITY_VERTEX,
+};
+use crate::vk::{Blend, DepthTest, Topology};
+
+/// A scatter with atomic maxima.
+pub static COMPUTED: Pass = Pass {
+    name: "visibility",
+    reads: &[Splats, LargeSplats, ScreenClips],
+    writes: &[Visibility, Coverage],
+    clears: &[Visibility, Coverage],
+    programs: Programs::OfScene(|variant| match variant.frame.coverage {
+        false => scatter(&VISIBILITY_COMPUTE),
+        true => scatter(&VISIBILITY_COVERAGE_COMPUTE),
+    }),
+    commands: Commands::Dispatches,
+};
+
+/// Draws with a depth test.
+pub static DRAWN: Pass = Pass {
+    name: "visibility",
+    reads: &[Splats, ScreenClips],
+    writes: &[Coverage],
+    clears: &[Coverage],
+    programs: Programs::OfScene(|variant| {
+        let modules = match (variant.frame.coverage, variant.clips) {
+            (true, _) => [&VISIBILITY_COVERAGE_VERTEX, &VISIBILITY_COVERAGE_FRAGMENT],
+            (false, true) => [&VISIBILITY_CLIP_LINES_VERTEX, &VISIBILITY_CLIP_LINES_FRAGMENT],
+            (false, false) => [&VISIBILITY_VERTEX, &VISIBILITY_FRAGMENT],
+        };
+        vec![Program::draw(modules, Over::SplatTriangles)]
+    }),
+    commands: Commands::Draws(Targets {
+        colours: &[],
+        depth: Some((Visibility, Start::Cleared)),
+        topology: Topology::Triangles,
+        test: DepthTest::Nearest,
+        blend: Blend::Replace,
+    }),
+};

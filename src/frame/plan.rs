@@ -1,0 +1,35 @@
+//! What a frame is made of, without making it.
+
+use super::methods::{Path, passes};
+use super::renderer::RenderOptions;
+use super::targets::per_pixel;
+use super::variant::{Rasterizer, Variant};
+use crate::scene::Streams;
+use crate::settings::Settings;
+
+/// The passes and targets of a frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FramePlan {
+    /// The passes in their order; what only clears or reads back is none.
+    pub passes: Vec<&'static str>,
+    /// The targets, each with the bytes of a pixel. Where a target has less than one value a pixel, that is a fraction.
+    pub targets: Vec<(&'static str, f64)>,
+}
+
+impl FramePlan {
+    /// The frame of scenes with these streams by a rasterizer, whatever the device can do; `perspective` or parallel rays.
+    pub fn new(
+        scenes: &[Streams],
+        perspective: bool,
+        settings: &Settings,
+        options: &RenderOptions,
+        rasterizer: Rasterizer,
+    ) -> Self {
+        let variant = Variant::new(scenes, perspective, settings, options, rasterizer);
+        let passes = passes(&variant, Path::of(&variant), scenes.len());
+        let mut names: Vec<_> = passes.iter().map(|pass| pass.name).collect();
+        // A pass may take several steps.
+        names.dedup();
+        Self { passes: names, targets: per_pixel(&variant) }
+    }
+}

@@ -1,0 +1,273 @@
+//! How the passes of a frame are recorded: barriers, descriptor sets, push constants, numbers of workgroups and vertices.
+
+use super::pass::{Commands, Over, Pass, Programs, Steps};
+use super::pyramids::Pyramids;
+use super::resource::Resource;
+use super::scene_resources::{ElementPart, Place, SceneResources, SurfelPart};
+use super::targets::RenderTargets;
+use super::variant::{SceneVariant, Variant};
+use crate::vk::shaders::Module;
+use crate::vk::{
+    Access, Buffer, ComputePipeline, DescriptorSet, DrawPipeline, Draws, Encoder, Framebuffer, Recorder, Use,
+};
+use ash::vk::ShaderStageFlags;
+use std::collections::HashSet;
+use std::sync::Arc;
+
+/// Invocations in a workgroup of every shader.
+const WORKGROUP: u64 = 64;
+/// Workgroups among which large splats, or large triangles, are dealt out.
+const LARGE_WORKGROUPS: u32 = 256;
+/// Workgroups in a row of a dispatch over pixels; every device allows as many.
+const WORKGROUPS_X: u32 = 32_768;
+
+/// Workgroups for so many invocations.
+pub fn grid_over(invocations: u64) -> [u32; 2] {
+    let workgroups = invocations.div_ceil(WORKGROUP) as u32;
+    [workgroups.min(WORKGROUPS_X), workgroups.div_ceil(WORKGROUPS_X)]
+}
+
+/// What passes are recorded with.
+pub struct Frame<'a> {
+    /// What the frame is.
+    pub variant: &'a Variant,
+    /// Descriptor set 0 of passes over pixels.
+    pub view: &'a DescriptorSet,
+    /// What passes draw to, and compute.
+    pub targets: &'a RenderTargets,
+    /// The scenes where they stand, in the order of the frame.
+    pub places: Vec<Place<'a>>,
+}
+
+/// A pass with all that its commands need.
+pub struct Prepared {
+    pub pass: &'static Pass,
+    /// How its shaders touch what it reads and writes.
+    pub accesses: Vec<(Resource, Access)>,
+    /// What it draws to; in render passes of its own.
+    pub framebuffer: Option<Framebuffer>,
+    /// Its pipelines: those of the frame, or of each scene in its order.
+    pub pipelines: Vec<Pipelines>,
+}
+
+/// The pipelines of a pass for a scene, or for a frame, each with what it runs over.
+pub type Pipelines = Arc<Vec<(Over, Pipeline)>>;
+
+/// A pipeline.
+pub enum Pipeline {
+    Compute(ComputePipeline),
+    Draw(DrawPipeline),
+}
+
+impl Prepared {
+    /// Records the pass, unless there is nothing for it to do.
+    pub fn record(&self, rec: &mut Recorder<'_>, frame: &Frame<'_>) {
+        frame.clear(rec, self.pass.clears);
+        let there = self.pipelines.iter().any(|pipelines| !pipelines.is_empty());
+        match &self.pass.commands {
+            Commands::Steps(record) => record(&Steps { pipeline: self.first(), frame }, rec),
+            Commands::Dispatches if there => {
+                self.dispatch(&mut rec.pass(self.pass.name, &frame.uses(&self.accesses)), frame);
+            }
+            Commands::Draws(_) => {
+                let Some(framebuffer) = &self.framebuffer else { return };
+                let mut enc = rec.pass(self.pass.name, &frame.uses(&self.accesses));
+                self.draw(&mut enc.render(framebuffer), frame, &());
+            }
+            Commands::Dispatches => {}
+        }
+    }
+
+    /// Its only pipeline, of a pass of several steps.
+    fn first(&self) -> Option<&ComputePipeline> {
+        match self.pipelines.first()?.first()? {
+            (_, Pipeline::Compute(pipeline)) => Some(pipeline),
+            (_, Pipeline::Draw(_)) => None,
+        }
+    }
+
+    /// Its pipelines with what they are of: all scenes, or each.
+    fn each<'a>(
+        &'a self,
+        frame: &'a Frame<'_>,
+    ) -> impl Iterator<Item = (Over, &'a Pipeline, Option<&'a Place<'a>>)> {
+        let of_scenes = matches!(self.pass.programs, Programs::OfScene(_));
+        let places = frame.places.iter().map(Some).chain(std::iter::repeat(None));
+        let places = places.skip(if of_scenes { 0 } else { frame.places.len() });
+        let all = self.pipelines.iter().zip(places);
+        all.flat_map(|(pipelines, place)| pipelines.iter().map(move |(over, made)| (*over, made, place)))
+    }
+
+    /// Records a dispatch of each program.
+    fn dispatch(&self, enc: &mut Encoder<'_, '_>, frame: &Frame<'_>) {
+        for (over, pipeline, place) in self.each(frame) {
+            let Pipeline::Compute(pipeline) = pipeline else { continue };
+            let pyramid = frame.pyramid_of(self.pass);
+            let three = |first, third| -> Vec<&DescriptorSet> {
+                [Some(first), frame.targets.set.as_ref(), third].into_iter().flatten().collect()
+            };
+            let sets = |first| three(first, pyramid);
+            let pixels = grid_over(frame.targets.pixels());
+            match (over, place) {
+                (Over::Pixels, _) => enc.dispatch(pipeline, &sets(frame.view), &(), pixels),
+                (Over::Tiles, _) => {
+                    enc.dispatch(pipeline, &sets(frame.view), &(), grid_over(frame.targets.tiles()));
+                }
+                (Over::Surfels | Over::LargeSplats | Over::PixelsOfSurfels, Some(place)) => {
+                    for part in place.surfels(self.pass) {
+                        let workgroups = match over {
+                            Over::Surfels => grid_over(part.count.into()),
+                            Over::LargeSplats => [LARGE_WORKGROUPS, 1],
+                            _ => pixels,
+                        };
+                        enc.dispatch(
+                            pipeline,
+                            &three(part.set, pyramid.or(part.counts)),
+                            &part.push(),
+                            workgroups,
+                        );
+                    }
+                }
+                (_, Some(place)) => {
+                    let Some(part) = place.elements(over.scope()) else { continue };
+                    let workgroups = match over {
+                        Over::Lines | Over::Triangles => grid_over(part.count.into()),
+                        Over::LargeTriangles => [LARGE_WORKGROUPS, 1],
+                        _ => pixels,
+                    };
+                    enc.dispatch(pipeline, &sets(part.set), &part.push(), workgroups);
+                }
+                (_, None) => {}
+            }
+        }
+    }
+
+    /// Records a draw of each program, inside a render pass; `push` are the push constants of what is drawn over the whole picture.
+    pub fn draw(&self, draws: &mut Draws<'_>, frame: &Frame<'_>, push: &impl bytemuck::NoUninit) {
+        for (over, pipeline, place) in self.each(frame) {
+            let Pipeline::Draw(pipeline) = pipeline else { continue };
+            let sets = |first| -> Vec<&DescriptorSet> {
+                std::iter::once(first).chain(frame.targets.set.as_ref()).collect()
+            };
+            let Some(place) = place else {
+                draws.draw(pipeline, &sets(frame.view), push, 3);
+                continue;
+            };
+            for part in place.surfels(self.pass) {
+                let vertices = if over == Over::Points { part.count } else { 3 * part.count };
+                draws.draw(pipeline, &sets(part.set), &part.push(), vertices);
+            }
+        }
+    }
+}
+
+impl SurfelPart<'_> {
+    /// The push constants of `lib/window.glsl`.
+    fn push(&self) -> [u32; 2] {
+        [self.count, self.first]
+    }
+}
+
+impl ElementPart<'_> {
+    /// The push constants of `lib/window.glsl`.
+    fn push(&self) -> [u32; 2] {
+        [self.count, self.first]
+    }
+}
+
+impl<'a> Frame<'a> {
+    /// Each buffer and image of these that the frame has, as it is touched.
+    pub fn uses(&self, accesses: &[(Resource, Access)]) -> Vec<Use> {
+        let mut uses = Vec::new();
+        for (resource, access) in accesses {
+            match resource.is_of_scene() {
+                true => uses.extend(self.of_scenes(*resource).map(|buffer| buffer.with(*access))),
+                false => self.targets.extend_uses(&mut uses, *resource, *access),
+            }
+        }
+        uses
+    }
+
+    /// A resource of each scene that has it, once.
+    fn of_scenes(&self, resource: Resource) -> impl Iterator<Item = &'a Buffer> {
+        self.scenes_with(resource).flat_map(move |scene| scene.buffers(resource))
+    }
+
+    /// The scenes, each once, that may have a resource: counts may be there and not be wanted.
+    fn scenes_with(&self, resource: Resource) -> impl Iterator<Item = &'a SceneResources> {
+        let wanted = resource != Resource::Counts || self.variant.count;
+        let first = self.places.iter().filter(move |place| wanted && place.number == 0);
+        first.map(|place| place.scene)
+    }
+
+    /// Empties these, as far as the frame has them.
+    pub fn clear(&self, rec: &mut Recorder<'_>, resources: &[Resource]) {
+        let write: Vec<_> = resources.iter().map(|resource| (*resource, Access::COPY_WRITE)).collect();
+        let uses = self.uses(&write);
+        if uses.is_empty() {
+            return;
+        }
+        let mut enc = rec.pass("clear", &uses);
+        for resource in resources {
+            self.targets.clear(&mut enc, *resource);
+            self.scenes_with(*resource).for_each(|scene| scene.clear(&mut enc, *resource));
+        }
+    }
+
+    /// Descriptor set 2 of a pass that is not of several steps: what it writes of what is pulled, or reads of what is pushed.
+    fn pyramid_of(&self, pass: &Pass) -> Option<&'a DescriptorSet> {
+        let Pyramids { storage, sets, .. } = self.targets.pyramids.as_ref()?;
+        if pass.writes.contains(&Resource::Pulled) {
+            return Some(&sets[storage.pull(0)[1]]);
+        }
+        pass.reads.contains(&Resource::Pushed).then(|| &sets[storage.push(0)[1]])
+    }
+
+    /// The descriptor sets of a step of pull or push, which reads one of the pyramids and writes one.
+    pub fn pyramid_sets(&self, [from, to]: [usize; 2]) -> Vec<&'a DescriptorSet> {
+        let Some(pyramids) = &self.targets.pyramids else { return Vec::new() };
+        let targets = self.targets.set.as_ref();
+        [Some(self.view), targets, Some(&pyramids.sets[to]), Some(&pyramids.sets[from])]
+            .into_iter()
+            .flatten()
+            .collect()
+    }
+}
+
+impl Pass {
+    /// How its shaders touch what it reads and writes in frames of such scenes; with what it draws `to_own` targets.
+    pub fn accesses(
+        &self,
+        variant: &Variant,
+        scenes: &[SceneVariant],
+        to_own: bool,
+    ) -> Vec<(Resource, Access)> {
+        let programs = match &self.programs {
+            Programs::None => Vec::new(),
+            Programs::OfFrame(programs) => programs(variant),
+            Programs::OfScene(programs) => {
+                let unlike: HashSet<_> = scenes.iter().collect();
+                unlike.into_iter().flat_map(programs).collect()
+            }
+        };
+        let seen_by = |resource: Resource| {
+            let modules = programs.iter().flat_map(|program| program.modules());
+            let is_seen =
+                |module: &Module| module.resources.iter().any(|(declared, _)| resource.is_seen_as(declared));
+            modules
+                .filter(|module| is_seen(module))
+                .fold(ShaderStageFlags::empty(), |all, module| all | module.stage)
+        };
+        let read = self.reads.iter().map(|resource| (*resource, false));
+        let all = read.chain(self.writes.iter().map(|resource| (*resource, true)));
+        let touched = all.map(|(resource, write)| (resource, seen_by(resource), write));
+        let touched = touched.filter(|(_, stages, _)| !stages.is_empty());
+        let mut list: Vec<_> =
+            touched.map(|(resource, stages, write)| (resource, Access::of_shader(stages, write))).collect();
+        match &self.commands {
+            Commands::Draws(targets) if to_own => list.extend(targets.accesses()),
+            _ => {}
+        }
+        list
+    }
+}

@@ -1,0 +1,81 @@
+//! What passes read and write.
+
+/// Buffers and images that passes hand on to each other. What is only read, such as positions, is none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Resource {
+    /// Of a scene: a splat a surfel.
+    Splats,
+    /// Of a scene: indices of splats of many pixels.
+    LargeSplats,
+    /// Of a scene: clip lines on the screen.
+    ScreenClips,
+    /// Of a scene: culled surfels by reason.
+    Counts,
+    /// Of a scene: indices of triangles of many pixels.
+    LargeTriangles,
+    /// Depth key of the nearest surface, moved back by ε; 0 where there is none. Where the nearest splat is seen alone and computed, its number
+    /// is beside the key.
+    Visibility,
+    /// `(Σw, Σw a)`: `a` is the normal where normals are wanted, else the colour.
+    Sums0,
+    /// `(Σw κ, Σw rgb)`, where depth is wanted, or colour beside normals.
+    Sums1,
+    /// Least visibility of each tile, empty pixels aside.
+    Tiles,
+    /// The samples of each pixel that a surface covers, a bit each, where α is coverage.
+    Coverage,
+    /// Distance and number of the nearest point of each pixel.
+    Nearest,
+    /// A depth that tells the distance of the nearest point that is drawn, bit for bit.
+    NearestDepth,
+    /// Its number, from 1 on; 0 where there is none.
+    NearestNumber,
+    /// The pyramid with the level 0 that fetch writes.
+    Pulled,
+    /// The pyramid with the level 0 that shade reads.
+    Pushed,
+    /// The picture that compute shaders write: all pixels' colour (4 floats), then all normals (3), then all depths (1), then all numbers of
+    /// points (1, a word), as far as they are asked for.
+    Picture,
+    /// The picture that is drawn, linear.
+    Image,
+    /// Unit normals beside it, where they are asked for.
+    Normal,
+    /// Eye-space depth beside it, where it is asked for.
+    Depth,
+}
+
+impl Resource {
+    /// The name of a target in reports.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Splats => "splats",
+            Self::LargeSplats => "large splats",
+            Self::ScreenClips => "screen clips",
+            Self::Counts => "counts",
+            Self::LargeTriangles => "large triangles",
+            Self::Visibility => "visibility",
+            Self::Sums0 => "sums0",
+            Self::Sums1 => "sums1",
+            Self::Tiles => "tiles",
+            Self::Coverage => "coverage",
+            Self::Nearest => "nearest",
+            Self::NearestDepth => "nearest_depth",
+            Self::NearestNumber => "nearest_number",
+            Self::Pulled => "pulled",
+            Self::Pushed => "pushed",
+            Self::Picture => "picture",
+            Self::Image => "image",
+            Self::Normal => "normal",
+            Self::Depth => "depth",
+        }
+    }
+
+    /// Whether each scene has one of its own.
+    pub fn is_of_scene(self) -> bool {
+        matches!(
+            self,
+            Self::Splats | Self::LargeSplats | Self::ScreenClips | Self::Counts | Self::LargeTriangles
+        )
+    }
+}

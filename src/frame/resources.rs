@@ -1,0 +1,417 @@
+//! What frames are made with: pipelines, targets and what is made of scenes, made when scene or settings change, and recorded in every frame.
+
+use super::description::{Description, describe};
+use super::pass::{Commands, Pass};
+use super::pipelines::{Host, Pipelines};
+use super::rasterizer::width_of_blended_sums;
+use super::recording::{Frame, Prepared};
+use super::renderer::RenderOptions;
+use super::residents::Residents;
+use super::scene_resources::{FRAME_STRIDE, Needs, Place, SceneResources};
+use super::targets::{RenderTargets, check_size};
+use super::uniforms::Blocks;
+use super::variant::{Precision, SceneVariant, Variant};
+use crate::error::Result;
+use crate::geometry::Camera;
+use crate::instance::{Placed, first_numbers};
+use crate::scene::Scene;
+use crate::settings::Settings;
+use crate::splatting::Visibility;
+use crate::vk::shaders::{self, layout, resource};
+use crate::vk::{Access, Binding, Buffer, DescriptorSet, Device, Framebuffer, Recorder};
+use std::any::Any;
+use std::sync::Arc;
+
+/// Pipelines, targets and what is made of scenes, for frames of one size on one device.
+pub struct FrameResources {
+    // Fields are dropped in this order: views before what they view.
+    present: Option<Present>,
+    /// What was before it: who switches to and fro, as in progressive rendering, makes nothing.
+    previous: Option<Present>,
+    scenes: Residents,
+    /// Of each place of the present frame: its scene among the residents, and which of that one's places it is.
+    places: Vec<[usize; 2]>,
+    pipelines: Pipelines,
+    view: Arc<Buffer>,
+    options: RenderOptions,
+    device: Arc<Device>,
+    retired: Retired,
+    /// Number of targets made so far.
+    made: u64,
+}
+
+/// What happens to what frames no longer need.
+pub enum Retired {
+    /// It goes at once: every frame is waited for.
+    Dropped,
+    /// It is kept for who knows when the GPU is done with it.
+    Kept(Vec<Outgoing>),
+}
+
+/// What frames no longer need, kept for what it holds.
+pub type Outgoing = Box<dyn Any + Send + Sync>;
+
+/// Targets of a variant, and its passes.
+pub struct Present {
+    /// No other has it.
+    pub id: u64,
+    pub variant: Variant,
+    /// Of the scenes for which the passes have pipelines.
+    scenes: Vec<SceneVariant>,
+    passes: Vec<Prepared>,
+    view: ViewSet,
+    pub targets: RenderTargets,
+    pub readback: Vec<Buffer>,
+    /// What the view's set names.
+    _view: Arc<Buffer>,
+}
+
+/// Descriptor set 0 of passes over pixels.
+struct ViewSet {
+    set: DescriptorSet,
+    /// The scene whose texture or materials it names.
+    scene: Option<u64>,
+}
+
+/// What a host draws to, and shows of it to shaders.
+pub type HostBindings<'a> = &'a [(&'static shaders::Resource, Binding<'a>)];
+
+impl Retired {
+    fn take<T: Any + Send + Sync>(&mut self, outgoing: Option<T>) {
+        if let (Self::Kept(list), Some(outgoing)) = (self, outgoing) {
+            list.push(Box::new(outgoing));
+        }
+    }
+}
+
+impl FrameResources {
+    /// Nothing is made for any scene yet. With a `host`, what is drawn is drawn in its subpasses.
+    pub fn new(
+        device: &Arc<Device>,
+        options: RenderOptions,
+        retired: Retired,
+        host: Option<Host>,
+    ) -> Result<Self> {
+        check_size(device, options.size)?;
+        Ok(Self {
+            present: None,
+            previous: None,
+            scenes: Residents::default(),
+            places: Vec::new(),
+            pipelines: Pipelines::new(host),
+            view: Arc::new(Buffer::uniform(device, "frame", FRAME_STRIDE)?),
+            options,
+            device: device.clone(),
+            retired,
+            made: 0,
+        })
+    }
+
+    /// Width of the samples of the last frame, if it was pull–push's, else of the weighted sums.
+    pub fn precision(&self) -> Precision {
+        let unknown = || width_of_blended_sums(&self.device, &self.options);
+        self.present.as_ref().map_or_else(unknown, |present| present.variant.precision)
+    }
+
+    /// What they are made on.
+    pub fn device(&self) -> &Arc<Device> {
+        &self.device
+    }
+
+    /// Targets of the last frame.
+    pub fn present(&self) -> Option<&Present> {
+        self.present.as_ref()
+    }
+
+    /// What is made of the scenes of the last frame, each once.
+    pub fn scenes(&self) -> impl Iterator<Item = &SceneResources> + Clone {
+        self.scenes.present()
+    }
+
+    /// The places of the last frame, in their order: the number of the scene and which of its places it is.
+    pub fn places(&self) -> &[[usize; 2]] {
+        &self.places
+    }
+
+    /// What went since this was last asked.
+    pub fn outgoing(&mut self) -> Vec<Outgoing> {
+        match &mut self.retired {
+            Retired::Dropped => Vec::new(),
+            Retired::Kept(list) => std::mem::take(list),
+        }
+    }
+
+    /// Frames from now on have this size, px.
+    pub fn resize(&mut self, size: [u32; 2]) {
+        if self.options.size != size {
+            self.options.size = size;
+            self.forget_targets();
+        }
+    }
+
+    /// The next frame has targets of its own, as where a host draws to others.
+    pub fn forget_targets(&mut self) {
+        for old in [self.present.take(), self.previous.take()] {
+            self.retired.take(old);
+        }
+    }
+
+    /// Whether frames from now on count their surfels.
+    pub fn count(&mut self, on: bool) {
+        self.options.count = on;
+    }
+
+    /// What a frame of these scenes is. Refuses what cannot be rendered.
+    pub fn describe(
+        &self,
+        scenes: &[Placed<'_>],
+        camera: &Camera,
+        settings: &Settings,
+        size: [u32; 2],
+    ) -> Result<Description> {
+        describe(&self.device, &RenderOptions { size, ..self.options }, scenes, camera, settings)
+    }
+
+    /// Makes what a frame needs and is not there, with buffers to read it back where it is `read`: the frame's numbers, and what it is.
+    pub fn prepare(
+        &mut self,
+        scenes: &[Placed<'_>],
+        camera: &Camera,
+        settings: &Settings,
+        read: bool,
+    ) -> Result<(Blocks, Variant)> {
+        let frame = self.describe(scenes, camera, settings, self.options.size)?;
+        self.make(scenes, &frame, self.options.size, &[])?;
+        match &mut self.present {
+            Some(present) if read && present.readback.is_empty() => {
+                present.readback = present.targets.make_readback(&self.device)?;
+            }
+            _ => {}
+        }
+        Ok((frame.blocks, frame.variant))
+    }
+
+    /// Makes what a frame needs and is not there; in a host's subpasses with targets of `size` px, of which shaders see `bindings`.
+    pub fn make(
+        &mut self,
+        scenes: &[Placed<'_>],
+        frame: &Description,
+        size: [u32; 2],
+        bindings: HostBindings<'_>,
+    ) -> Result<()> {
+        let (variant, blocks) = (frame.variant, &frame.blocks);
+        self.make_scenes(scenes, frame, !blocks.scenes.is_empty())?;
+        self.make_present(scenes, variant, size, bindings)?;
+        self.make_passes(&frame.scenes)
+    }
+
+    /// Makes the pipelines of such a frame, and nothing else.
+    pub fn make_pipelines(&mut self, frame: &Description) -> Result<()> {
+        for pass in self.pipelines.passes(&frame.variant, frame.scenes.len()) {
+            self.pipelines.of(&self.device, pass, &frame.variant, &frame.scenes)?;
+        }
+        Ok(())
+    }
+
+    /// Records the frame that was prepared, with these numbers, but for what is drawn in subpasses of a host: for that everything is made ready.
+    pub fn record(&self, rec: &mut Recorder<'_>, blocks: &Blocks) {
+        self.update(rec, blocks);
+        let Some((present, frame)) = self.frame() else { return };
+        let mut awaited = Vec::new();
+        for prepared in &present.passes {
+            if self.pipelines.is_of_host(prepared.pass) {
+                frame.clear(rec, prepared.pass.clears);
+                awaited.extend(frame.uses(&prepared.accesses));
+            } else {
+                prepared.record(rec, &frame);
+            }
+        }
+        if present.variant.count {
+            let counts = self.scenes().flat_map(|scene| scene.buffers(super::resource::Resource::Counts));
+            awaited.extend(counts.map(|counts| counts.with(Access::HOST_READ)));
+        }
+        if !awaited.is_empty() {
+            rec.wait(&awaited);
+        }
+    }
+
+    /// The frame that was prepared, to be recorded.
+    pub fn frame(&self) -> Option<(&Present, Frame<'_>)> {
+        let present = self.present.as_ref()?;
+        let scenes: Vec<_> = self.scenes().collect();
+        let places =
+            self.places.iter().map(|[scene, number]| Place { scene: scenes[*scene], number: *number });
+        let Present { variant, targets, view, .. } = present;
+        Some((present, Frame { variant, view: &view.set, targets, places: places.collect() }))
+    }
+
+    /// Records the writing of a frame's numbers.
+    fn update(&self, rec: &mut Recorder<'_>, blocks: &Blocks) {
+        let mut own: Vec<Vec<u8>> = vec![Vec::new(); self.scenes().count()];
+        for ([scene, number], block) in self.places.iter().zip(&blocks.scenes) {
+            let (start, bytes) = (number * FRAME_STRIDE as usize, bytemuck::bytes_of(block));
+            own[*scene].resize(start + FRAME_STRIDE as usize, 0);
+            own[*scene][start..start + bytes.len()].copy_from_slice(bytes);
+        }
+        let view = (&*self.view, bytemuck::bytes_of(&blocks.view));
+        let frames =
+            self.scenes().zip(&own).filter_map(|(scene, bytes)| Some((scene.frames.as_ref()?, &**bytes)));
+        rec.update(&std::iter::once(view).chain(frames).collect::<Vec<_>>());
+    }
+
+    /// Makes what is not there of these scenes, for as many surfels as each has now; with numbers of each place's `own`, or those of the view.
+    fn make_scenes(&mut self, placed: &[Placed<'_>], frame: &Description, own: bool) -> Result<()> {
+        let variant = &frame.variant;
+        let mut list: Vec<&Scene> = Vec::new();
+        let mut first_of: Vec<usize> = Vec::new();
+        let mut firsts: Vec<Vec<u32>> = Vec::new();
+        self.places.clear();
+        let mut known = std::collections::HashMap::new();
+        for ((i, Placed { scene, .. }), first) in placed.iter().enumerate().zip(first_numbers(placed)) {
+            let number = *known.entry(scene.id).or_insert(list.len());
+            if number == list.len() {
+                list.push(scene);
+                first_of.push(i);
+                firsts.push(Vec::new());
+            }
+            self.places.push([number, firsts[number].len()]);
+            firsts[number].push(first);
+        }
+        let splats = variant.pull_push.is_none();
+        let of_host = self.pipelines.has_host();
+        let needs = |scene: usize| Needs {
+            rasterizer: splats.then_some(variant.rasterizer),
+            moved: of_host && splats && variant.visibility == Visibility::Axis,
+            own_frames: own,
+            places: firsts[scene].len() as u64,
+        };
+        let Self { scenes, retired, device, view, .. } = self;
+        let fits = |made: &SceneResources, scene: usize| made.needs().cover(&needs(scene));
+        let make = |scene: usize| {
+            let variant = &frame.scenes[first_of[scene]];
+            SceneResources::new(device, list[scene], variant, needs(scene), view)
+        };
+        let turned = scenes.turn(&list, fits, make, |gone| retired.take(Some(gone)));
+        if turned.is_err() {
+            self.places.clear();
+        }
+        turned?;
+        for ((made, scene), firsts) in scenes.present_mut().zip(list).zip(firsts) {
+            made.show(scene.count(), firsts);
+            if variant.count {
+                made.make_counts(device)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn make_present(
+        &mut self,
+        scenes: &[Placed<'_>],
+        variant: Variant,
+        size: [u32; 2],
+        bindings: HostBindings<'_>,
+    ) -> Result<()> {
+        let is_other = |present: &Option<Present>| present.as_ref().is_none_or(|p| p.variant != variant);
+        if is_other(&self.present) {
+            std::mem::swap(&mut self.present, &mut self.previous);
+        }
+        let with_lookups = scenes.iter().find(|placed| {
+            variant.texture.is_some() && placed.scene.texture.is_some()
+                || variant.materials && placed.scene.materials.is_some()
+        });
+        let with_lookups = with_lookups.map(|placed| placed.scene);
+        if is_other(&self.present) {
+            self.retired.take(self.present.take());
+            if variant.precision != self.options.precision {
+                let name = &self.device.description().name;
+                log::warn!("{name} cannot blend 32-bit floats: sums are kept in 16 bits");
+            }
+            let targets = match self.pipelines.has_host() {
+                true => RenderTargets::of_host(&self.device, &variant, size, bindings)?,
+                false => RenderTargets::new(&self.device, &variant, size)?,
+            };
+            self.made += 1;
+            self.present = Some(Present {
+                id: self.made,
+                variant,
+                scenes: Vec::new(),
+                passes: Vec::new(),
+                view: ViewSet::new(&self.device, &self.view, &variant, with_lookups)?,
+                targets,
+                readback: Vec::new(),
+                _view: self.view.clone(),
+            });
+        }
+        match &mut self.present {
+            Some(present) if present.view.scene != with_lookups.map(|scene| scene.id) => {
+                let view = ViewSet::new(&self.device, &self.view, &variant, with_lookups)?;
+                self.retired.take(Some(std::mem::replace(&mut present.view, view).set));
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// Makes the pipelines of the present passes for such scenes, if they are others than before.
+    fn make_passes(&mut self, scenes: &[SceneVariant]) -> Result<()> {
+        let Self { present: Some(present), pipelines, device, .. } = self else { return Ok(()) };
+        if !present.passes.is_empty() && present.scenes == scenes {
+            return Ok(());
+        }
+        let list = pipelines.passes(&present.variant, scenes.len());
+        let same = list.len() == present.passes.len()
+            && list.iter().zip(&present.passes).all(|(pass, prepared)| std::ptr::eq(*pass, prepared.pass));
+        if !same {
+            let old = std::mem::take(&mut present.passes);
+            self.retired.take((!old.is_empty()).then_some(old));
+            let made = list.iter().map(|pass| prepared(device, pass, pipelines, present));
+            present.passes = made.collect::<Result<_>>()?;
+        }
+        for prepared in &mut present.passes {
+            let (pass, variant) = (prepared.pass, &present.variant);
+            prepared.pipelines = pipelines.of(device, pass, variant, scenes)?;
+            prepared.accesses = pass.accesses(variant, scenes, prepared.framebuffer.is_some());
+        }
+        present.scenes = scenes.to_vec();
+        Ok(())
+    }
+}
+
+impl Present {
+    /// A pass of the frame.
+    pub fn pass(&self, pass: &'static Pass) -> Option<&Prepared> {
+        self.passes.iter().find(|prepared| std::ptr::eq(prepared.pass, pass))
+    }
+}
+
+/// A pass without its pipelines.
+fn prepared(
+    device: &Arc<Device>,
+    pass: &'static Pass,
+    pipelines: &mut Pipelines,
+    present: &Present,
+) -> Result<Prepared> {
+    let framebuffer = match (pipelines.render_pass(device, pass, &present.variant)?, &pass.commands) {
+        (Some(into), Commands::Draws(targets)) => {
+            Some(Framebuffer::new(device, &into, &targets.images(&present.targets))?)
+        }
+        _ => None,
+    };
+    Ok(Prepared { pass, accesses: Vec::new(), framebuffer, pipelines: Vec::new() })
+}
+
+impl ViewSet {
+    fn new(device: &Arc<Device>, view: &Buffer, variant: &Variant, scene: Option<&Scene>) -> Result<Self> {
+        let frame = Binding::Uniform(view, 0, size_of::<layout::Frame>() as u64);
+        let texture = scene.and_then(|scene| scene.texture.as_ref()).filter(|_| variant.texture.is_some());
+        let materials = scene.and_then(|scene| scene.materials.as_ref()).filter(|_| variant.materials);
+        let lookups = [
+            Some((&resource::FRAME, frame)),
+            texture.map(|texture| (&resource::TEXTURE, Binding::whole(&texture.buffer))),
+            materials.map(|materials| (&resource::MATERIALS, Binding::whole(&materials.buffer))),
+        ];
+        let lookups: Vec<_> = lookups.into_iter().flatten().collect();
+        Ok(Self { set: DescriptorSet::new(device, &lookups)?, scene: scene.map(|scene| scene.id) })
+    }
+}

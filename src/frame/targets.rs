@@ -1,0 +1,436 @@
+//! Every render target: name, format, where shaders see it, and when a frame has it.
+
+use super::pass::{Start, Targets};
+use super::pyramids::Pyramids;
+use super::resource::Resource;
+use super::variant::{Outputs, Precision, Rasterizer, Variant};
+use crate::error::{Error, Result};
+use crate::splatting::Visibility;
+use crate::vk::shaders::{self, resource};
+use crate::vk::{
+    Access, Attachment, Binding, Buffer, Capabilities, DescriptorSet, Device, Encoder, Image, ImageUse, Use,
+    pixel_bytes,
+};
+use ash::vk::Format;
+use std::sync::Arc;
+
+/// Side of a tile, px; as in `lib/pixels.glsl`.
+const TILE: u32 = 8;
+
+/// What a target of a frame is.
+#[derive(Clone, Copy, Debug)]
+pub struct Description {
+    pub resource: Resource,
+    /// Of a pixel.
+    pub format: Format,
+    pub kind: Kind,
+    /// Where shaders see it, if they do.
+    pub shader: Option<&'static shaders::Resource>,
+}
+
+/// What a target is kept in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Kind {
+    /// An image.
+    Image(ImageUse),
+    /// A buffer of so many bytes a pixel, row by row from the top left.
+    Pixels(u64),
+    /// A buffer of a word a tile.
+    Tiles,
+}
+
+/// The targets of a frame.
+pub struct RenderTargets {
+    // Sets go before what they name.
+    /// What shaders see of them, if they see any: descriptor set 1.
+    pub set: Option<DescriptorSet>,
+    list: Vec<(Description, Memory)>,
+    /// Of pull–push.
+    pub pyramids: Option<Pyramids>,
+    /// Width and height, px.
+    pub size: [u32; 2],
+    /// What the picture holds.
+    pub outputs: Outputs,
+}
+
+enum Memory {
+    Image(Image),
+    Buffer(Buffer),
+}
+
+/// A target as a report shows it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub struct TargetInfo {
+    /// Its name.
+    pub name: &'static str,
+    /// Its format; for buffers, that of a pixel.
+    pub format: Format,
+    /// Memory that it occupies, bytes.
+    pub bytes: u64,
+}
+
+/// Targets by name with the bytes of a pixel, of which a tile's are shared.
+pub type PerPixel = Vec<(&'static str, f64)>;
+
+impl Resource {
+    /// Whether shaders see it as that.
+    pub fn is_seen_as(self, shader: &shaders::Resource) -> bool {
+        let known: &[&shaders::Resource] = match self {
+            Self::Splats => &[&resource::SPLATS],
+            Self::LargeSplats => &[&resource::LARGE_SPLATS],
+            Self::ScreenClips => &[&resource::SCREEN_CLIPS],
+            Self::Counts => &[&resource::COUNTS],
+            Self::LargeTriangles => &[&resource::LARGE_TRIANGLES],
+            Self::Visibility => &[
+                &resource::VISIBILITY,
+                &resource::WINNERS,
+                &resource::VISIBILITY_IMAGE,
+                &resource::VISIBILITY_INPUT,
+            ],
+            Self::Sums0 => &[&resource::SUMS0, &resource::SUMS0_IMAGE, &resource::SUMS0_INPUT],
+            Self::Sums1 => &[&resource::SUMS1, &resource::SUMS1_IMAGE, &resource::SUMS1_INPUT],
+            Self::Tiles => &[&resource::TILES],
+            Self::Coverage => &[&resource::COVERAGE],
+            Self::Nearest => &[&resource::NEAREST],
+            Self::NearestDepth => &[&resource::NEAREST_DEPTH],
+            Self::NearestNumber => &[&resource::NEAREST_NUMBER],
+            Self::Pulled => &[&resource::TO_DEPTHS],
+            Self::Pushed => &[&resource::FINAL_DEPTHS],
+            Self::Picture => &[&resource::PICTURE],
+            Self::Image | Self::Normal | Self::Depth => &[],
+        };
+        known.contains(&shader)
+    }
+}
+
+/// What a frame of this variant needs, and no more; the pyramids of pull–push aside.
+pub fn describe(variant: &Variant) -> Vec<Description> {
+    let list = match (variant.pull_push, variant.rasterizer) {
+        (Some(_), _) => of_points(variant),
+        (None, Rasterizer::Draw) => drawn(variant),
+        (None, Rasterizer::Compute) => computed(variant),
+    };
+    list.into_iter().flatten().collect()
+}
+
+fn image(
+    resource: Resource,
+    format: Format,
+    also: ImageUse,
+    shader: Option<&'static shaders::Resource>,
+) -> Description {
+    Description { resource, format, kind: Kind::Image(also), shader }
+}
+
+fn pixels(resource: Resource, format: Format, bytes: u64, shader: &'static shaders::Resource) -> Description {
+    Description { resource, format, kind: Kind::Pixels(bytes), shader: Some(shader) }
+}
+
+/// Format of sums of one number, or of four.
+pub fn sums_format(precision: Precision, wide: bool) -> Format {
+    match (precision, wide) {
+        (Precision::Full, true) => Format::R32G32B32A32_SFLOAT,
+        (Precision::Full, false) => Format::R32_SFLOAT,
+        (Precision::Half, true) => Format::R16G16B16A16_SFLOAT,
+        (Precision::Half, false) => Format::R16_SFLOAT,
+    }
+}
+
+/// Bytes of coverage, a bit a sample.
+const COVERAGE: u64 = 4;
+
+/// The samples that are covered.
+fn coverage(variant: &Variant) -> Option<Description> {
+    let coverage = pixels(Resource::Coverage, Format::R32_UINT, COVERAGE, &resource::COVERAGE);
+    variant.coverage.then_some(coverage)
+}
+
+fn picture(outputs: Outputs) -> Description {
+    pixels(Resource::Picture, Format::R32_SFLOAT, 4 * picture_floats(outputs), &resource::PICTURE)
+}
+
+/// Floats of a pixel of a picture in a buffer.
+pub fn picture_floats(outputs: Outputs) -> u64 {
+    4 + 3 * u64::from(outputs.normal) + u64::from(outputs.depth) + u64::from(outputs.id)
+}
+
+fn drawn(variant: &Variant) -> Vec<Option<Description>> {
+    let sums = |wide| sums_format(variant.precision, wide);
+    let sampled = |resource, format, shader| image(resource, format, ImageUse::Sampled, Some(shader));
+    let output = |resource, format| image(resource, format, ImageUse::Output, None);
+    let [sums0, sums1] = [sums(variant.wide_sums0()), sums(variant.wide_sums1())];
+    vec![
+        Some(sampled(Resource::Visibility, Format::D32_SFLOAT, &resource::VISIBILITY_IMAGE)),
+        Some(sampled(Resource::Sums0, sums0, &resource::SUMS0_IMAGE)),
+        variant.has_sums1().then(|| sampled(Resource::Sums1, sums1, &resource::SUMS1_IMAGE)),
+        Some(output(Resource::Image, Format::R32G32B32A32_SFLOAT)),
+        variant.outputs.normal.then(|| output(Resource::Normal, Format::R32G32B32A32_SFLOAT)),
+        variant.outputs.depth.then(|| output(Resource::Depth, Format::R32_SFLOAT)),
+        coverage(variant),
+    ]
+}
+
+fn computed(variant: &Variant) -> Vec<Option<Description>> {
+    let nearest = variant.visibility == Visibility::Nearest;
+    let visibility = match nearest {
+        true => pixels(Resource::Visibility, Format::R64_UINT, 8, &resource::WINNERS),
+        false => pixels(Resource::Visibility, Format::R32_UINT, 4, &resource::VISIBILITY),
+    };
+    let sums = |resource, wide: bool, shader| {
+        let format = sums_format(Precision::Full, wide);
+        pixels(resource, format, pixel_bytes(format), shader)
+    };
+    let tiles = Description {
+        resource: Resource::Tiles,
+        format: Format::R32_UINT,
+        kind: Kind::Tiles,
+        shader: Some(&resource::TILES),
+    };
+    vec![
+        Some(visibility),
+        Some(sums(Resource::Sums0, variant.wide_sums0(), &resource::SUMS0)),
+        variant.has_sums1().then(|| sums(Resource::Sums1, variant.wide_sums1(), &resource::SUMS1)),
+        (!nearest).then_some(tiles),
+        coverage(variant),
+        Some(picture(variant.outputs)),
+    ]
+}
+
+fn of_points(variant: &Variant) -> Vec<Option<Description>> {
+    let drawn = |resource, format, shader| {
+        variant.draws_points().then(|| image(resource, format, ImageUse::Sampled, Some(shader)))
+    };
+    let nearest = pixels(Resource::Nearest, Format::R64_UINT, 8, &resource::NEAREST);
+    vec![
+        variant.computes_points().then_some(nearest),
+        drawn(Resource::NearestDepth, Format::D32_SFLOAT, &resource::NEAREST_DEPTH),
+        drawn(Resource::NearestNumber, Format::R32_UINT, &resource::NEAREST_NUMBER),
+        Some(picture(variant.outputs)),
+    ]
+}
+
+/// What shaders see of the targets of a frame: descriptor set 1.
+pub fn shader_resources(variant: &Variant) -> Vec<&'static shaders::Resource> {
+    describe(variant).iter().filter_map(|target| target.shader).collect()
+}
+
+/// What the targets of a frame take.
+pub fn per_pixel(variant: &Variant) -> PerPixel {
+    let bytes = |target: &Description| match target.kind {
+        Kind::Image(_) => pixel_bytes(target.format) as f64,
+        Kind::Pixels(bytes) => bytes as f64,
+        Kind::Tiles => 4.0 / f64::from(TILE * TILE),
+    };
+    let mut list: PerPixel =
+        describe(variant).iter().map(|target| (target.resource.name(), bytes(target))).collect();
+    if variant.pull_push.is_some() {
+        // The picture comes last.
+        list.splice(list.len() - 1..list.len() - 1, Pyramids::per_pixel(variant));
+    }
+    list
+}
+
+/// Whether the coverage of a picture of this size fits a buffer that shaders of the device can see.
+pub fn coverage_fits(capabilities: &Capabilities, size: [u32; 2]) -> bool {
+    COVERAGE * pixels_of(size) <= capabilities.max_storage_buffer_range
+}
+
+/// Whether a picture of this size fits the buffers that shaders of the device can see.
+pub fn picture_fits(capabilities: &Capabilities, outputs: Outputs, size: [u32; 2]) -> bool {
+    // Of all targets of splats that are computed, the picture has the largest pixels.
+    4 * picture_floats(outputs) * pixels_of(size) <= capabilities.max_storage_buffer_range
+}
+
+/// Number of pixels.
+pub fn pixels_of(size: [u32; 2]) -> u64 {
+    u64::from(size[0]) * u64::from(size[1])
+}
+
+/// Refuses a size that `device` has no targets of, with its limit.
+pub fn check_size(device: &Device, size: [u32; 2]) -> Result<()> {
+    let limit = device.capabilities().max_image_side;
+    let [width, height] = size;
+    match size.contains(&0) || size.iter().any(|side| *side > limit) {
+        false => Ok(()),
+        true => {
+            let name = &device.description().name;
+            Err(Error::Usage(format!(
+                "a picture of {width}x{height} px: {name} draws from 1x1 to {limit}x{limit}"
+            )))
+        }
+    }
+}
+
+impl RenderTargets {
+    /// The targets of `variant` at `size` px.
+    pub fn new(device: &Arc<Device>, variant: &Variant, size: [u32; 2]) -> Result<Self> {
+        let make = |target: Description| {
+            let name = target.resource.name();
+            let memory = match target.kind {
+                Kind::Image(also) => Memory::Image(Image::target(device, name, target.format, size, also)?),
+                Kind::Pixels(bytes) => {
+                    Memory::Buffer(Buffer::storage(device, name, bytes * pixels_of(size))?)
+                }
+                Kind::Tiles => Memory::Buffer(Buffer::storage(device, name, 4 * tiles_of(size))?),
+            };
+            Ok((target, memory))
+        };
+        let list = describe(variant).into_iter().map(make).collect::<Result<Vec<_>>>()?;
+        let pyramids = variant.pull_push.map(|_| Pyramids::new(device, variant, size)).transpose()?;
+        let mut targets = Self { set: None, list, pyramids, size, outputs: variant.outputs };
+        targets.set = targets.make_set(device)?;
+        Ok(targets)
+    }
+
+    /// Targets of a host, of which shaders see `bindings`; and coverage, where a frame has it.
+    pub fn of_host(
+        device: &Arc<Device>,
+        variant: &Variant,
+        size: [u32; 2],
+        bindings: &[(&'static shaders::Resource, Binding<'_>)],
+    ) -> Result<Self> {
+        let make = |target: Description| {
+            let buffer = Buffer::storage(device, target.resource.name(), COVERAGE * pixels_of(size))?;
+            Ok((target, Memory::Buffer(buffer)))
+        };
+        let list = coverage(variant).into_iter().map(make).collect::<Result<Vec<_>>>()?;
+        let mut targets = Self { set: None, list, pyramids: None, size, outputs: variant.outputs };
+        let all: Vec<_> = bindings.iter().copied().chain(targets.bindings()).collect();
+        let set = DescriptorSet::new(device, &all)?;
+        targets.set = Some(set);
+        Ok(targets)
+    }
+
+    fn bindings(&self) -> impl Iterator<Item = (&'static shaders::Resource, Binding<'_>)> {
+        self.list.iter().filter_map(|(target, memory)| {
+            let binding = match memory {
+                Memory::Image(image) => Binding::Sampled(image),
+                Memory::Buffer(buffer) => Binding::whole(buffer),
+            };
+            Some((target.shader?, binding))
+        })
+    }
+
+    fn make_set(&self, device: &Arc<Device>) -> Result<Option<DescriptorSet>> {
+        let bindings: Vec<_> = self.bindings().collect();
+        (!bindings.is_empty()).then(|| DescriptorSet::new(device, &bindings)).transpose()
+    }
+
+    fn find(&self, resource: Resource) -> Option<&Memory> {
+        self.list.iter().find(|(target, _)| target.resource == resource).map(|(_, memory)| memory)
+    }
+
+    /// A target that is an image.
+    pub fn image(&self, resource: Resource) -> Option<&Image> {
+        match self.find(resource)? {
+            Memory::Image(image) => Some(image),
+            Memory::Buffer(_) => None,
+        }
+    }
+
+    /// A target that is a buffer.
+    pub fn buffer(&self, resource: Resource) -> Option<&Buffer> {
+        match self.find(resource)? {
+            Memory::Image(_) => None,
+            Memory::Buffer(buffer) => Some(buffer),
+        }
+    }
+
+    /// Adds a target as it is touched, if it is there.
+    pub fn extend_uses(&self, uses: &mut Vec<Use>, resource: Resource, access: Access) {
+        match self.find(resource) {
+            Some(Memory::Image(image)) => uses.push(image.with(access.of_image())),
+            Some(Memory::Buffer(buffer)) => uses.push(buffer.with(access)),
+            None => uses.extend(self.planes_of(resource, access)),
+        }
+    }
+
+    /// The planes of a pyramid, as they are touched.
+    fn planes_of(&self, resource: Resource, access: Access) -> impl Iterator<Item = Use> {
+        let pyramid = self.pyramids.as_ref().and_then(|pyramids| pyramids.of(resource));
+        pyramid.into_iter().flat_map(move |pyramid| pyramid.with(access))
+    }
+
+    /// Empties a target, if it is there: points that are none are all ones, everything else is zeros.
+    pub fn clear(&self, enc: &mut Encoder<'_, '_>, resource: Resource) {
+        match (self.buffer(resource), resource) {
+            (Some(buffer), Resource::Nearest) => enc.ones(buffer),
+            (Some(buffer), _) => enc.zero(buffer),
+            (None, _) => {
+                let pyramid = self.pyramids.as_ref().and_then(|pyramids| pyramids.of(resource));
+                pyramid.into_iter().for_each(|pyramid| pyramid.clear(enc));
+            }
+        }
+    }
+
+    /// The images that are read on the CPU, where the picture is drawn.
+    pub fn outputs(&self) -> impl Iterator<Item = &Image> {
+        [Resource::Image, Resource::Normal, Resource::Depth]
+            .into_iter()
+            .filter_map(|output| self.image(output))
+    }
+
+    /// Number of pixels.
+    pub fn pixels(&self) -> u64 {
+        pixels_of(self.size)
+    }
+
+    /// Number of tiles.
+    pub fn tiles(&self) -> u64 {
+        tiles_of(self.size)
+    }
+
+    /// Every target that there is.
+    pub fn list(&self) -> Vec<TargetInfo> {
+        let info = |(target, memory): &(Description, Memory)| TargetInfo {
+            name: target.resource.name(),
+            format: target.format,
+            bytes: match memory {
+                Memory::Image(image) => image.bytes(),
+                Memory::Buffer(buffer) => buffer.size(),
+            },
+        };
+        let mut list: Vec<_> = self.list.iter().map(info).collect();
+        if let Some(pyramids) = &self.pyramids {
+            list.splice(list.len() - 1..list.len() - 1, pyramids.list());
+        }
+        list
+    }
+}
+
+fn tiles_of(size: [u32; 2]) -> u64 {
+    let [x, y] = size.map(|side| u64::from(side.div_ceil(TILE)));
+    x * y
+}
+
+impl Targets {
+    /// The attachments of its render pass in frames of `variant`: colours, and depth.
+    pub fn attachments(&self, variant: &Variant) -> (Vec<Attachment>, Option<Attachment>) {
+        let all = describe(variant);
+        let attachment = |(resource, start): &(Resource, Start)| {
+            let found = all.iter().find(|target| target.resource == *resource);
+            found.map_or(Attachment::Absent, |target| match start {
+                Start::Cleared => Attachment::Cleared(target.format),
+                Start::Overwritten => Attachment::Overwritten(target.format),
+                Start::Tested => Attachment::Tested(target.format),
+            })
+        };
+        (self.colours.iter().map(attachment).collect(), self.depth.as_ref().map(attachment))
+    }
+
+    /// The images of `targets` that it draws to: colours in their order, then depth.
+    pub fn images<'a>(&self, targets: &'a RenderTargets) -> Vec<&'a Image> {
+        let all = self.colours.iter().chain(&self.depth);
+        all.filter_map(|(resource, _)| targets.image(*resource)).collect()
+    }
+
+    /// How it touches them.
+    pub fn accesses(&self) -> impl Iterator<Item = (Resource, Access)> {
+        let depth = self.depth.map(|(resource, start)| match start {
+            Start::Tested => (resource, Access::DEPTH_TEST),
+            Start::Cleared | Start::Overwritten => (resource, Access::DEPTH_WRITE),
+        });
+        self.colours.iter().map(|(resource, _)| (*resource, Access::COLOUR_WRITE)).chain(depth)
+    }
+}
