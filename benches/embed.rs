@@ -17,8 +17,9 @@ use std::sync::Arc;
 use std::time::Instant;
 use surfel::embed::{self, Options, View};
 use surfel::geometry::Camera;
+use surfel::verify::scenes;
 use surfel::vk::Device;
-use surfel::{Precision, Rasterizer, Scene, Settings, scenes};
+use surfel::{Precision, Rasterizer, Scene, Settings};
 
 /// Side of the picture, px.
 const SIDE: u32 = 1024;

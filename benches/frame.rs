@@ -4,11 +4,12 @@ use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput, criterion_grou
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
+use surfel::formats::ply;
 use surfel::geometry::{Camera, Surfels};
-use surfel::io::ply;
 use surfel::settings::Shading;
+use surfel::verify::scenes;
 use surfel::vk::{Device, DeviceOptions};
-use surfel::{Rasterizer, RenderOptions, Renderer, Scene, Settings, scenes};
+use surfel::{Rasterizer, RenderOptions, Renderer, Scene, Settings};
 
 /// Side of the picture, px.
 const SIDE: u32 = 1024;

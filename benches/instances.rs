@@ -14,7 +14,7 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 use surfel::embed::{self, Options, Renderer, View};
 use surfel::geometry::Surfels;
-use surfel::methods::Method;
+use surfel::settings::methods::Method;
 use surfel::vk::Device;
 use surfel::{Instance, Precision, Rasterizer, Scene, Settings};
 

@@ -5,7 +5,7 @@ use glam::{DMat4, DQuat, DVec3};
 use std::sync::Arc;
 use std::time::Instant;
 use surfel::geometry::Camera;
-use surfel::scenes::bumpy_sphere;
+use surfel::verify::scenes::bumpy_sphere;
 use surfel::vk::{Device, DeviceOptions};
 use surfel::{Instance, Rasterizer, RenderOptions, Renderer, Scene, Settings};
 
@@ -51,7 +51,10 @@ fn main() -> Result<()> {
             of(&times[times.len() / 2])
         };
         let (cpu, clock) = (median(|(cpu, _)| *cpu), median(|(_, clock)| *clock));
-        println!("{:<10} CPU {cpu:6.1} ms, clock {clock:6.1} ms, {allocations} allocations", format!("{rasterizer:?}"));
+        println!(
+            "{:<10} CPU {cpu:6.1} ms, clock {clock:6.1} ms, {allocations} allocations",
+            format!("{rasterizer:?}")
+        );
     }
     Ok(())
 }

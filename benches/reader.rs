@@ -4,7 +4,7 @@ use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
-use surfel::io::ply;
+use surfel::formats::ply;
 
 criterion_group!(benches, reader);
 criterion_main!(benches);

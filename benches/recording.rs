@@ -11,7 +11,7 @@ use host::scene::{camera, sphere};
 use host::{Host, Result, Validation};
 use std::sync::Arc;
 use surfel::embed::{self, Options, Renderer, View};
-use surfel::methods::Method;
+use surfel::settings::methods::Method;
 use surfel::vk::Device;
 use surfel::{Precision, Rasterizer, Scene, Settings};
 

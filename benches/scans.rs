@@ -4,9 +4,9 @@ use criterion::{BatchSize, Criterion, SamplingMode, Throughput, criterion_group,
 use std::path::Path;
 use std::process::{Child, Command};
 use std::time::{Duration, Instant};
+use surfel::estimate::Estimate;
 use surfel::geometry::Cloud;
-use surfel::geometry::estimate::Estimate;
-use surfel::scenes::bumpy_sphere;
+use surfel::verify::scenes::bumpy_sphere;
 
 criterion_group!(benches, estimate, command);
 criterion_main!(benches);

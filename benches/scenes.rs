@@ -2,9 +2,11 @@
 
 use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use std::time::Duration;
+use surfel::Settings;
 use surfel::settings::Shading;
-use surfel::truth::{Filter, Options};
-use surfel::{Settings, scenes, truth};
+use surfel::verify::scenes;
+use surfel::verify::truth;
+use surfel::verify::truth::{Filter, Options};
 
 criterion_group!(benches, samplers, tracer);
 criterion_main!(benches);

@@ -4,8 +4,9 @@ use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput, criterion_grou
 use std::time::Duration;
 use surfel::geometry::{Camera, Surfels};
 use surfel::settings::Shading;
-use surfel::yardstick::{Kind, Yardstick};
-use surfel::{Outputs, Settings, scenes};
+use surfel::verify::scenes;
+use surfel::verify::yardstick::{Kind, Yardstick};
+use surfel::{Outputs, Settings};
 
 /// Width and height of the picture, px.
 const SIZE: [u32; 2] = [1024; 2];

@@ -1,4 +1,4 @@
-// Colour map: a picture of numbers as the colours that a PNG has for them (src/io/image/mod.rs).
+// Colour map: a picture of numbers as the colours that a PNG has for them (src/formats/image/mod.rs).
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require

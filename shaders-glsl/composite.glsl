@@ -1,4 +1,4 @@
-// Composite: the picture over a host's target, with the depth that the host's own surfaces have (src/embed.rs).
+// Composite: the picture over a host's target, with the depth that the host's own surfaces have (src/embed/mod.rs).
 #version 450
 #pragma variant IMAGES FRAGMENT
 #pragma variant NORMALS FRAGMENT

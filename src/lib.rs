@@ -3,37 +3,34 @@
 //! The way of the data, and where each step lives:
 //!
 //! ```text
-//! file ─ io, scenes → geometry ─ scene → buffers ─ frame: methods, passes → targets → picture
+//! file ─ formats, estimate → geometry ─ scene → buffers ─ frame: methods, passes → targets → picture
 //! ```
+//!
+//! Layer by layer, from the lowest; none imports what stands below it here.
 //!
 //! | module | | feature |
 //! |---|---|---|
-//! | [`geometry`] | what a scene is made of: surfels, lines, triangles, bounds, cameras; plain CPU data | `estimate` for its module of that name |
-//! | [`io`] | PLY, PNG, EXR | `io` |
-//! | [`scenes`] | built-in scenes with exact ground truth | `scenes` |
-//! | [`settings`], [`splatting`] | what a frame is asked to be, and how surfels become pixels | |
-//! | [`scene`] | geometry on the GPU: only the streams that it has | |
-//! | [`instance`] | scenes where they are placed: several in a frame | |
-//! | [`methods`] | the methods: their papers, and what each chooses | |
-//! | [`mod@frame`] | frames: what one needs and no more, one file a pass beside the shader of the same name, recording, reading back | |
-//! | [`embed`] | the same frames within those of another renderer | |
-//! | [`times`] | statistics of how long frames and passes take | |
-//! | [`capture`] | normalization weights of surfels, from pictures of them | `reference` |
-//! | [`reference`](mod@reference) | the float64 twin of every pass, on the CPU; judges pictures | `reference` |
-//! | [`truth`] | exact images: rays against the surface itself | `truth` |
-//! | [`metrics`] | how far a picture is from the truth | `metrics` |
-//! | [`yardstick`] | the same frames by a plain native program: what times are multiples of | `bench` |
-//! | [`bench`](mod@bench) | speed against error | `bench` |
 //! | [`vk`] | the layer over raw Vulkan | `window` for presenting |
+//! | [`geometry`] | what a scene is made of: surfels, lines, triangles, bounds, cameras; plain CPU data | |
+//! | [`settings`] | what a frame is asked to be: how surfels become pixels, the papers' methods, outputs; plain CPU data | |
+//! | [`formats`] | PLY, PNG, EXR, cameras | `io` |
+//! | [`estimate`] | normals, radii, creases, sides and lines of points that come without | `estimate` |
+//! | [`scene`] | geometry on the GPU: only the streams that it has, where it is placed | |
+//! | [`verify`] | what pictures are held to: [`reference`](mod@verify::reference), the float64 twin of every pass; [`truth`](verify::truth), exact images; [`metrics`](verify::metrics) of error; [`scenes`](verify::scenes) with exact surfaces; [`yardstick`](verify::yardstick), a native program | each by its name, the last by `bench` |
+//! | [`mod@frame`] | frames: what one needs and no more, one file a pass beside the shader of the same name, recording, reading back | |
+//! | [`capture`] | normalization weights of surfels, from pictures of them | `reference` |
+//! | [`embed`] | the same frames within those of another renderer | |
+//! | [`bench`](mod@bench) | speed against error | `bench` |
 //!
 //! ```no_run
+//! use surfel::estimate::Estimate;
+//! use surfel::formats;
 //! use surfel::geometry::Camera;
-//! use surfel::geometry::estimate::Estimate;
 //! use surfel::vk::{Device, DeviceOptions};
-//! use surfel::{Error, RenderOptions, Renderer, Scene, Settings, io};
+//! use surfel::{Error, RenderOptions, Renderer, Scene, Settings};
 //!
 //! # fn main() -> surfel::Result<()> {
-//! let loaded = io::ply::read("bunny.ply".as_ref(), &Default::default(), &())?;
+//! let loaded = formats::ply::read("bunny.ply".as_ref(), &Default::default(), &())?;
 //! let (surfels, _) = loaded.cloud.into_surfels(&Estimate::default(), &()).map_err(|cause| Error::input("bunny.ply", cause))?;
 //! let device = Device::open(&DeviceOptions::default())?;
 //! let scene = Scene::upload(&device, &surfels)?;
@@ -54,43 +51,27 @@ pub mod bench;
 pub mod capture;
 pub mod embed;
 pub mod error;
+#[cfg(feature = "estimate")]
+pub mod estimate;
+#[cfg(feature = "io")]
+pub mod formats;
 pub mod frame;
 pub mod geometry;
-pub mod instance;
-#[cfg(feature = "io")]
-pub mod io;
-mod memory;
-pub mod methods;
-#[cfg(feature = "metrics")]
-pub mod metrics;
 pub mod picture;
 mod progress;
-pub mod pull_push;
-#[cfg(feature = "reference")]
-pub mod reference;
 pub mod scene;
-#[cfg(feature = "scenes")]
-pub mod scenes;
 pub mod settings;
-pub mod splatting;
-pub mod times;
-#[cfg(feature = "truth")]
-pub mod truth;
+pub mod verify;
 pub mod vk;
-#[cfg(feature = "bench")]
-pub mod yardstick;
 
 /// The version of ash whose handles [`embed`] takes.
 pub use ash;
 pub use error::{Error, Result};
-pub use frame::{
-    FrameReport, Outputs, Precision, PyramidLevel, PyramidSample, Rasterizer, RenderOptions, Renderer,
-    SplatCounts, TargetInfo,
-};
+pub use frame::{FrameReport, PyramidLevel, PyramidSample, RenderOptions, Renderer, SplatCounts, TargetInfo};
 /// The version of glam whose vectors and matrices the interface takes.
 pub use glam;
-pub use instance::{Instance, Instances};
+
 pub use picture::Picture;
 pub use progress::Progress;
-pub use scene::Scene;
-pub use settings::Settings;
+pub use scene::{Instance, Instances, Scene};
+pub use settings::{Outputs, Precision, Rasterizer, Settings};

@@ -1,6 +1,5 @@
 //! The `surfel` program: what it does is in `cli`.
 
-mod camera_file;
 mod cli;
 #[cfg(feature = "viewer")]
 mod viewer;

@@ -1,4 +1,4 @@
-// Numbers in fewer bits, rounded alike on every device (src/reference/pull_push/compact.rs): what samples of the compact layout are made of.
+// Numbers in fewer bits, rounded alike on every device (src/verify/reference/pull_push/compact.rs): what samples of the compact layout are made of.
 
 // Greatest half float.
 const float MOST_HALF = 65504.0;

@@ -1,5 +1,5 @@
 // A segment as points: one in every column of the picture that it reaches, or in every row where it is steeper (marroquim2008 §4.1, §4.2).
-// What is wide is several strands side by side: src/reference/pull_push/project/strands.rs says why.
+// What is wide is several strands side by side: src/verify/reference/pull_push/project/strands.rs says why.
 
 const float WIDEST = 4.0;  // half the width up to which a line is one strand, px
 const float SPREAD = 1.5; // by how much a ribbon's strands are wider than what they are a part of

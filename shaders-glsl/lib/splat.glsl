@@ -4,7 +4,7 @@
 #include "lib/clip.glsl"
 
 layout(constant_id = 14) const bool WIDEN_SMALL = false; // the low-pass filter widens only what is smaller than itself
-layout(constant_id = 15) const uint FOOTPRINT = 0;        // as in src/splatting.rs
+layout(constant_id = 15) const uint FOOTPRINT = 0;        // as in src/settings/splatting.rs
 layout(constant_id = 16) const bool CONFETTI = false;     // the kernel is ψ_E
 
 const uint CONIC = 0, AFFINE = 1, PARALLELOGRAM = 2, DISC = 3, SPRITE = 4, WHOLE_SPRITE = 5, SQUARE = 6;

@@ -5,7 +5,7 @@ layout(constant_id = 3) const bool SUM_NORMALS = true;
 layout(constant_id = 4) const bool SUM_DEPTH = false;
 layout(constant_id = 5) const uint COLOURS = 0;            // how the scene holds the colours that the frame wants
 layout(constant_id = 17) const bool SUM_COLOURS = false;   // colours are summed, the scene's or light
-layout(constant_id = 18) const uint NORMALIZATION = 0;     // as in src/splatting.rs
+layout(constant_id = 18) const uint NORMALIZATION = 0;     // as in src/settings/splatting.rs
 layout(constant_id = 19) const bool OVERLAP = false;       // every splat weighs 1: Σw is their number
 
 const uint PER_PIXEL = 0, PER_SURFEL = 1, NONE = 2;

@@ -126,6 +126,6 @@ mod tests {
         assert_eq!(budgets([42.0, 900.0]), [50.0, 100.0, 200.0, 500.0, 1000.0]);
         assert_eq!(budgets([0.02]), [0.02]);
         assert_eq!(budgets([0.021, 0.09]), [0.03, 0.05, 0.07, 0.1]);
-        assert_eq!(budgets([f64::NAN, 0.0, f64::INFINITY, -1.0]), []);
+        assert_eq!(budgets([f64::NAN, 0.0, f64::INFINITY, -1.0]), [0.0; 0]);
     }
 }

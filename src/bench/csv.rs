@@ -2,8 +2,8 @@
 
 use super::record::{Agreement, Memory, Results, Run, Session, SweepPoint};
 use crate::error::{Error, Result};
-use crate::metrics::Metric;
-use crate::times::Statistics;
+use crate::frame::times::Statistics;
+use crate::verify::metrics::Metric;
 use std::collections::BTreeSet;
 
 /// A cell with the name of its column.

@@ -3,11 +3,11 @@
 use super::record::{Axes, Contender, Memory, PIXELS, SPLATS};
 use crate::error::Result;
 use crate::geometry::{Camera, Parts, Surfels};
-use crate::methods::Method;
 use crate::picture::Picture;
 use crate::settings::Settings;
+use crate::settings::methods::Method;
+use crate::verify::yardstick::{self, Kind, Yardstick};
 use crate::vk::{Device, PassTime};
-use crate::yardstick::{self, Kind, Yardstick};
 use crate::{Outputs, Precision, Rasterizer, RenderOptions, Renderer, Scene};
 use std::sync::Arc;
 
@@ -171,7 +171,7 @@ impl Ready for OnHost {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::splatting::{Filter, Footprint, Kernel, Splatting};
+    use crate::settings::splatting::{Filter, Footprint, Kernel, Splatting};
 
     fn named(splatting: Splatting) -> String {
         Engine::DEFAULT.contender(&Settings { splatting, ..Default::default() }).label()

@@ -3,9 +3,9 @@
 use super::plan::Plan;
 use super::record::Exhibit;
 use crate::error::{Error, Result};
-use crate::io::image::Encoded;
-use crate::metrics::{Metric, Options, Pair, measure};
+use crate::formats::image::Encoded;
 use crate::picture::Picture;
+use crate::verify::metrics::{Metric, Options, Pair, measure};
 use base64::prelude::{BASE64_STANDARD, Engine};
 
 /// Largest side of a picture that is shown, px: of a larger one, its middle.

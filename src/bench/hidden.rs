@@ -1,7 +1,7 @@
 //! Surfels of sheets that are hidden.
 
 use crate::geometry::{Camera, Surfels};
-use crate::truth::Scene;
+use crate::verify::truth::Scene;
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -48,7 +48,7 @@ mod tests {
     use super::*;
     use crate::bench::subject::Subject;
     use crate::geometry::Colours;
-    use crate::scenes;
+    use crate::verify::scenes;
 
     #[test]
     fn of_a_sphere_the_cap_towards_the_eye_is_seen() {

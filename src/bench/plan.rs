@@ -2,8 +2,8 @@
 
 use super::engine::Engine;
 use super::record::{Axes, Figure, Setting};
-use crate::scenes::Viewpoint;
 use crate::settings::Settings;
+use crate::verify::scenes::Viewpoint;
 
 /// One run.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,11 +1,11 @@
 //! What was measured, as it is kept in JSON: times in milliseconds, memory in bytes, colours linear, errors as their
-//! [metrics](crate::metrics) define them.
+//! [metrics](crate::verify::metrics) define them.
 
-use crate::methods::Method;
-use crate::reference::Comparison;
+use crate::frame::times::Statistics;
+use crate::settings::methods::Method;
+use crate::settings::splatting::Splatting;
 use crate::settings::{Alpha, Settings};
-use crate::splatting::Splatting;
-use crate::times::Statistics;
+use crate::verify::reference::Comparison;
 use jiff::Timestamp;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -13,7 +13,7 @@ use std::collections::BTreeMap;
 /// Rises whenever files of an older program can no longer be read.
 pub const FORMAT: u32 = 1;
 
-/// Name of the [yardstick](crate::yardstick)'s splats: what times are multiples of.
+/// Name of the [yardstick](crate::verify::yardstick)'s splats: what times are multiples of.
 pub const SPLATS: &str = "yardstick-splats";
 /// Name of its one pixel a point.
 pub const PIXELS: &str = "yardstick-pixels";
@@ -446,7 +446,7 @@ impl Agreement {
 }
 
 impl Contender {
-    /// Whether it is the [yardstick](crate::yardstick): what methods are measured by, and none itself.
+    /// Whether it is the [yardstick](crate::verify::yardstick): what methods are measured by, and none itself.
     pub fn is_yardstick(&self) -> bool {
         [SPLATS, PIXELS].contains(&self.method.as_str())
     }

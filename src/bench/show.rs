@@ -1,7 +1,7 @@
 //! Numbers and names as people read them.
 
 use super::record::{Contender, Figure, Made, Memory, Run, Session, Setting};
-use crate::methods::Method;
+use crate::settings::methods::Method;
 
 /// With `digits` significant ones at most, and no zeros behind them; in powers of ten where it would be long.
 pub fn significant(value: f64, digits: usize) -> String {

@@ -3,9 +3,9 @@
 use super::engine::Ready;
 use super::record::{Pass, Time};
 use crate::error::Result;
+use crate::frame::times::{Statistics, Times};
 use crate::geometry::Camera;
 use crate::settings::Settings;
-use crate::times::{Statistics, Times};
 use cpu_time::ProcessTime;
 use std::time::{Duration, Instant};
 

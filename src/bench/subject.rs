@@ -1,12 +1,12 @@
 //! What is rendered, and what it truly looks like.
 
 use crate::error::{Error, Result};
-use crate::geometry::estimate::Estimate;
+use crate::estimate::Estimate;
+use crate::formats::ply::{self, ReadOptions};
 use crate::geometry::{Bounds, Camera, Cloud, Model};
-use crate::io::ply::{self, ReadOptions};
 use crate::progress::Progress;
-use crate::scenes::{self, Surface, Viewpoint};
-use crate::truth::{self, Hit, Mesh};
+use crate::verify::scenes::{self, Surface, Viewpoint};
+use crate::verify::truth::{self, Hit, Mesh};
 use glam::{DQuat, DVec3};
 use std::path::Path;
 

@@ -1,8 +1,8 @@
 //! What an error is made of.
 
 use super::record::Terms;
-use crate::metrics::{Pair, colour, rmse};
 use crate::picture::Picture;
+use crate::verify::metrics::{Pair, colour, rmse};
 
 /// How little of a pixel may be uncovered for it to be whole: more than the rounding of a filter's weights.
 pub(super) const WHOLE: f32 = 1.0 - 1e-4;

@@ -7,9 +7,9 @@ use crate::error::Result;
 use crate::frame::Renderer;
 use crate::geometry::{Camera, Surfels};
 use crate::picture::Picture;
-use crate::reference::{Projector, Surfel};
 use crate::scene::Scene;
 use crate::settings::{Cull, Settings};
+use crate::verify::reference::{Projector, Surfel};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
@@ -148,7 +148,7 @@ impl Look {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::methods::object_ewa;
+    use crate::settings::methods::object_ewa;
     use glam::Vec3;
 
     const SIDE: u32 = 32;

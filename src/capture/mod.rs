@@ -18,12 +18,12 @@ pub use overlap::overlaps;
 
 use crate::Progress;
 use crate::error::{Error, Result};
-use crate::frame::Outputs;
 use crate::frame::{RenderOptions, Renderer};
 use crate::geometry::{Camera, Surfels, Weights};
 use crate::scene::Scene;
+use crate::settings::Outputs;
+use crate::settings::splatting::{Filter, Normalization, Splatting, Visibility};
 use crate::settings::{Settings, Shading};
-use crate::splatting::{Filter, Normalization, Splatting, Visibility};
 use crate::vk::Device;
 use gather::Samples;
 use look::Look;

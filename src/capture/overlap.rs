@@ -1,9 +1,9 @@
 //! Σw at a surfel's centre, computed from the surfels around it: for those that no view sees, and against those that some do.
 
 use crate::geometry::Surfels;
-use crate::reference::Surfel;
+use crate::settings::splatting::{Footprint, Kernel};
 use crate::settings::{Cull, Settings};
-use crate::splatting::{Footprint, Kernel};
+use crate::verify::reference::Surfel;
 use glam::{DVec2, DVec3, I64Vec3};
 use rayon::prelude::*;
 use std::collections::HashMap;
@@ -117,8 +117,8 @@ fn cell(position: DVec3, level: i32) -> I64Vec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::methods::object_ewa;
-    use crate::splatting::Splatting;
+    use crate::settings::methods::object_ewa;
+    use crate::settings::splatting::Splatting;
     use glam::Vec3;
 
     /// A lattice of spacing 1 in the plane z = 0, of discs with the given radius.

@@ -11,7 +11,7 @@ use surfel::bench::record::FORMAT;
 use surfel::bench::subject::Subject;
 use surfel::bench::suites::Own;
 use surfel::bench::{Results, Suite, Wanted, code, csv, measure, report, table};
-use surfel::io::atomic;
+use surfel::formats::atomic;
 use surfel::vk::Device;
 use surfel::{Error, Progress, Result};
 

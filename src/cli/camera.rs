@@ -1,9 +1,9 @@
 //! The camera that the arguments ask for.
 
 use super::args;
-use crate::camera_file;
 use glam::DVec3;
 use std::path::Path;
+use surfel::formats::camera as camera_file;
 use surfel::geometry::{Bounds, Camera, Pose, Span};
 use surfel::{Error, Result};
 

@@ -4,10 +4,10 @@ use super::args;
 use super::progress::say;
 use glam::DVec3;
 use rayon::prelude::*;
+use surfel::formats::colour_bar::ColourBar;
 #[cfg(feature = "viewer")]
 use surfel::geometry::Colours;
 use surfel::geometry::{Cloud, ColourMap, ColourScale, Model, Quantity, ValueRange};
-use surfel::io::colour_bar::ColourBar;
 use surfel::{Error, Result};
 
 /// What points are coloured by.

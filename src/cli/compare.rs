@@ -7,8 +7,8 @@ use serde_json::{Map, Value, json};
 use std::ffi::OsString;
 use std::fmt::Write;
 use std::path::Path;
-use surfel::io::image::{Output, read};
-use surfel::metrics::{Better, Measured, Metric, Options, Pair, Side, measure};
+use surfel::formats::image::{Output, read};
+use surfel::verify::metrics::{Better, Measured, Metric, Options, Pair, Side, measure};
 use surfel::{Error, Result};
 
 /// Compares two pictures; what crosses the limits that were given. Where to write is looked at before anything is read.

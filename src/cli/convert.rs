@@ -8,9 +8,9 @@ use super::{progress, summary, vulkan};
 use std::path::Path;
 use std::sync::Arc;
 use surfel::capture::{Captured, capture};
+use surfel::formats::{atomic, ply};
 use surfel::geometry::{Model, Surfels};
-use surfel::io::{atomic, ply};
-use surfel::methods::object_ewa;
+use surfel::settings::methods::object_ewa;
 use surfel::vk::Device;
 use surfel::{Error, Progress, Result};
 

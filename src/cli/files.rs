@@ -5,7 +5,7 @@ use std::ffi::OsString;
 use std::fs::File;
 use std::io::{BufReader, Write};
 use std::path::{Path, PathBuf};
-use surfel::io::atomic;
+use surfel::formats::atomic;
 use surfel::{Error, Result};
 
 /// Reads a JSON file; the error names the file and, by serde, the field.

@@ -8,9 +8,11 @@ use super::inputs::{scene, scene_cloud};
 use super::progress;
 use std::fmt::Write;
 use std::path::Path;
-use surfel::geometry::estimate::{Estimate, Estimated, spacing};
+use surfel::estimate::{Estimate, Estimated, spacing};
+use surfel::formats::ply::{
+    self, Dropped, Element, Faces, Format, Inspected, Lines, Loaded, ReadOptions, Report,
+};
 use surfel::geometry::{Cloud, Colours, Model, Parts, View};
-use surfel::io::ply::{self, Dropped, Element, Faces, Format, Inspected, Lines, Loaded, ReadOptions, Report};
 use surfel::{Error, Result};
 
 /// How many skipped names are told; the header has told all of them.

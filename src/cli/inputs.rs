@@ -7,10 +7,11 @@ use glam::Vec3;
 use std::ffi::OsString;
 use std::path::Path;
 use std::sync::Arc;
-use surfel::geometry::estimate::{Estimate, Estimated};
+use surfel::estimate::{Estimate, Estimated};
+use surfel::formats::ply::{self, Dropped, Faces, Lines, Loaded, ReadOptions, Report};
 use surfel::geometry::{Cloud, Lined, MipMap, Model, ToLines};
-use surfel::io::ply::{self, Dropped, Faces, Lines, Loaded, ReadOptions, Report};
-use surfel::{Error, Progress, Result, Settings, scenes};
+use surfel::verify::scenes;
+use surfel::{Error, Progress, Result, Settings};
 
 /// What is wanted of which inputs.
 pub struct Wanted<'a> {

@@ -1,7 +1,7 @@
 //! `--fail-above` and `--fail-below`: how good a picture must be.
 
 use super::number::significant;
-use surfel::metrics::{Better, Measured, Metric};
+use surfel::verify::metrics::{Better, Measured, Metric};
 use surfel::{Error, Result};
 
 /// A bound on one metric, which must not be crossed.
@@ -82,7 +82,7 @@ mod tests {
 
     #[test]
     fn only_what_crosses_a_limit_violates_it() {
-        let flip = surfel::metrics::flip::Map { size: [0, 0], values: vec![] };
+        let flip = surfel::verify::metrics::flip::Map { size: [0, 0], values: vec![] };
         let values = vec![(Metric::Rmse, 0.5), (Metric::Psnr, f64::INFINITY), (Metric::Ssim, 0.25)];
         let measured = Measured { values, flip, picture_covers: 0, truth_covers: 0 };
         let of = |metric, value| Limit { metric, value }.violation(&measured);

@@ -4,10 +4,10 @@ use super::files::{print, print_json};
 use serde_json::{Value, json};
 use std::fmt::Write;
 use surfel::frame::FramePlan;
-use surfel::methods::Method;
 use surfel::scene::{ColourStream, PrimitiveKinds, Streams, SurfelLayout};
+use surfel::settings::methods::Method;
+use surfel::settings::splatting::{Filter, Splatting};
 use surfel::settings::{Settings, Shading};
-use surfel::splatting::{Filter, Splatting};
 use surfel::{Rasterizer, RenderOptions, Result};
 
 const WAYS: [(Rasterizer, &str); 2] = [(Rasterizer::Draw, "drawn"), (Rasterizer::Compute, "computed")];

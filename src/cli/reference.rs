@@ -3,9 +3,10 @@
 use super::render::{Outcome, Task};
 use super::turntable;
 use std::time::Instant;
+use surfel::frame::times::Times;
 use surfel::geometry::Camera;
-use surfel::times::Times;
-use surfel::{Error, Picture, Result, SplatCounts, reference};
+use surfel::verify::reference;
+use surfel::{Error, Picture, Result, SplatCounts};
 
 /// Most pixels of a picture: they take some 5 GiB in float64, and running out of memory would stop the process.
 const MOST_PIXELS: u64 = 1 << 26;

@@ -7,12 +7,12 @@ use super::report::{Gpu, HalfError, Report};
 use super::{camera, files, inputs, progress, reference, summary, turntable, vulkan};
 use std::path::Path;
 use surfel::embed::Measured;
+use surfel::formats::colour_bar::ColourBar;
+use surfel::formats::image::{Encoded, Output, write};
+use surfel::frame::times::Times;
 use surfel::geometry::{Camera, Model, Parts};
-use surfel::io::colour_bar::ColourBar;
-use surfel::io::image::{Encoded, Output, write};
-use surfel::methods::{Method, pull_push};
 use surfel::settings::Shading;
-use surfel::times::Times;
+use surfel::settings::methods::{Method, pull_push};
 use surfel::{Error, Outputs, Picture, Progress, Result, Settings, SplatCounts};
 
 /// What is to be rendered, wherever that happens.

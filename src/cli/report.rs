@@ -6,11 +6,11 @@ use super::inputs::Inputs;
 use super::render::{Outcome, Task};
 use serde_json::{Map, Value, json};
 use std::path::Path;
-use surfel::geometry::estimate::Estimated;
-use surfel::io::ply::Dropped;
+use surfel::estimate::Estimated;
+use surfel::formats::ply::Dropped;
+use surfel::frame::times::Statistics;
+use surfel::settings::splatting::Splatting;
 use surfel::settings::{DirectionalLight, Lighting};
-use surfel::splatting::Splatting;
-use surfel::times::Statistics;
 use surfel::vk::{DeviceDescription, Usage};
 use surfel::{Error, Precision, Rasterizer, Result, Settings, SplatCounts, TargetInfo};
 

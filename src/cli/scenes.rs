@@ -4,7 +4,7 @@ use super::files::{print, print_json};
 use serde_json::{Value, json};
 use std::fmt::Write;
 use surfel::Result;
-use surfel::scenes::{self, Parameter, SAMPLING, Scene};
+use surfel::verify::scenes::{self, Parameter, SAMPLING, Scene};
 
 /// Lists the built-in scenes: what each shows, a camera for it, its parameters with their defaults and values.
 pub fn run(json: bool) -> Result<()> {

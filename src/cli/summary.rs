@@ -1,7 +1,7 @@
 //! Counts of what there is and of what was estimated, told.
 
+use surfel::estimate::Estimated;
 use surfel::geometry::Model;
-use surfel::geometry::estimate::Estimated;
 
 /// What a model is made of: `5 surfels, 2 ribbons`.
 pub fn parts(Model { surfels, primitives }: &Model) -> String {

@@ -6,12 +6,13 @@ use super::inputs::{self, Wanted};
 use super::render::keep_layers;
 use super::{camera, progress};
 use std::path::Path;
-use surfel::geometry::estimate::Estimate;
+use surfel::estimate::Estimate;
+use surfel::formats::image::{Output, write};
+use surfel::formats::ply::{self, ReadOptions};
 use surfel::geometry::{Bounds, Camera, Parts};
-use surfel::io::image::{Output, write};
-use surfel::io::ply::{self, ReadOptions};
-use surfel::truth::{self, Cache, Mesh, Scene};
-use surfel::{Error, Progress, Result, Settings, scenes};
+use surfel::verify::scenes;
+use surfel::verify::truth::{self, Cache, Mesh, Scene};
+use surfel::{Error, Progress, Result, Settings};
 
 /// Traces an input to a picture. Arguments and places to write to are looked at first.
 pub fn run(args: &Truth) -> Result<()> {

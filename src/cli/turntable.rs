@@ -5,8 +5,8 @@ use super::render::Task;
 use glam::{DMat4, DQuat, DVec3};
 use std::f64::consts::TAU;
 use std::ffi::{OsStr, OsString};
+use surfel::formats::image::Output;
 use surfel::geometry::Camera;
-use surfel::io::image::Output;
 use surfel::{Error, Result};
 
 /// Most digits of a number.

@@ -6,9 +6,9 @@ use glam::DVec3;
 use std::str::FromStr;
 use surfel::geometry::ValueRange;
 use surfel::geometry::srgb;
-use surfel::methods::Method;
 use surfel::settings;
-use surfel::splatting::Kernel;
+use surfel::settings::methods::Method;
+use surfel::settings::splatting::Kernel;
 
 /// `WxH`, px.
 pub fn size(text: &str) -> Result<[u32; 2], String> {

@@ -10,9 +10,9 @@ use glam::DVec3;
 use std::ffi::OsString;
 use std::sync::Arc;
 use std::time::Instant;
-use surfel::geometry::estimate::Estimate;
+use surfel::estimate::Estimate;
 use surfel::geometry::{Bounds, Colours, MipMap, Model};
-use surfel::methods::Method;
+use surfel::settings::methods::Method;
 use surfel::{Error, Progress, Result};
 
 /// Opens the window, which loads the inputs while it is there.

@@ -8,8 +8,8 @@ use super::turntable;
 use std::sync::Arc;
 use std::time::Instant;
 use surfel::embed::Measured;
+use surfel::frame::times::Times;
 use surfel::geometry::Camera;
-use surfel::times::Times;
 use surfel::vk::{Device, DeviceLimits, DeviceOptions};
 use surfel::{Error, Picture, Precision, RenderOptions, Renderer, Result, Scene, SplatCounts};
 

@@ -6,7 +6,7 @@ use super::uniforms::Blocks;
 use super::variant::{SceneVariant, Variant};
 use crate::error::{Error, Result};
 use crate::geometry::Camera;
-use crate::instance::Placed;
+use crate::scene::instance::Placed;
 use crate::settings::Settings;
 use crate::vk::Device;
 

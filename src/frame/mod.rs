@@ -25,6 +25,7 @@ pub(crate) mod resource;
 pub(crate) mod resources;
 pub(crate) mod scene_resources;
 pub(crate) mod targets;
+pub mod times;
 pub(crate) mod uniforms;
 pub(crate) mod variant;
 
@@ -32,4 +33,3 @@ pub use plan::FramePlan;
 pub use pyramid_samples::{PyramidLevel, PyramidSample};
 pub use renderer::{FrameReport, RenderOptions, Renderer, Splat, SplatCounts};
 pub use targets::TargetInfo;
-pub use variant::{Outputs, Precision, Rasterizer};

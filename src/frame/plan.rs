@@ -3,8 +3,9 @@
 use super::methods::{Path, passes};
 use super::renderer::RenderOptions;
 use super::targets::per_pixel;
-use super::variant::{Rasterizer, Variant};
+use super::variant::Variant;
 use crate::scene::Streams;
+use crate::settings::Rasterizer;
 use crate::settings::Settings;
 
 /// The passes and targets of a frame.

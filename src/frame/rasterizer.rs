@@ -3,11 +3,11 @@
 use super::pyramids::Pyramids;
 use super::renderer::RenderOptions;
 use super::targets::{coverage_fits, picture_fits};
-use super::variant::{Precision, Rasterizer};
 use crate::error::{Error, Result};
-use crate::instance::Placed;
+use crate::scene::instance::Placed;
+use crate::settings::splatting::Visibility;
 use crate::settings::{Alpha, Settings};
-use crate::splatting::Visibility;
+use crate::settings::{Precision, Rasterizer};
 use crate::vk::{Device, DeviceDescription};
 
 /// Width of the weighted sums that `rasterizer` keeps on `device`: drawing them blends, which the device may not do in 32 bits.

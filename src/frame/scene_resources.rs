@@ -3,9 +3,10 @@
 use super::pass::{Pass, Scope};
 use super::passes::{footprint, visibility};
 use super::resource::Resource;
-use super::variant::{Rasterizer, SceneVariant};
+use super::variant::SceneVariant;
 use crate::error::Result;
 use crate::scene::{Elements, Scene};
+use crate::settings::Rasterizer;
 use crate::vk::shaders::{self, layout, resource};
 use crate::vk::{Binding, Buffer, Commands, DescriptorSet, Device, Encoder, Recorder};
 use layout::{Counts, LargeSplats, ScreenClip, Splat};

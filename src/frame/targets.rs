@@ -3,9 +3,10 @@
 use super::pass::{Start, Targets};
 use super::pyramids::Pyramids;
 use super::resource::Resource;
-use super::variant::{Outputs, Precision, Rasterizer, Variant};
+use super::variant::Variant;
 use crate::error::{Error, Result};
-use crate::splatting::Visibility;
+use crate::settings::splatting::Visibility;
+use crate::settings::{Outputs, Precision, Rasterizer};
 use crate::vk::shaders::{self, resource};
 use crate::vk::{
     Access, Attachment, Binding, Buffer, Capabilities, DescriptorSet, Device, Encoder, Image, ImageUse, Use,

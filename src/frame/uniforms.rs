@@ -2,9 +2,9 @@
 
 use crate::error::{Error, Result};
 use crate::geometry::{Bounds, Camera, Projection};
-use crate::instance::{Placed, Similarity};
+use crate::scene::instance::{Placed, Similarity};
 use crate::settings::Settings;
-use crate::splatting::Kernel;
+use crate::settings::splatting::Kernel;
 use crate::vk::shaders::layout::Frame;
 use bytemuck::Zeroable;
 use glam::{DMat3, DVec3, DVec4, Vec3};

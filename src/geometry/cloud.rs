@@ -78,7 +78,7 @@ impl Cloud {
 
     /// The points that lines use, with the lines between them, and the others; if `faces`, points and triangles of faces are with the
     /// lines. Order stays.
-    pub(super) fn split(self, faces: bool) -> [Self; 2] {
+    pub(crate) fn split(self, faces: bool) -> [Self; 2] {
         let mut used = vec![false; self.len()];
         let triangles = if faces { &self.triangles[..] } else { &[] };
         let lines = self.ribbons.iter().chain(&self.tubes).flatten();

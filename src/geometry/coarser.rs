@@ -158,7 +158,7 @@ fn decode_table() -> [f32; 256] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenes;
+    use crate::verify::scenes;
 
     /// Whether discs of `few` reach as far as the disc of surfel `i` of `all`, in one of them that faces as it does.
     fn covers(few: &Surfels, all: &Surfels, i: usize) -> bool {

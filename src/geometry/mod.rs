@@ -6,11 +6,10 @@ mod clips;
 mod cloud;
 mod coarser;
 mod colour_map;
-#[cfg(feature = "estimate")]
-pub mod estimate;
 mod materials;
+pub(crate) mod memory;
 mod merge;
-mod morton;
+pub(crate) mod morton;
 mod pose;
 mod primitives;
 mod quantity;

@@ -16,7 +16,7 @@ impl Surfels {
 }
 
 /// The points' indices in the order of the Z-curve of their bounds; where codes are equal, in their own.
-pub(super) fn order(positions: &[Vec3]) -> Vec<u32> {
+pub(crate) fn order(positions: &[Vec3]) -> Vec<u32> {
     keys(positions).into_par_iter().map(|(_, i)| i).collect()
 }
 

@@ -26,7 +26,7 @@ pub struct Surfels {
     pub two_sided: Option<Vec<bool>>,
     /// Where discs end at sharp edges; all are whole where there are none.
     pub clips: Option<Clips>,
-    /// What kernels are multiplied by where nothing is divided by their sum ([`crate::splatting::Normalization::Surfel`]).
+    /// What kernels are multiplied by where nothing is divided by their sum ([`crate::settings::splatting::Normalization::Surfel`]).
     pub weights: Option<Weights>,
     /// Colours, where the input has them.
     pub colours: Option<Colours>,

@@ -2,8 +2,8 @@
 
 use super::{ELLIPSE, SCALAR, VECTOR};
 use crate::error::{Error, Result};
+use crate::geometry::memory::size;
 use crate::geometry::{Colours, Parts};
-use crate::memory::size;
 use crate::vk::Device;
 
 /// Refuses a scene whose values alone are more than a device has memory, before anything is allocated.

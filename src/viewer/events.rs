@@ -1,11 +1,11 @@
 //! What happens in the window, one JSON object a line on standard output, for programs that wait for it.
 
-use crate::camera_file::Fields;
 use cpu_time::ProcessTime;
 use serde::Serialize;
 use std::io::Write;
 use std::path::Path;
 use std::time::{Duration, Instant};
+use surfel::formats::camera::Fields;
 
 /// Something that has happened.
 #[derive(Clone, Copy, Debug, Serialize)]

@@ -9,7 +9,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::thread::{self, JoinHandle};
 use surfel::geometry::Model;
-use surfel::methods::Method;
+use surfel::settings::methods::Method;
 use surfel::vk::Device;
 use surfel::{Error, Progress, Result, Scene};
 
@@ -297,7 +297,7 @@ mod tests {
     use crate::viewer::tests::device;
     use std::sync::mpsc::{Receiver, channel};
     use std::time::{Duration, Instant};
-    use surfel::scenes;
+    use surfel::verify::scenes;
 
     /// A loader, and what it tells.
     fn loader(

@@ -41,7 +41,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 use std::sync::Arc;
 use surfel::geometry::{Bounds, ColourMap, Model, Pose, ValueRange};
-use surfel::methods::Method;
+use surfel::settings::methods::Method;
 use surfel::vk::DeviceOptions;
 use surfel::{Progress, Rasterizer, Result, Settings};
 

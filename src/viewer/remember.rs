@@ -6,11 +6,11 @@ use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 use std::io::Write;
 use std::path::Path;
-use surfel::io::atomic;
-use surfel::methods::Method;
-use surfel::pull_push::{PullPush, Storage};
+use surfel::formats::atomic;
+use surfel::settings::methods::Method;
+use surfel::settings::pull_push::{PullPush, Storage};
+use surfel::settings::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
 use surfel::settings::{Alpha, Cull, Shading, Widen};
-use surfel::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
 use surfel::{Error, Result, Settings};
 
 /// What is remembered, by the names that options have.

@@ -384,7 +384,7 @@ impl Source {
 mod tests {
     use super::*;
     use glam::Vec3;
-    use surfel::methods::Method;
+    use surfel::settings::methods::Method;
 
     /// Three points in a row with numbers of the file.
     fn source(read: [Vec<f32>; 2]) -> Source {

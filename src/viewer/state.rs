@@ -12,9 +12,9 @@ use glam::{DVec2, DVec3};
 use std::borrow::Cow;
 use std::sync::Arc;
 use surfel::geometry::{Camera, ColourScale, Pose};
-use surfel::methods::Method;
 use surfel::settings::Shading;
-use surfel::splatting::Normalization;
+use surfel::settings::methods::Method;
+use surfel::settings::splatting::Normalization;
 use surfel::vk::Device;
 use surfel::{Rasterizer, Result, Scene, Settings};
 
@@ -435,7 +435,7 @@ mod tests {
     use crate::viewer::{Events, Folder, Loaded};
     use std::time::Instant;
     use surfel::geometry::Surfels;
-    use surfel::scenes;
+    use surfel::verify::scenes;
     use surfel::vk::DeviceOptions;
 
     fn state() -> State {

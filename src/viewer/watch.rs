@@ -81,7 +81,7 @@ fn marks(inputs: &[OsString]) -> Vec<Mark> {
 
 /// Built-in scenes never change.
 fn is_scene(input: &OsString) -> bool {
-    input.to_str().is_some_and(surfel::scenes::is_scene)
+    input.to_str().is_some_and(surfel::verify::scenes::is_scene)
 }
 
 fn mark(path: &Path) -> Mark {

@@ -2,6 +2,7 @@
 
 mod code_digest;
 mod hosts;
+mod layers;
 mod shaders;
 
 #[allow(dead_code)]

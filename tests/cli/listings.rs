@@ -17,11 +17,11 @@ fn lists_are_json_where_that_is_asked_for() {
     assert_eq!(first["axes"]["footprint"], "conic");
     assert_eq!(first["frames"]["drawn"]["passes"][0], "footprint");
     assert!(first["frames"]["computed"]["targets"][0]["bytes_per_pixel"].as_f64().unwrap() > 0.0);
-    assert_eq!(methods.as_array().unwrap().len(), surfel::methods::Method::ALL.len());
+    assert_eq!(methods.as_array().unwrap().len(), surfel::settings::methods::Method::ALL.len());
     assert!(methods.as_array().unwrap().iter().any(|method| method["axes"].is_null()), "pull-push has none");
 
     let scenes = json(&program, "scenes --json");
-    assert_eq!(scenes["scenes"].as_array().unwrap().len(), surfel::scenes::list().len());
+    assert_eq!(scenes["scenes"].as_array().unwrap().len(), surfel::verify::scenes::list().len());
     assert!(scenes["scenes"][0]["camera"]["eye"][2].is_number());
     assert!(scenes["every_scene"].as_array().unwrap().iter().any(|parameter| parameter["name"] == "seed"));
 

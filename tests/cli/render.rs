@@ -139,7 +139,7 @@ fn scans_are_rendered() {
 fn numbers_of_points_are_a_layer() {
     let Some(program) = Program::with_device("numbers_of_points_are_a_layer") else { return };
     let render = |more: &str| program.run(&format!("render {SPHERE} --size 64x64 --layers id {more}"));
-    let ids = |name: &str| surfel::io::image::read(&program.path(name)).unwrap().id.unwrap();
+    let ids = |name: &str| surfel::formats::image::read(&program.path(name)).unwrap().id.unwrap();
     render("-o gpu.exr --method pull-push --validate").text();
     render("-o cpu.exr --method pull-push --reference").text();
     let [gpu, cpu] = ["gpu.exr", "cpu.exr"].map(ids);

@@ -1,7 +1,7 @@
 //! `surfel truth`.
 
 use crate::program::Program;
-use surfel::io::image;
+use surfel::formats::image;
 
 #[test]
 fn a_scene_is_traced_and_kept() {

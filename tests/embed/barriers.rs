@@ -9,7 +9,7 @@ use ash::vk;
 use std::ffi::{CStr, c_void};
 use std::sync::{Arc, Mutex};
 use surfel::embed::{Options, Renderer, View};
-use surfel::methods::Method;
+use surfel::settings::methods::Method;
 use surfel::vk::Device;
 use surfel::{Precision, Rasterizer};
 

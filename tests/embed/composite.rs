@@ -14,8 +14,8 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use surfel::embed::{self, Abilities, Options, Renderer, View};
 use surfel::geometry::Camera;
-use surfel::methods::Method;
-use surfel::splatting::Visibility;
+use surfel::settings::methods::Method;
+use surfel::settings::splatting::Visibility;
 use surfel::vk::{Device, DeviceLimits, DeviceOptions};
 use surfel::{Error, Outputs, Picture, Precision, Rasterizer, RenderOptions, Scene, Settings};
 
@@ -225,7 +225,7 @@ fn what_is_in_front_hides_what_is_behind_either_way() {
     let sides = [sides[0], sides[1] - sides[1].dot(sides[0]) / sides[0].length_squared() * sides[0]];
     let corners = parallelogram(centre.as_vec3(), sides.map(|side| side.as_vec3()));
     let settings = Settings { background: None, ..Method::named("perspective-ewa").unwrap().settings() };
-    let reference = surfel::reference::render(&surfels(), &camera(), SIZE, &settings, &()).unwrap();
+    let reference = surfel::verify::reference::render(&surfels(), &camera(), SIZE, &settings, &()).unwrap();
     let conventions = [(true, false, [0.0, 1.0]), (false, false, [0.0, 1.0]), (true, true, [0.25, 0.75])];
     for (way, (reversed, up, range)) in
         [Way::Subpass, Way::Rendering].into_iter().flat_map(|way| conventions.map(|c| (way, c)))

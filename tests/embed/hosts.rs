@@ -12,7 +12,7 @@ use glam::{DVec3, Vec3};
 use std::sync::Arc;
 use surfel::embed::{self, Changes, Options, Renderer, View};
 use surfel::geometry::{Camera, Surfels};
-use surfel::methods::Method;
+use surfel::settings::methods::Method;
 use surfel::vk::{Device, DeviceOptions};
 use surfel::{Outputs, Picture, Precision, Rasterizer, RenderOptions, Scene, Settings};
 

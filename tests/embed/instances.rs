@@ -14,8 +14,8 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use surfel::embed::{Options, Renderer, View};
 use surfel::geometry::Surfels;
-use surfel::methods::Method;
-use surfel::splatting::Visibility;
+use surfel::settings::methods::Method;
+use surfel::settings::splatting::Visibility;
 use surfel::vk::{Device, DeviceOptions};
 use surfel::{Instance, Outputs, Picture, Precision, Rasterizer, RenderOptions, Scene, Settings};
 

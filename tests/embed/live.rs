@@ -13,8 +13,8 @@ use std::sync::Arc;
 use std::sync::atomic::Ordering;
 use surfel::embed::{self, Buffers, Changes, Options, READ_ACCESS, READ_STAGES, Radii, Renderer};
 use surfel::geometry::{Bounds, Colours, Surfels};
-use surfel::methods::Method;
-use surfel::splatting::Visibility;
+use surfel::settings::methods::Method;
+use surfel::settings::splatting::Visibility;
 use surfel::vk::{Device, DeviceLimits};
 use surfel::{Picture, Precision, Rasterizer, RenderOptions, Scene, Settings, SplatCounts};
 

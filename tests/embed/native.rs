@@ -19,9 +19,9 @@ use std::sync::atomic::Ordering;
 use surfel::embed::View;
 use surfel::embed::native::Renderer;
 use surfel::geometry::{Camera, Surfels};
-use surfel::methods::Method;
 use surfel::settings::Alpha;
-use surfel::splatting::{Splatting, Visibility};
+use surfel::settings::methods::Method;
+use surfel::settings::splatting::{Splatting, Visibility};
 use surfel::vk::{Device, DeviceLimits, DeviceOptions};
 use surfel::{Outputs, Picture, Precision, Rasterizer, RenderOptions, Scene, Settings};
 
@@ -260,7 +260,7 @@ fn among_the_hosts_surfaces_the_picture_is_the_composites_and_the_references() {
     let (centre, sides) = plane();
     let corners = parallelogram(centre.as_vec3(), sides.map(|side| side.as_vec3()));
     let settings = method("perspective-ewa");
-    let reference = surfel::reference::render(&surfels(), &camera(), SIZE, &settings, &()).unwrap();
+    let reference = surfel::verify::reference::render(&surfels(), &camera(), SIZE, &settings, &()).unwrap();
     let height = SIZE[1] as f32;
     let plain = viewport(SIZE);
     let turned = vk::Viewport { y: height, height: -height, min_depth: 0.25, max_depth: 0.75, ..plain };

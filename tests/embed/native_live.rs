@@ -12,8 +12,8 @@ use glam::Vec3;
 use std::sync::Arc;
 use surfel::embed::{self, Changes, View};
 use surfel::geometry::Surfels;
-use surfel::methods::Method;
-use surfel::splatting::{Splatting, Visibility};
+use surfel::settings::methods::Method;
+use surfel::settings::splatting::{Splatting, Visibility};
 use surfel::vk::{Device, DeviceLimits};
 use surfel::{Scene, Settings};
 

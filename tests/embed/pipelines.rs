@@ -11,7 +11,7 @@ use std::sync::Arc;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 use surfel::embed::{Options, Renderer, View};
-use surfel::methods::Method;
+use surfel::settings::methods::Method;
 use surfel::vk::Device;
 use surfel::{Precision, Settings};
 

@@ -11,8 +11,8 @@ use std::sync::Arc;
 use std::time::Instant;
 use surfel::embed::{Measured, View};
 use surfel::geometry::Camera;
-use surfel::methods::Method;
 use surfel::settings::Cull;
+use surfel::settings::methods::Method;
 use surfel::vk::{Device, DeviceOptions, PassTime};
 use surfel::{FrameReport, Outputs, Rasterizer, RenderOptions, Scene, Settings};
 

@@ -8,7 +8,7 @@ use crate::support::sampling::{Random, narrow, paint_linear, paint_srgb};
 use glam::Vec3;
 use surfel::embed::{self, Changes};
 use surfel::geometry::{Clip, Clips, Colours, Surfels, Weights};
-use surfel::methods::Method;
+use surfel::settings::methods::Method;
 use surfel::vk::DeviceLimits;
 use surfel::{Rasterizer, Scene};
 

@@ -6,10 +6,10 @@ use crate::support::sampling::Random;
 use crate::support::scenes::{Case, cases};
 use glam::{DVec3, Vec3};
 use surfel::geometry::{Camera, Clip, Ellipse, Surfels, Weights};
-use surfel::methods::{Method, object_ewa, sprites};
-use surfel::reference::{Comparison, Expected, Surfel, Tolerance};
+use surfel::settings::methods::{Method, object_ewa, sprites};
+use surfel::settings::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
 use surfel::settings::{Alpha, Widen};
-use surfel::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
+use surfel::verify::reference::{Comparison, Expected, Surfel, Tolerance};
 use surfel::vk::DeviceLimits;
 use surfel::{Outputs, Picture, Rasterizer, RenderOptions, Settings};
 

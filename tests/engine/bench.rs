@@ -13,7 +13,7 @@ use surfel::bench::runner::{Options, Runner};
 use surfel::bench::stopwatch::Effort;
 use surfel::bench::subject::Subject;
 use surfel::settings::{Settings, Shading};
-use surfel::truth;
+use surfel::verify::truth;
 use surfel::vk::DeviceLimits;
 
 const EFFORT: Effort = Effort { warmup: 1, least: 3, most: 3, budget: Duration::ZERO };

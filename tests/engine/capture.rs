@@ -5,11 +5,11 @@ use glam::{DVec2, DVec3, Vec3};
 use std::sync::Arc;
 use surfel::capture::{Captured, VIEWS, capture, capture_region, overlaps};
 use surfel::geometry::{Camera, Surfels, Weights};
-use surfel::methods::object_ewa;
-use surfel::reference::{Expected, Tolerance};
-use surfel::scenes::{self, bumpy_sphere};
+use surfel::settings::methods::object_ewa;
+use surfel::settings::splatting::{Filter, Footprint, Normalization, Splatting};
 use surfel::settings::{Cull, Shading};
-use surfel::splatting::{Filter, Footprint, Normalization, Splatting};
+use surfel::verify::reference::{Expected, Tolerance};
+use surfel::verify::scenes::{self, bumpy_sphere};
 use surfel::vk::{Device, DeviceLimits};
 use surfel::{Outputs, Picture, Rasterizer, RenderOptions, Settings};
 

@@ -1,9 +1,9 @@
 //! Clip lines that are found at creases, against those of scenes whose edges are known.
 
 use glam::Vec3;
-use surfel::geometry::estimate::Estimate;
+use surfel::estimate::Estimate;
 use surfel::geometry::{Clip, ClipLine, Cloud, Surfels};
-use surfel::scenes;
+use surfel::verify::scenes;
 
 /// Creases are where normals turn by more than this, degrees.
 const ANGLE: f32 = 40.0;

@@ -5,8 +5,8 @@ use crate::support::sampling::{Random, bumpy_sphere, forget_sides, narrow, push,
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
 use surfel::geometry::{Camera, Ellipse, Surfels};
-use surfel::reference::{Expected, Tolerance};
 use surfel::settings::Cull;
+use surfel::verify::reference::{Expected, Tolerance};
 use surfel::vk::{Device, DeviceLimits};
 use surfel::{Error, Outputs, Picture, Rasterizer, RenderOptions, Renderer, Scene, Settings};
 

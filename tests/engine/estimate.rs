@@ -4,9 +4,9 @@ use crate::support::mesh;
 use crate::support::sampling::Random;
 use glam::Vec3;
 use std::collections::HashMap;
-use surfel::geometry::estimate::{Estimate, Estimated};
+use surfel::estimate::{Estimate, Estimated};
 use surfel::geometry::{Cloud, Surfels};
-use surfel::scenes::bumpy_sphere;
+use surfel::verify::scenes::bumpy_sphere;
 
 fn estimate(cloud: Cloud) -> (Surfels, Estimated) {
     cloud.into_surfels(&Estimate::default(), &()).unwrap()

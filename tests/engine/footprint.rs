@@ -6,8 +6,8 @@ use crate::support::sampling::{Random, narrow, push};
 use glam::{DMat2, DVec2, DVec3};
 use std::f64::consts::TAU;
 use surfel::geometry::{Camera, Surfels};
-use surfel::reference::{Culled, Projector, Splat, Surfel};
 use surfel::settings::Widen;
+use surfel::verify::reference::{Culled, Projector, Splat, Surfel};
 use surfel::vk::DeviceLimits;
 use surfel::{RenderOptions, Renderer, Scene, Settings, frame};
 

@@ -5,12 +5,12 @@ use glam::DVec3;
 use std::sync::Arc;
 use surfel::frame::FramePlan;
 use surfel::geometry::{Camera, Surfels, Weights};
-use surfel::methods::Method;
-use surfel::methods::object_ewa::{self, Progressive};
-use surfel::reference::{Expected, Tolerance};
-use surfel::scenes::bumpy_sphere;
+use surfel::settings::methods::Method;
+use surfel::settings::methods::object_ewa::{self, Progressive};
+use surfel::settings::splatting::{Normalization, Splatting, Visibility};
 use surfel::settings::{Alpha, Cull, DirectionalLight, Shading, Widen};
-use surfel::splatting::{Normalization, Splatting, Visibility};
+use surfel::verify::reference::{Expected, Tolerance};
+use surfel::verify::scenes::bumpy_sphere;
 use surfel::vk::{Device, DeviceLimits};
 use surfel::{Error, Outputs, Picture, Precision, Rasterizer, RenderOptions, Renderer, Scene, Settings};
 

@@ -7,8 +7,8 @@ use glam::DVec3;
 use surfel::bench::hard::{EXCUSED, Options, judge, names, run};
 use surfel::bench::record::{Faults, Sweep, SweepPoint};
 use surfel::geometry::{Camera, Surfels};
-use surfel::methods::Method;
-use surfel::reference::{Admissible, Expected, Tolerance};
+use surfel::settings::methods::Method;
+use surfel::verify::reference::{Admissible, Expected, Tolerance};
 use surfel::vk::DeviceLimits;
 use surfel::{Picture, Settings};
 

@@ -1,9 +1,9 @@
 //! The apple tree of the paper's kind as lines (marroquim2008, section 4.3).
 
 use std::path::Path;
-use surfel::geometry::estimate::Estimate;
+use surfel::estimate::Estimate;
+use surfel::formats::ply::{self, ReadOptions};
 use surfel::geometry::{Colours, Lined, Model, ToLines};
-use surfel::io::ply::{self, ReadOptions};
 
 #[test]
 fn an_apple_tree_becomes_ribbons_tubes_and_a_trunk() {

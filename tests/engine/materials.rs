@@ -3,10 +3,11 @@
 use crate::support::gpu::{assert_silent, device, render};
 use glam::{DVec2, DVec3, Vec3};
 use surfel::geometry::{Camera, Colours, Material, Materials, Model, Parts, Surfels};
-use surfel::methods::{Method, perspective_ewa, pull_push};
+use surfel::settings::methods::{Method, perspective_ewa, pull_push};
 use surfel::settings::{DirectionalLight, Lighting, Settings};
+use surfel::verify::scenes;
 use surfel::vk::DeviceLimits;
-use surfel::{Outputs, Picture, Precision, Rasterizer, RenderOptions, Renderer, Scene, scenes};
+use surfel::{Outputs, Picture, Precision, Rasterizer, RenderOptions, Renderer, Scene};
 
 /// Width and height, px.
 const SIDE: u32 = 256;
@@ -168,7 +169,7 @@ fn lines_polygons_and_points_shine_as_the_reference_says() {
         };
         let found = render(&device, &model, &camera, &settings, options);
         let twin = |model: &Model| {
-            surfel::reference::render(model, &camera, [SIDE; 2], &settings, &()).unwrap().to_picture()
+            surfel::verify::reference::render(model, &camera, [SIDE; 2], &settings, &()).unwrap().to_picture()
         };
         let (twin, without) = (twin(&model), twin(&plain));
         let object = twin.colour.iter().filter(|colour| colour[3] > 0.0).count();

@@ -6,7 +6,7 @@ use surfel::bench::papers::effects::{ALL, Effect, value};
 use surfel::bench::record::Run;
 use surfel::bench::runner::{Options, Runner};
 use surfel::bench::stopwatch::Effort;
-use surfel::truth;
+use surfel::verify::truth;
 use surfel::vk::DeviceLimits;
 
 /// Every side's values, and that they differ as the paper has it.

@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
+use surfel::formats::ply::{self, Loaded, Report};
 use surfel::geometry::{Cloud, Colours, View};
-use surfel::io::ply::{self, Loaded, Report};
 
 const EXPECTATIONS: &str = include_str!("ply_edge.tsv");
 

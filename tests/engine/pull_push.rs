@@ -8,14 +8,15 @@ use crate::support::truth::{Differences, Truth};
 use glam::DVec3;
 use surfel::frame::FramePlan;
 use surfel::geometry::{Camera, Surfels};
-use surfel::methods::{Method, perspective_ewa, pull_push};
-use surfel::pull_push::{PullPush, Rules, Storage};
-use surfel::reference::pull_push::Reconstruction;
-use surfel::scenes::bumpy_sphere::Hit;
+use surfel::settings::methods::{Method, perspective_ewa, pull_push};
+use surfel::settings::pull_push::{PullPush, Rules, Storage};
+use surfel::settings::splatting::Footprint;
 use surfel::settings::{Alpha, Cull, Settings, Shading};
-use surfel::splatting::Footprint;
+use surfel::verify::reference::pull_push::Reconstruction;
+use surfel::verify::scenes;
+use surfel::verify::scenes::bumpy_sphere::Hit;
 use surfel::vk::DeviceLimits;
-use surfel::{Outputs, Picture, Precision, Rasterizer, RenderOptions, Renderer, Scene, scenes};
+use surfel::{Outputs, Picture, Precision, Rasterizer, RenderOptions, Renderer, Scene};
 
 /// How far behind the surface a pixel shows what it should hide.
 const LEAK: f64 = 0.02;

@@ -10,12 +10,13 @@ use std::f64::consts::SQRT_2;
 use std::fmt;
 use std::sync::Arc;
 use surfel::geometry::{Camera, Model, Parts, Surfels};
-use surfel::pull_push::{PullPush, Rules};
-use surfel::reference::Frame;
-use surfel::reference::pull_push::{Compact, Decided, Level, Reconstruction, Sample, Steps};
+use surfel::settings::pull_push::{PullPush, Rules};
 use surfel::settings::{Alpha, Cull, Shading};
+use surfel::verify::reference::Frame;
+use surfel::verify::reference::pull_push::{Compact, Decided, Level, Reconstruction, Sample, Steps};
+use surfel::verify::scenes;
 use surfel::vk::{Device, DeviceLimits};
-use surfel::{Precision, Settings, scenes};
+use surfel::{Precision, Settings};
 
 const SIZES: [[u32; 2]; 5] = [[1, 1], [1, 1023], [640, 480], [1023, 769], [1024, 1024]];
 /// Those of the short run.

@@ -3,11 +3,12 @@
 use crate::support::gpu::{assert_silent, device, render};
 use glam::{DVec3, Vec3};
 use surfel::geometry::{Camera, Model, Parts};
-use surfel::pull_push::{PullPush, Rules};
+use surfel::settings::pull_push::{PullPush, Rules};
 use surfel::settings::{Settings, Shading};
-use surfel::truth::{self, Filter, Options};
+use surfel::verify::scenes;
+use surfel::verify::truth::{self, Filter, Options};
 use surfel::vk::DeviceLimits;
-use surfel::{Outputs, Picture, RenderOptions, scenes};
+use surfel::{Outputs, Picture, RenderOptions};
 
 /// How far, in units of the scene, a pixel may be from the surface that is seen.
 const LEAK: f32 = 0.05;
@@ -71,8 +72,12 @@ fn faults(found: &Picture, exact: &Picture) -> Faults {
 fn write(picture: &Picture, name: &str) {
     if let Some(folder) = std::env::var_os("SURFEL_FIGURES") {
         let path = std::path::Path::new(&folder).join(name);
-        surfel::io::image::write(picture, Shading::Lit, &surfel::io::image::Output::parse(path.as_os_str()))
-            .unwrap();
+        surfel::formats::image::write(
+            picture,
+            Shading::Lit,
+            &surfel::formats::image::Output::parse(path.as_os_str()),
+        )
+        .unwrap();
     }
 }
 
@@ -91,7 +96,8 @@ fn compare(name: &str, size: [u32; 2]) -> [Faults; 2] {
     [Rules::Paper, Rules::Robust].map(|rules| {
         let pull_push = PullPush::of(rules);
         let settings = Settings { pull_push: Some(pull_push), ..settings.clone() };
-        let frame = surfel::reference::render(&model, &camera, size, &settings, &()).unwrap().to_picture();
+        let frame =
+            surfel::verify::reference::render(&model, &camera, size, &settings, &()).unwrap().to_picture();
         write(&frame, &format!("{file}-{}.png", rules.name()));
         let faults = faults(&frame, &exact);
         println!("{name} {size:?} {rules:?}: {faults:?}");
@@ -181,8 +187,9 @@ fn the_gpu_makes_the_references_picture() {
                 let picture = render(&device, &model, camera, &settings, options);
                 let file = name.replace([':', '?', '&', '='], "-");
                 write(&picture, &format!("{file}-{}-gpu{i}.png", rules.name()));
-                let twin =
-                    surfel::reference::render(&model, camera, size, &settings, &()).unwrap().to_picture();
+                let twin = surfel::verify::reference::render(&model, camera, size, &settings, &())
+                    .unwrap()
+                    .to_picture();
                 write(&twin, &format!("{file}-{}-twin{i}.png", rules.name()));
                 let object = twin.colour.iter().filter(|c| c[3] > 0.0).count();
                 let [other, differ] = disagreements(&picture, &twin);

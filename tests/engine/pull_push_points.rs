@@ -7,13 +7,14 @@ use crate::support::sampling::paint_srgb;
 use crate::support::scenes::{Case, cases};
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
+use surfel::SplatCounts;
 use surfel::geometry::{Camera, Model, Parts, Surfels};
-use surfel::methods::{Method, pull_push};
-use surfel::reference::pull_push::Reconstruction;
+use surfel::settings::methods::{Method, pull_push};
 use surfel::settings::{Cull, Shading};
+use surfel::verify::reference::pull_push::Reconstruction;
+use surfel::verify::scenes;
 use surfel::vk::{Device, DeviceLimits};
 use surfel::{Outputs, Picture, PyramidLevel, Rasterizer, RenderOptions, Renderer, Scene, Settings};
-use surfel::{SplatCounts, scenes};
 
 const BOTH: [Rasterizer; 2] = [Rasterizer::Draw, Rasterizer::Compute];
 const PRESETS: [Method; 2] = [pull_push::METHOD, pull_push::PAPER];

@@ -9,9 +9,9 @@ use glam::DVec3;
 use std::sync::Arc;
 use surfel::bench::subject::Subject;
 use surfel::geometry::{Cloud, Surfels};
-use surfel::pull_push::{PullPush, Rules};
 use surfel::settings::Cull;
-use surfel::truth::{self, Filter, Options};
+use surfel::settings::pull_push::{PullPush, Rules};
+use surfel::verify::truth::{self, Filter, Options};
 use surfel::vk::{Device, DeviceLimits};
 use surfel::{Picture, Precision, Settings};
 

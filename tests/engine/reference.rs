@@ -5,7 +5,9 @@ use crate::support::sampling::Random;
 use crate::support::scenes::{Case, cases};
 use std::sync::LazyLock;
 use surfel::geometry::{Camera, Surfels};
-use surfel::reference::{Channel, Comparison, Culled, Expected, Projector, Surfel, Tolerance, render};
+use surfel::verify::reference::{
+    Channel, Comparison, Culled, Expected, Projector, Surfel, Tolerance, render,
+};
 use surfel::{Picture, Settings};
 
 /// Share of the object's pixels that may be in doubt.

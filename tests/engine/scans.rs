@@ -3,10 +3,10 @@
 use crate::support::{gpu, mesh};
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
-use surfel::geometry::estimate::Estimate;
+use surfel::estimate::Estimate;
+use surfel::formats::ply::{self, ReadOptions};
 use surfel::geometry::srgb;
 use surfel::geometry::{Bounds, Camera, Cloud, Surfels};
-use surfel::io::ply::{self, ReadOptions};
 use surfel::vk::{Device, DeviceLimits};
 use surfel::{Picture, RenderOptions, Settings};
 

@@ -3,8 +3,9 @@
 use crate::support::gpu::{assert_silent, device, render};
 use crate::support::truth::{Differences, Truth};
 use surfel::settings::{Alpha, Shading};
+use surfel::verify::scenes;
 use surfel::vk::DeviceLimits;
-use surfel::{Picture, Rasterizer, RenderOptions, Settings, scenes};
+use surfel::{Picture, Rasterizer, RenderOptions, Settings};
 
 /// Most pixels outside the sphere's outline that may be covered.
 const MOST_EXTRA: usize = 2_000;

@@ -8,10 +8,12 @@ use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 use surfel::geometry::{Camera, Colours, MipMap, Model, Surfels, Texture};
-use surfel::methods::{Method, pull_push};
+use surfel::settings::methods::{Method, pull_push};
 use surfel::settings::{Settings, Shading};
+use surfel::verify::reference;
+use surfel::verify::scenes;
 use surfel::vk::DeviceLimits;
-use surfel::{Picture, RenderOptions, reference, scenes};
+use surfel::{Picture, RenderOptions};
 
 /// Width and height, px.
 const SIDE: u32 = 256;

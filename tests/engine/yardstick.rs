@@ -5,9 +5,9 @@ use crate::support::sampling::{Random, bumpy_sphere, paint_linear, push};
 use crate::support::scenes::{Case, cases};
 use glam::{DVec3, Vec3};
 use surfel::geometry::{Camera, Colours, Surfels};
-use surfel::reference::{Comparison, Expected, Tolerance};
 use surfel::settings::{Alpha, Cull, Shading, Widen};
-use surfel::yardstick::{Kind, Yardstick};
+use surfel::verify::reference::{Comparison, Expected, Tolerance};
+use surfel::verify::yardstick::{Kind, Yardstick};
 use surfel::{Error, Outputs, Picture, Settings};
 
 /// Share of the object's pixels that the reference may hold to be undecided.

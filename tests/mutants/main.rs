@@ -8,9 +8,9 @@ use cap::Cap;
 use mutate::Random;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::{Duration, Instant};
-use surfel::geometry::estimate::Estimate;
+use surfel::estimate::Estimate;
+use surfel::formats::ply::{self, Loaded, ReadOptions};
 use surfel::geometry::{Clip, ClipLine, Cloud, Colours, Model, Surfels, View, Weights};
-use surfel::io::ply::{self, Loaded, ReadOptions};
 
 #[global_allocator]
 static ALLOCATOR: Cap<std::alloc::System> = Cap::new(std::alloc::System, usize::MAX);

@@ -2,8 +2,8 @@
 
 use glam::{DVec2, DVec3, Vec3};
 use std::path::{Path, PathBuf};
+use surfel::formats::ply;
 use surfel::geometry::{Camera, Cloud};
-use surfel::io::ply;
 
 /// A file of the shared test data; `None`, said aloud, where there is none.
 pub fn data(name: &str) -> Option<PathBuf> {

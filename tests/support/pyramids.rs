@@ -3,10 +3,10 @@
 use glam::{DMat3, DVec2, DVec3};
 use std::sync::Arc;
 use surfel::geometry::{Camera, Colours, Parts};
-use surfel::pull_push::PullPush;
-use surfel::reference::Frame;
-use surfel::reference::pull_push::{Compact, Level, Pyramid, Reconstruction, Sample};
 use surfel::scene::ColourStream;
+use surfel::settings::pull_push::PullPush;
+use surfel::verify::reference::Frame;
+use surfel::verify::reference::pull_push::{Compact, Level, Pyramid, Reconstruction, Sample};
 use surfel::vk::Device;
 use surfel::{
     Outputs, Picture, Precision, PyramidLevel, PyramidSample, RenderOptions, Renderer, Scene, Settings,

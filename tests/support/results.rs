@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use surfel::bench::Results;
 use surfel::bench::record::*;
-use surfel::times::Statistics;
+use surfel::frame::times::Statistics;
 
 /// Digest of the code that the results are by.
 pub const CODE: &str = "c0de";

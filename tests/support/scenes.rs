@@ -9,8 +9,8 @@ use glam::{DMat4, DVec3, DVec4};
 use std::f64::consts::TAU;
 use surfel::Settings;
 use surfel::geometry::{Camera, Colours, Surfels};
-use surfel::reference::Surfel;
 use surfel::settings::{Cull, DirectionalLight, Shading, Widen};
+use surfel::verify::reference::Surfel;
 
 /// A scene, its cameras and the frame to render.
 pub struct Case {

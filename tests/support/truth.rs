@@ -4,7 +4,7 @@ use glam::DVec3;
 use rayon::prelude::*;
 use surfel::geometry::Camera;
 use surfel::geometry::srgb;
-use surfel::scenes::bumpy_sphere::{Hit, trace};
+use surfel::verify::scenes::bumpy_sphere::{Hit, trace};
 
 /// The checker's two colours, sRGB-encoded.
 const CHECKER: [[u8; 3]; 2] = [[230, 60, 40], [240, 235, 220]];

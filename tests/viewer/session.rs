@@ -6,7 +6,7 @@ use crate::program::scan;
 use crate::view::{View, command};
 use crate::{DRAW, SPHERE, stage};
 use std::path::Path;
-use surfel::methods::Method;
+use surfel::settings::methods::Method;
 
 #[test]
 fn a_scene_is_looked_at_and_kept() {

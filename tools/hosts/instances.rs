@@ -17,8 +17,9 @@ use host::{Host, Result};
 use std::sync::Arc;
 use surfel::geometry::Camera;
 use surfel::settings::{DirectionalLight, Lighting};
+use surfel::verify::scenes;
 use surfel::vk::Device;
-use surfel::{Instance, Settings, scenes};
+use surfel::{Instance, Settings};
 
 fn main() -> Result<()> {
     host::show::run(|host, asked| Composite::<Threefold>::new(host, Way::Subpass, asked))

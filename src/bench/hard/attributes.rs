@@ -3,7 +3,7 @@
 use super::case::{Case, View, ball, look};
 use crate::error::Result;
 use crate::geometry::{Colours, Ellipse, Surfels};
-use crate::scenes::random::Random;
+use crate::verify::scenes::random::Random;
 use glam::{DVec3, Vec3};
 
 /// What is put in, with its name.

@@ -2,10 +2,10 @@
 
 use super::super::record::{Sweep, SweepPoint};
 use crate::error::Result;
-use crate::frame::Precision;
 use crate::geometry::{Camera, Colours, Surfels};
-use crate::scenes::random::Random;
+use crate::settings::Precision;
 use crate::settings::{Settings, Shading};
+use crate::verify::scenes::random::Random;
 use glam::DVec3;
 
 /// A hard case; as [`Sweep`].

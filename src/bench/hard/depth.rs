@@ -3,7 +3,7 @@
 use super::case::{Case, View, decades, look, push, signed, vector};
 use crate::error::Result;
 use crate::geometry::Surfels;
-use crate::scenes::random::Random;
+use crate::verify::scenes::random::Random;
 use glam::DVec3;
 
 /// Layers at 10⁻³ and on.

@@ -2,9 +2,9 @@
 
 use super::case::{Case, View, decades, push, signed, vector};
 use crate::error::Result;
-use crate::frame::Precision;
 use crate::geometry::{Camera, Surfels};
-use crate::scenes::random::Random;
+use crate::settings::Precision;
+use crate::verify::scenes::random::Random;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
 /// Distance from the eye to the middle of the picture, which is 2 high.

@@ -3,7 +3,7 @@
 use super::super::record::{Agreement, Faults};
 use crate::error::Result;
 use crate::picture::Picture;
-use crate::reference::{Admissible, Expected};
+use crate::verify::reference::{Admissible, Expected};
 
 /// Holds a picture with depth and normals against `expected`. A pixel with a value that is not finite is a fault, and empty in
 /// what else is measured.

@@ -3,7 +3,7 @@
 use super::case::{Case, View, decades, look, push};
 use crate::error::Result;
 use crate::geometry::Surfels;
-use crate::scenes::random::Random;
+use crate::verify::scenes::random::Random;
 use glam::DVec3;
 
 const RADIUS: f64 = 0.1;

@@ -2,8 +2,8 @@
 
 use super::case::{Case, View, ball, decades, look};
 use crate::error::Result;
-use crate::frame::Precision;
-use crate::scenes::random::Random;
+use crate::settings::Precision;
+use crate::verify::scenes::random::Random;
 use glam::DVec3;
 
 const DISTANCE: &str = "distance from the world's origin, radii of the object";

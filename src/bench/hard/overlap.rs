@@ -2,9 +2,9 @@
 
 use super::case::{Case, View, look, push, signed};
 use crate::error::Result;
-use crate::frame::Precision;
 use crate::geometry::Surfels;
-use crate::scenes::random::Random;
+use crate::settings::Precision;
+use crate::verify::scenes::random::Random;
 use glam::DVec3;
 
 /// Height of a pixel at the distance of the surfels: 64 rows of a picture that is 2 high.

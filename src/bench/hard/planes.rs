@@ -3,7 +3,7 @@
 use super::case::{Case, View, look, push, wall};
 use crate::error::Result;
 use crate::geometry::Surfels;
-use crate::scenes::random::Random;
+use crate::verify::scenes::random::Random;
 use glam::DVec3;
 use std::f64::consts::TAU;
 

@@ -3,7 +3,7 @@
 use super::case::{Case, View, decades, look, push, signed, vector};
 use crate::error::Result;
 use crate::geometry::{Ellipse, Surfels};
-use crate::scenes::random::Random;
+use crate::verify::scenes::random::Random;
 use glam::DVec3;
 use std::f64::consts::TAU;
 

@@ -3,7 +3,7 @@
 use super::case::{Case, View, ball};
 use crate::error::Result;
 use crate::geometry::Camera;
-use crate::scenes::random::Random;
+use crate::verify::scenes::random::Random;
 use glam::DVec3;
 
 /// Widths and heights, px, by rising ratio.

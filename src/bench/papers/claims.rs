@@ -3,9 +3,9 @@
 use crate::bench::plan::{Plan, Wants};
 use crate::bench::record::Figure;
 use crate::bench::suites::{Suite, plan};
-use crate::methods::Method;
+use crate::settings::methods::Method;
+use crate::settings::splatting::{Filter, Footprint, Normalization, Splatting, Visibility};
 use crate::settings::{Settings, Widen};
-use crate::splatting::{Filter, Footprint, Normalization, Splatting, Visibility};
 
 /// Something that costs time.
 pub struct Claim {

@@ -2,8 +2,8 @@
 
 use crate::bench::record::Blended;
 use crate::bench::terms::WHOLE;
-use crate::metrics::{Pair, colour, covers};
 use crate::picture::Picture;
+use crate::verify::metrics::{Pair, colour, covers};
 
 /// Pixels well inside the surface that the picture does not cover: the truth covers them and all that its filter reaches.
 pub const GAPS: &str = "gaps";

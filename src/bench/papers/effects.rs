@@ -4,10 +4,10 @@ use super::details::{FACETS, GAPS, LEAKS, SHARPNESS, UNEVENNESS};
 use crate::bench::plan::{Plan, Wants};
 use crate::bench::record::{Figure, Run};
 use crate::bench::suites::{Suite, plan};
-use crate::methods::Method;
-use crate::scenes::Viewpoint;
+use crate::settings::methods::Method;
+use crate::settings::splatting::{Filter, Footprint, Kernel, Normalization, Splatting, Visibility};
 use crate::settings::{Settings, Shading};
-use crate::splatting::{Filter, Footprint, Kernel, Normalization, Splatting, Visibility};
+use crate::verify::scenes::Viewpoint;
 
 /// A figure's effect, and its sides.
 pub struct Effect {

@@ -8,9 +8,9 @@ use crate::bench::plan::{Plan, Wants};
 use crate::bench::record::{Figure, Run};
 use crate::bench::show;
 use crate::bench::suites::{Suite, plan};
-use crate::methods::Method;
+use crate::settings::methods::Method;
+use crate::settings::splatting::{Filter, Normalization, Visibility};
 use crate::settings::{Settings, Shading};
-use crate::splatting::{Filter, Normalization, Visibility};
 
 /// A table.
 pub struct Table {

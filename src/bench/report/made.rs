@@ -114,6 +114,6 @@ fn passes(session: &Session) -> Markup {
     } }
 }
 
-fn spread(times: crate::times::Statistics) -> Markup {
+fn spread(times: crate::frame::times::Statistics) -> Markup {
     html! { (show::ms(times.median)) small { " " (show::ms(times.min)) "–" (show::ms(times.max)) } }
 }

@@ -20,7 +20,7 @@ mod yardstick;
 
 use super::record::Results;
 use crate::error::{Error, Result};
-use crate::io::atomic;
+use crate::formats::atomic;
 use page::Page;
 use std::io::Write;
 use std::path::{Path, PathBuf};

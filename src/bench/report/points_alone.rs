@@ -4,7 +4,7 @@ use super::page::{Page, grouped};
 use super::plot::{Line, Plot, Scale, Style};
 use crate::bench::record::{Contender, Figure, Run, Session};
 use crate::bench::show;
-use crate::methods::{Method, perspective_ewa, pull_push};
+use crate::settings::methods::{Method, perspective_ewa, pull_push};
 use maud::{Markup, html};
 use std::io;
 

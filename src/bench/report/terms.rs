@@ -2,7 +2,7 @@
 
 use crate::bench::csv::metrics;
 use crate::bench::record::Results;
-use crate::metrics::Metric;
+use crate::verify::metrics::Metric;
 use maud::{Markup, html};
 
 /// Terms, and the metrics that were taken; none of no sessions.

@@ -3,8 +3,8 @@
 use super::{Suite, aliasing, lowpass, methods, plan, yardstick};
 use crate::bench::plan::{Plan, Wants};
 use crate::bench::record::Figure;
-use crate::scenes;
-use crate::yardstick::Kind;
+use crate::verify::scenes;
+use crate::verify::yardstick::Kind;
 
 const SIZE: [u32; 2] = [512, 512];
 const POINTS: [u64; 5] = [10_000, 30_000, 100_000, 300_000, 1_000_000];

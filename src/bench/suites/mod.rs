@@ -13,10 +13,11 @@ use super::engine::Engine;
 use super::plan::{Plan, Wants};
 use super::record::Figure;
 use super::stopwatch::Effort;
-use crate::methods::{Method, perspective_ewa};
+use crate::settings::methods::{Method, perspective_ewa};
 use crate::settings::{Settings, Shading, Widen};
-use crate::yardstick::Kind;
-use crate::{scenes, truth};
+use crate::verify::scenes;
+use crate::verify::truth;
+use crate::verify::yardstick::Kind;
 use std::time::Duration;
 
 /// A suite.

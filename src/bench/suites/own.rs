@@ -5,7 +5,7 @@ use crate::bench::plan::{Plan, Wants};
 use crate::bench::record::Figure;
 use crate::bench::subject::Subject;
 use crate::settings::Shading;
-use crate::yardstick::Kind;
+use crate::verify::yardstick::Kind;
 use std::rc::Rc;
 
 /// Numbers of points unless others are wanted.

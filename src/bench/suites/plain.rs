@@ -4,7 +4,7 @@ use super::{Suite, plan};
 use crate::bench::engine::Engine;
 use crate::bench::plan::{Plan, Wants};
 use crate::bench::record::Figure;
-use crate::yardstick::Kind;
+use crate::verify::yardstick::Kind;
 use crate::{Precision, Rasterizer};
 
 const SIZE: [u32; 2] = [1024, 1024];

@@ -3,8 +3,8 @@
 use super::{Suite, aliasing, by, lowpass, methods, plan, yardstick};
 use crate::bench::plan::{Plan, Wants};
 use crate::bench::record::Figure;
-use crate::methods::pull_push;
-use crate::yardstick::Kind;
+use crate::settings::methods::pull_push;
+use crate::verify::yardstick::Kind;
 
 const SIZE: [u32; 2] = [320, 320];
 /// What every method is shown by: more of them take more than a minute.

@@ -3,9 +3,9 @@
 use super::{Suite, by, methods, plan, yardstick};
 use crate::bench::plan::{Plan, Wants};
 use crate::bench::record::Figure;
-use crate::methods::{Method, pull_push};
-use crate::scenes::Viewpoint;
-use crate::yardstick::Kind;
+use crate::settings::methods::{Method, pull_push};
+use crate::verify::scenes::Viewpoint;
+use crate::verify::yardstick::Kind;
 
 const SCENE: &str = "scene:bumpy-sphere";
 const SIZE: [u32; 2] = [1024, 1024];

@@ -4,7 +4,7 @@ use crate::cli::limits::{Limit, above, below};
 use crate::cli::values::{opaque, positive};
 use clap::Args;
 use std::ffi::OsString;
-use surfel::metrics::flip::PIXELS_PER_DEGREE;
+use surfel::verify::metrics::flip::PIXELS_PER_DEGREE;
 
 /// Options of `surfel compare`.
 #[derive(Args, Debug)]

@@ -5,8 +5,8 @@ use crate::cli::values::{direction, edge, positive};
 use clap::Args;
 use glam::DVec3;
 use std::ffi::OsString;
+use surfel::estimate::Estimate;
 use surfel::geometry::ToLines;
-use surfel::geometry::estimate::Estimate;
 
 /// Options of `surfel convert`.
 #[derive(Args, Debug)]

@@ -30,8 +30,8 @@ use clap_complete::Shell;
 use glam::DVec3;
 use std::ffi::OsString;
 use std::path::PathBuf;
-use surfel::methods::Method;
-use surfel::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
+use surfel::settings::methods::Method;
+use surfel::settings::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
 use surfel::{Outputs, Rasterizer, Settings};
 
 /// Renders point-sampled surfaces with Vulkan.

@@ -5,9 +5,9 @@ use clap::Args;
 use std::path::PathBuf;
 use std::sync::Arc;
 use surfel::Result;
-use surfel::geometry::estimate::Estimate;
+use surfel::estimate::Estimate;
+use surfel::formats::image;
 use surfel::geometry::{ColourMap, MipMap};
-use surfel::io::image;
 
 /// How normals and radii are estimated.
 #[derive(Args, Debug)]

@@ -4,7 +4,8 @@ use super::{Background, Camera, Layer, Shading, background, size};
 use crate::cli::values::{Filter, positive};
 use clap::Args;
 use std::ffi::OsString;
-use surfel::{Outputs, Settings, truth};
+use surfel::verify::truth;
+use surfel::{Outputs, Settings};
 
 /// Options of `surfel truth`.
 #[derive(Args, Debug)]

@@ -5,7 +5,7 @@ use crate::cli::values::{method, size};
 use clap::Args;
 use std::ffi::OsString;
 use std::path::PathBuf;
-use surfel::methods::Method;
+use surfel::settings::methods::Method;
 use surfel::{Rasterizer, Settings};
 
 /// Options of `surfel view`.

@@ -6,9 +6,9 @@ use crate::cli::inputs::{scene, scene_cloud};
 use crate::cli::progress;
 use serde_json::{Map, Value, json};
 use std::path::Path;
-use surfel::geometry::estimate::{Estimated, spacing};
+use surfel::estimate::{Estimated, spacing};
+use surfel::formats::ply::{self, Dropped, Element, Inspected, Loaded, ReadOptions, Report};
 use surfel::geometry::{Cloud, Colours, Model, Parts, View};
-use surfel::io::ply::{self, Dropped, Element, Inspected, Loaded, ReadOptions, Report};
 use surfel::{Error, Result};
 
 /// An object with its entries.

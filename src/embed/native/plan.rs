@@ -3,13 +3,14 @@
 use super::Place;
 use super::dependencies::dependencies;
 use crate::error::{Error, Result};
+use crate::frame::RenderOptions;
 use crate::frame::rasterizer::{rasterizer_for, width_of_sums};
 use crate::frame::targets::sums_format;
 use crate::frame::variant::Variant;
-use crate::frame::{Outputs, Precision, Rasterizer, RenderOptions};
 use crate::scene::Streams;
 use crate::settings::Settings;
-use crate::splatting::Visibility;
+use crate::settings::splatting::Visibility;
+use crate::settings::{Outputs, Precision, Rasterizer};
 use crate::vk::{Device, input_layout};
 use ash::vk;
 

@@ -10,7 +10,7 @@
 //! (`lib/splat.glsl`), but the mean does. So the seed is moved four times as far; where the plane goes on further, to in front of a host's
 //! surface that is in front of the disc, the pixel shows the host.
 
-use crate::frame::Precision;
+use crate::settings::Precision;
 use crate::vk::shaders::layout::{Frame, Seed};
 use ash::vk;
 

@@ -5,8 +5,9 @@ mod nearest;
 mod pull_push;
 
 use super::pass::Pass;
-use super::variant::{Rasterizer, Variant};
-use crate::splatting::Visibility;
+use super::variant::Variant;
+use crate::settings::Rasterizer;
+use crate::settings::splatting::Visibility;
 
 /// How the passes of a frame are run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

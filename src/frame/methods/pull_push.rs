@@ -19,7 +19,7 @@
 use crate::frame::pass::Pass;
 use crate::frame::passes::{copy::COPY, fetch, project, pull::PULL, push::PUSH, shade::SHADE};
 use crate::frame::variant::Variant;
-use crate::pull_push::Storage;
+use crate::settings::pull_push::Storage;
 
 /// The passes, where the levels are so kept.
 pub fn passes(variant: &Variant, storage: Storage, scenes: usize) -> Vec<&'static Pass> {

@@ -36,8 +36,9 @@ mod tests {
     use crate::frame::RenderOptions;
     use crate::frame::pass::{Commands, Pass, Programs};
     use crate::frame::resource::Resource;
-    use crate::frame::variant::{Rasterizer, SceneVariant, Variant};
+    use crate::frame::variant::{SceneVariant, Variant};
     use crate::scene::{ColourStream, PrimitiveKinds, Streams, SurfelLayout};
+    use crate::settings::Rasterizer;
     use crate::settings::{Alpha, Settings};
 
     const ALL: [&Pass; 22] = [
@@ -104,7 +105,7 @@ mod tests {
                 .into_iter()
                 .flat_map(|alpha| [(alpha, Rasterizer::Draw), (alpha, Rasterizer::Compute)])
             {
-                for pull_push in [None, crate::methods::pull_push::METHOD.pull_push] {
+                for pull_push in [None, crate::settings::methods::pull_push::METHOD.pull_push] {
                     let settings = Settings { alpha, pull_push, ..Default::default() };
                     let options = RenderOptions { count: rich, ..Default::default() };
                     let frame = Variant::new(&[streams], true, &settings, &options, rasterizer);

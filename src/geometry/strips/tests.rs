@@ -1,7 +1,7 @@
 //! A leaf, blades, branches and trunks whose lines are known.
 
 use super::*;
-use crate::geometry::estimate::Estimate;
+use crate::estimate::Estimate;
 use crate::geometry::{Colours, Model, Primitives};
 use glam::Vec3;
 use std::f32::consts::{PI, TAU};

@@ -1,7 +1,6 @@
 //! What is opened, and what is kept.
 
 use super::App;
-use crate::camera_file;
 use crate::viewer::events::Event;
 use crate::viewer::keep::{Shot, What};
 use crate::viewer::keys::Action;
@@ -11,7 +10,8 @@ use crate::viewer::source::Source;
 use crate::viewer::state::Of;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use surfel::methods::Method;
+use surfel::formats::camera as camera_file;
+use surfel::settings::methods::Method;
 use surfel::{Result, Scene};
 
 impl App {

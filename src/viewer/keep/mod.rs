@@ -5,15 +5,15 @@ mod shot;
 
 pub use shot::{Shot, What};
 
-use crate::camera_file;
 use egui_winit::clipboard::Clipboard;
 use names::Names;
 use std::io::Write;
 use std::path::PathBuf;
 use std::sync::mpsc::{self, Receiver, Sender};
 use std::thread::{self, JoinHandle};
+use surfel::formats::atomic;
+use surfel::formats::camera as camera_file;
 use surfel::geometry::Pose;
-use surfel::io::atomic;
 use surfel::{Error, Result};
 use winit::raw_window_handle::HasDisplayHandle;
 use winit::window::Window;

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 use std::sync::Arc;
+use surfel::formats::image::{Encoded, Output, write};
 use surfel::geometry::Camera;
-use surfel::io::image::{Encoded, Output, write};
 use surfel::settings::Shading;
 use surfel::vk::Device;
 use surfel::{Outputs, Picture, Rasterizer, RenderOptions, Renderer, Result, Scene, Settings};

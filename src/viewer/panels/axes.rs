@@ -2,7 +2,7 @@
 
 use egui::{ComboBox, Ui};
 use surfel::Result;
-use surfel::splatting::{Filter, Footprint, Normalization, Shade, Splatting, Visibility};
+use surfel::settings::splatting::{Filter, Footprint, Normalization, Shade, Splatting, Visibility};
 
 /// A choice: its name, what it means, and what it makes of the others.
 type Choice = (&'static str, &'static str, Splatting);

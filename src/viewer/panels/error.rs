@@ -7,10 +7,12 @@ use egui::{Button, ComboBox, Context, Grid, ProgressBar, Slider, SliderClamping,
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use surfel::geometry::{Camera, ColourMap, Model};
-use surfel::metrics;
-use surfel::reference::{self, Tolerance};
+use surfel::verify::metrics;
+use surfel::verify::reference::{self, Tolerance};
+use surfel::verify::scenes;
+use surfel::verify::truth;
 use surfel::vk::Device;
-use surfel::{Error, Picture, Progress, RenderOptions, Renderer, Result, Scene, Settings, scenes, truth};
+use surfel::{Error, Picture, Progress, RenderOptions, Renderer, Result, Scene, Settings};
 
 /// How often progress is looked at.
 const OFTEN: Duration = Duration::from_millis(200);

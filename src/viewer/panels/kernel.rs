@@ -1,7 +1,7 @@
 //! How a splat's weight falls off: a choice, and its curve.
 
 use egui::{Align2, Color32, ComboBox, FontId, Pos2, Sense, Shape, Slider, SliderClamping, Stroke, Ui, vec2};
-use surfel::splatting::{Kernel, Splatting};
+use surfel::settings::splatting::{Kernel, Splatting};
 
 /// Width of the curve at most, and its height, points.
 const SIZE: [f32; 2] = [240.0, 90.0];

@@ -4,11 +4,12 @@ use super::{axes, kernel};
 use crate::viewer::state::Choices;
 use egui::{ComboBox, Slider, SliderClamping, Ui};
 use std::ops::RangeInclusive;
-use surfel::methods::Method;
-use surfel::pull_push::Storage;
+use surfel::Settings;
 use surfel::settings::Widen;
-use surfel::splatting::{Filter, Visibility};
-use surfel::{Settings, methods};
+use surfel::settings::methods;
+use surfel::settings::methods::Method;
+use surfel::settings::pull_push::Storage;
+use surfel::settings::splatting::{Filter, Visibility};
 
 /// Method, axes, kernel, numbers.
 pub fn show(ui: &mut Ui, chosen: &mut Choices<'_>) {
@@ -32,7 +33,7 @@ pub fn show(ui: &mut Ui, chosen: &mut Choices<'_>) {
             .on_hover_text("as published: even levels in one, odd ones in the other, and a pass that copies");
     });
     shown.response.on_hover_text(text);
-    settings.pull_push = Some(surfel::pull_push::PullPush { storage, ..pull_push });
+    settings.pull_push = Some(surfel::settings::pull_push::PullPush { storage, ..pull_push });
 }
 
 fn storage_name(storage: Storage) -> &'static str {

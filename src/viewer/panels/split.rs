@@ -5,7 +5,7 @@ use crate::viewer::state::{Choices, State};
 use egui::{
     Align2, Area, Color32, ComboBox, CursorIcon, FontId, Id, Order, Rect, Sense, Stroke, Ui, pos2, vec2,
 };
-use surfel::methods::Method;
+use surfel::settings::methods::Method;
 use surfel::{FrameReport, Settings};
 
 /// Nearest to an edge of the picture that the divider comes, as part of the width.

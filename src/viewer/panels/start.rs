@@ -37,7 +37,7 @@ mod tests {
     #[test]
     fn the_scenes_are_there() {
         for scene in SCENES {
-            assert!(surfel::scenes::model(scene).is_ok(), "{scene}");
+            assert!(surfel::verify::scenes::model(scene).is_ok(), "{scene}");
         }
     }
 }

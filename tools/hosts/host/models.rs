@@ -8,12 +8,13 @@ use glam::{DMat4, DVec3};
 use std::collections::VecDeque;
 use std::path::Path;
 use std::sync::Arc;
+use surfel::Scene;
 use surfel::embed::{self, Staging};
-use surfel::geometry::estimate::Estimate;
+use surfel::estimate::Estimate;
+use surfel::formats;
 use surfel::geometry::{Bounds, Surfels};
 use surfel::scene::Streams;
 use surfel::vk::Device;
-use surfel::{Scene, io};
 
 /// Models, of which one is shown.
 pub struct Models {
@@ -86,6 +87,6 @@ impl Models {
 }
 
 fn read(file: &Path) -> Result<Surfels> {
-    let loaded = io::ply::read(file, &Default::default(), &())?;
+    let loaded = formats::ply::read(file, &Default::default(), &())?;
     Ok(loaded.cloud.into_surfels(&Estimate::default(), &())?.0)
 }

@@ -3,7 +3,7 @@
 use std::ffi::OsString;
 use std::path::PathBuf;
 use surfel::Settings;
-use surfel::methods::Method;
+use surfel::settings::methods::Method;
 
 /// What a host is asked to do.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

@@ -8,7 +8,7 @@ use crate::scene::{SIZE, camera, sphere};
 use crate::show::{PANE, Parts, SURFELS, Show};
 use glam::DVec3;
 use surfel::geometry::Camera;
-use surfel::methods::Method;
+use surfel::settings::methods::Method;
 use surfel::vk::{Device, DeviceOptions};
 use surfel::{Outputs, Picture, RenderOptions, Renderer, Scene, Settings};
 

@@ -1,0 +1,363 @@
+//! Surfels among the geometry of another renderer, which owns instance, device, queue, command buffers and frame pacing.
+//!
+//! ```text
+//! once          Abilities::of ─ the host makes its device ─ Device::borrow ─ upload → Scene, Staging ─ Renderer::new
+//! each frame    Renderer::prepare: records every pass of the method, outside a render pass
+//!               Renderer::draw:    records a draw of the picture with its depth, inside a render pass of the host
+//! ```
+//!
+//! Surfels may also stay in buffers of the host, which a simulation of its own writes every frame: [`Scene::from_buffers`] reads them in place.
+//! Those that were uploaded get new values by [`update`].
+//!
+//! Nothing is submitted, waited for or stalled: the host submits what is recorded, to one queue. What the engine makes it also destroys, once
+//! as many frames have been prepared since as the host has in flight; what it borrows it leaves alone.
+//!
+//! ```no_run
+//! use ash::vk;
+//! use std::sync::Arc;
+//! use surfel::embed::{self, Abilities, Lent, MemoryBlocks, Options, Pass, Renderer, Target, View};
+//! use surfel::geometry::{Camera, Surfels};
+//! use surfel::vk::{Device, DeviceLimits};
+//! use surfel::{Precision, Scene, Settings};
+//!
+//! /// What the host has.
+//! struct Host {
+//!     instance: ash::Instance,
+//!     physical: vk::PhysicalDevice,
+//!     device: ash::Device,
+//!     family: u32,
+//!     pass: vk::RenderPass,
+//! }
+//!
+//! /// Before the host makes its device: what to enable, as far as it is there. None of it is needed.
+//! fn wanted(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Abilities {
+//!     let abilities = unsafe { Abilities::of(instance, physical) };
+//!     // VkDeviceCreateInfo takes `abilities.extensions()`, `abilities.features().core`, and the rest by `Features::chain`.
+//!     abilities
+//! }
+//!
+//! /// Once. `cmd` is outside a render pass; `Staging` stays until the GPU has done it.
+//! unsafe fn load(host: &Host, enabled: Abilities, cmd: vk::CommandBuffer, surfels: &Surfels) -> surfel::Result<(Arc<Scene>, embed::Staging, Renderer)> {
+//!     let device = unsafe {
+//!         Device::borrow(Lent {
+//!             instance: &host.instance,
+//!             physical: host.physical,
+//!             device: &host.device,
+//!             queue_family: host.family,
+//!             enabled,
+//!             dynamic_rendering: false,
+//!             labels: false,
+//!             limits: DeviceLimits::default(),
+//!             memory: None,
+//!             memory_blocks: MemoryBlocks::default(),
+//!             pipeline_cache: None,
+//!         })?
+//!     };
+//!     let (scene, staging) = unsafe { embed::upload(&device, cmd, surfels)? };
+//!     let target = Target {
+//!         pass: Pass::Subpass { pass: host.pass, subpass: 0 },
+//!         colours: vec![vk::Format::B8G8R8A8_SRGB],
+//!         depth: Some(vk::Format::D32_SFLOAT),
+//!         stencil: vk::Format::UNDEFINED,
+//!         reversed: true,
+//!         samples: vk::SampleCountFlags::TYPE_1,
+//!         picture: 0,
+//!         normal: None,
+//!         id: None,
+//!         encode: false,
+//!     };
+//!     let options = Options { target, frames_in_flight: 2, precision: Precision::Full, rasterizer: None };
+//!     Ok((Arc::new(scene), staging, unsafe { Renderer::new(&device, options)? }))
+//! }
+//!
+//! /// Each frame.
+//! unsafe fn frame(renderer: &mut Renderer, cmd: vk::CommandBuffer, scene: &Arc<Scene>, camera: Camera, viewport: vk::Viewport) -> surfel::Result<()> {
+//!     unsafe { renderer.prepare(cmd, scene, &View { camera, viewport }, &Settings::default())? };
+//!     // The host begins its render pass and draws what is its own.
+//!     unsafe { renderer.draw(cmd) }
+//! }
+//! ```
+#![allow(unsafe_code)]
+
+mod attachments;
+mod buffers;
+mod composite;
+mod formats;
+mod held;
+pub mod native;
+#[cfg(feature = "window")]
+mod pane;
+mod reports;
+mod target;
+mod view;
+
+pub use crate::scene::Changes;
+pub use crate::vk::{
+    ABILITIES, API_VERSION, Abilities, Ability, Features, HostMemory, Lent, Location, MemoryBlocks,
+    MemoryRequest, MemorySource, QUEUE, Staging,
+};
+pub use buffers::{Buffers, READ_ACCESS, READ_STAGES, Radii, Values, update};
+#[cfg(feature = "window")]
+pub use pane::Pane;
+pub use reports::Measured;
+use reports::Reports;
+pub use target::{Pass, Target};
+use view::Seen;
+pub use view::View;
+
+use crate::error::{Error, Result};
+use crate::frame::resources::{FrameResources, Retired};
+use crate::frame::targets::check_size;
+use crate::frame::uniforms::Blocks;
+use crate::frame::variant::Variant;
+use crate::frame::{FrameReport, RenderOptions};
+use crate::geometry::Parts;
+use crate::scene::Scene;
+use crate::scene::instance::Instances;
+use crate::settings::Settings;
+use crate::settings::{Outputs, Precision, Rasterizer};
+use crate::vk::shaders::layout;
+use crate::vk::{DescriptorSet, Device, Draws, HostPass, Recorder, Uploads};
+use ash::vk;
+use composite::{Composite, CompositeKind};
+use held::Held;
+use std::sync::Arc;
+
+/// Records the upload of surfels, lines and triangles, as [`Scene::upload`] does it, into a command buffer of the host. The scene can be
+/// rendered by what is recorded later; the staging memory must stay until the GPU has done the copies. After an error nothing is recorded.
+///
+/// # Safety
+/// `cmd` is of `device`, of the queue family that it was lent with, is being recorded outside a render pass, and is submitted before what
+/// renders the scene, to the same queue. Scene and staging memory are dropped only when the GPU is done with what is recorded.
+pub unsafe fn upload<'a>(
+    device: &Arc<Device>,
+    cmd: vk::CommandBuffer,
+    parts: impl Into<Parts<'a>>,
+) -> Result<(Scene, Staging)> {
+    let uploads = Uploads::later(device);
+    let scene = Scene::new(device, &uploads, parts.into())?;
+    // SAFETY: by the caller.
+    let mut rec = unsafe { Recorder::of_host(device, cmd) };
+    Ok((scene, uploads.record(&mut rec)))
+}
+
+/// What stays the same from frame to frame.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Where the picture is drawn.
+    pub target: Target,
+    /// How many frames of the host may be under way: when [`Renderer::prepare`] is called, the GPU is done with all but the last
+    /// `frames_in_flight` - 1 frames that were prepared, without an error, before. From 1 to 64.
+    pub frames_in_flight: u32,
+    /// As [`RenderOptions::precision`].
+    pub precision: Precision,
+    /// As [`RenderOptions::rasterizer`].
+    pub rasterizer: Option<Rasterizer>,
+}
+
+/// Renders scenes into frames of a host.
+pub struct Renderer {
+    // Fields are dropped in this order: views before what they view.
+    viewed: Option<Viewed>,
+    shown: Option<(Shown, HostPass)>,
+    reports: Reports,
+    held: Held,
+    /// Of the present frame.
+    scenes: Vec<Arc<Scene>>,
+    composites: Vec<Arc<Composite>>,
+    frame: FrameResources,
+    target: Target,
+    device: Arc<Device>,
+}
+
+/// What draws the pictures of some targets.
+struct Viewed {
+    /// Which targets.
+    present: u64,
+    set: DescriptorSet,
+    composite: Arc<Composite>,
+}
+
+/// The picture that is prepared: where it is drawn.
+struct Shown {
+    place: layout::Composite,
+    area: vk::Rect2D,
+}
+
+impl Renderer {
+    /// A renderer that has made nothing for any scene yet. Refuses a target that cannot be drawn to, and says why.
+    ///
+    /// # Safety
+    /// What `options.target` says of the render pass is true, and the pass outlives the renderer, which is dropped only when the GPU is done with
+    /// all that it recorded: pipelines are found again by the handle of the pass.
+    pub unsafe fn new(device: &Arc<Device>, options: Options) -> Result<Self> {
+        let Options { target, frames_in_flight, precision, rasterizer } = options;
+        target.check(device)?;
+        let outputs = Outputs {
+            normal: target.normal.is_some(),
+            depth: target.depth.is_some(),
+            id: target.id.is_some(),
+        };
+        let options = RenderOptions { size: [1, 1], outputs, precision, rasterizer, ..Default::default() };
+        Ok(Self {
+            viewed: None,
+            shown: None,
+            held: Held::new(frames_in_flight)?,
+            reports: Reports::new(frames_in_flight),
+            scenes: Vec::new(),
+            composites: Vec::new(),
+            frame: FrameResources::new(device, options, Retired::Kept(Vec::new()), None)?,
+            target,
+            device: device.clone(),
+        })
+    }
+
+    /// Records a frame of a scene, or of several where they are placed, up to its picture, which [`Renderer::draw`] then draws. The picture has
+    /// the viewport's size; what has none of the scenes is transparent, whatever `settings.background` says.
+    ///
+    /// After an error nothing is recorded, and nothing is there to draw.
+    ///
+    /// # Safety
+    /// `cmd` is of the device, of the queue family that it was lent with, is being recorded outside a render pass, and is submitted to the
+    /// same queue as what was recorded before, after it. What [`Options::frames_in_flight`] says is true.
+    pub unsafe fn prepare<'a>(
+        &mut self,
+        cmd: vk::CommandBuffer,
+        scenes: impl Into<Instances<'a>>,
+        view: &View,
+        settings: &Settings,
+    ) -> Result<()> {
+        let shown = self.make(scenes.into(), view, settings);
+        // Also after an error: what it took the place of may be under way.
+        self.held.extend(self.frame.outgoing());
+        let (blocks, shown) = shown?;
+        let scenes: Vec<_> = self.frame.scenes().collect();
+        self.reports.begin(&self.device, &scenes)?;
+        self.held.advance();
+        let (timestamps, tail) = self.reports.present();
+        // SAFETY: by the caller; the reports have one for each frame under way.
+        let mut rec = unsafe { Recorder::of_host_timed(&self.device, cmd, timestamps) };
+        self.frame.record(&mut rec, &blocks);
+        tail.record(&mut rec, &scenes);
+        if let Some(present) = self.frame.present() {
+            rec.wait(&Composite::reads(&present.targets));
+        }
+        self.shown = Some((shown, rec.later("composite")));
+        Ok(())
+    }
+
+    /// Records the draw of the picture that was prepared last, with its depth: it hides what is behind it, and is hidden by what is in front.
+    /// Sets viewport and scissor, and binds a pipeline and descriptor set 0.
+    ///
+    /// # Safety
+    /// `cmd` is of the device, and is being recorded inside the subpass, or the dynamic rendering, that is the target. It is submitted after what
+    /// prepared the picture, to the same queue, and before what prepares the next one.
+    pub unsafe fn draw(&self, cmd: vk::CommandBuffer) -> Result<()> {
+        let (Some(viewed), Some((Shown { place, area }, pass))) = (&self.viewed, &self.shown) else {
+            return Err(Error::Usage("there is no picture to draw: prepare one, and heed its error".into()));
+        };
+        // SAFETY: by the caller.
+        let mut draws = unsafe { Draws::of_host(&self.device, cmd, pass, *area) };
+        viewed.composite.draw(&mut draws, &viewed.set, place);
+        Ok(())
+    }
+
+    /// Makes the pipelines of frames like this one, so that the first of them does not stop to make them: while a level is loaded, or before a
+    /// method is offered. Nothing is recorded, and what was prepared stays. Takes as long as drivers take to compile shaders; another renderer,
+    /// on another thread, can do so meanwhile, and leave them in the device's pipeline cache.
+    pub fn make_pipelines<'a>(
+        &mut self,
+        scenes: impl Into<Instances<'a>>,
+        view: &View,
+        settings: &Settings,
+    ) -> Result<()> {
+        let placed = scenes.into().placed(&self.device)?;
+        let seen = self.seen(view)?;
+        let frame = self.frame.describe(&placed, &seen.camera, &without_background(settings), seen.size)?;
+        self.frame.make_pipelines(&frame)?;
+        self.composite(&frame.variant).map(drop)
+    }
+
+    /// What frames that are prepared from now on tell of themselves: nothing, unless this is called. Shaders that count are others than those
+    /// that do not: either are made when they are first needed.
+    pub fn measure(&mut self, measured: Measured) {
+        self.reports.measure(measured);
+        self.frame.count(measured.counts);
+    }
+
+    /// What the last frame that is known to be over tells, without waiting for one: that of [`Options::frames_in_flight`] frames before the one
+    /// that was prepared last, or after [`Renderer::finish`] that one. `None` where it was not [measured](Renderer::measure). The last of the
+    /// passes, `composite`, is within the host's own.
+    pub fn report(&self) -> Option<&FrameReport> {
+        self.reports.last()
+    }
+
+    /// Tells the renderer that every frame is over, so that [`Renderer::report`] is that of the last one.
+    ///
+    /// # Safety
+    /// The GPU is done with every frame that was prepared without an error.
+    pub unsafe fn finish(&mut self) -> Result<()> {
+        self.reports.finish()
+    }
+
+    /// Makes all that a frame needs: its numbers, and how its picture is drawn.
+    fn make(&mut self, scenes: Instances<'_>, view: &View, settings: &Settings) -> Result<(Blocks, Shown)> {
+        self.shown = None;
+        let placed = scenes.placed(&self.device)?;
+        let Seen { area, size, camera, depth } = self.seen(view)?;
+        self.frame.resize(size);
+        let (blocks, variant) = self.frame.prepare(&placed, &camera, &without_background(settings), false)?;
+        if !scenes.scenes().map(Arc::as_ptr).eq(self.scenes.iter().map(Arc::as_ptr)) {
+            let old = std::mem::replace(&mut self.scenes, scenes.scenes().cloned().collect());
+            self.held.hold(old);
+        }
+        let composite = self.composite(&variant)?;
+        self.view(composite)?;
+        let place = layout::Composite { origin: [area.offset.x, area.offset.y], size, depth };
+        Ok((blocks, Shown { place, area }))
+    }
+
+    /// The view, of a target that can be made.
+    fn seen(&self, view: &View) -> Result<Seen> {
+        let seen = view.seen(&self.device, self.target.depth.map(|_| self.target.reversed))?;
+        check_size(&self.device, seen.size)?;
+        Ok(seen)
+    }
+
+    /// Sees the present targets as `composite` does, if it does not already.
+    fn view(&mut self, composite: Arc<Composite>) -> Result<()> {
+        let Some(present) = self.frame.present() else { return Ok(()) };
+        let same =
+            |viewed: &Viewed| viewed.present == present.id && Arc::ptr_eq(&viewed.composite, &composite);
+        if !self.viewed.as_ref().is_some_and(same) {
+            let set = composite.view(&self.device, &present.targets)?;
+            let old = self.viewed.replace(Viewed { present: present.id, set, composite });
+            self.held.hold(old);
+        }
+        Ok(())
+    }
+
+    fn composite(&mut self, variant: &Variant) -> Result<Arc<Composite>> {
+        let kind = CompositeKind {
+            images: variant.rasterizer == Rasterizer::Draw && variant.pull_push.is_none(),
+            perspective: variant.perspective,
+            picture: self.target.picture,
+            normal: self.target.normal,
+            id: self.target.id,
+            reversed: self.target.depth.map(|_| self.target.reversed),
+            encode: self.target.encode,
+        };
+        if let Some(made) = self.composites.iter().find(|made| made.kind() == kind) {
+            return Ok(made.clone());
+        }
+        // SAFETY: whoever made the renderer answers for the target.
+        let made = Arc::new(unsafe { self.target.composite(&self.device, kind)? });
+        self.composites.push(made.clone());
+        Ok(made)
+    }
+}
+
+/// As hosts have them: the picture is composed over what is there.
+fn without_background(settings: &Settings) -> Settings {
+    Settings { background: None, ..settings.clone() }
+}

@@ -1,0 +1,226 @@
+//! From a point cloud to surfels: what the cloud lacks is estimated.
+
+mod cell;
+mod creases;
+mod draft;
+mod eigen;
+mod faces;
+mod facets;
+mod lines;
+mod model;
+mod neighbours;
+mod orient;
+mod outliers;
+mod patch;
+mod reach;
+mod sheet;
+mod sites;
+mod spacing;
+
+pub use spacing::spacing;
+
+use crate::Progress;
+use crate::geometry::{Cloud, Surfels};
+use draft::Draft;
+use std::f32::consts::PI;
+use std::ops::Add;
+
+/// Estimated discs reach this many times as far as they must for the surface between flat neighbours to have no gap.
+const MARGIN: f64 = 1.3;
+
+/// How what is missing is estimated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Estimate {
+    /// How many nearest points a normal and a radius are estimated from.
+    pub neighbours: usize,
+    /// Radius of every surfel, in the positions' unit, instead of given and estimated ones.
+    pub radius: Option<f32>,
+    /// Factor of every radius.
+    pub radius_scale: f32,
+    /// Whether discs whose radius is estimated are ellipses, longer where points are sparser.
+    pub elliptical: bool,
+    /// Removes points whose mean distance from their neighbours is more than this many standard deviations above the average.
+    pub outliers: Option<f32>,
+    /// Clips discs that reach a crease at which normals turn by more than this angle, radians.
+    pub sharp: Option<f32>,
+    /// Radius of ribbons and tubes where they have none, in the positions' unit.
+    pub line_radius: Option<f32>,
+}
+
+impl Default for Estimate {
+    fn default() -> Self {
+        Self {
+            neighbours: 16,
+            radius: None,
+            radius_scale: 1.0,
+            elliptical: false,
+            outliers: None,
+            sharp: None,
+            line_radius: None,
+        }
+    }
+}
+
+impl Estimate {
+    /// Least and greatest [`Estimate::neighbours`]: fewer do not tell a plane, more are no neighbourhood.
+    pub const NEIGHBOURS: [usize; 2] = [6, 64];
+
+    /// Refuses what nothing can be estimated with; says what and the remedy.
+    fn check(&self) -> Result<(), String> {
+        let positive = |name: &str, value: f32| match value.is_finite() && value > 0.0 {
+            true => Ok(()),
+            false => Err(format!("{name} is {value}: give a finite number above 0")),
+        };
+        let ([least, most], given) = (Self::NEIGHBOURS, self.neighbours);
+        if !(least..=most).contains(&given) {
+            return Err(format!("{given} neighbours to estimate from: give {least} to {most}"));
+        }
+        self.radius.map_or(Ok(()), |radius| positive("the radius", radius))?;
+        self.line_radius.map_or(Ok(()), |radius| positive("the radius of lines", radius))?;
+        self.outliers
+            .map_or(Ok(()), |deviations| positive("the outliers' standard deviations", deviations))?;
+        if let Some(angle) = self.sharp.filter(|angle| !(*angle > 0.0 && *angle < PI)) {
+            return Err(format!(
+                "the angle of a sharp edge is {angle} radians: give one between 0 and a half turn"
+            ));
+        }
+        positive("the factor of the radii", self.radius_scale)
+    }
+}
+
+/// Where normals and radii came from, as numbers of points.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Estimated {
+    /// The file's own normals.
+    pub normals_given: u64,
+    /// Normals of the faces around the point.
+    pub normals_from_faces: u64,
+    /// Normals from the nearest points.
+    pub normals_from_neighbours: u64,
+    /// Surfels that are two-sided, because the side of their normals is unknown or because the file says so.
+    pub two_sided: u64,
+    /// The file's own radii, or the one that was asked for.
+    pub radii_given: u64,
+    /// Radii from the faces around the point.
+    pub radii_from_faces: u64,
+    /// Radii from the nearest points.
+    pub radii_from_neighbours: u64,
+    /// Points that were removed as outliers.
+    pub outliers: u64,
+    /// Surfels that are clipped because of a crease that was looked for.
+    pub clipped: u64,
+    /// Radii of the vertices of lines, the file's own or the one that was asked for.
+    pub line_radii_given: u64,
+    /// Those of the nearest vertex of the same line that has one.
+    pub line_radii_from_lines: u64,
+    /// Those that are a part of the lines' extent.
+    pub line_radii_from_extent: u64,
+}
+
+impl Add for Estimated {
+    type Output = Self;
+
+    fn add(self, other: Self) -> Self {
+        Self {
+            normals_given: self.normals_given + other.normals_given,
+            normals_from_faces: self.normals_from_faces + other.normals_from_faces,
+            normals_from_neighbours: self.normals_from_neighbours + other.normals_from_neighbours,
+            two_sided: self.two_sided + other.two_sided,
+            radii_given: self.radii_given + other.radii_given,
+            radii_from_faces: self.radii_from_faces + other.radii_from_faces,
+            radii_from_neighbours: self.radii_from_neighbours + other.radii_from_neighbours,
+            outliers: self.outliers + other.outliers,
+            clipped: self.clipped + other.clipped,
+            line_radii_given: self.line_radii_given + other.line_radii_given,
+            line_radii_from_lines: self.line_radii_from_lines + other.line_radii_from_lines,
+            line_radii_from_extent: self.line_radii_from_extent + other.line_radii_from_extent,
+        }
+    }
+}
+
+impl Cloud {
+    /// The surfels of the cloud, one a point, in Morton order. [`Cloud::into_model`] has lines and triangles, too.
+    ///
+    /// A normal that is missing is that of the faces around the point; where there are none, of the plane of least squares through its
+    /// neighbours, which points to where the cloud was seen from, or agrees with normals that are known and with its neighbours', outwards
+    /// on a closed surface. Where even that does not tell its side, the surfel is two-sided. A radius that is missing is just large enough
+    /// that the discs of a smooth surface leave no gap, by the triangles between the points: the faces', or those of the neighbours'
+    /// Delaunay triangulation in the tangent plane. Normalization weights are kept unless the radii, the number or the edges of the discs
+    /// change; one that is missing is the median.
+    ///
+    /// # Errors
+    /// The cause, without the input's name, if what is missing cannot be estimated.
+    pub fn into_surfels(
+        self,
+        how: &Estimate,
+        progress: &dyn Progress,
+    ) -> Result<(Surfels, Estimated), String> {
+        how.check()?;
+        let view = self.view;
+        let mut draft = Draft::new(self, how)?;
+        draft.sort_morton();
+        if let Some(deviations) = how.outliers {
+            let kept = outliers::kept(&draft.surfels.positions, deviations, how, progress)?;
+            draft.keep(&kept);
+        }
+        draft.count_given();
+        progress.go_on()?;
+        faces::fill(&mut draft, how);
+        progress.go_on()?;
+        if draft.lacks_anything() {
+            neighbours::fill(&mut draft, view, how, progress)?;
+        }
+        let (mut surfels, mut estimated) = draft.finish(how)?;
+        if let Some(angle) = how.sharp {
+            estimated.clipped = creases::clip(&mut surfels, angle, how, progress)?;
+        }
+        Ok((surfels, estimated))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_position_that_is_no_place_is_named() {
+        use glam::Vec3;
+        let positions = vec![Vec3::ZERO, Vec3::new(0.0, f32::NAN, 0.0), Vec3::ONE, Vec3::X];
+        let cloud = Cloud { positions, ..Default::default() };
+        let refused = cloud.into_surfels(&Estimate::default(), &()).unwrap_err();
+        assert!(refused.starts_with("point 1 is at [0, NaN, 0]"), "{refused}");
+    }
+
+    #[test]
+    fn every_count_is_added() {
+        let one = Estimated {
+            normals_given: 1,
+            normals_from_faces: 2,
+            normals_from_neighbours: 3,
+            two_sided: 4,
+            radii_given: 5,
+            radii_from_faces: 6,
+            radii_from_neighbours: 7,
+            outliers: 8,
+            clipped: 9,
+            line_radii_given: 10,
+            line_radii_from_lines: 11,
+            line_radii_from_extent: 12,
+        };
+        let two = Estimated {
+            normals_given: 2,
+            normals_from_faces: 4,
+            normals_from_neighbours: 6,
+            two_sided: 8,
+            radii_given: 10,
+            radii_from_faces: 12,
+            radii_from_neighbours: 14,
+            outliers: 16,
+            clipped: 18,
+            line_radii_given: 20,
+            line_radii_from_lines: 22,
+            line_radii_from_extent: 24,
+        };
+        assert_eq!(one + one, two);
+    }
+}

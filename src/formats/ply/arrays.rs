@@ -1,0 +1,74 @@
+//! Where the points go: one array for each attribute that the file can have, filled piece by piece from several threads.
+
+use super::Parsed;
+use super::layout::{CORNERS, Layout, MATERIAL, SCALAR, Shape, TANGENT, TEXTURE, WEIGHT};
+use super::source::room;
+use crate::geometry::memory;
+use crate::geometry::{Clip, Ellipse};
+use glam::{DVec3, Vec2, Vec3};
+
+macro_rules! arrays {
+    ($($name:ident: $type:ty, $there:expr, $what:literal;)*) => {
+        /// Arrays of one entry a vertex; those that the file has nothing for are empty.
+        #[derive(Default)]
+        pub(super) struct Arrays {
+            $(#[doc = $what] pub $name: Vec<$type>,)*
+        }
+
+        /// Consecutive entries of [`Arrays`].
+        pub(super) struct Slices<'a> {
+            $(#[doc = $what] pub $name: &'a mut [$type],)*
+        }
+
+        impl Arrays {
+            /// Zeros. `count` has been checked against the bytes of the file.
+            pub fn new(count: u64, layout: &Layout) -> Parsed<Self> {
+                let each = 0 $(+ if $there(layout) { size_of::<$type>() as u64 } else { 0 })*;
+                memory::check(&format!("its {count} vertices"), count.saturating_mul(each))?;
+                Ok(Self { $($name: room(if $there(layout) { count } else { 0 })?,)* })
+            }
+
+            /// All entries.
+            pub fn slices(&mut self) -> Slices<'_> {
+                Slices { $($name: &mut self.$name,)* }
+            }
+
+            /// Leaves out the entries whose `kept` is false.
+            pub fn retain(&mut self, kept: &[bool]) {
+                $(let mut flags = kept.iter();
+                self.$name.retain(|_| flags.next().is_none_or(|kept| *kept));)*
+            }
+        }
+
+        impl<'a> Slices<'a> {
+            /// Takes the first `rows` entries away.
+            pub fn split(&mut self, rows: usize) -> Slices<'a> {
+                Slices { $($name: split(&mut self.$name, rows),)* }
+            }
+        }
+    };
+}
+
+arrays! {
+    narrow: Vec3, |layout: &Layout| layout.narrow, "Positions as the file has them; not finite where there is none.";
+    wide: DVec3, |layout: &Layout| !layout.narrow, "The same, where f32 would round them.";
+    normals: Vec3, Layout::has_normals, "Unit normals or 0.";
+    radii: f32, Layout::has_radii, "Radii or 0.";
+    ellipses: Ellipse, |layout: &Layout| layout.shape != Shape::Circle, "Shapes.";
+    two_sided: bool, Layout::has_sides, "Whether the normal's side is unknown.";
+    clips: Clip, Layout::has_clips, "Clips, of two lines that are none where the disc is whole.";
+    weights: f32, |layout: &Layout| layout.fills(WEIGHT), "Normalization weights or 0.";
+    corners: [f32; 4], |layout: &Layout| layout.fills(CORNERS), "Those at the corners of discs at borders; all 0 of others.";
+    tangents: Vec3, |layout: &Layout| layout.fills(TANGENT), "Unit tangents or 0.";
+    codes: [u8; 4], Layout::has_codes, "sRGB-encoded colours.";
+    linear: [f32; 3], |layout: &Layout| layout.colour.is_some() && !layout.has_codes(), "Linear colours.";
+    coordinates: Vec2, |layout: &Layout| layout.fills(TEXTURE), "Coordinates in a texture.";
+    materials: u16, |layout: &Layout| layout.fills(MATERIAL), "Numbers of materials, `Materials::NONE` where there is none.";
+    scalar: f64, |layout: &Layout| layout.fills(SCALAR), "The chosen scalar.";
+}
+
+fn split<'a, T>(rest: &mut &'a mut [T], rows: usize) -> &'a mut [T] {
+    let (first, others) = std::mem::take(rest).split_at_mut_checked(rows).unwrap_or_default();
+    *rest = others;
+    first
+}

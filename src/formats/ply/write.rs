@@ -1,0 +1,217 @@
+//! Writing models, through ply-rs: its writer is sound for binary records, as long as the header's counts and the lists' lengths are ours.
+
+use super::layout::{CLIP_CONCAVE, CLIP_LINES, CORNER_NAMES, MATERIAL_NAME, TANGENT_NAMES, WEIGHT_NAME};
+use super::lines::TUBE;
+use super::materials;
+use super::row::{Line, Row, Shine, Triangle};
+use crate::error::{Error, Result};
+use crate::formats::atomic;
+use crate::geometry::{Colours, Materials, Parts, Primitives};
+use glam::DVec3;
+use ply_rs::ply::{
+    Addable, ElementDef, Encoding, Header, PropertyAccess, PropertyDef, PropertyType, ScalarType,
+};
+use ply_rs::writer::Writer;
+use std::io::{self, Write};
+use std::path::Path;
+
+/// Writes surfels, lines and triangles as binary little-endian PLY. Of a vertex: x y z as float, or as double if they have an origin; nx ny nz
+/// and radius as float; if there are ellipses, their semi-axes ux uy uz vx vy vz as float; if some surfels may have no side, two_sided as
+/// uchar; if there are clips, their lines clip0x clip0y clip0z clip0d clip1x clip1y clip1z clip1d as float, all 0 where there is none, and
+/// clip_concave as uchar; if there are normalization weights, surfel_weight as float, and if there are some at corners, surfel_weight0 to
+/// surfel_weight3 as float, all 0 where there are none; if there are tubes, their tangents tx ty tz as float, with which nx ny nz are 0;
+/// red green blue as uchar if sRGB-encoded, as float if linear; of a texture, its colours at the vertices;
+/// if there are materials, material_index as int, −1 where there is none, and an element material with specular_red specular_green
+/// specular_blue and specular_power as float, those of the surfels first.
+///
+/// The surfels come first, then the vertices that lines and triangles use, in their order. If there are lines, an element edge has
+/// vertex1 and vertex2 and, as uchar, tube: ribbons first, then tubes. If there are triangles, an element face has the list
+/// vertex_indices. Where only surfels or only vertices have colours, the others' are the default albedo. The file is replaced as a whole
+/// or, after an error, not at all.
+///
+/// # Errors
+/// [`Error::Usage`] if the arrays differ in length, a line or triangle has a vertex that does not exist, or there are more than 2³² − 1
+/// vertices; [`Error::Io`] if the file cannot be written.
+pub fn write<'a>(path: &Path, parts: impl Into<Parts<'a>>) -> Result<()> {
+    let parts = parts.into();
+    parts.check()?;
+    let count = parts.surfels.len() + parts.primitives.map_or(0, Primitives::len);
+    if u32::try_from(count).is_err() {
+        return Err(Error::Usage(format!(
+            "{count} surfels and vertices in one file: at most 2³² − 1 are read"
+        )));
+    }
+    let whole = Whole::new(parts)?;
+    atomic::write(path, |mut out| records(&mut out, &whole))
+}
+
+/// What is written.
+pub(super) struct Whole<'a> {
+    pub parts: Parts<'a>,
+    /// The vertices that something uses.
+    pub vertices: Vec<u32>,
+    /// Which vertex of the file each has become.
+    place: Vec<u32>,
+    /// Whether each is a tube's, a ribbon's or triangle's, or both.
+    pub tangent: Vec<bool>,
+    pub normal: Vec<bool>,
+    /// Colours of surfels and of vertices that have a texture.
+    baked: [Option<Colours>; 2],
+    /// Materials of surfels, and then of all vertices.
+    materials: Option<Materials>,
+}
+
+impl<'a> Whole<'a> {
+    fn new(parts: Parts<'a>) -> Result<Self> {
+        let none = Primitives::default();
+        let primitives = parts.primitives.unwrap_or(&none);
+        let (mut tangent, mut normal) = (vec![false; primitives.len()], vec![false; primitives.len()]);
+        primitives.tubes.iter().flatten().for_each(|&i| tangent[i as usize] = true);
+        let others = primitives.ribbons.iter().flatten().chain(primitives.triangles.iter().flatten());
+        others.for_each(|&i| normal[i as usize] = true);
+        let used = |&i: &u32| tangent[i as usize] || normal[i as usize];
+        let vertices: Vec<u32> = (0..primitives.len() as u32).filter(used).collect();
+        let mut place = vec![0; primitives.len()];
+        let first = parts.surfels.len();
+        // Fits, as that many are refused.
+        vertices.iter().zip(first as u32..).for_each(|(&i, to)| place[i as usize] = to);
+        let of_surfels = parts.surfels.texture.as_ref();
+        let of_surfels = of_surfels.map(|t| t.baked(&parts.surfels.positions, Some(&parts.surfels.radii)));
+        let of_vertices =
+            primitives.texture.as_ref().map(|t| t.baked(&primitives.positions, Some(&primitives.radii)));
+        let materials = Materials::join(&[
+            (parts.surfels.materials.as_ref(), parts.surfels.len()),
+            (primitives.materials.as_ref(), primitives.len()),
+        ])?;
+        let baked = [of_surfels, of_vertices];
+        Ok(Self { parts, vertices, place, tangent, normal, baked, materials })
+    }
+
+    /// Number of vertices in the file.
+    fn len(&self) -> usize {
+        self.parts.surfels.len() + self.vertices.len()
+    }
+
+    fn place<const N: usize>(&self, corners: &[u32; N]) -> [u32; N] {
+        corners.map(|i| self.place[i as usize])
+    }
+
+    /// Type of a vertex's number: most programs write and expect int.
+    fn index(&self) -> ScalarType {
+        if i32::try_from(self.len()).is_ok() { ScalarType::Int } else { ScalarType::UInt }
+    }
+
+    /// Number of the material of a surfel, or behind these of a vertex of lines and triangles; −1 if it has none.
+    pub fn material(&self, point: usize) -> i32 {
+        let number = self.materials.as_ref().map(|materials| materials.of[point]);
+        number.filter(|&number| number != Materials::NONE).map_or(-1, i32::from)
+    }
+
+    /// Colours of surfels and of vertices.
+    pub fn colours(&self) -> [Option<&Colours>; 2] {
+        let [of_surfels, of_vertices] = self.baked.each_ref().map(Option::as_ref);
+        let lines = || self.parts.primitives.and_then(|lines| lines.colours.as_ref());
+        [of_surfels.or(self.parts.surfels.colours.as_ref()), of_vertices.or_else(lines)]
+    }
+}
+
+fn records(out: &mut impl Write, whole: &Whole) -> io::Result<()> {
+    let none = Primitives::default();
+    let primitives = whole.parts.primitives.unwrap_or(&none);
+    let (vertex, edge, face) = (vertex(whole), edge(whole, primitives), face(whole, primitives));
+    let material = material(whole);
+    let mut header = Header::new();
+    header.encoding = Encoding::BinaryLittleEndian;
+    let others = [&edge, &face, &material].into_iter().filter(|element| element.count > 0);
+    let there = [&vertex].into_iter().chain(others);
+    there.for_each(|element| header.elements.add(element.clone()));
+    Writer::<Row>::new().write_header(out, &header)?;
+    // Record by record: a payload of its own would hold everything twice.
+    let surfels = (0..whole.parts.surfels.len()).map(|i| Row::surfel(whole, i));
+    let vertices = whole.vertices.iter().map(|&i| Row::vertex(whole, primitives, i as usize));
+    each(out, &vertex, surfels.chain(vertices))?;
+    each(out, &edge, primitives.segments().map(|(ends, tube)| Line { ends: whole.place(&ends), tube }))?;
+    // ply-rs takes the number of records for the length of each one's list.
+    let face = ElementDef { count: 3, ..face };
+    each(out, &face, primitives.triangles.iter().map(|corners| Triangle::of(whole.place(corners))))?;
+    let table = whole.materials.iter().flat_map(|materials| materials.table.iter());
+    each(out, &material, table.copied().map(Shine))
+}
+
+fn each<T: PropertyAccess>(
+    out: &mut impl Write,
+    element: &ElementDef,
+    rows: impl Iterator<Item = T>,
+) -> io::Result<()> {
+    let writer = Writer::<T>::new();
+    let mut rows = rows;
+    rows.try_for_each(|row| writer.write_little_endian_element(out, &row, element).map(drop))
+}
+
+fn add(element: &mut ElementDef, names: &[&str], scalar: ScalarType) {
+    for name in names {
+        element.properties.add(PropertyDef::new((*name).into(), PropertyType::Scalar(scalar.clone())));
+    }
+}
+
+fn vertex(whole: &Whole) -> ElementDef {
+    let surfels = whole.parts.surfels;
+    let mut vertex = ElementDef::new("vertex".into());
+    vertex.count = whole.len();
+    let mut add = |names: &[&str], scalar: ScalarType| add(&mut vertex, names, scalar);
+    let near = whole.parts.origin() == DVec3::ZERO;
+    add(&["x", "y", "z"], if near { ScalarType::Float } else { ScalarType::Double });
+    add(&["nx", "ny", "nz", "radius"], ScalarType::Float);
+    if surfels.ellipses.is_some() {
+        add(&super::row::AXES, ScalarType::Float);
+    }
+    if surfels.two_sided.is_some() {
+        add(&["two_sided"], ScalarType::UChar);
+    }
+    if surfels.clips.is_some() {
+        CLIP_LINES.iter().for_each(|names| add(names, ScalarType::Float));
+        add(&[CLIP_CONCAVE], ScalarType::UChar);
+    }
+    if let Some(weights) = &surfels.weights {
+        add(&[WEIGHT_NAME], ScalarType::Float);
+        add(if weights.corners.is_empty() { &[] } else { &CORNER_NAMES }, ScalarType::Float);
+    }
+    if whole.materials.is_some() {
+        add(&[MATERIAL_NAME], ScalarType::Int);
+    }
+    if whole.tangent.contains(&true) {
+        add(&TANGENT_NAMES, ScalarType::Float);
+    }
+    match whole.colours() {
+        [None, None] => {}
+        [Some(Colours::Linear(_)), _] | [_, Some(Colours::Linear(_))] => {
+            add(&["red", "green", "blue"], ScalarType::Float);
+        }
+        _ => add(&["red", "green", "blue"], ScalarType::UChar),
+    }
+    vertex
+}
+
+fn edge(whole: &Whole, primitives: &Primitives) -> ElementDef {
+    let mut edge = ElementDef::new("edge".into());
+    edge.count = primitives.ribbons.len() + primitives.tubes.len();
+    add(&mut edge, &["vertex1", "vertex2"], whole.index());
+    add(&mut edge, &[TUBE], ScalarType::UChar);
+    edge
+}
+
+fn material(whole: &Whole) -> ElementDef {
+    let mut material = ElementDef::new(materials::ELEMENT.into());
+    material.count = whole.materials.as_ref().map_or(0, |materials| materials.table.len());
+    add(&mut material, &materials::SPECULAR, ScalarType::Float);
+    add(&mut material, &[materials::POWER], ScalarType::Float);
+    material
+}
+
+fn face(whole: &Whole, primitives: &Primitives) -> ElementDef {
+    let mut face = ElementDef::new("face".into());
+    face.count = primitives.triangles.len();
+    let list = PropertyType::List(ScalarType::UChar, whole.index());
+    face.properties.add(PropertyDef::new("vertex_indices".into(), list));
+    face
+}

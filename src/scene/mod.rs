@@ -1,0 +1,490 @@
+//! Geometry on the GPU: only the streams that the scene has.
+
+mod clips;
+pub(crate) mod instance;
+mod lent;
+mod live;
+mod materials;
+mod primitives;
+mod room;
+mod similarity;
+mod stream;
+mod texture;
+mod update;
+mod weights;
+
+use crate::error::{Error, Result};
+use crate::geometry::{Bounds, Colours, Ellipse, Parts, Primitives, Surfels, Texture};
+use crate::vk::shaders::layout::Splat;
+use crate::vk::shaders::{Resource, resource};
+use crate::vk::{Binding, Buffer, Capabilities, Device, Uploads};
+use clips::ClipStream;
+pub(crate) use clips::ClipWindow;
+use glam::{DVec3, Vec3};
+pub use instance::{Instance, Instances};
+pub(crate) use lent::Lent;
+pub(crate) use materials::MaterialStream;
+pub(crate) use primitives::{Elements, PrimitiveStreams};
+use std::borrow::Cow;
+use std::ops::Range;
+use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex};
+pub(crate) use stream::Stream;
+pub use stream::{NormalStream, SurfelLayout, Words};
+pub(crate) use texture::TextureStream;
+pub use update::Changes;
+use weights::WeightBuffer;
+
+/// Surfels, lines and triangles resident on a device.
+pub struct Scene {
+    pub(crate) id: u64,
+    positions: Stream,
+    normals: Stream,
+    normal_stream: NormalStream,
+    /// Negative radii are those of two-sided surfels, in a scene that has such; 0 is that of an invalid surfel.
+    radii: Stream,
+    two_sided: bool,
+    ellipses: Option<Stream>,
+    clips: Option<ClipStream>,
+    colours: Option<Stream>,
+    pub(crate) weights: Option<WeightBuffer>,
+    pub(crate) primitives: Option<PrimitiveStreams>,
+    pub(crate) texture: Option<TextureStream>,
+    pub(crate) materials: Option<MaterialStream>,
+    colour_stream: ColourStream,
+    windows: Vec<Range<u64>>,
+    /// Of what is bound, bytes.
+    alignment: u64,
+    origin: DVec3,
+    /// The largest radius so far, as bits; none where it is not known.
+    largest: Option<AtomicU32>,
+    /// Whether a host owns the surfels' buffers.
+    of_host: bool,
+    /// Whether some surfels were invalid when they were uploaded.
+    had_invalid: bool,
+    /// Whether some may be now and have another radius than 0.
+    unchecked: AtomicBool,
+    count: AtomicU64,
+    bounds: Mutex<Bounds>,
+}
+
+/// What a scene has beside positions, normals and radii.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Streams {
+    /// Discs are ellipses.
+    pub ellipses: bool,
+    /// Some surfels have no side.
+    pub two_sided: bool,
+    /// Some discs end at clip lines.
+    pub clips: bool,
+    /// Surfels have normalization weights, and some have four: none, or whether.
+    pub weights: Option<bool>,
+    /// How it holds colours.
+    pub colours: ColourStream,
+    /// What else there is than surfels.
+    pub primitives: PrimitiveKinds,
+    /// How it holds the texels of its texture, if it has one.
+    pub texture: Option<ColourStream>,
+    /// Some points shine in their own way.
+    pub materials: bool,
+    /// Where it has its surfels' values.
+    pub layout: SurfelLayout,
+    /// Nobody has looked whether all of them can be drawn: the shaders have to.
+    pub unchecked: bool,
+}
+
+/// Which lines and triangles a scene has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct PrimitiveKinds {
+    /// Ribbons or tubes.
+    pub lines: bool,
+    /// Triangles.
+    pub triangles: bool,
+    /// How it holds the colours of their vertices.
+    pub colours: ColourStream,
+}
+
+impl PrimitiveKinds {
+    /// Nothing but surfels.
+    pub const NONE: Self = Self { lines: false, triangles: false, colours: ColourStream::None };
+
+    /// Whether it has any.
+    pub fn any(self) -> bool {
+        self.lines || self.triangles
+    }
+}
+
+/// How a scene holds its colours; the numbers are those of `shaders-glsl/lib/colour_streams.glsl`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[repr(u32)]
+pub enum ColourStream {
+    /// It has none.
+    None = 0,
+    /// sRGB-encoded, 8 bits a channel.
+    Srgb8 = 1,
+    /// Linear float.
+    Linear = 2,
+    /// Coordinates in a texture, and for methods that blend a colour a point that which is there, linear float.
+    Textured = 3,
+    /// Linear, 8 bits a channel: in buffers of a host.
+    Unorm8 = 4,
+    /// Linear half floats, four: in buffers of a host.
+    Half = 5,
+}
+
+impl ColourStream {
+    /// Bytes of a colour.
+    pub(crate) fn bytes(self) -> u64 {
+        match self {
+            Self::None => 0,
+            Self::Srgb8 | Self::Unorm8 => 4,
+            Self::Half => 8,
+            Self::Linear => 12,
+            Self::Textured => 20,
+        }
+    }
+}
+
+/// Bytes of a position or of a normal in its stream.
+const VECTOR: u64 = 12;
+/// Bytes of a radius.
+const SCALAR: u64 = 4;
+/// Bytes of a disc's shape.
+const ELLIPSE: u64 = size_of::<Ellipse>() as u64;
+
+impl Scene {
+    /// Copies surfels, lines and triangles to `device`. Surfels are best in Morton order ([`Surfels::sort_morton`]).
+    ///
+    /// What is not valid ([`Surfels::is_valid`], [`Primitives::is_valid`](crate::geometry::Primitives::is_valid)) will not be drawn: a
+    /// warning says how many, and frames count such surfels as `invalid`. Refuses arrays of unequal length, and a scene in which nothing is
+    /// valid.
+    pub fn upload<'a>(device: &Arc<Device>, parts: impl Into<Parts<'a>>) -> Result<Self> {
+        let parts = parts.into();
+        Self::new(device, &Uploads::now(device)?, parts)
+    }
+
+    /// [`Scene::upload`] by way of `uploads`, which are of `device`.
+    pub(crate) fn new(device: &Arc<Device>, uploads: &Uploads<'_>, parts: Parts<'_>) -> Result<Self> {
+        let (scene, invalid) = Self::new_silently(device, uploads, parts)?;
+        if invalid > 0 {
+            warn_of(invalid, parts.surfels.len());
+        }
+        if let Some(primitives) = parts.primitives {
+            warn_of_primitives(primitives.count_invalid(), primitives.count());
+        }
+        Ok(scene)
+    }
+
+    /// [`Scene::upload`] without the warnings, and the number of invalid surfels.
+    #[cfg(feature = "bench")]
+    pub(crate) fn upload_silently<'a>(
+        device: &Arc<Device>,
+        parts: impl Into<Parts<'a>>,
+    ) -> Result<(Self, usize)> {
+        Self::new_silently(device, &Uploads::now(device)?, parts.into())
+    }
+
+    fn new_silently(device: &Arc<Device>, uploads: &Uploads<'_>, parts: Parts<'_>) -> Result<(Self, usize)> {
+        let surfels = parts.surfels;
+        parts.check()?;
+        let image = parts.texture();
+        if image.is_none() && parts.has_texture() {
+            return Self::new_silently(device, uploads, (&parts.baked()).into());
+        }
+        room::check(device, &parts)?;
+        let (bounds, invalid) = usable(&parts)?;
+        let count = surfels.len() as u64;
+        let ellipses = surfels.ellipses.as_deref();
+        let windows = windows(count, device.capabilities(), 0);
+        let textured =
+            surfels.texture.as_ref().map(|texture| (texture, &surfels.positions[..], &surfels.radii[..]));
+        let (colour_stream, colours) = colour_bytes(surfels.colours.as_ref(), textured);
+        let weights = surfels
+            .weights
+            .as_ref()
+            .map(|weights| WeightBuffer::new(device, uploads, surfels, weights, &windows));
+        let stream = |name, bytes: &[u8], size| {
+            uploads.buffer(name, bytes).map(|buffer| Stream::side_by_side(buffer, size))
+        };
+        let scene = Self {
+            id: next_id(),
+            positions: stream("positions", bytemuck::cast_slice(&surfels.positions), VECTOR)?,
+            normals: stream("normals", bytemuck::cast_slice(&surfels.normals), VECTOR)?,
+            normal_stream: NormalStream::Float,
+            radii: stream("radii", bytemuck::cast_slice(&marked_radii(surfels, invalid)), SCALAR)?,
+            two_sided: surfels.two_sided.is_some(),
+            ellipses: ellipses
+                .map(|ellipses| stream("ellipses", bytemuck::cast_slice(ellipses), ELLIPSE))
+                .transpose()?,
+            colours: (colour_stream != ColourStream::None)
+                .then(|| stream("colours", &colours, colour_stream.bytes()))
+                .transpose()?,
+            weights: weights.transpose()?,
+            colour_stream,
+            clips: surfels
+                .clips
+                .as_ref()
+                .map(|clips| ClipStream::new(uploads, clips, &windows))
+                .transpose()?,
+            primitives: PrimitiveStreams::new(device, uploads, &parts)?,
+            texture: image.map(|image| TextureStream::new(device, uploads, image)).transpose()?,
+            materials: MaterialStream::new(device, uploads, &parts)?,
+            windows,
+            alignment: device.capabilities().storage_buffer_alignment,
+            origin: parts.origin(),
+            largest: Some(AtomicU32::new(largest(&surfels.radii).to_bits())),
+            of_host: false,
+            had_invalid: invalid > 0,
+            unchecked: AtomicBool::new(false),
+            count: AtomicU64::new(count),
+            bounds: Mutex::new(bounds),
+        };
+        Ok((scene, invalid))
+    }
+
+    /// Whether it is on this device.
+    pub fn is_on(&self, device: &Arc<Device>) -> bool {
+        self.positions.buffer.is_on(device)
+    }
+
+    pub(crate) fn device(&self) -> &Arc<Device> {
+        self.positions.buffer.device()
+    }
+
+    /// Refuses another device.
+    pub(crate) fn check_device(&self, device: &Arc<Device>) -> Result<()> {
+        match self.is_on(device) {
+            true => Ok(()),
+            false => Err(Error::Usage(
+                "the scene is of another device: upload it to the one that this renderer is of".into(),
+            )),
+        }
+    }
+
+    /// What the shaders' coordinates are relative to, world space.
+    pub fn origin(&self) -> DVec3 {
+        self.origin
+    }
+
+    /// How it holds colours.
+    pub fn colour_stream(&self) -> ColourStream {
+        self.colour_stream
+    }
+
+    /// Memory of its streams, less what is a host's, bytes.
+    pub fn bytes(&self) -> u64 {
+        let clips = self.clips.as_ref().map(|clips| &clips.buffer);
+        let weights = self.weights.as_ref().map(|weights| &weights.buffer);
+        let texture = self.texture.as_ref().map(|texture| &texture.buffer);
+        let materials = self.materials.as_ref().map(|materials| &materials.buffer);
+        let streams = [Some(&self.positions), Some(&self.normals), Some(&self.radii)];
+        let streams = streams.into_iter().chain([self.ellipses.as_ref(), self.colours.as_ref()]);
+        let streams = streams.map(|stream| stream.map(|stream| &stream.buffer));
+        let buffers =
+            streams.chain([clips, weights, texture, materials]).flatten().filter(|buffer| !buffer.is_lent());
+        let primitives = self.primitives.as_ref().map_or(0, PrimitiveStreams::bytes);
+        buffers.map(Buffer::size).sum::<u64>() + primitives
+    }
+
+    /// Ranges of surfels that one descriptor set can name.
+    pub fn windows(&self) -> &[Range<u64>] {
+        &self.windows
+    }
+
+    /// What it has.
+    pub fn streams(&self) -> Streams {
+        Streams {
+            ellipses: self.ellipses.is_some(),
+            two_sided: self.two_sided,
+            clips: self.clips.is_some(),
+            weights: self.weights.as_ref().map(|weights| weights.corners),
+            colours: self.colour_stream,
+            primitives: self.primitives.as_ref().map_or(PrimitiveKinds::NONE, PrimitiveStreams::kinds),
+            texture: self.texture.as_ref().map(|texture| texture.texels),
+            materials: self.materials.is_some(),
+            layout: self.layout(),
+            unchecked: self.unchecked.load(Ordering::Relaxed),
+        }
+    }
+
+    fn layout(&self) -> SurfelLayout {
+        let words = |stream: &Stream| stream.words(self.alignment);
+        let usual = SurfelLayout::side_by_side(self.colour_stream);
+        SurfelLayout {
+            positions: words(&self.positions),
+            normals: words(&self.normals),
+            normal_stream: self.normal_stream,
+            radii: words(&self.radii),
+            colours: self.colours.as_ref().map_or(usual.colours, words),
+            ellipses: self.ellipses.as_ref().map_or(usual.ellipses, words),
+        }
+    }
+
+    /// The clips of each window, if there are any.
+    pub(crate) fn clip_windows(&self) -> Option<&[ClipWindow]> {
+        self.clips.as_ref().map(|clips| clips.windows.as_slice())
+    }
+
+    /// Window `number` of each stream that it has, where shaders see it.
+    pub(crate) fn bindings(&self, number: usize) -> Vec<(&'static Resource, Binding<'_>)> {
+        let window = &self.windows[number];
+        let streams = [
+            (&resource::POSITIONS, Some(&self.positions)),
+            (&resource::NORMALS, Some(&self.normals)),
+            (&resource::RADII, Some(&self.radii)),
+            (&resource::COLOURS, self.colours.as_ref()),
+            (&resource::ELLIPSES, self.ellipses.as_ref()),
+        ];
+        let there = streams.into_iter().filter_map(|(resource, stream)| Some((resource, stream?)));
+        let mut list: Vec<_> =
+            there.map(|(resource, stream)| (resource, stream.binding(window, self.alignment))).collect();
+        list.extend(self.clips.as_ref().map(|clips| (&resource::CLIPS, clips.binding(number))));
+        list.extend(self.weights.as_ref().map(|weights| (&resource::WEIGHTS, weights.binding(number))));
+        list
+    }
+
+    /// The streams of its lines, or of its triangles if `kind` is 1, where shaders see them.
+    pub(crate) fn element_bindings(&self, kind: usize) -> Vec<(&'static Resource, Binding<'_>)> {
+        let Some(PrimitiveStreams { vertices, alongs, colours, lines, triangles, .. }) = &self.primitives
+        else {
+            return Vec::new();
+        };
+        let elements = [lines, triangles][kind].as_ref().map(|elements| &elements.buffer);
+        let streams = [
+            (&resource::VERTICES, Some(vertices)),
+            (&resource::ALONGS, alongs.as_ref()),
+            (&resource::VERTEX_COLOURS, colours.as_ref()),
+            (&resource::ELEMENTS, elements),
+        ];
+        let there = streams.into_iter().filter_map(|(resource, buffer)| Some((resource, buffer?)));
+        there.map(|(resource, buffer)| (resource, Binding::whole(buffer))).collect()
+    }
+}
+
+/// How colours are held, and their bytes; with a texture, of points at these positions with these radii, theirs.
+fn colour_bytes<'a>(
+    colours: Option<&'a Colours>,
+    texture: Option<(&Texture, &[Vec3], &[f32])>,
+) -> (ColourStream, Cow<'a, [u8]>) {
+    if let Some((texture, positions, radii)) = texture {
+        let colours = texture.colours(positions, Some(radii));
+        let each = texture.coordinates.iter().zip(colours);
+        let floats = each.map(|(at, [r, g, b])| [at.x, at.y, r, g, b]);
+        return (ColourStream::Textured, bytemuck::pod_collect_to_vec(&floats.collect::<Vec<_>>()).into());
+    }
+    match colours {
+        None => (ColourStream::None, Cow::Borrowed(&[])),
+        Some(Colours::Srgb8(colours)) => (ColourStream::Srgb8, bytemuck::cast_slice(colours).into()),
+        Some(Colours::Linear(colours)) => (ColourStream::Linear, bytemuck::cast_slice(colours).into()),
+    }
+}
+
+/// The largest radius of what is valid; 0 if nothing is.
+fn largest(radii: &[f32]) -> f32 {
+    radii.iter().copied().filter(|radius| *radius <= Surfels::LARGEST).fold(0.0, f32::max)
+}
+
+/// A number that no other scene has.
+fn next_id() -> u64 {
+    static NEXT: AtomicU64 = AtomicU64::new(0);
+    NEXT.fetch_add(1, Ordering::Relaxed)
+}
+
+/// The bounds of what is valid, and the number of surfels that are not.
+fn usable(parts: &Parts<'_>) -> Result<(Bounds, usize)> {
+    let Some(bounds) = parts.bounds() else {
+        let surfels = parts.surfels.len();
+        let primitives = parts.primitives.map_or(0, Primitives::count);
+        let text = format!(
+            "a scene with nothing to draw: none of {surfels} surfels, and of {primitives} segments and triangles, is valid"
+        );
+        return Err(Error::Usage(text));
+    };
+    Ok((bounds, parts.surfels.count_invalid()))
+}
+
+fn warn_of_primitives(invalid: usize, count: usize) {
+    if invalid > 0 {
+        log::warn!(
+            "{invalid} of {count} segments and triangles are invalid and will not be drawn: a value of a vertex is NaN, infinite or \
+             beyond {:e}, a direction is no unit vector, or a radius is below 0",
+            Surfels::LARGEST
+        );
+    }
+}
+
+fn warn_of(invalid: usize, count: usize) {
+    log::warn!(
+        "{invalid} of {count} surfels are invalid and will not be drawn: a value is NaN, infinite or beyond {:e}, a normal or an axis \
+         is no unit vector, a radius or an aspect is not above 0, a clip line is not in the tangent plane",
+        Surfels::LARGEST
+    );
+}
+
+/// The radii, those of two-sided surfels negative and those of the invalid ones, if there are any, 0.
+fn marked_radii(surfels: &Surfels, invalid: usize) -> Cow<'_, [f32]> {
+    if surfels.two_sided.is_none() && invalid == 0 {
+        return Cow::Borrowed(&surfels.radii);
+    }
+    let two_sided = |i: usize| surfels.two_sided.as_ref().is_some_and(|two_sided| two_sided[i]);
+    let mark = |(i, &radius): (usize, &f32)| match (surfels.is_valid(i), two_sided(i)) {
+        (false, _) => 0.0,
+        (true, false) => radius,
+        (true, true) => -radius,
+    };
+    surfels.radii.iter().enumerate().map(mark).collect()
+}
+
+/// Every stride is a multiple of 4 bytes, so this many elements start at a multiple of the alignment in each stream.
+fn step(capabilities: &Capabilities) -> u64 {
+    capabilities.storage_buffer_alignment.max(256)
+}
+
+/// Splits `count` surfels so that a window of any stream, the splats' included, fits a descriptor and starts aligned, and so that a
+/// window's workgroups and vertices can be counted. A host's streams have values up to `stride` bytes apart, and may start anywhere.
+fn windows(count: u64, capabilities: &Capabilities, stride: u64) -> Vec<Range<u64>> {
+    let step = step(capabilities);
+    let range = capabilities.max_storage_buffer_range;
+    let fitting = (range / size_of::<Splat>() as u64)
+        .min(range.saturating_sub(capabilities.storage_buffer_alignment) / stride.max(1))
+        .min(u64::from(capabilities.max_workgroups) * 64)
+        .min(u64::from(u32::MAX) / 3);
+    let size = (fitting / step * step).max(step);
+    (0..count.div_ceil(size)).map(|i| i * size..((i + 1) * size).min(count)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn windows_cover_every_surfel_once_and_fit() {
+        let capabilities = Capabilities {
+            blend_float32: true,
+            float_atomics: true,
+            int64_atomics: true,
+            fragment_writes: true,
+            independent_blend: true,
+            timestamps: None,
+            max_storage_buffer_range: 1 << 20,
+            storage_buffer_alignment: 64,
+            max_image_side: 4096,
+            max_framebuffer: [4096; 2],
+            max_colour_attachments: 8,
+            dynamic_rendering: false,
+            max_storage_buffers: 16,
+            max_workgroups: 65535,
+            memory: 1 << 30,
+        };
+        for count in [1, 255, 256, 21_504, 21_505, 1_000_000] {
+            let windows = windows(count, &capabilities, 0);
+            assert_eq!(windows[0].start, 0);
+            assert_eq!(windows[windows.len() - 1].end, count);
+            assert!(windows.windows(2).all(|pair| pair[0].end == pair[1].start));
+            for window in windows {
+                assert!((window.end - window.start) * size_of::<Splat>() as u64 <= 1 << 20);
+                assert_eq!(window.start * 4 % 64, 0);
+            }
+        }
+    }
+}

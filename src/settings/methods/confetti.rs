@@ -1,0 +1,32 @@
+//! `confetti`: *Confetti: Object-Space Point Blending and Splatting*, Pajarola, Sainz, Guidotti, IEEE Transactions on Visualization and
+//! Computer Graphics 2004.
+//!
+//! ```text
+//! footprint    elliptical disc → its projection, as of a textured triangle (§6.3)
+//! visibility   nearest disc + ε along the view-projection (§6.4)
+//! attribute    Σ ψ (rgb, κ), light at each splat, over what is within ε (equation 8)
+//! normalize    / Σ ψ (equation 7, §6.5)
+//! ```
+
+use super::Method;
+use crate::settings::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
+use crate::settings::{Cull, Widen};
+
+/// The preset, with the kernel of figure 18.
+pub const METHOD: Method = Method {
+    name: "confetti",
+    paper: "Pajarola et al., Confetti: Object-Space Point Blending and Splatting, 2004",
+    splatting: Splatting {
+        footprint: Footprint::Disc,
+        kernel: Kernel::Confetti { a: 6.0, n: 3.0 },
+        filter: Filter::None,
+        visibility: Visibility::Ray,
+        normalization: Normalization::Pixel,
+        shade: Shade::Splat,
+    },
+    pull_push: None,
+    cutoff: 2.0,
+    lowpass: 0.0,
+    widen: Widen::All,
+    cull: Cull::Back,
+};

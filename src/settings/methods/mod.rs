@@ -1,0 +1,88 @@
+//! One short file a method: its paper, its pipeline figure, and what it chooses along the axes of [`Splatting`]; or a [`pull_push`] of points.
+
+pub mod confetti;
+pub mod object_ewa;
+pub mod perspective_ewa;
+pub mod pull_push;
+pub mod sprites;
+
+use crate::settings::pull_push::PullPush;
+use crate::settings::splatting::Splatting;
+use crate::settings::{Cull, Settings, Widen};
+
+/// A method as its paper has it, or as measurements improve on it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Method {
+    /// The name on the command line and in reports.
+    pub name: &'static str,
+    /// Authors, title, year.
+    pub paper: &'static str,
+    /// Its choice along each axis; of no use where it is one of `pull_push`.
+    pub splatting: Splatting,
+    /// See [`Settings::pull_push`].
+    pub pull_push: Option<PullPush>,
+    /// See [`Settings::cutoff`].
+    pub cutoff: f32,
+    /// See [`Settings::lowpass`].
+    pub lowpass: f32,
+    /// See [`Settings::widen`].
+    pub widen: Widen,
+    /// See [`Settings::cull`].
+    pub cull: Cull,
+}
+
+impl Method {
+    /// Every preset that splats.
+    pub const SPLATTING: [Self; 5] =
+        [perspective_ewa::METHOD, object_ewa::METHOD, sprites::METHOD, sprites::UNFILTERED, confetti::METHOD];
+
+    /// Every preset.
+    pub const ALL: [Self; 7] = {
+        let [a, b, c, d, e] = Self::SPLATTING;
+        [a, b, c, d, e, pull_push::METHOD, pull_push::PAPER]
+    };
+
+    /// The preset of this name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|method| method.name == name)
+    }
+
+    /// The preset with these axes.
+    pub fn of(splatting: &Splatting) -> Option<Self> {
+        Self::SPLATTING.into_iter().find(|method| method.splatting == *splatting)
+    }
+
+    /// Its settings.
+    pub fn settings(&self) -> Settings {
+        Settings {
+            splatting: self.splatting,
+            pull_push: self.pull_push,
+            cutoff: self.cutoff,
+            lowpass: self.lowpass,
+            widen: self.widen,
+            cull: self.cull,
+            ..Default::default()
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_default_settings_are_those_of_the_first_method() {
+        assert_eq!(perspective_ewa::METHOD.settings(), Settings::default());
+    }
+
+    #[test]
+    fn presets_can_be_rendered_and_told_apart() {
+        for method in Method::ALL {
+            method.settings().check().unwrap();
+            assert_eq!(Method::named(method.name), Some(method));
+        }
+        for method in Method::SPLATTING {
+            assert_eq!(Method::of(&method.splatting), Some(method));
+        }
+    }
+}

@@ -1,0 +1,76 @@
+//! `object-ewa`: *Object Space EWA Surface Splatting: A Hardware Accelerated Approach to High Quality Point Rendering*, Ren, Pfister,
+//! Zwicker, Eurographics 2002.
+//!
+//! ```text
+//! footprint    V + J⁻¹ H J⁻ᵀ in the tangent plane (equation 7) → the parallelogram that it stretches (§5.2)
+//! visibility   opaque quads + ε along the viewing ray (§5.1)
+//! attribute    Σ w (rgb, κ), light at each splat, over what is within ε (§5.2)
+//! normalize    / Σ w (what §7 calls per-pixel normalization); or not, with weights that every surfel brings (per-surfel)
+//! ```
+//!
+//! While the camera moves the sums need no division, and once it rests they are divided (§8): [`Progressive`].
+//!
+//! `J` is singular edge-on, where the parallelogram would reach behind the eye: it is kept from growing or shrinking by more than 2.
+
+use super::Method;
+use crate::geometry::Camera;
+use crate::settings::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
+use crate::settings::{Cull, Settings, Widen};
+
+/// The preset.
+pub const METHOD: Method = Method {
+    name: "object-ewa",
+    paper: "Ren et al., Object Space EWA Surface Splatting, 2002",
+    splatting: Splatting {
+        footprint: Footprint::Parallelogram,
+        kernel: Kernel::Gaussian,
+        filter: Filter::Object,
+        visibility: Visibility::Ray,
+        normalization: Normalization::Pixel,
+        shade: Shade::Splat,
+    },
+    pull_push: None,
+    // §5.2: ½ y·y ≤ c = 1.
+    cutoff: std::f32::consts::SQRT_2,
+    lowpass: 1.0,
+    widen: Widen::All,
+    cull: Cull::Back,
+};
+
+/// The preset by surfel while the camera is `moving`, which needs surfels with normalization weights, or by pixel. A
+/// [`Renderer`](crate::Renderer) keeps what it has made for either.
+pub fn progressive(moving: bool) -> Settings {
+    let normalization = if moving { Normalization::Surfel } else { Normalization::Pixel };
+    Settings { splatting: Splatting { normalization, ..METHOD.splatting }, ..METHOD.settings() }
+}
+
+/// Progressive rendering: a camera moves as long as it is another one from frame to frame.
+#[derive(Clone, Debug, Default)]
+pub struct Progressive {
+    last: Option<Camera>,
+}
+
+impl Progressive {
+    /// Settings of the next frame, seen by `camera`; of the first frame as of one that moves.
+    pub fn settings(&mut self, camera: &Camera) -> Settings {
+        progressive(self.last.replace(*camera) != Some(*camera))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::{DMat4, DVec3};
+
+    #[test]
+    fn a_camera_that_rests_is_normalized_by_pixel() {
+        let still = Camera::look_at(DVec3::Z, DVec3::ZERO, DVec3::Y, 1.0, 1.0, 0.1).unwrap();
+        let turned = Camera { view: still.view * DMat4::from_rotation_y(1e-6), ..still };
+        let mut progressive = Progressive::default();
+        let frames = [still, still, still, turned, still, still].map(|camera| progressive.settings(&camera));
+        let (moves, rests) = (Normalization::Surfel, Normalization::Pixel);
+        let expected = [moves, rests, rests, moves, moves, rests];
+        assert_eq!(frames.each_ref().map(|settings| settings.splatting.normalization), expected);
+        assert_eq!(frames[1], METHOD.settings());
+    }
+}

@@ -1,0 +1,26 @@
+//! `pull-push` and `pull-push-paper`: *Efficient Image Reconstruction for Point-Based and Line-Based Rendering*, Marroquim, Kraus, Cavalcanti,
+//! Computers & Graphics 2008.
+//!
+//! ```text
+//! project, fetch   surfels, lines, triangles → the nearest point of each pixel (§3.1)
+//! pull             means of what is in front, fine to coarse (§3.2)
+//! push             holes filled, hidden points replaced, coarse to fine (§3.3)
+//! shade            picture, normal, depth (§3.4)
+//! ```
+
+use super::{Method, perspective_ewa};
+use crate::settings::Cull;
+use crate::settings::pull_push::{PullPush, Rules};
+
+/// The preset that holds.
+pub const METHOD: Method =
+    Method { name: "pull-push", pull_push: Some(PullPush::of(Rules::Robust)), ..PAPER };
+
+/// The preset as published.
+pub const PAPER: Method = Method {
+    name: "pull-push-paper",
+    paper: "Marroquim, Kraus, Cavalcanti, Efficient Image Reconstruction for Point-Based and Line-Based Rendering, 2008",
+    pull_push: Some(PullPush::of(Rules::Paper)),
+    cull: Cull::Back,
+    ..perspective_ewa::METHOD
+};

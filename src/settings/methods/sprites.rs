@@ -1,0 +1,44 @@
+//! `sprites` and `sprites-unfiltered`: *High-Quality Point-Based Rendering on Modern GPUs*, Botsch, Kobbelt, Pacific Graphics 2003.
+//!
+//! ```text
+//! footprint    disc → a square of the disc's size (equation 1), in it the ellipse of parallel projection (equation 2)
+//! visibility   depth corrected at every pixel (equation 4) + ε along the viewing ray (§3.3)
+//! attribute    Σ w (rgb, κ), light at each splat, over what is within ε (§3.3)
+//! normalize    / Σ w (§3.4)
+//! ```
+//!
+//! Unfiltered, the nearest ellipse of each pixel is seen alone (§3.2), in one pass.
+
+use super::Method;
+use crate::settings::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
+use crate::settings::{Cull, Widen};
+
+/// The preset of higher quality.
+pub const METHOD: Method = Method {
+    name: "sprites",
+    paper: "Botsch, Kobbelt, High-Quality Point-Based Rendering on Modern GPUs, 2003",
+    splatting: Splatting {
+        footprint: Footprint::Sprite,
+        kernel: Kernel::Gaussian,
+        filter: Filter::None,
+        visibility: Visibility::Ray,
+        normalization: Normalization::Pixel,
+        shade: Shade::Splat,
+    },
+    pull_push: None,
+    cutoff: 2.0,
+    lowpass: 0.0,
+    widen: Widen::All,
+    cull: Cull::Back,
+};
+
+/// The preset of higher speed.
+pub const UNFILTERED: Method = Method {
+    name: "sprites-unfiltered",
+    splatting: Splatting {
+        visibility: Visibility::Nearest,
+        normalization: Normalization::None,
+        ..METHOD.splatting
+    },
+    ..METHOD
+};

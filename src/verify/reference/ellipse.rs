@@ -1,0 +1,363 @@
+//! The outline on which a splat's kernel ends, once a low-pass filter has widened it, and the kernel in it.
+
+use super::footprint::ScreenClip;
+use super::{Projector, Splat};
+use crate::settings::Widen;
+use crate::settings::splatting::{Footprint, Kernel};
+use glam::{DMat2, DVec2, DVec3};
+use std::f64::consts::FRAC_PI_4;
+
+/// Largest factor by which perspective shrinks or enlarges a kernel in the tangent plane against its centre.
+const MOST_STRETCH: f64 = 2.0;
+
+/// Part by which the variances of a parallelogram differ at least; otherwise its sides are the picture's.
+const LEAST_ANISOTROPY: f64 = 1e-4;
+
+/// How far float32's rounding moves the difference of two variances, relative to the larger: four half units in the last place.
+const ROUNDING: f64 = 4.0 / (1 << 24) as f64;
+
+/// Least exponent of a Confetti kernel.
+const LEAST_EXPONENT: f64 = -10.0;
+
+/// The filtered kernel of a splat: its variance `V'`, such as `V + h I`, in its principal axes, where long thin ellipses lose no digits.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ellipse {
+    pub centre: DVec2,
+    /// Unit vector of the major axis.
+    pub axis: DVec2,
+    /// Variances along the major and the minor axis, px².
+    pub variance: DVec2,
+    /// `√(|V| / |V'|)`: what the filter leaves of the kernel's height.
+    pub amplitude: f64,
+    /// Cut-off `F`, in σ.
+    pub cutoff: f64,
+    /// Where the kernel lies in the tangent plane: its plane as of [`Projector::plane`], divided by its value at the centre.
+    pub horizon: Option<DVec3>,
+    /// Whether the outline is the square about the ellipse.
+    pub square: bool,
+    /// How far rounding may turn that square, rad: the nearer the ellipse is to a circle, the less its axes are determined.
+    pub spin: f64,
+    /// How the weight falls off.
+    pub kernel: Kernel,
+    /// What of it is kept.
+    pub clip: Option<ScreenClip>,
+    /// Normalization weights at the corners of the kernel's square, and from that square's axes to the kernel's.
+    pub corners: [f64; 4],
+    pub turn: DMat2,
+    /// See [`Projector::beyond_clips`].
+    pub beyond: f64,
+}
+
+impl Ellipse {
+    /// The footprint of the visibility pass: just wide enough to own a pixel centre.
+    pub fn visibility(splat: &Splat, projector: &Projector) -> Self {
+        let least = f64::from(projector.settings.least_lowpass());
+        Self::new(splat, projector, |variance| variance + least)
+    }
+
+    /// The footprint of the attribute pass: widened by the low-pass filter `H` (zwicker2004, equation 3), as far as the settings want.
+    pub fn attribute(splat: &Splat, projector: &Projector) -> Self {
+        let settings = &projector.settings;
+        let [least, lowpass] = [settings.least_lowpass(), settings.attribute_lowpass()].map(f64::from);
+        match settings.widen {
+            Widen::All => Self::new(splat, projector, |variance| variance + lowpass),
+            Widen::Small => Self::new(splat, projector, |variance| (variance + least).max(lowpass)),
+        }
+    }
+
+    /// The splat's kernel, with the variance along either of its axes turned by `widened` into another, px².
+    pub fn new(splat: &Splat, projector: &Projector, widened: impl Fn(f64) -> f64) -> Self {
+        let [xx, xy, yy] = [splat.variance.x_axis.x, splat.variance.x_axis.y, splat.variance.y_axis.y];
+        let major = 0.5 * (xx + yy + (xx - yy).hypot(2.0 * xy));
+        // Not as the trace minus the major one: that cancels.
+        let minor = if major > 0.0 { splat.sqrt_det * (splat.sqrt_det / major) } else { 0.0 };
+        let sided = projector.settings.splatting.footprint == Footprint::Parallelogram;
+        let anisotropy = if sided && major > 0.0 { (major - minor) / major } else { 1.0 };
+        let angle = if anisotropy <= LEAST_ANISOTROPY { 0.0 } else { 0.5 * (2.0 * xy).atan2(xx - yy) };
+        let variance = DVec2::new(widened(major), widened(minor));
+        let splatting = projector.settings.splatting;
+        let on_plane = splatting.footprint.is_on_plane() && projector.depth.perspective;
+        let centre = splat.centre;
+        Self {
+            centre,
+            axis: DVec2::from_angle(angle),
+            variance,
+            amplitude: splat.sqrt_det / (variance.x * variance.y).sqrt(),
+            cutoff: projector.cutoff(),
+            horizon: on_plane.then(|| splat.plane / splat.plane.dot(DVec3::new(1.0, centre.x, centre.y))),
+            square: matches!(splatting.footprint, Footprint::Parallelogram | Footprint::Square),
+            spin: if sided { spin(anisotropy) } else { 0.0 },
+            kernel: splatting.kernel,
+            clip: splat.clip,
+            corners: splat.weights,
+            turn: turn(splat, DVec2::from_angle(angle)),
+            beyond: projector.beyond_clips(),
+        }
+    }
+
+    /// Where in the kernel the offset `e` from the centre is: along its axes, in σ. Seen in perspective, what lies in a plane is a
+    /// homography of it; one that keeps the centre is affine but for the division by the plane's inverse distance.
+    pub fn in_kernel(&self, offset: DVec2) -> DVec2 {
+        self.principal(offset) / self.sigma() / self.nearness(offset)
+    }
+
+    /// By what perspective shrinks a kernel in the tangent plane at the offset `e` from the centre.
+    fn nearness(&self, offset: DVec2) -> f64 {
+        let at = self.centre + offset;
+        let nearness = self.horizon.map_or(1.0, |plane| plane.dot(DVec3::new(1.0, at.x, at.y)));
+        nearness.clamp(1.0 / MOST_STRETCH, MOST_STRETCH)
+    }
+
+    /// `m = √(e V'⁻¹ eᵀ)` of the offset `e` from the centre, in σ.
+    #[cfg(test)]
+    pub fn sigmas(&self, offset: DVec2) -> f64 {
+        self.in_kernel(offset).length()
+    }
+
+    /// What is compared with the cut-off at the offset `e` from the centre, in σ.
+    pub fn rim(&self, offset: DVec2) -> f64 {
+        let y = self.in_kernel(offset);
+        if self.square { y.abs().max_element() } else { y.length() }
+    }
+
+    /// Signed distance of a pixel position to what clip lines cut off, px: below 0 where the splat is not.
+    pub fn kept(&self, at: DVec2) -> f64 {
+        self.clip.map_or(f64::INFINITY, |clip| clip.distance(at))
+    }
+
+    /// Whether the outline is the ellipse itself.
+    pub fn is_plain(&self) -> bool {
+        self.horizon.is_none() && !self.square
+    }
+
+    /// How far rounding may move the outline at the offset `e` from the centre, px, beside what it moves any outline.
+    pub fn shift(&self, offset: DVec2) -> f64 {
+        self.spin * offset.length()
+    }
+
+    /// The same anywhere on the outline, at most, in σ of the minor axis.
+    pub fn reach_of_shift(&self) -> f64 {
+        self.spin * self.stretch() * self.cutoff * self.sigma().x / self.sigma().y
+    }
+
+    /// How far the outline can reach beyond the ellipse, as a factor.
+    fn stretch(&self) -> f64 {
+        let rim = if self.square { std::f64::consts::SQRT_2 } else { 1.0 };
+        if self.horizon.is_some() { MOST_STRETCH * rim } else { rim }
+    }
+
+    /// Weight at the place `m` in the kernel, σ: the kernel's height where the filter has widened it, times the normalization weight.
+    pub fn weight(&self, m: DVec2) -> f64 {
+        self.amplitude * (-self.exponent(m.length())).exp() * self.normalization(m)
+    }
+
+    /// The normalization weight at the place `m` in the kernel, σ: bilinear in its square (ren2002 section 7.2).
+    fn normalization(&self, m: DVec2) -> f64 {
+        let [a, b, c, d] = self.corners;
+        let at = (self.turn.transpose() * m / self.cutoff).clamp(DVec2::NEG_ONE, DVec2::ONE);
+        let [low, high] = [0.5 - 0.5 * at, 0.5 + 0.5 * at];
+        low.y * (low.x * a + high.x * b) + high.y * (low.x * c + high.x * d)
+    }
+
+    /// How far off a float32 weight may be at the place `m`, σ, in half units in its last place. Vulkan has the exponential of x within
+    /// 3 + 2 |x| units. Of a weight that is bilinear between corners, two interpolations round four times each, and as often does each
+    /// coordinate of the place, along which the weight moves by no more than the corners span.
+    pub fn grain(&self, m: DVec2) -> f64 {
+        let exponential = 2.0 * (3.0 + 2.0 * self.exponent(m.length()));
+        let least = self.corners.into_iter().fold(f64::INFINITY, f64::min);
+        let span = self.corners.into_iter().fold(0.0, f64::max) - least;
+        let bilinear = if span > 0.0 { 8.0 + 8.0 * span / self.normalization(m) } else { 0.0 };
+        exponential + bilinear
+    }
+
+    /// Of what the kernel is the exponential, negated, at a distance of `m` σ.
+    fn exponent(&self, sigmas: f64) -> f64 {
+        match self.kernel {
+            Kernel::Gaussian => 0.5 * sigmas * sigmas,
+            Kernel::Confetti { a, n } => {
+                let t = (sigmas / self.cutoff).powf(n.into()).min(1.0);
+                (f64::from(a) * t / (1.0 - t)).min(-LEAST_EXPONENT)
+            }
+        }
+    }
+
+    /// How much steeper than a Gaussian the kernel is at a distance of `m` σ: `|d ln w / dm| − m`, or 0.
+    pub fn steepness(&self, sigmas: f64) -> f64 {
+        let Kernel::Confetti { a, n } = self.kernel else { return 0.0 };
+        let [a, n] = [a, n].map(f64::from);
+        let t = (sigmas / self.cutoff).powf(n).min(1.0 - 1e-9);
+        // From where the exponent is at its least, the kernel is flat.
+        let flat = a * t / (1.0 - t) > -LEAST_EXPONENT;
+        let slope = if flat || sigmas == 0.0 { 0.0 } else { a / (1.0 - t).powi(2) * n * t / sigmas };
+        (slope - sigmas).max(0.0)
+    }
+
+    /// 1-σ lengths of the major and the minor axis, px.
+    pub fn sigma(&self) -> DVec2 {
+        DVec2::new(self.variance.x.sqrt(), self.variance.y.sqrt())
+    }
+
+    /// The offset along the major and the minor axis.
+    fn principal(&self, offset: DVec2) -> DVec2 {
+        DVec2::new(self.axis.dot(offset), self.axis.perp_dot(offset))
+    }
+
+    /// Least and greatest corner of a box around the outline, px: `x_t ± F √V'ᵢᵢ`, or more where it is no ellipse.
+    pub fn bounds(&self) -> (DVec2, DVec2) {
+        let along = self.stretch() * self.cutoff * self.sigma().x * self.axis;
+        let across = self.stretch() * self.cutoff * self.sigma().y * self.axis.perp();
+        let half = DVec2::new(along.x.hypot(across.x), along.y.hypot(across.y));
+        (self.centre - half, self.centre + half)
+    }
+
+    /// Bounds of x within the outline at `reach` σ on the line `y`, px, those of the ellipse exactly; `None` if the line misses it.
+    pub fn span(&self, y: f64, reach: f64) -> Option<(f64, f64)> {
+        let reach = self.stretch() * reach;
+        let (c, s) = (self.axis.x, self.axis.y);
+        let vertical = self.variance.x * s * s + self.variance.y * c * c;
+        let covariance = (self.variance.x - self.variance.y) * c * s;
+        let rise = y - self.centre.y;
+        let left = reach * reach - rise * rise / vertical;
+        let half = (left * (self.variance.x / vertical) * self.variance.y).sqrt();
+        let middle = self.centre.x + covariance / vertical * rise;
+        (left >= 0.0).then_some((middle - half, middle + half))
+    }
+
+    /// Whether the point at `offset` from the centre is so near to the outline that moving it by `margin` px may take it across.
+    pub fn is_undecided(&self, offset: DVec2, margin: f64) -> bool {
+        if self.is_plain() {
+            let reach = margin / self.sigma().y;
+            return (self.rim(offset) - self.cutoff).abs() <= reach && self.distance(offset) <= margin;
+        }
+        // By how much either coordinate in the kernel can change; the two are bounded apart, as one px may be many σ across a thin
+        // kernel and few along it.
+        let nearness = self.nearness(offset);
+        let slope = self.horizon.map_or(0.0, |plane| DVec2::new(plane.y, plane.z).length());
+        let y = self.in_kernel(offset).abs();
+        let change = margin * (1.0 / self.sigma() + y * slope) / nearness;
+        let rim = |y: DVec2| if self.square { y.max_element() } else { y.length() };
+        rim((y - change).max(DVec2::ZERO)) <= self.cutoff && rim(y + change) >= self.cutoff
+    }
+
+    /// Distance in px from the point at `offset` from the centre to the outline; to first order where it is no ellipse.
+    pub fn distance(&self, offset: DVec2) -> f64 {
+        if !self.is_plain() {
+            let step = 1e-5;
+            let along = |d: DVec2| (self.rim(offset + d) - self.rim(offset - d)) / (2.0 * step);
+            let slope = DVec2::new(along(step * DVec2::X), along(step * DVec2::Y)).length();
+            return (self.rim(offset) - self.cutoff).abs() / slope;
+        }
+        to_ellipse(self.cutoff * self.sigma(), self.principal(offset).abs())
+    }
+}
+
+/// How far rounding may turn the sides of a parallelogram whose variances differ by that part, rad.
+fn spin(anisotropy: f64) -> f64 {
+    let past = anisotropy - LEAST_ANISOTROPY;
+    match past {
+        _ if past.abs() <= ROUNDING => FRAC_PI_4,
+        _ if past < 0.0 => 0.0,
+        _ => ROUNDING / anisotropy,
+    }
+}
+
+/// From the axes of a disc's square to those of its kernel on the screen, of which `major` is the longer. Without a filter `V = D Dᵀ`, and the
+/// kernel's axes are `Λ^(-1/2) Rᵀ D` of the square's: a rotation, or a reflection where the back is seen. Its first row is the image of the
+/// longer axis; the other one, at a right angle, is not computed from the shorter, which may have no length.
+fn turn(splat: &Splat, major: DVec2) -> DMat2 {
+    let first = (splat.square.transpose() * major).try_normalize().unwrap_or(DVec2::X);
+    let second = splat.square.determinant().signum() * first.perp();
+    DMat2::from_cols(first, second).transpose()
+}
+
+/// Distance of `p`, in the first quadrant, to the ellipse of semi-axes `axes.x ≥ axes.y`. The foot of the perpendicular is
+/// `(r² p.x / (t + r²), p.y / (t + 1))`, `r = axes.x / axes.y`, with `t` the largest root of a monotonic function, found by
+/// bisection: the first-order distance `|m - F| / |∇m|` fails about the tips of thin ellipses.
+fn to_ellipse(axes: DVec2, p: DVec2) -> f64 {
+    if p.y <= 1e-12 * axes.y {
+        return from_major_axis(axes, p.x);
+    }
+    let (ratio, x, y) = (axes.x / axes.y, p.x / axes.y, p.y / axes.y);
+    let residual = |t: f64| (ratio * x / (t + ratio * ratio)).powi(2) + (y / (t + 1.0)).powi(2) - 1.0;
+    let (mut low, mut high) = (y - 1.0, (ratio * x).hypot(y) - 1.0);
+    loop {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            break;
+        }
+        *(if residual(middle) > 0.0 { &mut low } else { &mut high }) = middle;
+    }
+    let t = 0.5 * (low + high);
+    DVec2::new(ratio * ratio * p.x / (t + ratio * ratio), p.y / (t + 1.0)).distance(p)
+}
+
+/// The same for a point on the major axis: up to the centre of curvature of the tip, the nearest points are beside it.
+fn from_major_axis(axes: DVec2, x: f64) -> f64 {
+    let evolute = axes.x - axes.y * (axes.y / axes.x);
+    if x >= evolute {
+        return (x - axes.x).abs();
+    }
+    let foot = x / evolute;
+    (axes.x * foot - x).hypot(axes.y * (1.0 - foot * foot).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::FRAC_PI_2;
+
+    #[test]
+    fn distance_is_that_of_the_nearest_point() {
+        for axes in [DVec2::new(3.0, 3.0), DVec2::new(5.0, 1.0), DVec2::new(4000.0, 0.71)] {
+            // Dense about the tip of the major axis, where thin ellipses turn.
+            let point = |i: i32| {
+                let angle = FRAC_PI_2 * (f64::from(i) / 20_000.0).powi(3);
+                axes * DVec2::new(angle.cos(), angle.sin())
+            };
+            let points: Vec<DVec2> = (0..=20_000).map(point).collect();
+            for fraction in [0.0, 1e-6, 1e-3, 0.3, 0.9, 1.0] {
+                for off in [-0.3, -3e-4, 0.0, 3e-4, 2.0] {
+                    let p =
+                        (axes * DVec2::from_angle(FRAC_PI_2 * fraction) + DVec2::splat(off)).max(DVec2::ZERO);
+                    let to_segment = |s: &[DVec2]| {
+                        let (from, along) = (p - s[0], s[1] - s[0]);
+                        (from - (from.dot(along) / along.length_squared()).clamp(0.0, 1.0) * along).length()
+                    };
+                    let nearest = points.windows(2).map(to_segment).fold(f64::INFINITY, f64::min);
+                    let found = to_ellipse(axes, p);
+                    assert!(
+                        (found - nearest).abs() < 0.01 * nearest + 1e-6,
+                        "{axes} {p}: {found} for {nearest}"
+                    );
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn spans_are_where_the_line_meets_the_ellipse() {
+        let ellipse = Ellipse {
+            centre: DVec2::new(10.0, 20.0),
+            axis: DVec2::from_angle(0.7),
+            variance: DVec2::new(9.0, 0.25),
+            amplitude: 1.0,
+            cutoff: 2.0,
+            horizon: None,
+            square: false,
+            spin: 0.0,
+            kernel: Kernel::Gaussian,
+            clip: None,
+            corners: [1.0; 4],
+            turn: DMat2::IDENTITY,
+            beyond: 0.0,
+        };
+        for y in [17.0, 20.0, 22.5] {
+            let (low, high) = ellipse.span(y, 2.0).unwrap();
+            for x in [low, high] {
+                assert!((ellipse.sigmas(DVec2::new(x, y) - ellipse.centre) - 2.0).abs() < 1e-9);
+            }
+        }
+        let (low, high) = ellipse.bounds();
+        assert!(ellipse.span(high.y + 1e-6, 2.0).is_none() && ellipse.span(low.y + 1e-6, 2.0).is_some());
+    }
+}

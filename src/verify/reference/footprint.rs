@@ -1,0 +1,279 @@
+//! Pass `footprint`: from surfels to screen-space splats.
+
+use super::Projector;
+use super::conic::clearance;
+use super::ellipse::Ellipse;
+use super::image::Disc;
+use super::shading::{Shine, linear, lit};
+use crate::error::Result;
+use crate::geometry::{Camera, Clip, ClipLine, Colours, Surfels, square_axis};
+use crate::settings::splatting::{Normalization, Shade};
+use crate::settings::{Cull, Settings, Shading};
+use glam::{DMat2, DMat3, DVec2, DVec3};
+
+/// One surfel in float64, in world space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Surfel {
+    /// Centre, origin included.
+    pub position: DVec3,
+    /// Unit normal.
+    pub normal: DVec3,
+    /// Longer semi-axis of the covered disc, `F σ`.
+    pub radius: f64,
+    /// Its direction, a unit vector at a right angle to the normal; any such for a circle.
+    pub major: DVec3,
+    /// The shorter semi-axis divided by the longer: 1 for a circle.
+    pub aspect: f64,
+    /// Whether neither side is the back.
+    pub two_sided: bool,
+    /// Normalization weights at the corners −u −v, +u −v, −u +v, +u +v of the square about the disc, u = `major` and v = normal × u; all
+    /// the same within a surface, and 1 where the scene has none.
+    pub weights: [f64; 4],
+    /// Linear RGB, where the scene has colours.
+    pub colour: Option<DVec3>,
+    /// What is cut off the disc.
+    pub clip: Option<Clip>,
+}
+
+impl Surfel {
+    /// Entry `index` of `surfels`; panics beyond the end.
+    pub fn of(surfels: &Surfels, index: usize) -> Self {
+        let colour = surfels.colours.as_ref().map(|colours| match colours {
+            Colours::Srgb8(c) => linear(c[index]),
+            Colours::Linear(c) => DVec3::from_array(c[index].map(f64::from)),
+        });
+        let normal = surfels.normals[index].as_dvec3().normalize_or_zero();
+        let ellipse = surfels.ellipses.as_ref().map(|ellipses| ellipses[index]);
+        let weights = surfels
+            .weights
+            .as_ref()
+            .map_or([1.0; 4], |weights| weights.corners_of(index).unwrap_or([weights.of[index]; 4]));
+        Self {
+            position: surfels.origin + surfels.positions[index].as_dvec3(),
+            normal,
+            radius: surfels.radii[index].into(),
+            // In the disc's plane, from which float32 took it.
+            major: square_axis(surfels.normals[index], ellipse.map(|ellipse| ellipse.major)),
+            aspect: ellipse.map_or(1.0, |ellipse| ellipse.aspect.into()),
+            weights: weights.map(f64::from),
+            two_sided: surfels.two_sided.as_ref().is_some_and(|two_sided| two_sided[index]),
+            colour,
+            clip: surfels.clips.as_ref().and_then(|clips| clips.get(index)).copied(),
+        }
+    }
+}
+
+/// The screen-space splat of a surfel: an ellipse and a plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Splat {
+    /// Centre of the ellipse, px. In perspective not the projection of the surfel's centre.
+    pub centre: DVec2,
+    /// Variance `V` of the projected kernel without any low-pass, px².
+    pub variance: DMat2,
+    /// `√|V|`, px²; the closed form where `V` is near singular.
+    pub sqrt_det: f64,
+    /// The distance at pixel position (x, y) of its plane, the tangent plane if it is no sprite: `plane · (1, x, y)` is 1 / distance in
+    /// perspective, the distance itself in orthographic projection and of sprites.
+    pub plane: DVec3,
+    /// Distance of the surfel's centre.
+    pub distance: f64,
+    /// Distance of the disc's nearest point.
+    pub nearest: f64,
+    /// What the ε test lets lie behind this splat: its depth is multiplied by this in perspective, and this is added to it in
+    /// orthographic projection.
+    pub shift: f64,
+    /// World-space unit normal, turned to the eye.
+    pub normal: DVec3,
+    /// Linear RGB; the lighting's albedo where the scene has no colours.
+    pub colour: DVec3,
+    /// 1 / cosine of the angle between the normal and the ray through the centre: by so much rounding errors of the normal and
+    /// the centre grow in the plane's depth and in `√|V|`.
+    pub secant: f64,
+    /// Shorter semi-axis of the disc divided by the longer.
+    pub aspect: f64,
+    /// Normalization weights at the corners of the disc's square, all 1 where the frame wants none.
+    pub weights: [f64; 4],
+    /// Images of the square's axes at the centre, px up to a common factor.
+    pub square: DMat2,
+    /// Whether the ellipse came from the dual form, the inverse form being ill-conditioned.
+    pub dual: bool,
+    /// What of it is kept, where some is cut off.
+    pub clip: Option<ScreenClip>,
+}
+
+/// The part of the screen that clip lines keep.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ScreenClip {
+    /// Signed distances to the lines at pixel position (x, y), px: `line · (1, x, y)`, above 0 where the line keeps; infinite for none.
+    pub lines: [DVec3; 2],
+    /// Whether what either keeps is kept.
+    pub concave: bool,
+}
+
+impl ScreenClip {
+    /// Signed distance at a pixel position, px; above 0 where the splat is kept.
+    pub fn distance(&self, at: DVec2) -> f64 {
+        let [a, b] = self.lines.map(|line| match line.is_finite() {
+            true => line.dot(DVec3::new(1.0, at.x, at.y)),
+            false => f64::INFINITY,
+        });
+        if self.concave { a.max(b) } else { a.min(b) }
+    }
+}
+
+/// Least `1 − (F |g| / w)²` of a splat that is drawn: nearer the eye plane float32 cannot tell where the ellipse is.
+const LEAST_CLEARANCE: f64 = 1e-3;
+/// Least `√|V|` of a splat that is drawn, px²: float32's weight of a smaller one may be 0.
+const LEAST_AREA: f64 = 1e-30;
+/// Largest variance along the major axis of a splat that is drawn, px²: float32 overflows beyond.
+const LARGEST_VARIANCE: f64 = 1e30;
+
+/// Why a surfel makes no splat.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Culled {
+    /// Its centre is not in front of the eye (perspective only).
+    Behind,
+    /// Its disc reaches the eye plane, or comes within 1/2000 of its distance to it.
+    EyePlane,
+    /// It shows its back where [`Cull::Back`] is set, and is not two-sided.
+    Back,
+    /// Its bounding box misses the picture, or its image has no area: it is seen exactly edge-on, or so small that its weight is
+    /// nothing in float32.
+    Outside,
+    /// It is not [valid](Surfels::is_valid), which is found before all else, or its image is too large for float32.
+    Invalid,
+}
+
+/// The splat of one surfel in a frame of `size` px, or why it has none.
+///
+/// For many surfels of one frame make a [`Projector`] once and use [`Projector::footprint`].
+pub fn footprint(
+    surfel: &Surfel,
+    camera: &Camera,
+    size: [u32; 2],
+    settings: &Settings,
+) -> Result<Result<Splat, Culled>> {
+    Ok(Projector::new(camera, size, settings)?.footprint(surfel))
+}
+
+impl Projector {
+    /// The splat of one surfel, or why it has none; the reasons are tried in the order of [`Culled`]. Takes the surfel to be valid.
+    pub fn footprint(&self, surfel: &Surfel) -> Result<Splat, Culled> {
+        let centre = self.view.transform_point3(surfel.position);
+        let normal = self.view.transform_vector3(surfel.normal);
+        let distance = self.distance(centre);
+        if self.depth.perspective && distance <= 0.0 {
+            return Err(Culled::Behind);
+        }
+        let axes = self.semi_axes(surfel);
+        let (projected, mapping) = self.tangent_plane(centre, axes);
+        let clear = clearance(&mapping, self.cutoff()) / (mapping.z_axis.z / self.cutoff()).powi(2);
+        if clear.is_nan() || clear <= LEAST_CLEARANCE {
+            return Err(Culled::EyePlane);
+        }
+        let facing = self.facing(centre, normal);
+        if self.settings.cull == Cull::Back && facing >= 0.0 && !surfel.two_sided {
+            return Err(Culled::Back);
+        }
+        let square = DMat2::from_cols(mapping.x_axis.truncate(), mapping.y_axis.truncate());
+        let by_surfel = self.settings.splatting.normalization == Normalization::Surfel;
+        let image = self.image(&Disc { surfel, centre, normal, axes, projected, mapping });
+        let shown = surfel.colour.unwrap_or(DVec3::from_array(self.settings.lighting.albedo.map(f64::from)));
+        let towards = if facing > 0.0 { -surfel.normal } else { surfel.normal };
+        let splat = Splat {
+            centre: image.centre,
+            variance: image.variance,
+            sqrt_det: image.sqrt_det,
+            plane: image.plane,
+            distance,
+            nearest: image.nearest,
+            shift: self.shift(surfel.radius, distance),
+            normal: towards,
+            colour: self.splat_colour(shown, towards, centre),
+            secant: self.secant(centre, facing),
+            aspect: surfel.aspect,
+            weights: if by_surfel { surfel.weights } else { [1.0; 4] },
+            square,
+            dual: image.dual,
+            clip: surfel.clip.map(|clip| self.screen_clip(&clip, centre, normal)),
+        };
+        let attribute = Ellipse::attribute(&splat, self);
+        // What is no number fails either.
+        match splat.sqrt_det >= LEAST_AREA && self.sees(&attribute) {
+            true if attribute.variance.x <= LARGEST_VARIANCE => Ok(splat),
+            true => Err(Culled::Invalid),
+            false => Err(Culled::Outside),
+        }
+    }
+
+    /// The same of the surfel moved away by ε along the camera's axis (ren2002 §5.1), for a visibility that has ε in the position.
+    pub(super) fn moved_footprint(&self, surfel: &Surfel) -> Result<Splat, Culled> {
+        let epsilon = f64::from(self.settings.epsilon) * surfel.radius;
+        let away = self.to_world(DVec3::new(0.0, 0.0, self.depth.forward));
+        let moved = Surfel { position: surfel.position + epsilon * away, ..*surfel };
+        let shift = if self.depth.perspective { 1.0 } else { 0.0 };
+        self.footprint(&moved).map(|splat| Splat { shift, ..splat })
+    }
+
+    /// Clip lines on the screen (zwicker2004 §5): each through the images of two points in the tangent plane. `centre` and `normal` are in
+    /// eye space.
+    fn screen_clip(&self, clip: &Clip, centre: DVec3, normal: DVec3) -> ScreenClip {
+        let line = |line: ClipLine| {
+            if !line.is_some() {
+                return DVec3::INFINITY;
+            }
+            let outward = self.view.transform_vector3(line.outward.as_dvec3());
+            // The half-space's border meets the plane where `outward · (x − centre) = offset`.
+            let across = outward.reject_from_normalized(normal);
+            let nearest = across * (f64::from(line.offset) / outward.dot(across));
+            let point =
+                |from_centre: DVec3, w: f64| self.homogeneous_pixel((from_centre + w * centre).extend(w));
+            let border = point(nearest, 1.0).cross(point(normal.cross(across), 0.0));
+            // Anything on the kept side: homogeneous, so that even what is behind the eye tells it.
+            let inside = border.dot(point(nearest - across, 1.0));
+            let unit = border.truncate().length() * inside.signum();
+            DVec3::new(border.z, border.x, border.y) / unit
+        };
+        ScreenClip { lines: clip.lines.map(line), concave: clip.concave }
+    }
+
+    /// The colour that a splat adds: light, where splats are lit.
+    fn splat_colour(&self, albedo: DVec3, normal: DVec3, centre: DVec3) -> DVec3 {
+        let Settings { shading, splatting, lighting, .. } = &self.settings;
+        if *shading != Shading::Lit || splatting.shade != Shade::Splat {
+            return albedo;
+        }
+        let away = match self.depth.perspective {
+            true => centre - self.eye(),
+            false => DVec3::new(0.0, 0.0, self.depth.forward),
+        };
+        lit(lighting, Shine::of_frame(lighting), albedo, normal, -self.to_world(away).normalize())
+    }
+
+    /// The semi-axes of the covered disc, eye space.
+    pub(super) fn semi_axes(&self, surfel: &Surfel) -> [DVec3; 2] {
+        let minor = surfel.aspect * surfel.normal.cross(surfel.major);
+        [surfel.major, minor].map(|axis| self.view.transform_vector3(surfel.radius * axis))
+    }
+
+    /// The projected centre, px, and the mapping that [`super::conic`] wants, for the semi-axes of the covered disc.
+    pub(super) fn tangent_plane(&self, centre: DVec3, semi_axes: [DVec3; 2]) -> (DVec2, DMat3) {
+        let [s, t] = semi_axes.map(|axis| axis / self.cutoff());
+        let middle = self.project(centre.extend(1.0));
+        let ndc = middle.truncate() / middle.z;
+        let to_pixels = |v: DVec3| (0.5 * self.size * (v.truncate() - ndc * v.z)).extend(v.z);
+        let axis = |v: DVec3| to_pixels(self.project(v.extend(0.0)));
+        let mapping = DMat3::from_cols(axis(s), axis(t), DVec3::new(0.0, 0.0, middle.z));
+        (0.5 * self.size * (ndc + 1.0), mapping)
+    }
+
+    fn shift(&self, radius: f64, distance: f64) -> f64 {
+        let epsilon = f64::from(self.settings.epsilon) * radius;
+        if self.depth.perspective { 1.0 + epsilon / distance } else { epsilon }
+    }
+
+    fn sees(&self, ellipse: &Ellipse) -> bool {
+        let (low, high) = ellipse.bounds();
+        high.cmpge(DVec2::ZERO).all() && low.cmple(self.size).all()
+    }
+}

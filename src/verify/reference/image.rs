@@ -1,0 +1,153 @@
+//! The image of a disc by the kind of footprint.
+
+use super::conic::{dual_form, inverse_form};
+use super::{Projector, Surfel};
+use crate::settings::splatting::Footprint;
+use glam::{DMat2, DMat3, DVec2, DVec3};
+
+/// A disc in eye space.
+pub(super) struct Disc<'a> {
+    pub surfel: &'a Surfel,
+    pub centre: DVec3,
+    pub normal: DVec3,
+    /// The semi-axes.
+    pub axes: [DVec3; 2],
+    /// The projected centre, px.
+    pub projected: DVec2,
+    /// The tangent plane's mapping, see [`super::conic`].
+    pub mapping: DMat3,
+}
+
+/// A splat before the low-pass filter.
+pub(super) struct Image {
+    /// Centre of the ellipse, px.
+    pub centre: DVec2,
+    /// Variance, px².
+    pub variance: DMat2,
+    /// `√|V|`, px².
+    pub sqrt_det: f64,
+    /// See [`super::Splat::plane`].
+    pub plane: DVec3,
+    /// Distance of the nearest point.
+    pub nearest: f64,
+    /// Whether the conic came from the dual form.
+    pub dual: bool,
+}
+
+/// Least cosine by which a sprite is foreshortened.
+const LEAST_FORESHORTENING: f64 = 0.1;
+
+impl Projector {
+    /// The image of `disc`, all of which is in front of the eye.
+    pub(super) fn image(&self, disc: &Disc) -> Image {
+        match self.settings.splatting.footprint {
+            Footprint::Conic => self.conic_image(disc),
+            Footprint::Affine | Footprint::Parallelogram | Footprint::Disc => self.affine_image(disc),
+            Footprint::Sprite => self.sprite_image(disc, 1.0),
+            Footprint::WholeSprite => self.sprite_image(disc, self.whole(disc)),
+            Footprint::Square => self.square_image(disc),
+        }
+    }
+
+    /// The ellipse that the rim projects to (zwicker2004 §4).
+    fn conic_image(&self, disc: &Disc) -> Image {
+        let inverse = inverse_form(&disc.mapping, self.cutoff());
+        let conic = inverse.unwrap_or_else(|| dual_form(&disc.mapping, self.cutoff()));
+        Image {
+            centre: disc.projected + conic.offset,
+            variance: conic.variance,
+            sqrt_det: conic.sqrt_det,
+            plane: self.plane(disc.centre, disc.normal),
+            nearest: self.nearest_of(disc),
+            dual: inverse.is_none(),
+        }
+    }
+
+    /// `J V_r Jᵀ` with the Jacobian at the centre (ren2002 §5.2).
+    fn affine_image(&self, disc: &Disc) -> Image {
+        let [s, t, x] = [disc.mapping.x_axis, disc.mapping.y_axis, disc.mapping.z_axis];
+        let jacobian = DMat2::from_cols(s.truncate(), t.truncate()) * (1.0 / x.z);
+        Image {
+            centre: disc.projected,
+            variance: jacobian * jacobian.transpose(),
+            sqrt_det: jacobian.determinant().abs(),
+            plane: self.plane(disc.centre, disc.normal),
+            nearest: self.nearest_of(disc),
+            dual: false,
+        }
+    }
+
+    fn nearest_of(&self, disc: &Disc) -> f64 {
+        self.distance(disc.centre) - disc.axes[0].z.hypot(disc.axes[1].z)
+    }
+
+    /// The scale of a sprite: px for a unit length across the view, as the columns of its x and y.
+    fn flat_scale(&self, disc: &Disc) -> DMat2 {
+        let column = |axis: DVec3| {
+            let clip = self.project(axis.extend(0.0));
+            0.5 * self.size * clip.truncate()
+        };
+        // Off the axis, the same as on it (botsch2003 §3.1).
+        let unit = self.project(disc.centre.extend(1.0)).z;
+        DMat2::from_cols(column(DVec3::X), column(DVec3::Y)) * (1.0 / unit)
+    }
+
+    /// What rounds a sprite's width to a whole number of px (botsch2003 §4).
+    fn whole(&self, disc: &Disc) -> f64 {
+        let width = 2.0 * disc.surfel.radius * self.flat_scale(disc).row(1).length();
+        (width + 0.5).floor().max(1.0) / width
+    }
+
+    /// The part of a disc's sprite that lies inside the unit sphere: the points `(x, y, δz)` of the tangent plane, seen along the
+    /// camera's axis, with `δz = −(n_x / n_z) x − (n_y / n_z) y` (botsch2003 equation 2); all times `whole`.
+    fn sprite_image(&self, disc: &Disc, whole: f64) -> Image {
+        let (normal, flat) = (disc.normal, disc.normal.truncate());
+        let cosine = normal.z.abs().max(LEAST_FORESHORTENING);
+        // Not as √(1 − cosine²): that cancels on a sprite that faces the image plane.
+        let sine = flat.length().min((1.0 - LEAST_FORESHORTENING * LEAST_FORESHORTENING).sqrt());
+        let lean = flat.normalize_or_zero();
+        // Seen along the axis, the semi-axes lose their z; the bound gives some of the shorter one back along the normal.
+        let given_back =
+            disc.surfel.aspect * disc.surfel.radius * (cosine * cosine - normal.z * normal.z).sqrt() * lean;
+        let spread = |v: DVec2| DMat2::from_cols(v * v.x, v * v.y);
+        let outer = disc.axes.map(|axis| spread(axis.truncate()));
+        let covered = outer[0] + outer[1] + spread(given_back);
+        let scale = self.flat_scale(disc) * (whole / self.cutoff());
+        let variance = scale * covered * scale.transpose();
+
+        let distance = self.distance(disc.centre);
+        let towards = if normal.z * self.depth.forward < 0.0 { -1.0 } else { 1.0 };
+        // Distance per unit across the view, then per px.
+        let tilt = -towards * sine / cosine * lean;
+        let per_pixel = (self.flat_scale(disc) * whole).inverse().transpose() * tilt;
+        Image {
+            centre: disc.projected,
+            variance,
+            sqrt_det: variance.determinant().sqrt(),
+            plane: per_pixel_plane(distance, per_pixel, disc.projected),
+            nearest: distance - disc.surfel.radius * sine,
+            dual: false,
+        }
+    }
+
+    /// A square that faces the image plane, of the disc's size and at its depth (botsch2003 §3.1).
+    fn square_image(&self, disc: &Disc) -> Image {
+        let scale = self.flat_scale(disc) * (disc.surfel.radius / self.cutoff());
+        let side = DVec2::new(scale.row(0).length(), scale.row(1).length());
+        let distance = self.distance(disc.centre);
+        let value = if self.depth.perspective { 1.0 / distance } else { distance };
+        Image {
+            centre: disc.projected,
+            variance: DMat2::from_diagonal(side * side),
+            sqrt_det: side.x * side.y,
+            plane: DVec3::new(value, 0.0, 0.0),
+            nearest: distance,
+            dual: false,
+        }
+    }
+}
+
+/// The plane with `value` at `centre` and the given slope, for [`super::Splat::plane`].
+fn per_pixel_plane(value: f64, slope: DVec2, centre: DVec2) -> DVec3 {
+    DVec3::new(value - slope.dot(centre), slope.x, slope.y)
+}

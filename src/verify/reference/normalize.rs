@@ -1,0 +1,106 @@
+//! Pass `normalize`: divides the sums by the weights and shades (zwicker2004 section 6, third pass).
+
+use super::Projector;
+use super::attribute::Sums;
+use super::bands::Band;
+use super::rank::Rank;
+use super::shading::{Shine, lit};
+use crate::settings::Shading;
+use crate::settings::splatting::{Normalization, Shade};
+use glam::{DVec2, DVec3};
+
+/// Length of `Σ w n` relative to `Σ w` below which the normals cancel and the direction to the eye stands in for them.
+const CANCELLED: f64 = 1e-6;
+
+/// What the picture holds at one pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Value {
+    /// Whether a surface is there.
+    pub covered: bool,
+    /// What the shading asked for, linear, and α.
+    pub colour: [f64; 4],
+    /// Eye-space distance; 0 where no surface is.
+    pub depth: f64,
+    /// World-space unit normal; 0 where no surface is.
+    pub normal: [f64; 3],
+}
+
+/// The values of the band's pixels; a surface is where `visible` exists, some weight was summed and `alpha` is not 0.
+pub(super) fn pass(
+    projector: &Projector,
+    band: &Band,
+    visible: &[Rank],
+    sums: &[Sums],
+    alpha: &[f64],
+) -> Vec<Value> {
+    let pixel = |(i, (visible, sums)): (usize, (&Rank, &Sums))| {
+        resolve(projector, band.centre(i), visible.exists().then_some(sums), alpha[i])
+    };
+    visible.iter().zip(sums).enumerate().map(pixel).collect()
+}
+
+/// The values of the band's pixels from what is seen there alone.
+pub(super) fn pass_alone(
+    projector: &Projector,
+    band: &Band,
+    seen: &[Option<Sums>],
+    alpha: &[f64],
+) -> Vec<Value> {
+    let pixel =
+        |(i, sums): (usize, &Option<Sums>)| resolve(projector, band.centre(i), sums.as_ref(), alpha[i]);
+    seen.iter().enumerate().map(pixel).collect()
+}
+
+/// The value of the pixel with centre `at`, of which `alpha` is covered; `sums` are `None` where visibility wrote nothing.
+pub(super) fn resolve(projector: &Projector, at: DVec2, sums: Option<&Sums>, alpha: f64) -> Value {
+    let Some(sums) = sums.filter(|s| s.weight > 0.0 && alpha > 0.0) else { return uncovered(projector) };
+    let viewer = projector.to_viewer(at);
+    let cancelled = sums.normal.length() < CANCELLED * sums.weight;
+    let normal = if cancelled { viewer } else { sums.normal.normalize() };
+    let depth = match projector.depth.perspective {
+        true => sums.weight / sums.depth,
+        false => sums.depth / sums.weight,
+    };
+    let settings = &projector.settings;
+    let total = match settings.splatting.normalization {
+        Normalization::Pixel => sums.weight,
+        Normalization::Surfel | Normalization::None => 1.0,
+    };
+    let colour = sums.colour / total;
+    let shown = match settings.shading {
+        // The splats are lit already.
+        Shading::Lit if settings.splatting.shade == Shade::Splat => colour,
+        Shading::Lit => lit(&settings.lighting, Shine::of_frame(&settings.lighting), colour, normal, viewer),
+        Shading::Colour => colour,
+        Shading::Normal => normal,
+        Shading::Depth => DVec3::splat(depth),
+        Shading::Overlap | Shading::Weight => DVec3::splat(sums.weight),
+    };
+    Value {
+        covered: true,
+        colour: over_background(projector, shown, alpha),
+        depth,
+        normal: normal.to_array(),
+    }
+}
+
+/// What is shown of a surface with the background, if there is one, behind it.
+pub(super) fn over_background(projector: &Projector, shown: DVec3, alpha: f64) -> [f64; 4] {
+    let Some(background) = projector.settings.background else { return shown.extend(alpha).to_array() };
+    let behind = DVec3::from_array(background.map(f64::from));
+    // Numbers are not mixed with a colour: the half decides.
+    let share = match projector.settings.shading {
+        Shading::Lit | Shading::Colour => alpha,
+        Shading::Normal | Shading::Depth | Shading::Overlap | Shading::Weight => f64::from(alpha >= 0.5),
+    };
+    (share * shown + (1.0 - share) * behind).extend(1.0).to_array()
+}
+
+/// The value of a pixel where nothing is.
+pub(super) fn uncovered(projector: &Projector) -> Value {
+    let colour = match projector.settings.background {
+        Some([r, g, b]) => [r.into(), g.into(), b.into(), 1.0],
+        None => [0.0; 4],
+    };
+    Value { covered: false, colour, depth: 0.0, normal: [0.0; 3] }
+}

@@ -1,0 +1,135 @@
+//! Blue noise: Poisson-disc samples by dart throwing with a shrinking disc (McCool & Fiume, Hierarchical Poisson disk sampling
+//! distributions, 1992).
+//!
+//! Darts are thrown evenly over the area. One that falls within the disc of another is lost. After some rounds the disc shrinks a
+//! little each round, until there are as many points as wanted.
+
+use super::atlas::{Atlas, draft};
+use super::{CHUNK, Draft};
+use crate::verify::scenes::random::Random;
+use crate::verify::scenes::shapes::Sample;
+use crate::verify::scenes::surface::Piece;
+use glam::{I64Vec3, Vec3};
+use rayon::prelude::*;
+
+/// Least distance in the first rounds, in spacings. Darts of this size fill a plane's area with at most 1.08 points a square spacing.
+const WIDEST: f64 = 0.8;
+/// Rounds, of as many darts as points, before the distance shrinks.
+const PATIENCE: usize = 6;
+/// By how much it then shrinks each round.
+const SHRINK: f64 = 0.97;
+/// Least distance below which nothing is promised: far more rounds than any surface takes.
+const NARROWEST: f64 = 0.1;
+/// Chunks of darts that are drawn together, whatever the number of threads.
+const BATCH: usize = 16;
+/// Disc radius, in spacings.
+const RADIUS: f64 = 1.25;
+/// Cosine of the angle between normals from which points are of opposite sides, and not kept apart.
+const OPPOSITE: f32 = -0.5;
+
+/// A point of the space of even spreading. Half a cache line: most of the time goes into looking at these.
+#[derive(Clone, Copy)]
+#[repr(align(32))]
+struct Dart {
+    place: Vec3,
+    normal: Vec3,
+    sheet: u32,
+    /// The dart that hit before it in a cube of the same hash.
+    before: u32,
+}
+
+/// The darts that have hit, by cubes of space.
+struct Board {
+    darts: Vec<Dart>,
+    /// The last dart of each hash.
+    last: Vec<u32>,
+    /// Side of a cube: twice the least distance, so that what is near a point is in the eight cubes about a corner.
+    side: f32,
+}
+
+/// No dart.
+const NONE: u32 = u32::MAX;
+
+/// `points` samples, of which no two of one side of a sheet are nearer to each other than about 0.65 spacings.
+pub fn sample(atlas: &Atlas, points: usize, seed: u64) -> Vec<Draft> {
+    let spacing = atlas.spacing(points);
+    let mut board = Board::new(points, (2.0 * WIDEST * spacing) as f32);
+    let mut drafts = Vec::with_capacity(points);
+    let size = (points / (2 * BATCH)).clamp(1, CHUNK);
+    for batch in 0.. {
+        let thrown = batch * BATCH * size;
+        let rounds = (thrown / points).saturating_sub(PATIENCE);
+        let distance = spacing * (WIDEST * SHRINK.powi(rounds.min(1000) as i32));
+        let distance = if distance < NARROWEST * spacing { 0.0 } else { distance };
+        let draw = |chunk: usize| {
+            let mut random = Random::new(seed, (batch * BATCH + chunk) as u64);
+            let darts = (0..size).map(|_| atlas.draw(&mut random));
+            // Most are lost to darts of earlier batches, which all threads can see at once.
+            darts
+                .filter(|(piece, sample)| board.is_free(&dart(piece, sample), distance as f32))
+                .collect::<Vec<_>>()
+        };
+        let drawn: Vec<(&Piece, Sample)> = (0..BATCH).into_par_iter().flat_map_iter(draw).collect();
+        for (piece, sample) in drawn {
+            if board.hit(dart(piece, &sample), distance as f32) {
+                drafts.push(draft(piece, &sample, spacing, RADIUS * spacing));
+                if drafts.len() == points {
+                    return drafts;
+                }
+            }
+        }
+    }
+    drafts
+}
+
+fn dart(piece: &Piece, sample: &Sample) -> Dart {
+    let (place, _) = piece.shape.place(sample.spot.position);
+    Dart { place: place.as_vec3(), normal: sample.spot.normal.as_vec3(), sheet: piece.sheet, before: NONE }
+}
+
+impl Board {
+    fn new(points: usize, side: f32) -> Self {
+        Self { darts: Vec::with_capacity(points), last: vec![NONE; points.next_power_of_two()], side }
+    }
+
+    /// Whether no dart is nearer than `distance`.
+    fn is_free(&self, dart: &Dart, distance: f32) -> bool {
+        let corner = (dart.place / self.side - 0.5).floor().as_i64vec3();
+        let near = |i: i64| corner + I64Vec3::new(i & 1, i >> 1 & 1, i >> 2);
+        !(0..8).any(|i| self.is_taken(near(i), dart, distance))
+    }
+
+    /// Adds the dart if none is nearer than `distance`.
+    fn hit(&mut self, dart: Dart, distance: f32) -> bool {
+        if !self.is_free(&dart, distance) {
+            return false;
+        }
+        let cube = (dart.place / self.side).floor().as_i64vec3();
+        let (slot, index) = (self.slot(cube), self.darts.len() as u32);
+        self.darts.push(Dart { before: self.last[slot], ..dart });
+        self.last[slot] = index;
+        true
+    }
+
+    fn is_taken(&self, cube: I64Vec3, dart: &Dart, distance: f32) -> bool {
+        let mut index = self.last[self.slot(cube)];
+        while index != NONE {
+            let other = &self.darts[index as usize];
+            if other.place.distance_squared(dart.place) < distance * distance
+                && other.sheet == dart.sheet
+                && other.normal.dot(dart.normal) > OPPOSITE
+            {
+                return true;
+            }
+            index = other.before;
+        }
+        false
+    }
+
+    fn slot(&self, cube: I64Vec3) -> usize {
+        let mixed = [cube.x, cube.y, cube.z].into_iter().fold(0u64, |hash, part| {
+            (hash ^ part as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29)
+        });
+        (mixed.wrapping_mul(0xbf58_476d_1ce4_e5b9) >> 32) as usize & (self.last.len() - 1)
+    }
+}

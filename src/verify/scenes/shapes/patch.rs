@@ -1,0 +1,296 @@
+//! Rays against any smooth parametrised surface: no crossing is passed over where the bounds of its second derivatives hold.
+//!
+//! The surface is divided into cells in (u, v). In a cell with half sides h about its middle, Taylor's formula with a bound of the
+//! second derivatives encloses the surface, seen along the ray, in the image of the tangent plane widened by a remainder. A part that the
+//! ray cannot reach so is dropped; one where the linearised root leaves the part by more than the remainder, too. Where the
+//! derivative, preconditioned by its inverse in the middle, varies by less than 1, there is at most one root (Krawczyk), which Newton's
+//! method finds. Any other part is halved, down to [`FINEST`] of a cell: what is still undecided there touches the ray to within
+//! about `FINEST`² of the cell's size, and counts as met.
+//!
+//! The bounds of the second derivatives are differences at nine points of each cell, with a margin of half: cells are to be small
+//! against the surface's features.
+
+use super::{Ray, Sample, Shape, Spot};
+use crate::verify::scenes::Middle;
+use crate::verify::scenes::hierarchy::{Hierarchy, union};
+use glam::{DMat2, DVec2, DVec3};
+use rayon::prelude::*;
+
+/// Smallest part of a cell that is looked at, of the cell's side.
+const FINEST: f64 = 1e-6;
+/// Cells for rays to a cell for the samplers, either way: in cells this small a crossing that is not too flat is known at once to be
+/// the only one, and no cell has to be divided for it.
+const FINER: usize = 2;
+/// How far beyond its border a part is searched, of its side.
+const SLACK: f64 = 1e-9;
+/// Margin of the bounds that are taken from differences.
+const SAFETY: f64 = 1.5;
+
+/// A point of a parametrised surface with its derivatives.
+#[derive(Clone, Copy, Debug)]
+pub struct Jet {
+    /// The point.
+    pub position: DVec3,
+    /// ∂P/∂u.
+    pub du: DVec3,
+    /// ∂P/∂v.
+    pub dv: DVec3,
+}
+
+/// A smooth surface over the unit square. Its outer side is that of `du × dv`.
+pub trait Parametric: Send + Sync {
+    /// The point and its derivatives; u and v may be a little outside of the unit square.
+    fn jet(&self, uv: DVec2) -> Jet;
+
+    /// Mean lengths along u and v, which make (u, v) a chart for textures.
+    fn extent(&self) -> DVec2;
+
+    /// The point of its middle line, if it is about one.
+    fn middle(&self, _: f64) -> Option<Middle> {
+        None
+    }
+}
+
+/// A parametrised surface, divided into cells.
+pub struct Patch<P> {
+    surface: P,
+    /// Cells of u and of v for the samplers.
+    size: [usize; 2],
+    extent: DVec2,
+    /// Row by row of v, [`FINER`] times as many either way.
+    cells: Vec<Cell>,
+    hierarchy: Hierarchy,
+    corners: [DVec3; 2],
+}
+
+/// A part of the (u, v) square: its middle and half its sides.
+#[derive(Clone, Copy)]
+struct Part {
+    middle: DVec2,
+    half: DVec2,
+}
+
+struct Cell {
+    part: Part,
+    bend: Bend,
+    /// In the part's middle: no ray has to ask for it again.
+    jet: Jet,
+}
+
+/// Where a ray meets the surface: distance, parameters and the point.
+type Met = (f64, DVec2, Jet);
+
+/// Bounds of |∂²P/∂u²|, |∂²P/∂u∂v| and |∂²P/∂v²|.
+#[derive(Clone, Copy)]
+struct Bend {
+    uu: f64,
+    uv: f64,
+    vv: f64,
+}
+
+/// A ray as two planes and a direction: a point is on it where both distances are 0.
+struct Sight {
+    ray: Ray,
+    planes: [DVec3; 2],
+}
+
+enum Verdict {
+    Nothing,
+    Root(DVec2),
+    Unknown,
+}
+
+impl<P: Parametric> Patch<P> {
+    /// Divides `surface` into this many cells of u and v.
+    pub fn new(surface: P, size: [usize; 2]) -> Self {
+        let [columns, rows] = size.map(|cells| FINER * cells);
+        let half = 0.5 / DVec2::new(columns as f64, rows as f64);
+        let cell = |i: usize| {
+            let index = DVec2::new((i % columns) as f64, (i / columns) as f64);
+            let part = Part { middle: (2.0 * index + 1.0) * half, half };
+            let bend = Bend::of(&surface, part);
+            let jet = surface.jet(part.middle);
+            let reach = jet.du.abs() * half.x + jet.dv.abs() * half.y + bend.remainder(half);
+            (Cell { part, bend, jet }, [jet.position - reach, jet.position + reach])
+        };
+        let (cells, boxes): (Vec<_>, Vec<_>) = (0..columns * rows).into_par_iter().map(cell).unzip();
+        let corners = boxes.iter().copied().reduce(union).unwrap_or_default();
+        let extent = surface.extent();
+        Self { size, extent, cells, hierarchy: Hierarchy::new(&boxes), corners, surface }
+    }
+
+    fn spot(&self, uv: DVec2, jet: &Jet) -> Spot {
+        let normal = jet.du.cross(jet.dv).normalize_or(DVec3::Y);
+        Spot { position: jet.position, normal, chart: uv * self.extent }
+    }
+
+    /// The point nearest to the ray's origin, at less than `limit`, in which the ray meets the cell.
+    fn meet(&self, sight: &Sight, cell: &Cell, limit: f64) -> Option<Met> {
+        match self.judge(sight, cell.part, &cell.jet, &cell.bend, limit) {
+            Verdict::Nothing => None,
+            Verdict::Root(uv) => self.take(sight, uv, limit),
+            Verdict::Unknown => self.search(sight, cell, limit),
+        }
+    }
+
+    /// The same for a cell that has to be divided.
+    fn search(&self, sight: &Sight, cell: &Cell, mut limit: f64) -> Option<Met> {
+        let mut found = None;
+        let mut todo = Vec::from(cell.part.quarters());
+        while let Some(part) = todo.pop() {
+            let met = match self.judge(sight, part, &self.surface.jet(part.middle), &cell.bend, limit) {
+                Verdict::Nothing => None,
+                Verdict::Root(uv) => self.take(sight, uv, limit),
+                Verdict::Unknown if part.half.x > FINEST * cell.part.half.x => {
+                    todo.extend(part.quarters());
+                    None
+                }
+                Verdict::Unknown => self.take(sight, part.middle, limit),
+            };
+            if let Some(met) = met {
+                limit = met.0;
+                found = Some(met);
+            }
+        }
+        found
+    }
+
+    fn take(&self, sight: &Sight, uv: DVec2, limit: f64) -> Option<Met> {
+        let jet = self.surface.jet(uv);
+        let t = sight.distance(jet.position);
+        (t > 0.0 && t < limit).then_some((t, uv, jet))
+    }
+
+    fn judge(&self, sight: &Sight, part: Part, jet: &Jet, bend: &Bend, limit: f64) -> Verdict {
+        let (remainder, half) = (bend.remainder(part.half), part.half);
+        let (offset, slopes) = (sight.offset(jet.position), sight.slopes(jet));
+        let reach = slopes.x_axis.abs() * half.x + slopes.y_axis.abs() * half.y + remainder;
+        let depth = sight.distance(jet.position);
+        let d = sight.ray.direction;
+        let deep = jet.du.dot(d).abs() * half.x + jet.dv.dot(d).abs() * half.y + remainder;
+        if offset.abs().cmpgt(reach).any() || depth + deep <= 0.0 || depth - deep >= limit {
+            return Verdict::Nothing;
+        }
+        let inverse = slopes.inverse();
+        if !inverse.is_finite() {
+            return Verdict::Unknown;
+        }
+        // Norms of the inverse's rows: by how much a length across the ray moves u and v at most.
+        let gain = DVec2::new(inverse.row(0).length(), inverse.row(1).length());
+        let step = -(inverse * offset);
+        if step.abs().cmpgt(half * (1.0 + SLACK) + gain * remainder).any() {
+            return Verdict::Nothing;
+        }
+        let vary =
+            (bend.uu * half.x + bend.uv * half.y) * half.x + (bend.uv * half.x + bend.vv * half.y) * half.y;
+        if (gain * vary / half).max_element() >= 1.0 {
+            return Verdict::Unknown;
+        }
+        self.newton(sight, part, part.middle + step.clamp(-half, half))
+    }
+
+    /// The only root that the part can have.
+    fn newton(&self, sight: &Sight, part: Part, start: DVec2) -> Verdict {
+        let mut uv = start;
+        for _ in 0..12 {
+            let jet = self.surface.jet(uv);
+            let step = sight.slopes(&jet).inverse() * sight.offset(jet.position);
+            if !((uv - step - part.middle).abs().cmple(4.0 * part.half).all()) {
+                return Verdict::Unknown;
+            }
+            uv -= step;
+            // Steps square their error, so that the one after this would be less than rounding.
+            if step.abs().cmple(1e-6 * part.half).all() {
+                let inside = (uv - part.middle).abs().cmple(part.half * (1.0 + SLACK)).all();
+                return if inside { Verdict::Root(uv) } else { Verdict::Nothing };
+            }
+        }
+        Verdict::Unknown
+    }
+}
+
+impl<P: Parametric> Shape for Patch<P> {
+    fn at(&self, uv: DVec2) -> Sample {
+        let jet = self.surface.jet(uv);
+        Sample { spot: self.spot(uv, &jet), element: jet.du.cross(jet.dv).length(), along_v: jet.dv.length() }
+    }
+
+    fn trace(&self, ray: &Ray, limit: f64) -> Option<(f64, Spot)> {
+        let sight = Sight::new(*ray);
+        let mut found = None;
+        self.hierarchy.visit(ray, limit, |cell, limit| {
+            match self.meet(&sight, &self.cells[cell as usize], limit) {
+                Some(met) => {
+                    found = Some(met);
+                    met.0
+                }
+                None => limit,
+            }
+        });
+        found.map(|(t, uv, jet)| (t, self.spot(uv, &jet)))
+    }
+
+    fn corners(&self) -> [DVec3; 2] {
+        self.corners
+    }
+
+    fn cells(&self) -> [usize; 2] {
+        self.size
+    }
+
+    fn middle(&self, u: f64) -> Option<Middle> {
+        self.surface.middle(u)
+    }
+}
+
+impl Part {
+    fn quarters(self) -> [Self; 4] {
+        let half = 0.5 * self.half;
+        [DVec2::new(-1.0, -1.0), DVec2::new(1.0, -1.0), DVec2::new(-1.0, 1.0), DVec2::ONE]
+            .map(|side| Self { middle: self.middle + side * half, half })
+    }
+}
+
+impl Bend {
+    fn of<P: Parametric>(surface: &P, part: Part) -> Self {
+        let mut most = Self { uu: 0.0, uv: 0.0, vv: 0.0 };
+        let (du, dv) = (DVec2::new(0.25 * part.half.x, 0.0), DVec2::new(0.0, 0.25 * part.half.y));
+        for i in 0..9u32 {
+            let node = DVec2::new(f64::from(i % 3) - 1.0, f64::from(i / 3) - 1.0);
+            let at = part.middle + node * part.half;
+            let [right, left, up, down] = [at + du, at - du, at + dv, at - dv].map(|uv| surface.jet(uv));
+            most.uu = most.uu.max((right.du - left.du).length() / (2.0 * du.x));
+            most.uv = most.uv.max((up.du - down.du).length() / (2.0 * dv.y));
+            most.vv = most.vv.max((up.dv - down.dv).length() / (2.0 * dv.y));
+        }
+        // What has no curvature, such as a ruling, has rounding.
+        Self { uu: SAFETY * most.uu + 1e-9, uv: SAFETY * most.uv + 1e-9, vv: SAFETY * most.vv + 1e-9 }
+    }
+
+    /// Bound of the distance from the tangent plane's point with the same parameters.
+    fn remainder(&self, half: DVec2) -> f64 {
+        0.5 * (self.uu * half.x * half.x + 2.0 * self.uv * half.x * half.y + self.vv * half.y * half.y)
+    }
+}
+
+impl Sight {
+    fn new(ray: Ray) -> Self {
+        let side = ray.direction.any_orthonormal_vector();
+        Self { ray, planes: [side, ray.direction.cross(side)] }
+    }
+
+    fn offset(&self, position: DVec3) -> DVec2 {
+        let from = position - self.ray.origin;
+        DVec2::new(from.dot(self.planes[0]), from.dot(self.planes[1]))
+    }
+
+    /// Derivatives of the offset by u and v, as columns.
+    fn slopes(&self, jet: &Jet) -> DMat2 {
+        let column = |d: DVec3| DVec2::new(d.dot(self.planes[0]), d.dot(self.planes[1]));
+        DMat2::from_cols(column(jet.du), column(jet.dv))
+    }
+
+    fn distance(&self, position: DVec3) -> f64 {
+        (position - self.ray.origin).dot(self.ray.direction)
+    }
+}

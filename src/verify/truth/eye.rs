@@ -1,0 +1,56 @@
+//! What single rays of a picture see.
+
+use super::scene::Scene;
+use crate::error::Result;
+use crate::geometry::Camera;
+use crate::settings::{Settings, Shading};
+use crate::verify::reference::{Projector, Shine, lit};
+use glam::{DVec2, DVec3};
+
+/// The surface that a ray meets.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Seen {
+    /// Lit under [`Shading::Lit`], the albedo otherwise; linear RGB.
+    pub colour: DVec3,
+    /// Distance along the view, in the scene's unit.
+    pub depth: f64,
+    /// Unit normal in world space, towards the eye.
+    pub normal: DVec3,
+}
+
+/// A scene seen through a camera.
+pub struct Eye<'a, S: ?Sized> {
+    scene: &'a S,
+    projector: Projector,
+    settings: &'a Settings,
+}
+
+impl<'a, S: Scene + ?Sized> Eye<'a, S> {
+    /// Prepares a picture of `size` = width and height in px.
+    ///
+    /// # Errors
+    /// [`Error::Usage`](crate::Error::Usage) for settings, sizes and cameras of which no picture can be made.
+    pub fn new(scene: &'a S, camera: &Camera, settings: &'a Settings, size: [u32; 2]) -> Result<Self> {
+        Ok(Self { scene, projector: Projector::new(camera, size, settings)?, settings })
+    }
+
+    /// What is seen at a position in px from the picture's top left; nothing in front of the near plane or behind the far plane is.
+    pub fn see(&self, at: DVec2) -> Option<Seen> {
+        let [near, far] = self.projector.planes();
+        let (origin, step) = self.projector.ray(at);
+        let hit = self.scene.trace(origin + near * step, step)?;
+        let depth = near + hit.t;
+        if depth > far {
+            return None;
+        }
+        let viewer = self.projector.to_viewer(at);
+        let normal = if hit.normal.dot(viewer) < 0.0 { -hit.normal } else { hit.normal };
+        let lighting = &self.settings.lighting;
+        let albedo = DVec3::from(hit.albedo.unwrap_or(lighting.albedo.map(f64::from)));
+        let colour = match self.settings.shading {
+            Shading::Lit => lit(lighting, Shine::of_frame(lighting), albedo, normal, viewer),
+            _ => albedo,
+        };
+        Some(Seen { colour, depth, normal })
+    }
+}

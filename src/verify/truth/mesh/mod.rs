@@ -1,0 +1,127 @@
+//! Triangle meshes as truth.
+
+mod hierarchy;
+mod normals;
+pub(super) mod triangle;
+
+use super::scene::{Hit, Scene};
+use crate::geometry::{Bounds, Cloud, Colours};
+use crate::verify::reference::linear;
+use glam::DVec3;
+use hierarchy::Hierarchy;
+use rayon::prelude::*;
+use xxhash_rust::xxh3::Xxh3;
+
+/// A triangle mesh, seen from both sides. Normals and colours are interpolated between the corners: the points' own or, where one has
+/// no normal, the mean of its triangles', weighted by their angles there.
+pub struct Mesh {
+    corners: Vec<DVec3>,
+    normals: Vec<DVec3>,
+    /// Linear; none if the points have no colours.
+    colours: Option<Vec<DVec3>>,
+    triangles: Vec<[u32; 3]>,
+    hierarchy: Hierarchy,
+    bounds: Bounds,
+}
+
+impl Mesh {
+    /// The triangles of a cloud: read it with [`ReadOptions::triangles`](crate::formats::ply::ReadOptions).
+    ///
+    /// # Errors
+    /// What is wrong with it: it has no triangles, or one that names no point.
+    pub fn new(cloud: &Cloud) -> Result<Self, String> {
+        let corners: Vec<_> = cloud.positions.par_iter().map(|p| cloud.origin + p.as_dvec3()).collect();
+        let triangles = cloud.triangles.clone();
+        if triangles.iter().flatten().any(|corner| *corner as usize >= corners.len()) {
+            return Err("a triangle names a point that there is not: write it again".into());
+        }
+        let boxes: Vec<_> = triangles
+            .par_iter()
+            .map(|corner| {
+                let [a, b, c] = corner.map(|corner| corners[corner as usize]);
+                [a.min(b).min(c), a.max(b).max(c)]
+            })
+            .collect();
+        let whole = boxes.iter().copied().reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
+        let Some([min, max]) = whole else {
+            return Err("it has no triangles: give a mesh, or a built-in scene".into());
+        };
+        let normals = normals::fill(cloud, &corners);
+        let colours = cloud.colours.as_ref().map(decoded);
+        let hierarchy = Hierarchy::new(&boxes);
+        Ok(Self { corners, normals, colours, triangles, hierarchy, bounds: Bounds::of_box(min, max) })
+    }
+
+    /// Number of triangles.
+    pub fn len(&self) -> usize {
+        self.triangles.len()
+    }
+
+    /// Whether there are none: there always are.
+    pub fn is_empty(&self) -> bool {
+        self.triangles.is_empty()
+    }
+
+    /// A text that is the same for the same mesh alone.
+    pub fn digest(&self) -> String {
+        let mut hash = Xxh3::new();
+        let vectors = |hash: &mut Xxh3, all: &[DVec3]| {
+            hash.update(&all.len().to_le_bytes());
+            all.iter().flat_map(DVec3::to_array).for_each(|value| {
+                hash.update(&value.to_le_bytes());
+            });
+        };
+        vectors(&mut hash, &self.corners);
+        vectors(&mut hash, &self.normals);
+        vectors(&mut hash, self.colours.as_deref().unwrap_or_default());
+        self.triangles.iter().flatten().for_each(|corner| {
+            hash.update(&corner.to_le_bytes());
+        });
+        format!("mesh:{:032x}", hash.digest128())
+    }
+
+    fn mean(&self, of: &[DVec3], triangle: usize, weights: DVec3) -> DVec3 {
+        let [a, b, c] = self.triangles[triangle].map(|corner| of[corner as usize]);
+        weights.x * a + weights.y * b + weights.z * c
+    }
+
+    /// The plane's, for where the corners' cancel.
+    fn flat_normal(&self, triangle: usize) -> DVec3 {
+        let [a, b, c] = self.triangles[triangle].map(|corner| self.corners[corner as usize]);
+        (b - a).cross(c - a).normalize_or(DVec3::Z)
+    }
+}
+
+impl Scene for Mesh {
+    fn trace(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
+        let length = direction.length();
+        let direction = direction.try_normalize().filter(|_| origin.is_finite() && length.is_finite())?;
+        let ray = triangle::Ray::new(origin, direction)?;
+        let mut found = None;
+        self.hierarchy.visit(origin, direction, |index, limit| {
+            let corners = self.triangles[index].map(|corner| self.corners[corner as usize]);
+            match ray.meet(corners).filter(|(t, _)| *t < limit) {
+                Some((t, weights)) => {
+                    found = Some((t, index, weights));
+                    t
+                }
+                None => limit,
+            }
+        });
+        let (t, index, weights) = found?;
+        let normal = self.mean(&self.normals, index, weights).try_normalize();
+        let albedo = self.colours.as_ref().map(|colours| self.mean(colours, index, weights).to_array());
+        Some(Hit { t: t / length, normal: normal.unwrap_or_else(|| self.flat_normal(index)), albedo })
+    }
+
+    fn bounds(&self) -> Bounds {
+        self.bounds
+    }
+}
+
+fn decoded(colours: &Colours) -> Vec<DVec3> {
+    match colours {
+        Colours::Srgb8(codes) => codes.par_iter().map(|code| linear(*code)).collect(),
+        Colours::Linear(colours) => colours.iter().map(|colour| DVec3::from(colour.map(f64::from))).collect(),
+    }
+}

@@ -1,0 +1,145 @@
+//! The rays of one pixel: one in each of n × n strata, and n doubles until they agree well enough.
+
+use super::eye::{Eye, Seen};
+use super::scene::Scene;
+use crate::settings::Shading;
+use crate::verify::scenes::random::Random;
+use glam::DVec2;
+
+/// What is filtered: α, then colour and normal multiplied by it.
+pub type Value = [f64; 7];
+
+/// A ray and what it saw.
+#[derive(Clone, Copy)]
+pub struct Sample {
+    /// Where it goes through the pixel, from 0 to 1 along either axis.
+    pub at: DVec2,
+    pub seen: Option<Seen>,
+}
+
+impl Sample {
+    pub fn value(&self) -> Value {
+        let Some(Seen { colour: c, normal: n, .. }) = self.seen else { return [0.0; 7] };
+        [1.0, c.x, c.y, c.z, n.x, n.y, n.z]
+    }
+}
+
+/// Which of the values must be exact.
+pub fn exact(shading: Shading) -> &'static [usize] {
+    match shading {
+        Shading::Lit | Shading::Colour => &[0, 1, 2, 3],
+        Shading::Normal => &[0, 4, 5, 6],
+        Shading::Depth | Shading::Overlap | Shading::Weight => &[0],
+    }
+}
+
+/// A pixel's rays so far.
+pub struct Pixel {
+    /// Px from the picture's top left; negative where the filter reaches beyond it.
+    corner: [i64; 2],
+    /// Strata along a side.
+    strata: usize,
+    /// One a stratum, row by row.
+    pub samples: Vec<Sample>,
+    random: Random,
+}
+
+impl Pixel {
+    /// One ray in each of `strata`² strata.
+    pub fn new<S: Scene + ?Sized>(eye: &Eye<S>, corner: [i64; 2], strata: usize) -> Self {
+        let mixed = |value: i64| (value as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        let random = Random::new(mixed(corner[0]) ^ mixed(corner[1]).rotate_left(32), mixed(corner[1]));
+        let mut pixel = Self { corner, strata, samples: Vec::new(), random };
+        pixel.samples = (0..strata * strata).map(|index| pixel.sample(eye, index)).collect();
+        pixel
+    }
+
+    /// One ray through the centre.
+    pub fn point<S: Scene + ?Sized>(eye: &Eye<S>, corner: [i64; 2]) -> Self {
+        let mut pixel = Self { corner, strata: 1, samples: Vec::new(), random: Random::new(0, 0) };
+        pixel.samples = vec![pixel.look(eye, DVec2::splat(0.5))];
+        pixel
+    }
+
+    /// Twice as many strata along each side. The old rays stay, each in the quarter of its stratum where it is.
+    pub fn refine<S: Scene + ?Sized>(&mut self, eye: &Eye<S>) {
+        self.strata *= 2;
+        let mut places = vec![None; self.strata * self.strata];
+        for sample in &self.samples {
+            places[self.stratum(sample.at)] = Some(*sample);
+        }
+        self.samples = places
+            .into_iter()
+            .enumerate()
+            .map(|(index, old)| old.unwrap_or_else(|| self.sample(eye, index)))
+            .collect();
+    }
+
+    /// The ray nearest to the centre, of those that see something and a further one through the centre itself.
+    pub fn middle<S: Scene + ?Sized>(&self, eye: &Eye<S>) -> Option<Seen> {
+        let centre = DVec2::splat(0.5);
+        let far = |sample: &Sample| sample.at.distance_squared(centre);
+        let nearest = || {
+            let hits = self.samples.iter().filter(|sample| sample.seen.is_some());
+            hits.min_by(|a, b| far(a).total_cmp(&far(b)))?.seen
+        };
+        self.look(eye, centre).seen.or_else(nearest)
+    }
+
+    /// The estimated variance of each ray's value about its stratum's mean, and that of the pixel's mean: from differences between
+    /// neighbouring strata, which also count a trend over both.
+    pub fn variances(&self, exact: &[usize], of_samples: &mut Vec<f64>) -> f64 {
+        let n = self.strata;
+        of_samples.clear();
+        of_samples.resize(n * n, 0.0);
+        if n == 1 {
+            return 0.0;
+        }
+        for index in 0..n * n {
+            let (x, y) = (index % n, index / n);
+            let right = (x + 1 < n).then_some(index + 1);
+            let below = (y + 1 < n).then_some(index + n);
+            for other in right.into_iter().chain(below) {
+                let half = 0.5 * self.square(exact, index, other);
+                of_samples[index] += half;
+                of_samples[other] += half;
+            }
+        }
+        let sides = |at: usize| if at == 0 || at == n - 1 { 1 } else { 2 };
+        for (index, variance) in of_samples.iter_mut().enumerate() {
+            *variance /= f64::from(sides(index % n) + sides(index / n));
+        }
+        of_samples.iter().sum::<f64>() / (n * n * n * n) as f64
+    }
+
+    /// The largest square of a difference between two rays' values.
+    fn square(&self, exact: &[usize], a: usize, b: usize) -> f64 {
+        let (a, b) = (&self.samples[a], &self.samples[b]);
+        if a.seen.is_none() && b.seen.is_none() {
+            return 0.0;
+        }
+        let (a, b) = (a.value(), b.value());
+        exact.iter().map(|&i| (a[i] - b[i]).powi(2)).fold(0.0, f64::max)
+    }
+
+    pub fn strata(&self) -> usize {
+        self.strata
+    }
+
+    fn stratum(&self, at: DVec2) -> usize {
+        let place = |value: f64| ((value * self.strata as f64) as usize).min(self.strata - 1);
+        place(at.y) * self.strata + place(at.x)
+    }
+
+    /// A ray somewhere in a stratum.
+    fn sample<S: Scene + ?Sized>(&mut self, eye: &Eye<S>, index: usize) -> Sample {
+        let corner = DVec2::new((index % self.strata) as f64, (index / self.strata) as f64);
+        let within = DVec2::new(self.random.unit(), self.random.unit());
+        self.look(eye, (corner + within) / self.strata as f64)
+    }
+
+    fn look<S: Scene + ?Sized>(&self, eye: &Eye<S>, at: DVec2) -> Sample {
+        let corner = DVec2::new(self.corner[0] as f64, self.corner[1] as f64);
+        Sample { at, seen: eye.see(corner + at) }
+    }
+}

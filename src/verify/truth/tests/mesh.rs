@@ -1,0 +1,175 @@
+//! Meshes against the surface that they approximate.
+
+use super::centre;
+use crate::geometry::{Camera, Cloud, Colours};
+use crate::settings::Settings;
+use crate::verify::scenes;
+use crate::verify::scenes::random::Random;
+use crate::verify::truth::mesh::triangle::Ray;
+use crate::verify::truth::{Eye, Mesh, Options, Scene, render};
+use glam::{DVec3, Vec3};
+use std::f64::consts::{PI, TAU};
+
+/// A unit sphere of 2n × n fields, without normals.
+fn sphere(n: u32) -> Cloud {
+    let point = |i: u32, j: u32| {
+        let (theta, phi) = (PI * f64::from(j) / f64::from(n), TAU * f64::from(i) / f64::from(2 * n));
+        // The poles are points.
+        let around = if j == n { 0.0 } else { theta.sin() };
+        DVec3::new(around * phi.sin(), theta.cos(), around * phi.cos()).as_vec3()
+    };
+    let index = |i: u32, j: u32| j * 2 * n + i % (2 * n);
+    let positions = (0..=n).flat_map(|j| (0..2 * n).map(move |i| point(i, j))).collect();
+    let field = |i, j| {
+        [
+            [index(i, j), index(i, j + 1), index(i + 1, j + 1)],
+            [index(i, j), index(i + 1, j + 1), index(i + 1, j)],
+        ]
+    };
+    let triangles = (0..n).flat_map(|j| (0..2 * n).flat_map(move |i| field(i, j))).collect();
+    Cloud { positions, triangles, ..Default::default() }
+}
+
+#[test]
+fn a_fine_mesh_is_the_sphere() {
+    const SIZE: [u32; 2] = [48, 48];
+    let n = 128;
+    let mesh = Mesh::new(&sphere(n)).unwrap();
+    let exact = scenes::surface("scene:sphere?albedo=plain").unwrap();
+    let camera = Camera::look_at(DVec3::new(0.4, 0.9, 3.0), DVec3::ZERO, DVec3::Y, 0.75, 1.0, 0.01).unwrap();
+    let settings = Settings::default();
+    let mesh_eye = Eye::new(&mesh, &camera, &settings, SIZE).unwrap();
+    let exact_eye = Eye::new(&*exact, &camera, &settings, SIZE).unwrap();
+    // The greatest distance of a chord from its arc, twice for the two directions of a field.
+    let sagitta = 2.0 * (1.0 - (0.5 * PI / f64::from(n)).cos());
+    let mut compared = 0;
+    for at in (0..48 * 48).map(|i| centre(i, SIZE)) {
+        let (Some(a), Some(b)) = (mesh_eye.see(at), exact_eye.see(at)) else { continue };
+        let viewer = b.normal.dot(DVec3::new(0.4, 0.9, 3.0).normalize());
+        if viewer < 0.5 {
+            continue;
+        }
+        compared += 1;
+        assert!((a.depth - b.depth).abs() < sagitta / 0.2, "{at}: {} {}", a.depth, b.depth);
+        assert!(a.normal.angle_between(b.normal) < 2e-3, "{at}: {}", a.normal.angle_between(b.normal));
+    }
+    assert!(compared > 500, "{compared}");
+    let alpha =
+        |scene: &dyn Fn() -> Vec<[f32; 4]>| scene().iter().map(|pixel| f64::from(pixel[3])).sum::<f64>();
+    let options = Options::default();
+    let a = alpha(&|| render(&mesh, &camera, &settings, SIZE, &options, &()).unwrap().picture.colour);
+    let b = alpha(&|| render(&*exact, &camera, &settings, SIZE, &options, &()).unwrap().picture.colour);
+    assert!(a < b && (b - a) / b < 2.0 * sagitta, "{a} {b}");
+}
+
+#[test]
+fn the_tree_finds_what_a_search_of_all_triangles_finds() {
+    let cloud = Cloud { origin: DVec3::new(4e6, -2e6, 7.0), ..sphere(9) };
+    let mesh = Mesh::new(&cloud).unwrap();
+    let mut random = Random::new(5, 5);
+    let mut point =
+        |scale: f64| cloud.origin + scale * (DVec3::from_array(std::array::from_fn(|_| random.unit())) - 0.5);
+    let mut hits = 0;
+    for _ in 0..2000 {
+        let (from, to) = (point(6.0), point(2.4));
+        let ray = Ray::new(from, (to - from).normalize()).unwrap();
+        let corners =
+            |triangle: &[u32; 3]| triangle.map(|i| cloud.origin + cloud.positions[i as usize].as_dvec3());
+        let all = cloud.triangles.iter().filter_map(|triangle| Some(ray.meet(corners(triangle))?.0));
+        let nearest = all.reduce(f64::min).map(|t| t / (to - from).length());
+        assert_eq!(mesh.trace(from, to - from).map(|hit| hit.t), nearest);
+        hits += usize::from(nearest.is_some());
+    }
+    assert!((300..1900).contains(&hits), "{hits}");
+}
+
+#[test]
+fn no_ray_slips_between_triangles() {
+    let n = 12;
+    let cloud = sphere(n);
+    let mesh = Mesh::new(&cloud).unwrap();
+    let at = |corner: u32| cloud.positions[corner as usize].as_dvec3();
+    for triangle in &cloud.triangles {
+        for k in 0..3 {
+            let (a, b) = (at(triangle[k]), at(triangle[(k + 1) % 3]));
+            for target in [a, 0.5 * (a + b), 0.3 * a + 0.7 * b] {
+                assert!(mesh.trace(DVec3::ZERO, target).is_some(), "{target} from inside");
+                // Beyond the outline there is nothing, and on it rounding decides.
+                let eye = DVec3::new(0.1, 0.2, 5.0);
+                assert!(target.z < 0.4 || mesh.trace(eye, target - eye).is_some(), "{target}");
+            }
+        }
+    }
+    for axis in [DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z] {
+        assert!(mesh.trace(-3.0 * axis, axis).is_some(), "{axis}");
+        assert!(mesh.trace(3.0 * axis, axis).is_none(), "{axis}: it lies behind");
+    }
+    assert!(mesh.trace(DVec3::ZERO, DVec3::ZERO).is_none());
+}
+
+#[test]
+fn colours_and_normals_are_interpolated() {
+    let mut cloud = Cloud {
+        positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
+        triangles: vec![[0, 1, 2]],
+        colours: Some(Colours::Linear(vec![[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])),
+        ..Default::default()
+    };
+    let look = |cloud: &Cloud| {
+        Mesh::new(cloud).unwrap().trace(DVec3::new(0.2, 0.3, 4.0), DVec3::new(0.0, 0.0, -2.0)).unwrap()
+    };
+    let hit = look(&cloud);
+    assert!((hit.t - 2.0).abs() < 1e-15 && hit.normal == DVec3::Z, "{hit:?}");
+    assert!(DVec3::from(hit.albedo.unwrap()).abs_diff_eq(DVec3::new(0.5, 0.2, 0.3), 1e-15), "{hit:?}");
+    cloud.normals = Some(vec![Vec3::Z, Vec3::X, Vec3::ZERO]);
+    cloud.colours = Some(Colours::Srgb8(vec![[188, 0, 0, 0]; 3]));
+    let hit = look(&cloud);
+    assert!(hit.normal.abs_diff_eq(DVec3::new(0.2, 0.0, 0.8).normalize(), 1e-12), "the last has the plane's");
+    assert!((hit.albedo.unwrap()[0] - 0.502_886).abs() < 1e-6);
+    cloud.colours = None;
+    assert_eq!(look(&cloud).albedo, None);
+    cloud.triangles = vec![[0, 1, 3]];
+    assert!(Mesh::new(&cloud).err().unwrap().contains("names a point"));
+    cloud.triangles.clear();
+    assert!(Mesh::new(&cloud).err().unwrap().contains("no triangles"));
+}
+
+/// Two triangles meet in a corner of the cube's level face, and one in each of the upright ones.
+#[test]
+fn normals_weigh_triangles_by_their_angles() {
+    let corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [0, 1, 1]];
+    let mesh = Mesh::new(&Cloud {
+        positions: corners.map(|corner| Vec3::from(corner.map(|c| c as f32))).to_vec(),
+        // Outwards: down, to the left and to the back.
+        triangles: vec![[0, 2, 1], [0, 3, 2], [0, 4, 3], [4, 6, 3], [0, 1, 4], [1, 5, 4]],
+        ..Default::default()
+    })
+    .unwrap();
+    let hit = mesh.trace(DVec3::new(-2.0, -2.0, -3.0), DVec3::new(2.0, 2.0, 3.0) + 1e-9).unwrap();
+    assert!(hit.normal.abs_diff_eq(DVec3::splat(-1.0 / 3f64.sqrt()), 1e-6), "{}", hit.normal);
+}
+
+#[test]
+fn digests_tell_meshes_apart() {
+    let usual = Cloud {
+        positions: vec![Vec3::ZERO, Vec3::X, Vec3::Y],
+        normals: Some(vec![Vec3::Z; 3]),
+        triangles: vec![[0, 1, 2]],
+        colours: Some(Colours::Linear(vec![[0.5; 3]; 3])),
+        ..Default::default()
+    };
+    let digest = |cloud: &Cloud| Mesh::new(cloud).unwrap().digest();
+    assert_eq!(digest(&usual), digest(&usual.clone()));
+    let all = [
+        usual.clone(),
+        Cloud { origin: DVec3::X, ..usual.clone() },
+        Cloud { normals: Some(vec![Vec3::Z, Vec3::Z, Vec3::X]), ..usual.clone() },
+        Cloud { triangles: vec![[0, 2, 1]], normals: Some(vec![Vec3::Z; 3]), ..usual.clone() },
+        Cloud { colours: Some(Colours::Linear(vec![[0.5, 0.5, 0.6]; 3])), ..usual.clone() },
+        Cloud { colours: None, ..usual },
+    ];
+    let mut digests = all.each_ref().map(digest).to_vec();
+    digests.sort();
+    digests.dedup();
+    assert_eq!(digests.len(), all.len());
+}
