@@ -89,6 +89,7 @@ pub mod native;
 mod pane;
 mod reports;
 mod target;
+mod upload;
 mod view;
 
 pub use crate::scene::Changes;
@@ -102,6 +103,7 @@ pub use pane::Pane;
 pub use reports::Measured;
 use reports::Reports;
 pub use target::{Pass, Target};
+pub use upload::{Upload, upload};
 use view::Seen;
 pub use view::View;
 
@@ -111,35 +113,16 @@ use crate::frame::targets::check_size;
 use crate::frame::uniforms::Blocks;
 use crate::frame::variant::Variant;
 use crate::frame::{FrameReport, RenderOptions};
-use crate::geometry::Parts;
 use crate::scene::Scene;
 use crate::scene::instance::Instances;
 use crate::settings::Settings;
 use crate::settings::{Outputs, Precision, Rasterizer};
 use crate::vk::shaders::layout;
-use crate::vk::{DescriptorSet, Device, Draws, HostPass, Recorder, Uploads};
+use crate::vk::{DescriptorSet, Device, Draws, HostPass, Recorder};
 use ash::vk;
 use composite::{Composite, CompositeKind};
 use held::Held;
 use std::sync::Arc;
-
-/// Records the upload of surfels, lines and triangles, as [`Scene::upload`] does it, into a command buffer of the host. The scene can be
-/// rendered by what is recorded later; the staging memory must stay until the GPU has done the copies. After an error nothing is recorded.
-///
-/// # Safety
-/// `cmd` is of `device`, of the queue family that it was lent with, is being recorded outside a render pass, and is submitted before what
-/// renders the scene, to the same queue. Scene and staging memory are dropped only when the GPU is done with what is recorded.
-pub unsafe fn upload<'a>(
-    device: &Arc<Device>,
-    cmd: vk::CommandBuffer,
-    parts: impl Into<Parts<'a>>,
-) -> Result<(Scene, Staging)> {
-    let uploads = Uploads::later(device);
-    let scene = Scene::new(device, &uploads, parts.into())?;
-    // SAFETY: by the caller.
-    let mut rec = unsafe { Recorder::of_host(device, cmd) };
-    Ok((scene, uploads.record(&mut rec)))
-}
 
 /// What stays the same from frame to frame.
 #[derive(Clone, Debug)]

@@ -153,6 +153,14 @@ impl<'r, 'a> Encoder<'r, 'a> {
         unsafe { self.raw().cmd_copy_buffer(self.rec.cmd, from.raw, to, &[region]) };
     }
 
+    /// Copies `size` bytes of `from` to `to`, which is alive and has room, each from its byte on.
+    pub(super) fn copy_part(&mut self, from: &Buffer, to: vk::Buffer, [source, target]: [u64; 2], size: u64) {
+        assert!(fits(source, size, from), "a copy past the end of a buffer");
+        let region = vk::BufferCopy { src_offset: source, dst_offset: target, size };
+        // SAFETY: recorded outside a render pass; both buffers are alive and large enough.
+        unsafe { self.raw().cmd_copy_buffer(self.rec.cmd, from.raw, to, &[region]) };
+    }
+
     /// Copies `size` bytes of `from` from `offset` on to the same place of `to`.
     pub fn copy_range(&mut self, from: &Buffer, to: &Buffer, offset: u64, size: u64) {
         assert!(fits(offset, size, from) && fits(offset, size, to), "a copy past the end of a buffer");

@@ -1,5 +1,9 @@
 //! The layer over raw Vulkan: the only place, beside the embedding, where `unsafe` is allowed. Devices, their limits and what presents to a
-//! window are public; buffers, pipelines and recording are the crate's own.
+//! window are public; buffers, pipelines and recording are the crate's own:
+//!
+//! ```compile_fail,E0603
+//! use surfel::vk::{Buffer, Commands, ComputePipeline, DescriptorSet, Framebuffer, Uploads};
+//! ```
 //!
 //! Everything that owns a Vulkan object holds an `Arc` of the [`Device`] and destroys the object when it is dropped; nothing is
 //! dropped while the GPU still uses it, because a frame is waited for before its resources can be; on a device that a host lends, because
@@ -73,4 +77,4 @@ pub use surface::{Surface, Window};
 pub use timestamps::PassTime;
 pub(crate) use timestamps::{HostPass, Timestamps};
 pub use transfer::Staging;
-pub(crate) use transfer::Uploads;
+pub(crate) use transfer::{Pieces, Uploads};

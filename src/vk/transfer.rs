@@ -4,6 +4,7 @@ use super::{Access, Buffer, Commands, Device, Recorder, Use};
 use crate::error::Result;
 use ash::vk;
 use std::cell::RefCell;
+use std::collections::VecDeque;
 use std::sync::Arc;
 
 /// Most bytes staged at once, where a copy is waited for.
@@ -18,8 +19,10 @@ pub struct Uploads<'a> {
 enum Way {
     /// Submitted and waited for, chunk by chunk.
     Now(Commands),
-    /// Noted, to be recorded when all has been made.
+    /// Staged, to be recorded when all has been made.
     Later(Vec<Copy>),
+    /// Kept, to be staged and recorded piece by piece.
+    Kept(VecDeque<Kept>),
 }
 
 /// A copy to be recorded: of all that is staged, to this offset, bytes.
@@ -29,6 +32,21 @@ struct Copy {
     at: u64,
     written: Use,
     read: Use,
+}
+
+/// Contents of a buffer, those from byte `at` on, which are yet to be copied.
+struct Kept {
+    bytes: Vec<u8>,
+    at: usize,
+    to: vk::Buffer,
+    written: Use,
+    read: Use,
+}
+
+/// Copies that are staged and recorded piece by piece, to buffers that outlive them.
+pub struct Pieces {
+    list: VecDeque<Kept>,
+    device: Arc<Device>,
 }
 
 /// What recorded copies are made from. It must stay until the GPU is done with them.
@@ -54,6 +72,20 @@ impl<'a> Uploads<'a> {
         Self { device, way: RefCell::new(Way::Later(Vec::new())) }
     }
 
+    /// Copies that [`Pieces::record`] records.
+    pub fn kept(device: &'a Arc<Device>) -> Self {
+        Self { device, way: RefCell::new(Way::Kept(VecDeque::new())) }
+    }
+
+    /// Those that are kept.
+    pub fn pieces(self) -> Pieces {
+        let list = match self.way.into_inner() {
+            Way::Kept(list) => list,
+            Way::Now(_) | Way::Later(_) => VecDeque::new(),
+        };
+        Pieces { list, device: self.device.clone() }
+    }
+
     /// A new storage buffer with `bytes` in it, for shaders to read. An empty slice makes a buffer of 4 zero bytes, which can be bound.
     pub fn buffer(&self, name: &str, bytes: &[u8]) -> Result<Buffer> {
         let bytes = if bytes.is_empty() { &[0; 4][..] } else { bytes };
@@ -74,6 +106,12 @@ impl<'a> Uploads<'a> {
                 copies.push(Copy { from, to: buffer.raw, at, written, read });
                 Ok(())
             }
+            Way::Kept(list) => {
+                assert_eq!(at, 0, "what is kept is of whole buffers");
+                let (written, read) = (buffer.with(Access::COPY_WRITE), buffer.with(Access::SHADER_READ));
+                list.push_back(Kept { bytes: bytes.to_vec(), at: 0, to: buffer.raw, written, read });
+                Ok(())
+            }
         }
     }
 
@@ -89,6 +127,41 @@ impl<'a> Uploads<'a> {
         drop(enc);
         rec.settle(&copies.iter().map(|copy| copy.read).collect::<Vec<_>>());
         Staging(copies.into_iter().map(|copy| copy.from).collect())
+    }
+}
+
+impl Pieces {
+    /// Bytes that are yet to be copied.
+    pub fn left(&self) -> u64 {
+        self.list.iter().map(|kept| (kept.bytes.len() - kept.at) as u64).sum()
+    }
+
+    /// Stages and records copies of at most `most` bytes, and of 4 at least; after an error nothing is recorded.
+    pub fn record(&mut self, rec: &mut Recorder<'_>, most: u64) -> Result<Staging> {
+        let most = (most / 4 * 4).max(4).min(self.left());
+        if most == 0 {
+            return Ok(Staging::default());
+        }
+        let mut from = Buffer::staging(&self.device, "staging", most)?;
+        let mut uses = vec![from.with(Access::COPY_READ)];
+        let (mut copies, mut read, mut staged) = (Vec::new(), Vec::new(), 0);
+        let room = most as usize;
+        while let Some(kept) = self.list.front_mut().filter(|_| staged < room) {
+            let size = (kept.bytes.len() - kept.at).min(room - staged);
+            from.bytes_mut()[staged..staged + size].copy_from_slice(&kept.bytes[kept.at..kept.at + size]);
+            copies.push(([staged as u64, kept.at as u64], kept.to, size as u64));
+            uses.push(kept.written);
+            read.push(kept.read);
+            (staged, kept.at) = (staged + size, kept.at + size);
+            if kept.at == kept.bytes.len() {
+                self.list.pop_front();
+            }
+        }
+        let mut enc = rec.pass("upload", &uses);
+        copies.into_iter().for_each(|(places, to, size)| enc.copy_part(&from, to, places, size));
+        drop(enc);
+        rec.settle(&read);
+        Ok(Staging(vec![from]))
     }
 }
 

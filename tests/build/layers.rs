@@ -102,3 +102,52 @@ fn a_use_that_goes_up_is_found() {
             .is_empty()
     );
 }
+
+/// What has handles of Vulkan that safe code could misuse is the crate's own: attacks on it do not compile.
+#[test]
+fn vk_shows_devices_and_windows_and_nothing_that_records() {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../src/vk/mod.rs");
+    let text = std::fs::read_to_string(file).expect("it is there");
+    let statements = text.split(';').map(|statement| statement.trim_start());
+    let shown = statements.filter_map(|statement| {
+        let at = statement
+            .find("pub use ")
+            .filter(|at| statement[..*at].lines().all(|line| line.starts_with("#[")))?;
+        statement[at..].split_once("::").map(|(_, names)| names)
+    });
+    let words = shown.flat_map(|names| names.split(|c: char| !c.is_alphanumeric() && c != '_'));
+    let mut words: Vec<_> = words.filter(|word| !word.is_empty()).collect();
+    words.sort_unstable();
+    let expected = [
+        "ABILITIES",
+        "API_VERSION",
+        "Abilities",
+        "Ability",
+        "Capabilities",
+        "CommandPool",
+        "Device",
+        "DeviceDescription",
+        "DeviceLimits",
+        "DeviceOptions",
+        "FRAMES_IN_FLIGHT",
+        "Features",
+        "HostMemory",
+        "Lent",
+        "Location",
+        "MemoryBlocks",
+        "MemoryRequest",
+        "MemorySource",
+        "PassTime",
+        "Presented",
+        "Presenter",
+        "QUEUE",
+        "Staging",
+        "Surface",
+        "Usage",
+        "Window",
+        "describe_devices",
+        "preferred",
+    ];
+    assert_eq!(words, expected);
+    assert!(!text.contains("pub mod "), "no module of it is public");
+}

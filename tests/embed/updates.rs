@@ -202,3 +202,38 @@ fn updates_that_cannot_be_made_are_refused_and_change_nothing() {
     assert!(plain.update(3, &none).is_ok());
     crate::support::gpu::assert_silent(&device);
 }
+
+#[test]
+fn a_scene_that_is_uploaded_piece_by_piece_is_the_same() {
+    let Some(host) = open(|all| all) else { return };
+    let mut rig = Rig::new(&host, Some(Rasterizer::Draw), DeviceLimits::default());
+    let surfels = sphere(3_000);
+    let whole = upload(&host, &rig.device, &surfels);
+    for most in [1, 4_096, 50_000, u64::MAX] {
+        // Four bytes at a time take long.
+        let surfels = if most == 1 { sphere(30) } else { surfels.clone() };
+        let mut upload = embed::Upload::new(&rig.device, &surfels).unwrap();
+        let all = upload.left();
+        let mut pieces = 0;
+        while upload.left() > 0 {
+            let before = upload.left();
+            upload = *upload.finish().err().expect("something is left");
+            // SAFETY: recorded outside a render pass, and waited for.
+            let staging = host.run(|cmd| Ok(unsafe { upload.record(cmd, most) })).unwrap().unwrap();
+            assert_eq!(staging.bytes(), before - upload.left());
+            assert!(staging.bytes() <= most.max(4));
+            pieces += 1;
+        }
+        assert_eq!(pieces, all.div_ceil(most.max(4).min(all)));
+        let scene = upload.finish().ok().expect("nothing is left");
+        let settings = settings(Method::ALL[0]);
+        if most > 1 {
+            let [expected, shown] =
+                [&whole, &std::sync::Arc::new(scene)].map(|scene| rig.show(&host, scene, &settings));
+            assert!(expected == shown, "{most} bytes at a time");
+        }
+    }
+    drop(whole);
+    rig.destroy(&host);
+    assert_silent(&host);
+}
