@@ -21,10 +21,15 @@ const LARGE_WORKGROUPS: u32 = 256;
 /// Workgroups in a row of a dispatch over pixels; every device allows as many.
 const WORKGROUPS_X: u32 = 32_768;
 
-/// Workgroups for so many invocations.
+/// Workgroups for so many invocations, in rows: for shaders that number them by both coordinates.
 pub fn grid_over(invocations: u64) -> [u32; 2] {
     let workgroups = invocations.div_ceil(WORKGROUP) as u32;
     [workgroups.min(WORKGROUPS_X), workgroups.div_ceil(WORKGROUPS_X)]
+}
+
+/// Workgroups in one row for so many invocations, of what a descriptor set names: no more than a device allows.
+fn row_over(invocations: u64) -> [u32; 2] {
+    [invocations.div_ceil(WORKGROUP) as u32, 1]
 }
 
 /// What passes are recorded with.
@@ -111,12 +116,12 @@ impl Prepared {
             match (over, place) {
                 (Over::Pixels, _) => enc.dispatch(pipeline, &sets(frame.view), &(), pixels),
                 (Over::Tiles, _) => {
-                    enc.dispatch(pipeline, &sets(frame.view), &(), grid_over(frame.targets.tiles()));
+                    enc.dispatch(pipeline, &sets(frame.view), &(), row_over(frame.targets.tiles()));
                 }
                 (Over::Surfels | Over::LargeSplats | Over::PixelsOfSurfels, Some(place)) => {
                     for part in place.surfels(self.pass) {
                         let workgroups = match over {
-                            Over::Surfels => grid_over(part.count.into()),
+                            Over::Surfels => row_over(part.count.into()),
                             Over::LargeSplats => [LARGE_WORKGROUPS, 1],
                             _ => pixels,
                         };
@@ -131,7 +136,7 @@ impl Prepared {
                 (_, Some(place)) => {
                     let Some(part) = place.elements(over.scope()) else { continue };
                     let workgroups = match over {
-                        Over::Lines | Over::Triangles => grid_over(part.count.into()),
+                        Over::Lines | Over::Triangles => row_over(part.count.into()),
                         Over::LargeTriangles => [LARGE_WORKGROUPS, 1],
                         _ => pixels,
                     };
@@ -269,5 +274,18 @@ impl Pass {
             _ => {}
         }
         list
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_numbered_by_one_coordinate_is_in_one_row() {
+        // As many surfels as a descriptor set of 4 GiB names.
+        assert_eq!(row_over(4_194_240), [65_535, 1]);
+        let [x, y] = grid_over(4_194_240);
+        assert!(y > 1 && u64::from(x) * u64::from(y) * WORKGROUP >= 4_194_240);
     }
 }
