@@ -6,6 +6,19 @@
 //!
 //! [`Renderer`] renders frames and waits for them; [`embed`](crate::embed) records them into those of a host. A method lists its passes
 //! (`methods`), a pass says of itself what it runs, reads and writes (`passes`), and all else follows from that.
+//!
+//! # How to add a pass
+//!
+//! 1. `shaders-glsl/NAME.glsl`: the shader. What it reads and writes is declared at the set and binding that its name has in all shaders: 0 the
+//!    scene's, or the view's numbers; 1 the targets; 2 the pyramid that is written; 3 the one that is read. `readonly` tells reads from writes.
+//!    Push constants are a block; what varies with the frame is a specialization constant. `tools/shaders` compiles it.
+//! 2. `frame/passes/NAME.rs`: a static `Pass` of that name: what it reads, writes and clears, its programs (shader, what they run over) and whether
+//!    they are dispatched or drawn. Layouts, barriers, label and timer follow; a test compares it with what the shader declares.
+//! 3. `frame/methods/METHOD.rs`: its place among the method's passes, for each path that has it.
+//! 4. `verify/reference/NAME.rs`: the same in float64, called where the reference makes a pixel.
+//! 5. A test that holds a picture to the reference.
+//!
+//! A buffer or an image that it hands on is a `Resource`, with a row in the table of targets.
 
 mod compact;
 pub(crate) mod description;
