@@ -145,10 +145,10 @@ pub struct Renderer {
     shown: Option<(Shown, HostPass)>,
     reports: Reports,
     held: Held,
-    /// Of the present frame.
-    scenes: Vec<Arc<Scene>>,
     composites: Vec<Arc<Composite>>,
     frame: FrameResources,
+    /// Of the present frame.
+    scenes: Vec<Arc<Scene>>,
     target: Target,
     device: Arc<Device>,
 }

@@ -27,7 +27,7 @@ pub fn grid_over(invocations: u64) -> [u32; 2] {
     [workgroups.min(WORKGROUPS_X), workgroups.div_ceil(WORKGROUPS_X)]
 }
 
-/// Workgroups in one row for so many invocations, of what a descriptor set names: no more than a device allows.
+/// Workgroups in one row for so many invocations, for shaders that number them by one coordinate.
 fn row_over(invocations: u64) -> [u32; 2] {
     [invocations.div_ceil(WORKGROUP) as u32, 1]
 }
@@ -283,7 +283,7 @@ mod tests {
 
     #[test]
     fn what_is_numbered_by_one_coordinate_is_in_one_row() {
-        // As many surfels as a descriptor set of 4 GiB names.
+        // As many as 65,535 workgroups have.
         assert_eq!(row_over(4_194_240), [65_535, 1]);
         let [x, y] = grid_over(4_194_240);
         assert!(y > 1 && u64::from(x) * u64::from(y) * WORKGROUP >= 4_194_240);

@@ -284,7 +284,7 @@ impl FrameResources {
             rasterizer: splats.then_some(variant.rasterizer),
             moved: of_host && splats && variant.visibility == Visibility::Axis,
             own_frames: own,
-            places: firsts[scene].len() as u64,
+            places: room_for(firsts[scene].len() as u64),
         };
         let Self { scenes, retired, device, view, .. } = self;
         let fits = |made: &SceneResources, scene: usize| made.needs().cover(&needs(scene));
@@ -363,20 +363,28 @@ impl FrameResources {
         let list = pipelines.passes(&present.variant, scenes.len());
         let same = list.len() == present.passes.len()
             && list.iter().zip(&present.passes).all(|(pass, prepared)| std::ptr::eq(*pass, prepared.pass));
+        // All is made before any of it is exchanged: after an error the passes are those of the scenes before.
+        let fresh = list.iter().filter(|_| !same).map(|pass| prepared(device, pass, pipelines, present));
+        let fresh = fresh.collect::<Result<Vec<_>>>()?;
+        let made = list.iter().map(|pass| pipelines.of(device, pass, &present.variant, scenes));
+        let made = made.collect::<Result<Vec<_>>>()?;
         if !same {
-            let old = std::mem::take(&mut present.passes);
-            self.retired.take((!old.is_empty()).then_some(old));
-            let made = list.iter().map(|pass| prepared(device, pass, pipelines, present));
-            present.passes = made.collect::<Result<_>>()?;
+            self.retired.take(Some(std::mem::replace(&mut present.passes, fresh)));
         }
-        for prepared in &mut present.passes {
-            let (pass, variant) = (prepared.pass, &present.variant);
-            prepared.pipelines = pipelines.of(device, pass, variant, scenes)?;
-            prepared.accesses = pass.accesses(variant, scenes, prepared.framebuffer.is_some());
+        for (prepared, made) in present.passes.iter_mut().zip(made) {
+            let to_own = prepared.framebuffer.is_some();
+            prepared.accesses = prepared.pass.accesses(&present.variant, scenes, to_own);
+            prepared.pipelines = made;
         }
         present.scenes = scenes.to_vec();
         Ok(())
     }
+}
+
+/// Places for which room is made, so that a scene that comes to stand in one more is not made anew each time: an eighth more at most, or a quarter
+/// just beyond a power of two.
+fn room_for(places: u64) -> u64 {
+    places.next_multiple_of((places.next_power_of_two() / 8).max(1))
 }
 
 impl Present {

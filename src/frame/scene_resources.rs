@@ -182,7 +182,7 @@ impl Needs {
     /// Whether what was made for these does for `others`, too.
     pub fn cover(&self, others: &Self) -> bool {
         let same = |needs: &Self| (needs.rasterizer, needs.moved, needs.own_frames);
-        let enough = others.places..=4 * others.places.max(16);
+        let enough = others.places..=4 * others.places;
         same(self) == same(others) && enough.contains(&self.places)
     }
 }
@@ -367,10 +367,10 @@ impl SceneResources {
         let Some(SplatBuffers { splats, .. }) = self.splats.as_ref().filter(|_| size > 0) else {
             return Ok(vec![Vec::new(); self.firsts.len()]);
         };
-        let target = Buffer::readback(device, "read splats", splats.size())?;
+        let stride = (capacity * SPLAT).next_multiple_of(ALIGNMENT);
+        let target = Buffer::readback(device, "read splats", self.firsts.len() as u64 * stride)?;
         Commands::new(device, false)?.run(|rec| copy_to_host(rec, splats, &target))?;
-        let stride = (capacity * SPLAT).next_multiple_of(ALIGNMENT) as usize;
-        let places = target.bytes().chunks(stride).take(self.firsts.len());
+        let places = target.bytes().chunks(stride as usize);
         Ok(places.map(|bytes| bytemuck::pod_collect_to_vec(&bytes[..size as usize])).collect())
     }
 
@@ -393,7 +393,7 @@ fn wanted_set(
 fn copy_to_host(rec: &mut Recorder<'_>, from: &Buffer, to: &Buffer) {
     use crate::vk::Access;
     let uses = [from.with(Access::COPY_READ), to.with(Access::COPY_WRITE)];
-    rec.pass("read splats", &uses).copy(from, to, 0, from.size());
+    rec.pass("read splats", &uses).copy(from, to, 0, to.size());
     rec.wait(&[to.with(Access::HOST_READ)]);
 }
 

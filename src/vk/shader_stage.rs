@@ -211,7 +211,7 @@ struct ShaderModule<'a> {
 impl<'a> ShaderModule<'a> {
     fn new(device: &'a Device, stage: &ShaderStage) -> Result<Self> {
         let info = vk::ShaderModuleCreateInfo::default().code(&stage.words);
-        // SAFETY: the code is SPIR-V that shaderc made, at most with other locations; the module is destroyed in `drop`.
+        // SAFETY: the code is SPIR-V that shaderc made, at most with other locations and bindings; the module is destroyed in `drop`.
         let raw = unsafe { device.raw.create_shader_module(&info, None) }
             .map_err(Error::vulkan("vkCreateShaderModule"))?;
         Ok(Self { raw, device })
