@@ -48,6 +48,8 @@ pub enum Commands {
 pub struct Steps<'a> {
     /// Its only program.
     pub pipeline: Option<&'a crate::vk::ComputePipeline>,
+    /// Descriptor set 1, if it has a program.
+    pub targets: Option<&'a crate::vk::DescriptorSet>,
     /// The frame.
     pub frame: &'a Frame<'a>,
 }
@@ -186,5 +188,12 @@ impl Stages {
             Self::Compute(module) => std::slice::from_ref(module),
             Self::Draw(modules) => modules,
         }
+    }
+}
+
+impl Pass {
+    /// Whether it reads or writes what shaders see as this.
+    pub fn sees(&self, shader: &crate::vk::shaders::Resource) -> bool {
+        self.reads.iter().chain(self.writes).any(|resource| resource.is_seen_as(shader))
     }
 }

@@ -141,7 +141,7 @@ impl Pipelines {
         let render_pass = self.render_pass(device, pass, variant)?;
         let mut made = Vec::with_capacity(programs.len());
         for program in programs {
-            let layouts = self.layouts(device, &program, variant, first_set(&program))?;
+            let layouts = self.layouts(device, pass, &program, variant, first_set(&program))?;
             let sets: Vec<&SetLayout> = layouts.iter().map(Arc::as_ref).collect();
             let constants = constants.clone().and(&program.constants);
             let pipeline = match program.stages {
@@ -185,6 +185,7 @@ impl Pipelines {
     fn layouts(
         &self,
         device: &Arc<Device>,
+        pass: &Pass,
         program: &Program,
         variant: &Variant,
         first: Vec<&'static shaders::Resource>,
@@ -205,6 +206,11 @@ impl Pipelines {
                 None => targets::shader_resources(variant),
             },
             _ => pyramids::shader_resources(variant),
+        };
+        let resources = |set| {
+            let mut list = resources(set);
+            list.retain(|resource| set != 1 || pass.sees(resource));
+            list
         };
         (0..count).map(|set| SetLayout::of(device, resources(set))).collect()
     }

@@ -49,6 +49,8 @@ pub struct Prepared {
     pub pass: &'static Pass,
     /// How its shaders touch what it reads and writes.
     pub accesses: Vec<(Resource, Access)>,
+    /// What it sees of the targets: descriptor set 1, if it has programs.
+    pub targets: Option<DescriptorSet>,
     /// What it draws to; in render passes of its own.
     pub framebuffer: Option<Framebuffer>,
     /// Its pipelines: those of the frame, or of each scene in its order.
@@ -70,7 +72,9 @@ impl Prepared {
         frame.clear(rec, self.pass.clears);
         let there = self.pipelines.iter().any(|pipelines| !pipelines.is_empty());
         match &self.pass.commands {
-            Commands::Steps(record) => record(&Steps { pipeline: self.first(), frame }, rec),
+            Commands::Steps(record) => {
+                record(&Steps { pipeline: self.first(), targets: self.targets.as_ref(), frame }, rec);
+            }
             Commands::Dispatches if there => {
                 self.dispatch(&mut rec.pass(self.pass.name, &frame.uses(&self.accesses)), frame);
             }
@@ -109,7 +113,7 @@ impl Prepared {
             let Pipeline::Compute(pipeline) = pipeline else { continue };
             let pyramid = frame.pyramid_of(self.pass);
             let three = |first, third| -> Vec<&DescriptorSet> {
-                [Some(first), frame.targets.set.as_ref(), third].into_iter().flatten().collect()
+                [Some(first), self.targets.as_ref(), third].into_iter().flatten().collect()
             };
             let sets = |first| three(first, pyramid);
             let pixels = grid_over(frame.targets.pixels());
@@ -151,9 +155,8 @@ impl Prepared {
     pub fn draw(&self, draws: &mut Draws<'_>, frame: &Frame<'_>, push: &impl bytemuck::NoUninit) {
         for (over, pipeline, place) in self.each(frame) {
             let Pipeline::Draw(pipeline) = pipeline else { continue };
-            let sets = |first| -> Vec<&DescriptorSet> {
-                std::iter::once(first).chain(frame.targets.set.as_ref()).collect()
-            };
+            let sets =
+                |first| -> Vec<&DescriptorSet> { std::iter::once(first).chain(&self.targets).collect() };
             let Some(place) = place else {
                 draws.draw(pipeline, &sets(frame.view), push, 3);
                 continue;
@@ -227,15 +230,14 @@ impl<'a> Frame<'a> {
         }
         pass.reads.contains(&Resource::Pushed).then(|| &sets[storage.push(0)[1]])
     }
+}
 
-    /// The descriptor sets of a step of pull or push, which reads one of the pyramids and writes one.
+impl<'a> Steps<'a> {
+    /// The descriptor sets of a step that reads one of the pyramids and writes one.
     pub fn pyramid_sets(&self, [from, to]: [usize; 2]) -> Vec<&'a DescriptorSet> {
-        let Some(pyramids) = &self.targets.pyramids else { return Vec::new() };
-        let targets = self.targets.set.as_ref();
-        [Some(self.view), targets, Some(&pyramids.sets[to]), Some(&pyramids.sets[from])]
-            .into_iter()
-            .flatten()
-            .collect()
+        let Some(pyramids) = &self.frame.targets.pyramids else { return Vec::new() };
+        let pyramids = [to, from].map(|which| &pyramids.sets[which]);
+        std::iter::once(self.frame.view).chain(self.targets).chain(pyramids).collect()
     }
 }
 

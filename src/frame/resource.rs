@@ -43,6 +43,8 @@ pub enum Resource {
     Normal,
     /// Eye-space depth beside it, where it is asked for.
     Depth,
+    /// The depth of a host's surfaces.
+    HostDepth,
 }
 
 impl Resource {
@@ -68,6 +70,7 @@ impl Resource {
             Self::Image => "image",
             Self::Normal => "normal",
             Self::Depth => "depth",
+            Self::HostDepth => "host depth",
         }
     }
 

@@ -1,14 +1,14 @@
 //! What frames are made with: pipelines, targets and what is made of scenes, made when scene or settings change, and recorded in every frame.
 
 use super::description::{Description, describe};
-use super::pass::{Commands, Pass};
+use super::pass::{Commands, Pass, Programs};
 use super::pipelines::{Host, Pipelines};
 use super::rasterizer::width_of_blended_sums;
 use super::recording::{Frame, Prepared};
 use super::renderer::RenderOptions;
 use super::residents::Residents;
 use super::scene_resources::{FRAME_STRIDE, Needs, Place, SceneResources};
-use super::targets::{RenderTargets, check_size};
+use super::targets::{HostBindings, RenderTargets, check_size};
 use super::uniforms::Blocks;
 use super::variant::{SceneVariant, Variant};
 use crate::error::Result;
@@ -18,7 +18,7 @@ use crate::scene::instance::{Placed, first_numbers};
 use crate::settings::Precision;
 use crate::settings::Settings;
 use crate::settings::splatting::Visibility;
-use crate::vk::shaders::{self, layout, resource};
+use crate::vk::shaders::{layout, resource};
 use crate::vk::{Access, Binding, Buffer, DescriptorSet, Device, Framebuffer, Recorder};
 use std::any::Any;
 use std::sync::Arc;
@@ -73,9 +73,6 @@ struct ViewSet {
     /// The scene whose texture or materials it names.
     scene: Option<u64>,
 }
-
-/// What a host draws to, and shows of it to shaders.
-pub type HostBindings<'a> = &'a [(&'static shaders::Resource, Binding<'a>)];
 
 impl Retired {
     fn take<T: Any + Send + Sync>(&mut self, outgoing: Option<T>) {
@@ -202,8 +199,8 @@ impl FrameResources {
     ) -> Result<()> {
         let (variant, blocks) = (frame.variant, &frame.blocks);
         self.make_scenes(scenes, frame, !blocks.scenes.is_empty())?;
-        self.make_present(scenes, variant, size, bindings)?;
-        self.make_passes(&frame.scenes)
+        self.make_present(scenes, variant, size)?;
+        self.make_passes(&frame.scenes, bindings)
     }
 
     /// Makes the pipelines of such a frame, and nothing else.
@@ -306,13 +303,7 @@ impl FrameResources {
         Ok(())
     }
 
-    fn make_present(
-        &mut self,
-        scenes: &[Placed<'_>],
-        variant: Variant,
-        size: [u32; 2],
-        bindings: HostBindings<'_>,
-    ) -> Result<()> {
+    fn make_present(&mut self, scenes: &[Placed<'_>], variant: Variant, size: [u32; 2]) -> Result<()> {
         let is_other = |present: &Option<Present>| present.as_ref().is_none_or(|p| p.variant != variant);
         if is_other(&self.present) {
             std::mem::swap(&mut self.present, &mut self.previous);
@@ -329,7 +320,7 @@ impl FrameResources {
                 log::warn!("{name} cannot blend 32-bit floats: sums are kept in 16 bits");
             }
             let targets = match self.pipelines.has_host() {
-                true => RenderTargets::of_host(&self.device, &variant, size, bindings)?,
+                true => RenderTargets::of_host(&self.device, &variant, size)?,
                 false => RenderTargets::new(&self.device, &variant, size)?,
             };
             self.made += 1;
@@ -355,7 +346,7 @@ impl FrameResources {
     }
 
     /// Makes the pipelines of the present passes for such scenes, if they are others than before.
-    fn make_passes(&mut self, scenes: &[SceneVariant]) -> Result<()> {
+    fn make_passes(&mut self, scenes: &[SceneVariant], of_host: HostBindings<'_>) -> Result<()> {
         let Self { present: Some(present), pipelines, device, .. } = self else { return Ok(()) };
         if !present.passes.is_empty() && present.scenes == scenes {
             return Ok(());
@@ -364,7 +355,8 @@ impl FrameResources {
         let same = list.len() == present.passes.len()
             && list.iter().zip(&present.passes).all(|(pass, prepared)| std::ptr::eq(*pass, prepared.pass));
         // All is made before any of it is exchanged: after an error the passes are those of the scenes before.
-        let fresh = list.iter().filter(|_| !same).map(|pass| prepared(device, pass, pipelines, present));
+        let fresh =
+            list.iter().filter(|_| !same).map(|pass| prepared(device, pass, pipelines, present, of_host));
         let fresh = fresh.collect::<Result<Vec<_>>>()?;
         let made = list.iter().map(|pass| pipelines.of(device, pass, &present.variant, scenes));
         let made = made.collect::<Result<Vec<_>>>()?;
@@ -400,6 +392,7 @@ fn prepared(
     pass: &'static Pass,
     pipelines: &mut Pipelines,
     present: &Present,
+    of_host: HostBindings<'_>,
 ) -> Result<Prepared> {
     let framebuffer = match (pipelines.render_pass(device, pass, &present.variant)?, &pass.commands) {
         (Some(into), Commands::Draws(targets)) => {
@@ -407,7 +400,11 @@ fn prepared(
         }
         _ => None,
     };
-    Ok(Prepared { pass, accesses: Vec::new(), framebuffer, pipelines: Vec::new() })
+    let targets = match pass.programs {
+        Programs::None => None,
+        Programs::OfFrame(_) | Programs::OfScene(_) => Some(present.targets.set(device, pass, of_host)?),
+    };
+    Ok(Prepared { pass, accesses: Vec::new(), targets, framebuffer, pipelines: Vec::new() })
 }
 
 impl ViewSet {

@@ -1,6 +1,6 @@
 //! Every render target: name, format, where shaders see it, and when a frame has it.
 
-use super::pass::{Start, Targets};
+use super::pass::{Pass, Start, Targets};
 use super::pyramids::Pyramids;
 use super::resource::Resource;
 use super::variant::Variant;
@@ -42,9 +42,6 @@ pub enum Kind {
 
 /// The targets of a frame.
 pub struct RenderTargets {
-    // Sets go before what they name.
-    /// What shaders see of them, if they see any: descriptor set 1.
-    pub set: Option<DescriptorSet>,
     list: Vec<(Description, Memory)>,
     /// Of pull–push.
     pub pyramids: Option<Pyramids>,
@@ -70,6 +67,9 @@ pub struct TargetInfo {
     /// Memory that it occupies, bytes.
     pub bytes: u64,
 }
+
+/// What a host draws to, where shaders see it.
+pub type HostBindings<'a> = &'a [(&'static shaders::Resource, Binding<'a>)];
 
 /// Targets by name with the bytes of a pixel, of which a tile's are shared.
 pub type PerPixel = Vec<(&'static str, f64)>;
@@ -99,6 +99,7 @@ impl Resource {
             Self::Pulled => &[&resource::TO_DEPTHS],
             Self::Pushed => &[&resource::FINAL_DEPTHS],
             Self::Picture => &[&resource::PICTURE],
+            Self::HostDepth => &[&resource::HOST_DEPTH],
             Self::Image | Self::Normal | Self::Depth => &[],
         };
         known.contains(&shader)
@@ -279,28 +280,17 @@ impl RenderTargets {
         };
         let list = describe(variant).into_iter().map(make).collect::<Result<Vec<_>>>()?;
         let pyramids = variant.pull_push.map(|_| Pyramids::new(device, variant, size)).transpose()?;
-        let mut targets = Self { set: None, list, pyramids, size, outputs: variant.outputs };
-        targets.set = targets.make_set(device)?;
-        Ok(targets)
+        Ok(Self { list, pyramids, size, outputs: variant.outputs })
     }
 
-    /// Targets of a host, of which shaders see `bindings`; and coverage, where a frame has it.
-    pub fn of_host(
-        device: &Arc<Device>,
-        variant: &Variant,
-        size: [u32; 2],
-        bindings: &[(&'static shaders::Resource, Binding<'_>)],
-    ) -> Result<Self> {
+    /// Coverage, where a frame has it, beside the targets of a host.
+    pub fn of_host(device: &Arc<Device>, variant: &Variant, size: [u32; 2]) -> Result<Self> {
         let make = |target: Description| {
             let buffer = Buffer::storage(device, target.resource.name(), COVERAGE * pixels_of(size))?;
             Ok((target, Memory::Buffer(buffer)))
         };
         let list = coverage(variant).into_iter().map(make).collect::<Result<Vec<_>>>()?;
-        let mut targets = Self { set: None, list, pyramids: None, size, outputs: variant.outputs };
-        let all: Vec<_> = bindings.iter().copied().chain(targets.bindings()).collect();
-        let set = DescriptorSet::new(device, &all)?;
-        targets.set = Some(set);
-        Ok(targets)
+        Ok(Self { list, pyramids: None, size, outputs: variant.outputs })
     }
 
     fn bindings(&self) -> impl Iterator<Item = (&'static shaders::Resource, Binding<'_>)> {
@@ -313,9 +303,10 @@ impl RenderTargets {
         })
     }
 
-    fn make_set(&self, device: &Arc<Device>) -> Result<Option<DescriptorSet>> {
-        let bindings: Vec<_> = self.bindings().collect();
-        (!bindings.is_empty()).then(|| DescriptorSet::new(device, &bindings)).transpose()
+    /// What a pass sees of them, and of a host's targets: descriptor set 1. It must not outlive them.
+    pub fn set(&self, device: &Arc<Device>, pass: &Pass, of_host: HostBindings<'_>) -> Result<DescriptorSet> {
+        let all = self.bindings().chain(of_host.iter().copied());
+        DescriptorSet::new(device, &all.filter(|(resource, _)| pass.sees(resource)).collect::<Vec<_>>())
     }
 
     fn find(&self, resource: Resource) -> Option<&Memory> {

@@ -82,7 +82,7 @@ fn pipelines_are_few_and_made_once_a_variant() {
         lit,
     ];
     // What the constants that each module reads tell apart.
-    for (rasterizer, most) in [(Rasterizer::Draw, 17), (Rasterizer::Compute, 29)] {
+    for (rasterizer, most) in [(Rasterizer::Draw, 17), (Rasterizer::Compute, 26)] {
         let options = RenderOptions { size: SIZE, rasterizer: Some(rasterizer), ..Default::default() };
         let mut renderer = Renderer::new(&device, options).unwrap();
         let before = device.usage().pipelines;

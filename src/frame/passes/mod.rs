@@ -66,7 +66,7 @@ mod tests {
         &copy::COPY,
     ];
 
-    const RESOURCES: [Resource; 16] = [
+    const RESOURCES: [Resource; 17] = [
         Resource::Splats,
         Resource::LargeSplats,
         Resource::ScreenClips,
@@ -83,6 +83,7 @@ mod tests {
         Resource::Pulled,
         Resource::Pushed,
         Resource::Picture,
+        Resource::HostDepth,
     ];
 
     /// Frames in which passes have all that they may have, and such in which they have as little as they can.

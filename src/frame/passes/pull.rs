@@ -16,11 +16,11 @@ pub static PULL: Pass = Pass {
 };
 
 fn record(steps: &Steps<'_>, rec: &mut Recorder<'_>) {
-    let Steps { pipeline: Some(pipeline), frame } = steps else { return };
+    let Steps { pipeline: Some(pipeline), frame, .. } = steps else { return };
     let Some(pyramids) = &frame.targets.pyramids else { return };
     for level in 1..pyramids.levels() {
         let pair = pyramids.storage.pull(level);
         let mut enc = rec.pass(PULL.name, &pyramids.uses(pair));
-        enc.dispatch(pipeline, &frame.pyramid_sets(pair), &pyramids.step(level), pyramids.grid(level));
+        enc.dispatch(pipeline, &steps.pyramid_sets(pair), &pyramids.step(level), pyramids.grid(level));
     }
 }

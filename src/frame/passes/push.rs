@@ -16,11 +16,11 @@ pub static PUSH: Pass = Pass {
 };
 
 fn record(steps: &Steps<'_>, rec: &mut Recorder<'_>) {
-    let Steps { pipeline: Some(pipeline), frame } = steps else { return };
+    let Steps { pipeline: Some(pipeline), frame, .. } = steps else { return };
     let Some(pyramids) = &frame.targets.pyramids else { return };
     for level in (0..pyramids.levels()).rev() {
         let pair = pyramids.storage.push(level);
         let mut enc = rec.pass(PUSH.name, &pyramids.uses(pair));
-        enc.dispatch(pipeline, &frame.pyramid_sets(pair), &pyramids.step(level), pyramids.grid(level));
+        enc.dispatch(pipeline, &steps.pyramid_sets(pair), &pyramids.step(level), pyramids.grid(level));
     }
 }
