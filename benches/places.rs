@@ -1,13 +1,15 @@
-//! What a frame of a scene costs that stands in many places: CPU time of whole frames, and how often Vulkan allocated for the first of them.
+//! What a frame of a scene costs that stands in many places, and of the same surfels as one scene: CPU time of frames, device time of passes, and
+//! how often Vulkan allocated for the first of them.
 
 use cpu_time::ProcessTime;
-use glam::{DMat4, DQuat, DVec3};
+use glam::{DMat4, DQuat, DVec3, Vec3};
 use std::sync::Arc;
 use std::time::Instant;
-use surfel::geometry::Camera;
+use surfel::frame::times::Times;
+use surfel::geometry::{Camera, Surfels};
 use surfel::verify::scenes::bumpy_sphere;
 use surfel::vk::{Device, DeviceOptions};
-use surfel::{Instance, Rasterizer, RenderOptions, Renderer, Scene, Settings};
+use surfel::{Instance, Instances, Rasterizer, RenderOptions, Renderer, Scene, Settings};
 
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
@@ -29,34 +31,72 @@ fn main() -> Result<()> {
     };
     println!("{}, {}", device.description().name, device.description().driver);
     println!("{PLACES} places of {SURFELS} surfels, {}x{} px: median", SIZE[0], SIZE[1]);
-    let scene = Arc::new(Scene::upload(&device, &bumpy_sphere::sample(SURFELS as u32, 1))?);
+    let surfels = bumpy_sphere::sample(SURFELS as u32, 1);
+    let scene = Arc::new(Scene::upload(&device, &surfels)?);
     let instances: Vec<_> = (0..PLACES).map(|i| Instance::new(&scene, place(i))).collect();
-    let camera = Camera::look_at(DVec3::new(0.0, 0.0, 60.0), DVec3::ZERO, DVec3::Y, 0.9, 1.0, 1.0)?;
+    let merged = Scene::upload(&device, &merged(&surfels))?;
     for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
-        let options = RenderOptions { size: SIZE, rasterizer: Some(rasterizer), ..Default::default() };
-        let mut renderer = Renderer::new(&device, options)?;
-        let before = device.usage().allocations;
-        renderer.render(&instances[..], &camera, &Settings::default())?;
-        let allocations = device.usage().allocations - before;
-        let mut times = Vec::new();
-        for i in 0..WARM_UP + RENDERED {
-            let (cpu, clock) = (ProcessTime::now(), Instant::now());
-            renderer.render(&instances[..], &camera, &Settings::default())?;
-            if i >= WARM_UP {
-                times.push((cpu.elapsed().as_secs_f64() * 1e3, clock.elapsed().as_secs_f64() * 1e3));
-            }
-        }
-        let mut median = |of: fn(&(f64, f64)) -> f64| {
-            times.sort_by(|a, b| of(a).total_cmp(&of(b)));
-            of(&times[times.len() / 2])
-        };
-        let (cpu, clock) = (median(|(cpu, _)| *cpu), median(|(_, clock)| *clock));
-        println!(
-            "{:<10} CPU {cpu:6.1} ms, clock {clock:6.1} ms, {allocations} allocations",
-            format!("{rasterizer:?}")
-        );
+        let name = format!("{rasterizer:?}").to_lowercase();
+        measure(&device, &format!("{name}, instances"), rasterizer, || Instances::List(&instances))?;
+        measure(&device, &format!("{name}, one scene"), rasterizer, || Instances::One(&merged))?;
     }
     Ok(())
+}
+
+/// Prints what frames cost.
+fn measure<'a>(
+    device: &Arc<Device>,
+    name: &str,
+    rasterizer: Rasterizer,
+    scenes: impl Fn() -> Instances<'a, Scene>,
+) -> Result<()> {
+    let camera = Camera::look_at(DVec3::new(0.0, 0.0, 60.0), DVec3::ZERO, DVec3::Y, 0.9, 1.0, 1.0)?;
+    let options =
+        RenderOptions { size: SIZE, rasterizer: Some(rasterizer), profile: true, ..Default::default() };
+    let mut renderer = Renderer::new(device, options)?;
+    let render = |renderer: &mut Renderer| renderer.render(scenes(), &camera, &Settings::default());
+    let before = device.usage().allocations;
+    render(&mut renderer)?;
+    let allocations = device.usage().allocations - before;
+    renderer.profile(false);
+    let mut times = Vec::new();
+    for i in 0..WARM_UP + RENDERED {
+        let (cpu, clock) = (ProcessTime::now(), Instant::now());
+        render(&mut renderer)?;
+        if i >= WARM_UP {
+            times.push((cpu.elapsed().as_secs_f64() * 1e3, clock.elapsed().as_secs_f64() * 1e3));
+        }
+    }
+    let mut median = |of: fn(&(f64, f64)) -> f64| {
+        times.sort_by(|a, b| of(a).total_cmp(&of(b)));
+        of(&times[times.len() / 2])
+    };
+    let (cpu, clock) = (median(|(cpu, _)| *cpu), median(|(_, clock)| *clock));
+    println!("{name:<20} CPU {cpu:6.1} ms, clock {clock:6.1} ms, {allocations} allocations");
+    renderer.profile(true);
+    let mut passes = Times::default();
+    for _ in 0..RENDERED {
+        let clock = Instant::now();
+        let report = render(&mut renderer)?;
+        passes.add(clock.elapsed(), &report.pass_times);
+    }
+    for (pass, time) in passes.passes() {
+        println!("    {pass:<12} {:6.2} ms", time.median);
+    }
+    Ok(())
+}
+
+/// The same surfels as one scene.
+fn merged(surfels: &Surfels) -> Surfels {
+    let mut all = Surfels::default();
+    for transform in (0..PLACES).map(place) {
+        let direction = |v: &Vec3| transform.transform_vector3(v.as_dvec3()).as_vec3();
+        let position = |v: &Vec3| transform.transform_point3(v.as_dvec3()).as_vec3();
+        all.positions.extend(surfels.positions.iter().map(position));
+        all.normals.extend(surfels.normals.iter().map(direction));
+        all.radii.extend(&surfels.radii);
+    }
+    all
 }
 
 /// On a grid, each turned otherwise.

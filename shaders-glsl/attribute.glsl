@@ -6,16 +6,15 @@
 #extension GL_EXT_shader_atomic_float : require
 #endif
 
-#include "lib/frame.glsl"
+#define VERTICES 3
+#include "lib/instance.glsl"
 #include "lib/sums.glsl"
-#define SPLAT_ACCESS readonly
 #define CLIP_ACCESS readonly
 #include "lib/splat.glsl"
 #include "lib/weights.glsl"
 
 #ifndef FRAGMENT
 
-#include "lib/placed.glsl"
 #include "lib/surface.glsl"
 
 // What scales a splat's kernel everywhere, and what scales it further at the corners of the surfel's square.
@@ -29,7 +28,7 @@ float weight_of(uint i, Splat splat, vec2 variance, out vec4 corners, out mat2 s
     float at[8];
     for (uint k = 0; k < 8; k++) at[k] = uintBitsToFloat(weights[(weight & ~AT_CORNERS) + k]);
     corners = vec4(at[0], at[1], at[2], at[3]);
-    vec3 to_eye = frame.eye_hi.xyz - position_of(i) + frame.eye_lo.xyz;
+    vec3 to_eye = view.eye_hi.xyz - position_of(i) + view.eye_lo.xyz;
     square = square_of(splat, vec3(at[4], at[5], at[6]), at[7], normal_of(i), to_eye);
     return amplitude;
 }
@@ -37,7 +36,6 @@ float weight_of(uint i, Splat splat, vec2 variance, out vec4 corners, out mat2 s
 #endif
 #ifdef COMPUTE
 
-#include "lib/window.glsl"
 #define SUMS_ACCESS
 #include "lib/pixels.glsl"
 
@@ -104,8 +102,8 @@ layout(location = 7) flat out vec4 corners;
 layout(location = 8) flat out vec4 square;
 
 void main() {
-    uint i = gl_VertexIndex / 3;
-    Splat splat = splats[i];
+    uint i = surfel_number();
+    Splat splat = splat_of(i);
     vec2 variance = attribute_variance(variance_of(splat));
     place_splat(i, splat, variance, gl_VertexIndex % 3);
     mat2 axes;

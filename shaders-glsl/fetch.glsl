@@ -12,13 +12,11 @@
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #endif
 
-#include "lib/frame.glsl"
-#include "lib/window.glsl"
+#include "lib/instance.glsl"
 #include "lib/sums.glsl"
 #define SAMPLES_ONLY
 #include "lib/pyramid.glsl"
 #include "lib/lens.glsl"
-#include "lib/placed.glsl"
 #ifdef DRAWN_POINTS
 #include "lib/drawn_points.glsl"
 #else
@@ -62,7 +60,7 @@ Sample sample_of(uint i, ivec2 at, uint nearest) {
     vec3 weights;
     float distance;
     weights_at(triangle, at, weights, distance);
-    return sample_at(triangle, at, weights, PLACED ? distance : uintBitsToFloat(nearest));
+    return sample_at(triangle, at, weights, INSTANCED ? distance : uintBitsToFloat(nearest));
 }
 
 #else
@@ -93,10 +91,10 @@ Sample sample_of(uint i, ivec2 at, uint nearest) {
 
 // A sample of the scene's as the scenes share it.
 Sample shared_sample(Sample s) {
-    if (!PLACED || s.near == 0.0) return s;
+    if (!INSTANCED || s.near == 0.0) return s;
     s.near = world_distance(s.near);
-    s.far *= frame.scale;
-    s.depth *= frame.scale;
+    s.far *= view.scale;
+    s.depth *= view.scale;
     s.normal = in_world(s.normal);
     return s;
 }
@@ -123,9 +121,9 @@ void main() {
     ivec2 at = ivec2(pixel % size.x, pixel / size.x);
     uint number, nearest;
     if (!nearest_at(pixel, at, number, nearest)) {
-        if (window.first == 0) store_to(pixel, NOTHING);
-    } else if (number - window.first < window.count) {
-        Sample s = shared_sample(sample_of(number - window.first, at, nearest));
+        if (first_number() == 0) store_to(pixel, NOTHING);
+    } else if (number - first_number() < window.count) {
+        Sample s = shared_sample(sample_of(number - first_number(), at, nearest));
         s.id = number;
         store_to(pixel, s);
     }

@@ -2,8 +2,8 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 
-#include "lib/frame.glsl"
-#define SPLAT_ACCESS writeonly
+#include "lib/instance.glsl"
+#define WRITES_SPLATS
 #define CLIP_ACCESS writeonly
 #include "lib/splat.glsl"
 #include "lib/surfels.glsl"
@@ -12,7 +12,6 @@
 
 #ifdef COMPUTE
 
-#include "lib/window.glsl"
 #include "lib/fates.glsl"
 
 layout(local_size_x = 64) in;
@@ -21,7 +20,8 @@ layout(constant_id = 1) const bool CULL_BACK = false;
 layout(constant_id = 11) const bool LIST_LARGE = false;
 layout(constant_id = 21) const bool MOVED = false; // splats are of discs moved away from the eye along the camera's axis, by ε
 
-layout(set = 0, binding = 7, std430) buffer LargeSplats { uint large_count; uint large_padding[63]; uint large[]; };
+#define LIST_ACCESS
+#include "lib/large_splats.glsl"
 
 // Least q, relative to (w / F)²: nearer the eye plane q has lost the digits that tell where the ellipse is.
 const float LEAST_CLEARANCE = 1e-3;
@@ -49,11 +49,11 @@ mat2x3 ellipse_axes(vec3 n, vec4 shape) {
 
 // κ of the plane n·x = h at the anchor and its derivatives. Seen at a grazing angle, κ is a small difference of large terms.
 mat2x3 depth_plane(vec3 n, vec2 h, vec2 facing, vec2 anchor) {
-    vec2 x = dot_double(n, vec3(0.0), frame.ray_hi[0].xyz, frame.ray_lo[0].xyz);
-    vec2 y = dot_double(n, vec3(0.0), frame.ray_hi[1].xyz, frame.ray_lo[1].xyz);
-    vec2 key = dot_double(n, vec3(0.0), frame.ray_hi[2].xyz, frame.ray_lo[2].xyz);
+    vec2 x = dot_double(n, vec3(0.0), view.ray_hi[0].xyz, view.ray_lo[0].xyz);
+    vec2 y = dot_double(n, vec3(0.0), view.ray_hi[1].xyz, view.ray_lo[1].xyz);
+    vec2 key = dot_double(n, vec3(0.0), view.ray_hi[2].xyz, view.ray_lo[2].xyz);
     key = add(key, add(scale(x, anchor.x), scale(y, anchor.y)));
-    if (!PERSPECTIVE) key = add(key, scale(h, -frame.key_slope));
+    if (!PERSPECTIVE) key = add(key, scale(h, -view.key_slope));
     key = divide(key, facing);
     x = divide(x, facing);
     y = divide(y, facing);
@@ -62,17 +62,17 @@ mat2x3 depth_plane(vec3 n, vec2 h, vec2 facing, vec2 anchor) {
 
 // κ of a disc's nearest point, which is `lean` nearer than its centre at `position`; in perspective that is at distance w.
 float key_of_disc(float w, vec3 position, float lean) {
-    if (PERSPECTIVE) return frame.near / (w - lean);
-    float z = dot(frame.forward_hi.xyz, position) - lean;
-    return 1.0 - (z - frame.near) * frame.key_slope;
+    if (PERSPECTIVE) return view.near / (w - lean);
+    float z = dot(view.forward_hi.xyz, position) - lean;
+    return 1.0 - (z - view.near) * view.key_slope;
 }
 
 // κ of a plane that is not the tangent plane, or its distance where that is linear, at the anchor and its derivatives; `to_centre` is px.
 mat2x3 flat_plane(Disc disc, vec2 slope, vec2 to_centre) {
-    vec2 value = has_linear_depth() ? disc.w : vec2(frame.near / disc.w.x, 0.0);
+    vec2 value = has_linear_depth() ? disc.w : vec2(view.near / disc.w.x, 0.0);
     if (!PERSPECTIVE) {
-        vec2 z = dot_double(disc.hi, disc.lo, frame.forward_hi.xyz, frame.forward_lo.xyz);
-        value = add(two_sum(1.0, frame.near * frame.key_slope), scale(z, -frame.key_slope));
+        vec2 z = dot_double(disc.hi, disc.lo, view.forward_hi.xyz, view.forward_lo.xyz);
+        value = add(two_sum(1.0, view.near * view.key_slope), scale(z, -view.key_slope));
     }
     value = add(value, -two_product(slope.x, to_centre.x));
     value = add(value, -two_product(slope.y, to_centre.y));
@@ -87,8 +87,8 @@ vec4 screen_line(Disc disc, vec2 anchor, vec3 outward, float offset) {
     vec2 reach = add(vec2(offset, 0.0), dot_double(disc.hi, disc.lo, outward, vec3(0.0)));
     vec2 plane[3], half_space[3];
     for (int i = 0; i < 3; i++) {
-        plane[i] = dot_double(disc.normal, vec3(0.0), frame.ray_hi[i].xyz, frame.ray_lo[i].xyz);
-        half_space[i] = dot_double(outward, vec3(0.0), frame.ray_hi[i].xyz, frame.ray_lo[i].xyz);
+        plane[i] = dot_double(disc.normal, vec3(0.0), view.ray_hi[i].xyz, view.ray_lo[i].xyz);
+        half_space[i] = dot_double(outward, vec3(0.0), view.ray_hi[i].xyz, view.ray_lo[i].xyz);
     }
     plane[2] = add(plane[2], add(scale(plane[0], anchor.x), scale(plane[1], anchor.y)));
     half_space[2] = add(half_space[2], add(scale(half_space[0], anchor.x), scale(half_space[1], anchor.y)));
@@ -96,10 +96,10 @@ vec4 screen_line(Disc disc, vec2 anchor, vec3 outward, float offset) {
     vec2 of_plane = reach, of_half_space = disc.h;
     if (!PERSPECTIVE) {
         // Parallel rays differ in where they begin, not in where they go.
-        of_plane = dot_double(outward, vec3(0.0), frame.forward_hi.xyz, frame.forward_lo.xyz);
+        of_plane = dot_double(outward, vec3(0.0), view.forward_hi.xyz, view.forward_lo.xyz);
         of_half_space = disc.facing;
-        plane[2] = add(plane[2], -scale(disc.h, frame.key_slope));
-        half_space[2] = add(half_space[2], -scale(reach, frame.key_slope));
+        plane[2] = add(plane[2], -scale(disc.h, view.key_slope));
+        half_space[2] = add(half_space[2], -scale(reach, view.key_slope));
     }
     vec3 line;
     for (int i = 0; i < 3; i++) {
@@ -116,12 +116,12 @@ void clip_splat(uint i, Disc disc, vec2 anchor) {
     if (!has_clip(number)) return;
     vec4 lines[2];
     for (uint k = 0; k < 2; k++) {
-        uint at = window.count + 8 * number + 4 * k;
+        uint at = window.room + 8 * number + 4 * k;
         vec3 outward = uintBitsToFloat(uvec3(clips[at], clips[at + 1], clips[at + 2]));
         lines[k] = screen_line(disc, anchor, outward, uintBitsToFloat(clips[at + 3]));
     }
     lines[0].w = (clips[i] & CONCAVE) != 0u ? 1.0 : 0.0;
-    screen_clips[number] = ScreenClip(lines[0], lines[1]);
+    screen_clips[screen_clip_number(i)] = ScreenClip(lines[0], lines[1]);
 }
 
 // Reads surfel i and what becomes of it before its image is known.
@@ -138,20 +138,20 @@ uint disc_of(uint i, out Disc disc) {
 
     // The position relative to the eye, its homogeneous pixel and its plane's h = n·position in twice the precision: all that
     // follows is relative to them.
-    vec2 dx = two_sum(p.x, -frame.eye_hi.x), dy = two_sum(p.y, -frame.eye_hi.y), dz = two_sum(p.z, -frame.eye_hi.z);
+    vec2 dx = two_sum(p.x, -view.eye_hi.x), dy = two_sum(p.y, -view.eye_hi.y), dz = two_sum(p.z, -view.eye_hi.z);
     if (MOVED) {
-        vec3 back = frame.epsilon * r * frame.forward_hi.xyz;
+        vec3 back = frame.epsilon * r * view.forward_hi.xyz;
         dx = add(dx, vec2(back.x, 0.0));
         dy = add(dy, vec2(back.y, 0.0));
         dz = add(dz, vec2(back.z, 0.0));
     }
     disc.hi = vec3(dx.x, dy.x, dz.x);
-    disc.lo = vec3(dx.y, dy.y, dz.y) - frame.eye_lo.xyz;
+    disc.lo = vec3(dx.y, dy.y, dz.y) - view.eye_lo.xyz;
     disc.w = PERSPECTIVE ? pixel_row(2, disc.hi, disc.lo) : vec2(1.0, 0.0);
     // Tests are such that a coordinate which is no number fails them.
     if (!(disc.w.x > 0.0)) return BEHIND;
     disc.h = dot_double(disc.hi, disc.lo, n, vec3(0.0));
-    disc.facing = PERSPECTIVE ? disc.h : dot_double(n, vec3(0.0), frame.forward_hi.xyz, frame.forward_lo.xyz);
+    disc.facing = PERSPECTIVE ? disc.h : dot_double(n, vec3(0.0), view.forward_hi.xyz, view.forward_lo.xyz);
     return DRAWN;
 }
 
@@ -185,7 +185,7 @@ uint footprint(uint i, out Splat splat) {
     uvec2 pixel = uvec2(clamp(middle, vec2(0.0), frame.viewport - 1.0));
     vec2 anchor = vec2(pixel) + 0.5;
     bool listed = LIST_LARGE && 4.0 * reach.x * reach.y > LARGE_AREA;
-    if (listed) large[atomicAdd(large_count, 1)] = i;
+    if (listed) large_splats[list_start() + atomicAdd(large_splats[instance_number()], 1)] = i;
     vec2 to_centre = vec2(add(disc.x, scale(disc.w, -anchor.x)).x, add(disc.y, scale(disc.w, -anchor.y)).x) / disc.w.x;
     splat.offset = CONFETTI ? fine_offset(disc, image.conic, anchor) : to_centre + image.conic.offset;
     splat.axis = image.conic.axis;
@@ -193,7 +193,7 @@ uint footprint(uint i, out Splat splat) {
     splat.turn = image.conic.turn;
     splat.place = place_of(pixel, listed ? LARGE : SMALL);
     float epsilon = MOVED ? 0.0 : frame.epsilon * disc.radius;
-    splat.epsilon = PERSPECTIVE ? disc.w.x / (disc.w.x + epsilon) : frame.key_slope * epsilon;
+    splat.epsilon = PERSPECTIVE ? disc.w.x / (disc.w.x + epsilon) : view.key_slope * epsilon;
     if (disc.facing.x > 0.0) splat.epsilon = -splat.epsilon;
     bool tangent = !is_sprite() && FOOTPRINT != SQUARE;
     mat2x3 plane = tangent ? depth_plane(disc.normal, disc.h, disc.facing, anchor) : flat_plane(disc, image.slope, to_centre);
@@ -210,7 +210,7 @@ void main() {
     if (i >= window.count) return;
     Splat splat = Splat(vec2(0.0), vec2(1.0, 0.0), 1.0, 0.0, 0, 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
     uint fate = footprint(i, splat);
-    splats[i] = splat;
+    splats[splat_number(i)] = splat;
     count(fate);
 }
 

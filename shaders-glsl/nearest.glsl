@@ -8,9 +8,9 @@
 #extension GL_EXT_shader_atomic_int64 : require
 #endif
 
-#include "lib/frame.glsl"
+#define VERTICES 3
+#include "lib/instance.glsl"
 #include "lib/sums.glsl"
-#define SPLAT_ACCESS readonly
 #define CLIP_ACCESS readonly
 #include "lib/splat.glsl"
 #ifdef COVERAGE
@@ -19,7 +19,6 @@
 
 #ifdef COMPUTE
 
-#include "lib/window.glsl"
 #define WINNER_ACCESS
 #include "lib/winners.glsl"
 
@@ -37,7 +36,7 @@ bool scatter_begin(uint i, Splat splat, vec2 variance, float nearest, ivec2 low,
     splat_index = i;
     splat_key_disc = splat.key_disc;
 #ifdef COVERAGE
-    splat_solid = solid_of(splat, clip_number(i));
+    splat_solid = solid_of(splat, screen_clip_number(i));
 #endif
     return true;
 }
@@ -60,15 +59,14 @@ void main() {
 #endif
 #ifdef VERTEX
 
-#include "lib/placed.glsl"
 #include "lib/surface.glsl"
 
 layout(location = 4) flat out vec3 first;
 layout(location = 5) flat out vec3 second;
 
 void main() {
-    uint i = gl_VertexIndex / 3;
-    Splat splat = splats[i];
+    uint i = surfel_number();
+    Splat splat = splat_of(i);
     place_splat(i, splat, visibility_variance(variance_of(splat)), gl_VertexIndex % 3);
     surface_of(i, splat.epsilon, first, second);
 }

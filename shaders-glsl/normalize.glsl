@@ -46,8 +46,8 @@ Pixel normalize_pixel(vec2 centre, bool visible, float alpha, vec4 s0, vec4 s1) 
     if (!visible || alpha == 0.0 || SUM_WEIGHTS && !(s0.x > 0.0)) return Pixel(frame.background, vec3(0.0), 0.0);
 
     float total = NORMALIZATION == PER_PIXEL ? s0.x : 1.0;
-    vec3 ray = centre.x * frame.ray_hi[0].xyz + centre.y * frame.ray_hi[1].xyz + frame.ray_hi[2].xyz;
-    vec3 to_eye = PERSPECTIVE ? -normalize(ray) : -frame.forward_hi.xyz;
+    vec3 ray = centre.x * view.ray_hi[0].xyz + centre.y * view.ray_hi[1].xyz + view.ray_hi[2].xyz;
+    vec3 to_eye = PERSPECTIVE ? -normalize(ray) : -view.forward_hi.xyz;
     vec3 normal = vec3(0.0);
     // Opposite normals that cancel leave no direction.
     if (SUM_NORMALS) normal = length(s0.yzw) < 1e-6 * s0.x ? to_eye : normalize(s0.yzw);
@@ -56,7 +56,7 @@ Pixel normalize_pixel(vec2 centre, bool visible, float alpha, vec4 s0, vec4 s1) 
     float depth = 0.0;
     if (SUM_DEPTH) {
         float key = s1.x / (s0.x * frame.key_gain);
-        depth = PERSPECTIVE ? frame.near / key : frame.near + (1.0 - key) / frame.key_slope;
+        depth = PERSPECTIVE ? view.near / key : view.near + (1.0 - key) / view.key_slope;
     }
 
     vec3 shaded;

@@ -4,24 +4,22 @@
 
 #ifdef VERTEX
 
-#include "lib/frame.glsl"
-#include "lib/window.glsl"
-
+#define VERTICES 1
+#include "lib/instance.glsl"
 #include "lib/surfels.glsl"
 #include "lib/point.glsl"
-#include "lib/placed.glsl"
 #include "lib/drawn_points.glsl"
 
 layout(location = 0) flat out uint number;
 
 void main() {
     Point point;
-    bool drawn = point_of(gl_VertexIndex, point) == DRAWN;
+    bool drawn = point_of(surfel_number(), point) == DRAWN;
     // At the middle of its pixel, so that no rasterizer takes another; what is culled lies off the picture.
     vec2 middle = 2.0 * (vec2(point.at) + 0.5) / frame.viewport - 1.0;
     gl_Position = drawn ? vec4(middle, depth_of(world_distance(point.distance)), 1.0) : vec4(-3.0, -3.0, 0.0, 1.0);
     gl_PointSize = 1.0;
-    number = window.first + gl_VertexIndex;
+    number = first_number() + surfel_number();
 }
 
 #endif

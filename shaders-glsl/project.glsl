@@ -15,10 +15,12 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #endif
 
+#ifdef DRAWN_POINTS
 #include "lib/frame.glsl"
-#include "lib/window.glsl"
+#else
+#include "lib/instance.glsl"
+#endif
 #ifndef FATES
-#include "lib/placed.glsl"
 #define NEAREST_ACCESS
 #include "lib/nearest_points.glsl"
 #endif
@@ -31,11 +33,11 @@
 
 layout(local_size_x = 64) in;
 
-#ifndef FATES
+#if !defined(FATES) && !defined(DRAWN_POINTS)
 // Number i of the window has a point in a pixel.
 void project(uint i, ivec2 at, float distance) {
     uint pixel = uint(at.y) * uint(frame.viewport.x) + uint(at.x);
-    atomicMin(nearest_points[pixel], nearest_point(window.first + i, world_distance(distance)));
+    atomicMin(nearest_points[pixel], nearest_point(first_number() + i, world_distance(distance)));
 }
 #endif
 
@@ -67,7 +69,7 @@ void main() {
 // Triangles of more pixels than an invocation should visit, which are left to a second dispatch with a workgroup a triangle.
 layout(constant_id = 30) const bool LARGE_TRIANGLES = false;
 const uint MOST = 64; // pixels of the box about one that is not large
-layout(set = 0, binding = 16, std430) buffer LargeTriangles { uint large_count; uint large[]; };
+layout(set = 0, binding = 16, std430) buffer LargeTriangles { uint large_triangles[]; }; // as LargeSplats
 
 void project_box(uint i, Triangle triangle, ivec4 box, uint first, uint step) {
     uint width = uint(box.z - box.x + 1), area = width * uint(box.w - box.y + 1);
@@ -80,11 +82,13 @@ void project_box(uint i, Triangle triangle, ivec4 box, uint first, uint step) {
 }
 
 void main() {
+    uint instance = instance_number();
     Triangle triangle;
     if (LARGE_TRIANGLES) {
-        for (uint k = gl_WorkGroupID.x; k < large_count; k += gl_NumWorkGroups.x) {
-            triangle_of(large[k], triangle);
-            project_box(large[k], triangle, box_of(triangle), gl_LocalInvocationIndex, gl_WorkGroupSize.x);
+        for (uint k = gl_WorkGroupID.x; k < large_triangles[instance]; k += gl_NumWorkGroups.x) {
+            uint i = large_triangles[list_start() + k];
+            triangle_of(i, triangle);
+            project_box(i, triangle, box_of(triangle), gl_LocalInvocationIndex, gl_WorkGroupSize.x);
         }
         return;
     }
@@ -93,7 +97,7 @@ void main() {
     ivec4 box = box_of(triangle);
     if (any(greaterThan(box.xy, box.zw))) return;
     ivec2 size = box.zw - box.xy + 1;
-    if (uint(size.x) * uint(size.y) > MOST) large[atomicAdd(large_count, 1)] = i;
+    if (uint(size.x) * uint(size.y) > MOST) large_triangles[list_start() + atomicAdd(large_triangles[instance], 1)] = i;
     else project_box(i, triangle, box, 0, 1);
 }
 

@@ -5,17 +5,14 @@
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #endif
 
-#include "lib/frame.glsl"
+#include "lib/instance.glsl"
 #include "lib/sums.glsl"
-#define SPLAT_ACCESS readonly
 #define CLIP_ACCESS readonly
 #include "lib/splat.glsl"
-#include "lib/placed.glsl"
 #include "lib/surface.glsl"
 
 #ifdef COMPUTE
 
-#include "lib/window.glsl"
 #define WINNER_ACCESS readonly
 #include "lib/winners.glsl"
 
@@ -36,16 +33,16 @@ void main() {
     uint pixel = gl_GlobalInvocationID.x + gl_GlobalInvocationID.y * gl_NumWorkGroups.x * gl_WorkGroupSize.x;
     if (pixel >= size.x * size.y) return;
     uint64_t winner = winners[pixel];
-    uint i = ~uint(winner & 0xffffffffu) - window.first;
+    uint i = ~uint(winner & 0xffffffffu) - first_number();
     if (winner == 0) {
-        if (window.first == 0) store(pixel, 0.0, 0.0, vec3(0.0), vec3(0.0));
+        if (first_number() == 0) store(pixel, 0.0, 0.0, vec3(0.0), vec3(0.0));
     } else if (i < window.count) {
-        Splat splat = splats[i];
+        Splat splat = splat_of(i);
         vec3 first, second;
         surface_of(i, splat.epsilon, first, second);
         vec2 d = vec2(pixel % size.x, pixel / size.x) + 0.5 - anchor_of(splat);
         float key = plane_at(splat.plane_hi, splat.plane_lo, d);
-        store(pixel, 1.0, has_linear_depth() ? frame.near / key : key, first, second);
+        store(pixel, 1.0, has_linear_depth() ? view.near / key : key, first, second);
     }
 }
 

@@ -70,8 +70,8 @@ void main() {
     vec4 image = frame.background;
     if (s.near > 0.0) {
         vec2 centre = vec2(at) + 0.5;
-        vec3 ray = centre.x * frame.ray_hi[0].xyz + centre.y * frame.ray_hi[1].xyz + frame.ray_hi[2].xyz;
-        vec3 to_eye = PERSPECTIVE ? -normalize(ray) : -frame.forward_hi.xyz;
+        vec3 ray = centre.x * view.ray_hi[0].xyz + centre.y * view.ray_hi[1].xyz + view.ray_hi[2].xyz;
+        vec3 to_eye = PERSPECTIVE ? -normalize(ray) : -view.forward_hi.xyz;
         vec3 colour = SUM_COLOURS ? s.colour : frame.albedo.rgb;
         Shine shine = FRAME_SHINE;
 #ifdef LOOKUPS

@@ -4,8 +4,8 @@
 #pragma variant CLIP_LINES VERTEX FRAGMENT
 #extension GL_GOOGLE_include_directive : require
 
-#include "lib/frame.glsl"
-#define SPLAT_ACCESS readonly
+#define VERTICES 3
+#include "lib/instance.glsl"
 #define CLIP_ACCESS readonly
 #include "lib/splat.glsl"
 #ifdef COVERAGE
@@ -14,7 +14,6 @@
 
 #ifdef COMPUTE
 
-#include "lib/window.glsl"
 #define VISIBILITY_ACCESS
 #include "lib/pixels.glsl"
 
@@ -31,7 +30,7 @@ bool scatter_begin(uint i, Splat splat, vec2 variance, float nearest, ivec2 low,
     splat_epsilon = splat.epsilon;
     splat_key_disc = splat.key_disc;
 #ifdef COVERAGE
-    splat_solid = solid_of(splat, clip_number(i));
+    splat_solid = solid_of(splat, screen_clip_number(i));
 #endif
     return true;
 }
@@ -56,8 +55,8 @@ void main() {
 #ifdef VERTEX
 
 void main() {
-    uint i = gl_VertexIndex / 3;
-    Splat splat = splats[i];
+    uint i = surfel_number();
+    Splat splat = splat_of(i);
     place_splat(i, splat, visibility_variance(variance_of(splat)), gl_VertexIndex % 3);
 }
 

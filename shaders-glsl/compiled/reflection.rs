@@ -6,8 +6,8 @@ pub static ATTRIBUTE_VERTEX: Module = Module {
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("attribute_vertex.spv"),
     constants: &[0, 3, 5, 7, 14, 15, 16, 17, 19, 20, 26, 27, 37, 50, 51, 52, 53, 54, 57, 58],
-    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::WEIGHTS, false)],
-    push: 0,
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::WEIGHTS, false)],
+    push: size_of::<layout::Window>() as u32,
 };
 
 /// The fragment stage of `shaders-glsl/attribute.glsl`.
@@ -26,7 +26,7 @@ pub static ATTRIBUTE_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("attribute_compute.spv"),
     constants: &[0, 3, 4, 5, 7, 8, 12, 13, 14, 15, 16, 17, 18, 19, 20, 23, 24, 26, 27, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
-    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::LARGE_SPLATS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, false), (&resource::WEIGHTS, false), (&resource::VISIBILITY, false), (&resource::SUMS0, true), (&resource::SUMS1, true), (&resource::TILES, false)],
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::LARGE_SPLATS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, false), (&resource::WEIGHTS, false), (&resource::VISIBILITY, false), (&resource::SUMS0, true), (&resource::SUMS1, true), (&resource::TILES, false)],
     push: size_of::<layout::Window>() as u32,
 };
 
@@ -36,8 +36,8 @@ pub static ATTRIBUTE_CLIP_LINES_VERTEX: Module = Module {
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("attribute_clip_lines_vertex.spv"),
     constants: &[0, 3, 5, 7, 14, 15, 16, 17, 19, 20, 23, 26, 27, 37, 50, 51, 52, 53, 54, 57, 58],
-    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::CLIPS, false), (&resource::WEIGHTS, false)],
-    push: 0,
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::CLIPS, false), (&resource::WEIGHTS, false)],
+    push: size_of::<layout::Window>() as u32,
 };
 
 /// The fragment stage of `shaders-glsl/attribute.glsl`.
@@ -146,7 +146,7 @@ pub static FETCH_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("fetch_compute.spv"),
     constants: &[0, 1, 5, 12, 13, 17, 28, 33, 34, 37, 38, 39, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
-    resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::NEAREST, false), (&resource::TO_DEPTHS, true), (&resource::TO_PLACES, true), (&resource::TO_NORMALS, true), (&resource::TO_COLOURS, true), (&resource::TO_IDS, true)],
+    resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::NEAREST, false), (&resource::TO_DEPTHS, true), (&resource::TO_PLACES, true), (&resource::TO_NORMALS, true), (&resource::TO_COLOURS, true), (&resource::TO_IDS, true)],
     push: size_of::<layout::Window>() as u32,
 };
 
@@ -156,7 +156,7 @@ pub static FETCH_LINES_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("fetch_lines_compute.spv"),
     constants: &[0, 17, 28, 29, 33, 34, 37, 38, 39],
-    resources: &[(&resource::FRAME, false), (&resource::VERTICES, false), (&resource::ALONGS, false), (&resource::VERTEX_COLOURS, false), (&resource::ELEMENTS, false), (&resource::NEAREST, false), (&resource::TO_DEPTHS, true), (&resource::TO_PLACES, true), (&resource::TO_NORMALS, true), (&resource::TO_COLOURS, true), (&resource::TO_IDS, true)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VERTICES, false), (&resource::ALONGS, false), (&resource::VERTEX_COLOURS, false), (&resource::ELEMENTS, false), (&resource::NEAREST, false), (&resource::TO_DEPTHS, true), (&resource::TO_PLACES, true), (&resource::TO_NORMALS, true), (&resource::TO_COLOURS, true), (&resource::TO_IDS, true)],
     push: size_of::<layout::Window>() as u32,
 };
 
@@ -166,7 +166,7 @@ pub static FETCH_TRIANGLES_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("fetch_triangles_compute.spv"),
     constants: &[0, 17, 28, 29, 33, 34, 37, 38, 39],
-    resources: &[(&resource::FRAME, false), (&resource::VERTICES, false), (&resource::VERTEX_COLOURS, false), (&resource::ELEMENTS, false), (&resource::NEAREST, false), (&resource::TO_DEPTHS, true), (&resource::TO_PLACES, true), (&resource::TO_NORMALS, true), (&resource::TO_COLOURS, true), (&resource::TO_IDS, true)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VERTICES, false), (&resource::VERTEX_COLOURS, false), (&resource::ELEMENTS, false), (&resource::NEAREST, false), (&resource::TO_DEPTHS, true), (&resource::TO_PLACES, true), (&resource::TO_NORMALS, true), (&resource::TO_COLOURS, true), (&resource::TO_IDS, true)],
     push: size_of::<layout::Window>() as u32,
 };
 
@@ -176,7 +176,7 @@ pub static FETCH_DRAWN_POINTS_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("fetch_drawn_points_compute.spv"),
     constants: &[0, 1, 5, 12, 13, 17, 28, 33, 34, 37, 38, 39, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
-    resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::NEAREST_NUMBER, false), (&resource::TO_DEPTHS, true), (&resource::TO_PLACES, true), (&resource::TO_NORMALS, true), (&resource::TO_COLOURS, true), (&resource::TO_IDS, true)],
+    resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::NEAREST_NUMBER, false), (&resource::TO_DEPTHS, true), (&resource::TO_PLACES, true), (&resource::TO_NORMALS, true), (&resource::TO_COLOURS, true), (&resource::TO_IDS, true)],
     push: size_of::<layout::Window>() as u32,
 };
 
@@ -185,8 +185,8 @@ pub static FOOTPRINT_COMPUTE: Module = Module {
     name: "footprint_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("footprint_compute.spv"),
-    constants: &[0, 1, 2, 11, 12, 13, 14, 15, 16, 21, 23, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
-    resources: &[(&resource::FRAME, false), (&resource::SPLATS, true), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::LARGE_SPLATS, true), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, true), (&resource::COUNTS, true)],
+    constants: &[0, 1, 2, 11, 12, 13, 14, 15, 16, 21, 23, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, true), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::LARGE_SPLATS, true), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, true), (&resource::COUNTS, true)],
     push: size_of::<layout::Window>() as u32,
 };
 
@@ -196,8 +196,8 @@ pub static NEAREST_VERTEX: Module = Module {
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("nearest_vertex.spv"),
     constants: &[0, 3, 5, 7, 15, 16, 17, 20, 37, 50, 51, 52, 53, 54, 57, 58],
-    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false)],
-    push: 0,
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::VIEWS, false)],
+    push: size_of::<layout::Window>() as u32,
 };
 
 /// The fragment stage of `shaders-glsl/nearest.glsl`.
@@ -215,8 +215,8 @@ pub static NEAREST_COMPUTE: Module = Module {
     name: "nearest_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("nearest_compute.spv"),
-    constants: &[0, 8, 15, 16, 23, 24],
-    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::LARGE_SPLATS, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, false), (&resource::WINNERS, true)],
+    constants: &[0, 8, 15, 16, 23, 24, 37],
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::VIEWS, false), (&resource::LARGE_SPLATS, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, false), (&resource::WINNERS, true)],
     push: size_of::<layout::Window>() as u32,
 };
 
@@ -226,8 +226,8 @@ pub static NEAREST_COVERAGE_VERTEX: Module = Module {
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("nearest_coverage_vertex.spv"),
     constants: &[0, 3, 5, 7, 15, 16, 17, 20, 23, 37, 50, 51, 52, 53, 54, 57, 58],
-    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::CLIPS, false)],
-    push: 0,
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::CLIPS, false)],
+    push: size_of::<layout::Window>() as u32,
 };
 
 /// The fragment stage of `shaders-glsl/nearest.glsl`.
@@ -245,8 +245,8 @@ pub static NEAREST_COVERAGE_COMPUTE: Module = Module {
     name: "nearest_coverage_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("nearest_coverage_compute.spv"),
-    constants: &[0, 8, 15, 16, 23, 24],
-    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::LARGE_SPLATS, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, false), (&resource::WINNERS, true), (&resource::COVERAGE, true)],
+    constants: &[0, 8, 15, 16, 23, 24, 37],
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::VIEWS, false), (&resource::LARGE_SPLATS, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, false), (&resource::WINNERS, true), (&resource::COVERAGE, true)],
     push: size_of::<layout::Window>() as u32,
 };
 
@@ -256,8 +256,8 @@ pub static NEAREST_CLIP_LINES_VERTEX: Module = Module {
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("nearest_clip_lines_vertex.spv"),
     constants: &[0, 3, 5, 7, 15, 16, 17, 20, 23, 37, 50, 51, 52, 53, 54, 57, 58],
-    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::CLIPS, false)],
-    push: 0,
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::CLIPS, false)],
+    push: size_of::<layout::Window>() as u32,
 };
 
 /// The fragment stage of `shaders-glsl/nearest.glsl`.
@@ -286,7 +286,7 @@ pub static NORMALIZE_FRAGMENT: Module = Module {
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("normalize_fragment.spv"),
     constants: &[0, 3, 4, 6, 7, 17, 18, 20],
-    resources: &[(&resource::FRAME, false), (&resource::VISIBILITY_IMAGE, false), (&resource::SUMS0_IMAGE, false), (&resource::SUMS1_IMAGE, false)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY_IMAGE, false), (&resource::SUMS0_IMAGE, false), (&resource::SUMS1_IMAGE, false)],
     push: 0,
 };
 
@@ -296,7 +296,7 @@ pub static NORMALIZE_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("normalize_compute.spv"),
     constants: &[0, 3, 4, 6, 7, 9, 10, 17, 18, 20, 22],
-    resources: &[(&resource::FRAME, false), (&resource::VISIBILITY, false), (&resource::SUMS0, false), (&resource::SUMS1, false), (&resource::PICTURE, true)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, false), (&resource::SUMS0, false), (&resource::SUMS1, false), (&resource::PICTURE, true)],
     push: 0,
 };
 
@@ -316,7 +316,7 @@ pub static NORMALIZE_COVERAGE_FRAGMENT: Module = Module {
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("normalize_coverage_fragment.spv"),
     constants: &[0, 3, 4, 6, 7, 17, 18, 20],
-    resources: &[(&resource::FRAME, false), (&resource::COVERAGE, false), (&resource::VISIBILITY_IMAGE, false), (&resource::SUMS0_IMAGE, false), (&resource::SUMS1_IMAGE, false)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::COVERAGE, false), (&resource::VISIBILITY_IMAGE, false), (&resource::SUMS0_IMAGE, false), (&resource::SUMS1_IMAGE, false)],
     push: 0,
 };
 
@@ -326,7 +326,7 @@ pub static NORMALIZE_COVERAGE_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("normalize_coverage_compute.spv"),
     constants: &[0, 3, 4, 6, 7, 9, 10, 17, 18, 20, 22],
-    resources: &[(&resource::FRAME, false), (&resource::VISIBILITY, false), (&resource::SUMS0, false), (&resource::SUMS1, false), (&resource::PICTURE, true), (&resource::COVERAGE, false)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY, false), (&resource::SUMS0, false), (&resource::SUMS1, false), (&resource::PICTURE, true), (&resource::COVERAGE, false)],
     push: 0,
 };
 
@@ -336,7 +336,7 @@ pub static NORMALIZE_SUBPASS_FRAGMENT: Module = Module {
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("normalize_subpass_fragment.spv"),
     constants: &[0, 3, 4, 6, 7, 17, 18, 20, 40, 41, 42],
-    resources: &[(&resource::FRAME, false), (&resource::VISIBILITY_INPUT, false), (&resource::SUMS0_INPUT, false), (&resource::SUMS1_INPUT, false)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VISIBILITY_INPUT, false), (&resource::SUMS0_INPUT, false), (&resource::SUMS1_INPUT, false)],
     push: size_of::<layout::Subpass>() as u32,
 };
 
@@ -346,7 +346,7 @@ pub static NORMALIZE_SUBPASS_COVERAGE_FRAGMENT: Module = Module {
     stage: ShaderStageFlags::FRAGMENT,
     spirv: spirv!("normalize_subpass_coverage_fragment.spv"),
     constants: &[0, 3, 4, 6, 7, 17, 18, 20, 40, 41, 42],
-    resources: &[(&resource::FRAME, false), (&resource::COVERAGE, false), (&resource::VISIBILITY_INPUT, false), (&resource::SUMS0_INPUT, false), (&resource::SUMS1_INPUT, false)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::COVERAGE, false), (&resource::VISIBILITY_INPUT, false), (&resource::SUMS0_INPUT, false), (&resource::SUMS1_INPUT, false)],
     push: size_of::<layout::Subpass>() as u32,
 };
 
@@ -356,7 +356,7 @@ pub static POINTS_VERTEX: Module = Module {
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("points_vertex.spv"),
     constants: &[0, 1, 12, 13, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
-    resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false)],
+    resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false)],
     push: size_of::<layout::Window>() as u32,
 };
 
@@ -376,7 +376,7 @@ pub static PROJECT_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("project_compute.spv"),
     constants: &[0, 1, 2, 12, 13, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
-    resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::NEAREST, true), (&resource::COUNTS, true)],
+    resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::NEAREST, true), (&resource::COUNTS, true)],
     push: size_of::<layout::Window>() as u32,
 };
 
@@ -386,7 +386,7 @@ pub static PROJECT_LINES_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("project_lines_compute.spv"),
     constants: &[0, 28, 37],
-    resources: &[(&resource::FRAME, false), (&resource::VERTICES, false), (&resource::ALONGS, false), (&resource::ELEMENTS, false), (&resource::NEAREST, true)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VERTICES, false), (&resource::ALONGS, false), (&resource::ELEMENTS, false), (&resource::NEAREST, true)],
     push: size_of::<layout::Window>() as u32,
 };
 
@@ -396,7 +396,7 @@ pub static PROJECT_TRIANGLES_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("project_triangles_compute.spv"),
     constants: &[0, 30, 37],
-    resources: &[(&resource::FRAME, false), (&resource::VERTICES, false), (&resource::ELEMENTS, false), (&resource::LARGE_TRIANGLES, true), (&resource::NEAREST, true)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::VERTICES, false), (&resource::ELEMENTS, false), (&resource::LARGE_TRIANGLES, true), (&resource::NEAREST, true)],
     push: size_of::<layout::Window>() as u32,
 };
 
@@ -405,7 +405,7 @@ pub static PROJECT_DRAWN_POINTS_COMPUTE: Module = Module {
     name: "project_drawn_points_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("project_drawn_points_compute.spv"),
-    constants: &[0, 37],
+    constants: &[0],
     resources: &[(&resource::FRAME, false), (&resource::NEAREST, true), (&resource::NEAREST_DEPTH, false), (&resource::NEAREST_NUMBER, false)],
     push: 0,
 };
@@ -415,8 +415,8 @@ pub static PROJECT_FATES_COMPUTE: Module = Module {
     name: "project_fates_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("project_fates_compute.spv"),
-    constants: &[0, 1, 2, 12, 13, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
-    resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::COUNTS, true)],
+    constants: &[0, 1, 2, 12, 13, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
+    resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::COUNTS, true)],
     push: size_of::<layout::Window>() as u32,
 };
 
@@ -426,7 +426,7 @@ pub static PULL_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("pull_compute.spv"),
     constants: &[0, 17, 28, 33, 34, 38, 39],
-    resources: &[(&resource::FRAME, false), (&resource::TO_DEPTHS, true), (&resource::TO_PLACES, true), (&resource::TO_NORMALS, true), (&resource::TO_COLOURS, true), (&resource::TO_IDS, true), (&resource::FROM_DEPTHS, false), (&resource::FROM_PLACES, false), (&resource::FROM_NORMALS, false), (&resource::FROM_COLOURS, false), (&resource::FROM_IDS, false)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::TO_DEPTHS, true), (&resource::TO_PLACES, true), (&resource::TO_NORMALS, true), (&resource::TO_COLOURS, true), (&resource::TO_IDS, true), (&resource::FROM_DEPTHS, false), (&resource::FROM_PLACES, false), (&resource::FROM_NORMALS, false), (&resource::FROM_COLOURS, false), (&resource::FROM_IDS, false)],
     push: size_of::<layout::Step>() as u32,
 };
 
@@ -436,7 +436,7 @@ pub static PUSH_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("push_compute.spv"),
     constants: &[0, 17, 28, 32, 33, 34, 38, 39],
-    resources: &[(&resource::FRAME, false), (&resource::TO_DEPTHS, true), (&resource::TO_PLACES, true), (&resource::TO_NORMALS, true), (&resource::TO_COLOURS, true), (&resource::TO_IDS, true), (&resource::FROM_DEPTHS, false), (&resource::FROM_PLACES, false), (&resource::FROM_NORMALS, false), (&resource::FROM_COLOURS, false), (&resource::FROM_IDS, false)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::TO_DEPTHS, true), (&resource::TO_PLACES, true), (&resource::TO_NORMALS, true), (&resource::TO_COLOURS, true), (&resource::TO_IDS, true), (&resource::FROM_DEPTHS, false), (&resource::FROM_PLACES, false), (&resource::FROM_NORMALS, false), (&resource::FROM_COLOURS, false), (&resource::FROM_IDS, false)],
     push: size_of::<layout::Step>() as u32,
 };
 
@@ -456,7 +456,7 @@ pub static RESOLVE_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("resolve_compute.spv"),
     constants: &[0, 3, 4, 5, 7, 15, 17, 20, 37, 50, 51, 52, 53, 54, 57, 58],
-    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::WINNERS, false), (&resource::SUMS0, true), (&resource::SUMS1, true)],
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::WINNERS, false), (&resource::SUMS0, true), (&resource::SUMS1, true)],
     push: size_of::<layout::Window>() as u32,
 };
 
@@ -496,7 +496,7 @@ pub static SHADE_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("shade_compute.spv"),
     constants: &[0, 6, 7, 9, 10, 17, 28, 31, 33, 34, 35, 38, 39],
-    resources: &[(&resource::FRAME, false), (&resource::PICTURE, true), (&resource::FINAL_DEPTHS, false), (&resource::FINAL_PLACES, false), (&resource::FINAL_NORMALS, false), (&resource::FINAL_COLOURS, false), (&resource::FINAL_IDS, false)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::PICTURE, true), (&resource::FINAL_DEPTHS, false), (&resource::FINAL_PLACES, false), (&resource::FINAL_NORMALS, false), (&resource::FINAL_COLOURS, false), (&resource::FINAL_IDS, false)],
     push: 0,
 };
 
@@ -506,7 +506,7 @@ pub static SHADE_LOOKUPS_COMPUTE: Module = Module {
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("shade_lookups_compute.spv"),
     constants: &[0, 6, 7, 9, 10, 17, 25, 28, 31, 33, 34, 35, 36, 38, 39],
-    resources: &[(&resource::FRAME, false), (&resource::TEXTURE, false), (&resource::MATERIALS, false), (&resource::PICTURE, true), (&resource::FINAL_DEPTHS, false), (&resource::FINAL_PLACES, false), (&resource::FINAL_NORMALS, false), (&resource::FINAL_COLOURS, false), (&resource::FINAL_IDS, false)],
+    resources: &[(&resource::FRAME, false), (&resource::VIEWS, false), (&resource::TEXTURE, false), (&resource::MATERIALS, false), (&resource::PICTURE, true), (&resource::FINAL_DEPTHS, false), (&resource::FINAL_PLACES, false), (&resource::FINAL_NORMALS, false), (&resource::FINAL_COLOURS, false), (&resource::FINAL_IDS, false)],
     push: 0,
 };
 
@@ -525,9 +525,9 @@ pub static VISIBILITY_VERTEX: Module = Module {
     name: "visibility_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("visibility_vertex.spv"),
-    constants: &[0, 15, 16],
-    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false)],
-    push: 0,
+    constants: &[0, 15, 16, 37],
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::VIEWS, false)],
+    push: size_of::<layout::Window>() as u32,
 };
 
 /// The fragment stage of `shaders-glsl/visibility.glsl`.
@@ -545,8 +545,8 @@ pub static VISIBILITY_COMPUTE: Module = Module {
     name: "visibility_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("visibility_compute.spv"),
-    constants: &[0, 8, 15, 16, 23, 24],
-    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::LARGE_SPLATS, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, false), (&resource::VISIBILITY, true)],
+    constants: &[0, 8, 15, 16, 23, 24, 37],
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::VIEWS, false), (&resource::LARGE_SPLATS, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, false), (&resource::VISIBILITY, true)],
     push: size_of::<layout::Window>() as u32,
 };
 
@@ -555,9 +555,9 @@ pub static VISIBILITY_COVERAGE_VERTEX: Module = Module {
     name: "visibility_coverage_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("visibility_coverage_vertex.spv"),
-    constants: &[0, 15, 16, 23],
-    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::CLIPS, false)],
-    push: 0,
+    constants: &[0, 15, 16, 23, 37],
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::VIEWS, false), (&resource::CLIPS, false)],
+    push: size_of::<layout::Window>() as u32,
 };
 
 /// The fragment stage of `shaders-glsl/visibility.glsl`.
@@ -575,8 +575,8 @@ pub static VISIBILITY_COVERAGE_COMPUTE: Module = Module {
     name: "visibility_coverage_compute",
     stage: ShaderStageFlags::COMPUTE,
     spirv: spirv!("visibility_coverage_compute.spv"),
-    constants: &[0, 8, 15, 16, 23, 24],
-    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::LARGE_SPLATS, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, false), (&resource::VISIBILITY, true), (&resource::COVERAGE, true)],
+    constants: &[0, 8, 15, 16, 23, 24, 37],
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::VIEWS, false), (&resource::LARGE_SPLATS, false), (&resource::CLIPS, false), (&resource::SCREEN_CLIPS, false), (&resource::VISIBILITY, true), (&resource::COVERAGE, true)],
     push: size_of::<layout::Window>() as u32,
 };
 
@@ -585,9 +585,9 @@ pub static VISIBILITY_CLIP_LINES_VERTEX: Module = Module {
     name: "visibility_clip_lines_vertex",
     stage: ShaderStageFlags::VERTEX,
     spirv: spirv!("visibility_clip_lines_vertex.spv"),
-    constants: &[0, 15, 16, 23],
-    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::CLIPS, false)],
-    push: 0,
+    constants: &[0, 15, 16, 23, 37],
+    resources: &[(&resource::FRAME, false), (&resource::SPLATS, false), (&resource::VIEWS, false), (&resource::CLIPS, false)],
+    push: size_of::<layout::Window>() as u32,
 };
 
 /// The fragment stage of `shaders-glsl/visibility.glsl`.
@@ -642,6 +642,8 @@ pub mod constant {
     pub const HOST_SAMPLES: u32 = 43;
     /// `IDS`, first in `shaders-glsl/fetch.glsl`.
     pub const IDS: u32 = 39;
+    /// `INSTANCED`, first in `shaders-glsl/attribute.glsl`.
+    pub const INSTANCED: u32 = 37;
     /// `LARGE_SPLATS`, first in `shaders-glsl/attribute.glsl`.
     pub const LARGE_SPLATS: u32 = 8;
     /// `LARGE_TRIANGLES`, first in `shaders-glsl/project.glsl`.
@@ -678,8 +680,6 @@ pub mod constant {
     pub const PERSPECTIVE: u32 = 0;
     /// `PING_PONG`, first in `shaders-glsl/push.glsl`.
     pub const PING_PONG: u32 = 32;
-    /// `PLACED`, first in `shaders-glsl/attribute.glsl`.
-    pub const PLACED: u32 = 37;
     /// `POSITION_OFFSET`, first in `shaders-glsl/attribute.glsl`.
     pub const POSITION_OFFSET: u32 = 50;
     /// `POSITION_STRIDE`, first in `shaders-glsl/attribute.glsl`.
@@ -972,6 +972,15 @@ pub mod resource {
         binding: 12,
         kind: DescriptorType::STORAGE_BUFFER,
         stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw()),
+    };
+
+    /// `Views`, first in `shaders-glsl/attribute.glsl`.
+    pub static VIEWS: Resource = Resource {
+        name: "Views",
+        set: 0,
+        binding: 6,
+        kind: DescriptorType::UNIFORM_BUFFER,
+        stages: ShaderStageFlags::from_raw(ShaderStageFlags::COMPUTE.as_raw() | ShaderStageFlags::FRAGMENT.as_raw() | ShaderStageFlags::VERTEX.as_raw()),
     };
 
     /// `Visibility`, first in `shaders-glsl/attribute.glsl`.
@@ -1283,136 +1292,70 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(Counts, culled) == 0);
     const _: () = assert!(std::mem::size_of::<Counts>() == 20);
 
-    /// `Frame`, 592 bytes, first in `shaders-glsl/attribute.glsl`.
+    /// `Frame`, 176 bytes, first in `shaders-glsl/attribute.glsl`.
     #[repr(C)]
     #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
     pub struct Frame {
         /// Byte 0.
-        pub rows_hi: [[f32; 4]; 3],
-        /// Byte 48.
-        pub rows_lo: [[f32; 4]; 3],
-        /// Byte 96.
-        pub eye_hi: [f32; 4],
-        /// Byte 112.
-        pub eye_lo: [f32; 4],
-        /// Byte 128.
-        pub ray_hi: [[f32; 4]; 3],
-        /// Byte 176.
-        pub ray_lo: [[f32; 4]; 3],
-        /// Byte 224.
-        pub forward_hi: [f32; 4],
-        /// Byte 240.
-        pub forward_lo: [f32; 4],
-        /// Byte 256.
-        pub flat_rows: [[f32; 4]; 2],
-        /// Byte 288.
         pub viewport: [f32; 2],
-        /// Byte 296.
-        pub jacobian: f32,
-        /// Byte 300.
+        /// Byte 8.
         pub near: f32,
-        /// Byte 304.
+        /// Byte 12.
         pub key_slope: f32,
-        /// Byte 308.
+        /// Byte 16.
         pub key_far: f32,
-        /// Byte 312.
+        /// Byte 20.
         pub key_gain: f32,
-        /// Byte 316.
+        /// Byte 24.
         pub cutoff: f32,
-        /// Byte 320.
+        /// Byte 28.
         pub epsilon: f32,
-        /// Byte 324.
+        /// Byte 32.
         pub visibility_lowpass: f32,
-        /// Byte 328.
+        /// Byte 36.
         pub attribute_lowpass: f32,
-        /// Byte 332.
-        pub ambient: f32,
-        /// Byte 336.
-        pub background: [f32; 4],
-        /// Byte 352.
-        pub albedo: [f32; 4],
-        /// Byte 368.
-        pub specular: f32,
-        /// Byte 372.
-        pub shininess: f32,
-        /// Byte 376.
+        /// Byte 40.
         pub kernel_a: f32,
-        /// Byte 380.
+        /// Byte 44.
         pub kernel_n: f32,
-        /// Byte 384.
-        pub to_light: [[f32; 4]; 4],
-        /// Byte 448.
+        /// Byte 48.
+        pub background: [f32; 4],
+        /// Byte 64.
+        pub albedo: [f32; 4],
+        /// Byte 80.
         pub radiance: [[f32; 4]; 4],
-        /// Byte 512.
-        pub origin: [f32; 2],
-        /// Byte 520.
-        pub scale: f32,
-        /// Byte 524.
-        pub world_near: f32,
-        /// Byte 528.
-        pub world_key_slope: f32,
+        /// Byte 144.
+        pub ambient: f32,
+        /// Byte 148.
+        pub specular: f32,
+        /// Byte 152.
+        pub shininess: f32,
         /// Unused: the layout leaves a gap here.
-        pub _pad32: [u8; 12],
-        /// Byte 544.
-        pub turn: [[f32; 4]; 3],
+        pub _pad17: [u8; 4],
+        /// Byte 160.
+        pub origin: [f32; 2],
+        /// Unused: the layout leaves a gap here.
+        pub _pad18: [u8; 8],
     }
-    const _: () = assert!(std::mem::offset_of!(Frame, rows_hi) == 0);
-    const _: () = assert!(std::mem::offset_of!(Frame, rows_lo) == 48);
-    const _: () = assert!(std::mem::offset_of!(Frame, eye_hi) == 96);
-    const _: () = assert!(std::mem::offset_of!(Frame, eye_lo) == 112);
-    const _: () = assert!(std::mem::offset_of!(Frame, ray_hi) == 128);
-    const _: () = assert!(std::mem::offset_of!(Frame, ray_lo) == 176);
-    const _: () = assert!(std::mem::offset_of!(Frame, forward_hi) == 224);
-    const _: () = assert!(std::mem::offset_of!(Frame, forward_lo) == 240);
-    const _: () = assert!(std::mem::offset_of!(Frame, flat_rows) == 256);
-    const _: () = assert!(std::mem::offset_of!(Frame, viewport) == 288);
-    const _: () = assert!(std::mem::offset_of!(Frame, jacobian) == 296);
-    const _: () = assert!(std::mem::offset_of!(Frame, near) == 300);
-    const _: () = assert!(std::mem::offset_of!(Frame, key_slope) == 304);
-    const _: () = assert!(std::mem::offset_of!(Frame, key_far) == 308);
-    const _: () = assert!(std::mem::offset_of!(Frame, key_gain) == 312);
-    const _: () = assert!(std::mem::offset_of!(Frame, cutoff) == 316);
-    const _: () = assert!(std::mem::offset_of!(Frame, epsilon) == 320);
-    const _: () = assert!(std::mem::offset_of!(Frame, visibility_lowpass) == 324);
-    const _: () = assert!(std::mem::offset_of!(Frame, attribute_lowpass) == 328);
-    const _: () = assert!(std::mem::offset_of!(Frame, ambient) == 332);
-    const _: () = assert!(std::mem::offset_of!(Frame, background) == 336);
-    const _: () = assert!(std::mem::offset_of!(Frame, albedo) == 352);
-    const _: () = assert!(std::mem::offset_of!(Frame, specular) == 368);
-    const _: () = assert!(std::mem::offset_of!(Frame, shininess) == 372);
-    const _: () = assert!(std::mem::offset_of!(Frame, kernel_a) == 376);
-    const _: () = assert!(std::mem::offset_of!(Frame, kernel_n) == 380);
-    const _: () = assert!(std::mem::offset_of!(Frame, to_light) == 384);
-    const _: () = assert!(std::mem::offset_of!(Frame, radiance) == 448);
-    const _: () = assert!(std::mem::offset_of!(Frame, origin) == 512);
-    const _: () = assert!(std::mem::offset_of!(Frame, scale) == 520);
-    const _: () = assert!(std::mem::offset_of!(Frame, world_near) == 524);
-    const _: () = assert!(std::mem::offset_of!(Frame, world_key_slope) == 528);
-    const _: () = assert!(std::mem::offset_of!(Frame, turn) == 544);
-    const _: () = assert!(std::mem::size_of::<Frame>() == 592);
-
-    /// `LargeSplats`, 256 bytes, first in `shaders-glsl/attribute.glsl`.
-    #[repr(C)]
-    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
-    pub struct LargeSplats {
-        /// Byte 0.
-        pub large_count: u32,
-        /// Byte 4.
-        pub large_padding: [u32; 63],
-    }
-    const _: () = assert!(std::mem::offset_of!(LargeSplats, large_count) == 0);
-    const _: () = assert!(std::mem::offset_of!(LargeSplats, large_padding) == 4);
-    const _: () = assert!(std::mem::size_of::<LargeSplats>() == 256);
-
-    /// `LargeTriangles`, 4 bytes, first in `shaders-glsl/project.glsl`.
-    #[repr(C)]
-    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
-    pub struct LargeTriangles {
-        /// Byte 0.
-        pub large_count: u32,
-    }
-    const _: () = assert!(std::mem::offset_of!(LargeTriangles, large_count) == 0);
-    const _: () = assert!(std::mem::size_of::<LargeTriangles>() == 4);
+    const _: () = assert!(std::mem::offset_of!(Frame, viewport) == 0);
+    const _: () = assert!(std::mem::offset_of!(Frame, near) == 8);
+    const _: () = assert!(std::mem::offset_of!(Frame, key_slope) == 12);
+    const _: () = assert!(std::mem::offset_of!(Frame, key_far) == 16);
+    const _: () = assert!(std::mem::offset_of!(Frame, key_gain) == 20);
+    const _: () = assert!(std::mem::offset_of!(Frame, cutoff) == 24);
+    const _: () = assert!(std::mem::offset_of!(Frame, epsilon) == 28);
+    const _: () = assert!(std::mem::offset_of!(Frame, visibility_lowpass) == 32);
+    const _: () = assert!(std::mem::offset_of!(Frame, attribute_lowpass) == 36);
+    const _: () = assert!(std::mem::offset_of!(Frame, kernel_a) == 40);
+    const _: () = assert!(std::mem::offset_of!(Frame, kernel_n) == 44);
+    const _: () = assert!(std::mem::offset_of!(Frame, background) == 48);
+    const _: () = assert!(std::mem::offset_of!(Frame, albedo) == 64);
+    const _: () = assert!(std::mem::offset_of!(Frame, radiance) == 80);
+    const _: () = assert!(std::mem::offset_of!(Frame, ambient) == 144);
+    const _: () = assert!(std::mem::offset_of!(Frame, specular) == 148);
+    const _: () = assert!(std::mem::offset_of!(Frame, shininess) == 152);
+    const _: () = assert!(std::mem::offset_of!(Frame, origin) == 160);
+    const _: () = assert!(std::mem::size_of::<Frame>() == 176);
 
     /// `Materials`, 4 bytes, first in `shaders-glsl/shade.glsl`.
     #[repr(C)]
@@ -1482,7 +1425,7 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(Seed, behind) == 16);
     const _: () = assert!(std::mem::size_of::<Seed>() == 20);
 
-    /// `Splat`, 64 bytes, first in `shaders-glsl/attribute.glsl`.
+    /// `Splat`, 64 bytes, first in `shaders-glsl/footprint.glsl`.
     #[repr(C)]
     #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
     pub struct Splat {
@@ -1558,7 +1501,74 @@ pub mod layout {
     const _: () = assert!(std::mem::offset_of!(Texture, levels) == 8);
     const _: () = assert!(std::mem::size_of::<Texture>() == 12);
 
-    /// `Window`, 8 bytes, first in `shaders-glsl/attribute.glsl`.
+    /// `View`, 432 bytes, first in `shaders-glsl/attribute.glsl`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+    pub struct View {
+        /// Byte 0.
+        pub rows_hi: [[f32; 4]; 3],
+        /// Byte 48.
+        pub rows_lo: [[f32; 4]; 3],
+        /// Byte 96.
+        pub eye_hi: [f32; 4],
+        /// Byte 112.
+        pub eye_lo: [f32; 4],
+        /// Byte 128.
+        pub ray_hi: [[f32; 4]; 3],
+        /// Byte 176.
+        pub ray_lo: [[f32; 4]; 3],
+        /// Byte 224.
+        pub forward_hi: [f32; 4],
+        /// Byte 240.
+        pub forward_lo: [f32; 4],
+        /// Byte 256.
+        pub flat_rows: [[f32; 4]; 2],
+        /// Byte 288.
+        pub to_light: [[f32; 4]; 4],
+        /// Byte 352.
+        pub turn: [[f32; 4]; 3],
+        /// Byte 400.
+        pub scale: f32,
+        /// Byte 404.
+        pub near: f32,
+        /// Byte 408.
+        pub key_slope: f32,
+        /// Byte 412.
+        pub jacobian: f32,
+        /// Byte 416.
+        pub first: u32,
+        /// Unused: the layout leaves a gap here.
+        pub _pad16: [u8; 12],
+    }
+    const _: () = assert!(std::mem::offset_of!(View, rows_hi) == 0);
+    const _: () = assert!(std::mem::offset_of!(View, rows_lo) == 48);
+    const _: () = assert!(std::mem::offset_of!(View, eye_hi) == 96);
+    const _: () = assert!(std::mem::offset_of!(View, eye_lo) == 112);
+    const _: () = assert!(std::mem::offset_of!(View, ray_hi) == 128);
+    const _: () = assert!(std::mem::offset_of!(View, ray_lo) == 176);
+    const _: () = assert!(std::mem::offset_of!(View, forward_hi) == 224);
+    const _: () = assert!(std::mem::offset_of!(View, forward_lo) == 240);
+    const _: () = assert!(std::mem::offset_of!(View, flat_rows) == 256);
+    const _: () = assert!(std::mem::offset_of!(View, to_light) == 288);
+    const _: () = assert!(std::mem::offset_of!(View, turn) == 352);
+    const _: () = assert!(std::mem::offset_of!(View, scale) == 400);
+    const _: () = assert!(std::mem::offset_of!(View, near) == 404);
+    const _: () = assert!(std::mem::offset_of!(View, key_slope) == 408);
+    const _: () = assert!(std::mem::offset_of!(View, jacobian) == 412);
+    const _: () = assert!(std::mem::offset_of!(View, first) == 416);
+    const _: () = assert!(std::mem::size_of::<View>() == 432);
+
+    /// `Views`, 15984 bytes, first in `shaders-glsl/attribute.glsl`.
+    #[repr(C)]
+    #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
+    pub struct Views {
+        /// Byte 0.
+        pub views: [View; 37],
+    }
+    const _: () = assert!(std::mem::offset_of!(Views, views) == 0);
+    const _: () = assert!(std::mem::size_of::<Views>() == 15984);
+
+    /// `Window`, 20 bytes, first in `shaders-glsl/attribute.glsl`.
     #[repr(C)]
     #[derive(Clone, Copy, Debug, bytemuck::Pod, bytemuck::Zeroable)]
     pub struct Window {
@@ -1566,9 +1576,18 @@ pub mod layout {
         pub count: u32,
         /// Byte 4.
         pub first: u32,
+        /// Byte 8.
+        pub room: u32,
+        /// Byte 12.
+        pub clips: u32,
+        /// Byte 16.
+        pub instance: u32,
     }
     const _: () = assert!(std::mem::offset_of!(Window, count) == 0);
     const _: () = assert!(std::mem::offset_of!(Window, first) == 4);
-    const _: () = assert!(std::mem::size_of::<Window>() == 8);
+    const _: () = assert!(std::mem::offset_of!(Window, room) == 8);
+    const _: () = assert!(std::mem::offset_of!(Window, clips) == 12);
+    const _: () = assert!(std::mem::offset_of!(Window, instance) == 16);
+    const _: () = assert!(std::mem::size_of::<Window>() == 20);
 
 }

@@ -34,6 +34,7 @@ layout(set = 0, binding = 9, std430) readonly buffer Clips { uint clips[]; };
 layout(set = 0, binding = 10, std430) CLIP_ACCESS buffer ScreenClips { ScreenClip screen_clips[]; };
 #endif
 
+// A clip on the screen by its screen_clip_number.
 ScreenClip screen_clip(uint number) {
 #ifdef SEES_CLIPS
     return screen_clips[number];
@@ -51,6 +52,14 @@ uint clip_number(uint i) {
 #endif
     return ~0u;
 }
+
+#ifndef FRAGMENT
+// Where the instance has surfel i's clip on the screen, or ~0 if its disc is whole.
+uint screen_clip_number(uint i) {
+    uint number = clip_number(i);
+    return number == ~0u ? number : instance_number() * window.clips + number;
+}
+#endif
 
 bool has_clip(uint number) {
     return CLIPS && number < CONCAVE - 1u;

@@ -19,9 +19,34 @@ const float EDGE = 0.125;
 // A triangle that reaches further than this (px) is replaced by one over the viewport, whose edges stay exact.
 const float LARGEST = 8192.0;
 
+void scale_plane(float factor, inout vec3 hi, inout vec3 lo) {
+    for (int k = 0; k < 3; k++) {
+        vec2 scaled = two_product(hi[k], factor);
+        hi[k] = scaled.x;
+        lo[k] = lo[k] * factor + scaled.y;
+    }
+}
+
+// A corner, px, of a triangle about the ellipse with these semi-axes, px, as far as it is on the picture. A triangle that does not reach beyond
+// the picture is not clipped, which rasterizers on the CPU do in another way with all triangles of a draw.
+vec2 corner_about(vec2 centre, vec2 axis, vec2 reach, int corner) {
+    vec2 major = reach.x * axis, minor = reach.y * vec2(-axis.y, axis.x);
+    vec2 corners[3] = vec2[](centre + 2.0 * minor, centre - 1.7320508 * major - minor, centre + 1.7320508 * major - minor);
+    vec2 low = min(min(corners[0], corners[1]), corners[2]), high = max(max(corners[0], corners[1]), corners[2]);
+    if (all(greaterThanEqual(low, vec2(0.0))) && all(lessThanEqual(high, frame.viewport))) return corners[corner];
+    // The box of what is on the picture, in a right-angled triangle of twice its width and height.
+    vec2 reach_of_box = sqrt(major * major + minor * minor);
+    low = clamp(centre - reach_of_box, vec2(0.0), frame.viewport);
+    high = clamp(centre + reach_of_box, vec2(0.0), frame.viewport);
+    vec2 size = high - low;
+    bvec2 right_way = lessThanEqual(low + 2.0 * size, frame.viewport);
+    vec2 far = mix(high - 2.0 * size, low + 2.0 * size, right_way), near = mix(high, low, right_way);
+    return vec2(corner == 1 ? far.x : near.x, corner == 2 ? far.y : near.y);
+}
+
 // Places a corner of splat i's footprint of the given variance.
 void place_splat(uint i, Splat splat, vec2 variance, int corner) {
-    uint clip = clip_number(i);
+    uint clip = screen_clip_number(i);
 #ifdef SEES_CLIPS
     clip_out = clip;
 #endif
@@ -29,6 +54,8 @@ void place_splat(uint i, Splat splat, vec2 variance, int corner) {
     anchor_offset = vec4(ellipse.anchor, ellipse.offset);
     whitening = ellipse.whitening;
     fine = ellipse.fine;
+    // Distances as fragments see them: in the world's unit.
+    if (INSTANCED && has_linear_depth()) scale_plane(view.scale, ellipse.plane_hi, ellipse.plane_lo);
     plane_epsilon = vec4(ellipse.plane_hi, splat.epsilon);
     plane_lo_disc = vec4(ellipse.plane_lo, splat.key_disc);
 #ifdef COVERAGE
@@ -39,7 +66,6 @@ void place_splat(uint i, Splat splat, vec2 variance, int corner) {
     float stretch = stretch_of(splat, variance, ellipse.key_centre);
     float nearest = min(1.0, nearest_of(splat, variance, stretch));
 
-    vec2 minor_axis = vec2(-splat.axis.y, splat.axis.x);
     vec2 reach = stretch * frame.cutoff * sqrt(variance) + EDGE;
     vec2 position;
     if (kind_of(splat) == NOT_DRAWN || nearest <= frame.key_far) {
@@ -47,9 +73,7 @@ void place_splat(uint i, Splat splat, vec2 variance, int corner) {
     } else if (reach.x > 0.5 * LARGEST) {
         position = vec2(corner == 1 ? 3.0 : -1.0, corner == 2 ? 3.0 : -1.0);
     } else {
-        const vec2 equilateral[3] = vec2[](vec2(0.0, 2.0), vec2(-1.7320508, -1.0), vec2(1.7320508, -1.0));
-        vec2 local = equilateral[corner] * reach;
-        vec2 pixel = ellipse.anchor + splat.offset + local.x * splat.axis + local.y * minor_axis;
+        vec2 pixel = corner_about(ellipse.anchor + splat.offset, splat.axis, reach, corner);
         position = 2.0 * pixel / frame.viewport - 1.0;
     }
     gl_Position = vec4(position, nearest, 1.0);

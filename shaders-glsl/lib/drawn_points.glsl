@@ -5,8 +5,7 @@
 
 // Of parallel rays, whose near plane may be at the eye or behind it, what is 10⁻³⁰ of the far plane's distance is as near as can be.
 uint least_distance() {
-    float near = PLACED ? frame.world_near : frame.near, key_slope = PLACED ? frame.world_key_slope : frame.key_slope;
-    return floatBitsToUint(PERSPECTIVE ? near : max(near, 1e-30 / key_slope));
+    return floatBitsToUint(PERSPECTIVE ? frame.near : max(frame.near, 1e-30 / frame.key_slope));
 }
 
 const uint AT_NEAR_PLANE = 0x3f800000; // 1.0

@@ -36,8 +36,8 @@ Metric metric_of(Disc disc) {
 Gradient gradient_of(int i, vec2 centre, vec2 size, Disc disc, Metric metric) {
     Gradient gradient;
     for (int k = 0; k < 3; k++) {
-        vec2 w = vec2(frame.rows_hi[2][k], frame.rows_lo[2][k]);
-        vec2 entry = add(vec2(frame.rows_hi[i][k], frame.rows_lo[i][k]), -multiply(w, centre));
+        vec2 w = vec2(view.rows_hi[2][k], view.rows_lo[2][k]);
+        vec2 entry = add(vec2(view.rows_hi[i][k], view.rows_lo[i][k]), -multiply(w, centre));
         entry = multiply(entry, size);
         gradient.hi[k] = entry.x;
         gradient.lo[k] = entry.y;

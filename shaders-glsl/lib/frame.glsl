@@ -1,10 +1,34 @@
-// What every pass knows of the camera and of the settings; src/frame/uniforms.rs fills it, once a frame.
-// World space here is relative to the scene's origin; for passes over a scene that is placed it is that scene's own space, with its own unit. κ, the depth key, is near / z in perspective and linear in z otherwise:
-// 1 at the near plane, falling with distance, and affine on the screen for every plane.
+// What every pass knows of the settings, the picture and the camera; src/frame/uniforms.rs fills it, once a frame.
+// World space here is relative to the scene's origin; for passes over an instance it is the scene's own space, with its own unit. κ, the
+// depth key, is near / z in perspective and linear in z otherwise: 1 at the near plane, falling with distance, and affine on the screen for
+// every plane.
 
 layout(constant_id = 0) const bool PERSPECTIVE = true;
 
+// What all instances have alike.
 layout(set = 0, binding = 0, std140) uniform Frame {
+    vec2 viewport;           // px
+    float near;
+    float key_slope;         // orthographic: −dκ/dz
+    float key_far;           // κ of the far plane
+    float key_gain;          // scales κ before it is summed, so that half floats hold it
+    float cutoff;            // F, σ
+    float epsilon;           // ε in radii
+    float visibility_lowpass; // px²
+    float attribute_lowpass;  // px²; see attribute_variance in splat.glsl
+    float kernel_a;          // of a Confetti kernel
+    float kernel_n;
+    vec4 background;         // linear, α
+    vec4 albedo;             // .rgb; .a is the headlight's factor
+    vec4 radiance[4];
+    float ambient;
+    float specular;
+    float shininess;
+    vec2 origin;             // of the picture in what is drawn to, px
+} frame;
+
+// The camera as a scene has it in its own axes and unit.
+struct View {
     vec4 rows_hi[3];         // world → homogeneous pixel (x, y, w) for a position relative to the eye, each entry the sum of two
     vec4 rows_lo[3];         //   floats; .w is the row's value at the eye
     vec4 eye_hi;             // the eye, likewise
@@ -14,28 +38,26 @@ layout(set = 0, binding = 0, std140) uniform Frame {
     vec4 forward_hi;         //   (n·(ray[0] x + ray[1] y + ray[2]) − key_slope h) / n·forward otherwise,
     vec4 forward_lo;         //   where forward is the unit viewing direction
     vec4 flat_rows[2];       // world vector → pixel (x, y) at distance 1, whatever its extent along the viewing direction
-    vec2 viewport;           // px
-    float jacobian;          // |det| of the rows, or of parallel rays' x and y: scales √|V|
-    float near;
-    float key_slope;         // orthographic: −dκ/dz
-    float key_far;           // κ of the far plane
-    float key_gain;          // scales κ before it is summed, so that half floats hold it
-    float cutoff;            // F, σ
-    float epsilon;           // ε in radii
-    float visibility_lowpass; // px²
-    float attribute_lowpass;  // px²; see attribute_variance in splat.glsl
-    float ambient;
-    vec4 background;         // linear, α
-    vec4 albedo;             // .rgb; .a is the headlight's factor
-    float specular;
-    float shininess;
-    float kernel_a;          // of a Confetti kernel
-    float kernel_n;
     vec4 to_light[4];
-    vec4 radiance[4];
-    vec2 origin;             // of the picture in what is drawn to, px
-    float scale;             // of a scene that is placed (lib/placed.glsl): a unit of its own in the world's, and
-    float world_near;        //   near and key_slope as the world has them
-    float world_key_slope;
-    vec4 turn[3];            // columns: directions of its own axes in the world's
-} frame;
+    vec4 turn[3];            // columns: directions of its axes in the world's
+    float scale;             // its unit in the world's
+    float near;
+    float key_slope;
+    float jacobian;          // |det| of the rows, or of parallel rays' x and y: scales √|V|
+    uint first;              // number of the first point of the instance in the frame
+};
+
+// As many as a uniform buffer of 16 KiB has, which every device binds.
+const uint MOST_INSTANCES = 37;
+
+layout(set = 0, binding = 6, std140) uniform Views { View views[MOST_INSTANCES]; };
+
+// Fragments of several instances are drawn together, and do not know of which one they are.
+#ifdef OF_SCENE
+#ifndef FRAGMENT
+uint instance_number();
+#define view views[instance_number()]
+#endif
+#else
+#define view views[0]
+#endif

@@ -30,7 +30,7 @@ const float LEAST_FORESHORTENING = 0.1;
 
 // Homogeneous pixel of a vector of the world.
 vec3 to_pixel(vec3 v) {
-    return vec3(dot(frame.rows_hi[0].xyz, v), dot(frame.rows_hi[1].xyz, v), dot(frame.rows_hi[2].xyz, v));
+    return vec3(dot(view.rows_hi[0].xyz, v), dot(view.rows_hi[1].xyz, v), dot(view.rows_hi[2].xyz, v));
 }
 
 // How clear of the eye plane the disc is: above 0 where all of it is in front. S, T: homogeneous pixels of the 1-σ axes.
@@ -62,8 +62,8 @@ Image image_of_disc(Disc disc, float sigma, vec3 S, vec3 T) {
     vec2 o = FOOTPRINT == CONIC ? -vec2(dot(Dx, g), dot(Dy, g)) / q : vec2(0.0);
 
     float root = frame.cutoff * sqrt(q);
-    float sqrt_det = frame.jacobian * disc.aspect * (sigma / root) * (sigma / root) * abs(disc.facing.x) / root;
-    float lean = frame.cutoff * (PERSPECTIVE ? length(g) : sigma * length(frame.forward_hi.xyz * disc.axes));
+    float sqrt_det = view.jacobian * disc.aspect * (sigma / root) * (sigma / root) * abs(disc.facing.x) / root;
+    float lean = frame.cutoff * (PERSPECTIVE ? length(g) : sigma * length(view.forward_hi.xyz * disc.axes));
     Conic conic = CONFETTI ? fine_conic(disc, sqrt_det)
                            : conic_of(vec3(Dx, 0.0), vec3(Dy, 0.0), o, q, frame.cutoff, sqrt_det);
     align_sides(conic);
@@ -72,22 +72,22 @@ Image image_of_disc(Disc disc, float sigma, vec3 S, vec3 T) {
 
 // The part of a vector that is parallel to the image plane.
 vec3 flattened(vec3 v) {
-    return v - dot(v, frame.forward_hi.xyz) * frame.forward_hi.xyz;
+    return v - dot(v, view.forward_hi.xyz) * view.forward_hi.xyz;
 }
 
 // px of a vector by parallel projection, at distance 1.
 vec2 flat_pixel(vec3 v) {
-    return vec2(dot(frame.flat_rows[0].xyz, v), dot(frame.flat_rows[1].xyz, v));
+    return vec2(dot(view.flat_rows[0].xyz, v), dot(view.flat_rows[1].xyz, v));
 }
 
 // px of a unit length along y at distance 1: η.
 float focal_length() {
-    return length(frame.flat_rows[1].xyz);
+    return length(view.flat_rows[1].xyz);
 }
 
 // A sprite: the disc by parallel projection at its centre's scale, no flatter than LEAST_FORESHORTENING (botsch2003 §3.1–3.3).
 Image image_of_sprite(Disc disc, float sigma) {
-    float across = dot(disc.normal, frame.forward_hi.xyz);
+    float across = dot(disc.normal, view.forward_hi.xyz);
     vec3 along = flattened(disc.normal);
     // Not as √(1 − cosine²): that cancels on a sprite that faces the image plane.
     float sine = min(length(along), sqrt(1.0 - LEAST_FORESHORTENING * LEAST_FORESHORTENING));
@@ -106,7 +106,7 @@ Image image_of_sprite(Disc disc, float sigma) {
     vec2 extra = disc.aspect * sqrt(cosine * cosine - across * across) * flat_pixel(lean);
     // |V| is the sum of the squares of all 2×2 minors (Cauchy and Binet); the first is known in closed form.
     vec2 minors = vec2(s.x, t.x) * extra.y - vec2(s.y, t.y) * extra.x;
-    float area = length(vec3(frame.jacobian * disc.aspect * abs(across), minors));
+    float area = length(vec3(view.jacobian * disc.aspect * abs(across), minors));
     float size = sigma / disc.w.x * whole;
     float sqrt_det = size * size * area;
     vec3 Dx = size * vec3(s.x, t.x, extra.x);
@@ -114,14 +114,14 @@ Image image_of_sprite(Disc disc, float sigma) {
     Conic conic = conic_of(Dx, Dy, vec2(0.0), 1.0 / (frame.cutoff * frame.cutoff), frame.cutoff, sqrt_det);
 
     vec3 tilt = (across < 0.0 ? -1.0 : 1.0) * sine / (cosine * whole) * lean;
-    vec2 slope = vec2(dot(tilt, frame.ray_hi[0].xyz), dot(tilt, frame.ray_hi[1].xyz));
-    if (PERSPECTIVE) slope *= -disc.w.x / frame.near;
+    vec2 slope = vec2(dot(tilt, view.ray_hi[0].xyz), dot(tilt, view.ray_hi[1].xyz));
+    if (PERSPECTIVE) slope *= -disc.w.x / view.near;
     return Image(conic, sqrt_det, disc.radius * sine, slope);
 }
 
 // A square that faces the image plane (botsch2003 §3.1).
 Image image_of_square(Disc disc, float sigma) {
-    vec2 size = sigma / disc.w.x * vec2(length(frame.flat_rows[0].xyz), focal_length());
+    vec2 size = sigma / disc.w.x * vec2(length(view.flat_rows[0].xyz), focal_length());
     bool wide = size.x >= size.y;
     vec2 variance = wide ? size * size : size.yx * size.yx;
     vec2 axis = wide ? vec2(1.0, 0.0) : vec2(0.0, 1.0);

@@ -4,17 +4,17 @@ layout(constant_id = 28) const bool PAPER = false; // as published
 
 // px of a unit length across the view, at distance 1 in perspective.
 float focal_scale() {
-    return sqrt(frame.jacobian);
+    return sqrt(view.jacobian);
 }
 
 // Step of the ray through a pixel position for one unit of distance.
 vec3 ray_step(vec2 at) {
-    if (!PERSPECTIVE) return frame.forward_hi.xyz;
-    return (at.x * frame.ray_hi[0].xyz + at.y * frame.ray_hi[1].xyz + frame.ray_hi[2].xyz) / frame.near;
+    if (!PERSPECTIVE) return view.forward_hi.xyz;
+    return (at.x * view.ray_hi[0].xyz + at.y * view.ray_hi[1].xyz + view.ray_hi[2].xyz) / view.near;
 }
 
 vec2 across(vec3 v) {
-    return vec2(dot(frame.flat_rows[0].xyz, v), dot(frame.flat_rows[1].xyz, v));
+    return vec2(dot(view.flat_rows[0].xyz, v), dot(view.flat_rows[1].xyz, v));
 }
 
 // Unit vector from the surface at a pixel position to the eye.
@@ -36,17 +36,17 @@ float radii2(Sample s, vec2 centre, vec2 e, float h) {
         vec2 flat_normal = across(normal) / focal_scale();
         float size = length(flat_normal);
         vec2 along = size > 0.0 ? flat_normal / size : vec2(1.0, 0.0);
-        float minor = max(s.radius * abs(dot(normal, frame.forward_hi.xyz)), 0.5);
+        float minor = max(s.radius * abs(dot(normal, view.forward_hi.xyz)), 0.5);
         vec2 m = vec2(dot(along, e) / minor, (along.x * e.y - along.y * e.x) / max(s.radius, 0.5));
         return dot(m, m);
     }
     vec3 step = ray_step(centre);
-    vec2 a = across(step), lean = across(normal - step * dot(normal, frame.forward_hi.xyz));
-    vec3 x = frame.flat_rows[0].xyz, y = frame.flat_rows[1].xyz;
+    vec2 a = across(step), lean = across(normal - step * dot(normal, view.forward_hi.xyz));
+    vec3 x = view.flat_rows[0].xyz, y = view.flat_rows[1].xyz;
     vec3 seen = vec3(dot(x, x), dot(x, y), dot(y, y)) + vec3(a.x * a.x, a.x * a.y, a.y * a.y) -
                 vec3(lean.x * lean.x, lean.x * lean.y, lean.y * lean.y);
     float radius2 = s.radius * s.radius;
-    vec3 v = radius2 / frame.jacobian * seen + vec3(h, 0.0, h);
+    vec3 v = radius2 / view.jacobian * seen + vec3(h, 0.0, h);
     // The determinant by its closed form: as a difference it would be lost on a disc seen edge-on.
     float facing = radius2 * dot(normal, step);
     float determinant = facing * facing + h * (v.x + v.z - h);
@@ -57,12 +57,12 @@ float radii2(Sample s, vec2 centre, vec2 e, float h) {
 float depth_at(Sample s, vec2 centre, vec2 e) {
     float from = dot(s.normal, ray_step(centre)), met;
     if (PERSPECTIVE) {
-        float rise = dot(s.normal, frame.ray_hi[0].xyz * e.x + frame.ray_hi[1].xyz * e.y) / frame.near;
+        float rise = dot(s.normal, view.ray_hi[0].xyz * e.x + view.ray_hi[1].xyz * e.y) / view.near;
         met = s.depth * from / (from + rise);
         // Beyond the plane's horizon it is as far as it may be.
         if (!(met > 0.0)) met = 1e38;
     } else {
-        met = s.depth - dot(s.normal, frame.ray_hi[0].xyz * e.x + frame.ray_hi[1].xyz * e.y) / (frame.key_slope * from);
+        met = s.depth - dot(s.normal, view.ray_hi[0].xyz * e.x + view.ray_hi[1].xyz * e.y) / (view.key_slope * from);
     }
     float reach = s.radius / focal_scale() * (PERSPECTIVE ? s.depth : 1.0);
     return clamp(met, s.depth - reach, s.depth + reach);
@@ -79,8 +79,8 @@ float on_tube(Sample s, vec2 at, vec2 e, out vec3 normal) {
     vec3 tangent = s.normal, to_eye = to_eye_at(at);
     float radius = max(s.radius, THIN) / focal_scale() * (PERSPECTIVE ? s.depth : 1.0);
     // From the axis to the ray, at the axis's distance.
-    float reach = PERSPECTIVE ? s.depth / frame.near : 1.0 / frame.key_slope;
-    vec3 offset = reach * (frame.ray_hi[0].xyz * e.x + frame.ray_hi[1].xyz * e.y);
+    float reach = PERSPECTIVE ? s.depth / view.near : 1.0 / view.key_slope;
+    vec3 offset = reach * (view.ray_hi[0].xyz * e.x + view.ray_hi[1].xyz * e.y);
     offset -= dot(offset, tangent) * tangent;
     vec3 eye = to_eye - dot(to_eye, tangent) * tangent;
     float slope = dot(eye, eye);
@@ -92,6 +92,6 @@ float on_tube(Sample s, vec2 at, vec2 e, out vec3 normal) {
     float reached = middle + sqrt(max((radius * radius - dot(nearest, nearest)) / slope, 0.0));
     vec3 out_of = offset + reached * eye;
     if (dot(out_of, out_of) > 0.0) normal = normalize(out_of);
-    float rise = -reached * dot(to_eye, frame.forward_hi.xyz);
+    float rise = -reached * dot(to_eye, view.forward_hi.xyz);
     return s.depth - clamp(rise, -2.0 * radius, 2.0 * radius);
 }

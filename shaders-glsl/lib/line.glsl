@@ -75,12 +75,12 @@ bool segment_of(uint i, out Segment s) {
     s.from = end_of(first & 0x7fffffffu);
     s.to = end_of(elements[2 * i + 1]);
     s.strands = 1;
-    float a = s.from.vertex.distance - frame.near, b = s.to.vertex.distance - frame.near;
+    float a = s.from.vertex.distance - view.near, b = s.to.vertex.distance - view.near;
     if (!(min(s.from.vertex.radius, s.to.vertex.radius) >= 0.0) || !(max(a, b) >= 0.0)) return false;
     if (min(a, b) < 0.0) {
         End cut = between(s.from, s.to, a / (a - b));
         cut.along = unit_or(cut.along, vec3(0.0));
-        cut.vertex.distance = frame.near;
+        cut.vertex.distance = view.near;
         if (a < 0.0) s.from = cut;
         else s.to = cut;
     }
@@ -100,7 +100,7 @@ void offset_run(inout End end, vec3 offset) {
 // On a tube, at an angle from where it is nearest to the eye.
 void stave(inout End end, vec3 line, float angle) {
     vec3 along = dot(end.along, line) < 0.0 ? -end.along : end.along;
-    vec3 to_eye = PERSPECTIVE ? -normalize(end.vertex.hi) : -frame.forward_hi.xyz;
+    vec3 to_eye = PERSPECTIVE ? -normalize(end.vertex.hi) : -view.forward_hi.xyz;
     vec3 side = unit_or(cross(along, to_eye), vec3(0.0));
     offset_run(end, end.vertex.radius * (cos(angle) * cross(side, along) + sin(angle) * side));
 }
@@ -167,7 +167,7 @@ bool strand_of(Segment s, int k, out Strand strand) {
         strand.from.run_distance = s.from.vertex.distance;
         strand.to.run_distance = s.to.vertex.distance;
     }
-    if (min(strand.from.run_distance, strand.to.run_distance) < frame.near) return false;
+    if (min(strand.from.run_distance, strand.to.run_distance) < view.near) return false;
     if (!cut_to_picture(strand.from, strand.to)) return false;
     strand.start = screen_of(strand.from.run_hi, strand.from.run_lo);
     strand.extent = screen_of(strand.to.run_hi, strand.to.run_lo) - strand.start;
@@ -197,7 +197,7 @@ bool place_of(Segment segment, Strand s, int column, out Place place) {
     float radius = dot(place.weights, vec2(s.from.vertex.radius, s.to.vertex.radius));
     // An axis is behind what is seen of its tube.
     bool is_axis = segment.tube && !s.on_tube && !PAPER;
-    place.nearest = is_axis ? max(distance - radius, frame.near) : distance;
+    place.nearest = is_axis ? max(distance - radius, view.near) : distance;
     return place.at[across] >= 0 && place.at[across] < int(frame.viewport[across]) && !is_beyond_far(distance);
 }
 

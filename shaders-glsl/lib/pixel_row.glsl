@@ -2,6 +2,6 @@
 
 // A coordinate of the homogeneous pixel of a position relative to the eye.
 vec2 pixel_row(int i, vec3 hi, vec3 lo) {
-    vec2 at_eye = PERSPECTIVE ? vec2(0.0) : vec2(frame.rows_hi[i].w, frame.rows_lo[i].w);
-    return add(dot_double(hi, lo, frame.rows_hi[i].xyz, frame.rows_lo[i].xyz), at_eye);
+    vec2 at_eye = PERSPECTIVE ? vec2(0.0) : vec2(view.rows_hi[i].w, view.rows_lo[i].w);
+    return add(dot_double(hi, lo, view.rows_hi[i].xyz, view.rows_lo[i].xyz), at_eye);
 }

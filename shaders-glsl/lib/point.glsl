@@ -34,14 +34,14 @@ uint point_of(uint i, out Point point) {
     point = Point(ivec2(-1), vec2(0.0), 0.0, 0.0);
     if (!is_valid(i)) return INVALID;
     vec3 p = position_of(i), n = normal_of(i);
-    vec2 dx = two_sum(p.x, -frame.eye_hi.x), dy = two_sum(p.y, -frame.eye_hi.y), dz = two_sum(p.z, -frame.eye_hi.z);
-    vec3 hi = vec3(dx.x, dy.x, dz.x), lo = vec3(dx.y, dy.y, dz.y) - frame.eye_lo.xyz;
-    float z = dot_double(hi, lo, frame.forward_hi.xyz, frame.forward_lo.xyz).x;
+    vec2 dx = two_sum(p.x, -view.eye_hi.x), dy = two_sum(p.y, -view.eye_hi.y), dz = two_sum(p.z, -view.eye_hi.z);
+    vec3 hi = vec3(dx.x, dy.x, dz.x), lo = vec3(dx.y, dy.y, dz.y) - view.eye_lo.xyz;
+    float z = dot_double(hi, lo, view.forward_hi.xyz, view.forward_lo.xyz).x;
     // Tests are such that a coordinate which is no number fails them.
-    if (!(z >= frame.near && z > 0.0)) return BEHIND;
-    if ((PERSPECTIVE ? frame.near / z : 1.0 - (z - frame.near) * frame.key_slope) < frame.key_far) return BEHIND;
+    if (!(z >= view.near && z > 0.0)) return BEHIND;
+    if ((PERSPECTIVE ? view.near / z : 1.0 - (z - view.near) * view.key_slope) < frame.key_far) return BEHIND;
     point.distance = z;
-    point.facing = (PERSPECTIVE ? dot_double(hi, lo, n, vec3(0.0)) : dot_double(n, vec3(0.0), frame.forward_hi.xyz, frame.forward_lo.xyz)).x;
+    point.facing = (PERSPECTIVE ? dot_double(hi, lo, n, vec3(0.0)) : dot_double(n, vec3(0.0), view.forward_hi.xyz, view.forward_lo.xyz)).x;
     if (CULL_BACK && !is_two_sided(i) && point.facing >= 0.0) return BACK;
     if (point.facing == 0.0) return OUTSIDE;
 

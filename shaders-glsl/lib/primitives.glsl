@@ -21,7 +21,7 @@ struct Vertex {
 };
 
 float distance_of(vec3 hi, vec3 lo) {
-    return dot_double(hi, lo, frame.forward_hi.xyz, frame.forward_lo.xyz).x;
+    return dot_double(hi, lo, view.forward_hi.xyz, view.forward_lo.xyz).x;
 }
 
 DEFINE_COLOURS(vertex_colour, VERTEX_COLOURS, vertex_colours, 0, colour_words(VERTEX_COLOURS))
@@ -30,11 +30,11 @@ DEFINE_COORDINATES(vertex_coordinates, vertex_colours)
 Vertex vertex_of(uint i) {
     uint k = 7 * i;
     Vertex v;
-    vec2 x = two_sum(vertices[k], -frame.eye_hi.x);
-    vec2 y = two_sum(vertices[k + 1], -frame.eye_hi.y);
-    vec2 z = two_sum(vertices[k + 2], -frame.eye_hi.z);
+    vec2 x = two_sum(vertices[k], -view.eye_hi.x);
+    vec2 y = two_sum(vertices[k + 1], -view.eye_hi.y);
+    vec2 z = two_sum(vertices[k + 2], -view.eye_hi.z);
     v.hi = vec3(x.x, y.x, z.x);
-    v.lo = vec3(x.y, y.y, z.y) - frame.eye_lo.xyz;
+    v.lo = vec3(x.y, y.y, z.y) - view.eye_lo.xyz;
     v.direction = vec3(vertices[k + 3], vertices[k + 4], vertices[k + 5]);
     v.radius = vertices[k + 6];
     v.distance = distance_of(v.hi, v.lo);
@@ -51,12 +51,12 @@ vec2 screen_of(vec3 hi, vec3 lo) {
 }
 
 bool is_beyond_far(float distance) {
-    return (PERSPECTIVE ? frame.near / distance : 1.0 - (distance - frame.near) * frame.key_slope) < frame.key_far;
+    return (PERSPECTIVE ? view.near / distance : 1.0 - (distance - view.near) * view.key_slope) < frame.key_far;
 }
 
 // Below 0 if a plane with this normal at a position relative to the eye faces it.
 float facing_of(vec3 position, vec3 normal) {
-    return dot(PERSPECTIVE ? position : frame.forward_hi.xyz, normal);
+    return dot(PERSPECTIVE ? position : view.forward_hi.xyz, normal);
 }
 
 // The sample of the pixel with the centre `own` that a disc about `screen` is. What is nearest of it is at `nearest`. Colour and coordinates

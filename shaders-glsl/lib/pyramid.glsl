@@ -4,7 +4,7 @@
 #ifndef SAMPLES_ONLY
 layout(constant_id = 17) const bool SUM_COLOURS = false; // samples have colours
 
-// The level that is made, and how many there are. A pass that has window.glsl defines SAMPLES_ONLY, and touches level 0 alone.
+// The level that is made, and how many there are. A pass over a scene defines SAMPLES_ONLY, and touches level 0 alone.
 layout(push_constant) uniform Step { uint level; uint levels; } pass;
 #endif
 

@@ -7,7 +7,8 @@
 
 layout(local_size_x = 64) in;
 
-layout(set = 0, binding = 7, std430) readonly buffer LargeSplats { uint large_count; uint large_padding[63]; uint large[]; };
+#define LIST_ACCESS readonly
+#include "lib/large_splats.glsl"
 
 // The first and last pixel of row y that can be within `rim` σ; at least one, whose fragment is tested all the same.
 ivec2 row_span(Ellipse ellipse, float rim, int y, ivec2 low, ivec2 high) {
@@ -51,10 +52,10 @@ void scatter_box(Ellipse ellipse, ivec2 low, ivec2 high) {
 }
 
 void scatter_splat(uint i) {
-    Splat splat = splats[i];
+    Splat splat = splat_of(i);
     if (kind_of(splat) != (LARGE_SPLATS ? LARGE : SMALL)) return;
     vec2 variance = scatter_variance(variance_of(splat));
-    Ellipse ellipse = ellipse_of(splat, variance, clip_number(i));
+    Ellipse ellipse = ellipse_of(splat, variance, screen_clip_number(i));
     float stretch = stretch_of(splat, variance, ellipse.key_centre);
     vec2 reach = stretch * reach_of(splat.axis, variance);
     vec2 first = anchor_of(splat) + splat.offset - 0.5;
@@ -68,7 +69,8 @@ void scatter_splat(uint i) {
 
 void scatter_splats() {
     if (LARGE_SPLATS) {
-        for (uint k = gl_WorkGroupID.x; k < large_count; k += gl_NumWorkGroups.x) scatter_splat(large[k]);
+        uint count = large_splats[instance_number()];
+        for (uint k = gl_WorkGroupID.x; k < count; k += gl_NumWorkGroups.x) scatter_splat(large_splats[list_start() + k]);
     } else if (gl_GlobalInvocationID.x < window.count) {
         scatter_splat(gl_GlobalInvocationID.x);
     }

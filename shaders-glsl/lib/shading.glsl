@@ -16,12 +16,12 @@ vec3 blinn_phong(Shine shine, vec3 albedo, float lambert, float half_way, float 
     return diffuse * lambert * albedo + shine.specular * highlight;
 }
 
-vec3 lit(Shine shine, vec3 albedo, vec3 normal, vec3 view) {
-    float facing = dot(normal, view);
+vec3 lit(Shine shine, vec3 albedo, vec3 normal, vec3 to_eye) {
+    float facing = dot(normal, to_eye);
     vec3 sum = frame.ambient * albedo + blinn_phong(shine, albedo, facing, facing, frame.albedo.a);
     for (uint i = 0; i < LIGHTS; i++) {
-        vec3 light = frame.to_light[i].xyz;
-        float half_way = dot(normal, normalize(light + view));
+        vec3 light = view.to_light[i].xyz;
+        float half_way = dot(normal, normalize(light + to_eye));
         sum += frame.radiance[i].rgb * blinn_phong(shine, albedo, dot(normal, light), half_way, 1.0);
     }
     return sum;
@@ -34,11 +34,11 @@ vec3 line_normal(vec3 tangent, vec3 towards) {
 }
 
 // A line has every normal across it: towards each light, the one that is brightest (marroquim2008 §4.2; its highlights likewise).
-vec3 lit_line(Shine shine, vec3 albedo, vec3 tangent, vec3 view) {
-    float facing = dot(line_normal(tangent, view), view);
+vec3 lit_line(Shine shine, vec3 albedo, vec3 tangent, vec3 to_eye) {
+    float facing = dot(line_normal(tangent, to_eye), to_eye);
     vec3 sum = frame.ambient * albedo + blinn_phong(shine, albedo, facing, facing, frame.albedo.a);
     for (uint i = 0; i < LIGHTS; i++) {
-        vec3 light = frame.to_light[i].xyz, middle = normalize(light + view);
+        vec3 light = view.to_light[i].xyz, middle = normalize(light + to_eye);
         float lambert = dot(line_normal(tangent, light), light), half_way = dot(line_normal(tangent, middle), middle);
         sum += frame.radiance[i].rgb * blinn_phong(shine, albedo, lambert, half_way, 1.0);
     }

@@ -42,7 +42,31 @@ struct Splat {
     float key_disc; // κ of the disc's nearest point
 };
 
-layout(set = 0, binding = 1, std430) SPLAT_ACCESS buffer Splats { Splat splats[]; };
+#ifdef WRITES_SPLATS
+layout(set = 0, binding = 1, std430) writeonly buffer Splats { Splat splats[]; };
+#elif !defined(FRAGMENT)
+// The same in rows of four words.
+layout(set = 0, binding = 1, std430) readonly buffer Splats { uvec4 splat_rows[]; };
+#endif
+
+#ifndef FRAGMENT
+// Where the instance has splat i.
+uint splat_number(uint i) {
+    return instance_number() * window.room + i;
+}
+#endif
+
+#if !defined(WRITES_SPLATS) && !defined(FRAGMENT)
+// Splat i of the instance, by few wide loads.
+Splat splat_of(uint i) {
+    uint k = 4 * splat_number(i);
+    vec4 ellipse = uintBitsToFloat(splat_rows[k]);
+    uvec4 rest = splat_rows[k + 1];
+    vec4 plane_hi = uintBitsToFloat(splat_rows[k + 2]), plane_lo = uintBitsToFloat(splat_rows[k + 3]);
+    return Splat(ellipse.xy, ellipse.zw, uintBitsToFloat(rest.x), uintBitsToFloat(rest.y), rest.z, uintBitsToFloat(rest.w),
+                 plane_hi.xyz, plane_hi.w, plane_lo.xyz, plane_lo.w);
+}
+#endif
 
 // Kinds of splats.
 const uint NOT_DRAWN = 0, SMALL = 1, LARGE = 2;
@@ -140,7 +164,7 @@ struct Ellipse {
     vec3 plane_hi;
     vec3 plane_lo;
     float key_centre; // on_plane: κ of the plane at the centre
-    uint clip;        // see clip_number
+    uint clip;        // see screen_clip_number
 };
 
 // The plane's value at d px from the anchor. Seen edge-on, the plane runs through all depths within a pixel, and along its image large
@@ -197,13 +221,22 @@ vec2 fine_place(Ellipse ellipse, vec2 d) {
                 plane_at(vec3(ellipse.fine[1].x, ellipse.whitening.zw), ellipse.fine[1].yzw, d));
 }
 
+// The near plane's distance in the unit of the plane that a fragment sees.
+float fragment_near() {
+#ifdef FRAGMENT
+    return frame.near;
+#else
+    return view.near;
+#endif
+}
+
 // Whether the splat has a fragment at a pixel centre: it is within the rim and not clipped, and the tangent plane within the depth range.
 // m: place in the kernel along the ellipse's axes, σ; key: the plane's κ; rank: see clip_rank.
 bool splat_fragment(Ellipse ellipse, vec2 pixel, out vec2 m, out float key, out float rank) {
     vec2 d = pixel - ellipse.anchor;
     m = CONFETTI ? fine_place(ellipse, d) : place(ellipse, d);
     key = plane_at(ellipse.plane_hi, ellipse.plane_lo, d);
-    if (has_linear_depth()) key = key > 0.0 ? frame.near / key : 2.0;
+    if (has_linear_depth()) key = key > 0.0 ? fragment_near() / key : 2.0;
     // A homography that keeps the centre is affine but for the plane's distance.
     if (on_plane()) m /= clamp(key / ellipse.key_centre, 1.0 / MOST_STRETCH, MOST_STRETCH);
     bool inside =
@@ -213,6 +246,7 @@ bool splat_fragment(Ellipse ellipse, vec2 pixel, out vec2 m, out float key, out 
     return inside && rank > 0.0 && key > frame.key_far && key <= 1.0;
 }
 
+#ifndef FRAGMENT
 // The nearest κ within `stretch` cut-offs of the ellipse: no fragment's is above it.
 float nearest_of(Splat splat, vec2 variance, float stretch) {
     vec2 minor_axis = vec2(-splat.axis.y, splat.axis.x);
@@ -221,9 +255,10 @@ float nearest_of(Splat splat, vec2 variance, float stretch) {
     float centre = splat.plane_hi.x + dot(splat.plane_hi.yz, splat.offset);
     // More than what the rounding of any of these, or of a fragment's κ, takes away.
     float margin = 1e-6 * (abs(splat.plane_hi.x) + abs(centre) + rise) + 1e-30;
-    if (has_linear_depth()) return frame.near / max(centre - rise - margin, 1e-30);
+    if (has_linear_depth()) return view.near / max(centre - rise - margin, 1e-30);
     return centre + rise + margin;
 }
+#endif
 
 // κ that a fragment writes to visibility: moved away from the eye along the ray by the splat's ε, which divides it by 1 + ε/z. Never
 // 0: that means nothing is there.

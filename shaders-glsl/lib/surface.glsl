@@ -10,7 +10,7 @@ DEFINE_COORDINATES(coordinates_of, colours)
 
 // Unit vector from surfel i to the eye.
 vec3 to_eye_of(uint i) {
-    return PERSPECTIVE ? normalize(frame.eye_hi.xyz - position_of(i) + frame.eye_lo.xyz) : -frame.forward_hi.xyz;
+    return PERSPECTIVE ? normalize(view.eye_hi.xyz - position_of(i) + view.eye_lo.xyz) : -view.forward_hi.xyz;
 }
 
 // What the two targets sum of surfel i; `epsilon` tells its side.

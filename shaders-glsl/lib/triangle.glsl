@@ -23,13 +23,13 @@ bool triangle_of(uint i, out Triangle t) {
     t.screen[0] = from_anchor(t.a, t.anchor);
     t.screen[1] = from_anchor(t.b, t.anchor);
     t.screen[2] = from_anchor(t.c, t.anchor);
-    return min(min(t.a.radius, t.b.radius), t.c.radius) >= 0.0 && max(max(t.a.distance, t.b.distance), t.c.distance) >= frame.near;
+    return min(min(t.a.radius, t.b.radius), t.c.radius) >= 0.0 && max(max(t.a.distance, t.b.distance), t.c.distance) >= view.near;
 }
 
 // First and last pixel of a box about a triangle: the picture where a part of it is in front of the near plane.
 ivec4 box_of(Triangle t) {
     vec2 low = vec2(0.0), high = frame.viewport - 1.0;
-    if (min(min(t.a.distance, t.b.distance), t.c.distance) >= frame.near) {
+    if (min(min(t.a.distance, t.b.distance), t.c.distance) >= view.near) {
         vec2 a = t.screen[0], b = t.screen[1], c = t.screen[2];
         low = max(t.anchor + floor(min(min(a, b), c)), low);
         high = min(t.anchor + floor(max(max(a, b), c)), high);
@@ -49,9 +49,9 @@ float pass_edge(uint i, Vertex a, vec2 on_screen_a, uint j, Vertex b, vec2 on_sc
     }
     precise vec3 edge = (q.hi - p.hi) + (q.lo - p.lo);
     // The plane of the edge and the eye holds p: what is left of the ray is its way from there.
-    precise vec3 from = PERSPECTIVE ? p.hi + p.lo : frame.forward_hi.xyz;
+    precise vec3 from = PERSPECTIVE ? p.hi + p.lo : view.forward_hi.xyz;
     precise vec3 plane = from.yzx * edge.zxy - from.zxy * edge.yzx;
-    precise vec3 way = frame.ray_hi[0].xyz * e.x + frame.ray_hi[1].xyz * e.y;
+    precise vec3 way = view.ray_hi[0].xyz * e.x + view.ray_hi[1].xyz * e.y;
     precise float side = plane.x * way.x + plane.y * way.y + plane.z * way.z;
     return turned ? -side : side;
 }
@@ -67,7 +67,7 @@ bool weights_at(Triangle t, ivec2 at, out vec3 weights, out float distance) {
     if (!(all(greaterThanEqual(weights, vec3(0.0))) || all(lessThanEqual(weights, vec3(0.0)))) || sum == 0.0) return false;
     weights /= sum;
     distance = dot(weights, vec3(t.a.distance, t.b.distance, t.c.distance));
-    return distance >= frame.near && !is_beyond_far(distance);
+    return distance >= view.near && !is_beyond_far(distance);
 }
 
 Sample sample_at(Triangle t, ivec2 at, vec3 weights, float distance) {

@@ -12,7 +12,7 @@ const uint AT_CORNERS = 0x80000000u;
 
 // Whether rows of the frame's map to pixels keep the handedness of the world, seen along the view: 1 or −1.
 float handedness() {
-    return sign(dot(cross(frame.rows_hi[0].xyz, frame.rows_hi[1].xyz), frame.forward_hi.xyz));
+    return sign(dot(cross(view.rows_hi[0].xyz, view.rows_hi[1].xyz), view.forward_hi.xyz));
 }
 
 // The rotation from a kernel's axes on the screen to those of the surfel's square. Both kernels are circles in their own units, so that it is
@@ -20,7 +20,7 @@ float handedness() {
 // All vectors are the world's; `to_eye` runs from the surfel's centre.
 mat2 square_of(Splat splat, vec3 u, float aspect, vec3 normal, vec3 to_eye) {
     vec3 v = aspect * cross(normal, u);
-    mat3 rows = transpose(mat3(frame.rows_hi[0].xyz, frame.rows_hi[1].xyz, frame.rows_hi[2].xyz));
+    mat3 rows = transpose(mat3(view.rows_hi[0].xyz, view.rows_hi[1].xyz, view.rows_hi[2].xyz));
     vec3 centre = PERSPECTIVE ? rows * -to_eye : vec3(0.0, 0.0, 1.0);
     vec3 U = rows * u, V = rows * v;
     vec2 across = vec2(dot(splat.axis, U.xy), dot(splat.axis, V.xy)) - dot(splat.axis, centre.xy) / centre.z * vec2(U.z, V.z);

@@ -8,5 +8,5 @@ uint pixel_index(ivec2 pixel) {
 
 // Never 0: that means nothing is there.
 uint64_t winner(float key, uint i) {
-    return uint64_t(floatBitsToUint(key)) << 32 | uint64_t(~(window.first + i));
+    return uint64_t(floatBitsToUint(key)) << 32 | uint64_t(~(first_number() + i));
 }

@@ -43,9 +43,8 @@ pub fn describe(
     let streams: Vec<_> = scenes.iter().map(|placed| placed.scene.streams()).collect();
     let variant = Variant::new(&streams, perspective, settings, &options, rasterizer);
     check_lookups(&variant, scenes)?;
-    let own =
-        |(streams, placed): (_, &Placed<'_>)| SceneVariant::new(variant, streams, placed.placement.is_some());
-    let scenes = streams.into_iter().zip(scenes).map(own).collect();
+    let instanced = !blocks.instances.is_empty();
+    let scenes = streams.into_iter().map(|streams| SceneVariant::new(variant, streams, instanced)).collect();
     Ok(Description { blocks, variant, scenes })
 }
 

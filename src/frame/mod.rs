@@ -37,6 +37,7 @@ mod residents;
 pub(crate) mod resource;
 pub(crate) mod resources;
 pub(crate) mod scene_resources;
+mod splat_buffers;
 pub(crate) mod targets;
 pub mod times;
 pub(crate) mod uniforms;

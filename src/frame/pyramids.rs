@@ -176,7 +176,7 @@ impl Pyramids {
     }
 
     /// The workgroups of such a step.
-    pub(super) fn grid(&self, level: u32) -> [u32; 2] {
+    pub(super) fn grid(&self, level: u32) -> [u32; 3] {
         grid_over(self.level_pixels(level))
     }
 

@@ -3,7 +3,7 @@
 use super::pass::{Commands, Over, Pass, Programs, Steps};
 use super::pyramids::Pyramids;
 use super::resource::Resource;
-use super::scene_resources::{ElementPart, Place, SceneResources, SurfelPart};
+use super::scene_resources::{Run, SceneResources};
 use super::targets::RenderTargets;
 use super::variant::{SceneVariant, Variant};
 use crate::vk::shaders::Module;
@@ -16,20 +16,20 @@ use std::sync::Arc;
 
 /// Invocations in a workgroup of every shader.
 const WORKGROUP: u64 = 64;
-/// Workgroups among which large splats, or large triangles, are dealt out.
+/// Workgroups among which large splats, or large triangles, of the instances of a dispatch are dealt out.
 const LARGE_WORKGROUPS: u32 = 256;
 /// Workgroups in a row of a dispatch over pixels; every device allows as many.
 const WORKGROUPS_X: u32 = 32_768;
 
 /// Workgroups for so many invocations, in rows: for shaders that number them by both coordinates.
-pub fn grid_over(invocations: u64) -> [u32; 2] {
+pub fn grid_over(invocations: u64) -> [u32; 3] {
     let workgroups = invocations.div_ceil(WORKGROUP) as u32;
-    [workgroups.min(WORKGROUPS_X), workgroups.div_ceil(WORKGROUPS_X)]
+    [workgroups.min(WORKGROUPS_X), workgroups.div_ceil(WORKGROUPS_X), 1]
 }
 
 /// Workgroups in one row for so many invocations, for shaders that number them by one coordinate.
-fn row_over(invocations: u64) -> [u32; 2] {
-    [invocations.div_ceil(WORKGROUP) as u32, 1]
+fn row_over(invocations: u64) -> [u32; 3] {
+    [invocations.div_ceil(WORKGROUP) as u32, 1, 1]
 }
 
 /// What passes are recorded with.
@@ -40,8 +40,10 @@ pub struct Frame<'a> {
     pub view: &'a DescriptorSet,
     /// What passes draw to, and compute.
     pub targets: &'a RenderTargets,
-    /// The scenes where they stand, in the order of the frame.
-    pub places: Vec<Place<'a>>,
+    /// The instances of scenes for draws: in the order of the frame.
+    pub runs: Vec<Run<'a>>,
+    /// The same for dispatches, whose order does not matter: those of a batch together, as two dispatches must not write what one descriptor set names.
+    pub batches: Vec<Run<'a>>,
 }
 
 /// A pass with all that its commands need.
@@ -53,7 +55,7 @@ pub struct Prepared {
     pub targets: Option<DescriptorSet>,
     /// What it draws to; in render passes of its own.
     pub framebuffer: Option<Framebuffer>,
-    /// Its pipelines: those of the frame, or of each scene in its order.
+    /// Its pipelines: those of the frame, or of each instance in its order.
     pub pipelines: Vec<Pipelines>,
 }
 
@@ -95,91 +97,65 @@ impl Prepared {
         }
     }
 
-    /// Its pipelines with what they are of: all scenes, or each.
+    /// Its pipelines with what they are of: the frame, or each of these runs of instances.
     fn each<'a>(
         &'a self,
-        frame: &'a Frame<'_>,
-    ) -> impl Iterator<Item = (Over, &'a Pipeline, Option<&'a Place<'a>>)> {
-        let of_scenes = matches!(self.pass.programs, Programs::OfScene(_));
-        let places = frame.places.iter().map(Some).chain(std::iter::repeat(None));
-        let places = places.skip(if of_scenes { 0 } else { frame.places.len() });
-        let all = self.pipelines.iter().zip(places);
-        all.flat_map(|(pipelines, place)| pipelines.iter().map(move |(over, made)| (*over, made, place)))
+        runs: &'a [Run<'_>],
+    ) -> impl Iterator<Item = (Over, &'a Pipeline, Option<&'a Run<'a>>)> {
+        let runs: Vec<_> = match self.pass.programs {
+            Programs::OfScene(_) => runs.iter().map(|run| (run.place, Some(run))).collect(),
+            Programs::OfFrame(_) | Programs::None => vec![(0, None)],
+        };
+        let made = |(place, run)| self.pipelines.get(place).map(|pipelines| (pipelines, run));
+        let all = runs.into_iter().filter_map(made);
+        all.flat_map(|(pipelines, run)| pipelines.iter().map(move |(over, made)| (*over, made, run)))
     }
 
     /// Records a dispatch of each program.
     fn dispatch(&self, enc: &mut Encoder<'_, '_>, frame: &Frame<'_>) {
-        for (over, pipeline, place) in self.each(frame) {
+        for (over, pipeline, run) in self.each(&frame.batches) {
             let Pipeline::Compute(pipeline) = pipeline else { continue };
             let pyramid = frame.pyramid_of(self.pass);
             let three = |first, third| -> Vec<&DescriptorSet> {
                 [Some(first), self.targets.as_ref(), third].into_iter().flatten().collect()
             };
-            let sets = |first| three(first, pyramid);
-            let pixels = grid_over(frame.targets.pixels());
-            match (over, place) {
-                (Over::Pixels, _) => enc.dispatch(pipeline, &sets(frame.view), &(), pixels),
-                (Over::Tiles, _) => {
-                    enc.dispatch(pipeline, &sets(frame.view), &(), row_over(frame.targets.tiles()));
-                }
-                (Over::Surfels | Over::LargeSplats | Over::PixelsOfSurfels, Some(place)) => {
-                    for part in place.surfels(self.pass) {
-                        let workgroups = match over {
-                            Over::Surfels => row_over(part.count.into()),
-                            Over::LargeSplats => [LARGE_WORKGROUPS, 1],
-                            _ => pixels,
-                        };
-                        enc.dispatch(
-                            pipeline,
-                            &three(part.set, pyramid.or(part.counts)),
-                            &part.push(),
-                            workgroups,
-                        );
+            let Some(run) = run else {
+                let workgroups = match over {
+                    Over::Tiles => row_over(frame.targets.tiles()),
+                    _ => grid_over(frame.targets.pixels()),
+                };
+                enc.dispatch(pipeline, &three(frame.view, pyramid), &(), workgroups);
+                continue;
+            };
+            for part in run.parts(over.scope(), self.pass) {
+                let [x, y, _] = match over {
+                    Over::Surfels | Over::Lines | Over::Triangles => row_over(part.window.count.into()),
+                    Over::LargeSplats | Over::LargeTriangles => {
+                        [LARGE_WORKGROUPS.div_ceil(part.instances), 1, 1]
                     }
-                }
-                (_, Some(place)) => {
-                    let Some(part) = place.elements(over.scope()) else { continue };
-                    let workgroups = match over {
-                        Over::Lines | Over::Triangles => row_over(part.count.into()),
-                        Over::LargeTriangles => [LARGE_WORKGROUPS, 1],
-                        _ => pixels,
-                    };
-                    enc.dispatch(pipeline, &sets(part.set), &part.push(), workgroups);
-                }
-                (_, None) => {}
+                    _ => grid_over(frame.targets.pixels()),
+                };
+                let sets = three(part.set, pyramid.or(part.counts));
+                enc.dispatch(pipeline, &sets, &part.window, [x, y, part.instances]);
             }
         }
     }
 
     /// Records a draw of each program, inside a render pass; `push` are the push constants of what is drawn over the whole picture.
     pub fn draw(&self, draws: &mut Draws<'_>, frame: &Frame<'_>, push: &impl bytemuck::NoUninit) {
-        for (over, pipeline, place) in self.each(frame) {
+        for (over, pipeline, run) in self.each(&frame.runs) {
             let Pipeline::Draw(pipeline) = pipeline else { continue };
             let sets =
                 |first| -> Vec<&DescriptorSet> { std::iter::once(first).chain(&self.targets).collect() };
-            let Some(place) = place else {
+            let Some(run) = run else {
                 draws.draw(pipeline, &sets(frame.view), push, 3);
                 continue;
             };
-            for part in place.surfels(self.pass) {
-                let vertices = if over == Over::Points { part.count } else { 3 * part.count };
-                draws.draw(pipeline, &sets(part.set), &part.push(), vertices);
+            for part in run.parts(over.scope(), self.pass) {
+                let vertices = if over == Over::Points { 1 } else { 3 } * part.window.count;
+                draws.draw(pipeline, &sets(part.set), &part.window, vertices * part.instances);
             }
         }
-    }
-}
-
-impl SurfelPart<'_> {
-    /// The push constants of `lib/window.glsl`.
-    fn push(&self) -> [u32; 2] {
-        [self.count, self.first]
-    }
-}
-
-impl ElementPart<'_> {
-    /// The push constants of `lib/window.glsl`.
-    fn push(&self) -> [u32; 2] {
-        [self.count, self.first]
     }
 }
 
@@ -204,8 +180,8 @@ impl<'a> Frame<'a> {
     /// The scenes, each once, that may have a resource: counts may be there and not be wanted.
     fn scenes_with(&self, resource: Resource) -> impl Iterator<Item = &'a SceneResources> {
         let wanted = resource != Resource::Counts || self.variant.count;
-        let first = self.places.iter().filter(move |place| wanted && place.number == 0);
-        first.map(|place| place.scene)
+        let first = self.batches.iter().filter(move |run| wanted && run.first == 0);
+        first.map(|run| run.scene)
     }
 
     /// Empties these, as far as the frame has them.
@@ -286,8 +262,8 @@ mod tests {
     #[test]
     fn what_is_numbered_by_one_coordinate_is_in_one_row() {
         // As many as 65,535 workgroups have.
-        assert_eq!(row_over(4_194_240), [65_535, 1]);
-        let [x, y] = grid_over(4_194_240);
+        assert_eq!(row_over(4_194_240), [65_535, 1, 1]);
+        let [x, y, _] = grid_over(4_194_240);
         assert!(y > 1 && u64::from(x) * u64::from(y) * WORKGROUP >= 4_194_240);
     }
 }

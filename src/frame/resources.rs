@@ -7,18 +7,18 @@ use super::rasterizer::width_of_blended_sums;
 use super::recording::{Frame, Prepared};
 use super::renderer::RenderOptions;
 use super::residents::Residents;
-use super::scene_resources::{FRAME_STRIDE, Needs, Place, SceneResources};
+use super::scene_resources::{Needs, Run, SceneResources};
 use super::targets::{HostBindings, RenderTargets, check_size};
-use super::uniforms::Blocks;
+use super::uniforms::{self, Blocks};
 use super::variant::{SceneVariant, Variant};
 use crate::error::Result;
 use crate::geometry::Camera;
 use crate::scene::Scene;
-use crate::scene::instance::{Placed, first_numbers};
+use crate::scene::instance::Placed;
 use crate::settings::Precision;
 use crate::settings::Settings;
 use crate::settings::splatting::Visibility;
-use crate::vk::shaders::{layout, resource};
+use crate::vk::shaders::resource;
 use crate::vk::{Access, Binding, Buffer, DescriptorSet, Device, Framebuffer, Recorder};
 use std::any::Any;
 use std::sync::Arc;
@@ -97,7 +97,7 @@ impl FrameResources {
             scenes: Residents::default(),
             places: Vec::new(),
             pipelines: Pipelines::new(host),
-            view: Arc::new(Buffer::uniform(device, "frame", FRAME_STRIDE)?),
+            view: Arc::new(Buffer::uniform(device, "frame", uniforms::BYTES)?),
             options,
             device: device.clone(),
             retired,
@@ -197,9 +197,8 @@ impl FrameResources {
         size: [u32; 2],
         bindings: HostBindings<'_>,
     ) -> Result<()> {
-        let (variant, blocks) = (frame.variant, &frame.blocks);
-        self.make_scenes(scenes, frame, !blocks.scenes.is_empty())?;
-        self.make_present(scenes, variant, size)?;
+        self.make_scenes(scenes, frame)?;
+        self.make_present(scenes, frame.variant, size)?;
         self.make_passes(&frame.scenes, bindings)
     }
 
@@ -237,51 +236,67 @@ impl FrameResources {
     pub fn frame(&self) -> Option<(&Present, Frame<'_>)> {
         let present = self.present.as_ref()?;
         let scenes: Vec<_> = self.scenes().collect();
-        let places =
-            self.places.iter().map(|[scene, number]| Place { scene: scenes[*scene], number: *number });
+        let one = |place: usize| {
+            let [scene, number] = self.places[place];
+            Run { scene: scenes[scene], place, first: number as u64, count: 1 }
+        };
+        let (mut runs, mut batches): (Vec<Run<'_>>, Vec<Run<'_>>) = Default::default();
+        for run in (0..self.places.len()).map(one) {
+            match runs.last_mut() {
+                Some(last) if last.takes(&run) => last.count += 1,
+                _ => runs.push(run),
+            }
+            if run.first == 0 {
+                batches.extend(run.batches());
+            }
+        }
         let Present { variant, targets, view, .. } = present;
-        Some((present, Frame { variant, view: &view.set, targets, places: places.collect() }))
+        Some((present, Frame { variant, view: &view.set, targets, runs, batches }))
     }
 
     /// Records the writing of a frame's numbers.
     fn update(&self, rec: &mut Recorder<'_>, blocks: &Blocks) {
-        let mut own: Vec<Vec<u8>> = vec![Vec::new(); self.scenes().count()];
-        for ([scene, number], block) in self.places.iter().zip(&blocks.scenes) {
-            let (start, bytes) = (number * FRAME_STRIDE as usize, bytemuck::bytes_of(block));
-            own[*scene].resize(start + FRAME_STRIDE as usize, 0);
-            own[*scene][start..start + bytes.len()].copy_from_slice(bytes);
+        let of_scenes: Vec<_> = self.scenes().collect();
+        let mut own: Vec<Vec<u8>> = vec![Vec::new(); of_scenes.len()];
+        for ([scene, number], block) in self.places.iter().zip(&blocks.instances) {
+            let (start, bytes) =
+                (of_scenes[*scene].view_start(*number as u64) as usize, bytemuck::bytes_of(block));
+            own[*scene].resize(start + bytes.len(), 0);
+            own[*scene][start..].copy_from_slice(bytes);
         }
-        let view = (&*self.view, bytemuck::bytes_of(&blocks.view));
+        let bytes = blocks.bytes();
+        let view = (&*self.view, &*bytes);
         let frames =
-            self.scenes().zip(&own).filter_map(|(scene, bytes)| Some((scene.frames.as_ref()?, &**bytes)));
+            self.scenes().zip(&own).filter_map(|(scene, bytes)| Some((scene.views.as_ref()?, &**bytes)));
         rec.update(&std::iter::once(view).chain(frames).collect::<Vec<_>>());
     }
 
-    /// Makes what is not there of these scenes, for as many surfels as each has now; with numbers of each place's `own`, or those of the view.
-    fn make_scenes(&mut self, placed: &[Placed<'_>], frame: &Description, own: bool) -> Result<()> {
+    /// Makes what is not there of these scenes, for as many surfels as each has now.
+    fn make_scenes(&mut self, placed: &[Placed<'_>], frame: &Description) -> Result<()> {
+        let instanced = !frame.blocks.instances.is_empty();
         let variant = &frame.variant;
         let mut list: Vec<&Scene> = Vec::new();
         let mut first_of: Vec<usize> = Vec::new();
-        let mut firsts: Vec<Vec<u32>> = Vec::new();
+        let mut counts: Vec<u64> = Vec::new();
         self.places.clear();
         let mut known = std::collections::HashMap::new();
-        for ((i, Placed { scene, .. }), first) in placed.iter().enumerate().zip(first_numbers(placed)) {
+        for (i, Placed { scene, .. }) in placed.iter().enumerate() {
             let number = *known.entry(scene.id).or_insert(list.len());
             if number == list.len() {
                 list.push(scene);
                 first_of.push(i);
-                firsts.push(Vec::new());
+                counts.push(0);
             }
-            self.places.push([number, firsts[number].len()]);
-            firsts[number].push(first);
+            self.places.push([number, counts[number] as usize]);
+            counts[number] += 1;
         }
         let splats = variant.pull_push.is_none();
         let of_host = self.pipelines.has_host();
         let needs = |scene: usize| Needs {
             rasterizer: splats.then_some(variant.rasterizer),
             moved: of_host && splats && variant.visibility == Visibility::Axis,
-            own_frames: own,
-            places: room_for(firsts[scene].len() as u64),
+            instanced,
+            instances: room_for(counts[scene]),
         };
         let Self { scenes, retired, device, view, .. } = self;
         let fits = |made: &SceneResources, scene: usize| made.needs().cover(&needs(scene));
@@ -294,8 +309,8 @@ impl FrameResources {
             self.places.clear();
         }
         turned?;
-        for ((made, scene), firsts) in scenes.present_mut().zip(list).zip(firsts) {
-            made.show(scene.count(), firsts);
+        for ((made, scene), instances) in scenes.present_mut().zip(list).zip(counts) {
+            made.show(scene.count(), instances);
             if variant.count {
                 made.make_counts(device)?;
             }
@@ -373,10 +388,10 @@ impl FrameResources {
     }
 }
 
-/// Places for which room is made, so that a scene that comes to stand in one more is not made anew each time: an eighth more at most, or a quarter
-/// just beyond a power of two.
-fn room_for(places: u64) -> u64 {
-    places.next_multiple_of((places.next_power_of_two() / 8).max(1))
+/// Instances for which room is made, so that a scene is not made anew each time there is one more: an eighth more at most, or a quarter just beyond
+/// a power of two.
+fn room_for(instances: u64) -> u64 {
+    instances.next_multiple_of((instances.next_power_of_two() / 8).max(1))
 }
 
 impl Present {
@@ -409,15 +424,13 @@ fn prepared(
 
 impl ViewSet {
     fn new(device: &Arc<Device>, view: &Buffer, variant: &Variant, scene: Option<&Scene>) -> Result<Self> {
-        let frame = Binding::Uniform(view, 0, size_of::<layout::Frame>() as u64);
         let texture = scene.and_then(|scene| scene.texture.as_ref()).filter(|_| variant.texture.is_some());
         let materials = scene.and_then(|scene| scene.materials.as_ref()).filter(|_| variant.materials);
         let lookups = [
-            Some((&resource::FRAME, frame)),
             texture.map(|texture| (&resource::TEXTURE, Binding::whole(&texture.buffer))),
             materials.map(|materials| (&resource::MATERIALS, Binding::whole(&materials.buffer))),
         ];
-        let lookups: Vec<_> = lookups.into_iter().flatten().collect();
-        Ok(Self { set: DescriptorSet::new(device, &lookups)?, scene: scene.map(|scene| scene.id) })
+        let all: Vec<_> = uniforms::bindings(view).into_iter().chain(lookups.into_iter().flatten()).collect();
+        Ok(Self { set: DescriptorSet::new(device, &all)?, scene: scene.map(|scene| scene.id) })
     }
 }

@@ -1,50 +1,46 @@
-//! What frames make of a scene, for every place in which it stands: splats, lists and counts, and descriptor sets of all that its passes see.
+//! What frames make of a scene, for all its instances: splats, lists and counts, and descriptor sets of all that its passes see.
 
 use super::pass::{Pass, Scope};
 use super::passes::{footprint, visibility};
 use super::resource::Resource;
+use super::splat_buffers::{ALIGNMENT, Batches, LIST_HEADER, SPLAT, SplatBuffers};
+use super::uniforms::{self, VIEW};
 use super::variant::SceneVariant;
 use crate::error::Result;
 use crate::scene::{Elements, Scene};
 use crate::settings::Rasterizer;
-use crate::vk::shaders::{self, layout, resource};
+use crate::vk::shaders::layout::{Counts, Splat, Window};
+use crate::vk::shaders::{self, resource};
 use crate::vk::{Binding, Buffer, Commands, DescriptorSet, Device, Encoder, Recorder};
-use layout::{Counts, LargeSplats, ScreenClip, Splat};
 use std::ops::Range;
 use std::sync::Arc;
-
-/// Places in buffers start at multiples of this, bytes; no device aligns to more.
-const ALIGNMENT: u64 = 256;
-/// Bytes of a splat.
-const SPLAT: u64 = size_of::<Splat>() as u64;
-/// Bytes before the indices of a list of large splats.
-const LIST_HEADER: u64 = size_of::<LargeSplats>() as u64;
-/// Bytes from one place's numbers to the next's.
-pub const FRAME_STRIDE: u64 = (size_of::<layout::Frame>() as u64).next_multiple_of(ALIGNMENT);
 
 /// What frames make of a scene.
 pub struct SceneResources {
     // Sets go before what they name.
     sets: Sets,
-    /// Of the counts of each part of each place, where they are counted: descriptor set 2 of what counts.
+    /// Of the counts of each part, where they are counted: descriptor set 2 of what counts.
     count_sets: Vec<DescriptorSet>,
     splats: Option<SplatBuffers>,
     /// Those of discs moved away by ε, where they are wanted beside.
     moved: Option<SplatBuffers>,
-    /// Culled surfels by reason, of each part of each place.
+    /// Culled surfels by reason, of each part.
     counts: Option<Buffer>,
-    /// Numbers of triangles of many pixels, after how many there are, of each place.
+    /// Numbers of triangles of many pixels, a list an instance.
     large_triangles: Option<Buffer>,
-    /// The numbers of each place, where it is not the view's that the scene is seen by.
-    pub frames: Option<Buffer>,
+    /// The camera as each instance has it, where there are instances.
+    pub views: Option<Buffer>,
     parts: Vec<Range<u64>>,
+    /// Clips of each part.
+    clips: Vec<u32>,
     /// Lines and triangles: how many, and the number of the first.
     elements: [Option<[u32; 2]>; 2],
     needs: Needs,
+    batches: Batches,
     /// Surfels of the present frame.
     count: u64,
-    /// The numbers of the first points of the places of the present frame.
-    firsts: Vec<u32>,
+    /// Instances of the present frame.
+    instances: u64,
 }
 
 /// What a frame needs of a scene beside its variant.
@@ -54,136 +50,52 @@ pub struct Needs {
     pub rasterizer: Option<Rasterizer>,
     /// Splats of moved discs are kept beside the others.
     pub moved: bool,
-    /// Each place has numbers of its own.
-    pub own_frames: bool,
-    /// Places in which it stands.
-    pub places: u64,
-}
-
-/// Splats of all places of a scene, and what is made with them.
-struct SplatBuffers {
-    splats: Buffer,
-    /// Indices of splats of many pixels, a list a part; only for the compute rasterizer.
-    large: Option<Buffer>,
-    /// A [`ScreenClip`] a clip; only of a scene that has clips.
-    screen_clips: Option<Buffer>,
+    /// Each instance has the camera in its own axes.
+    pub instanced: bool,
+    /// How many instances there are.
+    pub instances: u64,
 }
 
 /// Descriptor sets 0 of a scene's passes.
 #[derive(Default)]
 struct Sets {
-    /// Place by place, part by part.
+    /// Batch by batch, part by part.
     surfels: Vec<DescriptorSet>,
     /// The same of moved discs.
     moved: Vec<DescriptorSet>,
-    /// Of lines and of triangles, place by place.
+    /// Of lines and of triangles, batch by batch.
     elements: [Vec<DescriptorSet>; 2],
 }
 
-/// A scene where it stands.
+/// Instances of a scene that follow each other in a frame, in one batch.
 #[derive(Clone, Copy)]
-pub struct Place<'a> {
+pub struct Run<'a> {
     /// The scene.
     pub scene: &'a SceneResources,
-    /// Which of its places in the frame it is.
-    pub number: usize,
+    /// Number of the first instance in the frame.
+    pub place: usize,
+    /// Its number among those of the scene.
+    pub first: u64,
+    /// How many they are.
+    pub count: u64,
 }
 
-/// As many surfels as one descriptor set names.
-pub struct SurfelPart<'a> {
+/// What one descriptor set names, of each instance of a run: a part of a scene's surfels, its lines or its triangles.
+pub struct Part<'a> {
     pub set: &'a DescriptorSet,
     /// Of its counts, if they are there.
     pub counts: Option<&'a DescriptorSet>,
-    /// How many.
-    pub count: u32,
-    /// The number of the first in the frame.
-    pub first: u32,
-}
-
-/// Lines or triangles of a scene.
-pub struct ElementPart<'a> {
-    pub set: &'a DescriptorSet,
-    /// How many.
-    pub count: u32,
-    /// The number of the first in the frame.
-    pub first: u32,
-}
-
-impl SplatBuffers {
-    fn new(device: &Arc<Device>, scene: &Scene, rasterizer: Rasterizer, places: u64) -> Result<Self> {
-        let buffer = |name, bytes: u64| Buffer::storage(device, name, (places * bytes).max(ALIGNMENT));
-        let clips =
-            scene.clip_windows().map(|_| screen_clip_starts(scene)).and_then(|starts| starts.last().copied());
-        Ok(Self {
-            splats: buffer("splats", splat_stride(scene))?,
-            large: (rasterizer == Rasterizer::Compute)
-                .then(|| buffer("large splats", list_stride(scene)))
-                .transpose()?,
-            screen_clips: clips.map(|bytes| buffer("screen clips", bytes)).transpose()?,
-        })
-    }
-
-    fn bytes(&self) -> u64 {
-        let optional = [&self.large, &self.screen_clips].map(|made| made.as_ref().map_or(0, Buffer::size));
-        self.splats.size() + optional.iter().sum::<u64>()
-    }
-
-    /// Splats, list and screen clips of a part of a place.
-    fn bindings(
-        &self,
-        scene: &Scene,
-        place: u64,
-        number: usize,
-    ) -> Vec<(&'static shaders::Resource, Binding<'_>)> {
-        let part = &scene.windows()[number];
-        let count = part.end - part.start;
-        let first = place * splat_stride(scene) + part.start * SPLAT;
-        let mut list = vec![(&resource::SPLATS, Binding::Storage(&self.splats, first, count * SPLAT))];
-        if let Some(large) = &self.large {
-            let start = list_start(scene, place, number);
-            list.push((&resource::LARGE_SPLATS, Binding::Storage(large, start, LIST_HEADER + 4 * count)));
-        }
-        if let Some(clips) = &self.screen_clips {
-            let starts = screen_clip_starts(scene);
-            let start = place * starts.last().copied().unwrap_or_default() + starts[number];
-            let bytes = starts[number + 1] - starts[number];
-            list.push((&resource::SCREEN_CLIPS, Binding::Storage(clips, start, bytes)));
-        }
-        list
-    }
-}
-
-/// Bytes of a place's splats.
-fn splat_stride(scene: &Scene) -> u64 {
-    (scene.capacity() * SPLAT).next_multiple_of(ALIGNMENT)
-}
-
-/// Bytes of a place's lists of large splats.
-fn list_stride(scene: &Scene) -> u64 {
-    (scene.windows().len() as u64 * LIST_HEADER + 4 * scene.capacity()).next_multiple_of(ALIGNMENT)
-}
-
-/// Where the list of a part of a place starts, bytes.
-fn list_start(scene: &Scene, place: u64, part: usize) -> u64 {
-    place * list_stride(scene) + part as u64 * LIST_HEADER + 4 * scene.windows()[part].start
-}
-
-/// Where the screen clips of each part of a place start, and where the last ends, bytes.
-fn screen_clip_starts(scene: &Scene) -> Vec<u64> {
-    let bytes = |clips: u64| (clips * size_of::<ScreenClip>() as u64).max(1).next_multiple_of(ALIGNMENT);
-    let mut starts = vec![0];
-    for clips in scene.clip_windows().unwrap_or_default() {
-        starts.push(starts[starts.len() - 1] + bytes(clips.count));
-    }
-    starts
+    /// The push constants of `lib/instance.glsl`.
+    pub window: Window,
+    pub instances: u32,
 }
 
 impl Needs {
     /// Whether what was made for these does for `others`, too.
     pub fn cover(&self, others: &Self) -> bool {
-        let same = |needs: &Self| (needs.rasterizer, needs.moved, needs.own_frames);
-        let enough = others.places..=4 * others.places;
-        same(self) == same(others) && enough.contains(&self.places)
+        let same = |needs: &Self| (needs.rasterizer, needs.moved, needs.instanced);
+        let enough = others.instances..=4 * others.instances;
+        same(self) == same(others) && enough.contains(&self.instances)
     }
 }
 
@@ -196,19 +108,23 @@ impl SceneResources {
         needs: Needs,
         view: &Buffer,
     ) -> Result<Self> {
-        let splats = |wanted: bool| {
-            let rasterizer = needs.rasterizer.filter(|_| wanted);
-            rasterizer
-                .map(|rasterizer| SplatBuffers::new(device, scene, rasterizer, needs.places))
-                .transpose()
-        };
         let kinds = scene.primitives.as_ref();
         let of = |elements: &Elements| [elements.count, elements.first];
         let triangles = kinds.and_then(|kinds| kinds.triangles.as_ref()).map(of);
-        let list = |[count, _]: [u32; 2]| {
-            Buffer::storage(device, "large triangles", needs.places * triangle_stride(count))
+        let listed = triangles.map_or(0, |[count, _]| u64::from(count));
+        let bytes = (scene.capacity() * SPLAT).max(4 * listed);
+        let range = device.capabilities().max_storage_buffer_range - LIST_HEADER;
+        let batches = Batches::new(needs.instances, scene.windows().len(), bytes, range);
+        let splats = |wanted: bool| {
+            let rasterizer = needs.rasterizer.filter(|_| wanted);
+            rasterizer.map(|rasterizer| SplatBuffers::new(device, scene, rasterizer, batches)).transpose()
         };
-        let frames = || Buffer::uniform(device, "frames of a scene", needs.places * FRAME_STRIDE);
+        let list = |_| {
+            let bytes = batches.count() * batches.stride(LIST_HEADER, 4 * listed);
+            Buffer::storage(device, "large triangles", bytes)
+        };
+        let views = || Buffer::uniform(device, "views", batches.count() * batches.stride(0, VIEW));
+        let clips = scene.clip_windows().unwrap_or_default();
         let mut made = Self {
             sets: Sets::default(),
             count_sets: Vec::new(),
@@ -216,12 +132,14 @@ impl SceneResources {
             moved: splats(needs.moved)?,
             counts: None,
             large_triangles: triangles.map(list).transpose()?,
-            frames: needs.own_frames.then(frames).transpose()?,
+            views: needs.instanced.then(views).transpose()?,
             parts: scene.windows().to_vec(),
+            clips: clips.iter().map(|clips| clips.count as u32).collect(),
             elements: [kinds.and_then(|kinds| kinds.lines.as_ref()).map(of), triangles],
             needs,
+            batches,
             count: 0,
-            firsts: Vec::new(),
+            instances: 0,
         };
         made.sets = made.make_sets(device, scene, variant, view)?;
         Ok(made)
@@ -232,9 +150,9 @@ impl SceneResources {
         &self.needs
     }
 
-    /// Frames from now on are of the first `count` surfels, in places whose first points have these numbers.
-    pub fn show(&mut self, count: u64, firsts: Vec<u32>) {
-        (self.count, self.firsts) = (count, firsts);
+    /// Frames from now on are of the first `count` surfels of so many instances.
+    pub fn show(&mut self, count: u64, instances: u64) {
+        (self.count, self.instances) = (count, instances);
     }
 
     /// Frames from now on may count: makes what they count in, if it is not there.
@@ -242,7 +160,7 @@ impl SceneResources {
         if self.counts.is_some() {
             return Ok(());
         }
-        let parts = self.needs.places * self.parts.len() as u64;
+        let parts = self.parts.len() as u64;
         let counts = Buffer::readback(device, "counts", (parts * ALIGNMENT).max(ALIGNMENT))?;
         let set = |part: u64| {
             let binding = Binding::Storage(&counts, part * ALIGNMENT, ALIGNMENT);
@@ -260,39 +178,43 @@ impl SceneResources {
         variant: &SceneVariant,
         view: &Buffer,
     ) -> Result<Sets> {
-        let frame = |place: u64| {
-            let size = size_of::<layout::Frame>() as u64;
-            let numbers = self.frames.as_ref().map(|frames| (frames, place * FRAME_STRIDE));
-            let (buffer, start) = numbers.unwrap_or((view, 0));
-            (&resource::FRAME, Binding::Uniform(buffer, start, size))
+        let batches = &self.batches;
+        let blocks = |batch: u64| {
+            let [frame, view] = uniforms::bindings(view);
+            let of_batch = |views| {
+                let (start, bytes) = (batch * batches.stride(0, VIEW), batches.len(batch) * VIEW);
+                (&resource::VIEWS, Binding::Uniform(views, start, bytes))
+            };
+            [frame, self.views.as_ref().map_or(view, of_batch)]
         };
         let of_surfels = variant.resources(Scope::Surfels);
-        let surfels = |buffers: Option<&SplatBuffers>, place: u64, number: usize| {
+        let surfels = |buffers: Option<&SplatBuffers>, batch: u64, number: usize| {
             let mut there = scene.bindings(number);
-            there.push(frame(place));
-            there.extend(buffers.into_iter().flat_map(|splats| splats.bindings(scene, place, number)));
+            there.extend(blocks(batch));
+            there.extend(buffers.into_iter().flat_map(|splats| splats.bindings(scene, batch, number)));
             wanted_set(device, &of_surfels, there)
         };
         let every = |buffers: Option<&SplatBuffers>| {
-            let places = 0..self.needs.places;
-            let parts = places.flat_map(|place| (0..self.parts.len()).map(move |part| (place, part)));
-            parts.map(|(place, part)| surfels(buffers, place, part)).collect::<Result<Vec<_>>>()
+            let parts =
+                (0..batches.count()).flat_map(|batch| (0..self.parts.len()).map(move |part| (batch, part)));
+            parts.map(|(batch, part)| surfels(buffers, batch, part)).collect::<Result<Vec<_>>>()
         };
         let elements = |kind: usize| {
             let wanted = variant.resources([Scope::Lines, Scope::Triangles][kind]);
-            let set = |place: u64| {
+            let set = |batch: u64| {
                 let mut there = scene.element_bindings(kind);
-                there.push(frame(place));
-                let large = self.large_triangles.as_ref().zip(self.elements[1]).map(|(list, [count, _])| {
-                    let bytes = 4 * (1 + u64::from(count));
-                    let binding = Binding::Storage(list, place * triangle_stride(count), bytes);
-                    (&resource::LARGE_TRIANGLES, binding)
-                });
-                there.extend(large);
+                there.extend(blocks(batch));
+                there.extend(self.large_triangles.as_ref().map(|lists| {
+                    let bytes = LIST_HEADER + batches.len(batch) * 4 * self.triangles();
+                    (
+                        &resource::LARGE_TRIANGLES,
+                        Binding::Storage(lists, batch * self.triangle_stride(), bytes),
+                    )
+                }));
                 wanted_set(device, &wanted, there)
             };
-            let places = if self.elements[kind].is_some() { self.needs.places } else { 0 };
-            (0..places).map(set).collect::<Result<Vec<_>>>()
+            let count = if self.elements[kind].is_some() { batches.count() } else { 0 };
+            (0..count).map(set).collect::<Result<Vec<_>>>()
         };
         Ok(Sets {
             surfels: every(self.splats.as_ref())?,
@@ -318,36 +240,51 @@ impl SceneResources {
         of_splats.chain(other)
     }
 
-    /// Empties a list, or counts, of the present places.
+    /// Empties lists, or counts, of the present instances.
     pub fn clear(&self, enc: &mut Encoder<'_, '_>, resource: Resource) {
-        for buffer in self.buffers(resource) {
-            match resource {
-                Resource::LargeSplats => {
-                    self.list_starts().for_each(|start| enc.zero_range(buffer, start, 4))
+        let batches = self.present_batches();
+        match resource {
+            Resource::LargeSplats => {
+                for splats in [&self.splats, &self.moved].into_iter().flatten() {
+                    let Some(lists) = &splats.large else { continue };
+                    let starts = batches.clone().flat_map(|batch| splats.list_starts(batch, &self.parts));
+                    starts.for_each(|start| enc.zero_range(lists, start, LIST_HEADER));
                 }
-                Resource::LargeTriangles => {
-                    let count = self.elements[1].map_or(0, |[count, _]| count);
-                    let starts = (0..self.firsts.len() as u64).map(|place| place * triangle_stride(count));
-                    starts.for_each(|start| enc.zero_range(buffer, start, 4));
-                }
-                _ => enc.zero(buffer),
             }
+            Resource::LargeTriangles => {
+                let Some(lists) = &self.large_triangles else { return };
+                let starts = batches.map(|batch| batch * self.triangle_stride());
+                starts.for_each(|start| enc.zero_range(lists, start, LIST_HEADER));
+            }
+            _ => self.buffers(resource).for_each(|buffer| enc.zero(buffer)),
         }
     }
 
-    /// Where the lists of large splats of the present places start, bytes.
-    fn list_starts(&self) -> impl Iterator<Item = u64> {
-        let capacity = self.parts.last().map_or(0, |part| part.end);
-        let stride = (self.parts.len() as u64 * LIST_HEADER + 4 * capacity).next_multiple_of(ALIGNMENT);
-        (0..self.firsts.len() as u64).flat_map(move |place| {
-            let starts = self.parts.iter().zip(0u64..);
-            starts.map(move |(part, number)| place * stride + number * LIST_HEADER + 4 * part.start)
-        })
+    /// How many triangles there are.
+    fn triangles(&self) -> u64 {
+        self.elements[1].map_or(0, |[count, _]| u64::from(count))
     }
 
-    /// Surfels of the present frame, in all places.
+    /// Bytes of a batch's lists of large triangles.
+    fn triangle_stride(&self) -> u64 {
+        self.batches.stride(LIST_HEADER, 4 * self.triangles())
+    }
+
+    /// Where the camera of an instance is in `views`, bytes.
+    pub fn view_start(&self, instance: u64) -> u64 {
+        let [batch, number] = self.batches.of(instance);
+        batch * self.batches.stride(0, VIEW) + number * VIEW
+    }
+
+    /// The batches that instances of the present frame are in.
+    fn present_batches(&self) -> Range<u64> {
+        let last = self.instances.checked_sub(1).map(|last| self.batches.of(last)[0]);
+        0..last.map_or(0, |last| last + 1)
+    }
+
+    /// Surfels of the present frame, in all instances.
     pub fn count(&self) -> u64 {
-        self.count * self.firsts.len() as u64
+        self.count * self.instances
     }
 
     /// Culled surfels of the last counted frame, by reason; it must be over.
@@ -361,17 +298,19 @@ impl SceneResources {
         splats.sum::<u64>() + self.counts.as_ref().map_or(0, Buffer::size)
     }
 
-    /// Copies the splats of the last frame, one a surfel, to the CPU, place by place.
+    /// Copies the splats of the last frame, one a surfel, to the CPU, instance by instance.
     pub fn read(&self, device: &Arc<Device>) -> Result<Vec<Vec<Splat>>> {
         let (size, capacity) = (self.count * SPLAT, self.parts.last().map_or(0, |part| part.end));
-        let Some(SplatBuffers { splats, .. }) = self.splats.as_ref().filter(|_| size > 0) else {
-            return Ok(vec![Vec::new(); self.firsts.len()]);
+        let Some(made) = self.splats.as_ref().filter(|_| size > 0) else {
+            return Ok(vec![Vec::new(); self.instances as usize]);
         };
-        let stride = (capacity * SPLAT).next_multiple_of(ALIGNMENT);
-        let target = Buffer::readback(device, "read splats", self.firsts.len() as u64 * stride)?;
-        Commands::new(device, false)?.run(|rec| copy_to_host(rec, splats, &target))?;
-        let places = target.bytes().chunks(stride as usize);
-        Ok(places.map(|bytes| bytemuck::pod_collect_to_vec(&bytes[..size as usize])).collect())
+        let target = Buffer::readback(device, "read splats", made.splats.size())?;
+        Commands::new(device, false)?.run(|rec| copy_to_host(rec, &made.splats, &target))?;
+        let of_instance = |instance: u64| {
+            let start = made.splats_start(instance, capacity) as usize;
+            bytemuck::pod_collect_to_vec(&target.bytes()[start..start + size as usize])
+        };
+        Ok((0..self.instances).map(of_instance).collect())
     }
 
     /// Bytes of the counts; 0 where nothing is counted.
@@ -397,11 +336,6 @@ fn copy_to_host(rec: &mut Recorder<'_>, from: &Buffer, to: &Buffer) {
     rec.wait(&[to.with(Access::HOST_READ)]);
 }
 
-/// Bytes of a place's list of large triangles.
-fn triangle_stride(triangles: u32) -> u64 {
-    (4 * (1 + u64::from(triangles))).next_multiple_of(ALIGNMENT)
-}
-
 /// Culled surfels by reason, of the counts of all parts.
 pub fn counts_in(bytes: &[u8]) -> Counts {
     let parts = bytes.chunks_exact(ALIGNMENT as usize);
@@ -411,32 +345,59 @@ pub fn counts_in(bytes: &[u8]) -> Counts {
     Counts { culled: culled.fold([0; 5], add) }
 }
 
-impl<'a> Place<'a> {
-    /// The surfels that a pass sees, part by part.
-    pub fn surfels(&self, pass: &Pass) -> impl Iterator<Item = SurfelPart<'a>> {
-        let Self { scene, number } = *self;
+impl<'a> Run<'a> {
+    /// Whether another begins where this ends, in the same batch.
+    pub fn takes(&self, other: &Self) -> bool {
+        std::ptr::eq(self.scene, other.scene)
+            && other.first == self.first + self.count
+            && self.scene.batches.of(other.first)[0] == self.scene.batches.of(self.first)[0]
+    }
+
+    /// All instances of its scene, batch by batch.
+    pub fn batches(self) -> impl Iterator<Item = Self> {
+        let batches = self.scene.present_batches().map(move |batch| self.scene.batches.range(batch));
+        let present = batches.map(move |range| range.start..range.end.min(self.scene.instances));
+        present.map(move |range| Self { first: range.start, count: range.end - range.start, ..self })
+    }
+
+    /// What a pass sees of this, descriptor set by descriptor set.
+    pub fn parts(&self, scope: Scope, pass: &Pass) -> Vec<Part<'a>> {
+        match scope {
+            Scope::Surfels => self.surfels(pass).collect(),
+            Scope::Lines | Scope::Triangles | Scope::View => self.elements(scope).into_iter().collect(),
+        }
+    }
+
+    fn surfels(&self, pass: &Pass) -> impl Iterator<Item = Part<'a>> {
+        let (scene, [batch, instance]) = (self.scene, self.scene.batches.of(self.first));
         let moved = [&raw const footprint::MOVED, &raw const visibility::DRAWN].contains(&&raw const *pass);
         let sets = if moved && scene.moved.is_some() { &scene.sets.moved } else { &scene.sets.surfels };
         let parts = scene.parts.len();
-        let own = parts * number..parts * (number + 1);
-        let counts = scene.count_sets.get(own.clone()).unwrap_or_default();
-        let counts = counts.iter().map(Some).chain(std::iter::repeat(None));
-        let first = scene.firsts[number];
-        sets[own].iter().zip(&scene.parts).zip(counts).map(move |((set, part), counts)| {
-            let count = scene.count.saturating_sub(part.start).min(part.end - part.start);
-            SurfelPart { set, counts, count: count as u32, first: first + part.start as u32 }
+        let sets = &sets[parts * batch as usize..parts * (batch as usize + 1)];
+        let instances = self.count as u32;
+        sets.iter().zip(&scene.parts).enumerate().map(move |(number, (set, part))| {
+            let room = part.end - part.start;
+            let window = Window {
+                count: scene.count.saturating_sub(part.start).min(room) as u32,
+                first: part.start as u32,
+                room: room as u32,
+                clips: scene.clips.get(number).copied().unwrap_or_default(),
+                instance: instance as u32,
+            };
+            Part { set, counts: scene.count_sets.get(number), window, instances }
         })
     }
 
-    /// Lines or triangles of the scene, if there are any.
-    pub fn elements(&self, scope: Scope) -> Option<ElementPart<'a>> {
+    fn elements(&self, scope: Scope) -> Option<Part<'a>> {
         let kind = match scope {
             Scope::Lines => 0,
             Scope::Triangles => 1,
             Scope::View | Scope::Surfels => return None,
         };
-        let [count, start] = self.scene.elements[kind]?;
-        let set = self.scene.sets.elements[kind].get(self.number)?;
-        Some(ElementPart { set, count, first: self.scene.firsts[self.number] + start })
+        let [batch, instance] = self.scene.batches.of(self.first);
+        let [count, first] = self.scene.elements[kind]?;
+        let set = self.scene.sets.elements[kind].get(batch as usize)?;
+        let window = Window { count, first, room: count, clips: 0, instance: instance as u32 };
+        Some(Part { set, counts: None, window, instances: self.count as u32 })
     }
 }

@@ -1,98 +1,136 @@
 //! The numbers that the shaders need of camera, settings and picture size (`shaders-glsl/lib/frame.glsl`), from float64.
 
+use super::splat_buffers::ALIGNMENT;
 use crate::error::{Error, Result};
 use crate::geometry::{Bounds, Camera, Projection};
-use crate::scene::instance::{Placed, Similarity};
+use crate::scene::instance::{Placed, Similarity, first_numbers};
 use crate::settings::Settings;
 use crate::settings::splatting::Kernel;
-use crate::vk::shaders::layout::Frame;
+use crate::vk::shaders::layout::{Frame, View};
+use crate::vk::shaders::{self, resource};
+use crate::vk::{Binding, Buffer};
 use bytemuck::Zeroable;
 use glam::{DMat3, DVec3, DVec4, Vec3};
 
+/// Bytes of the camera as an instance has it.
+pub const VIEW: u64 = size_of::<View>() as u64;
+/// Where the camera begins in a buffer that it shares with what all instances have alike, bytes.
+const VIEW_START: u64 = (size_of::<Frame>() as u64).next_multiple_of(ALIGNMENT);
+/// Bytes of such a buffer.
+pub const BYTES: u64 = VIEW_START + VIEW;
+
+/// Where shaders see what such a buffer holds.
+pub fn bindings(buffer: &Buffer) -> [(&'static shaders::Resource, Binding<'_>); 2] {
+    let frame = Binding::Uniform(buffer, 0, size_of::<Frame>() as u64);
+    [(&resource::FRAME, frame), (&resource::VIEWS, Binding::Uniform(buffer, VIEW_START, VIEW))]
+}
+
 /// The numbers of a frame.
 pub struct Blocks {
-    /// Those of passes over pixels, and of the only scene if that stands as it is.
-    pub view: Frame,
-    /// Otherwise each scene's own.
-    pub scenes: Vec<Frame>,
+    /// What all instances have alike.
+    pub frame: Frame,
+    /// The camera for passes over pixels, and for the only scene if that stands as it is.
+    pub view: View,
+    /// Otherwise for each instance.
+    pub instances: Vec<View>,
 }
 
 impl Blocks {
     /// Those of a frame of these scenes.
     pub fn new(camera: &Camera, settings: &Settings, size: [u32; 2], scenes: &[Placed<'_>]) -> Result<Self> {
         let bounds = scenes.iter().map(Placed::bounds).reduce(|all, bounds| all.with(&bounds));
-        if let [Placed { scene, placement: None }] = scenes {
-            let view = frame(camera, settings, size, scene.origin(), bounds.as_ref())?;
-            return Ok(Self { view, scenes: Vec::new() });
-        }
-        let view = frame(camera, settings, size, DVec3::ZERO, bounds.as_ref())?;
-        let own = |placed: &Placed<'_>| {
-            let origin = placed.scene.origin();
-            let camera = placed.placement.map_or(*camera, |placement| placement.seen_by(camera));
-            let mut block = frame(&camera, settings, size, origin, None)?;
-            block.key_gain = view.key_gain;
-            if let Some(placement) = &placed.placement {
-                place(&mut block, &view, settings, placement);
-            }
-            Ok(block)
+        let alone = match scenes {
+            [Placed { scene, placement: None }] => Some(scene.origin()),
+            _ => None,
         };
-        let scenes = scenes.iter().map(own).collect::<Result<_>>()?;
-        Ok(Self { view, scenes })
+        let origin = alone.unwrap_or_default();
+        let (lens, projection) = lens(camera, size)?;
+        let mut view = view(&lens, &projection, origin);
+        turn(&mut view, settings, &Similarity::IDENTITY);
+        let frame = frame(settings, size, (&lens, &projection), bounds.as_ref());
+        let listed = if alone.is_some() { &[] } else { scenes };
+        let instances = listed.iter().zip(first_numbers(scenes));
+        let instances = instances.map(|(placed, first)| instance(camera, settings, size, placed, first));
+        Ok(Self { frame, view, instances: instances.collect::<Result<_>>()? })
     }
 
-    /// Each block.
-    pub fn each(&mut self) -> impl Iterator<Item = &mut Frame> {
-        std::iter::once(&mut self.view).chain(&mut self.scenes)
+    /// What all instances have alike, and the camera, as a buffer has them.
+    pub fn bytes(&self) -> Vec<u8> {
+        let mut bytes = bytemuck::bytes_of(&self.frame).to_vec();
+        bytes.resize(VIEW_START as usize, 0);
+        bytes.extend_from_slice(bytemuck::bytes_of(&self.view));
+        bytes
     }
 }
 
-/// What of a placed scene's block tells of the world, and what of the world comes to it turned.
-fn place(block: &mut Frame, view: &Frame, settings: &Settings, placement: &Similarity) {
+/// The camera as a placed scene has it, whose first point has this number in the frame.
+fn instance(
+    camera: &Camera,
+    settings: &Settings,
+    size: [u32; 2],
+    placed: &Placed<'_>,
+    first: u32,
+) -> Result<View> {
+    let placement = placed.placement.unwrap_or(Similarity::IDENTITY);
+    let camera = placed.placement.map_or(*camera, |placement| placement.seen_by(camera));
+    let (lens, projection) = lens(&camera, size)?;
+    let mut view = view(&lens, &projection, placed.scene.origin());
+    view.first = first;
+    turn(&mut view, settings, &placement);
+    Ok(view)
+}
+
+/// What a scene that is placed needs of the world: its axes and unit there, and the lights in its own axes.
+fn turn(view: &mut View, settings: &Settings, placement: &Similarity) {
     let turn = placement.rotation();
-    block.scale = placement.scale() as f32;
-    block.world_near = view.near;
-    block.world_key_slope = view.key_slope;
-    for (column, axis) in block.turn.iter_mut().zip([turn.x_axis, turn.y_axis, turn.z_axis]) {
+    view.scale = placement.scale() as f32;
+    for (column, axis) in view.turn.iter_mut().zip([turn.x_axis, turn.y_axis, turn.z_axis]) {
         column[..3].copy_from_slice(&axis.as_vec3().to_array());
     }
-    for (own, light) in block.to_light.iter_mut().zip(&settings.lighting.directional) {
+    for (own, light) in view.to_light.iter_mut().zip(&settings.lighting.directional) {
         let to_light = turn.transpose() * Vec3::from_array(light.to_light).as_dvec3();
         own[..3].copy_from_slice(&to_light.as_vec3().to_array());
     }
 }
 
-/// The frame block for positions relative to `origin`; `bounds` are those of all that is seen, in the camera's world.
-fn frame(
-    camera: &Camera,
-    settings: &Settings,
-    size: [u32; 2],
-    origin: DVec3,
-    bounds: Option<&Bounds>,
-) -> Result<Frame> {
-    let projection = camera.projection()?;
-    let lens = Lens::new(camera, &projection, size)?;
-    let mut frame = Frame::zeroed();
+/// The camera for positions relative to `origin`.
+fn view(lens: &Lens, projection: &Projection, origin: DVec3) -> View {
+    let mut view = View::zeroed();
     for (i, row) in lens.rows.into_iter().enumerate() {
-        [frame.rows_hi[i], frame.rows_lo[i]] = split(row);
+        [view.rows_hi[i], view.rows_lo[i]] = split(row);
     }
-    [frame.eye_hi, frame.eye_lo] = split((lens.eye - origin).extend(0.0));
-    [frame.forward_hi, frame.forward_lo] = split(lens.forward.extend(0.0));
+    [view.eye_hi, view.eye_lo] = split((lens.eye - origin).extend(0.0));
+    [view.forward_hi, view.forward_lo] = split(lens.forward.extend(0.0));
     for (i, row) in lens.rows.iter().take(2).enumerate() {
         let row = row.truncate();
         let flat = row - row.dot(lens.forward) * lens.forward;
-        frame.flat_rows[i][..3].copy_from_slice(&flat.as_vec3().to_array());
+        view.flat_rows[i][..3].copy_from_slice(&flat.as_vec3().to_array());
     }
-    let key = DepthKey::new(&projection);
-    for (i, column) in key.rays(&lens, &projection).into_iter().enumerate() {
-        [frame.ray_hi[i], frame.ray_lo[i]] = split(column.extend(0.0));
+    let key = DepthKey::new(projection);
+    for (i, column) in key.rays(lens, projection).into_iter().enumerate() {
+        [view.ray_hi[i], view.ray_lo[i]] = split(column.extend(0.0));
     }
+    view.jacobian = lens.jacobian as f32;
+    view.near = projection.near as f32;
+    view.key_slope = key.slope as f32;
+    view
+}
+
+/// What all scenes have alike; `bounds` are those of all that is seen, in the camera's world.
+fn frame(
+    settings: &Settings,
+    size: [u32; 2],
+    (lens, projection): (&Lens, &Projection),
+    bounds: Option<&Bounds>,
+) -> Frame {
+    let mut frame = Frame::zeroed();
+    let key = DepthKey::new(projection);
     frame.viewport = size.map(|side| side as f32);
-    frame.jacobian = lens.jacobian as f32;
     frame.near = projection.near as f32;
     frame.key_slope = key.slope as f32;
     frame.key_far = key.far as f32;
     let distance = bounds.map_or(projection.near, |bounds| lens.distance(bounds.centre()));
-    frame.key_gain = key.gain(&projection, distance) as f32;
+    frame.key_gain = key.gain(projection, distance) as f32;
     frame.cutoff = settings.cutoff;
     frame.epsilon = settings.epsilon;
     if let Kernel::Confetti { a, n } = settings.splatting.kernel {
@@ -100,11 +138,6 @@ fn frame(
     }
     frame.visibility_lowpass = settings.least_lowpass();
     frame.attribute_lowpass = settings.attribute_lowpass();
-    shading(&mut frame, settings);
-    Ok(frame)
-}
-
-fn shading(frame: &mut Frame, settings: &Settings) {
     let light = &settings.lighting;
     frame.background = settings.background.map_or([0.0; 4], |[r, g, b]| [r, g, b, 1.0]);
     let [r, g, b] = light.albedo;
@@ -112,10 +145,15 @@ fn shading(frame: &mut Frame, settings: &Settings) {
     frame.ambient = light.ambient;
     frame.specular = light.specular;
     frame.shininess = light.shininess;
-    for (i, directional) in light.directional.iter().enumerate() {
-        frame.to_light[i][..3].copy_from_slice(&directional.to_light);
-        frame.radiance[i][..3].copy_from_slice(&directional.radiance);
+    for (radiance, directional) in frame.radiance.iter_mut().zip(&light.directional) {
+        radiance[..3].copy_from_slice(&directional.radiance);
     }
+    frame
+}
+
+fn lens(camera: &Camera, size: [u32; 2]) -> Result<(Lens, Projection)> {
+    let projection = camera.projection()?;
+    Ok((Lens::new(camera, &projection, size)?, projection))
 }
 
 /// A vector as the sum of two float vectors: 48 bits of its coordinates.

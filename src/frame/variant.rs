@@ -88,8 +88,8 @@ pub struct SceneVariant {
     pub layout: SurfelLayout,
     /// How it holds colours that the shaders have to look at to know what is valid, and whether they have to look at anything.
     pub unchecked: Option<ColourStream>,
-    /// It is seen in axes and a unit of its own.
-    pub placed: bool,
+    /// There are instances, each seen in its own axes and unit.
+    pub instanced: bool,
 }
 
 /// Which of the streams that it may lack a scene has, beside those that decide more than what is bound.
@@ -181,7 +181,8 @@ impl Variant {
     pub fn view_resources(&self) -> Vec<&'static Resource> {
         let texture = self.texture.map(|_| &resource::TEXTURE);
         let materials = self.materials.then_some(&resource::MATERIALS);
-        [Some(&resource::FRAME), texture, materials].into_iter().flatten().collect()
+        let blocks = [Some(&resource::FRAME), Some(&resource::VIEWS)];
+        blocks.into_iter().chain([texture, materials]).flatten().collect()
     }
 
     /// Whether scenes' own colours are summed.
@@ -242,8 +243,8 @@ impl Variant {
 }
 
 impl SceneVariant {
-    /// What a frame needs of a scene that has `streams`, and may be `placed` elsewhere than where it is.
-    pub fn new(frame: Variant, streams: Streams, placed: bool) -> Self {
+    /// What a frame needs of a scene that has `streams`, and may be `instanced`.
+    pub fn new(frame: Variant, streams: Streams, instanced: bool) -> Self {
         let weights = streams.weights.filter(|_| frame.weights);
         let blended = |colours| if frame.blends_colours() { colours } else { ColourStream::None };
         let reads = frame.blends_colours() || frame.texture.is_some();
@@ -271,7 +272,7 @@ impl SceneVariant {
                 },
             },
             unchecked: streams.unchecked.then_some(streams.colours),
-            placed,
+            instanced,
         }
     }
 
@@ -303,7 +304,7 @@ impl SceneVariant {
             ],
         };
         let there = wanted.iter().filter(|(_, there)| *there).map(|(resource, _)| *resource);
-        std::iter::once(&resource::FRAME).chain(there).collect()
+        [&resource::FRAME, &resource::VIEWS].into_iter().chain(there).collect()
     }
 
     /// The same as specialization constants, with the frame's.
@@ -320,6 +321,6 @@ impl SceneVariant {
             .with(constant::CORNERS, self.corners)
             .with(constant::COLOURS, self.colours as u32)
             .with(constant::VERTEX_COLOURS, self.primitives.colours as u32)
-            .with(constant::PLACED, self.placed)
+            .with(constant::INSTANCED, self.instanced)
     }
 }

@@ -18,6 +18,10 @@ pub(crate) struct Similarity {
 }
 
 impl Similarity {
+    /// Leaves all where it is.
+    pub(crate) const IDENTITY: Self =
+        Self { scale: 1.0, rotation: DMat3::IDENTITY, translation: DVec3::ZERO };
+
     /// That of a matrix; or else what the matrix has or is.
     pub(crate) fn of(transform: &DMat4) -> Result<Self, String> {
         if !transform.is_finite() {

@@ -87,14 +87,14 @@ impl<'r, 'a> Encoder<'r, 'a> {
         pipeline: &ComputePipeline,
         sets: &[&DescriptorSet],
         push: &impl bytemuck::NoUninit,
-        [x, y]: [u32; 2],
+        [x, y, z]: [u32; 3],
     ) {
         let (device, cmd) = (self.rec.device, self.rec.cmd);
         let (point, push) = (vk::PipelineBindPoint::COMPUTE, bytemuck::bytes_of(push));
         // SAFETY: recorded outside a render pass, with objects of one device that outlive the frame.
         unsafe {
             self.bound.bind((device, cmd), pipeline.raw(), point, sets, push);
-            device.raw.cmd_dispatch(cmd, x, y, 1);
+            device.raw.cmd_dispatch(cmd, x, y, z);
         }
     }
 

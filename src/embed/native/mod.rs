@@ -369,12 +369,12 @@ impl Renderer {
         let mut frame = self.frame.describe(&placed, &camera, &settings, size)?;
         self.plan.check(&frame.variant)?;
         let origin = [area.offset.x as f32, area.offset.y as f32];
-        frame.blocks.each().for_each(|block| block.origin = origin);
+        frame.blocks.frame.origin = origin;
         let Description { blocks, variant, scenes: own } = &frame;
         let format = self.plan.seeded().filter(|_| own.iter().all(can_seed));
         let largest = placed.iter().map(|placed| placed.largest()).reduce(|a, b| Some(a?.max(b?))).flatten();
         let seed = format.zip(largest).and_then(|(format, largest)| {
-            seeding::seed(format, depth, (&blocks.view, variant.perspective), largest, variant.precision)
+            seeding::seed(format, depth, (&blocks.frame, variant.perspective), largest, variant.precision)
         });
         let bindings = targets.bindings(&subpasses::inputs(&self.plan));
         self.frame.make(&placed, &frame, targets.size, &bindings)?;

@@ -47,8 +47,8 @@ impl Range {
         rec.pass("clear range", &[range.with(Access::COPY_WRITE)]).ones(range);
         let [read, write] = [false, true].map(|write| Access::of_shader(ShaderStageFlags::COMPUTE, write));
         let uses = [picture.with(read.of_image()), range.with(write)];
-        let blocks = picture.size().map(|side| side.div_ceil(BLOCK));
-        rec.pass("range", &uses).dispatch(&self.0, &[view], &numbers, blocks);
+        let [x, y] = picture.size().map(|side| side.div_ceil(BLOCK));
+        rec.pass("range", &uses).dispatch(&self.0, &[view], &numbers, [x, y, 1]);
     }
 }
 
