@@ -1,6 +1,7 @@
 //! Frames: what they make and do not make, the fallbacks of lesser devices, sizes, the two rasterizers side by side.
 
 use crate::support::gpu::{assert_silent, device, render};
+use crate::support::placing::{rich, weighted};
 use glam::DVec3;
 use std::sync::Arc;
 use surfel::frame::FramePlan;
@@ -345,6 +346,40 @@ fn too_few_storage_buffers_are_an_error() {
     let cause = made.map(drop).unwrap_err().to_string();
     assert!(cause.contains("storage buffers") && cause.contains("allows 4"), "{cause}");
     assert_silent(&device);
+}
+
+/// The README's number: a scene with all that a surfel can have, by every method, counted, with coverage.
+#[test]
+fn fourteen_storage_buffers_are_enough_and_no_fewer() {
+    let surfels = weighted(rich(300));
+    for (most, is_enough) in [(14, true), (13, false)] {
+        let Some(device) = device(DeviceLimits { max_storage_buffers: Some(most), ..Default::default() })
+        else {
+            return;
+        };
+        let scene = Scene::upload(&device, &surfels).unwrap();
+        let frame = |method: &Method, rasterizer, alpha| {
+            let options = RenderOptions { size: [64, 64], count: true, ..everything(rasterizer) };
+            let own = method.settings().splatting;
+            let normalization = match (method.pull_push, own.normalization) {
+                (None, Normalization::Pixel) => Normalization::Surfel,
+                (_, other) => other,
+            };
+            let splatting = Splatting { normalization, ..own };
+            let alpha = if method.pull_push.is_some() { Alpha::Mask } else { alpha };
+            let settings = Settings { splatting, alpha, ..method.settings() };
+            Renderer::new(&device, options)?.render(&scene, &camera([64, 64]), &settings).map(drop)
+        };
+        let choices = Method::ALL.iter().flat_map(|method| {
+            [Rasterizer::Draw, Rasterizer::Compute].into_iter().flat_map(move |rasterizer| {
+                [Alpha::Mask, Alpha::Coverage].map(move |alpha| (method, rasterizer, alpha))
+            })
+        });
+        let made: Result<Vec<_>, Error> =
+            choices.map(|(method, rasterizer, alpha)| frame(method, rasterizer, alpha)).collect();
+        assert_eq!(made.is_ok(), is_enough, "{most}: {made:?}");
+        assert_silent(&device);
+    }
 }
 
 #[test]

@@ -277,27 +277,31 @@ fn points_lines_and_triangles_are_one_model_by_pull_push() {
     assert_silent(&device);
 }
 
+fn of_lines(primitives: Primitives) -> Model {
+    Model { primitives, ..Default::default() }
+}
+
 #[test]
 fn lines_and_triangles_are_placed_as_surfels_are() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let surfels = painted(12_000);
-    let place = exact(0.5, [0.0, 3.0, 1.0], [1.0, 0.0, 0.0]);
-    let (own, there) = (lines(), moved_lines(&lines(), &place));
+    // More than a command is of, and the same triangle large in one and small in another.
+    let places: Vec<_> = (0..40)
+        .map(|i| exact(if i == 5 { 0.5 } else { 0.0625 }, [0.0, 3.0, 1.0], [1.0, 0.0625 * f64::from(i), 0.5]))
+        .collect();
+    let models: Vec<_> = std::iter::once(Model { surfels, ..Default::default() })
+        .chain(places.iter().map(|place| of_lines(moved_lines(&lines(), place))))
+        .collect();
     let settings = settings("pull-push");
+    let upload = |model: &Model| Arc::new(Scene::upload(&device, model).unwrap());
+    let [surfels, own] = [&models[0], &of_lines(lines())].map(upload);
+    let alone = upload(&Model::merge(models, settings.lighting.albedo).unwrap());
+    let placed = places.iter().map(|place| Instance::new(&own, *place));
+    let list: Vec<_> = std::iter::once(Instance::new(&surfels, DMat4::IDENTITY)).chain(placed).collect();
     for camera in [perspective(), parallel()] {
         for rasterizer in BOTH {
             let mut renderer = Renderer::new(&device, options(rasterizer)).unwrap();
-            let upload = |surfels: &Surfels, primitives: &Primitives| {
-                let model = Model { surfels: surfels.clone(), primitives: primitives.clone() };
-                Arc::new(Scene::upload(&device, &model).unwrap())
-            };
-            let none = Surfels::default();
-            let alone = upload(&surfels, &there);
             let (alone, _) = renderer.render_picture(&alone, &camera, &settings).unwrap();
-            let list = [
-                Instance::new(&Arc::new(Scene::upload(&device, &surfels).unwrap()), DMat4::IDENTITY),
-                Instance::new(&upload(&none, &own), place),
-            ];
             let (placed, _) = renderer.render_picture(&list, &camera, &settings).unwrap();
             let (without, _) = renderer.render_picture(&list[..1], &camera, &settings).unwrap();
             let [same, shown] = [&alone, &without].map(|other| differing(&placed, other));
@@ -353,18 +357,25 @@ fn counts_are_summed_and_passes_are_as_many() {
 }
 
 #[test]
-fn one_scene_stands_in_many_places_and_none_shows_nothing() {
+fn many_instances_are_one_cloud_and_none_shows_nothing() {
     let Some(device) = device(DeviceLimits::default()) else { return };
-    let surfels = painted(2_000);
-    let scene = Arc::new(Scene::upload(&device, &surfels).unwrap());
-    let places = [-1.0, 0.0, 1.0].map(|x| exact(0.5, [0.0, 1.0 + x, 0.0], [x, 0.0, 0.5 * x]));
-    let list = places.map(|place| Instance::new(&scene, place));
+    // More than a command draws at once, some of another scene between them; in front some whose splats are large.
+    let (many, few) = (rich(150), painted(400));
+    let [of_many, of_few] = [&many, &few].map(|surfels| Arc::new(Scene::upload(&device, surfels).unwrap()));
+    let place = |i: usize| {
+        let [x, y] = [i % 10, i / 10].map(|k| 0.375 * (k as f64 - 4.0));
+        let scale = if i % 16 == 3 { 0.5 } else { 0.25 };
+        exact(scale, [(i % 4) as f64, (i % 3) as f64, 0.0], [x, y, 2.0 * scale])
+    };
+    let is_of_few = |i: &usize| [7, 50, 51].contains(i);
+    let list: Vec<_> =
+        (0..90).map(|i| Instance::new(if is_of_few(&i) { &of_few } else { &of_many }, place(i))).collect();
+    let parts: Vec<_> = (0..90).map(|i| (if is_of_few(&i) { &few } else { &many }, place(i))).collect();
     for method in Method::ALL {
         for rasterizer in BOTH {
             let settings = settings(method.name);
             let mut renderer = Renderer::new(&device, options(rasterizer)).unwrap();
             let (picture, _) = renderer.render_picture(&list, &perspective(), &settings).unwrap();
-            let parts = places.map(|place| (&surfels, place));
             let one = merged(&parts, settings.lighting.albedo);
             let (own, _) = Rig::new(&device, options(rasterizer)).show(
                 &[(&one, DMat4::IDENTITY)],
