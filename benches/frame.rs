@@ -4,7 +4,7 @@ use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput, criterion_grou
 use std::path::Path;
 use std::sync::Arc;
 use std::time::Duration;
-use surfel::formats::ply;
+use surfel::formats;
 use surfel::geometry::{Camera, Surfels};
 use surfel::settings::Shading;
 use surfel::verify::scenes;
@@ -53,7 +53,7 @@ fn inputs() -> Vec<(&'static str, Surfels)> {
     match scan.exists() {
         true => inputs.push((
             "bunny16k",
-            ply::read(&scan, &Default::default(), &())
+            formats::read(&scan, &Default::default(), &())
                 .expect("the scan is read")
                 .cloud
                 .into_surfels(&Default::default(), &())

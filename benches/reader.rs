@@ -4,7 +4,7 @@ use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_
 use std::io::{BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
-use surfel::formats::ply;
+use surfel::formats;
 
 criterion_group!(benches, reader);
 criterion_main!(benches);
@@ -17,7 +17,7 @@ fn reader(criterion: &mut Criterion) {
     for (name, path) in inputs(folder.path()) {
         let size = path.metadata().expect("the file is there").len();
         group.throughput(Throughput::Bytes(size));
-        let read = || ply::read(&path, &Default::default(), &()).expect("the file is read");
+        let read = || formats::read(&path, &Default::default(), &()).expect("the file is read");
         group.bench_function(name, |bencher| bencher.iter_with_large_drop(read));
     }
     group.finish();

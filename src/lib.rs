@@ -30,7 +30,7 @@
 //! use surfel::{Error, RenderOptions, Renderer, Scene, Settings};
 //!
 //! # fn main() -> surfel::Result<()> {
-//! let loaded = formats::ply::read("bunny.ply".as_ref(), &Default::default(), &())?;
+//! let loaded = formats::read("bunny.ply".as_ref(), &Default::default(), &())?;
 //! let (surfels, _) = loaded.cloud.into_surfels(&Estimate::default(), &()).map_err(|cause| Error::input("bunny.ply", cause))?;
 //! let device = Device::open(&DeviceOptions::default())?;
 //! let scene = Scene::upload(&device, &surfels)?;

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::estimate::Estimate;
-use crate::formats::ply::{self, ReadOptions};
+use crate::formats::{self, ReadOptions};
 use crate::geometry::{Bounds, Camera, Cloud, Model};
 use crate::progress::Progress;
 use crate::verify::scenes::{self, Surface, Viewpoint};
@@ -70,9 +70,9 @@ impl Subject {
     /// [`Error::Io`] and [`Error::Input`] if a file cannot be read, or has no triangles.
     pub fn scan(path: &Path, mesh: Option<&Path>, progress: &dyn Progress) -> Result<Self> {
         let triangles = ReadOptions { triangles: true, ..Default::default() };
-        let cloud = ply::read(path, &triangles, progress)?.cloud;
+        let cloud = formats::read(path, &triangles, progress)?.cloud;
         let other =
-            mesh.map(|mesh| Ok::<_, Error>(ply::read(mesh, &triangles, progress)?.cloud)).transpose()?;
+            mesh.map(|mesh| Ok::<_, Error>(formats::read(mesh, &triangles, progress)?.cloud)).transpose()?;
         let named = |cause| Error::input(mesh.unwrap_or(path).display().to_string(), cause);
         let mesh = Mesh::new(other.as_ref().unwrap_or(&cloud)).map_err(named)?;
         let viewpoint = framing(&truth::Scene::bounds(&mesh))?;

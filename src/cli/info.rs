@@ -9,9 +9,8 @@ use super::progress;
 use std::fmt::Write;
 use std::path::Path;
 use surfel::estimate::{Estimate, Estimated, spacing};
-use surfel::formats::ply::{
-    self, Dropped, Element, Faces, Format, Inspected, Lines, Loaded, ReadOptions, Report,
-};
+use surfel::formats::declared::Element;
+use surfel::formats::{self, Dropped, Faces, Inspected, Lines, Loaded, ReadOptions, Report};
 use surfel::geometry::{Cloud, Colours, Model, Parts, View};
 use surfel::{Error, Result};
 
@@ -29,8 +28,8 @@ pub fn run(args: &Info) -> Result<()> {
     let path = Path::new(&args.input);
     let bars = progress::bars(false);
     let options = ReadOptions { triangles: args.points.polygons, ..Default::default() };
-    let Inspected { format, elements, loaded } = ply::inspect(path, &options, &*bars)?;
-    print(&header(path, format, &elements))?;
+    let Inspected { format, encoding, elements, loaded } = formats::inspect(path, &options, &*bars)?;
+    print(&header(path, &format!("{format}, {encoding}"), &elements))?;
     let Loaded { cloud, report } = loaded?;
     print(&(properties(&report) + &frame(&report, &cloud)))?;
     let model = cloud.into_model(args.points.polygons, &args.points.estimate(), &*bars);
@@ -51,8 +50,8 @@ fn scene_text(name: &str, how: &Estimate) -> Result<String> {
 }
 
 /// What a file declares.
-fn header(path: &Path, format: Format, elements: &[Element]) -> String {
-    let mut text = format!("{}: PLY, {format}\n", path.display());
+fn header(path: &Path, format: &str, elements: &[Element]) -> String {
+    let mut text = format!("{}: {format}\n", path.display());
     for element in elements {
         let (name, count) = (shown(&element.name), element.count);
         // Here and below: writing to a String cannot fail.

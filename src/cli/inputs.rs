@@ -8,7 +8,7 @@ use std::ffi::OsString;
 use std::path::Path;
 use std::sync::Arc;
 use surfel::estimate::{Estimate, Estimated};
-use surfel::formats::ply::{self, Dropped, Faces, Lines, Loaded, ReadOptions, Report};
+use surfel::formats::{self, Dropped, Faces, Lines, Loaded, ReadOptions, Report};
 use surfel::geometry::{Cloud, Lined, MipMap, Model, ToLines};
 use surfel::verify::scenes;
 use surfel::{Error, Progress, Result, Settings};
@@ -129,7 +129,7 @@ fn load_one(name: &OsString, wanted: &Wanted<'_>) -> Result<(Part, u64, Dropped,
         triangles: draws_faces(wanted),
         texture: wanted.texture.clone(),
     };
-    let Loaded { cloud, report } = ply::read(Path::new(name), &options, wanted.progress)?;
+    let Loaded { cloud, report } = formats::read(Path::new(name), &options, wanted.progress)?;
     let name = Path::new(name).display().to_string();
     warn(&name, &report);
     Ok((Part { name, cloud, drawn: false }, report.points, report.dropped, report.skipped))

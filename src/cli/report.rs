@@ -7,7 +7,7 @@ use super::render::{Outcome, Task};
 use serde_json::{Map, Value, json};
 use std::path::Path;
 use surfel::estimate::Estimated;
-use surfel::formats::ply::Dropped;
+use surfel::formats::Dropped;
 use surfel::frame::times::Statistics;
 use surfel::settings::splatting::Splatting;
 use surfel::settings::{DirectionalLight, Lighting};

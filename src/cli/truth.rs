@@ -8,7 +8,7 @@ use super::{camera, progress};
 use std::path::Path;
 use surfel::estimate::Estimate;
 use surfel::formats::image::{Output, write};
-use surfel::formats::ply::{self, ReadOptions};
+use surfel::formats::{self, ReadOptions};
 use surfel::geometry::{Bounds, Camera, Parts};
 use surfel::verify::scenes;
 use surfel::verify::truth::{self, Cache, Mesh, Scene};
@@ -65,7 +65,7 @@ fn bounds(args: &Truth, progress: &dyn Progress) -> Result<Bounds> {
 
 fn read(path: &Path, progress: &dyn Progress) -> Result<Mesh> {
     let options = ReadOptions { triangles: true, ..Default::default() };
-    let loaded = ply::read(path, &options, progress)?;
+    let loaded = formats::read(path, &options, progress)?;
     Mesh::new(&loaded.cloud).map_err(|cause| Error::input(path.display().to_string(), cause))
 }
 

@@ -1,10 +1,10 @@
-//! What a PLY header says, as data.
+//! What a file declares to hold, as data.
 
 use std::fmt;
 
 /// How the records are encoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
+pub enum Encoding {
     /// Decimal numbers between white space.
     Ascii,
     /// Packed, least significant byte first.
@@ -13,7 +13,7 @@ pub enum Format {
     BinaryBigEndian,
 }
 
-/// Type of a number in a record.
+/// Type of a number in a record, with its names in PLY files.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scalar {
     /// `char` or `int8`.
@@ -122,7 +122,7 @@ impl Element {
     }
 }
 
-impl fmt::Display for Format {
+impl fmt::Display for Encoding {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Ascii => "ascii",

@@ -1,11 +1,25 @@
 //! Files in and out.
+//!
+//! # How to add a format of point clouds
+//!
+//! 1. `formats/NAME.rs`: a unit struct that implements `Reader` (`formats/reader.rs`): its name, the extensions of its files, whether it knows a
+//!    file's beginning, and how it reads one to a [`Cloud`](crate::geometry::Cloud) and a [`Report`].
+//! 2. `formats/reader.rs`: its place in `READERS`. Whoever reads a file calls [`read`], which chooses by content, then by extension.
 
 pub mod atomic;
 #[cfg(feature = "serde")]
 pub mod camera;
 pub mod colour_bar;
+pub mod declared;
 pub mod image;
 pub mod ply;
+mod reader;
+mod report;
+mod sniff;
+mod source;
+
+pub use reader::{Inspected, Loaded, ReadOptions, inspect, read, read_bytes};
+pub use report::{Dropped, Faces, Lines, Report};
 
 use crate::error::{Error, Result};
 use std::fs::File;

@@ -1,13 +1,13 @@
 //! What was made of a file, for those who must tell it.
 
-use super::types::{Element, Format};
+use super::declared::{Element, Encoding};
 
 /// What was made of a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
     /// Encoding of the records.
-    pub format: Format,
-    /// Everything that the header declares, in the file's order.
+    pub encoding: Encoding,
+    /// Everything that the file declares, in its order.
     pub elements: Vec<Element>,
     /// Names of the vertices' properties that were used, in the file's order.
     pub understood: Vec<String>,

@@ -1,6 +1,6 @@
-//! What a file is that is no PLY file, so that the message can say so.
+//! What a file is that no reader knows, so that the message can say so.
 
-use super::shown;
+use super::ply::shown;
 
 /// First bytes of files that are often met under the wrong name, and what to do with them.
 const KNOWN: &[(&[u8], &str)] = &[

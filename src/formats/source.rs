@@ -1,14 +1,19 @@
 //! A file's bytes, in memory or where they lie.
 
-use super::{Parsed, header};
 use crate::error::{Error, Result};
 use std::borrow::Cow;
 use std::fs::File;
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
+/// A result whose error is the cause, without the file's name.
+pub type Parsed<T> = std::result::Result<T, String>;
+
+/// Bytes by which a format is recognized.
+const BEGINNING: u64 = 4096;
+
 /// Read, not mapped: a mapping would end the process by SIGBUS if another one shortened the file meanwhile.
-pub(super) enum Source<'a> {
+pub enum Source<'a> {
     /// All of it.
     Bytes(Cow<'a, [u8]>),
     /// A file of `size` bytes, read piece by piece, from any thread.
@@ -17,17 +22,17 @@ pub(super) enum Source<'a> {
 }
 
 impl<'a> Source<'a> {
-    /// Opens a file. Of what has no size, such as a pipe, everything is read if it begins as a PLY file does: a device need not end.
-    pub fn open(path: &Path) -> Result<Source<'static>> {
+    /// Opens a file. Of what has no size, such as a pipe, everything is read if its beginning is `known`: a device need not end.
+    pub fn open(path: &Path, known: impl Fn(&[u8]) -> bool) -> Result<Source<'static>> {
         let mut file = File::open(path).map_err(|error| Error::io(path, "cannot open")(advise(error)))?;
         let about = file.metadata().map_err(Error::io(path, "cannot read"))?;
         if cfg!(unix) && about.is_file() {
             return Ok(Source::File { file, size: about.len() });
         }
         let mut bytes = Vec::new();
-        let beginning = file.by_ref().take(header::LIMIT as u64 + 1).read_to_end(&mut bytes);
+        let beginning = file.by_ref().take(BEGINNING).read_to_end(&mut bytes);
         beginning.map_err(Error::io(path, "cannot read"))?;
-        if header::is_ply(&bytes) {
+        if known(&bytes) {
             file.read_to_end(&mut bytes).map_err(Error::io(path, "cannot read"))?;
         }
         Ok(Source::Bytes(bytes.into()))
@@ -36,6 +41,11 @@ impl<'a> Source<'a> {
     /// What is in memory already.
     pub fn of(bytes: &'a [u8]) -> Self {
         Self::Bytes(Cow::Borrowed(bytes))
+    }
+
+    /// The first bytes, as many as a format is recognized by.
+    pub fn beginning(&self) -> Parsed<Cow<'_, [u8]>> {
+        self.part(0, self.size().min(BEGINNING))
     }
 
     /// Bytes in all.
@@ -88,7 +98,7 @@ fn slice(bytes: &[u8], start: u64, length: u64) -> Parsed<&[u8]> {
 }
 
 /// An array of zeros; pages that are never written cost nothing.
-pub(super) fn room<T: bytemuck::Zeroable>(count: u64) -> Parsed<Vec<T>> {
+pub fn room<T: bytemuck::Zeroable>(count: u64) -> Parsed<Vec<T>> {
     let zeros = usize::try_from(count).ok().and_then(|count| bytemuck::try_zeroed_vec(count).ok());
     zeros.ok_or_else(|| format!("not enough memory for {count} entries: give a smaller file"))
 }

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 use surfel::estimate::Estimate;
-use surfel::formats::ply::{self, ReadOptions};
+use surfel::formats::{self, ReadOptions};
 use surfel::geometry::{Colours, Lined, Model, ToLines};
 
 #[test]
@@ -13,7 +13,7 @@ fn an_apple_tree_becomes_ribbons_tubes_and_a_trunk() {
         return;
     }
     let options = ReadOptions { triangles: true, ..Default::default() };
-    let tree = ply::read(&path, &options, &()).unwrap().cloud;
+    let tree = formats::read(&path, &options, &()).unwrap().cloud;
     let (cloud, lined) = tree.to_lines(&ToLines::default()).unwrap();
     println!("{lined:?}");
     // 2590 leaves of six triangles, of which two lie on others; and three segments each.

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
-use surfel::formats::ply::{self, Loaded, Report};
+use surfel::formats::{self, Loaded, Report};
 use surfel::geometry::{Cloud, Colours, View};
 
 const EXPECTATIONS: &str = include_str!("ply_edge.tsv");
@@ -51,7 +51,7 @@ fn every_odd_file_is_read_or_refused_as_it_should_be() {
 
 fn read(path: &Path) -> (&'static str, String) {
     let start = Instant::now();
-    let result = ply::read(path, &Default::default(), &());
+    let result = formats::read(path, &Default::default(), &());
     assert!(start.elapsed() < Duration::from_secs(2), "{}", path.display());
     match result {
         Ok(Loaded { cloud, report }) => ("accept", summary(&cloud, &report)),

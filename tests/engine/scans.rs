@@ -4,7 +4,7 @@ use crate::support::{gpu, mesh};
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
 use surfel::estimate::Estimate;
-use surfel::formats::ply::{self, ReadOptions};
+use surfel::formats::{self, ReadOptions};
 use surfel::geometry::srgb;
 use surfel::geometry::{Bounds, Camera, Cloud, Surfels};
 use surfel::vk::{Device, DeviceLimits};
@@ -93,9 +93,9 @@ fn a_scan_far_away_is_the_same_picture() {
     let Some(path) = mesh::data("stanford/dragon/dragon_vrip.ply") else { return };
     let offset = DVec3::new(500_000.0, 4_600_000.0, 100.0);
     let file = std::fs::read(&path).unwrap();
-    let near = ply::read_bytes("near", &file, &ReadOptions::default()).unwrap().cloud;
+    let near = formats::read_bytes("near", &file, &ReadOptions::default()).unwrap().cloud;
     let far =
-        ply::read_bytes("far", &moved(&file, near.len(), offset), &ReadOptions::default()).unwrap().cloud;
+        formats::read_bytes("far", &moved(&file, near.len(), offset), &ReadOptions::default()).unwrap().cloud;
     assert!(
         far.origin.distance(offset) < 1.0 && near.origin == DVec3::ZERO,
         "{} {}",

@@ -9,7 +9,7 @@ use mutate::Random;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::{Duration, Instant};
 use surfel::estimate::Estimate;
-use surfel::formats::ply::{self, Loaded, ReadOptions};
+use surfel::formats::{self, Loaded, ReadOptions};
 use surfel::geometry::{Clip, ClipLine, Cloud, Colours, Model, Surfels, View, Weights};
 
 #[global_allocator]
@@ -63,7 +63,7 @@ fn the_files_are_sound_before_they_are_damaged() {
 fn read(bytes: &[u8]) -> surfel::Result<Loaded> {
     let named = |name: &&str| bytes.windows(name.len()).any(|window| window == name.as_bytes());
     let scalar = ["radius\n", "tag\n"].iter().find(|name| named(name)).map(|name| name.trim_end().into());
-    ply::read_bytes("mutant", bytes, &ReadOptions { scalar, ..Default::default() })
+    formats::read_bytes("mutant", bytes, &ReadOptions { scalar, ..Default::default() })
 }
 
 /// Whether it can be read; panics if anything about it is wrong.
@@ -95,7 +95,7 @@ fn examine(bytes: &[u8]) -> bool {
 }
 
 /// What a cloud promises.
-fn check(cloud: &Cloud, report: &ply::Report) {
+fn check(cloud: &Cloud, report: &formats::Report) {
     let count = cloud.len();
     assert!(count > 0 && count as u64 + report.dropped.total() == report.points);
     let lengths = [

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, DVec3, Vec3};
 use std::path::{Path, PathBuf};
-use surfel::formats::ply;
+use surfel::formats;
 use surfel::geometry::{Camera, Cloud};
 
 /// A file of the shared test data; `None`, said aloud, where there is none.
@@ -17,7 +17,7 @@ pub fn data(name: &str) -> Option<PathBuf> {
 
 /// The points and triangles of a file.
 pub fn read(path: &Path) -> Cloud {
-    let loaded = ply::read(path, &ply::ReadOptions::default(), &()).unwrap();
+    let loaded = formats::read(path, &formats::ReadOptions::default(), &()).unwrap();
     assert!(!loaded.cloud.triangles.is_empty(), "{} has no triangles", path.display());
     loaded.cloud
 }

@@ -1,4 +1,9 @@
 //! What is measured together.
+//!
+//! # How to add a suite
+//!
+//! 1. `bench/suites/NAME.rs`: its [`Plan`]s, each a scene, cameras, sizes and settings.
+//! 2. Here: its variant, with its name, its plans and how many frames are timed.
 
 mod full;
 mod own;

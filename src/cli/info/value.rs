@@ -7,7 +7,8 @@ use crate::cli::progress;
 use serde_json::{Map, Value, json};
 use std::path::Path;
 use surfel::estimate::{Estimated, spacing};
-use surfel::formats::ply::{self, Dropped, Element, Inspected, Loaded, ReadOptions, Report};
+use surfel::formats::declared::Element;
+use surfel::formats::{self, Dropped, Inspected, Loaded, ReadOptions, Report};
 use surfel::geometry::{Cloud, Colours, Model, Parts, View};
 use surfel::{Error, Result};
 
@@ -35,8 +36,9 @@ pub(super) fn run(args: &Info) -> Result<()> {
 fn file(all: &mut Object, args: &Info) -> Result<()> {
     let path = Path::new(&args.input);
     let options = ReadOptions { triangles: args.points.polygons, ..Default::default() };
-    let Inspected { format, elements, loaded } = ply::inspect(path, &options, &*progress::bars(false))?;
-    all.insert("format".into(), format.to_string().into());
+    let Inspected { encoding, elements, loaded, .. } =
+        formats::inspect(path, &options, &*progress::bars(false))?;
+    all.insert("format".into(), encoding.to_string().into());
     all.insert("elements".into(), elements.iter().map(element).collect());
     let Loaded { cloud, report } = loaded?;
     read(all, &report, &cloud);

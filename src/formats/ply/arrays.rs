@@ -2,7 +2,7 @@
 
 use super::Parsed;
 use super::layout::{CORNERS, Layout, MATERIAL, SCALAR, Shape, TANGENT, TEXTURE, WEIGHT};
-use super::source::room;
+use crate::formats::source::room;
 use crate::geometry::memory;
 use crate::geometry::{Clip, Ellipse};
 use glam::{DVec3, Vec2, Vec3};

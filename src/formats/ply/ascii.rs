@@ -1,8 +1,8 @@
 //! Text records: numbers between white space, wherever the lines break.
 
 use super::records::Reader;
-use super::types::{Element, Kind, Scalar};
 use super::{Parsed, shown};
+use crate::formats::declared::{Element, Kind, Scalar};
 
 /// A place among numbers that are spelled out.
 #[derive(Clone)]

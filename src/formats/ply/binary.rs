@@ -2,7 +2,7 @@
 
 use super::Parsed;
 use super::records::Reader;
-use super::types::{Element, Scalar};
+use crate::formats::declared::{Element, Scalar};
 
 /// The number at the start of `bytes`; `None` if they are too few.
 fn decode(bytes: &[u8], scalar: Scalar, big_endian: bool) -> Option<f64> {

@@ -7,7 +7,7 @@ use super::layout::{
     ROTATION, SCALAR, Shape, TANGENT, TEXTURE, TWO_SIDED, WEIGHT,
 };
 use super::shape::{self, Disc};
-use super::types::Scalar;
+use crate::formats::declared::Scalar;
 use crate::geometry::srgb;
 use crate::geometry::{Clip, ClipLine, Materials};
 use glam::{DVec2, DVec3, Vec2, Vec3};

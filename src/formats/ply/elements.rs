@@ -11,10 +11,10 @@ use super::meter::Meter;
 use super::others::{Found, Others};
 use super::points::Points;
 use super::records::{Reader, refuse_lie, walk};
-use super::source::Source;
-use super::types::{Element, Format};
 use super::vertices::{self, Records};
 use super::{Faces, Lines, Parsed};
+use crate::formats::declared::{Element, Encoding};
+use crate::formats::source::Source;
 use crate::geometry::Cloud;
 use std::borrow::Cow;
 
@@ -46,10 +46,10 @@ pub(super) struct File<'a> {
 impl File<'_> {
     pub fn read(&self) -> Parsed<Contents> {
         let lists_first = self.header.elements[..=self.vertex].iter().any(Element::has_lists);
-        match self.header.format {
-            Format::Ascii => self.read_text(),
-            format if lists_first => self.read_in_memory(format == Format::BinaryBigEndian),
-            format => self.read_in_place(format == Format::BinaryBigEndian),
+        match self.header.encoding {
+            Encoding::Ascii => self.read_text(),
+            format if lists_first => self.read_in_memory(format == Encoding::BinaryBigEndian),
+            format => self.read_in_place(format == Encoding::BinaryBigEndian),
         }
     }
 

@@ -1,7 +1,7 @@
 //! The header, parsed byte by byte: it may hold comments in any encoding, and no claim of it is trusted.
 
-use super::types::{Element, Format, Kind, Property, Scalar};
 use super::{Parsed, shown};
+use crate::formats::declared::{Element, Encoding, Kind, Property, Scalar};
 use std::collections::HashSet;
 
 /// Longest header, bytes. The longest known ones hold a few hundred properties.
@@ -10,7 +10,7 @@ pub(super) const LIMIT: usize = 1 << 20;
 /// A parsed header.
 #[derive(Debug, PartialEq)]
 pub(super) struct Header {
-    pub format: Format,
+    pub encoding: Encoding,
     /// In the order of their records in the file.
     pub elements: Vec<Element>,
     /// Where the records begin, bytes from the start of the file.
@@ -30,7 +30,7 @@ pub(super) fn is_ply(bytes: &[u8]) -> bool {
 pub(super) fn parse(bytes: &[u8]) -> Parsed<Header> {
     let mut lines = Lines::new(bytes);
     lines.first();
-    let (mut format, mut elements, mut grid, mut texture) = (None, Vec::new(), [None; 2], None);
+    let (mut encoding, mut elements, mut grid, mut texture) = (None, Vec::new(), [None; 2], None);
     let mut names = HashSet::new();
     loop {
         let line = lines.next()?;
@@ -45,7 +45,7 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Header> {
                 parse_info(line, &mut grid);
                 Ok(())
             }
-            b"format" => parse_format(line, &mut format),
+            b"format" => parse_format(line, &mut encoding),
             b"element" => parse_element(line, &mut elements, &mut names),
             b"property" => parse_property(line, &mut elements),
             b"end_header" => break,
@@ -56,9 +56,9 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Header> {
         };
         done.map_err(|cause| format!("header line {}: {cause}", lines.number))?;
     }
-    let format =
-        format.ok_or("the header has no `format` line: write the file again with a complete header")?;
-    Ok(Header { format, elements, payload: lines.at, grid, texture })
+    let encoding =
+        encoding.ok_or("the header has no `format` line: write the file again with a complete header")?;
+    Ok(Header { encoding, elements, payload: lines.at, grid, texture })
 }
 
 /// Free text as a rule; which texture coordinates are of is understood. A name may have blanks.
@@ -87,7 +87,7 @@ fn words(line: &[u8]) -> Vec<&[u8]> {
     line.split(u8::is_ascii_whitespace).filter(|word| !word.is_empty()).collect()
 }
 
-fn parse_format(line: &[u8], format: &mut Option<Format>) -> Parsed<()> {
+fn parse_format(line: &[u8], header: &mut Option<Encoding>) -> Parsed<()> {
     let (encoding, version) = match words(line)[..] {
         [_, encoding, version] => (encoding, version),
         _ => return Err("expected `format <encoding> 1.0`".into()),
@@ -96,9 +96,9 @@ fn parse_format(line: &[u8], format: &mut Option<Format>) -> Parsed<()> {
         return Err(format!("version {} is not known: only 1.0 is", shown(version)));
     }
     let parsed = match encoding {
-        b"ascii" => Format::Ascii,
-        b"binary_little_endian" => Format::BinaryLittleEndian,
-        b"binary_big_endian" => Format::BinaryBigEndian,
+        b"ascii" => Encoding::Ascii,
+        b"binary_little_endian" => Encoding::BinaryLittleEndian,
+        b"binary_big_endian" => Encoding::BinaryBigEndian,
         _ => {
             return Err(format!(
                 "{} is none of ascii, binary_little_endian, binary_big_endian",
@@ -106,7 +106,7 @@ fn parse_format(line: &[u8], format: &mut Option<Format>) -> Parsed<()> {
             ));
         }
     };
-    match format.replace(parsed) {
+    match header.replace(parsed) {
         None => Ok(()),
         Some(_) => Err("a second `format` line: remove one".into()),
     }
@@ -260,8 +260,8 @@ mod tests {
         for (case, text) in odd.iter().enumerate() {
             let header = parse(text).unwrap_or_else(|cause| panic!("case {case}: {cause}"));
             assert_eq!(
-                (header.format, header.elements),
-                (expected.format, expected.elements.clone()),
+                (header.encoding, header.elements),
+                (expected.encoding, expected.elements.clone()),
                 "case {case}"
             );
         }

@@ -1,7 +1,7 @@
 //! Which properties of a vertex are understood, and as what.
 
-use super::types::{Element, Kind, Property, Scalar};
 use super::{Parsed, listed, shown};
+use crate::formats::declared::{Element, Kind, Property, Scalar};
 
 /// Number of columns.
 pub(super) const COLUMNS: usize = SCALAR + 1;

@@ -2,7 +2,7 @@
 
 use super::Lines;
 use super::points::Points;
-use super::types::{Element, Kind};
+use crate::formats::declared::{Element, Kind};
 use crate::geometry::Cloud;
 use glam::Vec3;
 

@@ -3,7 +3,7 @@
 use super::convert;
 use super::layout::is_colour;
 use super::lines::scalar;
-use super::types::{Element, Kind, Scalar};
+use crate::formats::declared::{Element, Kind, Scalar};
 use crate::geometry::{Cloud, Colours, Material, Materials, Surfels};
 use crate::settings::Lighting;
 

@@ -14,14 +14,14 @@
 //! | `two_sided` | any, written as uchar | not 0: the normal may as well point the other way |
 //! | `clip0x clip0y clip0z clip0d`, `clip1x clip1y clip1z clip1d` | any, written as float | at a sharp edge: the disc keeps what is not beyond the line at distance d, in the positions' unit, from its centre along (x, y, z), a vector of any length in the tangent plane, into which others are projected; all 0 is no line |
 //! | `clip_concave` | any, written as uchar | not 0: of two lines, what either keeps is kept, rather than what both keep |
-//! | `surfel_weight` | any, written as float | normalization weight ([`Cloud::weights`]) of a disc with a normal and a radius; 0 or less is none |
+//! | `surfel_weight` | any, written as float | normalization weight ([`Cloud::weights`](crate::geometry::Cloud::weights)) of a disc with a normal and a radius; 0 or less is none |
 //! | `surfel_weight0..3` | any, written as float | at a border, those at the corners −u −v, +u −v, −u +v, +u +v of the square about the disc, with u as above or [`first_axis`](crate::geometry::first_axis), v = normal × u; all 0 is none |
 //! | `red green blue`, `diffuse_red diffuse_green diffuse_blue`, `r g b` | uchar, ushort | colour, sRGB-encoded |
 //! | | float, double | colour, linear light; 1 is white |
 //! | `f_dc_0..2 opacity scale_0..2 rot_0..3` | float | a 3D Gaussian (or 2D, without `scale_2`) with the INRIA layout's logarithms, logits and `rot_0` as the real part: the disc of two standard deviations across its smallest axis, two-sided unless there is a normal; less than a tenth opaque is none |
 //! | `texture_u texture_v`, `s t` or `u v` | any | coordinates in the texture that `comment TextureFile NAME` names, relative to the file, or [`ReadOptions`] give: u to the right, v upwards; without one they are numbers like others |
 //! | `material_index` | any | number of a record of the element `material`, from 0; others, such as −1, are that of none |
-//! | any | any | [`Cloud::scalar`], if [`ReadOptions`] names it |
+//! | any | any | [`Cloud::scalar`](crate::geometry::Cloud::scalar), if [`ReadOptions`] names it |
 //!
 //! | element | property | becomes |
 //! |---|---|---|
@@ -30,7 +30,7 @@
 //! | `edge` | `vertex1 vertex2`, or a list of two as of faces | a segment of a line, unless it is the side of a face and has no `tube` |
 //! | `polyline`, `linestrips` | list `vertex_indices` or `vertex_index` | lines; −1 begins another |
 //! | of these three | `tube`, any, written as uchar | not 0: a tube; 0: a ribbon. Where there is none, and where an end has no normal: a ribbon if both ends have normals, otherwise a tube |
-//! | `material` | `specular_red specular_green specular_blue`, `specular_coeff`, of which either may be absent; `specular_power` | how the points of this `material_index` shine ([`Cloud::materials`]): uchar is sRGB-encoded, floats are linear; the factor multiplies |
+//! | `material` | `specular_red specular_green specular_blue`, `specular_coeff`, of which either may be absent; `specular_power` | how the points of this `material_index` shine ([`Cloud::materials`](crate::geometry::Cloud::materials)): uchar is sRGB-encoded, floats are linear; the factor multiplies |
 //! | | `diffuse_red diffuse_green diffuse_blue`, `diffuse_coeff` | their colour, likewise, where vertices have none |
 //! | `range_grid` | list `vertex_indices` of no vertex or one; `obj_info num_cols`, `num_rows` | triangles between neighbours, where the surface is not torn; [`View::Towards`](crate::geometry::View::Towards) +z |
 //! | `camera` | `view_px view_py view_pz` | [`View::From`](crate::geometry::View::From); all 0, which is what some programs write of any cloud, is not known |
@@ -57,102 +57,59 @@ mod meter;
 mod others;
 mod points;
 mod records;
-mod report;
 mod row;
 mod shape;
-mod sniff;
-mod source;
 #[cfg(test)]
 mod tests;
-mod types;
 mod vertices;
 mod write;
 
-pub use report::{Dropped, Faces, Lines, Report};
-pub use types::{Element, Format, Kind, Property, Scalar};
 pub use write::write;
 
 use crate::Progress;
-use crate::error::{Error, Result};
-use crate::formats::image;
-use crate::geometry::{Cloud, MipMap, Texture};
+use crate::formats::declared::Encoding;
+use crate::formats::reader::{Input, Reader};
+use crate::formats::source::Parsed;
+use crate::formats::{Dropped, Faces, Inspected, Lines, Loaded, ReadOptions, Report, image, sniff};
+use crate::geometry::{MipMap, Texture};
 use elements::{Contents, File};
 use header::Header;
 use layout::{Layout, Shape};
 use meter::Meter;
 use points::Points;
-use source::Source;
 use std::path::Path;
 use std::sync::Arc;
 
-/// A file's points and what was made of the file.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Loaded {
-    /// The points, in the file's order. `origin` is 0 unless the coordinates are more than twice as large as the extent, a few stray points
-    /// aside; then it is a round number near their middle, subtracted in float64.
-    pub cloud: Cloud,
-    /// What was read, skipped and dropped.
-    pub report: Report,
+/// PLY files.
+pub(super) struct Ply;
+
+impl Reader for Ply {
+    fn name(&self) -> &'static str {
+        "PLY"
+    }
+
+    fn extensions(&self) -> &'static [&'static str] {
+        &["ply"]
+    }
+
+    fn knows(&self, beginning: &[u8]) -> bool {
+        header::is_ply(beginning)
+    }
+
+    fn inspect(
+        &self,
+        input: &Input<'_>,
+        options: &ReadOptions,
+        progress: &dyn Progress,
+    ) -> Parsed<Inspected<String>> {
+        let header = parse_header(input)?;
+        let (encoding, elements) = (header.encoding, header.elements.clone());
+        let loaded = parse_records(input, header, options, progress);
+        Ok(Inspected { format: self.name(), encoding, elements, loaded })
+    }
 }
 
-/// What is looked for in a file.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct ReadOptions {
-    /// Name of the vertices' property that becomes [`Cloud::scalar`]. A file whose vertices have no number of this name is refused.
-    pub scalar: Option<String>,
-    /// Whether triangles are kept where every point has a normal and a radius, too.
-    pub triangles: bool,
-    /// What texture coordinates are of, in place of what the file names.
-    pub texture: Option<Arc<MipMap>>,
-}
-
-/// A file's header, and its points if they could be had.
-#[derive(Debug)]
-pub struct Inspected {
-    /// Encoding of the records.
-    pub format: Format,
-    /// Everything that the header declares, in the file's order.
-    pub elements: Vec<Element>,
-    /// What [`read`] gives.
-    pub loaded: Result<Loaded>,
-}
-
-/// Looks at a PLY file whose points may be unusable: what its header declares is told all the same.
-///
-/// # Errors
-/// [`Error::Io`] if the file cannot be read; [`Error::Input`] if its header cannot.
-pub fn inspect(path: &Path, options: &ReadOptions, progress: &dyn Progress) -> Result<Inspected> {
-    let (name, source) = (path.display().to_string(), Source::open(path)?);
-    let header = parse_header(&source, &name).map_err(|cause| Error::input(name.as_str(), cause))?;
-    let (format, elements) = (header.format, header.elements.clone());
-    let loaded = parse_records(&source, header, options, path.parent(), progress)
-        .map_err(|cause| progress.failed(name, cause));
-    Ok(Inspected { format, elements, loaded })
-}
-
-/// Reads the points of a PLY file. The stage of the progress is `reading`, its unit the byte.
-///
-/// # Errors
-/// [`Error::Io`] if the file cannot be opened; [`Error::Input`] if it is no PLY file, is damaged or truncated anywhere, has no vertices, or
-/// lacks what the options ask for; [`Error::Cancelled`] if the progress has it given up.
-pub fn read(path: &Path, options: &ReadOptions, progress: &dyn Progress) -> Result<Loaded> {
-    let source = Source::open(path)?;
-    let name = path.display().to_string();
-    parse(&source, &name, options, path.parent(), progress).map_err(|cause| progress.failed(name, cause))
-}
-
-/// [`read`] of a file's contents, without a texture that it names; `name` is what errors call it.
-///
-/// # Errors
-/// [`Error::Input`], as [`read`].
-pub fn read_bytes(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Loaded> {
-    parse(&Source::of(bytes), name, options, None, &()).map_err(|cause| Error::input(name, cause))
-}
-
-/// The cause of a failure, without the file's name.
-type Parsed<T> = Result<T, String>;
-
-fn parse_header(source: &Source, name: &str) -> Parsed<Header> {
+fn parse_header(Input { name, source, .. }: &Input<'_>) -> Parsed<Header> {
     // One byte more than allowed, so that a header which is too long shows.
     let beginning = source.part(0, source.size().min(header::LIMIT as u64 + 1))?;
     match header::is_ply(&beginning) {
@@ -161,21 +118,10 @@ fn parse_header(source: &Source, name: &str) -> Parsed<Header> {
     }
 }
 
-fn parse(
-    source: &Source,
-    name: &str,
-    options: &ReadOptions,
-    folder: Option<&Path>,
-    progress: &dyn Progress,
-) -> Parsed<Loaded> {
-    parse_records(source, parse_header(source, name)?, options, folder, progress)
-}
-
 fn parse_records(
-    source: &Source,
+    Input { source, folder, .. }: &Input<'_>,
     header: Header,
     options: &ReadOptions,
-    folder: Option<&Path>,
     progress: &dyn Progress,
 ) -> Parsed<Loaded> {
     header::refuse_duplicates(&header.elements)?;
@@ -185,9 +131,9 @@ fn parse_records(
     if header.elements.iter().any(|element| materials::Columns::of(element).is_some()) {
         layout.find_materials(&header.elements[vertex]);
     }
-    let texture = find_texture(&header, vertex, &mut layout, options, folder);
+    let texture = find_texture(&header, vertex, &mut layout, options, *folder);
     // Text keeps its digits, whatever type the header names.
-    layout.narrow &= header.format != Format::Ascii;
+    layout.narrow &= header.encoding != Encoding::Ascii;
     let meter = Meter::new(progress, source.size());
     let triangles = options.triangles;
     let file = File { source, header: &header, vertex, layout: &layout, meter: &meter, triangles, lines };
@@ -241,7 +187,7 @@ fn report(header: Header, vertex: usize, layout: &Layout, contents: &Contents) -
     };
     let skipped = header.elements.iter().zip(&contents.used).filter(|(_, used)| !**used);
     Report {
-        format: header.format,
+        encoding: header.encoding,
         understood: names(true),
         skipped: names(false),
         skipped_elements: skipped.map(|(element, _)| element.name.clone()).collect(),
@@ -272,7 +218,7 @@ fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
 }
 
 /// Bytes of a file as they may stand in a message: quoted, on one line, not too long.
-fn shown(bytes: &[u8]) -> String {
+pub(super) fn shown(bytes: &[u8]) -> String {
     const LONGEST: usize = 40;
     let mut text = bytes[..bytes.len().min(LONGEST)].escape_ascii().to_string();
     if bytes.len() > LONGEST || text.len() > LONGEST {

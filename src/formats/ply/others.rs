@@ -8,8 +8,8 @@ use super::materials::{Columns, Table};
 use super::meter::Meter;
 use super::points::Points;
 use super::records::{Reader, walk};
-use super::types::{Element, Kind};
 use super::{Faces, Lines};
+use crate::formats::declared::{Element, Kind};
 use crate::geometry::{Cloud, View};
 use glam::{DVec3, Vec3};
 

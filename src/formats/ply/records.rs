@@ -1,8 +1,8 @@
 //! Records in order, whatever the encoding they came in.
 
 use super::meter::Meter;
-use super::types::{Element, Kind, Scalar};
 use super::{Parsed, shown};
+use crate::formats::declared::{Element, Kind, Scalar};
 
 /// A place among the numbers of a file. A clone is a bookmark.
 pub(super) trait Reader: Clone {

@@ -8,8 +8,8 @@ use super::convert::{Tally, convert};
 use super::layout::Layout;
 use super::meter::Meter;
 use super::records::{Reader, walk};
-use super::source::Source;
-use super::types::{Element, Kind, Scalar};
+use crate::formats::declared::{Element, Kind, Scalar};
+use crate::formats::source::Source;
 use rayon::prelude::*;
 
 /// Size of the pieces that a file is read in, bytes: they stay in the cache until they are decoded.

@@ -1,4 +1,12 @@
 //! One short file a method: its paper, its pipeline figure, and what it chooses along the axes of [`Splatting`]; or a [`pull_push`] of points.
+//!
+//! # How to add a method
+//!
+//! 1. `settings/methods/NAME.rs`: its paper and its pipeline figure in the documentation, and a [`Method`] of its choices.
+//! 2. Here: its module, and its place in [`Method::SPLATTING`] or [`Method::ALL`]. Command line, window, benchmark and tests go by these lists.
+//!
+//! A method that needs a choice which no axis has adds it to the axis' enum in [`splatting`](super::splatting), to the shader that branches on it
+//! and to the reference function of the shader's name.
 
 pub mod confetti;
 pub mod object_ewa;

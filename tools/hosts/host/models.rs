@@ -87,6 +87,6 @@ impl Models {
 }
 
 fn read(file: &Path) -> Result<Surfels> {
-    let loaded = formats::ply::read(file, &Default::default(), &())?;
+    let loaded = formats::read(file, &Default::default(), &())?;
     Ok(loaded.cloud.into_surfels(&Estimate::default(), &())?.0)
 }

@@ -7,8 +7,9 @@ mod nonsense;
 mod written;
 
 use super::*;
-use crate::geometry::Colours;
-use crate::geometry::Materials;
+use crate::error::Error;
+use crate::formats::{read, read_bytes};
+use crate::geometry::{Cloud, Colours, Materials};
 use glam::{DVec3, Vec3};
 use std::time::{Duration, Instant};
 
@@ -105,7 +106,7 @@ fn mixed(format: &str) -> Vec<u8> {
 fn every_encoding_gives_the_same_surfels() {
     for format in ["ascii", "binary_little_endian", "binary_big_endian"] {
         let Loaded { cloud, report } = load(&mixed(format));
-        assert_eq!(report.format.to_string(), format);
+        assert_eq!(report.encoding.to_string(), format);
         assert_eq!(cloud.positions, [Vec3::new(10.0, -3.0, 200.0), Vec3::new(-100.5, 4.0, 3.0)], "{format}");
         assert_eq!(cloud.normals, Some(vec![-Vec3::X, Vec3::new(0.0, 0.6, 0.8)]), "{format}");
         assert_eq!(cloud.radii, Some(vec![0.25, 0.5]));

@@ -25,7 +25,7 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// The triangles of a cloud: read it with [`ReadOptions::triangles`](crate::formats::ply::ReadOptions).
+    /// The triangles of a cloud: read it with [`ReadOptions::triangles`](crate::formats::ReadOptions).
     ///
     /// # Errors
     /// What is wrong with it: it has no triangles, or one that names no point.
