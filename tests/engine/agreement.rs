@@ -134,12 +134,7 @@ fn every_footprint_under_every_visibility_with_coverage() {
         cases.retain(|case| both[if_whole(0..2, some..some + 1)].contains(&case.name));
         assert_eq!(cases.len(), if_whole(2, 1));
         // By the other rasterizer where the next one meets the same case.
-        let views = move |number| {
-            let mut views = views_in_turn(i + i / 3)(number);
-            views.retain(|(_, rasterizer)| if_whole(true, *rasterizer == RASTERIZERS[(i / 2) % 2]));
-            views
-        };
-        failures(&cases, &views, &format!("coverage, {splatting:?}"))
+        failures(&cases, &by_one(views_in_turn(i + i / 3), i / 2), &format!("coverage, {splatting:?}"))
     };
     let all: Vec<Splatting> = all.collect();
     assert_eq!(all.len(), 19);
@@ -168,7 +163,7 @@ fn every_case_by_other_axes() {
     ];
     let by = |(i, splatting): (usize, Splatting)| {
         let cases = with_axes(|case| Settings { splatting, ..case.settings.clone() });
-        failures(&cases, &some_in_turn(i, 6), &format!("{splatting:?}"))
+        failures(&cases, &by_one(some_in_turn(i, 6), i), &format!("{splatting:?}"))
     };
     assert_agree(all.into_iter().enumerate().flat_map(by).collect());
 }
@@ -215,6 +210,18 @@ fn some_in_turn(way: usize, share: usize) -> impl Fn(usize) -> Vec<(usize, Raste
     move |number| match (number + way).is_multiple_of(share) {
         true => views_in_turn(way / share)(number),
         false => if_whole(all_views(number), Vec::new()),
+    }
+}
+
+/// All of the same in the whole matrix; else those by one rasterizer: by the other the next way.
+fn by_one(
+    views: impl Fn(usize) -> Vec<(usize, Rasterizer)>,
+    way: usize,
+) -> impl Fn(usize) -> Vec<(usize, Rasterizer)> {
+    move |number| {
+        let mut views = views(number);
+        views.retain(|(_, rasterizer)| if_whole(true, *rasterizer == RASTERIZERS[way % 2]));
+        views
     }
 }
 
