@@ -4,7 +4,7 @@ use std::cell::RefCell;
 use std::sync::Arc;
 use surfel::geometry::{Camera, Parts};
 use surfel::vk::{Device, DeviceLimits, DeviceOptions};
-use surfel::{Picture, RenderOptions, Renderer, Scene, Settings};
+use surfel::{FrameReport, Instances, Picture, RenderOptions, Renderer, Scene, Settings};
 
 /// A device under validation, less what `limits` hide; `None`, said aloud, where there is none. With `SURFEL_REQUIRE_GPU` set, the
 /// lack of one is a failure.
@@ -59,12 +59,22 @@ impl Renderers {
         settings: &Settings,
         options: RenderOptions,
     ) -> Picture {
-        let scene = Scene::upload(&self.device, parts).unwrap();
+        self.render_instances(&Scene::upload(&self.device, parts).unwrap(), camera, settings, options).0
+    }
+
+    /// One frame of scenes that are on the device, and its report, by the renderer of these options.
+    pub fn render_instances<'a>(
+        &self,
+        scenes: impl Into<Instances<'a, Scene>>,
+        camera: &Camera,
+        settings: &Settings,
+        options: RenderOptions,
+    ) -> (Picture, FrameReport) {
         let mut made = self.made.borrow_mut();
         let place = made.iter().position(|(of, _)| *of == options).unwrap_or_else(|| {
             made.push((options, Renderer::new(&self.device, options).unwrap()));
             made.len() - 1
         });
-        made[place].1.render_picture(&scene, camera, settings).unwrap().0
+        made[place].1.render_picture(scenes, camera, settings).unwrap()
     }
 }

@@ -90,24 +90,25 @@ pub fn merged(parts: &[(&Surfels, DMat4)], albedo: [f32; 3]) -> Surfels {
     Surfels::merge(parts, albedo).unwrap()
 }
 
-/// A ribbon, a tube and a triangle about the origin.
+/// A ribbon, a tube, a small triangle and a large one about the origin.
 pub fn lines() -> Primitives {
     let vertex = |i: u32, y: f32| {
         let x = 0.25 * i as f32 - 2.0;
         Vec3::new(x, y + 0.125 * (i % 3) as f32, 0.5 * y)
     };
     let positions: Vec<_> = (0..17).flat_map(|i| [vertex(i, 1.75), vertex(i, -1.5)]).collect();
-    let triangle = [Vec3::new(-2.0, -0.5, 1.5), Vec3::new(2.0, -0.25, 1.5), Vec3::new(0.0, 1.5, 1.75)];
+    let small = [Vec3::new(-2.0, 0.75, 1.5), Vec3::new(-1.0, 0.75, 1.5), Vec3::new(-1.5, 1.5, 1.75)];
+    let large = [Vec3::new(-2.0, -0.5, 1.5), Vec3::new(2.0, -0.25, 1.5), Vec3::new(0.0, 1.5, 1.75)];
     let along = |i: usize| (positions[(i + 2).min(33)] - positions[(i + 2).min(33) - 2]).normalize();
     let directions = (0..34).map(|i| if i % 2 == 0 { along(i).cross(Vec3::Y).normalize() } else { along(i) });
-    let facing = (triangle[1] - triangle[0]).cross(triangle[2] - triangle[0]).normalize();
+    let facing = |[a, b, c]: [Vec3; 3]| [(b - a).cross(c - a).normalize(); 3];
     Primitives {
-        directions: directions.chain([facing; 3]).collect(),
-        positions: positions.iter().copied().chain(triangle).collect(),
-        radii: vec![0.0625; 37],
+        directions: directions.chain(facing(small)).chain(facing(large)).collect(),
+        positions: positions.iter().copied().chain(small).chain(large).collect(),
+        radii: vec![0.0625; 40],
         ribbons: (0..16).map(|i| [2 * i, 2 * i + 2]).collect(),
         tubes: (0..16).map(|i| [2 * i + 1, 2 * i + 3]).collect(),
-        triangles: vec![[34, 35, 36]],
+        triangles: vec![[34, 35, 36], [37, 38, 39]],
         ..Default::default()
     }
 }
