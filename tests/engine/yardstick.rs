@@ -2,7 +2,7 @@
 //! little is not.
 
 use crate::support::sampling::{Random, bumpy_sphere, paint_linear, push};
-use crate::support::scenes::{Case, cases};
+use crate::support::scenes::{self, Case};
 use glam::{DVec3, Vec3};
 use surfel::geometry::{Camera, Colours, Surfels};
 use surfel::settings::{Alpha, Cull, Shading, Widen};
@@ -12,6 +12,11 @@ use surfel::{Error, Outputs, Picture, Settings};
 
 /// Share of the object's pixels that the reference may hold to be undecided.
 const MOST_DOUBT: f64 = 0.02;
+
+/// Those without clip lines.
+fn cases() -> Vec<Case> {
+    scenes::cases().into_iter().filter(|case| case.surfels.clips.is_none()).collect()
+}
 
 const ALL: Outputs = Outputs { normal: true, depth: true, id: false };
 
@@ -42,14 +47,6 @@ fn every_case_through_every_camera() {
 fn every_case_with_only_small_splats_widened() {
     let mut cases = cases();
     cases.iter_mut().for_each(|case| case.settings.widen = Widen::Small);
-    all_agree(&cases);
-}
-
-#[test]
-#[ignore = "takes long: tools/test --all"]
-fn every_case_with_coverage() {
-    let mut cases = cases();
-    cases.iter_mut().for_each(|case| case.settings.alpha = Alpha::Coverage);
     all_agree(&cases);
 }
 
@@ -297,11 +294,13 @@ fn what_cannot_be_drawn_is_refused() {
     let flat = Camera { projection: glam::DMat4::ZERO, ..camera };
     let mut yardstick = Yardstick::new(&surfels).unwrap();
     let negative = Settings { cutoff: -1.0, ..Default::default() };
+    let coverage = Settings { alpha: Alpha::Coverage, ..Default::default() };
     for (camera, size, settings) in [
         (camera, [0, 10], Settings::default()),
         (camera, [10, 65_536], Settings::default()),
         (flat, [10, 10], Settings::default()),
         (camera, [10, 10], negative),
+        (camera, [10, 10], coverage),
     ] {
         let refused = yardstick.frame(Kind::Splats, &camera, size, &settings, ALL);
         assert!(matches!(refused, Err(Error::Usage(_))), "{size:?}");

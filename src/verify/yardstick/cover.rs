@@ -1,10 +1,8 @@
 //! The pixels of a tile that a splat covers, four at a time.
 
-use super::clip::ScreenClip;
 use super::shape::{Shape, half_box};
 use super::splat::Splat;
 use super::tile::{Frame, LANES, RAMP, SIDE};
-use crate::settings::Alpha;
 use glam::{BVec4A, Vec2, Vec4};
 
 /// The ellipse on which a splat's kernel ends, over one tile.
@@ -18,29 +16,18 @@ pub(super) struct Cover<'a> {
     whitening: [Vec2; 2],
     /// Rows of the tile, first and last.
     rows: [u32; 2],
-    /// What clip lines keep of it.
-    pub clip: Option<ScreenClip>,
-    /// How far it reaches beyond them, px.
-    beyond: f32,
 }
-
-/// How far beyond a clip line a splat has fragments where α is coverage, px: as far as a pixel that it cuts can have its centre.
-const BEYOND: f32 = std::f32::consts::FRAC_1_SQRT_2;
 
 /// Four neighbouring pixels of a row.
 pub(super) struct Block {
     /// Which of the tile's, row by row.
     pub index: usize,
-    /// Where the pixels are relative to the centre, px: x of each, and y.
-    pub offset: (Vec4, f32),
     /// Squared distances to the centre in σ.
     pub distance: Vec4,
     /// Keys of the plane.
     pub key: Vec4,
-    /// Which are within the cut-off and kept.
+    /// Which are within the cut-off.
     pub inside: BVec4A,
-    /// Which are within the cut-off and beyond a clip line, no farther than splats reach there.
-    pub beyond: BVec4A,
 }
 
 impl<'a> Cover<'a> {
@@ -62,9 +49,7 @@ impl<'a> Cover<'a> {
         let rows = [low.max(0.0) as u32, high.min(SIDE as f32 - 1.0) as u32];
         let (major, minor) = (1.0 / shape.variance.x.sqrt(), 1.0 / shape.variance.y.sqrt());
         let whitening = [major * shape.axis, minor * shape.axis.perp()];
-        let clip = ScreenClip::of(splat, frame.surfels, frame.view);
-        let beyond = if frame.settings.alpha == Alpha::Coverage { BEYOND } else { 0.0 };
-        Some(Self { splat, limit: cutoff * cutoff, corner, whitening, rows, clip, beyond })
+        Some(Self { splat, limit: cutoff * cutoff, corner, whitening, rows })
     }
 
     /// Calls `visit` for all blocks that hold a covered pixel, and maybe for others beside them.
@@ -87,22 +72,11 @@ impl<'a> Cover<'a> {
                     let x = dx - self.splat.offset.x;
                     let (along, across) = (a.x * x + ay, b.x * x + by);
                     let distance = along * along + across * across;
-                    let within = distance.cmple(Vec4::splat(self.limit));
-                    let (inside, beyond) = match &self.clip {
-                        None => (within, BVec4A::FALSE),
-                        Some(clip) => {
-                            let kept = clip.distance(dx, dy);
-                            let inside = within & kept.cmpge(Vec4::ZERO);
-                            (inside, within & !inside & kept.cmpge(Vec4::splat(-self.beyond)))
-                        }
-                    };
                     visit(Block {
                         index: row as usize * (SIDE / LANES) + block,
-                        offset: (x, y),
                         distance,
                         key: plane.y * dx + key,
-                        inside,
-                        beyond,
+                        inside: distance.cmple(Vec4::splat(self.limit)),
                     });
                 }
             }

@@ -1,6 +1,9 @@
 //! The yardstick: what a plain native program makes of the same frames, without Vulkan. Times of a machine become comparable with
 //! those of another as multiples of it.
 //!
+//! It is frozen, so that multiples stay comparable from version to version: points, and base EWA splatting of circles and ellipses with a
+//! mask for α. Clip lines are not known to it, so that splats are drawn whole.
+//!
 //! Single precision on all threads of rayon's pool, for surfels in Morton order; it shares no code with the shaders or the float64
 //! [reference](crate::verify::reference), so that it is a third opinion on what a picture should be.
 //!
@@ -14,14 +17,12 @@
 //! | [`Kind::Splats`] | `footprint`: surfel → splat; `bin`: splats → lists of tiles; then, tile by tile in the processor's cache, `visibility`, `attribute` and `normalize` as in [`perspective_ewa`](crate::settings::methods::perspective_ewa) |
 
 mod chunk;
-mod clip;
 mod clock;
 mod cover;
 mod exp;
 mod pixels;
 mod shade;
 mod shape;
-mod solid;
 mod splat;
 mod splats;
 mod sums;
@@ -31,11 +32,11 @@ mod view;
 
 use crate::error::{Error, Result};
 use crate::geometry::srgb;
-use crate::geometry::{Camera, Clips, Colours, Surfels};
+use crate::geometry::{Camera, Colours, Surfels};
 use crate::picture::Picture;
 use crate::settings::Outputs;
 use crate::settings::splatting::Splatting;
-use crate::settings::{Settings, Shading};
+use crate::settings::{Alpha, Settings, Shading};
 use crate::vk::PassTime;
 use clock::Stages;
 use pixels::Pixels;
@@ -114,8 +115,8 @@ impl Yardstick {
     ) -> Result<&[PassTime]> {
         settings.check()?;
         let counts = matches!(settings.shading, Shading::Overlap | Shading::Weight);
-        if settings.splatting != Splatting::default() || counts {
-            let text = "the yardstick draws as perspective-ewa does, and neither overlaps nor weights: choose that method";
+        if settings.splatting != Splatting::default() || counts || settings.alpha != Alpha::Mask {
+            let text = "the yardstick draws as perspective-ewa does, with a mask for α, and neither overlaps nor weights: choose those";
             return Err(Error::Usage(text.into()));
         }
         let view = View::new(camera, size, self.surfels.origin)?;
@@ -147,10 +148,8 @@ impl Yardstick {
             Some(Colours::Linear(colours)) => size_of_val(colours.as_slice()),
             None => 0,
         };
-        let clips = |clips: &Clips| size_of_val(&clips.of[..]) + size_of_val(&clips.clips[..]);
-        let shapes = s.ellipses.as_deref().map_or(0, size_of_val)
-            + s.two_sided.as_deref().map_or(0, size_of_val)
-            + s.clips.as_ref().map_or(0, clips);
+        let shapes =
+            s.ellipses.as_deref().map_or(0, size_of_val) + s.two_sided.as_deref().map_or(0, size_of_val);
         let vectors = size_of_val(s.positions.as_slice()) + size_of_val(s.normals.as_slice());
         Memory {
             scene: (vectors + size_of_val(s.radii.as_slice()) + shapes + colours) as u64,

@@ -180,7 +180,6 @@ impl<'a> Projection<'a> {
         let vectors = |first: usize| [0, 1, 2].map(|i| Vec4::from_array(attributes[first + i]));
         Surface {
             covered: BVec4A::from_array(covered),
-            alpha: Vec4::ONE,
             colour: if streams.colours { vectors(streams.colour_channel()) } else { self.albedo },
             normal: vectors(0),
             weight: Vec4::ONE,

@@ -11,8 +11,6 @@ pub(super) type Vectors = [Vec4; 3];
 pub(super) struct Surface {
     /// Where there is one.
     pub covered: BVec4A,
-    /// The part of the pixel that is covered.
-    pub alpha: Vec4,
     /// Linear RGB.
     pub colour: Vectors,
     /// Σ w n, or what is parallel to it.
@@ -72,27 +70,13 @@ impl<'a> Shader<'a> {
             // Refused before a frame is begun.
             Shading::Overlap | Shading::Weight => [Vec4::ONE; 3],
         };
-        let [r, g, b, a] = self.over_background(shown, surface.alpha);
+        let [r, g, b] = shown;
         let select = |here: Vec4, otherwise: Vec4| Vec4::select(surface.covered, here, otherwise);
         Shown {
-            colour: [(r, 0), (g, 1), (b, 2), (a, 3)].map(|(v, i)| select(v, empty.colour[i])),
+            colour: [(r, 0), (g, 1), (b, 2), (Vec4::ONE, 3)].map(|(v, i)| select(v, empty.colour[i])),
             normal: normal.map(|v| select(v, Vec4::ZERO)),
             depth: select(surface.depth, Vec4::ZERO),
         }
-    }
-
-    /// What is shown of a surface with the background, if there is one, behind it; and α.
-    #[inline]
-    fn over_background(&self, shown: Vectors, alpha: Vec4) -> [Vec4; 4] {
-        let [r, g, b] = shown;
-        let Some(background) = self.settings.background else { return [r, g, b, alpha] };
-        // Numbers are not mixed with a colour: the half decides.
-        let share = match self.settings.shading {
-            Shading::Lit | Shading::Colour => alpha,
-            _ => Vec4::select(alpha.cmpge(Vec4::splat(0.5)), Vec4::ONE, Vec4::ZERO),
-        };
-        let over = |here: Vec4, behind: f32| share * here + (1.0 - share) * behind;
-        [over(r, background[0]), over(g, background[1]), over(b, background[2]), Vec4::ONE]
     }
 
     /// Unit vectors to the eye.

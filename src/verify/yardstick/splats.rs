@@ -3,7 +3,6 @@
 use super::chunk::Chunk;
 use super::clock::Stages;
 use super::shade::{Shader, Surface};
-use super::solid::shares;
 use super::splat::Footprint;
 use super::sums::Streams;
 use super::target::{Slab, Target};
@@ -54,10 +53,10 @@ impl Splats {
             self.order.sort_unstable_by(|a, b| nearest(b).total_cmp(&nearest(a)));
         });
         let shader = Shader::new(settings, view, streams.normals);
-        let frame = Frame { surfels, view, settings, streams, chunks: &self.chunks, order: &self.order };
+        let frame = Frame { view, settings, streams, chunks: &self.chunks, order: &self.order };
         stages.time_shared(["visibility", "attribute", "normalize"], |clock| {
             target.slabs().for_each(|mut slab| {
-                let mut tile = Tile::new(slab.at, &frame);
+                let mut tile = Tile::new(slab.at);
                 let mut lap = clock.start();
                 let drawn = tile.visibility(&frame);
                 lap.end(0);
@@ -85,12 +84,10 @@ fn normalize(frame: &Frame, shader: &Shader, tile: &Tile, slab: &mut Slab) {
     for block in 0..BLOCKS {
         let weight = tile.sums[0][block];
         let inverse = 1.0 / weight;
-        let alpha = shares(tile.covered[block]);
         let sums = |first: usize| [0, 1, 2].map(|i| tile.sums[first + i][block]);
         let key = tile.sums[7][block];
         let surface = Surface {
-            covered: weight.cmpgt(Vec4::ZERO) & alpha.cmpgt(Vec4::ZERO),
-            alpha,
+            covered: weight.cmpgt(Vec4::ZERO),
             colour: if frame.streams.colours { sums(first).map(|v| v * inverse) } else { albedo },
             normal: sums(1),
             weight,

@@ -4,12 +4,10 @@ use super::chunk::Chunk;
 use super::cover::{Block, Cover};
 use super::exp::exp_half;
 use super::shape::{Shape, attribute_variance, visibility_variance};
-use super::solid::{Samples, Solid};
 use super::splat::Splat;
 use super::sums::{Channels, Streams};
 use super::view::View;
-use crate::geometry::Surfels;
-use crate::settings::{Alpha, Settings};
+use crate::settings::Settings;
 use glam::Vec4;
 
 /// Pixels along a tile's side.
@@ -28,7 +26,6 @@ pub(super) type Plane = [Vec4; BLOCKS];
 
 /// What all tiles of a frame share.
 pub(super) struct Frame<'a> {
-    pub surfels: &'a Surfels,
     pub view: &'a View,
     pub settings: &'a Settings,
     pub streams: Streams<'a>,
@@ -45,28 +42,17 @@ pub(super) struct Tile {
     keys: Plane,
     /// The least of the keys, −∞ if there is a gap: what is behind is hidden.
     farthest: f32,
-    /// Keys of what is beyond clip lines, seen where there is nothing else; of a frame that may have such.
-    beyond: Option<Box<Plane>>,
-    /// The samples that a surface covers; all, where α is a mask.
-    pub covered: [Samples; BLOCKS],
-    /// Whether that is all.
-    full: bool,
     /// Weighted sums: of the weights, the attributes, the keys.
     pub sums: [Plane; 8],
 }
 
 impl Tile {
-    /// An empty tile of a frame.
-    pub fn new(at: [u32; 2], frame: &Frame) -> Self {
-        let full = frame.settings.alpha == Alpha::Mask;
-        let beyond = !full && frame.surfels.clips.is_some();
+    /// An empty tile.
+    pub fn new(at: [u32; 2]) -> Self {
         Self {
             at,
             keys: [Vec4::NEG_INFINITY; BLOCKS],
             farthest: f32::NEG_INFINITY,
-            beyond: beyond.then(|| Box::new([Vec4::NEG_INFINITY; BLOCKS])),
-            covered: [if full { Samples::MAX } else { 0 }; BLOCKS],
-            full,
             sums: [[Vec4::ZERO; BLOCKS]; 8],
         }
     }
@@ -88,14 +74,13 @@ impl Tile {
             stale += list.len();
             if stale > FRESH {
                 self.farthest = least(&self.keys);
-                self.full = self.covered.iter().all(|samples| *samples == Samples::MAX);
                 stale = 0;
             }
         }
         drawn
     }
 
-    /// What a splat hides, and what it covers whether it is hidden or not.
+    /// What a splat hides.
     #[inline]
     fn claim(&mut self, frame: &Frame, splat: &Splat) {
         let (factor, shift) = match frame.view.perspective {
@@ -103,7 +88,7 @@ impl Tile {
             false => (1.0, splat.epsilon),
         };
         // Nothing is claimed nearer than the disc itself, however far the filter has widened its plane.
-        if self.full && splat.disc * factor - shift <= self.farthest {
+        if splat.disc * factor - shift <= self.farthest {
             return;
         }
         let shape =
@@ -111,42 +96,19 @@ impl Tile {
         let Some(cover) = Cover::new(splat, &shape, frame, self.corner()) else { return };
         let [far, near] = frame.view.keys.map(Vec4::splat);
         let disc = Vec4::splat(splat.disc);
-        let solid = (!self.full).then(|| Solid::new(splat, cover.clip, frame.settings.cutoff));
         cover.each(|block| {
-            let within = block.key.cmpgt(far) & block.key.cmple(near);
-            let mut inside = block.inside & within;
+            let inside = block.inside & block.key.cmpgt(far) & block.key.cmple(near);
             let claimed = block.key.min(disc) * factor - shift;
             let key = &mut self.keys[block.index];
             *key = Vec4::select(inside, key.max(claimed), *key);
-            if let Some(keys) = &mut self.beyond {
-                let beyond = block.beyond & within;
-                let key = &mut keys[block.index];
-                *key = Vec4::select(beyond, key.max(claimed), *key);
-                inside |= beyond;
-            }
-            let covered = &mut self.covered[block.index];
-            if let Some(solid) = &solid
-                && *covered != Samples::MAX
-            {
-                let (x, y) = block.offset;
-                *covered |= solid.covered(inside, x, y);
-            }
         });
     }
 
     /// Pass `attribute`: weighted sums over the splats that the keys let through.
     pub fn attribute(&mut self, frame: &Frame) {
         // Where there is no surface nothing is let through, however far the wider footprint reaches.
-        let none = Vec4::NEG_INFINITY;
-        for (index, key) in self.keys.iter_mut().enumerate() {
-            let mut empty = key.cmpeq(none);
-            if let Some(keys) = &mut self.beyond {
-                // All that is not beyond its lines is in front of what is.
-                let beyond = empty & keys[index].cmpgt(none);
-                keys[index] = Vec4::select(beyond, keys[index], Vec4::INFINITY);
-                empty &= !beyond;
-            }
-            *key = Vec4::select(empty, Vec4::INFINITY, *key);
+        for key in &mut self.keys {
+            *key = Vec4::select(key.cmpeq(Vec4::NEG_INFINITY), Vec4::INFINITY, *key);
         }
         self.farthest = least(&self.keys);
         match frame.streams.channels() {
@@ -180,12 +142,8 @@ impl Tile {
         let amplitude = splat.shape.root / variance.x.sqrt() / variance.y.sqrt();
         let attributes = frame.streams.attributes(splat.surfel);
         let [far, near] = frame.view.keys.map(Vec4::splat);
-        cover.each(|Block { index, distance, key, inside, beyond, .. }| {
-            let mut seen = inside & key.cmpge(self.keys[index]);
-            if let Some(keys) = &self.beyond {
-                seen |= beyond & key.cmpge(keys[index]);
-            }
-            let seen = seen & key.cmpgt(far) & key.cmple(near);
+        cover.each(|Block { index, distance, key, inside }| {
+            let seen = inside & key.cmpge(self.keys[index]) & key.cmpgt(far) & key.cmple(near);
             let weight = Vec4::select(seen, amplitude * exp_half(distance), Vec4::ZERO);
             self.sums[0][index] += weight;
             for (sum, attribute) in self.sums[1..=COUNT].iter_mut().zip(attributes) {
