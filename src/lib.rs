@@ -23,17 +23,15 @@
 //! | [`bench`](mod@bench) | speed against error | `bench` |
 //!
 //! ```no_run
-//! use surfel::estimate::Estimate;
-//! use surfel::formats;
 //! use surfel::geometry::Camera;
+//! use surfel::load::{LoadOptions, load};
 //! use surfel::vk::{Device, DeviceOptions};
-//! use surfel::{Error, RenderOptions, Renderer, Scene, Settings};
+//! use surfel::{RenderOptions, Renderer, Scene, Settings};
 //!
 //! # fn main() -> surfel::Result<()> {
-//! let loaded = formats::read("bunny.ply".as_ref(), &Default::default(), &())?;
-//! let (surfels, _) = loaded.cloud.into_surfels(&Estimate::default(), &()).map_err(|cause| Error::input("bunny.ply", cause))?;
+//! let loaded = load(&["bunny.ply"], &LoadOptions::default(), &())?;
 //! let device = Device::open(&DeviceOptions::default())?;
-//! let scene = Scene::upload(&device, &surfels)?;
+//! let scene = Scene::upload(&device, &loaded.model)?;
 //! let mut renderer = Renderer::new(&device, RenderOptions { size: [800, 600], ..Default::default() })?;
 //! let camera = Camera::framing(&scene.bounds(), 45f64.to_radians(), 800.0 / 600.0)?;
 //! let (picture, _report) = renderer.render_picture(&scene, &camera, &Settings::default())?;
@@ -57,6 +55,8 @@ pub mod estimate;
 pub mod formats;
 pub mod frame;
 pub mod geometry;
+#[cfg(all(feature = "io", feature = "estimate"))]
+pub mod load;
 pub mod picture;
 mod progress;
 pub mod scene;

@@ -3,6 +3,7 @@
 use super::record::{Agreement, Memory, Results, Run, Session, SweepPoint};
 use crate::error::{Error, Result};
 use crate::frame::times::Statistics;
+use crate::settings::Choice;
 use crate::verify::metrics::Metric;
 use std::collections::BTreeSet;
 
@@ -101,7 +102,7 @@ fn what(run: &Run) -> Vec<Cell> {
     let setting = &run.setting;
     cells([
         ("suite", run.suite.clone()),
-        ("figure", super::show::figure(run.figure).into()),
+        ("figure", run.figure.name().into()),
         ("part", run.part.clone()),
         ("scene", run.scene.clone()),
         ("points", run.points.to_string()),

@@ -2,7 +2,7 @@
 
 use super::engine::Engine;
 use super::record::{Axes, Figure, Setting};
-use crate::settings::Settings;
+use crate::settings::{Choice, Settings};
 use crate::verify::scenes::Viewpoint;
 
 /// One run.

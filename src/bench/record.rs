@@ -4,10 +4,10 @@
 use crate::frame::times::Statistics;
 use crate::settings::methods::Method;
 use crate::settings::splatting::Splatting;
-use crate::settings::{Alpha, Settings};
+use crate::settings::{Alpha, Choice, Settings};
 use crate::verify::reference::Comparison;
 use jiff::Timestamp;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
 use std::collections::BTreeMap;
 
 /// Rises whenever files of an older program can no longer be read.
@@ -130,8 +130,24 @@ pub struct Run {
 }
 
 /// What a run is measured for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    PartialOrd,
+    Ord,
+    Hash,
+    Serialize,
+    Deserialize,
+    strum::EnumMessage,
+    strum::EnumString,
+    strum::IntoStaticStr,
+    strum::VariantArray,
+)]
 #[serde(rename_all = "kebab-case")]
+#[strum(serialize_all = "kebab-case")]
 pub enum Figure {
     /// Time against error, and error against the number of points.
     Budget,
@@ -286,12 +302,20 @@ pub struct Agreement {
     pub doubtful: u64,
     /// Pixels that are wrong.
     pub failed: u64,
-    /// Largest difference of linear colour and α outside the pixels in doubt.
+    /// Largest difference of linear colour and α outside the pixels in doubt; NaN, in JSON null, where one is no finite number.
+    #[serde(deserialize_with = "nan_of_null")]
     pub colour: f64,
     /// Of the normals' coordinates.
+    #[serde(deserialize_with = "nan_of_null")]
     pub normal: f64,
     /// Of the depth, relative.
+    #[serde(deserialize_with = "nan_of_null")]
     pub depth: f64,
+}
+
+/// JSON has neither NaN nor infinity: serde writes both as null.
+fn nan_of_null<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+    Ok(Option::deserialize(from)?.unwrap_or(f64::NAN))
 }
 
 /// Memory, bytes.
@@ -431,16 +455,15 @@ impl Axes {
 }
 
 impl Agreement {
-    /// What a comparison with the reference found. What is no number is the largest there is: JSON has neither NaN nor infinity.
+    /// What a comparison with the reference found.
     pub fn of(found: &Comparison) -> Self {
-        let finite = |value: f64| if value.is_finite() { value } else { f64::MAX };
         Self {
             object: found.object_pixels as u64,
             doubtful: found.doubtful as u64,
             failed: found.failed as u64,
-            colour: finite(found.worst.colour),
-            normal: finite(found.worst.normal),
-            depth: finite(found.worst.depth),
+            colour: found.worst.colour,
+            normal: found.worst.normal,
+            depth: found.worst.depth,
         }
     }
 }

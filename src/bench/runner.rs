@@ -12,9 +12,9 @@ use crate::frame::times::Statistics;
 use crate::geometry::{Camera, Model, Surfels};
 use crate::picture::Picture;
 use crate::settings::splatting::Normalization;
-use crate::settings::{Settings, Shading};
+use crate::settings::{Choice, Settings, Shading};
 use crate::verify::metrics::flicker::Flicker;
-use crate::verify::metrics::{self, Metric, Pair, colour};
+use crate::verify::metrics::{self, Pair, colour};
 use crate::verify::reference::{self, Expected, Tolerance};
 use crate::verify::scenes::Viewpoint;
 use crate::verify::truth::{self, Cache, Truth};
@@ -219,7 +219,7 @@ impl Runner {
             metrics::Options { object_size: 2.0 * job.subject.bounds().radius, ..Default::default() };
         let pair = Pair::new(picture, &truth.picture)?;
         let measured = metrics::measure(&pair, &options)?;
-        let known = measured.values.into_iter().map(|(metric, value)| (Metric::name(metric), value));
+        let known = measured.values.into_iter().map(|(metric, value)| (metric.name(), value));
         let details = if job.plan.wants.details { details::of(&pair) } else { Vec::new() };
         let finite = known.chain(details).filter(|(_, value)| value.is_finite());
         Ok(record::Error {

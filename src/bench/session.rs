@@ -6,6 +6,7 @@ use super::suites::{Own, Suite};
 use super::{code, hard};
 use crate::error::{Error, Result};
 use crate::progress::Progress;
+use crate::settings::Choice;
 use crate::vk::Device;
 use jiff::Timestamp;
 use std::path::PathBuf;

@@ -1,6 +1,6 @@
 //! Numbers and names as people read them.
 
-use super::record::{Contender, Figure, Made, Memory, Run, Session, Setting};
+use super::record::{Contender, Made, Memory, Run, Session, Setting};
 use crate::settings::methods::Method;
 
 /// With `digits` significant ones at most, and no zeros behind them; in powers of ten where it would be long.
@@ -59,6 +59,11 @@ pub fn multiple(value: f64) -> String {
     format!("{}×", significant(value, 2))
 }
 
+/// The largest of numbers from 0, or NaN where one is, which `f64::max` hides.
+pub fn largest(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(0.0, |a, b| if b.is_nan() || b > a { b } else { a })
+}
+
 /// Bytes as MiB, without the unit.
 pub fn mib(bytes: u64) -> String {
     significant(bytes as f64 / f64::from(1 << 20), 3)
@@ -77,23 +82,6 @@ pub fn size([width, height]: [u32; 2]) -> String {
 /// A scene without what all scenes have in front.
 pub fn scene(name: &str) -> &str {
     name.strip_prefix("scene:").unwrap_or(name)
-}
-
-/// A figure as it is called on the command line and in files.
-pub fn figure(figure: Figure) -> &'static str {
-    match figure {
-        Figure::Budget => "budget",
-        Figure::Lowpass => "lowpass",
-        Figure::Aliasing => "aliasing",
-        Figure::ScalingPoints => "scaling-points",
-        Figure::Filled => "filled",
-        Figure::ScalingSize => "scaling-size",
-        Figure::ScalingOverlap => "scaling-overlap",
-        Figure::Yardstick => "yardstick",
-        Figure::Effects => "effects",
-        Figure::Claims => "claims",
-        Figure::PaperTables => "paper-tables",
-    }
 }
 
 /// What tells a contender from the others: its variant if all are of one method.

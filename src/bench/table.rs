@@ -3,6 +3,7 @@
 use super::hard::EXCUSED;
 use super::record::{Agreement, Faults, Figure, Results, Run, Session, Sweep, SweepPoint};
 use super::{papers, show};
+use crate::settings::Choice;
 use std::fmt::Write;
 
 /// Columns of a terminal that lines fit into.
@@ -50,7 +51,7 @@ pub fn table(results: &Results, code: &str, commit: &str) -> String {
         for group in groups(&session.runs) {
             let run = group[0];
             let common = common(&group);
-            let _ = write!(text, "\n{} · {} · {}", run.suite, show::figure(run.figure), run.scene);
+            let _ = write!(text, "\n{} · {} · {}", run.suite, run.figure.name(), run.scene);
             for (_, told) in &common {
                 let _ = write!(text, " · {told}");
             }
@@ -194,10 +195,8 @@ fn sweeps(session: &Session) -> String {
 fn sweep_line(sweep: &Sweep, longest: usize) -> String {
     let made = || sweep.points.iter().filter(|point| point.refused.is_none());
     let worst = |of: fn(&Agreement) -> f64| {
-        // Not `f64::max`, which hides NaN.
-        let larger = |a: f64, b: f64| if b.is_nan() || b > a { b } else { a };
         let held = made().filter(|point| !point.note.starts_with(EXCUSED));
-        held.map(|point| of(&point.agreement)).fold(0.0, larger)
+        show::largest(held.map(|point| of(&point.agreement)))
     };
     let [colour, normal, depth] = [worst(|a| a.colour), worst(|a| a.normal), worst(|a| a.depth)];
     let (excused, held): (Vec<_>, Vec<_>) = made().partition(|point| point.note.starts_with(EXCUSED));

@@ -2,7 +2,7 @@
 
 use super::args::Bench;
 use super::files::{self, cache_folder, read_json};
-use super::{inputs, progress, vulkan};
+use super::{progress, vulkan};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
@@ -12,6 +12,8 @@ use surfel::bench::subject::Subject;
 use surfel::bench::suites::Own;
 use surfel::bench::{Results, Suite, Wanted, code, csv, measure, report, table};
 use surfel::formats::atomic;
+use surfel::load::scene;
+use surfel::settings::Choice;
 use surfel::vk::Device;
 use surfel::{Error, Progress, Result};
 
@@ -87,7 +89,7 @@ fn suites(args: &Bench) -> Vec<Suite> {
         return vec![Suite::Quick];
     }
     let mut suites = Vec::new();
-    for suite in args.suite.iter().map(|&suite| suite.into()).chain(own) {
+    for suite in args.suite.iter().copied().chain(own) {
         if !suites.contains(&suite) {
             suites.push(suite);
         }
@@ -96,7 +98,7 @@ fn suites(args: &Bench) -> Vec<Suite> {
 }
 
 fn subject(args: &Bench, input: &OsString, progress: &dyn Progress) -> Result<Rc<Subject>> {
-    Ok(Rc::new(match inputs::scene(input) {
+    Ok(Rc::new(match scene(input) {
         Some(scene) if args.truth.is_some() => {
             return Err(Error::Usage(format!("{scene} is its own truth: give --truth beside files alone")));
         }

@@ -8,6 +8,7 @@ use std::ffi::OsString;
 use std::fmt::Write;
 use std::path::Path;
 use surfel::formats::image::{Output, read};
+use surfel::settings::Choice;
 use surfel::verify::metrics::{Better, Measured, Metric, Options, Pair, Side, measure};
 use surfel::{Error, Result};
 
@@ -97,7 +98,8 @@ fn table(measured: &Measured) -> String {
     }
     let Measured { picture_covers, truth_covers, .. } = measured;
     let _ = writeln!(text, "covered: {picture_covers} px by the picture, {truth_covers} px by the truth");
-    let mut missing: Vec<Metric> = Metric::ALL.into_iter().filter(|m| measured.value(*m).is_none()).collect();
+    let mut missing: Vec<Metric> =
+        Metric::ALL.iter().copied().filter(|m| measured.value(*m).is_none()).collect();
     while let Some(first) = missing.first().copied() {
         let alike = missing.extract_if(.., |metric| metric.needs() == first.needs());
         let names = alike.map(Metric::name).collect::<Vec<_>>().join(", ");

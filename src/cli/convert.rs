@@ -1,15 +1,14 @@
 //! `surfel convert`.
 
 use super::args::Convert;
-use super::colouring::Colouring;
 use super::files::is_same;
-use super::inputs::{self, Wanted};
 use super::{progress, summary, vulkan};
 use std::path::Path;
 use std::sync::Arc;
 use surfel::capture::{Captured, capture};
 use surfel::formats::{atomic, ply};
 use surfel::geometry::{Model, Surfels};
+use surfel::load::{LoadOptions, load};
 use surfel::settings::methods::object_ewa;
 use surfel::vk::Device;
 use surfel::{Error, Progress, Result};
@@ -20,19 +19,16 @@ pub fn run(args: &Convert) -> Result<()> {
     check_output(args, out)?;
     let device = vulkan::options(&args.device)?;
     let bars = progress::bars(args.quiet);
-    let mut loaded = inputs::load(&Wanted {
-        names: &args.inputs,
+    let options = LoadOptions {
         estimate: args.estimate(),
         polygons: args.points.polygons,
         lines: args.lines,
         simplify: args.simplify_lines,
         voxel: args.voxel,
-        colouring: Colouring::new(&args.colours, args.up)?,
+        colouring: args.colours.colouring(args.up)?,
         texture: args.colours.texture()?,
-        quiet: args.quiet,
-        progress: &*bars,
-        sketch: None,
-    })?;
+    };
+    let mut loaded = load(&args.inputs, &options, &*bars)?;
     if let Some(views) = args.weights {
         refuse_lines(&loaded.model)?;
         capture_weights(&mut loaded.model.surfels, views, &Device::open(&device)?, &*bars, args.quiet)?;

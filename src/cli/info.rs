@@ -4,7 +4,6 @@ mod value;
 
 use super::args::Info;
 use super::files::print;
-use super::inputs::{scene, scene_cloud};
 use super::progress;
 use std::fmt::Write;
 use std::path::Path;
@@ -12,6 +11,7 @@ use surfel::estimate::{Estimate, Estimated, spacing};
 use surfel::formats::declared::Element;
 use surfel::formats::{self, Dropped, Faces, Inspected, Lines, Loaded, ReadOptions, Report};
 use surfel::geometry::{Cloud, Colours, Model, Parts, View};
+use surfel::load::{scene, scene_cloud};
 use surfel::{Error, Result};
 
 /// How many skipped names are told; the header has told all of them.

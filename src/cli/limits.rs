@@ -1,6 +1,7 @@
 //! `--fail-above` and `--fail-below`: how good a picture must be.
 
 use super::number::significant;
+use surfel::settings::Choice;
 use surfel::verify::metrics::{Better, Measured, Metric};
 use surfel::{Error, Result};
 
@@ -25,8 +26,8 @@ pub fn below(text: &str) -> Result<Limit, String> {
 
 fn parse(text: &str, better: Better) -> Result<Limit, String> {
     let choice = || {
-        let fitting = Metric::ALL.into_iter().filter(|metric| metric.better() == better);
-        fitting.map(Metric::name).collect::<Vec<_>>().join(", ")
+        let fitting = Metric::ALL.iter().copied().filter(|metric| metric.better() == better);
+        fitting.map(Choice::name).collect::<Vec<_>>().join(", ")
     };
     let (name, value) =
         text.split_once('=').ok_or_else(|| format!("give METRIC=VALUE, METRIC one of {}", choice()))?;

@@ -7,7 +7,7 @@ use surfel::frame::FramePlan;
 use surfel::scene::{ColourStream, PrimitiveKinds, Streams, SurfelLayout};
 use surfel::settings::methods::Method;
 use surfel::settings::splatting::{Filter, Splatting};
-use surfel::settings::{Settings, Shading};
+use surfel::settings::{Choice, Settings, Shading};
 use surfel::{Rasterizer, RenderOptions, Result};
 
 const WAYS: [(Rasterizer, &str); 2] = [(Rasterizer::Draw, "drawn"), (Rasterizer::Compute, "computed")];

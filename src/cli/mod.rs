@@ -4,7 +4,6 @@ mod args;
 #[cfg(feature = "bench")]
 mod bench;
 mod camera;
-mod colouring;
 #[cfg(feature = "metrics")]
 mod compare;
 mod convert;
@@ -12,7 +11,6 @@ mod devices;
 mod exit;
 mod files;
 mod info;
-mod inputs;
 #[cfg(feature = "metrics")]
 mod limits;
 mod log;

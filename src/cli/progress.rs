@@ -7,6 +7,7 @@ use std::sync::atomic::{AtomicPtr, AtomicU64, Ordering::Relaxed};
 use std::sync::{LazyLock, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 use surfel::Progress;
+use surfel::load::Listener;
 
 /// How long a stage lasts before it has a bar.
 const PATIENCE: Duration = Duration::from_millis(500);
@@ -16,13 +17,45 @@ const PERIOD: Duration = Duration::from_millis(80);
 /// Whatever is on the terminal now.
 static BARS: LazyLock<MultiProgress> = LazyLock::new(MultiProgress::new);
 
-/// Who is told about progress: bars, or nobody where there is no terminal or `quiet` is asked for.
-pub fn bars(quiet: bool) -> Box<dyn Progress> {
-    match !quiet && io::stderr().is_terminal() {
-        true => Box::new(Bars::new(PATIENCE)),
-        false => Box::new(()),
+/// Who is told about progress: bars where there is a terminal, and lines of notes; nobody where `quiet` is asked for.
+pub fn bars(quiet: bool) -> Box<dyn Listener> {
+    match (quiet, io::stderr().is_terminal()) {
+        (true, _) => Box::new(()),
+        (false, true) => Box::new(Bars::new(PATIENCE)),
+        (false, false) => Box::new(Notes),
     }
 }
+
+/// Notes alone, without bars.
+struct Notes;
+
+impl Progress for Notes {
+    fn at(&self, _: &'static str, _: u64, _: u64) {}
+}
+
+impl Listener for Notes {
+    fn note(&self, text: &str) {
+        say(text);
+    }
+}
+
+/// Progress alone, without notes.
+#[cfg(any(feature = "truth", feature = "viewer"))]
+pub struct Silent<'a>(pub &'a dyn Progress);
+
+#[cfg(any(feature = "truth", feature = "viewer"))]
+impl Progress for Silent<'_> {
+    fn at(&self, stage: &'static str, done: u64, total: u64) {
+        self.0.at(stage, done, total);
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.0.is_cancelled()
+    }
+}
+
+#[cfg(any(feature = "truth", feature = "viewer"))]
+impl Listener for Silent<'_> {}
 
 /// Prints a line, or several, to standard error.
 pub fn say(text: &str) {
@@ -102,6 +135,12 @@ impl Progress for Bars {
             }
         }
         self.current.store(label, Relaxed);
+    }
+}
+
+impl Listener for Bars {
+    fn note(&self, text: &str) {
+        say(text);
     }
 }
 

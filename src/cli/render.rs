@@ -1,16 +1,15 @@
 //! `surfel render`.
 
 use super::args::Render;
-use super::colouring::{Coloured, Colouring};
-use super::inputs::{Inputs, Wanted};
 use super::report::{Gpu, HalfError, Report};
-use super::{camera, files, inputs, progress, reference, summary, turntable, vulkan};
+use super::{camera, files, progress, reference, summary, turntable, vulkan};
 use std::path::Path;
 use surfel::embed::Measured;
 use surfel::formats::colour_bar::ColourBar;
 use surfel::formats::image::{Encoded, Output, write};
 use surfel::frame::times::Times;
 use surfel::geometry::{Camera, Model, Parts};
+use surfel::load::{Coloured, Colouring, LoadOptions, LoadedModel, load};
 use surfel::settings::Shading;
 use surfel::settings::methods::{Method, pull_push};
 use surfel::{Error, Outputs, Picture, Progress, Result, Settings, SplatCounts};
@@ -55,22 +54,17 @@ pub fn run(args: &Render) -> Result<()> {
     args.settings(&args.method.unwrap_or(Method::ALL[0])).check()?;
     let device = vulkan::options(&args.place.device)?;
     let file = camera::read(&args.camera)?;
-    let colouring = Colouring::new(&args.colours, camera::up(&args.camera, file))?;
+    let colouring = args.colours.colouring(camera::up(&args.camera, file))?;
     check_colours(args, colouring.as_ref(), &out)?;
     let bars = progress::bars(args.quiet);
-    let loaded = inputs::load(&Wanted {
-        names: &args.inputs,
+    let options = LoadOptions {
         estimate: args.points.estimate(),
         polygons: args.points.polygons,
-        lines: None,
-        simplify: None,
-        voxel: None,
         colouring,
         texture: args.colours.texture()?,
-        quiet: args.quiet,
-        progress: &*bars,
-        sketch: None,
-    })?;
+        ..Default::default()
+    };
+    let loaded = load(&args.inputs, &options, &*bars)?;
     let (method, scene) = (method(args.method, &loaded.model)?, &loaded.model);
     let settings = args.settings(&method);
     settings.check()?;
@@ -147,7 +141,7 @@ pub fn keep_layers(picture: &mut Picture, layers: Outputs) {
 fn check_colours(args: &Render, colouring: Option<&Colouring>, out: &Output) -> Result<()> {
     let Some(colouring) = colouring else { return Ok(()) };
     let refuse = |text: &str| Err(Error::Usage(text.into()));
-    if !matches!(args.look.shading.into(), Shading::Lit | Shading::Colour) {
+    if !matches!(args.look.shading, Shading::Lit | Shading::Colour) {
         return refuse("--color-by shows under --shading lit or color alone: choose one of them");
     }
     match args.color_bar {
@@ -161,7 +155,7 @@ fn check_colours(args: &Render, colouring: Option<&Colouring>, out: &Output) -> 
 }
 
 /// What the user, not a program, wants to know; on standard error, which leaves the other to the picture.
-fn tell(args: &Render, loaded: &Inputs, outcome: &Outcome) {
+fn tell(args: &Render, loaded: &LoadedModel, outcome: &Outcome) {
     if args.times {
         if let Some(Gpu { description, usage, .. }) = &outcome.gpu {
             progress::say(&format!(

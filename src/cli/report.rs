@@ -1,16 +1,15 @@
 //! What `--json` writes. Times are milliseconds, sizes bytes, colours linear.
 
 use super::args::Render;
-use super::colouring::Coloured;
-use super::inputs::Inputs;
 use super::render::{Outcome, Task};
 use serde_json::{Map, Value, json};
 use std::path::Path;
 use surfel::estimate::Estimated;
 use surfel::formats::Dropped;
 use surfel::frame::times::Statistics;
+use surfel::load::{Coloured, LoadedModel};
 use surfel::settings::splatting::Splatting;
-use surfel::settings::{DirectionalLight, Lighting};
+use surfel::settings::{Choice, DirectionalLight, Lighting};
 use surfel::vk::{DeviceDescription, Usage};
 use surfel::{Error, Precision, Rasterizer, Result, Settings, SplatCounts, TargetInfo};
 
@@ -50,7 +49,7 @@ pub struct Report(Map<String, Value>);
 
 impl Report {
     /// Everything about a command and what came of it. Without a device, what concerns one is null.
-    pub fn new(args: &Render, loaded: &Inputs, task: &Task<'_>, outcome: &Outcome) -> Self {
+    pub fn new(args: &Render, loaded: &LoadedModel, task: &Task<'_>, outcome: &Outcome) -> Self {
         let names = |name| Path::new(name).display().to_string();
         let mut report = Map::new();
         let mut put = |key: &str, value: Value| report.insert(key.into(), value);
@@ -76,8 +75,8 @@ impl Report {
     fn put_gpu(&mut self, gpu: Option<&Gpu>) {
         let mut put = |key: &str, value: Option<Value>| self.0.insert(key.into(), json!(value));
         put("device", gpu.map(|gpu| device(&gpu.description)));
-        put("precision", gpu.map(|gpu| json!(precision(gpu.precision))));
-        put("rasterizer", gpu.map(|gpu| json!(gpu.rasterizer.map(rasterizer))));
+        put("precision", gpu.map(|gpu| json!(gpu.precision.name())));
+        put("rasterizer", gpu.map(|gpu| json!(gpu.rasterizer.map(Choice::name))));
         put("targets", gpu.map(|gpu| gpu.targets.iter().map(target).collect()));
         put("target_bytes", gpu.map(|gpu| json!(gpu.targets.iter().map(|target| target.bytes).sum::<u64>())));
         put("scene_bytes", gpu.map(|gpu| json!(gpu.scene_bytes)));
@@ -99,20 +98,6 @@ impl Report {
 fn device(device: &DeviceDescription) -> Value {
     let DeviceDescription { name, kind, driver, api_version, .. } = device;
     json!({ "name": name, "kind": kind, "driver": driver, "api_version": api_version })
-}
-
-fn precision(precision: Precision) -> &'static str {
-    match precision {
-        Precision::Full => "full",
-        Precision::Half => "half",
-    }
-}
-
-fn rasterizer(rasterizer: Rasterizer) -> &'static str {
-    match rasterizer {
-        Rasterizer::Draw => "draw",
-        Rasterizer::Compute => "compute",
-    }
 }
 
 fn target(target: &TargetInfo) -> Value {
@@ -170,7 +155,7 @@ fn pass((name, ms): (&'static str, Statistics)) -> Value {
 }
 
 /// Every point once: read = dropped + culled + drawn.
-fn tally(loaded: &Inputs, counts: SplatCounts) -> Value {
+fn tally(loaded: &LoadedModel, counts: SplatCounts) -> Value {
     let Dropped { position, transparent } = loaded.dropped;
     let SplatCounts { drawn, behind, eye_plane, back, outside, invalid } = counts;
     json!({
@@ -200,8 +185,6 @@ fn estimated(counts: &Estimated) -> Value {
 
 /// Null where there are no values, as of normals.
 fn color_by(args: &Render, coloured: &Coloured) -> Value {
-    let map =
-        clap::ValueEnum::to_possible_value(&args.colours.color_map).map(|map| map.get_name().to_owned());
     let range = coloured.scale.map(|scale| [scale.range.min, scale.range.max]);
-    json!({ "name": coloured.name, "map": range.and(map), "range": range })
+    json!({ "name": coloured.name, "map": range.map(|_| args.colours.color_map.name()), "range": range })
 }

@@ -1,6 +1,5 @@
-//! Counts of what there is and of what was estimated, told.
+//! What there is, in words.
 
-use surfel::estimate::Estimated;
 use surfel::geometry::Model;
 
 /// What a model is made of: `5 surfels, 2 ribbons`.
@@ -18,66 +17,5 @@ pub fn parts(Model { surfels, primitives }: &Model) -> String {
     match (surfels.len(), others.is_empty()) {
         (0, false) => others.join(", "),
         (count, _) => [vec![format!("{count} surfels")], others].concat().join(", "),
-    }
-}
-
-/// What was estimated and what was dropped for it; `None` if nothing was.
-pub fn estimated(counts: &Estimated) -> Option<String> {
-    let normals = sources(counts.normals_from_faces, counts.normals_from_neighbours);
-    let radii = sources(counts.radii_from_faces, counts.radii_from_neighbours);
-    let two_sided = Some(counts.two_sided).filter(|&count| count > 0 && normals.is_some());
-    let outliers = Some(counts.outliers).filter(|&count| count > 0);
-    let clipped = Some(counts.clipped).filter(|&count| count > 0);
-    let along = Some(counts.line_radii_from_lines).filter(|&count| count > 0);
-    let thin = Some(counts.line_radii_from_extent).filter(|&count| count > 0);
-    let parts = [
-        normals.map(|text| format!("normals of {text}")),
-        radii.map(|text| format!("radii of {text}")),
-        two_sided.map(|count| format!("{count} two-sided")),
-        outliers.map(|count| format!("{count} outliers left out")),
-        clipped.map(|count| format!("{count} clipped at sharp edges")),
-        along.map(|count| format!("radii of {count} vertices of lines from others of their line")),
-        thin.map(|count| {
-            format!("radii of {count} vertices of lines from the lines' extent: --line-radius gives another")
-        }),
-    ];
-    let parts: Vec<_> = parts.into_iter().flatten().collect();
-    (!parts.is_empty()).then(|| parts.join("; "))
-}
-
-/// `5 points from faces, 3 from neighbours`.
-fn sources(faces: u64, neighbours: u64) -> Option<String> {
-    match (faces, neighbours) {
-        (0, 0) => None,
-        (faces, 0) => Some(format!("{faces} points from faces")),
-        (0, neighbours) => Some(format!("{neighbours} points from neighbours")),
-        (faces, neighbours) => Some(format!("{faces} points from faces, {neighbours} from neighbours")),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_was_estimated_is_one_line_and_nothing_is_none() {
-        let given = Estimated { normals_given: 5, radii_given: 5, two_sided: 2, ..Default::default() };
-        assert_eq!(estimated(&given), None);
-        let mixed = Estimated {
-            normals_from_faces: 34_834,
-            normals_from_neighbours: 1113,
-            radii_from_neighbours: 35_947,
-            two_sided: 210,
-            ..Default::default()
-        };
-        let line = "normals of 34834 points from faces, 1113 from neighbours; radii of 35947 points from neighbours; 210 two-sided";
-        assert_eq!(estimated(&mixed).as_deref(), Some(line));
-        let lines = Estimated { line_radii_from_lines: 2, line_radii_from_extent: 4, ..given };
-        let line = "radii of 2 vertices of lines from others of their line; radii of 4 vertices of lines from the lines' extent: \
-                    --line-radius gives another";
-        assert_eq!(estimated(&lines).as_deref(), Some(line));
-        let dropped = Estimated { radii_from_faces: 3, outliers: 1, clipped: 7, ..given };
-        let line = "radii of 3 points from faces; 1 outliers left out; 7 clipped at sharp edges";
-        assert_eq!(estimated(&dropped).as_deref(), Some(line));
     }
 }

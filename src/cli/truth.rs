@@ -1,15 +1,15 @@
 //! `surfel truth`.
 
 use super::args::Truth;
+use super::camera;
 use super::files::cache_folder;
-use super::inputs::{self, Wanted};
+use super::progress::{self, Silent};
 use super::render::keep_layers;
-use super::{camera, progress};
 use std::path::Path;
-use surfel::estimate::Estimate;
 use surfel::formats::image::{Output, write};
 use surfel::formats::{self, ReadOptions};
 use surfel::geometry::{Bounds, Camera, Parts};
+use surfel::load::{LoadOptions, load, scene};
 use surfel::verify::scenes;
 use surfel::verify::truth::{self, Cache, Mesh, Scene};
 use surfel::{Error, Progress, Result, Settings};
@@ -28,7 +28,7 @@ pub fn run(args: &Truth) -> Result<()> {
     let file = camera::read(&args.camera)?;
     let bars = progress::bars(args.quiet);
     let camera = camera::make(&args.camera, file, &bounds(args, &*bars)?, args.size)?;
-    let mut truth = match inputs::scene(&args.input) {
+    let mut truth = match scene(&args.input) {
         Some(name) => trace(args, name, &*scenes::surface(name)?, &camera, &*bars)?,
         None => {
             let mesh = read(Path::new(&args.input), &*bars)?;
@@ -47,19 +47,8 @@ pub fn run(args: &Truth) -> Result<()> {
 
 /// What `render` frames of the same input, so that both pictures are of one camera.
 fn bounds(args: &Truth, progress: &dyn Progress) -> Result<Bounds> {
-    let loaded = inputs::load(&Wanted {
-        names: std::slice::from_ref(&args.input),
-        estimate: Estimate::default(),
-        polygons: false,
-        lines: None,
-        simplify: None,
-        voxel: None,
-        colouring: None,
-        texture: None,
-        quiet: true,
-        progress,
-        sketch: None,
-    })?;
+    let input = std::slice::from_ref(&args.input);
+    let loaded = load(input, &LoadOptions::default(), &Silent(progress))?;
     Parts::from(&loaded.model).bounds().ok_or_else(|| Error::Usage("the input holds no points".into()))
 }
 

@@ -6,7 +6,7 @@ use glam::DVec3;
 use std::str::FromStr;
 use surfel::geometry::ValueRange;
 use surfel::geometry::srgb;
-use surfel::settings;
+use surfel::settings::Choice;
 use surfel::settings::methods::Method;
 use surfel::settings::splatting::Kernel;
 
@@ -89,7 +89,7 @@ pub enum Background {
 }
 
 impl Background {
-    /// As [`settings::Settings::background`] holds it.
+    /// As [`surfel::Settings::background`] holds it.
     pub fn linear(self) -> Option<[f32; 3]> {
         match self {
             Self::Transparent => None,
@@ -129,6 +129,18 @@ pub fn method() -> impl TypedValueParser<Value = Method> {
     PossibleValuesParser::new(presets).map(|name| Method::named(&name).unwrap_or(Method::ALL[0]))
 }
 
+/// One of all that there are, by its name.
+pub fn choice<T: Choice>() -> impl TypedValueParser<Value = T> {
+    one_of(T::ALL)
+}
+
+/// One of these, by its name.
+pub fn one_of<T: Choice>(all: &[T]) -> impl TypedValueParser<Value = T> {
+    let value = |one: &T| PossibleValue::new(one.name()).aliases(one.names()).help(one.about());
+    PossibleValuesParser::new(all.iter().map(value))
+        .try_map(|name| T::named(&name).ok_or("there is no such choice"))
+}
+
 /// `gaussian`, or `confetti:A,N`.
 pub fn kernel(text: &str) -> Result<Kernel, String> {
     let number = |text: &str| text.trim().parse().ok();
@@ -141,37 +153,6 @@ pub fn kernel(text: &str) -> Result<Kernel, String> {
     .ok_or_else(|| "give gaussian, or confetti:A,N, for example confetti:6,3".into())
 }
 
-/// What the picture shows.
-#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
-pub enum Shading {
-    /// Lit by a lamp at the eye
-    Lit,
-    /// The points' own colours
-    #[value(alias = "colour")]
-    Color,
-    /// Normals in world space
-    Normal,
-    /// Distance from the eye
-    Depth,
-    /// How many splats are blended
-    Overlap,
-    /// What the splats' weights add up to
-    Weight,
-}
-
-impl From<Shading> for settings::Shading {
-    fn from(shading: Shading) -> Self {
-        match shading {
-            Shading::Lit => Self::Lit,
-            Shading::Color => Self::Colour,
-            Shading::Normal => Self::Normal,
-            Shading::Depth => Self::Depth,
-            Shading::Overlap => Self::Overlap,
-            Shading::Weight => Self::Weight,
-        }
-    }
-}
-
 /// What an EXR file holds beside the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Layer {
@@ -181,60 +162,6 @@ pub enum Layer {
     Depth,
     /// Number of the point that is shown, as channel id of 32-bit whole numbers; by pull-push and pull-push-paper
     Id,
-}
-
-/// What the anti-aliasing filter widens.
-#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
-pub enum Widen {
-    /// Every splat
-    All,
-    /// Splats, or their axes, that are smaller than the filter
-    Small,
-}
-
-impl From<Widen> for settings::Widen {
-    fn from(widen: Widen) -> Self {
-        match widen {
-            Widen::All => Self::All,
-            Widen::Small => Self::Small,
-        }
-    }
-}
-
-/// What α says of a pixel.
-#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
-pub enum Alpha {
-    /// Whether a splat owns its centre
-    Mask,
-    /// The part of it that is covered: smooth outlines
-    Coverage,
-}
-
-impl From<Alpha> for settings::Alpha {
-    fn from(alpha: Alpha) -> Self {
-        match alpha {
-            Alpha::Mask => Self::Mask,
-            Alpha::Coverage => Self::Coverage,
-        }
-    }
-}
-
-/// Which surfels are left out for the side that they show.
-#[derive(Clone, Copy, Debug, PartialEq, ValueEnum)]
-pub enum Cull {
-    /// None
-    None,
-    /// Those whose normal faces away
-    Back,
-}
-
-impl From<Cull> for settings::Cull {
-    fn from(cull: Cull) -> Self {
-        match cull {
-            Cull::None => Self::None,
-            Cull::Back => Self::Back,
-        }
-    }
 }
 
 #[cfg(test)]

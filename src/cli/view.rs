@@ -1,17 +1,17 @@
 //! `surfel view`.
 
 use super::args::{self, View};
-use super::colouring::Colouring;
 use super::files::config_folder;
-use super::inputs::{self, Wanted};
-use super::{camera, render, summary, vulkan};
+use super::progress::{self, Silent};
+use super::{camera, render, vulkan};
 use crate::viewer::{self, About, Loaded};
 use glam::DVec3;
 use std::ffi::OsString;
 use std::sync::Arc;
 use std::time::Instant;
 use surfel::estimate::Estimate;
-use surfel::geometry::{Bounds, Colours, MipMap, Model};
+use surfel::geometry::{Bounds, Colours, Model};
+use surfel::load::{Colouring, Listener, LoadOptions, load, scene};
 use surfel::settings::methods::Method;
 use surfel::{Error, Progress, Result};
 
@@ -49,25 +49,25 @@ pub fn run(args: View) -> Result<()> {
         asked: args.method.is_some()
             || Method::ALL.iter().any(|method| args.settings(method) != method.settings()),
     };
-    let load = load(&args, up)?;
-    viewer::run(options, load, Box::new(move |method| args.settings(method)))
+    viewer::run(options, loader(&args, up)?, Box::new(move |method| args.settings(method)))
 }
 
 /// How inputs are loaded, as the arguments say.
-fn load(args: &View, up: DVec3) -> Result<viewer::Load> {
+fn loader(args: &View, up: DVec3) -> Result<viewer::Load> {
     // What is wrong with it is said before the window opens.
-    Colouring::new(&args.colours, up)?;
+    args.colours.colouring(up)?;
     let colour_by = args.colours.color_by.as_ref().map(|by| viewer::ColourBy {
         name: by.name.clone(),
         map: args.colours.color_map,
         range: by.range,
     });
-    let reader = Reader {
+    let options = LoadOptions {
         estimate: args.points.estimate(),
         polygons: args.points.polygons,
         texture: args.colours.texture()?,
-        quiet: args.quiet,
+        ..Default::default()
     };
+    let reader = Reader { options, quiet: args.quiet };
     let (asked, up) = (args.method, up.normalize_or(DVec3::Y));
     Ok(Arc::new(move |names: &[OsString], window: &dyn viewer::Loading| {
         let loaded = |model: Model| -> Result<Loaded> {
@@ -75,25 +75,24 @@ fn load(args: &View, up: DVec3) -> Result<viewer::Load> {
             let about = About { names: names.iter().map(shown).collect(), ..Default::default() };
             Ok(Loaded { colour_by: colour_by.clone(), about, up, ..Loaded::new(model, method) })
         };
-        // What is wrong with a sketch is wrong with all of it, which says so.
-        let sketch = |model: Model| loaded(model).into_iter().for_each(|sketch| window.sketch(sketch));
-        let inputs = reader.load(names, None, window, Some(&sketch))?;
+        let listener = WithSketch { window, loaded: &loaded, quiet: reader.quiet };
+        let inputs = load(names, &reader.options, &listener)?;
         let whole = loaded(inputs.model)?;
         // A built-in scene has no properties, and no other input beside one.
-        let scene = names.iter().any(|name| inputs::scene(name).is_some());
+        let is_scene = names.iter().any(|name| scene(name).is_some());
         let (reader, own) = (reader.clone(), names.to_vec());
         let read = move |name: &str, progress: &dyn Progress| reader.numbers(&own, name, progress);
-        let skipped = if scene { vec![] } else { inputs.skipped };
+        let skipped = if is_scene { vec![] } else { inputs.skipped };
         Ok(Loaded {
             surface: match names {
-                [one] => inputs::scene(one).map(Into::into),
+                [one] => scene(one).map(Into::into),
                 _ => None,
             },
             numbers: Some(viewer::Numbers { names: skipped, read: Arc::new(read) }),
             about: About {
                 points: inputs.read,
                 dropped: inputs.dropped.position + inputs.dropped.transparent,
-                estimated: summary::estimated(&inputs.estimated),
+                estimated: inputs.estimated.summary(),
                 ..whole.about
             },
             ..whole
@@ -106,44 +105,54 @@ fn shown(name: &OsString) -> String {
     name.to_string_lossy().into_owned()
 }
 
+/// The window that waits, which is shown a sketch.
+struct WithSketch<'a> {
+    window: &'a dyn viewer::Loading,
+    loaded: &'a (dyn Fn(Model) -> Result<Loaded> + Sync),
+    quiet: bool,
+}
+
+impl Progress for WithSketch<'_> {
+    fn at(&self, stage: &'static str, done: u64, total: u64) {
+        self.window.at(stage, done, total);
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.window.is_cancelled()
+    }
+}
+
+impl Listener for WithSketch<'_> {
+    fn note(&self, text: &str) {
+        if !self.quiet {
+            progress::say(text);
+        }
+    }
+
+    fn wants_sketch(&self) -> bool {
+        true
+    }
+
+    /// What is wrong with a sketch is wrong with all of it, which says so.
+    fn sketch(&self, model: Model) {
+        (self.loaded)(model).into_iter().for_each(|sketch| self.window.sketch(sketch));
+    }
+}
+
 /// How inputs are read.
 #[derive(Clone)]
 struct Reader {
-    estimate: Estimate,
-    polygons: bool,
-    texture: Option<Arc<MipMap>>,
+    options: LoadOptions,
     quiet: bool,
 }
 
 impl Reader {
-    fn load(
-        &self,
-        names: &[OsString],
-        colouring: Option<Colouring>,
-        progress: &dyn Progress,
-        sketch: Option<&dyn Fn(Model)>,
-    ) -> Result<inputs::Inputs> {
-        inputs::load(&Wanted {
-            names,
-            estimate: self.estimate.clone(),
-            polygons: self.polygons,
-            lines: None,
-            simplify: None,
-            voxel: None,
-            colouring,
-            texture: self.texture.clone(),
-            quiet: self.quiet,
-            progress,
-            sketch,
-        })
-    }
-
     /// A property of every surfel, and of every vertex of lines and triangles.
     fn numbers(&self, names: &[OsString], name: &str, progress: &dyn Progress) -> Result<[Vec<f32>; 2]> {
-        let estimate = Estimate { radius: None, sharp: None, ..self.estimate.clone() };
-        let quiet = Self { quiet: true, estimate, ..self.clone() };
-        let Model { surfels, primitives } =
-            quiet.load(names, Some(Colouring::numbers(name)), progress, None)?.model;
+        let estimate = Estimate { radius: None, sharp: None, ..self.options.estimate.clone() };
+        let options =
+            LoadOptions { estimate, colouring: Some(Colouring::numbers(name)), ..self.options.clone() };
+        let Model { surfels, primitives } = load(names, &options, &Silent(progress))?.model;
         let numbers = |colours| match colours {
             Some(Colours::Linear(numbers)) => numbers.into_iter().map(|[number, ..]| number).collect(),
             _ => Vec::new(),
@@ -189,7 +198,7 @@ mod tests {
         let input = [input.into()];
         let command = ["surfel", "view", "-q", "x.ply"];
         let Command::View(args) = Surfel::try_parse_from(command).unwrap().command else { panic!("no view") };
-        load(&args, DVec3::Y)?(&input, window)
+        loader(&args, DVec3::Y)?(&input, window)
     }
 
     #[test]
@@ -240,7 +249,7 @@ mod tests {
         }
         let command = ["surfel", "view", "-q", "--color-by", "heat", "--color-map", "magma", "x.ply"];
         let Command::View(args) = Surfel::try_parse_from(command).unwrap().command else { panic!("no view") };
-        let load = load(&args, DVec3::Y).unwrap();
+        let load = loader(&args, DVec3::Y).unwrap();
         for inputs in [&names[..1], &names[..]] {
             let loaded = load(inputs, &Window::default()).unwrap();
             let by = loaded.colour_by.unwrap();

@@ -16,6 +16,7 @@ mod reach;
 mod sheet;
 mod sites;
 mod spacing;
+mod summary;
 
 pub use spacing::spacing;
 

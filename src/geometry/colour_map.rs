@@ -4,8 +4,19 @@ use super::Colours;
 use rayon::prelude::*;
 
 /// A sequence of colours for the numbers from 0 to 1. In all but `Turbo` equal steps look equal, and lightness grows throughout.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    Default,
+    PartialEq,
+    Eq,
+    strum::EnumMessage,
+    strum::EnumString,
+    strum::IntoStaticStr,
+    strum::VariantArray,
+)]
+#[strum(serialize_all = "kebab-case")]
 pub enum ColourMap {
     /// Purple, green, yellow.
     #[default]

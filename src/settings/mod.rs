@@ -1,5 +1,6 @@
 //! What a frame is asked to be: shared by the Vulkan methods and the float64 reference.
 
+mod choice;
 pub mod methods;
 mod outputs;
 pub mod pull_push;
@@ -8,6 +9,7 @@ pub mod splatting;
 use crate::error::{Error, Result};
 use crate::settings::pull_push::PullPush;
 use crate::settings::splatting::{Filter, Splatting};
+pub use choice::Choice;
 pub use outputs::{Outputs, Precision, Rasterizer};
 use std::ops::RangeInclusive;
 
@@ -143,13 +145,29 @@ impl Settings {
 
 /// What the low-pass filter `H` widens: how it turns the variance `V` of a projected kernel, with eigenvalues `λ`, into that of the
 /// attribute footprint.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    Default,
+    PartialEq,
+    Eq,
+    Hash,
+    strum::EnumMessage,
+    strum::EnumString,
+    strum::IntoStaticStr,
+    strum::VariantArray,
+)]
+#[strum(serialize_all = "kebab-case")]
 pub enum Widen {
-    /// Every splat: `V + H`, the convolution of both (zwicker2004, equation 3).
+    /// Every splat.
+    ///
+    /// `V + H`, the convolution of both (zwicker2004, equation 3).
     #[default]
     All,
-    /// Only what is smaller than the filter, along either of `V`'s axes: `λ` becomes `max(λ + least, H)`, with
-    /// [`Settings::least_lowpass`]. Larger splats stay sharp and cost fewer pixels. Continuous in `V`, so that nothing jumps as a
+    /// Splats, or their axes, that are smaller than the filter.
+    ///
+    /// Along either of `V`'s axes `λ` becomes `max(λ + least, H)`, with [`Settings::least_lowpass`]. Larger splats stay sharp and cost fewer pixels. Continuous in `V`, so that nothing jumps as a
     /// splat grows, and nowhere less than the visibility footprint, so that every pixel which that covers gets attributes. (Clamping
     /// the axes is how texture filters bound theirs: Greene, Heckbert, *Creating Raster Omnimax Images from Multiple Perspective
     /// Views Using the Elliptical Weighted Average Filter*, IEEE Computer Graphics and Applications 1986.)
@@ -157,20 +175,48 @@ pub enum Widen {
 }
 
 /// Which side of a surfel is seen.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    Hash,
+    strum::EnumMessage,
+    strum::EnumString,
+    strum::IntoStaticStr,
+    strum::VariantArray,
+)]
+#[strum(serialize_all = "kebab-case")]
 pub enum Cull {
-    /// Both: the normal is flipped towards the eye before it is accumulated.
+    /// Both sides are drawn.
+    ///
+    /// The normal is flipped towards the eye before it is accumulated.
     None,
-    /// Only the side that the normal points to.
+    /// Surfels whose normals face away are left out.
     Back,
 }
 
 /// What α says of a pixel.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    Hash,
+    strum::EnumMessage,
+    strum::EnumString,
+    strum::IntoStaticStr,
+    strum::VariantArray,
+)]
+#[strum(serialize_all = "kebab-case")]
 pub enum Alpha {
-    /// Whether a splat owns its centre: 1 or 0.
+    /// 1 where a splat owns the pixel's centre, else 0.
     Mask,
-    /// The part of it that surface covers: of 16 samples, those within any splat, hidden or not. A splat counts up to 0.77 of its cut-off
+    /// The part of the pixel that surface covers: smooth outlines.
+    ///
+    /// Of 16 samples, those within any splat, hidden or not. A splat counts up to 0.77 of its cut-off
     /// and unfiltered: discs of radii 1.3 times as large as needed leave no holes then, and reach no further beyond an outline. Each also
     /// covers the sample nearest to its centre if it holds none in that pixel, so that what is drawn shows however small it is. A clip line
     /// parts the pixels that it cuts by their samples too; what it cuts off is drawn up to half a pixel beyond it where nothing else is.
@@ -179,64 +225,37 @@ pub enum Alpha {
 }
 
 /// What the picture shows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    Hash,
+    strum::EnumMessage,
+    strum::EnumString,
+    strum::IntoStaticStr,
+    strum::VariantArray,
+)]
+#[strum(serialize_all = "kebab-case")]
 pub enum Shading {
-    /// Blinn–Phong in linear light.
+    /// Lit by a lamp at the eye.
+    ///
+    /// Blinn–Phong in linear light, with the lamps of [`Lighting`].
     Lit,
-    /// The surfels' colour.
+    /// The points' own colours.
+    #[strum(to_string = "color", serialize = "colour")]
     Colour,
-    /// The unit normal, world space.
+    /// Normals in world space: x, y, z from −1 to 1 as red, green, blue.
     Normal,
-    /// The eye-space depth, in the positions' unit.
+    /// Distance from the eye along the view, in the positions' unit.
     Depth,
-    /// The number of splats that are blended (pajarola2004 figure 18).
+    /// How many splats are blended (pajarola2004 figure 18).
     Overlap,
-    /// The sum of their weights, normalization weights included: how far they are from a partition of unity.
+    /// What the splats' weights add up to.
+    ///
+    /// Normalization weights are included: how far they are from a partition of unity.
     Weight,
-}
-
-impl Widen {
-    /// As options and reports call it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::All => "all",
-            Self::Small => "small",
-        }
-    }
-}
-
-impl Cull {
-    /// As options and reports call it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::None => "none",
-            Self::Back => "back",
-        }
-    }
-}
-
-impl Alpha {
-    /// As options and reports call it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Mask => "mask",
-            Self::Coverage => "coverage",
-        }
-    }
-}
-
-impl Shading {
-    /// As options and reports call it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Lit => "lit",
-            Self::Colour => "color",
-            Self::Normal => "normal",
-            Self::Depth => "depth",
-            Self::Overlap => "overlap",
-            Self::Weight => "weight",
-        }
-    }
 }
 
 /// Lights and material, all linear.

@@ -3,13 +3,25 @@
 use super::{Settings, Shading};
 
 /// What visits the pixels of a splat, or of a point. Both make the same picture: of splats up to rounding, of points bit for bit.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    Hash,
+    strum::EnumMessage,
+    strum::EnumString,
+    strum::IntoStaticStr,
+    strum::VariantArray,
+)]
+#[strum(serialize_all = "kebab-case")]
 pub enum Rasterizer {
-    /// The device's own: triangles or points, depth test, blending. Works everywhere.
+    /// The device's own: triangles or points, depth test, blending; works everywhere.
     Draw,
-    /// Compute shaders with atomic adds of floats, or minima of 64-bit integers: faster where fragments are slow. Sums of 32-bit floats
-    /// only.
+    /// Compute shaders: faster where fragments are slow.
+    ///
+    /// They add floats and take minima of 64-bit integers atomically; sums are of 32-bit floats only.
     Compute,
 }
 
@@ -39,12 +51,27 @@ impl Outputs {
 }
 
 /// Width of the floats in which weighted sums, or the samples of pull–push, are kept.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    Default,
+    PartialEq,
+    Eq,
+    Hash,
+    strum::EnumMessage,
+    strum::EnumString,
+    strum::IntoStaticStr,
+    strum::VariantArray,
+)]
+#[strum(serialize_all = "kebab-case")]
 pub enum Precision {
     /// 32 bits.
     #[default]
     Full,
-    /// 16 bits: half the memory and bandwidth. Blending in it may truncate, so that sums of many splats come out low. Samples of pull–push keep
+    /// 16 bits: half the memory and bandwidth.
+    ///
+    /// Blending in it may truncate, so that sums of many splats come out low. Samples of pull–push keep
     /// 32 bits of what is compared most closely, the distances, so that nothing is lost that can be seen; displacements and radii end at
     /// 65504 px, and colours beyond 1 of scenes that have linear ones at 65408.
     Half,

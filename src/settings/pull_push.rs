@@ -10,7 +10,19 @@ pub struct PullPush {
 }
 
 /// What decides which samples are one surface, and how far each reaches.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    Hash,
+    strum::EnumMessage,
+    strum::EnumString,
+    strum::IntoStaticStr,
+    strum::VariantArray,
+)]
+#[strum(serialize_all = "kebab-case")]
 pub enum Rules {
     /// As published: ellipses by parallel projection, intervals of one radius, and means over the four nearest coarser pixels.
     Paper,
@@ -36,16 +48,6 @@ impl PullPush {
             Rules::Robust => Storage::Apart,
         };
         Self { rules, storage }
-    }
-}
-
-impl Rules {
-    /// As reports have it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Paper => "paper",
-            Self::Robust => "robust",
-        }
     }
 }
 

@@ -20,24 +20,38 @@ pub struct Splatting {
 }
 
 /// The image of a surfel's disc.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    Hash,
+    strum::EnumMessage,
+    strum::EnumString,
+    strum::IntoStaticStr,
+    strum::VariantArray,
+)]
+#[strum(serialize_all = "kebab-case")]
 #[repr(u32)]
 pub enum Footprint {
     /// The ellipse that the disc's rim projects to, exactly (zwicker2004 §4).
     Conic = 0,
-    /// The ellipse of the projection's affine approximation at the centre (Heckbert 1989; ren2002 §3): leaves holes under strong
-    /// perspective, as it is right at the centre alone.
+    /// The ellipse by an affine approximation at the centre: holes under strong perspective (ren2002 §3).
+    ///
+    /// The approximation is Heckbert's (1989), right at the centre alone.
     Affine = 1,
-    /// The projection of a parallelogram in the tangent plane, with the kernel on it (ren2002 §5.2).
+    /// A parallelogram in the tangent plane, with the kernel on it (ren2002 §5.2).
     Parallelogram = 2,
-    /// The projection of the disc in the tangent plane, with the kernel on it (pajarola2004 §6.3).
+    /// The disc in the tangent plane, with the kernel on it (pajarola2004 §6.3).
     Disc = 3,
-    /// An ellipse as of parallel projection, with a depth that is linear on the screen and a bounded foreshortening (botsch2003 §3.2).
+    /// An ellipse as of parallel projection, with a slope in depth (botsch2003 §3.2).
+    ///
+    /// Its depth is linear on the screen, its foreshortening bounded.
     Sprite = 4,
     /// A sprite whose width is a whole number of px (botsch2003 §4).
     WholeSprite = 5,
-    /// A square that faces the image plane, at the depth of its centre: size without shape (botsch2003 §3.1).
+    /// A square that faces the image plane, at the depth of its centre (botsch2003 §3.1).
     Square = 6,
 }
 
@@ -57,49 +71,93 @@ pub enum Kernel {
 }
 
 /// Where the low-pass filter is applied.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    Hash,
+    strum::EnumMessage,
+    strum::EnumString,
+    strum::IntoStaticStr,
+    strum::VariantArray,
+)]
+#[strum(serialize_all = "kebab-case")]
 pub enum Filter {
-    /// Nowhere: a splat is widened only as far as it must be to own a pixel centre.
+    /// No filter: a splat is widened only as far as it must be to own a pixel centre.
     None,
-    /// On the screen: the projected kernel is convolved with it (zwicker2004 equation 3).
+    /// The projected kernel is convolved with it on the screen (zwicker2004 equation 3).
     Screen,
-    /// In the tangent plane: the filter is warped there and widens the kernel before it is projected (ren2002 equation 7).
+    /// The filter is warped to the tangent plane and widens the kernel there (ren2002 equation 7).
     Object,
 }
 
 /// Which splats a pixel sees.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    Hash,
+    strum::EnumMessage,
+    strum::EnumString,
+    strum::IntoStaticStr,
+    strum::VariantArray,
+)]
+#[strum(serialize_all = "kebab-case")]
 pub enum Visibility {
     /// All within ε behind the nearest one, along the viewing ray.
     Ray,
-    /// All within ε behind the nearest one, whose disc is moved along the camera's axis: hides too much near silhouettes (ren2002 figure 5a).
+    /// All within ε behind the nearest one, along the camera's axis: hides too much near silhouettes (ren2002 figure 5a).
     Axis,
     /// The nearest one alone: one pass, and nothing is blended.
     Nearest,
 }
 
 /// What makes the weights at a pixel a partition of unity.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    Hash,
+    strum::EnumMessage,
+    strum::EnumString,
+    strum::IntoStaticStr,
+    strum::VariantArray,
+)]
+#[strum(serialize_all = "kebab-case")]
 #[repr(u32)]
 pub enum Normalization {
-    /// Division by their sum at every pixel.
+    /// The sums are divided by that of the weights at every pixel.
     Pixel = 0,
-    /// A factor of each surfel, captured beforehand (ren2002 §7).
+    /// Each surfel has a factor, captured beforehand by surfel convert --weights (ren2002 §7).
     Surfel = 1,
-    /// Nothing: brightness varies with the overlap (ren2002 figure 10a).
+    /// Nothing is done: brightness varies with the overlap (ren2002 figure 10a).
     None = 2,
 }
 
 /// What is lit, where a frame is [lit](crate::settings::Shading::Lit).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    Hash,
+    strum::EnumMessage,
+    strum::EnumString,
+    strum::IntoStaticStr,
+    strum::VariantArray,
+)]
+#[strum(serialize_all = "kebab-case")]
 pub enum Shade {
-    /// Every splat, at its centre: what is blended is light.
+    /// Splats are lit at their centres, and light is blended.
     Splat,
-    /// Every pixel: what is blended are normals and colours.
+    /// Normals and colours are blended, and pixels are lit.
     Pixel,
 }
 
@@ -185,64 +243,6 @@ impl Normalization {
                  choose the normalization pixel",
             ),
             _ => Ok(()),
-        }
-    }
-}
-
-impl Footprint {
-    /// As options and reports call it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Conic => "conic",
-            Self::Affine => "affine",
-            Self::Parallelogram => "parallelogram",
-            Self::Disc => "disc",
-            Self::Sprite => "sprite",
-            Self::WholeSprite => "whole-sprite",
-            Self::Square => "square",
-        }
-    }
-}
-
-impl Filter {
-    /// As options and reports call it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::None => "none",
-            Self::Screen => "screen",
-            Self::Object => "object",
-        }
-    }
-}
-
-impl Visibility {
-    /// As options and reports call it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Ray => "ray",
-            Self::Axis => "axis",
-            Self::Nearest => "nearest",
-        }
-    }
-}
-
-impl Normalization {
-    /// As options and reports call it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Pixel => "pixel",
-            Self::Surfel => "surfel",
-            Self::None => "none",
-        }
-    }
-}
-
-impl Shade {
-    /// As options and reports call it.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Splat => "splat",
-            Self::Pixel => "pixel",
         }
     }
 }

@@ -2,7 +2,6 @@
 
 use super::panels::Told;
 use super::state::State;
-use clap::ValueEnum;
 use serde::{Deserialize, Serialize};
 use std::io::Write;
 use std::path::Path;
@@ -10,7 +9,7 @@ use surfel::formats::atomic;
 use surfel::settings::methods::Method;
 use surfel::settings::pull_push::{PullPush, Storage};
 use surfel::settings::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
-use surfel::settings::{Alpha, Cull, Shading, Widen};
+use surfel::settings::{Alpha, Choice, Cull, Shading, Widen};
 use surfel::{Error, Result, Settings};
 
 /// What is remembered, by the names that options have.
@@ -107,11 +106,11 @@ impl Remembered {
             pull_push: preset.pull_push.map(|pull_push| PullPush { storage, ..pull_push }),
             cutoff: self.cutoff,
             lowpass: self.lowpass,
-            widen: named([Widen::All, Widen::Small], Widen::name, &self.widen)?,
+            widen: Widen::named(&self.widen)?,
             epsilon: self.epsilon,
-            cull: named([Cull::None, Cull::Back], Cull::name, &self.cull)?,
-            alpha: named([Alpha::Mask, Alpha::Coverage], Alpha::name, &self.alpha)?,
-            shading: named(super::state::SHADINGS, Shading::name, &self.shading)?,
+            cull: Cull::named(&self.cull)?,
+            alpha: Alpha::named(&self.alpha)?,
+            shading: Shading::named(&self.shading)?,
             background: self.background,
             lighting: preset.lighting,
         };
@@ -120,18 +119,14 @@ impl Remembered {
 
     fn splatting(&self) -> Option<Splatting> {
         Some(Splatting {
-            footprint: Footprint::from_str(&self.footprint, false).ok()?,
+            footprint: Footprint::named(&self.footprint)?,
             kernel: self.confetti.map_or(Kernel::Gaussian, |[a, n]| Kernel::Confetti { a, n }),
-            filter: Filter::from_str(&self.filter, false).ok()?,
-            visibility: Visibility::from_str(&self.visibility, false).ok()?,
-            normalization: Normalization::from_str(&self.normalization, false).ok()?,
-            shade: Shade::from_str(&self.shade, false).ok()?,
+            filter: Filter::named(&self.filter)?,
+            visibility: Visibility::named(&self.visibility)?,
+            normalization: Normalization::named(&self.normalization)?,
+            shade: Shade::named(&self.shade)?,
         })
     }
-}
-
-fn named<T: Copy, const N: usize>(all: [T; N], name: fn(T) -> &'static str, wanted: &str) -> Option<T> {
-    all.into_iter().find(|one| name(*one) == wanted)
 }
 
 #[cfg(test)]

@@ -12,29 +12,11 @@ use glam::{DVec2, DVec3};
 use std::borrow::Cow;
 use std::sync::Arc;
 use surfel::geometry::{Camera, ColourScale, Pose};
-use surfel::settings::Shading;
 use surfel::settings::methods::Method;
 use surfel::settings::splatting::Normalization;
+use surfel::settings::{Choice, Shading};
 use surfel::vk::Device;
 use surfel::{Rasterizer, Result, Scene, Settings};
-
-/// What the picture can show.
-pub const SHADINGS: [Shading; 6] =
-    [Shading::Lit, Shading::Colour, Shading::Normal, Shading::Depth, Shading::Overlap, Shading::Weight];
-
-/// What a shading shows.
-pub fn shading_text(shading: Shading) -> &'static str {
-    match shading {
-        Shading::Lit => "lit by a lamp at the eye",
-        Shading::Colour => "the points' colours as they are",
-        Shading::Normal => "normals in world space: x, y, z from −1 to 1 as red, green, blue",
-        Shading::Depth => {
-            "distance from the eye along the view, in the positions' unit: white at the nearest surface"
-        }
-        Shading::Overlap => "how many splats are blended; 1 by pull-push",
-        Shading::Weight => "what the splats' weights add up to; 1 by pull-push",
-    }
-}
 
 /// What is looked at, and how.
 pub struct State {
@@ -330,8 +312,9 @@ impl State {
             Action::NextMethod => shown.turn_method(1, &self.look),
             Action::PreviousMethod => shown.turn_method(Method::ALL.len() - 1, &self.look),
             Action::NextShading => {
-                let now = SHADINGS.iter().position(|shading| *shading == shown.settings.shading);
-                shown.settings.shading = SHADINGS[now.map_or(0, |now| (now + 1) % SHADINGS.len())];
+                let after =
+                    Shading::ALL.iter().cycle().skip_while(|shading| **shading != shown.settings.shading);
+                shown.settings.shading = after.skip(1).copied().next().unwrap_or(Shading::Lit);
             }
             Action::Parallel => self.lens.parallel = !self.lens.parallel,
             Action::Frame => shown.orbit.frame(&shown.scene.bounds(), &self.lens),

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// The modules, layer by layer: what is in one may use its own layer's module and those of layers before it.
-const LAYERS: [&[&str]; 15] = [
+const LAYERS: [&[&str]; 16] = [
     &["error"],
     &["progress", "picture"],
     &["vk"],
@@ -13,6 +13,7 @@ const LAYERS: [&[&str]; 15] = [
     &["estimate"],
     &["scene"],
     &["verify"],
+    &["load"],
     &["frame"],
     &["capture"],
     &["embed"],

@@ -59,7 +59,7 @@ fn radii_of_lines_can_be_given() {
     program.write("a.ply", format!("{header}0 0 0\n3 4 0\n0 1\n"));
     let run = program.run("convert a.ply -o b.ply");
     assert!(
-        run.err.contains("radii of 2 vertices of lines from the lines' extent: --line-radius gives another"),
+        run.err.contains("radii of 2 vertices of lines from the lines' extent, as no line radius is given"),
         "{}",
         run.err
     );

@@ -11,7 +11,7 @@ use std::fmt;
 use std::sync::Arc;
 use surfel::geometry::{Camera, Model, Parts, Surfels};
 use surfel::settings::pull_push::{PullPush, Rules};
-use surfel::settings::{Alpha, Cull, Shading};
+use surfel::settings::{Alpha, Choice, Cull, Shading};
 use surfel::verify::reference::Frame;
 use surfel::verify::reference::pull_push::{Compact, Decided, Level, Reconstruction, Sample, Steps};
 use surfel::verify::scenes;

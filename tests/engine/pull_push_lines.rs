@@ -4,7 +4,7 @@ use crate::support::gpu::{assert_silent, device, render};
 use glam::{DVec3, Vec3};
 use surfel::geometry::{Camera, Model, Parts};
 use surfel::settings::pull_push::{PullPush, Rules};
-use surfel::settings::{Settings, Shading};
+use surfel::settings::{Choice, Settings, Shading};
 use surfel::verify::scenes;
 use surfel::verify::truth::{self, Filter, Options};
 use surfel::vk::DeviceLimits;

@@ -10,7 +10,7 @@ use crate::bench::show;
 use crate::bench::suites::{Suite, plan};
 use crate::settings::methods::Method;
 use crate::settings::splatting::{Filter, Normalization, Visibility};
-use crate::settings::{Settings, Shading};
+use crate::settings::{Choice, Settings, Shading};
 
 /// A table.
 pub struct Table {

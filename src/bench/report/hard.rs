@@ -85,7 +85,7 @@ fn by_method(session: &Session) -> Markup {
 fn worst(points: &[&SweepPoint]) -> String {
     let made = || points.iter().filter(|point| point.refused.is_none());
     let held = || made().filter(|point| !point.note.starts_with(EXCUSED));
-    let colour = held().map(|point| point.agreement.colour).fold(0.0, f64::max);
+    let colour = show::largest(held().map(|point| point.agreement.colour));
     let wrong: u64 = held().map(|point| point.agreement.failed).sum();
     match (made().count(), wrong) {
         (0, _) => String::new(),

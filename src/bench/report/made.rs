@@ -3,6 +3,7 @@
 use super::page::Page;
 use crate::bench::record::{Made, Run, Session};
 use crate::bench::show;
+use crate::settings::Choice;
 use maud::{Markup, html};
 use std::collections::BTreeSet;
 use std::io;
@@ -99,7 +100,7 @@ fn passes(session: &Session) -> Markup {
                     th.number scope="col" { "device" } th.number scope="col" { "wall" } th.number scope="col" { "CPU" }
                 } }
                 tbody { @for (run, time) in &timed { tr {
-                    td { (show::figure(run.figure)) } td { (show::scene(&run.scene)) }
+                    td { (run.figure.name()) } td { (show::scene(&run.scene)) }
                     td.number { (show::count(run.points)) } td { (show::size(run.size)) }
                     td { (run.contender.label()) } td { (show::told_of(run, [true, true, true, false, true, false, false])) }
                     @for name in &names {

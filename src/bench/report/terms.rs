@@ -2,6 +2,7 @@
 
 use crate::bench::csv::metrics;
 use crate::bench::record::Results;
+use crate::settings::Choice;
 use crate::verify::metrics::Metric;
 use maud::{Markup, html};
 

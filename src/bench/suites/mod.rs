@@ -19,14 +19,26 @@ use super::plan::{Plan, Wants};
 use super::record::Figure;
 use super::stopwatch::Effort;
 use crate::settings::methods::{Method, perspective_ewa};
-use crate::settings::{Settings, Shading, Widen};
+use crate::settings::{Choice, Settings, Shading, Widen};
 use crate::verify::scenes;
 use crate::verify::truth;
 use crate::verify::yardstick::Kind;
 use std::time::Duration;
 
 /// A suite.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    Hash,
+    strum::EnumMessage,
+    strum::EnumString,
+    strum::IntoStaticStr,
+    strum::VariantArray,
+)]
+#[strum(serialize_all = "kebab-case")]
 pub enum Suite {
     /// A first impression of everything, in a minute on two cores.
     Quick,
@@ -46,21 +58,8 @@ pub enum Suite {
 
 impl Suite {
     /// Those that need nothing from the user.
-    pub const ALL: [Self; 6] =
+    pub const BUILT_IN: [Self; 6] =
         [Self::Quick, Self::Full, Self::Hard, Self::Scaling, Self::Yardstick, Self::Papers];
-
-    /// As it is called on the command line and in results.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Quick => "quick",
-            Self::Full => "full",
-            Self::Hard => "hard",
-            Self::Scaling => "scaling",
-            Self::Yardstick => "yardstick",
-            Self::Papers => "papers",
-            Self::Own => "own",
-        }
-    }
 
     /// Its runs, those of one scene one after the other; none of the hard cases, which are no runs. `own` is what the user brings.
     pub fn plans(self, own: &Own) -> Vec<Plan> {
@@ -182,7 +181,7 @@ mod tests {
     fn every_plan_is_of_a_scene_that_exists_and_of_its_suite() {
         // Opening a scene takes longer than all else.
         let mut opened = HashSet::new();
-        for suite in Suite::ALL {
+        for suite in Suite::BUILT_IN {
             for plan in suite.plans(&Own::default()) {
                 assert_eq!(plan.suite, suite.name());
                 if opened.insert(plan.scene.clone()) {
@@ -196,7 +195,7 @@ mod tests {
 
     #[test]
     fn runs_of_a_scene_follow_each_other() {
-        for suite in Suite::ALL {
+        for suite in Suite::BUILT_IN {
             let plans = suite.plans(&Own::default());
             for figure in plans.chunk_by(|a, b| (a.figure, &a.part) == (b.figure, &b.part)) {
                 let mut scenes: Vec<_> =

@@ -1,11 +1,11 @@
 //! Options of `surfel bench`.
 
 use super::OnDevice;
-use crate::cli::values::size;
-use clap::{Args, ValueEnum};
+use crate::cli::values::{one_of, size};
+use clap::Args;
 use std::ffi::OsString;
 use std::path::PathBuf;
-use surfel::bench;
+use surfel::bench::Suite;
 
 /// Options of `surfel bench`.
 #[derive(Args, Debug)]
@@ -23,7 +23,7 @@ pub struct Bench {
     #[arg(long, value_name = "WxH", value_parser = size, requires = "inputs", allow_hyphen_values = true)]
     pub size: Option<[u32; 2]>,
     /// What is measured; quick unless something else, an INPUT or --from, is given
-    #[arg(long, value_enum, value_delimiter = ',', value_name = "SUITE,…")]
+    #[arg(long, value_parser = one_of(&Suite::BUILT_IN), value_delimiter = ',', value_name = "SUITE,…")]
     pub suite: Vec<Suite>,
     /// Shows what --json of earlier calls wrote, here or elsewhere, beside what is measured now
     #[arg(long, value_name = "FILE")]
@@ -46,34 +46,4 @@ pub struct Bench {
     /// Prints nothing but warnings and errors
     #[arg(short, long)]
     pub quiet: bool,
-}
-
-/// What is measured together.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Suite {
-    /// A first impression of everything, in a minute on two cores
-    Quick,
-    /// Every scene, from 10⁴ to 10⁶ points
-    Full,
-    /// Where numbers get difficult: float32 against float64
-    Hard,
-    /// Time against points, pixels and overlap
-    Scaling,
-    /// Every way to render, as multiples of what a plain program on the CPU takes
-    Yardstick,
-    /// What the papers show, say and measured: their effects, costs and tables
-    Papers,
-}
-
-impl From<Suite> for bench::Suite {
-    fn from(suite: Suite) -> Self {
-        match suite {
-            Suite::Quick => Self::Quick,
-            Suite::Full => Self::Full,
-            Suite::Hard => Self::Hard,
-            Suite::Scaling => Self::Scaling,
-            Suite::Yardstick => Self::Yardstick,
-            Suite::Papers => Self::Papers,
-        }
-    }
 }

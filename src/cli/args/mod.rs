@@ -22,9 +22,7 @@ pub use truth::Truth;
 #[cfg(feature = "viewer")]
 pub use view::View;
 
-use super::values::{
-    Alpha, Background, Cull, Layer, Shading, Widen, background, kernel, method, size, vector,
-};
+use super::values::{Background, Layer, background, choice, kernel, method, size, vector};
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
 use glam::DVec3;
@@ -32,6 +30,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 use surfel::settings::methods::Method;
 use surfel::settings::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
+use surfel::settings::{Alpha, Choice, Cull, Shading, Widen};
 use surfel::{Outputs, Rasterizer, Settings};
 
 /// Renders point-sampled surfaces with Vulkan.
@@ -194,10 +193,10 @@ pub struct Camera {
 #[derive(Args, Debug)]
 pub struct Look {
     /// What the picture shows
-    #[arg(long, value_enum, default_value = "lit")]
+    #[arg(long, value_parser = choice::<Shading>(), default_value = Shading::Lit.name())]
     pub shading: Shading,
     /// What α says of a pixel
-    #[arg(long, value_enum, default_value = "mask")]
+    #[arg(long, value_parser = choice::<Alpha>(), default_value = Alpha::Mask.name())]
     pub alpha: Alpha,
     /// Colour where nothing is: transparent, sRGB codes from 0 to 255, or as CSS has it: #fff, white
     #[arg(long, value_name = "R,G,B|COLOR|transparent", default_value = "transparent", value_parser = background, allow_hyphen_values = true)]
@@ -206,7 +205,7 @@ pub struct Look {
     #[arg(long, value_name = "VARIANCE_PX2", allow_hyphen_values = true)]
     pub lowpass: Option<f32>,
     /// What the anti-aliasing filter widens; the method's unless given
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = choice::<Widen>())]
     pub widen: Option<Widen>,
     /// Where a splat's kernel ends, in standard deviations; the method's unless given, 2.5 of perspective-ewa
     #[arg(long, value_name = "F", allow_hyphen_values = true)]
@@ -215,7 +214,7 @@ pub struct Look {
     #[arg(long, value_name = "RADII", default_value_t = Settings::default().epsilon, allow_hyphen_values = true)]
     pub epsilon: f32,
     /// Which surfels are left out for the side that they show; the method's unless given
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = choice::<Cull>())]
     pub cull: Option<Cull>,
 }
 
@@ -223,22 +222,22 @@ pub struct Look {
 #[derive(Args, Debug, Clone, Copy)]
 pub struct Axes {
     /// The image of a surfel's disc
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = choice::<Footprint>())]
     pub footprint: Option<Footprint>,
     /// How a splat's weight falls off: gaussian, or confetti:A,N
     #[arg(long, value_parser = kernel)]
     pub kernel: Option<Kernel>,
     /// Where the anti-aliasing filter is applied
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = choice::<Filter>())]
     pub filter: Option<Filter>,
     /// Which splats a pixel sees
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = choice::<Visibility>())]
     pub visibility: Option<Visibility>,
     /// What makes weights add up to 1
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = choice::<Normalization>())]
     pub normalization: Option<Normalization>,
     /// What is lit
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = choice::<Shade>())]
     pub shade: Option<Shade>,
 }
 
@@ -275,11 +274,11 @@ impl Look {
             pull_push: preset.pull_push,
             cutoff: look.cutoff.unwrap_or(preset.cutoff),
             lowpass: look.lowpass.unwrap_or(preset.lowpass),
-            widen: look.widen.map_or(preset.widen, Into::into),
+            widen: look.widen.unwrap_or(preset.widen),
             epsilon: look.epsilon,
-            cull: look.cull.map_or(preset.cull, Into::into),
-            alpha: look.alpha.into(),
-            shading: look.shading.into(),
+            cull: look.cull.unwrap_or(preset.cull),
+            alpha: look.alpha,
+            shading: look.shading,
             background: look.background.linear(),
             lighting: preset.lighting,
         }
@@ -293,7 +292,7 @@ pub struct Place {
     #[arg(long, conflicts_with_all = ["half", "device", "validate", "device_limits"])]
     pub reference: bool,
     /// What visits the pixels: the device's own rasterizer, or compute shaders; what is faster on the device unless given
-    #[arg(long, value_enum, conflicts_with = "reference")]
+    #[arg(long, value_parser = choice::<Rasterizer>(), conflicts_with = "reference")]
     pub rasterizer: Option<Rasterizer>,
     /// Keeps sums in 16-bit floats, or the samples of pull-push in 24 bytes of 48: half the memory, coarser
     #[arg(long)]

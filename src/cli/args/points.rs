@@ -1,13 +1,16 @@
 //! Options of every command that reads points: how what a file lacks is estimated, and what points are coloured by.
 
-use crate::cli::values::{ColourBy, colour_by, positive};
+use crate::cli::values::{ColourBy, choice, colour_by, positive};
 use clap::Args;
+use glam::DVec3;
 use std::path::PathBuf;
 use std::sync::Arc;
 use surfel::Result;
 use surfel::estimate::Estimate;
 use surfel::formats::image;
 use surfel::geometry::{ColourMap, MipMap};
+use surfel::load::Colouring;
+use surfel::settings::Choice;
 
 /// How normals and radii are estimated.
 #[derive(Args, Debug)]
@@ -62,8 +65,8 @@ pub struct Colours {
         long,
         alias = "colour-map",
         value_name = "MAP",
-        value_enum,
-        default_value = "viridis",
+        value_parser = choice::<ColourMap>(),
+        default_value = ColourMap::Viridis.name(),
         requires = "color_by"
     )]
     pub color_map: ColourMap,
@@ -73,6 +76,15 @@ pub struct Colours {
 }
 
 impl Colours {
+    /// What points are coloured by, if by anything but their own colours; `up` need not be of unit length.
+    ///
+    /// # Errors
+    /// [`surfel::Error::Usage`] if a range is given of what has no values.
+    pub fn colouring(&self, up: DVec3) -> Result<Option<Colouring>> {
+        let by = self.color_by.as_ref();
+        by.map(|by| Colouring::new(&by.name, by.range, self.color_map, up)).transpose()
+    }
+
     /// The texture that is given, if one is.
     pub fn texture(&self) -> Result<Option<Arc<MipMap>>> {
         let read = |path: &PathBuf| MipMap::new(&image::read(path)?).map(Arc::new);

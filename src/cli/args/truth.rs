@@ -1,9 +1,10 @@
 //! Options of `surfel truth`.
 
-use super::{Background, Camera, Layer, Shading, background, size};
+use super::{Background, Camera, Layer, background, choice, size};
 use crate::cli::values::{Filter, positive};
 use clap::Args;
 use std::ffi::OsString;
+use surfel::settings::{Choice, Shading};
 use surfel::verify::truth;
 use surfel::{Outputs, Settings};
 
@@ -37,7 +38,7 @@ pub struct Truth {
     #[command(flatten)]
     pub camera: Camera,
     /// What the picture shows
-    #[arg(long, value_enum, default_value = "lit")]
+    #[arg(long, value_parser = choice::<Shading>(), default_value = Shading::Lit.name())]
     pub shading: Shading,
     /// Colour where nothing is: transparent, sRGB codes from 0 to 255, or as CSS has it: #fff, white
     #[arg(long, value_name = "R,G,B|COLOR|transparent", default_value = "transparent", value_parser = background, allow_hyphen_values = true)]
@@ -54,7 +55,7 @@ impl Truth {
     /// The settings that this asks for.
     pub fn settings(&self) -> Settings {
         let background = self.background.linear();
-        Settings { shading: self.shading.into(), background, ..Default::default() }
+        Settings { shading: self.shading, background, ..Default::default() }
     }
 
     /// How the picture is to be made.

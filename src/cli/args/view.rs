@@ -1,7 +1,7 @@
 //! Options of `surfel view`.
 
 use super::{Axes, Camera, Colours, Look, OnDevice, Points};
-use crate::cli::values::{method, size};
+use crate::cli::values::{choice, method, size};
 use clap::Args;
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -36,7 +36,7 @@ pub struct View {
     #[command(flatten)]
     pub look: Look,
     /// What visits the pixels: the device's own rasterizer, or compute shaders; what is faster on the device unless given
-    #[arg(long, value_enum)]
+    #[arg(long, value_parser = choice::<Rasterizer>())]
     pub rasterizer: Option<Rasterizer>,
     /// How long frames may take while the camera moves; they are coarser where whole ones take longer
     #[arg(long, value_name = "MS", default_value_t = 60.0)]

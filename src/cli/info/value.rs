@@ -2,7 +2,6 @@
 
 use crate::cli::args::Info;
 use crate::cli::files::print_json;
-use crate::cli::inputs::{scene, scene_cloud};
 use crate::cli::progress;
 use serde_json::{Map, Value, json};
 use std::path::Path;
@@ -10,6 +9,7 @@ use surfel::estimate::{Estimated, spacing};
 use surfel::formats::declared::Element;
 use surfel::formats::{self, Dropped, Inspected, Loaded, ReadOptions, Report};
 use surfel::geometry::{Cloud, Colours, Model, Parts, View};
+use surfel::load::{scene, scene_cloud};
 use surfel::{Error, Result};
 
 /// An object with its entries.

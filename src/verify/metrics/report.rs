@@ -4,8 +4,20 @@ use super::flip::{self, Map};
 use super::{Pair, colour, coverage, depth, normals, psnr, rmse, ssim};
 use crate::error::Result;
 
-/// One number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+/// One number; alike ones stand together.
+#[derive(
+    Clone,
+    Copy,
+    Debug,
+    PartialEq,
+    Eq,
+    Hash,
+    strum::EnumMessage,
+    strum::EnumString,
+    strum::IntoStaticStr,
+    strum::VariantArray,
+)]
+#[strum(serialize_all = "kebab-case")]
 pub enum Metric {
     /// [RMSE](rmse) of linear colours.
     Rmse,
@@ -74,7 +86,7 @@ pub struct Options {
 /// What was found.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measured {
-    /// Every metric that could be taken, in the order of [`Metric::ALL`]; the others are told by [`Metric::needs`].
+    /// Every metric that could be taken, in the order of [`Metric`]; the others are told by [`Metric::needs`].
     pub values: Vec<(Metric, f64)>,
     /// Where FLIP's differences are.
     pub flip: Map,
@@ -92,63 +104,6 @@ impl Default for Options {
 }
 
 impl Metric {
-    /// All of them, alike ones together.
-    pub const ALL: [Self; 21] = [
-        Self::Rmse,
-        Self::RmseSrgb,
-        Self::Psnr,
-        Self::PsnrSrgb,
-        Self::Ssim,
-        Self::Flip,
-        Self::FlipMax,
-        Self::Iou,
-        Self::Holes,
-        Self::HoleRegions,
-        Self::LargestHole,
-        Self::Bloat,
-        Self::BloatRegions,
-        Self::LargestBloat,
-        Self::NormalMedian,
-        Self::NormalMean,
-        Self::NormalP95,
-        Self::NormalMax,
-        Self::DepthRms,
-        Self::DepthP99,
-        Self::DepthMax,
-    ];
-
-    /// As it is called on the command line and in reports.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Rmse => "rmse",
-            Self::RmseSrgb => "rmse-srgb",
-            Self::Psnr => "psnr",
-            Self::PsnrSrgb => "psnr-srgb",
-            Self::Ssim => "ssim",
-            Self::Flip => "flip",
-            Self::FlipMax => "flip-max",
-            Self::Iou => "iou",
-            Self::Holes => "holes",
-            Self::HoleRegions => "hole-regions",
-            Self::LargestHole => "largest-hole",
-            Self::Bloat => "bloat",
-            Self::BloatRegions => "bloat-regions",
-            Self::LargestBloat => "largest-bloat",
-            Self::NormalMedian => "normal-median",
-            Self::NormalMean => "normal-mean",
-            Self::NormalP95 => "normal-p95",
-            Self::NormalMax => "normal-max",
-            Self::DepthRms => "depth-rms",
-            Self::DepthP99 => "depth-p99",
-            Self::DepthMax => "depth-max",
-        }
-    }
-
-    /// The one of that [name](Self::name).
-    pub fn named(name: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|metric| metric.name() == name)
-    }
-
     /// Unit; empty where there is none.
     pub fn unit(self) -> &'static str {
         match self {
@@ -247,6 +202,7 @@ fn silhouettes(coverage: &coverage::Coverage) -> [(Metric, f64); 7] {
 mod tests {
     use super::*;
     use crate::picture::Picture;
+    use crate::settings::Choice;
 
     /// A disc on nothing, with normals and depths, `shift` px to the right of the middle.
     fn disc(shift: u32) -> Picture {
@@ -267,7 +223,7 @@ mod tests {
 
     #[test]
     fn names_tell_metrics_apart() {
-        for (i, metric) in Metric::ALL.into_iter().enumerate() {
+        for (i, metric) in Metric::ALL.iter().copied().enumerate() {
             assert_eq!(Metric::named(metric.name()), Some(metric));
             assert_eq!(Metric::ALL.iter().position(|other| *other == metric), Some(i));
         }
@@ -301,7 +257,7 @@ mod tests {
     fn what_cannot_be_taken_is_left_out() {
         let small = Picture { size: [2, 2], colour: vec![[1.0; 4]; 4], ..Default::default() };
         let taken = of(&small, &small);
-        for metric in Metric::ALL {
+        for &metric in Metric::ALL {
             assert_eq!(taken.value(metric).is_none(), !metric.needs().is_empty(), "{}", metric.name());
         }
         let pair = Pair::new(&small, &small).unwrap();

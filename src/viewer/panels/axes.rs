@@ -2,15 +2,16 @@
 
 use egui::{ComboBox, Ui};
 use surfel::Result;
+use surfel::settings::Choice;
 use surfel::settings::splatting::{Filter, Footprint, Normalization, Shade, Splatting, Visibility};
 
-/// A choice: its name, what it means, and what it makes of the others.
-type Choice = (&'static str, &'static str, Splatting);
+/// A choice along an axis: its name, what it means, and what it makes of the others.
+type Alternative = (&'static str, &'static str, Splatting);
 
 /// A box for each axis; `weighted` tells whether the scene has normalization weights.
 pub fn show(ui: &mut Ui, splatting: &mut Splatting, weighted: bool) {
     let now = *splatting;
-    let axes: [(&str, &str, &str, Vec<Choice>); 5] = [
+    let axes: [(&str, &str, &str, Vec<Alternative>); 5] = [
         ("footprint", "What a surfel becomes on the screen.", now.footprint.name(), footprints(now)),
         ("filter", "What is done against aliasing.", now.filter.name(), filters(now)),
         (
@@ -25,7 +26,7 @@ pub fn show(ui: &mut Ui, splatting: &mut Splatting, weighted: bool) {
             now.normalization.name(),
             normalizations(now),
         ),
-        ("shade", "What is lit: pixels or splats.", shade_name(now.shade), shades(now)),
+        ("shade", "What is lit: pixels or splats.", now.shade.name(), shades(now)),
     ];
     for (axis, means, name, choices) in axes {
         let chosen = choices.iter().find(|(choice, ..)| *choice == name).map_or("", |(_, text, _)| text);
@@ -39,7 +40,7 @@ pub fn show(ui: &mut Ui, splatting: &mut Splatting, weighted: bool) {
 }
 
 /// What makes no sense with the rest is grey and says why.
-fn choice(ui: &mut Ui, splatting: &mut Splatting, (name, text, made): Choice, weighted: bool) {
+fn choice(ui: &mut Ui, splatting: &mut Splatting, (name, text, made): Alternative, weighted: bool) {
     let refused = check(&made, weighted).err();
     ui.add_enabled_ui(refused.is_none(), |ui| {
         let label = ui.selectable_label(*splatting == made, name).on_hover_text(text);
@@ -56,35 +57,21 @@ fn check(splatting: &Splatting, weighted: bool) -> Result<()> {
     splatting.normalization.check_weights(weighted)
 }
 
-fn footprints(now: Splatting) -> Vec<Choice> {
-    let texts = [
-        (Footprint::Conic, "the ellipse that the disc projects to, exactly"),
-        (Footprint::Affine, "an affine approximation at the disc's centre: holes under strong perspective"),
-        (Footprint::Parallelogram, "a parallelogram in the tangent plane, with the kernel on it"),
-        (Footprint::Disc, "the disc in the tangent plane, with the kernel on it"),
-        (Footprint::Sprite, "an ellipse as of parallel projection, with a slope in depth"),
-        (Footprint::WholeSprite, "a sprite whose width is a whole number of px"),
-        (Footprint::Square, "a square that faces the image plane: size without shape"),
-    ];
-    texts.map(|(footprint, text)| (footprint.name(), text, Splatting { footprint, ..now })).to_vec()
+/// What each of an axis makes of the others.
+fn alternatives<T: Choice>(made: impl Fn(T) -> Splatting) -> Vec<Alternative> {
+    T::ALL.iter().map(|one| (one.name(), one.about(), made(*one))).collect()
 }
 
-fn filters(now: Splatting) -> Vec<Choice> {
-    let texts = [
-        (Filter::None, "no anti-aliasing filter"),
-        (Filter::Screen, "the projected kernel is widened on the screen"),
-        (Filter::Object, "the kernel is widened in the tangent plane before it is projected"),
-    ];
-    texts.map(|(filter, text)| (filter.name(), text, Splatting { filter, ..now })).to_vec()
+fn footprints(now: Splatting) -> Vec<Alternative> {
+    alternatives(|footprint: Footprint| Splatting { footprint, ..now })
 }
 
-fn visibilities(now: Splatting) -> Vec<Choice> {
-    let texts = [
-        (Visibility::Ray, "all within ε behind the nearest splat, along the ray"),
-        (Visibility::Axis, "all within ε behind it, along the camera's axis: hides too much at silhouettes"),
-        (Visibility::Nearest, "the nearest splat alone: nothing is blended, so nothing is normalized"),
-    ];
-    let made = |visibility: Visibility| {
+fn filters(now: Splatting) -> Vec<Alternative> {
+    alternatives(|filter: Filter| Splatting { filter, ..now })
+}
+
+fn visibilities(now: Splatting) -> Vec<Alternative> {
+    alternatives(|visibility: Visibility| {
         // One splat alone has nothing to normalize; several have.
         let normalization = match (visibility, now.visibility) {
             (Visibility::Nearest, _) => Normalization::None,
@@ -92,30 +79,15 @@ fn visibilities(now: Splatting) -> Vec<Choice> {
             _ => now.normalization,
         };
         Splatting { visibility, normalization, ..now }
-    };
-    texts.map(|(visibility, text)| (visibility.name(), text, made(visibility))).to_vec()
+    })
 }
 
-fn normalizations(now: Splatting) -> Vec<Choice> {
-    let texts = [
-        (Normalization::Pixel, "a division by the sum of weights at every pixel"),
-        (Normalization::Surfel, "a factor of each surfel, captured beforehand (surfel convert --weights)"),
-        (Normalization::None, "none: brightness varies with the overlap"),
-    ];
-    let made = |normalization| Splatting { normalization, ..now };
-    texts.map(|(normalization, text)| (normalization.name(), text, made(normalization))).to_vec()
+fn normalizations(now: Splatting) -> Vec<Alternative> {
+    alternatives(|normalization: Normalization| Splatting { normalization, ..now })
 }
 
-fn shade_name(shade: Shade) -> &'static str {
-    shade.name()
-}
-
-fn shades(now: Splatting) -> Vec<Choice> {
-    let texts = [
-        (Shade::Pixel, "normals and colours are blended, and pixels are lit"),
-        (Shade::Splat, "splats are lit at their centres, and light is blended"),
-    ];
-    texts.map(|(shade, text)| (shade.name(), text, Splatting { shade, ..now })).to_vec()
+fn shades(now: Splatting) -> Vec<Alternative> {
+    alternatives(|shade: Shade| Splatting { shade, ..now })
 }
 
 #[cfg(test)]

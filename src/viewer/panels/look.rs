@@ -2,31 +2,21 @@
 
 use super::raster::short;
 use crate::viewer::source::By;
-use crate::viewer::state::{Choices, SHADINGS, shading_text};
+use crate::viewer::state::Choices;
 use egui::{ComboBox, DragValue, ProgressBar, Slider, SliderClamping, Ui};
 use surfel::geometry::{ColourMap, ValueRange};
-use surfel::settings::{Alpha, Cull};
-
-/// Names of colour maps.
-pub const MAPS: [(ColourMap, &str); 6] = [
-    (ColourMap::Viridis, "viridis"),
-    (ColourMap::Cividis, "cividis"),
-    (ColourMap::Magma, "magma"),
-    (ColourMap::Inferno, "inferno"),
-    (ColourMap::Plasma, "plasma"),
-    (ColourMap::Turbo, "turbo"),
-];
+use surfel::settings::{Alpha, Choice, Cull, Shading};
 
 /// All of it.
 pub fn show(ui: &mut Ui, chosen: &mut Choices<'_>) {
     let settings = &mut *chosen.settings;
     let shown = ComboBox::from_label("shading").selected_text(settings.shading.name()).show_ui(ui, |ui| {
-        for shading in SHADINGS {
+        for &shading in Shading::ALL {
             ui.selectable_value(&mut settings.shading, shading, shading.name())
-                .on_hover_text(shading_text(shading));
+                .on_hover_text(shading.about());
         }
     });
-    shown.response.on_hover_text(shading_text(settings.shading));
+    shown.response.on_hover_text(settings.shading.about());
     colours(ui, chosen);
     background(ui, chosen);
     radii(ui, chosen);
@@ -78,10 +68,9 @@ fn colours(ui: &mut Ui, chosen: &mut Choices<'_>) {
 
 /// Which colours numbers have.
 pub fn map(ui: &mut Ui, map: &mut ColourMap) {
-    let name = MAPS.iter().find(|(other, _)| other == map).map_or("", |(_, name)| name);
-    let shown = ComboBox::from_label("colours").selected_text(name).show_ui(ui, |ui| {
-        for (other, name) in MAPS {
-            ui.selectable_value(map, other, name);
+    let shown = ComboBox::from_label("colours").selected_text(map.name()).show_ui(ui, |ui| {
+        for &other in ColourMap::ALL {
+            ui.selectable_value(map, other, other.name()).on_hover_text(other.about());
         }
     });
     shown.response.on_hover_text("Which colours numbers have.");

@@ -5,11 +5,11 @@ use crate::viewer::state::Choices;
 use egui::{ComboBox, Slider, SliderClamping, Ui};
 use std::ops::RangeInclusive;
 use surfel::Settings;
-use surfel::settings::Widen;
 use surfel::settings::methods;
 use surfel::settings::methods::Method;
 use surfel::settings::pull_push::Storage;
 use surfel::settings::splatting::{Filter, Visibility};
+use surfel::settings::{Choice, Widen};
 
 /// Method, axes, kernel, numbers.
 pub fn show(ui: &mut Ui, chosen: &mut Choices<'_>) {

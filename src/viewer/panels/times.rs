@@ -6,6 +6,7 @@ use crate::viewer::pace::LEAST_SIDE;
 use crate::viewer::screen::Reports;
 use egui::{Align2, Color32, FontId, Grid, Pos2, Rect, Sense, Ui, vec2};
 use std::collections::VecDeque;
+use surfel::settings::Choice;
 use surfel::{FrameReport, Settings, SplatCounts};
 
 /// Frames that are shown.

@@ -1,17 +1,14 @@
-//! `--color-by`: one scale of colours for all inputs together.
+//! Colours by a number of the points: one scale for all inputs together.
 
-use super::args;
-use super::progress::say;
+use super::Listener;
+use crate::formats::colour_bar::ColourBar;
+use crate::geometry::{Cloud, ColourMap, ColourScale, Colours, Model, Quantity, ValueRange};
+use crate::{Error, Result};
 use glam::DVec3;
 use rayon::prelude::*;
-use surfel::formats::colour_bar::ColourBar;
-#[cfg(feature = "viewer")]
-use surfel::geometry::Colours;
-use surfel::geometry::{Cloud, ColourMap, ColourScale, Model, Quantity, ValueRange};
-use surfel::{Error, Result};
 
 /// What points are coloured by.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 pub struct Colouring {
     name: String,
     source: Source,
@@ -20,12 +17,11 @@ pub struct Colouring {
 }
 
 /// Where the colours come from.
-#[derive(Clone)]
+#[derive(Clone, Debug)]
 enum Source {
     /// A property of the files.
     Property,
     /// The same, with the numbers themselves in the place of colours.
-    #[cfg(feature = "viewer")]
     Numbers,
     /// A number that the surfels have.
     Quantity(Quantity),
@@ -34,6 +30,7 @@ enum Source {
 }
 
 /// How points were coloured.
+#[derive(Clone, Debug)]
 pub struct Coloured {
     /// By what, as the user named it.
     pub name: String,
@@ -42,14 +39,14 @@ pub struct Coloured {
 }
 
 impl Colouring {
-    /// What the arguments ask for, if anything; `up` need not be of unit length.
+    /// By `x`, `y`, `z`, `height` (along `up`, which need not be of unit length), `radius` or `normal` of the surfels, or by a property of
+    /// the files of any other name; in the colours of `map`, from the 1st to the 99th percentile unless a range is given.
     ///
     /// # Errors
     /// [`Error::Usage`] if a range is given of what has no values.
-    pub fn new(args: &args::Colours, up: DVec3) -> Result<Option<Self>> {
-        let Some(by) = &args.color_by else { return Ok(None) };
+    pub fn new(name: &str, range: Option<ValueRange>, map: ColourMap, up: DVec3) -> Result<Self> {
         let along = |axis| Source::Quantity(Quantity::Along(axis));
-        let source = match by.name.as_str() {
+        let source = match name {
             "x" => along(DVec3::X),
             "y" => along(DVec3::Y),
             "z" => along(DVec3::Z),
@@ -58,27 +55,22 @@ impl Colouring {
             "normal" => Source::Normal,
             _ => Source::Property,
         };
-        if matches!(source, Source::Normal) && by.range.is_some() {
+        if matches!(source, Source::Normal) && range.is_some() {
             return Err(Error::Usage(
-                "--color-by normal shows directions, which have no range: leave out MIN,MAX".into(),
+                "normals are directions, which have no range: leave out MIN,MAX".into(),
             ));
         }
-        Ok(Some(Self { name: by.name.clone(), source, map: args.color_map, range: by.range }))
+        Ok(Self { name: name.into(), source, map, range })
     }
 
-    /// No colours, but a property itself, three times as linear light: for who makes colours of it later.
-    #[cfg(feature = "viewer")]
+    /// By a property itself, three times as linear light, so that colours can be made of it later.
     pub fn numbers(name: &str) -> Self {
         Self { name: name.into(), source: Source::Numbers, map: ColourMap::default(), range: None }
     }
 
     /// Whether numbers stand in the place of colours, and nothing else of the points counts.
-    pub fn keeps_numbers(&self) -> bool {
-        match self.source {
-            #[cfg(feature = "viewer")]
-            Source::Numbers => true,
-            _ => false,
-        }
+    pub(super) fn keeps_numbers(&self) -> bool {
+        matches!(self.source, Source::Numbers)
     }
 
     /// The property that is to be read from the files.
@@ -95,15 +87,14 @@ impl Colouring {
     }
 
     /// Colours clouds by the property that was read from their files.
-    pub fn colour_clouds(&self, clouds: &mut [&mut Cloud], quiet: bool) -> Coloured {
-        #[cfg(feature = "viewer")]
+    pub(super) fn colour_clouds(&self, clouds: &mut [&mut Cloud], listener: &dyn Listener) -> Coloured {
         if matches!(self.source, Source::Numbers) {
             clouds.iter_mut().for_each(|cloud| take_numbers(cloud));
             return Coloured { name: self.name.clone(), scale: None };
         }
         let scalars = || clouds.iter().filter_map(|cloud| cloud.scalar.as_ref());
         let count = scalars().map(|scalar| scalar.len() as u64).sum();
-        let coloured = self.scale(scalars().flatten().copied(), count, quiet);
+        let coloured = self.scale(scalars().flatten().copied(), count, listener);
         let scale = coloured.scale_or_grey(self.map);
         for cloud in clouds {
             let scalar = cloud.scalar.take();
@@ -114,12 +105,10 @@ impl Colouring {
     }
 
     /// Colours surfels and vertices by what they have themselves; `None` if the colours come from the files.
-    pub fn colour_model(&self, model: &mut Model, quiet: bool) -> Option<Coloured> {
+    pub(super) fn colour_model(&self, model: &mut Model, listener: &dyn Listener) -> Option<Coloured> {
         let Model { surfels, primitives } = model;
         match self.source {
-            Source::Property => None,
-            #[cfg(feature = "viewer")]
-            Source::Numbers => None,
+            Source::Property | Source::Numbers => None,
             Source::Normal => {
                 surfels.colour_by_normals();
                 primitives.colour_by_directions();
@@ -128,7 +117,7 @@ impl Colouring {
             Source::Quantity(quantity) => {
                 let [of_surfels, of_lines] = [surfels.values(quantity), primitives.values(quantity)];
                 let both = of_surfels.iter().chain(&of_lines).copied();
-                let coloured = self.scale(both, (of_surfels.len() + of_lines.len()) as u64, quiet);
+                let coloured = self.scale(both, (of_surfels.len() + of_lines.len()) as u64, listener);
                 let scale = coloured.scale_or_grey(self.map);
                 surfels.colour_by_values(&of_surfels, &scale);
                 primitives.colour_by_values(&of_lines, &scale);
@@ -137,8 +126,13 @@ impl Colouring {
         }
     }
 
-    /// The scale for `values`, of which there are `count`. Says how it came about.
-    fn scale(&self, values: impl Iterator<Item = f64> + Clone, count: u64, quiet: bool) -> Coloured {
+    /// The scale for `values`, of which there are `count`. Notes how it came about.
+    fn scale(
+        &self,
+        values: impl Iterator<Item = f64> + Clone,
+        count: u64,
+        listener: &dyn Listener,
+    ) -> Coloured {
         let name = self.name.clone();
         let Some((usual, finite)) = ValueRange::of(values) else {
             log::warn!("{name}: no point has a value, so all are grey");
@@ -152,8 +146,8 @@ impl Colouring {
         let grey =
             (finite < count).then(|| format!("{} of {count} points have none and are grey", count - finite));
         let news: Vec<_> = how.into_iter().chain(grey).collect();
-        if !(quiet || news.is_empty()) {
-            say(&format!("{name}: {}", news.join("; ")));
+        if !news.is_empty() {
+            listener.note(&format!("{name}: {}", news.join("; ")));
         }
         Coloured { name, scale: Some(ColourScale { map: self.map, range }) }
     }
@@ -172,7 +166,6 @@ impl Coloured {
 }
 
 /// Puts a cloud's numbers in the place of its colours, NaN where there are none.
-#[cfg(feature = "viewer")]
 fn take_numbers(cloud: &mut Cloud) {
     let count = cloud.len();
     let numbers = cloud.scalar.take().unwrap_or_else(|| vec![f64::NAN; count]);

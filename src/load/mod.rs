@@ -1,0 +1,349 @@
+//! Loading: from files, and built-in scenes, to a model that can be drawn.
+//!
+//! Each input is read ([`formats`]), thinned, coloured and estimated ([`estimate`](crate::estimate)) as [`LoadOptions`] say; all together
+//! are one model.
+
+mod colouring;
+
+pub use colouring::{Coloured, Colouring};
+
+use crate::estimate::{Estimate, Estimated};
+use crate::formats::{self, Dropped, Faces, Lines, Loaded, ReadOptions, Report};
+use crate::geometry::{Cloud, Lined, MipMap, Model, ToLines};
+use crate::settings::Settings;
+#[cfg(feature = "scenes")]
+use crate::verify::scenes;
+use crate::{Error, Progress, Result};
+use glam::Vec3;
+use std::ffi::OsStr;
+use std::path::Path;
+use std::sync::Arc;
+
+/// What inputs become.
+#[derive(Clone, Debug, Default)]
+pub struct LoadOptions {
+    /// How normals and radii that files lack are estimated.
+    pub estimate: Estimate,
+    /// Whether faces are drawn as triangles; where a file has lines, they are anyway.
+    pub polygons: bool,
+    /// How faces become lines; they stay faces if not at all.
+    pub lines: Option<ToLines>,
+    /// By how much lines may be off that are simplified, in the positions' unit.
+    pub simplify: Option<f64>,
+    /// The side of the voxels that keep one point each, in the positions' unit.
+    pub voxel: Option<f64>,
+    /// What the points are coloured by, if not by their own colours.
+    pub colouring: Option<Colouring>,
+    /// The texture that files' coordinates are of, rather than the one that they name.
+    pub texture: Option<Arc<MipMap>>,
+}
+
+/// Is told of a load beside how far it has come.
+pub trait Listener: Progress {
+    /// A line on what was made of an input.
+    fn note(&self, _text: &str) {}
+
+    /// Whether a [sketch](Self::sketch) is of use.
+    fn wants_sketch(&self) -> bool {
+        false
+    }
+
+    /// Some of many points, as soon as they are read.
+    fn sketch(&self, _model: Model) {}
+}
+
+/// Nobody is told.
+impl Listener for () {}
+
+/// Points of a sketch.
+const SKETCH: usize = 20_000;
+/// How many times as many points have a sketch: fewer are whole as soon.
+const WORTH_A_SKETCH: usize = 5;
+
+/// What inputs hold together.
+#[derive(Clone, Debug)]
+pub struct LoadedModel {
+    /// One scene; its surfels are in Morton order.
+    pub model: Model,
+    /// Points of all inputs, dropped ones included.
+    pub read: u64,
+    /// Points that are no surfels.
+    pub dropped: Dropped,
+    /// Where normals and radii came from.
+    pub estimated: Estimated,
+    /// What the points were coloured by, if not by their own colours.
+    pub coloured: Option<Coloured>,
+    /// Properties of the files' points of which nothing is made.
+    pub skipped: Vec<String>,
+}
+
+/// What all steps of a load share.
+struct Load<'a> {
+    options: &'a LoadOptions,
+    listener: &'a dyn Listener,
+}
+
+/// An input as it was read.
+struct Part {
+    name: String,
+    cloud: Cloud,
+    /// Whether its faces are drawn, whatever is wanted of files.
+    drawn: bool,
+}
+
+/// Loads every input, a file's path or a built-in scene's name; several become one model.
+///
+/// # Errors
+/// What reading a file, thinning or estimation refuses, with the input's name; [`Error::Usage`] where a built-in scene is to be coloured by
+/// a property of files; [`Error::Cancelled`].
+pub fn load(
+    inputs: &[impl AsRef<OsStr>],
+    options: &LoadOptions,
+    listener: &dyn Listener,
+) -> Result<LoadedModel> {
+    let inputs: Vec<&OsStr> = inputs.iter().map(AsRef::as_ref).collect();
+    Load { options, listener }.all(&inputs)
+}
+
+impl Load<'_> {
+    fn all(&self, inputs: &[&OsStr]) -> Result<LoadedModel> {
+        self.refuse_scenes(inputs)?;
+        let (mut parts, mut read, mut dropped) = (Vec::new(), 0, Dropped::default());
+        let mut skipped: Vec<String> = Vec::new();
+        for input in inputs {
+            let (part, report) = self.one(input)?;
+            read += report.as_ref().map_or(part.cloud.len() as u64, |report| report.points);
+            if let Some(report) = report {
+                skipped.extend(report.skipped);
+                dropped.position += report.dropped.position;
+                dropped.transparent += report.dropped.transparent;
+            }
+            parts.push(part);
+        }
+        if let Some(voxel) = self.options.voxel {
+            parts = vec![self.thin(parts, voxel)?];
+        }
+        let colouring = self.options.colouring.as_ref();
+        let by_property = colouring.filter(|colouring| colouring.property().is_some());
+        let coloured = by_property.map(|colouring| {
+            let mut clouds: Vec<_> = parts.iter_mut().map(|part| &mut part.cloud).collect();
+            colouring.colour_clouds(&mut clouds, self.listener)
+        });
+        if self.listener.wants_sketch() {
+            self.sketch(&parts).into_iter().for_each(|sketch| self.listener.sketch(sketch));
+        }
+        let (model, estimated) = self.merge(parts)?;
+        skipped.sort();
+        skipped.dedup();
+        let mut loaded = LoadedModel { model, read, dropped, estimated, coloured, skipped };
+        if let (Some(colouring), None) = (colouring, &loaded.coloured) {
+            loaded.coloured = colouring.colour_model(&mut loaded.model, self.listener);
+        }
+        Ok(loaded)
+    }
+
+    /// The property that is read from files.
+    fn property(&self) -> Option<&str> {
+        self.options.colouring.as_ref().and_then(Colouring::property)
+    }
+
+    /// Refuses scenes where a property of files is asked for: they have none.
+    fn refuse_scenes(&self, inputs: &[&OsStr]) -> Result<()> {
+        match self.property().zip(inputs.iter().find_map(|input| scene(input))) {
+            Some((property, scene)) => Err(Error::Usage(format!(
+                "{scene}: its points have no property `{property}`: colour by x, y, z, height, normal or radius"
+            ))),
+            None => Ok(()),
+        }
+    }
+
+    /// What is in an input, and what its file holds.
+    fn one(&self, input: &OsStr) -> Result<(Part, Option<Report>)> {
+        #[cfg(feature = "scenes")]
+        if let Some(name) = scene(input) {
+            let cloud = scene_cloud(name)?;
+            return Ok((Part { name: name.into(), cloud, drawn: true }, None));
+        }
+        let options = ReadOptions {
+            scalar: self.property().map(str::to_owned),
+            triangles: self.draws_faces(),
+            texture: self.options.texture.clone(),
+        };
+        let Loaded { cloud, report } = formats::read(Path::new(input), &options, self.listener)?;
+        let name = Path::new(input).display().to_string();
+        warn(&name, &report);
+        Ok((Part { name, cloud, drawn: false }, Some(report)))
+    }
+
+    /// All parts together, with one point a voxel.
+    fn thin(&self, parts: Vec<Part>, voxel: f64) -> Result<Part> {
+        let name = match &parts[..] {
+            [one] => one.name.clone(),
+            several => format!("{} inputs", several.len()),
+        };
+        let drawn = parts.iter().any(|part| part.drawn);
+        let clouds = parts.into_iter().map(|part| part.cloud).collect();
+        let all = Cloud::merge(clouds, Settings::default().lighting.albedo)?;
+        let before = all.len();
+        let cloud = all.thin(voxel).map_err(|cause| Error::input(name.as_str(), cause))?;
+        self.listener.note(&format!("{name}: {before} points thinned to {}", cloud.len()));
+        Ok(Part { name, cloud, drawn })
+    }
+
+    /// One model of all parts, each of which is estimated by itself.
+    fn merge(&self, parts: Vec<Part>) -> Result<(Model, Estimated)> {
+        let several = parts.len() > 1;
+        let (mut all, mut total) = (Vec::new(), Estimated::default());
+        for part in parts {
+            let (model, estimated) = self.estimate(part)?;
+            all.push(model);
+            total = total + estimated;
+        }
+        let mut model = Model::merge(all, Settings::default().lighting.albedo)?;
+        if let Some(tolerance) = self.options.simplify {
+            let (before, fewer) = (model.primitives.segments().count(), model.primitives.simplify(tolerance));
+            self.listener
+                .note(&format!("{before} segments of lines simplified to {}", before as u64 - fewer));
+        }
+        // One input is sorted already.
+        if several {
+            model.surfels.sort_morton();
+        }
+        Ok((model, total))
+    }
+
+    /// Some of the points, with normals and radii of their own, if there are many; none where more than points is drawn.
+    fn sketch(&self, parts: &[Part]) -> Option<Model> {
+        let all: usize = parts.iter().map(|part| part.cloud.len()).sum();
+        let faces = |part: &Part| {
+            part.cloud.has_lines() || (part.drawn || self.draws_faces()) && !part.cloud.triangles.is_empty()
+        };
+        if all < WORTH_A_SKETCH * SKETCH || parts.iter().any(faces) {
+            return None;
+        }
+        let some = |part: &Part| part.cloud.some((part.cloud.len() * SKETCH).div_ceil(all));
+        let clouds = parts.iter().map(some).collect();
+        let cloud = Cloud::merge(clouds, Settings::default().lighting.albedo).ok()?;
+        let how = Estimate { outliers: None, sharp: None, ..self.options.estimate.clone() };
+        // What a few points do not tell, all of them may.
+        let (mut model, _) = cloud.into_model(false, &how, &()).ok()?;
+        let colouring = self.options.colouring.as_ref();
+        if let Some(colouring) = colouring.filter(|colouring| colouring.property().is_none()) {
+            colouring.colour_model(&mut model, &());
+        }
+        Some(model)
+    }
+
+    fn estimate(&self, part: Part) -> Result<(Model, Estimated)> {
+        let Part { name, cloud, drawn } = part;
+        let cloud = match &self.options.lines {
+            Some(how) => self.to_lines(&name, &cloud, how)?,
+            None => cloud,
+        };
+        let keeps_numbers = self.options.colouring.as_ref().is_some_and(Colouring::keeps_numbers);
+        let cloud = if keeps_numbers { numbers_alone(cloud) } else { cloud };
+        let progress: &dyn Progress = self.listener;
+        let made = cloud.into_model(drawn || self.draws_faces(), &self.options.estimate, progress);
+        let (model, estimated) = made.map_err(|cause| progress.failed(name.as_str(), cause))?;
+        if let Some(text) = estimated.summary() {
+            self.listener.note(&format!("{name}: {text}"));
+        }
+        Ok((model, estimated))
+    }
+
+    /// Whether faces are drawn, unless they become lines.
+    fn draws_faces(&self) -> bool {
+        self.options.polygons || self.options.lines.is_some()
+    }
+
+    /// The lines of a part's faces.
+    fn to_lines(&self, name: &str, cloud: &Cloud, how: &ToLines) -> Result<Cloud> {
+        let (cloud, lined) = cloud.to_lines(how).map_err(|cause| Error::input(name, cause))?;
+        let Lined { triangles, leaves: [of_leaves, ribbons], branches: [of_branches, tubes], vertices } =
+            lined;
+        self.listener.note(&format!(
+            "{name}: of {triangles} triangles {of_leaves} are leaves and became {ribbons} segments of ribbons, {of_branches} are branches \
+             and became {tubes} segments of tubes; of {} vertices {} are left",
+            vertices[0], vertices[1]
+        ));
+        Ok(cloud)
+    }
+}
+
+/// Says what of a file is left out, and what may be damage.
+fn warn(name: &str, report: &Report) {
+    let Dropped { position, transparent } = report.dropped;
+    for (count, why) in [(position, "have no finite position"), (transparent, "are less than a tenth opaque")]
+    {
+        if count > 0 {
+            log::warn!("{name}: {count} of {} points {why} and are left out", report.points);
+        }
+    }
+    if report.clip_lines_dropped > 0 {
+        log::warn!(
+            "{name}: {} clip lines are not finite or in no tangent plane and are left out",
+            report.clip_lines_dropped
+        );
+    }
+    if report.weights_dropped > 0 {
+        log::warn!(
+            "{name}: {} normalization weights are not finite or not above 0 and are left out",
+            report.weights_dropped
+        );
+    }
+    if report.materials_dropped > 0 {
+        log::warn!(
+            "{name}: {} materials are more than can be read; points of theirs have none",
+            report.materials_dropped
+        );
+    }
+    let Faces { understood, skipped } = report.faces;
+    if skipped > 0 {
+        log::warn!(
+            "{name}: {skipped} of {} faces have no three different corners that exist and are left out",
+            skipped + understood
+        );
+    }
+    let Lines { understood, skipped, .. } = report.lines;
+    if skipped > 0 {
+        log::warn!(
+            "{name}: {skipped} of {} segments of lines have no two ends that exist, at two places, and are left out",
+            skipped + understood
+        );
+    }
+    if let Some(cause) = &report.texture_missing {
+        log::warn!("{name}: drawn without its texture: {cause}");
+    }
+    if report.trailing > 0 {
+        log::warn!("{name}: {} bytes after the last element mean nothing and are left out", report.trailing);
+    }
+}
+
+/// A cloud of which the numbers alone are wanted, in the order that its surfels and vertices have: nothing of it is to be estimated.
+fn numbers_alone(cloud: Cloud) -> Cloud {
+    let count = cloud.len();
+    Cloud {
+        normals: Some(vec![Vec3::Z; count]),
+        radii: Some(vec![1.0; count]),
+        ellipses: None,
+        clips: None,
+        weights: None,
+        ..cloud
+    }
+}
+
+/// The points of a built-in scene, and its lines and triangles if it wants some.
+#[cfg(feature = "scenes")]
+pub fn scene_cloud(name: &str) -> Result<Cloud> {
+    let Model { surfels, primitives } = scenes::model(name)?;
+    let parts = [Cloud::from(surfels), Cloud::from(primitives)].into_iter().filter(|part| !part.is_empty());
+    Cloud::merge(parts.collect(), Settings::default().lighting.albedo)
+}
+
+/// The built-in scene that an input names; `None` if it is a file.
+pub fn scene(input: &OsStr) -> Option<&str> {
+    #[cfg(feature = "scenes")]
+    return input.to_str().filter(|name| scenes::is_scene(name));
+    #[cfg(not(feature = "scenes"))]
+    return input.to_str().filter(|_| false);
+}

@@ -1,0 +1,90 @@
+//! Choices among few that go by names: in options, reports, results and the window.
+
+use std::str::FromStr;
+use strum::{EnumMessage, VariantArray};
+
+/// A choice among few, each of which has a name and a line that tells what it is.
+pub trait Choice: Copy + Send + Sync + 'static {
+    /// All of them, in the order of options.
+    const ALL: &'static [Self];
+
+    /// Its name: the variant's in kebab case.
+    fn name(self) -> &'static str;
+
+    /// All its names, the one of [`name`](Self::name) among them.
+    fn names(self) -> &'static [&'static str];
+
+    /// What it is: the first paragraph of its documentation, without the full stop.
+    fn about(self) -> &'static str;
+
+    /// The one of a name.
+    fn named(name: &str) -> Option<Self>;
+}
+
+impl<T> Choice for T
+where
+    T: Copy + Send + Sync + 'static + VariantArray + EnumMessage + FromStr + Into<&'static str>,
+{
+    const ALL: &'static [Self] = T::VARIANTS;
+
+    fn name(self) -> &'static str {
+        self.into()
+    }
+
+    fn names(self) -> &'static [&'static str] {
+        self.get_serializations()
+    }
+
+    fn about(self) -> &'static str {
+        let paragraph = self.get_documentation().and_then(|text| text.lines().next());
+        paragraph.map_or("", |text| text.trim_end_matches('.'))
+    }
+
+    fn named(name: &str) -> Option<Self> {
+        name.parse().ok()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::ColourMap;
+    use crate::settings::splatting::{Filter, Footprint, Normalization, Shade, Visibility};
+    use crate::settings::{Alpha, Cull, Precision, Rasterizer, Shading, Widen};
+
+    fn check<T: Choice + PartialEq + std::fmt::Debug>() {
+        for one in T::ALL {
+            assert_eq!(T::named(one.name()), Some(*one));
+            assert!(
+                one.names().iter().all(|name| T::named(name) == Some(*one)),
+                "{one:?}: {:?}",
+                one.names()
+            );
+            let kebab = |name: &str| name.chars().all(|c| c.is_ascii_lowercase() || c == '-');
+            assert!(kebab(one.name()), "{one:?}");
+            // A line of the program's help.
+            let about = one.about();
+            assert!((3..=120).contains(&about.chars().count()), "{one:?}: {about}");
+            assert!(!about.contains(['`', '[', '\n']), "{one:?}: {about}");
+        }
+        assert_eq!(T::named("none such"), None);
+    }
+
+    #[test]
+    fn every_choice_has_a_name_and_a_line_of_help() {
+        check::<Footprint>();
+        check::<Filter>();
+        check::<Visibility>();
+        check::<Normalization>();
+        check::<Shade>();
+        check::<Rasterizer>();
+        check::<Precision>();
+        check::<Widen>();
+        check::<Cull>();
+        check::<Alpha>();
+        check::<Shading>();
+        check::<ColourMap>();
+        assert_eq!(Shading::named("colour"), Some(Shading::Colour));
+        assert_eq!(Cull::None.about(), "Both sides are drawn");
+    }
+}
