@@ -1,10 +1,11 @@
 //! `surfel methods`.
 
 use super::files::{print, print_json};
+use super::{args, needs};
 use serde_json::{Value, json};
 use std::fmt::Write;
 use surfel::frame::FramePlan;
-use surfel::scene::{ColourStream, PrimitiveKinds, Streams, SurfelLayout};
+use surfel::scene::{ColourStream, Streams};
 use surfel::settings::methods::Method;
 use surfel::settings::splatting::{Filter, Splatting};
 use surfel::settings::{Choice, Settings, Shading};
@@ -13,8 +14,11 @@ use surfel::{Rasterizer, RenderOptions, Result};
 const WAYS: [(Rasterizer, &str); 2] = [(Rasterizer::Draw, "drawn"), (Rasterizer::Compute, "computed")];
 
 /// Lists the methods: paper, choices along the axes, and for coloured circles that are lit the passes and targets of either rasterizer.
-pub fn run(json: bool) -> Result<()> {
-    if json {
+pub fn run(args: &args::Methods) -> Result<()> {
+    if args.needs {
+        return print(&needs::table());
+    }
+    if args.json {
         return print_json(&Method::ALL.iter().map(value).collect());
     }
     let mut text = String::from("bytes are those of a pixel, of a lit frame of coloured circles\n");
@@ -33,7 +37,7 @@ fn value(method: &Method) -> Value {
     let frames: serde_json::Map<_, _> = WAYS
         .into_iter()
         .map(|(rasterizer, name)| {
-            let FramePlan { passes, targets } = plan(&method.settings(), rasterizer);
+            let FramePlan { passes, targets, .. } = plan(&method.settings(), rasterizer);
             let targets: Value = targets
                 .iter()
                 .map(|(name, bytes)| json!({ "name": name, "bytes_per_pixel": bytes }))
@@ -77,26 +81,15 @@ fn describe(text: &mut String, method: &Method) {
 
 fn describe_frames(text: &mut String, method: &Method) {
     for (rasterizer, name) in WAYS {
-        let FramePlan { passes, targets } = plan(&method.settings(), rasterizer);
+        let FramePlan { passes, targets, .. } = plan(&method.settings(), rasterizer);
         let _ = writeln!(text, "  {name:<8} {}", passes.join(" → "));
         let _ = writeln!(text, "           {}", told(&targets));
     }
 }
 
 fn plan(settings: &Settings, rasterizer: Rasterizer) -> FramePlan {
-    let streams = Streams {
-        ellipses: false,
-        two_sided: false,
-        clips: false,
-        weights: None,
-        colours: ColourStream::Srgb8,
-        primitives: PrimitiveKinds::NONE,
-        texture: None,
-        materials: false,
-        layout: SurfelLayout::side_by_side(ColourStream::Srgb8),
-        unchecked: false,
-    };
     let settings = Settings { shading: Shading::Lit, ..settings.clone() };
+    let streams = Streams::circles(ColourStream::Srgb8);
     FramePlan::new(&[streams], true, &settings, &RenderOptions::default(), rasterizer)
 }
 

@@ -16,6 +16,7 @@ mod limits;
 mod log;
 mod manual;
 mod methods;
+mod needs;
 #[cfg(feature = "metrics")]
 mod number;
 mod progress;
@@ -59,7 +60,7 @@ pub fn run() -> ExitCode {
         #[cfg(feature = "bench")]
         Command::Bench(args) => bench::run(&args),
         Command::Devices(Listing { json }) => devices::run(json),
-        Command::Methods(Listing { json }) => methods::run(json),
+        Command::Methods(args) => methods::run(&args),
         Command::Scenes(Listing { json }) => scenes::run(json),
         Command::Completions(args) => manual::completions(&args),
         Command::Man(args) => manual::man(&args),

@@ -21,7 +21,9 @@ impl Estimated {
             clipped.map(|count| format!("{count} clipped at sharp edges")),
             along.map(|count| format!("radii of {count} vertices of lines from others of their line")),
             thin.map(|count| {
-                format!("radii of {count} vertices of lines from the lines' extent, as no line radius is given")
+                format!(
+                    "radii of {count} vertices of lines from the lines' extent, as no line radius is given"
+                )
             }),
         ];
         let parts: Vec<_> = parts.into_iter().flatten().collect();

@@ -19,6 +19,7 @@
 //! 5. A test that holds a picture to the reference.
 //!
 //! A buffer or an image that it hands on is a `Resource`, with a row in the table of targets.
+#![doc = include_str!("needs.md")]
 
 mod compact;
 pub(crate) mod description;

@@ -2,6 +2,7 @@
 
 use super::methods::{Path, passes};
 use super::renderer::RenderOptions;
+use super::splat_buffers::SPLAT;
 use super::targets::per_pixel;
 use super::variant::Variant;
 use crate::scene::Streams;
@@ -15,6 +16,8 @@ pub struct FramePlan {
     pub passes: Vec<&'static str>,
     /// The targets, each with the bytes of a pixel. Where a target has less than one value a pixel, that is a fraction.
     pub targets: Vec<(&'static str, f64)>,
+    /// Bytes of a splat, one a surfel; 0 where none are made.
+    pub splat: u64,
 }
 
 impl FramePlan {
@@ -31,6 +34,7 @@ impl FramePlan {
         let mut names: Vec<_> = passes.iter().map(|pass| pass.name).collect();
         // A pass may take several steps.
         names.dedup();
-        Self { passes: names, targets: per_pixel(&variant) }
+        let splat = if variant.pull_push.is_some() { 0 } else { SPLAT };
+        Self { passes: names, targets: per_pixel(&variant), splat }
     }
 }

@@ -93,6 +93,36 @@ pub struct Streams {
     pub unchecked: bool,
 }
 
+impl Streams {
+    /// Those of surfels that have sides, own all their buffers, and hold nothing else; each stream side by side.
+    pub fn circles(colours: ColourStream) -> Self {
+        Self {
+            ellipses: false,
+            two_sided: false,
+            clips: false,
+            weights: None,
+            colours,
+            primitives: PrimitiveKinds::NONE,
+            texture: None,
+            materials: false,
+            layout: SurfelLayout::side_by_side(colours),
+            unchecked: false,
+        }
+    }
+
+    /// The streams of surfels that are uploaded, by name, with the bytes of a surfel; a clip takes 32 more, weights at corners 16.
+    pub fn per_surfel(&self) -> Vec<(&'static str, u64)> {
+        let optional = [
+            ("colours", self.colours.bytes()),
+            ("ellipses", if self.ellipses { ELLIPSE } else { 0 }),
+            ("clips", if self.clips { 4 } else { 0 }),
+            ("weights", if self.weights.is_some() { SCALAR } else { 0 }),
+        ];
+        let given = [("positions", VECTOR), ("normals", VECTOR), ("radii", SCALAR)].into_iter();
+        given.chain(optional.into_iter().filter(|(_, bytes)| *bytes > 0)).collect()
+    }
+}
+
 /// Which lines and triangles a scene has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct PrimitiveKinds {

@@ -30,6 +30,17 @@ fn lists_are_json_where_that_is_asked_for() {
 }
 
 #[test]
+fn the_table_of_what_frames_need_is_the_documentations() {
+    let program = Program::new();
+    let table = program.run("methods --needs").text().to_owned();
+    let written = concat!(env!("CARGO_MANIFEST_DIR"), "/src/frame/needs.md");
+    assert!(
+        std::fs::read_to_string(written).unwrap().ends_with(&table),
+        "write what `surfel methods --needs` prints to the end of {written}:\n{table}"
+    );
+}
+
+#[test]
 fn a_file_is_described_in_json() {
     let program = Program::new();
     program.write("a.ply", surfels(&["0 0 0 0 0 1 1", "4 0 0 0 0 1 3", "2 0 0 0 0 1 2", "0 nan 0 0 0 1 1"]));

@@ -2,10 +2,10 @@
 
 use crate::support::gpu::{assert_silent, device, render};
 use crate::support::placing::{rich, weighted};
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 use std::sync::Arc;
 use surfel::frame::FramePlan;
-use surfel::geometry::{Camera, Surfels, Weights};
+use surfel::geometry::{Camera, Colours, Ellipse, Surfels, Weights};
 use surfel::settings::methods::Method;
 use surfel::settings::methods::object_ewa::{self, Progressive};
 use surfel::settings::splatting::{Normalization, Splatting, Visibility};
@@ -138,6 +138,41 @@ fn passes_and_targets_are_those_that_are_told() {
             let told: f64 = per_pixel.iter().map(|(_, bytes)| bytes * pixels).sum();
             assert!(bytes >= told && bytes < 1.1 * told + 65_536.0, "{bytes} for {told}");
         }
+    }
+    assert_silent(&device);
+}
+
+#[test]
+fn streams_and_splats_are_those_that_are_told() {
+    let Some(device) = device(DeviceLimits::default()) else { return };
+    let bare = sphere(2_000);
+    let circles = Surfels { colours: None, ..bare.clone() };
+    let ellipse = Ellipse { major: Vec3::X, aspect: 0.5 };
+    let kinds = [
+        (circles.clone(), 28),
+        (Surfels { two_sided: Some(vec![true; 2_000]), ..circles.clone() }, 28),
+        (Surfels { ellipses: Some(vec![ellipse; 2_000]), ..circles.clone() }, 44),
+        (Surfels { colours: Some(Colours::Srgb8(vec![[9; 4]; 2_000])), ..circles.clone() }, 32),
+        (Surfels { colours: Some(Colours::Linear(vec![[0.5; 3]; 2_000])), ..circles.clone() }, 40),
+        (Surfels { weights: Some(Weights::collect((0..2_000).map(|_| (0.2, None)))), ..circles }, 32),
+    ];
+    for (surfels, bytes) in kinds {
+        let scene = Scene::upload(&device, &surfels).unwrap();
+        let told: u64 = scene.streams().per_surfel().iter().map(|(_, bytes)| bytes).sum();
+        assert_eq!(told, bytes);
+        // Weights are rounded up to what ranges begin at.
+        assert!((2_000 * bytes..2_000 * bytes + 256).contains(&scene.bytes()), "{}", scene.bytes());
+    }
+    let scene = Scene::upload(&device, &bare).unwrap();
+    for method in Method::ALL {
+        let options = RenderOptions { size: SIZE, ..Default::default() };
+        let mut renderer = Renderer::new(&device, options).unwrap();
+        renderer.render(&scene, &camera(SIZE), &method.settings()).unwrap();
+        let rasterizer = renderer.rasterizer().unwrap();
+        let plan = FramePlan::new(&[scene.streams()], true, &method.settings(), &options, rasterizer);
+        // Beside the splats the compute rasterizer has lists of large ones.
+        let made = renderer.splat_bytes();
+        assert!((2_000 * plan.splat..=2_000 * (plan.splat + 4) + 4096).contains(&made), "{made}");
     }
     assert_silent(&device);
 }

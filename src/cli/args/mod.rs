@@ -66,7 +66,7 @@ pub enum Command {
     /// Lists the Vulkan devices; * marks the one that is used unless --device names another
     Devices(Listing),
     /// Lists the methods: paper, choices along the axes, passes, targets
-    Methods(Listing),
+    Methods(Methods),
     /// Lists the built-in scenes with their parameters
     Scenes(Listing),
     /// Prints completions for a shell, to be put where that looks for them
@@ -81,6 +81,17 @@ pub struct Listing {
     /// Prints JSON
     #[arg(long)]
     pub json: bool,
+}
+
+/// Options of `surfel methods`.
+#[derive(Args, Debug)]
+pub struct Methods {
+    /// Prints JSON
+    #[arg(long)]
+    pub json: bool,
+    /// Prints what frames of different scenes need: a table in Markdown
+    #[arg(long, conflicts_with = "json")]
+    pub needs: bool,
 }
 
 /// Options of `surfel completions`.

@@ -1,0 +1,113 @@
+//! `surfel methods --needs`: what frames of different scenes need, and no more.
+
+use std::fmt::Write;
+use surfel::frame::FramePlan;
+use surfel::scene::{ColourStream, PrimitiveKinds, Streams};
+use surfel::settings::methods::{Method, confetti, object_ewa, perspective_ewa, pull_push, sprites};
+use surfel::settings::splatting::{Normalization, Splatting};
+use surfel::settings::{Alpha, Shading};
+use surfel::{Outputs, Rasterizer, RenderOptions, Settings};
+
+/// A frame of a scene.
+struct Case {
+    method: Method,
+    scene: &'static str,
+    streams: Streams,
+    asked: &'static str,
+    settings: Settings,
+    outputs: Outputs,
+}
+
+impl Case {
+    /// Lit, of circles that maybe have colours.
+    fn lit(method: Method, scene: &'static str, colours: ColourStream) -> Self {
+        let streams = Streams::circles(colours);
+        let settings = Settings { shading: Shading::Lit, ..method.settings() };
+        Self { method, scene, streams, asked: "lit", settings, outputs: Outputs::default() }
+    }
+
+    fn of(self, scene: &'static str, change: impl FnOnce(&mut Streams)) -> Self {
+        let mut streams = self.streams;
+        change(&mut streams);
+        Self { scene, streams, ..self }
+    }
+
+    fn asking(self, asked: &'static str, change: impl FnOnce(&mut Settings, &mut Outputs)) -> Self {
+        let (mut settings, mut outputs) = (self.settings, self.outputs);
+        change(&mut settings, &mut outputs);
+        Self { asked, settings, outputs, ..self }
+    }
+
+    fn plan(&self, rasterizer: Rasterizer) -> FramePlan {
+        let options = RenderOptions { outputs: self.outputs, ..Default::default() };
+        FramePlan::new(&[self.streams], true, &self.settings, &options, rasterizer)
+    }
+}
+
+fn cases() -> Vec<Case> {
+    let ewa = || Case::lit(perspective_ewa::METHOD, "circles", ColourStream::None);
+    let coloured = |method| Case::lit(method, "coloured circles", ColourStream::Srgb8);
+    let by_surfel = Splatting { normalization: Normalization::Surfel, ..object_ewa::METHOD.splatting };
+    let kinds = PrimitiveKinds { lines: true, triangles: false, colours: ColourStream::Srgb8 };
+    vec![
+        ewa(),
+        ewa().asking("depths", |settings, _| settings.shading = Shading::Depth),
+        ewa().of("circles, some without sides", |streams| streams.two_sided = true),
+        ewa().of("ellipses", |streams| streams.ellipses = true),
+        ewa().of("circles, some clipped", |streams| streams.clips = true),
+        coloured(perspective_ewa::METHOD),
+        coloured(perspective_ewa::METHOD)
+            .asking("own colours", |settings, _| settings.shading = Shading::Colour),
+        coloured(perspective_ewa::METHOD)
+            .asking("lit, coverage", |settings, _| settings.alpha = Alpha::Coverage),
+        coloured(perspective_ewa::METHOD).asking("lit, normals, depths", |_, outputs| {
+            *outputs = Outputs { normal: true, depth: true, id: false };
+        }),
+        coloured(object_ewa::METHOD),
+        coloured(object_ewa::METHOD)
+            .of("coloured circles with weights", |streams| streams.weights = Some(false))
+            .asking("lit, normalized by surfel", |settings, _| settings.splatting = by_surfel),
+        coloured(sprites::UNFILTERED),
+        coloured(confetti::METHOD),
+        coloured(pull_push::METHOD),
+        coloured(pull_push::METHOD).of("coloured circles and lines", |streams| streams.primitives = kinds),
+    ]
+}
+
+/// The table.
+pub fn table() -> String {
+    let mut text = String::from(
+        "| method | scene | asked for | streams, B a surfel | splats, B a surfel | passes, drawn | targets, B a px | passes, computed | targets, B a px |\n\
+         |---|---|---|---|---|---|---|---|---|\n",
+    );
+    for case in cases() {
+        let [drawn, computed] =
+            [Rasterizer::Draw, Rasterizer::Compute].map(|rasterizer| case.plan(rasterizer));
+        let streams = case.streams.per_surfel();
+        let sum: u64 = streams.iter().map(|(_, bytes)| bytes).sum();
+        let names: Vec<_> = streams.iter().map(|(name, bytes)| format!("{name} {bytes}")).collect();
+        // Writing to a String cannot fail.
+        let _ = writeln!(
+            text,
+            "| `{}` | {} | {} | {sum}: {} | {} | {} | {} | {} | {} |",
+            case.method.name,
+            case.scene,
+            case.asked,
+            names.join(", "),
+            drawn.splat,
+            drawn.passes.join(", "),
+            targets(&drawn),
+            computed.passes.join(", "),
+            targets(&computed),
+        );
+    }
+    text
+}
+
+/// `52: visibility 4, image 16`.
+fn targets(FramePlan { targets, .. }: &FramePlan) -> String {
+    let short = |bytes: f64| format!("{}", (100.0 * bytes).round() / 100.0);
+    let sum: f64 = targets.iter().map(|(_, bytes)| bytes).sum();
+    let each: Vec<_> = targets.iter().map(|(name, bytes)| format!("{name} {}", short(*bytes))).collect();
+    format!("{}: {}", short(sum), each.join(", "))
+}
