@@ -2,8 +2,10 @@
 
 use crate::error::{Error, Result};
 use crate::frame::resources::Outgoing;
+use crate::scene::{Instances, Scene};
 use std::any::Any;
 use std::collections::VecDeque;
+use std::sync::Arc;
 
 /// Most frames under way: what each uses is kept.
 const MOST: u32 = 64;
@@ -12,6 +14,8 @@ const MOST: u32 = 64;
 pub(super) struct Held {
     /// Each with the number of the last frame that may use it.
     list: VecDeque<(u64, Outgoing)>,
+    /// Those of the present frame.
+    scenes: Vec<Arc<Scene>>,
     frame: u64,
     frames_in_flight: u64,
 }
@@ -24,12 +28,25 @@ impl Held {
                 "{frames_in_flight} frames in flight: a frame is under way when it is recorded, so give 1 or more, and at most {MOST}"
             )));
         }
-        Ok(Self { list: VecDeque::new(), frame: 0, frames_in_flight: frames_in_flight.into() })
+        Ok(Self {
+            list: VecDeque::new(),
+            scenes: Vec::new(),
+            frame: 0,
+            frames_in_flight: frames_in_flight.into(),
+        })
     }
 
     /// Keeps `held`, which frames so far may use.
     pub(super) fn hold(&mut self, held: impl Any + Send + Sync) {
         self.extend([Box::new(held) as Outgoing]);
+    }
+
+    /// Keeps the scenes of a frame that is prepared, in place of those of the frame before.
+    pub(super) fn hold_scenes(&mut self, scenes: &Instances<'_>) {
+        if !scenes.scenes().map(Arc::as_ptr).eq(self.scenes.iter().map(Arc::as_ptr)) {
+            let old = std::mem::replace(&mut self.scenes, scenes.scenes().cloned().collect());
+            self.hold(old);
+        }
     }
 
     /// As [`Held::hold`].

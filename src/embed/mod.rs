@@ -113,7 +113,6 @@ use crate::frame::targets::check_size;
 use crate::frame::uniforms::Blocks;
 use crate::frame::variant::Variant;
 use crate::frame::{FrameReport, RenderOptions};
-use crate::scene::Scene;
 use crate::scene::instance::Instances;
 use crate::settings::Settings;
 use crate::settings::{Outputs, Precision, Rasterizer};
@@ -147,8 +146,6 @@ pub struct Renderer {
     held: Held,
     composites: Vec<Arc<Composite>>,
     frame: FrameResources,
-    /// Of the present frame.
-    scenes: Vec<Arc<Scene>>,
     target: Target,
     device: Arc<Device>,
 }
@@ -187,7 +184,6 @@ impl Renderer {
             shown: None,
             held: Held::new(frames_in_flight)?,
             reports: Reports::new(frames_in_flight),
-            scenes: Vec::new(),
             composites: Vec::new(),
             frame: FrameResources::new(device, options, Retired::Kept(Vec::new()), None)?,
             target,
@@ -290,10 +286,7 @@ impl Renderer {
         let Seen { area, size, camera, depth } = self.seen(view)?;
         self.frame.resize(size);
         let (blocks, variant) = self.frame.prepare(&placed, &camera, &without_background(settings), false)?;
-        if !scenes.scenes().map(Arc::as_ptr).eq(self.scenes.iter().map(Arc::as_ptr)) {
-            let old = std::mem::replace(&mut self.scenes, scenes.scenes().cloned().collect());
-            self.held.hold(old);
-        }
+        self.held.hold_scenes(&scenes);
         let composite = self.composite(&variant)?;
         self.view(composite)?;
         let place = layout::Composite { origin: [area.offset.x, area.offset.y], size, depth };

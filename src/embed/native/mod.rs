@@ -97,7 +97,6 @@ use crate::frame::resources::{FrameResources, Retired};
 use crate::frame::targets::check_size;
 use crate::frame::uniforms::Blocks;
 use crate::frame::variant::SceneVariant;
-use crate::scene::Scene;
 use crate::scene::instance::Instances;
 use crate::settings::Settings;
 use crate::settings::splatting::Visibility;
@@ -115,8 +114,6 @@ pub struct Renderer {
     frame: FrameResources,
     reports: Reports,
     held: Held,
-    /// Of the present frame.
-    scenes: Vec<Arc<Scene>>,
     targets: Option<Arc<Targets>>,
     plan: Plan,
     device: Arc<Device>,
@@ -170,7 +167,6 @@ impl Renderer {
             frame: FrameResources::new(device, options, Retired::Kept(Vec::new()), Some(host))?,
             held: Held::new(frames_in_flight)?,
             reports: Reports::new(frames_in_flight),
-            scenes: Vec::new(),
             targets: None,
             plan,
             device: device.clone(),
@@ -378,10 +374,7 @@ impl Renderer {
         });
         let bindings = targets.bindings(&subpasses::inputs(&self.plan));
         self.frame.make(&placed, &frame, targets.size, &bindings)?;
-        if !scenes.scenes().map(Arc::as_ptr).eq(self.scenes.iter().map(Arc::as_ptr)) {
-            let old = std::mem::replace(&mut self.scenes, scenes.scenes().cloned().collect());
-            self.held.hold(old);
-        }
+        self.held.hold_scenes(&scenes);
         Ok((frame.blocks, Numbers { seed, host: layout::Subpass { depth } }, area))
     }
 

@@ -1,4 +1,4 @@
-//! What a frame of a scene costs that stands in many places, and of the same surfels as one scene: CPU time of frames, device time of passes, and
+//! What a frame of many instances of a scene costs, and of the same surfels as one scene: CPU time of frames, device time of passes, and
 //! how often Vulkan allocated for the first of them.
 
 use cpu_time::ProcessTime;
@@ -16,7 +16,7 @@ type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 /// Width and height of the picture, px.
 const SIZE: [u32; 2] = [64; 2];
 const SURFELS: usize = 50;
-const PLACES: usize = 1024;
+const INSTANCES: usize = 1024;
 /// Frames that are rendered, and those before them that do not count.
 const RENDERED: usize = 21;
 const WARM_UP: usize = 3;
@@ -30,10 +30,10 @@ fn main() -> Result<()> {
         }
     };
     println!("{}, {}", device.description().name, device.description().driver);
-    println!("{PLACES} places of {SURFELS} surfels, {}x{} px: median", SIZE[0], SIZE[1]);
+    println!("{INSTANCES} instances of {SURFELS} surfels, {}x{} px: median", SIZE[0], SIZE[1]);
     let surfels = bumpy_sphere::sample(SURFELS as u32, 1);
     let scene = Arc::new(Scene::upload(&device, &surfels)?);
-    let instances: Vec<_> = (0..PLACES).map(|i| Instance::new(&scene, place(i))).collect();
+    let instances: Vec<_> = (0..INSTANCES).map(|i| Instance::new(&scene, place(i))).collect();
     let merged = Scene::upload(&device, &merged(&surfels))?;
     for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
         let name = format!("{rasterizer:?}").to_lowercase();
@@ -89,7 +89,7 @@ fn measure<'a>(
 /// The same surfels as one scene.
 fn merged(surfels: &Surfels) -> Surfels {
     let mut all = Surfels::default();
-    for transform in (0..PLACES).map(place) {
+    for transform in (0..INSTANCES).map(place) {
         let direction = |v: &Vec3| transform.transform_vector3(v.as_dvec3()).as_vec3();
         let position = |v: &Vec3| transform.transform_point3(v.as_dvec3()).as_vec3();
         all.positions.extend(surfels.positions.iter().map(position));
