@@ -12,7 +12,7 @@
 
 #ifdef COMPUTE
 
-#include "lib/fates.glsl"
+#include "lib/cull_reasons.glsl"
 
 layout(local_size_x = 64) in;
 
@@ -164,8 +164,8 @@ vec2 fine_offset(Disc disc, Conic conic, vec2 anchor) {
 
 uint footprint(uint i, out Splat splat) {
     Disc disc;
-    uint fate = disc_of(i, disc);
-    if (fate != DRAWN) return fate;
+    uint reason = disc_of(i, disc);
+    if (reason != DRAWN) return reason;
     float sigma = disc.radius / frame.cutoff;
     vec3 S = sigma * to_pixel(disc.axes[0]);
     vec3 T = sigma * to_pixel(disc.axes[1]);
@@ -209,9 +209,9 @@ void main() {
     uint i = gl_GlobalInvocationID.x;
     if (i >= window.count) return;
     Splat splat = Splat(vec2(0.0), vec2(1.0, 0.0), 1.0, 0.0, 0, 0.0, vec3(0.0), 0.0, vec3(0.0), 0.0);
-    uint fate = footprint(i, splat);
+    uint reason = footprint(i, splat);
     splats[splat_number(i)] = splat;
-    count(fate);
+    count(reason);
 }
 
 #endif

@@ -1,13 +1,13 @@
 // Project: the nearest point of each pixel (marroquim2008 §3.1). A surfel is one point; segments (LINES) and TRIANGLES are several, and meet
-// the surfels that were drawn where those are (DRAWN_POINTS). Surfels that are drawn are only counted (FATES).
+// the surfels that were drawn where those are (DRAWN_POINTS). Surfels that are drawn are only counted (COUNTED).
 #version 450
 #pragma variant LINES
 #pragma variant TRIANGLES
 #pragma variant DRAWN_POINTS
-#pragma variant FATES
+#pragma variant COUNTED
 #extension GL_GOOGLE_include_directive : require
 #ifdef COMPUTE
-#ifndef FATES
+#ifndef COUNTED
 #extension GL_EXT_shader_explicit_arithmetic_types_int64 : require
 #extension GL_EXT_shader_atomic_int64 : require
 #endif
@@ -20,7 +20,7 @@
 #else
 #include "lib/instance.glsl"
 #endif
-#ifndef FATES
+#ifndef COUNTED
 #define NEAREST_ACCESS
 #include "lib/nearest_points.glsl"
 #endif
@@ -33,7 +33,7 @@
 
 layout(local_size_x = 64) in;
 
-#if !defined(FATES) && !defined(DRAWN_POINTS)
+#if !defined(COUNTED) && !defined(DRAWN_POINTS)
 // Number i of the window has a point in a pixel.
 void project(uint i, ivec2 at, float distance) {
     uint pixel = uint(at.y) * uint(frame.viewport.x) + uint(at.x);
@@ -124,10 +124,10 @@ void main() {
     uint i = gl_GlobalInvocationID.x;
     if (i >= window.count) return;
     Point point;
-    uint fate = point_of(i, point);
-    count(fate);
-#ifndef FATES
-    if (fate == DRAWN) project(i, point.at, point.distance);
+    uint reason = point_of(i, point);
+    count(reason);
+#ifndef COUNTED
+    if (reason == DRAWN) project(i, point.at, point.distance);
 #endif
 }
 

@@ -16,7 +16,7 @@
 //! | [`formats`] | PLY, PNG, EXR, cameras | `io` |
 //! | [`estimate`] | normals, radii, creases, sides and lines of points that come without | `estimate` |
 //! | [`scene`] | geometry on the GPU: only the streams that it has, where it is placed | |
-//! | [`verify`] | what pictures are held to: [`reference`](mod@verify::reference), the float64 twin of every pass; [`truth`](verify::truth), exact images; [`metrics`](verify::metrics) of error; [`scenes`](verify::scenes) with exact surfaces; [`yardstick`](verify::yardstick), a native program | each by its name, the last by `bench` |
+//! | [`verify`] | what pictures are held to: [`reference`](mod@verify::reference), the float64 twin of every pass; [`truth`](verify::truth), exact images; [`metrics`](verify::metrics) of error; [`scenes`](verify::scenes) with exact surfaces; [`baseline`](verify::baseline), a native program | each by its name, the last by `bench` |
 //! | [`mod@frame`] | frames: what one needs and no more, one file a pass beside the shader of the same name, recording, reading back | |
 //! | [`capture`] | normalization weights of surfels, from pictures of them | `reference` |
 //! | [`embed`] | the same frames within those of another renderer | |

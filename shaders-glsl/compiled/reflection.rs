@@ -411,10 +411,10 @@ pub static PROJECT_DRAWN_POINTS_COMPUTE: Module = Module {
 };
 
 /// The compute stage of `shaders-glsl/project.glsl`.
-pub static PROJECT_FATES_COMPUTE: Module = Module {
-    name: "project_fates_compute",
+pub static PROJECT_COUNTED_COMPUTE: Module = Module {
+    name: "project_counted_compute",
     stage: ShaderStageFlags::COMPUTE,
-    spirv: spirv!("project_fates_compute.spv"),
+    spirv: spirv!("project_counted_compute.spv"),
     constants: &[0, 1, 2, 12, 13, 37, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62],
     resources: &[(&resource::FRAME, false), (&resource::POSITIONS, false), (&resource::NORMALS, false), (&resource::RADII, false), (&resource::COLOURS, false), (&resource::VIEWS, false), (&resource::ELLIPSE_WORDS, false), (&resource::ELLIPSES, false), (&resource::COUNTS, true)],
     push: size_of::<layout::Window>() as u32,

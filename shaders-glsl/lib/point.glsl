@@ -1,6 +1,6 @@
 // A surfel as a point of one pixel.
 
-#include "lib/fates.glsl"
+#include "lib/cull_reasons.glsl"
 #include "lib/double_float.glsl"
 #include "lib/pixel_row.glsl"
 

@@ -42,7 +42,7 @@ impl<'a> Advice<'a> {
     /// Of the methods' runs that are measured for budgets; none if there are none.
     pub fn of(session: &'a Session) -> Option<Self> {
         let mut columns: Vec<Column<'a>> = Vec::new();
-        let methods = |run: &&Run| run.figure == Figure::Budget && !run.contender.is_yardstick();
+        let methods = |run: &&Run| run.figure == Figure::Budget && !run.contender.is_baseline();
         let runs = || session.runs.iter().filter(methods);
         for run in runs() {
             if !columns.iter().any(|column| column.scene == run.scene && column.size == run.size) {

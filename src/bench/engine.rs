@@ -6,7 +6,7 @@ use crate::geometry::{Camera, Parts, Surfels};
 use crate::picture::Picture;
 use crate::settings::Settings;
 use crate::settings::methods::Method;
-use crate::verify::yardstick::{self, Kind, Yardstick};
+use crate::verify::baseline::{self, Baseline, Kind};
 use crate::vk::{Device, PassTime};
 use crate::{Outputs, Precision, Rasterizer, RenderOptions, Renderer, Scene};
 use std::sync::Arc;
@@ -22,7 +22,7 @@ pub enum Engine {
         precision: Precision,
     },
     /// What a plain program on the CPU makes of the same.
-    Yardstick(Kind),
+    Baseline(Kind),
 }
 
 impl Engine {
@@ -43,8 +43,8 @@ impl Engine {
                 let variant = changes.into_iter().chain(ways).collect::<Vec<_>>().join(", ");
                 Contender { method: method.name.into(), variant }
             }
-            Self::Yardstick(Kind::Splats) => Contender { method: SPLATS.into(), variant: String::new() },
-            Self::Yardstick(Kind::Pixels) => Contender { method: PIXELS.into(), variant: String::new() },
+            Self::Baseline(Kind::Splats) => Contender { method: SPLATS.into(), variant: String::new() },
+            Self::Baseline(Kind::Pixels) => Contender { method: PIXELS.into(), variant: String::new() },
         }
     }
 }
@@ -133,9 +133,9 @@ impl Ready for OnDevice {
     }
 }
 
-/// Surfels in the yardstick.
+/// Surfels in the CPU baseline.
 pub struct OnHost {
-    yardstick: Yardstick,
+    baseline: Baseline,
     kind: Kind,
     size: [u32; 2],
 }
@@ -144,26 +144,26 @@ impl OnHost {
     /// Takes a copy of `surfels`.
     ///
     /// # Errors
-    /// As [`Yardstick::new`].
+    /// As [`Baseline::new`].
     pub fn new(surfels: &Surfels, size: [u32; 2], kind: Kind) -> Result<Self> {
-        Ok(Self { yardstick: Yardstick::new(surfels)?, kind, size })
+        Ok(Self { baseline: Baseline::new(surfels)?, kind, size })
     }
 }
 
 impl Ready for OnHost {
     fn frame(&mut self, camera: &Camera, settings: &Settings, _: bool) -> Result<Vec<PassTime>> {
         let outputs = Outputs::default();
-        Ok(self.yardstick.frame(self.kind, camera, self.size, settings, outputs)?.to_vec())
+        Ok(self.baseline.frame(self.kind, camera, self.size, settings, outputs)?.to_vec())
     }
 
     fn picture(&mut self, camera: &Camera, settings: &Settings) -> Result<Picture> {
         let outputs = Outputs { normal: true, depth: true, id: false };
-        self.yardstick.frame(self.kind, camera, self.size, settings, outputs)?;
-        Ok(self.yardstick.picture())
+        self.baseline.frame(self.kind, camera, self.size, settings, outputs)?;
+        Ok(self.baseline.picture())
     }
 
     fn memory(&self) -> Memory {
-        let yardstick::Memory { scene, splats, targets } = self.yardstick.bytes();
+        let baseline::Memory { scene, splats, targets } = self.baseline.bytes();
         Memory { scene, splats, targets }
     }
 }

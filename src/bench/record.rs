@@ -11,19 +11,19 @@ use serde::{Deserialize, Deserializer, Serialize};
 use std::collections::BTreeMap;
 
 /// Rises whenever files of an older program can no longer be read.
-pub const FORMAT: u32 = 1;
+pub const FORMAT: u32 = 2;
 
-/// Name of the [yardstick](crate::verify::yardstick)'s splats: what times are multiples of.
-pub const SPLATS: &str = "yardstick-splats";
+/// Name of the [baseline](crate::verify::baseline)'s splats: what times are multiples of.
+pub const SPLATS: &str = "baseline-splats";
 /// Name of its one pixel a point.
-pub const PIXELS: &str = "yardstick-pixels";
+pub const PIXELS: &str = "baseline-pixels";
 
 /// Everything that a page or a table is made of: one session, or several that are shown together.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Results {
     /// [`FORMAT`] of the program that wrote it.
     pub format: u32,
-    /// Each by itself: times of different sessions cannot be compared, except as multiples of the yardstick.
+    /// Each by itself: times of different sessions cannot be compared, except as multiples of the CPU baseline.
     pub sessions: Vec<Session>,
 }
 
@@ -164,7 +164,7 @@ pub enum Figure {
     /// Time against the number of discs over a point of the surface.
     ScalingOverlap,
     /// Multiples of what a plain program on the CPU takes.
-    Yardstick,
+    Baseline,
     /// What the papers' figures show, both sides of each.
     Effects,
     /// What the papers say that something costs: pairs of runs.
@@ -251,7 +251,7 @@ pub struct Time {
     pub passes: Vec<Pass>,
     /// All passes together, frame by frame, ms.
     pub device: Option<Statistics>,
-    /// `wall.median` as a multiple of the yardstick's for the same scene, points and size with the shipped settings, measured in the same
+    /// `wall.median` as a multiple of the CPU baseline's for the same scene, points and size with the shipped settings, measured in the same
     /// session.
     pub multiple: Option<f64>,
 }
@@ -469,8 +469,8 @@ impl Agreement {
 }
 
 impl Contender {
-    /// Whether it is the [yardstick](crate::verify::yardstick): what methods are measured by, and none itself.
-    pub fn is_yardstick(&self) -> bool {
+    /// Whether it is the [baseline](crate::verify::baseline): what methods are measured by, and none itself.
+    pub fn is_baseline(&self) -> bool {
         [SPLATS, PIXELS].contains(&self.method.as_str())
     }
 

@@ -191,7 +191,7 @@ impl Runner {
             Engine::Splatting { rasterizer, precision } => {
                 Ok(Box::new(OnDevice::new(self.device()?, model, size, rasterizer, precision)?))
             }
-            Engine::Yardstick(kind) => Ok(Box::new(OnHost::new(&model.surfels, size, kind)?)),
+            Engine::Baseline(kind) => Ok(Box::new(OnHost::new(&model.surfels, size, kind)?)),
         }
     }
 

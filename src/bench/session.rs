@@ -88,7 +88,7 @@ fn hard(wanted: &Wanted, progress: &dyn Progress) -> Result<Vec<Sweep>> {
     hard::run(wanted.device.as_ref().ok_or_else(none)?, &hard::Options::default(), progress)
 }
 
-/// Tells times as multiples of what the yardstick takes for as many points and pixels with the shipped settings. Of several that of the
+/// Tells times as multiples of what the CPU baseline takes for as many points and pixels with the shipped settings. Of several that of the
 /// same suite and figure counts, which ran at the same time.
 fn compare_times(runs: &mut [Run]) {
     let shipped = |run: &&Run| {
@@ -99,10 +99,10 @@ fn compare_times(runs: &mut [Run]) {
             && own.cull == cull
             && own.alpha == alpha
     };
-    let yardsticks = runs.iter().filter(|run| run.contender.method == SPLATS).filter(shipped);
-    let yardsticks: Vec<(Run, f64)> = yardsticks.filter_map(|run| Some((run.clone(), run.ms()?))).collect();
+    let baselines = runs.iter().filter(|run| run.contender.method == SPLATS).filter(shipped);
+    let baselines: Vec<(Run, f64)> = baselines.filter_map(|run| Some((run.clone(), run.ms()?))).collect();
     for run in runs {
-        let alike = yardsticks.iter().filter(|(other, _)| {
+        let alike = baselines.iter().filter(|(other, _)| {
             let what = |run: &Run| (run.points, run.size, run.overlap);
             run.scene == other.scene && what(run) == what(other)
         });

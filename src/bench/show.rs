@@ -54,7 +54,7 @@ pub fn ms(value: f64) -> String {
     significant(value, 3)
 }
 
-/// A multiple of the yardstick.
+/// A multiple of the CPU baseline.
 pub fn multiple(value: f64) -> String {
     format!("{}×", significant(value, 2))
 }

@@ -136,7 +136,7 @@ fn quoted(word: &str) -> String {
     }
 }
 
-/// None, which is said, where there is none: the yardstick needs no device.
+/// None, which is said, where there is none: the CPU baseline needs no device.
 fn device(args: &Bench) -> Result<Option<Arc<Device>>> {
     match Device::open(&vulkan::options(&args.device)?) {
         Ok(device) => Ok(Some(device)),

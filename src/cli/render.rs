@@ -38,7 +38,7 @@ pub struct Task<'a> {
 pub struct Outcome {
     /// The picture.
     pub picture: Picture,
-    /// Surfels by their fate, if they were counted.
+    /// Surfels by cull reason, if they were counted.
     pub counts: Option<SplatCounts>,
     /// How long it took.
     pub times: Times,

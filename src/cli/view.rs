@@ -75,7 +75,7 @@ fn loader(args: &View, up: DVec3) -> Result<viewer::Load> {
             let about = About { names: names.iter().map(shown).collect(), ..Default::default() };
             Ok(Loaded { colour_by: colour_by.clone(), about, up, ..Loaded::new(model, method) })
         };
-        let listener = WithSketch { window, loaded: &loaded, quiet: reader.quiet };
+        let listener = WithPreview { window, loaded: &loaded, quiet: reader.quiet };
         let inputs = load(names, &reader.options, &listener)?;
         let whole = loaded(inputs.model)?;
         // A built-in scene has no properties, and no other input beside one.
@@ -105,14 +105,14 @@ fn shown(name: &OsString) -> String {
     name.to_string_lossy().into_owned()
 }
 
-/// The window that waits, which is shown a sketch.
-struct WithSketch<'a> {
+/// The window that waits, which is shown a preview.
+struct WithPreview<'a> {
     window: &'a dyn viewer::Loading,
     loaded: &'a (dyn Fn(Model) -> Result<Loaded> + Sync),
     quiet: bool,
 }
 
-impl Progress for WithSketch<'_> {
+impl Progress for WithPreview<'_> {
     fn at(&self, stage: &'static str, done: u64, total: u64) {
         self.window.at(stage, done, total);
     }
@@ -122,20 +122,20 @@ impl Progress for WithSketch<'_> {
     }
 }
 
-impl Listener for WithSketch<'_> {
+impl Listener for WithPreview<'_> {
     fn note(&self, text: &str) {
         if !self.quiet {
             progress::say(text);
         }
     }
 
-    fn wants_sketch(&self) -> bool {
+    fn wants_preview(&self) -> bool {
         true
     }
 
-    /// What is wrong with a sketch is wrong with all of it, which says so.
-    fn sketch(&self, model: Model) {
-        (self.loaded)(model).into_iter().for_each(|sketch| self.window.sketch(sketch));
+    /// What is wrong with a preview is wrong with all of it, which says so.
+    fn preview(&self, model: Model) {
+        (self.loaded)(model).into_iter().for_each(|preview| self.window.preview(preview));
     }
 }
 
@@ -172,7 +172,7 @@ mod tests {
     /// Keeps what it is shown, and gives up where it is told to.
     #[derive(Default)]
     struct Window {
-        sketches: Mutex<Vec<usize>>,
+        previews: Mutex<Vec<usize>>,
         /// The stage at which it gives up.
         until: Option<&'static str>,
         stages: Mutex<Vec<&'static str>>,
@@ -189,8 +189,8 @@ mod tests {
     }
 
     impl viewer::Loading for Window {
-        fn sketch(&self, loaded: viewer::Loaded) {
-            self.sketches.lock().unwrap().push(loaded.model.surfels.len());
+        fn preview(&self, loaded: viewer::Loaded) {
+            self.previews.lock().unwrap().push(loaded.model.surfels.len());
         }
     }
 
@@ -224,13 +224,13 @@ mod tests {
     }
 
     #[test]
-    fn many_points_are_sketched_and_few_are_not() {
+    fn many_points_are_previewed_and_few_are_not() {
         let window = Window::default();
         let all = loaded("scene:sphere?points=120000", &window).unwrap();
-        assert_eq!((all.model.surfels.len(), window.sketches.into_inner().unwrap()), (120_000, vec![20_000]));
+        assert_eq!((all.model.surfels.len(), window.previews.into_inner().unwrap()), (120_000, vec![20_000]));
         let window = Window::default();
         loaded("scene:sphere?points=50000", &window).unwrap();
-        assert!(window.sketches.into_inner().unwrap().is_empty());
+        assert!(window.previews.into_inner().unwrap().is_empty());
     }
 
     #[test]

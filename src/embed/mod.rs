@@ -6,7 +6,7 @@
 //!               Renderer::draw:    records a draw of the picture with its depth, inside a render pass of the host
 //! ```
 //!
-//! Surfels may also stay in buffers of the host, which a simulation of its own writes every frame: [`Scene::from_buffers`] reads them in place.
+//! Surfels may also stay in buffers of the host, which a simulation of its own writes every frame: [`Scene::from_buffers`](crate::Scene::from_buffers) reads them in place.
 //! Those that were uploaded get new values by [`update`].
 //!
 //! Nothing is submitted, waited for or stalled: the host submits what is recorded, to one queue. What the engine makes it also destroys, once
@@ -82,11 +82,11 @@
 mod attachments;
 mod buffers;
 mod composite;
+mod deferred_destruction;
 mod formats;
-mod held;
 pub mod native;
 #[cfg(feature = "window")]
-mod pane;
+mod offscreen_view;
 mod reports;
 mod target;
 mod upload;
@@ -99,7 +99,7 @@ pub use crate::vk::{
 };
 pub use buffers::{Buffers, READ_ACCESS, READ_STAGES, Radii, Values, update};
 #[cfg(feature = "window")]
-pub use pane::Pane;
+pub use offscreen_view::OffscreenView;
 pub use reports::Measured;
 use reports::Reports;
 pub use target::{Pass, Target};
@@ -120,7 +120,7 @@ use crate::vk::shaders::layout;
 use crate::vk::{DescriptorSet, Device, Draws, HostPass, Recorder};
 use ash::vk;
 use composite::{Composite, CompositeKind};
-use held::Held;
+use deferred_destruction::DeferredDestruction;
 use std::sync::Arc;
 
 /// What stays the same from frame to frame.
@@ -143,7 +143,7 @@ pub struct Renderer {
     viewed: Option<Viewed>,
     shown: Option<(Shown, HostPass)>,
     reports: Reports,
-    held: Held,
+    deferred: DeferredDestruction,
     composites: Vec<Arc<Composite>>,
     frame: FrameResources,
     target: Target,
@@ -182,7 +182,7 @@ impl Renderer {
         Ok(Self {
             viewed: None,
             shown: None,
-            held: Held::new(frames_in_flight)?,
+            deferred: DeferredDestruction::new(frames_in_flight)?,
             reports: Reports::new(frames_in_flight),
             composites: Vec::new(),
             frame: FrameResources::new(device, options, Retired::Kept(Vec::new()), None)?,
@@ -208,11 +208,11 @@ impl Renderer {
     ) -> Result<()> {
         let shown = self.make(scenes.into(), view, settings);
         // Also after an error: what it took the place of may be under way.
-        self.held.extend(self.frame.outgoing());
+        self.deferred.extend(self.frame.take_deferred());
         let (blocks, shown) = shown?;
         let scenes: Vec<_> = self.frame.scenes().collect();
         self.reports.begin(&self.device, &scenes)?;
-        self.held.advance();
+        self.deferred.advance();
         let (timestamps, tail) = self.reports.present();
         // SAFETY: by the caller; the reports have one for each frame under way.
         let mut rec = unsafe { Recorder::of_host_timed(&self.device, cmd, timestamps) };
@@ -286,7 +286,7 @@ impl Renderer {
         let Seen { area, size, camera, depth } = self.seen(view)?;
         self.frame.resize(size);
         let (blocks, variant) = self.frame.prepare(&placed, &camera, &without_background(settings), false)?;
-        self.held.hold_scenes(&scenes);
+        self.deferred.keep_scenes(&scenes);
         let composite = self.composite(&variant)?;
         self.view(composite)?;
         let place = layout::Composite { origin: [area.offset.x, area.offset.y], size, depth };
@@ -308,7 +308,7 @@ impl Renderer {
         if !self.viewed.as_ref().is_some_and(same) {
             let set = composite.view(&self.device, &present.targets)?;
             let old = self.viewed.replace(Viewed { present: present.id, set, composite });
-            self.held.hold(old);
+            self.deferred.defer(old);
         }
         Ok(())
     }

@@ -14,7 +14,7 @@ pub struct Measured {
     /// those within a render pass of the host, which are timed from when the work before them is done, and have no times in a frame that was
     /// prepared and not drawn.
     pub times: bool,
-    /// Surfels by their fate.
+    /// Surfels by cull reason.
     pub counts: bool,
 }
 

@@ -30,7 +30,7 @@ pub struct RenderOptions {
     pub rasterizer: Option<Rasterizer>,
     /// Time the passes; see also [`Renderer::profile`].
     pub profile: bool,
-    /// Count the splats by their fate.
+    /// Count the splats by cull reason.
     pub count: bool,
 }
 
@@ -40,11 +40,11 @@ pub struct RenderOptions {
 pub struct FrameReport {
     /// GPU time by pass, if the frame was profiled and the device has timestamps.
     pub pass_times: Vec<PassTime>,
-    /// Surfels by their fate, if they were counted.
+    /// Surfels by cull reason, if they were counted.
     pub counts: Option<SplatCounts>,
 }
 
-/// Surfels by their fate in a frame.
+/// Surfels by cull reason in a frame.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SplatCounts {
     /// Drawn.

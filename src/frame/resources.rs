@@ -6,7 +6,7 @@ use super::pipelines::{Host, Pipelines};
 use super::rasterizer::width_of_blended_sums;
 use super::recording::{Frame, Prepared};
 use super::renderer::RenderOptions;
-use super::residents::Residents;
+use super::scene_cache::SceneCache;
 use super::scene_resources::{Needs, Run, SceneResources};
 use super::targets::{HostBindings, RenderTargets, check_size};
 use super::uniforms::{self, Blocks};
@@ -29,8 +29,8 @@ pub struct FrameResources {
     present: Option<Present>,
     /// What was before it: who switches to and fro, as in progressive rendering, makes nothing.
     previous: Option<Present>,
-    scenes: Residents,
-    /// Of each place of the present frame: its scene among the residents, and which of that one's places it is.
+    scenes: SceneCache,
+    /// Of each place of the present frame: its scene in the cache, and which of that one's places it is.
     places: Vec<[usize; 2]>,
     pipelines: Pipelines,
     view: Arc<Buffer>,
@@ -41,16 +41,16 @@ pub struct FrameResources {
     made: u64,
 }
 
-/// What happens to what frames no longer need.
+/// What becomes of resources that frames no longer use.
 pub enum Retired {
-    /// It goes at once: every frame is waited for.
+    /// They are destroyed at once: every frame is waited for.
     Dropped,
-    /// It is kept for who knows when the GPU is done with it.
-    Kept(Vec<Outgoing>),
+    /// They are listed for deferred destruction.
+    Kept(Vec<Deferred>),
 }
 
-/// What frames no longer need, kept for what it holds.
-pub type Outgoing = Box<dyn Any + Send + Sync>;
+/// A resource that no later frame uses, kept until the GPU is done with it.
+pub type Deferred = Box<dyn Any + Send + Sync>;
 
 /// Targets of a variant, and its passes.
 pub struct Present {
@@ -75,9 +75,9 @@ struct ViewSet {
 }
 
 impl Retired {
-    fn take<T: Any + Send + Sync>(&mut self, outgoing: Option<T>) {
-        if let (Self::Kept(list), Some(outgoing)) = (self, outgoing) {
-            list.push(Box::new(outgoing));
+    fn take<T: Any + Send + Sync>(&mut self, deferred: Option<T>) {
+        if let (Self::Kept(list), Some(deferred)) = (self, deferred) {
+            list.push(Box::new(deferred));
         }
     }
 }
@@ -94,7 +94,7 @@ impl FrameResources {
         Ok(Self {
             present: None,
             previous: None,
-            scenes: Residents::default(),
+            scenes: SceneCache::default(),
             places: Vec::new(),
             pipelines: Pipelines::new(host),
             view: Arc::new(Buffer::uniform(device, "frame", uniforms::BYTES)?),
@@ -131,8 +131,8 @@ impl FrameResources {
         &self.places
     }
 
-    /// What went since this was last asked.
-    pub fn outgoing(&mut self) -> Vec<Outgoing> {
+    /// The resources that frames no longer use since the last call.
+    pub fn take_deferred(&mut self) -> Vec<Deferred> {
         match &mut self.retired {
             Retired::Dropped => Vec::new(),
             Retired::Kept(list) => std::mem::take(list),
@@ -304,11 +304,11 @@ impl FrameResources {
             let variant = &frame.scenes[first_of[scene]];
             SceneResources::new(device, list[scene], variant, needs(scene), view)
         };
-        let turned = scenes.turn(&list, fits, make, |gone| retired.take(Some(gone)));
-        if turned.is_err() {
+        let updated = scenes.update(&list, fits, make, |gone| retired.take(Some(gone)));
+        if updated.is_err() {
             self.places.clear();
         }
-        turned?;
+        updated?;
         for ((made, scene), instances) in scenes.present_mut().zip(list).zip(counts) {
             made.show(scene.count(), instances);
             if variant.count {

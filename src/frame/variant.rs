@@ -33,7 +33,7 @@ pub struct Variant {
     pub shade_splats: bool,
     /// Only axes that are shorter than the low-pass filter are widened by it.
     pub widen_small: bool,
-    /// Splats are counted by their fate.
+    /// Splats are counted by cull reason.
     pub count: bool,
     /// Normals are summed.
     pub normals: bool,

@@ -43,22 +43,22 @@ pub trait Listener: Progress {
     /// A line on what was made of an input.
     fn note(&self, _text: &str) {}
 
-    /// Whether a [sketch](Self::sketch) is of use.
-    fn wants_sketch(&self) -> bool {
+    /// Whether a [preview](Self::preview) is of use.
+    fn wants_preview(&self) -> bool {
         false
     }
 
     /// Some of many points, as soon as they are read.
-    fn sketch(&self, _model: Model) {}
+    fn preview(&self, _model: Model) {}
 }
 
 /// Nobody is told.
 impl Listener for () {}
 
-/// Points of a sketch.
-const SKETCH: usize = 20_000;
-/// How many times as many points have a sketch: fewer are whole as soon.
-const WORTH_A_SKETCH: usize = 5;
+/// Points of a preview.
+const PREVIEW: usize = 20_000;
+/// How many times as many points have a preview: fewer are whole as soon.
+const WORTH_A_PREVIEW: usize = 5;
 
 /// What inputs hold together.
 #[derive(Clone, Debug)]
@@ -129,8 +129,8 @@ impl Load<'_> {
             let mut clouds: Vec<_> = parts.iter_mut().map(|part| &mut part.cloud).collect();
             colouring.colour_clouds(&mut clouds, self.listener)
         });
-        if self.listener.wants_sketch() {
-            self.sketch(&parts).into_iter().for_each(|sketch| self.listener.sketch(sketch));
+        if self.listener.wants_preview() {
+            self.preview(&parts).into_iter().for_each(|preview| self.listener.preview(preview));
         }
         let (model, estimated) = self.merge(parts)?;
         skipped.sort();
@@ -213,15 +213,15 @@ impl Load<'_> {
     }
 
     /// Some of the points, with normals and radii of their own, if there are many; none where more than points is drawn.
-    fn sketch(&self, parts: &[Part]) -> Option<Model> {
+    fn preview(&self, parts: &[Part]) -> Option<Model> {
         let all: usize = parts.iter().map(|part| part.cloud.len()).sum();
         let faces = |part: &Part| {
             part.cloud.has_lines() || (part.drawn || self.draws_faces()) && !part.cloud.triangles.is_empty()
         };
-        if all < WORTH_A_SKETCH * SKETCH || parts.iter().any(faces) {
+        if all < WORTH_A_PREVIEW * PREVIEW || parts.iter().any(faces) {
             return None;
         }
-        let some = |part: &Part| part.cloud.some((part.cloud.len() * SKETCH).div_ceil(all));
+        let some = |part: &Part| part.cloud.some((part.cloud.len() * PREVIEW).div_ceil(all));
         let clouds = parts.iter().map(some).collect();
         let cloud = Cloud::merge(clouds, Settings::default().lighting.albedo).ok()?;
         let how = Estimate { outliers: None, sharp: None, ..self.options.estimate.clone() };

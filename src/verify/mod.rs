@@ -1,5 +1,7 @@
 //! What pictures are held to: the float64 twin of every pass, exact images, measures of error, scenes with exact surfaces, and a native program.
 
+#[cfg(feature = "bench")]
+pub mod baseline;
 #[cfg(feature = "metrics")]
 pub mod metrics;
 #[cfg(feature = "reference")]
@@ -8,5 +10,3 @@ pub mod reference;
 pub mod scenes;
 #[cfg(feature = "truth")]
 pub mod truth;
-#[cfg(feature = "bench")]
-pub mod yardstick;

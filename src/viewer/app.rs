@@ -145,10 +145,10 @@ impl ApplicationHandler<News> for App {
         let tell = self.options.events;
         match what {
             What::At(stage, part) => self.told.loading = Some((stage, part as f32 / 1000.0)),
-            What::Sketch(scene, method, source) => {
-                tell.tell(&Event::Sketch { surfels: scene.count() });
+            What::Preview(scene, method, source) => {
+                tell.tell(&Event::Preview { surfels: scene.count() });
                 if let Err(error) =
-                    self.show(scene, (method, *source), Of { load, sketch: true, again: false })
+                    self.show(scene, (method, *source), Of { load, preview: true, again: false })
                 {
                     return self.fail(events, error);
                 }
@@ -158,7 +158,7 @@ impl ApplicationHandler<News> for App {
                 (self.told.loading, self.told.wrong) = (None, None);
                 self.inputs = self.pending.take().unwrap_or(std::mem::take(&mut self.inputs));
                 self.tried = None;
-                let of = Of { load, sketch: false, again: self.loader.is_again() };
+                let of = Of { load, preview: false, again: self.loader.is_again() };
                 if let Err(error) = self.show(scene, (method, *source), of) {
                     return self.fail(events, error);
                 }
@@ -174,7 +174,7 @@ impl ApplicationHandler<News> for App {
             What::Failed(error) => {
                 (self.told.loading, self.next) = (None, None);
                 self.tried = self.pending.take();
-                self.state.leave_sketch();
+                self.state.leave_preview();
                 self.wrong(&error);
             }
         }
@@ -360,7 +360,7 @@ impl App {
             (self.pending, self.tried, self.next) = (None, None, None);
             self.watch.iter().for_each(|watch| watch.look_at(&self.inputs));
             self.options.events.tell(&Event::Cancelled);
-            self.state.leave_sketch();
+            self.state.leave_preview();
             self.changed();
         }
         cancelled

@@ -16,7 +16,7 @@ pub enum Event<'a> {
     /// All inputs are read, and what they lacked is estimated.
     Loaded { surfels: u64 },
     /// Some of the points are on the device, and are shown until all are.
-    Sketch { surfels: u64 },
+    Preview { surfels: u64 },
     /// A scene is on the device, and is shown from now on.
     Ready { surfels: u64 },
     /// What is being loaded is given up.
@@ -49,7 +49,7 @@ pub struct Shown<'a> {
     /// How many surfels there were.
     pub surfels: u64,
     /// Whether they are some of what is being loaded.
-    pub sketch: bool,
+    pub preview: bool,
     /// Whether the camera moved.
     pub moving: bool,
     /// Whether it was drawn anew, and not there already.

@@ -1,4 +1,4 @@
-//! Loading, while the window is there: a sketch of many points first, then all of them, then fewer of them for while the hands move.
+//! Loading, while the window is there: a preview of many points first, then all of them, then fewer of them for while the hands move.
 
 use super::Loaded;
 use super::events::{Event, Events};
@@ -25,13 +25,13 @@ pub const LEAST_SURFELS: usize = 2500;
 /// Part of all surfels that coarser ones still are made of.
 const ENOUGH: usize = 4;
 
-/// Gives the scene that inputs make, shows a sketch of it before where that takes long, and tells how far it has come.
+/// Gives the scene that inputs make, shows a preview of it before where that takes long, and tells how far it has come.
 pub type Load = Arc<dyn Fn(&[OsString], &dyn Loading) -> Result<Loaded> + Send + Sync>;
 
 /// Whoever waits for a scene.
 pub trait Loading: Progress {
     /// Shows some of its points until all are there.
-    fn sketch(&self, loaded: Loaded);
+    fn preview(&self, loaded: Loaded);
 }
 
 /// What the window is told.
@@ -49,7 +49,7 @@ pub enum What {
     /// So much of a stage is done, thousandths.
     At(&'static str, u64),
     /// Some of the points are on the device.
-    Sketch(Arc<Scene>, Method, Box<Source>),
+    Preview(Arc<Scene>, Method, Box<Source>),
     /// The scene is on the device.
     Ready(Arc<Scene>, Method, Box<Source>),
     /// And so are fewer and larger surfels of it, ever fewer.
@@ -272,12 +272,12 @@ impl Progress for Told {
 }
 
 impl Loading for Told {
-    fn sketch(&self, loaded: Loaded) {
+    fn preview(&self, loaded: Loaded) {
         // Until all of it is there, its earlier state stays.
         let Some(device) = self.device().filter(|_| !self.again) else { return };
         // What is wrong with it is wrong with the whole scene, which says so.
         if let Ok((scene, method, source)) = put(loaded, device) {
-            self.send(What::Sketch(scene, method, source));
+            self.send(What::Preview(scene, method, source));
         }
     }
 }
@@ -327,19 +327,19 @@ mod tests {
     }
 
     #[test]
-    fn a_sketch_comes_first_and_fewer_surfels_last() {
-        let Some(device) = device("a_sketch_comes_first_and_fewer_surfels_last") else { return };
+    fn a_preview_comes_first_and_fewer_surfels_last() {
+        let Some(device) = device("a_preview_comes_first_and_fewer_surfels_last") else { return };
         let (mut loader, news) = loader(|_, window| {
-            window.sketch(loaded(100)?);
+            window.preview(loaded(100)?);
             loaded(30_000)
         });
         loader.start(Vec::new());
         loader.use_device(&device);
         let all = until_coarser(&loader, &news);
-        let [What::Sketch(sketch, ..), What::Ready(whole, ..), What::Coarser(coarser)] = &all[..] else {
+        let [What::Preview(preview, ..), What::Ready(whole, ..), What::Coarser(coarser)] = &all[..] else {
             panic!("{} news", all.len())
         };
-        assert_eq!((sketch.count(), whole.count()), (100, 30_000));
+        assert_eq!((preview.count(), whole.count()), (100, 30_000));
         let counts: Vec<u64> = coarser.iter().map(|scene| scene.count()).collect();
         assert!(counts.windows(2).all(|pair| pair[1] < pair[0]), "{counts:?}");
         let last = counts[counts.len() - 1] as usize;

@@ -81,7 +81,7 @@ pub struct Loaded {
     pub model: Model,
     /// The built-in scene that it is, if its surface is known exactly and nothing of it is changed.
     pub surface: Option<String>,
-    /// What else is known of its points; of a sketch nothing is.
+    /// What else is known of its points; of a preview nothing is.
     pub numbers: Option<Numbers>,
     /// What its points are coloured by at first, if not by their own colours.
     pub colour_by: Option<ColourBy>,

@@ -1,7 +1,7 @@
 //! A picture of a scene before the window has it. It is drawn anew only where something else is to be seen.
 
 use std::sync::Arc;
-use surfel::embed::Pane;
+use surfel::embed::OffscreenView;
 use surfel::geometry::{Camera, ValueRange};
 use surfel::settings::Shading;
 use surfel::vk::{Presented, Presenter};
@@ -9,7 +9,7 @@ use surfel::{FrameReport, Rasterizer, Result, Scene, Settings};
 
 /// One picture of the window.
 pub struct Side {
-    pane: Pane,
+    view: OffscreenView,
     /// What it shows.
     drawn: Option<Seen>,
     /// Whether things had to be made for that.
@@ -47,7 +47,7 @@ impl Seen {
 
 impl Side {
     pub fn new(presenter: &Presenter, rasterizer: Option<Rasterizer>) -> Result<Self> {
-        Ok(Self { pane: Pane::new(presenter, rasterizer)?, drawn: None, made: false })
+        Ok(Self { view: OffscreenView::new(presenter, rasterizer)?, drawn: None, made: false })
     }
 
     /// Whether things had to be made for the last picture: it was of another size or scene than the one before, or otherwise rendered.
@@ -66,34 +66,34 @@ impl Side {
         self.made = !seen.zip(drawn.as_ref()).is_some_and(|(seen, drawn)| seen.needs_what(drawn));
         let size = seen.map_or(window.size(), |seen| seen.size);
         let shown = seen.map(|seen| (&seen.scene, &seen.camera, &seen.settings));
-        self.pane.draw(window, size, shown, seen.is_some_and(|seen| seen.measured))?;
+        self.view.draw(window, size, shown, seen.is_some_and(|seen| seen.measured))?;
         self.drawn = seen.cloned();
         Ok(seen.is_some())
     }
 
     /// Whether there is nothing to show, not even a background.
     pub fn is_empty(&self) -> bool {
-        self.pane.is_empty()
+        self.view.is_empty()
     }
 
     /// Shows the columns between two parts of the width in an area of the window, px from its top left.
     pub fn show(&self, window: &Presented, area: [u32; 2], columns: [f64; 2]) -> Result<()> {
-        self.pane.show(window, area, columns)
+        self.view.show(window, area, columns)
     }
 
     /// What numbers the last picture shows, if it shows some, and the least and the greatest of them.
     pub fn range(&self, presenter: &Presenter) -> Result<Option<(Shading, ValueRange)>> {
         let shading = self.drawn.as_ref().map(|drawn| drawn.settings.shading);
-        Ok(shading.zip(self.pane.range(presenter)?))
+        Ok(shading.zip(self.view.range(presenter)?))
     }
 
     /// What the last picture tells, once; `None` where it was not measured.
     pub fn report(&mut self, presenter: &Presenter) -> Result<Option<FrameReport>> {
-        self.pane.report(presenter)
+        self.view.report(presenter)
     }
 
     /// Width and height, and the depths row by row, of the last picture.
     pub fn depths(&self, presenter: &Presenter) -> Result<Option<([u32; 2], &[u8])>> {
-        self.pane.depths(presenter)
+        self.view.depths(presenter)
     }
 }

@@ -17,7 +17,7 @@ pub struct Source {
     model: Arc<Model>,
     /// The built-in scene that it is, if that is known exactly.
     surface: Option<String>,
-    /// What else is known of its points; of a sketch nothing is.
+    /// What else is known of its points; of a preview nothing is.
     numbers: Option<Numbers>,
     /// Those that were read, of surfels and of vertices, each with its number among the names.
     read: Vec<(usize, [Vec<f32>; 2])>,
@@ -278,7 +278,7 @@ impl Source {
         (self.changed.scale().is_some() && usual != Some(range)).then_some(range)
     }
 
-    /// Changes as much as another state of the scene was changed. Numbers of the file are read anew; where it has none of the name, as a sketch
+    /// Changes as much as another state of the scene was changed. Numbers of the file are read anew; where it has none of the name, as a preview
     /// has not, colours are the points' own.
     pub fn change_as(&mut self, Wish { changed, number, range }: &Wish) {
         self.changed = Changed { by: By::Own, ..*changed };

@@ -49,14 +49,14 @@ pub struct Of {
     /// Number of the load.
     pub load: u64,
     /// Whether it is some of the points, until all are there.
-    pub sketch: bool,
+    pub preview: bool,
     /// Whether it is another state of what is shown, which is looked at as that is.
     pub again: bool,
 }
 
 impl Of {
-    fn sketch_of(self) -> Self {
-        Self { sketch: true, ..self }
+    fn preview_of(self) -> Self {
+        Self { preview: true, ..self }
     }
 }
 
@@ -65,7 +65,7 @@ struct Shown {
     of: Of,
     /// Ever fewer and larger surfels of it.
     coarser: Vec<Arc<Scene>>,
-    /// What is looked at again where a sketch is all that ever comes.
+    /// What is looked at again where a preview is all that ever comes.
     before: Option<Box<Shown>>,
     source: Source,
     orbit: Orbit,
@@ -96,7 +96,7 @@ impl State {
         }
     }
 
-    /// Looks at the scene of a load from the front; or at all of what was a sketch as at that, and so at what is loaded again.
+    /// Looks at the scene of a load from the front; or at all of what was a preview as at that, and so at what is loaded again.
     pub fn show(&mut self, scene: Arc<Scene>, (method, mut source): (Method, Source), of: Of) {
         let framed = Orbit::framing(&scene.bounds(), self.up, &self.lens);
         let (coarser, given) = (Vec::new(), None);
@@ -106,26 +106,27 @@ impl State {
         });
         let known = left.or(self.remembered.take_if(|known| suits(&scene, &known.1)));
         let (method, settings) = known.unwrap_or_else(|| (method, (self.look)(&method)));
-        if !of.sketch {
+        if !of.preview {
             self.remembered = None;
         }
         self.shown = Some(match self.shown.take() {
-            Some(sketch) if sketch.of == of.sketch_of() => {
-                let moved = sketch.given.is_some() || sketch.orbit != sketch.framed;
-                let orbit = if moved { sketch.orbit } else { framed };
-                source.change_as(&sketch.source.wish());
-                let (method, settings) = sketch.seen_by(&scene, (method, settings));
-                Shown { scene, source, of, orbit, framed, coarser, before: None, method, settings, ..sketch }
+            Some(preview) if preview.of == of.preview_of() => {
+                let moved = preview.given.is_some() || preview.orbit != preview.framed;
+                let orbit = if moved { preview.orbit } else { framed };
+                source.change_as(&preview.source.wish());
+                let (method, settings) = preview.seen_by(&scene, (method, settings));
+                Shown { scene, source, of, orbit, framed, coarser, before: None, method, settings, ..preview }
             }
-            Some(shown) if of.again && !shown.of.sketch => {
+            Some(shown) if of.again && !shown.of.preview => {
                 source.change_as(&shown.source.wish());
                 let (method, settings) = shown.seen_by(&scene, (method, settings));
                 Shown { scene, source, of, coarser, method, settings, ..shown }
             }
             before => {
                 // Of one that is not whole there was something before.
-                let whole = |shown: Shown| if shown.of.sketch { shown.before } else { Some(Box::new(shown)) };
-                let before = before.filter(|_| of.sketch).and_then(whole);
+                let whole =
+                    |shown: Shown| if shown.of.preview { shown.before } else { Some(Box::new(shown)) };
+                let before = before.filter(|_| of.preview).and_then(whole);
                 Shown { scene, source, of, coarser, before, orbit: framed, framed, given, method, settings }
             }
         });
@@ -153,14 +154,14 @@ impl State {
 
     /// What coarser scenes are to be made of, if there are none of what is shown whole.
     pub fn without_coarser(&self) -> Option<Source> {
-        let shown = self.shown.as_ref().filter(|shown| !shown.of.sketch && shown.coarser.is_empty())?;
+        let shown = self.shown.as_ref().filter(|shown| !shown.of.preview && shown.coarser.is_empty())?;
         Some(shown.source.snapshot())
     }
 
-    /// Whether hands have moved the camera before a sketch of this load.
-    pub fn has_moved_sketch(&self, load: u64) -> bool {
-        let sketch = self.shown.as_ref().filter(|shown| (shown.of.load, shown.of.sketch) == (load, true));
-        sketch.is_some_and(|shown| shown.given(&self.lens).is_none())
+    /// Whether hands have moved the camera before a preview of this load.
+    pub fn has_moved_preview(&self, load: u64) -> bool {
+        let preview = self.shown.as_ref().filter(|shown| (shown.of.load, shown.of.preview) == (load, true));
+        preview.is_some_and(|shown| shown.given(&self.lens).is_none())
     }
 
     /// Leaves the scene, with all that the device has of it; the next one, if it is the `same`, is shown as this one was. From where that was seen.
@@ -179,9 +180,9 @@ impl State {
         shown.given = Some((shown.orbit, *lens, pose));
     }
 
-    /// Looks at what was before the sketch, if that is what is looked at.
-    pub fn leave_sketch(&mut self) {
-        if let Some(Shown { before, .. }) = self.shown.take_if(|shown| shown.of.sketch) {
+    /// Looks at what was before the preview, if that is what is looked at.
+    pub fn leave_preview(&mut self) {
+        if let Some(Shown { before, .. }) = self.shown.take_if(|shown| shown.of.preview) {
             self.shown = before.map(|before| *before);
         }
     }
@@ -212,12 +213,12 @@ impl State {
 
     /// Whether a whole scene is shown.
     pub fn is_whole(&self) -> bool {
-        self.shown.as_ref().is_some_and(|shown| !shown.of.sketch)
+        self.shown.as_ref().is_some_and(|shown| !shown.of.preview)
     }
 
     /// Whether what is shown is some of the points, until all are there.
-    pub fn is_sketch(&self) -> bool {
-        self.shown.as_ref().is_some_and(|shown| shown.of.sketch)
+    pub fn is_preview(&self) -> bool {
+        self.shown.as_ref().is_some_and(|shown| shown.of.preview)
     }
 
     /// From where the scene is seen.
@@ -440,13 +441,13 @@ mod tests {
         State::new(&options, Box::new(Method::settings), None)
     }
 
-    fn of(load: u64, sketch: bool) -> Of {
-        Of { load, sketch, again: false }
+    fn of(load: u64, preview: bool) -> Of {
+        Of { load, preview, again: false }
     }
 
     #[test]
-    fn a_sketch_is_left_for_what_was_before_or_for_the_whole_scene() {
-        let Some(device) = device("a_sketch_is_left_for_what_was_before_or_for_the_whole_scene") else {
+    fn a_preview_is_left_for_what_was_before_or_for_the_whole_scene() {
+        let Some(device) = device("a_preview_is_left_for_what_was_before_or_for_the_whole_scene") else {
             return;
         };
         let scene = |points: u32| {
@@ -457,24 +458,24 @@ mod tests {
         let shown = |state: &State| state.look().map(|(scene, _)| scene.count());
         let mut state = state();
         state.show(scene(10), made(), of(1, true));
-        assert_eq!((shown(&state), state.is_sketch()), (Some(10), true));
-        state.leave_sketch();
+        assert_eq!((shown(&state), state.is_preview()), (Some(10), true));
+        state.leave_preview();
         assert_eq!(shown(&state), None, "there was nothing before");
         state.show(scene(10), made(), of(2, true));
         let eye = |state: &mut State| state.moving().unwrap().0.eye;
-        // Who has turned the sketch sees the whole scene from there.
+        // Who has turned the preview sees the whole scene from there.
         let (orbit, ..) = state.moving().unwrap();
         orbit.side(super::super::orbit::Side::Top);
         let above = eye(&mut state);
         state.show(scene(100), made(), of(2, false));
-        assert_eq!((shown(&state), state.is_sketch(), eye(&mut state)), (Some(100), false, above));
+        assert_eq!((shown(&state), state.is_preview(), eye(&mut state)), (Some(100), false, above));
         state.show(scene(10), made(), of(3, true));
         state.show(scene(20), made(), of(4, true));
         assert_ne!(eye(&mut state), above);
-        state.leave_sketch();
+        state.leave_preview();
         assert_eq!((shown(&state), eye(&mut state)), (Some(100), above));
         // Another state of the same files is looked at as the one before.
-        state.show(scene(50), made(), Of { load: 5, sketch: false, again: true });
+        state.show(scene(50), made(), Of { load: 5, preview: false, again: true });
         assert_eq!((shown(&state), eye(&mut state)), (Some(50), above));
         state.add_coarser(vec![scene(5)]);
         assert_eq!(state.sight().unwrap().surfels, [50.0, 5.0]);

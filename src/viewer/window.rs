@@ -248,7 +248,7 @@ fn picture<'a>(
         picture: state.lens.size,
         side: told.side,
         surfels: told.surfels as u64,
-        sketch: state.is_sketch(),
+        preview: state.is_preview(),
         moving,
         drawn,
         took_ms,

@@ -1,9 +1,10 @@
-//! What `build.rs` makes: compiled shaders, their reflection as Rust, the digest of the code.
+//! What `build.rs` makes: compiled shaders, their reflection as Rust, the digest of the code; and what holds for all sources: layers, words.
 
 mod code_digest;
 mod hosts;
 mod layers;
 mod shaders;
+mod words;
 
 #[allow(dead_code)]
 #[path = "../../tools/code_digest.rs"]

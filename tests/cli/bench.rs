@@ -47,7 +47,7 @@ fn results_of_other_code_say_so() {
     let made = r#""version":"0.1.0","commit":"0123456789","code":"another","date":"2026-01-02T03:04:05Z","seconds":1.0,
         "command":"surfel bench","suites":["quick"],"host":{"cpu":"A","cores":2,"memory":1,"system":"B"},"device":null"#;
     let session = format!(r#"{{"made":{{{made}}},"runs":[],"sweeps":[],"exhibits":[]}}"#);
-    program.write("old.json", format!(r#"{{"format":1,"sessions":[{session}]}}"#));
+    program.write("old.json", format!(r#"{{"format":2,"sessions":[{session}]}}"#));
     let run = program.run("bench --from old.json --report page");
     assert!(run.text().contains("0123456789"), "{}", run.text());
     let page = std::fs::read_to_string(program.path("page/index.html")).unwrap();

@@ -3,8 +3,8 @@
 use crate::program::{Program, surfels};
 use serde_json::Value;
 
-/// Surfels of every fate: drawn, behind, eye plane, back, outside; and a point without a position.
-const FATES: [&str; 6] = [
+/// Surfels of every cull reason: drawn, behind, eye plane, back, outside; and a point without a position.
+const REASONS: [&str; 6] = [
     "0 0 0 0 0 1 0.5",
     "0 0 9 0 0 1 0.5",
     "0 0 4.9 1 0 0 0.5",
@@ -35,7 +35,7 @@ fn check_statistics(times: &Value) {
 #[test]
 fn the_report_has_everything_and_adds_up() {
     let Some(program) = Program::with_device("the_report_has_everything_and_adds_up") else { return };
-    program.write("a.ply", surfels(&FATES));
+    program.write("a.ply", surfels(&REASONS));
     program.run(&format!("render a.ply -o a.png --validate --frames 3 --json a.json {CAMERA}")).text();
     let report: Value = serde_json::from_slice(&std::fs::read(program.path("a.json")).unwrap()).unwrap();
     check_counts(&report["counts"]);
@@ -77,7 +77,7 @@ fn the_report_has_everything_and_adds_up() {
 #[test]
 fn the_reference_reports_the_same_counts_and_no_device() {
     let program = Program::new();
-    program.write("a.ply", surfels(&FATES));
+    program.write("a.ply", surfels(&REASONS));
     let run = program.run(&format!("render a.ply -o a.png --reference --json - {CAMERA}"));
     let report: Value = serde_json::from_str(run.text()).unwrap();
     check_counts(&report["counts"]);
@@ -90,7 +90,7 @@ fn points_are_counted_too_however_they_are_projected() {
     let Some(program) = Program::with_device("points_are_counted_too_however_they_are_projected") else {
         return;
     };
-    program.write("a.ply", surfels(&FATES));
+    program.write("a.ply", surfels(&REASONS));
     let camera = "--size 64x64 --eye 0,0,5 --target 0,0,0 --cull back --method pull-push";
     for way in ["--reference", "--validate --rasterizer draw", "--validate --rasterizer compute"] {
         let run = program.run(&format!("render a.ply -o a.png --json - {way} {camera}"));

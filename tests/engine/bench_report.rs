@@ -87,7 +87,7 @@ fn check_attribute(file: &str, name: &str, value: &str) {
 }
 
 #[test]
-fn the_yardstick_is_no_advice() {
+fn the_baseline_is_no_advice() {
     let of = |points, ms| run(Figure::Budget, "scene:a", points, ms, 0.05);
     let mut session = session();
     session.runs = vec![of(1, 10.0), Run { contender: native(), ..of(2, 1.0) }];
@@ -158,15 +158,7 @@ fn the_page_is_whole_and_loads_nothing() {
         assert!(files["index.html"].contains(title));
     }
     for section in [
-        "glance",
-        "budget",
-        "points",
-        "lowpass",
-        "aliasing",
-        "scaling",
-        "yardstick",
-        "hard",
-        "pictures",
+        "glance", "budget", "points", "lowpass", "aliasing", "scaling", "baseline", "hard", "pictures",
         "made",
     ] {
         assert!(files["index.html"].contains(&format!("<section id=\"{section}\">")), "no {section}");
@@ -199,11 +191,11 @@ fn the_page_says_what_points_cost_and_when_they_win() {
 #[test]
 fn a_section_without_data_is_not_there() {
     let mut results = plausible();
-    results.sessions[0].runs.retain(|run| run.figure == Figure::Yardstick);
+    results.sessions[0].runs.retain(|run| run.figure == Figure::Baseline);
     results.sessions[0].sweeps.clear();
     results.sessions[0].exhibits.clear();
     let page = page(&results, CODE);
-    for section in ["yardstick", "made", "terms"] {
+    for section in ["baseline", "made", "terms"] {
         assert!(page.contains(&format!("<section id=\"{section}\">")));
     }
     assert_eq!(page.matches("<section").count(), 3);

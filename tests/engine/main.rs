@@ -2,6 +2,7 @@
 //! side.
 
 mod agreement;
+mod baseline;
 mod bench;
 mod bench_report;
 mod capture;
@@ -30,4 +31,3 @@ mod sphere;
 #[path = "../support/mod.rs"]
 mod support;
 mod texture;
-mod yardstick;

@@ -1,4 +1,4 @@
-//! Pull–push of points that are drawn and of points that are computed: one picture, bit for bit; the fates of points; what a device without
+//! Pull–push of points that are drawn and of points that are computed: one picture, bit for bit; the cull reasons of points; what a device without
 //! 64-bit atomics does.
 
 use crate::support::gpu::{assert_silent, device};

@@ -22,7 +22,7 @@ pub fn empty() -> Results {
 }
 
 pub fn session() -> Session {
-    let runs = [budget(), lowpass(), aliasing(), scaling(), yardstick(), papers()].concat();
+    let runs = [budget(), lowpass(), aliasing(), scaling(), baseline(), papers()].concat();
     Session {
         made: made(),
         runs,
@@ -59,7 +59,7 @@ pub fn contender(variant: &str) -> Contender {
 }
 
 pub fn native() -> Contender {
-    Contender { method: "yardstick-splats".into(), variant: String::new() }
+    Contender { method: "baseline-splats".into(), variant: String::new() }
 }
 
 /// A run with a time and an error; the rest follows from them.
@@ -239,11 +239,11 @@ pub fn points_alone() -> Vec<Run> {
     runs
 }
 
-fn yardstick() -> Vec<Run> {
+fn baseline() -> Vec<Run> {
     let mut runs = Vec::new();
     for (points, ms) in [(100_000, 62.0), (1_000_000, 164.0)] {
         for (contender, times) in [(native(), 1.0), (contender("compute"), 2.3), (contender("raster"), 4.4)] {
-            let mut run = run(Figure::Yardstick, "scene:bumpy-sphere", points, times * ms, 0.03);
+            let mut run = run(Figure::Baseline, "scene:bumpy-sphere", points, times * ms, 0.03);
             run.error = None;
             run.time.as_mut().unwrap().multiple = Some(times);
             run.contender = contender;

@@ -70,7 +70,7 @@ impl View {
                 && event["surfels"] == surfels
                 && event["side"] == 1.0
                 && event["moving"] == false
-                && event["sketch"] == false
+                && event["preview"] == false
         });
     }
 
@@ -95,8 +95,8 @@ fn moving_frames_have_less_of_everything_and_what_rests_is_whole() {
     let scene = "scene:sphere?points=120000";
     // No frame keeps to that: it has as little as there is.
     let Some(view) = View::open(test, &[scene, "--budget", "0.01"]) else { return };
-    let sketch = view.wait("a sketch", |event| event["event"] == "sketch");
-    assert_eq!(sketch["surfels"], 20_000);
+    let preview = view.wait("a preview", |event| event["event"] == "preview");
+    assert_eq!(preview["surfels"], 20_000);
     view.whole(120_000);
     // Fewer surfels are made ready behind it: until then, there are fewer pixels alone.
     let mut x = 50;

@@ -199,7 +199,7 @@ impl Bench<'_> {
             Ok((picture, report)) => {
                 (point.agreement, point.faults) = judge(expected, &picture)?;
                 point.note =
-                    report.counts.map_or(String::new(), |counts| fates(&counts, &expected.frame.counts));
+                    report.counts.map_or(String::new(), |counts| reasons(&counts, &expected.frame.counts));
             }
             Err(cause @ (Error::Usage(_) | Error::Memory { .. })) => point.refused = Some(cause.to_string()),
             Err(cause) => return Err(cause),
@@ -226,13 +226,13 @@ impl Bench<'_> {
 }
 
 /// What was culled on the device, and by the reference too where that differs: at a threshold, rounding decides.
-fn fates(device: &SplatCounts, reference: &Counts) -> String {
+fn reasons(device: &SplatCounts, reference: &Counts) -> String {
     let SplatCounts { drawn: _, behind, eye_plane, back, outside, invalid } = *device;
     let expected =
         [reference.behind, reference.eye_plane, reference.back, reference.outside, reference.invalid];
     let names = ["behind", "at the eye plane", "facing away", "outside", "invalid"];
-    let fates = names.into_iter().zip([behind, eye_plane, back, outside, invalid]).zip(expected);
-    let told = fates.filter_map(|((name, count), expected)| match (count as usize == expected, count) {
+    let reasons = names.into_iter().zip([behind, eye_plane, back, outside, invalid]).zip(expected);
+    let told = reasons.filter_map(|((name, count), expected)| match (count as usize == expected, count) {
         (true, 0) => None,
         (true, count) => Some(format!("{count} {name}")),
         (false, count) => Some(format!("{count} {name} ({expected} in float64)")),

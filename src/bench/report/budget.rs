@@ -24,14 +24,14 @@ pub fn part(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>
         p {
             "Lower left is better. A line joins a contender's runs over the number of points, with the setting of least error for "
             "each number; the other markers are its other settings, hollow on the front and pale elsewhere. The grey band is the Pareto "
-            "front of the methods, with its numbers of points. Dashed is the yardstick, a plain program on the CPU, which is no method."
+            "front of the methods, with its numbers of points. Dashed is the CPU baseline, a plain program on the CPU, which is no method."
         }
         div.plots { @for plot in &plots { (plot) } }
     }))
 }
 
 fn lines(page: &Page<'_>, offers: &[Offer<'_>]) -> Vec<Line> {
-    let methods: Vec<Offer> = offers.iter().filter(|o| !o.run.contender.is_yardstick()).copied().collect();
+    let methods: Vec<Offer> = offers.iter().filter(|o| !o.run.contender.is_baseline()).copied().collect();
     let best = front(&methods);
     let band = Style { kind: Kind::Band, ..Style::default() };
     let mut lines = vec![Line { notes: counts(&best), ..Line::new("Pareto front", band, places(&best)) }];
@@ -46,7 +46,7 @@ fn lines(page: &Page<'_>, offers: &[Offer<'_>]) -> Vec<Line> {
         let joined = least_errors(&own);
         let others = own.into_iter().filter(|offer| !joined.contains(offer));
         let (good, others): (Vec<Offer>, Vec<Offer>) = others.partition(|offer| best.contains(offer));
-        let style = Style { dashed: contender.is_yardstick(), ..page.style(contender) };
+        let style = Style { dashed: contender.is_baseline(), ..page.style(contender) };
         let loose = Style { kind: Kind::Loose, hollow: true, ..style };
         for (style, offers) in [(Style { kind: Kind::Faint, ..style }, &others), (loose, &good)] {
             lines.push(Line::new("", style, places(offers)));

@@ -16,7 +16,7 @@ pub fn part(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
     Ok(Some(html! {
         p.lead {
             "Of the methods' runs, those on the Pareto front: none other is both faster and nearer to the truth. "
-            @if multiples(session) { "× is a multiple of the yardstick, a plain renderer on the CPU. " }
+            @if multiples(session) { "× is a multiple of the CPU baseline, a plain renderer on the CPU. " }
             "Settings are named where they are not the method's own; the default method's are "
             (unbroken(&show::told(&Setting::shipped(), NAMED))) "."
         }
@@ -75,7 +75,7 @@ fn cell(offer: &Offer<'_>, error_first: bool) -> Markup {
     }
 }
 
-/// Whether there are multiples of the yardstick.
+/// Whether there are multiples of the CPU baseline.
 fn multiples(session: &Session) -> bool {
     session.runs.iter().any(|run| run.time.as_ref().is_some_and(|time| time.multiple.is_some()))
 }

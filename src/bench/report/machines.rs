@@ -1,4 +1,4 @@
-//! Several sessions side by side, by multiples of the yardstick: the only times that can be compared.
+//! Several sessions side by side, by multiples of the CPU baseline: the only times that can be compared.
 
 use super::page::titled;
 use crate::bench::record::{Figure, Results, Run, Session};
@@ -20,7 +20,7 @@ pub fn section(results: &Results) -> Option<Markup> {
         }
     }
     (!rows.is_empty()).then(|| html! {
-        p { "Medians as multiples of the yardstick on the same machine." }
+        p { "Medians as multiples of the CPU baseline on the same machine." }
         div.scroll { table {
             thead { tr {
                 th scope="col" { "scene" } th.number scope="col" { "points" } th scope="col" { "contender" }
@@ -39,7 +39,7 @@ pub fn section(results: &Results) -> Option<Markup> {
 }
 
 fn runs(session: &Session) -> impl Iterator<Item = &Run> {
-    session.runs.iter().filter(|run| matches!(run.figure, Figure::Yardstick | Figure::Budget))
+    session.runs.iter().filter(|run| matches!(run.figure, Figure::Baseline | Figure::Budget))
 }
 
 fn key(run: &Run) -> Key<'_> {

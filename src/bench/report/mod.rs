@@ -1,6 +1,7 @@
 //! The page: what was measured, drawn and said, in one HTML file that loads nothing, with each plot as SVG beside it.
 
 mod aliasing;
+mod baseline;
 mod budget;
 mod effects;
 mod glance;
@@ -16,7 +17,6 @@ mod points;
 mod points_alone;
 mod scaling;
 mod terms;
-mod yardstick;
 
 use super::record::Results;
 use crate::error::{Error, Result};

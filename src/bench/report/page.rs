@@ -2,8 +2,8 @@
 
 use super::plot::{Plot, Style, draw};
 use super::{
-    aliasing, budget, effects, glance, hard, lowpass, machines, made, papers, pictures, points, scaling,
-    terms, yardstick,
+    aliasing, baseline, budget, effects, glance, hard, lowpass, machines, made, papers, pictures, points,
+    scaling, terms,
 };
 use crate::bench::record::{Contender, Results, Run, Session};
 use crate::bench::show;
@@ -39,7 +39,7 @@ const SECTIONS: [Section; 12] = [
     Section { id: "lowpass", title: "Low-pass", part: lowpass::part },
     Section { id: "aliasing", title: "Aliasing", part: aliasing::part },
     Section { id: "scaling", title: "Scaling", part: scaling::part },
-    Section { id: "yardstick", title: "Yardstick", part: yardstick::part },
+    Section { id: "baseline", title: "Baseline", part: baseline::part },
     Section { id: "effects", title: "What the papers show", part: effects::part },
     Section { id: "papers", title: "What the papers measured", part: papers::part },
     Section { id: "hard", title: "Hard cases", part: hard::part },

@@ -43,7 +43,7 @@ fn terms() -> Markup {
             "largest difference of linear colour and α from the float64 reference outside the pixels in doubt",
         ),
         (
-            "× yardstick",
+            "× baseline",
             "median wall time over that of a plain native renderer for the same scene, points and size with the shipped settings, in the same session",
         ),
     ];

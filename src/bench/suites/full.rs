@@ -1,10 +1,10 @@
 //! Every scene, at every density.
 
-use super::{Suite, aliasing, lowpass, methods, plan, yardstick};
+use super::{Suite, aliasing, baseline, lowpass, methods, plan};
 use crate::bench::plan::{Plan, Wants};
 use crate::bench::record::Figure;
+use crate::verify::baseline::Kind;
 use crate::verify::scenes;
-use crate::verify::yardstick::Kind;
 
 const SIZE: [u32; 2] = [512, 512];
 const POINTS: [u64; 5] = [10_000, 30_000, 100_000, 300_000, 1_000_000];
@@ -23,14 +23,14 @@ pub(super) fn plans() -> Vec<Plan> {
     plans
 }
 
-/// Smooth and sharp, every other method, and the yardstick.
+/// Smooth and sharp, every other method, and the CPU baseline.
 fn budget(scene: &str, points: u64) -> Vec<Plan> {
     let smooth = plan(Suite::Full, Figure::Budget, scene, points, SIZE);
     let mut sharp = smooth.clone();
     sharp.settings.lowpass = 0.0;
     let wants =
         Wants { terms: true, agreement: points <= 100_000, exhibit: points == 100_000, ..Wants::BOTH };
-    let plain = [Kind::Splats, Kind::Pixels].map(|kind| yardstick(&smooth, kind));
+    let plain = [Kind::Splats, Kind::Pixels].map(|kind| baseline(&smooth, kind));
     // Pictures by every method are many: of one scene they are enough.
     let exhibit = wants.exhibit && scene == "scene:bumpy-sphere";
     let others = methods(&smooth).map(|plan| Plan { wants: Wants { exhibit, ..Wants::BOTH }, ..plan });

@@ -5,10 +5,10 @@
 //! 1. `bench/suites/NAME.rs`: its [`Plan`]s, each a scene, cameras, sizes and settings.
 //! 2. Here: its variant, with its name, its plans and how many frames are timed.
 
+mod baseline;
 mod full;
 mod own;
 mod papers;
-mod plain;
 mod quick;
 mod scaling;
 
@@ -20,9 +20,9 @@ use super::record::Figure;
 use super::stopwatch::Effort;
 use crate::settings::methods::{Method, perspective_ewa};
 use crate::settings::{Choice, Settings, Shading, Widen};
+use crate::verify::baseline::Kind;
 use crate::verify::scenes;
 use crate::verify::truth;
-use crate::verify::yardstick::Kind;
 use std::time::Duration;
 
 /// A suite.
@@ -49,7 +49,7 @@ pub enum Suite {
     /// Time against points, pixels and overlap.
     Scaling,
     /// Every way to render, as multiples of what a plain program on the CPU takes.
-    Yardstick,
+    Baseline,
     /// What the papers show, say and measured: their effects, costs and tables.
     Papers,
     /// What the user brings.
@@ -59,7 +59,7 @@ pub enum Suite {
 impl Suite {
     /// Those that need nothing from the user.
     pub const BUILT_IN: [Self; 6] =
-        [Self::Quick, Self::Full, Self::Hard, Self::Scaling, Self::Yardstick, Self::Papers];
+        [Self::Quick, Self::Full, Self::Hard, Self::Scaling, Self::Baseline, Self::Papers];
 
     /// Its runs, those of one scene one after the other; none of the hard cases, which are no runs. `own` is what the user brings.
     pub fn plans(self, own: &Own) -> Vec<Plan> {
@@ -68,7 +68,7 @@ impl Suite {
             Self::Full => full::plans(),
             Self::Hard => Vec::new(),
             Self::Scaling => scaling::plans(),
-            Self::Yardstick => plain::plans(),
+            Self::Baseline => baseline::plans(),
             Self::Papers => papers::plans(),
             Self::Own => own::plans(own),
         }
@@ -131,8 +131,8 @@ fn by(plan: &Plan, method: &Method) -> Plan {
 }
 
 /// The same by a plain program on the CPU.
-fn yardstick(plan: &Plan, kind: Kind) -> Plan {
-    Plan { engine: Engine::Yardstick(kind), ..plan.clone() }
+fn baseline(plan: &Plan, kind: Kind) -> Plan {
+    Plan { engine: Engine::Baseline(kind), ..plan.clone() }
 }
 
 /// The low-pass filter's price and gain: its variance, px², from 0 to 1, the kernel's cut-off, σ, and which splats it widens.

@@ -1,11 +1,11 @@
 //! What the user brings.
 
-use super::{Suite, plan, yardstick};
+use super::{Suite, baseline, plan};
 use crate::bench::plan::{Plan, Wants};
 use crate::bench::record::Figure;
 use crate::bench::subject::Subject;
 use crate::settings::Shading;
-use crate::verify::yardstick::Kind;
+use crate::verify::baseline::Kind;
 use std::rc::Rc;
 
 /// Numbers of points unless others are wanted.
@@ -60,7 +60,7 @@ fn budget(subject: &Subject, points: u64, size: [u32; 2]) -> Vec<Plan> {
     vec![
         Plan { wants, ..smooth.clone() },
         sharp,
-        yardstick(&smooth, Kind::Splats),
-        yardstick(&smooth, Kind::Pixels),
+        baseline(&smooth, Kind::Splats),
+        baseline(&smooth, Kind::Pixels),
     ]
 }

@@ -1,10 +1,10 @@
 //! A first impression of everything.
 
-use super::{Suite, aliasing, by, lowpass, methods, plan, yardstick};
+use super::{Suite, aliasing, baseline, by, lowpass, methods, plan};
 use crate::bench::plan::{Plan, Wants};
 use crate::bench::record::Figure;
 use crate::settings::methods::pull_push;
-use crate::verify::yardstick::Kind;
+use crate::verify::baseline::Kind;
 
 const SIZE: [u32; 2] = [320, 320];
 /// What every method is shown by: more of them take more than a minute.
@@ -38,7 +38,7 @@ fn budget(scene: &str, points: u64) -> Vec<Plan> {
     vec![
         Plan { wants, ..smooth.clone() },
         sharp,
-        yardstick(&smooth, Kind::Splats),
-        yardstick(&smooth, Kind::Pixels),
+        baseline(&smooth, Kind::Splats),
+        baseline(&smooth, Kind::Pixels),
     ]
 }

@@ -1,11 +1,11 @@
 //! Time against points, pixels and overlap.
 
-use super::{Suite, by, methods, plan, yardstick};
+use super::{Suite, baseline, by, methods, plan};
 use crate::bench::plan::{Plan, Wants};
 use crate::bench::record::Figure;
 use crate::settings::methods::{Method, pull_push};
+use crate::verify::baseline::Kind;
 use crate::verify::scenes::Viewpoint;
-use crate::verify::yardstick::Kind;
 
 const SCENE: &str = "scene:bumpy-sphere";
 const SIZE: [u32; 2] = [1024, 1024];
@@ -18,7 +18,7 @@ pub(super) fn plans() -> Vec<Plan> {
         let all =
             move |plan: &Plan| every || figure == Figure::ScalingPoints && plan.settings.pull_push.is_some();
         let others = methods(&plan).filter(all);
-        [plan.clone(), yardstick(&plan, Kind::Splats)].into_iter().chain(others)
+        [plan.clone(), baseline(&plan, Kind::Splats)].into_iter().chain(others)
     };
     let points = [10_000, 30_000, 100_000, 300_000, 1_000_000, 3_000_000, 10_000_000];
     let mut plans: Vec<Plan> = Vec::new();

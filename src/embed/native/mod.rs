@@ -86,7 +86,7 @@ mod targets;
 pub use place::{Depth, Place};
 pub use plan::Plan;
 
-use super::held::Held;
+use super::deferred_destruction::DeferredDestruction;
 use super::reports::{Measured, Reports};
 use super::view::Seen;
 use super::{View, without_background};
@@ -113,7 +113,7 @@ pub struct Renderer {
     shown: Option<Shown>,
     frame: FrameResources,
     reports: Reports,
-    held: Held,
+    deferred: DeferredDestruction,
     targets: Option<Arc<Targets>>,
     plan: Plan,
     device: Arc<Device>,
@@ -165,7 +165,7 @@ impl Renderer {
         Ok(Self {
             shown: None,
             frame: FrameResources::new(device, options, Retired::Kept(Vec::new()), Some(host))?,
-            held: Held::new(frames_in_flight)?,
+            deferred: DeferredDestruction::new(frames_in_flight)?,
             reports: Reports::new(frames_in_flight),
             targets: None,
             plan,
@@ -208,9 +208,9 @@ impl Renderer {
         let views = targets.views();
         self.shown = None;
         self.frame.forget_targets();
-        self.held.extend(self.frame.outgoing());
+        self.deferred.extend(self.frame.take_deferred());
         let old = self.targets.replace(Arc::new(targets));
-        self.held.hold(old);
+        self.deferred.defer(old);
         Ok(views)
     }
 
@@ -232,11 +232,11 @@ impl Renderer {
         self.shown = None;
         let made = self.make(scenes.into(), view, settings);
         // Also after an error: what it took the place of may be under way.
-        self.held.extend(self.frame.outgoing());
+        self.deferred.extend(self.frame.take_deferred());
         let (blocks, numbers, area) = made?;
         let scenes: Vec<_> = self.frame.scenes().collect();
         self.reports.begin(&self.device, &scenes)?;
-        self.held.advance();
+        self.deferred.advance();
         let (timestamps, tail) = self.reports.present();
         // SAFETY: by the caller; the reports have one for each frame under way.
         let mut rec = unsafe { Recorder::of_host_timed(&self.device, cmd, timestamps) };
@@ -374,7 +374,7 @@ impl Renderer {
         });
         let bindings = targets.bindings(&subpasses::inputs(&self.plan));
         self.frame.make(&placed, &frame, targets.size, &bindings)?;
-        self.held.hold_scenes(&scenes);
+        self.deferred.keep_scenes(&scenes);
         Ok((frame.blocks, Numbers { seed, host: layout::Subpass { depth } }, area))
     }
 

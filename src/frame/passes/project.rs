@@ -6,7 +6,7 @@ use crate::frame::pass::{Commands, Over, Pass, Program, Programs, Start, Targets
 use crate::frame::resource::Resource::{Counts, LargeTriangles, Nearest, NearestDepth, NearestNumber};
 use crate::frame::variant::SceneVariant;
 use crate::vk::shaders::{
-    POINTS_FRAGMENT, POINTS_VERTEX, PROJECT_COMPUTE, PROJECT_DRAWN_POINTS_COMPUTE, PROJECT_FATES_COMPUTE,
+    POINTS_FRAGMENT, POINTS_VERTEX, PROJECT_COMPUTE, PROJECT_COUNTED_COMPUTE, PROJECT_DRAWN_POINTS_COMPUTE,
     PROJECT_LINES_COMPUTE, PROJECT_TRIANGLES_COMPUTE, constant,
 };
 use crate::vk::{Blend, DepthTest, Topology};
@@ -79,7 +79,7 @@ pub static BESIDE_DRAWN: Pass = Pass {
     writes: &[Nearest, LargeTriangles, Counts],
     clears: &[LargeTriangles, Counts],
     programs: Programs::OfScene(|variant| {
-        let counted = Program::compute(&PROJECT_FATES_COMPUTE, Over::Surfels);
+        let counted = Program::compute(&PROJECT_COUNTED_COMPUTE, Over::Surfels);
         variant.frame.count.then_some(counted).into_iter().chain(primitives(variant)).collect()
     }),
     commands: Commands::Dispatches,

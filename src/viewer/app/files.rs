@@ -15,13 +15,13 @@ use surfel::settings::methods::Method;
 use surfel::{Result, Scene};
 
 impl App {
-    /// Shows a scene of a load: from where is asked for, or from the front. All of a sketch has other bounds than that, which is why its
+    /// Shows a scene of a load: from where is asked for, or from the front. All of a preview has other bounds than that, which is why its
     /// camera is asked for again, unless hands have moved it.
     pub(super) fn show(&mut self, scene: Arc<Scene>, made: (Method, Source), of: Of) -> Result<()> {
-        let moved = self.state.has_moved_sketch(of.load);
-        self.is_first &= self.state.moving().is_none() || self.state.is_sketch();
+        let moved = self.state.has_moved_preview(of.load);
+        self.is_first &= self.state.moving().is_none() || self.state.is_preview();
         let asked = (self.options.place)(&scene.bounds(), self.state.lens.size).filter(|_| self.is_first);
-        let next = if of.sketch { self.next } else { self.next.take() };
+        let next = if of.preview { self.next } else { self.next.take() };
         let pose = next.map(Ok).or(asked).filter(|_| !moved).transpose()?;
         if let Some(pose) = &pose {
             pose.check()?;

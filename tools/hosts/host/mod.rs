@@ -20,13 +20,13 @@ pub mod presenter;
 pub mod scene;
 pub mod show;
 pub mod simulation;
+#[cfg(feature = "viewer")]
+pub mod soak;
 pub mod sphere;
 #[cfg(feature = "viewer")]
 pub mod surface;
 #[cfg(feature = "viewer")]
 pub mod swapchain;
-#[cfg(feature = "viewer")]
-pub mod tour;
 pub mod under_way;
 #[cfg(feature = "viewer")]
 pub mod window;

@@ -14,7 +14,7 @@ pub enum Wanted {
     #[default]
     Window,
     /// A window that changes its size and what it shows by itself.
-    Tour,
+    Soak,
     /// A comparison with the engine's own frames.
     Check,
 }
@@ -32,7 +32,7 @@ pub struct Asked {
     pub frames: Option<u64>,
 }
 
-const USAGE: &str = "give FILE.png, --window, --tour or --check; \
+const USAGE: &str = "give FILE.png, --window, --soak or --check; \
     and --method NAME, --model FILE.ply, --points N, --frames N where they are wanted";
 
 impl Asked {
@@ -49,7 +49,7 @@ impl Asked {
             let mut value = || arguments.next().ok_or_else(|| format!("{name} wants a value: {USAGE}"));
             let next = match name.as_str() {
                 "--window" => Wanted::Window,
-                "--tour" => Wanted::Tour,
+                "--soak" => Wanted::Soak,
                 "--check" => Wanted::Check,
                 "--method" => {
                     asked.method = Some(method(&value()?)?);

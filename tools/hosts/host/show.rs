@@ -46,9 +46,9 @@ pub fn run<S: Show>(new: New<S>) -> Result<()> {
     match &asked.wanted {
         Wanted::Picture(file) => picture(new, &asked, file),
         #[cfg(feature = "viewer")]
-        Wanted::Window | Wanted::Tour => super::window::open(new, asked),
+        Wanted::Window | Wanted::Soak => super::window::open(new, asked),
         #[cfg(not(feature = "viewer"))]
-        Wanted::Window | Wanted::Tour => {
+        Wanted::Window | Wanted::Soak => {
             Err("give FILE.png; for a window build with `--features viewer`".into())
         }
         Wanted::Check => Err("there is no --check here: `cargo test --test embed` compares".into()),

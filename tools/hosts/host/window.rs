@@ -4,7 +4,7 @@ use super::options::{Asked, Wanted};
 use super::presenter::Presenter;
 use super::scene::SIZE;
 use super::show::{New, STEP, Show};
-use super::tour::{FRAMES, Step, Tour};
+use super::soak::{FRAMES, Soak, Step};
 use super::{Host, Result, Validation};
 use ash::khr;
 use std::time::Instant;
@@ -18,8 +18,8 @@ use winit::window::{Window, WindowId};
 
 /// Opens a window, until it is closed or has shown the frames that are asked for. The space bar shows other surfels, Escape closes it.
 pub fn open<S: Show>(new: New<S>, asked: Asked) -> Result<()> {
-    let tour = (asked.wanted == Wanted::Tour).then(|| Tour::new(asked.frames.unwrap_or(FRAMES)));
-    let mut app = App { new, asked, tour, opened: None, failed: None };
+    let soak = (asked.wanted == Wanted::Soak).then(|| Soak::new(asked.frames.unwrap_or(FRAMES)));
+    let mut app = App { new, asked, soak, opened: None, failed: None };
     EventLoop::new()?.run_app(&mut app)?;
     app.failed.map_or(Ok(()), Err)
 }
@@ -28,7 +28,7 @@ struct App<S> {
     new: New<S>,
     asked: Asked,
     opened: Option<Opened<S>>,
-    tour: Option<Tour>,
+    soak: Option<Soak>,
     failed: Option<Box<dyn std::error::Error>>,
 }
 
@@ -87,8 +87,8 @@ impl<S: Show> ApplicationHandler for App<S> {
         {
             self.fail(events, error);
         }
-        if let (Some(tour), None) = (&self.tour, &self.failed) {
-            match tour.end() {
+        if let (Some(soak), None) = (&self.soak, &self.failed) {
+            match soak.end() {
                 Ok(told) => println!("{told}: nothing to complain of, nothing left over"),
                 Err(error) => self.fail(events, error.into()),
             }
@@ -105,15 +105,15 @@ impl<S: Show> App<S> {
     /// Draws a frame, and does what comes after it.
     fn draw(&mut self, events: &ActiveEventLoop) -> Result<()> {
         let Some(opened) = &mut self.opened else { return Ok(()) };
-        let seconds = match self.tour {
+        let seconds = match self.soak {
             Some(_) => STEP * opened.drawn as f64,
             None => opened.start.elapsed().as_secs_f64(),
         };
         if !opened.draw(seconds)? {
             return Ok(());
         }
-        let step = match &mut self.tour {
-            Some(tour) => tour.next(opened.show.size()),
+        let step = match &mut self.soak {
+            Some(soak) => soak.next(opened.show.size()),
             None => (self.asked.frames != Some(opened.drawn)).then_some(Step::STAY),
         };
         match step {
@@ -139,7 +139,7 @@ impl<S: Show> Opened<S> {
         let window = events.create_window(attributes)?;
         let extensions = ash_window::enumerate_required_extensions(window.display_handle()?.as_raw())?;
         let validation = match asked.wanted {
-            Wanted::Tour => Validation::Needed,
+            Wanted::Soak => Validation::Needed,
             _ => Validation::WhereThere,
         };
         let host = Host::open_with(|all| all, validation, extensions, &[khr::swapchain::NAME])?;

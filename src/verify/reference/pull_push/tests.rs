@@ -124,12 +124,12 @@ fn the_nearest_point_of_a_pixel_is_seen_and_of_two_alike_the_first() {
 #[test]
 fn what_is_exactly_edge_on_faces_away_where_that_is_culled_and_has_no_area_elsewhere() {
     let edge = discs(&[(DVec3::Z, DVec3::X, 0.1)]);
-    for (cull, fates) in [(Cull::Back, (1, 0)), (Cull::None, (0, 1))] {
+    for (cull, reasons) in [(Cull::Back, (1, 0)), (Cull::None, (0, 1))] {
         let settings = Settings { cull, ..Default::default() };
         let rules = PullPush::of(Rules::Robust);
         let frame = Reconstruction::new(&camera(), [64, 64], &settings, rules).unwrap();
         let c = frame.project(&edge).counts;
-        assert_eq!((c.back, c.outside), fates, "{cull:?}");
+        assert_eq!((c.back, c.outside), reasons, "{cull:?}");
     }
 }
 

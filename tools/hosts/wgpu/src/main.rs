@@ -1,5 +1,5 @@
 //! A host that draws with wgpu, and surfels among what it draws:
-//! `cargo run --manifest-path tools/hosts/wgpu/Cargo.toml -- [FILE.png | --window | --tour | --check]`.
+//! `cargo run --manifest-path tools/hosts/wgpu/Cargo.toml -- [FILE.png | --window | --soak | --check]`.
 
 mod check;
 mod frame;
@@ -11,9 +11,9 @@ mod options;
 #[path = "../../host/scene.rs"]
 mod scene;
 mod show;
+#[path = "../../host/soak.rs"]
+mod soak;
 mod surfels;
-#[path = "../../host/tour.rs"]
-mod tour;
 mod window;
 
 use options::{Asked, Wanted};
@@ -36,7 +36,7 @@ fn main() -> Result<()> {
             return Err("a picture of this host is its only frame: leave --frames out".into());
         }
         Wanted::Picture(file) => show::picture(&asked, file)?,
-        Wanted::Window | Wanted::Tour => window::open(&asked)?,
+        Wanted::Window | Wanted::Soak => window::open(&asked)?,
         Wanted::Check => check::all()?,
     }
     listener.silent()

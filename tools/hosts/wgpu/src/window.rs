@@ -6,8 +6,8 @@ use crate::gpu::{Gpu, instance};
 use crate::options::{Asked, Wanted};
 use crate::scene::{SIZE, camera};
 use crate::show::{Parts, Show};
+use crate::soak::{FRAMES, Soak, Step};
 use crate::surfels::FRAMES_IN_FLIGHT;
-use crate::tour::{FRAMES, Step, Tour};
 use std::collections::VecDeque;
 use std::sync::Arc;
 use std::time::Instant;
@@ -20,12 +20,12 @@ use winit::window::{Window, WindowId};
 
 /// Opens a window, until it is closed or has shown the frames that are asked for. The space bar shows other surfels, Escape closes it.
 pub fn open(asked: &Asked) -> Result<()> {
-    let tour = (asked.wanted == Wanted::Tour).then(|| Tour::new(asked.frames.unwrap_or(FRAMES)));
-    let mut host = Host { asked, opened: None, tour, failed: None };
+    let soak = (asked.wanted == Wanted::Soak).then(|| Soak::new(asked.frames.unwrap_or(FRAMES)));
+    let mut host = Host { asked, opened: None, soak, failed: None };
     EventLoop::new()?.run_app(&mut host)?;
     host.failed.map_or(Ok(()), Err)?;
-    if let Some(tour) = host.tour {
-        println!("{}", tour.end()?);
+    if let Some(soak) = host.soak {
+        println!("{}", soak.end()?);
     }
     Ok(())
 }
@@ -33,7 +33,7 @@ pub fn open(asked: &Asked) -> Result<()> {
 struct Host<'a> {
     asked: &'a Asked,
     opened: Option<Opened>,
-    tour: Option<Tour>,
+    soak: Option<Soak>,
     failed: Option<Box<dyn std::error::Error>>,
 }
 
@@ -110,8 +110,8 @@ impl Host<'_> {
         if !opened.draw()? {
             return Ok(());
         }
-        let step = match &mut self.tour {
-            Some(tour) => tour.next(opened.frame.size),
+        let step = match &mut self.soak {
+            Some(soak) => soak.next(opened.frame.size),
             None => (self.asked.frames != Some(opened.drawn)).then_some(Step::STAY),
         };
         match step {

@@ -55,7 +55,7 @@ impl Pixels {
         target: &mut Target,
         stages: &mut Stages,
     ) -> Result<()> {
-        resize(&mut self.nearest, tiles(view.size) * BLOCKS * LANES, "the yardstick's pixels", || {
+        resize(&mut self.nearest, tiles(view.size) * BLOCKS * LANES, "the CPU baseline's pixels", || {
             AtomicU64::new(EMPTY)
         })?;
         stages.time("clear", || {

@@ -1,4 +1,4 @@
-// What becomes of a surfel. All but the last are counted, in this order.
+// Cull reasons: why a surfel is not drawn, counted in this order; DRAWN is none.
 
 const uint BEHIND = 0;    // the centre is not in front of the eye; a point's not between near and far plane
 const uint EYE_PLANE = 1; // the disc reaches the eye plane, or all but does
@@ -13,8 +13,8 @@ layout(constant_id = 2) const bool COUNT = false;
 
 layout(set = 2, binding = 5, std430) buffer Counts { uint culled[5]; };
 
-void count(uint fate) {
-    if (COUNT && fate != DRAWN) atomicAdd(culled[fate], 1);
+void count(uint reason) {
+    if (COUNT && reason != DRAWN) atomicAdd(culled[reason], 1);
 }
 
 #endif

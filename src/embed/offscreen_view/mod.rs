@@ -26,7 +26,7 @@ const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
 
 /// A picture in frames of one [`Presenter`], which stays until it is drawn anew. What is unsafe of [`Renderer`] it sees to itself: it draws in
 /// frames of that presenter alone, once in each, and is waited for before it goes; a frame that is being recorded meanwhile is not submitted.
-pub struct Pane {
+pub struct OffscreenView {
     // Fields are dropped in this order: views before what they view, and the pass after all that draws in it.
     renderer: Renderer,
     /// The colours of a picture of numbers, where it is one.
@@ -65,7 +65,7 @@ struct Targets {
     depths: Buffer,
 }
 
-impl Pane {
+impl OffscreenView {
     /// A picture in frames of `presenter`; nothing is drawn yet.
     pub fn new(presenter: &Presenter, rasterizer: Option<Rasterizer>) -> Result<Self> {
         let device = presenter.device();
@@ -116,7 +116,9 @@ impl Pane {
     ) -> Result<()> {
         self.check(frame)?;
         if self.drawn.replace(frame.number) == Some(frame.number) {
-            return Err(Error::Usage("a pane is drawn twice in a frame: make one for each picture".into()));
+            return Err(Error::Usage(
+                "an offscreen view is drawn twice in a frame: make one for each picture".into(),
+            ));
         }
         self.forget_thrown();
         self.take_part(frame);
@@ -287,12 +289,14 @@ impl Pane {
     fn check_presenter(&self, number: u64) -> Result<()> {
         match number == self.presenter {
             true => Ok(()),
-            false => Err(Error::Usage("a pane is used with another window than it was made for".into())),
+            false => {
+                Err(Error::Usage("an offscreen view is used with another window than it was made for".into()))
+            }
         }
     }
 }
 
-impl Drop for Pane {
+impl Drop for OffscreenView {
     fn drop(&mut self) {
         if let Some((_, stake)) = self.stake.get_mut() {
             stake.go();

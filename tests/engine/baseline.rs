@@ -1,4 +1,4 @@
-//! The yardstick's splats are the float64 reference's, pixel by pixel, and its points those that a search finds; what is off by a
+//! The CPU baseline's splats are the float64 reference's, pixel by pixel, and its points those that a search finds; what is off by a
 //! little is not.
 
 use crate::support::sampling::{Random, bumpy_sphere, paint_linear, push};
@@ -6,8 +6,8 @@ use crate::support::scenes::{self, Case};
 use glam::{DVec3, Vec3};
 use surfel::geometry::{Camera, Colours, Surfels};
 use surfel::settings::{Alpha, Cull, Shading, Widen};
+use surfel::verify::baseline::{Baseline, Kind};
 use surfel::verify::reference::{Comparison, Expected, Tolerance};
-use surfel::verify::yardstick::{Kind, Yardstick};
 use surfel::{Error, Outputs, Picture, Settings};
 
 /// Share of the object's pixels that the reference may hold to be undecided.
@@ -21,9 +21,9 @@ fn cases() -> Vec<Case> {
 const ALL: Outputs = Outputs { normal: true, depth: true, id: false };
 
 fn draw(kind: Kind, surfels: &Surfels, camera: &Camera, size: [u32; 2], settings: &Settings) -> Picture {
-    let mut yardstick = Yardstick::new(surfels).unwrap();
-    yardstick.frame(kind, camera, size, settings, ALL).unwrap();
-    yardstick.picture()
+    let mut baseline = Baseline::new(surfels).unwrap();
+    baseline.frame(kind, camera, size, settings, ALL).unwrap();
+    baseline.picture()
 }
 
 /// What single precision can hold of a case, through one of its cameras.
@@ -61,7 +61,7 @@ fn invalid_surfels_are_left_out() {
     let verdict = expected.compare(&draw(Kind::Splats, &spoilt, camera, case.size, &case.settings)).unwrap();
     assert!(verdict.passed() && verdict.object_pixels > 100, "{:?}", verdict.failures.first());
     let none = Surfels { radii: vec![f32::NAN; spoilt.len()], ..spoilt };
-    assert!(matches!(Yardstick::new(&none), Err(Error::Usage(_))));
+    assert!(matches!(Baseline::new(&none), Err(Error::Usage(_))));
 }
 
 /// Every camera's picture is the reference's.
@@ -268,11 +268,11 @@ fn frames_make_only_what_they_need() {
     let camera = Camera::framing(&surfels.bounds().unwrap(), 0.8, 1.0).unwrap();
     let settings = Settings::default();
     for kind in [Kind::Pixels, Kind::Splats] {
-        let mut yardstick = Yardstick::new(&surfels).unwrap();
+        let mut baseline = Baseline::new(&surfels).unwrap();
         let mut frame = |outputs: Outputs| {
-            let stages = yardstick.frame(kind, &camera, [256; 2], &settings, outputs).unwrap();
+            let stages = baseline.frame(kind, &camera, [256; 2], &settings, outputs).unwrap();
             assert!(stages.iter().all(|stage| stage.milliseconds >= 0.0) && stages.len() >= 3);
-            (yardstick.bytes(), yardstick.picture())
+            (baseline.bytes(), baseline.picture())
         };
         let (bare, picture) = frame(Outputs::default());
         assert!(picture.depth.is_none() && picture.normal.is_none());
@@ -287,12 +287,12 @@ fn frames_make_only_what_they_need() {
 #[test]
 fn what_cannot_be_drawn_is_refused() {
     let surfels = bumpy_sphere(100, &mut Random(1));
-    assert!(matches!(Yardstick::new(&Surfels::default()), Err(Error::Usage(_))));
+    assert!(matches!(Baseline::new(&Surfels::default()), Err(Error::Usage(_))));
     let uneven = Surfels { radii: Vec::new(), ..surfels.clone() };
-    assert!(matches!(Yardstick::new(&uneven), Err(Error::Usage(_))));
+    assert!(matches!(Baseline::new(&uneven), Err(Error::Usage(_))));
     let camera = Camera::framing(&surfels.bounds().unwrap(), 0.8, 1.0).unwrap();
     let flat = Camera { projection: glam::DMat4::ZERO, ..camera };
-    let mut yardstick = Yardstick::new(&surfels).unwrap();
+    let mut baseline = Baseline::new(&surfels).unwrap();
     let negative = Settings { cutoff: -1.0, ..Default::default() };
     let coverage = Settings { alpha: Alpha::Coverage, ..Default::default() };
     for (camera, size, settings) in [
@@ -302,7 +302,7 @@ fn what_cannot_be_drawn_is_refused() {
         (camera, [10, 10], negative),
         (camera, [10, 10], coverage),
     ] {
-        let refused = yardstick.frame(Kind::Splats, &camera, size, &settings, ALL);
+        let refused = baseline.frame(Kind::Splats, &camera, size, &settings, ALL);
         assert!(matches!(refused, Err(Error::Usage(_))), "{size:?}");
     }
 }

@@ -29,7 +29,7 @@ impl Target {
     pub fn fit(&mut self, size: [u32; 2], outputs: Outputs) -> Result<()> {
         (self.size, self.outputs) = (size, outputs);
         let blocks = tiles(size) * self.stride();
-        resize(&mut self.values, blocks, "the yardstick's picture", || [0.0; LANES])
+        resize(&mut self.values, blocks, "the CPU baseline's picture", || [0.0; LANES])
     }
 
     /// All tiles, row by row.

@@ -1,7 +1,7 @@
-//! What frames under way may use, kept until they are over.
+//! Deferred destruction: resources live until the frames in flight that may use them are over.
 
 use crate::error::{Error, Result};
-use crate::frame::resources::Outgoing;
+use crate::frame::resources::Deferred;
 use crate::scene::{Instances, Scene};
 use std::any::Any;
 use std::collections::VecDeque;
@@ -10,17 +10,17 @@ use std::sync::Arc;
 /// Most frames under way: what each uses is kept.
 const MOST: u32 = 64;
 
-/// What frames under way may use.
-pub(super) struct Held {
+/// Resources that frames in flight may use.
+pub(super) struct DeferredDestruction {
     /// Each with the number of the last frame that may use it.
-    list: VecDeque<(u64, Outgoing)>,
+    list: VecDeque<(u64, Deferred)>,
     /// Those of the present frame.
     scenes: Vec<Arc<Scene>>,
     frame: u64,
     frames_in_flight: u64,
 }
 
-impl Held {
+impl DeferredDestruction {
     /// Nothing yet; so many frames may be under way.
     pub(super) fn new(frames_in_flight: u32) -> Result<Self> {
         if !(1..=MOST).contains(&frames_in_flight) {
@@ -36,26 +36,26 @@ impl Held {
         })
     }
 
-    /// Keeps `held`, which frames so far may use.
-    pub(super) fn hold(&mut self, held: impl Any + Send + Sync) {
-        self.extend([Box::new(held) as Outgoing]);
+    /// Destroys `resource` once the frames in flight, which may use it, are over.
+    pub(super) fn defer(&mut self, resource: impl Any + Send + Sync) {
+        self.extend([Box::new(resource) as Deferred]);
     }
 
     /// Keeps the scenes of a frame that is prepared, in place of those of the frame before.
-    pub(super) fn hold_scenes(&mut self, scenes: &Instances<'_>) {
+    pub(super) fn keep_scenes(&mut self, scenes: &Instances<'_>) {
         if !scenes.scenes().map(Arc::as_ptr).eq(self.scenes.iter().map(Arc::as_ptr)) {
             let old = std::mem::replace(&mut self.scenes, scenes.scenes().cloned().collect());
-            self.hold(old);
+            self.defer(old);
         }
     }
 
-    /// As [`Held::hold`].
-    pub(super) fn extend(&mut self, held: impl IntoIterator<Item = Outgoing>) {
+    /// Defers the destruction of several.
+    pub(super) fn extend(&mut self, resources: impl IntoIterator<Item = Deferred>) {
         let frame = self.frame;
-        self.list.extend(held.into_iter().map(|held| (frame, held)));
+        self.list.extend(resources.into_iter().map(|resource| (frame, resource)));
     }
 
-    /// Begins another frame, and lets go of what frames that are over have used.
+    /// Begins another frame, and destroys what frames that are over have used.
     pub(super) fn advance(&mut self) {
         self.frame += 1;
         while self.list.front().is_some_and(|(frame, _)| frame + self.frames_in_flight <= self.frame) {

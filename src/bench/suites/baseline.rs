@@ -4,7 +4,7 @@ use super::{Suite, plan};
 use crate::bench::engine::Engine;
 use crate::bench::plan::{Plan, Wants};
 use crate::bench::record::Figure;
-use crate::verify::yardstick::Kind;
+use crate::verify::baseline::Kind;
 use crate::{Precision, Rasterizer};
 
 const SIZE: [u32; 2] = [1024, 1024];
@@ -15,12 +15,12 @@ pub(super) fn plans() -> Vec<Plan> {
         vulkan(Rasterizer::Compute, Precision::Full),
         vulkan(Rasterizer::Draw, Precision::Full),
         vulkan(Rasterizer::Draw, Precision::Half),
-        Engine::Yardstick(Kind::Splats),
-        Engine::Yardstick(Kind::Pixels),
+        Engine::Baseline(Kind::Splats),
+        Engine::Baseline(Kind::Pixels),
     ];
     let plan = |points| Plan {
         wants: Wants::TIME,
-        ..plan(Suite::Yardstick, Figure::Yardstick, "scene:bumpy-sphere", points, SIZE)
+        ..plan(Suite::Baseline, Figure::Baseline, "scene:bumpy-sphere", points, SIZE)
     };
     let one = |points| engines.map(|engine| Plan { engine, ..plan(points) });
     [100_000, 1_000_000].map(one).concat()

@@ -1,10 +1,10 @@
-//! A tour of what happens to a window: other sizes, other surfels, many frames.
+//! Soak test of a window: many frames, changes of size and of surfels.
 
 /// So many frames have the same size.
 const SIZE_EVERY: u64 = 20;
 /// So many frames show the same surfels: changes of both fall together now and then, and mostly do not.
 const SURFELS_EVERY: u64 = 25;
-/// Frames of a tour of which nothing else is said.
+/// Frames of a soak test unless a number is given.
 pub const FRAMES: u64 = 1000;
 
 /// What comes before the next frame.
@@ -21,9 +21,9 @@ impl Step {
     pub const STAY: Self = Self { size: None, change: false };
 }
 
-/// How far a tour is.
+/// How far a soak is.
 #[derive(Clone, Debug)]
-pub struct Tour {
+pub struct Soak {
     frames: u64,
     drawn: u64,
     changes: u64,
@@ -34,8 +34,8 @@ pub struct Tour {
     missed: u64,
 }
 
-impl Tour {
-    /// A tour of so many frames.
+impl Soak {
+    /// A soak of so many frames.
     pub fn new(frames: u64) -> Self {
         Self { frames, drawn: 0, changes: 0, asked: None, taken: 0, missed: 0 }
     }

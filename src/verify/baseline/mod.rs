@@ -1,4 +1,4 @@
-//! The yardstick: what a plain native program makes of the same frames, without Vulkan. Times of a machine become comparable with
+//! The CPU baseline: what a plain native program makes of the same frames, without Vulkan. Times of a machine become comparable with
 //! those of another as multiples of it.
 //!
 //! It is frozen, so that multiples stay comparable from version to version: points, and base EWA splatting of circles and ellipses with a
@@ -46,7 +46,7 @@ use sums::Streams;
 use target::Target;
 use view::View;
 
-/// What a yardstick draws.
+/// What a baseline draws.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Kind {
     /// One pixel a surfel: its centre's, all of it. The nearest wins; of several as near the first.
@@ -68,7 +68,7 @@ pub struct Memory {
 
 /// Draws frames of one scene. A frame makes nothing that an earlier one of the same kind, size and outputs has made, but for lists that
 /// grow with what is seen.
-pub struct Yardstick {
+pub struct Baseline {
     surfels: Surfels,
     /// Linear light of the 8-bit sRGB codes.
     linear: [f32; 256],
@@ -78,7 +78,7 @@ pub struct Yardstick {
     stages: Stages,
 }
 
-impl Yardstick {
+impl Baseline {
     /// Takes a copy of the [valid](Surfels::is_valid) ones of `surfels`, which are best in Morton order ([`Surfels::sort_morton`]).
     ///
     /// # Errors
@@ -88,7 +88,10 @@ impl Yardstick {
         let surfels = surfels.valid();
         if surfels.is_empty() || surfels.len() >= FLIPPED as usize {
             let count = surfels.len();
-            return Err(Error::Usage(format!("{count} surfels: the yardstick draws 1 to {}", FLIPPED - 1)));
+            return Err(Error::Usage(format!(
+                "{count} surfels: the CPU baseline draws 1 to {}",
+                FLIPPED - 1
+            )));
         }
         Ok(Self {
             surfels,
@@ -116,7 +119,7 @@ impl Yardstick {
         settings.check()?;
         let counts = matches!(settings.shading, Shading::Overlap | Shading::Weight);
         if settings.splatting != Splatting::default() || counts || settings.alpha != Alpha::Mask {
-            let text = "the yardstick draws as perspective-ewa does, with a mask for α, and neither overlaps nor weights: choose those";
+            let text = "the CPU baseline draws as perspective-ewa does, with a mask for α, and neither overlaps nor weights: choose those";
             return Err(Error::Usage(text.into()));
         }
         let view = View::new(camera, size, self.surfels.origin)?;

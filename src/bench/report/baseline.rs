@@ -6,9 +6,9 @@ use crate::bench::show;
 use maud::{Markup, html};
 use std::io;
 
-/// A table: what was rendered, by whom, how long it took, and how often the yardstick fits into that.
+/// A table: what was rendered, by whom, how long it took, and how often the CPU baseline fits into that.
 pub fn part(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
-    let runs: Vec<&Run> = session.runs.iter().filter(|run| run.figure == Figure::Yardstick).collect();
+    let runs: Vec<&Run> = session.runs.iter().filter(|run| run.figure == Figure::Baseline).collect();
     if runs.is_empty() {
         return Ok(None);
     }
@@ -16,13 +16,13 @@ pub fn part(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
     let groups = grouped(runs, |run| (&run.scene, run.size, run.points));
     Ok(Some(html! {
         p {
-            "The yardstick is a plain native renderer: float32, points in Morton order, every core, no Vulkan. Its own rows are 1×. "
+            "The CPU baseline is a plain native renderer: float32, points in Morton order, every core, no Vulkan. Its own rows are 1×. "
             "Multiples travel from machine to machine where milliseconds do not."
         }
         div.scroll { table {
             thead { tr {
                 th scope="col" { "contender" } th scope="col" { "settings" } th.number scope="col" { "median, ms" }
-                th.number scope="col" { "range, ms" } th.number scope="col" { "× yardstick" }
+                th.number scope="col" { "range, ms" } th.number scope="col" { "× baseline" }
             } }
             @for ((scene, size, points), runs) in &groups { tbody {
                 tr.group { th colspan="5" scope="rowgroup" { (titled(scene, *size)) ", " (show::count(*points)) " points" } }
