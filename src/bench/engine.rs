@@ -49,7 +49,8 @@ impl Engine {
     }
 }
 
-/// The preset of that pull–push; of splats the first of those that differ along the fewest axes, and what is changed of it.
+/// The preset of that pull–push; of splats the one that differs along the fewest axes, of several the one with the same numbers or else the
+/// first, and what is changed of it.
 fn preset(settings: &Settings) -> (Method, Vec<String>) {
     let of_points = |method: &Method| method.pull_push.is_some() && method.pull_push == settings.pull_push;
     if let Some(method) = Method::ALL.into_iter().find(of_points) {
@@ -62,7 +63,9 @@ fn preset(settings: &Settings) -> (Method, Vec<String>) {
         pairs.map(|((axis, choice), _)| format!("{axis} {choice}")).collect::<Vec<_>>()
     };
     let all = Method::SPLATTING.map(|method| (method, changes(&method)));
-    let nearest = all.into_iter().min_by_key(|(_, changes)| changes.len());
+    let numbers = (settings.cutoff, settings.lowpass, settings.widen, settings.cull);
+    let differs = |method: &Method| (method.cutoff, method.lowpass, method.widen, method.cull) != numbers;
+    let nearest = all.into_iter().min_by_key(|(method, changes)| (changes.len(), differs(method)));
     nearest.unwrap_or((Method::SPLATTING[0], Vec::new()))
 }
 

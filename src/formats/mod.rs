@@ -3,8 +3,11 @@
 //! # How to add a format of point clouds
 //!
 //! 1. `formats/NAME.rs`: a unit struct that implements `Reader` (`formats/reader.rs`): its name, the extensions of its files, whether it knows a
-//!    file's beginning, and how it reads one to a [`Cloud`](crate::geometry::Cloud) and a [`Report`].
-//! 2. `formats/reader.rs`: its place in `READERS`. Whoever reads a file calls [`read`], which chooses by content, then by extension.
+//!    file's beginning (`None` where content does not tell), and how it reads one to a [`Cloud`](crate::geometry::Cloud) and a [`Report`]. It
+//!    tells the progress how far it is and ends with an error once that is cancelled, counts and leaves out points without a position, and
+//!    refuses a property (`ReadOptions::scalar`) that the file has not.
+//! 2. `formats/reader.rs`: its place in `READERS`; here `mod NAME;`. [`read`] chooses by content, then by extension; the window's list of
+//!    files goes by the extensions.
 
 pub mod atomic;
 #[cfg(feature = "serde")]
@@ -18,7 +21,7 @@ mod report;
 mod sniff;
 mod source;
 
-pub use reader::{Inspected, Loaded, ReadOptions, inspect, read, read_bytes};
+pub use reader::{Inspected, Loaded, ReadOptions, extensions, inspect, read, read_bytes};
 pub use report::{Dropped, Faces, Lines, Report};
 
 use crate::error::{Error, Result};

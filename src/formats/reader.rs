@@ -18,8 +18,8 @@ pub(super) trait Reader: Sync {
     /// Extensions of its files, in lower case.
     fn extensions(&self) -> &'static [&'static str];
 
-    /// Whether a file with this beginning is of the format.
-    fn knows(&self, beginning: &[u8]) -> bool;
+    /// Whether a file with this beginning is of the format; `None` where content does not tell.
+    fn knows(&self, beginning: &[u8]) -> Option<bool>;
 
     /// Reads what a file declares, and its points. Errors are causes, without the file's name.
     fn inspect(
@@ -84,7 +84,10 @@ pub struct Inspected<E = Error> {
 /// [`Error::Io`] if the file cannot be opened; [`Error::Input`] if no reader knows it, or what it declares cannot be read.
 pub fn inspect(path: &Path, options: &ReadOptions, progress: &dyn Progress) -> Result<Inspected> {
     let name = path.display().to_string();
-    let source = Source::open(path, |beginning| READERS.iter().any(|reader| reader.knows(beginning)))?;
+    let source = Source::open(path, |beginning| {
+        // A device need not end: it is read on only for a reader that may know what follows.
+        find(&name, beginning).is_some_and(|reader| reader.knows(beginning) != Some(false))
+    })?;
     let input = Input { name: &name, source, folder: path.parent() };
     inspect_input(&input, options, progress)
 }
@@ -117,11 +120,21 @@ fn inspect_input(input: &Input<'_>, options: &ReadOptions, progress: &dyn Progre
 /// The reader that knows a file's beginning, or else the one whose extension it has, which tells what is wrong with it.
 fn reader_of(input: &Input<'_>) -> Parsed<&'static dyn Reader> {
     let beginning = input.source.beginning()?;
-    let extension = input.name.rsplit_once('.').map(|(_, extension)| extension.to_lowercase());
+    find(input.name, &beginning).ok_or_else(|| sniff::name(input.name, &beginning, input.source.size()))
+}
+
+/// The reader of a file of this name with this beginning.
+fn find(name: &str, beginning: &[u8]) -> Option<&'static dyn Reader> {
+    let extension = name.rsplit_once('.').map(|(_, extension)| extension.to_lowercase());
     let has =
         |reader: &&&dyn Reader| extension.as_deref().is_some_and(|own| reader.extensions().contains(&own));
-    let known = READERS.iter().find(|reader| reader.knows(&beginning)).or_else(|| READERS.iter().find(has));
-    known.copied().ok_or_else(|| sniff::name(input.name, &beginning, input.source.size()))
+    let known = READERS.iter().find(|reader| reader.knows(beginning) == Some(true));
+    known.or_else(|| READERS.iter().find(has)).copied()
+}
+
+/// Extensions of the files that can be read, in lower case.
+pub fn extensions() -> impl Iterator<Item = &'static str> {
+    READERS.iter().flat_map(|reader| reader.extensions()).copied()
 }
 
 #[cfg(test)]

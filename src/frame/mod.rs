@@ -11,12 +11,18 @@
 //!
 //! 1. `shaders-glsl/NAME.glsl`: the shader. What it reads and writes is declared at the set and binding that its name has in all shaders: 0 the
 //!    scene's, or the view's numbers; 1 the targets; 2 the pyramid that is written; 3 the one that is read. `readonly` tells reads from writes.
-//!    Push constants are a block; what varies with the frame is a specialization constant. `tools/shaders` compiles it.
-//! 2. `frame/passes/NAME.rs`: a static `Pass` of that name: what it reads, writes and clears, its programs (shader, what they run over) and whether
-//!    they are dispatched or drawn. Layouts, barriers, label and timer follow; a test compares it with what the shader declares.
-//! 3. `frame/methods/METHOD.rs`: its place among the method's passes, for each path that has it.
-//! 4. `verify/reference/NAME.rs`: the same in float64, called where the reference makes a pixel.
-//! 5. A test that holds a picture to the reference.
+//!    Specialization constants are those of `Variant::constants`; numbers of the frame are in `Frame` (`lib/frame.glsl`). `tools/shaders`
+//!    compiles it; until then the build stops.
+//! 2. `frame/passes/NAME.rs`: a static `Pass` of that name: what it reads, what it writes (and maybe reads) and clears, its programs (shader, what
+//!    they run over) and whether they are dispatched or drawn. Layouts, barriers, label and timer follow; a test compares it with what the shader
+//!    declares.
+//! 3. `frame/methods/METHOD.rs`: its place among the method's passes, for each path that has it. After `normalize` and `shade` a pass works on
+//!    `Picture`, of compute shaders; drawn images are not seen by later passes.
+//! 4. `verify/reference/NAME.rs`, of pull–push `verify/reference/pull_push/NAME.rs`: the same in float64, called where the reference makes a pixel.
+//! 5. `tests/engine/NAME.rs`: holds a picture to the reference.
+//!
+//! A setting that chooses it is a field of [`Settings`](crate::Settings), of `Variant` where a frame may lack the pass, an option, and a field of reports
+//! and of what the window remembers.
 //!
 //! A buffer or an image that it hands on is a `Resource`, with a row in the table of targets.
 #![doc = include_str!("needs.md")]

@@ -2,6 +2,7 @@
 
 use egui::{Event, Id, Key, ScrollArea, TextEdit, Ui, Window};
 use std::path::{Path, PathBuf};
+use surfel::formats;
 
 /// The field that the name is typed in.
 const FIELD: &str = "open";
@@ -122,7 +123,7 @@ fn there(folder: &Path) -> Vec<String> {
                 return Some(format!("{name}/"));
             }
             let extension = Path::new(&name).extension()?.to_ascii_lowercase();
-            (extension == "ply" || extension == "json").then_some(name)
+            (extension == "json" || formats::extensions().any(|known| extension == known)).then_some(name)
         })
         .collect();
     names.sort();

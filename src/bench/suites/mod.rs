@@ -3,7 +3,8 @@
 //! # How to add a suite
 //!
 //! 1. `bench/suites/NAME.rs`: its [`Plan`]s, each a scene, cameras, sizes and settings.
-//! 2. Here: its variant, with its name, its plans and how many frames are timed.
+//! 2. Here: `mod NAME;`, its variant before [`Suite::Own`], which is the last, and its plans in [`Suite::plans`]. The variant's name in kebab case
+//!    and its documentation are those of `--suite`. [`Suite::effort`] and [`Suite::truth`] need an arm only if the usual ones do not fit.
 
 mod baseline;
 mod full;
@@ -24,6 +25,7 @@ use crate::verify::baseline::Kind;
 use crate::verify::scenes;
 use crate::verify::truth;
 use std::time::Duration;
+use strum::VariantArray;
 
 /// A suite.
 #[derive(
@@ -57,9 +59,11 @@ pub enum Suite {
 }
 
 impl Suite {
-    /// Those that need nothing from the user.
-    pub const BUILT_IN: [Self; 6] =
-        [Self::Quick, Self::Full, Self::Hard, Self::Scaling, Self::Baseline, Self::Papers];
+    /// Those that need nothing from the user: all but the last.
+    pub const BUILT_IN: &[Self] = match Self::VARIANTS.split_last() {
+        Some((_, built_in)) => built_in,
+        None => &[],
+    };
 
     /// Its runs, those of one scene one after the other; none of the hard cases, which are no runs. `own` is what the user brings.
     pub fn plans(self, own: &Own) -> Vec<Plan> {
@@ -181,7 +185,7 @@ mod tests {
     fn every_plan_is_of_a_scene_that_exists_and_of_its_suite() {
         // Opening a scene takes longer than all else.
         let mut opened = HashSet::new();
-        for suite in Suite::BUILT_IN {
+        for &suite in Suite::BUILT_IN {
             for plan in suite.plans(&Own::default()) {
                 assert_eq!(plan.suite, suite.name());
                 if opened.insert(plan.scene.clone()) {
@@ -195,7 +199,7 @@ mod tests {
 
     #[test]
     fn runs_of_a_scene_follow_each_other() {
-        for suite in Suite::BUILT_IN {
+        for &suite in Suite::BUILT_IN {
             let plans = suite.plans(&Own::default());
             for figure in plans.chunk_by(|a, b| (a.figure, &a.part) == (b.figure, &b.part)) {
                 let mut scenes: Vec<_> =

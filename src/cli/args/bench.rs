@@ -23,7 +23,7 @@ pub struct Bench {
     #[arg(long, value_name = "WxH", value_parser = size, requires = "inputs", allow_hyphen_values = true)]
     pub size: Option<[u32; 2]>,
     /// What is measured; quick unless something else, an INPUT or --from, is given
-    #[arg(long, value_parser = one_of(&Suite::BUILT_IN), value_delimiter = ',', value_name = "SUITE,…")]
+    #[arg(long, value_parser = one_of(Suite::BUILT_IN), value_delimiter = ',', value_name = "SUITE,…")]
     pub suite: Vec<Suite>,
     /// Shows what --json of earlier calls wrote, here or elsewhere, beside what is measured now
     #[arg(long, value_name = "FILE")]

@@ -92,8 +92,8 @@ impl Reader for Ply {
         &["ply"]
     }
 
-    fn knows(&self, beginning: &[u8]) -> bool {
-        header::is_ply(beginning)
+    fn knows(&self, beginning: &[u8]) -> Option<bool> {
+        Some(header::is_ply(beginning))
     }
 
     fn inspect(

@@ -3,7 +3,8 @@
 //! # How to add a method
 //!
 //! 1. `settings/methods/NAME.rs`: its paper and its pipeline figure in the documentation, and a [`Method`] of its choices.
-//! 2. Here: its module, and its place in [`Method::SPLATTING`] or [`Method::ALL`]. Command line, window, benchmark and tests go by these lists.
+//! 2. Here: its module, and its place at the end of [`Method::SPLATTING`], or of what [`Method::ALL`] adds to that: the first is the default.
+//!    Command line, window, benchmark and tests go by these lists.
 //!
 //! A method that needs a choice which no axis has adds it to the axis' enum in [`splatting`](super::splatting), to the shader that branches on it
 //! and to the reference function of the shader's name.
@@ -55,11 +56,6 @@ impl Method {
         Self::ALL.into_iter().find(|method| method.name == name)
     }
 
-    /// The preset with these axes.
-    pub fn of(splatting: &Splatting) -> Option<Self> {
-        Self::SPLATTING.into_iter().find(|method| method.splatting == *splatting)
-    }
-
     /// Its settings.
     pub fn settings(&self) -> Settings {
         Settings {
@@ -88,9 +84,6 @@ mod tests {
         for method in Method::ALL {
             method.settings().check().unwrap();
             assert_eq!(Method::named(method.name), Some(method));
-        }
-        for method in Method::SPLATTING {
-            assert_eq!(Method::of(&method.splatting), Some(method));
         }
     }
 }
