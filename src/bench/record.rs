@@ -489,3 +489,18 @@ impl Faults {
         *self == Self::default()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_no_number_is_null_and_comes_back_as_nan() {
+        let agreement =
+            Agreement { colour: f64::NAN, normal: f64::INFINITY, depth: 0.5, ..Default::default() };
+        let text = serde_json::to_string(&agreement).unwrap();
+        assert!(text.contains(r#""colour":null,"normal":null,"depth":0.5"#), "{text}");
+        let read: Agreement = serde_json::from_str(&text).unwrap();
+        assert!(read.colour.is_nan() && read.normal.is_nan() && read.depth == 0.5);
+    }
+}

@@ -17,7 +17,7 @@ const PERIOD: Duration = Duration::from_millis(80);
 /// Whatever is on the terminal now.
 static BARS: LazyLock<MultiProgress> = LazyLock::new(MultiProgress::new);
 
-/// Who is told about progress: bars where there is a terminal, and lines of notes; nobody where `quiet` is asked for.
+/// Prints notes, and draws progress bars where standard error is a terminal; silent if `quiet`.
 pub fn bars(quiet: bool) -> Box<dyn Listener> {
     match (quiet, io::stderr().is_terminal()) {
         (true, _) => Box::new(()),

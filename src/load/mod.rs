@@ -38,7 +38,7 @@ pub struct LoadOptions {
     pub texture: Option<Arc<MipMap>>,
 }
 
-/// Is told of a load beside how far it has come.
+/// Receives the progress of a load, notes on it, and a preview.
 pub trait Listener: Progress {
     /// A line on what was made of an input.
     fn note(&self, _text: &str) {}
@@ -52,7 +52,7 @@ pub trait Listener: Progress {
     fn preview(&self, _model: Model) {}
 }
 
-/// Nobody is told.
+/// Ignores everything.
 impl Listener for () {}
 
 /// Points of a preview.
@@ -341,9 +341,13 @@ pub fn scene_cloud(name: &str) -> Result<Cloud> {
 }
 
 /// The built-in scene that an input names; `None` if it is a file.
+#[cfg(feature = "scenes")]
 pub fn scene(input: &OsStr) -> Option<&str> {
-    #[cfg(feature = "scenes")]
-    return input.to_str().filter(|name| scenes::is_scene(name));
-    #[cfg(not(feature = "scenes"))]
-    return input.to_str().filter(|_| false);
+    input.to_str().filter(|name| scenes::is_scene(name))
+}
+
+/// None: the feature `scenes` is off.
+#[cfg(not(feature = "scenes"))]
+pub fn scene(_: &OsStr) -> Option<&str> {
+    None
 }

@@ -1,4 +1,4 @@
-//! Loading, while the window is there: a preview of many points first, then all of them, then fewer of them for while the hands move.
+//! Loading, while the window is there: a preview of many points first, then all of them, then coarser scenes for while the camera moves.
 
 use super::Loaded;
 use super::events::{Event, Events};

@@ -158,7 +158,7 @@ impl State {
         Some(shown.source.snapshot())
     }
 
-    /// Whether hands have moved the camera before a preview of this load.
+    /// Whether the user has moved the camera before a preview of this load.
     pub fn has_moved_preview(&self, load: u64) -> bool {
         let preview = self.shown.as_ref().filter(|shown| (shown.of.load, shown.of.preview) == (load, true));
         preview.is_some_and(|shown| shown.given(&self.lens).is_none())

@@ -51,6 +51,15 @@ fn every_case_with_only_small_splats_widened() {
 }
 
 #[test]
+fn clip_lines_are_ignored() {
+    let mut case = scenes::cases().into_iter().find(|case| case.surfels.clips.is_some()).unwrap();
+    let draw = |case: &Case| draw(Kind::Splats, &case.surfels, &case.cameras[0], case.size, &case.settings);
+    let clipped = draw(&case);
+    case.surfels.clips = None;
+    assert!(clipped == draw(&case) && clipped.colour.iter().any(|colour| colour[3] > 0.0));
+}
+
+#[test]
 fn invalid_surfels_are_left_out() {
     let case = &cases()[0];
     let (mut spoilt, camera) = (case.surfels.clone(), &case.cameras[0]);

@@ -2,13 +2,13 @@
 //! those of another as multiples of it.
 //!
 //! It is frozen, so that multiples stay comparable from version to version: points, and base EWA splatting of circles and ellipses with a
-//! mask for α. Clip lines are not known to it, so that splats are drawn whole.
+//! mask for α. It ignores clip lines: splats are drawn whole.
 //!
 //! Single precision on all threads of rayon's pool, for surfels in Morton order; it shares no code with the shaders or the float64
 //! [reference](crate::verify::reference), so that it is a third opinion on what a picture should be.
 //!
 //! The tests hold it to the reference with the allowance for rounding of [`Tolerance::float32`](crate::verify::reference::Tolerance::float32),
-//! in all of the hard scenes that the GPU is held to. Only the discs that these show within 1° of edge-on need it: their planes are kept
+//! in all of the hard scenes that the GPU is held to, but for those with clip lines. Only the discs that these show within 1° of edge-on need it: their planes are kept
 //! in single floats, where the shaders have sums of two.
 //!
 //! | kind | stages |
