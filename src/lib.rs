@@ -21,6 +21,7 @@
 //! | [`capture`] | normalization weights of surfels, from pictures of them | `reference` |
 //! | [`embed`] | the same frames within those of another renderer | |
 //! | [`bench`](mod@bench) | speed against error | `bench` |
+//! | [`guide`] | the manual: files, commands, methods, accuracy, cost, embedding | |
 //!
 //! ```no_run
 //! use surfel::geometry::Camera;
@@ -55,6 +56,7 @@ pub mod estimate;
 pub mod formats;
 pub mod frame;
 pub mod geometry;
+pub mod guide;
 #[cfg(all(feature = "io", feature = "estimate"))]
 pub mod load;
 pub mod picture;

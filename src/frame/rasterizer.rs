@@ -38,7 +38,7 @@ pub(crate) fn rasterizer_of(
 
 /// The faster of what `device` can do with the surfels of `scenes` by pull–push; lines and triangles are computed.
 ///
-/// Atomic minima are faster wherever they were measured: see README, Cost, and Schütz, Kerbl, Wimmer, *Rendering Point Clouds with Compute
+/// Atomic minima are faster wherever they were measured: see the guide, Cost, and Schütz, Kerbl, Wimmer, *Rendering Point Clouds with Compute
 /// Shaders and Vertex Order Optimization*, 2021.
 fn rasterizer_of_points(
     device: &Device,

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 /// The modules, layer by layer: what is in one may use its own layer's module and those of layers before it.
-const LAYERS: [&[&str]; 16] = [
+const LAYERS: [&[&str]; 17] = [
     &["error"],
     &["progress", "picture"],
     &["vk"],
@@ -20,6 +20,7 @@ const LAYERS: [&[&str]; 16] = [
     &["bench"],
     &["viewer"],
     &["cli"],
+    &["guide"],
 ];
 
 /// The layer of a module at the root of the crate; `None` of what is reexported there.

@@ -176,7 +176,7 @@ fn native_subpasses_start_from_depth_of_every_format_and_leave_such() {
             let same: Vec<bool> = colours.iter().zip(&expected).map(|(a, b)| a == b).collect();
             let different = same.iter().filter(|same| !**same).count();
             println!("{kind:?}: {different} of {shown}");
-            // What a seed may cost: see README, Embedding.
+            // What a seed may cost: see the guide, Accuracy.
             assert!(
                 same.len() == expected.len() && 1000 * different <= shown,
                 "{kind:?}: {different} of {shown}"

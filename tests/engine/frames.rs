@@ -383,7 +383,7 @@ fn too_few_storage_buffers_are_an_error() {
     assert_silent(&device);
 }
 
-/// The README's number: a scene with all that a surfel can have, by every method, counted, with coverage.
+/// The number in the guide's chapters on methods and embedding: a scene with all that a surfel can have, by every method, counted, with coverage.
 #[test]
 fn fourteen_storage_buffers_are_enough_and_no_fewer() {
     let surfels = weighted(rich(300));

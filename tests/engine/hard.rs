@@ -31,7 +31,7 @@ fn print(sweep: &Sweep) {
     }
 }
 
-/// The sweep's line of a method's table, for the first of which see the README: largest errors where float32 is not excused, then where it
+/// The sweep's line of a method's table, for the first of which see the guide, Accuracy: largest errors where float32 is not excused, then where it
 /// is.
 fn summarize(sweep: &Sweep, method: &Method) {
     let own = || sweep.points.iter().filter(|point| point.contender.method == method.name);
