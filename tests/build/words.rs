@@ -59,7 +59,8 @@ fn no_forbidden_word_is_used() {
     let list = std::fs::read_to_string(root.join("tests/words.txt")).expect("the list is there");
     let list = forbidden(&list);
     assert!(!list.is_empty());
-    let mut all: Vec<PathBuf> = vec![root.join("README.md"), root.join("build.rs")];
+    let mut all: Vec<PathBuf> =
+        ["README.md", "CONTRIBUTING.md", "build.rs"].map(|name| root.join(name)).into();
     for folder in ["src", "shaders-glsl", "tests", "benches", "tools"] {
         files(&root.join(folder), &mut all);
     }
