@@ -1,8 +1,10 @@
-//! What `build.rs` makes: compiled shaders, their reflection as Rust, the digest of the code; and what holds for all sources: layers, words.
+//! What `build.rs` makes: compiled shaders, their reflection as Rust, the digest of the code; and what holds for all
+//! sources and texts: layers, words, links.
 
 mod code_digest;
 mod hosts;
 mod layers;
+mod links;
 mod shaders;
 mod words;
 

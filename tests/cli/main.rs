@@ -6,6 +6,7 @@ mod colours;
 mod compare;
 mod convert;
 mod errors;
+mod guide;
 mod info;
 mod inputs;
 mod lines;
