@@ -3,7 +3,7 @@
 mod files;
 
 use super::events::Event;
-use super::hands::Hands;
+use super::input::InputState;
 use super::keep::Keep;
 use super::keys::{self, Action};
 use super::layout::Press;
@@ -45,7 +45,7 @@ pub fn run(options: Options, load: Load, look: Look) -> Result<()> {
     told.loading = (!options.inputs.is_empty()).then_some(LOADING);
     let known = remembered.filter(|_| !options.asked).and_then(|known| known.settings());
     let state = State::new(&options, look, known);
-    let hands = Hands::default();
+    let input = InputState::default();
     let window = events.create_proxy();
     // Whoever has closed the window wants no news.
     let tell = move |news| drop(window.send_event(news));
@@ -58,7 +58,7 @@ pub fn run(options: Options, load: Load, look: Look) -> Result<()> {
     watch.iter().for_each(|watch| watch.look_at(&options.inputs));
     let mut app = App {
         state,
-        hands,
+        input,
         told,
         loader,
         watch,
@@ -91,7 +91,7 @@ fn no_display(error: winit::error::EventLoopError) -> Error {
 
 struct App {
     state: State,
-    hands: Hands,
+    input: InputState,
     told: Told,
     loader: Loader,
     watch: Option<Watch>,
@@ -213,8 +213,8 @@ impl ApplicationHandler<News> for App {
             WindowEvent::DroppedFile(path) => self.dropped.push(path),
             WindowEvent::Resized(_) | WindowEvent::ScaleFactorChanged { .. } => opened.resized(),
             WindowEvent::RedrawRequested => self.draw(events),
-            WindowEvent::Focused(false) => self.hands.let_go(),
-            WindowEvent::ModifiersChanged(modifiers) => self.hands.modifiers = modifiers.state(),
+            WindowEvent::Focused(false) => self.input.release_all(),
+            WindowEvent::ModifiersChanged(modifiers) => self.input.modifiers = modifiers.state(),
             WindowEvent::MouseInput { state, button, .. } => self.press(button, state),
             WindowEvent::CursorMoved { position, .. } => self.drag(DVec2::new(position.x, position.y)),
             WindowEvent::MouseWheel { delta, .. } => {
@@ -222,7 +222,7 @@ impl ApplicationHandler<News> for App {
                     MouseScrollDelta::LineDelta(_, y) => f64::from(y),
                     MouseScrollDelta::PixelDelta(way) => way.y / PX_A_STEP,
                 };
-                self.state.zoom(steps, self.hands.cursor);
+                self.state.zoom(steps, self.input.cursor);
                 self.moved();
             }
             WindowEvent::KeyboardInput { event, .. } => self.key(events, &event),
@@ -270,7 +270,7 @@ impl App {
 
     fn draw(&mut self, events: &ActiveEventLoop) {
         let Some(opened) = &mut self.opened else { return };
-        let next = match opened.draw(&mut self.state, &self.hands, &mut self.told, &self.options.events) {
+        let next = match opened.draw(&mut self.state, &self.input, &mut self.told, &self.options.events) {
             Ok(next) => next.into_iter().chain(self.coarsen(Instant::now())).min(),
             Err(error) => return self.fail(events, error),
         };
@@ -303,14 +303,14 @@ impl App {
         if event.repeat {
             return;
         }
-        self.hands.hold(event.physical_key, event.state);
-        if self.hands.flight().is_some() {
+        self.input.key(event.physical_key, event.state);
+        if self.input.flight().is_some() {
             self.moved();
         }
         let press = Press::of(event);
         self.told.layout.learn(&press);
         let pressed = event.state == ElementState::Pressed;
-        let action = keys::action(&press, self.hands.modifiers).filter(|_| pressed);
+        let action = keys::action(&press, self.input.modifiers).filter(|_| pressed);
         if action.is_some() {
             (self.told.wrong, self.told.done) = (None, None);
         }
@@ -379,24 +379,24 @@ impl App {
 
     /// A button goes down or up: the surface under a double press is turned about.
     fn press(&mut self, button: MouseButton, state: ElementState) {
-        if self.hands.press(button, state, Instant::now()) {
-            self.state.pick = Some(self.hands.cursor);
+        if self.input.press(button, state, Instant::now()) {
+            self.state.pick = Some(self.input.cursor);
             self.changed();
         }
     }
 
     /// The cursor is somewhere else.
     fn drag(&mut self, to: DVec2) {
-        let way = to - self.hands.cursor;
-        self.hands.cursor = to;
-        let (button, shift) = (self.hands.button, self.hands.modifiers.shift_key());
-        let Some((orbit, lens, scene)) = self.state.moving() else { return };
+        let way = to - self.input.cursor;
+        self.input.cursor = to;
+        let (button, shift) = (self.input.button, self.input.modifiers.shift_key());
+        let Some((orbit, viewport, scene)) = self.state.moving() else { return };
         match button {
-            Some(MouseButton::Left) if !shift => orbit.turn(way, lens),
-            Some(MouseButton::Left | MouseButton::Middle) => orbit.pan(way, lens),
+            Some(MouseButton::Left) if !shift => orbit.turn(way, viewport),
+            Some(MouseButton::Left | MouseButton::Middle) => orbit.pan(way, viewport),
             Some(MouseButton::Right) => {
                 let steps = -way.y / PX_A_STEP;
-                orbit.zoom(steps, lens.middle(), None, lens, &scene.bounds());
+                orbit.zoom(steps, viewport.centre(), None, viewport, &scene.bounds());
             }
             _ => return,
         }

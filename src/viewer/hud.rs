@@ -20,7 +20,7 @@ pub struct Hud {
     renderer: Renderer<DefaultAllocator>,
     pool: CommandPool,
     context: egui::Context,
-    hands: egui_winit::State,
+    egui_state: egui_winit::State,
     textures: TexturesDelta,
     shapes: Vec<ClippedPrimitive>,
     /// When the panels want to be drawn again.
@@ -49,7 +49,8 @@ impl Hud {
     pub fn new(device: &Arc<Device>, window: &Window, overlay: vk::RenderPass) -> Result<Self> {
         let context = egui::Context::default();
         style::apply(&context);
-        let hands = egui_winit::State::new(context.clone(), egui::ViewportId::ROOT, window, None, None, None);
+        let egui_state =
+            egui_winit::State::new(context.clone(), egui::ViewportId::ROOT, window, None, None, None);
         let options = Options {
             in_flight_frames: FRAMES_IN_FLIGHT as usize,
             srgb_framebuffer: true,
@@ -65,7 +66,7 @@ impl Hud {
             renderer,
             pool,
             context,
-            hands,
+            egui_state,
             textures,
             shapes,
             wakes: None,
@@ -80,7 +81,7 @@ impl Hud {
 
     /// Tells the panels of an event; whether it is theirs, and whether they look different now.
     pub fn tell(&mut self, window: &Window, event: &WindowEvent) -> [bool; 2] {
-        let response = self.hands.on_window_event(window, event);
+        let response = self.egui_state.on_window_event(window, event);
         [self.is_theirs(event).unwrap_or(response.consumed), response.repaint]
     }
 
@@ -121,7 +122,7 @@ impl Hud {
 
     /// Lays the panels out, beside which the picture is; whether they want to be drawn again at once.
     pub fn lay_out(&mut self, window: &Window, state: &mut State, told: &mut Told) -> bool {
-        let input = self.hands.take_egui_input(window);
+        let input = self.egui_state.take_egui_input(window);
         let device = &self.device;
         let (free, covered) = (&mut self.free, &mut self.covered);
         let output = self.context.run_ui(input, |ui| {
@@ -129,12 +130,12 @@ impl Hud {
             *free = ui.available_rect_before_wrap();
         });
         let PhysicalSize { width, height } = window.inner_size();
-        state.lens.size = self.beside([width, height].map(|side| side.max(1)));
+        state.viewport.size = self.beside([width, height].map(|side| side.max(1)));
         if self.context.egui_is_using_pointer() {
             // An edge is taken hold of from a little beside it, too.
             self.held.clone_from(&self.down);
         }
-        self.hands.handle_platform_output(window, output.platform_output);
+        self.egui_state.handle_platform_output(window, output.platform_output);
         self.shapes = self.context.tessellate(output.shapes, output.pixels_per_point);
         self.textures.append(output.textures_delta);
         let delay = output.viewport_output.values().map(|viewport| viewport.repaint_delay).min();

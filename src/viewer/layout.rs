@@ -3,7 +3,7 @@
 //! Keys of flight are held, and lie as the fingers do: they are what they are by their places. All others are letters, which stand on the keys
 //! and in the list. Where a layout has such a letter on a key of flight, it is that letter with Alt.
 
-use super::hands::{FLIGHT, is_flight};
+use super::input::{FLIGHT, is_flight};
 use super::keys::Binding;
 use winit::event::KeyEvent;
 use winit::keyboard::{Key, KeyCode, ModifiersState, PhysicalKey};

@@ -1,8 +1,8 @@
-//! The window: the first host of the engine, by its public interface alone.
+//! The window of `surfel view`: a host of the engine that uses its public interface alone.
 //!
 //! ```text
 //! load, on a thread of its own ─→ scene ─┐
-//! hands ─ orbit → camera ────────────────┴─ screen → window
+//! input ─ orbit → camera ────────────────┴─ screen → window
 //! ```
 #![forbid(unsafe_code)]
 
@@ -10,13 +10,12 @@ mod about;
 mod app;
 mod cost;
 mod events;
-mod hands;
 mod hud;
+mod input;
 mod job;
 mod keep;
 mod keys;
 mod layout;
-mod lens;
 mod load;
 mod open;
 mod orbit;
@@ -29,6 +28,7 @@ mod side;
 mod source;
 mod state;
 mod style;
+mod viewport;
 mod watch;
 mod window;
 

@@ -3,7 +3,7 @@
 //! Places on the picture are in px from its top left; angles are radians. Nothing glides on: what the hands do is what moves, and the same
 //! hand's way moves the same, however many frames it takes.
 
-use super::lens::Lens;
+use super::viewport::Viewport;
 use glam::{DMat3, DVec2, DVec3};
 use surfel::geometry::{Bounds, Pose, Span};
 
@@ -76,16 +76,16 @@ fn level(up: DVec3) -> [DVec3; 2] {
 
 impl Orbit {
     /// Looks at the middle of `bounds` from the front, a little from the right and above, from where all of it is seen.
-    pub fn framing(bounds: &Bounds, up: Up, lens: &Lens) -> Self {
+    pub fn framing(bounds: &Bounds, up: Up, viewport: &Viewport) -> Self {
         let (eye, pivot) = (DVec3::ZERO, DVec3::ZERO);
         let mut orbit = Self { eye, pivot, up: up.vector(), yaw: 0.56, pitch: 0.4 };
-        orbit.frame(bounds, lens);
+        orbit.frame(bounds, viewport);
         orbit
     }
 
-    /// Looks from where `pose` does, about its target; `lens` sees what it sees. What is up in the picture is up in the world, unless the
+    /// Looks from where `pose` does, about its target; `viewport` sees what it sees. What is up in the picture is up in the world, unless the
     /// camera looks straight along `upright`: then that is.
-    pub fn of(pose: &Pose, upright: DVec3, lens: &mut Lens) -> Self {
+    pub fn of(pose: &Pose, upright: DVec3, viewport: &mut Viewport) -> Self {
         let forward = (pose.target - pose.eye).normalize();
         let up = match forward.cross(upright).length() < STRAIGHT {
             true => upright,
@@ -96,14 +96,14 @@ impl Orbit {
         let yaw = f64::atan2(-across.dot(towards), across.dot(right));
         let pitch = f64::atan2(-forward.dot(up), forward.cross(up).length());
         let mut orbit = Self { eye: pose.eye, pivot: pose.target, up, yaw, pitch };
-        lens.parallel = match pose.span {
+        viewport.parallel = match pose.span {
             Span::Angle(degrees) => {
-                lens.fov_y_deg = degrees;
+                viewport.fov_y_deg = degrees;
                 false
             }
             // Parallel rays show the same from anywhere along them.
             Span::Height(height) => {
-                orbit.eye = pose.target - 0.5 * height / lens.slope() * forward;
+                orbit.eye = pose.target - 0.5 * height / viewport.tan_half_fov() * forward;
                 true
             }
         };
@@ -132,58 +132,65 @@ impl Orbit {
     }
 
     /// Where it stands and looks, as a camera file has it.
-    pub fn pose(&self, lens: &Lens) -> Pose {
+    pub fn pose(&self, viewport: &Viewport) -> Pose {
         let [forward, _, above] = self.axes();
         let reach = self.distance().max(f64::MIN_POSITIVE);
-        let span = match lens.parallel {
-            true => Span::Height(lens.px(reach) * f64::from(lens.size[1])),
-            false => Span::Angle(lens.fov_y_deg),
+        let span = match viewport.parallel {
+            true => Span::Height(viewport.units_per_px(reach) * f64::from(viewport.size[1])),
+            false => Span::Angle(viewport.fov_y_deg),
         };
         let up = if self.pitch.cos() < STRAIGHT { above } else { self.up };
         Pose { eye: self.eye, target: self.eye + reach * forward, up, span }
     }
 
     /// Turns about the pivot as the cursor moves by `way`: the surface follows it.
-    pub fn turn(&mut self, way: DVec2, lens: &Lens) {
+    pub fn turn(&mut self, way: DVec2, viewport: &Viewport) {
         let before = self.rotation();
-        let angles = TURN / f64::from(lens.size[1]) * way;
+        let angles = TURN / f64::from(viewport.size[1]) * way;
         self.yaw -= angles.x;
         self.pitch = (self.pitch + angles.y).clamp(-0.5 * std::f64::consts::PI, 0.5 * std::f64::consts::PI);
         self.eye = self.pivot + self.rotation() * (before.transpose() * (self.eye - self.pivot));
     }
 
     /// Moves along the picture: what is as far as the pivot stays under the cursor, which moves by `way`.
-    pub fn pan(&mut self, way: DVec2, lens: &Lens) {
+    pub fn pan(&mut self, way: DVec2, viewport: &Viewport) {
         let [_, right, up] = self.axes();
-        let step = lens.px(self.distance()) * (way.x * right - way.y * up);
+        let step = viewport.units_per_px(self.distance()) * (way.x * right - way.y * up);
         self.eye -= step;
         self.pivot -= step;
     }
 
     /// So many steps of the wheel nearer to what is under the cursor, which stays there; `distance` is that of the surface at the cursor, or the
     /// pivot's.
-    pub fn zoom(&mut self, steps: f64, at: DVec2, distance: Option<f64>, lens: &Lens, bounds: &Bounds) {
+    pub fn zoom(
+        &mut self,
+        steps: f64,
+        at: DVec2,
+        distance: Option<f64>,
+        viewport: &Viewport,
+        bounds: &Bounds,
+    ) {
         let [least, most] = REACH.map(|reach| reach * bounds.radius);
         let reach = self.distance();
         let part = (reach * STEP.powf(steps)).clamp(least, most.max(reach)) / reach;
-        let under = self.point(at, distance.unwrap_or(reach), lens);
+        let under = self.point(at, distance.unwrap_or(reach), viewport);
         self.eye = under + part * (self.eye - under);
         self.pivot = under + part * (self.pivot - under);
     }
 
     /// The point at a distance ahead of the eye that is seen at `at`.
-    pub fn point(&self, at: DVec2, distance: f64, lens: &Lens) -> DVec3 {
+    pub fn point(&self, at: DVec2, distance: f64, viewport: &Viewport) -> DVec3 {
         let [forward, right, up] = self.axes();
-        let scale = lens.px(if lens.parallel { self.distance() } else { distance });
-        let at = scale * lens.off_middle(at);
+        let scale = viewport.units_per_px(if viewport.parallel { self.distance() } else { distance });
+        let at = scale * viewport.offset_from_centre(at);
         self.eye + distance * forward + at.x * right + at.y * up
     }
 
     /// Turns about this point from now on; the picture stays.
-    pub fn set_pivot(&mut self, point: DVec3, lens: &Lens) {
+    pub fn set_pivot(&mut self, point: DVec3, viewport: &Viewport) {
         let was = self.distance();
         self.pivot = point;
-        if lens.parallel {
+        if viewport.parallel {
             // Its distance has the picture's scale.
             self.eye += (self.distance() - was) * self.axes()[0];
         }
@@ -230,11 +237,11 @@ impl Orbit {
     }
 
     /// Shows all of `bounds`, from where it looks.
-    pub fn frame(&mut self, bounds: &Bounds, lens: &Lens) {
+    pub fn frame(&mut self, bounds: &Bounds, viewport: &Viewport) {
         let radius = if bounds.radius > 0.0 { 1.04 * bounds.radius } else { 1.0 };
-        let slope = lens.slopes().into_iter().fold(f64::INFINITY, f64::min);
+        let slope = viewport.tan_half_fovs().into_iter().fold(f64::INFINITY, f64::min);
         // The way from a sphere's centre to the edge of the view beside it: at right angles to that.
-        let slant = if lens.parallel { 1.0 } else { slope.hypot(1.0) };
+        let slant = if viewport.parallel { 1.0 } else { slope.hypot(1.0) };
         let reach = radius * slant / slope;
         self.pivot = bounds.centre();
         self.stand_back(reach);
@@ -248,7 +255,7 @@ mod tests {
     use surfel::Result;
     use surfel::geometry::Camera;
 
-    const LENS: Lens = Lens { size: [640, 480], fov_y_deg: 46.0, parallel: false };
+    const VIEWPORT: Viewport = Viewport { size: [640, 480], fov_y_deg: 46.0, parallel: false };
     const UPS: [Up; 6] = [
         Up { axis: 0, down: false },
         Up { axis: 1, down: false },
@@ -263,19 +270,19 @@ mod tests {
     }
 
     impl Orbit {
-        fn camera(&self, lens: &Lens, bounds: &Bounds) -> Result<Camera> {
-            self.pose(lens).camera(bounds, lens.aspect())
+        fn camera(&self, viewport: &Viewport, bounds: &Bounds) -> Result<Camera> {
+            self.pose(viewport).camera(bounds, viewport.aspect())
         }
     }
 
     /// Where a point is on the picture.
-    fn seen(orbit: &Orbit, lens: &Lens, point: DVec3) -> DVec2 {
-        let clip: DVec4 = orbit.camera(lens, &bounds()).unwrap().world_to_clip() * point.extend(1.0);
-        (clip.truncate().truncate() / clip.w * 0.5 + 0.5) * DVec2::from(lens.size.map(f64::from))
+    fn seen(orbit: &Orbit, viewport: &Viewport, point: DVec3) -> DVec2 {
+        let clip: DVec4 = orbit.camera(viewport, &bounds()).unwrap().world_to_clip() * point.extend(1.0);
+        (clip.truncate().truncate() / clip.w * 0.5 + 0.5) * DVec2::from(viewport.size.map(f64::from))
     }
 
-    fn lenses() -> [Lens; 2] {
-        [LENS, Lens { parallel: true, ..LENS }]
+    fn viewports() -> [Viewport; 2] {
+        [VIEWPORT, Viewport { parallel: true, ..VIEWPORT }]
     }
 
     fn near(a: DVec2, b: DVec2) -> bool {
@@ -285,17 +292,17 @@ mod tests {
     #[test]
     fn what_is_up_is_up_and_all_is_seen() {
         for up in UPS {
-            for lens in lenses() {
-                let orbit = Orbit::framing(&bounds(), up, &lens);
-                assert!(near(seen(&orbit, &lens, orbit.pivot), DVec2::new(320.0, 240.0)));
-                let above = seen(&orbit, &lens, orbit.pivot + 0.1 * up.vector());
+            for viewport in viewports() {
+                let orbit = Orbit::framing(&bounds(), up, &viewport);
+                assert!(near(seen(&orbit, &viewport, orbit.pivot), DVec2::new(320.0, 240.0)));
+                let above = seen(&orbit, &viewport, orbit.pivot + 0.1 * up.vector());
                 assert!((above.x - 320.0).abs() < 1e-6 && above.y < 239.0, "{up:?} {above}");
                 for i in 0..8 {
                     let corner = DVec3::from_array(std::array::from_fn(|axis| match i >> axis & 1 {
                         0 => bounds().min[axis],
                         _ => bounds().max[axis],
                     }));
-                    let at = seen(&orbit, &lens, corner);
+                    let at = seen(&orbit, &viewport, corner);
                     assert!(at.min_element() > 0.0 && at.x < 640.0 && at.y < 480.0, "{up:?} {at}");
                 }
             }
@@ -305,21 +312,21 @@ mod tests {
     #[test]
     fn what_is_framed_is_in_the_middle_and_touches_the_edges() {
         for size in [[640, 480], [324, 480], [884, 850], [568, 300], [164, 900], [400, 300], [200, 300]] {
-            for lens in lenses() {
-                let lens = Lens { size, ..lens };
-                let mut orbit = Orbit::framing(&bounds(), Up::Y, &lens);
+            for viewport in viewports() {
+                let viewport = Viewport { size, ..viewport };
+                let mut orbit = Orbit::framing(&bounds(), Up::Y, &viewport);
                 let [width, height] = size.map(f64::from);
                 let middle = 0.5 * DVec2::new(width, height);
                 let reach = orbit.distance();
                 for turned in 0..3 {
-                    assert!(near(seen(&orbit, &lens, orbit.pivot), middle), "{lens:?} {turned}");
+                    assert!(near(seen(&orbit, &viewport, orbit.pivot), middle), "{viewport:?} {turned}");
                     // Whatever is within 1.04 radii is seen, and something there only just.
                     let least = ball(&orbit).map(|point| {
-                        let at = seen(&orbit, &lens, point);
+                        let at = seen(&orbit, &viewport, point);
                         at.min_element().min(width - at.x).min(height - at.y)
                     });
                     let least = least.fold(f64::INFINITY, f64::min);
-                    assert!((-1e-6..0.01 * width).contains(&least), "{lens:?} {turned} {least}");
+                    assert!((-1e-6..0.01 * width).contains(&least), "{viewport:?} {turned} {least}");
                     assert!((orbit.distance() / reach - 1.0).abs() < 1e-9);
                     match turned {
                         0 => orbit.side(Side::Left),
@@ -345,13 +352,13 @@ mod tests {
     #[test]
     fn points_lie_where_they_are_seen_and_panning_takes_them_along() {
         let (at, way) = (DVec2::new(100.0, 400.0), DVec2::new(33.0, -21.0));
-        for lens in lenses() {
-            let mut orbit = Orbit::framing(&bounds(), Up::Y, &lens);
-            let [there, deeper] = [1.0, 1.4].map(|part| orbit.point(at, part * orbit.distance(), &lens));
-            assert!(near(seen(&orbit, &lens, there), at) && near(seen(&orbit, &lens, deeper), at));
+        for viewport in viewports() {
+            let mut orbit = Orbit::framing(&bounds(), Up::Y, &viewport);
+            let [there, deeper] = [1.0, 1.4].map(|part| orbit.point(at, part * orbit.distance(), &viewport));
+            assert!(near(seen(&orbit, &viewport, there), at) && near(seen(&orbit, &viewport, deeper), at));
             let before = orbit.distance();
-            orbit.pan(way, &lens);
-            assert!(near(seen(&orbit, &lens, there), at + way));
+            orbit.pan(way, &viewport);
+            assert!(near(seen(&orbit, &viewport, there), at + way));
             assert!((orbit.distance() - before).abs() < 1e-9);
         }
     }
@@ -359,55 +366,55 @@ mod tests {
     #[test]
     fn zooming_leaves_what_is_under_the_cursor() {
         let at = DVec2::new(500.0, 60.0);
-        for lens in lenses() {
-            let mut orbit = Orbit::framing(&bounds(), Up::Y, &lens);
+        for viewport in viewports() {
+            let mut orbit = Orbit::framing(&bounds(), Up::Y, &viewport);
             let (reach, surface) = (orbit.distance(), 0.7 * orbit.distance());
-            let there = orbit.point(at, surface, &lens);
-            orbit.zoom(3.0, at, Some(surface), &lens, &bounds());
-            assert!(near(seen(&orbit, &lens, there), at), "{lens:?}");
+            let there = orbit.point(at, surface, &viewport);
+            orbit.zoom(3.0, at, Some(surface), &viewport, &bounds());
+            assert!(near(seen(&orbit, &viewport, there), at), "{viewport:?}");
             assert!((orbit.distance() / reach - STEP.powi(3)).abs() < 1e-12);
             // One step at a time, and back, is the same.
             let mut steps = orbit;
-            (0..4).for_each(|_| steps.zoom(-0.75, at, None, &lens, &bounds()));
-            orbit.zoom(-3.0, at, None, &lens, &bounds());
+            (0..4).for_each(|_| steps.zoom(-0.75, at, None, &viewport, &bounds()));
+            orbit.zoom(-3.0, at, None, &viewport, &bounds());
             assert!(
                 (steps.eye - orbit.eye).length() < 1e-9 && (orbit.distance() / reach - 1.0).abs() < 1e-12
             );
-            (0..10).for_each(|_| orbit.zoom(1e3, at, None, &lens, &bounds()));
-            assert!(orbit.distance() > 0.0 && orbit.camera(&lens, &bounds()).is_ok());
+            (0..10).for_each(|_| orbit.zoom(1e3, at, None, &viewport, &bounds()));
+            assert!(orbit.distance() > 0.0 && orbit.camera(&viewport, &bounds()).is_ok());
         }
     }
 
     #[test]
     fn turning_keeps_the_distance_and_the_pivot_wherever_it_is() {
-        for lens in lenses() {
-            let mut orbit = Orbit::framing(&bounds(), Up::Y, &lens);
-            let pivot = orbit.point(DVec2::new(200.0, 300.0), 0.8 * orbit.distance(), &lens);
-            let (before, other) = (seen(&orbit, &lens, pivot), DVec3::new(0.3, 5.5, 4.0));
-            let place = seen(&orbit, &lens, other);
-            orbit.set_pivot(pivot, &lens);
-            assert!(near(seen(&orbit, &lens, pivot), before), "{lens:?}");
-            if !lens.parallel {
-                assert!(near(seen(&orbit, &lens, other), place), "the picture stays");
+        for viewport in viewports() {
+            let mut orbit = Orbit::framing(&bounds(), Up::Y, &viewport);
+            let pivot = orbit.point(DVec2::new(200.0, 300.0), 0.8 * orbit.distance(), &viewport);
+            let (before, other) = (seen(&orbit, &viewport, pivot), DVec3::new(0.3, 5.5, 4.0));
+            let place = seen(&orbit, &viewport, other);
+            orbit.set_pivot(pivot, &viewport);
+            assert!(near(seen(&orbit, &viewport, pivot), before), "{viewport:?}");
+            if !viewport.parallel {
+                assert!(near(seen(&orbit, &viewport, other), place), "the picture stays");
             }
             let far = (orbit.eye - pivot).length();
             let mut once = orbit;
-            once.turn(DVec2::new(80.0, 44.0), &lens);
-            (0..4).for_each(|_| orbit.turn(DVec2::new(20.0, 11.0), &lens));
+            once.turn(DVec2::new(80.0, 44.0), &viewport);
+            (0..4).for_each(|_| orbit.turn(DVec2::new(20.0, 11.0), &viewport));
             assert!((once.eye - orbit.eye).length() < 1e-9, "one way, or four parts of it");
             assert!(((orbit.eye - pivot).length() - far).abs() < 1e-9);
-            assert!(near(seen(&orbit, &lens, pivot), before), "the pivot stays where it is seen");
-            orbit.turn(DVec2::new(0.0, 1e5), &lens);
-            assert!(orbit.camera(&lens, &bounds()).is_ok(), "from straight above");
+            assert!(near(seen(&orbit, &viewport, pivot), before), "the pivot stays where it is seen");
+            orbit.turn(DVec2::new(0.0, 1e5), &viewport);
+            assert!(orbit.camera(&viewport, &bounds()).is_ok(), "from straight above");
         }
     }
 
     #[test]
     fn what_is_in_front_follows_the_cursor_as_it_turns() {
-        let mut orbit = Orbit::framing(&bounds(), Up::Y, &LENS);
+        let mut orbit = Orbit::framing(&bounds(), Up::Y, &VIEWPORT);
         let front = orbit.pivot - 0.1 * orbit.axes()[0];
-        orbit.turn(DVec2::new(10.0, 10.0), &LENS);
-        let moved = seen(&orbit, &LENS, front) - DVec2::new(320.0, 240.0);
+        orbit.turn(DVec2::new(10.0, 10.0), &VIEWPORT);
+        let moved = seen(&orbit, &VIEWPORT, front) - DVec2::new(320.0, 240.0);
         assert!(moved.x > 0.0 && moved.y > 0.0, "{moved}");
     }
 
@@ -421,20 +428,20 @@ mod tests {
             (Side::Top, DVec3::Y),
             (Side::Bottom, DVec3::NEG_Y),
         ] {
-            let mut orbit = Orbit::framing(&bounds(), Up::Y, &LENS);
+            let mut orbit = Orbit::framing(&bounds(), Up::Y, &VIEWPORT);
             let reach = orbit.distance();
             orbit.side(side);
             assert!((orbit.eye - (orbit.pivot + reach * from)).length() < 1e-9, "{side:?} {}", orbit.eye);
-            assert!(orbit.camera(&LENS, &bounds()).is_ok());
+            assert!(orbit.camera(&VIEWPORT, &bounds()).is_ok());
         }
-        let mut orbit = Orbit::framing(&bounds(), Up { axis: 2, down: false }, &LENS);
+        let mut orbit = Orbit::framing(&bounds(), Up { axis: 2, down: false }, &VIEWPORT);
         orbit.side(Side::Front);
         assert!((orbit.eye - orbit.pivot).normalize().abs_diff_eq(DVec3::NEG_Y, 1e-9), "z up: from −y");
     }
 
     #[test]
     fn flight_takes_the_pivot_along() {
-        let mut orbit = Orbit::framing(&bounds(), Up::Y, &LENS);
+        let mut orbit = Orbit::framing(&bounds(), Up::Y, &VIEWPORT);
         let (eye, reach) = (orbit.eye, orbit.distance());
         let mut parts = orbit;
         orbit.fly(DVec3::new(0.0, 0.0, 1.0), 0.5);
@@ -450,17 +457,17 @@ mod tests {
         for up in [DVec3::Y, DVec3::NEG_Z, DVec3::new(0.2, -1.0, 0.7), DVec3::new(5.0, 0.0, 0.1)] {
             for span in spans {
                 let pose = Pose { eye: DVec3::new(9.0, 8.0, -11.0), target: points[0], up, span };
-                let mut lens = LENS;
-                let orbit = Orbit::of(&pose, DVec3::Y, &mut lens);
-                let camera = pose.camera(&bounds(), lens.aspect()).unwrap();
+                let mut viewport = VIEWPORT;
+                let orbit = Orbit::of(&pose, DVec3::Y, &mut viewport);
+                let camera = pose.camera(&bounds(), viewport.aspect()).unwrap();
                 for point in points {
                     let clip: DVec4 = camera.world_to_clip() * point.extend(1.0);
                     let at = (clip.truncate().truncate() / clip.w * 0.5 + 0.5) * DVec2::new(640.0, 480.0);
-                    assert!(near(seen(&orbit, &lens, point), at), "{pose:?}");
+                    assert!(near(seen(&orbit, &viewport, point), at), "{pose:?}");
                 }
                 let mut turned = orbit;
-                turned.turn(DVec2::new(50.0, 30.0), &lens);
-                let above = seen(&turned, &lens, turned.pivot + 0.1 * up.normalize());
+                turned.turn(DVec2::new(50.0, 30.0), &viewport);
+                let above = seen(&turned, &viewport, turned.pivot + 0.1 * up.normalize());
                 assert!((above.x - 320.0).abs() < 1e-6, "{up}: upright still, {above}");
             }
         }
@@ -469,16 +476,16 @@ mod tests {
     #[test]
     fn a_camera_that_was_kept_goes_on_as_it_was() {
         for up in UPS {
-            for start in lenses() {
+            for start in viewports() {
                 for way in [DVec2::new(70.0, -20.0), DVec2::new(-30.0, 1e5)] {
                     let mut orbit = Orbit::framing(&bounds(), up, &start);
                     orbit.turn(way, &start);
-                    let mut lens = Lens { parallel: !start.parallel, ..start };
-                    let mut again = Orbit::of(&orbit.pose(&start), up.vector(), &mut lens);
-                    assert_eq!(lens.parallel, start.parallel);
+                    let mut viewport = Viewport { parallel: !start.parallel, ..start };
+                    let mut again = Orbit::of(&orbit.pose(&start), up.vector(), &mut viewport);
+                    assert_eq!(viewport.parallel, start.parallel);
                     assert!((again.eye - orbit.eye).length() < 1e-9, "{up:?} {way}");
                     let next = DVec2::new(11.0, -40.0);
-                    again.turn(next, &lens);
+                    again.turn(next, &viewport);
                     orbit.turn(next, &start);
                     assert!((again.eye - orbit.eye).length() < 1e-6, "{up:?} {way} {start:?}");
                 }

@@ -448,7 +448,7 @@ mod tests {
     }
 
     #[test]
-    fn a_range_that_hands_have_chosen_is_that_of_the_next_state_too() {
+    fn a_range_that_the_user_chose_applies_to_the_next_state() {
         let range = |min, max| ValueRange { min, max };
         let next = |wish: &Wish| {
             let mut next = source([vec![1.0, 2.0, 9.0], vec![]]);

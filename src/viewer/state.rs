@@ -2,11 +2,11 @@
 
 use super::about::thousands;
 use super::keys::Action;
-use super::lens::Lens;
 use super::open::{Answer, Opening};
 use super::orbit::{Orbit, Up};
 use super::pace::Sight;
 use super::source::{Source, Wish};
+use super::viewport::Viewport;
 use super::{Look, Options};
 use glam::{DVec2, DVec3};
 use std::borrow::Cow;
@@ -20,7 +20,7 @@ use surfel::{Rasterizer, Result, Scene, Settings};
 
 /// What is looked at, and how.
 pub struct State {
-    pub lens: Lens,
+    pub viewport: Viewport,
     up: Up,
     look: Look,
     rasterizer: Option<Rasterizer>,
@@ -72,16 +72,16 @@ struct Shown {
     /// As it was framed.
     framed: Orbit,
     /// The camera that the hands were given, and what they have made of it: until they move it is that, bit for bit.
-    given: Option<(Orbit, Lens, Pose)>,
+    given: Option<(Orbit, Viewport, Pose)>,
     method: Method,
     settings: Settings,
 }
 
 impl State {
     pub fn new(options: &Options, look: Look, remembered: Option<(Method, Settings)>) -> Self {
-        let lens = Lens { size: options.size, fov_y_deg: options.fov_y_deg, parallel: false };
+        let viewport = Viewport { size: options.size, fov_y_deg: options.fov_y_deg, parallel: false };
         Self {
-            lens,
+            viewport,
             up: nearest(options.up),
             look,
             rasterizer: options.rasterizer,
@@ -98,7 +98,7 @@ impl State {
 
     /// Looks at the scene of a load from the front; or at all of what was a preview as at that, and so at what is loaded again.
     pub fn show(&mut self, scene: Arc<Scene>, (method, mut source): (Method, Source), of: Of) {
-        let framed = Orbit::framing(&scene.bounds(), self.up, &self.lens);
+        let framed = Orbit::framing(&scene.bounds(), self.up, &self.viewport);
         let (coarser, given) = (Vec::new(), None);
         let left = self.left.take().map(|(method, settings, wish)| {
             source.change_as(&wish);
@@ -161,7 +161,7 @@ impl State {
     /// Whether the user has moved the camera before a preview of this load.
     pub fn has_moved_preview(&self, load: u64) -> bool {
         let preview = self.shown.as_ref().filter(|shown| (shown.of.load, shown.of.preview) == (load, true));
-        preview.is_some_and(|shown| shown.given(&self.lens).is_none())
+        preview.is_some_and(|shown| shown.given(&self.viewport).is_none())
     }
 
     /// Leaves the scene, with all that the device has of it; the next one, if it is the `same`, is shown as this one was. From where that was seen.
@@ -175,9 +175,9 @@ impl State {
 
     /// Looks from where this camera does, and turns about its target.
     pub fn look_from(&mut self, pose: Pose) {
-        let Self { shown: Some(shown), lens, .. } = self else { return };
-        shown.orbit = Orbit::of(&pose, shown.orbit.up(), lens);
-        shown.given = Some((shown.orbit, *lens, pose));
+        let Self { shown: Some(shown), viewport, .. } = self else { return };
+        shown.orbit = Orbit::of(&pose, shown.orbit.up(), viewport);
+        shown.given = Some((shown.orbit, *viewport, pose));
     }
 
     /// Looks at what was before the preview, if that is what is looked at.
@@ -202,12 +202,12 @@ impl State {
     /// What there is to be seen, for who chooses how much of it is.
     pub fn sight(&self) -> Option<Sight> {
         let Shown { scene, coarser, orbit, .. } = self.shown.as_ref()?;
-        let [width, height] = self.lens.size.map(f64::from);
+        let [width, height] = self.viewport.size.map(f64::from);
         let scenes = std::iter::once(scene).chain(coarser);
         Some(Sight {
             pixels: width * height,
             surfels: scenes.map(|scene| scene.count() as f64).collect(),
-            across: 2.0 * scene.bounds().radius / self.lens.px(orbit.distance()),
+            across: 2.0 * scene.bounds().radius / self.viewport.units_per_px(orbit.distance()),
         })
     }
 
@@ -224,36 +224,36 @@ impl State {
     /// From where the scene is seen.
     pub fn pose(&self) -> Option<Pose> {
         let shown = self.shown.as_ref()?;
-        Some(shown.given(&self.lens).unwrap_or_else(|| shown.orbit.pose(&self.lens)))
+        Some(shown.given(&self.viewport).unwrap_or_else(|| shown.orbit.pose(&self.viewport)))
     }
 
     /// The scene, or the coarser one of this number, from where and how it is seen.
     pub fn frame(&self, number: usize) -> Option<Result<Seen<'_>>> {
         let Shown { scene, coarser, settings, .. } = self.shown.as_ref()?;
-        let camera = self.pose()?.camera(&scene.bounds(), self.lens.aspect());
+        let camera = self.pose()?.camera(&scene.bounds(), self.viewport.aspect());
         let fewer = number.checked_sub(1).and_then(|number| coarser.get(number));
         let seen = fewer.map_or((scene, Cow::Borrowed(settings)), |fewer| (fewer, quick(settings)));
         Some(camera.map(|camera| (seen.0, camera, seen.1)))
     }
 
     /// The camera and the bounds of what it sees.
-    pub fn moving(&mut self) -> Option<(&mut Orbit, &Lens, &Scene)> {
-        let Self { shown: Some(Shown { orbit, scene, .. }), lens, .. } = self else { return None };
-        Some((orbit, lens, scene))
+    pub fn moving(&mut self) -> Option<(&mut Orbit, &Viewport, &Scene)> {
+        let Self { shown: Some(Shown { orbit, scene, .. }), viewport, .. } = self else { return None };
+        Some((orbit, viewport, scene))
     }
 
     /// Nearer by so many steps of the wheel, to what is at `at`.
     pub fn zoom(&mut self, steps: f64, at: DVec2) {
-        if let Some((orbit, lens, scene)) = self.moving() {
-            orbit.zoom(steps, at, None, lens, &scene.bounds());
+        if let Some((orbit, viewport, scene)) = self.moving() {
+            orbit.zoom(steps, at, None, viewport, &scene.bounds());
         }
     }
 
     /// Turns from now on about what is at `at`, so far ahead of the eye; the picture stays. Nothing is infinitely far.
     pub fn set_pivot(&mut self, at: DVec2, distance: f64) {
-        let Some((orbit, lens, _)) = self.moving() else { return };
+        let Some((orbit, viewport, _)) = self.moving() else { return };
         if distance.is_finite() {
-            orbit.set_pivot(orbit.point(at, distance, lens), lens);
+            orbit.set_pivot(orbit.point(at, distance, viewport), viewport);
         }
     }
 
@@ -284,7 +284,8 @@ impl State {
     /// What can be chosen, where something is shown.
     pub fn choices(&mut self) -> Option<Choices<'_>> {
         let camera = self.frame(0).map(|frame| frame.map(|(_, camera, _)| camera));
-        let Self { shown: Some(Shown { method, settings, scene, source, .. }), lens, look, .. } = self else {
+        let Self { shown: Some(Shown { method, settings, scene, source, .. }), viewport, look, .. } = self
+        else {
             return None;
         };
         let streams = scene.streams();
@@ -297,8 +298,8 @@ impl State {
             weighted: streams.weights.is_some(),
             scene,
             camera,
-            size: lens.size,
-            parallel: &mut lens.parallel,
+            size: viewport.size,
+            parallel: &mut viewport.parallel,
             rasterizer: self.rasterizer,
             look,
         })
@@ -317,8 +318,8 @@ impl State {
                     Shading::ALL.iter().cycle().skip_while(|shading| **shading != shown.settings.shading);
                 shown.settings.shading = after.skip(1).copied().next().unwrap_or(Shading::Lit);
             }
-            Action::Parallel => self.lens.parallel = !self.lens.parallel,
-            Action::Frame => shown.orbit.frame(&shown.scene.bounds(), &self.lens),
+            Action::Parallel => self.viewport.parallel = !self.viewport.parallel,
+            Action::Frame => shown.orbit.frame(&shown.scene.bounds(), &self.viewport),
             Action::Side(side) => shown.orbit.side(side),
             Action::Up(up) => {
                 let down = shown.orbit.up() == up.vector();
@@ -374,9 +375,9 @@ impl Shown {
     }
 
     /// The camera that the hands were given, until they move it.
-    fn given(&self, lens: &Lens) -> Option<Pose> {
-        let still = |(orbit, was, _): &(Orbit, Lens, Pose)| {
-            *orbit == self.orbit && Lens { size: was.size, ..*lens } == *was
+    fn given(&self, viewport: &Viewport) -> Option<Pose> {
+        let still = |(orbit, was, _): &(Orbit, Viewport, Pose)| {
+            *orbit == self.orbit && Viewport { size: was.size, ..*viewport } == *was
         };
         self.given.filter(still).map(|(.., pose)| pose)
     }

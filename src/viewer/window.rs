@@ -2,8 +2,8 @@
 
 use super::Options;
 use super::events::{Event, Events, Shown};
-use super::hands::Hands;
 use super::hud::Hud;
+use super::input::InputState;
 use super::keep::Shot;
 use super::pace::{Frame, Pace, Quality};
 use super::panels::Told;
@@ -94,7 +94,7 @@ impl Opened {
         self.hud.lay_out(&self.window, state, told);
         let Self { presenter, hud, screen, window, .. } = self;
         let PhysicalSize { width, height } = window.inner_size();
-        let (whole, size) = ([width, height].map(|side| side.max(1)), state.lens.size);
+        let (whole, size) = ([width, height].map(|side| side.max(1)), state.viewport.size);
         let seen = state.frame(0).transpose()?;
         let seen = seen.as_ref().map(|(scene, camera, settings)| (*scene, camera, &**settings));
         let pixels = presenter.capture(whole, |frame| {
@@ -108,12 +108,12 @@ impl Opened {
     pub fn draw(
         &mut self,
         state: &mut State,
-        hands: &Hands,
+        input: &InputState,
         told: &mut Told,
         events: &Events,
     ) -> Result<Option<Instant>> {
         let start = Instant::now();
-        self.fly(state, hands, start);
+        self.fly(state, input, start);
         let look = state.look().map(|(scene, settings)| Look { scene, settings, beside: told.beside(state) });
         if self.look != look {
             self.pace.forget();
@@ -125,9 +125,9 @@ impl Opened {
         told.side = quality.side;
         told.surfels =
             sight.as_ref().and_then(|sight| sight.surfels.get(quality.scene)).copied().unwrap_or(0.0);
-        let size = state.lens.size;
+        let size = state.viewport.size;
         let again = self.hud.lay_out(&self.window, state, told);
-        if state.lens.size != size && self.pace.is_known() {
+        if state.viewport.size != size && self.pace.is_known() {
             // An edge is dragged: whole pictures come when it rests.
             self.pace.moved(start);
         }
@@ -154,7 +154,7 @@ impl Opened {
         if let Some(picture) = picture.filter(|_| shown && !behind) {
             events.tell(&Event::Picture(picture));
         }
-        let flies = hands.flight().is_some();
+        let flies = input.flight().is_some();
         self.last = flies.then_some(start);
         if behind {
             // A window without an extent tells when it has one again.
@@ -186,8 +186,8 @@ impl Opened {
         Ok(())
     }
 
-    fn fly(&mut self, state: &mut State, hands: &Hands, now: Instant) {
-        let Some((way, (orbit, ..))) = hands.flight().zip(state.moving()) else { return };
+    fn fly(&mut self, state: &mut State, input: &InputState, now: Instant) {
+        let Some((way, (orbit, ..))) = input.flight().zip(state.moving()) else { return };
         let seconds = self.last.map_or(0.0, |last| (now - last).as_secs_f64());
         orbit.fly(way, seconds.min(0.25));
         self.pace.moved(now);
@@ -200,7 +200,7 @@ impl Opened {
         let mut refused = told.refused.clone();
         let shown = presenter.present([width, height], |frame| {
             let area = hud.beside(frame.size());
-            state.lens.size = area;
+            state.viewport.size = area;
             let size = area.map(|length| side_of(length, quality.side));
             let seen = state.frame(quality.scene).transpose()?;
             let seen = seen.as_ref().map(|(scene, camera, settings)| (*scene, camera, &**settings));
@@ -223,7 +223,7 @@ impl Opened {
     /// Turns about what is under the cursor from now on, if something is.
     fn pick(&mut self, state: &mut State) -> Result<()> {
         let Some(at) = state.pick.take() else { return Ok(()) };
-        let depth = self.screen.pick(Pick { at, size: state.lens.size }, &self.presenter)?;
+        let depth = self.screen.pick(Pick { at, size: state.viewport.size }, &self.presenter)?;
         if let (Some(depth), Some(seen)) = (depth, state.frame(0).transpose()?) {
             let distance = seen.1.distance(depth)?;
             state.set_pivot(at, distance);
@@ -245,7 +245,7 @@ fn picture<'a>(
         method,
         shading,
         size,
-        picture: state.lens.size,
+        picture: state.viewport.size,
         side: told.side,
         surfels: told.surfels as u64,
         preview: state.is_preview(),

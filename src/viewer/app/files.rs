@@ -20,7 +20,7 @@ impl App {
     pub(super) fn show(&mut self, scene: Arc<Scene>, made: (Method, Source), of: Of) -> Result<()> {
         let moved = self.state.has_moved_preview(of.load);
         self.is_first &= self.state.moving().is_none() || self.state.is_preview();
-        let asked = (self.options.place)(&scene.bounds(), self.state.lens.size).filter(|_| self.is_first);
+        let asked = (self.options.place)(&scene.bounds(), self.state.viewport.size).filter(|_| self.is_first);
         let next = if of.preview { self.next } else { self.next.take() };
         let pose = next.map(Ok).or(asked).filter(|_| !moved).transpose()?;
         if let Some(pose) = &pose {
@@ -68,7 +68,7 @@ impl App {
     /// Keeps, copies or asks for what `action` says.
     pub(super) fn keep(&mut self, action: Action) -> Result<()> {
         if action == Action::Open {
-            self.hands.let_go();
+            self.input.release_all();
             self.state.opening = Some(Opening::at(&self.options.keep.path));
             self.changed();
             return Ok(());
@@ -103,7 +103,7 @@ impl App {
         let shot = match what {
             What::Window => opened.capture(state, told)?,
             What::Picture | What::Values => {
-                let size = state.lens.size;
+                let size = state.viewport.size;
                 let Some(seen) = state.frame(0) else { return Ok(()) };
                 let (scene, camera, settings) = seen?;
                 let how = (size, self.options.rasterizer);

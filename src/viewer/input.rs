@@ -18,17 +18,17 @@ pub struct Flight {
     /// What a US keyboard has there.
     pub name: &'static str,
     /// Where it flies to: right, up, ahead.
-    way: DVec3,
+    direction: DVec3,
 }
 
 /// All of them: ahead, left, back, right, up, down.
 pub const FLIGHT: [Flight; 6] = [
-    Flight { key: KeyCode::KeyW, name: "W", way: DVec3::Z },
-    Flight { key: KeyCode::KeyA, name: "A", way: DVec3::NEG_X },
-    Flight { key: KeyCode::KeyS, name: "S", way: DVec3::NEG_Z },
-    Flight { key: KeyCode::KeyD, name: "D", way: DVec3::X },
-    Flight { key: KeyCode::KeyE, name: "E", way: DVec3::Y },
-    Flight { key: KeyCode::KeyQ, name: "Q", way: DVec3::NEG_Y },
+    Flight { key: KeyCode::KeyW, name: "W", direction: DVec3::Z },
+    Flight { key: KeyCode::KeyA, name: "A", direction: DVec3::NEG_X },
+    Flight { key: KeyCode::KeyS, name: "S", direction: DVec3::NEG_Z },
+    Flight { key: KeyCode::KeyD, name: "D", direction: DVec3::X },
+    Flight { key: KeyCode::KeyE, name: "E", direction: DVec3::Y },
+    Flight { key: KeyCode::KeyQ, name: "Q", direction: DVec3::NEG_Y },
 ];
 
 /// Whether a key is one of flight, by its place.
@@ -38,16 +38,16 @@ pub fn is_flight(place: PhysicalKey) -> bool {
 
 /// What is held.
 #[derive(Default)]
-pub struct Hands {
+pub struct InputState {
     /// Px from the picture's top left.
     pub cursor: DVec2,
     pub button: Option<MouseButton>,
     pub modifiers: ModifiersState,
     held: HashSet<KeyCode>,
-    pressed: Option<(Instant, DVec2)>,
+    last_press: Option<(Instant, DVec2)>,
 }
 
-impl Hands {
+impl InputState {
     /// A button goes down or up; whether it is the left one for the second time in a row.
     pub fn press(&mut self, button: MouseButton, state: ElementState, now: Instant) -> bool {
         self.button = (state == ElementState::Pressed).then_some(button);
@@ -55,38 +55,38 @@ impl Hands {
             return false;
         }
         let soon = |(then, at): (Instant, DVec2)| now < then + DOUBLE && at.distance(self.cursor) <= NEAR;
-        let double = self.pressed.is_some_and(soon);
+        let double = self.last_press.is_some_and(soon);
         // A third one begins anew.
-        self.pressed = (!double).then_some((now, self.cursor));
+        self.last_press = (!double).then_some((now, self.cursor));
         double
     }
 
     /// A key goes down or up; with Ctrl, Alt or the system's key it is not held, even when that is let go first.
-    pub fn hold(&mut self, key: PhysicalKey, state: ElementState) {
+    pub fn key(&mut self, key: PhysicalKey, state: ElementState) {
         let PhysicalKey::Code(key) = key else { return };
         if state == ElementState::Released {
             self.held.remove(&key);
-        } else if self.is_alone() {
+        } else if self.has_no_modifiers() {
             self.held.insert(key);
         }
     }
 
     /// Whether keys are what they are alone, or with Shift: Ctrl+S is no flight.
-    fn is_alone(&self) -> bool {
+    fn has_no_modifiers(&self) -> bool {
         !(self.modifiers.control_key() || self.modifiers.alt_key() || self.modifiers.super_key())
     }
 
     /// Nothing is held: the window does not see any more what is let go.
-    pub fn let_go(&mut self) {
-        (self.button, self.pressed) = (None, None);
+    pub fn release_all(&mut self) {
+        (self.button, self.last_press) = (None, None);
         self.held.clear();
     }
 
     /// Where the keys fly to, right, up and ahead, each from −1 to 1; `None` if they do not.
     pub fn flight(&self) -> Option<DVec3> {
-        let held = FLIGHT.iter().filter(|flight| self.is_alone() && self.held.contains(&flight.key));
-        let way: DVec3 = held.map(|flight| flight.way).sum();
-        (way != DVec3::ZERO).then_some(way)
+        let held = FLIGHT.iter().filter(|flight| self.has_no_modifiers() && self.held.contains(&flight.key));
+        let direction: DVec3 = held.map(|flight| flight.direction).sum();
+        (direction != DVec3::ZERO).then_some(direction)
     }
 }
 
@@ -96,10 +96,10 @@ mod tests {
 
     #[test]
     fn two_presses_soon_and_near_are_one_double_press() {
-        let (mut hands, start) = (Hands::default(), Instant::now());
+        let (mut input, start) = (InputState::default(), Instant::now());
         let mut press = |ms, x| {
-            hands.cursor = DVec2::new(x, 0.0);
-            hands.press(MouseButton::Left, ElementState::Pressed, start + Duration::from_millis(ms))
+            input.cursor = DVec2::new(x, 0.0);
+            input.press(MouseButton::Left, ElementState::Pressed, start + Duration::from_millis(ms))
         };
         let times = [(0, 0.0), (200, 1.0), (300, 1.0), (400, 50.0), (900, 50.0), (1000, 50.0)];
         assert_eq!(times.map(|(ms, x)| press(ms, x)), [false, true, false, false, false, true]);
@@ -107,23 +107,23 @@ mod tests {
 
     #[test]
     fn keys_that_are_held_fly_and_those_of_other_ways_cancel() {
-        let mut hands = Hands::default();
+        let mut input = InputState::default();
         let key = |code| PhysicalKey::Code(code);
-        assert_eq!(hands.flight(), None);
-        hands.hold(key(KeyCode::KeyW), ElementState::Pressed);
-        hands.hold(key(KeyCode::KeyD), ElementState::Pressed);
-        assert_eq!(hands.flight(), Some(DVec3::new(1.0, 0.0, 1.0)));
-        hands.hold(key(KeyCode::KeyA), ElementState::Pressed);
-        hands.hold(key(KeyCode::KeyW), ElementState::Released);
-        assert_eq!(hands.flight(), None);
-        hands.hold(key(KeyCode::KeyA), ElementState::Released);
-        assert_eq!(hands.flight(), Some(DVec3::X));
-        hands.modifiers = ModifiersState::CONTROL;
-        assert_eq!(hands.flight(), None);
-        hands.hold(key(KeyCode::KeyS), ElementState::Pressed);
-        hands.modifiers = ModifiersState::empty();
-        assert_eq!(hands.flight(), Some(DVec3::X), "Ctrl was let go before S");
-        hands.let_go();
-        assert_eq!(hands.flight(), None);
+        assert_eq!(input.flight(), None);
+        input.key(key(KeyCode::KeyW), ElementState::Pressed);
+        input.key(key(KeyCode::KeyD), ElementState::Pressed);
+        assert_eq!(input.flight(), Some(DVec3::new(1.0, 0.0, 1.0)));
+        input.key(key(KeyCode::KeyA), ElementState::Pressed);
+        input.key(key(KeyCode::KeyW), ElementState::Released);
+        assert_eq!(input.flight(), None);
+        input.key(key(KeyCode::KeyA), ElementState::Released);
+        assert_eq!(input.flight(), Some(DVec3::X));
+        input.modifiers = ModifiersState::CONTROL;
+        assert_eq!(input.flight(), None);
+        input.key(key(KeyCode::KeyS), ElementState::Pressed);
+        input.modifiers = ModifiersState::empty();
+        assert_eq!(input.flight(), Some(DVec3::X), "Ctrl was let go before S");
+        input.release_all();
+        assert_eq!(input.flight(), None);
     }
 }
