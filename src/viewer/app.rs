@@ -8,7 +8,7 @@ use super::keep::Keep;
 use super::keys::{self, Action};
 use super::layout::Press;
 use super::load::{Load, Loader, News, What};
-use super::panels::Told;
+use super::panels::UiState;
 use super::remember::Remembered;
 use super::retry::Retry;
 use super::state::{Of, State};
@@ -41,8 +41,8 @@ const SETTLED: Duration = Duration::from_millis(400);
 pub fn run(options: Options, load: Load, look: Look) -> Result<()> {
     let events = EventLoop::<News>::with_user_event().build().map_err(no_display)?;
     let remembered = options.remembered.as_deref().and_then(Remembered::read);
-    let mut told = Told::new(remembered.as_ref().is_some_and(|known| known.hidden));
-    told.loading = (!options.inputs.is_empty()).then_some(LOADING);
+    let mut ui_state = UiState::new(remembered.as_ref().is_some_and(|known| known.hidden));
+    ui_state.loading = (!options.inputs.is_empty()).then_some(LOADING);
     let known = remembered.filter(|_| !options.asked).and_then(|known| known.settings());
     let state = State::new(&options, look, known);
     let input = InputState::default();
@@ -59,7 +59,7 @@ pub fn run(options: Options, load: Load, look: Look) -> Result<()> {
     let mut app = App {
         state,
         input,
-        told,
+        ui_state,
         loader,
         watch,
         dropped: Vec::new(),
@@ -92,7 +92,7 @@ fn no_display(error: winit::error::EventLoopError) -> Error {
 struct App {
     state: State,
     input: InputState,
-    told: Told,
+    ui_state: UiState,
     loader: Loader,
     watch: Option<Watch>,
     /// Files that were dropped on the window, and are loaded when all of them are.
@@ -144,7 +144,7 @@ impl ApplicationHandler<News> for App {
         }
         let tell = self.options.events;
         match what {
-            What::At(stage, part) => self.told.loading = Some((stage, part as f32 / 1000.0)),
+            What::At(stage, part) => self.ui_state.loading = Some((stage, part as f32 / 1000.0)),
             What::Preview(scene, method, source) => {
                 tell.tell(&Event::Preview { surfels: scene.count() });
                 if let Err(error) =
@@ -155,7 +155,7 @@ impl ApplicationHandler<News> for App {
             }
             What::Ready(scene, method, source) => {
                 tell.tell(&Event::Ready { surfels: scene.count() });
-                (self.told.loading, self.told.wrong) = (None, None);
+                (self.ui_state.loading, self.ui_state.error) = (None, None);
                 self.inputs = self.pending.take().unwrap_or(std::mem::take(&mut self.inputs));
                 self.tried = None;
                 let of = Of { load, preview: false, again: self.loader.is_again() };
@@ -172,7 +172,7 @@ impl ApplicationHandler<News> for App {
             }
             What::Failed(error) if error.is_device_lost() => return self.fail(events, error),
             What::Failed(error) => {
-                (self.told.loading, self.next) = (None, None);
+                (self.ui_state.loading, self.next) = (None, None);
                 self.tried = self.pending.take();
                 self.state.leave_preview();
                 self.wrong(&error);
@@ -242,7 +242,7 @@ impl App {
     /// Looks at these inputs from now on, once they are loaded.
     fn open(&mut self, inputs: Vec<OsString>) {
         (self.pending, self.tried) = (Some(inputs.clone()), None);
-        self.told.loading = Some(LOADING);
+        self.ui_state.loading = Some(LOADING);
         self.watch.iter().for_each(|watch| watch.look_at(&inputs));
         self.loader.start(inputs);
     }
@@ -259,7 +259,7 @@ impl App {
 
     fn remember(&self) {
         let Some((path, known)) =
-            self.options.remembered.as_ref().zip(Remembered::of(&self.state, &self.told))
+            self.options.remembered.as_ref().zip(Remembered::of(&self.state, &self.ui_state))
         else {
             return;
         };
@@ -270,7 +270,7 @@ impl App {
 
     fn draw(&mut self, events: &ActiveEventLoop) {
         let Some(opened) = &mut self.opened else { return };
-        let next = match opened.draw(&mut self.state, &self.input, &mut self.told, &self.options.events) {
+        let next = match opened.draw(&mut self.state, &self.input, &mut self.ui_state, &self.options.events) {
             Ok(next) => next.into_iter().chain(self.coarsen(Instant::now())).min(),
             Err(error) => return self.fail(events, error),
         };
@@ -308,11 +308,11 @@ impl App {
             self.moved();
         }
         let press = Press::of(event);
-        self.told.layout.learn(&press);
+        self.ui_state.layout.learn(&press);
         let pressed = event.state == ElementState::Pressed;
         let action = keys::action(&press, self.input.modifiers).filter(|_| pressed);
         if action.is_some() {
-            (self.told.wrong, self.told.done) = (None, None);
+            (self.ui_state.error, self.ui_state.message) = (None, None);
         }
         match action {
             Some(Action::Close) => self.close(),
@@ -329,11 +329,11 @@ impl App {
                 }
             }
             Some(Action::Help) => {
-                self.told.help = !self.told.help;
+                self.ui_state.show_help = !self.ui_state.show_help;
                 self.changed();
             }
             Some(Action::Panels) => {
-                self.told.hidden = !self.told.hidden;
+                self.ui_state.panel_hidden = !self.ui_state.panel_hidden;
                 self.lay_out();
                 self.changed();
             }
@@ -348,13 +348,13 @@ impl App {
     /// Lays the panels out, so that what comes before the next frame knows what they cover.
     fn lay_out(&mut self) {
         if let Some(opened) = &mut self.opened {
-            opened.hud.lay_out(&opened.window, &mut self.state, &mut self.told);
+            opened.hud.lay_out(&opened.window, &mut self.state, &mut self.ui_state);
         }
     }
 
     /// Gives up what is being loaded, and shows what was shown before; whether something was.
     fn cancel(&mut self) -> bool {
-        let cancelled = self.told.loading.take().is_some();
+        let cancelled = self.ui_state.loading.take().is_some();
         if cancelled {
             self.loader.cancel();
             (self.pending, self.tried, self.next) = (None, None, None);
@@ -370,7 +370,7 @@ impl App {
     fn close(&mut self) {
         // An open list closes itself.
         let listed = self.opened.as_ref().is_some_and(|opened| opened.hud.has_open_list());
-        if listed || self.told.close() {
+        if listed || self.ui_state.close_top_window() {
             self.changed();
         } else {
             self.cancel();
@@ -414,7 +414,7 @@ impl App {
     /// Opens a device in the place of a lost one, and loads anew what was looked at.
     fn reopen(&mut self) -> Result<()> {
         let Some(opened) = self.opened.take() else { return Ok(()) };
-        self.told.leave_context();
+        self.ui_state.release_textures();
         self.options.events.tell(&Event::Lost);
         log::warn!("the device was lost: another one is opened");
         let window = opened.window.clone();
@@ -426,7 +426,7 @@ impl App {
         let (opened, device) = Opened::of(window, &self.options)?;
         self.loader.use_device(&device);
         (self.opened, self.device) = (Some(opened), Some(device));
-        self.told.done = Some("the device was lost; this is another one".into());
+        self.ui_state.message = Some("the device was lost; this is another one".into());
         let inputs = self.pending.take().unwrap_or_else(|| self.inputs.clone());
         if !inputs.is_empty() {
             self.open(inputs);
@@ -447,7 +447,7 @@ impl App {
     fn wrong(&mut self, error: &Error) {
         let text = error.to_string();
         self.options.events.tell(&Event::Wrong { error: &text });
-        self.told.wrong = Some(text);
+        self.ui_state.error = Some(text);
         self.changed();
     }
 

@@ -1,6 +1,6 @@
 //! Panels over the picture and beside it: what is shown, how, and what keys do.
 
-use super::panels::{self, Told};
+use super::panels::{self, UiState};
 use super::state::State;
 use super::style;
 use ash::vk;
@@ -121,12 +121,12 @@ impl Hud {
     }
 
     /// Lays the panels out, beside which the picture is; whether they want to be drawn again at once.
-    pub fn lay_out(&mut self, window: &Window, state: &mut State, told: &mut Told) -> bool {
+    pub fn lay_out(&mut self, window: &Window, state: &mut State, ui_state: &mut UiState) -> bool {
         let input = self.egui_state.take_egui_input(window);
         let device = &self.device;
         let (free, covered) = (&mut self.free, &mut self.covered);
         let output = self.context.run_ui(input, |ui| {
-            *covered = panels::show(ui, state, told, device);
+            *covered = panels::show(ui, state, ui_state, device);
             *free = ui.available_rect_before_wrap();
         });
         let PhysicalSize { width, height } = window.inner_size();

@@ -7,18 +7,18 @@ use surfel::{Error, Progress, Result};
 
 /// Work under way.
 pub struct Job<T> {
-    told: Arc<Told>,
+    state: Arc<JobState>,
     thread: Option<JoinHandle<Result<T>>>,
 }
 
 #[derive(Default)]
-struct Told {
+struct JobState {
     /// A stage, and how much of it is done.
     at: Mutex<(&'static str, f32)>,
     cancelled: AtomicBool,
 }
 
-impl Progress for Told {
+impl Progress for JobState {
     fn at(&self, stage: &'static str, done: u64, total: u64) {
         let part = done as f32 / total.max(1) as f32;
         *self.at.lock().unwrap_or_else(PoisonError::into_inner) = (stage, part);
@@ -32,19 +32,19 @@ impl Progress for Told {
 impl<T: Send + 'static> Job<T> {
     /// Begins it.
     pub fn start(work: impl FnOnce(&dyn Progress) -> Result<T> + Send + 'static) -> Self {
-        let told = Arc::new(Told::default());
-        let own = told.clone();
-        Self { told, thread: Some(thread::spawn(move || work(&*own))) }
+        let state = Arc::new(JobState::default());
+        let own = state.clone();
+        Self { state, thread: Some(thread::spawn(move || work(&*own))) }
     }
 
     /// A stage, and how much of it is done.
     pub fn at(&self) -> (&'static str, f32) {
-        *self.told.at.lock().unwrap_or_else(PoisonError::into_inner)
+        *self.state.at.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Has it given up, as soon as it looks.
     pub fn cancel(&self) {
-        self.told.cancelled.store(true, Ordering::Relaxed);
+        self.state.cancelled.store(true, Ordering::Relaxed);
     }
 
     /// What came of it, once it is over.
@@ -58,7 +58,7 @@ impl<T: Send + 'static> Job<T> {
 impl<T> Drop for Job<T> {
     /// It uses the device, which must not go before it.
     fn drop(&mut self) {
-        self.told.cancelled.store(true, Ordering::Relaxed);
+        self.state.cancelled.store(true, Ordering::Relaxed);
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
         }
@@ -92,9 +92,9 @@ mod tests {
             progress.at("adding", 1, 4);
             Ok(1 + 1)
         });
-        let told = done.told.clone();
+        let state = done.state.clone();
         assert_eq!(outcome(done).unwrap(), 2);
-        assert_eq!(*told.at.lock().unwrap(), ("adding", 0.25));
+        assert_eq!(*state.at.lock().unwrap(), ("adding", 0.25));
         assert!(outcome(Job::<()>::start(|_| panic!("on purpose"))).is_err());
     }
 }

@@ -127,28 +127,28 @@ impl Loader {
 
     fn begin(&mut self) {
         let (load, inputs) = (self.load.clone(), self.inputs.clone());
-        self.work(move |told| {
-            if let Err(error) = told.load(&load, &inputs) {
-                told.send(What::Failed(error));
+        self.work(move |worker| {
+            if let Err(error) = worker.load(&load, &inputs) {
+                worker.send(What::Failed(error));
             }
         });
     }
 
     /// Makes the coarser scenes of the last load's anew, of what its surfels are now.
     pub fn coarsen(&mut self, source: Source) {
-        self.work(move |told| {
-            if let Some(device) = told.device() {
-                told.coarsen(device, &source.shown());
+        self.work(move |worker| {
+            if let Some(device) = worker.device() {
+                worker.coarsen(device, &source.shown());
             }
         });
     }
 
     /// Does work for the last load on a thread of its own, in place of what is under way.
-    fn work(&mut self, body: impl FnOnce(&Told) + Send + 'static) {
+    fn work(&mut self, body: impl FnOnce(&Worker) + Send + 'static) {
         self.cancel();
         self.under_way.retain(|load| !load.thread.is_finished());
         let cancelled = Arc::new(AtomicBool::new(false));
-        let told = Told {
+        let worker = Worker {
             number: self.last,
             window: self.window.clone(),
             events: self.events,
@@ -157,7 +157,7 @@ impl Loader {
             again: self.again,
             last: AtomicU64::new(u64::MAX),
         };
-        let thread = thread::spawn(move || body(&told));
+        let thread = thread::spawn(move || body(&worker));
         self.under_way.push(UnderWay { cancelled, thread });
     }
 
@@ -189,7 +189,7 @@ impl Drop for Loader {
 }
 
 /// Tells the window of a load.
-struct Told {
+struct Worker {
     number: u64,
     window: Window,
     events: Events,
@@ -200,7 +200,7 @@ struct Told {
     last: AtomicU64,
 }
 
-impl Told {
+impl Worker {
     fn load(&self, load: &Load, inputs: &[OsString]) -> Result<()> {
         let loaded = load(inputs, self)?;
         self.events.tell(&Event::Loaded { surfels: loaded.model.surfels.len() as u64 });
@@ -257,7 +257,7 @@ impl Told {
     }
 }
 
-impl Progress for Told {
+impl Progress for Worker {
     /// Tells of every hundredth.
     fn at(&self, stage: &'static str, done: u64, total: u64) {
         let part = 1000 * done / total.max(1);
@@ -271,7 +271,7 @@ impl Progress for Told {
     }
 }
 
-impl Loading for Told {
+impl Loading for Worker {
     fn preview(&self, loaded: Loaded) {
         // Until all of it is there, its earlier state stays.
         let Some(device) = self.device().filter(|_| !self.again) else { return };
@@ -304,7 +304,7 @@ mod tests {
         load: impl Fn(&[OsString], &dyn Loading) -> Result<Loaded> + Send + Sync + 'static,
     ) -> (Loader, Receiver<News>) {
         let (send, news) = channel();
-        let tell = Arc::new(move |told| drop(send.send(told)));
+        let tell = Arc::new(move |event| drop(send.send(event)));
         (Loader::new(Arc::new(load), tell, Events::new(Instant::now(), false)), news)
     }
 
@@ -317,8 +317,8 @@ mod tests {
     fn until_coarser(loader: &Loader, news: &Receiver<News>) -> Vec<What> {
         let mut all = Vec::new();
         while !matches!(all.last(), Some(What::Coarser(_) | What::Failed(_))) {
-            let told = news.recv_timeout(Duration::from_secs(60)).unwrap();
-            let News::Load(load, what) = told else { panic!("nothing else is told") };
+            let event = news.recv_timeout(Duration::from_secs(60)).unwrap();
+            let News::Load(load, what) = event else { panic!("another event") };
             if loader.is_present(load) && !matches!(what, What::At(..)) {
                 all.push(what);
             }
@@ -387,7 +387,9 @@ mod tests {
         loader.start(vec!["slow".into()]);
         assert!(loader.cancel() && !loader.cancel(), "there is one to give up");
         loader.under_way.pop().unwrap().thread.join().unwrap();
-        assert!(news.try_iter().all(|told| matches!(told, News::Load(load, _) if !loader.is_present(load))));
+        assert!(
+            news.try_iter().all(|event| matches!(event, News::Load(load, _) if !loader.is_present(load)))
+        );
         loader.start(vec!["slow".into()]);
         loader.start(vec!["quick".into()]);
         let all = until_coarser(&loader, &news);

@@ -1,6 +1,6 @@
 //! What is remembered from one run to the next: the method, its settings, and the panel.
 
-use super::panels::Told;
+use super::panels::UiState;
 use super::state::State;
 use serde::{Deserialize, Serialize};
 use std::io::Write;
@@ -55,9 +55,9 @@ impl Remembered {
     }
 
     /// What there is to remember, if something is looked at.
-    pub fn of(state: &State, told: &Told) -> Option<Self> {
+    pub fn of(state: &State, ui_state: &UiState) -> Option<Self> {
         let ([method, _], settings) = state.names().zip(state.settings())?;
-        Some(Self::of_settings(method, settings, told.hidden))
+        Some(Self::of_settings(method, settings, ui_state.panel_hidden))
     }
 
     fn of_settings(method: &str, settings: &Settings, hidden: bool) -> Self {

@@ -53,23 +53,23 @@ fn watch(given: &Receiver<Vec<OsString>>, tell: impl Fn() -> bool) {
 struct Changes {
     inputs: Vec<OsString>,
     /// As they were told last, and as they were seen last.
-    told: Vec<Mark>,
+    reported: Vec<Mark>,
     seen: Vec<Mark>,
 }
 
 impl Changes {
     fn of(inputs: Vec<OsString>) -> Self {
         let now = marks(&inputs);
-        Self { inputs, told: now.clone(), seen: now }
+        Self { inputs, reported: now.clone(), seen: now }
     }
 
     /// Whether they are other than they were told last, and stay as they are for now: what is being written is not whole.
     fn look(&mut self) -> bool {
         let now = marks(&self.inputs);
         let rests = std::mem::replace(&mut self.seen, now.clone()) == now;
-        let changed = rests && now != self.told && now.iter().all(Option::is_some);
+        let changed = rests && now != self.reported && now.iter().all(Option::is_some);
         if changed {
-            self.told = now;
+            self.reported = now;
         }
         changed
     }
@@ -94,7 +94,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_change_is_told_once_when_it_is_over() {
+    fn a_change_is_reported_once_when_it_is_over() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("a.ply");
         fs::write(&file, "a").unwrap();

@@ -6,7 +6,7 @@ use super::hud::Hud;
 use super::input::InputState;
 use super::keep::Shot;
 use super::pace::{Frame, Pace, Quality};
-use super::panels::Told;
+use super::panels::UiState;
 use super::screen::{Pick, Screen};
 use super::state::State;
 use std::sync::Arc;
@@ -78,20 +78,20 @@ impl Opened {
     }
 
     /// What the window shows, panels and all, from a whole picture.
-    pub fn capture(&mut self, state: &mut State, told: &mut Told) -> Result<Shot> {
-        told.side = 1.0;
-        let shot = self.captured(state, told)?;
+    pub fn capture(&mut self, state: &mut State, ui_state: &mut UiState) -> Result<Shot> {
+        ui_state.scale = 1.0;
+        let shot = self.captured(state, ui_state)?;
         let ranges = self.screen.ranges(&self.presenter)?;
-        if told.ranges == ranges {
+        if ui_state.ranges == ranges {
             return Ok(shot);
         }
         // The panels were laid out before they were known; the picture is there.
-        told.ranges = ranges;
-        self.captured(state, told)
+        ui_state.ranges = ranges;
+        self.captured(state, ui_state)
     }
 
-    fn captured(&mut self, state: &mut State, told: &mut Told) -> Result<Shot> {
-        self.hud.lay_out(&self.window, state, told);
+    fn captured(&mut self, state: &mut State, ui_state: &mut UiState) -> Result<Shot> {
+        self.hud.lay_out(&self.window, state, ui_state);
         let Self { presenter, hud, screen, window, .. } = self;
         let PhysicalSize { width, height } = window.inner_size();
         let (whole, size) = ([width, height].map(|side| side.max(1)), state.viewport.size);
@@ -109,12 +109,16 @@ impl Opened {
         &mut self,
         state: &mut State,
         input: &InputState,
-        told: &mut Told,
+        ui_state: &mut UiState,
         events: &Events,
     ) -> Result<Option<Instant>> {
         let start = Instant::now();
         self.fly(state, input, start);
-        let look = state.look().map(|(scene, settings)| Look { scene, settings, beside: told.beside(state) });
+        let look = state.look().map(|(scene, settings)| Look {
+            scene,
+            settings,
+            beside: ui_state.split_settings(state),
+        });
         if self.look != look {
             self.pace.forget();
             self.look = look;
@@ -122,35 +126,35 @@ impl Opened {
         let sight = state.sight();
         let moving = self.pace.moves(start);
         let quality = sight.as_ref().map_or(Quality::WHOLE, |sight| self.pace.quality(start, sight));
-        told.side = quality.side;
-        told.surfels =
+        ui_state.scale = quality.side;
+        ui_state.surfels =
             sight.as_ref().and_then(|sight| sight.surfels.get(quality.scene)).copied().unwrap_or(0.0);
         let size = state.viewport.size;
-        let again = self.hud.lay_out(&self.window, state, told);
+        let again = self.hud.lay_out(&self.window, state, ui_state);
         if state.viewport.size != size && self.pace.is_known() {
             // An edge is dragged: whole pictures come when it rests.
             self.pace.moved(start);
         }
-        self.screen.ask(told.asked(state, quality.scene > 0), &self.presenter)?;
-        let [shown, drawn] = self.present(state, told, quality)?;
+        self.screen.ask(ui_state.frame_options(state, quality.scene > 0), &self.presenter)?;
+        let [shown, drawn] = self.present(state, ui_state, quality)?;
         // A frame's time is its own, and the next one shows where the hands are when it begins.
         self.presenter.wait()?;
         let ranges = self.screen.ranges(&self.presenter)?;
-        if told.ranges != ranges {
+        if ui_state.ranges != ranges {
             // The panels were laid out before they were known.
-            told.ranges = ranges;
+            ui_state.ranges = ranges;
             self.window.request_redraw();
         }
         let ms = 1e3 * start.elapsed().as_secs_f64();
         if drawn {
-            told.frame = ms;
+            ui_state.frame_ms = ms;
             if let Some(sight) = &sight {
                 self.pace.took(quality, sight, Frame { ms, moving, made: self.screen.made() });
             }
         }
         let behind = self.presenter.is_behind();
         let PhysicalSize { width, height } = self.window.inner_size();
-        let picture = picture(state, told, [moving, drawn], ([width, height], ms));
+        let picture = picture(state, ui_state, [moving, drawn], ([width, height], ms));
         if let Some(picture) = picture.filter(|_| shown && !behind) {
             events.tell(&Event::Picture(picture));
         }
@@ -160,8 +164,8 @@ impl Opened {
             // A window without an extent tells when it has one again.
             return Ok((width > 0 && height > 0).then(|| Instant::now() + AGAIN));
         }
-        if told.times.is_open() {
-            self.measure(told)?;
+        if ui_state.times.is_open() {
+            self.measure(ui_state)?;
         }
         if state.pick.is_some() {
             self.pick(state)?;
@@ -179,8 +183,8 @@ impl Opened {
     }
 
     /// Takes what the last frame, which is over, tells, and shows it.
-    fn measure(&mut self, told: &mut Told) -> Result<()> {
-        if told.times.push(self.screen.reports(&self.presenter)?) {
+    fn measure(&mut self, ui_state: &mut UiState) -> Result<()> {
+        if ui_state.times.push(self.screen.reports(&self.presenter)?) {
             self.window.request_redraw();
         }
         Ok(())
@@ -194,10 +198,10 @@ impl Opened {
     }
 
     /// Whether a picture of something was shown, and whether it was drawn anew.
-    fn present(&mut self, state: &mut State, told: &mut Told, quality: Quality) -> Result<[bool; 2]> {
+    fn present(&mut self, state: &mut State, ui_state: &mut UiState, quality: Quality) -> Result<[bool; 2]> {
         let PhysicalSize { width, height } = self.window.inner_size();
         let Self { presenter, hud, screen, .. } = self;
-        let mut refused = told.refused.clone();
+        let mut refused = ui_state.render_error.clone();
         let shown = presenter.present([width, height], |frame| {
             let area = hud.beside(frame.size());
             state.viewport.size = area;
@@ -212,9 +216,9 @@ impl Opened {
             hud.record(frame)?;
             Ok([seen.is_some(), screen.drew()])
         })?;
-        if refused != told.refused {
+        if refused != ui_state.render_error {
             // The panels were laid out before it was known.
-            told.refused = refused;
+            ui_state.render_error = refused;
             self.window.request_redraw();
         }
         Ok(shown.unwrap_or_default())
@@ -236,7 +240,7 @@ impl Opened {
 /// What a picture tells, whether the hands moved, whether it was drawn anew, in a window of which size, and how long it took, ms.
 fn picture<'a>(
     state: &State,
-    told: &Told,
+    ui_state: &UiState,
     [moving, drawn]: [bool; 2],
     (size, took_ms): ([u32; 2], f64),
 ) -> Option<Shown<'a>> {
@@ -246,8 +250,8 @@ fn picture<'a>(
         shading,
         size,
         picture: state.viewport.size,
-        side: told.side,
-        surfels: told.surfels as u64,
+        side: ui_state.scale,
+        surfels: ui_state.surfels as u64,
         preview: state.is_preview(),
         moving,
         drawn,

@@ -83,7 +83,7 @@ impl App {
             Action::CopyCamera => {
                 self.keep.copy(&pose, &opened.window);
                 self.options.events.tell(&Event::Copied);
-                self.told.done = Some("the camera is on the clipboard".into());
+                self.ui_state.message = Some("the camera is on the clipboard".into());
             }
             Action::PasteCamera => {
                 let pose = self.keep.paste(&opened.window)?;
@@ -97,11 +97,11 @@ impl App {
 
     /// Makes a picture of what is seen, and has it written.
     fn shoot(&mut self, what: What) -> Result<()> {
-        let Self { state, opened: Some(opened), device: Some(device), told, .. } = self else {
+        let Self { state, opened: Some(opened), device: Some(device), ui_state, .. } = self else {
             return Ok(());
         };
         let shot = match what {
-            What::Window => opened.capture(state, told)?,
+            What::Window => opened.capture(state, ui_state)?,
             What::Picture | What::Values => {
                 let size = state.viewport.size;
                 let Some(seen) = state.frame(0) else { return Ok(()) };
@@ -129,7 +129,7 @@ impl App {
             Ok(path) => {
                 self.keep.say(&path);
                 self.options.events.tell(&Event::Wrote { file: &path });
-                self.told.done = Some(format!("saved {}", path.display()));
+                self.ui_state.message = Some(format!("saved {}", path.display()));
                 self.changed();
             }
             Err(error) => self.wrong(&error),

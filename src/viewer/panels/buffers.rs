@@ -25,7 +25,7 @@ impl Buffer {
     const SPLATS: [Self; 4] = [Self::Depth, Self::Normal, Self::Weight, Self::Overlap];
     const PYRAMIDS: [Self; 4] = [Self::Depth, Self::Normal, Self::Pulled, Self::Pushed];
 
-    fn told(self) -> [&'static str; 2] {
+    fn name_and_help(self) -> [&'static str; 2] {
         match self {
             Self::Depth => ["depth", "distance from the eye along the view, in the positions' unit"],
             Self::Normal => {
@@ -68,14 +68,15 @@ impl Buffers {
         if !all.contains(&self.buffer) {
             self.buffer = Buffer::Depth;
         }
-        let shown = ComboBox::from_label("buffer").selected_text(self.buffer.told()[0]).show_ui(ui, |ui| {
-            for buffer in all {
-                let [name, text] = buffer.told();
-                ui.selectable_value(&mut self.buffer, buffer, name).on_hover_text(text);
-            }
-        });
-        shown.response.on_hover_text(self.buffer.told()[1]);
-        ui.weak(self.buffer.told()[1]);
+        let shown =
+            ComboBox::from_label("buffer").selected_text(self.buffer.name_and_help()[0]).show_ui(ui, |ui| {
+                for buffer in all {
+                    let [name, text] = buffer.name_and_help();
+                    ui.selectable_value(&mut self.buffer, buffer, name).on_hover_text(text);
+                }
+            });
+        shown.response.on_hover_text(self.buffer.name_and_help()[1]);
+        ui.weak(self.buffer.name_and_help()[1]);
         if self.buffer.is_level() {
             let top = chosen.size[0].max(chosen.size[1]).next_power_of_two().trailing_zeros();
             ui.add(Slider::new(&mut self.level, 0..=top).text("level"))
@@ -103,8 +104,8 @@ impl Buffers {
     }
 
     /// Nothing is kept that belongs to a context that goes.
-    pub fn leave_context(&mut self) {
-        self.raster.iter_mut().for_each(Raster::leave_context);
+    pub fn release_textures(&mut self) {
+        self.raster.iter_mut().for_each(Raster::release_textures);
     }
 
     /// Closes the picture of a buffer, if it is there.
@@ -132,7 +133,7 @@ impl Buffers {
         let settings = Settings { shading, background: None, ..chosen.settings.clone() };
         let mut renderer = Renderer::new(device, options)?;
         let (picture, _) = renderer.render_picture(chosen.scene, &camera, &settings)?;
-        let name = self.buffer.told()[0];
+        let name = self.buffer.name_and_help()[0];
         let pyramids = if self.buffer.is_level() { renderer.read_pyramids()? } else { None };
         if let Some([pulled, pushed]) = pyramids {
             let levels = if self.buffer == Buffer::Pulled { pulled } else { pushed };

@@ -25,7 +25,7 @@ enum Against {
 }
 
 impl Against {
-    const fn told(self) -> [&'static str; 2] {
+    const fn name_and_help(self) -> [&'static str; 2] {
         match self {
             Self::Reference => [
                 "float64 reference",
@@ -131,10 +131,10 @@ impl Errors {
         if !exact {
             self.against = Against::Reference;
         }
-        let [name, text] = self.against.told();
+        let [name, text] = self.against.name_and_help();
         let choice = ComboBox::from_label("against").selected_text(name).show_ui(ui, |ui| {
             for against in [Against::Reference, Against::Truth] {
-                let [name, text] = against.told();
+                let [name, text] = against.name_and_help();
                 ui.add_enabled_ui(exact || against == Against::Reference, |ui| {
                     ui.selectable_value(&mut self.against, against, name)
                         .on_hover_text(text)
@@ -171,7 +171,7 @@ impl Errors {
         ui.separator();
         ui.label(format!(
             "against the {}{}",
-            found.against.told()[0],
+            found.against.name_and_help()[0],
             if same { "" } else { ", of an earlier picture" }
         ));
         let beyond = found.errors.iter().filter(|error| **error > self.tolerance).count();
@@ -200,8 +200,8 @@ impl Errors {
     }
 
     /// Nothing is kept that belongs to a context that goes.
-    pub fn leave_context(&mut self) {
-        self.raster.iter_mut().for_each(Raster::leave_context);
+    pub fn release_textures(&mut self) {
+        self.raster.iter_mut().for_each(Raster::release_textures);
     }
 
     /// Closes the picture of errors, if it is there.

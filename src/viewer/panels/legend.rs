@@ -1,6 +1,6 @@
 //! On the picture: what its colours mean, with the numbers at both ends.
 
-use super::Told;
+use super::UiState;
 use super::raster::{paint_bar, short};
 use crate::viewer::state::State;
 use egui::{Align2, Color32, FontId, Rect, Ui, pos2, vec2};
@@ -33,11 +33,11 @@ enum Colours {
 }
 
 /// Says what the colours of the picture, or of both pictures, mean: at the lower left of each, in what panels leave `free`.
-pub fn show(ui: &Ui, free: Rect, picture: Rect, state: &State, told: &Told) {
-    let right = state.settings().and_then(|settings| told.split.asked(settings)).map(|(_, at)| at);
+pub fn show(ui: &Ui, free: Rect, picture: Rect, state: &State, ui_state: &UiState) {
+    let right = ui_state.split(state).map(|(_, at)| at);
     let bottom = free.bottom().min(picture.bottom());
     let whole = Rect { max: pos2(picture.right(), bottom), ..picture };
-    let [first, second] = told.ranges.map(|range| legend_of(state, range));
+    let [first, second] = ui_state.ranges.map(|range| legend_of(state, range));
     let Some(at) = right.map(|at| picture.left() + at as f32 * picture.width()) else {
         first.iter().for_each(|legend| legend.paint(ui, whole));
         return;

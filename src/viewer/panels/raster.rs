@@ -52,7 +52,7 @@ impl Raster {
     }
 
     /// The picture is made anew when it is shown next.
-    pub fn leave_context(&mut self) {
+    pub fn release_textures(&mut self) {
         self.texture = None;
     }
 
@@ -91,8 +91,8 @@ impl Raster {
         let size = own * (room.x / own.x).min(room.y / own.y);
         let response = ui.add(Image::new(texture).fit_to_exact_size(size).sense(Sense::hover()));
         let at = response.hover_pos().map(|at| (at - response.rect.min) / size * own);
-        let told = at.and_then(|at| self.told([at.x as u32, at.y as u32]));
-        ui.monospace(told.unwrap_or_else(|| "the cursor tells a pixel's value".into()));
+        let text = at.and_then(|at| self.pixel_text([at.x as u32, at.y as u32]));
+        ui.monospace(text.unwrap_or_else(|| "the cursor tells a pixel's value".into()));
     }
 
     fn pixels(&self, scale: &ColourScale) -> Vec<u8> {
@@ -109,7 +109,7 @@ impl Raster {
     }
 
     /// What is at a pixel.
-    fn told(&self, [x, y]: [u32; 2]) -> Option<String> {
+    fn pixel_text(&self, [x, y]: [u32; 2]) -> Option<String> {
         let [width, height] = self.size;
         let index = (x < width && y < height).then_some((y * width + x) as usize)?;
         Some(match &self.values {
@@ -182,9 +182,9 @@ mod tests {
         assert_eq!(pixels[3..6], ColourMap::Magma.at(0.5));
         assert_eq!(pixels[6..9], [0; 3]);
         assert_eq!(pixels[9..], ColourMap::Magma.at(1.0));
-        assert_eq!(raster.told([0, 1]).unwrap(), "(0, 1)  nothing");
-        assert_eq!(raster.told([1, 1]).unwrap(), "(1, 1)  2");
-        assert_eq!(raster.told([2, 0]), None);
+        assert_eq!(raster.pixel_text([0, 1]).unwrap(), "(0, 1)  nothing");
+        assert_eq!(raster.pixel_text([1, 1]).unwrap(), "(1, 1)  2");
+        assert_eq!(raster.pixel_text([2, 0]), None);
     }
 
     #[test]

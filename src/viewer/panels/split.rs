@@ -30,8 +30,8 @@ impl Default for Split {
 }
 
 impl Split {
-    /// How the right picture is made beside a left one of these settings, and where it begins, if there are two.
-    pub fn asked(&self, left: &Settings) -> Option<(Settings, f64)> {
+    /// Settings of the right picture beside a left one, and where it begins as part of the width, if the view is split.
+    pub fn settings(&self, left: &Settings) -> Option<(Settings, f64)> {
         let right = self.settings.as_ref().filter(|_| self.on)?;
         // What is seen is the same.
         let right = Settings { shading: left.shading, background: left.background, ..right.clone() };

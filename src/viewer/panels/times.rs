@@ -82,11 +82,11 @@ impl Times {
 
     /// Takes what pictures tell that were drawn; whether they told something.
     pub fn push(&mut self, Reports { left, right }: Reports) -> bool {
-        let told = left.is_some() || right.is_some();
+        let is_new = left.is_some() || right.is_some();
         if right.is_some() {
             self.right = right;
         }
-        let Some(report) = left else { return told };
+        let Some(report) = left else { return is_new };
         let passes: Vec<_> = report.pass_times.iter().map(|pass| (pass.label, pass.milliseconds)).collect();
         for (label, _) in &passes {
             if !self.passes.contains(label) {
@@ -98,7 +98,7 @@ impl Times {
             self.frames.pop_front();
         }
         self.last = Some(report);
-        told
+        is_new
     }
 
     /// A section that can be opened.

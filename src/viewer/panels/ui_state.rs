@@ -1,0 +1,81 @@
+//! UI state: what the panels display and which of them are open.
+
+use super::buffers::Buffers;
+use super::error::Errors;
+use super::split::Split;
+use super::times::Times;
+use crate::viewer::layout::Layout;
+use crate::viewer::screen::Asked;
+use crate::viewer::state::{State, quick};
+use surfel::Settings;
+use surfel::geometry::ValueRange;
+use surfel::settings::Shading;
+
+/// What the panels display beside the choices, and which of them are open.
+#[derive(Default)]
+pub struct UiState {
+    /// The stage of loading, and which part of it is done, from 0 to 1.
+    pub loading: Option<(&'static str, f32)>,
+    /// The last error.
+    pub error: Option<String>,
+    /// Why the last frame could not be rendered, if it could not.
+    pub render_error: Option<String>,
+    /// The result of the last command, such as a file that was saved.
+    pub message: Option<String>,
+    /// Duration of the last frame, ms.
+    pub frame_ms: f64,
+    /// Resolution scale of the last frame: its side as part of the whole picture's.
+    pub scale: f64,
+    /// How many surfels the last frame had.
+    pub surfels: f64,
+    /// The shading of the left and of the right picture, and the range of its values, where it shows values.
+    pub ranges: [Option<(Shading, ValueRange)>; 2],
+    /// Whether the list of keys is open.
+    pub show_help: bool,
+    /// What is known of the keyboard's layout.
+    pub layout: Layout,
+    /// Whether the panel beside the picture is hidden.
+    pub panel_hidden: bool,
+    /// Times of the last frames.
+    pub times: Times,
+    pub(super) errors: Errors,
+    pub(super) split: Split,
+    pub(super) buffers: Buffers,
+}
+
+impl UiState {
+    /// The state at the start; the panel may be hidden.
+    pub fn new(panel_hidden: bool) -> Self {
+        Self { panel_hidden, ..Self::default() }
+    }
+
+    /// Closes the window on top of the picture; returns whether there was one.
+    pub fn close_top_window(&mut self) -> bool {
+        std::mem::take(&mut self.show_help) || self.errors.close() || self.buffers.close()
+    }
+
+    /// Drops the textures of an egui context before the context itself is dropped.
+    pub fn release_textures(&mut self) {
+        self.errors.release_textures();
+        self.buffers.release_textures();
+    }
+
+    /// Settings of the right picture, if the view is split.
+    pub fn split_settings(&self, state: &State) -> Option<Settings> {
+        self.split(state).map(|(settings, _)| settings)
+    }
+
+    /// Options of the next frame; `coarser` is whether it renders a coarser level of detail.
+    pub fn frame_options(&self, state: &State, coarser: bool) -> Asked {
+        let split = self.split(state).map(|(settings, at)| {
+            let settings = if coarser { quick(&settings).into_owned() } else { settings };
+            (settings, at)
+        });
+        Asked { measured: self.times.is_open(), version: state.version(), split }
+    }
+
+    /// Settings of the right picture, and where it begins as part of the width, if the view is split.
+    pub(super) fn split(&self, state: &State) -> Option<(Settings, f64)> {
+        state.settings().and_then(|settings| self.split.settings(settings))
+    }
+}
