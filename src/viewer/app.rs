@@ -406,7 +406,7 @@ impl App {
     /// The camera is somewhere else, and may go on.
     fn moved(&mut self) {
         if let Some(opened) = &mut self.opened {
-            opened.pace.moved(Instant::now());
+            opened.adaptive.moved(Instant::now());
         }
         self.changed();
     }

@@ -1,39 +1,39 @@
-//! What frames cost, as those that were there tell it.
+//! Cost model of a frame: predicts its time from its pixels and surfels, and learns from measured frames.
 
-/// What a frame has to do.
+/// Work of a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Work {
-    /// Pixels of its picture.
+    /// Pixels of the picture.
     pub pixels: f64,
-    /// Surfels of its scene.
+    /// Surfels of the scene.
     pub surfels: f64,
 }
 
-/// How long frames take: a part that is always there, one a pixel and one a surfel.
+/// Linear model of the frame time: a fixed part, a part per pixel, a part per surfel.
 #[derive(Clone, Copy, Debug)]
 pub struct Cost {
-    /// ms, ms a pixel, ms a surfel.
+    /// ms, ms per pixel, ms per surfel.
     rates: [f64; 3],
-    /// Whether a frame has told it.
-    known: bool,
+    /// Whether a frame was measured.
+    measured: bool,
 }
 
-/// Of a computer without a GPU: the first frame is guessed rather too quick than too slow to come.
-const GUESS: [f64; 3] = [15.0, 1e-4, 3e-4];
-/// How much of it a part keeps at least as a frame is quicker: one frame does not tell which part it was.
-const LEAST_KEPT: f64 = 0.2;
+/// Rates before the first measurement: those of a computer without a GPU.
+const INITIAL: [f64; 3] = [15.0, 1e-4, 3e-4];
+/// The least factor by which one measurement scales a rate: a single frame does not tell which part was faster.
+const MIN_FACTOR: f64 = 0.2;
 
-/// How readily each is taken for the cause of a difference: what is always there varies least.
-const SWAY: [f64; 3] = [0.3, 1.0, 1.0];
+/// How strongly each rate follows a difference; the fixed part varies least.
+const GAINS: [f64; 3] = [0.3, 1.0, 1.0];
 
 impl Default for Cost {
     fn default() -> Self {
-        Self { rates: GUESS, known: false }
+        Self { rates: INITIAL, measured: false }
     }
 }
 
 impl Cost {
-    /// ms that a frame will take.
+    /// Predicted time of a frame, ms.
     pub fn of(&self, work: Work) -> f64 {
         self.parts(work).iter().sum()
     }
@@ -43,23 +43,23 @@ impl Cost {
         [fixed, pixel * pixels, surfel * surfels]
     }
 
-    /// A frame took so long, ms. What took longer than it should is believed at once, what took less only half: other programs come and go.
+    /// Learns the time of a frame, ms. Slower frames count in full, faster ones by half: the load of other programs varies.
     pub fn learn(&mut self, work: Work, ms: f64) {
         let parts = self.parts(work);
         let sum: f64 = parts.iter().sum();
-        let believed = if ms < sum && self.known { 0.5 * (ms + sum) } else { ms };
-        self.known = true;
-        if !(believed.is_finite() && sum > 0.0) {
+        let measured_ms = if ms < sum && self.measured { 0.5 * (ms + sum) } else { ms };
+        self.measured = true;
+        if !(measured_ms.is_finite() && sum > 0.0) {
             return;
         }
-        // The larger a part, the more of the difference is its own.
-        let shares: [f64; 3] = std::array::from_fn(|i| SWAY[i] * parts[i] / sum);
-        let moved: f64 = shares.iter().zip(parts).map(|(share, part)| share * part / sum).sum();
-        let change = (believed / sum - 1.0) / moved;
-        let factors = shares.map(|share| (1.0 + change * share).max(LEAST_KEPT));
-        let made: f64 = parts.iter().zip(factors).map(|(part, factor)| part * factor).sum();
+        // A larger part explains more of the difference.
+        let shares: [f64; 3] = std::array::from_fn(|i| GAINS[i] * parts[i] / sum);
+        let response: f64 = shares.iter().zip(parts).map(|(share, part)| share * part / sum).sum();
+        let change = (measured_ms / sum - 1.0) / response;
+        let factors = shares.map(|share| (1.0 + change * share).max(MIN_FACTOR));
+        let new_sum: f64 = parts.iter().zip(factors).map(|(part, factor)| part * factor).sum();
         for (rate, factor) in self.rates.iter_mut().zip(factors) {
-            *rate *= factor * believed.max(1e-3) / made.max(1e-6);
+            *rate *= factor * measured_ms.max(1e-3) / new_sum.max(1e-6);
         }
     }
 }
@@ -71,7 +71,7 @@ mod tests {
     const WHOLE: Work = Work { pixels: 8e5, surfels: 4e5 };
 
     #[test]
-    fn one_frame_tells_what_its_like_takes() {
+    fn one_frame_predicts_frames_of_the_same_work() {
         for ms in [0.5, 20.0, 3000.0] {
             let mut cost = Cost::default();
             cost.learn(WHOLE, ms);
@@ -80,13 +80,13 @@ mod tests {
         let mut cost = Cost::default();
         cost.learn(WHOLE, 100.0);
         cost.learn(WHOLE, 300.0);
-        assert!((cost.of(WHOLE) - 300.0).abs() < 1e-6, "slower is believed at once");
+        assert!((cost.of(WHOLE) - 300.0).abs() < 1e-6, "a slower frame counts in full");
         cost.learn(WHOLE, 100.0);
-        assert!((cost.of(WHOLE) - 200.0).abs() < 1e-6, "quicker by half");
+        assert!((cost.of(WHOLE) - 200.0).abs() < 1e-6, "a faster frame counts by half");
     }
 
     #[test]
-    fn frames_of_all_kinds_tell_their_parts() {
+    fn frames_of_different_work_separate_the_rates() {
         let truth = |work: Work| 2.0 + 9e-5 * work.pixels + 5e-5 * work.surfels;
         let mut cost = Cost::default();
         let works: Vec<Work> = (0..6)
@@ -107,7 +107,7 @@ mod tests {
     }
 
     #[test]
-    fn odd_times_do_no_harm() {
+    fn invalid_times_do_no_harm() {
         let mut cost = Cost::default();
         for ms in [0.0, f64::NAN, 0.0, f64::INFINITY, 0.0] {
             cost.learn(WHOLE, ms);

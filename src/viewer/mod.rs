@@ -7,6 +7,7 @@
 #![forbid(unsafe_code)]
 
 mod about;
+mod adaptive_resolution;
 mod app;
 mod cost;
 mod events;
@@ -19,8 +20,8 @@ mod layout;
 mod load;
 mod open;
 mod orbit;
-mod pace;
 mod panels;
+mod quality;
 mod remember;
 mod retry;
 mod screen;

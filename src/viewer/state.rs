@@ -4,7 +4,7 @@ use super::about::thousands;
 use super::keys::Action;
 use super::open::{Answer, Opening};
 use super::orbit::{Orbit, Up};
-use super::pace::Sight;
+use super::quality::Workload;
 use super::source::{Source, Wish};
 use super::viewport::Viewport;
 use super::{Look, Options};
@@ -200,14 +200,14 @@ impl State {
     }
 
     /// What there is to be seen, for who chooses how much of it is.
-    pub fn sight(&self) -> Option<Sight> {
+    pub fn workload(&self) -> Option<Workload> {
         let Shown { scene, coarser, orbit, .. } = self.shown.as_ref()?;
         let [width, height] = self.viewport.size.map(f64::from);
         let scenes = std::iter::once(scene).chain(coarser);
-        Some(Sight {
+        Some(Workload {
             pixels: width * height,
             surfels: scenes.map(|scene| scene.count() as f64).collect(),
-            across: 2.0 * scene.bounds().radius / self.viewport.units_per_px(orbit.distance()),
+            diameter_px: 2.0 * scene.bounds().radius / self.viewport.units_per_px(orbit.distance()),
         })
     }
 
@@ -479,9 +479,9 @@ mod tests {
         state.show(scene(50), made(), Of { load: 5, preview: false, again: true });
         assert_eq!((shown(&state), eye(&mut state)), (Some(50), above));
         state.add_coarser(vec![scene(5)]);
-        assert_eq!(state.sight().unwrap().surfels, [50.0, 5.0]);
+        assert_eq!(state.workload().unwrap().surfels, [50.0, 5.0]);
         state.show(scene(30), made(), of(6, false));
-        assert_eq!(state.sight().unwrap().surfels, [30.0]);
+        assert_eq!(state.workload().unwrap().surfels, [30.0]);
         assert_ne!(eye(&mut state), above);
     }
 }

@@ -1,12 +1,13 @@
 //! An open window: a frame of it, and what it costs.
 
 use super::Options;
+use super::adaptive_resolution::{AdaptiveResolution, FrameTime};
 use super::events::{Event, Events, Shown};
 use super::hud::Hud;
 use super::input::InputState;
 use super::keep::Shot;
-use super::pace::{Frame, Pace, Quality};
 use super::panels::UiState;
+use super::quality::Quality;
 use super::screen::{Pick, Screen};
 use super::state::State;
 use std::sync::Arc;
@@ -26,7 +27,7 @@ pub struct Opened {
     presenter: Presenter,
     pub hud: Hud,
     screen: Screen,
-    pub pace: Pace,
+    pub adaptive: AdaptiveResolution,
     /// When the last frame began, if it was followed at once by this one.
     last: Option<Instant>,
     /// What the pace knows the times of.
@@ -67,8 +68,8 @@ impl Opened {
         let presenter = Presenter::new(&device, surface)?;
         let screen = Screen::new(&presenter, options.rasterizer)?;
         let hud = Hud::new(&device, &window, presenter.overlay())?;
-        let pace = Pace::new(options.budget);
-        Ok((Self { presenter, hud, screen, pace, last: None, look: None, window }, device))
+        let adaptive = AdaptiveResolution::new(options.budget);
+        Ok((Self { presenter, hud, screen, adaptive, last: None, look: None, window }, device))
     }
 
     /// The window's size is another, or may be.
@@ -120,22 +121,26 @@ impl Opened {
             beside: ui_state.split_settings(state),
         });
         if self.look != look {
-            self.pace.forget();
+            self.adaptive.reset();
             self.look = look;
         }
-        let sight = state.sight();
-        let moving = self.pace.moves(start);
-        let quality = sight.as_ref().map_or(Quality::WHOLE, |sight| self.pace.quality(start, sight));
-        ui_state.scale = quality.side;
-        ui_state.surfels =
-            sight.as_ref().and_then(|sight| sight.surfels.get(quality.scene)).copied().unwrap_or(0.0);
+        let workload = state.workload();
+        let moving = self.adaptive.is_moving(start);
+        let quality =
+            workload.as_ref().map_or(Quality::FULL, |workload| self.adaptive.quality(start, workload));
+        ui_state.scale = quality.scale;
+        ui_state.surfels = workload
+            .as_ref()
+            .and_then(|workload| workload.surfels.get(quality.level))
+            .copied()
+            .unwrap_or(0.0);
         let size = state.viewport.size;
         let again = self.hud.lay_out(&self.window, state, ui_state);
-        if state.viewport.size != size && self.pace.is_known() {
+        if state.viewport.size != size && self.adaptive.has_measured() {
             // An edge is dragged: whole pictures come when it rests.
-            self.pace.moved(start);
+            self.adaptive.moved(start);
         }
-        self.screen.ask(ui_state.frame_options(state, quality.scene > 0), &self.presenter)?;
+        self.screen.ask(ui_state.frame_options(state, quality.level > 0), &self.presenter)?;
         let [shown, drawn] = self.present(state, ui_state, quality)?;
         // A frame's time is its own, and the next one shows where the hands are when it begins.
         self.presenter.wait()?;
@@ -148,8 +153,12 @@ impl Opened {
         let ms = 1e3 * start.elapsed().as_secs_f64();
         if drawn {
             ui_state.frame_ms = ms;
-            if let Some(sight) = &sight {
-                self.pace.took(quality, sight, Frame { ms, moving, made: self.screen.made() });
+            if let Some(workload) = &workload {
+                self.adaptive.record(
+                    quality,
+                    workload,
+                    FrameTime { ms, moving, created: self.screen.made() },
+                );
             }
         }
         let behind = self.presenter.is_behind();
@@ -174,11 +183,11 @@ impl Opened {
             self.window.request_redraw();
         }
         let now = Instant::now();
-        if quality != Quality::WHOLE && !self.pace.moves(now) {
+        if quality != Quality::FULL && !self.adaptive.is_moving(now) {
             // The hands came to rest within this frame, and nothing else has the picture drawn whole.
             self.window.request_redraw();
         }
-        let wakes = [self.pace.refines(now), self.hud.wakes()];
+        let wakes = [self.adaptive.refine_at(now), self.hud.wakes()];
         Ok(wakes.into_iter().flatten().min())
     }
 
@@ -194,7 +203,7 @@ impl Opened {
         let Some((way, (orbit, ..))) = input.flight().zip(state.moving()) else { return };
         let seconds = self.last.map_or(0.0, |last| (now - last).as_secs_f64());
         orbit.fly(way, seconds.min(0.25));
-        self.pace.moved(now);
+        self.adaptive.moved(now);
     }
 
     /// Whether a picture of something was shown, and whether it was drawn anew.
@@ -205,8 +214,8 @@ impl Opened {
         let shown = presenter.present([width, height], |frame| {
             let area = hud.beside(frame.size());
             state.viewport.size = area;
-            let size = area.map(|length| side_of(length, quality.side));
-            let seen = state.frame(quality.scene).transpose()?;
+            let size = area.map(|length| side_of(length, quality.scale));
+            let seen = state.frame(quality.level).transpose()?;
             let seen = seen.as_ref().map(|(scene, camera, settings)| (*scene, camera, &**settings));
             refused = match screen.record(frame, (area, size), seen) {
                 // Other settings may do: the window stays.

@@ -2,7 +2,7 @@
 
 use crate::viewer::about::thousands;
 use crate::viewer::load::LEAST_SURFELS;
-use crate::viewer::pace::LEAST_SIDE;
+use crate::viewer::quality::MIN_SCALE;
 use crate::viewer::screen::Reports;
 use egui::{Align2, Color32, FontId, Grid, Pos2, Rect, Sense, Ui, vec2};
 use std::collections::VecDeque;
@@ -205,15 +205,15 @@ fn nice(number: f64) -> f64 {
 }
 
 fn tell_quality(ui: &mut Ui, quality: &Quality, settings: &Settings, frame: f64) {
-    let size = quality.size.map(|side| (f64::from(side) * quality.side).round());
+    let size = quality.size.map(|side| (f64::from(side) * quality.scale).round());
     ui.label(format!("{} a frame, {:.0}x{:.0} px", ms(frame), size[0], size[1])).on_hover_text(format!(
         "From the frame's start until it is handed over. While the camera moves, pictures have fewer pixels, and surfels, where whole ones \
          would take longer than they may: never less than {:.0} % of the pixels, nor fewer than {} surfels, or all.",
-        100.0 * LEAST_SIDE * LEAST_SIDE,
+        100.0 * MIN_SCALE * MIN_SCALE,
         thousands(LEAST_SURFELS as u64)
     ));
-    let part = if quality.side < 1.0 {
-        format!("{:.0} % of the picture's pixels", 100.0 * quality.side * quality.side)
+    let part = if quality.scale < 1.0 {
+        format!("{:.0} % of the picture's pixels", 100.0 * quality.scale * quality.scale)
     } else {
         "all of the picture's pixels".into()
     };
