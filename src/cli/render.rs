@@ -141,7 +141,7 @@ pub fn keep_layers(picture: &mut Picture, layers: Outputs) {
 fn check_colours(args: &Render, colouring: Option<&Colouring>, out: &Output) -> Result<()> {
     let Some(colouring) = colouring else { return Ok(()) };
     let refuse = |text: &str| Err(Error::Usage(text.into()));
-    if !matches!(args.look.shading, Shading::Lit | Shading::Colour) {
+    if !matches!(args.render_settings.shading, Shading::Lit | Shading::Colour) {
         return refuse("--color-by shows under --shading lit or color alone: choose one of them");
     }
     match args.color_bar {

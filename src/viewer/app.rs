@@ -14,7 +14,7 @@ use super::retry::Retry;
 use super::state::{Of, State};
 use super::watch::Watch;
 use super::window::Opened;
-use super::{Look, Options};
+use super::{MethodSettings, Options};
 use glam::DVec2;
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -38,13 +38,13 @@ const LOADING: (&str, f32) = ("loading", 0.0);
 const SETTLED: Duration = Duration::from_millis(400);
 
 /// Opens the window and shows what `load` gives until it is closed.
-pub fn run(options: Options, load: Load, look: Look) -> Result<()> {
+pub fn run(options: Options, load: Load, method_settings: MethodSettings) -> Result<()> {
     let events = EventLoop::<News>::with_user_event().build().map_err(no_display)?;
     let remembered = options.remembered.as_deref().and_then(Remembered::read);
     let mut ui_state = UiState::new(remembered.as_ref().is_some_and(|known| known.hidden));
     ui_state.loading = (!options.inputs.is_empty()).then_some(LOADING);
     let known = remembered.filter(|_| !options.asked).and_then(|known| known.settings());
-    let state = State::new(&options, look, known);
+    let state = State::new(&options, method_settings, known);
     let input = InputState::default();
     let window = events.create_proxy();
     // Whoever has closed the window wants no news.
@@ -55,7 +55,7 @@ pub fn run(options: Options, load: Load, look: Look) -> Result<()> {
         loader.start(options.inputs.clone());
     }
     let watch = options.watch.then(|| Watch::new(events.create_proxy()));
-    watch.iter().for_each(|watch| watch.look_at(&options.inputs));
+    watch.iter().for_each(|watch| watch.set_inputs(&options.inputs));
     let mut app = App {
         state,
         input,
@@ -243,7 +243,7 @@ impl App {
     fn open(&mut self, inputs: Vec<OsString>) {
         (self.pending, self.tried) = (Some(inputs.clone()), None);
         self.ui_state.loading = Some(LOADING);
-        self.watch.iter().for_each(|watch| watch.look_at(&inputs));
+        self.watch.iter().for_each(|watch| watch.set_inputs(&inputs));
         self.loader.start(inputs);
     }
 
@@ -358,7 +358,7 @@ impl App {
         if cancelled {
             self.loader.cancel();
             (self.pending, self.tried, self.next) = (None, None, None);
-            self.watch.iter().for_each(|watch| watch.look_at(&self.inputs));
+            self.watch.iter().for_each(|watch| watch.set_inputs(&self.inputs));
             self.options.events.tell(&Event::Cancelled);
             self.state.leave_preview();
             self.changed();

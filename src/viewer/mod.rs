@@ -136,15 +136,15 @@ pub struct Numbers {
 pub type ReadNumbers = Arc<dyn Fn(&str, &dyn Progress) -> Result<[Vec<f32>; 2]> + Send + Sync>;
 
 /// The settings of a method.
-pub type Look = Box<dyn Fn(&Method) -> Settings>;
+pub type MethodSettings = Box<dyn Fn(&Method) -> Settings>;
 
 /// Opens the window, and shows what `load` makes of the inputs, and of files dropped on it, until it is closed. What cannot be loaded is a
 /// message.
 ///
 /// # Errors
 /// [`surfel::Error::NoWindow`] where there is no display, [`surfel::Error::NoDevice`] where there is no device; whatever rendering fails with.
-pub fn run(options: Options, load: Load, look: Look) -> Result<()> {
-    app::run(options, load, look)
+pub fn run(options: Options, load: Load, method_settings: MethodSettings) -> Result<()> {
+    app::run(options, load, method_settings)
 }
 
 #[cfg(test)]

@@ -31,7 +31,7 @@ impl Opening {
 
     /// Asks, until there is an answer.
     pub fn show(&mut self, ui: &mut Ui) -> Option<Answer> {
-        self.look();
+        self.refresh();
         let mut answer = None;
         Window::new("Open").collapsible(false).default_width(420.0).show(ui.ctx(), |ui| {
             ui.label("a PLY file, a camera's .json file, or a scene such as scene:bumpy-sphere");
@@ -89,7 +89,7 @@ impl Opening {
     }
 
     /// Looks into the folder of the text, if it is another than before.
-    fn look(&mut self) {
+    fn refresh(&mut self) {
         let (folder, _) = split(&self.text);
         let folder = PathBuf::from(if folder.is_empty() { ".".into() } else { at_home(folder) });
         if self.folder.as_ref() != Some(&folder) {

@@ -7,7 +7,7 @@ use super::orbit::{Orbit, Up};
 use super::quality::Workload;
 use super::source::{Source, Wish};
 use super::viewport::Viewport;
-use super::{Look, Options};
+use super::{MethodSettings, Options};
 use glam::{DVec2, DVec3};
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -22,7 +22,7 @@ use surfel::{Rasterizer, Result, Scene, Settings};
 pub struct State {
     pub viewport: Viewport,
     up: Up,
-    look: Look,
+    method_settings: MethodSettings,
     rasterizer: Option<Rasterizer>,
     /// How the first scene is seen, if it can be.
     remembered: Option<(Method, Settings)>,
@@ -78,12 +78,16 @@ struct Shown {
 }
 
 impl State {
-    pub fn new(options: &Options, look: Look, remembered: Option<(Method, Settings)>) -> Self {
+    pub fn new(
+        options: &Options,
+        method_settings: MethodSettings,
+        remembered: Option<(Method, Settings)>,
+    ) -> Self {
         let viewport = Viewport { size: options.size, fov_y_deg: options.fov_y_deg, parallel: false };
         Self {
             viewport,
             up: nearest(options.up),
-            look,
+            method_settings,
             rasterizer: options.rasterizer,
             remembered,
             version: 0,
@@ -105,7 +109,7 @@ impl State {
             (method, settings)
         });
         let known = left.or(self.remembered.take_if(|known| suits(&scene, &known.1)));
-        let (method, settings) = known.unwrap_or_else(|| (method, (self.look)(&method)));
+        let (method, settings) = known.unwrap_or_else(|| (method, (self.method_settings)(&method)));
         if !of.preview {
             self.remembered = None;
         }
@@ -174,7 +178,7 @@ impl State {
     }
 
     /// Looks from where this camera does, and turns about its target.
-    pub fn look_from(&mut self, pose: Pose) {
+    pub fn set_pose(&mut self, pose: Pose) {
         let Self { shown: Some(shown), viewport, .. } = self else { return };
         shown.orbit = Orbit::of(&pose, shown.orbit.up(), viewport);
         shown.given = Some((shown.orbit, *viewport, pose));
@@ -195,7 +199,7 @@ impl State {
     }
 
     /// The scene, and how it is rendered.
-    pub fn look(&self) -> Option<(Arc<Scene>, Settings)> {
+    pub fn scene_and_settings(&self) -> Option<(Arc<Scene>, Settings)> {
         self.shown.as_ref().map(|shown| (shown.scene.clone(), shown.settings.clone()))
     }
 
@@ -284,7 +288,12 @@ impl State {
     /// What can be chosen, where something is shown.
     pub fn choices(&mut self) -> Option<Choices<'_>> {
         let camera = self.frame(0).map(|frame| frame.map(|(_, camera, _)| camera));
-        let Self { shown: Some(Shown { method, settings, scene, source, .. }), viewport, look, .. } = self
+        let Self {
+            shown: Some(Shown { method, settings, scene, source, .. }),
+            viewport,
+            method_settings,
+            ..
+        } = self
         else {
             return None;
         };
@@ -301,7 +310,7 @@ impl State {
             size: viewport.size,
             parallel: &mut viewport.parallel,
             rasterizer: self.rasterizer,
-            look,
+            method_settings,
         })
     }
 
@@ -311,8 +320,8 @@ impl State {
         match action {
             Action::Close | Action::Quit | Action::Help | Action::Panels | Action::Open => {}
             Action::Keep(_) | Action::SaveCamera | Action::CopyCamera | Action::PasteCamera => {}
-            Action::NextMethod => shown.turn_method(1, &self.look),
-            Action::PreviousMethod => shown.turn_method(Method::ALL.len() - 1, &self.look),
+            Action::NextMethod => shown.turn_method(1, &self.method_settings),
+            Action::PreviousMethod => shown.turn_method(Method::ALL.len() - 1, &self.method_settings),
             Action::NextShading => {
                 let after =
                     Shading::ALL.iter().cycle().skip_while(|shading| **shading != shown.settings.shading);
@@ -346,7 +355,7 @@ pub struct Choices<'a> {
     /// Width and height of the window's picture, px.
     pub size: [u32; 2],
     pub rasterizer: Option<Rasterizer>,
-    look: &'a Look,
+    method_settings: &'a MethodSettings,
 }
 
 impl Choices<'_> {
@@ -358,7 +367,7 @@ impl Choices<'_> {
 
     /// The settings of a method; what is seen stays.
     pub fn settings_of(&self, method: &Method) -> Settings {
-        seen_alike((self.look)(method), self.settings)
+        seen_alike((self.method_settings)(method), self.settings)
     }
 }
 
@@ -383,10 +392,10 @@ impl Shown {
     }
 
     /// The method so many further on; what is seen stays.
-    fn turn_method(&mut self, steps: usize, look: &Look) {
+    fn turn_method(&mut self, steps: usize, method_settings: &MethodSettings) {
         let now = Method::ALL.iter().position(|method| method.name == self.method.name).unwrap_or(0);
         self.method = Method::ALL[(now + steps) % Method::ALL.len()];
-        self.settings = seen_alike(look(&self.method), &self.settings);
+        self.settings = seen_alike(method_settings(&self.method), &self.settings);
     }
 }
 
@@ -456,7 +465,7 @@ mod tests {
             Arc::new(Scene::upload(&device, &surfels).unwrap())
         };
         let made = || (Method::ALL[0], Source::new(Loaded::new(Surfels::default().into(), Method::ALL[0])));
-        let shown = |state: &State| state.look().map(|(scene, _)| scene.count());
+        let shown = |state: &State| state.scene_and_settings().map(|(scene, _)| scene.count());
         let mut state = state();
         state.show(scene(10), made(), of(1, true));
         assert_eq!((shown(&state), state.is_preview()), (Some(10), true));

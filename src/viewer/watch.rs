@@ -27,7 +27,7 @@ impl Watch {
     }
 
     /// Looks at these from now on, as they are now.
-    pub fn look_at(&self, inputs: &[OsString]) {
+    pub fn set_inputs(&self, inputs: &[OsString]) {
         // It looks as long as there is a sender.
         let _ = self.0.send(inputs.to_vec());
     }
@@ -42,7 +42,7 @@ fn watch(given: &Receiver<Vec<OsString>>, tell: impl Fn() -> bool) {
             Err(RecvTimeoutError::Disconnected) => return,
             Err(RecvTimeoutError::Timeout) => {}
         }
-        if changes.look() && !tell() {
+        if changes.poll() && !tell() {
             return;
         }
     }
@@ -64,7 +64,7 @@ impl Changes {
     }
 
     /// Whether they are other than they were told last, and stay as they are for now: what is being written is not whole.
-    fn look(&mut self) -> bool {
+    fn poll(&mut self) -> bool {
         let now = marks(&self.inputs);
         let rests = std::mem::replace(&mut self.seen, now.clone()) == now;
         let changed = rests && now != self.reported && now.iter().all(Option::is_some);
@@ -99,17 +99,17 @@ mod tests {
         let file = folder.path().join("a.ply");
         fs::write(&file, "a").unwrap();
         let mut changes = Changes::of(vec![file.clone().into(), "scene:sphere".into()]);
-        assert!(!changes.look() && !changes.look());
+        assert!(!changes.poll() && !changes.poll());
         fs::write(&file, "ab").unwrap();
-        assert!(!changes.look(), "it may be being written");
+        assert!(!changes.poll(), "it may be being written");
         fs::write(&file, "abc").unwrap();
-        assert!(!changes.look());
-        assert!(changes.look());
-        assert!(!changes.look());
+        assert!(!changes.poll());
+        assert!(changes.poll());
+        assert!(!changes.poll());
         // Programs that save put another file in the place of the old one: for a moment there is none.
         fs::remove_file(&file).unwrap();
-        assert!(!changes.look() && !changes.look());
+        assert!(!changes.poll() && !changes.poll());
         fs::write(&file, "abcd").unwrap();
-        assert_eq!([changes.look(), changes.look(), changes.look()], [false, true, false]);
+        assert_eq!([changes.poll(), changes.poll(), changes.poll()], [false, true, false]);
     }
 }

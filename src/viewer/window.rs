@@ -31,23 +31,23 @@ pub struct Opened {
     /// When the last frame began, if it was followed at once by this one.
     last: Option<Instant>,
     /// What the pace knows the times of.
-    look: Option<Look>,
+    measured_content: Option<Content>,
     pub window: Arc<Window>,
 }
 
 /// What frames are of.
-struct Look {
+struct Content {
     scene: Arc<Scene>,
     settings: Settings,
     /// Those of the picture beside it.
-    beside: Option<Settings>,
+    split_settings: Option<Settings>,
 }
 
-impl PartialEq for Look {
+impl PartialEq for Content {
     fn eq(&self, other: &Self) -> bool {
         Arc::ptr_eq(&self.scene, &other.scene)
             && self.settings == other.settings
-            && self.beside == other.beside
+            && self.split_settings == other.split_settings
     }
 }
 
@@ -69,7 +69,7 @@ impl Opened {
         let screen = Screen::new(&presenter, options.rasterizer)?;
         let hud = Hud::new(&device, &window, presenter.overlay())?;
         let adaptive = AdaptiveResolution::new(options.budget);
-        Ok((Self { presenter, hud, screen, adaptive, last: None, look: None, window }, device))
+        Ok((Self { presenter, hud, screen, adaptive, last: None, measured_content: None, window }, device))
     }
 
     /// The window's size is another, or may be.
@@ -115,14 +115,14 @@ impl Opened {
     ) -> Result<Option<Instant>> {
         let start = Instant::now();
         self.fly(state, input, start);
-        let look = state.look().map(|(scene, settings)| Look {
+        let content = state.scene_and_settings().map(|(scene, settings)| Content {
             scene,
             settings,
-            beside: ui_state.split_settings(state),
+            split_settings: ui_state.split_settings(state),
         });
-        if self.look != look {
+        if self.measured_content != content {
             self.adaptive.reset();
-            self.look = look;
+            self.measured_content = content;
         }
         let workload = state.workload();
         let moving = self.adaptive.is_moving(start);

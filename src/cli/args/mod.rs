@@ -146,7 +146,7 @@ pub struct Render {
     pub camera: Camera,
     /// How surfels become a picture
     #[command(flatten, next_help_heading = "Picture")]
-    pub look: Look,
+    pub render_settings: RenderSettings,
     /// Where it is rendered
     #[command(flatten, next_help_heading = "Device")]
     pub place: Place,
@@ -202,7 +202,7 @@ pub struct Camera {
 
 /// How surfels become a picture.
 #[derive(Args, Debug)]
-pub struct Look {
+pub struct RenderSettings {
     /// What the picture shows
     #[arg(long, value_parser = choice::<Shading>(), default_value = Shading::Lit.name())]
     pub shading: Shading,
@@ -272,25 +272,25 @@ impl Axes {
 impl Render {
     /// The settings that this asks for of a method.
     pub fn settings(&self, method: &Method) -> Settings {
-        self.look.settings(&self.axes, method)
+        self.render_settings.settings(&self.axes, method)
     }
 }
 
-impl Look {
+impl RenderSettings {
     /// The settings that this asks for of a method, of which `axes` are changed.
     fn settings(&self, axes: &Axes, method: &Method) -> Settings {
-        let (look, preset) = (self, method.settings());
+        let preset = method.settings();
         Settings {
             splatting: axes.over(preset.splatting),
             pull_push: preset.pull_push,
-            cutoff: look.cutoff.unwrap_or(preset.cutoff),
-            lowpass: look.lowpass.unwrap_or(preset.lowpass),
-            widen: look.widen.unwrap_or(preset.widen),
-            epsilon: look.epsilon,
-            cull: look.cull.unwrap_or(preset.cull),
-            alpha: look.alpha,
-            shading: look.shading,
-            background: look.background.linear(),
+            cutoff: self.cutoff.unwrap_or(preset.cutoff),
+            lowpass: self.lowpass.unwrap_or(preset.lowpass),
+            widen: self.widen.unwrap_or(preset.widen),
+            epsilon: self.epsilon,
+            cull: self.cull.unwrap_or(preset.cull),
+            alpha: self.alpha,
+            shading: self.shading,
+            background: self.background.linear(),
             lighting: preset.lighting,
         }
     }

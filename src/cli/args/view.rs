@@ -1,6 +1,6 @@
 //! Options of `surfel view`.
 
-use super::{Axes, Camera, Colours, Look, OnDevice, Points};
+use super::{Axes, Camera, Colours, OnDevice, Points, RenderSettings};
 use crate::cli::values::{choice, method, size};
 use clap::Args;
 use std::ffi::OsString;
@@ -34,7 +34,7 @@ pub struct View {
     pub camera: Camera,
     /// How surfels become a picture
     #[command(flatten)]
-    pub look: Look,
+    pub render_settings: RenderSettings,
     /// What visits the pixels: the device's own rasterizer, or compute shaders; what is faster on the device unless given
     #[arg(long, value_parser = choice::<Rasterizer>())]
     pub rasterizer: Option<Rasterizer>,
@@ -64,6 +64,6 @@ pub struct View {
 impl View {
     /// The settings that this asks for of a method.
     pub fn settings(&self, method: &Method) -> Settings {
-        self.look.settings(&self.axes, method)
+        self.render_settings.settings(&self.axes, method)
     }
 }

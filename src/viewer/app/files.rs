@@ -28,7 +28,7 @@ impl App {
         }
         self.state.show(scene, made, of);
         if let Some(pose) = pose {
-            self.state.look_from(pose);
+            self.state.set_pose(pose);
         }
         Ok(())
     }
@@ -43,7 +43,7 @@ impl App {
                     self.options.events.tell(&Event::Camera { file: &path });
                     match waits {
                         true => self.next = Some(pose),
-                        false => self.state.look_from(pose),
+                        false => self.state.set_pose(pose),
                     }
                     self.changed();
                 }
@@ -87,7 +87,7 @@ impl App {
             }
             Action::PasteCamera => {
                 let pose = self.keep.paste(&opened.window)?;
-                self.state.look_from(pose);
+                self.state.set_pose(pose);
             }
             _ => {}
         }

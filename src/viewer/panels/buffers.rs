@@ -85,7 +85,7 @@ impl Buffers {
         let Some(Ok(camera)) = &chosen.camera else { return };
         let of = (*camera, chosen.settings.clone(), self.buffer, self.level);
         let old = self.shown && self.of.as_ref() != Some(&of);
-        let text = if old { "look again: what is shown is of an earlier picture" } else { "look" };
+        let text = if old { "Read back again: an earlier picture is shown" } else { "Read back" };
         if ui
             .add(Button::new(text))
             .on_hover_text("Renders the picture once more, whole, and reads it back.")

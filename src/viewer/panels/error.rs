@@ -88,7 +88,7 @@ impl Default for Errors {
 impl Errors {
     /// What can be asked, and what was found.
     pub fn show(&mut self, ui: &mut Ui, chosen: &Choices<'_>, device: &Arc<Device>) {
-        self.look(ui);
+        self.poll(ui);
         match &self.job {
             Some(job) => {
                 let (stage, part) = job.at();
@@ -106,7 +106,7 @@ impl Errors {
     }
 
     /// Takes what is done.
-    fn look(&mut self, ui: &Ui) {
+    fn poll(&mut self, ui: &Ui) {
         let Some(job) = &mut self.job else { return };
         match job.take() {
             None => ui.ctx().request_repaint_after(OFTEN),

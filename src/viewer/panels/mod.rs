@@ -6,9 +6,9 @@ mod error;
 mod help;
 mod kernel;
 mod legend;
-mod look;
 mod method;
 mod raster;
+mod render_settings;
 mod split;
 mod start;
 mod times;
@@ -114,7 +114,9 @@ fn choices(ui: &mut Ui, state: &mut State, ui_state: &mut UiState, device: &Arc<
     ui.spacing_mut().slider_width = (ui.available_width() - SLIDER).clamp(40.0, 100.0);
     about(ui, chosen);
     CollapsingHeader::new("Method").default_open(true).show(ui, |ui| method::show(ui, chosen));
-    CollapsingHeader::new("Look").default_open(true).show(ui, |ui| look::show(ui, chosen));
+    CollapsingHeader::new("Render settings")
+        .default_open(true)
+        .show(ui, |ui| render_settings::show(ui, chosen));
     let quality = times::Quality {
         size: chosen.size,
         side: ui_state.scale,

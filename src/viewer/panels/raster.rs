@@ -1,6 +1,6 @@
 //! Numbers of pixels, shown as a picture with a range.
 
-use super::look;
+use super::render_settings;
 use egui::{
     Align2, Color32, ColorImage, Context, FontId, Image, Painter, Rect, Sense, TextureHandle, TextureOptions,
     Ui, Window, pos2, vec2,
@@ -66,8 +66,8 @@ impl Raster {
             .default_size([520.0, 460.0])
             .show(context, |ui| {
                 if let Values::Numbers(_) = self.values {
-                    look::map(ui, &mut self.map);
-                    look::range(ui, &mut self.range, self.usual);
+                    render_settings::map(ui, &mut self.map);
+                    render_settings::range(ui, &mut self.range, self.usual);
                     colour_bar(ui, &self.scale());
                 }
                 self.picture(ui);
