@@ -44,7 +44,10 @@ pub fn run(args: View) -> Result<()> {
         place: Box::new(place),
         watch: args.watch,
         events: viewer::Events::new(start, args.json),
-        keep: viewer::Folder { path: args.shots.clone(), tell: !(args.quiet || args.json) },
+        save_folder: viewer::SaveFolder {
+            path: args.screenshots.clone(),
+            print_names: !(args.quiet || args.json),
+        },
         remembered: config_folder().filter(|_| !args.fresh).map(|folder| folder.join("viewer.json")),
         asked: args.method.is_some()
             || Method::ALL.iter().any(|method| args.settings(method) != method.settings()),

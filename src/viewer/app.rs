@@ -4,13 +4,13 @@ mod files;
 
 use super::events::Event;
 use super::input::InputState;
-use super::keep::Keep;
 use super::keys::{self, Action};
 use super::layout::Press;
 use super::load::{Load, Loader, News, What};
 use super::panels::UiState;
 use super::remember::Remembered;
 use super::retry::Retry;
+use super::screenshots::Screenshots;
 use super::state::{Of, State};
 use super::watch::Watch;
 use super::window::Opened;
@@ -65,7 +65,7 @@ pub fn run(options: Options, load: Load, method_settings: MethodSettings) -> Res
         dropped: Vec::new(),
         next: None,
         is_first: true,
-        keep: Keep::new(options.keep.clone()),
+        screenshots: Screenshots::new(options.save_folder.clone()),
         news: events.create_proxy(),
         inputs: Vec::new(),
         tried: None,
@@ -99,7 +99,7 @@ struct App {
     dropped: Vec<PathBuf>,
     /// From where the scene is seen that comes next.
     next: Option<Pose>,
-    keep: Keep,
+    screenshots: Screenshots,
     /// Whether no scene was shown whole yet.
     is_first: bool,
     news: EventLoopProxy<News>,
@@ -135,7 +135,7 @@ impl ApplicationHandler<News> for App {
 
     fn user_event(&mut self, events: &ActiveEventLoop, news: News) {
         let (load, what) = match news {
-            News::Kept => return self.written(),
+            News::ScreenshotWritten => return self.report_written(),
             News::Changed => return self.reload(),
             News::Load(load, what) => (load, what),
         };
@@ -232,8 +232,8 @@ impl ApplicationHandler<News> for App {
 
     fn exiting(&mut self, _: &ActiveEventLoop) {
         self.remember();
-        self.keep.finish();
-        self.written();
+        self.screenshots.finish();
+        self.report_written();
         (self.opened, self.device) = (None, None);
     }
 }
@@ -319,12 +319,12 @@ impl App {
             Some(Action::Quit) => events.exit(),
             Some(
                 action @ (Action::Open
-                | Action::Keep(_)
+                | Action::SaveScreenshot(_)
                 | Action::SaveCamera
                 | Action::CopyCamera
                 | Action::PasteCamera),
             ) => {
-                if let Err(error) = self.keep(action) {
+                if let Err(error) = self.run_file_action(action) {
                     self.wrong(&error);
                 }
             }

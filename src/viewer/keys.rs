@@ -1,7 +1,7 @@
 //! What keys do.
 
-use super::keep::What;
 use super::layout::Press;
+use super::screenshots::ScreenshotKind;
 use winit::keyboard::{Key, ModifiersState, NamedKey};
 
 /// What a key does.
@@ -16,7 +16,7 @@ pub enum Action {
     Frame,
     Help,
     Open,
-    Keep(What),
+    SaveScreenshot(ScreenshotKind),
     SaveCamera,
     CopyCamera,
     PasteCamera,
@@ -80,20 +80,26 @@ pub static BINDINGS: [Binding; 25] = {
         letter("y", "Y", "y is up, then −y", Action::Up(Up { axis: 1, down: false })),
         letter("z", "Z", "z is up, then −z", Action::Up(Up { axis: 2, down: false })),
         control("o", "Ctrl+O", "open a scene or a camera; or drop files here", Action::Open),
-        named(NamedKey::F12, NONE, "F12", "save the picture, PNG", Action::Keep(What::Picture)),
+        named(
+            NamedKey::F12,
+            NONE,
+            "F12",
+            "save the picture, PNG",
+            Action::SaveScreenshot(ScreenshotKind::Picture),
+        ),
         named(
             NamedKey::F12,
             SHIFT,
             "Shift+F12",
             "save the window, panels and all",
-            Action::Keep(What::Window),
+            Action::SaveScreenshot(ScreenshotKind::Window),
         ),
         named(
             NamedKey::F12,
             CONTROL,
             "Ctrl+F12",
             "save the picture's values, EXR",
-            Action::Keep(What::Values),
+            Action::SaveScreenshot(ScreenshotKind::Values),
         ),
         control("s", "Ctrl+S", "save the camera", Action::SaveCamera),
         control("c", "Ctrl+C", "copy the camera", Action::CopyCamera),
@@ -140,9 +146,9 @@ mod tests {
             (letter("S"), CONTROL, Some(Action::SaveCamera)),
             (letter("f"), CONTROL, None),
             (letter("m"), ModifiersState::ALT, None),
-            (f12.clone(), NONE, Some(Action::Keep(What::Picture))),
-            (f12.clone(), SHIFT, Some(Action::Keep(What::Window))),
-            (f12.clone(), CONTROL, Some(Action::Keep(What::Values))),
+            (f12.clone(), NONE, Some(Action::SaveScreenshot(ScreenshotKind::Picture))),
+            (f12.clone(), SHIFT, Some(Action::SaveScreenshot(ScreenshotKind::Window))),
+            (f12.clone(), CONTROL, Some(Action::SaveScreenshot(ScreenshotKind::Values))),
             (f12, CONTROL | SHIFT, None),
             (Key::Dead(None), NONE, None),
         ] {

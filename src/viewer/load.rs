@@ -41,7 +41,7 @@ pub enum News {
     /// Files that are watched have changed.
     Changed,
     /// A picture is in its file, or cannot be.
-    Kept,
+    ScreenshotWritten,
 }
 
 /// What is new.

@@ -14,7 +14,6 @@ mod events;
 mod hud;
 mod input;
 mod job;
-mod keep;
 mod keys;
 mod layout;
 mod load;
@@ -25,6 +24,7 @@ mod quality;
 mod remember;
 mod retry;
 mod screen;
+mod screenshots;
 mod side;
 mod source;
 mod state;
@@ -36,8 +36,8 @@ mod window;
 pub use about::About;
 pub use events::Events;
 use glam::DVec3;
-pub use keep::Folder;
 pub use load::{Load, Loading};
+pub use screenshots::SaveFolder;
 use std::ffi::OsString;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -69,7 +69,7 @@ pub struct Options {
     /// Who is told what happens.
     pub events: Events,
     /// Where pictures and cameras are kept.
-    pub keep: Folder,
+    pub save_folder: SaveFolder,
     /// Where settings are remembered, if they are.
     pub remembered: Option<PathBuf>,
     /// Whether a method or something of it is asked for, so that what is remembered of them does not count.

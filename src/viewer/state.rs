@@ -319,7 +319,7 @@ impl State {
         let Some(shown) = &mut self.shown else { return };
         match action {
             Action::Close | Action::Quit | Action::Help | Action::Panels | Action::Open => {}
-            Action::Keep(_) | Action::SaveCamera | Action::CopyCamera | Action::PasteCamera => {}
+            Action::SaveScreenshot(_) | Action::SaveCamera | Action::CopyCamera | Action::PasteCamera => {}
             Action::NextMethod => shown.turn_method(1, &self.method_settings),
             Action::PreviousMethod => shown.turn_method(Method::ALL.len() - 1, &self.method_settings),
             Action::NextShading => {
@@ -426,7 +426,7 @@ fn nearest(up: DVec3) -> Up {
 mod tests {
     use super::*;
     use crate::viewer::tests::device;
-    use crate::viewer::{Events, Folder, Loaded};
+    use crate::viewer::{Events, Loaded, SaveFolder};
     use std::time::Instant;
     use surfel::geometry::Surfels;
     use surfel::verify::scenes;
@@ -444,7 +444,7 @@ mod tests {
             place: Box::new(|_, _| None),
             watch: false,
             events: Events::new(Instant::now(), false),
-            keep: Folder { path: ".".into(), tell: false },
+            save_folder: SaveSaveFolder { path: ".".into(), print_names: false },
             remembered: None,
             asked: false,
         };

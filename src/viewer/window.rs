@@ -5,10 +5,10 @@ use super::adaptive_resolution::{AdaptiveResolution, FrameTime};
 use super::events::{Event, Events, Shown};
 use super::hud::Hud;
 use super::input::InputState;
-use super::keep::Shot;
 use super::panels::UiState;
 use super::quality::Quality;
 use super::screen::{Pick, Screen};
+use super::screenshots::Screenshot;
 use super::state::State;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -79,19 +79,19 @@ impl Opened {
     }
 
     /// What the window shows, panels and all, from a whole picture.
-    pub fn capture(&mut self, state: &mut State, ui_state: &mut UiState) -> Result<Shot> {
+    pub fn capture(&mut self, state: &mut State, ui_state: &mut UiState) -> Result<Screenshot> {
         ui_state.scale = 1.0;
-        let shot = self.captured(state, ui_state)?;
+        let screenshot = self.captured(state, ui_state)?;
         let ranges = self.screen.ranges(&self.presenter)?;
         if ui_state.ranges == ranges {
-            return Ok(shot);
+            return Ok(screenshot);
         }
         // The panels were laid out before they were known; the picture is there.
         ui_state.ranges = ranges;
         self.captured(state, ui_state)
     }
 
-    fn captured(&mut self, state: &mut State, ui_state: &mut UiState) -> Result<Shot> {
+    fn captured(&mut self, state: &mut State, ui_state: &mut UiState) -> Result<Screenshot> {
         self.hud.lay_out(&self.window, state, ui_state);
         let Self { presenter, hud, screen, window, .. } = self;
         let PhysicalSize { width, height } = window.inner_size();
@@ -102,7 +102,7 @@ impl Opened {
             screen.record(frame, (size, size), seen)?;
             hud.record(frame)
         })?;
-        Shot::of_window(whole, pixels)
+        Screenshot::of_window(whole, pixels)
     }
 
     /// Draws a frame; when another is to follow without an event.

@@ -10,7 +10,7 @@ fn kept_pictures_are_those_of_render_and_of_the_window() {
     let Some((display, program)) = stage("kept_pictures_are_those_of_render_and_of_the_window") else {
         return;
     };
-    let mut view = View::open(&display, &program, &format!("{SPHERE} --size 640x480 {DRAW} --shots ."));
+    let mut view = View::open(&display, &program, &format!("{SPHERE} --size 640x480 {DRAW} --screenshots ."));
     let [width, height] = picture_size(&view.picture(|_| true));
     assert!((320..640).contains(&width) && height == 480, "what the panel leaves: {width}x{height}");
     let what = format!("{SPHERE} --size {width}x{height} {DRAW}");
@@ -64,7 +64,7 @@ fn the_first_colours_are_those_of_the_command_line() {
     program.write("a.ply", text);
     for by in ["heat", "x", "height", "heat:50,300"] {
         let what = format!("a.ply {DRAW} --size 320x240 --color-by {by} --shading color");
-        let mut view = View::open(&display, &program, &format!("{what} -q --shots ."));
+        let mut view = View::open(&display, &program, &format!("{what} -q --screenshots ."));
         view.picture(|_| true);
         display.press(&[key::CONTROL], u32::from('s'));
         let camera = view.wrote();
@@ -94,7 +94,7 @@ fn normals_depths_overlaps_and_weights_are_shown_as_they_are_kept() {
         return;
     };
     for background in ["", "--background #336699"] {
-        let what = format!("{SPHERE} --size 400x300 {DRAW} {background} --shots .");
+        let what = format!("{SPHERE} --size 400x300 {DRAW} {background} --screenshots .");
         let mut view = View::open(&display, &program, &what);
         let mut shading = view.picture(|_| true)["shading"].clone();
         for _ in 0..6 {

@@ -53,9 +53,9 @@ pub struct View {
     /// On which device
     #[command(flatten)]
     pub device: OnDevice,
-    /// Folder in which pictures and cameras are kept; the current one unless given
-    #[arg(long, value_name = "FOLDER", default_value = ".")]
-    pub shots: PathBuf,
+    /// Folder for screenshots and saved cameras; the current one unless given
+    #[arg(long, alias = "shots", value_name = "FOLDER", default_value = ".")]
+    pub screenshots: PathBuf,
     /// Prints nothing but warnings and errors
     #[arg(short, long)]
     pub quiet: bool,

@@ -2,10 +2,10 @@
 
 use super::App;
 use crate::viewer::events::Event;
-use crate::viewer::keep::{Shot, What};
 use crate::viewer::keys::Action;
 use crate::viewer::load::News;
 use crate::viewer::open::{Answer, Opening};
+use crate::viewer::screenshots::{Screenshot, ScreenshotKind};
 use crate::viewer::source::Source;
 use crate::viewer::state::Of;
 use std::path::{Path, PathBuf};
@@ -66,27 +66,27 @@ impl App {
     }
 
     /// Keeps, copies or asks for what `action` says.
-    pub(super) fn keep(&mut self, action: Action) -> Result<()> {
+    pub(super) fn run_file_action(&mut self, action: Action) -> Result<()> {
         if action == Action::Open {
             self.input.release_all();
-            self.state.opening = Some(Opening::at(&self.options.keep.path));
+            self.state.opening = Some(Opening::at(&self.options.save_folder.path));
             self.changed();
             return Ok(());
         }
         let (Some(pose), Some(opened)) = (self.state.pose(), &self.opened) else { return Ok(()) };
         match action {
-            Action::Keep(what) => return self.shoot(what),
+            Action::SaveScreenshot(kind) => return self.take_screenshot(kind),
             Action::SaveCamera => {
-                let kept = self.keep.camera(&pose);
-                self.done(kept);
+                let saved = self.screenshots.camera(&pose);
+                self.report_saved(saved);
             }
             Action::CopyCamera => {
-                self.keep.copy(&pose, &opened.window);
+                self.screenshots.copy(&pose, &opened.window);
                 self.options.events.tell(&Event::Copied);
                 self.ui_state.message = Some("the camera is on the clipboard".into());
             }
             Action::PasteCamera => {
-                let pose = self.keep.paste(&opened.window)?;
+                let pose = self.screenshots.paste(&opened.window)?;
                 self.state.set_pose(pose);
             }
             _ => {}
@@ -96,38 +96,38 @@ impl App {
     }
 
     /// Makes a picture of what is seen, and has it written.
-    fn shoot(&mut self, what: What) -> Result<()> {
+    fn take_screenshot(&mut self, kind: ScreenshotKind) -> Result<()> {
         let Self { state, opened: Some(opened), device: Some(device), ui_state, .. } = self else {
             return Ok(());
         };
-        let shot = match what {
-            What::Window => opened.capture(state, ui_state)?,
-            What::Picture | What::Values => {
+        let screenshot = match kind {
+            ScreenshotKind::Window => opened.capture(state, ui_state)?,
+            ScreenshotKind::Picture | ScreenshotKind::Values => {
                 let size = state.viewport.size;
                 let Some(seen) = state.frame(0) else { return Ok(()) };
                 let (scene, camera, settings) = seen?;
                 let how = (size, self.options.rasterizer);
-                Shot::render(device, scene, (&camera, &settings), how, what == What::Values)?
+                Screenshot::render(device, scene, (&camera, &settings), how, kind == ScreenshotKind::Values)?
             }
         };
         let window = self.news.clone();
-        self.keep.picture(shot, move || {
+        self.screenshots.picture(screenshot, move || {
             // When the window is closed all are waited for.
-            let _ = window.send_event(News::Kept);
+            let _ = window.send_event(News::ScreenshotWritten);
         });
         Ok(())
     }
 
     /// Says which pictures were written.
-    pub(super) fn written(&mut self) {
-        self.keep.written().into_iter().for_each(|kept| self.done(kept));
+    pub(super) fn report_written(&mut self) {
+        self.screenshots.written().into_iter().for_each(|saved| self.report_saved(saved));
     }
 
     /// Says which file was written, or why not.
-    fn done(&mut self, kept: Result<PathBuf>) {
-        match kept {
+    fn report_saved(&mut self, saved: Result<PathBuf>) {
+        match saved {
             Ok(path) => {
-                self.keep.say(&path);
+                self.screenshots.print_name(&path);
                 self.options.events.tell(&Event::Wrote { file: &path });
                 self.ui_state.message = Some(format!("saved {}", path.display()));
                 self.changed();

@@ -10,7 +10,7 @@ use surfel::{Outputs, Picture, Rasterizer, RenderOptions, Renderer, Result, Scen
 
 /// What is kept.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum What {
+pub enum ScreenshotKind {
     /// The picture alone, as PNG.
     Picture,
     /// Its values, as EXR.
@@ -20,12 +20,12 @@ pub enum What {
 }
 
 /// A picture that is not in its file yet.
-pub enum Shot {
+pub enum Screenshot {
     Rendered { picture: Picture, shading: Shading, values: bool },
     Window(Encoded),
 }
 
-impl Shot {
+impl Screenshot {
     /// The whole picture of `size` px: what `surfel render` writes.
     pub fn render(
         device: &Arc<Device>,

@@ -1,12 +1,12 @@
 //! What is kept of what is seen: pictures and cameras, in files and on the clipboard.
 
-mod names;
-mod shot;
+mod file_names;
+mod screenshot;
 
-pub use shot::{Shot, What};
+pub use screenshot::{Screenshot, ScreenshotKind};
 
 use egui_winit::clipboard::Clipboard;
-use names::Names;
+use file_names::FileNames;
 use std::io::Write;
 use std::path::PathBuf;
 use std::sync::mpsc::{self, Receiver, Sender};
@@ -20,16 +20,16 @@ use winit::window::Window;
 
 /// Where files are kept.
 #[derive(Clone, Debug)]
-pub struct Folder {
+pub struct SaveFolder {
     pub path: PathBuf,
     /// Whether their names are printed on standard output.
-    pub tell: bool,
+    pub print_names: bool,
 }
 
 /// Keeps pictures and cameras.
-pub struct Keep {
-    folder: Folder,
-    names: Names,
+pub struct Screenshots {
+    folder: SaveFolder,
+    names: FileNames,
     /// Made when it is needed.
     clipboard: Option<Clipboard>,
     writing: Vec<JoinHandle<()>>,
@@ -37,11 +37,11 @@ pub struct Keep {
     written: (Sender<Result<PathBuf>>, Receiver<Result<PathBuf>>),
 }
 
-impl Keep {
-    pub fn new(folder: Folder) -> Self {
+impl Screenshots {
+    pub fn new(folder: SaveFolder) -> Self {
         Self {
             folder,
-            names: Names::default(),
+            names: FileNames::default(),
             clipboard: None,
             writing: Vec::new(),
             written: mpsc::channel(),
@@ -49,13 +49,13 @@ impl Keep {
     }
 
     /// Writes a picture, without being waited for; then `wake` is called, on another thread.
-    pub fn picture(&mut self, shot: Shot, wake: impl FnOnce() + Send + 'static) {
-        let path = self.names.next(&self.folder.path, shot.extension());
+    pub fn picture(&mut self, screenshot: Screenshot, wake: impl FnOnce() + Send + 'static) {
+        let path = self.names.next(&self.folder.path, screenshot.extension());
         let written = self.written.0.clone();
         self.writing.retain(|thread| !thread.is_finished());
         self.writing.push(thread::spawn(move || {
             // The receiver waits for the thread.
-            let _ = written.send(shot.write(&path).map(|()| path));
+            let _ = written.send(screenshot.write(&path).map(|()| path));
             wake();
         }));
     }
@@ -73,8 +73,8 @@ impl Keep {
     }
 
     /// Prints a file's name, for who has no eye on the window.
-    pub fn say(&self, path: &std::path::Path) {
-        if self.folder.tell {
+    pub fn print_name(&self, path: &std::path::Path) {
+        if self.folder.print_names {
             // Whoever has stopped listening wants no more.
             let _ = writeln!(std::io::stdout(), "{}", path.display());
         }

@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 
 /// Names files by the time, and never one twice.
 #[derive(Default)]
-pub struct Names {
+pub struct FileNames {
     given: HashSet<PathBuf>,
 }
 
-impl Names {
+impl FileNames {
     /// A file of `folder` that is not there.
     pub fn next(&mut self, folder: &Path, extension: &str) -> PathBuf {
         self.at(folder, extension, &Zoned::now().strftime("%Y%m%d-%H%M%S").to_string())
@@ -39,7 +39,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let there = folder.path().join("surfel-T-2.png");
         std::fs::write(&there, "").unwrap();
-        let mut names = Names::default();
+        let mut names = FileNames::default();
         let mut next = |extension| names.at(folder.path(), extension, "T");
         let found = [next("png"), next("png"), next("json"), next("png")];
         let expected = ["surfel-T.png", "surfel-T-3.png", "surfel-T.json", "surfel-T-4.png"];
