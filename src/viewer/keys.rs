@@ -22,7 +22,7 @@ pub enum Action {
     PasteCamera,
     Panels,
     Up(super::orbit::Up),
-    Side(super::orbit::Side),
+    ViewFrom(super::orbit::ViewDirection),
 }
 
 /// A key, what it is called, and what it does.
@@ -63,19 +63,19 @@ const fn named(
 
 /// All of them.
 pub static BINDINGS: [Binding; 25] = {
-    use super::orbit::{Side, Up};
+    use super::orbit::{Up, ViewDirection};
     [
         letter("m", "M", "next method", Action::NextMethod),
         shift("m", "Shift+M", "previous method", Action::PreviousMethod),
         letter("l", "L", "next shading: light, colour, normal, depth, overlap, weight", Action::NextShading),
         letter("p", "P", "perspective or parallel rays", Action::Parallel),
         letter("f", "F", "show all", Action::Frame),
-        letter("1", "1", "from the front", Action::Side(Side::Front)),
-        letter("2", "2", "from the back", Action::Side(Side::Back)),
-        letter("3", "3", "from the left", Action::Side(Side::Left)),
-        letter("4", "4", "from the right", Action::Side(Side::Right)),
-        letter("5", "5", "from above", Action::Side(Side::Top)),
-        letter("6", "6", "from below", Action::Side(Side::Bottom)),
+        letter("1", "1", "from the front", Action::ViewFrom(ViewDirection::Front)),
+        letter("2", "2", "from the back", Action::ViewFrom(ViewDirection::Back)),
+        letter("3", "3", "from the left", Action::ViewFrom(ViewDirection::Left)),
+        letter("4", "4", "from the right", Action::ViewFrom(ViewDirection::Right)),
+        letter("5", "5", "from above", Action::ViewFrom(ViewDirection::Top)),
+        letter("6", "6", "from below", Action::ViewFrom(ViewDirection::Bottom)),
         letter("x", "X", "x is up, then −x", Action::Up(Up { axis: 0, down: false })),
         letter("y", "Y", "y is up, then −y", Action::Up(Up { axis: 1, down: false })),
         letter("z", "Z", "z is up, then −z", Action::Up(Up { axis: 2, down: false })),

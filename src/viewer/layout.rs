@@ -131,7 +131,7 @@ impl Layout {
 mod tests {
     use super::*;
     use crate::viewer::keys::{Action, BINDINGS, action};
-    use crate::viewer::orbit::{Side, Up};
+    use crate::viewer::orbit::{Up, ViewDirection};
 
     const NONE: ModifiersState = ModifiersState::empty();
     const SHIFT: ModifiersState = ModifiersState::SHIFT;
@@ -170,7 +170,7 @@ mod tests {
     #[test]
     fn digits_and_letters_of_other_scripts_are_what_they_are_on_a_us_keyboard() {
         use KeyCode::{Digit2, KeyM, KeyN, KeyS};
-        let back = Some(Action::Side(Side::Back));
+        let back = Some(Action::ViewFrom(ViewDirection::Back));
         for (place, key, bare, held, expected) in [
             // AZERTY.
             (Digit2, "é", "é", NONE, back),

@@ -30,7 +30,7 @@ pub struct Up {
 
 /// A side to look from; `Front` is where +z comes towards the viewer if y is up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Side {
+pub enum ViewDirection {
     Front,
     Back,
     Left,
@@ -210,16 +210,16 @@ impl Orbit {
     }
 
     /// Looks at the pivot from a side, from as far as now.
-    pub fn side(&mut self, side: Side) {
+    pub fn view_from(&mut self, direction: ViewDirection) {
         let quarter = 0.5 * std::f64::consts::PI;
         let reach = self.distance();
-        (self.yaw, self.pitch) = match side {
-            Side::Front => (0.0, 0.0),
-            Side::Right => (quarter, 0.0),
-            Side::Back => (2.0 * quarter, 0.0),
-            Side::Left => (-quarter, 0.0),
-            Side::Top => (0.0, quarter),
-            Side::Bottom => (0.0, -quarter),
+        (self.yaw, self.pitch) = match direction {
+            ViewDirection::Front => (0.0, 0.0),
+            ViewDirection::Right => (quarter, 0.0),
+            ViewDirection::Back => (2.0 * quarter, 0.0),
+            ViewDirection::Left => (-quarter, 0.0),
+            ViewDirection::Top => (0.0, quarter),
+            ViewDirection::Bottom => (0.0, -quarter),
         };
         self.stand_back(reach);
     }
@@ -329,7 +329,7 @@ mod tests {
                     assert!((-1e-6..0.01 * width).contains(&least), "{viewport:?} {turned} {least}");
                     assert!((orbit.distance() / reach - 1.0).abs() < 1e-9);
                     match turned {
-                        0 => orbit.side(Side::Left),
+                        0 => orbit.view_from(ViewDirection::Left),
                         _ => orbit.set_up(Up { axis: 2, down: true }),
                     }
                 }
@@ -421,21 +421,21 @@ mod tests {
     #[test]
     fn sides_are_seen_from_where_they_are() {
         for (side, from) in [
-            (Side::Front, DVec3::Z),
-            (Side::Back, DVec3::NEG_Z),
-            (Side::Right, DVec3::X),
-            (Side::Left, DVec3::NEG_X),
-            (Side::Top, DVec3::Y),
-            (Side::Bottom, DVec3::NEG_Y),
+            (ViewDirection::Front, DVec3::Z),
+            (ViewDirection::Back, DVec3::NEG_Z),
+            (ViewDirection::Right, DVec3::X),
+            (ViewDirection::Left, DVec3::NEG_X),
+            (ViewDirection::Top, DVec3::Y),
+            (ViewDirection::Bottom, DVec3::NEG_Y),
         ] {
             let mut orbit = Orbit::framing(&bounds(), Up::Y, &VIEWPORT);
             let reach = orbit.distance();
-            orbit.side(side);
+            orbit.view_from(direction);
             assert!((orbit.eye - (orbit.pivot + reach * from)).length() < 1e-9, "{side:?} {}", orbit.eye);
             assert!(orbit.camera(&VIEWPORT, &bounds()).is_ok());
         }
         let mut orbit = Orbit::framing(&bounds(), Up { axis: 2, down: false }, &VIEWPORT);
-        orbit.side(Side::Front);
+        orbit.view_from(ViewDirection::Front);
         assert!((orbit.eye - orbit.pivot).normalize().abs_diff_eq(DVec3::NEG_Y, 1e-9), "z up: from −y");
     }
 

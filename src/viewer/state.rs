@@ -329,7 +329,7 @@ impl State {
             }
             Action::Parallel => self.viewport.parallel = !self.viewport.parallel,
             Action::Frame => shown.orbit.frame(&shown.scene.bounds(), &self.viewport),
-            Action::Side(side) => shown.orbit.side(side),
+            Action::ViewFrom(direction) => shown.orbit.view_from(direction),
             Action::Up(up) => {
                 let down = shown.orbit.up() == up.vector();
                 self.up = Up { down, ..up };
@@ -475,7 +475,7 @@ mod tests {
         let eye = |state: &mut State| state.moving().unwrap().0.eye;
         // Who has turned the preview sees the whole scene from there.
         let (orbit, ..) = state.moving().unwrap();
-        orbit.side(super::super::orbit::Side::Top);
+        orbit.view_from(super::super::orbit::ViewDirection::Top);
         let above = eye(&mut state);
         state.show(scene(100), made(), of(2, false));
         assert_eq!((shown(&state), state.is_preview(), eye(&mut state)), (Some(100), false, above));

@@ -7,8 +7,8 @@ use super::hud::Hud;
 use super::input::InputState;
 use super::panels::UiState;
 use super::quality::Quality;
-use super::screen::{Pick, Screen};
 use super::screenshots::Screenshot;
+use super::split_view::SplitView;
 use super::state::State;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -26,7 +26,7 @@ pub struct Opened {
     // The presenter waits for all frames before anything that they use goes.
     presenter: Presenter,
     pub hud: Hud,
-    screen: Screen,
+    split_view: SplitView,
     pub adaptive: AdaptiveResolution,
     /// When the last frame began, if it was followed at once by this one.
     last: Option<Instant>,
@@ -66,10 +66,13 @@ impl Opened {
     pub fn of(window: Arc<Window>, options: &Options) -> Result<(Self, Arc<Device>)> {
         let (device, surface) = Device::open_for(&options.device, window.clone())?;
         let presenter = Presenter::new(&device, surface)?;
-        let screen = Screen::new(&presenter, options.rasterizer)?;
+        let split_view = SplitView::new(&presenter, options.rasterizer)?;
         let hud = Hud::new(&device, &window, presenter.overlay())?;
         let adaptive = AdaptiveResolution::new(options.budget);
-        Ok((Self { presenter, hud, screen, adaptive, last: None, measured_content: None, window }, device))
+        Ok((
+            Self { presenter, hud, split_view, adaptive, last: None, measured_content: None, window },
+            device,
+        ))
     }
 
     /// The window's size is another, or may be.
@@ -82,7 +85,7 @@ impl Opened {
     pub fn capture(&mut self, state: &mut State, ui_state: &mut UiState) -> Result<Screenshot> {
         ui_state.scale = 1.0;
         let screenshot = self.captured(state, ui_state)?;
-        let ranges = self.screen.ranges(&self.presenter)?;
+        let ranges = self.split_view.ranges(&self.presenter)?;
         if ui_state.ranges == ranges {
             return Ok(screenshot);
         }
@@ -93,13 +96,13 @@ impl Opened {
 
     fn captured(&mut self, state: &mut State, ui_state: &mut UiState) -> Result<Screenshot> {
         self.hud.lay_out(&self.window, state, ui_state);
-        let Self { presenter, hud, screen, window, .. } = self;
+        let Self { presenter, hud, split_view, window, .. } = self;
         let PhysicalSize { width, height } = window.inner_size();
         let (whole, size) = ([width, height].map(|side| side.max(1)), state.viewport.size);
         let seen = state.frame(0).transpose()?;
         let seen = seen.as_ref().map(|(scene, camera, settings)| (*scene, camera, &**settings));
         let pixels = presenter.capture(whole, |frame| {
-            screen.record(frame, (size, size), seen)?;
+            split_view.record(frame, (size, size), seen)?;
             hud.record(frame)
         })?;
         Screenshot::of_window(whole, pixels)
@@ -140,11 +143,11 @@ impl Opened {
             // An edge is dragged: whole pictures come when it rests.
             self.adaptive.moved(start);
         }
-        self.screen.ask(ui_state.frame_options(state, quality.level > 0), &self.presenter)?;
+        self.split_view.set_options(ui_state.frame_options(state, quality.level > 0), &self.presenter)?;
         let [shown, drawn] = self.present(state, ui_state, quality)?;
         // A frame's time is its own, and the next one shows where the hands are when it begins.
         self.presenter.wait()?;
-        let ranges = self.screen.ranges(&self.presenter)?;
+        let ranges = self.split_view.ranges(&self.presenter)?;
         if ui_state.ranges != ranges {
             // The panels were laid out before they were known.
             ui_state.ranges = ranges;
@@ -157,7 +160,7 @@ impl Opened {
                 self.adaptive.record(
                     quality,
                     workload,
-                    FrameTime { ms, moving, created: self.screen.made() },
+                    FrameTime { ms, moving, created: self.split_view.created_resources() },
                 );
             }
         }
@@ -193,7 +196,7 @@ impl Opened {
 
     /// Takes what the last frame, which is over, tells, and shows it.
     fn measure(&mut self, ui_state: &mut UiState) -> Result<()> {
-        if ui_state.times.push(self.screen.reports(&self.presenter)?) {
+        if ui_state.times.push(self.split_view.reports(&self.presenter)?) {
             self.window.request_redraw();
         }
         Ok(())
@@ -209,7 +212,7 @@ impl Opened {
     /// Whether a picture of something was shown, and whether it was drawn anew.
     fn present(&mut self, state: &mut State, ui_state: &mut UiState, quality: Quality) -> Result<[bool; 2]> {
         let PhysicalSize { width, height } = self.window.inner_size();
-        let Self { presenter, hud, screen, .. } = self;
+        let Self { presenter, hud, split_view, .. } = self;
         let mut refused = ui_state.render_error.clone();
         let shown = presenter.present([width, height], |frame| {
             let area = hud.beside(frame.size());
@@ -217,13 +220,13 @@ impl Opened {
             let size = area.map(|length| side_of(length, quality.scale));
             let seen = state.frame(quality.level).transpose()?;
             let seen = seen.as_ref().map(|(scene, camera, settings)| (*scene, camera, &**settings));
-            refused = match screen.record(frame, (area, size), seen) {
+            refused = match split_view.record(frame, (area, size), seen) {
                 // Other settings may do: the window stays.
                 Err(error @ (Error::Usage(_) | Error::Memory { .. })) => Some(error.to_string()),
                 recorded => recorded.map(|()| None)?,
             };
             hud.record(frame)?;
-            Ok([seen.is_some(), screen.drew()])
+            Ok([seen.is_some(), split_view.rendered()])
         })?;
         if refused != ui_state.render_error {
             // The panels were laid out before it was known.
@@ -236,7 +239,7 @@ impl Opened {
     /// Turns about what is under the cursor from now on, if something is.
     fn pick(&mut self, state: &mut State) -> Result<()> {
         let Some(at) = state.pick.take() else { return Ok(()) };
-        let depth = self.screen.pick(Pick { at, size: state.viewport.size }, &self.presenter)?;
+        let depth = self.split_view.pick(at, state.viewport.size, &self.presenter)?;
         if let (Some(depth), Some(seen)) = (depth, state.frame(0).transpose()?) {
             let distance = seen.1.distance(depth)?;
             state.set_pivot(at, distance);

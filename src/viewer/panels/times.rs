@@ -3,7 +3,7 @@
 use crate::viewer::about::thousands;
 use crate::viewer::load::LEAST_SURFELS;
 use crate::viewer::quality::MIN_SCALE;
-use crate::viewer::screen::Reports;
+use crate::viewer::split_view::Reports;
 use egui::{Align2, Color32, FontId, Grid, Pos2, Rect, Sense, Ui, vec2};
 use std::collections::VecDeque;
 use surfel::settings::Choice;

@@ -5,7 +5,7 @@ use super::error::Errors;
 use super::split::Split;
 use super::times::Times;
 use crate::viewer::layout::Layout;
-use crate::viewer::screen::Asked;
+use crate::viewer::split_view::FrameOptions;
 use crate::viewer::state::{State, quick};
 use surfel::Settings;
 use surfel::geometry::ValueRange;
@@ -66,12 +66,12 @@ impl UiState {
     }
 
     /// Options of the next frame; `coarser` is whether it renders a coarser level of detail.
-    pub fn frame_options(&self, state: &State, coarser: bool) -> Asked {
+    pub fn frame_options(&self, state: &State, coarser: bool) -> FrameOptions {
         let split = self.split(state).map(|(settings, at)| {
             let settings = if coarser { quick(&settings).into_owned() } else { settings };
             (settings, at)
         });
-        Asked { measured: self.times.is_open(), version: state.version(), split }
+        FrameOptions { profile: self.times.is_open(), version: state.version(), split }
     }
 
     /// Settings of the right picture, and where it begins as part of the width, if the view is split.
