@@ -4,7 +4,7 @@ use super::args::{self, View};
 use super::files::config_folder;
 use super::progress::{self, Silent};
 use super::{camera, render, vulkan};
-use crate::viewer::{self, About, Loaded};
+use crate::viewer::{self, Loaded, SceneInfo};
 use glam::DVec3;
 use std::ffi::OsString;
 use std::sync::Arc;
@@ -32,7 +32,8 @@ pub fn run(args: View) -> Result<()> {
         eye.is_some() || target.is_some() || fov.is_some() || parallel.is_some() || file.is_some()
     };
     let (cameras, pose) = (args.camera.clone(), file.map(|(_, pose)| pose));
-    let place = move |bounds: &Bounds, size| given.then(|| camera::pose(&cameras, pose, bounds, size));
+    let initial_camera =
+        move |bounds: &Bounds, size| given.then(|| camera::pose(&cameras, pose, bounds, size));
     let options = viewer::Options {
         inputs: args.inputs.clone(),
         size: args.size,
@@ -41,15 +42,15 @@ pub fn run(args: View) -> Result<()> {
         up,
         budget: args.budget,
         fov_y_deg: args.camera.fov.unwrap_or(camera::FOV),
-        place: Box::new(place),
+        initial_camera: Box::new(initial_camera),
         watch: args.watch,
         events: viewer::Events::new(start, args.json),
         save_folder: viewer::SaveFolder {
             path: args.screenshots.clone(),
             print_names: !(args.quiet || args.json),
         },
-        remembered: config_folder().filter(|_| !args.fresh).map(|folder| folder.join("viewer.json")),
-        asked: args.method.is_some()
+        settings_file: config_folder().filter(|_| !args.fresh).map(|folder| folder.join("viewer.json")),
+        method_chosen: args.method.is_some()
             || Method::ALL.iter().any(|method| args.settings(method) != method.settings()),
     };
     viewer::run(options, loader(&args, up)?, Box::new(move |method| args.settings(method)))
@@ -72,11 +73,11 @@ fn loader(args: &View, up: DVec3) -> Result<viewer::Load> {
     };
     let reader = Reader { options, quiet: args.quiet };
     let (asked, up) = (args.method, up.normalize_or(DVec3::Y));
-    Ok(Arc::new(move |names: &[OsString], window: &dyn viewer::Loading| {
+    Ok(Arc::new(move |names: &[OsString], window: &dyn viewer::LoadListener| {
         let loaded = |model: Model| -> Result<Loaded> {
             let method = render::method(asked, &model)?;
-            let about = About { names: names.iter().map(shown).collect(), ..Default::default() };
-            Ok(Loaded { colour_by: colour_by.clone(), about, up, ..Loaded::new(model, method) })
+            let info = SceneInfo { names: names.iter().map(shown).collect(), ..Default::default() };
+            Ok(Loaded { colour_by: colour_by.clone(), info, up, ..Loaded::new(model, method) })
         };
         let listener = WithPreview { window, loaded: &loaded, quiet: reader.quiet };
         let inputs = load(names, &reader.options, &listener)?;
@@ -84,19 +85,19 @@ fn loader(args: &View, up: DVec3) -> Result<viewer::Load> {
         // A built-in scene has no properties, and no other input beside one.
         let is_scene = names.iter().any(|name| scene(name).is_some());
         let (reader, own) = (reader.clone(), names.to_vec());
-        let read = move |name: &str, progress: &dyn Progress| reader.numbers(&own, name, progress);
+        let read = move |name: &str, progress: &dyn Progress| reader.property(&own, name, progress);
         let skipped = if is_scene { vec![] } else { inputs.skipped };
         Ok(Loaded {
             surface: match names {
                 [one] => scene(one).map(Into::into),
                 _ => None,
             },
-            numbers: Some(viewer::Numbers { names: skipped, read: Arc::new(read) }),
-            about: About {
+            properties: Some(viewer::PointProperties { names: skipped, read: Arc::new(read) }),
+            info: SceneInfo {
                 points: inputs.read,
                 dropped: inputs.dropped.position + inputs.dropped.transparent,
                 estimated: inputs.estimated.summary(),
-                ..whole.about
+                ..whole.info
             },
             ..whole
         })
@@ -110,7 +111,7 @@ fn shown(name: &OsString) -> String {
 
 /// The window that waits, which is shown a preview.
 struct WithPreview<'a> {
-    window: &'a dyn viewer::Loading,
+    window: &'a dyn viewer::LoadListener,
     loaded: &'a (dyn Fn(Model) -> Result<Loaded> + Sync),
     quiet: bool,
 }
@@ -151,7 +152,7 @@ struct Reader {
 
 impl Reader {
     /// A property of every surfel, and of every vertex of lines and triangles.
-    fn numbers(&self, names: &[OsString], name: &str, progress: &dyn Progress) -> Result<[Vec<f32>; 2]> {
+    fn property(&self, names: &[OsString], name: &str, progress: &dyn Progress) -> Result<[Vec<f32>; 2]> {
         let estimate = Estimate { radius: None, sharp: None, ..self.options.estimate.clone() };
         let options =
             LoadOptions { estimate, colouring: Some(Colouring::numbers(name)), ..self.options.clone() };
@@ -191,7 +192,7 @@ mod tests {
         }
     }
 
-    impl viewer::Loading for Window {
+    impl viewer::LoadListener for Window {
         fn preview(&self, loaded: viewer::Loaded) {
             self.previews.lock().unwrap().push(loaded.model.surfels.len());
         }
@@ -258,11 +259,11 @@ mod tests {
             let by = loaded.colour_by.unwrap();
             assert_eq!((by.name.as_str(), by.map), ("heat", surfel::geometry::ColourMap::Magma));
             assert!(loaded.model.surfels.colours.is_none(), "the panel colours them");
-            assert!(loaded.about.estimated.is_some() && loaded.about.points == 900 * inputs.len() as u64);
-            let numbers = loaded.numbers.unwrap();
-            assert_eq!(numbers.names, ["heat"]);
+            assert!(loaded.info.estimated.is_some() && loaded.info.points == 900 * inputs.len() as u64);
+            let properties = loaded.properties.unwrap();
+            assert_eq!(properties.names, ["heat"]);
             let window = Window::default();
-            let [heat, _] = (numbers.read)("heat", &window).unwrap();
+            let [heat, _] = (properties.read)("heat", &window).unwrap();
             let surfels = loaded.model.surfels;
             assert_eq!(heat.len(), surfels.len());
             let places = surfels.positions.iter().map(|p| (surfels.origin + p.as_dvec3()).x as f32);

@@ -1,4 +1,4 @@
-//! What happens in the window, one JSON object a line on standard output, for programs that wait for it.
+//! Event log: what happens in the window, as JSON lines on standard output, for other programs.
 
 use cpu_time::ProcessTime;
 use serde::Serialize;
@@ -7,60 +7,62 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 use surfel::formats::camera::Fields;
 
-/// Something that has happened.
+/// An event.
 #[derive(Clone, Copy, Debug, Serialize)]
 #[serde(tag = "event", rename_all = "kebab-case")]
 pub enum Event<'a> {
-    /// The window is open, on this device.
+    /// The window is open on this device.
     Window { device: &'a str },
-    /// All inputs are read, and what they lacked is estimated.
+    /// All inputs are read, and missing normals and radii are estimated.
     Loaded { surfels: u64 },
-    /// Some of the points are on the device, and are shown until all are.
+    /// Some of the points are on the device and are shown until all are.
     Preview { surfels: u64 },
-    /// A scene is on the device, and is shown from now on.
+    /// A scene is on the device and is shown from now on.
     Ready { surfels: u64 },
-    /// What is being loaded is given up.
+    /// Loading was cancelled.
     Cancelled,
-    /// A picture of the scene went to the window.
-    Picture(Shown<'a>),
-    /// A picture or a camera is in a file.
+    /// A picture of the scene was presented.
+    Picture(PictureInfo<'a>),
+    /// A screenshot or a camera was saved.
     Wrote { file: &'a Path },
-    /// A camera was taken from a file.
+    /// A camera was read from a file.
     Camera { file: &'a Path },
-    /// The camera is on the clipboard.
+    /// The camera was copied to the clipboard.
     Copied,
-    /// What the window says went wrong; what was shown before stays.
-    Wrong { error: &'a str },
-    /// The device was lost, and another one is opened.
+    /// The window shows an error message.
+    #[serde(rename = "wrong")]
+    Error { error: &'a str },
+    /// The device was lost; another one is opened.
     Lost,
 }
 
-/// What a picture shows.
+/// A picture that was presented.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct Shown<'a> {
+pub struct PictureInfo<'a> {
     pub method: &'a str,
     pub shading: &'a str,
-    /// Of the window, px.
+    /// Width and height of the window, px.
     pub size: [u32; 2],
-    /// Of the picture, which is all of the window that the panel leaves, px.
+    /// Width and height of the picture, which is the window without the panel, px.
     pub picture: [u32; 2],
-    /// Side of what was drawn, as part of the picture's: 1 is the whole one.
-    pub side: f64,
-    /// How many surfels there were.
+    /// Resolution scale: the side of what was rendered as part of the picture's.
+    #[serde(rename = "side")]
+    pub scale: f64,
+    /// Number of surfels.
     pub surfels: u64,
-    /// Whether they are some of what is being loaded.
+    /// Whether they are a preview.
     pub preview: bool,
     /// Whether the camera moved.
     pub moving: bool,
-    /// Whether it was drawn anew, and not there already.
+    /// Whether it was rendered; otherwise a cached picture was presented.
     pub drawn: bool,
-    /// How long it took, ms.
+    /// Duration of the frame, ms.
     pub took_ms: f64,
-    /// From where it is seen.
+    /// The camera.
     pub camera: Fields,
 }
 
-/// Tells what happens, where somebody wants to know.
+/// The event log, if it is on.
 #[derive(Clone, Copy, Debug)]
 pub struct Events {
     start: Instant,
@@ -69,22 +71,22 @@ pub struct Events {
 
 #[derive(Serialize)]
 struct Line<'a> {
-    /// Since the program began, ms.
+    /// Time since the program began, ms.
     ms: f64,
-    /// Processor time of the program so far, ms, which other programs do not change.
+    /// Processor time of the program, ms; unlike `ms` it does not depend on other programs.
     cpu_ms: f64,
     #[serde(flatten)]
     event: &'a Event<'a>,
 }
 
 impl Events {
-    /// Counts from `start`; says nothing unless `on`.
+    /// A log whose times count from `start`; it is silent unless `on`.
     pub fn new(start: Instant, on: bool) -> Self {
         Self { start, on }
     }
 
-    /// Says what has happened just now.
-    pub fn tell(&self, event: &Event<'_>) {
+    /// Logs an event.
+    pub fn emit(&self, event: &Event<'_>) {
         if !self.on {
             return;
         }
@@ -93,7 +95,7 @@ impl Events {
         let Ok(mut line) = serde_json::to_string(&Line { ms, cpu_ms, event }) else { return };
         line.push('\n');
         let mut out = std::io::stdout().lock();
-        // Whoever has stopped listening wants no more.
+        // A closed pipe is no error: its reader wants no more.
         let _ = out.write_all(line.as_bytes()).and_then(|()| out.flush());
     }
 }
@@ -103,7 +105,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_event_is_a_line_of_json() {
+    fn an_event_is_a_json_line() {
         let event = Event::Wrote { file: Path::new("a b.png") };
         let line = serde_json::to_string(&Line { ms: 1.5, cpu_ms: 2.5, event: &event }).unwrap();
         assert_eq!(line, r#"{"ms":1.5,"cpu_ms":2.5,"event":"wrote","file":"a b.png"}"#);

@@ -1,7 +1,7 @@
-//! Panels over the picture and beside it: what is shown, how, and what keys do.
+//! HUD: lays out the panels with egui, gives them their input, and records them over the picture.
 
 use super::panels::{self, UiState};
-use super::state::State;
+use super::state::ViewState;
 use super::style;
 use ash::vk;
 use egui::{ClippedPrimitive, LayerId, Popup, Pos2, Rect, TexturesDelta};
@@ -23,29 +23,30 @@ pub struct Hud {
     egui_state: egui_winit::State,
     textures: TexturesDelta,
     shapes: Vec<ClippedPrimitive>,
-    /// When the panels want to be drawn again.
+    /// When the panels have to be drawn again without an event.
     wakes: Option<Instant>,
-    /// Where no panel is over the picture or beside it, points.
+    /// The rectangle without panels, points.
     free: Rect,
     /// Width of the panel beside the picture, points.
     covered: f32,
-    /// Where the cursor is, px.
+    /// Position of the cursor, px.
     cursor: PhysicalPosition<f64>,
-    /// Buttons that are down, and those of them that are the panels' until they are let go: they went down over one, or have hold of something.
+    /// Mouse buttons that are down.
     down: Vec<MouseButton>,
-    held: Vec<MouseButton>,
+    /// Those of them whose events are the panels' until they are released.
+    captured: Vec<MouseButton>,
     device: Arc<Device>,
 }
 
-fn failed(error: &RendererError) -> Error {
+fn convert_error(error: &RendererError) -> Error {
     match error {
         RendererError::Vulkan(result) => Error::Vulkan { call: "drawing the panels", result: *result },
-        other => Error::Usage(format!("the panels cannot be drawn: {other}")),
+        other => Error::Usage(format!("cannot draw the panels: {other}")),
     }
 }
 
 impl Hud {
-    /// Panels drawn within the render pass `overlay`.
+    /// Panels of a window, which are drawn within the render pass `overlay`.
     pub fn new(device: &Arc<Device>, window: &Window, overlay: vk::RenderPass) -> Result<Self> {
         let context = egui::Context::default();
         style::apply(&context);
@@ -59,7 +60,7 @@ impl Hud {
         let (raw, mode) = (device.handle().clone(), RenderMode::RenderPass(overlay));
         let renderer =
             Renderer::with_default_allocator(device.instance(), device.physical(), raw, mode, options);
-        let renderer = renderer.map_err(|error| failed(&error))?;
+        let renderer = renderer.map_err(|error| convert_error(&error))?;
         let pool = CommandPool::new(device)?;
         let (textures, shapes) = (TexturesDelta::default(), Vec::new());
         Ok(Self {
@@ -74,54 +75,54 @@ impl Hud {
             covered: 0.0,
             cursor: PhysicalPosition::default(),
             down: Vec::new(),
-            held: Vec::new(),
+            captured: Vec::new(),
             device: device.clone(),
         })
     }
 
-    /// Tells the panels of an event; whether it is theirs, and whether they look different now.
-    pub fn tell(&mut self, window: &Window, event: &WindowEvent) -> [bool; 2] {
+    /// Gives the panels an event; returns whether they consume it, and whether they need a redraw.
+    pub fn on_window_event(&mut self, window: &Window, event: &WindowEvent) -> [bool; 2] {
         let response = self.egui_state.on_window_event(window, event);
-        [self.is_theirs(event).unwrap_or(response.consumed), response.repaint]
+        [self.consumes(event).unwrap_or(response.consumed), response.repaint]
     }
 
-    /// Whether the mouse's events are the panels': by where the cursor is now. Their own answer is of where it was when they were laid out, and a
-    /// quick hand has left them since.
-    fn is_theirs(&mut self, event: &WindowEvent) -> Option<bool> {
+    /// Whether the panels consume a mouse event, by the cursor's present position; `None` for other events. egui's own answer is for the position
+    /// at the last layout, which a fast cursor has left.
+    fn consumes(&mut self, event: &WindowEvent) -> Option<bool> {
         match event {
             WindowEvent::CursorMoved { position, .. } => self.cursor = *position,
             WindowEvent::MouseWheel { .. } => return Some(self.is_over()),
             WindowEvent::MouseInput { state: ElementState::Pressed, button, .. } => {
-                let theirs = !self.held.is_empty() || self.is_over();
+                let consumed = !self.captured.is_empty() || self.is_over();
                 self.down.push(*button);
-                self.held.extend(theirs.then_some(*button));
-                return Some(theirs);
+                self.captured.extend(consumed.then_some(*button));
+                return Some(consumed);
             }
             WindowEvent::MouseInput { state: ElementState::Released, button, .. } => {
                 self.down.retain(|down| down != button);
-                self.held.retain(|held| held != button);
+                self.captured.retain(|captured| captured != button);
             }
-            // What is let go now nobody tells.
+            // Without the focus no release is reported.
             WindowEvent::Focused(false) => {
                 self.down.clear();
-                self.held.clear();
+                self.captured.clear();
                 return None;
             }
             _ => return None,
         }
-        Some(!self.held.is_empty())
+        Some(!self.captured.is_empty())
     }
 
-    /// Whether the cursor is over a panel, or over what can be taken hold of.
+    /// Whether the cursor is over a panel or a floating window.
     fn is_over(&self) -> bool {
         let LogicalPosition { x, y } = self.cursor.to_logical(self.context.pixels_per_point().into());
         let at = Pos2::new(x, y);
-        let floats = |layer| layer != LayerId::background();
-        !self.free.contains(at) || self.context.layer_id_at(at).is_some_and(floats)
+        let is_floating = |layer| layer != LayerId::background();
+        !self.free.contains(at) || self.context.layer_id_at(at).is_some_and(is_floating)
     }
 
-    /// Lays the panels out, beside which the picture is; whether they want to be drawn again at once.
-    pub fn lay_out(&mut self, window: &Window, state: &mut State, ui_state: &mut UiState) -> bool {
+    /// Lays the panels out and sets the viewport's size to what they leave; returns whether they need another frame at once.
+    pub fn lay_out(&mut self, window: &Window, state: &mut ViewState, ui_state: &mut UiState) -> bool {
         let input = self.egui_state.take_egui_input(window);
         let device = &self.device;
         let (free, covered) = (&mut self.free, &mut self.covered);
@@ -130,10 +131,10 @@ impl Hud {
             *free = ui.available_rect_before_wrap();
         });
         let PhysicalSize { width, height } = window.inner_size();
-        state.viewport.size = self.beside([width, height].map(|side| side.max(1)));
+        state.viewport.size = self.picture_size([width, height].map(|side| side.max(1)));
         if self.context.egui_is_using_pointer() {
-            // An edge is taken hold of from a little beside it, too.
-            self.held.clone_from(&self.down);
+            // The edge of a panel can be grabbed from beside it, too.
+            self.captured.clone_from(&self.down);
         }
         self.egui_state.handle_platform_output(window, output.platform_output);
         self.shapes = self.context.tessellate(output.shapes, output.pixels_per_point);
@@ -144,8 +145,8 @@ impl Hud {
         delay.is_zero()
     }
 
-    /// Width and height of the picture in a window of so many px: what the panel on the right leaves of it, as it was laid out last.
-    pub fn beside(&self, [width, height]: [u32; 2]) -> [u32; 2] {
+    /// Width and height of the picture in a window of this size, px: the window without the panel on the right as it was last laid out.
+    pub fn picture_size(&self, [width, height]: [u32; 2]) -> [u32; 2] {
         let covered = (f64::from(self.covered * self.context.pixels_per_point())).floor() as u32;
         [width.saturating_sub(covered).max(1), height]
     }
@@ -155,24 +156,24 @@ impl Hud {
         Popup::is_any_open(&self.context)
     }
 
-    /// When the panels want to be drawn again, if nothing happens before.
+    /// When the panels have to be drawn again without an event.
     pub fn wakes(&self) -> Option<Instant> {
         self.wakes
     }
 
-    /// Records the panels over the window's picture, when the GPU is done with all but the last frame.
+    /// Records the panels over the window's picture. The GPU must have finished all frames but the last.
     pub fn record(&mut self, window: &mut Presented) -> Result<()> {
-        self.take_textures()?;
+        self.update_textures()?;
         let [width, height] = window.size();
         let (extent, scale) = (vk::Extent2D { width, height }, self.context.pixels_per_point());
         let (renderer, shapes) = (&mut self.renderer, &self.shapes);
-        let mut drawn = Ok(());
-        window.over("hud", |cmd| drawn = renderer.cmd_draw(cmd, extent, scale, shapes));
-        drawn.map_err(|error| failed(&error))
+        let mut result = Ok(());
+        window.over("hud", |cmd| result = renderer.cmd_draw(cmd, extent, scale, shapes));
+        result.map_err(|error| convert_error(&error))
     }
 
-    /// Brings the panels' textures up to date: each is set behind everything that was submitted, which is waited for.
-    fn take_textures(&mut self) -> Result<()> {
+    /// Updates the panels' textures. Waits for the GPU, which may still read them.
+    fn update_textures(&mut self) -> Result<()> {
         let mut textures = std::mem::take(&mut self.textures);
         let set: Vec<_> = textures.set.drain().collect();
         let free: Vec<_> = textures.free.drain().collect();
@@ -184,15 +185,15 @@ impl Hud {
             let mut all = set.iter().flat_map(|(id, deltas)| deltas.iter().map(move |delta| (*id, delta)));
             all.try_for_each(|(id, delta)| renderer.set_texture(queue, pool, id, delta))
         })?;
-        done.map_err(|error| failed(&error))?;
+        done.map_err(|error| convert_error(&error))?;
         self.device.wait_idle()?;
-        free.into_iter().try_for_each(|id| renderer.free_texture(id)).map_err(|error| failed(&error))
+        free.into_iter().try_for_each(|id| renderer.free_texture(id)).map_err(|error| convert_error(&error))
     }
 }
 
 impl Drop for Hud {
     fn drop(&mut self) {
-        // Of a window that closes nobody sees them.
+        // Pending updates are not needed any more.
         self.textures.clear();
     }
 }

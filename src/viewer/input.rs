@@ -1,4 +1,4 @@
-//! What the hands hold: buttons, keys, and where the cursor is.
+//! Input state: the buttons and keys that are held, and the cursor.
 
 use glam::{DVec2, DVec3};
 use std::collections::HashSet;
@@ -6,22 +6,22 @@ use std::time::{Duration, Instant};
 use winit::event::{ElementState, MouseButton};
 use winit::keyboard::{KeyCode, ModifiersState, PhysicalKey};
 
-/// Two presses in a row so soon are one double press.
+/// The longest time between the presses of a double click.
 const DOUBLE: Duration = Duration::from_millis(350);
-/// And so near, px.
+/// The greatest distance between them, px.
 const NEAR: f64 = 4.0;
 
 /// A key of flight.
 pub struct Flight {
-    /// Its place.
+    /// The physical key.
     pub key: KeyCode,
-    /// What a US keyboard has there.
+    /// Its name on a US keyboard.
     pub name: &'static str,
-    /// Where it flies to: right, up, ahead.
+    /// Direction of flight: right, up, ahead.
     direction: DVec3,
 }
 
-/// All of them: ahead, left, back, right, up, down.
+/// All keys of flight: ahead, left, back, right, up, down.
 pub const FLIGHT: [Flight; 6] = [
     Flight { key: KeyCode::KeyW, name: "W", direction: DVec3::Z },
     Flight { key: KeyCode::KeyA, name: "A", direction: DVec3::NEG_X },
@@ -31,15 +31,15 @@ pub const FLIGHT: [Flight; 6] = [
     Flight { key: KeyCode::KeyQ, name: "Q", direction: DVec3::NEG_Y },
 ];
 
-/// Whether a key is one of flight, by its place.
-pub fn is_flight(place: PhysicalKey) -> bool {
-    FLIGHT.iter().any(|flight| PhysicalKey::Code(flight.key) == place)
+/// Whether a physical key is one of flight.
+pub fn is_flight(physical: PhysicalKey) -> bool {
+    FLIGHT.iter().any(|flight| PhysicalKey::Code(flight.key) == physical)
 }
 
-/// What is held.
+/// The buttons and keys that are held, and the cursor.
 #[derive(Default)]
 pub struct InputState {
-    /// Px from the picture's top left.
+    /// Position of the cursor, px from the picture's top left.
     pub cursor: DVec2,
     pub button: Option<MouseButton>,
     pub modifiers: ModifiersState,
@@ -48,7 +48,7 @@ pub struct InputState {
 }
 
 impl InputState {
-    /// A button goes down or up; whether it is the left one for the second time in a row.
+    /// Notes a press or release of a button; returns whether it completes a double click of the left button.
     pub fn press(&mut self, button: MouseButton, state: ElementState, now: Instant) -> bool {
         self.button = (state == ElementState::Pressed).then_some(button);
         if state != ElementState::Pressed || button != MouseButton::Left {
@@ -56,12 +56,12 @@ impl InputState {
         }
         let soon = |(then, at): (Instant, DVec2)| now < then + DOUBLE && at.distance(self.cursor) <= NEAR;
         let double = self.last_press.is_some_and(soon);
-        // A third one begins anew.
+        // A third click begins a new double click.
         self.last_press = (!double).then_some((now, self.cursor));
         double
     }
 
-    /// A key goes down or up; with Ctrl, Alt or the system's key it is not held, even when that is let go first.
+    /// Notes a press or release of a key. Pressed with Ctrl, Alt or the system's key it never flies, even if the modifier is released first.
     pub fn key(&mut self, key: PhysicalKey, state: ElementState) {
         let PhysicalKey::Code(key) = key else { return };
         if state == ElementState::Released {
@@ -71,18 +71,18 @@ impl InputState {
         }
     }
 
-    /// Whether keys are what they are alone, or with Shift: Ctrl+S is no flight.
+    /// Whether no modifier but Shift is held: Ctrl+S does not fly.
     fn has_no_modifiers(&self) -> bool {
         !(self.modifiers.control_key() || self.modifiers.alt_key() || self.modifiers.super_key())
     }
 
-    /// Nothing is held: the window does not see any more what is let go.
+    /// Releases everything: without the focus the window gets no release events.
     pub fn release_all(&mut self) {
         (self.button, self.last_press) = (None, None);
         self.held.clear();
     }
 
-    /// Where the keys fly to, right, up and ahead, each from −1 to 1; `None` if they do not.
+    /// Direction of flight: right, up, ahead, each from −1 to 1; `None` if the camera does not fly.
     pub fn flight(&self) -> Option<DVec3> {
         let held = FLIGHT.iter().filter(|flight| self.has_no_modifiers() && self.held.contains(&flight.key));
         let direction: DVec3 = held.map(|flight| flight.direction).sum();
@@ -95,7 +95,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn two_presses_soon_and_near_are_one_double_press() {
+    fn two_presses_soon_and_near_are_a_double_click() {
         let (mut input, start) = (InputState::default(), Instant::now());
         let mut press = |ms, x| {
             input.cursor = DVec2::new(x, 0.0);
@@ -106,7 +106,7 @@ mod tests {
     }
 
     #[test]
-    fn keys_that_are_held_fly_and_those_of_other_ways_cancel() {
+    fn held_keys_fly_and_opposite_keys_cancel() {
         let mut input = InputState::default();
         let key = |code| PhysicalKey::Code(code);
         assert_eq!(input.flight(), None);
@@ -122,7 +122,7 @@ mod tests {
         assert_eq!(input.flight(), None);
         input.key(key(KeyCode::KeyS), ElementState::Pressed);
         input.modifiers = ModifiersState::empty();
-        assert_eq!(input.flight(), Some(DVec3::X), "Ctrl was let go before S");
+        assert_eq!(input.flight(), Some(DVec3::X), "Ctrl was released before S");
         input.release_all();
         assert_eq!(input.flight(), None);
     }

@@ -1,10 +1,10 @@
-//! What keys do.
+//! Key bindings: which action a key runs.
 
 use super::layout::Press;
 use super::screenshots::ScreenshotKind;
 use winit::keyboard::{Key, ModifiersState, NamedKey};
 
-/// What a key does.
+/// An action of a key.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Action {
     Close,
@@ -21,14 +21,14 @@ pub enum Action {
     CopyCamera,
     PasteCamera,
     Panels,
-    Up(super::orbit::Up),
-    ViewFrom(super::orbit::ViewDirection),
+    Up(super::directions::Up),
+    ViewFrom(super::directions::ViewDirection),
 }
 
-/// A key, what it is called, and what it does.
+/// A key, its name and its action.
 pub struct Binding {
     pub key: Key<&'static str>,
-    /// Held with it: Ctrl, Alt, the system's, and Shift.
+    /// The modifiers that are held with it.
     pub held: ModifiersState,
     pub name: &'static str,
     pub does: &'static str,
@@ -61,57 +61,57 @@ const fn named(
     Binding { key: Key::Named(key), held, name, does, action }
 }
 
-/// All of them.
+/// All key bindings.
 pub static BINDINGS: [Binding; 25] = {
-    use super::orbit::{Up, ViewDirection};
+    use super::directions::{Up, ViewDirection};
     [
         letter("m", "M", "next method", Action::NextMethod),
         shift("m", "Shift+M", "previous method", Action::PreviousMethod),
         letter("l", "L", "next shading: light, colour, normal, depth, overlap, weight", Action::NextShading),
-        letter("p", "P", "perspective or parallel rays", Action::Parallel),
-        letter("f", "F", "show all", Action::Frame),
-        letter("1", "1", "from the front", Action::ViewFrom(ViewDirection::Front)),
-        letter("2", "2", "from the back", Action::ViewFrom(ViewDirection::Back)),
-        letter("3", "3", "from the left", Action::ViewFrom(ViewDirection::Left)),
-        letter("4", "4", "from the right", Action::ViewFrom(ViewDirection::Right)),
-        letter("5", "5", "from above", Action::ViewFrom(ViewDirection::Top)),
-        letter("6", "6", "from below", Action::ViewFrom(ViewDirection::Bottom)),
+        letter("p", "P", "perspective or parallel projection", Action::Parallel),
+        letter("f", "F", "frame the scene", Action::Frame),
+        letter("1", "1", "view from the front", Action::ViewFrom(ViewDirection::Front)),
+        letter("2", "2", "view from the back", Action::ViewFrom(ViewDirection::Back)),
+        letter("3", "3", "view from the left", Action::ViewFrom(ViewDirection::Left)),
+        letter("4", "4", "view from the right", Action::ViewFrom(ViewDirection::Right)),
+        letter("5", "5", "view from above", Action::ViewFrom(ViewDirection::Top)),
+        letter("6", "6", "view from below", Action::ViewFrom(ViewDirection::Bottom)),
         letter("x", "X", "x is up, then −x", Action::Up(Up { axis: 0, down: false })),
         letter("y", "Y", "y is up, then −y", Action::Up(Up { axis: 1, down: false })),
         letter("z", "Z", "z is up, then −z", Action::Up(Up { axis: 2, down: false })),
-        control("o", "Ctrl+O", "open a scene or a camera; or drop files here", Action::Open),
+        control("o", "Ctrl+O", "open a scene or a camera (or drop files here)", Action::Open),
         named(
             NamedKey::F12,
             NONE,
             "F12",
-            "save the picture, PNG",
+            "save the picture as PNG",
             Action::SaveScreenshot(ScreenshotKind::Picture),
         ),
         named(
             NamedKey::F12,
             SHIFT,
             "Shift+F12",
-            "save the window, panels and all",
+            "save the window with its panels as PNG",
             Action::SaveScreenshot(ScreenshotKind::Window),
         ),
         named(
             NamedKey::F12,
             CONTROL,
             "Ctrl+F12",
-            "save the picture's values, EXR",
+            "save the picture's values as EXR",
             Action::SaveScreenshot(ScreenshotKind::Values),
         ),
         control("s", "Ctrl+S", "save the camera", Action::SaveCamera),
         control("c", "Ctrl+C", "copy the camera", Action::CopyCamera),
         control("v", "Ctrl+V", "paste a camera", Action::PasteCamera),
-        letter("h", "H", "these keys", Action::Help),
+        letter("h", "H", "list of keys", Action::Help),
         letter("g", "G", "hide or show the panel", Action::Panels),
-        named(NamedKey::Escape, NONE, "Esc", "close what is on top; give up loading", Action::Close),
+        named(NamedKey::Escape, NONE, "Esc", "close the window on top, or cancel loading", Action::Close),
         control("q", "Ctrl+Q", "quit", Action::Quit),
     ]
 };
 
-/// What a pressed key does while `held` are held, if anything.
+/// The action of a key while the modifiers `held` are held.
 pub fn action(press: &Press, held: ModifiersState) -> Option<Action> {
     let means = |(key, held): (Key, ModifiersState)| {
         let same = |binding: &&Binding| binding.held == held && is_same(&binding.key, &key);
@@ -135,7 +135,7 @@ mod tests {
     use winit::keyboard::{KeyCode, PhysicalKey};
 
     #[test]
-    fn keys_do_what_their_names_say() {
+    fn keys_run_the_actions_that_their_names_say() {
         let letter = |text: &str| Key::Character(text.into());
         let f12 = Key::Named(NamedKey::F12);
         for (key, held, expected) in [
@@ -152,11 +152,11 @@ mod tests {
             (f12, CONTROL | SHIFT, None),
             (Key::Dead(None), NONE, None),
         ] {
-            let place = PhysicalKey::Code(KeyCode::F24);
-            let press = Press { place, bare: key.clone(), key };
+            let physical = PhysicalKey::Code(KeyCode::F24);
+            let press = Press { physical, bare: key.clone(), key };
             assert_eq!(action(&press, held), expected, "{press:?} {held:?}");
         }
         let names: HashSet<_> = BINDINGS.iter().map(|binding| binding.name).collect();
-        assert_eq!(names.len(), BINDINGS.len(), "two of one name");
+        assert_eq!(names.len(), BINDINGS.len(), "two bindings have one name");
     }
 }

@@ -1,29 +1,34 @@
 //! The window of `surfel view`: a host of the engine that uses its public interface alone.
 //!
 //! ```text
-//! load, on a thread of its own ─→ scene ─┐
-//! input ─ orbit → camera ────────────────┴─ screen → window
+//! loader, on its own thread ─→ scene ─┐
+//! input ─ orbit → camera ─────────────┴─ split view → window
 //! ```
 #![forbid(unsafe_code)]
 
-mod about;
 mod adaptive_resolution;
 mod app;
+mod appearance;
 mod cached_view;
+mod choices;
 mod cost;
+mod directions;
 mod events;
 mod hud;
 mod input;
 mod job;
 mod keys;
 mod layout;
+mod levels;
 mod load;
-mod open;
+mod open_dialog;
 mod orbit;
 mod panels;
 mod quality;
-mod remember;
 mod retry;
+mod saved_settings;
+mod scene_info;
+mod scene_view;
 mod screenshots;
 mod source;
 mod split_view;
@@ -33,10 +38,10 @@ mod viewport;
 mod watch;
 mod window;
 
-pub use about::About;
 pub use events::Events;
 use glam::DVec3;
-pub use load::{Load, Loading};
+pub use load::{Load, LoadListener};
+pub use scene_info::SceneInfo;
 pub use screenshots::SaveFolder;
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -46,64 +51,64 @@ use surfel::settings::methods::Method;
 use surfel::vk::DeviceOptions;
 use surfel::{Progress, Rasterizer, Result, Settings};
 
-/// How the window is opened.
+/// Options of the window.
 pub struct Options {
-    /// Files and scenes that are looked at first; there may be none.
+    /// Files and built-in scenes to load first; may be empty.
     pub inputs: Vec<OsString>,
     /// Width and height of the window, px.
     pub size: [u32; 2],
     /// Which device renders and presents.
     pub device: DeviceOptions,
-    /// What visits the pixels; `None` takes what is faster on the device.
+    /// The rasterizer; `None` takes the faster one of the device.
     pub rasterizer: Option<Rasterizer>,
-    /// What is up in the world, of any length; the axis that is nearest is taken.
+    /// Up direction of the world, of any length; the nearest axis is taken.
     pub up: DVec3,
-    /// How long frames may take while the hands move, ms.
+    /// Time budget of a frame while the camera moves, ms.
     pub budget: f64,
-    /// Vertical angle of view where the camera does not say another, degrees.
+    /// Vertical angle of view, unless the camera has its own, degrees.
     pub fov_y_deg: f64,
-    /// Where the camera stands at first.
-    pub place: Place,
+    /// The camera of the first scene.
+    pub initial_camera: InitialCamera,
     /// Whether files are loaded again when they change.
     pub watch: bool,
-    /// Who is told what happens.
+    /// The log of events.
     pub events: Events,
-    /// Where pictures and cameras are kept.
+    /// Where screenshots and cameras are saved.
     pub save_folder: SaveFolder,
-    /// Where settings are remembered, if they are.
-    pub remembered: Option<PathBuf>,
-    /// Whether a method or something of it is asked for, so that what is remembered of them does not count.
-    pub asked: bool,
+    /// The file of saved settings, if there is one.
+    pub settings_file: Option<PathBuf>,
+    /// Whether the user chose a method or changed its settings: saved settings do not apply then.
+    pub method_chosen: bool,
 }
 
-/// What is looked at.
+/// A scene that was loaded, and how it is first shown.
 pub struct Loaded {
     /// The scene.
     pub model: Model,
-    /// The built-in scene that it is, if its surface is known exactly and nothing of it is changed.
+    /// Name of the built-in scene, if its surface is known exactly and nothing of it is changed.
     pub surface: Option<String>,
-    /// What else is known of its points; of a preview nothing is.
-    pub numbers: Option<Numbers>,
-    /// What its points are coloured by at first, if not by their own colours.
+    /// Further properties of the points; `None` for a preview.
+    pub properties: Option<PointProperties>,
+    /// What the points are first coloured by, if not by their own colours.
     pub colour_by: Option<ColourBy>,
-    /// How it is rendered at first.
+    /// The first method.
     pub method: Method,
-    /// What is known of it, for who looks.
-    pub about: About,
-    /// What is up in the world, a unit vector.
+    /// Information for the user.
+    pub info: SceneInfo,
+    /// Up direction of the world, a unit vector.
     pub up: DVec3,
 }
 
 impl Loaded {
-    /// A scene of which nothing else is known; y is up.
+    /// A scene without further information; y is up.
     pub fn new(model: Model, method: Method) -> Self {
         Self {
             model,
             surface: None,
-            numbers: None,
+            properties: None,
             colour_by: None,
             method,
-            about: About::default(),
+            info: SceneInfo::default(),
             up: DVec3::Y,
         }
     }
@@ -112,37 +117,37 @@ impl Loaded {
 /// What points are coloured by.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColourBy {
-    /// The quantity, or the property of the files.
+    /// Name of an attribute or of a property of the files.
     pub name: String,
-    /// Which colours numbers have.
+    /// The colour map.
     pub map: ColourMap,
-    /// The numbers at both ends of the colours; the usual range unless given.
+    /// The values at both ends of the colour map; the default range if `None`.
     pub range: Option<ValueRange>,
 }
 
-/// The camera to begin with, for a scene of these bounds and a picture of this size, px; `None` shows all of it.
-pub type Place = Box<dyn Fn(&Bounds, [u32; 2]) -> Option<Result<Pose>>>;
+/// Makes the first camera for the bounds of a scene and a picture of this width and height, px; `None` frames the whole scene.
+pub type InitialCamera = Box<dyn Fn(&Bounds, [u32; 2]) -> Option<Result<Pose>>>;
 
-/// Numbers of points of which nothing is made, for colours to show.
+/// Properties of points that the scene itself does not use, for colours to show.
 #[derive(Clone)]
-pub struct Numbers {
+pub struct PointProperties {
     /// Their names.
     pub names: Vec<String>,
-    /// Reads those of a name.
-    pub read: ReadNumbers,
+    /// Reads the property of a name.
+    pub read: ReadProperty,
 }
 
-/// Gives the numbers of a name, of every surfel, and of every vertex of lines and triangles; NaN where there is none.
-pub type ReadNumbers = Arc<dyn Fn(&str, &dyn Progress) -> Result<[Vec<f32>; 2]> + Send + Sync>;
+/// Reads a property: its values of every surfel, and of every vertex of lines and triangles; NaN where there is none.
+pub type ReadProperty = Arc<dyn Fn(&str, &dyn Progress) -> Result<[Vec<f32>; 2]> + Send + Sync>;
 
 /// The settings of a method.
 pub type MethodSettings = Box<dyn Fn(&Method) -> Settings>;
 
-/// Opens the window, and shows what `load` makes of the inputs, and of files dropped on it, until it is closed. What cannot be loaded is a
-/// message.
+/// Opens the window and runs it until the user closes it. It shows what `load` makes of the inputs, and of files dropped on it; errors of loading
+/// are messages in the window.
 ///
 /// # Errors
-/// [`surfel::Error::NoWindow`] where there is no display, [`surfel::Error::NoDevice`] where there is no device; whatever rendering fails with.
+/// [`surfel::Error::NoWindow`] without a display, [`surfel::Error::NoDevice`] without a device; errors of rendering.
 pub fn run(options: Options, load: Load, method_settings: MethodSettings) -> Result<()> {
     app::run(options, load, method_settings)
 }
@@ -152,7 +157,7 @@ mod tests {
     use std::sync::Arc;
     use surfel::vk::{Device, DeviceOptions};
 
-    /// A device under the validation layers; `None`, said aloud, where there is none and none is required.
+    /// A device with the validation layers. Without one the test is skipped with a message, or fails if `SURFEL_REQUIRE_GPU` is 1.
     pub fn device(test: &str) -> Option<Arc<Device>> {
         match Device::open(&DeviceOptions { validate: true, ..Default::default() }) {
             Ok(device) => Some(device),

@@ -1,22 +1,22 @@
-//! What happens when the device is lost: another one is opened, unless that helped as little just before.
+//! Limits how often a lost device is replaced.
 
 use std::time::{Duration, Instant};
 
-/// How long a device has to have served before its loss is a new one, and not the last one's cause at work again.
-const CALM: Duration = Duration::from_secs(60);
+/// How long a device must have worked for its loss to count as a new one; sooner, the cause of the last loss persists.
+const STABLE: Duration = Duration::from_secs(60);
 
-/// Grants one retry.
+/// Allows one replacement per loss.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Retry {
     lost: Option<Instant>,
 }
 
 impl Retry {
-    /// The device is lost; whether another one is to be opened.
-    pub fn lost(&mut self, now: Instant) -> bool {
-        let calm = self.lost.is_none_or(|before| now > before + CALM);
+    /// Notes the loss of the device; returns whether another one may be opened.
+    pub fn is_allowed(&mut self, now: Instant) -> bool {
+        let stable = self.lost.is_none_or(|before| now > before + STABLE);
         self.lost = Some(now);
-        calm
+        stable
     }
 }
 
@@ -25,9 +25,9 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_loss_is_retried_once_and_again_after_a_calm_time() {
+    fn a_loss_is_retried_once_and_again_after_a_stable_time() {
         let (mut retry, start) = (Retry::default(), Instant::now());
-        let mut lost = |seconds| retry.lost(start + Duration::from_secs(seconds));
+        let mut lost = |seconds| retry.is_allowed(start + Duration::from_secs(seconds));
         assert_eq!([0, 5, 64, 130, 131].map(&mut lost), [true, false, false, true, false]);
     }
 }

@@ -1,6 +1,6 @@
-//! Files that are loaded again when they change.
+//! Watches files for changes, by polling.
 
-use super::load::News;
+use super::load::AppEvent;
 use std::ffi::OsString;
 use std::fs;
 use std::path::Path;
@@ -9,40 +9,40 @@ use std::thread;
 use std::time::{Duration, SystemTime};
 use winit::event_loop::EventLoopProxy;
 
-/// How often files are looked at: the notifications of systems are many for one change, and none on some network drives.
+/// Polling period. Notifications of the operating system come several times for one change, and not at all on some network drives.
 const PERIOD: Duration = Duration::from_millis(250);
 
-/// What tells one state of a file from another; `None` where there is no file.
+/// Modification time and size of a file; `None` if there is no file.
 type Mark = Option<(Option<SystemTime>, u64)>;
 
-/// Looks at files, on a thread of its own, until it is dropped.
-pub struct Watch(Sender<Vec<OsString>>);
+/// Watches files on its own thread until it is dropped.
+pub struct Watcher(Sender<Vec<OsString>>);
 
-impl Watch {
-    /// Tells `window` when inputs have changed.
-    pub fn new(window: EventLoopProxy<News>) -> Self {
-        let (inputs, given) = channel();
-        thread::spawn(move || watch(&given, || window.send_event(News::Changed).is_ok()));
+impl Watcher {
+    /// A watcher that sends [`AppEvent::FilesChanged`].
+    pub fn new(proxy: EventLoopProxy<AppEvent>) -> Self {
+        let (inputs, received) = channel();
+        thread::spawn(move || watch(&received, || proxy.send_event(AppEvent::FilesChanged).is_ok()));
         Self(inputs)
     }
 
-    /// Looks at these from now on, as they are now.
-    pub fn set_inputs(&self, inputs: &[OsString]) {
-        // It looks as long as there is a sender.
+    /// Watches these inputs from now on, instead of those before.
+    pub fn watch(&self, inputs: &[OsString]) {
+        // The thread receives as long as there is a sender.
         let _ = self.0.send(inputs.to_vec());
     }
 }
 
-/// Looks at what is given, and tells of changes that have come to an end, until nobody gives or hears any more.
-fn watch(given: &Receiver<Vec<OsString>>, tell: impl Fn() -> bool) {
+/// Watches the inputs that are received. Calls `notify` after each change, until it returns false or the sender is dropped.
+fn watch(received: &Receiver<Vec<OsString>>, notify: impl Fn() -> bool) {
     let mut changes = Changes::default();
     loop {
-        match given.recv_timeout(PERIOD) {
+        match received.recv_timeout(PERIOD) {
             Ok(inputs) => changes = Changes::of(inputs),
             Err(RecvTimeoutError::Disconnected) => return,
             Err(RecvTimeoutError::Timeout) => {}
         }
-        if changes.poll() && !tell() {
+        if changes.poll() && !notify() {
             return;
         }
     }
@@ -52,22 +52,22 @@ fn watch(given: &Receiver<Vec<OsString>>, tell: impl Fn() -> bool) {
 #[derive(Default)]
 struct Changes {
     inputs: Vec<OsString>,
-    /// As they were told last, and as they were seen last.
+    /// The states that were reported last, and those that were polled last.
     reported: Vec<Mark>,
-    seen: Vec<Mark>,
+    polled: Vec<Mark>,
 }
 
 impl Changes {
     fn of(inputs: Vec<OsString>) -> Self {
         let now = marks(&inputs);
-        Self { inputs, reported: now.clone(), seen: now }
+        Self { inputs, reported: now.clone(), polled: now }
     }
 
-    /// Whether they are other than they were told last, and stay as they are for now: what is being written is not whole.
+    /// Whether the files have changed since the last report and are stable between two polls: a file that is being written is incomplete.
     fn poll(&mut self) -> bool {
         let now = marks(&self.inputs);
-        let rests = std::mem::replace(&mut self.seen, now.clone()) == now;
-        let changed = rests && now != self.reported && now.iter().all(Option::is_some);
+        let stable = std::mem::replace(&mut self.polled, now.clone()) == now;
+        let changed = stable && now != self.reported && now.iter().all(Option::is_some);
         if changed {
             self.reported = now;
         }
@@ -101,12 +101,12 @@ mod tests {
         let mut changes = Changes::of(vec![file.clone().into(), "scene:sphere".into()]);
         assert!(!changes.poll() && !changes.poll());
         fs::write(&file, "ab").unwrap();
-        assert!(!changes.poll(), "it may be being written");
+        assert!(!changes.poll(), "it may still be written");
         fs::write(&file, "abc").unwrap();
         assert!(!changes.poll());
         assert!(changes.poll());
         assert!(!changes.poll());
-        // Programs that save put another file in the place of the old one: for a moment there is none.
+        // Programs that save replace the old file: for a moment there is none.
         fs::remove_file(&file).unwrap();
         assert!(!changes.poll() && !changes.poll());
         fs::write(&file, "abcd").unwrap();

@@ -1,15 +1,15 @@
-//! An open window: a frame of it, and what it costs.
+//! Renders the window: the scene, the panels, and screenshots of both.
 
 use super::Options;
 use super::adaptive_resolution::{AdaptiveResolution, FrameTime};
-use super::events::{Event, Events, Shown};
+use super::events::{Event, Events, PictureInfo};
 use super::hud::Hud;
 use super::input::InputState;
 use super::panels::UiState;
 use super::quality::Quality;
 use super::screenshots::Screenshot;
 use super::split_view::SplitView;
-use super::state::State;
+use super::state::ViewState;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use surfel::vk::{Device, Presenter};
@@ -18,28 +18,28 @@ use winit::dpi::PhysicalSize;
 use winit::event_loop::ActiveEventLoop;
 use winit::window::Window;
 
-/// When a window that could not be drawn to is tried again: not every one tells that it can be.
-const AGAIN: Duration = Duration::from_millis(50);
+/// How long to wait before a failed presentation is tried again: not every system sends an event when the window can be presented to.
+const RETRY: Duration = Duration::from_millis(50);
 
-/// An open window.
-pub struct Opened {
-    // The presenter waits for all frames before anything that they use goes.
+/// Renders and presents the frames of a window.
+pub struct WindowRenderer {
+    // Dropped first: it waits for all frames, which use the other fields.
     presenter: Presenter,
     pub hud: Hud,
     split_view: SplitView,
     pub adaptive: AdaptiveResolution,
-    /// When the last frame began, if it was followed at once by this one.
+    /// When the last frame began, if the camera flies.
     last: Option<Instant>,
-    /// What the pace knows the times of.
+    /// What the measured frame times belong to.
     measured_content: Option<Content>,
     pub window: Arc<Window>,
 }
 
-/// What frames are of.
+/// The scene and the settings of frames.
 struct Content {
     scene: Arc<Scene>,
     settings: Settings,
-    /// Those of the picture beside it.
+    /// Settings of the right picture, if the view is split.
     split_settings: Option<Settings>,
 }
 
@@ -51,67 +51,65 @@ impl PartialEq for Content {
     }
 }
 
-impl Opened {
+impl WindowRenderer {
     /// Opens a window, and the device that presents to it.
-    pub fn new(events: &ActiveEventLoop, options: &Options) -> Result<(Self, Arc<Device>)> {
+    pub fn open(events: &ActiveEventLoop, options: &Options) -> Result<(Self, Arc<Device>)> {
         let [width, height] = options.size;
         let attributes =
             Window::default_attributes().with_title("surfel").with_inner_size(PhysicalSize { width, height });
         let window = events.create_window(attributes);
         let window = window.map_err(|cause| Error::NoWindow(cause.to_string()))?;
-        Self::of(Arc::new(window), options)
+        Self::new(Arc::new(window), options)
     }
 
-    /// Opens a device that presents to a window, which no other one does any more.
-    pub fn of(window: Arc<Window>, options: &Options) -> Result<(Self, Arc<Device>)> {
+    /// Opens a device that presents to a window. No other device may present to it.
+    pub fn new(window: Arc<Window>, options: &Options) -> Result<(Self, Arc<Device>)> {
         let (device, surface) = Device::open_for(&options.device, window.clone())?;
         let presenter = Presenter::new(&device, surface)?;
         let split_view = SplitView::new(&presenter, options.rasterizer)?;
         let hud = Hud::new(&device, &window, presenter.overlay())?;
         let adaptive = AdaptiveResolution::new(options.budget);
-        Ok((
-            Self { presenter, hud, split_view, adaptive, last: None, measured_content: None, window },
-            device,
-        ))
+        let (last, measured_content) = (None, None);
+        Ok((Self { presenter, hud, split_view, adaptive, last, measured_content, window }, device))
     }
 
-    /// The window's size is another, or may be.
+    /// Notes that the window's size may have changed.
     pub fn resized(&mut self) {
         self.presenter.resized();
         self.window.request_redraw();
     }
 
-    /// What the window shows, panels and all, from a whole picture.
-    pub fn capture(&mut self, state: &mut State, ui_state: &mut UiState) -> Result<Screenshot> {
+    /// A screenshot of the window with its panels, from a picture of full quality.
+    pub fn capture(&mut self, state: &mut ViewState, ui_state: &mut UiState) -> Result<Screenshot> {
         ui_state.scale = 1.0;
-        let screenshot = self.captured(state, ui_state)?;
+        let screenshot = self.capture_once(state, ui_state)?;
         let ranges = self.split_view.ranges(&self.presenter)?;
         if ui_state.ranges == ranges {
             return Ok(screenshot);
         }
-        // The panels were laid out before they were known; the picture is there.
+        // The legend shows the ranges of this picture only when it is laid out again.
         ui_state.ranges = ranges;
-        self.captured(state, ui_state)
+        self.capture_once(state, ui_state)
     }
 
-    fn captured(&mut self, state: &mut State, ui_state: &mut UiState) -> Result<Screenshot> {
+    fn capture_once(&mut self, state: &mut ViewState, ui_state: &mut UiState) -> Result<Screenshot> {
         self.hud.lay_out(&self.window, state, ui_state);
         let Self { presenter, hud, split_view, window, .. } = self;
-        let PhysicalSize { width, height } = window.inner_size();
-        let (whole, size) = ([width, height].map(|side| side.max(1)), state.viewport.size);
-        let seen = state.frame(0).transpose()?;
-        let seen = seen.as_ref().map(|(scene, camera, settings)| (*scene, camera, &**settings));
-        let pixels = presenter.capture(whole, |frame| {
-            split_view.record(frame, (size, size), seen)?;
+        let window_size = size_of(window).map(|side| side.max(1));
+        let size = state.viewport.size;
+        let inputs = state.frame(0).transpose()?;
+        let inputs = inputs.as_ref().map(|(scene, camera, settings)| (*scene, camera, &**settings));
+        let pixels = presenter.capture(window_size, |frame| {
+            split_view.record(frame, (size, size), inputs)?;
             hud.record(frame)
         })?;
-        Screenshot::of_window(whole, pixels)
+        Screenshot::of_window(window_size, pixels)
     }
 
-    /// Draws a frame; when another is to follow without an event.
+    /// Renders and presents a frame; returns when the next one is due without an event.
     pub fn draw(
         &mut self,
-        state: &mut State,
+        state: &mut ViewState,
         input: &InputState,
         ui_state: &mut UiState,
         events: &Events,
@@ -138,110 +136,105 @@ impl Opened {
             .copied()
             .unwrap_or(0.0);
         let size = state.viewport.size;
-        let again = self.hud.lay_out(&self.window, state, ui_state);
+        let lay_out_again = self.hud.lay_out(&self.window, state, ui_state);
         if state.viewport.size != size && self.adaptive.has_measured() {
-            // An edge is dragged: whole pictures come when it rests.
+            // An edge is dragged: a frame of full quality follows when it rests.
             self.adaptive.moved(start);
         }
         self.split_view.set_options(ui_state.frame_options(state, quality.level > 0), &self.presenter)?;
-        let [shown, drawn] = self.present(state, ui_state, quality)?;
-        // A frame's time is its own, and the next one shows where the hands are when it begins.
+        let [has_picture, rendered] = self.present(state, ui_state, quality)?;
+        // Waiting here keeps frames from queueing up: each shows the camera of its start, and its time is its own.
         self.presenter.wait()?;
         let ranges = self.split_view.ranges(&self.presenter)?;
         if ui_state.ranges != ranges {
-            // The panels were laid out before they were known.
+            // The legend was laid out before the ranges were known.
             ui_state.ranges = ranges;
             self.window.request_redraw();
         }
         let ms = 1e3 * start.elapsed().as_secs_f64();
-        if drawn {
+        if rendered {
             ui_state.frame_ms = ms;
             if let Some(workload) = &workload {
-                self.adaptive.record(
-                    quality,
-                    workload,
-                    FrameTime { ms, moving, created: self.split_view.created_resources() },
-                );
+                let created = self.split_view.created_resources();
+                self.adaptive.record(quality, workload, FrameTime { ms, moving, created });
             }
         }
         let behind = self.presenter.is_behind();
-        let PhysicalSize { width, height } = self.window.inner_size();
-        let picture = picture(state, ui_state, [moving, drawn], ([width, height], ms));
-        if let Some(picture) = picture.filter(|_| shown && !behind) {
-            events.tell(&Event::Picture(picture));
+        let window_size = size_of(&self.window);
+        if has_picture
+            && !behind
+            && let Some(picture) = picture_info(state, ui_state, [moving, rendered], (window_size, ms))
+        {
+            events.emit(&Event::Picture(picture));
         }
         let flies = input.flight().is_some();
         self.last = flies.then_some(start);
         if behind {
-            // A window without an extent tells when it has one again.
-            return Ok((width > 0 && height > 0).then(|| Instant::now() + AGAIN));
+            // A window without an extent sends an event when it has one again.
+            return Ok((!window_size.contains(&0)).then(|| Instant::now() + RETRY));
         }
-        if ui_state.times.is_open() {
-            self.measure(ui_state)?;
+        if ui_state.times.is_open() && ui_state.times.push(self.split_view.reports(&self.presenter)?) {
+            self.window.request_redraw();
         }
-        if state.pick.is_some() {
-            self.pick(state)?;
-        }
-        if again || flies || state.pick.is_some() {
+        self.pick(state)?;
+        if lay_out_again || flies {
             self.window.request_redraw();
         }
         let now = Instant::now();
         if quality != Quality::FULL && !self.adaptive.is_moving(now) {
-            // The hands came to rest within this frame, and nothing else has the picture drawn whole.
+            // The camera came to rest within this frame: no timer requests the frame of full quality.
             self.window.request_redraw();
         }
         let wakes = [self.adaptive.refine_at(now), self.hud.wakes()];
         Ok(wakes.into_iter().flatten().min())
     }
 
-    /// Takes what the last frame, which is over, tells, and shows it.
-    fn measure(&mut self, ui_state: &mut UiState) -> Result<()> {
-        if ui_state.times.push(self.split_view.reports(&self.presenter)?) {
-            self.window.request_redraw();
-        }
-        Ok(())
-    }
-
-    fn fly(&mut self, state: &mut State, input: &InputState, now: Instant) {
-        let Some((way, (orbit, ..))) = input.flight().zip(state.moving()) else { return };
+    /// Moves the camera by the time since the last frame, if keys of flight are held.
+    fn fly(&mut self, state: &mut ViewState, input: &InputState, now: Instant) {
+        let Some((direction, (orbit, ..))) = input.flight().zip(state.orbit_mut()) else { return };
         let seconds = self.last.map_or(0.0, |last| (now - last).as_secs_f64());
-        orbit.fly(way, seconds.min(0.25));
+        orbit.fly(direction, seconds.min(0.25));
         self.adaptive.moved(now);
     }
 
-    /// Whether a picture of something was shown, and whether it was drawn anew.
-    fn present(&mut self, state: &mut State, ui_state: &mut UiState, quality: Quality) -> Result<[bool; 2]> {
-        let PhysicalSize { width, height } = self.window.inner_size();
+    /// Presents a frame; returns whether it has a picture of a scene, and whether that was rendered.
+    fn present(
+        &mut self,
+        state: &mut ViewState,
+        ui_state: &mut UiState,
+        quality: Quality,
+    ) -> Result<[bool; 2]> {
+        let window_size = size_of(&self.window);
         let Self { presenter, hud, split_view, .. } = self;
-        let mut refused = ui_state.render_error.clone();
-        let shown = presenter.present([width, height], |frame| {
-            let area = hud.beside(frame.size());
+        let mut render_error = ui_state.render_error.clone();
+        let presented = presenter.present(window_size, |frame| {
+            let area = hud.picture_size(frame.size());
             state.viewport.size = area;
-            let size = area.map(|length| side_of(length, quality.scale));
-            let seen = state.frame(quality.level).transpose()?;
-            let seen = seen.as_ref().map(|(scene, camera, settings)| (*scene, camera, &**settings));
-            refused = match split_view.record(frame, (area, size), seen) {
-                // Other settings may do: the window stays.
+            let size = area.map(|side| scaled_side(side, quality.scale));
+            let inputs = state.frame(quality.level).transpose()?;
+            let inputs = inputs.as_ref().map(|(scene, camera, settings)| (*scene, camera, &**settings));
+            render_error = match split_view.record(frame, (area, size), inputs) {
+                // Other settings may work, so the window stays open.
                 Err(error @ (Error::Usage(_) | Error::Memory { .. })) => Some(error.to_string()),
                 recorded => recorded.map(|()| None)?,
             };
             hud.record(frame)?;
-            Ok([seen.is_some(), split_view.rendered()])
+            Ok([inputs.is_some(), split_view.rendered()])
         })?;
-        if refused != ui_state.render_error {
-            // The panels were laid out before it was known.
-            ui_state.render_error = refused;
+        if render_error != ui_state.render_error {
+            // The panels were laid out before the error was known.
+            ui_state.render_error = render_error;
             self.window.request_redraw();
         }
-        Ok(shown.unwrap_or_default())
+        Ok(presented.unwrap_or_default())
     }
 
-    /// Turns about what is under the cursor from now on, if something is.
-    fn pick(&mut self, state: &mut State) -> Result<()> {
+    /// Makes the surface at the picked position the pivot, if there is one.
+    fn pick(&mut self, state: &mut ViewState) -> Result<()> {
         let Some(at) = state.pick.take() else { return Ok(()) };
         let depth = self.split_view.pick(at, state.viewport.size, &self.presenter)?;
-        if let (Some(depth), Some(seen)) = (depth, state.frame(0).transpose()?) {
-            let distance = seen.1.distance(depth)?;
+        if let (Some(depth), Some((_, camera, _))) = (depth, state.frame(0).transpose()?) {
+            let distance = camera.distance(depth)?;
             state.set_pivot(at, distance);
             self.window.request_redraw();
         }
@@ -249,20 +242,26 @@ impl Opened {
     }
 }
 
-/// What a picture tells, whether the hands moved, whether it was drawn anew, in a window of which size, and how long it took, ms.
-fn picture<'a>(
-    state: &State,
+/// Width and height of a window, px.
+fn size_of(window: &Window) -> [u32; 2] {
+    let PhysicalSize { width, height } = window.inner_size();
+    [width, height]
+}
+
+/// The event of a picture. `took_ms` is the duration of its frame, ms.
+fn picture_info<'a>(
+    state: &ViewState,
     ui_state: &UiState,
     [moving, drawn]: [bool; 2],
     (size, took_ms): ([u32; 2], f64),
-) -> Option<Shown<'a>> {
+) -> Option<PictureInfo<'a>> {
     let (camera, [method, shading]) = state.pose().zip(state.names())?;
-    Some(Shown {
+    Some(PictureInfo {
         method,
         shading,
         size,
         picture: state.viewport.size,
-        side: ui_state.scale,
+        scale: ui_state.scale,
         surfels: ui_state.surfels as u64,
         preview: state.is_preview(),
         moving,
@@ -272,10 +271,7 @@ fn picture<'a>(
     })
 }
 
-/// Px of a side of a picture that has this part of the whole one's. Odd where it is scaled, and so no power of two: see [`Presenter::rehearse`].
-fn side_of(window: u32, part: f64) -> u32 {
-    match part < 1.0 {
-        true => ((f64::from(window) * part).round() as u32 | 1).min(window),
-        false => window,
-    }
+/// A side of the picture at a resolution scale, px. A scaled side is odd, and so no power of two: see [`Presenter::rehearse`].
+fn scaled_side(side: u32, scale: f64) -> u32 {
+    if scale < 1.0 { ((f64::from(side) * scale).round() as u32 | 1).min(side) } else { side }
 }

@@ -1,13 +1,13 @@
-//! What is opened, and what is kept.
+//! Files: scenes and cameras that are opened, screenshots and cameras that are saved.
 
 use super::App;
 use crate::viewer::events::Event;
 use crate::viewer::keys::Action;
-use crate::viewer::load::News;
-use crate::viewer::open::{Answer, Opening};
+use crate::viewer::load::AppEvent;
+use crate::viewer::open_dialog::{DialogResult, OpenDialog};
+use crate::viewer::scene_view::SceneOrigin;
 use crate::viewer::screenshots::{Screenshot, ScreenshotKind};
 use crate::viewer::source::Source;
-use crate::viewer::state::Of;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use surfel::formats::camera as camera_file;
@@ -15,39 +15,46 @@ use surfel::settings::methods::Method;
 use surfel::{Result, Scene};
 
 impl App {
-    /// Shows a scene of a load: from where is asked for, or from the front. All of a preview has other bounds than that, which is why its
-    /// camera is asked for again, unless hands have moved it.
-    pub(super) fn show(&mut self, scene: Arc<Scene>, made: (Method, Source), of: Of) -> Result<()> {
-        let moved = self.state.has_moved_preview(of.load);
-        self.is_first &= self.state.moving().is_none() || self.state.is_preview();
-        let asked = (self.options.place)(&scene.bounds(), self.state.viewport.size).filter(|_| self.is_first);
-        let next = if of.preview { self.next } else { self.next.take() };
-        let pose = next.map(Ok).or(asked).filter(|_| !moved).transpose()?;
+    /// Shows the scene of a load: from the camera of the options or of a file, or framed. The bounds of the whole scene differ from those of its
+    /// preview, so its camera is made again unless the user has moved it.
+    pub(super) fn set_scene(
+        &mut self,
+        scene: Arc<Scene>,
+        loaded: (Method, Source),
+        origin: SceneOrigin,
+    ) -> Result<()> {
+        let moved = self.state.has_moved_preview(origin.load);
+        self.is_first &= self.state.orbit_mut().is_none() || self.state.is_preview();
+        let size = self.state.viewport.size;
+        let initial = (self.options.initial_camera)(&scene.bounds(), size).filter(|_| self.is_first);
+        let next = if origin.preview { self.next_pose } else { self.next_pose.take() };
+        let pose = next.map(Ok).or(initial).filter(|_| !moved).transpose()?;
         if let Some(pose) = &pose {
             pose.check()?;
         }
-        self.state.show(scene, made, of);
+        self.state.set_scene(scene, loaded, origin);
         if let Some(pose) = pose {
             self.state.set_pose(pose);
         }
         Ok(())
     }
 
-    /// Opens files together: a camera's is looked through, the others become the scene.
-    pub(super) fn take(&mut self, files: Vec<PathBuf>) {
+    /// Opens files together: a camera file sets the camera, the others become one scene.
+    pub(super) fn open_files(&mut self, files: Vec<PathBuf>) {
         let (cameras, scenes): (Vec<_>, Vec<_>) = files.into_iter().partition(|path| is_camera(path));
-        let waits = !scenes.is_empty() || self.state.moving().is_none();
+        let is_for_next = !scenes.is_empty() || self.state.orbit_mut().is_none();
         for path in cameras {
             match camera_file::read(&path) {
                 Ok(pose) => {
-                    self.options.events.tell(&Event::Camera { file: &path });
-                    match waits {
-                        true => self.next = Some(pose),
-                        false => self.state.set_pose(pose),
+                    self.options.events.emit(&Event::Camera { file: &path });
+                    if is_for_next {
+                        self.next_pose = Some(pose);
+                    } else {
+                        self.state.set_pose(pose);
                     }
                     self.changed();
                 }
-                Err(error) => self.wrong(&error),
+                Err(error) => self.show_error(&error),
             }
         }
         if !scenes.is_empty() {
@@ -55,38 +62,38 @@ impl App {
         }
     }
 
-    /// Opens what was asked for by name, if there is an answer.
-    pub(super) fn answer(&mut self) {
-        let Some(answer) = self.state.answer.take() else { return };
-        self.state.opening = None;
-        if let Answer::Open(name) = answer {
-            self.take(vec![name.into()]);
+    /// Closes the dialog and opens the chosen file, if there is a result.
+    pub(super) fn take_dialog_result(&mut self) {
+        let Some(result) = self.state.dialog_result.take() else { return };
+        self.state.dialog = None;
+        if let DialogResult::Open(name) = result {
+            self.open_files(vec![name.into()]);
         }
         self.changed();
     }
 
-    /// Keeps, copies or asks for what `action` says.
+    /// Runs an action that opens, saves, copies or pastes.
     pub(super) fn run_file_action(&mut self, action: Action) -> Result<()> {
         if action == Action::Open {
             self.input.release_all();
-            self.state.opening = Some(Opening::at(&self.options.save_folder.path));
+            self.state.dialog = Some(OpenDialog::in_folder(&self.options.save_folder.path));
             self.changed();
             return Ok(());
         }
-        let (Some(pose), Some(opened)) = (self.state.pose(), &self.opened) else { return Ok(()) };
+        let (Some(pose), Some(renderer)) = (self.state.pose(), &self.renderer) else { return Ok(()) };
         match action {
             Action::SaveScreenshot(kind) => return self.take_screenshot(kind),
             Action::SaveCamera => {
-                let saved = self.screenshots.camera(&pose);
+                let saved = self.screenshots.save_camera(&pose);
                 self.report_saved(saved);
             }
             Action::CopyCamera => {
-                self.screenshots.copy(&pose, &opened.window);
-                self.options.events.tell(&Event::Copied);
-                self.ui_state.message = Some("the camera is on the clipboard".into());
+                self.screenshots.copy_camera(&pose, &renderer.window);
+                self.options.events.emit(&Event::Copied);
+                self.ui_state.message = Some("Copied the camera to the clipboard.".into());
             }
             Action::PasteCamera => {
-                let pose = self.screenshots.paste(&opened.window)?;
+                let pose = self.screenshots.paste_camera(&renderer.window)?;
                 self.state.set_pose(pose);
             }
             _ => {}
@@ -95,44 +102,45 @@ impl App {
         Ok(())
     }
 
-    /// Makes a picture of what is seen, and has it written.
+    /// Takes a screenshot and starts to write it.
     fn take_screenshot(&mut self, kind: ScreenshotKind) -> Result<()> {
-        let Self { state, opened: Some(opened), device: Some(device), ui_state, .. } = self else {
+        let Self { state, renderer: Some(renderer), device: Some(device), ui_state, .. } = self else {
             return Ok(());
         };
         let screenshot = match kind {
-            ScreenshotKind::Window => opened.capture(state, ui_state)?,
+            ScreenshotKind::Window => renderer.capture(state, ui_state)?,
             ScreenshotKind::Picture | ScreenshotKind::Values => {
                 let size = state.viewport.size;
-                let Some(seen) = state.frame(0) else { return Ok(()) };
-                let (scene, camera, settings) = seen?;
-                let how = (size, self.options.rasterizer);
-                Screenshot::render(device, scene, (&camera, &settings), how, kind == ScreenshotKind::Values)?
+                let Some(frame) = state.frame(0) else { return Ok(()) };
+                let (scene, camera, settings) = frame?;
+                let values = kind == ScreenshotKind::Values;
+                let rasterizer = self.options.rasterizer;
+                Screenshot::render(device, scene, (&camera, &settings), (size, rasterizer), values)?
             }
         };
-        let window = self.news.clone();
-        self.screenshots.picture(screenshot, move || {
-            // When the window is closed all are waited for.
-            let _ = window.send_event(News::ScreenshotWritten);
+        let proxy = self.proxy.clone();
+        self.screenshots.write(screenshot, move || {
+            // A closed window takes no events; `finish` waits for the file.
+            let _ = proxy.send_event(AppEvent::ScreenshotWritten);
         });
         Ok(())
     }
 
-    /// Says which pictures were written.
+    /// Reports the screenshots that were written since the last call.
     pub(super) fn report_written(&mut self) {
         self.screenshots.written().into_iter().for_each(|saved| self.report_saved(saved));
     }
 
-    /// Says which file was written, or why not.
+    /// Reports a file that was saved, or the error.
     fn report_saved(&mut self, saved: Result<PathBuf>) {
         match saved {
             Ok(path) => {
                 self.screenshots.print_name(&path);
-                self.options.events.tell(&Event::Wrote { file: &path });
-                self.ui_state.message = Some(format!("saved {}", path.display()));
+                self.options.events.emit(&Event::Wrote { file: &path });
+                self.ui_state.message = Some(format!("Saved {}.", path.display()));
                 self.changed();
             }
-            Err(error) => self.wrong(&error),
+            Err(error) => self.show_error(&error),
         }
     }
 }

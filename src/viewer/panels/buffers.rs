@@ -1,7 +1,7 @@
-//! What frames are made of, as pictures: depths, normals, weights, levels of the pyramid.
+//! Buffers panel: reads back intermediate buffers and shows them as pictures.
 
 use super::raster::{Raster, Values};
-use crate::viewer::state::Choices;
+use crate::viewer::choices::Choices;
 use egui::{Button, ComboBox, Context, Slider, Ui};
 use std::sync::Arc;
 use surfel::geometry::Camera;
@@ -9,7 +9,7 @@ use surfel::settings::Shading;
 use surfel::vk::Device;
 use surfel::{Outputs, PyramidLevel, RenderOptions, Renderer, Result, Settings};
 
-/// What can be looked at.
+/// A buffer that can be shown.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 enum Buffer {
     #[default]
@@ -27,20 +27,16 @@ impl Buffer {
 
     fn name_and_help(self) -> [&'static str; 2] {
         match self {
-            Self::Depth => ["depth", "distance from the eye along the view, in the positions' unit"],
+            Self::Depth => ["depth", "Distance from the eye along the view, in the positions' unit."],
             Self::Normal => {
-                ["normal", "unit normal in world space: x, y, z from −1 to 1 as red, green, blue"]
+                ["normal", "Unit normal in world space: x, y, z from −1 to 1 as red, green, blue."]
             }
-            Self::Weight => ["weight", "the sum of the splats' weights, which normalization divides by"],
-            Self::Overlap => ["overlap", "how many splats are blended"],
-            Self::Pulled => [
-                "pulled level",
-                "distances of a level of the pyramid, as they were pulled from the finer one",
-            ],
-            Self::Pushed => [
-                "pushed level",
-                "distances of a level of the pyramid, with holes filled from the coarser one",
-            ],
+            Self::Weight => ["weight", "Sum of the splats' weights, by which normalization divides."],
+            Self::Overlap => ["overlap", "Number of splats that are blended."],
+            Self::Pulled => ["pulled level", "Distances of a pyramid level, pulled from the finer level."],
+            Self::Pushed => {
+                ["pushed level", "Distances of a pyramid level, with holes filled from the coarser level."]
+            }
         }
     }
 
@@ -49,90 +45,96 @@ impl Buffer {
     }
 }
 
-/// The section, and what was read.
+/// The panel, and the buffer that was read back.
 #[derive(Default)]
 pub struct Buffers {
     buffer: Buffer,
     level: u32,
-    wrong: Option<String>,
-    shown: bool,
+    error: Option<String>,
+    open: bool,
     raster: Option<Raster>,
-    /// Of which picture it was read.
-    of: Option<(Camera, Settings, Buffer, u32)>,
+    /// The picture that the buffer belongs to.
+    read_for: Option<(Camera, Settings, Buffer, u32)>,
 }
 
 impl Buffers {
-    /// What can be read, and a button that does.
-    pub fn show(&mut self, ui: &mut Ui, chosen: &Choices<'_>, device: &Arc<Device>) {
-        let all = if chosen.settings.pull_push.is_some() { Buffer::PYRAMIDS } else { Buffer::SPLATS };
+    /// Shows the choice of a buffer and the button that reads it back.
+    pub fn show(&mut self, ui: &mut Ui, choices: &Choices<'_>, device: &Arc<Device>) {
+        let all = if choices.settings.pull_push.is_some() { Buffer::PYRAMIDS } else { Buffer::SPLATS };
         if !all.contains(&self.buffer) {
             self.buffer = Buffer::Depth;
         }
-        let shown =
+        let combo =
             ComboBox::from_label("buffer").selected_text(self.buffer.name_and_help()[0]).show_ui(ui, |ui| {
                 for buffer in all {
                     let [name, text] = buffer.name_and_help();
                     ui.selectable_value(&mut self.buffer, buffer, name).on_hover_text(text);
                 }
             });
-        shown.response.on_hover_text(self.buffer.name_and_help()[1]);
+        combo.response.on_hover_text(self.buffer.name_and_help()[1]);
         ui.weak(self.buffer.name_and_help()[1]);
         if self.buffer.is_level() {
-            let top = chosen.size[0].max(chosen.size[1]).next_power_of_two().trailing_zeros();
-            ui.add(Slider::new(&mut self.level, 0..=top).text("level"))
-                .on_hover_text("0 has the picture's pixels, each further one a quarter of them.");
+            let top = choices.size[0].max(choices.size[1]).next_power_of_two().trailing_zeros();
+            ui.add(Slider::new(&mut self.level, 0..=top).text("level")).on_hover_text(
+                "Level 0 has the resolution of the picture, each further level a quarter of its pixels.",
+            );
         }
-        let Some(Ok(camera)) = &chosen.camera else { return };
-        let of = (*camera, chosen.settings.clone(), self.buffer, self.level);
-        let old = self.shown && self.of.as_ref() != Some(&of);
+        let Some(Ok(camera)) = &choices.camera else { return };
+        let key = (*camera, choices.settings.clone(), self.buffer, self.level);
+        let old = self.open && self.read_for.as_ref() != Some(&key);
         let text = if old { "Read back again: an earlier picture is shown" } else { "Read back" };
         if ui
             .add(Button::new(text))
-            .on_hover_text("Renders the picture once more, whole, and reads it back.")
+            .on_hover_text("Renders the picture again at full quality and reads the buffer back.")
             .clicked()
         {
-            match self.read(chosen, *camera, device) {
+            match self.read(choices, *camera, device) {
                 Ok(raster) => {
-                    (self.raster, self.shown, self.wrong, self.of) = (Some(raster), true, None, Some(of))
+                    (self.raster, self.open, self.error, self.read_for) =
+                        (Some(raster), true, None, Some(key))
                 }
-                Err(error) => self.wrong = Some(error.to_string()),
+                Err(error) => self.error = Some(error.to_string()),
             }
         }
-        if let Some(wrong) = &self.wrong {
-            ui.colored_label(ui.visuals().error_fg_color, wrong);
+        if let Some(error) = &self.error {
+            ui.colored_label(ui.visuals().error_fg_color, error);
         }
     }
 
-    /// Nothing is kept that belongs to a context that goes.
+    /// Drops the texture of an egui context before the context itself is dropped.
     pub fn release_textures(&mut self) {
         self.raster.iter_mut().for_each(Raster::release_textures);
     }
 
-    /// Closes the picture of a buffer, if it is there.
+    /// Closes the window of the buffer; returns whether it was open.
     pub fn close(&mut self) -> bool {
-        self.raster.is_some() && std::mem::take(&mut self.shown)
+        self.raster.is_some() && std::mem::take(&mut self.open)
     }
 
-    /// What was read, in a window of its own.
-    pub fn picture(&mut self, context: &Context) {
-        if let Some(raster) = self.raster.as_mut().filter(|_| self.shown) {
-            raster.show(context, "buffer", &mut self.shown);
+    /// Shows the window of the buffer, if it is open.
+    pub fn show_window(&mut self, context: &Context) {
+        if let Some(raster) = self.raster.as_mut().filter(|_| self.open) {
+            raster.show(context, "buffer", &mut self.open);
         }
     }
 
-    fn read(&self, chosen: &Choices<'_>, camera: Camera, device: &Arc<Device>) -> Result<Raster> {
+    fn read(&self, choices: &Choices<'_>, camera: Camera, device: &Arc<Device>) -> Result<Raster> {
         let outputs =
             Outputs { normal: self.buffer == Buffer::Normal, depth: self.buffer == Buffer::Depth, id: false };
-        let options =
-            RenderOptions { size: chosen.size, outputs, rasterizer: chosen.rasterizer, ..Default::default() };
+        let options = RenderOptions {
+            size: choices.size,
+            outputs,
+            rasterizer: choices.rasterizer,
+            ..Default::default()
+        };
         let shading = match self.buffer {
             Buffer::Weight => Shading::Weight,
             Buffer::Overlap => Shading::Overlap,
-            _ => chosen.settings.shading,
+            _ => choices.settings.shading,
         };
-        let settings = Settings { shading, background: None, ..chosen.settings.clone() };
+        let settings = Settings { shading, background: None, ..choices.settings.clone() };
         let mut renderer = Renderer::new(device, options)?;
-        let (picture, _) = renderer.render_picture(chosen.scene, &camera, &settings)?;
+        let (picture, _) = renderer.render_picture(choices.scene, &camera, &settings)?;
         let name = self.buffer.name_and_help()[0];
         let pyramids = if self.buffer.is_level() { renderer.read_pyramids()? } else { None };
         if let Some([pulled, pushed]) = pyramids {
@@ -155,7 +157,7 @@ impl Buffers {
     }
 }
 
-/// The distances of a level's samples.
+/// The distances of a pyramid level's samples.
 fn distances(name: &str, level: &PyramidLevel) -> Raster {
     let distance =
         |sample: &Option<_>| sample.as_ref().map_or(f32::NAN, |sample: &surfel::PyramidSample| sample.depth);

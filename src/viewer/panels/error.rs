@@ -1,8 +1,8 @@
-//! How far the picture is from what it should be: from the same frame in float64, or from the surface itself.
+//! Error panel: compares the picture with the float64 reference or with the exact surface.
 
 use super::raster::{Raster, Values};
+use crate::viewer::choices::Choices;
 use crate::viewer::job::Job;
-use crate::viewer::state::Choices;
 use egui::{Button, ComboBox, Context, Grid, ProgressBar, Slider, SliderClamping, Ui};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -14,10 +14,10 @@ use surfel::verify::truth;
 use surfel::vk::Device;
 use surfel::{Error, Picture, Progress, RenderOptions, Renderer, Result, Scene, Settings};
 
-/// How often progress is looked at.
-const OFTEN: Duration = Duration::from_millis(200);
+/// How often the progress of a comparison is shown.
+const POLL_PERIOD: Duration = Duration::from_millis(200);
 
-/// What the picture is held against.
+/// What the picture is compared with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Against {
     Reference,
@@ -29,29 +29,29 @@ impl Against {
         match self {
             Self::Reference => [
                 "float64 reference",
-                "the same method, camera and settings, in float64 on the CPU: what rounding and the GPU cost",
+                "The same method, camera and settings in float64 on the CPU: shows the error of rounding and of the GPU.",
             ],
             Self::Truth => [
                 "exact surface",
-                "rays against the surface itself: what points, method and filter cost; edges count",
+                "Rays against the surface itself: shows the error of points, method and filter, edges included.",
             ],
         }
     }
 }
 
-/// The section, and what it found.
+/// The panel, and the result of the last comparison.
 pub struct Errors {
     against: Against,
-    job: Option<Job<Found>>,
-    found: Option<Found>,
-    wrong: Option<String>,
-    /// Largest difference of a channel that passes.
+    job: Option<Job<Comparison>>,
+    found: Option<Comparison>,
+    error: Option<String>,
+    /// The largest difference of a channel that counts as equal, linear.
     tolerance: f32,
-    shown: bool,
+    open: bool,
     raster: Option<Raster>,
 }
 
-/// What is compared.
+/// A comparison to run.
 struct Task {
     against: Against,
     device: Arc<Device>,
@@ -64,8 +64,8 @@ struct Task {
     options: RenderOptions,
 }
 
-/// How far a picture is off.
-struct Found {
+/// Result of a comparison.
+struct Comparison {
     against: Against,
     camera: Camera,
     settings: Settings,
@@ -80,36 +80,36 @@ struct Found {
 impl Default for Errors {
     fn default() -> Self {
         let tolerance = Tolerance::default().colour as f32;
-        let (job, found, wrong, raster) = (None, None, None, None);
-        Self { against: Against::Reference, job, found, wrong, tolerance, shown: false, raster }
+        let (job, found, error, raster) = (None, None, None, None);
+        Self { against: Against::Reference, job, found, error, tolerance, open: false, raster }
     }
 }
 
 impl Errors {
-    /// What can be asked, and what was found.
-    pub fn show(&mut self, ui: &mut Ui, chosen: &Choices<'_>, device: &Arc<Device>) {
+    /// Shows the choices or the progress of a comparison, and the last result.
+    pub fn show(&mut self, ui: &mut Ui, choices: &Choices<'_>, device: &Arc<Device>) {
         self.poll(ui);
         match &self.job {
             Some(job) => {
                 let (stage, part) = job.at();
                 ui.add(ProgressBar::new(part).text(stage));
-                if ui.button("give up").clicked() {
+                if ui.button("Cancel").clicked() {
                     job.cancel();
                 }
             }
-            None => self.ask(ui, chosen, device),
+            None => self.show_choices(ui, choices, device),
         }
-        if let Some(wrong) = &self.wrong {
-            ui.colored_label(ui.visuals().error_fg_color, wrong);
+        if let Some(error) = &self.error {
+            ui.colored_label(ui.visuals().error_fg_color, error);
         }
-        self.tell(ui, chosen);
+        self.show_result(ui, choices);
     }
 
-    /// Takes what is done.
+    /// Takes the result of the comparison once it is done.
     fn poll(&mut self, ui: &Ui) {
         let Some(job) = &mut self.job else { return };
         match job.take() {
-            None => ui.ctx().request_repaint_after(OFTEN),
+            None => ui.ctx().request_repaint_after(POLL_PERIOD),
             Some(outcome) => {
                 self.job = None;
                 match outcome {
@@ -120,14 +120,14 @@ impl Errors {
                         self.found = Some(found);
                     }
                     Err(Error::Cancelled) => {}
-                    Err(error) => self.wrong = Some(error.to_string()),
+                    Err(error) => self.error = Some(error.to_string()),
                 }
             }
         }
     }
 
-    fn ask(&mut self, ui: &mut Ui, chosen: &Choices<'_>, device: &Arc<Device>) {
-        let exact = chosen.source.surface().is_some();
+    fn show_choices(&mut self, ui: &mut Ui, choices: &Choices<'_>, device: &Arc<Device>) {
+        let exact = choices.source.surface().is_some();
         if !exact {
             self.against = Against::Reference;
         }
@@ -139,49 +139,49 @@ impl Errors {
                     ui.selectable_value(&mut self.against, against, name)
                         .on_hover_text(text)
                         .on_disabled_hover_text(
-                            "only built-in scenes in their own colours have an exact surface",
+                            "Only built-in scenes in their own colours have an exact surface.",
                         );
                 });
             }
         });
         choice.response.on_hover_text(text);
-        let Some(Ok(camera)) = &chosen.camera else { return };
-        let button = ui.add(Button::new("compare this picture"));
-        if button.on_hover_text("Renders the picture once more, whole, and again by what it is held against; takes seconds to minutes.").clicked() {
-            self.wrong = None;
+        let Some(Ok(camera)) = &choices.camera else { return };
+        let button = ui.add(Button::new("Compare this picture"));
+        if button.on_hover_text("Renders the picture again at full quality, and the reference or exact picture; takes seconds to minutes.").clicked() {
+            self.error = None;
             let task = Task {
                 against: self.against,
                 device: device.clone(),
-                scene: chosen.scene.clone(),
-                model: chosen.source.shown(),
-                surface: chosen.source.surface().map(Into::into),
+                scene: choices.scene.clone(),
+                model: choices.source.visible_model(),
+                surface: choices.source.surface().map(Into::into),
                 camera: *camera,
-                settings: chosen.settings.clone(),
-                size: chosen.size,
-                options: RenderOptions { size: chosen.size, rasterizer: chosen.rasterizer, ..Default::default() },
+                settings: choices.settings.clone(),
+                size: choices.size,
+                options: RenderOptions { size: choices.size, rasterizer: choices.rasterizer, ..Default::default() },
             };
             self.job = Some(Job::start(move |progress| task.run(progress)));
         }
     }
 
-    fn tell(&mut self, ui: &mut Ui, chosen: &Choices<'_>) {
+    fn show_result(&mut self, ui: &mut Ui, choices: &Choices<'_>) {
         let Some(found) = &self.found else { return };
-        let same = matches!(&chosen.camera, Some(Ok(camera)) if *camera == found.camera)
-            && *chosen.settings == found.settings;
+        let same = matches!(&choices.camera, Some(Ok(camera)) if *camera == found.camera)
+            && *choices.settings == found.settings;
         ui.separator();
         ui.label(format!(
-            "against the {}{}",
+            "Compared with the {}{}",
             found.against.name_and_help()[0],
-            if same { "" } else { ", of an earlier picture" }
+            if same { "" } else { ": an earlier picture" }
         ));
         let beyond = found.errors.iter().filter(|error| **error > self.tolerance).count();
         let (worst, [x, y]) = found.worst;
         Grid::new("errors").num_columns(2).show(ui, |ui| {
             let rows = [
-                ("RMSE", format!("{:.3e}", found.rmse), "root of the mean square of all differences, of linear colours over the background; 1 is white from black"),
-                ("worst", format!("{worst:.3e} at ({x}, {y})"), "largest difference of a channel, and its pixel from the top left"),
-                ("beyond", format!("{:.4} %, {beyond} px", 100.0 * beyond as f64 / found.errors.len().max(1) as f64), "pixels of which a channel is off by more than the tolerance"),
-                ("took", format!("{:.1} s", found.took.as_secs_f64()), "the float64 picture, or the exact one"),
+                ("RMSE", format!("{:.3e}", found.rmse), "Root mean square of all differences, of linear colours over the background; the difference of white from black is 1."),
+                ("worst", format!("{worst:.3e} at ({x}, {y})"), "Largest difference of a channel, and its pixel from the top left."),
+                ("beyond", format!("{:.4} %, {beyond} px", 100.0 * beyond as f64 / found.errors.len().max(1) as f64), "Pixels with a channel whose difference is above the tolerance."),
+                ("took", format!("{:.1} s", found.took.as_secs_f64()), "Time to render the reference or exact picture."),
             ];
             for (name, value, text) in rows {
                 ui.label(name).on_hover_text(text);
@@ -195,30 +195,31 @@ impl Errors {
                 .clamping(SliderClamping::Edits)
                 .text("tolerance"),
         )
-        .on_hover_text("Largest difference of a channel that passes, in linear light.");
-        ui.checkbox(&mut self.shown, "show as a picture");
+        .on_hover_text("The largest difference of a channel that counts as equal, in linear light.");
+        ui.checkbox(&mut self.open, "show as a picture");
     }
 
-    /// Nothing is kept that belongs to a context that goes.
+    /// Drops the texture of an egui context before the context itself is dropped.
     pub fn release_textures(&mut self) {
         self.raster.iter_mut().for_each(Raster::release_textures);
     }
 
-    /// Closes the picture of errors, if it is there.
+    /// Closes the window of errors; returns whether it was open.
     pub fn close(&mut self) -> bool {
-        self.raster.is_some() && std::mem::take(&mut self.shown)
+        self.raster.is_some() && std::mem::take(&mut self.open)
     }
 
-    /// The error of every pixel, in a window of its own.
-    pub fn picture(&mut self, context: &Context) {
-        if let Some(raster) = self.raster.as_mut().filter(|_| self.shown) {
-            raster.show(context, "error", &mut self.shown);
+    /// Shows the window with the error of every pixel, if it is open.
+    pub fn show_window(&mut self, context: &Context) {
+        if let Some(raster) = self.raster.as_mut().filter(|_| self.open) {
+            raster.show(context, "error", &mut self.open);
         }
     }
 }
 
 impl Task {
-    fn run(self, progress: &dyn Progress) -> Result<Found> {
+    /// Runs the comparison.
+    fn run(self, progress: &dyn Progress) -> Result<Comparison> {
         let Self { against, device, scene, model, surface, camera, settings, size, options } = self;
         let (picture, _) = Renderer::new(&device, options)?.render_picture(&scene, &camera, &settings)?;
         let start = Instant::now();
@@ -235,18 +236,18 @@ impl Task {
         }
         let took = start.elapsed();
         let over = settings.background.unwrap_or_default();
-        let [picture, truth] = [picture, truth].map(|picture| laid_over(&picture, over));
+        let [picture, truth] = [picture, truth].map(|picture| composite(&picture, over));
         let rmse = metrics::rmse::rmse(&picture, &truth);
         let errors = differences(&picture, &truth);
         let worst = errors.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1));
         let worst =
             worst.map_or((0.0, [0, 0]), |(i, error)| (*error, [i as u32 % size[0], i as u32 / size[0]]));
-        Ok(Found { against, camera, settings, size, rmse, errors, worst, took })
+        Ok(Comparison { against, camera, settings, size, rmse, errors, worst, took })
     }
 }
 
-/// Colours over a background, as the window shows them.
-fn laid_over(picture: &Picture, over: [f32; 3]) -> Vec<[f64; 3]> {
+/// Composites colours over a background, as the window shows them.
+fn composite(picture: &Picture, over: [f32; 3]) -> Vec<[f64; 3]> {
     let pixel = |[r, g, b, a]: &[f32; 4]| {
         let channel =
             |i: usize, c: f32| f64::from(c) * f64::from(*a) + f64::from(over[i]) * (1.0 - f64::from(*a));
@@ -255,6 +256,7 @@ fn laid_over(picture: &Picture, over: [f32; 3]) -> Vec<[f64; 3]> {
     picture.colour.iter().map(pixel).collect()
 }
 
+/// The largest difference of a channel of each pixel.
 fn differences(a: &[[f64; 3]], b: &[[f64; 3]]) -> Vec<f32> {
     let largest =
         |(a, b): (&[f64; 3], &[f64; 3])| (0..3).map(|i| (a[i] - b[i]).abs()).fold(0.0, f64::max) as f32;
@@ -266,13 +268,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn pictures_are_laid_over_the_background_and_the_largest_difference_counts() {
+    fn pictures_are_composited_and_the_largest_difference_counts() {
         let picture = Picture {
             size: [2, 1],
             colour: vec![[1.0, 0.5, 0.0, 1.0], [1.0, 1.0, 1.0, 0.25]],
             ..Default::default()
         };
-        let over = laid_over(&picture, [0.0, 1.0, 0.5]);
+        let over = composite(&picture, [0.0, 1.0, 0.5]);
         assert_eq!(over, [[1.0, 0.5, 0.0], [0.25, 1.0, 0.625]]);
         assert_eq!(differences(&over, &[[1.0, 0.0, 0.25], [0.25, 1.0, 0.625]]), [0.5, 0.0]);
     }

@@ -1,26 +1,26 @@
-//! On the picture: what its colours mean, with the numbers at both ends.
+//! Legend on the picture: what its colours mean, with the range of values.
 
 use super::UiState;
 use super::raster::{paint_bar, short};
-use crate::viewer::state::State;
+use crate::viewer::state::ViewState;
 use egui::{Align2, Color32, FontId, Rect, Ui, pos2, vec2};
 use surfel::geometry::{ColourMap, ColourScale, ValueRange};
 use surfel::settings::Shading;
 
-/// Width of a bar at most, and its height with its numbers, points.
+/// Maximum width of a bar, and its height with the values, points.
 const SIZE: [f32; 2] = [200.0, 34.0];
-/// Least width that anything can be said in, points.
-const LEAST: f32 = 90.0;
-/// How far it is from the edges, points.
+/// Minimum width for a legend, points.
+const MIN_WIDTH: f32 = 90.0;
+/// Distance from the edges, points.
 const MARGIN: f32 = 8.0;
-/// Colours of depths: the nearest surface is white, the farthest has a tenth of that.
+/// Grey level of the farthest depth; the nearest is white.
 const FARTHEST: u8 = 26;
 
-/// What colours mean.
+/// A legend.
 #[derive(PartialEq)]
 struct Legend {
     name: String,
-    /// What is told at the ends; of directions nothing.
+    /// The values at both ends of the bar; `None` for directions.
     range: Option<ValueRange>,
     colours: Colours,
 }
@@ -32,8 +32,8 @@ enum Colours {
     None,
 }
 
-/// Says what the colours of the picture, or of both pictures, mean: at the lower left of each, in what panels leave `free`.
-pub fn show(ui: &Ui, free: Rect, picture: Rect, state: &State, ui_state: &UiState) {
+/// Paints the legend at the lower left of the picture, or of both pictures, in the rectangle `free` of panels.
+pub fn show(ui: &Ui, free: Rect, picture: Rect, state: &ViewState, ui_state: &UiState) {
     let right = ui_state.split(state).map(|(_, at)| at);
     let bottom = free.bottom().min(picture.bottom());
     let whole = Rect { max: pos2(picture.right(), bottom), ..picture };
@@ -44,14 +44,14 @@ pub fn show(ui: &Ui, free: Rect, picture: Rect, state: &State, ui_state: &UiStat
     };
     let (left, right) = whole.split_left_right_at_x(at);
     first.iter().for_each(|legend| legend.paint(ui, left));
-    // What is the same on both sides is said once.
+    // Equal legends are painted once.
     second.iter().filter(|second| first.as_ref() != Some(second)).for_each(|legend| legend.paint(ui, right));
 }
 
-/// What the colours mean, if that is not what surfels look like.
-fn legend_of(state: &State, range: Option<(Shading, ValueRange)>) -> Option<Legend> {
+/// The legend of a picture; `None` if surfels have their own colours.
+fn legend_of(state: &ViewState, range: Option<(Shading, ValueRange)>) -> Option<Legend> {
     let shading = state.settings()?.shading;
-    // What is known may be of a picture before.
+    // The range may belong to the picture before.
     let range = range.filter(|(of, _)| *of == shading).map(|(_, range)| range);
     let from_0 = |range: ValueRange| ValueRange { min: 0.0, max: range.max.max(1.0) };
     let (name, range, colours) = match shading {
@@ -68,18 +68,18 @@ fn legend_of(state: &State, range: Option<(Shading, ValueRange)>) -> Option<Lege
 }
 
 impl Legend {
-    /// Paints it at the lower left of a rectangle, no wider than that.
-    fn paint(&self, ui: &Ui, side: Rect) {
-        let painter = ui.painter().with_clip_rect(side);
-        let room = side.width() - 2.0 * MARGIN;
-        if room < LEAST {
+    /// Paints the legend at the lower left of a rectangle, within its width.
+    fn paint(&self, ui: &Ui, within: Rect) {
+        let painter = ui.painter().with_clip_rect(within);
+        let room = within.width() - 2.0 * MARGIN;
+        if room < MIN_WIDTH {
             return;
         }
         let ink = Color32::WHITE;
         let name = painter.layout(self.name.clone(), FontId::proportional(13.0), ink, room);
         let bar = if self.range.is_some() { SIZE } else { [0.0; 2] };
         let size = vec2(name.size().x.max(bar[0].min(room)), name.size().y + bar[1]);
-        let corner = side.left_bottom() + vec2(MARGIN, -MARGIN);
+        let corner = within.left_bottom() + vec2(MARGIN, -MARGIN);
         let rect = Rect::from_min_size(corner - vec2(0.0, size.y), size);
         painter.rect_filled(rect.expand(5.0), 3.0, Color32::from_black_alpha(190));
         let below = rect.top() + name.size().y + 3.0;

@@ -1,4 +1,4 @@
-//! The panels: what they say, and what they let one choose.
+//! Panels of the window: messages, choices, legend, start page and help.
 
 mod axes;
 mod buffers;
@@ -14,46 +14,47 @@ mod start;
 mod times;
 mod ui_state;
 
-use super::about::{short_name, thousands};
+use super::choices::Choices;
 use super::keys::{Action, BINDINGS};
-use super::state::{Choices, State};
+use super::scene_info::{short_name, thousands};
+use super::state::ViewState;
 use egui::{Button, CollapsingHeader, Label, Panel, ProgressBar, Rect, RichText, ScrollArea, Ui, pos2};
 use std::sync::Arc;
 use std::time::Duration;
 use surfel::vk::Device;
 pub use ui_state::UiState;
 
-/// Width of the panel at first, as part of the window; and its least and usual one, points.
+/// Initial width of the panel, as part of the window.
 const PART: f32 = 0.3;
+/// Range of the initial width, points; the first is the minimum at any time.
 const WIDTH: [f32; 2] = [240.0, 300.0];
-/// Part of the window that the panel takes at most: a window in which that is less than its least width has none.
-const MOST: f32 = 0.5;
-/// How often numbers that are being read are asked for.
-const OFTEN: Duration = Duration::from_millis(100);
-/// How many inputs are listed by name.
+/// Maximum width of the panel, as part of the window. A window in which that is below the minimum has no panel.
+const MAX_PART: f32 = 0.5;
+/// How often the progress of reading a property is shown.
+const POLL_PERIOD: Duration = Duration::from_millis(100);
+/// Number of inputs that are listed by name.
 const LISTED: usize = 4;
-/// What stands beside a slider at most: its number and its name, points.
+/// Width for the value and the name beside a slider, points.
 const SLIDER: f32 = 150.0;
 
-/// All panels; gives the width of the one beside the picture, points.
-pub fn show(ui: &mut Ui, state: &mut State, ui_state: &mut UiState, device: &Arc<Device>) -> f32 {
+/// Shows all panels; returns the width of the panel beside the picture, points.
+pub fn show(ui: &mut Ui, state: &mut ViewState, ui_state: &mut UiState, device: &Arc<Device>) -> f32 {
     let whole = ui.max_rect();
     if let Some((stage, part)) = ui_state.loading {
         Panel::bottom("loading").show(ui, |ui| {
             ui.horizontal(|ui| {
-                state.cancel |=
-                    ui.button("give up").on_hover_text("Esc; what was shown before stays").clicked();
+                state.cancel |= ui.button("Cancel").on_hover_text("Esc. The scene before stays.").clicked();
                 ui.add(ProgressBar::new(part).text(stage));
             })
         });
     }
-    if let Some(done) = &ui_state.message {
-        Panel::bottom("done").show(ui, |ui| ui.label(done));
+    if let Some(message) = &ui_state.message {
+        Panel::bottom("message").show(ui, |ui| ui.label(message));
     }
-    if let Some(wrong) = ui_state.error.as_ref().or(ui_state.render_error.as_ref()) {
-        Panel::top("wrong").show(ui, |ui| ui.colored_label(ui.visuals().error_fg_color, wrong));
+    if let Some(error) = ui_state.error.as_ref().or(ui_state.render_error.as_ref()) {
+        Panel::top("error").show(ui, |ui| ui.colored_label(ui.visuals().error_fg_color, error));
     }
-    let covered = beside(ui, state, ui_state, device);
+    let covered = side_panel(ui, state, ui_state, device);
     let picture = Rect { max: pos2(whole.right() - covered, whole.bottom()), ..whole };
     ui_state.split.divider(ui, picture, state, &ui_state.times);
     let free = ui.available_rect_before_wrap();
@@ -62,89 +63,89 @@ pub fn show(ui: &mut Ui, state: &mut State, ui_state: &mut UiState, device: &Arc
         None if ui_state.loading.is_none() => start::show(ui, free, state, &ui_state.layout),
         None => {}
     }
-    ui_state.errors.picture(ui.ctx());
-    ui_state.buffers.picture(ui.ctx());
+    ui_state.errors.show_window(ui.ctx());
+    ui_state.buffers.show_window(ui.ctx());
     if ui_state.show_help {
         help::show(ui.ctx(), &ui_state.layout);
     }
-    if let Some(opening) = &mut state.opening {
-        state.answer = opening.show(ui).or(state.answer.take());
+    if let Some(dialog) = &mut state.dialog {
+        state.dialog_result = dialog.show(ui).or(state.dialog_result.take());
     }
     if let Err(error) = state.apply(device) {
         ui_state.error = Some(error.to_string());
     }
     if state.is_reading() {
-        ui.ctx().request_repaint_after(OFTEN);
+        ui.ctx().request_repaint_after(POLL_PERIOD);
     }
     covered
 }
 
-/// The panel on the right, unless it is hidden or the window is too narrow; gives its width, points.
-fn beside(ui: &mut Ui, state: &mut State, ui_state: &mut UiState, device: &Arc<Device>) -> f32 {
-    let (whole, [least, usual]) = (ui.max_rect(), WIDTH);
-    let most = MOST * whole.width();
-    if ui_state.panel_hidden || most < least {
+/// Shows the panel on the right unless it is hidden or the window is too narrow; returns its width, points.
+fn side_panel(ui: &mut Ui, state: &mut ViewState, ui_state: &mut UiState, device: &Arc<Device>) -> f32 {
+    let (whole, [min, max_initial]) = (ui.max_rect(), WIDTH);
+    let max = MAX_PART * whole.width();
+    if ui_state.panel_hidden || max < min {
         return 0.0;
     }
-    let first = (PART * whole.width()).clamp(least, usual);
-    let panel = Panel::right("choices").default_size(first).size_range(least..=most);
+    let initial = (PART * whole.width()).clamp(min, max_initial);
+    let panel = Panel::right("choices").default_size(initial).size_range(min..=max);
     let panel = panel.show(ui, |ui| {
         ScrollArea::vertical()
             .auto_shrink([false, false])
-            .show(ui, |ui| choices(ui, state, ui_state, device));
+            .show(ui, |ui| show_choices(ui, state, ui_state, device));
     });
     (whole.right() - panel.response.rect.left()).max(0.0)
 }
 
-fn choices(ui: &mut Ui, state: &mut State, ui_state: &mut UiState, device: &Arc<Device>) {
+fn show_choices(ui: &mut Ui, state: &mut ViewState, ui_state: &mut UiState, device: &Arc<Device>) {
     let [hide, help] = [Action::Panels, Action::Help].map(|action| {
         let binding = BINDINGS.iter().find(|binding| binding.action == action);
         binding.map_or(String::new(), |binding| ui_state.layout.name(binding))
     });
     ui.horizontal(|ui| {
         let listed = ui.add(Button::new("Keys and mouse").selected(ui_state.show_help));
-        if listed.on_hover_text(format!("{help}; Esc closes them")).clicked() {
+        if listed.on_hover_text(format!("{help} shows or hides the list; Esc closes it.")).clicked() {
             ui_state.show_help = !ui_state.show_help;
         }
-        ui.label(format!("{hide} hides this panel")).on_hover_text(format!("{hide} shows it again"));
+        ui.label(format!("{hide} hides this panel")).on_hover_text(format!("{hide} shows it again."));
     });
-    let Some(chosen) = &mut state.choices() else { return };
-    // Beside the scroll bar.
+    let Some(choices) = &mut state.choices() else { return };
+    // Leaves room for the scroll bar.
     ui.set_max_width(ui.available_width() - 10.0);
     ui.spacing_mut().slider_width = (ui.available_width() - SLIDER).clamp(40.0, 100.0);
-    about(ui, chosen);
-    CollapsingHeader::new("Method").default_open(true).show(ui, |ui| method::show(ui, chosen));
+    scene_info(ui, choices);
+    CollapsingHeader::new("Method").default_open(true).show(ui, |ui| method::show(ui, choices));
     CollapsingHeader::new("Render settings")
         .default_open(true)
-        .show(ui, |ui| render_settings::show(ui, chosen));
-    let quality = times::Quality {
-        size: chosen.size,
-        side: ui_state.scale,
+        .show(ui, |ui| render_settings::show(ui, choices));
+    let detail = times::FrameDetail {
+        size: choices.size,
+        scale: ui_state.scale,
         surfels: ui_state.surfels as u64,
-        of: chosen.surfels,
+        all_surfels: choices.surfels,
     };
-    ui_state.times.show(ui, &quality, chosen.settings, ui_state.frame_ms);
-    ui.collapsing("Side by side", |ui| ui_state.split.show(ui, chosen));
-    ui.collapsing("Error", |ui| ui_state.errors.show(ui, chosen, device));
-    ui.collapsing("Buffers", |ui| ui_state.buffers.show(ui, chosen, device));
+    ui_state.times.show(ui, &detail, choices.settings, ui_state.frame_ms);
+    ui.collapsing("Split view", |ui| ui_state.split.show(ui, choices));
+    ui.collapsing("Error", |ui| ui_state.errors.show(ui, choices, device));
+    ui.collapsing("Buffers", |ui| ui_state.buffers.show(ui, choices, device));
 }
 
-/// What is looked at: names, how many points, what of them is estimated.
-fn about(ui: &mut Ui, chosen: &Choices<'_>) {
-    let about = chosen.source.about();
-    for name in about.names.iter().take(LISTED) {
+/// Shows names, number of points, and what is estimated.
+fn scene_info(ui: &mut Ui, choices: &Choices<'_>) {
+    let info = choices.source.info();
+    for name in info.names.iter().take(LISTED) {
         ui.add(Label::new(RichText::new(short_name(name)).strong()).truncate()).on_hover_text(name);
     }
-    if let Some(others) = about.names.get(LISTED..).filter(|others| !others.is_empty()) {
+    if let Some(others) = info.names.get(LISTED..).filter(|others| !others.is_empty()) {
         ui.label(format!("and {} more", others.len())).on_hover_text(others.join("\n"));
     }
-    let counted = match (about.points, about.dropped) {
-        (0, _) => format!("{} surfels", thousands(chosen.surfels)),
+    let counted = match (info.points, info.dropped) {
+        (0, _) => format!("{} surfels", thousands(choices.surfels)),
         (points, 0) => format!("{} points", thousands(points)),
         (points, dropped) => format!("{} points, {} left out", thousands(points), thousands(dropped)),
     };
     ui.label(counted);
-    if let Some(estimated) = &about.estimated {
+    if let Some(estimated) = &info.estimated {
         ui.label(format!("Estimated: {estimated}"));
     }
 }

@@ -1,113 +1,122 @@
-//! What the picture shows of the scene: shading, colours, background, radii.
+//! Render settings panel: shading, colours, background, radii.
 
 use super::raster::short;
-use crate::viewer::source::By;
-use crate::viewer::state::Choices;
+use crate::viewer::appearance::ColourAttribute;
+use crate::viewer::choices::Choices;
 use egui::{ComboBox, DragValue, ProgressBar, Slider, SliderClamping, Ui};
 use surfel::geometry::{ColourMap, ValueRange};
 use surfel::settings::{Alpha, Choice, Cull, Shading};
 
-/// All of it.
-pub fn show(ui: &mut Ui, chosen: &mut Choices<'_>) {
-    let settings = &mut *chosen.settings;
-    let shown = ComboBox::from_label("shading").selected_text(settings.shading.name()).show_ui(ui, |ui| {
+/// Shows the panel.
+pub fn show(ui: &mut Ui, choices: &mut Choices<'_>) {
+    let settings = &mut *choices.settings;
+    let combo = ComboBox::from_label("shading").selected_text(settings.shading.name()).show_ui(ui, |ui| {
         for &shading in Shading::ALL {
             ui.selectable_value(&mut settings.shading, shading, shading.name())
                 .on_hover_text(shading.about());
         }
     });
-    shown.response.on_hover_text(settings.shading.about());
-    colours(ui, chosen);
-    background(ui, chosen);
-    radii(ui, chosen);
-    let settings = &mut *chosen.settings;
+    combo.response.on_hover_text(settings.shading.about());
+    colours(ui, choices);
+    background(ui, choices);
+    radii(ui, choices);
+    let settings = &mut *choices.settings;
     let mut smooth = settings.alpha == Alpha::Coverage;
     ui.checkbox(&mut smooth, "smooth outlines")
-        .on_hover_text("α is the part of a pixel that surfaces cover, in sixteenths, rather than whether one owns its centre");
+        .on_hover_text("α is the fraction of a pixel that surfaces cover, in sixteenths; otherwise it is whether a surface covers its centre.");
     settings.alpha = if smooth { Alpha::Coverage } else { Alpha::Mask };
     let mut back = settings.cull == Cull::Back;
-    ui.checkbox(&mut back, "leave out what faces away")
-        .on_hover_text("right for closed surfaces whose normals point outwards");
+    ui.checkbox(&mut back, "cull back faces")
+        .on_hover_text("For closed surfaces whose normals point outwards.");
     settings.cull = if back { Cull::Back } else { Cull::None };
-    ui.checkbox(chosen.parallel, "parallel rays")
-        .on_hover_text("as far as the pivot, all stays as large as it is");
+    ui.checkbox(choices.parallel, "parallel projection")
+        .on_hover_text("Objects at the pivot's distance keep their size.");
 }
 
-/// What surfels are coloured by, with the range and a bar where that is a number.
-fn colours(ui: &mut Ui, chosen: &mut Choices<'_>) {
-    let source = &mut *chosen.source;
-    let mut picked = None;
-    let shown =
-        ComboBox::from_label("colour by").selected_text(source.name(source.changed.by)).show_ui(ui, |ui| {
-            let own = By::ALL.map(|(by, name, text)| (by, name, text));
-            let of_file = source.names().iter().enumerate();
-            let of_file = of_file.map(|(i, name)| {
-                (By::Number(i), name.as_str(), "a number of the file's points, read when it is wanted")
+/// Shows what surfels are coloured by, with colour map and range if that has values.
+fn colours(ui: &mut Ui, choices: &mut Choices<'_>) {
+    let source = &mut *choices.source;
+    let mut clicked = None;
+    let combo = ComboBox::from_label("colour by")
+        .selected_text(source.name(source.wanted.attribute))
+        .show_ui(ui, |ui| {
+            let of_files = source.property_names().iter().enumerate();
+            let of_files = of_files.map(|(i, name)| {
+                (
+                    ColourAttribute::Property(i),
+                    name.as_str(),
+                    "A property of the files, read when it is choices.",
+                )
             });
-            for (by, name, text) in own.into_iter().chain(of_file) {
-                if ui.selectable_label(source.changed.by == by, name).on_hover_text(text).clicked() {
-                    picked = Some(by);
+            for (attribute, name, text) in ColourAttribute::ALL.into_iter().chain(of_files) {
+                if ui
+                    .selectable_label(source.wanted.attribute == attribute, name)
+                    .on_hover_text(text)
+                    .clicked()
+                {
+                    clicked = Some(attribute);
                 }
             }
         });
-    shown.response.on_hover_text("What the points' colours show.");
-    if let Some(by) = picked {
-        source.colour_by(by);
+    combo.response.on_hover_text("What the points' colours show.");
+    if let Some(attribute) = clicked {
+        source.colour_by(attribute);
     }
-    if let Some((stage, part)) = source.reading() {
+    if let Some((stage, part)) = source.reading_progress() {
         ui.add(ProgressBar::new(part).text(stage));
     }
-    if source.changed.scale().is_none() {
+    if source.wanted.scale().is_none() {
         return;
     }
-    map(ui, &mut source.changed.map);
-    let usual = source.usual(source.changed.by);
-    range(ui, &mut source.changed.range, usual);
-    ui.weak("Under shading `color` the surfels have exactly these colours.");
+    map(ui, &mut source.wanted.map);
+    let default = source.default_range(source.wanted.attribute);
+    range(ui, &mut source.wanted.range, default);
+    ui.weak("With the shading `color`, surfels have exactly these colours.");
 }
 
-/// Which colours numbers have.
+/// Shows the choice of the colour map.
 pub fn map(ui: &mut Ui, map: &mut ColourMap) {
-    let shown = ComboBox::from_label("colours").selected_text(map.name()).show_ui(ui, |ui| {
+    let combo = ComboBox::from_label("colours").selected_text(map.name()).show_ui(ui, |ui| {
         for &other in ColourMap::ALL {
             ui.selectable_value(map, other, other.name()).on_hover_text(other.about());
         }
     });
-    shown.response.on_hover_text("Which colours numbers have.");
+    combo.response.on_hover_text("Colour map of the values.");
 }
 
-/// The numbers at both ends of the colours.
-pub fn range(ui: &mut Ui, range: &mut ValueRange, usual: Option<ValueRange>) {
+/// Shows the values at both ends of the colour map, and a button for the default range, if there is one.
+pub fn range(ui: &mut Ui, range: &mut ValueRange, default: Option<ValueRange>) {
     ui.horizontal(|ui| {
         let speed = (0.005 * (range.max - range.min)).abs().max(f64::MIN_POSITIVE);
         let ValueRange { min, max } = range;
         ui.add(DragValue::new(min).speed(speed).custom_formatter(|value, _| short(value)))
-            .on_hover_text("what is less has the first colour");
+            .on_hover_text("Smaller values have the first colour.");
         ui.label("to");
         ui.add(DragValue::new(max).speed(speed).custom_formatter(|value, _| short(value)))
-            .on_hover_text("what is more has the last colour");
-        if let Some(usual) = usual
-            && ui.button("usual").on_hover_text("from the 1st to the 99th percentile").clicked()
+            .on_hover_text("Greater values have the last colour.");
+        if let Some(default) = default
+            && ui.button("default").on_hover_text("From the 1st to the 99th percentile.").clicked()
         {
-            *range = usual;
+            *range = default;
         }
     });
 }
 
-fn background(ui: &mut Ui, chosen: &mut Choices<'_>) {
+fn background(ui: &mut Ui, choices: &mut Choices<'_>) {
     ui.horizontal(|ui| {
-        let mut colour = chosen.settings.background.unwrap_or_default();
+        let mut colour = choices.settings.background.unwrap_or_default();
         if ui.color_edit_button_rgb(&mut colour).changed() {
-            chosen.settings.background = Some(colour);
+            choices.settings.background = Some(colour);
         }
-        ui.label("background").on_hover_text("where nothing is; what is partly covered is blended with it");
+        ui.label("background")
+            .on_hover_text("Colour of pixels without a surface; partly covered pixels are blended with it.");
     });
 }
 
-fn radii(ui: &mut Ui, chosen: &mut Choices<'_>) {
-    let fixed = chosen.source.has_fixed_radii();
+fn radii(ui: &mut Ui, choices: &mut Choices<'_>) {
+    let fixed = choices.source.has_fixed_radii();
     ui.add_enabled_ui(!fixed, |ui| {
-        let factor = &mut chosen.source.changed.radii;
+        let factor = &mut choices.source.wanted.radius_scale;
         ui.add(
             Slider::new(factor, 0.25..=4.0).logarithmic(true).clamping(SliderClamping::Edits).text("radii ×"),
         )
@@ -115,10 +124,10 @@ fn radii(ui: &mut Ui, chosen: &mut Choices<'_>) {
             "Factor of every surfel's radius: below 1 discs may leave holes, above 1 they overlap more.",
         )
         .on_disabled_hover_text(
-            "There are no surfels, or their normalization weights are those of these discs.",
+            "There are no surfels, or they have normalization weights, which hold for these radii only.",
         );
     });
-    if chosen.primitives && !fixed {
+    if choices.primitives && !fixed {
         ui.weak("Lines keep their widths.");
     }
 }

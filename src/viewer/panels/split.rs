@@ -1,25 +1,26 @@
-//! Two pictures of the scene side by side, by two methods, with a divider between them.
+//! Split view panel: a second picture of the scene by another method, and the divider between both.
 
 use super::times::{self, Times};
-use crate::viewer::state::{Choices, State};
+use crate::viewer::choices::Choices;
+use crate::viewer::state::ViewState;
 use egui::{
     Align2, Area, Color32, ComboBox, CursorIcon, FontId, Id, Order, Rect, Sense, Stroke, Ui, pos2, vec2,
 };
 use surfel::settings::methods::Method;
 use surfel::{FrameReport, Settings};
 
-/// Nearest to an edge of the picture that the divider comes, as part of the width.
+/// Minimum distance of the divider from the edges, as part of the width.
 const MARGIN: f64 = 0.02;
-/// How wide it is to the hand, points.
+/// Width of the divider that can be grabbed, points.
 const WIDTH: f32 = 14.0;
 
-/// The other picture.
+/// The right picture.
 pub struct Split {
     on: bool,
-    /// What the right picture is called, and how it is made.
+    /// Name of the right picture, and its settings.
     name: String,
     settings: Option<Settings>,
-    /// Where it begins, as part of the width of both.
+    /// Where it begins, as part of the width.
     at: f64,
 }
 
@@ -33,47 +34,46 @@ impl Split {
     /// Settings of the right picture beside a left one, and where it begins as part of the width, if the view is split.
     pub fn settings(&self, left: &Settings) -> Option<(Settings, f64)> {
         let right = self.settings.as_ref().filter(|_| self.on)?;
-        // What is seen is the same.
+        // Both pictures have one shading and one background.
         let right = Settings { shading: left.shading, background: left.background, ..right.clone() };
         Some((right, self.at))
     }
 
-    /// What is on the right.
-    pub fn show(&mut self, ui: &mut Ui, chosen: &Choices<'_>) {
-        ui.checkbox(&mut self.on, "two pictures")
-            .on_hover_text("The same scene by another method, on the right of a divider that can be dragged. Shading and background are those of the left.");
+    /// Shows the choice of the right picture.
+    pub fn show(&mut self, ui: &mut Ui, choices: &Choices<'_>) {
+        ui.checkbox(&mut self.on, "split view")
+            .on_hover_text("Shows the scene by another method to the right of a divider, which can be dragged. Shading and background are those of the left picture.");
         if !self.on {
             return;
         }
         if self.settings.is_none() {
-            let method = other_than(chosen.method, chosen.primitives);
-            (self.name, self.settings) = (method.name.into(), Some(chosen.settings_of(&method)));
+            let method = other_than(choices.method, choices.primitives);
+            (self.name, self.settings) = (method.name.into(), Some(choices.settings_of(&method)));
         }
-        let shown = ComboBox::from_label("on the right").selected_text(&self.name).show_ui(ui, |ui| {
+        let combo = ComboBox::from_label("on the right").selected_text(&self.name).show_ui(ui, |ui| {
             for method in Method::ALL {
-                ui.add_enabled_ui(method.pull_push.is_some() || !chosen.primitives, |ui| {
+                ui.add_enabled_ui(method.pull_push.is_some() || !choices.primitives, |ui| {
                     let label = ui.selectable_label(self.name == method.name, method.name);
                     let label = label.on_hover_text(method.paper);
-                    let label =
-                        label.on_disabled_hover_text("lines and triangles are drawn by pull-push alone");
+                    let label = label.on_disabled_hover_text("Only pull-push renders lines and triangles.");
                     if label.clicked() {
-                        (self.name, self.settings) = (method.name.into(), Some(chosen.settings_of(&method)));
+                        (self.name, self.settings) = (method.name.into(), Some(choices.settings_of(&method)));
                     }
                 });
             }
         });
-        shown.response.on_hover_text("The method of the picture on the right.");
-        let keep = ui.button("keep what is on the left").on_hover_text(
-            "The right picture is made from now on as the left one is now: change something on the left to see what it does.",
+        combo.response.on_hover_text("The method of the picture on the right.");
+        let copy = ui.button("Copy the left picture's settings").on_hover_text(
+            "Renders the right picture with the present settings of the left one: change these to see the effect.",
         );
-        if keep.clicked() {
-            self.name = format!("{} as it was", chosen.method.name);
-            self.settings = Some(chosen.settings.clone());
+        if copy.clicked() {
+            self.name = format!("{}, copied", choices.method.name);
+            self.settings = Some(choices.settings.clone());
         }
     }
 
-    /// The divider of the picture in `whole`, and above both sides what they are.
-    pub fn divider(&mut self, ui: &mut Ui, whole: Rect, state: &State, times: &Times) {
+    /// Shows the divider of the picture in `whole`, and the names of both pictures above it.
+    pub fn divider(&mut self, ui: &mut Ui, whole: Rect, state: &ViewState, times: &Times) {
         let Some([left, _]) = state.names().filter(|_| self.on && self.settings.is_some()) else { return };
         let x = whole.left() + self.at as f32 * whole.width();
         let corner = pos2(x - 0.5 * WIDTH, whole.top());
@@ -88,7 +88,7 @@ impl Split {
             let moved = f64::from(response.drag_delta().x / whole.width());
             self.at = (self.at + moved).clamp(MARGIN, 1.0 - MARGIN);
             response.on_hover_cursor(CursorIcon::ResizeHorizontal);
-            // Beyond the divider, and beneath the panels.
+            // The names lie beyond the divider, but beneath the panels.
             let painter = ui.painter().with_clip_rect(whole);
             let reports = times.last();
             let y = whole.top() + 6.0;
@@ -106,13 +106,13 @@ impl Split {
     }
 }
 
-/// The first method that is another, as two pictures of one would be the same; of a scene that may have lines or triangles.
+/// The first other method that can render the scene; `primitives` is whether that has lines or triangles.
 fn other_than(method: &Method, primitives: bool) -> Method {
     let others = Method::ALL.into_iter().filter(|other| other.name != method.name);
     others.into_iter().find(|other| other.pull_push.is_some() || !primitives).unwrap_or(*method)
 }
 
-/// A picture's name, with its time where there is one.
+/// Name of a picture, with its time if that is known.
 fn title(name: &str, report: Option<&FrameReport>) -> String {
     match report {
         Some(report) => format!("{name} · {}", times::ms(times::sum(report))),
@@ -125,7 +125,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn two_pictures_are_of_two_methods() {
+    fn the_right_picture_has_another_method() {
         for method in Method::ALL {
             for primitives in [false, true] {
                 let other = other_than(&method, primitives);

@@ -1,19 +1,19 @@
-//! What frames cost: times of their passes on the GPU, as they went by, and what became of the surfels.
+//! Times panel: GPU times of the passes of the last frames, and counts of culled surfels.
 
-use crate::viewer::about::thousands;
-use crate::viewer::load::LEAST_SURFELS;
+use crate::viewer::levels::MIN_SURFELS;
 use crate::viewer::quality::MIN_SCALE;
+use crate::viewer::scene_info::thousands;
 use crate::viewer::split_view::Reports;
 use egui::{Align2, Color32, FontId, Grid, Pos2, Rect, Sense, Ui, vec2};
 use std::collections::VecDeque;
 use surfel::settings::Choice;
 use surfel::{FrameReport, Settings, SplatCounts};
 
-/// Frames that are shown.
+/// Number of frames in the plot.
 const FRAMES: usize = 120;
 /// Height of the plot, points.
 const HEIGHT: f32 = 96.0;
-/// Colours of passes, in the order in which they are first seen; told apart also by the colour-blind (Okabe, Ito), as far as there are such.
+/// Colours of passes, in the order in which these first occur. The first seven are the palette of Okabe and Ito for colour-blind readers.
 const COLOURS: [Color32; 10] = [
     Color32::from_rgb(86, 180, 233),
     Color32::from_rgb(230, 159, 0),
@@ -27,39 +27,43 @@ const COLOURS: [Color32; 10] = [
     Color32::from_rgb(150, 100, 60),
 ];
 
-/// What frames told.
+/// Times of the last frames.
 #[derive(Default)]
 pub struct Times {
     open: bool,
     frames: VecDeque<Frame>,
-    /// Every pass there was, in the order in which they were first seen.
+    /// Names of all passes so far, in the order in which they first occurred.
     passes: Vec<&'static str>,
-    last: Option<FrameReport>,
+    /// Report of the last frame's left or only picture.
+    left: Option<FrameReport>,
+    /// Report of its right picture.
     right: Option<FrameReport>,
 }
 
-/// A frame that is over.
+/// Times of a frame.
 struct Frame {
+    /// Names and times of its passes, ms.
     passes: Vec<(&'static str, f64)>,
 }
 
-/// How good the picture is that one looks at.
-pub struct Quality {
-    /// Width and height of the whole picture, px.
+/// Resolution and level of detail of the last frame.
+pub struct FrameDetail {
+    /// Width and height of the picture, px.
     pub size: [u32; 2],
-    /// Side of what is rendered, as part of that.
-    pub side: f64,
-    /// Surfels that are rendered, of how many.
+    /// Resolution scale of what was rendered.
+    pub scale: f64,
+    /// Number of surfels that were rendered.
     pub surfels: u64,
-    pub of: u64,
+    /// Number of surfels of the scene.
+    pub all_surfels: u64,
 }
 
-/// The sum of a frame's passes, ms.
+/// Sum of the times of a frame's passes, ms.
 pub fn sum(report: &FrameReport) -> f64 {
     report.pass_times.iter().map(|pass| pass.milliseconds).sum()
 }
 
-/// A time with as many digits as mean something: two, and none below 10 µs.
+/// Formats a time with at most two decimals: two significant digits, three or more from 100 ms.
 pub fn ms(milliseconds: f64) -> String {
     let decimals = match milliseconds {
         large if large >= 9.95 => 0,
@@ -70,17 +74,17 @@ pub fn ms(milliseconds: f64) -> String {
 }
 
 impl Times {
-    /// Whether somebody looks, so that frames are measured.
+    /// Whether the panel is open, so that frames are profiled.
     pub fn is_open(&self) -> bool {
         self.open
     }
 
-    /// What the pictures told last, left and right.
+    /// The last reports of the left and of the right picture.
     pub fn last(&self) -> [Option<&FrameReport>; 2] {
-        [self.last.as_ref(), self.right.as_ref()]
+        [self.left.as_ref(), self.right.as_ref()]
     }
 
-    /// Takes what pictures tell that were drawn; whether they told something.
+    /// Takes the reports of a frame; returns whether there were any.
     pub fn push(&mut self, Reports { left, right }: Reports) -> bool {
         let is_new = left.is_some() || right.is_some();
         if right.is_some() {
@@ -97,24 +101,24 @@ impl Times {
         if self.frames.len() > FRAMES {
             self.frames.pop_front();
         }
-        self.last = Some(report);
+        self.left = Some(report);
         is_new
     }
 
-    /// A section that can be opened.
-    pub fn show(&mut self, ui: &mut Ui, quality: &Quality, settings: &Settings, frame: f64) {
+    /// Shows the panel.
+    pub fn show(&mut self, ui: &mut Ui, detail: &FrameDetail, settings: &Settings, frame: f64) {
         let header = ui.collapsing("Times", |ui| {
-            tell_quality(ui, quality, settings, frame);
+            show_detail(ui, detail, settings, frame);
             self.plot(ui);
             self.legend(ui);
-            if let Some(counts) = self.last.as_ref().and_then(|report| report.counts) {
+            if let Some(counts) = self.left.as_ref().and_then(|report| report.counts) {
                 ui.separator();
-                tell_counts(ui, &counts);
+                show_counts(ui, &counts);
             }
         });
         header
             .header_response
-            .on_hover_text("Frames are measured while this is open, pass by pass, which makes them slower.");
+            .on_hover_text("While this is open, each pass is timed, which makes frames slower.");
         self.open = header.body_returned.is_some();
     }
 
@@ -129,7 +133,7 @@ impl Times {
         painter.rect_filled(rect, 2.0, ui.visuals().extreme_bg_color);
         let most = self.frames.iter().map(Frame::sum).fold(0.0, f64::max);
         if most == 0.0 {
-            let text = "no frame with times yet";
+            let text = "no frame was timed yet";
             painter.text(
                 rect.center(),
                 Align2::CENTER_CENTER,
@@ -139,7 +143,7 @@ impl Times {
             );
             return;
         }
-        let top = nice(most);
+        let top = round_up(most);
         let width = rect.width() / FRAMES as f32;
         for (number, frame) in (FRAMES - self.frames.len()..).zip(&self.frames) {
             let left = rect.left() + number as f32 * width;
@@ -162,13 +166,13 @@ impl Times {
         let under = response.hover_pos().map(|at| ((at.x - rect.left()) / width) as usize);
         let frame = under.and_then(|column| (column + self.frames.len()).checked_sub(FRAMES));
         if let Some(frame) = frame.and_then(|frame| self.frames.get(frame)) {
-            response.on_hover_ui_at_pointer(|ui| frame.tell(ui));
+            response.on_hover_ui_at_pointer(|ui| frame.show(ui));
         }
     }
 
-    /// The last frame's passes, in their order.
+    /// Shows the passes of the last frame with their colours and times.
     fn legend(&self, ui: &mut Ui) {
-        let Some(last) = &self.last else { return };
+        let Some(last) = &self.left else { return };
         Grid::new("passes").num_columns(3).show(ui, |ui| {
             for pass in &last.pass_times {
                 let (response, painter) = ui.allocate_painter(vec2(10.0, 10.0), Sense::hover());
@@ -178,7 +182,7 @@ impl Times {
                 ui.end_row();
             }
             ui.label("");
-            ui.strong("all passes").on_hover_text("on the GPU's clock; panels and presenting are not in it");
+            ui.strong("all passes").on_hover_text("GPU time without the panels and without presenting.");
             ui.monospace(format!("{:>9}", ms(sum(last))));
             ui.end_row();
         });
@@ -190,7 +194,7 @@ impl Frame {
         self.passes.iter().map(|(_, ms)| ms).sum()
     }
 
-    fn tell(&self, ui: &mut Ui) {
+    fn show(&self, ui: &mut Ui) {
         for (label, time) in &self.passes {
             ui.monospace(format!("{label:<12}{:>9}", ms(*time)));
         }
@@ -198,47 +202,49 @@ impl Frame {
     }
 }
 
-/// The next of 1, 2, 5, 10, 20, … above a number.
-fn nice(number: f64) -> f64 {
+/// The least of 1, 2, 5, 10, 20, … that is not below a number.
+fn round_up(number: f64) -> f64 {
     let power = 10f64.powf(number.log10().floor());
     [1.0, 2.0, 5.0].map(|step| step * power).into_iter().find(|step| *step >= number).unwrap_or(10.0 * power)
 }
 
-fn tell_quality(ui: &mut Ui, quality: &Quality, settings: &Settings, frame: f64) {
-    let size = quality.size.map(|side| (f64::from(side) * quality.scale).round());
+/// Shows the resolution and the level of detail of the last frame.
+fn show_detail(ui: &mut Ui, detail: &FrameDetail, settings: &Settings, frame: f64) {
+    let size = detail.size.map(|side| (f64::from(side) * detail.scale).round());
     ui.label(format!("{} a frame, {:.0}x{:.0} px", ms(frame), size[0], size[1])).on_hover_text(format!(
-        "From the frame's start until it is handed over. While the camera moves, pictures have fewer pixels, and surfels, where whole ones \
-         would take longer than they may: never less than {:.0} % of the pixels, nor fewer than {} surfels, or all.",
+        "Time from the frame's start until it is presented. While the camera moves, frames that would exceed the time budget have fewer pixels and \
+         fewer surfels: at least {:.0} % of the pixels, and at least {} surfels or all.",
         100.0 * MIN_SCALE * MIN_SCALE,
-        thousands(LEAST_SURFELS as u64)
+        thousands(MIN_SURFELS as u64)
     ));
-    let part = if quality.scale < 1.0 {
-        format!("{:.0} % of the picture's pixels", 100.0 * quality.scale * quality.scale)
+    let part = if detail.scale < 1.0 {
+        format!("{:.0} % of the picture's pixels", 100.0 * detail.scale * detail.scale)
     } else {
-        "all of the picture's pixels".into()
+        "full resolution".into()
     };
     ui.label(part);
     let normalized = match settings.pull_push {
         Some(_) => "reconstructed from points".into(),
         None => format!("normalized by {}", settings.splatting.normalization.name()),
     };
-    let surfels = match (quality.surfels, quality.of) {
+    let surfels = match (detail.surfels, detail.all_surfels) {
         (fewer, of) if fewer < of => format!("{} of {} surfels", thousands(fewer), thousands(of)),
         (_, of) => format!("{} surfels", thousands(of)),
     };
     ui.label(format!("{surfels}, {normalized}"));
 }
 
-fn tell_counts(ui: &mut Ui, counts: &SplatCounts) {
+/// Shows the counts of drawn and culled surfels.
+fn show_counts(ui: &mut Ui, counts: &SplatCounts) {
     let SplatCounts { drawn, behind, eye_plane, back, outside, invalid } = *counts;
     Grid::new("counts").num_columns(2).show(ui, |ui| {
         for (name, count, text) in [
-            ("drawn", drawn, "surfels of which the picture is made"),
-            ("behind", behind, "left out: the centre is not in front of the eye"),
-            ("eye plane", eye_plane, "left out: the disc reaches the eye plane"),
-            ("back", back, "left out: the normal faces away, and such are left out"),
-            ("outside", outside, "left out: off the picture, or without an area on it"),
-            ("invalid", invalid, "left out: a value is not a number, or not one that can be drawn"),
+            ("drawn", drawn, "Surfels that the picture shows."),
+            ("behind", behind, "Culled: the centre is not in front of the eye."),
+            ("eye plane", eye_plane, "Culled: the disc reaches the eye plane."),
+            ("back", back, "Culled: the normal faces away from the eye."),
+            ("outside", outside, "Culled: outside the picture, or without an area on it."),
+            ("invalid", invalid, "Culled: a value is not finite or not valid."),
         ] {
             ui.label(name).on_hover_text(text);
             ui.monospace(format!("{count:>10}"));
@@ -247,31 +253,31 @@ fn tell_counts(ui: &mut Ui, counts: &SplatCounts) {
     });
 }
 
-/// What a pass does.
+/// Tooltip of a pass.
 fn pass_text(label: &str) -> &'static str {
     match label {
-        "clear" => "empties counts and lists",
-        "footprint" => "surfels to splats, culled and counted",
-        "visibility" => "splats to the depth of the nearest surface",
-        "tiles" => "the least depth of each tile, by which hidden splats are left out",
-        "attribute" => "splats within ε of the nearest surface to weighted sums",
-        "nearest" => "the nearest splat of each pixel",
-        "resolve" => "what the nearest splat is",
-        "normalize" => "sums to the picture",
-        "project" => "points to the nearest one of each pixel",
-        "fetch" => "what the nearest points are",
-        "pull" => "levels of the pyramid, fine to coarse",
-        "copy" => "what was pulled of a level, beside the coarser one",
-        "push" => "levels, coarse to fine: holes are filled",
-        "shade" => "level 0 to the picture",
-        "read back" => "the counts for this panel",
-        "screen" => "the picture over the background",
-        "clear range" => "nothing is the least and the greatest yet",
-        "read range" => "both for the legend",
-        "range" => "the least and the greatest of the picture's numbers",
-        "colour map" => "numbers to colours",
-        "depths" => "depths, by which the cursor finds the surface",
-        _ => "a pass of the frame",
+        "clear" => "Clears counts and lists.",
+        "footprint" => "Projects surfels to splats, culls and counts them.",
+        "visibility" => "Renders the depth of the nearest surface from the splats.",
+        "tiles" => "Finds the farthest visible surface of each tile, for culling hidden splats.",
+        "attribute" => "Sums the splats within ε of the nearest surface, weighted.",
+        "nearest" => "Finds the nearest splat of each pixel.",
+        "resolve" => "Writes the attributes of the nearest splat of each pixel.",
+        "normalize" => "Divides the sums by their weights.",
+        "project" => "Finds the nearest point of each pixel.",
+        "fetch" => "Reads the attributes of the nearest points.",
+        "pull" => "Builds the levels of the pyramid, fine to coarse.",
+        "copy" => "Copies each pulled level to the pyramid of the coarser one.",
+        "push" => "Fills holes from level to level, coarse to fine.",
+        "shade" => "Shades level 0.",
+        "read back" => "Reads the counts of this panel back.",
+        "screen" => "Composites the picture over the background.",
+        "clear range" => "Clears the range of values.",
+        "read range" => "Reads the range of values back for the legend.",
+        "range" => "Finds the range of the picture's values.",
+        "colour map" => "Maps values to colours.",
+        "depths" => "Reads the depths back, to find the surface under the cursor.",
+        _ => "A pass of the frame.",
     }
 }
 
@@ -300,15 +306,15 @@ mod tests {
     }
 
     #[test]
-    fn times_have_the_digits_that_mean_something() {
+    fn times_have_the_significant_digits() {
         let all = [123.456, 42.9, 9.96, 9.94, 1.04, 0.996, 0.994, 0.0123, 0.001].map(ms);
         let expected = ["123", "43", "10", "9.9", "1.0", "1.0", "0.99", "0.01", "0.00"];
         assert_eq!(all, expected.map(|text| format!("{text} ms")));
     }
 
     #[test]
-    fn the_scale_ends_at_a_round_number() {
-        let ends = [0.7, 1.0, 1.1, 3.0, 49.0, 51.0, 999.0].map(nice);
+    fn the_axis_ends_at_a_round_number() {
+        let ends = [0.7, 1.0, 1.1, 3.0, 49.0, 51.0, 999.0].map(round_up);
         assert_eq!(ends, [1.0, 1.0, 2.0, 5.0, 50.0, 100.0, 1000.0]);
     }
 }

@@ -5,8 +5,9 @@ use super::error::Errors;
 use super::split::Split;
 use super::times::Times;
 use crate::viewer::layout::Layout;
+use crate::viewer::scene_view::level_settings;
 use crate::viewer::split_view::FrameOptions;
-use crate::viewer::state::{State, quick};
+use crate::viewer::state::ViewState;
 use surfel::Settings;
 use surfel::geometry::ValueRange;
 use surfel::settings::Shading;
@@ -61,21 +62,21 @@ impl UiState {
     }
 
     /// Settings of the right picture, if the view is split.
-    pub fn split_settings(&self, state: &State) -> Option<Settings> {
+    pub fn split_settings(&self, state: &ViewState) -> Option<Settings> {
         self.split(state).map(|(settings, _)| settings)
     }
 
     /// Options of the next frame; `coarser` is whether it renders a coarser level of detail.
-    pub fn frame_options(&self, state: &State, coarser: bool) -> FrameOptions {
+    pub fn frame_options(&self, state: &ViewState, coarser: bool) -> FrameOptions {
         let split = self.split(state).map(|(settings, at)| {
-            let settings = if coarser { quick(&settings).into_owned() } else { settings };
+            let settings = if coarser { level_settings(&settings).into_owned() } else { settings };
             (settings, at)
         });
         FrameOptions { profile: self.times.is_open(), version: state.version(), split }
     }
 
     /// Settings of the right picture, and where it begins as part of the width, if the view is split.
-    pub(super) fn split(&self, state: &State) -> Option<(Settings, f64)> {
+    pub(super) fn split(&self, state: &ViewState) -> Option<(Settings, f64)> {
         state.settings().and_then(|settings| self.split.settings(settings))
     }
 }

@@ -1,4 +1,4 @@
-//! What is kept of what is seen: pictures and cameras, in files and on the clipboard.
+//! Screenshots and cameras: saved to files, copied to and pasted from the clipboard.
 
 mod file_names;
 mod screenshot;
@@ -18,26 +18,27 @@ use surfel::{Error, Result};
 use winit::raw_window_handle::HasDisplayHandle;
 use winit::window::Window;
 
-/// Where files are kept.
+/// Where screenshots and cameras are saved.
 #[derive(Clone, Debug)]
 pub struct SaveFolder {
     pub path: PathBuf,
-    /// Whether their names are printed on standard output.
+    /// Whether the names of saved files are printed to standard output.
     pub print_names: bool,
 }
 
-/// Keeps pictures and cameras.
+/// Saves screenshots and cameras.
 pub struct Screenshots {
     folder: SaveFolder,
     names: FileNames,
-    /// Made when it is needed.
+    /// Opened when it is first needed.
     clipboard: Option<Clipboard>,
     writing: Vec<JoinHandle<()>>,
-    /// Files that were written, and errors.
+    /// Channel of the files that were written, and of errors.
     written: (Sender<Result<PathBuf>>, Receiver<Result<PathBuf>>),
 }
 
 impl Screenshots {
+    /// Nothing is being written yet.
     pub fn new(folder: SaveFolder) -> Self {
         Self {
             folder,
@@ -48,47 +49,49 @@ impl Screenshots {
         }
     }
 
-    /// Writes a picture, without being waited for; then `wake` is called, on another thread.
-    pub fn picture(&mut self, screenshot: Screenshot, wake: impl FnOnce() + Send + 'static) {
+    /// Writes a screenshot in the background, then calls `wake` on that thread.
+    pub fn write(&mut self, screenshot: Screenshot, wake: impl FnOnce() + Send + 'static) {
         let path = self.names.next(&self.folder.path, screenshot.extension());
         let written = self.written.0.clone();
         self.writing.retain(|thread| !thread.is_finished());
         self.writing.push(thread::spawn(move || {
-            // The receiver waits for the thread.
+            // The receiver outlives the thread.
             let _ = written.send(screenshot.write(&path).map(|()| path));
             wake();
         }));
     }
 
-    /// Pictures that are in their files by now, or cannot be.
+    /// Takes the results of the screenshots that were written since the last call.
     pub fn written(&self) -> Vec<Result<PathBuf>> {
         self.written.1.try_iter().collect()
     }
 
-    /// Writes a camera, and says where.
-    pub fn camera(&mut self, pose: &Pose) -> Result<PathBuf> {
+    /// Writes a camera; returns its path.
+    pub fn save_camera(&mut self, pose: &Pose) -> Result<PathBuf> {
         let path = self.names.next(&self.folder.path, "json");
         atomic::write(&path, |out| out.write_all(camera_file::text(pose).as_bytes()))?;
         Ok(path)
     }
 
-    /// Prints a file's name, for who has no eye on the window.
+    /// Prints the name of a saved file, if the options ask for it.
     pub fn print_name(&self, path: &std::path::Path) {
         if self.folder.print_names {
-            // Whoever has stopped listening wants no more.
+            // A closed pipe is no error: its reader wants no more.
             let _ = writeln!(std::io::stdout(), "{}", path.display());
         }
     }
 
-    /// Puts a camera on the clipboard, as a file has it.
-    pub fn copy(&mut self, pose: &Pose, window: &Window) {
+    /// Copies a camera to the clipboard, in the format of its file.
+    pub fn copy_camera(&mut self, pose: &Pose, window: &Window) {
         self.clipboard(window).set_text(camera_file::text(pose));
     }
 
-    /// The camera on the clipboard.
-    pub fn paste(&mut self, window: &Window) -> Result<Pose> {
+    /// Reads the camera on the clipboard.
+    pub fn paste_camera(&mut self, window: &Window) -> Result<Pose> {
         let text = self.clipboard(window).get().unwrap_or_default();
-        let wrong = |cause| Error::input("the clipboard", format!("it holds no camera: {cause}"));
+        let wrong = |cause| {
+            Error::input("the clipboard", format!("it holds no camera: {cause}; copy one with Ctrl+C"))
+        };
         camera_file::parse(text.as_bytes()).map_err(wrong)
     }
 
@@ -97,11 +100,11 @@ impl Screenshots {
         self.clipboard.get_or_insert_with(|| Clipboard::new(display()))
     }
 
-    /// Waits until every picture is in its file; the clipboard goes before the display does.
+    /// Waits until every screenshot is written. Closes the clipboard, which must be dropped before the display.
     pub fn finish(&mut self) {
         self.clipboard = None;
         for thread in self.writing.drain(..) {
-            // What it wrote, it has told.
+            // Its result is in the channel.
             let _ = thread.join();
         }
     }

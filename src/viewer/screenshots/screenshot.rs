@@ -1,4 +1,4 @@
-//! A picture that is kept.
+//! Screenshot: a picture to be saved.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -8,25 +8,25 @@ use surfel::settings::Shading;
 use surfel::vk::Device;
 use surfel::{Outputs, Picture, Rasterizer, RenderOptions, Renderer, Result, Scene, Settings};
 
-/// What is kept.
+/// What a screenshot shows, and its file format.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ScreenshotKind {
     /// The picture alone, as PNG.
     Picture,
-    /// Its values, as EXR.
+    /// The values of the picture, as EXR.
     Values,
-    /// All that the window shows, as PNG.
+    /// The window with its panels, as PNG.
     Window,
 }
 
-/// A picture that is not in its file yet.
+/// A picture to be saved.
 pub enum Screenshot {
     Rendered { picture: Picture, shading: Shading, values: bool },
     Window(Encoded),
 }
 
 impl Screenshot {
-    /// The whole picture of `size` px: what `surfel render` writes.
+    /// Renders the picture of `size` px as `surfel render` writes it.
     pub fn render(
         device: &Arc<Device>,
         scene: &Scene,
@@ -38,18 +38,19 @@ impl Screenshot {
         let options = RenderOptions { size, outputs, rasterizer, ..Default::default() };
         let (mut picture, _) = Renderer::new(device, options)?.render_picture(scene, camera, settings)?;
         if values {
-            // They were rendered for a PNG's sake alone.
+            // The PNG alone needs them, for its mask.
             (picture.normal, picture.depth) = (None, None);
         }
         Ok(Self::Rendered { picture, shading: settings.shading, values })
     }
 
-    /// What a window of `size` px shows.
+    /// A screenshot of a window of `size` px.
     pub fn of_window(size: [u32; 2], mut pixels: Vec<[u8; 4]>) -> Result<Self> {
         pixels.iter_mut().for_each(|pixel| pixel[3] = 255);
         Encoded::new(size, pixels).map(Self::Window)
     }
 
+    /// Extension of the file.
     pub fn extension(&self) -> &'static str {
         match self {
             Self::Rendered { values: true, .. } => "exr",
@@ -57,6 +58,7 @@ impl Screenshot {
         }
     }
 
+    /// Writes the file.
     pub fn write(self, path: &Path) -> Result<()> {
         let out = Output::File(path.to_owned());
         match self {

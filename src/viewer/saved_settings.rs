@@ -1,9 +1,9 @@
-//! What is remembered from one run to the next: the method, its settings, and the panel.
+//! Saved settings: method, render settings and panel, kept from one run to the next.
 
 use super::panels::UiState;
-use super::state::State;
+use super::state::ViewState;
 use serde::{Deserialize, Serialize};
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::path::Path;
 use surfel::formats::atomic;
 use surfel::settings::methods::Method;
@@ -12,18 +12,18 @@ use surfel::settings::splatting::{Filter, Footprint, Kernel, Normalization, Shad
 use surfel::settings::{Alpha, Choice, Cull, Shading, Widen};
 use surfel::{Error, Result, Settings};
 
-/// What is remembered, by the names that options have.
+/// Method and settings, by the names of the command line's options.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Remembered {
+pub struct SavedSettings {
     method: String,
     footprint: String,
-    /// Confetti's a and n; `None` is the Gaussian.
+    /// a and n of the confetti kernel; `None` for the Gaussian.
     confetti: Option<[f32; 2]>,
     filter: String,
     visibility: String,
     normalization: String,
     shade: String,
-    /// Whether the levels of pull–push are kept in turns.
+    /// Whether pull–push stores its levels alternately in two pyramids.
     in_turns: bool,
     cutoff: f32,
     lowpass: f32,
@@ -32,35 +32,41 @@ pub struct Remembered {
     cull: String,
     alpha: String,
     shading: String,
-    /// Linear.
+    /// Linear colour.
     background: Option<[f32; 3]>,
     /// Whether the panel is hidden.
-    pub hidden: bool,
+    #[serde(rename = "hidden")]
+    pub panel_hidden: bool,
 }
 
-impl Remembered {
-    /// What was remembered; `None` where nothing was, or nothing that can be used, which the log says.
+impl SavedSettings {
+    /// Reads the saved settings; `None` if there are none or they are unusable, which is logged as a warning.
     pub fn read(path: &Path) -> Option<Self> {
-        let text = match std::fs::read(path) {
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return None,
-            text => text.map_err(|error| error.to_string()),
-        };
-        let read =
-            text.and_then(|text| serde_json::from_slice::<Self>(&text).map_err(|error| error.to_string()));
-        let usable = read.and_then(|read| match read.settings() {
-            Some(_) => Ok(read),
-            None => Err("it names what there is not".into()),
-        });
-        usable.map_err(|cause| log::warn!("{}: what was remembered is ignored: {cause}", path.display())).ok()
+        match Self::try_read(path) {
+            Err(Error::Io { source, .. }) if source.kind() == ErrorKind::NotFound => None,
+            Err(error) => {
+                log::warn!("{error}; the saved settings are ignored");
+                None
+            }
+            Ok(saved) => Some(saved),
+        }
     }
 
-    /// What there is to remember, if something is looked at.
-    pub fn of(state: &State, ui_state: &UiState) -> Option<Self> {
+    fn try_read(path: &Path) -> Result<Self> {
+        let text = std::fs::read(path).map_err(Error::io(path, "cannot read"))?;
+        let unusable = |cause: String| Error::input(path.display().to_string(), cause);
+        let saved: Self = serde_json::from_slice(&text).map_err(|error| unusable(error.to_string()))?;
+        let usable = saved.settings().is_some();
+        usable.then_some(saved).ok_or_else(|| unusable("it holds unknown names or invalid values".into()))
+    }
+
+    /// The settings of the view; `None` if no scene is shown.
+    pub fn of(state: &ViewState, ui_state: &UiState) -> Option<Self> {
         let ([method, _], settings) = state.names().zip(state.settings())?;
         Some(Self::of_settings(method, settings, ui_state.panel_hidden))
     }
 
-    fn of_settings(method: &str, settings: &Settings, hidden: bool) -> Self {
+    fn of_settings(method: &str, settings: &Settings, panel_hidden: bool) -> Self {
         let Splatting { footprint, kernel, filter, visibility, normalization, shade } = settings.splatting;
         let storage = settings.pull_push.map(|pull_push| pull_push.storage);
         Self {
@@ -83,20 +89,20 @@ impl Remembered {
             alpha: settings.alpha.name().into(),
             shading: settings.shading.name().into(),
             background: settings.background,
-            hidden,
+            panel_hidden,
         }
     }
 
-    /// Writes it, whole or not at all, into a folder that is made where there is none.
+    /// Writes the file atomically and creates its folder if needed.
     pub fn write(&self, path: &Path) -> Result<()> {
         if let Some(folder) = path.parent() {
-            std::fs::create_dir_all(folder).map_err(Error::io(folder, "cannot make the folder"))?;
+            std::fs::create_dir_all(folder).map_err(Error::io(folder, "cannot create the folder"))?;
         }
         let text = serde_json::to_string_pretty(self).unwrap_or_default();
         atomic::write(path, |out| writeln!(out, "{text}"))
     }
 
-    /// The method and its settings; `None` for what there is not, or what cannot be rendered.
+    /// The method and its settings; `None` if a name is unknown or the settings are invalid.
     pub fn settings(&self) -> Option<(Method, Settings)> {
         let method = Method::named(&self.method)?;
         let preset = method.settings();
@@ -134,7 +140,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn every_method_and_what_is_changed_of_it_comes_back() {
+    fn every_method_and_changed_settings_are_restored() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("new").join("viewer.json");
         let changed = Settings {
@@ -155,33 +161,33 @@ mod tests {
         };
         let presets = Method::ALL.map(|method| (method.name, method.settings()));
         for (name, settings) in presets.into_iter().chain([("sprites", changed)]) {
-            Remembered::of_settings(name, &settings, true).write(&path).unwrap();
-            let read = Remembered::read(&path).unwrap();
+            SavedSettings::of_settings(name, &settings, true).write(&path).unwrap();
+            let read = SavedSettings::read(&path).unwrap();
             let (method, found) = read.settings().unwrap();
-            assert_eq!((method.name, found, read.hidden), (name, settings, true));
+            assert_eq!((method.name, found, read.panel_hidden), (name, settings, true));
         }
     }
 
     #[test]
-    fn what_is_broken_is_ignored() {
+    fn unusable_files_are_ignored() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("viewer.json");
-        assert_eq!(Remembered::read(&path), None);
-        let good = Remembered::of_settings("sprites", &Method::ALL[2].settings(), false);
+        assert_eq!(SavedSettings::read(&path), None);
+        let good = SavedSettings::of_settings("sprites", &Method::ALL[2].settings(), false);
         let wrong = [
-            Remembered { method: "none such".into(), ..good.clone() },
-            Remembered { cutoff: -1.0, ..good.clone() },
-            Remembered { filter: "object".into(), ..good.clone() },
+            SavedSettings { method: "none such".into(), ..good.clone() },
+            SavedSettings { cutoff: -1.0, ..good.clone() },
+            SavedSettings { filter: "object".into(), ..good.clone() },
         ];
         for wrong in wrong {
             wrong.write(&path).unwrap();
-            assert_eq!(Remembered::read(&path), None);
+            assert_eq!(SavedSettings::read(&path), None);
         }
         for text in ["", "{", "[]", "{\"method\":\"sprites\"}", "\u{0}"] {
             std::fs::write(&path, text).unwrap();
-            assert_eq!(Remembered::read(&path), None, "{text}");
+            assert_eq!(SavedSettings::read(&path), None, "{text}");
         }
         good.write(&path).unwrap();
-        assert_eq!(Remembered::read(&path), Some(good));
+        assert_eq!(SavedSettings::read(&path), Some(good));
     }
 }

@@ -1,66 +1,67 @@
-//! Opening what is named: a scene's file, a built-in scene, a camera.
+//! Dialog that opens a scene's file, a built-in scene or a camera by its name.
 
 use egui::{Event, Id, Key, ScrollArea, TextEdit, Ui, Window};
 use std::path::{Path, PathBuf};
 use surfel::formats;
 
-/// The field that the name is typed in.
+/// Id of the text field.
 const FIELD: &str = "open";
 
-/// A name that is being typed.
+/// The dialog, and the name that is typed in it.
 #[derive(Default)]
-pub struct Opening {
+pub struct OpenDialog {
     text: String,
-    /// The folder that was looked into last, and what of it can be opened.
+    /// The folder that was listed last.
     folder: Option<PathBuf>,
-    there: Vec<String>,
+    /// Names of its folders and of its files that can be opened.
+    names: Vec<String>,
 }
 
-/// What came of it.
-pub enum Answer {
+/// Result of the dialog.
+pub enum DialogResult {
     Open(String),
-    Nothing,
+    Cancelled,
 }
 
-impl Opening {
-    /// Starts in a folder.
-    pub fn at(folder: &Path) -> Self {
+impl OpenDialog {
+    /// A dialog that starts in a folder.
+    pub fn in_folder(folder: &Path) -> Self {
         let text = if folder == Path::new(".") { String::new() } else { format!("{}/", folder.display()) };
         Self { text, ..Self::default() }
     }
 
-    /// Asks, until there is an answer.
-    pub fn show(&mut self, ui: &mut Ui) -> Option<Answer> {
+    /// Shows the dialog; returns its result once there is one.
+    pub fn show(&mut self, ui: &mut Ui) -> Option<DialogResult> {
         self.refresh();
-        let mut answer = None;
+        let mut result = None;
         Window::new("Open").collapsible(false).default_width(420.0).show(ui.ctx(), |ui| {
-            ui.label("a PLY file, a camera's .json file, or a scene such as scene:bumpy-sphere");
+            ui.label("A PLY file, a camera (.json), or a built-in scene such as scene:bumpy-sphere.");
             let early = self.take_early(ui);
             let field = TextEdit::singleline(&mut self.text).id(Id::new(FIELD)).desired_width(f32::INFINITY);
             let field = ui.add(field);
             let enter = ui.input(|input| input.key_pressed(Key::Enter));
             if enter && (early || field.lost_focus()) && !self.text.is_empty() {
-                answer = Some(Answer::Open(at_home(&self.text)));
+                result = Some(DialogResult::Open(expand_home(&self.text)));
             } else if ui.input(|input| input.key_pressed(Key::Escape)) {
-                answer = Some(Answer::Nothing);
+                result = Some(DialogResult::Cancelled);
             } else if !field.has_focus() {
                 field.request_focus();
             }
-            answer = self.list(ui).or(answer.take());
+            result = self.list(ui).or(result.take());
         });
-        answer
+        result
     }
 
-    /// Takes what is typed before the field does, if it does not yet: a frame may take long.
+    /// Takes text that was typed before the field had the focus, which may be a slow frame later; returns whether it had none yet.
     fn take_early(&mut self, ui: &Ui) -> bool {
         let early = !ui.memory(|memory| memory.has_focus(Id::new(FIELD)));
         if early {
             ui.input(|input| {
-                // Not what was typed before the key that asked.
-                let asked = input.events.iter().rposition(|event| {
+                // Text before the key that opened the dialog is not meant for it.
+                let opened = input.events.iter().rposition(|event| {
                     matches!(event, Event::Key { key: Key::O, pressed: true, modifiers, .. } if modifiers.command)
                 });
-                for event in &input.events[asked.map_or(0, |asked| asked + 1)..] {
+                for event in &input.events[opened.map_or(0, |opened| opened + 1)..] {
                     if let Event::Text(text) = event {
                         self.text.push_str(text);
                     }
@@ -70,10 +71,10 @@ impl Opening {
         early
     }
 
-    /// What begins as the text does.
-    fn list(&mut self, ui: &mut Ui) -> Option<Answer> {
+    /// Lists the names that begin with the text.
+    fn list(&mut self, ui: &mut Ui) -> Option<DialogResult> {
         let (_, begin) = split(&self.text);
-        let found = self.there.iter().filter(|name| name.starts_with(begin));
+        let found = self.names.iter().filter(|name| name.starts_with(begin));
         let mut chosen = None;
         ScrollArea::vertical().max_height(240.0).show(ui, |ui| {
             for name in found {
@@ -85,22 +86,22 @@ impl Opening {
         let name = chosen?;
         let (folder, _) = split(&self.text);
         self.text = format!("{folder}{name}");
-        (!name.ends_with('/')).then(|| Answer::Open(at_home(&self.text)))
+        (!name.ends_with('/')).then(|| DialogResult::Open(expand_home(&self.text)))
     }
 
-    /// Looks into the folder of the text, if it is another than before.
+    /// Lists the folder of the text if it is another than before.
     fn refresh(&mut self) {
         let (folder, _) = split(&self.text);
-        let folder = PathBuf::from(if folder.is_empty() { ".".into() } else { at_home(folder) });
+        let folder = PathBuf::from(if folder.is_empty() { ".".into() } else { expand_home(folder) });
         if self.folder.as_ref() != Some(&folder) {
-            self.there = there(&folder);
+            self.names = list_folder(&folder);
             self.folder = Some(folder);
         }
     }
 }
 
-/// A name with the user's own folder in the place of a leading `~`, as a shell has it.
-fn at_home(name: &str) -> String {
+/// Expands a leading `~` to the user's home folder, as a shell does.
+fn expand_home(name: &str) -> String {
     let below = name.strip_prefix('~').filter(|below| below.is_empty() || below.starts_with('/'));
     match below.zip(std::env::home_dir()) {
         Some((below, home)) => format!("{}{below}", home.display()),
@@ -108,13 +109,13 @@ fn at_home(name: &str) -> String {
     }
 }
 
-/// The folder with its slash, and the rest.
+/// Splits a path into its folder, with the slash, and the name.
 fn split(text: &str) -> (&str, &str) {
     text.split_at(text.rfind('/').map_or(0, |slash| slash + 1))
 }
 
-/// Folders, and what can be opened, by their names.
-fn there(folder: &Path) -> Vec<String> {
+/// Names of the folders and of the files that can be opened, sorted. Folders end in a slash.
+fn list_folder(folder: &Path) -> Vec<String> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     let mut names: Vec<_> = entries
         .filter_map(|entry| {
@@ -135,24 +136,24 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_tilde_is_the_users_own_folder() {
+    fn a_leading_tilde_is_the_home_folder() {
         let home = std::env::home_dir().unwrap().display().to_string();
-        assert_eq!(at_home("~/a.ply"), format!("{home}/a.ply"));
+        assert_eq!(expand_home("~/a.ply"), format!("{home}/a.ply"));
         assert_eq!(
-            ["~", "a/~/b", "~b.ply", "scene:sphere"].map(at_home),
+            ["~", "a/~/b", "~b.ply", "scene:sphere"].map(expand_home),
             [&home, "a/~/b", "~b.ply", "scene:sphere"]
         );
     }
 
     #[test]
-    fn what_can_be_opened_is_listed_by_name() {
+    fn files_that_can_be_opened_are_listed_by_name() {
         let folder = tempfile::tempdir().unwrap();
         std::fs::create_dir(folder.path().join("scans")).unwrap();
         for name in ["b.PLY", "a.json", "c.txt", ".hidden.ply", "none"] {
             std::fs::write(folder.path().join(name), "").unwrap();
         }
-        assert_eq!(there(folder.path()), ["a.json", "b.PLY", "scans/"]);
-        assert!(there(&folder.path().join("not there")).is_empty());
+        assert_eq!(list_folder(folder.path()), ["a.json", "b.PLY", "scans/"]);
+        assert!(list_folder(&folder.path().join("not there")).is_empty());
         assert_eq!(split("a/b/c"), ("a/b/", "c"));
         assert_eq!(split("c"), ("", "c"));
     }

@@ -1,22 +1,22 @@
-//! What is known of what is looked at, in words.
+//! Information about a scene, as text.
 
 use std::path::Path;
 
-/// What is known of what is looked at.
+/// Information about a scene.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct About {
-    /// Files and built-in scenes, as they were asked for.
+pub struct SceneInfo {
+    /// Files and built-in scenes, as the user named them.
     pub names: Vec<String>,
-    /// Points of all of them; 0 where that is not known yet.
+    /// Number of points of all inputs; 0 while it is not known.
     pub points: u64,
-    /// Points that are no surfels.
+    /// Number of points that were left out.
     pub dropped: u64,
-    /// What of the surfels was estimated, in words, if something was.
+    /// Description of what was estimated, if anything was.
     pub estimated: Option<String>,
 }
 
-impl About {
-    /// The names in short: `bunny.ply`, `a.ply, b.ply`, `a.ply and 3 more`.
+impl SceneInfo {
+    /// Short form of the names: `bunny.ply`, `a.ply, b.ply`, `a.ply and 3 more`.
     pub fn title(&self) -> String {
         match &self.names[..] {
             [] => "surfels".into(),
@@ -27,12 +27,12 @@ impl About {
     }
 }
 
-/// A file without its folders.
+/// A file's name without its folders.
 pub fn short_name(name: &str) -> &str {
     Path::new(name).file_name().and_then(|name| name.to_str()).unwrap_or(name)
 }
 
-/// A count with its thousands apart: `1,234,567`.
+/// A count with separators of thousands: `1,234,567`.
 pub fn thousands(count: u64) -> String {
     let digits = count.to_string();
     let first = digits.len() % 3;
@@ -48,9 +48,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_are_short_and_counts_are_legible() {
+    fn titles_are_short_and_counts_have_separators() {
         let title = |names: &[&str]| {
-            About { names: names.iter().map(|&name| name.to_owned()).collect(), ..Default::default() }.title()
+            SceneInfo { names: names.iter().map(|&name| name.to_owned()).collect(), ..Default::default() }
+                .title()
         };
         assert_eq!(title(&["/scans/bunny.ply"]), "bunny.ply");
         assert_eq!(title(&["a/b.ply", "scene:sphere?points=5"]), "b.ply, scene:sphere?points=5");

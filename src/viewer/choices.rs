@@ -1,0 +1,41 @@
+//! What the panels let the user choose.
+
+use super::MethodSettings;
+use super::scene_view::with_picture_of;
+use super::source::Source;
+use std::sync::Arc;
+use surfel::geometry::Camera;
+use surfel::settings::methods::Method;
+use surfel::{Rasterizer, Result, Scene, Settings};
+
+/// What the panels let the user choose, and what that depends on.
+pub struct Choices<'a> {
+    pub method: &'a mut Method,
+    pub settings: &'a mut Settings,
+    pub source: &'a mut Source,
+    pub parallel: &'a mut bool,
+    pub surfels: u64,
+    /// Whether the scene has lines or triangles.
+    pub primitives: bool,
+    /// Whether the surfels have normalization weights.
+    pub weighted: bool,
+    pub scene: &'a Arc<Scene>,
+    pub camera: Option<Result<Camera>>,
+    /// Width and height of the window's picture, px.
+    pub size: [u32; 2],
+    pub rasterizer: Option<Rasterizer>,
+    pub method_settings: &'a MethodSettings,
+}
+
+impl Choices<'_> {
+    /// Changes the method; shading, background and α stay.
+    pub fn choose(&mut self, method: Method) {
+        *self.settings = self.settings_of(&method);
+        *self.method = method;
+    }
+
+    /// The settings of a method with the present shading, background and α.
+    pub fn settings_of(&self, method: &Method) -> Settings {
+        with_picture_of((self.method_settings)(method), self.settings)
+    }
+}
