@@ -1,11 +1,11 @@
-//! Lengthy work on a thread of its own, which tells how far it has come and can be given up.
+//! Background job that reports its progress and can be cancelled.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, JoinHandle};
 use surfel::{Error, Progress, Result};
 
-/// Work under way.
+/// A background job.
 pub struct Job<T> {
     state: Arc<JobState>,
     thread: Option<JoinHandle<Result<T>>>,
@@ -13,7 +13,7 @@ pub struct Job<T> {
 
 #[derive(Default)]
 struct JobState {
-    /// A stage, and how much of it is done.
+    /// The stage, and which part of it is done, from 0 to 1.
     at: Mutex<(&'static str, f32)>,
     cancelled: AtomicBool,
 }
@@ -30,33 +30,33 @@ impl Progress for JobState {
 }
 
 impl<T: Send + 'static> Job<T> {
-    /// Begins it.
+    /// Starts the work on its own thread.
     pub fn start(work: impl FnOnce(&dyn Progress) -> Result<T> + Send + 'static) -> Self {
         let state = Arc::new(JobState::default());
         let own = state.clone();
         Self { state, thread: Some(thread::spawn(move || work(&*own))) }
     }
 
-    /// A stage, and how much of it is done.
+    /// The stage, and which part of it is done, from 0 to 1.
     pub fn at(&self) -> (&'static str, f32) {
         *self.state.at.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Has it given up, as soon as it looks.
+    /// Cancels the job, which ends at its next check.
     pub fn cancel(&self) {
         self.state.cancelled.store(true, Ordering::Relaxed);
     }
 
-    /// What came of it, once it is over.
+    /// Takes the result once the job has ended.
     pub fn take(&mut self) -> Option<Result<T>> {
-        let over = self.thread.take_if(|thread| thread.is_finished())?;
-        let died = |_| Err(Error::Usage("the work broke off: the log says where".into()));
-        Some(over.join().unwrap_or_else(died))
+        let ended = self.thread.take_if(|thread| thread.is_finished())?;
+        let panicked = |_| Err(Error::Usage("the background job panicked: see standard error".into()));
+        Some(ended.join().unwrap_or_else(panicked))
     }
 }
 
 impl<T> Drop for Job<T> {
-    /// It uses the device, which must not go before it.
+    /// Cancels the job and waits for it: it uses the device.
     fn drop(&mut self) {
         self.state.cancelled.store(true, Ordering::Relaxed);
         if let Some(thread) = self.thread.take() {
@@ -79,7 +79,7 @@ mod tests {
     }
 
     #[test]
-    fn work_that_is_given_up_ends_and_other_work_is_done() {
+    fn a_cancelled_job_ends_and_another_returns_its_result() {
         let endless = Job::<()>::start(|progress| {
             while !progress.is_cancelled() {
                 thread::yield_now();

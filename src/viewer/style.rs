@@ -1,8 +1,8 @@
-//! Colours of the panels: text that can be read, WCAG 2.1's contrast of 4.5 : 1 and more.
+//! Colours of the panels. Text has a contrast of at least 4.5 : 1 (WCAG 2.1).
 
 use egui::{Color32, Context, Theme, Visuals};
 
-/// Gives the panels their colours, whatever the system's theme is.
+/// Sets the colours of the panels, independent of the system's theme.
 pub fn apply(context: &Context) {
     context.set_theme(Theme::Dark);
     context.set_visuals_of(Theme::Dark, visuals());
@@ -33,7 +33,7 @@ mod tests {
     }
 
     #[test]
-    fn text_can_be_read() {
+    fn text_has_enough_contrast() {
         let visuals = visuals();
         let panels = [visuals.panel_fill, visuals.window_fill];
         let texts = [
@@ -45,7 +45,7 @@ mod tests {
         ];
         for (name, text) in texts {
             for behind in panels {
-                // What is see-through is blended with what is behind it.
+                // Transparent text is blended with its background.
                 let text = behind.blend(text);
                 assert!(contrast(text, behind) >= 4.5, "{name}: {}", contrast(text, behind));
             }

@@ -1,26 +1,27 @@
-//! What keys and mouse do.
+//! Help window: the list of keys and mouse buttons.
 
 use crate::viewer::keys;
 use crate::viewer::layout::Layout;
 use egui::{Context, Grid, ScrollArea, Ui, Window};
 
-/// What the mouse does.
+/// Actions of the mouse.
 const MOUSE: [(&str, &str); 4] = [
     ("left", "turn"),
-    ("double left", "turn about this point from now on"),
-    ("middle, Shift+left", "move across the picture"),
-    ("wheel; right", "nearer and farther, to the cursor; to the middle"),
+    ("double left", "set the pivot to this point"),
+    ("middle, Shift+left", "pan"),
+    ("wheel; right", "zoom to the cursor; to the centre"),
 ];
 
-/// What keys of flight do, and letters on them.
+/// The action of the keys of flight.
 const FLIGHT: &str = "fly ahead, left, back, right, up, down";
-const PLACES: &str = "The keys that fly lie where W A S D, E Q are on a US keyboard. A letter of this list that your keyboard has on one of \
-                      them is pressed with Alt.";
+/// Note on keyboard layouts.
+const LAYOUTS: &str = "The keys that fly are those of W A S D, E Q on a US keyboard. Where your keyboard has another letter of this list on \
+                       one of them, press it with Alt.";
 
-/// Height of the window at first, points: all of it fits.
+/// Initial height of the window, points: the whole list fits.
 const HEIGHT: f32 = 730.0;
 
-/// A window with all of it, as the keyboard has it.
+/// Shows the list, with the names of keys of this keyboard layout.
 pub fn show(context: &Context, layout: &Layout) {
     Window::new("Keys and mouse").default_height(HEIGHT).show(context, |ui| {
         ScrollArea::vertical().show(ui, |ui| list(ui, layout));
@@ -37,5 +38,5 @@ fn list(ui: &mut Ui, layout: &Layout) {
             ui.end_row();
         }
     });
-    ui.weak(PLACES);
+    ui.weak(LAYOUTS);
 }

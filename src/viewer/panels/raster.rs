@@ -1,4 +1,4 @@
-//! Numbers of pixels, shown as a picture with a range.
+//! Raster: values of pixels, shown as a picture with a colour map and a range.
 
 use super::render_settings;
 use egui::{
@@ -7,56 +7,64 @@ use egui::{
 };
 use surfel::geometry::{ColourMap, ColourScale, ValueRange};
 
-/// Columns of a colour bar.
-const BAR: usize = 64;
+/// Number of columns of a colour bar.
+const COLUMNS: usize = 64;
 
-/// A number, or a colour, of every pixel.
+/// Values of all pixels.
 pub struct Raster {
-    /// What the numbers are, with their unit.
+    /// What the values are, with their unit.
     name: String,
     /// Width and height, px.
     size: [u32; 2],
     values: Values,
     map: ColourMap,
     range: ValueRange,
-    usual: Option<ValueRange>,
-    /// The picture of this map and range.
+    default_range: Option<ValueRange>,
+    /// The texture, and the scale that it was made with.
     texture: Option<(TextureHandle, ColourScale)>,
 }
 
-/// Row by row from the top left.
+/// Values, row by row from the top left.
 pub enum Values {
-    /// NaN where there is none.
+    /// Numbers; NaN where there is none.
     Numbers(Vec<f32>),
-    /// Vectors with coordinates from −1 to 1, shown as red, green and blue; 0 where there is none.
+    /// Unit vectors, shown as red, green and blue; 0 where there is none.
     Directions(Vec<[f32; 3]>),
 }
 
 impl Raster {
-    /// Shown in its usual range at first.
+    /// A raster with the default colour map, in its default range.
     pub fn new(name: impl Into<String>, size: [u32; 2], values: Values) -> Self {
-        let usual = match &values {
+        let default_range = match &values {
             Values::Numbers(numbers) => ValueRange::of(numbers.iter().copied().map(f64::from)),
             Values::Directions(_) => None,
         };
-        let usual = usual.map(|(range, _)| range);
-        let range = usual.unwrap_or(ValueRange { min: 0.0, max: 1.0 });
-        Self { name: name.into(), size, values, map: ColourMap::default(), range, usual, texture: None }
+        let default_range = default_range.map(|(range, _)| range);
+        let range = default_range.unwrap_or(ValueRange { min: 0.0, max: 1.0 });
+        Self {
+            name: name.into(),
+            size,
+            values,
+            map: ColourMap::default(),
+            range,
+            default_range,
+            texture: None,
+        }
     }
 
-    /// Shown by these colours, from `min` on.
+    /// The raster with another colour map, and with a range from `min`.
     pub fn with(mut self, map: ColourMap, min: f64) -> Self {
         self.map = map;
         self.range.min = min;
         self
     }
 
-    /// The picture is made anew when it is shown next.
+    /// Drops the texture, which is created again when it is needed.
     pub fn release_textures(&mut self) {
         self.texture = None;
     }
 
-    /// A window with the picture, until it is closed.
+    /// Shows a window with the picture; `open` becomes false when it is closed.
     pub fn show(&mut self, context: &Context, id: &str, open: &mut bool) {
         let title = format!("{}, {}x{}", self.name, self.size[0], self.size[1]);
         Window::new(title)
@@ -67,7 +75,7 @@ impl Raster {
             .show(context, |ui| {
                 if let Values::Numbers(_) = self.values {
                     render_settings::map(ui, &mut self.map);
-                    render_settings::range(ui, &mut self.range, self.usual);
+                    render_settings::range(ui, &mut self.range, self.default_range);
                     colour_bar(ui, &self.scale());
                 }
                 self.picture(ui);
@@ -80,7 +88,7 @@ impl Raster {
 
     fn picture(&mut self, ui: &mut Ui) {
         let scale = self.scale();
-        if self.texture.as_ref().is_none_or(|(_, made)| *made != scale) {
+        if self.texture.as_ref().is_none_or(|(_, known)| *known != scale) {
             let image = ColorImage::from_rgb(self.size.map(|side| side as usize), &self.pixels(&scale));
             let texture = ui.ctx().load_texture("raster", image, TextureOptions::NEAREST);
             self.texture = Some((texture, scale));
@@ -92,7 +100,9 @@ impl Raster {
         let response = ui.add(Image::new(texture).fit_to_exact_size(size).sense(Sense::hover()));
         let at = response.hover_pos().map(|at| (at - response.rect.min) / size * own);
         let text = at.and_then(|at| self.pixel_text([at.x as u32, at.y as u32]));
-        ui.monospace(text.unwrap_or_else(|| "the cursor tells a pixel's value".into()));
+        ui.monospace(
+            text.unwrap_or_else(|| "Move the cursor over the picture to see a pixel's value.".into()),
+        );
     }
 
     fn pixels(&self, scale: &ColourScale) -> Vec<u8> {
@@ -108,7 +118,7 @@ impl Raster {
         }
     }
 
-    /// What is at a pixel.
+    /// The value of a pixel, as text.
     fn pixel_text(&self, [x, y]: [u32; 2]) -> Option<String> {
         let [width, height] = self.size;
         let index = (x < width && y < height).then_some((y * width + x) as usize)?;
@@ -124,7 +134,7 @@ impl Raster {
     }
 }
 
-/// The colours of a scale, with the numbers at both ends.
+/// Shows the colours of a scale, with the values at both ends and in the middle.
 pub fn colour_bar(ui: &mut Ui, scale: &ColourScale) {
     let (response, painter) =
         ui.allocate_painter(vec2(ui.available_width().min(300.0), 26.0), Sense::hover());
@@ -145,18 +155,18 @@ pub fn colour_bar(ui: &mut Ui, scale: &ColourScale) {
     }
 }
 
-/// Fills a rectangle with the colours of the numbers from 0 to 1, sRGB, from its left to its right.
+/// Fills a rectangle from left to right with the sRGB colours of the fractions from 0 to 1.
 pub fn paint_bar(painter: &Painter, rect: Rect, colour: impl Fn(f64) -> [u8; 3]) {
-    let width = rect.width() / BAR as f32;
-    for column in 0..BAR {
-        let [r, g, b] = colour((column as f64 + 0.5) / BAR as f64);
+    let width = rect.width() / COLUMNS as f32;
+    for column in 0..COLUMNS {
+        let [r, g, b] = colour((column as f64 + 0.5) / COLUMNS as f64);
         let left = rect.left() + column as f32 * width;
         let bar = Rect::from_min_max(pos2(left, rect.top()), pos2(left + width + 0.5, rect.bottom()));
         painter.rect_filled(bar, 0.0, Color32::from_rgb(r, g, b));
     }
 }
 
-/// Four significant digits.
+/// Formats a value with four significant digits.
 pub fn short(value: f64) -> String {
     match value.abs() {
         0.0 => "0".into(),
@@ -173,7 +183,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_have_their_colours_and_what_is_none_is_black() {
+    fn values_have_their_colours_and_missing_ones_are_black() {
         let values = vec![0.0, 1.0, f32::NAN, 2.0];
         let raster = Raster::new("x", [2, 2], Values::Numbers(values)).with(ColourMap::Magma, 0.0);
         let pixels =
@@ -188,7 +198,7 @@ mod tests {
     }
 
     #[test]
-    fn numbers_are_short() {
+    fn values_have_four_digits() {
         assert_eq!(
             [0.0, 1.0, 0.012342, 123456.0, -2.5].map(short),
             ["0", "1.000", "0.01234", "1.235e5", "-2.500"]

@@ -1,17 +1,17 @@
-//! Names of files that are not there yet.
+//! Names of new files.
 
 use jiff::Zoned;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-/// Names files by the time, and never one twice.
+/// Generates names from the time, each of them once.
 #[derive(Default)]
 pub struct FileNames {
     given: HashSet<PathBuf>,
 }
 
 impl FileNames {
-    /// A file of `folder` that is not there.
+    /// The path of a file in `folder` that does not exist.
     pub fn next(&mut self, folder: &Path, extension: &str) -> PathBuf {
         self.at(folder, extension, &Zoned::now().strftime("%Y%m%d-%H%M%S").to_string())
     }
@@ -22,7 +22,7 @@ impl FileNames {
             1 => folder.join(format!("surfel-{time}.{extension}")),
             _ => folder.join(format!("surfel-{time}-{number}.{extension}")),
         };
-        // One that is being written is not there yet, but given.
+        // A file that is being written may not exist yet, but its name is taken.
         let free = |path: &PathBuf| !self.given.contains(path) && !path.exists();
         let path = (1..).map(name).find(free).unwrap_or_else(|| name(1));
         self.given.insert(path.clone());
