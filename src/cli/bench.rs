@@ -17,7 +17,7 @@ use surfel::settings::Choice;
 use surfel::vk::Device;
 use surfel::{Error, Progress, Result};
 
-/// Measures, and shows what was measured. Earlier results and places to write to are looked at first.
+/// Measures, and writes the results. Earlier results and output paths are checked first.
 pub fn run(args: &Bench) -> Result<()> {
     check_outputs(args)?;
     let mut results = Results { format: FORMAT, sessions: Vec::new() };
@@ -29,48 +29,50 @@ pub fn run(args: &Bench) -> Result<()> {
         let bars = progress::bars(args.quiet);
         let (session, ended) = measure(&wanted(args, suites, &*bars)?, &*bars);
         results.sessions.push(session);
-        // What was measured before something went wrong is shown all the same.
-        return show(args, &results).and(ended);
+        // The results before an error are written all the same.
+        return write_results(args, &results).and(ended);
     }
-    show(args, &results)
+    write_results(args, &results)
 }
 
-/// Writes what was asked for, and a table unless something else goes to standard output.
-fn show(args: &Bench, results: &Results) -> Result<()> {
-    if let Some(place) = &args.json {
-        files::write_text(place, &(to_json(results)? + "\n"))?;
+/// Writes the outputs of the options, and prints a table unless one of them goes to standard output.
+fn write_results(args: &Bench, results: &Results) -> Result<()> {
+    if let Some(output) = &args.json {
+        files::write_text(output, &(to_json(results)? + "\n"))?;
     }
-    if let Some(place) = &args.csv {
-        write_csv(place, results)?;
+    if let Some(output) = &args.csv {
+        write_csv(output, results)?;
     }
     if let Some(folder) = &args.report {
         let files = report::write(results, code::DIGEST, code::COMMIT, folder)?;
         if let (false, Some(page)) = (args.quiet, files.first()) {
-            progress::say(&format!("{}: the page, with {} plots beside it", page.display(), files.len() - 1));
+            progress::say(&format!(
+                "{}: the report, with {} plots beside it",
+                page.display(),
+                files.len() - 1
+            ));
         }
     }
-    let taken = [&args.json, &args.csv].into_iter().flatten().any(|place| place == "-");
-    match args.quiet || taken {
-        true => Ok(()),
-        false => files::print(&table(results, code::DIGEST, code::COMMIT)),
-    }
+    let taken = [&args.json, &args.csv].into_iter().flatten().any(|output| output == "-");
+    if args.quiet || taken { Ok(()) } else { files::print(&table(results, code::DIGEST, code::COMMIT)) }
 }
 
-/// A line a run; the hard cases, whose lines are of another kind, in a file of their own: `-hard` is put behind its name. On standard output
-/// an empty line is between both.
-fn write_csv(place: &OsString, results: &Results) -> Result<()> {
+/// Writes one line per run. The hard cases, whose columns differ, go to a second file with `-hard` behind its name; on standard output an empty
+/// line separates both.
+fn write_csv(output: &OsString, results: &Results) -> Result<()> {
     let (runs, sweeps) = (csv::runs(results, code::DIGEST)?, csv::sweeps(results, code::DIGEST)?);
     let any = results.sessions.iter().any(|session| !session.sweeps.is_empty());
-    match (any, place == "-") {
-        (false, _) => files::write_text(place, &runs),
+    match (any, output == "-") {
+        (false, _) => files::write_text(output, &runs),
         (true, true) => files::print(&format!("{runs}\n{sweeps}")),
         (true, false) => {
-            files::write_text(place, &runs)?;
-            files::write_text(&hard_file(Path::new(place)), &sweeps)
+            files::write_text(output, &runs)?;
+            files::write_text(&hard_file(Path::new(output)), &sweeps)
         }
     }
 }
 
+/// Path of the file of hard cases.
 fn hard_file(path: &Path) -> OsString {
     let mut name = path.file_stem().unwrap_or_default().to_owned();
     name.push("-hard");
@@ -82,7 +84,7 @@ fn hard_file(path: &Path) -> OsString {
     file
 }
 
-/// Those that were asked for; the first impression unless there is something else to show.
+/// The suites of the options; `quick` unless there is something else to write.
 fn suites(args: &Bench) -> Vec<Suite> {
     let own = (!args.inputs.is_empty()).then_some(Suite::Own);
     if args.suite.is_empty() && args.from.is_empty() && own.is_none() {
@@ -97,17 +99,18 @@ fn suites(args: &Bench) -> Vec<Suite> {
     suites
 }
 
+/// The subject of an input.
 fn subject(args: &Bench, input: &OsString, progress: &dyn Progress) -> Result<Rc<Subject>> {
     Ok(Rc::new(match scene(input) {
         Some(scene) if args.truth.is_some() => {
-            return Err(Error::Usage(format!("{scene} is its own truth: give --truth beside files alone")));
+            return Err(Error::Usage(format!("{scene} is its own truth: give --truth with files only")));
         }
         Some(scene) => Subject::scene(scene)?,
         None => Subject::scan(Path::new(input), args.truth.as_deref(), progress)?,
     }))
 }
 
-/// The command that repeats this, less where its results go.
+/// The command that repeats the measurement, without its outputs.
 fn command(args: &Bench, suites: &[Suite]) -> String {
     let mut words = vec!["surfel bench".to_owned()];
     words.extend(args.inputs.iter().map(|input| quoted(&input.to_string_lossy())));
@@ -127,27 +130,28 @@ fn command(args: &Bench, suites: &[Suite]) -> String {
     words.join(" ")
 }
 
-/// As a shell takes it for one word.
+/// Quotes a word for a shell, if needed.
 fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./:,=+@%".contains(c);
-    match !word.is_empty() && word.chars().all(plain) {
-        true => word.to_owned(),
-        false => format!("'{}'", word.replace('\'', r"'\''")),
+    if !word.is_empty() && word.chars().all(plain) {
+        return word.to_owned();
     }
+    format!("'{}'", word.replace('\'', r"'\''"))
 }
 
-/// None, which is said, where there is none: the CPU baseline needs no device.
+/// Opens the device. Without any, logs a warning and returns `None`: the CPU baseline needs none.
 fn device(args: &Bench) -> Result<Option<Arc<Device>>> {
     match Device::open(&vulkan::options(&args.device)?) {
         Ok(device) => Ok(Some(device)),
         Err(error @ Error::NoDevice(_)) if args.device.device.is_none() && !args.device.validate => {
-            log::warn!("{error}: what needs one is refused");
+            log::warn!("{error}: suites that need a device fail");
             Ok(None)
         }
         Err(error) => Err(error),
     }
 }
 
+/// What the options ask to measure.
 fn wanted(args: &Bench, suites: Vec<Suite>, progress: &dyn Progress) -> Result<Wanted> {
     Ok(Wanted {
         command: command(args, &suites),
@@ -167,6 +171,7 @@ fn wanted(args: &Bench, suites: Vec<Suite>, progress: &dyn Progress) -> Result<W
     })
 }
 
+/// Reads the results of an earlier call.
 fn read(path: &Path) -> Result<Results> {
     #[derive(serde::Deserialize)]
     struct Head {
@@ -176,7 +181,7 @@ fn read(path: &Path) -> Result<Results> {
         Head { format: FORMAT } => read_json(path),
         Head { format } => Err(Error::input(
             path.display().to_string(),
-            format!("format {format} of results, not {FORMAT}: measure anew"),
+            format!("format {format} of results, not {FORMAT}: measure again"),
         )),
     }
 }
@@ -185,18 +190,18 @@ fn to_json(results: &Results) -> Result<String> {
     serde_json::to_string_pretty(results).map_err(|error| Error::Usage(format!("the results: {error}")))
 }
 
-/// Refuses places that cannot be written to, and makes the page's folder: what was measured for long should not be lost for want of one.
+/// Checks that the outputs can be written, and creates the report's folder, so that long measurements are not lost.
 fn check_outputs(args: &Bench) -> Result<()> {
     [&args.json, &args.csv].into_iter().flatten().try_for_each(files::check)?;
     if let (Some(json), Some(csv)) = (&args.json, &args.csv)
         && files::is_same(json, csv)
     {
-        return Err(Error::Usage("--json and --csv go to one place: name two".into()));
+        return Err(Error::Usage("--json and --csv name one file: name two".into()));
     }
     let Some(folder) = &args.report else { return Ok(()) };
     if folder.exists() && !folder.is_dir() {
         return Err(Error::Usage(format!("--report {}: is no folder: name another", folder.display())));
     }
-    std::fs::create_dir_all(folder).map_err(Error::io(folder, "cannot make the folder"))?;
+    std::fs::create_dir_all(folder).map_err(Error::io(folder, "cannot create the folder"))?;
     atomic::check(&folder.join("index.html"))
 }

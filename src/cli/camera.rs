@@ -1,4 +1,4 @@
-//! The camera that the arguments ask for.
+//! The camera of the arguments.
 
 use super::args;
 use glam::DVec3;
@@ -7,29 +7,31 @@ use surfel::formats::camera as camera_file;
 use surfel::geometry::{Bounds, Camera, Pose, Span};
 use surfel::{Error, Result};
 
-/// Vertical angle of view unless another is given, degrees.
+/// Default vertical angle of view, degrees.
 pub const FOV: f64 = 45.0;
 
-/// The contents of the camera file, if one is named: read before anything large is.
+/// Reads the camera file, if one is given.
 pub fn read(args: &args::Camera) -> Result<Option<(&Path, Pose)>> {
     args.file.as_deref().map(|path| Ok((path, camera_file::read(path)?))).transpose()
 }
 
-/// The camera of `file`, or else of the arguments: what is not given is as if the whole of `bounds` were framed.
+/// The camera of `file`, or else of the arguments, which by default frames `bounds`.
 pub fn make(
     args: &args::Camera,
     file: Option<(&Path, Pose)>,
     bounds: &Bounds,
     size: [u32; 2],
 ) -> Result<Camera> {
-    let made = pose(args, file.map(|(_, pose)| pose), bounds, size)?.camera(bounds, aspect(size));
+    let camera = pose(args, file.map(|(_, pose)| pose), bounds, size)?.camera(bounds, aspect(size));
     match file {
-        Some((path, _)) => made.map_err(|error| Error::input(path.display().to_string(), error.to_string())),
-        None => made,
+        Some((path, _)) => {
+            camera.map_err(|error| Error::input(path.display().to_string(), error.to_string()))
+        }
+        None => camera,
     }
 }
 
-/// The same before near and far planes are known.
+/// The pose of that camera, without near and far planes.
 pub fn pose(args: &args::Camera, file: Option<Pose>, bounds: &Bounds, size: [u32; 2]) -> Result<Pose> {
     if let Some(pose) = file {
         return Ok(pose);
@@ -43,7 +45,7 @@ pub fn pose(args: &args::Camera, file: Option<Pose>, bounds: &Bounds, size: [u32
     Ok(Pose { eye, target: args.target.unwrap_or(bounds.centre()), up: up(args, None), span })
 }
 
-/// What is up in the picture, as far as the arguments say; not of unit length.
+/// Up direction of the picture, of any length.
 pub fn up(args: &args::Camera, file: Option<(&Path, Pose)>) -> DVec3 {
     file.map(|(_, pose)| pose.up).or(args.up).unwrap_or(DVec3::Y)
 }
@@ -52,7 +54,7 @@ fn aspect(size: [u32; 2]) -> f64 {
     f64::from(size[0]) / f64::from(size[1])
 }
 
-/// Where a camera stands that shows the whole of `bounds`.
+/// Position of the eye that frames `bounds`.
 fn framed_eye(bounds: &Bounds, fov: f64, aspect: f64) -> Result<DVec3> {
     Ok(Camera::framing(bounds, fov.to_radians(), aspect)?.view.inverse().w_axis.truncate())
 }

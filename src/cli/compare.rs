@@ -12,12 +12,12 @@ use surfel::settings::Choice;
 use surfel::verify::metrics::{Better, Measured, Metric, Options, Pair, Side, measure};
 use surfel::{Error, Result};
 
-/// Compares two pictures; what crosses the limits that were given. Where to write is looked at before anything is read.
+/// Compares two pictures; returns a line for each limit that is violated. Outputs are checked before anything is read.
 pub fn run(args: &Compare) -> Result<Vec<String>> {
     check_outputs(args)?;
     let [picture, truth] = [&args.picture, &args.truth].map(|name| read(Path::new(name)));
     let (picture, truth) = (picture?, truth?);
-    let pair = Pair::new(&picture, &truth).map_err(|error| named(error, args))?;
+    let pair = Pair::new(&picture, &truth).map_err(|error| name_file(error, args))?;
     let measured = measure(&pair, &options(args))?;
     if let Some(map) = &args.map {
         measured.flip.coloured()?.write_png(&Output::File(map.into()))?;
@@ -25,55 +25,46 @@ pub fn run(args: &Compare) -> Result<Vec<String>> {
     let limits = args.fail_above.iter().chain(&args.fail_below);
     let violations: Vec<_> =
         limits.filter_map(|limit| limit.violation(&measured).transpose()).collect::<Result<_>>()?;
-    if let Some(place) = &args.json {
-        files::write_text(place, &report(args, &pair, &measured, &violations)?)?;
+    if let Some(output) = &args.json {
+        files::write_text(output, &report(args, &pair, &measured, &violations)?)?;
     }
-    if !args.quiet && args.json.as_ref().is_none_or(|place| place != "-") {
+    if !args.quiet && args.json.as_ref().is_none_or(|output| output != "-") {
         files::print(&table(&measured))?;
     }
     Ok(violations)
 }
 
+/// The options of the metrics.
 fn options(args: &Compare) -> Options {
     let &Compare { background, pixels_per_degree, object_size, .. } = args;
     Options { background, pixels_per_degree, object_size }
 }
 
-/// Refuses places that cannot be written to, and those of other files of the command.
+/// Checks that the outputs can be written and are not other files of the command.
 fn check_outputs(args: &Compare) -> Result<()> {
     let mut others = vec![&args.picture, &args.truth];
     if let Some(map) = &args.map {
         check_map(map)?;
-        check_other("--map", map, &others)?;
+        files::check_distinct("--map", map, others.iter().copied())?;
         others.push(map);
     }
     if let Some(json) = &args.json {
         files::check(json)?;
-        check_other("--json", json, &others)?;
+        files::check_distinct("--json", json, others.iter().copied())?;
     }
     Ok(())
 }
 
 fn check_map(map: &OsString) -> Result<()> {
     let out = Output::File(map.into());
-    match out.is_png() {
-        true => out.check(),
-        false => Err(Error::Usage(format!("--map {}: name the file .png", Path::new(map).display()))),
+    if !out.is_png() {
+        return Err(Error::Usage(format!("--map {}: name the file .png", Path::new(map).display())));
     }
+    out.check()
 }
 
-fn check_other(option: &str, place: &OsString, others: &[&OsString]) -> Result<()> {
-    match others.iter().find(|other| files::is_same(other, place)) {
-        Some(other) => Err(Error::Usage(format!(
-            "{option} would overwrite {}, which is another file of this command: name another",
-            Path::new(other).display()
-        ))),
-        None => Ok(()),
-    }
-}
-
-/// The library knows the pictures by their part only.
-fn named(error: Error, args: &Compare) -> Error {
+/// Replaces the name of a side in an error by that of its file.
+fn name_file(error: Error, args: &Compare) -> Error {
     let file = |name: &OsString| Path::new(name).display().to_string();
     match error {
         Error::Input { name, cause } if name == Side::Picture.name() => {
@@ -84,7 +75,7 @@ fn named(error: Error, args: &Compare) -> Error {
     }
 }
 
-/// A line a metric, and what could not be measured.
+/// A line per metric, and the metrics that could not be measured.
 fn table(measured: &Measured) -> String {
     let mut text = format!("{:<16}{:>12}  {:<6}better\n", "metric", "value", "unit");
     // Writing to a String cannot fail.
@@ -103,12 +94,12 @@ fn table(measured: &Measured) -> String {
     while let Some(first) = missing.first().copied() {
         let alike = missing.extract_if(.., |metric| metric.needs() == first.needs());
         let names = alike.map(Metric::name).collect::<Vec<_>>().join(", ");
-        let _ = writeln!(text, "not measured: {names}: for want of {}", first.needs());
+        let _ = writeln!(text, "not measured: {names}: needs {}", first.needs());
     }
     text
 }
 
-/// As JSON; what is infinite is null, what was not measured is not there.
+/// The report as JSON. Infinite values are null; metrics that were not measured are absent.
 fn report(args: &Compare, pair: &Pair<'_>, measured: &Measured, violations: &[String]) -> Result<String> {
     let file = |name: &OsString| Path::new(name).display().to_string();
     let metrics: Map<String, Value> =

@@ -13,7 +13,7 @@ use surfel::settings::methods::object_ewa;
 use surfel::vk::Device;
 use surfel::{Error, Progress, Result};
 
-/// Writes the model of inputs to a PLY file. Where it is to be written is looked at before anything is read.
+/// Writes the model of inputs to a PLY file. The output is checked before anything is read.
 pub fn run(args: &Convert) -> Result<()> {
     let out = Path::new(&args.output);
     check_output(args, out)?;
@@ -30,7 +30,7 @@ pub fn run(args: &Convert) -> Result<()> {
     };
     let mut loaded = load(&args.inputs, &options, &*bars)?;
     if let Some(views) = args.weights {
-        refuse_lines(&loaded.model)?;
+        check_weights(&loaded.model)?;
         capture_weights(&mut loaded.model.surfels, views, &Device::open(&device)?, &*bars, args.quiet)?;
     }
     ply::write(out, &loaded.model)?;
@@ -40,18 +40,16 @@ pub fn run(args: &Convert) -> Result<()> {
     Ok(())
 }
 
-/// Refuses weights of what is not splatted.
-fn refuse_lines(model: &Model) -> Result<()> {
-    match model.primitives.is_empty() {
-        true => Ok(()),
-        false => Err(Error::Usage(format!(
-            "--weights are for splats, and the inputs have {}: leave it out",
-            summary::parts(model)
-        ))),
+/// Fails if the model has lines or triangles, which have no normalization weights.
+fn check_weights(model: &Model) -> Result<()> {
+    if model.primitives.is_empty() {
+        return Ok(());
     }
+    let parts = summary::parts(model);
+    Err(Error::Usage(format!("--weights are for splats, and the inputs have {parts}: leave it out")))
 }
 
-/// Gives the surfels normalization weights.
+/// Captures the normalization weights of the surfels.
 fn capture_weights(
     surfels: &mut Surfels,
     views: u32,
@@ -70,7 +68,7 @@ fn capture_weights(
     Ok(())
 }
 
-/// Refuses a file of another kind, one that cannot be written, and one of the inputs, which would be lost.
+/// Fails if the output is no PLY file, cannot be written, or is an input, which would be overwritten.
 fn check_output(args: &Convert, out: &Path) -> Result<()> {
     let extension = out.extension().map(|extension| extension.to_ascii_lowercase());
     if extension.is_none_or(|extension| extension != "ply") {

@@ -6,7 +6,7 @@ use std::fmt::Write;
 use surfel::vk::{DeviceDescription, describe_devices, preferred};
 use surfel::{Error, Result};
 
-/// Lists the machine's devices; an error if none of them serves.
+/// Lists the Vulkan devices. Fails if none of them is usable.
 pub fn run(json: bool) -> Result<()> {
     let devices = describe_devices()?;
     let chosen = preferred(&devices, None);

@@ -1,4 +1,4 @@
-//! Exit codes, and the line that says why.
+//! Exit codes and error messages.
 
 use super::args::Surfel;
 use clap::CommandFactory;
@@ -11,59 +11,60 @@ const DATA: u8 = 1;
 const USAGE: u8 = 2;
 /// No usable Vulkan device, no display for a window, or no validation layer where one is asked for.
 const NO_DEVICE: u8 = 3;
-/// A picture is not as good as the command line demands.
+/// A metric violates a limit of the command line.
 #[cfg(feature = "metrics")]
 const VIOLATED: u8 = 4;
 /// The device was lost.
 const LOST: u8 = 5;
-/// The validation layers found something: what BSD calls an internal error of the software.
+/// The validation layers reported a message: an internal software error, as in BSD's sysexits.
 const INVALID: u8 = 70;
 
-/// Says what went wrong.
+/// Prints an error; returns its exit code.
 pub fn of_error(error: &Error) -> ExitCode {
-    say(&format!("{error}{}", remedy(error)));
+    print_error(&format!("{error}{}", remedy(error)));
     ExitCode::from(code(error))
 }
 
-/// Says how many messages of the validation layers there were, if any; the layers' own words were logged.
+/// Prints the number of messages of the validation layers, if there are any; the messages themselves were logged.
 pub fn of_messages(count: usize) -> ExitCode {
     match count {
         0 => ExitCode::SUCCESS,
         _ => {
-            say(&format!(
-                "the validation layers have {count} messages, see above: this is a mistake in surfel, report it"
+            print_error(&format!(
+                "the validation layers reported {count} messages, see above: this is a bug of surfel, please report it"
             ));
             ExitCode::from(INVALID)
         }
     }
 }
 
-/// Says which limits were crossed; there is at least one.
+/// Prints the violated limits; there is at least one.
 #[cfg(feature = "metrics")]
 pub fn of_violations(violations: &[String]) -> ExitCode {
-    say(&violations.join("; "));
+    print_error(&violations.join("; "));
     ExitCode::from(VIOLATED)
 }
 
-/// Shows the help that was asked for, or says in one line what is wrong with the arguments.
+/// Prints the help, or one line that says what is wrong with the arguments.
 pub fn of_arguments(error: &clap::Error) -> ExitCode {
     use clap::error::ErrorKind::{DisplayHelp, DisplayHelpOnMissingArgumentOrSubcommand, DisplayVersion};
     match error.kind() {
         DisplayHelp | DisplayVersion | DisplayHelpOnMissingArgumentOrSubcommand => {
-            // Nothing can be said where the help itself cannot be shown.
+            // If the help cannot be printed, neither can an error.
             let _ = error.print();
         }
         _ => {
             let command =
                 std::env::args().nth(1).filter(|name| Surfel::command().find_subcommand(name).is_some());
             let help = command.map_or("`surfel --help`".into(), |name| format!("`surfel {name} --help`"));
-            say(&format!("{}; {help} says more", in_one_line(&error.render().to_string())));
+            print_error(&format!("{}; {help} says more", in_one_line(&error.render().to_string())));
         }
     }
-    // clap's own code: 2 for mistakes, 0 for help.
+    // clap's exit code: 2 for errors, 0 for help.
     ExitCode::from(error.exit_code() as u8)
 }
 
+/// Exit code of an error.
 fn code(error: &Error) -> u8 {
     match error {
         _ if error.is_device_lost() => LOST,
@@ -73,7 +74,7 @@ fn code(error: &Error) -> u8 {
     }
 }
 
-/// By which option or command what an error asks for can be had; what to do about a failed Vulkan call.
+/// What to do about an error: the option or command that remedies it.
 fn remedy(error: &Error) -> &'static str {
     match error {
         Error::Usage(text) if text.contains("normalization weights: capture") => {
@@ -83,14 +84,14 @@ fn remedy(error: &Error) -> &'static str {
         Error::NoDevice(text) if text.ends_with("choose another device") => " with --device",
         Error::NoWindow(_) => "; `surfel render` needs no display",
         _ if error.is_device_lost() => {
-            "; the driver gave up: try fewer points, or another device with --device"
+            "; the driver reset the device: try fewer points, or another device with --device"
         }
         Error::Vulkan { .. } => "; use fewer points or a smaller picture, or another device with --device",
         _ => "",
     }
 }
 
-/// clap explains itself in several paragraphs: the first says what is wrong, tips say what may have been meant.
+/// Joins an error of clap to one line: its first paragraph is the cause, tips are suggestions.
 fn in_one_line(text: &str) -> String {
     let mut paragraphs =
         text.split("\n\n").map(|paragraph| paragraph.split_whitespace().collect::<Vec<_>>().join(" "));
@@ -100,7 +101,8 @@ fn in_one_line(text: &str) -> String {
     format!("{}{tips}", cause.trim_start_matches("error: "))
 }
 
-fn say(text: &str) {
-    // A file may be named anything: a message stays one line.
+/// Prints an error line to standard error.
+fn print_error(text: &str) {
+    // Names of files may contain line breaks.
     eprintln!("surfel: error: {}", text.replace(['\n', '\r'], " "));
 }

@@ -1,4 +1,4 @@
-//! The program's small files: JSON in, reports out, the cache's folder.
+//! Files of the program: JSON, reports, folders of cache and settings.
 
 use serde::de::DeserializeOwned;
 use std::ffi::OsString;
@@ -8,28 +8,43 @@ use std::path::{Path, PathBuf};
 use surfel::formats::atomic;
 use surfel::{Error, Result};
 
-/// Reads a JSON file; the error names the file and, by serde, the field.
+/// Reads a JSON file. Errors name the file and the field.
 pub fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T> {
     let file = File::open(path).map_err(Error::io(path, "cannot read"))?;
-    // Read as it is understood: a device need not end.
-    let wrong = |error: serde_json::Error| match error.is_io() {
-        true => Error::io(path, "cannot read")(error.into()),
-        false => Error::input(path.display().to_string(), format!("{error}: correct the file")),
+    let convert = |error: serde_json::Error| {
+        if error.is_io() {
+            return Error::io(path, "cannot read")(error.into());
+        }
+        Error::input(path.display().to_string(), format!("{error}: correct the file"))
     };
-    serde_json::from_reader(BufReader::new(file)).map_err(wrong)
+    // Parsed while it is read: a device file may be endless.
+    serde_json::from_reader(BufReader::new(file)).map_err(convert)
 }
 
-/// Refuses a place where [`write_text`] could not write.
-pub fn check(place: &OsString) -> Result<()> {
-    if place == "-" { Ok(()) } else { atomic::check(Path::new(place)) }
+/// Checks that [`write_text`] can write to `output`.
+pub fn check(output: &OsString) -> Result<()> {
+    if output == "-" { Ok(()) } else { atomic::check(Path::new(output)) }
 }
 
-/// Writes `text` to a file, whole or not at all, or to standard output if `place` is `-`.
-pub fn write_text(place: &OsString, text: &str) -> Result<()> {
-    match place == "-" {
-        true => print(text),
-        false => atomic::write(Path::new(place), |out| out.write_all(text.as_bytes())),
+/// Fails if the output of an option is another file of the command, which it would overwrite.
+pub fn check_distinct<'a>(
+    option: &str,
+    output: &OsString,
+    mut others: impl Iterator<Item = &'a OsString>,
+) -> Result<()> {
+    let Some(other) = others.find(|other| is_same(other, output)) else { return Ok(()) };
+    let other = Path::new(other).display();
+    Err(Error::Usage(format!(
+        "{option} would overwrite {other}, which is another file of this command: name another"
+    )))
+}
+
+/// Writes `text` to a file, atomically, or to standard output if `output` is `-`.
+pub fn write_text(output: &OsString, text: &str) -> Result<()> {
+    if output == "-" {
+        return print(text);
     }
+    atomic::write(Path::new(output), |out| out.write_all(text.as_bytes()))
 }
 
 /// Writes `text` to standard output.
@@ -44,26 +59,26 @@ pub fn print_json(value: &serde_json::Value) -> Result<()> {
     print(&format!("{value:#}\n"))
 }
 
-/// Whether both name one file; standard output is none.
+/// Whether both name the same file, or both name standard output.
 pub fn is_same(a: &OsString, b: &OsString) -> bool {
     let real = |name: &OsString| std::fs::canonicalize(name).ok();
     a == b || (a != "-" && real(a).is_some_and(|path| real(b) == Some(path)))
 }
 
-/// Where compiled pipelines are kept; `None` where the user has no home.
+/// The cache folder: compiled pipelines, exact pictures. `None` if the user has no home folder.
 pub fn cache_folder() -> Option<PathBuf> {
     folder("XDG_CACHE_HOME", ".cache")
 }
 
-/// Where settings are remembered; `None` where the user has no home.
+/// The folder of saved settings. `None` if the user has no home folder.
 #[cfg(feature = "viewer")]
 pub fn config_folder() -> Option<PathBuf> {
     folder("XDG_CONFIG_HOME", ".config")
 }
 
-/// A folder by its variable of the XDG specification, or within the user's home.
+/// The program's folder below that of an XDG variable, or else below the user's home.
 fn folder(variable: &str, in_home: &str) -> Option<PathBuf> {
-    // The specification has relative paths ignored.
+    // The specification ignores relative paths.
     let absolute = |name| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
     let base = absolute(variable).or_else(|| Some(absolute("HOME")?.join(in_home)))?;
     Some(base.join("surfel"))

@@ -14,10 +14,10 @@ use surfel::geometry::{Cloud, Colours, Model, Parts, View};
 use surfel::load::{scene, scene_cloud};
 use surfel::{Error, Result};
 
-/// How many skipped names are told; the header has told all of them.
+/// Number of skipped names that are printed; the header lists all of them.
 const MOST_NAMES: usize = 8;
 
-/// Says what is in a file or scene. Of a file whose points cannot be drawn it tells what there is, and the error why.
+/// Prints the contents of a file or scene. If its points cannot be rendered, prints what the header declares and fails with the cause.
 pub fn run(args: &Info) -> Result<()> {
     if args.json {
         return value::run(args);
@@ -31,7 +31,7 @@ pub fn run(args: &Info) -> Result<()> {
     let Inspected { format, encoding, elements, loaded } = formats::inspect(path, &options, &*bars)?;
     print(&header(path, &format!("{format}, {encoding}"), &elements))?;
     let Loaded { cloud, report } = loaded?;
-    print(&(properties(&report) + &frame(&report, &cloud)))?;
+    print(&(properties(&report) + &connectivity(&report, &cloud)))?;
     let model = cloud.into_model(args.points.polygons, &args.points.estimate(), &*bars);
     let (model, estimated) = model.map_err(|cause| Error::input(path.display().to_string(), cause))?;
     drop(bars);
@@ -39,7 +39,7 @@ pub fn run(args: &Info) -> Result<()> {
     print(&(text + &dropped(report.dropped, &estimated) + &trailing(&report)))
 }
 
-/// What a scene is under these options.
+/// Describes a built-in scene under these options.
 fn scene_text(name: &str, how: &Estimate) -> Result<String> {
     let cloud = scene_cloud(name)?;
     let points = cloud.len() as u64;
@@ -49,28 +49,28 @@ fn scene_text(name: &str, how: &Estimate) -> Result<String> {
     Ok(format!("{name}: built-in scene\n{}{}{dropped}", describe(&model, points), sources(&estimated)))
 }
 
-/// What a file declares.
+/// Describes the header of a file.
 fn header(path: &Path, format: &str, elements: &[Element]) -> String {
     let mut text = format!("{}: {format}\n", path.display());
     for element in elements {
-        let (name, count) = (shown(&element.name), element.count);
+        let (name, count) = (printable(&element.name), element.count);
         // Here and below: writing to a String cannot fail.
         let _ = writeln!(text, "element {name}: {count}");
         for property in &element.properties {
-            let _ = writeln!(text, "  {} {}", property.kind, shown(&property.name));
+            let _ = writeln!(text, "  {} {}", property.kind, printable(&property.name));
         }
     }
     text
 }
 
-/// Names come from the file: one that holds control characters must not reach the terminal.
-fn shown(name: &str) -> String {
+/// A name of the file without control characters, which must not reach the terminal.
+fn printable(name: &str) -> String {
     name.chars().map(|c| if c.is_control() { '\u{fffd}' } else { c }).collect()
 }
 
-/// The first `most` names, and how many more there are.
+/// The first `most` names, and the number of the others.
 fn listed(names: &[String], most: usize) -> String {
-    let text = names.iter().take(most).map(|name| shown(name)).collect::<Vec<_>>().join(" ");
+    let text = names.iter().take(most).map(|name| printable(name)).collect::<Vec<_>>().join(" ");
     match names.len().saturating_sub(most) {
         0 if names.is_empty() => "none".into(),
         0 => text,
@@ -78,8 +78,9 @@ fn listed(names: &[String], most: usize) -> String {
     }
 }
 
+/// Lists the properties that are understood and those that are skipped.
 fn properties(report: &Report) -> String {
-    // What is understood is never much.
+    // Only a few properties are ever understood.
     let (understood, skipped) = (listed(&report.understood, usize::MAX), listed(&report.skipped, MOST_NAMES));
     format!(
         "understood: {understood}\nskipped: {skipped}\nskipped elements: {}\n",
@@ -87,6 +88,7 @@ fn properties(report: &Report) -> String {
     )
 }
 
+/// Describes a model of `points` points.
 fn describe(model: &Model, points: u64) -> String {
     let Model { surfels, primitives } = model;
     let mut text = format!("points: {points}\nsurfels: {}\n", surfels.len());
@@ -114,20 +116,21 @@ fn describe(model: &Model, points: u64) -> String {
     text
 }
 
-/// The least, the greatest and the median of radii; `None` if there are none.
+/// Minimum, maximum and median of radii; `None` if there are none.
 fn range(radii: &[f32]) -> Option<[f32; 3]> {
     let mut radii = radii.to_vec();
     radii.sort_unstable_by(f32::total_cmp);
     Some([*radii.first()?, *radii.last()?, radii[radii.len() / 2]])
 }
 
+/// Describes the range of radii.
 fn range_text(radii: &[f32]) -> String {
     range(radii)
         .map_or(String::new(), |[min, max, median]| format!("radius: {min} to {max}, median {median}"))
 }
 
-/// What positions are relative to, from where they were seen, and how the points are connected.
-fn frame(report: &Report, cloud: &Cloud) -> String {
+/// Describes origin, scanner position and connectivity of the points.
+fn connectivity(report: &Report, cloud: &Cloud) -> String {
     let mut text = String::new();
     if report.gaussians {
         text += "kind: 3D Gaussians, as discs\n";
@@ -158,7 +161,7 @@ fn frame(report: &Report, cloud: &Cloud) -> String {
     text
 }
 
-/// Where normals and radii came from.
+/// Describes where normals and radii come from.
 fn sources(estimated: &Estimated) -> String {
     let list = |counts: [(u64, &str); 4]| {
         let some = counts.iter().filter(|(count, _)| *count > 0);
@@ -186,6 +189,7 @@ fn sources(estimated: &Estimated) -> String {
     format!("normals: {normals}\nradii: {radii}\n{lines}")
 }
 
+/// Describes the points that are left out.
 fn dropped(Dropped { position, transparent }: Dropped, estimated: &Estimated) -> String {
     let outliers = estimated.outliers;
     format!(
@@ -193,6 +197,7 @@ fn dropped(Dropped { position, transparent }: Dropped, estimated: &Estimated) ->
     )
 }
 
+/// Describes trailing bytes, if there are any.
 fn trailing(report: &Report) -> String {
     match report.trailing {
         0 => String::new(),

@@ -1,25 +1,25 @@
-//! `--fail-above` and `--fail-below`: how good a picture must be.
+//! Limits of metrics: `--fail-above` and `--fail-below`.
 
 use super::number::significant;
 use surfel::settings::Choice;
 use surfel::verify::metrics::{Better, Measured, Metric};
 use surfel::{Error, Result};
 
-/// A bound on one metric, which must not be crossed.
+/// A limit of a metric.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limit {
-    /// What is bounded.
+    /// The metric.
     pub metric: Metric,
-    /// The bound: the greatest value that is good where less is better, the least where more is.
+    /// The worst value that passes.
     pub value: f64,
 }
 
-/// `METRIC=VALUE` of a metric of which less is better.
+/// Parses `METRIC=VALUE` for a metric of which less is better.
 pub fn above(text: &str) -> Result<Limit, String> {
     parse(text, Better::Less)
 }
 
-/// `METRIC=VALUE` of a metric of which more is better.
+/// Parses `METRIC=VALUE` for a metric of which more is better.
 pub fn below(text: &str) -> Result<Limit, String> {
     parse(text, Better::More)
 }
@@ -33,20 +33,21 @@ fn parse(text: &str, better: Better) -> Result<Limit, String> {
         text.split_once('=').ok_or_else(|| format!("give METRIC=VALUE, METRIC one of {}", choice()))?;
     let metric =
         Metric::named(name).ok_or_else(|| format!("there is no metric {name}: give one of {}", choice()))?;
-    match (metric.better() == better, better) {
-        (true, _) => {}
-        (false, Better::Less) => return Err(format!("of {name} more is better: use --fail-below")),
-        (false, Better::More) => return Err(format!("of {name} less is better: use --fail-above")),
+    if metric.better() != better {
+        return Err(match better {
+            Better::Less => format!("of {name} more is better: use --fail-below"),
+            Better::More => format!("of {name} less is better: use --fail-above"),
+        });
     }
     let value = value.trim().parse().ok().filter(|value: &f64| value.is_finite());
     Ok(Limit { metric, value: value.ok_or_else(|| format!("the value of {name} is not a number"))? })
 }
 
 impl Limit {
-    /// How it is crossed, if it is.
+    /// Describes the violation of the limit, if there is one.
     ///
     /// # Errors
-    /// [`Error::Usage`] if the metric was not measured: that is no pass.
+    /// [`Error::Usage`] if the metric was not measured, which does not pass.
     pub fn violation(&self, measured: &Measured) -> Result<Option<String>> {
         let name = self.metric.name();
         let Some(found) = measured.value(self.metric) else {
@@ -82,7 +83,7 @@ mod tests {
     }
 
     #[test]
-    fn only_what_crosses_a_limit_violates_it() {
+    fn a_value_beyond_the_limit_violates_it() {
         let flip = surfel::verify::metrics::flip::Map { size: [0, 0], values: vec![] };
         let values = vec![(Metric::Rmse, 0.5), (Metric::Psnr, f64::INFINITY), (Metric::Ssim, 0.25)];
         let measured = Measured { values, flip, picture_covers: 0, truth_covers: 0 };

@@ -1,4 +1,4 @@
-//! Logging to standard error, in the form of the program's other messages.
+//! Log on standard error, in the format of the program's other messages.
 
 use super::progress;
 use env_logger::{Builder, Target};
@@ -6,17 +6,18 @@ use log::LevelFilter;
 use std::io::Write;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Where the library reports what the validation layers say.
+/// Log target of the validation layers' messages.
 const VALIDATION: &str = "surfel::vk::validation";
 
+/// Number of messages of the validation layers.
 static MESSAGES: AtomicUsize = AtomicUsize::new(0);
 
-/// Warnings and errors, or what `RUST_LOG` asks for; the validation layers' messages always.
+/// Starts the log: warnings and errors unless `RUST_LOG` says otherwise, and always the validation layers' messages.
 pub fn start() {
     Builder::new()
         .filter_level(LevelFilter::Warn)
         .filter_module(VALIDATION, LevelFilter::Error)
-        // What these warn of is the display's business; what follows from it is an error here.
+        // Their warnings concern the display; failures that follow are errors here.
         .filter_module("winit", LevelFilter::Error)
         .filter_module("arboard", LevelFilter::Error)
         .parse_default_env()
@@ -34,7 +35,7 @@ pub fn start() {
         .init();
 }
 
-/// Messages of the validation layers so far, those at the end of a device included, which the device itself cannot tell any more.
+/// Number of messages of the validation layers so far, including those of the destruction of devices.
 pub fn validation_messages() -> usize {
     MESSAGES.load(Ordering::Relaxed)
 }

@@ -1,4 +1,4 @@
-//! `surfel completions` and `surfel man`: what the arguments say of themselves, for shells and for `man`.
+//! `surfel completions` and `surfel man`: shell completions and man pages from the arguments.
 
 use super::args::{Completions, Man, Surfel};
 use super::files::print;
@@ -7,14 +7,14 @@ use surfel::{Error, Result};
 
 const NAME: &str = "surfel";
 
-/// Prints completions for a shell.
+/// Prints the completion script of a shell.
 pub fn completions(args: &Completions) -> Result<()> {
     let mut text = Vec::new();
     clap_complete::generate(args.shell, &mut Surfel::command(), NAME, &mut text);
     print(&String::from_utf8_lossy(&text))
 }
 
-/// Writes the manual's pages.
+/// Writes the man pages.
 pub fn man(args: &Man) -> Result<()> {
     clap_mangen::generate_to(Surfel::command(), &args.folder)
         .map_err(Error::io(&args.folder, "cannot write the manual"))

@@ -11,9 +11,10 @@ use surfel::settings::splatting::{Filter, Splatting};
 use surfel::settings::{Choice, Settings, Shading};
 use surfel::{Rasterizer, RenderOptions, Result};
 
-const WAYS: [(Rasterizer, &str); 2] = [(Rasterizer::Draw, "drawn"), (Rasterizer::Compute, "computed")];
+/// The rasterizers, with the names of their frames.
+const RASTERIZERS: [(Rasterizer, &str); 2] = [(Rasterizer::Draw, "drawn"), (Rasterizer::Compute, "computed")];
 
-/// Lists the methods: paper, choices along the axes, and for coloured circles that are lit the passes and targets of either rasterizer.
+/// Lists the methods: paper, axes, and the passes and targets of a lit frame of coloured circles, for each rasterizer.
 pub fn run(args: &args::Methods) -> Result<()> {
     if args.needs {
         return print(&needs::table());
@@ -21,7 +22,7 @@ pub fn run(args: &args::Methods) -> Result<()> {
     if args.json {
         return print_json(&Method::ALL.iter().map(value).collect());
     }
-    let mut text = String::from("bytes are those of a pixel, of a lit frame of coloured circles\n");
+    let mut text = String::from("bytes are per pixel, for a lit frame of coloured circles\n");
     Method::ALL.iter().for_each(|method| describe(&mut text, method));
     print(&text)
 }
@@ -34,7 +35,7 @@ fn value(method: &Method) -> Value {
             "normalization": normalization.name(), "shade": shade.name(),
         })
     });
-    let frames: serde_json::Map<_, _> = WAYS
+    let frames: serde_json::Map<_, _> = RASTERIZERS
         .into_iter()
         .map(|(rasterizer, name)| {
             let FramePlan { passes, targets, .. } = plan(&method.settings(), rasterizer);
@@ -80,10 +81,10 @@ fn describe(text: &mut String, method: &Method) {
 }
 
 fn describe_frames(text: &mut String, method: &Method) {
-    for (rasterizer, name) in WAYS {
+    for (rasterizer, name) in RASTERIZERS {
         let FramePlan { passes, targets, .. } = plan(&method.settings(), rasterizer);
         let _ = writeln!(text, "  {name:<8} {}", passes.join(" → "));
-        let _ = writeln!(text, "           {}", told(&targets));
+        let _ = writeln!(text, "           {}", targets_text(&targets));
     }
 }
 
@@ -93,7 +94,8 @@ fn plan(settings: &Settings, rasterizer: Rasterizer) -> FramePlan {
     FramePlan::new(&[streams], true, &settings, &RenderOptions::default(), rasterizer)
 }
 
-fn told(targets: &[(&str, f64)]) -> String {
+/// Lists the targets with their bytes per pixel.
+fn targets_text(targets: &[(&str, f64)]) -> String {
     let each: Vec<_> = targets.iter().map(|(name, bytes)| format!("{name} {bytes}")).collect();
     let sum: f64 = targets.iter().map(|(_, bytes)| bytes).sum();
     format!("{}: {sum} bytes", each.join(", "))

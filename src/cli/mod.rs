@@ -1,4 +1,4 @@
-//! The command line: the library knows nothing of it.
+//! The command line. The library does not depend on it.
 
 mod args;
 #[cfg(feature = "bench")]
@@ -37,7 +37,7 @@ use args::{Command, Listing, Surfel};
 use clap::Parser;
 use std::process::ExitCode;
 
-/// Runs the program with the process's arguments. Everything that goes wrong is one line on standard error and an [exit code](exit).
+/// Runs the program with the process's arguments. An error is one line on standard error and an [exit code](exit).
 pub fn run() -> ExitCode {
     log::start();
     let parsed = match Surfel::try_parse() {
@@ -65,7 +65,7 @@ pub fn run() -> ExitCode {
         Command::Completions(args) => manual::completions(&args),
         Command::Man(args) => manual::man(&args),
     };
-    // By now the device is gone, and with it what the layers had to say about its end.
+    // The device is dropped by now: the count includes the messages of its destruction.
     match done {
         Ok(()) => exit::of_messages(log::validation_messages()),
         Err(error) => exit::of_error(&error),

@@ -1,4 +1,4 @@
-//! `surfel methods --needs`: what frames of different scenes need, and no more.
+//! `surfel methods --needs`: streams, passes and targets that frames of different scenes need.
 
 use std::fmt::Write;
 use surfel::frame::FramePlan;
@@ -8,7 +8,7 @@ use surfel::settings::splatting::{Normalization, Splatting};
 use surfel::settings::{Alpha, Shading};
 use surfel::{Outputs, Rasterizer, RenderOptions, Settings};
 
-/// A frame of a scene.
+/// A row of the table: a frame of a scene.
 struct Case {
     method: Method,
     scene: &'static str,
@@ -19,19 +19,21 @@ struct Case {
 }
 
 impl Case {
-    /// Lit, of circles that maybe have colours.
+    /// A lit frame of circles.
     fn lit(method: Method, scene: &'static str, colours: ColourStream) -> Self {
         let streams = Streams::circles(colours);
         let settings = Settings { shading: Shading::Lit, ..method.settings() };
         Self { method, scene, streams, asked: "lit", settings, outputs: Outputs::default() }
     }
 
+    /// The same frame of another scene.
     fn of(self, scene: &'static str, change: impl FnOnce(&mut Streams)) -> Self {
         let mut streams = self.streams;
         change(&mut streams);
         Self { scene, streams, ..self }
     }
 
+    /// The same scene with another frame.
     fn asking(self, asked: &'static str, change: impl FnOnce(&mut Settings, &mut Outputs)) -> Self {
         let (mut settings, mut outputs) = (self.settings, self.outputs);
         change(&mut settings, &mut outputs);
@@ -74,7 +76,7 @@ fn cases() -> Vec<Case> {
     ]
 }
 
-/// The table.
+/// The table in Markdown.
 pub fn table() -> String {
     let mut text = String::from(
         "| method | scene | asked for | streams, B a surfel | splats, B a surfel | passes, drawn | targets, B a px | passes, computed | targets, B a px |\n\
@@ -104,7 +106,7 @@ pub fn table() -> String {
     text
 }
 
-/// `52: visibility 4, image 16`.
+/// Lists the targets with their bytes per pixel: `52: visibility 4, image 16`.
 fn targets(FramePlan { targets, .. }: &FramePlan) -> String {
     let short = |bytes: f64| format!("{}", (100.0 * bytes).round() / 100.0);
     let sum: f64 = targets.iter().map(|(_, bytes)| bytes).sum();

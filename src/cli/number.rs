@@ -1,11 +1,11 @@
-//! Numbers as people read them.
+//! Formatting of numbers.
 
-/// With six significant digits at most, and no zeros behind them; in powers of ten where it would be long.
+/// Formats a number with at most six significant digits; very small and very large ones in scientific notation.
 pub fn significant(value: f64) -> String {
     if value == 0.0 {
         return "0".into();
     }
-    // The same number without the digits that are not shown.
+    // Rounding first removes trailing zeros.
     let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
     match rounded.abs() {
         size if (1e-4..1e9).contains(&size) || !size.is_finite() => rounded.to_string(),

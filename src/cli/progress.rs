@@ -1,4 +1,4 @@
-//! Progress bars on standard error, and lines that do not run into them.
+//! Progress bars on standard error, and lines printed above them.
 
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 use std::io::{self, IsTerminal, Write};
@@ -9,24 +9,26 @@ use std::time::{Duration, Instant};
 use surfel::Progress;
 use surfel::load::Listener;
 
-/// How long a stage lasts before it has a bar.
+/// Duration of a stage before its bar appears.
 const PATIENCE: Duration = Duration::from_millis(500);
-/// How often a bar is drawn at most.
+/// Minimum time between two updates of a bar.
 const PERIOD: Duration = Duration::from_millis(80);
 
-/// Whatever is on the terminal now.
+/// The bars on the terminal.
 static BARS: LazyLock<MultiProgress> = LazyLock::new(MultiProgress::new);
 
 /// Prints notes, and draws progress bars where standard error is a terminal; silent if `quiet`.
 pub fn bars(quiet: bool) -> Box<dyn Listener> {
-    match (quiet, io::stderr().is_terminal()) {
-        (true, _) => Box::new(()),
-        (false, true) => Box::new(Bars::new(PATIENCE)),
-        (false, false) => Box::new(Notes),
+    if quiet {
+        Box::new(())
+    } else if io::stderr().is_terminal() {
+        Box::new(Bars::new(PATIENCE))
+    } else {
+        Box::new(Notes)
     }
 }
 
-/// Notes alone, without bars.
+/// Prints notes only.
 struct Notes;
 
 impl Progress for Notes {
@@ -39,7 +41,7 @@ impl Listener for Notes {
     }
 }
 
-/// Progress alone, without notes.
+/// Forwards progress only, without notes.
 #[cfg(any(feature = "truth", feature = "viewer"))]
 pub struct Silent<'a>(pub &'a dyn Progress);
 
@@ -79,9 +81,9 @@ impl Write for Log {
 struct Bars {
     start: Instant,
     patience: Duration,
-    /// The stage's name, for a look without the lock.
+    /// The stage's name, readable without the lock.
     current: AtomicPtr<u8>,
-    /// When there is something to do next, µs after `start`.
+    /// When the next update is due, µs after `start`.
     next: AtomicU64,
     stage: Mutex<Option<Stage>>,
 }
@@ -97,6 +99,7 @@ impl Bars {
         Self { start: Instant::now(), patience, current, next, stage: Mutex::new(None) }
     }
 
+    /// Sets the time of the next update.
     fn wait(&self, from: Duration, time: Duration) {
         self.next.store((from + time).as_micros() as u64, Relaxed);
     }
@@ -112,7 +115,7 @@ impl Progress for Bars {
         }
         let mut stage = self.stage.lock().unwrap_or_else(PoisonError::into_inner);
         if done >= total {
-            // Another thread may be late with news of a stage that has ended.
+            // Another thread may report a stage late that has ended.
             if stage.as_ref().is_some_and(|stage| stage.name == name) {
                 *stage = None;
                 self.current.store(ptr::null_mut(), Relaxed);
@@ -177,7 +180,7 @@ mod tests {
         std::thread::sleep(Duration::from_millis(40));
         bars.at("reading", 7, 10);
         assert_eq!(shown(&bars), Some(("reading", Some(7))));
-        // Too soon to be drawn again.
+        // Too early for an update.
         bars.at("reading", 8, 10);
         assert_eq!(shown(&bars), Some(("reading", Some(7))));
         bars.at("estimating", 3, 4);

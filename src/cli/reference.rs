@@ -1,4 +1,4 @@
-//! Rendering without Vulkan.
+//! Rendering with the float64 reference, without Vulkan.
 
 use super::render::{Outcome, Task};
 use super::turntable;
@@ -8,10 +8,10 @@ use surfel::geometry::Camera;
 use surfel::verify::reference;
 use surfel::{Error, Picture, Result, SplatCounts};
 
-/// Most pixels of a picture: they take some 5 GiB in float64, and running out of memory would stop the process.
+/// Maximum number of pixels: they take about 5 GiB in float64, and running out of memory would abort the process.
 const MOST_PIXELS: u64 = 1 << 26;
 
-/// Renders `task` with the float64 reference, as many times as it asks for.
+/// Renders the frames of `task` with the float64 reference.
 pub fn render(task: &Task<'_>) -> Result<Outcome> {
     let [width, height] = task.size;
     if u64::from(width) * u64::from(height) > MOST_PIXELS {
@@ -31,18 +31,18 @@ pub fn render(task: &Task<'_>) -> Result<Outcome> {
     Ok(Outcome { picture, counts, times, gpu: None })
 }
 
-/// Renders `task` from other cameras, and gives each picture to `save` with the camera's number.
+/// Renders `task` from other cameras; calls `save` with the index of the camera and the picture.
 pub fn turn(
     task: &Task<'_>,
     cameras: &[Camera],
     mut save: impl FnMut(usize, Picture) -> Result<()>,
 ) -> Result<()> {
     for (number, camera) in cameras.iter().enumerate() {
-        turntable::tell(task, number, cameras.len());
+        turntable::report_progress(task, number, cameras.len());
         let frame = reference::render(task.scene, camera, task.size, &task.settings, &())?;
         save(number, frame.to_picture())?;
     }
-    turntable::tell(task, cameras.len(), cameras.len());
+    turntable::report_progress(task, cameras.len(), cameras.len());
     Ok(())
 }
 

@@ -14,45 +14,44 @@ use surfel::settings::Shading;
 use surfel::settings::methods::{Method, pull_push};
 use surfel::{Error, Outputs, Picture, Progress, Result, Settings, SplatCounts};
 
-/// What is to be rendered, wherever that happens.
+/// A picture to render, with Vulkan or the reference.
 pub struct Task<'a> {
     /// The scene.
     pub scene: &'a Model,
-    /// By which method, before anything was changed of it.
+    /// The method, without the changes of its axes.
     pub method: Method,
-    /// Seen from here.
+    /// The camera.
     pub camera: Camera,
-    /// Like this.
+    /// The render settings.
     pub settings: Settings,
     /// Width and height, px.
     pub size: [u32; 2],
-    /// Images that are written beside it.
+    /// Additional images to write.
     pub layers: Outputs,
-    /// How many times; at least once.
+    /// Number of frames, at least 1.
     pub frames: u32,
-    /// Is told how far it has come.
+    /// Receives the progress.
     pub progress: &'a dyn Progress,
 }
 
-/// What came of it.
+/// A rendered picture.
 pub struct Outcome {
     /// The picture.
     pub picture: Picture,
-    /// Surfels by cull reason, if they were counted.
+    /// Counts of surfels by cull reason, if they were counted.
     pub counts: Option<SplatCounts>,
-    /// How long it took.
+    /// Times of the frames.
     pub times: Times,
-    /// What is known of the device; `None` if none was used.
+    /// The device and its resources; `None` for the reference.
     pub gpu: Option<Gpu>,
 }
 
-/// Renders inputs to a picture. Arguments, files and places to write to are looked at first, cheap ones before large ones and all of
-/// them before the device.
+/// Renders inputs to a picture. Arguments, outputs and inputs are checked before the device is opened, cheap checks first.
 pub fn run(args: &Render) -> Result<()> {
     let out = turntable::first(args)?;
     check_outputs(args, &out)?;
     args.settings(&args.method.unwrap_or(Method::ALL[0])).check()?;
-    let device = vulkan::options(&args.place.device)?;
+    let device = vulkan::options(&args.backend.device)?;
     let file = camera::read(&args.camera)?;
     let colouring = args.colours.colouring(camera::up(&args.camera, file))?;
     check_colours(args, colouring.as_ref(), &out)?;
@@ -76,9 +75,10 @@ pub fn run(args: &Render) -> Result<()> {
     let task = Task { scene, method, camera, settings, size, layers, frames, progress };
     let counts = args.json.is_some();
     let wanted = Measured { times: counts || args.times, counts };
-    let mut outcome = match args.place.reference {
-        true => reference::render(&task)?,
-        false => vulkan::render(&task, &device, &args.place, wanted)?,
+    let mut outcome = if args.backend.reference {
+        reference::render(&task)?
+    } else {
+        vulkan::render(&task, &device, &args.backend, wanted)?
     };
     if !out.is_png() {
         keep_layers(&mut outcome.picture, task.layers);
@@ -95,19 +95,20 @@ pub fn run(args: &Render) -> Result<()> {
             let out = Output::parse(&pattern.file(number as u32 + 1));
             save(&picture, task.settings.shading, bar.as_ref(), &out)
         };
-        match args.place.reference {
-            true => reference::turn(&task, others, save)?,
-            false => vulkan::turn(&task, &device, &args.place, others, save)?,
+        if args.backend.reference {
+            reference::turn(&task, others, save)?;
+        } else {
+            vulkan::turn(&task, &device, &args.backend, others, save)?;
         }
     }
-    if let Some(place) = &args.json {
-        files::write_text(place, &Report::new(args, &loaded, &task, &outcome).to_json()?)?;
+    if let Some(output) = &args.json {
+        files::write_text(output, &Report::new(args, &loaded, &task, &outcome).to_json()?)?;
     }
-    tell(args, &loaded, &outcome);
+    print_summary(args, &loaded, &outcome);
     Ok(())
 }
 
-/// The method that was asked for, or the one that is taken for such a scene.
+/// The chosen method, or else the default one for the model. Fails if the method cannot render the model.
 pub fn method(asked: Option<Method>, model: &Model) -> Result<Method> {
     let splats = model.primitives.is_empty();
     match asked {
@@ -122,7 +123,7 @@ pub fn method(asked: Option<Method>, model: &Model) -> Result<Method> {
     }
 }
 
-/// Writes the picture, with a colour bar in it if there is one.
+/// Writes the picture, with the colour bar if there is one.
 fn save(picture: &Picture, shading: Shading, bar: Option<&ColourBar>, out: &Output) -> Result<()> {
     let Some(bar) = bar else { return write(picture, shading, out) };
     let mut encoded = Encoded::of(picture, shading)?;
@@ -130,32 +131,33 @@ fn save(picture: &Picture, shading: Shading, bar: Option<&ColourBar>, out: &Outp
     encoded.write_png(out)
 }
 
-/// Leaves out of a picture what was not asked for.
+/// Drops the images of a picture that are not among `layers`.
 pub fn keep_layers(picture: &mut Picture, layers: Outputs) {
     picture.normal.take_if(|_| !layers.normal);
     picture.depth.take_if(|_| !layers.depth);
     picture.id.take_if(|_| !layers.id);
 }
 
-/// Refuses colours that would not be seen, and a bar where there is no place or nothing to tell.
+/// Fails if the shading does not show the colours, or if the colour bar cannot be drawn or has no values.
 fn check_colours(args: &Render, colouring: Option<&Colouring>, out: &Output) -> Result<()> {
     let Some(colouring) = colouring else { return Ok(()) };
     let refuse = |text: &str| Err(Error::Usage(text.into()));
     if !matches!(args.render_settings.shading, Shading::Lit | Shading::Colour) {
-        return refuse("--color-by shows under --shading lit or color alone: choose one of them");
+        return refuse("--color-by is visible with --shading lit or color only: choose one of them");
     }
-    match args.color_bar {
-        false => Ok(()),
-        true if !out.is_png() => refuse("--color-bar is drawn into a PNG alone: name the picture .png"),
-        true if !colouring.has_values() => {
-            refuse("--color-bar has no values to tell of normals: leave it out")
-        }
-        true => ColourBar::check(args.size),
+    if !args.color_bar {
+        Ok(())
+    } else if !out.is_png() {
+        refuse("--color-bar is drawn into a PNG alone: name the picture .png")
+    } else if !colouring.has_values() {
+        refuse("--color-bar has no values for normals: leave it out")
+    } else {
+        ColourBar::check(args.size)
     }
 }
 
-/// What the user, not a program, wants to know; on standard error, which leaves the other to the picture.
-fn tell(args: &Render, loaded: &LoadedModel, outcome: &Outcome) {
+/// Prints the summary to standard error; standard output is left to the picture.
+fn print_summary(args: &Render, loaded: &LoadedModel, outcome: &Outcome) {
     if args.times {
         if let Some(Gpu { description, usage, .. }) = &outcome.gpu {
             progress::say(&format!(
@@ -178,7 +180,7 @@ fn tell(args: &Render, loaded: &LoadedModel, outcome: &Outcome) {
     }
 }
 
-/// Refuses places that cannot be written to, and a report that would take the place of the picture or of an input.
+/// Checks that the outputs can be written, and that the report overwrites neither the picture nor an input.
 fn check_outputs(args: &Render, out: &Output) -> Result<()> {
     out.check()?;
     if out.is_png() && !args.layers.is_empty() {
@@ -186,11 +188,5 @@ fn check_outputs(args: &Render, out: &Output) -> Result<()> {
     }
     let Some(json) = &args.json else { return Ok(()) };
     files::check(json)?;
-    match std::iter::once(&args.output).chain(&args.inputs).find(|other| files::is_same(other, json)) {
-        Some(other) => Err(Error::Usage(format!(
-            "--json would overwrite {}, which is another file of this command: name another",
-            Path::new(other).display()
-        ))),
-        None => Ok(()),
-    }
+    files::check_distinct("--json", json, std::iter::once(&args.output).chain(&args.inputs))
 }

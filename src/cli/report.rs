@@ -1,4 +1,4 @@
-//! What `--json` writes. Times are milliseconds, sizes bytes, colours linear.
+//! The report of `--json`. Times are in milliseconds, sizes in bytes, colours linear.
 
 use super::args::Render;
 use super::render::{Outcome, Task};
@@ -13,13 +13,13 @@ use surfel::settings::{Choice, DirectionalLight, Lighting};
 use surfel::vk::{DeviceDescription, Usage};
 use surfel::{Error, Precision, Rasterizer, Result, Settings, SplatCounts, TargetInfo};
 
-/// What is known of the device and of what was made on it.
+/// The device and its resources.
 pub struct Gpu {
     /// The device.
     pub description: DeviceDescription,
     /// Float width of the sums.
     pub precision: Precision,
-    /// What visited the pixels.
+    /// The rasterizer.
     pub rasterizer: Option<Rasterizer>,
     /// Every render target.
     pub targets: Vec<TargetInfo>,
@@ -27,20 +27,20 @@ pub struct Gpu {
     pub scene_bytes: u64,
     /// Memory of the splats, bytes.
     pub splat_bytes: u64,
-    /// Everything that was made.
+    /// All resources.
     pub usage: Usage,
-    /// What the layers had to say; empty unless they were asked for.
+    /// Messages of the validation layers; empty unless they were enabled.
     pub validation_messages: Vec<String>,
-    /// What 16-bit sums cost in accuracy, if they were asked for and the device has 32-bit ones to compare with.
+    /// Error of 16-bit sums, if they were chosen and the device supports 32-bit ones to compare with.
     pub half_error: Option<HalfError>,
 }
 
-/// How far a picture of 16-bit sums or samples is from that of 32-bit ones, over all channels of all pixels, linear.
+/// Difference of a picture with 16-bit sums or samples from one with 32-bit ones, over all channels of all pixels, linear.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct HalfError {
     /// Largest difference.
     pub largest: f64,
-    /// Root of the mean square.
+    /// Root mean square difference.
     pub rms: f64,
 }
 
@@ -48,7 +48,7 @@ pub struct HalfError {
 pub struct Report(Map<String, Value>);
 
 impl Report {
-    /// Everything about a command and what came of it. Without a device, what concerns one is null.
+    /// The report of a command and its outcome. Without a device, the entries of the device are null.
     pub fn new(args: &Render, loaded: &LoadedModel, task: &Task<'_>, outcome: &Outcome) -> Self {
         let names = |name| Path::new(name).display().to_string();
         let mut report = Map::new();
@@ -57,7 +57,7 @@ impl Report {
         put("inputs", args.inputs.iter().map(names).collect());
         put("output", json!(names(&args.output)));
         put("method", json!(task.method.name));
-        put("reference", json!(args.place.reference));
+        put("reference", json!(args.backend.reference));
         put("size", json!(task.size));
         put("frames", json!(task.frames));
         put("settings", settings(&task.settings));
@@ -72,6 +72,7 @@ impl Report {
         report
     }
 
+    /// Adds the entries of the device.
     fn put_gpu(&mut self, gpu: Option<&Gpu>) {
         let mut put = |key: &str, value: Option<Value>| self.0.insert(key.into(), json!(value));
         put("device", gpu.map(|gpu| device(&gpu.description)));
@@ -88,7 +89,7 @@ impl Report {
         put("validation_messages", gpu.map(|gpu| json!(gpu.validation_messages)));
     }
 
-    /// As text that ends with a line break.
+    /// The text of the report, with a line break at the end.
     pub fn to_json(&self) -> Result<String> {
         let text = serde_json::to_string_pretty(&self.0);
         Ok(text.map_err(|error| Error::Usage(format!("the report: {error}")))? + "\n")
@@ -143,7 +144,7 @@ fn light(lighting: &Lighting) -> Value {
     })
 }
 
-/// Matrices by columns.
+/// The matrices of the camera, by columns.
 fn camera(task: &Task<'_>) -> Value {
     let camera = &task.camera;
     let [view, projection] = [camera.view, camera.projection].map(|matrix| matrix.to_cols_array_2d());
@@ -154,7 +155,7 @@ fn pass((name, ms): (&'static str, Statistics)) -> Value {
     json!({ "name": name, "ms": ms })
 }
 
-/// Every point once: read = dropped + culled + drawn.
+/// Counts of points, each of which counts once: read = dropped + culled + drawn.
 fn tally(loaded: &LoadedModel, counts: SplatCounts) -> Value {
     let Dropped { position, transparent } = loaded.dropped;
     let SplatCounts { drawn, behind, eye_plane, back, outside, invalid } = counts;
@@ -168,7 +169,7 @@ fn tally(loaded: &LoadedModel, counts: SplatCounts) -> Value {
     })
 }
 
-/// Where normals and radii came from, as numbers of points.
+/// Where normals and radii come from, as numbers of points.
 fn estimated(counts: &Estimated) -> Value {
     let Estimated { normals_given, normals_from_faces, normals_from_neighbours, two_sided, .. } = counts;
     let Estimated { radii_given, radii_from_faces, radii_from_neighbours, .. } = counts;
@@ -183,7 +184,7 @@ fn estimated(counts: &Estimated) -> Value {
     })
 }
 
-/// Null where there are no values, as of normals.
+/// What points are coloured by; map and range are null without values, as for normals.
 fn color_by(args: &Render, coloured: &Coloured) -> Value {
     let range = coloured.scale.map(|scale| [scale.range.min, scale.range.max]);
     json!({ "name": coloured.name, "map": range.map(|_| args.colours.color_map.name()), "range": range })

@@ -6,7 +6,7 @@ use std::fmt::Write;
 use surfel::Result;
 use surfel::verify::scenes::{self, Parameter, SAMPLING, Scene};
 
-/// Lists the built-in scenes: what each shows, a camera for it, its parameters with their defaults and values.
+/// Lists the built-in scenes, each with a camera and its parameters.
 pub fn run(json: bool) -> Result<()> {
     if json {
         let scenes: Value = scenes::list().iter().map(value).collect();

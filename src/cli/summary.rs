@@ -1,8 +1,8 @@
-//! What there is, in words.
+//! Summary of a model, as text.
 
 use surfel::geometry::Model;
 
-/// What a model is made of: `5 surfels, 2 ribbons`.
+/// Parts of a model: `5 surfels, 2 ribbons`.
 pub fn parts(Model { surfels, primitives }: &Model) -> String {
     let others = [
         (&primitives.ribbons.len(), "ribbons"),

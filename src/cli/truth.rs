@@ -14,7 +14,7 @@ use surfel::verify::scenes;
 use surfel::verify::truth::{self, Cache, Mesh, Scene};
 use surfel::{Error, Progress, Result, Settings};
 
-/// Traces an input to a picture. Arguments and places to write to are looked at first.
+/// Ray-traces an input to a picture. Arguments and outputs are checked first.
 pub fn run(args: &Truth) -> Result<()> {
     let out = Output::parse(&args.output);
     out.check()?;
@@ -45,19 +45,21 @@ pub fn run(args: &Truth) -> Result<()> {
     Ok(())
 }
 
-/// What `render` frames of the same input, so that both pictures are of one camera.
+/// The bounds that `surfel render` frames, so that both commands have the same default camera.
 fn bounds(args: &Truth, progress: &dyn Progress) -> Result<Bounds> {
     let input = std::slice::from_ref(&args.input);
     let loaded = load(input, &LoadOptions::default(), &Silent(progress))?;
     Parts::from(&loaded.model).bounds().ok_or_else(|| Error::Usage("the input holds no points".into()))
 }
 
+/// Reads a mesh.
 fn read(path: &Path, progress: &dyn Progress) -> Result<Mesh> {
     let options = ReadOptions { triangles: true, ..Default::default() };
     let loaded = formats::read(path, &options, progress)?;
     Mesh::new(&loaded.cloud).map_err(|cause| Error::input(path.display().to_string(), cause))
 }
 
+/// Traces a scene, or reads its picture from the cache; `name` is its key.
 fn trace<S: Scene + ?Sized>(
     args: &Truth,
     name: &str,
@@ -73,6 +75,7 @@ fn trace<S: Scene + ?Sized>(
     }
 }
 
+/// Size and error of the picture, as text.
 fn summary(args: &Truth, truth: &truth::Truth) -> String {
     let truth::Achieved { rms, max, above } = truth.error;
     let ([width, height], out) = (args.size, Path::new(&args.output).display());

@@ -1,4 +1,4 @@
-//! `surfel render --turntable`: pictures on a circle about what is seen, and the names of their files.
+//! `surfel render --turntable`: cameras on a circle about the scene, and the names of their pictures.
 
 use super::args;
 use super::render::Task;
@@ -9,10 +9,10 @@ use surfel::formats::image::Output;
 use surfel::geometry::Camera;
 use surfel::{Error, Result};
 
-/// Most digits of a number.
+/// Maximum number of digits.
 const MOST_DIGITS: usize = 9;
 
-/// Where the pictures go: a name with a place for their numbers.
+/// Pattern of the pictures' names.
 pub struct Pattern {
     before: String,
     digits: usize,
@@ -20,7 +20,7 @@ pub struct Pattern {
 }
 
 impl Pattern {
-    /// A name with `%d`, or `%04d` for numbers of at least four digits, once.
+    /// Parses a name with one `%d`, or `%04d` for numbers of at least four digits.
     pub fn parse(name: &OsStr) -> Result<Self> {
         let refuse = || {
             Error::Usage(format!(
@@ -41,25 +41,25 @@ impl Pattern {
         Ok(Self { before: before.into(), digits, after: after.into() })
     }
 
-    /// The file of a picture.
+    /// The name of a picture.
     pub fn file(&self, number: u32) -> OsString {
         let Self { before, digits, after } = self;
         format!("{before}{number:0digits$}{after}").into()
     }
 }
 
-/// The names of the pictures of a turn, if one is asked for.
+/// The pattern of the output, if a turntable is rendered.
 pub fn pattern(args: &args::Render) -> Result<Option<Pattern>> {
     args.turntable.map(|_| Pattern::parse(&args.output)).transpose()
 }
 
-/// Where the picture goes, the first one of a turn.
+/// The output, or the first one of a turntable.
 pub fn first(args: &args::Render) -> Result<Output> {
     let first = pattern(args)?.map(|pattern| pattern.file(0));
     Ok(Output::parse(first.as_ref().unwrap_or(&args.output)))
 }
 
-/// The cameras of a turn of `count` pictures about the axis `up` through `middle`, counter-clockwise as seen from above; the first is
+/// The cameras of a full turn of `count` pictures about the axis `up` through `middle`, counter-clockwise as seen from above. The first is
 /// `camera` itself.
 pub fn cameras(camera: &Camera, middle: DVec3, up: DVec3, count: u32) -> Vec<Camera> {
     let axis = up.normalize();
@@ -67,7 +67,7 @@ pub fn cameras(camera: &Camera, middle: DVec3, up: DVec3, count: u32) -> Vec<Cam
         if number == 0 {
             return *camera;
         }
-        // The world turns the other way.
+        // Turning the camera is turning the world the other way.
         let back = DQuat::from_axis_angle(axis, -TAU * f64::from(number) / f64::from(count));
         let about =
             DMat4::from_translation(middle) * DMat4::from_quat(back) * DMat4::from_translation(-middle);
@@ -76,8 +76,8 @@ pub fn cameras(camera: &Camera, middle: DVec3, up: DVec3, count: u32) -> Vec<Cam
     (0..count).map(turned).collect()
 }
 
-/// Tells how far the turn has come.
-pub fn tell(task: &Task<'_>, number: usize, count: usize) {
+/// Reports the progress of the turn.
+pub fn report_progress(task: &Task<'_>, number: usize, count: usize) {
     task.progress.at("rendering pictures", number as u64, count as u64);
 }
 
@@ -86,7 +86,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_have_a_place_for_numbers() {
+    fn names_contain_the_number() {
         let file = |name: &str, number| Pattern::parse(name.as_ref()).unwrap().file(number);
         assert_eq!(file("frames/%04d.png", 7), "frames/0007.png");
         assert_eq!(file("%d.exr", 12), "12.exr");

@@ -1,4 +1,4 @@
-//! Values of options: text to what it means, with what is wrong about it.
+//! Parsers of the values of options.
 
 use clap::ValueEnum;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -10,14 +10,14 @@ use surfel::settings::Choice;
 use surfel::settings::methods::Method;
 use surfel::settings::splatting::Kernel;
 
-/// `WxH`, px.
+/// Parses `WxH`, px.
 pub fn size(text: &str) -> Result<[u32; 2], String> {
     let side = |text: &str| text.parse().ok().filter(|&side: &u32| side > 0);
     let sides = text.split_once('x').and_then(|(width, height)| Some([side(width)?, side(height)?]));
     sides.ok_or_else(|| "give WIDTHxHEIGHT in px, both whole numbers above 0, for example 1024x768".into())
 }
 
-/// `X,Y,Z`.
+/// Parses `X,Y,Z`.
 pub fn vector(text: &str) -> Result<DVec3, String> {
     let number = |text: &str| text.trim().parse().ok().filter(|value: &f64| value.is_finite());
     let numbers: Option<Vec<f64>> = text.split(',').map(number).collect();
@@ -27,19 +27,19 @@ pub fn vector(text: &str) -> Result<DVec3, String> {
     }
 }
 
-/// A vector that is not 0, as a unit vector.
+/// Parses a vector that is not 0; returns the unit vector.
 pub fn direction(text: &str) -> Result<DVec3, String> {
     vector(text)?.try_normalize().ok_or_else(|| "give a direction that is not 0,0,0".into())
 }
 
-/// A finite number above 0.
+/// Parses a finite number above 0.
 pub fn positive<T: FromStr + Into<f64> + Copy>(text: &str) -> Result<T, String> {
     let number = text.trim().parse().ok();
     let usable = number.filter(|&number: &T| number.into() > 0.0 && number.into().is_finite());
     usable.ok_or_else(|| "give a number above 0".into())
 }
 
-/// The angle of a sharp edge, degrees.
+/// Parses the angle of a sharp edge, degrees.
 pub fn edge(text: &str) -> Result<f32, String> {
     let angle = text.trim().parse().ok().filter(|angle: &f32| *angle > 0.0 && *angle < 180.0);
     angle.ok_or_else(|| "give an angle above 0 and below 180".into())
@@ -48,13 +48,13 @@ pub fn edge(text: &str) -> Result<f32, String> {
 /// What points are coloured by.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColourBy {
-    /// A property or a quantity.
+    /// Name of a property or a quantity.
     pub name: String,
-    /// The values at the ends of the colour map, if they are given.
+    /// The values at both ends of the colour map, if they are given.
     pub range: Option<ValueRange>,
 }
 
-/// `NAME` or `NAME:MIN,MAX`. A name may hold colons, so a range is what has a comma after the last one.
+/// Parses `NAME` or `NAME:MIN,MAX`. Names may contain colons: only text with a comma after the last colon is a range.
 pub fn colour_by(text: &str) -> Result<ColourBy, String> {
     let wrong = || "give NAME or NAME:MIN,MAX with MIN below MAX, for example intensity:0,255".to_owned();
     let number = |text: &str| text.trim().parse().ok().filter(|value: &f64| value.is_finite());
@@ -68,18 +68,18 @@ pub fn colour_by(text: &str) -> Result<ColourBy, String> {
     if name.is_empty() { Err(wrong()) } else { Ok(ColourBy { name: name.into(), range }) }
 }
 
-/// How the rays about a pixel become its value.
+/// Reconstruction filter of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Filter {
-    /// The low-pass of EWA splatting
+    /// The Gaussian low-pass filter of EWA splatting
     Gaussian,
     /// The mean over the pixel
     Box,
-    /// The one ray through the pixel's centre
+    /// A single ray through the pixel's centre
     Point,
 }
 
-/// What is seen where no surfel is.
+/// Background of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Background {
     /// Nothing: all channels 0.
@@ -89,7 +89,7 @@ pub enum Background {
 }
 
 impl Background {
-    /// As [`surfel::Settings::background`] holds it.
+    /// The value of [`surfel::Settings::background`].
     pub fn linear(self) -> Option<[f32; 3]> {
         match self {
             Self::Transparent => None,
@@ -98,7 +98,7 @@ impl Background {
     }
 }
 
-/// `transparent`, or [`opaque`].
+/// Parses `transparent`, or an [`opaque`] colour.
 pub fn background(text: &str) -> Result<Background, String> {
     match text {
         "transparent" => Ok(Background::Transparent),
@@ -108,8 +108,7 @@ pub fn background(text: &str) -> Result<Background, String> {
     }
 }
 
-/// `R,G,B` as sRGB codes of 8 bits, the numbers that a colour picker shows and that the PNG then holds, or an opaque colour of CSS; as linear
-/// light.
+/// Parses `R,G,B`, 8-bit sRGB codes as in the PNG, or an opaque CSS colour; returns linear light.
 pub fn opaque(text: &str) -> Result<[f32; 3], String> {
     let codes: Option<Vec<u8>> = text.split(',').map(|code| code.trim().parse().ok()).collect();
     let css = || csscolorparser::parse(text).ok().filter(|colour| colour.a == 1.0);
@@ -119,29 +118,29 @@ pub fn opaque(text: &str) -> Result<[f32; 3], String> {
     };
     let linear = |codes: [u8; 3]| codes.map(|code| srgb::decode(f64::from(code) / 255.0) as f32);
     code.map(linear).ok_or_else(|| {
-        "give R,G,B, each from 0 to 255 (sRGB), for example 255,255,255, or a colour as CSS has it: #fff, white".into()
+        "give R,G,B, each from 0 to 255 (sRGB), for example 255,255,255, or a CSS colour: #fff, white".into()
     })
 }
 
-/// A preset by its name.
+/// Parses a method by its name.
 pub fn method() -> impl TypedValueParser<Value = Method> {
     let presets = Method::ALL.map(|method| PossibleValue::new(method.name).help(method.paper));
     PossibleValuesParser::new(presets).map(|name| Method::named(&name).unwrap_or(Method::ALL[0]))
 }
 
-/// One of all that there are, by its name.
+/// Parses one of all choices by its name.
 pub fn choice<T: Choice>() -> impl TypedValueParser<Value = T> {
     one_of(T::ALL)
 }
 
-/// One of these, by its name.
+/// Parses one of these choices by its name.
 pub fn one_of<T: Choice>(all: &[T]) -> impl TypedValueParser<Value = T> {
     let value = |one: &T| PossibleValue::new(one.name()).aliases(one.names()).help(one.about());
     PossibleValuesParser::new(all.iter().map(value))
         .try_map(|name| T::named(&name).ok_or("there is no such choice"))
 }
 
-/// `gaussian`, or `confetti:A,N`.
+/// Parses `gaussian`, or `confetti:A,N`.
 pub fn kernel(text: &str) -> Result<Kernel, String> {
     let number = |text: &str| text.trim().parse().ok();
     let numbers = |text: &str| text.split_once(',').and_then(|(a, n)| number(a).zip(number(n)));
@@ -153,7 +152,7 @@ pub fn kernel(text: &str) -> Result<Kernel, String> {
     .ok_or_else(|| "give gaussian, or confetti:A,N, for example confetti:6,3".into())
 }
 
-/// What an EXR file holds beside the picture.
+/// Additional layer of an EXR file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub enum Layer {
     /// Unit normals in world space, as channels N.X, N.Y, N.Z

@@ -15,15 +15,12 @@ use surfel::load::{Colouring, Listener, LoadOptions, load, scene};
 use surfel::settings::methods::Method;
 use surfel::{Error, Progress, Result};
 
-/// Opens the window, which loads the inputs while it is there.
+/// Opens the window, which loads the inputs in the background.
 pub fn run(args: View) -> Result<()> {
     let start = Instant::now();
     args.settings(&args.method.unwrap_or(Method::ALL[0])).check()?;
     if !(args.budget > 0.0 && args.budget.is_finite()) {
-        return Err(Error::Usage(format!(
-            "frames cannot take {} ms: give --budget a number above 0",
-            args.budget
-        )));
+        return Err(Error::Usage(format!("--budget is {} ms: give a number above 0", args.budget)));
     }
     let file = camera::read(&args.camera)?;
     let up = camera::up(&args.camera, file);
@@ -56,9 +53,9 @@ pub fn run(args: View) -> Result<()> {
     viewer::run(options, loader(&args, up)?, Box::new(move |method| args.settings(method)))
 }
 
-/// How inputs are loaded, as the arguments say.
+/// The function that loads inputs with the options of the arguments.
 fn loader(args: &View, up: DVec3) -> Result<viewer::Load> {
-    // What is wrong with it is said before the window opens.
+    // Errors of the options are reported before the window opens.
     args.colours.colouring(up)?;
     let colour_by = args.colours.color_by.as_ref().map(|by| viewer::ColourBy {
         name: by.name.clone(),
@@ -72,17 +69,17 @@ fn loader(args: &View, up: DVec3) -> Result<viewer::Load> {
         ..Default::default()
     };
     let reader = Reader { options, quiet: args.quiet };
-    let (asked, up) = (args.method, up.normalize_or(DVec3::Y));
+    let (method, up) = (args.method, up.normalize_or(DVec3::Y));
     Ok(Arc::new(move |names: &[OsString], window: &dyn viewer::LoadListener| {
         let loaded = |model: Model| -> Result<Loaded> {
-            let method = render::method(asked, &model)?;
-            let info = SceneInfo { names: names.iter().map(shown).collect(), ..Default::default() };
+            let method = render::method(method, &model)?;
+            let info = SceneInfo { names: names.iter().map(display_name).collect(), ..Default::default() };
             Ok(Loaded { colour_by: colour_by.clone(), info, up, ..Loaded::new(model, method) })
         };
-        let listener = WithPreview { window, loaded: &loaded, quiet: reader.quiet };
+        let listener = WindowListener { window, loaded: &loaded, quiet: reader.quiet };
         let inputs = load(names, &reader.options, &listener)?;
         let whole = loaded(inputs.model)?;
-        // A built-in scene has no properties, and no other input beside one.
+        // Built-in scenes have no properties to read.
         let is_scene = names.iter().any(|name| scene(name).is_some());
         let (reader, own) = (reader.clone(), names.to_vec());
         let read = move |name: &str, progress: &dyn Progress| reader.property(&own, name, progress);
@@ -104,19 +101,19 @@ fn loader(args: &View, up: DVec3) -> Result<viewer::Load> {
     }))
 }
 
-/// An input's name for who looks.
-fn shown(name: &OsString) -> String {
+/// Name of an input for the user.
+fn display_name(name: &OsString) -> String {
     name.to_string_lossy().into_owned()
 }
 
-/// The window that waits, which is shown a preview.
-struct WithPreview<'a> {
+/// Forwards progress and previews to the window, and prints notes.
+struct WindowListener<'a> {
     window: &'a dyn viewer::LoadListener,
     loaded: &'a (dyn Fn(Model) -> Result<Loaded> + Sync),
     quiet: bool,
 }
 
-impl Progress for WithPreview<'_> {
+impl Progress for WindowListener<'_> {
     fn at(&self, stage: &'static str, done: u64, total: u64) {
         self.window.at(stage, done, total);
     }
@@ -126,7 +123,7 @@ impl Progress for WithPreview<'_> {
     }
 }
 
-impl Listener for WithPreview<'_> {
+impl Listener for WindowListener<'_> {
     fn note(&self, text: &str) {
         if !self.quiet {
             progress::say(text);
@@ -137,13 +134,13 @@ impl Listener for WithPreview<'_> {
         true
     }
 
-    /// What is wrong with a preview is wrong with all of it, which says so.
+    /// Forwards the preview. An error of it is one of the whole scene, too, which reports it.
     fn preview(&self, model: Model) {
         (self.loaded)(model).into_iter().for_each(|preview| self.window.preview(preview));
     }
 }
 
-/// How inputs are read.
+/// Reads properties of inputs.
 #[derive(Clone)]
 struct Reader {
     options: LoadOptions,
@@ -151,7 +148,7 @@ struct Reader {
 }
 
 impl Reader {
-    /// A property of every surfel, and of every vertex of lines and triangles.
+    /// Reads a property of every surfel, and of every vertex of lines and triangles.
     fn property(&self, names: &[OsString], name: &str, progress: &dyn Progress) -> Result<[Vec<f32>; 2]> {
         let estimate = Estimate { radius: None, sharp: None, ..self.options.estimate.clone() };
         let options =
@@ -173,11 +170,11 @@ mod tests {
     use std::sync::Mutex;
     use surfel::{Error, Progress};
 
-    /// Keeps what it is shown, and gives up where it is told to.
+    /// Records previews and stages, and cancels at a stage.
     #[derive(Default)]
     struct Window {
         previews: Mutex<Vec<usize>>,
-        /// The stage at which it gives up.
+        /// The stage at which it cancels.
         until: Option<&'static str>,
         stages: Mutex<Vec<&'static str>>,
     }
@@ -206,7 +203,7 @@ mod tests {
     }
 
     #[test]
-    fn what_cannot_be_read_is_an_error_that_names_it() {
+    fn errors_of_reading_name_the_input() {
         let folder = tempfile::tempdir().unwrap();
         let header = "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
         let files = [
@@ -238,7 +235,7 @@ mod tests {
     }
 
     #[test]
-    fn a_property_is_read_in_the_order_of_the_surfels_and_nothing_is_estimated() {
+    fn a_property_is_read_in_the_order_of_the_surfels_without_estimation() {
         let folder = tempfile::tempdir().unwrap();
         let names: Vec<OsString> = ["a.ply", "b.ply"].map(|name| folder.path().join(name).into()).to_vec();
         for (file, name) in names.iter().enumerate() {
@@ -274,7 +271,7 @@ mod tests {
     }
 
     #[test]
-    fn loading_is_given_up_while_it_reads_and_while_it_estimates() {
+    fn loading_is_cancelled_while_reading_and_while_estimating() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("points.ply");
         let count = 40_000;
@@ -290,8 +287,8 @@ mod tests {
         ];
         for (until, last) in last {
             let window = Window { until: Some(until), ..Default::default() };
-            let given_up = loaded(&path, &window);
-            assert!(matches!(given_up, Err(Error::Cancelled)), "{until}");
+            let cancelled = loaded(&path, &window);
+            assert!(matches!(cancelled, Err(Error::Cancelled)), "{until}");
             assert_eq!(window.stages.into_inner().unwrap().last(), Some(&last), "{until}");
         }
         assert_eq!(loaded(&path, &Window::default()).unwrap().model.surfels.len(), count);

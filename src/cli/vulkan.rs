@@ -1,6 +1,6 @@
 //! Rendering on a Vulkan device.
 
-use super::args::{OnDevice, Place};
+use super::args::{Backend, DeviceArgs};
 use super::files::{cache_folder, read_json};
 use super::render::{Outcome, Task};
 use super::report::{Gpu, HalfError};
@@ -13,40 +13,45 @@ use surfel::geometry::Camera;
 use surfel::vk::{Device, DeviceLimits, DeviceOptions};
 use surfel::{Error, Picture, Precision, RenderOptions, Renderer, Result, Scene, SplatCounts};
 
-/// The stage of rendering, for who is told about progress.
+/// Name of the stage of rendering, for progress.
 const FRAMES: &str = "rendering frames";
 
-/// How the device is opened. Reads the file of limits.
-pub fn options(place: &OnDevice) -> Result<DeviceOptions> {
+/// Options to open the device. Reads the file of limits.
+pub fn options(args: &DeviceArgs) -> Result<DeviceOptions> {
     Ok(DeviceOptions {
-        select: place.device.clone(),
-        validate: place.validate,
-        limits: place.device_limits.as_deref().map_or(Ok(DeviceLimits::default()), read_json)?,
+        select: args.device.clone(),
+        validate: args.validate,
+        limits: args.device_limits.as_deref().map_or(Ok(DeviceLimits::default()), read_json)?,
         pipeline_cache: cache_folder(),
         ..Default::default()
     })
 }
 
-/// How `task` is rendered as `place` has it; `profile` times the passes.
-fn render_options(task: &Task<'_>, place: &Place, profile: bool) -> RenderOptions {
+/// Options to render `task`; `profile` times the passes.
+fn render_options(task: &Task<'_>, backend: &Backend, profile: bool) -> RenderOptions {
     RenderOptions {
         size: task.size,
         outputs: task.layers.with_mask(&task.settings),
-        precision: if place.half { Precision::Half } else { Precision::Full },
-        rasterizer: place.rasterizer,
+        precision: if backend.half { Precision::Half } else { Precision::Full },
+        rasterizer: backend.rasterizer,
         profile,
         count: false,
     }
 }
 
-/// Renders `task` as `place` has it, and finds out what is `wanted` of it.
-pub fn render(task: &Task<'_>, options: &DeviceOptions, place: &Place, wanted: Measured) -> Result<Outcome> {
+/// Renders `task`, and measures what is `wanted`.
+pub fn render(
+    task: &Task<'_>,
+    options: &DeviceOptions,
+    backend: &Backend,
+    wanted: Measured,
+) -> Result<Outcome> {
     let device = Device::open(options)?;
-    let options = render_options(task, place, wanted.times);
+    let options = render_options(task, backend, wanted.times);
     let mut renderer = Renderer::new(&device, options)?;
     let scene = Scene::upload(&device, task.scene)?;
     let mut times = Times::default();
-    // The first frame is the one that is read back, so that the times of the others are of rendering alone.
+    // Only the first frame is read back, so that the times of the others are those of rendering.
     let start = Instant::now();
     let (picture, report) = renderer.render_picture(&scene, &task.camera, &task.settings)?;
     times.add(start.elapsed(), &report.pass_times);
@@ -58,16 +63,16 @@ pub fn render(task: &Task<'_>, options: &DeviceOptions, place: &Place, wanted: M
     }
     task.progress.at(FRAMES, task.frames.into(), task.frames.into());
     let mut gpu = gpu(&device, &renderer, &scene);
-    if place.half {
+    if backend.half {
         gpu.half_error = half_error(&device, task, &scene, options, &picture)?;
     }
-    // Its targets would be there twice.
+    // Frees its targets: counting creates others.
     drop(renderer);
     let counts = if wanted.counts { count(&device, task, &scene, options)? } else { None };
     Ok(Outcome { picture, counts, times, gpu: Some(gpu) })
 }
 
-/// Counts the surfels of `task`, in a frame of its own: counting takes atomics, which the frames that are timed are without.
+/// Counts the surfels of `task` in a separate frame: counting needs atomics, which would slow the timed frames.
 fn count(
     device: &Arc<Device>,
     task: &Task<'_>,
@@ -78,28 +83,28 @@ fn count(
     Ok(Renderer::new(device, options)?.render(scene, &task.camera, &task.settings)?.counts)
 }
 
-/// Renders `task` from other cameras, and gives each picture to `save` with the camera's number.
+/// Renders `task` from other cameras; calls `save` with the index of the camera and the picture.
 pub fn turn(
     task: &Task<'_>,
     options: &DeviceOptions,
-    place: &Place,
+    backend: &Backend,
     cameras: &[Camera],
     mut save: impl FnMut(usize, Picture) -> Result<()>,
 ) -> Result<()> {
     let device = Device::open(options)?;
-    let options = render_options(task, place, false);
+    let options = render_options(task, backend, false);
     let mut renderer = Renderer::new(&device, options)?;
     let scene = Scene::upload(&device, task.scene)?;
     for (number, camera) in cameras.iter().enumerate() {
-        turntable::tell(task, number, cameras.len());
+        turntable::report_progress(task, number, cameras.len());
         let (picture, _) = renderer.render_picture(&scene, camera, &task.settings)?;
         save(number, picture)?;
     }
-    turntable::tell(task, cameras.len(), cameras.len());
+    turntable::report_progress(task, cameras.len(), cameras.len());
     Ok(())
 }
 
-/// How far `picture`, of 16-bit sums or samples, is from that of 32-bit ones; `None` if the device has no such, or no room for them.
+/// Difference of `picture`, with 16-bit sums or samples, from one with 32-bit ones; `None` if the device does not support these or lacks memory.
 fn half_error(
     device: &Arc<Device>,
     task: &Task<'_>,
@@ -113,7 +118,7 @@ fn half_error(
         return Ok(None);
     }
     let (full, _) = match renderer.render_picture(scene, &task.camera, &task.settings) {
-        // What fits in 16 bits need not in 32.
+        // 32-bit targets may exceed the memory of the device.
         Err(Error::Usage(_)) => return Ok(None),
         made => made?,
     };
@@ -125,6 +130,7 @@ fn half_error(
     Ok(Some(HalfError { largest: errors().fold(0.0, f64::max), rms: mean_square.sqrt() }))
 }
 
+/// The device and its resources.
 fn gpu(device: &Arc<Device>, renderer: &Renderer, scene: &Scene) -> Gpu {
     Gpu {
         description: device.description().clone(),

@@ -126,7 +126,7 @@ fn what_cannot_be_shown_is_refused_before_anything_is_read() {
         ("--color-by x:2,1", "MIN below MAX"),
         ("--color-by x:nan,1", "MIN below MAX"),
         ("--color-by normal:0,1", "no range"),
-        ("--color-by normal --color-bar", "no values to tell of normals"),
+        ("--color-by normal --color-bar", "no values for normals"),
         ("--color-by x --shading depth", "--shading lit or color"),
         ("--color-by x --color-bar --size 100x1000", "160x128"),
     ];

@@ -12,28 +12,28 @@ pub struct Compare {
     /// The picture: a PNG (sRGB) or EXR (linear light) file
     #[arg(value_name = "A")]
     pub picture: OsString,
-    /// The truth: a file of the same size
+    /// The ground truth: a PNG or EXR file of the same size
     #[arg(value_name = "B")]
     pub truth: OsString,
-    /// Exits with 4 if METRIC, of which less is better, is above VALUE, for example flip=0.05; the table names the metrics. May be given several times
+    /// Exits with code 4 if METRIC is above VALUE, for example flip=0.05; may be repeated. For metrics of which less is better
     #[arg(long, value_name = "METRIC=VALUE", value_parser = above)]
     pub fail_above: Vec<Limit>,
-    /// Exits with 4 if METRIC, of which more is better, is below VALUE, for example ssim=0.98. May be given several times
+    /// Exits with code 4 if METRIC is below VALUE, for example ssim=0.98; may be repeated. For metrics of which more is better
     #[arg(long, value_name = "METRIC=VALUE", value_parser = below)]
     pub fail_below: Vec<Limit>,
-    /// Writes FLIP's error map: black where nothing differs, through red to pale yellow where most does
+    /// Writes FLIP's error map: from black for no difference through red to pale yellow for the largest
     #[arg(long, value_name = "OUT.png")]
     pub map: Option<OsString>,
-    /// Writes the metrics as JSON; `-` for standard output, in place of the table
+    /// Writes the metrics as JSON; `-` for standard output, instead of the table
     #[arg(long, value_name = "FILE")]
     pub json: Option<OsString>,
-    /// What both pictures are laid over, as sRGB codes from 0 to 255
+    /// Background of both pictures: sRGB codes from 0 to 255, or a CSS colour
     #[arg(long, value_name = "R,G,B", default_value = "0,0,0", value_parser = opaque, allow_hyphen_values = true)]
     pub background: [f32; 3],
-    /// Resolution at which FLIP's viewer sees the pictures, px per degree of visual angle
+    /// FLIP's resolution, px per degree of visual angle
     #[arg(long, value_name = "N", default_value_t = PIXELS_PER_DEGREE, value_parser = positive::<f32>, allow_hyphen_values = true)]
     pub pixels_per_degree: f32,
-    /// Size of the object, in the positions' unit: depth errors are relative to it
+    /// Size of the object, in the positions' unit; depth errors are relative to it
     #[arg(long, value_name = "LENGTH", default_value_t = 1.0, value_parser = positive::<f64>, allow_hyphen_values = true)]
     pub object_size: f64,
     /// Prints nothing but warnings and errors

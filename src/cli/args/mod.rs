@@ -1,4 +1,4 @@
-//! What the program can be asked.
+//! Arguments of the program and its commands.
 
 #[cfg(feature = "bench")]
 mod bench;
@@ -37,45 +37,45 @@ use surfel::{Outputs, Rasterizer, Settings};
 #[derive(Debug, Parser)]
 #[command(name = "surfel", version)]
 pub struct Surfel {
-    /// What to do.
+    /// The command.
     #[command(subcommand)]
     pub command: Command,
 }
 
-/// What to do.
+/// A command.
 #[derive(Debug, Subcommand)]
 pub enum Command {
     /// Renders points to a picture
     Render(Box<Render>),
-    /// Opens a window to look at points and to move around them
+    /// Opens a window that shows points interactively
     #[cfg(feature = "viewer")]
     View(Box<View>),
-    /// Says what is in a file or scene, and what is estimated of it
+    /// Prints the contents of a file or scene, and what is estimated of it
     Info(Info),
-    /// Makes surfels of points once and writes them to a PLY file
+    /// Estimates surfels from points and writes them to a PLY file
     Convert(Box<Convert>),
-    /// Compares picture A with the truth B: colours, silhouette, normals, depths
+    /// Compares picture A with the ground truth B: colours, silhouette, normals, depths
     #[cfg(feature = "metrics")]
     Compare(Box<Compare>),
-    /// Traces the exact picture of a built-in scene or a mesh, without Vulkan
+    /// Ray-traces the exact picture of a built-in scene or a mesh, without Vulkan
     #[cfg(feature = "truth")]
     Truth(Box<Truth>),
-    /// Measures speed against error, and makes a page of it
+    /// Measures speed and error, and writes a report
     #[cfg(feature = "bench")]
     Bench(Box<Bench>),
-    /// Lists the Vulkan devices; * marks the one that is used unless --device names another
+    /// Lists the Vulkan devices; * marks the default
     Devices(Listing),
-    /// Lists the methods: paper, choices along the axes, passes, targets
+    /// Lists the methods: paper, axes, passes, render targets
     Methods(Methods),
     /// Lists the built-in scenes with their parameters
     Scenes(Listing),
-    /// Prints completions for a shell, to be put where that looks for them
+    /// Prints the completion script of a shell
     Completions(Completions),
-    /// Writes the manual's pages, surfel.1 and one for each command, to a folder
+    /// Writes the man pages, surfel.1 and one for each command, to a folder
     Man(Man),
 }
 
-/// Options of the commands that list what there is.
+/// Options of the commands that print a list.
 #[derive(Args, Debug)]
 pub struct Listing {
     /// Prints JSON
@@ -89,7 +89,7 @@ pub struct Methods {
     /// Prints JSON
     #[arg(long)]
     pub json: bool,
-    /// Prints what frames of different scenes need: a table in Markdown
+    /// Prints a Markdown table of the streams, passes and targets of different scenes
     #[arg(long, conflicts_with = "json")]
     pub needs: bool,
 }
@@ -97,14 +97,14 @@ pub struct Methods {
 /// Options of `surfel completions`.
 #[derive(Args, Debug)]
 pub struct Completions {
-    /// For which shell
+    /// The shell
     pub shell: Shell,
 }
 
 /// Options of `surfel man`.
 #[derive(Args, Debug)]
 pub struct Man {
-    /// The folder, which exists
+    /// An existing folder
     pub folder: PathBuf,
 }
 
@@ -117,13 +117,13 @@ pub struct Render {
     /// The picture: .png (sRGB, or `-` for standard output) or .exr (linear light)
     #[arg(short, long, value_name = "OUT")]
     pub output: OsString,
-    /// Renders N pictures all around, about the up axis through the middle of the scene: OUT has a place for their numbers, as frames/%04d.png
+    /// Renders N pictures on a full turn about the scene's up axis; OUT is a pattern such as frames/%04d.png
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub turntable: Option<u32>,
-    /// How it is rendered; perspective-ewa unless given, pull-push where there are lines or triangles; `surfel methods` tells more
+    /// The method [default: perspective-ewa; pull-push for lines or triangles]; see `surfel methods`
     #[arg(long, value_parser = method())]
     pub method: Option<Method>,
-    /// What is changed of the method
+    /// Changes of the method
     #[command(flatten, next_help_heading = "Method, changed")]
     pub axes: Axes,
     /// Size of the picture, px
@@ -138,25 +138,25 @@ pub struct Render {
     /// Draws a bar with the colours of --color-by and their values into the PNG
     #[arg(long, alias = "colour-bar", requires = "color_by")]
     pub color_bar: bool,
-    /// What an EXR holds beside the picture
+    /// Additional layers of an EXR file
     #[arg(long, value_enum, value_delimiter = ',', value_name = "LAYER,…")]
     pub layers: Vec<Layer>,
-    /// Where the camera stands
+    /// The camera
     #[command(flatten, next_help_heading = "Camera")]
     pub camera: Camera,
-    /// How surfels become a picture
+    /// The render settings
     #[command(flatten, next_help_heading = "Picture")]
     pub render_settings: RenderSettings,
-    /// Where it is rendered
+    /// The device or the reference that renders
     #[command(flatten, next_help_heading = "Device")]
-    pub place: Place,
+    pub backend: Backend,
     /// Writes a report: device, settings, counts, times; `-` for standard output
     #[arg(long, value_name = "FILE")]
     pub json: Option<OsString>,
-    /// Prints how long each pass took
+    /// Prints the time of each pass
     #[arg(long)]
     pub times: bool,
-    /// Renders N times; the first frame warms up and does not count in the times unless it is the only one
+    /// Renders N frames; the times exclude the first one unless it is the only one
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     pub frames: u32,
     /// Prints nothing but warnings and errors
@@ -165,123 +165,125 @@ pub struct Render {
 }
 
 impl Render {
-    /// The images beside the picture that this asks for.
+    /// The additional images.
     pub fn outputs(&self) -> Outputs {
         outputs(&self.layers)
     }
 }
 
-/// The images that these layers are.
+/// The images of these layers.
 fn outputs(layers: &[Layer]) -> Outputs {
-    let asked = |layer| layers.contains(&layer);
-    Outputs { normal: asked(Layer::Normal), depth: asked(Layer::Depth), id: asked(Layer::Id) }
+    let has = |layer| layers.contains(&layer);
+    Outputs { normal: has(Layer::Normal), depth: has(Layer::Depth), id: has(Layer::Id) }
 }
 
-/// The camera; the whole scene is framed unless it is given.
+/// The camera; by default it frames the whole scene.
 #[derive(Args, Clone, Debug)]
 pub struct Camera {
-    /// The eye, in the positions' unit
+    /// Position of the eye, in the positions' unit
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     pub eye: Option<DVec3>,
-    /// The point that it looks at; the middle of the scene unless given
+    /// The point that the camera looks at [default: the centre of the scene]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     pub target: Option<DVec3>,
-    /// The direction that is up in the picture; 0,1,0 unless given
+    /// Up direction of the picture [default: 0,1,0]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     pub up: Option<DVec3>,
-    /// Vertical angle of view; 45 unless given
+    /// Vertical angle of view, degrees [default: 45]
     #[arg(long, value_name = "DEG", allow_hyphen_values = true)]
     pub fov: Option<f64>,
-    /// Makes rays parallel: height of the picture, in the positions' unit
+    /// Parallel projection: height of the picture, in the positions' unit
     #[arg(long, value_name = "HEIGHT", conflicts_with = "fov", allow_hyphen_values = true)]
     pub parallel: Option<f64>,
-    /// The camera from a file: {"eye":[0,0,3],"target":[0,0,0],"up":[0,1,0],"fov_y_deg":45}, or "height":2 for parallel rays
+    /// Reads the camera from a JSON file
+    ///
+    /// For example {"eye":[0,0,3],"target":[0,0,0],"up":[0,1,0],"fov_y_deg":45}; for a parallel projection "height":2 instead of "fov_y_deg".
     #[arg(long = "camera", value_name = "FILE.json", conflicts_with_all = ["eye", "target", "up", "fov", "parallel"])]
     pub file: Option<PathBuf>,
 }
 
-/// How surfels become a picture.
+/// Render settings.
 #[derive(Args, Debug)]
 pub struct RenderSettings {
     /// What the picture shows
     #[arg(long, value_parser = choice::<Shading>(), default_value = Shading::Lit.name())]
     pub shading: Shading,
-    /// What α says of a pixel
+    /// Meaning of α
     #[arg(long, value_parser = choice::<Alpha>(), default_value = Alpha::Mask.name())]
     pub alpha: Alpha,
-    /// Colour where nothing is: transparent, sRGB codes from 0 to 255, or as CSS has it: #fff, white
+    /// Background: transparent, sRGB codes from 0 to 255, or a CSS colour such as #fff or white
     #[arg(long, value_name = "R,G,B|COLOR|transparent", default_value = "transparent", value_parser = background, allow_hyphen_values = true)]
     pub background: Background,
-    /// Variance of the anti-aliasing filter, px²; the method's unless given, 1 of most
+    /// Variance of the anti-aliasing filter, px² [default: the method's, mostly 1]
     #[arg(long, value_name = "VARIANCE_PX2", allow_hyphen_values = true)]
     pub lowpass: Option<f32>,
-    /// What the anti-aliasing filter widens; the method's unless given
+    /// Which splats the anti-aliasing filter widens [default: the method's]
     #[arg(long, value_parser = choice::<Widen>())]
     pub widen: Option<Widen>,
-    /// Where a splat's kernel ends, in standard deviations; the method's unless given, 2.5 of perspective-ewa
+    /// Where a splat's kernel ends, in standard deviations [default: the method's; perspective-ewa: 2.5]
     #[arg(long, value_name = "F", allow_hyphen_values = true)]
     pub cutoff: Option<f32>,
-    /// How far behind the nearest splat others still blend with it, in radii
+    /// How far behind the nearest splat others are still blended with it, in radii
     #[arg(long, value_name = "RADII", default_value_t = Settings::default().epsilon, allow_hyphen_values = true)]
     pub epsilon: f32,
-    /// Which surfels are left out for the side that they show; the method's unless given
+    /// Which surfels are culled by their orientation [default: the method's]
     #[arg(long, value_parser = choice::<Cull>())]
     pub cull: Option<Cull>,
 }
 
-/// What is changed of a method: see `surfel methods`.
+/// Changes of a method; see `surfel methods`.
 #[derive(Args, Debug, Clone, Copy)]
 pub struct Axes {
-    /// The image of a surfel's disc
+    /// Projection of a surfel's disc
     #[arg(long, value_parser = choice::<Footprint>())]
     pub footprint: Option<Footprint>,
-    /// How a splat's weight falls off: gaussian, or confetti:A,N
+    /// Falloff of a splat's weight: gaussian, or confetti:A,N
     #[arg(long, value_parser = kernel)]
     pub kernel: Option<Kernel>,
     /// Where the anti-aliasing filter is applied
     #[arg(long, value_parser = choice::<Filter>())]
     pub filter: Option<Filter>,
-    /// Which splats a pixel sees
+    /// Which splats of a pixel are blended
     #[arg(long, value_parser = choice::<Visibility>())]
     pub visibility: Option<Visibility>,
-    /// What makes weights add up to 1
+    /// How weights are normalized
     #[arg(long, value_parser = choice::<Normalization>())]
     pub normalization: Option<Normalization>,
-    /// What is lit
+    /// Whether pixels or splats are lit
     #[arg(long, value_parser = choice::<Shade>())]
     pub shade: Option<Shade>,
 }
 
 impl Axes {
-    /// `splatting` with what is given here.
-    fn over(&self, splatting: Splatting) -> Splatting {
+    /// `splatting` with these changes.
+    fn apply(&self, splatting: Splatting) -> Splatting {
         let visibility = self.visibility.unwrap_or(splatting.visibility);
-        // One splat alone has nothing to normalize.
-        let alone = (visibility == Visibility::Nearest).then_some(Normalization::None);
+        // A single splat is not normalized.
+        let single = (visibility == Visibility::Nearest).then_some(Normalization::None);
         Splatting {
             footprint: self.footprint.unwrap_or(splatting.footprint),
             kernel: self.kernel.unwrap_or(splatting.kernel),
             filter: self.filter.unwrap_or(splatting.filter),
             visibility,
-            normalization: self.normalization.or(alone).unwrap_or(splatting.normalization),
+            normalization: self.normalization.or(single).unwrap_or(splatting.normalization),
             shade: self.shade.unwrap_or(splatting.shade),
         }
     }
 }
 
 impl Render {
-    /// The settings that this asks for of a method.
+    /// The settings of a method with the changes of the options.
     pub fn settings(&self, method: &Method) -> Settings {
         self.render_settings.settings(&self.axes, method)
     }
 }
 
 impl RenderSettings {
-    /// The settings that this asks for of a method, of which `axes` are changed.
+    /// The settings of a method with these changes and those of `axes`.
     fn settings(&self, axes: &Axes, method: &Method) -> Settings {
         let preset = method.settings();
         Settings {
-            splatting: axes.over(preset.splatting),
+            splatting: axes.apply(preset.splatting),
             pull_push: preset.pull_push,
             cutoff: self.cutoff.unwrap_or(preset.cutoff),
             lowpass: self.lowpass.unwrap_or(preset.lowpass),
@@ -296,33 +298,33 @@ impl RenderSettings {
     }
 }
 
-/// Where it is rendered.
+/// The device or the reference that renders.
 #[derive(Args, Debug)]
-pub struct Place {
+pub struct Backend {
     /// Renders with the float64 reference on the CPU, without Vulkan
     #[arg(long, conflicts_with_all = ["half", "device", "validate", "device_limits"])]
     pub reference: bool,
-    /// What visits the pixels: the device's own rasterizer, or compute shaders; what is faster on the device unless given
+    /// The device's rasterizer, or compute shaders [default: the faster one of the device]
     #[arg(long, value_parser = choice::<Rasterizer>(), conflicts_with = "reference")]
     pub rasterizer: Option<Rasterizer>,
-    /// Keeps sums in 16-bit floats, or the samples of pull-push in 24 bytes of 48: half the memory, coarser
+    /// Stores sums in 16-bit floats, and pull-push samples in 24 instead of 48 bytes: half the memory, less precise
     #[arg(long)]
     pub half: bool,
-    /// On which device
+    /// The Vulkan device
     #[command(flatten)]
-    pub device: OnDevice,
+    pub device: DeviceArgs,
 }
 
-/// A Vulkan device, and how it is opened.
+/// The Vulkan device, and how it is opened.
 #[derive(Args, Debug)]
-pub struct OnDevice {
-    /// The Vulkan device, by its index or a part of its name, as `surfel devices` lists it
+pub struct DeviceArgs {
+    /// The Vulkan device, by its index or part of its name; see `surfel devices`
     #[arg(long, value_name = "INDEX|NAME")]
     pub device: Option<String>,
-    /// Runs under the Vulkan validation layers; any message of theirs is an error
+    /// Enables the Vulkan validation layers; any message is an error
     #[arg(long)]
     pub validate: bool,
-    /// Restricts the device to what a JSON file allows, to test the fallbacks: {"max_image_side":4096}
+    /// Limits the device as a JSON file says, to test fallbacks: {"max_image_side":4096}
     #[arg(long, value_name = "FILE")]
     pub device_limits: Option<PathBuf>,
 }

@@ -19,31 +19,31 @@ pub struct Truth {
     /// Size of the picture, px
     #[arg(long, value_name = "WxH", default_value = "1024x1024", value_parser = size, allow_hyphen_values = true)]
     pub size: [u32; 2],
-    /// How the rays about a pixel become its value
+    /// Reconstruction filter of the pixels
     #[arg(long, value_enum, default_value = "gaussian")]
     pub filter: Filter,
     /// Variance of the Gaussian, px²
     #[arg(long, value_name = "VARIANCE_PX2", default_value_t = 1.0, value_parser = positive::<f64>, allow_hyphen_values = true)]
     pub variance: f64,
-    /// Standard error that no pixel should exceed, in linear light
+    /// Target of every pixel's standard error, in linear light
     #[arg(long, value_name = "E", default_value_t = truth::Options::default().error, value_parser = positive::<f64>, allow_hyphen_values = true)]
     pub error: f64,
-    /// Rays after which a pixel is left as it is
+    /// Maximum number of rays per pixel
     #[arg(long, value_name = "N", default_value_t = truth::Options::default().most_samples, allow_hyphen_values = true)]
     pub most_samples: u32,
-    /// What an EXR holds beside the picture
+    /// Additional layers of an EXR file
     #[arg(long, value_enum, value_delimiter = ',', value_name = "LAYER,…")]
     pub layers: Vec<Layer>,
-    /// Where the camera stands
+    /// The camera
     #[command(flatten)]
     pub camera: Camera,
     /// What the picture shows
     #[arg(long, value_parser = choice::<Shading>(), default_value = Shading::Lit.name())]
     pub shading: Shading,
-    /// Colour where nothing is: transparent, sRGB codes from 0 to 255, or as CSS has it: #fff, white
+    /// Background: transparent, sRGB codes from 0 to 255, or a CSS colour such as #fff or white
     #[arg(long, value_name = "R,G,B|COLOR|transparent", default_value = "transparent", value_parser = background, allow_hyphen_values = true)]
     pub background: Background,
-    /// Traces the picture even if it has been before, and does not keep it
+    /// Traces the picture without reading or writing the cache
     #[arg(long)]
     pub no_cache: bool,
     /// Prints nothing but warnings and errors
@@ -52,13 +52,13 @@ pub struct Truth {
 }
 
 impl Truth {
-    /// The settings that this asks for.
+    /// The render settings.
     pub fn settings(&self) -> Settings {
         let background = self.background.linear();
         Settings { shading: self.shading, background, ..Default::default() }
     }
 
-    /// How the picture is to be made.
+    /// The options of the ray tracer.
     pub fn options(&self) -> truth::Options {
         let filter = match self.filter {
             Filter::Gaussian => truth::Filter::Gaussian { variance: self.variance },
@@ -68,7 +68,7 @@ impl Truth {
         truth::Options { filter, error: self.error, most_samples: self.most_samples }
     }
 
-    /// The images beside the picture that this asks for.
+    /// The additional images.
     pub fn outputs(&self) -> Outputs {
         super::outputs(&self.layers)
     }

@@ -1,6 +1,6 @@
 //! Options of `surfel view`.
 
-use super::{Axes, Camera, Colours, OnDevice, Points, RenderSettings};
+use super::{Axes, Camera, Colours, DeviceArgs, Points, RenderSettings};
 use crate::cli::values::{choice, method, size};
 use clap::Args;
 use std::ffi::OsString;
@@ -11,16 +11,16 @@ use surfel::{Rasterizer, Settings};
 /// Options of `surfel view`.
 #[derive(Args, Debug)]
 pub struct View {
-    /// PLY files, or built-in scenes such as scene:bumpy-sphere; several become one scene; the window begins empty without any
+    /// PLY files, or built-in scenes such as scene:bumpy-sphere; several become one scene, none an empty window
     #[arg(value_name = "INPUT")]
     pub inputs: Vec<OsString>,
-    /// How it is rendered at first; perspective-ewa unless given, pull-push where there are lines or triangles
+    /// The first method [default: perspective-ewa; pull-push for lines or triangles]
     #[arg(long, value_parser = method())]
     pub method: Option<Method>,
-    /// What is changed of the method
+    /// Changes of the method
     #[command(flatten)]
     pub axes: Axes,
-    /// Size of the window, px; the picture is what the panel leaves of it
+    /// Size of the window with its panel, px
     #[arg(long, value_name = "WxH", default_value = "1024x768", value_parser = size, allow_hyphen_values = true)]
     pub size: [u32; 2],
     /// How normals and radii are estimated
@@ -29,31 +29,31 @@ pub struct View {
     /// What points are coloured by
     #[command(flatten)]
     pub colours: Colours,
-    /// Where the camera stands at first
+    /// The first camera
     #[command(flatten)]
     pub camera: Camera,
-    /// How surfels become a picture
+    /// The render settings
     #[command(flatten)]
     pub render_settings: RenderSettings,
-    /// What visits the pixels: the device's own rasterizer, or compute shaders; what is faster on the device unless given
+    /// The device's rasterizer, or compute shaders [default: the faster one of the device]
     #[arg(long, value_parser = choice::<Rasterizer>())]
     pub rasterizer: Option<Rasterizer>,
-    /// How long frames may take while the camera moves; they are coarser where whole ones take longer
+    /// Time budget of a frame while the camera moves, ms; slower frames become coarser
     #[arg(long, value_name = "MS", default_value_t = 60.0)]
     pub budget: f64,
     /// Loads files again when they change; the camera stays
     #[arg(long)]
     pub watch: bool,
-    /// Says what happens on standard output, one JSON object a line, for programs that wait for it
+    /// Logs events to standard output as JSON lines
     #[arg(long)]
     pub json: bool,
-    /// Begins with the method's own settings, rather than with those of the last time, and remembers nothing
+    /// Starts with the method's default settings instead of the saved ones, and saves none
     #[arg(long)]
     pub fresh: bool,
-    /// On which device
+    /// The Vulkan device
     #[command(flatten)]
-    pub device: OnDevice,
-    /// Folder for screenshots and saved cameras; the current one unless given
+    pub device: DeviceArgs,
+    /// Folder for screenshots and saved cameras
     #[arg(long, alias = "shots", value_name = "FOLDER", default_value = ".")]
     pub screenshots: PathBuf,
     /// Prints nothing but warnings and errors
@@ -62,7 +62,7 @@ pub struct View {
 }
 
 impl View {
-    /// The settings that this asks for of a method.
+    /// The settings of a method with the changes of the options.
     pub fn settings(&self, method: &Method) -> Settings {
         self.render_settings.settings(&self.axes, method)
     }

@@ -12,10 +12,10 @@ use surfel::geometry::{Cloud, Colours, Model, Parts, View};
 use surfel::load::{scene, scene_cloud};
 use surfel::{Error, Result};
 
-/// An object with its entries.
+/// The entries of a JSON object.
 type Object = Map<String, Value>;
 
-/// As `surfel info` tells it. Of a file whose points cannot be drawn it has what the header declares, and the error says why.
+/// Prints the contents of a file or scene as JSON. If its points cannot be rendered, prints what the header declares and fails with the cause.
 pub(super) fn run(args: &Info) -> Result<()> {
     let mut all = Object::new();
     all.insert("input".into(), args.input.to_string_lossy().into());
@@ -26,13 +26,14 @@ pub(super) fn run(args: &Info) -> Result<()> {
         }),
         None => file(&mut all, args),
     };
-    // Of an input that cannot be opened there is nothing to tell.
+    // An input that cannot be opened has no further entries.
     if all.len() > 1 {
         print_json(&Value::Object(all))?;
     }
     found
 }
 
+/// Adds the entries of a file.
 fn file(all: &mut Object, args: &Info) -> Result<()> {
     let path = Path::new(&args.input);
     let options = ReadOptions { triangles: args.points.polygons, ..Default::default() };
@@ -45,6 +46,7 @@ fn file(all: &mut Object, args: &Info) -> Result<()> {
     model(all, args, (&path.display().to_string(), report.points), cloud)
 }
 
+/// An element of the header.
 fn element(element: &Element) -> Value {
     let properties = element.properties.iter();
     let properties: Value = properties
@@ -53,6 +55,7 @@ fn element(element: &Element) -> Value {
     json!({ "name": element.name, "count": element.count, "properties": properties })
 }
 
+/// Adds the entries of what was read.
 fn read(all: &mut Object, report: &Report, cloud: &Cloud) {
     let Dropped { position, transparent } = report.dropped;
     let seen = match cloud.view {
@@ -77,7 +80,7 @@ fn read(all: &mut Object, report: &Report, cloud: &Cloud) {
     all.extend(read);
 }
 
-/// What is drawn of so many points, and where its normals and radii are from.
+/// Adds the entries of the model of `points` points.
 fn model(all: &mut Object, args: &Info, (name, points): (&str, u64), cloud: Cloud) -> Result<()> {
     let polygons = args.points.polygons || scene(&args.input).is_some();
     let made = cloud.into_model(polygons, &args.points.estimate(), &*progress::bars(false));
@@ -108,12 +111,13 @@ fn model(all: &mut Object, args: &Info, (name, points): (&str, u64), cloud: Clou
     Ok(())
 }
 
-/// The least, the greatest and the median; null if there are none.
+/// Minimum, maximum and median of radii; null if there are none.
 fn range(radii: &[f32]) -> Value {
     super::range(radii)
         .map_or(Value::Null, |[min, max, median]| json!({ "min": min, "max": max, "median": median }))
 }
 
+/// Where normals and radii come from.
 fn sources(estimated: &Estimated) -> Value {
     json!({
         "normals": {
