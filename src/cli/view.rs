@@ -152,7 +152,7 @@ impl Reader {
     fn property(&self, names: &[OsString], name: &str, progress: &dyn Progress) -> Result<[Vec<f32>; 2]> {
         let estimate = Estimate { radius: None, sharp: None, ..self.options.estimate.clone() };
         let options =
-            LoadOptions { estimate, colouring: Some(Colouring::numbers(name)), ..self.options.clone() };
+            LoadOptions { estimate, colouring: Some(Colouring::values(name)), ..self.options.clone() };
         let Model { surfels, primitives } = load(names, &options, &Silent(progress))?.model;
         let numbers = |colours| match colours {
             Some(Colours::Linear(numbers)) => numbers.into_iter().map(|[number, ..]| number).collect(),
@@ -263,8 +263,8 @@ mod tests {
             let [heat, _] = (properties.read)("heat", &window).unwrap();
             let surfels = loaded.model.surfels;
             assert_eq!(heat.len(), surfels.len());
-            let places = surfels.positions.iter().map(|p| (surfels.origin + p.as_dvec3()).x as f32);
-            assert!(places.zip(&heat).all(|(x, heat)| (x - heat).abs() < 1e-3));
+            let xs = surfels.positions.iter().map(|p| (surfels.origin + p.as_dvec3()).x as f32);
+            assert!(xs.zip(&heat).all(|(x, heat)| (x - heat).abs() < 1e-3));
             let stages = window.stages.into_inner().unwrap();
             assert!(stages.iter().all(|stage| *stage == "reading"), "{stages:?}");
         }

@@ -1,4 +1,4 @@
-//! Colours by a number of the points: one scale for all inputs together.
+//! Colours points by a property or a geometric quantity, with one scale for all inputs.
 
 use super::Listener;
 use crate::formats::colour_bar::ColourBar;
@@ -16,34 +16,34 @@ pub struct Colouring {
     range: Option<ValueRange>,
 }
 
-/// Where the colours come from.
+/// The values that colours are computed from.
 #[derive(Clone, Debug)]
 enum Source {
     /// A property of the files.
     Property,
-    /// The same, with the numbers themselves in the place of colours.
-    Numbers,
-    /// A number that the surfels have.
+    /// A property of the files; its values are stored as linear colours, without a colour map.
+    Values,
+    /// A geometric quantity of the surfels.
     Quantity(Quantity),
     /// The surfels' normals.
     Normal,
 }
 
-/// How points were coloured.
+/// The result of colouring.
 #[derive(Clone, Debug)]
 pub struct Coloured {
-    /// By what, as the user named it.
+    /// Name of the property or quantity, as the user gave it.
     pub name: String,
-    /// Which colour a value has; `None` for normals, and where no point has a value.
+    /// Colour scale of the values; `None` for normals, and if no point has a value.
     pub scale: Option<ColourScale>,
 }
 
 impl Colouring {
-    /// By `x`, `y`, `z`, `height` (along `up`, which need not be of unit length), `radius` or `normal` of the surfels, or by a property of
-    /// the files of any other name; in the colours of `map`, from the 1st to the 99th percentile unless a range is given.
+    /// Colours by `x`, `y`, `z`, `height` (along `up`, of any length), `radius` or `normal` of the surfels, or by the property of the files of any
+    /// other name. The range defaults to the 1st to the 99th percentile.
     ///
     /// # Errors
-    /// [`Error::Usage`] if a range is given of what has no values.
+    /// [`Error::Usage`] if a range is given for normals, which have no values.
     pub fn new(name: &str, range: Option<ValueRange>, map: ColourMap, up: DVec3) -> Result<Self> {
         let along = |axis| Source::Quantity(Quantity::Along(axis));
         let source = match name {
@@ -63,17 +63,17 @@ impl Colouring {
         Ok(Self { name: name.into(), source, map, range })
     }
 
-    /// By a property itself, three times as linear light, so that colours can be made of it later.
-    pub fn numbers(name: &str) -> Self {
-        Self { name: name.into(), source: Source::Numbers, map: ColourMap::default(), range: None }
+    /// Stores the values of a property as linear colours, the same in all three channels, for colours to be computed later.
+    pub fn values(name: &str) -> Self {
+        Self { name: name.into(), source: Source::Values, map: ColourMap::default(), range: None }
     }
 
-    /// Whether numbers stand in the place of colours, and nothing else of the points counts.
-    pub(super) fn keeps_numbers(&self) -> bool {
-        matches!(self.source, Source::Numbers)
+    /// Whether values are stored as colours, so that other attributes are not needed.
+    pub(super) fn keeps_values(&self) -> bool {
+        matches!(self.source, Source::Values)
     }
 
-    /// The property that is to be read from the files.
+    /// The property to read from the files.
     pub fn property(&self) -> Option<&str> {
         match self.source {
             Source::Quantity(_) | Source::Normal => None,
@@ -81,15 +81,15 @@ impl Colouring {
         }
     }
 
-    /// Whether there are values for a bar to tell.
+    /// Whether the colours stand for values, which a colour bar can show.
     pub fn has_values(&self) -> bool {
         !matches!(self.source, Source::Normal)
     }
 
     /// Colours clouds by the property that was read from their files.
     pub(super) fn colour_clouds(&self, clouds: &mut [&mut Cloud], listener: &dyn Listener) -> Coloured {
-        if matches!(self.source, Source::Numbers) {
-            clouds.iter_mut().for_each(|cloud| take_numbers(cloud));
+        if matches!(self.source, Source::Values) {
+            clouds.iter_mut().for_each(|cloud| values_to_colours(cloud));
             return Coloured { name: self.name.clone(), scale: None };
         }
         let scalars = || clouds.iter().filter_map(|cloud| cloud.scalar.as_ref());
@@ -104,11 +104,11 @@ impl Colouring {
         coloured
     }
 
-    /// Colours surfels and vertices by what they have themselves; `None` if the colours come from the files.
+    /// Colours surfels and vertices by a geometric quantity or by normals; `None` if the colours come from the files.
     pub(super) fn colour_model(&self, model: &mut Model, listener: &dyn Listener) -> Option<Coloured> {
         let Model { surfels, primitives } = model;
         match self.source {
-            Source::Property | Source::Numbers => None,
+            Source::Property | Source::Values => None,
             Source::Normal => {
                 surfels.colour_by_normals();
                 primitives.colour_by_directions();
@@ -126,7 +126,7 @@ impl Colouring {
         }
     }
 
-    /// The scale for `values`, of which there are `count`. Notes how it came about.
+    /// The colour scale of `count` values. Notes its range, and points without a value, for the user.
     fn scale(
         &self,
         values: impl Iterator<Item = f64> + Clone,
@@ -139,34 +139,34 @@ impl Colouring {
             return Coloured { name, scale: None };
         };
         let range = self.range.unwrap_or(usual);
-        let how = self.range.is_none().then(|| {
+        let default = self.range.is_none().then(|| {
             let [min, max] = [range.min, range.max].map(short);
             format!("{min} to {max} (1st to 99th percentile of {finite})")
         });
         let grey =
             (finite < count).then(|| format!("{} of {count} points have none and are grey", count - finite));
-        let news: Vec<_> = how.into_iter().chain(grey).collect();
-        if !news.is_empty() {
-            listener.note(&format!("{name}: {}", news.join("; ")));
+        let notes: Vec<_> = default.into_iter().chain(grey).collect();
+        if !notes.is_empty() {
+            listener.note(&format!("{name}: {}", notes.join("; ")));
         }
         Coloured { name, scale: Some(ColourScale { map: self.map, range }) }
     }
 }
 
 impl Coloured {
-    /// The bar that tells the values.
+    /// The colour bar; `None` without values.
     pub fn bar(&self) -> Option<ColourBar> {
         Some(ColourBar { scale: self.scale?, name: self.name.clone() })
     }
 
-    /// A scale also where there are no values, which it then shows grey.
+    /// The scale, or one that is grey everywhere.
     fn scale_or_grey(&self, map: ColourMap) -> ColourScale {
         self.scale.unwrap_or(ColourScale { map, range: ValueRange { min: 0.0, max: 0.0 } })
     }
 }
 
-/// Puts a cloud's numbers in the place of its colours, NaN where there are none.
-fn take_numbers(cloud: &mut Cloud) {
+/// Replaces the colours of a cloud by its values, NaN where there are none.
+fn values_to_colours(cloud: &mut Cloud) {
     let count = cloud.len();
     let numbers = cloud.scalar.take().unwrap_or_else(|| vec![f64::NAN; count]);
     let single = |number: &f64| [*number as f32; 3];
@@ -174,7 +174,7 @@ fn take_numbers(cloud: &mut Cloud) {
     cloud.colours = Some(Colours::Linear(numbers.iter().map(single).collect()));
 }
 
-/// A number without the digits that its conversion to f64 or a sum added.
+/// Formats a number without digits that are noise of its conversion to f64 or of a sum.
 fn short(value: f64) -> String {
     let single = value as f32;
     if f64::from(single) == value {
@@ -189,7 +189,7 @@ mod tests {
     use super::short;
 
     #[test]
-    fn numbers_are_told_without_noise() {
+    fn numbers_are_printed_without_noise() {
         let sums = [0.1f32.into(), 0.1 + 0.2, 4_600_000.123_456, -0.0, 255.0].map(short);
         assert_eq!(sums, ["0.1", "0.3", "4600000.12", "-0", "255"]);
     }

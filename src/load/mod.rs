@@ -1,7 +1,7 @@
-//! Loading: from files, and built-in scenes, to a model that can be drawn.
+//! Loads files and built-in scenes as one model.
 //!
-//! Each input is read ([`formats`]), thinned, coloured and estimated ([`estimate`](crate::estimate)) as [`LoadOptions`] say; all together
-//! are one model.
+//! Each input is read ([`formats`]), thinned, coloured and estimated ([`estimate`](crate::estimate)) with [`LoadOptions`]; the results are
+//! merged.
 
 mod colouring;
 
@@ -19,83 +19,83 @@ use std::ffi::OsStr;
 use std::path::Path;
 use std::sync::Arc;
 
-/// What inputs become.
+/// Options of loading.
 #[derive(Clone, Debug, Default)]
 pub struct LoadOptions {
-    /// How normals and radii that files lack are estimated.
+    /// Options of the estimation of missing normals and radii.
     pub estimate: Estimate,
-    /// Whether faces are drawn as triangles; where a file has lines, they are anyway.
+    /// Whether faces are rendered as triangles; those of a file with lines always are.
     pub polygons: bool,
-    /// How faces become lines; they stay faces if not at all.
+    /// How faces are converted to lines; `None` keeps them.
     pub lines: Option<ToLines>,
-    /// By how much lines may be off that are simplified, in the positions' unit.
+    /// Tolerance of the simplification of lines, in the positions' unit; `None` keeps all vertices.
     pub simplify: Option<f64>,
-    /// The side of the voxels that keep one point each, in the positions' unit.
+    /// Side of the voxels that keep one point each, in the positions' unit; `None` keeps all points.
     pub voxel: Option<f64>,
-    /// What the points are coloured by, if not by their own colours.
+    /// What the points are coloured by; `None` for their own colours.
     pub colouring: Option<Colouring>,
-    /// The texture that files' coordinates are of, rather than the one that they name.
+    /// Texture of the files' texture coordinates, instead of the one that they name.
     pub texture: Option<Arc<MipMap>>,
 }
 
 /// Receives the progress of a load, notes on it, and a preview.
 pub trait Listener: Progress {
-    /// A line on what was made of an input.
+    /// Receives a line for the user about an input.
     fn note(&self, _text: &str) {}
 
-    /// Whether a [preview](Self::preview) is of use.
+    /// Whether the listener uses a [preview](Self::preview).
     fn wants_preview(&self) -> bool {
         false
     }
 
-    /// Some of many points, as soon as they are read.
+    /// Receives a preview, some of many points, as soon as these are read.
     fn preview(&self, _model: Model) {}
 }
 
-/// Ignores everything.
+/// Ignores notes and previews.
 impl Listener for () {}
 
-/// Points of a preview.
+/// Number of points of a preview.
 const PREVIEW: usize = 20_000;
-/// How many times as many points have a preview: fewer are whole as soon.
+/// Minimum number of points for a preview, as a multiple of its own: fewer points load as fast as a preview.
 const WORTH_A_PREVIEW: usize = 5;
 
-/// What inputs hold together.
+/// The model of all inputs, and where it comes from.
 #[derive(Clone, Debug)]
 pub struct LoadedModel {
-    /// One scene; its surfels are in Morton order.
+    /// The model; its surfels are in Morton order.
     pub model: Model,
-    /// Points of all inputs, dropped ones included.
+    /// Number of points of all inputs, including dropped ones.
     pub read: u64,
-    /// Points that are no surfels.
+    /// Counts of dropped points.
     pub dropped: Dropped,
-    /// Where normals and radii came from.
+    /// Where normals and radii come from.
     pub estimated: Estimated,
-    /// What the points were coloured by, if not by their own colours.
+    /// What the points were coloured by; `None` for their own colours.
     pub coloured: Option<Coloured>,
-    /// Properties of the files' points of which nothing is made.
+    /// Names of the files' properties that are not used.
     pub skipped: Vec<String>,
 }
 
-/// What all steps of a load share.
+/// Options and listener of a load.
 struct Load<'a> {
     options: &'a LoadOptions,
     listener: &'a dyn Listener,
 }
 
-/// An input as it was read.
+/// An input that was read.
 struct Part {
     name: String,
     cloud: Cloud,
-    /// Whether its faces are drawn, whatever is wanted of files.
-    drawn: bool,
+    /// Whether its faces are rendered, whatever the options say.
+    draws_faces: bool,
 }
 
-/// Loads every input, a file's path or a built-in scene's name; several become one model.
+/// Loads inputs, paths of files or names of built-in scenes, as one model.
 ///
 /// # Errors
-/// What reading a file, thinning or estimation refuses, with the input's name; [`Error::Usage`] where a built-in scene is to be coloured by
-/// a property of files; [`Error::Cancelled`].
+/// Errors of reading, thinning and estimation, with the name of the input; [`Error::Usage`] if a built-in scene should be coloured by a property
+/// of files; [`Error::Cancelled`].
 pub fn load(
     inputs: &[impl AsRef<OsStr>],
     options: &LoadOptions,
@@ -107,11 +107,11 @@ pub fn load(
 
 impl Load<'_> {
     fn all(&self, inputs: &[&OsStr]) -> Result<LoadedModel> {
-        self.refuse_scenes(inputs)?;
+        self.check_property(inputs)?;
         let (mut parts, mut read, mut dropped) = (Vec::new(), 0, Dropped::default());
         let mut skipped: Vec<String> = Vec::new();
         for input in inputs {
-            let (part, report) = self.one(input)?;
+            let (part, report) = self.read(input)?;
             read += report.as_ref().map_or(part.cloud.len() as u64, |report| report.points);
             if let Some(report) = report {
                 skipped.extend(report.skipped);
@@ -147,22 +147,23 @@ impl Load<'_> {
         self.options.colouring.as_ref().and_then(Colouring::property)
     }
 
-    /// Refuses scenes where a property of files is asked for: they have none.
-    fn refuse_scenes(&self, inputs: &[&OsStr]) -> Result<()> {
-        match self.property().zip(inputs.iter().find_map(|input| scene(input))) {
-            Some((property, scene)) => Err(Error::Usage(format!(
-                "{scene}: its points have no property `{property}`: colour by x, y, z, height, normal or radius"
-            ))),
-            None => Ok(()),
-        }
+    /// Fails if built-in scenes, which have no properties, should be coloured by one.
+    fn check_property(&self, inputs: &[&OsStr]) -> Result<()> {
+        let Some((property, scene)) = self.property().zip(inputs.iter().find_map(|input| scene(input)))
+        else {
+            return Ok(());
+        };
+        Err(Error::Usage(format!(
+            "{scene}: its points have no property `{property}`: colour by x, y, z, height, normal or radius"
+        )))
     }
 
-    /// What is in an input, and what its file holds.
-    fn one(&self, input: &OsStr) -> Result<(Part, Option<Report>)> {
+    /// Reads an input; the report is that of a file.
+    fn read(&self, input: &OsStr) -> Result<(Part, Option<Report>)> {
         #[cfg(feature = "scenes")]
         if let Some(name) = scene(input) {
             let cloud = scene_cloud(name)?;
-            return Ok((Part { name: name.into(), cloud, drawn: true }, None));
+            return Ok((Part { name: name.into(), cloud, draws_faces: true }, None));
         }
         let options = ReadOptions {
             scalar: self.property().map(str::to_owned),
@@ -172,25 +173,25 @@ impl Load<'_> {
         let Loaded { cloud, report } = formats::read(Path::new(input), &options, self.listener)?;
         let name = Path::new(input).display().to_string();
         warn(&name, &report);
-        Ok((Part { name, cloud, drawn: false }, Some(report)))
+        Ok((Part { name, cloud, draws_faces: false }, Some(report)))
     }
 
-    /// All parts together, with one point a voxel.
+    /// Merges all parts, with one point per voxel.
     fn thin(&self, parts: Vec<Part>, voxel: f64) -> Result<Part> {
         let name = match &parts[..] {
             [one] => one.name.clone(),
             several => format!("{} inputs", several.len()),
         };
-        let drawn = parts.iter().any(|part| part.drawn);
+        let draws_faces = parts.iter().any(|part| part.draws_faces);
         let clouds = parts.into_iter().map(|part| part.cloud).collect();
         let all = Cloud::merge(clouds, Settings::default().lighting.albedo)?;
         let before = all.len();
         let cloud = all.thin(voxel).map_err(|cause| Error::input(name.as_str(), cause))?;
         self.listener.note(&format!("{name}: {before} points thinned to {}", cloud.len()));
-        Ok(Part { name, cloud, drawn })
+        Ok(Part { name, cloud, draws_faces })
     }
 
-    /// One model of all parts, each of which is estimated by itself.
+    /// Estimates each part and merges all to one model.
     fn merge(&self, parts: Vec<Part>) -> Result<(Model, Estimated)> {
         let several = parts.len() > 1;
         let (mut all, mut total) = (Vec::new(), Estimated::default());
@@ -205,18 +206,19 @@ impl Load<'_> {
             self.listener
                 .note(&format!("{before} segments of lines simplified to {}", before as u64 - fewer));
         }
-        // One input is sorted already.
+        // The surfels of a single input are sorted already.
         if several {
             model.surfels.sort_morton();
         }
         Ok((model, total))
     }
 
-    /// Some of the points, with normals and radii of their own, if there are many; none where more than points is drawn.
+    /// A preview of some points with their own normals and radii; `None` for few points, and if lines or faces are rendered.
     fn preview(&self, parts: &[Part]) -> Option<Model> {
         let all: usize = parts.iter().map(|part| part.cloud.len()).sum();
         let faces = |part: &Part| {
-            part.cloud.has_lines() || (part.drawn || self.draws_faces()) && !part.cloud.triangles.is_empty()
+            part.cloud.has_lines()
+                || (part.draws_faces || self.draws_faces()) && !part.cloud.triangles.is_empty()
         };
         if all < WORTH_A_PREVIEW * PREVIEW || parts.iter().any(faces) {
             return None;
@@ -225,7 +227,7 @@ impl Load<'_> {
         let clouds = parts.iter().map(some).collect();
         let cloud = Cloud::merge(clouds, Settings::default().lighting.albedo).ok()?;
         let how = Estimate { outliers: None, sharp: None, ..self.options.estimate.clone() };
-        // What a few points do not tell, all of them may.
+        // Estimation may fail for few points and succeed for all: then there is no preview.
         let (mut model, _) = cloud.into_model(false, &how, &()).ok()?;
         let colouring = self.options.colouring.as_ref();
         if let Some(colouring) = colouring.filter(|colouring| colouring.property().is_none()) {
@@ -234,16 +236,17 @@ impl Load<'_> {
         Some(model)
     }
 
+    /// Estimates the model of a part.
     fn estimate(&self, part: Part) -> Result<(Model, Estimated)> {
-        let Part { name, cloud, drawn } = part;
+        let Part { name, cloud, draws_faces } = part;
         let cloud = match &self.options.lines {
             Some(how) => self.to_lines(&name, &cloud, how)?,
             None => cloud,
         };
-        let keeps_numbers = self.options.colouring.as_ref().is_some_and(Colouring::keeps_numbers);
-        let cloud = if keeps_numbers { numbers_alone(cloud) } else { cloud };
+        let keeps_values = self.options.colouring.as_ref().is_some_and(Colouring::keeps_values);
+        let cloud = if keeps_values { without_estimation(cloud) } else { cloud };
         let progress: &dyn Progress = self.listener;
-        let made = cloud.into_model(drawn || self.draws_faces(), &self.options.estimate, progress);
+        let made = cloud.into_model(draws_faces || self.draws_faces(), &self.options.estimate, progress);
         let (model, estimated) = made.map_err(|cause| progress.failed(name.as_str(), cause))?;
         if let Some(text) = estimated.summary() {
             self.listener.note(&format!("{name}: {text}"));
@@ -251,12 +254,12 @@ impl Load<'_> {
         Ok((model, estimated))
     }
 
-    /// Whether faces are drawn, unless they become lines.
+    /// Whether faces are rendered or converted to lines.
     fn draws_faces(&self) -> bool {
         self.options.polygons || self.options.lines.is_some()
     }
 
-    /// The lines of a part's faces.
+    /// Converts the faces of a part to lines.
     fn to_lines(&self, name: &str, cloud: &Cloud, how: &ToLines) -> Result<Cloud> {
         let (cloud, lined) = cloud.to_lines(how).map_err(|cause| Error::input(name, cause))?;
         let Lined { triangles, leaves: [of_leaves, ribbons], branches: [of_branches, tubes], vertices } =
@@ -270,7 +273,7 @@ impl Load<'_> {
     }
 }
 
-/// Says what of a file is left out, and what may be damage.
+/// Logs warnings about parts of a file that are left out or may be damaged.
 fn warn(name: &str, report: &Report) {
     let Dropped { position, transparent } = report.dropped;
     for (count, why) in [(position, "have no finite position"), (transparent, "are less than a tenth opaque")]
@@ -307,7 +310,7 @@ fn warn(name: &str, report: &Report) {
     let Lines { understood, skipped, .. } = report.lines;
     if skipped > 0 {
         log::warn!(
-            "{name}: {skipped} of {} segments of lines have no two ends that exist, at two places, and are left out",
+            "{name}: {skipped} of {} segments of lines have no two distinct ends that exist and are left out",
             skipped + understood
         );
     }
@@ -319,8 +322,8 @@ fn warn(name: &str, report: &Report) {
     }
 }
 
-/// A cloud of which the numbers alone are wanted, in the order that its surfels and vertices have: nothing of it is to be estimated.
-fn numbers_alone(cloud: Cloud) -> Cloud {
+/// Replaces the attributes that would be estimated: only the values of the cloud are needed, in the order of its surfels and vertices.
+fn without_estimation(cloud: Cloud) -> Cloud {
     let count = cloud.len();
     Cloud {
         normals: Some(vec![Vec3::Z; count]),
@@ -332,7 +335,7 @@ fn numbers_alone(cloud: Cloud) -> Cloud {
     }
 }
 
-/// The points of a built-in scene, and its lines and triangles if it wants some.
+/// The points of a built-in scene, and its lines and triangles if it has any.
 #[cfg(feature = "scenes")]
 pub fn scene_cloud(name: &str) -> Result<Cloud> {
     let Model { surfels, primitives } = scenes::model(name)?;
@@ -346,7 +349,7 @@ pub fn scene(input: &OsStr) -> Option<&str> {
     input.to_str().filter(|name| scenes::is_scene(name))
 }
 
-/// None: the feature `scenes` is off.
+/// `None`: the feature `scenes` is off.
 #[cfg(not(feature = "scenes"))]
 pub fn scene(_: &OsStr) -> Option<&str> {
     None
