@@ -348,7 +348,7 @@ mod tests {
     }
 
     #[test]
-    fn the_full_frame_of_a_larger_window_is_measured_anew() {
+    fn the_full_frame_of_a_larger_window_is_measured_again() {
         let (mut adaptive, now) = (AdaptiveResolution::new(60.0), Instant::now());
         let small = Workload { pixels: 0.01 * workload().pixels, ..workload() };
         let rest = |ms, created| FrameTime { ms, moving: false, created };

@@ -8,8 +8,8 @@ fn json(program: &Program, name: &str) -> Value {
 }
 
 #[test]
-fn what_the_user_brings_is_measured_kept_and_shown_again() {
-    let Some(program) = Program::with_device("what_the_user_brings_is_measured_kept_and_shown_again") else {
+fn an_input_is_measured_stored_and_reported_again() {
+    let Some(program) = Program::with_device("an_input_is_measured_stored_and_reported_again") else {
         return;
     };
     let arguments = "scene:torus --points 1000,3000 --size 64x64";
@@ -31,7 +31,7 @@ fn what_the_user_brings_is_measured_kept_and_shown_again() {
     let page = |folder: &str| std::fs::read_to_string(program.path(folder).join("index.html")).unwrap();
     assert!(page("page").contains("<svg"));
 
-    // Without a device, from what was kept.
+    // Without a device, from the stored results.
     let again = program.run_with(
         "bench --from a.json --json b.json --report again",
         &[("VK_DRIVER_FILES", "none"), ("VK_ICD_FILENAMES", "none")],
@@ -42,7 +42,7 @@ fn what_the_user_brings_is_measured_kept_and_shown_again() {
 }
 
 #[test]
-fn results_of_other_code_say_so() {
+fn results_of_other_versions_are_marked() {
     let program = Program::new();
     let made = r#""version":"0.1.0","commit":"0123456789","code":"another","date":"2026-01-02T03:04:05Z","seconds":1.0,
         "command":"surfel bench","suites":["quick"],"host":{"cpu":"A","cores":2,"memory":1,"system":"B"},"device":null"#;
@@ -55,7 +55,7 @@ fn results_of_other_code_say_so() {
 }
 
 #[test]
-fn what_cannot_be_is_refused_before_anything_is_measured() {
+fn invalid_arguments_of_bench_are_refused_first() {
     let program = Program::new();
     program.write("none.json", "{}").write("later.json", r#"{"format":99,"sessions":[]}"#).write("file", "");
     let refused = |arguments: &str, code| program.run(&format!("bench {arguments}")).error(code).to_owned();

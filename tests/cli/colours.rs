@@ -1,16 +1,16 @@
-//! `--color-by` and `--color-bar`; by the reference, which needs no device.
+//! `--color-by` and `--color-bar`, tested with the reference, which needs no device.
 
 use crate::program::{Program, surfels, surfels_with};
 use serde_json::{Value, json};
 
-/// A camera at distance 5 that sees 4 units of height at the origin, 10 px a unit; flat colours.
+/// A camera at distance 5 whose picture is 4 units high at the origin, 10 px per unit; flat colours.
 const FRONT: &str = "--reference --size 40x40 --eye 0,0,5 --target 0,0,0 --fov 43.6028 --shading color";
-/// The ends of viridis and what has no value.
+/// Both ends of viridis, and the grey of missing values.
 const FIRST: [u8; 4] = [68, 1, 84, 255];
 const LAST: [u8; 4] = [253, 231, 37, 255];
 const GREY: [u8; 4] = [128, 128, 128, 255];
 
-/// Colours at x = −1, 0 and 1 of a picture by [`FRONT`].
+/// Colours at x = −1, 0 and 1 of a picture with [`FRONT`].
 fn row(program: &Program) -> [[u8; 4]; 3] {
     let picture = program.png("out.png");
     [10, 20, 30].map(|x| picture.get_pixel(x, 20).0)
@@ -26,14 +26,14 @@ fn a_property_has_one_range_over_all_inputs() {
     let line = "intensity: 3 to 7 (1st to 99th percentile of 2); 1 of 3 points have none and are grey\n";
     assert!(run.err.contains(line), "{}", run.err);
     assert_eq!(row(&program), [FIRST, GREY, LAST]);
-    // A range of one's own is not told again.
+    // A given range is not printed.
     let run = program.run(&format!("render b.ply -o out.png --color-by intensity:7,9 {FRONT}"));
     assert!(!run.err.contains("intensity"), "{}", run.err);
     assert_eq!(row(&program), [[0; 4], [0; 4], FIRST]);
 }
 
 #[test]
-fn values_that_are_one_or_none_are_drawn() {
+fn equal_or_missing_values_are_rendered() {
     let program = Program::new();
     program.write("one.ply", surfels_with("q", &["0 0 0 0 0 1 1 5"]));
     program.write("none.ply", surfels_with("q", &["0 0 0 0 0 1 1 inf"]));
@@ -46,7 +46,7 @@ fn values_that_are_one_or_none_are_drawn() {
 }
 
 #[test]
-fn surfels_are_coloured_by_what_they_have_themselves() {
+fn surfels_are_coloured_by_geometric_quantities() {
     let program = Program::new();
     program.write("a.ply", surfels(&["-1 0 0 0 0 1 0.4", "0 0 0.5 0 1 1 0.4", "1 0 1 0 0 1 0.5"]));
     let colours = |by: &str| {
@@ -56,7 +56,7 @@ fn surfels_are_coloured_by_what_they_have_themselves() {
     let [first, middle, last] = colours("x");
     assert_eq!((first, last), (FIRST, LAST));
     assert!(middle != FIRST && middle != LAST, "{middle:?}");
-    // The picture is turned with its up axis.
+    // The picture turns with its up axis.
     for up in ["1,0,0", "-1,0,0"] {
         colours(&format!("height:-1,1 --up {up}"));
         let picture = program.png("out.png");
@@ -64,10 +64,10 @@ fn surfels_are_coloured_by_what_they_have_themselves() {
     }
     assert_eq!(colours("z"), [first, middle, last]);
     assert_eq!(colours("radius"), [FIRST, FIRST, LAST]);
-    // Half of the way from −1 to 1 is code 128, √½ is 218.
+    // 0, in the middle from −1 to 1, is code 128; √½ is 218.
     assert_eq!(colours("normal"), [[128, 128, 255, 255], [128, 218, 218, 255], [128, 128, 255, 255]]);
     assert_eq!(colours("x --color-map magma")[0], [0, 0, 4, 255]);
-    // What is up may come from a file.
+    // The up direction may come from a file.
     program.write("c.json", r#"{"eye":[0,0,5],"target":[0,0,0],"up":[-2,0,0],"fov_y_deg":43.6028}"#);
     let common = "-o out.png --reference --size 40x40 --shading color --color-by height --camera c.json";
     program.run(&format!("render a.ply {common}")).text();
@@ -75,7 +75,7 @@ fn surfels_are_coloured_by_what_they_have_themselves() {
 }
 
 #[test]
-fn the_report_tells_the_scale_and_what_was_estimated() {
+fn the_report_has_the_scale_and_the_estimation() {
     let program = Program::new();
     program.write("a.ply", surfels(&["-1 0 0 0 0 1 0.4", "1 0 0 0 0 1 0.4"]));
     let report = |arguments: &str| -> Value {
@@ -95,7 +95,7 @@ fn the_report_tells_the_scale_and_what_was_estimated() {
 }
 
 #[test]
-fn a_bar_stands_at_the_right_edge_and_shows_every_colour() {
+fn the_colour_bar_is_at_the_right_edge_and_has_every_colour() {
     let program = Program::new();
     program.write("a.ply", surfels(&["-1 0 0 0 0 1 0.4", "1 0 0 0 0 1 0.4"]));
     let camera = "--reference --eye 0,0,50 --target 0,0,0 --size 256x256";
@@ -117,7 +117,7 @@ fn a_bar_stands_at_the_right_edge_and_shows_every_colour() {
 }
 
 #[test]
-fn what_cannot_be_shown_is_refused_before_anything_is_read() {
+fn invalid_colours_are_refused_first() {
     let cases = [
         ("--color-bar", "--color-by"),
         ("--color-map turbo", "--color-by"),
@@ -133,7 +133,7 @@ fn what_cannot_be_shown_is_refused_before_anything_is_read() {
     let program = Program::new();
     for (arguments, cause) in cases {
         let run = program.run(&format!("render missing.ply -o out.png {arguments}"));
-        // A colon that begins no range belongs to the name.
+        // A colon without a range behind it belongs to the name.
         let code = if cause == "missing.ply" { 1 } else { 2 };
         assert!(run.error(code).contains(cause), "{arguments}: {}", run.err);
     }
@@ -145,7 +145,7 @@ fn what_cannot_be_shown_is_refused_before_anything_is_read() {
 }
 
 #[test]
-fn a_property_that_is_missing_is_answered_with_those_there_are() {
+fn a_missing_property_is_an_error_that_lists_the_others() {
     let program = Program::new();
     program.write("a.ply", surfels_with("quality", &["0 0 0 0 0 1 1 5"]));
     let run = program.run(&format!("render a.ply -o out.png --color-by intensity {FRONT}"));

@@ -4,7 +4,7 @@ use crate::program::{Program, surfels};
 use image::{Rgba, RgbaImage};
 use serde_json::Value;
 
-/// A red disc of `radius` px in the middle of nothing, 40 px wide.
+/// A red disc of `radius` px in the middle of a transparent picture, 40 px wide.
 fn disc(program: &Program, name: &str, radius: f64, red: u8) {
     let pixel = |x: u32, y: u32| {
         let inside = (f64::from(x) - 19.5).hypot(f64::from(y) - 19.5) < radius;
@@ -49,7 +49,7 @@ fn the_same_picture_is_best_by_every_metric() {
         (&[40, 40].as_slice().into(), &Value::Array(vec![]))
     );
     assert!(report["metrics"].get("depth-max").is_none(), "{report}");
-    // No difference is the first colour of magma.
+    // No difference has the first colour of magma.
     assert!(program.png("map.png").pixels().all(|pixel| pixel.0 == [0, 0, 4, 255]));
     assert_eq!(program.files(), ["a.json", "a.png", "map.png"]);
 }
@@ -63,12 +63,12 @@ fn crossed_limits_exit_with_4_and_say_which() {
         "compare a.png b.png --fail-above holes=9 --fail-above bloat=0 --fail-below iou=0.9 --fail-below ssim=-1 --json j --map m.png",
     );
     assert_eq!(run.error(4), "holes is 132, above 9; iou is 0.705357, below 0.9");
-    // What was asked for is there all the same.
+    // The outputs are written all the same.
     let table = String::from_utf8(run.out.clone()).unwrap();
     assert_eq!([value(&table, "holes"), value(&table, "hole-regions")], ["132", "1"]);
     assert_eq!(json(&program, "j")["violations"].as_array().unwrap().len(), 2);
     assert!(program.png("m.png").pixels().any(|pixel| pixel.0[0] > 100));
-    // The other way round, what was missing is too much.
+    // With the pictures swapped, missing pixels are surplus ones.
     let table = program.run("compare b.png a.png").text().to_owned();
     assert_eq!(
         [value(&table, "holes"), value(&table, "bloat"), value(&table, "iou")],
@@ -77,7 +77,7 @@ fn crossed_limits_exit_with_4_and_say_which() {
 }
 
 #[test]
-fn what_cannot_be_measured_is_no_pass() {
+fn a_limit_of_an_unmeasured_metric_does_not_pass() {
     let program = Program::new();
     disc(&program, "a.png", 10.0, 200);
     let run = program.run("compare a.png a.png --fail-above depth-max=1");
@@ -119,7 +119,7 @@ fn normals_and_depths_come_from_the_layers_of_an_exr() {
         assert!(!table.contains("not measured"), "{table}");
         move |metric| value(&table, metric).parse::<f64>().unwrap()
     };
-    // The disc is turned by the angle whose cosine is 0.8.
+    // The disc is rotated by the angle whose cosine is 0.8.
     let tilted = compare("tilted.exr a.exr");
     for metric in ["normal-median", "normal-mean", "normal-p95", "normal-max"] {
         assert!((tilted(metric) - 0.8f64.acos().to_degrees()).abs() < 1e-4, "{metric}: {}", tilted(metric));
@@ -135,7 +135,7 @@ fn normals_and_depths_come_from_the_layers_of_an_exr() {
 }
 
 #[test]
-fn only_the_layers_that_are_asked_for_are_written() {
+fn only_the_given_layers_are_written() {
     let program = Program::new();
     program.write("a.ply", surfels(&["0 0 0 0 0 1 1"]));
     let render = |out: &str| program.run(&format!("render a.ply -o {out} --reference --size 40x40"));

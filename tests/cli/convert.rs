@@ -1,10 +1,10 @@
-//! `surfel convert`, and the options of every command that estimates.
+//! `surfel convert`, and the options of estimation.
 
 use crate::program::{Program, surfels, surfels_with};
 
 const TWO: [&str; 2] = ["0.25 0 0 0 0 1 0.5", "0.75 0 0 0 1 0 0.25"];
 
-/// What `surfel info` says of a file.
+/// Output of `surfel info` for a file.
 fn info(program: &Program, name: &str) -> String {
     program.run(&format!("info {name}")).text().to_owned()
 }
@@ -28,7 +28,7 @@ fn inputs_become_one_binary_file_that_renders_the_same() {
         program.run(&format!("render {inputs} -o {picture} --reference --size 64x64")).text();
     }
     let [one, two] = ["1.png", "2.png"].map(|name| program.png(name));
-    // A normal that is normalised again may change in its last bit.
+    // Normalizing a normal twice may change its last bit.
     assert!(one.iter().zip(two.iter()).all(|(a, b)| a.abs_diff(*b) <= 1));
     assert!(one.pixels().any(|pixel| pixel[3] == 255));
 }
@@ -90,8 +90,8 @@ fn weights_are_captured_once_and_render_by_surfel() {
 }
 
 #[test]
-fn borders_have_weights_at_corners_and_the_file_evens_out_what_is_rendered() {
-    let name = "borders_have_weights_at_corners_and_the_file_evens_out_what_is_rendered";
+fn captured_weights_even_out_the_brightness() {
+    let name = "captured_weights_even_out_the_brightness";
     let Some(program) = Program::with_device(name) else { return };
     let run = program.run("convert scene:relief?height=0&points=3000&albedo=plain -o w.ply --weights");
     let borders = run.err.split_once(" from 24 views, ").unwrap().1.split_once(" of them").unwrap().0;
@@ -99,7 +99,7 @@ fn borders_have_weights_at_corners_and_the_file_evens_out_what_is_rendered() {
     let text = info(&program, "w.ply");
     let properties = ["surfel_weight", "surfel_weight0", "surfel_weight3"];
     assert!(properties.iter().all(|name| text.contains(&format!("  float {name}\n"))), "{text}");
-    // Written again they are the same to the byte, and with other radii they are gone.
+    // Converting again keeps every byte; with other radii the weights are dropped.
     program.run("convert w.ply -o again.ply").text();
     let [first, again] = ["w.ply", "again.ply"].map(|name| std::fs::read(program.path(name)).unwrap());
     assert!(first == again);
@@ -110,7 +110,7 @@ fn borders_have_weights_at_corners_and_the_file_evens_out_what_is_rendered() {
         program.run(&format!("render w.ply -o {normalization}.png {how} {normalization}")).text();
         program.png(&format!("{normalization}.png"))
     });
-    // Of one colour: what differs from the division at every pixel is the sum.
+    // With one colour, only the sum differs from normalization at every pixel.
     let off = |picture: &image::RgbaImage| {
         let pairs = picture.pixels().zip(pixel.pixels()).filter(|(_, exact)| exact[3] == 255);
         pairs.map(|(a, b)| f64::from(a[1].abs_diff(b[1]))).sum::<f64>()
@@ -119,7 +119,7 @@ fn borders_have_weights_at_corners_and_the_file_evens_out_what_is_rendered() {
 }
 
 #[test]
-fn thinning_says_how_many_are_left() {
+fn thinning_prints_the_number_of_points() {
     let program = Program::new();
     let bare = surfels(&["0 0 0 0 0 1 9", "0.25 0 0 0 0 1 9", "5 0 0 0 0 1 9"]);
     program.write("a.ply", bare);
@@ -151,7 +151,7 @@ fn inputs_are_thinned_together() {
 }
 
 #[test]
-fn scenes_heed_every_option() {
+fn options_apply_to_scenes() {
     let program = Program::new();
     let scene = "scene:bumpy-sphere?points=2000";
     let run = program.run(&format!("convert {scene} -o c.ply --radius 0.25 --radius-scale 2"));
@@ -176,7 +176,7 @@ fn sharp_edges_are_found_and_written() {
     let text = info(&program, "c.ply");
     assert!(text.contains("\n  float clip0x\n") && text.contains("\n  uchar clip_concave\n"), "{text}");
     assert!(text.contains("skipped: none"), "{text}");
-    // What is clipped stays so, with or without another search.
+    // Clip lines stay, with or without another search.
     program.run("convert c.ply -o d.ply").text();
     assert_eq!(program.run("convert c.ply -o e.ply --sharp 90").err, "e.ply: 5000 surfels\n");
     let [c, d, e] = ["c.ply", "d.ply", "e.ply"].map(|name| std::fs::read(program.path(name)).unwrap());
@@ -205,7 +205,7 @@ fn radii_are_set_and_scaled() {
 }
 
 #[test]
-fn outputs_that_would_lose_something_are_refused() {
+fn outputs_that_would_overwrite_inputs_are_refused() {
     let program = Program::new();
     program.write("a.ply", surfels(&TWO));
     let before = std::fs::read(program.path("a.ply")).unwrap();
@@ -219,7 +219,7 @@ fn outputs_that_would_lose_something_are_refused() {
     }
     let run = program.run("convert missing.ply -o no/such/c.ply");
     assert!(run.error(1).contains("does not exist: create it"), "{}", run.err);
-    // What is there stays after a failure and is replaced by a success.
+    // A failure keeps the old file, a success replaces it.
     program.write("c.ply", "old");
     program.run("convert missing.ply -o c.ply").error(1);
     assert_eq!(std::fs::read(program.path("c.ply")).unwrap(), b"old");

@@ -1,4 +1,4 @@
-//! Mistakes: each is answered with its exit code and one line that names the cause, soon, and leaves nothing behind.
+//! Errors: each gives its exit code and one line with the cause, quickly, and leaves no files.
 
 use crate::program::{Program, surfels};
 use std::time::{Duration, Instant};
@@ -86,7 +86,7 @@ fn wrong_arguments_exit_with_2_before_anything_is_read() {
 }
 
 #[test]
-fn what_may_have_been_meant_is_said_and_whose_help_says_more() {
+fn errors_of_arguments_suggest_and_name_the_help() {
     let program = Program::new();
     for (arguments, meant, help) in [
         ("rendr a.ply", "'render'", "`surfel --help`"),
@@ -156,7 +156,7 @@ fn no_such_device_exits_with_3() {
         let run = program.run(&format!("render a.ply -o out.png --device {device}"));
         assert!(run.error(3).starts_with("no usable Vulkan device: "), "{}", run.err);
     }
-    // A loader that finds no driver.
+    // A Vulkan loader without a driver.
     let run = program.run_with(
         "render a.ply -o out.png",
         &[("VK_ICD_FILENAMES", "none.json"), ("VK_DRIVER_FILES", "none.json")],

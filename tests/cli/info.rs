@@ -29,7 +29,7 @@ fn a_file_is_described() {
 }
 
 #[test]
-fn a_file_that_cannot_be_drawn_still_tells_what_it_has() {
+fn the_header_of_an_unusable_file_is_printed() {
     let program = Program::new();
     program.write("a.ply", surfels(&["0 0 0 0 0 1 1"]).replace("radius", "confidence"));
     let run = program.run("info a.ply");
@@ -39,7 +39,7 @@ fn a_file_that_cannot_be_drawn_still_tells_what_it_has() {
 }
 
 #[test]
-fn what_is_estimated_is_told() {
+fn estimation_is_described() {
     let program = Program::new();
     let grid: Vec<String> = (0..49).map(|i| format!("{} {} 0 0 0 0 0", i % 7, i / 7)).collect();
     program.write("a.ply", surfels(&grid.iter().map(String::as_str).collect::<Vec<_>>()));
@@ -50,7 +50,7 @@ fn what_is_estimated_is_told() {
 }
 
 #[test]
-fn what_is_beside_the_points_is_told() {
+fn edges_and_faces_are_described() {
     let program = Program::new();
     let camera = "element camera 1\nproperty float view_px\nproperty float view_py\nproperty float view_pz\n";
     let face = "element face 2\nproperty list uchar int vertex_indices\n";

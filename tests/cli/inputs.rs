@@ -1,4 +1,4 @@
-//! Several inputs, cameras and what the arguments make of them; by the reference, which needs no device.
+//! Several inputs, cameras and settings, tested with the reference, which needs no device.
 
 use crate::program::{Program, Run, surfels};
 use serde_json::Value;
@@ -7,7 +7,7 @@ fn report(run: &Run) -> Value {
     serde_json::from_str(run.text()).unwrap()
 }
 
-/// A camera at distance 5 that sees 4 units of height at the origin.
+/// A camera at distance 5 whose picture is 4 units high at the origin.
 const FRONT: &str = "--reference --size 40x40 --eye 0,0,5 --target 0,0,0 --fov 43.6028 --json -";
 
 #[test]
@@ -31,7 +31,7 @@ fn several_inputs_become_one_scene() {
 }
 
 #[test]
-fn inputs_far_apart_keep_their_places() {
+fn distant_inputs_keep_their_positions() {
     let program = Program::new();
     let far = |x: f64| surfels(&[&format!("{x} 0 0 0 0 1 0.5")]).replace("float x", "double x");
     program.write("left.ply", far(1e7 - 1.0)).write("right.ply", far(1e7 + 1.0));
@@ -42,7 +42,7 @@ fn inputs_far_apart_keep_their_places() {
 }
 
 #[test]
-fn colours_and_their_absence_meet() {
+fn inputs_with_and_without_colours_are_merged() {
     let program = Program::new();
     let red = surfels(&["-1 0 0 0 0 1 0.5 255 0 0"]);
     let red = red
@@ -55,7 +55,7 @@ fn colours_and_their_absence_meet() {
 }
 
 #[test]
-fn what_of_the_camera_is_not_given_frames_the_scene() {
+fn missing_camera_options_frame_the_scene() {
     let program = Program::new();
     program.write("a.ply", surfels(&["10 20 30 0 0 1 1"]));
     let view = |arguments: &str| {
@@ -70,7 +70,7 @@ fn what_of_the_camera_is_not_given_frames_the_scene() {
     assert_ne!(eye, view("--eye 10,20,40 --up 1,0,0"));
     program.write("c.json", r#"{"eye":[10,20,40],"target":[10,20,30],"up":[0,1,0],"fov_y_deg":45}"#);
     assert_eq!(eye, view("--camera c.json"));
-    // A disc that faces the camera covers the middle.
+    // A disc that faces the camera covers the centre.
     assert_eq!(program.png("out.png").get_pixel(16, 16)[3], 255);
 }
 
@@ -85,7 +85,7 @@ fn backgrounds_are_srgb_codes() {
 }
 
 #[test]
-fn culling_leaves_out_what_faces_away() {
+fn back_faces_are_culled() {
     let program = Program::new();
     program.write("a.ply", surfels(&["0 0 0 0 0 -1 0.5"]));
     for (cull, drawn, back) in [("none", 1, 0), ("back", 0, 1)] {
@@ -106,8 +106,8 @@ fn exr_holds_linear_light() {
 }
 
 #[test]
-fn errors_say_by_which_option_there_is_a_way_out() {
-    let Some(program) = Program::with_device("errors_say_by_which_option_there_is_a_way_out") else { return };
+fn errors_name_the_option_that_helps() {
+    let Some(program) = Program::with_device("errors_name_the_option_that_helps") else { return };
     program.write("few.json", r#"{"max_storage_buffers":4}"#);
     program.write("small.json", r#"{"max_storage_buffer_range":80000}"#);
     let sphere = "render scene:sphere?points=200 -o a.png --size 64x64";
@@ -121,10 +121,10 @@ fn errors_say_by_which_option_there_is_a_way_out() {
     }
 }
 
-/// What never ends is not read to its end, and what is there in its place is said.
+/// Endless device files are not read to their end; the error names them.
 #[test]
 #[cfg(unix)]
-fn devices_without_an_end_are_refused() {
+fn endless_device_files_are_refused() {
     let program = Program::new();
     program.write("a.ply", surfels(&["0 0 0 0 0 1 1"]));
     for command in [

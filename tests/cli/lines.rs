@@ -1,4 +1,4 @@
-//! Files with lines, and faces that are drawn.
+//! Files with lines, and faces that are rendered.
 
 use crate::program::Program;
 
@@ -14,7 +14,7 @@ fn hybrid() -> String {
     )
 }
 
-/// What is said of arguments that cannot be.
+/// The error of invalid arguments.
 fn refused(program: &Program, arguments: &str) -> String {
     let run = program.run(arguments);
     assert_eq!(run.code, 2, "{}", run.err);
@@ -22,7 +22,7 @@ fn refused(program: &Program, arguments: &str) -> String {
 }
 
 #[test]
-fn lines_are_told_counted_and_converted_bit_by_bit() {
+fn lines_are_described_counted_and_converted_exactly() {
     let program = Program::new();
     program.write("a.ply", hybrid());
     let text = program.run("info a.ply").text().to_owned();
@@ -46,7 +46,7 @@ fn lines_are_told_counted_and_converted_bit_by_bit() {
     assert_eq!(program.run("convert b.ply -o c.ply").err, "c.ply: 1 surfels, 2 tubes, 1 triangles\n");
     let bytes = |name: &str| std::fs::read(program.path(name)).unwrap();
     assert!(bytes("b.ply") == bytes("c.ply"));
-    // Everything twice, and what a scene has.
+    // The file twice, and a scene.
     program.run("convert a.ply b.ply scene:sphere?points=50 -o d.ply --quiet").text();
     let text = program.run("info d.ply").text().to_owned();
     assert!(text.contains("surfels: 52\nribbons: 0\ntubes: 4\ndrawn triangles: 2\n"), "{text}");
@@ -74,7 +74,7 @@ fn radii_of_lines_can_be_given() {
 }
 
 #[test]
-fn faces_are_drawn_where_they_are_asked_for() {
+fn polygons_renders_faces() {
     let program = Program::new();
     let mesh = format!(
         "ply\nformat ascii 1.0\nelement vertex 4\n{XYZ}element face 1\nproperty list uchar int vertex_indices\nend_header\n\
@@ -106,7 +106,7 @@ fn methods_that_splat_refuse_lines() {
 #[test]
 fn meshes_become_lines_and_lines_simpler() {
     let program = Program::new();
-    // A tube of triangles with three rings, the middle one where it would be without it.
+    // A tube of triangles with three rings, the middle one in line with the others.
     let rings = (0..9).map(|i| {
         let angle = f64::from(i % 3) * std::f64::consts::TAU / 3.0;
         format!("{} {} {}\n", 0.1 * angle.cos(), 0.1 * angle.sin(), i / 3)
@@ -124,7 +124,7 @@ fn meshes_become_lines_and_lines_simpler() {
     assert_eq!(run.err, said);
     let run = program.run("convert b.ply -o c.ply --simplify-lines 0.001");
     assert_eq!(run.err, "2 segments of lines simplified to 1\nc.ply: 1 tubes\n");
-    // Thicker than the usual part of so small an extent.
+    // Thicker than the default fraction of so small an extent.
     assert!(program.run("convert a.ply --lines -o d.ply").err.ends_with("d.ply: 12 triangles\n"));
     refused(&program, "convert a.ply -o b.ply --lines 0");
     refused(&program, "convert a.ply -o b.ply --lines 1 --voxel 1");

@@ -1,4 +1,4 @@
-//! What lists and explains: as JSON, as completions of shells, as pages of the manual.
+//! Lists as text and JSON, help, shell completions and man pages.
 
 use crate::program::{Program, surfels};
 use serde_json::Value;
@@ -9,7 +9,7 @@ fn json(program: &Program, arguments: &str) -> Value {
 }
 
 #[test]
-fn lists_are_json_where_that_is_asked_for() {
+fn lists_can_be_printed_as_json() {
     let program = Program::new();
     let methods = json(&program, "methods --json");
     let first = &methods[0];
@@ -30,7 +30,7 @@ fn lists_are_json_where_that_is_asked_for() {
 }
 
 #[test]
-fn the_table_of_what_frames_need_is_the_documentations() {
+fn the_table_of_needs_equals_the_documentation() {
     let program = Program::new();
     let table = program.run("methods --needs").text().to_owned();
     let written = concat!(env!("CARGO_MANIFEST_DIR"), "/src/frame/needs.md");
@@ -58,8 +58,8 @@ fn a_file_is_described_in_json() {
     program.write("b.ply", surfels(&["0 0 0 0 0 1 1"]).replace("radius", "confidence"));
     let run = program.run("info b.ply --json");
     assert!(run.error(1).contains("give a radius"), "{}", run.err);
-    let told: Value = serde_json::from_slice(&run.out).unwrap();
-    assert_eq!(told["elements"][0]["count"], 1);
+    let printed: Value = serde_json::from_slice(&run.out).unwrap();
+    assert_eq!(printed["elements"][0]["count"], 1);
     let run = program.run("info missing.ply --json");
     assert!(run.error(1).contains("there is no such file") && run.out.is_empty());
 }
@@ -83,7 +83,7 @@ fn shells_complete_and_the_manual_has_a_page_for_each_command() {
 }
 
 #[test]
-fn colours_are_those_of_css_too() {
+fn backgrounds_may_be_css_colours() {
     let program = Program::new();
     let render = |background: &str| {
         let run = program.run(&format!(
@@ -103,14 +103,14 @@ fn colours_are_those_of_css_too() {
 }
 
 #[test]
-fn help_is_in_groups_and_speaks_of_nothing_else() {
+fn help_has_headings_and_no_links() {
     let program = Program::new();
     let run = program.run("render --help");
     let help = run.text();
     for heading in ["Options:", "Method, changed:", "Points:", "Colours:", "Camera:", "Picture:", "Device:"] {
         assert!(help.lines().any(|line| line == heading), "no `{heading}` in\n{help}");
     }
-    // Links of the library's documentation.
+    // Links of rustdoc.
     for command in ["render", "view", "info", "convert", "compare", "truth", "bench", "man", "completions"] {
         let run = program.run(&format!("{command} --help"));
         assert!(!run.text().contains("](") && !run.text().contains("[`"), "{command}:\n{}", run.text());

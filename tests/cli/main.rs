@@ -1,4 +1,4 @@
-//! The `surfel` program as its user meets it: arguments in; exit code, streams and files out.
+//! End-to-end tests of the `surfel` program: arguments in; exit code, streams and files out.
 
 mod bench;
 mod cameras;

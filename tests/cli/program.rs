@@ -1,14 +1,14 @@
-//! Running the program, and files for it to read.
+//! Runs the program, and writes its input files.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use tempfile::TempDir;
 
-/// Where Mesa keeps compiled shaders: what it compiles for one run of the program serves all others, those of the next test run too.
+/// Mesa's cache of compiled shaders, shared by all runs of the program and of the tests.
 pub const SHADER_CACHE: &str = concat!(env!("CARGO_TARGET_TMPDIR"), "/shaders");
 
-/// What came of a run.
+/// Exit code and output of a run.
 pub struct Run {
     pub code: i32,
     pub out: Vec<u8>,
@@ -16,7 +16,7 @@ pub struct Run {
 }
 
 impl Run {
-    /// The one line that an error must be, without its beginning; checks the code too.
+    /// The error line without its prefix. Checks that it is the only line, and the exit code.
     pub fn error(&self, code: i32) -> &str {
         assert_eq!(self.code, code, "{}", self.err);
         let line = self.err.strip_suffix('\n').and_then(|text| text.strip_prefix("surfel: error: "));
@@ -25,14 +25,14 @@ impl Run {
         line
     }
 
-    /// Nothing went wrong; what was printed.
+    /// Standard output of a run that must succeed.
     pub fn text(&self) -> &str {
         assert_eq!(self.code, 0, "{}", self.err);
         std::str::from_utf8(&self.out).unwrap()
     }
 }
 
-/// The built program in a folder of its own.
+/// The program, in a temporary folder.
 pub struct Program {
     folder: TempDir,
 }
@@ -42,7 +42,7 @@ impl Program {
         Self { folder: tempfile::tempdir().unwrap() }
     }
 
-    /// The program if there is a Vulkan device for it; otherwise the test is skipped, which it says where a captured test is heard too.
+    /// The program, if there is a Vulkan device. Otherwise the test is skipped with a message, or fails if `SURFEL_REQUIRE_GPU` is 1.
     pub fn with_device(test: &str) -> Option<Self> {
         let program = Self::new();
         let devices = program.run("devices");
@@ -54,12 +54,12 @@ impl Program {
         None
     }
 
-    /// Runs it in its folder with arguments that are separated by spaces.
+    /// Runs the program in its folder with arguments separated by spaces.
     pub fn run(&self, arguments: &str) -> Run {
         self.run_with(arguments, &[])
     }
 
-    /// [`Program::run`] with variables in its environment.
+    /// [`Program::run`] with environment variables.
     pub fn run_with(&self, arguments: &str, variables: &[(&str, &str)]) -> Run {
         let Output { status, stdout, stderr } = Command::new(env!("CARGO_BIN_EXE_surfel"))
             .args(arguments.split_whitespace())
@@ -82,7 +82,7 @@ impl Program {
         self
     }
 
-    /// Names of the files in its folder.
+    /// Names of the files in the folder.
     pub fn files(&self) -> Vec<String> {
         let entries = std::fs::read_dir(self.folder.path()).unwrap();
         let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
@@ -91,13 +91,13 @@ impl Program {
         names
     }
 
-    /// Pixels of a PNG in its folder, RGBA.
+    /// Pixels of a PNG in the folder, RGBA.
     pub fn png(&self, name: &str) -> image::RgbaImage {
         image::open(self.path(name)).unwrap().into_rgba8()
     }
 }
 
-/// A PLY file of one surfel a line: x y z nx ny nz radius.
+/// A PLY file with one surfel per line: x y z nx ny nz radius.
 pub fn surfels(lines: &[&str]) -> String {
     let header = "ply\nformat ascii 1.0\nelement vertex";
     let properties: String =
@@ -105,12 +105,12 @@ pub fn surfels(lines: &[&str]) -> String {
     format!("{header} {}\n{properties}end_header\n{}\n", lines.len(), lines.join("\n"))
 }
 
-/// [`surfels`] with one more number at the end of each line.
+/// [`surfels`] with a further property at the end of each line.
 pub fn surfels_with(name: &str, lines: &[&str]) -> String {
     surfels(lines).replace("end_header", &format!("property float {name}\nend_header"))
 }
 
-/// A file of the scans that lie beside the project; `None`, said aloud, where they are not.
+/// A file of the scans beside the project. Without it the test is skipped with a message.
 pub fn scan(test: &str, name: &str) -> Option<PathBuf> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data").join(name);
     if path.exists() {
@@ -120,7 +120,7 @@ pub fn scan(test: &str, name: &str) -> Option<PathBuf> {
     None
 }
 
-/// Past the test harness, which keeps to itself what a passing test prints through macros.
+/// Prints that a test is skipped, past the test harness, which captures the output of print macros.
 pub fn say_skipped(test: &str, why: &str) {
     std::io::stderr().write_all(format!("SKIPPED {test}: {why}\n").as_bytes()).unwrap();
 }

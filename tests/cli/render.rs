@@ -4,7 +4,7 @@ use crate::program::{Program, scan};
 
 const SPHERE: &str = "scene:bumpy-sphere?points=20000";
 
-/// Mean difference of two pictures, codes.
+/// Mean difference of two pictures, in codes.
 fn difference(a: &image::RgbaImage, b: &image::RgbaImage) -> f64 {
     assert_eq!(a.dimensions(), b.dimensions());
     let sum: u64 = a.iter().zip(b.iter()).map(|(a, b)| u64::from(a.abs_diff(*b))).sum();
@@ -14,7 +14,7 @@ fn difference(a: &image::RgbaImage, b: &image::RgbaImage) -> f64 {
 #[test]
 fn every_shading_matches_the_reference() {
     let Some(program) = Program::with_device("every_shading_matches_the_reference") else { return };
-    // The second device has no float atomics: what it draws goes through its rasterizer.
+    // The second device has no float atomics: it renders with its rasterizer.
     program.write("limits.json", r#"{"float_atomics":false}"#);
     for shading in ["lit", "color", "normal", "depth"] {
         let common = format!("render {SPHERE} --size 96x64 --background 20,40,80 --shading {shading}");
@@ -32,7 +32,7 @@ fn every_shading_matches_the_reference() {
 #[test]
 fn pull_push_matches_the_reference() {
     let Some(program) = Program::with_device("pull_push_matches_the_reference") else { return };
-    // The paper's rules have more decisions that rounding turns: ellipses that end between a few pixels' centres.
+    // Under the paper's rules rounding flips more decisions: ellipses end between the centres of a few pixels.
     let cases = [("pull-push", "lit", 0.1), ("pull-push", "depth", 0.1), ("pull-push-paper", "normal", 0.3)];
     let mut seen = Vec::new();
     for (method, shading, most) in cases {
@@ -109,14 +109,14 @@ fn a_size_over_the_limit_is_refused_with_the_limit() {
 }
 
 #[test]
-fn messages_of_the_layers_make_it_fail() {
-    let Some(program) = Program::with_device("messages_of_the_layers_make_it_fail") else { return };
+fn validation_messages_are_errors() {
+    let Some(program) = Program::with_device("validation_messages_are_errors") else { return };
     let advice = [("VK_LAYER_ENABLES", "VK_VALIDATION_FEATURE_ENABLE_BEST_PRACTICES_EXT")];
     let arguments = format!("render {SPHERE} -o a.png --size 8x8");
     let run = program.run_with(&format!("{arguments} --validate"), &advice);
     assert_eq!(run.code, 70, "{}", run.err);
     assert!(run.err.contains("surfel: error: validation: "), "{}", run.err);
-    // They are errors whatever the log shows.
+    // They are errors at any log level.
     let silent = program.run_with(&format!("{arguments} --validate"), &[advice[0], ("RUST_LOG", "off")]);
     assert_eq!(silent.code, 70, "{}", silent.err);
     assert_eq!(program.run_with(&arguments, &advice).code, 0);
@@ -136,8 +136,8 @@ fn scans_are_rendered() {
 }
 
 #[test]
-fn numbers_of_points_are_a_layer() {
-    let Some(program) = Program::with_device("numbers_of_points_are_a_layer") else { return };
+fn point_ids_are_a_layer() {
+    let Some(program) = Program::with_device("point_ids_are_a_layer") else { return };
     let render = |more: &str| program.run(&format!("render {SPHERE} --size 64x64 --layers id {more}"));
     let ids = |name: &str| surfel::formats::image::read(&program.path(name)).unwrap().id.unwrap();
     render("-o gpu.exr --method pull-push --validate").text();
@@ -191,8 +191,9 @@ fn textures_come_from_the_file_or_the_command_line() {
 }
 
 #[test]
-fn a_turntable_goes_all_around_from_the_ordinary_picture() {
-    let Some(program) = Program::with_device("a_turntable_goes_all_around_from_the_ordinary_picture") else {
+fn a_turntable_begins_with_the_ordinary_picture_and_turns_around() {
+    let Some(program) = Program::with_device("a_turntable_begins_with_the_ordinary_picture_and_turns_around")
+    else {
         return;
     };
     let common = "render scene:helix --size 64x48 --validate -q --eye 0,1,6 --target 0,0,0";
@@ -201,7 +202,7 @@ fn a_turntable_goes_all_around_from_the_ordinary_picture() {
     let files = ["one.png", "turn-00.png", "turn-01.png", "turn-02.png", "turn-03.png"];
     assert_eq!(program.files(), files);
     assert_eq!(program.png("turn-00.png"), program.png("one.png"));
-    // From the other side, through the middle of the scene's bounds and not the origin, all of it is another picture.
+    // Half a turn about the centre of the scene's bounds, not the origin, gives another picture.
     let sides: Vec<_> = files[1..].iter().map(|file| program.png(file)).collect();
     for (i, a) in sides.iter().enumerate() {
         assert!(sides[..i].iter().all(|b| difference(a, b) > 1.0), "{i}");

@@ -61,7 +61,7 @@ fn the_report_has_everything_and_adds_up() {
         targets.iter().all(|target| target["name"].is_string() && target["format"].is_string()),
         "{report}"
     );
-    // Five surfels of 28 bytes, and a picture of 16 bytes a pixel among the targets.
+    // Five surfels of 28 bytes; the targets include a picture of 16 bytes per pixel.
     assert!(report["scene_bytes"].as_u64() >= Some(140) && bytes >= 64 * 64 * 16, "{report}");
     for key in ["splat_bytes", "device_bytes", "pipelines", "allocations"] {
         assert!(report[key].as_u64() > Some(0), "{key}: {report}");
@@ -86,8 +86,8 @@ fn the_reference_reports_the_same_counts_and_no_device() {
 }
 
 #[test]
-fn points_are_counted_too_however_they_are_projected() {
-    let Some(program) = Program::with_device("points_are_counted_too_however_they_are_projected") else {
+fn points_are_counted_by_every_rasterizer() {
+    let Some(program) = Program::with_device("points_are_counted_by_every_rasterizer") else {
         return;
     };
     program.write("a.ply", surfels(&REASONS));
@@ -96,7 +96,7 @@ fn points_are_counted_too_however_they_are_projected() {
         let run = program.run(&format!("render a.ply -o a.png --json - {way} {camera}"));
         let report: Value = serde_json::from_str(run.text()).unwrap();
         let counts = &report["counts"];
-        // A point does not reach the eye plane; that one is edge-on.
+        // A point does not reach the eye plane; this disc is edge-on.
         let culled =
             serde_json::json!({ "behind": 1, "eye_plane": 0, "back": 2, "outside": 1, "invalid": 0 });
         assert_eq!((&counts["culled"], &counts["drawn"]), (&culled, &1.into()), "{way}");
@@ -106,8 +106,9 @@ fn points_are_counted_too_however_they_are_projected() {
 }
 
 #[test]
-fn frames_make_nothing_new_and_the_first_does_not_count() {
-    let Some(program) = Program::with_device("frames_make_nothing_new_and_the_first_does_not_count") else {
+fn later_frames_create_nothing_and_the_first_does_not_count() {
+    let Some(program) = Program::with_device("later_frames_create_nothing_and_the_first_does_not_count")
+    else {
         return;
     };
     let made = |frames: u32| {
@@ -138,8 +139,8 @@ fn times_are_a_table_on_standard_error() {
 }
 
 #[test]
-fn frames_that_are_timed_count_nothing() {
-    let Some(program) = Program::with_device("frames_that_are_timed_count_nothing") else { return };
+fn timed_frames_do_not_count_surfels() {
+    let Some(program) = Program::with_device("timed_frames_do_not_count_surfels") else { return };
     let what = "render scene:bumpy-sphere?points=1000 -o a.png --size 32x32 --validate --rasterizer compute";
     let counted = |run: crate::program::Run| run.err.contains("drawn");
     assert!(!counted(program.run(&format!("{what} --times"))), "counting takes atomics");
@@ -158,8 +159,10 @@ fn without_timestamps_only_the_frame_is_timed() {
 }
 
 #[test]
-fn half_precision_is_reported_and_takes_less() {
-    let Some(program) = Program::with_device("half_precision_is_reported_and_takes_less") else { return };
+fn half_precision_is_reported_and_takes_less_memory() {
+    let Some(program) = Program::with_device("half_precision_is_reported_and_takes_less_memory") else {
+        return;
+    };
     program.write("limits.json", r#"{"float_atomics":false}"#);
     let bytes = |flag: &str, precision: &str| {
         let run = program.run(&format!(
@@ -173,8 +176,8 @@ fn half_precision_is_reported_and_takes_less() {
 }
 
 #[test]
-fn half_precision_tells_its_error() {
-    let Some(program) = Program::with_device("half_precision_tells_its_error") else { return };
+fn half_precision_reports_its_error() {
+    let Some(program) = Program::with_device("half_precision_reports_its_error") else { return };
     let run = program
         .run("render scene:bumpy-sphere?points=2000 -o a.png --size 64x64 --validate --half --json r.json");
     assert!(run.err.contains("16-bit floats: linear colour is off by"), "{}", run.err);

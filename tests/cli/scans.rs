@@ -1,11 +1,11 @@
-//! Every file of the shared test data.
+//! Every file of the scans beside the project.
 
 use crate::program::{Program, say_skipped};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// No file may take longer.
+/// Timeout of a file.
 const LONGEST: Duration = Duration::from_secs(120);
 
 /// The PLY files under a folder.
@@ -14,10 +14,10 @@ fn files(folder: &Path) -> Vec<PathBuf> {
     let mut folders = vec![folder.to_owned()];
     while let Some(folder) = folders.pop() {
         for path in std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()) {
-            match path.is_dir() {
-                true => folders.push(path),
-                false if path.extension().is_some_and(|extension| extension == "ply") => found.push(path),
-                false => {}
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|extension| extension == "ply") {
+                found.push(path);
             }
         }
     }
@@ -40,20 +40,20 @@ fn every_file_gives_a_picture_or_one_line() {
     assert!(pictures > 120 && pictures < results.len());
 }
 
-/// Renders the `i`-th file: whether it is a picture rather than an error, and how long that took.
+/// Renders the `i`-th file; returns whether that succeeded, and its duration.
 fn render(program: &Program, i: usize, path: &Path) -> (bool, Duration) {
     let start = Instant::now();
-    // The file's name may hold spaces: it goes by a link without.
+    // Names may contain spaces, so the file is passed by a link.
     let (link, png) = (format!("{i}.ply"), format!("{i}.png"));
     std::os::unix::fs::symlink(path, program.path(&link)).unwrap();
-    // Warnings may come before the line.
+    // Warnings may precede the error line.
     let command = format!("render {link} -o {png} --size 128x128 --quiet");
     let run = program.run_with(&command, &[("RUST_LOG", "error")]);
     let took = start.elapsed();
     assert!(took < LONGEST, "{}: {took:?}", path.display());
     if run.code == 0 {
-        let shown = program.png(&png).pixels().any(|pixel| pixel[3] > 0);
-        assert!(shown, "{}: nothing", path.display());
+        let covered = program.png(&png).pixels().any(|pixel| pixel[3] > 0);
+        assert!(covered, "{}: nothing", path.display());
     } else {
         let line = run.error(1);
         assert!(line.starts_with(&format!("{link}: ")), "{}: {line}", path.display());

@@ -4,7 +4,7 @@ use crate::program::Program;
 use surfel::formats::image;
 
 #[test]
-fn a_scene_is_traced_and_kept() {
+fn a_scene_is_traced_and_cached() {
     let program = Program::new();
     let trace =
         |out: &str| program.run(&format!("truth scene:sphere -o {out} --size 40x32 --layers normal,depth"));
@@ -58,7 +58,7 @@ fn a_mesh_is_traced() {
 }
 
 #[test]
-fn what_cannot_be_is_refused_before_it_is_traced() {
+fn invalid_arguments_of_truth_are_refused_first() {
     let program = Program::new();
     let refused =
         |arguments: &str| program.run(&format!("truth scene:sphere {arguments}")).error(2).to_owned();

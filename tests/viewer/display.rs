@@ -1,4 +1,4 @@
-//! An X server of its own, and hands on it: a mouse, a keyboard, and what a window manager and other programs do.
+//! A virtual X server, with a mouse, a keyboard, and the messages of window managers and other programs.
 
 use crate::program::say_skipped;
 use std::io::{BufRead, BufReader};
@@ -12,11 +12,11 @@ use x11rb::protocol::xproto::{
 use x11rb::protocol::xtest::ConnectionExt as _;
 use x11rb::rust_connection::RustConnection;
 
-/// How long anything may take before the test fails.
+/// Timeout of every wait.
 pub const PATIENCE: Duration = Duration::from_secs(120);
 const SCREEN: &str = "1280x1024x24";
 
-/// A display that nobody sees.
+/// A virtual display.
 pub struct Display {
     pub name: String,
     pub x: RustConnection,
@@ -24,7 +24,7 @@ pub struct Display {
     server: Child,
 }
 
-/// Keys by their X names.
+/// X key symbols.
 pub mod key {
     pub const RETURN: u32 = 0xff0d;
     pub const ESCAPE: u32 = 0xff1b;
@@ -35,7 +35,7 @@ pub mod key {
 }
 
 impl Display {
-    /// A display; `None`, said aloud, where there is no Xvfb. With `SURFEL_REQUIRE_GPU` set, the lack of one is a failure.
+    /// Starts a display. Without Xvfb the test is skipped with a message, or fails if `SURFEL_REQUIRE_GPU` is set.
     pub fn new(test: &str) -> Option<Self> {
         let arguments = ["-displayfd", "1", "-screen", "0", SCREEN, "-nolisten", "tcp", "-noreset"];
         let started = Command::new("Xvfb")
@@ -64,7 +64,7 @@ impl Display {
         self.x.intern_atom(false, name.as_bytes()).unwrap().reply().unwrap().atom
     }
 
-    /// The window whose name has this part.
+    /// The window whose name contains `part`.
     pub fn window(&self, part: &str) -> Window {
         let tree = self.x.query_tree(self.root).unwrap().reply().unwrap();
         let (name, any) = (self.atom("_NET_WM_NAME"), 0u32);
@@ -72,10 +72,10 @@ impl Display {
             let found = self.x.get_property(false, *window, name, any, 0, 64).unwrap().reply().unwrap();
             String::from_utf8_lossy(&found.value).contains(part)
         };
-        tree.children.into_iter().find(named).unwrap_or_else(|| panic!("no window is called …{part}…"))
+        tree.children.into_iter().find(named).unwrap_or_else(|| panic!("no window's name contains {part}"))
     }
 
-    /// Keys go to this window from now on.
+    /// Gives a window the keyboard focus.
     pub fn focus(&self, window: Window) {
         self.x.set_input_focus(xproto::InputFocus::PARENT, window, 0u32).unwrap().check().unwrap();
     }
@@ -91,13 +91,13 @@ impl Display {
         keys.iter().rev().for_each(|code| self.fake(xproto::KEY_RELEASE_EVENT, *code, [0; 2]));
     }
 
-    /// Presses a key, or lets it go.
+    /// Presses or releases a key.
     pub fn hold(&self, symbol: u32, down: bool) {
         let kind = if down { xproto::KEY_PRESS_EVENT } else { xproto::KEY_RELEASE_EVENT };
         self.fake(kind, self.code(symbol), [0; 2]);
     }
 
-    /// Exchanges two letters of the keyboard, for programs that begin after that.
+    /// Swaps two letters of the keyboard, for programs that start later.
     pub fn exchange(&self, letters: [char; 2]) {
         let keys = letters.map(|letter| self.code(letter.into()));
         for (key, letter) in keys.into_iter().zip([letters[1], letters[0]]) {
@@ -106,7 +106,7 @@ impl Display {
         }
     }
 
-    /// Types a text of a US keyboard.
+    /// Types text on a US keyboard.
     pub fn type_text(&self, text: &str) {
         for letter in text.chars() {
             let (low, shift): (char, &[u32]) = match letter {
@@ -128,13 +128,13 @@ impl Display {
         least + at.unwrap_or_else(|| panic!("no key makes {symbol:#x}")) as u8
     }
 
-    /// Moves the mouse to a place in a window, px.
+    /// Moves the mouse to a position in a window, px.
     pub fn point(&self, window: Window, [x, y]: [i16; 2]) {
         let at = self.x.translate_coordinates(window, self.root, x, y).unwrap().reply().unwrap();
         self.fake(xproto::MOTION_NOTIFY_EVENT, 0, [at.dst_x, at.dst_y]);
     }
 
-    /// Drags with a button from one place in a window to others.
+    /// Drags with a button along positions in a window.
     pub fn drag(&self, window: Window, button: u8, way: &[[i16; 2]]) {
         self.point(window, way[0]);
         self.fake(xproto::BUTTON_PRESS_EVENT, button, [0; 2]);
@@ -142,7 +142,7 @@ impl Display {
         self.fake(xproto::BUTTON_RELEASE_EVENT, button, [0; 2]);
     }
 
-    /// Clicks so many times: the wheel is the buttons 4 and 5.
+    /// Clicks `times` times. The wheel is buttons 4 and 5.
     pub fn click(&self, window: Window, at: [i16; 2], button: u8, times: u32) {
         (0..times).for_each(|_| self.drag(window, button, &[at]));
     }
@@ -152,36 +152,36 @@ impl Display {
         self.x.configure_window(window, &size).unwrap().check().unwrap();
     }
 
-    pub fn map(&self, window: Window, there: bool) {
-        match there {
-            true => self.x.map_window(window).unwrap().check().unwrap(),
-            false => self.x.unmap_window(window).unwrap().check().unwrap(),
-        }
+    /// Maps or unmaps a window.
+    pub fn map(&self, window: Window, mapped: bool) {
+        let done = if mapped { self.x.map_window(window) } else { self.x.unmap_window(window) };
+        done.unwrap().check().unwrap();
     }
 
     /// Asks a window to close, as a window manager does.
     pub fn close(&self, window: Window) {
         let [protocols, delete] = ["WM_PROTOCOLS", "WM_DELETE_WINDOW"].map(|name| self.atom(name));
-        self.tell(window, protocols, [delete, 0, 0, 0, 0]);
+        self.send_message(window, protocols, [delete, 0, 0, 0, 0]);
     }
 
-    pub fn tell(&self, window: Window, kind: Atom, data: [u32; 5]) {
+    /// Sends a client message.
+    pub fn send_message(&self, window: Window, kind: Atom, data: [u32; 5]) {
         let message = ClientMessageEvent::new(32, window, kind, data);
         let none = xproto::EventMask::NO_EVENT;
         self.x.send_event(false, window, none, message).unwrap().check().unwrap();
     }
 
-    /// What a window shows, RGB.
+    /// Pixels of a window, RGB.
     pub fn pixels(&self, window: Window) -> image::RgbImage {
         let size = self.x.get_geometry(window).unwrap().reply().unwrap();
         let (width, height) = (size.width, size.height);
         let format = xproto::ImageFormat::Z_PIXMAP;
-        let shown = self.x.get_image(format, window, 0, 0, width, height, !0).unwrap().reply().unwrap();
-        let pixels = shown.data.chunks_exact(4).flat_map(|pixel| [pixel[2], pixel[1], pixel[0]]).collect();
+        let image = self.x.get_image(format, window, 0, 0, width, height, !0).unwrap().reply().unwrap();
+        let pixels = image.data.chunks_exact(4).flat_map(|pixel| [pixel[2], pixel[1], pixel[0]]).collect();
         image::RgbImage::from_raw(width.into(), height.into(), pixels).unwrap()
     }
 
-    /// Waits until a window looks as is wanted; how it looks.
+    /// Waits until the pixels of a window satisfy `fit`; returns them.
     pub fn pixels_that(
         &self,
         window: Window,
@@ -199,7 +199,7 @@ impl Display {
         }
     }
 
-    /// The next event that `take` wants.
+    /// Waits for the next event that `take` accepts.
     pub fn wait<R>(&self, what: &str, mut take: impl FnMut(Event) -> Option<R>) -> R {
         let start = Instant::now();
         while start.elapsed() < PATIENCE {
@@ -214,7 +214,7 @@ impl Display {
         panic!("{what}: nothing for {PATIENCE:?}");
     }
 
-    /// A window of the test's own, for what other programs do.
+    /// A window of the test itself, which acts as another program.
     pub fn own(&self) -> Window {
         let window = self.x.generate_id().unwrap();
         let class = xproto::WindowClass::INPUT_ONLY;

@@ -1,4 +1,4 @@
-/* A Vulkan layer that makes faults: it loses the first LOST_DEVICES devices, each after LOST_AFTER frames, and says of every
+/* A Vulkan layer that simulates faults: it loses the first LOST_DEVICES devices, each after LOST_AFTER frames, and says of every
    STALE_EVERYth image that is acquired or presented that its swapchain is out of date, or suboptimal. With BLIND no device presents.
    While there is a file HIDDEN, windows have no extent, and while there is a file REFUSED, they get no swapchains, as one that has changed just
    now; such a file grows by a byte each time. Works on one device at a time. */

@@ -1,8 +1,8 @@
-//! What a driver may do at any time: lose the device, find the swapchain out of date. A layer of Vulkan between program and driver does it.
+//! Faults of a driver, such as a lost device or an outdated swapchain, which a Vulkan layer simulates.
 
 use crate::display::PATIENCE;
 use crate::program::{Program, say_skipped};
-use crate::stage;
+use crate::setup;
 use crate::view::{End, View, command};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -14,10 +14,10 @@ const MANIFEST: &str = r#"{"file_format_version": "1.0.0", "layer": {"name": "VK
     "library_path": "./libfaults.so", "api_version": "1.1.0", "implementation_version": "1", "description": "makes faults",
     "functions": {"vkGetInstanceProcAddr": "faults_instance_proc", "vkGetDeviceProcAddr": "faults_device_proc"}}}"#;
 
-/// The loader lets go of the layer with the instance; what it counts stays.
+/// Compiler arguments. The library stays loaded after the instance is destroyed, and so do its counts.
 const CC: [&str; 5] = ["-shared", "-fPIC", "-Wl,-z,nodelete", "-Wall", "-o"];
 
-/// The program under the layer, which these variables tell what to do; `None`, said aloud, where there is no C compiler.
+/// The program with the layer; environment variables select the faults. Without a C compiler the test is skipped with a message.
 pub fn faulty(
     test: &str,
     program: &Program,
@@ -50,7 +50,7 @@ const LATER: (&str, &str) = ("LOST_AFTER", "6");
 #[test]
 fn a_lost_device_is_replaced_once() {
     let test = "a_lost_device_is_replaced_once";
-    let Some((display, program)) = stage(test) else { return };
+    let Some((display, program)) = setup(test) else { return };
     let Some(command) = faulty(test, &program, &display.name, SMALL, &[("LOST_DEVICES", "1"), LATER]) else {
         return;
     };
@@ -73,13 +73,13 @@ fn a_lost_device_is_replaced_once() {
 #[test]
 fn a_device_that_is_lost_again_ends_the_program() {
     let test = "a_device_that_is_lost_again_ends_the_program";
-    let Some((display, program)) = stage(test) else { return };
+    let Some((display, program)) = setup(test) else { return };
     let Some(command) = faulty(test, &program, &display.name, SMALL, &[("LOST_DEVICES", "9"), LATER]) else {
         return;
     };
     let mut view = View::start(&display, command);
     lose(&mut view);
-    // Nobody tells of the second time: it ends the program.
+    // The second loss is not logged: it ends the program.
     for key in ["2", "3"].iter().cycle() {
         if view.ends() {
             break;
@@ -91,7 +91,7 @@ fn a_device_that_is_lost_again_ends_the_program() {
     assert!(code == 5 && last.contains("another device with --device"), "{code} {errors}");
 }
 
-/// Has pictures made until the device is lost.
+/// Requests pictures until the device is lost.
 fn lose(view: &mut View) {
     for key in ["2", "3"].iter().cycle() {
         view.display.type_text(key);
@@ -102,9 +102,9 @@ fn lose(view: &mut View) {
 }
 
 #[test]
-fn a_swapchain_that_is_out_of_date_is_made_anew() {
-    let test = "a_swapchain_that_is_out_of_date_is_made_anew";
-    let Some((display, program)) = stage(test) else { return };
+fn an_outdated_swapchain_is_recreated() {
+    let test = "an_outdated_swapchain_is_recreated";
+    let Some((display, program)) = setup(test) else { return };
     let Some(command) = faulty(test, &program, &display.name, SMALL, &[("STALE_EVERY", "3")]) else { return };
     let mut view = View::start(&display, command);
     let (mut before, mut late) = (view.picture(|_| true), 0);
@@ -115,29 +115,29 @@ fn a_swapchain_that_is_out_of_date_is_made_anew() {
     }
     assert!(
         late > 0,
-        "some were drawn in a frame that did not come to the window, and were shown by the next one"
+        "some pictures were rendered in a frame that was not presented, and presented by the next one"
     );
     display.resize(view.window, [200, 100]);
     view.picture(|event| event["size"] == serde_json::json!([200, 100]));
     view.close();
 }
 
-/// What the layer does while there is a file.
+/// A fault that lasts as long as a file exists.
 pub struct Fault(PathBuf);
 
 impl Fault {
-    /// The layer begins.
+    /// Begins the fault.
     pub fn begin(path: &Path) -> Self {
         fs::write(path, "").unwrap();
         Self(path.to_owned())
     }
 
-    /// How often it has done it.
+    /// How often it has occurred.
     fn times(&self) -> u64 {
         fs::metadata(&self.0).unwrap().len()
     }
 
-    /// Waits until it has done it so often.
+    /// Waits until it has occurred this often.
     pub fn wait(&self, times: u64) {
         let start = Instant::now();
         while self.times() < times {
@@ -146,16 +146,16 @@ impl Fault {
         }
     }
 
-    /// And ends.
+    /// Ends the fault.
     pub fn end(self) {
         fs::remove_file(self.0).unwrap();
     }
 }
 
 #[test]
-fn a_window_that_cannot_be_drawn_to_is_tried_now_and_then_and_drawn_when_it_can() {
-    let test = "a_window_that_cannot_be_drawn_to_is_tried_now_and_then_and_drawn_when_it_can";
-    let Some((display, program)) = stage(test) else { return };
+fn presentation_is_retried_until_it_succeeds() {
+    let test = "presentation_is_retried_until_it_succeeds";
+    let Some((display, program)) = setup(test) else { return };
     let paths = ["HIDDEN", "REFUSED"].map(|name| (name, program.path(name)));
     let faults = paths.each_ref().map(|(name, path)| (*name, path.to_str().unwrap()));
     let Some(command) = faulty(test, &program, &display.name, SMALL, &faults) else { return };
@@ -165,7 +165,7 @@ fn a_window_that_cannot_be_drawn_to_is_tried_now_and_then_and_drawn_when_it_can(
         let size = [200 + 10 * i as u32, 150];
         let fault = Fault::begin(path);
         display.resize(view.window, size);
-        // Nobody tells it to try again.
+        // No event requests another frame.
         fault.wait(3);
         let (before, start) = (fault.times(), Instant::now());
         sleep(Duration::from_millis(300));
@@ -178,9 +178,9 @@ fn a_window_that_cannot_be_drawn_to_is_tried_now_and_then_and_drawn_when_it_can(
 }
 
 #[test]
-fn a_window_that_gets_no_swapchain_for_long_ends_the_program() {
-    let test = "a_window_that_gets_no_swapchain_for_long_ends_the_program";
-    let Some((display, program)) = stage(test) else { return };
+fn a_window_without_a_swapchain_ends_the_program_after_a_while() {
+    let test = "a_window_without_a_swapchain_ends_the_program_after_a_while";
+    let Some((display, program)) = setup(test) else { return };
     let path = program.path("REFUSED");
     let faults = [("REFUSED", path.to_str().unwrap())];
     let Some(command) = faulty(test, &program, &display.name, SMALL, &faults) else { return };
@@ -190,9 +190,9 @@ fn a_window_that_gets_no_swapchain_for_long_ends_the_program() {
 }
 
 #[test]
-fn a_device_that_does_not_present_is_named() {
-    let test = "a_device_that_does_not_present_is_named";
-    let Some((display, program)) = stage(test) else { return };
+fn a_device_that_cannot_present_is_named() {
+    let test = "a_device_that_cannot_present_is_named";
+    let Some((display, program)) = setup(test) else { return };
     let Some(command) = faulty(test, &program, &display.name, SMALL, &[("BLIND", "1")]) else { return };
     let End { code, errors } = View::begin(&display, command).end();
     assert!(code == 3 && errors.contains("does not present to this window"), "{code} {errors}");

@@ -1,13 +1,13 @@
-//! Keys on keyboards of other layouts.
+//! Keys on other keyboard layouts, and Escape.
 
 use crate::display::key;
 use crate::view::View;
-use crate::{SPHERE, stage};
+use crate::{SPHERE, setup};
 use serde_json::json;
 
 #[test]
-fn keys_of_flight_lie_where_they_lie_whatever_stands_on_them() {
-    let Some((display, program)) = stage("keys_of_flight_lie_where_they_lie_whatever_stands_on_them") else {
+fn keys_of_flight_are_physical_keys() {
+    let Some((display, program)) = setup("keys_of_flight_are_physical_keys") else {
         return;
     };
     // As on a French keyboard.
@@ -35,8 +35,10 @@ fn keys_of_flight_lie_where_they_lie_whatever_stands_on_them() {
 const LIST: [i16; 2] = [785, 90];
 
 #[test]
-fn escape_closes_what_is_on_top_and_never_the_window() {
-    let Some((display, program)) = stage("escape_closes_what_is_on_top_and_never_the_window") else { return };
+fn escape_closes_the_window_on_top_and_never_the_program() {
+    let Some((display, program)) = setup("escape_closes_the_window_on_top_and_never_the_program") else {
+        return;
+    };
     let mut view = View::open(&display, &program, &format!("{SPHERE} --size 1000x700"));
     let first = view.picture(|_| true)["method"].clone();
     let before = display.pixels(view.window);

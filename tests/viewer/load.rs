@@ -1,4 +1,4 @@
-//! What `surfel view` shows while it loads, while the camera moves, and when a file changes, in a window that nobody sees.
+//! Previews, adaptive resolution and reloading of `surfel view`.
 
 use crate::program::SHADER_CACHE;
 use serde_json::Value;
@@ -7,7 +7,7 @@ use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::time::Duration;
 
-/// How long anything may take before the test fails.
+/// Timeout of every wait.
 const PATIENCE: Duration = Duration::from_secs(120);
 
 /// An X server, and the program in it.
@@ -18,7 +18,7 @@ struct View {
 }
 
 impl View {
-    /// Opens the window; `None`, said aloud, where there is no X server to do that, or no program for the hands.
+    /// Opens the window. Without Xvfb or xdotool the test is skipped with a message.
     fn open(test: &str, arguments: &[&str]) -> Option<Self> {
         for program in ["Xvfb", "xdotool"] {
             let found = Command::new("which").arg(program).stdout(Stdio::null()).status();
@@ -52,7 +52,7 @@ impl View {
         Some(Self { display, running: [program, server], events })
     }
 
-    /// The next event that is `like` this.
+    /// Waits for the next event that `like` accepts.
     fn wait(&self, what: &str, like: impl Fn(&Value) -> bool) -> Value {
         loop {
             match self.events.recv_timeout(PATIENCE) {
@@ -63,8 +63,8 @@ impl View {
         }
     }
 
-    /// The next whole picture.
-    fn whole(&self, surfels: u64) {
+    /// Waits for the next picture of full quality.
+    fn full_picture(&self, surfels: u64) {
         self.wait("a whole picture", |event| {
             event["event"] == "picture"
                 && event["surfels"] == surfels
@@ -74,7 +74,8 @@ impl View {
         });
     }
 
-    fn hands(&self, arguments: &[&str]) {
+    /// Runs xdotool.
+    fn xdotool(&self, arguments: &[&str]) {
         let done = Command::new("xdotool").args(arguments).env("DISPLAY", &self.display).status();
         assert!(done.unwrap().success(), "xdotool {arguments:?}");
     }
@@ -90,21 +91,21 @@ impl Drop for View {
 }
 
 #[test]
-fn moving_frames_have_less_of_everything_and_what_rests_is_whole() {
-    let test = "moving_frames_have_less_of_everything_and_what_rests_is_whole";
+fn moving_frames_are_coarse_and_frames_at_rest_have_full_quality() {
+    let test = "moving_frames_are_coarse_and_frames_at_rest_have_full_quality";
     let scene = "scene:sphere?points=120000";
-    // No frame keeps to that: it has as little as there is.
+    // No frame meets this budget: moving frames have the coarsest quality.
     let Some(view) = View::open(test, &[scene, "--budget", "0.01"]) else { return };
     let preview = view.wait("a preview", |event| event["event"] == "preview");
     assert_eq!(preview["surfels"], 20_000);
-    view.whole(120_000);
-    // Fewer surfels are made ready behind it: until then, there are fewer pixels alone.
+    view.full_picture(120_000);
+    // Levels of detail are built in the background: until then only the resolution adapts.
     let mut x = 50;
-    view.hands(&["mousemove", "50", "120", "mousedown", "1"]);
+    view.xdotool(&["mousemove", "50", "120", "mousedown", "1"]);
     let moving = |event: &Value| event["event"] == "picture" && event["moving"] == true;
     loop {
         x = if x > 150 { 50 } else { x + 5 };
-        view.hands(&["mousemove", &x.to_string(), "120"]);
+        view.xdotool(&["mousemove", &x.to_string(), "120"]);
         let frame = view.wait("a frame while moving", moving);
         assert!(frame["side"].as_f64().unwrap() <= 1.0);
         if frame["surfels"].as_u64().unwrap() <= 4000 {
@@ -112,13 +113,13 @@ fn moving_frames_have_less_of_everything_and_what_rests_is_whole() {
             break;
         }
     }
-    view.hands(&["mouseup", "1"]);
-    view.whole(120_000);
+    view.xdotool(&["mouseup", "1"]);
+    view.full_picture(120_000);
 }
 
 #[test]
-fn a_file_that_changes_is_loaded_again_and_a_broken_one_is_told() {
-    let test = "a_file_that_changes_is_loaded_again_and_a_broken_one_is_told";
+fn a_changed_file_is_reloaded_and_a_broken_one_is_an_error() {
+    let test = "a_changed_file_is_reloaded_and_a_broken_one_is_an_error";
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("a.ply");
     let write = |points: u32, cut: usize| {
@@ -133,10 +134,10 @@ fn a_file_that_changes_is_loaded_again_and_a_broken_one_is_told() {
     };
     write(100, 0);
     let Some(view) = View::open(test, &[file.to_str().unwrap(), "--watch"]) else { return };
-    view.whole(100);
+    view.full_picture(100);
     write(70, 300);
-    let wrong = view.wait("what is wrong", |event| event["event"] == "wrong");
+    let wrong = view.wait("an error", |event| event["event"] == "wrong");
     assert!(wrong["error"].as_str().unwrap().contains("a.ply"), "{wrong}");
     write(70, 0);
-    view.whole(70);
+    view.full_picture(70);
 }

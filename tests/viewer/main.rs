@@ -1,15 +1,15 @@
-//! `surfel view` as its user meets it: a window on an X server of its own, real input events, files.
+//! End-to-end tests of `surfel view`: a window on a virtual X server, real input events, files.
 #![cfg(target_os = "linux")]
 
 mod display;
 mod faults;
-mod keeping;
 mod keys;
 mod load;
-mod others;
-#[allow(dead_code, reason = "what of it other tests use")]
+mod other_programs;
+#[allow(dead_code, reason = "other tests use the rest")]
 #[path = "../cli/program.rs"]
 mod program;
+mod saving;
 mod session;
 mod view;
 mod window;
@@ -19,11 +19,11 @@ use program::Program;
 
 const SPHERE: &str = "scene:bumpy-sphere?points=5000";
 
-/// Atomic sums of floats have no order: what compute shaders add up differs in its last bits from run to run.
+/// The rasterizer whose pictures repeat exactly: atomic float sums of compute shaders have no fixed order and differ in their last bits.
 const DRAW: &str = "--rasterizer draw";
 
-/// A display and the program; `None`, said aloud, where there is no X server or no Vulkan device.
-fn stage(test: &str) -> Option<(Display, Program)> {
+/// A display and the program. Without an X server or a Vulkan device the test is skipped with a message.
+fn setup(test: &str) -> Option<(Display, Program)> {
     let program = Program::with_device(test)?;
     Some((Display::new(test)?, program))
 }

@@ -1,4 +1,4 @@
-//! What other programs do with a window: drop files on it, read the clipboard.
+//! Other programs: drop files on a window, read the clipboard.
 
 use crate::display::Display;
 use std::path::Path;
@@ -14,7 +14,7 @@ use x11rb::wrapper::ConnectionExt as _;
 const VERSION: u32 = 5;
 
 impl Display {
-    /// Drops files on a window, as a file manager does; whether it took them.
+    /// Drops files on a window, as a file manager does; returns whether it accepted them.
     pub fn drop_files(&self, window: Window, files: &[&Path]) -> bool {
         let source = self.own();
         let names =
@@ -23,14 +23,14 @@ impl Display {
         let uris = self.atom("text/uri-list");
         self.x.set_selection_owner(source, selection, 0u32).unwrap().check().unwrap();
         let list: String = files.iter().map(|path| format!("file://{}\r\n", path.display())).collect();
-        self.tell(window, enter, [source, VERSION << 24, uris, 0, 0]);
-        self.tell(window, position, [source, 0, 100 << 16 | 100, 0, copy]);
-        let request = self.wait("nobody asks for the files", |event| match event {
+        self.send_message(window, enter, [source, VERSION << 24, uris, 0, 0]);
+        self.send_message(window, position, [source, 0, 100 << 16 | 100, 0, copy]);
+        let request = self.wait("no request for the files", |event| match event {
             Event::SelectionRequest(request) => Some(request),
             _ => None,
         });
         self.answer(&request, &list);
-        self.tell(window, drop, [source, 0, 0, copy, 0]);
+        self.send_message(window, drop, [source, 0, 0, copy, 0]);
         self.wait("the drop does not finish", |event| match event {
             Event::ClientMessage(message) if message.type_ == finished => {
                 Some(message.data.as_data32()[1] & 1 == 1)
@@ -39,12 +39,12 @@ impl Display {
         })
     }
 
-    /// Gives who asks for a selection its text.
+    /// Answers a request for a selection.
     fn answer(&self, request: &SelectionRequestEvent, text: &str) {
         let SelectionRequestEvent { time, requestor, selection, target, property, .. } = *request;
         let given = self.x.change_property8(PropMode::REPLACE, requestor, property, target, text.as_bytes());
         given.unwrap().check().unwrap();
-        let told = SelectionNotifyEvent {
+        let notify = SelectionNotifyEvent {
             response_type: SELECTION_NOTIFY_EVENT,
             sequence: 0,
             time,
@@ -53,7 +53,7 @@ impl Display {
             target,
             property,
         };
-        self.x.send_event(false, requestor, EventMask::NO_EVENT, told).unwrap().check().unwrap();
+        self.x.send_event(false, requestor, EventMask::NO_EVENT, notify).unwrap().check().unwrap();
     }
 
     /// The text on the clipboard.
@@ -62,8 +62,8 @@ impl Display {
         let [clipboard, text] = ["CLIPBOARD", "UTF8_STRING"].map(|name| self.atom(name));
         self.x.convert_selection(own, clipboard, text, text, 0u32).unwrap();
         self.x.flush().unwrap();
-        let property = self.wait("nobody gives the clipboard", |event| match event {
-            Event::SelectionNotify(told) => Some(told.property),
+        let property = self.wait("no answer with the clipboard", |event| match event {
+            Event::SelectionNotify(notify) => Some(notify.property),
             _ => None,
         });
         assert_ne!(property, u32::from(AtomEnum::NONE), "no text on the clipboard");

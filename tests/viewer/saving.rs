@@ -1,13 +1,13 @@
-//! Pictures and cameras that are kept.
+//! Screenshots and cameras: saved, copied, pasted, opened.
 
 use crate::display::key;
 use crate::view::View;
-use crate::{DRAW, SPHERE, stage};
+use crate::{DRAW, SPHERE, setup};
 use serde_json::Value;
 
 #[test]
-fn kept_pictures_are_those_of_render_and_of_the_window() {
-    let Some((display, program)) = stage("kept_pictures_are_those_of_render_and_of_the_window") else {
+fn screenshots_equal_those_of_render_and_the_window() {
+    let Some((display, program)) = setup("screenshots_equal_those_of_render_and_the_window") else {
         return;
     };
     let mut view = View::open(&display, &program, &format!("{SPHERE} --size 640x480 {DRAW} --screenshots ."));
@@ -18,45 +18,45 @@ fn kept_pictures_are_those_of_render_and_of_the_window() {
         display.press(&[key::CONTROL], u32::from('s'));
         let camera = view.wrote();
         display.press(held, key::F12);
-        let shot = view.wrote();
-        assert!(camera.ends_with(".json") && shot.ends_with(extension), "{camera} {shot}");
+        let screenshot = view.wrote();
+        assert!(camera.ends_with(".json") && screenshot.ends_with(extension), "{camera} {screenshot}");
         let render = format!("render {what} --camera {camera} -o headless.{extension}");
         program.run(&render).text();
-        let [ours, headless] =
-            [shot, format!("headless.{extension}")].map(|name| std::fs::read(program.path(&name)).unwrap());
+        let [ours, headless] = [screenshot, format!("headless.{extension}")]
+            .map(|name| std::fs::read(program.path(&name)).unwrap());
         assert!(ours == headless, "{extension}: another file than `{render}` writes");
     }
     display.press(&[key::SHIFT], key::F12);
     let window = program.png(&view.wrote());
     let picture = program.png("headless.png");
     assert_eq!(window.dimensions(), (640, 480));
-    let shown = display.pixels(view.window);
+    let pixels = display.pixels(view.window);
     let mut seen = 0;
     for (x, y) in (160..320).flat_map(|x| (120..360).map(move |y| (x, y))) {
         let expected = picture.get_pixel(x, y).0;
         let expected = if expected[3] == 0 { [0; 4] } else { expected };
-        for (name, found) in [("window", shown.get_pixel(x, y).0), ("panels", rgb(window.get_pixel(x, y)))] {
+        for (name, found) in [("window", pixels.get_pixel(x, y).0), ("panels", rgb(window.get_pixel(x, y)))] {
             let apart = (0..3).map(|i| expected[i].abs_diff(found[i])).max().unwrap();
             assert!(apart <= 1, "{name}: {found:?} and not {expected:?} at {x}, {y}");
         }
         seen += u32::from(expected[3] > 0);
     }
     assert!(seen > 5000, "{seen} px of the sphere");
-    // Of the panels something is to be seen beside the picture.
+    // The screenshot shows the panel beside the picture.
     let beside = (width..640).flat_map(|x| (0..480).map(move |y| (x, y)));
     let panels = beside.filter(|(x, y)| rgb(window.get_pixel(*x, *y)) != [0; 3]).count();
     assert!(panels > 10_000, "{panels} px of panels");
     view.close();
 }
 
-/// Width and height of the picture that an event is of, px.
+/// Width and height of the picture of an event, px.
 fn picture_size(event: &Value) -> [u32; 2] {
     [0, 1].map(|axis| event["picture"][axis].as_u64().unwrap() as u32)
 }
 
 #[test]
 fn the_first_colours_are_those_of_the_command_line() {
-    let Some((display, program)) = stage("the_first_colours_are_those_of_the_command_line") else { return };
+    let Some((display, program)) = setup("the_first_colours_are_those_of_the_command_line") else { return };
     let mut text = String::from(
         "ply\nformat ascii 1.0\nelement vertex 400\nproperty float x\nproperty float y\nproperty float z\nproperty float heat\nend_header\n",
     );
@@ -70,7 +70,7 @@ fn the_first_colours_are_those_of_the_command_line() {
         let camera = view.wrote();
         program.run(&format!("render {what} --camera {camera} -o headless.png")).text();
         let expected = program.png("headless.png");
-        // The numbers of a file are read when the window is there, and nothing has to be touched.
+        // The property is read after the window opens, and needs no input.
         let area = |pixels: &image::RgbImage| {
             let all = (0..320).flat_map(|x| (0..120).map(move |y| (x, y)));
             let apart = all.map(|(x, y)| {
@@ -88,9 +88,8 @@ fn the_first_colours_are_those_of_the_command_line() {
 }
 
 #[test]
-fn normals_depths_overlaps_and_weights_are_shown_as_they_are_kept() {
-    let Some((display, program)) = stage("normals_depths_overlaps_and_weights_are_shown_as_they_are_kept")
-    else {
+fn every_shading_looks_like_its_screenshot() {
+    let Some((display, program)) = setup("every_shading_looks_like_its_screenshot") else {
         return;
     };
     for background in ["", "--background #336699"] {
@@ -99,14 +98,14 @@ fn normals_depths_overlaps_and_weights_are_shown_as_they_are_kept() {
         let mut shading = view.picture(|_| true)["shading"].clone();
         for _ in 0..6 {
             display.press(&[], key::F12);
-            let kept = program.png(&view.wrote());
+            let screenshot = program.png(&view.wrote());
             let [width, height] = [400, 300];
-            assert_eq!(kept.dimensions(), (width, height), "no panel is beside so small a picture");
+            assert_eq!(screenshot.dimensions(), (width, height), "so small a window has no panel");
             let worst = |pixels: &image::RgbImage| {
-                // The legend is in the lower left, what was saved below.
+                // The legend is at the lower left, the message at the bottom.
                 let all = (0..width).flat_map(|x| (0..200).map(move |y| (x, y)));
                 let apart = all.map(|(x, y)| {
-                    let expected = kept.get_pixel(x, y).0;
+                    let expected = screenshot.get_pixel(x, y).0;
                     let expected = if expected[3] == 0 { [0; 4] } else { expected };
                     (0..3).map(|i| expected[i].abs_diff(pixels.get_pixel(x, y).0[i])).max().unwrap()
                 });
@@ -115,7 +114,7 @@ fn normals_depths_overlaps_and_weights_are_shown_as_they_are_kept() {
             display.pixels_that(view.window, &format!("shows {shading} {background}"), |pixels| {
                 worst(pixels) <= 1
             });
-            let colours: std::collections::HashSet<_> = kept.pixels().map(|pixel| pixel.0).collect();
+            let colours: std::collections::HashSet<_> = screenshot.pixels().map(|pixel| pixel.0).collect();
             assert!(colours.len() > 5, "{shading}: {} colours", colours.len());
             display.press(&[], u32::from('l'));
             shading = view.picture(|event| event["shading"] != shading)["shading"].clone();
@@ -124,7 +123,7 @@ fn normals_depths_overlaps_and_weights_are_shown_as_they_are_kept() {
     }
 }
 
-/// Whether these are the same but for the last bits of numbers.
+/// Whether both are equal except for the last bits of numbers.
 fn is_near(a: &Value, b: &Value) -> bool {
     match (a, b) {
         (Value::Object(a), Value::Object(b)) => {
@@ -147,7 +146,7 @@ fn rgb(pixel: &image::Rgba<u8>) -> [u8; 3] {
 
 #[test]
 fn cameras_come_back_from_files_and_from_the_clipboard() {
-    let Some((display, program)) = stage("cameras_come_back_from_files_and_from_the_clipboard") else {
+    let Some((display, program)) = setup("cameras_come_back_from_files_and_from_the_clipboard") else {
         return;
     };
     let mut view = View::open(&display, &program, &format!("{SPHERE} --size 640x480"));
@@ -156,7 +155,7 @@ fn cameras_come_back_from_files_and_from_the_clipboard() {
     display.press(&[key::CONTROL], u32::from('s'));
     let saved = view.wrote();
     let file: Value = serde_json::from_slice(&std::fs::read(program.path(&saved)).unwrap()).unwrap();
-    assert_eq!(file, first, "a camera file, and where the window says that it looks from");
+    assert_eq!(file, first, "the camera file, and the camera of the event");
     display.press(&[key::CONTROL], u32::from('c'));
     view.until("copied", |_| true);
     let copied: Value = serde_json::from_str(&display.clipboard()).unwrap();
@@ -168,7 +167,7 @@ fn cameras_come_back_from_files_and_from_the_clipboard() {
     display.press(&[key::CONTROL], u32::from('v'));
     view.picture(|event| camera(event) == first);
 
-    // Rays that are parallel stay so.
+    // A parallel projection is saved as such.
     display.press(&[], u32::from('p'));
     let parallel = camera(&view.picture(|event| camera(event)["height"].is_f64()));
     display.press(&[key::CONTROL], u32::from('s'));
@@ -176,7 +175,7 @@ fn cameras_come_back_from_files_and_from_the_clipboard() {
     display.press(&[], u32::from('p'));
     view.picture(|event| camera(event) == first);
     display.drag(view.window, 1, &turn);
-    // About what it turned about before, to the last bits.
+    // The pivot is the same, except for the last bits.
     view.picture(|event| is_near(&camera(event), &turned));
     display.press(&[key::CONTROL], u32::from('o'));
     display.type_text(&saved_parallel);
@@ -198,7 +197,7 @@ fn cameras_come_back_from_files_and_from_the_clipboard() {
 
 #[test]
 fn dropped_files_are_a_scene_or_a_camera_or_a_message() {
-    let Some((display, program)) = stage("dropped_files_are_a_scene_or_a_camera_or_a_message") else {
+    let Some((display, program)) = setup("dropped_files_are_a_scene_or_a_camera_or_a_message") else {
         return;
     };
     for (name, points) in [("one.ply", 300), ("two.ply", 500)] {

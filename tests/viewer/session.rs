@@ -1,29 +1,30 @@
-//! A whole session: what a person does from opening a scan to keeping a picture.
+//! A whole session of a user, from opening a scan to saving a screenshot.
 
 use crate::display::key;
 use crate::faults::{Fault, faulty};
 use crate::program::scan;
 use crate::view::{View, command};
-use crate::{DRAW, SPHERE, stage};
+use crate::{DRAW, SPHERE, setup};
 use std::path::Path;
 use surfel::settings::methods::Method;
 
 #[test]
-fn a_scene_is_looked_at_and_kept() {
-    session("a_scene_is_looked_at_and_kept", SPHERE);
+fn a_session_with_a_scene() {
+    session("a_session_with_a_scene", SPHERE);
 }
 
 #[test]
-fn the_bunny_is_looked_at_and_kept() {
-    let test = "the_bunny_is_looked_at_and_kept";
+fn a_session_with_the_bunny() {
+    let test = "a_session_with_the_bunny";
     if let Some(bunny) = scan(test, "stanford/bunny/bun_zipper.ply") {
         session(test, bunny.to_str().unwrap());
     }
 }
 
-/// Opens, turns, tries every method, resizes 50 times, drops a broken file, saves camera and picture; that is the headless one, bit for bit.
+/// Opens, turns, tries every method, resizes 50 times, drops a broken file, saves camera and screenshot. The screenshot equals the picture of
+/// `surfel render` bit for bit.
 fn session(test: &str, input: &str) {
-    let Some((display, program)) = stage(test) else { return };
+    let Some((display, program)) = setup(test) else { return };
     let (arguments, hidden) = (format!("{input} --size 400x300 {DRAW} --quiet"), program.path("HIDDEN"));
     let faults = [("HIDDEN", hidden.to_str().unwrap())];
     let layered = faulty(test, &program, &display.name, &arguments, &faults);
@@ -31,7 +32,7 @@ fn session(test: &str, input: &str) {
     let command = layered.unwrap_or_else(|| command(&program, &display.name, &arguments));
     let mut view = View::start(&display, command);
     let first = view.picture(|_| true);
-    // Beside the panel, which leaves little of so small a window.
+    // Left of the panel, which leaves little of so small a window.
     display.drag(view.window, 1, &[[20, 150], [40, 140], [70, 120]]);
     view.picture(|event| event["camera"] != first["camera"]);
     display.click(view.window, [40, 150], 4, 2);
@@ -52,7 +53,7 @@ fn session(test: &str, input: &str) {
     display.press(&[key::CONTROL], u32::from('s'));
     let camera = view.wrote();
     display.press(&[], key::F12);
-    let shot = view.wrote();
+    let screenshot = view.wrote();
     view.close();
     let (method, size) = (last["method"].as_str().unwrap(), &last["picture"]);
     let render = format!(
@@ -60,13 +61,13 @@ fn session(test: &str, input: &str) {
         size[0], size[1]
     );
     program.run(&render).text();
-    let [ours, headless] = [program.png(&shot), program.png("headless.png")];
+    let [ours, headless] = [program.png(&screenshot), program.png("headless.png")];
     assert!(headless.pixels().any(|pixel| pixel.0 != headless.get_pixel(0, 0).0), "nothing is seen");
     assert!(ours == headless, "not what `{render}` writes");
 }
 
-/// Fifty sizes, each of which comes to be a picture; the smallest that there is among them. On the way to some of them the window has no extent,
-/// while there is the file `hidden`.
+/// Resizes to fifty sizes, 1x1 among them, and waits for a picture of each. In between the window sometimes has no extent, while the file
+/// `hidden` exists.
 fn resize(view: &mut View, hidden: Option<&Path>) {
     for i in 0..50u32 {
         let none = hidden.filter(|_| i % 10 == 5).map(Fault::begin);

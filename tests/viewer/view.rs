@@ -1,4 +1,4 @@
-//! `surfel view` on a display, and what it tells.
+//! Runs `surfel view` on a display and reads its events.
 
 use crate::display::{Display, PATIENCE};
 use crate::program::{Program, SHADER_CACHE};
@@ -10,7 +10,7 @@ use std::thread::{self, JoinHandle};
 use std::time::Instant;
 use x11rb::protocol::xproto::Window;
 
-/// A program with its window open.
+/// A running program and its window.
 pub struct View<'a> {
     pub display: &'a Display,
     pub window: Window,
@@ -19,13 +19,13 @@ pub struct View<'a> {
     errors: Option<JoinHandle<String>>,
 }
 
-/// How it ended.
+/// Exit code and standard error of the program.
 pub struct End {
     pub code: i32,
     pub errors: String,
 }
 
-/// The program in the folder of `program`, under the validation layers, which tells what happens.
+/// The command of the program in the folder of `program`, with the validation layers and the event log.
 pub fn command(program: &Program, display: &str, arguments: &str) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_surfel"));
     command
@@ -44,7 +44,7 @@ pub fn command(program: &Program, display: &str, arguments: &str) -> Command {
 }
 
 impl<'a> View<'a> {
-    /// Opens a window and waits until it is there.
+    /// Opens a window and waits for it.
     pub fn open(display: &'a Display, program: &Program, arguments: &str) -> Self {
         Self::start(display, command(program, &display.name, arguments))
     }
@@ -58,7 +58,7 @@ impl<'a> View<'a> {
         view
     }
 
-    /// A command whose window is not waited for: there may be none.
+    /// Starts a command without waiting for its window.
     pub fn begin(display: &'a Display, mut command: Command) -> Self {
         let mut child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
         let (out, mut errors) = (child.stdout.take().unwrap(), child.stderr.take().unwrap());
@@ -74,7 +74,7 @@ impl<'a> View<'a> {
         Self { display, window: 0, child, lines, errors: Some(errors) }
     }
 
-    /// The next event of one of these names that fits.
+    /// Waits for the next event of one of these names that `fits` accepts.
     #[track_caller]
     pub fn next(&mut self, names: &[&str], fits: impl Fn(&Value) -> bool) -> Value {
         let (start, mut last) = (Instant::now(), String::new());
@@ -93,7 +93,7 @@ impl<'a> View<'a> {
         }
     }
 
-    /// Waits for another picture; whether the program has ended instead.
+    /// Waits for another picture; returns whether the program has ended instead.
     pub fn ends(&mut self) -> bool {
         loop {
             match self.lines.recv_timeout(PATIENCE) {
@@ -105,7 +105,7 @@ impl<'a> View<'a> {
         }
     }
 
-    /// The next event of this name that fits.
+    /// Waits for the next event of this name that `fits` accepts.
     #[track_caller]
     pub fn until(&mut self, name: &str, fits: impl Fn(&Value) -> bool) -> Value {
         self.next(&[name], fits)

@@ -1,20 +1,20 @@
-//! The window's life: sizes, sight, displays that are not there, and its end.
+//! The window: sizes, visibility, layout of the panel, missing displays.
 
 use crate::display::PATIENCE;
 use crate::program::{Program, surfels};
 use crate::view::{End, View, command};
-use crate::{SPHERE, stage};
+use crate::{SPHERE, setup};
 use std::process::Output;
 use std::time::{Duration, Instant};
 
 #[test]
-fn a_window_that_is_hidden_comes_back() {
-    let Some((display, program)) = stage("a_window_that_is_hidden_comes_back") else { return };
+fn a_hidden_window_comes_back() {
+    let Some((display, program)) = setup("a_hidden_window_comes_back") else { return };
     let mut view = View::open(&display, &program, &format!("{SPHERE} --size 320x240"));
     view.picture(|_| true);
     for size in [[300, 200], [320, 240]] {
         display.map(view.window, false);
-        // While nobody sees it, too.
+        // While it is hidden.
         display.resize(view.window, size);
         display.map(view.window, true);
         view.picture(|event| event["size"] == serde_json::json!(size));
@@ -23,20 +23,20 @@ fn a_window_that_is_hidden_comes_back() {
 }
 
 #[test]
-fn hands_go_from_the_panel_to_the_picture_and_back_at_once() {
-    let Some((display, program)) = stage("hands_go_from_the_panel_to_the_picture_and_back_at_once") else {
+fn input_switches_between_panel_and_picture_at_once() {
+    let Some((display, program)) = setup("input_switches_between_panel_and_picture_at_once") else {
         return;
     };
     let mut view = View::open(&display, &program, &format!("{SPHERE} --size 640x480"));
     let mut before = view.picture(|_| true);
     let (panel, way) = ([600, 300], [[100, 150], [200, 170], [160, 200]]);
     for _ in 0..3 {
-        // Before the window has drawn another frame.
+        // Before the window renders another frame.
         display.click(view.window, panel, 1, 1);
         display.drag(view.window, 1, &way);
         before = view.picture(|event| event["camera"] != before["camera"]);
     }
-    // What begins on the panel is the panel's wherever it goes.
+    // A drag that begins on the panel stays the panel's.
     display.drag(view.window, 1, &[panel, way[0], way[1]]);
     display.type_text("l");
     let after = view.picture(|event| event["shading"] != before["shading"]);
@@ -46,7 +46,7 @@ fn hands_go_from_the_panel_to_the_picture_and_back_at_once() {
 
 #[test]
 fn an_empty_window_waits_and_a_bad_first_file_is_a_message() {
-    let Some((display, program)) = stage("an_empty_window_waits_and_a_bad_first_file_is_a_message") else {
+    let Some((display, program)) = setup("an_empty_window_waits_and_a_bad_first_file_is_a_message") else {
         return;
     };
     program.write("a.ply", surfels(&["0 0 0 0 0 1 1", "1 0 0 0 0 1 1"]));
@@ -57,8 +57,8 @@ fn an_empty_window_waits_and_a_bad_first_file_is_a_message() {
             let error = view.until("wrong", |_| true)["error"].as_str().unwrap().to_owned();
             assert!(error.contains("no-such.ply"), "{error}");
         }
-        // It says how to begin, in the middle of what the panel leaves.
-        seen(&view, |pixels| {
+        // The start page is in the middle of the area without the panel.
+        wait_for(&view, |pixels| {
             let lit = (100..300).flat_map(|x| (180..300).map(move |y| (x, y)));
             (lit.filter(|(x, y)| pixels.get_pixel(*x, *y).0 != [0; 3]).count() > 300).then_some(())
         });
@@ -72,7 +72,7 @@ fn an_empty_window_waits_and_a_bad_first_file_is_a_message() {
 
 #[test]
 fn a_panel_keeps_its_width_or_is_not_there() {
-    let Some((display, program)) = stage("a_panel_keeps_its_width_or_is_not_there") else { return };
+    let Some((display, program)) = setup("a_panel_keeps_its_width_or_is_not_there") else { return };
     let mut view = View::open(&display, &program, &format!("{SPHERE} --size 100x60"));
     view.picture(|event| event["picture"] == serde_json::json!([100, 60]));
     for (size, widths) in [([1200u16, 900u16], 290..=310), ([640, 480], 240..=320), ([400, 300], 0..=0)] {
@@ -88,13 +88,13 @@ fn a_panel_keeps_its_width_or_is_not_there() {
 
 #[test]
 fn a_window_may_be_closed_while_it_loads() {
-    let Some((display, program)) = stage("a_window_may_be_closed_while_it_loads") else { return };
+    let Some((display, program)) = setup("a_window_may_be_closed_while_it_loads") else { return };
     View::open(&display, &program, "scene:bumpy-sphere?points=300000 --size 320x240").close();
 }
 
 #[test]
 fn dense_screens_have_larger_panels() {
-    let Some((display, program)) = stage("dense_screens_have_larger_panels") else { return };
+    let Some((display, program)) = setup("dense_screens_have_larger_panels") else { return };
     let mut command = command(&program, &display.name, &format!("{SPHERE} --size 640x480"));
     command.env("WINIT_X11_SCALE_FACTOR", "2");
     let mut view = View::start(&display, command);
@@ -103,7 +103,7 @@ fn dense_screens_have_larger_panels() {
 }
 
 #[test]
-fn without_a_display_the_way_out_is_said() {
+fn without_a_display_the_error_names_render() {
     let program = Program::new();
     program.write("a.ply", surfels(&["0 0 0 0 0 1 1"]));
     for display in [None, Some(":987654")] {
@@ -119,8 +119,8 @@ fn without_a_display_the_way_out_is_said() {
 }
 
 #[test]
-fn a_device_that_does_not_serve_is_named() {
-    let Some((display, program)) = stage("a_device_that_does_not_serve_is_named") else { return };
+fn an_unknown_device_is_named_in_the_error() {
+    let Some((display, program)) = setup("an_unknown_device_is_named_in_the_error") else { return };
     let command = command(&program, &display.name, &format!("{SPHERE} --device none-such"));
     let End { code, errors } = View::begin(&display, command).end();
     assert!(code == 3 && errors.contains("none-such"), "{code} {errors}");
@@ -129,12 +129,12 @@ fn a_device_that_does_not_serve_is_named() {
 #[test]
 fn a_scene_is_framed_beside_the_panel_or_in_the_whole_window_without_it() {
     let test = "a_scene_is_framed_beside_the_panel_or_in_the_whole_window_without_it";
-    let Some((display, program)) = stage(test) else { return };
+    let Some((display, program)) = setup(test) else { return };
     let mut view = View::open(&display, &program, "scene:sphere?points=20000 --size 640x480");
     view.picture(|_| true);
     let edge = edge(&view);
     margins(&view, edge, |margins| margins.iter().all(|margin| *margin > 2));
-    // Perspective makes more of what is farther from the middle of the window.
+    // A parallel projection has no perspective distortion far from the centre.
     display.type_text("p");
     let mut before = view.picture(|event| event["camera"]["height"].is_f64());
     for (keys, columns) in [("f", edge), ("gf", 640)] {
@@ -148,26 +148,26 @@ fn a_scene_is_framed_beside_the_panel_or_in_the_whole_window_without_it() {
 /// The first column of the panel, whose grey is nowhere else in the first row.
 fn edge(view: &View<'_>) -> usize {
     let first = |pixels: &image::RgbImage| (0..640).find(|x| pixels.get_pixel(*x, 0).0 != [0; 3]);
-    seen(view, |pixels| first(pixels).map(|edge| edge as usize).filter(|edge| (200..500).contains(edge)))
+    wait_for(view, |pixels| first(pixels).map(|edge| edge as usize).filter(|edge| (200..500).contains(edge)))
 }
 
-/// What `take` finds in the window: a picture that was presented need not be there yet.
-fn seen<R>(view: &View<'_>, take: impl Fn(&image::RgbImage) -> Option<R>) -> R {
+/// Waits until `take` finds something in the window, which may show a presented picture late.
+fn wait_for<R>(view: &View<'_>, take: impl Fn(&image::RgbImage) -> Option<R>) -> R {
     let start = Instant::now();
     loop {
         if let Some(found) = take(&view.display.pixels(view.window)) {
             return found;
         }
-        assert!(start.elapsed() < PATIENCE, "it is not seen");
+        assert!(start.elapsed() < PATIENCE, "it does not appear");
         std::thread::sleep(Duration::from_millis(10));
     }
 }
 
-/// Waits until the columns on the left and on the right of what is seen in the first so many fit.
+/// Waits until the margins left and right of the object, in the first `columns` columns, satisfy `fit`.
 fn margins(view: &View<'_>, columns: usize, fit: impl Fn([usize; 2]) -> bool) {
-    seen(view, |pixels| {
-        let seen = |x: &usize| (0..pixels.height()).any(|y| pixels.get_pixel(*x as u32, y).0 != [0; 3]);
-        let (first, last) = (0..columns).find(seen).zip((0..columns).rfind(seen))?;
+    wait_for(view, |pixels| {
+        let is_lit = |x: &usize| (0..pixels.height()).any(|y| pixels.get_pixel(*x as u32, y).0 != [0; 3]);
+        let (first, last) = (0..columns).find(is_lit).zip((0..columns).rfind(is_lit))?;
         fit([first, columns - 1 - last]).then_some(())
     });
 }
