@@ -170,7 +170,7 @@ fn tally(loaded: &LoadedModel, counts: SplatCounts) -> Value {
 }
 
 /// Where normals and radii come from, as numbers of points.
-fn estimated(counts: &Estimated) -> Value {
+pub fn estimated(counts: &Estimated) -> Value {
     let Estimated { normals_given, normals_from_faces, normals_from_neighbours, two_sided, .. } = counts;
     let Estimated { radii_given, radii_from_faces, radii_from_neighbours, .. } = counts;
     json!({

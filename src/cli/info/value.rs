@@ -2,7 +2,7 @@
 
 use crate::cli::args::Info;
 use crate::cli::files::print_json;
-use crate::cli::progress;
+use crate::cli::{progress, report};
 use serde_json::{Map, Value, json};
 use std::path::Path;
 use surfel::estimate::{Estimated, spacing};
@@ -117,21 +117,13 @@ fn range(radii: &[f32]) -> Value {
         .map_or(Value::Null, |[min, max, median]| json!({ "min": min, "max": max, "median": median }))
 }
 
-/// Where normals and radii come from.
+/// Where normals and radii come from, those of lines included, and the number of outliers.
 fn sources(estimated: &Estimated) -> Value {
-    json!({
-        "normals": {
-            "given": estimated.normals_given, "from_faces": estimated.normals_from_faces,
-            "from_neighbours": estimated.normals_from_neighbours, "two_sided": estimated.two_sided,
-        },
-        "radii": {
-            "given": estimated.radii_given, "from_faces": estimated.radii_from_faces,
-            "from_neighbours": estimated.radii_from_neighbours,
-        },
-        "radii_of_lines": {
-            "given": estimated.line_radii_given, "from_lines": estimated.line_radii_from_lines,
-            "from_extent": estimated.line_radii_from_extent,
-        },
-        "outliers": estimated.outliers,
-    })
+    let mut sources = report::estimated(estimated);
+    sources["radii_of_lines"] = json!({
+        "given": estimated.line_radii_given, "from_lines": estimated.line_radii_from_lines,
+        "from_extent": estimated.line_radii_from_extent,
+    });
+    sources["outliers"] = json!(estimated.outliers);
+    sources
 }
