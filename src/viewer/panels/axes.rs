@@ -1,6 +1,7 @@
 //! Axes panel: the method's choice along each axis.
 
-use egui::{ComboBox, Ui};
+use super::widgets::{choice, combo};
+use egui::Ui;
 use surfel::Result;
 use surfel::settings::Choice;
 use surfel::settings::splatting::{Filter, Footprint, Normalization, Shade, Splatting, Visibility};
@@ -24,29 +25,19 @@ pub fn show(ui: &mut Ui, splatting: &mut Splatting, weighted: bool) {
         ("shade", "Whether pixels or splats are lit.", now.shade.name(), shades(now)),
     ];
     for (axis, help, name, choices) in axes {
-        let chosen = choices.iter().find(|(choice, ..)| *choice == name).map_or("", |(_, text, _)| text);
-        let combo = ComboBox::from_label(axis).selected_text(name).show_ui(ui, |ui| {
-            for alternative in choices {
-                choice(ui, splatting, alternative, weighted);
+        let chosen = choices.iter().find(|(known, ..)| *known == name).map_or("", |(_, text, _)| text);
+        combo(ui, axis, name, &format!("{help}\n{name}: {chosen}"), |ui| {
+            for (name, text, new) in choices {
+                let error = check(&new, weighted).err().map(|error| error.to_string());
+                if choice(ui, *splatting == new, name, text, error.as_deref()) {
+                    *splatting = new;
+                }
             }
         });
-        combo.response.on_hover_text(format!("{help}\n{name}: {chosen}"));
     }
 }
 
-/// Shows a choice; one that does not combine with the others is disabled, and its tooltip says why.
-fn choice(ui: &mut Ui, splatting: &mut Splatting, (name, text, new): Alternative, weighted: bool) {
-    let refused = check(&new, weighted).err();
-    ui.add_enabled_ui(refused.is_none(), |ui| {
-        let label = ui.selectable_label(*splatting == new, name).on_hover_text(text);
-        if let Some(cause) = refused {
-            label.on_disabled_hover_text(cause.to_string());
-        } else if label.clicked() {
-            *splatting = new;
-        }
-    });
-}
-
+/// Whether the choices of all axes combine with each other and with the scene.
 fn check(splatting: &Splatting, weighted: bool) -> Result<()> {
     splatting.check()?;
     splatting.normalization.check_weights(weighted)

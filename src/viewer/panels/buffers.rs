@@ -1,8 +1,9 @@
 //! Buffers panel: reads back intermediate buffers and shows them as pictures.
 
-use super::raster::{Raster, Values};
+use super::raster::{Raster, RasterWindow, Values};
+use super::widgets::combo;
 use crate::viewer::choices::Choices;
-use egui::{Button, ComboBox, Context, Slider, Ui};
+use egui::{Button, Slider, Ui};
 use std::sync::Arc;
 use surfel::geometry::Camera;
 use surfel::settings::Shading;
@@ -51,8 +52,7 @@ pub struct Buffers {
     buffer: Buffer,
     level: u32,
     error: Option<String>,
-    open: bool,
-    raster: Option<Raster>,
+    pub(super) window: RasterWindow,
     /// The picture that the buffer belongs to.
     read_for: Option<(Camera, Settings, Buffer, u32)>,
 }
@@ -64,14 +64,13 @@ impl Buffers {
         if !all.contains(&self.buffer) {
             self.buffer = Buffer::Depth;
         }
-        let combo =
-            ComboBox::from_label("buffer").selected_text(self.buffer.name_and_help()[0]).show_ui(ui, |ui| {
-                for buffer in all {
-                    let [name, text] = buffer.name_and_help();
-                    ui.selectable_value(&mut self.buffer, buffer, name).on_hover_text(text);
-                }
-            });
-        combo.response.on_hover_text(self.buffer.name_and_help()[1]);
+        let [name, help] = self.buffer.name_and_help();
+        combo(ui, "buffer", name, help, |ui| {
+            for buffer in all {
+                let [name, text] = buffer.name_and_help();
+                ui.selectable_value(&mut self.buffer, buffer, name).on_hover_text(text);
+            }
+        });
         ui.weak(self.buffer.name_and_help()[1]);
         if self.buffer.is_level() {
             let top = choices.size[0].max(choices.size[1]).next_power_of_two().trailing_zeros();
@@ -81,7 +80,7 @@ impl Buffers {
         }
         let Some(Ok(camera)) = &choices.camera else { return };
         let key = (*camera, choices.settings.clone(), self.buffer, self.level);
-        let old = self.open && self.read_for.as_ref() != Some(&key);
+        let old = self.window.open && self.read_for.as_ref() != Some(&key);
         let text = if old { "Read back again: an earlier picture is shown" } else { "Read back" };
         if ui
             .add(Button::new(text))
@@ -90,8 +89,8 @@ impl Buffers {
         {
             match self.read(choices, *camera, device) {
                 Ok(raster) => {
-                    (self.raster, self.open, self.error, self.read_for) =
-                        (Some(raster), true, None, Some(key))
+                    self.window = RasterWindow { raster: Some(raster), open: true };
+                    (self.error, self.read_for) = (None, Some(key));
                 }
                 Err(error) => self.error = Some(error.to_string()),
             }
@@ -101,23 +100,7 @@ impl Buffers {
         }
     }
 
-    /// Drops the texture of an egui context before the context itself is dropped.
-    pub fn release_textures(&mut self) {
-        self.raster.iter_mut().for_each(Raster::release_textures);
-    }
-
-    /// Closes the window of the buffer; returns whether it was open.
-    pub fn close(&mut self) -> bool {
-        self.raster.is_some() && std::mem::take(&mut self.open)
-    }
-
-    /// Shows the window of the buffer, if it is open.
-    pub fn show_window(&mut self, context: &Context) {
-        if let Some(raster) = self.raster.as_mut().filter(|_| self.open) {
-            raster.show(context, "buffer", &mut self.open);
-        }
-    }
-
+    /// Renders the picture and reads the buffer back.
     fn read(&self, choices: &Choices<'_>, camera: Camera, device: &Arc<Device>) -> Result<Raster> {
         let outputs =
             Outputs { normal: self.buffer == Buffer::Normal, depth: self.buffer == Buffer::Depth, id: false };

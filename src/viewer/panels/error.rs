@@ -1,9 +1,10 @@
 //! Error panel: compares the picture with the float64 reference or with the exact surface.
 
-use super::raster::{Raster, Values};
+use super::raster::{Raster, RasterWindow, Values};
+use super::widgets::{choice, combo};
 use crate::viewer::choices::Choices;
 use crate::viewer::job::Job;
-use egui::{Button, ComboBox, Context, Grid, ProgressBar, Slider, SliderClamping, Ui};
+use egui::{Button, Grid, ProgressBar, Slider, SliderClamping, Ui};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 use surfel::geometry::{Camera, ColourMap, Model};
@@ -47,8 +48,7 @@ pub struct Errors {
     error: Option<String>,
     /// The largest difference of a channel that counts as equal, linear.
     tolerance: f32,
-    open: bool,
-    raster: Option<Raster>,
+    pub(super) window: RasterWindow,
 }
 
 /// A comparison to run.
@@ -80,8 +80,8 @@ struct Comparison {
 impl Default for Errors {
     fn default() -> Self {
         let tolerance = Tolerance::default().colour as f32;
-        let (job, found, error, raster) = (None, None, None, None);
-        Self { against: Against::Reference, job, found, error, tolerance, open: false, raster }
+        let window = RasterWindow::default();
+        Self { against: Against::Reference, job: None, found: None, error: None, tolerance, window }
     }
 }
 
@@ -116,7 +116,8 @@ impl Errors {
                     Ok(found) => {
                         let values = Values::Numbers(found.errors.clone());
                         let name = "largest difference of a channel, linear";
-                        self.raster = Some(Raster::new(name, found.size, values).with(ColourMap::Magma, 0.0));
+                        self.window.raster =
+                            Some(Raster::new(name, found.size, values).with(ColourMap::Magma, 0.0));
                         self.found = Some(found);
                     }
                     Err(Error::Cancelled) => {}
@@ -132,19 +133,16 @@ impl Errors {
             self.against = Against::Reference;
         }
         let [name, text] = self.against.name_and_help();
-        let choice = ComboBox::from_label("against").selected_text(name).show_ui(ui, |ui| {
+        combo(ui, "against", name, text, |ui| {
             for against in [Against::Reference, Against::Truth] {
                 let [name, text] = against.name_and_help();
-                ui.add_enabled_ui(exact || against == Against::Reference, |ui| {
-                    ui.selectable_value(&mut self.against, against, name)
-                        .on_hover_text(text)
-                        .on_disabled_hover_text(
-                            "Only built-in scenes in their own colours have an exact surface.",
-                        );
-                });
+                let reason = "Only built-in scenes in their own colours have an exact surface.";
+                let reason = (!exact && against == Against::Truth).then_some(reason);
+                if choice(ui, self.against == against, name, text, reason) {
+                    self.against = against;
+                }
             }
         });
-        choice.response.on_hover_text(text);
         let Some(Ok(camera)) = &choices.camera else { return };
         let button = ui.add(Button::new("Compare this picture"));
         if button.on_hover_text("Renders the picture again at full quality, and the reference or exact picture; takes seconds to minutes.").clicked() {
@@ -196,24 +194,7 @@ impl Errors {
                 .text("tolerance"),
         )
         .on_hover_text("The largest difference of a channel that counts as equal, in linear light.");
-        ui.checkbox(&mut self.open, "show as a picture");
-    }
-
-    /// Drops the texture of an egui context before the context itself is dropped.
-    pub fn release_textures(&mut self) {
-        self.raster.iter_mut().for_each(Raster::release_textures);
-    }
-
-    /// Closes the window of errors; returns whether it was open.
-    pub fn close(&mut self) -> bool {
-        self.raster.is_some() && std::mem::take(&mut self.open)
-    }
-
-    /// Shows the window with the error of every pixel, if it is open.
-    pub fn show_window(&mut self, context: &Context) {
-        if let Some(raster) = self.raster.as_mut().filter(|_| self.open) {
-            raster.show(context, "error", &mut self.open);
-        }
+        ui.checkbox(&mut self.window.open, "show as a picture");
     }
 }
 

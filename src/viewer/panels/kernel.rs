@@ -1,6 +1,7 @@
 //! Kernel panel: the choice of the kernel, and a plot of it.
 
-use egui::{Align2, Color32, ComboBox, FontId, Pos2, Sense, Shape, Slider, SliderClamping, Stroke, Ui, vec2};
+use super::widgets::{choice, combo};
+use egui::{Align2, Color32, FontId, Pos2, Sense, Shape, Slider, SliderClamping, Stroke, Ui, vec2};
 use surfel::settings::splatting::{Kernel, Splatting};
 
 /// Maximum width and height of the plot, points.
@@ -16,24 +17,18 @@ pub fn show(ui: &mut Ui, splatting: &mut Splatting, cutoff: f32) {
         Kernel::Gaussian => "gaussian",
         Kernel::Confetti { .. } => "confetti",
     };
-    let combo = ComboBox::from_label("kernel").selected_text(name).show_ui(ui, |ui| {
+    combo(ui, "kernel", name, "Falloff of a splat's weight from its centre to its rim.", |ui| {
         for (name, kernel, text) in [
             ("gaussian", Kernel::Gaussian, "exp(−½ m²), m σ from the centre, up to the cut-off"),
             ("confetti", CONFETTI, "exp(−a tⁿ / (1 − tⁿ)), t from 0 at the centre to 1 at the rim"),
         ] {
-            let refused = Splatting { kernel, ..*splatting }.check().err();
-            ui.add_enabled_ui(refused.is_none(), |ui| {
-                let same = std::mem::discriminant(&kernel) == std::mem::discriminant(&splatting.kernel);
-                let label = ui.selectable_label(same, name).on_hover_text(text);
-                if let Some(cause) = refused {
-                    label.on_disabled_hover_text(cause.to_string());
-                } else if label.clicked() && !same {
-                    splatting.kernel = kernel;
-                }
-            });
+            let error = Splatting { kernel, ..*splatting }.check().err().map(|error| error.to_string());
+            let same = std::mem::discriminant(&kernel) == std::mem::discriminant(&splatting.kernel);
+            if choice(ui, same, name, text, error.as_deref()) && !same {
+                splatting.kernel = kernel;
+            }
         }
     });
-    combo.response.on_hover_text("Falloff of a splat's weight from its centre to its rim.");
     if let Kernel::Confetti { a, n } = &mut splatting.kernel {
         ui.add(Slider::new(a, 0.1..=20.0).logarithmic(true).clamping(SliderClamping::Edits).text("a"))
             .on_hover_text("Larger values make the kernel narrower.");

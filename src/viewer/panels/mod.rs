@@ -13,6 +13,7 @@ mod split;
 mod start;
 mod times;
 mod ui_state;
+mod widgets;
 
 use super::choices::Choices;
 use super::keys::{Action, BINDINGS};
@@ -63,8 +64,8 @@ pub fn show(ui: &mut Ui, state: &mut ViewState, ui_state: &mut UiState, device: 
         None if ui_state.loading.is_none() => start::show(ui, free, state, &ui_state.layout),
         None => {}
     }
-    ui_state.errors.show_window(ui.ctx());
-    ui_state.buffers.show_window(ui.ctx());
+    ui_state.errors.window.show(ui.ctx(), "error");
+    ui_state.buffers.window.show(ui.ctx(), "buffer");
     if ui_state.show_help {
         help::show(ui.ctx(), &ui_state.layout);
     }

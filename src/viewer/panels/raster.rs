@@ -59,13 +59,8 @@ impl Raster {
         self
     }
 
-    /// Drops the texture, which is created again when it is needed.
-    pub fn release_textures(&mut self) {
-        self.texture = None;
-    }
-
     /// Shows a window with the picture; `open` becomes false when it is closed.
-    pub fn show(&mut self, context: &Context, id: &str, open: &mut bool) {
+    fn show(&mut self, context: &Context, id: &str, open: &mut bool) {
         let title = format!("{}, {}x{}", self.name, self.size[0], self.size[1]);
         Window::new(title)
             .id(egui::Id::new(id))
@@ -131,6 +126,32 @@ impl Raster {
                 format!("({x}, {y})  {a:.5} {b:.5} {c:.5}")
             }
         })
+    }
+}
+
+/// A window with a raster, once there is one.
+#[derive(Default)]
+pub struct RasterWindow {
+    pub raster: Option<Raster>,
+    pub open: bool,
+}
+
+impl RasterWindow {
+    /// Drops the texture of an egui context before the context itself is dropped.
+    pub fn release_texture(&mut self) {
+        self.raster.iter_mut().for_each(|raster| raster.texture = None);
+    }
+
+    /// Closes the window; returns whether it was open.
+    pub fn close(&mut self) -> bool {
+        self.raster.is_some() && std::mem::take(&mut self.open)
+    }
+
+    /// Shows the window, if it is open.
+    pub fn show(&mut self, context: &Context, id: &str) {
+        if let Some(raster) = self.raster.as_mut().filter(|_| self.open) {
+            raster.show(context, id, &mut self.open);
+        }
     }
 }
 

@@ -1,22 +1,17 @@
 //! Render settings panel: shading, colours, background, radii.
 
 use super::raster::short;
+use super::widgets::{choice, choice_combo, combo};
 use crate::viewer::appearance::ColourAttribute;
 use crate::viewer::choices::Choices;
-use egui::{ComboBox, DragValue, ProgressBar, Slider, SliderClamping, Ui};
+use egui::{DragValue, ProgressBar, Slider, SliderClamping, Ui};
 use surfel::geometry::{ColourMap, ValueRange};
-use surfel::settings::{Alpha, Choice, Cull, Shading};
+use surfel::settings::{Alpha, Cull};
 
 /// Shows the panel.
 pub fn show(ui: &mut Ui, choices: &mut Choices<'_>) {
     let settings = &mut *choices.settings;
-    let combo = ComboBox::from_label("shading").selected_text(settings.shading.name()).show_ui(ui, |ui| {
-        for &shading in Shading::ALL {
-            ui.selectable_value(&mut settings.shading, shading, shading.name())
-                .on_hover_text(shading.about());
-        }
-    });
-    combo.response.on_hover_text(settings.shading.about());
+    choice_combo(ui, "shading", &mut settings.shading, None);
     colours(ui, choices);
     background(ui, choices);
     radii(ui, choices);
@@ -37,28 +32,16 @@ pub fn show(ui: &mut Ui, choices: &mut Choices<'_>) {
 fn colours(ui: &mut Ui, choices: &mut Choices<'_>) {
     let source = &mut *choices.source;
     let mut clicked = None;
-    let combo = ComboBox::from_label("colour by")
-        .selected_text(source.name(source.wanted.attribute))
-        .show_ui(ui, |ui| {
-            let of_files = source.property_names().iter().enumerate();
-            let of_files = of_files.map(|(i, name)| {
-                (
-                    ColourAttribute::Property(i),
-                    name.as_str(),
-                    "A property of the files, read when it is choices.",
-                )
-            });
-            for (attribute, name, text) in ColourAttribute::ALL.into_iter().chain(of_files) {
-                if ui
-                    .selectable_label(source.wanted.attribute == attribute, name)
-                    .on_hover_text(text)
-                    .clicked()
-                {
-                    clicked = Some(attribute);
-                }
+    combo(ui, "colour by", source.name(source.wanted.attribute), "What the points' colours show.", |ui| {
+        let of_files = source.property_names().iter().enumerate();
+        let help = "A property of the files, read when it is chosen.";
+        let of_files = of_files.map(|(i, name)| (ColourAttribute::Property(i), name.as_str(), help));
+        for (attribute, name, text) in ColourAttribute::ALL.into_iter().chain(of_files) {
+            if choice(ui, source.wanted.attribute == attribute, name, text, None) {
+                clicked = Some(attribute);
             }
-        });
-    combo.response.on_hover_text("What the points' colours show.");
+        }
+    });
     if let Some(attribute) = clicked {
         source.colour_by(attribute);
     }
@@ -76,12 +59,7 @@ fn colours(ui: &mut Ui, choices: &mut Choices<'_>) {
 
 /// Shows the choice of the colour map.
 pub fn map(ui: &mut Ui, map: &mut ColourMap) {
-    let combo = ComboBox::from_label("colours").selected_text(map.name()).show_ui(ui, |ui| {
-        for &other in ColourMap::ALL {
-            ui.selectable_value(map, other, other.name()).on_hover_text(other.about());
-        }
-    });
-    combo.response.on_hover_text("Colour map of the values.");
+    choice_combo(ui, "colours", map, Some("Colour map of the values."));
 }
 
 /// Shows the values at both ends of the colour map, and a button for the default range, if there is one.

@@ -1,11 +1,11 @@
 //! Split view panel: a second picture of the scene by another method, and the divider between both.
 
+use super::method;
 use super::times::{self, Times};
+use super::widgets::combo;
 use crate::viewer::choices::Choices;
 use crate::viewer::state::ViewState;
-use egui::{
-    Align2, Area, Color32, ComboBox, CursorIcon, FontId, Id, Order, Rect, Sense, Stroke, Ui, pos2, vec2,
-};
+use egui::{Align2, Area, Color32, CursorIcon, FontId, Id, Order, Rect, Sense, Stroke, Ui, pos2, vec2};
 use surfel::settings::methods::Method;
 use surfel::{FrameReport, Settings};
 
@@ -50,19 +50,11 @@ impl Split {
             let method = other_than(choices.method, choices.primitives);
             (self.name, self.settings) = (method.name.into(), Some(choices.settings_of(&method)));
         }
-        let combo = ComboBox::from_label("on the right").selected_text(&self.name).show_ui(ui, |ui| {
-            for method in Method::ALL {
-                ui.add_enabled_ui(method.pull_push.is_some() || !choices.primitives, |ui| {
-                    let label = ui.selectable_label(self.name == method.name, method.name);
-                    let label = label.on_hover_text(method.paper);
-                    let label = label.on_disabled_hover_text("Only pull-push renders lines and triangles.");
-                    if label.clicked() {
-                        (self.name, self.settings) = (method.name.into(), Some(choices.settings_of(&method)));
-                    }
-                });
+        combo(ui, "on the right", &self.name.clone(), "The method of the right picture.", |ui| {
+            if let Some(method) = method::list(ui, &self.name, choices.primitives) {
+                (self.name, self.settings) = (method.name.into(), Some(choices.settings_of(&method)));
             }
         });
-        combo.response.on_hover_text("The method of the picture on the right.");
         let copy = ui.button("Copy the left picture's settings").on_hover_text(
             "Renders the right picture with the present settings of the left one: change these to see the effect.",
         );

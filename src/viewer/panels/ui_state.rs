@@ -52,13 +52,13 @@ impl UiState {
 
     /// Closes the window on top of the picture; returns whether there was one.
     pub fn close_top_window(&mut self) -> bool {
-        std::mem::take(&mut self.show_help) || self.errors.close() || self.buffers.close()
+        std::mem::take(&mut self.show_help) || self.errors.window.close() || self.buffers.window.close()
     }
 
     /// Drops the textures of an egui context before the context itself is dropped.
     pub fn release_textures(&mut self) {
-        self.errors.release_textures();
-        self.buffers.release_textures();
+        self.errors.window.release_texture();
+        self.buffers.window.release_texture();
     }
 
     /// Settings of the right picture, if the view is split.
