@@ -27,7 +27,7 @@ pub struct Points {
     /// Estimates elliptical discs, longer along directions in which points are sparser
     #[arg(long)]
     pub elliptical: bool,
-    /// Drops points farther from their neighbours than the average by SIGMA standard deviations
+    /// Drops points whose mean distance to their neighbours exceeds the average by SIGMA standard deviations
     #[arg(long, value_name = "SIGMA", value_parser = positive::<f32>, allow_hyphen_values = true)]
     pub drop_outliers: Option<f32>,
     /// Renders faces as triangles instead of their vertices as points; implied for files with lines
