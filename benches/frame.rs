@@ -50,8 +50,8 @@ fn inputs() -> Vec<(&'static str, Surfels)> {
     };
     let mut inputs = vec![("sphere-100k", sphere(100_000)), ("sphere-1m", sphere(1_000_000))];
     let scan = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/classic/bunny16k.ply");
-    match scan.exists() {
-        true => inputs.push((
+    if scan.exists() {
+        inputs.push((
             "bunny16k",
             formats::read(&scan, &Default::default(), &())
                 .expect("the scan is read")
@@ -59,8 +59,9 @@ fn inputs() -> Vec<(&'static str, Surfels)> {
                 .into_surfels(&Default::default(), &())
                 .expect("it has normals and radii")
                 .0,
-        )),
-        false => eprintln!("SKIPPED: there is no {}", scan.display()),
+        ))
+    } else {
+        eprintln!("SKIPPED: there is no {}", scan.display())
     }
     inputs
 }

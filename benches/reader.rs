@@ -30,9 +30,10 @@ fn inputs(folder: &Path) -> Vec<(&'static str, PathBuf)> {
         ("ascii-300k", write(&folder.join("ascii.ply"), 300_000, ascii())),
     ];
     let dragon = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/stanford/dragon/dragon_vrip.ply");
-    match dragon.exists() {
-        true => inputs.push(("dragon", dragon)),
-        false => eprintln!("SKIPPED: there is no {}", dragon.display()),
+    if dragon.exists() {
+        inputs.push(("dragon", dragon))
+    } else {
+        eprintln!("SKIPPED: there is no {}", dragon.display())
     }
     inputs
 }

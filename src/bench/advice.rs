@@ -1,11 +1,11 @@
-//! Which setting for which budget of time, which for which budget of error.
+//! Recommendations: the best setting for each budget of time or error.
 //!
-//! Only runs on the Pareto front can be the answer: those of which no other is both faster and nearer to the truth. The best for a
-//! budget of time is the one of least error among those that keep to it; for a budget of error, the fastest.
+//! Candidates are the runs on the Pareto front: no other run is both faster and more exact. For a budget of time the
+//! best run is the one of least error within it; for a budget of error, the fastest.
 
 use super::record::{Figure, Run, Session};
 
-/// A run that was timed and compared.
+/// A run that was timed and compared with the truth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Offer<'a> {
     /// The run.
@@ -16,7 +16,7 @@ pub struct Offer<'a> {
     pub rmse: f64,
 }
 
-/// A scene at one size, and its front.
+/// A scene at one size, with its Pareto front.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Column<'a> {
     /// The scene.
@@ -27,10 +27,10 @@ pub struct Column<'a> {
     pub front: Vec<Offer<'a>>,
 }
 
-/// A session's budgets. Times of other sessions are other machines'.
+/// Recommendations of one session; times of other sessions are of other machines.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Advice<'a> {
-    /// Scene by scene, in the order of the runs.
+    /// One per scene and size, in the order of the runs.
     pub columns: Vec<Column<'a>>,
     /// [`budgets`] of time, ms.
     pub times: Vec<f64>,
@@ -39,7 +39,7 @@ pub struct Advice<'a> {
 }
 
 impl<'a> Advice<'a> {
-    /// Of the methods' runs that are measured for budgets; none if there are none.
+    /// From the budget experiment's runs, without the CPU baseline; none if there are no such runs.
     pub fn of(session: &'a Session) -> Option<Self> {
         let mut columns: Vec<Column<'a>> = Vec::new();
         let methods = |run: &&Run| run.figure == Figure::Budget && !run.contender.is_baseline();
@@ -57,7 +57,7 @@ impl<'a> Advice<'a> {
     }
 }
 
-/// Those of the runs that have a time and an error, both above 0.
+/// The runs that have a time and an error, both above 0.
 pub fn offers<'a>(runs: impl IntoIterator<Item = &'a Run>) -> Vec<Offer<'a>> {
     let offer = |run: &'a Run| match (run.refused.is_none(), run.ms(), run.rmse()) {
         (true, Some(ms), Some(rmse)) if rmse > 0.0 => Some(Offer { run, ms, rmse }),
@@ -66,7 +66,7 @@ pub fn offers<'a>(runs: impl IntoIterator<Item = &'a Run>) -> Vec<Offer<'a>> {
     runs.into_iter().filter_map(offer).collect()
 }
 
-/// The Pareto front: ascending in time, descending in error. Of runs that are alike in both it has the first.
+/// The Pareto front: ascending in time, descending in error; the first of equal runs.
 pub fn front<'a>(offers: &[Offer<'a>]) -> Vec<Offer<'a>> {
     let mut sorted = offers.to_vec();
     sorted.sort_by(|a, b| a.ms.total_cmp(&b.ms).then(a.rmse.total_cmp(&b.rmse)));
@@ -79,18 +79,18 @@ pub fn front<'a>(offers: &[Offer<'a>]) -> Vec<Offer<'a>> {
     sorted
 }
 
-/// The nearest to the truth that takes no longer than `ms`; none if all take longer.
+/// The run of least error within `ms`; none if all take longer.
 pub fn within_time<'f, 'a>(front: &'f [Offer<'a>], ms: f64) -> Option<&'f Offer<'a>> {
     front.iter().rev().find(|offer| offer.ms <= ms)
 }
 
-/// The fastest of an RMSE of at most `rmse`; none if all are further from the truth.
+/// The fastest run with an RMSE of at most `rmse`; none if all have more.
 pub fn within_error<'f, 'a>(front: &'f [Offer<'a>], rmse: f64) -> Option<&'f Offer<'a>> {
     front.iter().find(|offer| offer.rmse <= rmse)
 }
 
-/// Round numbers from the first that the least value keeps to, to the first that all do: 1, 2 and 5 times powers of ten, or a finer
-/// series where these would be few.
+/// Round budgets from the first one that some value meets to the first one that all meet: 1, 2 and 5 times powers of
+/// ten, or a finer series if there would be few.
 pub fn budgets(values: impl IntoIterator<Item = f64>) -> Vec<f64> {
     let valid = values.into_iter().filter(|value| value.is_finite() && *value > 0.0);
     let range = valid.fold(None, |range: Option<[f64; 2]>, value| {
@@ -102,13 +102,13 @@ pub fn budgets(values: impl IntoIterator<Item = f64>) -> Vec<f64> {
     if coarse.len() < FEW { series(&["1", "1.5", "2", "3", "5", "7"], range) } else { coarse }
 }
 
-/// Fewer budgets are few.
+/// Least number of budgets in the coarse series.
 const FEW: usize = 4;
 
-/// The numbers that start with these digits, as [`budgets`] has them.
+/// The numbers that start with these digits; see [`budgets`].
 fn series(digits: &[&str], [min, max]: [f64; 2]) -> Vec<f64> {
     let powers = min.log10().floor() as i32..=max.log10().ceil() as i32;
-    // By way of text, so that they are the nearest to what they are called.
+    // Parsed from text, to get the nearest number.
     let round =
         |power: i32| digits.iter().map(move |digit| format!("{digit}e{power}").parse().unwrap_or(f64::NAN));
     let mut budgets: Vec<f64> = powers.flat_map(round).filter(|budget| *budget >= min).collect();

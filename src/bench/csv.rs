@@ -1,4 +1,5 @@
-//! Results as flat rows, for spreadsheets and scripts. A cell without a value is empty; no rows at all have no header either.
+//! Results as CSV rows, for spreadsheets and scripts. A cell without a value is empty; no rows give an empty text
+//! without a header.
 
 use super::record::{Agreement, Memory, Results, Run, Session, SweepPoint};
 use crate::error::{Error, Result};
@@ -10,12 +11,12 @@ use std::collections::BTreeSet;
 /// A cell with the name of its column.
 type Cell = (String, String);
 
-/// A row a run: its session, what was run, how long it took, how far it is from the truth and from float64. Each metric has a column of
-/// its name, and each pass `pass:NAME`, with `:min` and `:max` beside it. `stale` tells whether the session was measured by other code
-/// than that of the digest `code`. Times are in ms, memory in bytes.
+/// One row per run: its session, settings, times, error against the truth and error against float64. Each metric has a
+/// column of its name; each pass has `pass:NAME`, `pass:NAME:min` and `pass:NAME:max`. `stale` says whether the
+/// session's source digest differs from `code`. Times are in ms, memory in bytes.
 ///
 /// # Errors
-/// [`Error::Usage`] if the rows cannot be put together, which only a lack of memory can cause.
+/// [`Error::Usage`] if the rows cannot be written to memory.
 pub fn runs(results: &Results, code: &str) -> Result<String> {
     let all =
         || results.sessions.iter().flat_map(|session| session.runs.iter().map(move |run| (session, run)));
@@ -37,7 +38,7 @@ pub fn runs(results: &Results, code: &str) -> Result<String> {
     text(all().map(row))
 }
 
-/// A row a point of a sweep: its session, the sweep, the point, how far it is from float64, and what is not as it should be.
+/// One row per point of a sweep: its session, the sweep, the point, its error against float64, and its faults.
 ///
 /// # Errors
 /// As [`runs`].
@@ -193,7 +194,7 @@ fn agreement(agreement: Option<&Agreement>) -> impl Iterator<Item = Cell> {
     ])
 }
 
-/// The names of all metrics that were taken, known ones first and in their order.
+/// Names of all metrics of the runs: known ones first, in their order.
 pub(super) fn metrics<'a>(runs: impl Iterator<Item = &'a Run>) -> Vec<String> {
     let taken: BTreeSet<&String> =
         runs.filter_map(|run| run.error.as_ref()).flat_map(|error| error.metrics.keys()).collect();
@@ -204,7 +205,7 @@ pub(super) fn metrics<'a>(runs: impl Iterator<Item = &'a Run>) -> Vec<String> {
     names
 }
 
-/// Rows that all have the same columns.
+/// Writes rows with equal columns, with a header.
 fn text(rows: impl Iterator<Item = Vec<Cell>>) -> Result<String> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let failed = |cause: String| Error::Usage(format!("cannot put the results together as CSV: {cause}"));

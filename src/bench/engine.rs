@@ -1,4 +1,4 @@
-//! Who renders: each method behind the same few calls.
+//! Engines: every way to render, behind one interface.
 
 use super::record::{Axes, Contender, Memory, PIXELS, SPLATS};
 use crate::error::Result;
@@ -14,22 +14,23 @@ use std::sync::Arc;
 /// A way to render.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Engine {
-    /// Splats on a Vulkan device, by the method that the settings choose; without a rasterizer, with the one that the device is faster with.
+    /// Splats on a Vulkan device, by the method that the settings choose. Without a rasterizer, the faster one on the
+    /// device.
     Splatting {
         /// What visits the pixels.
         rasterizer: Option<Rasterizer>,
         /// Width of the sums.
         precision: Precision,
     },
-    /// What a plain program on the CPU makes of the same.
+    /// The CPU baseline.
     Baseline(Kind),
 }
 
 impl Engine {
-    /// Splatting as it is shipped.
+    /// The default method with default options.
     pub const DEFAULT: Self = Self::Splatting { rasterizer: None, precision: Precision::Full };
 
-    /// Its name in the results, with these settings.
+    /// Name in the results, with these settings.
     pub fn contender(&self, settings: &Settings) -> Contender {
         match self {
             Self::Splatting { rasterizer, precision } => {
@@ -49,8 +50,8 @@ impl Engine {
     }
 }
 
-/// The preset of that pull–push; of splats the one that differs along the fewest axes, of several the one with the same numbers or else the
-/// first, and what is changed of it.
+/// The method of the settings, and the settings along which they differ from its preset. For splats it is the preset
+/// that differs along the fewest axes, then the first one, preferring equal numbers.
 fn preset(settings: &Settings) -> (Method, Vec<String>) {
     let of_points = |method: &Method| method.pull_push.is_some() && method.pull_push == settings.pull_push;
     if let Some(method) = Method::ALL.into_iter().find(of_points) {
@@ -69,9 +70,9 @@ fn preset(settings: &Settings) -> (Method, Vec<String>) {
     nearest.unwrap_or((Method::SPLATTING[0], Vec::new()))
 }
 
-/// An engine with a scene in it, ready for frames of one size.
+/// An engine with a loaded scene, ready for frames of one size.
 pub trait Ready {
-    /// Renders a frame and waits for it; `timed` times its passes, which may cost time.
+    /// Renders a frame and waits for it; `timed` records pass times, which may slow it down.
     ///
     /// # Errors
     /// As [`Renderer::render`].
@@ -83,11 +84,11 @@ pub trait Ready {
     /// As [`Renderer::render_picture`].
     fn picture(&mut self, camera: &Camera, settings: &Settings) -> Result<Picture>;
 
-    /// What the last frame took.
+    /// Memory of the last frame.
     fn memory(&self) -> Memory;
 }
 
-/// A model on a Vulkan device, with a renderer that makes no more than the picture and one that adds normals and depths.
+/// A model on a Vulkan device, with one renderer for colour alone and one that adds normals and depths.
 pub struct OnDevice {
     scene: Scene,
     lean: Renderer,
@@ -136,7 +137,7 @@ impl Ready for OnDevice {
     }
 }
 
-/// Surfels in the CPU baseline.
+/// Surfels on the CPU, rendered by the baseline.
 pub struct OnHost {
     baseline: Baseline,
     kind: Kind,
@@ -144,7 +145,7 @@ pub struct OnHost {
 }
 
 impl OnHost {
-    /// Takes a copy of `surfels`.
+    /// Copies `surfels`.
     ///
     /// # Errors
     /// As [`Baseline::new`].

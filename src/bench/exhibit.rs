@@ -1,4 +1,4 @@
-//! Pictures side by side.
+//! Images of a run beside the truth.
 
 use super::plan::Plan;
 use super::record::Exhibit;
@@ -8,10 +8,10 @@ use crate::picture::Picture;
 use crate::verify::metrics::{Metric, Options, Pair, measure};
 use base64::prelude::{BASE64_STANDARD, Engine};
 
-/// Largest side of a picture that is shown, px: of a larger one, its middle.
+/// Largest side of an image in the report, px; larger images are cropped to their middle.
 const MOST: u32 = 512;
 
-/// A picture beside the truth, with the map of what differs.
+/// The images of a run: rendered, truth, and FLIP's difference map.
 pub fn exhibit(plan: &Plan, picture: &Picture, truth: &Picture) -> Result<Exhibit> {
     let [picture, truth] = [picture, truth].map(middle);
     let measured = measure(&Pair::new(&picture, &truth)?, &Options::default())?;
@@ -32,7 +32,7 @@ fn png(image: Encoded) -> Result<String> {
     Ok(BASE64_STANDARD.encode(bytes))
 }
 
-/// Its middle, if it is too large to be shown.
+/// Crops an image to its middle if it is too large for the report.
 fn middle(picture: &Picture) -> Picture {
     let [width, height] = picture.size.map(|side| side as usize);
     let size = picture.size.map(|side| side.min(MOST));

@@ -1,11 +1,11 @@
-//! Where error stops falling as points rise, and what is left there.
+//! Convergence of the error with the number of points, and the largest residual error.
 
 use super::record::{Run, Terms};
 
-/// The error falls from one number of points to the next if the slope of its logarithm over theirs is below this: a fifth less with ten
-/// times the points.
+/// The error counts as falling between two numbers of points if the slope of log error over log points is below this: a
+/// fifth less with ten times the points.
 pub const SLOPE: f64 = -0.1;
-/// What is left is put down to a cause if that alone makes up so much of it; otherwise to where it is.
+/// A cause is named for the residual if it makes up this share of it; otherwise its place is named.
 pub const SHARE: f64 = 0.5;
 
 /// An error at a number of points.
@@ -17,29 +17,29 @@ pub struct Step {
     pub rmse: f64,
 }
 
-/// How the error goes as points rise.
+/// How far the error falls with the number of points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Fall {
     /// Fewer than two numbers of points have an error.
     Unknown,
-    /// It does not fall between any two.
+    /// It falls nowhere.
     Nowhere,
-    /// It falls up to the second and not beyond, though there are more.
+    /// It falls from the first point to the second, and not beyond.
     Until([Step; 2]),
-    /// It falls up to the most there are.
+    /// It falls up to the greatest number of points.
     Throughout([Step; 2]),
 }
 
-/// What is left, as a term of the error.
+/// The residual error, attributed to a cause or a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Left {
-    /// The term, in words.
+    /// Name of the cause or place.
     pub term: &'static str,
     /// Its size, in the unit of the RMSE.
     pub size: f64,
 }
 
-/// Runs of one kind as steps: ascending in points, the least error of each number.
+/// The error at each number of points, ascending; the least error if several runs have the same number.
 pub fn steps<'a>(runs: impl IntoIterator<Item = &'a Run>) -> Vec<Step> {
     let step = |run: &Run| Some(Step { points: run.points, rmse: run.rmse().filter(|rmse| *rmse > 0.0)? });
     let mut steps: Vec<Step> =
@@ -49,12 +49,13 @@ pub fn steps<'a>(runs: impl IntoIterator<Item = &'a Run>) -> Vec<Step> {
     steps
 }
 
-/// From the first step to the last that lies below all before it, with a slope from its forerunner below [`SLOPE`].
+/// The fall from the first point to the last one that is below all before it, with a slope from its predecessor below
+/// [`SLOPE`].
 pub fn fall(steps: &[Step]) -> Fall {
     let [first, .., most] = steps else { return Fall::Unknown };
     let slope = |[a, b]: [Step; 2]| (b.rmse / a.rmse).ln() / (b.points as f64 / a.points as f64).ln();
     let falling = |pair: &&[Step]| slope([pair[0], pair[1]]) < SLOPE;
-    // A fall after a rise counts from where it is below all that was before.
+    // A fall after a rise counts from where it is below all errors before.
     let least = |step: &Step| {
         steps.iter().filter(|other| other.points < step.points).all(|other| step.rmse < other.rmse)
     };
@@ -65,7 +66,7 @@ pub fn fall(steps: &[Step]) -> Fall {
     }
 }
 
-/// The largest cause that makes up a [`SHARE`] of the error, else the larger of both places.
+/// The largest cause with at least [`SHARE`] of the error, else the larger place.
 pub fn left(run: &Run) -> Option<Left> {
     let error = run.error.as_ref()?;
     let rmse = run.rmse()?;
@@ -78,9 +79,10 @@ pub fn left(run: &Run) -> Option<Left> {
     let sizes = causes.into_iter().filter_map(|(term, size)| Some(Left { term, size: size? }));
     let largest = sizes.filter(|left| left.size >= SHARE * rmse).max_by(|a, b| a.size.total_cmp(&b.size));
     let lit = run.setting.shading == "lit";
-    let place = match silhouette > inside {
-        true => Left { term: "the silhouette", size: silhouette },
-        false => Left { term: if lit { "the shade" } else { "the texture" }, size: inside },
+    let place = if silhouette > inside {
+        Left { term: "the silhouette", size: silhouette }
+    } else {
+        Left { term: if lit { "the shade" } else { "the texture" }, size: inside }
     };
     Some(largest.unwrap_or(place))
 }

@@ -1,19 +1,19 @@
-//! Surfels of sheets that are hidden.
+//! Surfels of hidden sheets.
 
 use crate::geometry::{Camera, Surfels};
 use crate::verify::truth::Scene;
 use glam::DVec3;
 use rayon::prelude::*;
 
-/// How far in front of a surfel, in its radii, a sheet must be to hide it: more than rounding its position has moved it.
+/// Least distance of a hiding sheet in front of a surfel, in its radii: more than the rounding of its position.
 const CLEARANCE: f64 = 0.01;
-/// How far behind a hit, in distances of the surfel, the next one is looked for.
+/// Distance behind a hit from which the next hit is searched, in distances of the surfel.
 const STEP: f64 = 1e-6;
-/// Most sheets that a ray is followed through.
+/// Most sheets along a ray.
 const MOST_SHEETS: usize = 64;
 
-/// The surfels whose sheet is the first that a perspective camera's ray to their centre meets. A surfel's sheet is the one that is nearest to
-/// it along that ray: noise may have moved it off, or what was scanned may be known no better.
+/// The surfels whose sheet is the first one that the ray from a perspective camera to their centre meets. A surfel's
+/// sheet is the nearest one along that ray, because noise or an inexact scan may move surfels off their sheet.
 pub fn without(surfels: &Surfels, surface: &dyn Scene, camera: &Camera) -> Surfels {
     let eye = camera.view.inverse().w_axis.truncate();
     let seen = |&i: &u32| is_seen(surfels, i as usize, surface, eye);
@@ -30,7 +30,7 @@ fn is_seen(surfels: &Surfels, i: usize, surface: &dyn Scene, eye: DVec3) -> bool
     if first > 1.0 - clearance {
         return true;
     }
-    // Hidden if any further sheet is nearer to the surfel than the first.
+    // The surfel is hidden if a further sheet is nearer to it than the first one.
     let mut t = first;
     for _ in 0..MOST_SHEETS {
         let from = t + STEP;
@@ -62,10 +62,10 @@ mod tests {
         let in_front = surfels.positions.iter().filter(|p| p.z > 0.25).count();
         assert!(seen.len().abs_diff(in_front) < surfels.len() / 500, "{} {in_front}", seen.len());
         assert!(seen.positions.iter().all(|p| p.z > 0.2));
-        // Moved by noise, the same are seen.
+        // Noise does not change which surfels are visible.
         let noisy = scenes::open("scene:sphere?points=20000&noise=0.2").unwrap();
         let still_seen = without(&noisy, subject.surface(), &camera);
-        // Moved outwards, some beyond the horizon are seen as well.
+        // Noise moves some beyond the horizon into view.
         assert!(still_seen.len().abs_diff(in_front) < surfels.len() / 20, "{} {in_front}", still_seen.len());
         assert_eq!(seen.colours.as_ref().map(Colours::len), Some(seen.len()));
     }

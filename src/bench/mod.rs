@@ -1,23 +1,24 @@
-//! Measuring speed against error: which method with which settings for which budget.
+//! Benchmarks of speed against error: which method with which settings suits which budget.
 //!
 //! ```text
 //! suites → plans ─ runner: subject, engine → stopwatch · truth, metrics, terms · reference → record ─ JSON, CSV, table, page
 //! ```
 //!
 //! | module | |
+//! | module | contents |
 //! |---|---|
-//! | [`suites`] | what is measured together |
-//! | [`plan`] | one run: a scene, an engine, settings, what is wanted to be known |
-//! | [`subject`] | a scene that can be sampled ever more densely, and what it truly looks like |
-//! | [`engine`] | who renders: each method behind the same few calls |
-//! | [`stopwatch`] | how long frames take |
-//! | [`terms`], [`hidden`] | what an error is made of |
-//! | [`runner`], [`session`] | carries plans out |
-//! | [`papers`] | what the papers show, say and measured |
-//! | [`hard`] | where numbers get difficult: float32 against float64 |
-//! | [`record`] | what was measured, as it is kept |
-//! | [`table`], [`csv`], [`report`] | the same for the eye and for other programs |
-//! | [`advice`], [`falling`] | what follows from it |
+//! | [`suites`] | sets of runs |
+//! | [`plan`] | one run: scene, engine, settings, measurements |
+//! | [`subject`] | scenes of any number of points, with their exact surface |
+//! | [`engine`] | ways to render, behind one interface |
+//! | [`stopwatch`] | times of frames |
+//! | [`error_terms`], [`hidden`] | parts of the error |
+//! | [`runner`], [`session`] | execution of plans |
+//! | [`papers`] | effects, costs and tables of the papers |
+//! | [`hard`] | numerically hard cases: float32 against float64 |
+//! | [`record`] | results, as stored in JSON |
+//! | [`table`], [`csv`], [`report`] | results as text, CSV and HTML |
+//! | [`recommendations`], [`convergence`] | evaluation of the results |
 
 pub mod advice;
 pub mod code;

@@ -1,4 +1,4 @@
-//! What is to be measured.
+//! Plans of runs.
 
 use super::engine::Engine;
 use super::record::{Axes, Figure, Setting};
@@ -10,46 +10,46 @@ use crate::verify::scenes::Viewpoint;
 pub struct Plan {
     /// Name of the suite.
     pub suite: &'static str,
-    /// What it is measured for.
+    /// The experiment that it belongs to.
     pub figure: Figure,
-    /// See [`Run::part`](super::record::Run::part).
+    /// See [`Run::paper_item`](super::record::Run::paper_item).
     pub part: String,
-    /// The scene with its parameters, but for the number of points.
+    /// The scene with its parameters, without the number of points.
     pub scene: String,
     /// Number of surfels.
     pub points: u64,
-    /// Factor of the scene's radii.
+    /// Scale of the scene's radii.
     pub radius_scale: f32,
     /// Width and height, px.
     pub size: [u32; 2],
-    /// Who renders.
+    /// The engine.
     pub engine: Engine,
-    /// How.
+    /// The settings.
     pub settings: Settings,
-    /// From where; the scene's own place if there is none.
+    /// The viewpoint; that of the scene if `None`.
     pub viewpoint: Option<Viewpoint>,
-    /// What is wanted to be known.
+    /// What is measured.
     pub wants: Wants,
-    /// What its time is to be a multiple of.
+    /// The run that its time is compared with, if any.
     pub base: Option<Box<Plan>>,
 }
 
-/// What is wanted to be known of a run.
+/// What is measured of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Wants {
-    /// How long it takes.
+    /// Times.
     pub time: bool,
-    /// How far it is from the truth.
+    /// The error against the truth.
     pub error: bool,
-    /// By the metrics of single [effects](super::papers::details) too.
+    /// The metrics of single [effects](super::papers::details), too.
     pub details: bool,
-    /// What that error is made of.
+    /// The parts of that error.
     pub terms: bool,
-    /// How far it is from the float64 reference.
+    /// The error against the float64 reference.
     pub agreement: bool,
-    /// How much the error comes and goes along a slow path.
+    /// The flicker along a slow camera path.
     pub flicker: bool,
-    /// The pictures themselves.
+    /// The images themselves.
     pub exhibit: bool,
 }
 
@@ -69,7 +69,7 @@ impl Wants {
 }
 
 impl Setting {
-    /// Those of `settings` that matter.
+    /// The values of `settings` that affect time or error.
     pub fn of(settings: &Settings) -> Self {
         Self {
             cutoff: settings.cutoff,

@@ -1,4 +1,4 @@
-//! What was measured, as it is kept in JSON: times in milliseconds, memory in bytes, colours linear, errors as their
+//! Results as stored in JSON: times in milliseconds, memory in bytes, colours linear, errors as their
 //! [metrics](crate::verify::metrics) define them.
 
 use crate::frame::times::Statistics;
@@ -10,50 +10,50 @@ use jiff::Timestamp;
 use serde::{Deserialize, Deserializer, Serialize};
 use std::collections::BTreeMap;
 
-/// Rises whenever files of an older program can no longer be read.
+/// Schema version of results; bumped on breaking changes.
 pub const FORMAT: u32 = 2;
 
-/// Name of the [baseline](crate::verify::baseline)'s splats: what times are multiples of.
+/// Name of the [CPU baseline](crate::verify::baseline) for splats: the unit of relative times.
 pub const SPLATS: &str = "baseline-splats";
-/// Name of its one pixel a point.
+/// Name of the CPU baseline for points of one pixel.
 pub const PIXELS: &str = "baseline-pixels";
 
-/// Everything that a page or a table is made of: one session, or several that are shown together.
+/// The sessions of a report or table.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Results {
     /// [`FORMAT`] of the program that wrote it.
     pub format: u32,
-    /// Each by itself: times of different sessions cannot be compared, except as multiples of the CPU baseline.
+    /// Sessions are shown apart: only times relative to the CPU baseline can be compared between them.
     pub sessions: Vec<Session>,
 }
 
-/// What one call of the bench measured.
+/// Results of one call of the bench.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Session {
-    /// By what, when and where.
+    /// Program, date and machine.
     pub made: Made,
-    /// In the order in which they were made.
+    /// In the order of measurement.
     pub runs: Vec<Run>,
-    /// The hard cases.
+    /// Sweeps of the hard cases.
     pub sweeps: Vec<Sweep>,
-    /// Pictures that some of the runs show.
+    /// Images of some of the runs.
     pub exhibits: Vec<Exhibit>,
 }
 
-/// By what, when and where something was measured.
+/// Program, date and machine of a measurement.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Made {
     /// Version of surfel.
     pub version: String,
-    /// Commit that the program was built from, with `+` behind it if files had been changed since; empty if unknown.
+    /// Commit of the program, with `+` appended if files had been changed; empty if unknown.
     pub commit: String,
-    /// [Digest](super::code) of the code that the program was built from.
+    /// [Digest](super::code) of the program's sources.
     pub code: String,
-    /// When it began.
+    /// Start of the measurement.
     pub date: Timestamp,
-    /// How long it all took, seconds.
+    /// Duration of the measurement, seconds.
     pub seconds: f64,
-    /// The command that repeats it.
+    /// The command that repeats the measurement.
     pub command: String,
     /// Names of the suites.
     pub suites: Vec<String>,
@@ -66,70 +66,70 @@ pub struct Made {
 /// A machine.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Host {
-    /// Model of its processor.
+    /// Model of the processor.
     pub cpu: String,
-    /// Logical processors that the program may use.
+    /// Logical processors available to the program.
     pub cores: usize,
-    /// Its memory, bytes.
+    /// Memory, bytes.
     pub memory: u64,
-    /// Its operating system.
+    /// Operating system.
     pub system: String,
 }
 
 /// A Vulkan device.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Gpu {
-    /// As the driver calls it.
+    /// Name as the driver reports it.
     pub name: String,
-    /// The driver and its version.
+    /// Name and version of the driver.
     pub driver: String,
-    /// Whether it ran under the validation layers, which take time.
+    /// Whether the validation layers were active, which take time.
     pub validated: bool,
 }
 
-/// A scene rendered in one way.
+/// A scene rendered with one implementation and one set of settings.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Run {
     /// Name of the suite.
     pub suite: String,
-    /// What it is measured for.
+    /// The experiment that it belongs to.
     pub figure: Figure,
-    /// Which effect, claim or row of a table of the [papers](super::papers); empty elsewhere.
+    /// Name of the effect, cost or table of the [papers](super::papers); empty in other experiments.
     #[serde(default)]
     pub part: String,
-    /// The scene with its parameters, but for the number of points; or the file.
+    /// The scene with its parameters, without the number of points; or the file.
     pub scene: String,
     /// Number of surfels.
     pub points: u64,
     /// Width and height, px.
     pub size: [u32; 2],
-    /// Who renders.
+    /// Method and variant.
     pub contender: Contender,
-    /// How.
+    /// Settings that matter to time or error.
     pub setting: Setting,
-    /// Why it could not be rendered; the rest is empty then.
+    /// Why it could not be rendered; all results are empty then.
     pub refused: Option<String>,
-    /// How long it takes; none if it was not timed.
+    /// Times of frames; none if it was not timed.
     pub time: Option<Time>,
-    /// Its wall time as a multiple of another run's, whose frames took turns with its own; none if there was no other.
+    /// Its wall time relative to another run, whose frames alternate with its own; none without another run.
     #[serde(default)]
     pub ratio: Option<Statistics>,
-    /// How far it is from the truth; none if it was not compared.
+    /// Error against the truth; none if it was not compared.
     pub error: Option<Error>,
-    /// How far float32 is from float64; none if it was not compared.
+    /// Error against the float64 reference; none if it was not compared.
     pub agreement: Option<Agreement>,
-    /// What it takes of the device's memory, or of the host's if it uses no device.
+    /// Memory of the device, or of the host for the CPU baseline.
     pub memory: Memory,
-    /// Discs over a point of the surface, on average, before any filter widens them; none if it is not known.
+    /// Discs over a point of the surface, on average, before any filter widens them; none if unknown.
     pub overlap: Option<f64>,
-    /// Splats that are blended at a pixel; none unless they were counted.
+    /// Splats blended per pixel; none unless they were counted.
     #[serde(default)]
     pub blended: Option<Blended>,
-    /// Its entry in [`Session::exhibits`].
+    /// Index of its images in [`Session::images`].
     pub exhibit: Option<usize>,
 }
 
-/// What a run is measured for.
+/// What runs are measured for.
 #[derive(
     Clone,
     Copy,
@@ -151,29 +151,29 @@ pub struct Run {
 pub enum Figure {
     /// Time against error, and error against the number of points.
     Budget,
-    /// The low-pass filter's price and gain: its variance, the kernel's cut-off, where it is applied.
+    /// Cost and benefit of the low-pass filter: its variance, the kernel's cut-off, which splats it widens.
     Lowpass,
-    /// What is finer than pixels: a checkerboard to the horizon.
+    /// Texture finer than pixels: a checkerboard to the horizon.
     Aliasing,
     /// Time against the number of points.
     ScalingPoints,
-    /// Time where every pixel shows a point: the most that the passes of pull–push which are over pixels take.
+    /// Time where every pixel shows a point: the upper bound of pull–push's passes over pixels.
     Filled,
     /// Time against the picture's size.
     ScalingSize,
     /// Time against the number of discs over a point of the surface.
     ScalingOverlap,
-    /// Multiples of what a plain program on the CPU takes.
+    /// Times relative to the CPU baseline.
     Baseline,
-    /// What the papers' figures show, both sides of each.
+    /// Effects that the papers' figures show, both sides of each.
     Effects,
-    /// What the papers say that something costs: pairs of runs.
+    /// Costs that the papers state: pairs of runs.
     Claims,
     /// The papers' tables of times.
     PaperTables,
 }
 
-/// Splats that are blended at a pixel, over the pixels that have any.
+/// Splats blended per pixel, over the pixels that have any.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Blended {
     /// Mean.
@@ -182,16 +182,16 @@ pub struct Blended {
     pub largest: f64,
 }
 
-/// Who renders.
+/// The implementation of a run.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 pub struct Contender {
     /// Name of the method.
     pub method: String,
-    /// In which way, if there are several: the rasterizer, the width of the sums.
+    /// Variant of the method, if there are several: rasterizer, precision of the sums.
     pub variant: String,
 }
 
-/// The settings that matter to time or error.
+/// The settings that affect time or error.
 #[derive(Clone, Debug, PartialEq, PartialOrd, Serialize, Deserialize)]
 pub struct Setting {
     /// [`Settings::cutoff`](crate::Settings::cutoff), σ.
@@ -202,118 +202,119 @@ pub struct Setting {
     pub widen: String,
     /// [`Settings::epsilon`](crate::Settings::epsilon), radii.
     pub epsilon: f32,
-    /// Which surfels are left out: `none` or `back`.
+    /// Which surfels are culled: `none` or `back`.
     pub cull: String,
     /// [`Settings::alpha`](crate::Settings::alpha): `mask` or `coverage`.
     #[serde(default = "mask")]
     pub alpha: String,
-    /// What the picture shows.
+    /// The quantity that the picture shows.
     pub shading: String,
-    /// How surfels become pixels; where nothing is said of it, as `perspective-ewa` does.
+    /// The axes of splatting; those of `perspective-ewa` if absent.
     #[serde(default)]
     pub axes: Axes,
 }
 
-/// The choice along each axis of [`Splatting`], as options call it.
+/// The choice along each axis of [`Splatting`], named as the command line's options.
 #[derive(Clone, Debug, PartialEq, PartialOrd, Serialize, Deserialize)]
 pub struct Axes {
-    /// The image of a disc.
+    /// Image of a disc.
     pub footprint: String,
-    /// The falloff of its weight.
+    /// Falloff of the weight.
     pub kernel: String,
-    /// Where the low-pass filter is applied.
+    /// Space of the low-pass filter.
     pub filter: String,
-    /// Which splats a pixel sees.
+    /// Splats that a pixel shows.
     pub visibility: String,
-    /// What makes weights a partition of unity.
+    /// How weights become a partition of unity.
     pub normalization: String,
-    /// What is lit.
+    /// What is shaded: pixels or splats.
     pub shade: String,
 }
 
-/// What α was before there was a choice.
+/// Default of α, for results that do not contain it.
 fn mask() -> String {
     Alpha::Mask.name().into()
 }
 
-/// How long a frame takes, without reading it back. Frames that warm up do not count.
+/// Times of frames, without read-back and without warm-up frames.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Time {
-    /// Frames that count.
+    /// Timed frames.
     pub frames: usize,
-    /// Frames before them.
+    /// Warm-up frames before them.
     pub warmup: usize,
-    /// As its caller waits for it, ms.
+    /// Wall time of a frame for its caller, ms.
     pub wall: Statistics,
-    /// Processor time of all threads, ms: the steadier figure where the device is the processor itself.
+    /// Processor time of all threads, ms: steadier than wall time on a software device.
     pub cpu: Statistics,
-    /// Each pass by the device's timestamps, ms, in the order in which they run; empty if there are none.
+    /// Each pass by the device's timestamps, ms, in execution order; empty without timestamps.
     pub passes: Vec<Pass>,
-    /// All passes together, frame by frame, ms.
+    /// Sum of all passes of a frame, ms.
     pub device: Option<Statistics>,
-    /// `wall.median` as a multiple of the CPU baseline's for the same scene, points and size with the shipped settings, measured in the same
-    /// session.
+    /// `wall.median` divided by that of the CPU baseline, for the same scene, points and size with default settings,
+    /// measured in the same session.
     pub multiple: Option<f64>,
 }
 
-/// A pass of a frame.
+/// Time of a pass.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Pass {
     /// Its name.
     pub name: String,
-    /// How long it takes, ms.
+    /// Time, ms.
     pub ms: Statistics,
 }
 
-/// How far a picture is from the truth.
+/// Error of a picture against the truth.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Error {
     /// The pixel filter of the truth: `gaussian`, of a variance of 1 px², or `box`.
     pub filter: String,
     /// Root mean square of the truth's own standard error.
     pub truth_rms: f64,
-    /// Metrics by their names; those that are infinite or could not be taken are not there.
+    /// Metrics by name; infinite ones and those that could not be computed are absent.
     pub metrics: BTreeMap<String, f64>,
-    /// What it is made of.
+    /// Parts of the RMSE.
     pub terms: Terms,
 }
 
-/// What an `rmse` is made of, in its unit: linear light, white is 1.
+/// Parts of an RMSE, in its unit: linear light, white is 1.
 ///
-/// `silhouette² + inside² = rmse²`. The others are how far the picture would move without their cause.
+/// `silhouette² + inside² = rmse²`. The others are the change of the picture without their cause.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Terms {
-    /// Of the pixels that the truth or the picture covers in part, or one of both not at all.
+    /// Pixels that the truth or the picture covers in part, or only one of both covers.
     pub silhouette: f64,
-    /// Of the pixels that both cover wholly: texture and shade, as far as samples and filter lose them.
+    /// Pixels that both cover wholly: loss of texture and shading by sampling and filtering.
     pub inside: f64,
-    /// By how much the surfels of hidden sheets change the picture: what ε lets through, and what visibility misses.
+    /// Change of the picture by surfels of hidden sheets: those that ε admits, and those that visibility misses.
     pub hidden: Option<f64>,
-    /// By how much rounding to float32 changes the picture: its difference from the float64 reference.
+    /// Change of the picture by rounding to float32: its difference from the float64 reference.
     pub precision: Option<f64>,
 }
 
-/// How far a float32 picture is from the float64 reference, pixel by pixel: as [`Comparison`].
+/// Error of a float32 picture against the float64 reference, pixel by pixel; see [`Comparison`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Agreement {
     /// Pixels that the reference covers.
     pub object: u64,
-    /// Pixels that hang on a decision within rounding.
+    /// Ambiguous pixels: rounding can flip one of their decisions.
     pub doubtful: u64,
-    /// Pixels that are wrong.
+    /// Pixels out of tolerance.
     pub failed: u64,
-    /// Largest difference of linear colour and α outside the pixels in doubt; NaN, in JSON null, where one is no finite number.
+    /// Largest difference of linear colour and α over the unambiguous pixels. NaN, in JSON null, if a value is not
+    /// finite.
     #[serde(deserialize_with = "nan_of_null")]
     pub colour: f64,
-    /// Of the normals' coordinates.
+    /// Largest difference of the normals' coordinates.
     #[serde(deserialize_with = "nan_of_null")]
     pub normal: f64,
-    /// Of the depth, relative.
+    /// Largest relative difference of the depth.
     #[serde(deserialize_with = "nan_of_null")]
     pub depth: f64,
 }
 
-/// JSON has neither NaN nor infinity: serde writes both as null.
+/// JSON has neither NaN nor infinity: serde writes null for both.
 fn nan_of_null<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
     Ok(Option::deserialize(from)?.unwrap_or(f64::NAN))
 }
@@ -321,26 +322,26 @@ fn nan_of_null<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
 /// Memory, bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Memory {
-    /// Of the surfels.
+    /// The scene's streams.
     pub scene: u64,
-    /// Of what is made of them each frame.
+    /// Buffers of splats, written every frame.
     pub splats: u64,
-    /// Of the targets.
+    /// Render targets.
     pub targets: u64,
 }
 
-/// A hard case: float32 against float64 as a parameter goes where numbers get difficult.
+/// A hard case: float32 against float64 as a parameter approaches the limits of float32.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sweep {
-    /// Name, in words between hyphens.
+    /// Name, words joined by hyphens.
     pub name: String,
-    /// What it is about, in a sentence.
+    /// Description, one sentence.
     pub about: String,
     /// Name of the parameter, with its unit.
     pub parameter: String,
-    /// Whether the parameter is drawn on a logarithmic axis.
+    /// Whether the parameter's axis is logarithmic.
     pub logarithmic: bool,
-    /// In ascending order of the parameter, contender by contender.
+    /// In ascending order of the parameter, implementation by implementation.
     pub points: Vec<SweepPoint>,
 }
 
@@ -349,73 +350,73 @@ pub struct Sweep {
 pub struct SweepPoint {
     /// The parameter.
     pub value: f64,
-    /// Who rendered it.
+    /// Method and variant.
     pub contender: Contender,
-    /// Why it could not be rendered; the rest is 0 then.
+    /// Why it could not be rendered; all results are 0 then.
     pub refused: Option<String>,
-    /// How far it is from the float64 reference.
+    /// Error against the float64 reference.
     pub agreement: Agreement,
-    /// What of the picture is not as it should be.
+    /// Faulty pixels.
     pub faults: Faults,
-    /// A remark on this point alone, such as what was culled; often empty.
+    /// Remark on this point, such as the culled surfels; often empty.
     pub note: String,
 }
 
-/// Pixels that are not as they should be, whatever a picture's other errors are.
+/// Counts of faulty pixels, which no tolerance excuses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Faults {
-    /// With a value that is NaN or infinite.
+    /// Pixels with a NaN or an infinite value.
     pub non_finite: u64,
-    /// Covered by the reference, with no doubt, and empty in the picture.
+    /// Pixels that the reference certainly covers and the picture does not.
     pub uncovered: u64,
-    /// Covered in the picture, and empty in the reference with no doubt.
+    /// Pixels that the picture covers and the reference certainly does not.
     pub overcovered: u64,
 }
 
-/// Pictures side by side, each a PNG in base64.
+/// Images of a run, each a PNG in base64.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Exhibit {
-    /// What is seen.
+    /// Caption.
     pub title: String,
-    /// As it was rendered.
+    /// The rendered image.
     pub picture: String,
     /// The truth.
     pub truth: String,
-    /// FLIP's differences, in magma.
+    /// FLIP's difference map, in magma.
     pub map: String,
 }
 
 impl Made {
-    /// Whether it was measured by other code than that of the digest `code`.
+    /// Whether the source digest differs from `code`.
     pub fn is_stale(&self, code: &str) -> bool {
         self.code != code
     }
 }
 
 impl Run {
-    /// Median of the wall clock, ms; none if it was not timed, or is no time that a ratio can be made of.
+    /// Median wall time, ms; none if it was not timed, or if the time is not above 0.
     pub fn ms(&self) -> Option<f64> {
         self.time.as_ref().map(|time| time.wall.median).filter(|ms| ms.is_finite() && *ms > 0.0)
     }
 
-    /// A metric, if it was taken.
+    /// A metric, if it was computed.
     pub fn metric(&self, name: &str) -> Option<f64> {
         self.error.as_ref()?.metrics.get(name).copied().filter(|value| value.is_finite())
     }
 
-    /// The error that budgets are made of.
+    /// The error that budgets refer to.
     pub fn rmse(&self) -> Option<f64> {
         self.metric("rmse")
     }
 }
 
 impl Setting {
-    /// What surfel does unless it is told otherwise.
+    /// The default settings.
     pub fn shipped() -> Self {
         Self::of(&Settings::default())
     }
 
-    /// What a method does unless it is told otherwise; as [`shipped`](Self::shipped) where there is none of this name.
+    /// The default settings of a method; [`shipped`](Self::shipped) if there is no such method.
     pub fn preset(method: &str) -> Self {
         Method::named(method).map_or_else(Self::shipped, |method| Self::of(&method.settings()))
     }
@@ -428,7 +429,7 @@ impl Default for Axes {
 }
 
 impl Axes {
-    /// Those of `splatting`.
+    /// The axes of `splatting`.
     pub fn of(splatting: &Splatting) -> Self {
         let Splatting { footprint, kernel, filter, visibility, normalization, shade } = splatting;
         Self {
@@ -455,11 +456,11 @@ impl Axes {
 }
 
 impl Agreement {
-    /// What a comparison with the reference found.
+    /// The results of a comparison with the reference.
     pub fn of(found: &Comparison) -> Self {
         Self {
             object: found.object_pixels as u64,
-            doubtful: found.doubtful as u64,
+            doubtful: found.ambiguous as u64,
             failed: found.failed as u64,
             colour: found.worst.colour,
             normal: found.worst.normal,
@@ -469,16 +470,17 @@ impl Agreement {
 }
 
 impl Contender {
-    /// Whether it is the [baseline](crate::verify::baseline): what methods are measured by, and none itself.
+    /// Whether it is the [CPU baseline](crate::verify::baseline), which is no method.
     pub fn is_baseline(&self) -> bool {
         [SPLATS, PIXELS].contains(&self.method.as_str())
     }
 
-    /// The method, and in which way.
+    /// The method and, in parentheses, the variant.
     pub fn label(&self) -> String {
-        match self.variant.is_empty() {
-            true => self.method.clone(),
-            false => format!("{} ({})", self.method, self.variant),
+        if self.variant.is_empty() {
+            self.method.clone()
+        } else {
+            format!("{} ({})", self.method, self.variant)
         }
     }
 }

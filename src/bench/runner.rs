@@ -1,4 +1,4 @@
-//! Carries out what is planned, and keeps what several runs share: surfels, exact pictures, the device.
+//! Executes plans, and caches what several runs share: surfels, exact pictures, the device.
 
 use super::engine::{Engine, OnDevice, OnHost, Ready};
 use super::papers::details;
@@ -24,29 +24,29 @@ use std::path::PathBuf;
 use std::rc::Rc;
 use std::sync::Arc;
 
-/// Frames of the path along which flicker is measured.
+/// Frames of the camera path for flicker.
 const PATH: u32 = 6;
 
-/// How far the picture moves from one of them to the next as the eye turns, px: less than half, and no simple fraction.
+/// Shift of the picture from one of these frames to the next, px: below one half, and no simple fraction.
 const STEP: f64 = 0.37;
 
-/// How runs are made.
+/// Options of a runner.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
-    /// The device; without one, what needs it is refused.
+    /// The device; plans that need one are refused without it.
     pub device: Option<Arc<Device>>,
-    /// Where exact pictures are kept between calls.
+    /// Folder that caches exact pictures.
     pub cache: Option<PathBuf>,
-    /// How exact pictures are made.
+    /// Precision of exact pictures.
     pub truth: truth::Options,
-    /// How many frames are timed.
+    /// Number of timed frames.
     pub effort: stopwatch::Effort,
 }
 
-/// Makes runs one after the other; fastest if those of one scene follow each other.
+/// Executes plans one by one; fastest if plans of one scene follow each other.
 pub struct Runner {
     options: Options,
-    /// Scans, which are no scenes.
+    /// Scans; plans refer to them by name.
     scans: Vec<Rc<Subject>>,
     subject: Option<Rc<Subject>>,
     model: Option<(ModelKey, Rc<Model>)>,
@@ -54,17 +54,17 @@ pub struct Runner {
     exhibits: Vec<Exhibit>,
 }
 
-/// What surfels, lines and triangles depend on.
+/// Key of a cached model.
 #[derive(Clone, Debug, PartialEq)]
 struct ModelKey {
     scene: String,
     points: u64,
     radius_scale: f32,
-    /// What the surfels' normalization weights depend on, if they have some.
+    /// Settings of the captured normalization weights, if there are any.
     weights: Option<Settings>,
 }
 
-/// A plan with all that it needs.
+/// A plan with its model and camera.
 struct Job<'a> {
     plan: &'a Plan,
     subject: Rc<Subject>,
@@ -74,12 +74,12 @@ struct Job<'a> {
 }
 
 impl Runner {
-    /// Has made nothing yet. Plans name these scans, or built-in scenes.
+    /// A runner for plans of these scans and of built-in scenes.
     pub fn new(options: Options, scans: Vec<Rc<Subject>>) -> Self {
         Self { options, scans, subject: None, model: None, truths: HashMap::new(), exhibits: Vec::new() }
     }
 
-    /// Carries out a plan; what cannot be rendered is refused in the result.
+    /// Executes a plan; a run that cannot be rendered is returned as refused.
     ///
     /// # Errors
     /// If the device is lost.
@@ -92,7 +92,7 @@ impl Runner {
         }
     }
 
-    /// The pictures of the runs so far.
+    /// The images of all runs.
     pub fn exhibits(self) -> Vec<Exhibit> {
         self.exhibits
     }
@@ -172,7 +172,7 @@ impl Runner {
         Ok(())
     }
 
-    /// Times its frames as multiples of those of `base`.
+    /// Times frames relative to those of `base`.
     fn ratio(
         &mut self,
         job: &Job<'_>,
@@ -195,7 +195,7 @@ impl Runner {
         }
     }
 
-    /// Holds the picture against the float64 reference, if that is wanted, and gives the reference's.
+    /// Compares the picture with the float64 reference, if the plan asks for it, and returns the reference's picture.
     fn agree(&self, job: &Job<'_>, picture: &Picture, run: &mut Run) -> Result<Option<Picture>> {
         let (plan, model) = (job.plan, &*job.model);
         if plan.wants.agreement {
@@ -204,12 +204,11 @@ impl Runner {
             run.agreement = Some(Agreement::of(&expected.compare(picture)?));
             return Ok(Some(expected.frame.to_picture()));
         }
-        match plan.wants.terms {
-            true => {
-                let frame = reference::render(model, &job.camera, plan.size, &plan.settings, &())?;
-                Ok(Some(frame.to_picture()))
-            }
-            false => Ok(None),
+        if plan.wants.terms {
+            let frame = reference::render(model, &job.camera, plan.size, &plan.settings, &())?;
+            Ok(Some(frame.to_picture()))
+        } else {
+            Ok(None)
         }
     }
 
@@ -238,16 +237,11 @@ impl Runner {
         run: &mut Run,
     ) -> Result<()> {
         let seen = hidden::without(&job.model.surfels, job.subject.surface(), &job.camera);
-        let clean = match seen.is_empty() {
-            true => Picture {
-                size: picture.size,
-                colour: vec![[0.0; 4]; picture.colour.len()],
-                ..Default::default()
-            },
-            false => {
-                let mut ready = self.ready(job.plan.engine, &seen.into(), job.plan.size)?;
-                ready.picture(&job.camera, &job.plan.settings)?
-            }
+        let clean = if seen.is_empty() {
+            Picture { size: picture.size, colour: vec![[0.0; 4]; picture.colour.len()], ..Default::default() }
+        } else {
+            let mut ready = self.ready(job.plan.engine, &seen.into(), job.plan.size)?;
+            ready.picture(&job.camera, &job.plan.settings)?
         };
         if let Some(error) = &mut run.error {
             error.terms.hidden = Some(terms::distance(picture, &clean));
@@ -275,7 +269,7 @@ impl Runner {
         flicker.value()
     }
 
-    /// The exact picture; traced once, and kept on disk if there is a place.
+    /// The exact picture: traced once, and cached on disk if there is a folder.
     fn truth(&mut self, job: &Job<'_>, camera: &Camera) -> Result<Rc<Truth>> {
         let Settings { shading, background, lighting, .. } = job.plan.settings.clone();
         let settings = Settings { shading, background, lighting, ..Default::default() };
@@ -309,7 +303,7 @@ fn filter_name(options: &truth::Options) -> String {
     }
 }
 
-/// A run of which nothing is known yet.
+/// A run without results.
 fn blank(plan: &Plan) -> Run {
     Run {
         suite: plan.suite.into(),
@@ -332,7 +326,7 @@ fn blank(plan: &Plan) -> Run {
     }
 }
 
-/// Discs over every point of the surface, on average.
+/// Discs over a point of the surface, on average.
 fn overlap(surfels: &Surfels, area: f64) -> f64 {
     let disc = |i: usize| {
         let aspect = surfels.ellipses.as_ref().map_or(1.0, |ellipses| f64::from(ellipses[i].aspect));

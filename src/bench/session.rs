@@ -14,27 +14,27 @@ use std::sync::Arc;
 use std::time::Instant;
 use sysinfo::System;
 
-/// Stage of the progress; its unit is the run.
+/// Stage of the progress, in runs.
 const STAGE: &str = "measuring";
 
-/// What is wanted of a session.
+/// Options of a session.
 pub struct Wanted {
     /// The suites, in this order.
     pub suites: Vec<Suite>,
-    /// What the user brings, for [`Suite::Own`].
+    /// Inputs of the user, for [`Suite::Inputs`].
     pub own: Own,
-    /// The device; without one, what needs it is refused.
+    /// The device; plans that need one are refused without it.
     pub device: Option<Arc<Device>>,
-    /// Whether the device runs under the validation layers.
+    /// Whether the validation layers are active.
     pub validated: bool,
-    /// Where exact pictures are kept between calls.
+    /// Folder that caches exact pictures.
     pub cache: Option<PathBuf>,
-    /// The command that repeats it.
+    /// The command that repeats the session.
     pub command: String,
 }
 
-/// Measures. What cannot be rendered is refused in its run; what ended everything early, such as the loss of the device, stands beside what
-/// was measured until then.
+/// Runs all suites. A run that cannot be rendered is recorded as refused. An error that ends the session, such as a
+/// lost device, is returned beside the results so far.
 pub fn measure(wanted: &Wanted, progress: &dyn Progress) -> (Session, Result<()>) {
     let (date, start) = (Timestamp::now(), Instant::now());
     let plans = |suite: &Suite| suite.plans(&wanted.own);
@@ -88,8 +88,8 @@ fn hard(wanted: &Wanted, progress: &dyn Progress) -> Result<Vec<Sweep>> {
     hard::run(wanted.device.as_ref().ok_or_else(none)?, &hard::Options::default(), progress)
 }
 
-/// Tells times as multiples of what the CPU baseline takes for as many points and pixels with the shipped settings. Of several that of the
-/// same suite and figure counts, which ran at the same time.
+/// Computes times relative to the CPU baseline for as many points and pixels with default settings. Of several
+/// baselines, one of the same suite and experiment is preferred, as it ran at about the same time.
 fn compare_times(runs: &mut [Run]) {
     let shipped = |run: &&Run| {
         let Setting { cutoff, lowpass, widen, epsilon, cull, alpha, .. } = Setting::shipped();

@@ -1,9 +1,9 @@
-//! Numbers and names as people read them.
+//! Numbers and names as text.
 
 use super::record::{Contender, Made, Memory, Run, Session, Setting};
 use crate::settings::methods::Method;
 
-/// With `digits` significant ones at most, and no zeros behind them; in powers of ten where it would be long.
+/// Rounds to `digits` significant digits, without trailing zeros; uses a power of ten if the number would be long.
 pub fn significant(value: f64, digits: usize) -> String {
     if value == 0.0 || !value.is_finite() {
         return if value.is_infinite() { sign(value) + "∞" } else { value.to_string() };
@@ -19,7 +19,7 @@ fn sign(value: f64) -> String {
     if value < 0.0 { "−".into() } else { String::new() }
 }
 
-/// As a factor and a power of ten; the factor is left out if it is 1.
+/// A factor and a power of ten; a factor of 1 is omitted.
 pub fn scientific(value: f64) -> String {
     let text = format!("{:e}", value.abs());
     let (factor, exponent) = text.split_once('e').unwrap_or((&text, "0"));
@@ -27,7 +27,7 @@ pub fn scientific(value: f64) -> String {
     format!("{}{factor}10{}", sign(value), superscript(exponent))
 }
 
-/// A whole number, raised.
+/// An integer as superscript.
 fn superscript(number: &str) -> String {
     let raise = |c: char| match c {
         '-' => '⁻',
@@ -49,17 +49,17 @@ pub fn count(points: u64) -> String {
     }
 }
 
-/// Milliseconds without their unit.
+/// Milliseconds, without the unit.
 pub fn ms(value: f64) -> String {
     significant(value, 3)
 }
 
-/// A multiple of the CPU baseline.
+/// A time relative to the CPU baseline.
 pub fn multiple(value: f64) -> String {
     format!("{}×", significant(value, 2))
 }
 
-/// The largest of numbers from 0, or NaN where one is, which `f64::max` hides.
+/// The largest of numbers from 0 on, or NaN if one is NaN, which `f64::max` would drop.
 pub fn largest(values: impl Iterator<Item = f64>) -> f64 {
     values.fold(0.0, |a, b| if b.is_nan() || b > a { b } else { a })
 }
@@ -69,7 +69,7 @@ pub fn mib(bytes: u64) -> String {
     significant(bytes as f64 / f64::from(1 << 20), 3)
 }
 
-/// All of it.
+/// Total memory, bytes.
 pub fn total(memory: Memory) -> u64 {
     memory.scene.saturating_add(memory.splats).saturating_add(memory.targets)
 }
@@ -79,18 +79,18 @@ pub fn size([width, height]: [u32; 2]) -> String {
     format!("{width}×{height}")
 }
 
-/// A scene without what all scenes have in front.
+/// A scene's name without its prefix.
 pub fn scene(name: &str) -> &str {
     name.strip_prefix("scene:").unwrap_or(name)
 }
 
-/// What tells a contender from the others: its variant if all are of one method.
+/// What distinguishes an implementation from the others: its variant if all have the same method.
 pub fn apart(contender: &Contender, all: &[&Contender]) -> String {
     let one = all.iter().all(|other| other.method == contender.method);
     if one && !contender.variant.is_empty() { contender.variant.clone() } else { contender.label() }
 }
 
-/// What a session ran on.
+/// The device and host of a session.
 pub fn machine(session: &Session) -> String {
     let made = &session.made;
     let host = format!("{}, {} cores", made.host.cpu, made.host.cores);
@@ -100,12 +100,12 @@ pub fn machine(session: &Session) -> String {
     }
 }
 
-/// A day, in UTC.
+/// The date, UTC.
 pub fn day(made: &Made) -> String {
     made.date.strftime("%Y-%m-%d").to_string()
 }
 
-/// A commit as it is commonly shortened.
+/// A shortened commit.
 pub fn commit(commit: &str) -> String {
     match commit.trim_end_matches('+') {
         "" => "unknown".into(),
@@ -116,7 +116,7 @@ pub fn commit(commit: &str) -> String {
     }
 }
 
-/// Why a session cannot stand for the present program: none if its code is the present one.
+/// Why a session is out of date; none if it was measured by the present code.
 pub fn stale(made: &Made, code: &str, now: &str) -> Option<String> {
     made.is_stale(code).then(|| {
         let (then, now) = (commit(&made.commit), commit(now));
@@ -124,7 +124,7 @@ pub fn stale(made: &Made, code: &str, now: &str) -> Option<String> {
     })
 }
 
-/// Each setting with its value, but for the axes, which a contender's name tells.
+/// Each setting with its value, without the axes, which the implementation's name contains.
 pub fn settings(setting: &Setting) -> [String; 7] {
     let Setting { cutoff, lowpass, widen, epsilon, cull, alpha, shading, axes: _ } = setting;
     [
@@ -138,19 +138,19 @@ pub fn settings(setting: &Setting) -> [String; 7] {
     ]
 }
 
-/// The settings in which `runs` differ from each other.
+/// The settings in which `runs` differ.
 pub fn differing<'a>(runs: impl IntoIterator<Item = &'a Run>) -> [bool; 7] {
     let all: Vec<_> = runs.into_iter().map(|run| settings(&run.setting)).collect();
     std::array::from_fn(|i| all.iter().any(|one| one[i] != all[0][i]))
 }
 
-/// The settings that `which` asks for.
+/// The settings selected by `which`.
 pub fn told(setting: &Setting, which: [bool; 7]) -> String {
     let chosen = settings(setting).into_iter().zip(which).filter(|(_, asked)| *asked);
     chosen.map(|(text, _)| text).collect::<Vec<_>>().join(", ")
 }
 
-/// Those of `run` that `which` asks for, as far as its method heeds them: what makes no splats has neither filter nor kernel nor ε.
+/// The settings of `run` selected by `which`; pull–push has neither filter nor kernel nor ε.
 pub fn told_of(run: &Run, which: [bool; 7]) -> String {
     let splats = Method::named(&run.contender.method).is_none_or(|method| method.pull_push.is_none());
     told(&run.setting, std::array::from_fn(|i| which[i] && (splats || i >= 4)))

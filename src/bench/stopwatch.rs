@@ -1,4 +1,4 @@
-//! How long frames take.
+//! Times of frames.
 
 use super::engine::Ready;
 use super::record::{Pass, Time};
@@ -9,20 +9,20 @@ use crate::settings::Settings;
 use cpu_time::ProcessTime;
 use std::time::{Duration, Instant};
 
-/// How many frames are timed: at least so many, at most so many, and no more once the time is up.
+/// How many frames are timed: between `least` and `most`, while the time lasts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Effort {
-    /// Frames that do not count: the first makes pipelines and targets.
+    /// Warm-up frames: the first one creates pipelines and targets.
     pub warmup: usize,
-    /// Fewest frames that count.
+    /// Least number of timed frames.
     pub least: usize,
-    /// Most frames that count.
+    /// Greatest number of timed frames.
     pub most: usize,
-    /// What the frames may take together.
+    /// Time for all frames together.
     pub budget: Duration,
 }
 
-/// What a device that slows down when idle is given to speed up.
+/// Warm-up time for devices that reduce their clock when idle.
 const WARM: Duration = Duration::from_millis(50);
 
 impl Default for Effort {
@@ -31,7 +31,7 @@ impl Default for Effort {
     }
 }
 
-/// Renders frames that do not count until there were enough and the device has had the time to speed up; how many.
+/// Renders warm-up frames for at least [`WARM`]; returns their number.
 fn warm_up(ready: &mut dyn Ready, camera: &Camera, settings: &Settings, effort: &Effort) -> Result<usize> {
     let (start, mut frames) = (Instant::now(), 0);
     while frames < effort.warmup || (frames < effort.most && start.elapsed() < WARM) {
@@ -41,13 +41,13 @@ fn warm_up(ready: &mut dyn Ready, camera: &Camera, settings: &Settings, effort: 
     Ok(frames)
 }
 
-/// Times frames. Whole frames are timed without timestamps, passes in other frames, which take turns: so neither disturbs the other, and
-/// whatever else the machine does disturbs both alike.
+/// Times frames. Whole frames and passes are timed in alternate frames: timestamps do not disturb the former, and other
+/// load on the machine affects both alike.
 pub fn time(ready: &mut dyn Ready, camera: &Camera, settings: &Settings, effort: &Effort) -> Result<Time> {
     let warmup = warm_up(ready, camera, settings, effort)?;
     let (mut whole, mut cpu, mut sums) = (Vec::new(), Vec::new(), Vec::new());
     let mut passes = Times::default();
-    // Its first frame does not count.
+    // The first frame with timestamps does not count.
     passes.add(Duration::ZERO, &ready.frame(camera, settings, true)?);
     let start = Instant::now();
     while whole.len() < effort.least || (whole.len() < effort.most && start.elapsed() < effort.budget) {
@@ -73,14 +73,14 @@ pub fn time(ready: &mut dyn Ready, camera: &Camera, settings: &Settings, effort:
     })
 }
 
-/// Fewest pairs of frames that a ratio is made of.
+/// Least number of pairs of frames for a ratio.
 const FEWEST_PAIRS: usize = 9;
 
-/// Something that renders, what it sees, and how.
+/// A loaded engine, its camera and its settings.
 pub type Side<'a> = (&'a mut (dyn Ready + 'static), &'a Camera, &'a Settings);
 
-/// How many times as long a frame of the second side takes as one of the first. Their frames take turns, so that whatever else the machine
-/// does disturbs both alike; each quotient is of two frames one after the other.
+/// Time of a frame of the second side relative to one of the first. Frames alternate, so other load on the machine
+/// affects both alike; each quotient is of two consecutive frames.
 pub fn ratio(
     (first, a, first_settings): Side<'_>,
     (second, b, second_settings): Side<'_>,

@@ -1,4 +1,4 @@
-//! What is rendered, and what it truly looks like.
+//! What is rendered, and its exact surface.
 
 use crate::error::{Error, Result};
 use crate::estimate::Estimate;
@@ -10,14 +10,14 @@ use crate::verify::truth::{self, Hit, Mesh};
 use glam::{DQuat, DVec3};
 use std::path::Path;
 
-/// Vertical angle of view of a scan, degrees.
+/// Vertical field of view of a scan, degrees.
 const FOV: f64 = 45.0;
 
-/// Something that can be sampled more and less densely, seen from one place.
+/// A surface that can be sampled at several densities, with a viewpoint.
 pub struct Subject {
-    /// The scene with its parameters, but for the number of points; or the file.
+    /// The scene with its parameters, without the number of points; or the file.
     pub name: String,
-    /// What exact pictures of it are kept under.
+    /// Cache key of its exact pictures.
     pub digest: String,
     viewpoint: Viewpoint,
     shape: Shape,
@@ -26,17 +26,17 @@ pub struct Subject {
 enum Shape {
     /// A built-in scene.
     Built(Built),
-    /// A scan, and the mesh that is held to be what was scanned.
+    /// A scan, and the mesh that serves as its exact surface.
     Scan(Box<Scan>),
 }
 
-/// Points, and what they are samples of.
+/// Points, and the surface that they sample.
 struct Scan {
     cloud: Cloud,
     mesh: Mesh,
 }
 
-/// A surface as something to be traced.
+/// A built-in surface.
 struct Built(Box<dyn Surface>);
 
 impl truth::Scene for Built {
@@ -53,7 +53,7 @@ impl Subject {
     /// A built-in scene, named without its number of points.
     ///
     /// # Errors
-    /// [`Error::Usage`] if there is none of that name, or a parameter is wrong.
+    /// [`Error::Usage`] if there is no scene of that name, or a parameter is wrong.
     pub fn scene(name: &str) -> Result<Self> {
         if name.split(['?', '&']).any(|part| part.starts_with("points=")) {
             return Err(Error::Usage(format!(
@@ -64,7 +64,7 @@ impl Subject {
         Ok(Self { name: name.into(), digest: name.into(), viewpoint, shape })
     }
 
-    /// The points of a PLY file, beside the triangles of `mesh` or, without that, its own.
+    /// The points of a PLY file, with the triangles of `mesh` or its own as the exact surface.
     ///
     /// # Errors
     /// [`Error::Io`] and [`Error::Input`] if a file cannot be read, or has no triangles.
@@ -80,7 +80,7 @@ impl Subject {
         Ok(Self { name, digest, viewpoint, shape: Shape::Scan(Box::new(Scan { cloud, mesh })) })
     }
 
-    /// Most points that it has; none if it can have any number.
+    /// Greatest number of points; none if there is no limit.
     pub fn most_points(&self) -> Option<u64> {
         match &self.shape {
             Shape::Built(_) => None,
@@ -88,11 +88,11 @@ impl Subject {
         }
     }
 
-    /// So many surfels of it, in Morton order, and what it has of lines and triangles. Of a scan, normals are the file's or estimated of the points that are left, at any number of
-    /// them: so that numbers differ in nothing else.
+    /// `points` surfels in Morton order, with the scene's lines and triangles. A scan's normals are the file's, or
+    /// estimated from the remaining points at any number, so that densities differ in nothing else.
     ///
     /// # Errors
-    /// As [`scenes::model`]; [`Error::Input`] if a scan's points do not make surfels.
+    /// As [`scenes::model`]; [`Error::Input`] if a scan's points cannot become surfels.
     pub fn model(&self, points: u64) -> Result<Model> {
         match &self.shape {
             Shape::Built(_) => {
@@ -106,15 +106,16 @@ impl Subject {
         }
     }
 
-    /// From where it is seen.
+    /// The viewpoint.
     pub fn viewpoint(&self) -> Viewpoint {
         self.viewpoint
     }
 
-    /// The camera of a picture of `size` px, the same however many points there are, after it has turned by `angle`, rad, where it stands.
+    /// The camera of a picture of `size` px, turned by `angle`, rad, at its position. It does not depend on the number
+    /// of points.
     ///
     /// # Errors
-    /// [`Error::Usage`] if no camera sees it so.
+    /// [`Error::Usage`] if no such camera exists.
     pub fn camera(&self, from: &Viewpoint, angle: f64, size: [u32; 2]) -> Result<Camera> {
         let Viewpoint { eye, target, up, .. } = *from;
         let [eye, target_then, up] = [eye, target, up].map(DVec3::from);
@@ -124,12 +125,12 @@ impl Subject {
         viewpoint.camera(f64::from(size[0]) / f64::from(size[1]), &self.bounds())
     }
 
-    /// Where the surface is.
+    /// Bounds of the surface.
     pub fn bounds(&self) -> Bounds {
         self.surface().bounds()
     }
 
-    /// Area of the surface, hidden parts included; none if it is not known.
+    /// Area of the surface, hidden parts included; none if unknown.
     pub fn area(&self) -> Option<f64> {
         match &self.shape {
             Shape::Built(built) => Some(built.0.area()),
@@ -137,7 +138,7 @@ impl Subject {
         }
     }
 
-    /// The surface itself.
+    /// The exact surface.
     pub fn surface(&self) -> &dyn truth::Scene {
         match &self.shape {
             Shape::Built(built) => built,
@@ -154,12 +155,12 @@ impl Subject {
     }
 }
 
-/// Angle of view of a pixel in the middle of a picture of so many rows, rad.
+/// Angle of view of a pixel in the middle of a picture with `rows` rows, rad.
 pub fn pixel_angle(from: &Viewpoint, rows: u32) -> f64 {
     2.0 * (0.5 * from.fov_y_deg.to_radians()).tan() / f64::from(rows)
 }
 
-/// From where `render` would see it in a square.
+/// The viewpoint of `surfel render` for a square picture.
 fn framing(bounds: &Bounds) -> Result<Viewpoint> {
     let camera = Camera::framing(bounds, FOV.to_radians(), 1.0)?;
     let eye = camera.view.inverse().w_axis.truncate();

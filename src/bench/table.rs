@@ -1,4 +1,4 @@
-//! Results on a terminal: a line a run, a line a sweep.
+//! Results as text for a terminal: one line per run and per sweep.
 
 use super::hard::EXCUSED;
 use super::record::{Agreement, Faults, Figure, Results, Run, Session, Sweep, SweepPoint};
@@ -9,7 +9,7 @@ use std::fmt::Write;
 /// Columns of a terminal that lines fit into.
 pub const WIDTH: usize = 160;
 
-/// Columns of a table, with what they are aligned by.
+/// Columns of a table, with their alignment.
 const HEADERS: [(&str, Align); 17] = [
     ("points", Align::Right),
     ("size px", Align::Right),
@@ -29,7 +29,7 @@ const HEADERS: [(&str, Align); 17] = [
     ("vs f64", Align::Left),
     ("MiB", Align::Right),
 ];
-/// Columns whose text may be cut: contender and settings.
+/// Columns that may be cut: method and settings.
 const CUTTABLE: [usize; 2] = [2, 3];
 
 #[derive(Clone, Copy)]
@@ -38,8 +38,8 @@ enum Align {
     Right,
 }
 
-/// All sessions, each with its groups of runs by suite, figure and scene, and its sweeps. A session that was measured by other code than
-/// that of the digest `code` says so; `commit` is the present one.
+/// All sessions, each with its runs grouped by suite, experiment and scene, and its sweeps. A session whose source
+/// digest differs from `code` is marked as stale; `commit` is the present one.
 pub fn table(results: &Results, code: &str, commit: &str) -> String {
     let mut text = String::new();
     for session in &results.sessions {
@@ -65,7 +65,7 @@ pub fn table(results: &Results, code: &str, commit: &str) -> String {
     text
 }
 
-/// Runs of one suite, figure and scene, in the order of their first; not those that the papers' own tables show.
+/// Runs of one suite, experiment and scene, in the order of their first; without those of the papers' own tables.
 fn groups(runs: &[Run]) -> Vec<Vec<&Run>> {
     let alike = |a: &Run, b: &Run| (&a.suite, a.figure, &a.scene) == (&b.suite, b.figure, &b.scene);
     let mut groups: Vec<Vec<&Run>> = Vec::new();
@@ -79,10 +79,10 @@ fn groups(runs: &[Run]) -> Vec<Vec<&Run>> {
     groups
 }
 
-/// A column, and what a run has there in words.
+/// A column, and its text for a run.
 type Common = (usize, fn(&Run) -> String);
 
-/// Columns in which all runs are the same, and what they say: told once.
+/// Columns with the same text for all runs, which is printed once.
 fn common(runs: &[&Run]) -> Vec<(usize, String)> {
     let told: [Common; 3] = [
         (0, |run| format!("{} points", show::count(run.points))),
@@ -93,7 +93,7 @@ fn common(runs: &[&Run]) -> Vec<(usize, String)> {
     told.into_iter().filter(same).map(|(column, of)| (column, of(runs[0]))).collect()
 }
 
-/// Aligned, without the columns that have nothing to tell or are in `common`.
+/// Aligned lines, without columns that are empty or in `common`.
 fn lines(runs: &[&Run], common: &[(usize, String)]) -> String {
     let differing = show::differing(runs.iter().copied());
     let mut rows: Vec<Vec<String>> = vec![HEADERS.map(|(name, _)| name.to_owned()).to_vec()];
@@ -117,7 +117,7 @@ fn lines(runs: &[&Run], common: &[(usize, String)]) -> String {
     text
 }
 
-/// What each column takes, together at most [`WIDTH`].
+/// Width of each column, together at most [`WIDTH`].
 fn widths(rows: &[Vec<String>], told: &[usize]) -> Vec<usize> {
     let widest = |&column: &usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
     let mut widths: Vec<usize> = told.iter().map(widest).collect();
@@ -145,7 +145,7 @@ fn cells(run: &Run, differing: [bool; 7]) -> Vec<String> {
         show::size(run.size),
         run.contender.label(),
         show::told_of(run, differing),
-        // Elsewhere it is the scene's own.
+        // In other experiments it is the scene's own.
         run.overlap
             .filter(|_| run.figure == Figure::ScalingOverlap)
             .map(|v| show::significant(v, 2))
@@ -168,7 +168,7 @@ fn cells(run: &Run, differing: [bool; 7]) -> Vec<String> {
     start.into_iter().chain(rest).collect()
 }
 
-/// The largest difference of colours, and how many pixels are wrong if any are.
+/// The largest difference of colours, and the number of pixels out of tolerance, if any.
 fn agreement(agreement: &Agreement) -> String {
     let colour = format!("{:.0e}", agreement.colour);
     match agreement.failed {
@@ -216,7 +216,7 @@ fn sweep_line(sweep: &Sweep, longest: usize) -> String {
     )
 }
 
-/// Each contender that is wrong at a point where float32 can be right, or has a fault anywhere.
+/// A line for each implementation with pixels out of tolerance where float32 suffices, or with faults.
 fn wrong_lines(sweep: &Sweep) -> impl Iterator<Item = String> {
     let is_wrong = |point: &&SweepPoint| {
         let wrong = point.agreement.failed > 0 && !point.note.starts_with(EXCUSED);
@@ -242,10 +242,11 @@ fn aligned(text: &str, width: usize, align: Align) -> String {
     }
 }
 
-/// At most `width` characters, the last an ellipsis if some are missing.
+/// At most `width` characters, the last one an ellipsis if some are missing.
 fn cut(text: &str, width: usize) -> String {
-    match text.chars().count() <= width {
-        true => text.to_owned(),
-        false => text.chars().take(width.saturating_sub(1)).chain(['…']).collect(),
+    if text.chars().count() <= width {
+        text.to_owned()
+    } else {
+        text.chars().take(width.saturating_sub(1)).chain(['…']).collect()
     }
 }

@@ -1,13 +1,13 @@
-//! What an error is made of.
+//! Parts of an error.
 
 use super::record::Terms;
 use crate::picture::Picture;
 use crate::verify::metrics::{Pair, colour, rmse};
 
-/// How little of a pixel may be uncovered for it to be whole: more than the rounding of a filter's weights.
+/// Least α of a wholly covered pixel: allows for rounding of a filter's weights.
 pub(super) const WHOLE: f32 = 1.0 - 1e-4;
 
-/// The parts of the error that belong to pixels on the outline and to those inside, over black.
+/// Splits the error over black into the pixels on the outline and those inside.
 pub fn split(pair: &Pair<'_>) -> Terms {
     let (picture, truth) = (pair.picture(), pair.truth());
     let [ours, exact] = [picture, truth].map(|picture| colour::over(picture, colour::BLACK));
@@ -21,7 +21,7 @@ pub fn split(pair: &Pair<'_>) -> Terms {
     Terms { silhouette: mean(silhouette), inside: mean(inside), hidden: None, precision: None }
 }
 
-/// How far two pictures of one size are apart: `rmse` over black.
+/// Difference of two pictures of one size: RMSE over black.
 pub fn distance(a: &Picture, b: &Picture) -> f64 {
     rmse::rmse(&colour::over(a, colour::BLACK), &colour::over(b, colour::BLACK))
 }
@@ -37,7 +37,7 @@ mod tests {
     #[test]
     fn squares_of_the_parts_add_up_and_lie_where_the_outline_is() {
         let grey = |value: f32, alpha| [value, value, value, alpha];
-        // Nothing, half covered, missed altogether, inside.
+        // Empty, half covered, missed, inside.
         let ours = picture([grey(0.0, 0.0), grey(0.5, 1.0), grey(0.0, 0.0), grey(0.75, 1.0)]);
         let truth = picture([grey(0.0, 0.0), grey(0.5, 0.5), grey(0.5, 1.0), grey(0.5, 1.0)]);
         let terms = split(&Pair::new(&ours, &truth).unwrap());

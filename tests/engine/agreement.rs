@@ -240,7 +240,7 @@ fn failures(cases: &[Case], views: &Views, how: &str) -> Vec<String> {
             let view = View::new(case, case.cameras[i]);
             for &(_, rasterizer) in by_camera {
                 let verdict = view.judge(&renderers, rasterizer, &case.surfels, &case.settings);
-                let doubt = verdict.doubtful as f64 / verdict.object_pixels as f64;
+                let doubt = verdict.ambiguous as f64 / verdict.object_pixels as f64;
                 println!(
                     "{how}, {} {i} {rasterizer:?}: {} of {} object pixels failed, {:.2} % in doubt, worst {:?}",
                     case.name,

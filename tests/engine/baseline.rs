@@ -33,7 +33,7 @@ fn expected(case: &Case, camera: &Camera) -> Expected {
 
 fn print(name: &str, verdict: &Comparison) {
     let (failed, all) = (verdict.failed, verdict.object_pixels);
-    let doubt = 100.0 * verdict.doubtful as f64 / all as f64;
+    let doubt = 100.0 * verdict.ambiguous as f64 / all as f64;
     println!("{name}: {failed} of {all} object pixels failed, {doubt:.2} % in doubt, {:?}", verdict.worst);
 }
 
@@ -81,7 +81,7 @@ fn all_agree(cases: &[Case]) {
             let picture = draw(Kind::Splats, &case.surfels, camera, case.size, &case.settings);
             let verdict = expected(case, camera).compare(&picture).unwrap();
             print(&format!("{} {i}", case.name), &verdict);
-            if !verdict.passed() || verdict.doubtful as f64 > MOST_DOUBT * verdict.object_pixels as f64 {
+            if !verdict.passed() || verdict.ambiguous as f64 > MOST_DOUBT * verdict.object_pixels as f64 {
                 failed.push(format!("{} {i}: {:?}", case.name, verdict.failures.first()));
             }
         }

@@ -175,7 +175,7 @@ fn faults_are_found() {
     assert!(faults.is_none() && agreement.failed == 0 && agreement.object > 1000, "{agreement:?} {faults:?}");
 
     let sure = |covered: bool| {
-        let definite = |i: &usize| matches!(expected.doubt.admissible(*i), Admissible::Definite);
+        let definite = |i: &usize| matches!(expected.bounds.admissible(*i), Admissible::Definite);
         (0..own.colour.len()).filter(definite).find(|&i| expected.frame.covered[i] == covered).unwrap()
     };
     let (inside, outside) = (sure(true), sure(false));
@@ -212,7 +212,7 @@ fn what_may_be_either_is_no_fault() {
     // What visibility sees is larger than the disc by the least low-pass, and ends at the centres of pixels.
     let lowpass = f64::from(Settings::default().least_lowpass().sqrt() * Settings::default().cutoff);
     let (expected, own) = disc((10.5f64.powi(2) + 5.5f64.powi(2) - lowpass.powi(2)).sqrt());
-    let is_open = |i: &usize| match expected.doubt.admissible(*i) {
+    let is_open = |i: &usize| match expected.bounds.admissible(*i) {
         Admissible::Values(values) => {
             values.map(|(value, _)| value.covered).any(|c| c != expected.frame.covered[*i])
         }

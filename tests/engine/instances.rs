@@ -79,7 +79,7 @@ fn assert_agree(
         for rasterizer in BOTH {
             let (picture, _) = renderers.render_instances(&list, &camera, settings, options(rasterizer));
             let verdict = expected.compare(&picture).unwrap();
-            let doubt = verdict.doubtful as f64 / verdict.object_pixels as f64;
+            let doubt = verdict.ambiguous as f64 / verdict.object_pixels as f64;
             println!(
                 "{what}, {name}, {rasterizer:?}: {} of {} object pixels failed, {:.2} % in doubt, worst {:?}",
                 verdict.failed,

@@ -13,7 +13,7 @@ use surfel::geometry::{Camera, Model, Parts, Surfels};
 use surfel::settings::pull_push::{PullPush, Rules};
 use surfel::settings::{Alpha, Choice, Cull, Shading};
 use surfel::verify::reference::Frame;
-use surfel::verify::reference::pull_push::{Compact, Decided, Level, Reconstruction, Sample, Steps};
+use surfel::verify::reference::pull_push::{Compact, Level, LevelDecisions, Reconstruction, Sample, Steps};
 use surfel::verify::scenes;
 use surfel::vk::{Device, DeviceLimits};
 use surfel::{Precision, Settings};
@@ -123,11 +123,11 @@ struct Verdict {
 }
 
 impl Verdict {
-    fn of(gpu: &Level, twin: &Decided, doubt: f64, compact: Option<Compact>) -> Self {
+    fn of(gpu: &Level, twin: &LevelDecisions, doubt: f64, compact: Option<Compact>) -> Self {
         let steps = |sample: &Sample| compact.map_or(Steps::default(), |compact| compact.steps(sample));
-        assert_eq!((gpu.size, gpu.samples.len()), (twin.level.size, twin.margins.len()));
+        assert_eq!((gpu.size, gpu.samples.len()), (twin.level.size, twin.gaps.len()));
         let mut found = Self { samples: gpu.samples.len(), ..Default::default() };
-        let pairs = gpu.samples.iter().zip(&twin.level.samples).zip(&twin.margins);
+        let pairs = gpu.samples.iter().zip(&twin.level.samples).zip(&twin.gaps);
         for (i, ((gpu, own), margin)) in pairs.enumerate() {
             let worst = match (gpu, own) {
                 (Some(gpu), Some(own)) => Some(Worst::between(gpu, own, twin.level.level, steps(own))),
@@ -195,16 +195,16 @@ impl Summary {
 }
 
 /// The twin's level 0, with its doubt.
-fn projected(shot: &Shot, twin: &Reconstruction) -> Decided {
+fn projected(shot: &Shot, twin: &Reconstruction) -> LevelDecisions {
     let visible = twin.project(shot.parts);
-    let mut margins = twin.margins(shot.parts.surfels, &visible);
+    let mut margins = twin.projection_gaps(shot.parts.surfels, &visible);
     if shot.parts.primitives.is_some() {
         // Where a line may be or a triangle is, nothing is known of doubt, so that there must be few differences.
         let own = |number: &Option<usize>| number.is_some_and(|number| number < shot.parts.surfels.len());
         let free = visible.index.iter().map(|number| !own(number));
         margins.iter_mut().zip(free).filter(|(_, free)| *free).for_each(|(margin, _)| *margin = 0.0);
     }
-    Decided { level: visible.level, margins }
+    LevelDecisions { level: visible.level, gaps: margins }
 }
 
 /// Two frames' largest difference of colours, normals and distances (relative) where both show a surface, and the part of the pixels that
@@ -246,15 +246,15 @@ fn test(device: &Arc<Device>, shot: &Shot, kinds: &mut [Summary; 3]) -> Option<S
     kinds[0].add(&format!("{name}: project"), &Verdict::of(&pulled[0], &points, DOUBT_OF_POINTS, compact));
     for (finer, level) in pulled.iter().zip(&pulled[1..]) {
         let name = format!("{name}: pull to {}", level.level);
-        kinds[1].add(&name, &Verdict::of(level, &twin.decide_pull(finer), DOUBT, compact));
+        kinds[1].add(&name, &Verdict::of(level, &twin.pull_decisions(finer), DOUBT, compact));
     }
     let beyond = beyond(&pulled[pulled.len() - 1]);
     for (level, known) in pushed.iter().zip(pulled) {
         let coarser = pushed.get(level.level as usize + 1).unwrap_or(&beyond);
         let name = format!("{name}: push to {}", level.level);
-        kinds[2].add(&name, &Verdict::of(level, &twin.decide_push(coarser, known), DOUBT, compact));
+        kinds[2].add(&name, &Verdict::of(level, &twin.push_decisions(coarser, known), DOUBT, compact));
     }
-    let margins = twin.margins_of_coverage(&pushed[0]);
+    let margins = twin.coverage_gaps(&pushed[0]);
     let (shade, differ) = compare(&made.frame, &twin.shade(&pushed[0]), |i| margins[i] < DOUBT);
     let excused = margins.iter().filter(|margin| **margin < DOUBT).count();
     if excused > FEW + margins.len() / 1000 {

@@ -76,8 +76,8 @@ fn its_own_picture_passes_and_few_pixels_are_in_doubt() {
             "{}: object {:.0} % of the picture, in doubt {:.2} % of it ({:.2} % strictly), unresolvable {}, dual form {}, {:?}",
             view.name,
             100.0 * verdict.object_pixels as f64 / verdict.pixels as f64,
-            100.0 * share(verdict.doubtful),
-            100.0 * share(view.strict.doubt.len()),
+            100.0 * share(verdict.ambiguous),
+            100.0 * share(view.strict.bounds.ambiguous_pixels().len()),
             verdict.unresolvable,
             view.expected.frame.dual_form,
             view.expected.frame.counts
@@ -85,7 +85,7 @@ fn its_own_picture_passes_and_few_pixels_are_in_doubt() {
         assert!(verdict.passed(), "{}: {:?}", view.name, verdict.failures);
         assert!(view.strict.compare(&view.own()).unwrap().passed(), "{}, strictly", view.name);
         assert!(2 * verdict.object_pixels > verdict.pixels, "{}: too little to see", view.name);
-        assert!(share(verdict.doubtful) <= MOST_DOUBT, "{}", view.name);
+        assert!(share(verdict.ambiguous) <= MOST_DOUBT, "{}", view.name);
         assert!(
             verdict.worst.colour < 1e-6 && verdict.worst.depth < 1e-6,
             "{}: {:?}",
@@ -179,7 +179,7 @@ fn all_fail(least: usize, verdict: impl Fn(&View) -> Comparison) {
 #[test]
 fn one_wrong_pixel_fails_whatever_its_image() {
     let view = &VIEWS[0];
-    let doubtful: Vec<usize> = view.expected.doubt.pixels().collect();
+    let doubtful: Vec<usize> = view.expected.bounds.ambiguous_pixels().collect();
     let pixel = (0..view.own().colour.len())
         .find(|i| view.expected.frame.covered[*i] && !doubtful.contains(i))
         .unwrap();

@@ -40,9 +40,10 @@ impl Case {
     /// At most `most` of the values, but at least two, from the first to the last.
     pub fn some(&self, most: usize) -> Vec<f64> {
         let (count, most) = (self.values.len(), most.max(2));
-        match count <= most {
-            true => self.values.clone(),
-            false => (0..most).map(|i| self.values[i * (count - 1) / (most - 1)]).collect(),
+        if count <= most {
+            self.values.clone()
+        } else {
+            (0..most).map(|i| self.values[i * (count - 1) / (most - 1)]).collect()
         }
     }
 

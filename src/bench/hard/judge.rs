@@ -46,7 +46,7 @@ fn finite(picture: &Picture) -> (Picture, u64) {
 
 /// Whether all that pixel `index` may hold is covered alike.
 fn is_sure(expected: &Expected, index: usize) -> bool {
-    match expected.doubt.admissible(index) {
+    match expected.bounds.admissible(index) {
         Admissible::Definite => true,
         Admissible::Unresolvable => false,
         Admissible::Values(mut values) => {

@@ -218,9 +218,10 @@ impl Bench<'_> {
             }
         };
         let renderer = &mut self.renderers[place].1;
-        match renderer.precision() == options.precision {
-            true => Ok(renderer),
-            false => Err(Error::Usage("the device cannot blend 32-bit floats".into())),
+        if renderer.precision() == options.precision {
+            Ok(renderer)
+        } else {
+            Err(Error::Usage("the device cannot blend 32-bit floats".into()))
         }
     }
 }

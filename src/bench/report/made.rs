@@ -58,14 +58,15 @@ fn truth(runs: &[Run]) -> String {
     let errors = || runs.iter().filter_map(|run| run.error.as_ref());
     let filters: BTreeSet<&str> = errors().map(|error| error.filter.as_str()).collect();
     let worst = errors().map(|error| error.truth_rms).fold(0.0, f64::max);
-    match filters.is_empty() {
-        true => "nothing was compared with the truth".into(),
-        false => format!(
+    if filters.is_empty() {
+        "nothing was compared with the truth".into()
+    } else {
+        format!(
             "rays against the surface itself in float64, filtered by {}; its own standard error is at most {} (root mean square over a \
              picture)",
             filters.into_iter().map(filter).collect::<Vec<_>>().join(" and "),
             show::significant(worst, 2)
-        ),
+        )
     }
 }
 

@@ -1,4 +1,4 @@
-//! Every way to render, as multiples of what a plain program on the CPU takes.
+//! Every engine, with times relative to the CPU baseline.
 
 use super::{Suite, plan};
 use crate::bench::engine::Engine;

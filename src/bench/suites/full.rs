@@ -31,7 +31,7 @@ fn budget(scene: &str, points: u64) -> Vec<Plan> {
     let wants =
         Wants { terms: true, agreement: points <= 100_000, exhibit: points == 100_000, ..Wants::BOTH };
     let plain = [Kind::Splats, Kind::Pixels].map(|kind| baseline(&smooth, kind));
-    // Pictures by every method are many: of one scene they are enough.
+    // Images of every method are shown for one scene only.
     let exhibit = wants.exhibit && scene == "scene:bumpy-sphere";
     let others = methods(&smooth).map(|plan| Plan { wants: Wants { exhibit, ..Wants::BOTH }, ..plan });
     let others: Vec<Plan> = others.collect();

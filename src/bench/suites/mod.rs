@@ -1,10 +1,11 @@
-//! What is measured together.
+//! Suites: sets of runs.
 //!
 //! # How to add a suite
 //!
-//! 1. `bench/suites/NAME.rs`: its [`Plan`]s, each a scene, cameras, sizes and settings.
-//! 2. Here: `mod NAME;`, its variant before [`Suite::Own`], which is the last, and its plans in [`Suite::plans`]. The variant's name in kebab case
-//!    and its documentation are those of `--suite`. [`Suite::effort`] and [`Suite::truth`] need an arm only if the usual ones do not fit.
+//! 1. `bench/suites/NAME.rs`: its [`Plan`]s, each a scene, a viewpoint, a size and settings.
+//! 2. Here: `mod NAME;`, a variant before [`Suite::Inputs`], which is the last, and its plans in [`Suite::plans`]. The
+//! variant's name in kebab case and its documentation become those of `--suite`. [`Suite::effort`] and [`Suite::truth`]
+//! need an arm only if the defaults do not fit.
 
 mod baseline;
 mod full;
@@ -46,26 +47,27 @@ pub enum Suite {
     Quick,
     /// Every scene, from 10⁴ to 10⁶ points.
     Full,
-    /// Where numbers get difficult: float32 against float64.
+    /// Numerically hard cases: float32 against float64.
     Hard,
     /// Time against points, pixels and overlap.
     Scaling,
-    /// Every way to render, as multiples of what a plain program on the CPU takes.
+    /// Every engine, relative to the CPU baseline.
     Baseline,
-    /// What the papers show, say and measured: their effects, costs and tables.
+    /// Effects, costs and tables of the papers.
     Papers,
-    /// What the user brings.
+    /// Inputs of the user.
     Own,
 }
 
 impl Suite {
-    /// Those that need nothing from the user: all but the last.
+    /// The suites that need no input: all but the last.
     pub const BUILT_IN: &[Self] = match Self::VARIANTS.split_last() {
         Some((_, built_in)) => built_in,
         None => &[],
     };
 
-    /// Its runs, those of one scene one after the other; none of the hard cases, which are no runs. `own` is what the user brings.
+    /// The runs, those of one scene one after the other; none for the hard cases, which are sweeps. `inputs` are the
+    /// user's.
     pub fn plans(self, own: &Own) -> Vec<Plan> {
         match self {
             Self::Quick => quick::plans(),
@@ -89,7 +91,7 @@ impl Suite {
         }
     }
 
-    /// How exact its exact pictures are.
+    /// Precision of exact pictures.
     pub fn truth(self) -> truth::Options {
         match self {
             Self::Quick | Self::Papers => {
@@ -100,9 +102,9 @@ impl Suite {
     }
 }
 
-/// What the plans of a figure have in common: time and error of the default method with the default settings.
+/// The defaults of an experiment's plans: time and error of the default method with default settings.
 pub(super) fn plan(suite: Suite, figure: Figure, scene: &str, points: u64, size: [u32; 2]) -> Plan {
-    // What has no texture has light and shade.
+    // Scenes without texture are shaded.
     let textured = scenes::is_textured(scene).unwrap_or(true);
     let shading = if textured { Shading::Colour } else { Shading::Lit };
     Plan {
@@ -121,25 +123,26 @@ pub(super) fn plan(suite: Suite, figure: Figure, scene: &str, points: u64, size:
     }
 }
 
-/// The same by every other method, each with its own settings.
+/// The same plan by every other method, each with its own settings.
 fn methods(plan: &Plan) -> impl Iterator<Item = Plan> + use<> {
     let plan = plan.clone();
     let others = Method::ALL.into_iter().filter(|method| *method != perspective_ewa::METHOD);
     others.map(move |method| by(&plan, &method))
 }
 
-/// The same by a method with its own settings.
+/// The same plan by a method with its own settings.
 fn by(plan: &Plan, method: &Method) -> Plan {
     let settings = Settings { shading: plan.settings.shading, ..method.settings() };
     Plan { settings, ..plan.clone() }
 }
 
-/// The same by a plain program on the CPU.
+/// The same plan by the CPU baseline.
 fn baseline(plan: &Plan, kind: Kind) -> Plan {
     Plan { engine: Engine::Baseline(kind), ..plan.clone() }
 }
 
-/// The low-pass filter's price and gain: its variance, px², from 0 to 1, the kernel's cut-off, σ, and which splats it widens.
+/// Cost and benefit of the low-pass filter: its variance, px², from 0 to 1, the kernel's cut-off, σ, and which splats
+/// it widens.
 fn lowpass(
     suite: Suite,
     scene: &str,
@@ -154,7 +157,7 @@ fn lowpass(
         plan
     };
     let some = |widen| {
-        // A filter of no variance widens nothing.
+        // A filter without variance widens nothing.
         let variances = variances.iter().filter(move |variance| widen == Widen::All || **variance > 0.0);
         cutoffs
             .iter()
@@ -163,7 +166,7 @@ fn lowpass(
     some(Widen::All).chain(some(Widen::Small)).collect()
 }
 
-/// A checkerboard to the horizon, with the low-pass filter off and on. So many points that pixels hold many of them: what is left of the
+/// A checkerboard to the horizon, with the low-pass filter off and on. Pixels hold so many points that the remaining
 /// error is the filter's.
 fn aliasing(suite: Suite, size: [u32; 2]) -> Vec<Plan> {
     let one = |lowpass: f32| {
@@ -183,7 +186,7 @@ mod tests {
 
     #[test]
     fn every_plan_is_of_a_scene_that_exists_and_of_its_suite() {
-        // Opening a scene takes longer than all else.
+        // Opening a scene takes longer than the rest.
         let mut opened = HashSet::new();
         for &suite in Suite::BUILT_IN {
             for plan in suite.plans(&Own::default()) {

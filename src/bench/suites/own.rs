@@ -1,4 +1,4 @@
-//! What the user brings.
+//! Inputs of the user.
 
 use super::{Suite, baseline, plan};
 use crate::bench::plan::{Plan, Wants};
@@ -8,28 +8,28 @@ use crate::settings::Shading;
 use crate::verify::baseline::Kind;
 use std::rc::Rc;
 
-/// Numbers of points unless others are wanted.
+/// Default numbers of points.
 const POINTS: [u64; 5] = [10_000, 30_000, 100_000, 300_000, 1_000_000];
 
-/// What the user brings, and how it is to be seen.
+/// Inputs of the user, and how to render them.
 #[derive(Clone)]
 pub struct Own {
-    /// What is rendered.
+    /// Scenes and scans.
     pub subjects: Vec<Rc<Subject>>,
-    /// Numbers of points, of a scan as far as it has them; if there are none, from 10⁴ to 10⁶ or to all of a scan's.
+    /// Numbers of points, limited to those of a scan; if empty, from 10⁴ to 10⁶ or to all points of a scan.
     pub points: Vec<u64>,
     /// Width and height, px.
     pub size: [u32; 2],
 }
 
 impl Default for Own {
-    /// Nothing.
+    /// No inputs.
     fn default() -> Self {
         Self { subjects: Vec::new(), points: Vec::new(), size: [768, 768] }
     }
 }
 
-/// Time against error of each subject, at every density.
+/// Time against error of each input, at every density.
 pub(super) fn plans(own: &Own) -> Vec<Plan> {
     let each = |subject: &Rc<Subject>| {
         let plans = |points| budget(subject, points, own.size);

@@ -7,7 +7,7 @@ use crate::settings::methods::pull_push;
 use crate::verify::baseline::Kind;
 
 const SIZE: [u32; 2] = [320, 320];
-/// What every method is shown by: more of them take more than a minute.
+/// Where every method is measured: more runs of them would take more than a minute.
 const EVERY_METHOD: (&str, u64) = ("scene:bumpy-sphere", 100_000);
 
 pub(super) fn plans() -> Vec<Plan> {
@@ -16,9 +16,10 @@ pub(super) fn plans() -> Vec<Plan> {
         for points in [10_000, 100_000, 1_000_000] {
             plans.extend(budget(scene, points));
             let smooth = plan(Suite::Quick, Figure::Budget, scene, points, SIZE);
-            match (scene, points) == EVERY_METHOD {
-                true => plans.extend(methods(&smooth)),
-                false => plans.push(by(&smooth, &pull_push::METHOD)),
+            if (scene, points) == EVERY_METHOD {
+                plans.extend(methods(&smooth))
+            } else {
+                plans.push(by(&smooth, &pull_push::METHOD))
             }
         }
     }
@@ -27,7 +28,7 @@ pub(super) fn plans() -> Vec<Plan> {
     plans
 }
 
-/// Sharp and smooth; with what the error is made of where the float64 reference is quick.
+/// Sharp and smooth; with the parts of the error where the float64 reference is fast.
 fn budget(scene: &str, points: u64) -> Vec<Plan> {
     let smooth = plan(Suite::Quick, Figure::Budget, scene, points, SIZE);
     let mut sharp = smooth.clone();

@@ -12,7 +12,7 @@ const SIZE: [u32; 2] = [1024, 1024];
 const PULL_PUSH: [Method; 2] = [pull_push::METHOD, pull_push::PAPER];
 
 pub(super) fn plans() -> Vec<Plan> {
-    // Every method at a few of the places; at all of them the default one and, over points, pull–push.
+    // Every method at a few values; at all values the default one and, over points, pull–push.
     let plan = |figure, points, size, every: bool| {
         let plan = Plan { wants: Wants::TIME, ..plan(Suite::Scaling, figure, SCENE, points, size) };
         let all =
@@ -30,7 +30,7 @@ pub(super) fn plans() -> Vec<Plan> {
     for side in [256, 512, 1024, 2048, 4096] {
         plans.extend(plan(Figure::ScalingSize, 1_000_000, [side; 2], [256, 1024, 4096].contains(&side)));
     }
-    // Discs as large as leave so many over every point of the surface: the scene's own leave 2.25 π.
+    // Radii that give this overlap: those of the scene give 2.25 π.
     for overlap in [1.0f32, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0] {
         let radius_scale = (overlap / (2.25 * std::f32::consts::PI)).sqrt();
         let every = [1.0, 8.0, 64.0].contains(&overlap);
@@ -40,8 +40,8 @@ pub(super) fn plans() -> Vec<Plan> {
     plans
 }
 
-/// A plane that fills the picture with points at every pixel, whose discs reach all their neighbours: pull–push finds each sample known and
-/// each candidate to count, and has the most to do.
+/// A plane that fills the picture with a point in every pixel and discs that reach all neighbours: every sample is
+/// known and every candidate counts, which is the most work for pull–push.
 fn filled(method: &Method) -> Plan {
     let viewpoint =
         Viewpoint { eye: [0.0, 14.0, 0.0], target: [0.0; 3], up: [0.0, 0.0, -1.0], fov_y_deg: 45.0 };

@@ -114,9 +114,10 @@ impl<'a> Projection<'a> {
         if !(depth >= self.range[0] && depth <= self.range[1]) {
             return;
         }
-        let (x, y) = match self.view.perspective {
-            true => (image.x / depth, image.y / depth),
-            false => (image.x + self.middle.x, image.y + self.middle.y),
+        let (x, y) = if self.view.perspective {
+            (image.x / depth, image.y / depth)
+        } else {
+            (image.x + self.middle.x, image.y + self.middle.y)
         };
         let [width, height] = self.view.size;
         let inside = x >= 0.0 && y >= 0.0 && x < width as f32 && y < height as f32;

@@ -121,9 +121,10 @@ impl<'a> Footprint<'a> {
     #[inline]
     fn disc(&self, place: &Place, depths: Vec2) -> f32 {
         let lean = self.settings.cutoff * depths.length();
-        match self.view.perspective {
-            true => 1.0 / (place.w as f32 - lean),
-            false => (self.view.near - place.distance) as f32 + lean,
+        if self.view.perspective {
+            1.0 / (place.w as f32 - lean)
+        } else {
+            (self.view.near - place.distance) as f32 + lean
         }
     }
 

@@ -91,10 +91,7 @@ fn normalize(frame: &Frame, shader: &Shader, tile: &Tile, slab: &mut Slab) {
             colour: if frame.streams.colours { sums(first).map(|v| v * inverse) } else { albedo },
             normal: sums(1),
             weight,
-            depth: match frame.view.perspective {
-                true => weight / key,
-                false => frame.view.near as f32 - key * inverse,
-            },
+            depth: if frame.view.perspective { weight / key } else { frame.view.near as f32 - key * inverse },
         };
         let (x, y) = centres(tile.corner(), block);
         slab.put(block, &shader.shade(x, y, &surface));

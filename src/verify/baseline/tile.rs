@@ -83,10 +83,8 @@ impl Tile {
     /// What a splat hides.
     #[inline]
     fn claim(&mut self, frame: &Frame, splat: &Splat) {
-        let (factor, shift) = match frame.view.perspective {
-            true => (splat.epsilon, 0.0),
-            false => (1.0, splat.epsilon),
-        };
+        let (factor, shift) =
+            if frame.view.perspective { (splat.epsilon, 0.0) } else { (1.0, splat.epsilon) };
         // Nothing is claimed nearer than the disc itself, however far the filter has widened its plane.
         if splat.disc * factor - shift <= self.farthest {
             return;

@@ -41,22 +41,21 @@ impl View {
         let forward = depth.forward * camera.view.row(2).truncate().normalize();
         let pixel = DMat3::from_cols(rows[0].truncate(), rows[1].truncate(), forward).transpose();
         let inverse = pixel.inverse();
-        let eye = match depth.perspective {
-            true => inverse * DVec3::new(-rows[0].w, -rows[1].w, -rows[2].w),
-            false => camera.view.inverse().w_axis.truncate(),
+        let eye = if depth.perspective {
+            inverse * DVec3::new(-rows[0].w, -rows[1].w, -rows[2].w)
+        } else {
+            camera.view.inverse().w_axis.truncate()
         };
         if !(inverse.is_finite() && eye.is_finite()) {
             let cause = "the camera's matrices flatten the picture: give them an inverse";
             return Err(Error::Usage(cause.into()));
         }
-        let middle = match depth.perspective {
-            true => DVec2::ZERO,
-            false => DVec2::new(rows[0].dot(eye.extend(1.0)), rows[1].dot(eye.extend(1.0))),
+        let middle = if depth.perspective {
+            DVec2::ZERO
+        } else {
+            DVec2::new(rows[0].dot(eye.extend(1.0)), rows[1].dot(eye.extend(1.0)))
         };
-        let base = match depth.perspective {
-            true => inverse.z_axis,
-            false => -(inverse * middle.extend(0.0)),
-        };
+        let base = if depth.perspective { inverse.z_axis } else { -(inverse * middle.extend(0.0)) };
         Ok(Self {
             perspective: depth.perspective,
             size,
@@ -68,9 +67,10 @@ impl View {
             jacobian: pixel.determinant().abs() as f32,
             near: depth.near,
             far: depth.far,
-            keys: match depth.perspective {
-                true => [1.0 / depth.far, 1.0 / depth.near],
-                false => [depth.near - depth.far, 0.0],
+            keys: if depth.perspective {
+                [1.0 / depth.far, 1.0 / depth.near]
+            } else {
+                [depth.near - depth.far, 0.0]
             }
             .map(|key| key as f32),
         })

@@ -41,11 +41,12 @@ impl<'a> Pair<'a> {
         check(picture, Side::Picture)?;
         check(truth, Side::Truth)?;
         let ([a, b], [c, d]) = (picture.size, truth.size);
-        match picture.size == truth.size {
-            true => Ok(Self { picture, truth }),
-            false => Err(Error::Usage(format!(
+        if picture.size == truth.size {
+            Ok(Self { picture, truth })
+        } else {
+            Err(Error::Usage(format!(
                 "the picture is {a}x{b} px and the truth {c}x{d}: compare pictures of one size"
-            ))),
+            )))
         }
     }
 

@@ -2,13 +2,13 @@
 
 use super::bands::Band;
 use super::ellipse::Ellipse;
+use super::projected_scene::ProjectedScene;
 use super::rank::Rank;
-use super::scene::Scene;
 use super::{Projector, Splat};
 use crate::settings::Shading;
 use glam::DVec3;
 
-/// What one pixel accumulates.
+/// Sums of one pixel.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Sums {
     /// `Σ w`.
@@ -22,7 +22,7 @@ pub(super) struct Sums {
 }
 
 impl Sums {
-    /// What `splat` contributes with weight `weight` at distance `depth`.
+    /// Contribution of `splat` with weight `weight` at distance `depth`. With [`Shading::Overlap`] every weight is 1.
     pub fn of(projector: &Projector, splat: &Splat, weight: f64, depth: f64) -> Self {
         let weight = if projector.settings.shading == Shading::Overlap { 1.0 } else { weight };
         Self {
@@ -43,13 +43,19 @@ impl std::ops::AddAssign for Sums {
     }
 }
 
-/// The sums of every pixel of the band over the splats no farther than `visible`.
-pub(super) fn pass(projector: &Projector, scene: &Scene, band: &Band, visible: &[Rank]) -> Vec<Sums> {
+/// Sums every pixel of the band over the splats that are no farther than `visible`.
+pub(super) fn pass(
+    projector: &Projector,
+    scene: &ProjectedScene,
+    band: &Band,
+    visible: &[Rank],
+) -> Vec<Sums> {
     let mut sums = vec![Sums::default(); band.len()];
     for splat in band.contributors(scene).iter() {
         let ellipse = Ellipse::attribute(splat, projector);
         band.inside(&ellipse, |hit| {
-            // Where visibility wrote nothing there is no surface, however far the wider footprint reaches.
+            // A pixel that visibility left empty shows no surface, although the wider attribute footprint may reach
+            // it.
             if !visible[hit.index].exists() {
                 return;
             }

@@ -1,35 +1,35 @@
-//! Bands of rows: the unit of parallel work, each with the list of the splats that reach it.
+//! Bands of rows: the unit of parallel work. Each band lists the splats that reach it.
 
 use super::ellipse::Ellipse;
+use super::projected_scene::ProjectedScene;
 use super::rank::Rank;
-use super::scene::Scene;
 use super::{Projector, Splat};
 use crate::Progress;
 use glam::DVec2;
 use rayon::prelude::*;
 
-/// Rows a band.
+/// Rows of a band.
 const ROWS: u32 = 8;
 
 /// The bands of a picture.
 pub(super) struct Bands {
     pub size: [u32; 2],
     lists: Vec<Vec<u32>>,
-    /// Of the splats that visibility has of its own.
-    blockers: Option<Vec<Vec<u32>>>,
+    /// Lists of the separate visibility splats, if there are any; see [`ProjectedScene::moved`].
+    occluders: Option<Vec<Vec<u32>>>,
 }
 
-/// Some rows of the picture and the indices of the splats that may reach them, ascending.
+/// A band: some rows of the picture, and the ascending indices of the splats that may reach them.
 pub(super) struct Band<'a> {
     pub first_row: u32,
     pub rows: u32,
     pub width: u32,
     splats: &'a [u32],
-    blockers: Option<&'a [u32]>,
+    occluders: Option<&'a [u32]>,
 }
 
-/// Splats that reach a band.
-pub(super) struct Reaching<'a> {
+/// The splats that reach a band.
+pub(super) struct BandSplats<'a> {
     all: &'a [Splat],
     list: &'a [u32],
 }
@@ -38,35 +38,35 @@ pub(super) struct Reaching<'a> {
 pub(super) struct Hit {
     /// Index of the pixel in its band.
     pub index: usize,
-    /// Position of its centre in the picture, px.
+    /// Position of the pixel centre in the picture, px.
     pub at: DVec2,
-    /// Position of its centre relative to the splat's, px.
+    /// Offset of the pixel centre from the splat's centre, px.
     pub offset: DVec2,
-    /// The same along the kernel's axes, in σ.
+    /// The offset along the kernel's axes, in σ.
     pub in_kernel: DVec2,
-    /// Its length: `√(e (V+H)⁻¹ eᵀ)`.
+    /// Length of `in_kernel`: `√(e (V+H)⁻¹ eᵀ)`.
     pub sigmas: f64,
-    /// What is compared with the cut-off, σ.
+    /// Value that is compared with the cut-off, in σ; see [`Ellipse::rim`].
     pub rim: f64,
-    /// Signed distance to what clip lines cut off, px.
-    pub kept: f64,
+    /// Signed distance to the part that clip lines remove, px; below 0 in that part.
+    pub clip_distance: f64,
 }
 
 impl Hit {
-    /// How the splat ranks there at this depth.
+    /// The rank of the fragment at this depth.
     pub fn rank(&self, depth: f64) -> Rank {
-        Rank { beyond: self.kept < 0.0, depth }
+        Rank { clipped: self.clip_distance < 0.0, depth }
     }
 }
 
 impl Bands {
-    /// Sorts the splats into bands, by the wider (attribute) footprint.
-    pub fn new(projector: &Projector, scene: &Scene, size: [u32; 2]) -> Self {
-        let blockers = scene.moved.as_ref().map(|moved| sorted(projector, moved, size));
-        Self { size, lists: sorted(projector, &scene.splats, size), blockers }
+    /// Sorts the splats into bands by the attribute footprint, the wider of the two.
+    pub fn new(projector: &Projector, scene: &ProjectedScene, size: [u32; 2]) -> Self {
+        let occluders = scene.moved.as_ref().map(|moved| sorted(projector, moved, size));
+        Self { size, lists: sorted(projector, &scene.splats, size), occluders }
     }
 
-    /// Tells that so many bands are drawn.
+    /// Reports that `done` bands are rendered.
     pub fn tell(&self, progress: &dyn Progress, done: u64) {
         progress.at("rendering rows", done, self.lists.len() as u64);
     }
@@ -76,19 +76,19 @@ impl Bands {
         self.lists.par_iter().enumerate().map(|(i, splats)| {
             let first_row = i as u32 * ROWS;
             let rows = ROWS.min(self.size[1] - first_row);
-            let blockers = self.blockers.as_ref().map(|lists| lists[i].as_slice());
-            Band { first_row, rows, width: self.size[0], splats, blockers }
+            let occluders = self.occluders.as_ref().map(|lists| lists[i].as_slice());
+            Band { first_row, rows, width: self.size[0], splats, occluders }
         })
     }
 }
 
-/// For every band the splats that may reach it.
+/// Lists the splats that may reach each band.
 fn sorted(projector: &Projector, splats: &[Splat], size: [u32; 2]) -> Vec<Vec<u32>> {
     let mut lists = vec![Vec::new(); size[1].div_ceil(ROWS) as usize];
     let bounds = |splat: &Splat| Ellipse::attribute(splat, projector).bounds();
     let boxes: Vec<(DVec2, DVec2)> = splats.par_iter().map(bounds).collect();
     for (index, (low, high)) in (0..).zip(boxes) {
-        // One px more: doubt looks beyond the cut-off. `as` saturates.
+        // The box grows by 1 px, as the error model looks beyond the cut-off. `as` saturates.
         let first = (low.y - 1.0) as u32 / ROWS;
         let last = ((high.y + 1.0) as u32 / ROWS).min(lists.len() as u32 - 1);
         for list in lists.iter_mut().take(last as usize + 1).skip(first as usize) {
@@ -98,23 +98,23 @@ fn sorted(projector: &Projector, splats: &[Splat], size: [u32; 2]) -> Vec<Vec<u3
     lists
 }
 
-impl<'a> Reaching<'a> {
-    /// Each of them, in the scene's order.
+impl<'a> BandSplats<'a> {
+    /// Iterates over the splats in the scene's order.
     pub fn iter(&self) -> impl Iterator<Item = &'a Splat> {
         self.list.iter().map(|&i| &self.all[i as usize])
     }
 }
 
 impl<'a> Band<'a> {
-    /// The splats that attribute sums.
-    pub fn contributors(&self, scene: &'a Scene) -> Reaching<'a> {
-        Reaching { all: &scene.splats, list: self.splats }
+    /// The splats that the attribute pass sums.
+    pub fn contributors(&self, scene: &'a ProjectedScene) -> BandSplats<'a> {
+        BandSplats { all: &scene.splats, list: self.splats }
     }
 
-    /// The splats that visibility looks at: the same, unless it has some of its own.
-    pub fn blockers(&self, scene: &'a Scene) -> Reaching<'a> {
-        match (&scene.moved, self.blockers) {
-            (Some(moved), Some(list)) => Reaching { all: moved, list },
+    /// The splats that the visibility pass tests: those of the attribute pass, unless the scene has separate ones.
+    pub fn occluders(&self, scene: &'a ProjectedScene) -> BandSplats<'a> {
+        match (&scene.moved, self.occluders) {
+            (Some(moved), Some(list)) => BandSplats { all: moved, list },
             _ => self.contributors(scene),
         }
     }
@@ -133,17 +133,17 @@ impl<'a> Band<'a> {
     /// Calls `visit` for every pixel centre at which the splat has a fragment.
     pub fn inside(&self, ellipse: &Ellipse, mut visit: impl FnMut(Hit)) {
         self.scan(ellipse, ellipse.cutoff, |hit| {
-            if hit.kept >= -ellipse.beyond {
+            if hit.clip_distance >= -ellipse.clip_reach {
                 visit(hit);
             }
         });
     }
 
-    /// Calls `visit` for every pixel centre within the outline of `ellipse` at `reach` σ, kept or not.
+    /// Calls `visit` for every pixel centre within the outline of `ellipse` at `reach` σ, on either side of clip lines.
     pub fn scan(&self, ellipse: &Ellipse, reach: f64, mut visit: impl FnMut(Hit)) {
         for row in 0..self.rows {
             let y = f64::from(self.first_row + row) + 0.5;
-            // The span only bounds the search, so a little more does not matter: the test below decides.
+            // The span bounds the search and may be too wide: the test below decides.
             let Some((low, high)) = ellipse.span(y, reach * (1.0 + 1e-9) + 1e-9) else { continue };
             let last = (high + 0.5).min(f64::from(self.width));
             for column in (low - 0.5).max(0.0) as u32..last.max(0.0) as u32 {
@@ -153,8 +153,16 @@ impl<'a> Band<'a> {
                 if rim <= reach {
                     let (index, in_kernel) =
                         ((row * self.width + column) as usize, ellipse.in_kernel(offset));
-                    let kept = ellipse.kept(at);
-                    visit(Hit { index, at, offset, in_kernel, sigmas: in_kernel.length(), rim, kept });
+                    let clip_distance = ellipse.clip_distance(at);
+                    visit(Hit {
+                        index,
+                        at,
+                        offset,
+                        in_kernel,
+                        sigmas: in_kernel.length(),
+                        rim,
+                        clip_distance,
+                    });
                 }
             }
         }

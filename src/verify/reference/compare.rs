@@ -1,19 +1,19 @@
-//! Judges a picture against the float64 frame.
+//! Compares a picture with the float64 frame.
 
 use super::bands::Bands;
-use super::doubt::{Admissible, Doubt};
-use super::judge::{Channel, Judge, Tolerance, Worst};
-use super::margin::Margins;
-use super::scene::Scene;
-use super::slack::Slack;
+use super::error_bounds::{Admissible, ErrorBounds};
+use super::error_model::ErrorModel;
+use super::projected_scene::ProjectedScene;
+use super::rounding::RoundingBound;
+use super::tolerance::{Channel, Differences, Limits, Tolerance};
 use super::{Frame, Projector, Value, draw};
 use crate::error::{Error, Result};
 use crate::geometry::{Camera, Surfels};
 use crate::picture::Picture;
 use crate::settings::{Settings, Shading};
 
-/// Failures that are kept in full.
-const KEPT: usize = 20;
+/// Failures that are recorded in full.
+const RECORDED: usize = 20;
 
 /// A wrong pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,53 +22,54 @@ pub struct Failure {
     pub x: u32,
     /// Row.
     pub y: u32,
-    /// The first image out of tolerance, in the order coverage, depth, normal, colour.
+    /// The first channel out of tolerance, in the order coverage, depth, normal, colour.
     pub channel: Channel,
-    /// What the picture holds in that image; unused entries are 0.
+    /// Value of the picture in that channel; unused entries are 0.
     pub gpu: [f64; 4],
-    /// What the reference holds there.
+    /// Value of the reference in that channel.
     pub reference: [f64; 4],
 }
 
-/// What [`compare`] found.
+/// Result of [`compare`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Comparison {
     /// Pixels of the picture.
     pub pixels: usize,
     /// Pixels that the reference covers.
     pub object_pixels: usize,
-    /// Pixels in doubt.
-    pub doubtful: usize,
-    /// Pixels in doubt whose admissible values are too many to try; each counts as wrong unless the frame's own value passes.
+    /// Ambiguous pixels: rounding can flip one of their decisions.
+    pub ambiguous: usize,
+    /// Ambiguous pixels with too many admissible values to try. Each counts as failed unless the frame's own value
+    /// passes.
     pub unresolvable: usize,
-    /// Wrong pixels.
+    /// Pixels out of tolerance.
     pub failed: usize,
     /// The first of them.
     pub failures: Vec<Failure>,
-    /// Largest differences over the pixels that are not in doubt.
-    pub worst: Worst,
-    /// Largest differences over all pixels; those in doubt against the admissible value that comes nearest.
-    pub worst_of_all: Worst,
+    /// Largest differences over the unambiguous pixels.
+    pub worst: Differences,
+    /// Largest differences over all pixels; ambiguous ones are compared with their nearest admissible value.
+    pub worst_of_all: Differences,
 }
 
 impl Comparison {
-    /// Whether every pixel is right.
+    /// Whether every pixel is within tolerance.
     pub fn passed(&self) -> bool {
         self.failed == 0
     }
 }
 
-/// The float64 frame and its pixels in doubt: all that is needed to judge any number of pictures of it.
+/// The float64 frame and its error bounds, to compare any number of pictures with.
 pub struct Expected {
     /// The frame.
     pub frame: Frame,
-    /// Its pixels in doubt.
-    pub doubt: Doubt,
+    /// Its error bounds.
+    pub bounds: ErrorBounds,
     tolerance: Tolerance,
     depth_shown: bool,
 }
 
-/// Compares a picture that carries depth and normals with the float64 one of the same scene; see [`Expected::compare`].
+/// Compares a picture that has depth and normals with the float64 frame of the same scene; see [`Expected::compare`].
 pub fn compare(
     surfels: &Surfels,
     camera: &Camera,
@@ -81,7 +82,7 @@ pub fn compare(
 }
 
 impl Expected {
-    /// Renders the frame and finds the pixels in doubt.
+    /// Renders the frame and computes its error bounds.
     pub fn new(
         surfels: &Surfels,
         camera: &Camera,
@@ -95,21 +96,24 @@ impl Expected {
         }
         settings.splatting.normalization.check_weights(surfels.weights.is_some())?;
         let projector = Projector::new(camera, size, settings)?;
-        let scene = Scene::project(&projector, surfels);
+        let scene = ProjectedScene::project(&projector, surfels);
         let bands = Bands::new(&projector, &scene, size);
-        let doubt =
-            Doubt::new(&Margins { projector: &projector, rounding: tolerance.rounding }, &scene, &bands);
+        let bounds = ErrorBounds::new(
+            &ErrorModel { projector: &projector, rounding: tolerance.rounding },
+            &scene,
+            &bands,
+        );
         let depth_shown = settings.shading == Shading::Depth;
-        Ok(Self { frame: draw(&projector, &scene, &bands, &()), doubt, tolerance: *tolerance, depth_shown })
+        Ok(Self { frame: draw(&projector, &scene, &bands, &()), bounds, tolerance: *tolerance, depth_shown })
     }
 
-    /// Holds every pixel of `gpu` against the frame's value or, where that fails and the pixel is in doubt, against its
-    /// other admissible values. Fails if the picture has another size or lacks depth or normals.
+    /// Compares every pixel of `gpu` with the frame's value. If that fails and the pixel is ambiguous, compares it with
+    /// its other admissible values. Fails if the picture has another size, or lacks depth or normals.
     pub fn compare(&self, gpu: &Picture) -> Result<Comparison> {
         let mut found = Comparison {
             pixels: self.frame.depth.len(),
             object_pixels: self.frame.covered.iter().filter(|c| **c).count(),
-            doubtful: self.doubt.len(),
+            ambiguous: self.bounds.ambiguous_pixels().len(),
             ..Default::default()
         };
         let (depths, normals) = self.images(gpu)?;
@@ -139,35 +143,35 @@ impl Expected {
 
     fn pixel(&self, index: usize, seen: &Value, found: &mut Comparison) {
         let own = self.frame.value(index);
-        let judge = self.judge(self.doubt.slack(index));
-        let verdict = |(value, slack): (Value, Slack)| {
-            let judge = self.judge(slack);
-            let differences = judge.differences(seen, &value);
-            (judge.excess(&differences), differences)
+        let limits = self.limits(self.bounds.rounding(index));
+        let compared = |(value, bound): (Value, RoundingBound)| {
+            let limits = self.limits(bound);
+            let differences = limits.differences(seen, &value);
+            (limits.excess(&differences), differences)
         };
-        let mut best = verdict((own, self.doubt.slack(index)));
-        match self.doubt.admissible(index) {
-            Admissible::Definite => found.worst.widen(&best.1),
+        let mut best = compared((own, self.bounds.rounding(index)));
+        match self.bounds.admissible(index) {
+            Admissible::Definite => found.worst.take_max(&best.1),
             Admissible::Unresolvable => found.unresolvable += 1,
             Admissible::Values(values) => {
-                let nearest = values.map(verdict).min_by(|a, b| a.0.total_cmp(&b.0));
+                let nearest = values.map(compared).min_by(|a, b| a.0.total_cmp(&b.0));
                 best = nearest.unwrap_or(best);
             }
         }
-        found.worst_of_all.widen(&best.1);
+        found.worst_of_all.take_max(&best.1);
         if best.0 <= 1.0 {
             return;
         }
         found.failed += 1;
-        if found.failures.len() < KEPT {
+        if found.failures.len() < RECORDED {
             let width = self.frame.size[0] as usize;
             let [x, y] = [index % width, index / width].map(|v| v as u32);
-            let (channel, gpu, reference) = judge.first_difference(seen, &own);
+            let (channel, gpu, reference) = limits.first_difference(seen, &own);
             found.failures.push(Failure { x, y, channel, gpu, reference });
         }
     }
 
-    fn judge(&self, slack: Slack) -> Judge {
-        Judge::new(&self.tolerance, slack, self.depth_shown)
+    fn limits(&self, bound: RoundingBound) -> Limits {
+        Limits::new(&self.tolerance, bound, self.depth_shown)
     }
 }

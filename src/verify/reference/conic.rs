@@ -1,12 +1,13 @@
-//! The screen-space ellipse of a disc: zwicker2004 sections 4.2 to 4.4, and the dual conic that needs no inverse.
+//! The screen-space ellipse of a disc: by the inverse of its mapping (zwicker2004 sections 4.2 to 4.4), or by the dual
+//! conic, which needs no inverse.
 //!
 //! Both take the mapping of the tangent plane as columns `S, T, X`: the images of the 1-σ axes and of the centre in
-//! pixel-homogeneous coordinates `(x w, y w, w)`, the pixel origin moved to the projected centre. (The paper writes row
-//! vectors: its `M` is this matrix transposed.)
+//! homogeneous pixel coordinates `(x w, y w, w)`, relative to the projected centre. The paper writes row vectors: its
+//! `M` is the transpose of this matrix.
 
 use glam::{DMat2, DMat3, DVec2, DVec3};
 
-/// The affine stand-in for a projected kernel, exact on its cut-off ellipse.
+/// The affine approximation of a projected kernel, exact on its cut-off ellipse.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Conic {
     /// Ellipse centre minus projected centre, px.
@@ -17,16 +18,16 @@ pub(super) struct Conic {
     pub sqrt_det: f64,
 }
 
-/// Largest condition number, after scaling, of a mapping that is inverted. The determinant `a c - b²` of the conic cancels to
-/// one part in its square, so that float64 keeps 10⁻¹⁶ · 10⁸ = 10⁻⁸ of V: 10⁻⁵ px on a 1000 px splat. A disc reaches it at
-/// about 89.99°.
+/// Largest condition number, after scaling, of a mapping that is inverted. The determinant `a c - b²` of the conic
+/// loses relative precision with the square of it: float64 keeps 10⁻¹⁶ · 10⁸ = 10⁻⁸ of V, 10⁻⁵ px on a 1000 px splat. A
+/// disc reaches this number at about 89.99°.
 pub(super) const WORST_CONDITION: f64 = 1e4;
 
-/// Least `1 - (F |g| / w)²` of a mapping that is inverted: nearer the eye plane the ellipse nears a parabola, whose
-/// determinant is 0, and loses as many digits.
+/// Least `1 - (F |g| / w)²` of a mapping that is inverted. Towards the eye plane the ellipse approaches a parabola,
+/// whose determinant is 0, and loses as many digits.
 pub(super) const LEAST_CLEARANCE: f64 = 1e-6;
 
-/// How clear of the eye plane the cut-off disc is: `q = (w / F)² - g·g`; drawable if above 0.
+/// Clearance of the cut-off disc from the eye plane: `q = (w / F)² - g·g`; drawable if above 0.
 pub(super) fn clearance(mapping: &DMat3, cutoff: f64) -> f64 {
     let [g0, g1, w] = [mapping.x_axis.z, mapping.y_axis.z, mapping.z_axis.z];
     (w / cutoff).powi(2) - g0 * g0 - g1 * g1
@@ -53,9 +54,10 @@ pub(super) fn inverse_form(mapping: &DMat3, cutoff: f64) -> Option<Conic> {
     })
 }
 
-/// The mapping `R A C` with rows and columns of the order of 1; returns it, the diagonal of `C`, and the px of its unit.
+/// Scales the mapping to `R A C`, whose rows and columns are of the order of 1. Returns it, the diagonal of `C`, and
+/// its unit in px.
 fn equilibrated(mapping: &DMat3) -> (DMat3, DVec3, f64) {
-    // The two axes share a factor, and so do the two pixel rows: their ratio is the ellipse's shape.
+    // The two axes share a factor, and so do the two pixel rows, because their ratio is the ellipse's shape.
     let axes = 1.0 / mapping.x_axis.length().max(mapping.y_axis.length());
     let columns = DVec3::new(axes, axes, 1.0 / mapping.z_axis.length());
     let scaled = *mapping * DMat3::from_diagonal(columns);
@@ -80,7 +82,7 @@ fn centred(q: &DMat3, cutoff: f64) -> Conic {
     Conic { offset, variance: inverse * (1.0 / (scale * det)), sqrt_det: 1.0 / (scale * det.sqrt()) }
 }
 
-/// The same from sums of squares, which any angle leaves exact: `V = (D Dᵀ / q + o oᵀ) / F²`, `o = -D g / q`.
+/// The same from sums of squares, which are exact at every angle: `V = (D Dᵀ / q + o oᵀ) / F²`, `o = -D g / q`.
 pub(super) fn dual_form(mapping: &DMat3, cutoff: f64) -> Conic {
     let d = DMat2::from_cols(mapping.x_axis.truncate(), mapping.y_axis.truncate());
     let g = DVec2::new(mapping.x_axis.z, mapping.y_axis.z);

@@ -1,49 +1,49 @@
-//! Which of 16 samples of each pixel lie on a surface: what α is made of where it is coverage.
+//! Pass `coverage`: which of 16 samples of each pixel lie on a surface, from which α is computed.
 
 use super::bands::Band;
 use super::ellipse::Ellipse;
-use super::margin::Margins;
-use super::scene::Scene;
+use super::error_model::ErrorModel;
+use super::projected_scene::ProjectedScene;
 use super::{Projector, Splat};
 use crate::settings::Alpha;
 use glam::DVec2;
 use std::ops::RangeInclusive;
 
-/// Samples of a pixel, a bit each.
+/// One bit per sample of a pixel.
 type Mask = u16;
 
-/// Their number.
+/// Number of samples per pixel.
 pub(super) const SAMPLES: u32 = Mask::BITS;
 
-/// How much of a splat's footprint is surface: discs are drawn 1.3 times as large as they need be to leave no holes.
+/// Scale of a disc that counts as surface: discs are drawn 1.3 times as large as needed, to leave no holes.
 const SOLID: f64 = 0.77;
 
-/// Least variance of what is surface, px²: edge-on it has none.
+/// Least variance of the solid ellipse, px²; edge-on it would be 0.
 const LEAST: f64 = 1e-12;
 
-/// Where sample `k` is in its pixel: a lattice, relative to the centre, px.
+/// Position of sample `k` relative to the pixel centre, px: a rank-1 lattice.
 pub(super) fn sample(k: u32) -> DVec2 {
     (DVec2::new(f64::from(k), f64::from(13 * k % SAMPLES)) + 0.5) / f64::from(SAMPLES) - 0.5
 }
 
-/// How near an outline or a clip line a sample is in doubt: px, and so much more of the splat's size, as 8 half units in the last place of
-/// float32. Nearer than pixel centres, as each pixel has 16 samples.
-const DOUBT: [f64; 2] = [3e-5, 8.0 / (1 << 24) as f64];
+/// Distance from an outline or a clip line at which a sample is ambiguous: px, plus a share of the splat's size of 8
+/// half units in the last place of float32. It is smaller than that of pixel centres, as a pixel has 16 samples.
+const TOLERANCE: [f64; 2] = [3e-5, 8.0 / (1 << 24) as f64];
 
-/// What discs on either side of an edge share of it, px: more than rounding can part them by.
+/// Overlap of discs on either side of a clip line, px: more than rounding can separate them.
 const SEAM: f64 = 1.0 / 256.0;
 
-/// What of a splat is surface: its own ellipse, unfiltered.
+/// The part of a splat that is surface: its unfiltered ellipse, scaled by [`SOLID`].
 fn solid(splat: &Splat, projector: &Projector) -> Ellipse {
     let cutoff = SOLID * projector.cutoff();
     Ellipse { cutoff, ..Ellipse::new(splat, projector, |variance| variance.max(LEAST)) }
 }
 
-/// The samples that a splat covers in the pixel whose centre is at `offset` from its own.
+/// The samples that a splat covers in the pixel whose centre is at `offset` from the splat's centre.
 fn mask(solid: &Ellipse, offset: DVec2) -> Mask {
-    let inside = |at: DVec2| solid.rim(at) <= solid.cutoff && solid.kept(solid.centre + at) >= -SEAM;
+    let inside = |at: DVec2| solid.rim(at) <= solid.cutoff && solid.clip_distance(solid.centre + at) >= -SEAM;
     let mask = bits((0..Mask::BITS).filter(|&k| inside(offset + sample(k))));
-    // Where a splat is, there is surface, however little.
+    // A pixel that contains the splat's centre is covered by at least one sample.
     let owns = mask == 0 && offset.abs().max_element() <= 0.5;
     if owns { bits(nearest(offset, 0.0).take(1)) } else { mask }
 }
@@ -52,42 +52,42 @@ fn bits(samples: impl Iterator<Item = u32>) -> Mask {
     samples.fold(0, |mask, k| mask | 1 << k)
 }
 
-/// The samples nearest to the splat's centre, and those at most by `margin` farther.
-fn nearest(offset: DVec2, margin: f64) -> impl Iterator<Item = u32> {
+/// The samples nearest to the splat's centre, and those at most `tolerance` px farther.
+fn nearest(offset: DVec2, tolerance: f64) -> impl Iterator<Item = u32> {
     let distance = move |k: u32| (offset + sample(k)).length();
     let least = (0..Mask::BITS).map(distance).fold(f64::INFINITY, f64::min);
-    (0..Mask::BITS).filter(move |&k| distance(k) <= least + margin)
+    (0..Mask::BITS).filter(move |&k| distance(k) <= least + tolerance)
 }
 
-/// The samples that it surely covers, and those that it may.
-fn known(solid: &Ellipse, offset: DVec2) -> [Mask; 2] {
-    let doubt = DOUBT[0] + DOUBT[1] * solid.cutoff * solid.sigma().x;
-    // Give or take what moves a sample that far.
+/// The samples that the splat certainly covers, and those that it may cover.
+fn certain_and_possible(solid: &Ellipse, offset: DVec2) -> [Mask; 2] {
+    let tolerance = TOLERANCE[0] + TOLERANCE[1] * solid.cutoff * solid.sigma().x;
+    // Inside, if the sample moves outwards (below 0) or inwards by `margin` px.
     let inside = |at: DVec2, margin: f64| {
         let undecided = solid.is_undecided(at, margin.abs());
         let within = if undecided { margin > 0.0 } else { solid.rim(at) <= solid.cutoff };
-        within && solid.kept(solid.centre + at) + margin >= -SEAM
+        within && solid.clip_distance(solid.centre + at) + margin >= -SEAM
     };
-    let [mut sure, mut maybe] =
-        [-doubt, doubt].map(|margin| bits((0..Mask::BITS).filter(|&k| inside(offset + sample(k), margin))));
-    let owns = |margin: f64| sure == 0 && offset.abs().max_element() <= 0.5 + margin;
-    if owns(doubt) {
-        let candidates = bits(nearest(offset, 2.0 * doubt));
-        if owns(-doubt) && maybe == 0 && candidates.is_power_of_two() {
-            sure = candidates;
+    let [mut certain, mut possible] = [-tolerance, tolerance]
+        .map(|margin| bits((0..Mask::BITS).filter(|&k| inside(offset + sample(k), margin))));
+    let owns = |margin: f64| certain == 0 && offset.abs().max_element() <= 0.5 + margin;
+    if owns(tolerance) {
+        let candidates = bits(nearest(offset, 2.0 * tolerance));
+        if owns(-tolerance) && possible == 0 && candidates.is_power_of_two() {
+            certain = candidates;
         }
-        maybe |= candidates;
+        possible |= candidates;
     }
-    [sure, maybe]
+    [certain, possible]
 }
 
-/// The part of each pixel of the band that is covered, where there is something.
-pub(super) fn pass(projector: &Projector, scene: &Scene, band: &Band) -> Vec<f64> {
+/// SampleCounts fraction of each pixel of the band, for pixels with a fragment.
+pub(super) fn pass(projector: &Projector, scene: &ProjectedScene, band: &Band) -> Vec<f64> {
     if projector.settings.alpha == Alpha::Mask {
         return vec![1.0; band.len()];
     }
     let mut masks = vec![0; band.len()];
-    for splat in band.blockers(scene).iter() {
+    for splat in band.occluders(scene).iter() {
         let (seen, solid) = (Ellipse::visibility(splat, projector), solid(splat, projector));
         band.inside(&seen, |hit| {
             if masks[hit.index] != Mask::MAX && projector.depth_of(splat, hit.at).is_some() {
@@ -95,50 +95,53 @@ pub(super) fn pass(projector: &Projector, scene: &Scene, band: &Band) -> Vec<f64
             }
         });
     }
-    masks.into_iter().map(|mask| share(mask.count_ones())).collect()
+    masks.into_iter().map(|mask| alpha(mask.count_ones())).collect()
 }
 
-fn share(samples: u32) -> f64 {
+fn alpha(samples: u32) -> f64 {
     f64::from(samples) / f64::from(Mask::BITS)
 }
 
-/// How many samples of a pixel may be covered. Any number from the least to the most is admissible.
+/// Range of the number of covered samples of a pixel. Every number in it is admissible.
 #[derive(Clone, Debug)]
-pub(super) struct Covered(RangeInclusive<u32>);
+pub(super) struct SampleCounts(RangeInclusive<u32>);
 
-impl Covered {
-    /// Of each pixel of a band.
-    pub fn of_band(margins: &Margins, scene: &Scene, band: &Band) -> Vec<Self> {
-        if margins.projector.settings.alpha == Alpha::Mask {
+impl SampleCounts {
+    /// Ranges of each pixel of a band.
+    pub fn of_band(model: &ErrorModel, scene: &ProjectedScene, band: &Band) -> Vec<Self> {
+        if model.projector.settings.alpha == Alpha::Mask {
             return vec![Self(Mask::BITS..=Mask::BITS); band.len()];
         }
         let mut masks = vec![[0; 2]; band.len()];
-        margins.scan(band, &band.blockers(scene), Ellipse::visibility, |c| {
-            let [sure, maybe] = &mut masks[c.pixel];
-            if *sure == Mask::MAX {
+        model.scan(band, &band.occluders(scene), Ellipse::visibility, |c| {
+            let [certain, possible] = &mut masks[c.pixel];
+            if *certain == Mask::MAX {
                 return;
             }
-            let solid = solid(c.splat, margins.projector);
-            let of_splat = known(&solid, band.centre(c.pixel) - solid.centre);
-            *sure |= if c.certain { of_splat[0] } else { 0 };
-            *maybe |= of_splat[1];
+            let solid = solid(c.splat, model.projector);
+            let samples = certain_and_possible(&solid, band.centre(c.pixel) - solid.centre);
+            *certain |= if c.certain { samples[0] } else { 0 };
+            *possible |= samples[1];
         });
-        masks.into_iter().map(|[sure, maybe]| Self(sure.count_ones()..=maybe.count_ones())).collect()
+        masks
+            .into_iter()
+            .map(|[certain, possible]| Self(certain.count_ones()..=possible.count_ones()))
+            .collect()
     }
 
-    /// Whether there is more than one number.
-    pub fn wavers(&self) -> bool {
+    /// Whether the range has more than one number.
+    pub fn is_ambiguous(&self) -> bool {
         self.0.start() != self.0.end()
     }
 
-    /// How many numbers.
+    /// How many numbers it has.
     pub fn len(&self) -> usize {
         self.0.clone().count()
     }
 
-    /// Their shares of the pixel.
-    pub fn shares(&self) -> impl Iterator<Item = f64> + use<> {
-        self.0.clone().map(share)
+    /// The α values of the range.
+    pub fn alphas(&self) -> impl Iterator<Item = f64> + use<> {
+        self.0.clone().map(alpha)
     }
 }
 

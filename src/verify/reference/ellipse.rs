@@ -1,4 +1,4 @@
-//! The outline on which a splat's kernel ends, once a low-pass filter has widened it, and the kernel in it.
+//! The outline of a splat's filtered kernel, and the kernel's weight.
 
 use super::footprint::ScreenClip;
 use super::{Projector, Splat};
@@ -7,19 +7,20 @@ use crate::settings::splatting::{Footprint, Kernel};
 use glam::{DMat2, DVec2, DVec3};
 use std::f64::consts::FRAC_PI_4;
 
-/// Largest factor by which perspective shrinks or enlarges a kernel in the tangent plane against its centre.
+/// Limit of the factor by which perspective shrinks or enlarges a kernel in the tangent plane, relative to its centre.
 const MOST_STRETCH: f64 = 2.0;
 
-/// Part by which the variances of a parallelogram differ at least; otherwise its sides are the picture's.
+/// Least relative difference of a parallelogram's variances; below it, its sides are parallel to the picture's.
 const LEAST_ANISOTROPY: f64 = 1e-4;
 
-/// How far float32's rounding moves the difference of two variances, relative to the larger: four half units in the last place.
+/// Float32 rounding error of a difference of two variances, relative to the larger: four half units in the last place.
 const ROUNDING: f64 = 4.0 / (1 << 24) as f64;
 
 /// Least exponent of a Confetti kernel.
 const LEAST_EXPONENT: f64 = -10.0;
 
-/// The filtered kernel of a splat: its variance `V'`, such as `V + h I`, in its principal axes, where long thin ellipses lose no digits.
+/// The filtered kernel of a splat. Its variance `V'`, such as `V + h I`, is kept in principal axes, in which long thin
+/// ellipses lose no digits.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ellipse {
     pub centre: DVec2,
@@ -27,35 +28,38 @@ pub(super) struct Ellipse {
     pub axis: DVec2,
     /// Variances along the major and the minor axis, px².
     pub variance: DVec2,
-    /// `√(|V| / |V'|)`: what the filter leaves of the kernel's height.
+    /// `√(|V| / |V'|)`: height of the filtered kernel relative to the unfiltered one.
     pub amplitude: f64,
     /// Cut-off `F`, in σ.
     pub cutoff: f64,
-    /// Where the kernel lies in the tangent plane: its plane as of [`Projector::plane`], divided by its value at the centre.
+    /// For a kernel in the tangent plane: its plane as in [`Projector::plane`], divided by the plane's value at the
+    /// centre.
     pub horizon: Option<DVec3>,
-    /// Whether the outline is the square about the ellipse.
+    /// Whether the outline is the square around the ellipse.
     pub square: bool,
-    /// How far rounding may turn that square, rad: the nearer the ellipse is to a circle, the less its axes are determined.
-    pub spin: f64,
-    /// How the weight falls off.
+    /// Angle by which rounding may turn that square, rad: a nearly circular ellipse hardly determines its axes.
+    pub axis_error: f64,
+    /// The falloff of the weight.
     pub kernel: Kernel,
-    /// What of it is kept.
+    /// Clip lines, if there are any.
     pub clip: Option<ScreenClip>,
-    /// Normalization weights at the corners of the kernel's square, and from that square's axes to the kernel's.
+    /// Normalization weights at the corners of the disc's square, and the rotation from that square's axes to the
+    /// kernel's.
     pub corners: [f64; 4],
-    pub turn: DMat2,
-    /// See [`Projector::beyond_clips`].
-    pub beyond: f64,
+    pub square_to_kernel: DMat2,
+    /// See [`Projector::clip_reach`].
+    pub clip_reach: f64,
 }
 
 impl Ellipse {
-    /// The footprint of the visibility pass: just wide enough to own a pixel centre.
+    /// The footprint of the visibility pass: just wide enough to cover the nearest pixel centre.
     pub fn visibility(splat: &Splat, projector: &Projector) -> Self {
         let least = f64::from(projector.settings.least_lowpass());
         Self::new(splat, projector, |variance| variance + least)
     }
 
-    /// The footprint of the attribute pass: widened by the low-pass filter `H` (zwicker2004, equation 3), as far as the settings want.
+    /// The footprint of the attribute pass: widened by the low-pass filter `H` (zwicker2004 equation 3), as the
+    /// settings say.
     pub fn attribute(splat: &Splat, projector: &Projector) -> Self {
         let settings = &projector.settings;
         let [least, lowpass] = [settings.least_lowpass(), settings.attribute_lowpass()].map(f64::from);
@@ -65,11 +69,11 @@ impl Ellipse {
         }
     }
 
-    /// The splat's kernel, with the variance along either of its axes turned by `widened` into another, px².
+    /// The splat's kernel; `widened` maps the variance along either axis to the filtered one, px².
     pub fn new(splat: &Splat, projector: &Projector, widened: impl Fn(f64) -> f64) -> Self {
         let [xx, xy, yy] = [splat.variance.x_axis.x, splat.variance.x_axis.y, splat.variance.y_axis.y];
         let major = 0.5 * (xx + yy + (xx - yy).hypot(2.0 * xy));
-        // Not as the trace minus the major one: that cancels.
+        // The trace minus the major variance would cancel.
         let minor = if major > 0.0 { splat.sqrt_det * (splat.sqrt_det / major) } else { 0.0 };
         let sided = projector.settings.splatting.footprint == Footprint::Parallelogram;
         let anisotropy = if sided && major > 0.0 { (major - minor) / major } else { 1.0 };
@@ -86,22 +90,22 @@ impl Ellipse {
             cutoff: projector.cutoff(),
             horizon: on_plane.then(|| splat.plane / splat.plane.dot(DVec3::new(1.0, centre.x, centre.y))),
             square: matches!(splatting.footprint, Footprint::Parallelogram | Footprint::Square),
-            spin: if sided { spin(anisotropy) } else { 0.0 },
+            axis_error: if sided { axis_error(anisotropy) } else { 0.0 },
             kernel: splatting.kernel,
             clip: splat.clip,
             corners: splat.weights,
-            turn: turn(splat, DVec2::from_angle(angle)),
-            beyond: projector.beyond_clips(),
+            square_to_kernel: square_to_kernel(splat, DVec2::from_angle(angle)),
+            clip_reach: projector.clip_reach(),
         }
     }
 
-    /// Where in the kernel the offset `e` from the centre is: along its axes, in σ. Seen in perspective, what lies in a plane is a
-    /// homography of it; one that keeps the centre is affine but for the division by the plane's inverse distance.
+    /// Position in the kernel of the offset `e` from the centre: along its axes, in σ. In perspective the image of a
+    /// plane is a homography; one that keeps the centre is affine but for the division by the plane's inverse distance.
     pub fn in_kernel(&self, offset: DVec2) -> DVec2 {
         self.principal(offset) / self.sigma() / self.nearness(offset)
     }
 
-    /// By what perspective shrinks a kernel in the tangent plane at the offset `e` from the centre.
+    /// Factor by which perspective shrinks a kernel in the tangent plane at the offset `e` from the centre.
     fn nearness(&self, offset: DVec2) -> f64 {
         let at = self.centre + offset;
         let nearness = self.horizon.map_or(1.0, |plane| plane.dot(DVec3::new(1.0, at.x, at.y)));
@@ -114,14 +118,15 @@ impl Ellipse {
         self.in_kernel(offset).length()
     }
 
-    /// What is compared with the cut-off at the offset `e` from the centre, in σ.
+    /// Value that is compared with the cut-off at the offset `e` from the centre, in σ: the distance, or for a square
+    /// the larger coordinate.
     pub fn rim(&self, offset: DVec2) -> f64 {
         let y = self.in_kernel(offset);
         if self.square { y.abs().max_element() } else { y.length() }
     }
 
-    /// Signed distance of a pixel position to what clip lines cut off, px: below 0 where the splat is not.
-    pub fn kept(&self, at: DVec2) -> f64 {
+    /// Signed distance of a pixel position to the clipped part, px: below 0 where clip lines remove the splat.
+    pub fn clip_distance(&self, at: DVec2) -> f64 {
         self.clip.map_or(f64::INFINITY, |clip| clip.distance(at))
     }
 
@@ -130,39 +135,39 @@ impl Ellipse {
         self.horizon.is_none() && !self.square
     }
 
-    /// How far rounding may move the outline at the offset `e` from the centre, px, beside what it moves any outline.
-    pub fn shift(&self, offset: DVec2) -> f64 {
-        self.spin * offset.length()
+    /// Distance by which rounding of the axes may move the outline at the offset `e` from the centre, px.
+    pub fn outline_error(&self, offset: DVec2) -> f64 {
+        self.axis_error * offset.length()
     }
 
-    /// The same anywhere on the outline, at most, in σ of the minor axis.
-    pub fn reach_of_shift(&self) -> f64 {
-        self.spin * self.stretch() * self.cutoff * self.sigma().x / self.sigma().y
+    /// Its maximum over the outline, in σ of the minor axis.
+    pub fn outline_error_sigmas(&self) -> f64 {
+        self.axis_error * self.stretch() * self.cutoff * self.sigma().x / self.sigma().y
     }
 
-    /// How far the outline can reach beyond the ellipse, as a factor.
+    /// Factor by which the outline can extend beyond the ellipse.
     fn stretch(&self) -> f64 {
         let rim = if self.square { std::f64::consts::SQRT_2 } else { 1.0 };
         if self.horizon.is_some() { MOST_STRETCH * rim } else { rim }
     }
 
-    /// Weight at the place `m` in the kernel, σ: the kernel's height where the filter has widened it, times the normalization weight.
+    /// Weight at the position `m` in the kernel, σ: kernel times amplitude times normalization weight.
     pub fn weight(&self, m: DVec2) -> f64 {
         self.amplitude * (-self.exponent(m.length())).exp() * self.normalization(m)
     }
 
-    /// The normalization weight at the place `m` in the kernel, σ: bilinear in its square (ren2002 section 7.2).
+    /// Normalization weight at the position `m` in the kernel, σ: bilinear in its square (ren2002 section 7.2).
     fn normalization(&self, m: DVec2) -> f64 {
         let [a, b, c, d] = self.corners;
-        let at = (self.turn.transpose() * m / self.cutoff).clamp(DVec2::NEG_ONE, DVec2::ONE);
+        let at = (self.square_to_kernel.transpose() * m / self.cutoff).clamp(DVec2::NEG_ONE, DVec2::ONE);
         let [low, high] = [0.5 - 0.5 * at, 0.5 + 0.5 * at];
         low.y * (low.x * a + high.x * b) + high.y * (low.x * c + high.x * d)
     }
 
-    /// How far off a float32 weight may be at the place `m`, σ, in half units in its last place. Vulkan has the exponential of x within
-    /// 3 + 2 |x| units. Of a weight that is bilinear between corners, two interpolations round four times each, and as often does each
-    /// coordinate of the place, along which the weight moves by no more than the corners span.
-    pub fn grain(&self, m: DVec2) -> f64 {
+    /// Error of a float32 weight at the position `m`, σ, in half units in its last place. Vulkan computes `exp(x)`
+    /// within 3 + 2 |x| units. A bilinear weight takes two interpolations with four roundings each; each coordinate of
+    /// the position rounds four times, too, and moves the weight by at most the span of the corners.
+    pub fn half_ulps(&self, m: DVec2) -> f64 {
         let exponential = 2.0 * (3.0 + 2.0 * self.exponent(m.length()));
         let least = self.corners.into_iter().fold(f64::INFINITY, f64::min);
         let span = self.corners.into_iter().fold(0.0, f64::max) - least;
@@ -170,7 +175,7 @@ impl Ellipse {
         exponential + bilinear
     }
 
-    /// Of what the kernel is the exponential, negated, at a distance of `m` σ.
+    /// Negated logarithm of the kernel at a distance of `sigmas` σ.
     fn exponent(&self, sigmas: f64) -> f64 {
         match self.kernel {
             Kernel::Gaussian => 0.5 * sigmas * sigmas,
@@ -181,12 +186,12 @@ impl Ellipse {
         }
     }
 
-    /// How much steeper than a Gaussian the kernel is at a distance of `m` σ: `|d ln w / dm| − m`, or 0.
+    /// How much steeper than a Gaussian the kernel is at a distance of `sigmas` σ: `|d ln w / dm| − m`, or 0.
     pub fn steepness(&self, sigmas: f64) -> f64 {
         let Kernel::Confetti { a, n } = self.kernel else { return 0.0 };
         let [a, n] = [a, n].map(f64::from);
         let t = (sigmas / self.cutoff).powf(n).min(1.0 - 1e-9);
-        // From where the exponent is at its least, the kernel is flat.
+        // The exponent is clamped: beyond, the kernel is constant.
         let flat = a * t / (1.0 - t) > -LEAST_EXPONENT;
         let slope = if flat || sigmas == 0.0 { 0.0 } else { a / (1.0 - t).powi(2) * n * t / sigmas };
         (slope - sigmas).max(0.0)
@@ -202,7 +207,7 @@ impl Ellipse {
         DVec2::new(self.axis.dot(offset), self.axis.perp_dot(offset))
     }
 
-    /// Least and greatest corner of a box around the outline, px: `x_t ± F √V'ᵢᵢ`, or more where it is no ellipse.
+    /// Least and greatest corner of a box around the outline, px: `x_t ± F √V'ᵢᵢ`, or larger for other outlines.
     pub fn bounds(&self) -> (DVec2, DVec2) {
         let along = self.stretch() * self.cutoff * self.sigma().x * self.axis;
         let across = self.stretch() * self.cutoff * self.sigma().y * self.axis.perp();
@@ -210,7 +215,8 @@ impl Ellipse {
         (self.centre - half, self.centre + half)
     }
 
-    /// Bounds of x within the outline at `reach` σ on the line `y`, px, those of the ellipse exactly; `None` if the line misses it.
+    /// Range of x within the outline at `reach` σ on the line `y`, px: exact for an ellipse, else an upper bound;
+    /// `None` if the line misses it.
     pub fn span(&self, y: f64, reach: f64) -> Option<(f64, f64)> {
         let reach = self.stretch() * reach;
         let (c, s) = (self.axis.x, self.axis.y);
@@ -223,14 +229,14 @@ impl Ellipse {
         (left >= 0.0).then_some((middle - half, middle + half))
     }
 
-    /// Whether the point at `offset` from the centre is so near to the outline that moving it by `margin` px may take it across.
+    /// Whether a move by `margin` px may take the point at `offset` from the centre across the outline.
     pub fn is_undecided(&self, offset: DVec2, margin: f64) -> bool {
         if self.is_plain() {
             let reach = margin / self.sigma().y;
             return (self.rim(offset) - self.cutoff).abs() <= reach && self.distance(offset) <= margin;
         }
-        // By how much either coordinate in the kernel can change; the two are bounded apart, as one px may be many σ across a thin
-        // kernel and few along it.
+        // The change of either kernel coordinate is bounded separately: across a thin kernel one px may be many σ,
+        // along it few.
         let nearness = self.nearness(offset);
         let slope = self.horizon.map_or(0.0, |plane| DVec2::new(plane.y, plane.z).length());
         let y = self.in_kernel(offset).abs();
@@ -239,7 +245,7 @@ impl Ellipse {
         rim((y - change).max(DVec2::ZERO)) <= self.cutoff && rim(y + change) >= self.cutoff
     }
 
-    /// Distance in px from the point at `offset` from the centre to the outline; to first order where it is no ellipse.
+    /// Distance in px from the point at `offset` from the centre to the outline; first order if that is no ellipse.
     pub fn distance(&self, offset: DVec2) -> f64 {
         if !self.is_plain() {
             let step = 1e-5;
@@ -251,8 +257,8 @@ impl Ellipse {
     }
 }
 
-/// How far rounding may turn the sides of a parallelogram whose variances differ by that part, rad.
-fn spin(anisotropy: f64) -> f64 {
+/// Angle by which rounding may turn the sides of a parallelogram with this relative difference of its variances, rad.
+fn axis_error(anisotropy: f64) -> f64 {
     let past = anisotropy - LEAST_ANISOTROPY;
     match past {
         _ if past.abs() <= ROUNDING => FRAC_PI_4,
@@ -261,18 +267,19 @@ fn spin(anisotropy: f64) -> f64 {
     }
 }
 
-/// From the axes of a disc's square to those of its kernel on the screen, of which `major` is the longer. Without a filter `V = D Dᵀ`, and the
-/// kernel's axes are `Λ^(-1/2) Rᵀ D` of the square's: a rotation, or a reflection where the back is seen. Its first row is the image of the
-/// longer axis; the other one, at a right angle, is not computed from the shorter, which may have no length.
-fn turn(splat: &Splat, major: DVec2) -> DMat2 {
+/// Rotation from the axes of a disc's square to those of its kernel on the screen, the longer of which is `major`.
+/// Without a filter `V = D Dᵀ`, and the kernel's axes are `Λ^(-1/2) Rᵀ D` times the square's: a rotation, or a
+/// reflection if the back is seen. The first row is the image of the longer axis. The second is perpendicular to it and
+/// not computed from the shorter axis, which may have no length.
+fn square_to_kernel(splat: &Splat, major: DVec2) -> DMat2 {
     let first = (splat.square.transpose() * major).try_normalize().unwrap_or(DVec2::X);
     let second = splat.square.determinant().signum() * first.perp();
     DMat2::from_cols(first, second).transpose()
 }
 
-/// Distance of `p`, in the first quadrant, to the ellipse of semi-axes `axes.x ≥ axes.y`. The foot of the perpendicular is
-/// `(r² p.x / (t + r²), p.y / (t + 1))`, `r = axes.x / axes.y`, with `t` the largest root of a monotonic function, found by
-/// bisection: the first-order distance `|m - F| / |∇m|` fails about the tips of thin ellipses.
+/// Distance of `p`, in the first quadrant, to the ellipse of semi-axes `axes.x ≥ axes.y`. The foot of the perpendicular
+/// is `(r² p.x / (t + r²), p.y / (t + 1))`, `r = axes.x / axes.y`, where `t` is the largest root of a monotonic
+/// function, found by bisection. The first-order distance `|m - F| / |∇m|` fails at the tips of thin ellipses.
 fn to_ellipse(axes: DVec2, p: DVec2) -> f64 {
     if p.y <= 1e-12 * axes.y {
         return from_major_axis(axes, p.x);
@@ -291,7 +298,8 @@ fn to_ellipse(axes: DVec2, p: DVec2) -> f64 {
     DVec2::new(ratio * ratio * p.x / (t + ratio * ratio), p.y / (t + 1.0)).distance(p)
 }
 
-/// The same for a point on the major axis: up to the centre of curvature of the tip, the nearest points are beside it.
+/// The same for a point on the major axis: up to the centre of curvature of the tip, the nearest points lie beside the
+/// axis.
 fn from_major_axis(axes: DVec2, x: f64) -> f64 {
     let evolute = axes.x - axes.y * (axes.y / axes.x);
     if x >= evolute {
@@ -344,12 +352,12 @@ mod tests {
             cutoff: 2.0,
             horizon: None,
             square: false,
-            spin: 0.0,
+            axis_error: 0.0,
             kernel: Kernel::Gaussian,
             clip: None,
             corners: [1.0; 4],
-            turn: DMat2::IDENTITY,
-            beyond: 0.0,
+            square_to_kernel: DMat2::IDENTITY,
+            clip_reach: 0.0,
         };
         for y in [17.0, 20.0, 22.5] {
             let (low, high) = ellipse.span(y, 2.0).unwrap();

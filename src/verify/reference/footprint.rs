@@ -1,4 +1,4 @@
-//! Pass `footprint`: from surfels to screen-space splats.
+//! Pass `footprint`: projects surfels to screen-space splats.
 
 use super::Projector;
 use super::conic::clearance;
@@ -20,18 +20,18 @@ pub struct Surfel {
     pub normal: DVec3,
     /// Longer semi-axis of the covered disc, `F σ`.
     pub radius: f64,
-    /// Its direction, a unit vector at a right angle to the normal; any such for a circle.
+    /// Direction of that semi-axis: a unit vector perpendicular to the normal, any for a circle.
     pub major: DVec3,
     /// The shorter semi-axis divided by the longer: 1 for a circle.
     pub aspect: f64,
-    /// Whether neither side is the back.
+    /// Whether both sides are fronts.
     pub two_sided: bool,
-    /// Normalization weights at the corners −u −v, +u −v, −u +v, +u +v of the square about the disc, u = `major` and v = normal × u; all
-    /// the same within a surface, and 1 where the scene has none.
+    /// Normalization weights at the corners −u −v, +u −v, −u +v, +u +v of the square around the disc, with u = `major`
+    /// and v = normal × u. All four are equal inside a surface, and 1 if the scene has none.
     pub weights: [f64; 4],
-    /// Linear RGB, where the scene has colours.
+    /// Linear RGB, if the scene has colours.
     pub colour: Option<DVec3>,
-    /// What is cut off the disc.
+    /// Clip lines of the disc, if it has any.
     pub clip: Option<Clip>,
 }
 
@@ -52,7 +52,7 @@ impl Surfel {
             position: surfels.origin + surfels.positions[index].as_dvec3(),
             normal,
             radius: surfels.radii[index].into(),
-            // In the disc's plane, from which float32 took it.
+            // In the disc's plane; float32 computes it from the same values.
             major: square_axis(surfels.normals[index], ellipse.map(|ellipse| ellipse.major)),
             aspect: ellipse.map_or(1.0, |ellipse| ellipse.aspect.into()),
             weights: weights.map(f64::from),
@@ -72,63 +72,63 @@ pub struct Splat {
     pub variance: DMat2,
     /// `√|V|`, px²; the closed form where `V` is near singular.
     pub sqrt_det: f64,
-    /// The distance at pixel position (x, y) of its plane, the tangent plane if it is no sprite: `plane · (1, x, y)` is 1 / distance in
-    /// perspective, the distance itself in orthographic projection and of sprites.
+    /// The plane at pixel position (x, y): `plane · (1, x, y)` is 1 / distance in perspective, and the distance in
+    /// orthographic projection and for sprites. It is the tangent plane, except for sprites.
     pub plane: DVec3,
     /// Distance of the surfel's centre.
     pub distance: f64,
     /// Distance of the disc's nearest point.
     pub nearest: f64,
-    /// What the ε test lets lie behind this splat: its depth is multiplied by this in perspective, and this is added to it in
-    /// orthographic projection.
+    /// Depth tolerance of the ε test behind this splat: a factor of the depth in perspective, a summand in orthographic
+    /// projection.
     pub shift: f64,
     /// World-space unit normal, turned to the eye.
     pub normal: DVec3,
     /// Linear RGB; the lighting's albedo where the scene has no colours.
     pub colour: DVec3,
-    /// 1 / cosine of the angle between the normal and the ray through the centre: by so much rounding errors of the normal and
-    /// the centre grow in the plane's depth and in `√|V|`.
+    /// 1 / cosine of the angle between the normal and the ray through the centre: the factor by which rounding errors
+    /// of normal and centre grow in the plane's depth and in `√|V|`.
     pub secant: f64,
     /// Shorter semi-axis of the disc divided by the longer.
     pub aspect: f64,
-    /// Normalization weights at the corners of the disc's square, all 1 where the frame wants none.
+    /// Normalization weights at the corners of the disc's square; all 1 if the frame asks for none.
     pub weights: [f64; 4],
     /// Images of the square's axes at the centre, px up to a common factor.
     pub square: DMat2,
-    /// Whether the ellipse came from the dual form, the inverse form being ill-conditioned.
+    /// Whether the ellipse came from the dual form, because the inverse form is ill-conditioned.
     pub dual: bool,
-    /// What of it is kept, where some is cut off.
+    /// Clip lines on the screen, if the surfel has any.
     pub clip: Option<ScreenClip>,
 }
 
-/// The part of the screen that clip lines keep.
+/// Clip lines on the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ScreenClip {
-    /// Signed distances to the lines at pixel position (x, y), px: `line · (1, x, y)`, above 0 where the line keeps; infinite for none.
+    /// Signed distances to the lines at pixel position (x, y), px: `line · (1, x, y)`, above 0 on the kept side;
+    /// infinite for no line.
     pub lines: [DVec3; 2],
-    /// Whether what either keeps is kept.
+    /// Whether the kept part is the union of both sides, not the intersection.
     pub concave: bool,
 }
 
 impl ScreenClip {
     /// Signed distance at a pixel position, px; above 0 where the splat is kept.
     pub fn distance(&self, at: DVec2) -> f64 {
-        let [a, b] = self.lines.map(|line| match line.is_finite() {
-            true => line.dot(DVec3::new(1.0, at.x, at.y)),
-            false => f64::INFINITY,
-        });
+        let [a, b] = self
+            .lines
+            .map(|line| if line.is_finite() { line.dot(DVec3::new(1.0, at.x, at.y)) } else { f64::INFINITY });
         if self.concave { a.max(b) } else { a.min(b) }
     }
 }
 
-/// Least `1 − (F |g| / w)²` of a splat that is drawn: nearer the eye plane float32 cannot tell where the ellipse is.
+/// Least `1 − (F |g| / w)²` of a drawn splat: closer to the eye plane, float32 cannot locate the ellipse.
 const LEAST_CLEARANCE: f64 = 1e-3;
-/// Least `√|V|` of a splat that is drawn, px²: float32's weight of a smaller one may be 0.
+/// Least `√|V|` of a drawn splat, px²: the float32 weight of a smaller one may be 0.
 const LEAST_AREA: f64 = 1e-30;
-/// Largest variance along the major axis of a splat that is drawn, px²: float32 overflows beyond.
+/// Largest variance along the major axis of a drawn splat, px²: float32 overflows beyond.
 const LARGEST_VARIANCE: f64 = 1e30;
 
-/// Why a surfel makes no splat.
+/// Cull reason of a surfel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Culled {
     /// Its centre is not in front of the eye (perspective only).
@@ -137,16 +137,16 @@ pub enum Culled {
     EyePlane,
     /// It shows its back where [`Cull::Back`] is set, and is not two-sided.
     Back,
-    /// Its bounding box misses the picture, or its image has no area: it is seen exactly edge-on, or so small that its weight is
-    /// nothing in float32.
+    /// Its bounding box misses the picture, or its image has no area: the disc is exactly edge-on, or so small that its
+    /// weight is 0 in float32.
     Outside,
-    /// It is not [valid](Surfels::is_valid), which is found before all else, or its image is too large for float32.
+    /// It is not [valid](Surfels::is_valid), which is tested first, or its image is too large for float32.
     Invalid,
 }
 
-/// The splat of one surfel in a frame of `size` px, or why it has none.
+/// The splat of one surfel in a frame of `size` px, or its cull reason.
 ///
-/// For many surfels of one frame make a [`Projector`] once and use [`Projector::footprint`].
+/// For many surfels of a frame, create one [`Projector`] and call [`Projector::footprint`].
 pub fn footprint(
     surfel: &Surfel,
     camera: &Camera,
@@ -157,7 +157,8 @@ pub fn footprint(
 }
 
 impl Projector {
-    /// The splat of one surfel, or why it has none; the reasons are tried in the order of [`Culled`]. Takes the surfel to be valid.
+    /// The splat of one surfel, or its cull reason. The reasons are tested in the order of [`Culled`]; the surfel must
+    /// be valid.
     pub fn footprint(&self, surfel: &Surfel) -> Result<Splat, Culled> {
         let centre = self.view.transform_point3(surfel.position);
         let normal = self.view.transform_vector3(surfel.normal);
@@ -198,7 +199,7 @@ impl Projector {
             clip: surfel.clip.map(|clip| self.screen_clip(&clip, centre, normal)),
         };
         let attribute = Ellipse::attribute(&splat, self);
-        // What is no number fails either.
+        // NaN fails the test, too.
         match splat.sqrt_det >= LEAST_AREA && self.sees(&attribute) {
             true if attribute.variance.x <= LARGEST_VARIANCE => Ok(splat),
             true => Err(Culled::Invalid),
@@ -206,7 +207,8 @@ impl Projector {
         }
     }
 
-    /// The same of the surfel moved away by ε along the camera's axis (ren2002 §5.1), for a visibility that has ε in the position.
+    /// The splat of the surfel moved away by ε along the camera's axis (ren2002 §5.1), for the visibility pass of
+    /// [`Visibility::Axis`](crate::settings::splatting::Visibility::Axis).
     pub(super) fn moved_footprint(&self, surfel: &Surfel) -> Result<Splat, Culled> {
         let epsilon = f64::from(self.settings.epsilon) * surfel.radius;
         let away = self.to_world(DVec3::new(0.0, 0.0, self.depth.forward));
@@ -215,8 +217,8 @@ impl Projector {
         self.footprint(&moved).map(|splat| Splat { shift, ..splat })
     }
 
-    /// Clip lines on the screen (zwicker2004 §5): each through the images of two points in the tangent plane. `centre` and `normal` are in
-    /// eye space.
+    /// Clip lines on the screen (zwicker2004 §5), each through the images of two points in the tangent plane. `centre`
+    /// and `normal` are in eye space.
     fn screen_clip(&self, clip: &Clip, centre: DVec3, normal: DVec3) -> ScreenClip {
         let line = |line: ClipLine| {
             if !line.is_some() {
@@ -229,7 +231,7 @@ impl Projector {
             let point =
                 |from_centre: DVec3, w: f64| self.homogeneous_pixel((from_centre + w * centre).extend(w));
             let border = point(nearest, 1.0).cross(point(normal.cross(across), 0.0));
-            // Anything on the kept side: homogeneous, so that even what is behind the eye tells it.
+            // A point of the kept side; homogeneous, so that a point behind the eye gives the right sign, too.
             let inside = border.dot(point(nearest - across, 1.0));
             let unit = border.truncate().length() * inside.signum();
             DVec3::new(border.z, border.x, border.y) / unit
@@ -237,15 +239,16 @@ impl Projector {
         ScreenClip { lines: clip.lines.map(line), concave: clip.concave }
     }
 
-    /// The colour that a splat adds: light, where splats are lit.
+    /// Colour that a splat contributes: shaded, if splats are lit.
     fn splat_colour(&self, albedo: DVec3, normal: DVec3, centre: DVec3) -> DVec3 {
         let Settings { shading, splatting, lighting, .. } = &self.settings;
         if *shading != Shading::Lit || splatting.shade != Shade::Splat {
             return albedo;
         }
-        let away = match self.depth.perspective {
-            true => centre - self.eye(),
-            false => DVec3::new(0.0, 0.0, self.depth.forward),
+        let away = if self.depth.perspective {
+            centre - self.eye()
+        } else {
+            DVec3::new(0.0, 0.0, self.depth.forward)
         };
         lit(lighting, Shine::of_frame(lighting), albedo, normal, -self.to_world(away).normalize())
     }
@@ -256,7 +259,7 @@ impl Projector {
         [surfel.major, minor].map(|axis| self.view.transform_vector3(surfel.radius * axis))
     }
 
-    /// The projected centre, px, and the mapping that [`super::conic`] wants, for the semi-axes of the covered disc.
+    /// The projected centre, px, and the mapping for [`super::conic`], from the semi-axes of the covered disc.
     pub(super) fn tangent_plane(&self, centre: DVec3, semi_axes: [DVec3; 2]) -> (DVec2, DMat3) {
         let [s, t] = semi_axes.map(|axis| axis / self.cutoff());
         let middle = self.project(centre.extend(1.0));

@@ -1,4 +1,4 @@
-//! The image of a disc by the kind of footprint.
+//! The image of a disc, by kind of footprint.
 
 use super::conic::{dual_form, inverse_form};
 use super::{Projector, Surfel};
@@ -38,7 +38,7 @@ pub(super) struct Image {
 const LEAST_FORESHORTENING: f64 = 0.1;
 
 impl Projector {
-    /// The image of `disc`, all of which is in front of the eye.
+    /// The image of `disc`, all of which lies in front of the eye.
     pub(super) fn image(&self, disc: &Disc) -> Image {
         match self.settings.splatting.footprint {
             Footprint::Conic => self.conic_image(disc),
@@ -49,7 +49,7 @@ impl Projector {
         }
     }
 
-    /// The ellipse that the rim projects to (zwicker2004 §4).
+    /// The ellipse to which the rim projects (zwicker2004 §4).
     fn conic_image(&self, disc: &Disc) -> Image {
         let inverse = inverse_form(&disc.mapping, self.cutoff());
         let conic = inverse.unwrap_or_else(|| dual_form(&disc.mapping, self.cutoff()));
@@ -81,32 +81,33 @@ impl Projector {
         self.distance(disc.centre) - disc.axes[0].z.hypot(disc.axes[1].z)
     }
 
-    /// The scale of a sprite: px for a unit length across the view, as the columns of its x and y.
+    /// Scale of a sprite: px per unit length across the view, as columns for x and y.
     fn flat_scale(&self, disc: &Disc) -> DMat2 {
         let column = |axis: DVec3| {
             let clip = self.project(axis.extend(0.0));
             0.5 * self.size * clip.truncate()
         };
-        // Off the axis, the same as on it (botsch2003 §3.1).
+        // The scale off the axis is that on it (botsch2003 §3.1).
         let unit = self.project(disc.centre.extend(1.0)).z;
         DMat2::from_cols(column(DVec3::X), column(DVec3::Y)) * (1.0 / unit)
     }
 
-    /// What rounds a sprite's width to a whole number of px (botsch2003 §4).
+    /// Factor that rounds a sprite's width to a whole number of px (botsch2003 §4).
     fn whole(&self, disc: &Disc) -> f64 {
         let width = 2.0 * disc.surfel.radius * self.flat_scale(disc).row(1).length();
         (width + 0.5).floor().max(1.0) / width
     }
 
-    /// The part of a disc's sprite that lies inside the unit sphere: the points `(x, y, δz)` of the tangent plane, seen along the
-    /// camera's axis, with `δz = −(n_x / n_z) x − (n_y / n_z) y` (botsch2003 equation 2); all times `whole`.
+    /// The part of a disc's sprite inside the unit sphere: the points `(x, y, δz)` of the tangent plane, seen along the
+    /// camera's axis, with `δz = −(n_x / n_z) x − (n_y / n_z) y` (botsch2003 equation 2), scaled by `whole`.
     fn sprite_image(&self, disc: &Disc, whole: f64) -> Image {
         let (normal, flat) = (disc.normal, disc.normal.truncate());
         let cosine = normal.z.abs().max(LEAST_FORESHORTENING);
-        // Not as √(1 − cosine²): that cancels on a sprite that faces the image plane.
+        // `√(1 − cosine²)` would cancel for a sprite that faces the image plane.
         let sine = flat.length().min((1.0 - LEAST_FORESHORTENING * LEAST_FORESHORTENING).sqrt());
         let lean = flat.normalize_or_zero();
-        // Seen along the axis, the semi-axes lose their z; the bound gives some of the shorter one back along the normal.
+        // Seen along the axis, the semi-axes lose their z; the least cosine widens the shorter one along the normal's
+        // projection.
         let given_back =
             disc.surfel.aspect * disc.surfel.radius * (cosine * cosine - normal.z * normal.z).sqrt() * lean;
         let spread = |v: DVec2| DMat2::from_cols(v * v.x, v * v.y);
@@ -117,7 +118,7 @@ impl Projector {
 
         let distance = self.distance(disc.centre);
         let towards = if normal.z * self.depth.forward < 0.0 { -1.0 } else { 1.0 };
-        // Distance per unit across the view, then per px.
+        // Distance per unit length across the view, then per px.
         let tilt = -towards * sine / cosine * lean;
         let per_pixel = (self.flat_scale(disc) * whole).inverse().transpose() * tilt;
         Image {
@@ -130,7 +131,7 @@ impl Projector {
         }
     }
 
-    /// A square that faces the image plane, of the disc's size and at its depth (botsch2003 §3.1).
+    /// A square parallel to the image plane, of the disc's size and at its depth (botsch2003 §3.1).
     fn square_image(&self, disc: &Disc) -> Image {
         let scale = self.flat_scale(disc) * (disc.surfel.radius / self.cutoff());
         let side = DVec2::new(scale.row(0).length(), scale.row(1).length());
@@ -147,7 +148,7 @@ impl Projector {
     }
 }
 
-/// The plane with `value` at `centre` and the given slope, for [`super::Splat::plane`].
+/// The plane with `value` at `centre` and the given slope; see [`super::Splat::plane`].
 fn per_pixel_plane(value: f64, slope: DVec2, centre: DVec2) -> DVec3 {
     DVec3::new(value - slope.dot(centre), slope.x, slope.y)
 }

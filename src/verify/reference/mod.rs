@@ -1,46 +1,47 @@
-//! The float64 twin of every splatting method, on the CPU: what the GPU's picture is held against.
+//! Float64 reference of every splatting method on the CPU, to compare GPU pictures with.
 //!
-//! Named as the GPU's passes, and sharing none of their code: [`Projector::footprint`] makes the screen-space splat of a
-//! surfel, `visibility` finds the depth up to which splats are blended, `coverage` the part of each pixel that they cover,
-//! `attribute` sums them, or `nearest` takes the first alone, and `normalize` divides and shades. [`Doubt`] finds, from the float64 picture alone, the pixels that hang on a decision which float32 cannot make,
-//! with every value they may take; [`compare`] judges a picture by both.
+//! Its functions are named as the GPU passes and share no code with them. [`Projector::footprint`] projects a surfel to
+//! a splat, `visibility` finds the depth up to which splats are blended, `coverage` the covered fraction of each pixel.
+//! `attribute` sums the visible splats, or `nearest` takes the first one; `normalize` divides and shades.
+//! [`ErrorBounds`] finds the pixels that float32 rounding can change, with every value they may take, from the float64
+//! frame alone; [`compare`] applies both.
 //!
 //! Spaces: *world* is the surfels' frame; *eye* is the camera's, where the distance `z = forward · z_eye` is above 0 in
 //! front; *pixels* count from the top left, pixel centres at half-integers.
 
 mod attribute;
 mod bands;
-mod bound;
 mod compare;
 mod conic;
 mod coverage;
-mod doubt;
+mod depth_range;
 mod ellipse;
+mod error_bounds;
+mod error_model;
 mod footprint;
 mod image;
-mod judge;
-mod margin;
 mod nearest;
 mod normalize;
+mod projected_scene;
 mod projector;
 pub mod pull_push;
 mod rank;
-mod scene;
+mod rounding;
 mod shading;
-mod slack;
 #[cfg(test)]
 mod tests;
+mod tolerance;
 mod visibility;
 
 pub use compare::{Comparison, Expected, Failure, compare};
-pub use doubt::{Admissible, Doubt};
+pub use error_bounds::{Admissible, ErrorBounds};
 pub use footprint::{Culled, ScreenClip, Splat, Surfel, footprint};
-pub use judge::{Channel, Tolerance, Worst};
 pub use normalize::Value;
+pub use projected_scene::Counts;
 pub use projector::Projector;
-pub use scene::Counts;
+pub use rounding::RoundingBound;
 pub(crate) use shading::{Shine, line_normal, linear, lit, lit_line};
-pub use slack::Slack;
+pub use tolerance::{Channel, Differences, Tolerance};
 
 use crate::Progress;
 use crate::error::{Error, Result};
@@ -49,33 +50,33 @@ use crate::picture::Picture;
 use crate::settings::Settings;
 use crate::settings::splatting::Visibility;
 use bands::{Band, Bands};
+use projected_scene::ProjectedScene;
 use rayon::prelude::*;
-use scene::Scene;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// A frame in float64, row by row from the top left; every image has one entry a pixel.
+/// A float64 frame, row by row from the top left; every image has one entry per pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
     /// Width and height, px.
     pub size: [u32; 2],
-    /// What the shading asked for, linear, and α; see [`Picture::colour`].
+    /// The quantity of the shading, linear, and α; see [`Picture::colour`].
     pub colour: Vec<[f64; 4]>,
-    /// Eye-space distance, in the positions' unit; 0 where no surface is.
+    /// Eye-space distance, in the positions' unit; 0 where there is no surface.
     pub depth: Vec<f64>,
-    /// Unit normal in world space; 0 where no surface is.
+    /// World-space unit normal; 0 where there is no surface.
     pub normal: Vec<[f64; 3]>,
-    /// Whether a surface is there.
+    /// Whether there is a surface.
     pub covered: Vec<bool>,
-    /// Number of what is seen, as [`Picture::id`] has it, by pull–push.
+    /// Point ids as in [`Picture::id`], of pull–push.
     pub id: Option<Vec<u32>>,
-    /// What became of the surfels.
+    /// Number of surfels by cull reason.
     pub counts: Counts,
-    /// How many drawn splats were too ill-conditioned for the inverse form of the conic and took the dual form.
+    /// Number of drawn splats that took the dual form of the conic, because the inverse form is ill-conditioned.
     pub dual_form: usize,
 }
 
 impl Frame {
-    /// The number in [`Frame::id`] where no surface is.
+    /// Value of [`Frame::id`] where there is no surface.
     pub const NOBODY: u32 = Picture::NOBODY;
 
     /// The frame in single precision, with depth and normals.
@@ -89,7 +90,7 @@ impl Frame {
         }
     }
 
-    /// What the frame holds at pixel `index`; panics beyond the end.
+    /// The values of pixel `index`; panics beyond the end.
     pub fn value(&self, index: usize) -> Value {
         Value {
             covered: self.covered[index],
@@ -99,7 +100,7 @@ impl Frame {
         }
     }
 
-    /// Of so many values, without counts.
+    /// A frame of these values, without counts.
     fn of(values: &[Value], size: [u32; 2]) -> Self {
         Self {
             size,
@@ -114,10 +115,10 @@ impl Frame {
     }
 }
 
-/// Renders `parts` as `camera` sees them, `size` = width and height in px.
+/// Renders `parts` as seen by `camera`; `size` is width and height in px.
 ///
-/// Fails on settings, sizes and cameras of which no picture can be made, and on lines and triangles where splats are drawn. It can be given up by
-/// way of `progress`.
+/// Fails on invalid settings, sizes and cameras, and on lines and triangles with a splatting method. `progress` can
+/// cancel it.
 pub fn render<'a>(
     parts: impl Into<Parts<'a>>,
     camera: &Camera,
@@ -136,29 +137,29 @@ pub fn render<'a>(
         return render(&parts.baked(), camera, size, settings, progress);
     }
     let projector = Projector::new(camera, size, settings)?;
-    let scene = Scene::project(&projector, surfels);
+    let scene = ProjectedScene::project(&projector, surfels);
     let frame = draw(&projector, &scene, &Bands::new(&projector, &scene, size), progress);
     if progress.is_cancelled() { Err(Error::Cancelled) } else { Ok(frame) }
 }
 
-/// The pixels of a band.
-fn values(projector: &Projector, scene: &Scene, band: &Band) -> Vec<Value> {
+/// The values of a band's pixels.
+fn values(projector: &Projector, scene: &ProjectedScene, band: &Band) -> Vec<Value> {
     let alpha = coverage::pass(projector, scene, band);
     if projector.settings.splatting.visibility == Visibility::Nearest {
-        return normalize::pass_alone(projector, band, &nearest::pass(projector, scene, band), &alpha);
+        return normalize::pass_nearest(projector, band, &nearest::pass(projector, scene, band), &alpha);
     }
     let depth = visibility::pass(projector, scene, band);
     let sums = attribute::pass(projector, scene, band, &depth);
     normalize::pass(projector, band, &depth, &sums, &alpha)
 }
 
-/// All passes, band by band: a band's sums are all the memory that is needed beside the splats and the picture.
-fn draw(projector: &Projector, scene: &Scene, bands: &Bands, progress: &dyn Progress) -> Frame {
+/// Runs all passes band by band: beside splats and picture, only the sums of the current bands take memory.
+fn draw(projector: &Projector, scene: &ProjectedScene, bands: &Bands, progress: &dyn Progress) -> Frame {
     let done = AtomicU64::new(0);
     bands.tell(progress, 0);
     let values: Vec<Value> = bands
         .par_iter()
-        // Of what is given up nobody sees the picture.
+        // A cancelled frame is discarded.
         .filter(|_| !progress.is_cancelled())
         .flat_map(|band| {
             let values = values(projector, scene, &band);

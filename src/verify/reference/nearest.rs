@@ -3,12 +3,12 @@
 use super::attribute::Sums;
 use super::bands::Band;
 use super::ellipse::Ellipse;
+use super::projected_scene::ProjectedScene;
 use super::rank::Rank;
-use super::scene::Scene;
 use super::{Projector, Splat};
 
-/// For every pixel of the band what its nearest splat is, as sums of that one splat of weight 1. The first of equals wins.
-pub(super) fn pass(projector: &Projector, scene: &Scene, band: &Band) -> Vec<Option<Sums>> {
+/// The sums of the nearest splat of each pixel of the band, with weight 1. The first of equally near splats wins.
+pub(super) fn pass(projector: &Projector, scene: &ProjectedScene, band: &Band) -> Vec<Option<Sums>> {
     let mut nearest = vec![(Rank::NONE, None); band.len()];
     for splat in band.contributors(scene).iter() {
         let ellipse = Ellipse::visibility(splat, projector);
@@ -23,7 +23,7 @@ pub(super) fn pass(projector: &Projector, scene: &Scene, band: &Band) -> Vec<Opt
     nearest.into_iter().map(|(_, sums)| sums).collect()
 }
 
-/// The depth by which splats are ranked: none is nearer than its disc.
+/// The depth by which splats are ranked: at least that of the disc's nearest point.
 pub(super) fn ranked(splat: &Splat, depth: f64) -> f64 {
     depth.max(splat.nearest)
 }

@@ -9,23 +9,23 @@ use crate::settings::Shading;
 use crate::settings::splatting::{Normalization, Shade};
 use glam::{DVec2, DVec3};
 
-/// Length of `Σ w n` relative to `Σ w` below which the normals cancel and the direction to the eye stands in for them.
+/// Length of `Σ w n` relative to `Σ w` below which the normals cancel; the direction to the eye replaces them.
 const CANCELLED: f64 = 1e-6;
 
-/// What the picture holds at one pixel.
+/// The values of one pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Value {
-    /// Whether a surface is there.
+    /// Whether there is a surface.
     pub covered: bool,
-    /// What the shading asked for, linear, and α.
+    /// The quantity of the shading, linear, and α.
     pub colour: [f64; 4],
-    /// Eye-space distance; 0 where no surface is.
+    /// Eye-space distance; 0 where there is no surface.
     pub depth: f64,
-    /// World-space unit normal; 0 where no surface is.
+    /// World-space unit normal; 0 where there is no surface.
     pub normal: [f64; 3],
 }
 
-/// The values of the band's pixels; a surface is where `visible` exists, some weight was summed and `alpha` is not 0.
+/// The values of the band's pixels. A pixel is covered if `visible` exists, its weight is above 0 and `alpha` is not 0.
 pub(super) fn pass(
     projector: &Projector,
     band: &Band,
@@ -39,8 +39,8 @@ pub(super) fn pass(
     visible.iter().zip(sums).enumerate().map(pixel).collect()
 }
 
-/// The values of the band's pixels from what is seen there alone.
-pub(super) fn pass_alone(
+/// The values of the band's pixels from single nearest splats.
+pub(super) fn pass_nearest(
     projector: &Projector,
     band: &Band,
     seen: &[Option<Sums>],
@@ -51,16 +51,14 @@ pub(super) fn pass_alone(
     seen.iter().enumerate().map(pixel).collect()
 }
 
-/// The value of the pixel with centre `at`, of which `alpha` is covered; `sums` are `None` where visibility wrote nothing.
+/// The value of the pixel with centre `at` and covered fraction `alpha`; `sums` is `None` where visibility wrote
+/// nothing.
 pub(super) fn resolve(projector: &Projector, at: DVec2, sums: Option<&Sums>, alpha: f64) -> Value {
     let Some(sums) = sums.filter(|s| s.weight > 0.0 && alpha > 0.0) else { return uncovered(projector) };
     let viewer = projector.to_viewer(at);
     let cancelled = sums.normal.length() < CANCELLED * sums.weight;
     let normal = if cancelled { viewer } else { sums.normal.normalize() };
-    let depth = match projector.depth.perspective {
-        true => sums.weight / sums.depth,
-        false => sums.depth / sums.weight,
-    };
+    let depth = if projector.depth.perspective { sums.weight / sums.depth } else { sums.depth / sums.weight };
     let settings = &projector.settings;
     let total = match settings.splatting.normalization {
         Normalization::Pixel => sums.weight,
@@ -68,7 +66,7 @@ pub(super) fn resolve(projector: &Projector, at: DVec2, sums: Option<&Sums>, alp
     };
     let colour = sums.colour / total;
     let shown = match settings.shading {
-        // The splats are lit already.
+        // The splats are shaded already.
         Shading::Lit if settings.splatting.shade == Shade::Splat => colour,
         Shading::Lit => lit(&settings.lighting, Shine::of_frame(&settings.lighting), colour, normal, viewer),
         Shading::Colour => colour,
@@ -84,11 +82,11 @@ pub(super) fn resolve(projector: &Projector, at: DVec2, sums: Option<&Sums>, alp
     }
 }
 
-/// What is shown of a surface with the background, if there is one, behind it.
+/// Blends a value with the background, if there is one.
 pub(super) fn over_background(projector: &Projector, shown: DVec3, alpha: f64) -> [f64; 4] {
     let Some(background) = projector.settings.background else { return shown.extend(alpha).to_array() };
     let behind = DVec3::from_array(background.map(f64::from));
-    // Numbers are not mixed with a colour: the half decides.
+    // Quantities are not blended with a colour: α ≥ ½ decides.
     let share = match projector.settings.shading {
         Shading::Lit | Shading::Colour => alpha,
         Shading::Normal | Shading::Depth | Shading::Overlap | Shading::Weight => f64::from(alpha >= 0.5),
@@ -96,7 +94,7 @@ pub(super) fn over_background(projector: &Projector, shown: DVec3, alpha: f64) -
     (share * shown + (1.0 - share) * behind).extend(1.0).to_array()
 }
 
-/// The value of a pixel where nothing is.
+/// The value of an empty pixel.
 pub(super) fn uncovered(projector: &Projector) -> Value {
     let colour = match projector.settings.background {
         Some([r, g, b]) => [r.into(), g.into(), b.into(), 1.0],

@@ -1,4 +1,4 @@
-//! A frame's camera in float64: from eye space to pixels, and back along the rays through them.
+//! A frame's camera in float64: from eye space to pixels, and back along their rays.
 
 use super::Splat;
 use crate::error::{Error, Result};
@@ -6,10 +6,11 @@ use crate::geometry::{Camera, Projection};
 use crate::settings::{Alpha, Settings};
 use glam::{DMat2, DMat3, DMat4, DVec2, DVec3, DVec4};
 
-/// How far beyond a clip line splats have fragments where α is coverage, px: as far as a pixel that it cuts can have its centre.
+/// Distance up to which splats have fragments beyond a clip line, px, if α is coverage: the farthest centre of a pixel
+/// that the line cuts.
 const BEYOND: f64 = std::f64::consts::FRAC_1_SQRT_2;
 
-/// What all passes of a frame need to know of its camera, size and settings.
+/// Camera, size and settings of a frame, prepared for the passes.
 #[derive(Clone, Debug)]
 pub struct Projector {
     pub(super) view: DMat4,
@@ -18,14 +19,15 @@ pub struct Projector {
     /// Width and height, px.
     pub(super) size: DVec2,
     pub(super) settings: Settings,
-    /// Eye-space start of the ray through pixel position (x, y): `starts · (1, x, y)`; one point in perspective.
+    /// Eye-space origin of the ray through pixel position (x, y): `starts · (1, x, y)`; the same for all in
+    /// perspective.
     pub(super) starts: DMat3,
-    /// Eye-space step of that ray for one unit of distance: `steps · (1, x, y)`.
+    /// Eye-space step of that ray per unit of distance: `steps · (1, x, y)`.
     pub(super) steps: DMat3,
 }
 
 impl Projector {
-    /// Prepares a frame of `size` = width and height in px; refuses settings and cameras of which no picture can be made.
+    /// Prepares a frame of `size` = width and height in px. Fails on invalid settings, sizes and cameras.
     pub fn new(camera: &Camera, size: [u32; 2], settings: &Settings) -> Result<Self> {
         settings.check()?;
         let depth = camera.projection()?;
@@ -43,27 +45,24 @@ impl Projector {
         self.settings.cutoff.into()
     }
 
-    /// How far beyond its clip lines a splat has fragments, px. They are seen where there are no others.
-    pub(super) fn beyond_clips(&self) -> f64 {
+    /// Distance up to which a splat has fragments beyond its clip lines, px. They show only where there are no others.
+    pub(super) fn clip_reach(&self) -> f64 {
         if self.settings.alpha == Alpha::Coverage { BEYOND } else { 0.0 }
     }
 
-    /// Distance in front of the eye (perspective) or of the eye plane (orthographic) of an eye-space point.
+    /// Distance of an eye-space point in front of the eye (perspective) or of the eye plane (orthographic).
     pub(super) fn distance(&self, point: DVec3) -> f64 {
         self.depth.forward * point.z
     }
 
-    /// Where the rays meet, eye space; the origin unless the projection shifts it. Perspective only.
+    /// Eye-space point where the rays meet: the origin, unless the projection shifts it. Perspective only.
     pub(super) fn eye(&self) -> DVec3 {
         self.starts.x_axis
     }
 
-    /// Below 0 if `normal` at `point` faces the eye, both in eye space.
+    /// Negative if `normal` at `point` faces the eye, both in eye space.
     pub(super) fn facing(&self, point: DVec3, normal: DVec3) -> f64 {
-        match self.depth.perspective {
-            true => normal.dot(point - self.eye()),
-            false => normal.z * self.depth.forward,
-        }
+        if self.depth.perspective { normal.dot(point - self.eye()) } else { normal.z * self.depth.forward }
     }
 
     /// 1 / cosine of the viewing angle at `point`, given its [`Projector::facing`].
@@ -77,7 +76,7 @@ impl Projector {
         [self.depth.near, self.depth.far]
     }
 
-    /// The ray through pixel position `at` in world space: where it is at distance 0, and its step for one unit of distance.
+    /// The ray through pixel position `at` in world space: its point at distance 0, and its step per unit of distance.
     pub(crate) fn ray(&self, at: DVec2) -> (DVec3, DVec3) {
         let at = DVec3::new(1.0, at.x, at.y);
         let start = self.starts * at - self.view.w_axis.truncate();
@@ -91,26 +90,26 @@ impl Projector {
 
     /// World-space unit direction from the surface seen at pixel position `at` to the eye.
     pub(crate) fn to_viewer(&self, at: DVec2) -> DVec3 {
-        let away = match self.depth.perspective {
-            true => self.steps * DVec3::new(1.0, at.x, at.y),
-            false => DVec3::new(0.0, 0.0, self.depth.forward),
+        let away = if self.depth.perspective {
+            self.steps * DVec3::new(1.0, at.x, at.y)
+        } else {
+            DVec3::new(0.0, 0.0, self.depth.forward)
         };
         -self.to_world(away).normalize()
     }
 
-    /// An eye-space plane's distance as a function of the pixel position: `c · (1, x, y)` is 1 / distance in perspective,
-    /// the distance itself otherwise. The intersection of the ray `start + distance · step` with `n · (x - point) = 0`.
+    /// An eye-space plane's distance as a function of the pixel position: `c · (1, x, y)` is 1 / distance in
+    /// perspective, the distance otherwise. It intersects the ray `start + distance · step` with `n · (x - point) = 0`.
     pub(super) fn plane(&self, point: DVec3, normal: DVec3) -> DVec3 {
-        match self.depth.perspective {
-            true => self.steps.transpose() * normal / self.facing(point, normal),
-            false => {
-                let offset = DVec3::new(normal.dot(point), 0.0, 0.0) - self.starts.transpose() * normal;
-                offset / normal.dot(self.steps.x_axis)
-            }
+        if self.depth.perspective {
+            self.steps.transpose() * normal / self.facing(point, normal)
+        } else {
+            let offset = DVec3::new(normal.dot(point), 0.0, 0.0) - self.starts.transpose() * normal;
+            offset / normal.dot(self.steps.x_axis)
         }
     }
 
-    /// Whether a splat's plane gives 1 / distance, not the distance itself.
+    /// Whether a splat's plane holds 1 / distance, not the distance.
     pub(super) fn has_inverse_depth(&self) -> bool {
         self.depth.perspective && !self.settings.splatting.footprint.is_sprite()
     }
@@ -123,11 +122,11 @@ impl Projector {
             true => return None,
             false => value,
         };
-        // An infinite far plane lets the horizon itself through: there is nothing to see.
+        // An infinite far plane would admit the horizon, where there is nothing to see.
         (distance.is_finite() && (self.depth.near..=self.depth.far).contains(&distance)).then_some(distance)
     }
 
-    /// Pixel position and distance of a point of the world; `None` if it is not in front of the eye.
+    /// Pixel position and distance of a world-space point; `None` if it is not in front of the eye.
     pub(crate) fn locate(&self, point: DVec3) -> Option<(DVec2, f64)> {
         let eye = self.view.transform_point3(point);
         let projected = self.project(eye.extend(1.0));
@@ -148,8 +147,8 @@ impl Projector {
     }
 }
 
-/// Solves the first two rows of the projection for the eye-space (x, y) of a given pixel and distance: both are affine in
-/// either, for every projection that [`Camera::projection`] lets through.
+/// Solves the first two rows of the projection for the eye-space (x, y) of a pixel and distance. Both are affine in
+/// either, for every projection that [`Camera::projection`] accepts.
 fn rays(clip: &DMat4, depth: &Projection, size: DVec2) -> Result<(DMat3, DMat3)> {
     let (x, y, w) = (clip.row(0), clip.row(1), clip.row(3));
     let block = DMat2::from_cols(DVec2::new(x.x, y.x), DVec2::new(x.y, y.y));
@@ -159,7 +158,7 @@ fn rays(clip: &DMat4, depth: &Projection, size: DVec2) -> Result<(DMat3, DMat3)>
             "the projection matrix flattens the picture: its upper left 2×2 is singular".into(),
         ));
     }
-    // Columns are the coefficients of 1, x and y in ndc, times the factor of z or of 1 in the fourth row.
+    // Columns are the coefficients of 1, x and y in NDC, times the factor of z or of 1 in the fourth row.
     let column = |factor: f64, own: DVec2, z: f64| {
         let solve = |v: DVec2| inverse * v;
         let constant = solve(-factor * DVec2::ONE - own).extend(z);

@@ -1,18 +1,19 @@
-//! What is compared to tell which fragment is nearer.
+//! The order of fragments in depth.
 
-/// The depth of a fragment, and whether it is beyond a clip line of its splat: such are behind all that are not.
+/// Rank of a fragment: clipped fragments, which lie clipped a clip line of their splat, are behind all others; then by
+/// depth.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub(super) struct Rank {
-    // First, as it decides first.
-    pub beyond: bool,
+    // The derived order compares this field first.
+    pub clipped: bool,
     pub depth: f64,
 }
 
 impl Rank {
-    /// Of nothing: behind all.
-    pub const NONE: Self = Self { beyond: true, depth: f64::INFINITY };
+    /// The rank of an empty pixel: behind all fragments.
+    pub const NONE: Self = Self { clipped: true, depth: f64::INFINITY };
 
-    /// Whether it is of something.
+    /// Whether there is a fragment.
     pub fn exists(self) -> bool {
         self.depth.is_finite()
     }
@@ -22,7 +23,7 @@ impl Rank {
         if other < self { other } else { self }
     }
 
-    /// As if it were so much farther away.
+    /// The same rank, `by` farther away.
     pub fn farther(self, by: f64) -> Self {
         Self { depth: self.depth + by, ..self }
     }

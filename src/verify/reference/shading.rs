@@ -1,10 +1,10 @@
-//! Light: linear Blinn–Phong, and the decoding of colours.
+//! Linear Blinn–Phong lighting, and decoding of sRGB colours.
 
 use crate::geometry::Material;
 use crate::settings::Lighting;
 use glam::DVec3;
 
-/// How a surface shines beside its colour.
+/// Specular reflection of a surface.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shine {
     specular: DVec3,
@@ -12,7 +12,7 @@ pub(crate) struct Shine {
 }
 
 impl Shine {
-    /// Of what has no material.
+    /// Reflection of surfaces without a material: that of the frame's lighting.
     pub fn of_frame(lighting: &Lighting) -> Self {
         Self { specular: DVec3::splat(lighting.specular.into()), shininess: lighting.shininess.into() }
     }
@@ -27,14 +27,14 @@ impl From<Material> for Shine {
     }
 }
 
-/// The shade of a surface of linear colour `albedo`; `normal` and `viewer` (from the surface to the eye) are unit vectors in
+/// Shades a surface of linear colour `albedo`. `normal` and `viewer`, from the surface to the eye, are unit vectors in
 /// world space.
 pub(crate) fn lit(lighting: &Lighting, shine: Shine, albedo: DVec3, normal: DVec3, viewer: DVec3) -> DVec3 {
     by_cosines(lighting, shine, albedo, viewer, |towards| normal.dot(towards))
 }
 
-/// The shade of a line with a unit `tangent`, which has every normal across it: towards each light, the one that is brightest
-/// (marroquim2008 section 4.2; its highlights likewise).
+/// Shades a line with unit `tangent`. For each light it takes the normal across the line that gives the brightest
+/// shade, for highlights too (marroquim2008 section 4.2).
 pub(crate) fn lit_line(
     lighting: &Lighting,
     shine: Shine,
@@ -45,7 +45,7 @@ pub(crate) fn lit_line(
     by_cosines(lighting, shine, albedo, viewer, |towards| line_normal(tangent, towards).dot(towards))
 }
 
-/// Of all normals across a line, the one that is turned `towards`, both unit.
+/// The normal across a line that is closest to the direction `towards`; both arguments are unit vectors.
 pub(crate) fn line_normal(tangent: DVec3, towards: DVec3) -> DVec3 {
     (towards - towards.dot(tangent) * tangent).try_normalize().unwrap_or(towards)
 }
@@ -59,7 +59,7 @@ fn by_cosines(
     cosine: impl Fn(DVec3) -> f64,
 ) -> DVec3 {
     let [ambient, headlight] = [lighting.ambient, lighting.headlight].map(f64::from);
-    // The headlight stands at the eye: light, half-way and view direction are one.
+    // The headlight is at the eye: light, half-way and view directions coincide.
     let facing = cosine(viewer).max(0.0);
     let mut light = albedo * (ambient + headlight * facing) + specular * facing.powf(shininess);
     for lamp in &lighting.directional {
@@ -74,7 +74,7 @@ fn by_cosines(
     light
 }
 
-/// An 8-bit sRGB colour in linear light, by the exact transfer function (IEC 61966-2-1).
+/// Decodes an 8-bit sRGB colour to linear light by the exact transfer function (IEC 61966-2-1).
 pub(crate) fn linear(srgb: [u8; 4]) -> DVec3 {
     let decode = |byte: u8| {
         let c = f64::from(byte) / 255.0;
@@ -101,7 +101,7 @@ mod tests {
         assert!(near(shade(&lighting, 60.0), [0.3; 3]));
         assert!(near(shade(&lighting, 120.0), [0.05; 3]), "no light from behind");
 
-        // From the side; half-way at 45°, so n·l = sin 60°, n·h = cos 15°.
+        // Light from the side; half-way vector at 45°, so n·l = sin 60° and n·h = cos 15°.
         lighting.directional =
             vec![DirectionalLight { to_light: [1.0, 0.0, 0.0], radiance: [1.0, 0.5, 0.0] }];
         let (lambert, specular) = (0.75f64.sqrt(), 0.2 * 15f64.to_radians().cos().powi(2));

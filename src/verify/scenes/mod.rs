@@ -70,9 +70,10 @@ pub fn model(text: &str) -> Result<Model> {
     }
     let (points, others): (Vec<_>, Vec<_>) =
         (query.scene.build)(&query).into_iter().partition(|piece| piece.kind == Kind::Surface);
-    let mut surfels = match points.is_empty() {
-        true => Surfels::default(),
-        false => samplers::sample(&query, &Assembly::new(points))?,
+    let mut surfels = if points.is_empty() {
+        Surfels::default()
+    } else {
+        samplers::sample(&query, &Assembly::new(points))?
     };
     surfels.sort_morton();
     Ok(Model { surfels, primitives: primitives::primitives(&query, &others) })
@@ -88,9 +89,10 @@ pub fn open(text: &str) -> Result<Surfels> {
         let text = format!("{text}: lines and triangles are no surfels: leave `primitives` off");
         return Err(Error::Usage(text));
     }
-    let mut surfels = match is_comparison(&query) {
-        true => bumpy_sphere::sample(query.whole("points") as u32, query.whole("seed")),
-        false => samplers::sample(&query, &assemble(&query))?,
+    let mut surfels = if is_comparison(&query) {
+        bumpy_sphere::sample(query.whole("points") as u32, query.whole("seed"))
+    } else {
+        samplers::sample(&query, &assemble(&query))?
     };
     surfels.sort_morton();
     Ok(surfels)

@@ -204,10 +204,8 @@ fn decimal(factor: i32, power: i32) -> f64 {
 fn labels(values: &[f64], scale: Scale) -> Vec<String> {
     let short = |value: &f64| *value == 0.0 || (9e-5..2e4).contains(&value.abs());
     let plain = values.iter().all(short) || (scale == Scale::Linear && values.iter().all(|v| v.abs() < 1e6));
-    let label = |value: &f64| match plain || *value == 0.0 {
-        true => significant(*value, 8),
-        false => scientific(*value),
-    };
+    let label =
+        |value: &f64| if plain || *value == 0.0 { significant(*value, 8) } else { scientific(*value) };
     values.iter().map(label).collect()
 }
 
@@ -220,9 +218,10 @@ impl Ranged for Axis {
     }
 
     fn key_points<Hint: KeyPointHint>(&self, hint: Hint) -> Vec<f64> {
-        match hint.weight().allow_light_points() {
-            true => self.minor.clone(),
-            false => self.ticks.iter().map(|(value, _)| *value).collect(),
+        if hint.weight().allow_light_points() {
+            self.minor.clone()
+        } else {
+            self.ticks.iter().map(|(value, _)| *value).collect()
         }
     }
 

@@ -125,10 +125,7 @@ pub(super) fn write(root: &Root<'_>, text: &str, [x, y]: [i32; 2], style: &TextS
 pub(super) fn shorten(text: &str, size: f64, most: i32) -> String {
     let mut short = text.to_owned();
     while width(&short, size) > most && short.pop().is_some() {}
-    match short.len() < text.len() {
-        true => short.trim_end().to_owned() + "…",
-        false => short,
-    }
+    if short.len() < text.len() { short.trim_end().to_owned() + "…" } else { short }
 }
 
 /// The points that are somewhere.
@@ -168,10 +165,7 @@ pub(super) fn mark(root: &Root<'_>, [x, y]: [i32; 2], style: &Style) -> Drawn {
         Kind::Joined | Kind::Loose => {
             root.draw(&shape(1.3 * RADIUS, WHITE.mix(1.0)))?;
             root.draw(&shape(RADIUS, style.rgb().mix(1.0)))?;
-            match style.hollow {
-                true => root.draw(&shape(0.55 * RADIUS, WHITE.mix(1.0))),
-                false => Ok(()),
-            }
+            if style.hollow { root.draw(&shape(0.55 * RADIUS, WHITE.mix(1.0))) } else { Ok(()) }
         }
     }
 }

@@ -1,14 +1,14 @@
-//! What a sample of the compact layout is rounded to: the numbers of `lib/compact.glsl`, in float64.
+//! Rounding of a sample to the compact layout: `lib/compact.glsl` in float64.
 
 use super::Sample;
 use crate::scene::ColourStream;
 use glam::{DVec2, DVec3};
 
-/// Greatest half float.
+/// Greatest half-precision float.
 const MOST_HALF: f64 = 65_504.0;
-/// Greatest number of the format with a shared exponent.
+/// Greatest value of the shared-exponent format.
 const MOST_SHARED: f64 = 65_408.0;
-/// Codes of a coordinate of an octahedron, to either side of 0.
+/// Codes of an octahedral coordinate, on either side of 0.
 const CODES: f64 = 32_767.0;
 /// Codes of a square root.
 const ROOTS: f64 = 1023.0;
@@ -16,26 +16,28 @@ const ROOTS: f64 = 1023.0;
 /// The compact layout of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Compact {
-    /// How the scene has its colours: linear ones may be beyond 1, and share an exponent where others are kept as their square roots.
+    /// Colour format of the scene. Linear colours may exceed 1 and share an exponent; others are stored as square
+    /// roots.
     pub colours: ColourStream,
 }
 
-/// How far apart the numbers are of which the layout has one, about those of a sample: what is rounded is off by half of it, and of two that
-/// are rounded alike but for noise one may be off by all of it.
+/// Quantization steps of the layout around a sample. Rounding is off by at most half a step; two values that are equal
+/// but for noise may round to values a whole step apart.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Steps {
     /// Of `far`, in units of distance.
     pub far: f64,
-    /// Of either displacement, and of the radius, px.
+    /// Of a displacement coordinate, and of the radius, px.
     pub place: f64,
-    /// Of a coordinate of the normal.
+    /// Of a normal's coordinate.
     pub normal: f64,
-    /// Of a channel.
+    /// Of a colour channel.
     pub colour: f64,
 }
 
 impl Compact {
-    /// The sample as the layout holds it; its normal is world space. Distances are 32-bit floats and not rounded here.
+    /// The sample as the layout stores it; its normal is in world space. Distances are float32 and are not rounded
+    /// here.
     pub fn round(self, sample: &Sample) -> Sample {
         let [x, y] = sample.displacement.to_array().map(half);
         Sample {
@@ -52,14 +54,15 @@ impl Compact {
         }
     }
 
-    /// The steps about a sample.
+    /// The quantization steps around a sample.
     pub fn steps(self, sample: &Sample) -> Steps {
         let longest = sample.displacement.abs().max_element().max(sample.radius);
         let brightest = sample.colour.max_element();
         Steps {
             far: step(sample.far - sample.near, 8, -126),
             place: half_step(longest),
-            // A step of either coordinate moves a point of the octahedron by up to √6 of it, and one of the sphere by √3 times as much.
+            // A step of one coordinate moves a point of the octahedron by up to √6 steps, and the point of the sphere
+            // by √3 times as much.
             normal: 18f64.sqrt() / CODES,
             colour: match self.colours {
                 ColourStream::None => 0.0,
@@ -72,7 +75,7 @@ impl Compact {
     }
 }
 
-/// The step of numbers like `x` with so many bits of fraction, and with `least` as the least exponent.
+/// Spacing of floats near `x` with `fraction` bits of fraction and `least` as the least exponent.
 fn step(x: f64, fraction: i32, least: i32) -> f64 {
     let exponent = if x == 0.0 { least } else { (x.abs().log2().floor() as i32).max(least) };
     f64::from(exponent - fraction).exp2()
@@ -86,13 +89,13 @@ fn nearest(x: f64, step: f64) -> f64 {
     (x / step).round() * step
 }
 
-/// The nearest half float.
+/// The nearest half-precision float.
 fn half(x: f64) -> f64 {
     let x = x.clamp(-MOST_HALF, MOST_HALF);
     nearest(x, half_step(x))
 }
 
-/// The nearest number of 8 bits of exponent and 8 of fraction.
+/// The nearest float with 8 bits of exponent and 8 of fraction.
 fn length(x: f64) -> f64 {
     nearest(x, step(x, 8, -126))
 }
@@ -102,7 +105,7 @@ fn folded(p: DVec2) -> DVec2 {
     DVec2::new((1.0 - p.y.abs()) * sign(p.x), (1.0 - p.x.abs()) * sign(p.y))
 }
 
-/// The nearest place on an octahedron, as a direction; none stays none.
+/// The nearest direction with octahedral codes; 0 stays 0.
 fn direction(v: DVec3) -> DVec3 {
     if v == DVec3::ZERO {
         return v;
@@ -113,20 +116,20 @@ fn direction(v: DVec3) -> DVec3 {
     (if z < 0.0 { folded(p) } else { p }).extend(z).normalize()
 }
 
-/// Each channel by the nearest square root.
+/// Each channel by its nearest square-root code.
 fn roots(colour: DVec3) -> DVec3 {
     let roots = colour.clamp(DVec3::ZERO, DVec3::ONE).map(f64::sqrt);
     (roots * ROOTS).round() / ROOTS * ((roots * ROOTS).round() / ROOTS)
 }
 
-/// The step of channels of which this is the greatest.
+/// The step of channels whose greatest is `most`.
 fn shared_step(most: f64) -> f64 {
     let step = step(most.clamp(0.0, MOST_SHARED), 8, -16);
-    // What rounds up to 512 is 256 of the next exponent.
+    // A value that rounds up to 512 is 256 of the next exponent.
     if (most / step).round() > 511.0 { 2.0 * step } else { step }
 }
 
-/// Each channel by the nearest multiple of what the greatest decides.
+/// Each channel by the nearest multiple of the step that the greatest one decides.
 fn shared(colour: DVec3) -> DVec3 {
     let colour = colour.clamp(DVec3::ZERO, DVec3::splat(MOST_SHARED));
     colour.map(|channel| nearest(channel, shared_step(colour.max_element())))
@@ -145,7 +148,7 @@ mod tests {
         );
         assert_eq!(half(1e-7), 2f64.powi(-23));
         assert_eq!([1e12, 3e-30].map(|x| (length(x) / x - 1.0).abs() < 2f64.powi(-9)), [true; 2]);
-        // Every code of sRGB stays what it is.
+        // Every sRGB code survives.
         for code in 0..=255 {
             let linear = srgb::decode(f64::from(code) / 255.0);
             assert_eq!(srgb::encode8(roots(DVec3::splat(linear)).x as f32), code);

@@ -1,16 +1,16 @@
-//! α as the part of a pixel that the discs about it cover: at the outline of the final level 0 alone.
+//! α as the fraction of a pixel that the discs around it cover, on the final level 0.
 
 use super::super::coverage::{SAMPLES, sample};
-use super::{Level, Margin, Reconstruction, Sample};
+use super::{Decisions, Level, Reconstruction, Sample};
 use glam::DVec2;
 
-/// What a disc's variance is widened by, px²: what `push` widens it by for pixels, at half their side. Narrower discs leave holes between
-/// themselves; wider ones reach beyond the outline.
+/// Widening of a disc's variance, px²: that of `push` at half a pixel's side. Narrower discs leave holes; wider ones
+/// reach beyond the outline.
 const WIDENING: f64 = 0.0625;
 
-/// The part of a pixel of the final level 0 that is covered, where it has a disc: of 16 samples those within any disc of the pixels next to
-/// it, hidden ones too, and at least one. All of it, unless a neighbour is empty.
-pub fn of(frame: &Reconstruction, pushed: &Level, [x, y]: [i64; 2], margin: &Margin) -> f64 {
+/// Covered fraction of a pixel that has a disc: of 16 samples, those inside any disc of the 3×3 pixels around it,
+/// hidden ones included, and at least one. It is 1 unless a neighbour is empty.
+pub fn of(frame: &Reconstruction, pushed: &Level, [x, y]: [i64; 2], decisions: &Decisions) -> f64 {
     let around = (0..9).map(|k| [x + k % 3 - 1, y + k / 3 - 1]).filter(|&at| pushed.is_within(at));
     let near: Vec<_> = around.map(|at| Some((pushed.at(at)?, pushed.centre(at)))).collect();
     if near.iter().all(Option::is_some) {
@@ -18,9 +18,9 @@ pub fn of(frame: &Reconstruction, pushed: &Level, [x, y]: [i64; 2], margin: &Mar
     }
     let own = pushed.centre([x, y]);
     let covers = |at: DVec2, &(disc, centre): &(Sample, DVec2)| {
-        margin.covers(frame.radii2(&disc, centre + disc.displacement, at, WIDENING))
+        decisions.covers(frame.radii2(&disc, centre + disc.displacement, at, WIDENING))
     };
-    // All are asked, so that all that is in doubt is known.
+    // No short circuit: every test is recorded in `decisions`.
     let covered = |k: &u32| {
         let each = near.iter().flatten().map(|disc| covers(own + sample(*k), disc));
         each.max() == Some(true)

@@ -1,16 +1,17 @@
-//! From pixels to eye space, and the ellipse that a disc is on the screen.
+//! From pixels to eye space, and the ellipse of a disc on the screen.
 
 use super::super::Projector;
 use super::Sample;
 use glam::{DMat2, DMat3, DVec2, DVec3};
 
-/// Radius below which a tube is as round as one of it, px: a pixel that holds all of a hair is not its rim.
+/// Least radius with which a tube is shaded as round, px: a thinner one is not shaded by its rim where a pixel contains
+/// all of it.
 const THIN: f64 = 1.0;
 
-/// Squared sine of the angle to its axis below which a tube is seen from its end.
+/// Squared sine of the angle between a tube's axis and the ray below which the tube is seen end-on.
 const END_ON: f64 = 1e-4;
 
-/// A frame's camera, as pull–push sees it.
+/// Camera of a frame as pull–push uses it.
 pub struct Lens {
     perspective: bool,
     /// +1 if eye space looks along +z, else −1.
@@ -18,17 +19,17 @@ pub struct Lens {
     /// As in [`Projector`].
     starts: DMat3,
     steps: DMat3,
-    /// px of a unit length across the view, at distance 1 in perspective; divided by `focal`.
+    /// px per unit length across the view, at distance 1 in perspective; divided by `focal`.
     scale: DMat2,
     /// Square root of that scale's determinant.
     focal: f64,
 }
 
-/// A squared distance from a disc's centre, in its radii.
+/// Squared distance from a disc's centre, in squared radii.
 #[derive(Clone, Copy)]
 pub struct Radii2 {
     pub value: f64,
-    /// What it is the sum of, all taken as positive: it rounds with these.
+    /// Sum of the magnitudes of its summands: the scale of its rounding error.
     pub summands: f64,
 }
 
@@ -47,28 +48,28 @@ impl Lens {
         }
     }
 
-    /// px of a length at a distance.
+    /// A length at a distance, in px.
     pub fn to_pixels(&self, length: f64, distance: f64) -> f64 {
         self.focal * if self.perspective { length / distance } else { length }
     }
 
-    /// The length of so many px at a distance.
+    /// A length in px at a distance, in the scene's unit.
     pub fn to_length(&self, pixels: f64, distance: f64) -> f64 {
         pixels / self.focal * if self.perspective { distance } else { 1.0 }
     }
 
-    /// Step of the ray through a pixel position for one unit of distance.
+    /// Step of the ray through a pixel position per unit of distance.
     pub fn step(&self, at: DVec2) -> DVec3 {
         self.steps * DVec3::new(1.0, at.x, at.y)
     }
 
-    /// Normal of the disc about a centre on the screen: a tube's faces the eye.
+    /// Normal of the disc at a position on the screen; a tube's disc faces the eye.
     pub fn normal(&self, sample: &Sample, centre: DVec2) -> DVec3 {
         if sample.tube { self.to_eye(centre) } else { sample.normal }
     }
 
-    /// Squared distance of the pixel position `at` from a disc's centre, in its radii: the ellipse is the disc's image to first order
-    /// about its centre, its variance widened by `h`, px².
+    /// Squared distance of the pixel position `at` from a disc's centre, in squared radii. The ellipse is the disc's
+    /// image to first order around its centre, with its variance widened by `h`, px².
     pub fn radii2(&self, sample: &Sample, centre: DVec2, at: DVec2, h: f64) -> Radii2 {
         let step = self.step(centre);
         let across = step.truncate();
@@ -81,7 +82,7 @@ impl Lens {
         let v =
             radius2 * (self.scale * seen * self.scale.transpose()) + DMat2::from_diagonal(DVec2::splat(h));
         let [xx, xy, yy] = [v.x_axis.x, v.x_axis.y, v.y_axis.y];
-        // The determinant by its closed form: as a difference it would be lost on a disc seen edge-on.
+        // The closed form of the determinant: as a difference it would cancel for a disc seen edge-on.
         let determinant = (radius2 * normal.dot(step)).powi(2) + h * (xx + yy - h);
         let e = at - centre;
         let (squares, product) = (yy * e.x * e.x + xx * e.y * e.y, 2.0 * xy * e.x * e.y);
@@ -89,11 +90,11 @@ impl Lens {
         Radii2 { value, summands }
     }
 
-    /// Distance at which the ray through `at` meets the disc's plane, no further from its own than its radius.
+    /// Distance at which the ray through `at` meets the disc's plane, clamped to the disc's depth ± its radius.
     pub fn depth_at(&self, sample: &Sample, centre: DVec2, at: DVec2) -> f64 {
         let [from, to] = [centre, at].map(|p| sample.normal.dot(self.step(p)));
         let met = match self.perspective {
-            // Beyond the plane's horizon it is as far as it may be.
+            // Beyond the plane's horizon: clamped to the far side below.
             true if from / to > 0.0 => sample.depth * from / to,
             true => f64::INFINITY,
             false => {
@@ -110,8 +111,9 @@ impl Lens {
         -self.step(at).normalize()
     }
 
-    /// Where the ray through `at` meets a tube whose axis is seen at `centre`: the distance, no further from the axis's than twice the
-    /// radius, which is as far as it goes up to 60° from the picture's plane, and the normal. Beyond its outline, those of the outline.
+    /// Distance and normal where the ray through `at` meets a tube whose axis is at `centre` on the screen. Outside of
+    /// the outline, those of the outline. The distance is clamped to twice the radius from the axis, which suffices for
+    /// tubes up to 60° from the image plane.
     pub fn on_tube(&self, sample: &Sample, centre: DVec2, at: DVec2) -> (f64, DVec3) {
         let (tangent, radius) = (sample.normal, self.to_length(sample.radius.max(THIN), sample.depth));
         let to_eye = self.to_eye(at);
@@ -120,7 +122,7 @@ impl Lens {
         let across = |v: DVec3| v - v.dot(tangent) * tangent;
         let [offset, eye] = [across(start(at) - start(centre)), across(to_eye)];
         let slope = eye.length_squared();
-        // Along the axis it has no side: it is the ball about its end.
+        // Seen end-on, a tube is the ball around its end.
         if slope < END_ON {
             return (sample.depth - radius, to_eye);
         }

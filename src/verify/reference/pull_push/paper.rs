@@ -1,19 +1,19 @@
-//! Passes `pull` and `push` as the paper has them (marroquim2008 sections 3.2 and 3.3).
+//! Passes `pull` and `push` as published (marroquim2008 sections 3.2 and 3.3).
 
+use super::decisions::Decisions;
 use super::lens::{Lens, Radii2};
-use super::margin::Margin;
 use super::pull::{children, mean_of_front};
 use super::push::nearest_four;
-use super::{Decided, Level, Sample, Watch, centre};
+use super::{Level, LevelDecisions, PassProgress, Sample, centre};
 use glam::{DVec2, DVec3};
 
 /// Least minor semi-axis of an ellipse, px.
 const LEAST_AXIS: f64 = 0.5;
 
-/// `ln` of the weight at the rim, negated: σ is half of the radius.
+/// Negated `ln` of the weight at the rim: σ is half the radius.
 const RIM: f64 = 2.0;
 
-/// Squared distance of `at` from the centre of a disc's ellipse by parallel projection, in its radii.
+/// Squared distance of `at` from the centre of a disc's ellipse by parallel projection, in squared radii.
 pub fn radii2(lens: &Lens, sample: &Sample, disc: DVec2, at: DVec2) -> Radii2 {
     let e = at - disc;
     let normal = lens.normal(sample, disc);
@@ -25,38 +25,44 @@ pub fn radii2(lens: &Lens, sample: &Sample, disc: DVec2, at: DVec2) -> Radii2 {
 }
 
 /// Fine to coarse.
-pub fn pull(lens: &Lens, finer: &Level, watch: &Watch<'_>) -> Decided {
+pub fn pull(lens: &Lens, finer: &Level, progress: &PassProgress<'_>) -> LevelDecisions {
     let level = finer.level + 1;
-    Decided::new(level, finer.coarser_size(), watch, |at, margin| {
+    LevelDecisions::new(level, finer.coarser_size(), progress, |at, decisions| {
         let own = centre(level, at);
-        let covers = |sample: &Sample, disc: DVec2| margin.covers(radii2(lens, sample, disc, own));
-        mean_of_front(own, &children(finer, at, covers), margin)
+        let covers = |sample: &Sample, disc: DVec2| decisions.covers(radii2(lens, sample, disc, own));
+        mean_of_front(own, &children(finer, at, covers), decisions)
     })
 }
 
-/// Coarse to fine: a pixel that is empty, or behind what the coarser one has, is made anew.
-pub fn push(lens: &Lens, coarser: &Level, pulled: &Level, watch: &Watch<'_>) -> Decided {
-    Decided::new(pulled.level, pulled.size, watch, |at, margin| {
+/// Coarse to fine: replaces a pixel that is empty or lies behind the coarser surface.
+pub fn push(lens: &Lens, coarser: &Level, pulled: &Level, progress: &PassProgress<'_>) -> LevelDecisions {
+    LevelDecisions::new(pulled.level, pulled.size, progress, |at, decisions| {
         let own = centre(pulled.level, at);
         let around = nearest_four(at);
         let point = pulled.at(at);
         let behind = |point: &Sample| coarser.at(around[0]).is_some_and(|surface| point.near > surface.far);
         match point {
             Some(point) if !behind(&point) => Some(point),
-            _ => blend(lens, own, margin, &around.map(|at| Some((coarser.at(at)?, coarser.centre(at))))),
+            _ => blend(lens, own, decisions, &around.map(|at| Some((coarser.at(at)?, coarser.centre(at))))),
         }
     })
 }
 
-/// Its kind is that of the greatest weight; how tangents and normals would mix is not said.
-fn blend(lens: &Lens, own: DVec2, margin: &Margin, coarser: &[Option<(Sample, DVec2)>]) -> Option<Sample> {
+/// The mean of covering discs of one kind: that of the greatest weight, as the paper does not define a mix of tangents
+/// and normals.
+fn blend(
+    lens: &Lens,
+    own: DVec2,
+    decisions: &Decisions,
+    coarser: &[Option<(Sample, DVec2)>],
+) -> Option<Sample> {
     let weighted = coarser.iter().flatten().filter_map(|(sample, centre)| {
         let disc = *centre + sample.displacement;
         let radii2 = radii2(lens, sample, disc, own);
-        margin.covers(radii2).then(|| (sample, disc, (-RIM * radii2.value).exp(), radii2.value))
+        decisions.covers(radii2).then(|| (sample, disc, (-RIM * radii2.value).exp(), radii2.value))
     });
     let mut discs: Vec<_> = weighted.collect();
-    let least = margin.least(&discs, |disc| disc.3, |a, b| (a.0.id, a.0.tube) == (b.0.id, b.0.tube))?;
+    let least = decisions.least(&discs, |disc| disc.3, |a, b| (a.0.id, a.0.tube) == (b.0.id, b.0.tube))?;
     let first = discs[least].0;
     discs.retain(|(sample, ..)| sample.tube == first.tube);
     let total: f64 = discs.iter().map(|(_, _, weight, _)| weight).sum();
@@ -69,7 +75,7 @@ fn blend(lens: &Lens, own: DVec2, margin: &Margin, coarser: &[Option<(Sample, DV
         depth: mean(&|sample| sample.depth),
         displacement: discs.iter().map(|(_, disc, w, _)| *w * (*disc - own)).sum::<DVec2>() / total,
         radius: mean(&|sample| sample.radius),
-        normal: mean3(&|sample| sample.direction_as(first)).normalize_or_zero(),
+        normal: mean3(&|sample| sample.aligned_direction(first)).normalize_or_zero(),
         tube: first.tube,
         colour: mean3(&|sample| sample.colour),
         coordinates: DVec2::ZERO,

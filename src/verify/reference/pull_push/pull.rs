@@ -1,19 +1,20 @@
-//! Pass `pull`: the discs that a coarser pixel has in front (marroquim2008 section 3.2; a perspective ellipse, and true displacements).
+//! Pass `pull`: merges finer samples in front into a coarser one (marroquim2008 section 3.2; with a perspective
+//! ellipse, and exact displacements).
 
 use super::lens::Lens;
-use super::{Decided, Level, Margin, Sample, Watch, centre};
+use super::{Decisions, Level, LevelDecisions, PassProgress, Sample, centre};
 use glam::{DVec2, DVec3};
 
-pub fn pass(lens: &Lens, finer: &Level, watch: &Watch<'_>) -> Decided {
+pub fn pass(lens: &Lens, finer: &Level, progress: &PassProgress<'_>) -> LevelDecisions {
     let level = finer.level + 1;
-    Decided::new(level, finer.coarser_size(), watch, |at, margin| {
+    LevelDecisions::new(level, finer.coarser_size(), progress, |at, decisions| {
         let own = centre(level, at);
-        let covers = |sample: &Sample, disc: DVec2| margin.covers(lens.radii2(sample, disc, own, 0.0));
-        mean_of_front(own, &children(finer, at, covers), margin)
+        let covers = |sample: &Sample, disc: DVec2| decisions.covers(lens.radii2(sample, disc, own, 0.0));
+        mean_of_front(own, &children(finer, at, covers), decisions)
     })
 }
 
-/// The finer samples under a pixel whose discs cover its centre, with their discs' centres.
+/// The finer samples of a pixel whose discs cover its centre, with the centres of the discs.
 pub fn children(
     finer: &Level,
     [x, y]: [i64; 2],
@@ -27,13 +28,13 @@ pub fn children(
     discs.filter(|(sample, disc)| covers(sample, *disc)).collect()
 }
 
-/// The mean of those discs that are one surface with the nearest, and as it is of a tube or of none, for the pixel with this centre. Its
-/// number is that of the disc whose centre is nearest to the pixel's.
-pub fn mean_of_front(own: DVec2, discs: &[(Sample, DVec2)], margin: &Margin) -> Option<Sample> {
+/// The mean of the discs that belong to the nearest surface and are of its kind, tube or not, for the pixel with centre
+/// `own`. Its id is that of the disc whose centre is nearest to the pixel's.
+pub fn mean_of_front(own: DVec2, discs: &[(Sample, DVec2)], decisions: &Decisions) -> Option<Sample> {
     let (front, _) = discs.iter().min_by(|a, b| a.0.near.total_cmp(&b.0.near))?;
     let one = |sample: &Sample| sample.near <= front.far && sample.tube == front.tube;
     let discs: Vec<_> = discs.iter().filter(|(sample, _)| one(sample)).collect();
-    let shown = margin.least(&discs, |(_, disc)| disc.distance_squared(own), |a, b| a.0.id == b.0.id)?;
+    let shown = decisions.least(&discs, |(_, disc)| disc.distance_squared(own), |a, b| a.0.id == b.0.id)?;
     let count = discs.len() as f64;
     let mean = |of: &dyn Fn(&Sample) -> f64| discs.iter().map(|(sample, _)| of(sample)).sum::<f64>() / count;
     let mean3 =
@@ -44,10 +45,11 @@ pub fn mean_of_front(own: DVec2, discs: &[(Sample, DVec2)], margin: &Margin) -> 
         depth: mean(&|sample| sample.depth),
         displacement: discs.iter().map(|(_, disc)| *disc - own).sum::<DVec2>() / count,
         radius: mean(&|sample| sample.radius),
-        normal: mean3(&|sample| sample.direction_as(front)).normalize_or_zero(),
+        normal: mean3(&|sample| sample.aligned_direction(front)).normalize_or_zero(),
         tube: front.tube,
         colour: mean3(&|sample| sample.colour),
-        coordinates: front.coordinates + mean3(&|sample| sample.turn_from(front).extend(0.0)).truncate(),
+        coordinates: front.coordinates
+            + mean3(&|sample| sample.coordinate_offset(front).extend(0.0)).truncate(),
         id: discs[shown].0.id,
     })
 }

@@ -1,41 +1,41 @@
-//! Pass `shade`: the picture, lit pixel by pixel (marroquim2008 section 3.4).
+//! Pass `shade`: shades the picture pixel by pixel (marroquim2008 section 3.4).
 
 use super::super::normalize::{Value, over_background, uncovered};
 use super::super::{Frame, Shine, line_normal, lit, lit_line};
-use super::{Level, Margin, Reconstruction, Sample, Watch, coverage, texture};
+use super::{Decisions, Level, PassProgress, Reconstruction, Sample, coverage, texture};
 use crate::settings::pull_push::Rules;
 use crate::settings::{Alpha, Shading};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
-pub fn pass(frame: &Reconstruction, pushed: &Level, watch: &Watch<'_>) -> Frame {
+pub fn pass(frame: &Reconstruction, pushed: &Level, progress: &PassProgress<'_>) -> Frame {
     let value = |(sample, at): (Option<Sample>, [i64; 2])| match sample {
-        Some(sample) if !watch.is_over() => {
-            let alpha = alpha(frame, pushed, at, &Margin::new());
+        Some(sample) if !progress.is_cancelled() => {
+            let alpha = alpha(frame, pushed, at, &Decisions::new());
             let colour = texture::colour(frame, pushed, at, &sample);
             value(frame, &Sample { colour, ..sample }, pushed.centre(at), alpha)
         }
         _ => uncovered(&frame.projector),
     };
     let values: Vec<Value> = pixels(pushed).map(value).collect();
-    watch.made(values.len() as u64);
+    progress.advance(values.len() as u64);
     let id = pushed.samples.iter().map(|sample| sample.map_or(Frame::NOBODY, |sample| sample.id)).collect();
     Frame { id: Some(id), ..Frame::of(&values, pushed.size) }
 }
 
-/// How near the decisions about the α of each pixel were to turning.
-pub fn margins(frame: &Reconstruction, pushed: &Level) -> Vec<f64> {
-    let margin = |(sample, at): (Option<Sample>, [i64; 2])| {
-        let margin = Margin::new();
+/// Gaps of the decisions about the α of each pixel.
+pub fn gaps(frame: &Reconstruction, pushed: &Level) -> Vec<f64> {
+    let gap = |(sample, at): (Option<Sample>, [i64; 2])| {
+        let decisions = Decisions::new();
         if sample.is_some() {
-            alpha(frame, pushed, at, &margin);
+            alpha(frame, pushed, at, &decisions);
         }
-        margin.nearest()
+        decisions.least_gap()
     };
-    pixels(pushed).map(margin).collect()
+    pixels(pushed).map(gap).collect()
 }
 
-/// The samples of a level, and where they are.
+/// The samples of a level with their pixel coordinates.
 fn pixels(level: &Level) -> impl IndexedParallelIterator<Item = (Option<Sample>, [i64; 2])> {
     let width = i64::from(level.size[0]);
     let place = move |i: usize| [i as i64 % width, i as i64 / width];
@@ -43,10 +43,10 @@ fn pixels(level: &Level) -> impl IndexedParallelIterator<Item = (Option<Sample>,
 }
 
 /// α of a pixel that has a disc.
-fn alpha(frame: &Reconstruction, pushed: &Level, at: [i64; 2], margin: &Margin) -> f64 {
+fn alpha(frame: &Reconstruction, pushed: &Level, at: [i64; 2], decisions: &Decisions) -> f64 {
     match frame.projector.settings.alpha {
         Alpha::Mask => 1.0,
-        Alpha::Coverage => coverage::of(frame, pushed, at, margin),
+        Alpha::Coverage => coverage::of(frame, pushed, at, decisions),
     }
 }
 
@@ -74,7 +74,7 @@ fn value(frame: &Reconstruction, sample: &Sample, at: DVec2, alpha: f64) -> Valu
         Shading::Colour => sample.colour,
         Shading::Normal => normal,
         Shading::Depth => DVec3::splat(depth),
-        // A pixel shows one point, or what is made of those about it.
+        // A pixel shows one point, or the reconstruction of several.
         Shading::Overlap | Shading::Weight => DVec3::ONE,
     };
     let colour = over_background(projector, shown, alpha);

@@ -1,4 +1,4 @@
-//! What single pixels of the pyramids have to be.
+//! Single pixels of the pyramids.
 
 use super::*;
 use crate::geometry::{Model, Primitives, Surfels};
@@ -18,7 +18,7 @@ fn frame(rules: Rules) -> Reconstruction {
     Reconstruction::new(&camera(), [64, 64], &settings, PullPush::of(rules)).unwrap()
 }
 
-/// A disc that faces the eye from the middle of the view.
+/// A disc in the middle of the view that faces the eye.
 fn sample(near: f64, radius: f64) -> Sample {
     Sample {
         near,
@@ -34,11 +34,11 @@ fn sample(near: f64, radius: f64) -> Sample {
     }
 }
 
-/// A level of 64 px of the picture, with some samples.
+/// A level of a picture of 64 px, with some samples.
 fn level(level: u32, known: &[([i64; 2], Sample)]) -> Level {
     let side = 64 >> level;
     let find = |at: [i64; 2]| known.iter().find(|(place, _)| *place == at).map(|(_, sample)| *sample);
-    Decided::new(level, [side; 2], &Watch::nobody(), |at, _| find(at)).level
+    LevelDecisions::new(level, [side; 2], &PassProgress::silent(), |at, _| find(at)).level
 }
 
 fn discs(list: &[(DVec3, DVec3, f32)]) -> Surfels {
@@ -54,7 +54,7 @@ fn discs(list: &[(DVec3, DVec3, f32)]) -> Surfels {
 fn ellipses_are_the_derivative_of_the_projection() {
     let projector = Projector::new(&camera(), [64, 64], &Settings::default()).unwrap();
     let lens = Lens::new(&projector);
-    // Points of a small circle about the centre, projected: on the rim to first order in the radius.
+    // Projected points of a small circle around the centre: on the rim to first order in the radius.
     let (centre, normal, radius) = (DVec3::new(0.7, -0.4, 2.0), DVec3::new(0.5, 0.3, -1.0).normalize(), 1e-4);
     let pixel = |p: DVec3| {
         let h = projector.homogeneous_pixel(p.extend(1.0));
@@ -68,7 +68,7 @@ fn ellipses_are_the_derivative_of_the_projection() {
         let found = lens.radii2(&seen, pixel(centre), rim, 0.0).value;
         assert!((found - 1.0).abs() < 1e-3, "{i}: {found}");
     }
-    // Of the plane, too.
+    // The plane's depth, too.
     let at = pixel(centre + radius * s);
     let met = lens.depth_at(&seen, pixel(centre), at);
     assert!((met - (centre + radius * s).z).abs() < 1e-9, "{met}");
@@ -89,7 +89,7 @@ fn parallel_rays_meet_every_plane() {
     let camera = Camera::orthographic([DVec3::ZERO, DVec3::Z, DVec3::NEG_Y], 2.0, 1.0, [0.5, 8.0]).unwrap();
     let projector = Projector::new(&camera, [64, 64], &Settings::default()).unwrap();
     let lens = Lens::new(&projector);
-    // So steep that planes reach behind the eye a pixel beside the disc's centre: there they are as near as they may be.
+    // Planes so steep that they pass behind the eye one pixel beside the disc's centre: the depth is clamped.
     let steep = |x: f64| Sample { normal: DVec3::new(x, 0.0, -0.001).normalize(), ..sample(2.0, 8.0) };
     let reach = lens.to_length(8.0, 2.0);
     for (x, sign) in [(1.0, 1.0), (-1.0, -1.0)] {
@@ -136,7 +136,8 @@ fn what_is_exactly_edge_on_faces_away_where_that_is_culled_and_has_no_area_elsew
 #[test]
 fn a_parent_is_the_mean_of_the_front_that_covers_it() {
     for rules in [Rules::Paper, Rules::Robust] {
-        // Of pixel (16, 16) above, whose centre is at 33: one in front, one of the same surface, one behind, one that is too small.
+        // Under pixel (16, 16) of level 1, whose centre is at 33: one in front, one of the same surface, one behind,
+        // one too small.
         let small = sample(1.9, 0.6);
         let known = [
             ([32, 32], sample(2.0, 4.0)),
@@ -147,7 +148,7 @@ fn a_parent_is_the_mean_of_the_front_that_covers_it() {
         let parent = frame(rules).pull(&level(0, &known)).at([16, 16]).unwrap();
         assert_eq!((parent.near, parent.far, parent.radius), (2.0, 2.05 + 0.1, 5.0), "{rules:?}");
         assert!((parent.depth - 2.025).abs() < 1e-12);
-        // Both centres are half a pixel above it, and on either side.
+        // Both centres are half a pixel above it, one on either side.
         assert!(parent.displacement.abs_diff_eq(DVec2::new(0.0, -0.5), 1e-12), "{parent:?}");
     }
 }
@@ -170,13 +171,13 @@ fn the_four_nearest_are_on_a_pixels_own_side() {
     assert_eq!(push::nearest_four([0, 0]), [[0, 0], [-1, 0], [0, -1], [-1, -1]]);
 }
 
-/// Vertices at eye-space positions with directions and radii; the camera stands at the origin.
+/// Vertices at eye-space positions with directions and radii; the camera is at the origin.
 fn vertices(list: &[(DVec3, DVec3, f32)]) -> Primitives {
     let Surfels { positions, normals, radii, .. } = discs(list);
     Primitives { positions, directions: normals, radii, ..Default::default() }
 }
 
-/// Level 0, where lines and triangles are all there is.
+/// Level 0 of lines and triangles alone.
 fn projected(rules: Rules, primitives: Primitives) -> Level {
     frame(rules).project(&Model { primitives, ..Default::default() }).level
 }
@@ -187,7 +188,7 @@ fn lines_have_no_gaps_and_no_more_than_a_pixel_a_column() {
     for i in 0..200 {
         let at = |k: u32| DVec3::new(random(8 * i + k), random(8 * i + k + 1), 1.5 + random(8 * i + k + 2));
         let [from, to] = [at(0), at(3)];
-        // Every fourth begins behind the eye.
+        // Every fourth starts behind the eye.
         let from = if i % 4 == 0 { from - 1.6 * DVec3::Z } else { from };
         let ends = [(from, DVec3::Z, 0.0), (to, DVec3::Z, 0.0)];
         let level = projected(Rules::Robust, Primitives { ribbons: vec![[0, 1]], ..vertices(&ends) });
@@ -249,7 +250,7 @@ fn a_tube_is_round() {
             }
             let normal = across(z * step - axis) / radius;
             let found = DVec3::from_array(picture.normal[i]);
-            // Its axis is a mean of discs up to a radius away, bent by perspective by r² / z.
+            // The axis is a mean of discs up to a radius away, bent by perspective by r² / z.
             assert!(
                 picture.covered[i] && (picture.depth[i] - z).abs() < 0.02,
                 "{i}: {} {z}",
@@ -262,7 +263,7 @@ fn a_tube_is_round() {
     }
 }
 
-/// Gives up after it has been told so often, and counts on.
+/// Cancels after a number of reports, and counts on.
 struct Impatient {
     told: AtomicU64,
     after: u64,
@@ -294,7 +295,7 @@ fn a_frame_that_is_given_up_ends_wherever_it_is() {
         for after in [0, 1, 2, all / 2, all - 2, all - 1] {
             let (made, told) = render(after);
             assert!(matches!(made, Err(Error::Cancelled)), "after {after} of {all}");
-            // Rows that are being made then, and that the passes are through.
+            // Rows in progress, and the reports of the passes that follow.
             let more = told - after;
             assert!(more <= 2 + rayon::current_num_threads() as u64, "{more} more after {after} of {all}");
         }

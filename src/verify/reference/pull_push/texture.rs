@@ -1,9 +1,9 @@
-//! The colour of a pixel whose surface has a texture.
+//! Colour of a pixel on a textured surface.
 
 use super::{Level, Reconstruction, Sample};
 use glam::{DVec2, DVec3};
 
-/// Of a pixel of the final level 0, which has a sample; from the level of the texture whose texels are as large as the pixel.
+/// Colour at a pixel of the final level 0 that has a sample, from the mip level whose texels are as large as the pixel.
 pub fn colour(frame: &Reconstruction, pushed: &Level, at: [i64; 2], sample: &Sample) -> DVec3 {
     let Some(image) = &frame.texture else { return sample.colour };
     let size = DVec2::from(image.level_size(0).map(f64::from));
@@ -12,13 +12,13 @@ pub fn colour(frame: &Reconstruction, pushed: &Level, at: [i64; 2], sample: &Sam
     image.sample(sample.coordinates, 0.5 * texels2.log2())
 }
 
-/// By how much coordinates in the texture change from a pixel to the next, from the neighbours either side that are of its surface, or the
-/// one that is; 0 if none is.
+/// Change of the texture coordinates from one pixel to the next: from the neighbours on either side that belong to its
+/// surface, or from one; 0 if there is none.
 fn difference(pushed: &Level, [x, y]: [i64; 2], [dx, dy]: [i64; 2], own: &Sample) -> DVec2 {
     let way = |sign: i64| {
         let other = pushed.at([x + sign * dx, y + sign * dy])?;
         let one = other.near <= own.far && own.near <= other.far && other.tube == own.tube;
-        one.then(|| sign as f64 * other.turn_from(own))
+        one.then(|| sign as f64 * other.coordinate_offset(own))
     };
     match (way(-1), way(1)) {
         (Some(a), Some(b)) => 0.5 * (a + b),

@@ -1,4 +1,4 @@
-//! α as the part of a pixel that is covered.
+//! α as the covered fraction of a pixel.
 
 use super::*;
 
@@ -6,13 +6,13 @@ fn coverage() -> Settings {
     Settings { alpha: Alpha::Coverage, ..plain() }
 }
 
-/// What the discs look like in parallel projection, 16 px a unit.
+/// α of the discs in parallel projection, 16 px per unit.
 fn alphas(discs: &[Surfel], settings: &Settings) -> Vec<f64> {
     let frame = render(&scene(discs), &parallel(), SIZE, settings, &()).unwrap();
     frame.colour.iter().map(|colour| colour[3]).collect()
 }
 
-/// The place of a point of the picture, px.
+/// World position of a point of the picture, px.
 fn at(x: f64, y: f64) -> DVec3 {
     DVec3::new((x - 32.0) / 16.0, (y - 32.0) / 16.0, 2.0)
 }
@@ -21,7 +21,7 @@ fn at(x: f64, y: f64) -> DVec3 {
 fn coverage_is_the_area_of_the_discs_within_what_leaves_no_holes() {
     let (radius, centre) = (20.0, [31.3, 32.2]);
     let alphas = alphas(&[disc(at(centre[0], centre[1]), DVec3::NEG_Z, radius / 16.0)], &coverage());
-    // By many points a pixel.
+    // The exact fraction, by 64 × 64 points per pixel.
     let exact = |i: usize| {
         let inside = |k: usize| {
             let [x, y] = [k % 64, k / 64].map(|k| (k as f64 + 0.5) / 64.0);
@@ -31,7 +31,7 @@ fn coverage_is_the_area_of_the_discs_within_what_leaves_no_holes() {
     };
     let errors: Vec<f64> = alphas.iter().enumerate().map(|(i, alpha)| alpha - exact(i)).collect();
     let boundary = (0..64 * 64).filter(|&i| exact(i) > 0.0 && exact(i) < 1.0).count() as f64;
-    // 16 points with one in each row and column tell the area under a line to about 1/16.
+    // 16 points with one in each row and column measure the area under a line to about 1/16.
     let mean: f64 = errors.iter().map(|e| e.abs()).sum::<f64>() / boundary;
     assert!(mean < 1.0 / 16.0 && errors.iter().all(|e| e.abs() < 2.5 / 16.0), "{mean} {errors:?}");
     assert!((errors.iter().sum::<f64>() / boundary).abs() < 0.02);
@@ -90,14 +90,14 @@ fn a_sample_on_the_limit_may_be_covered_or_not() {
     let surfels = |scale: f64| scene(&[disc(at(32.5, 32.5), DVec3::NEG_Z, scale * radius / 16.0)]);
     let settings = coverage();
     let expected = Expected::new(&surfels(1.0), &parallel(), SIZE, &settings, &Tolerance::default()).unwrap();
-    assert!(expected.doubt.pixels().any(|pixel| pixel == 32 * 64 + 22));
+    assert!(expected.bounds.ambiguous_pixels().any(|pixel| pixel == 32 * 64 + 22));
     let failed = |scale: f64| {
         let frame = render(&surfels(scale), &parallel(), SIZE, &settings, &()).unwrap();
         expected.compare(&frame.to_picture()).unwrap().failed
     };
     assert_eq!([1.0 - 2e-6, 1.0 + 2e-6].map(failed), [0, 0]);
     assert!([0.98, 1.02].into_iter().all(|scale| failed(scale) > 10));
-    // No more than that one sample.
+    // Only that sample may change.
     let mut picture = expected.frame.to_picture();
     let alpha = picture.colour[32 * 64 + 22][3];
     let judged = [-2.0, -1.0, 0.0, 1.0, 2.0].map(|by: f32| {
@@ -107,7 +107,7 @@ fn a_sample_on_the_limit_may_be_covered_or_not() {
     assert_eq!(judged.iter().filter(|passed| **passed).count(), 2, "{judged:?}");
 }
 
-/// A disc of 300 px in the middle, cut by a line at `offset` px from the centre, and whether the other side is there too.
+/// A disc of 300 px in the middle, cut by a line at `offset` px from the centre; with or without the other half.
 fn cut(angle: f64, offset: f64, other: bool) -> Surfels {
     let outward = DVec3::new(angle.cos(), angle.sin(), 0.0);
     let half = |sign: f64, colour| {
@@ -166,7 +166,7 @@ fn a_pixel_centre_on_a_clip_line_is_within_it_or_beyond() {
     };
     assert_eq!([8.5 - 2e-4, 8.5 + 2e-4].map(failed), [0, 0]);
     assert_eq!([8.5 - 1.1, 8.5 + 1.1].map(failed), [64, 64]);
-    // Either side, or both: no pixel is nothing, or what it would be of one disc beyond its line and the other within.
+    // Either half or both: no pixel is empty, and none blends one disc beyond its line with the other within.
     let mut picture = expected.frame.to_picture();
     picture.colour[40] = [0.25, 0.75, 0.0, 1.0];
     assert_eq!(expected.compare(&picture).unwrap().failed, 1);

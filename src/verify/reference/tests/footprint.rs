@@ -1,4 +1,4 @@
-//! Surfels to splats.
+//! Splats of surfels.
 
 use super::super::conic::{dual_form, inverse_form};
 use super::*;
@@ -31,7 +31,7 @@ fn both_forms_of_the_conic_agree() {
             .max((inverse.offset - dual.offset).length() / scale.sqrt())
             .max((inverse.sqrt_det / dual.sqrt_det - 1.0).abs());
         worst = worst.max(difference);
-        // Digits go with the square of the ellipse's aspect and with the distance to the eye plane.
+        // Precision decreases with the square of the ellipse's aspect, and towards the eye plane.
         let clear = conic::clearance(&mapping, 2.0) / (mapping.z_axis.z / 2.0).powi(2);
         if clear > 0.1 && dual.sqrt_det / scale > 0.03 {
             compared += 1;

@@ -12,7 +12,7 @@ fn object() -> Splatting {
     Splatting { footprint: Footprint::Parallelogram, filter: Filter::Object, ..Splatting::default() }
 }
 
-/// Every splat alone: its footprint, and the discs that it is of.
+/// Checks random splats, one at a time.
 fn each_disc(splatting: Splatting, mut check: impl FnMut(&Projector, &Surfel, &Splat)) {
     let (projector, mut state) = (Projector::new(&perspective(), SIZE, &splatted(splatting)).unwrap(), 5);
     let mut checked = 0;
@@ -20,7 +20,7 @@ fn each_disc(splatting: Splatting, mut check: impl FnMut(&Projector, &Surfel, &S
         let position =
             DVec3::new(0.8 * random(&mut state), 0.8 * random(&mut state), 3.0 + random(&mut state));
         let surfel = disc(position, random_vector(&mut state), 0.1 + 0.05 * random(&mut state));
-        // Neither edge-on nor backwards, so that no bound acts.
+        // Neither edge-on nor backfacing, so that no limit applies.
         if surfel.normal.dot(position.normalize()) > -0.4 {
             continue;
         }
@@ -51,7 +51,7 @@ fn a_parallelogram_is_the_deformed_quad_of_its_paper() {
         let ellipse = Ellipse::attribute(splat, projector);
         assert!(close(ellipse.amplitude, sigma * sigma / (lambda.x * lambda.y), 1e-9));
         for corner in [[0.3, 0.2], [-0.9, 0.4], [0.7, -1.0], [-0.5, -0.6]] {
-            // A point of the quad in units of its half sides, to the screen and back.
+            // A point of the quad in units of its half sides, projected to the screen.
             let y = 2.0 * DVec2::from_array(corner);
             let u = rotation * (lambda * y);
             let point = o + u.x * s + u.y * t;
@@ -70,7 +70,7 @@ fn a_parallelogram_is_the_deformed_quad_of_its_paper() {
 
 #[test]
 fn object_and_screen_space_filters_are_one_but_for_perspective() {
-    // A plane with a checkerboard; of twice as many rows, the discs are half as large.
+    // A plane with a checkerboard; with twice the rows, the discs are half as large.
     let sampled = |rows: usize| {
         let step = 6.0 / rows as f64;
         let grid = (0..rows * rows).map(|i| {
@@ -101,7 +101,7 @@ fn a_sprite_is_the_unit_sphere_cut_by_its_plane() {
     let sprite = Splatting { footprint: Footprint::Sprite, filter: Filter::None, ..Splatting::default() };
     each_disc(sprite, |projector, surfel, splat| {
         let (o, n, r) = (surfel.position, surfel.normal, surfel.radius);
-        // No bound acts on what is this steep at least.
+        // Facing this much, no limit applies.
         if n.z.abs() < 0.2 {
             return;
         }
@@ -129,7 +129,7 @@ fn a_confetti_kernel_has_the_published_values() {
     };
     each_disc(confetti, |projector, _, splat| {
         let ellipse = Ellipse::new(splat, projector, |variance| variance);
-        // Of b = 1.5: ψ(0) = 1, ψ(0.75) = exp(−6 / 7), and next to nothing at the rim.
+        // With b = 1.5: ψ(0) = 1, ψ(0.75) = exp(−6 / 7), and almost 0 at the rim.
         assert!(close(ellipse.weight(DVec2::ZERO), 1.0, 1e-9));
         assert!(close(ellipse.weight(2.0 * 0.75 / 1.5 * DVec2::X), (-6.0f64 / 7.0).exp(), 1e-9));
         assert!(
@@ -140,7 +140,7 @@ fn a_confetti_kernel_has_the_published_values() {
 
 #[test]
 fn moved_along_the_axis_a_surface_hides_what_is_beside_it() {
-    // A disc well off the axis, and a wall behind it.
+    // A disc far off the axis, and a wall behind it.
     let red = Surfel { colour: Some(DVec3::X), ..disc(DVec3::new(0.3, 0.0, 1.0), DVec3::NEG_Z, 0.1) };
     let wall = (0..40 * 40).map(|i| {
         let [x, y] = [i % 40, i / 40].map(|v| 0.1 * (f64::from(v) - 19.5));

@@ -1,7 +1,7 @@
-//! Closed forms that the passes have to meet.
+//! Passes against closed forms.
 
 mod coverage;
-mod doubt;
+mod error_bounds;
 mod footprint;
 mod kinds;
 mod passes;
@@ -19,7 +19,7 @@ fn perspective() -> Camera {
     Camera::look_at(DVec3::ZERO, DVec3::Z, DVec3::NEG_Y, fov, 1.0, 0.01).unwrap()
 }
 
-/// The same direction; one unit is 16 px.
+/// Parallel projection in the same direction; one unit is 16 px.
 fn parallel() -> Camera {
     Camera::orthographic([DVec3::ZERO, DVec3::Z, DVec3::NEG_Y], 4.0, 1.0, [0.1, 100.0]).unwrap()
 }

@@ -1,4 +1,4 @@
-//! Splats to pictures.
+//! Pictures of splats.
 
 use super::super::ellipse::Ellipse;
 use super::*;
@@ -22,9 +22,10 @@ fn a_plane_has_no_holes_and_its_own_depth() {
         for (i, &depth) in frame.depth.iter().enumerate() {
             let [x, y] =
                 [i % 64, i / 64].map(|v| (v as f64 + 0.5 - 32.0) / if is_perspective { 64.0 } else { 16.0 });
-            let expected = match is_perspective {
-                true => 3.0 * unit.z / unit.dot(DVec3::new(x, y, 1.0)),
-                false => 3.0 - (unit.x * x + unit.y * y) / unit.z,
+            let expected = if is_perspective {
+                3.0 * unit.z / unit.dot(DVec3::new(x, y, 1.0))
+            } else {
+                3.0 - (unit.x * x + unit.y * y) / unit.z
             };
             assert!(frame.covered[i], "hole at pixel {i}");
             // The centres were rounded to f32.
@@ -84,7 +85,7 @@ fn weights_are_the_filtered_kernels() {
     }
 }
 
-/// A pixel that visibility owns and no splat gives attributes to would be a hole.
+/// A pixel that visibility covers and the attribute pass does not would be a hole.
 #[test]
 fn attributes_reach_wherever_visibility_does() {
     for (cutoff, lowpass) in [(1.0, 0.0), (2.0, 0.0), (2.0, 0.3), (2.0, 1.0), (4.0, 9.0)] {
@@ -109,7 +110,7 @@ fn normals_turn_to_the_eye_and_cancel_into_the_viewing_direction() {
     let away = disc(DVec3::Z * 2.0, DVec3::Z, 0.3);
     let frame = render(&scene(&[away]), &perspective(), SIZE, &plain(), &()).unwrap();
     assert_eq!(frame.normal[32 * 64 + 32], [0.0, 0.0, -1.0]);
-    // Without a normal of its own the surface faces the eye.
+    // Where the normals cancel, the surface faces the eye.
     let projector = Projector::new(&perspective(), SIZE, &plain()).unwrap();
     let sums = attribute::Sums { weight: 1.0, normal: DVec3::X * 1e-7, depth: 0.5, ..Default::default() };
     let value = normalize::resolve(&projector, DVec2::new(64.0, 32.0), Some(&sums), 1.0);
@@ -131,7 +132,7 @@ fn planes_beyond_the_clip_volume_leave_no_fragment() {
     assert_eq!([0.99, 1.01, 3.99, 4.01].map(drawn), [false, true, true, false]);
 }
 
-/// Fins seen almost edge-on reach, in the pixel that the low-pass adds, far in front of themselves.
+/// The planes of fins that are almost edge-on extend far in front of the fins, in the pixel that the low-pass adds.
 #[test]
 fn rims_behind_a_wall_do_not_show_through() {
     let mut wall = disc(DVec3::Z * 2.0, DVec3::NEG_Z, 1.5);
@@ -146,7 +147,7 @@ fn rims_behind_a_wall_do_not_show_through() {
     let discs: Vec<Surfel> = fins.chain([wall]).collect();
     let frame = render(&scene(&discs), &perspective(), SIZE, &plain(), &()).unwrap();
     for (i, colour) in frame.colour.iter().enumerate().filter(|(i, _)| frame.covered[*i]) {
-        // What their planes put in front of the wall still counts, with the small weights of discs seen edge-on.
+        // Fragments of their planes in front of the wall count, with the small weights of discs seen edge-on.
         assert!(colour[1] < 0.5, "pixel {}, {} is the fins': {colour:?}", i % 64, i / 64);
     }
 }

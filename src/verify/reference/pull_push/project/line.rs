@@ -1,10 +1,11 @@
-//! A segment is a pixel in every column of the picture that it reaches, or in every row where it is steeper: no gaps, and no wider.
+//! Rasterizes a segment: one pixel in every column that it crosses, or in every row if it is steeper. No gaps, and no
+//! wider.
 
 use super::strands::{End, Strand};
 use super::{Point, Reconstruction, Sample};
 
 impl Reconstruction {
-    /// The pixels of a segment. What is in front of the near plane is cut off.
+    /// The pixels of a segment, clipped at the near plane.
     pub(super) fn line(&self, ends: [End; 2], tube: bool) -> Vec<Point> {
         let Some(ends) = self.beyond_near_plane(ends) else { return Vec::new() };
         self.strands(ends, tube).iter().flat_map(|strand| self.strand(strand)).collect()
@@ -12,7 +13,7 @@ impl Reconstruction {
 
     fn strand(&self, &Strand { ends, discs, tube, on_tube }: &Strand) -> Vec<Point> {
         let distances = ends.map(|end| self.projector.distance(end.position));
-        // What is wide may reach through the near plane though its middle line does not: a strand is cut off as a whole.
+        // A wide line may cross the near plane although its middle line does not: a strand is dropped as a whole.
         if distances.iter().any(|distance| *distance < self.projector.planes()[0]) {
             return Vec::new();
         }
@@ -23,7 +24,7 @@ impl Reconstruction {
         let least = from[along].min(to[along]).floor().max(0.0) as i64;
         let last = from[along].max(to[along]).floor().min(side as f64 - 1.0) as i64;
         let point = |column: i64| {
-            // The middle of the column, or the end that is in it.
+            // The middle of the column, or the end that lies in it.
             let reached = (column as f64 + 0.5 - from[along]) / (to[along] - from[along]);
             let t = if reached.is_finite() { reached.clamp(0.0, 1.0) } else { 0.0 };
             let screen = from.lerp(to, t);
@@ -36,18 +37,18 @@ impl Reconstruction {
                 return None;
             }
             let mut disc = Self::between(&discs, weights);
-            // A ribbon shows the side that is seen; a tube's tangent has no sign.
+            // A ribbon shows its visible side; a tube's tangent has no sign.
             if !tube && self.projector.facing(disc.position, disc.direction) > 0.0 {
                 disc.direction = -disc.direction;
             }
             let sample = self.sample(disc, self.pixel(disc.position), at, tube);
-            // What is on a tube is as near as it is seen there.
+            // The depth test of a tube uses the distance of its surface.
             Some((at, if on_tube { Sample { near: distance, ..sample } } else { sample }))
         };
         (least..=last).filter_map(point).collect()
     }
 
-    /// The part of a segment beyond the near plane.
+    /// The part of a segment behind the near plane.
     fn beyond_near_plane(&self, ends: [End; 2]) -> Option<[End; 2]> {
         let near = self.projector.planes()[0];
         let [a, b] = ends.map(|end| self.projector.distance(end.vertex.position) - near);

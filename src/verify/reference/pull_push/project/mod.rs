@@ -1,13 +1,14 @@
 //! Pass `project`: the nearest point of each pixel (marroquim2008 sections 3.1, 4.1, 4.2 and 5.1).
 //!
-//! A surfel is one pixel, a line those along it, a triangle those whose centres it holds. Each of them is a disc from then on.
+//! A surfel covers one pixel, a line the pixels along it, a triangle those whose centres it contains. Each pixel
+//! becomes a disc.
 
 mod line;
 mod point;
 mod strands;
 mod triangle;
 
-use super::super::scene::Counts;
+use super::super::projected_scene::Counts;
 use super::super::{Culled, Surfel, linear};
 use super::{Level, Reconstruction, Sample};
 use crate::Progress;
@@ -17,21 +18,21 @@ use glam::{DVec2, DVec3, Vec3};
 use rayon::prelude::*;
 use strands::End;
 
-/// The points that are seen, and what became of all surfels.
+/// The visible points, and the counts of all surfels.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Visible {
     /// Level 0.
     pub level: Level,
-    /// By pixel, the number of what is there: surfels come first, then segments of ribbons, of tubes, triangles.
+    /// By pixel: index of its point. Surfels come first, then segments of ribbons, of tubes, and triangles.
     pub index: Vec<Option<usize>>,
-    /// Of all surfels.
+    /// Number of surfels by cull reason.
     pub counts: Counts,
 }
 
-/// A pixel and the sample there.
+/// Pixel coordinates and the sample there.
 type Point = ([i64; 2], Sample);
 
-/// A vertex, or what is between vertices, in eye space.
+/// A vertex, or a point interpolated between vertices, in eye space.
 #[derive(Clone, Copy, Debug)]
 struct Vertex {
     position: DVec3,
@@ -43,13 +44,14 @@ struct Vertex {
 
 pub fn pass(frame: &Reconstruction, parts: Parts<'_>, progress: &dyn Progress) -> Visible {
     let surfels = parts.surfels;
-    // Of what is given up nobody sees the points.
+    // A cancelled frame is discarded.
     let wanted = || !progress.is_cancelled();
-    let point = |i: usize| match surfels.is_valid(i) && wanted() {
-        true => {
+    let point = |i: usize| {
+        if surfels.is_valid(i) && wanted() {
             frame.point(&Surfel::of(surfels, i)).map(|(at, sample)| (at, frame.placed(sample, surfels, i)))
+        } else {
+            Err(Culled::Invalid)
         }
-        false => Err(Culled::Invalid),
     };
     let points: Vec<_> = (0..surfels.len()).into_par_iter().map(point).collect();
     let count = |cause: Culled| points.iter().filter(|p| p.as_ref().err() == Some(&cause)).count();
@@ -81,7 +83,7 @@ pub fn pass(frame: &Reconstruction, parts: Parts<'_>, progress: &dyn Progress) -
     Visible { level: Level { level: 0, size, samples: nearest.samples }, index: nearest.index, counts }
 }
 
-/// The nearest of all that was added, by pixel.
+/// The nearest point of each pixel.
 struct Nearest {
     width: i64,
     index: Vec<Option<usize>>,
@@ -94,7 +96,7 @@ impl Nearest {
         Self { width: width.into(), index: vec![None; pixels], samples: vec![None; pixels] }
     }
 
-    /// To be called in the order of the numbers: of two that are as near, the first stays.
+    /// Must be called in ascending order of ids: of two points at the same depth, the first stays.
     fn add(&mut self, number: usize, [x, y]: [i64; 2], sample: Sample) {
         let pixel = (y * self.width + x) as usize;
         if self.samples[pixel].is_none_or(|there| sample.near < there.near) {
@@ -104,7 +106,7 @@ impl Nearest {
 }
 
 impl Reconstruction {
-    /// The sample of surfel `i` with its number, and its place in the texture.
+    /// The sample of surfel `i` with its id and its texture coordinates.
     fn placed(&self, sample: Sample, surfels: &Surfels, i: usize) -> Sample {
         Sample { id: i as u32, coordinates: self.coordinates(surfels.texture.as_ref(), i), ..sample }
     }
@@ -162,13 +164,14 @@ impl Reconstruction {
 
     /// Unit vector from a position to the eye.
     fn towards_eye(&self, position: DVec3) -> DVec3 {
-        match self.projector.depth.perspective {
-            true => (self.projector.eye() - position).normalize_or_zero(),
-            false => DVec3::new(0.0, 0.0, -self.projector.depth.forward),
+        if self.projector.depth.perspective {
+            (self.projector.eye() - position).normalize_or_zero()
+        } else {
+            DVec3::new(0.0, 0.0, -self.projector.depth.forward)
         }
     }
 
-    /// The colour of what has none.
+    /// The colour of points without one.
     fn albedo(&self) -> DVec3 {
         DVec3::from_array(self.projector.settings.lighting.albedo.map(f64::from))
     }
@@ -179,14 +182,14 @@ impl Reconstruction {
         homogeneous.truncate() / homogeneous.z
     }
 
-    /// The sample of pixel `at` that a disc about `disc` is, in eye space and on the `screen`.
+    /// The sample of pixel `at` from a disc in eye space that is centred at `screen`, px.
     fn sample(&self, disc: Vertex, screen: DVec2, at: [i64; 2], tube: bool) -> Sample {
         let distance = self.projector.distance(disc.position);
-        // How far it is in front of its centre, and behind, in radii.
+        // Extent in front of its centre and behind it, in radii.
         let [before, behind] = match (self.pull_push.rules, tube) {
             (Rules::Paper, _) => [0.0, 1.0],
             (Rules::Robust, true) => [1.0, 1.0],
-            // Twice the radius: half as much takes neighbours of a steep surface for another.
+            // Twice the radius: with one radius, neighbours on a steep surface count as another one.
             (Rules::Robust, false) => [0.0, 2.0],
         };
         let displacement = screen - super::centre(0, at);
@@ -204,7 +207,7 @@ impl Reconstruction {
         }
     }
 
-    /// What is between vertices with these weights, whose sum is 1; its direction is no unit vector.
+    /// Interpolates vertices with weights whose sum is 1; the direction is not normalized.
     fn between<const N: usize>(vertices: &[Vertex; N], weights: [f64; N]) -> Vertex {
         let mean = |of: &dyn Fn(&Vertex) -> DVec3| {
             vertices.iter().zip(weights).map(|(vertex, weight)| weight * of(vertex)).sum::<DVec3>()
@@ -214,12 +217,12 @@ impl Reconstruction {
             direction: mean(&|vertex| vertex.direction),
             radius: vertices.iter().zip(weights).map(|(vertex, weight)| weight * vertex.radius).sum(),
             colour: mean(&|vertex| vertex.colour),
-            // Vertices tell turns of the texture, as the file has them.
+            // Coordinates of vertices are not wrapped: a file's difference of 1 is a whole repetition.
             coordinates: mean(&|vertex| vertex.coordinates.extend(0.0)).truncate(),
         }
     }
 
-    /// The weights in space of vertices at these distances that have these weights on the screen; their sum is 1.
+    /// Perspective-correct weights: from weights on the screen, for vertices at these distances; their sum is 1.
     fn in_space<const N: usize>(&self, on_screen: [f64; N], distances: [f64; N]) -> [f64; N] {
         if !self.projector.depth.perspective {
             return on_screen;

@@ -1,4 +1,4 @@
-//! A surfel is the one pixel that holds its centre.
+//! A surfel covers the one pixel that holds its centre.
 
 use super::super::super::{Culled, Surfel};
 use super::{Point, Reconstruction, Vertex};
@@ -30,7 +30,7 @@ impl Reconstruction {
         }
         let disc = Vertex {
             position,
-            // Seen from behind, a disc is that of the opposite normal.
+            // A disc seen from behind has the opposite normal.
             direction: if towards > 0.0 { -normal } else { normal },
             // A disc of the ellipse's area.
             radius: surfel.radius * surfel.aspect.sqrt(),

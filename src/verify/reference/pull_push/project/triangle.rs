@@ -1,15 +1,16 @@
-//! A triangle is the pixels whose centres it holds, those on its edges with it: neighbours leave no gap, and the nearest wins.
+//! A triangle covers the pixels whose centres it contains, including those on its edges: neighbours leave no gap, and
+//! the nearest wins.
 
 use super::super::centre;
 use super::{Point, Reconstruction, Vertex};
 use glam::DVec2;
 
 impl Reconstruction {
-    /// The pixels of a triangle. What is in front of the near plane is cut off.
+    /// The pixels of a triangle, clipped at the near plane.
     pub(super) fn triangle(&self, mut corners: [Vertex; 3]) -> Vec<Point> {
         let [a, b, c] = corners.map(|corner| corner.position);
         let plane = (b - a).cross(c - a);
-        // Its front is where its normals point to.
+        // The front is the side to which the vertex normals point.
         let front = plane.dot(corners.iter().map(|corner| corner.direction).sum()).signum() * plane;
         if self.projector.facing(a, front) > 0.0 {
             corners.iter_mut().for_each(|corner| corner.direction = -corner.direction);
@@ -19,7 +20,7 @@ impl Reconstruction {
         (1..cut.len().saturating_sub(1)).flat_map(fan).collect()
     }
 
-    /// The corners of the part beyond the near plane: none, three or four.
+    /// The corners of the part behind the near plane: none, three or four.
     fn beyond_near(&self, corners: [Vertex; 3]) -> Vec<Vertex> {
         let near = self.projector.planes()[0];
         let above = |corner: &Vertex| self.projector.distance(corner.position) - near;

@@ -1,4 +1,4 @@
-//! All splats of a frame.
+//! The projected splats of a frame.
 
 use super::footprint::Culled;
 use super::{Projector, Splat, Surfel};
@@ -6,10 +6,10 @@ use crate::geometry::Surfels;
 use crate::settings::splatting::Visibility;
 use rayon::prelude::*;
 
-/// What became of the surfels.
+/// Number of surfels by cull reason.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counts {
-    /// Surfels in the scene: the sum of all others.
+    /// Surfels in the scene: the sum of all other counts.
     pub surfels: usize,
     /// Culled as [`Culled::Behind`].
     pub behind: usize,
@@ -21,27 +21,31 @@ pub struct Counts {
     pub outside: usize,
     /// Culled as [`Culled::Invalid`].
     pub invalid: usize,
-    /// Drawn.
+    /// Surfels that are drawn.
     pub drawn: usize,
 }
 
-/// The drawn splats of a frame, in the surfels' order, and the count of all.
-pub(super) struct Scene {
+/// The drawn splats of a frame, in the order of the surfels, and the counts.
+pub(super) struct ProjectedScene {
     pub splats: Vec<Splat>,
-    /// Those that visibility has of its own: of discs moved away by ε along the camera's axis.
+    /// Separate splats for visibility, if the settings ask for them: those of discs moved away by ε along the camera's
+    /// axis.
     pub moved: Option<Vec<Splat>>,
     pub counts: Counts,
     pub dual_form: usize,
 }
 
-impl Scene {
-    /// All surfels' splats.
+impl ProjectedScene {
+    /// Projects all surfels.
     pub fn project(projector: &Projector, surfels: &Surfels) -> Self {
         let all: Vec<Result<Splat, Culled>> = (0..surfels.len())
             .into_par_iter()
-            .map(|i| match surfels.is_valid(i) {
-                true => projector.footprint(&Surfel::of(surfels, i)),
-                false => Err(Culled::Invalid),
+            .map(|i| {
+                if surfels.is_valid(i) {
+                    projector.footprint(&Surfel::of(surfels, i))
+                } else {
+                    Err(Culled::Invalid)
+                }
             })
             .collect();
         let count = |cause: Culled| all.iter().filter(|s| s.as_ref().err() == Some(&cause)).count();

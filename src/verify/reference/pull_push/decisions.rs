@@ -1,7 +1,7 @@
-//! How near the decisions about a pixel are to turning, so that it is known where rounding may turn them.
+//! How close the decisions about a pixel are to flipping, to know where rounding may flip them.
 //!
-//! Distances are compared as samples hold them, which rounds nothing: these decisions are never near. What is computed before it is
-//! compared may come out a little different.
+//! Comparisons of distances that samples store are exact and never close. Values that are computed before they are
+//! compared may differ by rounding.
 
 use super::super::Surfel;
 use super::lens::Radii2;
@@ -11,37 +11,39 @@ use crate::settings::Cull;
 use glam::DVec2;
 use std::cell::Cell;
 
-/// A level, and how near the decisions about each of its pixels were to turning: the least difference of what was compared, relative.
+/// A level, and for each of its pixels the least gap of a decision: the relative difference of the values that were
+/// compared.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Decided {
+pub struct LevelDecisions {
     /// The level.
     pub level: Level,
-    /// By pixel; infinite where nothing had to be decided.
-    pub margins: Vec<f64>,
+    /// By pixel; infinite without any decision.
+    pub gaps: Vec<f64>,
 }
 
-/// Decides, and keeps how near that was.
-pub struct Margin(Cell<f64>);
+/// Makes decisions, and records the least gap.
+pub struct Decisions(Cell<f64>);
 
-impl Margin {
-    /// Nothing is decided yet.
+impl Decisions {
+    /// Without any decision so far.
     pub fn new() -> Self {
         Self(Cell::new(f64::INFINITY))
     }
 
-    /// Whether `value ≤ limit`, one of which was computed.
+    /// Whether `value ≤ limit`; one of them was computed.
     pub fn at_most(&self, value: f64, limit: f64) -> bool {
-        self.keep((value - limit).abs() / limit);
+        self.record((value - limit).abs() / limit);
         value <= limit
     }
 
-    /// Whether a disc covers what is so far from its centre.
+    /// Whether a disc covers a position at this distance from its centre.
     pub fn covers(&self, Radii2 { value, summands }: Radii2) -> bool {
-        self.keep((value - 1.0).abs() / summands.max(1.0));
+        self.record((value - 1.0).abs() / summands.max(1.0));
         value <= 1.0
     }
 
-    /// Which of these has the least value, the first of equal ones. To take another that is the same would be no other outcome.
+    /// Index of the least value, the first of equal ones. Alternatives that are `same` as the result do not count as
+    /// another outcome.
     pub fn least<T>(
         &self,
         all: &[T],
@@ -52,26 +54,26 @@ impl Margin {
         let own = value(&all[least]);
         let others =
             all.iter().filter(|other| !same(other, &all[least])).map(value).filter(|other| *other > own);
-        others.for_each(|other| self.keep((other - own) / other.max(1.0)));
+        others.for_each(|other| self.record((other - own) / other.max(1.0)));
         Some(least)
     }
 
-    fn keep(&self, margin: f64) {
-        self.0.set(self.nearest().min(margin));
+    fn record(&self, gap: f64) {
+        self.0.set(self.least_gap().min(gap));
     }
 
-    /// How near the nearest decision was.
-    pub fn nearest(&self) -> f64 {
+    /// The least gap so far.
+    pub fn least_gap(&self) -> f64 {
         self.0.get()
     }
 }
 
-/// By pixel of `visible`, by how little another point is not its nearest: by its depth or its coordinates on the picture, relative, or by the
-/// cosine by which it faces away.
-pub fn of_projection(frame: &Reconstruction, surfels: &Surfels, visible: &Visible) -> Vec<f64> {
+/// By pixel of `visible`: by how little another point fails to be its nearest. The gap is relative for a depth or a
+/// screen coordinate, and a cosine for a point that faces away.
+pub fn projection_gaps(frame: &Reconstruction, surfels: &Surfels, visible: &Visible) -> Vec<f64> {
     let projector = &frame.projector;
     let level = &visible.level;
-    let mut margins = vec![f64::INFINITY; level.samples.len()];
+    let mut gaps = vec![f64::INFINITY; level.samples.len()];
     for i in (0..surfels.len()).filter(|&i| surfels.is_valid(i)) {
         let surfel = Surfel::of(surfels, i);
         let at = projector.view.transform_point3(surfel.position);
@@ -85,8 +87,8 @@ pub fn of_projection(frame: &Reconstruction, surfels: &Surfels, visible: &Visibl
         let pixel = homogeneous.truncate() / homogeneous.z;
         let far = pixel.max_element();
         for (place, inside) in about(level, pixel) {
-            let margin = match level.samples[place] {
-                // It stays what it is unless it leaves the pixel or turns away.
+            let gap = match level.samples[place] {
+                // It stays nearest unless it leaves the pixel or turns away.
                 Some(_) if visible.index[place] == Some(i) => (inside / far).min(facing.abs()),
                 there => {
                     let behind = there.map_or(0.0, |there| distance / there.near - 1.0);
@@ -94,13 +96,14 @@ pub fn of_projection(frame: &Reconstruction, surfels: &Surfels, visible: &Visibl
                     behind.max(-inside / far).max(away)
                 }
             };
-            margins[place] = margins[place].min(margin);
+            gaps[place] = gaps[place].min(gap);
         }
     }
-    margins
+    gaps
 }
 
-/// The pixel that holds a position and those next to it, with how far the position is inside, below 0 outside, px.
+/// The pixel that holds a position and its eight neighbours, with the position's distance to the pixel's border: below
+/// 0 outside, px.
 fn about(level: &Level, position: DVec2) -> impl Iterator<Item = (usize, f64)> + use<> {
     let corner = position.floor();
     let [width, height] = level.size.map(i64::from);

@@ -11,7 +11,7 @@ fn a_splat_on_the_limit_of_epsilon_may_blend_or_not() {
     let settings = |epsilon| Settings { epsilon, ..plain() };
     let tolerance = Tolerance::default();
     let expected = Expected::new(&surfels, &perspective(), SIZE, &settings(0.5), &tolerance).unwrap();
-    assert!(!expected.doubt.is_empty());
+    assert!(expected.bounds.ambiguous_pixels().len() > 0);
     let passes = |surfels: &Surfels, epsilon| {
         let frame = render(surfels, &perspective(), SIZE, &settings(epsilon), &()).unwrap();
         expected.compare(&frame.to_picture()).unwrap().passed()
@@ -29,7 +29,7 @@ fn a_pixel_on_the_cut_off_may_be_there_or_not() {
     let (z, at) = (2.0, 0.5 / 64.0 * 2.0);
     let surfels = scene(&[disc(DVec3::new(at, at, z), DVec3::NEG_Z, sigma * 2.0 * z / 64.0)]);
     let expected = Expected::new(&surfels, &perspective(), SIZE, &settings, &Tolerance::default()).unwrap();
-    let pixels: Vec<usize> = expected.doubt.pixels().collect();
+    let pixels: Vec<usize> = expected.bounds.ambiguous_pixels().collect();
     let offsets = [
         (0, -5),
         (-3, -4),
@@ -59,7 +59,7 @@ fn a_pixel_on_the_cut_off_may_be_there_or_not() {
     assert_eq!([32 * 64 + 28, 32 * 64 + 38].map(flipped), [1, 1]);
 }
 
-/// A turn of 2⁻²⁴ about a far centre moves the near end of a long ellipse, and with it the weights.
+/// Turning a far centre by 2⁻²⁴ moves the near end of a long ellipse, and so the weights.
 #[test]
 fn rounding_of_a_long_axis_is_forgiven_only_where_rounding_is() {
     let surfels = |major: DVec3| {
@@ -94,7 +94,7 @@ fn a_splat_that_ends_at_a_pixel_centre_may_colour_it_or_not() {
     };
     let tolerance = Tolerance::default();
     let expected = Expected::new(&surfels(1.0), &perspective(), SIZE, &plain(), &tolerance).unwrap();
-    assert_eq!(expected.doubt.len(), 12);
+    assert_eq!(expected.bounds.ambiguous_pixels().len(), 12);
     let failed = |scale: f64| {
         let frame = render(&surfels(scale), &perspective(), SIZE, &plain(), &()).unwrap();
         expected.compare(&frame.to_picture()).unwrap().failed

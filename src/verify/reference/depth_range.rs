@@ -1,0 +1,91 @@
+//! Ranges of the visibility depth, where rounding can flip a decision of the visibility pass.
+
+use super::bands::Band;
+use super::ellipse::Ellipse;
+use super::error_model::{Candidate, ErrorModel};
+use super::projected_scene::ProjectedScene;
+use super::rank::Rank;
+use super::visibility::occlusion_depth;
+use std::collections::HashMap;
+
+/// The range of one possible visibility depth.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) struct DepthRange {
+    low: Rank,
+    high: Rank,
+}
+
+impl DepthRange {
+    /// The range of an empty pixel.
+    const NONE: Self = Self { low: Rank::NONE, high: Rank::NONE };
+
+    /// Whether visibility wrote a depth.
+    pub fn exists(&self) -> bool {
+        self.high.exists()
+    }
+
+    /// The nearer of two ranges, bound by bound.
+    fn min(self, other: Self) -> Self {
+        Self { low: self.low.min(other.low), high: self.high.min(other.high) }
+    }
+
+    /// Whether the whole range lies beyond a clip line.
+    pub fn is_clipped(&self) -> bool {
+        self.low.clipped && self.high.clipped
+    }
+
+    /// Whether a splat of this rank may pass the depth test; `tolerance` is the error of its depth.
+    pub fn may_pass(&self, rank: Rank, tolerance: f64) -> bool {
+        self.exists() && rank <= self.high.farther(tolerance)
+    }
+
+    /// Whether a splat of this rank passes the depth test whatever rounding does.
+    pub fn must_pass(&self, rank: Rank, tolerance: f64) -> bool {
+        self.exists() && rank < self.low.farther(-tolerance)
+    }
+}
+
+/// The possible visibility depths of a band.
+pub(super) struct DepthRanges {
+    /// Least depth over the splats that certainly cover the pixel.
+    certain: Vec<DepthRange>,
+    /// By pixel: nearer depths of the splats that may cover it.
+    pub possible: HashMap<usize, Vec<DepthRange>>,
+}
+
+impl DepthRanges {
+    /// Finds the depths of a band.
+    pub fn new(model: &ErrorModel, scene: &ProjectedScene, band: &Band) -> Self {
+        let mut certain = vec![DepthRange::NONE; band.len()];
+        let mut possible: HashMap<usize, Vec<DepthRange>> = HashMap::new();
+        model.scan(band, &band.occluders(scene), Ellipse::visibility, |c| {
+            let rank = c.rank(occlusion_depth(model.projector, c.splat, c.depth));
+            let range = DepthRange { low: rank.farther(-c.depth_error), high: rank.farther(c.depth_error) };
+            if c.certain {
+                certain[c.pixel] = certain[c.pixel].min(range);
+            } else {
+                possible.entry(c.pixel).or_default().push(range);
+            }
+        });
+        for (&pixel, ranges) in &mut possible {
+            // A splat behind a certain one changes nothing.
+            ranges.retain(|b| b.low < certain[pixel].high);
+            ranges.iter_mut().for_each(|b| *b = b.min(certain[pixel]));
+        }
+        possible.retain(|_, ranges| !ranges.is_empty());
+        Self { certain, possible }
+    }
+
+    /// All possible depths of a pixel.
+    pub fn of(&self, pixel: usize) -> impl Iterator<Item = DepthRange> {
+        std::iter::once(self.certain[pixel]).chain(self.possible.get(&pixel).into_iter().flatten().copied())
+    }
+
+    /// Whether the splat passes at some possible depth, and whether it both passes and fails at one.
+    pub fn test(&self, c: &Candidate) -> (bool, bool) {
+        let passes = |b: &DepthRange| b.may_pass(c.rank(c.depth), c.depth_tolerance());
+        let may_fail =
+            |b: DepthRange| passes(&b) && !(c.certain && b.must_pass(c.rank(c.depth), c.depth_tolerance()));
+        (self.of(c.pixel).any(|b| passes(&b)), self.of(c.pixel).any(may_fail))
+    }
+}

@@ -1,0 +1,281 @@
+//! Error bounds of a frame: the pixels that float32 rounding can change, and every value that they may take.
+//!
+//! Splatting decides at three thresholds: the kernel's cut-off, the ε test (or the nearest splat) and the clip volume.
+//! Coverage adds the test of each sample. A pixel is ambiguous if a splat lies closer to a threshold than rounding can
+//! tell: both outcomes are right, and no others. The bounds follow from the float64 frame alone, before any picture is
+//! compared. The planes of the clip volume have no tolerance of their own unless [`super::Tolerance::rounding`] allows
+//! for rounding.
+
+use super::Projector;
+use super::attribute::Sums;
+use super::bands::{Band, Bands};
+use super::coverage::SampleCounts;
+use super::depth_range::{DepthRange, DepthRanges};
+use super::ellipse::Ellipse;
+use super::error_model::{Candidate, ErrorModel};
+use super::nearest::ranked;
+use super::normalize::{Value, resolve};
+use super::projected_scene::ProjectedScene;
+use super::rank::Rank;
+use super::rounding::{RoundingBound, RoundingSums};
+use crate::settings::splatting::Visibility;
+use glam::DVec2;
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+
+/// Most values that are tried for a pixel.
+const MOST: usize = 1 << 12;
+
+/// The ambiguous pixels of a frame, and the rounding bounds of all pixels.
+pub struct ErrorBounds {
+    projector: Projector,
+    pixels: BTreeMap<usize, AmbiguousPixel>,
+    rounding: Vec<RoundingBound>,
+}
+
+/// The values that a pixel may have.
+pub enum Admissible<'a> {
+    /// The frame's value alone: the pixel is unambiguous.
+    Definite,
+    /// These values, computed one by one, each with its rounding bound.
+    Values(Box<dyn Iterator<Item = (Value, RoundingBound)> + 'a>),
+    /// Too many to try. A comparison counts the pixel as failed.
+    Unresolvable,
+}
+
+/// An ambiguous pixel.
+enum AmbiguousPixel {
+    /// Splats are blended.
+    Blended(Blended),
+    /// The nearest splat is shown alone: one of these, or none.
+    Nearest(DVec2, Vec<Option<Contribution>>, SampleCounts),
+}
+
+/// An ambiguous pixel at which splats are blended.
+struct Blended {
+    at: DVec2,
+    /// The possible visibility depths.
+    depths: Vec<DepthRange>,
+    /// The splats that may be summed at one of them.
+    fragments: Vec<Fragment>,
+    covered: SampleCounts,
+}
+
+/// A splat at a pixel.
+struct Fragment {
+    rank: Rank,
+    tolerance: f64,
+    contribution: Contribution,
+    certain: bool,
+    /// See [`Candidate::or_clipped`].
+    or_clipped: bool,
+}
+
+/// Contribution of one splat, or of several together.
+#[derive(Clone, Copy, Default)]
+struct Contribution {
+    sums: Sums,
+    rounding_sums: RoundingSums,
+}
+
+impl ErrorBounds {
+    pub(super) fn new(model: &ErrorModel, scene: &ProjectedScene, bands: &Bands) -> Self {
+        let nearest = model.projector.settings.splatting.visibility == Visibility::Nearest;
+        let of_band = if nearest { nearest_of_band } else { of_band };
+        let found: Vec<_> = bands.par_iter().map(|band| of_band(model, scene, &band)).collect();
+        let (mut pixels, mut rounding) = (BTreeMap::new(), Vec::new());
+        for (ambiguous, of_band) in found {
+            pixels.extend(ambiguous);
+            rounding.extend(of_band);
+        }
+        Self { projector: model.projector.clone(), pixels, rounding }
+    }
+
+    /// Indices of the ambiguous pixels, row by row from the top left.
+    pub fn ambiguous_pixels(&self) -> impl ExactSizeIterator<Item = usize> {
+        self.pixels.keys().copied()
+    }
+
+    /// Rounding bound of pixel `index`; panics beyond the end.
+    pub fn rounding(&self, index: usize) -> RoundingBound {
+        self.rounding[index]
+    }
+
+    /// The admissible values of pixel `index`.
+    pub fn admissible(&self, index: usize) -> Admissible<'_> {
+        match self.pixels.get(&index) {
+            None => Admissible::Definite,
+            Some(pixel) if pixel.outcomes() > MOST => Admissible::Unresolvable,
+            Some(pixel) => Admissible::Values(pixel.values(&self.projector)),
+        }
+    }
+}
+
+impl AmbiguousPixel {
+    fn outcomes(&self) -> usize {
+        match self {
+            Self::Blended(pixel) => pixel.outcomes(),
+            Self::Nearest(_, contributions, covered) => contributions.len() * covered.len(),
+        }
+    }
+
+    fn values<'a>(
+        &'a self,
+        projector: &'a Projector,
+    ) -> Box<dyn Iterator<Item = (Value, RoundingBound)> + 'a> {
+        match self {
+            Self::Blended(pixel) => Box::new(pixel.values(projector)),
+            Self::Nearest(at, contributions, covered) => {
+                Box::new(contributions.iter().flat_map(move |contribution| {
+                    let rounding = contribution
+                        .map_or(RoundingBound::default(), |contribution| contribution.rounding_sums.bound());
+                    let sums = contribution.as_ref().map(|contribution| &contribution.sums);
+                    covered.alphas().map(move |alpha| (resolve(projector, *at, sums, alpha), rounding))
+                }))
+            }
+        }
+    }
+}
+
+impl Blended {
+    /// Splits the fragments that `depth` admits: the sum of the certain ones, and those that may pass.
+    fn split(&self, bound: DepthRange) -> (Contribution, Vec<Contribution>) {
+        let (mut certain, mut possible) = (Contribution::default(), Vec::new());
+        // A splat on a clip line has two fragments there; the clipped one stands for both.
+        let counted_twice = |f: &Fragment| f.or_clipped && bound.is_clipped();
+        for f in self.fragments.iter().filter(|f| bound.may_pass(f.rank, f.tolerance) && !counted_twice(f)) {
+            if f.certain && bound.must_pass(f.rank, f.tolerance) {
+                certain += f.contribution;
+            } else {
+                possible.push(f.contribution);
+            }
+        }
+        (certain, possible)
+    }
+
+    fn outcomes(&self) -> usize {
+        let subsets =
+            |&bound: &DepthRange| 1usize.checked_shl(self.split(bound).1.len() as u32).unwrap_or(usize::MAX);
+        let sums = self.depths.iter().map(subsets).fold(0, usize::saturating_add);
+        sums.saturating_mul(self.covered.len())
+    }
+
+    fn values<'a>(&'a self, projector: &'a Projector) -> impl Iterator<Item = (Value, RoundingBound)> + 'a {
+        self.depths.iter().flat_map(move |&bound| {
+            let (certain, possible) = self.split(bound);
+            (0..1 << possible.len()).flat_map(move |subset: usize| {
+                let mut all = certain;
+                let taken = possible.iter().enumerate().filter(|(bit, _)| subset >> bit & 1 == 1);
+                taken.for_each(|(_, contribution)| all += *contribution);
+                let rounding = all.rounding_sums.bound();
+                let value =
+                    move |alpha: f64| resolve(projector, self.at, bound.exists().then_some(&all.sums), alpha);
+                self.covered.alphas().map(move |alpha| (value(alpha), rounding))
+            })
+        })
+    }
+}
+
+/// Ambiguous pixels and rounding bounds of one band. Scans the attribute footprints twice: first to mark the pixels,
+/// then to collect their splats, because the splats of all pixels would not fit into memory.
+fn of_band(
+    model: &ErrorModel,
+    scene: &ProjectedScene,
+    band: &Band,
+) -> (Vec<(usize, AmbiguousPixel)>, Vec<RoundingBound>) {
+    let bounds = DepthRanges::new(model, scene, band);
+    let mut ambiguous: Vec<Option<Vec<Fragment>>> = Vec::new();
+    ambiguous.resize_with(band.len(), || None);
+    let covered = SampleCounts::of_band(model, scene, band);
+    let varying = (0..band.len()).filter(|&pixel| covered[pixel].is_ambiguous());
+    for pixel in bounds.possible.keys().copied().chain(varying) {
+        ambiguous[pixel] = Some(Vec::new());
+    }
+    let mut rounding_sums = vec![RoundingSums::default(); band.len()];
+    model.scan(band, &band.contributors(scene), Ellipse::attribute, |c| {
+        let (passes, is_ambiguous) = bounds.test(&c);
+        if is_ambiguous {
+            ambiguous[c.pixel].get_or_insert_default();
+        }
+        if passes {
+            rounding_sums[c.pixel] += RoundingSums::of(model, &c);
+        }
+    });
+    model.scan(band, &band.contributors(scene), Ellipse::attribute, |c| {
+        if let Some(fragments) = &mut ambiguous[c.pixel]
+            && bounds.test(&c).0
+        {
+            let sums = Sums::of(model.projector, c.splat, c.weight, c.depth);
+            let contribution = Contribution { sums, rounding_sums: RoundingSums::of(model, &c) };
+            let (rank, tolerance) = (c.rank(c.depth), c.depth_tolerance());
+            fragments.push(Fragment {
+                rank,
+                tolerance,
+                contribution,
+                certain: c.certain,
+                or_clipped: c.or_clipped,
+            });
+        }
+    });
+    let first = band.first_row as usize * band.width as usize;
+    let pixel = |(i, fragments): (usize, Option<Vec<Fragment>>)| {
+        let depths = bounds.of(i).collect();
+        let covered = covered[i].clone();
+        let pixel = Blended { at: band.centre(i), depths, fragments: fragments?, covered };
+        Some((first + i, AmbiguousPixel::Blended(pixel)))
+    };
+    let rounding = rounding_sums.iter().map(RoundingSums::bound).collect();
+    (ambiguous.into_iter().enumerate().filter_map(pixel).collect(), rounding)
+}
+
+/// The same where the nearest splat is shown alone.
+fn nearest_of_band(
+    model: &ErrorModel,
+    scene: &ProjectedScene,
+    band: &Band,
+) -> (Vec<(usize, AmbiguousPixel)>, Vec<RoundingBound>) {
+    let splats = band.contributors(scene);
+    // The farthest depth that the nearest certain splat may have.
+    let mut farthest = vec![Rank::NONE; band.len()];
+    model.scan(band, &splats, Ellipse::visibility, |c| {
+        if c.certain {
+            let rank = c.rank(ranked(c.splat, c.depth));
+            farthest[c.pixel] = farthest[c.pixel].min(rank.farther(c.depth_tolerance()));
+        }
+    });
+    let mut contributions: Vec<Vec<Contribution>> = vec![Vec::new(); band.len()];
+    model.scan(band, &splats, Ellipse::visibility, |c| {
+        if c.rank(ranked(c.splat, c.depth)).farther(-c.depth_tolerance()) <= farthest[c.pixel] {
+            let c = Candidate { weight: 1.0, ..c };
+            let sums = Sums::of(model.projector, c.splat, 1.0, c.depth);
+            contributions[c.pixel].push(Contribution { sums, rounding_sums: RoundingSums::of(model, &c) });
+        }
+    });
+    let covered = SampleCounts::of_band(model, scene, band);
+    let first = band.first_row as usize * band.width as usize;
+    let (mut ambiguous, mut rounding) = (Vec::new(), Vec::new());
+    for (i, contributions) in contributions.into_iter().enumerate() {
+        rounding.push(
+            contributions
+                .first()
+                .map_or(RoundingBound::default(), |contribution| contribution.rounding_sums.bound()),
+        );
+        let certainly_there = farthest[i].exists();
+        let covered = covered[i].clone();
+        if contributions.len() > 1
+            || (!certainly_there || covered.is_ambiguous()) && !contributions.is_empty()
+        {
+            let none = (!certainly_there).then_some(None);
+            let contributions = contributions.into_iter().map(Some).chain(none).collect();
+            ambiguous.push((first + i, AmbiguousPixel::Nearest(band.centre(i), contributions, covered)));
+        }
+    }
+    (ambiguous, rounding)
+}
+
+impl std::ops::AddAssign for Contribution {
+    fn add_assign(&mut self, other: Self) {
+        self.sums += other.sums;
+        self.rounding_sums += other.rounding_sums;
+    }
+}

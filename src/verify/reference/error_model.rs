@@ -1,0 +1,158 @@
+//! Error model of float32: the splats that may cover a pixel, with error bounds of their depth and weight.
+
+use super::bands::{Band, BandSplats};
+use super::ellipse::Ellipse;
+use super::rank::Rank;
+use super::{Projector, Splat};
+use glam::{DVec2, DVec3};
+
+/// Distance from a cut-off ellipse or a clip line within which a pixel centre is ambiguous, px.
+pub(super) const CUTOFF_TOLERANCE: f64 = 3e-4;
+
+/// Relative distance from a threshold within which a depth is ambiguous.
+pub(super) const DEPTH_TOLERANCE: f64 = 2e-6;
+
+/// A splat that may cover a pixel.
+pub(super) struct Candidate<'a> {
+    pub splat: &'a Splat,
+    /// Index of the pixel in its band.
+    pub pixel: usize,
+    /// Distance along the pixel's ray.
+    pub depth: f64,
+    /// Error bound of the depth; see [`super::Tolerance::rounding`].
+    pub depth_error: f64,
+    /// The kernel's weight.
+    pub weight: f64,
+    /// Relative error bound of the weight.
+    pub weight_error: f64,
+    /// Relative error bound of the weight by a shift of the whole splat on the screen.
+    pub shift_error: f64,
+    /// Relative rounding error of the weight's evaluation in float32, in half units in the last place.
+    pub half_ulps: f64,
+    /// Whether the pixel is certainly inside the cut-off and the clip volume.
+    pub certain: bool,
+    /// Whether it is beyond the splat's clip lines.
+    pub clipped: bool,
+    /// Whether the splat is clipped if it is not here; the clipped fragment is a second candidate.
+    pub or_clipped: bool,
+}
+
+impl Candidate<'_> {
+    /// The rank of the fragment at a depth.
+    pub fn rank(&self, depth: f64) -> Rank {
+        Rank { clipped: self.clipped, depth }
+    }
+
+    /// Error bound of the depth in a comparison.
+    pub fn depth_tolerance(&self) -> f64 {
+        self.depth_error.max(DEPTH_TOLERANCE * self.depth.abs())
+    }
+}
+
+/// The error model of a frame.
+pub(super) struct ErrorModel<'a> {
+    pub projector: &'a Projector,
+    /// See [`super::Tolerance::rounding`].
+    pub rounding: f64,
+}
+
+/// A side of the clip lines on which a splat may lie.
+struct Side {
+    clipped: bool,
+    /// Whether the footprint's end is within rounding there.
+    near: bool,
+    /// See [`Candidate::or_clipped`].
+    or_clipped: bool,
+}
+
+/// The sides of the clip lines on which a splat may lie. `distance` is the signed distance to the clipped part;
+/// fragments exist up to `reach` beyond the lines, px.
+fn sides(distance: f64, reach: f64) -> impl Iterator<Item = Side> {
+    let on_line = distance.abs() <= CUTOFF_TOLERANCE;
+    let at_reach = (distance + reach).abs() <= CUTOFF_TOLERANCE;
+    let may_be_kept = distance >= -CUTOFF_TOLERANCE;
+    let may_be_clipped = reach > 0.0 && distance <= CUTOFF_TOLERANCE && distance >= -reach - CUTOFF_TOLERANCE;
+    let kept = Side { clipped: false, near: on_line, or_clipped: on_line && reach > 0.0 };
+    // A centre on a line has at least the clipped fragment.
+    let clipped = Side { clipped: true, near: at_reach, or_clipped: false };
+    may_be_kept.then_some(kept).into_iter().chain(may_be_clipped.then_some(clipped))
+}
+
+impl ErrorModel<'_> {
+    /// Calls `visit` for every splat and pixel of the band that may intersect.
+    pub fn scan(
+        &self,
+        band: &Band,
+        splats: &BandSplats,
+        footprint: fn(&Splat, &Projector) -> Ellipse,
+        mut visit: impl FnMut(Candidate),
+    ) {
+        for splat in splats.iter() {
+            let ellipse = footprint(splat, self.projector);
+            // The gradient of the distance in σ is at most 1 / (minor σ) per px; a kernel in the plane adds its
+            // stretch and slope.
+            let slope = if ellipse.is_plain() { 1.0 / ellipse.sigma().y } else { 64.0 };
+            let reach = slope * CUTOFF_TOLERANCE + ellipse.outline_error_sigmas();
+            // Rounding of a pixel coordinate, in σ.
+            let shift = self.rounding * self.projector.size.max_element() / ellipse.sigma().y;
+            band.scan(&ellipse, ellipse.cutoff + reach, |hit| {
+                let edge = (hit.rim - ellipse.cutoff).abs() <= reach;
+                let near_rim = edge
+                    && ellipse.distance(hit.offset) <= CUTOFF_TOLERANCE + ellipse.outline_error(hit.offset);
+                if !near_rim && hit.rim > ellipse.cutoff {
+                    return;
+                }
+                let Some((depth, depth_error, certain)) = self.depth_in_volume(splat, hit.at) else { return };
+                for side in sides(hit.clip_distance, ellipse.clip_reach) {
+                    visit(Candidate {
+                        splat,
+                        pixel: hit.index,
+                        depth,
+                        depth_error,
+                        weight: ellipse.weight(hit.in_kernel),
+                        weight_error: self.rounding * (splat.secant + self.axis_gain(splat))
+                            // The same shift changes a steeper kernel more.
+                            + shift * ellipse.steepness(hit.sigmas),
+                        shift_error: shift * hit.sigmas,
+                        half_ulps: ellipse.half_ulps(hit.in_kernel),
+                        certain: certain && !near_rim && !side.near,
+                        clipped: side.clipped,
+                        or_clipped: side.or_clipped,
+                    });
+                }
+            });
+        }
+    }
+
+    /// Depth, its error bound, and whether it is certainly in the clip volume; `None` if it certainly is not.
+    fn depth_in_volume(&self, splat: &Splat, at: DVec2) -> Option<(f64, f64, bool)> {
+        let (depth, error, in_front) = self.depth(splat, at)?;
+        let [near, far] = self.projector.planes();
+        let within = |tolerance: f64| depth >= near + tolerance && depth <= far - tolerance;
+        within(-error).then(|| (depth, error, in_front && within(error)))
+    }
+
+    /// Amplification of a rounding error of the major axis in the weight. Turning the axes of an ellipse by δ changes
+    /// `½ m²` by at most `½ F² (1/aspect − aspect) δ`.
+    fn axis_gain(&self, splat: &Splat) -> f64 {
+        0.5 * self.projector.cutoff().powi(2) * (1.0 / splat.aspect - splat.aspect)
+    }
+
+    /// Depth, its error bound, and whether it is certainly in front of the eye; `None` if it certainly is not. Rounding
+    /// turns the normal against both the ray through the splat's centre and the pixel's, so the error is the sum of
+    /// both, divided by the cosine.
+    fn depth(&self, splat: &Splat, at: DVec2) -> Option<(f64, f64, bool)> {
+        let value = splat.plane.dot(DVec3::new(1.0, at.x, at.y));
+        let error = self.rounding * splat.secant;
+        if !self.projector.has_inverse_depth() {
+            return Some((value, error * (value.abs() + splat.distance.abs()), true));
+        }
+        let value_error = error * (value.abs() + 1.0 / splat.distance);
+        if value.is_nan() || value <= -value_error {
+            return None;
+        }
+        // At the plane's horizon: the farthest distance that float32 resolves.
+        let depth = if value > 0.0 { 1.0 / value } else { 1.0 / value_error };
+        Some((depth, error * depth * (1.0 + depth / splat.distance), value > value_error))
+    }
+}

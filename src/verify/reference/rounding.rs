@@ -1,0 +1,92 @@
+//! DepthRanges of the rounding error of a pixel's value while no decision flips.
+
+use super::error_model::{Candidate, ErrorModel};
+use glam::DVec3;
+
+/// DepthRanges of a pixel's rounding error while no decision flips: weighted means over its splats. All but `normal_sum` are
+/// 0 if [`super::Tolerance::rounding`] is.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RoundingBound {
+    /// Error of the depth, relative to the depth.
+    pub depth: f64,
+    /// Absolute error of the mean colour and of each component of the mean normal.
+    pub attribute: f64,
+    /// `Σw / |Σw n| − 1`: normals that cancel amplify an error of their normalized sum by 1 more than this.
+    pub normal_gain: f64,
+    /// Error of the unit normal by rounding of the weights and of their sum.
+    pub normal_sum: f64,
+}
+
+/// Half a unit in the last place of a float32 near 1.
+const HALF_UNIT: f64 = 1.0 / (1 << 24) as f64;
+/// Rounding error of a sum of a few floats, relative to the sum of their magnitudes, in half units in the last place.
+const SUM: f64 = 4.0;
+
+/// Sums over a pixel's splats from which its [`RoundingBound`] is computed.
+#[derive(Clone, Copy, Default)]
+pub(super) struct RoundingSums {
+    weight: f64,
+    normal: DVec3,
+    weight_error: f64,
+    half_ulps: f64,
+    /// Weight of the splats in the mean depth: divided by the depth in perspective.
+    depth_weight: f64,
+    depth_error: f64,
+    depth: f64,
+    squared_depth: f64,
+    squared_error: f64,
+}
+
+impl RoundingSums {
+    /// Contribution of one splat.
+    pub fn of(model: &ErrorModel, c: &Candidate) -> Self {
+        let depth_weight = if model.projector.depth.perspective { c.weight / c.depth } else { c.weight };
+        Self {
+            weight: c.weight,
+            normal: c.weight * c.splat.normal,
+            weight_error: c.weight * c.weight_error,
+            half_ulps: c.weight * c.half_ulps,
+            depth_weight,
+            depth_error: depth_weight * c.depth_error,
+            depth: depth_weight * c.depth,
+            squared_depth: depth_weight * c.depth * c.depth,
+            squared_error: depth_weight * (c.weight_error + c.shift_error).powi(2),
+        }
+    }
+
+    /// The bounds.
+    pub fn bound(&self) -> RoundingBound {
+        let spread_of_normals = self.weight / self.normal.length();
+        let half_ulps = HALF_UNIT * (SUM + self.half_ulps / self.weight);
+        let normal_sum = if self.weight > 0.0 { half_ulps * spread_of_normals } else { 0.0 };
+        if self.weight_error == 0.0 {
+            return RoundingBound { normal_sum, ..Default::default() };
+        }
+        let mean = self.depth / self.depth_weight;
+        let spread = (self.squared_depth / self.depth_weight - mean * mean).max(0.0).sqrt();
+        // Weights with a relative error move a mean by at most that error times the standard deviation of the values
+        // (Cauchy–Schwarz). Colours and normals are bounded by their range instead: 2.
+        let depth =
+            self.depth_error / self.depth_weight + (self.squared_error / self.depth_weight).sqrt() * spread;
+        RoundingBound {
+            depth: depth / mean.abs(),
+            attribute: 2.0 * self.weight_error / self.weight,
+            normal_gain: spread_of_normals - 1.0,
+            normal_sum,
+        }
+    }
+}
+
+impl std::ops::AddAssign for RoundingSums {
+    fn add_assign(&mut self, other: Self) {
+        self.weight += other.weight;
+        self.normal += other.normal;
+        self.weight_error += other.weight_error;
+        self.half_ulps += other.half_ulps;
+        self.depth_weight += other.depth_weight;
+        self.depth_error += other.depth_error;
+        self.depth += other.depth;
+        self.squared_depth += other.squared_depth;
+        self.squared_error += other.squared_error;
+    }
+}
