@@ -1,4 +1,4 @@
-//! Surfels of which something is zero, no number, infinite, or out of all proportion.
+//! Surfels with an attribute that is zero, NaN, infinite, or extreme.
 
 use super::case::{Case, View, ball, look};
 use crate::error::Result;
@@ -6,7 +6,7 @@ use crate::geometry::{Colours, Ellipse, Surfels};
 use crate::verify::scenes::random::Random;
 use glam::{DVec3, Vec3};
 
-/// What is put in, with its name.
+/// Names and values that are inserted.
 const VALUES: [(&str, f32); 7] = [
     ("0", 0.0),
     ("NaN", f32::NAN),
@@ -17,7 +17,7 @@ const VALUES: [(&str, f32); 7] = [
     ("3e38", 3e38),
 ];
 
-/// Where it is put: the attribute's name, and how to change it.
+/// Changes one attribute of a surfel.
 type Change = fn(&mut Surfels, usize, f32);
 const ATTRIBUTES: [(&str, Change); 6] = [
     ("position", |surfels, i, value| surfels.positions[i].y = value),
@@ -55,13 +55,13 @@ pub fn case() -> Case {
     }
 }
 
-/// The places of an attribute and a value.
+/// Indices of an attribute and a value.
 fn places(number: f64) -> (usize, usize) {
     let index = number as usize - 1;
     (index / VALUES.len(), index % VALUES.len())
 }
 
-/// The names of an attribute and a value.
+/// Names of an attribute and a value.
 fn named(number: f64) -> (&'static str, &'static str) {
     let (attribute, value) = places(number);
     (ATTRIBUTES[attribute].0, VALUES[value].0)

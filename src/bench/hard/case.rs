@@ -1,4 +1,4 @@
-//! What a hard case is made of.
+//! Definition of a hard case.
 
 use super::super::record::{Sweep, SweepPoint};
 use crate::error::Result;
@@ -8,20 +8,20 @@ use crate::settings::{Settings, Shading};
 use crate::verify::scenes::random::Random;
 use glam::DVec3;
 
-/// A hard case; as [`Sweep`].
+/// A hard case; see [`Sweep`].
 pub struct Case {
     pub name: &'static str,
     pub about: &'static str,
-    /// With its unit.
+    /// Name of the parameter, with its unit.
     pub parameter: &'static str,
     pub logarithmic: bool,
-    /// Ascending.
+    /// Values of the parameter, ascending.
     pub values: Vec<f64>,
-    /// What is rendered at a value.
+    /// The frame at a value.
     pub view: fn(f64) -> Result<View>,
-    /// Whether it is rendered with 16-bit sums too.
+    /// Whether it is also rendered with 16-bit sums.
     pub half: bool,
-    /// Why float32 cannot agree with float64 at a value, summed in 16 bits or not; `None` where it must.
+    /// Why float32 cannot agree with float64 at a value and precision; `None` where it must agree.
     pub excuse: fn(f64, Precision) -> Option<&'static str>,
 }
 
@@ -32,7 +32,7 @@ pub struct View {
     /// Width and height, px.
     pub size: [u32; 2],
     pub settings: Settings,
-    /// What there is to say of it.
+    /// Remark on the frame.
     pub note: String,
 }
 
@@ -47,7 +47,7 @@ impl Case {
         }
     }
 
-    /// What was found at the values.
+    /// The results at the values.
     pub fn sweep(&self, points: Vec<SweepPoint>) -> Sweep {
         Sweep {
             name: self.name.into(),
@@ -60,7 +60,7 @@ impl Case {
 }
 
 impl View {
-    /// Of 128² px, showing the surfels' colours.
+    /// A frame of 128² px that shows the surfels' colours.
     pub fn new(surfels: Surfels, camera: Camera) -> Self {
         let settings = Settings { shading: Shading::Colour, ..Default::default() };
         Self { surfels, camera, size: [128, 128], settings, note: String::new() }
@@ -72,22 +72,22 @@ pub fn decades(first: i32, last: i32) -> Vec<f64> {
     (first..=last).map(|exponent| 10f64.powi(exponent)).collect()
 }
 
-/// Looks from `eye` at `target` through a square picture, y up.
+/// A camera at `eye` that looks at `target`, for a square picture, y up.
 pub fn look(eye: DVec3, target: DVec3, degrees: f64, near: f64) -> Result<Camera> {
     Camera::look_at(eye, target, DVec3::Y, degrees.to_radians(), 1.0, near)
 }
 
-/// Uniform, -1 inclusive to 1 exclusive.
+/// Uniform in [−1, 1).
 pub fn signed(random: &mut Random) -> f64 {
     2.0 * random.unit() - 1.0
 }
 
-/// Each coordinate uniform, -1 inclusive to 1 exclusive.
+/// Each coordinate uniform in [−1, 1).
 pub fn vector(random: &mut Random) -> DVec3 {
     DVec3::new(signed(random), signed(random), signed(random))
 }
 
-/// Adds a surfel of a random linear colour; the normal may have any length.
+/// Adds a surfel with a random linear colour; the normal may have any length.
 pub fn push(surfels: &mut Surfels, random: &mut Random, position: DVec3, normal: DVec3, radius: f64) {
     surfels.positions.push(position.as_vec3());
     surfels.normals.push(normal.normalize().as_vec3());
@@ -98,7 +98,7 @@ pub fn push(surfels: &mut Surfels, random: &mut Random, position: DVec3, normal:
     }
 }
 
-/// A closed sphere of unit radius about the origin: every disc is off it and tilted by a little.
+/// A closed sphere of unit radius around the origin, whose discs are slightly displaced and tilted.
 pub fn ball(count: usize, random: &mut Random) -> Surfels {
     let mut surfels = Surfels::default();
     let radius = 1.5 * (4.0 * std::f64::consts::PI / count as f64).sqrt();
@@ -113,7 +113,7 @@ pub fn ball(count: usize, random: &mut Random) -> Surfels {
     surfels
 }
 
-/// Adds a wall at a right angle to z: `side`² discs over the square of half width `half` about `middle`.
+/// Adds a wall perpendicular to z: `side`² discs over the square of half width `half` around `middle`.
 pub fn wall(surfels: &mut Surfels, random: &mut Random, side: u32, half: f64, middle: DVec3) {
     let step = 2.0 * half / f64::from(side);
     for i in 0..side * side {

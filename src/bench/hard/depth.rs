@@ -6,7 +6,7 @@ use crate::geometry::Surfels;
 use crate::verify::scenes::random::Random;
 use glam::DVec3;
 
-/// Layers at 10⁻³ and on.
+/// Strips at 10⁻³ and beyond.
 pub fn case() -> Case {
     Case {
         name: "depth-range",
@@ -27,7 +27,7 @@ fn view(farthest: f64) -> Result<View> {
     for strip in 0..strips {
         let distance = 10f64.powi(strip - 3);
         for i in 0..6 * 40 {
-            // Of a picture from -1 to 1: four columns a strip, and one more either side.
+            // The picture spans −1 to 1: four columns per strip, and one more on either side.
             let x = (f64::from(4 * strip + i % 6) - 0.5) * step - 1.0;
             let y = (f64::from(i / 6) + 0.5) / 20.0 - 1.0;
             let off = 0.1 * step * vector(&mut random);

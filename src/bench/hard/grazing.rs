@@ -1,4 +1,4 @@
-//! Planes seen at ever more grazing angles.
+//! Planes at ever more grazing angles.
 
 use super::case::{Case, View, decades, push, signed, vector};
 use crate::error::Result;
@@ -7,12 +7,12 @@ use crate::settings::Precision;
 use crate::verify::scenes::random::Random;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
-/// Distance from the eye to the middle of the picture, which is 2 high.
+/// Distance from the eye to the middle of the picture, which has height 2.
 const DISTANCE: f64 = 10.0;
-/// Distance from which the magnified plane is seen.
+/// Distance of the eye from the magnified plane.
 const FAR: f64 = 100.0;
 
-/// Of many planes, and of one that is magnified, by perspective and by parallel rays.
+/// Many planes; and one that is magnified, in perspective and in parallel projection.
 pub fn cases() -> [Case; 3] {
     let parameter = "angle between plane and direction of view, degrees";
     let values = || decades(-4, 0).into_iter().chain([3.0, 10.0, 30.0, 60.0, 90.0]).collect();
@@ -49,19 +49,19 @@ fn too_wide(degrees: f64, _: Precision) -> Option<&'static str> {
     )
 }
 
-/// Two axes along a plane, and its normal; at no simple angle to the world's.
+/// Two axes in a plane, and its normal; at no simple angle to the world's axes.
 fn axes() -> DMat3 {
     DMat3::from_quat(DQuat::from_axis_angle(DVec3::new(0.48, 0.6, 0.64), 0.7))
 }
 
-/// Eye, target and upwards for an angle with this sine and cosine.
+/// Eye, target and up vector for an angle with this sine and cosine.
 fn stand(distance: f64, (sin, cos): (f64, f64)) -> [DVec3; 3] {
     let axes = axes();
     [distance * (axes * DVec3::new(0.0, -cos, sin)), DVec3::ZERO, axes * DVec3::new(0.0, sin, cos)]
 }
 
-/// Adds `columns` × `rows` overlapping discs of one radius in a plane, as far off it and as tilted as eyes at an angle with this sine can
-/// just stand.
+/// Adds `columns` × `rows` overlapping discs of one radius in a plane. Displacement and tilt are as large as an angle
+/// of view with this sine allows.
 fn plane(
     surfels: &mut Surfels,
     random: &mut Random,
@@ -80,7 +80,7 @@ fn plane(
     }
 }
 
-/// Eight planes, the `k`th moved by `pose(k)` with `k` from -0.9 to 0.9.
+/// Eight planes, moved by `pose(k)` with `k` from −0.9 to 0.9.
 fn planes(sine: f64, pose: impl Fn(f64) -> DAffine3) -> Surfels {
     let (mut surfels, mut random) = (Surfels::default(), Random::new(1, 1));
     for k in 0..8 {
@@ -93,18 +93,18 @@ fn planes(sine: f64, pose: impl Fn(f64) -> DAffine3) -> Surfels {
 fn lines(degrees: f64) -> Result<View> {
     let angle = degrees.to_radians().sin_cos();
     let [eye, target, up] = stand(DISTANCE, angle);
-    // Turned about the eye, so that it sees all at one angle.
+    // Rotations around the eye, so that it sees all planes at one angle.
     let turn = |k: f64| {
         let about_eye = DAffine3::from_axis_angle(axes().x_axis, k / DISTANCE);
         DAffine3::from_translation(eye) * about_eye * DAffine3::from_translation(-eye)
     };
-    // So near that it does not cut the planes off: below their images they run on to under the eye.
+    // Near enough not to clip the planes, which extend below their images to under the eye.
     let near = 1e-3 * angle.0;
     let camera = Camera::look_at(eye, target, up, 2.0 * (1.0 / DISTANCE).atan(), 1.0, near)?;
     Ok(View::new(planes(angle.0, turn), camera))
 }
 
-/// The plane that is magnified.
+/// The magnified plane.
 fn one(sine: f64) -> Surfels {
     let mut surfels = Surfels::default();
     plane(&mut surfels, &mut Random::new(1, 2), [30, 30], 1.0, sine, DAffine3::IDENTITY);

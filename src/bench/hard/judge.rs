@@ -1,12 +1,12 @@
-//! How far a picture is from the float64 one, and what no tolerance excuses.
+//! Comparison of a picture with the float64 reference, and faults that no tolerance excuses.
 
 use super::super::record::{Agreement, Faults};
 use crate::error::Result;
 use crate::picture::Picture;
 use crate::verify::reference::{Admissible, Expected};
 
-/// Holds a picture with depth and normals against `expected`. A pixel with a value that is not finite is a fault, and empty in
-/// what else is measured.
+/// Compares a picture that has depth and normals with `expected`. A pixel with a value that is not finite counts as a
+/// fault and is treated as empty otherwise.
 ///
 /// # Errors
 /// The picture has another size, or lacks depth or normals.
@@ -24,7 +24,7 @@ pub fn judge(expected: &Expected, picture: &Picture) -> Result<(Agreement, Fault
     Ok((Agreement::of(&found), faults))
 }
 
-/// The picture with its pixels that hold NaN or infinity emptied, and their number.
+/// The picture without its pixels that hold NaN or infinity, and their number.
 fn finite(picture: &Picture) -> (Picture, u64) {
     let mut cleared = picture.clone();
     let mut count = 0;
@@ -44,7 +44,7 @@ fn finite(picture: &Picture) -> (Picture, u64) {
     (cleared, count)
 }
 
-/// Whether all that pixel `index` may hold is covered alike.
+/// Whether all admissible values of pixel `index` agree on its coverage.
 fn is_sure(expected: &Expected, index: usize) -> bool {
     match expected.bounds.admissible(index) {
         Admissible::Definite => true,

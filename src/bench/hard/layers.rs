@@ -8,7 +8,7 @@ use glam::DVec3;
 
 const RADIUS: f64 = 0.1;
 
-/// From nearly coincident to far beyond ε.
+/// From almost coincident to far beyond ε.
 pub fn case() -> Case {
     let near_threshold = [0.5, 0.9, 0.99, 0.999, 0.9999, 1.0001, 1.001, 1.01, 1.1, 2.0, 10.0];
     Case {

@@ -1,8 +1,8 @@
-//! Hard cases: float32 on the device against float64 on the CPU, as a parameter goes to where numbers get difficult.
+//! Hard cases: float32 on the device against float64 on the CPU, as a parameter approaches the limits of float32.
 //!
-//! A case is a short file's worth of geometry for every value of a parameter. Each value is rendered by every method and by all ways
-//! that the device has, and every pixel is held against [`Expected`]: how far colour, normal and depth are off, and the
-//! [`Faults`](super::record::Faults) that no tolerance excuses. What is refused or culled is told, never left out.
+//! A case generates geometry for every value of a parameter. Every method and every variant on the device renders each
+//! value, and every pixel is compared with [`Expected`]: the errors of colour, normal and depth, and the
+//! [`Faults`](super::record::Faults) that no tolerance excuses. Refused and culled surfels are reported.
 
 mod attributes;
 mod case;
@@ -31,17 +31,17 @@ use crate::vk::Device;
 use case::{Case, View};
 use std::sync::Arc;
 
-/// What a [`SweepPoint::note`] begins with where float32 cannot agree with float64; the reason follows.
+/// Prefix of a [`SweepPoint::note`] where float32 cannot agree with float64; the reason follows.
 pub const EXCUSED: &str = "beyond float32: ";
 
-/// What is swept.
+/// Extent of the sweeps.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Options {
-    /// Most values of each parameter, from its first to its last; at least 2.
+    /// Most values per parameter, from its first to its last; at least 2.
     pub values: usize,
-    /// Most of them by other methods than the first, at least 2.
+    /// Most values for methods other than the first, at least 2.
     pub others: usize,
-    /// Names of the cases; all if there are none.
+    /// Names of the cases; all if empty.
     pub only: Vec<String>,
 }
 
@@ -52,7 +52,7 @@ impl Default for Options {
     }
 }
 
-/// All cases, in the order in which they are swept.
+/// All cases, in execution order.
 fn cases() -> Vec<Case> {
     let families = grazing::cases().into_iter().chain(planes::cases()).chain([depth::case()]);
     let families = families.chain(offset::cases()).chain(shape::cases()).chain(overlap::cases());
@@ -67,7 +67,7 @@ pub fn names() -> Vec<&'static str> {
 /// Sweeps the cases on `device`.
 ///
 /// # Errors
-/// [`Error::Usage`] if there is no case of a name, and what is wrong with the device itself. A point that the device refuses is a
+/// [`Error::Usage`] if a name is unknown, and errors of the device itself. A point that the device refuses becomes a
 /// [`SweepPoint::refused`].
 pub fn run(device: &Arc<Device>, options: &Options, progress: &dyn Progress) -> Result<Vec<Sweep>> {
     let mut cases = cases();
@@ -96,7 +96,7 @@ pub fn run(device: &Arc<Device>, options: &Options, progress: &dyn Progress) -> 
     sweeps
 }
 
-/// A way to render, and its place in the order.
+/// A variant, in the order of the results.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Way {
     Draw,
@@ -125,12 +125,12 @@ impl Way {
     }
 }
 
-/// A device with the renderers that were made on it.
+/// A device with the renderers created on it.
 struct Bench<'a> {
     device: Arc<Device>,
     renderers: Vec<(RenderOptions, Renderer)>,
     progress: &'a dyn Progress,
-    /// Values that are swept, and how many there are.
+    /// Finished values, and all of them.
     done: u64,
     total: u64,
 }
@@ -140,7 +140,7 @@ impl Bench<'_> {
         self.progress.at("hard cases", self.done, self.total);
     }
 
-    /// A case by the method in this place, way by way.
+    /// Sweeps a case by the method of this index, variant by variant.
     fn sweep(&mut self, case: &Case, method: usize, values: Vec<f64>) -> Result<Vec<SweepPoint>> {
         let mut points = Vec::new();
         for value in values {
@@ -148,12 +148,13 @@ impl Bench<'_> {
             points.extend(self.points(case, &Method::SPLATTING[method], method == 0, value)?);
             self.done += 1;
         }
-        // Stable: the values stay in order.
+        // A stable sort: the values stay in order.
         points.sort_by_key(|(way, _)| *way);
         Ok(points.into_iter().map(|(_, point)| point).collect())
     }
 
-    /// One value of a case, by every way; in 16 bits by the first method alone, as what such sums lose is the same by all.
+    /// One value of a case, by every variant; with 16-bit sums by the first method only, as their error is the same for
+    /// all.
     fn points(
         &mut self,
         case: &Case,
@@ -162,12 +163,12 @@ impl Bench<'_> {
         value: f64,
     ) -> Result<Vec<(Way, SweepPoint)>> {
         let mut view = (case.view)(value)?;
-        // Some cases show the backs of their discs: who culls those has nothing to show.
+        // Some cases show the backs of their discs: methods that cull those would show nothing.
         let Settings { epsilon, shading, cull, .. } = view.settings;
         view.settings = Settings { epsilon, shading, cull, ..method.settings() };
         let expected =
             Expected::new(&view.surfels, &view.camera, view.size, &view.settings, &Tolerance::default())?;
-        // Invalid surfels are what a case is about, and told in its notes.
+        // Invalid surfels are intended here; the notes report them.
         let (scene, _) = Scene::upload_silently(&self.device, &view.surfels)?;
         let half = case.half && first;
         let ways = [Way::Draw, Way::Compute].into_iter().chain(half.then_some(Way::Half));
@@ -182,7 +183,7 @@ impl Bench<'_> {
         ways.map(&mut point).collect()
     }
 
-    /// By one way, what is found, refused and culled.
+    /// Renders one value with one variant: errors, refusals and culled surfels.
     fn point(
         &mut self,
         way: Way,
@@ -207,7 +208,7 @@ impl Bench<'_> {
         Ok(point)
     }
 
-    /// The renderer of one way and size, made when it is first wanted.
+    /// The renderer of a variant and size, created on first use.
     fn renderer(&mut self, way: Way, size: [u32; 2]) -> Result<&mut Renderer> {
         let options = way.options(size);
         let place = match self.renderers.iter().position(|(made, _)| *made == options) {
@@ -226,7 +227,7 @@ impl Bench<'_> {
     }
 }
 
-/// What was culled on the device, and by the reference too where that differs: at a threshold, rounding decides.
+/// Culled surfels on the device, and those of the reference if they differ: at a threshold, rounding decides.
 fn reasons(device: &SplatCounts, reference: &Counts) -> String {
     let SplatCounts { drawn: _, behind, eye_plane, back, outside, invalid } = *device;
     let expected =

@@ -8,7 +8,7 @@ use glam::DVec3;
 
 const DISTANCE: &str = "distance from the world's origin, radii of the object";
 
-/// Of a sphere of radius 1.
+/// Cases of a sphere of radius 1.
 pub fn cases() -> [Case; 3] {
     let case = |name, about, parameter, values, view| Case {
         name,

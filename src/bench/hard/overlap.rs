@@ -7,10 +7,10 @@ use crate::settings::Precision;
 use crate::verify::scenes::random::Random;
 use glam::DVec3;
 
-/// Height of a pixel at the distance of the surfels: 64 rows of a picture that is 2 high.
+/// Height of a pixel at the distance of the surfels: 64 rows of a picture of height 2.
 const PIXEL: f64 = 2.0 / 64.0;
 
-/// Of splats smaller than a pixel, and of splats one on the other.
+/// Splats smaller than a pixel, and coincident splats.
 pub fn cases() -> [Case; 2] {
     [
         Case {
@@ -73,7 +73,7 @@ fn sub_pixel(density: f64) -> Result<View> {
         let normal = DVec3::new(0.2 * signed(&mut random), 0.2 * signed(&mut random), 1.0);
         push(&mut surfels, &mut random, position, normal, 1.5 * spacing);
     }
-    // Splats that are many radii apart meet in a pixel.
+    // ε spans a pixel, so that splats many radii apart are blended.
     let mut view = view(surfels)?;
     view.settings.epsilon = (PIXEL / (1.5 * spacing)) as f32;
     Ok(view)

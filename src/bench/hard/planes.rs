@@ -1,4 +1,4 @@
-//! Discs about the eye plane and about the near plane.
+//! Discs around the eye plane and around the near plane.
 
 use super::case::{Case, View, look, push, wall};
 use crate::error::Result;
@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 
 const RADIUS: f64 = 0.5;
 
-/// Of both planes.
+/// Cases of both planes.
 pub fn cases() -> [Case; 2] {
     let case = |name, about, parameter, values: &[f64], view| Case {
         name,
@@ -42,8 +42,8 @@ pub fn cases() -> [Case; 2] {
     ]
 }
 
-/// A wall, and a ring of discs around the z axis whose centres are at `at(reach)`, where a disc's points are within `reach` of its
-/// centre along z.
+/// A wall, and a ring of discs around the z axis with their centres at `at(reach)`; a disc extends `reach` along z from
+/// its centre.
 fn ring(at: impl Fn(f64) -> f64) -> Surfels {
     let (mut surfels, mut random) = (Surfels::default(), Random::new(2, 1));
     wall(&mut surfels, &mut random, 12, 9.0, DVec3::Z * 8.0);

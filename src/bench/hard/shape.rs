@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 /// Distance of the eye.
 const DISTANCE: f64 = 4.0;
 
-/// Of discs strewn over a unit square about the origin.
+/// Discs scattered over a unit square around the origin.
 pub fn cases() -> [Case; 2] {
     [
         Case {
@@ -36,7 +36,7 @@ pub fn cases() -> [Case; 2] {
     ]
 }
 
-/// 400 discs of which no part is nearer to the eye than half of the distance.
+/// 400 discs of which no part is nearer to the eye than half its distance.
 fn strew(random: &mut Random, radius: f64) -> Surfels {
     let mut surfels = Surfels::default();
     let tilt = 0.25f64.min(0.25 * DISTANCE / radius);

@@ -6,7 +6,7 @@ use crate::geometry::Camera;
 use crate::verify::scenes::random::Random;
 use glam::DVec3;
 
-/// Widths and heights, px, by rising ratio.
+/// Widths and heights, px, by ascending ratio.
 const SIZES: [[u32; 2]; 11] = [
     [1, 640],
     [1, 257],
@@ -21,7 +21,7 @@ const SIZES: [[u32; 2]; 11] = [
     [640, 1],
 ];
 
-/// Powers of two are none of them.
+/// Sizes that are no powers of two.
 pub fn case() -> Case {
     Case {
         name: "size",
@@ -45,7 +45,7 @@ fn view(value: f64) -> Result<View> {
     let size = SIZES.into_iter().min_by(nearest).unwrap_or([1, 1]);
     let surfels = ball(1500, &mut Random::new(8, 1));
     let eye = DVec3::new(2.1, 1.0, 2.6);
-    // As wide as high an angle for the longer side.
+    // The longer side has the angle of view.
     let angle = 2.0 * (0.35 / ratio(size).max(1.0)).atan();
     let camera = Camera::look_at(eye, DVec3::ZERO, DVec3::Y, angle, ratio(size), 1e-3)?;
     let note = format!("{}x{} px", size[0], size[1]);

@@ -1,4 +1,4 @@
-//! What the papers say that something costs: pairs of runs whose frames take turns.
+//! Costs that the papers state: pairs of runs whose frames alternate.
 
 use crate::bench::plan::{Plan, Wants};
 use crate::bench::record::Figure;
@@ -7,27 +7,27 @@ use crate::settings::methods::Method;
 use crate::settings::splatting::{Filter, Footprint, Normalization, Splatting, Visibility};
 use crate::settings::{Settings, Widen};
 
-/// Something that costs time.
+/// A cost in time.
 pub struct Claim {
-    /// Name of the part.
+    /// Name of the item.
     pub name: &'static str,
-    /// What costs time, against what.
+    /// The more expensive side against the cheaper one.
     pub title: &'static str,
     /// Paper and table or section.
     pub source: &'static str,
-    /// Times as long it takes there, from the least to the most that are published; none where it is told in words.
+    /// Published ratio, from the least to the greatest; none if the paper gives no numbers.
     pub published: Option<[f64; 2]>,
-    /// What the paper says in words, or which of its numbers are compared.
+    /// The paper's statement, or which of its numbers are compared.
     pub words: &'static str,
     scene: [&'static str; 2],
     settings: fn() -> [Settings; 2],
 }
 
 const SCENE: &str = "scene:bumpy-sphere";
-/// A checkerboard whose weights can be captured: a plane that ends.
+/// A checkerboard of limited extent, whose weights can be captured.
 const BOARD: &str = "scene:relief?height=0&frequency=2";
 
-/// All that can be measured, the cheaper side first.
+/// All costs, each with the cheaper side first.
 pub const ALL: [Claim; 7] = [
     Claim {
         name: "filtered-sprites",
@@ -115,12 +115,12 @@ pub const ALL: [Claim; 7] = [
 ];
 
 impl Claim {
-    /// The claim of a name.
+    /// The cost of a name.
     pub fn named(name: &str) -> Option<&'static Self> {
         ALL.iter().find(|claim| claim.name == name)
     }
 
-    /// The cheaper side, and the dearer with its time as a multiple of that.
+    /// The cheaper side, and the more expensive one, with its time relative to the former.
     pub fn plans(&self) -> [Plan; 2] {
         let [first, second] = (self.settings)();
         let side = |scene, settings: Settings| {

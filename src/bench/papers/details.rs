@@ -1,26 +1,27 @@
-//! Metrics that single effects are seen by. All but the overlap are of a picture beside the truth, over black, by the luma of linear light.
+//! Metrics of single effects. All but the overlap compare a picture with the truth, over black, by the luma of linear
+//! light.
 
 use crate::bench::record::Blended;
 use crate::bench::terms::WHOLE;
 use crate::picture::Picture;
 use crate::verify::metrics::{Pair, colour, covers};
 
-/// Pixels well inside the surface that the picture does not cover: the truth covers them and all that its filter reaches.
+/// Pixels well inside the surface that the picture does not cover: the truth covers them and the support of its filter.
 pub const GAPS: &str = "gaps";
-/// How unevenly bright the surface is: the standard deviation of the picture's luma over the truth's, as a share of its mean, over pixels that
-/// both cover wholly. 0 where light is only more or less everywhere.
+/// Unevenness of brightness: the standard deviation of the picture's luma over the truth's, relative to its mean, over
+/// pixels that both cover wholly. 0 for a constant factor.
 pub const UNEVENNESS: &str = "unevenness";
-/// How much of the truth's contrast from pixel to pixel is left: `Σ ∇p·∇t / Σ ∇t·∇t` over pixels that both cover wholly. 1 is as sharp as the
-/// truth, less is blurred.
+/// Contrast between neighbouring pixels relative to the truth: `Σ ∇p·∇t / Σ ∇t·∇t` over pixels that both cover wholly.
+/// 1 is as sharp as the truth, less is blurred.
 pub const SHARPNESS: &str = "sharpness";
-/// Facets: the root mean square of the error's Laplacian, over pixels that both cover wholly with their neighbours. What is smooth and
-/// wrong has none; borders between splats have.
+/// Facets: the root mean square of the error's Laplacian, over pixels that both cover wholly with their neighbours.
+/// Smooth errors have none; borders between splats have.
 pub const FACETS: &str = "facets";
 
-/// Pixels well inside the surface that show something further away than it, by more than a hundredth of its distance.
+/// Pixels well inside the surface whose depth exceeds the truth's by more than 1 %.
 pub const LEAKS: &str = "leaks";
 
-/// All of them that there are.
+/// All metrics that the pictures allow.
 pub fn of(pair: &Pair<'_>) -> Vec<(&'static str, f64)> {
     let image = Image::new(pair);
     let gaps = (0..pair.pixels()).filter(|&i| image.inside_truth[i] && !covers(pair.picture(), i)).count();
@@ -37,7 +38,7 @@ fn leaks(pair: &Pair<'_>, image: &Image) -> Option<usize> {
     Some((0..pair.pixels()).filter(behind).count())
 }
 
-/// Of a picture of [overlaps](crate::settings::Shading::Overlap): none if nothing is covered.
+/// Blended splats in a picture of [overlaps](crate::settings::Shading::Overlap); none if nothing is covered.
 pub fn blended(picture: &Picture) -> Option<Blended> {
     let counts = || picture.colour.iter().filter(|pixel| pixel[3] > 0.0).map(|pixel| f64::from(pixel[0]));
     let covered = counts().count();
@@ -45,7 +46,7 @@ pub fn blended(picture: &Picture) -> Option<Blended> {
     (covered > 0).then(|| Blended { mean, largest: counts().fold(0.0, f64::max) })
 }
 
-/// Luma of both, and where there is surface.
+/// Luma of both pictures, and masks of wholly covered pixels.
 struct Image {
     width: usize,
     picture: Vec<f64>,
@@ -64,7 +65,7 @@ impl Image {
         Self { width: pair.size()[0] as usize, picture, truth, inside_truth, inside_both }
     }
 
-    /// Pixels that have neighbours on all sides, if they and these lie inside of both.
+    /// Pixels that both pictures cover wholly, with their four neighbours.
     fn inner(&self) -> impl Iterator<Item = usize> + '_ {
         let (width, inside) = (self.width, &self.inside_both);
         let height = inside.len() / width;
@@ -105,7 +106,7 @@ impl Image {
 mod tests {
     use super::*;
 
-    /// 8×8 px, of a luma each and a coverage.
+    /// 8×8 px with a luma and a coverage each.
     fn picture(of: impl Fn(usize, usize) -> (f32, f32)) -> Picture {
         let pixels = (0..64).map(|i| of(i % 8, i / 8)).map(|(grey, alpha)| [grey, grey, grey, alpha]);
         Picture { size: [8, 8], colour: pixels.collect(), ..Default::default() }
@@ -129,7 +130,7 @@ mod tests {
         let truth = picture(|x, _| (0.1 + 0.05 * x as f32, 1.0));
         let scaled = |of: fn(usize) -> f32| picture(|x, _| (of(x) * (0.1 + 0.05 * x as f32), 1.0));
         assert!(value(UNEVENNESS, &scaled(|_| 2.0), &truth) < 1e-6);
-        // Half of all by 1.5, half by 0.5: a half of the mean.
+        // Half of the factors are 1.5, half 0.5: a deviation of half their mean.
         let uneven = value(UNEVENNESS, &scaled(|x| [0.5, 1.5][x % 2]), &truth);
         assert!((uneven - 0.5).abs() < 1e-6, "{uneven}");
     }
@@ -140,7 +141,8 @@ mod tests {
         assert!((value(SHARPNESS, &truth, &truth) - 1.0).abs() < 1e-6);
         let blurred = picture(|x, _| (0.3 + 0.025 * x as f32, 1.0));
         assert!((value(SHARPNESS, &blurred, &truth) - 0.25).abs() < 1e-6);
-        // The error of the blurred one is linear; steps of two pixels are off by 0.1 at every other one: Laplacians of ±0.1.
+        // The error of the blurred picture is linear; steps of two pixels are off by 0.1 at every other pixel:
+        // Laplacians of ±0.1.
         assert!(value(FACETS, &blurred, &truth) < 1e-6);
         let steps = picture(|x, _| (0.2 * (x / 2) as f32, 1.0));
         let facets = value(FACETS, &steps, &truth);

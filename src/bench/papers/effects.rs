@@ -1,4 +1,5 @@
-//! What the papers' figures show: scenes in which one way to splat goes wrong and another does not, and the metrics that tell them apart.
+//! Effects that the papers' figures show: scenes in which one way to splat fails and another does not, and the metrics
+//! that distinguish them.
 
 use super::details::{FACETS, GAPS, LEAKS, SHARPNESS, UNEVENNESS};
 use crate::bench::plan::{Plan, Wants};
@@ -9,47 +10,47 @@ use crate::settings::splatting::{Filter, Footprint, Kernel, Normalization, Splat
 use crate::settings::{Settings, Shading};
 use crate::verify::scenes::Viewpoint;
 
-/// A figure's effect, and its sides.
+/// An effect of a figure, with the runs that are compared.
 pub struct Effect {
-    /// Name of the part.
+    /// Name of the item.
     pub name: &'static str,
-    /// What is to be seen.
+    /// Title.
     pub title: &'static str,
     /// Paper and figure.
     pub source: &'static str,
-    /// What happens, and where it is looked for.
+    /// Description: what happens, and in which scene.
     pub about: &'static str,
-    /// The metrics that are told: name, label.
+    /// Metrics to report: name, label.
     pub metrics: &'static [(&'static str, &'static str)],
-    /// What the paper's figure leads one to expect.
+    /// What the paper's figure shows.
     pub expected: &'static [Expected],
     plans: fn(&Effect) -> Vec<Plan>,
 }
 
-/// One side has more of something than another.
+/// One run has more of a metric than another.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Expected {
     /// Name of the metric.
     pub metric: &'static str,
-    /// The side with more, by its place.
+    /// Index of the run with more.
     pub more: usize,
-    /// The side with less.
+    /// Index of the run with less.
     pub less: usize,
-    /// How much more.
+    /// Least difference.
     pub by: Margin,
 }
 
-/// How much more of something there is at least.
+/// Least difference of a metric.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Margin {
-    /// So many times as much.
+    /// A factor.
     Times(f64),
-    /// So much more, in the metric's unit, as of none at all there is no multiple.
+    /// A difference in the metric's unit, as there is no multiple of 0.
     Plus(f64),
 }
 
 impl Expected {
-    /// Whether the runs of an effect, in order, show it; none if a value is missing.
+    /// Whether the runs of an effect, in order, meet it; none if a value is missing.
     pub fn holds(&self, runs: &[&Run]) -> Option<bool> {
         let [more, less] = [self.more, self.less].map(|side| value(runs.get(side)?, self.metric));
         let (more, less) = (more?, less?);
@@ -60,10 +61,10 @@ impl Expected {
     }
 }
 
-/// Mean number of splats that are blended at a pixel, and the largest.
+/// Mean and greatest number of splats that are blended at a pixel.
 const OVERLAP: [(&str, &str); 2] = [("overlap-mean", "splats a pixel"), ("overlap-max", "most at a pixel")];
 
-/// What a run has of a metric.
+/// Value of a metric of a run.
 pub fn value(run: &Run, metric: &str) -> Option<f64> {
     match metric {
         "overlap-mean" => Some(run.blended?.mean),
@@ -76,7 +77,7 @@ const fn more(metric: &'static str, more: usize, less: usize, by: Margin) -> Exp
     Expected { metric, more, less, by }
 }
 
-/// All of them.
+/// All effects.
 pub const ALL: [Effect; 18] = [
     Effect {
         name: "axis-offset",
@@ -265,12 +266,12 @@ impl Effect {
         ALL.iter().find(|effect| effect.name == name)
     }
 
-    /// Its sides.
+    /// The runs that are compared.
     pub fn plans(&self) -> Vec<Plan> {
         (self.plans)(self)
     }
 
-    /// A side of a square picture of so many px, of colours and by the default method.
+    /// A run with a square picture of `side` px, showing colours, by the default method.
     fn side(&self, scene: &str, points: u64, side: u32) -> Plan {
         let wants = Wants { error: true, details: true, exhibit: true, ..Wants::default() };
         let plan = plan(Suite::Papers, Figure::Effects, scene, points, [side; 2]);
@@ -278,13 +279,13 @@ impl Effect {
     }
 }
 
-/// The plan once for every splatting, with the rest of its settings.
+/// The plan once per splatting, with its other settings unchanged.
 fn each<const N: usize>(plan: &Plan, splattings: [Splatting; N]) -> Vec<Plan> {
     let one = |splatting| Settings { splatting, ..plan.settings.clone() };
     splattings.map(|splatting| Plan { settings: one(splatting), ..plan.clone() }).into()
 }
 
-/// The plan once for every method, with the method's settings.
+/// The plan by a method with the method's settings.
 fn by(plan: &Plan, method: &Method) -> Plan {
     Plan { settings: Settings { shading: plan.settings.shading, ..method.settings() }, ..plan.clone() }
 }
@@ -311,10 +312,11 @@ fn thickening(effect: &Effect) -> Vec<Plan> {
     each(&ellipses, [Splatting { footprint: Footprint::Square, ..shaped }, shaped])
 }
 
-/// The affine approximation beside the exact image, then by every other method.
+/// The affine approximation beside the exact image, then every other method.
 fn perspective_holes(effect: &Effect) -> Vec<Plan> {
     let mut plan = effect.side("scene:relief?height=0&sampler=grid", 100, 192);
-    // Grids come with discs of 1.5 spacings; half the diagonal between neighbours is 0.71 of one, and samples are off the grid by a little.
+    // Grids have discs of 1.5 spacings; half the diagonal between neighbours is 0.71, and samples are slightly
+    // jittered.
     plan.radius_scale = 0.56;
     plan.viewpoint = view([-2.0, 0.6, 7.2], [-2.0, 3.0, -2.0], 125.0);
     let affine = Splatting { footprint: Footprint::Affine, ..Splatting::default() };
@@ -332,7 +334,7 @@ fn moire(effect: &Effect) -> Vec<Plan> {
     each(&plan, [without(screen), screen, without(object), object])
 }
 
-/// The plan by kernels on discs in the tangent plane, each cut off at so many σ.
+/// The plan by kernels on discs in the tangent plane, each with its cut-off, σ.
 fn kernels<const N: usize>(plan: &Plan, kernels: [(Kernel, f32); N]) -> Vec<Plan> {
     let one = |(kernel, cutoff)| {
         let splatting =
@@ -366,7 +368,7 @@ fn clip_lines(effect: &Effect) -> Vec<Plan> {
 fn overlap(effect: &Effect) -> Vec<Plan> {
     let mut plan = effect.side("scene:bumpy-sphere", 137_062, 256);
     plan.settings.shading = Shading::Overlap;
-    // There is no exact number to compare with.
+    // There is no exact value to compare with.
     plan.wants.error = false;
     ["confetti", "object-ewa"].map(|name| by(&plan, &preset(name))).into()
 }
@@ -385,7 +387,7 @@ fn whole_sizes(effect: &Effect) -> Vec<Plan> {
     each(&sprites, [Splatting { footprint: Footprint::WholeSprite, ..fractional }, fractional])
 }
 
-/// A scene as lines and polygons by both rules, and as surfels.
+/// A scene as lines and polygons by both rules of pull–push, and as surfels.
 fn drawn(effect: &Effect, scene: &str, points: u64) -> Vec<Plan> {
     let separator = if scene.contains('?') { '&' } else { '?' };
     let mut lines = effect.side(&format!("{scene}{separator}primitives=on"), points, 512);

@@ -1,6 +1,7 @@
-//! What the papers show and say, measured here: their figures' effects, what they say that something costs, their tables of times.
+//! Statements of the papers, measured here: effects that their figures show, costs, and tables of times.
 //!
-//! Each is a [part](super::record::Run::part) of the suite `papers` by its name: what it is of, and what is expected, is looked up here.
+//! Each is an [item](super::record::Run::paper_item) of the suite `papers`; its source and expectation are looked up
+//! here by name.
 
 pub mod claims;
 pub mod details;
@@ -13,7 +14,7 @@ pub(super) use text::{here, published, ratio, side, verdicts};
 
 use super::record::{Figure, Run};
 
-/// The runs of a part, in the order in which they were planned.
+/// The runs of an item, in the order of their plans.
 pub fn runs<'a>(all: &'a [Run], figure: Figure, part: &str) -> Vec<&'a Run> {
     all.iter().filter(|run| run.figure == figure && run.part == part).collect()
 }

@@ -1,7 +1,7 @@
-//! The papers' tables of times, row by row, with what is rendered for each here.
+//! The papers' tables of times, row by row, with the run that corresponds to each.
 //!
-//! Most of the models were never public: a built-in scene of as many points stands in for them, at the same size. What else was counted there,
-//! instructions of vertex and fragment programs, has no counterpart in other programs for other machines.
+//! Most of the models were never public: a built-in scene with as many points replaces them, at the same size.
+//! Instruction counts of vertex and fragment programs have no counterpart here.
 
 use crate::bench::engine::Engine;
 use crate::bench::plan::{Plan, Wants};
@@ -16,19 +16,19 @@ use crate::settings::{Choice, Settings, Shading};
 pub struct Table {
     /// Paper and number of the table.
     pub source: &'static str,
-    /// What it ran on.
+    /// Hardware of the paper.
     pub hardware: &'static str,
-    /// What its numbers are, column by column.
+    /// Headings of the columns.
     pub columns: &'static [&'static str],
-    /// Their unit.
+    /// Unit of the numbers.
     pub unit: Unit,
-    /// What is different here, and what is left out.
+    /// Differences here, and omissions.
     pub note: &'static str,
     /// Its rows.
     pub rows: &'static [Row],
 }
 
-/// In what a table tells speed.
+/// Unit of speed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Unit {
     /// Frames per second.
@@ -37,7 +37,7 @@ pub enum Unit {
     MillionSplats,
     /// Seconds a frame.
     Seconds,
-    /// Milliseconds a frame, those of the projection and of pull and push beside them.
+    /// Milliseconds per frame, beside those of the projection and of pull and push.
     Parts,
 }
 
@@ -50,7 +50,7 @@ pub struct Row {
     pub points: u64,
     /// Width and height, px.
     pub size: [u32; 2],
-    /// The published numbers; none where there is none.
+    /// The published numbers, one per column.
     pub published: &'static [f64],
     way: Way,
 }
@@ -58,9 +58,9 @@ pub struct Row {
 /// How a row is rendered here.
 #[derive(Clone, Copy)]
 enum Way {
-    /// The preset of this name.
+    /// The method of this name.
     Method(&'static str),
-    /// `object-ewa`, changed along two axes: of a checkerboard.
+    /// `object-ewa` with another filter and normalization, on a checkerboard.
     Board(Filter, Normalization),
     /// `object-ewa` with weights of the surfels.
     BySurfel,
@@ -68,7 +68,7 @@ enum Way {
     SinglePass,
     /// `pull-push-paper` without colours: the picture shows normals, whose light costs next to nothing.
     WithoutColour,
-    /// Not at all yet: why.
+    /// Not rendered, with the reason.
     Missing(&'static str),
 }
 
@@ -95,7 +95,7 @@ const LARGE: [u32; 2] = square(1024);
 const WIDE: [u32; 2] = [1280, 1024];
 const TINY: [u32; 2] = square(256);
 
-/// All of them.
+/// All tables.
 pub const ALL: [Table; 8] = [
     Table {
         source: "ren2002 table 1",
@@ -257,14 +257,14 @@ pub const ALL: [Table; 8] = [
 ];
 
 impl Table {
-    /// What its rows that can be rendered are planned as.
+    /// Plans of the rows that can be rendered.
     pub fn plans(&self) -> Vec<Plan> {
         self.rows.iter().filter_map(|row| row.plan(self.source)).collect()
     }
 }
 
 impl Unit {
-    /// As it is written.
+    /// Text of the unit.
     pub fn name(self) -> &'static str {
         match self {
             Self::Fps => "frames/s",
@@ -274,7 +274,7 @@ impl Unit {
         }
     }
 
-    /// A time in it.
+    /// A time in this unit.
     pub fn of(self, ms: f64, points: u64) -> f64 {
         match self {
             Self::Fps => 1e3 / ms,
@@ -284,7 +284,7 @@ impl Unit {
         }
     }
 
-    /// A run's time in it, and its parts where they are wanted and known; none if it was not timed.
+    /// A run's time in this unit, with its parts if the unit has parts and they are known; none if it was not timed.
     pub fn told(self, run: &Run) -> Option<String> {
         let whole = show::significant(self.of(run.ms()?, run.points), 3);
         let passes = &run.time.as_ref()?.passes;
@@ -300,7 +300,7 @@ impl Unit {
 }
 
 impl Row {
-    /// Its run among those of its table.
+    /// The row's run among those of its table.
     pub fn run<'a>(&self, runs: &[&'a Run]) -> Option<&'a Run> {
         let settings = self.settings().ok()?;
         let what = (Engine::DEFAULT.contender(&settings), settings.shading.name());
@@ -311,12 +311,12 @@ impl Row {
         runs.iter().find(same).copied()
     }
 
-    /// Why there is no run of it.
+    /// Why the row has no run.
     pub fn missing(&self) -> Option<&'static str> {
         self.settings().err()
     }
 
-    /// How it is rendered, or why not.
+    /// The settings of the row, or the reason why it is not rendered.
     fn settings(&self) -> Result<Settings, &'static str> {
         let preset = |name| Method::named(name).unwrap_or(Method::SPLATTING[0]).settings();
         let mut settings = match self.way {
@@ -345,7 +345,7 @@ impl Row {
     fn plan(&self, source: &str) -> Option<Plan> {
         let settings = self.settings().ok()?;
         let scene = match self.way {
-            // Uniform, as far as a plane fills the picture.
+            // A uniform plane that fills the picture.
             Way::Board(..) => "scene:relief?height=0",
             _ => "scene:bumpy-sphere",
         };

@@ -1,4 +1,4 @@
-//! The papers' part of the table on a terminal.
+//! The papers' part of the results on a terminal.
 
 use super::claims::{self, Claim};
 use super::effects::{self, Effect, Margin, value};
@@ -9,7 +9,7 @@ use crate::bench::show;
 use crate::bench::table::WIDTH;
 use std::fmt::Write;
 
-/// What a session has measured of the papers; empty if nothing.
+/// Results of the papers' items in a session; empty if there are none.
 pub fn text(session: &Session) -> String {
     let mut text = String::new();
     for effect in &effects::ALL {
@@ -22,7 +22,7 @@ pub fn text(session: &Session) -> String {
     text.lines().map(folded).collect()
 }
 
-/// A line, in several where it is too wide, the others indented; each with its end.
+/// Breaks a line that is too wide, with indented continuation lines; each line has its end.
 fn folded(line: &str) -> String {
     let (mut text, mut width) = (String::new(), 0);
     for word in line.split_inclusive(' ') {
@@ -38,7 +38,7 @@ fn folded(line: &str) -> String {
     text + "\n"
 }
 
-// Writing to a String cannot fail, here and below.
+// Here and below: writing to a String cannot fail.
 
 fn effect_lines(text: &mut String, effect: &Effect, runs: &[&Run]) {
     if runs.is_empty() {
@@ -59,7 +59,7 @@ fn effect_lines(text: &mut String, effect: &Effect, runs: &[&Run]) {
     }
 }
 
-/// What tells a side from the others: the contender, and the settings and parameters in which they differ.
+/// What distinguishes a run from the others: implementation, settings and scene parameters in which they differ.
 pub(in crate::bench) fn side(run: &Run, runs: &[&Run]) -> String {
     let mut words = vec![run.contender.label()];
     let settings = show::told_of(run, show::differing(runs.iter().copied()));
@@ -70,7 +70,7 @@ pub(in crate::bench) fn side(run: &Run, runs: &[&Run]) -> String {
     words.join(", ")
 }
 
-/// What the paper leads one to expect, in words and numbers, and whether it is so.
+/// The expectations of an effect, in words and numbers, and whether the runs meet them.
 pub(in crate::bench) fn verdicts(effect: &Effect, runs: &[&Run]) -> Vec<(String, bool)> {
     let told = effect.expected.iter().filter_map(|expected| {
         let holds = expected.holds(runs)?;
@@ -102,7 +102,7 @@ fn claim_lines(text: &mut String, session: &Session) {
     }
 }
 
-/// How many times as long, with the spread.
+/// The ratio of times, with its range.
 pub(in crate::bench) fn ratio(run: &Run) -> String {
     let number = |value| show::significant(value, 3);
     match (&run.refused, run.ratio) {
@@ -114,7 +114,7 @@ pub(in crate::bench) fn ratio(run: &Run) -> String {
     }
 }
 
-/// What the paper says of it.
+/// The published ratio and statement.
 pub(in crate::bench) fn published(claim: &Claim) -> String {
     let numbers = claim.published.map(|[least, most]| format!("{least} to {most}, "));
     format!("{}: {}{}", claim.source, numbers.unwrap_or_default(), claim.words)
@@ -139,7 +139,7 @@ fn table_lines(text: &mut String, table: &Table, runs: &[&Run], session: &Sessio
     }
 }
 
-/// The number of a row here, and what it is of; or why there is none.
+/// The measured number of a row and its run, or why there is none.
 pub(in crate::bench) fn here(row: &Row, unit: Unit, runs: &[&Run]) -> [String; 2] {
     if let Some(why) = row.missing() {
         return ["".into(), format!("none: {why}")];

@@ -1,4 +1,4 @@
-//! What is finer than pixels, with the low-pass off and on.
+//! Aliasing: texture finer than pixels, with the low-pass filter off and on.
 
 use super::page::{Page, grouped, titled};
 use crate::bench::record::{Figure, Run, Session};
@@ -6,7 +6,7 @@ use crate::bench::show;
 use maud::{Markup, html};
 use std::io;
 
-/// A table a scene, and what the filter does to the error.
+/// A table per scene, and the effect of the filter on the error.
 pub fn part(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
     let runs = session.runs.iter().filter(|run| run.figure == Figure::Aliasing);
     let groups = grouped(runs, |run| (&run.scene, run.size));
@@ -50,7 +50,7 @@ fn table(runs: &[&Run]) -> Markup {
     }
 }
 
-/// How the error without filter stands to that with it, among runs that are alike otherwise.
+/// The error without the filter relative to that with it, for runs that are equal otherwise.
 fn sentences(runs: &[&Run]) -> Vec<String> {
     let alike = |run: &Run| (run.contender.label(), run.points, run.setting.cutoff.to_string());
     let mut said = Vec::new();

@@ -1,4 +1,4 @@
-//! Multiples of what a plain program on the CPU takes.
+//! Times relative to the CPU baseline.
 
 use super::page::{Page, grouped, titled};
 use crate::bench::record::{Figure, Run, Session};
@@ -6,7 +6,7 @@ use crate::bench::show;
 use maud::{Markup, html};
 use std::io;
 
-/// A table: what was rendered, by whom, how long it took, and how often the CPU baseline fits into that.
+/// A table of implementations with their times, in ms and relative to the CPU baseline.
 pub fn part(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
     let runs: Vec<&Run> = session.runs.iter().filter(|run| run.figure == Figure::Baseline).collect();
     if runs.is_empty() {

@@ -8,7 +8,7 @@ use crate::bench::show;
 use maud::{Markup, html};
 use std::io;
 
-/// A plot a scene: each contender's line over its numbers of points, and the front of all.
+/// A plot per scene: a line per implementation over its numbers of points, and the Pareto front of all.
 pub fn part(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
     let runs = session.runs.iter().filter(|run| run.figure == Figure::Budget);
     let mut plots = Vec::new();
@@ -56,7 +56,7 @@ fn lines(page: &Page<'_>, offers: &[Offer<'_>]) -> Vec<Line> {
     lines
 }
 
-/// Numbers of points, each told once along the front.
+/// Numbers of points along the front; repetitions are empty.
 fn counts(front: &[Offer<'_>]) -> Vec<String> {
     let same = |i: usize| i > 0 && front[i - 1].run.points == front[i].run.points;
     (0..front.len()).map(|i| if same(i) { String::new() } else { show::count(front[i].run.points) }).collect()

@@ -1,4 +1,4 @@
-//! What the papers' figures show: both sides of each beside each other, with the numbers that tell them apart.
+//! Effects that the papers' figures show: both sides of each, with the metrics that distinguish them.
 
 use super::page::Page;
 use crate::bench::papers::effects::{ALL, Effect, value};
@@ -8,7 +8,7 @@ use crate::bench::show;
 use maud::{Markup, html};
 use std::io;
 
-/// An effect after the other.
+/// One section per effect.
 pub fn part(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
     let measured = ALL.iter().map(|effect| (effect, runs(&session.runs, Figure::Effects, effect.name)));
     let measured: Vec<_> = measured.filter(|(_, runs)| !runs.is_empty()).collect();
@@ -22,7 +22,7 @@ pub fn part(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
 
 fn one(effect: &Effect, runs: &[&Run], exhibits: &[Exhibit]) -> Markup {
     let shown = |run: &Run| exhibits.get(run.exhibit?);
-    // Of counts there is no truth.
+    // A picture of counts has no truth.
     let truth = runs.iter().filter(|run| run.error.is_some()).find_map(|run| shown(run));
     html! {
         h3 { (effect.title) }

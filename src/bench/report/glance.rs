@@ -1,4 +1,4 @@
-//! Which setting for which budget of time, which for which budget of error.
+//! Summary: the best setting for each budget of time and of error.
 
 use super::page::{Page, titled};
 use crate::bench::advice::{Advice, Column, Offer, within_error, within_time};
@@ -7,7 +7,7 @@ use crate::bench::show;
 use maud::{Markup, html};
 use std::io;
 
-/// Two tables: rows are budgets, columns scenes.
+/// Two tables: rows are budgets, columns are scenes.
 pub fn part(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
     let Some(advice) = Advice::of(session) else { return Ok(None) };
     let Advice { columns, times, errors } = &advice;
@@ -27,7 +27,7 @@ pub fn part(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
     }))
 }
 
-/// Low-pass, cut-off, what is widened, ε, culling and α; what the picture shows is the same for all of a scene.
+/// Low-pass filter, cut-off, widening, ε, culling and α; the shading is the same for all runs of a scene.
 const NAMED: [bool; 7] = [true, true, true, true, true, true, false];
 
 fn table<'c, 'a>(
@@ -75,17 +75,17 @@ fn cell(offer: &Offer<'_>, error_first: bool) -> Markup {
     }
 }
 
-/// Whether there are multiples of the CPU baseline.
+/// Whether there are times relative to the CPU baseline.
 fn multiples(session: &Session) -> bool {
     session.runs.iter().any(|run| run.time.as_ref().is_some_and(|time| time.multiple.is_some()))
 }
 
-/// A list that breaks between its entries only.
+/// A list that breaks only between its entries.
 fn unbroken(list: &str) -> String {
     list.replace(' ', "\u{a0}").replace(",\u{a0}", ", ")
 }
 
-/// The settings that are not the method's own.
+/// The settings that differ from the method's defaults.
 fn unusual(run: &Run) -> String {
     let (own, preset) =
         (show::settings(&run.setting), show::settings(&Setting::preset(&run.contender.method)));

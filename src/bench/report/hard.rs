@@ -1,4 +1,4 @@
-//! The hard cases: float32 against float64.
+//! Hard cases: float32 against float64.
 
 use super::page::Page;
 use super::plot::{Alarm, Bar, Line, Plot, Scale, Style};
@@ -8,16 +8,16 @@ use crate::bench::show;
 use maud::{Markup, html};
 use std::io;
 
-/// What is compared: name, largest difference allowed, and where it is kept.
+/// A quantity: name, tolerance, and its value.
 type Quantity = (&'static str, f64, fn(&Agreement) -> f64);
 
-/// Remarks that are shown at once.
+/// Most remarks that are shown unfolded.
 const FEW: usize = 4;
 
 const QUANTITIES: [Quantity; 3] =
     [("colour", 2e-4, |a| a.colour), ("normal", 2e-4, |a| a.normal), ("depth", 1e-5, |a| a.depth)];
 
-/// A plot a sweep, with what is not as it should be in words.
+/// A plot per sweep, and a list of its faults.
 pub fn part(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
     let mut plots = Vec::new();
     for sweep in session.sweeps.iter().filter(|sweep| !sweep.points.is_empty()) {
@@ -63,7 +63,7 @@ fn methods(session: &Session) -> Vec<&str> {
     methods
 }
 
-/// The largest difference of colour of each case by each method, and what is wrong.
+/// The largest difference of colour of each case by each method, and the pixels out of tolerance.
 fn by_method(session: &Session) -> Markup {
     let methods = methods(session);
     html! {
@@ -100,7 +100,7 @@ fn title(sweep: &Sweep) -> String {
     letters.next().map(|first| first.to_uppercase().chain(letters).collect()).unwrap_or_default()
 }
 
-/// Colour by quantity, marker by contender; of the first method.
+/// Colour by quantity, marker by implementation; of the first method.
 fn plot(sweep: &Sweep) -> Plot {
     let contenders = contenders(sweep);
     let mut lines = Vec::new();
@@ -145,13 +145,13 @@ fn contenders(sweep: &Sweep) -> Vec<&Contender> {
     contenders
 }
 
-/// Where float32 cannot agree, wrong pixels are no fault; a hole always is.
+/// Pixels out of tolerance are no fault where float32 cannot agree; a hole always is.
 fn is_grave(point: &SweepPoint) -> bool {
     let wrong = point.agreement.failed > 0 && !point.note.starts_with(EXCUSED);
     point.refused.is_none() && (wrong || !point.faults.is_none())
 }
 
-/// What is to be told of the points: whether it is a fault, and what.
+/// Remarks on the points, and whether each is a fault.
 fn words(sweep: &Sweep) -> Vec<(bool, String)> {
     let told = sweep.points.iter().filter_map(|point| {
         let what = remarks(point);

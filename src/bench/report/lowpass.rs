@@ -1,4 +1,4 @@
-//! The low-pass filter's price and gain.
+//! Cost and benefit of the low-pass filter.
 
 use super::page::{Page, grouped, titled};
 use super::plot::{Line, Plot, Scale, Style};
@@ -7,7 +7,8 @@ use crate::bench::show;
 use maud::{Markup, html};
 use std::io;
 
-/// Error and time over the filter's variance, a line a cut-off and kind of widening, and what the shipped defaults cost.
+/// Error and time over the filter's variance, a line per cut-off and kind of widening, and a comparison with the
+/// defaults.
 pub fn part(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
     let measured = |run: &&Run| run.figure == Figure::Lowpass && run.refused.is_none();
     let runs = session.runs.iter().filter(measured);
@@ -43,7 +44,8 @@ pub fn part(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>
     }))
 }
 
-/// A line a cut-off and kind of widening: colour and marker by cut-off, dashes and hollow markers for all kinds but the first.
+/// A line per cut-off and kind of widening: colour and marker by cut-off; dashes and hollow markers for all kinds but
+/// the first.
 fn lines(runs: &[&Run], of: impl Fn(&Run) -> Option<f64>) -> Vec<Line> {
     let mut groups = grouped(runs.iter().copied(), |run| (run.setting.cutoff, &run.setting.widen));
     groups.sort_by(|(a, _), (b, _)| a.1.cmp(b.1).then(a.0.total_cmp(&b.0)));
@@ -61,7 +63,7 @@ fn lines(runs: &[&Run], of: impl Fn(&Run) -> Option<f64>) -> Vec<Line> {
     groups.into_iter().map(line).filter(|line| !line.points.is_empty()).collect()
 }
 
-/// Which is best by error, which by time, and what the shipped defaults are against them.
+/// The best settings by error and by time, and the defaults relative to them.
 fn sentence(runs: &[&Run]) -> String {
     let least = |of: fn(&Run) -> Option<f64>| {
         let known = runs.iter().filter_map(|run| Some((*run, of(run)?)));
@@ -102,7 +104,7 @@ fn timed(run: &Run) -> String {
     run.ms().map(|ms| format!(" in {} ms", show::ms(ms))).unwrap_or_default()
 }
 
-/// By how much `value` is above `least`.
+/// By how much `value` exceeds `least`.
 fn more(value: f64, least: f64) -> String {
     match 100.0 * (value / least - 1.0) {
         none if none < 0.05 => "as".into(),

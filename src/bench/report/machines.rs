@@ -1,14 +1,14 @@
-//! Several sessions side by side, by multiples of the CPU baseline: the only times that can be compared.
+//! Several sessions side by side, by times relative to the CPU baseline: the only ones that can be compared.
 
 use super::page::titled;
 use crate::bench::record::{Figure, Results, Run, Session};
 use crate::bench::show;
 use maud::{Markup, html};
 
-/// What was rendered, and by whom.
+/// Scene, size, points, implementation and settings.
 type Key<'a> = (&'a str, [u32; 2], u64, String, String);
 
-/// A table with a column a session; none of one session alone, or where they have nothing in common.
+/// A table with a column per session; none for a single session, or if sessions have no run in common.
 pub fn section(results: &Results) -> Option<Markup> {
     let sessions = &results.sessions;
     let mut rows: Vec<Key<'_>> = Vec::new();

@@ -1,4 +1,4 @@
-//! How each figure was made.
+//! Provenance of the figures.
 
 use super::page::Page;
 use crate::bench::record::{Made, Run, Session};
@@ -8,7 +8,7 @@ use maud::{Markup, html};
 use std::collections::BTreeSet;
 use std::io;
 
-/// Command, machine and times of the passes.
+/// Command, machine and pass times.
 pub fn part(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
     Ok(Some(html! {
         (origin(session))
@@ -36,7 +36,7 @@ fn origin(session: &Session) -> Markup {
     }
 }
 
-/// How many frames counted and how many warmed up, over all runs.
+/// Numbers of timed and of warm-up frames over all runs.
 fn frames(runs: &[Run]) -> String {
     let counts = |of: fn(&crate::bench::record::Time) -> usize| {
         let all: BTreeSet<usize> = runs.iter().filter_map(|run| run.time.as_ref()).map(of).collect();
@@ -78,7 +78,7 @@ fn filter(name: &str) -> &str {
     }
 }
 
-/// Median time of each pass, a row a run; only of runs that have passes.
+/// Median time of each pass, a row per run; only of runs with pass times.
 fn passes(session: &Session) -> Markup {
     let timed: Vec<(&Run, _)> =
         session.runs.iter().filter_map(|run| Some((run, run.time.as_ref()?))).collect();

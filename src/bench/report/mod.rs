@@ -1,4 +1,4 @@
-//! The page: what was measured, drawn and said, in one HTML file that loads nothing, with each plot as SVG beside it.
+//! The HTML report: one file without external resources, and each plot as an SVG file beside it.
 
 mod aliasing;
 mod baseline;
@@ -25,12 +25,14 @@ use page::Page;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Writes `index.html` and the plots into `folder`, which is made if it is missing; the paths of all files, the page first.
+/// Writes `index.html` and the plots into `folder`, which is created if it is missing. Returns the paths of all files,
+/// `index.html` first.
 ///
-/// `code` is the digest of the present program's code and `commit` its commit: what was measured by other code is marked as such.
+/// `code` is the present program's source digest and `commit` its commit: results of other code are marked as out of
+/// date.
 ///
 /// # Errors
-/// [`Error::Io`] if the folder cannot be made or a file not be written. Each file appears whole or not at all.
+/// [`Error::Io`] if the folder cannot be created or a file cannot be written. Files are written atomically.
 pub fn write(results: &Results, code: &str, commit: &str, folder: &Path) -> Result<Vec<PathBuf>> {
     let mut page = Page::new(results, code, commit);
     let html = page.build().map_err(Error::io(folder, "cannot draw a plot of"))?;

@@ -1,4 +1,4 @@
-//! The page's frame: head, banners, contents, and the sections that have something to show.
+//! Frame of the page: head, warnings, contents, and the sections with content.
 
 use super::plot::{Plot, Style, draw};
 use super::{
@@ -10,22 +10,22 @@ use crate::bench::show;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use std::io;
 
-/// A page that is being built.
+/// A page under construction.
 pub struct Page<'a> {
-    /// What it shows.
+    /// The results.
     pub results: &'a Results,
     code: &'a str,
     commit: &'a str,
     /// Names and contents of the SVG files.
     pub plots: Vec<(String, String)>,
-    /// In order of their first run, so that each looks the same everywhere.
+    /// In the order of their first run, so that each has one style everywhere.
     contenders: Vec<&'a Contender>,
 }
 
-/// What a section shows of a session; none if the session has nothing for it.
+/// Content of a section for a session; none if the session has nothing for it.
 type Part = fn(&mut Page<'_>, &Session) -> io::Result<Option<Markup>>;
 
-/// A part of the page.
+/// A section of the page.
 struct Section {
     id: &'static str,
     title: &'static str,
@@ -48,7 +48,7 @@ const SECTIONS: [Section; 12] = [
 ];
 
 impl<'a> Page<'a> {
-    /// Of results, seen by a program of that code and commit.
+    /// A page of `results` for a program with this source digest and commit.
     pub fn new(results: &'a Results, code: &'a str, commit: &'a str) -> Self {
         let mut contenders: Vec<&Contender> = Vec::new();
         let ran = |session: &'a Session| session.runs.iter().map(|run| &run.contender);
@@ -62,7 +62,7 @@ impl<'a> Page<'a> {
         Self { results, code, commit, plots: Vec::new(), contenders }
     }
 
-    /// All of it, as HTML.
+    /// The page as HTML.
     pub fn build(&mut self) -> io::Result<String> {
         let mut sections = Vec::new();
         for section in SECTIONS {
@@ -124,7 +124,7 @@ impl<'a> Page<'a> {
         }
     }
 
-    /// What all sessions have to show, each under its own name if there are several.
+    /// Content of all sessions, each under its own heading if there are several.
     fn section(&mut self, section: &Section) -> io::Result<Option<Markup>> {
         let several = self.results.sessions.len() > 1;
         let mut parts = Vec::new();
@@ -144,12 +144,12 @@ impl<'a> Page<'a> {
         show::stale(&session.made, self.code, self.commit)
     }
 
-    /// How a contender's lines look.
+    /// Line style of an implementation.
     pub fn style(&self, contender: &Contender) -> Style {
         Style::nth(self.contenders.iter().position(|known| *known == contender).unwrap_or(0))
     }
 
-    /// Draws a plot, keeps it for its file, and shows it.
+    /// Draws a plot, adds it to the files, and returns it for the page.
     pub fn plot(&mut self, mut plot: Plot) -> io::Result<Markup> {
         plot.name = self.free(&slug(&plot.name));
         let [file, inline] = draw(&plot)?;
@@ -166,13 +166,13 @@ impl<'a> Page<'a> {
     }
 }
 
-/// Only what is safe in every file name and id.
+/// Letters, digits and hyphens only: safe in file names and ids.
 fn slug(name: &str) -> String {
     let words = name.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
     words.collect::<Vec<_>>().join("-").to_lowercase()
 }
 
-/// Runs by something that they have in common, in the order of their first.
+/// Groups runs by key, in the order of their first.
 pub fn grouped<'r, K: PartialEq>(
     runs: impl IntoIterator<Item = &'r Run>,
     key: impl Fn(&'r Run) -> K,
@@ -188,7 +188,7 @@ pub fn grouped<'r, K: PartialEq>(
     groups
 }
 
-/// A scene at a size, as a title.
+/// A scene and a size, as a title.
 pub fn titled(scene: &str, size: [u32; 2]) -> String {
     format!("{}, {}", show::scene(scene), show::size(size))
 }

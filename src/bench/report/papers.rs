@@ -1,4 +1,4 @@
-//! What the papers say that something costs, and their tables, beside what was measured here.
+//! The papers' costs and tables beside the measured ones.
 
 use super::page::Page;
 use crate::bench::papers::claims::{self, Claim};
@@ -9,7 +9,7 @@ use crate::bench::show;
 use maud::{Markup, html};
 use std::io;
 
-/// A table of the costs, then one a paper's table.
+/// A table of the costs, then one per published table.
 pub fn part(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
     let costs = claims::ALL.iter().map(|claim| (claim, runs(&session.runs, Figure::Claims, claim.name)));
     let costs: Vec<_> = costs.filter(|(_, runs)| runs.len() == 2).collect();
@@ -42,7 +42,7 @@ fn table_of_costs(costs: &[(&Claim, Vec<&Run>)]) -> Markup {
     }
 }
 
-/// The dearer side's number against the cheaper's.
+/// A number of the more expensive side against that of the cheaper one.
 fn pair(runs: &[&Run], of: impl Fn(&Run) -> Option<f64>) -> String {
     let numbers: Option<Vec<_>> = runs.iter().rev().map(|run| Some(show::significant(of(run)?, 3))).collect();
     numbers.map(|numbers| numbers.join(" : ")).unwrap_or_default()

@@ -1,4 +1,4 @@
-//! Pictures beside the truth and the difference that is seen.
+//! Images beside the truth and the perceived difference.
 
 use super::page::{Page, titled};
 use crate::bench::record::{Exhibit, Figure, Run, Session};
@@ -6,9 +6,9 @@ use crate::bench::show;
 use maud::{Markup, html};
 use std::io;
 
-/// Truth, picture and FLIP's map in a row, with what was measured of them.
+/// Truth, image and FLIP map in a row, with the run's metrics.
 pub fn part(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
-    // Those of effects are shown with them.
+    // Images of effects are shown with them.
     let elsewhere =
         |index| session.runs.iter().any(|run| run.figure == Figure::Effects && run.exhibit == Some(index));
     let exhibits: Vec<_> =
@@ -33,7 +33,7 @@ fn pictures(exhibit: &Exhibit) -> [(&'static str, &str); 3] {
     [("the truth", &exhibit.truth), ("the picture", &exhibit.picture), ("FLIP's map", &exhibit.map)]
 }
 
-/// What the runs are that show the pictures; the title if there are none.
+/// The runs that the images belong to, or the title if there are none.
 fn words<'r>(exhibit: &Exhibit, runs: impl Iterator<Item = &'r Run>) -> Markup {
     let runs: Vec<&Run> = runs.collect();
     html! {

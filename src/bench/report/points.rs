@@ -1,4 +1,4 @@
-//! Error against the number of points: where it stops falling, and what is left there.
+//! Error against the number of points: where it stops falling, and the residual error.
 
 use super::page::{Page, grouped, titled};
 use super::plot::{Line, Plot, Scale, Style};
@@ -8,10 +8,10 @@ use crate::bench::show;
 use maud::{Markup, html};
 use std::io;
 
-/// What is less than so much of the largest error lies on the plot's lower edge.
+/// Values below this share of the largest error lie on the plot's lower edge.
 const SHOWN: f64 = 1e-3;
 
-/// A plot a scene, of the setting that was measured with the most numbers of points, and what it says.
+/// A plot per scene, of the settings that were measured with the most numbers of points, and its evaluation.
 pub fn part(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
     let compared = |run: &&Run| run.figure == Figure::Budget && run.rmse().is_some();
     let runs = session.runs.iter().filter(compared);
@@ -42,7 +42,8 @@ pub fn part(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>
     }))
 }
 
-/// The contender and setting of the most numbers of points; of several the one nearest to the shipped settings, then the first.
+/// The implementation and settings with the most numbers of points; of several those nearest to the defaults, then the
+/// first.
 fn main<'r>(runs: &[&'r Run]) -> Option<(&'r Contender, &'r Setting, Vec<&'r Run>)> {
     let shipped = show::settings(&Setting::shipped());
     let rank = |setting: &Setting, runs: &[&Run]| {
@@ -59,7 +60,7 @@ fn main<'r>(runs: &[&'r Run]) -> Option<(&'r Contender, &'r Setting, Vec<&'r Run
     })
 }
 
-/// Name, look, and where it is kept.
+/// Name, style and value of a term.
 type Term = (&'static str, Style, fn(&Error) -> Option<f64>);
 
 fn lines(runs: &[&Run]) -> Vec<Line> {
@@ -84,7 +85,7 @@ fn lines(runs: &[&Run]) -> Vec<Line> {
     lines
 }
 
-/// Where the error falls, where it stops, and what is left.
+/// Where the error falls, where it stops falling, and the residual error.
 fn sentence(runs: &[&Run]) -> String {
     let told = |step: Step| format!("{} ({})", show::count(step.points), show::significant(step.rmse, 2));
     let (falls, end) = match fall(&steps(runs.iter().copied())) {

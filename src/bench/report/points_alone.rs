@@ -1,4 +1,5 @@
-//! What pull–push costs against the number of points, pass by pass, and from how many on it is faster than splats.
+//! Cost of pull–push against the number of points, pass by pass, and the number of points from which it is faster than
+//! splats.
 
 use super::page::{Page, grouped};
 use super::plot::{Line, Plot, Scale, Style};
@@ -8,14 +9,14 @@ use crate::settings::methods::{Method, perspective_ewa, pull_push};
 use maud::{Markup, html};
 use std::io;
 
-/// Whose passes are shown.
+/// The methods shown.
 const METHODS: [Method; 2] = [pull_push::METHOD, pull_push::PAPER];
-/// The passes that go over pixels alone.
+/// The passes over pixels.
 const OVER_PIXELS: [&str; 3] = ["pull", "copy", "push"];
-/// The passes of pull–push, those that take turns included.
+/// The passes of pull–push.
 const PASSES: [&str; 6] = ["project", "fetch", "pull", "copy", "push", "shade"];
 
-/// A plot a preset, with what it says.
+/// A plot per method, with its evaluation.
 pub fn plots(page: &mut Page<'_>, session: &Session) -> io::Result<Vec<Markup>> {
     let timed = |run: &&Run| run.figure == Figure::ScalingPoints && run.ms().is_some();
     let runs = session.runs.iter().filter(timed);
@@ -43,7 +44,7 @@ pub fn plots(page: &mut Page<'_>, session: &Session) -> io::Result<Vec<Markup>> 
     Ok(plots)
 }
 
-/// The runs by a preset as it is.
+/// The runs of a method with its default settings.
 fn by<'r>(runs: &[&'r Run], method: &Method) -> Vec<&'r Run> {
     let preset = Contender { method: method.name.into(), variant: String::new() };
     runs.iter().copied().filter(|run| run.contender == preset).collect()
@@ -64,13 +65,13 @@ fn pass(run: &Run, name: &str) -> Option<f64> {
     passes.iter().find(|pass| pass.name == name).map(|pass| pass.ms.median)
 }
 
-/// What the passes over pixels take, ms, as far as there are such.
+/// Time of the passes over pixels, ms, if there are any.
 fn over_pixels(run: &Run) -> Option<f64> {
     let found: Vec<_> = OVER_PIXELS.iter().filter_map(|name| pass(run, name)).collect();
     (!found.is_empty()).then(|| found.iter().sum())
 }
 
-/// How much of what they take at most the passes over pixels take.
+/// Time of the passes over pixels relative to their upper bound.
 fn against_filled(runs: &[&Run], filled: Option<&Run>) -> String {
     let times = || runs.iter().filter_map(|run| over_pixels(run));
     let [least, most] = [times().fold(f64::INFINITY, f64::min), times().fold(0.0, f64::max)];
@@ -88,7 +89,7 @@ fn against_filled(runs: &[&Run], filled: Option<&Run>) -> String {
     }
 }
 
-/// From how many points on it is faster than splats.
+/// The number of points from which it is faster than splats.
 fn against_splats(runs: &[&Run], splats: &[&Run]) -> String {
     let faster = |run: &&Run| {
         let other = splats.iter().find(|other| other.points == run.points)?;

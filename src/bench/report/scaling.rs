@@ -1,4 +1,4 @@
-//! Time against the number of points, the picture's size and the number of discs over a point of the surface.
+//! Time against the number of points, the picture's size, and the number of discs over a point of the surface.
 
 use super::page::{Page, grouped};
 use super::plot::{Line, Plot, Scale, Style};
@@ -8,7 +8,7 @@ use crate::bench::show;
 use maud::{Markup, html};
 use std::io;
 
-/// What a figure is over.
+/// Horizontal axis of a scaling experiment.
 struct Over {
     figure: Figure,
     name: &'static str,
@@ -41,7 +41,7 @@ const FIGURES: [Over; 3] = [
     },
 ];
 
-/// A plot a figure and scene, with how fast time grows at its end.
+/// A plot per experiment and scene, with the growth of time at its end.
 pub fn part(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
     let mut plots = Vec::new();
     for over in &FIGURES {
@@ -88,7 +88,7 @@ fn lines(page: &Page<'_>, runs: &[&Run], over: &Over) -> Vec<Line> {
     lines
 }
 
-/// What all runs have in common beside the scene.
+/// Values that all runs share, beside the scene.
 fn fixed(runs: &[&Run], over: &Over) -> String {
     let (first, mut words) = (runs[0], Vec::new());
     if over.figure != Figure::ScalingPoints && runs.iter().all(|run| run.points == first.points) {
@@ -100,7 +100,7 @@ fn fixed(runs: &[&Run], over: &Over) -> String {
     if words.is_empty() { String::new() } else { words.join(", ") + "." }
 }
 
-/// Each line's exponent between its last two points.
+/// Exponent of each line between its last two points.
 fn growth(lines: &[Line]) -> String {
     let exponent = |line: &Line| {
         let [.., [x0, y0], [x1, y1]] = line.points.as_slice() else { return None };

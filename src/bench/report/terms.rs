@@ -1,4 +1,4 @@
-//! What the page's words mean.
+//! Glossary of the report.
 
 use crate::bench::csv::metrics;
 use crate::bench::record::Results;
@@ -6,7 +6,7 @@ use crate::settings::Choice;
 use crate::verify::metrics::Metric;
 use maud::{Markup, html};
 
-/// Terms, and the metrics that were taken; none of no sessions.
+/// Terms, and the metrics of the results; none without sessions.
 pub fn section(results: &Results) -> Option<Markup> {
     (!results.sessions.is_empty()).then(|| html! { (terms()) (definitions(results)) })
 }
@@ -50,7 +50,7 @@ fn terms() -> Markup {
     html! { dl { @for (term, meaning) in terms { dt { (term) } dd { (meaning) } } } }
 }
 
-/// What the metrics that were taken mean.
+/// Definitions of the metrics of the results.
 fn definitions(results: &Results) -> Markup {
     let names = metrics(results.sessions.iter().flat_map(|session| &session.runs));
     html! { @if !names.is_empty() {

@@ -1,4 +1,4 @@
-//! The tables are quoted as they are printed.
+//! The tables agree with the papers.
 
 use super::*;
 use crate::bench::papers::claims::Claim;
@@ -7,7 +7,7 @@ fn table(source: &str) -> &'static Table {
     ALL.iter().find(|table| table.source == source).unwrap()
 }
 
-/// Splats per second, in millions, that the paper prints beside the frames per second, in the order of the rows.
+/// Splats per second, in millions, as printed beside the frames per second, in the order of the rows.
 const BOTSCH: [f64; 32] = [
     28.1, 10.4, 27.6, 10.1, 27.1, 10.1, 26.6, 9.9, 27.9, 10.3, 26.2, 9.8, 28.0, 10.0, 27.3, 9.9, 27.9, 10.0,
     26.4, 9.3, 18.4, 8.4, 16.7, 7.0, 23.7, 10.0, 17.0, 6.2, 18.2, 7.6, 15.3, 5.6,
@@ -19,7 +19,7 @@ fn frames_and_splats_of_the_published_rows_are_consistent() {
     assert_eq!(rows.len(), BOTSCH.len());
     for (row, splats) in rows.iter().zip(BOTSCH) {
         let found = 1e-6 * row.points as f64 * row.published[0];
-        // Points are told to three digits, frames and splats to a tenth; the paper's own products are off by up to 1.5 %.
+        // Points have three digits, frames and splats one decimal; the paper's own products are off by up to 1.5 %.
         let rounding = 0.015 * found + 0.05;
         assert!((found - splats).abs() < rounding, "{} {found} {splats}", row.model);
     }
@@ -64,7 +64,7 @@ fn times_are_told_in_every_unit() {
 fn frames_and_times_of_points_are_consistent() {
     for row in table("marroquim2008 table 1").rows {
         let [fps, total, projection, pull_push] = row.published else { panic!("{}", row.model) };
-        // Both are whole numbers; the paper's own products are off by up to 3.5 %.
+        // Both are integers; the paper's own products are off by up to 3.5 %.
         assert!((1e-3 * fps * total - 1.0).abs() <= 0.035, "{}", row.model);
         assert!(projection + pull_push < *total, "{}", row.model);
     }

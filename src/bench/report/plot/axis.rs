@@ -1,13 +1,13 @@
-//! Axes: where values lie, and which of them have a tick.
+//! Axes of plots: scales, ranges and ticks.
 
 use crate::bench::show::{scientific, significant};
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
 use std::ops::Range;
 
-/// An axis that holds all its values, with a margin.
+/// An axis whose range contains all values, with a margin.
 #[derive(Clone, Debug)]
 pub struct Axis {
-    /// What it shows, with its unit.
+    /// Quantity and unit.
     pub label: String,
     scale: Scale,
     /// The ends, after [`Scale::forth`].
@@ -16,26 +16,26 @@ pub struct Axis {
     minor: Vec<f64>,
 }
 
-/// How values become lengths.
+/// Scale of an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scale {
     /// Equal steps are equal differences.
     Linear,
-    /// Equal steps are equal factors. Values that are not above 0 lie on the lower edge, which is labelled so.
+    /// Equal steps are equal factors. Values that are not above 0 lie on the lower edge, which has a label of its own.
     Log,
 }
 
 /// Least number of labelled ticks, if the values allow.
 const LEAST: usize = 3;
-/// Most labelled ticks.
+/// Greatest number of labelled ticks.
 const MOST: usize = 7;
-/// Margin at either end, of the length between the extreme values.
+/// Margin at either end, as a share of the range of the values.
 const MARGIN: f64 = 0.06;
 
 impl Scale {
     fn forth(self, value: f64) -> f64 {
         match self {
-            // Differences of larger numbers are infinite.
+            // The difference of larger numbers would be infinite.
             Self::Linear => value.clamp(-1e300, 1e300),
             Self::Log => value.log10(),
         }
@@ -48,19 +48,19 @@ impl Scale {
         }
     }
 
-    /// Whether it has a place for the value.
+    /// Whether the scale can show the value.
     fn holds(self, value: f64) -> bool {
         value.is_finite() && (self == Self::Linear || value > 0.0)
     }
 }
 
 impl Axis {
-    /// Over values of any kind: NaN does not count, and what the scale cannot show lies on an edge.
+    /// An axis over values of any kind: NaN is ignored, and values that the scale cannot show lie on an edge.
     pub fn over(label: impl Into<String>, scale: Scale, values: impl IntoIterator<Item = f64>) -> Self {
         Self::above(label, scale, f64::NEG_INFINITY, values)
     }
 
-    /// The same, where what is less than `floor` lies on the lower edge too.
+    /// The same, with values below `floor` on the lower edge.
     pub fn above(
         label: impl Into<String>,
         scale: Scale,
@@ -79,7 +79,7 @@ impl Axis {
         let span = span(scale, low, high);
         let middle = 0.5 * (low + high);
         let half = 0.5 * span + MARGIN * span;
-        // A value off the scale gets a tenth of the axis to itself.
+        // Values off the scale get a share of the axis to themselves.
         let edge = |off: bool| if off { 0.15 * span } else { 0.0 };
         let ends = [middle - half - edge(below.is_some()), middle + half + edge(above)];
         let mut axis = Self { label: label.into(), scale, ends, ticks: Vec::new(), minor: Vec::new() };
@@ -93,12 +93,12 @@ impl Axis {
         axis
     }
 
-    /// How its values become lengths.
+    /// The scale.
     pub fn scale(&self) -> Scale {
         self.scale
     }
 
-    /// 0 at the lower end, 1 at the upper one; always between them.
+    /// Position of a value: 0 at the lower end, 1 at the upper one; clamped.
     pub fn share(&self, value: f64) -> f64 {
         let [low, high] = self.ends;
         match self.scale.holds(value) {
@@ -108,7 +108,7 @@ impl Axis {
         }
     }
 
-    /// The coarsest ticks that are enough, or the finest there are.
+    /// Chooses the coarsest sufficient ticks, or the finest.
     fn mark(&mut self) {
         let [low, high] = self.ends;
         let inside = |values: Vec<f64>| {
@@ -124,7 +124,7 @@ impl Axis {
         self.minor = minor;
     }
 
-    /// Labels for what lies on the edges, in place of ticks that are too near.
+    /// Labels the edges that hold values off the scale, in place of ticks that are too near.
     fn mark_edges(&mut self, below: Option<&str>, above: Option<&str>) {
         let [low, high] = self.ends;
         let near = 0.08;
@@ -141,7 +141,7 @@ impl Axis {
     }
 }
 
-/// Length of the axis without its margins: some even where all values are one.
+/// Length of the axis without margins; above 0 even if all values are equal.
 fn span(scale: Scale, low: f64, high: f64) -> f64 {
     let least = match scale {
         Scale::Linear => (0.02 * low.abs().max(high.abs())).max(f64::MIN_POSITIVE),
@@ -152,7 +152,7 @@ fn span(scale: Scale, low: f64, high: f64) -> f64 {
     (high - low).max(least)
 }
 
-/// Round values for ticks, and those for the grid between them; each set finer than the one before.
+/// Round values for ticks, and those for the grid between them; each set is finer than the one before.
 fn sets(scale: Scale, low: f64, high: f64) -> Vec<[Vec<f64>; 2]> {
     let [least, greatest] = [scale.back(low), scale.back(high)];
     let steps = |count: f64| linear(least, greatest, (greatest - least) / count);
@@ -167,7 +167,7 @@ fn sets(scale: Scale, low: f64, high: f64) -> Vec<[Vec<f64>; 2]> {
         let all = powers.clone().flat_map(|power| factors.iter().map(move |factor| decimal(*factor, power)));
         all.collect::<Vec<_>>()
     };
-    // Where there are many decades, a finer grid would be a grey area.
+    // With many decades, a finer grid would be a grey area.
     let fine = times(if decades < 8 { &[1, 2, 3, 4, 5, 6, 7, 8, 9] } else { &[1] });
     vec![
         [coarse.collect(), fine.clone()],
@@ -186,11 +186,11 @@ fn linear(least: f64, greatest: f64, step: f64) -> Vec<f64> {
     let round = [decimal(1, power), decimal(2, power), decimal(5, power), decimal(1, power + 1)];
     let Some(step) = round.into_iter().find(|round| *round >= step * (1.0 - 1e-9)) else { return Vec::new() };
     let (first, last) = ((least / step).ceil(), (greatest / step).floor());
-    // A span below rounding has no steps.
+    // A range below rounding has no steps.
     if !(last - first).is_finite() || last - first > 1e3 {
         return Vec::new();
     }
-    // By way of text, so that the third tenth is 0.3.
+    // Parsed from text, so that the third tenth is 0.3.
     let tidy = |value: f64| format!("{value:.12e}").parse().unwrap_or(value);
     (0..=(last - first) as u32).map(|i| tidy((first + f64::from(i)) * step)).collect()
 }
@@ -200,7 +200,7 @@ fn decimal(factor: i32, power: i32) -> f64 {
     format!("{factor}e{power}").parse().unwrap_or(f64::NAN)
 }
 
-/// Plain where all are short, else as powers of ten.
+/// Plain if all are short, else as powers of ten.
 fn labels(values: &[f64], scale: Scale) -> Vec<String> {
     let short = |value: &f64| *value == 0.0 || (9e-5..2e4).contains(&value.abs());
     let plain = values.iter().all(short) || (scale == Scale::Linear && values.iter().all(|v| v.abs() < 1e6));

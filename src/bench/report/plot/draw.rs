@@ -1,4 +1,4 @@
-//! How plots are drawn.
+//! Drawing of plots.
 
 use super::labels::{Area, Taken, width};
 use super::legend::{self, Legend};
@@ -7,7 +7,7 @@ use super::{Axis, Bar, Kind, Line, Plot, Style, svg};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-/// Coordinates are whole numbers: so many make a pixel.
+/// Units per px: the backend has integer coordinates.
 pub(super) const FINE: i32 = 4;
 /// Width, px.
 pub(super) const WIDTH: i32 = 540;
@@ -19,7 +19,7 @@ const HEAD: i32 = 30;
 pub(super) const FONT: f64 = 14.0;
 const SMALL: f64 = 12.5;
 const TITLE: f64 = 16.0;
-/// Left, right, above and below the axes, px.
+/// Margins left, right, above and below the axes, px.
 pub(super) const LEFT: i32 = 78;
 const RIGHT: i32 = 18;
 const ABOVE: i32 = 10;
@@ -31,10 +31,10 @@ pub(super) type Root<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<Axis, Axis>>;
 pub(super) type Drawn<T = ()> = Result<T, DrawingAreaErrorKind<std::io::Error>>;
 
-/// A plot as SVG: for a file of its own, and for a page.
+/// A plot as two SVG texts: for a file of its own, and to embed in a page.
 ///
 /// # Errors
-/// The backend's, which writes to memory and so has none in practice.
+/// Those of the backend, which writes to memory and so has none in practice.
 pub fn draw(plot: &Plot) -> std::io::Result<[String; 2]> {
     let mut drawing = String::new();
     let legend = legend::lay_out(plot);
@@ -95,7 +95,7 @@ fn axes<'a, 'b>(plot: &Plot, area: &'a Root<'b>) -> Drawn<Chart<'a, 'b>> {
     Ok(chart)
 }
 
-/// What the axes show.
+/// Labels of the axes.
 fn names(root: &Root<'_>, plot: &Plot, top: i32) -> Drawn {
     let across = [LEFT + (WIDTH - LEFT - RIGHT) / 2, top + BODY - 6];
     write(root, &plot.x.label, across, &font(FONT, INK, HPos::Center, VPos::Bottom))?;
@@ -105,7 +105,7 @@ fn names(root: &Root<'_>, plot: &Plot, top: i32) -> Drawn {
     write(root, &plot.y.label, [2, middle], &style)
 }
 
-/// A text style. `size` is what the reader sees: the backend divides by 1.24.
+/// A text style. `size` is in px as displayed: the backend divides by 1.24.
 pub(super) fn font(size: f64, colour: RGBColor, across: HPos, up: VPos) -> TextStyle<'static> {
     let font = FontDesc::new(FontFamily::SansSerif, size * 1.24 * f64::from(FINE), FontStyle::Normal);
     font.color(&colour).pos(Pos::new(across, up))
@@ -116,19 +116,19 @@ fn bold(mut style: TextStyle<'static>) -> TextStyle<'static> {
     style
 }
 
-/// At a place in px.
+/// Writes text at a position in px.
 pub(super) fn write(root: &Root<'_>, text: &str, [x, y]: [i32; 2], style: &TextStyle<'_>) -> Drawn {
     root.draw_text(text, style, (x * FINE, y * FINE))
 }
 
-/// As much of a text as is about so wide, px.
+/// Shortens a text to a width of about `most` px.
 pub(super) fn shorten(text: &str, size: f64, most: i32) -> String {
     let mut short = text.to_owned();
     while width(&short, size) > most && short.pop().is_some() {}
     if short.len() < text.len() { short.trim_end().to_owned() + "…" } else { short }
 }
 
-/// The points that are somewhere.
+/// The points without NaN.
 fn known(line: &Line) -> impl Iterator<Item = (f64, f64)> + Clone + '_ {
     line.points.iter().filter(|point| point.iter().all(|value| !value.is_nan())).map(|&[x, y]| (x, y))
 }
@@ -152,7 +152,7 @@ fn join(chart: &mut Chart<'_, '_>, line: &Line) -> Drawn {
     }
 }
 
-/// A marker at a place in fine px, with a pale rim that parts it from what is below.
+/// Draws a marker at a position in fine units, with a white rim.
 pub(super) fn mark(root: &Root<'_>, [x, y]: [i32; 2], style: &Style) -> Drawn {
     let shape = |radius: f64, colour: RGBAColor| {
         let size = radius * f64::from(FINE);
@@ -170,7 +170,7 @@ pub(super) fn mark(root: &Root<'_>, [x, y]: [i32; 2], style: &Style) -> Drawn {
     }
 }
 
-/// A dashed line across, with its label at the right end above it.
+/// Draws a dashed horizontal line, with its label above the right end.
 fn limit(chart: &mut Chart<'_, '_>, root: &Root<'_>, bar: &Bar) -> Drawn {
     let ends = chart.x_range();
     let colour = bar.colour.map_or(GREY, |colour| Style::nth(colour).rgb());
@@ -182,7 +182,7 @@ fn limit(chart: &mut Chart<'_, '_>, root: &Root<'_>, bar: &Bar) -> Drawn {
     root.draw_text(&bar.label, &style, (x - 4 * FINE, y - FINE))
 }
 
-/// Beside points, where there is room.
+/// Notes beside points, where there is room.
 fn notes(chart: &Chart<'_, '_>, root: &Root<'_>, plot: &Plot, taken: &mut Taken, within: Area) -> Drawn {
     for line in &plot.lines {
         for (point, note) in line.points.iter().zip(&line.notes) {
@@ -202,7 +202,7 @@ fn notes(chart: &Chart<'_, '_>, root: &Root<'_>, plot: &Plot, taken: &mut Taken,
     Ok(())
 }
 
-/// Where a text may stand beside a point.
+/// Candidate positions of a text beside a point.
 fn beside((x, y): (i32, i32), [wide, high]: [i32; 2]) -> [Area; 9] {
     let gap = 7 * FINE;
     let at = |left: i32, top: i32| [left, top, left + wide, top + high];
@@ -229,7 +229,7 @@ fn alarms(chart: &Chart<'_, '_>, root: &Root<'_>, plot: &Plot, within: Area) -> 
     Ok(())
 }
 
-/// A cross at a place in fine px.
+/// Draws a cross at a position in fine units.
 pub(super) fn cross(root: &Root<'_>, [x, y]: [i32; 2], grave: bool) -> Drawn {
     let arm = 4 * FINE;
     let colour = if grave { ALARM } else { GREY };

@@ -1,12 +1,12 @@
-//! Where texts may stand, by how wide they are about to be: an SVG's reader chooses the font.
+//! Layout of texts by their estimated width: an SVG's viewer chooses the font.
 
 /// A rectangle, px: left, top, right, bottom.
 pub type Area = [i32; 4];
 
-/// Mean width of a character over the size of the font, on the wide side.
+/// Mean width of a character relative to the font size, rounded up.
 const CHARACTER: f64 = 0.56;
 
-/// About how wide a text is.
+/// Estimated width of a text.
 pub fn width(text: &str, font: f64) -> i32 {
     let wide = |c: char| match c {
         'i' | 'l' | 'j' | 'f' | 't' | '.' | ',' | ' ' | '(' | ')' | '|' => 0.35,
@@ -17,17 +17,17 @@ pub fn width(text: &str, font: f64) -> i32 {
     (text.chars().map(wide).sum::<f64>() * font).ceil() as i32
 }
 
-/// Places that are taken.
+/// Occupied areas.
 #[derive(Debug, Default)]
 pub struct Taken(Vec<Area>);
 
 impl Taken {
-    /// Takes a place, whatever is there.
+    /// Marks an area as occupied.
     pub fn take(&mut self, area: Area) {
         self.0.push(area);
     }
 
-    /// Takes the first place that is free and inside `within`, and tells which.
+    /// Occupies the first area that is free and inside `within`, and returns it.
     pub fn first_free(&mut self, places: impl IntoIterator<Item = Area>, within: Area) -> Option<Area> {
         let inside =
             |a: &Area| a[0] >= within[0] && a[1] >= within[1] && a[2] <= within[2] && a[3] <= within[3];
@@ -38,7 +38,7 @@ impl Taken {
     }
 }
 
-/// Rows of entries that are at most `most` wide: index of the row and left edge of each, and the number of rows.
+/// Breaks entries into rows of at most `most`: row and left edge of each, and the number of rows.
 pub fn rows(widths: &[i32], gap: i32, most: i32) -> (Vec<(i32, i32)>, i32) {
     let (mut row, mut left) = (0, 0);
     let mut places = Vec::new();

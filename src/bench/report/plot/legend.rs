@@ -1,4 +1,4 @@
-//! The legend, in rows between title and axes, so that it covers no data.
+//! The legend, in rows between title and axes, where it covers no data.
 
 use super::draw::{Drawn, FINE, FONT, LEFT, Root, WIDTH, cross, font, mark, shorten, write};
 use super::labels::{rows, width};
@@ -9,12 +9,12 @@ use plotters::style::text_anchor::{HPos, VPos};
 
 /// Height of a row, px.
 const ROW: i32 = 20;
-/// Width of a sample of a line, px.
+/// Width of a line sample, px.
 const SAMPLE: i32 = 28;
-/// Between entries, px.
+/// Gap between entries, px.
 const GAP: i32 = 18;
 
-/// Entries and their places.
+/// Entries and their positions.
 pub struct Legend {
     entries: Vec<Entry>,
     /// Row, and distance from the left of the axes, px.
@@ -25,11 +25,11 @@ pub struct Legend {
 
 struct Entry {
     label: String,
-    /// A line's look; for alarms, whether they are grave.
+    /// Style of a line; for marks, whether they are faults.
     look: Result<Style, bool>,
 }
 
-/// Of the lines that have labels. One line alone has no need of a legend.
+/// Lays out the lines that have labels. A single line needs no legend.
 pub fn lay_out(plot: &Plot) -> Legend {
     let most = WIDTH - LEFT - 10;
     let short = |label: &str| shorten(label, FONT, most - SAMPLE);
@@ -49,7 +49,7 @@ pub fn lay_out(plot: &Plot) -> Legend {
     Legend { entries, places, height: count * ROW }
 }
 
-/// With its upper edge at `top` px.
+/// Draws the legend with its upper edge at `top` px.
 pub fn draw(root: &Root<'_>, legend: &Legend, top: i32) -> Drawn {
     for (entry, (row, left)) in legend.entries.iter().zip(&legend.places) {
         let (x, y) = (LEFT + left, top + row * ROW + ROW / 2);

@@ -1,4 +1,4 @@
-//! Plots as SVG: what they show is here, how it is drawn is in the files beside.
+//! Plots as SVG: their content is defined here, their drawing in the submodules.
 
 mod axis;
 mod draw;
@@ -14,66 +14,66 @@ pub use style::{Kind, Style};
 /// A plot.
 #[derive(Clone, Debug)]
 pub struct Plot {
-    /// Name of its file, without the ending.
+    /// File name without extension.
     pub name: String,
-    /// Above it.
+    /// Title above the plot.
     pub title: String,
-    /// For those who do not see it.
+    /// Text alternative.
     pub about: String,
-    /// From left to right.
+    /// Horizontal axis.
     pub x: Axis,
-    /// From below to above.
+    /// Vertical axis.
     pub y: Axis,
-    /// In the order of the legend; earlier ones lie on top.
+    /// In the order of the legend; earlier ones are drawn on top.
     pub lines: Vec<Line>,
-    /// Limits.
+    /// Horizontal limits.
     pub bars: Vec<Bar>,
-    /// What is not as it should be, on the upper edge.
+    /// Marks on the upper edge: faults and refusals.
     pub alarms: Vec<Alarm>,
 }
 
-/// A cross on the upper edge.
+/// A mark on the upper edge.
 #[derive(Clone, Copy, Debug)]
 pub struct Alarm {
-    /// Where, on the horizontal axis.
+    /// Position on the horizontal axis.
     pub x: f64,
-    /// A fault, not a refusal.
+    /// Whether it is a fault; else a refusal.
     pub grave: bool,
 }
 
-/// Points that belong together.
+/// A series of points.
 #[derive(Clone, Debug)]
 pub struct Line {
-    /// In the legend; empty if it has no entry there.
+    /// Label in the legend; empty for none.
     pub label: String,
     /// How it is drawn.
     pub style: Style,
-    /// In the order in which they are joined. Those with NaN are left out.
+    /// In the order in which they are joined. Points with NaN are skipped.
     pub points: Vec<[f64; 2]>,
-    /// Beside the points of the same index; may be fewer, or empty.
+    /// Notes at the points of the same index; may be fewer, or empty.
     pub notes: Vec<String>,
 }
 
 /// A horizontal limit.
 #[derive(Clone, Debug)]
 pub struct Bar {
-    /// Where, on the vertical axis.
+    /// Position on the vertical axis.
     pub y: f64,
-    /// What it limits.
+    /// Label.
     pub label: String,
-    /// Colour of the line that it limits, or none.
+    /// Colour index of the line that it limits, if any.
     pub colour: Option<usize>,
 }
 
 impl Line {
-    /// Without notes.
+    /// A line without notes.
     pub fn new(label: impl Into<String>, style: Style, points: Vec<[f64; 2]>) -> Self {
         Self { label: label.into(), style, points, notes: Vec::new() }
     }
 }
 
 impl Plot {
-    /// Around its lines.
+    /// A plot whose axes cover its lines.
     pub fn of(name: String, title: String, [x, y]: [(&str, Scale); 2], lines: Vec<Line>) -> Self {
         let about = about(&lines, x.0, y.0);
         let (bars, alarms) = (Vec::new(), Vec::new());
@@ -82,7 +82,7 @@ impl Plot {
         Self { name, title, about, x, y, lines, bars, alarms }
     }
 
-    /// With limits and alarms, around these too.
+    /// Adds limits and marks, and extends the axes to cover them.
     pub fn with(mut self, bars: Vec<Bar>, alarms: Vec<Alarm>) -> Self {
         let places = values(&self.lines, 0).chain(alarms.iter().map(|alarm| alarm.x));
         self.x = Axis::over(self.x.label.clone(), self.x.scale(), places);
@@ -92,7 +92,7 @@ impl Plot {
         self
     }
 
-    /// With what is less than `floor` on the lower edge, so that the rest has room.
+    /// Moves values below `floor` to the lower edge, so that the others have more room.
     pub fn above(mut self, floor: f64) -> Self {
         self.y = Axis::above(self.y.label.clone(), self.y.scale(), floor, values(&self.lines, 1));
         self
@@ -104,7 +104,7 @@ fn values(lines: &[Line], i: usize) -> impl Iterator<Item = f64> + '_ {
     lines.iter().flat_map(move |line| line.points.iter().map(move |point| point[i]))
 }
 
-/// In words: what is drawn, and between which values each line runs.
+/// Text alternative: the quantities, and the range of each line.
 fn about(lines: &[Line], x: &str, y: &str) -> String {
     let mut text = format!("{y} over {x}.");
     for line in lines.iter().filter(|line| !line.label.is_empty()) {

@@ -1,9 +1,9 @@
-//! How lines are told apart: by colour and by marker, so that either is enough.
+//! Line styles: lines differ in colour and in marker, either of which is enough to tell them apart.
 
 use plotters::style::RGBColor;
 
-/// Colours that the colour-blind can tell apart: Okabe and Ito, *Color Universal Design*, 2008; a dark one and a grey in the place of yellow,
-/// which white swallows.
+/// Colours for colour-blind readers: Okabe and Ito, *Color Universal Design*, 2008; with a dark colour and a grey in
+/// place of yellow, which has no contrast on white.
 pub const COLOURS: [RGBColor; 9] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
@@ -15,56 +15,56 @@ pub const COLOURS: [RGBColor; 9] = [
     RGBColor(120, 60, 20),
     RGBColor(150, 150, 150),
 ];
-/// Text, and what is no data.
+/// Text and axes.
 pub const INK: RGBColor = RGBColor(40, 44, 52);
-/// Text of less weight.
+/// Secondary text.
 pub const GREY: RGBColor = RGBColor(110, 116, 126);
 /// Grid lines at ticks, and between them.
 pub const GRID: [RGBColor; 2] = [RGBColor(222, 225, 230), RGBColor(241, 242, 245)];
-/// What is wrong.
+/// Faults.
 pub const ALARM: RGBColor = RGBColor(190, 20, 40);
 
-/// How a line is drawn.
+/// Style of a line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Style {
-    /// Which colour; they repeat.
+    /// Index of the colour, modulo their number.
     pub colour: usize,
-    /// Which marker; they repeat.
+    /// Index of the marker, modulo their number.
     pub marker: usize,
-    /// Markers are outlines.
+    /// Whether markers are outlines.
     pub hollow: bool,
-    /// Dashes instead of a line.
+    /// Whether the line is dashed.
     pub dashed: bool,
-    /// What the line is.
+    /// Kind of the line.
     pub kind: Kind,
 }
 
-/// What a line is.
+/// Kind of a line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Kind {
-    /// Markers, joined.
+    /// Joined markers.
     #[default]
     Joined,
-    /// Markers, not joined.
+    /// Single markers.
     Loose,
-    /// Markers that stay in the background, not joined.
+    /// Pale single markers in the background.
     Faint,
     /// A broad pale band without markers, behind all else.
     Band,
 }
 
 impl Style {
-    /// The one of this number: another colour and another marker each.
+    /// The style of index `number`: each has another colour and another marker.
     pub fn nth(number: usize) -> Self {
         Self { colour: number, marker: number, ..Self::default() }
     }
 
-    /// Its colour.
+    /// The colour.
     pub fn rgb(&self) -> RGBColor {
         COLOURS[self.colour % COLOURS.len()]
     }
 
-    /// Corners of its marker, of about unit radius, y down.
+    /// Corners of the marker, of about unit radius, y down.
     pub fn outline(&self) -> Vec<(f64, f64)> {
         let regular = |corners: u32, start: f64, radius: f64| {
             let angle = move |i| (start + 360.0 * f64::from(i) / f64::from(corners)).to_radians();

@@ -1,17 +1,17 @@
-//! An SVG beside the page, and the same within it.
+//! Heads of SVG texts, for files and for embedding.
 
 use super::Plot;
 
-/// How a drawing is used.
+/// Use of a drawing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Use {
-    /// A file of its own: with the namespace, and a size.
+    /// A file of its own, with namespace and size.
     File,
-    /// Part of an HTML page, which knows the namespace and scales it to its width.
+    /// Part of an HTML page, which implies the namespace and scales it to its width.
     Inline,
 }
 
-/// With a head that suits its use, a title and a description. `drawing` is `size` px times `scale`.
+/// Replaces the head by one that suits its use, and adds title and description. `drawing` has `size` px times `scale`.
 pub fn dress(plot: &Plot, drawing: &str, size: [u32; 2], scale: u32, usage: Use) -> String {
     let body = drawing.split_once('>').map_or("", |(_, body)| body);
     let [width, height] = size;
@@ -29,7 +29,7 @@ pub fn dress(plot: &Plot, drawing: &str, size: [u32; 2], scale: u32, usage: Use)
     )
 }
 
-/// Text as XML has it.
+/// Escapes text for XML.
 fn escape(text: &str) -> String {
     text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }
