@@ -3,7 +3,7 @@
 //! Candidates are the runs on the Pareto front: no other run is both faster and more exact. For a budget of time the
 //! best run is the one of least error within it; for a budget of error, the fastest.
 
-use super::record::{Figure, Run, Session};
+use super::record::{Experiment, Run, Session};
 
 /// A run that was timed and compared with the truth.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -42,7 +42,7 @@ impl<'a> Advice<'a> {
     /// From the budget experiment's runs, without the CPU baseline; none if there are no such runs.
     pub fn of(session: &'a Session) -> Option<Self> {
         let mut columns: Vec<Column<'a>> = Vec::new();
-        let methods = |run: &&Run| run.figure == Figure::Budget && !run.contender.is_baseline();
+        let methods = |run: &&Run| run.experiment == Experiment::Budget && !run.implementation.is_baseline();
         let runs = || session.runs.iter().filter(methods);
         for run in runs() {
             if !columns.iter().any(|column| column.scene == run.scene && column.size == run.size) {

@@ -1,7 +1,7 @@
 //! Results as CSV rows, for spreadsheets and scripts. A cell without a value is empty; no rows give an empty text
 //! without a header.
 
-use super::record::{Agreement, Memory, Results, Run, Session, SweepPoint};
+use super::record::{Float64Error, Memory, Results, Run, Session, SweepPoint};
 use crate::error::{Error, Result};
 use crate::frame::times::Statistics;
 use crate::settings::Choice;
@@ -28,9 +28,9 @@ pub fn runs(results: &Results, code: &str) -> Result<String> {
         }
     }
     let row = |(session, run): (&Session, &Run)| {
-        let mut row = made(session, code);
+        let mut row = provenance(session, code);
         row.extend([what(run), time(run), error(run), memory(&run.memory)].into_iter().flatten());
-        row.extend(agreement(run.agreement.as_ref()));
+        row.extend(float64_error(run.float64_error.as_ref()));
         row.extend(metrics.iter().map(|name| (name.clone(), number(run.metric(name)))));
         row.extend(passes.iter().flat_map(|name| pass(run, name)));
         row
@@ -44,15 +44,15 @@ pub fn runs(results: &Results, code: &str) -> Result<String> {
 /// As [`runs`].
 pub fn sweeps(results: &Results, code: &str) -> Result<String> {
     let row = |session: &Session, (name, parameter): (&str, &str), point: &SweepPoint| {
-        let mut row = made(session, code);
+        let mut row = provenance(session, code);
         let value = point.value.to_string();
         row.extend(cells([("sweep", name.into()), ("parameter", parameter.into()), ("value", value)]));
         row.extend(cells([
-            ("method", point.contender.method.clone()),
-            ("variant", point.contender.variant.clone()),
+            ("method", point.implementation.method.clone()),
+            ("variant", point.implementation.variant.clone()),
             ("refused", point.refused.clone().unwrap_or_default()),
         ]));
-        row.extend(agreement(Some(&point.agreement).filter(|_| point.refused.is_none())));
+        row.extend(float64_error(Some(&point.float64_error).filter(|_| point.refused.is_none())));
         row.extend(cells([
             ("non_finite", point.faults.non_finite.to_string()),
             ("uncovered", point.faults.uncovered.to_string()),
@@ -76,22 +76,22 @@ fn number(value: Option<f64>) -> String {
     value.map(|value| value.to_string()).unwrap_or_default()
 }
 
-fn made(session: &Session, code: &str) -> Vec<Cell> {
-    let made = &session.made;
-    let device = made.device.as_ref();
+fn provenance(session: &Session, code: &str) -> Vec<Cell> {
+    let provenance = &session.provenance;
+    let device = provenance.device.as_ref();
     cells([
-        ("stale", made.is_stale(code).to_string()),
-        ("version", made.version.clone()),
-        ("commit", made.commit.clone()),
-        ("code", made.code.clone()),
-        ("date", made.date.to_string()),
-        ("seconds", made.seconds.to_string()),
-        ("command", made.command.clone()),
-        ("suites", made.suites.join(" ")),
-        ("cpu", made.host.cpu.clone()),
-        ("cores", made.host.cores.to_string()),
-        ("host_memory", made.host.memory.to_string()),
-        ("system", made.host.system.clone()),
+        ("stale", provenance.is_stale(code).to_string()),
+        ("version", provenance.version.clone()),
+        ("commit", provenance.commit.clone()),
+        ("code", provenance.code.clone()),
+        ("date", provenance.date.to_string()),
+        ("seconds", provenance.seconds.to_string()),
+        ("command", provenance.command.clone()),
+        ("suites", provenance.suites.join(" ")),
+        ("cpu", provenance.host.cpu.clone()),
+        ("cores", provenance.host.cores.to_string()),
+        ("host_memory", provenance.host.memory.to_string()),
+        ("system", provenance.host.system.clone()),
         ("device", device.map(|gpu| gpu.name.clone()).unwrap_or_default()),
         ("driver", device.map(|gpu| gpu.driver.clone()).unwrap_or_default()),
         ("validated", device.map(|gpu| gpu.validated.to_string()).unwrap_or_default()),
@@ -100,17 +100,17 @@ fn made(session: &Session, code: &str) -> Vec<Cell> {
 }
 
 fn what(run: &Run) -> Vec<Cell> {
-    let setting = &run.setting;
+    let setting = &run.settings;
     cells([
         ("suite", run.suite.clone()),
-        ("figure", run.figure.name().into()),
-        ("part", run.part.clone()),
+        ("experiment", run.experiment.name().into()),
+        ("paper_item", run.paper_item.clone()),
         ("scene", run.scene.clone()),
         ("points", run.points.to_string()),
         ("width", run.size[0].to_string()),
         ("height", run.size[1].to_string()),
-        ("method", run.contender.method.clone()),
-        ("variant", run.contender.variant.clone()),
+        ("method", run.implementation.method.clone()),
+        ("variant", run.implementation.variant.clone()),
         ("cutoff", setting.cutoff.to_string()),
         ("lowpass", setting.lowpass.to_string()),
         ("widen", setting.widen.clone()),
@@ -128,7 +128,7 @@ fn what(run: &Run) -> Vec<Cell> {
         ("overlap", number(run.overlap)),
         ("blended", number(run.blended.map(|blended| blended.mean))),
         ("blended:max", number(run.blended.map(|blended| blended.largest))),
-        ("exhibit", run.exhibit.map(|index| index.to_string()).unwrap_or_default()),
+        ("images", run.images.map(|index| index.to_string()).unwrap_or_default()),
     ])
     .collect()
 }
@@ -143,7 +143,7 @@ fn time(run: &Run) -> Vec<Cell> {
     row.extend(spread("wall", time.map(|time| time.wall)));
     row.extend(spread("cpu", time.map(|time| time.cpu)));
     row.extend(spread("device_time", time.and_then(|time| time.device)));
-    row.push(("multiple".into(), number(time.and_then(|time| time.multiple))));
+    row.push(("baseline_ratio".into(), number(time.and_then(|time| time.baseline_ratio))));
     row.extend(spread("ratio", run.ratio));
     row
 }
@@ -182,12 +182,12 @@ fn memory(memory: &Memory) -> Vec<Cell> {
     cells(bytes.map(|(name, bytes)| (name, bytes.to_string()))).collect()
 }
 
-fn agreement(agreement: Option<&Agreement>) -> impl Iterator<Item = Cell> {
-    let text = |value: fn(&Agreement) -> String| agreement.map(value).unwrap_or_default();
+fn float64_error(float64_error: Option<&Float64Error>) -> impl Iterator<Item = Cell> {
+    let text = |value: fn(&Float64Error) -> String| float64_error.map(value).unwrap_or_default();
     cells([
-        ("f64:object", text(|a| a.object.to_string())),
-        ("f64:doubtful", text(|a| a.doubtful.to_string())),
-        ("f64:failed", text(|a| a.failed.to_string())),
+        ("f64:object", text(|a| a.object_pixels.to_string())),
+        ("f64:ambiguous", text(|a| a.ambiguous_pixels.to_string())),
+        ("f64:failed", text(|a| a.failed_pixels.to_string())),
         ("f64:colour", text(|a| a.colour.to_string())),
         ("f64:normal", text(|a| a.normal.to_string())),
         ("f64:depth", text(|a| a.depth.to_string())),

@@ -1,6 +1,6 @@
 //! Engines: every way to render, behind one interface.
 
-use super::record::{Axes, Contender, Memory, PIXELS, SPLATS};
+use super::record::{Axes, Implementation, Memory, PIXELS, SPLATS};
 use crate::error::Result;
 use crate::geometry::{Camera, Parts, Surfels};
 use crate::picture::Picture;
@@ -31,7 +31,7 @@ impl Engine {
     pub const DEFAULT: Self = Self::Splatting { rasterizer: None, precision: Precision::Full };
 
     /// Name in the results, with these settings.
-    pub fn contender(&self, settings: &Settings) -> Contender {
+    pub fn implementation(&self, settings: &Settings) -> Implementation {
         match self {
             Self::Splatting { rasterizer, precision } => {
                 let rasterizer = rasterizer.map(|rasterizer| match rasterizer {
@@ -42,10 +42,10 @@ impl Engine {
                 let (method, changes) = preset(settings);
                 let ways = rasterizer.into_iter().chain(half).map(str::to_owned);
                 let variant = changes.into_iter().chain(ways).collect::<Vec<_>>().join(", ");
-                Contender { method: method.name.into(), variant }
+                Implementation { method: method.name.into(), variant }
             }
-            Self::Baseline(Kind::Splats) => Contender { method: SPLATS.into(), variant: String::new() },
-            Self::Baseline(Kind::Pixels) => Contender { method: PIXELS.into(), variant: String::new() },
+            Self::Baseline(Kind::Splats) => Implementation { method: SPLATS.into(), variant: String::new() },
+            Self::Baseline(Kind::Pixels) => Implementation { method: PIXELS.into(), variant: String::new() },
         }
     }
 }
@@ -178,13 +178,13 @@ mod tests {
     use crate::settings::splatting::{Filter, Footprint, Kernel, Splatting};
 
     fn named(splatting: Splatting) -> String {
-        Engine::DEFAULT.contender(&Settings { splatting, ..Default::default() }).label()
+        Engine::DEFAULT.implementation(&Settings { splatting, ..Default::default() }).label()
     }
 
     #[test]
     fn a_contender_is_its_preset_or_the_nearest_with_what_is_changed() {
         for method in Method::ALL {
-            assert_eq!(Engine::DEFAULT.contender(&method.settings()).label(), method.name);
+            assert_eq!(Engine::DEFAULT.implementation(&method.settings()).label(), method.name);
         }
         let default = Splatting::default();
         assert_eq!(named(Splatting { filter: Filter::None, ..default }), "perspective-ewa (filter none)");
@@ -196,6 +196,6 @@ mod tests {
         assert_eq!(named(wide), "confetti (kernel confetti:1,2)");
         let half = Engine::Splatting { rasterizer: Some(Rasterizer::Draw), precision: Precision::Half };
         let settings = Settings { splatting: squares, ..Default::default() };
-        assert_eq!(half.contender(&settings).variant, "footprint square, draw, 16-bit sums");
+        assert_eq!(half.implementation(&settings).variant, "footprint square, draw, 16-bit sums");
     }
 }

@@ -78,7 +78,7 @@ pub fn left(run: &Run) -> Option<Left> {
     ];
     let sizes = causes.into_iter().filter_map(|(term, size)| Some(Left { term, size: size? }));
     let largest = sizes.filter(|left| left.size >= SHARE * rmse).max_by(|a, b| a.size.total_cmp(&b.size));
-    let lit = run.setting.shading == "lit";
+    let lit = run.settings.shading == "lit";
     let place = if silhouette > inside {
         Left { term: "the silhouette", size: silhouette }
     } else {

@@ -1,7 +1,7 @@
 //! Plans of runs.
 
 use super::engine::Engine;
-use super::record::{Axes, Figure, Setting};
+use super::record::{Axes, Experiment, RunSettings};
 use crate::settings::{Choice, Settings};
 use crate::verify::scenes::Viewpoint;
 
@@ -11,9 +11,9 @@ pub struct Plan {
     /// Name of the suite.
     pub suite: &'static str,
     /// The experiment that it belongs to.
-    pub figure: Figure,
+    pub experiment: Experiment,
     /// See [`Run::paper_item`](super::record::Run::paper_item).
-    pub part: String,
+    pub paper_item: String,
     /// The scene with its parameters, without the number of points.
     pub scene: String,
     /// Number of surfels.
@@ -29,14 +29,14 @@ pub struct Plan {
     /// The viewpoint; that of the scene if `None`.
     pub viewpoint: Option<Viewpoint>,
     /// What is measured.
-    pub wants: Wants,
+    pub measurements: Measurements,
     /// The run that its time is compared with, if any.
     pub base: Option<Box<Plan>>,
 }
 
 /// What is measured of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Wants {
+pub struct Measurements {
     /// Times.
     pub time: bool,
     /// The error against the truth.
@@ -46,29 +46,29 @@ pub struct Wants {
     /// The parts of that error.
     pub terms: bool,
     /// The error against the float64 reference.
-    pub agreement: bool,
+    pub float64_error: bool,
     /// The flicker along a slow camera path.
     pub flicker: bool,
     /// The images themselves.
-    pub exhibit: bool,
+    pub images: bool,
 }
 
-impl Wants {
+impl Measurements {
     /// Time and error.
     pub const BOTH: Self = Self {
         time: true,
         error: true,
         details: false,
         terms: false,
-        agreement: false,
+        float64_error: false,
         flicker: false,
-        exhibit: false,
+        images: false,
     };
     /// Time alone.
     pub const TIME: Self = Self { error: false, ..Self::BOTH };
 }
 
-impl Setting {
+impl RunSettings {
     /// The values of `settings` that affect time or error.
     pub fn of(settings: &Settings) -> Self {
         Self {

@@ -11,7 +11,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use std::collections::BTreeMap;
 
 /// Schema version of results; bumped on breaking changes.
-pub const FORMAT: u32 = 2;
+pub const FORMAT: u32 = 3;
 
 /// Name of the [CPU baseline](crate::verify::baseline) for splats: the unit of relative times.
 pub const SPLATS: &str = "baseline-splats";
@@ -31,18 +31,18 @@ pub struct Results {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Session {
     /// Program, date and machine.
-    pub made: Made,
+    pub provenance: Provenance,
     /// In the order of measurement.
     pub runs: Vec<Run>,
     /// Sweeps of the hard cases.
     pub sweeps: Vec<Sweep>,
     /// Images of some of the runs.
-    pub exhibits: Vec<Exhibit>,
+    pub images: Vec<Images>,
 }
 
 /// Program, date and machine of a measurement.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Made {
+pub struct Provenance {
     /// Version of surfel.
     pub version: String,
     /// Commit of the program, with `+` appended if files had been changed; empty if unknown.
@@ -93,10 +93,10 @@ pub struct Run {
     /// Name of the suite.
     pub suite: String,
     /// The experiment that it belongs to.
-    pub figure: Figure,
+    pub experiment: Experiment,
     /// Name of the effect, cost or table of the [papers](super::papers); empty in other experiments.
     #[serde(default)]
-    pub part: String,
+    pub paper_item: String,
     /// The scene with its parameters, without the number of points; or the file.
     pub scene: String,
     /// Number of surfels.
@@ -104,9 +104,9 @@ pub struct Run {
     /// Width and height, px.
     pub size: [u32; 2],
     /// Method and variant.
-    pub contender: Contender,
+    pub implementation: Implementation,
     /// Settings that matter to time or error.
-    pub setting: Setting,
+    pub settings: RunSettings,
     /// Why it could not be rendered; all results are empty then.
     pub refused: Option<String>,
     /// Times of frames; none if it was not timed.
@@ -117,7 +117,7 @@ pub struct Run {
     /// Error against the truth; none if it was not compared.
     pub error: Option<Error>,
     /// Error against the float64 reference; none if it was not compared.
-    pub agreement: Option<Agreement>,
+    pub float64_error: Option<Float64Error>,
     /// Memory of the device, or of the host for the CPU baseline.
     pub memory: Memory,
     /// Discs over a point of the surface, on average, before any filter widens them; none if unknown.
@@ -126,7 +126,7 @@ pub struct Run {
     #[serde(default)]
     pub blended: Option<Blended>,
     /// Index of its images in [`Session::images`].
-    pub exhibit: Option<usize>,
+    pub images: Option<usize>,
 }
 
 /// What runs are measured for.
@@ -148,7 +148,7 @@ pub struct Run {
 )]
 #[serde(rename_all = "kebab-case")]
 #[strum(serialize_all = "kebab-case")]
-pub enum Figure {
+pub enum Experiment {
     /// Time against error, and error against the number of points.
     Budget,
     /// Cost and benefit of the low-pass filter: its variance, the kernel's cut-off, which splats it widens.
@@ -184,7 +184,7 @@ pub struct Blended {
 
 /// The implementation of a run.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-pub struct Contender {
+pub struct Implementation {
     /// Name of the method.
     pub method: String,
     /// Variant of the method, if there are several: rasterizer, precision of the sums.
@@ -193,7 +193,7 @@ pub struct Contender {
 
 /// The settings that affect time or error.
 #[derive(Clone, Debug, PartialEq, PartialOrd, Serialize, Deserialize)]
-pub struct Setting {
+pub struct RunSettings {
     /// [`Settings::cutoff`](crate::Settings::cutoff), σ.
     pub cutoff: f32,
     /// [`Settings::lowpass`](crate::Settings::lowpass), px².
@@ -253,7 +253,7 @@ pub struct Time {
     pub device: Option<Statistics>,
     /// `wall.median` divided by that of the CPU baseline, for the same scene, points and size with default settings,
     /// measured in the same session.
-    pub multiple: Option<f64>,
+    pub baseline_ratio: Option<f64>,
 }
 
 /// Time of a pass.
@@ -295,13 +295,13 @@ pub struct Terms {
 
 /// Error of a float32 picture against the float64 reference, pixel by pixel; see [`Comparison`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Agreement {
+pub struct Float64Error {
     /// Pixels that the reference covers.
-    pub object: u64,
+    pub object_pixels: u64,
     /// Ambiguous pixels: rounding can flip one of their decisions.
-    pub doubtful: u64,
+    pub ambiguous_pixels: u64,
     /// Pixels out of tolerance.
-    pub failed: u64,
+    pub failed_pixels: u64,
     /// Largest difference of linear colour and α over the unambiguous pixels. NaN, in JSON null, if a value is not
     /// finite.
     #[serde(deserialize_with = "nan_of_null")]
@@ -336,7 +336,7 @@ pub struct Sweep {
     /// Name, words joined by hyphens.
     pub name: String,
     /// Description, one sentence.
-    pub about: String,
+    pub description: String,
     /// Name of the parameter, with its unit.
     pub parameter: String,
     /// Whether the parameter's axis is logarithmic.
@@ -351,11 +351,11 @@ pub struct SweepPoint {
     /// The parameter.
     pub value: f64,
     /// Method and variant.
-    pub contender: Contender,
+    pub implementation: Implementation,
     /// Why it could not be rendered; all results are 0 then.
     pub refused: Option<String>,
     /// Error against the float64 reference.
-    pub agreement: Agreement,
+    pub float64_error: Float64Error,
     /// Faulty pixels.
     pub faults: Faults,
     /// Remark on this point, such as the culled surfels; often empty.
@@ -375,18 +375,18 @@ pub struct Faults {
 
 /// Images of a run, each a PNG in base64.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Exhibit {
+pub struct Images {
     /// Caption.
     pub title: String,
     /// The rendered image.
-    pub picture: String,
+    pub rendered: String,
     /// The truth.
     pub truth: String,
     /// FLIP's difference map, in magma.
-    pub map: String,
+    pub flip: String,
 }
 
-impl Made {
+impl Provenance {
     /// Whether the source digest differs from `code`.
     pub fn is_stale(&self, code: &str) -> bool {
         self.code != code
@@ -410,15 +410,15 @@ impl Run {
     }
 }
 
-impl Setting {
+impl RunSettings {
     /// The default settings.
-    pub fn shipped() -> Self {
+    pub fn defaults() -> Self {
         Self::of(&Settings::default())
     }
 
-    /// The default settings of a method; [`shipped`](Self::shipped) if there is no such method.
+    /// The default settings of a method; [`defaults`](Self::defaults) if there is no such method.
     pub fn preset(method: &str) -> Self {
-        Method::named(method).map_or_else(Self::shipped, |method| Self::of(&method.settings()))
+        Method::named(method).map_or_else(Self::defaults, |method| Self::of(&method.settings()))
     }
 }
 
@@ -455,13 +455,13 @@ impl Axes {
     }
 }
 
-impl Agreement {
+impl Float64Error {
     /// The results of a comparison with the reference.
     pub fn of(found: &Comparison) -> Self {
         Self {
-            object: found.object_pixels as u64,
-            doubtful: found.ambiguous as u64,
-            failed: found.failed as u64,
+            object_pixels: found.object_pixels as u64,
+            ambiguous_pixels: found.ambiguous as u64,
+            failed_pixels: found.failed as u64,
             colour: found.worst.colour,
             normal: found.worst.normal,
             depth: found.worst.depth,
@@ -469,7 +469,7 @@ impl Agreement {
     }
 }
 
-impl Contender {
+impl Implementation {
     /// Whether it is the [CPU baseline](crate::verify::baseline), which is no method.
     pub fn is_baseline(&self) -> bool {
         [SPLATS, PIXELS].contains(&self.method.as_str())
@@ -498,11 +498,11 @@ mod tests {
 
     #[test]
     fn what_is_no_number_is_null_and_comes_back_as_nan() {
-        let agreement =
-            Agreement { colour: f64::NAN, normal: f64::INFINITY, depth: 0.5, ..Default::default() };
-        let text = serde_json::to_string(&agreement).unwrap();
+        let float64_error =
+            Float64Error { colour: f64::NAN, normal: f64::INFINITY, depth: 0.5, ..Default::default() };
+        let text = serde_json::to_string(&float64_error).unwrap();
         assert!(text.contains(r#""colour":null,"normal":null,"depth":0.5"#), "{text}");
-        let read: Agreement = serde_json::from_str(&text).unwrap();
+        let read: Float64Error = serde_json::from_str(&text).unwrap();
         assert!(read.colour.is_nan() && read.normal.is_nan() && read.depth == 0.5);
     }
 }

@@ -3,9 +3,9 @@
 use super::engine::{Engine, OnDevice, OnHost, Ready};
 use super::papers::details;
 use super::plan::Plan;
-use super::record::{self, Agreement, Exhibit, Run, Setting, Time};
+use super::record::{self, Float64Error, Images, Run, RunSettings, Time};
 use super::subject::{Subject, pixel_angle};
-use super::{exhibit, hidden, stopwatch, terms};
+use super::{hidden, images, stopwatch, terms};
 use crate::capture::{self, capture};
 use crate::error::{Error, Result};
 use crate::frame::times::Statistics;
@@ -51,7 +51,7 @@ pub struct Runner {
     subject: Option<Rc<Subject>>,
     model: Option<(ModelKey, Rc<Model>)>,
     truths: HashMap<String, Rc<Truth>>,
-    exhibits: Vec<Exhibit>,
+    images: Vec<Images>,
 }
 
 /// Key of a cached model.
@@ -76,7 +76,7 @@ struct Job<'a> {
 impl Runner {
     /// A runner for plans of these scans and of built-in scenes.
     pub fn new(options: Options, scans: Vec<Rc<Subject>>) -> Self {
-        Self { options, scans, subject: None, model: None, truths: HashMap::new(), exhibits: Vec::new() }
+        Self { options, scans, subject: None, model: None, truths: HashMap::new(), images: Vec::new() }
     }
 
     /// Executes a plan; a run that cannot be rendered is returned as refused.
@@ -93,8 +93,8 @@ impl Runner {
     }
 
     /// The images of all runs.
-    pub fn exhibits(self) -> Vec<Exhibit> {
-        self.exhibits
+    pub fn images(self) -> Vec<Images> {
+        self.images
     }
 
     fn job<'a>(&mut self, plan: &'a Plan) -> Result<Job<'a>> {
@@ -139,30 +139,35 @@ impl Runner {
         run.points = job.model.surfels.len() as u64;
         run.overlap = job.subject.area().map(|area| overlap(&job.model.surfels, area));
         let mut ready = self.ready(plan.engine, &job.model, plan.size)?;
-        if plan.wants.time {
+        if plan.measurements.time {
             run.time = Some(stopwatch::time(&mut *ready, &job.camera, settings, &self.options.effort)?);
         }
         if let Some(base) = &plan.base {
             run.ratio = self.ratio(job, &mut *ready, base)?;
         }
-        let wants = plan.wants;
-        if wants.error || wants.agreement || wants.exhibit || wants.terms || wants.details {
+        let measurements = plan.measurements;
+        if measurements.error
+            || measurements.float64_error
+            || measurements.images
+            || measurements.terms
+            || measurements.details
+        {
             let picture = ready.picture(&job.camera, settings)?;
             let expected = self.agree(job, &picture, run)?;
-            if wants.error {
+            if measurements.error {
                 run.error = Some(self.error(job, &picture)?);
             }
-            if wants.details && settings.shading == Shading::Overlap {
+            if measurements.details && settings.shading == Shading::Overlap {
                 run.blended = details::blended(&picture);
             }
-            if wants.terms {
+            if measurements.terms {
                 self.add_terms(job, &picture, expected.as_ref(), run)?;
             }
-            if wants.exhibit {
-                self.exhibit(job, &picture, run)?;
+            if measurements.images {
+                self.add_images(job, &picture, run)?;
             }
         }
-        if wants.flicker {
+        if measurements.flicker {
             let flicker = self.flicker(job, &mut *ready)?;
             run.error.iter_mut().for_each(|error| {
                 error.metrics.insert("flicker".into(), flicker);
@@ -198,13 +203,13 @@ impl Runner {
     /// Compares the picture with the float64 reference, if the plan asks for it, and returns the reference's picture.
     fn agree(&self, job: &Job<'_>, picture: &Picture, run: &mut Run) -> Result<Option<Picture>> {
         let (plan, model) = (job.plan, &*job.model);
-        if plan.wants.agreement {
+        if plan.measurements.float64_error {
             let tolerance = Tolerance::float32();
             let expected = Expected::new(&model.surfels, &job.camera, plan.size, &plan.settings, &tolerance)?;
-            run.agreement = Some(Agreement::of(&expected.compare(picture)?));
+            run.float64_error = Some(Float64Error::of(&expected.compare(picture)?));
             return Ok(Some(expected.frame.to_picture()));
         }
-        if plan.wants.terms {
+        if plan.measurements.terms {
             let frame = reference::render(model, &job.camera, plan.size, &plan.settings, &())?;
             Ok(Some(frame.to_picture()))
         } else {
@@ -219,7 +224,7 @@ impl Runner {
         let pair = Pair::new(picture, &truth.picture)?;
         let measured = metrics::measure(&pair, &options)?;
         let known = measured.values.into_iter().map(|(metric, value)| (metric.name(), value));
-        let details = if job.plan.wants.details { details::of(&pair) } else { Vec::new() };
+        let details = if job.plan.measurements.details { details::of(&pair) } else { Vec::new() };
         let finite = known.chain(details).filter(|(_, value)| value.is_finite());
         Ok(record::Error {
             filter: filter_name(&self.options.truth),
@@ -250,10 +255,10 @@ impl Runner {
         Ok(())
     }
 
-    fn exhibit(&mut self, job: &Job<'_>, picture: &Picture, run: &mut Run) -> Result<()> {
+    fn add_images(&mut self, job: &Job<'_>, picture: &Picture, run: &mut Run) -> Result<()> {
         let truth = self.truth(job, &job.camera)?;
-        self.exhibits.push(exhibit::exhibit(job.plan, picture, &truth.picture)?);
-        run.exhibit = Some(self.exhibits.len() - 1);
+        self.images.push(images::of(job.plan, picture, &truth.picture)?);
+        run.images = Some(self.images.len() - 1);
         Ok(())
     }
 
@@ -307,22 +312,22 @@ fn filter_name(options: &truth::Options) -> String {
 fn blank(plan: &Plan) -> Run {
     Run {
         suite: plan.suite.into(),
-        figure: plan.figure,
-        part: plan.part.clone(),
+        experiment: plan.experiment,
+        paper_item: plan.paper_item.clone(),
         scene: plan.scene.clone(),
         points: plan.points,
         size: plan.size,
-        contender: plan.engine.contender(&plan.settings),
-        setting: Setting::of(&plan.settings),
+        implementation: plan.engine.implementation(&plan.settings),
+        settings: RunSettings::of(&plan.settings),
         refused: None,
         time: None::<Time>,
         ratio: None,
         error: None,
-        agreement: None,
+        float64_error: None,
         memory: Default::default(),
         overlap: None,
         blended: None,
-        exhibit: None,
+        images: None,
     }
 }
 

@@ -1,8 +1,8 @@
 //! One call of the bench: all runs of some suites on one machine.
 
-use super::record::{Gpu, Host, Made, Run, SPLATS, Session, Setting, Sweep};
+use super::record::{Gpu, Host, Provenance, Run, RunSettings, SPLATS, Session, Sweep};
 use super::runner::{Options, Runner};
-use super::suites::{Own, Suite};
+use super::suites::{Suite, UserInputs};
 use super::{code, hard};
 use crate::error::{Error, Result};
 use crate::progress::Progress;
@@ -18,11 +18,11 @@ use sysinfo::System;
 const STAGE: &str = "measuring";
 
 /// Options of a session.
-pub struct Wanted {
+pub struct SessionOptions {
     /// The suites, in this order.
     pub suites: Vec<Suite>,
     /// Inputs of the user, for [`Suite::Inputs`].
-    pub own: Own,
+    pub inputs: UserInputs,
     /// The device; plans that need one are refused without it.
     pub device: Option<Arc<Device>>,
     /// Whether the validation layers are active.
@@ -35,11 +35,11 @@ pub struct Wanted {
 
 /// Runs all suites. A run that cannot be rendered is recorded as refused. An error that ends the session, such as a
 /// lost device, is returned beside the results so far.
-pub fn measure(wanted: &Wanted, progress: &dyn Progress) -> (Session, Result<()>) {
+pub fn measure(wanted: &SessionOptions, progress: &dyn Progress) -> (Session, Result<()>) {
     let (date, start) = (Timestamp::now(), Instant::now());
-    let plans = |suite: &Suite| suite.plans(&wanted.own);
+    let plans = |suite: &Suite| suite.plans(&wanted.inputs);
     let total = wanted.suites.iter().map(|suite| plans(suite).len() as u64).sum();
-    let (mut runs, mut exhibits) = (Vec::new(), Vec::new());
+    let (mut runs, mut images) = (Vec::new(), Vec::new());
     progress.at(STAGE, 0, total);
     let mut ended = wanted.suites.iter().try_for_each(|suite| {
         let options = Options {
@@ -48,17 +48,17 @@ pub fn measure(wanted: &Wanted, progress: &dyn Progress) -> (Session, Result<()>
             truth: suite.truth(),
             effort: suite.effort(),
         };
-        let (mut runner, before) = (Runner::new(options, wanted.own.subjects.clone()), exhibits.len());
+        let (mut runner, before) = (Runner::new(options, wanted.inputs.subjects.clone()), images.len());
         let done = plans(suite).iter().try_for_each(|plan| {
             let begin = Instant::now();
             let mut run = runner.run(plan)?;
-            log::info!("{} {} {:?}: {:.2?}", plan.scene, plan.points, plan.figure, begin.elapsed());
-            run.exhibit.iter_mut().for_each(|index| *index += before);
+            log::info!("{} {} {:?}: {:.2?}", plan.scene, plan.points, plan.experiment, begin.elapsed());
+            run.images.iter_mut().for_each(|index| *index += before);
             runs.push(run);
             progress.at(STAGE, runs.len() as u64, total);
             Ok(())
         });
-        exhibits.extend(runner.exhibits());
+        images.extend(runner.images());
         done
     });
     compare_times(&mut runs);
@@ -69,7 +69,7 @@ pub fn measure(wanted: &Wanted, progress: &dyn Progress) -> (Session, Result<()>
             Err(error) => ended = Err(error),
         }
     }
-    let made = Made {
+    let provenance = Provenance {
         version: env!("CARGO_PKG_VERSION").into(),
         commit: code::COMMIT.into(),
         code: code::DIGEST.into(),
@@ -80,10 +80,10 @@ pub fn measure(wanted: &Wanted, progress: &dyn Progress) -> (Session, Result<()>
         host: host(),
         device: wanted.device.as_deref().map(|device| gpu(device, wanted.validated)),
     };
-    (Session { made, runs, sweeps, exhibits }, ended)
+    (Session { provenance, runs, sweeps, images }, ended)
 }
 
-fn hard(wanted: &Wanted, progress: &dyn Progress) -> Result<Vec<Sweep>> {
+fn hard(wanted: &SessionOptions, progress: &dyn Progress) -> Result<Vec<Sweep>> {
     let none = || Error::NoDevice("the hard cases need one: see `surfel devices`".into());
     hard::run(wanted.device.as_ref().ok_or_else(none)?, &hard::Options::default(), progress)
 }
@@ -92,24 +92,24 @@ fn hard(wanted: &Wanted, progress: &dyn Progress) -> Result<Vec<Sweep>> {
 /// baselines, one of the same suite and experiment is preferred, as it ran at about the same time.
 fn compare_times(runs: &mut [Run]) {
     let shipped = |run: &&Run| {
-        let Setting { cutoff, lowpass, widen, epsilon, cull, alpha, .. } = Setting::shipped();
-        let own = &run.setting;
+        let RunSettings { cutoff, lowpass, widen, epsilon, cull, alpha, .. } = RunSettings::defaults();
+        let own = &run.settings;
         (own.cutoff, own.lowpass, own.epsilon) == (cutoff, lowpass, epsilon)
             && own.widen == widen
             && own.cull == cull
             && own.alpha == alpha
     };
-    let baselines = runs.iter().filter(|run| run.contender.method == SPLATS).filter(shipped);
+    let baselines = runs.iter().filter(|run| run.implementation.method == SPLATS).filter(shipped);
     let baselines: Vec<(Run, f64)> = baselines.filter_map(|run| Some((run.clone(), run.ms()?))).collect();
     for run in runs {
         let alike = baselines.iter().filter(|(other, _)| {
             let what = |run: &Run| (run.points, run.size, run.overlap);
             run.scene == other.scene && what(run) == what(other)
         });
-        let distance = |other: &Run| (run.suite != other.suite, run.figure != other.figure);
+        let distance = |other: &Run| (run.suite != other.suite, run.experiment != other.experiment);
         let unit = alike.min_by_key(|(other, _)| distance(other)).map(|(_, ms)| *ms);
         if let (Some(time), Some(unit)) = (&mut run.time, unit) {
-            time.multiple = Some(time.wall.median / unit);
+            time.baseline_ratio = Some(time.wall.median / unit);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Numbers and names as text.
 
-use super::record::{Contender, Made, Memory, Run, Session, Setting};
+use super::record::{Implementation, Memory, Provenance, Run, RunSettings, Session};
 use crate::settings::methods::Method;
 
 /// Rounds to `digits` significant digits, without trailing zeros; uses a power of ten if the number would be long.
@@ -55,7 +55,7 @@ pub fn ms(value: f64) -> String {
 }
 
 /// A time relative to the CPU baseline.
-pub fn multiple(value: f64) -> String {
+pub fn baseline_ratio(value: f64) -> String {
     format!("{}×", significant(value, 2))
 }
 
@@ -85,24 +85,28 @@ pub fn scene(name: &str) -> &str {
 }
 
 /// What distinguishes an implementation from the others: its variant if all have the same method.
-pub fn apart(contender: &Contender, all: &[&Contender]) -> String {
-    let one = all.iter().all(|other| other.method == contender.method);
-    if one && !contender.variant.is_empty() { contender.variant.clone() } else { contender.label() }
+pub fn apart(implementation: &Implementation, all: &[&Implementation]) -> String {
+    let one = all.iter().all(|other| other.method == implementation.method);
+    if one && !implementation.variant.is_empty() {
+        implementation.variant.clone()
+    } else {
+        implementation.label()
+    }
 }
 
 /// The device and host of a session.
 pub fn machine(session: &Session) -> String {
-    let made = &session.made;
-    let host = format!("{}, {} cores", made.host.cpu, made.host.cores);
-    match &made.device {
+    let provenance = &session.provenance;
+    let host = format!("{}, {} cores", provenance.host.cpu, provenance.host.cores);
+    match &provenance.device {
         Some(gpu) => format!("{} ({host})", gpu.name),
         None => host,
     }
 }
 
 /// The date, UTC.
-pub fn day(made: &Made) -> String {
-    made.date.strftime("%Y-%m-%d").to_string()
+pub fn day(provenance: &Provenance) -> String {
+    provenance.date.strftime("%Y-%m-%d").to_string()
 }
 
 /// A shortened commit.
@@ -117,16 +121,16 @@ pub fn commit(commit: &str) -> String {
 }
 
 /// Why a session is out of date; none if it was measured by the present code.
-pub fn stale(made: &Made, code: &str, now: &str) -> Option<String> {
-    made.is_stale(code).then(|| {
-        let (then, now) = (commit(&made.commit), commit(now));
-        format!("Measured by commit {then} on {}; the code has changed since (now {now}).", day(made))
+pub fn stale(provenance: &Provenance, code: &str, now: &str) -> Option<String> {
+    provenance.is_stale(code).then(|| {
+        let (then, now) = (commit(&provenance.commit), commit(now));
+        format!("Measured by commit {then} on {}; the code has changed since (now {now}).", day(provenance))
     })
 }
 
 /// Each setting with its value, without the axes, which the implementation's name contains.
-pub fn settings(setting: &Setting) -> [String; 7] {
-    let Setting { cutoff, lowpass, widen, epsilon, cull, alpha, shading, axes: _ } = setting;
+pub fn settings(setting: &RunSettings) -> [String; 7] {
+    let RunSettings { cutoff, lowpass, widen, epsilon, cull, alpha, shading, axes: _ } = setting;
     [
         format!("H {lowpass}"),
         format!("F {cutoff}"),
@@ -140,20 +144,20 @@ pub fn settings(setting: &Setting) -> [String; 7] {
 
 /// The settings in which `runs` differ.
 pub fn differing<'a>(runs: impl IntoIterator<Item = &'a Run>) -> [bool; 7] {
-    let all: Vec<_> = runs.into_iter().map(|run| settings(&run.setting)).collect();
+    let all: Vec<_> = runs.into_iter().map(|run| settings(&run.settings)).collect();
     std::array::from_fn(|i| all.iter().any(|one| one[i] != all[0][i]))
 }
 
 /// The settings selected by `which`.
-pub fn told(setting: &Setting, which: [bool; 7]) -> String {
+pub fn told(setting: &RunSettings, which: [bool; 7]) -> String {
     let chosen = settings(setting).into_iter().zip(which).filter(|(_, asked)| *asked);
     chosen.map(|(text, _)| text).collect::<Vec<_>>().join(", ")
 }
 
 /// The settings of `run` selected by `which`; pull–push has neither filter nor kernel nor ε.
 pub fn told_of(run: &Run, which: [bool; 7]) -> String {
-    let splats = Method::named(&run.contender.method).is_none_or(|method| method.pull_push.is_none());
-    told(&run.setting, std::array::from_fn(|i| which[i] && (splats || i >= 4)))
+    let splats = Method::named(&run.implementation.method).is_none_or(|method| method.pull_push.is_none());
+    told(&run.settings, std::array::from_fn(|i| which[i] && (splats || i >= 4)))
 }
 
 #[cfg(test)]

@@ -69,7 +69,7 @@ pub fn time(ready: &mut dyn Ready, camera: &Camera, settings: &Settings, effort:
         cpu: Statistics::of(&cpu).unwrap_or_default(),
         passes: passes.passes().map(pass).collect(),
         device: Statistics::of(&sums),
-        multiple: None,
+        baseline_ratio: None,
     })
 }
 

@@ -1,7 +1,7 @@
 //! Results as text for a terminal: one line per run and per sweep.
 
 use super::hard::EXCUSED;
-use super::record::{Agreement, Faults, Figure, Results, Run, Session, Sweep, SweepPoint};
+use super::record::{Experiment, Faults, Float64Error, Results, Run, Session, Sweep, SweepPoint};
 use super::{papers, show};
 use crate::settings::Choice;
 use std::fmt::Write;
@@ -13,7 +13,7 @@ pub const WIDTH: usize = 160;
 const HEADERS: [(&str, Align); 17] = [
     ("points", Align::Right),
     ("size px", Align::Right),
-    ("contender", Align::Left),
+    ("implementation", Align::Left),
     ("settings", Align::Left),
     ("overlap", Align::Right),
     ("wall ms (min–max)", Align::Left),
@@ -44,14 +44,14 @@ pub fn table(results: &Results, code: &str, commit: &str) -> String {
     let mut text = String::new();
     for session in &results.sessions {
         // Here and below: writing to a String cannot fail.
-        let _ = writeln!(text, "{} · surfel {}", show::machine(session), session.made.version);
-        if let Some(stale) = show::stale(&session.made, code, commit) {
+        let _ = writeln!(text, "{} · surfel {}", show::machine(session), session.provenance.version);
+        if let Some(stale) = show::stale(&session.provenance, code, commit) {
             let _ = writeln!(text, "STALE: {stale}");
         }
         for group in groups(&session.runs) {
             let run = group[0];
             let common = common(&group);
-            let _ = write!(text, "\n{} · {} · {}", run.suite, run.figure.name(), run.scene);
+            let _ = write!(text, "\n{} · {} · {}", run.suite, run.experiment.name(), run.scene);
             for (_, told) in &common {
                 let _ = write!(text, " · {told}");
             }
@@ -67,9 +67,11 @@ pub fn table(results: &Results, code: &str, commit: &str) -> String {
 
 /// Runs of one suite, experiment and scene, in the order of their first; without those of the papers' own tables.
 fn groups(runs: &[Run]) -> Vec<Vec<&Run>> {
-    let alike = |a: &Run, b: &Run| (&a.suite, a.figure, &a.scene) == (&b.suite, b.figure, &b.scene);
+    let alike = |a: &Run, b: &Run| (&a.suite, a.experiment, &a.scene) == (&b.suite, b.experiment, &b.scene);
     let mut groups: Vec<Vec<&Run>> = Vec::new();
-    let shown = |run: &&Run| !matches!(run.figure, Figure::Effects | Figure::Claims | Figure::PaperTables);
+    let shown = |run: &&Run| {
+        !matches!(run.experiment, Experiment::Effects | Experiment::Claims | Experiment::PaperTables)
+    };
     for run in runs.iter().filter(shown) {
         match groups.iter_mut().find(|group| alike(group[0], run)) {
             Some(group) => group.push(run),
@@ -87,7 +89,7 @@ fn common(runs: &[&Run]) -> Vec<(usize, String)> {
     let told: [Common; 3] = [
         (0, |run| format!("{} points", show::count(run.points))),
         (1, |run| format!("{} px", show::size(run.size))),
-        (2, |run| run.contender.label()),
+        (2, |run| run.implementation.label()),
     ];
     let same = |(_, of): &Common| runs.len() > 1 && runs.iter().all(|run| of(run) == of(runs[0]));
     told.into_iter().filter(same).map(|(column, of)| (column, of(runs[0]))).collect()
@@ -138,16 +140,16 @@ fn cells(run: &Run, differing: [bool; 7]) -> Vec<String> {
         let wall = run.time.as_ref()?.wall;
         Some(format!("{} ({}–{})", show::ms(wall.median), show::ms(wall.min), show::ms(wall.max)))
     };
-    let multiple = run.time.as_ref().and_then(|time| time.multiple).map(show::multiple);
+    let multiple = run.time.as_ref().and_then(|time| time.baseline_ratio).map(show::baseline_ratio);
     let memory = show::total(run.memory);
     let start = [
         show::count(run.points),
         show::size(run.size),
-        run.contender.label(),
+        run.implementation.label(),
         show::told_of(run, differing),
         // In other experiments it is the scene's own.
         run.overlap
-            .filter(|_| run.figure == Figure::ScalingOverlap)
+            .filter(|_| run.experiment == Experiment::ScalingOverlap)
             .map(|v| show::significant(v, 2))
             .unwrap_or_default(),
     ];
@@ -162,16 +164,16 @@ fn cells(run: &Run, differing: [bool; 7]) -> Vec<String> {
         metric("holes", 6),
         metric("bloat", 6),
         metric("normal-p95", 3),
-        run.agreement.as_ref().map(agreement).unwrap_or_default(),
+        run.float64_error.as_ref().map(float64_error).unwrap_or_default(),
         if memory == 0 { String::new() } else { show::mib(memory) },
     ];
     start.into_iter().chain(rest).collect()
 }
 
 /// The largest difference of colours, and the number of pixels out of tolerance, if any.
-fn agreement(agreement: &Agreement) -> String {
-    let colour = format!("{:.0e}", agreement.colour);
-    match agreement.failed {
+fn float64_error(float64_error: &Float64Error) -> String {
+    let colour = format!("{:.0e}", float64_error.colour);
+    match float64_error.failed_pixels {
         0 => colour,
         failed => format!("{colour} ({failed} px wrong)"),
     }
@@ -194,13 +196,13 @@ fn sweeps(session: &Session) -> String {
 
 fn sweep_line(sweep: &Sweep, longest: usize) -> String {
     let made = || sweep.points.iter().filter(|point| point.refused.is_none());
-    let worst = |of: fn(&Agreement) -> f64| {
+    let worst = |of: fn(&Float64Error) -> f64| {
         let held = made().filter(|point| !point.note.starts_with(EXCUSED));
-        show::largest(held.map(|point| of(&point.agreement)))
+        show::largest(held.map(|point| of(&point.float64_error)))
     };
     let [colour, normal, depth] = [worst(|a| a.colour), worst(|a| a.normal), worst(|a| a.depth)];
     let (excused, held): (Vec<_>, Vec<_>) = made().partition(|point| point.note.starts_with(EXCUSED));
-    let failed: u64 = held.iter().map(|point| point.agreement.failed).sum();
+    let failed: u64 = held.iter().map(|point| point.float64_error.failed_pixels).sum();
     let faults = made().map(|point| point.faults);
     let [non_finite, uncovered, overcovered] = faults.fold([0; 3], |sum, faults| {
         [sum[0] + faults.non_finite, sum[1] + faults.uncovered, sum[2] + faults.overcovered]
@@ -219,16 +221,16 @@ fn sweep_line(sweep: &Sweep, longest: usize) -> String {
 /// A line for each implementation with pixels out of tolerance where float32 suffices, or with faults.
 fn wrong_lines(sweep: &Sweep) -> impl Iterator<Item = String> {
     let is_wrong = |point: &&SweepPoint| {
-        let wrong = point.agreement.failed > 0 && !point.note.starts_with(EXCUSED);
+        let wrong = point.float64_error.failed_pixels > 0 && !point.note.starts_with(EXCUSED);
         point.refused.is_none() && (wrong || !point.faults.is_none())
     };
     let line = |point: &SweepPoint| {
         let Faults { non_finite, uncovered, overcovered } = point.faults;
         format!(
             "{} at {}: {} px wrong, {non_finite} not finite, {uncovered} uncovered, {overcovered} overcovered",
-            point.contender.label(),
+            point.implementation.label(),
             show::significant(point.value, 4),
-            point.agreement.failed
+            point.float64_error.failed_pixels
         )
     };
     sweep.points.iter().filter(is_wrong).map(line)

@@ -1,17 +1,19 @@
-//! Weights at the corners of a surfel's square.
+//! Normalization weights at the corners of a surfel's square.
 //!
-//! Ren, Pfister, Zwicker 2002 take 1/Σw at each corner (section 7.2). Where a surface ends, kernels run out there: 1/Σw is some times what it
-//! is at the centre, and what is bilinear between such corners is far above 1/Σw within. So the corners get what comes nearest, over the whole
-//! square, to the normalized basis function that the weight stands for (section 7.1): `s r` to `r / Σw`, least squares.
+//! Ren, Pfister, Zwicker 2002 take 1/Σw at each corner (section 7.2). At the end of a surface Σw approaches 0 there, so
+//! 1/Σw at a corner is several times that at the centre, and bilinear values between the corners are far above 1/Σw
+//! inside. The corners are therefore fitted to the normalized basis function that the weight represents (section 7.1):
+//! `s r` to `r / Σw` over the whole square, by least squares.
 
 use glam::{DMat4, DVec2, DVec4};
 
-/// How much each corner is held to the weight at the centre, as a share of `Σ r²`: what decides about those near which nothing is seen.
+/// Regularization of each corner towards the weight at the centre, as a share of `Σ r²`: it determines corners without
+/// samples near them.
 const HOLD: f64 = 0.01;
 /// Least weight at a corner, as a share of that at the centre: weights are above 0.
 const LEAST: f64 = 0.1;
 
-/// The least squares of one square.
+/// Least-squares fit of one square.
 pub(super) struct Fit {
     centre: f64,
     matrix: DMat4,
@@ -20,12 +22,13 @@ pub(super) struct Fit {
 }
 
 impl Fit {
-    /// Of a square whose weight at the centre is `centre`.
+    /// A fit for a square whose weight at the centre is `centre`.
     pub fn new(centre: f64) -> Self {
         Self { centre, matrix: DMat4::ZERO, right: DVec4::ZERO, total: 0.0 }
     }
 
-    /// Adds that at a place in the square, each coordinate from −1 to 1, the kernel is `kernel` and the weight should be `wanted`.
+    /// Adds a sample at a position in the square, each coordinate from −1 to 1: the kernel there, and the target
+    /// weight.
     pub fn add(&mut self, place: DVec2, kernel: f64, wanted: f64) {
         let share = bilinear(place);
         let square = kernel * kernel;
@@ -47,7 +50,7 @@ impl Fit {
     }
 }
 
-/// The shares of the corners at a place in the square.
+/// Bilinear weights of the corners at a position in the square.
 fn bilinear(place: DVec2) -> DVec4 {
     let [low, high] = [0.5 - 0.5 * place, 0.5 + 0.5 * place];
     DVec4::new(low.x * low.y, high.x * low.y, low.x * high.y, high.x * high.y)
@@ -57,7 +60,7 @@ fn bilinear(place: DVec2) -> DVec4 {
 mod tests {
     use super::*;
 
-    /// A fit of `wanted` at 7 × 7 places, with a Gaussian that falls to e⁻¹ in the middles of the sides.
+    /// Fits `wanted` at 7 × 7 positions, with a Gaussian that falls to e⁻¹ at the middles of the sides.
     fn fit(centre: f64, wanted: impl Fn(DVec2) -> Option<f64>) -> [f64; 4] {
         let mut fit = Fit::new(centre);
         let place = |i: u32| f64::from(i) / 3.0 - 1.0;
@@ -78,7 +81,8 @@ mod tests {
     fn what_is_bilinear_is_found_but_for_the_hold() {
         let corners = DVec4::new(0.2, 0.4, 0.3, 0.7);
         let found = fit(0.4, |at| Some(bilinear(at).dot(corners)));
-        // Slopes and twist are the eigenvectors, as kernel and places are even in x and in y; r² weighs u² by m on average, and (uv)² by m².
+        // Slopes and twist are the eigenvectors, because kernel and positions are even in x and in y; r² weighs u² by
+        // m on average, and (uv)² by m².
         let each = [(0.0, 0.5), (1.0, 1.0), (2.0, 1.0), (3.0, 1.0)];
         let sums = each.map(|(i, twice): (f64, f64)| {
             let (u, weight) = (i / 3.0, twice * (-2.0 * i * i / 9.0).exp());
@@ -103,7 +107,7 @@ mod tests {
 
     #[test]
     fn a_weight_that_soars_at_the_rim_makes_none_below_zero_and_keeps_the_centre() {
-        // As 1/Σw beside the last row of a lattice.
+        // 1/Σw beside the last row of a lattice.
         let wanted = |at: DVec2| 0.5 * (3.0 * at.x.max(-0.2)).exp();
         let found = fit(0.5, |at| Some(wanted(at)));
         assert!(found[0] >= 0.05 && found[0] < 0.5 && found[1] > 1.0, "{found:?}");

@@ -1,33 +1,33 @@
-//! What the views saw, and the weights that it makes: medians, as the paper has it, against the noise.
+//! Samples of all views, and their medians, which reduce noise as in the paper.
 
-/// What one view says of a surfel.
+/// Sample of a surfel in one view.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Sample {
     pub surfel: u32,
-    /// Σw at its centre.
+    /// Σw at the surfel's centre.
     pub sum: f32,
-    /// Where it looks like a border: weights at the corners of its square.
+    /// Weights at the corners of its square, if the view shows a border.
     pub corners: Option<[f32; 4]>,
 }
 
-/// What all views say.
+/// Samples of all views.
 #[derive(Default)]
 pub(super) struct Samples {
     sums: Vec<(u32, f32)>,
     corners: Vec<(u32, [f32; 4])>,
 }
 
-/// Weights of the surfels that were seen.
+/// Weights of the surfels that some view shows.
 pub(super) struct Medians(Vec<(u32, f32, Option<[f32; 4]>)>);
 
 impl Samples {
-    /// Adds a view's.
+    /// Adds the samples of a view.
     pub fn add(&mut self, samples: Vec<Sample>) {
         self.sums.extend(samples.iter().map(|sample| (sample.surfel, sample.sum)));
         self.corners.extend(samples.iter().filter_map(|sample| Some((sample.surfel, sample.corners?))));
     }
 
-    /// The weights by the medians of the sums. A surfel is at a border if most of its views say so.
+    /// The weights from the medians of the sums. A surfel is at a border if more than half of its views show one.
     pub fn medians(mut self) -> Medians {
         self.sums.sort_unstable_by(|a, b| {
             (a.0, a.1).partial_cmp(&(b.0, b.1)).unwrap_or(std::cmp::Ordering::Equal)
@@ -47,12 +47,12 @@ impl Samples {
 }
 
 impl Medians {
-    /// How many surfels were seen.
+    /// Number of surfels that some view shows.
     pub fn len(&self) -> usize {
         self.0.len()
     }
 
-    /// The weight of a surfel, and at a border those at its corners.
+    /// The weight of a surfel, and at a border its weights at the corners.
     pub fn get(&self, surfel: usize) -> Option<(f32, Option<[f32; 4]>)> {
         let place = self.0.binary_search_by_key(&surfel, |entry| entry.0 as usize).ok()?;
         let (_, weight, corners) = self.0[place];

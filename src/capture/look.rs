@@ -1,4 +1,4 @@
-//! One picture of Σw and depth, and what it says of the surfels.
+//! One rendered picture of Σw and depth, and its samples of surfels.
 
 use super::border::Fit;
 use super::gather::Sample;
@@ -13,39 +13,40 @@ use crate::verify::reference::{Projector, Surfel};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
-/// Least cosine of the angle between ray and normal: seen from further aside, the surface hides parts of itself.
+/// Least cosine of the angle between ray and normal: at a larger angle the surface hides parts of itself.
 const LEAST_COSINE: f64 = 0.5;
-/// Least extent of a disc from its centre, px: smaller ones are narrower than what lies between two pixels.
+/// Least extent of a disc from its centre, px: smaller ones are narrower than the interpolation between pixels.
 const LEAST_RADIUS: f64 = 2.0;
-/// From the centre of a surfel's square to a corner the sum may change by this factor; beyond, each corner has a weight of its own.
+/// Factor by which the sum may change from the centre of a surfel's square to a corner; beyond, each corner gets its
+/// own weight.
 const STEADY: f64 = 2.0;
-/// Samples along either side of such a square: a pixel or two from one to the next.
+/// Samples along either side of such a square: one or two pixels apart.
 const SAMPLES: u32 = 7;
 
-/// A picture from somewhere.
+/// A rendered view.
 pub(super) struct Look {
     projector: Projector,
     picture: Picture,
     settings: Settings,
 }
 
-/// A surfel's square: its centre and the axes from there to its sides.
+/// A surfel's square: its centre, and the vectors from there to its sides.
 struct Square {
     centre: DVec3,
     u: DVec3,
     v: DVec3,
-    /// By how much the distance of what is seen of it may differ from its own.
+    /// Tolerance of the distance of its surface.
     tolerance: f64,
 }
 
-/// What is seen at a point of a surface.
+/// The visible surface at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Seen {
-    /// The surface, with this Σw.
+    /// The expected surface, with this Σw.
     Sum(f64),
-    /// It has ended: nothing, or something behind.
+    /// The surface has ended: nothing, or a surface behind.
     Gap,
-    /// Something in front, or it is not in the picture.
+    /// A surface in front, or a point outside of the picture.
     Hidden,
 }
 
@@ -57,7 +58,7 @@ impl Look {
         Ok(Self { projector, picture, settings: settings.clone() })
     }
 
-    /// What is seen of the surfels whose centres are visible. `surfels` are the scene's.
+    /// Samples of the surfels with visible centres. `surfels` are the scene's.
     pub fn samples(&self, surfels: &Surfels) -> Vec<Sample> {
         let sample = |i: usize| surfels.is_valid(i).then(|| self.sample(i, &Surfel::of(surfels, i)))?;
         (0..surfels.len()).into_par_iter().filter_map(sample).collect()
@@ -84,7 +85,7 @@ impl Look {
         Some(Sample { surfel: index as u32, sum: sum as f32, corners })
     }
 
-    /// Whether a surface ends within the square, or its sum is far from constant there.
+    /// Whether a surface ends within the square, or its sum varies strongly there.
     fn is_border(&self, square: &Square, sum: f64) -> bool {
         let corners = [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)];
         corners.into_iter().any(|at| match self.seen(square, at.into()) {
@@ -94,7 +95,7 @@ impl Look {
         })
     }
 
-    /// Weights at the square's corners, of what is seen within the kernel.
+    /// Weights at the square's corners, from the visible samples within the kernel.
     fn corners(&self, square: &Square, sum: f64) -> [f64; 4] {
         let mut fit = Fit::new(1.0 / sum);
         let place = |i: u32| f64::from(2 * i + 1) / f64::from(SAMPLES) - 1.0;
@@ -106,13 +107,13 @@ impl Look {
         fit.corners()
     }
 
-    /// What is seen of the surface at a place in a square, in its axes.
+    /// The visible surface at a position in a square, in its axes.
     fn seen(&self, square: &Square, place: DVec2) -> Seen {
         let located = self.projector.locate(square.centre + place.x * square.u + place.y * square.v);
         located.map_or(Seen::Hidden, |(at, distance)| self.at(at, distance, square.tolerance))
     }
 
-    /// What is seen of a point of a surface at a pixel position, px, and a distance, from which depths may differ by `tolerance`: Σw between
+    /// The visible surface at a pixel position, px, whose depth is `distance` ± `tolerance`: Σw interpolated between
     /// the four pixels around it, or those of them that show the surface.
     fn at(&self, at: DVec2, distance: f64, tolerance: f64) -> Seen {
         let first = (at - 0.5).floor();
@@ -135,7 +136,7 @@ impl Look {
         }
     }
 
-    /// Σw and depth of a pixel; `None` beyond the picture.
+    /// Σw and depth of a pixel; `None` outside of the picture.
     fn pixel(&self, at: DVec2) -> Option<(f64, f64)> {
         let size = DVec2::new(self.picture.size[0].into(), self.picture.size[1].into());
         let inside = at.cmpge(DVec2::ZERO).all() && at.cmplt(size).all();
@@ -154,7 +155,8 @@ mod tests {
     const SIDE: u32 = 32;
     const DISTANCE: f64 = 10.0;
 
-    /// What an eye 10 above the plane z = 0 sees along −z, a pixel a unit, its first row at y = 32: Σw and distance of each pixel.
+    /// The view from 10 above the plane z = 0 along −z, a unit per pixel, with the first row at y = 32: Σw and distance
+    /// of each pixel.
     fn look(cull: Cull, seen: impl Fn(u32, u32) -> (f32, f64)) -> Look {
         let middle = DVec3::new(16.0, 16.0, 0.0);
         let eye = [middle + DISTANCE * DVec3::Z, middle, DVec3::Y];
@@ -187,7 +189,7 @@ mod tests {
         assert_eq!(strips.at(DVec2::new(31.9, 16.0), DISTANCE, 0.5), Seen::Hidden, "beyond the picture");
     }
 
-    /// A disc of radius 3 in the plane, 12 from the left, turned by so many degrees.
+    /// A disc of radius 3 in the plane, at x = 12, turned by `degrees`.
     fn disc(degrees: f32, radius: f32) -> Surfels {
         let (sin, cos) = degrees.to_radians().sin_cos();
         Surfels {
@@ -219,7 +221,8 @@ mod tests {
         let border = look(Cull::Back, |x, _| (sum(x), if x < 14 { DISTANCE } else { 0.0 }));
         let [found] = border.samples(&disc(0.0, 3.0))[..] else { panic!("not seen") };
         let corners = found.corners.unwrap();
-        // The first axis is x, or its opposite: two corners are beyond, and weigh more than the centre; two are within, and weigh less.
+        // The first axis is ±x: two corners are beyond the end, with larger weights than the centre; two are inside,
+        // with smaller ones.
         let mut sorted = corners;
         sorted.sort_by(f32::total_cmp);
         let centre = 1.0 / found.sum;

@@ -1,12 +1,12 @@
-//! Captures normalization weights (Ren, Pfister, Zwicker 2002, section 7.2).
+//! Capture of normalization weights (Ren, Pfister, Zwicker 2002, section 7.2).
 //!
 //! ```text
 //! views ─ render Σw and depth, without filter and division → look ─ 1/Σw at every surfel that is seen → median over the views → weights
 //!                                                         unseen ─ overlap: the same sum over the surfels around it ──┘
 //! ```
 //!
-//! Where the surface ends, or the sum changes much from the centre of a surfel's square to a corner, each corner gets a weight of its own.
-//! The paper's factor γ, which keeps 8-bit sums from overflowing, has no use with floats.
+//! Where the surface ends, or the sum varies strongly between the centre of a surfel's square and a corner, each corner
+//! gets a weight of its own. The paper's factor γ, which keeps 8-bit sums from overflowing, is not needed with floats.
 
 mod border;
 mod gather;
@@ -29,26 +29,26 @@ use gather::Samples;
 use look::Look;
 use std::sync::Arc;
 
-/// Views from which a whole scene is captured unless asked otherwise: six or so see each place of a closed surface from less than 60°.
+/// Default number of views of a whole scene: about six of them see each point of a closed surface from less than 60°.
 pub const VIEWS: u32 = 24;
 
-/// Where weights came from, as numbers of surfels.
+/// Sources of captured weights, in numbers of surfels.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Captured {
-    /// Seen by a view.
+    /// Visible in a view.
     pub seen: u64,
-    /// Those of them with a weight at each corner.
+    /// Of those, with a weight at each corner.
     pub borders: u64,
-    /// Seen by none: the sum over the surfels around them was computed.
+    /// Visible in no view: computed from the surfels around them.
     pub computed: u64,
 }
 
-/// Weights for all of `surfels`, captured by parallel views from `views` directions that are spread evenly over a sphere. They are for the
-/// kernel, cut-off, footprint, ε and culling of `settings`, whatever else those say. The stage of the progress is `capturing weights`, its unit the
-/// picture.
+/// Captures weights of all `surfels` in orthographic views from `views` directions, evenly distributed over a sphere.
+/// They depend on the kernel, cut-off, footprint, ε and culling of `settings`. The stage of the progress is `capturing
+/// weights`, in pictures.
 ///
 /// # Errors
-/// [`Error::Usage`] if there are no views, no valid surfels, or settings of which no picture can be made; those of rendering.
+/// [`Error::Usage`] if there are no views, no valid surfels, or invalid settings; errors of rendering.
 pub fn capture(
     device: &Arc<Device>,
     surfels: &Surfels,
@@ -72,8 +72,9 @@ pub fn capture(
     Ok(complete(surfels, &settings, samples))
 }
 
-/// Captures anew the weights of the surfels that `camera` sees in a picture of `size` px, and tells how many those are. Others stay; if
-/// there were none, they are 1. Surfels of fewer than two pixels, or seen from more than 60°, are not captured.
+/// Captures again the weights of the surfels that `camera` sees in a picture of `size` px, and returns their number.
+/// Other weights stay, or become 1 if there were none. Surfels of less than two pixels, or seen from more than 60°, are
+/// not captured.
 ///
 /// # Errors
 /// As [`capture`].
@@ -98,7 +99,7 @@ pub fn capture_region(
     Ok(seen.len() as u64)
 }
 
-/// The medians, and sums over what is around the surfels that no view saw.
+/// The medians, and computed weights for the surfels that no view shows.
 fn complete(surfels: &Surfels, settings: &Settings, samples: Samples) -> (Weights, Captured) {
     let seen = samples.medians();
     let unseen = |&i: &u32| seen.get(i as usize).is_none() && surfels.is_valid(i as usize);
@@ -109,7 +110,7 @@ fn complete(surfels: &Surfels, settings: &Settings, samples: Samples) -> (Weight
     }
     let (borders, computed) = (weights.corners.len() as u64, unseen.len() as u64);
     let captured = Captured { seen: seen.len() as u64, borders, computed };
-    // What is left is invalid, and never drawn.
+    // The remaining surfels are invalid and never drawn.
     (weights.filled().unwrap_or_default(), captured)
 }
 
@@ -118,7 +119,7 @@ fn renderer(device: &Arc<Device>, size: [u32; 2]) -> Result<Renderer> {
     Renderer::new(device, RenderOptions { size, outputs, ..Default::default() })
 }
 
-/// The two passes without pre-filtering and per-surfel normalization, which show Σw of either side: what weights depend on, and no more.
+/// The two passes without filter and normalization, showing Σw: the settings that weights depend on.
 pub(crate) fn plain(settings: &Settings) -> Settings {
     let (filter, normalization) = (Filter::None, Normalization::None);
     let splatting = Splatting { filter, normalization, visibility: Visibility::Ray, ..settings.splatting };

@@ -1,4 +1,5 @@
-//! Σw at a surfel's centre, computed from the surfels around it: for those that no view sees, and against those that some do.
+//! Σw at a surfel's centre, computed from the surfels around it: for surfels that no view shows, and to check captured
+//! sums.
 
 use crate::geometry::Surfels;
 use crate::settings::splatting::{Footprint, Kernel};
@@ -8,11 +9,11 @@ use glam::{DVec2, DVec3, I64Vec3};
 use rayon::prelude::*;
 use std::collections::HashMap;
 
-/// Least cosine between two surfels' normals: others belong to another surface.
+/// Least cosine between two surfels' normals on one surface.
 const LEAST_COSINE: f64 = 0.1;
 
-/// `Σ_j r_j(u_k − u_j)` at the centres of the surfels `which`: what an eye along the normal of each sees there, filters aside. A circular
-/// disc's square is the one of [`crate::geometry::first_axis`], where footprints are squares.
+/// `Σ_j r_j(u_k − u_j)` at the centres of the surfels `which`: the sum along the normal of each, without filters. A
+/// circular disc's square has the axes of [`crate::geometry::first_axis`], where footprints are squares.
 pub fn overlaps(surfels: &Surfels, settings: &Settings, which: &[u32]) -> Vec<f64> {
     if which.is_empty() {
         return Vec::new();
@@ -21,19 +22,19 @@ pub fn overlaps(surfels: &Surfels, settings: &Settings, which: &[u32]) -> Vec<f6
     which.par_iter().map(|&surfel| around.overlap(surfel)).collect()
 }
 
-/// Surfels by where they are and how far they reach.
+/// Surfels by position and reach.
 struct Around<'a> {
     surfels: &'a Surfels,
     settings: &'a Settings,
-    /// For each power of two that is a reach, rounded up, the surfels by the cell of that side in which their centres are.
+    /// Surfels by the power of two above their reach, and by the cell of that side that contains their centre.
     levels: HashMap<i32, HashMap<I64Vec3, Vec<u32>>>,
 }
 
-/// A splat at the line through a surfel's centre along its normal.
+/// Intersection of a splat with the line through a surfel's centre along its normal.
 struct Hit {
-    /// How far along the normal.
+    /// Position along the normal.
     height: f64,
-    /// What lies deeper below this than it is from this on.
+    /// The splat hides surfaces this far below it.
     epsilon: f64,
     weight: f64,
 }
@@ -49,7 +50,7 @@ impl<'a> Around<'a> {
         all
     }
 
-    /// How far from its centre a splat of this radius may weigh something, ε off its plane.
+    /// Greatest distance from its centre at which a splat of this radius has weight, up to ε off its plane.
     fn reach(&self, radius: f32) -> f64 {
         let rim = if is_square(self.settings) { std::f64::consts::SQRT_2 } else { 1.0 };
         (rim + f64::from(self.settings.epsilon)) * f64::from(radius)
@@ -66,12 +67,13 @@ impl<'a> Around<'a> {
                 hits.extend(near.filter_map(|&j| self.hit(&centre, &Surfel::of(self.surfels, j as usize))));
             }
         }
-        // As the passes do: what lies deeper than the highest, moved down by its ε, is hidden.
+        // As in the passes: splats below the highest one, moved down by its ε, are hidden.
         let visible = hits.iter().map(|hit| hit.height - hit.epsilon).fold(f64::NEG_INFINITY, f64::max);
         hits.iter().filter(|hit| hit.height >= visible).map(|hit| hit.weight).sum()
     }
 
-    /// The splat of `other` at the line through `centre` along its normal, if it belongs to the same surface.
+    /// Intersection of the splat of `other` with the line through `centre` along its normal, if both belong to one
+    /// surface.
     fn hit(&self, centre: &Surfel, other: &Surfel) -> Option<Hit> {
         let cosine = other.normal.dot(centre.normal);
         let one_sided = !other.two_sided && !centre.two_sided;
@@ -93,7 +95,7 @@ impl<'a> Around<'a> {
     }
 }
 
-/// The kernel of a disc at a place in its plane, in semi-axes from its centre; `None` beyond its rim.
+/// The kernel of a disc at a position in its plane, in semi-axes from its centre; `None` beyond its rim.
 pub(super) fn kernel(settings: &Settings, at: DVec2) -> Option<f64> {
     let rim = if is_square(settings) { at.abs().max_element() } else { at.length() };
     let weight = match settings.splatting.kernel {
@@ -161,7 +163,7 @@ mod tests {
         let both = Settings { cull: Cull::None, ..object_ewa::METHOD.settings() };
         let found = overlaps(&surfels, &both, &[4]);
         assert!((found[0] - 1.0 - (-0.64f64).exp()).abs() < 1e-6, "{found:?}");
-        // Where backs are culled, an eye above sees the front of nothing else.
+        // With back-face culling, an eye above sees no other front.
         let front = overlaps(&surfels, &object_ewa::METHOD.settings(), &[4]);
         assert!((front[0] - 1.0).abs() < 1e-6, "{front:?}");
         surfels.two_sided = Some(vec![false, false, false, false, false, false, false, false, false, true]);

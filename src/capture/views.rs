@@ -1,20 +1,21 @@
-//! Views of a whole scene.
+//! Orthographic views of a whole scene.
 
 use crate::error::Result;
 use crate::geometry::{Bounds, Camera, Surfels};
 use glam::DVec3;
 use std::f64::consts::PI;
 
-/// Radius that the middle one of the surfels has in the pictures, px: the sum changes little from one pixel to the next.
+/// Radius of the median surfel in the pictures, px: the sum changes little between pixels.
 const RADIUS: f64 = 8.0;
 /// Largest side of a picture, px.
 const LARGEST: f64 = 1024.0;
-/// Most pictures along either side of a view. Beyond, surfels get smaller.
+/// Most pictures along either side of a view; beyond, surfels get smaller.
 const MOST_TILES: f64 = 8.0;
-/// How much larger than the bounding sphere a view is.
+/// Size of a view relative to the bounding sphere.
 const FRAME: f64 = 1.02;
 
-/// The side of square pictures, px, and the cameras of these, which show all of `bounds` from each of `views` directions in pieces.
+/// The side of the square pictures, px, and the cameras of the tiles that show all of `bounds` from each of `views`
+/// directions.
 pub(super) fn around(surfels: &Surfels, bounds: &Bounds, views: u32) -> Result<(u32, Vec<Camera>)> {
     let height = 2.0 * FRAME * bounds.radius;
     let wanted = height * RADIUS / median_radius(surfels);
@@ -42,7 +43,7 @@ fn median_radius(surfels: &Surfels) -> f64 {
     radii.select_nth_unstable_by(middle, f32::total_cmp).1.to_owned().into()
 }
 
-/// One of `count` directions that are spread evenly: on a spiral from pole to pole, a golden angle apart.
+/// One of `count` evenly distributed directions: on a spiral from pole to pole, a golden angle apart.
 fn direction(index: u32, count: u32) -> DVec3 {
     let y = 1.0 - (2.0 * f64::from(index) + 1.0) / f64::from(count);
     let (sin, cos) = (f64::from(index) * PI * (3.0 - 5f64.sqrt())).sin_cos();
@@ -79,7 +80,7 @@ mod tests {
         let tiles = cameras.len() / 5;
         assert!(tiles > 1);
         for view in cameras.chunks(tiles) {
-            // What is farthest to either side, too.
+            // The farthest points on either side, too.
             let across =
                 [view[0].view.row(0), view[0].view.row(1)].map(|axis| bounds.radius * axis.truncate());
             let rim = across.into_iter().flat_map(|a| [bounds.centre() + a, bounds.centre() - a]);

@@ -9,8 +9,8 @@ use std::rc::Rc;
 use std::sync::Arc;
 use surfel::bench::record::FORMAT;
 use surfel::bench::subject::Subject;
-use surfel::bench::suites::Own;
-use surfel::bench::{Results, Suite, Wanted, code, csv, measure, report, table};
+use surfel::bench::suites::UserInputs;
+use surfel::bench::{Results, SessionOptions, Suite, code, csv, measure, report, table};
 use surfel::formats::atomic;
 use surfel::load::scene;
 use surfel::settings::Choice;
@@ -86,7 +86,7 @@ fn hard_file(path: &Path) -> OsString {
 
 /// The suites of the options; `quick` unless there is something else to write.
 fn suites(args: &Bench) -> Vec<Suite> {
-    let own = (!args.inputs.is_empty()).then_some(Suite::Own);
+    let own = (!args.inputs.is_empty()).then_some(Suite::Inputs);
     if args.suite.is_empty() && args.from.is_empty() && own.is_none() {
         return vec![Suite::Quick];
     }
@@ -122,7 +122,7 @@ fn command(args: &Bench, suites: &[Suite]) -> String {
     option("truth", path(&args.truth));
     option("points", list(args.points.iter().map(u64::to_string).collect()));
     option("size", args.size.map(|[width, height]| format!("{width}x{height}")));
-    let named = suites.iter().filter(|suite| **suite != Suite::Own);
+    let named = suites.iter().filter(|suite| **suite != Suite::Inputs);
     option("suite", list(named.map(|suite| suite.name().to_owned()).collect()));
     option("device", args.device.device.clone());
     option("device-limits", path(&args.device.device_limits));
@@ -152,18 +152,18 @@ fn device(args: &Bench) -> Result<Option<Arc<Device>>> {
 }
 
 /// What the options ask to measure.
-fn wanted(args: &Bench, suites: Vec<Suite>, progress: &dyn Progress) -> Result<Wanted> {
-    Ok(Wanted {
+fn wanted(args: &Bench, suites: Vec<Suite>, progress: &dyn Progress) -> Result<SessionOptions> {
+    Ok(SessionOptions {
         command: command(args, &suites),
         suites,
-        own: Own {
+        inputs: UserInputs {
             subjects: args
                 .inputs
                 .iter()
                 .map(|input| subject(args, input, progress))
                 .collect::<Result<_>>()?,
             points: args.points.clone(),
-            size: args.size.unwrap_or(Own::default().size),
+            size: args.size.unwrap_or(UserInputs::default().size),
         },
         device: device(args)?,
         validated: args.device.validate,

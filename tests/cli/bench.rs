@@ -17,7 +17,7 @@ fn an_input_is_measured_stored_and_reported_again() {
     assert!(run.text().contains("scene:torus") && run.text().contains("perspective-ewa"), "{}", run.text());
     let results = json(&program, "a.json");
     let session = &results["sessions"][0];
-    assert_eq!(session["made"]["command"], format!("surfel bench {arguments}"));
+    assert_eq!(session["provenance"]["command"], format!("surfel bench {arguments}"));
     let runs = session["runs"].as_array().unwrap();
     let points: Vec<_> = runs.iter().map(|run| run["points"].as_u64().unwrap()).collect();
     assert!(points.contains(&1000) && points.contains(&3000));
@@ -46,7 +46,7 @@ fn results_of_other_versions_are_marked() {
     let program = Program::new();
     let made = r#""version":"0.1.0","commit":"0123456789","code":"another","date":"2026-01-02T03:04:05Z","seconds":1.0,
         "command":"surfel bench","suites":["quick"],"host":{"cpu":"A","cores":2,"memory":1,"system":"B"},"device":null"#;
-    let session = format!(r#"{{"made":{{{made}}},"runs":[],"sweeps":[],"exhibits":[]}}"#);
+    let session = format!(r#"{{"provenance":{{{made}}},"runs":[],"sweeps":[],"images":[]}}"#);
     program.write("old.json", format!(r#"{{"format":2,"sessions":[{session}]}}"#));
     let run = program.run("bench --from old.json --report page");
     assert!(run.text().contains("0123456789"), "{}", run.text());

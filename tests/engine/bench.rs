@@ -7,8 +7,8 @@ use std::path::Path;
 use std::rc::Rc;
 use std::time::Duration;
 use surfel::bench::engine::Engine;
-use surfel::bench::plan::{Plan, Wants};
-use surfel::bench::record::{Figure, Run};
+use surfel::bench::plan::{Measurements, Plan};
+use surfel::bench::record::{Experiment, Run};
 use surfel::bench::runner::{Options, Runner};
 use surfel::bench::stopwatch::Effort;
 use surfel::bench::subject::Subject;
@@ -26,8 +26,8 @@ const TRUTH: truth::Options = truth::Options {
 fn plan(scene: &str, points: u64, side: u32) -> Plan {
     Plan {
         suite: "test",
-        figure: Figure::Budget,
-        part: String::new(),
+        experiment: Experiment::Budget,
+        paper_item: String::new(),
         scene: scene.into(),
         points,
         radius_scale: 1.0,
@@ -35,7 +35,7 @@ fn plan(scene: &str, points: u64, side: u32) -> Plan {
         engine: Engine::DEFAULT,
         settings: Settings { shading: Shading::Colour, ..Default::default() },
         viewpoint: None,
-        wants: Wants { time: false, ..Wants::BOTH },
+        measurements: Measurements { time: false, ..Measurements::BOTH },
         base: None,
     }
 }
@@ -55,16 +55,16 @@ fn a_run_knows_its_time_its_error_and_what_that_is_made_of() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let options = Options { device: Some(device.clone()), cache: None, truth: TRUTH, effort: EFFORT };
     let mut runner = Runner::new(options, Vec::new());
-    let wants = Wants {
+    let measurements = Measurements {
         time: true,
         error: true,
         details: true,
         terms: true,
-        agreement: true,
+        float64_error: true,
         flicker: true,
-        exhibit: true,
+        images: true,
     };
-    let plan = Plan { wants, ..plan("scene:torus", 20_000, 96) };
+    let plan = Plan { measurements, ..plan("scene:torus", 20_000, 96) };
     // A frame of 64 times as many pixels takes longer whatever else the machine does, and the ratio is of that to this.
     let base = Plan { size: [768, 768], ..plan.clone() };
     let run = runner.run(&Plan { base: Some(Box::new(base)), ..plan }).unwrap();
@@ -97,14 +97,16 @@ fn a_run_knows_its_time_its_error_and_what_that_is_made_of() {
     assert!(error.metrics["flicker"] > 0.0 && error.metrics["iou"] > 0.9 && error.metrics["holes"] == 0.0);
     assert!(error.metrics["gaps"] == 0.0 && error.metrics["sharpness"] > 0.3);
 
-    let agreement = run.agreement.unwrap();
-    assert!(agreement.object > 1000 && agreement.failed == 0 && agreement.colour < 2e-4);
+    let float64_error = run.float64_error.unwrap();
+    assert!(
+        float64_error.object_pixels > 1000 && float64_error.failed_pixels == 0 && float64_error.colour < 2e-4
+    );
     // Samples' radii are 1.5 spacings.
     assert!((run.overlap.unwrap() - 2.25 * PI).abs() < 0.05, "{:?}", run.overlap);
     assert!(run.memory.scene > 0 && run.memory.splats > 0 && run.memory.targets > 0);
-    let exhibits = runner.exhibits();
-    let exhibit = &exhibits[run.exhibit.unwrap()];
-    for png in [&exhibit.picture, &exhibit.truth, &exhibit.map] {
+    let images = runner.images();
+    let images = &images[run.images.unwrap()];
+    for png in [&images.rendered, &images.truth, &images.flip] {
         assert!(BASE64_STANDARD.decode(png).unwrap().starts_with(b"\x89PNG"));
     }
     assert_silent(&device);
@@ -132,7 +134,7 @@ fn without_the_low_pass_the_horizon_aliases_and_the_error_says_so() {
     let mut with = |lowpass| {
         let mut plan = plan("scene:plane?frequency=2", 300_000, 128);
         plan.settings.lowpass = lowpass;
-        plan.wants.flicker = true;
+        plan.measurements.flicker = true;
         let error = runner.run(&plan).unwrap().error.unwrap();
         println!("H {lowpass}: inside {}, {:?}", error.terms.inside, error.metrics);
         (error.terms.inside, error.metrics["flicker"])
@@ -198,7 +200,7 @@ fn a_scan_is_held_against_its_mesh_at_any_density() {
     let mut of = |points| {
         let mut plan = plan(&subject.name, points, 128);
         plan.settings.shading = Shading::Lit;
-        plan.wants.terms = true;
+        plan.measurements.terms = true;
         runner.run(&plan).unwrap()
     };
     let (thin, whole) = (of(800), of(most));

@@ -88,9 +88,9 @@ fn check_attribute(file: &str, name: &str, value: &str) {
 
 #[test]
 fn the_baseline_is_no_advice() {
-    let of = |points, ms| run(Figure::Budget, "scene:a", points, ms, 0.05);
+    let of = |points, ms| run(Experiment::Budget, "scene:a", points, ms, 0.05);
     let mut session = session();
-    session.runs = vec![of(1, 10.0), Run { contender: native(), ..of(2, 1.0) }];
+    session.runs = vec![of(1, 10.0), Run { implementation: native(), ..of(2, 1.0) }];
     let advice = Advice::of(&session).unwrap();
     assert_eq!(advice.columns[0].front.iter().map(|offer| offer.run.points).collect::<Vec<_>>(), [1]);
     session.runs.remove(0);
@@ -99,7 +99,7 @@ fn the_baseline_is_no_advice() {
 
 #[test]
 fn the_best_run_within_a_budget_is_on_the_front() {
-    let of = |points, ms, rmse| run(Figure::Budget, "scene:a", points, ms, rmse);
+    let of = |points, ms, rmse| run(Experiment::Budget, "scene:a", points, ms, rmse);
     let mut refused = of(9, 1.0, 0.001);
     refused.refused = Some("no".into());
     let mut untimed = of(8, 1.0, 0.001);
@@ -132,12 +132,12 @@ fn the_best_run_within_a_budget_is_on_the_front() {
 fn advice_is_by_scene_and_size_and_of_budget_runs_alone() {
     let mut session = session();
     session.runs = vec![
-        run(Figure::Budget, "scene:a", 1, 42.0, 0.03),
-        run(Figure::Budget, "scene:b", 2, 300.0, 0.008),
+        run(Experiment::Budget, "scene:a", 1, 42.0, 0.03),
+        run(Experiment::Budget, "scene:b", 2, 300.0, 0.008),
         // Better than both, but measured for something else.
-        run(Figure::Lowpass, "scene:a", 3, 1.0, 0.001),
+        run(Experiment::Lowpass, "scene:a", 3, 1.0, 0.001),
     ];
-    session.runs.push(Run { size: [64, 64], ..run(Figure::Budget, "scene:a", 4, 7.0, 0.04) });
+    session.runs.push(Run { size: [64, 64], ..run(Experiment::Budget, "scene:a", 4, 7.0, 0.04) });
     let advice = Advice::of(&session).unwrap();
     let columns: Vec<_> =
         advice.columns.iter().map(|column| (column.scene, column.size[0], column.front.len())).collect();
@@ -191,9 +191,9 @@ fn the_page_says_what_points_cost_and_when_they_win() {
 #[test]
 fn a_section_without_data_is_not_there() {
     let mut results = plausible();
-    results.sessions[0].runs.retain(|run| run.figure == Figure::Baseline);
+    results.sessions[0].runs.retain(|run| run.experiment == Experiment::Baseline);
     results.sessions[0].sweeps.clear();
-    results.sessions[0].exhibits.clear();
+    results.sessions[0].images.clear();
     let page = page(&results, CODE);
     for section in ["baseline", "made", "terms"] {
         assert!(page.contains(&format!("<section id=\"{section}\">")));
@@ -212,7 +212,7 @@ fn numbers_that_cannot_be_drawn_do_no_harm() {
     for (i, run) in session.runs.iter_mut().enumerate() {
         let value = hard[i % hard.len()];
         if let Some(time) = &mut run.time {
-            (time.wall.median, time.multiple) = (hard[(i / 3) % hard.len()], Some(value));
+            (time.wall.median, time.baseline_ratio) = (hard[(i / 3) % hard.len()], Some(value));
         }
         if let Some(error) = &mut run.error {
             error.metrics.insert("rmse".into(), value);
@@ -220,12 +220,12 @@ fn numbers_that_cannot_be_drawn_do_no_harm() {
             error.terms = Terms { silhouette: value, hidden: Some(value), ..error.terms };
         }
         run.overlap = Some(value);
-        run.setting.lowpass = hard[(i / 2) % hard.len()] as f32;
+        run.settings.lowpass = hard[(i / 2) % hard.len()] as f32;
         run.points *= (i % 7) as u64;
     }
     for (i, point) in session.sweeps.iter_mut().flat_map(|sweep| &mut sweep.points).enumerate() {
         point.value = hard[(i / 2) % hard.len()];
-        point.agreement.colour = hard[i % hard.len()];
+        point.float64_error.colour = hard[i % hard.len()];
     }
     let folder = tempfile::tempdir().unwrap();
     for path in report::write(&results, CODE, NOW, folder.path()).unwrap() {
@@ -244,7 +244,7 @@ fn numbers_that_cannot_be_drawn_do_no_harm() {
 #[test]
 fn one_point_or_equal_values_have_a_plot() {
     let mut results = plausible();
-    results.sessions[0].runs = vec![run(Figure::Budget, "scene:a", 10_000, 100.0, 0.05)];
+    results.sessions[0].runs = vec![run(Experiment::Budget, "scene:a", 10_000, 100.0, 0.05)];
     check(&results);
     let again = results.sessions[0].runs[0].clone();
     results.sessions[0].runs.push(again);
@@ -275,8 +275,8 @@ fn stale_results_say_so_everywhere_and_fresh_ones_nowhere() {
 fn sessions_stay_apart() {
     let mut results = plausible();
     let mut other = session();
-    other.made.code = "older".into();
-    other.made.device.as_mut().unwrap().name = "NVIDIA H100".into();
+    other.provenance.code = "older".into();
+    other.provenance.device.as_mut().unwrap().name = "NVIDIA H100".into();
     other.runs.iter_mut().flat_map(|run| &mut run.time).for_each(|time| time.wall.median *= 0.01);
     results.sessions.push(other);
     check(&results);
@@ -301,7 +301,7 @@ fn csv_holds_every_number() {
         let number = |name: &str| cell(name).parse::<f64>().ok();
         assert_eq!(cell("scene"), run.scene);
         assert_eq!(cell("points").parse(), Ok(run.points));
-        assert_eq!(cell("lowpass").parse(), Ok(run.setting.lowpass));
+        assert_eq!(cell("lowpass").parse(), Ok(run.settings.lowpass));
         assert_eq!(cell("refused"), run.refused.as_deref().unwrap_or(""));
         assert_eq!(number("wall"), run.time.as_ref().map(|time| time.wall.median));
         let attribute = run.time.as_ref().map(|time| time.passes[2].ms);
@@ -315,7 +315,7 @@ fn csv_holds_every_number() {
             );
         }
         assert_eq!(number("term:hidden"), run.error.as_ref().and_then(|error| error.terms.hidden));
-        assert_eq!(number("f64:colour"), run.agreement.map(|agreement| agreement.colour));
+        assert_eq!(number("f64:colour"), run.float64_error.map(|float64_error| float64_error.colour));
     }
     let sweeps = csv::sweeps(&results, CODE).unwrap();
     let points: usize = results.sessions[0].sweeps.iter().map(|sweep| sweep.points.len()).sum();
@@ -327,7 +327,7 @@ fn csv_holds_every_number() {
 fn the_table_is_narrow_and_says_why_runs_were_refused() {
     let mut results = plausible();
     let long = "a-method-with-a-name-that-is-much-longer-than-any-terminal-has-room-for";
-    results.sessions[0].runs[1].contender.method = long.into();
+    results.sessions[0].runs[1].implementation.method = long.into();
     let text = table(&results, CODE, NOW);
     for line in text.lines().filter(|line| !line.contains("refused:")) {
         assert!(line.chars().count() <= 160, "{} columns: {line}", line.chars().count());
@@ -366,7 +366,7 @@ fn what_the_papers_say_stands_beside_what_is_measured() {
         |text: &str| [text.matches("as in the paper:").count(), text.matches("NOT as in the paper:").count()];
     assert_eq!(verdicts(&text), [2, 0], "{text}");
     let mut unlike = results.clone();
-    unlike.sessions[0].runs.iter_mut().filter(|run| run.part == "axis-offset").for_each(|run| {
+    unlike.sessions[0].runs.iter_mut().filter(|run| run.paper_item == "axis-offset").for_each(|run| {
         run.error.as_mut().unwrap().metrics.insert("gaps".into(), 5.0);
     });
     assert_eq!(verdicts(&table(&unlike, CODE, NOW)), [2, 1]);
@@ -384,6 +384,9 @@ fn results_of_before_there_were_methods_are_read() {
     }
     let read: Results = serde_json::from_value(json).unwrap();
     assert!(
-        read.sessions[0].runs.iter().all(|run| run.setting.axes == Axes::default() && run.part.is_empty())
+        read.sessions[0]
+            .runs
+            .iter()
+            .all(|run| run.settings.axes == Axes::default() && run.paper_item.is_empty())
     );
 }

@@ -18,15 +18,15 @@ fn is_excused(point: &SweepPoint) -> bool {
 
 /// A line a point.
 fn print(sweep: &Sweep) {
-    println!("\n{}: {}", sweep.name, sweep.about);
+    println!("\n{}: {}", sweep.name, sweep.description);
     println!(
         "{:<50} {:>8} {:>7} {:>7} {:>8} {:>8} {:>8}",
         sweep.parameter, "object", "doubt", "failed", "colour", "normal", "depth"
     );
     for point in &sweep.points {
-        let a = point.agreement;
-        let of = format!("{:.6} {}", point.value, point.contender.label());
-        print!("{of:<50} {:>8} {:>7} {:>7}", a.object, a.doubtful, a.failed);
+        let a = point.float64_error;
+        let of = format!("{:.6} {}", point.value, point.implementation.label());
+        print!("{of:<50} {:>8} {:>7} {:>7}", a.object_pixels, a.ambiguous_pixels, a.failed_pixels);
         println!(" {:>8.1e} {:>8.1e} {:>8.1e}  {}", a.colour, a.normal, a.depth, point.note);
     }
 }
@@ -34,14 +34,14 @@ fn print(sweep: &Sweep) {
 /// The sweep's line of a method's table, for the first of which see the guide, Accuracy: largest errors where float32 is not excused, then where it
 /// is.
 fn summarize(sweep: &Sweep, method: &Method) {
-    let own = || sweep.points.iter().filter(|point| point.contender.method == method.name);
+    let own = || sweep.points.iter().filter(|point| point.implementation.method == method.name);
     let largest = |excused: bool| {
         let points = || own().filter(move |point| is_excused(point) == excused);
         let worst = |of: fn(&SweepPoint) -> f64| points().map(of).fold(0.0, f64::max);
         let errors = [
-            worst(|point| point.agreement.colour),
-            worst(|point| point.agreement.normal),
-            worst(|point| point.agreement.depth),
+            worst(|point| point.float64_error.colour),
+            worst(|point| point.float64_error.normal),
+            worst(|point| point.float64_error.depth),
         ];
         (points().count(), errors.map(|error| format!("{error:.1e}")))
     };
@@ -65,15 +65,15 @@ fn summarize(sweep: &Sweep, method: &Method) {
 
 fn check(sweep: &Sweep, point: &SweepPoint) {
     let at = format!("{} at {}: {point:?}", sweep.name, point.value);
-    let (bars, a) = (Tolerance::default(), point.agreement);
+    let (bars, a) = (Tolerance::default(), point.float64_error);
     assert_eq!(point.refused, None, "{at}");
     assert!([a.colour, a.normal, a.depth, point.value].into_iter().all(f64::is_finite), "{at}");
-    assert!(point.faults.is_none() && a.object > 0, "{at}");
-    assert!(a.failed == 0 || is_excused(point), "{at}");
+    assert!(point.faults.is_none() && a.object_pixels > 0, "{at}");
+    assert!(a.failed_pixels == 0 || is_excused(point), "{at}");
     // Nothing is excused for nothing; what one method does not hold, another may.
     let excuse = |point: &SweepPoint| point.note.split("; ").next().map(str::to_owned);
     let same = |other: &&SweepPoint| other.value == point.value && excuse(other) == excuse(point);
-    let fails = sweep.points.iter().filter(same).any(|other| other.agreement.failed > 0);
+    let fails = sweep.points.iter().filter(same).any(|other| other.float64_error.failed_pixels > 0);
     assert!(fails || !is_excused(point), "{at}");
     let within = a.colour <= bars.colour && a.normal <= bars.normal && a.depth <= bars.depth_relative;
     assert!(within || is_excused(point), "{at}");
@@ -106,8 +106,9 @@ fn every_case_agrees_or_says_why_not() {
         sweep.points.iter().for_each(|point| check(sweep, point));
         for method in Method::SPLATTING {
             let [values, others] = ["draw", "compute"].map(|variant| {
-                let own = |point: &&SweepPoint| point.contender.method == method.name;
-                let by = sweep.points.iter().filter(own).filter(|point| point.contender.variant == variant);
+                let own = |point: &&SweepPoint| point.implementation.method == method.name;
+                let by =
+                    sweep.points.iter().filter(own).filter(|point| point.implementation.variant == variant);
                 by.map(|point| point.value).collect::<Vec<_>>()
             });
             let least = if method == Method::SPLATTING[0] { if_whole(7, 2) } else { 2 };
@@ -117,7 +118,8 @@ fn every_case_agrees_or_says_why_not() {
         }
     }
     assert_eq!(sweeps.len(), 16);
-    let halves = |sweep: &Sweep| sweep.points.iter().any(|point| point.contender.variant.contains("16-bit"));
+    let halves =
+        |sweep: &Sweep| sweep.points.iter().any(|point| point.implementation.variant.contains("16-bit"));
     assert!(sweeps.iter().all(|sweep| halves(sweep) == (sweep.name == "accumulator")));
     assert_silent(&device);
 }
@@ -137,7 +139,8 @@ fn what_a_device_refuses_is_told() {
     let sweeps = run(&device, &options, &()).unwrap();
     let [accumulator, size] = &sweeps[..] else { panic!("{} sweeps", sweeps.len()) };
     let reasons = |sweep: &Sweep| {
-        let first = sweep.points.iter().filter(|point| point.contender.method == Method::SPLATTING[0].name);
+        let first =
+            sweep.points.iter().filter(|point| point.implementation.method == Method::SPLATTING[0].name);
         first.map(|point| point.refused.clone()).collect::<Vec<_>>()
     };
     let says =
@@ -171,8 +174,11 @@ fn faults_are_found() {
         tamper(&mut picture);
         judge(&expected, &picture).unwrap()
     };
-    let (agreement, faults) = found(&|_| {});
-    assert!(faults.is_none() && agreement.failed == 0 && agreement.object > 1000, "{agreement:?} {faults:?}");
+    let (float64_error, faults) = found(&|_| {});
+    assert!(
+        faults.is_none() && float64_error.failed_pixels == 0 && float64_error.object_pixels > 1000,
+        "{float64_error:?} {faults:?}"
+    );
 
     let sure = |covered: bool| {
         let definite = |i: &usize| matches!(expected.bounds.admissible(*i), Admissible::Definite);
@@ -186,25 +192,28 @@ fn faults_are_found() {
             p.normal.as_mut().unwrap()[inside][2] = f32::NEG_INFINITY
         }];
     for tamper in broken {
-        let (agreement, faults) = found(tamper);
-        assert_eq!((one(faults), agreement.failed), ([1, 1, 0], 1));
-        assert!(agreement.colour.is_finite() && agreement.depth.is_finite(), "{agreement:?}");
+        let (float64_error, faults) = found(tamper);
+        assert_eq!((one(faults), float64_error.failed_pixels), ([1, 1, 0], 1));
+        assert!(float64_error.colour.is_finite() && float64_error.depth.is_finite(), "{float64_error:?}");
     }
-    let (agreement, faults) = found(&|p| p.colour[outside][3] = f32::NAN);
-    assert_eq!((one(faults), agreement.failed), ([1, 0, 0], 0));
-    let (agreement, faults) = found(&|p| {
+    let (float64_error, faults) = found(&|p| p.colour[outside][3] = f32::NAN);
+    assert_eq!((one(faults), float64_error.failed_pixels), ([1, 0, 0], 0));
+    let (float64_error, faults) = found(&|p| {
         p.colour[inside] = [0.0; 4];
         p.depth.as_mut().unwrap()[inside] = 0.0;
         p.normal.as_mut().unwrap()[inside] = [0.0; 3];
     });
-    assert_eq!((one(faults), agreement.failed), ([0, 1, 0], 1));
-    let (agreement, faults) = found(&|p| {
+    assert_eq!((one(faults), float64_error.failed_pixels), ([0, 1, 0], 1));
+    let (float64_error, faults) = found(&|p| {
         p.colour[outside] = p.colour[inside];
         p.depth.as_mut().unwrap()[outside] = p.depth.as_ref().unwrap()[inside];
     });
-    assert_eq!((one(faults), agreement.failed), ([0, 0, 1], 1));
-    let (agreement, faults) = found(&|p| p.colour[inside][0] += 1e-3);
-    assert!(faults.is_none() && agreement.failed == 1 && agreement.colour > 9e-4, "{agreement:?}");
+    assert_eq!((one(faults), float64_error.failed_pixels), ([0, 0, 1], 1));
+    let (float64_error, faults) = found(&|p| p.colour[inside][0] += 1e-3);
+    assert!(
+        faults.is_none() && float64_error.failed_pixels == 1 && float64_error.colour > 9e-4,
+        "{float64_error:?}"
+    );
 }
 
 #[test]

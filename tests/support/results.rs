@@ -24,15 +24,15 @@ pub fn empty() -> Results {
 pub fn session() -> Session {
     let runs = [budget(), lowpass(), aliasing(), scaling(), baseline(), papers()].concat();
     Session {
-        made: made(),
+        provenance: provenance(),
         runs,
         sweeps: vec![grazing(), offset(), layers()],
-        exhibits: vec![exhibit(), exhibit()],
+        images: vec![images(), images()],
     }
 }
 
-pub fn made() -> Made {
-    Made {
+pub fn provenance() -> Provenance {
+    Provenance {
         version: "0.1.0".into(),
         commit: "559aa66d0c9f3c6bd4f06e0f4a".into(),
         code: CODE.into(),
@@ -54,16 +54,16 @@ pub fn made() -> Made {
     }
 }
 
-pub fn contender(variant: &str) -> Contender {
-    Contender { method: "perspective-ewa".into(), variant: variant.into() }
+pub fn implementation(variant: &str) -> Implementation {
+    Implementation { method: "perspective-ewa".into(), variant: variant.into() }
 }
 
-pub fn native() -> Contender {
-    Contender { method: "baseline-splats".into(), variant: String::new() }
+pub fn native() -> Implementation {
+    Implementation { method: "baseline-splats".into(), variant: String::new() }
 }
 
 /// A run with a time and an error; the rest follows from them.
-pub fn run(figure: Figure, scene: &str, points: u64, ms: f64, rmse: f64) -> Run {
+pub fn run(experiment: Experiment, scene: &str, points: u64, ms: f64, rmse: f64) -> Run {
     let metrics = [
         ("rmse", rmse),
         ("psnr", -20.0 * rmse.log10()),
@@ -76,13 +76,13 @@ pub fn run(figure: Figure, scene: &str, points: u64, ms: f64, rmse: f64) -> Run 
     ];
     Run {
         suite: "quick".into(),
-        figure,
-        part: String::new(),
+        experiment,
+        paper_item: String::new(),
         scene: scene.into(),
         points,
         size: [512, 512],
-        contender: contender("compute"),
-        setting: Setting::shipped(),
+        implementation: implementation("compute"),
+        settings: RunSettings::defaults(),
         refused: None,
         time: Some(time(ms)),
         ratio: None,
@@ -97,10 +97,10 @@ pub fn run(figure: Figure, scene: &str, points: u64, ms: f64, rmse: f64) -> Run 
                 precision: Some(3e-7),
             },
         }),
-        agreement: Some(Agreement {
-            object: 90_000,
-            doubtful: 120,
-            failed: 0,
+        float64_error: Some(Float64Error {
+            object_pixels: 90_000,
+            ambiguous_pixels: 120,
+            failed_pixels: 0,
             colour: 9e-6,
             normal: 6e-5,
             depth: 1e-6,
@@ -108,7 +108,7 @@ pub fn run(figure: Figure, scene: &str, points: u64, ms: f64, rmse: f64) -> Run 
         memory: Memory { scene: 28 * points, splats: 64 * points, targets: 512 * 512 * 48 },
         overlap: Some(7.5),
         blended: None,
-        exhibit: None,
+        images: None,
     }
 }
 
@@ -123,7 +123,7 @@ pub fn time(ms: f64) -> Time {
         cpu: spread(1.9),
         passes: passes.map(|(name, share)| Pass { name: name.into(), ms: spread(share) }).to_vec(),
         device: Some(spread(0.98)),
-        multiple: Some(ms / 60.0),
+        baseline_ratio: Some(ms / 60.0),
     }
 }
 
@@ -138,20 +138,21 @@ fn budget() -> Vec<Run> {
             let ms = 90.0 + 21.0 * more.powf(0.51);
             for (variant, slower) in [("compute", 1.0), ("raster", 1.9)] {
                 for (lowpass, cheaper, worse) in [(1.0, 1.0, 1.0), (0.25, 0.8, 1.06), (0.0, 0.76, 1.12)] {
-                    let mut run = run(Figure::Budget, scene, points, slower * cheaper * ms, worse * error);
-                    run.contender = contender(variant);
-                    run.setting.lowpass = lowpass;
+                    let mut run =
+                        run(Experiment::Budget, scene, points, slower * cheaper * ms, worse * error);
+                    run.implementation = implementation(variant);
+                    run.settings.lowpass = lowpass;
                     runs.push(run);
                 }
             }
         }
     }
-    let mut refused = run(Figure::Budget, "scene:part", 10_000_000, 1.0, 1.0);
-    (refused.time, refused.error, refused.agreement) = (None, None, None);
+    let mut refused = run(Experiment::Budget, "scene:part", 10_000_000, 1.0, 1.0);
+    (refused.time, refused.error, refused.float64_error) = (None, None, None);
     refused.refused =
         Some("cannot allocate 640000000 bytes for splats: use fewer points or a smaller picture".into());
     runs.push(refused);
-    runs[POINTS.len()].exhibit = Some(0);
+    runs[POINTS.len()].images = Some(0);
     runs
 }
 
@@ -164,13 +165,13 @@ fn lowpass() -> Vec<Run> {
                 let price = if widen == "all" { 1.0 } else { 0.3 };
                 let error = 0.02 + 0.006 * (h - 0.6).powi(2) + 0.001 * (f - 2.0).powi(2) + 0.0005 * price;
                 let mut run = run(
-                    Figure::Lowpass,
+                    Experiment::Lowpass,
                     "scene:bumpy-sphere",
                     100_000,
                     (80.0 + 60.0 * h * price) * f / 2.0,
                     error,
                 );
-                run.setting = Setting { cutoff, lowpass, widen: widen.into(), ..run.setting };
+                run.settings = RunSettings { cutoff, lowpass, widen: widen.into(), ..run.settings };
                 runs.push(run);
             }
         }
@@ -182,8 +183,8 @@ fn aliasing() -> Vec<Run> {
     let cases = [(0.0, 0.18), (0.25, 0.11), (1.0, 0.031f64)];
     cases
         .map(|(lowpass, rmse)| {
-            let mut run = run(Figure::Aliasing, "scene:plane?radius=1000", 1_000_000, 250.0, rmse);
-            run.setting.lowpass = lowpass;
+            let mut run = run(Experiment::Aliasing, "scene:plane?radius=1000", 1_000_000, 250.0, rmse);
+            run.settings.lowpass = lowpass;
             run.error.as_mut().unwrap().metrics.insert("flicker".into(), 0.4 * rmse);
             run
         })
@@ -194,20 +195,21 @@ fn scaling() -> Vec<Run> {
     let mut runs = Vec::new();
     for variant in ["compute", "raster"] {
         let slower = if variant == "raster" { 1.8 } else { 1.0 };
-        let mut add = |figure, points, size: u32, overlap: f64, ms: f64| {
-            let mut run = run(figure, "scene:bumpy-sphere", points, slower * ms, 0.03);
-            (run.error, run.agreement) = (None, None);
-            (run.size, run.overlap, run.contender) = ([size, size], Some(overlap), contender(variant));
+        let mut add = |experiment, points, size: u32, overlap: f64, ms: f64| {
+            let mut run = run(experiment, "scene:bumpy-sphere", points, slower * ms, 0.03);
+            (run.error, run.float64_error) = (None, None);
+            (run.size, run.overlap, run.implementation) =
+                ([size, size], Some(overlap), implementation(variant));
             runs.push(run);
         };
         for points in [10_000, 100_000, 1_000_000, 10_000_000] {
-            add(Figure::ScalingPoints, points, 1024, 7.5, 60.0 + points as f64 * 2.6e-4);
+            add(Experiment::ScalingPoints, points, 1024, 7.5, 60.0 + points as f64 * 2.6e-4);
         }
         for size in [256, 512, 1024, 2048, 4096] {
-            add(Figure::ScalingSize, 100_000, size, 7.5, 20.0 + f64::from(size * size) * 1e-4);
+            add(Experiment::ScalingSize, 100_000, size, 7.5, 20.0 + f64::from(size * size) * 1e-4);
         }
         for overlap in [1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0] {
-            add(Figure::ScalingOverlap, 100_000, 1024, overlap, 30.0 + 11.0 * overlap);
+            add(Experiment::ScalingOverlap, 100_000, 1024, overlap, 30.0 + 11.0 * overlap);
         }
     }
     runs
@@ -216,9 +218,9 @@ fn scaling() -> Vec<Run> {
 /// Pull–push over points, slower than splats at first, and where every pixel shows one.
 pub fn points_alone() -> Vec<Run> {
     let mut runs = Vec::new();
-    let mut add = |figure, method: &str, points: u64, ms: f64, pixels: f64| {
-        let mut run = run(figure, "scene:bumpy-sphere", points, ms, 0.03);
-        run.contender = Contender { method: method.into(), variant: String::new() };
+    let mut add = |experiment, method: &str, points: u64, ms: f64, pixels: f64| {
+        let mut run = run(experiment, "scene:bumpy-sphere", points, ms, 0.03);
+        run.implementation = Implementation { method: method.into(), variant: String::new() };
         if method == "pull-push" {
             let times = [("project", 1e-5 * points as f64), ("pull", 0.2 * pixels), ("push", 0.8 * pixels)];
             let pass = |(name, ms): (&str, f64)| Pass {
@@ -232,21 +234,23 @@ pub fn points_alone() -> Vec<Run> {
     for (points, splats, own, pixels) in
         [(10_000, 20.0, 50.0, 30.0), (100_000, 40.0, 52.0, 44.0), (1_000_000, 200.0, 70.0, 40.0)]
     {
-        add(Figure::ScalingPoints, "perspective-ewa", points, splats, 0.0);
-        add(Figure::ScalingPoints, "pull-push", points, own, pixels);
+        add(Experiment::ScalingPoints, "perspective-ewa", points, splats, 0.0);
+        add(Experiment::ScalingPoints, "pull-push", points, own, pixels);
     }
-    add(Figure::Filled, "pull-push", 4_000_000, 90.0, 40.0);
+    add(Experiment::Filled, "pull-push", 4_000_000, 90.0, 40.0);
     runs
 }
 
 fn baseline() -> Vec<Run> {
     let mut runs = Vec::new();
     for (points, ms) in [(100_000, 62.0), (1_000_000, 164.0)] {
-        for (contender, times) in [(native(), 1.0), (contender("compute"), 2.3), (contender("raster"), 4.4)] {
-            let mut run = run(Figure::Baseline, "scene:bumpy-sphere", points, times * ms, 0.03);
+        for (implementation, times) in
+            [(native(), 1.0), (implementation("compute"), 2.3), (implementation("raster"), 4.4)]
+        {
+            let mut run = run(Experiment::Baseline, "scene:bumpy-sphere", points, times * ms, 0.03);
             run.error = None;
-            run.time.as_mut().unwrap().multiple = Some(times);
-            run.contender = contender;
+            run.time.as_mut().unwrap().baseline_ratio = Some(times);
+            run.implementation = implementation;
             runs.push(run);
         }
     }
@@ -255,35 +259,42 @@ fn baseline() -> Vec<Run> {
 
 /// An effect's two sides, a cost, and a row of a paper's table.
 fn papers() -> Vec<Run> {
-    let of = |figure, part: &str, points, ms, rmse| {
-        let run = run(figure, "scene:sphere", points, ms, rmse);
-        Run { suite: "papers".into(), part: part.into(), contender: contender(""), ..run }
+    let of = |experiment, item: &str, points, ms, rmse| {
+        let run = run(experiment, "scene:sphere", points, ms, rmse);
+        Run { suite: "papers".into(), paper_item: item.into(), implementation: implementation(""), ..run }
     };
-    let mut axis = of(Figure::Effects, "axis-offset", 20_000, 3.0, 0.05);
-    let mut ray = of(Figure::Effects, "axis-offset", 20_000, 3.0, 0.04);
-    axis.contender.variant = "visibility axis".into();
+    let mut axis = of(Experiment::Effects, "axis-offset", 20_000, 3.0, 0.05);
+    let mut ray = of(Experiment::Effects, "axis-offset", 20_000, 3.0, 0.04);
+    axis.implementation.variant = "visibility axis".into();
     for (run, gaps) in [(&mut axis, 81.0), (&mut ray, 0.0)] {
         run.error.as_mut().unwrap().metrics.insert("gaps".into(), gaps);
-        run.exhibit = Some(1);
+        run.images = Some(1);
     }
-    let single = of(Figure::Claims, "three-passes", 100_000, 10.0, 0.06);
-    let mut three = of(Figure::Claims, "three-passes", 100_000, 25.0, 0.04);
+    let single = of(Experiment::Claims, "three-passes", 100_000, 10.0, 0.06);
+    let mut three = of(Experiment::Claims, "three-passes", 100_000, 25.0, 0.04);
     three.ratio = Some(Statistics { median: 2.5, min: 2.25, max: 3.0 });
-    let row = of(Figure::PaperTables, "zwicker2004 table 1", 300_000, 100.0, 0.04);
+    let row = of(Experiment::PaperTables, "zwicker2004 table 1", 300_000, 100.0, 0.04);
     vec![axis, ray, single, three, row]
 }
 
-fn sweep(name: &str, about: &str, parameter: &str, points: Vec<SweepPoint>) -> Sweep {
+fn sweep(name: &str, description: &str, parameter: &str, points: Vec<SweepPoint>) -> Sweep {
     let logarithmic = name != "layers";
-    Sweep { name: name.into(), about: about.into(), parameter: parameter.into(), logarithmic, points }
+    Sweep { name: name.into(), description: description.into(), parameter: parameter.into(), logarithmic, points }
 }
 
 fn point(variant: &str, value: f64, [colour, normal, depth]: [f64; 3]) -> SweepPoint {
     SweepPoint {
         value,
-        contender: contender(variant),
+        implementation: implementation(variant),
         refused: None,
-        agreement: Agreement { object: 16_000, doubtful: 12, failed: 0, colour, normal, depth },
+        float64_error: Float64Error {
+            object_pixels: 16_000,
+            ambiguous_pixels: 12,
+            failed_pixels: 0,
+            colour,
+            normal,
+            depth,
+        },
         faults: Faults::default(),
         note: String::new(),
     }
@@ -309,7 +320,7 @@ fn offset() -> Sweep {
             point("compute", far, [2e-6 * far.sqrt(), 1e-5, 3e-7 * far.powf(0.8)])
         })
         .collect();
-    points[7].agreement.failed = 212;
+    points[7].float64_error.failed_pixels = 212;
     points[7].faults.uncovered = 40;
     points[8].refused = Some("positions are not finite in float32".into());
     sweep("offset", "The same object ever further from the origin.", "offset, object sizes", points)
@@ -320,9 +331,9 @@ fn layers() -> Sweep {
     sweep("layers", "Two layers ever further apart.", "gap, ε", points)
 }
 
-fn exhibit() -> Exhibit {
+fn images() -> Images {
     // 2×2 px, grey.
     let png = "iVBORw0KGgoAAAANSUhEUgAAAAIAAAACCAIAAAD91JpzAAAAEElEQVR42mNoaGgAIgYIBQAlrgWBQ3Xg0wAAAABJRU5ErkJggg==";
-    let [picture, truth, map] = [png; 3].map(str::to_owned);
-    Exhibit { title: "bumpy-sphere, 10 k points".into(), picture, truth, map }
+    let [rendered, truth, flip] = [png; 3].map(str::to_owned);
+    Images { title: "bumpy-sphere, 10 k points".into(), rendered, truth, flip }
 }

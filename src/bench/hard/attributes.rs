@@ -42,7 +42,7 @@ fn with_ellipse(surfels: &mut Surfels, i: usize, change: impl Fn(&mut Ellipse)) 
 pub fn case() -> Case {
     Case {
         name: "attributes",
-        about: "A sphere of discs, every 20th of which has one attribute replaced; no other may suffer.",
+        description: "A sphere of discs, every 20th of which has one attribute replaced; no other may suffer.",
         parameter: "number of the attribute and its value",
         logarithmic: false,
         values: (1..=ATTRIBUTES.len() * VALUES.len()).map(|number| number as f64).collect(),

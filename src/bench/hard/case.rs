@@ -11,7 +11,7 @@ use glam::DVec3;
 /// A hard case; see [`Sweep`].
 pub struct Case {
     pub name: &'static str,
-    pub about: &'static str,
+    pub description: &'static str,
     /// Name of the parameter, with its unit.
     pub parameter: &'static str,
     pub logarithmic: bool,
@@ -51,7 +51,7 @@ impl Case {
     pub fn sweep(&self, points: Vec<SweepPoint>) -> Sweep {
         Sweep {
             name: self.name.into(),
-            about: self.about.into(),
+            description: self.description.into(),
             parameter: self.parameter.into(),
             logarithmic: self.logarithmic,
             points,

@@ -10,7 +10,7 @@ use glam::DVec3;
 pub fn case() -> Case {
     Case {
         name: "depth-range",
-        about: "Upright strips of discs side by side, each ten times as far away as the last, from 0.001 on; their edges overlap.",
+        description: "Upright strips of discs side by side, each ten times as far away as the last, from 0.001 on; their edges overlap.",
         parameter: "distance of the farthest strip",
         logarithmic: true,
         values: decades(-2, 9),

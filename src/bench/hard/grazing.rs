@@ -16,9 +16,9 @@ const FAR: f64 = 100.0;
 pub fn cases() -> [Case; 3] {
     let parameter = "angle between plane and direction of view, degrees";
     let values = || decades(-4, 0).into_iter().chain([3.0, 10.0, 30.0, 60.0, 90.0]).collect();
-    let case = |name, about, view, excuse| Case {
+    let case = |name, description, view, excuse| Case {
         name,
-        about,
+        description,
         parameter,
         logarithmic: true,
         values: values(),

@@ -1,6 +1,6 @@
 //! Comparison of a picture with the float64 reference, and faults that no tolerance excuses.
 
-use super::super::record::{Agreement, Faults};
+use super::super::record::{Faults, Float64Error};
 use crate::error::Result;
 use crate::picture::Picture;
 use crate::verify::reference::{Admissible, Expected};
@@ -10,7 +10,7 @@ use crate::verify::reference::{Admissible, Expected};
 ///
 /// # Errors
 /// The picture has another size, or lacks depth or normals.
-pub fn judge(expected: &Expected, picture: &Picture) -> Result<(Agreement, Faults)> {
+pub fn judge(expected: &Expected, picture: &Picture) -> Result<(Float64Error, Faults)> {
     let (picture, non_finite) = finite(picture);
     let found = expected.compare(&picture)?;
     let mut faults = Faults { non_finite, ..Default::default() };
@@ -21,7 +21,7 @@ pub fn judge(expected: &Expected, picture: &Picture) -> Result<(Agreement, Fault
         }
         *(if covered { &mut faults.uncovered } else { &mut faults.overcovered }) += 1;
     }
-    Ok((Agreement::of(&found), faults))
+    Ok((Float64Error::of(&found), faults))
 }
 
 /// The picture without its pixels that hold NaN or infinity, and their number.

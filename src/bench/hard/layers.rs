@@ -13,7 +13,7 @@ pub fn case() -> Case {
     let near_threshold = [0.5, 0.9, 0.99, 0.999, 0.9999, 1.0001, 1.001, 1.01, 1.1, 2.0, 10.0];
     Case {
         name: "layers",
-        about: "Two planes of discs, one behind the other: up to ε they are one surface, beyond it the nearer hides the other.",
+        description: "Two planes of discs, one behind the other: up to ε they are one surface, beyond it the nearer hides the other.",
         parameter: "distance between the planes, ε",
         logarithmic: true,
         values: decades(-8, -1).into_iter().chain(near_threshold).collect(),

@@ -18,7 +18,7 @@ mod sizes;
 
 pub use judge::judge;
 
-use super::record::{Contender, Sweep, SweepPoint};
+use super::record::{Implementation, Sweep, SweepPoint};
 use crate::Progress;
 use crate::error::{Error, Result};
 use crate::frame::{RenderOptions, Renderer, SplatCounts};
@@ -105,13 +105,13 @@ enum Way {
 }
 
 impl Way {
-    fn contender(self, method: &Method) -> Contender {
+    fn implementation(self, method: &Method) -> Implementation {
         let variant = match self {
             Self::Draw => "draw",
             Self::Compute => "compute",
             Self::Half => "draw, 16-bit sums",
         };
-        Contender { method: method.name.into(), variant: variant.into() }
+        Implementation { method: method.name.into(), variant: variant.into() }
     }
 
     fn precision(self) -> Precision {
@@ -173,8 +173,8 @@ impl Bench<'_> {
         let half = case.half && first;
         let ways = [Way::Draw, Way::Compute].into_iter().chain(half.then_some(Way::Half));
         let mut point = |way: Way| {
-            let contender = way.contender(method);
-            let mut point = self.point(way, contender, &view, &scene, &expected)?;
+            let implementation = way.implementation(method);
+            let mut point = self.point(way, implementation, &view, &scene, &expected)?;
             let excuse = (case.excuse)(value, way.precision()).map(|reason| format!("{EXCUSED}{reason}"));
             let notes = excuse.into_iter().chain([view.note.clone(), point.note]);
             point.note = notes.filter(|note| !note.is_empty()).collect::<Vec<_>>().join("; ");
@@ -187,18 +187,24 @@ impl Bench<'_> {
     fn point(
         &mut self,
         way: Way,
-        contender: Contender,
+        implementation: Implementation,
         view: &View,
         scene: &Scene,
         expected: &Expected,
     ) -> Result<SweepPoint> {
-        let (agreement, faults) = Default::default();
-        let mut point =
-            SweepPoint { value: 0.0, contender, refused: None, agreement, faults, note: String::new() };
+        let (float64_error, faults) = Default::default();
+        let mut point = SweepPoint {
+            value: 0.0,
+            implementation,
+            refused: None,
+            float64_error,
+            faults,
+            note: String::new(),
+        };
         let renderer = self.renderer(way, view.size);
         match renderer.and_then(|renderer| renderer.render_picture(scene, &view.camera, &view.settings)) {
             Ok((picture, report)) => {
-                (point.agreement, point.faults) = judge(expected, &picture)?;
+                (point.float64_error, point.faults) = judge(expected, &picture)?;
                 point.note =
                     report.counts.map_or(String::new(), |counts| reasons(&counts, &expected.frame.counts));
             }

@@ -10,9 +10,9 @@ const DISTANCE: &str = "distance from the world's origin, radii of the object";
 
 /// Cases of a sphere of radius 1.
 pub fn cases() -> [Case; 3] {
-    let case = |name, about, parameter, values, view| Case {
+    let case = |name, description, parameter, values, view| Case {
         name,
-        about,
+        description,
         parameter,
         logarithmic: true,
         values,

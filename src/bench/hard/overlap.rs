@@ -15,7 +15,7 @@ pub fn cases() -> [Case; 2] {
     [
         Case {
             name: "sub-pixel",
-            about: "A patch of 14² px of overlapping splats, so small that many have their centres on a pixel.",
+            description: "A patch of 14² px of overlapping splats, so small that many have their centres on a pixel.",
             parameter: "splats a pixel",
             logarithmic: true,
             values: vec![1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0],
@@ -25,7 +25,7 @@ pub fn cases() -> [Case; 2] {
         },
         Case {
             name: "accumulator",
-            about: "Coincident splats of 24 px and different colours, which the sums of a pixel must hold all.",
+            description: "Coincident splats of 24 px and different colours, which the sums of a pixel must hold all.",
             parameter: "splats one on the other",
             logarithmic: true,
             values: (0..=12).step_by(2).map(|power| f64::from(1u32 << power)).collect(),

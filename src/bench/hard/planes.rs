@@ -11,9 +11,9 @@ const RADIUS: f64 = 0.5;
 
 /// Cases of both planes.
 pub fn cases() -> [Case; 2] {
-    let case = |name, about, parameter, values: &[f64], view| Case {
+    let case = |name, description, parameter, values: &[f64], view| Case {
         name,
-        about,
+        description,
         parameter,
         logarithmic: false,
         values: values.to_vec(),

@@ -15,7 +15,7 @@ pub fn cases() -> [Case; 2] {
     [
         Case {
             name: "radius",
-            about: "400 discs from mere points to walls that each fill the picture, never so tilted that they reach the eye plane.",
+            description: "400 discs from mere points to walls that each fill the picture, never so tilted that they reach the eye plane.",
             parameter: "radius of the discs, radii of the object",
             logarithmic: true,
             values: decades(-6, 9),
@@ -25,7 +25,7 @@ pub fn cases() -> [Case; 2] {
         },
         Case {
             name: "anisotropy",
-            about: "400 ellipses of one length, in all directions, ever thinner.",
+            description: "400 ellipses of one length, in all directions, ever thinner.",
             parameter: "length over width",
             logarithmic: true,
             values: vec![1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1e3, 3e3, 1e4],

@@ -1,7 +1,7 @@
 //! Costs that the papers state: pairs of runs whose frames alternate.
 
-use crate::bench::plan::{Plan, Wants};
-use crate::bench::record::Figure;
+use crate::bench::plan::{Measurements, Plan};
+use crate::bench::record::Experiment;
 use crate::bench::suites::{Suite, plan};
 use crate::settings::methods::Method;
 use crate::settings::splatting::{Filter, Footprint, Normalization, Splatting, Visibility};
@@ -124,9 +124,9 @@ impl Claim {
     pub fn plans(&self) -> [Plan; 2] {
         let [first, second] = (self.settings)();
         let side = |scene, settings: Settings| {
-            let plan = plan(Suite::Papers, Figure::Claims, scene, 100_000, [512, 512]);
+            let plan = plan(Suite::Papers, Experiment::Claims, scene, 100_000, [512, 512]);
             let settings = Settings { shading: plan.settings.shading, ..settings };
-            Plan { part: self.name.into(), settings, wants: Wants::BOTH, ..plan }
+            Plan { paper_item: self.name.into(), settings, measurements: Measurements::BOTH, ..plan }
         };
         let base = side(self.scene[0], first);
         let dearer = side(self.scene[1], second);

@@ -2,8 +2,8 @@
 //! that distinguish them.
 
 use super::details::{FACETS, GAPS, LEAKS, SHARPNESS, UNEVENNESS};
-use crate::bench::plan::{Plan, Wants};
-use crate::bench::record::{Figure, Run};
+use crate::bench::plan::{Measurements, Plan};
+use crate::bench::record::{Experiment, Run};
 use crate::bench::suites::{Suite, plan};
 use crate::settings::methods::Method;
 use crate::settings::splatting::{Filter, Footprint, Kernel, Normalization, Splatting, Visibility};
@@ -19,7 +19,7 @@ pub struct Effect {
     /// Paper and figure.
     pub source: &'static str,
     /// Description: what happens, and in which scene.
-    pub about: &'static str,
+    pub description: &'static str,
     /// Metrics to report: name, label.
     pub metrics: &'static [(&'static str, &'static str)],
     /// What the paper's figure shows.
@@ -83,7 +83,7 @@ pub const ALL: [Effect; 18] = [
         name: "axis-offset",
         title: "A depth offset along the camera's axis hides too much",
         source: "ren2002 figures 4 and 5",
-        about: "One slab in front of another, at the side of a wide picture, ε of 4 radii. Discs that are moved along the camera's axis move \
+        description: "One slab in front of another, at the side of a wide picture, ε of 4 radii. Discs that are moved along the camera's axis move \
                 towards the middle of the picture, and hide what lies behind beside the silhouette.",
         metrics: &[(GAPS, "px without surface"), ("rmse", "RMSE")],
         expected: &[more(GAPS, 0, 1, Margin::Plus(40.0)), more("rmse", 0, 1, Margin::Times(1.1))],
@@ -93,7 +93,7 @@ pub const ALL: [Effect; 18] = [
         name: "thickening",
         title: "Squares thicken contours",
         source: "botsch2003 figure 1",
-        about: "A sphere of few points. A square of the disc's size that faces the image plane stands out over the outline; an ellipse of the \
+        description: "A sphere of few points. A square of the disc's size that faces the image plane stands out over the outline; an ellipse of the \
                 disc's slope does not.",
         metrics: &[("bloat", "px too many"), ("rmse", "RMSE")],
         expected: &[more("bloat", 0, 1, Margin::Times(2.0)), more("rmse", 0, 1, Margin::Times(1.1))],
@@ -103,7 +103,7 @@ pub const ALL: [Effect; 18] = [
         name: "perspective-holes",
         title: "Footprints that are right at their centre alone leave holes",
         source: "zwicker2004 figures 3 and 7",
-        about: "A plane of large discs that just cover it, from a flat angle, at the edge of a wide field of view. Then by every other method.",
+        description: "A plane of large discs that just cover it, from a flat angle, at the edge of a wide field of view. Then by every other method.",
         metrics: &[(GAPS, "px without surface"), ("rmse", "RMSE")],
         expected: &[more(GAPS, 1, 0, Margin::Plus(50.0)), more(GAPS, 3, 0, Margin::Plus(150.0))],
         plans: perspective_holes,
@@ -112,7 +112,7 @@ pub const ALL: [Effect; 18] = [
         name: "moire",
         title: "Without a low-pass filter a checkerboard flickers",
         source: "zwicker2004 figure 6, ren2002 figure 11",
-        about: "A checkerboard to the horizon, far finer there than pixels. Flicker is error that comes and goes as the camera turns slowly.",
+        description: "A checkerboard to the horizon, far finer there than pixels. Flicker is error that comes and goes as the camera turns slowly.",
         metrics: &[("rmse", "RMSE"), ("flicker", "flicker")],
         expected: &[
             more("rmse", 0, 1, Margin::Times(1.3)),
@@ -126,7 +126,7 @@ pub const ALL: [Effect; 18] = [
         name: "kernel-blur",
         title: "Wide kernels blur",
         source: "pajarola2004 figures 9 and 15",
-        about: "A checkerboard whose fields are as wide as two discs' radii, from above. Gaussians of the paper's σ, 0.5 and 0.8 of a rim at \
+        description: "A checkerboard whose fields are as wide as two discs' radii, from above. Gaussians of the paper's σ, 0.5 and 0.8 of a rim at \
                 1.5, are cut off at 3 and 1.875 σ. A sharpness of 1 is the exact picture's.",
         metrics: &[(SHARPNESS, "sharpness"), ("rmse", "RMSE")],
         expected: &[
@@ -140,7 +140,7 @@ pub const ALL: [Effect; 18] = [
         name: "kernel-facets",
         title: "Narrow kernels show facets",
         source: "pajarola2004 figures 9 and 16",
-        about: "A sphere lit pixel by pixel, of few points. Where a kernel is narrow one splat counts, and normals jump from one to the next.",
+        description: "A sphere lit pixel by pixel, of few points. Where a kernel is narrow one splat counts, and normals jump from one to the next.",
         metrics: &[(FACETS, "facets"), ("rmse", "RMSE")],
         expected: &[more(FACETS, 1, 0, Margin::Times(1.05)), more(FACETS, 2, 0, Margin::Times(1.2))],
         plans: kernel_facets,
@@ -149,7 +149,7 @@ pub const ALL: [Effect; 18] = [
         name: "clip-lines",
         title: "Discs that end at sharp edges keep them sharp",
         source: "zwicker2004 figures 5 and 8",
-        about: "A block with convex and concave edges, of few points. Whole discs stand out over its edges.",
+        description: "A block with convex and concave edges, of few points. Whole discs stand out over its edges.",
         metrics: &[("bloat", "px too many"), ("rmse", "RMSE")],
         expected: &[more("bloat", 0, 1, Margin::Times(1.5)), more("rmse", 0, 1, Margin::Times(1.1))],
         plans: clip_lines,
@@ -158,7 +158,7 @@ pub const ALL: [Effect; 18] = [
         name: "overlap",
         title: "How many splats are blended at a pixel",
         source: "pajarola2004 figure 18",
-        about: "As many points as the paper's Balljoint has. Without a low-pass filter overlap is that of the discs themselves; a filter widens \
+        description: "As many points as the paper's Balljoint has. Without a low-pass filter overlap is that of the discs themselves; a filter widens \
                 those that are small. Pictures go from 0 to their own largest number.",
         metrics: &OVERLAP,
         expected: &[more("overlap-mean", 1, 0, Margin::Times(1.2))],
@@ -168,7 +168,7 @@ pub const ALL: [Effect; 18] = [
         name: "no-normalization",
         title: "Without normalization brightness varies with the overlap",
         source: "ren2002 figure 10",
-        about: "A torus of one colour, sampled as by a scanner: without normalization, by weights of the surfels, by a division at every pixel. \
+        description: "A torus of one colour, sampled as by a scanner: without normalization, by weights of the surfels, by a division at every pixel. \
                 Unevenness is the standard deviation of brightness, as a share of its mean.",
         metrics: &[(UNEVENNESS, "unevenness"), ("rmse", "RMSE")],
         expected: &[more(UNEVENNESS, 0, 1, Margin::Times(2.0)), more(UNEVENNESS, 0, 2, Margin::Plus(0.05))],
@@ -178,7 +178,7 @@ pub const ALL: [Effect; 18] = [
         name: "whole-sizes",
         title: "Sprites of whole sizes are too large",
         source: "botsch2003 section 4",
-        about: "Sprites whose width is rounded up to whole pixels. What the rounding saves is among the costs.",
+        description: "Sprites whose width is rounded up to whole pixels. What the rounding saves is among the costs.",
         metrics: &[("bloat", "px too many"), ("rmse", "RMSE")],
         expected: &[more("rmse", 0, 1, Margin::Times(1.01))],
         plans: whole_sizes,
@@ -187,7 +187,7 @@ pub const ALL: [Effect; 18] = [
         name: "layers",
         title: "Means over whatever is around let hidden surfaces through",
         source: "marroquim2008 section 3.3",
-        about: "One slab five radii above another, by points. As published a hole is filled with the mean of all coarser pixels about it, whichever \
+        description: "One slab five radii above another, by points. As published a hole is filled with the mean of all coarser pixels about it, whichever \
                 surface they are of; by the robust rules with that of the nearest surface alone.",
         metrics: &[(LEAKS, "px of what is hidden"), ("rmse", "RMSE")],
         expected: &[more(LEAKS, 0, 1, Margin::Plus(20.0)), more("rmse", 0, 1, Margin::Times(1.1))],
@@ -197,7 +197,7 @@ pub const ALL: [Effect; 18] = [
         name: "ribbon",
         title: "A twisted ribbon",
         source: "marroquim2008 figures 8 and 9",
-        about: "A ribbon of one and a half turns, of 32 segments: as published, one line of discs that are as wide as it; by the robust rules, strands of \
+        description: "A ribbon of one and a half turns, of 32 segments: as published, one line of discs that are as wide as it; by the robust rules, strands of \
                 8 px. Then surfels.",
         metrics: &[("bloat", "px too many"), ("rmse", "RMSE")],
         expected: &[more("rmse", 0, 1, Margin::Times(3.0))],
@@ -207,7 +207,7 @@ pub const ALL: [Effect; 18] = [
         name: "tubes",
         title: "A tube along a helix",
         source: "marroquim2008 figure 10",
-        about: "A tapered tube of 128 segments: discs that face the eye with the normal that a line has towards the light, or what is round about the \
+        description: "A tapered tube of 128 segments: discs that face the eye with the normal that a line has towards the light, or what is round about the \
                 axis. Then surfels.",
         metrics: &[("bloat", "px too many"), ("rmse", "RMSE")],
         expected: &[more("rmse", 0, 1, Margin::Times(2.0))],
@@ -217,7 +217,7 @@ pub const ALL: [Effect; 18] = [
         name: "leaf-and-branch",
         title: "A branch and its leaves",
         source: "marroquim2008 figures 12 and 14",
-        about: "A tube with six ribbons, of 12 segments each. Then surfels.",
+        description: "A tube with six ribbons, of 12 segments each. Then surfels.",
         metrics: &[("bloat", "px too many"), ("rmse", "RMSE")],
         expected: &[more("rmse", 0, 1, Margin::Times(1.02))],
         plans: |effect| drawn(effect, "scene:tree?depth=0&segments=12", 100000),
@@ -226,7 +226,7 @@ pub const ALL: [Effect; 18] = [
         name: "tree",
         title: "A tree of lines",
         source: "marroquim2008 figure 13",
-        about: "162 leaves as ribbons and 40 branches as tubes, of 12 segments each. Then surfels.",
+        description: "162 leaves as ribbons and 40 branches as tubes, of 12 segments each. Then surfels.",
         metrics: &[("bloat", "px too many"), ("rmse", "RMSE")],
         expected: &[more("rmse", 0, 1, Margin::Times(1.5))],
         plans: |effect| drawn(effect, "scene:tree?segments=12", 100000),
@@ -235,7 +235,7 @@ pub const ALL: [Effect; 18] = [
         name: "ten-trees",
         title: "Ten trees of lines",
         source: "marroquim2008 figure 19",
-        about: "The same ten times: as many lines as pixels of them. Then surfels.",
+        description: "The same ten times: as many lines as pixels of them. Then surfels.",
         metrics: &[("bloat", "px too many"), ("rmse", "RMSE")],
         expected: &[more("rmse", 0, 1, Margin::Times(1.5))],
         plans: |effect| drawn(effect, "scene:tree?trees=10&segments=12", 100000),
@@ -244,7 +244,7 @@ pub const ALL: [Effect; 18] = [
         name: "kinds",
         title: "Points, lines and polygons in one picture",
         source: "marroquim2008 figure 15",
-        about: "A torus of points, a spring and a ribbon of lines, a floor and a box of triangles. Then surfels.",
+        description: "A torus of points, a spring and a ribbon of lines, a floor and a box of triangles. Then surfels.",
         metrics: &[("bloat", "px too many"), ("rmse", "RMSE")],
         expected: &[more("rmse", 0, 1, Margin::Times(1.2))],
         plans: |effect| drawn(effect, "scene:mixed?segments=200", 50000),
@@ -253,7 +253,7 @@ pub const ALL: [Effect; 18] = [
         name: "hybrid",
         title: "A surface of triangles and of points",
         source: "marroquim2008 figure 16",
-        about: "A horn, the lower half of which is triangles: their vertices at the seam have radii that blend with the points. Then surfels.",
+        description: "A horn, the lower half of which is triangles: their vertices at the seam have radii that blend with the points. Then surfels.",
         metrics: &[("bloat", "px too many"), ("rmse", "RMSE")],
         expected: &[more("rmse", 0, 1, Margin::Times(1.1))],
         plans: |effect| drawn(effect, "scene:hybrid?segments=96", 50000),
@@ -273,9 +273,10 @@ impl Effect {
 
     /// A run with a square picture of `side` px, showing colours, by the default method.
     fn side(&self, scene: &str, points: u64, side: u32) -> Plan {
-        let wants = Wants { error: true, details: true, exhibit: true, ..Wants::default() };
-        let plan = plan(Suite::Papers, Figure::Effects, scene, points, [side; 2]);
-        Plan { part: self.name.into(), wants, ..plan }
+        let measurements =
+            Measurements { error: true, details: true, images: true, ..Measurements::default() };
+        let plan = plan(Suite::Papers, Experiment::Effects, scene, points, [side; 2]);
+        Plan { paper_item: self.name.into(), measurements, ..plan }
     }
 }
 
@@ -327,7 +328,7 @@ fn perspective_holes(effect: &Effect) -> Vec<Plan> {
 
 fn moire(effect: &Effect) -> Vec<Plan> {
     let mut plan = effect.side("scene:plane?frequency=2", 300_000, 128);
-    plan.wants.flicker = true;
+    plan.measurements.flicker = true;
     let screen = Splatting::default();
     let object = Splatting { footprint: Footprint::Parallelogram, filter: Filter::Object, ..screen };
     let without = |splatting| Splatting { filter: Filter::None, ..splatting };
@@ -369,7 +370,7 @@ fn overlap(effect: &Effect) -> Vec<Plan> {
     let mut plan = effect.side("scene:bumpy-sphere", 137_062, 256);
     plan.settings.shading = Shading::Overlap;
     // There is no exact value to compare with.
-    plan.wants.error = false;
+    plan.measurements.error = false;
     ["confetti", "object-ewa"].map(|name| by(&plan, &preset(name))).into()
 }
 

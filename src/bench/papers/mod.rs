@@ -12,9 +12,9 @@ mod text;
 pub use text::text;
 pub(super) use text::{here, published, ratio, side, verdicts};
 
-use super::record::{Figure, Run};
+use super::record::{Experiment, Run};
 
 /// The runs of an item, in the order of their plans.
-pub fn runs<'a>(all: &'a [Run], figure: Figure, part: &str) -> Vec<&'a Run> {
-    all.iter().filter(|run| run.figure == figure && run.part == part).collect()
+pub fn runs<'a>(all: &'a [Run], experiment: Experiment, item: &str) -> Vec<&'a Run> {
+    all.iter().filter(|run| run.experiment == experiment && run.paper_item == item).collect()
 }

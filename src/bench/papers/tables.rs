@@ -4,8 +4,8 @@
 //! Instruction counts of vertex and fragment programs have no counterpart here.
 
 use crate::bench::engine::Engine;
-use crate::bench::plan::{Plan, Wants};
-use crate::bench::record::{Figure, Run};
+use crate::bench::plan::{Measurements, Plan};
+use crate::bench::record::{Experiment, Run};
 use crate::bench::show;
 use crate::bench::suites::{Suite, plan};
 use crate::settings::methods::Method;
@@ -303,10 +303,10 @@ impl Row {
     /// The row's run among those of its table.
     pub fn run<'a>(&self, runs: &[&'a Run]) -> Option<&'a Run> {
         let settings = self.settings().ok()?;
-        let what = (Engine::DEFAULT.contender(&settings), settings.shading.name());
+        let what = (Engine::DEFAULT.implementation(&settings), settings.shading.name());
         let same = |run: &&&Run| {
             (run.points, run.size) == (self.points, self.size)
-                && (&run.contender, run.setting.shading.as_str()) == (&what.0, what.1)
+                && (&run.implementation, run.settings.shading.as_str()) == (&what.0, what.1)
         };
         runs.iter().find(same).copied()
     }
@@ -349,8 +349,8 @@ impl Row {
             Way::Board(..) => "scene:relief?height=0",
             _ => "scene:bumpy-sphere",
         };
-        let plan = plan(Suite::Papers, Figure::PaperTables, scene, self.points, self.size);
-        Some(Plan { part: source.into(), settings, wants: Wants::TIME, ..plan })
+        let plan = plan(Suite::Papers, Experiment::PaperTables, scene, self.points, self.size);
+        Some(Plan { paper_item: source.into(), settings, measurements: Measurements::TIME, ..plan })
     }
 }
 

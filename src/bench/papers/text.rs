@@ -4,7 +4,7 @@ use super::claims::{self, Claim};
 use super::effects::{self, Effect, Margin, value};
 use super::runs;
 use super::tables::{self, Row, Table, Unit};
-use crate::bench::record::{Figure, Run, Session};
+use crate::bench::record::{Experiment, Run, Session};
 use crate::bench::show;
 use crate::bench::table::WIDTH;
 use std::fmt::Write;
@@ -13,11 +13,11 @@ use std::fmt::Write;
 pub fn text(session: &Session) -> String {
     let mut text = String::new();
     for effect in &effects::ALL {
-        effect_lines(&mut text, effect, &runs(&session.runs, Figure::Effects, effect.name));
+        effect_lines(&mut text, effect, &runs(&session.runs, Experiment::Effects, effect.name));
     }
     claim_lines(&mut text, session);
     for table in &tables::ALL {
-        table_lines(&mut text, table, &runs(&session.runs, Figure::PaperTables, table.source), session);
+        table_lines(&mut text, table, &runs(&session.runs, Experiment::PaperTables, table.source), session);
     }
     text.lines().map(folded).collect()
 }
@@ -61,7 +61,7 @@ fn effect_lines(text: &mut String, effect: &Effect, runs: &[&Run]) {
 
 /// What distinguishes a run from the others: implementation, settings and scene parameters in which they differ.
 pub(in crate::bench) fn side(run: &Run, runs: &[&Run]) -> String {
-    let mut words = vec![run.contender.label()];
+    let mut words = vec![run.implementation.label()];
     let settings = show::told_of(run, show::differing(runs.iter().copied()));
     words.extend(Some(settings).filter(|text| !text.is_empty()));
     if runs.iter().any(|other| other.scene != run.scene) {
@@ -93,7 +93,7 @@ pub(in crate::bench) fn verdicts(effect: &Effect, runs: &[&Run]) -> Vec<(String,
 fn claim_lines(text: &mut String, session: &Session) {
     let mut title = Some("\ncosts: times as long, frames taking turns: median (least–greatest)");
     for claim in &claims::ALL {
-        let runs = runs(&session.runs, Figure::Claims, claim.name);
+        let runs = runs(&session.runs, Experiment::Claims, claim.name);
         let [_, dearer] = runs[..] else { continue };
         title.take().into_iter().for_each(|title| {
             let _ = writeln!(text, "{title}");
@@ -147,7 +147,9 @@ pub(in crate::bench) fn here(row: &Row, unit: Unit, runs: &[&Run]) -> [String; 2
     let Some(run) = row.run(runs) else { return ["".into(), "not measured".into()] };
     match (&run.refused, unit.told(run)) {
         (Some(why), _) => ["".into(), format!("refused: {why}")],
-        (None, Some(number)) => [number, format!("{}, {}", run.contender.label(), show::scene(&run.scene))],
+        (None, Some(number)) => {
+            [number, format!("{}, {}", run.implementation.label(), show::scene(&run.scene))]
+        }
         (None, None) => ["".into(), "not timed".into()],
     }
 }

@@ -1,14 +1,14 @@
 //! Aliasing: texture finer than pixels, with the low-pass filter off and on.
 
 use super::page::{Page, grouped, titled};
-use crate::bench::record::{Figure, Run, Session};
+use crate::bench::record::{Experiment, Run, Session};
 use crate::bench::show;
 use maud::{Markup, html};
 use std::io;
 
 /// A table per scene, and the effect of the filter on the error.
-pub fn part(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
-    let runs = session.runs.iter().filter(|run| run.figure == Figure::Aliasing);
+pub fn content(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
+    let runs = session.runs.iter().filter(|run| run.experiment == Experiment::Aliasing);
     let groups = grouped(runs, |run| (&run.scene, run.size));
     Ok((!groups.is_empty()).then(|| html! {
         p {
@@ -31,12 +31,12 @@ fn table(runs: &[&Run]) -> Markup {
     html! {
         div.scroll { table {
             thead { tr {
-                th scope="col" { "contender" } th scope="col" { "settings" } th.number scope="col" { "points" }
+                th scope="col" { "implementation" } th scope="col" { "settings" } th.number scope="col" { "points" }
                 @for name in &taken { th.number scope="col" { (name) } }
                 th.number scope="col" { "ms" } th scope="col" { "RMSE" }
             } }
             tbody { @for run in runs { tr {
-                td { (run.contender.label()) } td { (show::told_of(run, differing)) }
+                td { (run.implementation.label()) } td { (show::told_of(run, differing)) }
                 td.number { (show::count(run.points)) }
                 @for name in &taken {
                     td.number { (run.metric(name).map(|value| show::significant(value, 3)).unwrap_or_default()) }
@@ -52,21 +52,21 @@ fn table(runs: &[&Run]) -> Markup {
 
 /// The error without the filter relative to that with it, for runs that are equal otherwise.
 fn sentences(runs: &[&Run]) -> Vec<String> {
-    let alike = |run: &Run| (run.contender.label(), run.points, run.setting.cutoff.to_string());
+    let alike = |run: &Run| (run.implementation.label(), run.points, run.settings.cutoff.to_string());
     let mut said = Vec::new();
-    for ((contender, points, _), group) in grouped(runs.iter().copied(), alike) {
-        let by_width = |a: &&&Run, b: &&&Run| a.setting.lowpass.total_cmp(&b.setting.lowpass);
-        let off = group.iter().filter(|run| run.setting.lowpass == 0.0).min_by(by_width);
-        let on = group.iter().filter(|run| run.setting.lowpass > 0.0).max_by(by_width);
+    for ((implementation, points, _), group) in grouped(runs.iter().copied(), alike) {
+        let by_width = |a: &&&Run, b: &&&Run| a.settings.lowpass.total_cmp(&b.settings.lowpass);
+        let off = group.iter().filter(|run| run.settings.lowpass == 0.0).min_by(by_width);
+        let on = group.iter().filter(|run| run.settings.lowpass > 0.0).max_by(by_width);
         let (Some(off), Some(on)) = (off, on) else { continue };
         if let (Some(without), Some(with)) = (off.rmse(), on.rmse()) {
             said.push(format!(
-                "{contender}, {} points: RMSE {} with the low-pass off, {} with H {} ({}): {} times as much without it.",
+                "{implementation}, {} points: RMSE {} with the low-pass off, {} with H {} ({}): {} times as much without it.",
                 show::count(points),
                 show::significant(without, 3),
                 show::significant(with, 3),
-                on.setting.lowpass,
-                on.setting.widen,
+                on.settings.lowpass,
+                on.settings.widen,
                 show::significant(without / with.max(f64::MIN_POSITIVE), 2),
             ));
         }

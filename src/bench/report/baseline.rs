@@ -1,14 +1,14 @@
 //! Times relative to the CPU baseline.
 
 use super::page::{Page, grouped, titled};
-use crate::bench::record::{Figure, Run, Session};
+use crate::bench::record::{Experiment, Run, Session};
 use crate::bench::show;
 use maud::{Markup, html};
 use std::io;
 
 /// A table of implementations with their times, in ms and relative to the CPU baseline.
-pub fn part(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
-    let runs: Vec<&Run> = session.runs.iter().filter(|run| run.figure == Figure::Baseline).collect();
+pub fn content(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
+    let runs: Vec<&Run> = session.runs.iter().filter(|run| run.experiment == Experiment::Baseline).collect();
     if runs.is_empty() {
         return Ok(None);
     }
@@ -21,7 +21,7 @@ pub fn part(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
         }
         div.scroll { table {
             thead { tr {
-                th scope="col" { "contender" } th scope="col" { "settings" } th.number scope="col" { "median, ms" }
+                th scope="col" { "implementation" } th scope="col" { "settings" } th.number scope="col" { "median, ms" }
                 th.number scope="col" { "range, ms" } th.number scope="col" { "× baseline" }
             } }
             @for ((scene, size, points), runs) in &groups { tbody {
@@ -35,13 +35,13 @@ pub fn part(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
 fn row(run: &Run, differing: [bool; 7]) -> Markup {
     let time = run.time.as_ref();
     html! { tr {
-        td { (run.contender.label()) }
+        td { (run.implementation.label()) }
         td { (show::told_of(run, differing)) }
         @if let Some(why) = &run.refused { td colspan="3" { "refused: " (why) } }
         @else if let Some(time) = time {
             td.number { (show::ms(time.wall.median)) }
             td.number { (show::ms(time.wall.min)) "–" (show::ms(time.wall.max)) }
-            td.number { (time.multiple.map(show::multiple).unwrap_or_default()) }
+            td.number { (time.baseline_ratio.map(show::baseline_ratio).unwrap_or_default()) }
         } @else { td colspan="3" { "not timed" } }
     } }
 }

@@ -3,14 +3,14 @@
 use super::page::{Page, grouped, titled};
 use super::plot::{Kind, Line, Plot, Scale, Style};
 use crate::bench::advice::{Offer, front, offers};
-use crate::bench::record::{Contender, Figure, Session};
+use crate::bench::record::{Experiment, Implementation, Session};
 use crate::bench::show;
 use maud::{Markup, html};
 use std::io;
 
 /// A plot per scene: a line per implementation over its numbers of points, and the Pareto front of all.
-pub fn part(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
-    let runs = session.runs.iter().filter(|run| run.figure == Figure::Budget);
+pub fn content(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
+    let runs = session.runs.iter().filter(|run| run.experiment == Experiment::Budget);
     let mut plots = Vec::new();
     for ((scene, size), runs) in grouped(runs, |run| (&run.scene, run.size)) {
         let offers = offers(runs);
@@ -22,7 +22,7 @@ pub fn part(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>
     }
     Ok((!plots.is_empty()).then(|| html! {
         p {
-            "Lower left is better. A line joins a contender's runs over the number of points, with the setting of least error for "
+            "Lower left is better. A line joins a implementation's runs over the number of points, with the setting of least error for "
             "each number; the other markers are its other settings, hollow on the front and pale elsewhere. The grey band is the Pareto "
             "front of the methods, with its numbers of points. Dashed is the CPU baseline, a plain program on the CPU, which is no method."
         }
@@ -31,27 +31,29 @@ pub fn part(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>
 }
 
 fn lines(page: &Page<'_>, offers: &[Offer<'_>]) -> Vec<Line> {
-    let methods: Vec<Offer> = offers.iter().filter(|o| !o.run.contender.is_baseline()).copied().collect();
+    let methods: Vec<Offer> =
+        offers.iter().filter(|o| !o.run.implementation.is_baseline()).copied().collect();
     let best = front(&methods);
     let band = Style { kind: Kind::Band, ..Style::default() };
     let mut lines = vec![Line { notes: counts(&best), ..Line::new("Pareto front", band, places(&best)) }];
-    let mut contenders: Vec<&Contender> = Vec::new();
+    let mut implementations: Vec<&Implementation> = Vec::new();
     for offer in offers {
-        if !contenders.contains(&&offer.run.contender) {
-            contenders.push(&offer.run.contender);
+        if !implementations.contains(&&offer.run.implementation) {
+            implementations.push(&offer.run.implementation);
         }
     }
-    for contender in contenders {
-        let own: Vec<Offer> = offers.iter().filter(|o| o.run.contender == *contender).copied().collect();
+    for implementation in implementations {
+        let own: Vec<Offer> =
+            offers.iter().filter(|o| o.run.implementation == *implementation).copied().collect();
         let joined = least_errors(&own);
         let others = own.into_iter().filter(|offer| !joined.contains(offer));
         let (good, others): (Vec<Offer>, Vec<Offer>) = others.partition(|offer| best.contains(offer));
-        let style = Style { dashed: contender.is_baseline(), ..page.style(contender) };
+        let style = Style { dashed: implementation.is_baseline(), ..page.style(implementation) };
         let loose = Style { kind: Kind::Loose, hollow: true, ..style };
         for (style, offers) in [(Style { kind: Kind::Faint, ..style }, &others), (loose, &good)] {
             lines.push(Line::new("", style, places(offers)));
         }
-        lines.push(Line::new(contender.label(), style, places(&joined)));
+        lines.push(Line::new(implementation.label(), style, places(&joined)));
     }
     lines
 }

@@ -3,36 +3,36 @@
 use super::page::Page;
 use crate::bench::papers::effects::{ALL, Effect, value};
 use crate::bench::papers::{runs, side, verdicts};
-use crate::bench::record::{Exhibit, Figure, Run, Session};
+use crate::bench::record::{Experiment, Images, Run, Session};
 use crate::bench::show;
 use maud::{Markup, html};
 use std::io;
 
 /// One section per effect.
-pub fn part(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
-    let measured = ALL.iter().map(|effect| (effect, runs(&session.runs, Figure::Effects, effect.name)));
+pub fn content(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
+    let measured = ALL.iter().map(|effect| (effect, runs(&session.runs, Experiment::Effects, effect.name)));
     let measured: Vec<_> = measured.filter(|(_, runs)| !runs.is_empty()).collect();
     Ok((!measured.is_empty()).then(|| {
         html! {
             p { "Each is a scene of the bench's own in which one way to splat goes wrong and another does not." }
-            @for (effect, runs) in &measured { (one(effect, runs, &session.exhibits)) }
+            @for (effect, runs) in &measured { (one(effect, runs, &session.images)) }
         }
     }))
 }
 
-fn one(effect: &Effect, runs: &[&Run], exhibits: &[Exhibit]) -> Markup {
-    let shown = |run: &Run| exhibits.get(run.exhibit?);
+fn one(effect: &Effect, runs: &[&Run], all_images: &[Images]) -> Markup {
+    let shown = |run: &Run| all_images.get(run.images?);
     // A picture of counts has no truth.
     let truth = runs.iter().filter(|run| run.error.is_some()).find_map(|run| shown(run));
     html! {
         h3 { (effect.title) }
-        p { (effect.about) " " span.source { "(" (effect.source) ")" } }
+        p { (effect.description) " " span.source { "(" (effect.source) ")" } }
         div.sides {
-            @if let Some(exhibit) = truth { (picture(&exhibit.truth, "the exact picture", &[])) }
+            @if let Some(images) = truth { (picture(&images.truth, "the exact picture", &[])) }
             @for run in runs {
                 @let name = side(run, runs);
                 @let numbers = numbers(effect, run);
-                @if let Some(exhibit) = shown(run) { (picture(&exhibit.picture, &name, &numbers)) }
+                @if let Some(images) = shown(run) { (picture(&images.rendered, &name, &numbers)) }
                 @else { figure { figcaption { strong { (name) } (run.refused.as_deref().unwrap_or("no picture")) } } }
             }
         }

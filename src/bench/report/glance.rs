@@ -2,13 +2,13 @@
 
 use super::page::{Page, titled};
 use crate::bench::advice::{Advice, Column, Offer, within_error, within_time};
-use crate::bench::record::{Run, Session, Setting};
+use crate::bench::record::{Run, RunSettings, Session};
 use crate::bench::show;
 use maud::{Markup, html};
 use std::io;
 
 /// Two tables: rows are budgets, columns are scenes.
-pub fn part(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
+pub fn content(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
     let Some(advice) = Advice::of(session) else { return Ok(None) };
     let Advice { columns, times, errors } = &advice;
     let time = |budget: f64| format!("{} ms", show::ms(budget));
@@ -18,7 +18,7 @@ pub fn part(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
             "Of the methods' runs, those on the Pareto front: none other is both faster and nearer to the truth. "
             @if multiples(session) { "× is a multiple of the CPU baseline, a plain renderer on the CPU. " }
             "Settings are named where they are not the method's own; the default method's are "
-            (unbroken(&show::told(&Setting::shipped(), NAMED))) "."
+            (unbroken(&show::told(&RunSettings::defaults(), NAMED))) "."
         }
         h3 { "Least error within a budget of time" }
         (table("ms a frame", columns, times, time, |column, ms| within_time(&column.front, ms), true))
@@ -62,14 +62,14 @@ fn table<'c, 'a>(
 
 fn cell(offer: &Offer<'_>, error_first: bool) -> Markup {
     let Offer { run, ms, rmse } = offer;
-    let multiple = run.time.as_ref().and_then(|time| time.multiple).map(show::multiple);
+    let multiple = run.time.as_ref().and_then(|time| time.baseline_ratio).map(show::baseline_ratio);
     let time =
         format!("{} ms", show::ms(*ms)) + &multiple.map(|text| format!(" ({text})")).unwrap_or_default();
     let error = format!("RMSE {}", show::significant(*rmse, 2));
     let [first, second] = if error_first { [error, time] } else { [time, error] };
     html! {
         strong { (first) } span { (second) }
-        span { (show::count(run.points)) " points, " (run.contender.label()) }
+        span { (show::count(run.points)) " points, " (run.implementation.label()) }
         @let settings = unusual(run);
         @if !settings.is_empty() { span { (settings) } }
     }
@@ -77,7 +77,7 @@ fn cell(offer: &Offer<'_>, error_first: bool) -> Markup {
 
 /// Whether there are times relative to the CPU baseline.
 fn multiples(session: &Session) -> bool {
-    session.runs.iter().any(|run| run.time.as_ref().is_some_and(|time| time.multiple.is_some()))
+    session.runs.iter().any(|run| run.time.as_ref().is_some_and(|time| time.baseline_ratio.is_some()))
 }
 
 /// A list that breaks only between its entries.
@@ -88,6 +88,6 @@ fn unbroken(list: &str) -> String {
 /// The settings that differ from the method's defaults.
 fn unusual(run: &Run) -> String {
     let (own, preset) =
-        (show::settings(&run.setting), show::settings(&Setting::preset(&run.contender.method)));
+        (show::settings(&run.settings), show::settings(&RunSettings::preset(&run.implementation.method)));
     show::told_of(run, std::array::from_fn(|i| NAMED[i] && own[i] != preset[i]))
 }

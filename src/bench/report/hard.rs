@@ -3,13 +3,13 @@
 use super::page::Page;
 use super::plot::{Alarm, Bar, Line, Plot, Scale, Style};
 use crate::bench::hard::EXCUSED;
-use crate::bench::record::{Agreement, Contender, Faults, Session, Sweep, SweepPoint};
+use crate::bench::record::{Faults, Float64Error, Implementation, Session, Sweep, SweepPoint};
 use crate::bench::show;
 use maud::{Markup, html};
 use std::io;
 
 /// A quantity: name, tolerance, and its value.
-type Quantity = (&'static str, f64, fn(&Agreement) -> f64);
+type Quantity = (&'static str, f64, fn(&Float64Error) -> f64);
 
 /// Most remarks that are shown unfolded.
 const FEW: usize = 4;
@@ -18,7 +18,7 @@ const QUANTITIES: [Quantity; 3] =
     [("colour", 2e-4, |a| a.colour), ("normal", 2e-4, |a| a.normal), ("depth", 1e-5, |a| a.depth)];
 
 /// A plot per sweep, and a list of its faults.
-pub fn part(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
+pub fn content(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
     let mut plots = Vec::new();
     for sweep in session.sweeps.iter().filter(|sweep| !sweep.points.is_empty()) {
         let words = words(sweep);
@@ -29,7 +29,7 @@ pub fn part(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>
         };
         plots.push(html! { div {
             @if let Some(plot) = &drawn { (plot) } @else { h3 { (title(sweep)) } }
-            p.caption { (sweep.about) }
+            p.caption { (sweep.description) }
             @if words.iter().all(|(grave, _)| !grave) {
                 p.fine { "No fault at any point, and no pixel that is wrong where float32 can be right." }
             }
@@ -56,8 +56,8 @@ pub fn part(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>
 fn methods(session: &Session) -> Vec<&str> {
     let mut methods: Vec<&str> = Vec::new();
     for point in session.sweeps.iter().flat_map(|sweep| &sweep.points) {
-        if !methods.contains(&point.contender.method.as_str()) {
-            methods.push(&point.contender.method);
+        if !methods.contains(&point.implementation.method.as_str()) {
+            methods.push(&point.implementation.method);
         }
     }
     methods
@@ -74,7 +74,7 @@ fn by_method(session: &Session) -> Markup {
             tbody { @for sweep in &session.sweeps { tr {
                 th scope="row" { (title(sweep)) }
                 @for method in &methods {
-                    @let points: Vec<_> = sweep.points.iter().filter(|p| p.contender.method == **method).collect();
+                    @let points: Vec<_> = sweep.points.iter().filter(|p| p.implementation.method == **method).collect();
                     td.number { (worst(&points)) }
                 }
             } } }
@@ -85,8 +85,8 @@ fn by_method(session: &Session) -> Markup {
 fn worst(points: &[&SweepPoint]) -> String {
     let made = || points.iter().filter(|point| point.refused.is_none());
     let held = || made().filter(|point| !point.note.starts_with(EXCUSED));
-    let colour = show::largest(held().map(|point| point.agreement.colour));
-    let wrong: u64 = held().map(|point| point.agreement.failed).sum();
+    let colour = show::largest(held().map(|point| point.float64_error.colour));
+    let wrong: u64 = held().map(|point| point.float64_error.failed_pixels).sum();
     match (made().count(), wrong) {
         (0, _) => String::new(),
         (_, 0) => show::significant(colour, 2),
@@ -102,15 +102,16 @@ fn title(sweep: &Sweep) -> String {
 
 /// Colour by quantity, marker by implementation; of the first method.
 fn plot(sweep: &Sweep) -> Plot {
-    let contenders = contenders(sweep);
+    let implementations = implementations(sweep);
     let mut lines = Vec::new();
-    for (index, contender) in contenders.iter().enumerate() {
+    for (index, implementation) in implementations.iter().enumerate() {
         for (number, (name, _, of)) in QUANTITIES.iter().enumerate() {
-            let own = sweep.points.iter().filter(|p| p.contender == **contender && p.refused.is_none());
-            let points = own.map(|point| [point.value, of(&point.agreement)]).collect();
-            let label = match contenders.len() {
+            let own =
+                sweep.points.iter().filter(|p| p.implementation == **implementation && p.refused.is_none());
+            let points = own.map(|point| [point.value, of(&point.float64_error)]).collect();
+            let label = match implementations.len() {
                 1 => (*name).to_owned(),
-                _ => format!("{name}, {}", show::apart(contender, &contenders)),
+                _ => format!("{name}, {}", show::apart(implementation, &implementations)),
             };
             let style = Style {
                 colour: number,
@@ -134,20 +135,20 @@ fn plot(sweep: &Sweep) -> Plot {
     Plot::of(format!("hard-{}", sweep.name), title(sweep), axes, lines).with(bars, alarms)
 }
 
-fn contenders(sweep: &Sweep) -> Vec<&Contender> {
-    let mut contenders: Vec<&Contender> = Vec::new();
-    let first = sweep.points.first().map(|point| &point.contender.method);
-    for point in sweep.points.iter().filter(|point| Some(&point.contender.method) == first) {
-        if !contenders.contains(&&point.contender) {
-            contenders.push(&point.contender);
+fn implementations(sweep: &Sweep) -> Vec<&Implementation> {
+    let mut implementations: Vec<&Implementation> = Vec::new();
+    let first = sweep.points.first().map(|point| &point.implementation.method);
+    for point in sweep.points.iter().filter(|point| Some(&point.implementation.method) == first) {
+        if !implementations.contains(&&point.implementation) {
+            implementations.push(&point.implementation);
         }
     }
-    contenders
+    implementations
 }
 
 /// Pixels out of tolerance are no fault where float32 cannot agree; a hole always is.
 fn is_grave(point: &SweepPoint) -> bool {
-    let wrong = point.agreement.failed > 0 && !point.note.starts_with(EXCUSED);
+    let wrong = point.float64_error.failed_pixels > 0 && !point.note.starts_with(EXCUSED);
     point.refused.is_none() && (wrong || !point.faults.is_none())
 }
 
@@ -155,7 +156,7 @@ fn is_grave(point: &SweepPoint) -> bool {
 fn words(sweep: &Sweep) -> Vec<(bool, String)> {
     let told = sweep.points.iter().filter_map(|point| {
         let what = remarks(point);
-        let place = format!("{} at {}", point.contender.label(), show::significant(point.value, 6));
+        let place = format!("{} at {}", point.implementation.label(), show::significant(point.value, 6));
         (!what.is_empty()).then(|| (is_grave(point), format!("{place}: {}", what.join(", "))))
     });
     told.collect()
@@ -167,7 +168,7 @@ fn remarks(point: &SweepPoint) -> Vec<String> {
     }
     let Faults { non_finite, uncovered, overcovered } = point.faults;
     let counts = [
-        (point.agreement.failed, "wrong"),
+        (point.float64_error.failed_pixels, "wrong"),
         (non_finite, "NaN or infinite"),
         (uncovered, "uncovered"),
         (overcovered, "wrongly covered"),

@@ -2,22 +2,22 @@
 
 use super::page::{Page, grouped, titled};
 use super::plot::{Line, Plot, Scale, Style};
-use crate::bench::record::{Figure, Run, Session, Setting};
+use crate::bench::record::{Experiment, Run, RunSettings, Session};
 use crate::bench::show;
 use maud::{Markup, html};
 use std::io;
 
 /// Error and time over the filter's variance, a line per cut-off and kind of widening, and a comparison with the
 /// defaults.
-pub fn part(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
-    let measured = |run: &&Run| run.figure == Figure::Lowpass && run.refused.is_none();
+pub fn content(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
+    let measured = |run: &&Run| run.experiment == Experiment::Lowpass && run.refused.is_none();
     let runs = session.runs.iter().filter(measured);
     let mut groups = Vec::new();
-    for ((scene, size, points, contender), runs) in
-        grouped(runs, |run| (&run.scene, run.size, run.points, &run.contender))
+    for ((scene, size, points, implementation), runs) in
+        grouped(runs, |run| (&run.scene, run.size, run.points, &run.implementation))
     {
         let title = format!("{}, {} points", titled(scene, size), show::count(points));
-        let name = format!("lowpass-{}-{points}-{}", show::scene(scene), contender.label());
+        let name = format!("lowpass-{}-{points}-{}", show::scene(scene), implementation.label());
         let error = lines(&runs, Run::rmse);
         let time = lines(&runs, Run::ms);
         let axes = |y| [("low-pass variance H, px²", Scale::Linear), (y, Scale::Linear)];
@@ -32,7 +32,7 @@ pub fn part(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>
         }
         groups.push(html! {
             div.plots { @for plot in &plots { (plot) } }
-            p.caption { (contender.label()) ". " (sentence(&runs)) }
+            p.caption { (implementation.label()) ". " (sentence(&runs)) }
         });
     }
     Ok((!groups.is_empty()).then(|| html! {
@@ -47,15 +47,16 @@ pub fn part(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>
 /// A line per cut-off and kind of widening: colour and marker by cut-off; dashes and hollow markers for all kinds but
 /// the first.
 fn lines(runs: &[&Run], of: impl Fn(&Run) -> Option<f64>) -> Vec<Line> {
-    let mut groups = grouped(runs.iter().copied(), |run| (run.setting.cutoff, &run.setting.widen));
+    let mut groups = grouped(runs.iter().copied(), |run| (run.settings.cutoff, &run.settings.widen));
     groups.sort_by(|(a, _), (b, _)| a.1.cmp(b.1).then(a.0.total_cmp(&b.0)));
     let mut cutoffs: Vec<f32> = groups.iter().map(|((cutoff, _), _)| *cutoff).collect();
     cutoffs.sort_by(f32::total_cmp);
     cutoffs.dedup();
     let first = groups.first().map(|((_, widen), _)| (*widen).clone());
     let line = |((cutoff, widen), mut runs): ((f32, &String), Vec<&Run>)| {
-        runs.sort_by(|a, b| a.setting.lowpass.total_cmp(&b.setting.lowpass));
-        let points = runs.iter().filter_map(|run| Some([f64::from(run.setting.lowpass), of(run)?])).collect();
+        runs.sort_by(|a, b| a.settings.lowpass.total_cmp(&b.settings.lowpass));
+        let points =
+            runs.iter().filter_map(|run| Some([f64::from(run.settings.lowpass), of(run)?])).collect();
         let other = Some(widen) != first.as_ref();
         let nth = Style::nth(cutoffs.iter().position(|known| *known == cutoff).unwrap_or(0));
         Line::new(format!("F {cutoff}, {widen}"), Style { dashed: other, hollow: other, ..nth }, points)
@@ -77,9 +78,9 @@ fn sentence(runs: &[&Run]) -> String {
         let error = run.rmse().map(|rmse| format!(" with RMSE {}", number(rmse))).unwrap_or_default();
         text += &format!("; least time: {}{error}{}", named(run), timed(run));
     }
-    let shipped = Setting::shipped();
+    let shipped = RunSettings::defaults();
     let same = |run: &&&Run| {
-        let Setting { cutoff, lowpass, widen, .. } = &run.setting;
+        let RunSettings { cutoff, lowpass, widen, .. } = &run.settings;
         (*cutoff, *lowpass, widen) == (shipped.cutoff, shipped.lowpass, &shipped.widen)
     };
     let Some(own) = runs.iter().find(same) else {
@@ -96,7 +97,7 @@ fn sentence(runs: &[&Run]) -> String {
 }
 
 fn named(run: &Run) -> String {
-    let Setting { cutoff, lowpass, widen, .. } = &run.setting;
+    let RunSettings { cutoff, lowpass, widen, .. } = &run.settings;
     format!("H {lowpass}, F {cutoff}, {widen}")
 }
 

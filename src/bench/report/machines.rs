@@ -1,7 +1,7 @@
 //! Several sessions side by side, by times relative to the CPU baseline: the only ones that can be compared.
 
 use super::page::titled;
-use crate::bench::record::{Figure, Results, Run, Session};
+use crate::bench::record::{Experiment, Results, Run, Session};
 use crate::bench::show;
 use maud::{Markup, html};
 
@@ -23,15 +23,15 @@ pub fn section(results: &Results) -> Option<Markup> {
         p { "Medians as multiples of the CPU baseline on the same machine." }
         div.scroll { table {
             thead { tr {
-                th scope="col" { "scene" } th.number scope="col" { "points" } th scope="col" { "contender" }
+                th scope="col" { "scene" } th.number scope="col" { "points" } th scope="col" { "implementation" }
                 @for session in sessions { th.number scope="col" { (show::machine(session)) } }
             } }
             tbody { @for row in &rows { tr {
-                @let (scene, size, points, contender, settings) = row;
+                @let (scene, size, points, implementation, settings) = row;
                 td { (titled(scene, *size)) } td.number { (show::count(*points)) }
-                td { (contender) @if !settings.is_empty() { ", " (settings) } }
+                td { (implementation) @if !settings.is_empty() { ", " (settings) } }
                 @for session in sessions {
-                    td.number { (multiple(session, row).map(show::multiple).unwrap_or_else(|| "–".into())) }
+                    td.number { (multiple(session, row).map(show::baseline_ratio).unwrap_or_else(|| "–".into())) }
                 }
             } } }
         } }
@@ -39,14 +39,14 @@ pub fn section(results: &Results) -> Option<Markup> {
 }
 
 fn runs(session: &Session) -> impl Iterator<Item = &Run> {
-    session.runs.iter().filter(|run| matches!(run.figure, Figure::Baseline | Figure::Budget))
+    session.runs.iter().filter(|run| matches!(run.experiment, Experiment::Baseline | Experiment::Budget))
 }
 
 fn key(run: &Run) -> Key<'_> {
     let settings = show::told_of(run, [true, true, true, true, true, false, false]);
-    (&run.scene, run.size, run.points, run.contender.label(), settings)
+    (&run.scene, run.size, run.points, run.implementation.label(), settings)
 }
 
 fn multiple(session: &Session, wanted: &Key<'_>) -> Option<f64> {
-    runs(session).filter(|run| key(run) == *wanted).find_map(|run| run.time.as_ref()?.multiple)
+    runs(session).filter(|run| key(run) == *wanted).find_map(|run| run.time.as_ref()?.baseline_ratio)
 }

@@ -6,15 +6,15 @@ mod budget;
 mod effects;
 mod glance;
 mod hard;
+mod images;
 mod lowpass;
 mod machines;
-mod made;
 mod page;
 mod papers;
-mod pictures;
 mod plot;
 mod points;
 mod points_alone;
+mod provenance;
 mod scaling;
 mod terms;
 

@@ -2,10 +2,10 @@
 
 use super::plot::{Plot, Style, draw};
 use super::{
-    aliasing, baseline, budget, effects, glance, hard, lowpass, machines, made, papers, pictures, points,
+    aliasing, baseline, budget, effects, glance, hard, images, lowpass, machines, papers, points, provenance,
     scaling, terms,
 };
-use crate::bench::record::{Contender, Results, Run, Session};
+use crate::bench::record::{Implementation, Results, Run, Session};
 use crate::bench::show;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use std::io;
@@ -19,47 +19,47 @@ pub struct Page<'a> {
     /// Names and contents of the SVG files.
     pub plots: Vec<(String, String)>,
     /// In the order of their first run, so that each has one style everywhere.
-    contenders: Vec<&'a Contender>,
+    implementations: Vec<&'a Implementation>,
 }
 
 /// Content of a section for a session; none if the session has nothing for it.
-type Part = fn(&mut Page<'_>, &Session) -> io::Result<Option<Markup>>;
+type Content = fn(&mut Page<'_>, &Session) -> io::Result<Option<Markup>>;
 
 /// A section of the page.
 struct Section {
     id: &'static str,
     title: &'static str,
-    part: Part,
+    content: Content,
 }
 
 const SECTIONS: [Section; 12] = [
-    Section { id: "glance", title: "At a glance", part: glance::part },
-    Section { id: "budget", title: "Time against error", part: budget::part },
-    Section { id: "points", title: "Error against points", part: points::part },
-    Section { id: "lowpass", title: "Low-pass", part: lowpass::part },
-    Section { id: "aliasing", title: "Aliasing", part: aliasing::part },
-    Section { id: "scaling", title: "Scaling", part: scaling::part },
-    Section { id: "baseline", title: "Baseline", part: baseline::part },
-    Section { id: "effects", title: "What the papers show", part: effects::part },
-    Section { id: "papers", title: "What the papers measured", part: papers::part },
-    Section { id: "hard", title: "Hard cases", part: hard::part },
-    Section { id: "pictures", title: "Pictures", part: pictures::part },
-    Section { id: "made", title: "How each figure was made", part: made::part },
+    Section { id: "glance", title: "At a glance", content: glance::content },
+    Section { id: "budget", title: "Time against error", content: budget::content },
+    Section { id: "points", title: "Error against points", content: points::content },
+    Section { id: "lowpass", title: "Low-pass", content: lowpass::content },
+    Section { id: "aliasing", title: "Aliasing", content: aliasing::content },
+    Section { id: "scaling", title: "Scaling", content: scaling::content },
+    Section { id: "baseline", title: "Baseline", content: baseline::content },
+    Section { id: "effects", title: "What the papers show", content: effects::content },
+    Section { id: "papers", title: "What the papers measured", content: papers::content },
+    Section { id: "hard", title: "Hard cases", content: hard::content },
+    Section { id: "images", title: "Images", content: images::content },
+    Section { id: "provenance", title: "Provenance", content: provenance::content },
 ];
 
 impl<'a> Page<'a> {
     /// A page of `results` for a program with this source digest and commit.
     pub fn new(results: &'a Results, code: &'a str, commit: &'a str) -> Self {
-        let mut contenders: Vec<&Contender> = Vec::new();
-        let ran = |session: &'a Session| session.runs.iter().map(|run| &run.contender);
+        let mut implementations: Vec<&Implementation> = Vec::new();
+        let ran = |session: &'a Session| session.runs.iter().map(|run| &run.implementation);
         let swept = |session: &'a Session| session.sweeps.iter().flat_map(|sweep| &sweep.points);
-        let swept = |session| swept(session).map(|point| &point.contender);
-        for contender in results.sessions.iter().flat_map(|session| ran(session).chain(swept(session))) {
-            if !contenders.contains(&contender) {
-                contenders.push(contender);
+        let swept = |session| swept(session).map(|point| &point.implementation);
+        for implementation in results.sessions.iter().flat_map(|session| ran(session).chain(swept(session))) {
+            if !implementations.contains(&implementation) {
+                implementations.push(implementation);
             }
         }
-        Self { results, code, commit, plots: Vec::new(), contenders }
+        Self { results, code, commit, plots: Vec::new(), implementations }
     }
 
     /// The page as HTML.
@@ -101,14 +101,14 @@ impl<'a> Page<'a> {
                 @for session in &self.results.sessions {
                     li {
                         strong { (show::machine(session)) } ", "
-                        (show::day(&session.made)) ", suites " (session.made.suites.join(", "))
-                        ", commit " code { (show::commit(&session.made.commit)) }
+                        (show::day(&session.provenance)) ", suites " (session.provenance.suites.join(", "))
+                        ", commit " code { (show::commit(&session.provenance.commit)) }
                     }
                 }
             }
             @for session in &self.results.sessions {
                 @if let Some(stale) = self.stale(session) {
-                    p.stale role="alert" { strong { "Out of date. " } (stale) " Run " code { (session.made.command) } " again." }
+                    p.stale role="alert" { strong { "Out of date. " } (stale) " Run " code { (session.provenance.command) } " again." }
                 }
             }
         }
@@ -127,26 +127,26 @@ impl<'a> Page<'a> {
     /// Content of all sessions, each under its own heading if there are several.
     fn section(&mut self, section: &Section) -> io::Result<Option<Markup>> {
         let several = self.results.sessions.len() > 1;
-        let mut parts = Vec::new();
+        let mut contents = Vec::new();
         for session in &self.results.sessions {
-            if let Some(part) = (section.part)(self, session)? {
-                parts.push(html! {
-                    @if several { h3.session { (show::machine(session)) ", " (show::day(&session.made)) } }
+            if let Some(content) = (section.content)(self, session)? {
+                contents.push(html! {
+                    @if several { h3.session { (show::machine(session)) ", " (show::day(&session.provenance)) } }
                     @if let Some(stale) = self.stale(session) { p.stale { (stale) } }
-                    (part)
+                    (content)
                 });
             }
         }
-        Ok((!parts.is_empty()).then(|| html! { @for part in &parts { (part) } }))
+        Ok((!contents.is_empty()).then(|| html! { @for content in &contents { (content) } }))
     }
 
     fn stale(&self, session: &Session) -> Option<String> {
-        show::stale(&session.made, self.code, self.commit)
+        show::stale(&session.provenance, self.code, self.commit)
     }
 
     /// Line style of an implementation.
-    pub fn style(&self, contender: &Contender) -> Style {
-        Style::nth(self.contenders.iter().position(|known| *known == contender).unwrap_or(0))
+    pub fn style(&self, implementation: &Implementation) -> Style {
+        Style::nth(self.implementations.iter().position(|known| *known == implementation).unwrap_or(0))
     }
 
     /// Draws a plot, adds it to the files, and returns it for the page.

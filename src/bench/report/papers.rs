@@ -4,16 +4,16 @@ use super::page::Page;
 use crate::bench::papers::claims::{self, Claim};
 use crate::bench::papers::tables::{self, Table};
 use crate::bench::papers::{here, published, ratio, runs};
-use crate::bench::record::{Figure, Run, Session};
+use crate::bench::record::{Experiment, Run, Session};
 use crate::bench::show;
 use maud::{Markup, html};
 use std::io;
 
 /// A table of the costs, then one per published table.
-pub fn part(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
-    let costs = claims::ALL.iter().map(|claim| (claim, runs(&session.runs, Figure::Claims, claim.name)));
+pub fn content(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
+    let costs = claims::ALL.iter().map(|claim| (claim, runs(&session.runs, Experiment::Claims, claim.name)));
     let costs: Vec<_> = costs.filter(|(_, runs)| runs.len() == 2).collect();
-    let any = session.runs.iter().any(|run| run.figure == Figure::PaperTables);
+    let any = session.runs.iter().any(|run| run.experiment == Experiment::PaperTables);
     Ok((any || !costs.is_empty()).then(|| {
         html! {
             @if !costs.is_empty() { h3 { "Costs" } (table_of_costs(&costs)) }
@@ -49,7 +49,7 @@ fn pair(runs: &[&Run], of: impl Fn(&Run) -> Option<f64>) -> String {
 }
 
 fn beside(table: &Table, session: &Session) -> Markup {
-    let runs = runs(&session.runs, Figure::PaperTables, table.source);
+    let runs = runs(&session.runs, Experiment::PaperTables, table.source);
     let columns = table.columns.len();
     html! {
         h3 { (table.source) @if !table.rows.is_empty() { ", " (table.unit.name()) } }

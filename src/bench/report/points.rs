@@ -3,7 +3,7 @@
 use super::page::{Page, grouped, titled};
 use super::plot::{Line, Plot, Scale, Style};
 use crate::bench::falling::{Fall, SHARE, SLOPE, Step, fall, left, steps};
-use crate::bench::record::{Contender, Error, Figure, Run, Session, Setting};
+use crate::bench::record::{Error, Experiment, Implementation, Run, RunSettings, Session};
 use crate::bench::show;
 use maud::{Markup, html};
 use std::io;
@@ -12,12 +12,12 @@ use std::io;
 const SHOWN: f64 = 1e-3;
 
 /// A plot per scene, of the settings that were measured with the most numbers of points, and its evaluation.
-pub fn part(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
-    let compared = |run: &&Run| run.figure == Figure::Budget && run.rmse().is_some();
+pub fn content(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
+    let compared = |run: &&Run| run.experiment == Experiment::Budget && run.rmse().is_some();
     let runs = session.runs.iter().filter(compared);
     let mut plots = Vec::new();
     for ((scene, size), runs) in grouped(runs, |run| (&run.scene, run.size)) {
-        if let Some((contender, setting, runs)) = main(&runs) {
+        if let Some((implementation, setting, runs)) = main(&runs) {
             let axes = [("points", Scale::Log), ("RMSE and its terms, linear light", Scale::Log)];
             let name = format!("error-points-{}-{}", show::scene(scene), show::size(size));
             let largest = runs.iter().filter_map(|run| run.rmse()).fold(0.0, f64::max);
@@ -26,7 +26,7 @@ pub fn part(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>
             let how = show::told(setting, [true, true, true, true, false, false, false]);
             plots.push(html! { div {
                 (plot)
-                p.caption { (contender.label()) ", " (how) ". " (sentence(&runs)) }
+                p.caption { (implementation.label()) ", " (how) ". " (sentence(&runs)) }
             } });
         }
     }
@@ -44,19 +44,19 @@ pub fn part(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>
 
 /// The implementation and settings with the most numbers of points; of several those nearest to the defaults, then the
 /// first.
-fn main<'r>(runs: &[&'r Run]) -> Option<(&'r Contender, &'r Setting, Vec<&'r Run>)> {
-    let shipped = show::settings(&Setting::shipped());
-    let rank = |setting: &Setting, runs: &[&Run]| {
+fn main<'r>(runs: &[&'r Run]) -> Option<(&'r Implementation, &'r RunSettings, Vec<&'r Run>)> {
+    let shipped = show::settings(&RunSettings::defaults());
+    let rank = |setting: &RunSettings, runs: &[&Run]| {
         let unlike = show::settings(setting).iter().zip(&shipped).filter(|(a, b)| a != b).count();
         let terms =
             runs.iter().filter(|run| run.error.as_ref().is_some_and(|e| e.terms.hidden.is_some())).count();
         (std::cmp::Reverse((terms, steps(runs.iter().copied()).len())), unlike)
     };
-    let groups = grouped(runs.iter().copied(), |run| (&run.contender, &run.setting));
+    let groups = grouped(runs.iter().copied(), |run| (&run.implementation, &run.settings));
     let best = groups.into_iter().min_by_key(|((_, setting), runs)| rank(setting, runs));
-    best.map(|((contender, setting), mut runs)| {
+    best.map(|((implementation, setting), mut runs)| {
         runs.sort_by_key(|run| run.points);
-        (contender, setting, runs)
+        (implementation, setting, runs)
     })
 }
 

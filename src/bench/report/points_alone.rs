@@ -3,7 +3,7 @@
 
 use super::page::{Page, grouped};
 use super::plot::{Line, Plot, Scale, Style};
-use crate::bench::record::{Contender, Figure, Run, Session};
+use crate::bench::record::{Experiment, Implementation, Run, Session};
 use crate::bench::show;
 use crate::settings::methods::{Method, perspective_ewa, pull_push};
 use maud::{Markup, html};
@@ -18,7 +18,7 @@ const PASSES: [&str; 6] = ["project", "fetch", "pull", "copy", "push", "shade"];
 
 /// A plot per method, with its evaluation.
 pub fn plots(page: &mut Page<'_>, session: &Session) -> io::Result<Vec<Markup>> {
-    let timed = |run: &&Run| run.figure == Figure::ScalingPoints && run.ms().is_some();
+    let timed = |run: &&Run| run.experiment == Experiment::ScalingPoints && run.ms().is_some();
     let runs = session.runs.iter().filter(timed);
     let mut plots = Vec::new();
     for ((scene, size), runs) in grouped(runs, |run| (&run.scene, run.size)) {
@@ -33,7 +33,9 @@ pub fn plots(page: &mut Page<'_>, session: &Session) -> io::Result<Vec<Markup>> 
             let name = format!("passes-{}-{}", method.name, show::scene(scene));
             let axes = [("points", Scale::Log), ("time of a pass, ms", Scale::Log)];
             let filled = session.runs.iter().find(|run| {
-                run.figure == Figure::Filled && run.size == size && run.contender == own[0].contender
+                run.experiment == Experiment::Filled
+                    && run.size == size
+                    && run.implementation == own[0].implementation
             });
             let told =
                 [against_filled(&own, filled), against_splats(&own, &by(&runs, &perspective_ewa::METHOD))];
@@ -46,8 +48,8 @@ pub fn plots(page: &mut Page<'_>, session: &Session) -> io::Result<Vec<Markup>> 
 
 /// The runs of a method with its default settings.
 fn by<'r>(runs: &[&'r Run], method: &Method) -> Vec<&'r Run> {
-    let preset = Contender { method: method.name.into(), variant: String::new() };
-    runs.iter().copied().filter(|run| run.contender == preset).collect()
+    let preset = Implementation { method: method.name.into(), variant: String::new() };
+    runs.iter().copied().filter(|run| run.implementation == preset).collect()
 }
 
 fn lines(runs: &[&Run]) -> Vec<Line> {

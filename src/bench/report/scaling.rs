@@ -3,14 +3,14 @@
 use super::page::{Page, grouped};
 use super::plot::{Line, Plot, Scale, Style};
 use super::points_alone;
-use crate::bench::record::{Figure, Run, Session};
+use crate::bench::record::{Experiment, Run, Session};
 use crate::bench::show;
 use maud::{Markup, html};
 use std::io;
 
 /// Horizontal axis of a scaling experiment.
 struct Over {
-    figure: Figure,
+    experiment: Experiment,
     name: &'static str,
     title: &'static str,
     axis: &'static str,
@@ -19,21 +19,21 @@ struct Over {
 
 const FIGURES: [Over; 3] = [
     Over {
-        figure: Figure::ScalingPoints,
+        experiment: Experiment::ScalingPoints,
         name: "points",
         title: "number of points",
         axis: "points",
         of: |run| Some(run.points as f64),
     },
     Over {
-        figure: Figure::ScalingSize,
+        experiment: Experiment::ScalingSize,
         name: "size",
         title: "size of the picture",
         axis: "size of the picture, px",
         of: |run| Some(f64::from(run.size[0]) * f64::from(run.size[1])),
     },
     Over {
-        figure: Figure::ScalingOverlap,
+        experiment: Experiment::ScalingOverlap,
         name: "overlap",
         title: "overlap",
         axis: "discs over a point of the surface",
@@ -42,10 +42,11 @@ const FIGURES: [Over; 3] = [
 ];
 
 /// A plot per experiment and scene, with the growth of time at its end.
-pub fn part(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
+pub fn content(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
     let mut plots = Vec::new();
     for over in &FIGURES {
-        let runs = session.runs.iter().filter(|run| run.figure == over.figure && run.refused.is_none());
+        let runs =
+            session.runs.iter().filter(|run| run.experiment == over.experiment && run.refused.is_none());
         for (scene, runs) in grouped(runs, |run| &run.scene) {
             let lines = lines(page, &runs, over);
             if lines.is_empty() {
@@ -71,16 +72,19 @@ pub fn part(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>
 fn lines(page: &Page<'_>, runs: &[&Run], over: &Over) -> Vec<Line> {
     let mut lines: Vec<Line> = Vec::new();
     let settings = show::differing(runs.iter().copied());
-    for ((contender, setting), runs) in
-        grouped(runs.iter().copied(), |run| (&run.contender, show::told_of(run, settings)))
+    for ((implementation, setting), runs) in
+        grouped(runs.iter().copied(), |run| (&run.implementation, show::told_of(run, settings)))
     {
         let mut points: Vec<_> = runs.iter().filter_map(|run| Some([(over.of)(run)?, run.ms()?])).collect();
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));
-        let base = page.style(contender);
+        let base = page.style(implementation);
         let alike = lines.iter().filter(|line| line.style.colour == base.colour).count();
         let style = Style { marker: base.marker + alike, hollow: alike > 0, dashed: alike > 0, ..base };
-        let label =
-            if setting.is_empty() { contender.label() } else { format!("{}: {setting}", contender.label()) };
+        let label = if setting.is_empty() {
+            implementation.label()
+        } else {
+            format!("{}: {setting}", implementation.label())
+        };
         if !points.is_empty() {
             lines.push(Line::new(label, style, points));
         }
@@ -91,10 +95,10 @@ fn lines(page: &Page<'_>, runs: &[&Run], over: &Over) -> Vec<Line> {
 /// Values that all runs share, beside the scene.
 fn fixed(runs: &[&Run], over: &Over) -> String {
     let (first, mut words) = (runs[0], Vec::new());
-    if over.figure != Figure::ScalingPoints && runs.iter().all(|run| run.points == first.points) {
+    if over.experiment != Experiment::ScalingPoints && runs.iter().all(|run| run.points == first.points) {
         words.push(format!("{} points", show::count(first.points)));
     }
-    if over.figure != Figure::ScalingSize && runs.iter().all(|run| run.size == first.size) {
+    if over.experiment != Experiment::ScalingSize && runs.iter().all(|run| run.size == first.size) {
         words.push(format!("{} px", show::size(first.size)));
     }
     if words.is_empty() { String::new() } else { words.join(", ") + "." }

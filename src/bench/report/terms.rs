@@ -19,11 +19,11 @@ fn terms() -> Markup {
         ),
         (
             "silhouette",
-            "the part of the RMSE in pixels that the truth or the picture covers in part, or one of both not at all",
+            "the content of the RMSE in pixels that the truth or the picture covers in content, or one of both not at all",
         ),
         (
             "inside",
-            "the part in pixels that both cover wholly, texture or shade, as far as samples and filter lose it; silhouette² + inside² = RMSE²",
+            "the content in pixels that both cover wholly, texture or shade, as far as samples and filter lose it; silhouette² + inside² = RMSE²",
         ),
         (
             "hidden surfels (ε)",

@@ -2,8 +2,8 @@
 
 use super::{Suite, plan};
 use crate::bench::engine::Engine;
-use crate::bench::plan::{Plan, Wants};
-use crate::bench::record::Figure;
+use crate::bench::plan::{Measurements, Plan};
+use crate::bench::record::Experiment;
 use crate::verify::baseline::Kind;
 use crate::{Precision, Rasterizer};
 
@@ -19,8 +19,8 @@ pub(super) fn plans() -> Vec<Plan> {
         Engine::Baseline(Kind::Pixels),
     ];
     let plan = |points| Plan {
-        wants: Wants::TIME,
-        ..plan(Suite::Baseline, Figure::Baseline, "scene:bumpy-sphere", points, SIZE)
+        measurements: Measurements::TIME,
+        ..plan(Suite::Baseline, Experiment::Baseline, "scene:bumpy-sphere", points, SIZE)
     };
     let one = |points| engines.map(|engine| Plan { engine, ..plan(points) });
     [100_000, 1_000_000].map(one).concat()

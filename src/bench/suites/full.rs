@@ -1,8 +1,8 @@
 //! Every scene, at every density.
 
 use super::{Suite, aliasing, baseline, lowpass, methods, plan};
-use crate::bench::plan::{Plan, Wants};
-use crate::bench::record::Figure;
+use crate::bench::plan::{Measurements, Plan};
+use crate::bench::record::Experiment;
 use crate::verify::baseline::Kind;
 use crate::verify::scenes;
 
@@ -25,15 +25,20 @@ pub(super) fn plans() -> Vec<Plan> {
 
 /// Smooth and sharp, every other method, and the CPU baseline.
 fn budget(scene: &str, points: u64) -> Vec<Plan> {
-    let smooth = plan(Suite::Full, Figure::Budget, scene, points, SIZE);
+    let smooth = plan(Suite::Full, Experiment::Budget, scene, points, SIZE);
     let mut sharp = smooth.clone();
     sharp.settings.lowpass = 0.0;
-    let wants =
-        Wants { terms: true, agreement: points <= 100_000, exhibit: points == 100_000, ..Wants::BOTH };
+    let measurements = Measurements {
+        terms: true,
+        float64_error: points <= 100_000,
+        images: points == 100_000,
+        ..Measurements::BOTH
+    };
     let plain = [Kind::Splats, Kind::Pixels].map(|kind| baseline(&smooth, kind));
     // Images of every method are shown for one scene only.
-    let exhibit = wants.exhibit && scene == "scene:bumpy-sphere";
-    let others = methods(&smooth).map(|plan| Plan { wants: Wants { exhibit, ..Wants::BOTH }, ..plan });
+    let images = measurements.images && scene == "scene:bumpy-sphere";
+    let others = methods(&smooth)
+        .map(|plan| Plan { measurements: Measurements { images, ..Measurements::BOTH }, ..plan });
     let others: Vec<Plan> = others.collect();
-    [Plan { wants, ..smooth }, sharp].into_iter().chain(others).chain(plain).collect()
+    [Plan { measurements, ..smooth }, sharp].into_iter().chain(others).chain(plain).collect()
 }

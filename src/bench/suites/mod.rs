@@ -4,21 +4,21 @@
 //!
 //! 1. `bench/suites/NAME.rs`: its [`Plan`]s, each a scene, a viewpoint, a size and settings.
 //! 2. Here: `mod NAME;`, a variant before [`Suite::Inputs`], which is the last, and its plans in [`Suite::plans`]. The
-//! variant's name in kebab case and its documentation become those of `--suite`. [`Suite::effort`] and [`Suite::truth`]
-//! need an arm only if the defaults do not fit.
+//!    variant's name in kebab case and its documentation become those of `--suite`. [`Suite::effort`] and [`Suite::truth`]
+//!    need an arm only if the defaults do not fit.
 
 mod baseline;
 mod full;
-mod own;
+mod inputs;
 mod papers;
 mod quick;
 mod scaling;
 
-pub use own::Own;
+pub use inputs::UserInputs;
 
 use super::engine::Engine;
-use super::plan::{Plan, Wants};
-use super::record::Figure;
+use super::plan::{Measurements, Plan};
+use super::record::Experiment;
 use super::stopwatch::Effort;
 use crate::settings::methods::{Method, perspective_ewa};
 use crate::settings::{Choice, Settings, Shading, Widen};
@@ -56,7 +56,7 @@ pub enum Suite {
     /// Effects, costs and tables of the papers.
     Papers,
     /// Inputs of the user.
-    Own,
+    Inputs,
 }
 
 impl Suite {
@@ -68,7 +68,7 @@ impl Suite {
 
     /// The runs, those of one scene one after the other; none for the hard cases, which are sweeps. `inputs` are the
     /// user's.
-    pub fn plans(self, own: &Own) -> Vec<Plan> {
+    pub fn plans(self, inputs: &UserInputs) -> Vec<Plan> {
         match self {
             Self::Quick => quick::plans(),
             Self::Full => full::plans(),
@@ -76,7 +76,7 @@ impl Suite {
             Self::Scaling => scaling::plans(),
             Self::Baseline => baseline::plans(),
             Self::Papers => papers::plans(),
-            Self::Own => own::plans(own),
+            Self::Inputs => inputs::plans(inputs),
         }
     }
 
@@ -103,14 +103,14 @@ impl Suite {
 }
 
 /// The defaults of an experiment's plans: time and error of the default method with default settings.
-pub(super) fn plan(suite: Suite, figure: Figure, scene: &str, points: u64, size: [u32; 2]) -> Plan {
+pub(super) fn plan(suite: Suite, experiment: Experiment, scene: &str, points: u64, size: [u32; 2]) -> Plan {
     // Scenes without texture are shaded.
     let textured = scenes::is_textured(scene).unwrap_or(true);
     let shading = if textured { Shading::Colour } else { Shading::Lit };
     Plan {
         suite: suite.name(),
-        figure,
-        part: String::new(),
+        experiment,
+        paper_item: String::new(),
         scene: scene.into(),
         points,
         radius_scale: 1.0,
@@ -118,7 +118,7 @@ pub(super) fn plan(suite: Suite, figure: Figure, scene: &str, points: u64, size:
         engine: Engine::DEFAULT,
         settings: Settings { shading, ..Default::default() },
         viewpoint: None,
-        wants: Wants::BOTH,
+        measurements: Measurements::BOTH,
         base: None,
     }
 }
@@ -152,7 +152,7 @@ fn lowpass(
     cutoffs: &[f32],
 ) -> Vec<Plan> {
     let one = |widen, cutoff, lowpass| {
-        let mut plan = plan(suite, Figure::Lowpass, scene, points, size);
+        let mut plan = plan(suite, Experiment::Lowpass, scene, points, size);
         plan.settings = Settings { widen, cutoff, lowpass, ..plan.settings };
         plan
     };
@@ -170,9 +170,9 @@ fn lowpass(
 /// error is the filter's.
 fn aliasing(suite: Suite, size: [u32; 2]) -> Vec<Plan> {
     let one = |lowpass: f32| {
-        let mut plan = plan(suite, Figure::Aliasing, "scene:plane?frequency=2", 1_000_000, size);
+        let mut plan = plan(suite, Experiment::Aliasing, "scene:plane?frequency=2", 1_000_000, size);
         plan.settings.lowpass = lowpass;
-        plan.wants = Wants { flicker: true, exhibit: true, ..Wants::BOTH };
+        plan.measurements = Measurements { flicker: true, images: true, ..Measurements::BOTH };
         plan
     };
     [0.0, 1.0].map(one).into()
@@ -189,7 +189,7 @@ mod tests {
         // Opening a scene takes longer than the rest.
         let mut opened = HashSet::new();
         for &suite in Suite::BUILT_IN {
-            for plan in suite.plans(&Own::default()) {
+            for plan in suite.plans(&UserInputs::default()) {
                 assert_eq!(plan.suite, suite.name());
                 if opened.insert(plan.scene.clone()) {
                     assert!(Subject::scene(&plan.scene).is_ok(), "{}", plan.scene);
@@ -203,10 +203,12 @@ mod tests {
     #[test]
     fn runs_of_a_scene_follow_each_other() {
         for &suite in Suite::BUILT_IN {
-            let plans = suite.plans(&Own::default());
-            for figure in plans.chunk_by(|a, b| (a.figure, &a.part) == (b.figure, &b.part)) {
+            let plans = suite.plans(&UserInputs::default());
+            for experiment in
+                plans.chunk_by(|a, b| (a.experiment, &a.paper_item) == (b.experiment, &b.paper_item))
+            {
                 let mut scenes: Vec<_> =
-                    figure.chunk_by(|a, b| a.scene == b.scene).map(|c| &c[0].scene).collect();
+                    experiment.chunk_by(|a, b| a.scene == b.scene).map(|c| &c[0].scene).collect();
                 let count = scenes.len();
                 scenes.sort();
                 scenes.dedup();

@@ -1,8 +1,8 @@
 //! A first impression of everything.
 
 use super::{Suite, aliasing, baseline, by, lowpass, methods, plan};
-use crate::bench::plan::{Plan, Wants};
-use crate::bench::record::Figure;
+use crate::bench::plan::{Measurements, Plan};
+use crate::bench::record::Experiment;
 use crate::settings::methods::pull_push;
 use crate::verify::baseline::Kind;
 
@@ -15,7 +15,7 @@ pub(super) fn plans() -> Vec<Plan> {
     for scene in ["scene:bumpy-sphere", "scene:torus", "scene:part"] {
         for points in [10_000, 100_000, 1_000_000] {
             plans.extend(budget(scene, points));
-            let smooth = plan(Suite::Quick, Figure::Budget, scene, points, SIZE);
+            let smooth = plan(Suite::Quick, Experiment::Budget, scene, points, SIZE);
             if (scene, points) == EVERY_METHOD {
                 plans.extend(methods(&smooth))
             } else {
@@ -30,14 +30,14 @@ pub(super) fn plans() -> Vec<Plan> {
 
 /// Sharp and smooth; with the parts of the error where the float64 reference is fast.
 fn budget(scene: &str, points: u64) -> Vec<Plan> {
-    let smooth = plan(Suite::Quick, Figure::Budget, scene, points, SIZE);
+    let smooth = plan(Suite::Quick, Experiment::Budget, scene, points, SIZE);
     let mut sharp = smooth.clone();
     sharp.settings.lowpass = 0.0;
     let middle = points == 100_000;
     let few = points < 1_000_000;
-    let wants = Wants { terms: few, agreement: few, exhibit: middle, ..Wants::BOTH };
+    let measurements = Measurements { terms: few, float64_error: few, images: middle, ..Measurements::BOTH };
     vec![
-        Plan { wants, ..smooth.clone() },
+        Plan { measurements, ..smooth.clone() },
         sharp,
         baseline(&smooth, Kind::Splats),
         baseline(&smooth, Kind::Pixels),

@@ -1,8 +1,8 @@
 //! Time against points, pixels and overlap.
 
 use super::{Suite, baseline, by, methods, plan};
-use crate::bench::plan::{Plan, Wants};
-use crate::bench::record::Figure;
+use crate::bench::plan::{Measurements, Plan};
+use crate::bench::record::Experiment;
 use crate::settings::methods::{Method, pull_push};
 use crate::verify::baseline::Kind;
 use crate::verify::scenes::Viewpoint;
@@ -13,10 +13,14 @@ const PULL_PUSH: [Method; 2] = [pull_push::METHOD, pull_push::PAPER];
 
 pub(super) fn plans() -> Vec<Plan> {
     // Every method at a few values; at all values the default one and, over points, pull–push.
-    let plan = |figure, points, size, every: bool| {
-        let plan = Plan { wants: Wants::TIME, ..plan(Suite::Scaling, figure, SCENE, points, size) };
-        let all =
-            move |plan: &Plan| every || figure == Figure::ScalingPoints && plan.settings.pull_push.is_some();
+    let plan = |experiment, points, size, every: bool| {
+        let plan = Plan {
+            measurements: Measurements::TIME,
+            ..plan(Suite::Scaling, experiment, SCENE, points, size)
+        };
+        let all = move |plan: &Plan| {
+            every || experiment == Experiment::ScalingPoints && plan.settings.pull_push.is_some()
+        };
         let others = methods(&plan).filter(all);
         [plan.clone(), baseline(&plan, Kind::Splats)].into_iter().chain(others)
     };
@@ -24,17 +28,17 @@ pub(super) fn plans() -> Vec<Plan> {
     let mut plans: Vec<Plan> = Vec::new();
     for points in points {
         let every = [10_000, 100_000, 1_000_000].contains(&points);
-        plans.extend(plan(Figure::ScalingPoints, points, SIZE, every));
+        plans.extend(plan(Experiment::ScalingPoints, points, SIZE, every));
     }
     plans.extend(PULL_PUSH.map(|method| filled(&method)));
     for side in [256, 512, 1024, 2048, 4096] {
-        plans.extend(plan(Figure::ScalingSize, 1_000_000, [side; 2], [256, 1024, 4096].contains(&side)));
+        plans.extend(plan(Experiment::ScalingSize, 1_000_000, [side; 2], [256, 1024, 4096].contains(&side)));
     }
     // Radii that give this overlap: those of the scene give 2.25 π.
     for overlap in [1.0f32, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0] {
         let radius_scale = (overlap / (2.25 * std::f32::consts::PI)).sqrt();
         let every = [1.0, 8.0, 64.0].contains(&overlap);
-        let plans_of_it = plan(Figure::ScalingOverlap, 300_000, SIZE, every);
+        let plans_of_it = plan(Experiment::ScalingOverlap, 300_000, SIZE, every);
         plans.extend(plans_of_it.map(|plan| Plan { radius_scale, ..plan }));
     }
     plans
@@ -45,6 +49,9 @@ pub(super) fn plans() -> Vec<Plan> {
 fn filled(method: &Method) -> Plan {
     let viewpoint =
         Viewpoint { eye: [0.0, 14.0, 0.0], target: [0.0; 3], up: [0.0, 0.0, -1.0], fov_y_deg: 45.0 };
-    let plan = plan(Suite::Scaling, Figure::Filled, "scene:relief?height=0", 4_000_000, SIZE);
-    by(&Plan { wants: Wants::TIME, viewpoint: Some(viewpoint), radius_scale: 4.0, ..plan }, method)
+    let plan = plan(Suite::Scaling, Experiment::Filled, "scene:relief?height=0", 4_000_000, SIZE);
+    by(
+        &Plan { measurements: Measurements::TIME, viewpoint: Some(viewpoint), radius_scale: 4.0, ..plan },
+        method,
+    )
 }

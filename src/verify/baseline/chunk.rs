@@ -1,26 +1,26 @@
-//! Chunks of surfels that are neighbours in memory: the unit of parallel work before the tiles.
+//! Chunks of surfels that are adjacent in memory: the unit of parallel work of the stages before the tiles.
 
 use super::splat::{Footprint, Splat};
 use super::tile::SIDE;
 use glam::Vec2;
 
-/// The splats of a chunk and, for every tile that any of them reaches, which of them do.
+/// The splats of a chunk, and a list of splats for every tile that any of them reaches.
 #[derive(Debug, Default)]
 pub(super) struct Chunk {
     pub splats: Vec<Splat>,
-    /// Key of the nearest splat; −∞ if there is none.
+    /// Depth key of the nearest splat; −∞ if there is none.
     pub nearest: f32,
-    /// For each splat the first and the last tile that it reaches, x and y.
+    /// First and last tile that each splat reaches, x and y.
     reaches: Vec<[u16; 4]>,
-    /// The same of all of them.
+    /// First and last tile that any splat reaches.
     reach: [u16; 4],
-    /// Where the list of each tile of `reach` begins, row by row, and where the last one ends.
+    /// Start of each tile's list, row by row over `reach`, and the end of the last list.
     starts: Vec<u32>,
     lists: Vec<u32>,
 }
 
 impl Chunk {
-    /// Pass `footprint`: makes the splats of the surfels in `range`.
+    /// Stage `footprint`: projects the surfels in `range`.
     pub fn project(&mut self, footprint: &Footprint, range: std::ops::Range<usize>) {
         self.splats.clear();
         self.reaches.clear();
@@ -36,7 +36,7 @@ impl Chunk {
         }
     }
 
-    /// Pass `bin`: lists the splats by tile (a counting sort).
+    /// Stage `bin`: sorts the splats by tile (a counting sort).
     pub fn bin(&mut self) {
         self.starts.clear();
         self.lists.clear();
@@ -49,7 +49,7 @@ impl Chunk {
             let row = move |y| (usize::from(x0) - left..=usize::from(x1) - left).map(move |x| y * width + x);
             (usize::from(y0) - top..=usize::from(y1) - top).flat_map(row)
         };
-        // Shifted by two, so that filling the lists leaves the starts where they belong.
+        // Shifted by two, so that filling the lists leaves each start in its place.
         self.starts.resize(width * (bottom - top + 1) + 2, 0);
         for slot in self.reaches.iter().flat_map(|reach| slots(*reach)) {
             self.starts[slot + 2] += 1;
@@ -88,7 +88,7 @@ impl Chunk {
     }
 }
 
-/// The tiles that a splat reaches. Rounding takes less than 1/100 px from a box, and more only from one that is very large.
+/// The tiles that a splat reaches. The box grows by 1/100 px and a relative 10⁻⁴, which exceeds its rounding error.
 fn reach(splat: &Splat, half: Vec2, last: Vec2) -> [u16; 4] {
     let middle = Vec2::new(splat.anchor[0].into(), splat.anchor[1].into()) + 0.5 + splat.offset;
     let half = 1.0001 * half + 0.01;

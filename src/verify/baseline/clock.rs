@@ -1,16 +1,16 @@
-//! How long the stages of a frame take.
+//! Times of the stages of a frame.
 
 use crate::vk::PassTime;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
-/// The stages of a frame, in their order, with wall times.
+/// The stages of a frame, in order, with wall times.
 #[derive(Debug, Default)]
 pub(super) struct Stages {
     pub times: Vec<PassTime>,
 }
 
-/// Times of stages that run interleaved on all threads, summed over the threads.
+/// Times of stages that alternate on all threads, summed over the threads.
 pub(super) struct Clock<const N: usize> {
     nanoseconds: [AtomicU64; N],
 }
@@ -30,7 +30,7 @@ impl Stages {
         result
     }
 
-    /// Times stages that run interleaved: the wall time of all is divided as the threads' times are.
+    /// Times alternating stages: divides their common wall time in proportion to the threads' times.
     pub fn time_shared<const N: usize>(&mut self, labels: [&'static str; N], stages: impl FnOnce(&Clock<N>)) {
         let clock = Clock { nanoseconds: [const { AtomicU64::new(0) }; N] };
         let start = Instant::now();
@@ -51,7 +51,7 @@ impl<const N: usize> Clock<N> {
 }
 
 impl<const N: usize> Lap<'_, N> {
-    /// What ran since the last call was stage `stage`.
+    /// Adds the time since the last call to `stage`.
     pub fn end(&mut self, stage: usize) {
         let now = Instant::now();
         let passed = now.duration_since(self.start).as_nanos() as u64;

@@ -5,7 +5,7 @@ use super::splat::Splat;
 use super::tile::{Frame, LANES, RAMP, SIDE};
 use glam::{BVec4A, Vec2, Vec4};
 
-/// The ellipse on which a splat's kernel ends, over one tile.
+/// The cut-off ellipse of a splat over one tile.
 pub(super) struct Cover<'a> {
     splat: &'a Splat,
     /// Squared cut-off, σ².
@@ -18,20 +18,21 @@ pub(super) struct Cover<'a> {
     rows: [u32; 2],
 }
 
-/// Four neighbouring pixels of a row.
+/// Four adjacent pixels of a row.
 pub(super) struct Block {
-    /// Which of the tile's, row by row.
+    /// Index in the tile, row by row.
     pub index: usize,
-    /// Squared distances to the centre in σ.
+    /// Squared distances to the centre, σ².
     pub distance: Vec4,
-    /// Keys of the plane.
+    /// Depth keys of the tangent plane.
     pub key: Vec4,
-    /// Which are within the cut-off.
+    /// Which pixels are within the cut-off.
     pub inside: BVec4A,
 }
 
 impl<'a> Cover<'a> {
-    /// `shape` is the splat's, filtered; `corner` the tile's first pixel. `None` if no row of the tile is covered.
+    /// The cover of a splat with the filtered `shape` on the tile whose first pixel is `corner`; `None` if it reaches
+    /// no row of the tile.
     #[inline]
     pub fn new(splat: &'a Splat, shape: &Shape, frame: &Frame, corner: [u32; 2]) -> Option<Self> {
         let cutoff = frame.settings.cutoff;
@@ -39,7 +40,7 @@ impl<'a> Cover<'a> {
             corner[0] as f32 - f32::from(splat.anchor[0]),
             corner[1] as f32 - f32::from(splat.anchor[1]),
         );
-        // More than rounding takes.
+        // More than the rounding error.
         let reach = 1.0001 * half_box(shape, cutoff).y + 0.01;
         let middle = splat.offset.y - corner.y;
         let (low, high) = (middle - reach, middle + reach);
@@ -52,7 +53,7 @@ impl<'a> Cover<'a> {
         Some(Self { splat, limit: cutoff * cutoff, corner, whitening, rows })
     }
 
-    /// Calls `visit` for all blocks that hold a covered pixel, and maybe for others beside them.
+    /// Calls `visit` for all blocks with a covered pixel, and possibly for others.
     #[inline]
     pub fn each(&self, mut visit: impl FnMut(Block)) {
         let ([a, b], plane) = (self.whitening, self.splat.plane);
@@ -83,15 +84,15 @@ impl<'a> Cover<'a> {
         }
     }
 
-    /// The first and last pixels of four rows that may be covered; `y` is relative to the centre. The first is behind the last where
-    /// none is.
+    /// The first and last pixels of four rows that may be covered; `y` is relative to the centre. The first is greater
+    /// than the last for empty rows.
     #[inline]
     fn spans(&self, y: Vec4) -> [[f32; LANES]; 2] {
         let [a, b] = self.whitening;
         let inverse = 1.0 / (a.x * a.x + b.x * b.x);
         let determinant = a.x * b.y - b.x * a.y;
         let square = (self.limit - y * y * (determinant * determinant * inverse)) * inverse;
-        // More than rounding takes.
+        // More than the rounding error.
         let half = 1.0001 * square.max(Vec4::ZERO).sqrt() + 0.02;
         let middle = (self.splat.offset.x - self.corner.x) - y * (inverse * (a.x * a.y + b.x * b.y));
         let slack = 1e-5 * (middle.abs() + y.abs());

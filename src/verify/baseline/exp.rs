@@ -1,17 +1,17 @@
-//! A fast exponential for the kernel.
+//! Fast exponential for the kernel.
 
 use glam::Vec4;
 
-/// 2^f for |f| ≤ ½ in powers of f, with a relative error of at most 2.6·10⁻⁶ (the minimax polynomial of the fourth degree).
+/// Polynomial for 2^f, |f| ≤ ½, with a relative error of at most 2.6·10⁻⁶: the minimax polynomial of degree 4.
 const POWERS: [f32; 5] = [0.999_999_3, 0.693_121_8, 0.240_247_45, 0.055_917_86, 0.009_570_102];
 
-/// What a float is added to so that its integer part ends up in the lowest bits: 1.5 · 2²³.
+/// Addend that moves a float's integer part into the lowest bits: 1.5 · 2²³.
 const ROUND: f32 = 12_582_912.0;
 
-/// Beyond this the result is no normal float.
+/// Largest argument whose result is a normal float.
 const MOST: f32 = 174.0;
 
-/// e^(−½ v), for v ≥ 0; beyond 174 as if it were that.
+/// e^(−½ v) for v ≥ 0; constant beyond 174.
 #[inline]
 pub(super) fn exp_half(v: Vec4) -> Vec4 {
     let power = v.min(Vec4::splat(MOST)) * (-0.5 * std::f32::consts::LOG2_E);
@@ -19,7 +19,7 @@ pub(super) fn exp_half(v: Vec4) -> Vec4 {
     let f = power - (rounded - ROUND);
     let [c0, c1, c2, c3, c4] = POWERS;
     let mantissa = (((c4 * f + c3) * f + c2) * f + c1) * f + c0;
-    // The integer becomes the exponent's bits; the rest of ROUND falls out at the top.
+    // The integer becomes the exponent's bits; the other bits of ROUND overflow.
     let whole = rounded.to_array().map(|r| f32::from_bits((r.to_bits() << 23).wrapping_add(1f32.to_bits())));
     mantissa * Vec4::from_array(whole)
 }
@@ -34,7 +34,7 @@ mod tests {
             let v = 173.0 * (i as f32 / 40_000.0).powi(2);
             let [found, ..] = exp_half(Vec4::splat(v)).to_array();
             let exact = (-0.5 * f64::from(v)).exp();
-            // Beside the polynomial's error that of the rounded power.
+            // The polynomial's error, and that of the rounded power.
             let bound = 3e-6 + 1e-7 * f64::from(v);
             assert!((f64::from(found) / exact - 1.0).abs() < bound, "{v}: {found} for {exact}");
         }

@@ -1,20 +1,20 @@
-//! The CPU baseline: what a plain native program makes of the same frames, without Vulkan. Times of a machine become comparable with
-//! those of another as multiples of it.
+//! The CPU baseline: a plain native renderer of points and splats, without Vulkan. Times relative to it are comparable
+//! between machines.
 //!
-//! It is frozen, so that multiples stay comparable from version to version: points, and base EWA splatting of circles and ellipses with a
-//! mask for α. It ignores clip lines: splats are drawn whole.
+//! Its features are frozen, so that relative times stay comparable between versions: points, and base EWA splatting of
+//! circles and ellipses with a mask for α. It ignores clip lines and draws splats whole.
 //!
-//! Single precision on all threads of rayon's pool, for surfels in Morton order; it shares no code with the shaders or the float64
-//! [reference](crate::verify::reference), so that it is a third opinion on what a picture should be.
+//! It uses single precision on all threads of rayon's pool, for surfels in Morton order. It shares no code with the
+//! shaders or the float64 [reference](crate::verify::reference), so it checks both independently.
 //!
-//! The tests hold it to the reference with the allowance for rounding of [`Tolerance::float32`](crate::verify::reference::Tolerance::float32),
-//! in all of the hard scenes that the GPU is held to, but for those with clip lines. Only the discs that these show within 1° of edge-on need it: their planes are kept
-//! in single floats, where the shaders have sums of two.
+//! Tests compare it with the reference in all hard scenes without clip lines, with the rounding errors of
+//! [`Tolerance::float32`](crate::verify::reference::Tolerance::float32). Only discs within 1° of edge-on need them:
+//! their planes are single floats, where the shaders use sums of two.
 //!
 //! | kind | stages |
 //! |---|---|
-//! | [`Kind::Pixels`] | `clear`, `project`: one pixel a surfel, by atomic minima; `resolve`: pixel → picture |
-//! | [`Kind::Splats`] | `footprint`: surfel → splat; `bin`: splats → lists of tiles; then, tile by tile in the processor's cache, `visibility`, `attribute` and `normalize` as in [`perspective_ewa`](crate::settings::methods::perspective_ewa) |
+//! | [`Kind::Pixels`] | `clear`, `project`: one pixel per surfel, by atomic minima; `resolve`: pixels → picture |
+//! | [`Kind::Splats`] | `footprint`: surfels → splats; `bin`: splats → lists per tile; then, tile by tile in the processor's cache, `visibility`, `attribute` and `normalize` as in [`perspective_ewa`](crate::settings::methods::perspective_ewa) |
 
 mod chunk;
 mod clock;
@@ -46,10 +46,10 @@ use sums::Streams;
 use target::Target;
 use view::View;
 
-/// What a baseline draws.
+/// Kind of picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Kind {
-    /// One pixel a surfel: its centre's, all of it. The nearest wins; of several as near the first.
+    /// One pixel per surfel, that of its centre. The nearest surfel wins; of equally near ones the first.
     Pixels,
     /// The picture of the method `perspective-ewa`.
     Splats,
@@ -58,16 +58,16 @@ pub enum Kind {
 /// Memory in use, bytes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Memory {
-    /// The surfels.
+    /// Surfels.
     pub scene: u64,
-    /// What is made of them in a frame.
+    /// Splats and their lists.
     pub splats: u64,
-    /// What is drawn to: pictures and depths.
+    /// Images and depths.
     pub targets: u64,
 }
 
-/// Draws frames of one scene. A frame makes nothing that an earlier one of the same kind, size and outputs has made, but for lists that
-/// grow with what is seen.
+/// Renders frames of one scene. A frame allocates only what earlier frames of the same kind, size and outputs have not,
+/// except lists that grow with the visible splats.
 pub struct Baseline {
     surfels: Surfels,
     /// Linear light of the 8-bit sRGB codes.
@@ -79,10 +79,11 @@ pub struct Baseline {
 }
 
 impl Baseline {
-    /// Takes a copy of the [valid](Surfels::is_valid) ones of `surfels`, which are best in Morton order ([`Surfels::sort_morton`]).
+    /// Copies the [valid](Surfels::is_valid) ones of `surfels`, which should be in Morton order
+    /// ([`Surfels::sort_morton`]).
     ///
     /// # Errors
-    /// [`Error::Usage`] for none, for 2³¹ or more, and for arrays of unequal length.
+    /// [`Error::Usage`] for no surfels, for 2³¹ or more, and for arrays of unequal length.
     pub fn new(surfels: &Surfels) -> Result<Self> {
         surfels.check()?;
         let surfels = surfels.valid();
@@ -103,11 +104,11 @@ impl Baseline {
         })
     }
 
-    /// Draws a frame of `size` = width and height in px; returns the wall time of each stage, in their order. Stages that run
-    /// interleaved share their wall time as they share the threads' time.
+    /// Renders a frame of `size` = width and height in px; returns the wall time of each stage, in order. Alternating
+    /// stages divide their wall time in proportion to their thread time.
     ///
     /// # Errors
-    /// [`Error::Usage`] for settings, cameras and sizes of which no picture can be made; [`Error::Memory`] if there is too little.
+    /// [`Error::Usage`] for invalid settings, cameras and sizes; [`Error::Memory`] if memory runs out.
     pub fn frame(
         &mut self,
         kind: Kind,
@@ -138,12 +139,13 @@ impl Baseline {
         Ok(&self.stages.times)
     }
 
-    /// The last frame, as [`Renderer::render_picture`](crate::Renderer::render_picture) would give it; empty before the first.
+    /// The last frame, in the form of [`Renderer::render_picture`](crate::Renderer::render_picture); empty before the
+    /// first frame.
     pub fn picture(&self) -> Picture {
         self.target.picture()
     }
 
-    /// Memory in use, as the frames so far made it.
+    /// Memory in use.
     pub fn bytes(&self) -> Memory {
         let s = &self.surfels;
         let colours = match &s.colours {

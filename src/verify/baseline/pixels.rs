@@ -1,4 +1,4 @@
-//! The one-pixel projection: each surfel's centre takes the pixel that it falls in, and the nearest wins.
+//! One-pixel points: each surfel's centre is projected to a pixel, and the nearest surfel wins.
 
 use super::clock::Stages;
 use super::shade::{Shader, Surface, Vectors};
@@ -14,19 +14,19 @@ use glam::{BVec4A, Mat3A, Vec2, Vec3, Vec3A, Vec4};
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Surfels of a task.
+/// Surfels per task.
 const CHUNK: usize = 1 << 14;
-/// Where no surfel is.
+/// Value of an empty pixel.
 const EMPTY: u64 = u64::MAX;
 
-/// What is kept from frame to frame: for every pixel, in the target's order, the nearest surfel. The bits of its depth are above its
-/// index, so that the least is the nearest, and the first of several as near.
+/// Buffer that is reused between frames: for every pixel, in the target's order, the nearest surfel. The bits of its
+/// depth precede its index, so that the least value is the nearest surfel, and the first of equally near ones.
 #[derive(Debug, Default)]
 pub(super) struct Pixels {
     nearest: Vec<AtomicU64>,
 }
 
-/// What projects a scene's surfels in a frame.
+/// Projection of a scene's surfels in a frame.
 struct Projection<'a> {
     surfels: &'a Surfels,
     view: &'a View,
@@ -36,16 +36,16 @@ struct Projection<'a> {
     pixel: Mat3A,
     middle: Vec2,
     forward: Vec3,
-    /// Distance that depths are counted from, so that none is below 0.
+    /// Origin of depths, so that none is below 0.
     base: f32,
-    /// The near and the far plane, from there.
+    /// Depths of the near and the far plane.
     range: [f32; 2],
-    /// Colour of a scene that has none.
+    /// Colour of a scene without colours.
     albedo: Vectors,
 }
 
 impl Pixels {
-    /// Draws a frame.
+    /// Renders a frame.
     pub fn frame(
         &mut self,
         surfels: &Surfels,
@@ -104,13 +104,13 @@ impl<'a> Projection<'a> {
         }
     }
 
-    /// Lets a surfel take its pixel, unless a nearer one has it.
+    /// Projects a surfel, and stores it if its pixel has no nearer one.
     #[inline]
     fn project(&self, index: usize, nearest: &[AtomicU64]) {
         let position = self.position(index);
         let image = self.pixel * Vec3A::from(position);
         let depth = image.z - self.base;
-        // Such that a coordinate which is no number fails.
+        // NaN fails the comparison.
         if !(depth >= self.range[0] && depth <= self.range[1]) {
             return;
         }
@@ -128,13 +128,13 @@ impl<'a> Projection<'a> {
         let place = &nearest[tile * BLOCKS * LANES + pixel];
         // Never −0, whose bits are large.
         let key = u64::from(depth.abs().to_bits()) << 32 | index as u64;
-        // Most surfels lose: looking first is cheaper.
+        // Most surfels lose: a load first is cheaper.
         if key < place.load(Ordering::Relaxed) {
             place.fetch_min(key, Ordering::Relaxed);
         }
     }
 
-    /// Relative to the eye.
+    /// Position relative to the eye.
     #[inline]
     fn position(&self, index: usize) -> Vec3 {
         (self.surfels.positions[index] - self.eye[0]) - self.eye[1]
@@ -153,7 +153,7 @@ impl<'a> Projection<'a> {
         self.cull && self.is_turned(index, position) && !two_sided()
     }
 
-    /// Shades a tile from the surfels that its pixels see.
+    /// Shades a tile from the visible surfels of its pixels.
     fn resolve(&self, streams: &Streams, shader: &Shader, nearest: &mut [AtomicU64], slab: &mut Slab) {
         for (block, nearest) in nearest.chunks_exact_mut(LANES).enumerate() {
             let (x, y) = centres(corner(slab.at), block);
@@ -162,7 +162,7 @@ impl<'a> Projection<'a> {
         }
     }
 
-    /// What the surfels of a block's pixels look like.
+    /// The surface of four pixels from their surfels.
     fn surface(&self, streams: &Streams, nearest: &mut [AtomicU64]) -> Surface {
         let mut attributes = [[0f32; LANES]; 6];
         let mut depth = [0f32; LANES];

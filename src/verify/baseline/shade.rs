@@ -1,19 +1,19 @@
-//! From what is seen at a pixel to its colour, four pixels at a time.
+//! Shading, four pixels at a time.
 
 use super::view::View;
 use crate::settings::{Lighting, Settings, Shading};
 use glam::{BVec4A, Mat3, Vec3, Vec4};
 
-/// A vector at each of four pixels, coordinate by coordinate.
+/// A vector for each of four pixels, coordinate by coordinate.
 pub(super) type Vectors = [Vec4; 3];
 
-/// The surface that four neighbouring pixels of a row see.
+/// The surface at four adjacent pixels of a row.
 pub(super) struct Surface {
-    /// Where there is one.
+    /// Which pixels are covered.
     pub covered: BVec4A,
     /// Linear RGB.
     pub colour: Vectors,
-    /// Σ w n, or what is parallel to it.
+    /// Σ w n, or a parallel vector.
     pub normal: Vectors,
     /// Σ w.
     pub weight: Vec4,
@@ -21,7 +21,7 @@ pub(super) struct Surface {
     pub depth: Vec4,
 }
 
-/// What a picture holds at four pixels.
+/// Values of four pixels.
 pub(super) struct Shown {
     /// RGB and α.
     pub colour: [Vec4; 4],
@@ -31,13 +31,13 @@ pub(super) struct Shown {
     pub depth: Vec4,
 }
 
-/// What shades the pixels of a frame.
+/// Shading of a frame.
 pub(super) struct Shader<'a> {
     settings: &'a Settings,
     perspective: bool,
     ray: Mat3,
     forward: Vec3,
-    /// Whether there are normals.
+    /// Whether normals are summed.
     normals: bool,
 }
 
@@ -47,7 +47,7 @@ impl<'a> Shader<'a> {
         Self { settings, perspective: view.perspective, ray, forward: view.forward.as_vec3(), normals }
     }
 
-    /// Shown where nothing is.
+    /// Values of empty pixels.
     pub fn background(&self) -> Shown {
         let colour = self.settings.background.map_or([0.0; 4], |[r, g, b]| [r, g, b, 1.0]);
         Shown { colour: colour.map(Vec4::splat), normal: [Vec4::ZERO; 3], depth: Vec4::ZERO }
@@ -67,7 +67,7 @@ impl<'a> Shader<'a> {
             Shading::Colour => surface.colour,
             Shading::Normal => normal,
             Shading::Depth => [surface.depth; 3],
-            // Refused before a frame is begun.
+            // Rejected before the frame starts.
             Shading::Overlap | Shading::Weight => [Vec4::ONE; 3],
         };
         let [r, g, b] = shown;
@@ -91,7 +91,7 @@ impl<'a> Shader<'a> {
     }
 }
 
-/// The unit normal; to the eye where opposite ones cancel and leave no direction.
+/// The unit normal; the direction to the eye where normals cancel.
 #[inline]
 fn unit(surface: &Surface, to_eye: Vectors) -> Vectors {
     let length = dot(surface.normal, surface.normal).sqrt();
@@ -100,11 +100,11 @@ fn unit(surface: &Surface, to_eye: Vectors) -> Vectors {
     [0, 1, 2].map(|i| Vec4::select(cancelled, to_eye[i], surface.normal[i] * inverse))
 }
 
-/// Linear Blinn–Phong; all vectors are unit.
+/// Linear Blinn–Phong; all vectors are unit vectors.
 #[inline]
 fn lit(lighting: &Lighting, albedo: Vectors, normal: Vectors, to_eye: Vectors) -> Vectors {
     let power = |v: Vec4| Vec4::from_array(v.to_array().map(|v| v.powf(lighting.shininess)));
-    // The headlight stands at the eye: light, half-way and view direction are one.
+    // The headlight is at the eye: light, half-way and view directions coincide.
     let facing = dot(normal, to_eye).max(Vec4::ZERO);
     let highlight = lighting.specular * power(facing);
     let mut light = albedo.map(|a| a * (lighting.ambient + lighting.headlight * facing) + highlight);

@@ -1,4 +1,5 @@
-//! Surfel to splat: the disc's image by the dual conic, which needs no inverse (zwicker2004 sections 4.2 to 4.4, restated).
+//! Projection of a surfel to a splat by the dual conic, which needs no inverse (zwicker2004 sections 4.2 to 4.4,
+//! restated).
 
 use super::shape::{Shape, attribute_variance, half_box};
 use super::view::View;
@@ -9,31 +10,31 @@ use glam::{DVec2, DVec3, Mat3A, Vec2, Vec3, Vec3A};
 /// The image of a disc: an ellipse and a plane.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Splat {
-    /// The pixel that the rest is relative to, near the centre, so that nothing loses digits on large pictures.
+    /// Reference pixel near the centre: values relative to it lose no digits on large pictures.
     pub anchor: [u16; 2],
-    /// Index of the surfel; [`FLIPPED`] is set where its normal points away from the eye.
+    /// Index of the surfel; [`FLIPPED`] is set if its normal points away from the eye.
     pub surfel: u32,
     /// Centre of the ellipse relative to the anchor's centre, px.
     pub offset: Vec2,
-    /// The ellipse, without any low-pass.
+    /// The ellipse, without low-pass filter.
     pub shape: Shape,
-    /// Key of the tangent plane at the anchor, and its slopes along x and y, 1/px.
+    /// Depth key of the tangent plane at the anchor, and its slopes along x and y, 1/px.
     pub plane: Vec3,
-    /// Key of the disc's nearest point.
+    /// Depth key of the disc's nearest point.
     pub disc: f32,
-    /// No key within the attribute footprint is above this.
+    /// Upper bound of the depth keys within the attribute footprint.
     pub nearest: f32,
-    /// What ε does to a key: its factor in perspective, what is taken from it otherwise.
+    /// ε for depth keys: a factor in perspective, a subtrahend otherwise.
     pub epsilon: f32,
 }
 
-/// Least q, relative to (w / F)²: nearer the eye plane q has lost the digits that tell where the ellipse is.
+/// Least q, relative to (w / F)²: closer to the eye plane, q has no significant digits.
 const LEAST_CLEARANCE: f32 = 1e-3;
 
-/// Mark of a surfel whose normal points away from the eye.
+/// Flag of a surfel whose normal points away from the eye.
 pub(super) const FLIPPED: u32 = 1 << 31;
 
-/// What makes splats of a scene's surfels in a frame.
+/// Projection of a scene's surfels in a frame.
 pub(super) struct Footprint<'a> {
     surfels: &'a Surfels,
     settings: &'a Settings,
@@ -45,15 +46,15 @@ pub(super) struct Footprint<'a> {
     pub extent: Vec2,
 }
 
-/// Where a surfel is, in twice the precision: large terms cancel here, and it is a small part of the work.
+/// Geometry of a surfel in double precision: large terms cancel here, and it is a small part of the work.
 struct Place {
     /// Distance in front of the eye.
     distance: f64,
-    /// What homogeneous pixels are divided by.
+    /// Divisor of homogeneous pixels.
     w: f64,
-    /// Height of the disc's plane above the eye, along the normal.
+    /// Distance of the disc's plane from the eye, along the normal.
     height: f64,
-    /// What the plane's keys are divided by; above 0 where the normal points away from the eye.
+    /// Divisor of the plane's depth keys; above 0 if the normal points away from the eye.
     facing: f64,
     /// Homogeneous pixel of the centre.
     image: DVec2,
@@ -71,8 +72,8 @@ impl<'a> Footprint<'a> {
         }
     }
 
-    /// The splat of surfel `index`, and half the width and height of the box about its attribute footprint, px; `None` if nothing
-    /// of it is seen.
+    /// The splat of surfel `index`, and half the width and height of the box around its attribute footprint, px; `None`
+    /// if it is not visible.
     #[inline]
     pub fn splat(&self, index: usize) -> Option<(Splat, Vec2)> {
         let place = self.place(index)?;
@@ -109,7 +110,7 @@ impl<'a> Footprint<'a> {
         Some((splat, half))
     }
 
-    /// The pixel of the picture that is nearest to `middle`, and its centre.
+    /// The pixel of the picture nearest to `middle`, and its centre.
     #[inline]
     fn anchor(&self, middle: Vec2) -> ([u16; 2], DVec2) {
         let nearest = middle.clamp(Vec2::ZERO, self.extent - 1.0);
@@ -117,7 +118,7 @@ impl<'a> Footprint<'a> {
         (anchor, DVec2::new(f64::from(anchor[0]) + 0.5, f64::from(anchor[1]) + 0.5))
     }
 
-    /// Key of the nearest point of a disc whose 1-σ axes go `depths` away from the eye.
+    /// Depth key of the nearest point of a disc whose 1-σ axes extend by `depths` along the view.
     #[inline]
     fn disc(&self, place: &Place, depths: Vec2) -> f32 {
         let lean = self.settings.cutoff * depths.length();
@@ -128,8 +129,7 @@ impl<'a> Footprint<'a> {
         }
     }
 
-    /// `None` behind the eye, on the back where that is not seen, and where the plane runs through the eye. Comparisons are such that
-    /// they fail where a coordinate is no number.
+    /// `None` behind the eye, for a culled back, and if the plane contains the eye. NaN fails the comparisons.
     #[inline]
     fn place(&self, index: usize) -> Option<Place> {
         let view = self.view;
@@ -148,29 +148,29 @@ impl<'a> Footprint<'a> {
         Some(Place { distance, w, height, facing, image: image.truncate() + view.middle })
     }
 
-    /// Directions of the disc's semi-axes, of which the second is shorter by the factor that is returned and contained in it.
+    /// Directions of the disc's semi-axes; the second is scaled by the aspect, which is returned, too.
     #[inline]
     fn axes(&self, index: usize, normal: Vec3) -> ([Vec3A; 2], f32) {
         match &self.surfels.ellipses {
             None => (tangents(normal), 1.0),
             Some(ellipses) => {
                 let ellipse = ellipses[index];
-                // Exactly at a right angle to the normal, however the file rounded it.
+                // Exactly perpendicular to the normal, however the file rounded it.
                 let minor = normal.cross(ellipse.major).normalize();
                 ([minor.cross(normal).into(), (ellipse.aspect * minor).into()], ellipse.aspect)
             }
         }
     }
 
-    /// The ellipse of a disc whose 1-σ axes have the homogeneous pixels `s` and `t`, and by how much its centre is off the `centre`'s
-    /// image; `None` if the disc reaches the eye plane. `area` is what the disc's 1-σ area would be enlarged to at w = 1.
+    /// The ellipse of a disc whose 1-σ axes have the homogeneous pixels `s` and `t`, and its offset from the image of
+    /// the `centre`; `None` if the disc reaches the eye plane. `area` is the image of the disc's 1-σ area at w = 1.
     #[inline]
     fn image(&self, [s, t]: [Vec3A; 2], w: f32, centre: Vec2, area: f32) -> Option<(Shape, Vec2)> {
         let cutoff = self.settings.cutoff;
         let (x, y) = (Vec2::new(s.x, t.x), Vec2::new(s.y, t.y));
         let g = if self.view.perspective { Vec2::new(s.z, t.z) } else { Vec2::ZERO };
         let lean = g.length();
-        // (w / F)² - g·g, which as a product keeps its digits.
+        // (w / F)² − g·g as a product, which keeps its digits.
         let reach = w * self.inverse_cutoff;
         let q = (reach - lean) * (reach + lean);
         if q.is_nan() || q <= LEAST_CLEARANCE * reach * reach {
@@ -187,7 +187,7 @@ impl<'a> Footprint<'a> {
         Some((Shape::new([xx, xy, yy], area * inverse * inverse * inverse), shift))
     }
 
-    /// Key of the tangent plane at `pixel`, and its slopes: affine in the pixel, whatever the projection.
+    /// Depth key of the tangent plane at `pixel`, and its slopes: affine in the pixel for every projection.
     #[inline]
     fn plane(&self, normal: DVec3, place: &Place, pixel: DVec2) -> Vec3 {
         let view = self.view;
@@ -198,7 +198,8 @@ impl<'a> Footprint<'a> {
     }
 }
 
-/// Two unit vectors that complete `normal` to a right-handed basis (Duff et al., *Building an Orthonormal Basis, Revisited*, 2017).
+/// Two unit vectors that complete `normal` to a right-handed basis (Duff et al., *Building an Orthonormal Basis,
+/// Revisited*, 2017).
 #[inline]
 fn tangents(normal: Vec3) -> [Vec3A; 2] {
     let sign = 1f32.copysign(normal.z);
@@ -210,7 +211,7 @@ fn tangents(normal: Vec3) -> [Vec3A; 2] {
     ]
 }
 
-/// More than any key that the plane has within the cut-off ellipse, however that is rounded; `half` is the ellipse's box.
+/// Upper bound of the plane's depth keys within the cut-off ellipse, rounding included; `half` is the ellipse's box.
 #[inline]
 fn nearest(plane: Vec3, offset: Vec2, shape: &Shape, half: Vec2, cutoff: f32) -> f32 {
     let slope = Vec2::new(plane.y, plane.z);

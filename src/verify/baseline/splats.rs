@@ -1,4 +1,4 @@
-//! The blended picture, as `perspective-ewa` makes it (zwicker2004).
+//! Blended splats, as in `perspective-ewa` (zwicker2004).
 
 use super::chunk::Chunk;
 use super::clock::Stages;
@@ -13,12 +13,12 @@ use crate::settings::Settings;
 use glam::Vec4;
 use rayon::prelude::*;
 
-/// Fewest surfels of a chunk.
+/// Least number of surfels in a chunk.
 const FEWEST: usize = 4096;
-/// Most chunks: each tile looks at all of them.
+/// Most chunks: each tile reads all of them.
 const MOST_CHUNKS: usize = 256;
 
-/// What is kept from frame to frame.
+/// Buffers that are reused between frames.
 #[derive(Debug, Default)]
 pub(super) struct Splats {
     chunks: Vec<Chunk>,
@@ -27,7 +27,7 @@ pub(super) struct Splats {
 }
 
 impl Splats {
-    /// Draws a frame.
+    /// Renders a frame.
     pub fn frame(
         &mut self,
         surfels: &Surfels,
@@ -77,7 +77,7 @@ impl Splats {
     }
 }
 
-/// Pass `normalize`: divides the sums by the weights, and shades.
+/// Stage `normalize`: divides the sums by the weights, and shades.
 fn normalize(frame: &Frame, shader: &Shader, tile: &Tile, slab: &mut Slab) {
     let albedo = frame.settings.lighting.albedo.map(Vec4::splat);
     let first = 1 + frame.streams.colour_channel();

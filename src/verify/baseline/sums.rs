@@ -1,33 +1,33 @@
-//! Which weighted sums a frame keeps, and what surfels contribute to them.
+//! Weighted sums of a frame, and the surfels' contributions to them.
 
 use super::splat::FLIPPED;
 use crate::geometry::{Colours, Surfels};
 use crate::settings::Outputs;
 use crate::settings::{Settings, Shading};
 
-/// Where in the sums what is.
+/// Layout of the sums.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Channels {
-    /// Attributes of the surfels: three coordinates of the normal, then three of the colour, as far as they are wanted.
+    /// Number of attributes: three coordinates of the normal, then three of the colour, each if the frame uses them.
     pub attributes: usize,
-    /// Whether keys are summed.
+    /// Whether depth keys are summed.
     pub keys: bool,
 }
 
-/// The surfels' attributes, as far as a frame wants them.
+/// The surfels' attributes that a frame uses.
 pub(super) struct Streams<'a> {
     surfels: &'a Surfels,
     /// Whether normals are summed.
     pub normals: bool,
-    /// Whether colours are.
+    /// Whether colours are summed.
     pub colours: bool,
-    /// Whether keys are.
+    /// Whether depth keys are summed.
     pub keys: bool,
     linear: &'a [f32; 256],
 }
 
 impl<'a> Streams<'a> {
-    /// `linear` decodes sRGB.
+    /// `linear` is the table of decoded sRGB codes.
     pub fn new(surfels: &'a Surfels, linear: &'a [f32; 256], settings: &Settings, outputs: Outputs) -> Self {
         let shading = settings.shading;
         Self {
@@ -43,12 +43,12 @@ impl<'a> Streams<'a> {
         Channels { attributes: 3 * (usize::from(self.normals) + usize::from(self.colours)), keys: self.keys }
     }
 
-    /// The first of the attributes that is a colour's.
+    /// Index of the colour's first attribute.
     pub fn colour_channel(&self) -> usize {
         if self.normals { 3 } else { 0 }
     }
 
-    /// What a splat's surfel contributes to the attributes; unused entries are 0.
+    /// Attributes of a splat's surfel; unused entries are 0.
     #[inline]
     pub fn attributes(&self, surfel: u32) -> [f32; 6] {
         let index = (surfel & !FLIPPED) as usize;

@@ -1,4 +1,5 @@
-//! What a frame is drawn to. It is kept tile by tile, and in a tile channel by channel, as it is made; GPUs lay images out alike.
+//! Render target, stored tile by tile, and in a tile channel by channel, in the order of writing. GPUs store images in
+//! tiles, too.
 
 use super::shade::Shown;
 use super::tile::{BLOCKS, LANES, SIDE};
@@ -7,12 +8,12 @@ use crate::picture::Picture;
 use crate::settings::Outputs;
 use rayon::prelude::*;
 
-/// Colour, α, and what the outputs ask for, of all pixels.
+/// Colour, α and the outputs of all pixels.
 #[derive(Debug, Default)]
 pub(super) struct Target {
     size: [u32; 2],
     outputs: Outputs,
-    /// Of four neighbouring pixels each.
+    /// Four adjacent pixels each.
     values: Vec<[f32; LANES]>,
 }
 
@@ -25,7 +26,7 @@ pub(super) struct Slab<'a> {
 }
 
 impl Target {
-    /// Makes room for a frame: nothing new if the last one was alike.
+    /// Resizes the target; no allocation if the last frame had the same size and outputs.
     pub fn fit(&mut self, size: [u32; 2], outputs: Outputs) -> Result<()> {
         (self.size, self.outputs) = (size, outputs);
         let blocks = tiles(size) * self.stride();
@@ -40,7 +41,7 @@ impl Target {
         self.values.par_chunks_mut(stride).enumerate().map(slab)
     }
 
-    /// The frame row by row, as everybody wants it.
+    /// The frame as a picture, row by row.
     pub fn picture(&self) -> Picture {
         let [width, height] = self.size;
         let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
@@ -63,7 +64,7 @@ impl Target {
         size_of_val(self.values.as_slice()) as u64
     }
 
-    /// Blocks of all channels of a tile.
+    /// Blocks per tile, over all channels.
     fn stride(&self) -> usize {
         let Outputs { normal, depth, .. } = self.outputs;
         BLOCKS * (4 + if normal { 3 } else { 0 } + usize::from(depth))
@@ -94,14 +95,14 @@ pub(super) fn tiles(size: [u32; 2]) -> usize {
     columns(size) * size[1].div_ceil(SIDE as u32) as usize
 }
 
-/// The tile of a pixel, and which of the tile's pixels it is.
+/// Indices of a pixel's tile, and of the pixel in that tile.
 #[inline]
 pub(super) fn place(size: [u32; 2], [x, y]: [u32; 2]) -> (usize, usize) {
     let (x, y) = (x as usize, y as usize);
     (y / SIDE * columns(size) + x / SIDE, y % SIDE * SIDE + x % SIDE)
 }
 
-/// Resizes without stopping the process where memory runs out.
+/// Resizes a vector; running out of memory is an error instead of an abort.
 pub(super) fn resize<T>(values: &mut Vec<T>, length: usize, what: &str, new: impl Fn() -> T) -> Result<()> {
     values.try_reserve_exact(length.saturating_sub(values.len())).map_err(|cause| Error::Memory {
         what: what.into(),

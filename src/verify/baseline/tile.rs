@@ -1,4 +1,4 @@
-//! Tiles: squares of pixels that stay in the processor's cache from the first splat to the picture.
+//! Tiles: squares of pixels that stay in the processor's cache for all stages after `bin`.
 
 use super::chunk::Chunk;
 use super::cover::{Block, Cover};
@@ -12,37 +12,37 @@ use glam::Vec4;
 
 /// Pixels along a tile's side.
 pub(super) const SIDE: usize = 32;
-/// Pixels that are treated at once.
+/// Pixels processed at once.
 pub(super) const LANES: usize = 4;
 /// Blocks of pixels in a tile.
 pub(super) const BLOCKS: usize = SIDE * SIDE / LANES;
 /// Columns of a block.
 pub(super) const RAMP: Vec4 = Vec4::new(0.0, 1.0, 2.0, 3.0);
-/// Splats after which a tile finds out anew what it hides.
+/// Splats between updates of a tile's farthest surface.
 const FRESH: usize = 32;
 
-/// One value a pixel, row by row.
+/// One value per pixel, row by row.
 pub(super) type Plane = [Vec4; BLOCKS];
 
-/// What all tiles of a frame share.
+/// Data shared by all tiles of a frame.
 pub(super) struct Frame<'a> {
     pub view: &'a View,
     pub settings: &'a Settings,
     pub streams: Streams<'a>,
-    /// In any order; best from near to far.
+    /// In any order; fastest from near to far.
     pub chunks: &'a [Chunk],
     pub order: &'a [u32],
 }
 
-/// A tile in the making.
+/// Buffers of a tile in progress.
 pub(super) struct Tile {
     /// Column and row among the tiles.
     at: [u32; 2],
-    /// Key of the nearest surface, moved back by ε; −∞ where there is none.
+    /// Depth key of the nearest surface, moved back by ε; −∞ if there is none.
     keys: Plane,
-    /// The least of the keys, −∞ if there is a gap: what is behind is hidden.
+    /// The least of the depth keys, −∞ if a pixel is empty: splats behind it are hidden.
     farthest: f32,
-    /// Weighted sums: of the weights, the attributes, the keys.
+    /// Weighted sums: of the weights, the attributes, the depth keys.
     pub sums: [Plane; 8],
 }
 
@@ -62,7 +62,7 @@ impl Tile {
         corner(self.at)
     }
 
-    /// Pass `visibility`: the nearest surface at each pixel, moved back by ε. Returns whether there is any.
+    /// Stage `visibility`: the nearest surface at each pixel, moved back by ε. Returns whether there is any.
     pub fn visibility(&mut self, frame: &Frame) -> bool {
         let (mut drawn, mut stale) = (false, 0);
         for chunk in frame.order.iter().map(|&index| &frame.chunks[index as usize]) {
@@ -80,12 +80,12 @@ impl Tile {
         drawn
     }
 
-    /// What a splat hides.
+    /// Adds a splat to the visibility depths.
     #[inline]
     fn claim(&mut self, frame: &Frame, splat: &Splat) {
         let (factor, shift) =
             if frame.view.perspective { (splat.epsilon, 0.0) } else { (1.0, splat.epsilon) };
-        // Nothing is claimed nearer than the disc itself, however far the filter has widened its plane.
+        // At most the disc's nearest point, however far the filter widens its plane.
         if splat.disc * factor - shift <= self.farthest {
             return;
         }
@@ -102,9 +102,9 @@ impl Tile {
         });
     }
 
-    /// Pass `attribute`: weighted sums over the splats that the keys let through.
+    /// Stage `attribute`: weighted sums over the visible splats.
     pub fn attribute(&mut self, frame: &Frame) {
-        // Where there is no surface nothing is let through, however far the wider footprint reaches.
+        // Pixels that visibility left empty admit no splat, although the attribute footprint is wider.
         for key in &mut self.keys {
             *key = Vec4::select(key.cmpeq(Vec4::NEG_INFINITY), Vec4::INFINITY, *key);
         }
@@ -119,7 +119,7 @@ impl Tile {
         }
     }
 
-    /// The sums of `COUNT` attributes, and of the keys if `KEYS`.
+    /// Sums `COUNT` attributes, and the depth keys if `KEYS`.
     fn sum<const COUNT: usize, const KEYS: bool>(&mut self, frame: &Frame) {
         for chunk in frame.chunks {
             for &index in chunk.of_tile(self.at) {
@@ -136,7 +136,7 @@ impl Tile {
         let variance = attribute_variance(splat.shape.variance, frame.settings);
         let shape = Shape { variance, ..splat.shape };
         let Some(cover) = Cover::new(splat, &shape, frame, self.corner()) else { return };
-        // Their product would overflow on a very large splat.
+        // The product of both could overflow for a very large splat.
         let amplitude = splat.shape.root / variance.x.sqrt() / variance.y.sqrt();
         let attributes = frame.streams.attributes(splat.surfel);
         let [far, near] = frame.view.keys.map(Vec4::splat);

@@ -1,39 +1,40 @@
-//! A frame's camera, as the hot loops want it: relative to the scene's origin, and to the eye.
+//! A frame's camera in the form of the inner loops: relative to the scene's origin, and to the eye.
 
 use crate::error::{Error, Result};
 use crate::geometry::Camera;
 use glam::{DMat3, DVec2, DVec3, DVec4, Vec2};
 
-/// A camera over a picture of some size.
+/// A camera for a picture of some size.
 ///
-/// The *key* of a point says how near it is, is greater where nearer and affine on the screen for every plane: 1 / distance in
-/// perspective, `near` − distance otherwise.
+/// The *depth key* of a point is greater for nearer points and affine on the screen for every plane: 1 / distance in
+/// perspective, `near` − distance in orthographic projection.
 #[derive(Clone, Debug)]
 pub(super) struct View {
     pub perspective: bool,
     /// Width and height, px.
     pub size: [u32; 2],
-    /// Where the rays meet, relative to the scene's origin; for parallel rays, the origin of eye space.
+    /// Point where the rays meet, relative to the scene's origin; for parallel rays, the origin of eye space.
     pub eye: DVec3,
     /// Unit viewing direction.
     pub forward: DVec3,
     /// World vectors relative to the eye to homogeneous pixels: x, y, and the distance, by which perspective divides.
     pub pixel: DMat3,
-    /// The pixel where the eye itself is seen by parallel rays; 0 in perspective.
+    /// The pixel of the eye for parallel rays; 0 in perspective.
     pub middle: DVec2,
-    /// Pixel (x, y, 1) to the world relative to the eye: on the pixel's ray, at distance 1 in perspective and 0 otherwise.
+    /// Pixel (x, y, 1) to a world vector relative to the eye: on the pixel's ray, at distance 1 in perspective and 0
+    /// otherwise.
     pub ray: DMat3,
-    /// How much the map to homogeneous pixels, or to the picture's plane, enlarges.
+    /// Determinant of the map to homogeneous pixels, or to the picture's plane.
     pub jacobian: f32,
     /// Distances of the near and the far plane.
     pub near: f64,
     pub far: f64,
-    /// Keys of the far and the near plane.
+    /// Depth keys of the far and the near plane.
     pub keys: [f32; 2],
 }
 
 impl View {
-    /// Refuses cameras and sizes of which no picture can be made.
+    /// Prepares a camera; fails on invalid cameras and sizes.
     pub fn new(camera: &Camera, size: [u32; 2], origin: DVec3) -> Result<Self> {
         let depth = camera.projection()?;
         check_size(size)?;
@@ -91,7 +92,7 @@ fn pixel_rows(camera: &Camera, size: [u32; 2]) -> [DVec4; 3] {
     [0.5 * width * (x + w), 0.5 * height * (y + w), w]
 }
 
-/// Greatest side of a picture, px: pixels are kept in 16 bits a coordinate.
+/// Greatest side of a picture, px: pixel coordinates have 16 bits.
 const MOST_SIDE: u32 = u16::MAX as u32;
 
 fn check_size(size: [u32; 2]) -> Result<()> {

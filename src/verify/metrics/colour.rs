@@ -1,10 +1,10 @@
-//! Colours as they are compared: on a background, linear or as a display gets them.
+//! Colours for comparison: over a background, in linear light or encoded for a display.
 
 use crate::geometry::srgb;
 use crate::picture::Picture;
 use rayon::prelude::*;
 
-/// What a picture is composited over unless another background is asked for: nothing shines there.
+/// Default background.
 pub const BLACK: [f32; 3] = [0.0; 3];
 
 /// Rec. 709 weights of red, green and blue, which sRGB shares (IEC 61966-2-1; ITU-R BT.709).
@@ -20,13 +20,13 @@ pub fn over(picture: &Picture, background: [f32; 3]) -> Vec<[f64; 3]> {
     picture.colour.par_iter().map(pixel).collect()
 }
 
-/// Linear colours clamped to 0–1 and sRGB-encoded: what a display is sent, before it is rounded to codes.
+/// Linear colours clamped to 0–1 and sRGB-encoded, not yet rounded to codes.
 pub fn encoded(linear: &[[f64; 3]]) -> Vec<[f64; 3]> {
     let channel = |value: f64| srgb::encode(value.clamp(0.0, 1.0));
     linear.par_iter().map(|pixel| pixel.map(channel)).collect()
 }
 
-/// Luma of sRGB-encoded colours, 0–1: the weighted sum of the encoded values, as television has it, and not luminance.
+/// Luma of sRGB-encoded colours, 0–1: the weighted sum of encoded values, as in video; it is not luminance.
 pub fn luma(encoded: &[[f64; 3]]) -> Vec<f64> {
     encoded.par_iter().map(|pixel| (0..3).map(|axis| LUMA[axis] * pixel[axis]).sum()).collect()
 }

@@ -1,16 +1,17 @@
-//! Coverage: where there is a surface, and where only one of both pictures has it. A pixel is covered as [`covers`] says.
+//! Coverage of the silhouettes. A pixel is covered as [`covers`] defines.
 //!
-//! - Intersection over union of the silhouettes (Jaccard, *Étude comparative de la distribution florale*, 1901): 0 to 1, no unit, more is
-//!   better; 1 where neither covers anything, as both then agree.
-//! - Holes: pixels that the truth covers and the picture does not, at the rim or within.
-//! - Bloat: the reverse.
+//! - Intersection over union of the silhouettes (Jaccard, *Étude comparative de la distribution florale*, 1901): 0 to
+//! 1, no unit, more is better; 1 if neither picture covers anything.
+//! - Holes: pixels that the truth covers and the picture does not, at the outline or inside.
+//! - Bloat: pixels that the picture covers and the truth does not.
 //!
-//! Holes and bloat in px, as a number of connected regions, and as px of the largest; less is better.
+//! Holes and bloat are given in px, as the number of connected regions, and as the px of the largest region; less is
+//! better.
 
 pub use super::regions::Regions;
 use super::{Pair, covers};
 
-/// How two silhouettes lie to each other.
+/// Comparison of two silhouettes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coverage {
     /// Pixels that the picture covers.
@@ -19,9 +20,9 @@ pub struct Coverage {
     pub truth: u64,
     /// Intersection over union.
     pub iou: f64,
-    /// What only the truth covers.
+    /// Pixels that only the truth covers.
     pub holes: Regions,
-    /// What only the picture covers.
+    /// Pixels that only the picture covers.
     pub bloat: Regions,
 }
 
@@ -71,7 +72,7 @@ mod tests {
             bloat: Regions { pixels: 1, count: 1, largest: 1 },
         };
         assert_eq!(found, expected);
-        // The other way round, holes are bloat.
+        // With the pictures exchanged, holes become bloat.
         let back = of(&truth, &["#.##..", ".####.", ".#.#..", "......"]);
         assert_eq!((back.iou, back.holes, back.bloat), (found.iou, found.bloat, found.holes));
     }

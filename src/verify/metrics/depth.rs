@@ -1,7 +1,8 @@
-//! Difference of the eye-space depths of both pictures, where both cover a pixel, over the object's size: `|z_a − z_b| / size`.
+//! Difference of the eye-space depths over the object's size, `|z_a − z_b| / size`, for pixels that both pictures
+//! cover.
 //!
-//! Range 0 and up, less is better, no unit: the size, in the positions' unit, makes it independent of how large or far the object is. For
-//! example its bounding box's diagonal.
+//! Range: 0 and up; less is better; no unit. Division by the size, in the positions' unit, such as the diagonal of the
+//! bounding box, makes it independent of the object's scale and distance.
 
 use super::Pair;
 use super::statistics::Sorted;
@@ -10,15 +11,15 @@ use crate::error::{Error, Result};
 /// Differences over the pixels that both cover, relative to the object's size.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DepthError {
-    /// Root of the mean square.
+    /// Root mean square.
     pub rms: f64,
-    /// 99 % of the pixels have no larger one: a value that occurs, by the nearest-rank definition.
+    /// 99th percentile, by the nearest-rank definition.
     pub p99: f64,
-    /// The largest.
+    /// Maximum.
     pub max: f64,
 }
 
-/// Compares the depths; `None` if one picture has none, or no pixel is covered in both.
+/// Compares the depths; `None` if a picture has none, or if no pixel is covered in both.
 ///
 /// # Errors
 /// [`Error::Usage`] if the size is not a finite number above 0.

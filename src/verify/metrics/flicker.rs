@@ -1,22 +1,22 @@
-//! Temporal flicker: error that comes and goes from frame to frame as the camera moves slowly.
+//! Temporal flicker: error that varies from frame to frame as the camera moves slowly.
 //!
-//! With `e_t = picture_t − truth_t` in linear light, a number for every pixel and channel, it is
-//! `√(mean (e_{t−1} − 2 e_t + e_{t+1})² / 6)`, the mean over all pixels, channels and inner frames: the root of the residual variance
-//! estimated by second differences (Gasser, Sroka, Jennen-Steinmetz: *Residual Variance and Residual Pattern in Nonlinear Regression*,
-//! Biometrika 73(3), 1986). What moves in the truth as well is no error; an error that stays, or grows or fades at a constant rate, as a
-//! blur that is carried past a pixel does, does not flicker; what is left is noise in time. The factor makes it
-//! the standard deviation of that noise if it is independent from frame to frame; an error that alternates between +a and −a, the
-//! quickest that there is, gives `4a/√6`.
+//! For each pixel and channel let `e_t = picture_t − truth_t` in linear light. Flicker is `√(mean (e_{t−1} − 2 e_t +
+//! e_{t+1})² / 6)`, the mean over all pixels, channels and inner frames: the root of the residual variance estimated by
+//! second differences (Gasser, Sroka, Jennen-Steinmetz: *Residual Variance and Residual Pattern in Nonlinear
+//! Regression*, Biometrika 73(3), 1986). Motion of the truth is no error. An error that is constant or changes at a
+//! constant rate, as a blur that moves past a pixel does, is no flicker. What remains is noise in time: the factor 1/6
+//! makes it the standard deviation of noise that is independent from frame to frame. An error that alternates between
+//! +a and −a, the fastest possible, gives `4a/√6`.
 //!
-//! Range 0 and up, unit as linear colours (1 is white), less is better.
+//! Range: 0 and up, unit of linear colours (1 is white), less is better.
 
 use super::{Pair, colour};
 use crate::error::{Error, Result};
 
-/// Frames that a second difference needs.
+/// Frames of a second difference.
 const FEWEST: usize = 3;
 
-/// Takes the frames of a path one after the other, and keeps the errors of two.
+/// Accumulates the flicker of a path, frame by frame; stores the errors of two frames.
 ///
 /// ```
 /// use surfel::Picture;
@@ -24,7 +24,7 @@ const FEWEST: usize = 3;
 ///
 /// # fn main() -> surfel::Result<()> {
 /// let grey = |value: f32| Picture { size: [1, 1], colour: vec![[value, value, value, 1.0]], ..Default::default() };
-/// // Along the path the truth grows lighter; the pictures do, too, but every other one is too light by a tenth.
+/// // The truth brightens along the path; the pictures follow, but every other one is too bright by 0.1.
 /// let mut flicker = Flicker::new([0.0; 3]);
 /// for frame in 0..6u8 {
 ///     let truth = 0.1 * f32::from(frame);
@@ -39,22 +39,22 @@ const FEWEST: usize = 3;
 pub struct Flicker {
     background: [f32; 3],
     size: [u32; 2],
-    /// Errors of the last frame and the one before.
+    /// Errors of the last two frames, the older one first.
     last: [Vec<[f64; 3]>; 2],
     frames: usize,
     squares: f64,
 }
 
 impl Flicker {
-    /// Begins with frames that are composited over a linear `background`.
+    /// No frames yet; they will be composited over a linear `background`.
     pub fn new(background: [f32; 3]) -> Self {
         Self { background, ..Default::default() }
     }
 
-    /// Takes the next frame of the path.
+    /// Adds the next frame of the path.
     ///
     /// # Errors
-    /// [`Error::Usage`] if it is not of the first one's size.
+    /// [`Error::Usage`] if its size differs from the first frame's.
     pub fn add(&mut self, pair: &Pair<'_>) -> Result<()> {
         if self.frames > 0 && pair.size() != self.size {
             let ([a, b], [c, d]) = (pair.size(), self.size);
@@ -75,10 +75,10 @@ impl Flicker {
         Ok(())
     }
 
-    /// The flicker of the frames so far.
+    /// Flicker of the frames so far.
     ///
     /// # Errors
-    /// [`Error::Usage`] if there are less than three.
+    /// [`Error::Usage`] if there are fewer than three.
     pub fn value(&self) -> Result<f64> {
         if self.frames < FEWEST {
             let text = format!("flicker of {} frames: give {FEWEST} or more", self.frames);
@@ -104,7 +104,7 @@ mod tests {
         Picture { size: [3, 2], colour: vec![[value, value, value, 1.0]; 6], ..Default::default() }
     }
 
-    /// Of frames given as grey of the picture and of the truth.
+    /// Flicker of frames given as grey values of picture and truth.
     fn of(frames: &[(f32, f32)]) -> f64 {
         let mut flicker = Flicker::new(colour::BLACK);
         for &(ours, truth) in frames {
@@ -119,7 +119,7 @@ mod tests {
         assert_eq!(of(&[(0.75, 0.25); 4]), 0.0);
         // An error that grows at a constant rate.
         assert_eq!(of(&[(0.25, 0.25), (0.375, 0.25), (0.5, 0.25), (0.625, 0.25)]), 0.0);
-        // What flickers in the truth as well.
+        // Flicker of the truth itself does not count.
         assert_eq!(of(&[(0.5, 0.25), (1.0, 0.75), (0.5, 0.25), (1.0, 0.75)]), 0.0);
     }
 
@@ -131,7 +131,7 @@ mod tests {
             let found = of(&[high, low, high, low, high]);
             assert!((found - expected).abs() < 1e-12, "{found} {expected}");
         }
-        // A single frame of three that is off by a: its second difference is 2a.
+        // One frame of three is off by a: its second difference is 2a.
         assert!((of(&[(0.5, 0.5), (0.75, 0.5), (0.5, 0.5)]) - 0.5 / 6f64.sqrt()).abs() < 1e-12);
     }
 

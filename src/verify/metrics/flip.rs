@@ -1,9 +1,10 @@
-//! ꟻLIP: what a viewer sees who flips between both pictures on one spot (Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström,
-//! Fairchild: *FLIP: A Difference Evaluator for Alternating Images*, Proceedings of the ACM on Computer Graphics and Interactive
-//! Techniques 3(2), High Performance Graphics 2020), computed by the authors' program through the crate `nv-flip`.
+//! ꟻLIP: the difference that a viewer perceives when flipping between two pictures (Andersson, Nilsson, Akenine-Möller,
+//! Oskarsson, Åström, Fairchild: *FLIP: A Difference Evaluator for Alternating Images*, Proceedings of the ACM on
+//! Computer Graphics and Interactive Techniques 3(2), High Performance Graphics 2020), computed by the authors' program
+//! through the crate `nv-flip`.
 //!
-//! LDR-FLIP takes sRGB of 8 bits, so a difference of less than half a code may be 0. A map with a value a pixel, 0 (the same) to 1
-//! (blue for green), no unit; its mean is the figure that the authors give.
+//! LDR-FLIP takes 8-bit sRGB, so a difference below half a code may be 0. The result is a map with one value per pixel
+//! from 0 (equal) to 1 (blue against green), no unit; its mean is the number that the authors report.
 
 use super::statistics::Sorted;
 use crate::error::{Error, Result};
@@ -11,14 +12,14 @@ use crate::formats::image::Encoded;
 use crate::geometry::ColourMap;
 use nv_flip::FlipImageRgb8;
 
-/// Pixels per degree of visual angle unless others are given: the authors' choice, a screen of 3840 px and 0.7 m seen from 0.7 m; they
-/// call it 67.
+/// Default pixels per degree of visual angle: the authors' choice, a screen of 3840 px and 0.7 m at a distance of 0.7
+/// m; they call it 67.
 pub const PIXELS_PER_DEGREE: f32 = (3840.0 * std::f64::consts::PI / 180.0) as f32;
 
-/// Smallest and largest pixels per degree that are taken: the program's filters are a few degrees wide, and their cost grows with it.
+/// Range of pixels per degree: the filters span a few degrees, and their cost grows with the resolution.
 pub const RANGE: [f32; 2] = [1.0, 1000.0];
 
-/// The differences, pixel by pixel.
+/// The difference of each pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Map {
     /// Width and height, px.
@@ -52,7 +53,7 @@ pub fn flip(picture: &[[f64; 3]], truth: &[[f64; 3]], size: [u32; 2], pixels_per
 }
 
 impl Map {
-    /// The mean of all pixels.
+    /// Mean over all pixels.
     pub fn mean(&self) -> f64 {
         Sorted::new(self.values.iter().map(|&value| value.into())).map_or(0.0, |values| values.mean())
     }
@@ -62,10 +63,10 @@ impl Map {
         self.values.iter().fold(0.0, |max, &value| max.max(value.into()))
     }
 
-    /// The map as a picture in the paper's colours, magma: black is 0, pale yellow is 1.
+    /// The map as a picture in the paper's colour map, magma: black is 0, pale yellow is 1.
     ///
     /// # Errors
-    /// [`Error::Usage`] if there are not as many values as the size says.
+    /// [`Error::Usage`] if the number of values does not match the size.
     pub fn coloured(&self) -> Result<Encoded> {
         let pixel = |&value: &f32| {
             let [r, g, b] = ColourMap::Magma.at(value.into());
@@ -108,7 +109,7 @@ mod tests {
 
     #[test]
     fn structure_is_as_the_authors_compute_it() {
-        // By their Python package, flip-evaluator 1.7.
+        // Values of the authors' Python package, flip-evaluator 1.7.
         for (offset, mean, max) in [(1, 0.410_390, 0.977_773), (3, 0.703_570, 0.979_717)] {
             let found = of(&stripes(offset), &stripes(0));
             assert!((found.mean() - mean).abs() < 2e-5, "{offset}: {}", found.mean());
@@ -121,8 +122,8 @@ mod tests {
         // Published: the metric is scaled so that green and blue differ by 1.
         let [green, blue] = [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|colour| image(|_, _| colour));
         assert!((of(&green, &blue).mean() - 1.0).abs() < 1e-4);
-        // By hand: black and white differ by 100 in L*, raised to 0.7; green and blue by 203.04, their a* and b* multiplied by L*/100;
-        // what exceeds 0.4 of the latter's power fills the range from 0.95 to 1.
+        // By hand: black and white differ by 100 in L*, raised to 0.7; green and blue by 203.04, with a* and b*
+        // multiplied by L*/100. Values above 0.4 of the latter's power map to 0.95 to 1.
         let (difference, largest) = (100f64.powf(0.7), 203.04f64.powf(0.7));
         let expected = 0.95 + 0.05 * (difference - 0.4 * largest) / (0.6 * largest);
         let [black, white] = [0.0, 1.0].map(|value| image(|_, _| [value; 3]));
@@ -131,8 +132,8 @@ mod tests {
         assert!((found.max() - found.mean()).abs() < 1e-4);
     }
 
-    /// CIELAB of an sRGB colour with a* and b* as the Hunt effect leaves them, by the paper's sections 4.1.1 and 4.1.2: the white is the
-    /// sum of the primaries.
+    /// CIELAB of an sRGB colour, with a* and b* adjusted for the Hunt effect (paper, sections 4.1.1 and 4.1.2); the
+    /// white point is the sum of the primaries.
     fn hunt([r, g, b]: [u8; 3]) -> [f64; 3] {
         let linear = [r, g, b].map(|code| match f64::from(code) / 255.0 {
             c if c <= 0.04045 => c / 12.92,
@@ -150,8 +151,8 @@ mod tests {
         [lightness, 5.0 * lightness * (x - y), 2.0 * lightness * (y - z)]
     }
 
-    /// FLIP of two even pictures: their filters leave them as they are, and there are no features. The HyAB distance to the power of
-    /// 0.7; the first 0.4 of its greatest value become 0.95, the rest the remaining 0.05 (section 4.1.3).
+    /// FLIP of two constant pictures: filters do not change them, and they have no features. The HyAB distance to the
+    /// power of 0.7; the first 0.4 of its maximum map to 0.95, the rest to the remaining 0.05 (section 4.1.3).
     fn even(a: [u8; 3], b: [u8; 3]) -> f64 {
         let distance = |a: [u8; 3], b: [u8; 3]| {
             let ([l, a, b], [m, c, d]) = (hunt(a), hunt(b));

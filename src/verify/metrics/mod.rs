@@ -1,21 +1,22 @@
-//! How far a picture is from the truth. One file a metric, each with its definition, source, range and unit.
+//! Metrics: the difference of a picture from the truth. One file per metric, each with its definition, source, range
+//! and unit.
 //!
-//! | module | what it says | better |
+//! | module | measures | better |
 //! |---|---|---|
-//! | [`rmse`] | root of the mean square difference of colours | less |
-//! | [`psnr`] | the same as decibels below the peak | more |
+//! | [`rmse`] | root mean square difference of colours | less |
+//! | [`psnr`] | RMSE in decibels below the peak | more |
 //! | [`ssim`] | structural similarity | more |
-//! | [`flip`] | difference that a viewer sees who flips between the two | less |
-//! | [`coverage`] | where only one of both has a surface | |
+//! | [`flip`] | difference perceived when flipping between both | less |
+//! | [`coverage`] | holes and bloat of the silhouette | |
 //! | [`normals`] | angle between normals | less |
 //! | [`depth`] | difference of depths | less |
-//! | [`flicker`] | error that comes and goes from frame to frame | less |
+//! | [`flicker`] | error that varies from frame to frame | less |
 //!
-//! All but `flicker` take a [`Pair`], which has looked at both pictures: same size, whole, and no value that is not finite. So a metric
-//! is always a plain number. [`report::measure`] takes them all at once.
+//! All but `flicker` take a [`Pair`], which has checked both pictures: equal size, complete, all values finite. A
+//! metric is therefore always a number. [`report::measure`] computes all of them.
 //!
-//! Colours are compared as they look on a background, [composited](colour::over) with straight α: a pixel's colour counts as far as it
-//! is covered, and a surface that is missing counts as the difference from the background.
+//! Colours are compared over a background, [composited](colour::over) with straight α: a pixel's colour is weighted by
+//! its coverage, and a missing surface counts as its difference from the background.
 
 pub mod colour;
 pub mod coverage;

@@ -1,26 +1,27 @@
-//! Angle between the normals of both pictures, where both cover a pixel: `atan2(|a × b|, a · b)`, which is exact for small angles too,
-//! where the arc cosine is not, and needs no unit length.
+//! Angle between the normals of both pictures, over pixels that both cover: `atan2(|a × b|, a · b)`, which is exact for
+//! small angles, unlike the arc cosine, and does not need unit vectors.
 //!
-//! Unit degree, range 0 to 180, less is better. Normals point to the eye in both pictures, so a flipped one counts in full.
+//! Unit: degrees; range 0 to 180; less is better. Normals face the eye in both pictures, so a flipped normal counts in
+//! full.
 
 use super::Pair;
 use super::statistics::Sorted;
 use glam::DVec3;
 
-/// Angles over the pixels that both cover, degrees. Percentiles are values that occur: the nearest-rank definition.
+/// Angles over the pixels that both cover, degrees. Percentiles by the nearest-rank definition.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NormalError {
-    /// Half of the pixels have no larger one.
+    /// Median.
     pub median: f64,
-    /// Sum over number.
+    /// Mean.
     pub mean: f64,
-    /// 95 % of the pixels have no larger one.
+    /// 95th percentile.
     pub p95: f64,
-    /// The largest.
+    /// Maximum.
     pub max: f64,
 }
 
-/// Compares the normals; `None` if one picture has none, or no pixel is covered in both.
+/// Compares the normals; `None` if a picture has none, or if no pixel is covered in both.
 pub fn normals(pair: &Pair<'_>) -> Option<NormalError> {
     let (ours, truth) = (pair.picture().normal.as_ref()?, pair.truth().normal.as_ref()?);
     let angles = Sorted::new(pair.covered_in_both().map(|i| angle(ours[i], truth[i])))?;

@@ -1,42 +1,42 @@
-//! Two pictures that can be compared.
+//! A pair of comparable pictures.
 
 use crate::error::{Error, Result};
 use crate::picture::Picture;
 
-/// Coverage from which a pixel counts as covered.
+/// Least α of a covered pixel.
 const COVERED: f32 = 0.5;
 
-/// A picture and the truth: of one size, whole, and finite throughout.
+/// A picture and the truth: equal in size, complete and finite.
 #[derive(Clone, Copy, Debug)]
 pub struct Pair<'a> {
     picture: &'a Picture,
     truth: &'a Picture,
 }
 
-/// Which of both.
+/// One of the two pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {
-    /// The picture that is judged.
+    /// The picture under test.
     Picture,
-    /// What it should be.
+    /// The truth.
     Truth,
 }
 
 /// Values of a picture that are NaN or infinite.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct NonFinite {
-    /// How many values there are, all channels of all images of the picture.
+    /// Number of such values, in all channels of all images of the picture.
     pub values: u64,
     /// The first pixel with such a value, row by row: x and y, px.
     pub first: [u32; 2],
 }
 
 impl<'a> Pair<'a> {
-    /// Looks at both pictures.
+    /// Checks both pictures.
     ///
     /// # Errors
-    /// [`Error::Usage`] if their sizes differ, one has no pixels, or an image of one does not fit its size; [`Error::Input`] if a value
-    /// is NaN or infinite.
+    /// [`Error::Usage`] if the sizes differ, a picture has no pixels, or an image does not fit its size;
+    /// [`Error::Input`] if a value is NaN or infinite.
     pub fn new(picture: &'a Picture, truth: &'a Picture) -> Result<Self> {
         check(picture, Side::Picture)?;
         check(truth, Side::Truth)?;
@@ -50,12 +50,12 @@ impl<'a> Pair<'a> {
         }
     }
 
-    /// The picture that is judged.
+    /// The picture under test.
     pub fn picture(&self) -> &'a Picture {
         self.picture
     }
 
-    /// What it should be.
+    /// The truth.
     pub fn truth(&self) -> &'a Picture {
         self.truth
     }
@@ -77,7 +77,7 @@ impl<'a> Pair<'a> {
 }
 
 impl Side {
-    /// For messages.
+    /// Name for messages.
     pub fn name(self) -> &'static str {
         match self {
             Self::Picture => "the picture",
@@ -87,7 +87,7 @@ impl Side {
 }
 
 impl NonFinite {
-    /// Those of `picture`; `None` if every value is finite.
+    /// The non-finite values of `picture`; `None` if all are finite.
     pub fn of(picture: &Picture) -> Option<Self> {
         let count = |values: &[f32]| values.iter().filter(|value| !value.is_finite()).count() as u64;
         let in_pixel = |i: usize| {
@@ -105,8 +105,8 @@ impl NonFinite {
     }
 }
 
-/// Whether a surface is seen in pixel `i`, which must be one: α is at least ½ and, as an opaque background has α too, depth and normal
-/// are not 0 where the picture has them.
+/// Whether pixel `i`, which must exist, shows a surface: α is at least ½ and, because an opaque background has α too,
+/// depth and normal are not 0, if the picture has them.
 pub fn covers(picture: &Picture, i: usize) -> bool {
     let no_depth = picture.depth.as_ref().is_some_and(|depth| depth[i] == 0.0);
     let no_normal = picture.normal.as_ref().is_some_and(|normal| normal[i] == [0.0; 3]);

@@ -1,9 +1,9 @@
 //! Peak signal-to-noise ratio: `20 log₁₀(peak / RMSE)` with a peak of 1.
 //!
-//! Unit decibel. More is better: 20 dB is an RMSE of a tenth of white, 40 dB of a hundredth; infinite if the pictures are the same, and
-//! below 0 where linear colours are off by more than white.
+//! Unit: decibels; more is better. 20 dB is an RMSE of a tenth of white, 40 dB of a hundredth; infinite for equal
+//! pictures, below 0 where linear colours are off by more than white.
 
-/// Of a [root mean square error](super::rmse).
+/// PSNR of a [root mean square error](super::rmse).
 pub fn psnr(rmse: f64) -> f64 {
     -20.0 * rmse.log10()
 }

@@ -1,18 +1,18 @@
 //! Connected regions of pixels.
 
-/// How much there is of something in a picture.
+/// Number and size of connected regions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Regions {
     /// Number of pixels.
     pub pixels: u64,
     /// Number of connected regions; pixels that touch by a side or a corner are connected.
     pub count: u64,
-    /// Pixels of the largest of them.
+    /// Pixels of the largest region.
     pub largest: u64,
 }
 
 impl Regions {
-    /// Those of the marked pixels of a picture that is `width` px wide.
+    /// The regions of the marked pixels of a picture that is `width` px wide.
     pub fn of(mut marked: Vec<bool>, width: usize) -> Self {
         let mut regions = Self::default();
         for start in 0..marked.len() {
@@ -25,7 +25,7 @@ impl Regions {
     }
 }
 
-/// Unmarks the region that pixel `start` lies in; the number of its pixels.
+/// Unmarks the region of pixel `start`, and returns the number of its pixels.
 fn erase(marked: &mut [bool], width: usize, start: usize) -> u64 {
     let height = marked.len() / width;
     let mut pixels = 0;
@@ -58,7 +58,7 @@ mod tests {
     fn regions_are_counted() {
         assert_eq!(of(&["....", "...."]), [0, 0, 0]);
         assert_eq!(of(&["####", "####"]), [8, 1, 8]);
-        // Corners connect, and the end of a row does not touch the beginning of the next.
+        // Pixels that share a corner are connected; the end of a row and the start of the next are not.
         assert_eq!(of(&["#..#", ".#..", "...#", "#..#"]), [6, 4, 2]);
         assert_eq!(of(&[".#", "#."]), [2, 1, 2]);
         assert_eq!(of(&["#.#.#"]), [3, 3, 1]);

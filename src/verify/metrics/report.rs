@@ -1,10 +1,10 @@
-//! All metrics of a pair at once, each with its name and unit.
+//! All metrics of a pair, with names and units.
 
 use super::flip::{self, Map};
 use super::{Pair, colour, coverage, depth, normals, psnr, rmse, ssim};
 use crate::error::Result;
 
-/// One number; alike ones stand together.
+/// A metric; related ones are adjacent.
 #[derive(
     Clone,
     Copy,
@@ -39,13 +39,13 @@ pub enum Metric {
     Holes,
     /// Connected regions of holes.
     HoleRegions,
-    /// The largest of them.
+    /// Pixels of the largest one.
     LargestHole,
     /// [Bloat](coverage): pixels that only the picture covers.
     Bloat,
     /// Connected regions of bloat.
     BloatRegions,
-    /// The largest of them.
+    /// Pixels of the largest one.
     LargestBloat,
     /// Median of the [angles](normals) between normals.
     NormalMedian,
@@ -63,32 +63,32 @@ pub enum Metric {
     DepthMax,
 }
 
-/// Which way a metric is to go.
+/// Direction of improvement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Better {
-    /// 0 is best.
+    /// Less is better; 0 is best.
     Less,
-    /// The greater, the more alike.
+    /// More is better.
     More,
 }
 
-/// How pictures are compared.
+/// Options of the comparison.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
     /// Linear colour that both pictures are composited over.
     pub background: [f32; 3],
-    /// Resolution at which FLIP's viewer sees them, px per degree of visual angle.
+    /// Resolution for FLIP, px per degree of visual angle.
     pub pixels_per_degree: f32,
-    /// What depth errors are relative to, in the positions' unit.
+    /// Unit of depth errors, such as the object's size, in the positions' unit.
     pub object_size: f64,
 }
 
-/// What was found.
+/// Results of [`measure`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measured {
-    /// Every metric that could be taken, in the order of [`Metric`]; the others are told by [`Metric::needs`].
+    /// Every metric that could be computed, in the order of [`Metric`]; for the others see [`Metric::needs`].
     pub values: Vec<(Metric, f64)>,
-    /// Where FLIP's differences are.
+    /// FLIP's difference map.
     pub flip: Map,
     /// Pixels that the picture covers.
     pub picture_covers: u64,
@@ -97,14 +97,14 @@ pub struct Measured {
 }
 
 impl Default for Options {
-    /// On black, at FLIP's own resolution, with depth errors in the positions' unit.
+    /// Over black, at FLIP's default resolution, with depth errors in the positions' unit.
     fn default() -> Self {
         Self { background: colour::BLACK, pixels_per_degree: flip::PIXELS_PER_DEGREE, object_size: 1.0 }
     }
 }
 
 impl Metric {
-    /// Unit; empty where there is none.
+    /// Unit; empty if there is none.
     pub fn unit(self) -> &'static str {
         match self {
             Self::Psnr | Self::PsnrSrgb => "dB",
@@ -114,7 +114,7 @@ impl Metric {
         }
     }
 
-    /// Which way it is to go.
+    /// Direction of improvement.
     pub fn better(self) -> Better {
         match self {
             Self::Psnr | Self::PsnrSrgb | Self::Ssim | Self::Iou => Better::More,
@@ -122,7 +122,7 @@ impl Metric {
         }
     }
 
-    /// What pictures must have for it to be taken; empty if it always is.
+    /// Requirements on the pictures; empty if there are none.
     pub fn needs(self) -> &'static str {
         match self {
             Self::Ssim => "pictures of at least 11x11 px",
@@ -138,16 +138,16 @@ impl Metric {
 }
 
 impl Measured {
-    /// A metric's value, if it could be taken.
+    /// Value of a metric, if it could be computed.
     pub fn value(&self, metric: Metric) -> Option<f64> {
         self.values.iter().find(|(taken, _)| *taken == metric).map(|(_, value)| *value)
     }
 }
 
-/// Takes all metrics of a pair.
+/// Computes all metrics of a pair.
 ///
 /// # Errors
-/// [`Error::Usage`](crate::Error::Usage) if an option has no meaning.
+/// [`Error::Usage`](crate::Error::Usage) if an option is invalid.
 pub fn measure(pair: &Pair<'_>, options: &Options) -> Result<Measured> {
     let depth = depth::depth(pair, options.object_size)?;
     let (mut values, flip) = colours(pair, options)?;
@@ -204,7 +204,7 @@ mod tests {
     use crate::picture::Picture;
     use crate::settings::Choice;
 
-    /// A disc on nothing, with normals and depths, `shift` px to the right of the middle.
+    /// A disc on an empty background, with normals and depths, `shift` px to the right of the middle.
     fn disc(shift: u32) -> Picture {
         let inside = |i: u32| (i % 32).abs_diff(16 + shift).pow(2) + (i / 32).abs_diff(16).pow(2) < 100;
         let all = |i: u32| if inside(i) { 1.0 } else { 0.0 };
@@ -243,7 +243,7 @@ mod tests {
             assert!(value == best || (value - best).abs() < 1e-12, "{}: {value}", metric.name());
             let shifted = shifted.value(metric).unwrap();
             match metric.better() {
-                // The disc is flat, so its normals and depths stay.
+                // The disc is flat: normals and depths do not change.
                 _ if metric.name().starts_with("normal") || metric.name().starts_with("depth") => {
                     assert_eq!(shifted, 0.0);
                 }

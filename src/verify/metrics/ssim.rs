@@ -1,11 +1,11 @@
 //! Structural similarity (Wang, Bovik, Sheikh, Simoncelli: *Image Quality Assessment: From Error Visibility to Structural Similarity*,
 //! IEEE Transactions on Image Processing 13(4), 2004, equation 13).
 //!
-//! On sRGB luma from 0 to 1 (L = 1), with the paper's window, 11×11 Gaussian of σ = 1.5 px, and constants K₁ = 0.01, K₂ = 0.03, at the
-//! picture's own resolution. The mean over all windows that lie within the picture, as in the authors' program; so a picture less
-//! than 11 px wide or high has none.
+//! Computed on sRGB luma from 0 to 1 (L = 1) with the paper's window, 11×11 Gaussian of σ = 1.5 px, and constants K₁ =
+//! 0.01, K₂ = 0.03, at full resolution. It is the mean over all windows inside the picture, as in the authors' program;
+//! a picture less than 11 px wide or high has none.
 //!
-//! Range −1 to 1, no unit. 1 is the same; below 0 structure is inverted.
+//! Range: −1 to 1, no unit; 1 for equal pictures, below 0 for inverted structure.
 
 use rayon::prelude::*;
 
@@ -21,7 +21,7 @@ const C2: f64 = 0.03 * 0.03;
 /// Weighted means in a window: a, b, a², b², ab.
 type Moments = [f64; 5];
 
-/// The mean over all windows of two luma images of one size; `None` if no window fits into them.
+/// Mean over all windows of two luma images of equal size; `None` if no window fits.
 pub fn ssim(picture: &[f64], truth: &[f64], size: [u32; 2]) -> Option<f64> {
     let [width, height] = size.map(|side| side as usize);
     let [columns, rows] = [width, height].map(|side| (side + 1).saturating_sub(WINDOW));
@@ -33,12 +33,12 @@ pub fn ssim(picture: &[f64], truth: &[f64], size: [u32; 2]) -> Option<f64> {
         let means = column_means(&picture[y * width..], &truth[y * width..], width, &weights);
         means.windows(WINDOW).map(|window| similarity(sum(&weights, window))).sum()
     };
-    // Summed in the order of the rows, so that the number does not depend on the threads.
+    // Summed in the order of the rows, so that the result does not depend on the number of threads.
     let rows_sums: Vec<f64> = (0..rows).into_par_iter().map(row).collect();
     Some(rows_sums.iter().sum::<f64>() / (columns * rows) as f64)
 }
 
-/// The window is separable: first down each column of the 11 rows that both images begin with.
+/// Vertical means of the first 11 rows of both images: the window is separable.
 fn column_means(picture: &[f64], truth: &[f64], width: usize, weights: &[f64; WINDOW]) -> Vec<Moments> {
     let column = |x: usize| {
         let at = |k: usize| {
@@ -65,7 +65,7 @@ fn similarity([a, b, aa, bb, ab]: Moments) -> f64 {
     (2.0 * a * b + C1) * (2.0 * covariance + C2) / ((a * a + b * b + C1) * (variance_a + variance_b + C2))
 }
 
-/// Of one row or column of the window; they sum to 1.
+/// Weights of one row or column of the window; their sum is 1.
 fn weights() -> [f64; WINDOW] {
     let gaussian: [f64; WINDOW] = std::array::from_fn(|i| {
         let x = i as f64 - (WINDOW / 2) as f64;
@@ -81,7 +81,7 @@ mod tests {
 
     const SIZE: [u32; 2] = [20, 17];
 
-    /// A wave, and another with the first in it; both within 0 and 1.
+    /// A wave, and another that contains it; both within 0 and 1.
     fn waves() -> [Vec<f64>; 2] {
         let image = |f: &dyn Fn(f64, f64) -> f64| {
             let pixel = |i: u32| f(f64::from(i % SIZE[0]), f64::from(i / SIZE[0]));
@@ -111,7 +111,7 @@ mod tests {
 
     #[test]
     fn structure_is_as_computed_elsewhere() {
-        // By numpy, with the whole 11×11 window at once.
+        // Computed with numpy, by the whole 11×11 window at once.
         let [picture, truth] = waves();
         let found = ssim(&picture, &truth, SIZE).unwrap();
         assert!((found - 0.961_945_604_446_315).abs() < 1e-12, "{found}");

@@ -1,17 +1,17 @@
-//! Summaries of a value a pixel.
+//! Statistics of one value per pixel.
 
-/// Values in order; there is at least one.
+/// Sorted values, at least one.
 pub struct Sorted(Vec<f64>);
 
 impl Sorted {
-    /// Of finite values; `None` if there are none.
+    /// Sorts finite values; `None` if there are none.
     pub fn new(values: impl Iterator<Item = f64>) -> Option<Self> {
         let mut values: Vec<_> = values.collect();
         values.sort_unstable_by(f64::total_cmp);
         (!values.is_empty()).then_some(Self(values))
     }
 
-    /// Sum over number.
+    /// Mean.
     pub fn mean(&self) -> f64 {
         self.0.iter().sum::<f64>() / self.0.len() as f64
     }
@@ -21,14 +21,14 @@ impl Sorted {
         (self.0.iter().map(|value| value * value).sum::<f64>() / self.0.len() as f64).sqrt()
     }
 
-    /// The least value that at least a share of all, above 0 and at most 1, does not exceed: the nearest-rank definition, which gives
-    /// a value that occurs.
+    /// Percentile by the nearest-rank definition, which returns one of the values: the least value that at least
+    /// `share` of all values do not exceed. `share` is above 0 and at most 1.
     pub fn percentile(&self, share: f64) -> f64 {
         let rank = (share * self.0.len() as f64).ceil() as usize;
         self.0[rank.clamp(1, self.0.len()) - 1]
     }
 
-    /// The greatest value.
+    /// Maximum.
     pub fn max(&self) -> f64 {
         self.percentile(1.0)
     }

@@ -1,4 +1,4 @@
-//! Rows of pixels that are traced together.
+//! Bands of rows that are traced together.
 
 use super::eye::Eye;
 use super::kernel::Kernel;
@@ -9,22 +9,22 @@ use super::sums::Part;
 use crate::settings::Shading;
 use std::ops::Range;
 
-/// Rows a band.
+/// Rows of a band.
 const ROWS: i64 = 16;
 
-/// Strata along a side beside a pixel that is not exact enough with the fewest: what the few rays have missed there, such as the tip
-/// of what the neighbour saw, shows.
+/// Strata along a side for neighbours of a pixel that misses the error bound with the fewest strata: small features
+/// that its few rays missed there, such as the tip of what the neighbour saw, are found.
 const BESIDE: usize = 4 * FEWEST_STRATA as usize;
 
-/// How the rays of a picture are spread.
+/// Distribution of the rays of a picture.
 pub struct Plan<'a, S: ?Sized> {
     eye: &'a Eye<'a, S>,
     size: [u32; 2],
     kernel: Kernel,
     exact: &'static [usize],
-    /// Variance of a pixel's own mean that is small enough.
+    /// Variance of a pixel's mean that meets the error bound.
     enough: f64,
-    /// Strata along a side: fewest and most.
+    /// Strata along a side: least and greatest number.
     strata: [usize; 2],
 }
 
@@ -45,7 +45,7 @@ impl<'a, S: Scene + ?Sized> Plan<'a, S> {
         Self { eye, size, kernel, exact: exact(shading), enough, strata }
     }
 
-    /// The rows to trace; some lie beyond the picture, where its filter reaches.
+    /// The rows to trace; some lie beyond the picture, within reach of its filter.
     pub fn bands(&self) -> Vec<Range<i64>> {
         let reach = self.kernel.reach as i64;
         let end = i64::from(self.size[1]) + reach;
@@ -83,7 +83,7 @@ impl<'a, S: Scene + ?Sized> Plan<'a, S> {
         Pilot { pixels, variances }
     }
 
-    /// Traces a pixel until it is exact enough; `rough` if it or a neighbour was not in the pilot.
+    /// Refines a pixel until it meets the error bound; `rough` if it or a neighbour missed it in the pilot.
     fn finish(&self, mut pixel: Pixel, rough: bool, at: [i64; 2], part: &mut Part<'_>) {
         let mut variances = Vec::new();
         let mut variance = pixel.variances(self.exact, &mut variances);
@@ -97,7 +97,7 @@ impl<'a, S: Scene + ?Sized> Plan<'a, S> {
     }
 }
 
-/// Which pixels of the middle row are not exact enough, or have a neighbour that is not.
+/// For each pixel of the middle row: whether it or a neighbour misses the error bound.
 fn rough(rows: [&Vec<f64>; 3], enough: f64) -> Vec<bool> {
     let column: Vec<bool> = (0..rows[1].len()).map(|x| rows.iter().any(|row| row[x] > enough)).collect();
     let at = |x: usize| column[x.saturating_sub(1)..(x + 2).min(column.len())].iter().any(|rough| *rough);

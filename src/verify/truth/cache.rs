@@ -1,4 +1,4 @@
-//! Exact images kept on disk, by what they are of.
+//! Cache of exact images on disk.
 
 use super::options::{Filter, Options};
 use super::scene::Scene;
@@ -16,27 +16,27 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use xxhash_rust::xxh3::{Xxh3, xxh3_128};
 
-/// Rises whenever the tracer makes other images of the same request.
+/// Version of the tracer; bumped when it renders the same request differently.
 const VERSION: u32 = 1;
 
-/// Rays by which a scene is recognised beside its name.
+/// Rays of a scene's fingerprint, which supplements its name.
 const FINGERPRINT: usize = 1024;
 
-/// A folder of exact images, two files each: `HASH.exr`, and `HASH.txt` with its checksum and how exact it is.
+/// A folder of exact images, two files each: `HASH.exr`, and `HASH.txt` with its checksum and its error.
 #[derive(Clone, Debug)]
 pub struct Cache {
     folder: PathBuf,
 }
 
 impl Cache {
-    /// A cache in a folder, which is made when there is something to keep.
+    /// A cache in a folder, which is created when the first image is stored.
     pub fn new(folder: impl Into<PathBuf>) -> Self {
         Self { folder: folder.into() }
     }
 
-    /// [`render`], unless the same has been rendered before. `name` is the scene's text or [`Mesh::digest`](super::Mesh::digest);
-    /// parameters of the samples, which do not change the surface, are passed over. A scene whose definition has changed is told from
-    /// what it was by what rays meet. Files that are damaged are replaced; where none can be written it is logged.
+    /// [`render`] with caching. `name` is the scene's text or [`Mesh::digest`](super::Mesh::digest); sampling
+    /// parameters, which do not change the surface, are ignored. The key includes a fingerprint of traced rays, so a
+    /// changed scene does not match. Damaged files are replaced; a failure to write is logged.
     ///
     /// # Errors
     /// As [`render`].
@@ -62,7 +62,7 @@ impl Cache {
         Ok(truth)
     }
 
-    /// Where the image of a request is or would be.
+    /// Path of the image of a request.
     pub fn path<S: Scene + ?Sized>(
         &self,
         name: &str,
@@ -83,11 +83,11 @@ impl Cache {
         size.iter().for_each(|side| {
             hash.update(&side.to_le_bytes());
         });
-        // Numbers are printed with all their digits.
+        // Numbers are printed with all digits.
         let Settings { shading, background, lighting, .. } = settings;
         text(&mut hash, &format!("{shading:?} {background:?} {lighting:?}"));
         let Options { filter, error, most_samples } = options;
-        // Neither matters to single rays.
+        // Neither affects single rays.
         let (error, most_samples) = if *filter == Filter::Point { (&0.0, &0) } else { (error, most_samples) };
         text(&mut hash, &format!("{filter:?} {error:?} {most_samples}"));
         self.folder.join(format!("{:032x}.exr", hash.digest128()))
@@ -102,7 +102,7 @@ impl Cache {
     }
 }
 
-/// What is in a cache at a path; nothing if it is not as it was written.
+/// Loads an image; `None` if it is missing or damaged.
 fn load(path: &Path) -> Option<Truth> {
     let note = fs::read_to_string(path.with_extension("txt")).ok()?;
     let mut words = note.split(' ');
@@ -115,12 +115,12 @@ fn load(path: &Path) -> Option<Truth> {
     Some(Truth { picture: image::read(path).ok()?, error: Achieved { rms, max, above } })
 }
 
-/// Of a file, 32 hexadecimal digits.
+/// Digest of a file, 32 hexadecimal digits.
 fn digest(bytes: &[u8]) -> String {
     format!("{:032x}", xxh3_128(bytes))
 }
 
-/// A scene's text without the parameters of its samples.
+/// A scene's text without its sampling parameters.
 fn surface_of(name: &str) -> String {
     let Some((scene, query)) = name.split_once('?').filter(|_| is_scene(name)) else { return name.into() };
     let samples =
@@ -130,7 +130,7 @@ fn surface_of(name: &str) -> String {
     if pairs.is_empty() { scene.into() } else { format!("{scene}?{}", pairs.join("&")) }
 }
 
-/// What rays through the scene meet, bit by bit.
+/// Hashes the hits of random rays, bit by bit.
 fn fingerprint<S: Scene + ?Sized>(hash: &mut Xxh3, scene: &S) {
     let bounds = scene.bounds();
     numbers(hash, &[bounds.min, bounds.max].map(|corner| corner.to_array()).concat());

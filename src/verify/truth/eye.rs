@@ -1,4 +1,4 @@
-//! What single rays of a picture see.
+//! Single rays of a picture.
 
 use super::scene::Scene;
 use crate::error::Result;
@@ -7,14 +7,14 @@ use crate::settings::{Settings, Shading};
 use crate::verify::reference::{Projector, Shine, lit};
 use glam::{DVec2, DVec3};
 
-/// The surface that a ray meets.
+/// The surface that a ray hits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Seen {
-    /// Lit under [`Shading::Lit`], the albedo otherwise; linear RGB.
+    /// Shaded with [`Shading::Lit`], the albedo otherwise; linear RGB.
     pub colour: DVec3,
     /// Distance along the view, in the scene's unit.
     pub depth: f64,
-    /// Unit normal in world space, towards the eye.
+    /// World-space unit normal that faces the eye.
     pub normal: DVec3,
 }
 
@@ -29,12 +29,12 @@ impl<'a, S: Scene + ?Sized> Eye<'a, S> {
     /// Prepares a picture of `size` = width and height in px.
     ///
     /// # Errors
-    /// [`Error::Usage`](crate::Error::Usage) for settings, sizes and cameras of which no picture can be made.
+    /// [`Error::Usage`](crate::Error::Usage) for invalid settings, sizes and cameras.
     pub fn new(scene: &'a S, camera: &Camera, settings: &'a Settings, size: [u32; 2]) -> Result<Self> {
         Ok(Self { scene, projector: Projector::new(camera, size, settings)?, settings })
     }
 
-    /// What is seen at a position in px from the picture's top left; nothing in front of the near plane or behind the far plane is.
+    /// The surface at a position in px from the picture's top left, between the near and the far plane.
     pub fn see(&self, at: DVec2) -> Option<Seen> {
         let [near, far] = self.projector.planes();
         let (origin, step) = self.projector.ray(at);

@@ -1,27 +1,27 @@
-//! The weights of strata in the pixels about them. They are separable: a weight is a product of one along either axis.
+//! Filter weights of strata in the surrounding pixels. They are separable: products of one weight per axis.
 //!
-//! A stratum weighs what the filter weighs over all of it, wherever in it the ray goes: so the weights add up exactly, and a picture
-//! without contrast is without error.
+//! A stratum's weight is the filter's integral over it, wherever in it the ray lies. The weights therefore add up to 1
+//! exactly, and a picture without contrast has no error.
 
 use super::options::Filter;
 
-/// How many standard deviations of a Gaussian are kept at least.
+/// Standard deviations of a Gaussian that are kept, at least.
 const KEPT: f64 = 4.0;
 
-/// A filter's weights, for 1, 2, 4 … strata along the side of a pixel.
+/// A filter's weights for 1, 2, 4 … strata along the side of a pixel.
 #[derive(Clone, Debug)]
 pub struct Kernel {
-    /// How many pixels further than its own a ray counts, to either side.
+    /// Reach of a ray beyond its own pixel, in pixels on either side.
     pub reach: usize,
-    /// Stratum by stratum, the weights in the pixels from `reach` before its own to `reach` behind.
+    /// Per stratum: weights in the pixels from `reach` before its own to `reach` after it.
     levels: Vec<Vec<f64>>,
 }
 
 impl Kernel {
-    /// For up to `most` strata along a side.
+    /// Weights for up to `most` strata along a side.
     pub fn new(filter: Filter, most: usize) -> Self {
         let (reach, below): (_, Box<dyn Fn(f64) -> f64>) = match filter {
-            // Whole pixels about the centre's one, so that the cut is where pixels end: half a pixel further.
+            // Whole pixels around the centre, so that the cut is at a pixel border: half a pixel further.
             Filter::Gaussian { variance } => {
                 let reach = (KEPT * variance.sqrt()).ceil() as usize;
                 let below = move |x: f64| 0.5 * libm::erfc(-x / (2.0 * variance).sqrt());
@@ -45,17 +45,18 @@ impl Kernel {
         Self { reach, levels: (0..=most.ilog2()).map(|log| level(1 << log)).collect() }
     }
 
-    /// How many pixels there are weights for, along an axis.
+    /// Number of pixels with weights along an axis.
     pub fn width(&self) -> usize {
         2 * self.reach + 1
     }
 
-    /// The weights along an axis of each of so many strata, a power of 2, in the pixels from `reach` before its own to `reach` behind.
+    /// Weights along an axis of each of `strata` strata, a power of 2, in the pixels from `reach` before its own to
+    /// `reach` after it.
     pub fn weights(&self, strata: usize) -> impl Iterator<Item = &[f64]> {
         self.levels[strata.ilog2() as usize].chunks(self.width())
     }
 
-    /// Variance of a filtered value, where every pixel's own mean has variance 1.
+    /// Variance of a filtered value if every pixel's mean has variance 1.
     pub fn gain(&self) -> f64 {
         let squares: f64 = self.levels[0].iter().map(|weight| weight * weight).sum();
         squares * squares

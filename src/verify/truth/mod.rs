@@ -1,19 +1,21 @@
-//! Exact images: what a picture of a scene would be if nothing stood between its surface and the camera.
+//! Exact images: pictures of a scene's true surface, without points or splats.
 //!
-//! A ray tracer in float64 with the camera, the rays and the shading of the float64 [reference](crate::verify::reference), over anything that
-//! can be [traced](Scene): the [built-in scenes](crate::verify::scenes) and triangle [meshes](Mesh). Rays are spread over every pixel in
-//! strata, more where what they see differs, until the standard error of what the [`Filter`] makes of them is as small as the
-//! [`Options`] ask.
+//! A float64 ray tracer with the camera, rays and shading of the float64 [reference](crate::verify::reference), for
+//! anything [`Traceable`]: the [built-in scenes](crate::verify::scenes) and triangle [meshes](Mesh). Rays are
+//! stratified in every pixel and refined where they differ, until the standard error of the filtered value meets
+//! [`Options::error`].
 //!
-//! What the pixels hold, where `w` is the filter's weight of a ray's stratum:
+//! Values of a pixel, where `w` is the [`Filter`]'s weight of a ray's stratum:
 //!
 //! | | |
 //! |---|---|
-//! | α | `Σ w` of the rays that hit / `Σ w` of all |
-//! | colour, normal | `Σ w c / Σ w` over the rays that hit, as splatting divides; each ray is shaded by itself. Normals are made unit again |
-//! | depth | that of the ray through the pixel's centre, or of the nearest one to it that hits: a mean of two surfaces is none |
+//! | α | `Σ w` over the rays that hit / `Σ w` over all |
+//! | colour, normal | `Σ w c / Σ w` over the rays that hit, as in splatting; each ray is shaded separately, and normals
+//! are normalized |
+//! | depth | that of the ray through the pixel's centre, or of the nearest ray that hits; depths of two surfaces are
+//! not averaged |
 //!
-//! Both sides of a surface are seen. [`Settings`] that concern splats (cut-off, low-pass, ε, culling) mean nothing here.
+//! Both sides of a surface are visible. [`Settings`] of splats (cut-off, low-pass, ε, culling) are ignored.
 
 mod band;
 mod cache;
@@ -48,37 +50,37 @@ use sums::Sums;
 pub struct Truth {
     /// Colour and α, depth and normals.
     pub picture: Picture,
-    /// How exact it is.
+    /// Its standard error.
     pub error: Achieved,
 }
 
-/// How exact an image is: the estimated standard error of its pixels, the larger of α's and, for lit and coloured pictures, of the
-/// channels' of linear light multiplied by α; for pictures of normals, of the coordinates' before they are made unit. On the careful side:
-/// where nothing jumps it is about twice what it should be.
+/// Standard error of an image, estimated per pixel: the larger of α's and, for shaded and coloured pictures, of the
+/// channels' of linear light times α; for pictures of normals, of the coordinates' before normalization. It is
+/// conservative: in smooth regions about twice the actual error.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Achieved {
     /// Root mean square over all pixels.
     pub rms: f64,
     /// Of the worst pixel.
     pub max: f64,
-    /// Pixels with more than was asked for, which ran into [`Options::most_samples`].
+    /// Pixels above the requested error, which reached [`Options::most_samples`].
     pub above: u64,
 }
 
-/// Most pixels of an image: their sums take some 5 GiB, and running out of memory would stop the process.
+/// Most pixels of an image: their sums take about 5 GiB, and running out of memory would abort the process.
 pub const MOST_PIXELS: u64 = 1 << 26;
 
-/// Stage of the progress; its unit is the band of rows.
+/// Stage of the progress, in bands of rows.
 const STAGE: &str = "tracing";
 
-/// Bands that are held in memory at once, a thread.
+/// Bands in memory at once, per thread.
 const AHEAD: usize = 4;
 
-/// Renders `scene` as `camera` sees it, `size` = width and height in px. The same request gives the same image, whatever the number of
-/// threads.
+/// Renders `scene` as seen by `camera`; `size` is width and height in px. The same request gives the same image,
+/// whatever the number of threads.
 ///
 /// # Errors
-/// [`Error::Usage`] for options, settings, sizes and cameras of which no image can be made; [`Error::Cancelled`] where `progress` has it given up.
+/// [`Error::Usage`] for invalid options, settings, sizes and cameras; [`Error::Cancelled`] if `progress` cancels it.
 pub fn render<S: Scene + ?Sized>(
     scene: &S,
     camera: &Camera,
@@ -111,7 +113,7 @@ pub fn render<S: Scene + ?Sized>(
                 band
             })
             .collect();
-        // One after the other, so that rounding does not depend on the threads.
+        // Sequentially, so that rounding does not depend on the threads.
         traced.iter().for_each(|band| sums.add(band));
     }
     Ok(sums.resolve(settings, options.error))

@@ -1,29 +1,29 @@
-//! What an exact image is asked to be.
+//! Options of exact images.
 
 use crate::error::{Error, Result};
 
-/// How the rays about a pixel become its value.
+/// Pixel filter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Filter {
-    /// The low-pass of EWA splatting, of this variance in px²; cut off where it has fallen below e⁻⁸ along both axes.
+    /// The low-pass filter of EWA splatting, with this variance in px²; cut off where it is below e⁻⁸ along both axes.
     Gaussian {
         /// Variance, px².
         variance: f64,
     },
     /// The mean over the pixel's square.
     Box,
-    /// No filter: the one ray through the pixel's centre.
+    /// No filter: one ray through the pixel's centre.
     Point,
 }
 
-/// How an exact image is made.
+/// Options of an exact image.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Options {
-    /// The filter of the pixels.
+    /// Pixel filter.
     pub filter: Filter,
-    /// Standard error that no pixel should exceed; see [`Achieved`](super::Achieved) for what it is of.
+    /// Standard error that no pixel should exceed; see [`StandardError`](super::StandardError).
     pub error: f64,
-    /// Rays after which a pixel is left as it is, rounded down to a power of 4.
+    /// Greatest number of rays per pixel, rounded down to a power of 4.
     pub most_samples: u32,
 }
 
@@ -36,14 +36,14 @@ impl Default for Options {
 /// Greatest variance of a Gaussian, px²: its weights reach 40 px.
 pub const MOST_VARIANCE: f64 = 100.0;
 
-/// Most rays a pixel.
+/// Most rays per pixel.
 pub const MOST_SAMPLES: u32 = 1 << 16;
 
-/// Fewest strata along the side of a pixel.
+/// Least number of strata along the side of a pixel.
 pub(super) const FEWEST_STRATA: u32 = 4;
 
 impl Options {
-    /// Refuses what no image can be made of.
+    /// Validates the options.
     ///
     /// # Errors
     /// [`Error::Usage`].
@@ -70,7 +70,7 @@ impl Options {
         Ok(())
     }
 
-    /// Most strata along the side of a pixel.
+    /// Greatest number of strata along the side of a pixel.
     pub(super) fn most_strata(&self) -> u32 {
         1 << (self.most_samples.ilog2() / 2)
     }

@@ -1,4 +1,4 @@
-//! The rays of one pixel: one in each of n × n strata, and n doubles until they agree well enough.
+//! The rays of one pixel: one in each of n × n strata; n doubles until the error is small enough.
 
 use super::eye::{Eye, Seen};
 use super::scene::Scene;
@@ -6,13 +6,13 @@ use crate::settings::Shading;
 use crate::verify::scenes::random::Random;
 use glam::DVec2;
 
-/// What is filtered: α, then colour and normal multiplied by it.
+/// Filtered values: α, then colour and normal times α.
 pub type Value = [f64; 7];
 
-/// A ray and what it saw.
+/// A ray and the surface that it hits.
 #[derive(Clone, Copy)]
 pub struct Sample {
-    /// Where it goes through the pixel, from 0 to 1 along either axis.
+    /// Position in the pixel, 0 to 1 along either axis.
     pub at: DVec2,
     pub seen: Option<Seen>,
 }
@@ -24,7 +24,7 @@ impl Sample {
     }
 }
 
-/// Which of the values must be exact.
+/// Indices of the values whose error is bounded.
 pub fn exact(shading: Shading) -> &'static [usize] {
     match shading {
         Shading::Lit | Shading::Colour => &[0, 1, 2, 3],
@@ -33,13 +33,13 @@ pub fn exact(shading: Shading) -> &'static [usize] {
     }
 }
 
-/// A pixel's rays so far.
+/// The rays of a pixel.
 pub struct Pixel {
-    /// Px from the picture's top left; negative where the filter reaches beyond it.
+    /// Px from the picture's top left; negative where the filter reaches beyond the picture.
     corner: [i64; 2],
     /// Strata along a side.
     strata: usize,
-    /// One a stratum, row by row.
+    /// One per stratum, row by row.
     pub samples: Vec<Sample>,
     random: Random,
 }
@@ -61,7 +61,7 @@ impl Pixel {
         pixel
     }
 
-    /// Twice as many strata along each side. The old rays stay, each in the quarter of its stratum where it is.
+    /// Doubles the strata along each side. Each old ray stays in the quarter of its stratum in which it lies.
     pub fn refine<S: Scene + ?Sized>(&mut self, eye: &Eye<S>) {
         self.strata *= 2;
         let mut places = vec![None; self.strata * self.strata];
@@ -75,7 +75,7 @@ impl Pixel {
             .collect();
     }
 
-    /// The ray nearest to the centre, of those that see something and a further one through the centre itself.
+    /// The surface at the centre, or else of the nearest ray that hits.
     pub fn middle<S: Scene + ?Sized>(&self, eye: &Eye<S>) -> Option<Seen> {
         let centre = DVec2::splat(0.5);
         let far = |sample: &Sample| sample.at.distance_squared(centre);
@@ -86,8 +86,8 @@ impl Pixel {
         self.look(eye, centre).seen.or_else(nearest)
     }
 
-    /// The estimated variance of each ray's value about its stratum's mean, and that of the pixel's mean: from differences between
-    /// neighbouring strata, which also count a trend over both.
+    /// Estimates the variance of each ray's value around its stratum's mean, and returns that of the pixel's mean.
+    /// Estimates use differences between neighbouring strata, which include a trend across both.
     pub fn variances(&self, exact: &[usize], of_samples: &mut Vec<f64>) -> f64 {
         let n = self.strata;
         of_samples.clear();
@@ -112,7 +112,7 @@ impl Pixel {
         of_samples.iter().sum::<f64>() / (n * n * n * n) as f64
     }
 
-    /// The largest square of a difference between two rays' values.
+    /// The largest squared difference between two rays' values.
     fn square(&self, exact: &[usize], a: usize, b: usize) -> f64 {
         let (a, b) = (&self.samples[a], &self.samples[b]);
         if a.seen.is_none() && b.seen.is_none() {
@@ -131,7 +131,7 @@ impl Pixel {
         place(at.y) * self.strata + place(at.x)
     }
 
-    /// A ray somewhere in a stratum.
+    /// A random ray in a stratum.
     fn sample<S: Scene + ?Sized>(&mut self, eye: &Eye<S>, index: usize) -> Sample {
         let corner = DVec2::new((index % self.strata) as f64, (index / self.strata) as f64);
         let within = DVec2::new(self.random.unit(), self.random.unit());

@@ -1,26 +1,26 @@
-//! What exact images are made of.
+//! Surfaces of which exact images can be rendered.
 
 use crate::geometry::Bounds;
 use crate::verify::scenes::Surface;
 use glam::DVec3;
 
-/// Where a ray meets a scene.
+/// Intersection of a ray with a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// Distance in lengths of the ray's direction.
+    /// Distance, in lengths of the ray's direction.
     pub t: f64,
-    /// Unit normal of either side.
+    /// Unit normal, of either side.
     pub normal: DVec3,
-    /// Albedo, linear RGB; that of the lighting where the scene has none.
+    /// Albedo, linear RGB; `None` for the lighting's.
     pub albedo: Option<[f64; 3]>,
 }
 
-/// What rays can be traced against.
+/// A scene for ray tracing.
 pub trait Scene: Sync {
-    /// The nearest point that a ray meets at `t > 0`. `direction` may have any length.
+    /// The nearest intersection with a ray at `t > 0`. `direction` may have any length.
     fn trace(&self, origin: DVec3, direction: DVec3) -> Option<Hit>;
 
-    /// A box and a sphere that hold it.
+    /// Bounding box and sphere.
     fn bounds(&self) -> Bounds;
 }
 

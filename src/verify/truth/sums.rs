@@ -1,4 +1,4 @@
-//! The weighted sums of the rays about each pixel, and what a picture is made of them.
+//! Weighted sums of rays per pixel, and the picture computed from them.
 
 use super::eye::Seen;
 use super::kernel::Kernel;
@@ -9,26 +9,26 @@ use crate::settings::{Settings, Shading};
 use glam::DVec3;
 use std::ops::Range;
 
-/// `Σ w` times each [value](super::pixel::Value), `Σ w²` times the variance of the values; `Σ w` is 1.
+/// `Σ w` times each [value](super::pixel::Value), and `Σ w²` times the variance of the values; `Σ w` is 1.
 type Cell = [f64; 8];
 
 const ALPHA: usize = 0;
 const VARIANCE: usize = 7;
 
-/// What the rays through some rows give to the pixels of these and of the rows about them.
+/// Contributions of the rays through some rows to the pixels within reach of the filter.
 pub struct Part<'a> {
     kernel: &'a Kernel,
     width: usize,
-    /// Rows of `cells`, all in the picture.
+    /// Rows of `cells`, inside the picture.
     rows: Range<i64>,
     cells: Vec<Cell>,
-    /// Rows of `seen`, all in the picture.
+    /// Rows of `seen`, inside the picture.
     own: Range<i64>,
     seen: Vec<Option<Seen>>,
 }
 
 impl<'a> Part<'a> {
-    /// For the rays through `rows`, some of which may lie beyond the picture.
+    /// Contributions of the rays through `rows`, some of which may lie beyond the picture.
     pub fn new(kernel: &'a Kernel, size: [u32; 2], rows: Range<i64>) -> Self {
         let (width, height, reach) = (size[0] as usize, i64::from(size[1]), kernel.reach as i64);
         let inside = |rows: Range<i64>| rows.start.clamp(0, height)..rows.end.clamp(0, height);
@@ -39,7 +39,7 @@ impl<'a> Part<'a> {
         Self { kernel, width, rows, cells, own, seen }
     }
 
-    /// Adds the rays of the pixel `at`, one a stratum, with the variances of their values.
+    /// Adds the rays of the pixel `at`, one per stratum, with the variances of their values.
     pub fn add(&mut self, at: [i64; 2], samples: &[Sample], variances: &[f64]) {
         if samples.iter().all(|sample| sample.seen.is_none()) {
             return;
@@ -53,7 +53,7 @@ impl<'a> Part<'a> {
         }
     }
 
-    /// The sums of a row of strata for the pixels beside.
+    /// Sums a row of strata for the pixels of the same row.
     fn along(&self, samples: &[Sample], variances: &[f64], row: &mut [Cell]) {
         row.fill([0.0; 8]);
         let strata = samples.iter().zip(variances).zip(self.kernel.weights(samples.len()));
@@ -66,7 +66,7 @@ impl<'a> Part<'a> {
         }
     }
 
-    /// Adds the sums of a row of strata of the pixel `at` to the pixels of the picture.
+    /// Adds the sums of a row of strata of the pixel `at` to the rows of the picture.
     fn across(&mut self, at: [i64; 2], row: &[Cell], weights: &[f64]) {
         let reach = self.kernel.reach as i64;
         let clip = |at: i64, start: i64, end: i64| (at - reach).max(start)..(at + reach + 1).min(end);
@@ -84,7 +84,7 @@ impl<'a> Part<'a> {
         }
     }
 
-    /// Keeps what is in the middle of the pixel `at`, if that is in the picture.
+    /// Stores the surface at the centre of the pixel `at`, if that is in the picture.
     pub fn see(&mut self, [x, y]: [i64; 2], seen: impl FnOnce() -> Option<Seen>) {
         if self.own.contains(&y) && (0..self.width as i64).contains(&x) {
             self.seen[(y - self.own.start) as usize * self.width + x as usize] = seen();
@@ -92,7 +92,7 @@ impl<'a> Part<'a> {
     }
 }
 
-/// Adds weighted values; the weight of a variance is a square.
+/// Adds weighted values; the variance is weighted by the square.
 fn add(cell: &mut Cell, values: &Cell, weight: f64) {
     for (sum, value) in cell[..VARIANCE].iter_mut().zip(values) {
         *sum += weight * value;
@@ -100,7 +100,7 @@ fn add(cell: &mut Cell, values: &Cell, weight: f64) {
     cell[VARIANCE] += weight * weight * values[VARIANCE];
 }
 
-/// The sums of a whole picture.
+/// The sums of a picture.
 pub struct Sums {
     size: [u32; 2],
     cells: Vec<Cell>,
@@ -124,7 +124,7 @@ impl Sums {
         }
     }
 
-    /// The picture, and how far it is from `asked`.
+    /// The picture, and its error relative to `requested`.
     pub fn resolve(self, settings: &Settings, asked: f64) -> Truth {
         let errors = || self.cells.iter().map(|cell| cell[VARIANCE].sqrt());
         let squares: f64 = errors().map(|error| error * error).sum();
@@ -143,7 +143,7 @@ impl Sums {
 
 /// Colour with α, and the normal.
 fn resolve(cell: &Cell, depth: f32, settings: &Settings) -> ([f32; 4], [f32; 3]) {
-    // No more than 1 but for rounding.
+    // Above 1 only by rounding.
     let covered = cell[ALPHA].min(1.0);
     if covered <= 0.0 {
         let colour = settings.background.map_or([0.0; 4], |[r, g, b]| [r, g, b, 1.0]);
@@ -155,10 +155,10 @@ fn resolve(cell: &Cell, depth: f32, settings: &Settings) -> ([f32; 4], [f32; 3])
         Shading::Lit | Shading::Colour => return (over(light, covered, settings.background), normal),
         Shading::Normal => normal,
         Shading::Depth => [depth; 3],
-        // The surface is there once.
+        // The surface counts once.
         Shading::Overlap | Shading::Weight => [1.0; 3],
     };
-    // Numbers are not mixed with a colour: the half decides.
+    // Quantities are not blended with a colour: α ≥ ½ decides.
     let alpha = match settings.background {
         None => covered as f32,
         Some(_) if covered >= 0.5 => 1.0,
@@ -167,7 +167,7 @@ fn resolve(cell: &Cell, depth: f32, settings: &Settings) -> ([f32; 4], [f32; 3])
     ([shown[0], shown[1], shown[2], alpha], normal)
 }
 
-/// Light over the background, if there is one.
+/// Blends light with the background, if there is one.
 fn over(light: DVec3, alpha: f64, background: Option<[f32; 3]>) -> [f32; 4] {
     match background {
         None => light.extend(alpha).as_vec4().to_array(),

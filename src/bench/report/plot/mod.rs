@@ -19,7 +19,7 @@ pub struct Plot {
     /// Title above the plot.
     pub title: String,
     /// Text alternative.
-    pub about: String,
+    pub description: String,
     /// Horizontal axis.
     pub x: Axis,
     /// Vertical axis.
@@ -75,11 +75,11 @@ impl Line {
 impl Plot {
     /// A plot whose axes cover its lines.
     pub fn of(name: String, title: String, [x, y]: [(&str, Scale); 2], lines: Vec<Line>) -> Self {
-        let about = about(&lines, x.0, y.0);
+        let description = description(&lines, x.0, y.0);
         let (bars, alarms) = (Vec::new(), Vec::new());
         let axis = |(label, scale), i| Axis::over(label, scale, values(&lines, i));
         let (x, y) = (axis(x, 0), axis(y, 1));
-        Self { name, title, about, x, y, lines, bars, alarms }
+        Self { name, title, description, x, y, lines, bars, alarms }
     }
 
     /// Adds limits and marks, and extends the axes to cover them.
@@ -105,7 +105,7 @@ fn values(lines: &[Line], i: usize) -> impl Iterator<Item = f64> + '_ {
 }
 
 /// Text alternative: the quantities, and the range of each line.
-fn about(lines: &[Line], x: &str, y: &str) -> String {
+fn description(lines: &[Line], x: &str, y: &str) -> String {
     let mut text = format!("{y} over {x}.");
     for line in lines.iter().filter(|line| !line.label.is_empty()) {
         if let (Some([x0, y0]), Some([x1, y1])) = (line.points.first(), line.points.last()) {

@@ -22,10 +22,10 @@ pub fn dress(plot: &Plot, drawing: &str, size: [u32; 2], scale: u32, usage: Use)
         }
         Use::Inline => String::new(),
     };
-    let (name, title, about) = (escape(&plot.name), escape(&plot.title), escape(&plot.about));
+    let (name, title, description) = (escape(&plot.name), escape(&plot.title), escape(&plot.description));
     format!(
-        "<svg{place} viewBox=\"0 0 {wide} {high}\" role=\"img\" aria-labelledby=\"{name}-title {name}-about\">\n\
-         <title id=\"{name}-title\">{title}</title>\n<desc id=\"{name}-about\">{about}</desc>{body}"
+        "<svg{place} viewBox=\"0 0 {wide} {high}\" role=\"img\" aria-labelledby=\"{name}-title {name}-description\">\n\
+         <title id=\"{name}-title\">{title}</title>\n<desc id=\"{name}-description\">{description}</desc>{body}"
     )
 }
 

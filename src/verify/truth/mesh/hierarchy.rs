@@ -1,4 +1,4 @@
-//! The triangles that a ray may meet, by the tree of the package `bvh`.
+//! Bounding volume hierarchy of triangles, by the crate `bvh`.
 
 use bvh::aabb::{Aabb, Bounded};
 use bvh::bounding_hierarchy::BHShape;
@@ -7,10 +7,10 @@ use bvh::ray::Ray;
 use glam::DVec3;
 use nalgebra::{Point3, Vector3};
 
-/// How much boxes are widened against rounding, as a part of the largest coordinate.
+/// Relative widening of boxes against rounding, of the largest coordinate.
 const MARGIN: f64 = 1e-12;
 
-/// A tree of boxes.
+/// A bounding volume hierarchy.
 pub struct Hierarchy(Bvh<f64, 3>);
 
 struct Item {
@@ -35,7 +35,7 @@ impl BHShape<f64, 3> for Item {
 }
 
 impl Hierarchy {
-    /// The tree of boxes, named by their indices.
+    /// The hierarchy of `boxes`, which are identified by their indices.
     pub fn new(boxes: &[[DVec3; 2]]) -> Self {
         let largest = boxes.iter().flatten().map(|corner| corner.abs().max_element()).fold(0.0, f64::max);
         let margin = DVec3::splat(MARGIN * largest);
@@ -47,7 +47,8 @@ impl Hierarchy {
         Self(Bvh::build_with_executor(&mut items, rayon_executor))
     }
 
-    /// Shows `visit` what a ray may meet, near boxes first, with the distance up to which it matters; `visit` returns the new one.
+    /// Calls `visit` for the boxes that a ray may hit, near ones first, with the current distance limit; `visit`
+    /// returns the new limit.
     pub fn visit(&self, origin: DVec3, direction: DVec3, mut visit: impl FnMut(usize, f64) -> f64) {
         let ray = Ray::new(Point3::from(origin.to_array()), Vector3::from(direction.to_array()));
         let mut limit = f64::INFINITY;
@@ -63,7 +64,7 @@ impl Hierarchy {
                     let left = enter(child_l_aabb).map(|near| (near, *child_l_index));
                     let right = enter(child_r_aabb).map(|near| (near, *child_r_index));
                     match (left, right) {
-                        // The last that is pushed is the next.
+                        // The last pushed is visited next.
                         (Some(a), Some(b)) if a.0 < b.0 => open.extend([b, a]),
                         (a, b) => open.extend([a, b].into_iter().flatten()),
                     }

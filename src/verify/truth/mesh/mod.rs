@@ -1,4 +1,4 @@
-//! Triangle meshes as truth.
+//! Triangle meshes as exact surfaces.
 
 mod hierarchy;
 mod normals;
@@ -12,12 +12,12 @@ use hierarchy::Hierarchy;
 use rayon::prelude::*;
 use xxhash_rust::xxh3::Xxh3;
 
-/// A triangle mesh, seen from both sides. Normals and colours are interpolated between the corners: the points' own or, where one has
-/// no normal, the mean of its triangles', weighted by their angles there.
+/// A triangle mesh, visible from both sides. Normals and colours are interpolated between the corners. A point without
+/// a normal gets the mean of its triangles' normals, weighted by their angles.
 pub struct Mesh {
     corners: Vec<DVec3>,
     normals: Vec<DVec3>,
-    /// Linear; none if the points have no colours.
+    /// Linear; `None` if the points have no colours.
     colours: Option<Vec<DVec3>>,
     triangles: Vec<[u32; 3]>,
     hierarchy: Hierarchy,
@@ -28,7 +28,7 @@ impl Mesh {
     /// The triangles of a cloud: read it with [`ReadOptions::triangles`](crate::formats::ReadOptions).
     ///
     /// # Errors
-    /// What is wrong with it: it has no triangles, or one that names no point.
+    /// An invalid mesh: without triangles, or with an index of a point that does not exist.
     pub fn new(cloud: &Cloud) -> Result<Self, String> {
         let corners: Vec<_> = cloud.positions.par_iter().map(|p| cloud.origin + p.as_dvec3()).collect();
         let triangles = cloud.triangles.clone();
@@ -57,12 +57,12 @@ impl Mesh {
         self.triangles.len()
     }
 
-    /// Whether there are none: there always are.
+    /// Always false: a mesh has triangles.
     pub fn is_empty(&self) -> bool {
         self.triangles.is_empty()
     }
 
-    /// A text that is the same for the same mesh alone.
+    /// A text that identifies the mesh.
     pub fn digest(&self) -> String {
         let mut hash = Xxh3::new();
         let vectors = |hash: &mut Xxh3, all: &[DVec3]| {
@@ -85,7 +85,7 @@ impl Mesh {
         weights.x * a + weights.y * b + weights.z * c
     }
 
-    /// The plane's, for where the corners' cancel.
+    /// The plane's normal, for points where the corners' normals cancel.
     fn flat_normal(&self, triangle: usize) -> DVec3 {
         let [a, b, c] = self.triangles[triangle].map(|corner| self.corners[corner as usize]);
         (b - a).cross(c - a).normalize_or(DVec3::Z)

@@ -3,7 +3,7 @@
 use crate::geometry::Cloud;
 use glam::DVec3;
 
-/// The points' own, and for those that have none the mean of their triangles', weighted by the angle that each has there.
+/// The points' normals; a point without one gets the mean of its triangles' normals, weighted by their angles.
 pub fn fill(cloud: &Cloud, corners: &[DVec3]) -> Vec<DVec3> {
     let own = |index: usize| cloud.normals.as_ref().map_or(DVec3::ZERO, |normals| normals[index].as_dvec3());
     let mut normals: Vec<_> = (0..corners.len()).map(own).collect();

@@ -1,9 +1,9 @@
-//! Rays against triangles, without gaps between neighbours: Woop, Benthin, Wald, *Watertight Ray/Triangle Intersection*, Journal of
-//! Computer Graphics Techniques 2013.
+//! Watertight ray–triangle intersection (Woop, Benthin, Wald, *Watertight Ray/Triangle Intersection*, Journal of
+//! Computer Graphics Techniques 2013).
 
 use glam::DVec3;
 
-/// A ray, prepared: its longest axis first, then a shear that makes it run along that axis.
+/// A prepared ray: a permutation that puts its longest axis last, and a shear that aligns the ray with that axis.
 pub struct Ray {
     origin: DVec3,
     axes: [usize; 3],
@@ -11,7 +11,7 @@ pub struct Ray {
 }
 
 impl Ray {
-    /// `None` for a direction that is 0.
+    /// `None` for a zero direction.
     pub fn new(origin: DVec3, direction: DVec3) -> Option<Self> {
         let z = direction.abs().max_position();
         let (mut x, mut y) = ((z + 1) % 3, (z + 2) % 3);
@@ -26,8 +26,8 @@ impl Ray {
         Some(Self { origin, axes: [x, y, z], shear })
     }
 
-    /// Where it meets a triangle at `t > 0`, in lengths of the direction, and the corners' barycentric weights there. Edges belong to
-    /// the triangle.
+    /// Intersection with a triangle at `t > 0`, in lengths of the direction, and barycentric weights of the corners.
+    /// Edges belong to the triangle.
     pub fn meet(&self, corners: [DVec3; 3]) -> Option<(f64, DVec3)> {
         let [x, y, z] = self.axes;
         let [a, b, c] = corners.map(|corner| {
@@ -40,7 +40,7 @@ impl Ray {
         }
         let weights = edges / edges.element_sum();
         let t = weights.dot(DVec3::new(a.z, b.z, c.z));
-        // A triangle that is seen edge-on divides 0 by 0.
+        // A triangle seen edge-on divides 0 by 0.
         (t > 0.0 && t.is_finite()).then_some((t, weights))
     }
 }

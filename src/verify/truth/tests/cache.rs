@@ -12,7 +12,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 const SIZE: [u32; 2] = [12, 10];
 
-/// Counts what is rendered.
+/// Counts rendered images.
 #[derive(Default)]
 struct Count(AtomicU64);
 
@@ -71,7 +71,7 @@ fn damaged_files_are_replaced() {
     let (image, note) = (torus.path(&cache), torus.path(&cache).with_extension("txt"));
     let (whole, noted) = (fs::read(&image).unwrap(), fs::read(&note).unwrap());
     let mut wrong = whole.clone();
-    // Deep in the values, where the format itself has nothing to tell.
+    // In the pixel values, where the format cannot detect an error.
     let middle = wrong.len() / 2;
     wrong[middle] ^= 1;
     let damages: [(&PathBuf, &[u8]); 5] = [
@@ -162,7 +162,7 @@ fn a_scene_that_has_changed_is_another_under_the_same_name() {
         let surface = scenes::surface(text).unwrap();
         cache.path("scene:torus", &*surface, &torus.camera(), &torus.settings, SIZE, &torus.options)
     };
-    // Another shape, and only other colours.
+    // Another shape; then other colours only.
     assert_ne!(path("scene:torus"), path("scene:torus?minor=0.41"));
     assert_ne!(path("scene:torus"), path("scene:torus?frequency=3"));
 }

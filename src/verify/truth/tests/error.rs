@@ -1,4 +1,4 @@
-//! How exact an image is, and that it is always the same.
+//! The error of an image, and its reproducibility.
 
 use super::GAUSSIAN;
 use crate::geometry::Camera;
@@ -16,7 +16,7 @@ fn view(name: &str, shading: Shading, options: &Options) -> Truth {
     render(&*surface, &camera, &settings, SIZE, options, &()).unwrap()
 }
 
-/// The largest difference of each pixel's α and of its light multiplied by α.
+/// Largest difference of each pixel's α and of its light times α.
 fn differences(a: &Picture, b: &Picture) -> Vec<f64> {
     let light = |[r, g, b, alpha]: [f32; 4]| [r * alpha, g * alpha, b * alpha, alpha];
     let pixel = |(a, b): (&[f32; 4], &[f32; 4])| {

@@ -1,4 +1,4 @@
-//! Filters where the answer is known.
+//! Filters with closed forms.
 
 use super::{Flat, GAUSSIAN, centre};
 use crate::geometry::Camera;
@@ -7,7 +7,7 @@ use crate::verify::scenes;
 use crate::verify::truth::{Filter, Options, render};
 use glam::{DVec2, DVec3};
 
-/// Three times this is less than what is asked below.
+/// Three times this error is below the tolerances of these tests.
 const FINE: Options = Options { filter: GAUSSIAN, error: 3e-4, most_samples: 1 << 16 };
 
 /// The normal distribution function, by Simpson's rule from −9.
@@ -36,7 +36,7 @@ fn the_gaussian_of_an_edge_is_the_normal_distribution() {
                 (f64::from(pixel[3]) - alpha).abs() < 1e-3,
                 "{degrees}° {variance} {i}: {pixel:?} {alpha}"
             );
-            // What is not covered does not darken what is.
+            // The background does not darken covered parts.
             assert!(pixel[3] == 0.0 || (pixel[0] - 0.25).abs() < 1e-6, "{pixel:?}");
         }
         assert!(truth.error.above == 0 && truth.error.max > 1e-5 && truth.error.rms < truth.error.max);
@@ -45,7 +45,7 @@ fn the_gaussian_of_an_edge_is_the_normal_distribution() {
 
 #[test]
 fn the_box_of_an_edge_is_the_area() {
-    // y = x / 4: what is above the edge of a pixel is a trapezium.
+    // y = x / 4: the part of a pixel above the edge is a trapezium.
     let scene = Flat { size: [16, 12], paint: |at: DVec2| (at.y < 3.1 + 0.25 * at.x).then_some(1.0) };
     let options = Options { filter: Filter::Box, ..FINE };
     let truth = scene.render(&options);
@@ -60,7 +60,7 @@ fn the_box_of_an_edge_is_the_area() {
     assert_eq!(truth.error.above, 0);
 }
 
-/// Fields of `side` px, of these albedos in turn.
+/// Squares of `side` px with alternating albedos.
 fn checker(side: f64, albedos: [f64; 2]) -> impl Fn(DVec2) -> Option<f64> + Sync {
     move |at| Some(albedos[((at.x / side).floor() + (at.y / side).floor()).rem_euclid(2.0) as usize])
 }
@@ -70,7 +70,7 @@ fn a_checker_has_its_filtered_value() {
     let side = 3.3;
     let scene = Flat { size: [20, 20], paint: checker(side, [0.0, 1.0]) };
     let truth = scene.render(&FINE);
-    // A product of two square waves from −1 to 1, each of which is a sum of edges.
+    // A product of two square waves from −1 to 1, each a sum of edges.
     let wave = |x: f64| {
         let field = |k: i32| {
             let start = x - f64::from(k) * side;
@@ -95,7 +95,7 @@ fn a_checker_far_above_nyquist_is_its_average() {
             assert!((f64::from(pixel[0]) - 0.5).abs() < 1e-3, "{filter:?} {pixel:?}");
         }
     }
-    // One ray a pixel cannot know.
+    // One ray per pixel cannot average.
     let point = scene.render(&Options { filter: Filter::Point, ..Default::default() });
     assert!(point.picture.colour.iter().all(|pixel| [0.4, 0.6].contains(&pixel[0])));
 }

@@ -10,7 +10,7 @@ use crate::verify::truth::{Eye, Mesh, Options, Scene, render};
 use glam::{DVec3, Vec3};
 use std::f64::consts::{PI, TAU};
 
-/// A unit sphere of 2n × n fields, without normals.
+/// A unit sphere of 2n × n quads, without normals.
 fn sphere(n: u32) -> Cloud {
     let point = |i: u32, j: u32| {
         let (theta, phi) = (PI * f64::from(j) / f64::from(n), TAU * f64::from(i) / f64::from(2 * n));
@@ -40,7 +40,7 @@ fn a_fine_mesh_is_the_sphere() {
     let settings = Settings::default();
     let mesh_eye = Eye::new(&mesh, &camera, &settings, SIZE).unwrap();
     let exact_eye = Eye::new(&*exact, &camera, &settings, SIZE).unwrap();
-    // The greatest distance of a chord from its arc, twice for the two directions of a field.
+    // The greatest distance of a chord from its arc, twice for the two directions of a quad.
     let sagitta = 2.0 * (1.0 - (0.5 * PI / f64::from(n)).cos());
     let mut compared = 0;
     for at in (0..48 * 48).map(|i| centre(i, SIZE)) {
@@ -134,7 +134,7 @@ fn colours_and_normals_are_interpolated() {
     assert!(Mesh::new(&cloud).err().unwrap().contains("no triangles"));
 }
 
-/// Two triangles meet in a corner of the cube's level face, and one in each of the upright ones.
+/// Two triangles meet at a corner of the cube's horizontal face, and one at that of each vertical face.
 #[test]
 fn normals_weigh_triangles_by_their_angles() {
     let corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [0, 1, 1]];

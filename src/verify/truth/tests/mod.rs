@@ -13,14 +13,14 @@ use glam::{DVec2, DVec3};
 
 const GAUSSIAN: Filter = Filter::Gaussian { variance: 1.0 };
 
-/// A level picture of `size` px, painted by its px: the albedo there, or nothing.
+/// A flat picture of `size` px; `paint` gives the albedo at a position in px, or nothing.
 struct Flat<F> {
     size: [u32; 2],
     paint: F,
 }
 
 impl<F: Fn(DVec2) -> Option<f64> + Sync> Flat<F> {
-    /// From above, a unit a pixel.
+    /// From above, one unit per pixel.
     fn camera(&self) -> Camera {
         let [width, height] = self.size.map(f64::from);
         let view = [DVec3::new(0.0, 0.0, 10.0), DVec3::ZERO, DVec3::Y];
@@ -48,7 +48,7 @@ impl<F: Fn(DVec2) -> Option<f64> + Sync> Scene for Flat<F> {
     }
 }
 
-/// The middle of pixel `index`.
+/// Centre of pixel `index`.
 fn centre(index: usize, size: [u32; 2]) -> DVec2 {
     let width = size[0] as usize;
     DVec2::new((index % width) as f64 + 0.5, (index / width) as f64 + 0.5)

@@ -28,7 +28,7 @@ fn cameras() -> Vec<Camera> {
     ]
 }
 
-/// The ray through a pixel position by the inverse matrix: a point of it and its direction.
+/// The ray through a pixel position by the inverse matrix: a point of it, and its direction.
 fn ray(camera: &Camera, at: DVec2) -> (DVec3, DVec3) {
     let ndc = 2.0 * at / DVec2::new(SIZE[0].into(), SIZE[1].into()) - 1.0;
     let inverse = camera.world_to_clip().inverse();
@@ -41,7 +41,7 @@ fn ray(camera: &Camera, at: DVec2) -> (DVec3, DVec3) {
     (a, away.normalize())
 }
 
-/// Eye-space distance of the nearest point of the unit sphere, and how far inside the outline the ray runs.
+/// Eye-space distance of the nearest point of the unit sphere, and how far inside the outline the ray passes.
 fn exact(camera: &Camera, at: DVec2) -> (Option<f64>, f64) {
     let (point, along) = ray(camera, at);
     let middle = point - along * point.dot(along);
@@ -72,7 +72,7 @@ fn outline_and_depth_are_the_closed_form() {
             );
             let (Some(seen), Some(depth)) = (seen, depth) else { continue };
             covered += 1;
-            // Near the outline the depth is as ill-conditioned as the root that it holds.
+            // Near the outline the depth is as ill-conditioned as its square root.
             let bar = if inside > 1e-3 { 1e-9 } else { 1e-7 };
             assert!((seen.depth - depth).abs() < bar, "camera {index}, {at}: {} {depth}", seen.depth);
             assert_eq!(picture.depth.as_ref().unwrap()[i], seen.depth as f32);
@@ -81,7 +81,7 @@ fn outline_and_depth_are_the_closed_form() {
     }
 }
 
-/// A mean of depths would be none where two surfaces meet in a pixel, and at the outline what the pixel sees is nearest its centre.
+/// Two surfaces in a pixel have no meaningful mean depth; at the outline the nearest ray to the centre counts.
 #[test]
 fn depth_is_that_of_the_ray_through_the_centre() {
     let sphere = scenes::surface("scene:sphere?albedo=plain").unwrap();
@@ -107,7 +107,7 @@ fn normals_face_the_eye_and_light_is_the_references() {
     let sphere = scenes::surface("scene:sphere?albedo=plain").unwrap();
     let settings = Settings::default();
     let eye = Eye::new(&*sphere, &inside, &settings, SIZE).unwrap();
-    // From the middle of the picture the ray meets the far side head-on: all of the headlight, and its highlight.
+    // The ray through the middle of the picture hits the far side head-on: the full headlight and its highlight.
     let seen = eye.see(DVec2::new(48.0, 32.0)).unwrap();
     assert!(seen.normal.abs_diff_eq(DVec3::Z, 1e-12) && (seen.depth - 1.5).abs() < 1e-12, "{seen:?}");
     let albedo = sphere.trace(DVec3::ZERO, DVec3::NEG_Z).unwrap().albedo;

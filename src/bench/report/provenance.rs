@@ -1,7 +1,7 @@
 //! Provenance of the figures.
 
 use super::page::Page;
-use crate::bench::record::{Made, Run, Session};
+use crate::bench::record::{Provenance, Run, Session};
 use crate::bench::show;
 use crate::settings::Choice;
 use maud::{Markup, html};
@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 use std::io;
 
 /// Command, machine and pass times.
-pub fn part(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
+pub fn content(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
     Ok(Some(html! {
         (origin(session))
         (passes(session))
@@ -17,14 +17,14 @@ pub fn part(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
 }
 
 fn origin(session: &Session) -> Markup {
-    let made: &Made = &session.made;
-    let host = &made.host;
+    let provenance: &Provenance = &session.provenance;
+    let host = &provenance.host;
     html! {
         dl {
-            dt { "command" } dd { code { (made.command) } }
-            dt { "date" } dd { (made.date.strftime("%Y-%m-%d %H:%M UTC")) ", took " (show::significant(made.seconds, 3)) " s" }
-            dt { "program" } dd { "surfel " (made.version) ", commit " code { (show::commit(&made.commit)) } }
-            @if let Some(gpu) = &made.device {
+            dt { "command" } dd { code { (provenance.command) } }
+            dt { "date" } dd { (provenance.date.strftime("%Y-%m-%d %H:%M UTC")) ", took " (show::significant(provenance.seconds, 3)) " s" }
+            dt { "program" } dd { "surfel " (provenance.version) ", commit " code { (show::commit(&provenance.commit)) } }
+            @if let Some(gpu) = &provenance.device {
                 dt { "device" } dd { (gpu.name) }
                 dt { "driver" } dd { (gpu.driver) @if gpu.validated { " (under the validation layers, which take time)" } }
             } @else { dt { "device" } dd { "none: no Vulkan device was used" } }
@@ -96,14 +96,14 @@ fn passes(session: &Session) -> Markup {
             div.scroll { table.passes {
                 thead { tr {
                     th scope="col" { "figure" } th scope="col" { "scene" } th.number scope="col" { "points" } th scope="col" { "size" }
-                    th scope="col" { "contender" } th scope="col" { "settings" }
+                    th scope="col" { "implementation" } th scope="col" { "settings" }
                     @for name in &names { th.number scope="col" { (name) } }
                     th.number scope="col" { "device" } th.number scope="col" { "wall" } th.number scope="col" { "CPU" }
                 } }
                 tbody { @for (run, time) in &timed { tr {
-                    td { (run.figure.name()) } td { (show::scene(&run.scene)) }
+                    td { (run.experiment.name()) } td { (show::scene(&run.scene)) }
                     td.number { (show::count(run.points)) } td { (show::size(run.size)) }
-                    td { (run.contender.label()) } td { (show::told_of(run, [true, true, true, false, true, false, false])) }
+                    td { (run.implementation.label()) } td { (show::told_of(run, [true, true, true, false, true, false, false])) }
                     @for name in &names {
                         @let pass = time.passes.iter().find(|pass| pass.name == *name);
                         td.number { @if let Some(pass) = pass { (spread(pass.ms)) } }

@@ -1,50 +1,50 @@
 //! Images beside the truth and the perceived difference.
 
 use super::page::{Page, titled};
-use crate::bench::record::{Exhibit, Figure, Run, Session};
+use crate::bench::record::{Experiment, Images, Run, Session};
 use crate::bench::show;
 use maud::{Markup, html};
 use std::io;
 
 /// Truth, image and FLIP map in a row, with the run's metrics.
-pub fn part(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
+pub fn content(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
     // Images of effects are shown with them.
-    let elsewhere =
-        |index| session.runs.iter().any(|run| run.figure == Figure::Effects && run.exhibit == Some(index));
-    let exhibits: Vec<_> =
-        session.exhibits.iter().enumerate().filter(|(index, _)| !elsewhere(*index)).collect();
-    Ok((!exhibits.is_empty()).then(|| html! {
+    let elsewhere = |index| {
+        session.runs.iter().any(|run| run.experiment == Experiment::Effects && run.images == Some(index))
+    };
+    let all: Vec<_> = session.images.iter().enumerate().filter(|(index, _)| !elsewhere(*index)).collect();
+    Ok((!all.is_empty()).then(|| html! {
         p {
             "From left to right: the truth, the picture, and FLIP's map of the difference that a viewer sees who flips between them, from "
             "black (none) through red to pale yellow (most)."
         }
-        @for &(index, exhibit) in &exhibits {
-            figure.exhibit {
-                div.row { @for (name, png) in pictures(exhibit) {
-                    img src={ "data:image/png;base64," (png) } alt={ (exhibit.title) ": " (name) };
+        @for &(index, images) in &all {
+            figure.images {
+                div.row { @for (name, png) in pictures(images) {
+                    img src={ "data:image/png;base64," (png) } alt={ (images.title) ": " (name) };
                 } }
-                figcaption { (words(exhibit, session.runs.iter().filter(|run| run.exhibit == Some(index)))) }
+                figcaption { (words(images, session.runs.iter().filter(|run| run.images == Some(index)))) }
             }
         }
     }))
 }
 
-fn pictures(exhibit: &Exhibit) -> [(&'static str, &str); 3] {
-    [("the truth", &exhibit.truth), ("the picture", &exhibit.picture), ("FLIP's map", &exhibit.map)]
+fn pictures(images: &Images) -> [(&'static str, &str); 3] {
+    [("the truth", &images.truth), ("the picture", &images.rendered), ("FLIP's map", &images.flip)]
 }
 
 /// The runs that the images belong to, or the title if there are none.
-fn words<'r>(exhibit: &Exhibit, runs: impl Iterator<Item = &'r Run>) -> Markup {
+fn words<'r>(images: &Images, runs: impl Iterator<Item = &'r Run>) -> Markup {
     let runs: Vec<&Run> = runs.collect();
     html! {
         @for run in &runs { strong { (titled(&run.scene, run.size)) } ": " (caption(run)) ". " }
-        @if runs.is_empty() { strong { (exhibit.title) } }
+        @if runs.is_empty() { strong { (images.title) } }
     }
 }
 
 fn caption(run: &Run) -> String {
     let mut words = vec![
-        run.contender.label(),
+        run.implementation.label(),
         format!("{} points", show::count(run.points)),
         show::told_of(run, [true, true, true, false, false, false, false]),
     ];

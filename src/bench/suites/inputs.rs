@@ -1,8 +1,8 @@
 //! Inputs of the user.
 
 use super::{Suite, baseline, plan};
-use crate::bench::plan::{Plan, Wants};
-use crate::bench::record::Figure;
+use crate::bench::plan::{Measurements, Plan};
+use crate::bench::record::Experiment;
 use crate::bench::subject::Subject;
 use crate::settings::Shading;
 use crate::verify::baseline::Kind;
@@ -13,7 +13,7 @@ const POINTS: [u64; 5] = [10_000, 30_000, 100_000, 300_000, 1_000_000];
 
 /// Inputs of the user, and how to render them.
 #[derive(Clone)]
-pub struct Own {
+pub struct UserInputs {
     /// Scenes and scans.
     pub subjects: Vec<Rc<Subject>>,
     /// Numbers of points, limited to those of a scan; if empty, from 10⁴ to 10⁶ or to all points of a scan.
@@ -22,7 +22,7 @@ pub struct Own {
     pub size: [u32; 2],
 }
 
-impl Default for Own {
+impl Default for UserInputs {
     /// No inputs.
     fn default() -> Self {
         Self { subjects: Vec::new(), points: Vec::new(), size: [768, 768] }
@@ -30,12 +30,12 @@ impl Default for Own {
 }
 
 /// Time against error of each input, at every density.
-pub(super) fn plans(own: &Own) -> Vec<Plan> {
+pub(super) fn plans(inputs: &UserInputs) -> Vec<Plan> {
     let each = |subject: &Rc<Subject>| {
-        let plans = |points| budget(subject, points, own.size);
-        densities(subject, &own.points).into_iter().flat_map(plans).collect::<Vec<_>>()
+        let plans = |points| budget(subject, points, inputs.size);
+        densities(subject, &inputs.points).into_iter().flat_map(plans).collect::<Vec<_>>()
     };
-    own.subjects.iter().flat_map(each).collect()
+    inputs.subjects.iter().flat_map(each).collect()
 }
 
 fn densities(subject: &Subject, wanted: &[u64]) -> Vec<u64> {
@@ -50,15 +50,16 @@ fn densities(subject: &Subject, wanted: &[u64]) -> Vec<u64> {
 }
 
 fn budget(subject: &Subject, points: u64, size: [u32; 2]) -> Vec<Plan> {
-    let mut smooth = plan(Suite::Own, Figure::Budget, &subject.name, points, size);
+    let mut smooth = plan(Suite::Inputs, Experiment::Budget, &subject.name, points, size);
     if !subject.is_coloured() {
         smooth.settings.shading = Shading::Lit;
     }
     let mut sharp = smooth.clone();
     sharp.settings.lowpass = 0.0;
-    let wants = Wants { terms: true, agreement: points <= 100_000, exhibit: true, ..Wants::BOTH };
+    let measurements =
+        Measurements { terms: true, float64_error: points <= 100_000, images: true, ..Measurements::BOTH };
     vec![
-        Plan { wants, ..smooth.clone() },
+        Plan { measurements, ..smooth.clone() },
         sharp,
         baseline(&smooth, Kind::Splats),
         baseline(&smooth, Kind::Pixels),

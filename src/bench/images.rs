@@ -1,7 +1,7 @@
 //! Images of a run beside the truth.
 
 use super::plan::Plan;
-use super::record::Exhibit;
+use super::record::Images;
 use crate::error::{Error, Result};
 use crate::formats::image::Encoded;
 use crate::picture::Picture;
@@ -12,17 +12,17 @@ use base64::prelude::{BASE64_STANDARD, Engine};
 const MOST: u32 = 512;
 
 /// The images of a run: rendered, truth, and FLIP's difference map.
-pub fn exhibit(plan: &Plan, picture: &Picture, truth: &Picture) -> Result<Exhibit> {
+pub fn of(plan: &Plan, picture: &Picture, truth: &Picture) -> Result<Images> {
     let [picture, truth] = [picture, truth].map(middle);
     let measured = measure(&Pair::new(&picture, &truth)?, &Options::default())?;
     let flip = measured.value(Metric::Flip).unwrap_or_default();
     let shading = plan.settings.shading;
-    let contender = plan.engine.contender(&plan.settings).label();
-    Ok(Exhibit {
-        title: format!("{}, {} points, {contender}: FLIP {flip:.3}", plan.scene, plan.points),
-        picture: png(Encoded::of(&picture, shading)?)?,
+    let implementation = plan.engine.implementation(&plan.settings).label();
+    Ok(Images {
+        title: format!("{}, {} points, {implementation}: FLIP {flip:.3}", plan.scene, plan.points),
+        rendered: png(Encoded::of(&picture, shading)?)?,
         truth: png(Encoded::of(&truth, shading)?)?,
-        map: png(measured.flip.coloured()?)?,
+        flip: png(measured.flip.coloured()?)?,
     })
 }
 
