@@ -1,7 +1,7 @@
 //! Coverage of the silhouettes. A pixel is covered as [`covers`] defines.
 //!
 //! - Intersection over union of the silhouettes (Jaccard, *Étude comparative de la distribution florale*, 1901): 0 to
-//! 1, no unit, more is better; 1 if neither picture covers anything.
+//!   1, no unit, more is better; 1 if neither picture covers anything.
 //! - Holes: pixels that the truth covers and the picture does not, at the outline or inside.
 //! - Bloat: pixels that the picture covers and the truth does not.
 //!

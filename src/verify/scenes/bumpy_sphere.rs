@@ -1,6 +1,8 @@
-//! A sphere with bumps, `r = 1 + 0.1 sin 5θ sin 5φ`, in checker colours: the comparison scene, whose exact picture can be traced.
+//! The comparison scene: a sphere with bumps, `r = 1 + 0.1 sin 5θ sin 5φ`, in checker colours, with exact ray
+//! intersections.
 //!
-//! θ is the polar angle from +y, φ the azimuth from +x towards +z. One definition of the surface serves sampling and tracing.
+//! θ is the polar angle from +y, φ the azimuth from +x towards +z. One definition of the surface serves sampling and
+//! tracing.
 
 mod trace;
 
@@ -37,7 +39,8 @@ fn fifth(cos: f64, sin: f64) -> (f64, f64) {
 
 /// The surface in the direction of the unit vector `u`. At the poles, where the surface has a cone-like tip and no gradient, φ is taken as 0.
 fn shape(u: DVec3) -> Shape {
-    // Not as hypot: this is most of what a traced ray costs, and a unit vector's coordinates do not overflow.
+    // Faster than `hypot`, as this dominates the cost of a traced ray; the coordinates of a unit vector do not
+    // overflow.
     let sin_theta = (u.x * u.x + u.z * u.z).sqrt();
     let (cos_phi, sin_phi) = if sin_theta > 0.0 { (u.x / sin_theta, u.z / sin_theta) } else { (1.0, 0.0) };
     let ((cos_5theta, theta_ratio), (cos_5phi, phi_ratio)) = (fifth(u.y, sin_theta), fifth(cos_phi, sin_phi));
@@ -64,7 +67,7 @@ pub fn implicit(p: DVec3) -> (f64, DVec3) {
     (length - shape.radius, u - shape.slope / length)
 }
 
-/// The checker's sRGB colour in the direction of `p`: 16 fields from pole to pole, 32 around.
+/// The checker's sRGB colour in the direction of `p`: 16 squares from pole to pole, 32 around.
 pub fn colour(p: DVec3) -> [u8; 3] {
     let theta = p.x.hypot(p.z).atan2(p.y);
     let phi = p.z.atan2(p.x).rem_euclid(TAU);
@@ -89,9 +92,10 @@ pub fn area() -> f64 {
     (1..THETA).map(|i| weight(i) * ring(i)).sum::<f64>() * PI / f64::from(3 * THETA)
 }
 
-/// Samples the surface: a Fibonacci lattice on the sphere, jittered by a quarter of the spacing and pushed out to the surface. The same
-/// `points` and `seed` give the same surfels everywhere up to rounding. Centres are on the surface to within f32, normals are
-/// exact, every radius is 1.5 √(area / points). The order is along the lattice, from pole to pole.
+/// Samples the surface: a Fibonacci lattice on the sphere, jittered by a quarter of the spacing and projected to the
+/// surface. The same `points` and `seed` give the same surfels on every machine up to rounding. Centres lie on the
+/// surface to within f32, normals are exact, and every radius is 1.5 √(area / points). The order is along the lattice,
+/// from pole to pole.
 pub fn sample(points: u32, seed: u64) -> Surfels {
     let rng = Pcg64::seed_from_u64(seed);
     let surfel = |i: u32| {
@@ -112,7 +116,8 @@ pub fn sample(points: u32, seed: u64) -> Surfels {
     }
 }
 
-/// Direction of point `i`. Every point takes its own two numbers of the generator's sequence, so points can be made in any order.
+/// Direction of point `i`. Every point takes its own two numbers of the generator's sequence, so points can be computed
+/// in any order.
 fn jittered(i: u32, points: u32, mut rng: Pcg64) -> DVec3 {
     rng.advance(2 * u128::from(i));
     let mut quarter = || (rng.next_u64() >> 11) as f64 / (1u64 << 53) as f64 * 0.5 - 0.25;
@@ -150,7 +155,7 @@ mod tests {
             let across =
                 |axis: DVec3| (implicit(p + step * axis).0 - implicit(p - step * axis).0) / (2.0 * step);
             let gradient = DVec3::new(across(DVec3::X), across(DVec3::Y), across(DVec3::Z));
-            // Near the poles the curvature, and with it the error of the difference, grows without bound.
+            // Near the poles the curvature, and so the error of the difference, grows without bound.
             let tolerance = 1e-8 / p.x.hypot(p.z).powi(2).min(1.0);
             assert!(implicit(p).1.abs_diff_eq(gradient, tolerance), "{p}");
         }
@@ -162,7 +167,7 @@ mod tests {
         for (p, n) in surfels.positions.iter().zip(&surfels.normals) {
             let (value, gradient) = implicit(p.as_dvec3());
             assert!(value.abs() < 1e-6, "{p}");
-            // The normal turns within the rounding of the position near the poles.
+            // Near the poles the normal changes within the rounding of the position.
             let tolerance = 1e-5 / f64::from(p.x.hypot(p.z));
             assert!(gradient.normalize().abs_diff_eq(n.as_dvec3(), tolerance), "{p}");
         }

@@ -1,4 +1,4 @@
-//! Every built-in scene, with its parameters and a camera.
+//! The list of built-in scenes, with their parameters and viewpoints.
 
 use super::edges::Edge;
 use super::models;
@@ -8,40 +8,40 @@ use crate::error::Result;
 use crate::geometry::{Bounds, Camera};
 use glam::DVec3;
 
-/// Most points of a scene: what a large machine's memory holds.
+/// Most points of a scene: the memory of a large machine.
 const MOST_POINTS: u64 = 100_000_000;
 
 /// A built-in scene.
 #[derive(Clone, Copy)]
 pub struct Scene {
-    /// Name, `scene:` included.
+    /// Name, including `scene:`.
     pub name: &'static str,
-    /// What it shows.
+    /// Description.
     pub summary: &'static str,
-    /// From where it is best seen.
+    /// Recommended viewpoint.
     pub viewpoint: Viewpoint,
     /// Parameters of its surface.
     pub own: &'static [Parameter],
     pub(super) build: fn(&Query) -> Vec<Piece>,
-    /// Its sharp edges, where those are what clip lines are made of.
+    /// Sharp edges for clip lines, if the scene has any.
     pub(super) edges: Option<fn(&Query) -> Vec<Edge>>,
 }
 
-/// Where a camera stands and looks.
+/// Position and direction of a camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Viewpoint {
-    /// Where it stands.
+    /// Position.
     pub eye: [f64; 3],
-    /// Where it looks.
+    /// Point looked at.
     pub target: [f64; 3],
-    /// What is up.
+    /// Up vector.
     pub up: [f64; 3],
-    /// Vertical angle of view, degrees.
+    /// Vertical field of view, degrees.
     pub fov_y_deg: f64,
 }
 
 impl Viewpoint {
-    /// The camera of a picture of this width / height that shows what lies in `bounds`.
+    /// The camera of a picture with this aspect ratio that shows `bounds`.
     pub fn camera(&self, aspect: f64, bounds: &Bounds) -> Result<Camera> {
         let [eye, target, up] = [self.eye, self.target, self.up].map(DVec3::from);
         let near = Camera::near_for(eye, bounds);
@@ -50,18 +50,18 @@ impl Viewpoint {
 }
 
 impl Scene {
-    /// Its parameters: those of its samples, then those of its surface.
+    /// The parameters: those of the samples, then those of the surface.
     pub fn parameters(&self) -> impl Iterator<Item = &'static Parameter> + use<> {
         SAMPLING.iter().chain(self.own)
     }
 
-    /// The sharp edges at which `query` wants discs to end.
+    /// The sharp edges at which discs end, if `query` asks for them.
     pub(super) fn edges(&self, query: &Query) -> Vec<Edge> {
         self.edges.filter(|_| query.word(CLIPS_NAME) == "on").map_or_else(Vec::new, |edges| edges(query))
     }
 }
 
-/// What every scene takes.
+/// Sampling parameters, common to all scenes.
 pub const SAMPLING: &[Parameter] = &[
     Parameter {
         name: "points",
@@ -101,26 +101,26 @@ pub const SAMPLING: &[Parameter] = &[
     },
 ];
 
-/// Of scenes that know their sharp edges.
+/// Parameter of scenes with sharp edges.
 const CLIPS: Parameter = Parameter {
     name: CLIPS_NAME,
     default: "on",
     values: Values::Choice(&["on", "off"]),
     meaning: "whether discs end at sharp edges",
 };
-/// Name of the parameter that says whether discs are clipped.
+/// Name of the parameter for clip lines.
 const CLIPS_NAME: &str = "clips";
 
-/// Of scenes that may be drawn as lines and polygons.
+/// Parameter of scenes that have lines or polygons.
 const PRIMITIVES: Parameter = Parameter {
     name: PRIMITIVES_NAME,
     default: "off",
     values: Values::Choice(&["on", "off"]),
     meaning: "whether tubes and ribbons are lines, and boxes and floors triangles, rather than surfels",
 };
-/// Name of the parameter that says whether there are lines and triangles.
+/// Name of the parameter for lines and polygons.
 pub(super) const PRIMITIVES_NAME: &str = "primitives";
-/// Into how much these are divided.
+/// Number of segments of lines and polygons.
 const SEGMENTS: Parameter = Parameter {
     name: "segments",
     default: "32",
@@ -160,7 +160,7 @@ const fn view(eye: [f64; 3], target: [f64; 3], fov_y_deg: f64) -> Viewpoint {
     Viewpoint { eye, target, up: [0.0, 1.0, 0.0], fov_y_deg }
 }
 
-/// 3.5 normalize(1, 0.8, 1.6), from where comparisons of the bumpy sphere are made.
+/// 3.5 normalize(1, 0.8, 1.6), the viewpoint of comparisons with the bumpy sphere.
 const COMPARISON: [f64; 3] = [1.707_825_127_659_933, 1.366_260_102_127_946_3, 2.732_520_204_255_892_7];
 
 /// Every built-in scene.
@@ -173,7 +173,7 @@ const SCENES: &[Scene] = &[
         name: "scene:bumpy-sphere",
         summary: "a sphere of radius 1 with bumps",
         viewpoint: view(COMPARISON, [0.0; 3], 45.0),
-        // 8 / π: 16 fields from pole to pole.
+        // 8 / π: 16 squares from pole to pole.
         own: &[albedo("checker"), frequency("2.5464790894703255")],
         build: models::bumpy_sphere,
         edges: None,

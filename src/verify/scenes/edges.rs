@@ -1,37 +1,37 @@
-//! Sharp edges of surfaces, and the clip lines of discs that reach them (Zwicker et al. 2004, section 5): a disc ends where its plane meets
-//! the plane that touches the face beyond the edge.
+//! Sharp edges of surfaces, and clip lines of the discs that reach them (Zwicker et al. 2004, section 5): a disc ends
+//! where its plane intersects the tangent plane of the face beyond the edge.
 
 use crate::geometry::{Clip, ClipLine};
 use glam::DVec3;
 
-/// What is no further apart is the same, the scenes being about 1 large: faces in one plane, unit normals, ends of edges.
+/// Tolerance for equality of planes, unit normals and end points; scenes have a size of about 1.
 const SAME: f64 = 1e-9;
 
-/// Where two smooth faces meet.
+/// An edge between two smooth faces.
 #[derive(Clone, Copy, Debug)]
 pub enum Edge {
     /// Straight, between two planes.
     Straight {
-        /// Where it begins and ends.
+        /// End points.
         ends: [DVec3; 2],
-        /// The faces' unit normals, outwards.
+        /// Outward unit normals of the faces.
         normals: [DVec3; 2],
-        /// Whether the solid is within both planes, rather than within either.
+        /// Whether the solid is the intersection of both half-spaces, not the union.
         convex: bool,
     },
-    /// Around the end of a round hole at a right angle to a plane.
+    /// The rim of a round hole perpendicular to a plane.
     Rim {
-        /// The middle of the hole's end.
+        /// Centre of the rim.
         centre: DVec3,
-        /// The plane's unit normal, outwards.
+        /// Outward unit normal of the plane.
         normal: DVec3,
-        /// The hole's radius.
+        /// Radius of the hole.
         radius: f64,
     },
 }
 
 impl Edge {
-    /// The point of the edge next to `p`; none from a rim's axis.
+    /// The point of the edge nearest to `p`; none from a rim's axis.
     fn foot(&self, p: DVec3) -> Option<DVec3> {
         match *self {
             Self::Straight { ends: [from, to], .. } => {
@@ -45,7 +45,7 @@ impl Edge {
         }
     }
 
-    /// The faces' unit normals at a point of the edge, outwards, and whether the edge is convex.
+    /// Outward unit normals of the faces at a point of the edge, and whether the edge is convex.
     fn faces(&self, foot: DVec3) -> ([DVec3; 2], bool) {
         match *self {
             Self::Straight { normals, convex, .. } => (normals, convex),
@@ -53,7 +53,7 @@ impl Edge {
         }
     }
 
-    /// How a disc around `p` on the surface ends at the edge; `None` unless `p` is on one of the edge's faces.
+    /// The cut of a disc around `p` by the edge; `None` unless `p` is on one of the edge's faces, within reach.
     fn cut(&self, p: DVec3, normal: DVec3, radius: f64) -> Option<Cut<'_>> {
         let foot = self.foot(p)?;
         let distance = p.distance(foot);
@@ -68,7 +68,7 @@ impl Edge {
     }
 }
 
-/// Where a disc ends: at the border of the half-space `outward · (x − foot) ≤ 0`.
+/// A cut of a disc, at the border of the half-space `outward · (x − foot) ≤ 0`.
 struct Cut<'a> {
     edge: &'a Edge,
     distance: f64,
@@ -98,24 +98,24 @@ impl Cut<'_> {
 
 /// A disc to be clipped.
 pub struct Disc {
-    /// Where on the surface it was taken.
+    /// Point of the surface that was sampled.
     pub on: DVec3,
-    /// Its centre, which may be beside the surface.
+    /// Its centre, which may lie off the surface.
     pub centre: DVec3,
-    /// Its unit normal, that of the surface.
+    /// Unit normal of the surface.
     pub normal: DVec3,
     /// Its radius; of an ellipse, the longer semi-axis.
     pub radius: f64,
 }
 
-/// The clip of a disc by the edges of its face that it reaches, the two nearest if there are more: at a corner of the face they share, what
-/// is kept is what the face has there; otherwise both cut.
+/// Clips a disc by the edges of its face that it reaches, or by the nearest two. If they share a corner of the face,
+/// the kept part is that of the face at this corner; otherwise both cut.
 pub fn clip(edges: &[Edge], disc: &Disc) -> Option<Clip> {
     let mut cuts: Vec<Cut> =
         edges.iter().filter_map(|edge| edge.cut(disc.on, disc.normal, disc.radius)).collect();
     cuts.sort_by(|a, b| a.distance.total_cmp(&b.distance));
     let (first, rest) = cuts.split_first()?;
-    // Another face in the same plane may have an edge within reach; its own discs cover it.
+    // An edge of another face in the same plane may be within reach; that face has its own discs.
     let second = rest.iter().find(|cut| first.leaving(cut).is_some() || cut.keeps(disc.on));
     let concave = second.is_some_and(|cut| first.leaving(cut).is_some_and(|d| first.outward.dot(d) > 0.0));
     let line = |cut: &Cut| cut.line(disc.centre, disc.normal);

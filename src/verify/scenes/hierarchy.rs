@@ -1,11 +1,11 @@
-//! A hierarchy of boxes, to find what a ray may meet without asking all.
+//! Bounding volume hierarchy.
 
 use super::shapes::Ray;
 use glam::DVec3;
 
-/// Boxes that a ray passes through are visited from near to far.
+/// A bounding volume hierarchy, traversed from near to far.
 pub struct Hierarchy {
-    /// The root is the first.
+    /// The first node is the root.
     nodes: Vec<Node>,
 }
 
@@ -19,16 +19,16 @@ enum Content {
     Children([u32; 2]),
 }
 
-/// How much boxes are widened against rounding, as a part of their distance from the origin.
+/// Relative widening of boxes against rounding, of their distance from the origin.
 const MARGIN: f64 = 1e-12;
 
-/// The box around both.
+/// The box around two boxes.
 pub fn union(a: [DVec3; 2], b: [DVec3; 2]) -> [DVec3; 2] {
     [a[0].min(b[0]), a[1].max(b[1])]
 }
 
 impl Hierarchy {
-    /// The hierarchy of items with these boxes, by their indices.
+    /// The hierarchy of items with these boxes; items are identified by their indices.
     pub fn new(boxes: &[[DVec3; 2]]) -> Self {
         let mut hierarchy = Self { nodes: Vec::with_capacity(2 * boxes.len()) };
         let mut items: Vec<u32> = (0..boxes.len() as u32).collect();
@@ -38,7 +38,7 @@ impl Hierarchy {
         hierarchy
     }
 
-    /// Adds the node of `items`, halved by their middles along the longest side, and returns its index.
+    /// Adds the node of `items`, split at the median along the longest side, and returns its index.
     fn build(&mut self, boxes: &[[DVec3; 2]], items: &mut [u32]) -> u32 {
         let all = items.iter().map(|i| boxes[*i as usize]).reduce(union).unwrap_or_default();
         let margin = MARGIN * (all[0].abs().max(all[1].abs()).max_element());
@@ -58,7 +58,8 @@ impl Hierarchy {
         index
     }
 
-    /// Calls `visit` with every item whose box the ray enters before `limit`, and with the limit so far; it returns the new one.
+    /// Calls `visit` with every item whose box the ray enters before `limit`, and the current limit; `visit` returns
+    /// the new one.
     pub fn visit(&self, ray: &Ray, limit: f64, mut visit: impl FnMut(u32, f64) -> f64) {
         let mut limit = limit;
         let inverse = ray.direction.recip();
@@ -85,13 +86,13 @@ impl Hierarchy {
     }
 }
 
-/// Where a ray enters a box, 0 if it begins inside.
+/// Distance at which a ray enters a box; 0 if it starts inside.
 fn enter(corners: [DVec3; 2], origin: DVec3, inverse: DVec3) -> Option<f64> {
     let (mut from, mut to) = (0.0f64, f64::INFINITY);
     for axis in 0..3 {
         let a = (corners[0][axis] - origin[axis]) * inverse[axis];
         let b = (corners[1][axis] - origin[axis]) * inverse[axis];
-        // Along a side's plane 0 · ∞ is not a number, which min and max pass over: the side excludes nothing.
+        // In a side's plane, 0 · ∞ is NaN, which min and max ignore: that side excludes nothing.
         from = from.max(a.min(b));
         to = to.min(a.max(b));
     }

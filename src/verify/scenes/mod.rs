@@ -1,6 +1,7 @@
-//! Built-in scenes with exact ground truth, named like `scene:torus?points=100000&sampler=blue-noise&seed=1`.
+//! Built-in scenes with exact surfaces, named like `scene:torus?points=100000&sampler=blue-noise&seed=1`.
 //!
-//! A scene is a [`Surface`]: pieces of [shapes](Shape), each defined once. [`surface`] gives what rays meet, [`open`] samples it.
+//! A scene is a [`Surface`]: pieces of [shapes](Shape) with one definition each. [`surface`] returns it for ray
+//! tracing, [`open`] samples it.
 
 pub mod bumpy_sphere;
 mod catalogue;
@@ -29,21 +30,21 @@ use crate::geometry::{Model, Surfels};
 use query::{PREFIX, Query};
 use surface::Assembly;
 
-/// Whether `text` is meant as a built-in scene rather than a file.
+/// Whether `text` names a built-in scene rather than a file.
 pub fn is_scene(text: &str) -> bool {
     text.starts_with(PREFIX)
 }
 
-/// The surface of a scene: `scene:<name>`, then optionally `?` and `parameter=value` pairs between `&`; the samples' parameters may
-/// stand there too.
+/// The surface of a scene: `scene:<name>`, optionally followed by `?` and `parameter=value` pairs separated by `&`;
+/// sampling parameters are allowed, too.
 ///
 /// # Errors
-/// [`Error::Usage`], which lists what exists, if the scene, a parameter or a value is none.
+/// [`Error::Usage`] if the scene, a parameter or a value does not exist; the message lists those that do.
 pub fn surface(text: &str) -> Result<Box<dyn Surface>> {
     Ok(Box::new(assemble(&Query::parse(text)?)))
 }
 
-/// From where a scene is best seen.
+/// The recommended viewpoint of a scene.
 ///
 /// # Errors
 /// Like [`surface`].
@@ -51,7 +52,7 @@ pub fn camera(text: &str) -> Result<Viewpoint> {
     Ok(Query::parse(text)?.scene.viewpoint)
 }
 
-/// Whether a scene has a texture: where it has none, what is seen of its shape is light and shade.
+/// Whether a scene has a texture; without one, only shading shows its shape.
 ///
 /// # Errors
 /// Like [`surface`].
@@ -59,7 +60,7 @@ pub fn is_textured(text: &str) -> Result<bool> {
     Ok(Query::parse(text)?.pattern() != Pattern::Plain)
 }
 
-/// Makes a scene: surfels in Morton order, and the lines and triangles of what it wants drawn so.
+/// Samples a scene: surfels in Morton order, and its lines and triangles, if the text asks for them.
 ///
 /// # Errors
 /// Like [`surface`].
@@ -79,10 +80,10 @@ pub fn model(text: &str) -> Result<Model> {
     Ok(Model { surfels, primitives: primitives::primitives(&query, &others) })
 }
 
-/// Makes the surfels of a scene, in Morton order.
+/// Samples the surfels of a scene, in Morton order.
 ///
 /// # Errors
-/// Like [`surface`]; one that wants lines and triangles is refused.
+/// Like [`surface`]; also if the text asks for lines and triangles.
 pub fn open(text: &str) -> Result<Surfels> {
     let query = Query::parse(text)?;
     if query.word(catalogue::PRIMITIVES_NAME) == "on" {
@@ -102,7 +103,7 @@ fn assemble(query: &Query) -> Assembly {
     Assembly::new((query.scene.build)(query))
 }
 
-/// Whether the samples are those that the bumpy sphere is compared by, which have their own lattice.
+/// Whether the samples are those of the comparison scene, which have a lattice of their own.
 fn is_comparison(query: &Query) -> bool {
     let usual = ["sampler", "albedo", "frequency", "noise"].iter().all(|name| !query.is_given(name));
     query.scene.name == "scene:bumpy-sphere" && usual

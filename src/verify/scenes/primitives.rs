@@ -1,22 +1,22 @@
-//! Scenes as lines and polygons: the pieces that may be drawn so, and surfels of the others.
+//! Lines and polygons of scenes: the pieces that can be drawn so.
 
 use super::query::Query;
 use super::surface::{Kind, Piece};
 use crate::geometry::{Colours, Primitives};
 use glam::{DVec2, DVec3, Vec3};
 
-/// A point of a middle line.
+/// A point of a centre line.
 #[derive(Clone, Copy, Debug)]
 pub struct Middle {
     /// Where it is.
     pub position: DVec3,
-    /// Unit normal of a ribbon, tangent of a tube.
+    /// Unit normal of a ribbon, unit tangent of a tube.
     pub direction: DVec3,
     /// Half the width, or the radius.
     pub radius: f64,
 }
 
-/// The lines and triangles of `pieces`. A tube's caps have no middle line: where it ends, it is round.
+/// The lines and triangles of `pieces`. A tube's caps have no centre line: its lines have round ends.
 pub fn primitives(query: &Query, pieces: &[Piece]) -> Primitives {
     let steps = query.whole("segments") as usize;
     let mut drawn = Primitives { colours: Some(Colours::Linear(Vec::new())), ..Default::default() };

@@ -1,26 +1,26 @@
-//! A scene's name with its parameters: `scene:NAME?key=value&…`.
+//! A scene's name and parameters: `scene:NAME?key=value&…`.
 
 use super::catalogue::{self, Scene};
 use super::texture::Pattern;
 use crate::error::{Error, Result};
 
-/// What a scene's name begins with.
+/// Prefix of all scenes' names.
 pub const PREFIX: &str = "scene:";
 
 /// A parameter of a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parameter {
-    /// What stands before `=`.
+    /// Name.
     pub name: &'static str,
-    /// Its value unless given.
+    /// Default value.
     pub default: &'static str,
-    /// Which values there are.
+    /// Allowed values.
     pub values: Values,
-    /// What it does, with its unit.
+    /// Description, with the unit.
     pub meaning: &'static str,
 }
 
-/// Which values a parameter takes.
+/// Allowed values of a parameter.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Values {
     /// A whole number from the first to the second.
@@ -52,7 +52,7 @@ impl Values {
     }
 }
 
-/// What a text asks for; every value is one that its parameter takes.
+/// A parsed scene text; every value is valid.
 pub struct Query<'a> {
     /// The scene.
     pub scene: &'static Scene,
@@ -60,7 +60,7 @@ pub struct Query<'a> {
 }
 
 impl<'a> Query<'a> {
-    /// Understands `text`; [`Error::Usage`], which lists what exists, where it cannot.
+    /// Parses `text`; [`Error::Usage`] if it is invalid, with a list of valid names.
     pub fn parse(text: &'a str) -> Result<Self> {
         let usage = |cause: String| Error::Usage(format!("{text}: {cause}"));
         let (name, query) = text.split_once('?').unwrap_or((text, ""));
@@ -86,7 +86,7 @@ impl<'a> Query<'a> {
         Ok(Self { scene, given })
     }
 
-    /// Whether the text says a value of this parameter.
+    /// Whether the text sets this parameter.
     pub fn is_given(&self, name: &str) -> bool {
         self.given.iter().any(|(given, _)| *given == name)
     }
@@ -108,7 +108,7 @@ impl<'a> Query<'a> {
         self.word(name).parse().unwrap_or_default()
     }
 
-    /// The pattern that `albedo` names.
+    /// The pattern named by `albedo`.
     pub fn pattern(&self) -> Pattern {
         match self.word("albedo") {
             "checker" => Pattern::Checker,

@@ -1,4 +1,4 @@
-//! Random numbers that are the same everywhere.
+//! Reproducible random numbers.
 
 use rand_pcg::Pcg64;
 use rand_pcg::rand_core::Rng;
@@ -10,16 +10,16 @@ pub struct Random(Pcg64);
 impl Random {
     /// A sequence by its seed; sequences of different streams are independent.
     pub fn new(seed: u64, stream: u64) -> Self {
-        // PCG's own seeding takes the stream apart from the state.
+        // PCG's own seeding does not separate the stream from the state.
         Self(Pcg64::new(u128::from(seed) << 64 | 0xcafe_f00d_d15e_a5e5, u128::from(stream)))
     }
 
-    /// Uniform, 0 inclusive to 1 exclusive.
+    /// Uniform in [0, 1).
     pub fn unit(&mut self) -> f64 {
         (self.0.next_u64() >> 11) as f64 / (1u64 << 53) as f64
     }
 
-    /// Uniform, 0 inclusive to `below` exclusive.
+    /// Uniform in [0, `below`).
     pub fn below(&mut self, below: usize) -> usize {
         ((u128::from(self.0.next_u64()) * below as u128) >> 64) as usize
     }

@@ -1,4 +1,4 @@
-//! Surfaces: pieces of shapes with albedos, which are sampled and traced by the same definition.
+//! Surfaces: pieces of shapes with albedos, sampled and traced by one definition.
 
 use super::hierarchy::{Hierarchy, union};
 use super::shapes::{Ray, Shape};
@@ -6,10 +6,10 @@ use super::texture::Texture;
 use crate::geometry::Bounds;
 use glam::DVec3;
 
-/// Where a ray meets a surface.
+/// Intersection of a ray with a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
-    /// Distance in lengths of the ray's direction.
+    /// Distance, in lengths of the ray's direction.
     pub t: f64,
     /// The point.
     pub position: DVec3,
@@ -19,31 +19,32 @@ pub struct Hit {
     pub albedo: [f64; 3],
 }
 
-/// A surface that is known exactly.
+/// A surface with exact ray intersections.
 pub trait Surface: Send + Sync {
-    /// A box and a sphere that hold it.
+    /// Bounding box and sphere.
     fn bounds(&self) -> Bounds;
 
-    /// The nearest point that a ray meets at `t > 0`. `direction` may have any length; a zero or non-finite ray meets nothing.
+    /// The nearest intersection with a ray at `t > 0`. `direction` may have any length; a zero or non-finite ray has
+    /// none.
     fn trace(&self, origin: DVec3, direction: DVec3) -> Option<Hit>;
 
     /// Area of all pieces, hidden parts included.
     fn area(&self) -> f64;
 
-    /// What it is made of.
+    /// Its pieces.
     fn pieces(&self) -> &[Piece];
 }
 
-/// As what a piece may be drawn. Samplers make surfels of all.
+/// Primitive that a piece may be drawn as. Samplers produce surfels for all of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// By surfels.
+    /// Surfels.
     Surface,
-    /// By a line with a tube's shading.
+    /// A line, shaded as a tube.
     Tube,
-    /// By a line with a width, seen from both sides.
+    /// A line with a width, visible from both sides.
     Ribbon,
-    /// By polygons.
+    /// Polygons.
     Polygon,
 }
 
@@ -53,16 +54,16 @@ pub struct Piece {
     pub shape: Box<dyn Shape>,
     /// Its albedo.
     pub texture: Texture,
-    /// As what it may be drawn.
+    /// Primitive that it may be drawn as.
     pub kind: Kind,
-    /// As polygons, the radius of its vertices at u = 1, where it meets what is made of points.
+    /// Radius of its polygons' vertices at u = 1, where they meet points.
     pub seam: f64,
-    /// Pieces with the same number meet at their edges; samplers keep their points apart from each other.
+    /// Pieces with the same number meet at their edges; samplers keep a minimum distance between their points.
     pub sheet: u32,
 }
 
 impl Piece {
-    /// Whether it is an open sheet, of which either side is seen.
+    /// Whether it is an open sheet, visible from both sides.
     pub fn is_two_sided(&self) -> bool {
         self.kind == Kind::Ribbon
     }
@@ -92,7 +93,7 @@ impl Surface for Assembly {
     fn trace(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
         let length = direction.length();
         let direction = direction.try_normalize().filter(|_| origin.is_finite() && length.is_finite())?;
-        // From a point near the surface, so that far origins cost no digits there.
+        // Starts near the surface, so that far origins lose no digits.
         let skipped = ((self.bounds.centre() - origin).dot(direction) - 1.001 * self.bounds.radius).max(0.0);
         let ray = Ray { origin: origin + skipped * direction, direction };
         let mut found = None;

@@ -1,4 +1,4 @@
-//! Albedos: procedural textures of any frequency.
+//! Procedural albedo textures.
 
 use super::shapes::Spot;
 use crate::geometry::srgb;
@@ -11,11 +11,11 @@ pub type Rgb = [f64; 3];
 /// The pattern of a texture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pattern {
-    /// Square fields of two colours; two fields are a period.
+    /// Squares of two colours; two squares are a period.
     Checker,
-    /// Sinusoidal stripes along the chart's second axis.
+    /// Sinusoidal stripes along the second texture coordinate.
     Stripes,
-    /// Rings about the chart's origin whose frequency grows with distance: `cos(π f d²)`, whose frequency at distance d is `f d`.
+    /// Zone plate: rings around the origin, `cos(π f d²)`, whose frequency at distance d is `f d`.
     Zone,
     /// Smooth solid noise: two octaves.
     Noise,
@@ -26,11 +26,11 @@ pub enum Pattern {
 /// A texture of two colours.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Texture {
-    /// How the colours are spread.
+    /// Pattern of the colours.
     pub pattern: Pattern,
     /// Periods per unit length; of the zone plate, at distance 1.
     pub frequency: f64,
-    /// The two colours; plain is the first.
+    /// The two colours; `Plain` is the first.
     pub colours: [Rgb; 2],
 }
 
@@ -44,11 +44,11 @@ impl Texture {
     pub fn at(&self, spot: &Spot) -> Rgb {
         let part = self.part(spot);
         let [a, b] = self.colours;
-        // Not a + (b − a): the ends are to be exact.
+        // Exact at both ends, unlike a + part (b − a).
         std::array::from_fn(|i| (1.0 - part) * a[i] + part * b[i])
     }
 
-    /// How much of the second colour there is, 0 to 1.
+    /// Share of the second colour, 0 to 1.
     fn part(&self, spot: &Spot) -> f64 {
         let at = self.frequency * spot.chart;
         match self.pattern {
@@ -78,7 +78,7 @@ fn noise(p: DVec3) -> f64 {
     sum
 }
 
-/// A number from 0 to 1 for a point of the integer lattice, by a finalizer of SplitMix64.
+/// A hash of a point of the integer lattice to [0, 1), by the finalizer of SplitMix64.
 fn lattice(point: [i64; 3]) -> f64 {
     let mix = |state: u64, value: i64| {
         let z = (state ^ value as u64).wrapping_add(0x9e37_79b9_7f4a_7c15);
@@ -110,7 +110,7 @@ mod tests {
             assert!((at(0.03) - at(0.03 + 0.25)).abs() < 1e-12, "{pattern:?}");
             assert!((at(0.03) + at(0.03 + 0.125) - 1.0).abs() < 1e-12, "{pattern:?}");
         }
-        // The zone plate's phase advances by f d a unit of length.
+        // The zone plate's phase changes by f d per unit of length.
         let zone = texture(Pattern::Zone, 50.0);
         assert_eq!(zone.at(&spot(0.0, 0.0))[0], 1.0);
         assert!((zone.at(&spot(0.6, 0.8))[0] - 1.0).abs() < 1e-12);
@@ -125,7 +125,7 @@ mod tests {
         let values: Vec<f64> = (0..20_000).map(at).collect();
         let (least, most) = values.iter().fold((1.0f64, 0.0f64), |r, v| (r.0.min(*v), r.1.max(*v)));
         assert!(least > 0.0 && most < 1.0 && most - least > 0.5, "{least} to {most}");
-        // A step of 10⁻³ is one of 4 · 10⁻³ in the finer octave, whose slope is at most 15 / 8 a cell.
+        // A step of 10⁻³ is one of 4 · 10⁻³ in the finer octave, whose slope is at most 15 / 8 per cell.
         assert!(values.windows(2).all(|pair| (pair[1] - pair[0]).abs() < 5e-3));
     }
 }

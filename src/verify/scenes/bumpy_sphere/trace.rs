@@ -1,22 +1,23 @@
-//! Exact rays: where a ray first meets the bumpy sphere, with proof that it was not met before.
+//! Exact ray intersections with the bumpy sphere: the first one, with proof that there is none before it.
 //!
-//! Along a ray, `g(t) = |p(t)| − r`. Two bounds on it hold between the spheres of radius 0.9 and 1.1, outside of which `g` has no root:
-//! - `|g′| ≤ √(1 + (2.5 / 0.9)²)`, as the slope of `r` on the unit sphere is at most 2.5, which is approached at the poles;
-//! - `|g″| ≤ 6.5 + 16 (1 − s²)⁵ / s`, where `s = sin θ` is the least on the way: the Hessian's spectral norm, which grows like `14.7 / s`
-//!   to the poles and is 4.2 at the equator. The form is fitted to it, with a tenth to spare (`the_bounds_hold`).
+//! Along a ray, `g(t) = |p(t)| − r`. Two bounds hold between the spheres of radius 0.9 and 1.1, outside of which `g`
+//! has no root:
+//! - `|g′| ≤ √(1 + (2.5 / 0.9)²)`, as the slope of `r` on the unit sphere is at most 2.5, approached at the poles;
+//! - `|g″| ≤ 6.5 + 16 (1 − s²)⁵ / s`, where `s = sin θ` is the least on the interval: a fit, 10 % above the Hessian's
+//!   spectral norm, which grows like `14.7 / s` towards the poles and is 4.2 at the equator (test `the_bounds_hold`).
 //!
-//! An interval on which Taylor's formula with these bounds excludes a root is dropped, one on which it proves `g` monotone has at most one
-//! root, and any other is halved, the nearer half first.
+//! An interval is dropped if Taylor's formula with these bounds excludes a root. It has at most one root if they prove
+//! `g` monotone. Any other interval is halved, the nearer half first.
 
 use super::{GREATEST, LEAST, colour, implicit};
 use glam::DVec3;
 
-/// Bound of |g″| where sin θ is no less than this.
+/// Bound of |g″| for sin θ from this value on.
 fn most_curved(sin: f64) -> f64 {
     6.5 + 16.0 * (1.0 - sin * sin).max(0.0).powi(5) / sin
 }
 
-/// Where a ray meets the surface.
+/// Intersection of a ray with the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// Distance from the ray's origin, world units.
@@ -31,27 +32,26 @@ pub struct Hit {
 
 /// Bound of |g′|.
 const STEEPEST: f64 = 2.96;
-/// How far the shell is widened, against rounding at its edges.
+/// Widening of the shell against rounding at its borders.
 const MARGIN: f64 = 1e-9;
 /// Rounding error of g.
 const ROUNDING: f64 = 2e-15;
-/// A step of Newton's method after which the root is known.
+/// Step of Newton's method at which the root is found.
 const ENOUGH: f64 = 1e-13;
-/// A ray that comes this near without a provable crossing touches the surface.
+/// Distance without a provable crossing at which a ray touches the surface.
 const TOUCH: f64 = 1e-14;
 
-/// The first point, at or after `origin`, at which the ray meets the surface, to about 10⁻¹² in distance (where the ray touches the
-/// surface rather than crosses it, to 10⁻¹⁴ in |p| − r). `direction` need not be of unit length; a zero or non-finite ray meets
-/// nothing.
+/// The first intersection at or after `origin`, to about 10⁻¹² in distance; where the ray touches the surface without
+/// crossing it, to 10⁻¹⁴ in |p| − r. `direction` may have any length; a zero or non-finite ray has none.
 pub fn trace(origin: DVec3, direction: DVec3) -> Option<Hit> {
     let (distance, position, normal) = meet(origin, direction)?;
     Some(Hit { distance, position, normal, colour: colour(position) })
 }
 
-/// The same without the colour: distance, point and normal.
+/// The same without colour: distance, point and normal.
 pub fn meet(origin: DVec3, direction: DVec3) -> Option<(f64, DVec3, DVec3)> {
     let direction = direction.try_normalize().filter(|_| origin.is_finite())?;
-    // Parameters count from the foot of the perpendicular from the centre, so that far origins cost no digits.
+    // Parameters count from the foot of the perpendicular from the centre, so that far origins lose no digits.
     let to_foot = -origin.dot(direction);
     let ray = Ray { foot: origin + to_foot * direction, direction };
     let half = |radius: f64| (radius * radius - ray.foot.length_squared()).max(0.0).sqrt();
@@ -72,7 +72,7 @@ struct Ray {
     direction: DVec3,
 }
 
-/// What is known of an interval.
+/// Result for an interval.
 enum Verdict {
     Nothing,
     Root(f64),
@@ -112,7 +112,7 @@ impl Ray {
             return Verdict::Nothing;
         }
         let monotone = slope.abs() > curvature * half;
-        // Neighbours share an end, and so its computed sign: no crossing falls between two intervals.
+        // Adjacent intervals share an end, and so its computed sign: no crossing falls between them.
         if monotone || half < 1e-13 {
             return match self.value(a).0 < 0.0 {
                 inside if inside == (self.value(b).0 < 0.0) => Verdict::Nothing,
@@ -126,13 +126,13 @@ impl Ray {
     fn axis_distance(&self, a: f64, b: f64) -> f64 {
         let (p, d) = (DVec3 { y: 0.0, ..self.foot }, DVec3 { y: 0.0, ..self.direction });
         let nearest = -p.dot(d) / d.length_squared();
-        // A ray along the axis is at the same distance everywhere.
+        // A ray along the axis has a constant distance.
         let t = if nearest.is_finite() { nearest.clamp(a, b) } else { a };
         (p + t * d).length()
     }
 
-    /// The root between `low`, where g is negative if `inside`, and `high`, where it is not: Newton's steps from `t`, where g and g′ are
-    /// given, halving where they leave the bracket.
+    /// The root between `low`, where g is negative if `inside`, and `high`, where it is not: Newton's method from `t`,
+    /// where g and g′ are given, with bisection where a step leaves the bracket.
     fn crossing(&self, [mut low, mut t, mut high]: [f64; 3], at_t: (f64, f64), inside: bool) -> f64 {
         let (mut value, mut slope) = at_t;
         for _ in 0..200 {
@@ -143,7 +143,7 @@ impl Ray {
             }
             let newton = t - value / slope;
             let tame = newton >= low && newton <= high;
-            // Newton's steps square their error, so that the one after this would be less than rounding.
+            // Newton's steps square their error: the next one would be below rounding.
             if tame && (newton - t).abs() <= ENOUGH {
                 return newton;
             }
@@ -164,7 +164,8 @@ mod tests {
         prop::array::uniform3(-1.0..1.0f64).prop_map(DVec3::from)
     }
 
-    /// Length of the gradient, and spectral norm of the Hessian by the power method, where both are greatest.
+    /// Length of the gradient, and spectral norm of the Hessian by power iteration, at the distance where both are
+    /// greatest.
     fn steepness_and_curvature(theta: f64, phi: f64) -> (f64, f64) {
         let p = LEAST * DVec3::new(theta.sin() * phi.cos(), theta.cos(), theta.sin() * phi.sin());
         let (gradient, step) = (|p| implicit(p).1, 1e-5 * theta.sin());
@@ -189,7 +190,7 @@ mod tests {
             steepest = steepest.max(steep);
             most = most.max(curved / most_curved(theta.sin()));
         }
-        // Steep along the ray means steep against the radius: |∇g| is √(1 + slope²).
+        // The slope along the ray is at most |∇g|, which is √(1 + slope²).
         assert!(steepest < STEEPEST && steepest > 0.9 * STEEPEST, "{steepest}");
         assert!(most < 0.95 && most > 0.85, "{most}");
         assert!((1..100).all(|i| most_curved(f64::from(i) * 0.01) > most_curved(f64::from(i + 1) * 0.01)));
@@ -201,7 +202,7 @@ mod tests {
         let eye = 3.5 * DVec3::new(1.0, 0.8, 1.6).normalize();
         let mut met = 0;
         for p in &surfels.positions {
-            // A little inside, as a sample is off the surface by f32 rounding and a ray that grazes it could miss.
+            // Slightly inside: a sample is off the surface by f32 rounding, and a grazing ray could miss it.
             let p = p.as_dvec3() * (1.0 - 1e-6);
             let hit = trace(eye, p - eye).unwrap_or_else(|| panic!("missed {p}"));
             let distance = (p - eye).length();
@@ -210,13 +211,13 @@ mod tests {
             assert!(implicit(hit.position).0.abs() < 2e-14);
             assert!((hit.distance - (hit.position - eye).length()).abs() < 1e-14);
         }
-        // Seen from 3.5 radii, (1 − 1 / 3.5) / 2 of a sphere is visible, and of this one a little less.
+        // From 3.5 radii, (1 − 1 / 3.5) / 2 of a sphere is visible, and slightly less of this one.
         assert!((1_200..1_900).contains(&met), "{met}");
     }
 
     #[test]
     fn straight_rays_meet_the_known_points() {
-        // Along the axis, to a pole; along x, where sin 5φ = 0; from inside; from far away.
+        // Along the axis to a pole; along x, where sin 5φ = 0; from inside; from far away.
         let down = trace(DVec3::new(0.0, 5.0, 0.0), -DVec3::Y).unwrap();
         assert_eq!((down.distance, down.position), (4.0, DVec3::Y));
         assert!((trace(DVec3::new(3.0, 0.0, 0.0), -2.0 * DVec3::X).unwrap().distance - 2.0).abs() < 1e-15);
@@ -253,7 +254,7 @@ mod tests {
             let outside = |distance: f64| implicit(origin + distance * direction).0 > 0.0;
             let first = (0..60_000).map(|i| f64::from(i) * step).find(|&distance| !outside(distance));
             match (trace(origin, direction), first) {
-                // Steps may pass over a crossing and back, tracing not.
+                // Steps may pass over two crossings, tracing does not.
                 (Some(hit), Some(first)) => prop_assert!(hit.distance <= first && (hit.distance > first - step || touches(&hit, direction, step))),
                 (Some(hit), None) => prop_assert!(touches(&hit, direction, step)),
                 (None, first) => prop_assert!(first.is_none()),
@@ -261,7 +262,7 @@ mod tests {
         }
     }
 
-    /// Whether the ray leaves the surface again within a step or so.
+    /// Whether the ray leaves the surface again within about a step.
     fn touches(hit: &Hit, direction: DVec3, step: f64) -> bool {
         implicit(hit.position + step * direction).0 > -1e-12
     }

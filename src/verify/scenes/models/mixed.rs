@@ -1,4 +1,4 @@
-//! Points, lines and polygons together.
+//! A scene of points, lines and polygons.
 
 use super::{capped, faces, piece, tinted};
 use crate::verify::scenes::query::Query;
@@ -12,10 +12,10 @@ pub fn mixed(query: &Query) -> Vec<Piece> {
     let mut pieces = vec![Piece { kind: Kind::Polygon, ..piece(floor(), tinted(query, [120, 120, 130])) }];
     let block = faces(DVec3::new(-0.75, 0.3, -0.2), DVec3::new(0.25, 0.3, 0.25));
     let blue = tinted(query, [40, 110, 220]);
-    // Where the box stands, the floor is seen by nobody, and neither is what would coincide with it.
+    // Faces of the box on the floor are invisible and would coincide with it.
     let block = block.filter(|face| face.centre.y > 0.0);
     pieces.extend(block.map(|face| Piece { kind: Kind::Polygon, sheet: 1, ..piece(face, blue) }));
-    // 13 and 5 periods of the usual texture around it.
+    // 13 and 5 periods of the default texture around it.
     let around = |periods: f64| periods / (5.0 * TAU);
     let torus = Torus { centre: DVec3::new(0.1, 0.17, 0.45), major: around(13.0), minor: around(5.0) };
     pieces.push(Piece { sheet: 2, ..piece(torus, tinted(query, [230, 60, 40])) });

@@ -1,4 +1,4 @@
-//! What each scene is made of.
+//! Pieces of each scene.
 
 mod mixed;
 pub mod part;
@@ -62,7 +62,7 @@ pub fn helix(query: &Query) -> Vec<Piece> {
     capped(curve, [0.6 / turns, 0.18 / turns], [(32.0 * turns) as usize + 8, 16], texture(query))
 }
 
-/// A horn of two pieces, for polygons and for points.
+/// A horn of two pieces, one for polygons and one for points.
 pub fn hybrid(query: &Query) -> Vec<Piece> {
     let ends = [DVec3::new(-0.5, -1.0, 0.0), DVec3::new(0.9, -0.2, 0.0), DVec3::new(0.1, 1.0, 0.0)];
     let horn = Tube { curve: Curve::Bezier(ends), radii: [0.55, 0.15], reference: DVec3::Z };
@@ -71,7 +71,7 @@ pub fn hybrid(query: &Query) -> Vec<Piece> {
     vec![lower, piece(half(0.5), texture(query))]
 }
 
-/// A tube about a curve with flat ends.
+/// A tube around a curve, with flat ends.
 fn capped(curve: Curve, radii: [f64; 2], cells: [usize; 2], texture: Texture) -> Vec<Piece> {
     let cap = |s: f64, radius: f64| {
         let frame = curve.frame(s, DVec3::Y);
@@ -87,7 +87,7 @@ fn capped(curve: Curve, radii: [f64; 2], cells: [usize; 2], texture: Texture) ->
     pieces
 }
 
-/// The six faces of a box with its outer sides outwards.
+/// The six faces of a box, facing outwards.
 fn faces(centre: DVec3, half: DVec3) -> impl Iterator<Item = Face> {
     let axes = [DVec3::X, DVec3::Y, DVec3::Z];
     (0..6usize).map(move |i| {
@@ -122,12 +122,12 @@ fn piece(shape: impl Shape + 'static, texture: Texture) -> Piece {
     Piece { shape: Box::new(shape), texture, kind: Kind::Surface, seam: 0.0, sheet: 0 }
 }
 
-/// The texture that is asked for, red and cream.
+/// The texture of the query, red and cream.
 fn texture(query: &Query) -> Texture {
     tinted(query, [230, 60, 40])
 }
 
-/// The texture that is asked for, with another colour, in sRGB codes, for red.
+/// The texture of the query, with another colour, in sRGB codes, for red.
 fn tinted(query: &Query, code: [u8; 3]) -> Texture {
     use super::texture::linear;
     Texture {

@@ -13,9 +13,9 @@ pub const DEPTH: f64 = 0.7;
 pub const BORE: DVec2 = DVec2::new(0.4, -0.2);
 /// Radius of the bore.
 pub const BORE_RADIUS: f64 = 0.25;
-/// Half the side of the square of the front that holds the bore.
+/// Half the side of the square around the bore on the front.
 const SQUARE: f64 = 0.4;
-/// The outline, counter-clockwise about +z; every side is along x or y.
+/// The outline, counter-clockwise around +z; every side is parallel to x or y.
 pub const PROFILE: [[f64; 2]; 10] = [
     [-1.0, -0.6],
     [1.0, -0.6],
@@ -28,7 +28,7 @@ pub const PROFILE: [[f64; 2]; 10] = [
     [-0.5, 0.6],
     [-1.0, 0.6],
 ];
-/// The outline's inside without the bore's square: least and greatest x and y of rectangles.
+/// Rectangles that fill the outline without the bore's square: least and greatest x, then y.
 const FRONT: [[f64; 4]; 4] =
     [[-1.0, 0.0, -0.6, 0.2], [0.8, 1.0, -0.6, 0.2], [-1.0, -0.5, 0.2, 0.6], [-0.2, 0.3, 0.2, 0.6]];
 
@@ -43,7 +43,7 @@ pub fn part(query: &Query) -> Vec<Piece> {
     pieces
 }
 
-/// Its edges: along z at the outline's corners, around front and back, and around both ends of the bore.
+/// Edges of the part: parallel to z at the outline's corners, around front and back, and around both ends of the bore.
 pub fn part_edges(_: &Query) -> Vec<Edge> {
     let count = PROFILE.len();
     let corner = |i: usize| DVec2::from(PROFILE[i % count]);
@@ -68,7 +68,7 @@ pub fn part_edges(_: &Query) -> Vec<Edge> {
     (0..count).map(upright).chain(around(1.0)).chain(around(-1.0)).collect()
 }
 
-/// The faces along z, one for each side of the outline.
+/// The faces parallel to z, one per side of the outline.
 fn sides() -> Vec<Face> {
     let side = |i: usize| {
         let (a, b) = (DVec2::from(PROFILE[i]), DVec2::from(PROFILE[(i + 1) % PROFILE.len()]));
@@ -82,7 +82,7 @@ fn sides() -> Vec<Face> {
     (0..PROFILE.len()).map(side).collect()
 }
 
-/// The face towards +z or −z.
+/// The face in direction +z or −z.
 fn front(sign: f64) -> Vec<Face> {
     let at = |x: f64, y: f64| DVec3::new(x, y, sign * DEPTH);
     let axes = if sign > 0.0 { [DVec3::X, DVec3::Y] } else { [DVec3::Y, DVec3::X] };

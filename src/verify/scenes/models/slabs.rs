@@ -1,4 +1,4 @@
-//! Thin slabs close together: what is behind must not shine through.
+//! Thin slabs close together, to test that surfaces behind do not shine through.
 
 use super::{box_edges, faces, piece, tinted};
 use crate::verify::scenes::edges::Edge;
@@ -6,9 +6,9 @@ use crate::verify::scenes::query::Query;
 use crate::verify::scenes::surface::{Kind, Piece};
 use glam::DVec3;
 
-/// Colours, one for each slab in turn, sRGB codes.
+/// Colours of the slabs in turn, sRGB codes.
 const COLOURS: [[u8; 3]; 4] = [[230, 60, 40], [40, 110, 220], [60, 160, 60], [230, 170, 30]];
-/// By how much each slab stands back behind the one above, so that all are seen.
+/// Offset of each slab behind the one above, so that all are visible.
 const STEP: f64 = 0.3;
 
 /// Level square slabs, one above the other.
@@ -20,12 +20,12 @@ pub fn slabs(query: &Query) -> Vec<Piece> {
     (0..).zip(boxes(query)).flat_map(slab).collect()
 }
 
-/// Their edges.
+/// The edges of all slabs.
 pub fn slabs_edges(query: &Query) -> Vec<Edge> {
     boxes(query).flat_map(|[centre, half]| box_edges(centre, half)).collect()
 }
 
-/// Middle and half the extent of each.
+/// Centre and half extent of each slab.
 fn boxes(query: &Query) -> impl Iterator<Item = [DVec3; 2]> {
     let (gap, thickness) = (query.number("gap"), query.number("thickness"));
     (0..query.whole("slabs") as u32).map(move |i| {

@@ -1,4 +1,4 @@
-//! A tree: tapered tubes that fork, and ribbons for leaves.
+//! A tree: forking tapered tubes, with ribbons as leaves.
 
 use super::{piece, tinted};
 use crate::verify::scenes::query::Query;
@@ -9,13 +9,13 @@ use crate::verify::scenes::texture::Texture;
 use glam::DVec3;
 use std::f64::consts::TAU;
 
-/// Branches that grow from the end of each.
+/// Branches that start at the end of a branch.
 const FORKS: u32 = 3;
 /// Trees in a row.
 const ROW: u64 = 5;
-/// Distance of trees.
+/// Distance between trees.
 const APART: f64 = 1.8;
-/// Leaves of each last branch.
+/// Leaves per last branch.
 const LEAVES: u32 = 6;
 
 struct Growth {
@@ -25,17 +25,17 @@ struct Growth {
     pieces: Vec<Piece>,
 }
 
-/// Where a branch begins.
+/// Start of a branch.
 struct Bud {
     at: DVec3,
     direction: DVec3,
     length: f64,
     radius: f64,
-    /// How often it still forks.
+    /// Remaining forks.
     forks: u64,
 }
 
-/// Trees that fork `depth` times, in rows of [`ROW`], each of its own growth.
+/// Trees with `depth` levels of forks, in rows of [`ROW`], each with its own random numbers.
 pub fn tree(query: &Query) -> Vec<Piece> {
     let mut growth = Growth {
         random: Random::new(query.whole("growth"), 0),
@@ -45,7 +45,7 @@ pub fn tree(query: &Query) -> Vec<Piece> {
     };
     let forks = query.whole("depth");
     for i in 0..query.whole("trees") {
-        // The first is in the middle of the first row, the others are to its right, to its left, and behind.
+        // The first is in the middle of the first row, others to its right, to its left, and behind.
         let side = [0.0, 1.0, -1.0, 2.0, -2.0][(i % ROW) as usize];
         let at = DVec3::new(APART * side, 0.0, -APART * (i / ROW) as f64);
         growth.branch(Bud { at, direction: DVec3::Y, length: 0.9, radius: 0.09, forks });
@@ -54,7 +54,7 @@ pub fn tree(query: &Query) -> Vec<Piece> {
 }
 
 impl Growth {
-    /// Adds a piece, a sheet of its own.
+    /// Adds a piece as a separate sheet.
     fn add(&mut self, kind: Kind, piece: Piece) {
         let sheet = self.pieces.len() as u32;
         self.pieces.push(Piece { kind, sheet, ..piece });
@@ -103,13 +103,13 @@ impl Growth {
         }
     }
 
-    /// A unit vector at a right angle to `direction`.
+    /// A random unit vector perpendicular to `direction`.
     fn aside(&mut self, direction: DVec3) -> DVec3 {
         across(direction, TAU * self.random.unit())
     }
 }
 
-/// A unit vector at a right angle to another, by the angle around that.
+/// The unit vector perpendicular to another, at an angle around it.
 fn across(direction: DVec3, around: f64) -> DVec3 {
     let (a, b) = direction.any_orthonormal_pair();
     around.cos() * a + around.sin() * b

@@ -1,6 +1,7 @@
-//! Where the area of a surface is: cells of its pieces, as samplers weigh them.
+//! Distribution of the area of a surface over the cells of its pieces.
 //!
-//! Areas and lengths are those of the space in which samples are spread evenly: see [`Shape::place`](crate::verify::scenes::shapes::Shape::place).
+//! Areas and lengths are those of the space in which samples are uniform; see
+//! [`Shape::to_sampling_space`](crate::verify::scenes::shapes::Shape::to_sampling_space).
 
 use super::Draft;
 use crate::verify::scenes::random::Random;
@@ -9,16 +10,16 @@ use crate::verify::scenes::surface::Piece;
 use glam::DVec2;
 use rayon::prelude::*;
 
-/// How much larger the element may be in a cell than at the points where it was looked at.
+/// Factor by which the area element in a cell may exceed its greatest sampled value.
 const MARGIN: f64 = 1.05;
 
 /// The cells of all pieces.
 pub struct Atlas<'a> {
-    /// By piece.
+    /// One per piece.
     pub tables: Vec<Table<'a>>,
-    /// Piece and cell, in one line.
+    /// Piece and cell, in one list.
     cells: Vec<(u32, u32)>,
-    /// Area up to and with each of these cells.
+    /// Cumulative area of these cells.
     sums: Vec<f64>,
 }
 
@@ -28,11 +29,11 @@ pub struct Table<'a> {
     pub piece: &'a Piece,
     /// Number of cells along u and v.
     pub size: [usize; 2],
-    /// Area of each, row by row of v.
+    /// Area of each cell, row by row of v.
     pub areas: Vec<f64>,
     /// Mean length along v of each row.
     pub lengths: Vec<f64>,
-    /// Bound of the element in each.
+    /// Bound of the area element in each cell.
     tops: Vec<f64>,
 }
 
@@ -73,13 +74,13 @@ impl<'a> Table<'a> {
     }
 }
 
-/// Element and length along v of a sample, as samplers see them.
+/// Area element and length along v of a sample, in sampling space.
 fn weigh(piece: &Piece, sample: &Sample) -> (f64, f64) {
     let (_, scale) = piece.shape.place(sample.spot.position);
     (sample.element / (scale * scale), sample.along_v / scale)
 }
 
-/// The surfel of a point; `spacing` and `radius` are those of the space of even spreading.
+/// The surfel of a point; `spacing` and `radius` are those of sampling space.
 pub fn draft(piece: &Piece, sample: &Sample, spacing: f64, radius: f64) -> Draft {
     let (_, scale) = piece.shape.place(sample.spot.position);
     Draft {
@@ -115,12 +116,12 @@ impl<'a> Atlas<'a> {
         self.sums.last().copied().unwrap_or_default()
     }
 
-    /// The mean distance √(area / points).
+    /// The mean spacing √(area / points).
     pub fn spacing(&self, points: usize) -> f64 {
         (self.area() / points as f64).sqrt()
     }
 
-    /// A point, evenly distributed over the area.
+    /// A random point, uniform over the area.
     pub fn draw(&self, random: &mut Random) -> (&'a Piece, Sample) {
         let wanted = random.unit() * self.area();
         let index = self.sums.partition_point(|sum| *sum <= wanted).min(self.sums.len() - 1);

@@ -1,8 +1,8 @@
-//! Blue noise: Poisson-disc samples by dart throwing with a shrinking disc (McCool & Fiume, Hierarchical Poisson disk sampling
-//! distributions, 1992).
+//! Blue noise: Poisson-disc samples by dart throwing with a shrinking disc (McCool & Fiume, *Hierarchical Poisson disk
+//! sampling distributions*, 1992).
 //!
-//! Darts are thrown evenly over the area. One that falls within the disc of another is lost. After some rounds the disc shrinks a
-//! little each round, until there are as many points as wanted.
+//! Darts are thrown uniformly over the area. A dart inside the disc of another one is rejected. After some rounds the
+//! disc shrinks in each round, until there are enough points.
 
 use super::atlas::{Atlas, draft};
 use super::{CHUNK, Draft};
@@ -12,45 +12,46 @@ use crate::verify::scenes::surface::Piece;
 use glam::{I64Vec3, Vec3};
 use rayon::prelude::*;
 
-/// Least distance in the first rounds, in spacings. Darts of this size fill a plane's area with at most 1.08 points a square spacing.
+/// Minimum distance in the first rounds, in spacings. Darts at this distance fill a plane with at most 1.08 points per
+/// squared spacing.
 const WIDEST: f64 = 0.8;
 /// Rounds, of as many darts as points, before the distance shrinks.
 const PATIENCE: usize = 6;
-/// By how much it then shrinks each round.
+/// Factor of the distance per round after that.
 const SHRINK: f64 = 0.97;
-/// Least distance below which nothing is promised: far more rounds than any surface takes.
+/// Minimum distance below which the constraint is dropped: far more rounds than any surface takes.
 const NARROWEST: f64 = 0.1;
-/// Chunks of darts that are drawn together, whatever the number of threads.
+/// Chunks of darts that are drawn together, independent of the number of threads.
 const BATCH: usize = 16;
 /// Disc radius, in spacings.
 const RADIUS: f64 = 1.25;
-/// Cosine of the angle between normals from which points are of opposite sides, and not kept apart.
+/// Cosine of the angle between normals below which points are on opposite sides and may be close.
 const OPPOSITE: f32 = -0.5;
 
-/// A point of the space of even spreading. Half a cache line: most of the time goes into looking at these.
+/// A point of sampling space. Half a cache line: reading these takes most of the time.
 #[derive(Clone, Copy)]
 #[repr(align(32))]
 struct Dart {
     place: Vec3,
     normal: Vec3,
     sheet: u32,
-    /// The dart that hit before it in a cube of the same hash.
+    /// The previous accepted dart in a cube of the same hash.
     before: u32,
 }
 
-/// The darts that have hit, by cubes of space.
+/// The accepted darts, hashed by cubes of space.
 struct Board {
     darts: Vec<Dart>,
     /// The last dart of each hash.
     last: Vec<u32>,
-    /// Side of a cube: twice the least distance, so that what is near a point is in the eight cubes about a corner.
+    /// Side of a cube: twice the minimum distance, so that near points are in the eight cubes around a corner.
     side: f32,
 }
 
 /// No dart.
 const NONE: u32 = u32::MAX;
 
-/// `points` samples, of which no two of one side of a sheet are nearer to each other than about 0.65 spacings.
+/// `points` samples; no two on one side of a sheet are closer than about 0.65 spacings.
 pub fn sample(atlas: &Atlas, points: usize, seed: u64) -> Vec<Draft> {
     let spacing = atlas.spacing(points);
     let mut board = Board::new(points, (2.0 * WIDEST * spacing) as f32);
@@ -64,7 +65,7 @@ pub fn sample(atlas: &Atlas, points: usize, seed: u64) -> Vec<Draft> {
         let draw = |chunk: usize| {
             let mut random = Random::new(seed, (batch * BATCH + chunk) as u64);
             let darts = (0..size).map(|_| atlas.draw(&mut random));
-            // Most are lost to darts of earlier batches, which all threads can see at once.
+            // Most are rejected by darts of earlier batches, which all threads can read at once.
             darts
                 .filter(|(piece, sample)| board.is_free(&dart(piece, sample), distance as f32))
                 .collect::<Vec<_>>()
@@ -92,14 +93,14 @@ impl Board {
         Self { darts: Vec::with_capacity(points), last: vec![NONE; points.next_power_of_two()], side }
     }
 
-    /// Whether no dart is nearer than `distance`.
+    /// Whether no dart is closer than `distance`.
     fn is_free(&self, dart: &Dart, distance: f32) -> bool {
         let corner = (dart.place / self.side - 0.5).floor().as_i64vec3();
         let near = |i: i64| corner + I64Vec3::new(i & 1, i >> 1 & 1, i >> 2);
         !(0..8).any(|i| self.is_taken(near(i), dart, distance))
     }
 
-    /// Adds the dart if none is nearer than `distance`.
+    /// Adds the dart if none is closer than `distance`.
     fn hit(&mut self, dart: Dart, distance: f32) -> bool {
         if !self.is_free(&dart, distance) {
             return false;

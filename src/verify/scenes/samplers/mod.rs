@@ -1,4 +1,4 @@
-//! Samplers: surfels of a surface that is known.
+//! Samplers of surfaces.
 
 mod atlas;
 mod blue_noise;
@@ -17,26 +17,26 @@ use rayon::prelude::*;
 
 /// Samples that share a sequence of random numbers.
 const CHUNK: usize = 4096;
-/// Streams of random numbers: what displaces the samples is independent of what places them.
+/// Stream of random numbers for noise, independent of those for positions.
 const NOISE_STREAM: u64 = 1 << 40;
 
-/// A surfel in the making.
+/// A surfel before conversion to single precision.
 struct Draft {
     position: DVec3,
-    /// Where on the surface it was taken; nowhere, if it floats.
+    /// Point of the surface that was sampled; `None` for an outlier.
     on: Option<DVec3>,
     normal: DVec3,
     albedo: [f64; 3],
     /// Distance to its neighbours.
     spacing: f64,
-    /// Radius of the disc that leaves no hole between it and its neighbours; of an ellipse, the longer semi-axis.
+    /// Radius of a disc that leaves no hole between neighbours; of an ellipse, the longer semi-axis.
     radius: f64,
     /// The shape of an elliptical disc.
     ellipse: Option<Ellipse>,
     two_sided: bool,
 }
 
-/// The surfels that `query` asks for of `surface`, in no particular order.
+/// Samples `surface` as `query` asks, in no particular order.
 pub fn sample(query: &Query, surface: &dyn Surface) -> Result<Surfels> {
     let (points, seed) = (query.whole("points") as usize, query.whole("seed"));
     let mut drafts = match query.word("sampler") {
@@ -61,11 +61,11 @@ fn displace(drafts: &mut [Draft], deviation: f64, seed: u64) {
     }
 }
 
-/// The drafts' clips at the sharp edges that the scene knows.
+/// Clips of the samples at the scene's sharp edges.
 fn clips(query: &Query, drafts: &[Draft]) -> Option<Clips> {
     let edges = query.scene.edges(query);
     let clip = |draft: &Draft| {
-        // The centre that the surfel has.
+        // The centre rounded as the surfel's.
         let centre = draft.position.as_vec3().as_dvec3();
         edges::clip(&edges, &Disc { on: draft.on?, centre, normal: draft.normal, radius: draft.radius })
     };

@@ -1,7 +1,7 @@
-//! Regular and jittered samples: rows along u, as thick as the samples are apart.
+//! Regular and jittered samples: rows along u, one spacing apart.
 //!
-//! A piece is cut into rows of equal thickness; each gets points by its area, and they divide it into equal areas. So the grid is as
-//! regular as the parameters are, with the same density everywhere.
+//! A piece is divided into rows of equal thickness. Each row gets points in proportion to its area, which divide it
+//! into equal areas. The grid follows the parametrization, with uniform density.
 
 use super::atlas::{Atlas, Table, draft};
 use super::{CHUNK, Draft};
@@ -11,10 +11,10 @@ use rayon::prelude::*;
 
 /// Disc radius of the jittered sampler, in spacings.
 const JITTERED: f64 = 1.5;
-/// Disc radius of the grid, in spacings: half a square's diagonal, and as much again for what the parameters distort.
+/// Disc radius of the grid, in spacings: half a square's diagonal, and a margin for distortion by the parameters.
 const GRID: f64 = 1.25;
 
-/// A row's part of v, and the points in it.
+/// A row: its range of v, and its points.
 struct Row {
     piece: usize,
     from: f64,
@@ -23,12 +23,12 @@ struct Row {
     count: usize,
 }
 
-/// A sample in the middle of each equal part of the area.
+/// A sample in the centre of each part of equal area.
 pub fn grid(atlas: &Atlas, points: usize) -> Vec<Draft> {
     sample(atlas, points, GRID, |_| (0..).map(|_| DVec2::splat(0.5)))
 }
 
-/// A sample anywhere in each equal part of the area.
+/// A random sample in each part of equal area.
 pub fn jittered(atlas: &Atlas, points: usize, seed: u64) -> Vec<Draft> {
     sample(atlas, points, JITTERED, |chunk| {
         let mut random = Random::new(seed, chunk as u64);
@@ -36,7 +36,7 @@ pub fn jittered(atlas: &Atlas, points: usize, seed: u64) -> Vec<Draft> {
     })
 }
 
-/// One sample in each part; `jitter` says where in it, for each chunk of samples.
+/// One sample per part; `jitter` returns its positions in the parts, for each chunk of samples.
 fn sample<I: Iterator<Item = DVec2>>(
     atlas: &Atlas,
     points: usize,
@@ -100,14 +100,14 @@ fn area_below(table: &Table, v: f64) -> f64 {
     table.areas[..whole * columns].iter().sum::<f64>() + (at - whole as f64) * rest
 }
 
-/// The v that divides the area between two others.
+/// The v that splits the area between two values of v in the ratio `part`.
 fn by_area(table: &Table, from: f64, to: f64, part: f64) -> f64 {
     let [columns, cells] = table.size;
     let density = |v: f64| {
         let start = columns * ((v * cells as f64) as usize).min(cells - 1);
         table.areas[start..start + columns].iter().sum::<f64>()
     };
-    // Linear between the densities of both ends; rows are thin against what changes along v, or cells are.
+    // Linear between the densities of both ends: rows are thin relative to changes along v, or cells are.
     let (a, b) = (density(from), density(to - 1e-9 * (to - from)));
     let step = if (b - a).abs() > 1e-9 * (a + b) {
         let wanted = part * 0.5 * (a + b);
@@ -118,7 +118,7 @@ fn by_area(table: &Table, from: f64, to: f64, part: f64) -> f64 {
     from + step.clamp(0.0, 1.0) * (to - from)
 }
 
-/// Where, from 0 to 1, the sum of `weights`, each spread evenly over its equal part, reaches `wanted`.
+/// Position from 0 to 1 at which the cumulative sum of `weights`, each uniform over its equal part, reaches `wanted`.
 fn invert(weights: &[f64], wanted: f64) -> f64 {
     let mut rest = wanted;
     for (i, weight) in weights.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! A simulated laser scanner: it stands somewhere, and measures distances along lines of equal angular steps.
+//! A simulated laser scanner at a fixed position, which measures distances along lines of equal angular steps.
 
 use super::Draft;
 use crate::error::{Error, Result};
@@ -10,31 +10,31 @@ use glam::{DQuat, DVec2, DVec3};
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// Cosine of the angle of incidence below which nothing comes back.
+/// Cosine of the angle of incidence below which there is no echo.
 const GRAZING: f64 = 0.05;
-/// Disc radius across the ray, in spacings: half a square's diagonal and a quarter more.
+/// Disc radius across the ray, in spacings: half a square's diagonal, and a quarter more.
 const OVERLAP: f64 = 0.9;
-/// How many more points are scanned than wanted, so that the last attempt has enough.
+/// Factor of scanned points over requested points, so that the last attempt has enough.
 const SURPLUS: f64 = 1.02;
-/// Rays of the first, coarse scan from each place.
+/// Rays of the first, coarse scan per scanner.
 const COARSE: f64 = 4096.0;
-/// Finer scans, until there are enough points.
+/// Most scans with a finer step.
 const ATTEMPTS: u32 = 12;
 /// Stream of random numbers.
 const STREAM: u64 = 1 << 41;
 
-/// A scanner at a place.
+/// A scanner.
 struct Scanner {
     at: DVec3,
     /// Right, up and forward.
     axes: [DVec3; 3],
-    /// Half the angles that are scanned: yaw and pitch, radians.
+    /// Half the scanned angles: yaw and pitch, radians.
     half: DVec2,
-    /// Where in a step the lines begin.
+    /// Offset of the lines, in steps.
     phase: DVec2,
 }
 
-/// A point that came back.
+/// A measured point.
 #[derive(Clone, Copy)]
 struct Echo {
     at: DVec3,
@@ -42,7 +42,7 @@ struct Echo {
     hit: Hit,
 }
 
-/// Exactly as many surfels as `query` wants, as scanners around `surface` see it.
+/// Exactly as many surfels as `query` asks for, from scanners around `surface`.
 pub fn scan(query: &Query, surface: &dyn Surface) -> Result<Vec<Draft>> {
     let (points, mut random) = (query.whole("points") as usize, Random::new(query.whole("seed"), STREAM));
     let scanners = scanners(query, surface, &mut random);
@@ -66,7 +66,7 @@ pub fn scan(query: &Query, surface: &dyn Surface) -> Result<Vec<Draft>> {
     )))
 }
 
-/// Scanners on the level circle through the recommended eye.
+/// Scanners on the horizontal circle through the recommended eye.
 fn scanners(query: &Query, surface: &dyn Surface, random: &mut Random) -> Vec<Scanner> {
     let (bounds, count) = (surface.bounds(), query.whole("scans"));
     let centre = bounds.centre();
@@ -75,7 +75,7 @@ fn scanners(query: &Query, surface: &dyn Surface, random: &mut Random) -> Vec<Sc
         let at = centre + DQuat::from_rotation_y(TAU * i as f64 / count as f64) * from;
         let distance = (centre - at).length();
         let forward = (centre - at).normalize_or(DVec3::X);
-        // A scanner above what it scans, or among it, looks all around.
+        // A scanner above the surface, or inside it, scans all directions.
         let level = DVec3 { y: 0.0, ..forward }.normalize_or(DVec3::X);
         let (forward, half) = if distance > bounds.radius {
             (forward, DVec2::splat((bounds.radius / distance).asin()))
@@ -89,7 +89,7 @@ fn scanners(query: &Query, surface: &dyn Surface, random: &mut Random) -> Vec<Sc
     (0..count).map(place).collect()
 }
 
-/// Drops echoes at random until `points` are left; the others keep their order.
+/// Drops random echoes until `points` are left; the others keep their order.
 fn thin(echoes: &mut Vec<Echo>, points: usize, random: &mut Random) {
     let (mut left, mut wanted) = (echoes.len(), points);
     echoes.retain(|_| {
@@ -101,7 +101,7 @@ fn thin(echoes: &mut Vec<Echo>, points: usize, random: &mut Random) {
 }
 
 impl Scanner {
-    /// What comes back from lines that are `step` radians apart, line by line.
+    /// Echoes of lines that are `step` radians apart, line by line.
     fn run(&self, surface: &dyn Surface, step: f64) -> Vec<Echo> {
         let count = (2.0 * self.half / step).ceil();
         let [right, up, forward] = self.axes;
@@ -120,7 +120,8 @@ impl Scanner {
     }
 }
 
-/// The surfel of an echo: a disc that the scanner sees as a circle. Noise is along the ray, in spacings; an outlier is somewhere between the scanner and what it met.
+/// The surfel of an echo: a disc that looks circular from the scanner. Noise is along the ray, in spacings; an outlier
+/// lies between the scanner and the surface.
 fn draft(echo: &Echo, step: f64, noise: f64, outliers: f64, random: &mut Random) -> Draft {
     let towards = echo.hit.normal.dot(echo.direction);
     let is_outlier = random.unit() < outliers;
@@ -140,7 +141,7 @@ fn draft(echo: &Echo, step: f64, noise: f64, outliers: f64, random: &mut Random)
     }
 }
 
-/// Longer along the ray's direction on the surface, where samples are as much further apart.
+/// Longer along the ray's projection onto the surface, where the spacing is larger by the same factor.
 fn ellipse(echo: &Echo, towards: f64) -> Ellipse {
     let along = (echo.direction - towards * echo.hit.normal).as_vec3();
     let circle = Ellipse::circle(echo.hit.normal.as_vec3());

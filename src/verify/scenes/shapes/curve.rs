@@ -8,34 +8,34 @@ use std::f64::consts::TAU;
 pub enum Curve {
     /// A quadratic Bézier curve.
     Bezier([DVec3; 3]),
-    /// A helix about the y axis through a point, which narrows as it rises.
+    /// A helix around a line parallel to y, whose radius changes linearly.
     Helix {
-        /// The middle of its lower end.
+        /// Centre of its lower end.
         base: DVec3,
-        /// Distance from the axis at the lower and the upper end.
+        /// Radius at the lower and the upper end.
         radii: [f64; 2],
-        /// How far it rises.
+        /// Height.
         rise: f64,
-        /// How often it goes around.
+        /// Number of turns.
         turns: f64,
     },
 }
 
-/// A point of a curve with two unit vectors that make a frame with its tangent; each with its derivative by the curve's parameter.
+/// A point of a curve with a frame of two unit vectors and the tangent; each with its derivative by the parameter.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame {
     /// The point.
     pub point: [DVec3; 2],
     /// Unit tangent.
     pub tangent: DVec3,
-    /// The unit vector nearest to the reference direction.
+    /// The unit vector nearest to the reference direction, perpendicular to the tangent.
     pub normal: [DVec3; 2],
     /// tangent × normal.
     pub binormal: [DVec3; 2],
 }
 
 impl Curve {
-    /// The point of a parameter, first and second derivative.
+    /// Point, first and second derivative at a parameter.
     fn at(&self, s: f64) -> [DVec3; 3] {
         match *self {
             Self::Bezier([a, b, c]) => {
@@ -56,7 +56,7 @@ impl Curve {
         }
     }
 
-    /// The frame at a parameter. `reference` is nowhere along the curve.
+    /// The frame at a parameter. `reference` must not be parallel to the tangent.
     pub fn frame(&self, s: f64, reference: DVec3) -> Frame {
         let [point, first, second] = self.at(s);
         let speed = first.length();

@@ -4,10 +4,10 @@ use super::{EDGE, Ray, Sample, Shape, Spot, first};
 use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
 
-/// The inner wall of a round hole along z: normals point to the axis. u goes around, v along.
+/// The inner wall of a round hole along z: normals point to the axis. u goes around, v along the axis.
 #[derive(Clone, Copy, Debug)]
 pub struct Cylinder {
-    /// The middle of the axis.
+    /// Centre of the axis.
     pub centre: DVec3,
     /// Radius of the hole.
     pub radius: f64,
@@ -36,7 +36,7 @@ impl Shape for Cylinder {
 
     fn trace(&self, ray: &Ray, limit: f64) -> Option<(f64, Spot)> {
         let (o, d) = (ray.origin - self.centre, ray.direction.truncate());
-        // A ray along the axis meets nothing: all of this is not a number then.
+        // A ray parallel to the axis has no intersection: all of this is NaN then.
         let to_foot = -o.truncate().dot(d) / d.length_squared();
         let foot = o.truncate() + to_foot * d;
         let half = ((self.radius * self.radius - foot.length_squared()) / d.length_squared()).sqrt();

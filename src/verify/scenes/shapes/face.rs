@@ -1,17 +1,17 @@
-//! Pieces of planes.
+//! Parts of planes.
 
 use super::{EDGE, Ray, Sample, Shape, Spot};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// The outline of a piece of a plane, in coordinates (a, b) of the plane about its centre.
+/// The outline of a part of a plane, in coordinates (a, b) around its centre.
 #[derive(Clone, Copy, Debug)]
 pub enum Region {
-    /// |a| and |b| at most these.
+    /// A rectangle with these half sides.
     Rectangle([f64; 2]),
     /// A disc of this radius.
     Disc(f64),
-    /// The quarter towards +a of a square with a round hole in its middle: `|b| ≤ a ≤ half`, outside of the hole.
+    /// The quarter in direction +a of a square with a round hole in its centre: `|b| ≤ a ≤ half`, outside of the hole.
     Collar {
         /// Half the square's side.
         half: f64,
@@ -20,12 +20,12 @@ pub enum Region {
     },
 }
 
-/// A piece of a plane.
+/// A part of a plane.
 #[derive(Clone, Copy, Debug)]
 pub struct Face {
-    /// Its coordinates' origin.
+    /// Origin of its coordinates.
     pub centre: DVec3,
-    /// Unit vectors along a and b, at a right angle; the outer side is that of `axes[0] × axes[1]`.
+    /// Unit vectors along a and b, perpendicular to each other; the outer side is that of `axes[0] × axes[1]`.
     pub axes: [DVec3; 2],
     /// Its outline.
     pub region: Region,
@@ -36,7 +36,7 @@ impl Face {
         self.axes[0].cross(self.axes[1])
     }
 
-    /// Charts are those of the whole plane, so that textures go on from one face to the next.
+    /// Texture coordinates are those of the whole plane, so that textures continue from one face to the next.
     fn spot(&self, at: DVec2) -> Spot {
         let position = self.centre + at.x * self.axes[0] + at.y * self.axes[1];
         let chart = DVec2::new(position.dot(self.axes[0]), position.dot(self.axes[1]));
@@ -45,7 +45,7 @@ impl Face {
 }
 
 impl Region {
-    /// Half the side of a square about the centre that holds the region.
+    /// Half sides of a rectangle around the centre that contains the region.
     fn reach(&self) -> DVec2 {
         match *self {
             Self::Rectangle(half) => half.into(),
@@ -65,7 +65,7 @@ impl Region {
         }
     }
 
-    /// The point of (u, v), its derivatives' cross product and the length of that by v.
+    /// The point at (u, v), the area element, and the length of the derivative by v.
     fn at(&self, uv: DVec2) -> (DVec2, f64, f64) {
         match *self {
             Self::Rectangle([a, b]) => {

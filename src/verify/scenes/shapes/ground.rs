@@ -1,20 +1,20 @@
-//! A level disc that reaches to the horizon of a viewer near its middle.
+//! A horizontal disc that reaches to the horizon of a viewer near its centre.
 //!
-//! A viewer at height `h` above the middle, at distance `D = √(d² + h²)` from a point of it, wants samples whose spacing grows like D,
-//! so the density falls like 1 / D². The metric `ds / D` on the plane is that of a surface of revolution, the cigar: its radius is
-//! `x / √w` and its height `asinh √w − √((w + 1) / w)`, where `x = d / h` and `w = 1 + x²`. Samples that are spread evenly over the
-//! cigar are spread over the plane as the viewer wants them.
+//! For a viewer at height `h` above the centre, at distance `D = √(d² + h²)` from a point, spacings should grow like D,
+//! so the density falls like 1 / D². The metric `ds / D` on the plane is that of a surface of revolution, the cigar:
+//! its radius is `x / √w` and its height `asinh √w − √((w + 1) / w)`, where `x = d / h` and `w = 1 + x²`. Samples that
+//! are uniform on the cigar have the desired density on the plane.
 
 use super::{EDGE, Ray, Sample, Shape, Spot};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 
-/// The disc `y = 0` about the origin, seen from above; u is the azimuth, v goes outwards.
+/// The disc `y = 0` around the origin, seen from above; u is the azimuth, v goes outwards.
 #[derive(Clone, Copy, Debug)]
 pub struct Ground {
     /// Radius of the disc.
     pub radius: f64,
-    /// Height of the viewer whom the samples are made for.
+    /// Height of the viewer for whom the samples are distributed.
     pub height: f64,
 }
 
@@ -25,7 +25,7 @@ impl Ground {
 }
 
 impl Shape for Ground {
-    /// `ln w` grows like v², so that about the middle d grows like v.
+    /// `ln w` grows like v², so that near the centre d grows like v.
     fn at(&self, uv: DVec2) -> Sample {
         let rate = (self.radius / self.height).powi(2).ln_1p();
         let d = self.height * (rate * uv.y * uv.y).exp_m1().sqrt();

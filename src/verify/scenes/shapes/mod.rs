@@ -1,4 +1,4 @@
-//! Shapes: parametrised for sampling, and met by rays; one definition serves both.
+//! Shapes: parametrized for sampling, with ray intersections; one definition serves both.
 
 mod bumpy;
 mod curve;
@@ -32,13 +32,13 @@ pub use tube::Tube;
 use super::primitives::Middle;
 use glam::{DVec2, DVec3};
 
-/// How far beyond its border a trimmed shape is met, as a part of its size: shapes that share an edge leave no slit.
+/// Relative distance beyond its border at which a trimmed shape is still hit: shapes that share an edge leave no gap.
 const EDGE: f64 = 1e-12;
 
 /// A ray whose origin is near the shapes.
 #[derive(Clone, Copy, Debug)]
 pub struct Ray {
-    /// Where it begins.
+    /// Start.
     pub origin: DVec3,
     /// Unit vector.
     pub direction: DVec3,
@@ -64,11 +64,11 @@ pub struct Spot {
     pub position: DVec3,
     /// Unit normal of the outer side.
     pub normal: DVec3,
-    /// Coordinates on the shape for textures, in lengths as far as the shape can be unrolled.
+    /// Texture coordinates, in lengths as far as the shape can be unrolled.
     pub chart: DVec2,
 }
 
-/// A point of a shape, by its parameters.
+/// A point of a shape, with derivatives by its parameters.
 #[derive(Clone, Copy, Debug)]
 pub struct Sample {
     /// The point.
@@ -79,18 +79,18 @@ pub struct Sample {
     pub along_v: f64,
 }
 
-/// A piece of surface with parameters (u, v) in the unit square.
+/// A surface with parameters (u, v) in the unit square.
 pub trait Shape: Send + Sync {
-    /// The point of a pair of parameters.
+    /// The point at (u, v).
     fn at(&self, uv: DVec2) -> Sample;
 
-    /// The nearest point that the ray meets at a distance above 0 and below `limit`.
+    /// The nearest intersection with a ray at a distance above 0 and below `limit`.
     fn trace(&self, ray: &Ray, limit: f64) -> Option<(f64, Spot)>;
 
-    /// Least and greatest coordinates.
+    /// Bounding box.
     fn corners(&self) -> [DVec3; 2];
 
-    /// Into how many cells of u and of v the samplers divide the shape, so that the area element varies little in each.
+    /// Numbers of cells along u and v for the samplers, such that the area element varies little in each cell.
     fn cells(&self) -> [usize; 2] {
         [32, 32]
     }
@@ -102,13 +102,13 @@ pub trait Shape: Send + Sync {
         cells.map(|cell| integrate(cell, size, |uv| self.at(uv).element)).sum()
     }
 
-    /// The point of its middle line with a parameter u, if it is about one.
+    /// The point of its centre line at the parameter u, if it has one.
     fn middle(&self, _: f64) -> Option<Middle> {
         None
     }
 
-    /// Where `position` is in the space in which samples are spread evenly, and the ratio of a length at `position` to its length
-    /// there. Unless a shape wants other densities, the same space.
+    /// Position in sampling space, in which samples are uniform, and the ratio of a length at `position` to its length
+    /// there. By default the identity.
     fn place(&self, position: DVec3) -> (DVec3, f64) {
         (position, 1.0)
     }

@@ -1,14 +1,16 @@
-//! Rays against any smooth parametrised surface: no crossing is passed over where the bounds of its second derivatives hold.
+//! Ray intersections with smooth parametrized surfaces: no crossing is missed where the bounds of the second
+//! derivatives hold.
 //!
-//! The surface is divided into cells in (u, v). In a cell with half sides h about its middle, Taylor's formula with a bound of the
-//! second derivatives encloses the surface, seen along the ray, in the image of the tangent plane widened by a remainder. A part that the
-//! ray cannot reach so is dropped; one where the linearised root leaves the part by more than the remainder, too. Where the
-//! derivative, preconditioned by its inverse in the middle, varies by less than 1, there is at most one root (Krawczyk), which Newton's
-//! method finds. Any other part is halved, down to [`FINEST`] of a cell: what is still undecided there touches the ray to within
-//! about `FINEST`² of the cell's size, and counts as met.
+//! The surface is divided into cells in (u, v). In a cell with half sides h, Taylor's formula with a bound of the
+//! second derivatives encloses the surface, seen along the ray, in the image of the tangent plane widened by a
+//! remainder. A part that the ray cannot reach is dropped, and so is one whose linearized root lies outside of it by
+//! more than the remainder. If the derivative, preconditioned by its inverse in the centre, varies by less than 1,
+//! there is at most one root (Krawczyk), which Newton's method finds. Any other part is divided, down to [`FINEST`] of
+//! a cell. A part that is still undecided touches the ray to within about `FINEST`² of the cell's size and counts as a
+//! hit.
 //!
-//! The bounds of the second derivatives are differences at nine points of each cell, with a margin of half: cells are to be small
-//! against the surface's features.
+//! The bounds of the second derivatives are finite differences at nine points of each cell, times 1.5: cells must be
+//! small relative to the surface's features.
 
 use super::{Ray, Sample, Shape, Spot};
 use crate::verify::scenes::Middle;
@@ -16,14 +18,14 @@ use crate::verify::scenes::hierarchy::{Hierarchy, union};
 use glam::{DMat2, DVec2, DVec3};
 use rayon::prelude::*;
 
-/// Smallest part of a cell that is looked at, of the cell's side.
+/// Smallest part of a cell, relative to the cell's side.
 const FINEST: f64 = 1e-6;
-/// Cells for rays to a cell for the samplers, either way: in cells this small a crossing that is not too flat is known at once to be
-/// the only one, and no cell has to be divided for it.
+/// Cells for rays per cell for the samplers, in either direction: in such small cells most crossings are known at once
+/// to be the only ones, and cells need not be divided.
 const FINER: usize = 2;
-/// How far beyond its border a part is searched, of its side.
+/// Relative distance beyond its border within which a part's roots count.
 const SLACK: f64 = 1e-9;
-/// Margin of the bounds that are taken from differences.
+/// Factor of the bounds from finite differences.
 const SAFETY: f64 = 1.5;
 
 /// A point of a parametrised surface with its derivatives.
@@ -39,13 +41,13 @@ pub struct Jet {
 
 /// A smooth surface over the unit square. Its outer side is that of `du × dv`.
 pub trait Parametric: Send + Sync {
-    /// The point and its derivatives; u and v may be a little outside of the unit square.
+    /// The point and its derivatives; u and v may lie slightly outside of the unit square.
     fn jet(&self, uv: DVec2) -> Jet;
 
-    /// Mean lengths along u and v, which make (u, v) a chart for textures.
+    /// Mean lengths along u and v, which scale (u, v) to texture coordinates.
     fn extent(&self) -> DVec2;
 
-    /// The point of its middle line, if it is about one.
+    /// The point of its centre line, if it has one.
     fn middle(&self, _: f64) -> Option<Middle> {
         None
     }
@@ -54,16 +56,16 @@ pub trait Parametric: Send + Sync {
 /// A parametrised surface, divided into cells.
 pub struct Patch<P> {
     surface: P,
-    /// Cells of u and of v for the samplers.
+    /// Numbers of cells along u and v for the samplers.
     size: [usize; 2],
     extent: DVec2,
-    /// Row by row of v, [`FINER`] times as many either way.
+    /// Row by row of v, [`FINER`] times as many in either direction.
     cells: Vec<Cell>,
     hierarchy: Hierarchy,
     corners: [DVec3; 2],
 }
 
-/// A part of the (u, v) square: its middle and half its sides.
+/// A part of the (u, v) square: its centre and half its sides.
 #[derive(Clone, Copy)]
 struct Part {
     middle: DVec2,
@@ -73,11 +75,11 @@ struct Part {
 struct Cell {
     part: Part,
     bend: Bend,
-    /// In the part's middle: no ray has to ask for it again.
+    /// The jet in the part's centre, shared by all rays.
     jet: Jet,
 }
 
-/// Where a ray meets the surface: distance, parameters and the point.
+/// An intersection: distance, parameters and the point.
 type Met = (f64, DVec2, Jet);
 
 /// Bounds of |∂²P/∂u²|, |∂²P/∂u∂v| and |∂²P/∂v²|.
@@ -88,7 +90,7 @@ struct Bend {
     vv: f64,
 }
 
-/// A ray as two planes and a direction: a point is on it where both distances are 0.
+/// A ray as two planes and a direction: a point is on it if both distances are 0.
 struct Sight {
     ray: Ray,
     planes: [DVec3; 2],
@@ -124,7 +126,7 @@ impl<P: Parametric> Patch<P> {
         Spot { position: jet.position, normal, chart: uv * self.extent }
     }
 
-    /// The point nearest to the ray's origin, at less than `limit`, in which the ray meets the cell.
+    /// The intersection nearest to the ray's origin, at less than `limit`, inside the cell.
     fn meet(&self, sight: &Sight, cell: &Cell, limit: f64) -> Option<Met> {
         match self.judge(sight, cell.part, &cell.jet, &cell.bend, limit) {
             Verdict::Nothing => None,
@@ -133,7 +135,7 @@ impl<P: Parametric> Patch<P> {
         }
     }
 
-    /// The same for a cell that has to be divided.
+    /// The same for a cell that must be divided.
     fn search(&self, sight: &Sight, cell: &Cell, mut limit: f64) -> Option<Met> {
         let mut found = None;
         let mut todo = Vec::from(cell.part.quarters());
@@ -175,7 +177,7 @@ impl<P: Parametric> Patch<P> {
         if !inverse.is_finite() {
             return Verdict::Unknown;
         }
-        // Norms of the inverse's rows: by how much a length across the ray moves u and v at most.
+        // Norms of the inverse's rows: the greatest change of u and v per length across the ray.
         let gain = DVec2::new(inverse.row(0).length(), inverse.row(1).length());
         let step = -(inverse * offset);
         if step.abs().cmpgt(half * (1.0 + SLACK) + gain * remainder).any() {
@@ -189,7 +191,7 @@ impl<P: Parametric> Patch<P> {
         self.newton(sight, part, part.middle + step.clamp(-half, half))
     }
 
-    /// The only root that the part can have.
+    /// The only possible root of the part.
     fn newton(&self, sight: &Sight, part: Part, start: DVec2) -> Verdict {
         let mut uv = start;
         for _ in 0..12 {
@@ -199,7 +201,7 @@ impl<P: Parametric> Patch<P> {
                 return Verdict::Unknown;
             }
             uv -= step;
-            // Steps square their error, so that the one after this would be less than rounding.
+            // Steps square their error: the next one would be below rounding.
             if step.abs().cmple(1e-6 * part.half).all() {
                 let inside = (uv - part.middle).abs().cmple(part.half * (1.0 + SLACK)).all();
                 return if inside { Verdict::Root(uv) } else { Verdict::Nothing };
@@ -263,7 +265,7 @@ impl Bend {
             most.uv = most.uv.max((up.du - down.du).length() / (2.0 * dv.y));
             most.vv = most.vv.max((up.dv - down.dv).length() / (2.0 * dv.y));
         }
-        // What has no curvature, such as a ruling, has rounding.
+        // Zero curvature, as of a ruling, has rounding errors.
         Self { uu: SAFETY * most.uu + 1e-9, uv: SAFETY * most.uv + 1e-9, vv: SAFETY * most.vv + 1e-9 }
     }
 

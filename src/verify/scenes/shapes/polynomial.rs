@@ -1,9 +1,10 @@
-//! Roots of polynomials in an interval, none missed: between two neighbouring roots of the derivative there is at most one.
+//! Real roots of polynomials in an interval, all of them: between two adjacent roots of the derivative there is at most
+//! one.
 
 /// Greatest degree.
 const DEGREE: usize = 4;
 
-/// A few numbers, without memory of their own to ask for: rays are many.
+/// A small list on the stack, to avoid an allocation per ray.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Few {
     values: [f64; DEGREE + 1],
@@ -30,13 +31,13 @@ fn value(coefficients: &[f64], t: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, c| sum * t + c)
 }
 
-/// Its value and its derivative's.
+/// The polynomial's value and derivative.
 fn value_and_slope(coefficients: &[f64], t: f64) -> (f64, f64) {
     coefficients.iter().rev().fold((0.0, 0.0), |(value, slope), c| (value * t + c, slope * t + value))
 }
 
-/// The roots between `low` and `high`, ascending, of a polynomial of degree 4 at most. Where the polynomial comes within `touch` of 0
-/// without a change of sign, its extremum counts as one root.
+/// The roots between `low` and `high`, ascending, of a polynomial of degree 4 at most. An extremum within `touch` of 0
+/// without a change of sign counts as one root.
 pub fn roots(coefficients: &[f64], [low, high]: [f64; 2], touch: f64) -> Few {
     let mut found = Few::default();
     let degree = coefficients.len().saturating_sub(1);
@@ -47,7 +48,7 @@ pub fn roots(coefficients: &[f64], [low, high]: [f64; 2], touch: f64) -> Few {
     for (i, slot) in derivative[..degree].iter_mut().enumerate() {
         *slot = (i + 1) as f64 * coefficients[i + 1];
     }
-    // An extremum that the derivative only touches is a saddle, which divides nothing.
+    // An extremum that the derivative only touches is a saddle, which separates nothing.
     let extrema = roots(&derivative[..degree], [low, high], 0.0);
     let (mut a, mut at_a) = (low, value(coefficients, low));
     for (i, &b) in extrema.iter().chain(&[high]).enumerate() {
@@ -62,8 +63,8 @@ pub fn roots(coefficients: &[f64], [low, high]: [f64; 2], touch: f64) -> Few {
     found
 }
 
-/// The root between `low`, where the sign is `negative`, and `high`, where it is not: Newton's steps, halving where they leave the
-/// bracket or do not halve the step before.
+/// The root between `low`, where the sign is `negative`, and `high`, where it is not: Newton's method, with bisection
+/// where a step leaves the bracket or does not halve the previous step.
 fn crossing(coefficients: &[f64], [low, high]: [f64; 2], negative: bool) -> f64 {
     let (mut a, mut b) = (low, high);
     let enough = 2.0 * f64::EPSILON * low.abs().max(high.abs());

@@ -1,13 +1,13 @@
-//! A relief: a level square with waves.
+//! A relief: a horizontal square with waves.
 
 use super::patch::{Jet, Parametric};
 use glam::{DVec2, DVec3};
 
-/// Waves by their wave vectors, radians per unit, and their heights as a part of the relief's.
+/// Waves by their wave vectors, radians per unit, and their shares of the relief's height.
 const WAVES: [([f64; 2], f64); 4] =
     [([2.1, 0.7], 0.4), ([-1.3, 2.9], 0.3), ([4.7, -3.1], 0.2), ([1.9, 7.3], 0.1)];
 
-/// The square `|x|, |z| ≤ half`, raised by a sum of four waves; u goes along z, v along x, and the outer side is above.
+/// The square `|x|, |z| ≤ half`, raised by a sum of four waves; u is along z, v along x, and the outer side is above.
 #[derive(Clone, Copy, Debug)]
 pub struct Relief {
     /// Half the square's side.

@@ -5,18 +5,18 @@ use super::patch::{Jet, Parametric};
 use crate::verify::scenes::Middle;
 use glam::{DVec2, DVec3};
 
-/// A ribbon ruled by segments at right angles to a curve. u goes along the curve, v across.
+/// A ribbon ruled by segments perpendicular to a curve. u goes along the curve, v across.
 #[derive(Clone, Copy, Debug)]
 pub struct Ribbon {
-    /// The middle line.
+    /// Centre line.
     pub curve: Curve,
     /// Half its width in the middle.
     pub half: f64,
-    /// How much of the half width is left at the ends, 0 to 1; between, the width is a parabola.
+    /// Share of the half width that remains at the ends, 0 to 1; the width between is a parabola.
     pub ends: f64,
-    /// By how much it turns about the curve from end to end, radians.
+    /// Rotation around the curve from end to end, radians.
     pub twist: f64,
-    /// Where v points at the beginning: a direction that the curve has nowhere.
+    /// Direction of v at the start; nowhere parallel to the curve.
     pub reference: DVec3,
 }
 

@@ -3,14 +3,14 @@
 use super::patch::{Jet, Parametric};
 use glam::DVec2;
 
-/// What a surface is where u is in a range.
+/// A surface restricted to a range of u.
 #[derive(Clone, Copy, Debug)]
 pub struct Span<P> {
     /// The whole surface.
     pub surface: P,
-    /// Where the range begins.
+    /// Start of the range.
     pub from: f64,
-    /// How long it is.
+    /// Length of the range.
     pub length: f64,
 }
 

@@ -5,19 +5,19 @@ use super::{Ray, Sample, Shape, Spot};
 use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
 
-/// A torus about the y axis through its centre; u goes around the axis, v around the tube.
+/// A torus around the y axis through its centre; u goes around the axis, v around the tube.
 #[derive(Clone, Copy, Debug)]
 pub struct Torus {
     /// Its centre.
     pub centre: DVec3,
-    /// From the centre to the middle of the tube.
+    /// Distance from the centre to the middle of the tube.
     pub major: f64,
     /// Radius of the tube; less than `major`.
     pub minor: f64,
 }
 
 impl Torus {
-    /// Distance from the torus of a point relative to the centre, negative inside, and its gradient.
+    /// Signed distance of a point relative to the centre, negative inside, and its gradient.
     fn distance(&self, p: DVec3) -> (f64, DVec3) {
         let around = p.x.hypot(p.z);
         let spoke = DVec3::new(p.x, 0.0, p.z) / around;
@@ -42,14 +42,14 @@ impl Shape for Torus {
         Sample { spot: self.spot(p), element: TAU * reach * along_v, along_v }
     }
 
-    /// Where `(|p|² + R² − r²)² = 4 R² (x² + z²)`, with distances counted from the foot of the perpendicular from the centre.
+    /// Solves `(|p|² + R² − r²)² = 4 R² (x² + z²)`, with distances from the foot of the perpendicular from the centre.
     fn trace(&self, ray: &Ray, limit: f64) -> Option<(f64, Spot)> {
         let (to_foot, f) = ray.foot(self.centre);
         let (d, square) = (ray.direction, self.major * self.major);
         let outer = self.major + self.minor;
         let half = outer * outer - f.length_squared();
         let half = (half >= 0.0).then(|| half.sqrt() * (1.0 + 1e-9) + 1e-9 * outer)?;
-        // Where the ray is within the sphere around the torus and between the planes that it lies on.
+        // The ray's interval inside the sphere around the torus and between its two tangent planes.
         let level = |y: f64| (y * (1.0 + 1e-9) - f.y) / d.y;
         let (a, b) = (level(self.minor), level(-self.minor));
         let (low, high) = (a.min(b).max(-half), a.max(b).min(half));
@@ -65,7 +65,7 @@ impl Shape for Torus {
             1.0,
         ];
         let found = roots(&quartic, [low, high], 1e-14 * outer.powi(4));
-        // The quartic's coefficients lose digits which the distance function, by one step of Newton's method, gives back.
+        // The quartic's coefficients lose digits, which one Newton step on the distance function recovers.
         let polish = |t: f64| {
             let (value, gradient) = self.distance(f + t * d);
             let slope = gradient.dot(d);

@@ -6,15 +6,15 @@ use crate::verify::scenes::Middle;
 use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
 
-/// A tube with circular cross-sections at right angles to a curve; its radius changes linearly with the curve's parameter, u. v goes
-/// around. Its ends are open.
+/// A tube with circular cross-sections perpendicular to a curve; its radius is linear in the curve's parameter, u. v
+/// goes around. Its ends are open.
 #[derive(Clone, Copy, Debug)]
 pub struct Tube {
-    /// The middle line.
+    /// Centre line.
     pub curve: Curve,
     /// Radius at both ends; less than the curve's radius of curvature.
     pub radii: [f64; 2],
-    /// Where v begins: a direction that the curve has nowhere.
+    /// Direction of v = 0; nowhere parallel to the curve.
     pub reference: DVec3,
 }
 
@@ -23,7 +23,7 @@ impl Parametric for Tube {
         let frame = self.curve.frame(uv.x, self.reference);
         let slope = self.radii[1] - self.radii[0];
         let radius = self.radii[0] + slope * uv.x;
-        // Clockwise about the tangent, so that ∂P/∂u × ∂P/∂v points outwards.
+        // Clockwise around the tangent, so that ∂P/∂u × ∂P/∂v points outwards.
         let (sin, cos) = (-TAU * uv.y).sin_cos();
         let spoke = [0, 1].map(|i| cos * frame.normal[i] + sin * frame.binormal[i]);
         let turn = sin * frame.normal[0] - cos * frame.binormal[0];

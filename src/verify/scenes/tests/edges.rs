@@ -1,4 +1,5 @@
-//! Clips of scenes with sharp edges: what discs keep is on the surface, nothing of it is cut off by all, and only what is sharp is clipped.
+//! Clips of scenes with sharp edges: kept parts lie on the surface, discs together cover all of it, and only discs at
+//! sharp edges are clipped.
 
 use super::super::random::Random;
 use crate::geometry::Surfels;
@@ -29,7 +30,7 @@ impl Disc {
         from_centre.length() <= self.radius && clip.is_none_or(|clip| clip.keeps(from_centre))
     }
 
-    /// Whether it is on the wall of the bore.
+    /// Whether it lies on the wall of the bore.
     fn is_bore(&self) -> bool {
         self.normal.z == 0.0 && self.centre.truncate().distance(BORE) < 1.01 * BORE_RADIUS
     }
@@ -58,7 +59,7 @@ fn distance(p: DVec3) -> f64 {
     if across <= 0.0 && along <= 0.0 { -across.max(along) } else { across.max(0.0).hypot(along.max(0.0)) }
 }
 
-/// Points all over a disc.
+/// Points distributed over a disc.
 fn around(disc: &Disc, random: &mut Random) -> Vec<DVec3> {
     let (a, b) = disc.normal.any_orthonormal_pair();
     let turn = random.unit();
@@ -75,13 +76,13 @@ fn what_discs_keep_is_on_the_surface() {
         let surfels = scenes::open(&format!("{FINE}&sampler={sampler}")).unwrap();
         assert_eq!(surfels.count_invalid(), 0);
         let mut random = Random::new(1, 0);
-        // Of a plane face nothing is off but by rounding: of the centre by 2⁻²⁴ in each coordinate, of line and normal by as much times the
-        // disc's reach. The bore's wall bends away from its plane by a²/2R.
+        // On plane faces only rounding errs: the centre by 2⁻²⁴ in each coordinate, line and normal by as much times
+        // the disc's reach. The bore's wall deviates from its tangent plane by a²/2R.
         let rounding = 4e-7;
         let (mut clipped, mut corners) = (0, 0);
         for index in 0..surfels.len() {
             let disc = disc(&surfels, index);
-            // A scanner's discs are as wide as they are steep: those that reach past more than two edges are not what is tested.
+            // Discs of a scanner are wide at steep angles; those that cross more than two edges are not tested.
             if disc.radius > 0.03 {
                 continue;
             }
@@ -98,7 +99,7 @@ fn what_discs_keep_is_on_the_surface() {
     }
 }
 
-/// The edges of the part: points, and the faces' normals there.
+/// Points of the part's edges, with the normals of both faces.
 fn edge_points(random: &mut Random) -> Vec<(DVec3, [DVec3; 2])> {
     let corner = |i: usize| DVec2::from(PROFILE[i % PROFILE.len()]);
     let along = |i: usize| (corner(i + 1) - corner(i)).normalize();
@@ -119,7 +120,8 @@ fn edge_points(random: &mut Random) -> Vec<(DVec3, [DVec3; 2])> {
     points
 }
 
-/// The nearest discs of both faces keep a point of their edge, moved inwards by no more than rounding; beyond it, they do not.
+/// The nearest discs of both faces keep a point of their edge, moved inwards by at most the rounding error, and remove
+/// it if moved outwards.
 #[test]
 fn faces_meet_at_their_edges_without_a_gap() {
     let surfels = scenes::open(FINE).unwrap();
@@ -131,7 +133,8 @@ fn faces_meet_at_their_edges_without_a_gap() {
                 if disc.centre.distance(point) > disc.radius || disc.normal.dot(side) < 0.99 {
                     continue;
                 }
-                // In the disc's plane, which the bore's wall is not; a rim's line touches it, so that it leaves as much to its neighbours.
+                // In the disc's plane, unlike the bore's wall; a rim's line is its tangent, so neighbours cover the
+                // remainder.
                 let from_centre = (point - disc.centre).reject_from_normalized(disc.normal);
                 let inwards = (disc.centre - point).reject_from_normalized(disc.normal).normalize();
                 let bend = if disc.is_bore() || other.z == 0.0 && point.truncate().distance(BORE) < 0.3 {
@@ -164,7 +167,7 @@ fn clips_are_of_discs_that_reach_an_edge_alone() {
     for index in 0..surfels.len() {
         let disc = disc(&surfels, index);
         let reach = edges(disc.centre) - disc.radius;
-        // Nearer than rounding, either is right.
+        // Closer than rounding, either result is right.
         if reach.abs() > 1e-6 {
             assert_eq!(clips.get(index).is_some(), reach < 0.0, "{:?}", disc.centre);
         }

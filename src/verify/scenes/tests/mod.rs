@@ -1,4 +1,4 @@
-//! Every scene, traced and sampled, against what is known of it otherwise.
+//! Every scene, traced and sampled, against independent results.
 
 mod edges;
 mod names;
@@ -10,7 +10,7 @@ use super::random::Random;
 use super::{Piece, Sample, Surface};
 use glam::{DVec2, DVec3};
 
-/// Every scene, small enough to be made often.
+/// Every scene, small enough for many tests.
 fn scenes() -> impl Iterator<Item = (&'static str, Box<dyn Surface>)> {
     super::list().iter().map(|scene| {
         let depth = if scene.name == "scene:tree" { "?depth=1" } else { "" };
@@ -28,7 +28,7 @@ fn points<'a>(
     (0..count)
         .map(|i| {
             let piece = &pieces[i % pieces.len()];
-            // Not on the border, where a difference would leave the square, nor at a pole.
+            // Away from the border, where a finite difference would leave the square, and from poles.
             let uv = 0.01 + 0.98 * DVec2::new(random.unit(), random.unit());
             (piece, uv, piece.shape.at(uv))
         })

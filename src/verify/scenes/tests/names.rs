@@ -52,7 +52,8 @@ fn parameters_change_the_surface() {
     assert_ne!(tree(3), tree(4));
 }
 
-/// The recommended camera's picture holds much of the surface, and nearly all rays through its middle meet it or come near.
+/// The recommended camera shows much of the surface, and almost all rays through the middle of the picture hit it or
+/// pass near it.
 #[test]
 fn cameras_show_their_scenes() {
     for scene in list() {

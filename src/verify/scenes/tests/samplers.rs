@@ -1,4 +1,4 @@
-//! Samples: where they lie, how evenly, how far apart, and that they leave no hole.
+//! Samples: positions, uniformity, distances, and absence of holes.
 
 use super::super::random::Random;
 use super::super::shapes::integrate;
@@ -17,7 +17,7 @@ fn open(name: &str, rest: &str) -> Surfels {
     scenes::open(&format!("{name}?{depth}{rest}")).unwrap()
 }
 
-/// The same surface in stripes, whose colours do not jump.
+/// The same surface with stripes, whose colours are continuous.
 fn surface(name: &str) -> Box<dyn Surface> {
     let depth = if name == "scene:tree" { "depth=1&" } else { "" };
     scenes::surface(&format!("{name}?{depth}albedo=stripes")).unwrap()
@@ -31,13 +31,13 @@ fn samples_lie_on_the_surface_with_its_normals_and_colours() {
             let surfels = open(name, &format!("points=1500&albedo=stripes&sampler={sampler}"));
             assert_eq!(surfels.len(), 1500, "{name} {sampler}");
             let off = (0..surfels.len()).filter(|i| !is_on(&*surface, &surfels, *i)).count();
-            // Rounding to f32 moves some from one side of an edge, of a face or of a field, to the other.
+            // Rounding to f32 moves some across an edge of a face or of a square.
             assert!(off <= 15, "{name} {sampler}: {off} of 1500 are not on it");
         }
     }
 }
 
-/// Whether a ray along the normal meets the surface at surfel `i`, where it has that normal and colour.
+/// Whether a ray along the normal hits the surface at surfel `i`, with the same normal and colour.
 fn is_on(surface: &dyn Surface, surfels: &Surfels, i: usize) -> bool {
     let (p, n) = (surfels.positions[i].as_dvec3(), surfels.normals[i].as_dvec3());
     let Some(hit) = surface.trace(p + 1e-4 * n, -n) else { return false };
@@ -50,7 +50,8 @@ fn is_on(surface: &dyn Surface, surfels: &Surfels, i: usize) -> bool {
     (hit.t - 1e-4).abs() < 1e-6 * (1.0 + p.length()) && hit.normal.dot(n) > 1.0 - 1e-5 && same
 }
 
-/// Pearson's χ² of the counts of 20 × 10 parts of equal area of a sphere, over its degrees of freedom: 1 for independent points.
+/// Pearson's χ² of the counts of 20 × 10 parts of equal area of a sphere, over its degrees of freedom: 1 for
+/// independent points.
 fn dispersion(surfels: &Surfels) -> f64 {
     let mut counts = [0u32; 200];
     for p in &surfels.positions {
@@ -66,14 +67,14 @@ fn dispersion(surfels: &Surfels) -> f64 {
 fn density_is_even() {
     for sampler in EVEN {
         let found = dispersion(&open("scene:sphere", &format!("points=20000&sampler={sampler}")));
-        // More even than chance would have it.
+        // More uniform than independent points.
         assert!(found < 0.5, "{sampler}: {found}");
     }
     let scanned = dispersion(&open("scene:sphere", "points=20000&sampler=scanner"));
     assert!(scanned > 5.0, "a scanner is uneven: {scanned}");
 }
 
-/// The middle of the samples is that of the area, for every surface.
+/// The centroid of the samples is that of the area, for every surface.
 #[test]
 fn every_part_gets_its_share() {
     for (name, surface) in scenes().filter(|(name, _)| *name != "scene:plane") {
@@ -131,7 +132,7 @@ fn blue_noise_keeps_its_distance() {
 fn the_plane_is_denser_near_its_middle_and_radii_follow() {
     for sampler in EVEN {
         let surfels = open("scene:plane", &format!("points=20000&sampler={sampler}"));
-        // Equal numbers in rings that the metric ds / D makes equal: w from 1 to 10⁶ by factors of 10.
+        // Equal numbers in rings of equal width in the metric ds / D: w from 1 to 10⁶ by factors of 10.
         let mut rings = [0; 6];
         for (p, r) in surfels.positions.iter().zip(&surfels.radii) {
             let w = 1.0 + f64::from(p.x).powi(2) + f64::from(p.z).powi(2);
@@ -189,7 +190,7 @@ fn a_scanner_sees_what_rays_meet_first_and_no_more() {
     assert!((500..700).contains(&count), "{count} of 3000 float");
 }
 
-/// No ray of the recommended camera that meets the surface, and whose neighbours do, passes between the discs.
+/// No ray of the recommended camera that hits the surface, and whose neighbours do, passes between the discs.
 #[test]
 fn discs_leave_no_hole() {
     const SIDE: i32 = 48;
@@ -214,7 +215,7 @@ fn discs_leave_no_hole() {
     }
 }
 
-/// Whether a ray meets a disc.
+/// Whether a ray hits a disc.
 fn is_covered(surfels: &Surfels, eye: DVec3, direction: DVec3) -> bool {
     (0..surfels.len()).any(|i| {
         let (p, n) = (surfels.positions[i].as_dvec3(), surfels.normals[i].as_dvec3());

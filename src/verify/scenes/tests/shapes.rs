@@ -1,4 +1,4 @@
-//! Parametrisations: derivatives, areas, and textures that follow them.
+//! Parametrizations: derivatives, areas, and textures.
 
 use super::super::random::Random;
 use super::super::shapes::{Bumpy, Curve, Patch, Ribbon, Shape, Tube, integrate};
@@ -55,7 +55,7 @@ fn normals_point_outwards() {
     }
     let (_, helix) = scenes().find(|(name, _)| *name == "scene:helix").unwrap();
     let tube = helix.pieces()[0].shape.at(DVec2::new(0.0, 0.3)).spot;
-    // The tube begins about (0.8, −1, 0).
+    // The tube starts near (0.8, −1, 0).
     assert!((tube.position - DVec3::new(0.8, -1.0, 0.0)).dot(tube.normal) > 0.19);
 }
 

@@ -1,4 +1,4 @@
-//! Rays against parametrisations, implicit functions and closed forms.
+//! Ray intersections against parametrizations, implicit functions and closed forms.
 
 use super::super::random::Random;
 use super::super::shapes::{Jet, Parametric, Patch, Ray, Shape, Torus};
@@ -8,7 +8,7 @@ use crate::verify::scenes::{self, Surface};
 use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
 
-/// Whatever point of a surface a ray is aimed at, it meets that or something before it, and what it meets is there.
+/// A ray towards any point of a surface hits that point or an earlier one, and the hit lies on the surface.
 #[test]
 fn every_point_is_met_or_hidden() {
     let mut random = Random::new(2, 0);
@@ -20,7 +20,7 @@ fn every_point_is_met_or_hidden() {
                 + (1.0 + 2.0 * random.unit()) * bounds.radius * vector(&mut random).normalize();
             let aim = sample.spot.position - eye;
             let hit = surface.trace(eye, aim).unwrap_or_else(|| panic!("{name} {uv} from {eye}: missed"));
-            // Where the ray grazes the surface, its distance is ill-conditioned.
+            // The distance of a grazing ray is ill-conditioned.
             let facing = sample.spot.normal.dot(aim.normalize()).abs();
             assert!(hit.t < 1.0 + 1e-12 / facing.powi(2).max(1e-9), "{name} {uv} from {eye}: {}", hit.t);
             let off = (eye + hit.t * aim - hit.position).length();
@@ -47,7 +47,7 @@ fn is_at_an_edge(surface: &dyn Surface, hit: &scenes::Hit) -> bool {
     [side, -side, other, -other].into_iter().any(|offset| around(offset) != Some(hit.albedo))
 }
 
-/// The first of equal steps along a ray at which `inside` differs from the beginning.
+/// The first of equal steps along a ray at which `inside` is true.
 fn march(
     inside: &dyn Fn(DVec3) -> bool,
     origin: DVec3,
@@ -102,7 +102,7 @@ fn first_hits_agree_with_small_steps() {
                 (Some(hit), Some(first)) => {
                     met += 1;
                     assert!(hit.t <= first + 1e-9, "{name}: met at {}, not {first}", hit.t);
-                    // Steps may pass over a crossing and back, tracing not.
+                    // Steps may pass over two crossings, tracing does not.
                     let thin = !inside(hit.position + 4e-4 * direction);
                     let side = name == "scene:relief" && hit.t > first - 1.0;
                     assert!(hit.t > first - 2.1e-4 || thin || side, "{name}: met at {}, not {first}", hit.t);
@@ -118,7 +118,7 @@ fn first_hits_agree_with_small_steps() {
     }
 }
 
-/// The torus as a parametrised surface, for which the tracer of patches is to find what the quartic has.
+/// The torus as a parametrized surface: the tracer of patches must agree with the quartic.
 struct Parametrised(Torus);
 
 impl Parametric for Parametrised {
@@ -150,7 +150,7 @@ fn patches_meet_what_the_closed_form_has() {
     let mut met = 0;
     for i in 0..4000 {
         let origin = 3.0 * vector(&mut random).normalize() + torus.centre;
-        // Half of the rays pass close by the outline.
+        // Half of the rays pass close to the outline.
         let spot = torus.at(DVec2::new(random.unit(), random.unit())).spot;
         let mut aim = spot.position - origin;
         if i % 2 == 0 {
@@ -178,14 +178,14 @@ fn rays_that_graze_are_decided_to_a_billionth() {
     for shape in [&torus as &dyn Shape, &patch] {
         for depth in [1e-3, 1e-6, 1e-9, 1e-10] {
             for turn in [0.0, 0.3, 1.1] {
-                // Over the highest circle, in the direction of its spoke.
+                // Above the highest circle, in radial direction.
                 let spoke = DVec3::new(f64::cos(turn), 0.0, f64::sin(turn));
                 let ray = |height: f64| {
                     let origin = torus.centre + 3.0 * spoke + height * DVec3::Y;
                     shape.trace(&Ray { origin, direction: -spoke }, f64::INFINITY)
                 };
                 let (t, _) = ray(0.4 - depth).unwrap_or_else(|| panic!("missed {depth} below the top"));
-                // Half the chord of a circle that is cut at this depth.
+                // Half the chord of a circle at this depth.
                 let expected = 2.0 - (2.0 * 0.4 * depth - depth * depth).sqrt();
                 assert!((t - expected).abs() < 1e-14 / depth + 1e-11, "{depth}: {t}, not {expected}");
                 assert!(ray(0.4 + depth).is_none(), "{depth} above the top");
@@ -220,7 +220,7 @@ fn rays_may_be_of_any_length_from_anywhere() {
 fn the_horizon_is_where_the_plane_ends() {
     let plane = scenes::surface("scene:plane?radius=500").unwrap();
     let eye = DVec3::Y;
-    // Aslant, so that it is the disc which ends and not the box around it.
+    // In a diagonal direction, in which the disc ends before its bounding box.
     let aslant = DVec3::new(0.8, 0.0, -0.6);
     let along = |level: DVec3, distance: f64| plane.trace(eye, level - DVec3::Y / distance);
     assert!((along(aslant, 499.9).unwrap().position.length() - 499.9).abs() < 1e-9);
