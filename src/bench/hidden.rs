@@ -1,7 +1,7 @@
 //! Surfels of hidden sheets.
 
 use crate::geometry::{Camera, Surfels};
-use crate::verify::truth::Scene;
+use crate::verify::truth::Traceable;
 use glam::DVec3;
 use rayon::prelude::*;
 
@@ -14,7 +14,7 @@ const MOST_SHEETS: usize = 64;
 
 /// The surfels whose sheet is the first one that the ray from a perspective camera to their centre meets. A surfel's
 /// sheet is the nearest one along that ray, because noise or an inexact scan may move surfels off their sheet.
-pub fn without(surfels: &Surfels, surface: &dyn Scene, camera: &Camera) -> Surfels {
+pub fn without(surfels: &Surfels, surface: &dyn Traceable, camera: &Camera) -> Surfels {
     let eye = camera.view.inverse().w_axis.truncate();
     let seen = |&i: &u32| is_seen(surfels, i as usize, surface, eye);
     let seen: Vec<u32> = (0..surfels.len() as u32).into_par_iter().filter(seen).collect();
@@ -23,7 +23,7 @@ pub fn without(surfels: &Surfels, surface: &dyn Scene, camera: &Camera) -> Surfe
     kept
 }
 
-fn is_seen(surfels: &Surfels, i: usize, surface: &dyn Scene, eye: DVec3) -> bool {
+fn is_seen(surfels: &Surfels, i: usize, surface: &dyn Traceable, eye: DVec3) -> bool {
     let to = surfels.origin + surfels.positions[i].as_dvec3() - eye;
     let clearance = CLEARANCE * f64::from(surfels.radii[i]) / to.length();
     let Some(first) = surface.trace(eye, to).map(|hit| hit.t) else { return true };

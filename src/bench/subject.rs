@@ -39,13 +39,13 @@ struct Scan {
 /// A built-in surface.
 struct Built(Box<dyn Surface>);
 
-impl truth::Scene for Built {
+impl truth::Traceable for Built {
     fn trace(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
-        truth::Scene::trace(&*self.0, origin, direction)
+        truth::Traceable::trace(&*self.0, origin, direction)
     }
 
     fn bounds(&self) -> Bounds {
-        truth::Scene::bounds(&*self.0)
+        truth::Traceable::bounds(&*self.0)
     }
 }
 
@@ -73,9 +73,9 @@ impl Subject {
         let cloud = formats::read(path, &triangles, progress)?.cloud;
         let other =
             mesh.map(|mesh| Ok::<_, Error>(formats::read(mesh, &triangles, progress)?.cloud)).transpose()?;
-        let named = |cause| Error::input(mesh.unwrap_or(path).display().to_string(), cause);
-        let mesh = Mesh::new(other.as_ref().unwrap_or(&cloud)).map_err(named)?;
-        let viewpoint = framing(&truth::Scene::bounds(&mesh))?;
+        let mesh_name = mesh.unwrap_or(path).display().to_string();
+        let mesh = Mesh::new(&mesh_name, other.as_ref().unwrap_or(&cloud))?;
+        let viewpoint = framing(&truth::Traceable::bounds(&mesh))?;
         let (name, digest) = (path.display().to_string(), mesh.digest());
         Ok(Self { name, digest, viewpoint, shape: Shape::Scan(Box::new(Scan { cloud, mesh })) })
     }
@@ -139,7 +139,7 @@ impl Subject {
     }
 
     /// The exact surface.
-    pub fn surface(&self) -> &dyn truth::Scene {
+    pub fn surface(&self) -> &dyn truth::Traceable {
         match &self.shape {
             Shape::Built(built) => built,
             Shape::Scan(scan) => &scan.mesh,

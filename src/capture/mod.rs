@@ -1,18 +1,18 @@
 //! Capture of normalization weights (Ren, Pfister, Zwicker 2002, section 7.2).
 //!
 //! ```text
-//! views ─ render Σw and depth, without filter and division → look ─ 1/Σw at every surfel that is seen → median over the views → weights
-//!                                                         unseen ─ overlap: the same sum over the surfels around it ──┘
+//! views ─ render Σw and depth, without filter and division → 1/Σw of every visible surfel → median over the views → weights
+//!                                      other surfels ─ overlap: Σw computed from the surfels around each ────┘
 //! ```
 //!
 //! Where the surface ends, or the sum varies strongly between the centre of a surfel's square and a corner, each corner
 //! gets a weight of its own. The paper's factor γ, which keeps 8-bit sums from overflowing, is not needed with floats.
 
-mod border;
-mod gather;
-mod look;
+mod corner_fit;
 mod overlap;
+mod samples;
 mod views;
+mod weight_view;
 
 pub use overlap::overlaps;
 
@@ -25,9 +25,9 @@ use crate::settings::Outputs;
 use crate::settings::splatting::{Filter, Normalization, Splatting, Visibility};
 use crate::settings::{Settings, Shading};
 use crate::vk::Device;
-use gather::Samples;
-use look::Look;
+use samples::Samples;
 use std::sync::Arc;
+use weight_view::WeightView;
 
 /// Default number of views of a whole scene: about six of them see each point of a closed surface from less than 60°.
 pub const VIEWS: u32 = 24;
@@ -60,13 +60,13 @@ pub fn capture(
         return Err(Error::Usage("weights captured from no view: give 1 or more".into()));
     }
     let scene = Scene::upload(device, surfels)?;
-    let (size, cameras) = views::around(surfels, &scene.bounds(), views)?;
+    let (size, cameras) = views::cameras(surfels, &scene.bounds(), views)?;
     let mut renderer = renderer(device, [size; 2])?;
     let settings = plain(settings);
     let mut samples = Samples::default();
     for (done, camera) in (0..).zip(&cameras) {
         progress.at("capturing weights", done, cameras.len() as u64);
-        samples.add(Look::new(&mut renderer, &scene, camera, &settings)?.samples(surfels));
+        samples.add(WeightView::new(&mut renderer, &scene, camera, &settings)?.samples(surfels));
     }
     progress.at("capturing weights", cameras.len() as u64, cameras.len() as u64);
     Ok(complete(surfels, &settings, samples))
@@ -87,7 +87,9 @@ pub fn capture_region(
 ) -> Result<u64> {
     let scene = Scene::upload(device, &*surfels)?;
     let mut samples = Samples::default();
-    samples.add(Look::new(&mut renderer(device, size)?, &scene, camera, &plain(settings))?.samples(surfels));
+    samples.add(
+        WeightView::new(&mut renderer(device, size)?, &scene, camera, &plain(settings))?.samples(surfels),
+    );
     let seen = samples.medians();
     let before = surfels.weights.take();
     let weight = |i: usize| match (seen.get(i), &before) {

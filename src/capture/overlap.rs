@@ -18,12 +18,12 @@ pub fn overlaps(surfels: &Surfels, settings: &Settings, which: &[u32]) -> Vec<f6
     if which.is_empty() {
         return Vec::new();
     }
-    let around = Around::new(surfels, settings);
-    which.par_iter().map(|&surfel| around.overlap(surfel)).collect()
+    let grid = SurfelGrid::new(surfels, settings);
+    which.par_iter().map(|&surfel| grid.overlap(surfel)).collect()
 }
 
 /// Surfels by position and reach.
-struct Around<'a> {
+struct SurfelGrid<'a> {
     surfels: &'a Surfels,
     settings: &'a Settings,
     /// Surfels by the power of two above their reach, and by the cell of that side that contains their centre.
@@ -39,7 +39,7 @@ struct Hit {
     weight: f64,
 }
 
-impl<'a> Around<'a> {
+impl<'a> SurfelGrid<'a> {
     fn new(surfels: &'a Surfels, settings: &'a Settings) -> Self {
         let mut all = Self { surfels, settings, levels: HashMap::new() };
         for i in (0..surfels.len()).filter(|&i| surfels.is_valid(i)) {

@@ -16,7 +16,7 @@ const FRAME: f64 = 1.02;
 
 /// The side of the square pictures, px, and the cameras of the tiles that show all of `bounds` from each of `views`
 /// directions.
-pub(super) fn around(surfels: &Surfels, bounds: &Bounds, views: u32) -> Result<(u32, Vec<Camera>)> {
+pub(super) fn cameras(surfels: &Surfels, bounds: &Bounds, views: u32) -> Result<(u32, Vec<Camera>)> {
     let height = 2.0 * FRAME * bounds.radius;
     let wanted = height * RADIUS / median_radius(surfels);
     let tiles = (wanted / LARGEST).ceil().clamp(1.0, MOST_TILES);
@@ -75,7 +75,7 @@ mod tests {
             ..Default::default()
         };
         let bounds = surfels.bounds().unwrap();
-        let (size, cameras) = around(&surfels, &bounds, 5).unwrap();
+        let (size, cameras) = cameras(&surfels, &bounds, 5).unwrap();
         assert_eq!((cameras.len() % 5, size <= 1024), (0, true));
         let tiles = cameras.len() / 5;
         assert!(tiles > 1);

@@ -4,7 +4,7 @@ use super::files::{print, print_json};
 use serde_json::{Value, json};
 use std::fmt::Write;
 use surfel::Result;
-use surfel::verify::scenes::{self, Parameter, SAMPLING, Scene};
+use surfel::verify::scenes::{self, Parameter, SAMPLING, SceneInfo};
 
 /// Lists the built-in scenes, each with a camera and its parameters.
 pub fn run(json: bool) -> Result<()> {
@@ -18,11 +18,11 @@ pub fn run(json: bool) -> Result<()> {
     print(&text)
 }
 
-fn value(scene: &Scene) -> Value {
+fn value(scene: &SceneInfo) -> Value {
     let view = &scene.viewpoint;
     let camera =
         json!({ "eye": view.eye, "target": view.target, "up": view.up, "fov_y_deg": view.fov_y_deg });
-    json!({ "name": scene.name, "summary": scene.summary, "camera": camera, "parameters": values(scene.own) })
+    json!({ "name": scene.name, "summary": scene.summary, "camera": camera, "parameters": values(scene.surface_parameters) })
 }
 
 fn values(parameters: &[Parameter]) -> Value {
@@ -30,14 +30,14 @@ fn values(parameters: &[Parameter]) -> Value {
     parameters.iter().map(value).collect()
 }
 
-fn describe(text: &mut String, scene: &Scene) {
+fn describe(text: &mut String, scene: &SceneInfo) {
     let list = |[x, y, z]: [f64; 3]| format!("{x:.4},{y:.4},{z:.4}");
     let view = &scene.viewpoint;
     // Here and below: writing to a String cannot fail.
     let _ = writeln!(text, "\n{}: {}", scene.name, scene.summary);
     let _ =
         writeln!(text, "  --eye {} --target {} --fov {}", list(view.eye), list(view.target), view.fov_y_deg);
-    parameters(text, scene.own);
+    parameters(text, scene.surface_parameters);
 }
 
 fn parameters(text: &mut String, parameters: &[Parameter]) {

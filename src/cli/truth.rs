@@ -11,7 +11,7 @@ use surfel::formats::{self, ReadOptions};
 use surfel::geometry::{Bounds, Camera, Parts};
 use surfel::load::{LoadOptions, load, scene};
 use surfel::verify::scenes;
-use surfel::verify::truth::{self, Cache, Mesh, Scene};
+use surfel::verify::truth::{self, Cache, Mesh, Traceable};
 use surfel::{Error, Progress, Result, Settings};
 
 /// Ray-traces an input to a picture. Arguments and outputs are checked first.
@@ -56,11 +56,11 @@ fn bounds(args: &Truth, progress: &dyn Progress) -> Result<Bounds> {
 fn read(path: &Path, progress: &dyn Progress) -> Result<Mesh> {
     let options = ReadOptions { triangles: true, ..Default::default() };
     let loaded = formats::read(path, &options, progress)?;
-    Mesh::new(&loaded.cloud).map_err(|cause| Error::input(path.display().to_string(), cause))
+    Mesh::new(&path.display().to_string(), &loaded.cloud)
 }
 
 /// Traces a scene, or reads its picture from the cache; `name` is its key.
-fn trace<S: Scene + ?Sized>(
+fn trace<S: Traceable + ?Sized>(
     args: &Truth,
     name: &str,
     scene: &S,
@@ -77,7 +77,7 @@ fn trace<S: Scene + ?Sized>(
 
 /// Size and error of the picture, as text.
 fn summary(args: &Truth, truth: &truth::Truth) -> String {
-    let truth::Achieved { rms, max, above } = truth.error;
+    let truth::StandardError { rms, max, above } = truth.error;
     let ([width, height], out) = (args.size, Path::new(&args.output).display());
     let exact = match args.options().filter {
         truth::Filter::Point => "one ray a pixel".into(),

@@ -279,7 +279,13 @@ fn papers() -> Vec<Run> {
 
 fn sweep(name: &str, description: &str, parameter: &str, points: Vec<SweepPoint>) -> Sweep {
     let logarithmic = name != "layers";
-    Sweep { name: name.into(), description: description.into(), parameter: parameter.into(), logarithmic, points }
+    Sweep {
+        name: name.into(),
+        description: description.into(),
+        parameter: parameter.into(),
+        logarithmic,
+        points,
+    }
 }
 
 fn point(variant: &str, value: f64, [colour, normal, depth]: [f64; 3]) -> SweepPoint {

@@ -25,7 +25,7 @@ pub(super) struct Block {
     /// Squared distances to the centre, σ².
     pub distance: Vec4,
     /// Depth keys of the tangent plane.
-    pub key: Vec4,
+    pub depth_key: Vec4,
     /// Which pixels are within the cut-off.
     pub inside: BVec4A,
 }
@@ -67,7 +67,7 @@ impl<'a> Cover<'a> {
                 }
                 let dy = row as f32 + self.corner.y;
                 let y = dy - self.splat.offset.y;
-                let (ay, by, key) = (a.y * y, b.y * y, plane.x + plane.z * dy);
+                let (ay, by, depth_key) = (a.y * y, b.y * y, plane.x + plane.z * dy);
                 for block in low[lane] as i32 as usize / LANES..=high[lane] as i32 as usize / LANES {
                     let dx = RAMP + ((block * LANES) as f32 + self.corner.x);
                     let x = dx - self.splat.offset.x;
@@ -76,7 +76,7 @@ impl<'a> Cover<'a> {
                     visit(Block {
                         index: row as usize * (SIDE / LANES) + block,
                         distance,
-                        key: plane.y * dx + key,
+                        depth_key: plane.y * dx + depth_key,
                         inside: distance.cmple(Vec4::splat(self.limit)),
                     });
                 }
@@ -95,10 +95,10 @@ impl<'a> Cover<'a> {
         // More than the rounding error.
         let half = 1.0001 * square.max(Vec4::ZERO).sqrt() + 0.02;
         let middle = (self.splat.offset.x - self.corner.x) - y * (inverse * (a.x * a.y + b.x * b.y));
-        let slack = 1e-5 * (middle.abs() + y.abs());
+        let tolerance = 1e-5 * (middle.abs() + y.abs());
         [
-            (middle - half - slack).max(Vec4::ZERO).to_array(),
-            (middle + half + slack).min(Vec4::splat(SIDE as f32 - 1.0)).to_array(),
+            (middle - half - tolerance).max(Vec4::ZERO).to_array(),
+            (middle + half + tolerance).min(Vec4::splat(SIDE as f32 - 1.0)).to_array(),
         ]
     }
 }

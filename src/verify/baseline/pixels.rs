@@ -4,7 +4,7 @@ use super::clock::Stages;
 use super::shade::{Shader, Surface, Vectors};
 use super::splat::FLIPPED;
 use super::sums::Streams;
-use super::target::{Slab, Target, place, resize, tiles};
+use super::target::{Target, TargetTile, resize, tile_pixel, tiles};
 use super::tile::{BLOCKS, LANES, centres, corner};
 use super::view::View;
 use crate::error::Result;
@@ -73,8 +73,8 @@ impl Pixels {
         let shader = Shader::new(settings, view, streams.normals);
         stages.time("resolve", || {
             let tiles = self.nearest.par_chunks_mut(BLOCKS * LANES);
-            target.slabs().zip(tiles).for_each(|(mut slab, nearest)| {
-                projection.resolve(streams, &shader, nearest, &mut slab);
+            target.target_tiles().zip(tiles).for_each(|(mut output, nearest)| {
+                projection.resolve(streams, &shader, nearest, &mut output);
             });
         });
         Ok(())
@@ -124,13 +124,13 @@ impl<'a> Projection<'a> {
         if !inside || self.is_culled(index, position) {
             return;
         }
-        let (tile, pixel) = place(self.view.size, [x as u32, y as u32]);
-        let place = &nearest[tile * BLOCKS * LANES + pixel];
+        let (tile, pixel) = tile_pixel(self.view.size, [x as u32, y as u32]);
+        let nearest_in_pixel = &nearest[tile * BLOCKS * LANES + pixel];
         // Never −0, whose bits are large.
         let key = u64::from(depth.abs().to_bits()) << 32 | index as u64;
         // Most surfels lose: a load first is cheaper.
-        if key < place.load(Ordering::Relaxed) {
-            place.fetch_min(key, Ordering::Relaxed);
+        if key < nearest_in_pixel.load(Ordering::Relaxed) {
+            nearest_in_pixel.fetch_min(key, Ordering::Relaxed);
         }
     }
 
@@ -154,11 +154,17 @@ impl<'a> Projection<'a> {
     }
 
     /// Shades a tile from the visible surfels of its pixels.
-    fn resolve(&self, streams: &Streams, shader: &Shader, nearest: &mut [AtomicU64], slab: &mut Slab) {
+    fn resolve(
+        &self,
+        streams: &Streams,
+        shader: &Shader,
+        nearest: &mut [AtomicU64],
+        output: &mut TargetTile,
+    ) {
         for (block, nearest) in nearest.chunks_exact_mut(LANES).enumerate() {
-            let (x, y) = centres(corner(slab.at), block);
+            let (x, y) = centres(corner(output.at), block);
             let surface = self.surface(streams, nearest);
-            slab.put(block, &shader.shade(x, y, &surface));
+            output.put(block, &shader.shade(x, y, &surface));
         }
     }
 

@@ -22,7 +22,7 @@ pub(super) struct Surface {
 }
 
 /// Values of four pixels.
-pub(super) struct Shown {
+pub(super) struct PixelValues {
     /// RGB and α.
     pub colour: [Vec4; 4],
     /// Unit normal.
@@ -48,21 +48,21 @@ impl<'a> Shader<'a> {
     }
 
     /// Values of empty pixels.
-    pub fn background(&self) -> Shown {
+    pub fn background(&self) -> PixelValues {
         let colour = self.settings.background.map_or([0.0; 4], |[r, g, b]| [r, g, b, 1.0]);
-        Shown { colour: colour.map(Vec4::splat), normal: [Vec4::ZERO; 3], depth: Vec4::ZERO }
+        PixelValues { colour: colour.map(Vec4::splat), normal: [Vec4::ZERO; 3], depth: Vec4::ZERO }
     }
 
     /// Shades the pixels with centres at `x` and `y`, px.
     #[inline]
-    pub fn shade(&self, x: Vec4, y: f32, surface: &Surface) -> Shown {
+    pub fn shade(&self, x: Vec4, y: f32, surface: &Surface) -> PixelValues {
         let empty = self.background();
         if !surface.covered.any() {
             return empty;
         }
         let to_eye = self.to_eye(x, y);
         let normal = if self.normals { unit(surface, to_eye) } else { [Vec4::ZERO; 3] };
-        let shown = match self.settings.shading {
+        let value = match self.settings.shading {
             Shading::Lit => lit(&self.settings.lighting, surface.colour, normal, to_eye),
             Shading::Colour => surface.colour,
             Shading::Normal => normal,
@@ -70,9 +70,9 @@ impl<'a> Shader<'a> {
             // Rejected before the frame starts.
             Shading::Overlap | Shading::Weight => [Vec4::ONE; 3],
         };
-        let [r, g, b] = shown;
+        let [r, g, b] = value;
         let select = |here: Vec4, otherwise: Vec4| Vec4::select(surface.covered, here, otherwise);
-        Shown {
+        PixelValues {
             colour: [(r, 0), (g, 1), (b, 2), (Vec4::ONE, 3)].map(|(v, i)| select(v, empty.colour[i])),
             normal: normal.map(|v| select(v, Vec4::ZERO)),
             depth: select(surface.depth, Vec4::ZERO),

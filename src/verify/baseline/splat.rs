@@ -47,7 +47,7 @@ pub(super) struct Footprint<'a> {
 }
 
 /// Geometry of a surfel in double precision: large terms cancel here, and it is a small part of the work.
-struct Place {
+struct SurfelGeometry {
     /// Distance in front of the eye.
     distance: f64,
     /// Divisor of homogeneous pixels.
@@ -76,15 +76,15 @@ impl<'a> Footprint<'a> {
     /// if it is not visible.
     #[inline]
     pub fn splat(&self, index: usize) -> Option<(Splat, Vec2)> {
-        let place = self.place(index)?;
+        let geometry = self.geometry(index)?;
         let (radius, normal) = (self.surfels.radii[index], self.surfels.normals[index]);
         let sigma = radius * self.inverse_cutoff;
         let ([major, minor], aspect) = self.axes(index, normal);
         let [s, t] = [self.pixel * (sigma * major), self.pixel * (sigma * minor)];
-        let w = place.w as f32;
-        let inverse = 1.0 / place.w;
-        let centre = (place.image * inverse).as_vec2();
-        let area = self.view.jacobian * aspect * sigma * sigma * place.facing.abs() as f32;
+        let w = geometry.w as f32;
+        let inverse = 1.0 / geometry.w;
+        let centre = (geometry.image * inverse).as_vec2();
+        let area = self.view.jacobian * aspect * sigma * sigma * geometry.facing.abs() as f32;
         let (shape, shift) = self.image([s, t], w, centre, area)?;
 
         let wide = Shape { variance: attribute_variance(shape.variance, self.settings), ..shape };
@@ -94,16 +94,16 @@ impl<'a> Footprint<'a> {
             return None;
         }
         let (anchor, pixel) = self.anchor(middle);
-        let offset = ((place.image - place.w * pixel) * inverse).as_vec2() + shift;
-        let plane = self.plane(normal.as_dvec3(), &place, pixel);
+        let offset = ((geometry.image - geometry.w * pixel) * inverse).as_vec2() + shift;
+        let plane = self.plane(normal.as_dvec3(), &geometry, pixel);
         let reach = self.settings.epsilon * radius;
         let splat = Splat {
             anchor,
-            surfel: index as u32 | if place.facing > 0.0 { FLIPPED } else { 0 },
+            surfel: index as u32 | if geometry.facing > 0.0 { FLIPPED } else { 0 },
             offset,
             shape,
             plane,
-            disc: self.disc(&place, Vec2::new(s.z, t.z)),
+            disc: self.disc(&geometry, Vec2::new(s.z, t.z)),
             nearest: nearest(plane, offset, &wide, half, self.settings.cutoff),
             epsilon: if self.view.perspective { w / (w + reach) } else { reach },
         };
@@ -120,18 +120,18 @@ impl<'a> Footprint<'a> {
 
     /// Depth key of the nearest point of a disc whose 1-σ axes extend by `depths` along the view.
     #[inline]
-    fn disc(&self, place: &Place, depths: Vec2) -> f32 {
+    fn disc(&self, geometry: &SurfelGeometry, depths: Vec2) -> f32 {
         let lean = self.settings.cutoff * depths.length();
         if self.view.perspective {
-            1.0 / (place.w as f32 - lean)
+            1.0 / (geometry.w as f32 - lean)
         } else {
-            (self.view.near - place.distance) as f32 + lean
+            (self.view.near - geometry.distance) as f32 + lean
         }
     }
 
     /// `None` behind the eye, for a culled back, and if the plane contains the eye. NaN fails the comparisons.
     #[inline]
-    fn place(&self, index: usize) -> Option<Place> {
+    fn geometry(&self, index: usize) -> Option<SurfelGeometry> {
         let view = self.view;
         let position = self.surfels.positions[index].as_dvec3() - view.eye;
         let normal = self.surfels.normals[index].as_dvec3();
@@ -145,7 +145,7 @@ impl<'a> Footprint<'a> {
         {
             return None;
         }
-        Some(Place { distance, w, height, facing, image: image.truncate() + view.middle })
+        Some(SurfelGeometry { distance, w, height, facing, image: image.truncate() + view.middle })
     }
 
     /// Directions of the disc's semi-axes; the second is scaled by the aspect, which is returned, too.
@@ -189,12 +189,16 @@ impl<'a> Footprint<'a> {
 
     /// Depth key of the tangent plane at `pixel`, and its slopes: affine in the pixel for every projection.
     #[inline]
-    fn plane(&self, normal: DVec3, place: &Place, pixel: DVec2) -> Vec3 {
+    fn plane(&self, normal: DVec3, geometry: &SurfelGeometry, pixel: DVec2) -> Vec3 {
         let view = self.view;
         let of = view.ray.transpose_mul_vec3(normal);
-        let key = of.dot(pixel.extend(1.0));
-        let key = if view.perspective { key } else { key - place.height + view.near * place.facing };
-        (DVec3::new(key, of.x, of.y) * (1.0 / place.facing)).as_vec3()
+        let depth_key = of.dot(pixel.extend(1.0));
+        let depth_key = if view.perspective {
+            depth_key
+        } else {
+            depth_key - geometry.height + view.near * geometry.facing
+        };
+        (DVec3::new(depth_key, of.x, of.y) * (1.0 / geometry.facing)).as_vec3()
     }
 }
 

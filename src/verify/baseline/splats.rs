@@ -5,7 +5,7 @@ use super::clock::Stages;
 use super::shade::{Shader, Surface};
 use super::splat::Footprint;
 use super::sums::Streams;
-use super::target::{Slab, Target};
+use super::target::{Target, TargetTile};
 use super::tile::{BLOCKS, Frame, Tile, centres};
 use super::view::View;
 use crate::geometry::Surfels;
@@ -55,8 +55,8 @@ impl Splats {
         let shader = Shader::new(settings, view, streams.normals);
         let frame = Frame { view, settings, streams, chunks: &self.chunks, order: &self.order };
         stages.time_shared(["visibility", "attribute", "normalize"], |clock| {
-            target.slabs().for_each(|mut slab| {
-                let mut tile = Tile::new(slab.at);
+            target.target_tiles().for_each(|mut output| {
+                let mut tile = Tile::new(output.at);
                 let mut lap = clock.start();
                 let drawn = tile.visibility(&frame);
                 lap.end(0);
@@ -64,7 +64,7 @@ impl Splats {
                     tile.attribute(&frame);
                 }
                 lap.end(1);
-                normalize(&frame, &shader, &tile, &mut slab);
+                normalize(&frame, &shader, &tile, &mut output);
                 lap.end(2);
             });
         });
@@ -78,22 +78,26 @@ impl Splats {
 }
 
 /// Stage `normalize`: divides the sums by the weights, and shades.
-fn normalize(frame: &Frame, shader: &Shader, tile: &Tile, slab: &mut Slab) {
+fn normalize(frame: &Frame, shader: &Shader, tile: &Tile, output: &mut TargetTile) {
     let albedo = frame.settings.lighting.albedo.map(Vec4::splat);
     let first = 1 + frame.streams.colour_channel();
     for block in 0..BLOCKS {
         let weight = tile.sums[0][block];
         let inverse = 1.0 / weight;
         let sums = |first: usize| [0, 1, 2].map(|i| tile.sums[first + i][block]);
-        let key = tile.sums[7][block];
+        let depth_key = tile.sums[7][block];
         let surface = Surface {
             covered: weight.cmpgt(Vec4::ZERO),
             colour: if frame.streams.colours { sums(first).map(|v| v * inverse) } else { albedo },
             normal: sums(1),
             weight,
-            depth: if frame.view.perspective { weight / key } else { frame.view.near as f32 - key * inverse },
+            depth: if frame.view.perspective {
+                weight / depth_key
+            } else {
+                frame.view.near as f32 - depth_key * inverse
+            },
         };
         let (x, y) = centres(tile.corner(), block);
-        slab.put(block, &shader.shade(x, y, &surface));
+        output.put(block, &shader.shade(x, y, &surface));
     }
 }

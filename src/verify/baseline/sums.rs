@@ -11,7 +11,7 @@ pub(super) struct Channels {
     /// Number of attributes: three coordinates of the normal, then three of the colour, each if the frame uses them.
     pub attributes: usize,
     /// Whether depth keys are summed.
-    pub keys: bool,
+    pub depth_keys: bool,
 }
 
 /// The surfels' attributes that a frame uses.
@@ -22,7 +22,7 @@ pub(super) struct Streams<'a> {
     /// Whether colours are summed.
     pub colours: bool,
     /// Whether depth keys are summed.
-    pub keys: bool,
+    pub depth_keys: bool,
     linear: &'a [f32; 256],
 }
 
@@ -34,13 +34,16 @@ impl<'a> Streams<'a> {
             surfels,
             normals: outputs.normal || matches!(shading, Shading::Lit | Shading::Normal),
             colours: surfels.colours.is_some() && matches!(shading, Shading::Lit | Shading::Colour),
-            keys: outputs.depth || shading == Shading::Depth,
+            depth_keys: outputs.depth || shading == Shading::Depth,
             linear,
         }
     }
 
     pub fn channels(&self) -> Channels {
-        Channels { attributes: 3 * (usize::from(self.normals) + usize::from(self.colours)), keys: self.keys }
+        Channels {
+            attributes: 3 * (usize::from(self.normals) + usize::from(self.colours)),
+            depth_keys: self.depth_keys,
+        }
     }
 
     /// Index of the colour's first attribute.

@@ -1,7 +1,7 @@
 //! Render target, stored tile by tile, and in a tile channel by channel, in the order of writing. GPUs store images in
 //! tiles, too.
 
-use super::shade::Shown;
+use super::shade::PixelValues;
 use super::tile::{BLOCKS, LANES, SIDE};
 use crate::error::{Error, Result};
 use crate::picture::Picture;
@@ -18,7 +18,7 @@ pub(super) struct Target {
 }
 
 /// A tile of the target.
-pub(super) struct Slab<'a> {
+pub(super) struct TargetTile<'a> {
     /// Column and row among the tiles.
     pub at: [u32; 2],
     outputs: Outputs,
@@ -34,11 +34,11 @@ impl Target {
     }
 
     /// All tiles, row by row.
-    pub fn slabs(&mut self) -> impl IndexedParallelIterator<Item = Slab<'_>> {
+    pub fn target_tiles(&mut self) -> impl IndexedParallelIterator<Item = TargetTile<'_>> {
         let (columns, outputs, stride) = (columns(self.size), self.outputs, self.stride());
         let at = move |tile: usize| [(tile % columns) as u32, (tile / columns) as u32];
-        let slab = move |(tile, values)| Slab { at: at(tile), outputs, values };
-        self.values.par_chunks_mut(stride).enumerate().map(slab)
+        let output = move |(tile, values)| TargetTile { at: at(tile), outputs, values };
+        self.values.par_chunks_mut(stride).enumerate().map(output)
     }
 
     /// The frame as a picture, row by row.
@@ -46,7 +46,7 @@ impl Target {
         let [width, height] = self.size;
         let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
         let channel = |c: usize, (x, y): (u32, u32)| {
-            let (tile, pixel) = place(self.size, [x, y]);
+            let (tile, pixel) = tile_pixel(self.size, [x, y]);
             self.values[tile * self.stride() + c * BLOCKS + pixel / LANES][pixel % LANES]
         };
         let depth = 4 + if self.outputs.normal { 3 } else { 0 };
@@ -71,10 +71,10 @@ impl Target {
     }
 }
 
-impl Slab<'_> {
+impl TargetTile<'_> {
     /// Writes four pixels.
     #[inline]
-    pub fn put(&mut self, block: usize, pixels: &Shown) {
+    pub fn put(&mut self, block: usize, pixels: &PixelValues) {
         let Outputs { normal, depth, .. } = self.outputs;
         let normals = pixels.normal.iter().filter(|_| normal);
         let depths = std::iter::once(&pixels.depth).filter(|_| depth);
@@ -97,7 +97,7 @@ pub(super) fn tiles(size: [u32; 2]) -> usize {
 
 /// Indices of a pixel's tile, and of the pixel in that tile.
 #[inline]
-pub(super) fn place(size: [u32; 2], [x, y]: [u32; 2]) -> (usize, usize) {
+pub(super) fn tile_pixel(size: [u32; 2], [x, y]: [u32; 2]) -> (usize, usize) {
     let (x, y) = (x as usize, y as usize);
     (y / SIDE * columns(size) + x / SIDE, y % SIDE * SIDE + x % SIDE)
 }

@@ -19,7 +19,7 @@ pub(super) const BLOCKS: usize = SIDE * SIDE / LANES;
 /// Columns of a block.
 pub(super) const RAMP: Vec4 = Vec4::new(0.0, 1.0, 2.0, 3.0);
 /// Splats between updates of a tile's farthest surface.
-const FRESH: usize = 32;
+const UPDATE_INTERVAL: usize = 32;
 
 /// One value per pixel, row by row.
 pub(super) type Plane = [Vec4; BLOCKS];
@@ -39,7 +39,7 @@ pub(super) struct Tile {
     /// Column and row among the tiles.
     at: [u32; 2],
     /// Depth key of the nearest surface, moved back by ε; −∞ if there is none.
-    keys: Plane,
+    depth_keys: Plane,
     /// The least of the depth keys, −∞ if a pixel is empty: splats behind it are hidden.
     farthest: f32,
     /// Weighted sums: of the weights, the attributes, the depth keys.
@@ -51,7 +51,7 @@ impl Tile {
     pub fn new(at: [u32; 2]) -> Self {
         Self {
             at,
-            keys: [Vec4::NEG_INFINITY; BLOCKS],
+            depth_keys: [Vec4::NEG_INFINITY; BLOCKS],
             farthest: f32::NEG_INFINITY,
             sums: [[Vec4::ZERO; BLOCKS]; 8],
         }
@@ -69,11 +69,11 @@ impl Tile {
             let list = chunk.of_tile(self.at);
             drawn |= !list.is_empty();
             for &index in list {
-                self.claim(frame, &chunk.splats[index as usize]);
+                self.occlude(frame, &chunk.splats[index as usize]);
             }
             stale += list.len();
-            if stale > FRESH {
-                self.farthest = least(&self.keys);
+            if stale > UPDATE_INTERVAL {
+                self.farthest = least(&self.depth_keys);
                 stale = 0;
             }
         }
@@ -82,7 +82,7 @@ impl Tile {
 
     /// Adds a splat to the visibility depths.
     #[inline]
-    fn claim(&mut self, frame: &Frame, splat: &Splat) {
+    fn occlude(&mut self, frame: &Frame, splat: &Splat) {
         let (factor, shift) =
             if frame.view.perspective { (splat.epsilon, 0.0) } else { (1.0, splat.epsilon) };
         // At most the disc's nearest point, however far the filter widens its plane.
@@ -92,63 +92,66 @@ impl Tile {
         let shape =
             Shape { variance: visibility_variance(splat.shape.variance, frame.settings), ..splat.shape };
         let Some(cover) = Cover::new(splat, &shape, frame, self.corner()) else { return };
-        let [far, near] = frame.view.keys.map(Vec4::splat);
+        let [far, near] = frame.view.depth_keys.map(Vec4::splat);
         let disc = Vec4::splat(splat.disc);
         cover.each(|block| {
-            let inside = block.inside & block.key.cmpgt(far) & block.key.cmple(near);
-            let claimed = block.key.min(disc) * factor - shift;
-            let key = &mut self.keys[block.index];
-            *key = Vec4::select(inside, key.max(claimed), *key);
+            let inside = block.inside & block.depth_key.cmpgt(far) & block.depth_key.cmple(near);
+            let occluding = block.depth_key.min(disc) * factor - shift;
+            let depth_key = &mut self.depth_keys[block.index];
+            *depth_key = Vec4::select(inside, depth_key.max(occluding), *depth_key);
         });
     }
 
     /// Stage `attribute`: weighted sums over the visible splats.
     pub fn attribute(&mut self, frame: &Frame) {
         // Pixels that visibility left empty admit no splat, although the attribute footprint is wider.
-        for key in &mut self.keys {
-            *key = Vec4::select(key.cmpeq(Vec4::NEG_INFINITY), Vec4::INFINITY, *key);
+        for depth_key in &mut self.depth_keys {
+            *depth_key = Vec4::select(depth_key.cmpeq(Vec4::NEG_INFINITY), Vec4::INFINITY, *depth_key);
         }
-        self.farthest = least(&self.keys);
+        self.farthest = least(&self.depth_keys);
         match frame.streams.channels() {
-            Channels { attributes: 0, keys: false } => self.sum::<0, false>(frame),
-            Channels { attributes: 0, keys: true } => self.sum::<0, true>(frame),
-            Channels { attributes: 3, keys: false } => self.sum::<3, false>(frame),
-            Channels { attributes: 3, keys: true } => self.sum::<3, true>(frame),
-            Channels { keys: false, .. } => self.sum::<6, false>(frame),
-            Channels { keys: true, .. } => self.sum::<6, true>(frame),
+            Channels { attributes: 0, depth_keys: false } => self.sum::<0, false>(frame),
+            Channels { attributes: 0, depth_keys: true } => self.sum::<0, true>(frame),
+            Channels { attributes: 3, depth_keys: false } => self.sum::<3, false>(frame),
+            Channels { attributes: 3, depth_keys: true } => self.sum::<3, true>(frame),
+            Channels { depth_keys: false, .. } => self.sum::<6, false>(frame),
+            Channels { depth_keys: true, .. } => self.sum::<6, true>(frame),
         }
     }
 
     /// Sums `COUNT` attributes, and the depth keys if `KEYS`.
-    fn sum<const COUNT: usize, const KEYS: bool>(&mut self, frame: &Frame) {
+    fn sum<const COUNT: usize, const DEPTH_KEYS: bool>(&mut self, frame: &Frame) {
         for chunk in frame.chunks {
             for &index in chunk.of_tile(self.at) {
                 let splat = &chunk.splats[index as usize];
                 if splat.nearest >= self.farthest {
-                    self.add::<COUNT, KEYS>(frame, splat);
+                    self.add::<COUNT, DEPTH_KEYS>(frame, splat);
                 }
             }
         }
     }
 
     #[inline]
-    fn add<const COUNT: usize, const KEYS: bool>(&mut self, frame: &Frame, splat: &Splat) {
+    fn add<const COUNT: usize, const DEPTH_KEYS: bool>(&mut self, frame: &Frame, splat: &Splat) {
         let variance = attribute_variance(splat.shape.variance, frame.settings);
         let shape = Shape { variance, ..splat.shape };
         let Some(cover) = Cover::new(splat, &shape, frame, self.corner()) else { return };
         // The product of both could overflow for a very large splat.
         let amplitude = splat.shape.root / variance.x.sqrt() / variance.y.sqrt();
         let attributes = frame.streams.attributes(splat.surfel);
-        let [far, near] = frame.view.keys.map(Vec4::splat);
-        cover.each(|Block { index, distance, key, inside }| {
-            let seen = inside & key.cmpge(self.keys[index]) & key.cmpgt(far) & key.cmple(near);
+        let [far, near] = frame.view.depth_keys.map(Vec4::splat);
+        cover.each(|Block { index, distance, depth_key, inside }| {
+            let seen = inside
+                & depth_key.cmpge(self.depth_keys[index])
+                & depth_key.cmpgt(far)
+                & depth_key.cmple(near);
             let weight = Vec4::select(seen, amplitude * exp_half(distance), Vec4::ZERO);
             self.sums[0][index] += weight;
             for (sum, attribute) in self.sums[1..=COUNT].iter_mut().zip(attributes) {
                 sum[index] += weight * attribute;
             }
-            if KEYS {
-                self.sums[7][index] += weight * key;
+            if DEPTH_KEYS {
+                self.sums[7][index] += weight * depth_key;
             }
         });
     }

@@ -30,7 +30,7 @@ pub(super) struct View {
     pub near: f64,
     pub far: f64,
     /// Depth keys of the far and the near plane.
-    pub keys: [f32; 2],
+    pub depth_keys: [f32; 2],
 }
 
 impl View {
@@ -68,12 +68,12 @@ impl View {
             jacobian: pixel.determinant().abs() as f32,
             near: depth.near,
             far: depth.far,
-            keys: if depth.perspective {
+            depth_keys: if depth.perspective {
                 [1.0 / depth.far, 1.0 / depth.near]
             } else {
                 [depth.near - depth.far, 0.0]
             }
-            .map(|key| key as f32),
+            .map(|depth_key| depth_key as f32),
         })
     }
 

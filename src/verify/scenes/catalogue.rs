@@ -13,7 +13,7 @@ const MOST_POINTS: u64 = 100_000_000;
 
 /// A built-in scene.
 #[derive(Clone, Copy)]
-pub struct Scene {
+pub struct SceneInfo {
     /// Name, including `scene:`.
     pub name: &'static str,
     /// Description.
@@ -21,7 +21,7 @@ pub struct Scene {
     /// Recommended viewpoint.
     pub viewpoint: Viewpoint,
     /// Parameters of its surface.
-    pub own: &'static [Parameter],
+    pub surface_parameters: &'static [Parameter],
     pub(super) build: fn(&Query) -> Vec<Piece>,
     /// Sharp edges for clip lines, if the scene has any.
     pub(super) edges: Option<fn(&Query) -> Vec<Edge>>,
@@ -49,10 +49,10 @@ impl Viewpoint {
     }
 }
 
-impl Scene {
+impl SceneInfo {
     /// The parameters: those of the samples, then those of the surface.
     pub fn parameters(&self) -> impl Iterator<Item = &'static Parameter> + use<> {
-        SAMPLING.iter().chain(self.own)
+        SAMPLING.iter().chain(self.surface_parameters)
     }
 
     /// The sharp edges at which discs end, if `query` asks for them.
@@ -164,33 +164,33 @@ const fn view(eye: [f64; 3], target: [f64; 3], fov_y_deg: f64) -> Viewpoint {
 const COMPARISON: [f64; 3] = [1.707_825_127_659_933, 1.366_260_102_127_946_3, 2.732_520_204_255_892_7];
 
 /// Every built-in scene.
-pub fn list() -> &'static [Scene] {
+pub fn list() -> &'static [SceneInfo] {
     SCENES
 }
 
-const SCENES: &[Scene] = &[
-    Scene {
+const SCENES: &[SceneInfo] = &[
+    SceneInfo {
         name: "scene:bumpy-sphere",
         summary: "a sphere of radius 1 with bumps",
         viewpoint: view(COMPARISON, [0.0; 3], 45.0),
         // 8 / π: 16 squares from pole to pole.
-        own: &[albedo("checker"), frequency("2.5464790894703255")],
+        surface_parameters: &[albedo("checker"), frequency("2.5464790894703255")],
         build: models::bumpy_sphere,
         edges: None,
     },
-    Scene {
+    SceneInfo {
         name: "scene:sphere",
         summary: "a sphere of radius 1",
         viewpoint: view(COMPARISON, [0.0; 3], 45.0),
-        own: &[albedo("checker"), frequency("2.5464790894703255")],
+        surface_parameters: &[albedo("checker"), frequency("2.5464790894703255")],
         build: models::sphere,
         edges: None,
     },
-    Scene {
+    SceneInfo {
         name: "scene:torus",
         summary: "a torus of radius 1",
         viewpoint: view([1.4, 2.6, 2.4], [0.0; 3], 45.0),
-        own: &[
+        surface_parameters: &[
             albedo("checker"),
             // 15 / 2π: 15 periods around the axis, 6 around the tube.
             frequency("2.3873241463784303"),
@@ -199,27 +199,31 @@ const SCENES: &[Scene] = &[
         build: models::torus,
         edges: None,
     },
-    Scene {
+    SceneInfo {
         name: "scene:plane",
         summary: "a checkerboard to the horizon, for an eye at height 1 above its middle; denser near that",
         viewpoint: view([0.0, 1.0, 0.0], [0.0, 0.7, -1.0], 60.0),
-        own: &[albedo("checker"), frequency("0.5"), number("radius", "1000", [1.0, 1e6], "where it ends")],
+        surface_parameters: &[
+            albedo("checker"),
+            frequency("0.5"),
+            number("radius", "1000", [1.0, 1e6], "where it ends"),
+        ],
         build: models::plane,
         edges: None,
     },
-    Scene {
+    SceneInfo {
         name: "scene:part",
         summary: "a block with a step, a slot and a bore: sharp edges and corners, convex and concave",
         viewpoint: view([1.9, 2.0, 3.2], [0.0; 3], 40.0),
-        own: &[albedo("plain"), frequency("4"), CLIPS],
+        surface_parameters: &[albedo("plain"), frequency("4"), CLIPS],
         build: models::part,
         edges: Some(models::part_edges),
     },
-    Scene {
+    SceneInfo {
         name: "scene:ribbon",
         summary: "a twisted ribbon of length 3, open",
         viewpoint: view([0.8, 1.2, 3.6], [0.0; 3], 45.0),
-        own: &[
+        surface_parameters: &[
             albedo("checker"),
             frequency("4"),
             number("twists", "1.5", [0.0, 20.0], "turns from end to end"),
@@ -230,11 +234,11 @@ const SCENES: &[Scene] = &[
         build: models::ribbon,
         edges: None,
     },
-    Scene {
+    SceneInfo {
         name: "scene:helix",
         summary: "a tapered tube along a helix",
         viewpoint: view([1.4, 1.6, 3.0], [0.0; 3], 45.0),
-        own: &[
+        surface_parameters: &[
             albedo("stripes"),
             frequency("4"),
             number("turns", "3", [1.0, 20.0], "turns; the tube is as thick as they allow"),
@@ -244,11 +248,11 @@ const SCENES: &[Scene] = &[
         build: models::helix,
         edges: None,
     },
-    Scene {
+    SceneInfo {
         name: "scene:slabs",
         summary: "thin level squares of side 2, close together, each in another colour",
         viewpoint: view([2.6, 1.4, 3.0], [0.3, -0.05, 0.3], 48.0),
-        own: &[
+        surface_parameters: &[
             albedo("plain"),
             frequency("4"),
             whole("slabs", "3", [1, 32], "how many"),
@@ -259,11 +263,11 @@ const SCENES: &[Scene] = &[
         build: models::slabs,
         edges: Some(models::slabs_edges),
     },
-    Scene {
+    SceneInfo {
         name: "scene:relief",
         summary: "a relief, 12 wide, that fills the picture at a grazing angle",
         viewpoint: view([0.0, 2.07, 7.73], [0.0; 3], 12.0),
-        own: &[
+        surface_parameters: &[
             albedo("checker"),
             frequency("2"),
             number("height", "0.15", [0.0, 0.5], "greatest height above its middle plane"),
@@ -271,11 +275,11 @@ const SCENES: &[Scene] = &[
         build: models::relief,
         edges: None,
     },
-    Scene {
+    SceneInfo {
         name: "scene:tree",
         summary: "a tree of tubes with ribbons for leaves",
         viewpoint: view([1.8, 2.2, 4.6], [0.0, 1.15, 0.0], 32.0),
-        own: &[
+        surface_parameters: &[
             albedo("plain"),
             frequency("20"),
             whole("depth", "3", [0, 5], "how often it forks"),
@@ -287,11 +291,11 @@ const SCENES: &[Scene] = &[
         build: models::tree,
         edges: None,
     },
-    Scene {
+    SceneInfo {
         name: "scene:hybrid",
         summary: "a bent horn, the lower half of which may be triangles",
         viewpoint: view([1.2, 1.0, 3.2], [0.15, 0.0, 0.0], 42.0),
-        own: &[
+        surface_parameters: &[
             albedo("checker"),
             frequency("3"),
             number(
@@ -306,11 +310,11 @@ const SCENES: &[Scene] = &[
         build: models::hybrid,
         edges: None,
     },
-    Scene {
+    SceneInfo {
         name: "scene:mixed",
         summary: "a torus for points, a spring and a ribbon for lines, a floor and a box for polygons",
         viewpoint: view([1.2, 1.9, 3.6], [-0.1, 0.4, 0.0], 43.0),
-        own: &[albedo("checker"), frequency("5"), PRIMITIVES, SEGMENTS],
+        surface_parameters: &[albedo("checker"), frequency("5"), PRIMITIVES, SEGMENTS],
         build: models::mixed,
         edges: None,
     },

@@ -99,7 +99,7 @@ impl Cut<'_> {
 /// A disc to be clipped.
 pub struct Disc {
     /// Point of the surface that was sampled.
-    pub on: DVec3,
+    pub sampled_at: DVec3,
     /// Its centre, which may lie off the surface.
     pub centre: DVec3,
     /// Unit normal of the surface.
@@ -112,11 +112,11 @@ pub struct Disc {
 /// the kept part is that of the face at this corner; otherwise both cut.
 pub fn clip(edges: &[Edge], disc: &Disc) -> Option<Clip> {
     let mut cuts: Vec<Cut> =
-        edges.iter().filter_map(|edge| edge.cut(disc.on, disc.normal, disc.radius)).collect();
+        edges.iter().filter_map(|edge| edge.cut(disc.sampled_at, disc.normal, disc.radius)).collect();
     cuts.sort_by(|a, b| a.distance.total_cmp(&b.distance));
     let (first, rest) = cuts.split_first()?;
     // An edge of another face in the same plane may be within reach; that face has its own discs.
-    let second = rest.iter().find(|cut| first.leaving(cut).is_some() || cut.keeps(disc.on));
+    let second = rest.iter().find(|cut| first.leaving(cut).is_some() || cut.keeps(disc.sampled_at));
     let concave = second.is_some_and(|cut| first.leaving(cut).is_some_and(|d| first.outward.dot(d) > 0.0));
     let line = |cut: &Cut| cut.line(disc.centre, disc.normal);
     Clip::of_some([line(first), second.and_then(line)], concave)

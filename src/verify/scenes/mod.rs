@@ -18,10 +18,10 @@ mod surface;
 mod tests;
 mod texture;
 
-pub use catalogue::{SAMPLING, Scene, Viewpoint, list};
-pub use primitives::Middle;
+pub use catalogue::{SAMPLING, SceneInfo, Viewpoint, list};
+pub use primitives::CentrelinePoint;
 pub use query::{Parameter, Values};
-pub use shapes::{Ray, Sample, Shape, Spot};
+pub use shapes::{Ray, Sample, Shape, SurfacePoint};
 pub use surface::{Hit, Kind, Piece, Surface};
 pub use texture::{Pattern, Rgb, Texture};
 

@@ -7,7 +7,7 @@ use glam::{DVec2, DVec3, Vec3};
 
 /// A point of a centre line.
 #[derive(Clone, Copy, Debug)]
-pub struct Middle {
+pub struct CentrelinePoint {
     /// Where it is.
     pub position: DVec3,
     /// Unit normal of a ribbon, unit tangent of a tube.
@@ -34,9 +34,9 @@ fn line(drawn: &mut Primitives, piece: &Piece, steps: usize) {
     let first = drawn.positions.len() as u32;
     for i in 0..=steps {
         let u = i as f64 / steps as f64;
-        let Some(middle) = piece.shape.middle(u) else { return };
-        let spot = piece.shape.at(DVec2::new(u, 0.5)).spot;
-        vertex(drawn, middle, piece.texture.at(&spot));
+        let Some(middle) = piece.shape.centreline(u) else { return };
+        let point = piece.shape.at(DVec2::new(u, 0.5)).point;
+        vertex(drawn, middle, piece.texture.at(&point));
     }
     let segments = (first..first + steps as u32).map(|i| [i, i + 1]);
     match piece.kind {
@@ -49,16 +49,16 @@ fn polygons(drawn: &mut Primitives, piece: &Piece, steps: usize) {
     let (first, side) = (drawn.positions.len() as u32, steps as u32 + 1);
     for i in 0..side * side {
         let uv = DVec2::new(f64::from(i % side), f64::from(i / side)) / steps as f64;
-        let spot = piece.shape.at(uv).spot;
+        let point = piece.shape.at(uv).point;
         let radius = if uv.x == 1.0 { piece.seam } else { 0.0 };
-        let corner = Middle { position: spot.position, direction: spot.normal, radius };
-        vertex(drawn, corner, piece.texture.at(&spot));
+        let corner = CentrelinePoint { position: point.position, direction: point.normal, radius };
+        vertex(drawn, corner, piece.texture.at(&point));
     }
     let corners = (0..side * (side - 1)).filter(|i| i % side + 1 < side).map(|i| first + i);
     drawn.triangles.extend(corners.flat_map(|a| [[a, a + 1, a + side], [a + 1, a + side + 1, a + side]]));
 }
 
-fn vertex(drawn: &mut Primitives, vertex: Middle, albedo: [f64; 3]) {
+fn vertex(drawn: &mut Primitives, vertex: CentrelinePoint, albedo: [f64; 3]) {
     drawn.positions.push(vertex.position.as_vec3());
     drawn.directions.push(Vec3::normalize(vertex.direction.as_vec3()));
     drawn.radii.push(vertex.radius as f32);

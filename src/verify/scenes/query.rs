@@ -1,6 +1,6 @@
 //! A scene's name and parameters: `scene:NAME?key=value&…`.
 
-use super::catalogue::{self, Scene};
+use super::catalogue::{self, SceneInfo};
 use super::texture::Pattern;
 use crate::error::{Error, Result};
 
@@ -55,7 +55,7 @@ impl Values {
 /// A parsed scene text; every value is valid.
 pub struct Query<'a> {
     /// The scene.
-    pub scene: &'static Scene,
+    pub scene: &'static SceneInfo,
     given: Vec<(&'static str, &'a str)>,
 }
 

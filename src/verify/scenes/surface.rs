@@ -100,16 +100,16 @@ impl Surface for Assembly {
         self.hierarchy.visit(&ray, f64::INFINITY, |index, limit| {
             let piece = &self.pieces[index as usize];
             match piece.shape.trace(&ray, limit) {
-                Some((t, spot)) => {
-                    found = Some((t, spot, piece));
+                Some((t, point)) => {
+                    found = Some((t, point, piece));
                     t
                 }
                 None => limit,
             }
         });
-        let (t, spot, piece) = found?;
-        let albedo = piece.texture.at(&spot);
-        Some(Hit { t: (t + skipped) / length, position: spot.position, normal: spot.normal, albedo })
+        let (t, point, piece) = found?;
+        let albedo = piece.texture.at(&point);
+        Some(Hit { t: (t + skipped) / length, position: point.position, normal: point.normal, albedo })
     }
 
     fn area(&self) -> f64 {

@@ -1,6 +1,6 @@
 //! Procedural albedo textures.
 
-use super::shapes::Spot;
+use super::shapes::SurfacePoint;
 use crate::geometry::srgb;
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
@@ -41,22 +41,22 @@ pub fn linear(code: [u8; 3]) -> Rgb {
 
 impl Texture {
     /// The albedo of a point.
-    pub fn at(&self, spot: &Spot) -> Rgb {
-        let part = self.part(spot);
+    pub fn at(&self, point: &SurfacePoint) -> Rgb {
+        let part = self.part(point);
         let [a, b] = self.colours;
         // Exact at both ends, unlike a + part (b − a).
         std::array::from_fn(|i| (1.0 - part) * a[i] + part * b[i])
     }
 
     /// Share of the second colour, 0 to 1.
-    fn part(&self, spot: &Spot) -> f64 {
-        let at = self.frequency * spot.chart;
+    fn part(&self, point: &SurfacePoint) -> f64 {
+        let at = self.frequency * point.chart;
         match self.pattern {
             Pattern::Checker => 1.0 - ((2.0 * at.x).floor() + (2.0 * at.y).floor()).rem_euclid(2.0),
             Pattern::Stripes => 0.5 + 0.5 * (TAU * at.x).sin(),
-            Pattern::Zone => 0.5 + 0.5 * (PI * at.dot(spot.chart)).cos(),
+            Pattern::Zone => 0.5 + 0.5 * (PI * at.dot(point.chart)).cos(),
             Pattern::Noise => {
-                let p = 2.0 * self.frequency * spot.position;
+                let p = 2.0 * self.frequency * point.position;
                 (2.0 * noise(p) + noise(2.0 * p)) / 3.0
             }
             Pattern::Plain => 0.0,
@@ -94,8 +94,8 @@ mod tests {
     use super::*;
     use glam::DVec2;
 
-    fn spot(x: f64, y: f64) -> Spot {
-        Spot { position: DVec3::new(x, y, 0.3), normal: DVec3::Z, chart: DVec2::new(x, y) }
+    fn point(x: f64, y: f64) -> SurfacePoint {
+        SurfacePoint { position: DVec3::new(x, y, 0.3), normal: DVec3::Z, chart: DVec2::new(x, y) }
     }
 
     fn texture(pattern: Pattern, frequency: f64) -> Texture {
@@ -106,22 +106,22 @@ mod tests {
     fn patterns_have_their_frequency() {
         for pattern in [Pattern::Checker, Pattern::Stripes] {
             let texture = texture(pattern, 4.0);
-            let at = |x: f64| texture.at(&spot(x, 0.1))[0];
+            let at = |x: f64| texture.at(&point(x, 0.1))[0];
             assert!((at(0.03) - at(0.03 + 0.25)).abs() < 1e-12, "{pattern:?}");
             assert!((at(0.03) + at(0.03 + 0.125) - 1.0).abs() < 1e-12, "{pattern:?}");
         }
         // The zone plate's phase changes by f d per unit of length.
         let zone = texture(Pattern::Zone, 50.0);
-        assert_eq!(zone.at(&spot(0.0, 0.0))[0], 1.0);
-        assert!((zone.at(&spot(0.6, 0.8))[0] - 1.0).abs() < 1e-12);
-        assert!((zone.at(&spot(1.01, 0.0))[0] - (0.5 + 0.5 * (PI * 50.0 * 1.0201).cos())).abs() < 1e-12);
-        assert_eq!(texture(Pattern::Plain, 1.0).at(&spot(0.3, 0.3)), [0.0; 3]);
+        assert_eq!(zone.at(&point(0.0, 0.0))[0], 1.0);
+        assert!((zone.at(&point(0.6, 0.8))[0] - 1.0).abs() < 1e-12);
+        assert!((zone.at(&point(1.01, 0.0))[0] - (0.5 + 0.5 * (PI * 50.0 * 1.0201).cos())).abs() < 1e-12);
+        assert_eq!(texture(Pattern::Plain, 1.0).at(&point(0.3, 0.3)), [0.0; 3]);
     }
 
     #[test]
     fn noise_is_smooth_and_uses_its_range() {
         let texture = texture(Pattern::Noise, 1.0);
-        let at = |i: u32| texture.at(&spot(f64::from(i) * 1e-3, 0.7))[0];
+        let at = |i: u32| texture.at(&point(f64::from(i) * 1e-3, 0.7))[0];
         let values: Vec<f64> = (0..20_000).map(at).collect();
         let (least, most) = values.iter().fold((1.0f64, 0.0f64), |r, v| (r.0.min(*v), r.1.max(*v)));
         assert!(least > 0.0 && most < 1.0 && most - least > 0.5, "{least} to {most}");

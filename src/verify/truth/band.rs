@@ -4,8 +4,8 @@ use super::eye::Eye;
 use super::kernel::Kernel;
 use super::options::{FEWEST_STRATA, Filter, Options};
 use super::pixel::{Pixel, exact};
-use super::scene::Scene;
-use super::sums::Part;
+use super::sums::BandSums;
+use super::traceable::Traceable;
 use crate::settings::Shading;
 use std::ops::Range;
 
@@ -34,7 +34,7 @@ struct Pilot {
     variances: Vec<f64>,
 }
 
-impl<'a, S: Scene + ?Sized> Plan<'a, S> {
+impl<'a, S: Traceable + ?Sized> Plan<'a, S> {
     pub fn new(eye: &'a Eye<'a, S>, size: [u32; 2], shading: Shading, options: &Options) -> Self {
         let strata = match options.filter {
             Filter::Point => [1; 2],
@@ -54,8 +54,8 @@ impl<'a, S: Scene + ?Sized> Plan<'a, S> {
     }
 
     /// Traces some rows.
-    pub fn trace(&self, rows: Range<i64>) -> Part<'_> {
-        let mut part = Part::new(&self.kernel, self.size, rows.clone());
+    pub fn trace(&self, rows: Range<i64>) -> BandSums<'_> {
+        let mut part = BandSums::new(&self.kernel, self.size, rows.clone());
         let mut above = self.pilot(rows.start - 1).variances;
         let mut here = self.pilot(rows.start);
         for y in rows {
@@ -84,7 +84,7 @@ impl<'a, S: Scene + ?Sized> Plan<'a, S> {
     }
 
     /// Refines a pixel until it meets the error bound; `rough` if it or a neighbour missed it in the pilot.
-    fn finish(&self, mut pixel: Pixel, rough: bool, at: [i64; 2], part: &mut Part<'_>) {
+    fn finish(&self, mut pixel: Pixel, rough: bool, at: [i64; 2], part: &mut BandSums<'_>) {
         let mut variances = Vec::new();
         let mut variance = pixel.variances(self.exact, &mut variances);
         let least = if rough { BESIDE } else { self.strata[0] };
@@ -93,7 +93,7 @@ impl<'a, S: Scene + ?Sized> Plan<'a, S> {
             variance = pixel.variances(self.exact, &mut variances);
         }
         part.add(at, &pixel.samples, &variances);
-        part.see(at, || pixel.middle(self.eye));
+        part.set_centre_hit(at, || pixel.centre_hit(self.eye));
     }
 }
 

@@ -1,8 +1,8 @@
 //! Cache of exact images on disk.
 
 use super::options::{Filter, Options};
-use super::scene::Scene;
-use super::{Achieved, Truth, render};
+use super::traceable::Traceable;
+use super::{StandardError, Truth, render};
 use crate::error::{Error, Result};
 use crate::formats::{atomic, image};
 use crate::geometry::Camera;
@@ -41,7 +41,7 @@ impl Cache {
     /// # Errors
     /// As [`render`].
     #[expect(clippy::too_many_arguments, reason = "a name, and what `render` takes")]
-    pub fn render<S: Scene + ?Sized>(
+    pub fn render<S: Traceable + ?Sized>(
         &self,
         name: &str,
         scene: &S,
@@ -63,7 +63,7 @@ impl Cache {
     }
 
     /// Path of the image of a request.
-    pub fn path<S: Scene + ?Sized>(
+    pub fn path<S: Traceable + ?Sized>(
         &self,
         name: &str,
         scene: &S,
@@ -97,7 +97,7 @@ impl Cache {
         fs::create_dir_all(&self.folder).map_err(Error::io(&self.folder, "cannot make the folder"))?;
         image::write_exr(&truth.picture, path)?;
         let sum = digest(&fs::read(path).map_err(Error::io(path, "cannot read"))?);
-        let Achieved { rms, max, above } = truth.error;
+        let StandardError { rms, max, above } = truth.error;
         atomic::write(&path.with_extension("txt"), |out| write!(out, "{sum} {rms:?} {max:?} {above}"))
     }
 }
@@ -112,7 +112,7 @@ fn load(path: &Path) -> Option<Truth> {
     let mut number = || words.next()?.parse().ok();
     let (rms, max) = (number()?, number()?);
     let above = words.next()?.parse().ok()?;
-    Some(Truth { picture: image::read(path).ok()?, error: Achieved { rms, max, above } })
+    Some(Truth { picture: image::read(path).ok()?, error: StandardError { rms, max, above } })
 }
 
 /// Digest of a file, 32 hexadecimal digits.
@@ -131,7 +131,7 @@ fn surface_of(name: &str) -> String {
 }
 
 /// Hashes the hits of random rays, bit by bit.
-fn fingerprint<S: Scene + ?Sized>(hash: &mut Xxh3, scene: &S) {
+fn fingerprint<S: Traceable + ?Sized>(hash: &mut Xxh3, scene: &S) {
     let bounds = scene.bounds();
     numbers(hash, &[bounds.min, bounds.max].map(|corner| corner.to_array()).concat());
     let mut random = Random::new(1, 1);

@@ -1,6 +1,6 @@
 //! Single rays of a picture.
 
-use super::scene::Scene;
+use super::traceable::Traceable;
 use crate::error::Result;
 use crate::geometry::Camera;
 use crate::settings::{Settings, Shading};
@@ -9,7 +9,7 @@ use glam::{DVec2, DVec3};
 
 /// The surface that a ray hits.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Seen {
+pub struct SurfaceHit {
     /// Shaded with [`Shading::Lit`], the albedo otherwise; linear RGB.
     pub colour: DVec3,
     /// Distance along the view, in the scene's unit.
@@ -25,7 +25,7 @@ pub struct Eye<'a, S: ?Sized> {
     settings: &'a Settings,
 }
 
-impl<'a, S: Scene + ?Sized> Eye<'a, S> {
+impl<'a, S: Traceable + ?Sized> Eye<'a, S> {
     /// Prepares a picture of `size` = width and height in px.
     ///
     /// # Errors
@@ -35,7 +35,7 @@ impl<'a, S: Scene + ?Sized> Eye<'a, S> {
     }
 
     /// The surface at a position in px from the picture's top left, between the near and the far plane.
-    pub fn see(&self, at: DVec2) -> Option<Seen> {
+    pub fn hit(&self, at: DVec2) -> Option<SurfaceHit> {
         let [near, far] = self.projector.planes();
         let (origin, step) = self.projector.ray(at);
         let hit = self.scene.trace(origin + near * step, step)?;
@@ -51,6 +51,6 @@ impl<'a, S: Scene + ?Sized> Eye<'a, S> {
             Shading::Lit => lit(lighting, Shine::of_frame(lighting), albedo, normal, viewer),
             _ => albedo,
         };
-        Some(Seen { colour, depth, normal })
+        Some(SurfaceHit { colour, depth, normal })
     }
 }

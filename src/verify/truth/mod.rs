@@ -24,16 +24,16 @@ mod kernel;
 mod mesh;
 mod options;
 mod pixel;
-mod scene;
 mod sums;
 #[cfg(test)]
 mod tests;
+mod traceable;
 
 pub use cache::Cache;
-pub use eye::{Eye, Seen};
+pub use eye::{Eye, SurfaceHit};
 pub use mesh::Mesh;
 pub use options::{Filter, MOST_SAMPLES, MOST_VARIANCE, Options};
-pub use scene::{Hit, Scene};
+pub use traceable::{Hit, Traceable};
 
 use crate::error::{Error, Result};
 use crate::geometry::Camera;
@@ -51,14 +51,14 @@ pub struct Truth {
     /// Colour and α, depth and normals.
     pub picture: Picture,
     /// Its standard error.
-    pub error: Achieved,
+    pub error: StandardError,
 }
 
 /// Standard error of an image, estimated per pixel: the larger of α's and, for shaded and coloured pictures, of the
 /// channels' of linear light times α; for pictures of normals, of the coordinates' before normalization. It is
 /// conservative: in smooth regions about twice the actual error.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Achieved {
+pub struct StandardError {
     /// Root mean square over all pixels.
     pub rms: f64,
     /// Of the worst pixel.
@@ -81,7 +81,7 @@ const AHEAD: usize = 4;
 ///
 /// # Errors
 /// [`Error::Usage`] for invalid options, settings, sizes and cameras; [`Error::Cancelled`] if `progress` cancels it.
-pub fn render<S: Scene + ?Sized>(
+pub fn render<S: Traceable + ?Sized>(
     scene: &S,
     camera: &Camera,
     settings: &Settings,

@@ -1,7 +1,7 @@
 //! The rays of one pixel: one in each of n × n strata; n doubles until the error is small enough.
 
-use super::eye::{Eye, Seen};
-use super::scene::Scene;
+use super::eye::{Eye, SurfaceHit};
+use super::traceable::Traceable;
 use crate::settings::Shading;
 use crate::verify::scenes::random::Random;
 use glam::DVec2;
@@ -14,12 +14,12 @@ pub type Value = [f64; 7];
 pub struct Sample {
     /// Position in the pixel, 0 to 1 along either axis.
     pub at: DVec2,
-    pub seen: Option<Seen>,
+    pub seen: Option<SurfaceHit>,
 }
 
 impl Sample {
     pub fn value(&self) -> Value {
-        let Some(Seen { colour: c, normal: n, .. }) = self.seen else { return [0.0; 7] };
+        let Some(SurfaceHit { colour: c, normal: n, .. }) = self.seen else { return [0.0; 7] };
         [1.0, c.x, c.y, c.z, n.x, n.y, n.z]
     }
 }
@@ -46,7 +46,7 @@ pub struct Pixel {
 
 impl Pixel {
     /// One ray in each of `strata`² strata.
-    pub fn new<S: Scene + ?Sized>(eye: &Eye<S>, corner: [i64; 2], strata: usize) -> Self {
+    pub fn new<S: Traceable + ?Sized>(eye: &Eye<S>, corner: [i64; 2], strata: usize) -> Self {
         let mixed = |value: i64| (value as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15);
         let random = Random::new(mixed(corner[0]) ^ mixed(corner[1]).rotate_left(32), mixed(corner[1]));
         let mut pixel = Self { corner, strata, samples: Vec::new(), random };
@@ -55,14 +55,14 @@ impl Pixel {
     }
 
     /// One ray through the centre.
-    pub fn point<S: Scene + ?Sized>(eye: &Eye<S>, corner: [i64; 2]) -> Self {
+    pub fn point<S: Traceable + ?Sized>(eye: &Eye<S>, corner: [i64; 2]) -> Self {
         let mut pixel = Self { corner, strata: 1, samples: Vec::new(), random: Random::new(0, 0) };
-        pixel.samples = vec![pixel.look(eye, DVec2::splat(0.5))];
+        pixel.samples = vec![pixel.trace(eye, DVec2::splat(0.5))];
         pixel
     }
 
     /// Doubles the strata along each side. Each old ray stays in the quarter of its stratum in which it lies.
-    pub fn refine<S: Scene + ?Sized>(&mut self, eye: &Eye<S>) {
+    pub fn refine<S: Traceable + ?Sized>(&mut self, eye: &Eye<S>) {
         self.strata *= 2;
         let mut places = vec![None; self.strata * self.strata];
         for sample in &self.samples {
@@ -76,14 +76,14 @@ impl Pixel {
     }
 
     /// The surface at the centre, or else of the nearest ray that hits.
-    pub fn middle<S: Scene + ?Sized>(&self, eye: &Eye<S>) -> Option<Seen> {
+    pub fn centre_hit<S: Traceable + ?Sized>(&self, eye: &Eye<S>) -> Option<SurfaceHit> {
         let centre = DVec2::splat(0.5);
         let far = |sample: &Sample| sample.at.distance_squared(centre);
         let nearest = || {
             let hits = self.samples.iter().filter(|sample| sample.seen.is_some());
             hits.min_by(|a, b| far(a).total_cmp(&far(b)))?.seen
         };
-        self.look(eye, centre).seen.or_else(nearest)
+        self.trace(eye, centre).seen.or_else(nearest)
     }
 
     /// Estimates the variance of each ray's value around its stratum's mean, and returns that of the pixel's mean.
@@ -132,14 +132,14 @@ impl Pixel {
     }
 
     /// A random ray in a stratum.
-    fn sample<S: Scene + ?Sized>(&mut self, eye: &Eye<S>, index: usize) -> Sample {
+    fn sample<S: Traceable + ?Sized>(&mut self, eye: &Eye<S>, index: usize) -> Sample {
         let corner = DVec2::new((index % self.strata) as f64, (index / self.strata) as f64);
         let within = DVec2::new(self.random.unit(), self.random.unit());
-        self.look(eye, (corner + within) / self.strata as f64)
+        self.trace(eye, (corner + within) / self.strata as f64)
     }
 
-    fn look<S: Scene + ?Sized>(&self, eye: &Eye<S>, at: DVec2) -> Sample {
+    fn trace<S: Traceable + ?Sized>(&self, eye: &Eye<S>, at: DVec2) -> Sample {
         let corner = DVec2::new(self.corner[0] as f64, self.corner[1] as f64);
-        Sample { at, seen: eye.see(corner + at) }
+        Sample { at, seen: eye.hit(corner + at) }
     }
 }

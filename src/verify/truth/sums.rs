@@ -1,9 +1,9 @@
 //! Weighted sums of rays per pixel, and the picture computed from them.
 
-use super::eye::Seen;
+use super::eye::SurfaceHit;
 use super::kernel::Kernel;
 use super::pixel::Sample;
-use super::{Achieved, Truth};
+use super::{StandardError, Truth};
 use crate::picture::Picture;
 use crate::settings::{Settings, Shading};
 use glam::DVec3;
@@ -16,7 +16,7 @@ const ALPHA: usize = 0;
 const VARIANCE: usize = 7;
 
 /// Contributions of the rays through some rows to the pixels within reach of the filter.
-pub struct Part<'a> {
+pub struct BandSums<'a> {
     kernel: &'a Kernel,
     width: usize,
     /// Rows of `cells`, inside the picture.
@@ -24,10 +24,10 @@ pub struct Part<'a> {
     cells: Vec<Cell>,
     /// Rows of `seen`, inside the picture.
     own: Range<i64>,
-    seen: Vec<Option<Seen>>,
+    seen: Vec<Option<SurfaceHit>>,
 }
 
-impl<'a> Part<'a> {
+impl<'a> BandSums<'a> {
     /// Contributions of the rays through `rows`, some of which may lie beyond the picture.
     pub fn new(kernel: &'a Kernel, size: [u32; 2], rows: Range<i64>) -> Self {
         let (width, height, reach) = (size[0] as usize, i64::from(size[1]), kernel.reach as i64);
@@ -85,7 +85,7 @@ impl<'a> Part<'a> {
     }
 
     /// Stores the surface at the centre of the pixel `at`, if that is in the picture.
-    pub fn see(&mut self, [x, y]: [i64; 2], seen: impl FnOnce() -> Option<Seen>) {
+    pub fn set_centre_hit(&mut self, [x, y]: [i64; 2], seen: impl FnOnce() -> Option<SurfaceHit>) {
         if self.own.contains(&y) && (0..self.width as i64).contains(&x) {
             self.seen[(y - self.own.start) as usize * self.width + x as usize] = seen();
         }
@@ -113,7 +113,7 @@ impl Sums {
         Self { size, cells: vec![[0.0; 8]; pixels], depths: vec![0.0; pixels] }
     }
 
-    pub fn add(&mut self, part: &Part<'_>) {
+    pub fn add(&mut self, part: &BandSums<'_>) {
         let start = part.rows.start as usize * part.width;
         for (cell, add) in self.cells[start..].iter_mut().zip(&part.cells) {
             cell.iter_mut().zip(add).for_each(|(sum, add)| *sum += add);
@@ -125,13 +125,13 @@ impl Sums {
     }
 
     /// The picture, and its error relative to `requested`.
-    pub fn resolve(self, settings: &Settings, asked: f64) -> Truth {
+    pub fn resolve(self, settings: &Settings, requested: f64) -> Truth {
         let errors = || self.cells.iter().map(|cell| cell[VARIANCE].sqrt());
         let squares: f64 = errors().map(|error| error * error).sum();
-        let error = Achieved {
+        let error = StandardError {
             rms: (squares / self.cells.len() as f64).sqrt(),
             max: errors().fold(0.0, f64::max),
-            above: errors().filter(|error| *error > asked).count() as u64,
+            above: errors().filter(|error| *error > requested).count() as u64,
         };
         let pixels = self.cells.iter().zip(&self.depths);
         let (colour, normal) = pixels.map(|(cell, depth)| resolve(cell, *depth, settings)).unzip();

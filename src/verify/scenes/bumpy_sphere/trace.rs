@@ -94,7 +94,7 @@ impl Ray {
         let mut todo = vec![span];
         while let Some([a, b]) = todo.pop() {
             let middle = 0.5 * (a + b);
-            match self.judge(a, middle, b) {
+            match self.classify(a, middle, b) {
                 Verdict::Nothing => {}
                 Verdict::Root(t) => return Some(t),
                 Verdict::Unknown => todo.extend([[middle, b], [a, middle]]),
@@ -103,7 +103,7 @@ impl Ray {
         None
     }
 
-    fn judge(&self, a: f64, middle: f64, b: f64) -> Verdict {
+    fn classify(&self, a: f64, middle: f64, b: f64) -> Verdict {
         let half = 0.5 * (b - a);
         let (value, slope) = self.value(middle);
         let curvature = most_curved(self.axis_distance(a, b) / GREATEST);

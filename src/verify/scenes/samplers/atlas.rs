@@ -76,18 +76,18 @@ impl<'a> Table<'a> {
 
 /// Area element and length along v of a sample, in sampling space.
 fn weigh(piece: &Piece, sample: &Sample) -> (f64, f64) {
-    let (_, scale) = piece.shape.place(sample.spot.position);
+    let (_, scale) = piece.shape.to_sampling_space(sample.point.position);
     (sample.element / (scale * scale), sample.along_v / scale)
 }
 
 /// The surfel of a point; `spacing` and `radius` are those of sampling space.
 pub fn draft(piece: &Piece, sample: &Sample, spacing: f64, radius: f64) -> Draft {
-    let (_, scale) = piece.shape.place(sample.spot.position);
+    let (_, scale) = piece.shape.to_sampling_space(sample.point.position);
     Draft {
-        position: sample.spot.position,
-        on: Some(sample.spot.position),
-        normal: sample.spot.normal,
-        albedo: piece.texture.at(&sample.spot),
+        position: sample.point.position,
+        sampled_at: Some(sample.point.position),
+        normal: sample.point.normal,
+        albedo: piece.texture.at(&sample.point),
         spacing: spacing * scale,
         radius: radius * scale,
         ellipse: None,

@@ -32,15 +32,15 @@ const OPPOSITE: f32 = -0.5;
 #[derive(Clone, Copy)]
 #[repr(align(32))]
 struct Dart {
-    place: Vec3,
+    position: Vec3,
     normal: Vec3,
     sheet: u32,
     /// The previous accepted dart in a cube of the same hash.
-    before: u32,
+    previous: u32,
 }
 
 /// The accepted darts, hashed by cubes of space.
-struct Board {
+struct DartGrid {
     darts: Vec<Dart>,
     /// The last dart of each hash.
     last: Vec<u32>,
@@ -54,7 +54,7 @@ const NONE: u32 = u32::MAX;
 /// `points` samples; no two on one side of a sheet are closer than about 0.65 spacings.
 pub fn sample(atlas: &Atlas, points: usize, seed: u64) -> Vec<Draft> {
     let spacing = atlas.spacing(points);
-    let mut board = Board::new(points, (2.0 * WIDEST * spacing) as f32);
+    let mut grid = DartGrid::new(points, (2.0 * WIDEST * spacing) as f32);
     let mut drafts = Vec::with_capacity(points);
     let size = (points / (2 * BATCH)).clamp(1, CHUNK);
     for batch in 0.. {
@@ -67,12 +67,12 @@ pub fn sample(atlas: &Atlas, points: usize, seed: u64) -> Vec<Draft> {
             let darts = (0..size).map(|_| atlas.draw(&mut random));
             // Most are rejected by darts of earlier batches, which all threads can read at once.
             darts
-                .filter(|(piece, sample)| board.is_free(&dart(piece, sample), distance as f32))
+                .filter(|(piece, sample)| grid.is_free(&dart(piece, sample), distance as f32))
                 .collect::<Vec<_>>()
         };
         let drawn: Vec<(&Piece, Sample)> = (0..BATCH).into_par_iter().flat_map_iter(draw).collect();
         for (piece, sample) in drawn {
-            if board.hit(dart(piece, &sample), distance as f32) {
+            if grid.insert(dart(piece, &sample), distance as f32) {
                 drafts.push(draft(piece, &sample, spacing, RADIUS * spacing));
                 if drafts.len() == points {
                     return drafts;
@@ -84,45 +84,50 @@ pub fn sample(atlas: &Atlas, points: usize, seed: u64) -> Vec<Draft> {
 }
 
 fn dart(piece: &Piece, sample: &Sample) -> Dart {
-    let (place, _) = piece.shape.place(sample.spot.position);
-    Dart { place: place.as_vec3(), normal: sample.spot.normal.as_vec3(), sheet: piece.sheet, before: NONE }
+    let (position, _) = piece.shape.to_sampling_space(sample.point.position);
+    Dart {
+        position: position.as_vec3(),
+        normal: sample.point.normal.as_vec3(),
+        sheet: piece.sheet,
+        previous: NONE,
+    }
 }
 
-impl Board {
+impl DartGrid {
     fn new(points: usize, side: f32) -> Self {
         Self { darts: Vec::with_capacity(points), last: vec![NONE; points.next_power_of_two()], side }
     }
 
     /// Whether no dart is closer than `distance`.
     fn is_free(&self, dart: &Dart, distance: f32) -> bool {
-        let corner = (dart.place / self.side - 0.5).floor().as_i64vec3();
+        let corner = (dart.position / self.side - 0.5).floor().as_i64vec3();
         let near = |i: i64| corner + I64Vec3::new(i & 1, i >> 1 & 1, i >> 2);
-        !(0..8).any(|i| self.is_taken(near(i), dart, distance))
+        !(0..8).any(|i| self.has_near(near(i), dart, distance))
     }
 
     /// Adds the dart if none is closer than `distance`.
-    fn hit(&mut self, dart: Dart, distance: f32) -> bool {
+    fn insert(&mut self, dart: Dart, distance: f32) -> bool {
         if !self.is_free(&dart, distance) {
             return false;
         }
-        let cube = (dart.place / self.side).floor().as_i64vec3();
+        let cube = (dart.position / self.side).floor().as_i64vec3();
         let (slot, index) = (self.slot(cube), self.darts.len() as u32);
-        self.darts.push(Dart { before: self.last[slot], ..dart });
+        self.darts.push(Dart { previous: self.last[slot], ..dart });
         self.last[slot] = index;
         true
     }
 
-    fn is_taken(&self, cube: I64Vec3, dart: &Dart, distance: f32) -> bool {
+    fn has_near(&self, cube: I64Vec3, dart: &Dart, distance: f32) -> bool {
         let mut index = self.last[self.slot(cube)];
         while index != NONE {
             let other = &self.darts[index as usize];
-            if other.place.distance_squared(dart.place) < distance * distance
+            if other.position.distance_squared(dart.position) < distance * distance
                 && other.sheet == dart.sheet
                 && other.normal.dot(dart.normal) > OPPOSITE
             {
                 return true;
             }
-            index = other.before;
+            index = other.previous;
         }
         false
     }

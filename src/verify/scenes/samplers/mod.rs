@@ -24,7 +24,7 @@ const NOISE_STREAM: u64 = 1 << 40;
 struct Draft {
     position: DVec3,
     /// Point of the surface that was sampled; `None` for an outlier.
-    on: Option<DVec3>,
+    sampled_at: Option<DVec3>,
     normal: DVec3,
     albedo: [f64; 3],
     /// Distance to its neighbours.
@@ -67,7 +67,10 @@ fn clips(query: &Query, drafts: &[Draft]) -> Option<Clips> {
     let clip = |draft: &Draft| {
         // The centre rounded as the surfel's.
         let centre = draft.position.as_vec3().as_dvec3();
-        edges::clip(&edges, &Disc { on: draft.on?, centre, normal: draft.normal, radius: draft.radius })
+        edges::clip(
+            &edges,
+            &Disc { sampled_at: draft.sampled_at?, centre, normal: draft.normal, radius: draft.radius },
+        )
     };
     if edges.is_empty() {
         return None;

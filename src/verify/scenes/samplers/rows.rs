@@ -52,7 +52,7 @@ fn sample<I: Iterator<Item = DVec2>>(
             .map(|(i, at)| {
                 let row = &rows[rows.partition_point(|row| row.first + row.count <= i).min(rows.len() - 1)];
                 let table = &atlas.tables[row.piece];
-                let sample = table.piece.shape.at(place(table, row, i, at));
+                let sample = table.piece.shape.at(parameters(table, row, i, at));
                 draft(table.piece, &sample, spacing, radius * spacing)
             })
             .collect::<Vec<_>>()
@@ -61,7 +61,7 @@ fn sample<I: Iterator<Item = DVec2>>(
 }
 
 /// The parameters of point `i`.
-fn place(table: &Table, row: &Row, i: usize, at: DVec2) -> DVec2 {
+fn parameters(table: &Table, row: &Row, i: usize, at: DVec2) -> DVec2 {
     let v = by_area(table, row.from, row.to, at.y);
     let [columns, cells] = table.size;
     let start = columns * ((v * cells as f64) as usize).min(cells - 1);

@@ -131,7 +131,7 @@ fn draft(echo: &Echo, step: f64, noise: f64, outliers: f64, random: &mut Random)
     let spacing = step * t;
     Draft {
         position: echo.at + t * echo.direction,
-        on: (!is_outlier).then_some(echo.hit.position),
+        sampled_at: (!is_outlier).then_some(echo.hit.position),
         normal: echo.hit.normal,
         albedo: echo.hit.albedo,
         spacing,

@@ -1,7 +1,7 @@
 //! The bumpy sphere as a shape.
 
 use super::sphere::{angles, direction};
-use super::{Ray, Sample, Shape, Spot};
+use super::{Ray, Sample, Shape, SurfacePoint};
 use crate::verify::scenes::bumpy_sphere::{self, GREATEST};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
@@ -15,19 +15,19 @@ impl Shape for Bumpy {
         let theta = PI * uv.y;
         let u = direction(theta, TAU * uv.x);
         let (radius, slope) = bumpy_sphere::radius_and_slope(u);
-        let spot = Spot {
+        let point = SurfacePoint {
             position: radius * u,
             normal: (u - slope / radius).normalize(),
             chart: DVec2::new(TAU * uv.x, theta),
         };
         let element = TAU * PI * theta.sin() * radius * radius.hypot(slope.length());
         let along_theta = slope.dot(direction(theta + FRAC_PI_2, TAU * uv.x));
-        Sample { spot, element, along_v: PI * radius.hypot(along_theta) }
+        Sample { point, element, along_v: PI * radius.hypot(along_theta) }
     }
 
-    fn trace(&self, ray: &Ray, limit: f64) -> Option<(f64, Spot)> {
+    fn trace(&self, ray: &Ray, limit: f64) -> Option<(f64, SurfacePoint)> {
         let (t, position, normal) = bumpy_sphere::meet(ray.origin, ray.direction)?;
-        (t > 0.0 && t < limit).then(|| (t, Spot { position, normal, chart: angles(position) }))
+        (t > 0.0 && t < limit).then(|| (t, SurfacePoint { position, normal, chart: angles(position) }))
     }
 
     fn corners(&self) -> [DVec3; 2] {

@@ -1,6 +1,6 @@
 //! The wall of a cylinder along z.
 
-use super::{EDGE, Ray, Sample, Shape, Spot, first};
+use super::{EDGE, Ray, Sample, Shape, SurfacePoint, first};
 use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
 
@@ -16,10 +16,10 @@ pub struct Cylinder {
 }
 
 impl Cylinder {
-    fn spot(&self, around: DVec2, z: f64) -> Spot {
+    fn point(&self, around: DVec2, z: f64) -> SurfacePoint {
         let around = around.normalize();
         let chart = DVec2::new(self.radius * around.to_angle().rem_euclid(TAU), z);
-        Spot {
+        SurfacePoint {
             position: self.centre + (self.radius * around).extend(z),
             normal: (-around).extend(0.0),
             chart,
@@ -30,11 +30,11 @@ impl Cylinder {
 impl Shape for Cylinder {
     fn at(&self, uv: DVec2) -> Sample {
         let along_v = 2.0 * self.half;
-        let spot = self.spot(DVec2::from_angle(TAU * uv.x), self.half * (2.0 * uv.y - 1.0));
-        Sample { spot, element: TAU * self.radius * along_v, along_v }
+        let point = self.point(DVec2::from_angle(TAU * uv.x), self.half * (2.0 * uv.y - 1.0));
+        Sample { point, element: TAU * self.radius * along_v, along_v }
     }
 
-    fn trace(&self, ray: &Ray, limit: f64) -> Option<(f64, Spot)> {
+    fn trace(&self, ray: &Ray, limit: f64) -> Option<(f64, SurfacePoint)> {
         let (o, d) = (ray.origin - self.centre, ray.direction.truncate());
         // A ray parallel to the axis has no intersection: all of this is NaN then.
         let to_foot = -o.truncate().dot(d) / d.length_squared();
@@ -43,7 +43,7 @@ impl Shape for Cylinder {
         let meet = |t: f64| {
             let p = o + t * ray.direction;
             let inside = p.z.abs() <= self.half * (1.0 + EDGE);
-            inside.then(|| self.spot(foot + (t - to_foot) * d, p.z))
+            inside.then(|| self.point(foot + (t - to_foot) * d, p.z))
         };
         first([to_foot - half, to_foot + half], limit, meet)
     }

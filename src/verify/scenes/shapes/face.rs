@@ -1,6 +1,6 @@
 //! Parts of planes.
 
-use super::{EDGE, Ray, Sample, Shape, Spot};
+use super::{EDGE, Ray, Sample, Shape, SurfacePoint};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -37,10 +37,10 @@ impl Face {
     }
 
     /// Texture coordinates are those of the whole plane, so that textures continue from one face to the next.
-    fn spot(&self, at: DVec2) -> Spot {
+    fn point(&self, at: DVec2) -> SurfacePoint {
         let position = self.centre + at.x * self.axes[0] + at.y * self.axes[1];
         let chart = DVec2::new(position.dot(self.axes[0]), position.dot(self.axes[1]));
-        Spot { position, normal: self.normal(), chart }
+        SurfacePoint { position, normal: self.normal(), chart }
     }
 }
 
@@ -90,15 +90,15 @@ impl Region {
 impl Shape for Face {
     fn at(&self, uv: DVec2) -> Sample {
         let (at, element, along_v) = self.region.at(uv);
-        Sample { spot: self.spot(at), element, along_v }
+        Sample { point: self.point(at), element, along_v }
     }
 
-    fn trace(&self, ray: &Ray, limit: f64) -> Option<(f64, Spot)> {
+    fn trace(&self, ray: &Ray, limit: f64) -> Option<(f64, SurfacePoint)> {
         let normal = self.normal();
         let t = (self.centre - ray.origin).dot(normal) / ray.direction.dot(normal);
         let p = ray.at(t) - self.centre;
         let at = DVec2::new(p.dot(self.axes[0]), p.dot(self.axes[1]));
-        (t > 0.0 && t < limit && self.region.contains(at)).then(|| (t, self.spot(at)))
+        (t > 0.0 && t < limit && self.region.contains(at)).then(|| (t, self.point(at)))
     }
 
     fn corners(&self) -> [DVec3; 2] {

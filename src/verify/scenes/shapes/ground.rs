@@ -5,7 +5,7 @@
 //! its radius is `x / √w` and its height `asinh √w − √((w + 1) / w)`, where `x = d / h` and `w = 1 + x²`. Samples that
 //! are uniform on the cigar have the desired density on the plane.
 
-use super::{EDGE, Ray, Sample, Shape, Spot};
+use super::{EDGE, Ray, Sample, Shape, SurfacePoint};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 
@@ -19,8 +19,8 @@ pub struct Ground {
 }
 
 impl Ground {
-    fn spot(p: DVec3) -> Spot {
-        Spot { position: DVec3 { y: 0.0, ..p }, normal: DVec3::Y, chart: DVec2::new(p.x, p.z) }
+    fn point(p: DVec3) -> SurfacePoint {
+        SurfacePoint { position: DVec3 { y: 0.0, ..p }, normal: DVec3::Y, chart: DVec2::new(p.x, p.z) }
     }
 }
 
@@ -34,15 +34,15 @@ impl Shape for Ground {
         let rise = self.height * self.height * w * rate;
         let along_v = if d > 0.0 { rise * uv.y / d } else { self.height * rate.sqrt() };
         let phi = TAU * uv.x;
-        let spot = Self::spot(DVec3::new(d * phi.cos(), 0.0, d * phi.sin()));
-        Sample { spot, element: TAU * rise * uv.y, along_v }
+        let point = Self::point(DVec3::new(d * phi.cos(), 0.0, d * phi.sin()));
+        Sample { point, element: TAU * rise * uv.y, along_v }
     }
 
-    fn trace(&self, ray: &Ray, limit: f64) -> Option<(f64, Spot)> {
+    fn trace(&self, ray: &Ray, limit: f64) -> Option<(f64, SurfacePoint)> {
         let t = -ray.origin.y / ray.direction.y;
         let p = ray.at(t);
         let inside = t > 0.0 && t < limit && p.x.hypot(p.z) <= self.radius * (1.0 + EDGE);
-        inside.then(|| (t, Self::spot(p)))
+        inside.then(|| (t, Self::point(p)))
     }
 
     fn corners(&self) -> [DVec3; 2] {
@@ -58,7 +58,7 @@ impl Shape for Ground {
         PI * self.radius * self.radius
     }
 
-    fn place(&self, position: DVec3) -> (DVec3, f64) {
+    fn to_sampling_space(&self, position: DVec3) -> (DVec3, f64) {
         let d = position.x.hypot(position.z);
         let x = d / self.height;
         let w = 1.0 + x * x;

@@ -29,7 +29,7 @@ pub use sphere::Sphere;
 pub use torus::Torus;
 pub use tube::Tube;
 
-use super::primitives::Middle;
+use super::primitives::CentrelinePoint;
 use glam::{DVec2, DVec3};
 
 /// Relative distance beyond its border at which a trimmed shape is still hit: shapes that share an edge leave no gap.
@@ -59,7 +59,7 @@ impl Ray {
 
 /// A point of a shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Spot {
+pub struct SurfacePoint {
     /// Where it is.
     pub position: DVec3,
     /// Unit normal of the outer side.
@@ -72,7 +72,7 @@ pub struct Spot {
 #[derive(Clone, Copy, Debug)]
 pub struct Sample {
     /// The point.
-    pub spot: Spot,
+    pub point: SurfacePoint,
     /// |∂P/∂u × ∂P/∂v|.
     pub element: f64,
     /// |∂P/∂v|.
@@ -85,7 +85,7 @@ pub trait Shape: Send + Sync {
     fn at(&self, uv: DVec2) -> Sample;
 
     /// The nearest intersection with a ray at a distance above 0 and below `limit`.
-    fn trace(&self, ray: &Ray, limit: f64) -> Option<(f64, Spot)>;
+    fn trace(&self, ray: &Ray, limit: f64) -> Option<(f64, SurfacePoint)>;
 
     /// Bounding box.
     fn corners(&self) -> [DVec3; 2];
@@ -103,13 +103,13 @@ pub trait Shape: Send + Sync {
     }
 
     /// The point of its centre line at the parameter u, if it has one.
-    fn middle(&self, _: f64) -> Option<Middle> {
+    fn centreline(&self, _: f64) -> Option<CentrelinePoint> {
         None
     }
 
     /// Position in sampling space, in which samples are uniform, and the ratio of a length at `position` to its length
     /// there. By default the identity.
-    fn place(&self, position: DVec3) -> (DVec3, f64) {
+    fn to_sampling_space(&self, position: DVec3) -> (DVec3, f64) {
         (position, 1.0)
     }
 }

@@ -12,8 +12,8 @@
 //! The bounds of the second derivatives are finite differences at nine points of each cell, times 1.5: cells must be
 //! small relative to the surface's features.
 
-use super::{Ray, Sample, Shape, Spot};
-use crate::verify::scenes::Middle;
+use super::{Ray, Sample, Shape, SurfacePoint};
+use crate::verify::scenes::CentrelinePoint;
 use crate::verify::scenes::hierarchy::{Hierarchy, union};
 use glam::{DMat2, DVec2, DVec3};
 use rayon::prelude::*;
@@ -48,7 +48,7 @@ pub trait Parametric: Send + Sync {
     fn extent(&self) -> DVec2;
 
     /// The point of its centre line, if it has one.
-    fn middle(&self, _: f64) -> Option<Middle> {
+    fn centreline(&self, _: f64) -> Option<CentrelinePoint> {
         None
     }
 }
@@ -74,24 +74,24 @@ struct Part {
 
 struct Cell {
     part: Part,
-    bend: Bend,
+    curvature: CurvatureBounds,
     /// The jet in the part's centre, shared by all rays.
     jet: Jet,
 }
 
 /// An intersection: distance, parameters and the point.
-type Met = (f64, DVec2, Jet);
+type Intersection = (f64, DVec2, Jet);
 
 /// Bounds of |∂²P/∂u²|, |∂²P/∂u∂v| and |∂²P/∂v²|.
 #[derive(Clone, Copy)]
-struct Bend {
+struct CurvatureBounds {
     uu: f64,
     uv: f64,
     vv: f64,
 }
 
 /// A ray as two planes and a direction: a point is on it if both distances are 0.
-struct Sight {
+struct RayPlanes {
     ray: Ray,
     planes: [DVec3; 2],
 }
@@ -110,10 +110,10 @@ impl<P: Parametric> Patch<P> {
         let cell = |i: usize| {
             let index = DVec2::new((i % columns) as f64, (i / columns) as f64);
             let part = Part { middle: (2.0 * index + 1.0) * half, half };
-            let bend = Bend::of(&surface, part);
+            let curvature = CurvatureBounds::of(&surface, part);
             let jet = surface.jet(part.middle);
-            let reach = jet.du.abs() * half.x + jet.dv.abs() * half.y + bend.remainder(half);
-            (Cell { part, bend, jet }, [jet.position - reach, jet.position + reach])
+            let reach = jet.du.abs() * half.x + jet.dv.abs() * half.y + curvature.remainder(half);
+            (Cell { part, curvature, jet }, [jet.position - reach, jet.position + reach])
         };
         let (cells, boxes): (Vec<_>, Vec<_>) = (0..columns * rows).into_par_iter().map(cell).unzip();
         let corners = boxes.iter().copied().reduce(union).unwrap_or_default();
@@ -121,54 +121,62 @@ impl<P: Parametric> Patch<P> {
         Self { size, extent, cells, hierarchy: Hierarchy::new(&boxes), corners, surface }
     }
 
-    fn spot(&self, uv: DVec2, jet: &Jet) -> Spot {
+    fn point(&self, uv: DVec2, jet: &Jet) -> SurfacePoint {
         let normal = jet.du.cross(jet.dv).normalize_or(DVec3::Y);
-        Spot { position: jet.position, normal, chart: uv * self.extent }
+        SurfacePoint { position: jet.position, normal, chart: uv * self.extent }
     }
 
     /// The intersection nearest to the ray's origin, at less than `limit`, inside the cell.
-    fn meet(&self, sight: &Sight, cell: &Cell, limit: f64) -> Option<Met> {
-        match self.judge(sight, cell.part, &cell.jet, &cell.bend, limit) {
+    fn meet(&self, planes: &RayPlanes, cell: &Cell, limit: f64) -> Option<Intersection> {
+        match self.classify(planes, cell.part, &cell.jet, &cell.curvature, limit) {
             Verdict::Nothing => None,
-            Verdict::Root(uv) => self.take(sight, uv, limit),
-            Verdict::Unknown => self.search(sight, cell, limit),
+            Verdict::Root(uv) => self.take(planes, uv, limit),
+            Verdict::Unknown => self.search(planes, cell, limit),
         }
     }
 
     /// The same for a cell that must be divided.
-    fn search(&self, sight: &Sight, cell: &Cell, mut limit: f64) -> Option<Met> {
+    fn search(&self, planes: &RayPlanes, cell: &Cell, mut limit: f64) -> Option<Intersection> {
         let mut found = None;
         let mut todo = Vec::from(cell.part.quarters());
         while let Some(part) = todo.pop() {
-            let met = match self.judge(sight, part, &self.surface.jet(part.middle), &cell.bend, limit) {
-                Verdict::Nothing => None,
-                Verdict::Root(uv) => self.take(sight, uv, limit),
-                Verdict::Unknown if part.half.x > FINEST * cell.part.half.x => {
-                    todo.extend(part.quarters());
-                    None
-                }
-                Verdict::Unknown => self.take(sight, part.middle, limit),
-            };
-            if let Some(met) = met {
-                limit = met.0;
-                found = Some(met);
+            let hit =
+                match self.classify(planes, part, &self.surface.jet(part.middle), &cell.curvature, limit) {
+                    Verdict::Nothing => None,
+                    Verdict::Root(uv) => self.take(planes, uv, limit),
+                    Verdict::Unknown if part.half.x > FINEST * cell.part.half.x => {
+                        todo.extend(part.quarters());
+                        None
+                    }
+                    Verdict::Unknown => self.take(planes, part.middle, limit),
+                };
+            if let Some(hit) = hit {
+                limit = hit.0;
+                found = Some(hit);
             }
         }
         found
     }
 
-    fn take(&self, sight: &Sight, uv: DVec2, limit: f64) -> Option<Met> {
+    fn take(&self, planes: &RayPlanes, uv: DVec2, limit: f64) -> Option<Intersection> {
         let jet = self.surface.jet(uv);
-        let t = sight.distance(jet.position);
+        let t = planes.distance(jet.position);
         (t > 0.0 && t < limit).then_some((t, uv, jet))
     }
 
-    fn judge(&self, sight: &Sight, part: Part, jet: &Jet, bend: &Bend, limit: f64) -> Verdict {
-        let (remainder, half) = (bend.remainder(part.half), part.half);
-        let (offset, slopes) = (sight.offset(jet.position), sight.slopes(jet));
+    fn classify(
+        &self,
+        planes: &RayPlanes,
+        part: Part,
+        jet: &Jet,
+        curvature: &CurvatureBounds,
+        limit: f64,
+    ) -> Verdict {
+        let (remainder, half) = (curvature.remainder(part.half), part.half);
+        let (offset, slopes) = (planes.offset(jet.position), planes.slopes(jet));
         let reach = slopes.x_axis.abs() * half.x + slopes.y_axis.abs() * half.y + remainder;
-        let depth = sight.distance(jet.position);
-        let d = sight.ray.direction;
+        let depth = planes.distance(jet.position);
+        let d = planes.ray.direction;
         let deep = jet.du.dot(d).abs() * half.x + jet.dv.dot(d).abs() * half.y + remainder;
         if offset.abs().cmpgt(reach).any() || depth + deep <= 0.0 || depth - deep >= limit {
             return Verdict::Nothing;
@@ -183,20 +191,20 @@ impl<P: Parametric> Patch<P> {
         if step.abs().cmpgt(half * (1.0 + SLACK) + gain * remainder).any() {
             return Verdict::Nothing;
         }
-        let vary =
-            (bend.uu * half.x + bend.uv * half.y) * half.x + (bend.uv * half.x + bend.vv * half.y) * half.y;
+        let vary = (curvature.uu * half.x + curvature.uv * half.y) * half.x
+            + (curvature.uv * half.x + curvature.vv * half.y) * half.y;
         if (gain * vary / half).max_element() >= 1.0 {
             return Verdict::Unknown;
         }
-        self.newton(sight, part, part.middle + step.clamp(-half, half))
+        self.newton(planes, part, part.middle + step.clamp(-half, half))
     }
 
     /// The only possible root of the part.
-    fn newton(&self, sight: &Sight, part: Part, start: DVec2) -> Verdict {
+    fn newton(&self, planes: &RayPlanes, part: Part, start: DVec2) -> Verdict {
         let mut uv = start;
         for _ in 0..12 {
             let jet = self.surface.jet(uv);
-            let step = sight.slopes(&jet).inverse() * sight.offset(jet.position);
+            let step = planes.slopes(&jet).inverse() * planes.offset(jet.position);
             if !((uv - step - part.middle).abs().cmple(4.0 * part.half).all()) {
                 return Verdict::Unknown;
             }
@@ -214,22 +222,26 @@ impl<P: Parametric> Patch<P> {
 impl<P: Parametric> Shape for Patch<P> {
     fn at(&self, uv: DVec2) -> Sample {
         let jet = self.surface.jet(uv);
-        Sample { spot: self.spot(uv, &jet), element: jet.du.cross(jet.dv).length(), along_v: jet.dv.length() }
+        Sample {
+            point: self.point(uv, &jet),
+            element: jet.du.cross(jet.dv).length(),
+            along_v: jet.dv.length(),
+        }
     }
 
-    fn trace(&self, ray: &Ray, limit: f64) -> Option<(f64, Spot)> {
-        let sight = Sight::new(*ray);
+    fn trace(&self, ray: &Ray, limit: f64) -> Option<(f64, SurfacePoint)> {
+        let planes = RayPlanes::new(*ray);
         let mut found = None;
         self.hierarchy.visit(ray, limit, |cell, limit| {
-            match self.meet(&sight, &self.cells[cell as usize], limit) {
-                Some(met) => {
-                    found = Some(met);
-                    met.0
+            match self.meet(&planes, &self.cells[cell as usize], limit) {
+                Some(hit) => {
+                    found = Some(hit);
+                    hit.0
                 }
                 None => limit,
             }
         });
-        found.map(|(t, uv, jet)| (t, self.spot(uv, &jet)))
+        found.map(|(t, uv, jet)| (t, self.point(uv, &jet)))
     }
 
     fn corners(&self) -> [DVec3; 2] {
@@ -240,8 +252,8 @@ impl<P: Parametric> Shape for Patch<P> {
         self.size
     }
 
-    fn middle(&self, u: f64) -> Option<Middle> {
-        self.surface.middle(u)
+    fn centreline(&self, u: f64) -> Option<CentrelinePoint> {
+        self.surface.centreline(u)
     }
 }
 
@@ -253,7 +265,7 @@ impl Part {
     }
 }
 
-impl Bend {
+impl CurvatureBounds {
     fn of<P: Parametric>(surface: &P, part: Part) -> Self {
         let mut most = Self { uu: 0.0, uv: 0.0, vv: 0.0 };
         let (du, dv) = (DVec2::new(0.25 * part.half.x, 0.0), DVec2::new(0.0, 0.25 * part.half.y));
@@ -275,7 +287,7 @@ impl Bend {
     }
 }
 
-impl Sight {
+impl RayPlanes {
     fn new(ray: Ray) -> Self {
         let side = ray.direction.any_orthonormal_vector();
         Self { ray, planes: [side, ray.direction.cross(side)] }

@@ -2,7 +2,7 @@
 
 use super::curve::Curve;
 use super::patch::{Jet, Parametric};
-use crate::verify::scenes::Middle;
+use crate::verify::scenes::CentrelinePoint;
 use glam::{DVec2, DVec3};
 
 /// A ribbon ruled by segments perpendicular to a curve. u goes along the curve, v across.
@@ -41,9 +41,9 @@ impl Parametric for Ribbon {
         DVec2::new(self.curve.length(), 2.0 * self.half)
     }
 
-    fn middle(&self, u: f64) -> Option<Middle> {
+    fn centreline(&self, u: f64) -> Option<CentrelinePoint> {
         let jet = self.jet(DVec2::new(u, 0.5));
         let direction = jet.du.cross(jet.dv).normalize_or(DVec3::Y);
-        Some(Middle { position: jet.position, direction, radius: 0.5 * jet.dv.length() })
+        Some(CentrelinePoint { position: jet.position, direction, radius: 0.5 * jet.dv.length() })
     }
 }

@@ -1,6 +1,6 @@
 //! A sphere.
 
-use super::{Ray, Sample, Shape, Spot, first};
+use super::{Ray, Sample, Shape, SurfacePoint, first};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 
@@ -24,9 +24,9 @@ pub fn angles(p: DVec3) -> DVec2 {
 }
 
 impl Sphere {
-    fn spot(&self, normal: DVec3) -> Spot {
+    fn point(&self, normal: DVec3) -> SurfacePoint {
         let position = self.centre + self.radius * normal;
-        Spot { position, normal, chart: self.radius * angles(normal) }
+        SurfacePoint { position, normal, chart: self.radius * angles(normal) }
     }
 }
 
@@ -34,15 +34,15 @@ impl Shape for Sphere {
     fn at(&self, uv: DVec2) -> Sample {
         let theta = PI * uv.y;
         let (across, along_v) = (TAU * self.radius * theta.sin(), PI * self.radius);
-        Sample { spot: self.spot(direction(theta, TAU * uv.x)), element: across * along_v, along_v }
+        Sample { point: self.point(direction(theta, TAU * uv.x)), element: across * along_v, along_v }
     }
 
-    fn trace(&self, ray: &Ray, limit: f64) -> Option<(f64, Spot)> {
+    fn trace(&self, ray: &Ray, limit: f64) -> Option<(f64, SurfacePoint)> {
         let (to_foot, foot) = ray.foot(self.centre);
         let square = self.radius * self.radius - foot.length_squared();
         let half = (square >= 0.0).then(|| square.sqrt())?;
-        let spot = |t: f64| Some(self.spot((foot + (t - to_foot) * ray.direction).normalize()));
-        first([to_foot - half, to_foot + half], limit, spot)
+        let point = |t: f64| Some(self.point((foot + (t - to_foot) * ray.direction).normalize()));
+        first([to_foot - half, to_foot + half], limit, point)
     }
 
     fn corners(&self) -> [DVec3; 2] {

@@ -1,7 +1,7 @@
 //! A torus.
 
 use super::polynomial::roots;
-use super::{Ray, Sample, Shape, Spot};
+use super::{Ray, Sample, Shape, SurfacePoint};
 use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
 
@@ -26,10 +26,10 @@ impl Torus {
         (length - self.minor, from_tube / length)
     }
 
-    fn spot(&self, p: DVec3) -> Spot {
+    fn point(&self, p: DVec3) -> SurfacePoint {
         let (around, tube) = (p.z.atan2(p.x), p.y.atan2(p.x.hypot(p.z) - self.major));
         let chart = DVec2::new(self.major * around.rem_euclid(TAU), self.minor * tube.rem_euclid(TAU));
-        Spot { position: self.centre + p, normal: self.distance(p).1, chart }
+        SurfacePoint { position: self.centre + p, normal: self.distance(p).1, chart }
     }
 }
 
@@ -39,11 +39,11 @@ impl Shape for Torus {
         let reach = self.major + self.minor * tube.cos();
         let p = DVec3::new(reach * around.cos(), self.minor * tube.sin(), reach * around.sin());
         let along_v = TAU * self.minor;
-        Sample { spot: self.spot(p), element: TAU * reach * along_v, along_v }
+        Sample { point: self.point(p), element: TAU * reach * along_v, along_v }
     }
 
     /// Solves `(|p|² + R² − r²)² = 4 R² (x² + z²)`, with distances from the foot of the perpendicular from the centre.
-    fn trace(&self, ray: &Ray, limit: f64) -> Option<(f64, Spot)> {
+    fn trace(&self, ray: &Ray, limit: f64) -> Option<(f64, SurfacePoint)> {
         let (to_foot, f) = ray.foot(self.centre);
         let (d, square) = (ray.direction, self.major * self.major);
         let outer = self.major + self.minor;
@@ -72,7 +72,7 @@ impl Shape for Torus {
             if slope.abs() > 1e-3 { t - value / slope } else { t }
         };
         let t = found.iter().map(|t| polish(*t)).find(|t| t + to_foot > 0.0 && t + to_foot < limit)?;
-        Some((t + to_foot, self.spot(f + t * d)))
+        Some((t + to_foot, self.point(f + t * d)))
     }
 
     fn corners(&self) -> [DVec3; 2] {

@@ -2,7 +2,7 @@
 
 use super::curve::Curve;
 use super::patch::{Jet, Parametric};
-use crate::verify::scenes::Middle;
+use crate::verify::scenes::CentrelinePoint;
 use glam::{DVec2, DVec3};
 use std::f64::consts::TAU;
 
@@ -38,9 +38,9 @@ impl Parametric for Tube {
         DVec2::new(self.curve.length(), TAU * 0.5 * (self.radii[0] + self.radii[1]))
     }
 
-    fn middle(&self, u: f64) -> Option<Middle> {
+    fn centreline(&self, u: f64) -> Option<CentrelinePoint> {
         let frame = self.curve.frame(u, self.reference);
         let radius = self.radii[0] + u * (self.radii[1] - self.radii[0]);
-        Some(Middle { position: frame.point[0], direction: frame.tangent, radius })
+        Some(CentrelinePoint { position: frame.point[0], direction: frame.tangent, radius })
     }
 }

@@ -23,7 +23,7 @@ fn defaults_are_values_that_may_be_given() {
         let all: Vec<_> = scene.parameters().map(|p| format!("{}={}", p.name, p.default)).collect();
         let text = format!("{}?{}", scene.name, all.join("&"));
         let query = Query::parse(&text).unwrap();
-        for parameter in SAMPLING.iter().chain(scene.own) {
+        for parameter in SAMPLING.iter().chain(scene.surface_parameters) {
             assert_eq!(query.word(parameter.name), parameter.default);
         }
         assert!(Query::parse(scene.name).unwrap().whole("points") == 100_000);

@@ -85,7 +85,7 @@ fn every_part_gets_its_share() {
                 let integral = |f: &dyn Fn(DVec3) -> f64| {
                     let at = |uv: DVec2| {
                         let sample = piece.shape.at(uv);
-                        sample.element * f(sample.spot.position)
+                        sample.element * f(sample.point.position)
                     };
                     integrate([i % size[0], i / size[0]], size, at)
                 };

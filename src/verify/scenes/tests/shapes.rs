@@ -14,15 +14,15 @@ fn normals_and_elements_agree_with_differences() {
         for (piece, uv, sample) in points(&*surface, &mut random, 400) {
             let step = 1e-5;
             let across = |axis: DVec2| {
-                let at = |uv| piece.shape.at(uv).spot.position;
+                let at = |uv| piece.shape.at(uv).point.position;
                 (at(uv + step * axis) - at(uv - step * axis)) / (2.0 * step)
             };
             let (du, dv) = (across(DVec2::X), across(DVec2::Y));
             let cross = du.cross(dv);
             assert!((cross.length() - sample.element).abs() < 1e-5 * sample.element, "{name} {uv}");
             assert!((dv.length() - sample.along_v).abs() < 1e-5 * sample.along_v, "{name} {uv}");
-            assert!((cross.normalize().dot(sample.spot.normal).abs() - 1.0).abs() < 1e-6, "{name} {uv}");
-            assert!((sample.spot.normal.length() - 1.0).abs() < 1e-12, "{name} {uv}");
+            assert!((cross.normalize().dot(sample.point.normal).abs() - 1.0).abs() < 1e-6, "{name} {uv}");
+            assert!((sample.point.normal.length() - 1.0).abs() < 1e-12, "{name} {uv}");
         }
     }
 }
@@ -46,7 +46,7 @@ fn normals_point_outwards() {
                 let size = piece.shape.cells().map(|count| count.max(32));
                 let flux = |uv: DVec2| {
                     let sample = piece.shape.at(uv);
-                    sample.spot.position.dot(sample.spot.normal) * sample.element / 3.0
+                    sample.point.position.dot(sample.point.normal) * sample.element / 3.0
                 };
                 (0..size[0] * size[1]).map(|i| integrate([i % size[0], i / size[0]], size, flux)).sum::<f64>()
             })
@@ -54,7 +54,7 @@ fn normals_point_outwards() {
         assert!((volume - expected).abs() < 2e-6 * expected, "{name}: {volume}, not {expected}");
     }
     let (_, helix) = scenes().find(|(name, _)| *name == "scene:helix").unwrap();
-    let tube = helix.pieces()[0].shape.at(DVec2::new(0.0, 0.3)).spot;
+    let tube = helix.pieces()[0].shape.at(DVec2::new(0.0, 0.3)).point;
     // The tube starts near (0.8, −1, 0).
     assert!((tube.position - DVec3::new(0.8, -1.0, 0.0)).dot(tube.normal) > 0.19);
 }
@@ -97,7 +97,7 @@ fn the_bumpy_sphere_has_its_old_colours() {
     let surface = scenes::surface("scene:bumpy-sphere").unwrap();
     let mut random = Random::new(4, 0);
     for (piece, _, sample) in points(&*surface, &mut random, 2000) {
-        let code = scenes::bumpy_sphere::colour(sample.spot.position);
-        assert_eq!(piece.texture.at(&sample.spot), scenes::texture::linear(code), "{:?}", sample.spot);
+        let code = scenes::bumpy_sphere::colour(sample.point.position);
+        assert_eq!(piece.texture.at(&sample.point), scenes::texture::linear(code), "{:?}", sample.point);
     }
 }

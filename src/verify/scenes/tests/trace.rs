@@ -18,17 +18,17 @@ fn every_point_is_met_or_hidden() {
         for (piece, uv, sample) in points(&*surface, &mut random, 1500) {
             let eye = bounds.centre()
                 + (1.0 + 2.0 * random.unit()) * bounds.radius * vector(&mut random).normalize();
-            let aim = sample.spot.position - eye;
+            let aim = sample.point.position - eye;
             let hit = surface.trace(eye, aim).unwrap_or_else(|| panic!("{name} {uv} from {eye}: missed"));
             // The distance of a grazing ray is ill-conditioned.
-            let facing = sample.spot.normal.dot(aim.normalize()).abs();
+            let facing = sample.point.normal.dot(aim.normalize()).abs();
             assert!(hit.t < 1.0 + 1e-12 / facing.powi(2).max(1e-9), "{name} {uv} from {eye}: {}", hit.t);
             let off = (eye + hit.t * aim - hit.position).length();
             assert!(off < 1e-9 * bounds.radius, "{name}: met {off} beside the ray");
             if facing > 0.05 && (hit.t - 1.0).abs() < 1e-9 {
                 met += 1;
-                assert!((hit.normal - sample.spot.normal).length() < 1e-5, "{name} {uv} {hit:?} {sample:?}");
-                let albedo = piece.texture.at(&sample.spot);
+                assert!((hit.normal - sample.point.normal).length() < 1e-5, "{name} {uv} {hit:?} {sample:?}");
+                let albedo = piece.texture.at(&sample.point);
                 let difference = (0..3).map(|i| (albedo[i] - hit.albedo[i]).abs()).fold(0.0, f64::max);
                 assert!(difference < 1e-4 || is_at_an_edge(&*surface, &hit), "{name} {uv}: {difference}");
             }
@@ -151,18 +151,18 @@ fn patches_meet_what_the_closed_form_has() {
     for i in 0..4000 {
         let origin = 3.0 * vector(&mut random).normalize() + torus.centre;
         // Half of the rays pass close to the outline.
-        let spot = torus.at(DVec2::new(random.unit(), random.unit())).spot;
-        let mut aim = spot.position - origin;
+        let point = torus.at(DVec2::new(random.unit(), random.unit())).point;
+        let mut aim = point.position - origin;
         if i % 2 == 0 {
-            let beside = spot.position + 10f64.powf(-2.0 - 8.0 * random.unit()) * spot.normal;
-            aim = spot.normal.any_orthonormal_vector() * (beside - origin).length();
+            let beside = point.position + 10f64.powf(-2.0 - 8.0 * random.unit()) * point.normal;
+            aim = point.normal.any_orthonormal_vector() * (beside - origin).length();
         }
-        let origin = if i % 2 == 0 { spot.position + 1e-7 * spot.normal - aim } else { origin };
+        let origin = if i % 2 == 0 { point.position + 1e-7 * point.normal - aim } else { origin };
         let ray = Ray { origin, direction: aim.normalize() };
         let [a, b] = [torus.trace(&ray, f64::INFINITY), patch.trace(&ray, f64::INFINITY)];
         match (a, b) {
-            (Some((a, spot)), Some((b, _))) => {
-                let tolerance = 1e-11 / spot.normal.dot(ray.direction).abs().max(1e-6);
+            (Some((a, point)), Some((b, _))) => {
+                let tolerance = 1e-11 / point.normal.dot(ray.direction).abs().max(1e-6);
                 assert!((a - b).abs() < tolerance.min(1e-5), "{a} and {b}");
                 met += 1;
             }

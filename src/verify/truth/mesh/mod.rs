@@ -4,7 +4,8 @@ mod hierarchy;
 mod normals;
 pub(super) mod triangle;
 
-use super::scene::{Hit, Scene};
+use super::traceable::{Hit, Traceable};
+use crate::error::{Error, Result};
 use crate::geometry::{Bounds, Cloud, Colours};
 use crate::verify::reference::linear;
 use glam::DVec3;
@@ -28,12 +29,13 @@ impl Mesh {
     /// The triangles of a cloud: read it with [`ReadOptions::triangles`](crate::formats::ReadOptions).
     ///
     /// # Errors
-    /// An invalid mesh: without triangles, or with an index of a point that does not exist.
-    pub fn new(cloud: &Cloud) -> Result<Self, String> {
+    /// [`Error::Input`] with the name `name` if there are no triangles, or an index of a point that does not exist.
+    pub fn new(name: &str, cloud: &Cloud) -> Result<Self> {
         let corners: Vec<_> = cloud.positions.par_iter().map(|p| cloud.origin + p.as_dvec3()).collect();
         let triangles = cloud.triangles.clone();
         if triangles.iter().flatten().any(|corner| *corner as usize >= corners.len()) {
-            return Err("a triangle names a point that there is not: write it again".into());
+            let cause = "a triangle has the index of a point that does not exist: export the mesh again";
+            return Err(Error::input(name, cause));
         }
         let boxes: Vec<_> = triangles
             .par_iter()
@@ -44,7 +46,7 @@ impl Mesh {
             .collect();
         let whole = boxes.iter().copied().reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
         let Some([min, max]) = whole else {
-            return Err("it has no triangles: give a mesh, or a built-in scene".into());
+            return Err(Error::input(name, "no triangles: give a mesh, or a built-in scene"));
         };
         let normals = normals::fill(cloud, &corners);
         let colours = cloud.colours.as_ref().map(decoded);
@@ -92,7 +94,7 @@ impl Mesh {
     }
 }
 
-impl Scene for Mesh {
+impl Traceable for Mesh {
     fn trace(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
         let length = direction.length();
         let direction = direction.try_normalize().filter(|_| origin.is_finite() && length.is_finite())?;

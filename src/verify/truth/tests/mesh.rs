@@ -6,7 +6,7 @@ use crate::settings::Settings;
 use crate::verify::scenes;
 use crate::verify::scenes::random::Random;
 use crate::verify::truth::mesh::triangle::Ray;
-use crate::verify::truth::{Eye, Mesh, Options, Scene, render};
+use crate::verify::truth::{Eye, Mesh, Options, Traceable, render};
 use glam::{DVec3, Vec3};
 use std::f64::consts::{PI, TAU};
 
@@ -34,7 +34,7 @@ fn sphere(n: u32) -> Cloud {
 fn a_fine_mesh_is_the_sphere() {
     const SIZE: [u32; 2] = [48, 48];
     let n = 128;
-    let mesh = Mesh::new(&sphere(n)).unwrap();
+    let mesh = Mesh::new("sphere", &sphere(n)).unwrap();
     let exact = scenes::surface("scene:sphere?albedo=plain").unwrap();
     let camera = Camera::look_at(DVec3::new(0.4, 0.9, 3.0), DVec3::ZERO, DVec3::Y, 0.75, 1.0, 0.01).unwrap();
     let settings = Settings::default();
@@ -44,7 +44,7 @@ fn a_fine_mesh_is_the_sphere() {
     let sagitta = 2.0 * (1.0 - (0.5 * PI / f64::from(n)).cos());
     let mut compared = 0;
     for at in (0..48 * 48).map(|i| centre(i, SIZE)) {
-        let (Some(a), Some(b)) = (mesh_eye.see(at), exact_eye.see(at)) else { continue };
+        let (Some(a), Some(b)) = (mesh_eye.hit(at), exact_eye.hit(at)) else { continue };
         let viewer = b.normal.dot(DVec3::new(0.4, 0.9, 3.0).normalize());
         if viewer < 0.5 {
             continue;
@@ -65,7 +65,7 @@ fn a_fine_mesh_is_the_sphere() {
 #[test]
 fn the_tree_finds_what_a_search_of_all_triangles_finds() {
     let cloud = Cloud { origin: DVec3::new(4e6, -2e6, 7.0), ..sphere(9) };
-    let mesh = Mesh::new(&cloud).unwrap();
+    let mesh = Mesh::new("mesh", &cloud).unwrap();
     let mut random = Random::new(5, 5);
     let mut point =
         |scale: f64| cloud.origin + scale * (DVec3::from_array(std::array::from_fn(|_| random.unit())) - 0.5);
@@ -87,7 +87,7 @@ fn the_tree_finds_what_a_search_of_all_triangles_finds() {
 fn no_ray_slips_between_triangles() {
     let n = 12;
     let cloud = sphere(n);
-    let mesh = Mesh::new(&cloud).unwrap();
+    let mesh = Mesh::new("mesh", &cloud).unwrap();
     let at = |corner: u32| cloud.positions[corner as usize].as_dvec3();
     for triangle in &cloud.triangles {
         for k in 0..3 {
@@ -116,7 +116,10 @@ fn colours_and_normals_are_interpolated() {
         ..Default::default()
     };
     let look = |cloud: &Cloud| {
-        Mesh::new(cloud).unwrap().trace(DVec3::new(0.2, 0.3, 4.0), DVec3::new(0.0, 0.0, -2.0)).unwrap()
+        Mesh::new("mesh", cloud)
+            .unwrap()
+            .trace(DVec3::new(0.2, 0.3, 4.0), DVec3::new(0.0, 0.0, -2.0))
+            .unwrap()
     };
     let hit = look(&cloud);
     assert!((hit.t - 2.0).abs() < 1e-15 && hit.normal == DVec3::Z, "{hit:?}");
@@ -129,21 +132,24 @@ fn colours_and_normals_are_interpolated() {
     cloud.colours = None;
     assert_eq!(look(&cloud).albedo, None);
     cloud.triangles = vec![[0, 1, 3]];
-    assert!(Mesh::new(&cloud).err().unwrap().contains("names a point"));
+    assert!(Mesh::new("mesh", &cloud).err().unwrap().to_string().contains("a point that does not exist"));
     cloud.triangles.clear();
-    assert!(Mesh::new(&cloud).err().unwrap().contains("no triangles"));
+    assert!(Mesh::new("mesh", &cloud).err().unwrap().to_string().contains("no triangles"));
 }
 
 /// Two triangles meet at a corner of the cube's horizontal face, and one at that of each vertical face.
 #[test]
 fn normals_weigh_triangles_by_their_angles() {
     let corners = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [0, 1, 1]];
-    let mesh = Mesh::new(&Cloud {
-        positions: corners.map(|corner| Vec3::from(corner.map(|c| c as f32))).to_vec(),
-        // Outwards: down, to the left and to the back.
-        triangles: vec![[0, 2, 1], [0, 3, 2], [0, 4, 3], [4, 6, 3], [0, 1, 4], [1, 5, 4]],
-        ..Default::default()
-    })
+    let mesh = Mesh::new(
+        "corner",
+        &Cloud {
+            positions: corners.map(|corner| Vec3::from(corner.map(|c| c as f32))).to_vec(),
+            // Outwards: down, to the left and to the back.
+            triangles: vec![[0, 2, 1], [0, 3, 2], [0, 4, 3], [4, 6, 3], [0, 1, 4], [1, 5, 4]],
+            ..Default::default()
+        },
+    )
     .unwrap();
     let hit = mesh.trace(DVec3::new(-2.0, -2.0, -3.0), DVec3::new(2.0, 2.0, 3.0) + 1e-9).unwrap();
     assert!(hit.normal.abs_diff_eq(DVec3::splat(-1.0 / 3f64.sqrt()), 1e-6), "{}", hit.normal);
@@ -158,7 +164,7 @@ fn digests_tell_meshes_apart() {
         colours: Some(Colours::Linear(vec![[0.5; 3]; 3])),
         ..Default::default()
     };
-    let digest = |cloud: &Cloud| Mesh::new(cloud).unwrap().digest();
+    let digest = |cloud: &Cloud| Mesh::new("mesh", cloud).unwrap().digest();
     assert_eq!(digest(&usual), digest(&usual.clone()));
     let all = [
         usual.clone(),

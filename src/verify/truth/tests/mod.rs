@@ -6,7 +6,7 @@ mod filters;
 mod mesh;
 mod sphere;
 
-use super::{Filter, Hit, Options, Scene, Truth, render};
+use super::{Filter, Hit, Options, Traceable, Truth, render};
 use crate::geometry::{Bounds, Camera};
 use crate::settings::{Settings, Shading};
 use glam::{DVec2, DVec3};
@@ -33,7 +33,7 @@ impl<F: Fn(DVec2) -> Option<f64> + Sync> Flat<F> {
     }
 }
 
-impl<F: Fn(DVec2) -> Option<f64> + Sync> Scene for Flat<F> {
+impl<F: Fn(DVec2) -> Option<f64> + Sync> Traceable for Flat<F> {
     fn trace(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
         let t = -origin.z / direction.z;
         let place = origin + t * direction;

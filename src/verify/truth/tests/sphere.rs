@@ -64,7 +64,7 @@ fn outline_and_depth_are_the_closed_form() {
             let at = centre(i, SIZE);
             let (depth, inside) = exact(camera, at);
             assert!(inside.abs() > 1e-9, "camera {index}: a pixel on the outline tells nothing");
-            let seen = eye.see(at);
+            let seen = eye.hit(at);
             assert_eq!(
                 (seen.is_some(), pixel[3]),
                 (depth.is_some(), f32::from(depth.is_some())),
@@ -89,7 +89,7 @@ fn depth_is_that_of_the_ray_through_the_centre() {
     let picture = render(&*sphere, &camera, &settings, SIZE, &Options::default(), &()).unwrap().picture;
     let (eye, mut beside) = (Eye::new(&*sphere, &camera, &settings, SIZE).unwrap(), 0);
     for (i, depth) in picture.depth.unwrap().into_iter().enumerate() {
-        match eye.see(centre(i, SIZE)) {
+        match eye.hit(centre(i, SIZE)) {
             Some(seen) => assert_eq!(depth, seen.depth as f32),
             None if depth > 0.0 => {
                 beside += 1;
@@ -108,7 +108,7 @@ fn normals_face_the_eye_and_light_is_the_references() {
     let settings = Settings::default();
     let eye = Eye::new(&*sphere, &inside, &settings, SIZE).unwrap();
     // The ray through the middle of the picture hits the far side head-on: the full headlight and its highlight.
-    let seen = eye.see(DVec2::new(48.0, 32.0)).unwrap();
+    let seen = eye.hit(DVec2::new(48.0, 32.0)).unwrap();
     assert!(seen.normal.abs_diff_eq(DVec3::Z, 1e-12) && (seen.depth - 1.5).abs() < 1e-12, "{seen:?}");
     let albedo = sphere.trace(DVec3::ZERO, DVec3::NEG_Z).unwrap().albedo;
     let light = DVec3::from(albedo) * f64::from(0.08f32 + 0.87f32) + f64::from(0.06f32);
@@ -122,7 +122,7 @@ fn planes_cut() {
     let view = [DVec3::new(0.0, 0.0, 3.0), DVec3::ZERO, DVec3::Y];
     let depth = |planes| {
         let camera = Camera::orthographic(view, 2.0, 1.0, planes).unwrap();
-        Eye::new(&*sphere, &camera, &settings, [9, 9]).unwrap().see(DVec2::splat(4.5)).map(|seen| seen.depth)
+        Eye::new(&*sphere, &camera, &settings, [9, 9]).unwrap().hit(DVec2::splat(4.5)).map(|seen| seen.depth)
     };
     assert!((depth([0.5, 9.0]).unwrap() - 2.0).abs() < 1e-12);
     assert!((depth([2.5, 9.0]).unwrap() - 4.0).abs() < 1e-12, "the near side is cut away");

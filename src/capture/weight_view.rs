@@ -1,8 +1,8 @@
 //! One rendered picture of Σw and depth, and its samples of surfels.
 
-use super::border::Fit;
-use super::gather::Sample;
+use super::corner_fit::CornerFit;
 use super::overlap::kernel;
+use super::samples::Sample;
 use crate::error::Result;
 use crate::frame::Renderer;
 use crate::geometry::{Camera, Surfels};
@@ -24,7 +24,7 @@ const STEADY: f64 = 2.0;
 const SAMPLES: u32 = 7;
 
 /// A rendered view.
-pub(super) struct Look {
+pub(super) struct WeightView {
     projector: Projector,
     picture: Picture,
     settings: Settings,
@@ -41,7 +41,7 @@ struct Square {
 
 /// The visible surface at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum Seen {
+enum Visible {
     /// The expected surface, with this Σw.
     Sum(f64),
     /// The surface has ended: nothing, or a surface behind.
@@ -50,7 +50,7 @@ enum Seen {
     Hidden,
 }
 
-impl Look {
+impl WeightView {
     /// Renders `scene` with settings that show Σw.
     pub fn new(renderer: &mut Renderer, scene: &Scene, camera: &Camera, settings: &Settings) -> Result<Self> {
         let (picture, _) = renderer.render_picture(scene, camera, settings)?;
@@ -76,7 +76,7 @@ impl Look {
         if culled || facing.abs() < LEAST_COSINE {
             return None;
         }
-        let Seen::Sum(sum) = self.seen(&square, DVec2::ZERO) else { return None };
+        let Visible::Sum(sum) = self.seen(&square, DVec2::ZERO) else { return None };
         let extent = |axis: DVec3| Some(self.projector.locate(surfel.position + axis)?.0.distance(centre));
         if extent(u)?.min(extent(v)?) < LEAST_RADIUS {
             return None;
@@ -89,18 +89,18 @@ impl Look {
     fn is_border(&self, square: &Square, sum: f64) -> bool {
         let corners = [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)];
         corners.into_iter().any(|at| match self.seen(square, at.into()) {
-            Seen::Sum(other) => (other / sum).max(sum / other) > STEADY,
-            Seen::Gap => true,
-            Seen::Hidden => false,
+            Visible::Sum(other) => (other / sum).max(sum / other) > STEADY,
+            Visible::Gap => true,
+            Visible::Hidden => false,
         })
     }
 
     /// Weights at the square's corners, from the visible samples within the kernel.
     fn corners(&self, square: &Square, sum: f64) -> [f64; 4] {
-        let mut fit = Fit::new(1.0 / sum);
+        let mut fit = CornerFit::new(1.0 / sum);
         let place = |i: u32| f64::from(2 * i + 1) / f64::from(SAMPLES) - 1.0;
         for at in (0..SAMPLES * SAMPLES).map(|i| DVec2::new(place(i % SAMPLES), place(i / SAMPLES))) {
-            if let (Some(kernel), Seen::Sum(sum)) = (kernel(&self.settings, at), self.seen(square, at)) {
+            if let (Some(kernel), Visible::Sum(sum)) = (kernel(&self.settings, at), self.seen(square, at)) {
                 fit.add(at, kernel, 1.0 / sum);
             }
         }
@@ -108,20 +108,20 @@ impl Look {
     }
 
     /// The visible surface at a position in a square, in its axes.
-    fn seen(&self, square: &Square, place: DVec2) -> Seen {
+    fn seen(&self, square: &Square, place: DVec2) -> Visible {
         let located = self.projector.locate(square.centre + place.x * square.u + place.y * square.v);
-        located.map_or(Seen::Hidden, |(at, distance)| self.at(at, distance, square.tolerance))
+        located.map_or(Visible::Hidden, |(at, distance)| self.at(at, distance, square.tolerance))
     }
 
     /// The visible surface at a pixel position, px, whose depth is `distance` ± `tolerance`: Σw interpolated between
     /// the four pixels around it, or those of them that show the surface.
-    fn at(&self, at: DVec2, distance: f64, tolerance: f64) -> Seen {
+    fn at(&self, at: DVec2, distance: f64, tolerance: f64) -> Visible {
         let first = (at - 0.5).floor();
         let part = at - 0.5 - first;
         let (mut total, mut share, mut in_front) = (0.0, 0.0, false);
         for (x, y) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
             let offset = DVec2::new(f64::from(x), f64::from(y));
-            let Some((sum, depth)) = self.pixel(first + offset) else { return Seen::Hidden };
+            let Some((sum, depth)) = self.pixel(first + offset) else { return Visible::Hidden };
             in_front |= depth > 0.0 && depth < distance - tolerance;
             if depth > 0.0 && (depth - distance).abs() <= tolerance {
                 let [near_x, near_y] = (1.0 - (offset - part).abs()).to_array();
@@ -130,9 +130,9 @@ impl Look {
             }
         }
         match (share > 0.0 && total > 0.0, in_front) {
-            (true, _) => Seen::Sum(total / share),
-            (false, true) => Seen::Hidden,
-            (false, false) => Seen::Gap,
+            (true, _) => Visible::Sum(total / share),
+            (false, true) => Visible::Hidden,
+            (false, false) => Visible::Gap,
         }
     }
 
@@ -157,7 +157,7 @@ mod tests {
 
     /// The view from 10 above the plane z = 0 along −z, a unit per pixel, with the first row at y = 32: Σw and distance
     /// of each pixel.
-    fn look(cull: Cull, seen: impl Fn(u32, u32) -> (f32, f64)) -> Look {
+    fn view(cull: Cull, seen: impl Fn(u32, u32) -> (f32, f64)) -> WeightView {
         let middle = DVec3::new(16.0, 16.0, 0.0);
         let eye = [middle + DISTANCE * DVec3::Z, middle, DVec3::Y];
         let camera = Camera::orthographic(eye, SIDE.into(), 1.0, [1.0, 100.0]).unwrap();
@@ -169,24 +169,24 @@ mod tests {
             depth: Some(depths.into_iter().map(|depth| depth as f32).collect()),
             ..Default::default()
         };
-        Look { projector: Projector::new(&camera, [SIDE; 2], &settings).unwrap(), picture, settings }
+        WeightView { projector: Projector::new(&camera, [SIDE; 2], &settings).unwrap(), picture, settings }
     }
 
     #[test]
     fn sums_are_interpolated_between_the_pixels_of_the_surface() {
-        let ramp = look(Cull::Back, |x, y| ((x + 10 * y) as f32, DISTANCE));
-        assert_eq!(ramp.at(DVec2::new(4.0, 5.25), DISTANCE, 0.5), Seen::Sum(3.5 + 47.5));
-        let half = look(Cull::Back, |x, _| (x as f32, if x < 8 { DISTANCE } else { 12.0 }));
-        assert_eq!(half.at(DVec2::new(8.25, 8.0), DISTANCE, 0.5), Seen::Sum(7.0), "of those that show it");
+        let ramp = view(Cull::Back, |x, y| ((x + 10 * y) as f32, DISTANCE));
+        assert_eq!(ramp.at(DVec2::new(4.0, 5.25), DISTANCE, 0.5), Visible::Sum(3.5 + 47.5));
+        let half = view(Cull::Back, |x, _| (x as f32, if x < 8 { DISTANCE } else { 12.0 }));
+        assert_eq!(half.at(DVec2::new(8.25, 8.0), DISTANCE, 0.5), Visible::Sum(7.0), "of those that show it");
     }
 
     #[test]
     fn a_surface_ends_at_nothing_and_what_is_behind_and_is_hidden_by_what_is_in_front() {
         let depths = [0.0, DISTANCE + 1.0, DISTANCE - 1.0, DISTANCE + 0.4];
-        let strips = look(Cull::Back, |x, _| (2.0, depths[x as usize / 8]));
+        let strips = view(Cull::Back, |x, _| (2.0, depths[x as usize / 8]));
         let seen = [4.0, 12.0, 20.0, 28.0].map(|x| strips.at(DVec2::new(x, 16.0), DISTANCE, 0.5));
-        assert_eq!(seen, [Seen::Gap, Seen::Gap, Seen::Hidden, Seen::Sum(2.0)]);
-        assert_eq!(strips.at(DVec2::new(31.9, 16.0), DISTANCE, 0.5), Seen::Hidden, "beyond the picture");
+        assert_eq!(seen, [Visible::Gap, Visible::Gap, Visible::Hidden, Visible::Sum(2.0)]);
+        assert_eq!(strips.at(DVec2::new(31.9, 16.0), DISTANCE, 0.5), Visible::Hidden, "beyond the picture");
     }
 
     /// A disc of radius 3 in the plane, at x = 12, turned by `degrees`.
@@ -202,7 +202,7 @@ mod tests {
 
     #[test]
     fn surfels_that_are_small_or_steep_or_culled_are_left_to_other_views() {
-        let all = |cull| look(cull, |_, _| (4.0, DISTANCE));
+        let all = |cull| view(cull, |_, _| (4.0, DISTANCE));
         let [both, front] = [all(Cull::None), all(Cull::Back)];
         let whole = vec![Sample { surfel: 0, sum: 4.0, corners: None }];
         assert_eq!(front.samples(&disc(0.0, 3.0)), whole);
@@ -218,7 +218,7 @@ mod tests {
     fn a_surfel_at_a_border_has_a_weight_at_each_corner() {
         // The sum falls from 4 to 1 over the disc, and the surface ends at 14.
         let sum = |x: u32| 4.0 - (x as f32 - 9.0).clamp(0.0, 3.0);
-        let border = look(Cull::Back, |x, _| (sum(x), if x < 14 { DISTANCE } else { 0.0 }));
+        let border = view(Cull::Back, |x, _| (sum(x), if x < 14 { DISTANCE } else { 0.0 }));
         let [found] = border.samples(&disc(0.0, 3.0))[..] else { panic!("not seen") };
         let corners = found.corners.unwrap();
         // The first axis is ±x: two corners are beyond the end, with larger weights than the centre; two are inside,

@@ -9,19 +9,19 @@ use glam::{DMat4, DVec2, DVec4};
 
 /// Regularization of each corner towards the weight at the centre, as a share of `Σ r²`: it determines corners without
 /// samples near them.
-const HOLD: f64 = 0.01;
+const REGULARIZATION: f64 = 0.01;
 /// Least weight at a corner, as a share of that at the centre: weights are above 0.
 const LEAST: f64 = 0.1;
 
 /// Least-squares fit of one square.
-pub(super) struct Fit {
+pub(super) struct CornerFit {
     centre: f64,
     matrix: DMat4,
     right: DVec4,
     total: f64,
 }
 
-impl Fit {
+impl CornerFit {
     /// A fit for a square whose weight at the centre is `centre`.
     pub fn new(centre: f64) -> Self {
         Self { centre, matrix: DMat4::ZERO, right: DVec4::ZERO, total: 0.0 }
@@ -40,12 +40,12 @@ impl Fit {
 
     /// The weights at −u −v, +u −v, −u +v, +u +v.
     pub fn corners(&self) -> [f64; 4] {
-        let hold = HOLD * self.total;
-        if hold <= 0.0 {
+        let regularization = REGULARIZATION * self.total;
+        if regularization <= 0.0 {
             return [self.centre; 4];
         }
-        let matrix = self.matrix + DMat4::from_diagonal(DVec4::splat(hold));
-        let corners = matrix.inverse() * (self.right + hold * self.centre);
+        let matrix = self.matrix + DMat4::from_diagonal(DVec4::splat(regularization));
+        let corners = matrix.inverse() * (self.right + regularization * self.centre);
         corners.max(DVec4::splat(LEAST * self.centre)).to_array()
     }
 }
@@ -62,7 +62,7 @@ mod tests {
 
     /// Fits `wanted` at 7 × 7 positions, with a Gaussian that falls to e⁻¹ at the middles of the sides.
     fn fit(centre: f64, wanted: impl Fn(DVec2) -> Option<f64>) -> [f64; 4] {
-        let mut fit = Fit::new(centre);
+        let mut fit = CornerFit::new(centre);
         let place = |i: u32| f64::from(i) / 3.0 - 1.0;
         for at in (0..49).map(|i| DVec2::new(place(i % 7), place(i / 7))) {
             wanted(at).into_iter().for_each(|weight| fit.add(at, (-at.length_squared()).exp(), weight));
@@ -90,7 +90,7 @@ mod tests {
         });
         let [square, all] = sums.into_iter().sum::<DVec2>().to_array();
         let m = square / all;
-        let [slope, twist] = [m, m * m].map(|mean| 0.25 * mean / (0.25 * mean + HOLD));
+        let [slope, twist] = [m, m * m].map(|mean| 0.25 * mean / (0.25 * mean + REGULARIZATION));
         let (along, up, both) = (DVec4::new(-1.0, 1.0, -1.0, 1.0), DVec4::new(-1.0, -1.0, 1.0, 1.0), 0.05);
         let held = DVec4::splat(0.4) + slope * (0.15 * along + 0.1 * up) + twist * both * along * up;
         assert_near(found, held);

@@ -16,7 +16,7 @@ pub struct Hit {
 }
 
 /// A scene for ray tracing.
-pub trait Scene: Sync {
+pub trait Traceable: Sync {
     /// The nearest intersection with a ray at `t > 0`. `direction` may have any length.
     fn trace(&self, origin: DVec3, direction: DVec3) -> Option<Hit>;
 
@@ -24,7 +24,7 @@ pub trait Scene: Sync {
     fn bounds(&self) -> Bounds;
 }
 
-impl<S: Surface + ?Sized> Scene for S {
+impl<S: Surface + ?Sized> Traceable for S {
     fn trace(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
         let hit = Surface::trace(self, origin, direction)?;
         Some(Hit { t: hit.t, normal: hit.normal, albedo: Some(hit.albedo) })
