@@ -1,4 +1,4 @@
-//! The plain native program that other times are multiples of: its frames, and their stages.
+//! Frames of the CPU baseline, and their stages.
 
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use std::time::Duration;
@@ -14,7 +14,7 @@ const SIZE: [u32; 2] = [1024; 2];
 criterion_group!(benches, baseline);
 criterion_main!(benches);
 
-/// Both pictures of the comparison scene in two sizes.
+/// Both kinds of picture of the comparison scene, with two numbers of points.
 fn baseline(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("baseline");
     group.sample_size(10).sampling_mode(SamplingMode::Flat);
@@ -40,7 +40,7 @@ fn baseline(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// A camera that shows all of it.
+/// A camera that shows the whole scene.
 fn framing(surfels: &Surfels) -> Camera {
     let bounds = surfels.bounds().expect("the scene has points");
     Camera::framing(&bounds, 45f64.to_radians(), 1.0).expect("the scene can be framed")

@@ -1,5 +1,5 @@
-//! What a host's frame costs with surfels in subpasses of its own render pass, against surfels drawn off-screen and composited: the same scene, a
-//! wall of the host before half of it or none, the two taking turns.
+//! Time of a host's frame with surfels in subpasses of its render pass, against surfels rendered off-screen and composited: the same
+//! scene in alternating frames, with a wall of the host in front of half of it or without.
 #![allow(unsafe_code, reason = "a host speaks Vulkan itself")]
 
 #[path = "../tools/hosts/host/mod.rs"]
@@ -23,7 +23,7 @@ use surfel::{Precision, Rasterizer, Scene, Settings};
 
 /// Side of the picture, px.
 const SIDE: u32 = 1024;
-/// Frames that count, and those before them that do not.
+/// Timed frames, and warm-up frames before them.
 const FRAMES: usize = 15;
 const WARM_UP: usize = 2;
 
@@ -31,7 +31,7 @@ const COLOUR: vk::Format = vk::Format::R8G8B8A8_SRGB;
 const ONE: vk::SampleCountFlags = vk::SampleCountFlags::TYPE_1;
 
 fn main() -> Result<()> {
-    // The validation layers are not to be timed.
+    // Without validation layers, which take time.
     let host = match Host::open_with(|all| all, Validation::Off, &[], &[]) {
         Ok(host) => host,
         Err(error) => {
@@ -47,34 +47,34 @@ fn main() -> Result<()> {
         "points", "wall", "surfels", "CPU", "wall clock", "ratio"
     );
     for points in [100_000, 1_000_000] {
-        let stage = Stage::new(&host, &device, points)?;
+        let uploaded = UploadedScene::new(&host, &device, points)?;
         for wall in [Wall::None, Wall::Half] {
-            stage.compare(points, wall)?;
+            uploaded.compare(points, wall)?;
         }
     }
     Ok(())
 }
 
-/// What the host has before the surfels.
+/// Geometry of the host in front of the surfels.
 #[derive(Clone, Copy, Debug)]
 enum Wall {
     None,
-    /// Half of the view, nearer than all of them.
+    /// Half of the view, nearer than all surfels.
     Half,
 }
 
-/// A scene as it is seen.
-struct Stage<'a> {
+/// An uploaded scene with its view.
+struct UploadedScene<'a> {
     host: &'a Host,
     device: Arc<Device>,
     scene: Arc<Scene>,
     view: View,
 }
 
-/// Times of frames, ms: the CPU's, and the clock's.
+/// Times of frames, ms: CPU time and wall time.
 type Times = [Vec<f64>; 2];
 
-impl<'a> Stage<'a> {
+impl<'a> UploadedScene<'a> {
     fn new(host: &'a Host, device: &Arc<Device>, points: u32) -> Result<Self> {
         let surfels = scenes::open(&format!("scene:bumpy-sphere?points={points}"))?;
         // SAFETY: recorded outside a render pass; the staging memory stays until `run` has waited.
@@ -85,7 +85,7 @@ impl<'a> Stage<'a> {
         Ok(Self { host, device: device.clone(), scene: Arc::new(scene), view })
     }
 
-    /// The wall's corners; those of none are behind all.
+    /// The wall's corners; behind all surfels for [`Wall::None`].
     fn corners(&self, wall: Wall) -> Corners {
         let back = self.view.camera.view.inverse();
         let eye = back.transform_point3(DVec3::ZERO);
@@ -159,28 +159,28 @@ enum Kinds {
 }
 
 impl Composited {
-    fn new(stage: &Stage<'_>, wall: Wall, rasterizer: Rasterizer) -> Result<Self> {
+    fn new(uploaded: &UploadedScene<'_>, wall: Wall, rasterizer: Rasterizer) -> Result<Self> {
         let kind =
             frame::Kind { way: Way::Subpass, colour: COLOUR, normals: false, samples: ONE, reversed: true };
-        let frame = Frame::new(stage.host, kind, [SIDE; 2])?;
-        let mesh = Mesh::new(stage.host, &stage.corners(wall), frame.place())?;
+        let frame = Frame::new(uploaded.host, kind, [SIDE; 2])?;
+        let mesh = Mesh::new(uploaded.host, &uploaded.corners(wall), frame.place())?;
         let options = Options {
             target: frame.target(),
             frames_in_flight: 1,
             precision: Precision::Full,
             rasterizer: Some(rasterizer),
         };
-        // SAFETY: the target is the frame's, which is destroyed after the renderer.
-        let renderer = unsafe { embed::Renderer::new(&stage.device, options)? };
+        // SAFETY: the target belongs to the frame, which is destroyed after the renderer.
+        let renderer = unsafe { embed::Renderer::new(&uploaded.device, options)? };
         Ok(Self { frame, mesh, renderer })
     }
 
-    fn frame(&mut self, stage: &Stage<'_>, settings: &Settings) -> Result<()> {
-        let (host, view) = (stage.host, &stage.view);
+    fn frame(&mut self, uploaded: &UploadedScene<'_>, settings: &Settings) -> Result<()> {
+        let (host, view) = (uploaded.host, &uploaded.view);
         host.run(|cmd| {
             // SAFETY: prepared outside the pass, drawn inside it, and waited for.
             unsafe {
-                self.renderer.prepare(cmd, &stage.scene, view, settings)?;
+                self.renderer.prepare(cmd, &uploaded.scene, view, settings)?;
                 self.frame.begin(host, cmd);
                 let world_to_clip = view.camera.world_to_clip().as_mat4();
                 self.mesh.draw(host, cmd, view.viewport, world_to_clip, Vec3::Y);
@@ -193,7 +193,7 @@ impl Composited {
 }
 
 impl InSubpasses {
-    fn new(stage: &Stage<'_>, wall: Wall, seed: bool, settings: &Settings) -> Result<Self> {
+    fn new(uploaded: &UploadedScene<'_>, wall: Wall, seed: bool, settings: &Settings) -> Result<Self> {
         let kind = Kind {
             colour: COLOUR,
             depth: Some(frame::DEPTH),
@@ -203,29 +203,29 @@ impl InSubpasses {
             seed,
             around: [true, false],
         };
-        let frames = [(stage.scene.streams(), settings)];
-        let native = Native::new(stage.host, &stage.device, kind, [SIDE; 2], &frames)?;
-        let mesh = Mesh::new(stage.host, &stage.corners(wall), native.place())?;
+        let frames = [(uploaded.scene.streams(), settings)];
+        let native = Native::new(uploaded.host, &uploaded.device, kind, [SIDE; 2], &frames)?;
+        let mesh = Mesh::new(uploaded.host, &uploaded.corners(wall), native.place())?;
         Ok(Self { native, mesh })
     }
 
-    fn frame(&mut self, stage: &Stage<'_>, settings: &Settings) -> Result<()> {
-        stage.host.run(|cmd| {
-            let meshes = (Some((&self.mesh, Vec3::Y)), &stage.view);
+    fn frame(&mut self, uploaded: &UploadedScene<'_>, settings: &Settings) -> Result<()> {
+        uploaded.host.run(|cmd| {
+            let meshes = (Some((&self.mesh, Vec3::Y)), &uploaded.view);
             // SAFETY: prepared outside the pass, drawn inside it, and waited for.
             unsafe {
-                self.native.renderer.prepare(cmd, &stage.scene, &stage.view, settings)?;
-                self.native.record(stage.host, cmd, meshes, |surfels| surfels.draw(cmd), false)
+                self.native.renderer.prepare(cmd, &uploaded.scene, &uploaded.view, settings)?;
+                self.native.record(uploaded.host, cmd, meshes, |surfels| surfels.draw(cmd), false)
             }
         })
     }
 }
 
 impl Kinds {
-    fn frame(&mut self, stage: &Stage<'_>, number: usize, settings: &Settings) -> Result<()> {
+    fn frame(&mut self, uploaded: &UploadedScene<'_>, number: usize, settings: &Settings) -> Result<()> {
         match self {
-            Self::Composited(list) => list[number].frame(stage, settings),
-            Self::Native(list) => list[number].frame(stage, settings),
+            Self::Composited(list) => list[number].frame(uploaded, settings),
+            Self::Native(list) => list[number].frame(uploaded, settings),
         }
     }
 

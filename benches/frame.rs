@@ -1,4 +1,4 @@
-//! Whole frames as a program waits for them: everything after the upload, but for what the first frame makes.
+//! Whole frames as an application waits for them: after the upload, and without the allocations of the first frame.
 
 use criterion::{BenchmarkId, Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use std::path::Path;
@@ -17,7 +17,7 @@ const SIDE: u32 = 1024;
 criterion_group!(benches, perspective_ewa);
 criterion_main!(benches);
 
-/// Each scene by each rasterizer that the device has.
+/// Each scene with each rasterizer of the device.
 fn perspective_ewa(criterion: &mut Criterion) {
     let device = match Device::open(&DeviceOptions::default()) {
         Ok(device) => device,
@@ -43,7 +43,7 @@ fn perspective_ewa(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// The comparison scene in two sizes, and a small scan where it is at hand.
+/// The comparison scene with two numbers of points, and a small scan if it is present.
 fn inputs() -> Vec<(&'static str, Surfels)> {
     let sphere = |points: u32| {
         scenes::open(&format!("scene:bumpy-sphere?points={points}")).expect("the scene is a built-in one")
@@ -66,13 +66,13 @@ fn inputs() -> Vec<(&'static str, Surfels)> {
     inputs
 }
 
-/// A camera that shows all of it.
+/// A camera that shows the whole scene.
 fn framing(surfels: &Surfels) -> Camera {
     let bounds = surfels.bounds().expect("the scene has points");
     Camera::framing(&bounds, 45f64.to_radians(), 1.0).expect("the scene can be framed")
 }
 
-/// `None`, said aloud, where the device cannot do it.
+/// `None`, with a message, if the device does not support it.
 fn renderer(device: &Arc<Device>, rasterizer: Rasterizer) -> Option<Renderer> {
     let options = RenderOptions { size: [SIDE, SIDE], rasterizer: Some(rasterizer), ..Default::default() };
     Renderer::new(device, options).map_err(|error| eprintln!("SKIPPED: {error}")).ok()

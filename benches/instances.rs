@@ -1,4 +1,4 @@
-//! What a host's frame of several scenes costs against one of the same surfels in one: recording it, and the frame itself.
+//! Time of a host's frame of several scenes against one scene with the same surfels: recording, and the whole frame.
 #![allow(unsafe_code, reason = "a host speaks Vulkan itself")]
 
 #[path = "../tools/hosts/host/mod.rs"]
@@ -21,9 +21,9 @@ use surfel::{Instance, Precision, Rasterizer, Scene, Settings};
 /// Width and height of the picture, px.
 const SIZE: [u32; 2] = [1024; 2];
 const POINTS: usize = 200_000;
-/// Into how many scenes the surfels are parted.
+/// Number of scenes that the surfels are divided into.
 const PARTS: usize = 8;
-/// Frames that are recorded, frames that are rendered, and those before them that do not count.
+/// Recorded frames, rendered frames, and warm-up frames before them.
 const RECORDED: usize = 1_000;
 const RENDERED: usize = 15;
 const WARM_UP: usize = 3;
@@ -69,7 +69,7 @@ struct Stand<'a> {
     frame: &'a Frame,
 }
 
-/// Where the parts stand that were taken from elsewhere: what they come back by.
+/// Transform of instances whose surfels were transformed by its inverse.
 fn place() -> DMat4 {
     DMat4::from_scale_rotation_translation(
         DVec3::splat(2.0),
@@ -96,7 +96,7 @@ fn subset(surfels: &Surfels, range: std::ops::Range<usize>) -> Surfels {
     }
 }
 
-/// The surfels as `place` brings them back.
+/// The surfels transformed by the inverse of `place`.
 fn taken(mut surfels: Surfels) -> Surfels {
     let back = place().inverse();
     for position in &mut surfels.positions {
@@ -116,7 +116,7 @@ impl Stand<'_> {
         uploaded.map(|(scene, _)| Arc::new(scene))
     }
 
-    /// The same surfels as one scene, as one that is placed, as several, and as several that are placed.
+    /// The same surfels as one scene, as one instance, as several scenes, and as several instances.
     fn kinds(&self) -> Result<Vec<(String, Vec<Instance>)>> {
         let all = sphere(POINTS as u32);
         let part = |k: usize| subset(&all, k * POINTS / PARTS..(k + 1) * POINTS / PARTS);
@@ -146,11 +146,11 @@ impl Stand<'_> {
         };
         let mut renderers = Vec::new();
         for _ in kinds {
-            // SAFETY: the target is the frame's, which outlives the renderer.
+            // SAFETY: the target belongs to the frame, which outlives the renderer.
             renderers.push(unsafe { Renderer::new(&self.device, options.clone())? });
         }
         let mut times: Vec<[Vec<f64>; 2]> = kinds.iter().map(|_| Default::default()).collect();
-        // They take turns, so that what else the machine does meets all alike.
+        // Frames alternate, so that other load on the machine affects all alike.
         for number in 0..WARM_UP + RENDERED {
             for ((renderer, (_, list)), times) in renderers.iter_mut().zip(kinds).zip(&mut times) {
                 let (start, spent) = (Instant::now(), ProcessTime::now());
@@ -179,7 +179,7 @@ impl Stand<'_> {
         Ok(())
     }
 
-    /// Records a frame; what `prepare` and `draw` take.
+    /// Records a frame; returns the times of `prepare` and `draw`.
     fn record(
         &self,
         cmd: vk::CommandBuffer,

@@ -1,5 +1,5 @@
-//! What a frame of many instances of a scene costs, and of the same surfels as one scene: CPU time of frames, device time of passes, and
-//! how often Vulkan allocated for the first of them.
+//! Frames of many instances of a scene, and of the same surfels as one scene: CPU time of frames, device time of passes, and number of
+//! Vulkan allocations of the first frame.
 
 use cpu_time::ProcessTime;
 use glam::{DMat4, DQuat, DVec3, Vec3};
@@ -17,7 +17,7 @@ type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 const SIZE: [u32; 2] = [64; 2];
 const SURFELS: usize = 50;
 const INSTANCES: usize = 1024;
-/// Frames that are rendered, and those before them that do not count.
+/// Timed frames, and warm-up frames before them.
 const RENDERED: usize = 21;
 const WARM_UP: usize = 3;
 
@@ -43,7 +43,7 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-/// Prints what frames cost.
+/// Prints times of frames.
 fn measure<'a>(
     device: &Arc<Device>,
     name: &str,
@@ -99,7 +99,7 @@ fn merged(surfels: &Surfels) -> Surfels {
     all
 }
 
-/// On a grid, each turned otherwise.
+/// Instances on a grid, each with another rotation.
 fn place(i: usize) -> DMat4 {
     let [x, y] = [i % 32, i / 32].map(|k| 1.7 * (k as f64 - 15.5));
     DMat4::from_rotation_translation(DQuat::from_rotation_y(i as f64), DVec3::new(x, y, 0.0))

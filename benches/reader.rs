@@ -1,4 +1,4 @@
-//! The PLY reader alone, from the page cache: bytes of the file a second.
+//! The PLY reader alone, from the page cache: bytes per second.
 
 use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use std::io::{BufWriter, Write};
@@ -23,7 +23,7 @@ fn reader(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Five million coloured points with normals in 135 MB, fewer of them as text, and a mesh where it is at hand.
+/// Five million coloured points with normals in 135 MB, fewer points as text, and a mesh if it is present.
 fn inputs(folder: &Path) -> Vec<(&'static str, PathBuf)> {
     let mut inputs = vec![
         ("binary-5m", write(&folder.join("binary.ply"), 5_000_000, binary())),
@@ -48,7 +48,7 @@ fn write(path: &Path, count: u32, (format, record): (&str, Record)) -> PathBuf {
     let mut all = || {
         write!(out, "ply\nformat {format} 1.0\nelement vertex {count}\n{floats}{codes}end_header\n")?;
         (0..count).try_for_each(|i| {
-            // A spiral on the sphere: no number is short.
+            // A spiral on the sphere: all numbers have many digits.
             let z = 2.0 * (i as f32 + 0.5) / count as f32 - 1.0;
             let (sin, cos) = (i as f32 * 2.399_963).sin_cos();
             let (x, y) = ((1.0 - z * z).sqrt() * cos, (1.0 - z * z).sqrt() * sin);

@@ -1,4 +1,4 @@
-//! What recording a frame of a host costs the CPU: `prepare` and `draw` of a scene that is resident, of which nothing changes but the camera.
+//! CPU time of recording a host's frame: `prepare` and `draw` of an uploaded scene, of which only the camera changes.
 #![allow(unsafe_code, reason = "a host speaks Vulkan itself")]
 
 #[path = "../tools/hosts/host/mod.rs"]
@@ -17,7 +17,7 @@ use surfel::{Precision, Rasterizer, Scene, Settings};
 
 /// Width and height of the picture, px.
 const SIZE: [u32; 2] = [1024; 2];
-/// How many frames are recorded, and how many before them that do not count.
+/// Recorded frames, and warm-up frames before them.
 const FRAMES: usize = 2_000;
 const WARM_UP: usize = 200;
 
@@ -75,9 +75,9 @@ impl Stand<'_> {
             precision: Precision::Full,
             rasterizer: Some(rasterizer),
         };
-        // SAFETY: the target is the frame's, which outlives the renderer.
+        // SAFETY: the target belongs to the frame, which outlives the renderer.
         let mut renderer = unsafe { Renderer::new(&self.device, options)? };
-        // The first makes what the others find.
+        // The first frame allocates what the others reuse.
         self.host.run(|cmd| self.record(cmd, &mut renderer, settings, 0))?;
         let recorded = |number| self.host.record(|cmd| self.record(cmd, &mut renderer, settings, number));
         let times: Result<Vec<_>> = (1..=WARM_UP + FRAMES).map(recorded).collect();

@@ -1,4 +1,4 @@
-//! From bare points to surfels, and from the command line to the picture.
+//! Estimation of surfels from points, and `surfel render` as a process.
 
 use criterion::{BatchSize, Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use std::path::Path;
@@ -11,7 +11,7 @@ use surfel::verify::scenes::bumpy_sphere;
 criterion_group!(benches, estimate, command);
 criterion_main!(benches);
 
-/// Oriented normals and radii of points that have nothing but positions, in no order.
+/// Oriented normals and radii of unordered points without attributes.
 fn estimate(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("estimate");
     group.sample_size(10).sampling_mode(SamplingMode::Flat);
@@ -30,7 +30,7 @@ fn estimate(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// `surfel render` of a mesh's vertices, the process and its device included; says how much memory it took at most.
+/// `surfel render` of a mesh's vertices, including start of the process and its device; prints its peak memory.
 fn command(criterion: &mut Criterion) {
     let dragon = Path::new(env!("CARGO_MANIFEST_DIR")).join("../shared/data/stanford/dragon/dragon_vrip.ply");
     if !dragon.exists() {
@@ -57,7 +57,7 @@ fn command(criterion: &mut Criterion) {
     println!("command/render-dragon       memory: at most {} MiB", peak(render()) >> 20);
 }
 
-/// The most memory that a process had in use, bytes, as the kernel last told before its end.
+/// Peak memory of a process, bytes, as the kernel last reported before it ended.
 fn peak(mut child: Child) -> u64 {
     let status = format!("/proc/{}/status", child.id());
     let mut most = 0;

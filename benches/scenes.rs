@@ -1,4 +1,4 @@
-//! The ground truth: samplers, points a second, and the tracer, rays a second.
+//! Ground truth: samplers in points per second, and the tracer in rays per second.
 
 use criterion::{Criterion, SamplingMode, Throughput, criterion_group, criterion_main};
 use std::time::Duration;
@@ -25,7 +25,7 @@ fn samplers(criterion: &mut Criterion) {
     group.finish();
 }
 
-/// Exact pictures of 16 rays a pixel: of a shape that has its own equation, of patches, of many shapes.
+/// Exact pictures with 16 rays per pixel: of a shape with a closed form, of patches, of many shapes.
 fn tracer(criterion: &mut Criterion) {
     const SIDE: u32 = 128;
     const RAYS: u32 = 16;

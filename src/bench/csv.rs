@@ -208,7 +208,8 @@ pub(super) fn metrics<'a>(runs: impl Iterator<Item = &'a Run>) -> Vec<String> {
 /// Writes rows with equal columns, with a header.
 fn text(rows: impl Iterator<Item = Vec<Cell>>) -> Result<String> {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    let failed = |cause: String| Error::Usage(format!("cannot put the results together as CSV: {cause}"));
+    let failed =
+        |cause: String| Error::Usage(format!("cannot write the results as CSV: {cause}; use --json"));
     for (index, row) in rows.enumerate() {
         if index == 0 {
             writer

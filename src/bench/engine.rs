@@ -71,7 +71,7 @@ fn preset(settings: &Settings) -> (Method, Vec<String>) {
 }
 
 /// An engine with a loaded scene, ready for frames of one size.
-pub trait Ready {
+pub trait LoadedEngine {
     /// Renders a frame and waits for it; `timed` records pass times, which may slow it down.
     ///
     /// # Errors
@@ -89,13 +89,13 @@ pub trait Ready {
 }
 
 /// A model on a Vulkan device, with one renderer for colour alone and one that adds normals and depths.
-pub struct OnDevice {
+pub struct DeviceEngine {
     scene: Scene,
-    lean: Renderer,
-    whole: Renderer,
+    colour_only: Renderer,
+    with_depth: Renderer,
 }
 
-impl OnDevice {
+impl DeviceEngine {
     /// Uploads `parts`.
     ///
     /// # Errors
@@ -107,44 +107,44 @@ impl OnDevice {
         rasterizer: Option<Rasterizer>,
         precision: Precision,
     ) -> Result<Self> {
-        let lean = RenderOptions { size, rasterizer, precision, profile: true, ..Default::default() };
+        let colour_only = RenderOptions { size, rasterizer, precision, profile: true, ..Default::default() };
         let outputs = Outputs { normal: true, depth: true, id: false };
-        let whole = RenderOptions { outputs, profile: false, ..lean };
+        let with_depth = RenderOptions { outputs, profile: false, ..colour_only };
         Ok(Self {
             scene: Scene::upload(device, parts)?,
-            lean: Renderer::new(device, lean)?,
-            whole: Renderer::new(device, whole)?,
+            colour_only: Renderer::new(device, colour_only)?,
+            with_depth: Renderer::new(device, with_depth)?,
         })
     }
 }
 
-impl Ready for OnDevice {
+impl LoadedEngine for DeviceEngine {
     fn frame(&mut self, camera: &Camera, settings: &Settings, timed: bool) -> Result<Vec<PassTime>> {
-        self.lean.profile(timed);
-        Ok(self.lean.render(&self.scene, camera, settings)?.pass_times)
+        self.colour_only.profile(timed);
+        Ok(self.colour_only.render(&self.scene, camera, settings)?.pass_times)
     }
 
     fn picture(&mut self, camera: &Camera, settings: &Settings) -> Result<Picture> {
-        Ok(self.whole.render_picture(&self.scene, camera, settings)?.0)
+        Ok(self.with_depth.render_picture(&self.scene, camera, settings)?.0)
     }
 
     fn memory(&self) -> Memory {
         Memory {
             scene: self.scene.bytes(),
-            splats: self.lean.splat_bytes(),
-            targets: self.lean.targets().iter().map(|target| target.bytes).sum(),
+            splats: self.colour_only.splat_bytes(),
+            targets: self.colour_only.targets().iter().map(|target| target.bytes).sum(),
         }
     }
 }
 
 /// Surfels on the CPU, rendered by the baseline.
-pub struct OnHost {
+pub struct CpuEngine {
     baseline: Baseline,
     kind: Kind,
     size: [u32; 2],
 }
 
-impl OnHost {
+impl CpuEngine {
     /// Copies `surfels`.
     ///
     /// # Errors
@@ -154,7 +154,7 @@ impl OnHost {
     }
 }
 
-impl Ready for OnHost {
+impl LoadedEngine for CpuEngine {
     fn frame(&mut self, camera: &Camera, settings: &Settings, _: bool) -> Result<Vec<PassTime>> {
         let outputs = Outputs::default();
         Ok(self.baseline.frame(self.kind, camera, self.size, settings, outputs)?.to_vec())

@@ -20,26 +20,26 @@
 //! | [`table`], [`csv`], [`report`] | results as text, CSV and HTML |
 //! | [`recommendations`], [`convergence`] | evaluation of the results |
 
-pub mod advice;
 pub mod code;
+pub mod convergence;
 pub mod csv;
 pub mod engine;
-pub mod falling;
+pub mod error_terms;
+mod format;
 pub mod hard;
 pub mod hidden;
 pub mod images;
 pub mod papers;
 pub mod plan;
+pub mod recommendations;
 pub mod record;
 pub mod report;
 pub mod runner;
 pub mod session;
-mod show;
 pub mod stopwatch;
 pub mod subject;
 pub mod suites;
 mod table;
-pub mod terms;
 
 pub use record::Results;
 pub use session::{SessionOptions, measure};

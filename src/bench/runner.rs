@@ -1,11 +1,11 @@
 //! Executes plans, and caches what several runs share: surfels, exact pictures, the device.
 
-use super::engine::{Engine, OnDevice, OnHost, Ready};
+use super::engine::{CpuEngine, DeviceEngine, Engine, LoadedEngine};
 use super::papers::details;
 use super::plan::Plan;
 use super::record::{self, Float64Error, Images, Run, RunSettings, Time};
 use super::subject::{Subject, pixel_angle};
-use super::{hidden, images, stopwatch, terms};
+use super::{error_terms, hidden, images, stopwatch};
 use crate::capture::{self, capture};
 use crate::error::{Error, Result};
 use crate::frame::times::Statistics;
@@ -130,7 +130,7 @@ impl Runner {
     }
 
     fn device(&self) -> Result<&Arc<Device>> {
-        let none = || Error::NoDevice("this run needs one: see `surfel devices`".into());
+        let none = || Error::NoDevice("this run needs one; list devices with `surfel devices`".into());
         self.options.device.as_ref().ok_or_else(none)
     }
 
@@ -138,12 +138,12 @@ impl Runner {
         let (plan, settings) = (job.plan, &job.plan.settings);
         run.points = job.model.surfels.len() as u64;
         run.overlap = job.subject.area().map(|area| overlap(&job.model.surfels, area));
-        let mut ready = self.ready(plan.engine, &job.model, plan.size)?;
+        let mut engine = self.load(plan.engine, &job.model, plan.size)?;
         if plan.measurements.time {
-            run.time = Some(stopwatch::time(&mut *ready, &job.camera, settings, &self.options.effort)?);
+            run.time = Some(stopwatch::time(&mut *engine, &job.camera, settings, &self.options.effort)?);
         }
         if let Some(base) = &plan.base {
-            run.ratio = self.ratio(job, &mut *ready, base)?;
+            run.ratio = self.ratio(job, &mut *engine, base)?;
         }
         let measurements = plan.measurements;
         if measurements.error
@@ -152,7 +152,7 @@ impl Runner {
             || measurements.terms
             || measurements.details
         {
-            let picture = ready.picture(&job.camera, settings)?;
+            let picture = engine.picture(&job.camera, settings)?;
             let expected = self.agree(job, &picture, run)?;
             if measurements.error {
                 run.error = Some(self.error(job, &picture)?);
@@ -168,12 +168,12 @@ impl Runner {
             }
         }
         if measurements.flicker {
-            let flicker = self.flicker(job, &mut *ready)?;
+            let flicker = self.flicker(job, &mut *engine)?;
             run.error.iter_mut().for_each(|error| {
                 error.metrics.insert("flicker".into(), flicker);
             });
         }
-        run.memory = ready.memory();
+        run.memory = engine.memory();
         Ok(())
     }
 
@@ -181,22 +181,22 @@ impl Runner {
     fn ratio(
         &mut self,
         job: &Job<'_>,
-        ready: &mut (dyn Ready + 'static),
+        engine: &mut (dyn LoadedEngine + 'static),
         base: &Plan,
     ) -> Result<Option<Statistics>> {
         let other = self.job(base)?;
-        let mut others = self.ready(base.engine, &other.model, base.size)?;
+        let mut others = self.load(base.engine, &other.model, base.size)?;
         let first = (&mut *others, &other.camera, &base.settings);
-        let second = (ready, &job.camera, &job.plan.settings);
+        let second = (engine, &job.camera, &job.plan.settings);
         stopwatch::ratio(first, second, &self.options.effort)
     }
 
-    fn ready(&self, engine: Engine, model: &Model, size: [u32; 2]) -> Result<Box<dyn Ready>> {
+    fn load(&self, engine: Engine, model: &Model, size: [u32; 2]) -> Result<Box<dyn LoadedEngine>> {
         match engine {
             Engine::Splatting { rasterizer, precision } => {
-                Ok(Box::new(OnDevice::new(self.device()?, model, size, rasterizer, precision)?))
+                Ok(Box::new(DeviceEngine::new(self.device()?, model, size, rasterizer, precision)?))
             }
-            Engine::Baseline(kind) => Ok(Box::new(OnHost::new(&model.surfels, size, kind)?)),
+            Engine::Baseline(kind) => Ok(Box::new(CpuEngine::new(&model.surfels, size, kind)?)),
         }
     }
 
@@ -230,7 +230,7 @@ impl Runner {
             filter: filter_name(&self.options.truth),
             truth_rms: truth.error.rms,
             metrics: finite.map(|(name, value)| (name.into(), value)).collect(),
-            terms: terms::split(&pair),
+            terms: error_terms::split(&pair),
         })
     }
 
@@ -241,16 +241,16 @@ impl Runner {
         expected: Option<&Picture>,
         run: &mut Run,
     ) -> Result<()> {
-        let seen = hidden::without(&job.model.surfels, job.subject.surface(), &job.camera);
+        let seen = hidden::visible_surfels(&job.model.surfels, job.subject.surface(), &job.camera);
         let clean = if seen.is_empty() {
             Picture { size: picture.size, colour: vec![[0.0; 4]; picture.colour.len()], ..Default::default() }
         } else {
-            let mut ready = self.ready(job.plan.engine, &seen.into(), job.plan.size)?;
-            ready.picture(&job.camera, &job.plan.settings)?
+            let mut engine = self.load(job.plan.engine, &seen.into(), job.plan.size)?;
+            engine.picture(&job.camera, &job.plan.settings)?
         };
         if let Some(error) = &mut run.error {
-            error.terms.hidden = Some(terms::distance(picture, &clean));
-            error.terms.precision = expected.map(|expected| terms::distance(picture, expected));
+            error.terms.hidden = Some(error_terms::distance(picture, &clean));
+            error.terms.precision = expected.map(|expected| error_terms::distance(picture, expected));
         }
         Ok(())
     }
@@ -262,13 +262,13 @@ impl Runner {
         Ok(())
     }
 
-    fn flicker(&mut self, job: &Job<'_>, ready: &mut dyn Ready) -> Result<f64> {
+    fn flicker(&mut self, job: &Job<'_>, engine: &mut dyn LoadedEngine) -> Result<f64> {
         let (subject, size) = (&job.subject, job.plan.size);
         let mut flicker = Flicker::new(colour::BLACK);
         for frame in 0..PATH {
             let angle = STEP * pixel_angle(&job.viewpoint, size[1]) * f64::from(frame);
             let camera = subject.camera(&job.viewpoint, angle, size)?;
-            let (picture, truth) = (ready.picture(&camera, &job.plan.settings)?, self.truth(job, &camera)?);
+            let (picture, truth) = (engine.picture(&camera, &job.plan.settings)?, self.truth(job, &camera)?);
             flicker.add(&Pair::new(&picture, &truth.picture)?)?;
         }
         flicker.value()

@@ -84,7 +84,7 @@ pub fn measure(wanted: &SessionOptions, progress: &dyn Progress) -> (Session, Re
 }
 
 fn hard(wanted: &SessionOptions, progress: &dyn Progress) -> Result<Vec<Sweep>> {
-    let none = || Error::NoDevice("the hard cases need one: see `surfel devices`".into());
+    let none = || Error::NoDevice("the hard cases need one; list devices with `surfel devices`".into());
     hard::run(wanted.device.as_ref().ok_or_else(none)?, &hard::Options::default(), progress)
 }
 

@@ -1,6 +1,6 @@
 //! Times of frames.
 
-use super::engine::Ready;
+use super::engine::LoadedEngine;
 use super::record::{Pass, Time};
 use crate::error::Result;
 use crate::frame::times::{Statistics, Times};
@@ -32,10 +32,15 @@ impl Default for Effort {
 }
 
 /// Renders warm-up frames for at least [`WARM`]; returns their number.
-fn warm_up(ready: &mut dyn Ready, camera: &Camera, settings: &Settings, effort: &Effort) -> Result<usize> {
+fn warm_up(
+    engine: &mut dyn LoadedEngine,
+    camera: &Camera,
+    settings: &Settings,
+    effort: &Effort,
+) -> Result<usize> {
     let (start, mut frames) = (Instant::now(), 0);
     while frames < effort.warmup || (frames < effort.most && start.elapsed() < WARM) {
-        ready.frame(camera, settings, false)?;
+        engine.frame(camera, settings, false)?;
         frames += 1;
     }
     Ok(frames)
@@ -43,19 +48,24 @@ fn warm_up(ready: &mut dyn Ready, camera: &Camera, settings: &Settings, effort: 
 
 /// Times frames. Whole frames and passes are timed in alternate frames: timestamps do not disturb the former, and other
 /// load on the machine affects both alike.
-pub fn time(ready: &mut dyn Ready, camera: &Camera, settings: &Settings, effort: &Effort) -> Result<Time> {
-    let warmup = warm_up(ready, camera, settings, effort)?;
+pub fn time(
+    engine: &mut dyn LoadedEngine,
+    camera: &Camera,
+    settings: &Settings,
+    effort: &Effort,
+) -> Result<Time> {
+    let warmup = warm_up(engine, camera, settings, effort)?;
     let (mut whole, mut cpu, mut sums) = (Vec::new(), Vec::new(), Vec::new());
     let mut passes = Times::default();
     // The first frame with timestamps does not count.
-    passes.add(Duration::ZERO, &ready.frame(camera, settings, true)?);
+    passes.add(Duration::ZERO, &engine.frame(camera, settings, true)?);
     let start = Instant::now();
     while whole.len() < effort.least || (whole.len() < effort.most && start.elapsed() < effort.budget) {
         let (begin, spent) = (Instant::now(), ProcessTime::now());
-        ready.frame(camera, settings, false)?;
+        engine.frame(camera, settings, false)?;
         whole.push(begin.elapsed().as_secs_f64() * 1e3);
         cpu.push(spent.elapsed().as_secs_f64() * 1e3);
-        let times = ready.frame(camera, settings, true)?;
+        let times = engine.frame(camera, settings, true)?;
         if !times.is_empty() {
             sums.push(times.iter().map(|pass| pass.milliseconds).sum());
         }
@@ -77,7 +87,7 @@ pub fn time(ready: &mut dyn Ready, camera: &Camera, settings: &Settings, effort:
 const FEWEST_PAIRS: usize = 9;
 
 /// A loaded engine, its camera and its settings.
-pub type Side<'a> = (&'a mut (dyn Ready + 'static), &'a Camera, &'a Settings);
+pub type Side<'a> = (&'a mut (dyn LoadedEngine + 'static), &'a Camera, &'a Settings);
 
 /// Time of a frame of the second side relative to one of the first. Frames alternate, so other load on the machine
 /// affects both alike; each quotient is of two consecutive frames.

@@ -57,7 +57,7 @@ impl Subject {
     pub fn scene(name: &str) -> Result<Self> {
         if name.split(['?', '&']).any(|part| part.starts_with("points=")) {
             return Err(Error::Usage(format!(
-                "{name}: leave out its number of points, which is measured over"
+                "{name}: the bench sets the number of points; leave out `points`"
             )));
         }
         let (viewpoint, shape) = (scenes::camera(name)?, Shape::Built(Built(scenes::surface(name)?)));

@@ -1,8 +1,8 @@
 //! Results as text for a terminal: one line per run and per sweep.
 
-use super::hard::EXCUSED;
+use super::hard::BEYOND_FLOAT32;
 use super::record::{Experiment, Faults, Float64Error, Results, Run, Session, Sweep, SweepPoint};
-use super::{papers, show};
+use super::{format, papers};
 use crate::settings::Choice;
 use std::fmt::Write;
 
@@ -18,7 +18,7 @@ const HEADERS: [(&str, Align); 17] = [
     ("overlap", Align::Right),
     ("wall ms (min–max)", Align::Left),
     ("CPU ms", Align::Right),
-    ("× yard", Align::Right),
+    ("× base", Align::Right),
     ("RMSE", Align::Left),
     ("FLIP", Align::Left),
     ("PSNR dB", Align::Right),
@@ -26,7 +26,7 @@ const HEADERS: [(&str, Align); 17] = [
     ("holes px", Align::Right),
     ("bloat px", Align::Right),
     ("n p95 °", Align::Right),
-    ("vs f64", Align::Left),
+    ("float64 error", Align::Left),
     ("MiB", Align::Right),
 ];
 /// Columns that may be cut: method and settings.
@@ -44,8 +44,8 @@ pub fn table(results: &Results, code: &str, commit: &str) -> String {
     let mut text = String::new();
     for session in &results.sessions {
         // Here and below: writing to a String cannot fail.
-        let _ = writeln!(text, "{} · surfel {}", show::machine(session), session.provenance.version);
-        if let Some(stale) = show::stale(&session.provenance, code, commit) {
+        let _ = writeln!(text, "{} · surfel {}", format::machine(session), session.provenance.version);
+        if let Some(stale) = format::stale(&session.provenance, code, commit) {
             let _ = writeln!(text, "STALE: {stale}");
         }
         for group in groups(&session.runs) {
@@ -87,8 +87,8 @@ type Common = (usize, fn(&Run) -> String);
 /// Columns with the same text for all runs, which is printed once.
 fn common(runs: &[&Run]) -> Vec<(usize, String)> {
     let told: [Common; 3] = [
-        (0, |run| format!("{} points", show::count(run.points))),
-        (1, |run| format!("{} px", show::size(run.size))),
+        (0, |run| format!("{} points", format::count(run.points))),
+        (1, |run| format!("{} px", format::size(run.size))),
         (2, |run| run.implementation.label()),
     ];
     let same = |(_, of): &Common| runs.len() > 1 && runs.iter().all(|run| of(run) == of(runs[0]));
@@ -97,7 +97,7 @@ fn common(runs: &[&Run]) -> Vec<(usize, String)> {
 
 /// Aligned lines, without columns that are empty or in `common`.
 fn lines(runs: &[&Run], common: &[(usize, String)]) -> String {
-    let differing = show::differing(runs.iter().copied());
+    let differing = format::differing_settings(runs.iter().copied());
     let mut rows: Vec<Vec<String>> = vec![HEADERS.map(|(name, _)| name.to_owned()).to_vec()];
     rows.extend(runs.iter().map(|run| cells(run, differing)));
     let untold = |column: &usize| common.iter().all(|(other, _)| other != column);
@@ -135,27 +135,27 @@ fn widths(rows: &[Vec<String>], told: &[usize]) -> Vec<usize> {
 }
 
 fn cells(run: &Run, differing: [bool; 7]) -> Vec<String> {
-    let metric = |name, digits| run.metric(name).map(|v| show::significant(v, digits)).unwrap_or_default();
+    let metric = |name, digits| run.metric(name).map(|v| format::significant(v, digits)).unwrap_or_default();
     let wall = |run: &Run| {
         let wall = run.time.as_ref()?.wall;
-        Some(format!("{} ({}–{})", show::ms(wall.median), show::ms(wall.min), show::ms(wall.max)))
+        Some(format!("{} ({}–{})", format::ms(wall.median), format::ms(wall.min), format::ms(wall.max)))
     };
-    let multiple = run.time.as_ref().and_then(|time| time.baseline_ratio).map(show::baseline_ratio);
-    let memory = show::total(run.memory);
+    let multiple = run.time.as_ref().and_then(|time| time.baseline_ratio).map(format::baseline_ratio);
+    let memory = format::total(run.memory);
     let start = [
-        show::count(run.points),
-        show::size(run.size),
+        format::count(run.points),
+        format::size(run.size),
         run.implementation.label(),
-        show::told_of(run, differing),
+        format::run_settings(run, differing),
         // In other experiments it is the scene's own.
         run.overlap
             .filter(|_| run.experiment == Experiment::ScalingOverlap)
-            .map(|v| show::significant(v, 2))
+            .map(|v| format::significant(v, 2))
             .unwrap_or_default(),
     ];
     let rest = [
         wall(run).unwrap_or_default(),
-        run.time.as_ref().map(|time| show::ms(time.cpu.median)).unwrap_or_default(),
+        run.time.as_ref().map(|time| format::ms(time.cpu.median)).unwrap_or_default(),
         multiple.unwrap_or_default(),
         metric("rmse", 3),
         metric("flip", 3),
@@ -165,7 +165,7 @@ fn cells(run: &Run, differing: [bool; 7]) -> Vec<String> {
         metric("bloat", 6),
         metric("normal-p95", 3),
         run.float64_error.as_ref().map(float64_error).unwrap_or_default(),
-        if memory == 0 { String::new() } else { show::mib(memory) },
+        if memory == 0 { String::new() } else { format::mib(memory) },
     ];
     start.into_iter().chain(rest).collect()
 }
@@ -175,14 +175,14 @@ fn float64_error(float64_error: &Float64Error) -> String {
     let colour = format!("{:.0e}", float64_error.colour);
     match float64_error.failed_pixels {
         0 => colour,
-        failed => format!("{colour} ({failed} px wrong)"),
+        failed => format!("{colour} ({failed} px failed)"),
     }
 }
 
 fn sweeps(session: &Session) -> String {
     let mut text = String::new();
     if !session.sweeps.is_empty() {
-        text += "\nhard cases: float32 against float64, worst of all points but those beyond float32\n";
+        text += "\nhard cases: float32 against float64, worst of all points where float32 suffices\n";
     }
     let longest = session.sweeps.iter().map(|sweep| sweep.name.chars().count()).max().unwrap_or(0);
     for sweep in &session.sweeps {
@@ -197,11 +197,12 @@ fn sweeps(session: &Session) -> String {
 fn sweep_line(sweep: &Sweep, longest: usize) -> String {
     let made = || sweep.points.iter().filter(|point| point.refused.is_none());
     let worst = |of: fn(&Float64Error) -> f64| {
-        let held = made().filter(|point| !point.note.starts_with(EXCUSED));
-        show::largest(held.map(|point| of(&point.float64_error)))
+        let held = made().filter(|point| !point.note.starts_with(BEYOND_FLOAT32));
+        format::largest(held.map(|point| of(&point.float64_error)))
     };
     let [colour, normal, depth] = [worst(|a| a.colour), worst(|a| a.normal), worst(|a| a.depth)];
-    let (excused, held): (Vec<_>, Vec<_>) = made().partition(|point| point.note.starts_with(EXCUSED));
+    let (beyond_float32, held): (Vec<_>, Vec<_>) =
+        made().partition(|point| point.note.starts_with(BEYOND_FLOAT32));
     let failed: u64 = held.iter().map(|point| point.float64_error.failed_pixels).sum();
     let faults = made().map(|point| point.faults);
     let [non_finite, uncovered, overcovered] = faults.fold([0; 3], |sum, faults| {
@@ -210,26 +211,26 @@ fn sweep_line(sweep: &Sweep, longest: usize) -> String {
     let name = aligned(&sweep.name, longest, Align::Left);
     let refused = sweep.points.len() - made().count();
     format!(
-        "{name}  {:>3} points  colour {colour:.0e}  normal {normal:.0e}  depth {depth:.0e}  {failed} px wrong, \
+        "{name}  {:>3} points  colour {colour:.0e}  normal {normal:.0e}  depth {depth:.0e}  {failed} px failed, \
          {non_finite} not finite, {uncovered} uncovered, {overcovered} overcovered, {refused} points refused, \
          {} beyond float32",
         sweep.points.len(),
-        excused.len()
+        beyond_float32.len()
     )
 }
 
 /// A line for each implementation with pixels out of tolerance where float32 suffices, or with faults.
 fn wrong_lines(sweep: &Sweep) -> impl Iterator<Item = String> {
     let is_wrong = |point: &&SweepPoint| {
-        let wrong = point.float64_error.failed_pixels > 0 && !point.note.starts_with(EXCUSED);
+        let wrong = point.float64_error.failed_pixels > 0 && !point.note.starts_with(BEYOND_FLOAT32);
         point.refused.is_none() && (wrong || !point.faults.is_none())
     };
     let line = |point: &SweepPoint| {
         let Faults { non_finite, uncovered, overcovered } = point.faults;
         format!(
-            "{} at {}: {} px wrong, {non_finite} not finite, {uncovered} uncovered, {overcovered} overcovered",
+            "{} at {}: {} px failed, {non_finite} not finite, {uncovered} uncovered, {overcovered} overcovered",
             point.implementation.label(),
-            show::significant(point.value, 4),
+            format::significant(point.value, 4),
             point.float64_error.failed_pixels
         )
     };

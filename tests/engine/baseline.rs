@@ -1,5 +1,4 @@
-//! The CPU baseline's splats are the float64 reference's, pixel by pixel, and its points those that a search finds; what is off by a
-//! little is not.
+//! The CPU baseline against the float64 reference, pixel by pixel, and its points against a search. Small mutations fail.
 
 use crate::support::sampling::{Random, bumpy_sphere, paint_linear, push};
 use crate::support::scenes::{self, Case};
@@ -10,10 +9,10 @@ use surfel::verify::baseline::{Baseline, Kind};
 use surfel::verify::reference::{Comparison, Expected, Tolerance};
 use surfel::{Error, Outputs, Picture, Settings};
 
-/// Share of the object's pixels that the reference may hold to be undecided.
-const MOST_DOUBT: f64 = 0.02;
+/// Greatest share of ambiguous pixels, of the object's pixels.
+const MOST_AMBIGUOUS: f64 = 0.02;
 
-/// Those without clip lines.
+/// The cases without clip lines.
 fn cases() -> Vec<Case> {
     scenes::cases().into_iter().filter(|case| case.surfels.clips.is_none()).collect()
 }
@@ -26,15 +25,18 @@ fn draw(kind: Kind, surfels: &Surfels, camera: &Camera, size: [u32; 2], settings
     baseline.picture()
 }
 
-/// What single precision can hold of a case, through one of its cameras.
+/// The reference of a case for single precision, through one of its cameras.
 fn expected(case: &Case, camera: &Camera) -> Expected {
     Expected::new(&case.surfels, camera, case.size, &case.settings, &Tolerance::float32()).unwrap()
 }
 
-fn print(name: &str, verdict: &Comparison) {
-    let (failed, all) = (verdict.failed, verdict.object_pixels);
-    let doubt = 100.0 * verdict.ambiguous as f64 / all as f64;
-    println!("{name}: {failed} of {all} object pixels failed, {doubt:.2} % in doubt, {:?}", verdict.worst);
+fn print(name: &str, comparison: &Comparison) {
+    let (failed, all) = (comparison.failed, comparison.object_pixels);
+    let ambiguous = 100.0 * comparison.ambiguous as f64 / all as f64;
+    println!(
+        "{name}: {failed} of {all} object pixels failed, {ambiguous:.2} % ambiguous, {:?}",
+        comparison.worst
+    );
 }
 
 #[test]
@@ -67,22 +69,25 @@ fn invalid_surfels_are_left_out() {
         *position = Vec3::splat([f32::NAN, f32::INFINITY][i % 2]);
     }
     let expected = Expected::new(&spoilt, camera, case.size, &case.settings, &Tolerance::float32()).unwrap();
-    let verdict = expected.compare(&draw(Kind::Splats, &spoilt, camera, case.size, &case.settings)).unwrap();
-    assert!(verdict.passed() && verdict.object_pixels > 100, "{:?}", verdict.failures.first());
+    let comparison =
+        expected.compare(&draw(Kind::Splats, &spoilt, camera, case.size, &case.settings)).unwrap();
+    assert!(comparison.passed() && comparison.object_pixels > 100, "{:?}", comparison.failures.first());
     let none = Surfels { radii: vec![f32::NAN; spoilt.len()], ..spoilt };
     assert!(matches!(Baseline::new(&none), Err(Error::Usage(_))));
 }
 
-/// Every camera's picture is the reference's.
+/// Compares the picture of every camera with the reference.
 fn all_agree(cases: &[Case]) {
     let mut failed = Vec::new();
     for case in cases {
         for (i, camera) in case.cameras.iter().enumerate() {
             let picture = draw(Kind::Splats, &case.surfels, camera, case.size, &case.settings);
-            let verdict = expected(case, camera).compare(&picture).unwrap();
-            print(&format!("{} {i}", case.name), &verdict);
-            if !verdict.passed() || verdict.ambiguous as f64 > MOST_DOUBT * verdict.object_pixels as f64 {
-                failed.push(format!("{} {i}: {:?}", case.name, verdict.failures.first()));
+            let comparison = expected(case, camera).compare(&picture).unwrap();
+            print(&format!("{} {i}", case.name), &comparison);
+            if !comparison.passed()
+                || comparison.ambiguous as f64 > MOST_AMBIGUOUS * comparison.object_pixels as f64
+            {
+                failed.push(format!("{} {i}: {:?}", case.name, comparison.failures.first()));
             }
         }
     }
@@ -91,7 +96,7 @@ fn all_agree(cases: &[Case]) {
 
 #[test]
 fn a_wide_picture_keeps_its_digits() {
-    // Single precision knows a position on it to 1/500 px, and the reference excuses no more than 1/3000 px at a cut-off.
+    // Single precision resolves a position in it to 1/500 px; the reference tolerates 1/3000 px at a cut-off.
     let (size, pixel) = ([30_001, 9], 1e-4);
     let (mut random, mut surfels) = (Random(3), Surfels::default());
     for _ in 0..30_000 {
@@ -103,9 +108,9 @@ fn a_wide_picture_keeps_its_digits() {
     let camera = Camera::look_at(3.0 * DVec3::Z, DVec3::ZERO, DVec3::Y, fov, 30_001.0 / 9.0, 0.1).unwrap();
     let settings = Settings::default();
     let expected = Expected::new(&surfels, &camera, size, &settings, &Tolerance::float32()).unwrap();
-    let verdict = expected.compare(&draw(Kind::Splats, &surfels, &camera, size, &settings)).unwrap();
-    print("wide", &verdict);
-    assert!(verdict.passed() && verdict.object_pixels > 100_000, "{:?}", verdict.failures.first());
+    let comparison = expected.compare(&draw(Kind::Splats, &surfels, &camera, size, &settings)).unwrap();
+    print("wide", &comparison);
+    assert!(comparison.passed() && comparison.object_pixels > 100_000, "{:?}", comparison.failures.first());
 }
 
 #[test]
@@ -125,7 +130,7 @@ fn small_mutations_fail() {
     }
 }
 
-/// A camera whose picture is moved to the right by so many px.
+/// A camera whose picture is shifted to the right by `by` px.
 fn shifted(camera: &Camera, by: f64, size: [u32; 2]) -> Camera {
     let ndc = 2.0 * by / f64::from(size[0]);
     let mut moved = *camera;
@@ -135,15 +140,15 @@ fn shifted(camera: &Camera, by: f64, size: [u32; 2]) -> Camera {
     moved
 }
 
-/// A surfel at the pixel of its centre.
+/// A surfel in the pixel of its centre.
 struct Point {
     depth: f64,
     index: usize,
-    /// Whether it is surely there: neither at the pixel's edge nor at a clipping plane.
-    sure: bool,
+    /// Whether it is certainly visible there: neither at the pixel's edge nor at a clipping plane.
+    certain: bool,
 }
 
-/// By pixel, all surfels whose centres are there or, by rounding, may be.
+/// By pixel, all surfels whose centres lie in it or may do so by rounding.
 fn points(surfels: &Surfels, camera: &Camera, size: [u32; 2], settings: &Settings) -> Vec<Vec<Point>> {
     const EDGE: f64 = 5e-4;
     let range = camera.projection().unwrap();
@@ -152,45 +157,45 @@ fn points(surfels: &Surfels, camera: &Camera, size: [u32; 2], settings: &Setting
         let eye = camera.view.transform_point3(surfels.origin + position.as_dvec3());
         let clip = camera.projection * eye.extend(1.0);
         let depth = range.forward * eye.z;
-        let slack = 1e-6 * depth.abs();
-        let within = |slack: f64| depth >= range.near + slack && depth <= range.far - slack;
+        let tolerance = 1e-6 * depth.abs();
+        let within = |tolerance: f64| depth >= range.near + tolerance && depth <= range.far - tolerance;
         let normal = camera.view.transform_vector3(surfels.normals[index].as_dvec3());
         let ray = if range.perspective { eye } else { DVec3::Z * range.forward };
         let two_sided = surfels.two_sided.as_ref().is_some_and(|two_sided| two_sided[index]);
-        if !within(-slack) || settings.cull == Cull::Back && normal.dot(ray) >= 0.0 && !two_sided {
+        if !within(-tolerance) || settings.cull == Cull::Back && normal.dot(ray) >= 0.0 && !two_sided {
             continue;
         }
         let [x, y] = [(clip.x, 0), (clip.y, 1)].map(|(v, i)| 0.5 * (v / clip.w + 1.0) * f64::from(size[i]));
         let around = [[x - EDGE, y - EDGE], [x + EDGE, y - EDGE], [x - EDGE, y + EDGE], [x + EDGE, y + EDGE]];
         let mut there: Vec<[i64; 2]> = around.map(|at| at.map(|v| v.floor() as i64)).to_vec();
         there.dedup();
-        let sure = there.len() == 1 && within(slack);
+        let certain = there.len() == 1 && within(tolerance);
         for [x, y] in there {
             if (0..i64::from(size[0])).contains(&x) && (0..i64::from(size[1])).contains(&y) {
-                pixels[(y * i64::from(size[0]) + x) as usize].push(Point { depth, index, sure });
+                pixels[(y * i64::from(size[0]) + x) as usize].push(Point { depth, index, certain });
             }
         }
     }
     pixels
 }
 
-/// Whether pixel `i` shows one of `there` that none which is surely there hides.
+/// Whether pixel `i` shows one of `there` that no certain one of them hides.
 fn shows(picture: &Picture, i: usize, there: &[Point], surfels: &Surfels) -> bool {
     let (depth, normal) = (picture.depth.as_ref().unwrap()[i], picture.normal.as_ref().unwrap()[i]);
-    let nearest = there.iter().filter(|p| p.sure).map(|p| p.depth).fold(f64::INFINITY, f64::min);
+    let nearest = there.iter().filter(|p| p.certain).map(|p| p.depth).fold(f64::INFINITY, f64::min);
     if picture.colour[i][3] == 0.0 {
         return nearest == f64::INFINITY;
     }
     there.iter().any(|p| {
-        let slack = 1e-6 * p.depth.abs();
+        let tolerance = 1e-6 * p.depth.abs();
         let own = surfels.normals[p.index];
         let colour = match surfels.colours.as_ref().unwrap() {
             Colours::Linear(colours) => Vec3::from(colours[p.index]),
             Colours::Srgb8(_) => unreachable!("the test's scenes have linear colours"),
         };
         let shown = Vec3::from_slice(&picture.colour[i]);
-        (f64::from(depth) - p.depth).abs() <= slack
-            && p.depth <= nearest + 2.0 * slack
+        (f64::from(depth) - p.depth).abs() <= tolerance
+            && p.depth <= nearest + 2.0 * tolerance
             && own.dot(Vec3::from(normal)).abs() > 1.0 - 1e-6
             && shown.abs_diff_eq(colour, 1e-6)
     })
@@ -216,13 +221,13 @@ fn points_are_those_that_a_search_finds() {
     }
 }
 
-/// Parallel rays along −z onto 8 × 8 px of one unit each, with the origin in the middle.
+/// An orthographic camera along −z with 8 × 8 px of one unit each, and the origin in the middle.
 fn grid_camera() -> Camera {
     let view = [DVec3::Z * 4.0, DVec3::ZERO, DVec3::Y];
     Camera::orthographic(view, 8.0, 1.0, [1.0, 9.0]).unwrap()
 }
 
-/// Surfels that face the camera, each in a grey of its own: its index + 1.
+/// Surfels that face the camera; the grey of each is its index + 1.
 fn greys(positions: &[[f32; 3]]) -> Surfels {
     let count = positions.len();
     Surfels {
@@ -243,14 +248,14 @@ fn shown(surfels: &Surfels) -> Vec<([usize; 2], f32)> {
 }
 
 #[test]
-fn of_points_as_near_the_first_is_seen() {
+fn of_equally_near_points_the_first_is_visible() {
     let pile = greys(&[[0.5, 0.5, 0.0], [0.6, 0.4, 1.0], [0.4, 0.6, 1.0], [0.5, 0.5, 0.5]]);
     assert_eq!(shown(&pile), [([4, 3], 2.0)]);
 }
 
 #[test]
 fn a_centre_on_an_edge_is_in_the_pixel_to_the_right_and_below() {
-    // In px: (0, 0), (8, 0), (0, 8), (5, 3), and just inside the lower right corner.
+    // Positions in px: (0, 0), (8, 0), (0, 8), (5, 3), and just inside the lower right corner.
     let corner = 4.0 - 1e-6;
     let edges = greys(&[
         [-4.0, 4.0, 0.0],
@@ -260,7 +265,7 @@ fn a_centre_on_an_edge_is_in_the_pixel_to_the_right_and_below() {
         [corner, -corner, 0.0],
     ]);
     assert_eq!(shown(&edges), [([0, 0], 1.0), ([5, 3], 4.0), ([7, 7], 5.0)]);
-    // The near plane is at z = 3, the far one at −5; both are still seen.
+    // The near plane is at z = 3, the far one at −5; points on both are visible.
     let planes = greys(&[
         [0.5, 0.5, 3.0],
         [1.5, 0.5, 3.001],
@@ -272,7 +277,7 @@ fn a_centre_on_an_edge_is_in_the_pixel_to_the_right_and_below() {
 }
 
 #[test]
-fn frames_make_only_what_they_need() {
+fn frames_sum_only_what_they_need() {
     let surfels = bumpy_sphere(5_000, &mut Random(1));
     let camera = Camera::framing(&surfels.bounds().unwrap(), 0.8, 1.0).unwrap();
     let settings = Settings::default();
@@ -294,7 +299,7 @@ fn frames_make_only_what_they_need() {
 }
 
 #[test]
-fn what_cannot_be_drawn_is_refused() {
+fn unsupported_frames_are_refused() {
     let surfels = bumpy_sphere(100, &mut Random(1));
     assert!(matches!(Baseline::new(&Surfels::default()), Err(Error::Usage(_))));
     let uneven = Surfels { radii: Vec::new(), ..surfels.clone() };

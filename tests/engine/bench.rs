@@ -1,4 +1,4 @@
-//! The bench measures what is there, and says so where nothing can be measured.
+//! The bench measures runs, and reports why a run cannot be measured.
 
 use crate::support::gpu::{assert_silent, device};
 use base64::prelude::{BASE64_STANDARD, Engine as _};
@@ -40,7 +40,7 @@ fn plan(scene: &str, points: u64, side: u32) -> Plan {
     }
 }
 
-/// A runner on a validated device; `None`, said aloud, where there is none.
+/// A runner on a device with validation; `None`, with a message, without a device.
 fn runner(subjects: Vec<Rc<Subject>>) -> Option<Runner> {
     let device = device(DeviceLimits::default())?;
     Some(Runner::new(Options { device: Some(device), cache: None, truth: TRUTH, effort: EFFORT }, subjects))
@@ -51,7 +51,7 @@ fn rmse(run: &Run) -> f64 {
 }
 
 #[test]
-fn a_run_knows_its_time_its_error_and_what_that_is_made_of() {
+fn a_run_has_its_time_its_error_and_the_terms_of_that() {
     let Some(device) = device(DeviceLimits::default()) else { return };
     let options = Options { device: Some(device.clone()), cache: None, truth: TRUTH, effort: EFFORT };
     let mut runner = Runner::new(options, Vec::new());
@@ -65,7 +65,7 @@ fn a_run_knows_its_time_its_error_and_what_that_is_made_of() {
         images: true,
     };
     let plan = Plan { measurements, ..plan("scene:torus", 20_000, 96) };
-    // A frame of 64 times as many pixels takes longer whatever else the machine does, and the ratio is of that to this.
+    // A frame with 64 times the pixels takes longer under any load; the ratio is that of its time.
     let base = Plan { size: [768, 768], ..plan.clone() };
     let run = runner.run(&Plan { base: Some(Box::new(base)), ..plan }).unwrap();
     let ratio = run.ratio.unwrap();
@@ -90,7 +90,7 @@ fn a_run_knows_its_time_its_error_and_what_that_is_made_of() {
     let error = run.error.as_ref().unwrap();
     let terms = &error.terms;
     assert!((terms.silhouette.hypot(terms.inside) - rmse(&run)).abs() < 1e-12);
-    // Both kinds of pixels are there, and are wrong by more than the truth's own error.
+    // Pixels on the outline and inside both have errors above the truth's own error.
     assert!(terms.silhouette > 2.0 * error.truth_rms && terms.inside > 2.0 * error.truth_rms, "{terms:?}");
     assert!((1e-9..1e-5).contains(&terms.precision.unwrap()), "{terms:?}");
     assert!((1e-4..terms.silhouette).contains(&terms.hidden.unwrap()), "{terms:?}");
@@ -101,7 +101,7 @@ fn a_run_knows_its_time_its_error_and_what_that_is_made_of() {
     assert!(
         float64_error.object_pixels > 1000 && float64_error.failed_pixels == 0 && float64_error.colour < 2e-4
     );
-    // Samples' radii are 1.5 spacings.
+    // The radius of a sample is 1.5 spacings.
     assert!((run.overlap.unwrap() - 2.25 * PI).abs() < 0.05, "{:?}", run.overlap);
     assert!(run.memory.scene > 0 && run.memory.splats > 0 && run.memory.targets > 0);
     let images = runner.images();
@@ -129,7 +129,7 @@ fn on_smooth_scenes_the_error_falls_as_points_rise() {
 
 #[test]
 #[ignore = "takes long: tools/test --all"]
-fn without_the_low_pass_the_horizon_aliases_and_the_error_says_so() {
+fn without_the_low_pass_the_horizon_aliases_and_the_error_grows() {
     let Some(mut runner) = runner(Vec::new()) else { return };
     let mut with = |lowpass| {
         let mut plan = plan("scene:plane?frequency=2", 300_000, 128);
@@ -145,7 +145,7 @@ fn without_the_low_pass_the_horizon_aliases_and_the_error_says_so() {
 }
 
 #[test]
-fn without_a_device_a_run_says_why() {
+fn without_a_device_a_run_is_refused_with_a_reason() {
     let options = Options { device: None, cache: None, truth: TRUTH, effort: EFFORT };
     let run = Runner::new(options, Vec::new()).run(&plan("scene:torus", 1000, 32)).unwrap();
     assert!(run.refused.unwrap().contains("no usable Vulkan device"));
@@ -153,7 +153,7 @@ fn without_a_device_a_run_says_why() {
 }
 
 #[test]
-fn what_the_device_cannot_is_refused_and_the_next_run_goes_on() {
+fn an_unsupported_run_is_refused_and_the_next_one_runs() {
     let limits = DeviceLimits { max_image_side: Some(64), ..Default::default() };
     let Some(device) = device(limits) else { return };
     let options = Options { device: Some(device), cache: None, truth: TRUTH, effort: EFFORT };
@@ -164,7 +164,7 @@ fn what_the_device_cannot_is_refused_and_the_next_run_goes_on() {
     assert!(small.refused.is_none() && small.error.is_some());
 }
 
-/// A sphere of quadrilaterals, halved, as a PLY file.
+/// Writes a sphere of quadrilaterals, split into triangles, as a PLY file.
 fn sphere(path: &Path) {
     let (rows, columns) = (60, 120);
     let mut text = String::from("ply\nformat ascii 1.0\n");
@@ -187,7 +187,7 @@ fn sphere(path: &Path) {
 }
 
 #[test]
-fn a_scan_is_held_against_its_mesh_at_any_density() {
+fn a_scan_is_compared_with_its_mesh_at_any_density() {
     let folder = tempfile::tempdir().unwrap();
     let [scan, points] = ["mesh.ply", "points.ply"].map(|name| folder.path().join(name));
     sphere(&scan);
@@ -213,13 +213,13 @@ fn a_scan_is_held_against_its_mesh_at_any_density() {
         assert!(metric(&whole, name) < metric(&thin, name), "{name}");
     }
     assert!(metric(&whole, "iou") > metric(&thin, "iou") && metric(&whole, "normal-median") < 2.0);
-    // The mesh lies a little below its own corners: they are not hidden for that.
+    // The mesh lies slightly below its own corners, which must not count as hidden.
     let terms = whole.error.unwrap().terms;
     assert!(terms.hidden.unwrap() < terms.silhouette, "{terms:?}");
 }
 
 #[test]
-fn what_makes_no_surfels_is_refused() {
+fn inputs_without_surfels_are_refused() {
     let folder = tempfile::tempdir().unwrap();
     let scan = folder.path().join("mesh.ply");
     sphere(&scan);

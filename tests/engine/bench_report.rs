@@ -1,14 +1,14 @@
-//! What the bench shows: advice, table, CSV and page, of results as they could have been measured.
+//! Output of the bench: recommendations, table, CSV and HTML report of synthetic results.
 
 use crate::support::results::*;
 use std::collections::BTreeMap;
-use surfel::bench::advice::{Advice, front, offers, within_error, within_time};
+use surfel::bench::recommendations::{Recommendations, candidates, front, within_error, within_time};
 use surfel::bench::record::*;
 use surfel::bench::{Results, csv, report, table};
 
 const NOW: &str = "aaaaaaaaaaaa";
 
-/// The page and the plots.
+/// Names and contents of the report's files.
 fn files(results: &Results, code: &str) -> BTreeMap<String, String> {
     let folder = tempfile::tempdir().unwrap();
     let paths = report::write(results, code, NOW, &folder.path().join("new/report")).unwrap();
@@ -24,7 +24,7 @@ fn page(results: &Results, code: &str) -> String {
     files(results, code).remove("index.html").unwrap()
 }
 
-/// HTML whose elements are all closed is XML but for those that have no end tag.
+/// HTML with all elements closed is XML, except for elements without an end tag.
 fn as_xml(page: &str) -> String {
     let mut xml = page.replacen("<!DOCTYPE html>", "", 1);
     for void in ["<meta ", "<img "] {
@@ -38,7 +38,7 @@ fn as_xml(page: &str) -> String {
     xml
 }
 
-/// Strictly parsed: the page loads nothing, and every coordinate in it and in the plots is a number.
+/// Checks by a strict parser that the page loads nothing, and that every coordinate of page and plots is a number.
 fn check(results: &Results) {
     let files = files(results, CODE);
     for (name, text) in &files {
@@ -87,14 +87,17 @@ fn check_attribute(file: &str, name: &str, value: &str) {
 }
 
 #[test]
-fn the_baseline_is_no_advice() {
+fn the_baseline_is_not_recommended() {
     let of = |points, ms| run(Experiment::Budget, "scene:a", points, ms, 0.05);
     let mut session = session();
     session.runs = vec![of(1, 10.0), Run { implementation: native(), ..of(2, 1.0) }];
-    let advice = Advice::of(&session).unwrap();
-    assert_eq!(advice.columns[0].front.iter().map(|offer| offer.run.points).collect::<Vec<_>>(), [1]);
+    let recommendations = Recommendations::of(&session).unwrap();
+    assert_eq!(
+        recommendations.columns[0].front.iter().map(|candidate| candidate.run.points).collect::<Vec<_>>(),
+        [1]
+    );
     session.runs.remove(0);
-    assert!(Advice::of(&session).is_none());
+    assert!(Recommendations::of(&session).is_none());
 }
 
 #[test]
@@ -105,7 +108,7 @@ fn the_best_run_within_a_budget_is_on_the_front() {
     let mut untimed = of(8, 1.0, 0.001);
     untimed.time = None;
     let [nan, infinite, exact] = [of(7, f64::NAN, 0.001), of(6, f64::INFINITY, 0.001), of(5, 1.0, 0.0)];
-    // Dominated: by the first in both, by the second in time alone, by the third in error alone.
+    // Dominated: by the first in time and error, by the second in time, by the third in error.
     let runs = [
         of(1, 10.0, 0.09),
         of(2, 30.0, 0.04),
@@ -119,9 +122,11 @@ fn the_best_run_within_a_budget_is_on_the_front() {
         infinite,
         exact,
     ];
-    let front = front(&offers(&runs));
-    assert_eq!(front.iter().map(|offer| offer.run.points).collect::<Vec<_>>(), [1, 2, 3]);
-    let points = |offer: Option<&surfel::bench::advice::Offer>| offer.map(|offer| offer.run.points);
+    let front = front(&candidates(&runs));
+    assert_eq!(front.iter().map(|candidate| candidate.run.points).collect::<Vec<_>>(), [1, 2, 3]);
+    let points = |candidate: Option<&surfel::bench::recommendations::Candidate>| {
+        candidate.map(|candidate| candidate.run.points)
+    };
     let by_time = [9.0, 10.0, 29.0, 30.0, 79.0, 1e9].map(|ms| points(within_time(&front, ms)));
     assert_eq!(by_time, [None, Some(1), Some(1), Some(2), Some(2), Some(3)]);
     let by_error = [0.019, 0.02, 0.039, 0.04, 0.5].map(|rmse| points(within_error(&front, rmse)));
@@ -129,27 +134,30 @@ fn the_best_run_within_a_budget_is_on_the_front() {
 }
 
 #[test]
-fn advice_is_by_scene_and_size_and_of_budget_runs_alone() {
+fn recommendations_are_by_scene_and_size_and_of_budget_runs_only() {
     let mut session = session();
     session.runs = vec![
         run(Experiment::Budget, "scene:a", 1, 42.0, 0.03),
         run(Experiment::Budget, "scene:b", 2, 300.0, 0.008),
-        // Better than both, but measured for something else.
+        // Better than both, but of another experiment.
         run(Experiment::Lowpass, "scene:a", 3, 1.0, 0.001),
     ];
     session.runs.push(Run { size: [64, 64], ..run(Experiment::Budget, "scene:a", 4, 7.0, 0.04) });
-    let advice = Advice::of(&session).unwrap();
-    let columns: Vec<_> =
-        advice.columns.iter().map(|column| (column.scene, column.size[0], column.front.len())).collect();
+    let recommendations = Recommendations::of(&session).unwrap();
+    let columns: Vec<_> = recommendations
+        .columns
+        .iter()
+        .map(|column| (column.scene, column.size[0], column.front.len()))
+        .collect();
     assert_eq!(columns, [("scene:a", 512, 1), ("scene:b", 512, 1), ("scene:a", 64, 1)]);
-    assert_eq!(advice.times, [10.0, 20.0, 50.0, 100.0, 200.0, 500.0]);
-    assert_eq!(advice.errors, [0.01, 0.015, 0.02, 0.03, 0.05]);
+    assert_eq!(recommendations.times, [10.0, 20.0, 50.0, 100.0, 200.0, 500.0]);
+    assert_eq!(recommendations.errors, [0.01, 0.015, 0.02, 0.03, 0.05]);
     session.runs.clear();
-    assert_eq!(Advice::of(&session), None);
+    assert_eq!(Recommendations::of(&session), None);
 }
 
 #[test]
-fn the_page_is_whole_and_loads_nothing() {
+fn the_page_is_complete_and_loads_nothing() {
     check(&plausible());
     let files = files(&plausible(), CODE);
     for plot in ["time-error-torus-512-512.svg", "scaling-points-bumpy-sphere.svg", "hard-offset.svg"] {
@@ -158,44 +166,52 @@ fn the_page_is_whole_and_loads_nothing() {
         assert!(files["index.html"].contains(title));
     }
     for section in [
-        "glance", "budget", "points", "lowpass", "aliasing", "scaling", "baseline", "hard", "pictures",
-        "made",
+        "summary",
+        "budget",
+        "convergence",
+        "lowpass",
+        "aliasing",
+        "scaling",
+        "baseline",
+        "hard",
+        "images",
+        "provenance",
     ] {
         assert!(files["index.html"].contains(&format!("<section id=\"{section}\">")), "no {section}");
     }
 }
 
 #[test]
-fn the_page_says_what_points_cost_and_when_they_win() {
+fn the_page_has_the_cost_of_points_and_when_they_are_faster() {
     let told = |runs: Vec<Run>| {
         let mut results = plausible();
         results.sessions[0].runs = runs;
         check(&results);
         page(&results, CODE)
     };
-    let whole = told(points_alone());
+    let whole = told(pull_push());
     assert!(whole.contains("Passes of pull-push: bumpy-sphere"));
     let cost = "Pull and push take 30 to 44 ms, at most 1.1 times the 40 ms that they take where every pixel shows a point.";
     assert!(whole.contains(cost));
     assert!(whole.contains("It is faster than perspective-ewa from 1 M points on."));
-    let until = |most: u64| points_alone().into_iter().filter(|run| run.points <= most).collect();
+    let until = |most: u64| pull_push().into_iter().filter(|run| run.points <= most).collect();
     let few = told(until(100_000));
     assert!(few.contains(
         "Pull and push take 30 to 44 ms. It is not faster than perspective-ewa at the most points measured."
     ));
-    let above = |least: u64| points_alone().into_iter().filter(|run| run.points >= least).collect();
+    let above = |least: u64| pull_push().into_iter().filter(|run| run.points >= least).collect();
     let many = told(above(1_000_000));
     assert!(many.contains("It is faster than perspective-ewa at every number of points measured, from 1 M."));
 }
 
 #[test]
-fn a_section_without_data_is_not_there() {
+fn a_section_without_data_is_omitted() {
     let mut results = plausible();
     results.sessions[0].runs.retain(|run| run.experiment == Experiment::Baseline);
     results.sessions[0].sweeps.clear();
     results.sessions[0].images.clear();
     let page = page(&results, CODE);
-    for section in ["baseline", "made", "terms"] {
+    for section in ["baseline", "provenance", "glossary"] {
         assert!(page.contains(&format!("<section id=\"{section}\">")));
     }
     assert_eq!(page.matches("<section").count(), 3);
@@ -205,7 +221,7 @@ fn a_section_without_data_is_not_there() {
 }
 
 #[test]
-fn numbers_that_cannot_be_drawn_do_no_harm() {
+fn numbers_that_cannot_be_drawn_are_tolerated() {
     let hard = [0.0, -0.0, -3.0, f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e-300, 1e300, f64::MAX, 0.02];
     let mut results = plausible();
     let session = &mut results.sessions[0];
@@ -252,12 +268,12 @@ fn one_point_or_equal_values_have_a_plot() {
 }
 
 #[test]
-fn stale_results_say_so_everywhere_and_fresh_ones_nowhere() {
+fn stale_results_are_marked_everywhere_and_fresh_ones_nowhere() {
     let results = plausible();
     let (fresh, stale) = (page(&results, CODE), page(&results, "other"));
     let said = "Measured by commit 559aa66d0c on 2026-11-21; the code has changed since";
     assert!(!fresh.contains("class=\"stale\"") && !fresh.contains("changed since"));
-    // On top, and at each section but the terms, which are of no session.
+    // At the top, and in each section except the glossary, which belongs to no session.
     assert_eq!(stale.matches(said).count(), stale.matches("<section").count());
     assert!(!table(&results, CODE, NOW).contains("STALE"));
     assert!(table(&results, "other", NOW).contains(&format!("STALE: {said}")));
@@ -272,7 +288,7 @@ fn stale_results_say_so_everywhere_and_fresh_ones_nowhere() {
 }
 
 #[test]
-fn sessions_stay_apart() {
+fn sessions_are_shown_separately() {
     let mut results = plausible();
     let mut other = session();
     other.provenance.code = "older".into();
@@ -324,7 +340,7 @@ fn csv_holds_every_number() {
 }
 
 #[test]
-fn the_table_is_narrow_and_says_why_runs_were_refused() {
+fn the_table_is_narrow_and_has_reasons_of_refusals() {
     let mut results = plausible();
     let long = "a-method-with-a-name-that-is-much-longer-than-any-terminal-has-room-for";
     results.sessions[0].runs[1].implementation.method = long.into();
@@ -336,17 +352,17 @@ fn the_table_is_narrow_and_says_why_runs_were_refused() {
     assert!(text.contains("a-method-with") && !text.contains(long));
     let line = text.lines().find(|line| line.starts_with("offset ")).unwrap();
     assert!(
-        line.contains("212 px wrong") && line.contains("40 uncovered") && line.contains("1 points refused"),
+        line.contains("212 px failed") && line.contains("40 uncovered") && line.contains("1 points refused"),
         "{line}"
     );
-    // Settings are told where they differ: cut-offs in one figure alone.
+    // Settings are shown where they differ: cut-offs in one experiment only.
     let group = |name| text.split("\n\n").find(|group| group.starts_with(name)).unwrap();
     assert!(group("quick · lowpass").contains("F 1.5, widen small"));
     assert!(!group("quick · budget").contains("F "));
 }
 
 #[test]
-fn what_the_papers_say_stands_beside_what_is_measured() {
+fn published_numbers_are_shown_beside_measured_ones() {
     let results = plausible();
     let page = page(&results, CODE);
     let text = table(&results, CODE, NOW);
@@ -355,7 +371,7 @@ fn what_the_papers_say_stands_beside_what_is_measured() {
     {
         assert!(page.contains(words) && text.contains(words), "{words}\n{text}");
     }
-    // 300 k points in 100 ms are 3 million a second.
+    // 300 k points in 100 ms are 3 million per second.
     let row = text
         .lines()
         .find(|line| line.trim_start().starts_with("3 passes") && line.contains("512×512"))

@@ -4,7 +4,7 @@ use crate::support::gpu::{assert_silent, device};
 use crate::support::if_whole;
 use crate::support::sampling::push;
 use glam::DVec3;
-use surfel::bench::hard::{EXCUSED, Options, judge, names, run};
+use surfel::bench::hard::{BEYOND_FLOAT32, Options, compare, names, run};
 use surfel::bench::record::{Faults, Sweep, SweepPoint};
 use surfel::geometry::{Camera, Surfels};
 use surfel::settings::methods::Method;
@@ -13,7 +13,7 @@ use surfel::vk::DeviceLimits;
 use surfel::{Picture, Settings};
 
 fn is_excused(point: &SweepPoint) -> bool {
-    point.note.starts_with(EXCUSED)
+    point.note.starts_with(BEYOND_FLOAT32)
 }
 
 /// A line a point.
@@ -35,8 +35,8 @@ fn print(sweep: &Sweep) {
 /// is.
 fn summarize(sweep: &Sweep, method: &Method) {
     let own = || sweep.points.iter().filter(|point| point.implementation.method == method.name);
-    let largest = |excused: bool| {
-        let points = || own().filter(move |point| is_excused(point) == excused);
+    let largest = |beyond_float32: bool| {
+        let points = || own().filter(move |point| is_excused(point) == beyond_float32);
         let worst = |of: fn(&SweepPoint) -> f64| points().map(of).fold(0.0, f64::max);
         let errors = [
             worst(|point| point.float64_error.colour),
@@ -71,8 +71,9 @@ fn check(sweep: &Sweep, point: &SweepPoint) {
     assert!(point.faults.is_none() && a.object_pixels > 0, "{at}");
     assert!(a.failed_pixels == 0 || is_excused(point), "{at}");
     // Nothing is excused for nothing; what one method does not hold, another may.
-    let excuse = |point: &SweepPoint| point.note.split("; ").next().map(str::to_owned);
-    let same = |other: &&SweepPoint| other.value == point.value && excuse(other) == excuse(point);
+    let float32_limit = |point: &SweepPoint| point.note.split("; ").next().map(str::to_owned);
+    let same =
+        |other: &&SweepPoint| other.value == point.value && float32_limit(other) == float32_limit(point);
     let fails = sweep.points.iter().filter(same).any(|other| other.float64_error.failed_pixels > 0);
     assert!(fails || !is_excused(point), "{at}");
     let within = a.colour <= bars.colour && a.normal <= bars.normal && a.depth <= bars.depth_relative;
@@ -172,7 +173,7 @@ fn faults_are_found() {
     let found = |tamper: &dyn Fn(&mut Picture)| {
         let mut picture = own.clone();
         tamper(&mut picture);
-        judge(&expected, &picture).unwrap()
+        compare(&expected, &picture).unwrap()
     };
     let (float64_error, faults) = found(&|_| {});
     assert!(
@@ -233,6 +234,6 @@ fn what_may_be_either_is_no_fault() {
         let mut picture = own.clone();
         let depth = &mut picture.depth.as_mut().unwrap()[i];
         *depth = if *depth == 0.0 { 5.0 } else { 0.0 };
-        assert!(judge(&expected, &picture).unwrap().1.is_none());
+        assert!(compare(&expected, &picture).unwrap().1.is_none());
     }
 }

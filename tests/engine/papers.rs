@@ -1,4 +1,4 @@
-//! What the papers' figures show is there to be measured: each effect's sides differ as expected.
+//! Effects of the papers' figures: the runs of each effect differ as expected.
 
 use crate::support::gpu::{assert_silent, device};
 use std::time::Duration;
@@ -9,7 +9,7 @@ use surfel::bench::stopwatch::Effort;
 use surfel::verify::truth;
 use surfel::vk::DeviceLimits;
 
-/// Every side's values, and that they differ as the paper has it.
+/// Prints the values of every run, and checks that they differ as in the paper.
 fn check(name: &str) {
     let effect = Effect::named(name).unwrap();
     let Some(device) = device(DeviceLimits::default()) else { return };
@@ -31,7 +31,7 @@ fn check(name: &str) {
     assert_silent(&device);
 }
 
-/// A test an effect, of its name.
+/// One test per effect, with its name.
 macro_rules! effects {
     ($($(#[$attribute:meta])* $test:ident: $name:literal;)*) => {
         $(#[test] $(#[$attribute])* fn $test() { check($name); })*

@@ -1,5 +1,5 @@
-//! The float64 reference judges pictures rightly: it passes its own, and those that differ by no more than float32's rounding,
-//! and lets no small mutation through. Needs no GPU.
+//! Sensitivity of the float64 reference's comparison: its own picture passes, and so do pictures within float32 rounding; small
+//! mutations fail. Needs no GPU.
 
 use crate::support::sampling::Random;
 use crate::support::scenes::{Case, cases};
@@ -10,17 +10,17 @@ use surfel::verify::reference::{
 };
 use surfel::{Picture, Settings};
 
-/// Share of the object's pixels that may be in doubt.
-const MOST_DOUBT: f64 = 0.02;
+/// Greatest share of ambiguous pixels, of the object's pixels.
+const MOST_AMBIGUOUS: f64 = 0.02;
 
 /// A case through one of its cameras.
 struct View {
     name: String,
     case: &'static Case,
     camera: Camera,
-    /// With float32's rounding allowed for.
+    /// With the tolerance of float32 rounding.
     expected: Expected,
-    /// Without.
+    /// With the default tolerance.
     strict: Expected,
 }
 
@@ -44,13 +44,13 @@ impl View {
         }
     }
 
-    fn judge(&self, picture: &Picture) -> Comparison {
+    fn compare(&self, picture: &Picture) -> Comparison {
         self.expected.compare(picture).unwrap()
     }
 
-    /// The verdict on a picture of other surfels or with other settings.
+    /// Compares a picture of other surfels or with other settings.
     fn mutated(&self, surfels: &Surfels, settings: &Settings) -> Comparison {
-        self.judge(&render(surfels, &self.camera, self.case.size, settings, &()).unwrap().to_picture())
+        self.compare(&render(surfels, &self.camera, self.case.size, settings, &()).unwrap().to_picture())
     }
 
     fn own(&self) -> Picture {
@@ -58,7 +58,7 @@ impl View {
     }
 }
 
-/// Every surfel moved by `by(surfel)`, in world space.
+/// The surfels, each moved by `by(surfel)`, in world space.
 fn moved(surfels: &Surfels, mut by: impl FnMut(&Surfel) -> glam::DVec3) -> Surfels {
     let mut moved = surfels.clone();
     for (i, p) in moved.positions.iter_mut().enumerate() {
@@ -68,12 +68,12 @@ fn moved(surfels: &Surfels, mut by: impl FnMut(&Surfel) -> glam::DVec3) -> Surfe
 }
 
 #[test]
-fn its_own_picture_passes_and_few_pixels_are_in_doubt() {
+fn its_own_picture_passes_and_few_pixels_are_ambiguous() {
     for view in VIEWS.iter() {
-        let verdict = view.judge(&view.own());
+        let verdict = view.compare(&view.own());
         let share = |pixels: usize| pixels as f64 / verdict.object_pixels as f64;
         println!(
-            "{}: object {:.0} % of the picture, in doubt {:.2} % of it ({:.2} % strictly), unresolvable {}, dual form {}, {:?}",
+            "{}: object {:.0} % of the picture, ambiguous {:.2} % of it ({:.2} % strictly), unresolvable {}, dual form {}, {:?}",
             view.name,
             100.0 * verdict.object_pixels as f64 / verdict.pixels as f64,
             100.0 * share(verdict.ambiguous),
@@ -85,7 +85,7 @@ fn its_own_picture_passes_and_few_pixels_are_in_doubt() {
         assert!(verdict.passed(), "{}: {:?}", view.name, verdict.failures);
         assert!(view.strict.compare(&view.own()).unwrap().passed(), "{}, strictly", view.name);
         assert!(2 * verdict.object_pixels > verdict.pixels, "{}: too little to see", view.name);
-        assert!(share(verdict.ambiguous) <= MOST_DOUBT, "{}", view.name);
+        assert!(share(verdict.ambiguous) <= MOST_AMBIGUOUS, "{}", view.name);
         assert!(
             verdict.worst.colour < 1e-6 && verdict.worst.depth < 1e-6,
             "{}: {:?}",
@@ -95,7 +95,7 @@ fn its_own_picture_passes_and_few_pixels_are_in_doubt() {
     }
 }
 
-/// What rounding a position and a normal in eye space to float32 does to them: no renderer can do better.
+/// Rounds positions and normals to float32 in eye space: no renderer can be more exact.
 #[test]
 fn rounding_passes() {
     let mut random = Random(99);
@@ -107,7 +107,10 @@ fn rounding_passes() {
             *n = (n.as_dvec3() + unit * random.vector()).as_vec3();
         }
         let verdict = view.mutated(&rounded, &view.case.settings);
-        println!("{}: worst {:?}, with doubt {:?}", view.name, verdict.worst, verdict.worst_of_all);
+        println!(
+            "{}: worst {:?}, with ambiguous pixels {:?}",
+            view.name, verdict.worst, verdict.worst_of_all
+        );
         assert!(verdict.passed(), "{}: {} failed: {:?}", view.name, verdict.failed, verdict.failures);
     }
 }
@@ -160,14 +163,14 @@ fn centres_off_by_a_fiftieth_of_a_pixel_fail() {
         let step = 2.0 * 0.02 / f64::from(view.case.size[0]);
         let shifted = moved(&view.case.surfels, |s| {
             let at = clip * s.position.extend(1.0);
-            // Along x of the picture by `step` in ndc, at the same depth.
+            // Along x of the picture by `step` in NDC, at the same depth.
             (inverse * glam::DVec4::new(step * at.w, 0.0, 0.0, 0.0)).truncate()
         });
         view.mutated(&shifted, &view.case.settings)
     });
 }
 
-/// Every view sees the mutation in at least `least` pixels.
+/// Checks that the mutation fails in at least `least` pixels of every view.
 fn all_fail(least: usize, verdict: impl Fn(&View) -> Comparison) {
     for view in VIEWS.iter() {
         let verdict = verdict(view);
@@ -179,14 +182,14 @@ fn all_fail(least: usize, verdict: impl Fn(&View) -> Comparison) {
 #[test]
 fn one_wrong_pixel_fails_whatever_its_image() {
     let view = &VIEWS[0];
-    let doubtful: Vec<usize> = view.expected.bounds.ambiguous_pixels().collect();
+    let ambiguous: Vec<usize> = view.expected.bounds.ambiguous_pixels().collect();
     let pixel = (0..view.own().colour.len())
-        .find(|i| view.expected.frame.covered[*i] && !doubtful.contains(i))
+        .find(|i| view.expected.frame.covered[*i] && !ambiguous.contains(i))
         .unwrap();
     let failure = |spoil: &dyn Fn(&mut Picture)| {
         let mut picture = view.own();
         spoil(&mut picture);
-        let verdict = view.judge(&picture);
+        let verdict = view.compare(&picture);
         assert_eq!(verdict.failed, 1);
         verdict.failures[0].channel
     };
@@ -206,7 +209,7 @@ fn pictures_that_cannot_be_compared_are_refused() {
     assert!(view.expected.compare(&Picture { colour: Vec::new(), ..view.own() }).is_err());
 }
 
-/// Otherwise the scenes would ask of float32 what it cannot know, and no pixel's doubt would excuse it.
+/// Float32 cannot decide such cases, and error bounds of single pixels do not cover them.
 #[test]
 fn no_surfel_is_near_a_decision_about_the_whole_of_it() {
     for view in VIEWS.iter() {

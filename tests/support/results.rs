@@ -1,21 +1,21 @@
-//! Results as a bench could have measured them.
+//! Synthetic results of the bench.
 
 use std::collections::BTreeMap;
 use surfel::bench::Results;
 use surfel::bench::record::*;
 use surfel::frame::times::Statistics;
 
-/// Digest of the code that the results are by.
+/// Source digest of the results.
 pub const CODE: &str = "c0de";
 
 const POINTS: [u64; 5] = [10_000, 31_623, 100_000, 316_228, 1_000_000];
 
-/// A session with every figure, on a small CPU.
+/// A session with every experiment, on a small CPU.
 pub fn plausible() -> Results {
     Results { format: FORMAT, sessions: vec![session()] }
 }
 
-/// Of no session at all.
+/// Results without a session.
 #[allow(dead_code)]
 pub fn empty() -> Results {
     Results { format: FORMAT, sessions: Vec::new() }
@@ -62,7 +62,7 @@ pub fn native() -> Implementation {
     Implementation { method: "baseline-splats".into(), variant: String::new() }
 }
 
-/// A run with a time and an error; the rest follows from them.
+/// A run with a time and an error, from which the other values follow.
 pub fn run(experiment: Experiment, scene: &str, points: u64, ms: f64, rmse: f64) -> Run {
     let metrics = [
         ("rmse", rmse),
@@ -215,8 +215,8 @@ fn scaling() -> Vec<Run> {
     runs
 }
 
-/// Pull–push over points, slower than splats at first, and where every pixel shows one.
-pub fn points_alone() -> Vec<Run> {
+/// Pull–push over the number of points, at first slower than splats, and with a point in every pixel.
+pub fn pull_push() -> Vec<Run> {
     let mut runs = Vec::new();
     let mut add = |experiment, method: &str, points: u64, ms: f64, pixels: f64| {
         let mut run = run(experiment, "scene:bumpy-sphere", points, ms, 0.03);
@@ -257,7 +257,7 @@ fn baseline() -> Vec<Run> {
     runs
 }
 
-/// An effect's two sides, a cost, and a row of a paper's table.
+/// Two runs of an effect, a cost, and a row of a published table.
 fn papers() -> Vec<Run> {
     let of = |experiment, item: &str, points, ms, rmse| {
         let run = run(experiment, "scene:sphere", points, ms, rmse);

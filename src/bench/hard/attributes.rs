@@ -42,15 +42,15 @@ fn with_ellipse(surfels: &mut Surfels, i: usize, change: impl Fn(&mut Ellipse)) 
 pub fn case() -> Case {
     Case {
         name: "attributes",
-        description: "A sphere of discs, every 20th of which has one attribute replaced; no other may suffer.",
-        parameter: "number of the attribute and its value",
+        description: "A sphere of discs. Every 20th has one attribute replaced; no other disc may change.",
+        parameter: "index of the attribute and its value",
         logarithmic: false,
         values: (1..=ATTRIBUTES.len() * VALUES.len()).map(|number| number as f64).collect(),
         view,
         half: false,
-        excuse: |number, _| {
+        float32_limit: |number, _| {
             (named(number) == ("colour", "1e14"))
-                .then_some("errors are relative to the colour, and their bar is absolute")
+                .then_some("errors are relative to the colour, the tolerance is absolute")
         },
     }
 }

@@ -22,7 +22,7 @@ pub struct Case {
     /// Whether it is also rendered with 16-bit sums.
     pub half: bool,
     /// Why float32 cannot agree with float64 at a value and precision; `None` where it must agree.
-    pub excuse: fn(f64, Precision) -> Option<&'static str>,
+    pub float32_limit: fn(f64, Precision) -> Option<&'static str>,
 }
 
 /// A frame of a hard case.

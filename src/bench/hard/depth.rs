@@ -10,13 +10,13 @@ use glam::DVec3;
 pub fn case() -> Case {
     Case {
         name: "depth-range",
-        description: "Upright strips of discs side by side, each ten times as far away as the last, from 0.001 on; their edges overlap.",
+        description: "Vertical strips of discs side by side, each ten times as far away as the previous one, from 0.001 on; their edges overlap.",
         parameter: "distance of the farthest strip",
         logarithmic: true,
         values: decades(-2, 9),
         view,
         half: false,
-        excuse: |_, _| None,
+        float32_limit: |_, _| None,
     }
 }
 

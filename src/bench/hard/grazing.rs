@@ -16,7 +16,7 @@ const FAR: f64 = 100.0;
 pub fn cases() -> [Case; 3] {
     let parameter = "angle between plane and direction of view, degrees";
     let values = || decades(-4, 0).into_iter().chain([3.0, 10.0, 30.0, 60.0, 90.0]).collect();
-    let case = |name, description, view, excuse| Case {
+    let case = |name, description, view, float32_limit| Case {
         name,
         description,
         parameter,
@@ -24,12 +24,12 @@ pub fn cases() -> [Case; 3] {
         values: values(),
         view,
         half: false,
-        excuse,
+        float32_limit,
     };
     [
         case(
             "grazing",
-            "Eight planes of overlapping discs, all seen at one angle, until they are lines.",
+            "Eight planes of overlapping discs, all at one angle of view, until they appear as lines.",
             lines,
             |_, _| None,
         ),
@@ -39,13 +39,13 @@ pub fn cases() -> [Case; 3] {
             perspective,
             too_wide,
         ),
-        case("grazing-parallel", "The same by parallel rays.", parallel, too_wide),
+        case("grazing-parallel", "The same in parallel projection.", parallel, too_wide),
     ]
 }
 
 fn too_wide(degrees: f64, _: Precision) -> Option<&'static str> {
     (degrees < 0.005).then_some(
-        "half a unit in the last place of an axis moves the image of a disc 500,000 px away by pixels' parts",
+        "half a unit in the last place of an axis moves the image of a disc 500,000 px away by fractions of a pixel",
     )
 }
 

@@ -19,7 +19,7 @@ pub fn case() -> Case {
         values: decades(-8, -1).into_iter().chain(near_threshold).collect(),
         view,
         half: false,
-        excuse: |_, _| None,
+        float32_limit: |_, _| None,
     }
 }
 

@@ -6,9 +6,9 @@
 
 mod attributes;
 mod case;
+mod compare;
 mod depth;
 mod grazing;
-mod judge;
 mod layers;
 mod offset;
 mod overlap;
@@ -16,7 +16,7 @@ mod planes;
 mod shape;
 mod sizes;
 
-pub use judge::judge;
+pub use compare::compare;
 
 use super::record::{Implementation, Sweep, SweepPoint};
 use crate::Progress;
@@ -32,7 +32,7 @@ use case::{Case, View};
 use std::sync::Arc;
 
 /// Prefix of a [`SweepPoint::note`] where float32 cannot agree with float64; the reason follows.
-pub const EXCUSED: &str = "beyond float32: ";
+pub const BEYOND_FLOAT32: &str = "beyond float32: ";
 
 /// Extent of the sweeps.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -83,28 +83,28 @@ pub fn run(device: &Arc<Device>, options: &Options, progress: &dyn Progress) -> 
     let places = || 0..Method::SPLATTING.len();
     let count = |case: &Case| places().map(|method| values(case, method).len() as u64).sum::<u64>();
     let total = cases.iter().map(count).sum();
-    let mut bench = Bench { device: device.clone(), renderers: Vec::new(), progress, done: 0, total };
+    let mut sweeper = Sweeper { device: device.clone(), renderers: Vec::new(), progress, done: 0, total };
     let sweep = |case: &Case| {
         let mut points = Vec::new();
         for method in places() {
-            points.extend(bench.sweep(case, method, values(case, method))?);
+            points.extend(sweeper.sweep(case, method, values(case, method))?);
         }
         Ok(case.sweep(points))
     };
     let sweeps = cases.iter().map(sweep).collect();
-    bench.tell();
+    sweeper.report_progress();
     sweeps
 }
 
 /// A variant, in the order of the results.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-enum Way {
+enum Variant {
     Draw,
     Compute,
     Half,
 }
 
-impl Way {
+impl Variant {
     fn implementation(self, method: &Method) -> Implementation {
         let variant = match self {
             Self::Draw => "draw",
@@ -126,7 +126,7 @@ impl Way {
 }
 
 /// A device with the renderers created on it.
-struct Bench<'a> {
+struct Sweeper<'a> {
     device: Arc<Device>,
     renderers: Vec<(RenderOptions, Renderer)>,
     progress: &'a dyn Progress,
@@ -135,8 +135,8 @@ struct Bench<'a> {
     total: u64,
 }
 
-impl Bench<'_> {
-    fn tell(&self) {
+impl Sweeper<'_> {
+    fn report_progress(&self) {
         self.progress.at("hard cases", self.done, self.total);
     }
 
@@ -144,12 +144,12 @@ impl Bench<'_> {
     fn sweep(&mut self, case: &Case, method: usize, values: Vec<f64>) -> Result<Vec<SweepPoint>> {
         let mut points = Vec::new();
         for value in values {
-            self.tell();
+            self.report_progress();
             points.extend(self.points(case, &Method::SPLATTING[method], method == 0, value)?);
             self.done += 1;
         }
         // A stable sort: the values stay in order.
-        points.sort_by_key(|(way, _)| *way);
+        points.sort_by_key(|(variant, _)| *variant);
         Ok(points.into_iter().map(|(_, point)| point).collect())
     }
 
@@ -161,7 +161,7 @@ impl Bench<'_> {
         method: &Method,
         first: bool,
         value: f64,
-    ) -> Result<Vec<(Way, SweepPoint)>> {
+    ) -> Result<Vec<(Variant, SweepPoint)>> {
         let mut view = (case.view)(value)?;
         // Some cases show the backs of their discs: methods that cull those would show nothing.
         let Settings { epsilon, shading, cull, .. } = view.settings;
@@ -171,22 +171,23 @@ impl Bench<'_> {
         // Invalid surfels are intended here; the notes report them.
         let (scene, _) = Scene::upload_silently(&self.device, &view.surfels)?;
         let half = case.half && first;
-        let ways = [Way::Draw, Way::Compute].into_iter().chain(half.then_some(Way::Half));
-        let mut point = |way: Way| {
-            let implementation = way.implementation(method);
-            let mut point = self.point(way, implementation, &view, &scene, &expected)?;
-            let excuse = (case.excuse)(value, way.precision()).map(|reason| format!("{EXCUSED}{reason}"));
-            let notes = excuse.into_iter().chain([view.note.clone(), point.note]);
+        let variants = [Variant::Draw, Variant::Compute].into_iter().chain(half.then_some(Variant::Half));
+        let mut point = |variant: Variant| {
+            let implementation = variant.implementation(method);
+            let mut point = self.point(variant, implementation, &view, &scene, &expected)?;
+            let float32_limit = (case.float32_limit)(value, variant.precision())
+                .map(|reason| format!("{BEYOND_FLOAT32}{reason}"));
+            let notes = float32_limit.into_iter().chain([view.note.clone(), point.note]);
             point.note = notes.filter(|note| !note.is_empty()).collect::<Vec<_>>().join("; ");
-            Ok((way, SweepPoint { value, ..point }))
+            Ok((variant, SweepPoint { value, ..point }))
         };
-        ways.map(&mut point).collect()
+        variants.map(&mut point).collect()
     }
 
     /// Renders one value with one variant: errors, refusals and culled surfels.
     fn point(
         &mut self,
-        way: Way,
+        variant: Variant,
         implementation: Implementation,
         view: &View,
         scene: &Scene,
@@ -201,12 +202,13 @@ impl Bench<'_> {
             faults,
             note: String::new(),
         };
-        let renderer = self.renderer(way, view.size);
+        let renderer = self.renderer(variant, view.size);
         match renderer.and_then(|renderer| renderer.render_picture(scene, &view.camera, &view.settings)) {
             Ok((picture, report)) => {
-                (point.float64_error, point.faults) = judge(expected, &picture)?;
-                point.note =
-                    report.counts.map_or(String::new(), |counts| reasons(&counts, &expected.frame.counts));
+                (point.float64_error, point.faults) = compare(expected, &picture)?;
+                point.note = report
+                    .counts
+                    .map_or(String::new(), |counts| cull_reasons(&counts, &expected.frame.counts));
             }
             Err(cause @ (Error::Usage(_) | Error::Memory { .. })) => point.refused = Some(cause.to_string()),
             Err(cause) => return Err(cause),
@@ -215,8 +217,8 @@ impl Bench<'_> {
     }
 
     /// The renderer of a variant and size, created on first use.
-    fn renderer(&mut self, way: Way, size: [u32; 2]) -> Result<&mut Renderer> {
-        let options = way.options(size);
+    fn renderer(&mut self, variant: Variant, size: [u32; 2]) -> Result<&mut Renderer> {
+        let options = variant.options(size);
         let place = match self.renderers.iter().position(|(made, _)| *made == options) {
             Some(place) => place,
             None => {
@@ -234,7 +236,7 @@ impl Bench<'_> {
 }
 
 /// Culled surfels on the device, and those of the reference if they differ: at a threshold, rounding decides.
-fn reasons(device: &SplatCounts, reference: &Counts) -> String {
+fn cull_reasons(device: &SplatCounts, reference: &Counts) -> String {
     let SplatCounts { drawn: _, behind, eye_plane, back, outside, invalid } = *device;
     let expected =
         [reference.behind, reference.eye_plane, reference.back, reference.outside, reference.invalid];

@@ -18,11 +18,11 @@ pub fn cases() -> [Case; 3] {
         values,
         view,
         half: false,
-        excuse: |_, _| None,
+        float32_limit: |_, _| None,
     };
     let positions = case(
         "offset-positions",
-        "The same with the offset in the float32 positions, which the reference gets as rounded.",
+        "The same with the offset in the float32 positions; the reference uses the rounded positions.",
         DISTANCE,
         decades(0, 8),
         |value| view(value, false, 1.0),
@@ -30,15 +30,15 @@ pub fn cases() -> [Case; 3] {
     [
         case(
             "offset-origin",
-            "A sphere far away, seen from near by: the surfels' float64 origin is there.",
+            "A sphere far from the world's origin, seen from nearby, with the offset in the surfels' float64 origin.",
             DISTANCE,
             decades(0, 8),
             |value| view(value, true, 1.0),
         ),
-        Case { excuse: too_far, ..positions },
+        Case { float32_limit: too_far, ..positions },
         case(
             "unit",
-            "A sphere and its eye in other units of length.",
+            "A sphere and its camera in other units of length.",
             "radius of the object",
             decades(-12, 12).into_iter().step_by(3).collect(),
             |value| view(0.0, true, value),
@@ -48,7 +48,7 @@ pub fn cases() -> [Case; 3] {
 
 fn too_far(distance: f64, _: Precision) -> Option<&'static str> {
     (distance >= 1e8).then_some(
-        "positions are 8 radii apart: all 1500 discs are on one, and a depth is off by up to 2⁻²⁵ a splat",
+        "float32 positions are 8 radii apart: all 1500 discs coincide, and the depth error grows by up to 2⁻²⁵ per splat",
     )
 }
 

@@ -15,23 +15,23 @@ pub fn cases() -> [Case; 2] {
     [
         Case {
             name: "sub-pixel",
-            description: "A patch of 14² px of overlapping splats, so small that many have their centres on a pixel.",
-            parameter: "splats a pixel",
+            description: "A patch of 14² px of overlapping splats, so small that many have their centres in one pixel.",
+            parameter: "splats per pixel",
             logarithmic: true,
             values: vec![1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1000.0],
             view: sub_pixel,
             half: false,
-            excuse: too_dense,
+            float32_limit: too_dense,
         },
         Case {
             name: "accumulator",
-            description: "Coincident splats of 24 px and different colours, which the sums of a pixel must hold all.",
-            parameter: "splats one on the other",
+            description: "Coincident splats of 24 px and different colours, all summed in each pixel.",
+            parameter: "coincident splats",
             logarithmic: true,
             values: (0..=12).step_by(2).map(|power| f64::from(1u32 << power)).collect(),
             view: accumulator,
             half: true,
-            excuse: too_many,
+            float32_limit: too_many,
         },
     ]
 }
@@ -39,9 +39,9 @@ pub fn cases() -> [Case; 2] {
 fn too_many(count: f64, precision: Precision) -> Option<&'static str> {
     match precision {
         Precision::Full if count <= 512.0 => None,
-        Precision::Full => Some("every sum rounds, and a depth is off by up to 2⁻²⁵ a splat"),
+        Precision::Full => Some("every addition rounds, and the depth error grows by up to 2⁻²⁵ per splat"),
         Precision::Half => {
-            Some("16-bit sums have 11 digits, and no more is added to one 2048 times as large")
+            Some("16-bit sums have 11 significant bits: a weight below 1/2048 of the sum is lost")
         }
     }
 }
@@ -53,9 +53,8 @@ fn view(surfels: Surfels) -> Result<View> {
 }
 
 fn too_dense(splats: f64, _: Precision) -> Option<&'static str> {
-    (splats >= 1000.0).then_some(
-        "of the many splats that end within rounding of a pixel's centre not all ways can be tried",
-    )
+    (splats >= 1000.0)
+        .then_some("too many splats end within rounding of a pixel's centre to try all combinations")
 }
 
 fn sub_pixel(density: f64) -> Result<View> {

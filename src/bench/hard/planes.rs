@@ -19,13 +19,13 @@ pub fn cases() -> [Case; 2] {
         values: values.to_vec(),
         view,
         half: false,
-        excuse: |_, _| None,
+        float32_limit: |_, _| None,
     };
     [
         case(
             "eye-plane",
-            "Tilted discs about the axis of view, in front of a wall, from behind the eye plane to well ahead of it; at 1 they touch it.",
-            "distance of the centres ahead of the eye plane, in the discs' reaches",
+            "Tilted discs around the axis of view, in front of a wall, from behind the eye plane to far in front of it; at 1 they touch it.",
+            "distance of the centres in front of the eye plane, in the discs' extents along z",
             &[
                 -2.0, -1.0, -0.5, 0.0, 0.5, 0.9, 0.99, 0.999, 0.9999, 0.99999, 1.00001, 1.0001, 1.001, 1.01,
                 1.03, 1.1, 1.3, 2.0, 4.0,
@@ -34,8 +34,8 @@ pub fn cases() -> [Case; 2] {
         ),
         case(
             "near-plane",
-            "The same discs about a near plane, which cuts them pixel by pixel.",
-            "distance of the centres beyond the near plane, in the discs' reaches",
+            "The same discs around the near plane, which clips them pixel by pixel.",
+            "distance of the centres behind the near plane, in the discs' extents along z",
             &[-2.0, -1.001, -1.0, -0.999, -0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75, 0.999, 1.0, 1.001, 2.0],
             near_plane,
         ),

@@ -15,23 +15,23 @@ pub fn cases() -> [Case; 2] {
     [
         Case {
             name: "radius",
-            description: "400 discs from mere points to walls that each fill the picture, never so tilted that they reach the eye plane.",
+            description: "400 discs, from points to walls that each fill the picture, tilted such that none reaches the eye plane.",
             parameter: "radius of the discs, radii of the object",
             logarithmic: true,
             values: decades(-6, 9),
             view: radius,
             half: false,
-            excuse: |_, _| None,
+            float32_limit: |_, _| None,
         },
         Case {
             name: "anisotropy",
-            description: "400 ellipses of one length, in all directions, ever thinner.",
+            description: "400 ellipses of similar length and random direction, ever thinner.",
             parameter: "length over width",
             logarithmic: true,
             values: vec![1.0, 3.0, 10.0, 30.0, 100.0, 300.0, 1e3, 3e3, 1e4],
             view: anisotropy,
             half: false,
-            excuse: |_, _| None,
+            float32_limit: |_, _| None,
         },
     ]
 }

@@ -25,13 +25,13 @@ const SIZES: [[u32; 2]; 11] = [
 pub fn case() -> Case {
     Case {
         name: "size",
-        description: "A sphere in pictures that are no powers of two, down to a width and a height of one pixel.",
+        description: "A sphere in pictures whose sizes are not powers of two, down to a width and a height of one pixel.",
         parameter: "width over height",
         logarithmic: true,
         values: SIZES.map(ratio).to_vec(),
         view,
         half: false,
-        excuse: |_, _| None,
+        float32_limit: |_, _| None,
     }
 }
 

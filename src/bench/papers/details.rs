@@ -1,8 +1,8 @@
 //! Metrics of single effects. All but the overlap compare a picture with the truth, over black, by the luma of linear
 //! light.
 
+use crate::bench::error_terms::WHOLE;
 use crate::bench::record::Blended;
-use crate::bench::terms::WHOLE;
 use crate::picture::Picture;
 use crate::verify::metrics::{Pair, colour, covers};
 

@@ -4,9 +4,9 @@
 //! Instruction counts of vertex and fragment programs have no counterpart here.
 
 use crate::bench::engine::Engine;
+use crate::bench::format;
 use crate::bench::plan::{Measurements, Plan};
 use crate::bench::record::{Experiment, Run};
-use crate::bench::show;
 use crate::bench::suites::{Suite, plan};
 use crate::settings::methods::Method;
 use crate::settings::splatting::{Filter, Normalization, Visibility};
@@ -52,12 +52,12 @@ pub struct Row {
     pub size: [u32; 2],
     /// The published numbers, one per column.
     pub published: &'static [f64],
-    way: Way,
+    rendering: Rendering,
 }
 
 /// How a row is rendered here.
 #[derive(Clone, Copy)]
-enum Way {
+enum Rendering {
     /// The method of this name.
     Method(&'static str),
     /// `object-ewa` with another filter and normalization, on a checkerboard.
@@ -74,22 +74,28 @@ enum Way {
 
 const LEVELS: &str = "needs levels of detail";
 
-const fn row(model: &'static str, points: u64, size: [u32; 2], way: Way, published: &'static [f64]) -> Row {
-    Row { model, points, size, published, way }
+const fn row(
+    model: &'static str,
+    points: u64,
+    size: [u32; 2],
+    rendering: Rendering,
+    published: &'static [f64],
+) -> Row {
+    Row { model, points, size, published, rendering }
 }
 
 const fn square(side: u32) -> [u32; 2] {
     [side, side]
 }
 
-const SPRITES: Way = Way::Method("sprites");
-const UNFILTERED: Way = Way::Method("sprites-unfiltered");
-const WITHOUT_EWA: Way = Way::Board(Filter::None, Normalization::Surfel);
-const PER_PIXEL: Way = Way::Board(Filter::Object, Normalization::Pixel);
-const PER_SURFEL: Way = Way::Board(Filter::Object, Normalization::Surfel);
-const PERSPECTIVE: Way = Way::Method("perspective-ewa");
-const POINTS: Way = Way::Method("pull-push-paper");
-const CONFETTI: Way = Way::Method("confetti");
+const SPRITES: Rendering = Rendering::Method("sprites");
+const UNFILTERED: Rendering = Rendering::Method("sprites-unfiltered");
+const WITHOUT_EWA: Rendering = Rendering::Board(Filter::None, Normalization::Surfel);
+const PER_PIXEL: Rendering = Rendering::Board(Filter::Object, Normalization::Pixel);
+const PER_SURFEL: Rendering = Rendering::Board(Filter::Object, Normalization::Surfel);
+const PERSPECTIVE: Rendering = Rendering::Method("perspective-ewa");
+const POINTS: Rendering = Rendering::Method("pull-push-paper");
+const CONFETTI: Rendering = Rendering::Method("confetti");
 const SMALL: [u32; 2] = square(512);
 const LARGE: [u32; 2] = square(1024);
 const WIDE: [u32; 2] = [1280, 1024];
@@ -116,14 +122,14 @@ pub const ALL: [Table; 8] = [
         unit: Unit::Fps,
         note: "With per-surfel normalization, whose weights are captured beforehand.",
         rows: &[
-            row("Salamander", 103_389, TINY, Way::BySurfel, &[18.9, 30.0]),
-            row("Salamander", 103_389, SMALL, Way::BySurfel, &[16.9, 24.9]),
-            row("Chameleon", 101_685, TINY, Way::BySurfel, &[17.0, 23.2]),
-            row("Chameleon", 101_685, SMALL, Way::BySurfel, &[14.0, 19.0]),
-            row("Wasp", 273_325, TINY, Way::BySurfel, &[6.1, 8.0]),
-            row("Wasp", 273_325, SMALL, Way::BySurfel, &[5.1, 6.1]),
-            row("Fiesta", 352_467, TINY, Way::BySurfel, &[5.5, 7.0]),
-            row("Fiesta", 352_467, SMALL, Way::BySurfel, &[3.8, 5.3]),
+            row("Salamander", 103_389, TINY, Rendering::BySurfel, &[18.9, 30.0]),
+            row("Salamander", 103_389, SMALL, Rendering::BySurfel, &[16.9, 24.9]),
+            row("Chameleon", 101_685, TINY, Rendering::BySurfel, &[17.0, 23.2]),
+            row("Chameleon", 101_685, SMALL, Rendering::BySurfel, &[14.0, 19.0]),
+            row("Wasp", 273_325, TINY, Rendering::BySurfel, &[6.1, 8.0]),
+            row("Wasp", 273_325, SMALL, Rendering::BySurfel, &[5.1, 6.1]),
+            row("Fiesta", 352_467, TINY, Rendering::BySurfel, &[5.5, 7.0]),
+            row("Fiesta", 352_467, SMALL, Rendering::BySurfel, &[3.8, 5.3]),
         ],
     },
     Table {
@@ -174,9 +180,9 @@ pub const ALL: [Table; 8] = [
         unit: Unit::MillionSplats,
         note: "There a mean over objects of 100 k to 650 k points, here 300 k.",
         rows: &[
-            row("1 pass", 300_000, SMALL, Way::SinglePass, &[5.9, 11.2]),
+            row("1 pass", 300_000, SMALL, Rendering::SinglePass, &[5.9, 11.2]),
             row("3 passes", 300_000, SMALL, PERSPECTIVE, &[1.4, 3.1]),
-            row("1 pass", 300_000, WIDE, Way::SinglePass, &[5.8, 10.4]),
+            row("1 pass", 300_000, WIDE, Rendering::SinglePass, &[5.8, 10.4]),
             row("3 passes", 300_000, WIDE, PERSPECTIVE, &[1.2, 2.8]),
         ],
     },
@@ -195,10 +201,10 @@ pub const ALL: [Table; 8] = [
         unit: Unit::Seconds,
         note: "Times to build its octree of levels of detail, which has no counterpart here yet.",
         rows: &[
-            row("David", 2_000_606, SMALL, Way::Missing(LEVELS), &[12.7]),
-            row("Female", 302_948, SMALL, Way::Missing(LEVELS), &[2.97]),
-            row("Balljoint", 137_062, SMALL, Way::Missing(LEVELS), &[0.73]),
-            row("Dragon", 437_645, SMALL, Way::Missing(LEVELS), &[2.41]),
+            row("David", 2_000_606, SMALL, Rendering::Missing(LEVELS), &[12.7]),
+            row("Female", 302_948, SMALL, Rendering::Missing(LEVELS), &[2.97]),
+            row("Balljoint", 137_062, SMALL, Rendering::Missing(LEVELS), &[0.73]),
+            row("Dragon", 437_645, SMALL, Rendering::Missing(LEVELS), &[2.41]),
         ],
     },
     Table {
@@ -210,17 +216,17 @@ pub const ALL: [Table; 8] = [
                need levels of detail. The total has the selection of levels in it.",
         rows: &[
             row("David, tolerance 0", 2_000_606, SMALL, CONFETTI, &[0.397, 0.584]),
-            row("David, tolerance 0.02 %", 2_000_606, SMALL, Way::Missing(LEVELS), &[0.163, 0.284]),
-            row("David, tolerance 0.04 %", 2_000_606, SMALL, Way::Missing(LEVELS), &[0.151, 0.266]),
+            row("David, tolerance 0.02 %", 2_000_606, SMALL, Rendering::Missing(LEVELS), &[0.163, 0.284]),
+            row("David, tolerance 0.04 %", 2_000_606, SMALL, Rendering::Missing(LEVELS), &[0.151, 0.266]),
             row("Female, tolerance 0", 302_948, SMALL, CONFETTI, &[0.047, 0.075]),
-            row("Female, tolerance 0.02 %", 302_948, SMALL, Way::Missing(LEVELS), &[0.017, 0.041]),
-            row("Female, tolerance 0.04 %", 302_948, SMALL, Way::Missing(LEVELS), &[0.015, 0.035]),
+            row("Female, tolerance 0.02 %", 302_948, SMALL, Rendering::Missing(LEVELS), &[0.017, 0.041]),
+            row("Female, tolerance 0.04 %", 302_948, SMALL, Rendering::Missing(LEVELS), &[0.015, 0.035]),
             row("Balljoint, tolerance 0", 137_062, SMALL, CONFETTI, &[0.014, 0.026]),
-            row("Balljoint, tolerance 0.02 %", 137_062, SMALL, Way::Missing(LEVELS), &[0.004, 0.019]),
-            row("Balljoint, tolerance 0.16 %", 137_062, SMALL, Way::Missing(LEVELS), &[0.003, 0.018]),
+            row("Balljoint, tolerance 0.02 %", 137_062, SMALL, Rendering::Missing(LEVELS), &[0.004, 0.019]),
+            row("Balljoint, tolerance 0.16 %", 137_062, SMALL, Rendering::Missing(LEVELS), &[0.003, 0.018]),
             row("Dragon, tolerance 0", 437_645, SMALL, CONFETTI, &[0.087, 0.129]),
-            row("Dragon, tolerance 0.02 %", 437_645, SMALL, Way::Missing(LEVELS), &[0.033, 0.069]),
-            row("Dragon, tolerance 0.04 %", 437_645, SMALL, Way::Missing(LEVELS), &[0.025, 0.056]),
+            row("Dragon, tolerance 0.02 %", 437_645, SMALL, Rendering::Missing(LEVELS), &[0.033, 0.069]),
+            row("Dragon, tolerance 0.04 %", 437_645, SMALL, Rendering::Missing(LEVELS), &[0.025, 0.056]),
         ],
     },
     Table {
@@ -230,17 +236,29 @@ pub const ALL: [Table; 8] = [
         unit: Unit::Parts,
         note: "Here: total (projection, pull–push). There 16-bit floats were kept, here 32-bit ones. Without colours the picture shows normals.",
         rows: &[
-            row("Armadillo, without colours", 173_000, LARGE, Way::WithoutColour, &[89.0, 11.0, 1.2, 8.5]),
+            row(
+                "Armadillo, without colours",
+                173_000,
+                LARGE,
+                Rendering::WithoutColour,
+                &[89.0, 11.0, 1.2, 8.5],
+            ),
             row("Armadillo", 173_000, LARGE, POINTS, &[46.0, 22.0, 1.5, 18.0]),
-            row("Dragon, without colours", 437_000, LARGE, Way::WithoutColour, &[78.0, 13.0, 2.2, 8.9]),
+            row("Dragon, without colours", 437_000, LARGE, Rendering::WithoutColour, &[78.0, 13.0, 2.2, 8.9]),
             row("Dragon", 437_000, LARGE, POINTS, &[44.0, 23.0, 2.9, 18.0]),
-            row("Happy Buddha, without colours", 544_000, LARGE, Way::WithoutColour, &[76.0, 13.0, 2.6, 8.8]),
+            row(
+                "Happy Buddha, without colours",
+                544_000,
+                LARGE,
+                Rendering::WithoutColour,
+                &[76.0, 13.0, 2.6, 8.8],
+            ),
             row("Happy Buddha", 544_000, LARGE, POINTS, &[42.0, 24.0, 3.4, 18.0]),
             row(
                 "Asian Dragon, without colours",
                 3_610_000,
                 LARGE,
-                Way::WithoutColour,
+                Rendering::WithoutColour,
                 &[36.0, 28.0, 18.0, 8.3],
             ),
             row("Asian Dragon", 3_610_000, LARGE, POINTS, &[23.0, 45.0, 25.0, 17.0]),
@@ -248,7 +266,7 @@ pub const ALL: [Table; 8] = [
                 "Thai Statue, without colours",
                 5_000_000,
                 LARGE,
-                Way::WithoutColour,
+                Rendering::WithoutColour,
                 &[29.0, 35.0, 25.0, 8.2],
             ),
             row("Thai Statue", 5_000_000, LARGE, POINTS, &[18.0, 55.0, 34.0, 18.0]),
@@ -285,15 +303,15 @@ impl Unit {
     }
 
     /// A run's time in this unit, with its parts if the unit has parts and they are known; none if it was not timed.
-    pub fn told(self, run: &Run) -> Option<String> {
-        let whole = show::significant(self.of(run.ms()?, run.points), 3);
+    pub fn format(self, run: &Run) -> Option<String> {
+        let whole = format::significant(self.of(run.ms()?, run.points), 3);
         let passes = &run.time.as_ref()?.passes;
         if self != Self::Parts || passes.is_empty() {
             return Some(whole);
         }
         let parts = [&["clear", "project", "fetch"][..], &["pull", "push"]].map(|names| {
             let own = passes.iter().filter(|pass| names.contains(&pass.name.as_str()));
-            show::significant(own.map(|pass| pass.ms.median).sum(), 3)
+            format::significant(own.map(|pass| pass.ms.median).sum(), 3)
         });
         Some(format!("{whole} ({})", parts.join(", ")))
     }
@@ -319,21 +337,21 @@ impl Row {
     /// The settings of the row, or the reason why it is not rendered.
     fn settings(&self) -> Result<Settings, &'static str> {
         let preset = |name| Method::named(name).unwrap_or(Method::SPLATTING[0]).settings();
-        let mut settings = match self.way {
-            Way::Method(name) => preset(name),
-            Way::Board(..) | Way::BySurfel => preset("object-ewa"),
-            Way::SinglePass => preset("perspective-ewa"),
-            Way::WithoutColour => preset("pull-push-paper"),
-            Way::Missing(why) => return Err(why),
+        let mut settings = match self.rendering {
+            Rendering::Method(name) => preset(name),
+            Rendering::Board(..) | Rendering::BySurfel => preset("object-ewa"),
+            Rendering::SinglePass => preset("perspective-ewa"),
+            Rendering::WithoutColour => preset("pull-push-paper"),
+            Rendering::Missing(why) => return Err(why),
         };
-        match self.way {
-            Way::Board(filter, normalization) => {
+        match self.rendering {
+            Rendering::Board(filter, normalization) => {
                 settings.splatting.filter = filter;
                 settings.splatting.normalization = normalization;
             }
-            Way::BySurfel => settings.splatting.normalization = Normalization::Surfel,
-            Way::WithoutColour => settings.shading = Shading::Normal,
-            Way::SinglePass => {
+            Rendering::BySurfel => settings.splatting.normalization = Normalization::Surfel,
+            Rendering::WithoutColour => settings.shading = Shading::Normal,
+            Rendering::SinglePass => {
                 settings.splatting.visibility = Visibility::Nearest;
                 settings.splatting.normalization = Normalization::None;
             }
@@ -344,9 +362,9 @@ impl Row {
 
     fn plan(&self, source: &str) -> Option<Plan> {
         let settings = self.settings().ok()?;
-        let scene = match self.way {
+        let scene = match self.rendering {
             // A uniform plane that fills the picture.
-            Way::Board(..) => "scene:relief?height=0",
+            Rendering::Board(..) => "scene:relief?height=0",
             _ => "scene:bumpy-sphere",
         };
         let plan = plan(Suite::Papers, Experiment::PaperTables, scene, self.points, self.size);

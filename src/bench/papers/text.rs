@@ -1,11 +1,11 @@
 //! The papers' part of the results on a terminal.
 
 use super::claims::{self, Claim};
-use super::effects::{self, Effect, Margin, value};
+use super::effects::{self, Difference, Effect, value};
 use super::runs;
 use super::tables::{self, Row, Table, Unit};
+use crate::bench::format;
 use crate::bench::record::{Experiment, Run, Session};
-use crate::bench::show;
 use crate::bench::table::WIDTH;
 use std::fmt::Write;
 
@@ -46,10 +46,9 @@ fn effect_lines(text: &mut String, effect: &Effect, runs: &[&Run]) {
     }
     let _ = writeln!(text, "\n{} · {}", effect.title, effect.source);
     for run in runs {
-        let told = effect
-            .metrics
-            .iter()
-            .filter_map(|(name, label)| Some(format!("{label} {}", show::significant(value(run, name)?, 3))));
+        let told = effect.metrics.iter().filter_map(|(name, label)| {
+            Some(format!("{label} {}", format::significant(value(run, name)?, 3)))
+        });
         let what = told.chain(run.refused.clone()).collect::<Vec<_>>().join(", ");
         let _ = writeln!(text, "  {:<52}  {what}", side(run, runs));
     }
@@ -62,7 +61,7 @@ fn effect_lines(text: &mut String, effect: &Effect, runs: &[&Run]) {
 /// What distinguishes a run from the others: implementation, settings and scene parameters in which they differ.
 pub(in crate::bench) fn side(run: &Run, runs: &[&Run]) -> String {
     let mut words = vec![run.implementation.label()];
-    let settings = show::told_of(run, show::differing(runs.iter().copied()));
+    let settings = format::run_settings(run, format::differing_settings(runs.iter().copied()));
     words.extend(Some(settings).filter(|text| !text.is_empty()));
     if runs.iter().any(|other| other.scene != run.scene) {
         words.extend(run.scene.split_once('?').map(|(_, parameters)| parameters.to_owned()));
@@ -79,10 +78,10 @@ pub(in crate::bench) fn verdicts(effect: &Effect, runs: &[&Run]) -> Vec<(String,
         let [a, b] = [more, less].map(|run| value(run, expected.metric).unwrap_or_default());
         let label = effect.metrics.iter().find(|(name, _)| *name == expected.metric);
         let label = label.map_or(expected.metric, |(_, label)| label);
-        let [a, b] = [a, b].map(|number| show::significant(number, 3));
+        let [a, b] = [a, b].map(|number| format::significant(number, 3));
         let margin = match expected.by {
-            Margin::Times(factor) => format!("{} times", show::significant(factor, 3)),
-            Margin::Plus(amount) => format!("{} more", show::significant(amount, 3)),
+            Difference::Times(factor) => format!("{} times", format::significant(factor, 3)),
+            Difference::Plus(amount) => format!("{} more", format::significant(amount, 3)),
         };
         let [more, less] = [more, less].map(|run| side(run, runs));
         Some((format!("{label} {a} of {more} against {b} of {less} (at least {margin})"), holds))
@@ -91,7 +90,7 @@ pub(in crate::bench) fn verdicts(effect: &Effect, runs: &[&Run]) -> Vec<(String,
 }
 
 fn claim_lines(text: &mut String, session: &Session) {
-    let mut title = Some("\ncosts: times as long, frames taking turns: median (least–greatest)");
+    let mut title = Some("\ncosts: ratio of times, alternating frames: median (min–max)");
     for claim in &claims::ALL {
         let runs = runs(&session.runs, Experiment::Claims, claim.name);
         let [_, dearer] = runs[..] else { continue };
@@ -104,7 +103,7 @@ fn claim_lines(text: &mut String, session: &Session) {
 
 /// The ratio of times, with its range.
 pub(in crate::bench) fn ratio(run: &Run) -> String {
-    let number = |value| show::significant(value, 3);
+    let number = |value| format::significant(value, 3);
     match (&run.refused, run.ratio) {
         (Some(why), _) => format!("refused: {why}"),
         (_, Some(ratio)) => {
@@ -126,14 +125,14 @@ fn table_lines(text: &mut String, table: &Table, runs: &[&Run], session: &Sessio
     }
     let Table { source, hardware, unit, note, .. } = table;
     let _ =
-        writeln!(text, "\n{source} · {} · there {hardware} · here {}", unit.name(), show::machine(session));
+        writeln!(text, "\n{source} · {} · there {hardware} · here {}", unit.name(), format::machine(session));
     let _ = writeln!(text, "  {note}");
     let columns = table.columns.iter().map(|name| format!("{name:>12}")).collect::<String>();
     let _ =
         writeln!(text, "  {:<32}{:>10}{:>12}{columns}{:>18}  here by", "model", "points", "size px", "here");
     for row in table.rows {
         let numbers = row.published.iter().map(|number| format!("{number:>12}")).collect::<String>();
-        let (points, size) = (show::count(row.points), show::size(row.size));
+        let (points, size) = (format::count(row.points), format::size(row.size));
         let [here, by] = here(row, *unit, runs);
         let _ = writeln!(text, "  {:<32}{points:>10}{size:>12}{numbers}{here:>18}  {by}", row.model);
     }
@@ -145,10 +144,10 @@ pub(in crate::bench) fn here(row: &Row, unit: Unit, runs: &[&Run]) -> [String; 2
         return ["".into(), format!("none: {why}")];
     }
     let Some(run) = row.run(runs) else { return ["".into(), "not measured".into()] };
-    match (&run.refused, unit.told(run)) {
+    match (&run.refused, unit.format(run)) {
         (Some(why), _) => ["".into(), format!("refused: {why}")],
         (None, Some(number)) => {
-            [number, format!("{}, {}", run.implementation.label(), show::scene(&run.scene))]
+            [number, format!("{}, {}", run.implementation.label(), format::scene(&run.scene))]
         }
         (None, None) => ["".into(), "not timed".into()],
     }

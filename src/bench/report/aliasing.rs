@@ -1,8 +1,8 @@
 //! Aliasing: texture finer than pixels, with the low-pass filter off and on.
 
 use super::page::{Page, grouped, titled};
+use crate::bench::format;
 use crate::bench::record::{Experiment, Run, Session};
-use crate::bench::show;
 use maud::{Markup, html};
 use std::io;
 
@@ -12,7 +12,8 @@ pub fn content(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>
     let groups = grouped(runs, |run| (&run.scene, run.size));
     Ok((!groups.is_empty()).then(|| html! {
         p {
-            "Texture far above what pixels can show. Without the low-pass filter each pixel shows whatever sample it meets; with it, their mean."
+            "A texture far above the Nyquist frequency of the pixels. Without the low-pass filter each pixel shows single samples; with it, "
+            "their weighted mean."
         }
         @for ((scene, size), runs) in &groups {
             h3 { (titled(scene, *size)) }
@@ -23,7 +24,7 @@ pub fn content(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>
 }
 
 fn table(runs: &[&Run]) -> Markup {
-    let differing = show::differing(runs.iter().copied());
+    let differing = format::differing_settings(runs.iter().copied());
     let metrics = ["rmse", "flip", "ssim", "flicker"];
     let taken: Vec<&str> =
         metrics.into_iter().filter(|name| runs.iter().any(|run| run.metric(name).is_some())).collect();
@@ -36,12 +37,12 @@ fn table(runs: &[&Run]) -> Markup {
                 th.number scope="col" { "ms" } th scope="col" { "RMSE" }
             } }
             tbody { @for run in runs { tr {
-                td { (run.implementation.label()) } td { (show::told_of(run, differing)) }
-                td.number { (show::count(run.points)) }
+                td { (run.implementation.label()) } td { (format::run_settings(run, differing)) }
+                td.number { (format::count(run.points)) }
                 @for name in &taken {
-                    td.number { (run.metric(name).map(|value| show::significant(value, 3)).unwrap_or_default()) }
+                    td.number { (run.metric(name).map(|value| format::significant(value, 3)).unwrap_or_default()) }
                 }
-                td.number { (run.ms().map(show::ms).unwrap_or_default()) }
+                td.number { (run.ms().map(format::ms).unwrap_or_default()) }
                 td.bar { @if let Some(why) = &run.refused { (why) } @else if let Some(rmse) = run.rmse() {
                     span style=(format!("width:{:.1}%", 100.0 * rmse / worst.max(f64::MIN_POSITIVE))) {}
                 } }
@@ -61,13 +62,13 @@ fn sentences(runs: &[&Run]) -> Vec<String> {
         let (Some(off), Some(on)) = (off, on) else { continue };
         if let (Some(without), Some(with)) = (off.rmse(), on.rmse()) {
             said.push(format!(
-                "{implementation}, {} points: RMSE {} with the low-pass off, {} with H {} ({}): {} times as much without it.",
-                show::count(points),
-                show::significant(without, 3),
-                show::significant(with, 3),
+                "{implementation}, {} points: RMSE {} without low-pass filter, {} with H {} ({}): {} times as much without it.",
+                format::count(points),
+                format::significant(without, 3),
+                format::significant(with, 3),
                 on.settings.lowpass,
                 on.settings.widen,
-                show::significant(without / with.max(f64::MIN_POSITIVE), 2),
+                format::significant(without / with.max(f64::MIN_POSITIVE), 2),
             ));
         }
     }

@@ -1,8 +1,8 @@
 //! Times relative to the CPU baseline.
 
 use super::page::{Page, grouped, titled};
+use crate::bench::format;
 use crate::bench::record::{Experiment, Run, Session};
-use crate::bench::show;
 use maud::{Markup, html};
 use std::io;
 
@@ -12,12 +12,12 @@ pub fn content(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>
     if runs.is_empty() {
         return Ok(None);
     }
-    let differing = show::differing(runs.iter().copied());
+    let differing = format::differing_settings(runs.iter().copied());
     let groups = grouped(runs, |run| (&run.scene, run.size, run.points));
     Ok(Some(html! {
         p {
-            "The CPU baseline is a plain native renderer: float32, points in Morton order, every core, no Vulkan. Its own rows are 1×. "
-            "Multiples travel from machine to machine where milliseconds do not."
+            "The CPU baseline is a plain native renderer: float32, points in Morton order, all cores, no Vulkan. Its own rows are 1×. "
+            "Relative times are comparable between machines; milliseconds are not."
         }
         div.scroll { table {
             thead { tr {
@@ -25,7 +25,7 @@ pub fn content(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>
                 th.number scope="col" { "range, ms" } th.number scope="col" { "× baseline" }
             } }
             @for ((scene, size, points), runs) in &groups { tbody {
-                tr.group { th colspan="5" scope="rowgroup" { (titled(scene, *size)) ", " (show::count(*points)) " points" } }
+                tr.group { th colspan="5" scope="rowgroup" { (titled(scene, *size)) ", " (format::count(*points)) " points" } }
                 @for run in runs { (row(run, differing)) }
             } }
         } }
@@ -36,12 +36,12 @@ fn row(run: &Run, differing: [bool; 7]) -> Markup {
     let time = run.time.as_ref();
     html! { tr {
         td { (run.implementation.label()) }
-        td { (show::told_of(run, differing)) }
+        td { (format::run_settings(run, differing)) }
         @if let Some(why) = &run.refused { td colspan="3" { "refused: " (why) } }
         @else if let Some(time) = time {
-            td.number { (show::ms(time.wall.median)) }
-            td.number { (show::ms(time.wall.min)) "–" (show::ms(time.wall.max)) }
-            td.number { (time.baseline_ratio.map(show::baseline_ratio).unwrap_or_default()) }
+            td.number { (format::ms(time.wall.median)) }
+            td.number { (format::ms(time.wall.min)) "–" (format::ms(time.wall.max)) }
+            td.number { (time.baseline_ratio.map(format::baseline_ratio).unwrap_or_default()) }
         } @else { td colspan="3" { "not timed" } }
     } }
 }

@@ -1,10 +1,10 @@
 //! Effects that the papers' figures show: both sides of each, with the metrics that distinguish them.
 
 use super::page::Page;
+use crate::bench::format;
 use crate::bench::papers::effects::{ALL, Effect, value};
 use crate::bench::papers::{runs, side, verdicts};
 use crate::bench::record::{Experiment, Images, Run, Session};
-use crate::bench::show;
 use maud::{Markup, html};
 use std::io;
 
@@ -14,7 +14,7 @@ pub fn content(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>
     let measured: Vec<_> = measured.filter(|(_, runs)| !runs.is_empty()).collect();
     Ok((!measured.is_empty()).then(|| {
         html! {
-            p { "Each is a scene of the bench's own in which one way to splat goes wrong and another does not." }
+            p { "Each effect is shown by a built-in scene in which one way to splat fails and another does not." }
             @for (effect, runs) in &measured { (one(effect, runs, &session.images)) }
         }
     }))
@@ -37,7 +37,7 @@ fn one(effect: &Effect, runs: &[&Run], all_images: &[Images]) -> Markup {
             }
         }
         ul.verdicts { @for (words, holds) in verdicts(effect, runs) {
-            li.grave[!holds] { @if holds { "As in the paper: " } @else { "Not as in the paper: " } (words) "." }
+            li.fault[!holds] { @if holds { "As in the paper: " } @else { "Not as in the paper: " } (words) "." }
         } }
     }
 }
@@ -52,7 +52,8 @@ fn picture(png: &str, name: &str, numbers: &[String]) -> Markup {
 }
 
 fn numbers(effect: &Effect, run: &Run) -> Vec<String> {
-    let number =
-        |(name, label): &(&str, &str)| Some(format!("{label}: {}", show::significant(value(run, name)?, 3)));
+    let number = |(name, label): &(&str, &str)| {
+        Some(format!("{label}: {}", format::significant(value(run, name)?, 3)))
+    };
     effect.metrics.iter().filter_map(number).collect()
 }

@@ -1,10 +1,10 @@
 //! Hard cases: float32 against float64.
 
 use super::page::Page;
-use super::plot::{Alarm, Bar, Line, Plot, Scale, Style};
-use crate::bench::hard::EXCUSED;
+use super::plot::{Limit, Line, Mark, Plot, Scale, Style};
+use crate::bench::format;
+use crate::bench::hard::BEYOND_FLOAT32;
 use crate::bench::record::{Faults, Float64Error, Implementation, Session, Sweep, SweepPoint};
-use crate::bench::show;
 use maud::{Markup, html};
 use std::io;
 
@@ -30,23 +30,23 @@ pub fn content(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Mark
         plots.push(html! { div {
             @if let Some(plot) = &drawn { (plot) } @else { h3 { (title(sweep)) } }
             p.caption { (sweep.description) }
-            @if words.iter().all(|(grave, _)| !grave) {
-                p.fine { "No fault at any point, and no pixel that is wrong where float32 can be right." }
+            @if words.iter().all(|(fault, _)| !fault) {
+                p.fine { "No fault at any point, and no pixel out of tolerance where float32 suffices." }
             }
             @if words.len() <= FEW {
-                ul.faults { @for (grave, text) in &words { li.grave[*grave] { (text) } } }
+                ul.faults { @for (fault, text) in &words { li.fault[*fault] { (text) } } }
             } @else {
-                details { summary { (words.len()) " remarks" } ul.faults { @for (grave, text) in &words { li.grave[*grave] { (text) } } } }
+                details { summary { (words.len()) " remarks" } ul.faults { @for (fault, text) in &words { li.fault[*fault] { (text) } } } }
             }
         } });
     }
     Ok((!plots.is_empty()).then(|| html! {
         p {
-            "The largest difference from the float64 reference, outside the pixels that hang on a decision within rounding: colour and α "
-            "(absolute), normal (each coordinate), depth (relative). Dashed lines are the bars, 2·10⁻⁴ and 10⁻⁵. Crosses at the top mark "
-            "points with faults, or with wrong pixels where float32 can be right, and those that were refused."
+            "The largest difference from the float64 reference, without pixels whose decisions rounding can flip: colour and α (absolute), "
+            "normal (each coordinate), depth (relative). Dashed lines are the tolerances, 2·10⁻⁴ and 10⁻⁵. Crosses at the top mark points "
+            "with faults, points with pixels out of tolerance where float32 suffices, and refused points."
         }
-        @if methods(session).len() > 1 { p { "Lines are of " (methods(session)[0]) "; what the other methods are off by is in the table below." } }
+        @if methods(session).len() > 1 { p { "Lines show " (methods(session)[0]) "; the table below has the other methods." } }
         div.plots { @for plot in &plots { (plot) } }
         @if methods(session).len() > 1 { (by_method(session)) }
     }))
@@ -68,7 +68,7 @@ fn by_method(session: &Session) -> Markup {
     let methods = methods(session);
     html! {
         h3 { "By every method" }
-        p { "The largest difference of colour where float32 can be right, and the pixels that are wrong there, if any." }
+        p { "The largest difference of colour where float32 suffices, and the number of pixels out of tolerance there, if any." }
         div.scroll { table {
             thead { tr { th scope="col" { "case" } @for method in &methods { th.number scope="col" { (method) } } } }
             tbody { @for sweep in &session.sweeps { tr {
@@ -84,13 +84,13 @@ fn by_method(session: &Session) -> Markup {
 
 fn worst(points: &[&SweepPoint]) -> String {
     let made = || points.iter().filter(|point| point.refused.is_none());
-    let held = || made().filter(|point| !point.note.starts_with(EXCUSED));
-    let colour = show::largest(held().map(|point| point.float64_error.colour));
+    let held = || made().filter(|point| !point.note.starts_with(BEYOND_FLOAT32));
+    let colour = format::largest(held().map(|point| point.float64_error.colour));
     let wrong: u64 = held().map(|point| point.float64_error.failed_pixels).sum();
     match (made().count(), wrong) {
         (0, _) => String::new(),
-        (_, 0) => show::significant(colour, 2),
-        _ => format!("{}, {wrong} px wrong", show::significant(colour, 2)),
+        (_, 0) => format::significant(colour, 2),
+        _ => format!("{}, {wrong} px failed", format::significant(colour, 2)),
     }
 }
 
@@ -111,7 +111,7 @@ fn plot(sweep: &Sweep) -> Plot {
             let points = own.map(|point| [point.value, of(&point.float64_error)]).collect();
             let label = match implementations.len() {
                 1 => (*name).to_owned(),
-                _ => format!("{name}, {}", show::apart(implementation, &implementations)),
+                _ => format!("{name}, {}", format::distinct_label(implementation, &implementations)),
             };
             let style = Style {
                 colour: number,
@@ -123,16 +123,16 @@ fn plot(sweep: &Sweep) -> Plot {
             lines.push(Line::new(label, style, points));
         }
     }
-    let bars = vec![
-        Bar { y: 2e-4, label: "colour, normal: 2·10⁻⁴".into(), colour: None },
-        Bar { y: 1e-5, label: "depth: 10⁻⁵".into(), colour: None },
+    let limits = vec![
+        Limit { y: 2e-4, label: "colour, normal: 2·10⁻⁴".into(), colour: None },
+        Limit { y: 1e-5, label: "depth: 10⁻⁵".into(), colour: None },
     ];
     let across = if sweep.logarithmic { Scale::Log } else { Scale::Linear };
     let axes = [(sweep.parameter.as_str(), across), ("largest difference", Scale::Log)];
-    let alarm = |point: &SweepPoint| Alarm { x: point.value, grave: point.refused.is_none() };
-    let told = sweep.points.iter().filter(|point| is_grave(point) || point.refused.is_some());
-    let alarms = told.map(alarm).collect();
-    Plot::of(format!("hard-{}", sweep.name), title(sweep), axes, lines).with(bars, alarms)
+    let mark = |point: &SweepPoint| Mark { x: point.value, fault: point.refused.is_none() };
+    let told = sweep.points.iter().filter(|point| is_fault(point) || point.refused.is_some());
+    let marks = told.map(mark).collect();
+    Plot::of(format!("hard-{}", sweep.name), title(sweep), axes, lines).with(limits, marks)
 }
 
 fn implementations(sweep: &Sweep) -> Vec<&Implementation> {
@@ -147,8 +147,8 @@ fn implementations(sweep: &Sweep) -> Vec<&Implementation> {
 }
 
 /// Pixels out of tolerance are no fault where float32 cannot agree; a hole always is.
-fn is_grave(point: &SweepPoint) -> bool {
-    let wrong = point.float64_error.failed_pixels > 0 && !point.note.starts_with(EXCUSED);
+fn is_fault(point: &SweepPoint) -> bool {
+    let wrong = point.float64_error.failed_pixels > 0 && !point.note.starts_with(BEYOND_FLOAT32);
     point.refused.is_none() && (wrong || !point.faults.is_none())
 }
 
@@ -156,8 +156,8 @@ fn is_grave(point: &SweepPoint) -> bool {
 fn words(sweep: &Sweep) -> Vec<(bool, String)> {
     let told = sweep.points.iter().filter_map(|point| {
         let what = remarks(point);
-        let place = format!("{} at {}", point.implementation.label(), show::significant(point.value, 6));
-        (!what.is_empty()).then(|| (is_grave(point), format!("{place}: {}", what.join(", "))))
+        let place = format!("{} at {}", point.implementation.label(), format::significant(point.value, 6));
+        (!what.is_empty()).then(|| (is_fault(point), format!("{place}: {}", what.join(", "))))
     });
     told.collect()
 }
@@ -168,7 +168,7 @@ fn remarks(point: &SweepPoint) -> Vec<String> {
     }
     let Faults { non_finite, uncovered, overcovered } = point.faults;
     let counts = [
-        (point.float64_error.failed_pixels, "wrong"),
+        (point.float64_error.failed_pixels, "failed"),
         (non_finite, "NaN or infinite"),
         (uncovered, "uncovered"),
         (overcovered, "wrongly covered"),

@@ -1,8 +1,8 @@
 //! Images beside the truth and the perceived difference.
 
 use super::page::{Page, titled};
+use crate::bench::format;
 use crate::bench::record::{Experiment, Images, Run, Session};
-use crate::bench::show;
 use maud::{Markup, html};
 use std::io;
 
@@ -15,8 +15,8 @@ pub fn content(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>
     let all: Vec<_> = session.images.iter().enumerate().filter(|(index, _)| !elsewhere(*index)).collect();
     Ok((!all.is_empty()).then(|| html! {
         p {
-            "From left to right: the truth, the picture, and FLIP's map of the difference that a viewer sees who flips between them, from "
-            "black (none) through red to pale yellow (most)."
+            "From left to right: the truth, the picture, and FLIP's map of the perceived difference, from black (none) through red to pale "
+            "yellow (most)."
         }
         @for &(index, images) in &all {
             figure.images {
@@ -45,12 +45,12 @@ fn words<'r>(images: &Images, runs: impl Iterator<Item = &'r Run>) -> Markup {
 fn caption(run: &Run) -> String {
     let mut words = vec![
         run.implementation.label(),
-        format!("{} points", show::count(run.points)),
-        show::told_of(run, [true, true, true, false, false, false, false]),
+        format!("{} points", format::count(run.points)),
+        format::run_settings(run, [true, true, true, false, false, false, false]),
     ];
     let metrics = [("rmse", "RMSE"), ("flip", "FLIP"), ("iou", "IoU")];
     let known = metrics.iter().filter_map(|(name, label)| Some((label, run.metric(name)?)));
-    words.extend(known.map(|(label, value)| format!("{label} {}", show::significant(value, 3))));
-    words.extend(run.ms().map(|ms| format!("{} ms", show::ms(ms))));
+    words.extend(known.map(|(label, value)| format!("{label} {}", format::significant(value, 3))));
+    words.extend(run.ms().map(|ms| format!("{} ms", format::ms(ms))));
     words.join(", ")
 }

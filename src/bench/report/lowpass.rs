@@ -2,8 +2,8 @@
 
 use super::page::{Page, grouped, titled};
 use super::plot::{Line, Plot, Scale, Style};
+use crate::bench::format;
 use crate::bench::record::{Experiment, Run, RunSettings, Session};
-use crate::bench::show;
 use maud::{Markup, html};
 use std::io;
 
@@ -16,8 +16,8 @@ pub fn content(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Mark
     for ((scene, size, points, implementation), runs) in
         grouped(runs, |run| (&run.scene, run.size, run.points, &run.implementation))
     {
-        let title = format!("{}, {} points", titled(scene, size), show::count(points));
-        let name = format!("lowpass-{}-{points}-{}", show::scene(scene), implementation.label());
+        let title = format!("{}, {} points", titled(scene, size), format::count(points));
+        let name = format!("lowpass-{}-{points}-{}", format::scene(scene), implementation.label());
         let error = lines(&runs, Run::rmse);
         let time = lines(&runs, Run::ms);
         let axes = |y| [("low-pass variance H, px²", Scale::Linear), (y, Scale::Linear)];
@@ -37,8 +37,8 @@ pub fn content(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Mark
     }
     Ok((!groups.is_empty()).then(|| html! {
         p {
-            "The attribute footprint is widened by H; at H = 0 by just enough that each splat owns a pixel centre. F is the kernel's "
-            "cut-off in σ. " em { "all" } ": all splats are widened; " em { "small" } ": only what is smaller than the filter, up to it."
+            "The attribute footprint is widened by H; at H = 0 by just enough that each splat covers a pixel centre. F is the kernel's "
+            "cut-off in σ. " em { "all" } ": all splats are widened; " em { "small" } ": only splats smaller than the filter, up to its size."
         }
         @for group in &groups { (group) }
     }))
@@ -71,27 +71,27 @@ fn sentence(runs: &[&Run]) -> String {
         known.min_by(|a, b| a.1.total_cmp(&b.1))
     };
     let Some((best, rmse)) = least(Run::rmse) else { return "No error was measured.".into() };
-    let number = |value| show::significant(value, 3);
+    let number = |value| format::significant(value, 3);
     let mut text = format!("Least error: {} with RMSE {}{}", named(best), number(rmse), timed(best));
     let fastest = least(Run::ms);
     if let Some((run, _)) = fastest {
         let error = run.rmse().map(|rmse| format!(" with RMSE {}", number(rmse))).unwrap_or_default();
         text += &format!("; least time: {}{error}{}", named(run), timed(run));
     }
-    let shipped = RunSettings::defaults();
+    let defaults = RunSettings::defaults();
     let same = |run: &&&Run| {
         let RunSettings { cutoff, lowpass, widen, .. } = &run.settings;
-        (*cutoff, *lowpass, widen) == (shipped.cutoff, shipped.lowpass, &shipped.widen)
+        (*cutoff, *lowpass, widen) == (defaults.cutoff, defaults.lowpass, &defaults.widen)
     };
     let Some(own) = runs.iter().find(same) else {
-        return text + ". The shipped defaults are not among them.";
+        return text + ". The default settings were not measured.";
     };
-    text += &format!(". The shipped defaults, {}", named(own));
+    text += &format!(". The default settings, {}", named(own));
     if let Some(error) = own.rmse() {
         text += &format!(", have RMSE {}, {} the least", number(error), more(error, rmse));
     }
     if let (Some(ms), Some((_, least))) = (own.ms(), fastest) {
-        text += &format!(", and take {} ms, {} the fastest", show::ms(ms), more(ms, least));
+        text += &format!(", and take {} ms, {} the fastest", format::ms(ms), more(ms, least));
     }
     text + "."
 }
@@ -102,13 +102,13 @@ fn named(run: &Run) -> String {
 }
 
 fn timed(run: &Run) -> String {
-    run.ms().map(|ms| format!(" in {} ms", show::ms(ms))).unwrap_or_default()
+    run.ms().map(|ms| format!(" in {} ms", format::ms(ms))).unwrap_or_default()
 }
 
 /// By how much `value` exceeds `least`.
 fn more(value: f64, least: f64) -> String {
     match 100.0 * (value / least - 1.0) {
         none if none < 0.05 => "as".into(),
-        percent => format!("{} % above", show::significant(percent, 2)),
+        percent => format!("{} % above", format::significant(percent, 2)),
     }
 }

@@ -1,8 +1,8 @@
 //! Several sessions side by side, by times relative to the CPU baseline: the only ones that can be compared.
 
 use super::page::titled;
+use crate::bench::format;
 use crate::bench::record::{Experiment, Results, Run, Session};
-use crate::bench::show;
 use maud::{Markup, html};
 
 /// Scene, size, points, implementation and settings.
@@ -20,18 +20,18 @@ pub fn section(results: &Results) -> Option<Markup> {
         }
     }
     (!rows.is_empty()).then(|| html! {
-        p { "Medians as multiples of the CPU baseline on the same machine." }
+        p { "Median times relative to the CPU baseline on the same machine." }
         div.scroll { table {
             thead { tr {
                 th scope="col" { "scene" } th.number scope="col" { "points" } th scope="col" { "implementation" }
-                @for session in sessions { th.number scope="col" { (show::machine(session)) } }
+                @for session in sessions { th.number scope="col" { (format::machine(session)) } }
             } }
             tbody { @for row in &rows { tr {
                 @let (scene, size, points, implementation, settings) = row;
-                td { (titled(scene, *size)) } td.number { (show::count(*points)) }
+                td { (titled(scene, *size)) } td.number { (format::count(*points)) }
                 td { (implementation) @if !settings.is_empty() { ", " (settings) } }
                 @for session in sessions {
-                    td.number { (multiple(session, row).map(show::baseline_ratio).unwrap_or_else(|| "–".into())) }
+                    td.number { (multiple(session, row).map(format::baseline_ratio).unwrap_or_else(|| "–".into())) }
                 }
             } } }
         } }
@@ -43,7 +43,7 @@ fn runs(session: &Session) -> impl Iterator<Item = &Run> {
 }
 
 fn key(run: &Run) -> Key<'_> {
-    let settings = show::told_of(run, [true, true, true, true, true, false, false]);
+    let settings = format::run_settings(run, [true, true, true, true, true, false, false]);
     (&run.scene, run.size, run.points, run.implementation.label(), settings)
 }
 

@@ -3,8 +3,9 @@
 mod aliasing;
 mod baseline;
 mod budget;
+mod convergence;
 mod effects;
-mod glance;
+mod glossary;
 mod hard;
 mod images;
 mod lowpass;
@@ -12,11 +13,10 @@ mod machines;
 mod page;
 mod papers;
 mod plot;
-mod points;
-mod points_alone;
 mod provenance;
+mod pull_push;
 mod scaling;
-mod terms;
+mod summary;
 
 use super::record::Results;
 use crate::error::{Error, Result};

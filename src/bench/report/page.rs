@@ -2,11 +2,11 @@
 
 use super::plot::{Plot, Style, draw};
 use super::{
-    aliasing, baseline, budget, effects, glance, hard, images, lowpass, machines, papers, points, provenance,
-    scaling, terms,
+    aliasing, baseline, budget, convergence, effects, glossary, hard, images, lowpass, machines, papers,
+    provenance, scaling, summary,
 };
+use crate::bench::format;
 use crate::bench::record::{Implementation, Results, Run, Session};
-use crate::bench::show;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use std::io;
 
@@ -33,15 +33,15 @@ struct Section {
 }
 
 const SECTIONS: [Section; 12] = [
-    Section { id: "glance", title: "At a glance", content: glance::content },
+    Section { id: "summary", title: "Summary", content: summary::content },
     Section { id: "budget", title: "Time against error", content: budget::content },
-    Section { id: "points", title: "Error against points", content: points::content },
+    Section { id: "convergence", title: "Error against points", content: convergence::content },
     Section { id: "lowpass", title: "Low-pass", content: lowpass::content },
     Section { id: "aliasing", title: "Aliasing", content: aliasing::content },
     Section { id: "scaling", title: "Scaling", content: scaling::content },
     Section { id: "baseline", title: "Baseline", content: baseline::content },
-    Section { id: "effects", title: "What the papers show", content: effects::content },
-    Section { id: "papers", title: "What the papers measured", content: papers::content },
+    Section { id: "effects", title: "Effects of the papers", content: effects::content },
+    Section { id: "papers", title: "Times of the papers", content: papers::content },
     Section { id: "hard", title: "Hard cases", content: hard::content },
     Section { id: "images", title: "Images", content: images::content },
     Section { id: "provenance", title: "Provenance", content: provenance::content },
@@ -69,7 +69,7 @@ impl<'a> Page<'a> {
             sections.extend(self.section(&section)?.map(|body| (section.id, section.title, body)));
         }
         sections.extend(machines::section(self.results).map(|body| ("machines", "Machines", body)));
-        sections.extend(terms::section(self.results).map(|body| ("terms", "Terms", body)));
+        sections.extend(glossary::section(self.results).map(|body| ("glossary", "Glossary", body)));
         let page = html! {
             (DOCTYPE)
             html lang="en" {
@@ -86,7 +86,7 @@ impl<'a> Page<'a> {
                         @for (id, title, body) in &sections {
                             section id=(id) { h2 { (title) } (body) }
                         }
-                        @if sections.is_empty() { p { "Nothing has been measured yet: these results hold no run." } }
+                        @if sections.is_empty() { p { "These results contain no runs: measure with `surfel bench`." } }
                     }
                 }
             }
@@ -100,9 +100,9 @@ impl<'a> Page<'a> {
             ul.sessions {
                 @for session in &self.results.sessions {
                     li {
-                        strong { (show::machine(session)) } ", "
-                        (show::day(&session.provenance)) ", suites " (session.provenance.suites.join(", "))
-                        ", commit " code { (show::commit(&session.provenance.commit)) }
+                        strong { (format::machine(session)) } ", "
+                        (format::day(&session.provenance)) ", suites " (session.provenance.suites.join(", "))
+                        ", commit " code { (format::commit(&session.provenance.commit)) }
                     }
                 }
             }
@@ -131,7 +131,7 @@ impl<'a> Page<'a> {
         for session in &self.results.sessions {
             if let Some(content) = (section.content)(self, session)? {
                 contents.push(html! {
-                    @if several { h3.session { (show::machine(session)) ", " (show::day(&session.provenance)) } }
+                    @if several { h3.session { (format::machine(session)) ", " (format::day(&session.provenance)) } }
                     @if let Some(stale) = self.stale(session) { p.stale { (stale) } }
                     (content)
                 });
@@ -141,7 +141,7 @@ impl<'a> Page<'a> {
     }
 
     fn stale(&self, session: &Session) -> Option<String> {
-        show::stale(&session.provenance, self.code, self.commit)
+        format::stale(&session.provenance, self.code, self.commit)
     }
 
     /// Line style of an implementation.
@@ -190,5 +190,5 @@ pub fn grouped<'r, K: PartialEq>(
 
 /// A scene and a size, as a title.
 pub fn titled(scene: &str, size: [u32; 2]) -> String {
-    format!("{}, {}", show::scene(scene), show::size(size))
+    format!("{}, {}", format::scene(scene), format::size(size))
 }

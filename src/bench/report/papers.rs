@@ -1,11 +1,11 @@
 //! The papers' costs and tables beside the measured ones.
 
 use super::page::Page;
+use crate::bench::format;
 use crate::bench::papers::claims::{self, Claim};
 use crate::bench::papers::tables::{self, Table};
 use crate::bench::papers::{here, published, ratio, runs};
 use crate::bench::record::{Experiment, Run, Session};
-use crate::bench::show;
 use maud::{Markup, html};
 use std::io;
 
@@ -25,12 +25,11 @@ pub fn content(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>
 fn table_of_costs(costs: &[(&Claim, Vec<&Run>)]) -> Markup {
     html! {
         p {
-            "Times as long, of frames that take turns: median, least and greatest. Beside the error of either side, its RMSE against the "
-            "exact picture."
+            "Ratio of times of alternating frames: median, minimum and maximum; with the time and the RMSE of either side."
         }
         div.scroll { table {
             thead { tr {
-                th scope="col" { "what, against what" } th scope="col" { "published" } th.number scope="col" { "here" }
+                th scope="col" { "comparison" } th scope="col" { "published" } th.number scope="col" { "here" }
                 th.number scope="col" { "ms" } th.number scope="col" { "RMSE" }
             } }
             tbody { @for (claim, runs) in costs { tr {
@@ -44,7 +43,8 @@ fn table_of_costs(costs: &[(&Claim, Vec<&Run>)]) -> Markup {
 
 /// A number of the more expensive side against that of the cheaper one.
 fn pair(runs: &[&Run], of: impl Fn(&Run) -> Option<f64>) -> String {
-    let numbers: Option<Vec<_>> = runs.iter().rev().map(|run| Some(show::significant(of(run)?, 3))).collect();
+    let numbers: Option<Vec<_>> =
+        runs.iter().rev().map(|run| Some(format::significant(of(run)?, 3))).collect();
     numbers.map(|numbers| numbers.join(" : ")).unwrap_or_default()
 }
 
@@ -54,7 +54,7 @@ fn beside(table: &Table, session: &Session) -> Markup {
     html! {
         h3 { (table.source) @if !table.rows.is_empty() { ", " (table.unit.name()) } }
         p {
-            @if !table.hardware.is_empty() { "There: " (table.hardware) ". Here: " (show::machine(session)) ". " }
+            @if !table.hardware.is_empty() { "There: " (table.hardware) ". Here: " (format::machine(session)) ". " }
             (table.note)
         }
         @if !table.rows.is_empty() { div.scroll { table.passes {
@@ -65,7 +65,7 @@ fn beside(table: &Table, session: &Session) -> Markup {
             } }
             tbody { @for row in table.rows { tr {
                 @let [number, by] = here(row, table.unit, &runs);
-                td { (row.model) } td.number { (show::count(row.points)) } td.number { (show::size(row.size)) }
+                td { (row.model) } td.number { (format::count(row.points)) } td.number { (format::size(row.size)) }
                 @for i in 0..columns { td.number { (row.published[i]) } }
                 td.number { strong { (number) } } td { (by) }
             } } }

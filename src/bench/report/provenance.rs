@@ -1,8 +1,8 @@
 //! Provenance of the figures.
 
 use super::page::Page;
+use crate::bench::format;
 use crate::bench::record::{Provenance, Run, Session};
-use crate::bench::show;
 use crate::settings::Choice;
 use maud::{Markup, html};
 use std::collections::BTreeSet;
@@ -22,13 +22,13 @@ fn origin(session: &Session) -> Markup {
     html! {
         dl {
             dt { "command" } dd { code { (provenance.command) } }
-            dt { "date" } dd { (provenance.date.strftime("%Y-%m-%d %H:%M UTC")) ", took " (show::significant(provenance.seconds, 3)) " s" }
-            dt { "program" } dd { "surfel " (provenance.version) ", commit " code { (show::commit(&provenance.commit)) } }
+            dt { "date" } dd { (provenance.date.strftime("%Y-%m-%d %H:%M UTC")) ", took " (format::significant(provenance.seconds, 3)) " s" }
+            dt { "program" } dd { "surfel " (provenance.version) ", commit " code { (format::commit(&provenance.commit)) } }
             @if let Some(gpu) = &provenance.device {
                 dt { "device" } dd { (gpu.name) }
-                dt { "driver" } dd { (gpu.driver) @if gpu.validated { " (under the validation layers, which take time)" } }
-            } @else { dt { "device" } dd { "none: no Vulkan device was used" } }
-            dt { "processor" } dd { (host.cpu) ", " (host.cores) " logical cores, " (show::mib(host.memory)) " MiB of memory" }
+                dt { "driver" } dd { (gpu.driver) @if gpu.validated { " (with validation layers, which take time)" } }
+            } @else { dt { "device" } dd { "none" } }
+            dt { "processor" } dd { (host.cpu) ", " (host.cores) " logical cores, " (format::mib(host.memory)) " MiB of memory" }
             dt { "system" } dd { (host.system) }
             dt { "frames" } dd { (frames(&session.runs)) }
             dt { "truth" } dd { (truth(&session.runs)) }
@@ -47,8 +47,8 @@ fn frames(runs: &[Run]) -> String {
         }
     };
     format!(
-        "{} a run after {} that warm up and do not count; times are the median, the least and the greatest of the wall clock as a \
-         caller waits for a frame, without reading it back",
+        "{} per run after {} warm-up frames; times are median, minimum and maximum of the caller's wall time of a frame, without \
+         read-back",
         counts(|time| time.frames),
         counts(|time| time.warmup)
     )
@@ -59,13 +59,13 @@ fn truth(runs: &[Run]) -> String {
     let filters: BTreeSet<&str> = errors().map(|error| error.filter.as_str()).collect();
     let worst = errors().map(|error| error.truth_rms).fold(0.0, f64::max);
     if filters.is_empty() {
-        "nothing was compared with the truth".into()
+        "no run was compared with the truth".into()
     } else {
         format!(
-            "rays against the surface itself in float64, filtered by {}; its own standard error is at most {} (root mean square over a \
-             picture)",
+            "rays traced against the exact surface in float64, filtered by {}; its own standard error is at most {} (root mean square over \
+             a picture)",
             filters.into_iter().map(filter).collect::<Vec<_>>().join(" and "),
-            show::significant(worst, 2)
+            format::significant(worst, 2)
         )
     }
 }
@@ -92,18 +92,18 @@ fn passes(session: &Session) -> Markup {
     html! { @if !timed.is_empty() {
         details {
             summary { "Times of the passes: " (timed.len()) " runs" }
-            p { "Median and range by the device's timestamps, ms; wall clock and processor time of all threads beside them. H is the low-pass variance in px², F the cut-off in σ." }
+            p { "Median and range by the device's timestamps, ms, with wall time and processor time of all threads. H is the low-pass variance in px², F the cut-off in σ." }
             div.scroll { table.passes {
                 thead { tr {
-                    th scope="col" { "figure" } th scope="col" { "scene" } th.number scope="col" { "points" } th scope="col" { "size" }
+                    th scope="col" { "experiment" } th scope="col" { "scene" } th.number scope="col" { "points" } th scope="col" { "size" }
                     th scope="col" { "implementation" } th scope="col" { "settings" }
                     @for name in &names { th.number scope="col" { (name) } }
                     th.number scope="col" { "device" } th.number scope="col" { "wall" } th.number scope="col" { "CPU" }
                 } }
                 tbody { @for (run, time) in &timed { tr {
-                    td { (run.experiment.name()) } td { (show::scene(&run.scene)) }
-                    td.number { (show::count(run.points)) } td { (show::size(run.size)) }
-                    td { (run.implementation.label()) } td { (show::told_of(run, [true, true, true, false, true, false, false])) }
+                    td { (run.experiment.name()) } td { (format::scene(&run.scene)) }
+                    td.number { (format::count(run.points)) } td { (format::size(run.size)) }
+                    td { (run.implementation.label()) } td { (format::run_settings(run, [true, true, true, false, true, false, false])) }
                     @for name in &names {
                         @let pass = time.passes.iter().find(|pass| pass.name == *name);
                         td.number { @if let Some(pass) = pass { (spread(pass.ms)) } }
@@ -117,5 +117,5 @@ fn passes(session: &Session) -> Markup {
 }
 
 fn spread(times: crate::frame::times::Statistics) -> Markup {
-    html! { (show::ms(times.median)) small { " " (show::ms(times.min)) "–" (show::ms(times.max)) } }
+    html! { (format::ms(times.median)) small { " " (format::ms(times.min)) "–" (format::ms(times.max)) } }
 }

@@ -2,14 +2,14 @@
 
 use super::page::{Page, grouped};
 use super::plot::{Line, Plot, Scale, Style};
-use super::points_alone;
+use super::pull_push;
+use crate::bench::format;
 use crate::bench::record::{Experiment, Run, Session};
-use crate::bench::show;
 use maud::{Markup, html};
 use std::io;
 
 /// Horizontal axis of a scaling experiment.
-struct Over {
+struct ScalingAxis {
     experiment: Experiment,
     name: &'static str,
     title: &'static str,
@@ -17,22 +17,22 @@ struct Over {
     of: fn(&Run) -> Option<f64>,
 }
 
-const FIGURES: [Over; 3] = [
-    Over {
+const FIGURES: [ScalingAxis; 3] = [
+    ScalingAxis {
         experiment: Experiment::ScalingPoints,
         name: "points",
         title: "number of points",
         axis: "points",
         of: |run| Some(run.points as f64),
     },
-    Over {
+    ScalingAxis {
         experiment: Experiment::ScalingSize,
         name: "size",
         title: "size of the picture",
         axis: "size of the picture, px",
         of: |run| Some(f64::from(run.size[0]) * f64::from(run.size[1])),
     },
-    Over {
+    ScalingAxis {
         experiment: Experiment::ScalingOverlap,
         name: "overlap",
         title: "overlap",
@@ -53,27 +53,27 @@ pub fn content(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Mark
                 continue;
             }
             let (growth, fixed) = (growth(&lines), fixed(&runs, over));
-            let title = format!("Time over {}: {}", over.title, show::scene(scene));
-            let name = format!("scaling-{}-{}", over.name, show::scene(scene));
+            let title = format!("Time over {}: {}", over.title, format::scene(scene));
+            let name = format!("scaling-{}-{}", over.name, format::scene(scene));
             let axes = [(over.axis, Scale::Log), ("time of a frame, ms", Scale::Log)];
             let plot = page.plot(Plot::of(name, title, axes, lines))?;
             plots.push(html! { div { (plot) p.caption { (fixed) " " (growth) } } });
         }
     }
-    plots.extend(points_alone::plots(page, session)?);
+    plots.extend(pull_push::plots(page, session)?);
     Ok((!plots.is_empty()).then(|| {
         html! {
-            p { "Straight lines are power laws; what grows in proportion has exponent 1." }
+            p { "Straight lines are power laws; proportional growth has exponent 1." }
             div.plots { @for plot in &plots { (plot) } }
         }
     }))
 }
 
-fn lines(page: &Page<'_>, runs: &[&Run], over: &Over) -> Vec<Line> {
+fn lines(page: &Page<'_>, runs: &[&Run], over: &ScalingAxis) -> Vec<Line> {
     let mut lines: Vec<Line> = Vec::new();
-    let settings = show::differing(runs.iter().copied());
+    let settings = format::differing_settings(runs.iter().copied());
     for ((implementation, setting), runs) in
-        grouped(runs.iter().copied(), |run| (&run.implementation, show::told_of(run, settings)))
+        grouped(runs.iter().copied(), |run| (&run.implementation, format::run_settings(run, settings)))
     {
         let mut points: Vec<_> = runs.iter().filter_map(|run| Some([(over.of)(run)?, run.ms()?])).collect();
         points.sort_by(|a, b| a[0].total_cmp(&b[0]));
@@ -93,13 +93,13 @@ fn lines(page: &Page<'_>, runs: &[&Run], over: &Over) -> Vec<Line> {
 }
 
 /// Values that all runs share, beside the scene.
-fn fixed(runs: &[&Run], over: &Over) -> String {
+fn fixed(runs: &[&Run], over: &ScalingAxis) -> String {
     let (first, mut words) = (runs[0], Vec::new());
     if over.experiment != Experiment::ScalingPoints && runs.iter().all(|run| run.points == first.points) {
-        words.push(format!("{} points", show::count(first.points)));
+        words.push(format!("{} points", format::count(first.points)));
     }
     if over.experiment != Experiment::ScalingSize && runs.iter().all(|run| run.size == first.size) {
-        words.push(format!("{} px", show::size(first.size)));
+        words.push(format!("{} px", format::size(first.size)));
     }
     if words.is_empty() { String::new() } else { words.join(", ") + "." }
 }

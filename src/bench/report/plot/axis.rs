@@ -1,6 +1,6 @@
 //! Axes of plots: scales, ranges and ticks.
 
-use crate::bench::show::{scientific, significant};
+use crate::bench::format::{scientific, significant};
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
 use std::ops::Range;
 

@@ -1,9 +1,9 @@
 //! Drawing of plots.
 
-use super::labels::{Area, Taken, width};
+use super::labels::{Area, Occupied, width};
 use super::legend::{self, Legend};
-use super::style::{ALARM, GREY, GRID, INK};
-use super::{Axis, Bar, Kind, Line, Plot, Style, svg};
+use super::style::{FAULT, GREY, GRID, INK};
+use super::{Axis, Kind, Limit, Line, Plot, Style, svg};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
@@ -42,7 +42,8 @@ pub fn draw(plot: &Plot) -> std::io::Result<[String; 2]> {
     let fine = size.map(|length| length * FINE as u32);
     paint(plot, &legend, SVGBackend::with_string(&mut drawing, fine.into()))
         .map_err(|error| std::io::Error::other(error.to_string()))?;
-    Ok([svg::Use::File, svg::Use::Inline].map(|usage| svg::dress(plot, &drawing, size, FINE as u32, usage)))
+    Ok([svg::Use::File, svg::Use::Inline]
+        .map(|usage| svg::with_head(plot, &drawing, size, FINE as u32, usage)))
 }
 
 fn paint(plot: &Plot, legend: &Legend, backend: SVGBackend<'_>) -> Drawn {
@@ -55,9 +56,9 @@ fn paint(plot: &Plot, legend: &Legend, backend: SVGBackend<'_>) -> Drawn {
     let area = root.clone().shrink((0, top * FINE), (WIDTH * FINE, BODY * FINE));
     let mut chart = axes(plot, &area)?;
     names(&root, plot, top)?;
-    let mut taken = Taken::default();
-    for bar in &plot.bars {
-        limit(&mut chart, &root, bar)?;
+    let mut occupied = Occupied::default();
+    for limit in &plot.limits {
+        draw_limit(&mut chart, &root, limit)?;
     }
     for kind in [Kind::Band, Kind::Faint, Kind::Joined, Kind::Loose] {
         for line in plot.lines.iter().rev().filter(|line| line.style.kind == kind) {
@@ -65,13 +66,13 @@ fn paint(plot: &Plot, legend: &Legend, backend: SVGBackend<'_>) -> Drawn {
             for (x, y) in known(line).map(|point| chart.backend_coord(&point)) {
                 mark(&root, [x, y], &line.style)?;
                 let reach = (RADIUS * 1.2) as i32 * FINE;
-                taken.take([x - reach, y - reach, x + reach, y + reach]);
+                occupied.add([x - reach, y - reach, x + reach, y + reach]);
             }
         }
     }
     let within = [LEFT, top + ABOVE, WIDTH - RIGHT, top + BODY - BELOW].map(|length| length * FINE);
-    notes(&chart, &root, plot, &mut taken, within)?;
-    alarms(&chart, &root, plot, within)?;
+    notes(&chart, &root, plot, &mut occupied, within)?;
+    marks(&chart, &root, plot, within)?;
     root.present()
 }
 
@@ -171,19 +172,25 @@ pub(super) fn mark(root: &Root<'_>, [x, y]: [i32; 2], style: &Style) -> Drawn {
 }
 
 /// Draws a dashed horizontal line, with its label above the right end.
-fn limit(chart: &mut Chart<'_, '_>, root: &Root<'_>, bar: &Bar) -> Drawn {
+fn draw_limit(chart: &mut Chart<'_, '_>, root: &Root<'_>, limit: &Limit) -> Drawn {
     let ends = chart.x_range();
-    let colour = bar.colour.map_or(GREY, |colour| Style::nth(colour).rgb());
+    let colour = limit.colour.map_or(GREY, |colour| Style::nth(colour).rgb());
     let style = colour.stroke_width(FINE as u32 * 3 / 2);
-    let points = [(ends.start, bar.y), (ends.end, bar.y)];
+    let points = [(ends.start, limit.y), (ends.end, limit.y)];
     chart.draw_series(DashedLineSeries::new(points, 3 * FINE, 3 * FINE, style))?;
     let (x, y) = chart.backend_coord(&points[1]);
     let style = font(SMALL, colour, HPos::Right, VPos::Bottom);
-    root.draw_text(&bar.label, &style, (x - 4 * FINE, y - FINE))
+    root.draw_text(&limit.label, &style, (x - 4 * FINE, y - FINE))
 }
 
 /// Notes beside points, where there is room.
-fn notes(chart: &Chart<'_, '_>, root: &Root<'_>, plot: &Plot, taken: &mut Taken, within: Area) -> Drawn {
+fn notes(
+    chart: &Chart<'_, '_>,
+    root: &Root<'_>,
+    plot: &Plot,
+    occupied: &mut Occupied,
+    within: Area,
+) -> Drawn {
     for line in &plot.lines {
         for (point, note) in line.points.iter().zip(&line.notes) {
             if note.is_empty() || point.iter().any(|value| value.is_nan()) {
@@ -191,7 +198,7 @@ fn notes(chart: &Chart<'_, '_>, root: &Root<'_>, plot: &Plot, taken: &mut Taken,
             }
             let at = chart.backend_coord(&(point[0], point[1]));
             let size = [width(note, SMALL) * FINE, SMALL as i32 * FINE];
-            if let Some([left, top, ..]) = taken.first_free(beside(at, size), within) {
+            if let Some([left, top, ..]) = occupied.first_free(beside(at, size), within) {
                 let style = font(SMALL, INK, HPos::Left, VPos::Top);
                 let ground = [(left, top), (left + size[0], top + size[1])];
                 root.draw(&Rectangle::new(ground, WHITE.mix(0.8).filled()))?;
@@ -220,19 +227,19 @@ fn beside((x, y): (i32, i32), [wide, high]: [i32; 2]) -> [Area; 9] {
 }
 
 /// Crosses on the upper edge.
-fn alarms(chart: &Chart<'_, '_>, root: &Root<'_>, plot: &Plot, within: Area) -> Drawn {
+fn marks(chart: &Chart<'_, '_>, root: &Root<'_>, plot: &Plot, within: Area) -> Drawn {
     let y = within[1] + 5 * FINE;
-    for alarm in plot.alarms.iter().filter(|alarm| !alarm.x.is_nan()) {
-        let (x, _) = chart.backend_coord(&(alarm.x, chart.y_range().end));
-        cross(root, [x, y], alarm.grave)?;
+    for mark in plot.marks.iter().filter(|mark| !mark.x.is_nan()) {
+        let (x, _) = chart.backend_coord(&(mark.x, chart.y_range().end));
+        cross(root, [x, y], mark.fault)?;
     }
     Ok(())
 }
 
 /// Draws a cross at a position in fine units.
-pub(super) fn cross(root: &Root<'_>, [x, y]: [i32; 2], grave: bool) -> Drawn {
+pub(super) fn cross(root: &Root<'_>, [x, y]: [i32; 2], fault: bool) -> Drawn {
     let arm = 4 * FINE;
-    let colour = if grave { ALARM } else { GREY };
+    let colour = if fault { FAULT } else { GREY };
     for slope in [-arm, arm] {
         let ends = [(x - arm, y - slope), (x + arm, y + slope)];
         root.draw(&PathElement::new(ends, colour.stroke_width(2 * FINE as u32)))?;

@@ -19,11 +19,11 @@ pub fn width(text: &str, font: f64) -> i32 {
 
 /// Occupied areas.
 #[derive(Debug, Default)]
-pub struct Taken(Vec<Area>);
+pub struct Occupied(Vec<Area>);
 
-impl Taken {
+impl Occupied {
     /// Marks an area as occupied.
-    pub fn take(&mut self, area: Area) {
+    pub fn add(&mut self, area: Area) {
         self.0.push(area);
     }
 
@@ -60,12 +60,12 @@ mod tests {
     #[test]
     fn labels_do_not_collide() {
         let within = [0, 0, 100, 100];
-        let mut taken = Taken::default();
-        taken.take([40, 40, 60, 60]);
+        let mut occupied = Occupied::default();
+        occupied.add([40, 40, 60, 60]);
         let places = [[50, 50, 70, 60], [60, 40, 80, 50], [0, 0, 5, 5]];
-        assert_eq!(taken.first_free(places, within), Some(places[1]));
-        assert_eq!(taken.first_free(places, within), Some(places[2]));
-        assert_eq!(taken.first_free([[90, 0, 101, 5]], within), None);
+        assert_eq!(occupied.first_free(places, within), Some(places[1]));
+        assert_eq!(occupied.first_free(places, within), Some(places[2]));
+        assert_eq!(occupied.first_free([[90, 0, 101, 5]], within), None);
     }
 
     #[test]

@@ -36,9 +36,9 @@ pub fn lay_out(plot: &Plot) -> Legend {
     let labelled = plot.lines.iter().filter(|line| !line.label.is_empty());
     let mut entries: Vec<Entry> =
         labelled.map(|line| Entry { label: short(&line.label), look: Ok(line.style) }).collect();
-    for (grave, label) in [(true, "fault"), (false, "refused")] {
-        if plot.alarms.iter().any(|alarm| alarm.grave == grave) {
-            entries.push(Entry { label: label.into(), look: Err(grave) });
+    for (fault, label) in [(true, "fault"), (false, "refused")] {
+        if plot.marks.iter().any(|mark| mark.fault == fault) {
+            entries.push(Entry { label: label.into(), look: Err(fault) });
         }
     }
     if entries.len() == 1 {
@@ -66,7 +66,7 @@ fn sample(root: &Root<'_>, look: Result<Style, bool>, [x, y]: [i32; 2]) -> Drawn
     let middle = (left + right) / 2;
     let style = match look {
         Ok(style) => style,
-        Err(grave) => return cross(root, [middle, y], grave),
+        Err(fault) => return cross(root, [middle, y], fault),
     };
     match (style.kind, style.dashed) {
         (Kind::Band, _) => line([left, right], GREY.mix(0.28).stroke_width(9 * fine))?,

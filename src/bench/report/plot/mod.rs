@@ -27,18 +27,18 @@ pub struct Plot {
     /// In the order of the legend; earlier ones are drawn on top.
     pub lines: Vec<Line>,
     /// Horizontal limits.
-    pub bars: Vec<Bar>,
+    pub limits: Vec<Limit>,
     /// Marks on the upper edge: faults and refusals.
-    pub alarms: Vec<Alarm>,
+    pub marks: Vec<Mark>,
 }
 
 /// A mark on the upper edge.
 #[derive(Clone, Copy, Debug)]
-pub struct Alarm {
+pub struct Mark {
     /// Position on the horizontal axis.
     pub x: f64,
     /// Whether it is a fault; else a refusal.
-    pub grave: bool,
+    pub fault: bool,
 }
 
 /// A series of points.
@@ -56,7 +56,7 @@ pub struct Line {
 
 /// A horizontal limit.
 #[derive(Clone, Debug)]
-pub struct Bar {
+pub struct Limit {
     /// Position on the vertical axis.
     pub y: f64,
     /// Label.
@@ -76,19 +76,19 @@ impl Plot {
     /// A plot whose axes cover its lines.
     pub fn of(name: String, title: String, [x, y]: [(&str, Scale); 2], lines: Vec<Line>) -> Self {
         let description = description(&lines, x.0, y.0);
-        let (bars, alarms) = (Vec::new(), Vec::new());
+        let (limits, marks) = (Vec::new(), Vec::new());
         let axis = |(label, scale), i| Axis::over(label, scale, values(&lines, i));
         let (x, y) = (axis(x, 0), axis(y, 1));
-        Self { name, title, description, x, y, lines, bars, alarms }
+        Self { name, title, description, x, y, lines, limits, marks }
     }
 
     /// Adds limits and marks, and extends the axes to cover them.
-    pub fn with(mut self, bars: Vec<Bar>, alarms: Vec<Alarm>) -> Self {
-        let places = values(&self.lines, 0).chain(alarms.iter().map(|alarm| alarm.x));
+    pub fn with(mut self, limits: Vec<Limit>, marks: Vec<Mark>) -> Self {
+        let places = values(&self.lines, 0).chain(marks.iter().map(|mark| mark.x));
         self.x = Axis::over(self.x.label.clone(), self.x.scale(), places);
-        let heights = values(&self.lines, 1).chain(bars.iter().map(|bar| bar.y));
+        let heights = values(&self.lines, 1).chain(limits.iter().map(|limit| limit.y));
         self.y = Axis::over(self.y.label.clone(), self.y.scale(), heights);
-        (self.bars, self.alarms) = (bars, alarms);
+        (self.limits, self.marks) = (limits, marks);
         self
     }
 
@@ -109,7 +109,7 @@ fn description(lines: &[Line], x: &str, y: &str) -> String {
     let mut text = format!("{y} over {x}.");
     for line in lines.iter().filter(|line| !line.label.is_empty()) {
         if let (Some([x0, y0]), Some([x1, y1])) = (line.points.first(), line.points.last()) {
-            let [x0, y0, x1, y1] = [x0, y0, x1, y1].map(|value| crate::bench::show::significant(*value, 3));
+            let [x0, y0, x1, y1] = [x0, y0, x1, y1].map(|value| crate::bench::format::significant(*value, 3));
             text += &format!(" {}: from {y0} at {x0} to {y1} at {x1}.", line.label);
         }
     }

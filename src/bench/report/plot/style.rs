@@ -22,7 +22,7 @@ pub const GREY: RGBColor = RGBColor(110, 116, 126);
 /// Grid lines at ticks, and between them.
 pub const GRID: [RGBColor; 2] = [RGBColor(222, 225, 230), RGBColor(241, 242, 245)];
 /// Faults.
-pub const ALARM: RGBColor = RGBColor(190, 20, 40);
+pub const FAULT: RGBColor = RGBColor(190, 20, 40);
 
 /// Style of a line.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

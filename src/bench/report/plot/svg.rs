@@ -12,7 +12,7 @@ pub enum Use {
 }
 
 /// Replaces the head by one that suits its use, and adds title and description. `drawing` has `size` px times `scale`.
-pub fn dress(plot: &Plot, drawing: &str, size: [u32; 2], scale: u32, usage: Use) -> String {
+pub fn with_head(plot: &Plot, drawing: &str, size: [u32; 2], scale: u32, usage: Use) -> String {
     let body = drawing.split_once('>').map_or("", |(_, body)| body);
     let [width, height] = size;
     let [wide, high] = size.map(|length| length * scale);

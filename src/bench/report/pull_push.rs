@@ -3,8 +3,8 @@
 
 use super::page::{Page, grouped};
 use super::plot::{Line, Plot, Scale, Style};
+use crate::bench::format;
 use crate::bench::record::{Experiment, Implementation, Run, Session};
-use crate::bench::show;
 use crate::settings::methods::{Method, perspective_ewa, pull_push};
 use maud::{Markup, html};
 use std::io;
@@ -29,8 +29,8 @@ pub fn plots(page: &mut Page<'_>, session: &Session) -> io::Result<Vec<Markup>> 
             if lines.is_empty() {
                 continue;
             }
-            let title = format!("Passes of {}: {}", method.name, show::scene(scene));
-            let name = format!("passes-{}-{}", method.name, show::scene(scene));
+            let title = format!("Passes of {}: {}", method.name, format::scene(scene));
+            let name = format!("passes-{}-{}", method.name, format::scene(scene));
             let axes = [("points", Scale::Log), ("time of a pass, ms", Scale::Log)];
             let filled = session.runs.iter().find(|run| {
                 run.experiment == Experiment::Filled
@@ -80,12 +80,12 @@ fn against_filled(runs: &[&Run], filled: Option<&Run>) -> String {
     if least > most {
         return String::new();
     }
-    let range = format!("Pull and push take {} to {} ms", show::ms(least), show::ms(most));
+    let range = format!("Pull and push take {} to {} ms", format::ms(least), format::ms(most));
     match filled.and_then(over_pixels).filter(|full| *full > 0.0) {
         Some(full) => format!(
             "{range}, at most {} times the {} ms that they take where every pixel shows a point.",
-            show::significant(most / full, 2),
-            show::ms(full)
+            format::significant(most / full, 2),
+            format::ms(full)
         ),
         None => range + ".",
     }
@@ -105,11 +105,11 @@ fn against_splats(runs: &[&Run], splats: &[&Run]) -> String {
         (Some((least, _)), None) => {
             format!(
                 "It is faster than {name} at every number of points measured, from {}.",
-                show::count(*least)
+                format::count(*least)
             )
         }
         (_, Some(Some((from, _)))) => {
-            format!("It is faster than {name} from {} points on.", show::count(*from))
+            format!("It is faster than {name} from {} points on.", format::count(*from))
         }
         (_, Some(None)) => format!("It is not faster than {name} at the most points measured."),
     }

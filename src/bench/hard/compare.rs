@@ -10,7 +10,7 @@ use crate::verify::reference::{Admissible, Expected};
 ///
 /// # Errors
 /// The picture has another size, or lacks depth or normals.
-pub fn judge(expected: &Expected, picture: &Picture) -> Result<(Float64Error, Faults)> {
+pub fn compare(expected: &Expected, picture: &Picture) -> Result<(Float64Error, Faults)> {
     let (picture, non_finite) = finite(picture);
     let found = expected.compare(&picture)?;
     let mut faults = Faults { non_finite, ..Default::default() };

@@ -7,7 +7,7 @@ use super::record::{Experiment, Run, Session};
 
 /// A run that was timed and compared with the truth.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Offer<'a> {
+pub struct Candidate<'a> {
     /// The run.
     pub run: &'a Run,
     /// Median wall time of a frame, ms.
@@ -24,12 +24,12 @@ pub struct Column<'a> {
     /// Width and height, px.
     pub size: [u32; 2],
     /// The [`front`] of its runs.
-    pub front: Vec<Offer<'a>>,
+    pub front: Vec<Candidate<'a>>,
 }
 
 /// Recommendations of one session; times of other sessions are of other machines.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Advice<'a> {
+pub struct Recommendations<'a> {
     /// One per scene and size, in the order of the runs.
     pub columns: Vec<Column<'a>>,
     /// [`budgets`] of time, ms.
@@ -38,7 +38,7 @@ pub struct Advice<'a> {
     pub errors: Vec<f64>,
 }
 
-impl<'a> Advice<'a> {
+impl<'a> Recommendations<'a> {
     /// From the budget experiment's runs, without the CPU baseline; none if there are no such runs.
     pub fn of(session: &'a Session) -> Option<Self> {
         let mut columns: Vec<Column<'a>> = Vec::new();
@@ -47,7 +47,7 @@ impl<'a> Advice<'a> {
         for run in runs() {
             if !columns.iter().any(|column| column.scene == run.scene && column.size == run.size) {
                 let alike = runs().filter(|other| other.scene == run.scene && other.size == run.size);
-                columns.push(Column { scene: &run.scene, size: run.size, front: front(&offers(alike)) });
+                columns.push(Column { scene: &run.scene, size: run.size, front: front(&candidates(alike)) });
             }
         }
         columns.retain(|column| !column.front.is_empty());
@@ -58,35 +58,35 @@ impl<'a> Advice<'a> {
 }
 
 /// The runs that have a time and an error, both above 0.
-pub fn offers<'a>(runs: impl IntoIterator<Item = &'a Run>) -> Vec<Offer<'a>> {
-    let offer = |run: &'a Run| match (run.refused.is_none(), run.ms(), run.rmse()) {
-        (true, Some(ms), Some(rmse)) if rmse > 0.0 => Some(Offer { run, ms, rmse }),
+pub fn candidates<'a>(runs: impl IntoIterator<Item = &'a Run>) -> Vec<Candidate<'a>> {
+    let candidate = |run: &'a Run| match (run.refused.is_none(), run.ms(), run.rmse()) {
+        (true, Some(ms), Some(rmse)) if rmse > 0.0 => Some(Candidate { run, ms, rmse }),
         _ => None,
     };
-    runs.into_iter().filter_map(offer).collect()
+    runs.into_iter().filter_map(candidate).collect()
 }
 
 /// The Pareto front: ascending in time, descending in error; the first of equal runs.
-pub fn front<'a>(offers: &[Offer<'a>]) -> Vec<Offer<'a>> {
-    let mut sorted = offers.to_vec();
+pub fn front<'a>(candidates: &[Candidate<'a>]) -> Vec<Candidate<'a>> {
+    let mut sorted = candidates.to_vec();
     sorted.sort_by(|a, b| a.ms.total_cmp(&b.ms).then(a.rmse.total_cmp(&b.rmse)));
     let mut least = f64::INFINITY;
-    sorted.retain(|offer| {
-        let better = offer.rmse < least;
-        least = least.min(offer.rmse);
+    sorted.retain(|candidate| {
+        let better = candidate.rmse < least;
+        least = least.min(candidate.rmse);
         better
     });
     sorted
 }
 
 /// The run of least error within `ms`; none if all take longer.
-pub fn within_time<'f, 'a>(front: &'f [Offer<'a>], ms: f64) -> Option<&'f Offer<'a>> {
-    front.iter().rev().find(|offer| offer.ms <= ms)
+pub fn within_time<'f, 'a>(front: &'f [Candidate<'a>], ms: f64) -> Option<&'f Candidate<'a>> {
+    front.iter().rev().find(|candidate| candidate.ms <= ms)
 }
 
 /// The fastest run with an RMSE of at most `rmse`; none if all have more.
-pub fn within_error<'f, 'a>(front: &'f [Offer<'a>], rmse: f64) -> Option<&'f Offer<'a>> {
-    front.iter().find(|offer| offer.rmse <= rmse)
+pub fn within_error<'f, 'a>(front: &'f [Candidate<'a>], rmse: f64) -> Option<&'f Candidate<'a>> {
+    front.iter().find(|candidate| candidate.rmse <= rmse)
 }
 
 /// Round budgets from the first one that some value meets to the first one that all meet: 1, 2 and 5 times powers of

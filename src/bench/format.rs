@@ -85,7 +85,7 @@ pub fn scene(name: &str) -> &str {
 }
 
 /// What distinguishes an implementation from the others: its variant if all have the same method.
-pub fn apart(implementation: &Implementation, all: &[&Implementation]) -> String {
+pub fn distinct_label(implementation: &Implementation, all: &[&Implementation]) -> String {
     let one = all.iter().all(|other| other.method == implementation.method);
     if one && !implementation.variant.is_empty() {
         implementation.variant.clone()
@@ -143,21 +143,21 @@ pub fn settings(setting: &RunSettings) -> [String; 7] {
 }
 
 /// The settings in which `runs` differ.
-pub fn differing<'a>(runs: impl IntoIterator<Item = &'a Run>) -> [bool; 7] {
+pub fn differing_settings<'a>(runs: impl IntoIterator<Item = &'a Run>) -> [bool; 7] {
     let all: Vec<_> = runs.into_iter().map(|run| settings(&run.settings)).collect();
     std::array::from_fn(|i| all.iter().any(|one| one[i] != all[0][i]))
 }
 
 /// The settings selected by `which`.
-pub fn told(setting: &RunSettings, which: [bool; 7]) -> String {
+pub fn selected_settings(setting: &RunSettings, which: [bool; 7]) -> String {
     let chosen = settings(setting).into_iter().zip(which).filter(|(_, asked)| *asked);
     chosen.map(|(text, _)| text).collect::<Vec<_>>().join(", ")
 }
 
 /// The settings of `run` selected by `which`; pull–push has neither filter nor kernel nor ε.
-pub fn told_of(run: &Run, which: [bool; 7]) -> String {
+pub fn run_settings(run: &Run, which: [bool; 7]) -> String {
     let splats = Method::named(&run.implementation.method).is_none_or(|method| method.pull_push.is_none());
-    told(&run.settings, std::array::from_fn(|i| which[i] && (splats || i >= 4)))
+    selected_settings(&run.settings, std::array::from_fn(|i| which[i] && (splats || i >= 4)))
 }
 
 #[cfg(test)]

@@ -1,28 +1,28 @@
 //! Summary: the best setting for each budget of time and of error.
 
 use super::page::{Page, titled};
-use crate::bench::advice::{Advice, Column, Offer, within_error, within_time};
+use crate::bench::format;
+use crate::bench::recommendations::{Candidate, Column, Recommendations, within_error, within_time};
 use crate::bench::record::{Run, RunSettings, Session};
-use crate::bench::show;
 use maud::{Markup, html};
 use std::io;
 
 /// Two tables: rows are budgets, columns are scenes.
 pub fn content(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>> {
-    let Some(advice) = Advice::of(session) else { return Ok(None) };
-    let Advice { columns, times, errors } = &advice;
-    let time = |budget: f64| format!("{} ms", show::ms(budget));
-    let error = |budget: f64| show::significant(budget, 2);
+    let Some(recommendations) = Recommendations::of(session) else { return Ok(None) };
+    let Recommendations { columns, times, errors } = &recommendations;
+    let time = |budget: f64| format!("{} ms", format::ms(budget));
+    let error = |budget: f64| format::significant(budget, 2);
     Ok(Some(html! {
         p.lead {
-            "Of the methods' runs, those on the Pareto front: none other is both faster and nearer to the truth. "
-            @if multiples(session) { "× is a multiple of the CPU baseline, a plain renderer on the CPU. " }
-            "Settings are named where they are not the method's own; the default method's are "
-            (unbroken(&show::told(&RunSettings::defaults(), NAMED))) "."
+            "The best of the methods' runs on the Pareto front: no other run is both faster and more exact. "
+            @if multiples(session) { "× is the time relative to the CPU baseline, a plain native renderer. " }
+            "Settings are listed where they differ from the method's defaults; those of the default method are "
+            (unbroken(&format::selected_settings(&RunSettings::defaults(), NAMED))) "."
         }
-        h3 { "Least error within a budget of time" }
+        h3 { "Least error within a time budget" }
         (table("ms a frame", columns, times, time, |column, ms| within_time(&column.front, ms), true))
-        h3 { "Least time within a budget of error" }
+        h3 { "Least time within an error budget" }
         (table("RMSE", columns, errors, error, |column, rmse| within_error(&column.front, rmse), false))
     }))
 }
@@ -35,12 +35,12 @@ fn table<'c, 'a>(
     columns: &'c [Column<'a>],
     budgets: &[f64],
     name: impl Fn(f64) -> String,
-    best: impl Fn(&'c Column<'a>, f64) -> Option<&'c Offer<'a>>,
+    best: impl Fn(&'c Column<'a>, f64) -> Option<&'c Candidate<'a>>,
     error_first: bool,
 ) -> Markup {
-    let mut before: Vec<Option<&Offer>> = vec![None; columns.len()];
+    let mut before: Vec<Option<&Candidate>> = vec![None; columns.len()];
     html! {
-        div.scroll { table.glance {
+        div.scroll { table.summary {
             thead { tr {
                 th scope="col" { "budget, " (unit) }
                 @for column in columns { th scope="col" { (titled(column.scene, column.size)) } }
@@ -51,8 +51,8 @@ fn table<'c, 'a>(
                     @let found = best(column, *budget);
                     @let same = found.is_some() && std::mem::replace(before, found) == found;
                     @match found {
-                        Some(offer) => { td.same[same] { (cell(offer, error_first)) } }
-                        None => { td.none { "none fits" } }
+                        Some(candidate) => { td.same[same] { (cell(candidate, error_first)) } }
+                        None => { td.none { "none" } }
                     }
                 }
             } } }
@@ -60,16 +60,16 @@ fn table<'c, 'a>(
     }
 }
 
-fn cell(offer: &Offer<'_>, error_first: bool) -> Markup {
-    let Offer { run, ms, rmse } = offer;
-    let multiple = run.time.as_ref().and_then(|time| time.baseline_ratio).map(show::baseline_ratio);
+fn cell(candidate: &Candidate<'_>, error_first: bool) -> Markup {
+    let Candidate { run, ms, rmse } = candidate;
+    let multiple = run.time.as_ref().and_then(|time| time.baseline_ratio).map(format::baseline_ratio);
     let time =
-        format!("{} ms", show::ms(*ms)) + &multiple.map(|text| format!(" ({text})")).unwrap_or_default();
-    let error = format!("RMSE {}", show::significant(*rmse, 2));
+        format!("{} ms", format::ms(*ms)) + &multiple.map(|text| format!(" ({text})")).unwrap_or_default();
+    let error = format!("RMSE {}", format::significant(*rmse, 2));
     let [first, second] = if error_first { [error, time] } else { [time, error] };
     html! {
         strong { (first) } span { (second) }
-        span { (show::count(run.points)) " points, " (run.implementation.label()) }
+        span { (format::count(run.points)) " points, " (run.implementation.label()) }
         @let settings = unusual(run);
         @if !settings.is_empty() { span { (settings) } }
     }
@@ -88,6 +88,6 @@ fn unbroken(list: &str) -> String {
 /// The settings that differ from the method's defaults.
 fn unusual(run: &Run) -> String {
     let (own, preset) =
-        (show::settings(&run.settings), show::settings(&RunSettings::preset(&run.implementation.method)));
-    show::told_of(run, std::array::from_fn(|i| NAMED[i] && own[i] != preset[i]))
+        (format::settings(&run.settings), format::settings(&RunSettings::preset(&run.implementation.method)));
+    format::run_settings(run, std::array::from_fn(|i| NAMED[i] && own[i] != preset[i]))
 }

@@ -2,9 +2,11 @@
 
 use super::page::{Page, grouped, titled};
 use super::plot::{Line, Plot, Scale, Style};
-use crate::bench::falling::{Fall, SHARE, SLOPE, Step, fall, left, steps};
+use crate::bench::convergence::{
+    Convergence, ErrorAt, SHARE, SLOPE, convergence, errors_by_points, residual,
+};
+use crate::bench::format;
 use crate::bench::record::{Error, Experiment, Implementation, Run, RunSettings, Session};
-use crate::bench::show;
 use maud::{Markup, html};
 use std::io;
 
@@ -17,13 +19,13 @@ pub fn content(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Mark
     let runs = session.runs.iter().filter(compared);
     let mut plots = Vec::new();
     for ((scene, size), runs) in grouped(runs, |run| (&run.scene, run.size)) {
-        if let Some((implementation, setting, runs)) = main(&runs) {
+        if let Some((implementation, setting, runs)) = most_points(&runs) {
             let axes = [("points", Scale::Log), ("RMSE and its terms, linear light", Scale::Log)];
-            let name = format!("error-points-{}-{}", show::scene(scene), show::size(size));
+            let name = format!("error-points-{}-{}", format::scene(scene), format::size(size));
             let largest = runs.iter().filter_map(|run| run.rmse()).fold(0.0, f64::max);
             let plot = Plot::of(name, titled(scene, size), axes, lines(&runs)).above(SHOWN * largest);
             let plot = page.plot(plot)?;
-            let how = show::told(setting, [true, true, true, true, false, false, false]);
+            let how = format::selected_settings(setting, [true, true, true, true, false, false, false]);
             plots.push(html! { div {
                 (plot)
                 p.caption { (implementation.label()) ", " (how) ". " (sentence(&runs)) }
@@ -32,11 +34,11 @@ pub fn content(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Mark
     }
     Ok((!plots.is_empty()).then(|| html! {
         p {
-            "silhouette² + inside² = RMSE². The others are how far the picture would move without their cause, and overlap with these "
-            "two: " a href="#terms" { "definitions" } ". The error counts as falling between two numbers of points if the slope of "
-            "log RMSE over log points is below " (show::significant(SLOPE, 2)) ", that is by a fifth or more with ten times the points. What is "
-            "left is put down to a cause that alone makes up " (show::significant(100.0 * SHARE, 2)) " % or more of the RMSE, otherwise to the "
-            "larger of silhouette and inside, which is texture, or shade where there is no texture."
+            "silhouette² + inside² = RMSE². The other terms are the change of the picture without their cause, and overlap with these "
+            "two: " a href="#glossary" { "definitions" } ". The error counts as falling between two numbers of points if the slope of "
+            "log RMSE over log points is below " (format::significant(SLOPE, 2)) ", a decrease by a fifth or more with ten times the points. The residual "
+            "error is attributed to a cause that makes up " (format::significant(100.0 * SHARE, 2)) " % or more of the RMSE, otherwise to the "
+            "larger of silhouette and inside; the latter is texture, or shading where there is no texture."
         }
         div.plots { @for plot in &plots { (plot) } }
     }))
@@ -44,13 +46,13 @@ pub fn content(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Mark
 
 /// The implementation and settings with the most numbers of points; of several those nearest to the defaults, then the
 /// first.
-fn main<'r>(runs: &[&'r Run]) -> Option<(&'r Implementation, &'r RunSettings, Vec<&'r Run>)> {
-    let shipped = show::settings(&RunSettings::defaults());
+fn most_points<'r>(runs: &[&'r Run]) -> Option<(&'r Implementation, &'r RunSettings, Vec<&'r Run>)> {
+    let defaults = format::settings(&RunSettings::defaults());
     let rank = |setting: &RunSettings, runs: &[&Run]| {
-        let unlike = show::settings(setting).iter().zip(&shipped).filter(|(a, b)| a != b).count();
+        let changed = format::settings(setting).iter().zip(&defaults).filter(|(a, b)| a != b).count();
         let terms =
             runs.iter().filter(|run| run.error.as_ref().is_some_and(|e| e.terms.hidden.is_some())).count();
-        (std::cmp::Reverse((terms, steps(runs.iter().copied()).len())), unlike)
+        (std::cmp::Reverse((terms, errors_by_points(runs.iter().copied()).len())), changed)
     };
     let groups = grouped(runs.iter().copied(), |run| (&run.implementation, &run.settings));
     let best = groups.into_iter().min_by_key(|((_, setting), runs)| rank(setting, runs));
@@ -87,26 +89,27 @@ fn lines(runs: &[&Run]) -> Vec<Line> {
 
 /// Where the error falls, where it stops falling, and the residual error.
 fn sentence(runs: &[&Run]) -> String {
-    let told = |step: Step| format!("{} ({})", show::count(step.points), show::significant(step.rmse, 2));
-    let (falls, end) = match fall(&steps(runs.iter().copied())) {
-        Fall::Unknown => return "One number of points alone tells no slope.".into(),
-        Fall::Nowhere => ("The error does not fall with the points".into(), None),
-        Fall::Until([from, to]) => (
+    let told =
+        |step: ErrorAt| format!("{} ({})", format::count(step.points), format::significant(step.rmse, 2));
+    let (falls, end) = match convergence(&errors_by_points(runs.iter().copied())) {
+        Convergence::Unknown => return "One number of points gives no slope.".into(),
+        Convergence::Nowhere => ("The error does not fall with the number of points".into(), None),
+        Convergence::StopsAt([from, to]) => (
             format!("The error falls from {} to {} points and stops falling there", told(from), told(to)),
             Some(to),
         ),
-        Fall::Throughout([from, to]) => (
+        Convergence::Continues([from, to]) => (
             format!("The error falls from {} to {} points, the most measured", told(from), told(to)),
             Some(to),
         ),
     };
     let run = end.and_then(|end| runs.iter().find(|run| run.points == end.points)).or(runs.last());
-    match run.and_then(|run| left(run)) {
-        Some(left) => {
-            let size = show::significant(left.size, 2);
+    match run.and_then(|run| residual(run)) {
+        Some(residual) => {
+            let size = format::significant(residual.size, 2);
             format!(
-                "{falls}; what is left is mostly {}, {size}. {}",
-                left.term,
+                "{falls}; the residual error is mostly {}, {size}. {}",
+                residual.term,
                 run.map(causes).unwrap_or_default()
             )
         }
@@ -122,7 +125,7 @@ fn causes(run: &&Run) -> String {
         ("precision", error.terms.precision),
         ("the truth", Some(error.truth_rms)),
     ];
-    let told = |(name, size): (&str, Option<f64>)| Some(format!("{name} {}", show::significant(size?, 2)));
+    let told = |(name, size): (&str, Option<f64>)| Some(format!("{name} {}", format::significant(size?, 2)));
     let list = causes.into_iter().filter_map(told).collect::<Vec<_>>().join(", ");
-    format!("Causes at {} points: {list}.", show::count(run.points))
+    format!("Causes at {} points: {list}.", format::count(run.points))
 }

@@ -19,32 +19,29 @@ fn terms() -> Markup {
         ),
         (
             "silhouette",
-            "the content of the RMSE in pixels that the truth or the picture covers in content, or one of both not at all",
+            "part of the RMSE: pixels that the truth or the picture covers in part, or only one of both covers",
         ),
         (
             "inside",
-            "the content in pixels that both cover wholly, texture or shade, as far as samples and filter lose it; silhouette² + inside² = RMSE²",
+            "part of the RMSE: pixels that both cover wholly, where sampling and filtering lose texture or shading; silhouette² + inside² = RMSE²",
         ),
         (
             "hidden surfels (ε)",
-            "by how much the surfels of hidden sheets change the picture: what ε lets through, and what visibility misses",
+            "change of the picture by surfels of hidden sheets: those that ε admits, and those that visibility misses",
         ),
         (
             "precision",
-            "by how much rounding to float32 changes the picture: its difference from the float64 reference",
+            "change of the picture by rounding to float32: its difference from the float64 reference",
         ),
-        (
-            "truth's own error",
-            "root mean square of the truth's standard error, estimated on the careful side",
-        ),
+        ("truth's own error", "root mean square of the truth's standard error, a conservative estimate"),
         ("overlap", "discs over a point of the surface, on average, before any filter widens them"),
         (
-            "vs f64",
-            "largest difference of linear colour and α from the float64 reference outside the pixels in doubt",
+            "float64 error",
+            "largest difference of linear colour and α from the float64 reference, without pixels whose decisions rounding can flip",
         ),
         (
             "× baseline",
-            "median wall time over that of a plain native renderer for the same scene, points and size with the shipped settings, in the same session",
+            "median wall time relative to the CPU baseline, a plain native renderer, for the same scene, points and size with default settings, in the same session",
         ),
     ];
     html! { dl { @for (term, meaning) in terms { dt { (term) } dd { (meaning) } } } }
@@ -73,9 +70,9 @@ fn meaning(name: &str) -> &str {
             "structural similarity of sRGB luma (Wang, Bovik, Sheikh, Simoncelli 2004), 11×11 Gaussian window; 1 is best"
         }
         "flip" => {
-            "mean of the difference that is seen when flipping between both (Andersson et al. 2020); 0 is best"
+            "mean of the difference perceived when flipping between both (Andersson et al. 2020); 0 is best"
         }
-        "flip-max" => "the largest difference that is seen when flipping between both",
+        "flip-max" => "largest difference perceived when flipping between both",
         "iou" => "intersection over union of the silhouettes, where α is ½ or more; 1 is best",
         "holes" => "pixels that the truth covers and the picture does not",
         "hole-regions" => "connected regions of holes",
@@ -91,7 +88,7 @@ fn meaning(name: &str) -> &str {
         "depth-p99" => "99th percentile of the differences of depths over the object's size",
         "depth-max" => "largest difference of depths over the object's size",
         name if name.starts_with("flicker") => {
-            "error that comes and goes over a slow camera path: its standard deviation as noise in time, by second differences \
+            "error that varies along a slow camera path: its standard deviation as noise in time, by second differences \
              (Gasser, Sroka, Jennen-Steinmetz 1986)"
         }
         _ => "see the library's metrics",
