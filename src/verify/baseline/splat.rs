@@ -89,8 +89,8 @@ impl<'a> Footprint<'a> {
 
         let wide = Shape { variance: attribute_variance(shape.variance, self.settings), ..shape };
         let (middle, half) = (centre + shift, half_box(&wide, self.settings.cutoff));
-        let seen = (middle + half).cmpge(Vec2::ZERO) & (middle - half).cmple(self.extent);
-        if !seen.all() {
+        let on_screen = (middle + half).cmpge(Vec2::ZERO) & (middle - half).cmple(self.extent);
+        if !on_screen.all() {
             return None;
         }
         let (anchor, pixel) = self.anchor(middle);

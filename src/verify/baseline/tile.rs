@@ -141,11 +141,11 @@ impl Tile {
         let attributes = frame.streams.attributes(splat.surfel);
         let [far, near] = frame.view.depth_keys.map(Vec4::splat);
         cover.each(|Block { index, distance, depth_key, inside }| {
-            let seen = inside
+            let passed = inside
                 & depth_key.cmpge(self.depth_keys[index])
                 & depth_key.cmpgt(far)
                 & depth_key.cmple(near);
-            let weight = Vec4::select(seen, amplitude * exp_half(distance), Vec4::ZERO);
+            let weight = Vec4::select(passed, amplitude * exp_half(distance), Vec4::ZERO);
             self.sums[0][index] += weight;
             for (sum, attribute) in self.sums[1..=COUNT].iter_mut().zip(attributes) {
                 sum[index] += weight * attribute;

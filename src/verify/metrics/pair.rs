@@ -121,7 +121,7 @@ fn check(picture: &Picture, side: Side) -> Result<()> {
     let normal = picture.normal.as_ref().map_or(pixels, Vec::len);
     if pixels == 0 || [picture.colour.len(), depth, normal] != [pixels; 3] {
         return Err(Error::Usage(format!(
-            "{name} is said to be {width}x{height} px and has {} colours, {depth} depths and {normal} normals: fill it",
+            "{name} claims to be {width}x{height} px and has {} colours, {depth} depths and {normal} normals: fill it",
             picture.colour.len()
         )));
     }
@@ -150,7 +150,7 @@ mod tests {
         assert!(Pair::new(&good, &good).is_ok());
         assert!(text(&good, &grey([3, 4])).starts_with("the picture is 4x3 px and the truth 3x4"));
         assert!(
-            text(&good, &Picture { size: [4, 2], ..good.clone() }).starts_with("the truth is said to be 4x2")
+            text(&good, &Picture { size: [4, 2], ..good.clone() }).starts_with("the truth claims to be 4x2")
         );
         assert!(text(&Picture { depth: Some(vec![]), ..good.clone() }, &good).contains("0 depths"));
         assert!(text(&grey([0, 5]), &grey([0, 5])).contains("0x5"));

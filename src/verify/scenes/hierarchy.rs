@@ -109,19 +109,19 @@ mod tests {
         let boxes: Vec<_> = (0..343).map(|i| [corner(i), corner(i) + 0.5]).collect();
         let hierarchy = Hierarchy::new(&boxes);
         let ray = Ray { origin: DVec3::new(-1.0, 2.25, 3.25), direction: DVec3::X };
-        let mut seen = Vec::new();
+        let mut visited = Vec::new();
         hierarchy.visit(&ray, f64::INFINITY, |item, limit| {
-            seen.push(item);
+            visited.push(item);
             limit
         });
         let expected: Vec<u32> = (0..7).map(|x| x + 7 * 2 + 49 * 3).collect();
-        assert_eq!(seen, expected, "near to far");
-        let mut seen = Vec::new();
+        assert_eq!(visited, expected, "near to far");
+        let mut visited = Vec::new();
         hierarchy.visit(&ray, 3.2, |item, limit| {
-            seen.push(item);
+            visited.push(item);
             limit
         });
-        assert_eq!(seen, expected[..3]);
+        assert_eq!(visited, expected[..3]);
         Hierarchy::new(&[]).visit(&ray, 1.0, |_, _| panic!("there is no box"));
     }
 }

@@ -14,12 +14,12 @@ pub type Value = [f64; 7];
 pub struct Sample {
     /// Position in the pixel, 0 to 1 along either axis.
     pub at: DVec2,
-    pub seen: Option<SurfaceHit>,
+    pub hit: Option<SurfaceHit>,
 }
 
 impl Sample {
     pub fn value(&self) -> Value {
-        let Some(SurfaceHit { colour: c, normal: n, .. }) = self.seen else { return [0.0; 7] };
+        let Some(SurfaceHit { colour: c, normal: n, .. }) = self.hit else { return [0.0; 7] };
         [1.0, c.x, c.y, c.z, n.x, n.y, n.z]
     }
 }
@@ -80,10 +80,10 @@ impl Pixel {
         let centre = DVec2::splat(0.5);
         let far = |sample: &Sample| sample.at.distance_squared(centre);
         let nearest = || {
-            let hits = self.samples.iter().filter(|sample| sample.seen.is_some());
-            hits.min_by(|a, b| far(a).total_cmp(&far(b)))?.seen
+            let hits = self.samples.iter().filter(|sample| sample.hit.is_some());
+            hits.min_by(|a, b| far(a).total_cmp(&far(b)))?.hit
         };
-        self.trace(eye, centre).seen.or_else(nearest)
+        self.trace(eye, centre).hit.or_else(nearest)
     }
 
     /// Estimates the variance of each ray's value around its stratum's mean, and returns that of the pixel's mean.
@@ -115,7 +115,7 @@ impl Pixel {
     /// The largest squared difference between two rays' values.
     fn square(&self, exact: &[usize], a: usize, b: usize) -> f64 {
         let (a, b) = (&self.samples[a], &self.samples[b]);
-        if a.seen.is_none() && b.seen.is_none() {
+        if a.hit.is_none() && b.hit.is_none() {
             return 0.0;
         }
         let (a, b) = (a.value(), b.value());
@@ -140,6 +140,6 @@ impl Pixel {
 
     fn trace<S: Traceable + ?Sized>(&self, eye: &Eye<S>, at: DVec2) -> Sample {
         let corner = DVec2::new(self.corner[0] as f64, self.corner[1] as f64);
-        Sample { at, seen: eye.hit(corner + at) }
+        Sample { at, hit: eye.hit(corner + at) }
     }
 }

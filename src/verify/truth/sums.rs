@@ -22,9 +22,9 @@ pub struct BandSums<'a> {
     /// Rows of `cells`, inside the picture.
     rows: Range<i64>,
     cells: Vec<Cell>,
-    /// Rows of `seen`, inside the picture.
+    /// Rows of `centre_hits`, inside the picture.
     own: Range<i64>,
-    seen: Vec<Option<SurfaceHit>>,
+    centre_hits: Vec<Option<SurfaceHit>>,
 }
 
 impl<'a> BandSums<'a> {
@@ -35,13 +35,13 @@ impl<'a> BandSums<'a> {
         let own = inside(rows.clone());
         let rows = inside(rows.start - reach..rows.end + reach);
         let pixels = |rows: &Range<i64>| (rows.end - rows.start) as usize * width;
-        let (cells, seen) = (vec![[0.0; 8]; pixels(&rows)], vec![None; pixels(&own)]);
-        Self { kernel, width, rows, cells, own, seen }
+        let (cells, centre_hits) = (vec![[0.0; 8]; pixels(&rows)], vec![None; pixels(&own)]);
+        Self { kernel, width, rows, cells, own, centre_hits }
     }
 
     /// Adds the rays of the pixel `at`, one per stratum, with the variances of their values.
     pub fn add(&mut self, at: [i64; 2], samples: &[Sample], variances: &[f64]) {
-        if samples.iter().all(|sample| sample.seen.is_none()) {
+        if samples.iter().all(|sample| sample.hit.is_none()) {
             return;
         }
         let strata = samples.len().isqrt();
@@ -85,9 +85,9 @@ impl<'a> BandSums<'a> {
     }
 
     /// Stores the surface at the centre of the pixel `at`, if that is in the picture.
-    pub fn set_centre_hit(&mut self, [x, y]: [i64; 2], seen: impl FnOnce() -> Option<SurfaceHit>) {
+    pub fn set_centre_hit(&mut self, [x, y]: [i64; 2], hit: impl FnOnce() -> Option<SurfaceHit>) {
         if self.own.contains(&y) && (0..self.width as i64).contains(&x) {
-            self.seen[(y - self.own.start) as usize * self.width + x as usize] = seen();
+            self.centre_hits[(y - self.own.start) as usize * self.width + x as usize] = hit();
         }
     }
 }
@@ -119,8 +119,8 @@ impl Sums {
             cell.iter_mut().zip(add).for_each(|(sum, add)| *sum += add);
         }
         let start = part.own.start as usize * part.width;
-        for (depth, seen) in self.depths[start..].iter_mut().zip(&part.seen) {
-            *depth = seen.map_or(0.0, |seen| seen.depth as f32);
+        for (depth, hit) in self.depths[start..].iter_mut().zip(&part.centre_hits) {
+            *depth = hit.map_or(0.0, |hit| hit.depth as f32);
         }
     }
 

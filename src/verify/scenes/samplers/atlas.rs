@@ -123,8 +123,8 @@ impl<'a> Atlas<'a> {
 
     /// A random point, uniform over the area.
     pub fn draw(&self, random: &mut Random) -> (&'a Piece, Sample) {
-        let wanted = random.unit() * self.area();
-        let index = self.sums.partition_point(|sum| *sum <= wanted).min(self.sums.len() - 1);
+        let target = random.unit() * self.area();
+        let index = self.sums.partition_point(|sum| *sum <= target).min(self.sums.len() - 1);
         let (piece, cell) = self.cells[index];
         let (table, cell) = (&self.tables[piece as usize], cell as usize);
         let corner = DVec2::new((cell % table.size[0]) as f64, (cell / table.size[0]) as f64);

@@ -110,17 +110,17 @@ fn by_area(table: &Table, from: f64, to: f64, part: f64) -> f64 {
     // Linear between the densities of both ends: rows are thin relative to changes along v, or cells are.
     let (a, b) = (density(from), density(to - 1e-9 * (to - from)));
     let step = if (b - a).abs() > 1e-9 * (a + b) {
-        let wanted = part * 0.5 * (a + b);
-        ((a * a + 2.0 * (b - a) * wanted).max(0.0).sqrt() - a) / (b - a)
+        let target = part * 0.5 * (a + b);
+        ((a * a + 2.0 * (b - a) * target).max(0.0).sqrt() - a) / (b - a)
     } else {
         part
     };
     from + step.clamp(0.0, 1.0) * (to - from)
 }
 
-/// Position from 0 to 1 at which the cumulative sum of `weights`, each uniform over its equal part, reaches `wanted`.
-fn invert(weights: &[f64], wanted: f64) -> f64 {
-    let mut rest = wanted;
+/// Position from 0 to 1 at which the cumulative sum of `weights`, each uniform over its equal part, reaches `target`.
+fn invert(weights: &[f64], target: f64) -> f64 {
+    let mut rest = target;
     for (i, weight) in weights.iter().enumerate() {
         if rest <= *weight {
             let inside = if *weight > 0.0 { rest / weight } else { 0.5 };

@@ -91,11 +91,11 @@ fn scanners(query: &Query, surface: &dyn Surface, random: &mut Random) -> Vec<Sc
 
 /// Drops random echoes until `points` are left; the others keep their order.
 fn thin(echoes: &mut Vec<Echo>, points: usize, random: &mut Random) {
-    let (mut left, mut wanted) = (echoes.len(), points);
+    let (mut left, mut needed) = (echoes.len(), points);
     echoes.retain(|_| {
-        let keep = random.below(left) < wanted;
+        let keep = random.below(left) < needed;
         left -= 1;
-        wanted -= usize::from(keep);
+        needed -= usize::from(keep);
         keep
     });
 }
@@ -112,8 +112,8 @@ impl Scanner {
                 let level = yaw.cos() * forward + yaw.sin() * right;
                 let direction = pitch.cos() * level + pitch.sin() * up;
                 let hit = surface.trace(self.at, direction)?;
-                let seen = hit.normal.dot(direction).abs() > GRAZING;
-                seen.then_some(Echo { at: self.at, direction, hit })
+                let measurable = hit.normal.dot(direction).abs() > GRAZING;
+                measurable.then_some(Echo { at: self.at, direction, hit })
             })
         };
         (0..count.x as u32).into_par_iter().flat_map_iter(line).collect()

@@ -64,18 +64,18 @@ fn outline_and_depth_are_the_closed_form() {
             let at = centre(i, SIZE);
             let (depth, inside) = exact(camera, at);
             assert!(inside.abs() > 1e-9, "camera {index}: a pixel on the outline tells nothing");
-            let seen = eye.hit(at);
+            let hit = eye.hit(at);
             assert_eq!(
-                (seen.is_some(), pixel[3]),
+                (hit.is_some(), pixel[3]),
                 (depth.is_some(), f32::from(depth.is_some())),
                 "camera {index}, {at}"
             );
-            let (Some(seen), Some(depth)) = (seen, depth) else { continue };
+            let (Some(hit), Some(depth)) = (hit, depth) else { continue };
             covered += 1;
             // Near the outline the depth is as ill-conditioned as its square root.
             let bar = if inside > 1e-3 { 1e-9 } else { 1e-7 };
-            assert!((seen.depth - depth).abs() < bar, "camera {index}, {at}: {} {depth}", seen.depth);
-            assert_eq!(picture.depth.as_ref().unwrap()[i], seen.depth as f32);
+            assert!((hit.depth - depth).abs() < bar, "camera {index}, {at}: {} {depth}", hit.depth);
+            assert_eq!(picture.depth.as_ref().unwrap()[i], hit.depth as f32);
         }
         assert!(covered > 500, "camera {index}: {covered}");
     }
@@ -90,7 +90,7 @@ fn depth_is_that_of_the_ray_through_the_centre() {
     let (eye, mut beside) = (Eye::new(&*sphere, &camera, &settings, SIZE).unwrap(), 0);
     for (i, depth) in picture.depth.unwrap().into_iter().enumerate() {
         match eye.hit(centre(i, SIZE)) {
-            Some(seen) => assert_eq!(depth, seen.depth as f32),
+            Some(hit) => assert_eq!(depth, hit.depth as f32),
             None if depth > 0.0 => {
                 beside += 1;
                 assert!(picture.colour[i][3] > 0.0 && depth > 2.0 && depth < 3.1, "{depth}");
@@ -108,11 +108,11 @@ fn normals_face_the_eye_and_light_is_the_references() {
     let settings = Settings::default();
     let eye = Eye::new(&*sphere, &inside, &settings, SIZE).unwrap();
     // The ray through the middle of the picture hits the far side head-on: the full headlight and its highlight.
-    let seen = eye.hit(DVec2::new(48.0, 32.0)).unwrap();
-    assert!(seen.normal.abs_diff_eq(DVec3::Z, 1e-12) && (seen.depth - 1.5).abs() < 1e-12, "{seen:?}");
+    let hit = eye.hit(DVec2::new(48.0, 32.0)).unwrap();
+    assert!(hit.normal.abs_diff_eq(DVec3::Z, 1e-12) && (hit.depth - 1.5).abs() < 1e-12, "{hit:?}");
     let albedo = sphere.trace(DVec3::ZERO, DVec3::NEG_Z).unwrap().albedo;
     let light = DVec3::from(albedo) * f64::from(0.08f32 + 0.87f32) + f64::from(0.06f32);
-    assert!(seen.colour.abs_diff_eq(light, 1e-6), "{} {light}", seen.colour);
+    assert!(hit.colour.abs_diff_eq(light, 1e-6), "{} {light}", hit.colour);
 }
 
 #[test]
@@ -122,7 +122,7 @@ fn planes_cut() {
     let view = [DVec3::new(0.0, 0.0, 3.0), DVec3::ZERO, DVec3::Y];
     let depth = |planes| {
         let camera = Camera::orthographic(view, 2.0, 1.0, planes).unwrap();
-        Eye::new(&*sphere, &camera, &settings, [9, 9]).unwrap().hit(DVec2::splat(4.5)).map(|seen| seen.depth)
+        Eye::new(&*sphere, &camera, &settings, [9, 9]).unwrap().hit(DVec2::splat(4.5)).map(|hit| hit.depth)
     };
     assert!((depth([0.5, 9.0]).unwrap() - 2.0).abs() < 1e-12);
     assert!((depth([2.5, 9.0]).unwrap() - 4.0).abs() < 1e-12, "the near side is cut away");
