@@ -1,6 +1,7 @@
 //! Results as CSV rows, for spreadsheets and scripts. A cell without a value is empty; no rows give an empty text
 //! without a header.
 
+use super::group::distinct;
 use super::record::{Float64Error, Memory, Results, Run, Session, SweepPoint};
 use crate::error::{Error, Result};
 use crate::frame::times::Statistics;
@@ -21,12 +22,8 @@ pub fn runs(results: &Results, code: &str) -> Result<String> {
     let all =
         || results.sessions.iter().flat_map(|session| session.runs.iter().map(move |run| (session, run)));
     let metrics = metrics(all().map(|(_, run)| run));
-    let mut passes: Vec<&str> = Vec::new();
-    for name in all().flat_map(|(_, run)| &run.time).flat_map(|time| &time.passes).map(|pass| &*pass.name) {
-        if !passes.contains(&name) {
-            passes.push(name);
-        }
-    }
+    let passes = all().flat_map(|(_, run)| &run.time).flat_map(|time| &time.passes);
+    let passes = distinct(passes.map(|pass| &*pass.name));
     let row = |(session, run): (&Session, &Run)| {
         let mut row = provenance(session, code);
         row.extend([what(run), time(run), error(run), memory(&run.memory)].into_iter().flatten());

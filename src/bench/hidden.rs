@@ -16,14 +16,14 @@ const MOST_SHEETS: usize = 64;
 /// sheet is the nearest one along that ray, because noise or an inexact scan may move surfels off their sheet.
 pub fn visible_surfels(surfels: &Surfels, surface: &dyn Traceable, camera: &Camera) -> Surfels {
     let eye = camera.view.inverse().w_axis.truncate();
-    let seen = |&i: &u32| is_seen(surfels, i as usize, surface, eye);
-    let seen: Vec<u32> = (0..surfels.len() as u32).into_par_iter().filter(seen).collect();
+    let is_visible = |&i: &u32| is_visible(surfels, i as usize, surface, eye);
+    let visible: Vec<u32> = (0..surfels.len() as u32).into_par_iter().filter(is_visible).collect();
     let mut kept = surfels.clone();
-    kept.permute(&seen);
+    kept.permute(&visible);
     kept
 }
 
-fn is_seen(surfels: &Surfels, i: usize, surface: &dyn Traceable, eye: DVec3) -> bool {
+fn is_visible(surfels: &Surfels, i: usize, surface: &dyn Traceable, eye: DVec3) -> bool {
     let to = surfels.origin + surfels.positions[i].as_dvec3() - eye;
     let clearance = CLEARANCE * f64::from(surfels.radii[i]) / to.length();
     let Some(first) = surface.trace(eye, to).map(|hit| hit.t) else { return true };
@@ -51,23 +51,23 @@ mod tests {
     use crate::verify::scenes;
 
     #[test]
-    fn of_a_sphere_the_cap_towards_the_eye_is_seen() {
+    fn of_a_sphere_the_cap_towards_the_eye_is_visible() {
         let name = "scene:sphere?points=20000";
         let surfels = scenes::open(name).unwrap();
         let subject = Subject::scene("scene:sphere").unwrap();
         let eye = DVec3::new(0.0, 0.0, 4.0);
         let camera = Camera::look_at(eye, DVec3::ZERO, DVec3::Y, 0.7, 1.0, 0.1).unwrap();
-        let seen = visible_surfels(&surfels, subject.surface(), &camera);
+        let visible = visible_surfels(&surfels, subject.surface(), &camera);
         // The horizon is where the eye's rays touch: z = 1 / 4.
         let in_front = surfels.positions.iter().filter(|p| p.z > 0.25).count();
-        assert!(seen.len().abs_diff(in_front) < surfels.len() / 500, "{} {in_front}", seen.len());
-        assert!(seen.positions.iter().all(|p| p.z > 0.2));
+        assert!(visible.len().abs_diff(in_front) < surfels.len() / 500, "{} {in_front}", visible.len());
+        assert!(visible.positions.iter().all(|p| p.z > 0.2));
         // Noise does not change which surfels are visible.
         let noisy = scenes::open("scene:sphere?points=20000&noise=0.2").unwrap();
         let still_seen = visible_surfels(&noisy, subject.surface(), &camera);
         // Noise moves some beyond the horizon into view.
         assert!(still_seen.len().abs_diff(in_front) < surfels.len() / 20, "{} {in_front}", still_seen.len());
-        assert_eq!(seen.colours.as_ref().map(Colours::len), Some(seen.len()));
+        assert_eq!(visible.colours.as_ref().map(Colours::len), Some(visible.len()));
     }
 
     #[test]
@@ -76,10 +76,10 @@ mod tests {
         let subject = Subject::scene("scene:slabs?slabs=1&thickness=0.001").unwrap();
         let eye = DVec3::new(0.1, 5.0, 0.1);
         let camera = Camera::look_at(eye, DVec3::ZERO, DVec3::Z, 0.7, 1.0, 0.1).unwrap();
-        let seen = visible_surfels(&surfels, subject.surface(), &camera);
+        let visible = visible_surfels(&surfels, subject.surface(), &camera);
         let middle = subject.bounds().centre().y as f32;
         let upper = surfels.positions.iter().filter(|p| p.y > middle).count();
-        assert!(seen.len().abs_diff(upper) < surfels.len() / 100, "{} {upper}", seen.len());
-        assert!(seen.normals.iter().all(|n| n.y > -0.5));
+        assert!(visible.len().abs_diff(upper) < surfels.len() / 100, "{} {upper}", visible.len());
+        assert!(visible.normals.iter().all(|n| n.y > -0.5));
     }
 }

@@ -1,10 +1,9 @@
 //! Benchmarks of speed against error: which method with which settings suits which budget.
 //!
 //! ```text
-//! suites → plans ─ runner: subject, engine → stopwatch · truth, metrics, terms · reference → record ─ JSON, CSV, table, page
+//! suites → plans ─ runner: subject, engine → stopwatch · truth, metrics, error terms · reference → record ─ JSON, CSV, table, page
 //! ```
 //!
-//! | module | |
 //! | module | contents |
 //! |---|---|
 //! | [`suites`] | sets of runs |
@@ -26,6 +25,7 @@ pub mod csv;
 pub mod engine;
 pub mod error_terms;
 mod format;
+mod group;
 pub mod hard;
 pub mod hidden;
 pub mod images;

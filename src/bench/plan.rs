@@ -2,6 +2,7 @@
 
 use super::engine::Engine;
 use super::record::{Axes, Experiment, RunSettings};
+use crate::settings::methods::Method;
 use crate::settings::{Choice, Settings};
 use crate::verify::scenes::Viewpoint;
 
@@ -51,6 +52,14 @@ pub struct Measurements {
     pub flicker: bool,
     /// The images themselves.
     pub images: bool,
+}
+
+impl Plan {
+    /// The same run by a method with its own settings; the shading remains.
+    pub(super) fn by(&self, method: &Method) -> Self {
+        let settings = Settings { shading: self.settings.shading, ..method.settings() };
+        Self { settings, ..self.clone() }
+    }
 }
 
 impl Measurements {

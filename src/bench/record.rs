@@ -1,22 +1,21 @@
 //! Results as stored in JSON: times in milliseconds, memory in bytes, colours linear, errors as their
 //! [metrics](crate::verify::metrics) define them.
 
-use crate::frame::times::Statistics;
-use crate::settings::methods::Method;
-use crate::settings::splatting::Splatting;
-use crate::settings::{Alpha, Choice, Settings};
-use crate::verify::reference::Comparison;
+mod run;
+
+pub use run::{
+    Axes, Blended, Error, Experiment, Float64Error, Implementation, Memory, PIXELS, Pass, Run, RunSettings,
+    SPLATS, Terms, Time,
+};
+
 use jiff::Timestamp;
-use serde::{Deserialize, Deserializer, Serialize};
-use std::collections::BTreeMap;
+use serde::{Deserialize, Serialize};
 
 /// Schema version of results; bumped on breaking changes.
 pub const FORMAT: u32 = 3;
 
-/// Name of the [CPU baseline](crate::verify::baseline) for splats: the unit of relative times.
-pub const SPLATS: &str = "baseline-splats";
-/// Name of the CPU baseline for points of one pixel.
-pub const PIXELS: &str = "baseline-pixels";
+/// Prefix of a [`SweepPoint::note`] where float32 cannot agree with float64; the reason follows.
+pub const BEYOND_FLOAT32: &str = "beyond float32: ";
 
 /// The sessions of a report or table.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -87,249 +86,6 @@ pub struct Gpu {
     pub validated: bool,
 }
 
-/// A scene rendered with one implementation and one set of settings.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Run {
-    /// Name of the suite.
-    pub suite: String,
-    /// The experiment that it belongs to.
-    pub experiment: Experiment,
-    /// Name of the effect, cost or table of the [papers](super::papers); empty in other experiments.
-    #[serde(default)]
-    pub paper_item: String,
-    /// The scene with its parameters, without the number of points; or the file.
-    pub scene: String,
-    /// Number of surfels.
-    pub points: u64,
-    /// Width and height, px.
-    pub size: [u32; 2],
-    /// Method and variant.
-    pub implementation: Implementation,
-    /// Settings that matter to time or error.
-    pub settings: RunSettings,
-    /// Why it could not be rendered; all results are empty then.
-    pub refused: Option<String>,
-    /// Times of frames; none if it was not timed.
-    pub time: Option<Time>,
-    /// Its wall time relative to another run, whose frames alternate with its own; none without another run.
-    #[serde(default)]
-    pub ratio: Option<Statistics>,
-    /// Error against the truth; none if it was not compared.
-    pub error: Option<Error>,
-    /// Error against the float64 reference; none if it was not compared.
-    pub float64_error: Option<Float64Error>,
-    /// Memory of the device, or of the host for the CPU baseline.
-    pub memory: Memory,
-    /// Discs over a point of the surface, on average, before any filter widens them; none if unknown.
-    pub overlap: Option<f64>,
-    /// Splats blended per pixel; none unless they were counted.
-    #[serde(default)]
-    pub blended: Option<Blended>,
-    /// Index of its images in [`Session::images`].
-    pub images: Option<usize>,
-}
-
-/// What runs are measured for.
-#[derive(
-    Clone,
-    Copy,
-    Debug,
-    PartialEq,
-    Eq,
-    PartialOrd,
-    Ord,
-    Hash,
-    Serialize,
-    Deserialize,
-    strum::EnumMessage,
-    strum::EnumString,
-    strum::IntoStaticStr,
-    strum::VariantArray,
-)]
-#[serde(rename_all = "kebab-case")]
-#[strum(serialize_all = "kebab-case")]
-pub enum Experiment {
-    /// Time against error, and error against the number of points.
-    Budget,
-    /// Cost and benefit of the low-pass filter: its variance, the kernel's cut-off, which splats it widens.
-    Lowpass,
-    /// Texture finer than pixels: a checkerboard to the horizon.
-    Aliasing,
-    /// Time against the number of points.
-    ScalingPoints,
-    /// Time where every pixel shows a point: the upper bound of pull–push's passes over pixels.
-    Filled,
-    /// Time against the picture's size.
-    ScalingSize,
-    /// Time against the number of discs over a point of the surface.
-    ScalingOverlap,
-    /// Times relative to the CPU baseline.
-    Baseline,
-    /// Effects that the papers' figures show, both sides of each.
-    Effects,
-    /// Costs that the papers state: pairs of runs.
-    Claims,
-    /// The papers' tables of times.
-    PaperTables,
-}
-
-/// Splats blended per pixel, over the pixels that have any.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Blended {
-    /// Mean.
-    pub mean: f64,
-    /// Largest.
-    pub largest: f64,
-}
-
-/// The implementation of a run.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
-pub struct Implementation {
-    /// Name of the method.
-    pub method: String,
-    /// Variant of the method, if there are several: rasterizer, precision of the sums.
-    pub variant: String,
-}
-
-/// The settings that affect time or error.
-#[derive(Clone, Debug, PartialEq, PartialOrd, Serialize, Deserialize)]
-pub struct RunSettings {
-    /// [`Settings::cutoff`](crate::Settings::cutoff), σ.
-    pub cutoff: f32,
-    /// [`Settings::lowpass`](crate::Settings::lowpass), px².
-    pub lowpass: f32,
-    /// Which splats the low-pass filter widens: `all` or `small`.
-    pub widen: String,
-    /// [`Settings::epsilon`](crate::Settings::epsilon), radii.
-    pub epsilon: f32,
-    /// Which surfels are culled: `none` or `back`.
-    pub cull: String,
-    /// [`Settings::alpha`](crate::Settings::alpha): `mask` or `coverage`.
-    #[serde(default = "mask")]
-    pub alpha: String,
-    /// The quantity that the picture shows.
-    pub shading: String,
-    /// The axes of splatting; those of `perspective-ewa` if absent.
-    #[serde(default)]
-    pub axes: Axes,
-}
-
-/// The choice along each axis of [`Splatting`], named as the command line's options.
-#[derive(Clone, Debug, PartialEq, PartialOrd, Serialize, Deserialize)]
-pub struct Axes {
-    /// Image of a disc.
-    pub footprint: String,
-    /// Falloff of the weight.
-    pub kernel: String,
-    /// Space of the low-pass filter.
-    pub filter: String,
-    /// Splats that a pixel shows.
-    pub visibility: String,
-    /// How weights become a partition of unity.
-    pub normalization: String,
-    /// What is shaded: pixels or splats.
-    pub shade: String,
-}
-
-/// Default of α, for results that do not contain it.
-fn mask() -> String {
-    Alpha::Mask.name().into()
-}
-
-/// Times of frames, without read-back and without warm-up frames.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Time {
-    /// Timed frames.
-    pub frames: usize,
-    /// Warm-up frames before them.
-    pub warmup: usize,
-    /// Wall time of a frame for its caller, ms.
-    pub wall: Statistics,
-    /// Processor time of all threads, ms: steadier than wall time on a software device.
-    pub cpu: Statistics,
-    /// Each pass by the device's timestamps, ms, in execution order; empty without timestamps.
-    pub passes: Vec<Pass>,
-    /// Sum of all passes of a frame, ms.
-    pub device: Option<Statistics>,
-    /// `wall.median` divided by that of the CPU baseline, for the same scene, points and size with default settings,
-    /// measured in the same session.
-    pub baseline_ratio: Option<f64>,
-}
-
-/// Time of a pass.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Pass {
-    /// Its name.
-    pub name: String,
-    /// Time, ms.
-    pub ms: Statistics,
-}
-
-/// Error of a picture against the truth.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Error {
-    /// The pixel filter of the truth: `gaussian`, of a variance of 1 px², or `box`.
-    pub filter: String,
-    /// Root mean square of the truth's own standard error.
-    pub truth_rms: f64,
-    /// Metrics by name; infinite ones and those that could not be computed are absent.
-    pub metrics: BTreeMap<String, f64>,
-    /// Parts of the RMSE.
-    pub terms: Terms,
-}
-
-/// Parts of an RMSE, in its unit: linear light, white is 1.
-///
-/// `silhouette² + inside² = rmse²`. The others are the change of the picture without their cause.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Terms {
-    /// Pixels that the truth or the picture covers in part, or only one of both covers.
-    pub silhouette: f64,
-    /// Pixels that both cover wholly: loss of texture and shading by sampling and filtering.
-    pub inside: f64,
-    /// Change of the picture by surfels of hidden sheets: those that ε admits, and those that visibility misses.
-    pub hidden: Option<f64>,
-    /// Change of the picture by rounding to float32: its difference from the float64 reference.
-    pub precision: Option<f64>,
-}
-
-/// Error of a float32 picture against the float64 reference, pixel by pixel; see [`Comparison`].
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Float64Error {
-    /// Pixels that the reference covers.
-    pub object_pixels: u64,
-    /// Ambiguous pixels: rounding can flip one of their decisions.
-    pub ambiguous_pixels: u64,
-    /// Pixels out of tolerance.
-    pub failed_pixels: u64,
-    /// Largest difference of linear colour and α over the unambiguous pixels. NaN, in JSON null, if a value is not
-    /// finite.
-    #[serde(deserialize_with = "nan_of_null")]
-    pub colour: f64,
-    /// Largest difference of the normals' coordinates.
-    #[serde(deserialize_with = "nan_of_null")]
-    pub normal: f64,
-    /// Largest relative difference of the depth.
-    #[serde(deserialize_with = "nan_of_null")]
-    pub depth: f64,
-}
-
-/// JSON has neither NaN nor infinity: serde writes null for both.
-fn nan_of_null<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
-    Ok(Option::deserialize(from)?.unwrap_or(f64::NAN))
-}
-
-/// Memory, bytes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Memory {
-    /// The scene's streams.
-    pub scene: u64,
-    /// Buffers of splats, written every frame.
-    pub splats: u64,
-    /// Render targets.
-    pub targets: u64,
-}
-
 /// A hard case: float32 against float64 as a parameter approaches the limits of float32.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sweep {
@@ -393,95 +149,23 @@ impl Provenance {
     }
 }
 
-impl Run {
-    /// Median wall time, ms; none if it was not timed, or if the time is not above 0.
-    pub fn ms(&self) -> Option<f64> {
-        self.time.as_ref().map(|time| time.wall.median).filter(|ms| ms.is_finite() && *ms > 0.0)
-    }
-
-    /// A metric, if it was computed.
-    pub fn metric(&self, name: &str) -> Option<f64> {
-        self.error.as_ref()?.metrics.get(name).copied().filter(|value| value.is_finite())
-    }
-
-    /// The error that budgets refer to.
-    pub fn rmse(&self) -> Option<f64> {
-        self.metric("rmse")
+impl Sweep {
+    /// The points that were not refused.
+    pub fn rendered(&self) -> impl Iterator<Item = &SweepPoint> {
+        self.points.iter().filter(|point| point.refused.is_none())
     }
 }
 
-impl RunSettings {
-    /// The default settings.
-    pub fn defaults() -> Self {
-        Self::of(&Settings::default())
+impl SweepPoint {
+    /// Whether float32 cannot agree with float64 here.
+    pub fn is_beyond_float32(&self) -> bool {
+        self.note.starts_with(BEYOND_FLOAT32)
     }
 
-    /// The default settings of a method; [`defaults`](Self::defaults) if there is no such method.
-    pub fn preset(method: &str) -> Self {
-        Method::named(method).map_or_else(Self::defaults, |method| Self::of(&method.settings()))
-    }
-}
-
-impl Default for Axes {
-    fn default() -> Self {
-        Self::of(&Splatting::default())
-    }
-}
-
-impl Axes {
-    /// The axes of `splatting`.
-    pub fn of(splatting: &Splatting) -> Self {
-        let Splatting { footprint, kernel, filter, visibility, normalization, shade } = splatting;
-        Self {
-            footprint: footprint.name().into(),
-            kernel: kernel.to_string(),
-            filter: filter.name().into(),
-            visibility: visibility.name().into(),
-            normalization: normalization.name().into(),
-            shade: shade.name().into(),
-        }
-    }
-
-    /// Each with its name.
-    pub fn named(&self) -> [(&'static str, &str); 6] {
-        [
-            ("footprint", &self.footprint),
-            ("kernel", &self.kernel),
-            ("filter", &self.filter),
-            ("visibility", &self.visibility),
-            ("normalization", &self.normalization),
-            ("shade", &self.shade),
-        ]
-    }
-}
-
-impl Float64Error {
-    /// The results of a comparison with the reference.
-    pub fn of(found: &Comparison) -> Self {
-        Self {
-            object_pixels: found.object_pixels as u64,
-            ambiguous_pixels: found.ambiguous as u64,
-            failed_pixels: found.failed as u64,
-            colour: found.worst.colour,
-            normal: found.worst.normal,
-            depth: found.worst.depth,
-        }
-    }
-}
-
-impl Implementation {
-    /// Whether it is the [CPU baseline](crate::verify::baseline), which is no method.
-    pub fn is_baseline(&self) -> bool {
-        [SPLATS, PIXELS].contains(&self.method.as_str())
-    }
-
-    /// The method and, in parentheses, the variant.
-    pub fn label(&self) -> String {
-        if self.variant.is_empty() {
-            self.method.clone()
-        } else {
-            format!("{} ({})", self.method, self.variant)
-        }
+    /// Whether there are faulty pixels, or pixels out of tolerance where float32 suffices.
+    pub fn has_faults(&self) -> bool {
+        let failed = self.float64_error.failed_pixels > 0 && !self.is_beyond_float32();
+        self.refused.is_none() && (failed || !self.faults.is_none())
     }
 }
 
@@ -489,20 +173,5 @@ impl Faults {
     /// Whether there are none.
     pub fn is_none(&self) -> bool {
         *self == Self::default()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn what_is_no_number_is_null_and_comes_back_as_nan() {
-        let float64_error =
-            Float64Error { colour: f64::NAN, normal: f64::INFINITY, depth: 0.5, ..Default::default() };
-        let text = serde_json::to_string(&float64_error).unwrap();
-        assert!(text.contains(r#""colour":null,"normal":null,"depth":0.5"#), "{text}");
-        let read: Float64Error = serde_json::from_str(&text).unwrap();
-        assert!(read.colour.is_nan() && read.normal.is_nan() && read.depth == 0.5);
     }
 }

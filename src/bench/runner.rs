@@ -241,11 +241,11 @@ impl Runner {
         expected: Option<&Picture>,
         run: &mut Run,
     ) -> Result<()> {
-        let seen = hidden::visible_surfels(&job.model.surfels, job.subject.surface(), &job.camera);
-        let clean = if seen.is_empty() {
+        let visible = hidden::visible_surfels(&job.model.surfels, job.subject.surface(), &job.camera);
+        let clean = if visible.is_empty() {
             Picture { size: picture.size, colour: vec![[0.0; 4]; picture.colour.len()], ..Default::default() }
         } else {
-            let mut engine = self.load(job.plan.engine, &seen.into(), job.plan.size)?;
+            let mut engine = self.load(job.plan.engine, &visible.into(), job.plan.size)?;
             engine.picture(&job.camera, &job.plan.settings)?
         };
         if let Some(error) = &mut run.error {

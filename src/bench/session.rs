@@ -35,20 +35,20 @@ pub struct SessionOptions {
 
 /// Runs all suites. A run that cannot be rendered is recorded as refused. An error that ends the session, such as a
 /// lost device, is returned beside the results so far.
-pub fn measure(wanted: &SessionOptions, progress: &dyn Progress) -> (Session, Result<()>) {
+pub fn measure(options: &SessionOptions, progress: &dyn Progress) -> (Session, Result<()>) {
     let (date, start) = (Timestamp::now(), Instant::now());
-    let plans = |suite: &Suite| suite.plans(&wanted.inputs);
-    let total = wanted.suites.iter().map(|suite| plans(suite).len() as u64).sum();
+    let plans = |suite: &Suite| suite.plans(&options.inputs);
+    let total = options.suites.iter().map(|suite| plans(suite).len() as u64).sum();
     let (mut runs, mut images) = (Vec::new(), Vec::new());
     progress.at(STAGE, 0, total);
-    let mut ended = wanted.suites.iter().try_for_each(|suite| {
-        let options = Options {
-            device: wanted.device.clone(),
-            cache: wanted.cache.clone(),
+    let mut ended = options.suites.iter().try_for_each(|suite| {
+        let of_suite = Options {
+            device: options.device.clone(),
+            cache: options.cache.clone(),
             truth: suite.truth(),
             effort: suite.effort(),
         };
-        let (mut runner, before) = (Runner::new(options, wanted.inputs.subjects.clone()), images.len());
+        let (mut runner, before) = (Runner::new(of_suite, options.inputs.subjects.clone()), images.len());
         let done = plans(suite).iter().try_for_each(|plan| {
             let begin = Instant::now();
             let mut run = runner.run(plan)?;
@@ -63,8 +63,8 @@ pub fn measure(wanted: &SessionOptions, progress: &dyn Progress) -> (Session, Re
     });
     compare_times(&mut runs);
     let mut sweeps = Vec::new();
-    if ended.is_ok() && wanted.suites.contains(&Suite::Hard) {
-        match hard(wanted, progress) {
+    if ended.is_ok() && options.suites.contains(&Suite::Hard) {
+        match hard(options, progress) {
             Ok(swept) => sweeps = swept,
             Err(error) => ended = Err(error),
         }
@@ -75,17 +75,17 @@ pub fn measure(wanted: &SessionOptions, progress: &dyn Progress) -> (Session, Re
         code: code::DIGEST.into(),
         date,
         seconds: start.elapsed().as_secs_f64(),
-        command: wanted.command.clone(),
-        suites: wanted.suites.iter().map(|suite| suite.name().into()).collect(),
+        command: options.command.clone(),
+        suites: options.suites.iter().map(|suite| suite.name().into()).collect(),
         host: host(),
-        device: wanted.device.as_deref().map(|device| gpu(device, wanted.validated)),
+        device: options.device.as_deref().map(|device| gpu(device, options.validated)),
     };
     (Session { provenance, runs, sweeps, images }, ended)
 }
 
-fn hard(wanted: &SessionOptions, progress: &dyn Progress) -> Result<Vec<Sweep>> {
+fn hard(options: &SessionOptions, progress: &dyn Progress) -> Result<Vec<Sweep>> {
     let none = || Error::NoDevice("the hard cases need one; list devices with `surfel devices`".into());
-    hard::run(wanted.device.as_ref().ok_or_else(none)?, &hard::Options::default(), progress)
+    hard::run(options.device.as_ref().ok_or_else(none)?, &hard::Options::default(), progress)
 }
 
 /// Computes times relative to the CPU baseline for as many points and pixels with default settings. Of several

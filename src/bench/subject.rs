@@ -100,8 +100,8 @@ impl Subject {
                 scenes::model(&format!("{}{separator}points={points}", self.name))
             }
             Shape::Scan(scan) => {
-                let made = scan.cloud.some(points as usize).into_surfels(&Estimate::default(), &());
-                Ok(made.map_err(|cause| Error::input(self.name.as_str(), cause))?.0.into())
+                let surfels = scan.cloud.some(points as usize).into_surfels(&Estimate::default(), &());
+                Ok(surfels.map_err(|cause| Error::input(self.name.as_str(), cause))?.0.into())
             }
         }
     }

@@ -1,6 +1,6 @@
 //! Results as text for a terminal: one line per run and per sweep.
 
-use super::hard::BEYOND_FLOAT32;
+use super::group::grouped;
 use super::record::{Experiment, Faults, Float64Error, Results, Run, Session, Sweep, SweepPoint};
 use super::{format, papers};
 use crate::settings::Choice;
@@ -52,8 +52,8 @@ pub fn table(results: &Results, code: &str, commit: &str) -> String {
             let run = group[0];
             let common = common(&group);
             let _ = write!(text, "\n{} · {} · {}", run.suite, run.experiment.name(), run.scene);
-            for (_, told) in &common {
-                let _ = write!(text, " · {told}");
+            for (_, cell) in &common {
+                let _ = write!(text, " · {cell}");
             }
             text.push('\n');
             text += &lines(&group, &common);
@@ -67,18 +67,11 @@ pub fn table(results: &Results, code: &str, commit: &str) -> String {
 
 /// Runs of one suite, experiment and scene, in the order of their first; without those of the papers' own tables.
 fn groups(runs: &[Run]) -> Vec<Vec<&Run>> {
-    let alike = |a: &Run, b: &Run| (&a.suite, a.experiment, &a.scene) == (&b.suite, b.experiment, &b.scene);
-    let mut groups: Vec<Vec<&Run>> = Vec::new();
-    let shown = |run: &&Run| {
+    let own = runs.iter().filter(|run| {
         !matches!(run.experiment, Experiment::Effects | Experiment::Claims | Experiment::PaperTables)
-    };
-    for run in runs.iter().filter(shown) {
-        match groups.iter_mut().find(|group| alike(group[0], run)) {
-            Some(group) => group.push(run),
-            None => groups.push(vec![run]),
-        }
-    }
-    groups
+    });
+    let groups = grouped(own, |run| (&run.suite, run.experiment, &run.scene));
+    groups.into_iter().map(|(_, runs)| runs).collect()
 }
 
 /// A column, and its text for a run.
@@ -86,13 +79,13 @@ type Common = (usize, fn(&Run) -> String);
 
 /// Columns with the same text for all runs, which is printed once.
 fn common(runs: &[&Run]) -> Vec<(usize, String)> {
-    let told: [Common; 3] = [
+    let columns: [Common; 3] = [
         (0, |run| format!("{} points", format::count(run.points))),
         (1, |run| format!("{} px", format::size(run.size))),
         (2, |run| run.implementation.label()),
     ];
     let same = |(_, of): &Common| runs.len() > 1 && runs.iter().all(|run| of(run) == of(runs[0]));
-    told.into_iter().filter(same).map(|(column, of)| (column, of(runs[0]))).collect()
+    columns.into_iter().filter(same).map(|(column, of)| (column, of(runs[0]))).collect()
 }
 
 /// Aligned lines, without columns that are empty or in `common`.
@@ -100,16 +93,16 @@ fn lines(runs: &[&Run], common: &[(usize, String)]) -> String {
     let differing = format::differing_settings(runs.iter().copied());
     let mut rows: Vec<Vec<String>> = vec![HEADERS.map(|(name, _)| name.to_owned()).to_vec()];
     rows.extend(runs.iter().map(|run| cells(run, differing)));
-    let untold = |column: &usize| common.iter().all(|(other, _)| other != column);
-    let told: Vec<usize> = (0..HEADERS.len())
+    let is_own = |column: &usize| common.iter().all(|(other, _)| other != column);
+    let visible: Vec<usize> = (0..HEADERS.len())
         .filter(|&i| rows[1..].iter().any(|row| !row[i].is_empty()))
-        .filter(untold)
+        .filter(is_own)
         .collect();
-    let widths = widths(&rows, &told);
+    let widths = widths(&rows, &visible);
     let refusals = std::iter::once(None).chain(runs.iter().map(|run| run.refused.as_ref()));
     let mut text = String::new();
     for (row, refused) in rows.iter().zip(refusals) {
-        let columns = told.iter().zip(&widths);
+        let columns = visible.iter().zip(&widths);
         let cells = columns.map(|(&column, &width)| aligned(&row[column], width, HEADERS[column].1));
         let _ = writeln!(text, "{}", cells.collect::<Vec<_>>().join("  ").trim_end());
         if let Some(why) = refused {
@@ -120,13 +113,13 @@ fn lines(runs: &[&Run], common: &[(usize, String)]) -> String {
 }
 
 /// Width of each column, together at most [`WIDTH`].
-fn widths(rows: &[Vec<String>], told: &[usize]) -> Vec<usize> {
+fn widths(rows: &[Vec<String>], columns: &[usize]) -> Vec<usize> {
     let widest = |&column: &usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
-    let mut widths: Vec<usize> = told.iter().map(widest).collect();
+    let mut widths: Vec<usize> = columns.iter().map(widest).collect();
     let total = widths.iter().map(|width| width + 2).sum::<usize>();
     let mut excess = total.saturating_sub(WIDTH + 2);
     while excess > 0 {
-        let cuttable = (0..told.len()).filter(|&i| CUTTABLE.contains(&told[i]) && widths[i] > 8);
+        let cuttable = (0..columns.len()).filter(|&i| CUTTABLE.contains(&columns[i]) && widths[i] > 8);
         let Some(widest) = cuttable.max_by_key(|&i| widths[i]) else { break };
         widths[widest] -= 1;
         excess -= 1;
@@ -187,7 +180,7 @@ fn sweeps(session: &Session) -> String {
     let longest = session.sweeps.iter().map(|sweep| sweep.name.chars().count()).max().unwrap_or(0);
     for sweep in &session.sweeps {
         let _ = writeln!(text, "{}", cut(&sweep_line(sweep, longest), WIDTH));
-        for line in wrong_lines(sweep) {
+        for line in fault_lines(sweep) {
             let _ = writeln!(text, "    {}", cut(&line, WIDTH - 4));
         }
     }
@@ -195,21 +188,19 @@ fn sweeps(session: &Session) -> String {
 }
 
 fn sweep_line(sweep: &Sweep, longest: usize) -> String {
-    let made = || sweep.points.iter().filter(|point| point.refused.is_none());
-    let worst = |of: fn(&Float64Error) -> f64| {
-        let held = made().filter(|point| !point.note.starts_with(BEYOND_FLOAT32));
-        format::largest(held.map(|point| of(&point.float64_error)))
+    let (beyond_float32, comparable): (Vec<_>, Vec<_>) =
+        sweep.rendered().partition(|point| point.is_beyond_float32());
+    let largest = |of: fn(&Float64Error) -> f64| {
+        format::largest(comparable.iter().map(|point| of(&point.float64_error)))
     };
-    let [colour, normal, depth] = [worst(|a| a.colour), worst(|a| a.normal), worst(|a| a.depth)];
-    let (beyond_float32, held): (Vec<_>, Vec<_>) =
-        made().partition(|point| point.note.starts_with(BEYOND_FLOAT32));
-    let failed: u64 = held.iter().map(|point| point.float64_error.failed_pixels).sum();
-    let faults = made().map(|point| point.faults);
+    let [colour, normal, depth] = [largest(|a| a.colour), largest(|a| a.normal), largest(|a| a.depth)];
+    let failed: u64 = comparable.iter().map(|point| point.float64_error.failed_pixels).sum();
+    let faults = sweep.rendered().map(|point| point.faults);
     let [non_finite, uncovered, overcovered] = faults.fold([0; 3], |sum, faults| {
         [sum[0] + faults.non_finite, sum[1] + faults.uncovered, sum[2] + faults.overcovered]
     });
     let name = aligned(&sweep.name, longest, Align::Left);
-    let refused = sweep.points.len() - made().count();
+    let refused = sweep.points.len() - sweep.rendered().count();
     format!(
         "{name}  {:>3} points  colour {colour:.0e}  normal {normal:.0e}  depth {depth:.0e}  {failed} px failed, \
          {non_finite} not finite, {uncovered} uncovered, {overcovered} overcovered, {refused} points refused, \
@@ -220,11 +211,7 @@ fn sweep_line(sweep: &Sweep, longest: usize) -> String {
 }
 
 /// A line for each implementation with pixels out of tolerance where float32 suffices, or with faults.
-fn wrong_lines(sweep: &Sweep) -> impl Iterator<Item = String> {
-    let is_wrong = |point: &&SweepPoint| {
-        let wrong = point.float64_error.failed_pixels > 0 && !point.note.starts_with(BEYOND_FLOAT32);
-        point.refused.is_none() && (wrong || !point.faults.is_none())
-    };
+fn fault_lines(sweep: &Sweep) -> impl Iterator<Item = String> {
     let line = |point: &SweepPoint| {
         let Faults { non_finite, uncovered, overcovered } = point.faults;
         format!(
@@ -234,7 +221,7 @@ fn wrong_lines(sweep: &Sweep) -> impl Iterator<Item = String> {
             point.float64_error.failed_pixels
         )
     };
-    sweep.points.iter().filter(is_wrong).map(line)
+    sweep.points.iter().filter(|point| point.has_faults()).map(line)
 }
 
 fn aligned(text: &str, width: usize, align: Align) -> String {

@@ -183,24 +183,24 @@ fn the_page_is_complete_and_loads_nothing() {
 
 #[test]
 fn the_page_has_the_cost_of_points_and_when_they_are_faster() {
-    let told = |runs: Vec<Run>| {
+    let report = |runs: Vec<Run>| {
         let mut results = plausible();
         results.sessions[0].runs = runs;
         check(&results);
         page(&results, CODE)
     };
-    let whole = told(pull_push());
+    let whole = report(pull_push());
     assert!(whole.contains("Passes of pull-push: bumpy-sphere"));
     let cost = "Pull and push take 30 to 44 ms, at most 1.1 times the 40 ms that they take where every pixel shows a point.";
     assert!(whole.contains(cost));
     assert!(whole.contains("It is faster than perspective-ewa from 1 M points on."));
     let until = |most: u64| pull_push().into_iter().filter(|run| run.points <= most).collect();
-    let few = told(until(100_000));
+    let few = report(until(100_000));
     assert!(few.contains(
         "Pull and push take 30 to 44 ms. It is not faster than perspective-ewa at the most points measured."
     ));
     let above = |least: u64| pull_push().into_iter().filter(|run| run.points >= least).collect();
-    let many = told(above(1_000_000));
+    let many = report(above(1_000_000));
     assert!(many.contains("It is faster than perspective-ewa at every number of points measured, from 1 M."));
 }
 
@@ -378,14 +378,14 @@ fn published_numbers_are_shown_beside_measured_ones() {
         .unwrap();
     assert!(row.contains(" 1.4 ") && row.contains(" 3.1 ") && row.contains(" 3  perspective-ewa"), "{row}");
     assert!(text.contains("none: needs levels of detail") || !text.contains("pajarola2004 table 2"));
-    let verdicts =
+    let expectations =
         |text: &str| [text.matches("as in the paper:").count(), text.matches("NOT as in the paper:").count()];
-    assert_eq!(verdicts(&text), [2, 0], "{text}");
+    assert_eq!(expectations(&text), [2, 0], "{text}");
     let mut unlike = results.clone();
     unlike.sessions[0].runs.iter_mut().filter(|run| run.paper_item == "axis-offset").for_each(|run| {
         run.error.as_mut().unwrap().metrics.insert("gaps".into(), 5.0);
     });
-    assert_eq!(verdicts(&table(&unlike, CODE, NOW)), [2, 1]);
+    assert_eq!(expectations(&table(&unlike, CODE, NOW)), [2, 1]);
 }
 
 #[test]

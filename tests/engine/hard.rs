@@ -4,7 +4,7 @@ use crate::support::gpu::{assert_silent, device};
 use crate::support::if_whole;
 use crate::support::sampling::push;
 use glam::DVec3;
-use surfel::bench::hard::{BEYOND_FLOAT32, Options, compare, names, run};
+use surfel::bench::hard::{Options, compare, names, run};
 use surfel::bench::record::{Faults, Sweep, SweepPoint};
 use surfel::geometry::{Camera, Surfels};
 use surfel::settings::methods::Method;
@@ -12,16 +12,12 @@ use surfel::verify::reference::{Admissible, Expected, Tolerance};
 use surfel::vk::DeviceLimits;
 use surfel::{Picture, Settings};
 
-fn is_excused(point: &SweepPoint) -> bool {
-    point.note.starts_with(BEYOND_FLOAT32)
-}
-
-/// A line a point.
+/// Prints a line per point.
 fn print(sweep: &Sweep) {
     println!("\n{}: {}", sweep.name, sweep.description);
     println!(
         "{:<50} {:>8} {:>7} {:>7} {:>8} {:>8} {:>8}",
-        sweep.parameter, "object", "doubt", "failed", "colour", "normal", "depth"
+        sweep.parameter, "object", "ambig.", "failed", "colour", "normal", "depth"
     );
     for point in &sweep.points {
         let a = point.float64_error;
@@ -31,12 +27,12 @@ fn print(sweep: &Sweep) {
     }
 }
 
-/// The sweep's line of a method's table, for the first of which see the guide, Accuracy: largest errors where float32 is not excused, then where it
-/// is.
+/// Prints the sweep's line of a method's table; that of the first method is in the guide, Accuracy. It has the largest errors where
+/// float32 suffices, then those beyond float32.
 fn summarize(sweep: &Sweep, method: &Method) {
     let own = || sweep.points.iter().filter(|point| point.implementation.method == method.name);
     let largest = |beyond_float32: bool| {
-        let points = || own().filter(move |point| is_excused(point) == beyond_float32);
+        let points = || own().filter(move |point| point.is_beyond_float32() == beyond_float32);
         let worst = |of: fn(&SweepPoint) -> f64| points().map(of).fold(0.0, f64::max);
         let errors = [
             worst(|point| point.float64_error.colour),
@@ -69,15 +65,15 @@ fn check(sweep: &Sweep, point: &SweepPoint) {
     assert_eq!(point.refused, None, "{at}");
     assert!([a.colour, a.normal, a.depth, point.value].into_iter().all(f64::is_finite), "{at}");
     assert!(point.faults.is_none() && a.object_pixels > 0, "{at}");
-    assert!(a.failed_pixels == 0 || is_excused(point), "{at}");
+    assert!(a.failed_pixels == 0 || point.is_beyond_float32(), "{at}");
     // Nothing is excused for nothing; what one method does not hold, another may.
     let float32_limit = |point: &SweepPoint| point.note.split("; ").next().map(str::to_owned);
     let same =
         |other: &&SweepPoint| other.value == point.value && float32_limit(other) == float32_limit(point);
     let fails = sweep.points.iter().filter(same).any(|other| other.float64_error.failed_pixels > 0);
-    assert!(fails || !is_excused(point), "{at}");
+    assert!(fails || !point.is_beyond_float32(), "{at}");
     let within = a.colour <= bars.colour && a.normal <= bars.normal && a.depth <= bars.depth_relative;
-    assert!(within || is_excused(point), "{at}");
+    assert!(within || point.is_beyond_float32(), "{at}");
     let unusable = ["NaN", "infinity", "3e38"].iter().any(|value| point.note.contains(value));
     assert_eq!(unusable && sweep.name == "attributes", point.note.contains("50 invalid") && unusable, "{at}");
 }
@@ -229,7 +225,7 @@ fn what_may_be_either_is_no_fault() {
         _ => false,
     };
     let mut open = (0..own.colour.len()).filter(is_open).peekable();
-    assert!(open.peek().is_some(), "no pixel is in doubt");
+    assert!(open.peek().is_some(), "no pixel is ambiguous");
     for i in open {
         let mut picture = own.clone();
         let depth = &mut picture.depth.as_mut().unwrap()[i];

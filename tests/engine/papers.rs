@@ -19,9 +19,9 @@ fn check(name: &str) {
     let mut runner = Runner::new(options, Vec::new());
     let runs: Vec<Run> = effect.plans().iter().map(|plan| runner.run(plan).unwrap()).collect();
     for run in &runs {
-        let told = effect.metrics.iter().map(|(name, label)| format!("{label} {:?}", value(run, name)));
+        let metrics = effect.metrics.iter().map(|(name, label)| format!("{label} {:?}", value(run, name)));
         let what = [run.implementation.label(), format!("F {}, {}", run.settings.cutoff, run.scene)];
-        println!("{}: {}: {}", effect.name, what.join(", "), told.collect::<Vec<_>>().join(", "));
+        println!("{}: {}: {}", effect.name, what.join(", "), metrics.collect::<Vec<_>>().join(", "));
         assert_eq!(run.refused, None);
     }
     let runs: Vec<&Run> = runs.iter().collect();

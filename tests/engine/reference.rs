@@ -70,27 +70,27 @@ fn moved(surfels: &Surfels, mut by: impl FnMut(&Surfel) -> glam::DVec3) -> Surfe
 #[test]
 fn its_own_picture_passes_and_few_pixels_are_ambiguous() {
     for view in VIEWS.iter() {
-        let verdict = view.compare(&view.own());
-        let share = |pixels: usize| pixels as f64 / verdict.object_pixels as f64;
+        let comparison = view.compare(&view.own());
+        let share = |pixels: usize| pixels as f64 / comparison.object_pixels as f64;
         println!(
             "{}: object {:.0} % of the picture, ambiguous {:.2} % of it ({:.2} % strictly), unresolvable {}, dual form {}, {:?}",
             view.name,
-            100.0 * verdict.object_pixels as f64 / verdict.pixels as f64,
-            100.0 * share(verdict.ambiguous),
+            100.0 * comparison.object_pixels as f64 / comparison.pixels as f64,
+            100.0 * share(comparison.ambiguous),
             100.0 * share(view.strict.bounds.ambiguous_pixels().len()),
-            verdict.unresolvable,
+            comparison.unresolvable,
             view.expected.frame.dual_form,
             view.expected.frame.counts
         );
-        assert!(verdict.passed(), "{}: {:?}", view.name, verdict.failures);
+        assert!(comparison.passed(), "{}: {:?}", view.name, comparison.failures);
         assert!(view.strict.compare(&view.own()).unwrap().passed(), "{}, strictly", view.name);
-        assert!(2 * verdict.object_pixels > verdict.pixels, "{}: too little to see", view.name);
-        assert!(share(verdict.ambiguous) <= MOST_AMBIGUOUS, "{}", view.name);
+        assert!(2 * comparison.object_pixels > comparison.pixels, "{}: too little to see", view.name);
+        assert!(share(comparison.ambiguous) <= MOST_AMBIGUOUS, "{}", view.name);
         assert!(
-            verdict.worst.colour < 1e-6 && verdict.worst.depth < 1e-6,
+            comparison.worst.colour < 1e-6 && comparison.worst.depth < 1e-6,
             "{}: {:?}",
             view.name,
-            verdict.worst
+            comparison.worst
         );
     }
 }
@@ -106,12 +106,18 @@ fn rounding_passes() {
         for n in &mut rounded.normals {
             *n = (n.as_dvec3() + unit * random.vector()).as_vec3();
         }
-        let verdict = view.mutated(&rounded, &view.case.settings);
+        let comparison = view.mutated(&rounded, &view.case.settings);
         println!(
             "{}: worst {:?}, with ambiguous pixels {:?}",
-            view.name, verdict.worst, verdict.worst_of_all
+            view.name, comparison.worst, comparison.worst_of_all
         );
-        assert!(verdict.passed(), "{}: {} failed: {:?}", view.name, verdict.failed, verdict.failures);
+        assert!(
+            comparison.passed(),
+            "{}: {} failed: {:?}",
+            view.name,
+            comparison.failed,
+            comparison.failures
+        );
     }
 }
 
@@ -131,9 +137,9 @@ fn small_differences_pass_and_larger_ones_do_not() {
             }
             view.strict.compare(&picture).unwrap()
         };
-        let verdict = disturbed(1e-4);
-        assert!(verdict.passed(), "{}: {:?}", view.name, verdict.failures);
-        assert!(disturbed(4e-4).failed * 10 > verdict.object_pixels * 9, "{}", view.name);
+        let comparison = disturbed(1e-4);
+        assert!(comparison.passed(), "{}: {:?}", view.name, comparison.failures);
+        assert!(disturbed(4e-4).failed * 10 > comparison.object_pixels * 9, "{}", view.name);
     }
 }
 
@@ -171,11 +177,11 @@ fn centres_off_by_a_fiftieth_of_a_pixel_fail() {
 }
 
 /// Checks that the mutation fails in at least `least` pixels of every view.
-fn all_fail(least: usize, verdict: impl Fn(&View) -> Comparison) {
+fn all_fail(least: usize, comparison: impl Fn(&View) -> Comparison) {
     for view in VIEWS.iter() {
-        let verdict = verdict(view);
-        println!("{}: {} of {} pixels fail", view.name, verdict.failed, verdict.object_pixels);
-        assert!(verdict.failed >= least, "{}: only {} pixels fail", view.name, verdict.failed);
+        let comparison = comparison(view);
+        println!("{}: {} of {} pixels fail", view.name, comparison.failed, comparison.object_pixels);
+        assert!(comparison.failed >= least, "{}: only {} pixels fail", view.name, comparison.failed);
     }
 }
 
@@ -189,9 +195,9 @@ fn one_wrong_pixel_fails_whatever_its_image() {
     let failure = |spoil: &dyn Fn(&mut Picture)| {
         let mut picture = view.own();
         spoil(&mut picture);
-        let verdict = view.compare(&picture);
-        assert_eq!(verdict.failed, 1);
-        verdict.failures[0].channel
+        let comparison = view.compare(&picture);
+        assert_eq!(comparison.failed, 1);
+        comparison.failures[0].channel
     };
     assert_eq!(failure(&|p| p.colour[pixel][1] += 1e-3), Channel::Colour);
     assert_eq!(failure(&|p| p.colour[pixel][2] = f32::NAN), Channel::Colour);

@@ -18,7 +18,7 @@ mod sizes;
 
 pub use compare::compare;
 
-use super::record::{Implementation, Sweep, SweepPoint};
+use super::record::{BEYOND_FLOAT32, Implementation, Sweep, SweepPoint};
 use crate::Progress;
 use crate::error::{Error, Result};
 use crate::frame::{RenderOptions, Renderer, SplatCounts};
@@ -30,9 +30,6 @@ use crate::verify::reference::{Counts, Expected, Tolerance};
 use crate::vk::Device;
 use case::{Case, View};
 use std::sync::Arc;
-
-/// Prefix of a [`SweepPoint::note`] where float32 cannot agree with float64; the reason follows.
-pub const BEYOND_FLOAT32: &str = "beyond float32: ";
 
 /// Extent of the sweeps.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -219,7 +216,7 @@ impl Sweeper<'_> {
     /// The renderer of a variant and size, created on first use.
     fn renderer(&mut self, variant: Variant, size: [u32; 2]) -> Result<&mut Renderer> {
         let options = variant.options(size);
-        let place = match self.renderers.iter().position(|(made, _)| *made == options) {
+        let place = match self.renderers.iter().position(|(other, _)| *other == options) {
             Some(place) => place,
             None => {
                 self.renderers.push((options, Renderer::new(&self.device, options)?));
@@ -242,10 +239,12 @@ fn cull_reasons(device: &SplatCounts, reference: &Counts) -> String {
         [reference.behind, reference.eye_plane, reference.back, reference.outside, reference.invalid];
     let names = ["behind", "at the eye plane", "facing away", "outside", "invalid"];
     let reasons = names.into_iter().zip([behind, eye_plane, back, outside, invalid]).zip(expected);
-    let told = reasons.filter_map(|((name, count), expected)| match (count as usize == expected, count) {
-        (true, 0) => None,
-        (true, count) => Some(format!("{count} {name}")),
-        (false, count) => Some(format!("{count} {name} ({expected} in float64)")),
+    let texts = reasons.filter_map(|((name, count), expected)| {
+        if count as usize != expected {
+            Some(format!("{count} {name} ({expected} in float64)"))
+        } else {
+            (count > 0).then(|| format!("{count} {name}"))
+        }
     });
-    told.collect::<Vec<_>>().join(", ")
+    texts.collect::<Vec<_>>().join(", ")
 }

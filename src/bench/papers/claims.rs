@@ -1,9 +1,9 @@
 //! Costs that the papers state: pairs of runs whose frames alternate.
 
+use super::method;
 use crate::bench::plan::{Measurements, Plan};
 use crate::bench::record::Experiment;
 use crate::bench::suites::{Suite, plan};
-use crate::settings::methods::Method;
 use crate::settings::splatting::{Filter, Footprint, Normalization, Splatting, Visibility};
 use crate::settings::{Settings, Widen};
 
@@ -36,7 +36,7 @@ pub const ALL: [Claim; 7] = [
         published: Some([2.2, 2.8]),
         words: "models of 0.1 to 1.6 M points, 512×512 and 1024×1024",
         scene: [SCENE; 2],
-        settings: || ["sprites-unfiltered", "sprites"].map(preset),
+        settings: || ["sprites-unfiltered", "sprites"].map(|name| method(name).settings()),
     },
     Claim {
         name: "object-lowpass",
@@ -46,8 +46,9 @@ pub const ALL: [Claim; 7] = [
         words: "both with weights of the surfels, without a division at every pixel",
         scene: [BOARD; 2],
         settings: || {
-            let with =
-                changed(&preset("object-ewa"), |splatting| splatting.normalization = Normalization::Surfel);
+            let with = changed(&method("object-ewa").settings(), |splatting| {
+                splatting.normalization = Normalization::Surfel
+            });
             [changed(&with, |splatting| splatting.filter = Filter::None), with]
         },
     },
@@ -59,7 +60,7 @@ pub const ALL: [Claim; 7] = [
         words: "there the processor read the frame buffer back and divided",
         scene: [BOARD; 2],
         settings: || {
-            let pixel = preset("object-ewa");
+            let pixel = method("object-ewa").settings();
             [changed(&pixel, |splatting| splatting.normalization = Normalization::Surfel), pixel]
         },
     },
@@ -71,7 +72,7 @@ pub const ALL: [Claim; 7] = [
         words: "no number",
         scene: [SCENE; 2],
         settings: || {
-            let with = Settings { widen: Widen::All, ..preset("perspective-ewa") };
+            let with = Settings { widen: Widen::All, ..method("perspective-ewa").settings() };
             [changed(&with, |splatting| splatting.filter = Filter::None), with]
         },
     },
@@ -83,7 +84,7 @@ pub const ALL: [Claim; 7] = [
         words: "simple z-buffering against visibility, blending and normalization",
         scene: [SCENE; 2],
         settings: || {
-            let three = preset("perspective-ewa");
+            let three = method("perspective-ewa").settings();
             let single = changed(&three, |splatting| {
                 splatting.visibility = Visibility::Nearest;
                 splatting.normalization = Normalization::None;
@@ -98,7 +99,7 @@ pub const ALL: [Claim; 7] = [
         published: None,
         words: "overall performance is not affected significantly",
         scene: ["scene:part?clips=off", "scene:part?clips=on"],
-        settings: || [preset("perspective-ewa"), preset("perspective-ewa")],
+        settings: || [method("perspective-ewa").settings(), method("perspective-ewa").settings()],
     },
     Claim {
         name: "fractional-sizes",
@@ -108,7 +109,7 @@ pub const ALL: [Claim; 7] = [
         words: "no number",
         scene: [SCENE; 2],
         settings: || {
-            let fractional = preset("sprites");
+            let fractional = method("sprites").settings();
             [changed(&fractional, |splatting| splatting.footprint = Footprint::WholeSprite), fractional]
         },
     },
@@ -132,10 +133,6 @@ impl Claim {
         let dearer = side(self.scene[1], second);
         [base.clone(), Plan { base: Some(Box::new(base)), ..dearer }]
     }
-}
-
-fn preset(name: &str) -> Settings {
-    Method::named(name).unwrap_or(Method::SPLATTING[0]).settings()
 }
 
 fn changed(settings: &Settings, change: impl Fn(&mut Splatting)) -> Settings {

@@ -3,12 +3,12 @@
 //! Most of the models were never public: a built-in scene with as many points replaces them, at the same size.
 //! Instruction counts of vertex and fragment programs have no counterpart here.
 
+use super::method;
 use crate::bench::engine::Engine;
 use crate::bench::format;
 use crate::bench::plan::{Measurements, Plan};
 use crate::bench::record::{Experiment, Run};
 use crate::bench::suites::{Suite, plan};
-use crate::settings::methods::Method;
 use crate::settings::splatting::{Filter, Normalization, Visibility};
 use crate::settings::{Choice, Settings, Shading};
 
@@ -336,7 +336,7 @@ impl Row {
 
     /// The settings of the row, or the reason why it is not rendered.
     fn settings(&self) -> Result<Settings, &'static str> {
-        let preset = |name| Method::named(name).unwrap_or(Method::SPLATTING[0]).settings();
+        let preset = |name| method(name).settings();
         let mut settings = match self.rendering {
             Rendering::Method(name) => preset(name),
             Rendering::Board(..) | Rendering::BySurfel => preset("object-ewa"),

@@ -46,20 +46,20 @@ fn effect_lines(text: &mut String, effect: &Effect, runs: &[&Run]) {
     }
     let _ = writeln!(text, "\n{} · {}", effect.title, effect.source);
     for run in runs {
-        let told = effect.metrics.iter().filter_map(|(name, label)| {
+        let metrics = effect.metrics.iter().filter_map(|(name, label)| {
             Some(format!("{label} {}", format::significant(value(run, name)?, 3)))
         });
-        let what = told.chain(run.refused.clone()).collect::<Vec<_>>().join(", ");
-        let _ = writeln!(text, "  {:<52}  {what}", side(run, runs));
+        let results = metrics.chain(run.refused.clone()).collect::<Vec<_>>().join(", ");
+        let _ = writeln!(text, "  {:<52}  {results}", run_label(run, runs));
     }
-    for (words, holds) in verdicts(effect, runs) {
+    for (words, holds) in expectations(effect, runs) {
         let _ =
             writeln!(text, "  {} {words}", if holds { "as in the paper:" } else { "NOT as in the paper:" });
     }
 }
 
 /// What distinguishes a run from the others: implementation, settings and scene parameters in which they differ.
-pub(in crate::bench) fn side(run: &Run, runs: &[&Run]) -> String {
+pub(in crate::bench) fn run_label(run: &Run, runs: &[&Run]) -> String {
     let mut words = vec![run.implementation.label()];
     let settings = format::run_settings(run, format::differing_settings(runs.iter().copied()));
     words.extend(Some(settings).filter(|text| !text.is_empty()));
@@ -70,8 +70,8 @@ pub(in crate::bench) fn side(run: &Run, runs: &[&Run]) -> String {
 }
 
 /// The expectations of an effect, in words and numbers, and whether the runs meet them.
-pub(in crate::bench) fn verdicts(effect: &Effect, runs: &[&Run]) -> Vec<(String, bool)> {
-    let told = effect.expected.iter().filter_map(|expected| {
+pub(in crate::bench) fn expectations(effect: &Effect, runs: &[&Run]) -> Vec<(String, bool)> {
+    let texts = effect.expected.iter().filter_map(|expected| {
         let holds = expected.holds(runs)?;
         let [more, less] = [expected.more, expected.less].map(|i| runs.get(i).copied());
         let (more, less) = (more?, less?);
@@ -79,14 +79,14 @@ pub(in crate::bench) fn verdicts(effect: &Effect, runs: &[&Run]) -> Vec<(String,
         let label = effect.metrics.iter().find(|(name, _)| *name == expected.metric);
         let label = label.map_or(expected.metric, |(_, label)| label);
         let [a, b] = [a, b].map(|number| format::significant(number, 3));
-        let margin = match expected.by {
+        let difference = match expected.by {
             Difference::Times(factor) => format!("{} times", format::significant(factor, 3)),
             Difference::Plus(amount) => format!("{} more", format::significant(amount, 3)),
         };
-        let [more, less] = [more, less].map(|run| side(run, runs));
-        Some((format!("{label} {a} of {more} against {b} of {less} (at least {margin})"), holds))
+        let [more, less] = [more, less].map(|run| run_label(run, runs));
+        Some((format!("{label} {a} of {more} against {b} of {less} (at least {difference})"), holds))
     });
-    told.collect()
+    texts.collect()
 }
 
 fn claim_lines(text: &mut String, session: &Session) {
@@ -133,13 +133,13 @@ fn table_lines(text: &mut String, table: &Table, runs: &[&Run], session: &Sessio
     for row in table.rows {
         let numbers = row.published.iter().map(|number| format!("{number:>12}")).collect::<String>();
         let (points, size) = (format::count(row.points), format::size(row.size));
-        let [here, by] = here(row, *unit, runs);
+        let [here, by] = row_result(row, *unit, runs);
         let _ = writeln!(text, "  {:<32}{points:>10}{size:>12}{numbers}{here:>18}  {by}", row.model);
     }
 }
 
 /// The measured number of a row and its run, or why there is none.
-pub(in crate::bench) fn here(row: &Row, unit: Unit, runs: &[&Run]) -> [String; 2] {
+pub(in crate::bench) fn row_result(row: &Row, unit: Unit, runs: &[&Run]) -> [String; 2] {
     if let Some(why) = row.missing() {
         return ["".into(), format!("none: {why}")];
     }

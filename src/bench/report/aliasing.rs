@@ -1,7 +1,8 @@
 //! Aliasing: texture finer than pixels, with the low-pass filter off and on.
 
-use super::page::{Page, grouped, titled};
+use super::page::{Page, titled};
 use crate::bench::format;
+use crate::bench::group::grouped;
 use crate::bench::record::{Experiment, Run, Session};
 use maud::{Markup, html};
 use std::io;
@@ -54,14 +55,14 @@ fn table(runs: &[&Run]) -> Markup {
 /// The error without the filter relative to that with it, for runs that are equal otherwise.
 fn sentences(runs: &[&Run]) -> Vec<String> {
     let alike = |run: &Run| (run.implementation.label(), run.points, run.settings.cutoff.to_string());
-    let mut said = Vec::new();
+    let mut sentences = Vec::new();
     for ((implementation, points, _), group) in grouped(runs.iter().copied(), alike) {
         let by_width = |a: &&&Run, b: &&&Run| a.settings.lowpass.total_cmp(&b.settings.lowpass);
         let off = group.iter().filter(|run| run.settings.lowpass == 0.0).min_by(by_width);
         let on = group.iter().filter(|run| run.settings.lowpass > 0.0).max_by(by_width);
         let (Some(off), Some(on)) = (off, on) else { continue };
         if let (Some(without), Some(with)) = (off.rmse(), on.rmse()) {
-            said.push(format!(
+            sentences.push(format!(
                 "{implementation}, {} points: RMSE {} without low-pass filter, {} with H {} ({}): {} times as much without it.",
                 format::count(points),
                 format::significant(without, 3),
@@ -72,5 +73,5 @@ fn sentences(runs: &[&Run]) -> Vec<String> {
             ));
         }
     }
-    said
+    sentences
 }

@@ -1,7 +1,8 @@
 //! Times relative to the CPU baseline.
 
-use super::page::{Page, grouped, titled};
+use super::page::{Page, titled};
 use crate::bench::format;
+use crate::bench::group::grouped;
 use crate::bench::record::{Experiment, Run, Session};
 use maud::{Markup, html};
 use std::io;

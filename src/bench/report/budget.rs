@@ -1,10 +1,11 @@
 //! Time against error.
 
-use super::page::{Page, grouped, titled};
+use super::page::{Page, titled};
 use super::plot::{Kind, Line, Plot, Scale, Style};
 use crate::bench::format;
+use crate::bench::group::{distinct, grouped};
 use crate::bench::recommendations::{Candidate, candidates, front};
-use crate::bench::record::{Experiment, Implementation, Session};
+use crate::bench::record::{Experiment, Session};
 use maud::{Markup, html};
 use std::io;
 
@@ -36,13 +37,7 @@ fn lines(page: &Page<'_>, candidates: &[Candidate<'_>]) -> Vec<Line> {
     let best = front(&methods);
     let band = Style { kind: Kind::Band, ..Style::default() };
     let mut lines = vec![Line { notes: counts(&best), ..Line::new("Pareto front", band, places(&best)) }];
-    let mut implementations: Vec<&Implementation> = Vec::new();
-    for candidate in candidates {
-        if !implementations.contains(&&candidate.run.implementation) {
-            implementations.push(&candidate.run.implementation);
-        }
-    }
-    for implementation in implementations {
+    for implementation in distinct(candidates.iter().map(|candidate| &candidate.run.implementation)) {
         let own: Vec<Candidate> =
             candidates.iter().filter(|o| o.run.implementation == *implementation).copied().collect();
         let joined = least_errors(&own);

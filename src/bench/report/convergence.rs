@@ -1,11 +1,12 @@
 //! Error against the number of points: where it stops falling, and the residual error.
 
-use super::page::{Page, grouped, titled};
+use super::page::{Page, titled};
 use super::plot::{Line, Plot, Scale, Style};
 use crate::bench::convergence::{
     Convergence, ErrorAt, SHARE, SLOPE, convergence, errors_by_points, residual,
 };
 use crate::bench::format;
+use crate::bench::group::grouped;
 use crate::bench::record::{Error, Experiment, Implementation, Run, RunSettings, Session};
 use maud::{Markup, html};
 use std::io;
@@ -89,19 +90,18 @@ fn lines(runs: &[&Run]) -> Vec<Line> {
 
 /// Where the error falls, where it stops falling, and the residual error.
 fn sentence(runs: &[&Run]) -> String {
-    let told =
+    let at =
         |step: ErrorAt| format!("{} ({})", format::count(step.points), format::significant(step.rmse, 2));
     let (falls, end) = match convergence(&errors_by_points(runs.iter().copied())) {
         Convergence::Unknown => return "One number of points gives no slope.".into(),
         Convergence::Nowhere => ("The error does not fall with the number of points".into(), None),
         Convergence::StopsAt([from, to]) => (
-            format!("The error falls from {} to {} points and stops falling there", told(from), told(to)),
+            format!("The error falls from {} to {} points and stops falling there", at(from), at(to)),
             Some(to),
         ),
-        Convergence::Continues([from, to]) => (
-            format!("The error falls from {} to {} points, the most measured", told(from), told(to)),
-            Some(to),
-        ),
+        Convergence::Continues([from, to]) => {
+            (format!("The error falls from {} to {} points, the most measured", at(from), at(to)), Some(to))
+        }
     };
     let run = end.and_then(|end| runs.iter().find(|run| run.points == end.points)).or(runs.last());
     match run.and_then(|run| residual(run)) {
@@ -125,7 +125,7 @@ fn causes(run: &&Run) -> String {
         ("precision", error.terms.precision),
         ("the truth", Some(error.truth_rms)),
     ];
-    let told = |(name, size): (&str, Option<f64>)| Some(format!("{name} {}", format::significant(size?, 2)));
-    let list = causes.into_iter().filter_map(told).collect::<Vec<_>>().join(", ");
+    let text = |(name, size): (&str, Option<f64>)| Some(format!("{name} {}", format::significant(size?, 2)));
+    let list = causes.into_iter().filter_map(text).collect::<Vec<_>>().join(", ");
     format!("Causes at {} points: {list}.", format::count(run.points))
 }

@@ -3,7 +3,7 @@
 use super::page::Page;
 use crate::bench::format;
 use crate::bench::papers::effects::{ALL, Effect, value};
-use crate::bench::papers::{runs, side, verdicts};
+use crate::bench::papers::{expectations, run_label, runs};
 use crate::bench::record::{Experiment, Images, Run, Session};
 use maud::{Markup, html};
 use std::io;
@@ -21,22 +21,22 @@ pub fn content(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>
 }
 
 fn one(effect: &Effect, runs: &[&Run], all_images: &[Images]) -> Markup {
-    let shown = |run: &Run| all_images.get(run.images?);
+    let images = |run: &Run| all_images.get(run.images?);
     // A picture of counts has no truth.
-    let truth = runs.iter().filter(|run| run.error.is_some()).find_map(|run| shown(run));
+    let truth = runs.iter().filter(|run| run.error.is_some()).find_map(|run| images(run));
     html! {
         h3 { (effect.title) }
         p { (effect.description) " " span.source { "(" (effect.source) ")" } }
         div.sides {
             @if let Some(images) = truth { (picture(&images.truth, "the exact picture", &[])) }
             @for run in runs {
-                @let name = side(run, runs);
+                @let name = run_label(run, runs);
                 @let numbers = numbers(effect, run);
-                @if let Some(images) = shown(run) { (picture(&images.rendered, &name, &numbers)) }
+                @if let Some(images) = images(run) { (picture(&images.rendered, &name, &numbers)) }
                 @else { figure { figcaption { strong { (name) } (run.refused.as_deref().unwrap_or("no picture")) } } }
             }
         }
-        ul.verdicts { @for (words, holds) in verdicts(effect, runs) {
+        ul.expectations { @for (words, holds) in expectations(effect, runs) {
             li.fault[!holds] { @if holds { "As in the paper: " } @else { "Not as in the paper: " } (words) "." }
         } }
     }

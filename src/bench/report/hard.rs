@@ -3,7 +3,7 @@
 use super::page::Page;
 use super::plot::{Limit, Line, Mark, Plot, Scale, Style};
 use crate::bench::format;
-use crate::bench::hard::BEYOND_FLOAT32;
+use crate::bench::group::distinct;
 use crate::bench::record::{Faults, Float64Error, Implementation, Session, Sweep, SweepPoint};
 use maud::{Markup, html};
 use std::io;
@@ -22,11 +22,7 @@ pub fn content(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Mark
     let mut plots = Vec::new();
     for sweep in session.sweeps.iter().filter(|sweep| !sweep.points.is_empty()) {
         let words = words(sweep);
-        let drawn = if sweep.points.iter().any(|point| point.refused.is_none()) {
-            Some(page.plot(plot(sweep))?)
-        } else {
-            None
-        };
+        let drawn = if sweep.rendered().next().is_some() { Some(page.plot(plot(sweep))?) } else { None };
         plots.push(html! { div {
             @if let Some(plot) = &drawn { (plot) } @else { h3 { (title(sweep)) } }
             p.caption { (sweep.description) }
@@ -54,13 +50,8 @@ pub fn content(page: &mut Page<'_>, session: &Session) -> io::Result<Option<Mark
 
 /// Names of the methods, in the order of their first point.
 fn methods(session: &Session) -> Vec<&str> {
-    let mut methods: Vec<&str> = Vec::new();
-    for point in session.sweeps.iter().flat_map(|sweep| &sweep.points) {
-        if !methods.contains(&point.implementation.method.as_str()) {
-            methods.push(&point.implementation.method);
-        }
-    }
-    methods
+    let points = session.sweeps.iter().flat_map(|sweep| &sweep.points);
+    distinct(points.map(|point| point.implementation.method.as_str()))
 }
 
 /// The largest difference of colour of each case by each method, and the pixels out of tolerance.
@@ -83,14 +74,14 @@ fn by_method(session: &Session) -> Markup {
 }
 
 fn worst(points: &[&SweepPoint]) -> String {
-    let made = || points.iter().filter(|point| point.refused.is_none());
-    let held = || made().filter(|point| !point.note.starts_with(BEYOND_FLOAT32));
-    let colour = format::largest(held().map(|point| point.float64_error.colour));
-    let wrong: u64 = held().map(|point| point.float64_error.failed_pixels).sum();
-    match (made().count(), wrong) {
+    let rendered = || points.iter().filter(|point| point.refused.is_none());
+    let comparable = || rendered().filter(|point| !point.is_beyond_float32());
+    let colour = format::largest(comparable().map(|point| point.float64_error.colour));
+    let failed: u64 = comparable().map(|point| point.float64_error.failed_pixels).sum();
+    match (rendered().count(), failed) {
         (0, _) => String::new(),
         (_, 0) => format::significant(colour, 2),
-        _ => format!("{}, {wrong} px failed", format::significant(colour, 2)),
+        _ => format!("{}, {failed} px failed", format::significant(colour, 2)),
     }
 }
 
@@ -130,36 +121,25 @@ fn plot(sweep: &Sweep) -> Plot {
     let across = if sweep.logarithmic { Scale::Log } else { Scale::Linear };
     let axes = [(sweep.parameter.as_str(), across), ("largest difference", Scale::Log)];
     let mark = |point: &SweepPoint| Mark { x: point.value, fault: point.refused.is_none() };
-    let told = sweep.points.iter().filter(|point| is_fault(point) || point.refused.is_some());
-    let marks = told.map(mark).collect();
+    let marked = sweep.points.iter().filter(|point| point.has_faults() || point.refused.is_some());
+    let marks = marked.map(mark).collect();
     Plot::of(format!("hard-{}", sweep.name), title(sweep), axes, lines).with(limits, marks)
 }
 
 fn implementations(sweep: &Sweep) -> Vec<&Implementation> {
-    let mut implementations: Vec<&Implementation> = Vec::new();
     let first = sweep.points.first().map(|point| &point.implementation.method);
-    for point in sweep.points.iter().filter(|point| Some(&point.implementation.method) == first) {
-        if !implementations.contains(&&point.implementation) {
-            implementations.push(&point.implementation);
-        }
-    }
-    implementations
-}
-
-/// Pixels out of tolerance are no fault where float32 cannot agree; a hole always is.
-fn is_fault(point: &SweepPoint) -> bool {
-    let wrong = point.float64_error.failed_pixels > 0 && !point.note.starts_with(BEYOND_FLOAT32);
-    point.refused.is_none() && (wrong || !point.faults.is_none())
+    let own = sweep.points.iter().filter(|point| Some(&point.implementation.method) == first);
+    distinct(own.map(|point| &point.implementation))
 }
 
 /// Remarks on the points, and whether each is a fault.
 fn words(sweep: &Sweep) -> Vec<(bool, String)> {
-    let told = sweep.points.iter().filter_map(|point| {
+    let points = sweep.points.iter().filter_map(|point| {
         let what = remarks(point);
         let place = format!("{} at {}", point.implementation.label(), format::significant(point.value, 6));
-        (!what.is_empty()).then(|| (is_fault(point), format!("{place}: {}", what.join(", "))))
+        (!what.is_empty()).then(|| (point.has_faults(), format!("{place}: {}", what.join(", "))))
     });
-    told.collect()
+    points.collect()
 }
 
 fn remarks(point: &SweepPoint) -> Vec<String> {

@@ -1,8 +1,9 @@
 //! Cost and benefit of the low-pass filter.
 
-use super::page::{Page, grouped, titled};
+use super::page::{Page, titled};
 use super::plot::{Line, Plot, Scale, Style};
 use crate::bench::format;
+use crate::bench::group::grouped;
 use crate::bench::record::{Experiment, Run, RunSettings, Session};
 use maud::{Markup, html};
 use std::io;

@@ -2,6 +2,7 @@
 
 use super::page::titled;
 use crate::bench::format;
+use crate::bench::group::distinct;
 use crate::bench::record::{Experiment, Results, Run, Session};
 use maud::{Markup, html};
 
@@ -11,14 +12,8 @@ type Key<'a> = (&'a str, [u32; 2], u64, String, String);
 /// A table with a column per session; none for a single session, or if sessions have no run in common.
 pub fn section(results: &Results) -> Option<Markup> {
     let sessions = &results.sessions;
-    let mut rows: Vec<Key<'_>> = Vec::new();
-    for key in sessions.iter().flat_map(|session| runs(session).map(key)) {
-        if !rows.contains(&key)
-            && sessions.iter().filter(|session| multiple(session, &key).is_some()).count() > 1
-        {
-            rows.push(key);
-        }
-    }
+    let mut rows = distinct(sessions.iter().flat_map(|session| runs(session).map(key)));
+    rows.retain(|key| sessions.iter().filter(|session| ratio(session, key).is_some()).count() > 1);
     (!rows.is_empty()).then(|| html! {
         p { "Median times relative to the CPU baseline on the same machine." }
         div.scroll { table {
@@ -31,7 +26,7 @@ pub fn section(results: &Results) -> Option<Markup> {
                 td { (titled(scene, *size)) } td.number { (format::count(*points)) }
                 td { (implementation) @if !settings.is_empty() { ", " (settings) } }
                 @for session in sessions {
-                    td.number { (multiple(session, row).map(format::baseline_ratio).unwrap_or_else(|| "–".into())) }
+                    td.number { (ratio(session, row).map(format::baseline_ratio).unwrap_or_else(|| "–".into())) }
                 }
             } } }
         } }
@@ -47,6 +42,6 @@ fn key(run: &Run) -> Key<'_> {
     (&run.scene, run.size, run.points, run.implementation.label(), settings)
 }
 
-fn multiple(session: &Session, wanted: &Key<'_>) -> Option<f64> {
-    runs(session).filter(|run| key(run) == *wanted).find_map(|run| run.time.as_ref()?.baseline_ratio)
+fn ratio(session: &Session, row: &Key<'_>) -> Option<f64> {
+    runs(session).filter(|run| key(run) == *row).find_map(|run| run.time.as_ref()?.baseline_ratio)
 }

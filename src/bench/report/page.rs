@@ -6,7 +6,8 @@ use super::{
     provenance, scaling, summary,
 };
 use crate::bench::format;
-use crate::bench::record::{Implementation, Results, Run, Session};
+use crate::bench::group::distinct;
+use crate::bench::record::{Implementation, Results, Session};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use std::io;
 
@@ -50,15 +51,11 @@ const SECTIONS: [Section; 12] = [
 impl<'a> Page<'a> {
     /// A page of `results` for a program with this source digest and commit.
     pub fn new(results: &'a Results, code: &'a str, commit: &'a str) -> Self {
-        let mut implementations: Vec<&Implementation> = Vec::new();
         let ran = |session: &'a Session| session.runs.iter().map(|run| &run.implementation);
         let swept = |session: &'a Session| session.sweeps.iter().flat_map(|sweep| &sweep.points);
         let swept = |session| swept(session).map(|point| &point.implementation);
-        for implementation in results.sessions.iter().flat_map(|session| ran(session).chain(swept(session))) {
-            if !implementations.contains(&implementation) {
-                implementations.push(implementation);
-            }
-        }
+        let implementations =
+            distinct(results.sessions.iter().flat_map(|session| ran(session).chain(swept(session))));
         Self { results, code, commit, plots: Vec::new(), implementations }
     }
 
@@ -170,22 +167,6 @@ impl<'a> Page<'a> {
 fn slug(name: &str) -> String {
     let words = name.split(|c: char| !c.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
     words.collect::<Vec<_>>().join("-").to_lowercase()
-}
-
-/// Groups runs by key, in the order of their first.
-pub fn grouped<'r, K: PartialEq>(
-    runs: impl IntoIterator<Item = &'r Run>,
-    key: impl Fn(&'r Run) -> K,
-) -> Vec<(K, Vec<&'r Run>)> {
-    let mut groups: Vec<(K, Vec<&Run>)> = Vec::new();
-    for run in runs {
-        let key = key(run);
-        match groups.iter_mut().find(|(other, _)| *other == key) {
-            Some((_, group)) => group.push(run),
-            None => groups.push((key, vec![run])),
-        }
-    }
-    groups
 }
 
 /// A scene and a size, as a title.

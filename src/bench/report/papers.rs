@@ -4,7 +4,7 @@ use super::page::Page;
 use crate::bench::format;
 use crate::bench::papers::claims::{self, Claim};
 use crate::bench::papers::tables::{self, Table};
-use crate::bench::papers::{here, published, ratio, runs};
+use crate::bench::papers::{published, ratio, row_result, runs};
 use crate::bench::record::{Experiment, Run, Session};
 use maud::{Markup, html};
 use std::io;
@@ -17,7 +17,7 @@ pub fn content(_: &mut Page<'_>, session: &Session) -> io::Result<Option<Markup>
     Ok((any || !costs.is_empty()).then(|| {
         html! {
             @if !costs.is_empty() { h3 { "Costs" } (table_of_costs(&costs)) }
-            @if any { @for table in &tables::ALL { (beside(table, session)) } }
+            @if any { @for table in &tables::ALL { (one(table, session)) } }
         }
     }))
 }
@@ -48,7 +48,7 @@ fn pair(runs: &[&Run], of: impl Fn(&Run) -> Option<f64>) -> String {
     numbers.map(|numbers| numbers.join(" : ")).unwrap_or_default()
 }
 
-fn beside(table: &Table, session: &Session) -> Markup {
+fn one(table: &Table, session: &Session) -> Markup {
     let runs = runs(&session.runs, Experiment::PaperTables, table.source);
     let columns = table.columns.len();
     html! {
@@ -64,7 +64,7 @@ fn beside(table: &Table, session: &Session) -> Markup {
                 th.number scope="col" { "here" } th scope="col" { "of" }
             } }
             tbody { @for row in table.rows { tr {
-                @let [number, by] = here(row, table.unit, &runs);
+                @let [number, by] = row_result(row, table.unit, &runs);
                 td { (row.model) } td.number { (format::count(row.points)) } td.number { (format::size(row.size)) }
                 @for i in 0..columns { td.number { (row.published[i]) } }
                 td.number { strong { (number) } } td { (by) }

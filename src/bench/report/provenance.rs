@@ -2,6 +2,7 @@
 
 use super::page::Page;
 use crate::bench::format;
+use crate::bench::group::distinct;
 use crate::bench::record::{Provenance, Run, Session};
 use crate::settings::Choice;
 use maud::{Markup, html};
@@ -83,12 +84,7 @@ fn passes(session: &Session) -> Markup {
     let timed: Vec<(&Run, _)> =
         session.runs.iter().filter_map(|run| Some((run, run.time.as_ref()?))).collect();
     let timed: Vec<_> = timed.into_iter().filter(|(_, time)| !time.passes.is_empty()).collect();
-    let mut names: Vec<&str> = Vec::new();
-    for pass in timed.iter().flat_map(|(_, time)| &time.passes) {
-        if !names.contains(&pass.name.as_str()) {
-            names.push(&pass.name);
-        }
-    }
+    let names = distinct(timed.iter().flat_map(|(_, time)| &time.passes).map(|pass| pass.name.as_str()));
     html! { @if !timed.is_empty() {
         details {
             summary { "Times of the passes: " (timed.len()) " runs" }

@@ -1,9 +1,10 @@
 //! Cost of pull–push against the number of points, pass by pass, and the number of points from which it is faster than
 //! splats.
 
-use super::page::{Page, grouped};
+use super::page::Page;
 use super::plot::{Line, Plot, Scale, Style};
 use crate::bench::format;
+use crate::bench::group::grouped;
 use crate::bench::record::{Experiment, Implementation, Run, Session};
 use crate::settings::methods::{Method, perspective_ewa, pull_push};
 use maud::{Markup, html};
@@ -37,10 +38,10 @@ pub fn plots(page: &mut Page<'_>, session: &Session) -> io::Result<Vec<Markup>> 
                     && run.size == size
                     && run.implementation == own[0].implementation
             });
-            let told =
+            let sentences =
                 [against_filled(&own, filled), against_splats(&own, &by(&runs, &perspective_ewa::METHOD))];
             let plot = page.plot(Plot::of(name, title, axes, lines))?;
-            plots.push(html! { div { (plot) p.caption { (told.join(" ")) } } });
+            plots.push(html! { div { (plot) p.caption { (sentences.join(" ")) } } });
         }
     }
     Ok(plots)

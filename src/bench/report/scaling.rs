@@ -1,9 +1,10 @@
 //! Time against the number of points, the picture's size, and the number of discs over a point of the surface.
 
-use super::page::{Page, grouped};
+use super::page::Page;
 use super::plot::{Line, Plot, Scale, Style};
 use super::pull_push;
 use crate::bench::format;
+use crate::bench::group::grouped;
 use crate::bench::record::{Experiment, Run, Session};
 use maud::{Markup, html};
 use std::io;
@@ -110,8 +111,8 @@ fn growth(lines: &[Line]) -> String {
         let [.., [x0, y0], [x1, y1]] = line.points.as_slice() else { return None };
         Some((y1 / y0).ln() / (x1 / x0).ln()).filter(|exponent| exponent.is_finite())
     };
-    let told = lines.iter().filter_map(|line| Some(format!("{} {:.2}", line.label, exponent(line)?)));
-    match told.collect::<Vec<_>>().join(", ") {
+    let exponents = lines.iter().filter_map(|line| Some(format!("{} {:.2}", line.label, exponent(line)?)));
+    match exponents.collect::<Vec<_>>().join(", ") {
         none if none.is_empty() => String::new(),
         list => format!("Exponents between the last two points: {list}."),
     }

@@ -38,12 +38,12 @@ pub(super) fn plans(inputs: &UserInputs) -> Vec<Plan> {
     inputs.subjects.iter().flat_map(each).collect()
 }
 
-fn densities(subject: &Subject, wanted: &[u64]) -> Vec<u64> {
+fn densities(subject: &Subject, given: &[u64]) -> Vec<u64> {
     let most = subject.most_points();
-    let points = if wanted.is_empty() { &POINTS } else { wanted };
+    let points = if given.is_empty() { &POINTS } else { given };
     let mut densities: Vec<u64> =
         points.iter().map(|&points| most.map_or(points, |most| points.min(most))).collect();
-    densities.extend(most.filter(|_| wanted.is_empty()));
+    densities.extend(most.filter(|_| given.is_empty()));
     densities.sort_unstable();
     densities.dedup();
     densities

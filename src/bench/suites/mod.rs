@@ -127,13 +127,7 @@ pub(super) fn plan(suite: Suite, experiment: Experiment, scene: &str, points: u6
 fn methods(plan: &Plan) -> impl Iterator<Item = Plan> + use<> {
     let plan = plan.clone();
     let others = Method::ALL.into_iter().filter(|method| *method != perspective_ewa::METHOD);
-    others.map(move |method| by(&plan, &method))
-}
-
-/// The same plan by a method with its own settings.
-fn by(plan: &Plan, method: &Method) -> Plan {
-    let settings = Settings { shading: plan.settings.shading, ..method.settings() };
-    Plan { settings, ..plan.clone() }
+    others.map(move |method| plan.by(&method))
 }
 
 /// The same plan by the CPU baseline.

@@ -1,6 +1,6 @@
 //! A first impression of everything.
 
-use super::{Suite, aliasing, baseline, by, lowpass, methods, plan};
+use super::{Suite, aliasing, baseline, lowpass, methods, plan};
 use crate::bench::plan::{Measurements, Plan};
 use crate::bench::record::Experiment;
 use crate::settings::methods::pull_push;
@@ -19,7 +19,7 @@ pub(super) fn plans() -> Vec<Plan> {
             if (scene, points) == EVERY_METHOD {
                 plans.extend(methods(&smooth))
             } else {
-                plans.push(by(&smooth, &pull_push::METHOD))
+                plans.push(smooth.by(&pull_push::METHOD))
             }
         }
     }

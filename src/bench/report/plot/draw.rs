@@ -31,7 +31,7 @@ pub(super) type Root<'a> = DrawingArea<SVGBackend<'a>, plotters::coord::Shift>;
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<Axis, Axis>>;
 pub(super) type Drawn<T = ()> = Result<T, DrawingAreaErrorKind<std::io::Error>>;
 
-/// A plot as two SVG texts: for a file of its own, and to embed in a page.
+/// A plot as two SVG texts: for a separate file, and to embed in a page.
 ///
 /// # Errors
 /// Those of the backend, which writes to memory and so has none in practice.

@@ -5,7 +5,7 @@ use super::Plot;
 /// Use of a drawing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Use {
-    /// A file of its own, with namespace and size.
+    /// A separate file, with namespace and size.
     File,
     /// Part of an HTML page, which implies the namespace and scales it to its width.
     Inline,
