@@ -14,10 +14,9 @@ use std::sync::Arc;
 /// A way to render.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Engine {
-    /// Splats on a Vulkan device, by the method that the settings choose. Without a rasterizer, the faster one on the
-    /// device.
+    /// Splats on a Vulkan device, by the method that the settings choose.
     Splatting {
-        /// What visits the pixels.
+        /// Rasterizer of the splats; the faster one on the device if `None`.
         rasterizer: Option<Rasterizer>,
         /// Width of the sums.
         precision: Precision,

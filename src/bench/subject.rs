@@ -1,4 +1,4 @@
-//! What is rendered, and its exact surface.
+//! Subjects of measurements: points of a built-in scene or a scan, and their exact surface.
 
 use crate::error::{Error, Result};
 use crate::estimate::Estimate;

@@ -1,4 +1,5 @@
-//! What pictures are held to: the float64 twin of every pass, exact images, measures of error, scenes with exact surfaces, and a native program.
+//! Verification of pictures: the float64 reference of every pass, exact images, metrics of error, scenes with exact surfaces, and the CPU
+//! baseline.
 
 #[cfg(feature = "bench")]
 pub mod baseline;

@@ -290,7 +290,7 @@ fn each<const N: usize>(plan: &Plan, splattings: [Splatting; N]) -> Vec<Plan> {
     splattings.map(|splatting| Plan { settings: one(splatting), ..plan.clone() }).into()
 }
 
-/// The plan by a method with the method's settings.
+/// A viewpoint with y up.
 fn view(eye: [f64; 3], target: [f64; 3], fov_y_deg: f64) -> Option<Viewpoint> {
     Some(Viewpoint { eye, target, up: [0.0, 1.0, 0.0], fov_y_deg })
 }

@@ -35,7 +35,7 @@ pub enum Unit {
     Fps,
     /// Million splats per second.
     MillionSplats,
-    /// Seconds a frame.
+    /// Seconds per frame.
     Seconds,
     /// Milliseconds per frame, beside those of the projection and of pull and push.
     Parts,

@@ -55,7 +55,7 @@ pub struct Run {
     pub images: Option<usize>,
 }
 
-/// What runs are measured for.
+/// The experiment that a run belongs to.
 #[derive(
     Clone,
     Copy,

@@ -1,4 +1,4 @@
-//! What the papers show, say and measured.
+//! Effects that the papers show, costs that they state, and times that they measured.
 
 use crate::bench::papers::{claims, effects, tables};
 use crate::bench::plan::Plan;

@@ -81,7 +81,7 @@ fn certain_and_possible(solid: &Ellipse, offset: DVec2) -> [Mask; 2] {
     [certain, possible]
 }
 
-/// SampleCounts fraction of each pixel of the band, for pixels with a fragment.
+/// Covered fraction of each pixel of the band, for pixels with a fragment.
 pub(super) fn pass(projector: &Projector, scene: &ProjectedScene, band: &Band) -> Vec<f64> {
     if projector.settings.alpha == Alpha::Mask {
         return vec![1.0; band.len()];
@@ -134,7 +134,7 @@ impl SampleCounts {
         self.0.start() != self.0.end()
     }
 
-    /// How many numbers it has.
+    /// Number of admissible counts.
     pub fn len(&self) -> usize {
         self.0.clone().count()
     }

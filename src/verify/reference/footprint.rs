@@ -200,10 +200,11 @@ impl Projector {
         };
         let attribute = Ellipse::attribute(&splat, self);
         // NaN fails the test, too.
-        match splat.sqrt_det >= LEAST_AREA && self.sees(&attribute) {
-            true if attribute.variance.x <= LARGEST_VARIANCE => Ok(splat),
-            true => Err(Culled::Invalid),
-            false => Err(Culled::Outside),
+        let visible = splat.sqrt_det >= LEAST_AREA && self.sees(&attribute);
+        if visible && attribute.variance.x <= LARGEST_VARIANCE {
+            Ok(splat)
+        } else {
+            Err(if visible { Culled::Invalid } else { Culled::Outside })
         }
     }
 

@@ -117,10 +117,12 @@ impl Projector {
     /// Distance along the ray at pixel position `at` to a splat's plane; `None` behind the eye or outside the clip volume.
     pub(super) fn depth_of(&self, splat: &Splat, at: DVec2) -> Option<f64> {
         let value = splat.plane.dot(DVec3::new(1.0, at.x, at.y));
-        let distance = match self.has_inverse_depth() {
-            true if value > 0.0 => 1.0 / value,
-            true => return None,
-            false => value,
+        let distance = if !self.has_inverse_depth() {
+            value
+        } else if value > 0.0 {
+            1.0 / value
+        } else {
+            return None;
         };
         // An infinite far plane would admit the horizon, where there is nothing to see.
         (distance.is_finite() && (self.depth.near..=self.depth.far).contains(&distance)).then_some(distance)

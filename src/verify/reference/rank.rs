@@ -1,7 +1,6 @@
 //! The order of fragments in depth.
 
-/// Rank of a fragment: clipped fragments, which lie clipped a clip line of their splat, are behind all others; then by
-/// depth.
+/// Rank of a fragment. Fragments beyond a clip line of their splat are behind all others; equal ones are ordered by depth.
 #[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
 pub(super) struct Rank {
     // The derived order compares this field first.

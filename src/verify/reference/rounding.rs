@@ -1,9 +1,9 @@
-//! DepthRanges of the rounding error of a pixel's value while no decision flips.
+//! Bounds of the rounding error of a pixel's value while no decision flips.
 
 use super::error_model::{Candidate, ErrorModel};
 use glam::DVec3;
 
-/// DepthRanges of a pixel's rounding error while no decision flips: weighted means over its splats. All but `normal_sum` are
+/// Bounds of a pixel's rounding error while no decision flips: weighted means over its splats. All but `normal_sum` are
 /// 0 if [`super::Tolerance::rounding`] is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct RoundingBound {

@@ -101,10 +101,12 @@ impl Axis {
     /// Position of a value: 0 at the lower end, 1 at the upper one; clamped.
     pub fn share(&self, value: f64) -> f64 {
         let [low, high] = self.ends;
-        match self.scale.holds(value) {
-            true => ((self.scale.forth(value) - low) / (high - low)).clamp(0.0, 1.0),
-            false if value > 0.0 => 1.0,
-            false => 0.0,
+        if self.scale.holds(value) {
+            ((self.scale.forth(value) - low) / (high - low)).clamp(0.0, 1.0)
+        } else if value > 0.0 {
+            1.0
+        } else {
+            0.0
         }
     }
 
