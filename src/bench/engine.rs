@@ -181,7 +181,7 @@ mod tests {
     }
 
     #[test]
-    fn a_contender_is_its_preset_or_the_nearest_with_what_is_changed() {
+    fn an_implementation_is_named_after_its_preset_or_the_nearest_with_its_changes() {
         for method in Method::ALL {
             assert_eq!(Engine::DEFAULT.implementation(&method.settings()).label(), method.name);
         }

@@ -3,6 +3,7 @@
 //! Candidates are the runs on the Pareto front: no other run is both faster and more exact. For a budget of time the
 //! best run is the one of least error within it; for a budget of error, the fastest.
 
+use super::group::grouped;
 use super::record::{Experiment, Run, Session};
 
 /// A run that was timed and compared with the truth.
@@ -41,15 +42,14 @@ pub struct Recommendations<'a> {
 impl<'a> Recommendations<'a> {
     /// From the budget experiment's runs, without the CPU baseline; none if there are no such runs.
     pub fn of(session: &'a Session) -> Option<Self> {
-        let mut columns: Vec<Column<'a>> = Vec::new();
         let methods = |run: &&Run| run.experiment == Experiment::Budget && !run.implementation.is_baseline();
-        let runs = || session.runs.iter().filter(methods);
-        for run in runs() {
-            if !columns.iter().any(|column| column.scene == run.scene && column.size == run.size) {
-                let alike = runs().filter(|other| other.scene == run.scene && other.size == run.size);
-                columns.push(Column { scene: &run.scene, size: run.size, front: front(&candidates(alike)) });
-            }
-        }
+        let groups = grouped(session.runs.iter().filter(methods), |run| (run.scene.as_str(), run.size));
+        let column = |((scene, size), runs): (_, Vec<&'a Run>)| Column {
+            scene,
+            size,
+            front: front(&candidates(runs)),
+        };
+        let mut columns: Vec<Column<'a>> = groups.into_iter().map(column).collect();
         columns.retain(|column| !column.front.is_empty());
         let best = || columns.iter().flat_map(|column| &column.front);
         let (times, errors) = (budgets(best().map(|o| o.ms)), budgets(best().map(|o| o.rmse)));

@@ -73,7 +73,7 @@ struct Ray {
 }
 
 /// Result for an interval.
-enum Verdict {
+enum IntervalClass {
     Nothing,
     Root(f64),
     Unknown,
@@ -95,31 +95,31 @@ impl Ray {
         while let Some([a, b]) = todo.pop() {
             let middle = 0.5 * (a + b);
             match self.classify(a, middle, b) {
-                Verdict::Nothing => {}
-                Verdict::Root(t) => return Some(t),
-                Verdict::Unknown => todo.extend([[middle, b], [a, middle]]),
+                IntervalClass::Nothing => {}
+                IntervalClass::Root(t) => return Some(t),
+                IntervalClass::Unknown => todo.extend([[middle, b], [a, middle]]),
             }
         }
         None
     }
 
-    fn classify(&self, a: f64, middle: f64, b: f64) -> Verdict {
+    fn classify(&self, a: f64, middle: f64, b: f64) -> IntervalClass {
         let half = 0.5 * (b - a);
         let (value, slope) = self.value(middle);
         let curvature = most_curved(self.axis_distance(a, b) / GREATEST);
         let reach = (STEEPEST * half).min(slope.abs() * half + 0.5 * curvature * half * half);
         if value.abs() > reach + ROUNDING {
-            return Verdict::Nothing;
+            return IntervalClass::Nothing;
         }
         let monotone = slope.abs() > curvature * half;
         // Adjacent intervals share an end, and so its computed sign: no crossing falls between them.
         if monotone || half < 1e-13 {
             return match self.value(a).0 < 0.0 {
-                inside if inside == (self.value(b).0 < 0.0) => Verdict::Nothing,
-                inside => Verdict::Root(self.crossing([a, middle, b], (value, slope), inside)),
+                inside if inside == (self.value(b).0 < 0.0) => IntervalClass::Nothing,
+                inside => IntervalClass::Root(self.crossing([a, middle, b], (value, slope), inside)),
             };
         }
-        if value.abs() <= TOUCH && half < 1e-6 { Verdict::Root(middle) } else { Verdict::Unknown }
+        if value.abs() <= TOUCH && half < 1e-6 { IntervalClass::Root(middle) } else { IntervalClass::Unknown }
     }
 
     /// Least distance from the y axis between `a` and `b`.

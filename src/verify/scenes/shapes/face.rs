@@ -55,12 +55,12 @@ impl Region {
     }
 
     fn contains(&self, at: DVec2) -> bool {
-        let slack = EDGE * self.reach().max_element();
+        let tolerance = EDGE * self.reach().max_element();
         match *self {
-            Self::Rectangle([a, b]) => at.x.abs() <= a + slack && at.y.abs() <= b + slack,
-            Self::Disc(radius) => at.length() <= radius + slack,
+            Self::Rectangle([a, b]) => at.x.abs() <= a + tolerance && at.y.abs() <= b + tolerance,
+            Self::Disc(radius) => at.length() <= radius + tolerance,
             Self::Collar { half, hole } => {
-                at.y.abs() <= at.x + slack && at.x <= half + slack && at.length() >= hole - slack
+                at.y.abs() <= at.x + tolerance && at.x <= half + tolerance && at.length() >= hole - tolerance
             }
         }
     }

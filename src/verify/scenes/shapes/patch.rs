@@ -24,7 +24,7 @@ const FINEST: f64 = 1e-6;
 /// to be the only ones, and cells need not be divided.
 const FINER: usize = 2;
 /// Relative distance beyond its border within which a part's roots count.
-const SLACK: f64 = 1e-9;
+const TOLERANCE: f64 = 1e-9;
 /// Factor of the bounds from finite differences.
 const SAFETY: f64 = 1.5;
 
@@ -96,7 +96,7 @@ struct RayPlanes {
     planes: [DVec3; 2],
 }
 
-enum Verdict {
+enum PartClass {
     Nothing,
     Root(DVec2),
     Unknown,
@@ -129,9 +129,9 @@ impl<P: Parametric> Patch<P> {
     /// The intersection nearest to the ray's origin, at less than `limit`, inside the cell.
     fn meet(&self, planes: &RayPlanes, cell: &Cell, limit: f64) -> Option<Intersection> {
         match self.classify(planes, cell.part, &cell.jet, &cell.curvature, limit) {
-            Verdict::Nothing => None,
-            Verdict::Root(uv) => self.take(planes, uv, limit),
-            Verdict::Unknown => self.search(planes, cell, limit),
+            PartClass::Nothing => None,
+            PartClass::Root(uv) => self.take(planes, uv, limit),
+            PartClass::Unknown => self.search(planes, cell, limit),
         }
     }
 
@@ -142,13 +142,13 @@ impl<P: Parametric> Patch<P> {
         while let Some(part) = todo.pop() {
             let hit =
                 match self.classify(planes, part, &self.surface.jet(part.middle), &cell.curvature, limit) {
-                    Verdict::Nothing => None,
-                    Verdict::Root(uv) => self.take(planes, uv, limit),
-                    Verdict::Unknown if part.half.x > FINEST * cell.part.half.x => {
+                    PartClass::Nothing => None,
+                    PartClass::Root(uv) => self.take(planes, uv, limit),
+                    PartClass::Unknown if part.half.x > FINEST * cell.part.half.x => {
                         todo.extend(part.quarters());
                         None
                     }
-                    Verdict::Unknown => self.take(planes, part.middle, limit),
+                    PartClass::Unknown => self.take(planes, part.middle, limit),
                 };
             if let Some(hit) = hit {
                 limit = hit.0;
@@ -171,7 +171,7 @@ impl<P: Parametric> Patch<P> {
         jet: &Jet,
         curvature: &CurvatureBounds,
         limit: f64,
-    ) -> Verdict {
+    ) -> PartClass {
         let (remainder, half) = (curvature.remainder(part.half), part.half);
         let (offset, slopes) = (planes.offset(jet.position), planes.slopes(jet));
         let reach = slopes.x_axis.abs() * half.x + slopes.y_axis.abs() * half.y + remainder;
@@ -179,43 +179,43 @@ impl<P: Parametric> Patch<P> {
         let d = planes.ray.direction;
         let deep = jet.du.dot(d).abs() * half.x + jet.dv.dot(d).abs() * half.y + remainder;
         if offset.abs().cmpgt(reach).any() || depth + deep <= 0.0 || depth - deep >= limit {
-            return Verdict::Nothing;
+            return PartClass::Nothing;
         }
         let inverse = slopes.inverse();
         if !inverse.is_finite() {
-            return Verdict::Unknown;
+            return PartClass::Unknown;
         }
         // Norms of the inverse's rows: the greatest change of u and v per length across the ray.
         let gain = DVec2::new(inverse.row(0).length(), inverse.row(1).length());
         let step = -(inverse * offset);
-        if step.abs().cmpgt(half * (1.0 + SLACK) + gain * remainder).any() {
-            return Verdict::Nothing;
+        if step.abs().cmpgt(half * (1.0 + TOLERANCE) + gain * remainder).any() {
+            return PartClass::Nothing;
         }
         let vary = (curvature.uu * half.x + curvature.uv * half.y) * half.x
             + (curvature.uv * half.x + curvature.vv * half.y) * half.y;
         if (gain * vary / half).max_element() >= 1.0 {
-            return Verdict::Unknown;
+            return PartClass::Unknown;
         }
         self.newton(planes, part, part.middle + step.clamp(-half, half))
     }
 
     /// The only possible root of the part.
-    fn newton(&self, planes: &RayPlanes, part: Part, start: DVec2) -> Verdict {
+    fn newton(&self, planes: &RayPlanes, part: Part, start: DVec2) -> PartClass {
         let mut uv = start;
         for _ in 0..12 {
             let jet = self.surface.jet(uv);
             let step = planes.slopes(&jet).inverse() * planes.offset(jet.position);
             if !((uv - step - part.middle).abs().cmple(4.0 * part.half).all()) {
-                return Verdict::Unknown;
+                return PartClass::Unknown;
             }
             uv -= step;
             // Steps square their error: the next one would be below rounding.
             if step.abs().cmple(1e-6 * part.half).all() {
-                let inside = (uv - part.middle).abs().cmple(part.half * (1.0 + SLACK)).all();
-                return if inside { Verdict::Root(uv) } else { Verdict::Nothing };
+                let inside = (uv - part.middle).abs().cmple(part.half * (1.0 + TOLERANCE)).all();
+                return if inside { PartClass::Root(uv) } else { PartClass::Nothing };
             }
         }
-        Verdict::Unknown
+        PartClass::Unknown
     }
 }
 

@@ -38,9 +38,9 @@ fn the_stated_error_is_honest() {
             let rms = (off.iter().map(|d| d * d).sum::<f64>() / off.len() as f64).sqrt();
             let most = off.iter().copied().fold(0.0, f64::max);
             println!("{filter:?} {name}: {rms:.1e} RMS, {most:.1e} at most; stated {:?}", truth.error);
-            let slack = fine.error.rms;
+            let own_error = fine.error.rms;
             assert!(
-                rms < 1.2 * truth.error.rms + slack,
+                rms < 1.2 * truth.error.rms + own_error,
                 "{name} {filter:?}: {rms:.2e}, stated {:?}",
                 truth.error
             );
