@@ -217,7 +217,7 @@ fn a_section_without_data_is_omitted() {
     assert_eq!(page.matches("<section").count(), 3);
     check(&results);
     check(&empty());
-    assert!(self::page(&empty(), CODE).contains("Nothing has been measured"));
+    assert!(self::page(&empty(), CODE).contains("These results contain no runs"));
 }
 
 #[test]
@@ -389,14 +389,14 @@ fn published_numbers_are_shown_beside_measured_ones() {
 }
 
 #[test]
-fn results_of_before_there_were_methods_are_read() {
+fn results_without_later_fields_are_read() {
     let mut json = serde_json::to_value(plausible()).unwrap();
     for run in json["sessions"][0]["runs"].as_array_mut().unwrap() {
         let run = run.as_object_mut().unwrap();
-        for name in ["part", "ratio", "blended"] {
+        for name in ["paper_item", "ratio", "blended"] {
             run.remove(name).unwrap();
         }
-        run["setting"].as_object_mut().unwrap().remove("axes").unwrap();
+        run["settings"].as_object_mut().unwrap().remove("axes").unwrap();
     }
     let read: Results = serde_json::from_value(json).unwrap();
     assert!(
