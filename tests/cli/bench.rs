@@ -44,10 +44,10 @@ fn an_input_is_measured_stored_and_reported_again() {
 #[test]
 fn results_of_other_versions_are_marked() {
     let program = Program::new();
-    let made = r#""version":"0.1.0","commit":"0123456789","code":"another","date":"2026-01-02T03:04:05Z","seconds":1.0,
+    let provenance = r#""version":"0.1.0","commit":"0123456789","code":"another","date":"2026-01-02T03:04:05Z","seconds":1.0,
         "command":"surfel bench","suites":["quick"],"host":{"cpu":"A","cores":2,"memory":1,"system":"B"},"device":null"#;
-    let session = format!(r#"{{"provenance":{{{made}}},"runs":[],"sweeps":[],"images":[]}}"#);
-    program.write("old.json", format!(r#"{{"format":2,"sessions":[{session}]}}"#));
+    let session = format!(r#"{{"provenance":{{{provenance}}},"runs":[],"sweeps":[],"images":[]}}"#);
+    program.write("old.json", format!(r#"{{"format":3,"sessions":[{session}]}}"#));
     let run = program.run("bench --from old.json --report page");
     assert!(run.text().contains("0123456789"), "{}", run.text());
     let page = std::fs::read_to_string(program.path("page/index.html")).unwrap();
@@ -66,7 +66,7 @@ fn invalid_arguments_of_bench_are_refused_first() {
     assert!(refused("--suite slow", 2).contains("slow"));
     assert!(refused("--points 100", 2).contains("INPUT"));
     assert!(refused("scene:none", 2).contains("no such scene"));
-    assert!(refused("scene:torus?points=5", 2).contains("leave out its number of points"));
+    assert!(refused("scene:torus?points=5", 2).contains("leave out `points`"));
     assert!(refused("scene:torus --truth mesh.ply", 2).contains("its own truth"));
     assert!(refused("--from later.json --json a --csv a", 2).contains("name two"));
 }
