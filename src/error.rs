@@ -1,39 +1,39 @@
-//! The one error type. A message names the call or the file, the cause and the remedy, in one line.
+//! The error type of the crate. A message names the call or the file, the cause and the remedy, in one line.
 
 use std::path::{Path, PathBuf};
 
-/// What every fallible function of the crate returns.
+/// The result of every fallible public function of the crate.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
-/// Everything that can go wrong, by whose turn it is to act.
+/// Any failure, grouped by what the caller can do about it.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum Error {
-    /// The contents of an input cannot be used: `name` is the file or scene, `cause` says what is wrong with it and what to do.
+    /// The contents of an input file or scene cannot be used.
     #[error("{name}: {cause}")]
     Input {
-        /// The file or the scene, as the user named it.
+        /// Name of the file or scene, as the user wrote it.
         name: String,
         /// What is wrong, where, and the remedy.
         cause: String,
     },
-    /// A file could not be opened, read or written.
+    /// A file cannot be opened, read or written.
     #[error("{}: {action}: {}", path.display(), in_words(source))]
     Io {
         /// The file.
         path: PathBuf,
-        /// What was attempted, for example `cannot open`.
+        /// The failed action, for example `cannot open`.
         action: &'static str,
-        /// The operating system's word.
+        /// The error of the operating system.
         source: std::io::Error,
     },
-    /// The caller asked for what cannot be had: a size over the limit, a camera without a direction, a negative cut-off.
+    /// An argument is not supported: a size over the limit, a camera without a direction, a negative cut-off.
     #[error("{0}")]
     Usage(String),
-    /// No Vulkan device serves; the text says which were looked at and why each was refused.
+    /// No usable Vulkan device. The text lists the devices and why each was rejected.
     #[error("no usable Vulkan device: {0}")]
     NoDevice(String),
-    /// No window can be opened or presented to; the text says why, and what needs none.
+    /// No window can be opened or presented to. The text names the cause and commands that need no window.
     #[error("no window: {0}")]
     NoWindow(String),
     /// A Vulkan call failed.
@@ -44,17 +44,17 @@ pub enum Error {
         /// Its result code.
         result: ash::vk::Result,
     },
-    /// The work was given up because its caller [wanted that](crate::Progress::is_cancelled).
-    #[error("given up")]
+    /// The caller [cancelled](crate::Progress::is_cancelled) the operation.
+    #[error("cancelled")]
     Cancelled,
-    /// Device memory ran out or could not be bound.
+    /// Device memory cannot be allocated or bound.
     #[error("cannot allocate {bytes} bytes for {what}: {cause}; use fewer points or a smaller picture")]
     Memory {
         /// Name of the buffer or image.
         what: String,
-        /// Its size.
+        /// Its size, bytes.
         bytes: u64,
-        /// The allocator's word.
+        /// The error of the allocator.
         cause: String,
     },
 }
@@ -63,6 +63,14 @@ impl Error {
     /// An unusable input: `name` is the file or scene.
     pub fn input(name: impl Into<String>, cause: impl Into<String>) -> Self {
         Self::Input { name: name.into(), cause: cause.into() }
+    }
+
+    /// The same error, with the name of the input that a [`Error::Usage`] is about.
+    pub fn in_input(self, name: impl Into<String>) -> Self {
+        match self {
+            Self::Usage(cause) => Self::input(name, cause),
+            other => other,
+        }
     }
 
     /// A failed file operation, for `map_err`.
@@ -75,13 +83,52 @@ impl Error {
         move |result| Self::Vulkan { call, result }
     }
 
-    /// Whether the device is gone and only a new one can go on.
+    /// Whether the device is lost (`VK_ERROR_DEVICE_LOST`): open a new one.
     pub fn is_device_lost(&self) -> bool {
         matches!(self, Self::Vulkan { result: ash::vk::Result::ERROR_DEVICE_LOST, .. })
     }
 }
 
-/// What the operating system says, without its number.
+/// Why an operation failed, without the name of the file or call, which its caller adds.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub(crate) enum Cause {
+    /// What is wrong, where, and the remedy.
+    #[error("{0}")]
+    Invalid(String),
+    /// See [`Error::Cancelled`].
+    #[error("cancelled")]
+    Cancelled,
+}
+
+impl Cause {
+    /// The error for the input `name`.
+    pub(crate) fn in_input(self, name: impl Into<String>) -> Error {
+        Error::from(self).in_input(name)
+    }
+}
+
+impl From<Cause> for Error {
+    fn from(cause: Cause) -> Self {
+        match cause {
+            Cause::Invalid(text) => Self::Usage(text),
+            Cause::Cancelled => Self::Cancelled,
+        }
+    }
+}
+
+impl From<String> for Cause {
+    fn from(text: String) -> Self {
+        Self::Invalid(text)
+    }
+}
+
+impl From<&str> for Cause {
+    fn from(text: &str) -> Self {
+        Self::Invalid(text.to_owned())
+    }
+}
+
+/// The message of the operating system, without its error number.
 fn in_words(error: &std::io::Error) -> String {
     let text = error.to_string();
     text.split(" (os error ").next().unwrap_or(&text).to_owned()
@@ -92,7 +139,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_system_speaks_in_words() {
+    fn messages_of_the_system_have_no_error_number() {
         let missing = std::fs::File::open("/nowhere/a.ply").unwrap_err();
         let text = Error::io(Path::new("a.ply"), "cannot open")(missing).to_string();
         assert_eq!(text, "a.ply: cannot open: No such file or directory");

@@ -1,29 +1,26 @@
-//! How far lengthy work has come.
+//! Progress and cancellation of long operations.
 
-/// Is told how far lengthy work has come, from any thread and often: it should return at once.
+use crate::error::Cause;
+
+/// Receives the progress of a long operation. Its methods are called often and from any thread, and must not block.
 pub trait Progress: Sync {
-    /// `done` of `total` units of the work named `stage` are done. A stage begins with its first call and ends with `done == total`.
+    /// Reports that `done` of `total` units of `stage` are complete. A stage begins with its first call and ends with `done == total`.
     fn at(&self, stage: &'static str, done: u64, total: u64);
 
-    /// Whether the work is to be given up. Where it says that it can be, it then fails with [`Error::Cancelled`](crate::Error::Cancelled).
+    /// Whether to cancel the operation: operations that support this then return [`Error::Cancelled`](crate::Error::Cancelled).
     fn is_cancelled(&self) -> bool {
         false
     }
 }
 
 impl dyn Progress + '_ {
-    /// Fails where the work is to be given up.
-    pub(crate) fn go_on(&self) -> Result<(), String> {
-        if self.is_cancelled() { Err(crate::Error::Cancelled.to_string()) } else { Ok(()) }
-    }
-
-    /// Why work on an input failed: because it was given up, or of `cause`.
-    pub(crate) fn failed(&self, name: impl Into<String>, cause: String) -> crate::Error {
-        if self.is_cancelled() { crate::Error::Cancelled } else { crate::Error::input(name, cause) }
+    /// Returns an error if the operation is cancelled.
+    pub(crate) fn check_cancelled(&self) -> Result<(), Cause> {
+        if self.is_cancelled() { Err(Cause::Cancelled) } else { Ok(()) }
     }
 }
 
-/// Nobody is told.
+/// Ignores progress.
 impl Progress for () {
     fn at(&self, _: &'static str, _: u64, _: u64) {}
 }

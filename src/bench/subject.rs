@@ -101,7 +101,7 @@ impl Subject {
             }
             Shape::Scan(scan) => {
                 let surfels = scan.cloud.some(points as usize).into_surfels(&Estimate::default(), &());
-                Ok(surfels.map_err(|cause| Error::input(self.name.as_str(), cause))?.0.into())
+                Ok(surfels.map_err(|error| error.in_input(self.name.as_str()))?.0.into())
             }
         }
     }

@@ -33,7 +33,7 @@ pub fn run(args: &Info) -> Result<()> {
     let Loaded { cloud, report } = loaded?;
     print(&(properties(&report) + &connectivity(&report, &cloud)))?;
     let model = cloud.into_model(args.points.polygons, &args.points.estimate(), &*bars);
-    let (model, estimated) = model.map_err(|cause| Error::input(path.display().to_string(), cause))?;
+    let (model, estimated) = model.map_err(|error| error.in_input(path.display().to_string()))?;
     drop(bars);
     let text = describe(&model, report.points) + &sources(&estimated);
     print(&(text + &dropped(report.dropped, &estimated) + &trailing(&report)))
@@ -44,7 +44,7 @@ fn scene_text(name: &str, how: &Estimate) -> Result<String> {
     let cloud = scene_cloud(name)?;
     let points = cloud.len() as u64;
     let model = cloud.into_model(true, how, &());
-    let (model, estimated) = model.map_err(|cause| Error::input(name, cause))?;
+    let (model, estimated) = model.map_err(|error| error.in_input(name))?;
     let dropped = dropped(Dropped::default(), &estimated);
     Ok(format!("{name}: built-in scene\n{}{}{dropped}", describe(&model, points), sources(&estimated)))
 }

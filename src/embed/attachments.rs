@@ -1,5 +1,6 @@
 //! What attachments of a host a device can draw to.
 
+use crate::error::Cause;
 use crate::vk::Device;
 use ash::vk;
 
@@ -27,7 +28,7 @@ pub(super) fn check(
     purpose: Purpose,
     format: vk::Format,
     samples: vk::SampleCountFlags,
-) -> Result<(), String> {
+) -> Result<(), Cause> {
     use vk::FormatFeatureFlags as Can;
     let name = &device.description().name;
     let (needed, usage) = match purpose {
@@ -49,13 +50,13 @@ pub(super) fn check(
         Purpose::Stencil => has_stencil(format),
     };
     if !fits && purpose == Purpose::Numbers {
-        return Err(format!("{what} want R32_UINT, and their format is {format:?}"));
+        return Err(format!("{what} want R32_UINT, and their format is {format:?}").into());
     }
     if !fits || !device.format_features(format).contains(needed) {
-        return Err(format!("{name} cannot draw {what} to {format:?}"));
+        return Err(format!("{name} cannot draw {what} to {format:?}").into());
     }
     if samples.as_raw().count_ones() != 1 {
-        return Err(format!("{what} has {} samples a pixel: give one number of them", told(samples)));
+        return Err(format!("{what} has {} samples a pixel: give one number of them", told(samples)).into());
     }
     let there = device.attachment_samples(format, usage);
     if !there.contains(samples) {
@@ -63,7 +64,8 @@ pub(super) fn check(
             "{what} has {} samples a pixel, and {name} draws to {format:?} with {}",
             told(samples),
             told(there)
-        ));
+        )
+        .into());
     }
     Ok(())
 }

@@ -95,7 +95,7 @@ mod view;
 pub use crate::scene::Changes;
 pub use crate::vk::{
     ABILITIES, API_VERSION, Abilities, Ability, Features, HostMemory, Lent, Location, MemoryBlocks,
-    MemoryRequest, MemorySource, QUEUE, Staging,
+    MemoryError, MemoryRequest, MemorySource, QUEUE, Staging,
 };
 pub use buffers::{Buffers, READ_ACCESS, READ_STAGES, Radii, Values, update};
 #[cfg(feature = "window")]

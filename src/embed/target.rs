@@ -2,7 +2,7 @@
 
 use super::attachments::{self, Purpose, is_srgb};
 use super::composite::{Composite, CompositeKind};
-use crate::error::{Error, Result};
+use crate::error::{Cause, Error, Result};
 use crate::vk::{Blend, Device, Within};
 use ash::vk;
 use std::sync::Arc;
@@ -55,7 +55,7 @@ impl Target {
     /// Refuses what cannot be drawn to on `device`.
     pub(super) fn check(&self, device: &Device) -> Result<()> {
         let refuse =
-            |cause: String| Err(Error::Usage(format!("the host's target cannot be drawn to: {cause}")));
+            |cause: Cause| Err(Error::Usage(format!("the host's target cannot be drawn to: {cause}")));
         self.check_pass(device).or_else(refuse)?;
         self.check_locations(device).or_else(refuse)?;
         if self.encode && is_srgb(self.colours[self.picture as usize]) {
@@ -69,7 +69,7 @@ impl Target {
         self.check_depth(device).or_else(refuse)
     }
 
-    fn check_pass(&self, device: &Device) -> Result<(), String> {
+    fn check_pass(&self, device: &Device) -> Result<(), Cause> {
         match self.pass {
             Pass::Subpass { pass, .. } if pass == vk::RenderPass::null() => Err("there is no render pass".into()),
             Pass::Rendering if !device.capabilities().dynamic_rendering => Err(
@@ -81,11 +81,11 @@ impl Target {
         }
     }
 
-    fn check_locations(&self, device: &Device) -> Result<(), String> {
+    fn check_locations(&self, device: &Device) -> Result<(), Cause> {
         let most = device.capabilities().max_colour_attachments;
         if self.colours.len() > most as usize {
             let (name, asked) = (&device.description().name, self.colours.len());
-            return Err(format!("{asked} colour attachments, and {name} draws to at most {most}"));
+            return Err(format!("{asked} colour attachments, and {name} draws to at most {most}").into());
         }
         let wanted = [
             ("the picture", Some(self.picture), Purpose::Blended),
@@ -95,16 +95,17 @@ impl Target {
         for [a, b] in [[0, 1], [0, 2], [1, 2]] {
             let ((one, location, ..), (other, same, ..)) = (wanted[a], wanted[b]);
             if let Some(location) = location.filter(|location| same == Some(*location)) {
-                return Err(format!("location {location} is given for both {one} and {other}"));
+                return Err(format!("location {location} is given for both {one} and {other}").into());
             }
         }
         for (what, location, _) in wanted {
             let Some(location) = location.map(|location| location as usize) else { continue };
             if location >= self.colours.len().min(MOST) {
+                let count = self.colours.len();
                 return Err(format!(
-                    "{what} want location {location} of {} colour attachments; give one below {MOST} that there is",
-                    self.colours.len()
-                ));
+                    "{what} want location {location} of {count} colour attachments; give one below {MOST} that there is"
+                )
+                .into());
             }
         }
         for (location, &format) in (0..).zip(&self.colours) {
@@ -124,7 +125,7 @@ impl Target {
         Ok(())
     }
 
-    fn check_depth(&self, device: &Device) -> Result<(), String> {
+    fn check_depth(&self, device: &Device) -> Result<(), Cause> {
         if let Some(depth) = self.depth {
             attachments::check(device, "depth", Purpose::Depth, depth, self.samples)?;
         }
@@ -136,7 +137,8 @@ impl Target {
             Some(depth) if depth != self.stencil => Err(format!(
                 "depth is {depth:?} and the stencil {:?}: one attachment has both, so give one format",
                 self.stencil
-            )),
+            )
+            .into()),
             _ => Ok(()),
         }
     }

@@ -7,6 +7,7 @@ use super::Estimate;
 use super::facets::{Facet, Seen, facets, median};
 use super::sites::Sites;
 use crate::Progress;
+use crate::error::{Error, Result};
 use crate::geometry::{Clip, ClipLine, Clips, Surfels};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
@@ -37,7 +38,7 @@ pub(super) fn clip(
     angle: f32,
     how: &Estimate,
     progress: &dyn Progress,
-) -> Result<u64, String> {
+) -> Result<u64> {
     let sites = Sites::new(&surfels.positions, progress)?;
     let finder = Finder { surfels, sites: &sites, angle: angle.into(), count: WIDER * how.neighbours };
     let (done, total) = (AtomicU64::new(0), surfels.len() as u64);

@@ -14,7 +14,7 @@ pub(super) struct Draft {
 
 impl Draft {
     /// What the cloud has, with the radius that is asked for.
-    pub fn new(cloud: Cloud, how: &Estimate) -> Result<Self, String> {
+    pub fn new(cloud: Cloud, how: &Estimate) -> Result<Self> {
         let count = cloud.len();
         let surfels = Surfels {
             origin: cloud.origin,
@@ -32,20 +32,22 @@ impl Draft {
             texture: cloud.texture,
             materials: cloud.materials,
         };
-        surfels.check().map_err(|error| error.to_string())?;
+        surfels.check()?;
         if let Some(i) = surfels.positions.iter().position(|position| !position.is_finite()) {
-            return Err(format!(
+            return Err(Error::Usage(format!(
                 "point {i} is at {}: leave out points whose coordinates are not finite",
                 surfels.positions[i]
-            ));
+            )));
         }
         if u32::try_from(count).is_err() {
-            return Err(format!("{count} points: at most 2³² − 1 are drawn"));
+            return Err(Error::Usage(format!("{count} points: at most 2³² − 1 are drawn")));
         }
         if let Some(triangle) =
             cloud.triangles.iter().find(|corners| corners.iter().any(|&i| i as usize >= count))
         {
-            return Err(format!("triangle {triangle:?} has a corner that is none of the {count} points"));
+            return Err(Error::Usage(format!(
+                "triangle {triangle:?} has a corner that is none of the {count} points"
+            )));
         }
         Ok(Self { surfels, triangles: cloud.triangles, estimated: Estimated::default() })
     }
@@ -98,16 +100,17 @@ impl Draft {
     }
 
     /// The surfels, if they can be drawn.
-    pub fn finish(self, how: &Estimate) -> Result<(Surfels, Estimated), String> {
+    pub fn finish(self, how: &Estimate) -> Result<(Surfels, Estimated)> {
         let Self { mut surfels, mut estimated, .. } = self;
         if surfels.radii.contains(&0.0) {
-            return Err("its points are all at one place, so that they have no spacing: give a radius".into());
+            let text = "its points are all at one place, so that they have no spacing: give a radius";
+            return Err(Error::Usage(text.into()));
         }
         surfels.radii.iter_mut().for_each(|radius| *radius *= how.radius_scale);
         if let Some(radius) = surfels.radii.iter().find(|radius| !(radius.is_finite() && **radius > 0.0)) {
-            return Err(format!(
+            return Err(Error::Usage(format!(
                 "a surfel would have the radius {radius}: give another radius or factor of it"
-            ));
+            )));
         }
         // Weights are of the kernels that were, and of their neighbours.
         let changed = how.radius.is_some() || how.radius_scale != 1.0 || how.sharp.is_some();

@@ -21,6 +21,7 @@ mod summary;
 pub use spacing::spacing;
 
 use crate::Progress;
+use crate::error::{Error, Result};
 use crate::geometry::{Cloud, Surfels};
 use draft::Draft;
 use std::f32::consts::PI;
@@ -67,23 +68,23 @@ impl Estimate {
     pub const NEIGHBOURS: [usize; 2] = [6, 64];
 
     /// Refuses what nothing can be estimated with; says what and the remedy.
-    fn check(&self) -> Result<(), String> {
+    fn check(&self) -> Result<()> {
         let positive = |name: &str, value: f32| match value.is_finite() && value > 0.0 {
             true => Ok(()),
-            false => Err(format!("{name} is {value}: give a finite number above 0")),
+            false => Err(Error::Usage(format!("{name} is {value}: give a finite number above 0"))),
         };
         let ([least, most], given) = (Self::NEIGHBOURS, self.neighbours);
         if !(least..=most).contains(&given) {
-            return Err(format!("{given} neighbours to estimate from: give {least} to {most}"));
+            return Err(Error::Usage(format!("{given} neighbours to estimate from: give {least} to {most}")));
         }
         self.radius.map_or(Ok(()), |radius| positive("the radius", radius))?;
         self.line_radius.map_or(Ok(()), |radius| positive("the radius of lines", radius))?;
         self.outliers
             .map_or(Ok(()), |deviations| positive("the outliers' standard deviations", deviations))?;
         if let Some(angle) = self.sharp.filter(|angle| !(*angle > 0.0 && *angle < PI)) {
-            return Err(format!(
+            return Err(Error::Usage(format!(
                 "the angle of a sharp edge is {angle} radians: give one between 0 and a half turn"
-            ));
+            )));
         }
         positive("the factor of the radii", self.radius_scale)
     }
@@ -150,12 +151,8 @@ impl Cloud {
     /// change; one that is missing is the median.
     ///
     /// # Errors
-    /// The cause, without the input's name, if what is missing cannot be estimated.
-    pub fn into_surfels(
-        self,
-        how: &Estimate,
-        progress: &dyn Progress,
-    ) -> Result<(Surfels, Estimated), String> {
+    /// [`Error::Usage`](crate::Error::Usage) if what is missing cannot be estimated.
+    pub fn into_surfels(self, how: &Estimate, progress: &dyn Progress) -> Result<(Surfels, Estimated)> {
         how.check()?;
         let view = self.view;
         let mut draft = Draft::new(self, how)?;
@@ -165,9 +162,9 @@ impl Cloud {
             draft.keep(&kept);
         }
         draft.count_given();
-        progress.go_on()?;
+        progress.check_cancelled()?;
         faces::fill(&mut draft, how);
-        progress.go_on()?;
+        progress.check_cancelled()?;
         if draft.lacks_anything() {
             neighbours::fill(&mut draft, view, how, progress)?;
         }
@@ -188,7 +185,7 @@ mod tests {
         use glam::Vec3;
         let positions = vec![Vec3::ZERO, Vec3::new(0.0, f32::NAN, 0.0), Vec3::ONE, Vec3::X];
         let cloud = Cloud { positions, ..Default::default() };
-        let refused = cloud.into_surfels(&Estimate::default(), &()).unwrap_err();
+        let refused = cloud.into_surfels(&Estimate::default(), &()).unwrap_err().to_string();
         assert!(refused.starts_with("point 1 is at [0, NaN, 0]"), "{refused}");
     }
 

@@ -2,6 +2,7 @@
 
 use super::{Estimate, Estimated, faces, lines};
 use crate::Progress;
+use crate::error::{Error, Result};
 use crate::geometry::{Cloud, Colours, Model, Primitives, Surfels};
 use glam::Vec3;
 
@@ -16,13 +17,13 @@ impl Cloud {
     /// becomes two, as it has a direction for each.
     ///
     /// # Errors
-    /// The cause, without the input's name, if what is missing cannot be estimated or if a corner is no point.
+    /// [`Error::Usage`](crate::Error::Usage) if what is missing cannot be estimated or if a corner is no point.
     pub fn into_model(
         self,
         polygons: bool,
         how: &Estimate,
         progress: &dyn Progress,
-    ) -> Result<(Model, Estimated), String> {
+    ) -> Result<(Model, Estimated)> {
         how.check()?;
         self.check_corners()?;
         let (origin, faces) = (self.origin, polygons || self.has_lines());
@@ -42,13 +43,13 @@ impl Cloud {
         Ok((Model { surfels, primitives }, estimated + more))
     }
 
-    fn check_corners(&self) -> Result<(), String> {
+    fn check_corners(&self) -> Result<()> {
         let count = self.len();
         let corners = self.ribbons.iter().chain(&self.tubes).flatten().chain(self.triangles.iter().flatten());
         match corners.copied().find(|&i| i as usize >= count) {
-            Some(corner) => Err(format!(
+            Some(corner) => Err(Error::Usage(format!(
                 "a line or a triangle has the corner {corner}, which is none of the {count} points"
-            )),
+            ))),
             None => Ok(()),
         }
     }
@@ -178,7 +179,7 @@ mod tests {
         assert_eq!((drawn.surfels.len(), drawn.primitives.len(), drawn.primitives.count()), (3, 4, 2));
         assert_eq!(drawn.primitives.radii, [0.0, 0.125, 0.0, 0.0]);
         let dangling = Cloud { tubes: vec![[0, 7]], ..hybrid() };
-        let cause = dangling.into_model(false, &Estimate::default(), &()).unwrap_err();
+        let cause = dangling.into_model(false, &Estimate::default(), &()).unwrap_err().to_string();
         assert!(cause.contains("corner 7, which is none of the 7"), "{cause}");
     }
 }

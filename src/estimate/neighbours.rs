@@ -6,6 +6,7 @@ use super::patch::{Patch, Surveyor};
 use super::sites::Sites;
 use super::{Estimate, MARGIN};
 use crate::Progress;
+use crate::error::{Error, Result};
 use crate::geometry::{Ellipse, Surfels, View};
 use glam::Vec3;
 use rayon::prelude::*;
@@ -22,17 +23,12 @@ const LARGEST_OVERALL: f32 = 2.0;
 const PIECE: usize = 1 << 12;
 
 /// Gives surfels without a normal or radius one from the points around them. Surfels are best in Morton order.
-pub(super) fn fill(
-    draft: &mut Draft,
-    view: View,
-    how: &Estimate,
-    progress: &dyn Progress,
-) -> Result<(), String> {
+pub(super) fn fill(draft: &mut Draft, view: View, how: &Estimate, progress: &dyn Progress) -> Result<()> {
     let surfels = &draft.surfels;
     let sites = Sites::new(&surfels.positions, progress)?;
     let survey = Survey::new(&sites, wanted(surfels, &sites), how, progress)?;
     let (normals, unknown) = normals(surfels, &sites, &survey, view, progress);
-    progress.go_on()?;
+    progress.check_cancelled()?;
     let radii = radii(surfels, &sites, &survey);
     let is_estimated: Vec<bool> = surfels.radii.iter().map(|radius| *radius == 0.0).collect();
     put(draft, &sites, &normals, &unknown, &radii);
@@ -90,7 +86,7 @@ struct Survey {
 }
 
 impl Survey {
-    fn new(sites: &Sites, wanted: Vec<u32>, how: &Estimate, progress: &dyn Progress) -> Result<Self, String> {
+    fn new(sites: &Sites, wanted: Vec<u32>, how: &Estimate, progress: &dyn Progress) -> Result<Self> {
         let mut patches = vec![Patch::default(); wanted.len()];
         let mut edges = vec![0; wanted.len() * EDGES];
         let (done, total) = (AtomicU64::new(0), wanted.len() as u64);
@@ -106,7 +102,7 @@ impl Survey {
                 done.fetch_add(piece, Ordering::Relaxed) + piece,
                 total,
             );
-            progress.go_on()
+            progress.check_cancelled()
         })?;
         Ok(Self { sites: wanted, patches, edges })
     }

@@ -4,6 +4,7 @@
 use super::Estimate;
 use super::sites::Sites;
 use crate::Progress;
+use crate::error::{Error, Result};
 use glam::Vec3;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -18,7 +19,7 @@ pub(super) fn kept(
     deviations: f32,
     how: &Estimate,
     progress: &dyn Progress,
-) -> Result<Vec<u32>, String> {
+) -> Result<Vec<u32>> {
     let sites = Sites::new(positions, progress)?;
     let distances = distances(&sites, how.neighbours, progress)?;
     let count = distances.len() as f64;
@@ -30,7 +31,7 @@ pub(super) fn kept(
 }
 
 /// The mean distance of each site from its neighbours.
-fn distances(sites: &Sites, neighbours: usize, progress: &dyn Progress) -> Result<Vec<f64>, String> {
+fn distances(sites: &Sites, neighbours: usize, progress: &dyn Progress) -> Result<Vec<f64>> {
     let mean = |site: u32| {
         let each =
             sites.nearest(site, neighbours).map(|other| f64::from(sites.at(site).distance(sites.at(other))));
@@ -44,7 +45,7 @@ fn distances(sites: &Sites, neighbours: usize, progress: &dyn Progress) -> Resul
         distances.iter_mut().zip(first..).for_each(|(distance, site)| *distance = mean(site));
         let piece = distances.len() as u64;
         progress.at("looking for outliers", done.fetch_add(piece, Ordering::Relaxed) + piece, total);
-        progress.go_on()
+        progress.check_cancelled()
     })?;
     Ok(distances)
 }

@@ -1,6 +1,7 @@
 //! The places where points are, each once, and the nearest of them to each.
 
 use crate::Progress;
+use crate::error::{Error, Result};
 use glam::Vec3;
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
 use rayon::prelude::*;
@@ -21,7 +22,7 @@ pub(super) struct Sites {
 
 impl Sites {
     /// The sites of `positions`, in their order.
-    pub fn new(positions: &[Vec3], progress: &dyn Progress) -> Result<Self, String> {
+    pub fn new(positions: &[Vec3], progress: &dyn Progress) -> Result<Self> {
         let stage = |done| progress.at("building the search tree", done, 2);
         stage(0);
         let (of_point, point) = distinct(positions);
@@ -32,7 +33,7 @@ impl Sites {
             point.par_iter().map(|&i| (positions[i as usize] / unit).to_array()).collect();
         stage(1);
         let tree = ImmutableKdTree::new_from_slice(&points).map_err(|error| {
-            format!("its {} points cannot be searched: {error}; give fewer", points.len())
+            Error::Usage(format!("its {} points cannot be searched: {error}; give fewer", points.len()))
         })?;
         stage(2);
         Ok(Self { tree, points, of_point, point, unit })

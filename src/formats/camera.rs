@@ -39,25 +39,25 @@ impl From<Pose> for Fields {
 /// Reads a file; the error names it and, by serde, the field.
 pub fn read(path: &Path) -> Result<Pose> {
     let text = read_small(path)?;
-    parse(&text).map_err(|cause| Error::input(path.display().to_string(), cause))
+    parse(&text).map_err(|error| error.in_input(path.display().to_string()))
 }
 
 /// The camera of a file's text; the error says what is wrong with it.
-pub fn parse(text: &[u8]) -> Result<Pose, String> {
+fn parse(text: &[u8]) -> Result<Pose> {
     let fields: Fields =
-        serde_json::from_slice(text).map_err(|error| format!("{error}: correct the file"))?;
+        serde_json::from_slice(text).map_err(|error| Error::Usage(format!("{error}: correct the file")))?;
     let span = match (fields.fov_y_deg, fields.height) {
         (Some(degrees), None) => Span::Angle(degrees),
         (None, Some(height)) => Span::Height(height),
         _ => {
-            return Err(
+            return Err(Error::Usage(
                 "it needs either `fov_y_deg`, in degrees, or `height`, for parallel rays: correct the file"
                     .into(),
-            );
+            ));
         }
     };
     let pose = Pose { eye: fields.eye.into(), target: fields.target.into(), up: fields.up.into(), span };
-    pose.check().map(|()| pose).map_err(|error| error.to_string())
+    pose.check().map(|()| pose)
 }
 
 /// The text of a file, a field a line.

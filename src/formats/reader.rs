@@ -5,7 +5,7 @@ use super::report::Report;
 use super::source::{Parsed, Source};
 use super::{ply, sniff};
 use crate::Progress;
-use crate::error::{Error, Result};
+use crate::error::{Cause, Error, Result};
 use crate::geometry::{Cloud, MipMap};
 use std::path::Path;
 use std::sync::Arc;
@@ -27,7 +27,7 @@ pub(super) trait Reader: Sync {
         input: &Input<'_>,
         options: &ReadOptions,
         progress: &dyn Progress,
-    ) -> Parsed<Inspected<String>>;
+    ) -> Parsed<Inspected<Cause>>;
 }
 
 /// All formats.
@@ -112,15 +112,16 @@ pub fn read_bytes(name: &str, bytes: &[u8], options: &ReadOptions) -> Result<Loa
 fn inspect_input(input: &Input<'_>, options: &ReadOptions, progress: &dyn Progress) -> Result<Inspected> {
     let inspected = reader_of(input).and_then(|reader| reader.inspect(input, options, progress));
     let Inspected { format, encoding, elements, loaded } =
-        inspected.map_err(|cause| Error::input(input.name, cause))?;
-    let loaded = loaded.map_err(|cause| progress.failed(input.name.to_owned(), cause));
+        inspected.map_err(|cause| cause.in_input(input.name))?;
+    let loaded = loaded.map_err(|cause| cause.in_input(input.name));
     Ok(Inspected { format, encoding, elements, loaded })
 }
 
 /// The reader that knows a file's beginning, or else the one whose extension it has, which tells what is wrong with it.
 fn reader_of(input: &Input<'_>) -> Parsed<&'static dyn Reader> {
     let beginning = input.source.beginning()?;
-    find(input.name, &beginning).ok_or_else(|| sniff::name(input.name, &beginning, input.source.size()))
+    find(input.name, &beginning)
+        .ok_or_else(|| sniff::name(input.name, &beginning, input.source.size()).into())
 }
 
 /// The reader of a file of this name with this beginning.
@@ -149,6 +150,8 @@ mod tests {
         };
         assert_eq!(chosen("a.txt", b"ply\nformat ascii 1.0\n"), Ok("PLY"));
         assert_eq!(chosen("a.PLY", b"0 1 2\n"), Ok("PLY"));
-        assert!(chosen("a.xyz", b"0 1 2\n").is_err_and(|cause| cause.contains("a table of numbers")));
+        assert!(
+            chosen("a.xyz", b"0 1 2\n").is_err_and(|cause| cause.to_string().contains("a table of numbers"))
+        );
     }
 }

@@ -1,13 +1,13 @@
 //! A file's bytes, in memory or where they lie.
 
-use crate::error::{Error, Result};
+use crate::error::{Cause, Error, Result};
 use std::borrow::Cow;
 use std::fs::File;
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
-/// A result whose error is the cause, without the file's name.
-pub type Parsed<T> = std::result::Result<T, String>;
+/// A result whose error does not name the file yet.
+pub type Parsed<T> = std::result::Result<T, Cause>;
 
 /// Bytes by which a format is recognized.
 const BEGINNING: u64 = 4096;
@@ -86,7 +86,7 @@ impl<'a> Source<'a> {
             Self::File { file, .. } => std::os::unix::fs::FileExt::read_exact_at(file, to, start),
             _ => Err(ErrorKind::Unsupported.into()),
         };
-        done.map_err(|error| format!("cannot read {} bytes from byte {start} on: {error}", to.len()))
+        done.map_err(|error| format!("cannot read {} bytes from byte {start} on: {error}", to.len()).into())
     }
 }
 
@@ -100,7 +100,7 @@ fn slice(bytes: &[u8], start: u64, length: u64) -> Parsed<&[u8]> {
 /// An array of zeros; pages that are never written cost nothing.
 pub fn room<T: bytemuck::Zeroable>(count: u64) -> Parsed<Vec<T>> {
     let zeros = usize::try_from(count).ok().and_then(|count| bytemuck::try_zeroed_vec(count).ok());
-    zeros.ok_or_else(|| format!("not enough memory for {count} entries: give a smaller file"))
+    zeros.ok_or_else(|| format!("not enough memory for {count} entries: give a smaller file").into())
 }
 
 fn advise(error: io::Error) -> io::Error {

@@ -1,4 +1,6 @@
-//! How much memory the machine has left.
+//! Free memory of the machine.
+
+use crate::error::Cause;
 
 /// Memory that programs can have without others going to disk, bytes, where the system tells it.
 fn available() -> Option<u64> {
@@ -13,17 +15,17 @@ fn available_in(account: &str) -> Option<u64> {
 }
 
 /// Refuses more than there is: a system that lends what it has not ends the program later.
-pub(crate) fn check(what: &str, bytes: u64) -> Result<(), String> {
+pub(crate) fn check(what: &str, bytes: u64) -> Result<(), Cause> {
     check_against(what, bytes, available())
 }
 
-fn check_against(what: &str, bytes: u64, available: Option<u64>) -> Result<(), String> {
+fn check_against(what: &str, bytes: u64, available: Option<u64>) -> Result<(), Cause> {
     match available.filter(|available| bytes > *available) {
-        Some(available) => Err(format!(
+        Some(available) => Err(Cause::from(format!(
             "{what} take {}, and the machine has {} left: give fewer, or end other programs",
             size(bytes),
             size(available)
-        )),
+        ))),
         None => Ok(()),
     }
 }
@@ -46,7 +48,7 @@ mod tests {
     fn what_is_larger_than_what_is_left_is_refused_with_both_sizes() {
         assert_eq!(check_against("points", 5 << 30, None), Ok(()));
         assert_eq!(check_against("points", 5 << 30, Some(5 << 30)), Ok(()));
-        let cause = check_against("7 points", 5 << 30, Some(3 << 29)).unwrap_err();
+        let cause = check_against("7 points", 5 << 30, Some(3 << 29)).unwrap_err().to_string();
         assert!(cause.contains("7 points take 5.0 GiB") && cause.contains("1.5 GiB left"), "{cause}");
         assert_eq!(
             [size(0), size(1023), size(1024), size(3 << 20)],

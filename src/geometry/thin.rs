@@ -1,6 +1,7 @@
 //! Fewer points: one a voxel.
 
 use super::{Bounds, Cloud, Colours};
+use crate::error::{Error, Result};
 use crate::geometry::srgb;
 use glam::{DVec3, I64Vec3, Vec3};
 use rayon::prelude::*;
@@ -21,8 +22,8 @@ impl Cloud {
     /// result does not depend on the number of threads.
     ///
     /// # Errors
-    /// The cause, if `voxel` is not above 0 or too small for the coordinates.
-    pub fn thin(mut self, voxel: f64) -> Result<Self, String> {
+    /// [`Error::Usage`] if `voxel` is not above 0 or too small for the coordinates.
+    pub fn thin(mut self, voxel: f64) -> Result<Self> {
         self.bake_texture();
         if !self.has_lines() {
             return self.thin_points(voxel);
@@ -30,10 +31,10 @@ impl Cloud {
         let [lines, points] = self.split(true);
         let parts = vec![lines, points.thin_points(voxel)?];
         // Both have colours, or neither has.
-        Self::merge(parts, [0.0; 3]).map_err(|error| error.to_string())
+        Self::merge(parts, [0.0; 3])
     }
 
-    fn thin_points(self, voxel: f64) -> Result<Self, String> {
+    fn thin_points(self, voxel: f64) -> Result<Self> {
         let keys = self.keys(voxel)?;
         let groups: Vec<&[Key]> = keys.chunk_by(|a, b| a.0 == b.0).collect();
         Ok(Self {
@@ -56,9 +57,9 @@ impl Cloud {
     }
 
     /// Every point with its voxel, in the voxels' order and then the points'.
-    fn keys(&self, voxel: f64) -> Result<Vec<Key>, String> {
+    fn keys(&self, voxel: f64) -> Result<Vec<Key>> {
         if !(voxel > 0.0 && voxel.is_finite()) {
-            return Err(format!("voxels of side {voxel}: give a size above 0"));
+            return Err(Error::Usage(format!("voxels of side {voxel}: give a size above 0")));
         }
         let cell = |p: &Vec3| ((p.as_dvec3() + self.origin) / voxel).floor();
         let [none, all] = [DVec3::INFINITY, DVec3::NEG_INFINITY];
@@ -215,11 +216,11 @@ mod tests {
     #[test]
     fn voxels_that_cannot_be_are_refused() {
         for voxel in [1e-300, 1e-9, f64::MIN_POSITIVE] {
-            let refused = cloud(&[0.0, 1e3]).thin(voxel).unwrap_err();
+            let refused = cloud(&[0.0, 1e3]).thin(voxel).unwrap_err().to_string();
             assert!(refused.contains("too small for an extent of 1000"), "{refused}");
         }
         for voxel in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-            assert!(cloud(&[0.0]).thin(voxel).unwrap_err().contains("above 0"));
+            assert!(cloud(&[0.0]).thin(voxel).unwrap_err().to_string().contains("above 0"));
         }
         assert!(cloud(&[3e38, -3e38]).thin(1.0).is_err());
         assert_eq!(cloud(&[3e38, -3e38]).thin(1e38).unwrap().len(), 2);

@@ -186,7 +186,7 @@ impl Load<'_> {
         let clouds = parts.into_iter().map(|part| part.cloud).collect();
         let all = Cloud::merge(clouds, Settings::default().lighting.albedo)?;
         let before = all.len();
-        let cloud = all.thin(voxel).map_err(|cause| Error::input(name.as_str(), cause))?;
+        let cloud = all.thin(voxel).map_err(|error| error.in_input(name.as_str()))?;
         self.listener.note(&format!("{name}: {before} points thinned to {}", cloud.len()));
         Ok(Part { name, cloud, draws_faces })
     }
@@ -247,7 +247,7 @@ impl Load<'_> {
         let cloud = if keeps_values { without_estimation(cloud) } else { cloud };
         let progress: &dyn Progress = self.listener;
         let made = cloud.into_model(draws_faces || self.draws_faces(), &self.options.estimate, progress);
-        let (model, estimated) = made.map_err(|cause| progress.failed(name.as_str(), cause))?;
+        let (model, estimated) = made.map_err(|error| error.in_input(name.as_str()))?;
         if let Some(text) = estimated.summary() {
             self.listener.note(&format!("{name}: {text}"));
         }
@@ -261,7 +261,7 @@ impl Load<'_> {
 
     /// Converts the faces of a part to lines.
     fn to_lines(&self, name: &str, cloud: &Cloud, how: &ToLines) -> Result<Cloud> {
-        let (cloud, lined) = cloud.to_lines(how).map_err(|cause| Error::input(name, cause))?;
+        let (cloud, lined) = cloud.to_lines(how).map_err(|error| error.in_input(name))?;
         let Lined { triangles, leaves: [of_leaves, ribbons], branches: [of_branches, tubes], vertices } =
             lined;
         self.listener.note(&format!(

@@ -1,7 +1,7 @@
 //! Scenes where they are placed: several in one frame, of which any hides, and blends with, any other as if all were one cloud.
 
 pub(crate) use super::similarity::Similarity;
-use crate::error::{Error, Result};
+use crate::error::{Cause, Error, Result};
 use crate::geometry::Bounds;
 use crate::scene::Scene;
 use crate::vk::Device;
@@ -54,13 +54,13 @@ impl Instance {
         Ok(placed.bounds())
     }
 
-    fn placed(&self) -> std::result::Result<Placed<'_>, String> {
+    fn placed(&self) -> std::result::Result<Placed<'_>, Cause> {
         let placement = (self.transform != DMat4::IDENTITY).then(|| Similarity::of(&self.transform));
         Ok(Placed { scene: &self.scene, placement: placement.transpose()? })
     }
 }
 
-fn refusal(number: usize, cause: &str) -> Error {
+fn refusal(number: usize, cause: &Cause) -> Error {
     Error::Usage(format!(
         "the transform of instance {number} {cause}: place scenes by a rotation, a uniform scale above 0 and a translation, and give what \
          else is wanted to the surfels themselves before they are uploaded"

@@ -1,5 +1,6 @@
 //! Similarities: what a scene can be placed by.
 
+use crate::error::Cause;
 use crate::geometry::{Bounds, Camera};
 use glam::{DMat3, DMat4, DQuat, DVec3};
 
@@ -23,13 +24,13 @@ impl Similarity {
         Self { scale: 1.0, rotation: DMat3::IDENTITY, translation: DVec3::ZERO };
 
     /// That of a matrix; or else what the matrix has or is.
-    pub(crate) fn of(transform: &DMat4) -> Result<Self, String> {
+    pub(crate) fn of(transform: &DMat4) -> Result<Self, Cause> {
         if !transform.is_finite() {
             return Err("holds a value that is not finite".into());
         }
         let last = transform.row(3);
         if last.truncate() != DVec3::ZERO || last.w != 1.0 {
-            return Err(format!("has a last row of {last}, not (0, 0, 0, 1)"));
+            return Err(format!("has a last row of {last}, not (0, 0, 0, 1)").into());
         }
         let axes = DMat3::from_mat4(*transform);
         let lengths = [axes.x_axis, axes.y_axis, axes.z_axis].map(DVec3::length);
@@ -41,10 +42,8 @@ impl Similarity {
             return Err("is singular".into());
         }
         if !(least >= SCALES[0] && most <= SCALES[1]) {
-            return Err(format!(
-                "scales by {least:e}, which is not within {:e} to {:e}",
-                SCALES[0], SCALES[1]
-            ));
+            let [low, high] = SCALES;
+            return Err(format!("scales by {least:e}, which is not within {low:e} to {high:e}").into());
         }
         let unit =
             DMat3::from_cols(axes.x_axis / lengths[0], axes.y_axis / lengths[1], axes.z_axis / lengths[2]);
@@ -54,7 +53,7 @@ impl Similarity {
             return Err("shears".into());
         }
         if most - least > TOLERANCE * most {
-            return Err(format!("scales by {least} along one axis and by {most} along another"));
+            return Err(format!("scales by {least} along one axis and by {most} along another").into());
         }
         if unit.determinant() < 0.0 {
             return Err("mirrors".into());
@@ -181,7 +180,7 @@ mod tests {
             (scaled(1e-20, 1e-20, 1e-20), "scales by 1e-20"),
             (scaled(1e20, 1e20, 1e20), "scales by 1e20"),
         ] {
-            let text = Similarity::of(&matrix).unwrap_err();
+            let text = Similarity::of(&matrix).unwrap_err().to_string();
             assert!(text.contains(said), "`{said}` is not in `{text}`");
         }
     }

@@ -4,7 +4,7 @@ use super::Device;
 use crate::error::{Error, Result};
 use ash::vk;
 use gpu_allocator::vulkan::{AllocationCreateDesc, AllocationScheme, Allocator, AllocatorCreateDesc};
-use gpu_allocator::{AllocationSizes, MemoryLocation};
+use gpu_allocator::{AllocationError, AllocationSizes, MemoryLocation};
 use std::ptr::NonNull;
 use std::sync::Mutex;
 use std::sync::atomic::Ordering;
@@ -55,14 +55,17 @@ unsafe impl Send for HostMemory {}
 // SAFETY: as above; writing through it takes a unique borrow of the buffer.
 unsafe impl Sync for HostMemory {}
 
-/// Where a host wants the engine's device memory to come from.
+/// The cause of a failed allocation: any error type or text of the host.
+pub type MemoryError = Box<dyn std::error::Error + Send + Sync>;
+
+/// Device memory that a host gives to the engine.
 ///
 /// # Safety
 /// What [`MemorySource::allocate`] gives fulfils the request, is of the device that is lent, overlaps nothing, and stays, mapped where it
 /// says so, until it is freed.
 pub unsafe trait MemorySource: Send + Sync {
     /// Gives memory, or says why not.
-    fn allocate(&self, request: &MemoryRequest<'_>) -> Result<HostMemory, String>;
+    fn allocate(&self, request: &MemoryRequest<'_>) -> Result<HostMemory, MemoryError>;
 
     /// Takes it back.
     fn free(&self, memory: HostMemory);
@@ -126,7 +129,7 @@ impl Source {
         device: &ash::Device,
         physical: vk::PhysicalDevice,
         blocks: MemoryBlocks,
-    ) -> Result<Self, String> {
+    ) -> Result<Self, AllocationError> {
         let allocator = Allocator::new(&AllocatorCreateDesc {
             instance: instance.clone(),
             device: device.clone(),
@@ -138,14 +141,12 @@ impl Source {
         // SAFETY: the physical device is the instance's.
         let types = unsafe { instance.get_physical_device_memory_properties(physical) };
         let lazy = lazy_types(types.memory_types_as_slice());
-        allocator
-            .map(|allocator| {
-                Self::Own(Box::new(Own { allocator: Mutex::new(allocator), device: device.clone(), lazy }))
-            })
-            .map_err(|error| error.to_string())
+        allocator.map(|allocator| {
+            Self::Own(Box::new(Own { allocator: Mutex::new(allocator), device: device.clone(), lazy }))
+        })
     }
 
-    fn allocate(&self, request: &MemoryRequest<'_>) -> Result<Allocation, String> {
+    fn allocate(&self, request: &MemoryRequest<'_>) -> Result<Allocation, MemoryError> {
         match self {
             Self::Own(own) => {
                 let lazy = own.lazy & request.requirements.memory_type_bits;
@@ -160,7 +161,7 @@ impl Source {
                     allocation_scheme: AllocationScheme::GpuAllocatorManaged,
                 };
                 let mut allocator = own.allocator.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-                allocator.allocate(&description).map(Allocation::Own).map_err(|error| error.to_string())
+                allocator.allocate(&description).map(Allocation::Own).map_err(MemoryError::from)
             }
             Self::Host(source) => source.allocate(request).map(Allocation::Host),
         }
@@ -187,12 +188,12 @@ impl Source {
 }
 
 impl Own {
-    fn allocate_lazily(&self, size: u64, index: u32) -> Result<Allocation, String> {
+    fn allocate_lazily(&self, size: u64, index: u32) -> Result<Allocation, MemoryError> {
         let info = vk::MemoryAllocateInfo::default().allocation_size(size).memory_type_index(index);
         // SAFETY: the memory type is one of the device's; `Source::free` frees it.
         unsafe { self.device.allocate_memory(&info, None) }
             .map(|memory| Allocation::Lazy(memory, size))
-            .map_err(|error| format!("vkAllocateMemory: {error}"))
+            .map_err(|error| Error::vulkan("vkAllocateMemory")(error).into())
     }
 }
 
@@ -271,7 +272,7 @@ pub(super) fn allocate(device: &Device, request: &MemoryRequest<'_>) -> Result<A
     let allocation = device.memory.allocate(request).map_err(|cause| Error::Memory {
         what: request.name.to_owned(),
         bytes: request.requirements.size,
-        cause,
+        cause: cause.to_string(),
     })?;
     let seen = request.location.is_seen();
     let least = request.requirements.size as usize;

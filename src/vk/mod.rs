@@ -61,7 +61,7 @@ pub use device::{Device, DeviceOptions, Lent, Usage};
 pub(crate) use encoder::{Draws, Encoder};
 pub(crate) use image::{Image, ImageUse, pixel_bytes};
 pub use limits::{Capabilities, DeviceLimits};
-pub use memory::{HostMemory, Location, MemoryBlocks, MemoryRequest, MemorySource};
+pub use memory::{HostMemory, Location, MemoryBlocks, MemoryError, MemoryRequest, MemorySource};
 pub(crate) use pipeline::{Blend, ComputePipeline, DepthTest, DrawPipeline, DrawState, Topology, Within};
 #[cfg(feature = "window")]
 pub(crate) use presenter::Stake;

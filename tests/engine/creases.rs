@@ -168,7 +168,7 @@ fn clips_that_are_there_stay_and_flatter_edges_are_none() {
     let (flat, estimated) = open().into_surfels(&how(100f32.to_radians()), &()).unwrap();
     assert_eq!((flat.clips, estimated.clipped), (None, 0));
     for wrong in [0.0, -1.0, 3.2, f32::NAN] {
-        let cause = open().into_surfels(&how(wrong), &()).unwrap_err();
+        let cause = open().into_surfels(&how(wrong), &()).unwrap_err().to_string();
         assert!(cause.contains("give one between 0 and a half turn"), "{cause}");
     }
 }

@@ -271,11 +271,12 @@ fn faces_tell_normals_and_radii_and_points_without_faces_follow() {
 fn the_smallest_and_oddest_clouds_are_answered() {
     let radius = |radius| Estimate { radius: Some(radius), ..Default::default() };
     let one = || bare(vec![Vec3::ONE]);
-    assert!(one().into_surfels(&Estimate::default(), &()).unwrap_err().contains("give a radius"));
+    assert!(one().into_surfels(&Estimate::default(), &()).unwrap_err().to_string().contains("give a radius"));
     assert!(
         bare(vec![Vec3::ONE; 40])
             .into_surfels(&Estimate::default(), &())
             .unwrap_err()
+            .to_string()
             .contains("give a radius")
     );
     let (surfels, _) = one().into_surfels(&radius(2.0), &()).unwrap();
@@ -313,11 +314,23 @@ fn what_makes_no_sense_is_refused() {
         (Estimate { outliers: Some(-1.0), ..Default::default() }, "deviations is -1"),
     ];
     for (how, cause) in cases {
-        let error = bare(lines(5, 5, 1.0)).into_surfels(&how, &()).unwrap_err();
+        let error = bare(lines(5, 5, 1.0)).into_surfels(&how, &()).unwrap_err().to_string();
         assert!(error.contains(cause), "{error}");
     }
     let ragged = Cloud { radii: Some(vec![1.0; 3]), ..bare(lines(2, 2, 1.0)) };
-    assert!(ragged.into_surfels(&Estimate::default(), &()).unwrap_err().contains("4 positions and 3 radii"));
+    assert!(
+        ragged
+            .into_surfels(&Estimate::default(), &())
+            .unwrap_err()
+            .to_string()
+            .contains("4 positions and 3 radii")
+    );
     let dangling = Cloud { triangles: vec![[0, 1, 4]], ..bare(lines(2, 2, 1.0)) };
-    assert!(dangling.into_surfels(&Estimate::default(), &()).unwrap_err().contains("none of the 4 points"));
+    assert!(
+        dangling
+            .into_surfels(&Estimate::default(), &())
+            .unwrap_err()
+            .to_string()
+            .contains("none of the 4 points")
+    );
 }

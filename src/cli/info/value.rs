@@ -84,7 +84,7 @@ fn read(all: &mut Object, report: &Report, cloud: &Cloud) {
 fn model(all: &mut Object, args: &Info, (name, points): (&str, u64), cloud: Cloud) -> Result<()> {
     let polygons = args.points.polygons || scene(&args.input).is_some();
     let made = cloud.into_model(polygons, &args.points.estimate(), &*progress::bars(false));
-    let (model, estimated) = made.map_err(|cause| Error::input(name, cause))?;
+    let (model, estimated) = made.map_err(|error| error.in_input(name))?;
     let Model { surfels, primitives } = &model;
     let bounds = Parts::from(&model).bounds();
     let colours = match surfels.colours.as_ref().or(primitives.colours.as_ref()) {

@@ -3,6 +3,7 @@
 //! Channels `R G B A` hold [`Picture::colour`], with straight α; `Z` the depth, under the name that OpenEXR gives it; `N.X N.Y N.Z` the
 //! normal; `id`, in 32-bit whole numbers, [`Picture::id`]. What a picture does not have is not written.
 
+use crate::error::Cause;
 use crate::picture::Picture;
 use ::exr::error::{Error, Result as ExrResult};
 use ::exr::prelude::*;
@@ -44,7 +45,7 @@ pub fn write(picture: &Picture, out: impl Write + Seek) -> io::Result<()> {
 
 /// Reads a picture of at most `most_pixels`; the error says what is wrong with the file. Other channels than those that [`write()`]
 /// writes are passed over; without `A` it is opaque.
-pub fn read(bytes: &[u8], most_pixels: u64) -> Result<Picture, String> {
+pub fn read(bytes: &[u8], most_pixels: u64) -> Result<Picture, Cause> {
     check(bytes, most_pixels).map_err(|error| error.to_string())??;
     let layer = first_layer(bytes).map_err(|error| error.to_string())?;
     let mut channels = layer.channel_data.list;
@@ -76,12 +77,12 @@ pub fn read(bytes: &[u8], most_pixels: u64) -> Result<Picture, String> {
 }
 
 /// Looks at the header alone, before there is memory for what it promises.
-fn check(bytes: &[u8], most_pixels: u64) -> ExrResult<Result<(), String>> {
+fn check(bytes: &[u8], most_pixels: u64) -> ExrResult<Result<(), Cause>> {
     for header in MetaData::read_from_buffered(Cursor::new(bytes), false)?.headers {
         let window = header.shared_attributes.display_window;
         let Vec2(width, height) = header.layer_size;
         if width as u64 * height as u64 > most_pixels {
-            return Ok(Err(format!("{width}x{height} px: at most {most_pixels} pixels are read")));
+            return Ok(Err(format!("{width}x{height} px: at most {most_pixels} pixels are read").into()));
         }
         if window.size != header.layer_size || window.position != header.own_attributes.layer_position {
             return Ok(Err("its data window is not its display window: write the whole picture".into()));

@@ -1,7 +1,7 @@
 //! Pictures from files.
 
 use super::exr;
-use crate::error::{Error, Result};
+use crate::error::{Cause, Error, Result};
 use crate::geometry::srgb;
 use crate::picture::Picture;
 use image::{DynamicImage, ImageDecoder, ImageFormat, ImageReader, Limits};
@@ -32,7 +32,7 @@ pub fn read(path: &Path) -> Result<Picture> {
         exr if exr.starts_with(EXR) => exr::read(exr, MOST_PIXELS),
         _ => Err("no PNG, JPEG or EXR file: convert it to one of them".into()),
     };
-    picture.map_err(|cause| Error::input(path.display().to_string(), cause))
+    picture.map_err(|cause: Cause| cause.in_input(path.display().to_string()))
 }
 
 /// All of a file that begins as a picture does; of another one the beginning, as it need not end.
@@ -45,13 +45,13 @@ fn beginning_as_picture(path: &Path) -> std::io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-fn read_codes(bytes: &[u8], format: ImageFormat) -> Result<Picture, String> {
+fn read_codes(bytes: &[u8], format: ImageFormat) -> Result<Picture, Cause> {
     let mut reader = ImageReader::with_format(Cursor::new(bytes), format);
     reader.limits(Limits::no_limits());
     let decoder = reader.into_decoder().map_err(|error| error.to_string())?;
     let (width, height) = decoder.dimensions();
     if u64::from(width) * u64::from(height) > MOST_PIXELS {
-        return Err(format!("{width}x{height} px: at most {MOST_PIXELS} pixels are read"));
+        return Err(format!("{width}x{height} px: at most {MOST_PIXELS} pixels are read").into());
     }
     let image = DynamicImage::from_decoder(decoder).map_err(|error| error.to_string())?;
     Ok(Picture { size: [width, height], colour: decoded(image), ..Default::default() })

@@ -1,6 +1,7 @@
 //! How much of a file has been read.
 
 use crate::Progress;
+use crate::formats::source::Parsed;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Adds up the bytes that several threads have read.
@@ -18,12 +19,12 @@ impl<'a> Meter<'a> {
     }
 
     /// Some bytes have been read, perhaps not for the first time; the end is left to [`Meter::finish`]. An error if nobody wants more.
-    pub fn add(&self, bytes: u64) -> Result<(), String> {
+    pub fn add(&self, bytes: u64) -> Parsed<()> {
         let done = self.done.fetch_add(bytes, Ordering::Relaxed).saturating_add(bytes);
         if done < self.total {
             self.progress.at("reading", done, self.total);
         }
-        self.progress.go_on()
+        self.progress.check_cancelled()
     }
 
     /// All of the file has been read.

@@ -67,6 +67,7 @@ mod write;
 pub use write::write;
 
 use crate::Progress;
+use crate::error::Cause;
 use crate::formats::declared::Encoding;
 use crate::formats::reader::{Input, Reader};
 use crate::formats::source::Parsed;
@@ -101,7 +102,7 @@ impl Reader for Ply {
         input: &Input<'_>,
         options: &ReadOptions,
         progress: &dyn Progress,
-    ) -> Parsed<Inspected<String>> {
+    ) -> Parsed<Inspected<Cause>> {
         let header = parse_header(input)?;
         let (encoding, elements) = (header.encoding, header.elements.clone());
         let loaded = parse_records(input, header, options, progress);
@@ -114,7 +115,7 @@ fn parse_header(Input { name, source, .. }: &Input<'_>) -> Parsed<Header> {
     let beginning = source.part(0, source.size().min(header::LIMIT as u64 + 1))?;
     match header::is_ply(&beginning) {
         true => header::parse(&beginning),
-        false => Err(sniff::name(name, &beginning, source.size())),
+        false => Err(sniff::name(name, &beginning, source.size()).into()),
     }
 }
 
@@ -143,7 +144,7 @@ fn parse_records(
     let coordinates = std::mem::take(&mut contents.points.coordinates);
     match texture {
         Ok(image) => contents.points.cloud.texture = image.map(|image| Texture { image, coordinates }),
-        Err(cause) => report.texture_missing = Some(cause),
+        Err(cause) => report.texture_missing = Some(cause.to_string()),
     }
     let Points { mut cloud, materials, .. } = contents.points;
     contents.materials.give(&mut cloud, materials);
@@ -171,10 +172,10 @@ fn find_texture(
             // Whoever wrote the file names it: a device or a pipe may have no end.
             let path = folder.join(name);
             if path.exists() && !path.is_file() {
-                return Err(format!("{}: no regular file", path.display()));
+                return Err(format!("{}: no regular file", path.display()).into());
             }
             let image = image::read(&path).and_then(|picture| MipMap::new(&picture));
-            image.map(|image| Some(Arc::new(image))).map_err(|error| error.to_string())
+            image.map(|image| Some(Arc::new(image))).map_err(|error| error.to_string().into())
         }
         (given, _) => Ok(given.clone()),
     }

@@ -4,6 +4,7 @@ use super::Lined;
 use super::branch::Tubes;
 use super::leaf::Row;
 use super::weld::Welded;
+use crate::error::Result;
 use crate::geometry::srgb;
 use crate::geometry::{Cloud, Colours};
 use glam::{DVec3, Vec3};
@@ -90,7 +91,7 @@ impl<'a> Made<'a> {
     }
 
     /// What stays, and behind it what is new.
-    pub fn finish(self, lined: &mut Lined) -> Result<Cloud, String> {
+    pub fn finish(self, lined: &mut Lined) -> Result<Cloud> {
         let Self { cloud, mut new, sources, kept, .. } = self;
         new.colours = cloud.colours.as_ref().map(|colours| means(colours, &sources));
         let materials = cloud.materials.as_ref();
@@ -106,7 +107,7 @@ impl<'a> Made<'a> {
         lined.vertices[1] = (0..cloud.len()).filter(|&i| used[i] && was[i]).count() as u64 + new.len() as u64;
         let old = Cloud { triangles: kept, ..cloud.clone() }.part(&staying);
         // Both have colours, or neither has.
-        Cloud::merge(vec![old, new], [0.0; 3]).map_err(|error| error.to_string())
+        Cloud::merge(vec![old, new], [0.0; 3])
     }
 }
 

@@ -10,6 +10,7 @@ mod made;
 mod weld;
 
 use super::Cloud;
+use crate::error::Result;
 use component::components;
 use made::Made;
 use weld::weld;
@@ -46,8 +47,8 @@ impl Cloud {
     /// have no scalar. A texture becomes colours.
     ///
     /// # Errors
-    /// The cause, without the input's name, if there are more than 2³² − 1 points afterwards.
-    pub fn to_lines(&self, how: &ToLines) -> Result<(Self, Lined), String> {
+    /// [`Error::Usage`](crate::Error::Usage) if there are more than 2³² − 1 points afterwards.
+    pub fn to_lines(&self, how: &ToLines) -> Result<(Self, Lined)> {
         if self.texture.is_some() {
             let mut coloured = self.clone();
             coloured.bake_texture();

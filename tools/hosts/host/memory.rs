@@ -5,7 +5,7 @@ use ash::vk;
 use std::ptr::NonNull;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicI64, Ordering};
-use surfel::embed::{HostMemory, Location, MemoryRequest, MemorySource};
+use surfel::embed::{HostMemory, Location, MemoryError, MemoryRequest, MemorySource};
 
 impl Host {
     /// Memory for `requirements`.
@@ -100,7 +100,7 @@ impl Counted {
 
 // SAFETY: every piece is an allocation of its own, mapped for as long as it is there.
 unsafe impl MemorySource for Counted {
-    fn allocate(&self, request: &MemoryRequest<'_>) -> std::result::Result<HostMemory, String> {
+    fn allocate(&self, request: &MemoryRequest<'_>) -> std::result::Result<HostMemory, MemoryError> {
         if self.counts.left.load(Ordering::SeqCst) == 0 {
             return Err("the host has no memory left".into());
         }
