@@ -87,12 +87,13 @@ pub(super) struct Seen {
 /// Refuses a range of depths that is not one of Vulkan's.
 fn check_depths(viewport: vk::Viewport) -> Result<()> {
     let range = [viewport.min_depth, viewport.max_depth];
-    match range.iter().all(|depth| (0.0..=1.0).contains(depth)) {
-        true => Ok(()),
-        false => Err(Error::Usage(format!(
+    if range.iter().all(|depth| (0.0..=1.0).contains(depth)) {
+        Ok(())
+    } else {
+        Err(Error::Usage(format!(
             "depths of the viewport from {} to {}: give numbers from 0 to 1",
             range[0], range[1]
-        ))),
+        )))
     }
 }
 
@@ -113,9 +114,10 @@ fn check_convention(reversed: Option<bool>, camera: &Camera) -> Result<()> {
 fn depths(camera: &Camera, viewport: vk::Viewport) -> Result<[f32; 4]> {
     let projection = camera.projection()?;
     let (z, w) = (camera.projection.row(2), camera.projection.row(3));
-    let [first, by_distance] = match projection.perspective {
-        true => [z.z / w.z, z.w / w.z.abs()],
-        false => [z.w / w.w, projection.forward * z.z / w.w],
+    let [first, by_distance] = if projection.perspective {
+        [z.z / w.z, z.w / w.z.abs()]
+    } else {
+        [z.w / w.w, projection.forward * z.z / w.w]
     };
     let (low, range) = (f64::from(viewport.min_depth), f64::from(viewport.max_depth - viewport.min_depth));
     let [least, greatest] = [viewport.min_depth, viewport.max_depth];

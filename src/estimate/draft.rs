@@ -134,8 +134,9 @@ impl Draft {
 fn within(ellipse: Ellipse, normal: Vec3) -> Ellipse {
     let major = ellipse.major - ellipse.major.dot(normal) * normal;
     // Shorter than this it is rounding alone.
-    match major.length() > 1e-3 {
-        true => Ellipse { major: major.normalize(), ..ellipse },
-        false => Ellipse::circle(normal),
+    if major.length() > 1e-3 {
+        Ellipse { major: major.normalize(), ..ellipse }
+    } else {
+        Ellipse::circle(normal)
     }
 }

@@ -96,10 +96,13 @@ fn means(positions: &[Vec3], graph: &Graph) -> Vec<Vec3> {
             }
         }
     }
-    let mean = |(sum, any): (&DVec3, &Vec3)| match sum.length() > 1e-3 {
-        true => sum.normalize().as_vec3(),
-        // Segments there and back again cancel.
-        false => *any,
+    let mean = |(sum, any): (&DVec3, &Vec3)| {
+        if sum.length() > 1e-3 {
+            sum.normalize().as_vec3()
+        } else {
+            // Segments there and back again cancel.
+            *any
+        }
     };
     sums.iter().zip(&any).map(mean).collect()
 }

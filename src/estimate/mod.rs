@@ -69,9 +69,12 @@ impl Estimate {
 
     /// Refuses what nothing can be estimated with; says what and the remedy.
     fn check(&self) -> Result<()> {
-        let positive = |name: &str, value: f32| match value.is_finite() && value > 0.0 {
-            true => Ok(()),
-            false => Err(Error::Usage(format!("{name} is {value}: give a finite number above 0"))),
+        let positive = |name: &str, value: f32| {
+            if value.is_finite() && value > 0.0 {
+                Ok(())
+            } else {
+                Err(Error::Usage(format!("{name} is {value}: give a finite number above 0")))
+            }
         };
         let ([least, most], given) = (Self::NEIGHBOURS, self.neighbours);
         if !(least..=most).contains(&given) {

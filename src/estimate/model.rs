@@ -36,9 +36,10 @@ impl Cloud {
         }
         let [drawn, points] = self.split(true);
         let (primitives, estimated) = drawn.into_primitives(how);
-        let (surfels, more) = match points.is_empty() {
-            true => (Surfels { origin, ..Default::default() }, Estimated::default()),
-            false => points.into_surfels(how, progress)?,
+        let (surfels, more) = if points.is_empty() {
+            (Surfels { origin, ..Default::default() }, Estimated::default())
+        } else {
+            points.into_surfels(how, progress)?
         };
         Ok((Model { surfels, primitives }, estimated + more))
     }

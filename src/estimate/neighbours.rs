@@ -197,8 +197,5 @@ fn radii(surfels: &Surfels, sites: &Sites, survey: &Survey) -> Vec<f32> {
 /// What 99 % of `values` do not exceed.
 fn tail(mut values: Vec<f32>) -> f32 {
     let index = values.len() * 99 / 100;
-    match values.is_empty() {
-        true => 0.0,
-        false => *values.select_nth_unstable_by(index, f32::total_cmp).1,
-    }
+    if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(index, f32::total_cmp).1 }
 }

@@ -93,9 +93,10 @@ impl Oriented<'_> {
         let sheets = self.sheets(&roots, &edges);
         let mut unknown = vec![false; roots.len()];
         for (site, &(root, flipped)) in roots.iter().enumerate() {
-            let (inwards, sure) = match root == known.0 {
-                true => (known.1, true),
-                false => (sheets[&root].volume() < 0.0, sheets[&root].is_closed()),
+            let (inwards, sure) = if root == known.0 {
+                (known.1, true)
+            } else {
+                (sheets[&root].volume() < 0.0, sheets[&root].is_closed())
             };
             if flipped ^ inwards {
                 self.normals[site] = -self.normals[site];

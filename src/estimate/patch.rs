@@ -91,10 +91,11 @@ impl<'a> Surveyor<'a> {
             let wider = self.look(site, WIDER * self.neighbours);
             let closes = open && !self.cell.is_open(&self.flat);
             let smooths = noisy && wider.thickness() < SMOOTHER * plane.thickness();
-            plane = match plane.is_line() || closes || smooths {
-                true => wider,
+            plane = if plane.is_line() || closes || smooths {
+                wider
+            } else {
                 // An edge of the surface, or a crease: the nearer neighbours know better, and do not bridge its bays.
-                false => self.look(site, self.neighbours),
+                self.look(site, self.neighbours)
             };
         }
         if plane.thickness() > NOISY && !self.offsets.is_empty() {

@@ -40,8 +40,9 @@ pub fn read_small(path: &Path) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let read = File::open(path).and_then(|file| file.take(SMALL + 1).read_to_end(&mut bytes));
     read.map_err(Error::io(path, "cannot read"))?;
-    match bytes.len() as u64 <= SMALL {
-        true => Ok(bytes),
-        false => Err(Error::input(path.display().to_string(), "more than a mebibyte: give a smaller file")),
+    if bytes.len() as u64 <= SMALL {
+        Ok(bytes)
+    } else {
+        Err(Error::input(path.display().to_string(), "more than a mebibyte: give a smaller file"))
     }
 }

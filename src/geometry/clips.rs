@@ -112,9 +112,10 @@ impl Clip {
     /// The same clip in another tangent plane through the centre; `None` if nothing is left of it.
     pub(crate) fn within(self, normal: Vec3) -> Option<Self> {
         let within = |line: ClipLine| line.within(normal);
-        match self.lines[1].is_some() {
-            true => Self::of_some(self.lines.map(within), self.concave),
-            false => within(self.lines[0]).map(Self::line),
+        if self.lines[1].is_some() {
+            Self::of_some(self.lines.map(within), self.concave)
+        } else {
+            within(self.lines[0]).map(Self::line)
         }
     }
 }

@@ -244,9 +244,10 @@ fn join_colours(parts: &mut [Cloud], albedo: [f32; 3]) -> Option<Colours> {
     }
     let [r, g, b] = albedo.map(srgb::encode8);
     let coded = |part: &Cloud| matches!(part.colours, Some(Colours::Srgb8(_)) | None);
-    Some(match parts.iter().all(coded) {
-        true => Colours::Srgb8(parts.iter_mut().flat_map(|part| codes(part, [r, g, b, 0])).collect()),
-        false => Colours::Linear(parts.iter_mut().flat_map(|part| linear(part, albedo)).collect()),
+    Some(if parts.iter().all(coded) {
+        Colours::Srgb8(parts.iter_mut().flat_map(|part| codes(part, [r, g, b, 0])).collect())
+    } else {
+        Colours::Linear(parts.iter_mut().flat_map(|part| linear(part, albedo)).collect())
     })
 }
 

@@ -60,11 +60,12 @@ impl Pose {
 }
 
 fn check_height(height: f64) -> Result<()> {
-    match height.is_finite() && height > 0.0 {
-        true => Ok(()),
-        false => Err(Error::Usage(format!(
+    if height.is_finite() && height > 0.0 {
+        Ok(())
+    } else {
+        Err(Error::Usage(format!(
             "the height of the picture is {height}: give a finite number above 0, in the scene's unit"
-        ))),
+        )))
     }
 }
 

@@ -81,11 +81,12 @@ impl Parts<'_> {
         let Some(primitives) = self.primitives else { return Ok(()) };
         primitives.check()?;
         let [a, b] = [self.surfels.origin, primitives.origin];
-        match self.surfels.is_empty() || a == b {
-            true => Ok(()),
-            false => Err(Error::Usage(format!(
+        if self.surfels.is_empty() || a == b {
+            Ok(())
+        } else {
+            Err(Error::Usage(format!(
                 "the surfels' origin is {a}, that of lines and triangles {b}: give one"
-            ))),
+            )))
         }
     }
 

@@ -43,10 +43,8 @@ impl Primitives {
     fn feature(&self, i: usize, tube: bool) -> Feature {
         let [x, y, z] = self.positions[i].as_dvec3().to_array();
         let radius = f64::from(self.radii[i]);
-        let [a, b, c] = match tube {
-            true => [radius, 0.0, 0.0],
-            false => (radius * self.directions[i].as_dvec3()).to_array(),
-        };
+        let [a, b, c] =
+            if tube { [radius, 0.0, 0.0] } else { (radius * self.directions[i].as_dvec3()).to_array() };
         [x, y, z, a, b, c]
     }
 

@@ -113,9 +113,10 @@ impl MipMap {
             level = halved(&level.0, level.1);
             texels.extend_from_slice(&level.0);
         }
-        let texels = match coded {
-            true => Colours::Srgb8(texels.par_iter().map(code).collect()),
-            false => Colours::Linear(texels),
+        let texels = if coded {
+            Colours::Srgb8(texels.par_iter().map(code).collect())
+        } else {
+            Colours::Linear(texels)
         };
         Ok(Self { size, texels })
     }

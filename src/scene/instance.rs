@@ -119,12 +119,13 @@ fn check_numbers(placed: &[Placed<'_>]) -> Result<()> {
     // The greatest are those of nothing, in one way of counting or another.
     let most = u64::from(u32::MAX) - 1;
     let sum: u64 = placed.iter().map(|placed| placed.scene.numbers()).sum();
-    match placed.len() < 2 || sum <= most {
-        true => Ok(()),
-        false => Err(Error::Usage(format!(
+    if placed.len() < 2 || sum <= most {
+        Ok(())
+    } else {
+        Err(Error::Usage(format!(
             "the {} scenes of a frame have room for {sum} surfels, segments and triangles, and {most} have numbers: show fewer of them at once",
             placed.len()
-        ))),
+        )))
     }
 }
 

@@ -76,10 +76,11 @@ impl Scene {
 /// Refuses bounds that are none.
 pub(super) fn check_bounds(bounds: &Bounds) -> Result<()> {
     let Bounds { min, max, radius } = *bounds;
-    match min.is_finite() && max.is_finite() && min.cmple(max).all() && radius.is_finite() && radius >= 0.0 {
-        true => Ok(()),
-        false => Err(Error::Usage(format!(
+    if min.is_finite() && max.is_finite() && min.cmple(max).all() && radius.is_finite() && radius >= 0.0 {
+        Ok(())
+    } else {
+        Err(Error::Usage(format!(
             "bounds from {min} to {max}, radius {radius}: give finite ones, the least first"
-        ))),
+        )))
     }
 }

@@ -178,11 +178,12 @@ impl Scene {
 
     /// Refuses another device.
     pub(crate) fn check_device(&self, device: &Arc<Device>) -> Result<()> {
-        match self.is_on(device) {
-            true => Ok(()),
-            false => Err(Error::Usage(
+        if self.is_on(device) {
+            Ok(())
+        } else {
+            Err(Error::Usage(
                 "the scene is of another device: upload it to the one that this renderer is of".into(),
-            )),
+            ))
         }
     }
 

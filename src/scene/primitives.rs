@@ -105,11 +105,12 @@ fn check_sizes(device: &Device, primitives: &Primitives, surfels: usize) -> Resu
     let largest = (28 * primitives.len()).max(8 * lines).max(12 * primitives.triangles.len()) as u64;
     let groups = u64::from(device.capabilities().max_workgroups) * 64;
     let most = lines.max(primitives.triangles.len()) as u64;
-    match largest <= range && most <= groups {
-        true => Ok(()),
-        false => Err(Error::Usage(format!(
+    if largest <= range && most <= groups {
+        Ok(())
+    } else {
+        Err(Error::Usage(format!(
             "lines and triangles take {largest} bytes a stream and {most} invocations; {} has buffers of {range} and {groups}: give fewer",
             device.description().name
-        ))),
+        )))
     }
 }

@@ -115,9 +115,10 @@ impl Scene {
     fn bounds_with(&self, range: &Range<u64>, changes: &Changes<'_>) -> Option<Bounds> {
         let positions = changes.positions?;
         // A copy only where some are left out.
-        let valid: Vec<Vec3> = match positions.iter().all(is_bounded) {
-            true => Vec::new(),
-            false => positions.iter().copied().filter(is_bounded).collect(),
+        let valid: Vec<Vec3> = if positions.iter().all(is_bounded) {
+            Vec::new()
+        } else {
+            positions.iter().copied().filter(is_bounded).collect()
         };
         // What is nowhere changes nothing.
         positions.iter().any(is_bounded).then_some(())?;
@@ -142,11 +143,12 @@ impl Changes<'_> {
         ];
         let mut given = lengths.into_iter().flatten();
         let first = given.next().unwrap_or(0);
-        match given.all(|length| length == first) {
-            true => Ok(first as u64),
-            false => Err(Error::Usage(format!(
+        if given.all(|length| length == first) {
+            Ok(first as u64)
+        } else {
+            Err(Error::Usage(format!(
                 "new positions, normals, radii, sides, ellipses, colours of unequal numbers {lengths:?}: give one a surfel"
-            ))),
+            )))
         }
     }
 

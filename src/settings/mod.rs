@@ -85,23 +85,25 @@ impl Settings {
 
     /// Refuses splats of a scene that has lines or triangles, as `there` says.
     pub fn check_primitives(&self, there: bool) -> Result<()> {
-        match there && self.pull_push.is_none() {
-            false => Ok(()),
-            true => Err(Error::Usage(
+        if there && self.pull_push.is_none() {
+            Err(Error::Usage(
                 "lines and triangles are drawn by pull-push and pull-push-paper alone: choose one of them, or leave them out".into(),
-            )),
+            ))
+        } else {
+            Ok(())
         }
     }
 
     /// Refuses numbers of points where pixels are sums of several.
     pub fn check_outputs(&self, outputs: Outputs) -> Result<()> {
-        match outputs.id && self.pull_push.is_none() {
-            false => Ok(()),
-            true => Err(Error::Usage(
+        if outputs.id && self.pull_push.is_none() {
+            Err(Error::Usage(
                 "numbers of points are those of pull-push and pull-push-paper alone, as splats are summed: choose one of them, or \
                  leave the numbers out"
                     .into(),
-            )),
+            ))
+        } else {
+            Ok(())
         }
     }
 
@@ -113,9 +115,12 @@ impl Settings {
             ));
         }
         self.splatting.check()?;
-        let positive = |name: &str, value: f32| match value.is_finite() && value > 0.0 {
-            true => Ok(()),
-            false => Err(Error::Usage(format!("{name} is {value}: give a finite number above 0"))),
+        let positive = |name: &str, value: f32| {
+            if value.is_finite() && value > 0.0 {
+                Ok(())
+            } else {
+                Err(Error::Usage(format!("{name} is {value}: give a finite number above 0")))
+            }
         };
         if !Self::CUTOFFS.contains(&self.cutoff) {
             let (least, most) = (Self::CUTOFFS.start(), Self::CUTOFFS.end());

@@ -138,9 +138,10 @@ fn driver(instance: &ash::Instance, physical: vk::PhysicalDevice, new_enough: bo
         unsafe { instance.get_physical_device_properties2(physical, &mut properties) };
     }
     let name = text(driver.driver_name_as_c_str());
-    match name.is_empty() {
-        true => format!("driver {number:#x}"),
-        false => format!("{name} {}", text(driver.driver_info_as_c_str())),
+    if name.is_empty() {
+        format!("driver {number:#x}")
+    } else {
+        format!("{name} {}", text(driver.driver_info_as_c_str()))
     }
 }
 

@@ -116,9 +116,10 @@ fn seen(image_view: vk::ImageView, image_layout: vk::ImageLayout) -> [vk::Descri
 
 /// The layout in which an image of `format` is an input attachment.
 pub fn input_layout(format: vk::Format) -> vk::ImageLayout {
-    match is_depth(format) {
-        true => vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL,
-        false => vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL,
+    if is_depth(format) {
+        vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL
+    } else {
+        vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL
     }
 }
 

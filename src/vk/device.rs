@@ -350,9 +350,10 @@ impl Device {
             );
             (limits, found)
         };
-        let framebuffer = match usage.contains(vk::ImageUsageFlags::COLOR_ATTACHMENT) {
-            true => limits.framebuffer_color_sample_counts,
-            false => limits.framebuffer_depth_sample_counts | limits.framebuffer_stencil_sample_counts,
+        let framebuffer = if usage.contains(vk::ImageUsageFlags::COLOR_ATTACHMENT) {
+            limits.framebuffer_color_sample_counts
+        } else {
+            limits.framebuffer_depth_sample_counts | limits.framebuffer_stencil_sample_counts
         };
         found.map_or(vk::SampleCountFlags::empty(), |found| found.sample_counts & framebuffer)
     }

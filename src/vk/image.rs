@@ -51,9 +51,10 @@ impl Image {
         size: [u32; 2],
         also: ImageUse,
     ) -> Result<Self> {
-        let attachment = match is_depth(format) {
-            true => vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT,
-            false => vk::ImageUsageFlags::COLOR_ATTACHMENT,
+        let attachment = if is_depth(format) {
+            vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT
+        } else {
+            vk::ImageUsageFlags::COLOR_ATTACHMENT
         };
         let other = match also {
             ImageUse::Sampled => vk::ImageUsageFlags::SAMPLED,

@@ -33,9 +33,10 @@ impl Instance {
         let labels = debug_utils.then_some(debug_utils::NAME.as_ptr());
         // Without it the loader hides devices like MoltenVK's, whose Vulkan is not whole.
         let portability = has_extension(&entry, None, portability_enumeration::NAME);
-        let flags = match portability {
-            true => vk::InstanceCreateFlags::ENUMERATE_PORTABILITY_KHR,
-            false => vk::InstanceCreateFlags::empty(),
+        let flags = if portability {
+            vk::InstanceCreateFlags::ENUMERATE_PORTABILITY_KHR
+        } else {
+            vk::InstanceCreateFlags::empty()
         };
         let portability = portability.then_some(portability_enumeration::NAME.as_ptr());
         let extensions: Vec<_> = extensions.iter().copied().chain(labels).chain(portability).collect();
@@ -92,11 +93,12 @@ fn require_validation_layer(entry: &ash::Entry) -> Result<&'static CStr> {
     let layers = unsafe { entry.enumerate_instance_layer_properties() }.unwrap_or_default();
     let there = layers.iter().any(|layer| layer.layer_name_as_c_str() == Ok(VALIDATION_LAYER));
     // The layer brings both extensions itself.
-    match there && has_extension(entry, Some(VALIDATION_LAYER), debug_utils::NAME) {
-        true => Ok(VALIDATION_LAYER),
-        false => Err(Error::NoDevice(
+    if there && has_extension(entry, Some(VALIDATION_LAYER), debug_utils::NAME) {
+        Ok(VALIDATION_LAYER)
+    } else {
+        Err(Error::NoDevice(
             "validation was asked for, but VK_LAYER_KHRONOS_validation is not installed (Debian: vulkan-validationlayers)".into(),
-        )),
+        ))
     }
 }
 

@@ -98,11 +98,10 @@ impl Presented {
 
     /// An error if what was recorded uses what is gone.
     pub(super) fn check(&self) -> Result<()> {
-        match self.stakes.borrow().iter().any(|stake| stake.gone.load(Ordering::Relaxed)) {
-            true => {
-                Err(Error::Usage("what draws in a frame is dropped while that is recorded: keep it".into()))
-            }
-            false => Ok(()),
+        if self.stakes.borrow().iter().any(|stake| stake.gone.load(Ordering::Relaxed)) {
+            Err(Error::Usage("what draws in a frame is dropped while that is recorded: keep it".into()))
+        } else {
+            Ok(())
         }
     }
 
@@ -354,9 +353,10 @@ impl Presenter {
 
     /// Without tearing, and without waiting for the screen where that can be.
     fn mode(&self) -> vk::PresentModeKHR {
-        match self.modes.contains(&vk::PresentModeKHR::MAILBOX) {
-            true => vk::PresentModeKHR::MAILBOX,
-            false => vk::PresentModeKHR::FIFO,
+        if self.modes.contains(&vk::PresentModeKHR::MAILBOX) {
+            vk::PresentModeKHR::MAILBOX
+        } else {
+            vk::PresentModeKHR::FIFO
         }
     }
 }

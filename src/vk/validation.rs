@@ -38,16 +38,20 @@ unsafe extern "system" fn collect(
     // SAFETY: the layers pass valid data for the length of the call, and `messenger_info` a `Messages` that outlives the messenger.
     let (text, id, messages) = unsafe {
         let data = &*data;
-        let text = |pointer: *const std::ffi::c_char| match pointer.is_null() {
-            true => String::new(),
-            false => CStr::from_ptr(pointer).to_string_lossy().into_owned(),
+        let text = |pointer: *const std::ffi::c_char| {
+            if pointer.is_null() {
+                String::new()
+            } else {
+                CStr::from_ptr(pointer).to_string_lossy().into_owned()
+            }
         };
         (text(data.p_message), text(data.p_message_id_name), &*messages.cast::<Messages>())
     };
     // The loader speaks of drivers and manifests that it skips, under GENERAL: not of what this program does.
-    match kind == vk::DebugUtilsMessageTypeFlagsEXT::GENERAL {
-        true => log::debug!("{id}: {text}"),
-        false => messages.push(text),
+    if kind == vk::DebugUtilsMessageTypeFlagsEXT::GENERAL {
+        log::debug!("{id}: {text}")
+    } else {
+        messages.push(text)
     }
     vk::FALSE
 }

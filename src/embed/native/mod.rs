@@ -385,12 +385,13 @@ impl Renderer {
         };
         let ends = [area.offset.x as u32 + area.extent.width, area.offset.y as u32 + area.extent.height];
         let [width, height] = targets.size;
-        match ends[0] <= width && ends[1] <= height {
-            true => Ok(targets.clone()),
-            false => Err(Error::Usage(format!(
+        if ends[0] <= width && ends[1] <= height {
+            Ok(targets.clone())
+        } else {
+            Err(Error::Usage(format!(
                 "the viewport ends at ({}, {}), and the attachments have {width}x{height} px: call `resize` with the framebuffer's size",
                 ends[0], ends[1]
-            ))),
+            )))
         }
     }
 }

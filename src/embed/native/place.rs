@@ -113,9 +113,10 @@ impl Place<'_> {
         }
         let what = format!("{what} in attachment {attachment}");
         attachments::check(device, &what, purpose, format, samples).or_else(refuse)?;
-        match resolved && (self.samples() == one || format != self.format(self.picture)) {
-            true => refuse("only a multisampled picture is resolved, to the same format".into()),
-            false => Ok(()),
+        if resolved && (self.samples() == one || format != self.format(self.picture)) {
+            refuse("only a multisampled picture is resolved, to the same format".into())
+        } else {
+            Ok(())
         }
     }
 

@@ -98,9 +98,10 @@ impl Plan {
         }
         let seeds = place.depth.is_some_and(|depth| depth.seed);
         let formats = PlanFormats::of(&variants, seeds && blends(first));
-        let last = match blends(first) {
-            true => &[Step::Visibility, Step::Attribute, Step::Normalize][..],
-            false => &[Step::Nearest, Step::Normalize],
+        let last = if blends(first) {
+            &[Step::Visibility, Step::Attribute, Step::Normalize][..]
+        } else {
+            &[Step::Nearest, Step::Normalize]
         };
         let steps: Vec<_> = seeds.then_some(Step::Seed).into_iter().chain(last.iter().copied()).collect();
         let mut plan = Self {

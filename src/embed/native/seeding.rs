@@ -28,9 +28,10 @@ pub(super) fn seed(
 ) -> Option<Seed> {
     let [first, by_distance] = [depth[0], depth[1]].map(f64::from);
     let [near, slope] = [block.near, block.key_slope].map(f64::from);
-    let [scale, offset] = match perspective {
-        true => [near / by_distance, -near * first / by_distance],
-        false => [-slope / by_distance, 1.0 + slope * (near + first / by_distance)],
+    let [scale, offset] = if perspective {
+        [near / by_distance, -near * first / by_distance]
+    } else {
+        [-slope / by_distance, 1.0 + slope * (near + first / by_distance)]
     };
     // Sums of 16 bits lose what is below a thousandth of them, summand by summand.
     let rounding = match precision {

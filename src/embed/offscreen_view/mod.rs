@@ -287,11 +287,10 @@ impl OffscreenView {
     }
 
     fn check_presenter(&self, number: u64) -> Result<()> {
-        match number == self.presenter {
-            true => Ok(()),
-            false => {
-                Err(Error::Usage("an offscreen view is used with another window than it was made for".into()))
-            }
+        if number == self.presenter {
+            Ok(())
+        } else {
+            Err(Error::Usage("an offscreen view is used with another window than it was made for".into()))
         }
     }
 }

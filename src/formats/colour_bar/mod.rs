@@ -86,9 +86,10 @@ impl ColourBar {
     /// The name, cut off where it would be wider than `width` px.
     fn title(&self, font: Font, width: u32) -> String {
         let most = (width / font.advance()) as usize;
-        match self.name.chars().count() > most {
-            true => self.name.chars().take(most.saturating_sub(2)).chain("..".chars()).collect(),
-            false => self.name.clone(),
+        if self.name.chars().count() > most {
+            self.name.chars().take(most.saturating_sub(2)).chain("..".chars()).collect()
+        } else {
+            self.name.clone()
         }
     }
 

@@ -63,10 +63,7 @@ fn number(value: f64, spacing: f64) -> String {
 
 /// Without zeros at the end that say nothing.
 fn shorten(number: String) -> String {
-    match number.contains('.') {
-        true => number.trim_end_matches('0').trim_end_matches('.').to_owned(),
-        false => number,
-    }
+    if number.contains('.') { number.trim_end_matches('0').trim_end_matches('.').to_owned() } else { number }
 }
 
 #[cfg(test)]

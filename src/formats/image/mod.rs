@@ -123,12 +123,13 @@ impl Encoded {
     /// [`Error::Usage`] if there are none, or not as many as `size`, width and height in px, says.
     pub fn new(size: [u32; 2], pixels: Vec<[u8; 4]>) -> Result<Self> {
         let [width, height] = size;
-        match !pixels.is_empty() && pixels.len() as u64 == u64::from(width) * u64::from(height) {
-            true => Ok(Self { pixels, size }),
-            false => Err(Error::Usage(format!(
+        if !pixels.is_empty() && pixels.len() as u64 == u64::from(width) * u64::from(height) {
+            Ok(Self { pixels, size })
+        } else {
+            Err(Error::Usage(format!(
                 "{} pixels for a picture of {width} × {height}: give as many as it has, at least one",
                 pixels.len()
-            ))),
+            )))
         }
     }
 
@@ -169,15 +170,12 @@ impl Encoded {
     /// What `out` says.
     pub fn png(mut self, out: &mut dyn Write) -> io::Result<()> {
         let opaque = self.pixels.iter().all(|pixel| pixel[3] == 255);
-        let (bytes, kind) = match opaque {
-            true => {
-                (self.pixels.iter().flat_map(|&[r, g, b, _]| [r, g, b]).collect(), ExtendedColorType::Rgb8)
-            }
-            false => {
-                // What cannot be seen compresses better as nothing.
-                self.pixels.iter_mut().filter(|pixel| pixel[3] == 0).for_each(|pixel| *pixel = [0; 4]);
-                (self.pixels.into_flattened(), ExtendedColorType::Rgba8)
-            }
+        let (bytes, kind) = if opaque {
+            (self.pixels.iter().flat_map(|&[r, g, b, _]| [r, g, b]).collect(), ExtendedColorType::Rgb8)
+        } else {
+            // What cannot be seen compresses better as nothing.
+            self.pixels.iter_mut().filter(|pixel| pixel[3] == 0).for_each(|pixel| *pixel = [0; 4]);
+            (self.pixels.into_flattened(), ExtendedColorType::Rgba8)
         };
         let [width, height] = self.size;
         PngEncoder::new(out).write_image(&bytes, width, height, kind).map_err(io_error)
@@ -211,11 +209,12 @@ fn check(picture: &Picture) -> Result<()> {
         picture.normal.as_ref().map(Vec::len),
         picture.id.as_ref().map(Vec::len),
     ];
-    match pixels > 0 && images.into_iter().all(fits) {
-        true => Ok(()),
-        false => Err(Error::Usage(format!(
+    if pixels > 0 && images.into_iter().all(fits) {
+        Ok(())
+    } else {
+        Err(Error::Usage(format!(
             "a picture of {width} × {height} pixels whose images differ from that size"
-        ))),
+        )))
     }
 }
 

@@ -48,9 +48,10 @@ pub(super) fn gather(
     }
     macro_rules! each {
         ($number:ty) => {
-            match big_endian {
-                false => each(to, records, stride, offset, |bytes| <$number>::from_le_bytes(bytes).into()),
-                true => each(to, records, stride, offset, |bytes| <$number>::from_be_bytes(bytes).into()),
+            if big_endian {
+                each(to, records, stride, offset, |bytes| <$number>::from_be_bytes(bytes).into())
+            } else {
+                each(to, records, stride, offset, |bytes| <$number>::from_le_bytes(bytes).into())
             }
         };
     }

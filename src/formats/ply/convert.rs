@@ -48,9 +48,10 @@ impl Tally {
 
 /// Fills as many entries as the block has rows.
 pub(super) fn convert(block: &Block, layout: &Layout, out: &mut Slices) -> Tally {
-    let mut tally = match layout.narrow {
-        true => positions(block, layout, out.narrow, DVec3::as_vec3, Vec3::NAN),
-        false => positions(block, layout, out.wide, |position| position, DVec3::NAN),
+    let mut tally = if layout.narrow {
+        positions(block, layout, out.narrow, DVec3::as_vec3, Vec3::NAN)
+    } else {
+        positions(block, layout, out.wide, |position| position, DVec3::NAN)
     };
     if layout.fills(NORMAL) {
         out.normals.iter_mut().zip(block.triples(NORMAL)).for_each(|(to, n)| *to = shape::unit(n));

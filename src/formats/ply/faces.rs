@@ -55,10 +55,7 @@ impl<'a> Collector<'a> {
 
     /// Counts a face.
     pub fn count(&mut self, understood: bool) {
-        match understood {
-            true => self.faces.understood += 1,
-            false => self.faces.skipped += 1,
-        }
+        if understood { self.faces.understood += 1 } else { self.faces.skipped += 1 }
     }
 
     /// Whether it has three different corners, all of them points.

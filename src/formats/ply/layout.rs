@@ -290,22 +290,26 @@ fn has(properties: &[Property], name: &str) -> bool {
 }
 
 fn refuse_compressed(properties: &[Property]) -> Parsed<()> {
-    match has(properties, "packed_position") {
-        true => Err("compressed 3D Gaussians (packed_position), which cannot be read: export surfels with x y z, nx ny nz \
+    if has(properties, "packed_position") {
+        Err("compressed 3D Gaussians (packed_position), which cannot be read: export surfels with x y z, nx ny nz \
                      and radius"
-            .into()),
-        false => Ok(()),
+            .into())
+    } else {
+        Ok(())
     }
 }
 
 /// The element whose records are the points.
 pub(super) fn find_vertex(elements: &[Element]) -> Parsed<usize> {
-    elements.iter().position(|element| element.name == "vertex").ok_or_else(|| match elements.is_empty() {
-        true => "it has no elements: give a file with an element `vertex`".into(),
-        false => format!(
-            "it has no element `vertex`, only {}: rename the one that holds the points",
-            listed(elements.iter().map(|element| element.name.as_str()))
-        ),
+    elements.iter().position(|element| element.name == "vertex").ok_or_else(|| {
+        if elements.is_empty() {
+            "it has no elements: give a file with an element `vertex`".into()
+        } else {
+            format!(
+                "it has no element `vertex`, only {}: rename the one that holds the points",
+                listed(elements.iter().map(|element| element.name.as_str()))
+            )
+        }
     })
 }
 

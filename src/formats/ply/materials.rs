@@ -104,9 +104,10 @@ impl Columns {
     fn material(&self, numbers: &[f64]) -> Material {
         let power = self.power.map(|index| numbers[index]).filter(|power| power.is_finite());
         let shininess = power.map_or(Lighting::default().shininess, |power| power.min(1e6) as f32);
-        match shininess > 0.0 {
-            true => Material { specular: self.specular.of_record(numbers), shininess },
-            false => Material { specular: [0.0; 3], shininess: 1.0 },
+        if shininess > 0.0 {
+            Material { specular: self.specular.of_record(numbers), shininess }
+        } else {
+            Material { specular: [0.0; 3], shininess: 1.0 }
         }
     }
 }

@@ -113,9 +113,10 @@ impl Reader for Ply {
 fn parse_header(Input { name, source, .. }: &Input<'_>) -> Parsed<Header> {
     // One byte more than allowed, so that a header which is too long shows.
     let beginning = source.part(0, source.size().min(header::LIMIT as u64 + 1))?;
-    match header::is_ply(&beginning) {
-        true => header::parse(&beginning),
-        false => Err(sniff::name(name, &beginning, source.size()).into()),
+    if header::is_ply(&beginning) {
+        header::parse(&beginning)
+    } else {
+        Err(sniff::name(name, &beginning, source.size()).into())
     }
 }
 

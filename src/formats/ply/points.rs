@@ -86,9 +86,10 @@ fn nothing(count: u32, dropped: Dropped) -> String {
 
 /// Leaves out what has no position; gives the index that each vertex has then.
 fn leave_out(arrays: &mut Arrays) -> Vec<u32> {
-    let kept: Vec<bool> = match arrays.wide.is_empty() {
-        true => arrays.narrow.iter().map(|position| position.is_finite()).collect(),
-        false => arrays.wide.iter().map(|position| position.is_finite()).collect(),
+    let kept: Vec<bool> = if arrays.wide.is_empty() {
+        arrays.narrow.iter().map(|position| position.is_finite()).collect()
+    } else {
+        arrays.wide.iter().map(|position| position.is_finite()).collect()
     };
     arrays.retain(&kept);
     let mut next = 0;
@@ -164,9 +165,10 @@ fn origin(arrays: &Arrays) -> DVec3 {
 
 /// The box between the percentiles; of few points, that of all of them.
 fn usual_box(arrays: &Arrays) -> [DVec3; 2] {
-    let mut points: Vec<DVec3> = match arrays.wide.is_empty() {
-        true => sample(&arrays.narrow).map(|position| position.as_dvec3()).collect(),
-        false => sample(&arrays.wide).copied().collect(),
+    let mut points: Vec<DVec3> = if arrays.wide.is_empty() {
+        sample(&arrays.narrow).map(|position| position.as_dvec3()).collect()
+    } else {
+        sample(&arrays.wide).copied().collect()
     };
     // Scanners write 0 0 0 for many a ray that came back from nothing. Of few points each counts.
     if points.iter().filter(|point| **point != DVec3::ZERO).count() >= MANY {

@@ -74,10 +74,12 @@ fn disc(normal: Vec3, radius: f32, major: DVec3, aspect: f64) -> (Disc, Ellipse)
     let n = normal.as_dvec3();
     let across = unit(major - n * n.dot(major));
     let usable = across != Vec3::ZERO && aspect.is_finite();
-    let ellipse = match usable {
-        true => Ellipse { major: across, aspect: aspect.clamp(LEAST_ASPECT, 1.0) as f32 },
-        false if normal == Vec3::ZERO => Ellipse { major: Vec3::X, aspect: 1.0 },
-        false => Ellipse { major: normal.any_orthonormal_vector(), aspect: 1.0 },
+    let ellipse = if usable {
+        Ellipse { major: across, aspect: aspect.clamp(LEAST_ASPECT, 1.0) as f32 }
+    } else if normal == Vec3::ZERO {
+        Ellipse { major: Vec3::X, aspect: 1.0 }
+    } else {
+        Ellipse::circle(normal)
     };
     (Disc { normal, radius }, ellipse)
 }

@@ -106,13 +106,12 @@ fn pairs(outline: &[u32], mesh: &Welded) -> Option<Vec<[Station; 2]>> {
     let mut down: Vec<u32> = walk(down_to, down_from, count).map(|i| outline[i]).collect();
     down.reverse();
     (up.len() > 1 && down.len() > 1 && up.len().max(down.len()) > 2 || up_from != down_from).then_some(())?;
-    Some(match up.len() == down.len() {
-        true => up.iter().zip(&down).map(|(&a, &b)| [place(a), place(b)]).collect(),
-        false => {
-            let (many, few) = if up.len() > down.len() { (&up, &down) } else { (&down, &up) };
-            let fractions = fractions(many, mesh);
-            many.iter().zip(&fractions).map(|(&a, &t)| [place(a), along(few, t, mesh)]).collect()
-        }
+    Some(if up.len() == down.len() {
+        up.iter().zip(&down).map(|(&a, &b)| [place(a), place(b)]).collect()
+    } else {
+        let (many, few) = if up.len() > down.len() { (&up, &down) } else { (&down, &up) };
+        let fractions = fractions(many, mesh);
+        many.iter().zip(&fractions).map(|(&a, &t)| [place(a), along(few, t, mesh)]).collect()
     })
 }
 
@@ -124,10 +123,12 @@ fn end(i: usize, far: usize, count: usize, at: impl Fn(usize) -> DVec3) -> [usiz
         (at(i) - at(corner)).normalize_or_zero().dot((at(far) - at(corner)).normalize_or_zero())
     };
     let (up, down) = (cosine(next), cosine(before));
-    match up.max(down) > BLUNT && next != far && before != far {
-        false => [i, i],
-        true if up > down => [next, i],
-        true => [i, before],
+    if up.max(down) <= BLUNT || next == far || before == far {
+        [i, i]
+    } else if up > down {
+        [next, i]
+    } else {
+        [i, before]
     }
 }
 

@@ -164,9 +164,10 @@ impl Frame {
                 .framebuffer(framebuffer)
                 .render_area(area)
                 .clear_values(&clears);
-            let contents = match secondaries {
-                true => vk::SubpassContents::SECONDARY_COMMAND_BUFFERS,
-                false => vk::SubpassContents::INLINE,
+            let contents = if secondaries {
+                vk::SubpassContents::SECONDARY_COMMAND_BUFFERS
+            } else {
+                vk::SubpassContents::INLINE
             };
             // SAFETY: recorded outside a render pass; `end` ends it.
             unsafe { host.device.cmd_begin_render_pass(cmd, &info, contents) };
@@ -195,9 +196,10 @@ impl Frame {
         let more = self.more.iter().map(|target| attachment(target, drawn, cleared(target)));
         let colours: Vec<_> = more.chain([colour]).collect();
         let depth = attachment(&self.depth, tested, farthest);
-        let flags = match secondaries {
-            true => vk::RenderingFlags::CONTENTS_SECONDARY_COMMAND_BUFFERS,
-            false => vk::RenderingFlags::empty(),
+        let flags = if secondaries {
+            vk::RenderingFlags::CONTENTS_SECONDARY_COMMAND_BUFFERS
+        } else {
+            vk::RenderingFlags::empty()
         };
         let mut info = vk::RenderingInfo::default()
             .flags(flags)

@@ -106,9 +106,10 @@ unsafe impl MemorySource for Counted {
         }
         self.counts.left.fetch_sub(1, Ordering::SeqCst);
         let is_mapped = matches!(request.location, Location::Upload | Location::Readback);
-        let wanted = match is_mapped {
-            true => vk::MemoryPropertyFlags::HOST_VISIBLE | vk::MemoryPropertyFlags::HOST_COHERENT,
-            false => vk::MemoryPropertyFlags::DEVICE_LOCAL,
+        let wanted = if is_mapped {
+            vk::MemoryPropertyFlags::HOST_VISIBLE | vk::MemoryPropertyFlags::HOST_COHERENT
+        } else {
+            vk::MemoryPropertyFlags::DEVICE_LOCAL
         };
         // SAFETY: the host outlives what it lends.
         unsafe {

@@ -76,12 +76,10 @@ impl Models {
 
     /// What brings a model with these bounds to the origin, at a radius of 1.
     pub fn to_unit(&self, bounds: &Bounds) -> DMat4 {
-        match self.is_file && self.shown == 0 {
-            true => {
-                DMat4::from_scale(DVec3::splat(1.0 / bounds.radius))
-                    * DMat4::from_translation(-bounds.centre())
-            }
-            false => DMat4::IDENTITY,
+        if self.is_file && self.shown == 0 {
+            DMat4::from_scale(DVec3::splat(1.0 / bounds.radius)) * DMat4::from_translation(-bounds.centre())
+        } else {
+            DMat4::IDENTITY
         }
     }
 }

@@ -259,9 +259,10 @@ impl Framed {
         use vk::ImageUsageFlags as Usage;
         let input = if kind.seed || kind.around[1] { Usage::INPUT_ATTACHMENT } else { Usage::empty() };
         let target = |(format, samples)| {
-            let usage = match Some(format) == kind.depth {
-                true => Usage::DEPTH_STENCIL_ATTACHMENT | input,
-                false => Usage::COLOR_ATTACHMENT,
+            let usage = if Some(format) == kind.depth {
+                Usage::DEPTH_STENCIL_ATTACHMENT | input
+            } else {
+                Usage::COLOR_ATTACHMENT
             };
             Target::new(host, format, size, samples, usage | Usage::TRANSFER_SRC)
         };

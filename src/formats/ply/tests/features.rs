@@ -291,9 +291,10 @@ fn materials_are_those_of_the_table_and_colour_what_has_no_colour() {
     let grey = Lighting::default().albedo;
     for first in [false, true] {
         let table = format!("{shine}\n{paint}");
-        let file = match first {
-            false => text(&format!("{}{table}", vertices("")), &format!("{points}{records}")),
-            true => text(&format!("{table}\n{}", vertices("").trim_end()), &format!("{records}{points}")),
+        let file = if first {
+            text(&format!("{table}\n{}", vertices("").trim_end()), &format!("{records}{points}"))
+        } else {
+            text(&format!("{}{table}", vertices("")), &format!("{points}{records}"))
         };
         let Loaded { cloud, report } = read_bytes("a", &file, &ReadOptions::default()).unwrap();
         assert_eq!(cloud.materials.as_ref(), Some(&expected), "{first}");
