@@ -1,11 +1,11 @@
-//! How passes touch resources, and what a pass must wait for.
+//! Resource accesses of passes, and the barriers between them.
 
 use super::{Buffer, Image};
 use ash::vk;
 use std::collections::HashMap;
 use std::sync::{Mutex, MutexGuard};
 
-/// How a pass touches a resource.
+/// An access: pipeline stages, access mask and image layout.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Access {
     stages: vk::PipelineStageFlags,
@@ -15,7 +15,7 @@ pub struct Access {
 }
 
 impl Access {
-    /// Written, and maybe read, by a compute shader.
+    /// Storage write, and possibly read, in a compute shader.
     pub const COMPUTE_WRITE: Self = Self::buffer(
         vk::PipelineStageFlags::COMPUTE_SHADER,
         vk::AccessFlags::from_raw(
@@ -23,26 +23,26 @@ impl Access {
         ),
         true,
     );
-    /// Read by a compute shader.
+    /// Storage read in a compute shader.
     pub const COMPUTE_READ: Self =
         Self::buffer(vk::PipelineStageFlags::COMPUTE_SHADER, vk::AccessFlags::SHADER_READ, false);
-    /// Read by a vertex shader.
+    /// Storage read in a vertex shader.
     pub const VERTEX_READ: Self =
         Self::buffer(vk::PipelineStageFlags::VERTEX_SHADER, vk::AccessFlags::SHADER_READ, false);
-    /// Fetched from by a compute shader: an image.
+    /// Image fetch in a compute shader.
     pub const COMPUTE_FETCH: Self =
         Self { layout: vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL, ..Self::COMPUTE_READ };
-    /// Fetched from by a fragment shader.
+    /// Image fetch in a fragment shader.
     pub const FRAGMENT_READ: Self = Self {
         stages: vk::PipelineStageFlags::FRAGMENT_SHADER,
         mask: vk::AccessFlags::SHADER_READ,
         layout: vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL,
         write: false,
     };
-    /// Read from a buffer by a fragment shader.
+    /// Buffer read in a fragment shader.
     pub const FRAGMENT_LOAD: Self =
         Self::buffer(vk::PipelineStageFlags::FRAGMENT_SHADER, vk::AccessFlags::SHADER_READ, false);
-    /// Written, and maybe read, by a fragment shader: a buffer.
+    /// Buffer write, and possibly read, in a fragment shader.
     pub const FRAGMENT_WRITE: Self = Self::buffer(
         vk::PipelineStageFlags::FRAGMENT_SHADER,
         vk::AccessFlags::from_raw(
@@ -50,7 +50,7 @@ impl Access {
         ),
         true,
     );
-    /// Written as a colour target, its old contents dropped.
+    /// Colour attachment write; old contents are discarded.
     pub const COLOUR_WRITE: Self = Self {
         stages: vk::PipelineStageFlags::COLOR_ATTACHMENT_OUTPUT,
         mask: vk::AccessFlags::from_raw(
@@ -60,7 +60,7 @@ impl Access {
         layout: vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL,
         write: true,
     };
-    /// Written as the depth target, its old contents dropped.
+    /// Depth attachment write; old contents are discarded.
     pub const DEPTH_WRITE: Self = Self {
         stages: DEPTH_STAGES,
         mask: vk::AccessFlags::from_raw(
@@ -70,8 +70,7 @@ impl Access {
         layout: vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
         write: true,
     };
-    /// Tested against as the depth target. Storing it at the render pass's end is a write, though nothing changes, that what comes later
-    /// must wait for.
+    /// Depth test without writes. The store operation at the end of the render pass counts as a write, so later accesses must wait for it.
     pub const DEPTH_TEST: Self = Self {
         stages: DEPTH_STAGES,
         mask: vk::AccessFlags::from_raw(
@@ -81,24 +80,24 @@ impl Access {
         layout: vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL,
         write: false,
     };
-    /// Copied from.
+    /// Transfer source.
     pub const COPY_READ: Self = Self {
         stages: vk::PipelineStageFlags::TRANSFER,
         mask: vk::AccessFlags::TRANSFER_READ,
         layout: vk::ImageLayout::TRANSFER_SRC_OPTIMAL,
         write: false,
     };
-    /// Copied to, or filled.
+    /// Transfer destination, or fill.
     pub const COPY_WRITE: Self =
         Self::buffer(vk::PipelineStageFlags::TRANSFER, vk::AccessFlags::TRANSFER_WRITE, true);
-    /// The same of an image, its old contents dropped.
+    /// Transfer destination of an image; old contents are discarded.
     #[cfg(feature = "window")]
     pub const SCALE_WRITE: Self = Self { layout: vk::ImageLayout::TRANSFER_DST_OPTIMAL, ..Self::COPY_WRITE };
-    /// Read by whatever shader.
+    /// Storage read in any shader.
     pub const SHADER_READ: Self = Self::buffer(SHADER_STAGES, vk::AccessFlags::SHADER_READ, false);
-    /// Read as uniforms by whatever shader.
+    /// Uniform read in any shader.
     pub const UNIFORM_READ: Self = Self::buffer(SHADER_STAGES, vk::AccessFlags::UNIFORM_READ, false);
-    /// Copied from and to, no part of it both ways.
+    /// Transfer within one buffer, between disjoint ranges.
     pub const COPY_WITHIN: Self = Self::buffer(
         vk::PipelineStageFlags::TRANSFER,
         vk::AccessFlags::from_raw(
@@ -106,10 +105,10 @@ impl Access {
         ),
         true,
     );
-    /// Read by the CPU once the frame is over.
+    /// Host read after the frame.
     pub const HOST_READ: Self = Self::buffer(vk::PipelineStageFlags::HOST, vk::AccessFlags::HOST_READ, false);
 
-    /// Read, or written and maybe read, by these shaders.
+    /// Storage read, or with `write` also write, in these shader stages.
     pub fn of_shader(shaders: vk::ShaderStageFlags, write: bool) -> Self {
         let pairs = [
             (vk::ShaderStageFlags::COMPUTE, vk::PipelineStageFlags::COMPUTE_SHADER),
@@ -122,7 +121,7 @@ impl Access {
         Self::buffer(stages, vk::AccessFlags::SHADER_READ | written, write)
     }
 
-    /// The same of an image, if it is said of a buffer: shaders fetch from images.
+    /// The same access to an image, if it is one of a buffer: shaders fetch from images.
     pub fn of_image(self) -> Self {
         match self.layout {
             vk::ImageLayout::UNDEFINED => Self { layout: vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL, ..self },
@@ -130,12 +129,12 @@ impl Access {
         }
     }
 
-    /// Where.
+    /// Pipeline stages.
     pub const fn stages(self) -> vk::PipelineStageFlags {
         self.stages
     }
 
-    /// How.
+    /// Access mask.
     pub const fn mask(self) -> vk::AccessFlags {
         self.mask
     }
@@ -156,7 +155,7 @@ const SHADER_STAGES: vk::PipelineStageFlags = vk::PipelineStageFlags::from_raw(
         | vk::PipelineStageFlags::COMPUTE_SHADER.as_raw(),
 );
 
-/// A resource and how a pass touches it.
+/// A resource and its access by a pass.
 #[derive(Clone, Copy)]
 pub struct Use {
     resource: Resource,
@@ -170,53 +169,53 @@ enum Resource {
 }
 
 impl Buffer {
-    /// That a pass touches the buffer with `access`.
+    /// An access to the buffer.
     pub fn with(&self, access: Access) -> Use {
         Use { resource: Resource::Buffer(self.raw), access }
     }
 }
 
 impl Image {
-    /// That a pass touches the image with `access`.
+    /// An access to the image.
     pub fn with(&self, access: Access) -> Use {
         Use { resource: Resource::Image(self.raw, self.aspect()), access }
     }
 }
 
-/// What frames so far have done to the resources of a device. It outlasts command buffers, some of which a host may never submit: so it only ever
-/// grows, until the resource goes.
+/// Accesses to the resources of a device by all earlier frames. It outlives command buffers, which a host may never submit: entries only
+/// grow until the resource is destroyed.
 #[derive(Default)]
 pub(super) struct History(Mutex<HashMap<Resource, Past>>);
 
-/// What frames so far have done to a resource.
+/// Accesses to a resource by all earlier frames.
 #[derive(Clone, Copy, Default)]
 struct Past {
-    /// What a read of a later frame waits for.
+    /// Source of a barrier before a read in a later frame.
     writes: (vk::PipelineStageFlags, vk::AccessFlags),
-    /// What a write waits for beside that.
+    /// Further stages for which a write must wait.
     stages: vk::PipelineStageFlags,
-    /// What writes it has had at all.
+    /// Accesses of all writes.
     mask: vk::AccessFlags,
 }
 
 impl History {
-    /// That what was written is visible to every shader from now on, as after an upload.
+    /// Marks writes as visible to every shader, as after an upload.
     pub(super) fn settle(&self, uses: &[Use]) {
         let mut all = self.lock();
         for used in uses {
             let past = all.entry(used.resource).or_default();
             past.writes = Default::default();
-            // Another thread may record what reads it.
+            // Another thread may record a read.
             past.stages |= SHADER_STAGES;
         }
     }
 
-    /// The resource goes.
+    /// Removes a destroyed buffer.
     pub(super) fn forget_buffer(&self, buffer: vk::Buffer) {
         self.lock().remove(&Resource::Buffer(buffer));
     }
 
-    /// As [`History::forget_buffer`].
+    /// Removes a destroyed image.
     pub(super) fn forget_image(&self, image: vk::Image) {
         self.lock().retain(|resource, _| !matches!(resource, Resource::Image(found, _) if *found == image));
     }
@@ -227,9 +226,9 @@ impl History {
 }
 
 impl Past {
-    /// Notes an access; `moves` says whether it changes an image's layout, which is a write before the access's stages.
+    /// Adds an access. `moves` tells whether it changes an image's layout, which is a write before the access's stages.
     fn note(&mut self, access: Access, moves: bool) {
-        // The CPU reads what is over.
+        // The CPU reads only after the frame.
         self.stages |= access.stages & !vk::PipelineStageFlags::HOST;
         if access.write || moves {
             self.writes.0 |= access.stages;
@@ -239,7 +238,7 @@ impl Past {
     }
 }
 
-/// What was done to each resource in this frame.
+/// Accesses to each resource in this frame.
 #[derive(Default)]
 pub(super) struct Tracker(HashMap<Resource, State>);
 
@@ -252,7 +251,7 @@ pub(super) struct Barrier {
 }
 
 impl Tracker {
-    /// Notes what a pass does, and gives the barrier that it needs before; `None` if earlier ones cover it.
+    /// Adds the accesses of a pass. Returns the barrier that it needs; `None` if earlier barriers suffice.
     pub(super) fn barrier(&mut self, history: &History, uses: &[Use]) -> Option<Barrier> {
         let mut history = history.lock();
         let none = vk::PipelineStageFlags::empty();
@@ -282,7 +281,7 @@ impl Tracker {
         (barrier.target != none).then_some(barrier)
     }
 
-    /// Notes how an earlier frame left resources: images keep their contents then.
+    /// Sets the layouts in which an earlier frame left these resources, so that images keep their contents.
     pub(super) fn left(&mut self, history: &History, uses: &[Use]) {
         let mut history = history.lock();
         for used in uses {
@@ -293,25 +292,25 @@ impl Tracker {
 
     fn state_of(&mut self, resource: Resource, past: &Past) -> &mut State {
         self.0.entry(resource).or_insert_with(|| {
-            // An earlier frame may still be at it.
+            // An earlier frame may still be executing.
             let reads = (past.stages, vk::AccessFlags::empty());
             State { write: past.writes, written: past.mask, reads, layout: vk::ImageLayout::UNDEFINED }
         })
     }
 }
 
-/// What was last done to a resource in this frame.
+/// The last accesses to a resource in this frame.
 struct State {
-    /// The last write, or at first all those of earlier frames that are not yet visible.
+    /// The last write; initially all writes of earlier frames that are not yet visible.
     write: (vk::PipelineStageFlags, vk::AccessFlags),
-    /// Writes that a write must wait for.
+    /// Accesses of the writes that a later write must wait for.
     written: vk::AccessFlags,
-    /// All reads since; of earlier frames where, not how.
+    /// Stages and accesses of all reads since; for earlier frames the stages only.
     reads: (vk::PipelineStageFlags, vk::AccessFlags),
     layout: vk::ImageLayout,
 }
 
-/// What has to be waited for before an access.
+/// Source of a barrier before an access.
 struct Change {
     stages: vk::PipelineStageFlags,
     mask: vk::AccessFlags,
@@ -320,7 +319,7 @@ struct Change {
 }
 
 impl State {
-    /// Notes `access` and says what it must wait for; `None` if that is nothing, or an earlier barrier already covers it.
+    /// Adds `access`. Returns the source of its barrier; `None` if none is needed or an earlier barrier covers it.
     fn advance(&mut self, access: Access) -> Option<Change> {
         let same_layout = self.layout == access.layout;
         let seen = self.reads.0.contains(access.stages) && self.reads.1.contains(access.mask);
@@ -328,13 +327,13 @@ impl State {
             return None;
         }
         let alters = access.write || !same_layout;
-        // A write drops an image's contents: all targets are cleared or wholly covered.
+        // A write discards an image's contents: targets are cleared or fully overwritten.
         let old = if access.write { vk::ImageLayout::UNDEFINED } else { self.layout };
         let reads = if alters { self.reads.0 } else { vk::PipelineStageFlags::empty() };
         let mask = if alters { self.write.1 | self.written } else { self.write.1 };
         let change = Change { stages: self.write.0 | reads, mask, from: self.layout, old };
         if alters {
-            // A transition is a write of its own, which later accesses must wait for through this one's stages.
+            // A layout transition is a write. Later accesses wait for it through the stages of this access.
             self.write = (access.stages, access.mask);
             self.written = vk::AccessFlags::empty();
             self.reads = (vk::PipelineStageFlags::empty(), vk::AccessFlags::empty());
@@ -428,7 +427,7 @@ mod tests {
             sources.collect::<Vec<_>>()
         };
         frame(&[Access::COMPUTE_WRITE, Access::FRAGMENT_LOAD]);
-        // This one may never be submitted: the fragments of the first one are waited for all the same.
+        // This frame may never be submitted, so later frames still wait for the fragments of the first.
         frame(&[Access::COMPUTE_WRITE]);
         let third = frame(&[Access::COMPUTE_WRITE]);
         let (source, mask) = third[0].unwrap();

@@ -11,46 +11,46 @@ pub struct Buffer {
     pub(super) raw: vk::Buffer,
     size: u64,
     allocation: Option<Allocation>,
-    /// Whether a host owns it.
+    /// Whether the host owns it.
     lent: bool,
     device: Arc<Device>,
 }
 
 impl Buffer {
-    /// A buffer of `size` bytes in the GPU's own memory, for storage and copies.
+    /// A device-local buffer of `size` bytes for storage and copies.
     pub fn storage(device: &Arc<Device>, name: &str, size: u64) -> Result<Self> {
         use vk::BufferUsageFlags as Usage;
         let usage = Usage::STORAGE_BUFFER | Usage::TRANSFER_DST | Usage::TRANSFER_SRC;
         Self::new(device, name, size, usage, Location::Device)
     }
 
-    /// A buffer that shaders read as uniforms, and [`super::Recorder::update`] writes.
+    /// A uniform buffer, written by [`super::Recorder::update`].
     pub fn uniform(device: &Arc<Device>, name: &str, size: u64) -> Result<Self> {
         let usage = vk::BufferUsageFlags::UNIFORM_BUFFER | vk::BufferUsageFlags::TRANSFER_DST;
         Self::new(device, name, size, usage, Location::Device)
     }
 
-    /// A buffer that the CPU writes and the GPU copies from.
+    /// A staging buffer: written by the CPU, copied from by the GPU.
     pub fn staging(device: &Arc<Device>, name: &str, size: u64) -> Result<Self> {
         Self::new(device, name, size, vk::BufferUsageFlags::TRANSFER_SRC, Location::Upload)
     }
 
-    /// A buffer that the CPU writes and shaders read where it is: for a few values.
+    /// A small buffer that the CPU writes and shaders read directly.
     pub fn parameters(device: &Arc<Device>, name: &str, size: u64) -> Result<Self> {
         Self::new(device, name, size, vk::BufferUsageFlags::STORAGE_BUFFER, Location::Upload)
     }
 
-    /// A buffer that the GPU writes, by copies or as storage, and the CPU reads, or the GPU copies from.
+    /// A buffer that the GPU writes, by copies or as storage, and that the CPU reads or the GPU copies from.
     pub fn readback(device: &Arc<Device>, name: &str, size: u64) -> Result<Self> {
         use vk::BufferUsageFlags as Usage;
         let usage = Usage::STORAGE_BUFFER | Usage::TRANSFER_DST | Usage::TRANSFER_SRC;
         Self::new(device, name, size, usage, Location::Readback)
     }
 
-    /// A buffer of a host, of `size` bytes, which is left alone when this goes.
+    /// A buffer of the host, of `size` bytes. It is not destroyed on drop.
     ///
     /// # Safety
-    /// It is of the device that `device` borrows, has memory, as many bytes and the uses that it is put to, and outlives this.
+    /// The buffer is of `device`, is bound to memory, has the given size and the usages that it is used with, and outlives this object.
     pub unsafe fn of_host(device: &Arc<Device>, raw: vk::Buffer, size: u64) -> Self {
         Self { raw, size, allocation: None, lent: true, device: device.clone() }
     }
@@ -83,17 +83,17 @@ impl Buffer {
         Arc::ptr_eq(&self.device, device)
     }
 
-    /// The handle, for what is not of this crate.
+    /// The Vulkan handle.
     pub fn handle(&self) -> vk::Buffer {
         self.raw
     }
 
-    /// Whether a host owns it.
+    /// Whether the host owns it.
     pub fn is_lent(&self) -> bool {
         self.lent
     }
 
-    /// What it is on.
+    /// The device of the buffer.
     pub fn device(&self) -> &Arc<Device> {
         &self.device
     }
@@ -103,13 +103,13 @@ impl Buffer {
         self.size
     }
 
-    /// The contents, for buffers that the CPU sees; nothing for others. The GPU must not be using it.
+    /// The contents of a mapped buffer; empty for others. The GPU must not be using it.
     pub fn bytes(&self) -> &[u8] {
         let mapped = self.allocation.as_ref().map_or(&[][..], Allocation::mapped);
         &mapped[..mapped.len().min(self.size as usize)]
     }
 
-    /// As [`Buffer::bytes`], to write.
+    /// Like [`Buffer::bytes`], for writing.
     pub fn bytes_mut(&mut self) -> &mut [u8] {
         let size = self.size as usize;
         let mapped = self.allocation.as_mut().map_or(&mut [][..], Allocation::mapped_mut);

@@ -1,4 +1,4 @@
-//! A picture of what a window shows, panels and all, for the CPU.
+//! Capture of a window's content, overlay included, to the CPU.
 
 use super::presenter::Target;
 use super::slot::Slot;
@@ -7,7 +7,7 @@ use crate::error::Result;
 use ash::vk;
 use std::sync::Arc;
 
-/// An image in the place of the window's, and where it is copied to.
+/// An offscreen image in place of the swapchain image, and the buffer that it is copied to.
 pub(super) struct Capture {
     framebuffer: vk::Framebuffer,
     image: Image,
@@ -16,7 +16,7 @@ pub(super) struct Capture {
 }
 
 impl Capture {
-    /// Of the window's format, of `size` px.
+    /// Creates an image of the window's format and `size` px.
     pub(super) fn new(
         device: &Arc<Device>,
         overlay: &Overlay,
@@ -30,12 +30,12 @@ impl Capture {
         Ok(Self { framebuffer, image, pixels, device: device.clone() })
     }
 
-    /// What the frame records into.
+    /// The target of the frame.
     pub(super) fn target(&self) -> Target {
         Target { image: self.image.raw, framebuffer: self.framebuffer, size: self.image.size() }
     }
 
-    /// Records the copy, when the frame is drawn.
+    /// Records the copy to the buffer after the frame.
     pub(super) fn end(&self, slot: &Slot) {
         use vk::ImageLayout as Layout;
         slot.transition(self.image.raw, [Layout::TRANSFER_DST_OPTIMAL, Layout::TRANSFER_SRC_OPTIMAL]);
@@ -60,7 +60,7 @@ impl Capture {
         }
     }
 
-    /// What was copied, which the GPU is done with.
+    /// The copied pixels. The GPU must have finished the frame.
     pub(super) fn pixels(&self) -> Vec<[u8; 4]> {
         let swapped = self.image.format == vk::Format::B8G8R8A8_SRGB;
         let pixels =
@@ -71,7 +71,7 @@ impl Capture {
 
 impl Drop for Capture {
     fn drop(&mut self) {
-        // SAFETY: the GPU is done with the frame, or lost.
+        // SAFETY: the GPU has finished the frame, or is lost.
         unsafe { self.device.raw.destroy_framebuffer(self.framebuffer, None) };
     }
 }

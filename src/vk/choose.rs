@@ -1,15 +1,15 @@
-//! Which of the machine's devices is used.
+//! Device selection.
 
 use super::instance::Instance;
 use super::requirements::{API_VERSION, QUEUE};
 use crate::error::{Error, Result};
 use ash::vk;
 
-/// A device of this machine as the user sees it.
+/// A device of this machine, as shown to the user.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct DeviceDescription {
-    /// The device's own name.
+    /// The device's name.
     pub name: String,
     /// `discrete GPU`, `CPU`, ….
     pub kind: &'static str,
@@ -17,14 +17,14 @@ pub struct DeviceDescription {
     pub driver: String,
     /// Vulkan version, `major.minor.patch`.
     pub api_version: String,
-    /// Why it cannot be used, if it cannot.
+    /// Why the device cannot be used, if so.
     pub refused: Option<&'static str>,
-    /// Higher is preferred.
+    /// Higher scores are preferred.
     pub score: u32,
 }
 
 impl DeviceDescription {
-    /// The kind of devices that are the CPU itself.
+    /// The kind of devices that run on the CPU.
     pub const CPU: &'static str = "CPU";
 }
 
@@ -34,13 +34,13 @@ pub(super) struct Candidate {
     pub(super) description: DeviceDescription,
 }
 
-/// Every device of this machine, in the order of their numbers. Errors if there is no Vulkan.
+/// Every device of this machine, in index order. Returns an error without Vulkan.
 pub fn describe_devices() -> Result<Vec<DeviceDescription>> {
     let instance = Instance::new(false, &[])?;
     Ok(candidates(&instance)?.into_iter().map(|candidate| candidate.description).collect())
 }
 
-/// The device that `wanted` names, by index or by a part of its name, or the usable one with the highest score.
+/// Selects the device that `wanted` names by index or part of its name, otherwise the usable device with the highest score.
 pub(super) fn choose(instance: &Instance, wanted: Option<&str>) -> Result<Candidate> {
     let all = candidates(instance)?;
     let listing = || {
@@ -57,12 +57,12 @@ pub(super) fn choose(instance: &Instance, wanted: Option<&str>) -> Result<Candid
     let listed = listing();
     let index = preferred(all.iter().map(|candidate| &candidate.description), wanted);
     index.and_then(|index| all.into_iter().nth(index)).ok_or_else(|| match wanted {
-        Some(text) => none(format!("none that can be used fits `{text}`; there are: {listed}")),
-        None => none(format!("none can be used; there are: {listed}")),
+        Some(text) => none(format!("no usable device matches `{text}`; devices: {listed}")),
+        None => none(format!("no device can be used; devices: {listed}")),
     })
 }
 
-/// Index of the device that is opened when `wanted` is asked for: of the usable ones that fit, the first with the highest score.
+/// Index of the device that is opened for `wanted`: the first with the highest score among the usable matches.
 pub fn preferred<'a>(
     devices: impl IntoIterator<Item = &'a DeviceDescription>,
     wanted: Option<&str>,
@@ -77,7 +77,7 @@ pub fn preferred<'a>(
         .into_iter()
         .enumerate()
         .filter(|(index, device)| device.refused.is_none() && fits(*index, device))
-        // The first of equals: `max_by_key` would take the last.
+        // The first of equal scores: `max_by_key` would take the last.
         .min_by_key(|(_, device)| std::cmp::Reverse(device.score))
         .map(|(index, _)| index)
 }
@@ -99,10 +99,10 @@ fn candidate(instance: &Instance, physical: vk::PhysicalDevice) -> Candidate {
 }
 
 impl DeviceDescription {
-    /// What `physical` is, if a queue family of it `serves`.
+    /// Describes `physical`; `serves` tells whether one of its queue families can be used.
     ///
     /// # Safety
-    /// `physical` is a device of `instance`, which is of version [`API_VERSION`] at least.
+    /// `physical` is a device of `instance`, whose version is at least [`API_VERSION`].
     pub(super) unsafe fn of(instance: &ash::Instance, physical: vk::PhysicalDevice, serves: bool) -> Self {
         // SAFETY: by the caller.
         let properties = unsafe { instance.get_physical_device_properties(physical) };

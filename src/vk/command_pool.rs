@@ -1,18 +1,18 @@
-//! A pool of command buffers, for who records and submits by Vulkan's own handles.
+//! A command pool for code that records and submits with raw Vulkan handles.
 
 use super::Device;
 use crate::error::{Error, Result};
 use ash::vk;
 use std::sync::Arc;
 
-/// A pool for buffers that go to the device's queue.
+/// A command pool of the device's queue family.
 pub struct CommandPool {
     raw: vk::CommandPool,
     device: Arc<Device>,
 }
 
 impl CommandPool {
-    /// An empty pool. Refused on a device that a host lends.
+    /// Creates an empty pool. Returns an error on an external device.
     pub fn new(device: &Arc<Device>) -> Result<Self> {
         let (_, family) = device.queue()?;
         let info = vk::CommandPoolCreateInfo::default().queue_family_index(family);
@@ -21,7 +21,7 @@ impl CommandPool {
         Ok(Self { raw: raw.map_err(Error::vulkan("vkCreateCommandPool"))?, device: device.clone() })
     }
 
-    /// Vulkan's own.
+    /// The Vulkan handle.
     pub fn handle(&self) -> vk::CommandPool {
         self.raw
     }

@@ -1,4 +1,4 @@
-//! A command buffer with what is needed to submit it and to wait for it.
+//! A command buffer with its pool and fence.
 
 use super::timestamps::Timestamps;
 use super::{Device, PassTime, Recorder};
@@ -6,20 +6,20 @@ use crate::error::{Error, Result};
 use ash::vk;
 use std::sync::Arc;
 
-/// One slot of work for the GPU: recorded, submitted and waited for again and again.
+/// A command buffer that is recorded, submitted and waited for repeatedly.
 pub struct Commands {
     pool: vk::CommandPool,
     cmd: vk::CommandBuffer,
     fence: vk::Fence,
     timestamps: Option<Timestamps>,
     timed: bool,
-    /// Whether something was begun and not submitted.
+    /// Whether recording began without a submission.
     recording: bool,
     device: Arc<Device>,
 }
 
 impl Commands {
-    /// A slot; with `profile`, passes are timed where the device can. Refused on a device that a host lends.
+    /// Creates the command buffer; with `profile`, passes are timed if the device has timestamps. Returns an error on an external device.
     pub fn new(device: &Arc<Device>, profile: bool) -> Result<Self> {
         let (_, family) = device.queue()?;
         let timestamps = if profile { Timestamps::new(device)? } else { None };
@@ -51,12 +51,12 @@ impl Commands {
         Ok(commands)
     }
 
-    /// Whether passes of later runs are timed, of a slot that can time them: brackets about every pass cost time themselves.
+    /// Enables or disables the timing of later runs, if created with `profile`: the barriers around each timed pass cost time themselves.
     pub fn time(&mut self, on: bool) {
         self.timed = on;
     }
 
-    /// Begins to record, in place of what was recorded before.
+    /// Begins recording; discards what was recorded before.
     pub fn begin(&mut self) -> Result<Recorder<'_>> {
         let raw = &self.device.raw;
         let begin = vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
@@ -70,7 +70,7 @@ impl Commands {
         Ok(Recorder::new(&self.device, self.cmd, self.timestamps.as_mut().filter(|_| self.timed)))
     }
 
-    /// Submits what was recorded since [`Commands::begin`], once, and waits until the GPU is done.
+    /// Submits what was recorded since [`Commands::begin`] and waits until the GPU has finished.
     pub fn submit(&mut self) -> Result<()> {
         if !std::mem::take(&mut self.recording) {
             return Ok(());
@@ -91,13 +91,13 @@ impl Commands {
         }
     }
 
-    /// Records with `body`, submits, and waits until the GPU is done.
+    /// Records with `body`, submits, and waits until the GPU has finished.
     pub fn run(&mut self, body: impl FnOnce(&mut Recorder<'_>)) -> Result<()> {
         body(&mut self.begin()?);
         self.submit()
     }
 
-    /// Times of the passes of the last run; empty if it was not profiled.
+    /// Times of the passes of the last run; empty without profiling.
     pub fn pass_times(&self) -> Result<Vec<PassTime>> {
         self.timestamps.as_ref().filter(|_| self.timed).map_or(Ok(Vec::new()), Timestamps::read)
     }

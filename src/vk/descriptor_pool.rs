@@ -1,31 +1,31 @@
-//! Pools of descriptor sets, shared by everything on a device: a scene that stands in thousands of places has thousands of sets.
+//! Descriptor pools of a device, shared by all scenes and renderers: a scene with thousands of instances has thousands of sets.
 
 use crate::error::{Error, Result};
 use ash::vk;
 use std::sync::{Mutex, MutexGuard};
 
-/// Kinds of descriptors, with how many a set of a pool has of each, on average.
+/// Descriptor types, with the average number of each per set of a pool.
 const KINDS: [(vk::DescriptorType, u32); 4] = [
     (vk::DescriptorType::UNIFORM_BUFFER, 1),
     (vk::DescriptorType::STORAGE_BUFFER, 11),
     (vk::DescriptorType::SAMPLED_IMAGE, 3),
     (vk::DescriptorType::INPUT_ATTACHMENT, 4),
 ];
-/// Sets of the first pool; each further one has twice as many as the one before, up to the most.
+/// Sets of the first pool and of the largest: each pool has twice as many as the one before.
 const SETS: [u32; 2] = [32, 1024];
 
-/// All pools of a device.
+/// All descriptor pools of a device.
 #[derive(Default)]
 pub(super) struct DescriptorPools(Mutex<Vec<Pool>>);
 
-/// A pool, and what is left of it.
+/// A pool and its free capacity.
 struct Pool {
     raw: vk::DescriptorPool,
     sets: u32,
     left: Room,
 }
 
-/// A number of sets, and of descriptors of each kind.
+/// A number of sets, and of descriptors by type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Room {
     sets: u32,
@@ -33,18 +33,18 @@ struct Room {
 }
 
 impl Room {
-    /// All of a pool of so many sets.
+    /// The capacity of a pool of `sets` sets.
     fn of_pool(sets: u32) -> Self {
         Self { sets, descriptors: KINDS.map(|(_, each)| sets * each) }
     }
 
-    /// What a set with these bindings takes.
+    /// The descriptors of one set with these bindings.
     fn of_set(bindings: &[vk::DescriptorType]) -> Self {
         let of_kind = |(kind, _)| bindings.iter().filter(|binding| **binding == kind).count() as u32;
         Self { sets: 1, descriptors: KINDS.map(of_kind) }
     }
 
-    /// What is left without another; `None` if it is not in this.
+    /// The difference; `None` if `other` does not fit.
     fn without(self, other: Self) -> Option<Self> {
         let mut left = Self { sets: self.sets.checked_sub(other.sets)?, ..self };
         for (left, taken) in left.descriptors.iter_mut().zip(other.descriptors) {
@@ -61,7 +61,7 @@ impl Room {
 }
 
 impl DescriptorPools {
-    /// A new set of `layout`, whose bindings are of these kinds, and the pool that it is of.
+    /// Allocates a set of `layout`, whose bindings have these types. Returns the set and its pool.
     pub(super) fn allocate(
         &self,
         device: &ash::Device,
@@ -71,14 +71,14 @@ impl DescriptorPools {
         let (mut pools, wanted) = (self.lock(), Room::of_set(bindings));
         for pool in pools.iter_mut() {
             let Some(left) = pool.left.without(wanted) else { continue };
-            // Sets that came and went may have left it in pieces.
+            // A pool may be fragmented.
             if let Some(set) = allocate(device, pool.raw, layout)? {
                 pool.left = left;
                 return Ok((set, pool.raw));
             }
         }
         let [least, most] = SETS;
-        // The largest set of all has to be in it.
+        // A pool must hold the largest possible set.
         let descriptors = bindings.len() as u32;
         let sets = pools.last().map_or(least, |last| (2 * last.sets).min(most)).max(descriptors);
         let mut pool = Pool::new(device, sets)?;
@@ -100,10 +100,11 @@ impl DescriptorPools {
         }
     }
 
-    /// Takes a set back; a pool that has no other goes, unless it is the only one.
+    /// Frees a set. A pool without sets is destroyed, unless it is the only one.
     ///
     /// # Safety
-    /// The set was given by [`DescriptorPools::allocate`] of this `device` with these `bindings` and this `pool`, and the GPU is done with it.
+    /// [`DescriptorPools::allocate`] returned the set and `pool` for this `device` and these `bindings`, and the GPU has finished using the
+    /// set.
     pub(super) unsafe fn free(
         &self,
         device: &ash::Device,
@@ -122,7 +123,7 @@ impl DescriptorPools {
         }
     }
 
-    /// How many there are.
+    /// Number of pools.
     pub(super) fn count(&self) -> usize {
         self.lock().len()
     }
@@ -130,7 +131,7 @@ impl DescriptorPools {
     /// Destroys all pools.
     ///
     /// # Safety
-    /// No set of theirs is used any more.
+    /// No set of these pools is in use.
     pub(super) unsafe fn destroy(&self, device: &ash::Device) {
         for pool in self.lock().drain(..) {
             // SAFETY: by the caller.
@@ -159,7 +160,7 @@ impl Pool {
     }
 }
 
-/// A set of a pool; `None` if that has no room in one piece.
+/// Allocates a set from a pool; `None` if the pool is full or fragmented.
 fn allocate(
     device: &ash::Device,
     pool: vk::DescriptorPool,

@@ -1,4 +1,4 @@
-//! Descriptor sets: what shaders see of buffers and images.
+//! Descriptor sets.
 
 use super::set_layout::SetLayout;
 use super::shaders::Resource;
@@ -7,23 +7,23 @@ use crate::error::Result;
 use ash::vk;
 use std::sync::Arc;
 
-/// What stands at one binding.
+/// The resource at a binding.
 #[derive(Clone, Copy)]
 pub enum Binding<'a> {
-    /// A range of a uniform buffer: offset and length, bytes.
+    /// Range of a uniform buffer: offset and size, bytes.
     Uniform(&'a Buffer, u64, u64),
-    /// A range of a storage buffer: offset and length, bytes.
+    /// Range of a storage buffer: offset and size, bytes.
     Storage(&'a Buffer, u64, u64),
-    /// An image that the shader fetches from.
+    /// Sampled image.
     Sampled(&'a Image),
-    /// An attachment that an earlier subpass wrote, at the pixel that is drawn.
+    /// Input attachment.
     Input(&'a Image),
-    /// The same of a host's depth.
+    /// The host's depth as input attachment.
     HostDepth(HostDepth),
 }
 
 impl<'a> Binding<'a> {
-    /// All of a storage buffer.
+    /// A whole storage buffer.
     pub fn whole(buffer: &'a Buffer) -> Self {
         Self::Storage(buffer, 0, buffer.size())
     }
@@ -35,13 +35,13 @@ pub struct HostDepth(vk::ImageView);
 
 impl HostDepth {
     /// # Safety
-    /// `view` is of the depth aspect alone of an attachment of the host, and outlives the sets that it is written to.
+    /// `view` is of the depth aspect only of the host's attachment, and outlives the descriptor sets that it is written to.
     pub unsafe fn new(view: vk::ImageView) -> Self {
         Self(view)
     }
 }
 
-/// A descriptor set, written once.
+/// An immutable descriptor set.
 pub struct DescriptorSet {
     pub(super) raw: vk::DescriptorSet,
     pool: vk::DescriptorPool,
@@ -50,7 +50,7 @@ pub struct DescriptorSet {
 }
 
 impl DescriptorSet {
-    /// A set of these, which are all of one set. What they name must outlive the set's last use.
+    /// Creates a set of these bindings, all of one set. The bound resources must outlive the set's last use.
     pub fn new(device: &Arc<Device>, bindings: &[(&Resource, Binding<'_>)]) -> Result<Self> {
         let layout = SetLayout::of(device, bindings.iter().map(|(resource, _)| *resource))?;
         let kinds: Vec<_> = layout.bindings.iter().map(|(_, kind, _)| *kind).collect();
@@ -114,7 +114,7 @@ fn seen(image_view: vk::ImageView, image_layout: vk::ImageLayout) -> [vk::Descri
     [vk::DescriptorImageInfo { sampler: vk::Sampler::null(), image_view, image_layout }]
 }
 
-/// The layout in which an image of `format` is an input attachment.
+/// Layout of an input attachment of `format`.
 pub fn input_layout(format: vk::Format) -> vk::ImageLayout {
     if is_depth(format) {
         vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL

@@ -1,4 +1,4 @@
-//! The logical device: one graphics queue, the memory allocator, the pipeline cache, and counters of what was made.
+//! The logical device: one graphics queue, the memory allocator, the pipeline cache, and usage counters.
 
 use super::access::History;
 use super::choose::{DeviceDescription, choose};
@@ -20,51 +20,51 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 
-/// How a device is opened.
+/// Options of [`Device::open`].
 #[derive(Clone, Debug, Default)]
 pub struct DeviceOptions {
-    /// An index or a part of a name; `None` takes the one with the highest score.
+    /// Index or part of the name of the device; `None` selects the device with the highest score.
     pub select: Option<String>,
-    /// Run under the validation layers and collect their messages.
+    /// Enables the validation layers and collects their messages.
     pub validate: bool,
-    /// What to hide of the device.
+    /// Capabilities to hide.
     pub limits: DeviceLimits,
-    /// Folder in which compiled pipelines are kept between runs; `None` keeps none.
+    /// Folder of the pipeline cache on disk; `None` disables it.
     pub pipeline_cache: Option<PathBuf>,
-    /// Sizes in which device memory is allocated.
+    /// Sizes of memory objects.
     pub memory_blocks: MemoryBlocks,
 }
 
-/// An open device. Shared by everything that is made on it.
+/// An open device. Everything that is created on it shares it.
 pub struct Device {
     pub(super) raw: ash::Device,
     pub(super) memory: ManuallyDrop<memory::Source>,
     pub(super) pipeline_cache: ManuallyDrop<PipelineCache>,
-    /// The pipelines that are alive.
+    /// Live pipelines.
     pub(super) pipelines: PipelinePool,
     pub(super) labels: Option<debug_utils::Device>,
     pub(super) history: History,
     pub(super) descriptor_pools: DescriptorPools,
-    /// The layouts of descriptor sets that are alive.
+    /// Live descriptor set layouts.
     pub(super) set_layouts: SetLayouts,
     pub(super) made: Made,
     capabilities: Capabilities,
     description: DeviceDescription,
-    /// Asks `physical` what it can do.
+    /// For queries of `physical`.
     instance: ash::Instance,
     physical: vk::PhysicalDevice,
     owner: Owner,
 }
 
-/// Whose the device is.
+/// Owner of the device.
 enum Owner {
-    /// Opened by the engine, which submits to its queue, locked while it does.
+    /// The engine opened the device, and locks its queue to submit.
     Engine(Box<Opened>),
-    /// Lent by a host, which submits what is recorded, waits for it, and destroys the device last.
+    /// An external device: the host submits, waits, and destroys the device last.
     Host,
 }
 
-/// What the engine opened beside the device.
+/// Further objects of a device that the engine opened.
 struct Opened {
     queue: Mutex<vk::Queue>,
     family: u32,
@@ -73,31 +73,31 @@ struct Opened {
 
 /// A device that a host lends: its own, to go on using while the engine does.
 pub struct Lent<'a> {
-    /// The instance, of Vulkan 1.1 at least.
+    /// The instance, of at least Vulkan 1.1.
     pub instance: &'a ash::Instance,
-    /// The device that `device` is of.
+    /// The physical device of `device`.
     pub physical: vk::PhysicalDevice,
     /// The device.
     pub device: &'a ash::Device,
-    /// The family of the queue to which the host submits what is recorded; it does graphics and compute.
+    /// Family of the queue to which the host submits: graphics and compute.
     pub queue_family: u32,
-    /// What of [`Abilities::of`] the host has enabled.
+    /// The [`Abilities::of`] the device that the host has enabled.
     pub enabled: Abilities,
-    /// Whether the host has enabled the feature dynamicRendering, for [`Pass::Rendering`](crate::embed::Pass::Rendering).
+    /// Whether the host has enabled dynamicRendering, for [`Pass::Rendering`](crate::embed::Pass::Rendering).
     pub dynamic_rendering: bool,
-    /// Whether the instance has VK_EXT_debug_utils enabled: passes then have labels.
+    /// Whether the instance has VK_EXT_debug_utils enabled, for debug labels.
     pub labels: bool,
-    /// What to hide of the device.
+    /// Capabilities to hide.
     pub limits: DeviceLimits,
-    /// Where memory comes from; `None` takes the engine's own allocator.
+    /// Memory of the host; `None` uses the engine's allocator.
     pub memory: Option<Box<dyn MemorySource>>,
-    /// As [`DeviceOptions::memory_blocks`], of the engine's own allocator.
+    /// Like [`DeviceOptions::memory_blocks`], for the engine's allocator.
     pub memory_blocks: MemoryBlocks,
-    /// As [`DeviceOptions::pipeline_cache`].
+    /// Like [`DeviceOptions::pipeline_cache`].
     pub pipeline_cache: Option<PathBuf>,
 }
 
-/// Counts of what was ever made; [`Device::usage`] reads them.
+/// Counters for [`Device::usage`].
 #[derive(Default)]
 pub(super) struct Made {
     pub(super) allocations: AtomicU64,
@@ -109,27 +109,29 @@ pub(super) struct Made {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Usage {
-    /// Buffers and images ever allocated.
+    /// Number of buffers and images ever allocated.
     pub allocations: u64,
-    /// Pipelines ever made.
+    /// Number of pipelines ever created.
     pub pipelines: u64,
-    /// Device memory bound now, bytes.
+    /// Device memory in use, bytes.
     pub bytes: u64,
-    /// Pools of descriptor sets that are there now.
+    /// Current number of descriptor pools.
     pub descriptor_pools: usize,
 }
 
 impl Device {
-    /// Opens the device that `options` ask for.
+    /// Opens the device that `options` select.
     ///
-    /// [`Error::NoDevice`] if there is none, or no Vulkan, or no validation layer where it is wanted.
+    /// # Errors
+    /// [`Error::NoDevice`] if there is no such device, no Vulkan, or no validation layer although `validate` is set.
     pub fn open(options: &DeviceOptions) -> Result<Arc<Self>> {
         Self::open_on(Arc::new(Instance::new(options.validate, &[])?), options, &[])
     }
 
-    /// Opens the device that `options` ask for to present to `window`, and the window's surface.
+    /// Opens the device that `options` select for presentation to `window`, and creates the window's surface.
     ///
-    /// [`Error::NoDevice`] as of [`Device::open`], and if the device does not present to the window.
+    /// # Errors
+    /// [`Error::NoDevice`] as [`Device::open`], and if the device cannot present to the window.
     #[cfg(feature = "window")]
     pub fn open_for(options: &DeviceOptions, window: Arc<dyn Window>) -> Result<(Arc<Self>, Surface)> {
         let extensions = surface::instance_extensions(&*window)?;
@@ -148,7 +150,7 @@ impl Device {
     ) -> Result<Arc<Self>> {
         let chosen = choose(&instance, options.select.as_deref())?;
         let (physical, family, description) = (chosen.physical, chosen.family, chosen.description);
-        // SAFETY: the physical device and the family are the instance's, whose version is 1.1.
+        // SAFETY: the physical device and the family are of the instance, whose version is 1.1.
         let (enabled, capabilities) = unsafe {
             let enabled = options.limits.leave(Abilities::of(&instance.raw, physical));
             (enabled, Capabilities::query(&instance.raw, physical, family, enabled, &options.limits))
@@ -194,10 +196,11 @@ impl Device {
         }))
     }
 
-    /// The device of a host that renders surfels among its own geometry. The engine records into the host's command buffers; it never
-    /// submits, waits, or destroys what is lent.
+    /// Imports an external device: that of a host, which renders surfels among its own geometry. The engine records into the host's command
+    /// buffers. It never submits, waits, or destroys the host's objects.
     ///
-    /// [`Error::NoDevice`] if the device is older than Vulkan 1.1, or the queue family does not do graphics and compute; [`Error::Usage`] if there
+    /// # Errors
+    /// [`Error::NoDevice`] if the device is older than Vulkan 1.1 or the queue family lacks graphics or compute; [`Error::Usage`] if there
     /// is no such family.
     ///
     /// # Safety
@@ -248,21 +251,21 @@ impl Device {
         }))
     }
 
-    /// Names an object of the device for debuggers and the validation layers, where they listen.
+    /// Names an object of the device for debuggers and the validation layers.
     pub(super) fn name(&self, object: impl vk::Handle, name: &str) {
         let Some((labels, name)) = self.labels.as_ref().zip(CString::new(name).ok()) else { return };
         let info = vk::DebugUtilsObjectNameInfoEXT::default().object_handle(object).object_name(&name);
-        // SAFETY: the object is the device's, and alive. A name that cannot be given is no loss.
+        // SAFETY: the object is of the device and alive. A failure to name it is harmless.
         let _ = unsafe { labels.set_debug_utils_object_name(&info) };
     }
 
-    /// Begins a debug label, where there are any.
+    /// Begins a debug label, if labels are enabled.
     ///
     /// # Safety
-    /// `cmd` is of the device and is being recorded; [`Device::end_label`] ends it.
+    /// `cmd` is of the device and recording; [`Device::end_label`] ends the label.
     pub(super) unsafe fn begin_label(&self, cmd: vk::CommandBuffer, label: &'static str) {
         let Some(labels) = &self.labels else { return };
-        // In every pass of every frame: on the stack.
+        // Every pass of every frame does this: no allocation.
         let mut name = [0; 32];
         let length = label.len().min(name.len() - 1);
         name[..length].copy_from_slice(&label.as_bytes()[..length]);
@@ -281,7 +284,7 @@ impl Device {
         }
     }
 
-    /// The queue that the engine submits to, and its family. A usage error on a device that a host lends: there the host submits.
+    /// The queue that the engine submits to, and its family; [`Error::Usage`] on an external device, where the host submits.
     pub(super) fn queue(&self) -> Result<(&Mutex<vk::Queue>, u32)> {
         match &self.owner {
             Owner::Engine(opened) => Ok((&opened.queue, opened.family)),
@@ -292,12 +295,12 @@ impl Device {
         }
     }
 
-    /// Vulkan's own, for who makes things on the device by other means; nobody destroys it.
+    /// The Vulkan handle. The caller must not destroy it.
     pub fn handle(&self) -> &ash::Device {
         &self.raw
     }
 
-    /// The instance that asks [`Device::physical`].
+    /// The instance of [`Device::physical`].
     pub fn instance(&self) -> &ash::Instance {
         &self.instance
     }
@@ -307,14 +310,14 @@ impl Device {
         self.physical
     }
 
-    /// The queue, locked while `body` submits to it, and its family. A usage error on a device that a host lends.
+    /// Calls `body` with the locked queue and its family; [`Error::Usage`] on an external device.
     pub fn submit<R>(&self, body: impl FnOnce(vk::Queue, u32) -> R) -> Result<R> {
         let (queue, family) = self.queue()?;
         let queue = queue.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         Ok(body(*queue, family))
     }
 
-    /// Waits until the GPU has nothing left to do: for the queue, too, while others submit to it.
+    /// Waits until the device is idle. Locks the queue meanwhile.
     pub fn wait_idle(&self) -> Result<()> {
         let (queue, _) = self.queue()?;
         let _locked = queue.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
@@ -322,14 +325,14 @@ impl Device {
         unsafe { self.raw.device_wait_idle() }.map_err(Error::vulkan("vkDeviceWaitIdle"))
     }
 
-    /// What images of `format` can be used for.
+    /// Features of `format` with optimal tiling.
     pub fn format_features(&self, format: vk::Format) -> vk::FormatFeatureFlags {
         // SAFETY: the physical device is the instance's, and both outlive this.
         let found = unsafe { self.instance.get_physical_device_format_properties(self.physical, format) };
         found.optimal_tiling_features
     }
 
-    /// How many samples a pixel an attachment of `format` can have in framebuffers; none where it cannot be one.
+    /// Supported sample counts of attachments of `format`; empty if it cannot be an attachment.
     pub(crate) fn attachment_samples(
         &self,
         format: vk::Format,
@@ -358,17 +361,17 @@ impl Device {
         found.map_or(vk::SampleCountFlags::empty(), |found| found.sample_counts & framebuffer)
     }
 
-    /// Name, kind and driver.
+    /// Name, kind and driver of the device.
     pub fn description(&self) -> &DeviceDescription {
         &self.description
     }
 
-    /// What it can do, after the mask.
+    /// Capabilities after the mask.
     pub fn capabilities(&self) -> &Capabilities {
         &self.capabilities
     }
 
-    /// What it holds and has made.
+    /// Usage counters.
     pub fn usage(&self) -> Usage {
         let read = |counter: &AtomicU64| counter.load(Ordering::Relaxed);
         Usage {
@@ -379,7 +382,7 @@ impl Device {
         }
     }
 
-    /// Messages of the validation layers so far; empty unless [`DeviceOptions::validate`] was set. A host listens itself.
+    /// Messages of the validation layers so far; empty without [`DeviceOptions::validate`] and on external devices.
     pub fn validation_messages(&self) -> Vec<String> {
         match &self.owner {
             Owner::Engine(opened) => opened.instance.messages.all(),
@@ -390,8 +393,8 @@ impl Device {
 
 impl Drop for Device {
     fn drop(&mut self) {
-        // SAFETY: everything made on the device holds an `Arc` of it, so nothing is left; the allocator and the cache go before the
-        // device that they use, and the instance, a field, after it.
+        // SAFETY: everything created on the device holds an `Arc` of it, so nothing is left. The allocator and the cache are dropped before
+        // the device, and the instance, a field, after it.
         unsafe {
             if let Owner::Engine(_) = self.owner {
                 // A lost device has nothing left to wait for.

@@ -1,4 +1,4 @@
-//! The commands of one pass.
+//! Encoder of the commands of one pass.
 
 use super::pipeline::Raw;
 use super::{
@@ -6,15 +6,15 @@ use super::{
 };
 use ash::vk;
 
-/// Records the commands of one pass, which ends where this goes.
+/// Records the commands of one pass, which ends on drop.
 pub struct Encoder<'r, 'a> {
     rec: &'r mut Recorder<'a>,
-    /// The pass's second query, in a profiled frame.
+    /// The pass's second timestamp query, in a profiled frame.
     query: Option<u32>,
     bound: Bound,
 }
 
-/// What is bound already: passes over many scenes bind what these share once.
+/// Current bindings, so that passes over many scenes bind shared state once.
 #[derive(Default)]
 struct Bound {
     pipeline: vk::Pipeline,
@@ -22,14 +22,14 @@ struct Bound {
     sets: [vk::DescriptorSet; MOST_SETS],
 }
 
-/// Most descriptor sets of a pipeline; every device has as many.
+/// Maximum number of descriptor sets of a pipeline; every device supports as many.
 const MOST_SETS: usize = 4;
 
 impl Bound {
-    /// Binds a pipeline, its descriptor sets and push constants, as far as they are not.
+    /// Binds the pipeline, descriptor sets and push constants that differ from the current ones.
     ///
     /// # Safety
-    /// `cmd` is of `device` and being recorded, and nothing else has been bound in it since this was made.
+    /// `cmd` is of `device` and recording, and only this object has bound state in it since its creation.
     unsafe fn bind(
         &mut self,
         (device, cmd): (&Device, vk::CommandBuffer),
@@ -66,7 +66,7 @@ impl Bound {
     }
 }
 
-/// Whether a buffer has so many bytes from `offset` on.
+/// Whether `size` bytes from `offset` on fit into the buffer.
 fn fits(offset: u64, size: u64, buffer: &Buffer) -> bool {
     offset.checked_add(size).is_some_and(|end| end <= buffer.size())
 }
@@ -80,8 +80,7 @@ impl<'r, 'a> Encoder<'r, 'a> {
         &self.rec.device.raw
     }
 
-    /// Runs `x` by `y` workgroups with `push` as the push constants. Of sets and push constants, the
-    /// pipeline takes the first ones, as many as it has.
+    /// Dispatches workgroups with `push` as the push constants. The pipeline takes as many of the first sets and bytes as it declares.
     pub fn dispatch(
         &mut self,
         pipeline: &ComputePipeline,
@@ -98,12 +97,12 @@ impl<'r, 'a> Encoder<'r, 'a> {
         }
     }
 
-    /// Begins to draw into all of `framebuffer`, until the draws go; cleared targets start at 0.
+    /// Begins a render pass over all of `framebuffer`, which ends when the result is dropped. Cleared targets start at 0.
     pub fn render(&mut self, framebuffer: &Framebuffer) -> Draws<'_> {
         self.render_over(framebuffer, [0.0; 4])
     }
 
-    /// The same; the first target, of colours, starts as `colour` if it is cleared.
+    /// Like [`Encoder::render`]. A cleared first target starts as `colour`.
     pub fn render_over(&mut self, framebuffer: &Framebuffer, colour: [f32; 4]) -> Draws<'_> {
         let area = vk::Rect2D { offset: vk::Offset2D::default(), extent: framebuffer.extent };
         let mut clears = vec![vk::ClearValue::default(); framebuffer.attachments];
@@ -120,18 +119,18 @@ impl<'r, 'a> Encoder<'r, 'a> {
         }
     }
 
-    /// Sets every byte of `buffer` to 0.
+    /// Fills `buffer` with 0 bits.
     pub fn zero(&mut self, buffer: &Buffer) {
         self.zero_range(buffer, 0, vk::WHOLE_SIZE);
     }
 
-    /// Sets every bit of `buffer` to 1.
+    /// Fills `buffer` with 1 bits.
     pub fn ones(&mut self, buffer: &Buffer) {
         // SAFETY: recorded outside a render pass; the buffer is alive and can be copied to.
         unsafe { self.raw().cmd_fill_buffer(self.rec.cmd, buffer.raw, 0, vk::WHOLE_SIZE, u32::MAX) };
     }
 
-    /// Sets `size` bytes of `buffer` from `offset` on to 0; both are multiples of 4.
+    /// Fills `size` bytes of `buffer` from `offset` on with 0; both are multiples of 4.
     pub fn zero_range(&mut self, buffer: &Buffer, offset: u64, size: u64) {
         assert!(size == vk::WHOLE_SIZE || fits(offset, size, buffer), "a fill past the end of a buffer");
         // SAFETY: recorded outside a render pass; the buffer is alive and can be copied to.
@@ -146,14 +145,14 @@ impl<'r, 'a> Encoder<'r, 'a> {
         unsafe { self.raw().cmd_copy_buffer(self.rec.cmd, from.raw, to.raw, &[region]) };
     }
 
-    /// Copies all of `from` to `to`, which is alive and has room, from byte `at` on.
+    /// Copies all of `from` to byte `at` of `to`, which must be alive and large enough.
     pub(super) fn copy_all(&mut self, from: &Buffer, to: vk::Buffer, at: u64) {
         let region = vk::BufferCopy { src_offset: 0, dst_offset: at, size: from.size() };
         // SAFETY: recorded outside a render pass; both buffers are alive and large enough.
         unsafe { self.raw().cmd_copy_buffer(self.rec.cmd, from.raw, to, &[region]) };
     }
 
-    /// Copies `size` bytes of `from` to `to`, which is alive and has room, each from its byte on.
+    /// Copies `size` bytes between the given offsets of `from` and `to`, which must be alive and large enough.
     pub(super) fn copy_part(&mut self, from: &Buffer, to: vk::Buffer, [source, target]: [u64; 2], size: u64) {
         assert!(fits(source, size, from), "a copy past the end of a buffer");
         let region = vk::BufferCopy { src_offset: source, dst_offset: target, size };
@@ -161,7 +160,7 @@ impl<'r, 'a> Encoder<'r, 'a> {
         unsafe { self.raw().cmd_copy_buffer(self.rec.cmd, from.raw, to, &[region]) };
     }
 
-    /// Copies `size` bytes of `from` from `offset` on to the same place of `to`.
+    /// Copies `size` bytes at `offset` of `from` to the same offset of `to`.
     pub fn copy_range(&mut self, from: &Buffer, to: &Buffer, offset: u64, size: u64) {
         assert!(fits(offset, size, from) && fits(offset, size, to), "a copy past the end of a buffer");
         let region = vk::BufferCopy { src_offset: offset, dst_offset: offset, size };
@@ -169,7 +168,7 @@ impl<'r, 'a> Encoder<'r, 'a> {
         unsafe { self.raw().cmd_copy_buffer(self.rec.cmd, from.raw, to.raw, &[region]) };
     }
 
-    /// Copies all of `image` to `buffer`, rows without gaps.
+    /// Copies all of `image` to `buffer`, tightly packed.
     pub fn copy_image(&mut self, image: &Image, buffer: &Buffer) {
         let [width, height] = image.size();
         let region = vk::BufferImageCopy::default()
@@ -187,14 +186,14 @@ impl<'r, 'a> Encoder<'r, 'a> {
         };
     }
 
-    /// Copies the columns of `image` between two parts of its width, from 0 to 1, scaled, over those of the `area` px at a window's top left.
+    /// Blits a range of columns of `image`, as fractions of its width, to the `area` px at the window's top left.
     #[cfg(feature = "window")]
     pub fn show_part(&mut self, image: &Image, window: &super::Presented, area: [u32; 2], columns: [f64; 2]) {
         let [width, height] = window.size();
         self.scale(image, (window.image, [area[0].min(width), area[1].min(height)]), columns);
     }
 
-    /// Copies columns of `image`, scaled, over those of so many px at the top left of another image, in the layout in which copies write it.
+    /// Blits a range of columns of `image` to the top left `size` px of another image in `TRANSFER_DST_OPTIMAL`.
     #[cfg(feature = "window")]
     pub(super) fn scale(&mut self, image: &Image, (to, size): (vk::Image, [u32; 2]), columns: [f64; 2]) {
         let layers = vk::ImageSubresourceLayers {
@@ -215,7 +214,7 @@ impl<'r, 'a> Encoder<'r, 'a> {
             .src_offsets(source)
             .dst_subresource(layers)
             .dst_offsets(target);
-        // Pixels of the same size are copied as they are.
+        // Equal sizes: copy without filtering.
         let filter = if image.size() == size { vk::Filter::NEAREST } else { vk::Filter::LINEAR };
         use vk::ImageLayout as Layout;
         let layouts = [Layout::TRANSFER_SRC_OPTIMAL, Layout::TRANSFER_DST_OPTIMAL];
@@ -233,7 +232,7 @@ impl Drop for Encoder<'_, '_> {
     }
 }
 
-/// Draws inside a render pass, which ends where this goes, if it was begun for it.
+/// Draws inside a render pass. On drop it ends the render pass, if it began it.
 pub struct Draws<'a> {
     device: &'a Device,
     cmd: vk::CommandBuffer,
@@ -241,16 +240,16 @@ pub struct Draws<'a> {
     end: End,
 }
 
-/// What ends with draws.
+/// What the end of the draws ends.
 enum End {
     RenderPass,
-    /// A pass of a host, with its second query.
+    /// A pass of the host, with its second timestamp query.
     HostPass(Option<(vk::QueryPool, u32)>),
 }
 
 impl<'a> Draws<'a> {
     /// # Safety
-    /// `cmd` is of `device` and is being recorded inside a render pass of which `area` is within the targets.
+    /// `cmd` is of `device` and recording inside a render pass whose targets contain `area`.
     unsafe fn begin(device: &'a Device, cmd: vk::CommandBuffer, area: vk::Rect2D, end: End) -> Self {
         let viewport = vk::Viewport {
             x: area.offset.x as f32,
@@ -268,11 +267,11 @@ impl<'a> Draws<'a> {
         Self { device, cmd, bound: Bound::default(), end }
     }
 
-    /// Begins to draw `pass` inside a render pass that a host has begun, over the part of its target that is the picture's, under a debug label.
+    /// Begins the draws of `pass` inside a render pass of the host, in the given area of its target, under a debug label.
     ///
     /// # Safety
-    /// `cmd` is of `device`, is being recorded inside the render pass for which the pipelines that draw were made, and is submitted after what
-    /// prepared `pass`.
+    /// `cmd` is of `device`, is recording inside the render pass for which the drawing pipelines were created, and is submitted after the
+    /// commands that prepared `pass`.
     pub unsafe fn of_host(
         device: &'a Device,
         cmd: vk::CommandBuffer,
@@ -288,17 +287,17 @@ impl<'a> Draws<'a> {
         }
     }
 
-    /// Goes on to the next subpass of the render pass that a host has begun.
+    /// Advances to the next subpass of the host's render pass.
     ///
     /// # Safety
-    /// `cmd` is of `device`, and is being recorded inside a render pass, not in its last subpass.
+    /// `cmd` is of `device` and recording inside a render pass, not in its last subpass.
     pub unsafe fn next_subpass(device: &Device, cmd: vk::CommandBuffer) {
         // SAFETY: by the caller.
         unsafe { device.raw.cmd_next_subpass(cmd, vk::SubpassContents::INLINE) };
     }
 
-    /// Draws `vertices` vertices with `pipeline`, which was made for this render pass, and `push` as the push constants. Of sets and push
-    /// constants, the pipeline takes the first ones, as many as it has.
+    /// Draws `vertices` vertices with `pipeline`, created for this render pass, and `push` as the push constants. The pipeline takes as
+    /// many of the first sets and bytes as it declares.
     pub fn draw(
         &mut self,
         pipeline: &DrawPipeline,
@@ -315,10 +314,10 @@ impl<'a> Draws<'a> {
     }
 }
 
-/// Writes a query of a host's pass, if it is timed.
+/// Writes a timestamp of the host's pass, if it is timed.
 ///
 /// # Safety
-/// `cmd` is of `device` and is being recorded; the query was reset by what prepared the pass, and is written once.
+/// `cmd` is of `device` and recording. The query was reset by the commands that prepared the pass, and is written once.
 unsafe fn stamp(device: &Device, cmd: vk::CommandBuffer, query: Option<(vk::QueryPool, u32)>) {
     let Some((pool, query)) = query else { return };
     // SAFETY: by the caller.
@@ -327,7 +326,7 @@ unsafe fn stamp(device: &Device, cmd: vk::CommandBuffer, query: Option<(vk::Quer
 
 impl Drop for Draws<'_> {
     fn drop(&mut self) {
-        // SAFETY: whoever began to draw answers for the command buffer, which is still being recorded inside the render pass.
+        // SAFETY: the caller of the constructor guarantees that the command buffer is still recording inside the render pass.
         unsafe {
             match self.end {
                 End::RenderPass => self.device.raw.cmd_end_render_pass(self.cmd),

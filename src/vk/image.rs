@@ -1,4 +1,4 @@
-//! Images that are rendered to.
+//! Render target images.
 
 use super::Device;
 use super::memory::{self, Allocation, Location, MemoryRequest};
@@ -6,21 +6,21 @@ use crate::error::{Error, Result};
 use ash::vk;
 use std::sync::Arc;
 
-/// What an image is used for beside being rendered to.
+/// Use of an image beside rendering.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ImageUse {
-    /// A later pass reads it.
+    /// Sampled by a later pass.
     Sampled,
-    /// Later subpasses of the same render pass read it at the same pixel, where they read it at all; it is not kept.
+    /// Read as an input attachment by later subpasses of the same render pass, if at all; not stored.
     Transient,
-    /// It stands for a window's: copied to, drawn over, copied to the CPU.
+    /// Offscreen replacement of a window's image: copied to, drawn over, and copied to the CPU.
     #[cfg(feature = "window")]
     Window,
-    /// It is what a frame is for: copied to the CPU, or drawn over a host's target.
+    /// The result of a frame: copied to the CPU, or drawn over a host's target.
     Output,
 }
 
-/// A two-dimensional render target with its memory and its one view.
+/// A two-dimensional render target with its memory and view.
 pub struct Image {
     pub(super) raw: vk::Image,
     pub(super) view: vk::ImageView,
@@ -30,7 +30,7 @@ pub struct Image {
     device: Arc<Device>,
 }
 
-/// Bytes of a pixel of a target's format.
+/// Size of a pixel of `format`, bytes.
 pub fn pixel_bytes(format: vk::Format) -> u64 {
     match format {
         vk::Format::R32G32B32A32_SFLOAT => 16,
@@ -43,7 +43,7 @@ pub fn pixel_bytes(format: vk::Format) -> u64 {
 }
 
 impl Image {
-    /// A colour or depth target, by its format, of `size` px.
+    /// Creates a colour or depth target of `format` and `size` px.
     pub fn target(
         device: &Arc<Device>,
         name: &str,
@@ -127,7 +127,7 @@ impl Image {
         }
     }
 
-    /// All of it, as an attachment.
+    /// A view of the whole image, for attachments.
     pub fn view(&self) -> vk::ImageView {
         self.view
     }
@@ -142,12 +142,12 @@ impl Image {
         self.format
     }
 
-    /// Bytes of a pixel when it is copied to a buffer.
+    /// Size of a pixel in a buffer copy, bytes.
     pub fn pixel_bytes(&self) -> u64 {
         pixel_bytes(self.format)
     }
 
-    /// Memory that it occupies, bytes.
+    /// Memory of the image, bytes.
     pub fn bytes(&self) -> u64 {
         self.allocation.as_ref().map_or(0, Allocation::size)
     }

@@ -1,4 +1,4 @@
-//! The Vulkan instance: loader, layers, debug messenger.
+//! Vulkan instance: loader, layers and debug messenger.
 
 use super::validation::{Messages, messenger_info};
 use crate::error::{Error, Result};
@@ -10,19 +10,19 @@ const VALIDATION_LAYER: &CStr = c"VK_LAYER_KHRONOS_validation";
 
 pub(super) struct Instance {
     pub(super) raw: ash::Instance,
-    /// Whether labels can be given; the extension is there with the layers and in most loaders.
+    /// Whether VK_EXT_debug_utils is enabled. Most loaders have it, and so do the validation layers.
     pub(super) debug_utils: bool,
     pub(super) messages: Box<Messages>,
     messenger: Option<(debug_utils::Instance, vk::DebugUtilsMessengerEXT)>,
-    // Unloads the Vulkan library: after everything else.
+    // Dropped last, because it unloads the Vulkan library.
     pub(super) entry: ash::Entry,
 }
 
 impl Instance {
-    /// Loads Vulkan and makes an instance of version 1.1 with these extensions; with `validate`, under the validation layer with
+    /// Loads Vulkan and creates an instance of version 1.1 with these extensions. With `validate`, enables the validation layer and
     /// synchronization validation.
     pub(super) fn new(validate: bool, extensions: &[*const c_char]) -> Result<Self> {
-        // SAFETY: loading the system's Vulkan library runs its initialisers, which are trusted like any linked library's.
+        // SAFETY: loading the system's Vulkan library runs its initializers, which are trusted like those of any linked library.
         let entry = unsafe { ash::Entry::load() }.map_err(|error| {
             Error::NoDevice(format!(
                 "{error}; install a Vulkan loader and driver (Debian: libvulkan1 mesa-vulkan-drivers)"
@@ -31,7 +31,7 @@ impl Instance {
         let debug_utils = has_extension(&entry, None, debug_utils::NAME);
         let layer = if validate { vec![require_validation_layer(&entry)?.as_ptr()] } else { Vec::new() };
         let labels = debug_utils.then_some(debug_utils::NAME.as_ptr());
-        // Without it the loader hides devices like MoltenVK's, whose Vulkan is not whole.
+        // Without it the loader hides devices without full Vulkan conformance, such as MoltenVK.
         let portability = has_extension(&entry, None, portability_enumeration::NAME);
         let flags = if portability {
             vk::InstanceCreateFlags::ENUMERATE_PORTABILITY_KHR
@@ -68,7 +68,7 @@ impl Instance {
 
     fn listen(&mut self) -> Result<()> {
         let loader = debug_utils::Instance::new(&self.entry, &self.raw);
-        // SAFETY: `messages` is boxed, so its address stays, and `drop` destroys the messenger before it.
+        // SAFETY: `messages` is boxed, so its address is stable, and `drop` destroys the messenger before it.
         let messenger = unsafe { loader.create_debug_utils_messenger(&messenger_info(&self.messages), None) }
             .map_err(Error::vulkan("vkCreateDebugUtilsMessengerEXT"))?;
         self.messenger = Some((loader, messenger));
@@ -92,7 +92,7 @@ fn require_validation_layer(entry: &ash::Entry) -> Result<&'static CStr> {
     // SAFETY: `entry` is a loaded Vulkan library.
     let layers = unsafe { entry.enumerate_instance_layer_properties() }.unwrap_or_default();
     let there = layers.iter().any(|layer| layer.layer_name_as_c_str() == Ok(VALIDATION_LAYER));
-    // The layer brings both extensions itself.
+    // The layer provides both extensions.
     if there && has_extension(entry, Some(VALIDATION_LAYER), debug_utils::NAME) {
         Ok(VALIDATION_LAYER)
     } else {

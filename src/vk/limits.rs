@@ -1,9 +1,9 @@
-//! What a device can do, and a mask that hides part of it so that every fallback can be run on any machine.
+//! Capabilities of a device, and a mask that hides some of them so that tests can run every fallback.
 
 use super::requirements::Abilities;
 use ash::vk;
 
-/// A mask over a device's abilities: a field that is `None` hides nothing. It only ever takes away.
+/// A mask over a device's capabilities. `None` hides nothing.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(
     feature = "serde",
@@ -11,19 +11,19 @@ use ash::vk;
     serde(default, deny_unknown_fields, rename_all = "snake_case")
 )]
 pub struct DeviceLimits {
-    /// `false`: 32-bit float targets cannot be blended.
+    /// `false` hides blending of 32-bit float targets.
     pub blend_float32: Option<bool>,
-    /// `false`: 32-bit floats in buffers cannot be added to atomically.
+    /// `false` hides atomic addition of 32-bit floats in buffers.
     pub float_atomics: Option<bool>,
-    /// `false`: 64-bit integers in buffers have no atomic maximum.
+    /// `false` hides the atomic minimum and maximum of 64-bit integers in buffers.
     pub int64_atomics: Option<bool>,
-    /// `false`: fragment shaders cannot write to buffers.
+    /// `false` hides buffer writes by fragment shaders.
     pub fragment_writes: Option<bool>,
-    /// `false`: colour attachments of one subpass are all blended alike.
+    /// `false` hides independent blending of colour attachments.
     pub independent_blend: Option<bool>,
-    /// `false`: a host cannot draw without a render pass.
+    /// `false` hides dynamic rendering in hosts.
     pub dynamic_rendering: Option<bool>,
-    /// `false`: the queue has no timestamps.
+    /// `false` hides timestamps.
     pub timestamps: Option<bool>,
     /// Upper bound of `maxStorageBufferRange`, bytes.
     pub max_storage_buffer_range: Option<u64>,
@@ -31,14 +31,14 @@ pub struct DeviceLimits {
     pub storage_buffer_alignment: Option<u64>,
     /// Upper bound of `maxPerStageDescriptorStorageBuffers`.
     pub max_storage_buffers: Option<u32>,
-    /// Upper bound of the largest render target's side, px.
+    /// Upper bound of the width and height of a render target, px.
     pub max_image_side: Option<u32>,
-    /// Upper bound of the largest heap of device-local memory, bytes.
+    /// Upper bound of the largest device-local heap, bytes.
     pub memory: Option<u64>,
 }
 
 impl DeviceLimits {
-    /// What the mask leaves of `abilities`.
+    /// The abilities that remain under the mask.
     pub(super) fn leave(&self, abilities: Abilities) -> Abilities {
         let left = Abilities {
             float_atomics: self.float_atomics != Some(false),
@@ -50,7 +50,7 @@ impl DeviceLimits {
     }
 }
 
-/// What the engine asks of a device and may lack, after the mask.
+/// Optional capabilities of a device that the engine uses, after the mask.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct Capabilities {
@@ -64,36 +64,36 @@ pub struct Capabilities {
     pub fragment_writes: bool,
     /// Colour attachments of one subpass can be blended and masked in different ways (the feature independentBlend).
     pub independent_blend: bool,
-    /// Nanoseconds a timestamp tick, and the mask of valid bits; `None` without timestamps.
+    /// Timestamp period, ns, and mask of valid bits; `None` without timestamps.
     pub timestamps: Option<(f32, u64)>,
-    /// Largest range of a storage buffer that one descriptor may name, bytes.
+    /// `maxStorageBufferRange`, bytes.
     pub max_storage_buffer_range: u64,
-    /// Alignment of the start of such a range, bytes.
+    /// `minStorageBufferOffsetAlignment`, bytes.
     pub storage_buffer_alignment: u64,
-    /// Most storage buffers that one stage of a shader sees.
+    /// `maxPerStageDescriptorStorageBuffers`.
     pub max_storage_buffers: u32,
-    /// Largest side of a render target, px.
+    /// Largest width and height of a render target, px.
     pub max_image_side: u32,
-    /// Largest width and height of a framebuffer of a host, px: nothing is hidden of it.
+    /// Largest width and height of a host's framebuffer, px; not masked.
     pub max_framebuffer: [u32; 2],
-    /// Most colour attachments of a subpass.
+    /// Maximum number of colour attachments of a subpass.
     pub max_colour_attachments: u32,
-    /// A host that says so can draw without a render pass (the feature dynamicRendering).
+    /// The host has enabled dynamic rendering (the feature dynamicRendering).
     pub dynamic_rendering: bool,
-    /// Most workgroups of a dispatch.
+    /// Maximum number of workgroups of a dispatch.
     pub max_workgroups: u32,
-    /// Largest heap of device-local memory, bytes.
+    /// Largest device-local heap, bytes.
     pub memory: u64,
 }
 
-/// Largest side of a picture: a splat keeps its anchor pixel in 15 bits a coordinate (`lib/splat.glsl`).
+/// Largest width and height of a picture: a splat stores its anchor pixel in 15 bits per coordinate (`lib/splat.glsl`).
 const LARGEST_SIDE: u32 = 1 << 15;
 
 impl Capabilities {
-    /// What `physical` can do where `enabled` is.
+    /// Capabilities of `physical` with the features `enabled`.
     ///
     /// # Safety
-    /// `physical` is one of the instance's devices, and `family` one of its queue families.
+    /// `physical` is a device of the instance, and `family` is one of its queue families.
     pub(super) unsafe fn query(
         instance: &ash::Instance,
         physical: vk::PhysicalDevice,

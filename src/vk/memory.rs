@@ -1,4 +1,4 @@
-//! Device memory of one buffer or image: from the engine's allocator, or from the host that lends the device.
+//! Device memory of buffers and images: from the engine's allocator, or from the host of an external device.
 
 use super::Device;
 use crate::error::{Error, Result};
@@ -9,50 +9,50 @@ use std::ptr::NonNull;
 use std::sync::Mutex;
 use std::sync::atomic::Ordering;
 
-/// What device memory is for.
+/// Use of device memory.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Location {
-    /// The GPU alone touches it.
+    /// Accessed by the GPU only.
     Device,
-    /// As [`Location::Device`], within render passes alone: best lazily allocated, where there is such memory.
+    /// Like [`Location::Device`], for transient attachments: lazily allocated if the device has such memory.
     Transient,
-    /// The CPU writes it in order and the GPU reads it. Host-visible and coherent, mapped.
+    /// Written in order by the CPU, read by the GPU. Host-visible, coherent and mapped.
     Upload,
-    /// The GPU writes it and the CPU reads it. Host-visible and coherent, mapped, and cached if that can be had.
+    /// Written by the GPU, read by the CPU. Host-visible, coherent and mapped; cached if available.
     Readback,
 }
 
-/// A wish for device memory.
+/// A request for device memory.
 #[derive(Clone, Copy, Debug)]
 pub struct MemoryRequest<'a> {
-    /// The buffer or image, for the host's tools.
+    /// Name of the buffer or image, for debuggers.
     pub name: &'a str,
-    /// Size and alignment, bytes, and the memory types that serve.
+    /// Size and alignment, bytes, and supported memory types.
     pub requirements: vk::MemoryRequirements,
-    /// What it is for.
+    /// Use of the memory.
     pub location: Location,
-    /// Whether it is for a buffer; otherwise it is for an image of optimal tiling.
+    /// Whether it is for a buffer; otherwise for an image with optimal tiling.
     pub linear: bool,
 }
 
-/// A piece of device memory that a [`MemorySource`] gave.
+/// A range of device memory from a [`MemorySource`].
 #[derive(Clone, Copy, Debug)]
 pub struct HostMemory {
     /// The memory object.
     pub memory: vk::DeviceMemory,
-    /// Where the piece starts in it, bytes.
+    /// Offset in the memory object, bytes.
     pub offset: u64,
-    /// Its length, bytes.
+    /// Size, bytes.
     pub size: u64,
-    /// Where it is mapped; for [`Location::Upload`] and [`Location::Readback`].
+    /// Mapped address, for [`Location::Upload`] and [`Location::Readback`].
     pub mapped: Option<NonNull<u8>>,
-    /// The source's own note, handed back when the piece is freed.
+    /// A value of the source's own, returned when the range is freed.
     pub token: u64,
 }
 
-// SAFETY: the pointer is to memory that the source keeps mapped for whoever holds the piece.
+// SAFETY: the source keeps the memory mapped while the range exists.
 unsafe impl Send for HostMemory {}
-// SAFETY: as above; writing through it takes a unique borrow of the buffer.
+// SAFETY: as above; writes need a unique borrow of the buffer.
 unsafe impl Sync for HostMemory {}
 
 /// The cause of a failed allocation: any error type or text of the host.
@@ -61,28 +61,28 @@ pub type MemoryError = Box<dyn std::error::Error + Send + Sync>;
 /// Device memory that a host gives to the engine.
 ///
 /// # Safety
-/// What [`MemorySource::allocate`] gives fulfils the request, is of the device that is lent, overlaps nothing, and stays, mapped where it
-/// says so, until it is freed.
+/// [`MemorySource::allocate`] returns ranges that fulfil the request, belong to the device, do not overlap, and stay valid and mapped until
+/// they are freed.
 pub unsafe trait MemorySource: Send + Sync {
-    /// Gives memory, or says why not.
+    /// Allocates a range.
     fn allocate(&self, request: &MemoryRequest<'_>) -> Result<HostMemory, MemoryError>;
 
-    /// Takes it back.
+    /// Frees a range.
     fn free(&self, memory: HostMemory);
 }
 
-/// Sizes of the blocks of device memory in which buffers and images are placed: a memory object each. The first block of a memory type has the
-/// least size, each further one twice that of the one before, up to the largest; what is larger has a block of its own.
+/// Sizes of the memory objects from which buffers and images are suballocated. The first object of a memory type has the least size; each
+/// further one has twice the size of the one before, up to the largest. A larger resource gets an object of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MemoryBlocks {
-    /// The first block, bytes: a multiple of 4 MiB from 4 to 256 MiB, to which it is rounded up.
+    /// First object, bytes: rounded up to a multiple of 4 MiB, from 4 to 256 MiB.
     pub least: u64,
-    /// The largest block, bytes; likewise.
+    /// Largest object, bytes; rounded likewise.
     pub largest: u64,
 }
 
 impl Default for MemoryBlocks {
-    /// From 4 to 256 MiB.
+    /// 4 to 256 MiB.
     fn default() -> Self {
         Self { least: MemoryBlocks::STEP, largest: 64 * MemoryBlocks::STEP }
     }
@@ -100,30 +100,30 @@ impl MemoryBlocks {
     }
 }
 
-/// Where a device's memory comes from.
+/// The allocator of a device.
 pub(super) enum Source {
     Own(Box<Own>),
     Host(Box<dyn MemorySource>),
 }
 
-/// The engine's own allocator, and what it does not see to.
+/// The engine's allocator, with lazily allocated memory, which gpu-allocator does not support.
 pub(super) struct Own {
     allocator: Mutex<Allocator>,
     device: ash::Device,
-    /// The memory types that are lazily allocated, a bit each.
+    /// Bit mask of the lazily allocated memory types.
     lazy: u32,
 }
 
 /// Memory of one buffer or image.
 pub(super) enum Allocation {
     Own(gpu_allocator::vulkan::Allocation),
-    /// Lazily allocated: a memory object of so many bytes.
+    /// Lazily allocated: a memory object and its size, bytes.
     Lazy(vk::DeviceMemory, u64),
     Host(HostMemory),
 }
 
 impl Source {
-    /// The engine's own allocator for `device`.
+    /// Creates the engine's allocator for `device`.
     pub(super) fn own(
         instance: &ash::Instance,
         device: &ash::Device,
@@ -175,12 +175,12 @@ impl Source {
                     log::error!("freeing device memory: {error}");
                 }
             }
-            // SAFETY: it was allocated from this device, and nothing is bound to it any more.
+            // SAFETY: it was allocated from this device, and nothing is bound to it.
             (Self::Own(own), Allocation::Lazy(memory, _)) => unsafe {
                 own.device.free_memory(memory, None);
             },
             (Self::Host(source), Allocation::Host(memory)) => source.free(memory),
-            // A device has one source from first to last.
+            // A device has one source during its lifetime.
             (Self::Own(_), Allocation::Host(_))
             | (Self::Host(_), Allocation::Own(_) | Allocation::Lazy(..)) => {}
         }
@@ -197,7 +197,7 @@ impl Own {
     }
 }
 
-/// Those of the memory types that are lazily allocated, a bit each.
+/// Bit mask of the lazily allocated memory types.
 fn lazy_types(types: &[vk::MemoryType]) -> u32 {
     let lazy = |kind: &vk::MemoryType| {
         let flags = kind.property_flags;
@@ -208,7 +208,7 @@ fn lazy_types(types: &[vk::MemoryType]) -> u32 {
 }
 
 impl Location {
-    /// Whether the CPU sees it.
+    /// Whether the CPU accesses it.
     fn is_seen(self) -> bool {
         matches!(self, Self::Upload | Self::Readback)
     }
@@ -223,7 +223,7 @@ impl Location {
 }
 
 impl Allocation {
-    /// The memory object and where in it the piece starts, bytes.
+    /// The memory object and the offset in it, bytes.
     pub(super) fn place(&self) -> (vk::DeviceMemory, u64) {
         match self {
             // SAFETY: the object is only bound to, and the allocator outlives the resource.
@@ -233,7 +233,7 @@ impl Allocation {
         }
     }
 
-    /// Bytes.
+    /// Size, bytes.
     pub(super) fn size(&self) -> u64 {
         match self {
             Self::Own(allocation) => allocation.size(),
@@ -242,11 +242,11 @@ impl Allocation {
         }
     }
 
-    /// Its bytes, where the CPU sees them; none elsewhere.
+    /// Mapped bytes; empty if the memory is not mapped.
     pub(super) fn mapped(&self) -> &[u8] {
         match self {
             Self::Own(allocation) => allocation.mapped_slice().unwrap_or(&[]),
-            // SAFETY: the source keeps it mapped, all its bytes, until it is freed.
+            // SAFETY: the source keeps all of it mapped until it is freed.
             Self::Host(HostMemory { mapped: Some(start), size, .. }) => unsafe {
                 std::slice::from_raw_parts(start.as_ptr(), *size as usize)
             },
@@ -254,11 +254,11 @@ impl Allocation {
         }
     }
 
-    /// As [`Allocation::mapped`], to write.
+    /// Like [`Allocation::mapped`], for writing.
     pub(super) fn mapped_mut(&mut self) -> &mut [u8] {
         match self {
             Self::Own(allocation) => allocation.mapped_slice_mut().unwrap_or(&mut []),
-            // SAFETY: as above; the borrow is unique, and the piece overlaps no other.
+            // SAFETY: as above; the borrow is unique, and ranges do not overlap.
             Self::Host(HostMemory { mapped: Some(start), size, .. }) => unsafe {
                 std::slice::from_raw_parts_mut(start.as_ptr(), *size as usize)
             },
@@ -267,7 +267,7 @@ impl Allocation {
     }
 }
 
-/// Allocates what `request` asks for.
+/// Allocates memory for `request`.
 pub(super) fn allocate(device: &Device, request: &MemoryRequest<'_>) -> Result<Allocation> {
     let allocation = device.memory.allocate(request).map_err(|cause| Error::Memory {
         what: request.name.to_owned(),
@@ -281,7 +281,7 @@ pub(super) fn allocate(device: &Device, request: &MemoryRequest<'_>) -> Result<A
         return Err(Error::Memory {
             what: request.name.to_owned(),
             bytes: request.requirements.size,
-            cause: "the host gave less, or did not map it".into(),
+            cause: "the host returned too little memory, or did not map it".into(),
         });
     }
     device.made.allocations.fetch_add(1, Ordering::Relaxed);
@@ -289,7 +289,7 @@ pub(super) fn allocate(device: &Device, request: &MemoryRequest<'_>) -> Result<A
     Ok(allocation)
 }
 
-/// Gives `allocation` back.
+/// Frees `allocation`.
 pub(super) fn free(device: &Device, allocation: Allocation) {
     device.made.bytes.fetch_sub(allocation.size(), Ordering::Relaxed);
     device.memory.free(allocation);

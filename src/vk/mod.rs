@@ -1,13 +1,13 @@
-//! The layer over raw Vulkan: the only place, beside the embedding, where `unsafe` is allowed. Devices, their limits and what presents to a
-//! window are public; buffers, pipelines and recording are the crate's own:
+//! The layer over raw Vulkan: the only module beside `embed` where `unsafe` is allowed. Devices, their limits and presentation are public;
+//! buffers, pipelines and recording are internal:
 //!
 //! ```compile_fail,E0603
 //! use surfel::vk::{Buffer, Commands, ComputePipeline, DescriptorSet, Framebuffer, Uploads};
 //! ```
 //!
-//! Everything that owns a Vulkan object holds an `Arc` of the [`Device`] and destroys the object when it is dropped; nothing is
-//! dropped while the GPU still uses it, because a frame is waited for before its resources can be; on a device that a host lends, because
-//! whoever records there keeps what a frame uses until the host says that it is over, see [`crate::embed`].
+//! Every owner of a Vulkan object holds an `Arc` of the [`Device`] and destroys the object on drop. No object is dropped while the GPU uses
+//! it: a frame is waited for before its resources are dropped. On an external device, the recorder of a frame keeps its resources until the
+//! host reports that the frame is over, see [`crate::embed`].
 #![allow(unsafe_code)]
 
 mod access;

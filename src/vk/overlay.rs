@@ -1,14 +1,14 @@
-//! Draws over a window's picture: panels, and whatever else is not of the scene.
+//! The overlay pass: draws panels and other widgets over a window's image.
 
 use super::Device;
 use crate::error::{Error, Result};
 use ash::vk;
 use std::sync::Arc;
 
-/// The layout in which a window's image comes and goes.
+/// Layout of the window's image before and after the pass.
 const LAYOUT: vk::ImageLayout = vk::ImageLayout::TRANSFER_DST_OPTIMAL;
 
-/// A render pass over a window's image, which keeps what is there.
+/// A render pass that loads and keeps the window's image.
 pub(super) struct Overlay {
     pub(super) raw: vk::RenderPass,
     device: Arc<Device>,
@@ -54,7 +54,7 @@ impl Overlay {
         Ok(Self { raw: raw.map_err(Error::vulkan("vkCreateRenderPass"))?, device: device.clone() })
     }
 
-    /// A framebuffer of a window's image, for the caller to destroy.
+    /// A framebuffer for a window's image. The caller destroys it.
     pub(super) fn framebuffer(
         &self,
         view: vk::ImageView,

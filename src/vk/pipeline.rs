@@ -10,45 +10,45 @@ use ash::vk;
 use std::sync::Arc;
 use std::sync::atomic::Ordering;
 
-/// What vertices make.
+/// Primitive topology.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Topology {
-    /// Three of them a triangle.
+    /// Three vertices per triangle.
     Triangles,
-    /// Each a point, whose size the vertex shader writes.
+    /// One vertex per point; the vertex shader writes the point size.
     Points,
 }
 
-/// What a draw does with the depth target. Depth is reversed: greater is nearer.
+/// Depth test and depth write of a draw. Depth is reversed: greater is nearer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum DepthTest {
-    /// There is none.
+    /// No depth target.
     None,
-    /// The nearest is kept.
+    /// Test and write: the nearest fragment is kept.
     Nearest,
-    /// What is not behind the target's depth passes; nothing is written.
+    /// Test only: fragments that are not behind the target's depth pass.
     NotBehind,
-    /// Everything is kept.
+    /// Write without a test.
     Always,
-    /// As [`DepthTest::Nearest`]; what is kept is marked in the target's stencil.
+    /// Like [`DepthTest::Nearest`], and marks the written pixels in the stencil.
     Marking,
-    /// As [`DepthTest::NotBehind`], where the target's stencil is marked.
+    /// Like [`DepthTest::NotBehind`], only where the stencil is marked.
     Marked,
-    /// What is not behind a host's depth is kept; whether that falls with distance.
+    /// Test and write against the host's depth: fragments that are not behind it pass.
     Host {
-        /// Greater is nearer.
+        /// Whether greater depth is nearer.
         reversed: bool,
     },
 }
 
-/// How fragments meet what is in the colour targets.
+/// Blending of fragments with the colour targets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Blend {
-    /// They replace it.
+    /// Fragments replace the target.
     Replace,
-    /// They are added.
+    /// Fragments are added.
     Add,
-    /// They cover it, as far as their α says, which has been multiplied into them.
+    /// Premultiplied alpha: `source + (1 − α) target`.
     Over,
 }
 
@@ -63,21 +63,20 @@ pub struct DrawState {
     pub blend: Blend,
 }
 
-/// Where in a host's frame a draw pipeline draws.
+/// The part of a host's frame in which a pipeline draws.
 #[derive(Clone, Debug)]
 pub struct Within {
     pass: PassKey,
-    /// Of each colour target; `None` leaves it alone.
+    /// Blending of each colour target; `None` masks the target.
     blends: Vec<Option<Blend>>,
     samples: vk::SampleCountFlags,
 }
 
 impl Within {
-    /// A subpass of a host's render pass, with so many samples a pixel. `blends` says of each colour target how it is blended, or that it is
-    /// left alone.
+    /// A subpass of the host's render pass with `samples` samples per pixel. `blends` has one entry per colour target: `None` masks it.
     ///
     /// # Safety
-    /// It is true of a render pass of the device for which pipelines are made, which outlives them.
+    /// The arguments describe a render pass of the device for which pipelines are created, and the pass outlives the pipelines.
     pub unsafe fn subpass(
         (pass, subpass): (vk::RenderPass, u32),
         blends: &[Option<Blend>],
@@ -86,10 +85,10 @@ impl Within {
         Self { pass: PassKey::Subpass(pass, subpass), blends: blends.to_vec(), samples }
     }
 
-    /// A host's dynamic rendering to colours, depth and stencil of such formats, otherwise as [`Within::subpass`].
+    /// The host's dynamic rendering with these formats of colours, depth and stencil; otherwise like [`Within::subpass`].
     ///
     /// # Safety
-    /// Dynamic rendering is enabled on the device for which pipelines are made.
+    /// The device for which pipelines are created has dynamicRendering enabled.
     pub unsafe fn rendering(
         (colours, depth, stencil): (&[vk::Format], vk::Format, vk::Format),
         blends: &[Option<Blend>],
@@ -98,7 +97,7 @@ impl Within {
         Self { pass: PassKey::Rendering(colours.to_vec(), depth, stencil), blends: blends.to_vec(), samples }
     }
 
-    /// The render pass and its subpass; null for dynamic rendering.
+    /// The render pass and subpass; null for dynamic rendering.
     fn pass(&self) -> (vk::RenderPass, u32) {
         match self.pass {
             PassKey::Subpass(pass, subpass) => (pass, subpass),
@@ -111,25 +110,24 @@ impl Within {
 pub(super) struct Raw {
     pub(super) pipeline: vk::Pipeline,
     pub(super) layout: vk::PipelineLayout,
-    /// Its descriptor sets.
+    /// Number of descriptor sets.
     pub(super) sets: usize,
-    /// Bytes of its push constants.
+    /// Size of the push constants, bytes.
     pub(super) push: u32,
     device: Arc<Device>,
 }
 
-/// A compute pipeline. Pipelines of the same stage and bindings are one.
+/// A compute pipeline. Equal pipelines are shared.
 pub struct ComputePipeline(Arc<Raw>);
 
-/// A draw pipeline without vertex buffers; viewport and scissor are set by whoever begins the pass. Pipelines of the same stages, bindings,
-/// state and formats are one.
+/// A draw pipeline without vertex buffers; viewport and scissor are dynamic state. Equal pipelines are shared.
 pub struct DrawPipeline(Arc<Raw>);
 
-/// The layouts of a pipeline's descriptor sets 0, 1, …
+/// Layouts of descriptor sets 0, 1, …
 pub type Sets<'a> = [&'a SetLayout];
 
 impl ComputePipeline {
-    /// A pipeline of `module` for sets of these layouts.
+    /// Creates a pipeline of `module` with these set layouts.
     pub fn new(
         device: &Arc<Device>,
         sets: &Sets<'_>,
@@ -149,12 +147,12 @@ impl ComputePipeline {
 }
 
 impl DrawPipeline {
-    /// The stages that see its push constants.
+    /// Shader stages of the push constants.
     pub(super) const STAGES: vk::ShaderStageFlags = vk::ShaderStageFlags::from_raw(
         vk::ShaderStageFlags::VERTEX.as_raw() | vk::ShaderStageFlags::FRAGMENT.as_raw(),
     );
 
-    /// A pipeline of the modules `[vertex, fragment]` for `pass` and sets of these layouts.
+    /// Creates a pipeline of the modules `[vertex, fragment]` in `pass` with these set layouts.
     pub fn new(
         device: &Arc<Device>,
         sets: &Sets<'_>,
@@ -173,7 +171,7 @@ impl DrawPipeline {
         Self::get(device, sets, modules.map(Code::from), constants, draw, (pass.raw, 0))
     }
 
-    /// As [`DrawPipeline::new`], for a pass of a host.
+    /// Like [`DrawPipeline::new`], in a pass of the host.
     pub fn of_host(
         device: &Arc<Device>,
         sets: &Sets<'_>,
@@ -276,7 +274,7 @@ impl Blend {
     }
 }
 
-/// Vulkan promises four storage buffers a stage; devices that draw have far more, but one that has not must say so.
+/// Vulkan guarantees only four storage buffers per stage. Devices that draw have far more; this reports one that does not.
 fn check_storage_buffers(device: &Device, sets: &Sets<'_>) -> Result<()> {
     let most = device.capabilities().max_storage_buffers;
     for stage in [vk::ShaderStageFlags::VERTEX, vk::ShaderStageFlags::FRAGMENT, vk::ShaderStageFlags::COMPUTE]
@@ -293,7 +291,7 @@ fn check_storage_buffers(device: &Device, sets: &Sets<'_>) -> Result<()> {
 }
 
 impl Raw {
-    /// The layout of a pipeline that is yet to be made.
+    /// Creates the layout; the pipeline is null.
     fn new(device: &Arc<Device>, sets: &Sets<'_>, stages: vk::ShaderStageFlags, push: u32) -> Result<Self> {
         check_storage_buffers(device, sets)?;
         let layouts: Vec<_> = sets.iter().map(|set| set.raw).collect();
@@ -309,7 +307,7 @@ impl Raw {
         Ok(Self { pipeline: vk::Pipeline::null(), layout, sets, push, device })
     }
 
-    /// Names the pipeline after its stages.
+    /// Names the pipeline after its stages, for debuggers.
     fn name(&self, key: &PipelineKey) {
         let names: Vec<_> = key.stages.iter().map(ShaderStage::name).collect();
         self.device.name(self.pipeline, &names.join(" "));

@@ -1,4 +1,4 @@
-//! Compiled pipelines kept on disk between runs.
+//! Pipeline cache on disk.
 
 use crate::error::{Error, Result};
 use ash::vk;
@@ -13,8 +13,8 @@ pub(super) struct PipelineCache {
 }
 
 impl PipelineCache {
-    /// An empty cache, or what an earlier run left in `folder` for this very device and driver. An unreadable file is no error: the
-    /// pipelines are then compiled anew.
+    /// Loads the cache of this device and driver from `folder`; an empty cache if there is none. An unreadable file is not an error:
+    /// pipelines are then compiled again.
     pub(super) fn load(
         instance: &ash::Instance,
         physical: vk::PhysicalDevice,
@@ -35,29 +35,29 @@ impl PipelineCache {
         Ok(Self { raw, file, loaded })
     }
 
-    /// Writes the cache if it has grown, and destroys it.
+    /// Writes the cache if it has changed, and destroys it.
     ///
     /// # Safety
-    /// `device` is the cache's; no pipeline is being made with it.
+    /// `device` created the cache, and no pipeline is being created with it.
     pub(super) unsafe fn store_and_destroy(&self, device: &ash::Device) {
         // SAFETY: by the caller.
         let data = unsafe { device.get_pipeline_cache_data(self.raw) }.unwrap_or_default();
         if let Some(file) = self.file.as_ref().filter(|_| data != self.loaded)
             && let Err(error) = write(file, &data)
         {
-            log::debug!("{}: pipelines are not kept: {error}", file.display());
+            log::debug!("{}: the pipeline cache is not saved: {error}", file.display());
         }
         // SAFETY: by the caller.
         unsafe { device.destroy_pipeline_cache(self.raw, None) };
     }
 }
 
-/// What a file begins with.
+/// First bytes of a file.
 const MAGIC: &[u8; 8] = b"surfel\x00\x01";
-/// Bytes of what stands before the data: magic, length, digest.
+/// Size of the file header, bytes: magic, length, digest.
 const SEAL: usize = 8 + 8 + 16;
 
-/// What stands before the data: a driver may crash on what was cut short or altered.
+/// The file header. It detects truncated or altered data, on which a driver may crash.
 fn seal(data: &[u8]) -> [u8; SEAL] {
     let mut seal = [0; SEAL];
     seal[..8].copy_from_slice(MAGIC);
@@ -66,13 +66,13 @@ fn seal(data: &[u8]) -> [u8; SEAL] {
     seal
 }
 
-/// The data of a file that is whole.
+/// The data of an intact file.
 fn unsealed(file: &[u8]) -> Option<&[u8]> {
     let (found, data) = file.split_at_checked(SEAL)?;
     (found == seal(data)).then_some(data)
 }
 
-/// Whether `data` begins with a version-one header of this device. Drivers must check it themselves; not all of them do.
+/// Whether `data` has a version-one header of this device. Drivers must check it; not all do.
 fn is_for(data: &[u8], properties: &vk::PhysicalDeviceProperties) -> bool {
     let word = |i: usize| data.get(4 * i..4 * i + 4).map(|b| u32::from_le_bytes([b[0], b[1], b[2], b[3]]));
     word(1) == Some(vk::PipelineCacheHeaderVersion::ONE.as_raw() as u32)
@@ -84,7 +84,7 @@ fn is_for(data: &[u8], properties: &vk::PhysicalDeviceProperties) -> bool {
 fn write(file: &Path, data: &[u8]) -> std::io::Result<()> {
     let folder = file.parent().unwrap_or(Path::new("."));
     std::fs::create_dir_all(folder)?;
-    // Another process may read or write it at the same time.
+    // Another process may read or write the file at the same time.
     let mut temporary = tempfile::NamedTempFile::new_in(folder)?;
     temporary.write_all(&seal(data))?;
     temporary.write_all(data)?;

@@ -1,4 +1,4 @@
-//! The pipelines of a device that are alive, by everything that they are made from: equal requests share one.
+//! Live pipelines of a device by everything that they are created from: equal requests share one pipeline.
 
 use super::pipeline::{Blend, DepthTest, Raw, Topology};
 use super::set_layout::SetBinding;
@@ -7,7 +7,7 @@ use ash::vk;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 
-/// Everything that a pipeline is made from.
+/// Everything that a pipeline is created from.
 #[derive(Clone, PartialEq, Eq, Hash)]
 pub(super) struct PipelineKey {
     /// A compute stage, or a vertex and a fragment stage.
@@ -16,38 +16,38 @@ pub(super) struct PipelineKey {
     pub(super) sets: Vec<Vec<SetBinding>>,
     /// Size of the push constants, bytes.
     pub(super) push: u32,
-    /// Of a draw pipeline.
+    /// State of a draw pipeline; `None` for compute.
     pub(super) draw: Option<DrawKey>,
 }
 
-/// Fixed-function state of a draw pipeline, and where it draws.
+/// Fixed-function state of a draw pipeline, and its render pass.
 #[derive(Clone, PartialEq, Eq, Hash)]
 pub(super) struct DrawKey {
     pub(super) topology: Topology,
     pub(super) depth: DepthTest,
-    /// Of each colour target; `None` leaves it alone.
+    /// Blending of each colour target; `None` masks the target.
     pub(super) blends: Vec<Option<Blend>>,
     pub(super) pass: PassKey,
     pub(super) samples: vk::SampleCountFlags,
 }
 
-/// A render pass, as far as pipelines must be compatible with it.
+/// The part of a render pass with which pipelines must be compatible.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub(super) enum PassKey {
-    /// Formats of the colour targets and of depth, of a pass with one subpass.
+    /// Formats of the colour targets and of depth, for a pass with one subpass.
     Formats(Vec<Option<vk::Format>>, Option<vk::Format>),
-    /// A subpass of a host's render pass, which outlives the pipelines.
+    /// A subpass of the host's render pass, which outlives the pipelines.
     Subpass(vk::RenderPass, u32),
     /// Dynamic rendering: formats of colours, depth and stencil.
     Rendering(Vec<vk::Format>, vk::Format, vk::Format),
 }
 
-/// The pool of a device. It keeps no pipeline alive.
+/// Pipelines of a device, by weak references.
 #[derive(Default)]
 pub(super) struct PipelinePool(Mutex<HashMap<PipelineKey, Weak<Raw>>>);
 
 impl PipelinePool {
-    /// The pipeline of `key`, made by `make` if there is none.
+    /// Returns the pipeline of `key`, created by `make` if it does not exist.
     pub(super) fn get<E>(
         &self,
         key: PipelineKey,
@@ -56,11 +56,11 @@ impl PipelinePool {
         if let Some(alive) = self.lock().get(&key).and_then(Weak::upgrade) {
             return Ok(alive);
         }
-        // Without the lock: drivers take their time, and other threads may make other pipelines meanwhile.
+        // Without the lock: compilation is slow, and other threads may create other pipelines meanwhile.
         let made = Arc::new(make(&key)?);
         let mut pool = self.lock();
         if let Some(alive) = pool.get(&key).and_then(Weak::upgrade) {
-            // Another thread was as quick; what was made here is destroyed without the lock.
+            // Another thread created the same pipeline: this one is destroyed without the lock.
             drop(pool);
             return Ok(alive);
         }

@@ -1,4 +1,4 @@
-//! Frames to a window: a swapchain that follows the window, and two frames under way.
+//! Presentation to a window: a swapchain that follows the window's size, and two frames in flight.
 
 use super::{
     Access, Commands, Device, Image, ImageUse, Recorder, Surface, capture::Capture, overlay::Overlay,
@@ -10,26 +10,26 @@ use std::cell::RefCell;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// How often in a row a window may refuse a swapchain that it should be able to have: it may have changed since it was asked.
+/// Consecutive failures to create a swapchain that are tolerated: the window may have changed since its size was queried.
 const REFUSALS: u32 = 100;
 
-/// How many frames may be under way.
+/// Number of frames in flight.
 pub const FRAMES_IN_FLIGHT: u32 = 2;
 
 /// Presents frames to a window.
 pub struct Presenter {
-    // Fields are dropped in this order: the surface goes last.
+    // Drop order: the surface goes last.
     swapchain: Option<Swapchain>,
     overlay: Overlay,
     slots: Vec<Slot>,
-    /// Number of the slot that is next.
+    /// Index of the next slot.
     next: usize,
-    /// Which one it is, and how many frames there were.
+    /// Unique id of the presenter, and the number of frames so far.
     number: u64,
     frames: u64,
-    /// Whether the last frame did not come to the window.
+    /// Whether the last frame was not presented.
     behind: bool,
-    /// How often in a row the window has refused a swapchain.
+    /// Consecutive failures to create a swapchain.
     refused: u32,
     swapchains: khr::swapchain::Device,
     format: vk::SurfaceFormatKHR,
@@ -38,45 +38,45 @@ pub struct Presenter {
     device: Arc<Device>,
 }
 
-/// A frame that is being recorded, which goes to the queue after all that were before it. It is there for as long as that takes.
+/// A frame that is being recorded. It is submitted after all earlier frames.
 pub struct Presented {
-    /// Is being recorded, outside a render pass.
+    /// The command buffer, recording outside a render pass.
     pub(crate) cmd: vk::CommandBuffer,
-    /// Of the window, in the layout in which copies write it; to be left in that.
+    /// The swapchain image, in `TRANSFER_DST_OPTIMAL` before and after the frame.
     pub(super) image: vk::Image,
     framebuffer: vk::Framebuffer,
     overlay: vk::RenderPass,
     size: [u32; 2],
-    /// Its number among the frames of its presenter, and that one's own.
+    /// Number of the frame among those of its presenter, and the id of the presenter.
     pub(crate) number: u64,
     pub(crate) presenter: u64,
-    /// Of those who have recorded into it.
+    /// Stakes of those that recorded into the frame.
     stakes: RefCell<Vec<Arc<Stake>>>,
     device: Arc<Device>,
 }
 
-/// What a frame that is being recorded and who records into it have to know of each other.
+/// Shared state of a frame that is being recorded and an object that records into it.
 #[derive(Default)]
 pub(crate) struct Stake {
-    /// The commands were thrown away.
+    /// The commands were discarded.
     thrown: AtomicBool,
-    /// What the commands use is gone.
+    /// A resource that the commands use was destroyed.
     gone: AtomicBool,
 }
 
 impl Stake {
-    /// Whether the commands were thrown away.
+    /// Whether the commands were discarded.
     pub(crate) fn is_thrown(&self) -> bool {
         self.thrown.load(Ordering::Relaxed)
     }
 
-    /// What the commands use goes: if they are being recorded yet, they are not submitted.
+    /// Marks a resource as destroyed: a frame that is still being recorded is then not submitted.
     pub(crate) fn go(&self) {
         self.gone.store(true, Ordering::Relaxed);
     }
 }
 
-/// What a frame is drawn to.
+/// The image that a frame is drawn to.
 pub(super) struct Target {
     pub(super) image: vk::Image,
     pub(super) framebuffer: vk::Framebuffer,
@@ -89,14 +89,14 @@ impl Presented {
         self.size
     }
 
-    /// For who records into it.
+    /// A stake for an object that records into the frame.
     pub(crate) fn stake(&self) -> Arc<Stake> {
         let stake = Arc::new(Stake::default());
         self.stakes.borrow_mut().push(stake.clone());
         stake
     }
 
-    /// An error if what was recorded uses what is gone.
+    /// Returns an error if the recorded commands use a destroyed resource.
     pub(super) fn check(&self) -> Result<()> {
         if self.stakes.borrow().iter().any(|stake| stake.gone.load(Ordering::Relaxed)) {
             Err(Error::Usage("what draws in a frame is dropped while that is recorded: keep it".into()))
@@ -105,12 +105,12 @@ impl Presented {
         }
     }
 
-    /// The commands are thrown away.
+    /// Marks the commands as discarded.
     pub(super) fn throw(&self) {
         self.stakes.borrow().iter().for_each(|stake| stake.thrown.store(true, Ordering::Relaxed));
     }
 
-    /// Makes all of it black.
+    /// Clears the image to black.
     pub fn clear(&self) {
         let range = vk::ImageSubresourceRange {
             aspect_mask: vk::ImageAspectFlags::COLOR,
@@ -132,14 +132,14 @@ impl Presented {
         }
     }
 
-    /// Records passes.
+    /// A recorder for passes of the frame.
     pub fn recorder(&self) -> Recorder<'_> {
         // SAFETY: the presenter submits what is being recorded before what is recorded later, to one queue; nothing else is recorded inside
         // `over`, which has the frame for itself.
         unsafe { Recorder::of_host(&self.device, self.cmd) }
     }
 
-    /// Draws over the picture with `body`, which is given the command buffer inside [`Presenter::overlay`].
+    /// Draws over the image: calls `body` with the command buffer inside the render pass [`Presenter::overlay`].
     pub fn over(&mut self, label: &'static str, body: impl FnOnce(vk::CommandBuffer)) {
         let [width, height] = self.size;
         let info = vk::RenderPassBeginInfo::default()
@@ -160,14 +160,14 @@ impl Presented {
     }
 }
 
-/// A number that no other presenter has.
+/// A unique presenter id.
 fn next_number() -> u64 {
     static NEXT: AtomicU64 = AtomicU64::new(0);
     NEXT.fetch_add(1, Ordering::Relaxed)
 }
 
 impl Presenter {
-    /// Presents from `device`, which was opened for the surface; another one is refused.
+    /// Presents with `device`, which [`Device::open_for`] returned together with `surface`.
     pub fn new(device: &Arc<Device>, surface: Surface) -> Result<Self> {
         if !surface.is_of(device) {
             let message =
@@ -217,25 +217,25 @@ impl Presenter {
         &self.device
     }
 
-    /// Which one it is: no other has this number.
+    /// The presenter's unique id.
     pub(crate) fn number(&self) -> u64 {
         self.number
     }
 
-    /// The render pass in which [`Presented::over`] draws, of one colour attachment, whose format encodes sRGB.
+    /// The render pass in which [`Presented::over`] draws: one colour attachment with an sRGB format.
     pub fn overlay(&self) -> vk::RenderPass {
         self.overlay.raw
     }
 
-    /// The window's size is another, or may be.
+    /// Notes that the window's size may have changed.
     pub fn resized(&mut self) {
         if let Some(swapchain) = &mut self.swapchain {
             swapchain.stale = true;
         }
     }
 
-    /// Scales a picture of `format` to the window's once: what a driver compiles for that as it is first done is there when it is needed. Some
-    /// compile anew for sides that are powers of two, which its are not.
+    /// Blits an image of `format` to the window's format once, so that a driver which compiles a shader for the first blit does so now.
+    /// Some drivers compile another one for power-of-two sizes: these sizes are not.
     pub fn rehearse(&self, format: vk::Format) -> Result<()> {
         let target = |format, size, also| Image::target(&self.device, "rehearsed", format, size, also);
         let from = target(format, [3, 3], ImageUse::Output)?;
@@ -246,16 +246,16 @@ impl Presenter {
         })
     }
 
-    /// Whether the window does not show the last frame: it has no extent, or has changed meanwhile. Another frame may come to it later, of which
-    /// not every window tells.
+    /// Whether the window does not show the last frame: it has no extent, or has changed since. A later frame may be presented without any
+    /// window event.
     pub fn is_behind(&self) -> bool {
         self.behind
     }
 
-    /// Records a frame with `record` and presents it, in a window of `size` px; `None` where there is none to be seen. When it is recorded, the
-    /// GPU is done with all but the last [`FRAMES_IN_FLIGHT`] − 1 frames.
+    /// Records a frame with `record` and presents it in a window of `size` px; `None` if the window has no extent. Before `record` is
+    /// called, the GPU has finished all but the last [`FRAMES_IN_FLIGHT`] − 1 frames.
     ///
-    /// After an error of `record` the frame is empty, and the next one can be presented.
+    /// After an error of `record` the frame is empty, and the next frame can be presented.
     pub fn present<R>(
         &mut self,
         size: [u32; 2],
@@ -280,7 +280,7 @@ impl Presenter {
         recorded.map(Some)
     }
 
-    /// The next frame, of the next slot.
+    /// The next frame, in the next slot.
     fn frame(&mut self, Target { image, framebuffer, size }: Target) -> Presented {
         self.frames += 1;
         Presented {
@@ -296,9 +296,9 @@ impl Presenter {
         }
     }
 
-    /// The next image of a swapchain that fits the window, once the next slot is free; `None` where there is none to be seen.
+    /// Waits for the next slot and acquires an image of a swapchain that fits the window; `None` if the window has no extent.
     fn acquire(&mut self, size: [u32; 2]) -> Result<Option<usize>> {
-        // A window may change between any two calls: then it is tried once more, and with the next frame again.
+        // The window may change between any two calls: one retry now, then again with the next frame.
         for _ in 0..2 {
             if self.swapchain.as_ref().is_none_or(|swapchain| swapchain.stale || swapchain.asked != size) {
                 self.remake(size)?;
@@ -313,8 +313,8 @@ impl Presenter {
         Ok(None)
     }
 
-    /// Records a frame of `size` px as [`Presenter::present`] does, but not for the window: its pixels, sRGB and α, 8 bits each, row by row
-    /// from the top left. Waits for the GPU.
+    /// Records a frame of `size` px as [`Presenter::present`] does, but returns its pixels: sRGB and α, 8 bits each, row by row from the
+    /// top left. Waits for the GPU.
     pub fn capture(
         &mut self,
         size: [u32; 2],
@@ -330,16 +330,15 @@ impl Presenter {
         recorded.map(|()| capture.pixels())
     }
 
-    /// Waits until the GPU is done with every frame.
+    /// Waits until the GPU has finished every frame.
     pub fn wait(&self) -> Result<()> {
         self.slots.iter().try_for_each(Slot::wait)
     }
 
-    /// Waits for every frame, and makes a swapchain of this size in the place of the one that there is; none where the window has no extent, or
-    /// is another than it just was.
+    /// Waits for every frame and recreates the swapchain with this size; none if the window has no extent or changed meanwhile.
     fn remake(&mut self, size: [u32; 2]) -> Result<()> {
         self.wait()?;
-        // Presented images may be waited for by the queue yet.
+        // The presentation engine may still read presented images.
         self.device.wait_idle()?;
         let old = self.swapchain.take();
         let how = (&self.surface, self.format, self.mode());
@@ -351,7 +350,7 @@ impl Presenter {
         Ok(())
     }
 
-    /// Without tearing, and without waiting for the screen where that can be.
+    /// The present mode: `MAILBOX` where supported, otherwise `FIFO`.
     fn mode(&self) -> vk::PresentModeKHR {
         if self.modes.contains(&vk::PresentModeKHR::MAILBOX) {
             vk::PresentModeKHR::MAILBOX

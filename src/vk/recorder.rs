@@ -1,11 +1,11 @@
-//! Recording of a frame: barrier, debug label and timestamp of a pass in one place.
+//! Recording of a frame: the one place for the barrier, debug label and timestamp of a pass.
 
 use super::access::{Access, Barrier, Tracker, Use};
 use super::timestamps::{HostPass, Timestamps};
 use super::{Buffer, Device, Encoder};
 use ash::vk;
 
-/// Records the passes of one frame. What it is given must stay alive until the frame is over.
+/// Records the passes of one frame. Its resources must outlive the frame.
 pub struct Recorder<'a> {
     pub(super) device: &'a Device,
     pub(super) cmd: vk::CommandBuffer,
@@ -26,19 +26,19 @@ impl<'a> Recorder<'a> {
         recorder
     }
 
-    /// Records into a command buffer of a host.
+    /// Records into a command buffer of the host.
     ///
     /// # Safety
-    /// `cmd` is of `device`, of the queue family that it was lent with, is being recorded outside a render pass, and is submitted before what
-    /// is recorded after it to the same queue.
+    /// `cmd` is of `device` and of its queue family, is recording outside a render pass, and is submitted to the same queue before anything
+    /// that is recorded after it.
     pub unsafe fn of_host(device: &'a Device, cmd: vk::CommandBuffer) -> Self {
         Self::new(device, cmd, None)
     }
 
-    /// The same, with every pass timed by `timestamps`, if they are given.
+    /// Like [`Recorder::of_host`], with each pass timed by `timestamps`, if given.
     ///
     /// # Safety
-    /// As for [`Recorder::of_host`]; and the frame that `timestamps` timed before is over, or was never submitted.
+    /// As for [`Recorder::of_host`]. The frame that `timestamps` measured before is over, or was never submitted.
     pub unsafe fn of_host_timed(
         device: &'a Device,
         cmd: vk::CommandBuffer,
@@ -47,10 +47,10 @@ impl<'a> Recorder<'a> {
         Self::new(device, cmd, timestamps)
     }
 
-    /// Begins a pass: waits for what `uses` need and no more, under a debug label and, in a profiled frame, between timestamps. It ends where the
-    /// encoder of its commands goes.
+    /// Begins a pass with the barrier that `uses` need, a debug label and, in a profiled frame, timestamps. The pass ends when the encoder
+    /// is dropped.
     ///
-    /// In a profiled frame each stamp stands behind a full barrier, so that a pass's work is booked to it alone.
+    /// In a profiled frame a full barrier precedes each timestamp, so that a pass's time includes its own work only.
     pub fn pass(&mut self, label: &'static str, uses: &[Use]) -> Encoder<'_, 'a> {
         // SAFETY: the command buffer is being recorded.
         unsafe { self.device.begin_label(self.cmd, label) };
@@ -60,15 +60,15 @@ impl<'a> Recorder<'a> {
         Encoder::new(self, query.map(|first| first + 1))
     }
 
-    /// Ends a pass, with its second query.
+    /// Ends a pass. `query` is its second timestamp.
     pub(super) fn end_pass(&mut self, query: Option<u32>) {
         self.stamp(query);
         // SAFETY: the command buffer is being recorded, and the label was begun with the pass.
         unsafe { self.device.end_label(self.cmd) };
     }
 
-    /// Prepares a pass that [`Draws::of_host`](super::Draws::of_host) records within a render pass of the host: in a profiled frame it is timed
-    /// there from when the work before it is done to when its own is.
+    /// Prepares a pass that [`Draws::of_host`](super::Draws::of_host) records inside a render pass of the host. In a profiled frame, its
+    /// time runs from the end of the work before it to the end of its own.
     pub fn later(&mut self, label: &'static str) -> HostPass {
         let timestamps = self.timestamps.as_mut();
         let queries = timestamps
@@ -76,9 +76,9 @@ impl<'a> Recorder<'a> {
         HostPass::new(label, queries)
     }
 
-    /// Writes to each buffer its bytes, a multiple of 4, for the passes that follow to read as uniforms.
+    /// Writes each buffer's bytes, a multiple of 4, which later passes read as uniforms.
     pub fn update(&mut self, updates: &[(&Buffer, &[u8])]) {
-        /// What one command writes at most, bytes.
+        /// Limit of `vkCmdUpdateBuffer`, bytes.
         const MOST: usize = 65_536;
         let all = |access| updates.iter().map(|(buffer, _)| buffer.with(access)).collect::<Vec<_>>();
         self.barrier(&all(Access::COPY_WRITE));
@@ -92,7 +92,7 @@ impl<'a> Recorder<'a> {
         self.barrier(&all(Access::UNIFORM_READ));
     }
 
-    /// Sets every word of `buffer` to `word`, for the CPU to read: no pass, which would be timed.
+    /// Sets every word of `buffer` to `word`, for the CPU to read. This is not a timed pass.
     pub fn mark(&mut self, buffer: &Buffer, word: u32) {
         self.barrier(&[buffer.with(Access::COPY_WRITE)]);
         // SAFETY: the command buffer is being recorded outside a render pass; the buffer is alive and can be copied to.
@@ -100,7 +100,7 @@ impl<'a> Recorder<'a> {
         self.barrier(&[buffer.with(Access::HOST_READ)]);
     }
 
-    /// Says how an earlier frame left these: images keep what is in them, unless they are written.
+    /// Declares the layouts in which an earlier frame left these resources: images keep their contents unless they are written.
     pub fn left(&mut self, uses: &[Use]) {
         self.tracker.left(&self.device.history, uses);
     }
@@ -119,18 +119,18 @@ impl<'a> Recorder<'a> {
         }
     }
 
-    /// Waits for what `uses` need: for work after the frame, such as the CPU's.
+    /// Inserts the barrier that `uses` need, for work after the frame, such as reads by the CPU.
     pub fn wait(&mut self, uses: &[Use]) {
         self.barrier(uses);
     }
 
-    /// Makes what was written to these, which shaders read, visible to every one of what is recorded later.
+    /// Makes writes to these resources visible to all shader reads that are recorded later.
     pub fn settle(&mut self, uses: &[Use]) {
         self.barrier(uses);
         self.device.history.settle(uses);
     }
 
-    /// One barrier for everything that a pass touches.
+    /// One barrier for all resources of a pass.
     fn barrier(&mut self, uses: &[Use]) {
         let found = self.tracker.barrier(&self.device.history, uses);
         let Some(Barrier { source, target, memory, images }) = found else { return };

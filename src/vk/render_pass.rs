@@ -9,27 +9,27 @@ use std::sync::Arc;
 /// A target of a render pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Attachment {
-    /// Nothing stands at this location; what the shader writes there is dropped.
+    /// No attachment at this location; output to it is discarded.
     Absent,
-    /// Set to 0 at the start and kept.
+    /// Cleared to 0 and stored.
     Cleared(vk::Format),
-    /// Every pixel is written, so what was there is not read.
+    /// Not loaded: every pixel is written.
     Overwritten(vk::Format),
-    /// A depth target that is only tested against.
+    /// A depth target that is tested but not written.
     Tested(vk::Format),
 }
 
-/// A render pass whose images come in and go out in the layout of their use: the recorder does all transitions.
+/// A render pass. Attachments keep the layout of their use: the recorder performs all transitions.
 pub struct RenderPass {
     pub(super) raw: vk::RenderPass,
-    /// Of colours and depth.
+    /// Formats of colours and depth.
     formats: (Vec<Option<vk::Format>>, Option<vk::Format>),
     attachments: usize,
     device: Arc<Device>,
 }
 
 impl RenderPass {
-    /// A pass with `colours` at the locations 0, 1, … and, where given, `depth`.
+    /// A pass with `colours` at locations 0, 1, …, and `depth` if given.
     pub fn new(device: &Arc<Device>, colours: &[Attachment], depth: Option<Attachment>) -> Result<Self> {
         let mut descriptions = Vec::new();
         let mut reference = |attachment: &Attachment| match attachment.describe() {
@@ -77,7 +77,7 @@ impl RenderPass {
         PassKey::Formats(self.formats.0.clone(), self.formats.1)
     }
 
-    /// Vulkan's handle, for who draws in it with pipelines of their own.
+    /// The Vulkan handle.
     pub fn handle(&self) -> vk::RenderPass {
         self.raw
     }
@@ -131,7 +131,7 @@ pub struct Framebuffer {
 }
 
 impl Framebuffer {
-    /// One image an attachment that is not absent: colours in their order, then depth. All have one size.
+    /// One image per attachment that is not absent: colours in order, then depth. All have one size.
     pub fn new(device: &Arc<Device>, pass: &RenderPass, images: &[&Image]) -> Result<Self> {
         assert_eq!(images.len(), pass.attachments, "one image an attachment");
         let sizes = images.windows(2).all(|pair| pair[0].size() == pair[1].size());

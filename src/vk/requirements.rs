@@ -1,9 +1,9 @@
-//! What the engine wants of a device: what it cannot do without, and what it makes use of where it is enabled.
+//! Required and optional features of a device.
 
 use ash::vk;
 use std::ffi::CStr;
 
-/// What a device may have enabled for the engine to use. None of it is needed.
+/// Optional device features.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Abilities {
     /// 32-bit floats in storage buffers can be added to atomically.
@@ -12,31 +12,31 @@ pub struct Abilities {
     pub int64_atomics: bool,
     /// Fragment shaders can write to storage buffers.
     pub fragment_writes: bool,
-    /// Colour attachments of one subpass can be blended and masked in different ways.
+    /// Colour attachments of one subpass can have different blending and write masks.
     pub independent_blend: bool,
 }
 
-/// One of the [`Abilities`]: how Vulkan calls it, and what it buys.
+/// One of the [`Abilities`]: its Vulkan names and its benefit.
 #[derive(Clone, Copy, Debug)]
 pub struct Ability {
-    /// The device extension; none where the feature is of Vulkan 1.0.
+    /// The device extension; `None` for a feature of Vulkan 1.0.
     pub extension: Option<&'static CStr>,
-    /// The features.
+    /// Names of the features.
     pub features: &'static str,
-    /// What is not there without it.
+    /// What is not available without it.
     pub buys: &'static str,
-    /// Whether it is among `abilities`.
+    /// Whether `abilities` include it.
     pub of: fn(&Abilities) -> bool,
 }
 
-/// Least Vulkan version of a device.
+/// Minimum Vulkan version of a device.
 pub const API_VERSION: u32 = vk::API_VERSION_1_1;
 
-/// What the queue family must do.
+/// Required queue capabilities.
 pub const QUEUE: vk::QueueFlags =
     vk::QueueFlags::from_raw(vk::QueueFlags::GRAPHICS.as_raw() | vk::QueueFlags::COMPUTE.as_raw());
 
-/// All that the engine can make use of.
+/// All optional features.
 pub const ABILITIES: [Ability; 4] = [
     Ability {
         extension: Some(ash::ext::shader_atomic_float::NAME),
@@ -64,7 +64,8 @@ pub const ABILITIES: [Ability; 4] = [
     },
 ];
 
-/// VK_KHR_portability_subset, which must be enabled where a device has it. None of the features that it makes optional is known to be used.
+/// VK_KHR_portability_subset, which must be enabled if a device has it. The engine uses none of the features that it makes optional, as far
+/// as known.
 ///
 /// # Safety
 /// `physical` is a device of `instance`.
@@ -79,10 +80,10 @@ pub(super) unsafe fn portability_subset(
 }
 
 impl Abilities {
-    /// What `physical` has.
+    /// The abilities that `physical` supports.
     ///
     /// # Safety
-    /// `physical` is a device of `instance`, and of version [`API_VERSION`] at least, as the instance is.
+    /// `physical` is a device of `instance`; both have at least version [`API_VERSION`].
     pub unsafe fn of(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Self {
         // SAFETY: by the caller.
         let extensions =
@@ -111,12 +112,12 @@ impl Abilities {
         }
     }
 
-    /// The device extensions to enable for it.
+    /// Device extensions to enable for these abilities.
     pub fn extensions(&self) -> impl Iterator<Item = &'static CStr> {
         ABILITIES.iter().filter(|ability| (ability.of)(self)).filter_map(|ability| ability.extension)
     }
 
-    /// The features to enable for it.
+    /// Features to enable for these abilities.
     pub fn features(&self) -> Features {
         Features {
             core: vk::PhysicalDeviceFeatures::default()
@@ -130,7 +131,7 @@ impl Abilities {
         }
     }
 
-    /// What is in both.
+    /// Abilities in both.
     pub fn and(self, other: Self) -> Self {
         Self {
             float_atomics: self.float_atomics && other.float_atomics,
@@ -141,25 +142,26 @@ impl Abilities {
     }
 }
 
-/// Features of a device, as `vkCreateDevice` takes them: [`Features::core`] for the device's own, the rest for its chain.
+/// Device features for `vkCreateDevice`: [`Features::core`] for `pEnabledFeatures`, the others for the `pNext` chain.
 #[derive(Default)]
 pub struct Features {
-    /// Of Vulkan 1.0.
+    /// Features of Vulkan 1.0.
     pub core: vk::PhysicalDeviceFeatures,
     floats: vk::PhysicalDeviceShaderAtomicFloatFeaturesEXT<'static>,
     integers: vk::PhysicalDeviceShaderAtomicInt64Features<'static>,
 }
 
-// SAFETY: what the chains point to is read while `chain`'s borrows last alone, and `chain` makes them anew.
+// SAFETY: the chained pointers are read only while the borrow of `chain` lasts, and `chain` renews them.
 unsafe impl Send for Features {}
 
 impl Features {
-    /// Adds what is beyond Vulkan 1.0 to the chain of `info`, as far as it is enabled: a struct of an extension that is not must not be there.
+    /// Adds the enabled features beyond Vulkan 1.0 to the `pNext` chain of `info`. Structs of extensions that are not enabled are left out,
+    /// as Vulkan requires.
     ///
     /// A host that chains `VkPhysicalDeviceVulkan12Features` sets `shaderBufferInt64Atomics` there by [`Abilities::int64_atomics`] instead:
-    /// Vulkan does not want both.
+    /// Vulkan forbids both.
     pub fn chain<'a>(&'a mut self, mut info: vk::DeviceCreateInfo<'a>) -> vk::DeviceCreateInfo<'a> {
-        // An earlier call left what it was chained to.
+        // An earlier call may have left pointers.
         (self.floats.p_next, self.integers.p_next) = (std::ptr::null_mut(), std::ptr::null_mut());
         if self.floats.shader_buffer_float32_atomic_add == vk::TRUE {
             info = info.push_next(&mut self.floats);

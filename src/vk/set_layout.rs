@@ -1,4 +1,4 @@
-//! Layouts of descriptor sets: what of a set's bindings is there.
+//! Descriptor set layouts. A layout has only the bindings that are present.
 
 use super::Device;
 use super::shaders::Resource;
@@ -7,22 +7,22 @@ use ash::vk;
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError, Weak};
 
-/// A binding: its number, kind and the stages that see it.
+/// A binding: number, descriptor type and shader stages.
 pub(super) type SetBinding = (u32, vk::DescriptorType, vk::ShaderStageFlags);
 
-/// The bindings of a descriptor set. Equal ones of a device are one.
+/// The layout of a descriptor set. Equal layouts of a device are shared.
 pub struct SetLayout {
     pub(super) raw: vk::DescriptorSetLayout,
     pub(super) bindings: Vec<SetBinding>,
     device: Arc<Device>,
 }
 
-/// The layouts of a device that are alive.
+/// Live descriptor set layouts of a device.
 #[derive(Default)]
 pub(super) struct SetLayouts(Mutex<HashMap<Vec<SetBinding>, Weak<SetLayout>>>);
 
 impl SetLayout {
-    /// The layout of a set of these, which are all of one set.
+    /// The layout of these resources, all of one set.
     pub fn of<'a>(
         device: &Arc<Device>,
         resources: impl IntoIterator<Item = &'a Resource>,
@@ -56,12 +56,12 @@ impl SetLayout {
         Ok(Self { raw, bindings, device: device.clone() })
     }
 
-    /// Whether it has a binding of this kind.
+    /// Whether it has this resource's binding with the same type.
     pub(super) fn has(&self, resource: &Resource) -> bool {
         self.bindings.iter().any(|(number, kind, _)| (*number, *kind) == (resource.binding, resource.kind))
     }
 
-    /// How many storage buffers a stage sees.
+    /// Number of storage buffers that are visible to a stage.
     pub(super) fn storage_buffers(&self, stage: vk::ShaderStageFlags) -> u32 {
         let seen = |(_, kind, stages): &&SetBinding| {
             *kind == vk::DescriptorType::STORAGE_BUFFER && stages.contains(stage)

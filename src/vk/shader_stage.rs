@@ -1,4 +1,4 @@
-//! A shader stage with the values of the specialization constants that its module reads.
+//! A shader stage with the specialization constants that its module reads.
 
 use super::shaders::{Module, Resource};
 use super::{Device, SetLayout};
@@ -8,25 +8,25 @@ use std::borrow::Cow;
 use std::collections::HashMap;
 use std::hash::{Hash, Hasher};
 
-/// Values of specialization constants, of which a module takes those that it reads.
+/// Values of specialization constants. A module takes those that it reads.
 #[derive(Clone, Debug, Default)]
 pub struct Constants(Vec<(u32, u32)>);
 
 impl Constants {
-    /// Sets a constant by its id, one of [`super::shaders::constant`].
+    /// Sets the constant with this id, one of [`super::shaders::constant`].
     pub fn with(mut self, id: u32, value: impl Into<u32>) -> Self {
         self.0.retain(|(known, _)| *known != id);
         self.0.push((id, value.into()));
         self
     }
 
-    /// Sets those of `others`.
+    /// Adds the constants of `others`, which take precedence.
     pub fn and(self, others: &Self) -> Self {
         others.0.iter().fold(self, |all, (id, value)| all.with(*id, *value))
     }
 }
 
-/// SPIR-V of a stage and its specialization: equal ones compile to the same code.
+/// SPIR-V of a stage and its specialization. Equal stages compile to the same code.
 #[derive(Clone, PartialEq, Eq, Hash)]
 pub(super) struct ShaderStage {
     name: Name,
@@ -36,7 +36,7 @@ pub(super) struct ShaderStage {
     values: Vec<u32>,
 }
 
-/// What a module is called: stages of equal code are equal.
+/// Name of a module. Always equal, so that stages compare by their code.
 #[derive(Clone, Copy)]
 struct Name(&'static str);
 
@@ -52,7 +52,7 @@ impl Hash for Name {
     fn hash<H: Hasher>(&self, _: &mut H) {}
 }
 
-/// The module of a stage, or a copy of it with other decorations, which are no specialization constants.
+/// The SPIR-V of a stage's module, or a copy with changed decorations.
 #[derive(Clone)]
 pub struct Code {
     module: &'static Module,
@@ -65,7 +65,7 @@ impl From<&'static Module> for Code {
     }
 }
 
-/// SPIR-V's numbers of decorations.
+/// SPIR-V decoration numbers.
 mod decoration {
     pub const LOCATION: u32 = 30;
     pub const BINDING: u32 = 33;
@@ -73,7 +73,7 @@ mod decoration {
     pub const INPUT_ATTACHMENT_INDEX: u32 = 43;
 }
 
-/// Calls `each` with what is decorated, how, and the decoration's number, of every decoration that has one.
+/// Calls `each` with target, decoration and operand of every decoration that has an operand.
 fn decorations(words: &mut [u32], mut each: impl FnMut(u32, u32, &mut u32)) {
     const HEADER: usize = 5;
     const OP_DECORATE: u32 = 71;
@@ -88,7 +88,7 @@ fn decorations(words: &mut [u32], mut each: impl FnMut(u32, u32, &mut u32)) {
 }
 
 impl Code {
-    /// The same with outputs at `locations` in place of 0, 1, …
+    /// Moves outputs 0, 1, … to `locations`.
     pub fn at_locations(mut self, locations: [u32; 3]) -> Self {
         decorations(self.words.to_mut(), |_, which, location| {
             if which == decoration::LOCATION {
@@ -98,15 +98,15 @@ impl Code {
         self
     }
 
-    /// The same for descriptor sets of these layouts. What of the module's resources is at none of their bindings is declared to be at
-    /// another's of its kind: Vulkan wants each to be somewhere, and specialization takes away what would read it.
+    /// Adapts the bindings to descriptor sets with these layouts. A resource that is in no layout is declared at the binding of another
+    /// resource of its type: Vulkan requires a binding for every declared resource, and specialization removes the code that would read it.
     pub(super) fn bound(mut self, sets: &[&SetLayout]) -> Result<Self> {
         let is_there =
             |resource: &Resource| sets.get(resource.set as usize).is_some_and(|layout| layout.has(resource));
         let all = self.module.resources;
         for (absent, writes) in all.iter().filter(|(resource, _)| !is_there(resource)) {
             let others = all.iter().filter(|(other, _)| other.kind == absent.kind && is_there(other));
-            // Validation takes for touched what is declared, and how.
+            // Validation treats a declared resource as accessed in the declared way.
             let alike = others.clone().find(|(_, others)| others == writes);
             let stand_in = alike.or(others.clone().next()).map(|(other, _)| other);
             let stand_in = stand_in.ok_or_else(|| {
@@ -128,13 +128,13 @@ impl Code {
         ShaderStage { name, stage: self.module.stage, words: self.words, ids, values }
     }
 
-    /// Bytes of its push constants.
+    /// Size of the push constants, bytes.
     pub(super) fn push(&self) -> u32 {
         self.module.push
     }
 }
 
-/// Declares what is at the binding of one resource to be at that of the other.
+/// Moves the declaration of one resource to the binding of another.
 fn move_to(words: &mut [u32], [from, to]: [&Resource; 2]) {
     let mut places: HashMap<u32, [Option<u32>; 3]> = HashMap::new();
     decorations(words, |id, which, number| {
@@ -161,7 +161,7 @@ fn move_to(words: &mut [u32], [from, to]: [&Resource; 2]) {
 }
 
 impl ShaderStage {
-    /// Of the module.
+    /// Name of the module.
     pub(super) fn name(&self) -> &'static str {
         self.name.0
     }
@@ -180,7 +180,7 @@ impl ShaderStage {
     }
 }
 
-/// Calls `make` with what Vulkan makes pipelines of these `stages` from, and with their shader modules alive.
+/// Calls `make` with the create infos of these `stages`, while their shader modules exist.
 pub(super) fn with_infos<R>(
     device: &Device,
     stages: &[ShaderStage],
@@ -202,7 +202,7 @@ pub(super) fn with_infos<R>(
     Ok(make(&infos))
 }
 
-/// A shader module, needed only until its pipeline is made.
+/// A shader module, destroyed once its pipeline is created.
 struct ShaderModule<'a> {
     raw: vk::ShaderModule,
     device: &'a Device,
@@ -211,7 +211,7 @@ struct ShaderModule<'a> {
 impl<'a> ShaderModule<'a> {
     fn new(device: &'a Device, stage: &ShaderStage) -> Result<Self> {
         let info = vk::ShaderModuleCreateInfo::default().code(&stage.words);
-        // SAFETY: the code is SPIR-V that shaderc made, at most with other locations and bindings; the module is destroyed in `drop`.
+        // SAFETY: shaderc compiled the SPIR-V; at most locations and bindings are changed. `drop` destroys the module.
         let raw = unsafe { device.raw.create_shader_module(&info, None) }
             .map_err(Error::vulkan("vkCreateShaderModule"))?;
         Ok(Self { raw, device })
@@ -220,7 +220,7 @@ impl<'a> ShaderModule<'a> {
 
 impl Drop for ShaderModule<'_> {
     fn drop(&mut self) {
-        // SAFETY: modules may go as soon as their pipelines are made.
+        // SAFETY: a module may be destroyed once its pipelines are created.
         unsafe { self.device.raw.destroy_shader_module(self.raw, None) };
     }
 }

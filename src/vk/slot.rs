@@ -1,4 +1,4 @@
-//! What a frame under way uses: a command buffer, a fence, a semaphore.
+//! Resources of one frame in flight: a command buffer, a fence and a semaphore.
 
 use super::Device;
 use super::presenter::Presented;
@@ -6,11 +6,11 @@ use crate::error::{Error, Result};
 use ash::vk;
 use std::sync::Arc;
 
-/// One of the frames under way.
+/// One of the frames in flight.
 pub(super) struct Slot {
     pool: vk::CommandPool,
     pub(super) cmd: vk::CommandBuffer,
-    /// Signalled when the window's image is there.
+    /// Signalled when the swapchain image is available.
     pub(super) acquired: vk::Semaphore,
     done: vk::Fence,
     device: Arc<Device>,
@@ -43,15 +43,14 @@ impl Slot {
         Ok(slot)
     }
 
-    /// Waits until the GPU is done with its last frame.
+    /// Waits until the GPU has finished the last frame of this slot.
     pub(super) fn wait(&self) -> Result<()> {
         // SAFETY: the fence is the device's.
         unsafe { self.device.raw.wait_for_fences(&[self.done], true, u64::MAX) }
             .map_err(Error::vulkan("vkWaitForFences"))
     }
 
-    /// Records a frame, of which nothing but the image's first transition and `end` is left after an error of `body`. Its last frame was
-    /// waited for.
+    /// Records a frame. After an error of `body`, only the first image transition and `end` remain. The caller has waited for the slot.
     pub(super) fn record<R>(
         &self,
         mut frame: Presented,
@@ -84,7 +83,7 @@ impl Slot {
         Ok(())
     }
 
-    /// Between what copies to the image, and what comes before and after.
+    /// Transitions the image between layouts, with a barrier between the copies to it and all other accesses.
     pub(super) fn transition(&self, image: vk::Image, [from, to]: [vk::ImageLayout; 2]) {
         let next = match to {
             vk::ImageLayout::TRANSFER_SRC_OPTIMAL => vk::AccessFlags::TRANSFER_READ,
@@ -105,7 +104,7 @@ impl Slot {
             .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
             .image(image)
             .subresource_range(range);
-        // What waits for the image, and for what is drawn, does so here.
+        // The waits for the image and for the drawing are at this stage.
         let stage = vk::PipelineStageFlags::TRANSFER;
         let none = vk::DependencyFlags::empty();
         // SAFETY: the command buffer is being recorded outside a render pass; the image is the swapchain's.
@@ -114,7 +113,7 @@ impl Slot {
         }
     }
 
-    /// Submits what was recorded, which waits for the window's image, if it is of one, and then signals `drawn`.
+    /// Submits the command buffer. For a swapchain image, it waits until the image is available and then signals `drawn`.
     pub(super) fn submit(&self, drawn: Option<vk::Semaphore>) -> Result<()> {
         let (queue, _) = self.device.queue()?;
         let (commands, stages) = ([self.cmd], [vk::PipelineStageFlags::TRANSFER]);

@@ -1,4 +1,4 @@
-//! What a window shows: its surface.
+//! Window surfaces.
 
 use super::Device;
 use super::instance::Instance;
@@ -8,24 +8,24 @@ use raw_window_handle::{HasDisplayHandle, HasWindowHandle};
 use std::ffi::{CStr, c_char};
 use std::sync::Arc;
 
-/// A window that frames can be presented to.
+/// A window to which frames can be presented.
 pub trait Window: HasWindowHandle + HasDisplayHandle + Send + Sync {}
 
 impl<W: HasWindowHandle + HasDisplayHandle + Send + Sync> Window for W {}
 
-/// The surface of a window, which it keeps.
+/// The surface of a window. It keeps the window alive.
 pub struct Surface {
     pub(super) raw: vk::SurfaceKHR,
     pub(super) loader: khr::surface::Instance,
-    // After the surface: the instance, and the window.
+    // Dropped after the surface: the instance and the window.
     instance: Arc<Instance>,
     _window: Arc<dyn Window>,
 }
 
-/// The device extensions that presenting needs.
+/// Device extensions for presentation.
 pub(super) const DEVICE_EXTENSIONS: [&CStr; 1] = [khr::swapchain::NAME];
 
-/// The instance extensions that presenting to `window` needs.
+/// Instance extensions for presentation to `window`.
 pub(super) fn instance_extensions(window: &dyn Window) -> Result<&'static [*const c_char]> {
     let display = window.display_handle().map_err(no_window)?;
     ash_window::enumerate_required_extensions(display.as_raw()).map_err(no_window)
@@ -36,7 +36,7 @@ fn no_window(cause: impl std::fmt::Display) -> Error {
 }
 
 impl Surface {
-    /// The surface of `window`, whose [`instance_extensions`] `instance` has.
+    /// Creates the surface of `window`. `instance` has the [`instance_extensions`].
     pub(super) fn new(instance: &Arc<Instance>, window: Arc<dyn Window>) -> Result<Self> {
         let display = window.display_handle().map_err(no_window)?.as_raw();
         let handle = window.window_handle().map_err(no_window)?.as_raw();
@@ -47,12 +47,12 @@ impl Surface {
         Ok(Self { raw: raw.map_err(no_window)?, loader, instance: instance.clone(), _window: window })
     }
 
-    /// Whether the device was opened for it.
+    /// Whether `device` was opened for this surface.
     pub(super) fn is_of(&self, device: &Device) -> bool {
         device.instance().handle() == self.instance.raw.handle()
     }
 
-    /// Refuses a queue family of a device, called `name`, that does not present to it.
+    /// Returns an error unless the queue family of the device called `name` can present to the surface.
     pub(super) fn check(&self, physical: vk::PhysicalDevice, family: u32, name: &str) -> Result<()> {
         // SAFETY: the device is of the surface's instance, and the family one of its own.
         let served = unsafe { self.loader.get_physical_device_surface_support(physical, family, self.raw) };

@@ -1,4 +1,4 @@
-//! A swapchain: the images of a window, of one size.
+//! Swapchain: the images of a window, of one size.
 
 use super::presenter::Target;
 use super::{Device, Surface, overlay::Overlay};
@@ -8,14 +8,14 @@ use std::sync::Arc;
 
 const CREATE: &str = "vkCreateSwapchainKHR";
 
-/// The images of a window.
+/// The swapchain of a window.
 pub(super) struct Swapchain {
     raw: vk::SwapchainKHR,
     images: Vec<Shown>,
     size: [u32; 2],
-    /// The window's size when it was made: X11 tells another only later.
+    /// The window's size at creation. X11 reports a new size only later.
     pub(super) asked: [u32; 2],
-    /// Whether the window is another by now.
+    /// Whether the window has changed since.
     pub(super) stale: bool,
     loader: khr::swapchain::Device,
     device: Arc<Device>,
@@ -25,12 +25,12 @@ struct Shown {
     image: vk::Image,
     view: vk::ImageView,
     framebuffer: vk::Framebuffer,
-    /// Signalled when it is drawn.
+    /// Signalled when drawing to the image has finished.
     drawn: vk::Semaphore,
 }
 
 impl Swapchain {
-    /// A swapchain for a window of `size` px in the place of `old`, which nothing uses any more; none where the window has no extent.
+    /// Creates a swapchain for a window of `size` px in place of `old`, which is no longer in use; `None` if the window has no extent.
     pub(super) fn new(
         device: &Arc<Device>,
         (loader, overlay): (&khr::swapchain::Device, &Overlay),
@@ -82,7 +82,7 @@ impl Swapchain {
         Ok(Some(made))
     }
 
-    /// Whether a window that has changed since it was asked may be what a swapchain could not be made for.
+    /// Whether the error may come from a window that changed after its size was queried.
     pub(super) fn is_refusal(error: &Error) -> bool {
         let results = [vk::Result::ERROR_INITIALIZATION_FAILED, vk::Result::ERROR_OUT_OF_DATE_KHR];
         matches!(error, Error::Vulkan { call: CREATE, result } if results.contains(result))
@@ -114,13 +114,13 @@ impl Swapchain {
         Ok(())
     }
 
-    /// The next image, which is there when `acquired` is signalled; none if the window is another by now.
+    /// Acquires the next image, which is available when `acquired` is signalled; `None` if the swapchain is out of date.
     pub(super) fn acquire(&mut self, acquired: vk::Semaphore) -> Result<Option<usize>> {
         // SAFETY: the semaphore is unsignalled: what waits for it was waited for.
         let found =
             unsafe { self.loader.acquire_next_image(self.raw, u64::MAX, acquired, vk::Fence::null()) };
         match found {
-            // Not the best, but acquired: the semaphore will be signalled.
+            // Suboptimal, but acquired: the semaphore will be signalled.
             Ok((index, suboptimal)) => {
                 self.stale |= suboptimal;
                 Ok(Some(index as usize))
@@ -133,18 +133,18 @@ impl Swapchain {
         }
     }
 
-    /// What a frame records into.
+    /// The target of the frame.
     pub(super) fn target(&self, index: usize) -> Target {
         let Shown { image, framebuffer, .. } = self.images[index];
         Target { image, framebuffer, size: self.size }
     }
 
-    /// Signalled when the image is drawn.
+    /// The semaphore that signals the end of drawing to the image.
     pub(super) fn drawn(&self, index: usize) -> vk::Semaphore {
         self.images[index].drawn
     }
 
-    /// Presents an image when it is drawn; whether the window shows it then.
+    /// Presents the image after drawing; returns whether the swapchain still fits the window.
     pub(super) fn present(&mut self, device: &Device, index: usize) -> Result<bool> {
         let (chains, waits, indices) = ([self.raw], [self.drawn(index)], [index as u32]);
         let info =
@@ -166,7 +166,7 @@ impl Swapchain {
     }
 }
 
-/// The extent of images in a window of `size` px: the surface's own, where it has one.
+/// The image extent in a window of `size` px: the surface's current extent if it has one.
 fn extent(can: &vk::SurfaceCapabilitiesKHR, size: [u32; 2]) -> vk::Extent2D {
     let [least, most, own] = [can.min_image_extent, can.max_image_extent, can.current_extent];
     match own.width {

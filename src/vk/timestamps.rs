@@ -1,4 +1,4 @@
-//! Times of a frame's passes on the GPU's clock.
+//! GPU times of the passes of a frame.
 
 use super::Device;
 use crate::error::{Error, Result};
@@ -6,10 +6,10 @@ use ash::vk;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Most passes of a profiled frame; further ones are not timed.
+/// Maximum number of timed passes of a frame; further passes are not timed.
 const PASSES: u32 = 64;
 
-/// How long a pass took on the GPU.
+/// GPU time of a pass.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PassTime {
     /// The pass's label.
@@ -18,7 +18,7 @@ pub struct PassTime {
     pub milliseconds: f64,
 }
 
-/// Queries for the times of one frame after another, each of which is over when the next one is recorded.
+/// Timestamp queries. Each frame must be over when the next one is recorded.
 pub struct Timestamps {
     pub(super) pool: vk::QueryPool,
     labels: Vec<&'static str>,
@@ -27,12 +27,12 @@ pub struct Timestamps {
     device: Arc<Device>,
 }
 
-/// A pass that is recorded later, within a render pass of a host.
+/// A pass that is recorded later, inside a render pass of the host.
 pub struct HostPass {
     pub(super) label: &'static str,
     /// The first of its two queries, in a profiled frame.
     queries: Option<(vk::QueryPool, u32)>,
-    /// Whether its queries are written: a pass that is recorded again is not timed again.
+    /// Whether its queries are written. A pass that is recorded again is not timed again.
     stamped: AtomicBool,
 }
 
@@ -41,7 +41,7 @@ impl HostPass {
         Self { label, queries, stamped: AtomicBool::new(false) }
     }
 
-    /// Its queries, the first time.
+    /// Its queries, on the first call only.
     pub(super) fn once(&self) -> Option<(vk::QueryPool, u32)> {
         self.queries.filter(|_| !self.stamped.swap(true, Ordering::Relaxed))
     }
@@ -71,7 +71,7 @@ impl Timestamps {
         unsafe { self.device.raw.cmd_reset_query_pool(cmd, self.pool, 0, 2 * PASSES) };
     }
 
-    /// Number of the first of the pass's two queries; `None` if there is no room.
+    /// Index of the first of the pass's two queries; `None` if all are in use.
     pub(super) fn begin_pass(&mut self, label: &'static str) -> Option<u32> {
         let query = 2 * self.labels.len() as u32;
         if query >= 2 * PASSES {
@@ -81,9 +81,9 @@ impl Timestamps {
         Some(query)
     }
 
-    /// The last frame's times; it must be over. Passes of one label are summed. Passes that were never submitted are left out.
+    /// Times of the last frame, which must be over. Passes with the same label are summed; passes that were never submitted are left out.
     pub fn read(&self) -> Result<Vec<PassTime>> {
-        // Each with whether it is there.
+        // Each with its availability.
         let mut stamps = vec![[0u64; 2]; 2 * self.labels.len()];
         if stamps.is_empty() {
             return Ok(Vec::new());

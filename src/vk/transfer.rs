@@ -1,4 +1,4 @@
-//! Copies to the GPU's own memory.
+//! Uploads to device-local buffers.
 
 use super::{Access, Buffer, Commands, Device, Recorder, Use};
 use crate::error::Result;
@@ -7,25 +7,25 @@ use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// Most bytes staged at once, where a copy is waited for.
+/// Size of the staging buffer of synchronous uploads, bytes.
 const CHUNK: usize = 32 << 20;
 
-/// Makes buffers with contents, and writes to buffers.
+/// Creates buffers with contents, and writes to buffers.
 pub struct Uploads<'a> {
     device: &'a Arc<Device>,
     way: RefCell<Way>,
 }
 
 enum Way {
-    /// Submitted and waited for, chunk by chunk.
+    /// Submitted and waited for chunk by chunk.
     Now(Commands),
-    /// Staged, to be recorded when all has been made.
+    /// Staged; recorded by [`Uploads::record`].
     Later(Vec<Copy>),
-    /// Kept, to be staged and recorded piece by piece.
+    /// Kept; staged and recorded piece by piece.
     Kept(VecDeque<Kept>),
 }
 
-/// A copy to be recorded: of all that is staged, to this offset, bytes.
+/// A copy of a whole staging buffer to an offset, bytes.
 struct Copy {
     from: Buffer,
     to: vk::Buffer,
@@ -34,7 +34,7 @@ struct Copy {
     read: Use,
 }
 
-/// Contents of a buffer, those from byte `at` on, which are yet to be copied.
+/// Contents of a buffer of which the bytes from `at` on are not copied yet.
 struct Kept {
     bytes: Vec<u8>,
     at: usize,
@@ -43,41 +43,41 @@ struct Kept {
     read: Use,
 }
 
-/// Copies that are staged and recorded piece by piece, to buffers that outlive them.
+/// Copies that are staged and recorded piece by piece. Their destinations must outlive them.
 pub struct Pieces {
     list: VecDeque<Kept>,
     device: Arc<Device>,
 }
 
-/// What recorded copies are made from. It must stay until the GPU is done with them.
+/// Source buffers of recorded copies. Keep it until the GPU has executed the copies.
 #[derive(Default)]
 #[must_use = "the copies are made from it once they are submitted: keep it until then"]
 pub struct Staging(Vec<Buffer>);
 
 impl Staging {
-    /// Memory that it holds, bytes.
+    /// Memory of the buffers, bytes.
     pub fn bytes(&self) -> u64 {
         self.0.iter().map(Buffer::size).sum()
     }
 }
 
 impl<'a> Uploads<'a> {
-    /// Copies that are made at once. Refused on a device that a host lends.
+    /// Synchronous uploads. Returns an error on an external device.
     pub fn now(device: &'a Arc<Device>) -> Result<Self> {
         Ok(Self { device, way: RefCell::new(Way::Now(Commands::new(device, false)?)) })
     }
 
-    /// Copies that [`Uploads::record`] records.
+    /// Uploads that [`Uploads::record`] records.
     pub fn later(device: &'a Arc<Device>) -> Self {
         Self { device, way: RefCell::new(Way::Later(Vec::new())) }
     }
 
-    /// Copies that [`Pieces::record`] records.
+    /// Uploads that [`Pieces::record`] records.
     pub fn kept(device: &'a Arc<Device>) -> Self {
         Self { device, way: RefCell::new(Way::Kept(VecDeque::new())) }
     }
 
-    /// Those that are kept.
+    /// The kept copies.
     pub fn pieces(self) -> Pieces {
         let list = match self.way.into_inner() {
             Way::Kept(list) => list,
@@ -86,7 +86,7 @@ impl<'a> Uploads<'a> {
         Pieces { list, device: self.device.clone() }
     }
 
-    /// A new storage buffer with `bytes` in it, for shaders to read. An empty slice makes a buffer of 4 zero bytes, which can be bound.
+    /// Creates a storage buffer with the contents `bytes`. An empty slice creates a buffer of 4 zero bytes, so that it can be bound.
     pub fn buffer(&self, name: &str, bytes: &[u8]) -> Result<Buffer> {
         let bytes = if bytes.is_empty() { &[0; 4][..] } else { bytes };
         let buffer = Buffer::storage(self.device, name, bytes.len() as u64)?;
@@ -94,8 +94,8 @@ impl<'a> Uploads<'a> {
         Ok(buffer)
     }
 
-    /// Writes `bytes` to a buffer of the device from byte `at` on, for shaders to read; both are multiples of 4, and there is room. What is
-    /// recorded before reads what was there before.
+    /// Writes `bytes` to a buffer of the device at byte `at`, for shader reads. Both are multiples of 4, and the buffer must be large
+    /// enough. Commands that were recorded before read the old contents.
     pub fn write(&self, buffer: &Buffer, at: u64, bytes: &[u8]) -> Result<()> {
         match &mut *self.way.borrow_mut() {
             Way::Now(commands) => copy_now(self.device, commands, buffer, at, bytes),
@@ -115,7 +115,7 @@ impl<'a> Uploads<'a> {
         }
     }
 
-    /// Records the copies to all buffers that were made or written to, which are alive; what they are made from must stay until the GPU is done.
+    /// Records the copies. The destination buffers must be alive; keep the staging buffers until the GPU has executed the copies.
     pub fn record(self, rec: &mut Recorder<'_>) -> Staging {
         let Way::Later(copies) = self.way.into_inner() else { return Staging::default() };
         let uses = copies.iter().flat_map(|copy| [copy.from.with(Access::COPY_READ), copy.written]);
@@ -131,12 +131,12 @@ impl<'a> Uploads<'a> {
 }
 
 impl Pieces {
-    /// Bytes that are yet to be copied.
+    /// Bytes that are not recorded yet.
     pub fn left(&self) -> u64 {
         self.list.iter().map(|kept| (kept.bytes.len() - kept.at) as u64).sum()
     }
 
-    /// Stages and records copies of at most `most` bytes, and of 4 at least; after an error nothing is recorded.
+    /// Stages and records copies of at most `most` bytes, but at least 4. After an error nothing is recorded.
     pub fn record(&mut self, rec: &mut Recorder<'_>, most: u64) -> Result<Staging> {
         let most = (most / 4 * 4).max(4).min(self.left());
         if most == 0 {

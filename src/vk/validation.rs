@@ -1,10 +1,10 @@
-//! Messages of the validation layers, collected.
+//! Messages of the validation layers.
 
 use ash::vk;
 use std::ffi::{CStr, c_void};
 use std::sync::Mutex;
 
-/// Warnings and errors of the validation layers, in the order in which they came.
+/// Warnings and errors of the validation layers, oldest first.
 #[derive(Default)]
 pub(super) struct Messages(Mutex<Vec<String>>);
 
@@ -19,7 +19,7 @@ impl Messages {
     }
 }
 
-/// What the messenger is created with; `messages` must outlive it.
+/// Create info of the debug messenger. `messages` must outlive the messenger.
 pub(super) fn messenger_info(messages: &Messages) -> vk::DebugUtilsMessengerCreateInfoEXT<'_> {
     use vk::{DebugUtilsMessageSeverityFlagsEXT as Severity, DebugUtilsMessageTypeFlagsEXT as Type};
     vk::DebugUtilsMessengerCreateInfoEXT::default()
@@ -47,7 +47,7 @@ unsafe extern "system" fn collect(
         };
         (text(data.p_message), text(data.p_message_id_name), &*messages.cast::<Messages>())
     };
-    // The loader speaks of drivers and manifests that it skips, under GENERAL: not of what this program does.
+    // The loader reports skipped drivers and manifests under GENERAL: these are not about this program.
     if kind == vk::DebugUtilsMessageTypeFlagsEXT::GENERAL {
         log::debug!("{id}: {text}")
     } else {
