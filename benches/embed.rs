@@ -39,7 +39,7 @@ fn main() -> Result<()> {
             return Ok(());
         }
     };
-    let device = host.lend(None)?;
+    let device = host.external_device(None)?;
     println!("{}, {}", device.description().name, device.description().driver);
     println!("milliseconds a frame of {SIDE}², of {FRAMES}: median (least to most)");
     println!(
@@ -163,7 +163,7 @@ impl Composited {
         let kind =
             frame::Kind { way: Way::Subpass, colour: COLOUR, normals: false, samples: ONE, reversed: true };
         let frame = Frame::new(uploaded.host, kind, [SIDE; 2])?;
-        let mesh = Mesh::new(uploaded.host, &uploaded.corners(wall), frame.place())?;
+        let mesh = Mesh::new(uploaded.host, &uploaded.corners(wall), frame.mesh_target())?;
         let options = Options {
             target: frame.target(),
             frames_in_flight: 1,
@@ -205,7 +205,7 @@ impl InSubpasses {
         };
         let frames = [(uploaded.scene.streams(), settings)];
         let native = Native::new(uploaded.host, &uploaded.device, kind, [SIDE; 2], &frames)?;
-        let mesh = Mesh::new(uploaded.host, &uploaded.corners(wall), native.place())?;
+        let mesh = Mesh::new(uploaded.host, &uploaded.corners(wall), native.mesh_target())?;
         Ok(Self { native, mesh })
     }
 

@@ -36,7 +36,7 @@ fn main() -> Result<()> {
             return Ok(());
         }
     };
-    let device = host.lend(None)?;
+    let device = host.external_device(None)?;
     println!("{}, {}", device.description().name, device.description().driver);
     println!("{POINTS} points, {}x{} px: median", SIZE[0], SIZE[1]);
     println!("{:<30} {:<24} {:>14} {:>10} {:>10}", "", "scenes", "recording, µs", "CPU, ms", "clock, ms");

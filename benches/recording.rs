@@ -29,7 +29,7 @@ fn main() -> Result<()> {
             return Ok(());
         }
     };
-    let device = host.lend(None)?;
+    let device = host.external_device(None)?;
     println!("{}, {}", device.description().name, device.description().driver);
     println!("µs of CPU a frame, of {FRAMES}: median (1st to 99th percentile)");
     println!("{:<30} {:>20} {:>20} {:>20}", "", "prepare", "draw", "together");

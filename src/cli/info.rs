@@ -7,12 +7,12 @@ use super::files::print;
 use super::progress;
 use std::fmt::Write;
 use std::path::Path;
+use surfel::Result;
 use surfel::estimate::{Estimate, Estimated, spacing};
 use surfel::formats::declared::Element;
 use surfel::formats::{self, Dropped, Faces, Inspected, Lines, Loaded, ReadOptions, Report};
 use surfel::geometry::{Cloud, Colours, Model, Parts, View};
 use surfel::load::{scene, scene_cloud};
-use surfel::{Error, Result};
 
 /// Number of skipped names that are printed; the header lists all of them.
 const MOST_NAMES: usize = 8;

@@ -11,8 +11,8 @@ pub(super) enum Purpose {
     Blended,
     /// Colours or normals that replace what is there.
     Replaced,
-    /// Numbers that replace what is there.
-    Numbers,
+    /// Ids that replace what is there.
+    Ids,
     /// Colours of the host's own.
     Other,
     /// Depths.
@@ -35,7 +35,7 @@ pub(super) fn check(
         Purpose::Blended => {
             (Can::COLOR_ATTACHMENT | Can::COLOR_ATTACHMENT_BLEND, vk::ImageUsageFlags::COLOR_ATTACHMENT)
         }
-        Purpose::Replaced | Purpose::Numbers | Purpose::Other => {
+        Purpose::Replaced | Purpose::Ids | Purpose::Other => {
             (Can::COLOR_ATTACHMENT, vk::ImageUsageFlags::COLOR_ATTACHMENT)
         }
         Purpose::Depth | Purpose::Stencil => {
@@ -44,34 +44,38 @@ pub(super) fn check(
     };
     let fits = match purpose {
         Purpose::Blended | Purpose::Replaced => !is_integer(format),
-        Purpose::Numbers => format == vk::Format::R32_UINT,
+        Purpose::Ids => format == vk::Format::R32_UINT,
         Purpose::Other => true,
         Purpose::Depth => has_depth(format),
         Purpose::Stencil => has_stencil(format),
     };
-    if !fits && purpose == Purpose::Numbers {
+    if !fits && purpose == Purpose::Ids {
         return Err(format!("{what} want R32_UINT, and their format is {format:?}").into());
     }
     if !fits || !device.format_features(format).contains(needed) {
         return Err(format!("{name} cannot draw {what} to {format:?}").into());
     }
     if samples.as_raw().count_ones() != 1 {
-        return Err(format!("{what} has {} samples a pixel: give one number of them", told(samples)).into());
+        return Err(format!(
+            "{what} has {} samples a pixel: give one number of them",
+            sample_counts(samples)
+        )
+        .into());
     }
     let there = device.attachment_samples(format, usage);
     if !there.contains(samples) {
         return Err(format!(
             "{what} has {} samples a pixel, and {name} draws to {format:?} with {}",
-            told(samples),
-            told(there)
+            sample_counts(samples),
+            sample_counts(there)
         )
         .into());
     }
     Ok(())
 }
 
-/// Numbers of samples in words.
-fn told(samples: vk::SampleCountFlags) -> String {
+/// Ids of samples in words.
+fn sample_counts(samples: vk::SampleCountFlags) -> String {
     let there = (0..32).map(|bit| 1 << bit).filter(|bit| samples.as_raw() & bit != 0);
     let list: Vec<_> = there.map(|bit| bit.to_string()).collect();
     if list.is_empty() { "no".into() } else { list.join(", ") }
@@ -114,7 +118,7 @@ mod tests {
 
     #[test]
     fn samples_are_numbers() {
-        assert_eq!(told(Samples::empty()), "no");
-        assert_eq!(told(Samples::TYPE_1 | Samples::TYPE_4 | Samples::TYPE_64), "1, 4, 64");
+        assert_eq!(sample_counts(Samples::empty()), "no");
+        assert_eq!(sample_counts(Samples::TYPE_1 | Samples::TYPE_4 | Samples::TYPE_64), "1, 4, 64");
     }
 }

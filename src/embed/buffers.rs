@@ -83,7 +83,7 @@ impl Scene {
     ///
     /// # Safety
     /// The buffers are of the device that `device` borrows, as large as they are said to be, made with `STORAGE_BUFFER` usage, bound to memory,
-    /// and owned by the queue family that was lent. They outlive the scene and every frame of it. Their contents are written as above.
+    /// and owned by the queue family that was external. They outlive the scene and every frame of it. Their contents are written as above.
     pub unsafe fn from_buffers(device: &Arc<Device>, buffers: &Buffers) -> Result<Self> {
         buffers.check()?;
         let Buffers { positions, normals, ellipses, colours, capacity, .. } = *buffers;
@@ -101,7 +101,7 @@ impl Scene {
         };
         Self::of_streams(
             device,
-            crate::scene::Lent {
+            crate::scene::ExternalBuffers {
                 positions: stream("positions", positions, &sizes(VECTORS))?,
                 normals: stream("normals", normals, &sizes(NORMALS))?,
                 normal_stream,

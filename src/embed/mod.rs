@@ -1,7 +1,7 @@
 //! Surfels among the geometry of another renderer, which owns instance, device, queue, command buffers and frame pacing.
 //!
 //! ```text
-//! once          Abilities::of ─ the host makes its device ─ Device::borrow ─ upload → Scene, Staging ─ Renderer::new
+//! once          Abilities::of ─ the host makes its device ─ Device::from_external ─ upload → Scene, Staging ─ Renderer::new
 //! each frame    Renderer::prepare: records every pass of the method, outside a render pass
 //!               Renderer::draw:    records a draw of the picture with its depth, inside a render pass of the host
 //! ```
@@ -15,7 +15,7 @@
 //! ```no_run
 //! use ash::vk;
 //! use std::sync::Arc;
-//! use surfel::embed::{self, Abilities, Lent, MemoryBlocks, Options, Pass, Renderer, Target, View};
+//! use surfel::embed::{self, Abilities, ExternalDevice, MemoryBlocks, Options, Pass, Renderer, Target, View};
 //! use surfel::geometry::{Camera, Surfels};
 //! use surfel::vk::{Device, DeviceLimits};
 //! use surfel::{Precision, Scene, Settings};
@@ -39,7 +39,7 @@
 //! /// Once. `cmd` is outside a render pass; `Staging` stays until the GPU has done it.
 //! unsafe fn load(host: &Host, enabled: Abilities, cmd: vk::CommandBuffer, surfels: &Surfels) -> surfel::Result<(Arc<Scene>, embed::Staging, Renderer)> {
 //!     let device = unsafe {
-//!         Device::borrow(Lent {
+//!         Device::from_external(ExternalDevice {
 //!             instance: &host.instance,
 //!             physical: host.physical,
 //!             device: &host.device,
@@ -94,7 +94,7 @@ mod view;
 
 pub use crate::scene::Changes;
 pub use crate::vk::{
-    ABILITIES, API_VERSION, Abilities, Ability, Features, HostMemory, Lent, Location, MemoryBlocks,
+    ABILITIES, API_VERSION, Abilities, Ability, ExternalDevice, Features, HostMemory, Location, MemoryBlocks,
     MemoryError, MemoryRequest, MemorySource, QUEUE, Staging,
 };
 pub use buffers::{Buffers, READ_ACCESS, READ_STAGES, Radii, Values, update};
@@ -104,7 +104,7 @@ pub use reports::Measured;
 use reports::Reports;
 pub use target::{Pass, Target};
 pub use upload::{Upload, upload};
-use view::Seen;
+use view::TargetView;
 pub use view::View;
 
 use crate::error::{Error, Result};
@@ -140,8 +140,8 @@ pub struct Options {
 /// Renders scenes into frames of a host.
 pub struct Renderer {
     // Fields are dropped in this order: views before what they view.
-    viewed: Option<Viewed>,
-    shown: Option<(Shown, HostPass)>,
+    viewed: Option<CompositeView>,
+    shown: Option<(PreparedDraw, HostPass)>,
     reports: Reports,
     deferred: DeferredDestruction,
     composites: Vec<Arc<Composite>>,
@@ -151,7 +151,7 @@ pub struct Renderer {
 }
 
 /// What draws the pictures of some targets.
-struct Viewed {
+struct CompositeView {
     /// Which targets.
     present: u64,
     set: DescriptorSet,
@@ -159,7 +159,7 @@ struct Viewed {
 }
 
 /// The picture that is prepared: where it is drawn.
-struct Shown {
+struct PreparedDraw {
     place: layout::Composite,
     area: vk::Rect2D,
 }
@@ -232,7 +232,7 @@ impl Renderer {
     /// `cmd` is of the device, and is being recorded inside the subpass, or the dynamic rendering, that is the target. It is submitted after what
     /// prepared the picture, to the same queue, and before what prepares the next one.
     pub unsafe fn draw(&self, cmd: vk::CommandBuffer) -> Result<()> {
-        let (Some(viewed), Some((Shown { place, area }, pass))) = (&self.viewed, &self.shown) else {
+        let (Some(viewed), Some((PreparedDraw { place, area }, pass))) = (&self.viewed, &self.shown) else {
             return Err(Error::Usage("there is no picture to draw: prepare one, and heed its error".into()));
         };
         // SAFETY: by the caller.
@@ -251,7 +251,7 @@ impl Renderer {
         settings: &Settings,
     ) -> Result<()> {
         let placed = scenes.into().placed(&self.device)?;
-        let seen = self.seen(view)?;
+        let seen = self.target_view(view)?;
         let frame = self.frame.describe(&placed, &seen.camera, &without_background(settings), seen.size)?;
         self.frame.make_pipelines(&frame)?;
         self.composite(&frame.variant).map(drop)
@@ -280,22 +280,27 @@ impl Renderer {
     }
 
     /// Makes all that a frame needs: its numbers, and how its picture is drawn.
-    fn make(&mut self, scenes: Instances<'_>, view: &View, settings: &Settings) -> Result<(Blocks, Shown)> {
+    fn make(
+        &mut self,
+        scenes: Instances<'_>,
+        view: &View,
+        settings: &Settings,
+    ) -> Result<(Blocks, PreparedDraw)> {
         self.shown = None;
         let placed = scenes.placed(&self.device)?;
-        let Seen { area, size, camera, depth } = self.seen(view)?;
+        let TargetView { area, size, camera, depth } = self.target_view(view)?;
         self.frame.resize(size);
         let (blocks, variant) = self.frame.prepare(&placed, &camera, &without_background(settings), false)?;
         self.deferred.keep_scenes(&scenes);
         let composite = self.composite(&variant)?;
         self.view(composite)?;
         let place = layout::Composite { origin: [area.offset.x, area.offset.y], size, depth };
-        Ok((blocks, Shown { place, area }))
+        Ok((blocks, PreparedDraw { place, area }))
     }
 
     /// The view, of a target that can be made.
-    fn seen(&self, view: &View) -> Result<Seen> {
-        let seen = view.seen(&self.device, self.target.depth.map(|_| self.target.reversed))?;
+    fn target_view(&self, view: &View) -> Result<TargetView> {
+        let seen = view.in_target(&self.device, self.target.depth.map(|_| self.target.reversed))?;
         check_size(&self.device, seen.size)?;
         Ok(seen)
     }
@@ -303,11 +308,12 @@ impl Renderer {
     /// Sees the present targets as `composite` does, if it does not already.
     fn view(&mut self, composite: Arc<Composite>) -> Result<()> {
         let Some(present) = self.frame.present() else { return Ok(()) };
-        let same =
-            |viewed: &Viewed| viewed.present == present.id && Arc::ptr_eq(&viewed.composite, &composite);
+        let same = |viewed: &CompositeView| {
+            viewed.present == present.id && Arc::ptr_eq(&viewed.composite, &composite)
+        };
         if !self.viewed.as_ref().is_some_and(same) {
             let set = composite.view(&self.device, &present.targets)?;
-            let old = self.viewed.replace(Viewed { present: present.id, set, composite });
+            let old = self.viewed.replace(CompositeView { present: present.id, set, composite });
             self.deferred.defer(old);
         }
         Ok(())

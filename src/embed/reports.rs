@@ -36,7 +36,7 @@ struct Slot {
     counts: Option<Buffer>,
     /// Has the number of the last frame that the GPU has done, of those that were measured: one that was prepared may never be submitted.
     done: Option<Buffer>,
-    told: Option<Told>,
+    pending: Option<PendingReport>,
 }
 
 /// What a measured frame records last.
@@ -47,7 +47,7 @@ pub(super) struct Tail<'a> {
 
 /// What a frame tells.
 #[derive(Clone, Copy)]
-struct Told {
+struct PendingReport {
     /// Of the frame.
     number: u32,
     times: bool,
@@ -56,7 +56,7 @@ struct Told {
 }
 
 impl Reports {
-    /// Nothing is told yet of frames of which so many are under way.
+    /// Nothing is pending yet of frames of which so many are under way.
     pub(super) fn new(frames_in_flight: u32) -> Self {
         let slots = (0..frames_in_flight).map(|_| Slot::default()).collect();
         Self { measured: Measured::default(), slots, present: 0, frames: 0, last: None }
@@ -92,9 +92,9 @@ impl Reports {
             slot.counts = Some(Buffer::readback(device, "frame counts", room)?);
         }
         self.frames = self.frames.wrapping_add(1);
-        let told = Told { number: self.frames, times: measured.times, counts };
-        slot.told = (measured != Measured::default()).then_some(told);
-        if slot.told.is_some() && slot.done.is_none() {
+        let pending = PendingReport { number: self.frames, times: measured.times, counts };
+        slot.pending = (measured != Measured::default()).then_some(pending);
+        if slot.pending.is_some() && slot.done.is_none() {
             let mut done = Buffer::readback(device, "frame done", size_of::<u32>() as u64)?;
             // No frame's soon.
             done.bytes_mut().copy_from_slice(&self.frames.wrapping_sub(1).to_ne_bytes());
@@ -106,10 +106,10 @@ impl Reports {
 
     /// What times the frame that was begun, and what is to be recorded last in it, as far as that was asked for.
     pub(super) fn present(&mut self) -> (Option<&mut Timestamps>, Tail<'_>) {
-        let Slot { timestamps, counts, done, told } = &mut self.slots[self.present];
-        let times = told.is_some_and(|told| told.times);
-        let counted = told.is_some_and(|told| told.counts.is_some());
-        let done = done.as_ref().zip(told.map(|told| told.number));
+        let Slot { timestamps, counts, done, pending } = &mut self.slots[self.present];
+        let times = pending.is_some_and(|pending| pending.times);
+        let counted = pending.is_some_and(|pending| pending.counts.is_some());
+        let done = done.as_ref().zip(pending.map(|pending| pending.number));
         let tail = Tail { counts: counts.as_ref().filter(|_| counted), done };
         (timestamps.as_mut().filter(|_| times), tail)
     }
@@ -119,8 +119,8 @@ impl Reports {
         // The oldest first: the last one that tells counts.
         for back in (0..self.slots.len()).rev() {
             let slot = (self.present + self.slots.len() - back) % self.slots.len();
-            if let Some(told) = self.slots[slot].read()? {
-                self.last = Some(told);
+            if let Some(pending) = self.slots[slot].read()? {
+                self.last = Some(pending);
             }
         }
         Ok(())
@@ -157,7 +157,7 @@ fn copy_counts(scenes: &[&SceneResources], rec: &mut Recorder<'_>, to: &Buffer) 
 impl Slot {
     /// What its frame, which is over, tells, once.
     fn read(&mut self) -> Result<Option<FrameReport>> {
-        let Some(Told { number, times, counts }) = self.told.take() else { return Ok(None) };
+        let Some(PendingReport { number, times, counts }) = self.pending.take() else { return Ok(None) };
         if self.done.as_ref().is_none_or(|done| done.bytes() != number.to_ne_bytes()) {
             return Ok(None);
         }

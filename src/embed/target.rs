@@ -90,7 +90,7 @@ impl Target {
         let wanted = [
             ("the picture", Some(self.picture), Purpose::Blended),
             ("normals", self.normal, Purpose::Replaced),
-            ("numbers", self.id, Purpose::Numbers),
+            ("point ids", self.id, Purpose::Ids),
         ];
         for [a, b] in [[0, 1], [0, 2], [1, 2]] {
             let ((one, location, ..), (other, same, ..)) = (wanted[a], wanted[b]);

@@ -16,20 +16,20 @@ pub struct View {
 }
 
 impl View {
-    /// Seen in the whole of a target of `size` px, at depths from 0 to 1.
+    /// TargetView in the whole of a target of `size` px, at depths from 0 to 1.
     pub fn whole(camera: Camera, size: [u32; 2]) -> Self {
         let [width, height] = size.map(|side| side as f32);
         Self { camera, viewport: vk::Viewport { width, height, max_depth: 1.0, ..Default::default() } }
     }
 
     /// As a target takes it, whose depth falls with distance where it is `reversed`, if it has any. Refuses what that cannot show.
-    pub(super) fn seen(&self, device: &Device, reversed: Option<bool>) -> Result<Seen> {
+    pub(super) fn in_target(&self, device: &Device, reversed: Option<bool>) -> Result<TargetView> {
         let area = self.area(device.capabilities().max_framebuffer)?;
         check_depths(self.viewport)?;
         let camera = self.upright();
         check_convention(reversed, &camera)?;
         let depth = depths(&camera, self.viewport)?;
-        Ok(Seen { area, size: [area.extent.width, area.extent.height], camera, depth })
+        Ok(TargetView { area, size: [area.extent.width, area.extent.height], camera, depth })
     }
 
     /// The pixels of the viewport, in a framebuffer of at most so many px.
@@ -73,7 +73,7 @@ impl View {
 }
 
 /// A view as a target takes it.
-pub(super) struct Seen {
+pub(super) struct TargetView {
     /// The picture's pixels among the target's.
     pub(super) area: vk::Rect2D,
     /// Their width and height.

@@ -4,10 +4,10 @@
 //! A single surfel's plane is as noisy as its normal, so the plane beyond an edge is that of all neighbours there which agree.
 
 use super::Estimate;
-use super::facets::{Facet, Seen, facets, median};
+use super::facets::{Facet, Sample, facets, median};
 use super::sites::Sites;
 use crate::Progress;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::geometry::{Clip, ClipLine, Clips, Surfels};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
@@ -77,22 +77,22 @@ impl Finder<'_> {
     /// The clip of a surfel whose disc reaches a crease.
     fn clip(&self, index: usize) -> Option<Clip> {
         let normal = self.surfels.normals[index].as_dvec3();
-        let seen = self.around(index);
-        let turn = |seen: &Seen| normal.angle_between(seen.normal);
-        let is_other = |seen: &&Seen| (self.angle..PI - BACK).contains(&turn(seen));
-        let others: Vec<Seen> = seen.iter().filter(is_other).copied().collect();
+        let samples = self.around(index);
+        let turn = |samples: &Sample| normal.angle_between(samples.normal);
+        let is_other = |samples: &&Sample| (self.angle..PI - BACK).contains(&turn(samples));
+        let others: Vec<Sample> = samples.iter().filter(is_other).copied().collect();
         let facets = facets(&others, 0.5 * self.angle);
-        let creases = facets.iter().filter(|facet| is_crease(facet, &seen, normal));
+        let creases = facets.iter().filter(|facet| is_crease(facet, &samples, normal));
         let lines: Vec<ClipLine> = creases.filter_map(|facet| line(facet, normal)).collect();
-        let is_own = |seen: &&Seen| turn(seen) < self.angle && seen.at.length() <= 1.0;
-        let own = seen.iter().filter(is_own).map(|seen| seen.at);
+        let is_own = |samples: &&Sample| turn(samples) < self.angle && samples.at.length() <= 1.0;
+        let own = samples.iter().filter(is_own).map(|samples| samples.at);
         let mut clip = decide(&lines, &own.chain([DVec3::ZERO]).collect::<Vec<_>>(), normal)?;
         clip.lines.iter_mut().for_each(|line| line.offset *= self.surfels.radii[index]);
         Some(clip)
     }
 
     /// The samples around a surfel, relative to its centre and by its radius.
-    fn around(&self, index: usize) -> Vec<Seen> {
+    fn around(&self, index: usize) -> Vec<Sample> {
         let Self { surfels, sites, .. } = self;
         let [centre, normal] = [surfels.positions[index], surfels.normals[index]].map(|v| v.as_dvec3());
         let is_two_sided = |i: usize| surfels.two_sided.as_ref().is_some_and(|two_sided| two_sided[i]);
@@ -101,20 +101,20 @@ impl Finder<'_> {
             let at = (surfels.positions[other].as_dvec3() - centre) / f64::from(surfels.radii[index]);
             let facing = surfels.normals[other].as_dvec3();
             let unknown = is_two_sided(index) || is_two_sided(other);
-            Seen { at, normal: if unknown { agreeing(normal, facing, at) } else { facing } }
+            Sample { at, normal: if unknown { agreeing(normal, facing, at) } else { facing } }
         };
         let near = sites.nearest(sites.of_point[index], self.count).map(sample);
-        near.take_while(|seen| seen.at.length() <= WINDOW).collect()
+        near.take_while(|samples| samples.at.length() <= WINDOW).collect()
     }
 }
 
 /// Whether the surface turns to a facet at once: where it is curved, samples on the way have normals between.
-fn is_crease(facet: &Facet, seen: &[Seen], normal: DVec3) -> bool {
+fn is_crease(facet: &Facet, samples: &[Sample], normal: DVec3) -> bool {
     let most = BETWEEN * normal.angle_between(facet.normal);
-    let is_between = |seen: &&Seen| {
-        normal.angle_between(seen.normal) < most && facet.normal.angle_between(seen.normal) < most
+    let is_between = |samples: &&Sample| {
+        normal.angle_between(samples.normal) < most && facet.normal.angle_between(samples.normal) < most
     };
-    seen.iter().filter(is_between).count() as f64 <= CURVED * facet.members.len() as f64
+    samples.iter().filter(is_between).count() as f64 <= CURVED * facet.members.len() as f64
 }
 
 /// The side of a normal at `at` that agrees with another at 0, also across a crease: the other is mirrored as a circle's would be on the way.

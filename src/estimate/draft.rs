@@ -1,6 +1,7 @@
 //! Surfels in the making.
 
 use super::{Estimate, Estimated};
+use crate::error::{Error, Result};
 use crate::geometry::{Clips, Cloud, Ellipse, Surfels, Weights, morton};
 use glam::Vec3;
 

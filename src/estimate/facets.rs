@@ -11,7 +11,7 @@ const SETTLING: usize = 2;
 
 /// A sample.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Seen {
+pub(super) struct Sample {
     pub at: DVec3,
     /// Unit normal.
     pub normal: DVec3,
@@ -29,22 +29,26 @@ pub(super) struct Facet {
 }
 
 /// The largest faces, at most two. Samples of a face have normals within `spread` of its mean, radians; faces are twice as far apart.
-pub(super) fn facets(seen: &[Seen], spread: f64) -> Vec<Facet> {
+pub(super) fn facets(samples: &[Sample], spread: f64) -> Vec<Facet> {
     let near = spread.cos();
-    let mut left = seen.to_vec();
+    let mut left = samples.to_vec();
     let mut facets: Vec<Facet> = Vec::new();
     while facets.len() < MOST && left.len() >= LEAST {
         let Some(normal) = densest(&left, near) else { break };
-        let (members, rest): (Vec<Seen>, Vec<Seen>) =
-            left.iter().partition(|seen| seen.normal.dot(normal) >= near);
+        let (members, rest): (Vec<Sample>, Vec<Sample>) =
+            left.iter().partition(|samples| samples.normal.dot(normal) >= near);
         if members.len() < LEAST {
             break;
         }
         // What is left of a rounded face beside it is none of its own.
         let apart = |facet: &Facet| facet.normal.dot(normal) < (2.0 * spread).cos();
         if facets.iter().all(apart) {
-            let offset = median(members.iter().map(|seen| seen.at.dot(normal)).collect());
-            facets.push(Facet { normal, offset, members: members.iter().map(|seen| seen.at).collect() });
+            let offset = median(members.iter().map(|samples| samples.at.dot(normal)).collect());
+            facets.push(Facet {
+                normal,
+                offset,
+                members: members.iter().map(|samples| samples.at).collect(),
+            });
         }
         left = rest;
     }
@@ -52,11 +56,11 @@ pub(super) fn facets(seen: &[Seen], spread: f64) -> Vec<Facet> {
 }
 
 /// The mean normal of the samples of which most have similar normals.
-fn densest(seen: &[Seen], near: f64) -> Option<DVec3> {
-    let around = |normal: DVec3| seen.iter().filter(move |seen| seen.normal.dot(normal) >= near);
-    let mut normal = seen.iter().max_by_key(|seen| around(seen.normal).count())?.normal;
+fn densest(samples: &[Sample], near: f64) -> Option<DVec3> {
+    let around = |normal: DVec3| samples.iter().filter(move |samples| samples.normal.dot(normal) >= near);
+    let mut normal = samples.iter().max_by_key(|samples| around(samples.normal).count())?.normal;
     for _ in 0..SETTLING {
-        normal = around(normal).map(|seen| seen.normal).sum::<DVec3>().try_normalize()?;
+        normal = around(normal).map(|samples| samples.normal).sum::<DVec3>().try_normalize()?;
     }
     Some(normal)
 }
@@ -72,22 +76,22 @@ pub(super) fn median(mut values: Vec<f64>) -> f64 {
 mod tests {
     use super::*;
 
-    fn sample(x: f64, normal: DVec3) -> Seen {
-        Seen { at: DVec3::new(x, 0.1 * x, 0.0), normal: normal.normalize() }
+    fn sample(x: f64, normal: DVec3) -> Sample {
+        Sample { at: DVec3::new(x, 0.1 * x, 0.0), normal: normal.normalize() }
     }
 
     #[test]
     fn the_two_largest_faces_are_found_among_strays() {
-        let mut seen: Vec<Seen> =
+        let mut samples: Vec<Sample> =
             (0..5).map(|i| sample(2.0, DVec3::new(1.0, 0.02 * f64::from(i), 0.0))).collect();
-        seen.push(sample(9.0, DVec3::X));
-        seen.extend([sample(3.0, DVec3::Y); 4]);
-        seen.extend([sample(5.0, DVec3::NEG_Z); 2]);
-        let found = facets(&seen, 0.35);
+        samples.push(sample(9.0, DVec3::X));
+        samples.extend([sample(3.0, DVec3::Y); 4]);
+        samples.extend([sample(5.0, DVec3::NEG_Z); 2]);
+        let found = facets(&samples, 0.35);
         assert_eq!(found.iter().map(|facet| facet.members.len()).collect::<Vec<_>>(), [6, 4]);
         assert!(found[0].normal.x > 0.999 && (found[0].offset - 2.0).abs() < 0.02, "{found:?}");
         assert!((found[1].normal - DVec3::Y).length() < 1e-12 && (found[1].offset - 0.3).abs() < 1e-12);
-        assert!(facets(&seen[..2], 0.35).is_empty() && facets(&[], 0.35).is_empty());
+        assert!(facets(&samples[..2], 0.35).is_empty() && facets(&[], 0.35).is_empty());
     }
 
     #[test]

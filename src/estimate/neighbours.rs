@@ -6,7 +6,7 @@ use super::patch::{Patch, Surveyor};
 use super::sites::Sites;
 use super::{Estimate, MARGIN};
 use crate::Progress;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::geometry::{Ellipse, Surfels, View};
 use glam::Vec3;
 use rayon::prelude::*;

@@ -4,7 +4,7 @@
 use super::Estimate;
 use super::sites::Sites;
 use crate::Progress;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use glam::Vec3;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};

@@ -12,7 +12,7 @@ use tempfile::NamedTempFile;
 /// # Errors
 /// [`Error::Io`] if the file cannot be written, or `fill` fails.
 pub fn write(path: &Path, fill: impl FnOnce(&mut BufWriter<&File>) -> io::Result<()>) -> Result<()> {
-    let (target, existing) = look_up(path);
+    let (target, existing) = resolve(path);
     let done = match &existing {
         Some(old) if !old.is_file() && !old.is_dir() => {
             File::options().write(true).open(&target).and_then(|file| fill_all(&file, fill))
@@ -27,7 +27,7 @@ pub fn write(path: &Path, fill: impl FnOnce(&mut BufWriter<&File>) -> io::Result
 /// # Errors
 /// [`Error::Io`] if the folder is missing or closed to us, or if `path` is a folder or write-protected.
 pub fn check(path: &Path) -> Result<()> {
-    let (target, existing) = look_up(path);
+    let (target, existing) = resolve(path);
     match &existing {
         Some(old) if !old.is_file() && !old.is_dir() => Ok(()),
         _ => temporary_for(&target, existing.as_ref()).map(drop).map_err(Error::io(path, "cannot write")),
@@ -35,7 +35,7 @@ pub fn check(path: &Path) -> Result<()> {
 }
 
 /// Where `path` leads, and what is there now. A link keeps its place: what it leads to is replaced.
-fn look_up(path: &Path) -> (PathBuf, Option<Metadata>) {
+fn resolve(path: &Path) -> (PathBuf, Option<Metadata>) {
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     let existing = fs::metadata(&target).ok();
     (target, existing)

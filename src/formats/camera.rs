@@ -43,7 +43,7 @@ pub fn read(path: &Path) -> Result<Pose> {
 }
 
 /// The camera of a file's text; the error says what is wrong with it.
-fn parse(text: &[u8]) -> Result<Pose> {
+pub fn parse(text: &[u8]) -> Result<Pose> {
     let fields: Fields =
         serde_json::from_slice(text).map_err(|error| Error::Usage(format!("{error}: correct the file")))?;
     let span = match (fields.fov_y_deg, fields.height) {
@@ -93,9 +93,9 @@ mod tests {
                 up: DVec3::new(0.0, 0.6, -0.8),
                 span,
             };
-            assert_eq!(parse(text(&pose).as_bytes()), Ok(pose), "{}", text(&pose));
+            assert_eq!(parse(text(&pose).as_bytes()).unwrap(), pose, "{}", text(&pose));
             let line = serde_json::to_vec(&Fields::from(pose)).unwrap();
-            assert_eq!(parse(&line), Ok(pose));
+            assert_eq!(parse(&line).unwrap(), pose);
         }
     }
 
@@ -109,10 +109,10 @@ mod tests {
             (r#","height":0"#, "height of the picture is 0"),
             (r#","fov":45"#, "unknown field `fov`"),
         ] {
-            let error = parse(with(end).as_bytes()).unwrap_err();
+            let error = parse(with(end).as_bytes()).unwrap_err().to_string();
             assert!(error.contains(cause), "{end}: {error}");
         }
         let on_target = with(r#","height":1"#).replace("0,0,3", "0,0,0");
-        assert!(parse(on_target.as_bytes()).unwrap_err().contains("stands on its target"));
+        assert!(parse(on_target.as_bytes()).unwrap_err().to_string().contains("stands on its target"));
     }
 }

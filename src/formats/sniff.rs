@@ -1,6 +1,6 @@
 //! What a file is that no reader knows, so that the message can say so.
 
-use super::ply::shown;
+use super::ply::quoted;
 
 /// First bytes of files that are often met under the wrong name, and what to do with them.
 const KNOWN: &[(&[u8], &str)] = &[
@@ -55,7 +55,7 @@ pub(super) fn name(file: &str, bytes: &[u8], size: u64) -> String {
     let line = beginning.split(|byte| matches!(byte, b'\n' | b'\r')).next().unwrap_or_default();
     match text(beginning) {
         Some(what) => format!("not a PLY file, but {what}"),
-        None => format!("not a PLY file: it begins with {} instead of `ply`; give a PLY file", shown(line)),
+        None => format!("not a PLY file: it begins with {} instead of `ply`; give a PLY file", quoted(line)),
     }
 }
 

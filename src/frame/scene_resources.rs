@@ -114,7 +114,7 @@ impl SceneResources {
         let listed = triangles.map_or(0, |[count, _]| u64::from(count));
         let bytes = (scene.capacity() * SPLAT).max(4 * listed);
         let range = device.capabilities().max_storage_buffer_range - LIST_HEADER;
-        let batches = Batches::new(needs.instances, scene.windows().len(), bytes, range);
+        let batches = Batches::new(needs.instances, scene.chunks().len(), bytes, range);
         let splats = |wanted: bool| {
             let rasterizer = needs.rasterizer.filter(|_| wanted);
             rasterizer.map(|rasterizer| SplatBuffers::new(device, scene, rasterizer, batches)).transpose()
@@ -124,7 +124,7 @@ impl SceneResources {
             Buffer::storage(device, "large triangles", bytes)
         };
         let views = || Buffer::uniform(device, "views", batches.count() * batches.stride(0, VIEW));
-        let clips = scene.clip_windows().unwrap_or_default();
+        let clips = scene.clip_chunks().unwrap_or_default();
         let mut made = Self {
             sets: Sets::default(),
             count_sets: Vec::new(),
@@ -133,7 +133,7 @@ impl SceneResources {
             counts: None,
             large_triangles: triangles.map(list).transpose()?,
             views: needs.instanced.then(views).transpose()?,
-            parts: scene.windows().to_vec(),
+            parts: scene.chunks().to_vec(),
             clips: clips.iter().map(|clips| clips.count as u32).collect(),
             elements: [kinds.and_then(|kinds| kinds.lines.as_ref()).map(of), triangles],
             needs,

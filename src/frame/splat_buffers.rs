@@ -83,7 +83,7 @@ impl SplatBuffers {
         let buffer =
             |name, stride: u64| Buffer::storage(device, name, (batches.count() * stride).max(ALIGNMENT));
         let lists = || buffer("large splats", list_stride(scene, &batches));
-        let clips = scene.clip_windows().map(|_| buffer("screen clips", clip_stride(scene, &batches)));
+        let clips = scene.clip_chunks().map(|_| buffer("screen clips", clip_stride(scene, &batches)));
         Ok(Self {
             splats: buffer("splats", splat_stride(scene.capacity(), &batches))?,
             large: (rasterizer == Rasterizer::Compute).then(lists).transpose()?,
@@ -105,7 +105,7 @@ impl SplatBuffers {
         batch: u64,
         number: usize,
     ) -> Vec<(&'static shaders::Resource, Binding<'_>)> {
-        let (batches, part) = (&self.batches, &scene.windows()[number]);
+        let (batches, part) = (&self.batches, &scene.chunks()[number]);
         let (instances, count) = (batches.len(batch), part.end - part.start);
         let start = batch * splat_stride(scene.capacity(), batches) + part.start * SPLAT;
         let bytes = instances * count * SPLAT;
@@ -143,7 +143,7 @@ fn splat_stride(capacity: u64, batches: &Batches) -> u64 {
 }
 
 fn list_stride(scene: &Scene, batches: &Batches) -> u64 {
-    lists_stride(scene.windows().len() as u64, scene.capacity(), batches)
+    lists_stride(scene.chunks().len() as u64, scene.capacity(), batches)
 }
 
 fn lists_stride(parts: u64, capacity: u64, batches: &Batches) -> u64 {
@@ -163,7 +163,7 @@ fn clip_stride(scene: &Scene, batches: &Batches) -> u64 {
 fn clip_starts(scene: &Scene) -> Vec<u64> {
     let bytes = |clips: u64| (clips * size_of::<ScreenClip>() as u64).max(1).next_multiple_of(ALIGNMENT);
     let mut starts = vec![0];
-    for clips in scene.clip_windows().unwrap_or_default() {
+    for clips in scene.clip_chunks().unwrap_or_default() {
         starts.push(starts[starts.len() - 1] + bytes(clips.count));
     }
     starts

@@ -3,7 +3,7 @@
 use super::splat_buffers::ALIGNMENT;
 use crate::error::{Error, Result};
 use crate::geometry::{Bounds, Camera, Projection};
-use crate::scene::instance::{Placed, Similarity, first_numbers};
+use crate::scene::instance::{Placed, Similarity, first_ids};
 use crate::settings::Settings;
 use crate::settings::splatting::Kernel;
 use crate::vk::shaders::layout::{Frame, View};
@@ -49,7 +49,7 @@ impl Blocks {
         turn(&mut view, settings, &Similarity::IDENTITY);
         let frame = frame(settings, size, (&lens, &projection), bounds.as_ref());
         let listed = if alone.is_some() { &[] } else { scenes };
-        let instances = listed.iter().zip(first_numbers(scenes));
+        let instances = listed.iter().zip(first_ids(scenes));
         let instances = instances.map(|(placed, first)| instance(camera, settings, size, placed, first));
         Ok(Self { frame, view, instances: instances.collect::<Result<_>>()? })
     }

@@ -73,9 +73,9 @@ impl Cloud {
         if !(fits || self.is_empty()) {
             let extent =
                 Bounds::of(&self.positions).map_or(0.0, |bounds| (bounds.max - bounds.min).max_element());
-            return Err(format!(
+            return Err(Error::Usage(format!(
                 "voxels of side {voxel} are too small for an extent of {extent}: give a larger size"
-            ));
+            )));
         }
         let base = min.as_i64vec3();
         let key = |(p, i): (&Vec3, u32)| {

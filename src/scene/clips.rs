@@ -5,14 +5,14 @@ use crate::geometry::{Clip, ClipLine, Clips};
 use crate::vk::{Binding, Buffer, Uploads};
 use std::ops::Range;
 
-/// Clips as `lib/clip.glsl` wants them, window by window: for every surfel which clip it has, then the clips.
+/// Clips as `lib/clip.glsl` wants them, chunk by chunk: for every surfel which clip it has, then the clips.
 pub(super) struct ClipStream {
     pub(super) buffer: Buffer,
-    pub(super) windows: Vec<ClipWindow>,
+    pub(super) chunks: Vec<ClipChunk>,
 }
 
-/// Where a window's clips are.
-pub(crate) struct ClipWindow {
+/// Where a chunk's clips are.
+pub(crate) struct ClipChunk {
     /// Bytes of the stream.
     bytes: Range<u64>,
     /// Number of its clips.
@@ -20,13 +20,13 @@ pub(crate) struct ClipWindow {
 }
 
 impl ClipStream {
-    /// Those of every window of surfels.
-    pub(super) fn new(uploads: &Uploads<'_>, clips: &Clips, windows: &[Range<u64>]) -> Result<Self> {
+    /// Those of every chunk of surfels.
+    pub(super) fn new(uploads: &Uploads<'_>, clips: &Clips, chunks: &[Range<u64>]) -> Result<Self> {
         let mut words: Vec<u32> = Vec::new();
         let mut parts = Vec::new();
-        for window in windows {
+        for chunk in chunks {
             let start = 4 * words.len() as u64;
-            let surfels = window.start as usize..window.end as usize;
+            let surfels = chunk.start as usize..chunk.end as usize;
             let mut named: Vec<&Clip> = Vec::new();
             for surfel in surfels {
                 let clip = clips.get(surfel);
@@ -36,16 +36,16 @@ impl ClipStream {
             }
             let lines = named.iter().flat_map(|clip| clip.lines);
             words.extend(lines.flat_map(bytemuck::cast::<ClipLine, [u32; 4]>));
-            parts.push(ClipWindow { bytes: start..4 * words.len() as u64, count: named.len() as u64 });
+            parts.push(ClipChunk { bytes: start..4 * words.len() as u64, count: named.len() as u64 });
             // No device aligns ranges to more.
             words.resize(words.len().next_multiple_of(64), 0);
         }
-        Ok(Self { buffer: uploads.buffer("clips", bytemuck::cast_slice(&words))?, windows: parts })
+        Ok(Self { buffer: uploads.buffer("clips", bytemuck::cast_slice(&words))?, chunks: parts })
     }
 
-    /// A window's.
-    pub(super) fn binding(&self, window: usize) -> Binding<'_> {
-        let Range { start, end } = self.windows[window].bytes;
+    /// A chunk's.
+    pub(super) fn binding(&self, chunk: usize) -> Binding<'_> {
+        let Range { start, end } = self.chunks[chunk].bytes;
         Binding::Storage(&self.buffer, start, end - start)
     }
 }

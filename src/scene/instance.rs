@@ -27,7 +27,7 @@ pub enum Instances<'a, S = Arc<Scene>> {
     /// One scene, whose space is the world.
     One(&'a S),
     /// Scenes where they are placed. Numbers of points ([`Picture::id`](crate::Picture::id)) are counted on from each to the next:
-    /// [`Instances::numbers`].
+    /// [`Instances::first_ids`].
     List(&'a [Instance]),
 }
 
@@ -70,12 +70,12 @@ fn refusal(number: usize, cause: &Cause) -> Error {
 impl<'a, S: Borrow<Scene>> Instances<'a, S> {
     /// The number of the first point of each scene, in the order of the list: how many surfels, segments and triangles those before it have
     /// room for.
-    pub fn numbers(&self) -> Vec<u64> {
+    pub fn first_ids(&self) -> Vec<u64> {
         let scenes: Vec<&Scene> = match self {
             Self::One(scene) => vec![(*scene).borrow()],
             Self::List(list) => list.iter().map(|instance| &*instance.scene).collect(),
         };
-        numbers(scenes.into_iter())
+        ids(scenes.into_iter())
     }
 
     /// Each scene with its placement. Refuses scenes of another device, and what cannot be placed.
@@ -89,7 +89,7 @@ impl<'a, S: Borrow<Scene>> Instances<'a, S> {
             }
         };
         placed.iter().try_for_each(|placed| placed.scene.check_device(device))?;
-        check_numbers(&placed)?;
+        check_ids(&placed)?;
         Ok(placed)
     }
 }
@@ -105,20 +105,20 @@ impl<'a> Instances<'a> {
     }
 }
 
-fn numbers<'a>(scenes: impl Iterator<Item = &'a Scene>) -> Vec<u64> {
+fn ids<'a>(scenes: impl Iterator<Item = &'a Scene>) -> Vec<u64> {
     let add = |next: &mut u64, scene: &Scene| {
         let first = *next;
-        *next += scene.numbers();
+        *next += scene.id_count();
         Some(first)
     };
     scenes.scan(0, add).collect()
 }
 
 /// Refuses more points than have numbers.
-fn check_numbers(placed: &[Placed<'_>]) -> Result<()> {
+fn check_ids(placed: &[Placed<'_>]) -> Result<()> {
     // The greatest are those of nothing, in one way of counting or another.
     let most = u64::from(u32::MAX) - 1;
-    let sum: u64 = placed.iter().map(|placed| placed.scene.numbers()).sum();
+    let sum: u64 = placed.iter().map(|placed| placed.scene.id_count()).sum();
     if placed.len() < 2 || sum <= most {
         Ok(())
     } else {
@@ -144,8 +144,8 @@ impl<'a> Placed<'a> {
 }
 
 /// The numbers of the first points of placed scenes.
-pub(crate) fn first_numbers(placed: &[Placed<'_>]) -> impl Iterator<Item = u32> {
-    numbers(placed.iter().map(|placed| placed.scene)).into_iter().map(|number| number as u32)
+pub(crate) fn first_ids(placed: &[Placed<'_>]) -> impl Iterator<Item = u32> {
+    ids(placed.iter().map(|placed| placed.scene)).into_iter().map(|number| number as u32)
 }
 
 impl<'a, S> From<&'a S> for Instances<'a, S>

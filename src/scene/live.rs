@@ -14,11 +14,11 @@ impl Scene {
 
     /// Number of surfels that there is room for.
     pub fn capacity(&self) -> u64 {
-        self.windows.last().map_or(0, |window| window.end)
+        self.chunks.last().map_or(0, |chunk| chunk.end)
     }
 
     /// Number of surfels, segments and triangles that there is room for: as many points have numbers.
-    pub(crate) fn numbers(&self) -> u64 {
+    pub(crate) fn id_count(&self) -> u64 {
         let elements = |primitives: &PrimitiveStreams| {
             let kinds = [&primitives.lines, &primitives.triangles];
             kinds.into_iter().flatten().map(|elements| u64::from(elements.count)).sum::<u64>()

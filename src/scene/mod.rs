@@ -1,8 +1,8 @@
 //! Geometry on the GPU: only the streams that the scene has.
 
 mod clips;
+mod external;
 pub(crate) mod instance;
-mod lent;
 mod live;
 mod materials;
 mod primitives;
@@ -19,11 +19,11 @@ use crate::geometry::{Bounds, Colours, Ellipse, Parts, Primitives, Surfels, Text
 use crate::vk::shaders::layout::Splat;
 use crate::vk::shaders::{Resource, resource};
 use crate::vk::{Binding, Buffer, Capabilities, Device, Uploads};
+pub(crate) use clips::ClipChunk;
 use clips::ClipStream;
-pub(crate) use clips::ClipWindow;
+pub(crate) use external::ExternalBuffers;
 use glam::{DVec3, Vec3};
 pub use instance::{Instance, Instances};
-pub(crate) use lent::Lent;
 pub(crate) use materials::MaterialStream;
 pub(crate) use primitives::{Elements, PrimitiveStreams};
 use std::borrow::Cow;
@@ -54,7 +54,7 @@ pub struct Scene {
     pub(crate) texture: Option<TextureStream>,
     pub(crate) materials: Option<MaterialStream>,
     colour_stream: ColourStream,
-    windows: Vec<Range<u64>>,
+    chunks: Vec<Range<u64>>,
     /// Of what is bound, bytes.
     alignment: u64,
     origin: DVec3,
@@ -120,14 +120,14 @@ impl Scene {
         let (bounds, invalid) = usable(&parts)?;
         let count = surfels.len() as u64;
         let ellipses = surfels.ellipses.as_deref();
-        let windows = windows(count, device.capabilities(), 0);
+        let chunks = chunks(count, device.capabilities(), 0);
         let textured =
             surfels.texture.as_ref().map(|texture| (texture, &surfels.positions[..], &surfels.radii[..]));
         let (colour_stream, colours) = colour_bytes(surfels.colours.as_ref(), textured);
         let weights = surfels
             .weights
             .as_ref()
-            .map(|weights| WeightBuffer::new(device, uploads, surfels, weights, &windows));
+            .map(|weights| WeightBuffer::new(device, uploads, surfels, weights, &chunks));
         let stream = |name, bytes: &[u8], size| {
             uploads.buffer(name, bytes).map(|buffer| Stream::side_by_side(buffer, size))
         };
@@ -149,12 +149,12 @@ impl Scene {
             clips: surfels
                 .clips
                 .as_ref()
-                .map(|clips| ClipStream::new(uploads, clips, &windows))
+                .map(|clips| ClipStream::new(uploads, clips, &chunks))
                 .transpose()?,
             primitives: PrimitiveStreams::new(device, uploads, &parts)?,
             texture: image.map(|image| TextureStream::new(device, uploads, image)).transpose()?,
             materials: MaterialStream::new(device, uploads, &parts)?,
-            windows,
+            chunks,
             alignment: device.capabilities().storage_buffer_alignment,
             origin: parts.origin(),
             largest: Some(AtomicU32::new(largest(&surfels.radii).to_bits())),
@@ -206,15 +206,17 @@ impl Scene {
         let streams = [Some(&self.positions), Some(&self.normals), Some(&self.radii)];
         let streams = streams.into_iter().chain([self.ellipses.as_ref(), self.colours.as_ref()]);
         let streams = streams.map(|stream| stream.map(|stream| &stream.buffer));
-        let buffers =
-            streams.chain([clips, weights, texture, materials]).flatten().filter(|buffer| !buffer.is_lent());
+        let buffers = streams
+            .chain([clips, weights, texture, materials])
+            .flatten()
+            .filter(|buffer| !buffer.is_external());
         let primitives = self.primitives.as_ref().map_or(0, PrimitiveStreams::bytes);
         buffers.map(Buffer::size).sum::<u64>() + primitives
     }
 
     /// Ranges of surfels that one descriptor set can name.
-    pub fn windows(&self) -> &[Range<u64>] {
-        &self.windows
+    pub fn chunks(&self) -> &[Range<u64>] {
+        &self.chunks
     }
 
     /// What it has.
@@ -246,14 +248,14 @@ impl Scene {
         }
     }
 
-    /// The clips of each window, if there are any.
-    pub(crate) fn clip_windows(&self) -> Option<&[ClipWindow]> {
-        self.clips.as_ref().map(|clips| clips.windows.as_slice())
+    /// The clips of each chunk, if there are any.
+    pub(crate) fn clip_chunks(&self) -> Option<&[ClipChunk]> {
+        self.clips.as_ref().map(|clips| clips.chunks.as_slice())
     }
 
     /// Window `number` of each stream that it has, where shaders see it.
     pub(crate) fn bindings(&self, number: usize) -> Vec<(&'static Resource, Binding<'_>)> {
-        let window = &self.windows[number];
+        let chunk = &self.chunks[number];
         let streams = [
             (&resource::POSITIONS, Some(&self.positions)),
             (&resource::NORMALS, Some(&self.normals)),
@@ -263,7 +265,7 @@ impl Scene {
         ];
         let there = streams.into_iter().filter_map(|(resource, stream)| Some((resource, stream?)));
         let mut list: Vec<_> =
-            there.map(|(resource, stream)| (resource, stream.binding(window, self.alignment))).collect();
+            there.map(|(resource, stream)| (resource, stream.binding(chunk, self.alignment))).collect();
         list.extend(self.clips.as_ref().map(|clips| (&resource::CLIPS, clips.binding(number))));
         list.extend(self.weights.as_ref().map(|weights| (&resource::WEIGHTS, weights.binding(number))));
         list
@@ -366,9 +368,9 @@ fn step(capabilities: &Capabilities) -> u64 {
     capabilities.storage_buffer_alignment.max(256)
 }
 
-/// Splits `count` surfels so that a window of any stream, the splats' included, fits a descriptor and starts aligned, and so that a
-/// window's workgroups and vertices can be counted. A host's streams have values up to `stride` bytes apart, and may start anywhere.
-fn windows(count: u64, capabilities: &Capabilities, stride: u64) -> Vec<Range<u64>> {
+/// Splits `count` surfels so that a chunk of any stream, the splats' included, fits a descriptor and starts aligned, and so that a
+/// chunk's workgroups and vertices can be counted. A host's streams have values up to `stride` bytes apart, and may start anywhere.
+fn chunks(count: u64, capabilities: &Capabilities, stride: u64) -> Vec<Range<u64>> {
     let step = step(capabilities);
     let range = capabilities.max_storage_buffer_range;
     let fitting = (range / size_of::<Splat>() as u64)
@@ -403,13 +405,13 @@ mod tests {
             memory: 1 << 30,
         };
         for count in [1, 255, 256, 21_504, 21_505, 1_000_000] {
-            let windows = windows(count, &capabilities, 0);
-            assert_eq!(windows[0].start, 0);
-            assert_eq!(windows[windows.len() - 1].end, count);
-            assert!(windows.windows(2).all(|pair| pair[0].end == pair[1].start));
-            for window in windows {
-                assert!((window.end - window.start) * size_of::<Splat>() as u64 <= 1 << 20);
-                assert_eq!(window.start * 4 % 64, 0);
+            let chunks = chunks(count, &capabilities, 0);
+            assert_eq!(chunks[0].start, 0);
+            assert_eq!(chunks[chunks.len() - 1].end, count);
+            assert!(chunks.windows(2).all(|pair| pair[0].end == pair[1].start));
+            for chunk in chunks {
+                assert!((chunk.end - chunk.start) * size_of::<Splat>() as u64 <= 1 << 20);
+                assert_eq!(chunk.start * 4 % 64, 0);
             }
         }
     }

@@ -44,9 +44,9 @@ impl PrimitiveStreams {
         let segments: Vec<[u32; 2]> =
             primitives.segments().map(|([a, b], tube)| [if tube { a | TUBE } else { a }, b]).collect();
         let elements = |name, indices: &[u32], count: usize, first: usize| {
-            let buffer = || uploads.buffer(name, bytemuck::cast_slice(indices));
-            let made = || Ok(Elements { buffer: buffer()?, count: count as u32, first: first as u32 });
-            (count > 0).then(made).transpose()
+            let buffer =
+                (count > 0).then(|| uploads.buffer(name, bytemuck::cast_slice(indices))).transpose()?;
+            Ok::<_, Error>(buffer.map(|buffer| Elements { buffer, count: count as u32, first: first as u32 }))
         };
         Ok(Some(Self {
             vertices: uploads.buffer("vertices", bytemuck::cast_slice(&vertices))?,

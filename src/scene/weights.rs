@@ -12,16 +12,16 @@ const AT_CORNERS: u32 = 1 << 31;
 /// Normalization weights of a scene.
 pub(crate) struct WeightBuffer {
     pub(super) buffer: Buffer,
-    /// Where each window of surfels has its words, in words.
-    windows: Vec<Range<u64>>,
+    /// Where each chunk of surfels has its words, in words.
+    chunks: Vec<Range<u64>>,
     /// Whether some surfels have weights at the corners of their squares.
     pub corners: bool,
 }
 
-/// The words of every window of surfels, one window after the other, and where each has them.
+/// The words of every chunk of surfels, one chunk after the other, and where each has them.
 struct WeightStream {
     words: Vec<u32>,
-    windows: Vec<Range<u64>>,
+    chunks: Vec<Range<u64>>,
 }
 
 impl WeightBuffer {
@@ -31,38 +31,38 @@ impl WeightBuffer {
         uploads: &Uploads<'_>,
         surfels: &Surfels,
         weights: &Weights,
-        windows: &[Range<u64>],
+        chunks: &[Range<u64>],
     ) -> Result<Self> {
-        let WeightStream { words, windows } =
-            WeightStream::new(surfels, weights, windows, step(device.capabilities()));
+        let WeightStream { words, chunks } =
+            WeightStream::new(surfels, weights, chunks, step(device.capabilities()));
         let buffer = uploads.buffer("weights", bytemuck::cast_slice(&words))?;
-        Ok(Self { buffer, windows, corners: !weights.corners.is_empty() })
+        Ok(Self { buffer, chunks, corners: !weights.corners.is_empty() })
     }
 
-    /// A window's.
-    pub(super) fn binding(&self, window: usize) -> Binding<'_> {
-        let Range { start, end } = self.windows[window];
+    /// A chunk's.
+    pub(super) fn binding(&self, chunk: usize) -> Binding<'_> {
+        let Range { start, end } = self.chunks[chunk];
         Binding::Storage(&self.buffer, start * SCALAR, (end - start) * SCALAR)
     }
 }
 
 impl WeightStream {
-    /// Of `weights`, those of `surfels`. A window's words start at a multiple of `step`: an entry a surfel, then what is at corners.
-    fn new(surfels: &Surfels, weights: &Weights, windows: &[Range<u64>], step: u64) -> Self {
-        let mut stream = Self { words: Vec::new(), windows: Vec::new() };
-        for window in windows {
+    /// Of `weights`, those of `surfels`. A chunk's words start at a multiple of `step`: an entry a surfel, then what is at corners.
+    fn new(surfels: &Surfels, weights: &Weights, chunks: &[Range<u64>], step: u64) -> Self {
+        let mut stream = Self { words: Vec::new(), chunks: Vec::new() };
+        for chunk in chunks {
             let first = stream.words.len();
-            stream.words.extend(window.clone().map(|i| weights.of[i as usize].to_bits()));
-            let from = weights.corners.partition_point(|corners| u64::from(corners.surfel) < window.start);
-            for corners in weights.corners[from..].iter().take_while(|c| u64::from(c.surfel) < window.end) {
+            stream.words.extend(chunk.clone().map(|i| weights.of[i as usize].to_bits()));
+            let from = weights.corners.partition_point(|corners| u64::from(corners.surfel) < chunk.start);
+            for corners in weights.corners[from..].iter().take_while(|c| u64::from(c.surfel) < chunk.end) {
                 let surfel = corners.surfel as usize;
                 let place = (stream.words.len() - first) as u32;
-                stream.words[first + surfel - window.start as usize] = AT_CORNERS | place;
+                stream.words[first + surfel - chunk.start as usize] = AT_CORNERS | place;
                 stream
                     .words
                     .extend(corners.weights.iter().chain(&square(surfels, surfel)).map(|v| v.to_bits()));
             }
-            stream.windows.push(first as u64..stream.words.len() as u64);
+            stream.chunks.push(first as u64..stream.words.len() as u64);
             stream.words.resize(stream.words.len().next_multiple_of(step as usize), 0);
         }
         stream
@@ -91,7 +91,7 @@ mod tests {
         ]);
         let surfels = Surfels { normals: vec![Vec3::Z; 4], ..Default::default() };
         let stream = WeightStream::new(&surfels, &weights, &[0..2, 2..4], 16);
-        assert_eq!(stream.windows, [0..10, 16..26]);
+        assert_eq!(stream.chunks, [0..10, 16..26]);
         let floats =
             |range: Range<usize>| stream.words[range].iter().map(|w| f32::from_bits(*w)).collect::<Vec<_>>();
         assert_eq!((floats(0..1), stream.words[1]), (vec![0.5], AT_CORNERS | 2));

@@ -83,7 +83,7 @@ impl CachedView {
     ///
     /// `area` is the width and height of the area, px from the window's top left; `columns` are two parts of the width, from 0 to 1.
     pub fn present(&self, window: &Presented, area: [u32; 2], columns: [f64; 2]) -> Result<()> {
-        self.view.show(window, area, columns)
+        self.view.blit(window, area, columns)
     }
 
     /// Shading and range of values of the last picture, if it shows values.

@@ -282,7 +282,7 @@ impl Tracker {
     }
 
     /// Sets the layouts in which an earlier frame left these resources, so that images keep their contents.
-    pub(super) fn left(&mut self, history: &History, uses: &[Use]) {
+    pub(super) fn assume_layouts(&mut self, history: &History, uses: &[Use]) {
         let mut history = history.lock();
         for used in uses {
             let past = history.entry(used.resource).or_default();
@@ -408,7 +408,7 @@ mod tests {
 
         let kept = Use { resource: image, access: Access::COPY_READ };
         let mut next = Tracker::default();
-        next.left(&history, &[kept]);
+        next.assume_layouts(&history, &[kept]);
         let read = next.barrier(&history, &[kept]).unwrap();
         let wrote = Stages::COLOR_ATTACHMENT_OUTPUT | Stages::FRAGMENT_SHADER;
         assert_eq!(read.source, wrote, "what wrote it in the frame before, and what changed its layout");

@@ -12,7 +12,7 @@ pub struct Buffer {
     size: u64,
     allocation: Option<Allocation>,
     /// Whether the host owns it.
-    lent: bool,
+    external: bool,
     device: Arc<Device>,
 }
 
@@ -52,7 +52,7 @@ impl Buffer {
     /// # Safety
     /// The buffer is of `device`, is bound to memory, has the given size and the usages that it is used with, and outlives this object.
     pub unsafe fn of_host(device: &Arc<Device>, raw: vk::Buffer, size: u64) -> Self {
-        Self { raw, size, allocation: None, lent: true, device: device.clone() }
+        Self { raw, size, allocation: None, external: true, device: device.clone() }
     }
 
     fn new(
@@ -66,12 +66,13 @@ impl Buffer {
         // SAFETY: `info` is valid; the buffer is destroyed in `drop`.
         let raw =
             unsafe { device.raw.create_buffer(&info, None) }.map_err(Error::vulkan("vkCreateBuffer"))?;
-        let mut buffer = Self { raw, size, allocation: None, lent: false, device: device.clone() };
+        let mut buffer = Self { raw, size, allocation: None, external: false, device: device.clone() };
         device.name(raw, name);
         // SAFETY: the buffer is the device's.
         let requirements = unsafe { device.raw.get_buffer_memory_requirements(raw) };
         let request = MemoryRequest { name, requirements, location, linear: true };
-        let (memory, offset) = buffer.allocation.insert(memory::allocate(device, &request)?).place();
+        let (memory, offset) =
+            buffer.allocation.insert(memory::allocate(device, &request)?).memory_and_offset();
         // SAFETY: the memory was allocated for this buffer's requirements and is bound once.
         unsafe { device.raw.bind_buffer_memory(raw, memory, offset) }
             .map_err(Error::vulkan("vkBindBufferMemory"))?;
@@ -89,8 +90,8 @@ impl Buffer {
     }
 
     /// Whether the host owns it.
-    pub fn is_lent(&self) -> bool {
-        self.lent
+    pub fn is_external(&self) -> bool {
+        self.external
     }
 
     /// The device of the buffer.
@@ -121,7 +122,7 @@ impl Buffer {
 impl Drop for Buffer {
     fn drop(&mut self) {
         self.device.history.forget_buffer(self.raw);
-        if self.lent {
+        if self.external {
             return;
         }
         // SAFETY: the GPU is done with it (see the module's docs).

@@ -78,17 +78,19 @@ impl DescriptorSet {
             };
             match *binding {
                 Binding::Uniform(buffer, offset, size) | Binding::Storage(buffer, offset, size) => {
-                    update(write.buffer_info(&range(buffer, offset, size)));
+                    update(write.buffer_info(&buffer_info(buffer, offset, size)));
                 }
                 Binding::Sampled(image) => {
-                    update(write.image_info(&seen(image.view, vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL)));
+                    update(
+                        write.image_info(&image_info(image.view, vk::ImageLayout::SHADER_READ_ONLY_OPTIMAL)),
+                    );
                 }
                 Binding::Input(image) => {
-                    update(write.image_info(&seen(image.view, input_layout(image.format))));
+                    update(write.image_info(&image_info(image.view, input_layout(image.format))));
                 }
                 Binding::HostDepth(HostDepth(view)) => {
                     let layout = vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL;
-                    update(write.image_info(&seen(view, layout)));
+                    update(write.image_info(&image_info(view, layout)));
                 }
             }
         }
@@ -106,11 +108,11 @@ impl Binding<'_> {
     }
 }
 
-fn range(buffer: &Buffer, offset: u64, range: u64) -> [vk::DescriptorBufferInfo; 1] {
+fn buffer_info(buffer: &Buffer, offset: u64, range: u64) -> [vk::DescriptorBufferInfo; 1] {
     [vk::DescriptorBufferInfo { buffer: buffer.raw, offset, range }]
 }
 
-fn seen(image_view: vk::ImageView, image_layout: vk::ImageLayout) -> [vk::DescriptorImageInfo; 1] {
+fn image_info(image_view: vk::ImageView, image_layout: vk::ImageLayout) -> [vk::DescriptorImageInfo; 1] {
     [vk::DescriptorImageInfo { sampler: vk::Sampler::null(), image_view, image_layout }]
 }
 

@@ -47,7 +47,7 @@ pub struct Device {
     pub(super) descriptor_pools: DescriptorPools,
     /// Live descriptor set layouts.
     pub(super) set_layouts: SetLayouts,
-    pub(super) made: Made,
+    pub(super) counters: UsageCounters,
     capabilities: Capabilities,
     description: DeviceDescription,
     /// For queries of `physical`.
@@ -72,7 +72,7 @@ struct Opened {
 }
 
 /// A device that a host lends: its own, to go on using while the engine does.
-pub struct Lent<'a> {
+pub struct ExternalDevice<'a> {
     /// The instance, of at least Vulkan 1.1.
     pub instance: &'a ash::Instance,
     /// The physical device of `device`.
@@ -99,7 +99,7 @@ pub struct Lent<'a> {
 
 /// Counters for [`Device::usage`].
 #[derive(Default)]
-pub(super) struct Made {
+pub(super) struct UsageCounters {
     pub(super) allocations: AtomicU64,
     pub(super) pipelines: AtomicU64,
     pub(super) bytes: AtomicU64,
@@ -187,7 +187,7 @@ impl Device {
             history: History::default(),
             descriptor_pools: DescriptorPools::default(),
             set_layouts: SetLayouts::default(),
-            made: Made::default(),
+            counters: UsageCounters::default(),
             capabilities,
             description,
             instance: instance.raw.clone(),
@@ -204,9 +204,9 @@ impl Device {
     /// is no such family.
     ///
     /// # Safety
-    /// What `lent` says of the device is true, and the device outlives what is returned and all that is made on it.
-    pub unsafe fn borrow(lent: Lent<'_>) -> Result<Arc<Self>> {
-        let Lent { instance, physical, device, queue_family, enabled, .. } = lent;
+    /// What `external` says of the device is true, and the device outlives what is returned and all that is made on it.
+    pub unsafe fn from_external(external: ExternalDevice<'_>) -> Result<Arc<Self>> {
+        let ExternalDevice { instance, physical, device, queue_family, enabled, .. } = external;
         // SAFETY: by the caller, here and below.
         let families = unsafe { instance.get_physical_device_queue_family_properties(physical) };
         let Some(family) = families.get(queue_family as usize) else {
@@ -224,25 +224,26 @@ impl Device {
         }
         // SAFETY: as above.
         let capabilities =
-            unsafe { Capabilities::query(instance, physical, queue_family, enabled, &lent.limits) };
-        let dynamic_rendering = lent.dynamic_rendering && capabilities.dynamic_rendering;
+            unsafe { Capabilities::query(instance, physical, queue_family, enabled, &external.limits) };
+        let dynamic_rendering = external.dynamic_rendering && capabilities.dynamic_rendering;
         let capabilities = Capabilities { dynamic_rendering, ..capabilities };
-        let memory = match lent.memory {
+        let memory = match external.memory {
             Some(source) => memory::Source::Host(source),
-            None => memory::Source::own(instance, device, physical, lent.memory_blocks)
+            None => memory::Source::own(instance, device, physical, external.memory_blocks)
                 .map_err(|error| Error::NoDevice(format!("{}: {error}", description.name)))?,
         };
-        let pipeline_cache = PipelineCache::load(instance, physical, device, lent.pipeline_cache.as_deref())?;
+        let pipeline_cache =
+            PipelineCache::load(instance, physical, device, external.pipeline_cache.as_deref())?;
         Ok(Arc::new(Self {
             raw: device.clone(),
             memory: ManuallyDrop::new(memory),
             pipeline_cache: ManuallyDrop::new(pipeline_cache),
             pipelines: PipelinePool::default(),
-            labels: lent.labels.then(|| debug_utils::Device::new(instance, device)),
+            labels: external.labels.then(|| debug_utils::Device::new(instance, device)),
             history: History::default(),
             descriptor_pools: DescriptorPools::default(),
             set_layouts: SetLayouts::default(),
-            made: Made::default(),
+            counters: UsageCounters::default(),
             capabilities,
             description,
             instance: instance.clone(),
@@ -289,7 +290,7 @@ impl Device {
         match &self.owner {
             Owner::Engine(opened) => Ok((&opened.queue, opened.family)),
             Owner::Host => Err(Error::Usage(format!(
-                "the device {} is lent by a host, which alone submits: record into its command buffers, see `embed`",
+                "the device {} belongs to a host, which submits: record into its command buffers, see `embed`",
                 self.description.name
             ))),
         }
@@ -375,9 +376,9 @@ impl Device {
     pub fn usage(&self) -> Usage {
         let read = |counter: &AtomicU64| counter.load(Ordering::Relaxed);
         Usage {
-            allocations: read(&self.made.allocations),
-            pipelines: read(&self.made.pipelines),
-            bytes: read(&self.made.bytes),
+            allocations: read(&self.counters.allocations),
+            pipelines: read(&self.counters.pipelines),
+            bytes: read(&self.counters.bytes),
             descriptor_pools: self.descriptor_pools.count(),
         }
     }

@@ -188,7 +188,13 @@ impl<'r, 'a> Encoder<'r, 'a> {
 
     /// Blits a range of columns of `image`, as fractions of its width, to the `area` px at the window's top left.
     #[cfg(feature = "window")]
-    pub fn show_part(&mut self, image: &Image, window: &super::Presented, area: [u32; 2], columns: [f64; 2]) {
+    pub fn blit_columns(
+        &mut self,
+        image: &Image,
+        window: &super::Presented,
+        area: [u32; 2],
+        columns: [f64; 2],
+    ) {
         let [width, height] = window.size();
         self.scale(image, (window.image, [area[0].min(width), area[1].min(height)]), columns);
     }

@@ -91,7 +91,8 @@ impl Image {
         // SAFETY: the image is the device's.
         let requirements = unsafe { device.raw.get_image_memory_requirements(self.raw) };
         let request = MemoryRequest { name, requirements, location, linear: false };
-        let (memory, offset) = self.allocation.insert(memory::allocate(device, &request)?).place();
+        let (memory, offset) =
+            self.allocation.insert(memory::allocate(device, &request)?).memory_and_offset();
         // SAFETY: the memory was allocated for this image's requirements and is bound once.
         unsafe { device.raw.bind_image_memory(self.raw, memory, offset) }
             .map_err(Error::vulkan("vkBindImageMemory"))

@@ -224,7 +224,7 @@ impl Location {
 
 impl Allocation {
     /// The memory object and the offset in it, bytes.
-    pub(super) fn place(&self) -> (vk::DeviceMemory, u64) {
+    pub(super) fn memory_and_offset(&self) -> (vk::DeviceMemory, u64) {
         match self {
             // SAFETY: the object is only bound to, and the allocator outlives the resource.
             Self::Own(allocation) => (unsafe { allocation.memory() }, allocation.offset()),
@@ -284,14 +284,14 @@ pub(super) fn allocate(device: &Device, request: &MemoryRequest<'_>) -> Result<A
             cause: "the host returned too little memory, or did not map it".into(),
         });
     }
-    device.made.allocations.fetch_add(1, Ordering::Relaxed);
-    device.made.bytes.fetch_add(allocation.size(), Ordering::Relaxed);
+    device.counters.allocations.fetch_add(1, Ordering::Relaxed);
+    device.counters.bytes.fetch_add(allocation.size(), Ordering::Relaxed);
     Ok(allocation)
 }
 
 /// Frees `allocation`.
 pub(super) fn free(device: &Device, allocation: Allocation) {
-    device.made.bytes.fetch_sub(allocation.size(), Ordering::Relaxed);
+    device.counters.bytes.fetch_sub(allocation.size(), Ordering::Relaxed);
     device.memory.free(allocation);
 }
 

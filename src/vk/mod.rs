@@ -57,7 +57,7 @@ pub use choose::{DeviceDescription, describe_devices, preferred};
 pub use command_pool::CommandPool;
 pub(crate) use commands::Commands;
 pub(crate) use descriptors::{Binding, DescriptorSet, HostDepth, input_layout};
-pub use device::{Device, DeviceOptions, Lent, Usage};
+pub use device::{Device, DeviceOptions, ExternalDevice, Usage};
 pub(crate) use encoder::{Draws, Encoder};
 pub(crate) use image::{Image, ImageUse, pixel_bytes};
 pub use limits::{Capabilities, DeviceLimits};

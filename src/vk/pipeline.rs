@@ -302,7 +302,7 @@ impl Raw {
         // SAFETY: the set layout is alive; the pipeline layout is destroyed in `drop`.
         let layout = unsafe { device.raw.create_pipeline_layout(&info, None) }
             .map_err(Error::vulkan("vkCreatePipelineLayout"))?;
-        device.made.pipelines.fetch_add(1, Ordering::Relaxed);
+        device.counters.pipelines.fetch_add(1, Ordering::Relaxed);
         let (sets, device) = (sets.len(), device.clone());
         Ok(Self { pipeline: vk::Pipeline::null(), layout, sets, push, device })
     }
@@ -393,9 +393,9 @@ impl Drop for Raw {
 }
 
 fn first(
-    made: Result<Vec<vk::Pipeline>, (Vec<vk::Pipeline>, vk::Result)>,
+    created: Result<Vec<vk::Pipeline>, (Vec<vk::Pipeline>, vk::Result)>,
     call: &'static str,
 ) -> Result<vk::Pipeline> {
-    let pipelines = made.map_err(|(_, result)| Error::Vulkan { call, result })?;
+    let pipelines = created.map_err(|(_, result)| Error::Vulkan { call, result })?;
     Ok(pipelines[0])
 }

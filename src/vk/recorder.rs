@@ -101,8 +101,8 @@ impl<'a> Recorder<'a> {
     }
 
     /// Declares the layouts in which an earlier frame left these resources: images keep their contents unless they are written.
-    pub fn left(&mut self, uses: &[Use]) {
-        self.tracker.left(&self.device.history, uses);
+    pub fn assume_layouts(&mut self, uses: &[Use]) {
+        self.tracker.assume_layouts(&self.device.history, uses);
     }
 
     fn stamp(&self, query: Option<u32>) {

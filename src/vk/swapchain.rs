@@ -11,7 +11,7 @@ const CREATE: &str = "vkCreateSwapchainKHR";
 /// The swapchain of a window.
 pub(super) struct Swapchain {
     raw: vk::SwapchainKHR,
-    images: Vec<Shown>,
+    images: Vec<SwapchainImage>,
     size: [u32; 2],
     /// The window's size at creation. X11 reports a new size only later.
     pub(super) asked: [u32; 2],
@@ -21,7 +21,7 @@ pub(super) struct Swapchain {
     device: Arc<Device>,
 }
 
-struct Shown {
+struct SwapchainImage {
     image: vk::Image,
     view: vk::ImageView,
     framebuffer: vk::Framebuffer,
@@ -90,7 +90,7 @@ impl Swapchain {
 
     fn add(&mut self, image: vk::Image, format: vk::Format, overlay: &Overlay) -> Result<()> {
         let (view, framebuffer) = (vk::ImageView::null(), vk::Framebuffer::null());
-        self.images.push(Shown { image, view, framebuffer, drawn: vk::Semaphore::null() });
+        self.images.push(SwapchainImage { image, view, framebuffer, drawn: vk::Semaphore::null() });
         let Some(shown) = self.images.last_mut() else { return Ok(()) };
         let range = vk::ImageSubresourceRange {
             aspect_mask: vk::ImageAspectFlags::COLOR,
@@ -135,7 +135,7 @@ impl Swapchain {
 
     /// The target of the frame.
     pub(super) fn target(&self, index: usize) -> Target {
-        let Shown { image, framebuffer, .. } = self.images[index];
+        let SwapchainImage { image, framebuffer, .. } = self.images[index];
         Target { image, framebuffer, size: self.size }
     }
 
@@ -182,7 +182,7 @@ impl Drop for Swapchain {
     fn drop(&mut self) {
         // SAFETY: the presenter has waited for the device. Null handles are ignored.
         unsafe {
-            for Shown { view, framebuffer, drawn, .. } in &self.images {
+            for SwapchainImage { view, framebuffer, drawn, .. } in &self.images {
                 self.device.raw.destroy_framebuffer(*framebuffer, None);
                 self.device.raw.destroy_image_view(*view, None);
                 self.device.raw.destroy_semaphore(*drawn, None);

@@ -135,7 +135,7 @@ fn vk_shows_devices_and_windows_and_nothing_that_records() {
         "FRAMES_IN_FLIGHT",
         "Features",
         "HostMemory",
-        "Lent",
+        "ExternalDevice",
         "Location",
         "MemoryBlocks",
         "MemoryRequest",

@@ -39,16 +39,16 @@ unsafe extern "system" fn barrier(
 }
 
 /// The host's device, lent with a function that listens.
-fn lend(host: &Host) -> Arc<Device> {
+fn recorded_device(host: &Host) -> Arc<Device> {
     *RECORDING.lock().unwrap() = Some(host.device.fp_v1_0().cmd_pipeline_barrier);
     let replace = |name: &CStr| (name == c"vkCmdPipelineBarrier").then_some(barrier as *const c_void);
-    host.lend_replaced(replace).unwrap()
+    host.external_device_replaced(replace).unwrap()
 }
 
 #[test]
 fn no_barrier_waits_for_everything() {
     let Some(host) = open(|all| all) else { return };
-    let device = lend(&host);
+    let device = recorded_device(&host);
     let scene = upload(&host, &device, &surfels());
     let kind = Kind { way: Way::Subpass, colour: FLOATS, normals: false, samples: ONE, reversed: true };
     let frame = Frame::new(&host, kind, SIZE).unwrap();

@@ -112,7 +112,7 @@ fn pictures_and_normals_are_where_the_host_wants_them() {
         let normals = stand.frame.read_normals(&host).unwrap();
         let (normal, mut seen) = (own.normal.unwrap(), 0);
         for (i, colour) in colours.iter().enumerate() {
-            let [x, y] = [i % larger[0] as usize, i / larger[0] as usize].map(|place| place as i64);
+            let [x, y] = [i % larger[0] as usize, i / larger[0] as usize].map(|at| at as i64);
             let inside = (0..160).contains(&(x - 30)) && (0..120).contains(&(y - 8));
             let there =
                 inside.then(|| ((y - 8) * 160 + x - 30) as usize).filter(|i| own.colour[*i][3] == 1.0);
@@ -147,7 +147,7 @@ fn numbers_are_the_engines_own() {
     ] {
         let kind = Kind { way, colour: FLOATS, normals: false, samples: ONE, reversed: true };
         let frame = Frame::with(&host, kind, SIZE, more).unwrap();
-        let device = host.lend(None).unwrap();
+        let device = host.external_device(None).unwrap();
         let depth = frame.target().depth.filter(|_| has_depth);
         let target = embed::Target { depth, ..frame.target() };
         let options = Options { target, frames_in_flight: 1, precision: Precision::Full, rasterizer: None };
@@ -197,7 +197,7 @@ fn colours_are_encoded_by_the_shader_as_by_the_format() {
     let settings = Settings { background: None, ..Settings::default() };
     let bytes = [vk::Format::R8G8B8A8_UNORM, vk::Format::R8G8B8A8_SRGB].map(|colour| {
         let kind = Kind { way: Way::Subpass, colour, normals: false, samples: ONE, reversed: true };
-        let device = host.lend(None).unwrap();
+        let device = host.external_device(None).unwrap();
         let frame = Frame::new(&host, kind, SIZE).unwrap();
         let target = embed::Target { encode: colour == vk::Format::R8G8B8A8_UNORM, ..frame.target() };
         let options = Options { target, frames_in_flight: 1, precision: Precision::Full, rasterizer: None };
@@ -241,7 +241,7 @@ fn what_is_in_front_hides_what_is_behind_either_way() {
         }
         let kind = Kind { way, colour: FLOATS, normals: false, samples: ONE, reversed };
         let mut stand = Stand::new(&host, kind, SIZE, None, &surfels());
-        let mesh = Mesh::new(&host, &corners, stand.frame.place()).unwrap();
+        let mesh = Mesh::new(&host, &corners, stand.frame.mesh_target()).unwrap();
         let (colours, _) = stand.render(&host, &View { camera, viewport }, &settings, Some(&mesh));
         let mut counts = [[0; 2]; 2];
         let mut wrong = 0;
@@ -272,7 +272,7 @@ fn what_is_in_front_hides_what_is_behind_either_way() {
 fn a_thousand_frames_of_all_sizes_and_scenes_leave_nothing() {
     let Some(host) = open(|all| all) else { return };
     let (memory, counts) = Counted::new(&host);
-    let device = host.lend(Some(Box::new(memory))).unwrap();
+    let device = host.external_device(Some(Box::new(memory))).unwrap();
     let kind = Kind { way: Way::Subpass, colour: FLOATS, normals: false, samples: ONE, reversed: true };
     let frame = Frame::new(&host, kind, [64, 48]).unwrap();
     {
@@ -317,7 +317,7 @@ fn a_thousand_frames_of_all_sizes_and_scenes_leave_nothing() {
 fn without_memory_there_is_an_error_and_then_there_is_memory() {
     let Some(host) = open(|all| all) else { return };
     let (memory, counts) = Counted::new(&host);
-    let device = host.lend(Some(Box::new(memory))).unwrap();
+    let device = host.external_device(Some(Box::new(memory))).unwrap();
     let kind = Kind { way: Way::Rendering, colour: FLOATS, normals: false, samples: ONE, reversed: true };
     let frame = Frame::new(&host, kind, SIZE).unwrap();
     let options =
@@ -372,11 +372,14 @@ fn what_cannot_be_served_is_refused_and_says_why() {
     let changes: [(Change, &str); 17] = [
         (|t| t.picture = 1, "location 1 of 1 colour attachments"),
         (|t| t.normal = Some(0), "both the picture and normals"),
-        (|t| t.id = Some(0), "both the picture and numbers"),
-        (|t| (t.colours, t.normal, t.id) = (vec![FLOATS, IDS], Some(1), Some(1)), "both normals and numbers"),
+        (|t| t.id = Some(0), "both the picture and point ids"),
+        (
+            |t| (t.colours, t.normal, t.id) = (vec![FLOATS, IDS], Some(1), Some(1)),
+            "both normals and point ids",
+        ),
         (
             |t| (t.colours, t.id) = (vec![FLOATS; 2], Some(1)),
-            "numbers at location 1 want R32_UINT, and their format is R32G32B32A32_SFLOAT",
+            "point ids at location 1 want R32_UINT, and their format is R32G32B32A32_SFLOAT",
         ),
         (
             |t| t.colours[0] = vk::Format::R32G32B32A32_UINT,
@@ -406,7 +409,7 @@ fn what_cannot_be_served_is_refused_and_says_why() {
         assert!(text.contains(said), "`{said}` is not in `{text}`");
     }
     let hidden = host
-        .lend_within(DeviceLimits { dynamic_rendering: Some(false), ..Default::default() }, None)
+        .external_device_within(DeviceLimits { dynamic_rendering: Some(false), ..Default::default() }, None)
         .unwrap();
     let rendering = embed::Target { pass: embed::Pass::Rendering, ..target.clone() };
     let options =
@@ -419,7 +422,7 @@ fn what_cannot_be_served_is_refused_and_says_why() {
         assert!(make(target.clone(), frames).is_err_and(|error| error.to_string().contains(&said)));
     }
 
-    let other = host.lend(None).unwrap();
+    let other = host.external_device(None).unwrap();
     let elsewhere = upload(&host, &other, &surfels());
     let good = View::whole(camera(), SIZE);
     let bad = |change: fn(&mut View)| {
@@ -453,7 +456,7 @@ fn what_cannot_be_served_is_refused_and_says_why() {
     // The engine does not submit to what it borrows.
     assert!(
         Scene::upload(&stand.device, &surfels())
-            .is_err_and(|error| error.to_string().contains("lent by a host"))
+            .is_err_and(|error| error.to_string().contains("belongs to a host"))
     );
     drop(scene);
     stand.destroy(&host);

@@ -89,7 +89,7 @@ fn depth_of_every_format_is_the_surfaces() {
             let what = format!("{format:?} {way:?} {reversed}");
             let kind = Kind { way, reversed, ..PLAIN };
             let frame = Frame::with_depth(&host, kind, SIZE, &[], format).unwrap();
-            let device = host.lend(None).unwrap();
+            let device = host.external_device(None).unwrap();
             let renderer = renderer(&device, &frame, Some(Rasterizer::Draw));
             let scene = upload(&host, &device, &surfels());
             let mut stand = Stand { frame, renderer, scene, device };
@@ -136,7 +136,7 @@ fn far_away(reversed: bool) -> Camera {
 fn native_subpasses_start_from_depth_of_every_format_and_leave_such() {
     let Some(host) = open(|all| all) else { return };
     let settings = Settings { epsilon: 0.1, ..settings("perspective-ewa") };
-    let device = host.lend(None).unwrap();
+    let device = host.external_device(None).unwrap();
     let scene = upload(&host, &device, &surfels());
     for (format, step) in depths(&host) {
         for (samples, reversed) in [(ONE, true), (ONE, false), (FOUR, true)] {
@@ -145,7 +145,7 @@ fn native_subpasses_start_from_depth_of_every_format_and_leave_such() {
             let frame = Frame::with_depth(&host, kind, SIZE, &[], format).unwrap();
             let renderer = renderer(&device, &frame, Some(Rasterizer::Draw));
             let mut stand = Stand { frame, renderer, scene: scene.clone(), device: device.clone() };
-            let mesh = Mesh::new(&host, &wall(), stand.frame.place()).unwrap();
+            let mesh = Mesh::new(&host, &wall(), stand.frame.mesh_target()).unwrap();
             let (expected, _) = stand.render(&host, &view, &settings, Some(&mesh));
             let expected_depths = (samples == ONE).then(|| stand.frame.read_depths(&host).unwrap());
             mesh.destroy(&host);
@@ -162,7 +162,7 @@ fn native_subpasses_start_from_depth_of_every_format_and_leave_such() {
             };
             let drawn = [(scene.streams(), &settings)];
             let mut native = Native::new(&host, &device, kind, SIZE, &drawn).unwrap();
-            let mesh = Mesh::new(&host, &wall(), native.place()).unwrap();
+            let mesh = Mesh::new(&host, &wall(), native.mesh_target()).unwrap();
             let drawn = host.run(|cmd| {
                 // SAFETY: prepared outside the pass, and waited for.
                 unsafe { native.renderer.prepare(cmd, &scene, &view, &settings)? };
@@ -205,7 +205,7 @@ fn every_sample_has_the_number_of_its_pixel() {
     for way in [Way::Subpass, Way::Rendering] {
         let kind = Kind { way, samples: FOUR, ..PLAIN };
         let frame = Frame::with(&host, kind, SIZE, &[IDS]).unwrap();
-        let device = host.lend(None).unwrap();
+        let device = host.external_device(None).unwrap();
         let renderer = renderer(&device, &frame, None);
         let scene = upload(&host, &device, &surfels());
         let mut stand = Stand { frame, renderer, scene, device };
@@ -223,7 +223,7 @@ fn a_picture_is_drawn_from_a_secondary_command_buffer_too() {
     let own = alone(&surfels(), &settings, Outputs::default(), Some(Rasterizer::Draw));
     for (way, samples) in [Way::Subpass, Way::Rendering].into_iter().flat_map(|w| [(w, ONE), (w, FOUR)]) {
         let frame = Frame::new(&host, Kind { way, samples, ..PLAIN }, SIZE).unwrap();
-        let device = host.lend(None).unwrap();
+        let device = host.external_device(None).unwrap();
         let mut renderer = renderer(&device, &frame, Some(Rasterizer::Draw));
         let scene = upload(&host, &device, &surfels());
         let view = view(camera());
@@ -251,7 +251,7 @@ fn a_picture_is_drawn_from_a_secondary_command_buffer_too() {
 fn an_update_and_the_frames_around_it_wait_for_each_other() {
     let Some(host) = open(|all| all) else { return };
     let frame = Frame::new(&host, PLAIN, SIZE).unwrap();
-    let device = host.lend(None).unwrap();
+    let device = host.external_device(None).unwrap();
     let (old, new) = (sphere(20_000), sphere(19_000));
     let changes = Changes {
         positions: Some(&new.positions),

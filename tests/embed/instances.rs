@@ -92,7 +92,7 @@ fn a_composite_of_several_scenes_is_the_engines_own() {
         for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
             let own = alone(&settings, rasterizer);
             assert!(own.colour.iter().filter(|colour| colour[3] == 1.0).count() > 4_000);
-            let device = host.lend(None).unwrap();
+            let device = host.external_device(None).unwrap();
             let frame = Frame::new(&host, KIND, SIZE).unwrap();
             // SAFETY: the target is the frame's.
             let mut renderer = unsafe { Renderer::new(&device, options(&frame, Some(rasterizer))) }.unwrap();
@@ -125,7 +125,7 @@ fn subpasses_of_several_scenes_draw_the_engines_own_picture() {
     for method in Method::SPLATTING {
         let settings = Settings { background: None, ..method.settings() };
         let own = alone(&settings, Rasterizer::Draw);
-        let device = host.lend(None).unwrap();
+        let device = host.external_device(None).unwrap();
         let list = instances(parts().map(|(surfels, _)| upload(&host, &device, &surfels)));
         let frames: Vec<_> = list.iter().map(|instance| (instance.scene.streams(), &settings)).collect();
         let mut native = Native::new(&host, &device, NATIVE, SIZE, &frames).unwrap();
@@ -148,7 +148,7 @@ fn subpasses_of_several_scenes_draw_the_engines_own_picture() {
 #[test]
 fn what_is_refused_records_nothing_and_the_next_frame_is_right() {
     let Some(host) = open(|all| all) else { return };
-    let device = host.lend(None).unwrap();
+    let device = host.external_device(None).unwrap();
     let frame = Frame::new(&host, KIND, SIZE).unwrap();
     let settings = method("sprites-unfiltered");
     {
@@ -163,7 +163,7 @@ fn what_is_refused_records_nothing_and_the_next_frame_is_right() {
         // Nothing is drawn.
         assert!(frame.read(&host).unwrap().0.iter().all(|colour| colour[3] == 0.0));
         list[1].transform = place;
-        let other = host.lend(None).unwrap();
+        let other = host.external_device(None).unwrap();
         list[1].scene = upload(&host, &other, &painted(500));
         let error = draw(&host, &frame, &mut renderer, &list, &settings).unwrap_err().to_string();
         assert!(error.contains("another device"), "{error}");
@@ -192,7 +192,7 @@ fn list(number: usize, scenes: &[Arc<Scene>; 3]) -> Vec<Instance> {
 fn lists_that_change_with_every_frame_leave_nothing() {
     let Some(host) = open(|all| all) else { return };
     let (memory, counts) = Counted::new(&host);
-    let device = host.lend(Some(Box::new(memory))).unwrap();
+    let device = host.external_device(Some(Box::new(memory))).unwrap();
     let frame = Frame::new(&host, KIND, SIZE).unwrap();
     {
         let scenes = [painted(500), plain(900), rich(700)].map(|surfels| upload(&host, &device, &surfels));
@@ -232,7 +232,7 @@ fn lists_that_change_with_every_frame_leave_nothing() {
 fn native_lists_that_change_with_every_frame_leave_nothing() {
     let Some(host) = open(|all| all) else { return };
     let (memory, counts) = Counted::new(&host);
-    let device = host.lend(Some(Box::new(memory))).unwrap();
+    let device = host.external_device(Some(Box::new(memory))).unwrap();
     let settings = method("perspective-ewa");
     {
         let scenes = [painted(500), plain(900), rich(700)].map(|surfels| upload(&host, &device, &surfels));

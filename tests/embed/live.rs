@@ -86,18 +86,22 @@ fn a_hosts_buffers_give_the_picture_of_an_upload_by_every_method() {
     for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
         let mut rig = Rig::new(&host, Some(rasterizer), DeviceLimits::default());
         for (layout, surfels) in &cases {
-            let (lent, held) = lay(&host, &rig.device, layout, surfels);
+            let (external, buffer) = lay(&host, &rig.device, layout, surfels);
             let own = upload(&host, &rig.device, surfels);
-            assert!(lent.bytes() < 100 && own.bytes() > 100_000, "nothing is copied: {}", lent.bytes());
+            assert!(
+                external.bytes() < 100 && own.bytes() > 100_000,
+                "nothing is copied: {}",
+                external.bytes()
+            );
             for method in Method::ALL {
                 let settings = settings(method);
-                let [found, expected] = [&lent, &own].map(|scene| rig.show(&host, scene, &settings));
+                let [found, expected] = [&external, &own].map(|scene| rig.show(&host, scene, &settings));
                 assert!(covered(&expected) > 5_000);
                 let wrong = differing(&found, &expected, most(&settings, rasterizer));
                 assert_eq!(wrong, 0, "{} {rasterizer:?} {layout:?}", method.name);
             }
-            drop(lent);
-            held.destroy(&host);
+            drop(external);
+            buffer.destroy(&host);
         }
         rig.destroy(&host);
     }
@@ -140,19 +144,19 @@ fn every_format_gives_what_it_holds() {
     for name in ["sprites-unfiltered", "pull-push"] {
         let settings = settings(Method::named(name).unwrap());
         for (layout, surfels, few) in &cases {
-            let (lent, held) = lay(&host, &rig.device, layout, surfels);
-            let found = rig.show(&host, &lent, &settings);
-            let expected = rig.show_uploaded(&host, &layout.held(surfels.clone()), &lent, &settings);
+            let (external, buffer) = lay(&host, &rig.device, layout, surfels);
+            let found = rig.show(&host, &external, &settings);
+            let expected = rig.show_uploaded(&host, &layout.held(surfels.clone()), &external, &settings);
             assert!(covered(&expected) > 5_000);
             let wrong = differing(&found, &expected, if *few > 0 { 1e-6 } else { 0.0 });
             assert!(wrong <= *few, "{name} {layout:?}: {wrong} px");
             if *few > 0 {
                 // The format is what was read: unrounded normals are others.
-                let rounded = rig.show_uploaded(&host, surfels, &lent, &settings);
+                let rounded = rig.show_uploaded(&host, surfels, &external, &settings);
                 assert!(differing(&found, &rounded, 1e-6) > 1_000, "{name} {layout:?}");
             }
-            drop(lent);
-            held.destroy(&host);
+            drop(external);
+            buffer.destroy(&host);
         }
     }
     rig.destroy(&host);
@@ -160,34 +164,34 @@ fn every_format_gives_what_it_holds() {
 }
 
 #[test]
-fn windows_of_interleaved_buffers_fit_and_count_as_they_are_told() {
+fn chunks_of_interleaved_buffers_fit_and_count_as_they_are_told() {
     let Some(host) = open(|all| all) else { return };
     let (layout, surfels) = (Layout::wide(), ellipses(20_000));
     for rasterizer in [Rasterizer::Draw, Rasterizer::Compute] {
         let mut rig = Rig::new(&host, Some(rasterizer), NARROW);
-        let (lent, held) = lay(&host, &rig.device, &layout, &surfels);
+        let (external, buffer) = lay(&host, &rig.device, &layout, &surfels);
         let own = upload(&host, &rig.device, &surfels);
-        assert!(lent.windows().len() > 2, "{:?}", lent.windows());
-        let border = lent.windows()[0].end;
+        assert!(external.chunks().len() > 2, "{:?}", external.chunks());
+        let border = external.chunks()[0].end;
         for name in ["perspective-ewa", "sprites-unfiltered", "pull-push"] {
             let settings = settings(Method::named(name).unwrap());
             let most = most(&settings, rasterizer);
             for count in [20_000, border + 1, border, border - 1, 1, 0] {
-                [&lent, &own].into_iter().for_each(|scene| scene.set_count(count).unwrap());
-                assert_eq!((lent.count(), lent.capacity()), (count, 20_000));
-                let [found, again] = [&lent, &own].map(|scene| rig.show(&host, scene, &settings));
+                [&external, &own].into_iter().for_each(|scene| scene.set_count(count).unwrap());
+                assert_eq!((external.count(), external.capacity()), (count, 20_000));
+                let [found, again] = [&external, &own].map(|scene| rig.show(&host, scene, &settings));
                 assert_eq!(differing(&found, &again, most), 0, "{name} {rasterizer:?} {count}");
                 if count == 0 {
                     assert_eq!(covered(&found), 0, "{name} {rasterizer:?}");
                     continue;
                 }
-                let fresh = rig.show_uploaded(&host, &first(&surfels, count as usize), &lent, &settings);
+                let fresh = rig.show_uploaded(&host, &first(&surfels, count as usize), &external, &settings);
                 assert_eq!(differing(&found, &fresh, most), 0, "{name} {rasterizer:?} {count}");
                 assert!(covered(&fresh) > 0);
             }
         }
-        drop(lent);
-        held.destroy(&host);
+        drop(external);
+        buffer.destroy(&host);
         rig.destroy(&host);
     }
     assert_silent(&host);
@@ -252,15 +256,15 @@ fn what_moves_every_frame_is_seen_where_it_is_with_frames_in_flight() {
     ] {
         let settings = settings(Method::named(name).unwrap());
         let mut rig = Rig::new(&host, Some(rasterizer), DeviceLimits::default());
-        let (lent, held) = lay(&host, &rig.device, &layout, &surfels);
+        let (external, buffer) = lay(&host, &rig.device, &layout, &surfels);
         let sources: Vec<_> = steps.iter().map(|step| Held::new(&host, &layout.bytes(step))).collect();
         let frames: Vec<_> = steps.iter().map(|_| Frame::new(&host, KIND, SIZE).unwrap()).collect();
         let size = layout.bytes(&surfels).len() as u64;
         let submit = |(source, frame): (&Held, &Frame)| -> Submitted {
             let (submitted, ()) = host
                 .submit(|cmd| {
-                    rewrite(&host, cmd, source, &held, size);
-                    rig.record(&host, cmd, Some(frame), &lent, &settings);
+                    rewrite(&host, cmd, source, &buffer, size);
+                    rig.record(&host, cmd, Some(frame), &external, &settings);
                     Ok(())
                 })
                 .unwrap();
@@ -271,14 +275,14 @@ fn what_moves_every_frame_is_seen_where_it_is_with_frames_in_flight() {
         let mut before: Option<Shown> = None;
         for (step, frame) in steps.iter().zip(&frames) {
             let found = frame.read(&host).unwrap();
-            let expected = rig.show_uploaded(&host, step, &lent, &settings);
+            let expected = rig.show_uploaded(&host, step, &external, &settings);
             assert_eq!(differing(&found, &expected, most(&settings, rasterizer)), 0, "{name} {rasterizer:?}");
             assert!(before.is_none_or(|before| differing(&before, &found, 1e-3) > 1_000), "it moves");
             before = Some(found);
         }
-        drop(lent);
+        drop(external);
         frames.into_iter().for_each(|frame| frame.destroy(&host));
-        sources.into_iter().chain([held]).for_each(|held| held.destroy(&host));
+        sources.into_iter().chain([buffer]).for_each(|buffer| buffer.destroy(&host));
         rig.destroy(&host);
     }
     assert_silent(&host);
@@ -288,7 +292,7 @@ fn what_moves_every_frame_is_seen_where_it_is_with_frames_in_flight() {
 fn buffers_that_take_turns_make_nothing() {
     let Some(host) = open(|all| all) else { return };
     let (memory, counts) = Counted::new(&host);
-    let device = host.lend(Some(Box::new(memory))).unwrap();
+    let device = host.external_device(Some(Box::new(memory))).unwrap();
     let frame = Frame::new(&host, KIND, SIZE).unwrap();
     let options =
         Options { target: frame.target(), frames_in_flight: 2, precision: Precision::Full, rasterizer: None };
@@ -309,14 +313,14 @@ fn buffers_that_take_turns_make_nothing() {
     let alive = counts.alive.load(Ordering::SeqCst);
     (0..8).for_each(|_| drop(rig.show(&host, &scenes[0].0, &settings)));
     assert!(counts.alive.load(Ordering::SeqCst) < alive);
-    let (kept, held): (Vec<_>, Vec<_>) = scenes.into_iter().unzip();
+    let (kept, buffer): (Vec<_>, Vec<_>) = scenes.into_iter().unzip();
     drop(kept);
     let Rig { renderer, device, frame } = rig;
     drop(renderer);
     assert_eq!((Arc::strong_count(&device), counts.alive.load(Ordering::SeqCst)), (1, 0));
     drop(device);
     frame.destroy(&host);
-    held.into_iter().for_each(|held| held.destroy(&host));
+    buffer.into_iter().for_each(|buffer| buffer.destroy(&host));
     assert_silent(&host);
 }
 
@@ -376,15 +380,15 @@ fn what_is_invalid_in_a_hosts_buffer_is_culled_and_counted() {
     let bytes = layout.bytes(&surfels);
     let buffer = Foreign::new(&device, &bytes);
     // SAFETY: the buffer is the device's, and goes last.
-    let lent = unsafe { Scene::from_buffers(&device, &layout.told(&surfels, buffer.buffer)) }.unwrap();
+    let external = unsafe { Scene::from_buffers(&device, &layout.told(&surfels, buffer.buffer)) }.unwrap();
     for (name, rasterizer) in ALONE {
-        let [found, expected] = [&lent, &own].map(|scene| alone(&device, scene, name, rasterizer));
+        let [found, expected] = [&external, &own].map(|scene| alone(&device, scene, name, rasterizer));
         assert_eq!(expected.1.invalid as usize, spoiled);
         assert_eq!(found.1, expected.1, "{name} {rasterizer:?}");
         assert!(found.0 == expected.0, "{name} {rasterizer:?}");
         assert!(found.0.colour.iter().filter(|colour| colour[3] > 0.0).count() > 2_000);
     }
-    drop((own, lent, buffer));
+    drop((own, external, buffer));
     crate::support::gpu::assert_silent(&device);
 }
 
@@ -466,11 +470,11 @@ pub fn refused<T>(made: surfel::Result<T>, said: &str) {
 #[test]
 fn buffers_that_cannot_be_read_are_refused_and_named() {
     let Some(host) = open(|all| all) else { return };
-    let device = host.lend_within(NARROW, None).unwrap();
+    let device = host.external_device_within(NARROW, None).unwrap();
     let surfels = ellipses(1_000);
     let layout = Layout::wide();
-    let held = Held::new(&host, &layout.bytes(&surfels));
-    let good = layout.told(&surfels, held.0);
+    let buffer = Held::new(&host, &layout.bytes(&surfels));
+    let good = layout.told(&surfels, buffer.0);
     type Change = fn(&mut Buffers);
     let changes: [(Change, &str); 17] = [
         (
@@ -516,7 +520,7 @@ fn buffers_that_cannot_be_read_are_refused_and_named() {
     refused(update(&scene), "buffers of the host");
     assert!(update(&upload(&host, &device, &surfels)).is_ok());
     drop(scene);
-    held.destroy(&host);
+    buffer.destroy(&host);
     drop(device);
     assert_silent(&host);
 }

@@ -67,7 +67,7 @@ pub struct Drawn<'a> {
 
 impl<'a> Drawn<'a> {
     pub fn new(host: &'a Host, kind: Kind, size: [u32; 2], surfels: &Surfels, settings: &Settings) -> Self {
-        let device = host.lend(None).unwrap();
+        let device = host.external_device(None).unwrap();
         let scene = upload(host, &device, surfels);
         let native = Native::new(host, &device, kind, size, &[(scene.streams(), settings)]).unwrap();
         Self { host, native, scene, device }
@@ -216,7 +216,7 @@ fn a_viewport_is_anywhere_and_runs_any_way() {
         drawn.render(&View { camera, viewport }, &settings, None, false);
         let mut seen = 0;
         for (i, colour) in drawn.colours().iter().enumerate() {
-            let [x, y] = [i % larger[0] as usize, i / larger[0] as usize].map(|place| place as i64);
+            let [x, y] = [i % larger[0] as usize, i / larger[0] as usize].map(|at| at as i64);
             let inside = (0..160).contains(&(x - 30)) && (0..120).contains(&(y - 8));
             let expected = if inside { own[((y - 8) * 160 + x - 30) as usize] } else { [0.0; 4] };
             assert_eq!(*colour, expected, "{x} {y}");
@@ -247,7 +247,7 @@ fn composited(
     let Kind { colour, samples, reversed, .. } = kind;
     let kind = frame::Kind { way: Way::Subpass, colour, normals: false, samples, reversed };
     let mut stand = Stand::new(host, kind, SIZE, Some(Rasterizer::Draw), surfels);
-    let mesh = Mesh::new(host, mesh, stand.frame.place()).unwrap();
+    let mesh = Mesh::new(host, mesh, stand.frame.mesh_target()).unwrap();
     let (colours, _) = stand.render(host, view, settings, Some(&mesh));
     mesh.destroy(host);
     stand.destroy(host);
@@ -275,7 +275,7 @@ fn among_the_hosts_surfaces_the_picture_is_the_composites_and_the_references() {
         let kind = Kind { reversed, ..kind };
         let view = View { camera, viewport };
         let mut drawn = Drawn::new(&host, kind, SIZE, &surfels(), &settings);
-        let mesh = Mesh::new(&host, &corners, drawn.native.place()).unwrap();
+        let mesh = Mesh::new(&host, &corners, drawn.native.mesh_target()).unwrap();
         drawn.render(&view, &settings, Some(&mesh), false);
         let colours = drawn.colours();
         let other = composited(&host, kind, &view, &settings, &surfels(), &corners);
@@ -328,7 +328,7 @@ fn in_hard_scenes_the_picture_is_the_composites() {
             let other = composited(&host, kind, &view, &settings, &case.surfels, &corners);
             for seed in [true, false] {
                 let mut drawn = Drawn::new(&host, Kind { seed, ..kind }, SIZE, &case.surfels, &settings);
-                let mesh = Mesh::new(&host, &corners, drawn.native.place()).unwrap();
+                let mesh = Mesh::new(&host, &corners, drawn.native.mesh_target()).unwrap();
                 drawn.render(&view, &settings, Some(&mesh), false);
                 for (found, other) in drawn.colours().iter().zip(&other) {
                     shown += usize::from(seed && other[3] > 0.0);
@@ -419,7 +419,7 @@ fn splats_that_the_host_hides_are_left_out_early() {
         let counts = [true, false].map(|seed| {
             let kind = Kind { seed, ..PLAIN };
             let mut drawn = Drawn::new(&host, kind, SIZE, &surfels(), &settings);
-            let mesh = Mesh::new(&host, &corners, drawn.native.place()).unwrap();
+            let mesh = Mesh::new(&host, &corners, drawn.native.mesh_target()).unwrap();
             let counts = count_fragments(&mut drawn, &view, &settings, &mesh);
             mesh.destroy(&host);
             drawn.destroy();
@@ -442,7 +442,7 @@ fn splats_that_the_host_hides_are_left_out_early() {
 fn a_thousand_frames_of_all_sizes_and_scenes_leave_nothing() {
     let Some(host) = open(|all| all) else { return };
     let (memory, counts) = Counted::new(&host);
-    let device = host.lend(Some(Box::new(memory))).unwrap();
+    let device = host.external_device(Some(Box::new(memory))).unwrap();
     let settings = ["perspective-ewa", "sprites", "confetti"].map(method);
     let covering = Settings { alpha: Alpha::Coverage, ..method("object-ewa") };
     let settings: Vec<_> = settings.into_iter().chain([covering]).collect();
@@ -486,7 +486,7 @@ fn a_thousand_frames_of_all_sizes_and_scenes_leave_nothing() {
 #[test]
 fn a_plan_for_several_frames_serves_each() {
     let Some(host) = open(|all| all) else { return };
-    let device = host.lend(None).unwrap();
+    let device = host.external_device(None).unwrap();
     let mut painted = surfels();
     sampling::paint_linear(&mut painted, &mut Random(5));
     let both = [surfels(), painted];
@@ -526,7 +526,7 @@ fn sums_of_16_bits_are_the_engines_own_too() {
     let options = RenderOptions { size: SIZE, outputs, precision, rasterizer, ..Default::default() };
     let own = crate::support::gpu::render(&own, &surfels(), &camera(), &settings, options);
     let limits = DeviceLimits { blend_float32: Some(false), ..Default::default() };
-    let device = host.lend_within(limits, None).unwrap();
+    let device = host.external_device_within(limits, None).unwrap();
     let scene = upload(&host, &device, &surfels());
     let frames = [(scene.streams(), &settings)];
     let mut native = Native::new(&host, &device, PLAIN, SIZE, &frames).unwrap();

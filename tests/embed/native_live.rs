@@ -45,11 +45,12 @@ struct Shown<'a> {
 
 impl<'a> Shown<'a> {
     fn new(host: &'a Host, seed: bool, like: &Surfels, settings: &Settings) -> Self {
-        let device = host.lend_within(DeviceLimits::default(), None).unwrap();
+        let device = host.external_device_within(DeviceLimits::default(), None).unwrap();
         let scene = upload(host, &device, like);
         let native = Native::new(host, &device, kind(seed), SIZE, &[(scene.streams(), settings)]).unwrap();
         let sides = [Vec3::new(1.4, 0.2, 0.1), Vec3::new(-0.01, 0.3, -1.1)];
-        let mesh = Mesh::new(host, &parallelogram(Vec3::new(0.1, 0.05, 0.2), sides), native.place()).unwrap();
+        let mesh =
+            Mesh::new(host, &parallelogram(Vec3::new(0.1, 0.05, 0.2), sides), native.mesh_target()).unwrap();
         Self { host, native, mesh, device }
     }
 
@@ -140,22 +141,23 @@ fn buffers_that_take_turns_keep_what_is_made_for_them() {
     let Some(host) = open(|all| all) else { return };
     let surfels = first(&sphere(5_000), 5_000);
     let settings = settings(Visibility::Axis);
-    let device = host.lend_within(DeviceLimits::default(), None).unwrap();
+    let device = host.external_device_within(DeviceLimits::default(), None).unwrap();
     let layout = Layout { colours: None, ..Layout::apart(5_000) };
-    let lent = [(); 3].map(|()| lay(&host, &device, &layout, &surfels));
-    let native = Native::new(&host, &device, kind(true), SIZE, &[(lent[0].0.streams(), &settings)]).unwrap();
+    let external = [(); 3].map(|()| lay(&host, &device, &layout, &surfels));
+    let native =
+        Native::new(&host, &device, kind(true), SIZE, &[(external[0].0.streams(), &settings)]).unwrap();
     let sides = [Vec3::X, Vec3::Z];
-    let mesh = Mesh::new(&host, &parallelogram(Vec3::ZERO, sides), native.place()).unwrap();
+    let mesh = Mesh::new(&host, &parallelogram(Vec3::ZERO, sides), native.mesh_target()).unwrap();
     let mut shown = Shown { host: &host, native, mesh, device: device.clone() };
-    let mut round = || lent.each_ref().map(|(scene, _)| shown.frame(scene, &settings));
+    let mut round = || external.each_ref().map(|(scene, _)| shown.frame(scene, &settings));
     let pictures = round();
     let made = device.usage();
     assert!((0..3).all(|_| round() == pictures) && pictures[0] == pictures[2]);
     assert_eq!(device.usage(), made);
     shown.destroy();
-    for (scene, held) in lent {
+    for (scene, buffer) in external {
         drop(scene);
-        held.destroy(&host);
+        buffer.destroy(&host);
     }
     assert_silent(&host);
 }

@@ -8,7 +8,7 @@ use crate::stand::{SIZE, assert_silent, camera, open, rising, surfels, upload};
 use crate::support::sampling::{self, Random};
 use ash::vk;
 use std::sync::atomic::Ordering;
-use surfel::embed::native::{Place, Plan, Renderer};
+use surfel::embed::native::{HostRenderPass, Plan, Renderer};
 use surfel::embed::{Abilities, View};
 use surfel::settings::Alpha;
 use surfel::{Error, Precision, Settings};
@@ -17,7 +17,7 @@ use surfel::{Error, Precision, Settings};
 fn without_memory_there_is_an_error_and_then_there_is_memory() {
     let Some(host) = open(|all| all) else { return };
     let (memory, counts) = Counted::new(&host);
-    let device = host.lend(Some(Box::new(memory))).unwrap();
+    let device = host.external_device(Some(Box::new(memory))).unwrap();
     let scene = upload(&host, &device, &surfels());
     let settings = Settings { alpha: Alpha::Coverage, ..method("perspective-ewa") };
     let view = View::whole(camera(), SIZE);
@@ -78,32 +78,30 @@ fn assert_refused<T>(made: surfel::Result<T>, said: &str) {
 #[test]
 fn render_passes_that_cannot_be_served_are_refused_and_say_why() {
     let Some(host) = open(|all| Abilities { independent_blend: false, ..all }) else { return };
-    let device = host.lend(None).unwrap();
+    let device = host.external_device(None).unwrap();
     let streams = upload(&host, &device, &surfels()).streams();
     let (settings, nearest, pulled) =
         (method("perspective-ewa"), method("sprites-unfiltered"), method("pull-push"));
     let kind = Kind { samples: FOUR, around: [true, false], ..PLAIN };
     let attachments = kind.attachments();
-    let plan =
-        |attachments: &[vk::AttachmentDescription], change: fn(&mut Place<'_>), frames: &[&Settings]| {
-            let mut place = kind.place(attachments);
-            change(&mut place);
-            let frames: Vec<_> = frames.iter().map(|settings| (streams, *settings)).collect();
-            Plan::new(&device, &place, Precision::Full, &frames)
-        };
-    type Change = fn(&mut Place<'_>);
+    let plan = |attachments: &[vk::AttachmentDescription],
+                change: fn(&mut HostRenderPass<'_>),
+                frames: &[&Settings]| {
+        let mut pass = kind.host_pass(attachments);
+        change(&mut pass);
+        let frames: Vec<_> = frames.iter().map(|settings| (streams, *settings)).collect();
+        Plan::new(&device, &pass, Precision::Full, &frames)
+    };
+    type Change = fn(&mut HostRenderPass<'_>);
     let changes: [(Change, &str); 8] = [
-        (|place| place.subpasses = [0, 1], "nothing has been drawn to"),
-        (|place| place.subpasses = [u32::MAX, 1], "4294967295 subpasses before"),
-        (|place| place.picture = 7, "the picture wants attachment 7 of 3"),
-        (|place| place.normal = Some(0), "attachment 0 is given twice, for normals, too"),
-        (|place| place.picture = 1, "cannot draw the picture in attachment 1 to D32_SFLOAT"),
-        (|place| place.depth.as_mut().unwrap().attachment = 0, "attachment 0 is given twice"),
-        (|place| (place.picture, place.resolve) = (2, None), "depth has TYPE_4 samples in attachment 1"),
-        (
-            |place| (place.resolve, place.normal) = (None, Some(2)),
-            "normals has TYPE_1 samples in attachment 2",
-        ),
+        (|pass| pass.subpasses = [0, 1], "nothing has been drawn to"),
+        (|pass| pass.subpasses = [u32::MAX, 1], "4294967295 subpasses before"),
+        (|pass| pass.picture = 7, "the picture wants attachment 7 of 3"),
+        (|pass| pass.normal = Some(0), "attachment 0 is given twice, for normals, too"),
+        (|pass| pass.picture = 1, "cannot draw the picture in attachment 1 to D32_SFLOAT"),
+        (|pass| pass.depth.as_mut().unwrap().attachment = 0, "attachment 0 is given twice"),
+        (|pass| (pass.picture, pass.resolve) = (2, None), "depth has TYPE_4 samples in attachment 1"),
+        (|pass| (pass.resolve, pass.normal) = (None, Some(2)), "normals has TYPE_1 samples in attachment 2"),
     ];
     for (change, said) in changes {
         assert_refused(plan(&attachments, change, &[&settings]), said);
@@ -137,9 +135,9 @@ fn render_passes_that_cannot_be_served_are_refused_and_say_why() {
         "cannot draw depth in attachment 1 to S8_UINT",
     );
     let encoded = coloured(vk::Format::R8G8B8A8_SRGB, FOUR);
-    assert_refused(plan(&encoded, |place| place.encode = true, &[&settings]), "encodes sRGB itself");
-    assert_refused(plan(&encoded, |place| place.normal = Some(3), &[&settings]), "independentBlend");
-    let same: fn(&mut Place<'_>) = |_| ();
+    assert_refused(plan(&encoded, |pass| pass.encode = true, &[&settings]), "encodes sRGB itself");
+    assert_refused(plan(&encoded, |pass| pass.normal = Some(3), &[&settings]), "independentBlend");
+    let same: fn(&mut HostRenderPass<'_>) = |_| ();
     assert_refused(plan(&attachments, same, &[&pulled]), "within a render pass");
     assert_refused(plan(&attachments, same, &[&settings, &nearest]), "make a plan for each");
     assert_refused(plan(&attachments, same, &[]), "a plan of no frames");
@@ -155,7 +153,7 @@ fn frames_that_cannot_be_served_are_refused_and_say_why() {
     let Some(host) = open(|all| all) else { return };
     let settings = method("perspective-ewa");
     let mut drawn = Drawn::new(&host, PLAIN, SIZE, &surfels(), &settings);
-    let other = host.lend(None).unwrap();
+    let other = host.external_device(None).unwrap();
     let elsewhere = upload(&host, &other, &surfels());
     let mut painted = surfels();
     sampling::paint_linear(&mut painted, &mut Random(5));

@@ -54,7 +54,7 @@ unsafe extern "system" fn compute(
 }
 
 /// The host's device, lent with functions that count.
-fn lend(host: &Host) -> Arc<Device> {
+fn counted_device(host: &Host) -> Arc<Device> {
     let table = host.device.fp_v1_0();
     *MAKING.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) =
         Some((table.create_graphics_pipelines, table.create_compute_pipelines));
@@ -63,7 +63,7 @@ fn lend(host: &Host) -> Arc<Device> {
         b"vkCreateComputePipelines" => Some(compute as *const c_void),
         _ => None,
     };
-    host.lend_replaced(replace).unwrap()
+    host.external_device_replaced(replace).unwrap()
 }
 
 fn settings(name: &str) -> Settings {
@@ -81,7 +81,7 @@ fn made(body: impl FnOnce()) -> u64 {
 fn a_frame_whose_pipelines_are_there_makes_none() {
     let Some(host) = open(|all| all) else { return };
     let _alone = COUNTING.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-    let device = lend(&host);
+    let device = counted_device(&host);
     let kind = Kind { way: Way::Subpass, colour: FLOATS, normals: false, samples: ONE, reversed: true };
     let frame = Frame::new(&host, kind, SIZE).unwrap();
     let scene = upload(&host, &device, &surfels());
@@ -130,7 +130,7 @@ fn a_frame_whose_pipelines_are_there_makes_none() {
 fn subpasses_whose_pipelines_are_there_make_none() {
     let Some(host) = open(|all| all) else { return };
     let _alone = COUNTING.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-    let device = lend(&host);
+    let device = counted_device(&host);
     let kind = native::Kind {
         colour: FLOATS,
         depth: Some(vk::Format::D32_SFLOAT),

@@ -179,7 +179,7 @@ fn subpasses_tell_what_is_asked_for() {
         let settings = Settings { cull: Cull::Back, ..Method::named(name).unwrap().settings() };
         let settings = Settings { background: None, ..settings };
         let own = reports(&settings, Some(Rasterizer::Draw), true);
-        let device = host.lend(None).unwrap();
+        let device = host.external_device(None).unwrap();
         let scene = upload(&host, &device, &surfels());
         let kind = native::Kind {
             colour: FLOATS,

@@ -37,7 +37,7 @@ pub struct Rig {
 
 impl Rig {
     pub fn new(host: &Host, rasterizer: Option<Rasterizer>, limits: DeviceLimits) -> Self {
-        let device = host.lend_within(limits, None).unwrap();
+        let device = host.external_device_within(limits, None).unwrap();
         let frame = Frame::new(host, KIND, SIZE).unwrap();
         let options =
             Options { target: frame.target(), frames_in_flight: 8, precision: Precision::Full, rasterizer };

@@ -49,7 +49,7 @@ impl Stand {
         rasterizer: Option<Rasterizer>,
         surfels: &Surfels,
     ) -> Self {
-        let device = host.lend(None).unwrap();
+        let device = host.external_device(None).unwrap();
         let frame = Frame::new(host, kind, size).unwrap();
         let options =
             Options { target: frame.target(), frames_in_flight: 2, precision: Precision::Full, rasterizer };

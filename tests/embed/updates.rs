@@ -80,7 +80,7 @@ fn an_update_is_seen_by_the_frames_after_it_and_by_none_before() {
     {
         let new = others(&surfels);
         let mut rig = Rig::new(&host, Some(rasterizer), NARROW);
-        let border = upload(&host, &rig.device, &surfels).windows()[0].end as usize;
+        let border = upload(&host, &rig.device, &surfels).chunks()[0].end as usize;
         for range in [border - 3..border + 5, 0..border, border..20_000, 0..20_000, 7..8] {
             let settings = settings(Method::named("sprites-unfiltered").unwrap());
             let scene = upload(&host, &rig.device, &surfels);

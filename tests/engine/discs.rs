@@ -82,7 +82,7 @@ fn shapes_and_sides_reach_every_window() {
     let mut surfels = bumpy_sphere(40_000, &mut Random(3));
     stretch(&mut surfels, &mut Random(4));
     forget_sides(&mut surfels, 0.5, &mut Random(5));
-    assert!(Scene::upload(&narrow, &surfels).unwrap().windows().len() > 2, "one window would prove nothing");
+    assert!(Scene::upload(&narrow, &surfels).unwrap().chunks().len() > 2, "one chunk would prove nothing");
     let [whole, parts] = [&device, &narrow].map(|device| picture(device, &surfels, Rasterizer::Draw));
     let channels = |picture: &Picture| picture.colour.iter().flatten().copied().collect::<Vec<_>>();
     let pairs = channels(&whole).into_iter().zip(channels(&parts));

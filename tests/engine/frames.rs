@@ -271,7 +271,7 @@ fn many_windows_make_the_same_picture() {
     let Some(device) = device(limits) else { return };
     let surfels = sphere(50_000);
     let scene = Scene::upload(&device, &surfels).unwrap();
-    assert!(scene.windows().len() > 2, "one window would prove nothing");
+    assert!(scene.chunks().len() > 2, "one chunk would prove nothing");
     let picture = picture_on(&device, &surfels, everything(Rasterizer::Draw));
     assert!(agrees(&picture, &surfels));
     // The compute rasterizer's buffers fit at a smaller size.

@@ -310,7 +310,7 @@ fn numbers_are_counted_on_from_scene_to_scene() {
     let settings = settings("pull-push");
     let one = merged(&apart(&a, &b), settings.lighting.albedo);
     let (list, alone) = (uploaded(&device, &apart(&a, &b)), Scene::upload(&device, &one).unwrap());
-    assert_eq!(Instances::<Scene>::from(&list).numbers(), [0, 20_000]);
+    assert_eq!(Instances::<Scene>::from(&list).first_ids(), [0, 20_000]);
     for rasterizer in BOTH {
         let outputs = Outputs { id: true, ..options(rasterizer).outputs };
         let mut renderer = Renderer::new(&device, RenderOptions { outputs, ..options(rasterizer) }).unwrap();

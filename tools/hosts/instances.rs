@@ -8,10 +8,10 @@ mod host;
 
 use ash::vk;
 use glam::{DMat4, DQuat, DVec3, Vec3};
+use host::arguments::Arguments;
 use host::composite::{Composite, Content};
 use host::frame::Way;
 use host::models::Models;
-use host::options::Asked;
 use host::scene::{Corners, TO_LIGHT, parallelogram};
 use host::{Host, Result};
 use std::sync::Arc;
@@ -22,7 +22,7 @@ use surfel::vk::Device;
 use surfel::{Instance, Settings};
 
 fn main() -> Result<()> {
-    host::show::run(|host, asked| Composite::<Threefold>::new(host, Way::Subpass, asked))
+    host::demo::run(|host, arguments| Composite::<Threefold>::new(host, Way::Subpass, arguments))
 }
 
 /// A model that stands in three places.
@@ -32,14 +32,14 @@ struct Threefold(Models);
 const COUNT: u32 = 150_000;
 
 impl Content for Threefold {
-    fn new(_: &Host, device: &Arc<Device>, asked: &Asked) -> Result<Self> {
+    fn new(_: &Host, device: &Arc<Device>, arguments: &Arguments) -> Result<Self> {
         let own = |count| Ok(scenes::open(&format!("scene:bumpy-sphere?points={count}&seed=1"))?);
-        Ok(Self(Models::new(device, asked, own, COUNT)?))
+        Ok(Self(Models::new(device, arguments, own, COUNT)?))
     }
 
     /// The host's sun shines on surfels, too.
-    fn settings(asked: &Asked) -> Settings {
-        let settings = asked.settings();
+    fn settings(arguments: &Arguments) -> Settings {
+        let settings = arguments.settings();
         let sun = DirectionalLight { to_light: TO_LIGHT.to_array(), radiance: [0.7; 3] };
         let lighting = Lighting { headlight: 0.25, directional: vec![sun], ..settings.lighting.clone() };
         Settings { lighting, ..settings }
@@ -60,7 +60,7 @@ impl Content for Threefold {
         Ok(())
     }
 
-    fn stand(&mut self, _: &Host, cmd: vk::CommandBuffer, _: f64) -> Result<Vec<Instance>> {
+    fn instances(&mut self, _: &Host, cmd: vk::CommandBuffer, _: f64) -> Result<Vec<Instance>> {
         let scene = self.0.scene(cmd)?;
         let to_unit = self.0.to_unit(&scene.bounds());
         Ok(places().into_iter().map(|place| Instance::new(&scene, place * to_unit)).collect())

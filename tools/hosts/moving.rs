@@ -9,9 +9,9 @@ mod host;
 
 use ash::vk;
 use glam::{DMat4, DVec3, Vec3};
+use host::arguments::Arguments;
 use host::composite::{Composite, Content};
 use host::frame::Way;
-use host::options::Asked;
 use host::scene::{Corners, parallelogram};
 use host::simulation::Simulation;
 use host::{Host, Result};
@@ -24,7 +24,7 @@ use surfel::{Instance, Scene};
 const COUNT: u32 = 1 << 20;
 
 fn main() -> Result<()> {
-    host::show::run(|host, asked| Composite::<Waves>::new(host, Way::Subpass, asked))
+    host::demo::run(|host, arguments| Composite::<Waves>::new(host, Way::Subpass, arguments))
 }
 
 /// Points that move.
@@ -39,19 +39,19 @@ struct Waves {
 fn simulate(host: &Host, device: &Arc<Device>, side: u32) -> Result<(Simulation, Arc<Scene>)> {
     let simulation = Simulation::new(host, side)?;
     // SAFETY: the simulation is destroyed after the last frame that reads it, and waits for its readers, as they for it.
-    let scene = unsafe { Scene::from_buffers(device, &simulation.told())? };
+    let scene = unsafe { Scene::from_buffers(device, &simulation.buffers())? };
     Ok((simulation, Arc::new(scene)))
 }
 
 impl Content for Waves {
     const SAMPLES: vk::SampleCountFlags = vk::SampleCountFlags::TYPE_1;
 
-    fn new(host: &Host, device: &Arc<Device>, asked: &Asked) -> Result<Self> {
-        if asked.model.is_some() {
+    fn new(host: &Host, device: &Arc<Device>, arguments: &Arguments) -> Result<Self> {
+        if arguments.model.is_some() {
             return Err("these points are a simulation's: leave --model out".into());
         }
         // A power of two.
-        let side = 1 << (asked.points.unwrap_or(COUNT).max(4).ilog2() / 2);
+        let side = 1 << (arguments.points.unwrap_or(COUNT).max(4).ilog2() / 2);
         let (simulation, scene) = simulate(host, device, side)?;
         Ok(Self { simulation, scene, sides: [side, side / 2] })
     }
@@ -76,7 +76,7 @@ impl Content for Waves {
         Ok(())
     }
 
-    fn stand(&mut self, host: &Host, cmd: vk::CommandBuffer, seconds: f64) -> Result<Vec<Instance>> {
+    fn instances(&mut self, host: &Host, cmd: vk::CommandBuffer, seconds: f64) -> Result<Vec<Instance>> {
         self.simulation.step(host, cmd, seconds as f32);
         Ok(vec![Instance::new(&self.scene, DMat4::IDENTITY)])
     }

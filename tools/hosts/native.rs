@@ -5,18 +5,18 @@
 mod host;
 
 use ash::vk;
+use host::arguments::Arguments;
+use host::demo::Demo;
 use host::mesh::Mesh;
 use host::models::Models;
 use host::native::{Kind, Native};
-use host::options::Asked;
 use host::scene::{SIZE, TO_LIGHT};
-use host::show::Show;
 use host::{Host, Result, sphere};
 use surfel::embed::View;
 use surfel::{Instance, Settings};
 
 fn main() -> Result<()> {
-    host::show::run(Subpasses::new)
+    host::demo::run(Subpasses::new)
 }
 
 /// A render pass with the mesh's subpass, surfels' own, and the fog's over both.
@@ -29,10 +29,10 @@ struct Subpasses {
 }
 
 impl Subpasses {
-    fn new(host: &Host, asked: &Asked) -> Result<Self> {
-        let device = host.lend(None)?;
-        let models = sphere::models(&device, asked)?;
-        let settings = asked.settings();
+    fn new(host: &Host, arguments: &Arguments) -> Result<Self> {
+        let device = host.external_device(None)?;
+        let models = sphere::models(&device, arguments)?;
+        let settings = arguments.settings();
         let kind = Kind {
             colour: vk::Format::R8G8B8A8_SRGB,
             depth: Some(vk::Format::D32_SFLOAT),
@@ -44,12 +44,12 @@ impl Subpasses {
         };
         let planned = models.streams(host)?.map(|streams| (streams, &settings));
         let native = Native::new(host, &device, kind, SIZE, &planned)?;
-        let mesh = Mesh::new(host, &sphere::ring(), native.place())?;
+        let mesh = Mesh::new(host, &sphere::ring(), native.mesh_target())?;
         Ok(Self { models, native, mesh, settings, size: SIZE })
     }
 }
 
-impl Show for Subpasses {
+impl Demo for Subpasses {
     fn size(&self) -> [u32; 2] {
         self.size
     }

@@ -9,5 +9,5 @@ use host::frame::Way;
 use host::sphere::Sphere;
 
 fn main() -> host::Result<()> {
-    host::show::run(|host, asked| Composite::<Sphere>::new(host, Way::Rendering, asked))
+    host::demo::run(|host, arguments| Composite::<Sphere>::new(host, Way::Rendering, arguments))
 }

@@ -5,12 +5,12 @@ use crate::cli::files::print_json;
 use crate::cli::{progress, report};
 use serde_json::{Map, Value, json};
 use std::path::Path;
+use surfel::Result;
 use surfel::estimate::{Estimated, spacing};
 use surfel::formats::declared::Element;
 use surfel::formats::{self, Dropped, Inspected, Loaded, ReadOptions, Report};
 use surfel::geometry::{Cloud, Colours, Model, Parts, View};
 use surfel::load::{scene, scene_cloud};
-use surfel::{Error, Result};
 
 /// The entries of a JSON object.
 type Object = Map<String, Value>;

@@ -1,7 +1,7 @@
 //! Surfels in subpasses of a host's own render pass: visibility, sums and picture stay on the tile, and no picture is drawn elsewhere first.
 //!
 //! ```text
-//! once          Place ─ Plan::new → what to append to the render pass ─ the host makes it ─ Renderer::new
+//! once          HostRenderPass ─ Plan::new → what to append to the render pass ─ the host makes it ─ Renderer::new
 //! each size     Renderer::resize → the views that follow in the framebuffer
 //! each frame    Renderer::prepare: footprints, outside the render pass
 //!               the host's subpasses ─ Renderer::draw: seed, visibility, attribute, normalize ─ the host's subpasses
@@ -31,7 +31,7 @@
 //!     [meshes, glass]: [vk::SubpassDescription<'_>; 2],
 //!     mut dependencies: Vec<vk::SubpassDependency>,
 //! ) -> surfel::Result<native::Renderer> {
-//!     let place = native::Place {
+//!     let host_pass = native::HostRenderPass {
 //!         attachments: &attachments,
 //!         subpasses: [1, 1],
 //!         picture: 0,
@@ -40,7 +40,7 @@
 //!         depth: Some(native::Depth { attachment: 1, reversed: true, seed: true }),
 //!         encode: false,
 //!     };
-//!     let plan = native::Plan::new(device, &place, Precision::Full, &[(scene.streams(), &Settings::default())])?;
+//!     let plan = native::Plan::new(device, &host_pass, Precision::Full, &[(scene.streams(), &Settings::default())])?;
 //!     attachments.extend(plan.attachments());
 //!     dependencies.extend(plan.dependencies());
 //!     let subpasses: Vec<_> = [meshes].into_iter().chain(plan.subpasses()).chain([glass]).collect();
@@ -77,18 +77,18 @@
 //! ```
 
 mod dependencies;
-mod place;
+mod host_pass;
 mod plan;
 mod seeding;
 mod subpasses;
 mod targets;
 
-pub use place::{Depth, Place};
+pub use host_pass::{Depth, HostRenderPass};
 pub use plan::Plan;
 
 use super::deferred_destruction::DeferredDestruction;
 use super::reports::{Measured, Reports};
-use super::view::Seen;
+use super::view::TargetView;
 use super::{View, without_background};
 use crate::error::{Error, Result};
 use crate::frame::FrameReport;
@@ -110,7 +110,7 @@ use targets::Targets;
 /// Renders scenes in subpasses of a host.
 pub struct Renderer {
     // Fields are dropped in this order: views before what they view.
-    shown: Option<Shown>,
+    shown: Option<PreparedFrame>,
     frame: FrameResources,
     reports: Reports,
     deferred: DeferredDestruction,
@@ -120,8 +120,8 @@ pub struct Renderer {
 }
 
 /// The frame that is prepared.
-struct Shown {
-    numbers: Numbers,
+struct PreparedFrame {
+    push: PushConstants,
     area: vk::Rect2D,
     /// Of the subpasses, in their order.
     passes: Vec<HostPass>,
@@ -129,7 +129,7 @@ struct Shown {
 
 /// The numbers of a frame that are pushed.
 #[derive(Clone, Copy)]
-struct Numbers {
+struct PushConstants {
     /// What splats start from; nothing if the seed is not drawn.
     seed: Option<layout::Seed>,
     host: layout::Subpass,
@@ -146,8 +146,8 @@ impl Renderer {
     /// [`Options::frames_in_flight`](super::Options::frames_in_flight) says.
     ///
     /// # Safety
-    /// `pass` is of the device, has the host's attachments, subpasses and dependencies as the plan's [`Place`] says, what the plan adds in its
-    /// place, and outlives the renderer, which is dropped only when the GPU is done with all that it recorded.
+    /// `pass` is of the device, has the host's attachments, subpasses and dependencies as the plan's [`HostRenderPass`] says, what the plan adds in its
+    /// host_pass, and outlives the renderer, which is dropped only when the GPU is done with all that it recorded.
     pub unsafe fn new(
         device: &Arc<Device>,
         plan: Plan,
@@ -233,7 +233,7 @@ impl Renderer {
         let made = self.make(scenes.into(), view, settings);
         // Also after an error: what it took the place of may be under way.
         self.deferred.extend(self.frame.take_deferred());
-        let (blocks, numbers, area) = made?;
+        let (blocks, push, area) = made?;
         let scenes: Vec<_> = self.frame.scenes().collect();
         self.reports.begin(&self.device, &scenes)?;
         self.deferred.advance();
@@ -243,7 +243,7 @@ impl Renderer {
         self.frame.record(&mut rec, &blocks);
         tail.record(&mut rec, &scenes);
         let passes = self.plan.numbered().map(|(_, step)| rec.later(step.pass().name)).collect();
-        self.shown = Some(Shown { numbers, area, passes });
+        self.shown = Some(PreparedFrame { push, area, passes });
         Ok(())
     }
 
@@ -281,7 +281,7 @@ impl Renderer {
     /// # Safety
     /// As that of [`Renderer::draw`], of the subpass for which `next` is called.
     pub unsafe fn draw_each(&self, mut next: impl FnMut(u32) -> vk::CommandBuffer) -> Result<()> {
-        let (Some(Shown { numbers, area, passes }), Some((present, frame))) =
+        let (Some(PreparedFrame { push, area, passes }), Some((present, frame))) =
             (&self.shown, self.frame.frame())
         else {
             return Err(Error::Usage("there is no frame to draw: prepare one, and heed its error".into()));
@@ -291,10 +291,10 @@ impl Renderer {
             // SAFETY: by the caller.
             let mut draws = unsafe { Draws::of_host(&self.device, cmd, pass, *area) };
             let Some(prepared) = present.pass(step.pass()) else { continue };
-            match (step, &numbers.seed) {
+            match (step, &push.seed) {
                 (Step::Seed, Some(seed)) => prepared.draw(&mut draws, &frame, seed),
                 (Step::Seed, None) => {}
-                (Step::Normalize, _) => prepared.draw(&mut draws, &frame, &numbers.host),
+                (Step::Normalize, _) => prepared.draw(&mut draws, &frame, &push.host),
                 (Step::Visibility | Step::Attribute | Step::Nearest, _) => {
                     prepared.draw(&mut draws, &frame, &());
                 }
@@ -322,7 +322,7 @@ impl Renderer {
         settings: &Settings,
     ) -> Result<()> {
         let placed = scenes.into().placed(&self.device)?;
-        let Seen { size, camera, .. } = view.seen(&self.device, self.plan.host.reversed)?;
+        let TargetView { size, camera, .. } = view.in_target(&self.device, self.plan.host.reversed)?;
         let settings = without_background(settings);
         check_method(&settings)?;
         let frame = self.frame.describe(&placed, &camera, &settings, size)?;
@@ -356,9 +356,10 @@ impl Renderer {
         scenes: Instances<'_>,
         view: &View,
         settings: &Settings,
-    ) -> Result<(Blocks, Numbers, vk::Rect2D)> {
+    ) -> Result<(Blocks, PushConstants, vk::Rect2D)> {
         let placed = scenes.placed(&self.device)?;
-        let Seen { area, size, camera, depth } = view.seen(&self.device, self.plan.host.reversed)?;
+        let TargetView { area, size, camera, depth } =
+            view.in_target(&self.device, self.plan.host.reversed)?;
         let targets = self.targets_of(area)?;
         let settings = without_background(settings);
         check_method(&settings)?;
@@ -375,7 +376,7 @@ impl Renderer {
         let bindings = targets.bindings(&subpasses::inputs(&self.plan));
         self.frame.make(&placed, &frame, targets.size, &bindings)?;
         self.deferred.keep_scenes(&scenes);
-        Ok((frame.blocks, Numbers { seed, host: layout::Subpass { depth } }, area))
+        Ok((frame.blocks, PushConstants { seed, host: layout::Subpass { depth } }, area))
     }
 
     /// The attachments, if these pixels are within them.

@@ -1,6 +1,6 @@
 //! What surfels add to a host's render pass: attachments, subpasses, dependencies.
 
-use super::Place;
+use super::HostRenderPass;
 use super::dependencies::dependencies;
 use crate::error::{Error, Result};
 use crate::frame::RenderOptions;
@@ -27,7 +27,7 @@ pub struct Plan {
     references: Vec<References>,
 }
 
-/// What a plan keeps of a [`Place`].
+/// What a plan keeps of a [`HostRenderPass`].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HostSide {
     /// The host's attachments.
@@ -73,15 +73,15 @@ struct References {
 
 impl Plan {
     /// What frames of scenes that have these streams ([`Scene::streams`](crate::Scene::streams)) with these settings need in a render pass of
-    /// which `place` tells; frames that need no more will do with it, too. Refuses what cannot be served, and says why.
+    /// which `host_pass` tells; frames that need no more will do with it, too. Refuses what cannot be served, and says why.
     pub fn new(
         device: &Device,
-        place: &Place<'_>,
+        host_pass: &HostRenderPass<'_>,
         precision: Precision,
         frames: &[(Streams, &Settings)],
     ) -> Result<Self> {
-        place.check(device)?;
-        let host = HostSide::of(place);
+        host_pass.check(device)?;
+        let host = HostSide::of(host_pass);
         let options = host.options([1, 1], precision);
         let variants: Vec<_> = frames
             .iter()
@@ -96,7 +96,7 @@ impl Plan {
                 "frames that blend splats and frames that show the nearest alone have not the same subpasses: make a plan for each".into(),
             ));
         }
-        let seeds = place.depth.is_some_and(|depth| depth.seed);
+        let seeds = host_pass.depth.is_some_and(|depth| depth.seed);
         let formats = PlanFormats::of(&variants, seeds && blends(first));
         let last = if blends(first) {
             &[Step::Visibility, Step::Attribute, Step::Normalize][..]
@@ -272,17 +272,17 @@ impl HostSide {
         RenderOptions { size, outputs, precision, rasterizer: Some(Rasterizer::Draw), ..Default::default() }
     }
 
-    fn of(place: &Place<'_>) -> Self {
+    fn of(host_pass: &HostRenderPass<'_>) -> Self {
         Self {
-            attachments: place.attachments.len() as u32,
-            subpasses: place.subpasses,
-            samples: place.samples(),
-            picture: place.picture,
-            resolve: place.resolve,
-            normal: place.normal,
-            depth: place.depth.map(|depth| (depth.attachment, place.format(depth.attachment))),
-            reversed: place.depth.map(|depth| depth.reversed),
-            encode: place.encode,
+            attachments: host_pass.attachments.len() as u32,
+            subpasses: host_pass.subpasses,
+            samples: host_pass.samples(),
+            picture: host_pass.picture,
+            resolve: host_pass.resolve,
+            normal: host_pass.normal,
+            depth: host_pass.depth.map(|depth| (depth.attachment, host_pass.format(depth.attachment))),
+            reversed: host_pass.depth.map(|depth| depth.reversed),
+            encode: host_pass.encode,
         }
     }
 }

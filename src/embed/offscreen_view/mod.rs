@@ -1,8 +1,8 @@
 //! A picture of a scene in frames that go to a window: colours in linear float, and depth, of any size.
 
 mod colour_map;
-mod numbers;
 mod range;
+mod scalar_colours;
 
 use super::{Measured, Options, Pass, Renderer, Target, View};
 use crate::error::{Error, Result};
@@ -16,7 +16,7 @@ use crate::vk::{
     Recorder, RenderPass, Stake, Timestamps,
 };
 use ash::vk;
-use numbers::{Numbers, shows_numbers};
+use scalar_colours::{ScalarColours, is_scalar};
 use std::cell::RefCell;
 use std::sync::Arc;
 
@@ -30,10 +30,10 @@ pub struct OffscreenView {
     // Fields are dropped in this order: views before what they view, and the pass after all that draws in it.
     renderer: Renderer,
     /// The colours of a picture of numbers, where it is one.
-    numbers: Option<Numbers>,
+    scalar_colours: Option<ScalarColours>,
     targets: Option<Targets>,
     /// What frames under way may use, each with the number of the last one that may.
-    old: Vec<(u64, Retired)>,
+    old: Vec<(u64, DeferredResources)>,
     timestamps: Option<Timestamps>,
     /// Whether a frame that is measured has not told yet.
     measured: bool,
@@ -48,12 +48,12 @@ pub struct OffscreenView {
 }
 
 /// A scene, from where it is seen, and how.
-pub type Shown<'a> = (&'a Arc<Scene>, &'a Camera, &'a Settings);
+pub type SceneView<'a> = (&'a Arc<Scene>, &'a Camera, &'a Settings);
 
 /// What is not drawn to any more.
-struct Retired {
+struct DeferredResources {
     // Views before what they view.
-    _numbers: Option<Numbers>,
+    _scalar_colours: Option<ScalarColours>,
     _targets: Option<Targets>,
 }
 
@@ -89,7 +89,7 @@ impl OffscreenView {
         let renderer = unsafe { Renderer::new(device, options)? };
         Ok(Self {
             renderer,
-            numbers: None,
+            scalar_colours: None,
             targets: None,
             old: Vec::new(),
             timestamps: None,
@@ -111,7 +111,7 @@ impl OffscreenView {
         &mut self,
         frame: &Presented,
         size: [u32; 2],
-        shown: Option<Shown<'_>>,
+        shown: Option<SceneView<'_>>,
         measured: bool,
     ) -> Result<()> {
         self.check(frame)?;
@@ -125,19 +125,20 @@ impl OffscreenView {
         // The GPU is done with all but the last frames.
         self.old.retain(|(last, _)| last + u64::from(FRAMES_IN_FLIGHT) > frame.number);
         if self.targets.as_ref().is_none_or(|targets| targets.colour.size() != size) {
-            self.retire(frame.number, true);
+            self.defer(frame.number, true);
             self.targets = Some(Targets::new(&self.device, &self.pass, size)?);
         }
-        let shading = shown.map(|(.., settings)| settings.shading).filter(|shading| shows_numbers(*shading));
-        if self.numbers.as_ref().map(|numbers| numbers.shading) != shading {
-            self.retire(frame.number, false);
+        let shading = shown.map(|(.., settings)| settings.shading).filter(|shading| is_scalar(*shading));
+        if self.scalar_colours.as_ref().map(|scalar_colours| scalar_colours.shading) != shading {
+            self.defer(frame.number, false);
             let picture = self.targets.as_ref().map(|targets| &targets.colour);
-            let made = shading.zip(picture).map(|(shading, of)| Numbers::new(&self.device, shading, of));
+            let made =
+                shading.zip(picture).map(|(shading, of)| ScalarColours::new(&self.device, shading, of));
             match made.transpose() {
-                Ok(made) => self.numbers = made,
+                Ok(made) => self.scalar_colours = made,
                 Err(error) => {
                     // Nothing is drawn to the targets, which may be new.
-                    self.retire(frame.number, true);
+                    self.defer(frame.number, true);
                     return Err(error);
                 }
             }
@@ -146,10 +147,10 @@ impl OffscreenView {
     }
 
     /// Keeps what frames up to this one may use, until they are over: the colours of numbers, and the targets if they go, too.
-    fn retire(&mut self, last: u64, with_targets: bool) {
+    fn defer(&mut self, last: u64, with_targets: bool) {
         let targets = if with_targets { self.targets.take() } else { None };
-        let retired = Retired { _numbers: self.numbers.take(), _targets: targets };
-        self.old.push((last, retired));
+        let deferred = DeferredResources { _scalar_colours: self.scalar_colours.take(), _targets: targets };
+        self.old.push((last, deferred));
     }
 
     /// Whether there is nothing to show, not even a background.
@@ -166,7 +167,7 @@ impl OffscreenView {
     fn forget_thrown(&mut self) {
         if self.is_thrown() {
             let last = self.stake.take().map_or(0, |(last, _)| last);
-            self.retire(last, true);
+            self.defer(last, true);
             self.measured = false;
         }
     }
@@ -179,7 +180,7 @@ impl OffscreenView {
         }
     }
 
-    fn record(&mut self, frame: &Presented, shown: Option<Shown<'_>>, measured: bool) -> Result<()> {
+    fn record(&mut self, frame: &Presented, shown: Option<SceneView<'_>>, measured: bool) -> Result<()> {
         let Some(targets) = &self.targets else { return Ok(()) };
         let measured = shown.is_some() && measured && !self.measured;
         let mut drawn = Ok(());
@@ -200,8 +201,8 @@ impl OffscreenView {
         let Targets { framebuffer, colour, depth, depths } = targets;
         let uses = [colour.with(Access::COLOUR_WRITE), depth.with(Access::DEPTH_WRITE)];
         let [r, g, b] = shown.and_then(|(.., settings)| settings.background).unwrap_or_default();
-        // Numbers become colours before there is something behind them.
-        let behind = if self.numbers.is_some() { [0.0; 4] } else { [r, g, b, 1.0] };
+        // ScalarColours become colours before there is something behind them.
+        let behind = if self.scalar_colours.is_some() { [0.0; 4] } else { [r, g, b, 1.0] };
         let mut enc = rec.pass("screen", &uses);
         let draws = enc.render_over(framebuffer, behind);
         if shown.is_some() && drawn.is_ok() {
@@ -213,10 +214,10 @@ impl OffscreenView {
         let uses = [depth.with(Access::COPY_READ), depths.with(Access::COPY_WRITE)];
         rec.pass("depths", &uses).copy_image(depth, depths);
         let mut results = vec![depths.with(Access::HOST_READ)];
-        match self.numbers.as_ref().zip(shown) {
-            Some((numbers, (.., settings))) => {
-                numbers.record(&mut rec, colour, settings);
-                results.extend(numbers.results());
+        match self.scalar_colours.as_ref().zip(shown) {
+            Some((scalar_colours, (.., settings))) => {
+                scalar_colours.record(&mut rec, colour, settings);
+                results.extend(scalar_colours.results());
             }
             None => results.push(colour.with(Access::COPY_READ)),
         }
@@ -229,25 +230,25 @@ impl OffscreenView {
     ///
     /// # Errors
     /// [`Error::Usage`] in a frame of another presenter.
-    pub fn show(&self, frame: &Presented, area: [u32; 2], columns: [f64; 2]) -> Result<()> {
+    pub fn blit(&self, frame: &Presented, area: [u32; 2], columns: [f64; 2]) -> Result<()> {
         self.check(frame)?;
         let Some(Targets { colour, .. }) = self.targets.as_ref().filter(|_| !self.is_thrown()) else {
             return Ok(());
         };
-        let image = self.numbers.as_ref().map_or(colour, Numbers::image);
+        let image = self.scalar_colours.as_ref().map_or(colour, ScalarColours::image);
         self.take_part(frame);
         let uses = [image.with(Access::COPY_READ)];
         let mut rec = frame.recorder();
-        rec.left(&uses);
-        rec.pass("show", &uses).show_part(image, frame, area, columns);
+        rec.assume_layouts(&uses);
+        rec.pass("show", &uses).blit_columns(image, frame, area, columns);
         Ok(())
     }
 
     /// The least and the greatest depth, overlap or weight of the last picture, if it is of such numbers and shows a surface. Waits for it.
     pub fn range(&self, presenter: &Presenter) -> Result<Option<ValueRange>> {
         self.wait(presenter)?;
-        let numbers = self.numbers.as_ref().filter(|_| !self.is_thrown());
-        Ok(numbers.and_then(Numbers::range))
+        let scalar_colours = self.scalar_colours.as_ref().filter(|_| !self.is_thrown());
+        Ok(scalar_colours.and_then(ScalarColours::range))
     }
 
     /// What the last picture that was measured tells, once; waits for it.

@@ -1,7 +1,7 @@
 //! Text records: numbers between white space, wherever the lines break.
 
 use super::records::Reader;
-use super::{Parsed, shown};
+use super::{Parsed, quoted};
 use crate::formats::declared::{Element, Kind, Scalar};
 
 /// A place among numbers that are spelled out.
@@ -49,7 +49,7 @@ impl Reader for Tokens<'_> {
 
     fn number(&mut self, _: Scalar) -> Parsed<f64> {
         let token = self.next()?;
-        number(token).ok_or_else(|| format!("{} is no number", shown(token)))
+        number(token).ok_or_else(|| format!("{} is no number", quoted(token)).into())
     }
 
     fn skip(&mut self, _: Scalar, count: u64) -> Parsed<()> {
@@ -59,12 +59,13 @@ impl Reader for Tokens<'_> {
     fn length(&mut self, _: Scalar, _: Scalar) -> Parsed<u64> {
         let token = self.next()?;
         let length = number(token).filter(|length| *length >= 0.0 && length.fract() == 0.0);
-        let length = length.ok_or_else(|| format!("{} is no length of a list", shown(token)))?;
+        let length = length.ok_or_else(|| format!("{} is no length of a list", quoted(token)))?;
         if length > self.left() as f64 / 2.0 {
             return Err(format!(
                 "a list of {length} numbers does not fit into the {} bytes left",
                 self.rest.len()
-            ));
+            )
+            .into());
         }
         Ok(length as u64)
     }
@@ -88,11 +89,11 @@ impl Reader for Tokens<'_> {
         {
             return Ok(());
         }
-        let name = shown(element.name.as_bytes());
+        let name = quoted(element.name.as_bytes());
         Err(format!(
             "its rows of element {name} have {words} values, and the header declares {declared} properties: add a `property` line for each of \
              the others"
-        ))
+        ).into())
     }
 
     fn trailing(&self) -> usize {

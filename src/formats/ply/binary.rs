@@ -110,13 +110,14 @@ impl Reader for Cursor<'_> {
         // A whole number, as lengths are of integer types.
         let length = self.number(length)?;
         if length < 0.0 {
-            return Err(format!("a list of negative length, {length}"));
+            return Err(format!("a list of negative length, {length}").into());
         }
         if length * item.size() as f64 > self.left() as f64 {
             return Err(format!(
                 "a list of {length} numbers does not fit into the {} bytes left",
                 self.left()
-            ));
+            )
+            .into());
         }
         Ok(length as u64)
     }

@@ -8,7 +8,7 @@ use super::header::Header;
 use super::layout::Layout;
 use super::materials::Table;
 use super::meter::Meter;
-use super::others::{Found, Others};
+use super::others::{OtherElements, Others};
 use super::points::Points;
 use super::records::{Reader, refuse_lie, walk};
 use super::vertices::{self, Records};
@@ -131,7 +131,7 @@ impl File<'_> {
         for element in &elements[self.vertex + 1..] {
             used.push(others.read(&mut reader, element)?);
         }
-        let Found { cloud: Cloud { ribbons, tubes, triangles, view, .. }, faces, lines, materials } =
+        let OtherElements { cloud: Cloud { ribbons, tubes, triangles, view, .. }, faces, lines, materials } =
             others.finish();
         points.cloud = Cloud { ribbons, tubes, view, ..points.cloud };
         if told || points.cloud.has_lines() {

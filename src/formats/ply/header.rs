@@ -1,6 +1,6 @@
 //! The header, parsed byte by byte: it may hold comments in any encoding, and no claim of it is trusted.
 
-use super::{Parsed, shown};
+use super::{Parsed, quoted};
 use crate::formats::declared::{Element, Encoding, Kind, Property, Scalar};
 use std::collections::HashSet;
 
@@ -51,8 +51,9 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Header> {
             b"end_header" => break,
             _ => Err(format!(
                 "{} is no header keyword: mark the line as `comment` if it is one",
-                shown(keyword)
-            )),
+                quoted(keyword)
+            )
+            .into()),
         };
         done.map_err(|cause| format!("header line {}: {cause}", lines.number))?;
     }
@@ -93,7 +94,7 @@ fn parse_format(line: &[u8], header: &mut Option<Encoding>) -> Parsed<()> {
         _ => return Err("expected `format <encoding> 1.0`".into()),
     };
     if version != b"1.0" {
-        return Err(format!("version {} is not known: only 1.0 is", shown(version)));
+        return Err(format!("version {} is not known: only 1.0 is", quoted(version)).into());
     }
     let parsed = match encoding {
         b"ascii" => Encoding::Ascii,
@@ -102,8 +103,9 @@ fn parse_format(line: &[u8], header: &mut Option<Encoding>) -> Parsed<()> {
         _ => {
             return Err(format!(
                 "{} is none of ascii, binary_little_endian, binary_big_endian",
-                shown(encoding)
-            ));
+                quoted(encoding)
+            )
+            .into());
         }
     };
     match header.replace(parsed) {
@@ -125,11 +127,12 @@ fn parse_element<'a>(
     let Some(count) = digits.and_then(|text| text.parse().ok()) else {
         return Err(format!(
             "{} is no number of records: expected a whole number from 0 to 2⁶⁴ − 1",
-            shown(count)
-        ));
+            quoted(count)
+        )
+        .into());
     };
     if !names.insert(name) {
-        return Err(format!("a second element {}: rename or remove one", shown(name)));
+        return Err(format!("a second element {}: rename or remove one", quoted(name)).into());
     }
     let name = String::from_utf8_lossy(name).into_owned();
     elements.push(Element { name, count, properties: Vec::new() });
@@ -153,7 +156,7 @@ fn parse_property(line: &[u8], elements: &mut [Element]) -> Parsed<()> {
 fn parse_length(name: &[u8]) -> Parsed<Scalar> {
     match parse_scalar(name)? {
         scalar if scalar.is_float() => {
-            Err(format!("{} cannot be the type of a list's length: use uchar or int", shown(name)))
+            Err(format!("{} cannot be the type of a list's length: use uchar or int", quoted(name)).into())
         }
         scalar => Ok(scalar),
     }
@@ -162,15 +165,14 @@ fn parse_length(name: &[u8]) -> Parsed<Scalar> {
 fn parse_scalar(name: &[u8]) -> Parsed<Scalar> {
     Scalar::of_name(name).ok_or_else(|| match name {
         b"int64" | b"uint64" | b"long" | b"ulong" | b"longlong" | b"ulonglong" | b"i64" | b"u64" => {
-            format!(
-                "{} is a 64-bit integer, which PLY does not have: convert it to int or double",
-                shown(name)
-            )
+            let text = "is a 64-bit integer, which PLY does not have: convert it to int or double";
+            format!("{} {text}", quoted(name)).into()
         }
         _ => format!(
             "{} is no type: PLY has char, uchar, short, ushort, int, uint, float and double",
-            shown(name)
-        ),
+            quoted(name)
+        )
+        .into(),
     })
 }
 
@@ -179,8 +181,10 @@ pub(super) fn refuse_duplicates(elements: &[Element]) -> Parsed<()> {
     for element in elements {
         let mut seen = HashSet::new();
         if let Some(twice) = element.properties.iter().find(|property| !seen.insert(&property.name)) {
-            let (element, name) = (shown(element.name.as_bytes()), shown(twice.name.as_bytes()));
-            return Err(format!("element {element} has two properties named {name}: rename or remove one"));
+            let (element, name) = (quoted(element.name.as_bytes()), quoted(twice.name.as_bytes()));
+            return Err(
+                format!("element {element} has two properties named {name}: rename or remove one").into()
+            );
         }
     }
     Ok(())
@@ -221,7 +225,7 @@ impl<'a> Lines<'a> {
         let length = match rest.iter().position(|&byte| byte == self.end) {
             Some(length) => length,
             None if self.bytes.len() > LIMIT => {
-                return Err(format!("the header is longer than {LIMIT} bytes: shorten its comments"));
+                return Err(format!("the header is longer than {LIMIT} bytes: shorten its comments").into());
             }
             None if rest.is_empty() => return Err("the file ends within its header: fetch it again".into()),
             None => rest.len(),
@@ -237,7 +241,10 @@ mod tests {
     use super::*;
 
     fn cause(text: &[u8]) -> String {
-        parse(text).and_then(|header| refuse_duplicates(&header.elements).map(|()| header)).unwrap_err()
+        parse(text)
+            .and_then(|header| refuse_duplicates(&header.elements).map(|()| header))
+            .unwrap_err()
+            .to_string()
     }
 
     #[test]

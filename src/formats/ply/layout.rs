@@ -1,6 +1,6 @@
 //! Which properties of a vertex are understood, and as what.
 
-use super::{Parsed, listed, shown};
+use super::{Parsed, listed, quoted};
 use crate::formats::declared::{Element, Kind, Property, Scalar};
 
 /// Number of columns.
@@ -280,7 +280,7 @@ fn no_scalar(name: &str, properties: &[Property]) -> String {
     let scalars = properties.iter().filter(|property| matches!(property.kind, Kind::Scalar(_)));
     format!(
         "its vertices have no number named {}: choose one of {}",
-        shown(name.as_bytes()),
+        quoted(name.as_bytes()),
         listed(scalars.map(|property| property.name.as_str()))
     )
 }
@@ -309,6 +309,7 @@ pub(super) fn find_vertex(elements: &[Element]) -> Parsed<usize> {
                 "it has no element `vertex`, only {}: rename the one that holds the points",
                 listed(elements.iter().map(|element| element.name.as_str()))
             )
+            .into()
         }
     })
 }
@@ -421,11 +422,12 @@ mod tests {
     fn the_chosen_scalar_may_be_any_number() {
         let cloud = vertex("x y z quality", Scalar::F32);
         assert_eq!(Layout::of(&cloud, Some("quality"), false).unwrap().columns[SCALAR], Some(3));
-        let cause = Layout::of(&cloud, Some("height"), false).unwrap_err();
+        let cause = Layout::of(&cloud, Some("height"), false).unwrap_err().to_string();
         assert!(cause.contains("`height`: choose one of `x`, `y`, `z`, `quality`"), "{cause}");
         let many: String = (0..50_000).map(|i| format!(" p{i}")).collect();
-        let cause =
-            Layout::of(&vertex(&format!("x y z{many}"), Scalar::F32), Some("height"), false).unwrap_err();
+        let cause = Layout::of(&vertex(&format!("x y z{many}"), Scalar::F32), Some("height"), false)
+            .unwrap_err()
+            .to_string();
         assert!(cause.ends_with("`p3`, `p4` and 49995 more"), "{cause}");
     }
 
@@ -436,7 +438,7 @@ mod tests {
             ("packed_position packed_scale", "compressed 3D Gaussians"),
         ];
         for (names, expected) in cases {
-            let cause = Layout::of(&vertex(names, Scalar::F32), None, false).unwrap_err();
+            let cause = Layout::of(&vertex(names, Scalar::F32), None, false).unwrap_err().to_string();
             assert!(cause.contains(expected), "{names}: {cause}");
         }
     }

@@ -210,7 +210,7 @@ fn report(header: Header, vertex: usize, layout: &Layout, contents: &Contents) -
 /// Names of a file as they may stand in a message: the first few, and how many more there are.
 fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
     const MOST: usize = 8;
-    let mut names = names.map(|name| shown(name.as_bytes()));
+    let mut names = names.map(|name| quoted(name.as_bytes()));
     let mut text = names.by_ref().take(MOST).collect::<Vec<_>>().join(", ");
     match names.count() {
         0 => {}
@@ -220,7 +220,7 @@ fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
 }
 
 /// Bytes of a file as they may stand in a message: quoted, on one line, not too long.
-pub(super) fn shown(bytes: &[u8]) -> String {
+pub(super) fn quoted(bytes: &[u8]) -> String {
     const LONGEST: usize = 40;
     let mut text = bytes[..bytes.len().min(LONGEST)].escape_ascii().to_string();
     if bytes.len() > LONGEST || text.len() > LONGEST {

@@ -26,7 +26,7 @@ pub(super) struct Others<'a> {
 }
 
 /// What there was.
-pub(super) struct Found {
+pub(super) struct OtherElements {
     /// Triangles, ribbons and tubes between the points.
     pub cloud: Cloud,
     pub faces: Faces,
@@ -43,11 +43,11 @@ impl<'a> Others<'a> {
     }
 
     /// Faces, lines, materials, and from where the points were seen.
-    pub fn finish(self) -> Found {
+    pub fn finish(self) -> OtherElements {
         let Collector { triangles, faces, .. } = self.collector;
         let (found, lines) = self.segments.finish(&triangles);
         let cloud = Cloud { triangles, view: self.view, ..found };
-        Found { cloud, faces, lines, materials: self.materials }
+        OtherElements { cloud, faces, lines, materials: self.materials }
     }
 
     /// Reads an element, understood or not; says whether it was.

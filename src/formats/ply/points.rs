@@ -3,6 +3,7 @@
 use super::arrays::Arrays;
 use super::convert::Tally;
 use super::{Dropped, Parsed};
+use crate::error::Cause;
 use crate::geometry::{Clip, Clips, Cloud, Colours, Weights};
 use glam::{DVec3, Vec2, Vec3};
 use rayon::prelude::*;
@@ -73,14 +74,15 @@ impl Points {
     }
 }
 
-fn nothing(count: u32, dropped: Dropped) -> String {
+fn nothing(count: u32, dropped: Dropped) -> Cause {
     match (count, dropped.transparent) {
         (0, _) => "it has no vertices: give a file with at least one".into(),
-        (_, 0) => format!("none of its {count} vertices has a finite position: fetch or write it again"),
+        (_, 0) => format!("none of its {count} vertices has a finite position: fetch or write it again").into(),
         (_, transparent) => format!(
             "none of its {count} 3D Gaussians is left: {transparent} are less than a tenth opaque, the others nowhere; give more \
              opaque ones"
-        ),
+        )
+        .into(),
     }
 }
 

@@ -1,7 +1,8 @@
 //! Records in order, whatever the encoding they came in.
 
 use super::meter::Meter;
-use super::{Parsed, shown};
+use super::{Parsed, quoted};
+use crate::error::Cause;
 use crate::formats::declared::{Element, Kind, Scalar};
 
 /// A place among the numbers of a file. A clone is a bookmark.
@@ -73,7 +74,7 @@ fn one<R: Reader>(
     wanted: &[bool],
     numbers: &mut [f64],
     list: &mut Vec<f64>,
-) -> Result<(), (usize, String)> {
+) -> Result<(), (usize, Cause)> {
     for (index, property) in element.properties.iter().enumerate() {
         let done = match (property.kind, wanted[index]) {
             (Kind::Scalar(scalar), true) => reader.number(scalar).map(|number| numbers[index] = number),
@@ -96,9 +97,11 @@ fn items<R: Reader>(reader: &mut R, length: Scalar, item: Scalar, list: &mut Vec
     Ok(())
 }
 
-fn at(element: &Element, record: u64, index: usize, cause: &str) -> String {
-    let (name, property) = (shown(element.name.as_bytes()), shown(element.properties[index].name.as_bytes()));
+fn at(element: &Element, record: u64, index: usize, cause: &Cause) -> Cause {
+    let (name, property) =
+        (quoted(element.name.as_bytes()), quoted(element.properties[index].name.as_bytes()));
     format!("record {record} of element {name}, {property}: {cause}; the file is damaged: fetch it again")
+        .into()
 }
 
 /// Refuses a count that the bytes left cannot hold, before anything is allocated for it.
@@ -106,9 +109,9 @@ pub(super) fn refuse_lie(element: &Element, least_size: u64, left: usize) -> Par
     if u128::from(element.count) * u128::from(least_size) <= left as u128 {
         return Ok(());
     }
-    let (name, count) = (shown(element.name.as_bytes()), element.count);
+    let (name, count) = (quoted(element.name.as_bytes()), element.count);
     Err(format!(
         "the header claims {count} records of element {name}, at least {least_size} bytes each, but {left} bytes are left: \
          the file is truncated or its header wrong; fetch it again"
-    ))
+    ).into())
 }

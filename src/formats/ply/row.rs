@@ -3,7 +3,7 @@
 use super::layout::{CLIP_CONCAVE, CLIP_LINES, CORNER_NAMES, MATERIAL_NAME, TANGENT_NAMES, WEIGHT_NAME};
 use super::lines::TUBE;
 use super::materials;
-use super::write::Whole;
+use super::write::FileContents;
 use crate::geometry::srgb;
 use crate::geometry::{Clip, Colours, Ellipse, Material, Primitives};
 use crate::settings::Lighting;
@@ -48,14 +48,14 @@ pub(super) struct Row {
 
 impl Row {
     /// Surfel `i`.
-    pub fn surfel(whole: &Whole, i: usize) -> Self {
-        let surfels = whole.parts.surfels;
+    pub fn surfel(contents: &FileContents, i: usize) -> Self {
+        let surfels = contents.parts.surfels;
         let (n, radius) = (surfels.normals[i], surfels.radii[i]);
         let [u, v] = surfels.ellipses.as_ref().map_or([Vec3::ZERO; 2], |ellipses| {
             let Ellipse { major, aspect } = ellipses[i];
             [major * radius, n.cross(major) * (radius * aspect)]
         });
-        let [own, others] = whole.colours();
+        let [own, others] = contents.colours();
         let ([r, g, b], srgb) = colour(own, others, i);
         let tangent = [0.0; 3];
         Self {
@@ -66,23 +66,23 @@ impl Row {
             clip: surfels.clips.as_ref().and_then(|clips| clips.get(i)).copied().unwrap_or_default(),
             weight: surfels.weights.as_ref().map_or(0.0, |weights| weights.of[i]),
             corners: surfels.weights.as_ref().and_then(|weights| weights.corners_of(i)).unwrap_or_default(),
-            material: whole.material(i),
+            material: contents.material(i),
         }
     }
 
     /// Vertex `i` of lines and triangles.
-    pub fn vertex(whole: &Whole, primitives: &Primitives, i: usize) -> Self {
+    pub fn vertex(contents: &FileContents, primitives: &Primitives, i: usize) -> Self {
         let direction = |is: bool| if is { primitives.directions[i] } else { Vec3::ZERO };
-        let [others, own] = whole.colours();
+        let [others, own] = contents.colours();
         let ([r, g, b], srgb) = colour(own, others, i);
-        let [n, t] = [direction(whole.normal[i]), direction(whole.tangent[i])];
+        let [n, t] = [direction(contents.normal[i]), direction(contents.tangent[i])];
         Self {
             position: primitives.origin + primitives.positions[i].as_dvec3(),
             floats: floats([n, Vec3::new(r, g, b), Vec3::ZERO, Vec3::ZERO, t], primitives.radii[i]),
             srgb,
             // Of no disc, but 0 would be counted as a weight that is none.
             weight: 1.0,
-            material: whole.material(whole.parts.surfels.len() + i),
+            material: contents.material(contents.parts.surfels.len() + i),
             ..Default::default()
         }
     }

@@ -26,7 +26,7 @@ use std::path::Path;
 ///
 /// The surfels come first, then the vertices that lines and triangles use, in their order. If there are lines, an element edge has
 /// vertex1 and vertex2 and, as uchar, tube: ribbons first, then tubes. If there are triangles, an element face has the list
-/// vertex_indices. Where only surfels or only vertices have colours, the others' are the default albedo. The file is replaced as a whole
+/// vertex_indices. Where only surfels or only vertices have colours, the others' are the default albedo. The file is replaced as a contents
 /// or, after an error, not at all.
 ///
 /// # Errors
@@ -41,12 +41,12 @@ pub fn write<'a>(path: &Path, parts: impl Into<Parts<'a>>) -> Result<()> {
             "{count} surfels and vertices in one file: at most 2³² − 1 are read"
         )));
     }
-    let whole = Whole::new(parts)?;
-    atomic::write(path, |mut out| records(&mut out, &whole))
+    let contents = FileContents::new(parts)?;
+    atomic::write(path, |mut out| records(&mut out, &contents))
 }
 
 /// What is written.
-pub(super) struct Whole<'a> {
+pub(super) struct FileContents<'a> {
     pub parts: Parts<'a>,
     /// The vertices that something uses.
     pub vertices: Vec<u32>,
@@ -61,7 +61,7 @@ pub(super) struct Whole<'a> {
     materials: Option<Materials>,
 }
 
-impl<'a> Whole<'a> {
+impl<'a> FileContents<'a> {
     fn new(parts: Parts<'a>) -> Result<Self> {
         let none = Primitives::default();
         let primitives = parts.primitives.unwrap_or(&none);
@@ -92,7 +92,7 @@ impl<'a> Whole<'a> {
         self.parts.surfels.len() + self.vertices.len()
     }
 
-    fn place<const N: usize>(&self, corners: &[u32; N]) -> [u32; N] {
+    fn file_indices<const N: usize>(&self, corners: &[u32; N]) -> [u32; N] {
         corners.map(|i| self.place[i as usize])
     }
 
@@ -115,11 +115,11 @@ impl<'a> Whole<'a> {
     }
 }
 
-fn records(out: &mut impl Write, whole: &Whole) -> io::Result<()> {
+fn records(out: &mut impl Write, contents: &FileContents) -> io::Result<()> {
     let none = Primitives::default();
-    let primitives = whole.parts.primitives.unwrap_or(&none);
-    let (vertex, edge, face) = (vertex(whole), edge(whole, primitives), face(whole, primitives));
-    let material = material(whole);
+    let primitives = contents.parts.primitives.unwrap_or(&none);
+    let (vertex, edge, face) = (vertex(contents), edge(contents, primitives), face(contents, primitives));
+    let material = material(contents);
     let mut header = Header::new();
     header.encoding = Encoding::BinaryLittleEndian;
     let others = [&edge, &face, &material].into_iter().filter(|element| element.count > 0);
@@ -127,14 +127,22 @@ fn records(out: &mut impl Write, whole: &Whole) -> io::Result<()> {
     there.for_each(|element| header.elements.add(element.clone()));
     Writer::<Row>::new().write_header(out, &header)?;
     // Record by record: a payload of its own would hold everything twice.
-    let surfels = (0..whole.parts.surfels.len()).map(|i| Row::surfel(whole, i));
-    let vertices = whole.vertices.iter().map(|&i| Row::vertex(whole, primitives, i as usize));
+    let surfels = (0..contents.parts.surfels.len()).map(|i| Row::surfel(contents, i));
+    let vertices = contents.vertices.iter().map(|&i| Row::vertex(contents, primitives, i as usize));
     each(out, &vertex, surfels.chain(vertices))?;
-    each(out, &edge, primitives.segments().map(|(ends, tube)| Line { ends: whole.place(&ends), tube }))?;
+    each(
+        out,
+        &edge,
+        primitives.segments().map(|(ends, tube)| Line { ends: contents.file_indices(&ends), tube }),
+    )?;
     // ply-rs takes the number of records for the length of each one's list.
     let face = ElementDef { count: 3, ..face };
-    each(out, &face, primitives.triangles.iter().map(|corners| Triangle::of(whole.place(corners))))?;
-    let table = whole.materials.iter().flat_map(|materials| materials.table.iter());
+    each(
+        out,
+        &face,
+        primitives.triangles.iter().map(|corners| Triangle::of(contents.file_indices(corners))),
+    )?;
+    let table = contents.materials.iter().flat_map(|materials| materials.table.iter());
     each(out, &material, table.copied().map(Shine))
 }
 
@@ -154,12 +162,12 @@ fn add(element: &mut ElementDef, names: &[&str], scalar: ScalarType) {
     }
 }
 
-fn vertex(whole: &Whole) -> ElementDef {
-    let surfels = whole.parts.surfels;
+fn vertex(contents: &FileContents) -> ElementDef {
+    let surfels = contents.parts.surfels;
     let mut vertex = ElementDef::new("vertex".into());
-    vertex.count = whole.len();
+    vertex.count = contents.len();
     let mut add = |names: &[&str], scalar: ScalarType| add(&mut vertex, names, scalar);
-    let near = whole.parts.origin() == DVec3::ZERO;
+    let near = contents.parts.origin() == DVec3::ZERO;
     add(&["x", "y", "z"], if near { ScalarType::Float } else { ScalarType::Double });
     add(&["nx", "ny", "nz", "radius"], ScalarType::Float);
     if surfels.ellipses.is_some() {
@@ -176,13 +184,13 @@ fn vertex(whole: &Whole) -> ElementDef {
         add(&[WEIGHT_NAME], ScalarType::Float);
         add(if weights.corners.is_empty() { &[] } else { &CORNER_NAMES }, ScalarType::Float);
     }
-    if whole.materials.is_some() {
+    if contents.materials.is_some() {
         add(&[MATERIAL_NAME], ScalarType::Int);
     }
-    if whole.tangent.contains(&true) {
+    if contents.tangent.contains(&true) {
         add(&TANGENT_NAMES, ScalarType::Float);
     }
-    match whole.colours() {
+    match contents.colours() {
         [None, None] => {}
         [Some(Colours::Linear(_)), _] | [_, Some(Colours::Linear(_))] => {
             add(&["red", "green", "blue"], ScalarType::Float);
@@ -192,26 +200,26 @@ fn vertex(whole: &Whole) -> ElementDef {
     vertex
 }
 
-fn edge(whole: &Whole, primitives: &Primitives) -> ElementDef {
+fn edge(contents: &FileContents, primitives: &Primitives) -> ElementDef {
     let mut edge = ElementDef::new("edge".into());
     edge.count = primitives.ribbons.len() + primitives.tubes.len();
-    add(&mut edge, &["vertex1", "vertex2"], whole.index());
+    add(&mut edge, &["vertex1", "vertex2"], contents.index());
     add(&mut edge, &[TUBE], ScalarType::UChar);
     edge
 }
 
-fn material(whole: &Whole) -> ElementDef {
+fn material(contents: &FileContents) -> ElementDef {
     let mut material = ElementDef::new(materials::ELEMENT.into());
-    material.count = whole.materials.as_ref().map_or(0, |materials| materials.table.len());
+    material.count = contents.materials.as_ref().map_or(0, |materials| materials.table.len());
     add(&mut material, &materials::SPECULAR, ScalarType::Float);
     add(&mut material, &[materials::POWER], ScalarType::Float);
     material
 }
 
-fn face(whole: &Whole, primitives: &Primitives) -> ElementDef {
+fn face(contents: &FileContents, primitives: &Primitives) -> ElementDef {
     let mut face = ElementDef::new("face".into());
     face.count = primitives.triangles.len();
-    let list = PropertyType::List(ScalarType::UChar, whole.index());
+    let list = PropertyType::List(ScalarType::UChar, contents.index());
     face.properties.add(PropertyDef::new("vertex_indices".into(), list));
     face
 }

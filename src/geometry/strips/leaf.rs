@@ -107,11 +107,11 @@ fn pairs(outline: &[u32], mesh: &Welded) -> Option<Vec<[Station; 2]>> {
     down.reverse();
     (up.len() > 1 && down.len() > 1 && up.len().max(down.len()) > 2 || up_from != down_from).then_some(())?;
     Some(if up.len() == down.len() {
-        up.iter().zip(&down).map(|(&a, &b)| [place(a), place(b)]).collect()
+        up.iter().zip(&down).map(|(&a, &b)| [station(a), station(b)]).collect()
     } else {
         let (many, few) = if up.len() > down.len() { (&up, &down) } else { (&down, &up) };
         let fractions = fractions(many, mesh);
-        many.iter().zip(&fractions).map(|(&a, &t)| [place(a), along(few, t, mesh)]).collect()
+        many.iter().zip(&fractions).map(|(&a, &t)| [station(a), along(few, t, mesh)]).collect()
     })
 }
 
@@ -137,7 +137,7 @@ fn walk(from: usize, to: usize, count: usize) -> impl Iterator<Item = usize> {
     (0..=(to + count - from) % count).map(move |step| (from + step) % count)
 }
 
-fn place(i: u32) -> Station {
+fn station(i: u32) -> Station {
     Station { a: i, b: i, t: 0.0 }
 }
 

@@ -6,13 +6,13 @@
 mod branch;
 mod component;
 mod leaf;
-mod made;
+mod line_cloud;
 mod weld;
 
 use super::Cloud;
 use crate::error::Result;
 use component::components;
-use made::Made;
+use line_cloud::LineCloud;
 use weld::weld;
 
 /// What becomes of a mesh's triangles.
@@ -56,20 +56,20 @@ impl Cloud {
         }
         let welded = weld(&self.positions, &self.triangles);
         let thickest = how.thickest.map_or(THICKEST * welded.diagonal, f64::from);
-        let mut made = Made::new(self, &welded);
+        let mut line_cloud = LineCloud::new(self, &welded);
         let mut lined = Lined { triangles: welded.triangles.len() as u64, ..Default::default() };
         for component in components(&welded) {
             if let Some(rows) = leaf::rows(&component, &welded) {
                 lined.leaves[0] += component.len() as u64;
-                lined.leaves[1] += made.ribbon(&rows, &component);
+                lined.leaves[1] += line_cloud.ribbon(&rows, &component);
                 continue;
             }
             let tubes = branch::tubes(&component, &welded, thickest);
             lined.branches[0] += (component.len() - tubes.rest.len()) as u64;
-            lined.branches[1] += made.tubes(&tubes, &component);
-            made.keep(&tubes.rest);
+            lined.branches[1] += line_cloud.tubes(&tubes, &component);
+            line_cloud.keep(&tubes.rest);
         }
-        let cloud = made.finish(&mut lined)?;
+        let cloud = line_cloud.finish(&mut lined)?;
         Ok((cloud, lined))
     }
 }

@@ -31,7 +31,7 @@ pub(super) fn weld(positions: &[Vec3], triangles: &[[u32; 3]]) -> Welded {
     let mut welded = Welded { positions: Vec::new(), triangles: Vec::new(), points: Vec::new(), diagonal };
     for points in triangles {
         let mut place =
-            |i: u32| *of_point.entry(i).or_insert_with(|| places.place(positions[i as usize].as_dvec3()));
+            |i: u32| *of_point.entry(i).or_insert_with(|| places.index_of(positions[i as usize].as_dvec3()));
         let corners = points.map(&mut place);
         let mut key = corners;
         key.sort_unstable();
@@ -52,7 +52,7 @@ struct Places {
 }
 
 impl Places {
-    fn place(&mut self, at: DVec3) -> u32 {
+    fn index_of(&mut self, at: DVec3) -> u32 {
         let side = (CELL * self.tolerance).max(f64::MIN_POSITIVE);
         let cell = |p: DVec3| (p / side).floor().as_i64vec3();
         let (low, high) = (cell(at - self.tolerance), cell(at + self.tolerance));

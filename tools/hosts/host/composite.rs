@@ -1,10 +1,10 @@
 //! Surfels that are composed into the host's own pass: in its subpass, or by dynamic rendering.
 
+use super::arguments::Arguments;
+use super::demo::{Demo, FRAMES_IN_FLIGHT};
 use super::frame::{Frame, Kind, Way};
 use super::mesh::Mesh;
-use super::options::Asked;
 use super::scene::{Corners, SIZE, TO_LIGHT};
-use super::show::{FRAMES_IN_FLIGHT, Show};
 use super::{Host, Result};
 use ash::vk;
 use std::sync::Arc;
@@ -19,11 +19,11 @@ pub trait Content: Sized {
     const SAMPLES: vk::SampleCountFlags = vk::SampleCountFlags::TYPE_4;
 
     /// What surfels there are.
-    fn new(host: &Host, device: &Arc<Device>, asked: &Asked) -> Result<Self>;
+    fn new(host: &Host, device: &Arc<Device>, arguments: &Arguments) -> Result<Self>;
 
     /// How they are rendered.
-    fn settings(asked: &Asked) -> Settings {
-        asked.settings()
+    fn settings(arguments: &Arguments) -> Settings {
+        arguments.settings()
     }
 
     /// The host's own triangles, three corners each.
@@ -36,7 +36,7 @@ pub trait Content: Sized {
     fn change(&mut self, host: &Host, device: &Arc<Device>) -> Result<()>;
 
     /// Records, outside a render pass, what a frame needs of them; where they stand in it. The GPU is done with all frames but the last.
-    fn stand(&mut self, host: &Host, cmd: vk::CommandBuffer, seconds: f64) -> Result<Vec<Instance>>;
+    fn instances(&mut self, host: &Host, cmd: vk::CommandBuffer, seconds: f64) -> Result<Vec<Instance>>;
 
     /// Destroys what is the host's own, once the GPU is done with it.
     fn destroy(self, host: &Host);
@@ -54,9 +54,9 @@ pub struct Composite<C> {
 
 impl<C: Content> Composite<C> {
     /// What is asked for, in a host that draws in this way.
-    pub fn new(host: &Host, way: Way, asked: &Asked) -> Result<Self> {
-        let device = host.lend(None)?;
-        let content = C::new(host, &device, asked)?;
+    pub fn new(host: &Host, way: Way, arguments: &Arguments) -> Result<Self> {
+        let device = host.external_device(None)?;
+        let content = C::new(host, &device, arguments)?;
         let kind = Kind {
             way,
             colour: vk::Format::R8G8B8A8_SRGB,
@@ -65,7 +65,7 @@ impl<C: Content> Composite<C> {
             reversed: true,
         };
         let frame = Frame::new(host, kind, SIZE)?;
-        let mesh = Mesh::new(host, &C::triangles(), frame.place())?;
+        let mesh = Mesh::new(host, &C::triangles(), frame.mesh_target())?;
         let options = Options {
             target: frame.target(),
             frames_in_flight: FRAMES_IN_FLIGHT,
@@ -74,11 +74,11 @@ impl<C: Content> Composite<C> {
         };
         // SAFETY: the target is the frame's, which is destroyed after the renderer, and keeps its pass through all sizes.
         let renderer = unsafe { Renderer::new(&device, options)? };
-        Ok(Self { content, frame, mesh, renderer, settings: C::settings(asked), device })
+        Ok(Self { content, frame, mesh, renderer, settings: C::settings(arguments), device })
     }
 }
 
-impl<C: Content> Show for Composite<C> {
+impl<C: Content> Demo for Composite<C> {
     fn size(&self) -> [u32; 2] {
         self.frame.size
     }
@@ -94,7 +94,7 @@ impl<C: Content> Show for Composite<C> {
     fn record(&mut self, host: &Host, cmd: vk::CommandBuffer, seconds: f64) -> Result<()> {
         let camera = C::camera(seconds, self.frame.size)?;
         let view = View::whole(camera, self.frame.size);
-        let list = self.content.stand(host, cmd, seconds)?;
+        let list = self.content.instances(host, cmd, seconds)?;
         // SAFETY: prepared outside the pass and drawn inside it; the callers submit frames in order, no more at once than was said.
         unsafe {
             self.renderer.prepare(cmd, &list, &view, &self.settings)?;

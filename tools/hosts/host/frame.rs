@@ -127,9 +127,9 @@ impl Frame {
     }
 
     /// What the host's own pipelines are told of it, where the picture is the only colour.
-    pub fn place(&self) -> super::mesh::Where<'_> {
+    pub fn mesh_target(&self) -> super::mesh::MeshTarget<'_> {
         let formats = (std::slice::from_ref(&self.kind.colour), self.depth.format);
-        super::mesh::Where {
+        super::mesh::MeshTarget {
             pass: self.pass.map_or(vk::RenderPass::null(), |(pass, _)| pass),
             subpass: 0,
             formats: self.pass.is_none().then_some(formats),

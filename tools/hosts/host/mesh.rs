@@ -15,7 +15,7 @@ pub struct Mesh {
 
 /// Where a mesh is drawn.
 #[derive(Clone, Copy)]
-pub struct Where<'a> {
+pub struct MeshTarget<'a> {
     pub pass: vk::RenderPass,
     pub subpass: u32,
     pub formats: Option<(&'a [vk::Format], vk::Format)>,
@@ -26,7 +26,7 @@ pub struct Where<'a> {
 
 impl Mesh {
     /// A mesh of `corners`.
-    pub fn new(host: &Host, corners: &[[Vec3; 2]], place: Where<'_>) -> Result<Self> {
+    pub fn new(host: &Host, corners: &[[Vec3; 2]], target: MeshTarget<'_>) -> Result<Self> {
         let floats: Vec<f32> = corners.iter().flatten().flat_map(Vec3::to_array).collect();
         let (buffer, memory) =
             host.buffer(bytemuck::cast_slice(&floats), vk::BufferUsageFlags::VERTEX_BUFFER)?;
@@ -36,7 +36,7 @@ impl Mesh {
             let push = [vk::PushConstantRange { stage_flags: stages, offset: 0, size: 80 }];
             let layout = vk::PipelineLayoutCreateInfo::default().push_constant_ranges(&push);
             let layout = host.device.create_pipeline_layout(&layout, None)?;
-            let pipeline = pipeline(host, layout, place)?;
+            let pipeline = pipeline(host, layout, target)?;
             Ok(Self { buffer, memory, layout, pipeline, count: corners.len() as u32 })
         }
     }
@@ -82,7 +82,7 @@ impl Mesh {
     }
 }
 
-unsafe fn pipeline(host: &Host, layout: vk::PipelineLayout, place: Where<'_>) -> Result<vk::Pipeline> {
+unsafe fn pipeline(host: &Host, layout: vk::PipelineLayout, target: MeshTarget<'_>) -> Result<vk::Pipeline> {
     // SAFETY: by the caller: a plain use of Vulkan.
     unsafe {
         let modules = [host.shader(shader!("mesh_vertex"))?, host.shader(shader!("mesh_fragment"))?];
@@ -109,16 +109,16 @@ unsafe fn pipeline(host: &Host, layout: vk::PipelineLayout, place: Where<'_>) ->
         let viewport = vk::PipelineViewportStateCreateInfo::default().viewport_count(1).scissor_count(1);
         let rasterization = vk::PipelineRasterizationStateCreateInfo::default().line_width(1.0);
         let multisample =
-            vk::PipelineMultisampleStateCreateInfo::default().rasterization_samples(place.samples);
+            vk::PipelineMultisampleStateCreateInfo::default().rasterization_samples(target.samples);
         let nearer =
-            if place.reversed { vk::CompareOp::GREATER_OR_EQUAL } else { vk::CompareOp::LESS_OR_EQUAL };
+            if target.reversed { vk::CompareOp::GREATER_OR_EQUAL } else { vk::CompareOp::LESS_OR_EQUAL };
         let depth = vk::PipelineDepthStencilStateCreateInfo::default()
             .depth_test_enable(true)
             .depth_write_enable(true)
             .depth_compare_op(nearer);
         let all =
             vk::PipelineColorBlendAttachmentState::default().color_write_mask(vk::ColorComponentFlags::RGBA);
-        let mut blends = vec![vk::PipelineColorBlendAttachmentState::default(); place.colours];
+        let mut blends = vec![vk::PipelineColorBlendAttachmentState::default(); target.colours];
         blends[0] = all;
         let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends);
         let dynamic = vk::PipelineDynamicStateCreateInfo::default()
@@ -135,9 +135,9 @@ unsafe fn pipeline(host: &Host, layout: vk::PipelineLayout, place: Where<'_>) ->
             .color_blend_state(&blend)
             .dynamic_state(&dynamic)
             .layout(layout)
-            .render_pass(place.pass)
-            .subpass(place.subpass);
-        if let Some((colours, depth)) = place.formats {
+            .render_pass(target.pass)
+            .subpass(target.subpass);
+        if let Some((colours, depth)) = target.formats {
             rendering = rendering.color_attachment_formats(colours).depth_attachment_format(depth);
             info = info.push_next(&mut rendering);
         }

@@ -6,7 +6,11 @@
 #[macro_use]
 mod shader;
 
+pub mod arguments;
 pub mod composite;
+pub mod demo;
+#[cfg(feature = "viewer")]
+pub mod event_loop;
 pub mod fog;
 pub mod frame;
 pub mod image;
@@ -14,11 +18,9 @@ pub mod memory;
 pub mod mesh;
 pub mod models;
 pub mod native;
-pub mod options;
 #[cfg(feature = "viewer")]
 pub mod presenter;
 pub mod scene;
-pub mod show;
 pub mod simulation;
 #[cfg(feature = "viewer")]
 pub mod soak;
@@ -35,7 +37,7 @@ use ash::{ext, khr, vk};
 use std::error::Error;
 use std::ffi::{CStr, c_char, c_void};
 use std::sync::{Arc, Mutex};
-use surfel::embed::{Abilities, Lent, MemorySource};
+use surfel::embed::{Abilities, ExternalDevice, MemorySource};
 use surfel::vk::{Device, DeviceLimits};
 
 /// Whatever goes wrong.
@@ -143,21 +145,21 @@ impl Host {
     }
 
     /// The device as surfels borrow it.
-    pub fn lend(&self, memory: Option<Box<dyn MemorySource>>) -> surfel::Result<Arc<Device>> {
-        self.lend_within(DeviceLimits::default(), memory)
+    pub fn external_device(&self, memory: Option<Box<dyn MemorySource>>) -> surfel::Result<Arc<Device>> {
+        self.external_device_within(DeviceLimits::default(), memory)
     }
 
     /// The same, less what `limits` hide.
-    pub fn lend_within(
+    pub fn external_device_within(
         &self,
         limits: DeviceLimits,
         memory: Option<Box<dyn MemorySource>>,
     ) -> surfel::Result<Arc<Device>> {
-        self.lend_as(&self.device, limits, memory)
+        self.external_device_as(&self.device, limits, memory)
     }
 
     /// The device with some of its functions replaced by what `replace` gives for their names, each of which calls what it replaces.
-    pub fn lend_replaced(
+    pub fn external_device_replaced(
         &self,
         replace: impl Fn(&CStr) -> Option<*const c_void>,
     ) -> surfel::Result<Arc<Device>> {
@@ -170,16 +172,16 @@ impl Host {
         let device = unsafe {
             ash::Device::load_with(|name| replace(name).unwrap_or_else(|| find(name)), self.device.handle())
         };
-        self.lend_as(&device, DeviceLimits::default(), None)
+        self.external_device_as(&device, DeviceLimits::default(), None)
     }
 
-    fn lend_as(
+    fn external_device_as(
         &self,
         device: &ash::Device,
         limits: DeviceLimits,
         memory: Option<Box<dyn MemorySource>>,
     ) -> surfel::Result<Arc<Device>> {
-        let lent = Lent {
+        let external = ExternalDevice {
             instance: &self.instance,
             physical: self.physical,
             device,
@@ -193,7 +195,7 @@ impl Host {
             pipeline_cache: None,
         };
         // SAFETY: all of it is true, and hosts drop what they lend last.
-        unsafe { Device::borrow(lent) }
+        unsafe { Device::from_external(external) }
     }
 
     /// Records and submits commands; the GPU may still be at them.

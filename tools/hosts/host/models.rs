@@ -1,7 +1,7 @@
 //! Surfels that a host shows one after another, each uploaded by the frame that shows it first.
 
-use super::options::Asked;
-use super::show::FRAMES_IN_FLIGHT;
+use super::arguments::Arguments;
+use super::demo::FRAMES_IN_FLIGHT;
 use super::{Host, Result, scene};
 use ash::vk;
 use glam::{DMat4, DVec3};
@@ -32,14 +32,14 @@ impl Models {
     /// The file's that is asked for, or else the host's `own` of so many surfels; and another of fewer.
     pub fn new(
         device: &Arc<Device>,
-        asked: &Asked,
+        arguments: &Arguments,
         own: impl FnOnce(u32) -> Result<Surfels>,
         count: u32,
     ) -> Result<Self> {
-        let count = asked.points.unwrap_or(count);
-        let first = asked.model.as_deref().map_or_else(|| own(count), read)?;
+        let count = arguments.points.unwrap_or(count);
+        let first = arguments.model.as_deref().map_or_else(|| own(count), read)?;
         let all = [first, scene::egg(count.div_ceil(3))];
-        let (is_file, staging) = (asked.model.is_some(), VecDeque::new());
+        let (is_file, staging) = (arguments.model.is_some(), VecDeque::new());
         Ok(Self { device: device.clone(), all, is_file, shown: 0, scene: None, staging })
     }
 

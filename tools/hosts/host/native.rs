@@ -2,13 +2,13 @@
 
 use super::fog::Fog;
 use super::image::Target;
-use super::mesh::{Mesh, Where};
+use super::mesh::{Mesh, MeshTarget};
 use super::{Host, Result};
 use ash::vk;
 use glam::Vec3;
 use std::sync::Arc;
 use surfel::embed::View;
-use surfel::embed::native::{Depth, Place, Plan, Renderer};
+use surfel::embed::native::{Depth, HostRenderPass, Plan, Renderer};
 use surfel::scene::Streams;
 use surfel::vk::Device;
 use surfel::{Precision, Settings};
@@ -54,19 +54,19 @@ const DRAWN: vk::ImageLayout = vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL;
 const TESTED: vk::ImageLayout = vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
 const SEEN: vk::ImageLayout = vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL;
 
-/// Numbers of the host's attachments: the colour is 0.
+/// AttachmentIndices of the host's attachments: the colour is 0.
 #[derive(Clone, Copy)]
-struct Numbers {
+struct AttachmentIndices {
     depth: Option<u32>,
     normals: Option<u32>,
     resolved: Option<u32>,
 }
 
 impl Kind {
-    fn numbers(&self) -> Numbers {
+    fn attachment_indices(&self) -> AttachmentIndices {
         let mut next = 0;
         let mut number = |there: bool| there.then(|| (next += 1, next).1);
-        Numbers {
+        AttachmentIndices {
             depth: number(self.depth.is_some()),
             normals: number(self.normals),
             resolved: number(self.samples != ONE),
@@ -96,10 +96,10 @@ impl Kind {
     }
 
     /// Where surfels are drawn among them.
-    pub fn place<'a>(&self, attachments: &'a [vk::AttachmentDescription]) -> Place<'a> {
-        let Numbers { depth, normals, resolved } = self.numbers();
+    pub fn host_pass<'a>(&self, attachments: &'a [vk::AttachmentDescription]) -> HostRenderPass<'a> {
+        let AttachmentIndices { depth, normals, resolved } = self.attachment_indices();
         let [before, after] = self.around;
-        Place {
+        HostRenderPass {
             attachments,
             subpasses: [before.into(), after.into()],
             picture: 0,
@@ -122,11 +122,11 @@ impl Native {
         frames: &[(Streams, &Settings)],
     ) -> Result<Self> {
         let mut attachments = kind.attachments();
-        let plan = Plan::new(device, &kind.place(&attachments), Precision::Full, frames)?;
+        let plan = Plan::new(device, &kind.host_pass(&attachments), Precision::Full, frames)?;
         attachments.extend(plan.attachments());
         let far = if kind.reversed { 0.0 } else { 1.0 };
         let mut clears = vec![vk::ClearValue::default(); kind.formats().len()];
-        if let Some(depth) = kind.numbers().depth {
+        if let Some(depth) = kind.attachment_indices().depth {
             clears[depth as usize].depth_stencil = vk::ClearDepthStencilValue { depth: far, stencil: 0 };
         }
         clears.extend(plan.clear_values());
@@ -136,7 +136,7 @@ impl Native {
         let mut renderer = unsafe { Renderer::new(device, plan, pass, 2)? };
         let framed = Framed::new(host, kind, pass, &mut renderer, size)?;
         let native = Self { renderer, kind, pass, fog: fog.transpose()?, framed, clears };
-        native.see(host);
+        native.bind_depth(host);
         Ok(native)
     }
 
@@ -144,19 +144,19 @@ impl Native {
     pub fn resize(&mut self, host: &Host, size: [u32; 2]) -> Result<()> {
         let framed = Framed::new(host, self.kind, self.pass, &mut self.renderer, size)?;
         std::mem::replace(&mut self.framed, framed).destroy(host);
-        self.see(host);
+        self.bind_depth(host);
         Ok(())
     }
 
-    fn see(&self, host: &Host) {
+    fn bind_depth(&self, host: &Host) {
         if let (Some(fog), Some(view)) = (&self.fog, self.framed.depth_view) {
             fog.read(host, view);
         }
     }
 
     /// Where the host's own pipelines before surfels draw.
-    pub fn place(&self) -> Where<'_> {
-        Where {
+    pub fn mesh_target(&self) -> MeshTarget<'_> {
+        MeshTarget {
             pass: self.pass,
             subpass: 0,
             formats: None,
@@ -215,24 +215,24 @@ impl Native {
     }
 
     fn picture_number(&self) -> usize {
-        self.kind.numbers().resolved.unwrap_or(0) as usize
+        self.kind.attachment_indices().resolved.unwrap_or(0) as usize
     }
 
     /// The depths' bytes, `bytes` a pixel, where there is one sample.
     pub fn depths(&self, host: &Host, bytes: usize) -> Result<Vec<u8>> {
-        let number = self.kind.numbers().depth.ok_or("there is no depth")?;
+        let number = self.kind.attachment_indices().depth.ok_or("there is no depth")?;
         self.framed.targets[number as usize].read(host, bytes)
     }
 
     /// The depths, of any format.
     pub fn read_depths(&self, host: &Host) -> Result<Vec<f64>> {
-        let number = self.kind.numbers().depth.ok_or("there is no depth")?;
+        let number = self.kind.attachment_indices().depth.ok_or("there is no depth")?;
         self.framed.targets[number as usize].read_depths(host)
     }
 
     /// The normals' bytes.
     pub fn normals(&self, host: &Host) -> Result<Vec<u8>> {
-        let number = self.kind.numbers().normals.ok_or("there are no normals")?;
+        let number = self.kind.attachment_indices().normals.ok_or("there are no normals")?;
         self.framed.targets[number as usize].read(host, 16)
     }
 
@@ -267,7 +267,7 @@ impl Framed {
             Target::new(host, format, size, samples, usage | Usage::TRANSFER_SRC)
         };
         let targets: Vec<_> = kind.formats().into_iter().map(target).collect::<Result<_>>()?;
-        let depth = kind.numbers().depth.map(|depth| &targets[depth as usize]);
+        let depth = kind.attachment_indices().depth.map(|depth| &targets[depth as usize]);
         let depth_view = depth.map(|depth| depth.depth_view(host)).transpose()?;
         // SAFETY: the view is of the depth attachment alone.
         let added = unsafe { renderer.resize(size, depth_view)? };
@@ -300,7 +300,7 @@ fn render_pass(
     attachments: &[vk::AttachmentDescription],
     plan: &Plan,
 ) -> Result<vk::RenderPass> {
-    let Numbers { depth, resolved, .. } = kind.numbers();
+    let AttachmentIndices { depth, resolved, .. } = kind.attachment_indices();
     let reference = |attachment, layout| vk::AttachmentReference { attachment, layout };
     let colour = [reference(0, DRAWN)];
     let tested = depth.map(|depth| reference(depth, TESTED));

@@ -1,6 +1,6 @@
 //! Pictures to a window, with two frames under way.
 
-use super::show::FRAMES_IN_FLIGHT;
+use super::demo::FRAMES_IN_FLIGHT;
 use super::surface::Surface;
 use super::swapchain::Swapchain;
 use super::{Host, Result};

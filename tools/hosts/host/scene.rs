@@ -6,6 +6,9 @@ use surfel::geometry::{Camera, Colours, Surfels};
 /// Width and height of a picture, and of a window at first, px.
 pub const SIZE: [u32; 2] = [960, 720];
 
+/// Time between frames that do not follow the clock, s.
+pub const STEP: f64 = 0.05;
+
 /// Direction to the light of the hosts' own surfaces, of length 1.
 pub const TO_LIGHT: Vec3 = Vec3::new(0.4, 0.8, 0.447_213_6);
 

@@ -65,7 +65,7 @@ impl Simulation {
     }
 
     /// What surfels are told of the points.
-    pub fn told(&self) -> Buffers {
+    pub fn buffers(&self) -> Buffers {
         let count = u64::from(self.side).pow(2);
         let values = |offset, format| Values {
             buffer: self.buffer,

@@ -28,7 +28,7 @@ pub struct Soak {
     drawn: u64,
     changes: u64,
     /// The size that was asked for and not seen yet.
-    asked: Option<[u32; 2]>,
+    requested: Option<[u32; 2]>,
     /// How many sizes came, and how many did not before the next was asked for.
     taken: u64,
     missed: u64,
@@ -37,19 +37,19 @@ pub struct Soak {
 impl Soak {
     /// A soak of so many frames.
     pub fn new(frames: u64) -> Self {
-        Self { frames, drawn: 0, changes: 0, asked: None, taken: 0, missed: 0 }
+        Self { frames, drawn: 0, changes: 0, requested: None, taken: 0, missed: 0 }
     }
 
     /// What comes after a frame of `size` px; `None` at the end.
     pub fn next(&mut self, size: [u32; 2]) -> Option<Step> {
         self.drawn += 1;
-        self.taken += u64::from(self.asked.take_if(|asked| *asked == size).is_some());
+        self.taken += u64::from(self.requested.take_if(|requested| *requested == size).is_some());
         if self.drawn == self.frames {
             return None;
         }
         let size = self.drawn.is_multiple_of(SIZE_EVERY).then(|| size_of(self.drawn / SIZE_EVERY));
         if size.is_some() {
-            self.missed += u64::from(std::mem::replace(&mut self.asked, size).is_some());
+            self.missed += u64::from(std::mem::replace(&mut self.requested, size).is_some());
         }
         let change = self.drawn.is_multiple_of(SURFELS_EVERY);
         self.changes += u64::from(change);

@@ -1,8 +1,8 @@
 //! A sphere of surfels, and a ring of triangles that goes through it.
 
+use super::arguments::Arguments;
 use super::composite::Content;
 use super::models::Models;
-use super::options::Asked;
 use super::scene::{self, Corners};
 use super::{Host, Result};
 use ash::vk;
@@ -19,8 +19,8 @@ const COUNT: u32 = 200_000;
 pub struct Sphere(Models);
 
 /// The models of it.
-pub fn models(device: &Arc<Device>, asked: &Asked) -> Result<Models> {
-    Models::new(device, asked, |count| Ok(scene::sphere(count)), COUNT)
+pub fn models(device: &Arc<Device>, arguments: &Arguments) -> Result<Models> {
+    Models::new(device, arguments, |count| Ok(scene::sphere(count)), COUNT)
 }
 
 /// The ring.
@@ -37,8 +37,8 @@ pub fn camera(seconds: f64, size: [u32; 2]) -> surfel::Result<Camera> {
 }
 
 impl Content for Sphere {
-    fn new(_: &Host, device: &Arc<Device>, asked: &Asked) -> Result<Self> {
-        Ok(Self(models(device, asked)?))
+    fn new(_: &Host, device: &Arc<Device>, arguments: &Arguments) -> Result<Self> {
+        Ok(Self(models(device, arguments)?))
     }
 
     fn triangles() -> Corners {
@@ -54,7 +54,7 @@ impl Content for Sphere {
         Ok(())
     }
 
-    fn stand(&mut self, _: &Host, cmd: vk::CommandBuffer, _: f64) -> Result<Vec<Instance>> {
+    fn instances(&mut self, _: &Host, cmd: vk::CommandBuffer, _: f64) -> Result<Vec<Instance>> {
         let scene = self.0.scene(cmd)?;
         Ok(vec![Instance::new(&scene, self.0.to_unit(&scene.bounds()))])
     }

@@ -1,11 +1,11 @@
 //! The host's frames against the engine's own.
 
 use crate::Result;
+use crate::arguments::Arguments;
+use crate::demo::{Demo, PANE, Parts, SURFELS};
 use crate::frame::Frame;
 use crate::gpu::{Gpu, instance};
-use crate::options::Asked;
 use crate::scene::{SIZE, camera, sphere};
-use crate::show::{PANE, Parts, SURFELS, Show};
 use glam::DVec3;
 use surfel::geometry::Camera;
 use surfel::settings::methods::Method;
@@ -34,10 +34,10 @@ pub fn all() -> Result<()> {
         let own = own(&device, &settings)?;
         for samples in [1, 4] {
             let frame = Frame::new(&gpu, SIZE, samples);
-            let mut show = Show::new(&gpu, &Asked::default(), samples)?;
-            show.settings = settings.clone();
-            show.embedded.attach(&frame)?;
-            let mut shoot = |parts| shot(&gpu, &frame, &mut show, parts);
+            let mut demo = Demo::new(&gpu, &Options::default(), samples)?;
+            demo.settings = settings.clone();
+            demo.embedded.attach(&frame)?;
+            let mut shoot = |parts| shot(&gpu, &frame, &mut demo, parts);
             let surfels = shoot(Parts { surfels: true, ..NOTHING })?;
             alone(&surfels, &own).map_err(|error| format!("{method}, {samples} samples: {error}"))?;
             if samples == 1 {
@@ -61,8 +61,8 @@ fn own(device: &std::sync::Arc<Device>, settings: &Settings) -> Result<Picture> 
     Ok(renderer.render_picture(&scene, &camera(0.0, SIZE)?, settings)?.0)
 }
 
-fn shot(gpu: &Gpu, frame: &Frame, show: &mut Show, parts: Parts) -> Result<Shot> {
-    gpu.queue.submit(show.record(gpu, frame, &camera(0.0, SIZE)?, parts)?);
+fn shot(gpu: &Gpu, frame: &Frame, demo: &mut Demo, parts: Parts) -> Result<Shot> {
+    gpu.queue.submit(demo.record(gpu, frame, &camera(0.0, SIZE)?, parts)?);
     let colours = bytemuck::pod_collect_to_vec(&frame.read(gpu, frame.picture())?);
     let depths = if frame.samples == 1 { frame.read(gpu, &frame.depth)? } else { Vec::new() };
     Ok(Shot { colours, depths: bytemuck::pod_collect_to_vec(&depths) })
@@ -116,7 +116,7 @@ fn among(ring: &Shot, surfels: &Shot, both: &Shot) -> Result<String> {
         (0, 5_000..) => {
             Ok(format!("surfels hide {ring} px of the ring, it hides {surfels} px of them, none is wrong"))
         }
-        _ => Err(format!("{wrong} px show the wrong surface; {ring} and {surfels} px are hidden").into()),
+        _ => Err(format!("{wrong} px demo the wrong surface; {ring} and {surfels} px are hidden").into()),
     }
 }
 

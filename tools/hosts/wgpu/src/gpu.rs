@@ -3,7 +3,7 @@
 use crate::Result;
 use ash::ext;
 use std::sync::Arc;
-use surfel::embed::{Abilities, Lent};
+use surfel::embed::{Abilities, ExternalDevice};
 use surfel::vk::{Device, DeviceLimits};
 use wgpu::hal::vulkan::Api as Vulkan;
 use wgpu::{DownlevelFlags, Features};
@@ -67,12 +67,12 @@ impl Gpu {
     }
 
     /// The device as surfels borrow it. What is returned, and all that is made on it, must be gone before the device.
-    pub fn lend(&self) -> Result<Arc<Device>> {
+    pub fn external_device(&self) -> Result<Arc<Device>> {
         // SAFETY: nothing of wgpu's is destroyed, and what is said of the device is true.
         unsafe {
             let device = self.device.as_hal::<Vulkan>().ok_or("wgpu does not use Vulkan")?;
             let shared = device.shared_instance();
-            let lent = Lent {
+            let external = ExternalDevice {
                 instance: shared.raw_instance(),
                 physical: device.raw_physical_device(),
                 device: device.raw_device(),
@@ -85,7 +85,7 @@ impl Gpu {
                 memory_blocks: Default::default(),
                 pipeline_cache: None,
             };
-            Ok(Device::borrow(lent)?)
+            Ok(Device::from_external(external)?)
         }
     }
 

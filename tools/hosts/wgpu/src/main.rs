@@ -1,43 +1,47 @@
 //! A host that draws with wgpu, and surfels among what it draws:
 //! `cargo run --manifest-path tools/hosts/wgpu/Cargo.toml -- [FILE.png | --window | --soak | --check]`.
 
+#[path = "../../host/arguments.rs"]
+mod arguments;
 mod check;
+mod demo;
+#[path = "../../host/event_loop.rs"]
+mod event_loop;
 mod frame;
 mod gpu;
 mod listen;
 mod mesh;
-#[path = "../../host/options.rs"]
-mod options;
 #[path = "../../host/scene.rs"]
 mod scene;
-mod show;
 #[path = "../../host/soak.rs"]
 mod soak;
 mod surfels;
 mod window;
 
-use options::{Asked, Wanted};
+use arguments::{Arguments, Mode};
 
 /// Whatever goes wrong.
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
 fn main() -> Result<()> {
     let listener = listen::install()?;
-    let asked = Asked::of_program()?;
-    if asked.model.is_some() {
+    let arguments = Arguments::of_program()?;
+    if arguments.model.is_some() {
         return Err("this host shows models of its own: leave --model out".into());
     }
-    let chosen = asked.method.is_some() || asked.points.is_some();
-    match &asked.wanted {
-        Wanted::Check if chosen || asked.frames.is_some() => {
+    let chosen = arguments.method.is_some() || arguments.points.is_some();
+    match &arguments.mode {
+        Mode::Check if chosen || arguments.frames.is_some() => {
             return Err("--check has methods, surfels and frames of its own: leave the rest out".into());
         }
-        Wanted::Picture(_) if asked.frames.is_some() => {
+        Mode::Picture(_) if arguments.frames.is_some() => {
             return Err("a picture of this host is its only frame: leave --frames out".into());
         }
-        Wanted::Picture(file) => show::picture(&asked, file)?,
-        Wanted::Window | Wanted::Soak => window::open(&asked)?,
-        Wanted::Check => check::all()?,
+        Mode::Picture(file) => demo::picture(&arguments, file)?,
+        Mode::Window | Mode::Soak => event_loop::run("surfels in wgpu", &arguments, &|window| {
+            window::InWindow::new(window, &arguments)
+        })?,
+        Mode::Check => check::all()?,
     }
     listener.silent()
 }

@@ -19,7 +19,7 @@ pub struct Embedded {
     renderer: Renderer,
     scene: Arc<Scene>,
     /// The device as it was lent.
-    borrowed: Arc<Device>,
+    device: Arc<Device>,
     attached: Option<Attached>,
     pass: RawPass,
     _device: wgpu::Device,
@@ -49,8 +49,8 @@ const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
 impl Embedded {
     /// Uploads `surfels`, for frames of so many samples a pixel.
     pub fn new(gpu: &Gpu, surfels: &Surfels, samples: u32) -> Result<Self> {
-        let borrowed = gpu.lend()?;
-        let scene = upload(gpu, &borrowed, surfels)?;
+        let device = gpu.external_device()?;
+        let scene = upload(gpu, &device, surfels)?;
         // SAFETY: nothing of wgpu's is destroyed.
         let (device, colour) = unsafe {
             let device = gpu.device.as_hal::<Vulkan>().ok_or("wgpu does not use Vulkan")?;
@@ -78,13 +78,13 @@ impl Embedded {
             rasterizer: None,
         };
         // SAFETY: the target is this pass, which goes after the renderer.
-        let renderer = unsafe { Renderer::new(&borrowed, options)? };
-        Ok(Self { renderer, scene, borrowed, attached: None, pass, _device: gpu.device.clone() })
+        let renderer = unsafe { Renderer::new(&device, options)? };
+        Ok(Self { renderer, scene, device, attached: None, pass, _device: gpu.device.clone() })
     }
 
     /// Shows other surfels from the next frame on; the renderer keeps those of frames that are under way.
-    pub fn show(&mut self, gpu: &Gpu, surfels: &Surfels) -> Result<()> {
-        self.scene = upload(gpu, &self.borrowed, surfels)?;
+    pub fn set_surfels(&mut self, gpu: &Gpu, surfels: &Surfels) -> Result<()> {
+        self.scene = upload(gpu, &self.device, surfels)?;
         Ok(())
     }
 
@@ -151,13 +151,13 @@ impl Embedded {
 }
 
 /// Surfels on the device.
-fn upload(gpu: &Gpu, borrowed: &Arc<Device>, surfels: &Surfels) -> Result<Arc<Scene>> {
+fn upload(gpu: &Gpu, device: &Arc<Device>, surfels: &Surfels) -> Result<Arc<Scene>> {
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
     // SAFETY: recorded outside a render pass; the staging memory stays until the GPU is done.
     let (scene, staging) = unsafe {
         encoder.as_hal_mut::<Vulkan, _, _>(|raw| {
             let cmd = raw.ok_or("wgpu does not record")?.raw_handle();
-            Ok::<_, Box<dyn std::error::Error>>(embed::upload(borrowed, cmd, surfels)?)
+            Ok::<_, Box<dyn std::error::Error>>(embed::upload(device, cmd, surfels)?)
         })?
     };
     gpu.queue.submit([encoder.finish()]);

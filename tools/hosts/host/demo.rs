@@ -1,7 +1,7 @@
 //! What a host shows: to a picture or in a window.
 
-use super::options::{Asked, Wanted};
-use super::scene::SIZE;
+use super::arguments::{Arguments, Mode};
+use super::scene::{SIZE, STEP};
 use super::under_way::UnderWay;
 use super::{Host, Result, Validation};
 use ash::vk;
@@ -10,14 +10,12 @@ use std::time::Instant;
 
 /// How many frames may be under way.
 pub const FRAMES_IN_FLIGHT: u32 = 2;
-/// Seconds from a frame to the next, where the clock does not say.
-pub const STEP: f64 = 0.05;
 
-/// Makes what is shown, at first in frames of [`SIZE`].
-pub type New<S> = fn(&Host, &Asked) -> Result<S>;
+/// Creates a demo, at first with frames of [`SIZE`].
+pub type New<D> = fn(&Host, &Arguments) -> Result<D>;
 
 /// Frames of one size at a time, and what they show.
-pub trait Show: Sized {
+pub trait Demo: Sized {
     /// Px of the frames.
     fn size(&self) -> [u32; 2];
 
@@ -41,38 +39,39 @@ pub trait Show: Sized {
 }
 
 /// Runs a host as its command line says.
-pub fn run<S: Show>(new: New<S>) -> Result<()> {
-    let asked = Asked::of_program()?;
-    match &asked.wanted {
-        Wanted::Picture(file) => picture(new, &asked, file),
+pub fn run<D: Demo>(new: New<D>) -> Result<()> {
+    let arguments = Arguments::of_program()?;
+    match &arguments.mode {
+        Mode::Picture(file) => picture(new, &arguments, file),
         #[cfg(feature = "viewer")]
-        Wanted::Window | Wanted::Soak => super::window::open(new, asked),
-        #[cfg(not(feature = "viewer"))]
-        Wanted::Window | Wanted::Soak => {
-            Err("give FILE.png; for a window build with `--features viewer`".into())
+        Mode::Window | Mode::Soak => {
+            let open = |window| super::window::InWindow::new(window, new, &arguments);
+            super::event_loop::run("surfels in a host", &arguments, &open)
         }
-        Wanted::Check => Err("there is no --check here: `cargo test --test embed` compares".into()),
+        #[cfg(not(feature = "viewer"))]
+        Mode::Window | Mode::Soak => Err("give FILE.png; for a window build with `--features viewer`".into()),
+        Mode::Check => Err("there is no --check here: `cargo test --test embed` compares".into()),
     }
 }
 
 /// Renders frames, of which the last is written to `file`, a PNG; says what they take where there are several.
-fn picture<S: Show>(new: New<S>, asked: &Asked, file: &Path) -> Result<()> {
+fn picture<D: Demo>(new: New<D>, arguments: &Arguments, file: &Path) -> Result<()> {
     let host = Host::open_with(|all| all, Validation::WhereThere, &[], &[])?;
-    let mut show = new(&host, asked)?;
-    let bytes = frames(&host, &mut show, asked.frames.unwrap_or(1)).and_then(|milliseconds| {
-        if asked.frames.is_some_and(|frames| frames > 1) {
+    let mut demo = new(&host, arguments)?;
+    let bytes = frames(&host, &mut demo, arguments.frames.unwrap_or(1)).and_then(|milliseconds| {
+        if arguments.frames.is_some_and(|frames| frames > 1) {
             println!("{}x{} px, {milliseconds:.1} ms a frame, the median", SIZE[0], SIZE[1]);
         }
-        show.read(&host)
+        demo.read(&host)
     });
-    show.destroy(&host);
+    demo.destroy(&host);
     host.close()?;
     let picture = image::RgbaImage::from_raw(SIZE[0], SIZE[1], bytes?).ok_or("the picture is too short")?;
     Ok(picture.save(file)?)
 }
 
 /// Shows so many frames; the median of what one takes, ms.
-fn frames<S: Show>(host: &Host, show: &mut S, frames: u64) -> Result<f64> {
+fn frames<D: Demo>(host: &Host, demo: &mut D, frames: u64) -> Result<f64> {
     let mut under_way = UnderWay::new(FRAMES_IN_FLIGHT);
     let mut ends = vec![Instant::now()];
     let mut draw = |number: u64, under_way: &mut UnderWay| -> Result<()> {
@@ -80,7 +79,7 @@ fn frames<S: Show>(host: &Host, show: &mut S, frames: u64) -> Result<f64> {
             under_way.wait(host)?;
             ends.push(Instant::now());
         }
-        under_way.submit(host, |cmd| show.record(host, cmd, STEP * number as f64))
+        under_way.submit(host, |cmd| demo.record(host, cmd, STEP * number as f64))
     };
     let drawn = (0..frames).try_for_each(|number| draw(number, &mut under_way));
     while under_way.wait(host)? {

@@ -1,7 +1,7 @@
 //! Surfels in buffers of a host.
 
 use super::live::check_bounds;
-use super::{ColourStream, NormalStream, Scene, Stream, next_id, step, windows};
+use super::{ColourStream, NormalStream, Scene, Stream, chunks, next_id, step};
 use crate::error::{Error, Result};
 use crate::geometry::Bounds;
 use crate::vk::Device;
@@ -10,7 +10,7 @@ use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64};
 use std::sync::{Arc, Mutex};
 
 /// What a scene in a host's buffers is made of; see [`crate::embed::Buffers`].
-pub(crate) struct Lent {
+pub(crate) struct ExternalBuffers {
     pub positions: Stream,
     pub normals: Stream,
     pub normal_stream: NormalStream,
@@ -28,15 +28,17 @@ pub(crate) struct Lent {
 }
 
 impl Scene {
-    /// A scene of these; refuses values so far apart that no window holds enough of them.
-    pub(crate) fn of_streams(device: &Arc<Device>, lent: Lent) -> Result<Self> {
+    /// A scene of these; refuses values so far apart that no chunk holds enough of them.
+    pub(crate) fn of_streams(device: &Arc<Device>, external: ExternalBuffers) -> Result<Self> {
         let capabilities = device.capabilities();
-        check_bounds(&lent.bounds)?;
-        let streams = [Some(&lent.positions), Some(&lent.normals), Some(&lent.radii)];
-        let streams = streams.into_iter().chain([lent.ellipses.as_ref(), lent.colours.as_ref()]).flatten();
+        check_bounds(&external.bounds)?;
+        let streams = [Some(&external.positions), Some(&external.normals), Some(&external.radii)];
+        let streams =
+            streams.into_iter().chain([external.ellipses.as_ref(), external.colours.as_ref()]).flatten();
         let stride = streams.map(|stream| stream.stride).max().unwrap_or(0);
         let (least, range) = (step(capabilities), capabilities.max_storage_buffer_range);
-        let reach = least.min(lent.capacity).saturating_mul(stride) + capabilities.storage_buffer_alignment;
+        let reach =
+            least.min(external.capacity).saturating_mul(stride) + capabilities.storage_buffer_alignment;
         if reach > range {
             return Err(Error::Usage(format!(
                 "the host's surfels cannot be drawn: {least} of them, {stride} bytes apart, go beyond the {range} bytes that a shader of {} \
@@ -46,28 +48,28 @@ impl Scene {
         }
         Ok(Self {
             id: next_id(),
-            positions: lent.positions,
-            normals: lent.normals,
-            normal_stream: lent.normal_stream,
-            radii: lent.radii,
-            two_sided: lent.two_sided,
-            ellipses: lent.ellipses,
+            positions: external.positions,
+            normals: external.normals,
+            normal_stream: external.normal_stream,
+            radii: external.radii,
+            two_sided: external.two_sided,
+            ellipses: external.ellipses,
             clips: None,
-            colours: lent.colours,
+            colours: external.colours,
             weights: None,
             primitives: None,
             texture: None,
             materials: None,
-            largest: lent.largest.map(|radius| AtomicU32::new(radius.to_bits())),
-            colour_stream: lent.colour_stream,
-            windows: windows(lent.capacity, capabilities, stride),
+            largest: external.largest.map(|radius| AtomicU32::new(radius.to_bits())),
+            colour_stream: external.colour_stream,
+            chunks: chunks(external.capacity, capabilities, stride),
             alignment: capabilities.storage_buffer_alignment,
-            origin: lent.origin,
+            origin: external.origin,
             of_host: true,
             had_invalid: false,
             unchecked: AtomicBool::new(true),
-            count: AtomicU64::new(lent.count),
-            bounds: Mutex::new(lent.bounds),
+            count: AtomicU64::new(external.count),
+            bounds: Mutex::new(external.bounds),
         })
     }
 }

@@ -7,7 +7,7 @@ use surfel::settings::methods::Method;
 
 /// What a host is asked to do.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub enum Wanted {
+pub enum Mode {
     /// A picture in a file, a PNG.
     Picture(PathBuf),
     /// A window, until it is closed.
@@ -21,8 +21,8 @@ pub enum Wanted {
 
 /// What a command line asks for.
 #[derive(Clone, Debug, Default)]
-pub struct Asked {
-    pub wanted: Wanted,
+pub struct Arguments {
+    pub mode: Mode,
     pub method: Option<Method>,
     /// A PLY in the place of the host's own surfels.
     pub model: Option<PathBuf>,
@@ -35,46 +35,46 @@ pub struct Asked {
 const USAGE: &str = "give FILE.png, --window, --soak or --check; \
     and --method NAME, --model FILE.ply, --points N, --frames N where they are wanted";
 
-impl Asked {
+impl Arguments {
     /// Reads the program's arguments: the window, if there are none.
     pub fn of_program() -> Result<Self, String> {
         Self::of(std::env::args_os().skip(1))
     }
 
     fn of(arguments: impl IntoIterator<Item = OsString>) -> Result<Self, String> {
-        let (mut asked, mut wanted) = (Self::default(), None);
+        let (mut parsed, mut mode) = (Self::default(), None);
         let mut arguments = arguments.into_iter();
         while let Some(argument) = arguments.next() {
             let name = argument.to_str().unwrap_or_default().to_owned();
             let mut value = || arguments.next().ok_or_else(|| format!("{name} wants a value: {USAGE}"));
             let next = match name.as_str() {
-                "--window" => Wanted::Window,
-                "--soak" => Wanted::Soak,
-                "--check" => Wanted::Check,
+                "--window" => Mode::Window,
+                "--soak" => Mode::Soak,
+                "--check" => Mode::Check,
                 "--method" => {
-                    asked.method = Some(method(&value()?)?);
+                    parsed.method = Some(method(&value()?)?);
                     continue;
                 }
                 "--model" => {
-                    asked.model = Some(value()?.into());
+                    parsed.model = Some(value()?.into());
                     continue;
                 }
                 "--points" => {
-                    asked.points = Some(number(&name, &value()?)?);
+                    parsed.points = Some(number(&name, &value()?)?);
                     continue;
                 }
                 "--frames" => {
-                    asked.frames = Some(number(&name, &value()?)?);
+                    parsed.frames = Some(number(&name, &value()?)?);
                     continue;
                 }
                 option if option.starts_with('-') => return Err(format!("{option} is no option: {USAGE}")),
-                _ => Wanted::Picture(argument.into()),
+                _ => Mode::Picture(argument.into()),
             };
-            if wanted.replace(next).is_some() {
+            if mode.replace(next).is_some() {
                 return Err(format!("one thing at a time: {USAGE}"));
             }
         }
-        Ok(Self { wanted: wanted.unwrap_or_default(), ..asked })
+        Ok(Self { mode: mode.unwrap_or_default(), ..parsed })
     }
 
     /// How surfels are rendered.

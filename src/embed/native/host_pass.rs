@@ -10,7 +10,7 @@ const MOST_SUBPASSES: u32 = 1 << 16;
 
 /// Where in a render pass surfels are drawn.
 #[derive(Clone, Debug)]
-pub struct Place<'a> {
+pub struct HostRenderPass<'a> {
     /// The host's attachments, all of them: surfel's follow.
     pub attachments: &'a [vk::AttachmentDescription],
     /// How many subpasses of the host come before surfel's, and how many after.
@@ -43,7 +43,7 @@ pub struct Depth {
     pub seed: bool,
 }
 
-impl Place<'_> {
+impl HostRenderPass<'_> {
     /// Refuses what cannot be drawn to on `device`.
     pub(super) fn check(&self, device: &Device) -> Result<()> {
         // More would overflow the numbers of subpasses; no driver takes as many.
@@ -68,11 +68,11 @@ impl Place<'_> {
             self.check_attachment(device, what, attachment, purpose)?;
         }
         if self.encode && is_srgb(self.format(self.picture)) {
-            return refuse("its format encodes sRGB itself: leave `encode` out".into());
+            return refuse("its format encodes sRGB itself: leave `encode` out");
         }
         if self.normal.is_some() && !device.capabilities().independent_blend {
             return refuse(
-                "normals beside a picture want the feature independentBlend, without which the device was lent: enable it".into(),
+                "normals beside a picture want the feature independentBlend, without which the device was lent: enable it",
             );
         }
         if let Some(depth) = self.depth.filter(|depth| depth.seed)
@@ -80,7 +80,7 @@ impl Place<'_> {
             && self.attachments[depth.attachment as usize].load_op != vk::AttachmentLoadOp::LOAD
         {
             return refuse(
-                "splats are to start from a depth that nothing has been drawn to: leave `seed` out".into(),
+                "splats are to start from a depth that nothing has been drawn to: leave `seed` out",
             );
         }
         let layout = vk::Format::D32_SFLOAT_S8_UINT;
@@ -114,7 +114,7 @@ impl Place<'_> {
         let what = format!("{what} in attachment {attachment}");
         attachments::check(device, &what, purpose, format, samples).or_else(refuse)?;
         if resolved && (self.samples() == one || format != self.format(self.picture)) {
-            refuse("only a multisampled picture is resolved, to the same format".into())
+            refuse("only a multisampled picture is resolved, to the same format")
         } else {
             Ok(())
         }
@@ -130,6 +130,6 @@ impl Place<'_> {
     }
 }
 
-fn refuse(cause: String) -> Result<()> {
+fn refuse(cause: impl std::fmt::Display) -> Result<()> {
     Err(Error::Usage(format!("the host's render pass cannot be drawn in: {cause}")))
 }

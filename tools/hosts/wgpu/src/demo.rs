@@ -1,10 +1,10 @@
 //! A frame of the host: what is opaque, the surfels, and a pane of glass after them.
 
 use crate::Result;
+use crate::arguments::Arguments;
 use crate::frame::Frame;
 use crate::gpu::{Gpu, instance};
 use crate::mesh::{Look, Mesh};
-use crate::options::Asked;
 use crate::scene::{SIZE, camera, egg, parallelogram, sphere, torus};
 use crate::surfels::Embedded;
 use glam::{DMat4, DVec3, Vec3};
@@ -13,7 +13,7 @@ use surfel::Settings;
 use surfel::geometry::{Camera, Surfels};
 
 /// All that a frame shows.
-pub struct Show {
+pub struct Demo {
     pub embedded: Embedded,
     pub settings: Settings,
     /// The surfels that are shown, and those that are not.
@@ -36,16 +36,16 @@ pub const SURFELS: u32 = 200_000;
 /// The pane: its centre and the halves of its sides, which are at right angles.
 pub const PANE: [Vec3; 3] = [Vec3::new(0.6, 0.1, 0.75), Vec3::new(0.6, 0.0, -0.3), Vec3::new(0.0, 0.55, 0.0)];
 
-impl Show {
+impl Demo {
     /// What is asked for, in frames of so many samples a pixel.
-    pub fn new(gpu: &Gpu, asked: &Asked, samples: u32) -> Result<Self> {
+    pub fn new(gpu: &Gpu, arguments: &Arguments, samples: u32) -> Result<Self> {
         let [centre, u, v] = PANE;
         let ring = torus(Vec3::ZERO, [1.0, 0.22], 96);
-        let count = asked.points.unwrap_or(SURFELS);
+        let count = arguments.points.unwrap_or(SURFELS);
         let models = [sphere(count), egg(count.div_ceil(3))];
         Ok(Self {
             embedded: Embedded::new(gpu, &models[0], samples)?,
-            settings: asked.settings(),
+            settings: arguments.settings(),
             models,
             ring: Mesh::new(gpu, &ring, Look::Lit, samples),
             glass: Mesh::new(gpu, &parallelogram(centre, [u, v]), Look::Glass, samples),
@@ -55,7 +55,7 @@ impl Show {
     /// The other surfels from the next frame on.
     pub fn change(&mut self, gpu: &Gpu) -> Result<()> {
         self.models.reverse();
-        self.embedded.show(gpu, &self.models[0])
+        self.embedded.set_surfels(gpu, &self.models[0])
     }
 
     /// Records a frame: commands to be submitted at once, in this order.
@@ -92,13 +92,13 @@ fn upwards(camera: &Camera) -> Camera {
 }
 
 /// Renders a frame and writes it to `file`, a PNG.
-pub fn picture(asked: &Asked, file: &Path) -> Result<()> {
+pub fn picture(arguments: &Arguments, file: &Path) -> Result<()> {
     let gpu = Gpu::open(&instance()?, None)?;
     let frame = Frame::new(&gpu, SIZE, 4);
-    let mut show = Show::new(&gpu, asked, frame.samples)?;
-    show.embedded.attach(&frame)?;
+    let mut demo = Demo::new(&gpu, arguments, frame.samples)?;
+    demo.embedded.attach(&frame)?;
     let all = Parts { ring: true, surfels: true, glass: true };
-    gpu.queue.submit(show.record(&gpu, &frame, &camera(0.0, SIZE)?, all)?);
+    gpu.queue.submit(demo.record(&gpu, &frame, &camera(0.0, SIZE)?, all)?);
     let bytes = frame.read(&gpu, frame.picture())?;
     Ok(image::RgbaImage::from_raw(SIZE[0], SIZE[1], bytes).ok_or("the picture is too short")?.save(file)?)
 }

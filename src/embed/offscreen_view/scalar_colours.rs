@@ -16,12 +16,12 @@ use std::sync::Arc;
 const LEAST_ALPHA: f32 = 1.0 / 32.0;
 
 /// Whether a shading shows numbers, and not colours.
-pub(super) fn shows_numbers(shading: Shading) -> bool {
+pub(super) fn is_scalar(shading: Shading) -> bool {
     !matches!(shading, Shading::Lit | Shading::Colour)
 }
 
 /// The colours of a picture of numbers.
-pub(super) struct Numbers {
+pub(super) struct ScalarColours {
     views: ColourMapViews,
     range_view: DescriptorSet,
     image: Image,
@@ -35,7 +35,7 @@ pub(super) struct Numbers {
     _pass: RenderPass,
 }
 
-impl Numbers {
+impl ScalarColours {
     /// Of what `shading` shows in `picture`, which must outlive it.
     pub fn new(device: &Arc<Device>, shading: Shading, picture: &Image) -> Result<Self> {
         let pass = RenderPass::new(device, &[Attachment::Cleared(COLOUR)], None)?;
@@ -51,7 +51,7 @@ impl Numbers {
     /// Records the colours of `picture`, of α times numbers and α, over the settings' background.
     pub fn record(&self, rec: &mut Recorder<'_>, picture: &Image, settings: &Settings) {
         let opaque = settings.background.is_some();
-        // Numbers are not mixed with a background: the half decides.
+        // ScalarColours are not mixed with a background: the half decides.
         let least_alpha = if opaque { 0.5 } else { LEAST_ALPHA };
         let numbers = layout::Numbers { least_alpha, opaque: opaque.into() };
         if self.has_range() {

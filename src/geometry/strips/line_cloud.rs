@@ -11,7 +11,7 @@ use glam::{DVec3, Vec3};
 use std::collections::HashMap;
 
 /// New vertices, and what stays of a cloud.
-pub(super) struct Made<'a> {
+pub(super) struct LineCloud<'a> {
     cloud: &'a Cloud,
     new: Cloud,
     /// Points whose mean colour each new vertex has.
@@ -21,7 +21,7 @@ pub(super) struct Made<'a> {
     welded: &'a Welded,
 }
 
-impl<'a> Made<'a> {
+impl<'a> LineCloud<'a> {
     pub fn new(cloud: &'a Cloud, welded: &'a Welded) -> Self {
         let new = Cloud {
             origin: cloud.origin,
