@@ -1,27 +1,27 @@
-//! What attachments of a host a device can draw to.
+//! Validation of a host's attachments.
 
 use crate::error::Cause;
 use crate::vk::Device;
 use ash::vk;
 
-/// What an attachment is for.
+/// Use of an attachment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Purpose {
-    /// Colours that are blended.
+    /// Blended colours.
     Blended,
-    /// Colours or normals that replace what is there.
+    /// Colours or normals without blending.
     Replaced,
-    /// Ids that replace what is there.
+    /// Point ids without blending.
     Ids,
-    /// Colours of the host's own.
+    /// Colours of the host only.
     Other,
-    /// Depths.
+    /// Depth.
     Depth,
-    /// A stencil.
+    /// Stencil.
     Stencil,
 }
 
-/// Refuses, with the cause, a format whose attachments of so many samples `device` cannot draw `what` to.
+/// Returns an error if `device` cannot draw `what` to attachments of this format and sample count.
 pub(super) fn check(
     device: &Device,
     what: &str,
@@ -74,7 +74,7 @@ pub(super) fn check(
     Ok(())
 }
 
-/// Ids of samples in words.
+/// Sample counts as text.
 fn sample_counts(samples: vk::SampleCountFlags) -> String {
     let there = (0..32).map(|bit| 1 << bit).filter(|bit| samples.as_raw() & bit != 0);
     let list: Vec<_> = there.map(|bit| bit.to_string()).collect();

@@ -1,4 +1,4 @@
-//! Scenes in buffers of a host, and new values for scenes that the engine holds.
+//! Scenes in buffers of the host, and updates of scenes in buffers of the engine.
 
 use super::formats::{COLOURS, NORMALS, SCALARS, SHAPES, VECTORS, format_of, one_radius, sizes, stream};
 use crate::error::{Error, Result};
@@ -9,23 +9,24 @@ use ash::vk;
 use glam::DVec3;
 use std::sync::Arc;
 
-/// The stages that read a scene's buffers, in every frame of every method: what the destination of a host's barrier names once it has written
-/// them, and the source of one before it writes them again. Their bits are those of `VkPipelineStageFlags2`, too.
+/// Shader stages that read a scene's buffers, in all methods: the destination stages of the host's barrier after it writes them, and the
+/// source stages of its barrier before it writes them again. `VkPipelineStageFlags2` has the same bits.
 pub const READ_STAGES: vk::PipelineStageFlags = Access::SHADER_READ.stages();
-/// How they read: the destination's access of the first barrier; after reads, before writes, none is needed. Likewise.
+/// The reads' access: the destination access of the first barrier. The second barrier, write after read, needs no access. `VkAccessFlags2`
+/// has the same bits.
 pub const READ_ACCESS: vk::AccessFlags = Access::SHADER_READ.mask();
 
-/// Where a buffer has a value of each surfel. Several may share a buffer, as members of its vertices.
+/// A vertex attribute in a buffer: one value per surfel. Attributes may be interleaved in one buffer.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Values {
     /// The buffer.
     pub buffer: vk::Buffer,
-    /// Its size, bytes.
+    /// Size of the buffer, bytes.
     pub size: u64,
-    /// Where the first surfel's value is, bytes, a multiple of 4. Scenes whose offsets are the same modulo the device's
-    /// `minStorageBufferOffsetAlignment` share pipelines and targets; for others these are made anew.
+    /// Offset of the first surfel's value, bytes, a multiple of 4. Scenes whose offsets are equal modulo the device's
+    /// `minStorageBufferOffsetAlignment` share pipelines and targets; other offsets need new ones.
     pub offset: u64,
-    /// From one surfel's value to the next one's, bytes, a multiple of 4.
+    /// Distance between the values of consecutive surfels, bytes, a multiple of 4.
     pub stride: u64,
     /// Its format.
     pub format: vk::Format,
@@ -34,56 +35,57 @@ pub struct Values {
 /// Radii of surfels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Radii {
-    /// Each has its own: `R32_SFLOAT`.
+    /// One radius per surfel: `R32_SFLOAT`.
     Each(Values),
-    /// All have this one.
+    /// One radius for all surfels.
     All(f32),
 }
 
-/// Surfels in buffers of a host.
+/// Surfels in buffers of the host.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Buffers {
-    /// Centres, relative to [`Buffers::origin`]: `R32G32B32_SFLOAT`, or `R32G32B32A32_SFLOAT`, whose last number is not read, here and below.
+    /// Centres, relative to [`Buffers::origin`]: `R32G32B32_SFLOAT`, or `R32G32B32A32_SFLOAT` with an ignored fourth component, here and
+    /// below.
     pub positions: Values,
-    /// Unit normals: `R32G32B32_SFLOAT`, `R32G32B32A32_SFLOAT`, or of `R8G8B8A8_SNORM`, `R16G16B16A16_SNORM` or `R16G16B16A16_SFLOAT`, which
-    /// the shaders make unit vectors of.
+    /// Unit normals: `R32G32B32_SFLOAT`, `R32G32B32A32_SFLOAT`, or, normalized by the shaders, `R8G8B8A8_SNORM`, `R16G16B16A16_SNORM` or
+    /// `R16G16B16A16_SFLOAT`.
     pub normals: Values,
     /// Radii.
     pub radii: Radii,
-    /// Whether surfels with radii below 0, which are then meant without their sign, have no side: neither is ever the back.
+    /// Whether a radius below 0 marks a two-sided surfel, which is never back-facing; its radius is the absolute value.
     pub two_sided: bool,
-    /// Discs are ellipses with their radii as longer semi-axes: `R32G32B32A32_SFLOAT`, the longer axis' direction and the aspect
-    /// ([`crate::geometry::Ellipse`]).
+    /// Shapes of elliptical discs: `R32G32B32A32_SFLOAT`, the direction of the longer axis and the aspect ([`crate::geometry::Ellipse`]).
+    /// The radius is the longer semi-axis.
     pub ellipses: Option<Values>,
     /// Colours: `R8G8B8A8_SRGB`, or linear light as `R8G8B8A8_UNORM`, `R16G16B16A16_SFLOAT`, `R32G32B32_SFLOAT` or `R32G32B32A32_SFLOAT`.
     pub colours: Option<Values>,
-    /// How many surfels there is room for, at least 1. Each renderer of splats keeps 64 bytes for each, drawn or not. A number that the GPU alone
-    /// knows is served by radii of 0 behind the last one.
+    /// Maximum number of surfels, at least 1. Each renderer of splats allocates 64 bytes for each. If only the GPU knows the count, give
+    /// the surfels behind the last one radius 0.
     pub capacity: u64,
-    /// How many are drawn, from the first one on, until [`Scene::set_count`].
+    /// Number of surfels to draw, from the first, until [`Scene::set_count`].
     pub count: u64,
-    /// What positions are relative to, world space.
+    /// Origin of the positions, world space.
     pub origin: DVec3,
-    /// Bounds in the world, until [`Scene::set_bounds`], which says what they are for.
+    /// Bounds in world space, until [`Scene::set_bounds`], which documents their use.
     pub bounds: Bounds,
 }
 
 impl Scene {
-    /// A scene of surfels in buffers of a host. Nothing is copied: shaders read them where they are, in every frame what is there then.
+    /// Creates a scene of surfels in buffers of the host. Nothing is copied: each frame's shaders read the buffers in place.
     ///
-    /// What the host writes to them it makes visible to [`READ_ACCESS`] in [`READ_STAGES`] before the frame, and what it writes after a frame
-    /// waits for these stages. Frames of one queue see what was written before them in its order, however many are under way.
+    /// Before a frame, the host makes its writes visible to [`READ_ACCESS`] in [`READ_STAGES`]; writes after a frame wait for these stages.
+    /// Frames of one queue read the values that were written before them in queue order, whatever the number of frames in flight.
     ///
-    /// Surfels are best in Morton order. Those that are not valid ([`Surfels::is_valid`]; of packed normals the squared length may be off by
-    /// 0.03) are not drawn, and in the reports of [`crate::Renderer`] counted as `invalid`.
+    /// Surfels are best in Morton order. Invalid surfels ([`Surfels::is_valid`]; the squared length of packed normals may be off by 0.03)
+    /// are not drawn; reports of [`crate::Renderer`] count them as `invalid`.
     ///
     /// # Errors
-    /// [`Error::Usage`], naming the stream, for formats, offsets and strides other than those, values beyond a buffer's end, values so far apart
-    /// that too few fit what a descriptor can name (`maxStorageBufferRange`), counts, an origin or bounds that cannot be.
+    /// [`Error::Usage`] with the name of the stream: an unsupported format, offset or stride; values beyond the end of a buffer; a stride
+    /// so large that too few values fit a descriptor (`maxStorageBufferRange`); an invalid count, origin or bounds.
     ///
     /// # Safety
-    /// The buffers are of the device that `device` borrows, as large as they are said to be, made with `STORAGE_BUFFER` usage, bound to memory,
-    /// and owned by the queue family that was external. They outlive the scene and every frame of it. Their contents are written as above.
+    /// The buffers are of `device`, have the given sizes and `STORAGE_BUFFER` usage, are bound to memory, and are owned by the device's
+    /// queue family. They outlive the scene and all its frames. Their contents are written as described above.
     pub unsafe fn from_buffers(device: &Arc<Device>, buffers: &Buffers) -> Result<Self> {
         buffers.check()?;
         let Buffers { positions, normals, ellipses, colours, capacity, .. } = *buffers;
@@ -120,18 +122,17 @@ impl Scene {
     }
 }
 
-/// Records new values of surfels of a scene that the engine holds, as [`Scene::update`] gives them, into a command buffer of the host. Frames
-/// that were recorded before have the old values, those that are recorded later the new ones, however many are under way; the staging memory
-/// must stay until the GPU has done the copies. A frame of [`super::native`] is recorded from its `prepare` to the end of its `draw`. After an error
-/// nothing is recorded.
+/// Records new values of surfels of a scene in buffers of the engine, as [`Scene::update`], into a command buffer of the host. Frames that
+/// were recorded before read the old values, later frames the new ones, whatever the number of frames in flight. Keep the staging memory
+/// until the GPU has executed the copies. A frame of [`super::native`] is recorded from its `prepare` to the end of its `draw`. After an
+/// error nothing is recorded.
 ///
 /// # Errors
-/// Those of [`Scene::update`], and a lack of memory.
+/// As [`Scene::update`], and [`Error::Memory`].
 ///
 /// # Safety
-/// `cmd` is of the scene's device, of the queue family that it was lent with, is being recorded outside a render pass, and is submitted to the
-/// same queue as the frames, after those that were recorded before and before those that are recorded later. Scene and staging memory are
-/// dropped only when the GPU is done with what is recorded.
+/// `cmd` is of the scene's device and its queue family, is recording outside a render pass, and is submitted to the queue of the frames, in
+/// the order of recording. The scene and the staging memory are dropped only after the GPU has executed the commands.
 pub unsafe fn update(
     cmd: vk::CommandBuffer,
     scene: &Scene,

@@ -1,4 +1,4 @@
-//! Composite: the picture over the target of a host, among whose surfaces it has its depth (`composite.glsl`).
+//! Composite pass: draws the picture over a host's target with a depth test (`composite.glsl`).
 
 use crate::error::Result;
 use crate::frame::resource::Resource;
@@ -10,33 +10,33 @@ use crate::vk::{
 };
 use std::sync::Arc;
 
-/// What pictures and host a composite is for.
+/// Variant of a composite.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct CompositeKind {
-    /// The picture is drawn to images, not written to a buffer.
+    /// Whether the picture is in images; otherwise it is in a buffer.
     pub images: bool,
-    /// Its distances are of rays that meet in the eye.
+    /// Whether the projection is perspective.
     pub perspective: bool,
-    /// Where the host wants the picture: which of its colour targets.
+    /// Colour location of the picture.
     pub picture: u32,
-    /// Where it wants normals.
+    /// Colour location of normals.
     pub normal: Option<u32>,
-    /// Where it wants numbers, which are of pictures in buffers alone.
+    /// Colour location of point ids, which only pictures in buffers have.
     pub id: Option<u32>,
-    /// Whether its depth falls with distance; `None` if it has no depth.
+    /// Whether the host's depth is reversed; `None` without depth.
     pub reversed: Option<bool>,
-    /// Whether shaders encode its colours.
+    /// Whether the shader encodes sRGB.
     pub encode: bool,
 }
 
-/// The composite pass: a draw within a pass of the host.
+/// The composite pass: a draw inside a pass of the host.
 pub struct Composite {
     kind: CompositeKind,
     pipeline: DrawPipeline,
 }
 
 impl CompositeKind {
-    /// What it sees of a frame's targets.
+    /// Resources of a frame's targets that the shader reads.
     fn resources(&self) -> Vec<(&'static shaders::Resource, Resource)> {
         if !self.images {
             return vec![(&resource::FRAME_PICTURE, Resource::Picture)];
@@ -48,7 +48,7 @@ impl CompositeKind {
 }
 
 impl Composite {
-    /// The pass for a host that draws `within`.
+    /// Creates the pass for the host's pass `within`.
     pub fn new(device: &Arc<Device>, kind: CompositeKind, within: &Within) -> Result<Self> {
         let layout = SetLayout::of(device, kind.resources().into_iter().map(|(resource, _)| resource))?;
         let fragment = match (kind.images, kind.normal, kind.id) {
@@ -71,7 +71,7 @@ impl Composite {
         Ok(Self { kind, pipeline })
     }
 
-    /// The pass's view of a picture, which must outlive it.
+    /// Descriptor set of a picture, which must outlive it.
     pub fn view(&self, device: &Arc<Device>, targets: &RenderTargets) -> Result<DescriptorSet> {
         let binding = |(resource, target)| {
             let image = targets.image(target).map(Binding::Sampled);
@@ -81,19 +81,19 @@ impl Composite {
         DescriptorSet::new(device, &bindings)
     }
 
-    /// What it reads.
+    /// Accesses of the pass.
     pub fn reads(targets: &RenderTargets) -> Vec<Use> {
         let read = Access::of_shader(ash::vk::ShaderStageFlags::FRAGMENT, false);
         let picture = targets.buffer(Resource::Picture).map(|buffer| buffer.with(read));
         picture.into_iter().chain(targets.outputs().map(|image| image.with(read.of_image()))).collect()
     }
 
-    /// What it is for.
+    /// The variant.
     pub fn kind(&self) -> CompositeKind {
         self.kind
     }
 
-    /// A picture → the host's colours and depth.
+    /// Draws a picture to the host's colours and depth.
     pub fn draw(&self, draws: &mut Draws<'_>, view: &DescriptorSet, place: &layout::Composite) {
         draws.draw(&self.pipeline, &[view], place, 3);
     }

@@ -7,25 +7,25 @@ use std::any::Any;
 use std::collections::VecDeque;
 use std::sync::Arc;
 
-/// Most frames under way: what each uses is kept.
+/// Maximum number of frames in flight.
 const MOST: u32 = 64;
 
 /// Resources that frames in flight may use.
 pub(super) struct DeferredDestruction {
-    /// Each with the number of the last frame that may use it.
+    /// Resources, each with the number of the last frame that may use it.
     list: VecDeque<(u64, Deferred)>,
-    /// Those of the present frame.
+    /// Scenes of the current frame.
     scenes: Vec<Arc<Scene>>,
     frame: u64,
     frames_in_flight: u64,
 }
 
 impl DeferredDestruction {
-    /// Nothing yet; so many frames may be under way.
+    /// An empty list for this number of frames in flight.
     pub(super) fn new(frames_in_flight: u32) -> Result<Self> {
         if !(1..=MOST).contains(&frames_in_flight) {
             return Err(Error::Usage(format!(
-                "{frames_in_flight} frames in flight: a frame is under way when it is recorded, so give 1 or more, and at most {MOST}"
+                "{frames_in_flight} frames in flight: the frame that is recorded is one of them, so give 1 or more, and at most {MOST}"
             )));
         }
         Ok(Self {
@@ -41,7 +41,7 @@ impl DeferredDestruction {
         self.extend([Box::new(resource) as Deferred]);
     }
 
-    /// Keeps the scenes of a frame that is prepared, in place of those of the frame before.
+    /// Keeps the scenes of a prepared frame; those of the frame before are deferred.
     pub(super) fn keep_scenes(&mut self, scenes: &Instances<'_>) {
         if !scenes.scenes().map(Arc::as_ptr).eq(self.scenes.iter().map(Arc::as_ptr)) {
             let old = std::mem::replace(&mut self.scenes, scenes.scenes().cloned().collect());
@@ -49,13 +49,13 @@ impl DeferredDestruction {
         }
     }
 
-    /// Defers the destruction of several.
+    /// Defers the destruction of several resources.
     pub(super) fn extend(&mut self, resources: impl IntoIterator<Item = Deferred>) {
         let frame = self.frame;
         self.list.extend(resources.into_iter().map(|resource| (frame, resource)));
     }
 
-    /// Begins another frame, and destroys what frames that are over have used.
+    /// Begins a frame and destroys resources of frames that are over.
     pub(super) fn advance(&mut self) {
         self.frame += 1;
         while self.list.front().is_some_and(|(frame, _)| frame + self.frames_in_flight <= self.frame) {

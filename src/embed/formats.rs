@@ -1,4 +1,4 @@
-//! Formats of a host's surfels, and what of them cannot be read.
+//! Supported formats of a host's surfels.
 
 use super::buffers::Values;
 use crate::error::{Error, Result};
@@ -7,7 +7,7 @@ use crate::vk::{Buffer, Device};
 use ash::vk;
 use std::sync::Arc;
 
-/// Formats with what they are to the shaders, and the bytes that these read of one.
+/// Supported formats with their shader variants and the bytes that shaders read per value.
 pub(super) type Formats<T> = [(vk::Format, T, u64)];
 
 pub(super) const VECTORS: &Formats<()> =
@@ -42,7 +42,7 @@ fn unknown<T>(name: &str, format: vk::Format, known: impl Iterator<Item = vk::Fo
     Err(refused(name, format_args!("they are {format:?}: give {}", known.join(", "))))
 }
 
-/// What the format of `values` is to the shaders.
+/// Shader variant of the format of `values`.
 pub(super) fn format_of<T: Copy>(name: &str, values: &Values, formats: &Formats<T>) -> Result<T> {
     match formats.iter().find(|(format, ..)| *format == values.format) {
         Some((_, kind, _)) => Ok(*kind),
@@ -50,7 +50,7 @@ pub(super) fn format_of<T: Copy>(name: &str, values: &Values, formats: &Formats<
     }
 }
 
-/// `values` of as many surfels, in one of these formats with the bytes that shaders read of each.
+/// A stream of `values` for `capacity` surfels, in one of these formats, each with the bytes that shaders read per value.
 ///
 /// # Safety
 /// As of [`Scene::from_buffers`].
@@ -87,7 +87,7 @@ pub(super) unsafe fn stream(
     Ok(Stream { buffer, offset, stride, size })
 }
 
-/// A radius that all surfels have.
+/// A stream of one radius for all surfels.
 pub(super) fn one_radius(device: &Arc<Device>, radius: f32) -> Result<Stream> {
     let mut buffer = Buffer::parameters(device, "radius", 4)?;
     buffer.bytes_mut().copy_from_slice(&radius.to_ne_bytes());

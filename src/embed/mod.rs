@@ -1,4 +1,5 @@
-//! Surfels among the geometry of another renderer, which owns instance, device, queue, command buffers and frame pacing.
+//! Embedding: surfels among the geometry of another renderer, the host, which owns instance, device, queue, command buffers and frame
+//! pacing.
 //!
 //! ```text
 //! once          Abilities::of ─ the host makes its device ─ Device::from_external ─ upload → Scene, Staging ─ Renderer::new
@@ -6,11 +7,11 @@
 //!               Renderer::draw:    records a draw of the picture with its depth, inside a render pass of the host
 //! ```
 //!
-//! Surfels may also stay in buffers of the host, which a simulation of its own writes every frame: [`Scene::from_buffers`](crate::Scene::from_buffers) reads them in place.
-//! Those that were uploaded get new values by [`update`].
+//! Surfels may also be in buffers of the host, for example written by its simulation in every frame:
+//! [`Scene::from_buffers`](crate::Scene::from_buffers) reads them in place. [`update`] writes new values to uploaded surfels.
 //!
-//! Nothing is submitted, waited for or stalled: the host submits what is recorded, to one queue. What the engine makes it also destroys, once
-//! as many frames have been prepared since as the host has in flight; what it borrows it leaves alone.
+//! The engine never submits or waits: the host submits the recorded commands to one queue. The engine destroys its own objects once the
+//! frames in flight that may use them are over, and never destroys the host's.
 //!
 //! ```no_run
 //! use ash::vk;
@@ -20,7 +21,7 @@
 //! use surfel::vk::{Device, DeviceLimits};
 //! use surfel::{Precision, Scene, Settings};
 //!
-//! /// What the host has.
+//! Objects of the host.
 //! struct Host {
 //!     instance: ash::Instance,
 //!     physical: vk::PhysicalDevice,
@@ -29,14 +30,14 @@
 //!     pass: vk::RenderPass,
 //! }
 //!
-//! /// Before the host makes its device: what to enable, as far as it is there. None of it is needed.
+//! Before the host creates its device: optional features to enable.
 //! fn wanted(instance: &ash::Instance, physical: vk::PhysicalDevice) -> Abilities {
 //!     let abilities = unsafe { Abilities::of(instance, physical) };
 //!     // VkDeviceCreateInfo takes `abilities.extensions()`, `abilities.features().core`, and the rest by `Features::chain`.
 //!     abilities
 //! }
 //!
-//! /// Once. `cmd` is outside a render pass; `Staging` stays until the GPU has done it.
+//! Once. `cmd` is recording outside a render pass; keep `Staging` until the GPU has executed `cmd`.
 //! unsafe fn load(host: &Host, enabled: Abilities, cmd: vk::CommandBuffer, surfels: &Surfels) -> surfel::Result<(Arc<Scene>, embed::Staging, Renderer)> {
 //!     let device = unsafe {
 //!         Device::from_external(ExternalDevice {
@@ -73,7 +74,7 @@
 //! /// Each frame.
 //! unsafe fn frame(renderer: &mut Renderer, cmd: vk::CommandBuffer, scene: &Arc<Scene>, camera: Camera, viewport: vk::Viewport) -> surfel::Result<()> {
 //!     unsafe { renderer.prepare(cmd, scene, &View { camera, viewport }, &Settings::default())? };
-//!     // The host begins its render pass and draws what is its own.
+//! The host begins its render pass and draws its own geometry.
 //!     unsafe { renderer.draw(cmd) }
 //! }
 //! ```
@@ -123,23 +124,23 @@ use composite::{Composite, CompositeKind};
 use deferred_destruction::DeferredDestruction;
 use std::sync::Arc;
 
-/// What stays the same from frame to frame.
+/// Options of a [`Renderer`].
 #[derive(Clone, Debug)]
 pub struct Options {
-    /// Where the picture is drawn.
+    /// The pass in which the picture is drawn.
     pub target: Target,
-    /// How many frames of the host may be under way: when [`Renderer::prepare`] is called, the GPU is done with all but the last
-    /// `frames_in_flight` - 1 frames that were prepared, without an error, before. From 1 to 64.
+    /// Number of the host's frames in flight: when [`Renderer::prepare`] is called, the GPU has finished all but the last
+    /// `frames_in_flight` − 1 frames that were prepared without an error. From 1 to 64.
     pub frames_in_flight: u32,
-    /// As [`RenderOptions::precision`].
+    /// See [`RenderOptions::precision`].
     pub precision: Precision,
-    /// As [`RenderOptions::rasterizer`].
+    /// See [`RenderOptions::rasterizer`].
     pub rasterizer: Option<Rasterizer>,
 }
 
 /// Renders scenes into frames of a host.
 pub struct Renderer {
-    // Fields are dropped in this order: views before what they view.
+    // Drop order: views before their resources.
     viewed: Option<CompositeView>,
     shown: Option<(PreparedDraw, HostPass)>,
     reports: Reports,
@@ -150,26 +151,26 @@ pub struct Renderer {
     device: Arc<Device>,
 }
 
-/// What draws the pictures of some targets.
+/// The composite pass and its view of a frame's targets.
 struct CompositeView {
-    /// Which targets.
+    /// Number of the targets.
     present: u64,
     set: DescriptorSet,
     composite: Arc<Composite>,
 }
 
-/// The picture that is prepared: where it is drawn.
+/// The prepared picture and where it is drawn.
 struct PreparedDraw {
     place: layout::Composite,
     area: vk::Rect2D,
 }
 
 impl Renderer {
-    /// A renderer that has made nothing for any scene yet. Refuses a target that cannot be drawn to, and says why.
+    /// Creates a renderer without scene resources. Returns an error for an unsupported target.
     ///
     /// # Safety
-    /// What `options.target` says of the render pass is true, and the pass outlives the renderer, which is dropped only when the GPU is done with
-    /// all that it recorded: pipelines are found again by the handle of the pass.
+    /// `options.target` describes the render pass correctly. The pass outlives the renderer, because pipelines are cached by its handle.
+    /// The renderer is dropped only after the GPU has executed all that it recorded.
     pub unsafe fn new(device: &Arc<Device>, options: Options) -> Result<Self> {
         let Options { target, frames_in_flight, precision, rasterizer } = options;
         target.check(device)?;
@@ -191,14 +192,14 @@ impl Renderer {
         })
     }
 
-    /// Records a frame of a scene, or of several where they are placed, up to its picture, which [`Renderer::draw`] then draws. The picture has
-    /// the viewport's size; what has none of the scenes is transparent, whatever `settings.background` says.
+    /// Records a frame of one scene, or of several instances, up to its picture, which [`Renderer::draw`] then draws. The picture has the
+    /// size of the viewport; pixels without a surface are transparent, whatever `settings.background` is.
     ///
-    /// After an error nothing is recorded, and nothing is there to draw.
+    /// After an error nothing is recorded, and there is no picture to draw.
     ///
     /// # Safety
-    /// `cmd` is of the device, of the queue family that it was lent with, is being recorded outside a render pass, and is submitted to the
-    /// same queue as what was recorded before, after it. What [`Options::frames_in_flight`] says is true.
+    /// `cmd` is of the device and its queue family, is recording outside a render pass, and is submitted to the same queue as earlier
+    /// commands, after them. [`Options::frames_in_flight`] is observed.
     pub unsafe fn prepare<'a>(
         &mut self,
         cmd: vk::CommandBuffer,
@@ -207,14 +208,14 @@ impl Renderer {
         settings: &Settings,
     ) -> Result<()> {
         let shown = self.make(scenes.into(), view, settings);
-        // Also after an error: what it took the place of may be under way.
+        // Also after an error: replaced resources may be in use.
         self.deferred.extend(self.frame.take_deferred());
         let (blocks, shown) = shown?;
         let scenes: Vec<_> = self.frame.scenes().collect();
         self.reports.begin(&self.device, &scenes)?;
         self.deferred.advance();
         let (timestamps, tail) = self.reports.present();
-        // SAFETY: by the caller; the reports have one for each frame under way.
+        // SAFETY: by the caller; there is a report for each frame in flight.
         let mut rec = unsafe { Recorder::of_host_timed(&self.device, cmd, timestamps) };
         self.frame.record(&mut rec, &blocks);
         tail.record(&mut rec, &scenes);
@@ -225,15 +226,17 @@ impl Renderer {
         Ok(())
     }
 
-    /// Records the draw of the picture that was prepared last, with its depth: it hides what is behind it, and is hidden by what is in front.
-    /// Sets viewport and scissor, and binds a pipeline and descriptor set 0.
+    /// Records the draw of the last prepared picture with a depth test and depth write. Sets viewport and scissor, and binds a pipeline and
+    /// descriptor set 0.
     ///
     /// # Safety
-    /// `cmd` is of the device, and is being recorded inside the subpass, or the dynamic rendering, that is the target. It is submitted after what
-    /// prepared the picture, to the same queue, and before what prepares the next one.
+    /// `cmd` is of the device and recording inside the subpass, or the dynamic rendering, of the target. It is submitted to the same queue
+    /// after the commands that prepared the picture, and before those that prepare the next one.
     pub unsafe fn draw(&self, cmd: vk::CommandBuffer) -> Result<()> {
         let (Some(viewed), Some((PreparedDraw { place, area }, pass))) = (&self.viewed, &self.shown) else {
-            return Err(Error::Usage("there is no picture to draw: prepare one, and heed its error".into()));
+            return Err(Error::Usage(
+                "there is no picture to draw: prepare one, and handle its error".into(),
+            ));
         };
         // SAFETY: by the caller.
         let mut draws = unsafe { Draws::of_host(&self.device, cmd, pass, *area) };
@@ -241,9 +244,9 @@ impl Renderer {
         Ok(())
     }
 
-    /// Makes the pipelines of frames like this one, so that the first of them does not stop to make them: while a level is loaded, or before a
-    /// method is offered. Nothing is recorded, and what was prepared stays. Takes as long as drivers take to compile shaders; another renderer,
-    /// on another thread, can do so meanwhile, and leave them in the device's pipeline cache.
+    /// Creates the pipelines of frames like this one, so that the first frame does not stall: for example while a level is loaded. Nothing
+    /// is recorded, and the prepared picture stays. Takes as long as the driver needs to compile shaders. Another renderer on another
+    /// thread can do this, too, and leave the pipelines in the device's pipeline cache.
     pub fn make_pipelines<'a>(
         &mut self,
         scenes: impl Into<Instances<'a>>,
@@ -257,29 +260,28 @@ impl Renderer {
         self.composite(&frame.variant).map(drop)
     }
 
-    /// What frames that are prepared from now on tell of themselves: nothing, unless this is called. Shaders that count are others than those
-    /// that do not: either are made when they are first needed.
+    /// Sets the measurements of later frames; off by default. Counting needs other shaders, whose pipelines are created on first use.
     pub fn measure(&mut self, measured: Measured) {
         self.reports.measure(measured);
         self.frame.count(measured.counts);
     }
 
-    /// What the last frame that is known to be over tells, without waiting for one: that of [`Options::frames_in_flight`] frames before the one
-    /// that was prepared last, or after [`Renderer::finish`] that one. `None` where it was not [measured](Renderer::measure). The last of the
-    /// passes, `composite`, is within the host's own.
+    /// The report of the last frame that is known to be over, without waiting: the frame [`Options::frames_in_flight`] before the last
+    /// prepared one, or after [`Renderer::finish`] that one. `None` if it was not [measured](Renderer::measure). The last pass,
+    /// `composite`, is inside the host's pass.
     pub fn report(&self) -> Option<&FrameReport> {
         self.reports.last()
     }
 
-    /// Tells the renderer that every frame is over, so that [`Renderer::report`] is that of the last one.
+    /// Declares that every frame is over, so that [`Renderer::report`] is that of the last one.
     ///
     /// # Safety
-    /// The GPU is done with every frame that was prepared without an error.
+    /// The GPU has finished every frame that was prepared without an error.
     pub unsafe fn finish(&mut self) -> Result<()> {
         self.reports.finish()
     }
 
-    /// Makes all that a frame needs: its numbers, and how its picture is drawn.
+    /// Creates the resources of a frame: its uniforms, and the draw of its picture.
     fn make(
         &mut self,
         scenes: Instances<'_>,
@@ -298,14 +300,14 @@ impl Renderer {
         Ok((blocks, PreparedDraw { place, area }))
     }
 
-    /// The view, of a target that can be made.
+    /// The view in the conventions of the target, which is validated.
     fn target_view(&self, view: &View) -> Result<TargetView> {
         let seen = view.in_target(&self.device, self.target.depth.map(|_| self.target.reversed))?;
         check_size(&self.device, seen.size)?;
         Ok(seen)
     }
 
-    /// Sees the present targets as `composite` does, if it does not already.
+    /// Updates the composite's view to the current targets.
     fn view(&mut self, composite: Arc<Composite>) -> Result<()> {
         let Some(present) = self.frame.present() else { return Ok(()) };
         let same = |viewed: &CompositeView| {
@@ -332,14 +334,14 @@ impl Renderer {
         if let Some(made) = self.composites.iter().find(|made| made.kind() == kind) {
             return Ok(made.clone());
         }
-        // SAFETY: whoever made the renderer answers for the target.
+        // SAFETY: the caller of `new` guarantees that the target is correct.
         let made = Arc::new(unsafe { self.target.composite(&self.device, kind)? });
         self.composites.push(made.clone());
         Ok(made)
     }
 }
 
-/// As hosts have them: the picture is composed over what is there.
+/// Settings without background: the picture is blended over the host's.
 fn without_background(settings: &Settings) -> Settings {
     Settings { background: None, ..settings.clone() }
 }

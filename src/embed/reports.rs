@@ -1,4 +1,4 @@
-//! What frames tell of themselves: kept for each frame under way, and read when it is over, so that nothing is waited for.
+//! Reports of frames, one for each frame in flight, read without waiting when the frame is over.
 
 use crate::error::Result;
 use crate::frame::resource::Resource;
@@ -7,62 +7,62 @@ use crate::frame::{FrameReport, SplatCounts};
 use crate::vk::{Access, Buffer, Device, Recorder, Timestamps};
 use std::sync::Arc;
 
-/// What frames tell of themselves. What is not asked for is in no frame.
+/// Measurements of frames. A measurement that is off costs nothing.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Measured {
-    /// GPU time by pass, where the device has timestamps. No pass overlaps with the one before it then, so that a frame may take longer; but for
-    /// those within a render pass of the host, which are timed from when the work before them is done, and have no times in a frame that was
+    /// GPU time of each pass, if the device has timestamps. Passes then do not overlap, so that a frame may take longer. Passes inside a
+    /// render pass of the host do overlap: their time starts when the work before them is finished. They have no times in a frame that was
     /// prepared and not drawn.
     pub times: bool,
-    /// Surfels by cull reason.
+    /// Number of surfels by cull reason.
     pub counts: bool,
 }
 
-/// The reports of frames under way, which take turns.
+/// Reports of the frames in flight, in a ring.
 pub(super) struct Reports {
     measured: Measured,
     slots: Vec<Slot>,
-    /// Number of the slot whose frame was prepared last.
+    /// Index of the slot of the last prepared frame.
     present: usize,
-    /// Frames so far; 0 again after very many.
+    /// Number of frames, wrapping around.
     frames: u32,
     last: Option<FrameReport>,
 }
 
-/// A frame under way.
+/// Report slot of a frame in flight.
 #[derive(Default)]
 struct Slot {
     timestamps: Option<Timestamps>,
     counts: Option<Buffer>,
-    /// Has the number of the last frame that the GPU has done, of those that were measured: one that was prepared may never be submitted.
+    /// The number of the last measured frame that the GPU has executed: a prepared frame may never be submitted.
     done: Option<Buffer>,
     pending: Option<PendingReport>,
 }
 
-/// What a measured frame records last.
+/// The final commands of a measured frame.
 pub(super) struct Tail<'a> {
     counts: Option<&'a Buffer>,
     done: Option<(&'a Buffer, u32)>,
 }
 
-/// What a frame tells.
+/// A report that is not read yet.
 #[derive(Clone, Copy)]
 struct PendingReport {
-    /// Of the frame.
+    /// Number of the frame.
     number: u32,
     times: bool,
-    /// Surfels, and bytes of their counts.
+    /// Number of surfels, and size of the counts, bytes.
     counts: Option<(u64, u64)>,
 }
 
 impl Reports {
-    /// Nothing is pending yet of frames of which so many are under way.
+    /// No measurements yet, for this number of frames in flight.
     pub(super) fn new(frames_in_flight: u32) -> Self {
         let slots = (0..frames_in_flight).map(|_| Slot::default()).collect();
         Self { measured: Measured::default(), slots, present: 0, frames: 0, last: None }
     }
 
-    /// What frames tell from now on.
+    /// Sets the measurements of later frames.
     pub(super) fn measure(&mut self, measured: Measured) {
         self.measured = measured;
         if measured == Measured::default() {
@@ -70,12 +70,12 @@ impl Reports {
         }
     }
 
-    /// Of the last frame that is known to be over, if it was measured.
+    /// The report of the last frame that is known to be over, if it was measured.
     pub(super) fn last(&self) -> Option<&FrameReport> {
         self.last.as_ref()
     }
 
-    /// Begins a frame of these scenes: as many frames ago, one is over now.
+    /// Begins a frame of these scenes. The frame of the same slot before is over.
     pub(super) fn begin(&mut self, device: &Arc<Device>, scenes: &[&SceneResources]) -> Result<()> {
         let (next, measured) = ((self.present + 1) % self.slots.len(), self.measured);
         let slot = &mut self.slots[next];
@@ -96,7 +96,7 @@ impl Reports {
         slot.pending = (measured != Measured::default()).then_some(pending);
         if slot.pending.is_some() && slot.done.is_none() {
             let mut done = Buffer::readback(device, "frame done", size_of::<u32>() as u64)?;
-            // No frame's soon.
+            // Not the number of a recent frame.
             done.bytes_mut().copy_from_slice(&self.frames.wrapping_sub(1).to_ne_bytes());
             slot.done = Some(done);
         }
@@ -104,7 +104,7 @@ impl Reports {
         Ok(())
     }
 
-    /// What times the frame that was begun, and what is to be recorded last in it, as far as that was asked for.
+    /// The timestamps of the current frame, and its final commands, according to the measurements.
     pub(super) fn present(&mut self) -> (Option<&mut Timestamps>, Tail<'_>) {
         let Slot { timestamps, counts, done, pending } = &mut self.slots[self.present];
         let times = pending.is_some_and(|pending| pending.times);
@@ -114,9 +114,9 @@ impl Reports {
         (timestamps.as_mut().filter(|_| times), tail)
     }
 
-    /// All frames are over.
+    /// Reads all reports; every frame is over.
     pub(super) fn finish(&mut self) -> Result<()> {
-        // The oldest first: the last one that tells counts.
+        // Oldest first: the last report read is the one that counts.
         for back in (0..self.slots.len()).rev() {
             let slot = (self.present + self.slots.len() - back) % self.slots.len();
             if let Some(pending) = self.slots[slot].read()? {
@@ -128,7 +128,7 @@ impl Reports {
 }
 
 impl Tail<'_> {
-    /// Copies the counts of the frame's scenes, and says that it is over.
+    /// Records the copy of the scenes' counts and the mark that the frame is over.
     pub(super) fn record(&self, rec: &mut Recorder<'_>, scenes: &[&SceneResources]) {
         if let Some(counts) = self.counts {
             copy_counts(scenes, rec, counts);
@@ -139,7 +139,7 @@ impl Tail<'_> {
     }
 }
 
-/// Copies the counts of all of these to `to`, one after the other, which has room for all: the next frame empties them.
+/// Copies the counts of all scenes to `to`, in order, before the next frame resets them.
 fn copy_counts(scenes: &[&SceneResources], rec: &mut Recorder<'_>, to: &Buffer) {
     let counts: Vec<_> = scenes.iter().flat_map(|scene| scene.buffers(Resource::Counts)).collect();
     let from = counts.iter().map(|counts| counts.with(Access::COPY_READ));
@@ -155,7 +155,7 @@ fn copy_counts(scenes: &[&SceneResources], rec: &mut Recorder<'_>, to: &Buffer) 
 }
 
 impl Slot {
-    /// What its frame, which is over, tells, once.
+    /// Reads the report of the slot's frame, which is over; `None` if it was read before.
     fn read(&mut self) -> Result<Option<FrameReport>> {
         let Some(PendingReport { number, times, counts }) = self.pending.take() else { return Ok(None) };
         if self.done.as_ref().is_none_or(|done| done.bytes() != number.to_ne_bytes()) {

@@ -1,4 +1,4 @@
-//! Where a host wants the picture.
+//! Description of the host's pass in which the picture is drawn.
 
 use super::attachments::{self, Purpose, is_srgb};
 use super::composite::{Composite, CompositeKind};
@@ -7,52 +7,52 @@ use crate::vk::{Blend, Device, Within};
 use ash::vk;
 use std::sync::Arc;
 
-/// Most colour targets that a composite knows; every device allows as many.
+/// Maximum number of colour targets of a composite; every device supports as many.
 const MOST: usize = 4;
 
-/// The pass of a host in which the picture is drawn.
+/// The host's pass in which the picture is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Pass {
-    /// A subpass of a render pass; any compatible render pass will do.
+    /// A subpass of a render pass, or of any compatible render pass.
     Subpass {
         /// The render pass.
         pass: vk::RenderPass,
-        /// Number of the subpass.
+        /// Index of the subpass.
         subpass: u32,
     },
     /// Dynamic rendering, which the device has enabled.
     Rendering,
 }
 
-/// What of a host the picture is drawn to.
+/// The host's attachments for the picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Target {
-    /// Its pass.
+    /// The pass.
     pub pass: Pass,
-    /// Formats of the pass's colour attachments, by location; undefined where a location has none.
+    /// Formats of the pass's colour attachments by location; `UNDEFINED` for an unused location.
     pub colours: Vec<vk::Format>,
-    /// Format of its depth attachment. Without one, the picture covers what is there.
+    /// Format of the depth attachment. Without depth, the picture covers the contents.
     pub depth: Option<vk::Format>,
-    /// Format of its stencil attachment, for dynamic rendering; undefined where there is none.
+    /// Format of the stencil attachment, for dynamic rendering; `UNDEFINED` without stencil.
     pub stencil: vk::Format,
-    /// Whether its depth falls with distance, and greater is nearer.
+    /// Whether depth is reversed: greater is nearer.
     pub reversed: bool,
-    /// Samples a pixel. All of a pixel's get its picture; those that the host's surfaces hide keep theirs.
+    /// Sample count. All samples of a pixel get its picture, except those that the host's geometry hides.
     pub samples: vk::SampleCountFlags,
-    /// The location that gets the picture, below 4: linear RGB times α over what is there.
+    /// Location of the picture, below 4: premultiplied linear RGB, blended over the contents.
     pub picture: u32,
-    /// The location that gets unit normals, world space, if any, below 4.
+    /// Location of unit normals, world space, if any, below 4.
     pub normal: Option<u32>,
-    /// The location, of format R32_UINT, that gets the numbers of what is seen, as [`Picture::id`](crate::Picture::id) has them, if any, below 4.
-    /// Where no surface is, or the host's own is in front, it keeps what is there: clear it to [`Picture::NOBODY`](crate::Picture::NOBODY).
-    /// Methods that have no numbers are then refused.
+    /// Location of point ids as of [`Picture::id`](crate::Picture::id), of format `R32_UINT`, if any, below 4. Pixels without a surface, or
+    /// with the host's in front, keep their contents: clear it to [`Picture::NOBODY`](crate::Picture::NOBODY). Methods without point ids
+    /// are then rejected.
     pub id: Option<u32>,
-    /// Whether the shader has to encode colours as sRGB, as where the format is UNORM and shown as it is. Formats of sRGB do it themselves.
+    /// Whether the shader encodes sRGB, for a UNORM format that is displayed as it is. sRGB formats encode in hardware.
     pub encode: bool,
 }
 
 impl Target {
-    /// Refuses what cannot be drawn to on `device`.
+    /// Validates the target for `device`.
     pub(super) fn check(&self, device: &Device) -> Result<()> {
         let refuse =
             |cause: Cause| Err(Error::Usage(format!("the host's target cannot be drawn to: {cause}")));
@@ -143,10 +143,10 @@ impl Target {
         }
     }
 
-    /// The pass that draws pictures of this kind.
+    /// Creates the composite pass for pictures of this kind.
     ///
     /// # Safety
-    /// What this says of the pass is true.
+    /// The target describes the pass correctly.
     pub(super) unsafe fn composite(&self, device: &Arc<Device>, kind: CompositeKind) -> Result<Composite> {
         let blend = |location: usize| match location as u32 {
             location if location == self.picture => Some(Blend::Over),

@@ -1,4 +1,4 @@
-//! Scenes on their way to a device.
+//! Uploads of scenes by command buffers of the host.
 
 use crate::error::Result;
 use crate::geometry::Parts;
@@ -7,14 +7,14 @@ use crate::vk::{Device, Pieces, Recorder, Staging, Uploads};
 use ash::vk;
 use std::sync::Arc;
 
-/// Records the upload of surfels, lines and triangles, as [`Scene::upload`] does it, into a command buffer of the host. The scene can be
-/// rendered by what is recorded later; the staging memory must stay until the GPU has done the copies. After an error nothing is recorded.
+/// Records the upload of surfels, lines and triangles, like [`Scene::upload`], into a command buffer of the host. Commands that are
+/// recorded later can render the scene. Keep the staging memory until the GPU has executed the copies. After an error nothing is recorded.
 ///
 /// All of it is staged at once: [`Upload`] stages large scenes piece by piece.
 ///
 /// # Safety
-/// `cmd` is of `device`, of the queue family that it was lent with, is being recorded outside a render pass, and is submitted before what
-/// renders the scene, to the same queue. Scene and staging memory are dropped only when the GPU is done with what is recorded.
+/// `cmd` is of `device` and its queue family, is recording outside a render pass, and is submitted to the same queue before anything that
+/// renders the scene. The scene and the staging memory are dropped only after the GPU has executed the commands.
 pub unsafe fn upload<'a>(
     device: &Arc<Device>,
     cmd: vk::CommandBuffer,
@@ -27,27 +27,26 @@ pub unsafe fn upload<'a>(
     Ok((scene, uploads.record(&mut rec)))
 }
 
-/// A scene that is uploaded piece by piece, as over several frames: no more is staged at once than a host wants.
+/// An upload piece by piece, for example over several frames, which limits the staging memory.
 pub struct Upload {
     pieces: Pieces,
     scene: Scene,
 }
 
 impl Upload {
-    /// Makes the buffers of a scene of these parts, of whose values it keeps a copy in the host's memory. Refuses what [`Scene::upload`]
-    /// refuses.
+    /// Creates the buffers of a scene of these parts and copies the values to host memory. Returns the errors of [`Scene::upload`].
     pub fn new<'a>(device: &Arc<Device>, parts: impl Into<Parts<'a>>) -> Result<Self> {
         let uploads = Uploads::kept(device);
         let scene = Scene::new(device, &uploads, parts.into())?;
         Ok(Self { pieces: uploads.pieces(), scene })
     }
 
-    /// Bytes that are yet to be recorded.
+    /// Bytes that are not recorded yet.
     pub fn left(&self) -> u64 {
         self.pieces.left()
     }
 
-    /// Records copies of at most `most` bytes, and of 4 at least. The staging memory must stay until the GPU has done them. After an error
+    /// Records copies of at most `most` bytes, but at least 4. Keep the staging memory until the GPU has executed them. After an error
     /// nothing is recorded.
     ///
     /// # Safety
@@ -58,10 +57,10 @@ impl Upload {
         self.pieces.record(&mut rec, most)
     }
 
-    /// The scene, which can be rendered by what is recorded later.
+    /// The scene, for rendering by commands that are recorded later.
     ///
     /// # Errors
-    /// The upload itself, if something is [left](Upload::left).
+    /// The upload itself, if it is not [complete](Upload::left).
     pub fn finish(self) -> std::result::Result<Scene, Box<Self>> {
         match self.left() {
             0 => Ok(self.scene),

@@ -1,28 +1,29 @@
-//! How a frame is seen: the host's camera and viewport, and what shaders take of them.
+//! Camera and viewport of a host, and the derived shader parameters.
 
 use crate::error::{Error, Result};
 use crate::geometry::Camera;
 use crate::vk::Device;
 use ash::vk;
 
-/// How a frame is seen.
+/// Camera and viewport of a frame.
 #[derive(Clone, Copy, Debug)]
 pub struct View {
-    /// The host's view and projection. Its `reversed` is the target's.
+    /// The host's view and projection. `reversed` must equal that of the target.
     pub camera: Camera,
-    /// The host's viewport: whole pixels, px from the target's top left. A height below 0 is that of a projection whose y points up, with the
-    /// viewport's y at its lower end.
+    /// The host's viewport: whole pixels from the top left of the target. A negative height is that of a projection whose y points up, with
+    /// the viewport's y at its lower end.
     pub viewport: vk::Viewport,
 }
 
 impl View {
-    /// TargetView in the whole of a target of `size` px, at depths from 0 to 1.
+    /// A view of a whole target of `size` px, with depths from 0 to 1.
     pub fn whole(camera: Camera, size: [u32; 2]) -> Self {
         let [width, height] = size.map(|side| side as f32);
         Self { camera, viewport: vk::Viewport { width, height, max_depth: 1.0, ..Default::default() } }
     }
 
-    /// As a target takes it, whose depth falls with distance where it is `reversed`, if it has any. Refuses what that cannot show.
+    /// Converts to a target's conventions; `reversed` is that of the target's depth, if any. Returns an error for unsupported viewports and
+    /// cameras.
     pub(super) fn in_target(&self, device: &Device, reversed: Option<bool>) -> Result<TargetView> {
         let area = self.area(device.capabilities().max_framebuffer)?;
         check_depths(self.viewport)?;
@@ -32,7 +33,7 @@ impl View {
         Ok(TargetView { area, size: [area.extent.width, area.extent.height], camera, depth })
     }
 
-    /// The pixels of the viewport, in a framebuffer of at most so many px.
+    /// The viewport as an area of a framebuffer of at most `most` px.
     fn area(&self, most: [u32; 2]) -> Result<vk::Rect2D> {
         let vk::Viewport { x, y, width, height, .. } = self.viewport;
         let top = if height < 0.0 { y + height } else { y };
@@ -55,7 +56,7 @@ impl View {
         })
     }
 
-    /// The camera with rows of pixels from the top, whichever way the host's viewport has them.
+    /// The camera for rows of pixels from the top, whatever the sign of the viewport's height.
     fn upright(&self) -> Camera {
         let mut camera = self.camera;
         if self.viewport.height < 0.0 {
@@ -72,19 +73,19 @@ impl View {
     }
 }
 
-/// A view as a target takes it.
+/// A view in the conventions of its target.
 pub(super) struct TargetView {
-    /// The picture's pixels among the target's.
+    /// Area of the picture in the target, px.
     pub(super) area: vk::Rect2D,
-    /// Their width and height.
+    /// Width and height of the area, px.
     pub(super) size: [u32; 2],
-    /// With rows of pixels from the top.
+    /// The camera, for rows of pixels from the top.
     pub(super) camera: Camera,
-    /// What the shader makes the host's depth of.
+    /// Parameters of the host's depth: see `host_depth` in `lib/host.glsl`.
     pub(super) depth: [f32; 4],
 }
 
-/// Refuses a range of depths that is not one of Vulkan's.
+/// Validates the depth range of the viewport.
 fn check_depths(viewport: vk::Viewport) -> Result<()> {
     let range = [viewport.min_depth, viewport.max_depth];
     if range.iter().all(|depth| (0.0..=1.0).contains(depth)) {
@@ -97,7 +98,7 @@ fn check_depths(viewport: vk::Viewport) -> Result<()> {
     }
 }
 
-/// Refuses a camera whose depth is not the host's, which falls with distance, or does not, if there is any.
+/// Validates that camera and target agree on reversed depth, if there is depth.
 fn check_convention(reversed: Option<bool>, camera: &Camera) -> Result<()> {
     let name = |reversed| if reversed { "falls" } else { "rises" };
     match reversed {
@@ -110,7 +111,7 @@ fn check_convention(reversed: Option<bool>, camera: &Camera) -> Result<()> {
     }
 }
 
-/// What the shader makes the host's depth of: see `host_depth` in `lib/host.glsl`.
+/// The parameters of `host_depth` in `lib/host.glsl`.
 fn depths(camera: &Camera, viewport: vk::Viewport) -> Result<[f32; 4]> {
     let projection = camera.projection()?;
     let (z, w) = (camera.projection.row(2), camera.projection.row(3));

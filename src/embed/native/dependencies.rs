@@ -1,11 +1,11 @@
-//! What has to be waited for between subpasses.
+//! Subpass dependencies.
 
 use super::Plan;
 use super::plan::Step;
 use ash::vk;
 use vk::{AccessFlags as Access, PipelineStageFlags as Stages};
 
-/// Stages and how they touch memory.
+/// Stages and accesses of one side of a dependency.
 type Scope = (Stages, Access);
 
 const TESTS: Stages =
@@ -21,7 +21,7 @@ const COLOUR: Scope = (
     Access::from_raw(Access::COLOR_ATTACHMENT_READ.as_raw() | Access::COLOR_ATTACHMENT_WRITE.as_raw()),
 );
 const INPUT: Scope = (Stages::FRAGMENT_SHADER, Access::INPUT_ATTACHMENT_READ);
-/// Coverage, which fragments write in a buffer.
+/// Coverage, written to a buffer by fragment shaders.
 const COVERS: Scope = (Stages::FRAGMENT_SHADER, Access::SHADER_WRITE);
 const COVERED: Scope = (Stages::FRAGMENT_SHADER, Access::SHADER_READ);
 const ANYTHING: Scope =
@@ -36,14 +36,14 @@ fn all(scopes: &[Scope]) -> Scope {
 pub(super) fn dependencies(plan: &Plan) -> Vec<vk::SubpassDependency> {
     let number = |step| plan.number(step);
     let normalize = plan.last();
-    // What surfaces are first seen by, and what sums.
+    // The first subpass that finds surfaces, and the one that sums.
     let surface = number(Step::Visibility).or(number(Step::Nearest)).unwrap_or(normalize);
     let sums = number(Step::Attribute).unwrap_or(surface);
     let seed = number(Step::Seed);
     let outside = vk::SUBPASS_EXTERNAL;
     let drawn = all(&[COLOUR, DEPTH, INPUT]);
     let mut list = vec![
-        // Frames take turns with the same attachments.
+        // Consecutive frames use the same attachments.
         dependency([outside, seed.unwrap_or(surface)], all(&[DEPTH, INPUT]), DEPTH),
         dependency([outside, sums], all(&[COLOUR, INPUT]), COLOUR),
         dependency([surface, normalize], all(&[DEPTH, COVERS]), all(&[INPUT, COVERED])),
@@ -69,7 +69,7 @@ pub(super) fn dependencies(plan: &Plan) -> Vec<vk::SubpassDependency> {
     list
 }
 
-/// Pixel by pixel, within the render pass.
+/// A framebuffer-local dependency within the render pass.
 fn dependency([from, to]: [u32; 2], before: Scope, after: Scope) -> vk::SubpassDependency {
     let within = from != vk::SUBPASS_EXTERNAL;
     vk::SubpassDependency {

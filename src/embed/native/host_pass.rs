@@ -1,52 +1,52 @@
-//! Where in a host's render pass surfels are drawn.
+//! Description of the host's render pass for surfels in subpasses.
 
 use crate::embed::attachments::{self, Purpose, is_srgb};
 use crate::error::{Error, Result};
 use crate::vk::Device;
 use ash::vk;
 
-/// Most subpasses of a host before and after.
+/// Maximum number of the host's subpasses before and after.
 const MOST_SUBPASSES: u32 = 1 << 16;
 
-/// Where in a render pass surfels are drawn.
+/// The host's render pass: its attachments and subpasses.
 #[derive(Clone, Debug)]
 pub struct HostRenderPass<'a> {
-    /// The host's attachments, all of them: surfel's follow.
+    /// All attachments of the host. The engine's attachments follow.
     pub attachments: &'a [vk::AttachmentDescription],
-    /// How many subpasses of the host come before surfel's, and how many after.
+    /// Number of the host's subpasses before and after the engine's.
     pub subpasses: [u32; 2],
-    /// The attachment that gets the picture: linear RGB times α over what is there. Its samples are those of the host's surfaces.
+    /// The attachment of the picture: premultiplied linear RGB, blended over the contents. Its sample count is that of the host's geometry.
     pub picture: u32,
-    /// The attachment of one sample that the picture is resolved to, if surfel's last subpass is to do that.
+    /// The single-sample attachment that the engine's last subpass resolves the picture to, if any.
     pub resolve: Option<u32>,
-    /// The attachment that gets unit normals, world space, if any.
+    /// The attachment of unit normals, world space, if any.
     pub normal: Option<u32>,
-    /// The host's depth. Without, the picture covers what is there.
+    /// The host's depth. Without depth, the picture covers the contents.
     pub depth: Option<Depth>,
-    /// Whether the shader has to encode colours as sRGB, as where the format is UNORM and shown as it is. Formats of sRGB do it themselves.
+    /// Whether the shader encodes sRGB, for a UNORM format that is displayed as it is. sRGB formats encode in hardware.
     pub encode: bool,
 }
 
-/// A host's depth.
+/// Depth attachment of the host.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Depth {
-    /// Its attachment.
+    /// Index of the attachment.
     pub attachment: u32,
-    /// Whether it falls with distance, and greater is nearer.
+    /// Whether depth is reversed: greater is nearer.
     pub reversed: bool,
-    /// Whether splats far behind what the host has drawn before are left out as early as can be: worth it where much is hidden. The depth is then
-    /// an input attachment, too. The picture stays the same, but for pixels where a surface of the host is between a disc, seen edge-on, and what
-    /// a filter has widened it to: they show the host.
+    /// Whether splats far behind the host's earlier geometry are rejected early, which pays where much is hidden. The depth becomes an
+    /// input attachment, too. The picture is the same except for pixels where the host's geometry is between an edge-on disc and the part
+    /// that a filter has widened it to: these show the host.
     ///
-    /// Where the largest radius is not known, as of radii in buffers of a host, with visibility by axis, and with clip lines where α is coverage,
-    /// nothing is left out early.
+    /// Nothing is rejected early if the largest radius is not known, as for radii in buffers of the host, with visibility by axis, and with
+    /// clip lines where α is coverage.
     pub seed: bool,
 }
 
 impl HostRenderPass<'_> {
-    /// Refuses what cannot be drawn to on `device`.
+    /// Validates the description for `device`.
     pub(super) fn check(&self, device: &Device) -> Result<()> {
-        // More would overflow the numbers of subpasses; no driver takes as many.
+        // More would overflow the subpass indices; no driver supports as many.
         if self.subpasses.iter().any(|count| *count > MOST_SUBPASSES) {
             let [before, after] = self.subpasses;
             return refuse(format!(

@@ -1,4 +1,4 @@
-//! Surfels in subpasses of a host's own render pass: visibility, sums and picture stay on the tile, and no picture is drawn elsewhere first.
+//! Surfels in subpasses of the host's render pass: visibility, sums and picture stay in tile memory, without an intermediate picture.
 //!
 //! ```text
 //! once          HostRenderPass ─ Plan::new → what to append to the render pass ─ the host makes it ─ Renderer::new
@@ -7,13 +7,12 @@
 //!               the host's subpasses ─ Renderer::draw: seed, visibility, attribute, normalize ─ the host's subpasses
 //! ```
 //!
-//! `draw` goes from subpass to subpass itself: from the host's last one before into surfel's last, in which the host may draw, too.
+//! `draw` advances from subpass to subpass: from the host's last one before to the engine's last one, in which the host may draw, too.
 //!
-//! For the methods that draw splats; those that blend have the subpasses visibility, attribute and normalize, those that show the nearest
-//! alone nearest and normalize. The picture is that of [`embed::Renderer`](super::Renderer) by
-//! [`Rasterizer::Draw`](crate::Rasterizer::Draw), bit for bit. The seed comes first where
-//! [`Depth::seed`] asks for it: the host's depth, moved back by several ε, is what splats have to be in front of; it may make a difference at
-//! discs that are seen edge-on.
+//! Supports the methods that draw splats. Methods that blend have the subpasses visibility, attribute and normalize; methods that show the
+//! nearest splat have nearest and normalize. The picture equals that of [`embed::Renderer`](super::Renderer) with
+//! [`Rasterizer::Draw`](crate::Rasterizer::Draw), bit for bit. With [`Depth::seed`], a seed subpass comes first: it moves the host's depth
+//! back by several ε, and splats behind it are rejected. This may make a difference at edge-on discs.
 //!
 //! ```no_run
 //! use ash::vk;
@@ -22,7 +21,7 @@
 //! use surfel::vk::Device;
 //! use surfel::{Precision, Scene, Settings};
 //!
-//! /// Once. The host has attachments 0 (colour) and 1 (depth), a subpass that draws its meshes, and one that draws its glass.
+//! Once. The host has attachments 0 (colour) and 1 (depth), a subpass for its meshes, and one for its glass.
 //! unsafe fn make(
 //!     host: &ash::Device,
 //!     device: &Arc<Device>,
@@ -49,12 +48,12 @@
 //!     unsafe { native::Renderer::new(device, plan, pass, 2) }
 //! }
 //!
-//! /// Each size. `depth` sees the depth aspect alone.
+//! Each size. `depth` is a view of the depth aspect only.
 //! unsafe fn resize(renderer: &mut native::Renderer, size: [u32; 2], [colour, depth]: [vk::ImageView; 2]) -> surfel::Result<Vec<vk::ImageView>> {
 //!     Ok([colour, depth].into_iter().chain(unsafe { renderer.resize(size, Some(depth))? }).collect())
 //! }
 //!
-//! /// Each frame. Clear values follow the host's, too: `Plan::clear_values`.
+//! Each frame. The engine's clear values follow the host's, too: `Plan::clear_values`.
 //! unsafe fn frame(
 //!     host: &ash::Device,
 //!     renderer: &mut native::Renderer,
@@ -109,7 +108,7 @@ use targets::Targets;
 
 /// Renders scenes in subpasses of a host.
 pub struct Renderer {
-    // Fields are dropped in this order: views before what they view.
+    // Drop order: views before their resources.
     shown: Option<PreparedFrame>,
     frame: FrameResources,
     reports: Reports,
@@ -119,35 +118,35 @@ pub struct Renderer {
     device: Arc<Device>,
 }
 
-/// The frame that is prepared.
+/// The prepared frame.
 struct PreparedFrame {
     push: PushConstants,
     area: vk::Rect2D,
-    /// Of the subpasses, in their order.
+    /// The passes of the subpasses, in order.
     passes: Vec<HostPass>,
 }
 
-/// The numbers of a frame that are pushed.
+/// Push constants of a frame.
 #[derive(Clone, Copy)]
 struct PushConstants {
-    /// What splats start from; nothing if the seed is not drawn.
+    /// Parameters of the seed; `None` if it is not drawn.
     seed: Option<layout::Seed>,
     host: layout::Subpass,
 }
 
-/// Whether what is hidden behind a surface, and more than the reach of ε, cannot be seen: not if discs are moved before they are projected,
-/// which at a pixel may move them any way, or if what is beyond clip lines counts as behind everything.
+/// Whether splats behind a surface by more than the reach of ε are invisible. They are not if discs are moved before projection, which may
+/// move them in any direction at a pixel, or if anything beyond clip lines counts as behind everything.
 fn can_seed(variant: &SceneVariant) -> bool {
     !(variant.frame.visibility == Visibility::Axis || variant.frame.coverage && variant.clips)
 }
 
 impl Renderer {
-    /// A renderer in a render pass of the host, which has made nothing for any scene yet. As many frames may be under way as
-    /// [`Options::frames_in_flight`](super::Options::frames_in_flight) says.
+    /// Creates a renderer in a render pass of the host, without scene resources. `frames_in_flight` is as
+    /// [`Options::frames_in_flight`](super::Options::frames_in_flight).
     ///
     /// # Safety
-    /// `pass` is of the device, has the host's attachments, subpasses and dependencies as the plan's [`HostRenderPass`] says, what the plan adds in its
-    /// host_pass, and outlives the renderer, which is dropped only when the GPU is done with all that it recorded.
+    /// `pass` is of the device, has the host's attachments, subpasses and dependencies as the plan's [`HostRenderPass`] describes them,
+    /// with the plan's additions in place. It outlives the renderer, which is dropped only after the GPU has executed all that it recorded.
     pub unsafe fn new(
         device: &Arc<Device>,
         plan: Plan,
@@ -173,20 +172,20 @@ impl Renderer {
         })
     }
 
-    /// What it adds to the render pass.
+    /// The plan of the render pass.
     pub fn plan(&self) -> &Plan {
         &self.plan
     }
 
-    /// Makes attachments of `size` px, that of the framebuffer, and gives their views, which follow the host's in it. `depth` is the host's, where
-    /// [`Depth::seed`] asks for it. To be called again for another size, and for another depth, once before the
-    /// next frame: what was made is kept until frames come. After an error all is as it was.
+    /// Creates the engine's attachments of `size` px, the size of the framebuffer, and returns their views, which follow the host's in the
+    /// framebuffer. `depth` is the host's, for [`Depth::seed`]. Call it again for another size, or for another depth, at most once before
+    /// the next frame. After an error nothing has changed.
     ///
-    /// The views are there until as many frames as may be under way have been prepared after the next call, or the renderer is dropped.
+    /// The views exist until all frames in flight after the next call are prepared, or the renderer is dropped.
     ///
     /// # Safety
-    /// `depth` is a view of the depth aspect alone of the image that is the depth attachment of every framebuffer with these views. It is there until
-    /// the frames are over that are prepared before the next call.
+    /// `depth` is a view of the depth aspect only of the depth attachment's image, in every framebuffer with these views. It exists until
+    /// the frames that are prepared before the next call are over.
     pub unsafe fn resize(
         &mut self,
         size: [u32; 2],
@@ -214,14 +213,14 @@ impl Renderer {
         Ok(views)
     }
 
-    /// Records what a frame of a scene, or of several where they are placed, needs before the render pass, of which [`Renderer::draw`] records
-    /// the rest. The picture has the viewport's size; what has none of the scenes is transparent, whatever `settings.background` says.
+    /// Records the passes of a frame that come before the render pass; [`Renderer::draw`] records the others. The picture has the size of
+    /// the viewport; pixels without a surface are transparent, whatever `settings.background` is.
     ///
-    /// After an error nothing is recorded, and nothing is there to draw.
+    /// After an error nothing is recorded, and there is no frame to draw.
     ///
     /// # Safety
-    /// `cmd` is of the device, of the queue family that it was lent with, is being recorded outside a render pass, and is submitted to the
-    /// same queue as what was recorded before, after it. What was said of frames in flight is true.
+    /// `cmd` is of the device and its queue family, is recording outside a render pass, and is submitted to the same queue as earlier
+    /// commands, after them. The number of frames in flight is observed.
     pub unsafe fn prepare<'a>(
         &mut self,
         cmd: vk::CommandBuffer,
@@ -231,14 +230,14 @@ impl Renderer {
     ) -> Result<()> {
         self.shown = None;
         let made = self.make(scenes.into(), view, settings);
-        // Also after an error: what it took the place of may be under way.
+        // Also after an error: replaced resources may be in use.
         self.deferred.extend(self.frame.take_deferred());
         let (blocks, push, area) = made?;
         let scenes: Vec<_> = self.frame.scenes().collect();
         self.reports.begin(&self.device, &scenes)?;
         self.deferred.advance();
         let (timestamps, tail) = self.reports.present();
-        // SAFETY: by the caller; the reports have one for each frame under way.
+        // SAFETY: by the caller; there is a report for each frame in flight.
         let mut rec = unsafe { Recorder::of_host_timed(&self.device, cmd, timestamps) };
         self.frame.record(&mut rec, &blocks);
         tail.record(&mut rec, &scenes);
@@ -247,15 +246,15 @@ impl Renderer {
         Ok(())
     }
 
-    /// Records the subpasses, going from each to the next: the command buffer then is in the last one, [`Plan::last`]. Sets viewport and
+    /// Records the subpasses and advances between them: afterwards the command buffer is in the last one, [`Plan::last`]. Sets viewport and
     /// scissor, and binds pipelines and descriptor sets 0 and 1.
     ///
-    /// After an error nothing is recorded: [`Renderer::skip`] goes on all the same.
+    /// After an error nothing is recorded: call [`Renderer::skip`] to advance.
     ///
     /// # Safety
-    /// `cmd` is of the device, and is being recorded inside an instance of the render pass, with a framebuffer of the views that were given last, in
-    /// the subpass before the plan's first, or in that if none is before it. It is submitted after what prepared the frame, to the same queue, and
-    /// before what prepares the next one.
+    /// `cmd` is of the device and recording inside the render pass, with a framebuffer of the views that were returned last, in the subpass
+    /// before the plan's first, or in that one if it is the first. It is submitted to the same queue after the commands that prepared the
+    /// frame, and before those that prepare the next one.
     pub unsafe fn draw(&self, cmd: vk::CommandBuffer) -> Result<()> {
         // SAFETY: by the caller.
         unsafe {
@@ -266,25 +265,25 @@ impl Renderer {
         }
     }
 
-    /// Goes on to a subpass from the one before.
+    /// Enters a subpass from the one before.
     unsafe fn enter(&self, cmd: vk::CommandBuffer, subpass: u32) {
-        // The first one is entered where the render pass begins.
+        // Beginning the render pass enters the first one.
         if subpass > 0 {
             // SAFETY: by the caller.
             unsafe { Draws::next_subpass(&self.device, cmd) };
         }
     }
 
-    /// As [`Renderer::draw`], for hosts that go from subpass to subpass themselves, or record each into a command buffer of its own: `next` is
-    /// called before each subpass, with its number, and gives what it is recorded to.
+    /// Like [`Renderer::draw`], for hosts that advance between subpasses themselves, or record each into its own command buffer: `next` is
+    /// called before each subpass with its index, and returns the command buffer.
     ///
     /// # Safety
-    /// As that of [`Renderer::draw`], of the subpass for which `next` is called.
+    /// As for [`Renderer::draw`], for the subpass of which `next` is called.
     pub unsafe fn draw_each(&self, mut next: impl FnMut(u32) -> vk::CommandBuffer) -> Result<()> {
         let (Some(PreparedFrame { push, area, passes }), Some((present, frame))) =
             (&self.shown, self.frame.frame())
         else {
-            return Err(Error::Usage("there is no frame to draw: prepare one, and heed its error".into()));
+            return Err(Error::Usage("there is no frame to draw: prepare one, and handle its error".into()));
         };
         for ((subpass, step), pass) in self.plan.numbered().zip(passes) {
             let cmd = next(subpass);
@@ -303,7 +302,7 @@ impl Renderer {
         Ok(())
     }
 
-    /// Goes through the subpasses and draws nothing, as in a frame that could not be prepared.
+    /// Advances through the subpasses without drawing, as for a frame that could not be prepared.
     ///
     /// # Safety
     /// As that of [`Renderer::draw`].
@@ -314,7 +313,7 @@ impl Renderer {
         }
     }
 
-    /// As [`embed::Renderer::make_pipelines`](super::Renderer::make_pipelines).
+    /// See [`embed::Renderer::make_pipelines`](super::Renderer::make_pipelines).
     pub fn make_pipelines<'a>(
         &mut self,
         scenes: impl Into<Instances<'a>>,
@@ -330,27 +329,27 @@ impl Renderer {
         self.frame.make_pipelines(&frame)
     }
 
-    /// As [`embed::Renderer::measure`](super::Renderer::measure).
+    /// See [`embed::Renderer::measure`](super::Renderer::measure).
     pub fn measure(&mut self, measured: Measured) {
         self.reports.measure(measured);
         self.frame.count(measured.counts);
     }
 
-    /// As [`embed::Renderer::report`](super::Renderer::report). A subpass takes from when the work before it is done to when its own is; on a GPU
-    /// that draws tile by tile, whose subpasses overlap, only the sum of them says something.
+    /// See [`embed::Renderer::report`](super::Renderer::report). The time of a subpass runs from the end of the work before it to the end
+    /// of its own. On a tile-based GPU subpasses overlap: only their sum is meaningful.
     pub fn report(&self) -> Option<&FrameReport> {
         self.reports.last()
     }
 
-    /// As [`embed::Renderer::finish`](super::Renderer::finish).
+    /// See [`embed::Renderer::finish`](super::Renderer::finish).
     ///
     /// # Safety
-    /// The GPU is done with every frame that was prepared without an error.
+    /// The GPU has finished every frame that was prepared without an error.
     pub unsafe fn finish(&mut self) -> Result<()> {
         self.reports.finish()
     }
 
-    /// Makes all that a frame needs: its numbers, those that are pushed, and where it is drawn.
+    /// Creates the resources of a frame: its uniforms, push constants and area.
     fn make(
         &mut self,
         scenes: Instances<'_>,
@@ -379,7 +378,7 @@ impl Renderer {
         Ok((frame.blocks, PushConstants { seed, host: layout::Subpass { depth } }, area))
     }
 
-    /// The attachments, if these pixels are within them.
+    /// The attachments, if the area is within them.
     fn targets_of(&self, area: vk::Rect2D) -> Result<Arc<Targets>> {
         let Some(targets) = &self.targets else {
             return Err(Error::Usage("there are no attachments: call `resize` first".into()));

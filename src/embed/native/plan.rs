@@ -1,4 +1,4 @@
-//! What surfels add to a host's render pass: attachments, subpasses, dependencies.
+//! Plan: the attachments, subpasses and dependencies that the engine adds to a host's render pass.
 
 use super::HostRenderPass;
 use super::dependencies::dependencies;
@@ -14,25 +14,25 @@ use crate::settings::{Outputs, Precision, Rasterizer};
 use crate::vk::{Device, input_layout};
 use ash::vk;
 
-/// What surfels add to a host's render pass, after what is the host's own.
+/// The engine's additions to a host's render pass, each after the host's own.
 #[derive(Clone, Debug)]
 pub struct Plan {
-    /// What the host's attachments are for.
+    /// The host's part of the render pass.
     pub(super) host: HostSide,
     pub(super) formats: PlanFormats,
     pub(super) precision: Precision,
-    /// The steps, a subpass each.
+    /// The steps, one per subpass.
     pub(super) steps: Vec<Step>,
     attachments: Vec<vk::AttachmentDescription>,
     references: Vec<References>,
 }
 
-/// What a plan keeps of a [`HostRenderPass`].
+/// The part of a [`HostRenderPass`] that a plan keeps.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HostSide {
-    /// The host's attachments.
+    /// Number of the host's attachments.
     attachments: u32,
-    /// The host's subpasses before and after.
+    /// Number of the host's subpasses before and after.
     pub(super) subpasses: [u32; 2],
     pub(super) samples: vk::SampleCountFlags,
     picture: u32,
@@ -43,7 +43,7 @@ pub(super) struct HostSide {
     pub(super) encode: bool,
 }
 
-/// Formats of surfel's attachments.
+/// Formats of the engine's attachments.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PlanFormats {
     pub(super) visibility: vk::Format,
@@ -51,7 +51,7 @@ pub(super) struct PlanFormats {
     pub(super) sums1: Option<vk::Format>,
 }
 
-/// A subpass, by what it is called in shaders, labels and documents.
+/// A subpass. Shaders, labels and documents use the same names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Step {
     Seed,
@@ -61,7 +61,7 @@ pub(super) enum Step {
     Normalize,
 }
 
-/// What a subpass refers to.
+/// Attachment references of a subpass.
 #[derive(Clone, Debug, Default)]
 struct References {
     colours: Vec<vk::AttachmentReference>,
@@ -72,8 +72,8 @@ struct References {
 }
 
 impl Plan {
-    /// What frames of scenes that have these streams ([`Scene::streams`](crate::Scene::streams)) with these settings need in a render pass of
-    /// which `host_pass` tells; frames that need no more will do with it, too. Refuses what cannot be served, and says why.
+    /// Creates a plan for scenes with these streams ([`Scene::streams`](crate::Scene::streams)) and settings in the render pass
+    /// `host_pass`. Frames that need a part of it only can use it, too. Returns an error for unsupported passes and settings.
     pub fn new(
         device: &Device,
         host_pass: &HostRenderPass<'_>,
@@ -116,64 +116,65 @@ impl Plan {
         Ok(plan)
     }
 
-    /// The attachments that follow the host's. The framebuffer's views follow in the same order ([`Renderer::resize`](super::Renderer::resize)).
+    /// Attachments to append to the host's. The framebuffer's views follow in the same order
+    /// ([`Renderer::resize`](super::Renderer::resize)).
     pub fn attachments(&self) -> &[vk::AttachmentDescription] {
         &self.attachments
     }
 
-    /// What they are cleared to.
+    /// Clear values of these attachments.
     pub fn clear_values(&self) -> Vec<vk::ClearValue> {
         vec![vk::ClearValue::default(); self.attachments.len()]
     }
 
-    /// The subpasses that follow the host's first ones. They keep all of the host's attachments.
+    /// Subpasses to insert after the host's first ones. They preserve all attachments of the host.
     pub fn subpasses(&self) -> Vec<vk::SubpassDescription<'_>> {
         self.references.iter().map(References::describe).collect()
     }
 
-    /// What is to be waited for between all these subpasses, and between them and those of the host before and after, of the host's picture,
-    /// normals and depth. What else the host's subpasses want of each other, and of what is outside the render pass, is the host's.
+    /// Dependencies among these subpasses, and between them and the host's subpasses before and after, for the host's picture, normals and
+    /// depth. All other dependencies of the render pass are the host's.
     pub fn dependencies(&self) -> Vec<vk::SubpassDependency> {
         dependencies(self)
     }
 
-    /// The number of the subpass that writes the host's attachments, surfel's last.
+    /// Index of the engine's last subpass, which writes the host's attachments.
     pub fn last(&self) -> u32 {
         self.number(Step::Normalize).unwrap_or_default()
     }
 
-    /// Format of the host's depth, if splats start from it.
+    /// Format of the host's depth, if there is a seed.
     pub(super) fn seeded(&self) -> Option<vk::Format> {
         self.host.depth.map(|(_, format)| format).filter(|_| self.steps.contains(&Step::Seed))
     }
 
-    /// Whether visibility marks what it draws in the stencil.
+    /// Whether visibility marks its pixels in the stencil.
     pub(super) fn marks(&self) -> bool {
         self.formats.visibility == vk::Format::D32_SFLOAT_S8_UINT
     }
 
-    /// Whether what visibility has not written has no sums; otherwise the last subpass reads visibility.
+    /// Whether pixels without visibility have no sums; otherwise the last subpass reads visibility.
     pub(super) fn sums_tell(&self) -> bool {
         self.marks() || self.steps.contains(&Step::Nearest)
     }
 
-    /// The number of a step's subpass.
+    /// Index of a step's subpass.
     pub(super) fn number(&self, step: Step) -> Option<u32> {
         let found = self.steps.iter().position(|found| *found == step)?;
         Some(self.host.subpasses[0] + found as u32)
     }
 
-    /// The steps with the numbers of their subpasses.
+    /// The steps with their subpass indices.
     pub(super) fn numbered(&self) -> impl Iterator<Item = (u32, Step)> {
         (self.host.subpasses[0]..).zip(self.steps.iter().copied())
     }
 
-    /// What frames are asked to be.
+    /// Render options of the frames.
     pub(super) fn options(&self, size: [u32; 2]) -> RenderOptions {
         self.host.options(size, self.precision)
     }
 
-    /// Refuses frames that need what this has not.
+    /// Returns an error for frames that need more than the plan has.
     pub(super) fn check(&self, variant: &Variant) -> Result<()> {
         let refuse = |needed: &str| {
             Err(Error::Usage(format!(
@@ -266,7 +267,7 @@ impl References {
 }
 
 impl HostSide {
-    /// What frames in it are asked to be.
+    /// Render options of the frames.
     fn options(&self, size: [u32; 2], precision: Precision) -> RenderOptions {
         let outputs = Outputs { normal: self.normal.is_some(), depth: self.depth.is_some(), id: false };
         RenderOptions { size, outputs, precision, rasterizer: Some(Rasterizer::Draw), ..Default::default() }
@@ -288,7 +289,7 @@ impl HostSide {
 }
 
 impl PlanFormats {
-    /// What does for all of `variants`, with or without a stencil.
+    /// Formats that suffice for all of `variants`, with or without a stencil.
     fn of(variants: &[Variant], marks: bool) -> Self {
         let sums0 = variants.iter().map(|variant| sums_format(variant.precision, variant.wide_sums0()));
         let sums1 = variants.iter().filter(|variant| variant.has_sums1());
@@ -304,10 +305,10 @@ impl PlanFormats {
         [self.visibility, self.sums0].into_iter().chain(self.sums1)
     }
 
-    /// Cleared and not kept.
+    /// The attachments: cleared, not stored.
     fn attachments(&self, steps: &[Step]) -> Vec<vk::AttachmentDescription> {
         let ends = |format| match format {
-            // As the last subpass that refers to it has it.
+            // The layout of the last subpass that refers to it.
             vk::Format::D32_SFLOAT if steps.contains(&Step::Nearest) => {
                 vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL
             }
@@ -328,7 +329,7 @@ impl PlanFormats {
     }
 }
 
-/// The format of sums, of these two, that holds either's.
+/// The wider of two formats of sums.
 fn wider(a: vk::Format, b: vk::Format) -> vk::Format {
     let wide = [vk::Format::R32G32B32A32_SFLOAT, vk::Format::R16G16B16A16_SFLOAT];
     if wide.contains(&a) { a } else { b }
@@ -345,7 +346,7 @@ fn optional(attachment: Option<u32>, layout: vk::ImageLayout) -> vk::AttachmentR
     }
 }
 
-/// Refuses what is not drawn.
+/// Returns an error for methods that do not draw splats.
 pub(super) fn check_method(settings: &Settings) -> Result<()> {
     match settings.pull_push {
         None => Ok(()),

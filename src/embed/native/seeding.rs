@@ -1,24 +1,24 @@
-//! The numbers of the seed pass: a host's depth as κ, moved so far back that nothing is lost that can be seen.
+//! Parameters of the seed pass: the host's depth as inverse depth, moved back so far that no visible splat is rejected.
 //!
-//! The picture of a splat ends where it is `ε` behind the nearest one, or where the host is in front of the mean of what is blended. That mean is
-//! not in front of the nearest splat, so a pixel that is seen has a splat that is not behind the host; visibility has moved it back, by
-//! no more than the largest ε of the scene. A seed that is moved further is behind all that visibility writes at such a pixel, and
-//! changes nothing there. In perspective, ε is added to the distance `z` of a disc's centre and scales that of its points, which are at most
-//! `1 + √2` times as far as the centre, as no disc, nor parallelogram about it, reaches the eye: at `z` it is at most `(1 + √2) ε`.
+//! A pixel shows the host where the host is in front of the mean of the blended splats. The mean is not in front of the nearest splat, so a
+//! pixel that shows the mean has a splat that is not behind the host. Visibility moves splats back by at most the largest ε of the scene.
+//! A seed that is moved back further is behind all that visibility writes at such a pixel, and changes nothing there. In perspective, ε is
+//! added to the distance `z` of a disc's centre and scales the distance of its points. These are at most `1 + √2` times as far away as the
+//! centre, because neither the disc nor its parallelogram reaches the eye: at `z`, ε is at most `(1 + √2) ε`.
 //!
-//! Where a filter has widened a disc that is seen edge-on, its plane goes on beyond the disc, which visibility does not follow
-//! (`lib/splat.glsl`), but the mean does. So the seed is moved four times as far; where the plane goes on further, to in front of a host's
-//! surface that is in front of the disc, the pixel shows the host.
+//! Where a filter has widened an edge-on disc, the mean follows the disc's plane beyond the disc, but visibility does not
+//! (`lib/splat.glsl`). So the seed is moved four times as far. Where the plane extends further, in front of a surface of the host that is
+//! in front of the disc, the pixel shows the host.
 
 use crate::settings::Precision;
 use crate::vk::shaders::layout::{Frame, Seed};
 use ash::vk;
 
-/// What ε at a point of a disc is at most, over ε at its centre, four times.
+/// Bound on ε at a point of a disc divided by ε at its centre, times four.
 const REACH: f64 = 4.0 * 2.42;
 
-/// The numbers, where the host's depth of `format` is `depth` (see `host_depth` in `lib/host.glsl`) and no disc's radius is above
-/// `largest` in the world; `None` if they say nothing.
+/// The parameters; `depth` are those of `host_depth` in `lib/host.glsl`, `format` is the host's, and no radius exceeds `largest` in world
+/// space. `None` if they are not finite.
 pub(super) fn seed(
     format: vk::Format,
     depth: [f32; 4],
@@ -33,7 +33,7 @@ pub(super) fn seed(
     } else {
         [-slope / by_distance, 1.0 + slope * (near + first / by_distance)]
     };
-    // Sums of 16 bits lose what is below a thousandth of them, summand by summand.
+    // 16-bit sums lose summands below a thousandth of them.
     let rounding = match precision {
         Precision::Full => 2f64.powi(-16),
         Precision::Half => 0.25,
@@ -46,11 +46,11 @@ pub(super) fn seed(
         rounding: rounding as f32,
         behind: behind as f32,
     };
-    let numbers = [seed.key[0], seed.key[1], seed.resolution, seed.behind];
-    numbers.iter().all(|number| number.is_finite()).then_some(seed)
+    let values = [seed.key[0], seed.key[1], seed.resolution, seed.behind];
+    values.iter().all(|value| value.is_finite()).then_some(seed)
 }
 
-/// From one depth of `format` to the next, beside what rounds floats.
+/// Step between adjacent depths of `format`, beyond float rounding.
 fn step(format: vk::Format) -> f64 {
     match format {
         vk::Format::D16_UNORM | vk::Format::D16_UNORM_S8_UINT => 1.0 / 65535.0,

@@ -1,4 +1,4 @@
-//! The passes that are drawn in subpasses of a plan.
+//! Passes in the subpasses of a plan.
 
 use super::plan::{Plan, Step};
 use crate::frame::pass::Pass;
@@ -9,7 +9,7 @@ use crate::vk::{Blend, Constants, DepthTest, Within};
 use ash::vk;
 
 impl Step {
-    /// The pass.
+    /// The pass of a step.
     pub(super) fn pass(self) -> &'static Pass {
         match self {
             Self::Seed => &seed::SEED,
@@ -21,10 +21,10 @@ impl Step {
     }
 }
 
-/// Where the passes of `plan` are drawn.
+/// The pipelines' places in the render pass of `plan`.
 ///
 /// # Safety
-/// `pass` is as `plan` says, and outlives all pipelines that are made for it.
+/// `pass` is as `plan` describes it, and outlives all pipelines that are created for it.
 pub(super) unsafe fn host(plan: &Plan, pass: vk::RenderPass) -> Host {
     let draw = |(subpass, step)| {
         let one = vk::SampleCountFlags::TYPE_1;
@@ -43,7 +43,7 @@ pub(super) unsafe fn host(plan: &Plan, pass: vk::RenderPass) -> Host {
     Host { draws: plan.numbered().map(draw).collect(), resources: inputs(plan) }
 }
 
-/// What shaders see of the attachments.
+/// Input attachments and buffers of the shaders.
 pub(super) fn inputs(plan: &Plan) -> Vec<&'static shaders::Resource> {
     let visibility = (!plan.sums_tell()).then_some(&resource::VISIBILITY_INPUT);
     let sums1 = plan.formats.sums1.map(|_| &resource::SUMS1_INPUT);
@@ -56,7 +56,7 @@ fn blends(plan: &Plan, step: Step) -> Vec<Option<Blend>> {
         Step::Seed | Step::Visibility => Vec::new(),
         Step::Attribute => vec![Some(Blend::Add); 2],
         Step::Nearest => vec![Some(Blend::Replace); 2],
-        // Where there are no normals, the blending of what is not there is like the picture's: another takes a feature.
+        // Without a normal attachment, all blending is like the picture's: independent blending needs a feature.
         Step::Normalize if plan.host.normal.is_some() => vec![Some(Blend::Over), Some(Blend::Replace)],
         Step::Normalize => vec![Some(Blend::Over); 2],
     }

@@ -1,4 +1,4 @@
-//! The attachments of one size.
+//! The engine's attachments of one size.
 
 use super::Plan;
 use crate::error::Result;
@@ -7,7 +7,7 @@ use crate::vk::{Binding, Device, HostDepth, Image, ImageUse};
 use ash::vk;
 use std::sync::Arc;
 
-/// The attachments of one size, and the host's depth beside them.
+/// The engine's attachments of one size, with the host's depth.
 pub(super) struct Targets {
     pub(super) size: [u32; 2],
     pub(super) host_depth: Option<HostDepth>,
@@ -21,7 +21,7 @@ struct Images {
 }
 
 impl Targets {
-    /// What `plan` needs at `size` px.
+    /// Creates the attachments of `plan` at `size` px.
     pub(super) fn new(
         device: &Arc<Device>,
         plan: &Plan,
@@ -38,7 +38,7 @@ impl Targets {
         Ok(Self { size, host_depth, images: Arc::new(images) })
     }
 
-    /// The same beside another depth of the host.
+    /// The same attachments with another depth of the host.
     pub(super) fn beside(&self, host_depth: Option<HostDepth>) -> Self {
         Self { host_depth, images: self.images.clone(), ..*self }
     }
@@ -49,7 +49,7 @@ impl Targets {
         [Some(visibility), Some(sums0), sums1.as_ref()].into_iter().flatten().map(Image::view).collect()
     }
 
-    /// What shaders see of them, and of the host's depth, of these.
+    /// Descriptor bindings of these attachments and the host's depth.
     pub(super) fn bindings(
         &self,
         seen: &[&'static shaders::Resource],

@@ -1,4 +1,4 @@
-//! Colour map: a picture of numbers and their range → colours (`colour_map.glsl`).
+//! Colour map pass: colours of a scalar picture (`colour_map.glsl`).
 
 use crate::error::Result;
 use crate::geometry::ColourMap as Map;
@@ -11,7 +11,7 @@ use crate::vk::{
 use ash::vk::ShaderStageFlags;
 use std::sync::Arc;
 
-/// Colours of the map that are kept; between them it is linear, which is off by less than one of 255 steps.
+/// Number of colours in the table. Linear interpolation between them is off by less than one 8-bit step.
 const COLOURS: usize = 257;
 
 /// The colour map pass.
@@ -20,14 +20,14 @@ pub struct ColourMap {
     colours: Buffer,
 }
 
-/// What a [`ColourMap`] draws to and reads.
+/// Framebuffer and descriptor set of a [`ColourMap`].
 pub struct ColourMapViews {
     framebuffer: Framebuffer,
     set: DescriptorSet,
 }
 
 impl ColourMap {
-    /// The pass for pictures of what `shading` shows, within `pass`.
+    /// Creates the pass for pictures of `shading`, within `pass`.
     pub fn new(device: &Arc<Device>, shading: Shading, pass: &RenderPass) -> Result<Self> {
         let seen = [&resource::SCREEN, &resource::NUMBER_RANGE, &resource::MAP_COLOURS];
         let layout = SetLayout::of(device, seen)?;
@@ -44,7 +44,7 @@ impl ColourMap {
         Ok(Self { pipeline, colours })
     }
 
-    /// The pass's views of a picture, its range and the image that gets the colours, which must outlive them.
+    /// Creates the views of a picture, its range and the destination image, which must outlive them.
     pub fn views(
         &self,
         device: &Arc<Device>,
@@ -63,20 +63,20 @@ impl ColourMap {
         })
     }
 
-    /// `picture` and `range` → `image`, of which `views` are, over `background`, linear.
+    /// Draws the colours of `picture` to `image` over `background`, linear; `views` are of these resources.
     pub fn record(
         &self,
         rec: &mut Recorder<'_>,
         views: &ColourMapViews,
         (picture, range, image): (&Image, &Buffer, &Image),
         background: [f32; 3],
-        numbers: layout::Numbers,
+        parameters: layout::Numbers,
     ) {
         let read = Access::of_shader(ShaderStageFlags::FRAGMENT, false);
         let uses = [picture.with(read.of_image()), range.with(read), image.with(Access::COLOUR_WRITE)];
         let [r, g, b] = background;
         let mut enc = rec.pass("colour map", &uses);
         let mut draws = enc.render_over(&views.framebuffer, [r, g, b, 1.0]);
-        draws.draw(&self.pipeline, &[&views.set], &numbers, 3);
+        draws.draw(&self.pipeline, &[&views.set], &parameters, 3);
     }
 }

@@ -1,4 +1,4 @@
-//! A picture of a scene in frames that go to a window: colours in linear float, and depth, of any size.
+//! Offscreen view: a picture of a scene in frames of a window, with colours in linear float, and depth, of any size.
 
 mod colour_map;
 mod range;
@@ -24,35 +24,36 @@ use std::sync::Arc;
 const COLOUR: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
 
-/// A picture in frames of one [`Presenter`], which stays until it is drawn anew. What is unsafe of [`Renderer`] it sees to itself: it draws in
-/// frames of that presenter alone, once in each, and is waited for before it goes; a frame that is being recorded meanwhile is not submitted.
+/// A picture in frames of one [`Presenter`]. It is kept until it is drawn again. It upholds the safety rules of [`Renderer`]: it draws in
+/// frames of that presenter only, once in each, and waits for the GPU on drop; a frame that is being recorded at that time is not
+/// submitted.
 pub struct OffscreenView {
-    // Fields are dropped in this order: views before what they view, and the pass after all that draws in it.
+    // Drop order: views before their resources, and the pass after all framebuffers.
     renderer: Renderer,
-    /// The colours of a picture of numbers, where it is one.
+    /// Colours of a scalar picture.
     scalar_colours: Option<ScalarColours>,
     targets: Option<Targets>,
-    /// What frames under way may use, each with the number of the last one that may.
+    /// Resources of frames in flight, each with the number of the last frame that may use it.
     old: Vec<(u64, DeferredResources)>,
     timestamps: Option<Timestamps>,
-    /// Whether a frame that is measured has not told yet.
+    /// Whether a measured frame is not reported yet.
     measured: bool,
     /// Number of the frame in which it was drawn last.
     drawn: Option<u64>,
-    /// Its stake in the last frame that it recorded into, and the number of that.
+    /// Number of the last frame that it recorded into, and its stake in that frame.
     stake: RefCell<Option<(u64, Arc<Stake>)>>,
-    /// Number of the presenter.
+    /// Id of the presenter.
     presenter: u64,
     pass: RenderPass,
     device: Arc<Device>,
 }
 
-/// A scene, from where it is seen, and how.
+/// A scene with camera and settings.
 pub type SceneView<'a> = (&'a Arc<Scene>, &'a Camera, &'a Settings);
 
-/// What is not drawn to any more.
+/// Resources that are replaced.
 struct DeferredResources {
-    // Views before what they view.
+    // Views before their resources.
     _scalar_colours: Option<ScalarColours>,
     _targets: Option<Targets>,
 }
@@ -61,12 +62,12 @@ struct Targets {
     framebuffer: Framebuffer,
     colour: Image,
     depth: Image,
-    /// Where depths are read back.
+    /// Readback buffer of the depths.
     depths: Buffer,
 }
 
 impl OffscreenView {
-    /// A picture in frames of `presenter`; nothing is drawn yet.
+    /// Creates a view for frames of `presenter`; nothing is drawn yet.
     pub fn new(presenter: &Presenter, rasterizer: Option<Rasterizer>) -> Result<Self> {
         let device = presenter.device();
         presenter.rehearse(COLOUR)?;
@@ -85,7 +86,7 @@ impl OffscreenView {
         };
         let options =
             Options { target, frames_in_flight: FRAMES_IN_FLIGHT, precision: Precision::Full, rasterizer };
-        // SAFETY: the target is this pass, which goes after the renderer; `drop` waits for the GPU.
+        // SAFETY: the target is this pass, which outlives the renderer; `drop` waits for the GPU.
         let renderer = unsafe { Renderer::new(device, options)? };
         Ok(Self {
             renderer,
@@ -102,11 +103,11 @@ impl OffscreenView {
         })
     }
 
-    /// Records a picture of `size` px over the settings' background, or of that alone where nothing is shown. If it is `measured` it tells the GPU
-    /// times of its passes and counts of surfels, unless another one has yet to tell. After an error it shows nothing.
+    /// Records a picture of `size` px over the settings' background; without a scene, the background alone. If `measured`, pass times and
+    /// surfel counts are measured, unless an earlier measurement is not reported yet. After an error the picture is empty.
     ///
     /// # Errors
-    /// Those of [`Renderer::prepare`]; [`Error::Usage`] in a frame of another presenter, and a second time in one frame.
+    /// As [`Renderer::prepare`]; [`Error::Usage`] in a frame of another presenter, or if it is drawn twice in one frame.
     pub fn draw(
         &mut self,
         frame: &Presented,
@@ -122,7 +123,7 @@ impl OffscreenView {
         }
         self.forget_thrown();
         self.take_part(frame);
-        // The GPU is done with all but the last frames.
+        // The GPU has finished all but the last frames.
         self.old.retain(|(last, _)| last + u64::from(FRAMES_IN_FLIGHT) > frame.number);
         if self.targets.as_ref().is_none_or(|targets| targets.colour.size() != size) {
             self.defer(frame.number, true);
@@ -137,7 +138,7 @@ impl OffscreenView {
             match made.transpose() {
                 Ok(made) => self.scalar_colours = made,
                 Err(error) => {
-                    // Nothing is drawn to the targets, which may be new.
+                    // The targets may be new and are not drawn to.
                     self.defer(frame.number, true);
                     return Err(error);
                 }
@@ -146,24 +147,24 @@ impl OffscreenView {
         self.record(frame, shown, measured)
     }
 
-    /// Keeps what frames up to this one may use, until they are over: the colours of numbers, and the targets if they go, too.
+    /// Defers the destruction of the scalar colours, and of the targets if `with_targets`, until frame `last` is over.
     fn defer(&mut self, last: u64, with_targets: bool) {
         let targets = if with_targets { self.targets.take() } else { None };
         let deferred = DeferredResources { _scalar_colours: self.scalar_colours.take(), _targets: targets };
         self.old.push((last, deferred));
     }
 
-    /// Whether there is nothing to show, not even a background.
+    /// Whether there is no picture, not even a background.
     pub fn is_empty(&self) -> bool {
         self.targets.is_none() || self.is_thrown()
     }
 
-    /// Whether the last frame that it recorded into was thrown away.
+    /// Whether the last frame that it recorded into was discarded.
     fn is_thrown(&self) -> bool {
         self.stake.borrow().as_ref().is_some_and(|(_, stake)| stake.is_thrown())
     }
 
-    /// What was recorded into a frame that was thrown away is not there.
+    /// Defers the resources of a discarded frame.
     fn forget_thrown(&mut self) {
         if self.is_thrown() {
             let last = self.stake.take().map_or(0, |(last, _)| last);
@@ -172,7 +173,7 @@ impl OffscreenView {
         }
     }
 
-    /// Records into `frame` from now on.
+    /// Takes a stake in `frame`.
     fn take_part(&self, frame: &Presented) {
         let mut stake = self.stake.borrow_mut();
         if stake.as_ref().is_none_or(|(number, _)| *number != frame.number) {
@@ -187,8 +188,8 @@ impl OffscreenView {
         if let Some((scene, camera, settings)) = shown {
             let view = View::whole(*camera, targets.colour.size());
             self.renderer.measure(Measured { times: measured, counts: measured });
-            // SAFETY: the presenter's command buffer is being recorded, outside a render pass, and it submits in order; once a frame, so that as
-            // many are under way as it says.
+            // SAFETY: the presenter's command buffer is recording outside a render pass, and the presenter submits in order; `draw` runs
+            // once per frame, so that the number of frames in flight is as stated.
             drawn = unsafe { self.renderer.prepare(frame.cmd, scene, &view, settings) };
         }
         if measured && self.timestamps.is_none() {
@@ -196,17 +197,17 @@ impl OffscreenView {
         }
         self.measured |= measured;
         let timestamps = self.timestamps.as_mut().filter(|_| measured);
-        // SAFETY: as above; what was measured before has told, so that it is over.
+        // SAFETY: as above; the frame that was measured before is reported, so it is over.
         let mut rec = unsafe { Recorder::of_host_timed(&self.device, frame.cmd, timestamps) };
         let Targets { framebuffer, colour, depth, depths } = targets;
         let uses = [colour.with(Access::COLOUR_WRITE), depth.with(Access::DEPTH_WRITE)];
         let [r, g, b] = shown.and_then(|(.., settings)| settings.background).unwrap_or_default();
-        // ScalarColours become colours before there is something behind them.
+        // Scalars get colours first, and the background after that.
         let behind = if self.scalar_colours.is_some() { [0.0; 4] } else { [r, g, b, 1.0] };
         let mut enc = rec.pass("screen", &uses);
         let draws = enc.render_over(framebuffer, behind);
         if shown.is_some() && drawn.is_ok() {
-            // SAFETY: within the renderer's target.
+            // SAFETY: inside the renderer's target.
             drawn = unsafe { self.renderer.draw(frame.cmd) };
         }
         drop(draws);
@@ -225,8 +226,8 @@ impl OffscreenView {
         drawn
     }
 
-    /// Shows the columns between two parts of the picture's width, from 0 to 1, in those of the `area` px of the window at its top left, scaled.
-    /// Depths, normals, overlaps and weights are shown in the colours that a PNG has for them.
+    /// Blits a range of columns of the picture, as fractions of its width, to the `area` px at the top left of the window, scaled. Depths,
+    /// normals, overlaps and weights have the colours of a PNG.
     ///
     /// # Errors
     /// [`Error::Usage`] in a frame of another presenter.
@@ -244,14 +245,14 @@ impl OffscreenView {
         Ok(())
     }
 
-    /// The least and the greatest depth, overlap or weight of the last picture, if it is of such numbers and shows a surface. Waits for it.
+    /// Range of the depths, overlaps or weights of the last picture, if it shows these and a surface. Waits for the GPU.
     pub fn range(&self, presenter: &Presenter) -> Result<Option<ValueRange>> {
         self.wait(presenter)?;
         let scalar_colours = self.scalar_colours.as_ref().filter(|_| !self.is_thrown());
         Ok(scalar_colours.and_then(ScalarColours::range))
     }
 
-    /// What the last picture that was measured tells, once; waits for it.
+    /// The report of the last measured picture, once. Waits for the GPU.
     pub fn report(&mut self, presenter: &Presenter) -> Result<Option<FrameReport>> {
         self.wait(presenter)?;
         self.forget_thrown();
@@ -263,15 +264,15 @@ impl OffscreenView {
         let own = self.timestamps.as_ref().map_or(Ok(Vec::new()), Timestamps::read)?;
         let report = self.renderer.report().cloned();
         Ok(report.map(|mut report| {
-            // It is within `screen`.
+            // `screen` includes it.
             report.pass_times.retain(|time| time.label != "composite");
             report.pass_times.extend(own);
             report
         }))
     }
 
-    /// Width and height of the picture, px, and its depths as the camera's projection has them, reversed: a float of 4 bytes a pixel, row by row
-    /// from the top left, 0 where nothing is. Waits for it.
+    /// Width and height of the picture, px, and its reversed depths as of the camera's projection: a 4-byte float per pixel, row by row
+    /// from the top left, 0 without a surface. Waits for the GPU.
     pub fn depths(&self, presenter: &Presenter) -> Result<Option<([u32; 2], &[u8])>> {
         self.wait(presenter)?;
         let targets = self.targets.as_ref().filter(|_| !self.is_thrown());

@@ -1,4 +1,4 @@
-//! Range: a picture of numbers → the least and the greatest of them (`range.glsl`).
+//! Range pass: minimum and maximum of a scalar picture (`range.glsl`).
 
 use crate::error::Result;
 use crate::vk::shaders::{self, layout, resource};
@@ -8,7 +8,7 @@ use crate::vk::{
 use ash::vk::ShaderStageFlags;
 use std::sync::Arc;
 
-/// Side of the block of pixels that a workgroup of `range.glsl` visits.
+/// Width and height of the pixel block of a workgroup of `range.glsl`.
 const BLOCK: u32 = 64;
 
 /// The range pass.
@@ -21,12 +21,12 @@ impl Range {
         ComputePipeline::new(device, &[&layout], &shaders::RANGE_COMPUTE, &Constants::default()).map(Self)
     }
 
-    /// A buffer for a range.
+    /// Creates a buffer for a range.
     pub fn buffer(device: &Arc<Device>) -> Result<Buffer> {
         Buffer::storage(device, "range", size_of::<layout::NumberRange>() as u64)
     }
 
-    /// The pass's view of a picture and its range, which must outlive it.
+    /// Descriptor set of a picture and its range, which must outlive it.
     pub fn view(device: &Arc<Device>, picture: &Image, range: &Buffer) -> Result<DescriptorSet> {
         let bindings = [
             (&resource::SCREEN, Binding::Sampled(picture)),
@@ -35,24 +35,24 @@ impl Range {
         DescriptorSet::new(device, &bindings)
     }
 
-    /// `picture` → `range`, of which `view` is; both words are all ones if no pixel shows a surface.
+    /// Writes the range of `picture` to `range`; `view` is their descriptor set. Both words have all bits set if no pixel shows a surface.
     pub fn record(
         &self,
         rec: &mut Recorder<'_>,
         view: &DescriptorSet,
         picture: &Image,
         range: &Buffer,
-        numbers: layout::Numbers,
+        parameters: layout::Numbers,
     ) {
         rec.pass("clear range", &[range.with(Access::COPY_WRITE)]).ones(range);
         let [read, write] = [false, true].map(|write| Access::of_shader(ShaderStageFlags::COMPUTE, write));
         let uses = [picture.with(read.of_image()), range.with(write)];
         let [x, y] = picture.size().map(|side| side.div_ceil(BLOCK));
-        rec.pass("range", &uses).dispatch(&self.0, &[view], &numbers, [x, y, 1]);
+        rec.pass("range", &uses).dispatch(&self.0, &[view], &parameters, [x, y, 1]);
     }
 }
 
-/// The least and the greatest number of a range that was read back; `None` if no pixel shows a surface.
+/// The minimum and maximum of a range that was read back; `None` if no pixel shows a surface.
 pub fn range_of(bytes: &[u8]) -> Option<[f32; 2]> {
     let layout::NumberRange { least, greatest } = bytemuck::pod_read_unaligned(bytes);
     let number = |bits: u32| f32::from_bits(if bits & 0x8000_0000 != 0 { bits & 0x7fff_ffff } else { !bits });

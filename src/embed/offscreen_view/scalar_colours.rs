@@ -1,4 +1,4 @@
-//! A picture of numbers, such as depths, as colours.
+//! Colours of a scalar picture, such as depth.
 
 use super::COLOUR;
 use super::colour_map::{ColourMap, ColourMapViews};
@@ -12,31 +12,31 @@ use crate::vk::{
 };
 use std::sync::Arc;
 
-/// Least part of a pixel that the samples of coverage tell, halved: what is covered less shows no surface.
+/// Minimum α of a pixel that shows a surface: half of a sample of coverage.
 const LEAST_ALPHA: f32 = 1.0 / 32.0;
 
-/// Whether a shading shows numbers, and not colours.
+/// Whether a shading shows scalars instead of colours.
 pub(super) fn is_scalar(shading: Shading) -> bool {
     !matches!(shading, Shading::Lit | Shading::Colour)
 }
 
-/// The colours of a picture of numbers.
+/// The colours of a scalar picture.
 pub(super) struct ScalarColours {
     views: ColourMapViews,
     range_view: DescriptorSet,
     image: Image,
     range: Buffer,
-    /// Where the range is read back.
+    /// Readback buffer of the range.
     told: Buffer,
     map: ColourMap,
     range_pass: Range,
-    /// What the picture shows.
+    /// Shading of the picture.
     pub shading: Shading,
     _pass: RenderPass,
 }
 
 impl ScalarColours {
-    /// Of what `shading` shows in `picture`, which must outlive it.
+    /// Creates the colours of `picture` with `shading`. The picture must outlive them.
     pub fn new(device: &Arc<Device>, shading: Shading, picture: &Image) -> Result<Self> {
         let pass = RenderPass::new(device, &[Attachment::Cleared(COLOUR)], None)?;
         let (range_pass, map) = (Range::new(device)?, ColourMap::new(device, shading, &pass)?);
@@ -48,30 +48,30 @@ impl ScalarColours {
         Ok(Self { views, range_view, image, range, told, map, range_pass, shading, _pass: pass })
     }
 
-    /// Records the colours of `picture`, of α times numbers and α, over the settings' background.
+    /// Records the colours of `picture`, whose pixels are premultiplied scalars and α, over the settings' background.
     pub fn record(&self, rec: &mut Recorder<'_>, picture: &Image, settings: &Settings) {
         let opaque = settings.background.is_some();
-        // ScalarColours are not mixed with a background: the half decides.
+        // Scalars are not blended with a background: α ≥ ½ decides.
         let least_alpha = if opaque { 0.5 } else { LEAST_ALPHA };
-        let numbers = layout::Numbers { least_alpha, opaque: opaque.into() };
+        let parameters = layout::Numbers { least_alpha, opaque: opaque.into() };
         if self.has_range() {
-            self.range_pass.record(rec, &self.range_view, picture, &self.range, numbers);
+            self.range_pass.record(rec, &self.range_view, picture, &self.range, parameters);
         }
-        // As in a PNG, nothing is black beside depths, whose farthest are dark.
+        // As in a PNG, there is no background beside depths: black would look like the farthest ones.
         let background = settings.background.filter(|_| self.shading != Shading::Depth).unwrap_or_default();
-        self.map.record(rec, &self.views, (picture, &self.range, &self.image), background, numbers);
+        self.map.record(rec, &self.views, (picture, &self.range, &self.image), background, parameters);
         if self.has_range() {
             let uses = [self.range.with(Access::COPY_READ), self.told.with(Access::COPY_WRITE)];
             rec.pass("read range", &uses).copy(&self.range, &self.told, 0, self.range.size());
         }
     }
 
-    /// What is to be waited for when it is recorded.
+    /// Accesses after recording.
     pub fn results(&self) -> [Use; 2] {
         [self.told.with(Access::HOST_READ), self.image.with(Access::COPY_READ)]
     }
 
-    /// Whether its colours depend on the least and the greatest number; coordinates of normals are from −1 to 1.
+    /// Whether the colours depend on the range; coordinates of normals are from −1 to 1.
     fn has_range(&self) -> bool {
         self.shading != Shading::Normal
     }
@@ -81,7 +81,7 @@ impl ScalarColours {
         &self.image
     }
 
-    /// The least and the greatest number, once the GPU is done with it; `None` where no surface is seen, and of normals.
+    /// The range, once the GPU has finished; `None` if no surface is visible, and for normals.
     pub fn range(&self) -> Option<ValueRange> {
         let [min, max] = range_of(self.told.bytes()).filter(|_| self.has_range())?.map(f64::from);
         (min.is_finite() && max.is_finite()).then_some(ValueRange { min, max })
