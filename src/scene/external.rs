@@ -1,4 +1,4 @@
-//! Surfels in buffers of a host.
+//! Scenes in buffers of the host.
 
 use super::live::check_bounds;
 use super::{ColourStream, NormalStream, Scene, Stream, chunks, next_id, step};
@@ -9,13 +9,13 @@ use glam::DVec3;
 use std::sync::atomic::{AtomicBool, AtomicU32, AtomicU64};
 use std::sync::{Arc, Mutex};
 
-/// What a scene in a host's buffers is made of; see [`crate::embed::Buffers`].
+/// Streams of a scene in buffers of the host; see [`crate::embed::Buffers`].
 pub(crate) struct ExternalBuffers {
     pub positions: Stream,
     pub normals: Stream,
     pub normal_stream: NormalStream,
     pub radii: Stream,
-    /// The largest radius, if it is known.
+    /// Largest radius, if known.
     pub largest: Option<f32>,
     pub two_sided: bool,
     pub ellipses: Option<Stream>,
@@ -28,7 +28,7 @@ pub(crate) struct ExternalBuffers {
 }
 
 impl Scene {
-    /// A scene of these; refuses values so far apart that no chunk holds enough of them.
+    /// Creates a scene of these streams. Returns an error if the strides are so large that no chunk has enough values.
     pub(crate) fn of_streams(device: &Arc<Device>, external: ExternalBuffers) -> Result<Self> {
         let capabilities = device.capabilities();
         check_bounds(&external.bounds)?;

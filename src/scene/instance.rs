@@ -1,4 +1,4 @@
-//! Scenes where they are placed: several in one frame, of which any hides, and blends with, any other as if all were one cloud.
+//! Instances: scenes with transforms. Several instances in a frame occlude and blend with each other like one cloud.
 
 pub(crate) use super::similarity::Similarity;
 use crate::error::{Cause, Error, Result};
@@ -9,25 +9,24 @@ use glam::DMat4;
 use std::borrow::Borrow;
 use std::sync::Arc;
 
-/// A scene, and where it stands. The same scene may stand in several places: its values are on the device once.
+/// A scene and its transform. Instances of the same scene share its data on the device.
 #[derive(Clone)]
 pub struct Instance {
-    /// What is placed.
+    /// The scene.
     pub scene: Arc<Scene>,
-    /// From the scene's own space, in which its positions and bounds are, to the world: a rotation, a uniform scale above 0 and a
-    /// translation. What else there may be of a matrix is refused where a frame is prepared.
+    /// Transform from the scene's space, that of its positions and bounds, to the world's: a rotation, a uniform scale above 0 and a
+    /// translation. Frames with any other matrix are rejected.
     pub transform: DMat4,
 }
 
-/// What a frame shows: one scene as it stands, or a list of scenes where they are placed. An empty list shows nothing.
+/// The content of a frame: one scene, or a list of instances. An empty list shows nothing.
 ///
-/// Whoever takes one takes what becomes one: `&scene`, `&[instance]`, `&vec_of_instances`.
+/// APIs accept `impl Into<Instances>`: `&scene`, `&[instance]`, `&vec_of_instances`.
 #[derive(Clone, Copy)]
 pub enum Instances<'a, S = Arc<Scene>> {
-    /// One scene, whose space is the world.
+    /// One scene, whose space is the world's.
     One(&'a S),
-    /// Scenes where they are placed. Numbers of points ([`Picture::id`](crate::Picture::id)) are counted on from each to the next:
-    /// [`Instances::first_ids`].
+    /// A list of instances. Their point ids ([`Picture::id`](crate::Picture::id)) are consecutive: [`Instances::first_ids`].
     List(&'a [Instance]),
 }
 
@@ -35,20 +34,20 @@ pub enum Instances<'a, S = Arc<Scene>> {
 #[derive(Clone, Copy)]
 pub(crate) struct Placed<'a> {
     pub(crate) scene: &'a Scene,
-    /// From its own space to the world; `None` where they are the same.
+    /// Transform to the world; `None` for the identity.
     pub(crate) placement: Option<Similarity>,
 }
 
 impl Instance {
-    /// A scene that stands there.
+    /// An instance of `scene`.
     pub fn new(scene: &Arc<Scene>, transform: DMat4) -> Self {
         Self { scene: scene.clone(), transform }
     }
 
-    /// The bounds of the scene in the world.
+    /// Bounds of the instance in world space.
     ///
     /// # Errors
-    /// [`Error::Usage`] if the transform is none that a scene can be placed by.
+    /// [`Error::Usage`] if the transform is not a similarity.
     pub fn bounds(&self) -> Result<Bounds> {
         let placed = self.placed().map_err(|cause| refusal(0, &cause))?;
         Ok(placed.bounds())
@@ -68,8 +67,8 @@ fn refusal(number: usize, cause: &Cause) -> Error {
 }
 
 impl<'a, S: Borrow<Scene>> Instances<'a, S> {
-    /// The number of the first point of each scene, in the order of the list: how many surfels, segments and triangles those before it have
-    /// room for.
+    /// Id of the first point of each scene, in list order: the number of surfels, segments and triangles that the scenes before have room
+    /// for.
     pub fn first_ids(&self) -> Vec<u64> {
         let scenes: Vec<&Scene> = match self {
             Self::One(scene) => vec![(*scene).borrow()],
@@ -78,7 +77,7 @@ impl<'a, S: Borrow<Scene>> Instances<'a, S> {
         ids(scenes.into_iter())
     }
 
-    /// Each scene with its placement. Refuses scenes of another device, and what cannot be placed.
+    /// Each scene with its transform. Returns an error for scenes of another device and for unsupported transforms.
     pub(crate) fn placed(&self, device: &Arc<Device>) -> Result<Vec<Placed<'a>>> {
         let placed: Vec<Placed<'a>> = match *self {
             Self::One(scene) => vec![Placed { scene: scene.borrow(), placement: None }],
@@ -95,7 +94,7 @@ impl<'a, S: Borrow<Scene>> Instances<'a, S> {
 }
 
 impl<'a> Instances<'a> {
-    /// The scenes, in the order of the list.
+    /// The scenes, in list order.
     pub(crate) fn scenes(&self) -> impl Iterator<Item = &'a Arc<Scene>> {
         let (one, list) = match *self {
             Self::One(scene) => (Some(scene), &[][..]),
@@ -114,9 +113,9 @@ fn ids<'a>(scenes: impl Iterator<Item = &'a Scene>) -> Vec<u64> {
     scenes.scan(0, add).collect()
 }
 
-/// Refuses more points than have numbers.
+/// Returns an error if there are more points than ids.
 fn check_ids(placed: &[Placed<'_>]) -> Result<()> {
-    // The greatest are those of nothing, in one way of counting or another.
+    // The largest values mean "none" in the id buffers.
     let most = u64::from(u32::MAX) - 1;
     let sum: u64 = placed.iter().map(|placed| placed.scene.id_count()).sum();
     if placed.len() < 2 || sum <= most {
@@ -130,20 +129,20 @@ fn check_ids(placed: &[Placed<'_>]) -> Result<()> {
 }
 
 impl<'a> Placed<'a> {
-    /// The bounds of the scene in the world.
+    /// Bounds of the scene in world space.
     pub(crate) fn bounds(&self) -> Bounds {
         let own = self.scene.bounds();
         self.placement.map_or(own, |placement| placement.bounds(&own))
     }
 
-    /// A radius that no surfel is larger than in the world, if one is known.
+    /// Upper bound of the radii in world space, if known.
     pub(crate) fn largest(&self) -> Option<f64> {
         let scale = self.placement.map_or(1.0, |placement| placement.scale());
         Some(scale * f64::from(self.scene.largest()?))
     }
 }
 
-/// The numbers of the first points of placed scenes.
+/// Ids of the first points of placed scenes.
 pub(crate) fn first_ids(placed: &[Placed<'_>]) -> impl Iterator<Item = u32> {
     ids(placed.iter().map(|placed| placed.scene)).into_iter().map(|number| number as u32)
 }

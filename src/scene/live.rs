@@ -1,4 +1,4 @@
-//! What may change of a scene from frame to frame, beside its surfels' values.
+//! State of a scene that may change between frames, beside the values of its surfels.
 
 use super::{PrimitiveStreams, Scene};
 use crate::error::{Error, Result};
@@ -7,17 +7,17 @@ use std::sync::PoisonError;
 use std::sync::atomic::Ordering;
 
 impl Scene {
-    /// Number of surfels that are drawn.
+    /// Number of surfels to draw.
     pub fn count(&self) -> u64 {
         self.count.load(Ordering::Relaxed)
     }
 
-    /// Number of surfels that there is room for.
+    /// Maximum number of surfels.
     pub fn capacity(&self) -> u64 {
         self.chunks.last().map_or(0, |chunk| chunk.end)
     }
 
-    /// Number of surfels, segments and triangles that there is room for: as many points have numbers.
+    /// Number of point ids: the maximum numbers of surfels, segments and triangles.
     pub(crate) fn id_count(&self) -> u64 {
         let elements = |primitives: &PrimitiveStreams| {
             let kinds = [&primitives.lines, &primitives.triangles];
@@ -26,10 +26,10 @@ impl Scene {
         self.capacity() + self.primitives.as_ref().map_or(0, elements)
     }
 
-    /// Frames that are prepared from now on draw the first `count` surfels.
+    /// Sets the number of surfels to draw in frames that are prepared later: the first `count`.
     ///
     /// # Errors
-    /// [`Error::Usage`] where there is no room for as many, and in a scene with clip lines, which lie behind all of their surfels.
+    /// [`Error::Usage`] if `count` exceeds [`Scene::capacity`], and in a scene with clip lines, whose stream depends on the count.
     pub fn set_count(&self, count: u64) -> Result<()> {
         let capacity = self.capacity();
         if count > capacity {
@@ -46,34 +46,34 @@ impl Scene {
         Ok(())
     }
 
-    /// Bounds in the world.
+    /// Bounds in world space.
     pub fn bounds(&self) -> Bounds {
         *self.bounds.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Declares the bounds, for who frames the scene by them. What is beyond them is drawn all the same: frames take from them no more than
-    /// about how far from the eye the scene is, to which sums of depths are scaled.
+    /// Sets the bounds, for cameras that frame the scene. Elements beyond them are drawn all the same: frames use the bounds only to scale
+    /// sums of depths by the approximate distance of the scene.
     ///
     /// # Errors
-    /// [`Error::Usage`] if they are not finite.
+    /// [`Error::Usage`] if the bounds are not finite.
     pub fn set_bounds(&self, bounds: Bounds) -> Result<()> {
         check_bounds(&bounds)?;
         *self.bounds.lock().unwrap_or_else(PoisonError::into_inner) = bounds;
         Ok(())
     }
 
-    /// A radius that no surfel is larger than, if one is known.
+    /// Upper bound of the radii, if known.
     pub(crate) fn largest(&self) -> Option<f32> {
         self.largest.as_ref().map(|bits| f32::from_bits(bits.load(Ordering::Relaxed)))
     }
 
-    /// Whether a host owns the surfels' buffers.
+    /// Whether the host owns the surfels' buffers.
     pub(crate) fn is_of_host(&self) -> bool {
         self.of_host
     }
 }
 
-/// Refuses bounds that are none.
+/// Validates bounds.
 pub(super) fn check_bounds(bounds: &Bounds) -> Result<()> {
     let Bounds { min, max, radius } = *bounds;
     if min.is_finite() && max.is_finite() && min.cmple(max).all() && radius.is_finite() && radius >= 0.0 {

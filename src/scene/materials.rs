@@ -1,19 +1,19 @@
-//! Materials on the GPU.
+//! GPU stream of materials.
 
 use crate::error::{Error, Result};
 use crate::geometry::{Material, Materials, Parts};
 use crate::vk::{Buffer, Device, Uploads};
 
-/// Words of a material: the specular factor and the exponent.
+/// Words of a material: specular factor and exponent.
 const WORDS: usize = 4;
 
-/// The table, and for every surfel, segment and triangle, by its number in the scene, which it has: as `lib/materials.glsl` wants them.
+/// The material table, and the material index of every surfel, segment and triangle, in the layout of `lib/materials.glsl`.
 pub(crate) struct MaterialStream {
     pub buffer: Buffer,
 }
 
 impl MaterialStream {
-    /// Those of `parts`, which were checked; `None` if there are none.
+    /// Creates the stream of validated `parts`; `None` without materials.
     pub fn new(device: &Device, uploads: &Uploads<'_>, parts: &Parts<'_>) -> Result<Option<Self>> {
         let Some(Materials { table, of }) = parts.materials()? else { return Ok(None) };
         let words = 1 + WORDS * table.len() + of.len().div_ceil(2);
@@ -29,7 +29,7 @@ impl MaterialStream {
         stream.push(table.len() as u32);
         let numbers = |m: &Material| [m.specular[0], m.specular[1], m.specular[2], m.shininess];
         stream.extend(table.iter().flat_map(numbers).map(f32::to_bits));
-        // Two to a word, the first in its lower half.
+        // Two indices per word, the first in the lower half.
         let half = |number: Option<&u16>| u32::from(number.copied().unwrap_or(Materials::NONE));
         stream.extend(of.chunks(2).map(|pair| half(pair.first()) | half(pair.get(1)) << 16));
         Ok(Some(Self { buffer: uploads.buffer("materials", bytemuck::cast_slice(&stream))? }))

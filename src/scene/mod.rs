@@ -1,4 +1,4 @@
-//! Geometry on the GPU: only the streams that the scene has.
+//! Scenes: geometry on the GPU. A scene has only the streams that it needs.
 
 mod clips;
 mod external;
@@ -37,13 +37,13 @@ pub(crate) use texture::TextureStream;
 pub use update::Changes;
 use weights::WeightBuffer;
 
-/// Surfels, lines and triangles resident on a device.
+/// Surfels, lines and triangles on a device.
 pub struct Scene {
     pub(crate) id: u64,
     positions: Stream,
     normals: Stream,
     normal_stream: NormalStream,
-    /// Negative radii are those of two-sided surfels, in a scene that has such; 0 is that of an invalid surfel.
+    /// Radii: negative for two-sided surfels, in a scene that has any; 0 for invalid surfels.
     radii: Stream,
     two_sided: bool,
     ellipses: Option<Stream>,
@@ -55,40 +55,42 @@ pub struct Scene {
     pub(crate) materials: Option<MaterialStream>,
     colour_stream: ColourStream,
     chunks: Vec<Range<u64>>,
-    /// Of what is bound, bytes.
+    /// Alignment of buffer bindings, bytes.
     alignment: u64,
     origin: DVec3,
-    /// The largest radius so far, as bits; none where it is not known.
+    /// Largest radius so far, as bits; `None` if it is not known.
     largest: Option<AtomicU32>,
-    /// Whether a host owns the surfels' buffers.
+    /// Whether the host owns the surfels' buffers.
     of_host: bool,
-    /// Whether some surfels were invalid when they were uploaded.
+    /// Whether some surfels were invalid at the upload.
     had_invalid: bool,
-    /// Whether some may be now and have another radius than 0.
+    /// Whether updates may have made surfels invalid that have a radius other than 0.
     unchecked: AtomicBool,
     count: AtomicU64,
     bounds: Mutex<Bounds>,
 }
 
-/// Bytes of a position or of a normal in its stream.
+/// Bytes of a position or normal.
 const VECTOR: u64 = 12;
 /// Bytes of a radius.
 const SCALAR: u64 = 4;
-/// Bytes of a disc's shape.
+/// Bytes of an ellipse.
 const ELLIPSE: u64 = size_of::<Ellipse>() as u64;
 
 impl Scene {
-    /// Copies surfels, lines and triangles to `device`. Surfels are best in Morton order ([`Surfels::sort_morton`]).
+    /// Uploads surfels, lines and triangles to `device`. Surfels are best in Morton order ([`Surfels::sort_morton`]).
     ///
-    /// What is not valid ([`Surfels::is_valid`], [`Primitives::is_valid`](crate::geometry::Primitives::is_valid)) will not be drawn: a
-    /// warning says how many, and frames count such surfels as `invalid`. Refuses arrays of unequal length, and a scene in which nothing is
-    /// valid.
+    /// Invalid elements ([`Surfels::is_valid`], [`Primitives::is_valid`](crate::geometry::Primitives::is_valid)) are not drawn: a warning
+    /// gives their number, and frames count such surfels as `invalid`.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] for arrays of unequal length, and for a scene without valid elements.
     pub fn upload<'a>(device: &Arc<Device>, parts: impl Into<Parts<'a>>) -> Result<Self> {
         let parts = parts.into();
         Self::new(device, &Uploads::now(device)?, parts)
     }
 
-    /// [`Scene::upload`] by way of `uploads`, which are of `device`.
+    /// Like [`Scene::upload`], through `uploads`, which are of `device`.
     pub(crate) fn new(device: &Arc<Device>, uploads: &Uploads<'_>, parts: Parts<'_>) -> Result<Self> {
         let (scene, invalid) = Self::new_silently(device, uploads, parts)?;
         if invalid > 0 {
@@ -100,7 +102,7 @@ impl Scene {
         Ok(scene)
     }
 
-    /// [`Scene::upload`] without the warnings, and the number of invalid surfels.
+    /// Like [`Scene::upload`] without warnings; also returns the number of invalid surfels.
     #[cfg(feature = "bench")]
     pub(crate) fn upload_silently<'a>(
         device: &Arc<Device>,
@@ -167,7 +169,7 @@ impl Scene {
         Ok((scene, invalid))
     }
 
-    /// Whether it is on this device.
+    /// Whether the scene is on this device.
     pub fn is_on(&self, device: &Arc<Device>) -> bool {
         self.positions.buffer.is_on(device)
     }
@@ -176,7 +178,7 @@ impl Scene {
         self.positions.buffer.device()
     }
 
-    /// Refuses another device.
+    /// Returns an error unless the scene is on `device`.
     pub(crate) fn check_device(&self, device: &Arc<Device>) -> Result<()> {
         if self.is_on(device) {
             Ok(())
@@ -187,17 +189,17 @@ impl Scene {
         }
     }
 
-    /// What the shaders' coordinates are relative to, world space.
+    /// Origin of the shaders' coordinates, world space.
     pub fn origin(&self) -> DVec3 {
         self.origin
     }
 
-    /// How it holds colours.
+    /// Format of the colours.
     pub fn colour_stream(&self) -> ColourStream {
         self.colour_stream
     }
 
-    /// Memory of its streams, less what is a host's, bytes.
+    /// Memory of the streams, without buffers of a host, bytes.
     pub fn bytes(&self) -> u64 {
         let clips = self.clips.as_ref().map(|clips| &clips.buffer);
         let weights = self.weights.as_ref().map(|weights| &weights.buffer);
@@ -214,12 +216,12 @@ impl Scene {
         buffers.map(Buffer::size).sum::<u64>() + primitives
     }
 
-    /// Ranges of surfels that one descriptor set can name.
+    /// Chunks of surfels: ranges that one descriptor set can bind.
     pub fn chunks(&self) -> &[Range<u64>] {
         &self.chunks
     }
 
-    /// What it has.
+    /// The streams of the scene.
     pub fn streams(&self) -> Streams {
         Streams {
             ellipses: self.ellipses.is_some(),
@@ -248,12 +250,12 @@ impl Scene {
         }
     }
 
-    /// The clips of each chunk, if there are any.
+    /// The clips of each chunk, if any.
     pub(crate) fn clip_chunks(&self) -> Option<&[ClipChunk]> {
         self.clips.as_ref().map(|clips| clips.chunks.as_slice())
     }
 
-    /// Window `number` of each stream that it has, where shaders see it.
+    /// Resources and bindings of chunk `number`.
     pub(crate) fn bindings(&self, number: usize) -> Vec<(&'static Resource, Binding<'_>)> {
         let chunk = &self.chunks[number];
         let streams = [
@@ -271,7 +273,7 @@ impl Scene {
         list
     }
 
-    /// The streams of its lines, or of its triangles if `kind` is 1, where shaders see them.
+    /// Resources and bindings of the lines, or with `kind` 1 of the triangles.
     pub(crate) fn element_bindings(&self, kind: usize) -> Vec<(&'static Resource, Binding<'_>)> {
         let Some(PrimitiveStreams { vertices, alongs, colours, lines, triangles, .. }) = &self.primitives
         else {
@@ -289,7 +291,7 @@ impl Scene {
     }
 }
 
-/// How colours are held, and their bytes; with a texture, of points at these positions with these radii, theirs.
+/// Format and bytes of the colours. With a texture: its colours at points with these positions and radii.
 fn colour_bytes<'a>(
     colours: Option<&'a Colours>,
     texture: Option<(&Texture, &[Vec3], &[f32])>,
@@ -307,18 +309,18 @@ fn colour_bytes<'a>(
     }
 }
 
-/// The largest radius of what is valid; 0 if nothing is.
+/// The largest valid radius; 0 if there is none.
 fn largest(radii: &[f32]) -> f32 {
     radii.iter().copied().filter(|radius| *radius <= Surfels::LARGEST).fold(0.0, f32::max)
 }
 
-/// A number that no other scene has.
+/// A unique scene id.
 fn next_id() -> u64 {
     static NEXT: AtomicU64 = AtomicU64::new(0);
     NEXT.fetch_add(1, Ordering::Relaxed)
 }
 
-/// The bounds of what is valid, and the number of surfels that are not.
+/// Bounds of the valid elements, and the number of invalid surfels.
 fn usable(parts: &Parts<'_>) -> Result<(Bounds, usize)> {
     let Some(bounds) = parts.bounds() else {
         let surfels = parts.surfels.len();
@@ -349,7 +351,7 @@ fn warn_of(invalid: usize, count: usize) {
     );
 }
 
-/// The radii, those of two-sided surfels negative and those of the invalid ones, if there are any, 0.
+/// Radii: negative for two-sided surfels, and 0 for invalid ones.
 fn marked_radii(surfels: &Surfels, invalid: usize) -> Cow<'_, [f32]> {
     if surfels.two_sided.is_none() && invalid == 0 {
         return Cow::Borrowed(&surfels.radii);
@@ -363,13 +365,13 @@ fn marked_radii(surfels: &Surfels, invalid: usize) -> Cow<'_, [f32]> {
     surfels.radii.iter().enumerate().map(mark).collect()
 }
 
-/// Every stride is a multiple of 4 bytes, so this many elements start at a multiple of the alignment in each stream.
+/// Number of elements that is a multiple of the alignment in every stream, because every stride is a multiple of 4 bytes.
 fn step(capabilities: &Capabilities) -> u64 {
     capabilities.storage_buffer_alignment.max(256)
 }
 
-/// Splits `count` surfels so that a chunk of any stream, the splats' included, fits a descriptor and starts aligned, and so that a
-/// chunk's workgroups and vertices can be counted. A host's streams have values up to `stride` bytes apart, and may start anywhere.
+/// Splits `count` surfels into chunks. A chunk of any stream, including the splats', fits a descriptor and starts aligned; its workgroups
+/// and vertices can be counted. `stride` is the largest stride of a host's streams, which may start anywhere, bytes.
 fn chunks(count: u64, capabilities: &Capabilities, stride: u64) -> Vec<Range<u64>> {
     let step = step(capabilities);
     let range = capabilities.max_storage_buffer_range;

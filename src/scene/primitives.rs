@@ -1,18 +1,18 @@
-//! Ribbons, tubes and triangles on the GPU.
+//! GPU streams of ribbons, tubes and triangles.
 
 use super::{ColourStream, PrimitiveKinds, colour_bytes};
 use crate::error::{Error, Result};
 use crate::geometry::{Parts, Primitives};
 use crate::vk::{Buffer, Device, Uploads};
 
-/// The bit of a segment's first vertex that tells a tube, as in `lib/line.glsl`.
+/// Flag of a tube in a segment's first vertex, as in `lib/line.glsl`.
 const TUBE: u32 = 1 << 31;
 
-/// Lines and triangles of a scene, as `lib/primitives.glsl` wants them.
+/// Lines and triangles of a scene, in the layout of `lib/primitives.glsl`.
 pub(crate) struct PrimitiveStreams {
-    /// Position, direction and radius of each vertex, seven floats; the radii of invalid ones are below 0.
+    /// Seven floats per vertex: position, direction, radius. Invalid vertices have a radius below 0.
     pub vertices: Buffer,
-    /// Directions of the lines at the vertices, if there are lines.
+    /// Line directions at the vertices, if there are lines.
     pub alongs: Option<Buffer>,
     pub colours: Option<Buffer>,
     pub colour_stream: ColourStream,
@@ -20,17 +20,17 @@ pub(crate) struct PrimitiveStreams {
     pub triangles: Option<Elements>,
 }
 
-/// Segments, or triangles.
+/// Segments or triangles.
 pub(crate) struct Elements {
-    /// The vertices of each.
+    /// Vertex indices.
     pub buffer: Buffer,
     pub count: u32,
-    /// Number of the first one in the scene: they come after the surfels.
+    /// Id of the first element: the ids of elements follow those of the surfels.
     pub first: u32,
 }
 
 impl PrimitiveStreams {
-    /// The streams of `parts`, which were checked; `None` if there are no lines and triangles.
+    /// Creates the streams of validated `parts`; `None` without lines and triangles.
     pub fn new(device: &Device, uploads: &Uploads<'_>, parts: &Parts<'_>) -> Result<Option<Self>> {
         let Some(primitives) = parts.primitives else { return Ok(None) };
         let surfels = parts.surfels.len();
@@ -65,7 +65,7 @@ impl PrimitiveStreams {
         }))
     }
 
-    /// What there is.
+    /// The kinds of primitives.
     pub fn kinds(&self) -> PrimitiveKinds {
         PrimitiveKinds {
             lines: self.lines.is_some(),
@@ -91,7 +91,7 @@ fn vertex(primitives: &Primitives, i: usize) -> [f32; 7] {
     [x, y, z, u, v, w, primitives.radii[i]]
 }
 
-/// Refuses what shaders cannot number or see.
+/// Returns an error for more elements or larger buffers than shaders support.
 fn check_sizes(device: &Device, primitives: &Primitives, surfels: usize) -> Result<()> {
     let numbers = surfels as u64 + primitives.count() as u64;
     if primitives.len() as u64 >= u64::from(TUBE) || numbers >= u64::from(u32::MAX) {

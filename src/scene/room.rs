@@ -1,4 +1,4 @@
-//! Whether there is room for a scene on a device.
+//! Check of a device's memory before an upload.
 
 use super::{ELLIPSE, SCALAR, VECTOR};
 use crate::error::{Error, Result};
@@ -6,7 +6,7 @@ use crate::geometry::memory::size;
 use crate::geometry::{Colours, Parts};
 use crate::vk::Device;
 
-/// Refuses a scene whose values alone are more than a device has memory, before anything is allocated.
+/// Returns an error if a scene's values exceed the device's memory, before anything is allocated.
 pub(super) fn check(device: &Device, parts: &Parts<'_>) -> Result<()> {
     let (bytes, most) = (least_bytes(parts), device.capabilities().memory);
     if bytes <= most {
@@ -25,7 +25,7 @@ pub(super) fn check(device: &Device, parts: &Parts<'_>) -> Result<()> {
     })
 }
 
-/// What positions, normals, radii, shapes and colours take at least, bytes.
+/// Lower bound of the memory of positions, normals, radii, shapes and colours, bytes.
 fn least_bytes(parts: &Parts<'_>) -> u64 {
     let each = |colours: Option<&Colours>, shaped: bool| {
         let colour = match colours {

@@ -1,16 +1,16 @@
-//! Similarities: what a scene can be placed by.
+//! Similarity transforms: rotation, uniform scale and translation.
 
 use crate::error::Cause;
 use crate::geometry::{Bounds, Camera};
 use glam::{DMat3, DMat4, DQuat, DVec3};
 
-/// How far a transform's axes may be from equal lengths and right angles, relative: matrices of single precision are 10⁻⁶ off, and what a
-/// thousandth of a pixel does not show is no shear.
+/// Relative tolerance for axes of equal length and right angles. Single-precision matrices are off by 10⁻⁶, and a shear that is invisible
+/// at a thousandth of a pixel is none.
 const TOLERANCE: f64 = 1e-5;
-/// Least and greatest scale: beyond, what is placed has no float32 numbers to be seen by.
+/// Smallest and largest scale: beyond, the scene has no float32 coordinates in eye space.
 const SCALES: [f64; 2] = [1e-15, 1e15];
 
-/// A rotation, a uniform scale and a translation: `x` is at `scale · rotation · x + translation`.
+/// Maps `x` to `scale · rotation · x + translation`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Similarity {
     scale: f64,
@@ -19,11 +19,11 @@ pub(crate) struct Similarity {
 }
 
 impl Similarity {
-    /// Leaves all where it is.
+    /// The identity.
     pub(crate) const IDENTITY: Self =
         Self { scale: 1.0, rotation: DMat3::IDENTITY, translation: DVec3::ZERO };
 
-    /// That of a matrix; or else what the matrix has or is.
+    /// The similarity of a matrix. The error is a predicate of the matrix.
     pub(crate) fn of(transform: &DMat4) -> Result<Self, Cause> {
         if !transform.is_finite() {
             return Err("holds a value that is not finite".into());
@@ -63,18 +63,18 @@ impl Similarity {
         Ok(Self { scale, rotation, translation: transform.w_axis.truncate() })
     }
 
-    /// The length of what is 1 long.
+    /// Scale factor of lengths.
     pub(crate) fn scale(&self) -> f64 {
         self.scale
     }
 
-    /// Directions from the scene's own axes to the world's.
+    /// Rotation of directions from the scene's space to the world's.
     pub(crate) fn rotation(&self) -> DMat3 {
         self.rotation
     }
 
-    /// A camera of the world as the scene has it in its own axes and its own unit: the view stays rigid, and all distances, those of the
-    /// near and the far plane too, are `1 / scale` of the world's.
+    /// Transforms a camera from the world's space to the scene's. The view stays rigid; distances, including near and far plane, become `1
+    /// / scale` of the world's.
     pub(crate) fn seen_by(&self, camera: &Camera) -> Camera {
         let mut rigid = DMat4::from_mat3(self.rotation);
         rigid.w_axis = self.translation.extend(1.0);
@@ -87,7 +87,7 @@ impl Similarity {
         }
     }
 
-    /// Bounds of what is within these.
+    /// Transforms bounds.
     pub(crate) fn bounds(&self, own: &Bounds) -> Bounds {
         let centre = self.scale * (self.rotation * own.centre()) + self.translation;
         let half = 0.5 * own.max - 0.5 * own.min;
@@ -95,7 +95,7 @@ impl Similarity {
         let reach = self.scale
             * (half.x * turn.x_axis.abs() + half.y * turn.y_axis.abs() + half.z * turn.z_axis.abs());
         let radius = self.scale * own.radius;
-        // Turned, the box is larger than what is in it; the sphere is not.
+        // The box of a rotated box is larger than needed; the sphere is not.
         let reach = reach.min(DVec3::splat(radius));
         Bounds { min: centre - reach, max: centre + reach, radius }
     }
@@ -113,7 +113,7 @@ mod tests {
     #[test]
     fn a_similarity_is_read_off_its_matrix() {
         let matrix = turned();
-        // What single precision makes of it is one, too.
+        // A single-precision copy is a similarity, too.
         for (matrix, most) in [(matrix, 1e-12), (matrix.as_mat4().as_dmat4(), 1e-6)] {
             let found = Similarity::of(&matrix).unwrap();
             assert!((found.scale() - 2.5).abs() < most);

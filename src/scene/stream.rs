@@ -1,27 +1,27 @@
-//! Values of surfels on the GPU, and where shaders find them (`shaders-glsl/lib/surfels.glsl`).
+//! Streams of surfel values on the GPU, in the layout of `shaders-glsl/lib/surfels.glsl`.
 
 use super::ColourStream;
 use crate::vk::{Binding, Buffer, Constants, shaders::constant};
 use std::ops::Range;
 
-/// A value a surfel, in a buffer of ours side by side, or in a host's as it has them.
+/// One value per surfel: contiguous in a buffer of the engine, or strided in one of the host.
 pub(crate) struct Stream {
     pub buffer: Buffer,
-    /// Of the first value, bytes.
+    /// Offset of the first value, bytes.
     pub offset: u64,
-    /// From one value to the next, bytes, a multiple of 4; 0 where all surfels have the same one.
+    /// Distance between values, bytes, a multiple of 4; 0 if all surfels share one value.
     pub stride: u64,
-    /// Of a value, bytes.
+    /// Size of a value, bytes.
     pub size: u64,
 }
 
 impl Stream {
-    /// Values of `size` bytes, side by side.
+    /// Contiguous values of `size` bytes.
     pub fn side_by_side(buffer: Buffer, size: u64) -> Self {
         Self { buffer, offset: 0, stride: size, size }
     }
 
-    /// Where values `range` are, from a multiple of `alignment` on.
+    /// The binding of the values `range`, from a multiple of `alignment` on.
     pub fn binding(&self, range: &Range<u64>, alignment: u64) -> Binding<'_> {
         let first = self.offset + range.start * self.stride;
         let end = self.offset + (range.end - 1) * self.stride + self.size;
@@ -29,54 +29,54 @@ impl Stream {
         Binding::Storage(&self.buffer, start, end - start)
     }
 
-    /// The same as shaders want it. Ranges begin at surfels so far apart that all begin as far beyond a multiple of `alignment`.
+    /// The same for shaders. Ranges start at surfels whose offsets are equal modulo `alignment`.
     pub fn words(&self, alignment: u64) -> Words {
         Words { offset: (self.offset % alignment / 4) as u32, stride: (self.stride / 4) as u32 }
     }
 }
 
-/// Where a range that is bound has its values, in words of 32 bits.
+/// Layout of the values in a binding, in 32-bit words.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Words {
-    /// The first.
+    /// Offset of the first value.
     pub offset: u32,
-    /// From one to the next.
+    /// Distance between values.
     pub stride: u32,
 }
 
-/// How a scene holds normals; the numbers are those of `shaders-glsl/lib/surfels.glsl`.
+/// Format of normals, with the values of `shaders-glsl/lib/surfels.glsl`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum NormalStream {
     /// Three floats.
     Float = 0,
-    /// Signed normalized integers of 8 bits.
+    /// 8-bit signed normalized integers.
     Snorm8 = 1,
-    /// The same of 16 bits.
+    /// 16-bit signed normalized integers.
     Snorm16 = 2,
     /// Half floats.
     Half = 3,
 }
 
-/// Where shaders find the values of surfels.
+/// Layout of all streams of a chunk.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct SurfelLayout {
-    /// Of positions.
+    /// Positions.
     pub positions: Words,
-    /// Of normals.
+    /// Normals.
     pub normals: Words,
-    /// What normals are held as.
+    /// Format of the normals.
     pub normal_stream: NormalStream,
-    /// Of radii.
+    /// Radii.
     pub radii: Words,
-    /// Of colours.
+    /// Colours.
     pub colours: Words,
-    /// Of ellipses.
+    /// Ellipses.
     pub ellipses: Words,
 }
 
 impl SurfelLayout {
-    /// Each stream side by side in a buffer of its own.
+    /// Contiguous streams in buffers of their own.
     pub fn side_by_side(colours: ColourStream) -> Self {
         let every = |stride| Words { offset: 0, stride };
         Self {
@@ -89,7 +89,7 @@ impl SurfelLayout {
         }
     }
 
-    /// Adds it to specialization constants.
+    /// Adds the layout to specialization constants.
     pub(crate) fn add_to(&self, constants: Constants) -> Constants {
         constants
             .with(constant::POSITION_OFFSET, self.positions.offset)

@@ -1,34 +1,34 @@
-//! Which streams a scene has: what frames, shaders and memory depend on.
+//! The streams of a scene, on which frames, shaders and memory depend.
 
 use super::{ELLIPSE, SCALAR, SurfelLayout, VECTOR};
 
-/// What a scene has beside positions, normals and radii.
+/// Streams of a scene beside positions, normals and radii.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Streams {
     /// Discs are ellipses.
     pub ellipses: bool,
-    /// Some surfels have no side.
+    /// Some surfels are two-sided.
     pub two_sided: bool,
-    /// Some discs end at clip lines.
+    /// Some discs have clip lines.
     pub clips: bool,
-    /// Surfels have normalization weights, and some have four: none, or whether.
+    /// `None` without normalization weights; otherwise whether some surfels have corner weights.
     pub weights: Option<bool>,
-    /// How it holds colours.
+    /// Format of colours.
     pub colours: ColourStream,
-    /// What else there is than surfels.
+    /// Kinds of primitives beside surfels.
     pub primitives: PrimitiveKinds,
-    /// How it holds the texels of its texture, if it has one.
+    /// Format of the texels, with a texture.
     pub texture: Option<ColourStream>,
-    /// Some points shine in their own way.
+    /// Some points have materials.
     pub materials: bool,
-    /// Where it has its surfels' values.
+    /// Layout of the surfels' values.
     pub layout: SurfelLayout,
-    /// Nobody has looked whether all of them can be drawn: the shaders have to.
+    /// The surfels are not validated on the CPU, so shaders validate them.
     pub unchecked: bool,
 }
 
 impl Streams {
-    /// Those of surfels that have sides, own all their buffers, and hold nothing else; each stream side by side.
+    /// One-sided circles in buffers of the engine, with contiguous streams and nothing else.
     pub fn circles(colours: ColourStream) -> Self {
         Self {
             ellipses: false,
@@ -44,7 +44,7 @@ impl Streams {
         }
     }
 
-    /// The streams of surfels that are uploaded, by name, with the bytes of a surfel; a clip takes 32 more, weights at corners 16.
+    /// Streams of uploaded surfels by name, with bytes per surfel. A clip takes 32 more, corner weights 16.
     pub fn per_surfel(&self) -> Vec<(&'static str, u64)> {
         let optional = [
             ("colours", self.colours.bytes()),
@@ -57,42 +57,42 @@ impl Streams {
     }
 }
 
-/// Which lines and triangles a scene has.
+/// Kinds of lines and triangles in a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct PrimitiveKinds {
     /// Ribbons or tubes.
     pub lines: bool,
     /// Triangles.
     pub triangles: bool,
-    /// How it holds the colours of their vertices.
+    /// Format of the vertex colours.
     pub colours: ColourStream,
 }
 
 impl PrimitiveKinds {
-    /// Nothing but surfels.
+    /// Surfels only.
     pub const NONE: Self = Self { lines: false, triangles: false, colours: ColourStream::None };
 
-    /// Whether it has any.
+    /// Whether there are any.
     pub fn any(self) -> bool {
         self.lines || self.triangles
     }
 }
 
-/// How a scene holds its colours; the numbers are those of `shaders-glsl/lib/colour_streams.glsl`.
+/// Format of colours, with the values of `shaders-glsl/lib/colour_streams.glsl`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[repr(u32)]
 pub enum ColourStream {
-    /// It has none.
+    /// None.
     None = 0,
-    /// sRGB-encoded, 8 bits a channel.
+    /// sRGB-encoded, 8 bits per channel.
     Srgb8 = 1,
     /// Linear float.
     Linear = 2,
-    /// Coordinates in a texture, and for methods that blend a colour a point that which is there, linear float.
+    /// Coordinates in a texture. For methods that blend a colour per point: the texture's colour there, linear float.
     Textured = 3,
-    /// Linear, 8 bits a channel: in buffers of a host.
+    /// Linear, 8 bits per channel, in buffers of the host.
     Unorm8 = 4,
-    /// Linear half floats, four: in buffers of a host.
+    /// Linear, four half floats, in buffers of the host.
     Half = 5,
 }
 

@@ -5,10 +5,10 @@ use crate::error::{Error, Result};
 use crate::geometry::MipMap;
 use crate::vk::{Buffer, Device, Uploads};
 
-/// Size, number of levels and texels, as `lib/texture.glsl` wants them.
+/// Size, number of levels and texels, in the layout of `lib/texture.glsl`.
 pub(crate) struct TextureStream {
     pub buffer: Buffer,
-    /// How it holds texels.
+    /// Format of the texels.
     pub texels: ColourStream,
 }
 

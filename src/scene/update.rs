@@ -1,4 +1,4 @@
-//! New values for surfels that are on the GPU.
+//! Updates of surfels on the GPU.
 
 use super::live::check_bounds;
 use super::{ColourStream, Scene, Stream, largest};
@@ -10,8 +10,8 @@ use glam::Vec3;
 use std::ops::Range;
 use std::sync::atomic::Ordering;
 
-/// New values of neighbouring surfels of a scene: of each stream one a surfel, or none where it stays as it is. A scene keeps the streams that
-/// it was uploaded with.
+/// New values of consecutive surfels of a scene. A stream that is `None` keeps its values. The scene keeps the set of streams of its
+/// upload.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Changes<'a> {
     /// Centres, relative to the scene's origin.
@@ -20,46 +20,47 @@ pub struct Changes<'a> {
     pub normals: Option<&'a [Vec3]>,
     /// Radii.
     pub radii: Option<&'a [f32]>,
-    /// Which of them have no side, along with their radii, in a scene that has such.
+    /// Which radii are of two-sided surfels, together with `radii`, in a scene that has two-sided surfels.
     pub two_sided: Option<&'a [bool]>,
-    /// Ellipses, in a scene that has them.
+    /// Ellipses, in a scene that has ellipses.
     pub ellipses: Option<&'a [Ellipse]>,
-    /// Colours, in the form in which the scene has them.
+    /// Colours, in the scene's format.
     pub colours: Option<&'a Colours>,
-    /// Bounds of the scene from now on, world space. Without them, those of new positions are added, or where all are new take their place.
+    /// New bounds, world space. `None` extends the bounds by new positions, or replaces them if all positions are new.
     pub bounds: Option<Bounds>,
 }
 
 impl Scene {
-    /// Gives surfels from number `first` on new values. Frames that are rendered later have them.
+    /// Replaces values of the surfels from index `first` on. Later frames render the new values.
     ///
-    /// Normalization weights stay, which are those of the surfels as they were.
+    /// Normalization weights stay those of the old surfels.
     ///
-    /// What is not valid then ([`Surfels::is_valid`]) is not drawn, and counted as `invalid`: from the first change on that could bring such,
-    /// the shaders look at every surfel. In another renderer's frames, [`crate::embed::update`] does the same.
+    /// Invalid surfels ([`Surfels::is_valid`]) are not drawn, and are counted as `invalid`: after the first change that may make some
+    /// invalid, the shaders validate every surfel. In frames of a host, use [`crate::embed::update`].
     ///
     /// # Errors
-    /// [`Error::Usage`] where the arrays are of unequal length or go beyond the scene's end; for a stream that the scene has not or not in this
-    /// form; for normals and ellipses that clip lines or weights at corners depend on; for surfels in buffers of a host. Nothing is changed then.
+    /// [`Error::Usage`] for arrays of unequal length or beyond the scene's end; for a stream that the scene does not have, or has in
+    /// another format; for normals and ellipses that clip lines or corner weights depend on; for surfels in buffers of the host. Nothing is
+    /// changed then.
     pub fn update(&self, first: u64, changes: &Changes<'_>) -> Result<()> {
         self.change(&Uploads::now(self.positions.buffer.device())?, first, changes)
     }
 
-    /// [`Scene::update`] by way of `uploads`, which are of the same device.
+    /// Like [`Scene::update`], through `uploads` of the same device.
     pub(crate) fn change(&self, uploads: &Uploads<'_>, first: u64, changes: &Changes<'_>) -> Result<()> {
         let count = changes.count()?;
         let range = first..first.saturating_add(count);
         self.check(&range, changes)?;
         let bounds = changes.bounds.or_else(|| self.bounds_with(&range, changes));
         bounds.as_ref().map_or(Ok(()), check_bounds)?;
-        // A radius has a surfel drawn that was left out for whatever else of it.
+        // A new radius enables a surfel that was disabled as invalid for another reason.
         let revived = self.had_invalid && changes.radii.is_some();
         if revived || changes.may_be_invalid(self.ellipses.is_some()) {
-            // First: what is written may be drawn.
+            // Before the writes: the new values may be drawn.
             self.unchecked.store(true, Ordering::Relaxed);
         }
         if let (Some(known), Some(radii)) = (&self.largest, changes.radii) {
-            // Bits of numbers that are not below 0 are in their order.
+            // The bits of non-negative floats are in the order of the floats.
             known.fetch_max(largest(radii).to_bits(), Ordering::Relaxed);
         }
         write(uploads, Some(&self.positions), first, changes.positions)?;
@@ -111,16 +112,16 @@ impl Scene {
         Ok(())
     }
 
-    /// Bounds that hold new positions, too, or them alone.
+    /// Bounds with the new positions, or of these alone.
     fn bounds_with(&self, range: &Range<u64>, changes: &Changes<'_>) -> Option<Bounds> {
         let positions = changes.positions?;
-        // A copy only where some are left out.
+        // Copy only if some are left out.
         let valid: Vec<Vec3> = if positions.iter().all(is_bounded) {
             Vec::new()
         } else {
             positions.iter().copied().filter(is_bounded).collect()
         };
-        // What is nowhere changes nothing.
+        // Positions that are not finite do not change the bounds.
         positions.iter().any(is_bounded).then_some(())?;
         let of_positions = Bounds::of(if valid.is_empty() { positions } else { &valid })?;
         let largest = changes.radii.map(largest).or(self.largest()).unwrap_or_default();
@@ -131,7 +132,7 @@ impl Scene {
 }
 
 impl Changes<'_> {
-    /// Of how many surfels they are.
+    /// Number of surfels.
     fn count(&self) -> Result<u64> {
         let lengths = [
             self.positions.map(<[_]>::len),
@@ -152,10 +153,10 @@ impl Changes<'_> {
         }
     }
 
-    /// Whether some surfel may not be valid with them. Radii tell it themselves, as they are marked.
+    /// Whether some surfel may become invalid. Invalid radii are marked as such.
     fn may_be_invalid(&self, ellipses: bool) -> bool {
         let shaped = |e: &Ellipse| is_unit(e.major) && e.aspect > 0.0 && e.aspect <= 1.0;
-        // An ellipse is at a right angle to its normal, which may be the old one.
+        // An ellipse must be orthogonal to its normal, which may be the old one.
         let turned = ellipses && (self.normals.is_some() || self.ellipses.is_some());
         turned
             || !self.positions.unwrap_or_default().iter().all(is_bounded)
@@ -172,7 +173,7 @@ fn is_bounded(v: &Vec3) -> bool {
     v.abs().cmple(Vec3::splat(Surfels::LARGEST)).all()
 }
 
-/// Radii as scenes hold them, those that are not valid 0.
+/// Radii as scenes store them; invalid ones are 0.
 fn marked(radii: &[f32], two_sided: Option<&[bool]>) -> Vec<f32> {
     let valid = |radius: f32| if radius > 0.0 && radius <= Surfels::LARGEST { radius } else { 0.0 };
     let sign = |i: usize| if two_sided.is_some_and(|two_sided| two_sided[i]) { -1.0 } else { 1.0 };

@@ -1,4 +1,4 @@
-//! The stream of normalization weights, as `shaders-glsl/lib/weights.glsl` reads it.
+//! The stream of normalization weights, in the layout of `shaders-glsl/lib/weights.glsl`.
 
 use super::{SCALAR, step};
 use crate::error::Result;
@@ -6,26 +6,26 @@ use crate::geometry::{Surfels, Weights, square_axis};
 use crate::vk::{Binding, Buffer, Device, Uploads};
 use std::ops::Range;
 
-/// Set in an entry that is where a surfel's corners are, not its weight, whose sign bit never is.
+/// Flag of an entry that is the offset of corner weights. A weight is positive, so its sign bit is never set.
 const AT_CORNERS: u32 = 1 << 31;
 
 /// Normalization weights of a scene.
 pub(crate) struct WeightBuffer {
     pub(super) buffer: Buffer,
-    /// Where each chunk of surfels has its words, in words.
+    /// The word range of each chunk of surfels.
     chunks: Vec<Range<u64>>,
-    /// Whether some surfels have weights at the corners of their squares.
+    /// Whether some surfels have corner weights.
     pub corners: bool,
 }
 
-/// The words of every chunk of surfels, one chunk after the other, and where each has them.
+/// Words of all chunks, in order, and the word range of each.
 struct WeightStream {
     words: Vec<u32>,
     chunks: Vec<Range<u64>>,
 }
 
 impl WeightBuffer {
-    /// Those of `surfels`.
+    /// Creates the weights of `surfels`.
     pub(super) fn new(
         device: &Device,
         uploads: &Uploads<'_>,
@@ -39,7 +39,7 @@ impl WeightBuffer {
         Ok(Self { buffer, chunks, corners: !weights.corners.is_empty() })
     }
 
-    /// A chunk's.
+    /// The binding of a chunk.
     pub(super) fn binding(&self, chunk: usize) -> Binding<'_> {
         let Range { start, end } = self.chunks[chunk];
         Binding::Storage(&self.buffer, start * SCALAR, (end - start) * SCALAR)
@@ -47,7 +47,7 @@ impl WeightBuffer {
 }
 
 impl WeightStream {
-    /// Of `weights`, those of `surfels`. A chunk's words start at a multiple of `step`: an entry a surfel, then what is at corners.
+    /// The stream of `weights` of `surfels`. Each chunk starts at a multiple of `step`: one entry per surfel, then the corner weights.
     fn new(surfels: &Surfels, weights: &Weights, chunks: &[Range<u64>], step: u64) -> Self {
         let mut stream = Self { words: Vec::new(), chunks: Vec::new() };
         for chunk in chunks {

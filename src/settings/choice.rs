@@ -1,23 +1,23 @@
-//! Choices among few that go by names: in options, reports, results and the window.
+//! Named choices: in options, reports, results and the window.
 
 use std::str::FromStr;
 use strum::{EnumMessage, VariantArray};
 
-/// A choice among few, each of which has a name and a line that tells what it is.
+/// A small set of named choices with one line of help each.
 pub trait Choice: Copy + Send + Sync + 'static {
-    /// All of them, in the order of options.
+    /// All choices, in the order of options.
     const ALL: &'static [Self];
 
-    /// Its name: the variant's in kebab case.
+    /// The name: the variant's in kebab case.
     fn name(self) -> &'static str;
 
-    /// All its names, the one of [`name`](Self::name) among them.
+    /// All names, including [`name`](Self::name).
     fn names(self) -> &'static [&'static str];
 
-    /// What it is: the first paragraph of its documentation, without the full stop.
+    /// The help: the first paragraph of its documentation, without the full stop.
     fn about(self) -> &'static str;
 
-    /// The one of a name.
+    /// The choice with a name.
     fn named(name: &str) -> Option<Self>;
 }
 
@@ -62,7 +62,7 @@ mod tests {
             );
             let kebab = |name: &str| name.chars().all(|c| c.is_ascii_lowercase() || c == '-');
             assert!(kebab(one.name()), "{one:?}");
-            // A line of the program's help.
+            // One line of help.
             let about = one.about();
             assert!((3..=120).contains(&about.chars().count()), "{one:?}: {about}");
             assert!(!about.contains(['`', '[', '\n']), "{one:?}: {about}");

@@ -1,4 +1,4 @@
-//! What a frame is asked to be: shared by the Vulkan methods and the float64 reference.
+//! Settings of a frame, shared by the Vulkan methods and the float64 reference.
 
 mod choice;
 pub mod methods;
@@ -13,37 +13,37 @@ pub use choice::Choice;
 pub use outputs::{Outputs, Precision, Rasterizer};
 use std::ops::RangeInclusive;
 
-/// Settings of a frame that are not the camera's or the scene's.
+/// Settings of a frame beside camera and scene.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
-    /// How surfels become pixels.
+    /// Splatting: how surfels become pixels.
     pub splatting: Splatting,
-    /// Makes the picture of points one pixel large instead; what is said of splats, kernels and filters is of no use then.
+    /// Selects pull–push: points one pixel large. Settings of splats, kernels and filters are then unused.
     pub pull_push: Option<PullPush>,
-    /// Kernel cut-off `F`, in σ: the splat ends at `u² + v² = F²`. In [`Settings::CUTOFFS`].
+    /// Kernel cut-off `F`, in σ: the splat ends at `u² + v² = F²`. Within [`Settings::CUTOFFS`].
     pub cutoff: f32,
-    /// Variance of the low-pass filter `H = lowpass · I`, px², at most [`Settings::MOST_LOWPASS`]. Never less than what makes each splat own a pixel centre
-    /// ([`Settings::least_lowpass`]).
+    /// Variance of the low-pass filter `H = lowpass · I`, px², at most [`Settings::MOST_LOWPASS`]. At least [`Settings::least_lowpass`] is
+    /// applied, so that each splat covers a pixel centre.
     pub lowpass: f32,
-    /// What the low-pass filter widens.
+    /// Splats that the low-pass filter widens.
     pub widen: Widen,
-    /// Depth tolerance ε in surfel radii: splats no further than this behind the nearest one, along the viewing ray, are blended.
+    /// Depth tolerance ε in surfel radii: splats at most this far behind the nearest one, along the viewing ray, are blended.
     pub epsilon: f32,
-    /// Which side of a surfel is seen.
+    /// Back-face culling.
     pub cull: Cull,
-    /// What α is.
+    /// Meaning of α.
     pub alpha: Alpha,
-    /// What the picture shows.
+    /// Quantity that the picture shows.
     pub shading: Shading,
-    /// Colour where no surfel is, linear RGB; `None` leaves it transparent (all channels 0). What is partly covered is blended with it.
+    /// Background colour, linear RGB; `None` is transparent (all channels 0). Partly covered pixels are blended with it.
     pub background: Option<[f32; 3]>,
     /// Lights and material of [`Shading::Lit`].
     pub lighting: Lighting,
 }
 
 impl Default for Settings {
-    /// What `surfel bench --suite full` supports: the cut-off beyond which the RMSE no longer falls though time rises, and a filter that costs
-    /// nothing where splats are larger.
+    /// Defaults from `surfel bench --suite full`: the cut-off beyond which the RMSE no longer falls though time rises, and a filter that
+    /// costs nothing for splats larger than itself.
     fn default() -> Self {
         Self {
             pull_push: None,
@@ -62,20 +62,20 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Cut-offs, σ. A Gaussian is below 10⁻¹³ beyond 8 σ, and what is lit are sums of normals, whose squares must not underflow in float32:
-    /// those of weights below 10⁻¹⁹ do.
+    /// Range of cut-offs, σ. A Gaussian is below 10⁻¹³ beyond 8 σ. Lighting needs sums of normals whose squares do not underflow in
+    /// float32, as they do for weights below 10⁻¹⁹.
     pub const CUTOFFS: RangeInclusive<f32> = 0.1..=8.0;
-    /// Largest low-pass variance, px²: a splat is no wider for its filter than 10 px a σ, however many there are.
+    /// Largest low-pass variance, px²: the filter widens a splat to at most 10 px per σ.
     pub const MOST_LOWPASS: f32 = 100.0;
 
-    /// The least low-pass variance that leaves no splat without a pixel centre, px²: `(0.71 / F)²`, so that the cut-off radius is at
-    /// least √½ px. It is the low-pass of the visibility footprint.
+    /// Least low-pass variance at which every splat covers a pixel centre, px²: `(0.71 / F)²`, so that the cut-off radius is at least √½
+    /// px. The visibility footprint uses it.
     pub fn least_lowpass(&self) -> f32 {
         (0.71 / self.cutoff).powi(2)
     }
 
-    /// The low-pass variance of the attribute footprint, px²: what is added to a splat's variance, or with [`Widen::Small`] what
-    /// it is raised to.
+    /// Low-pass variance of the attribute footprint, px²: the variance that is added to a splat's, or with [`Widen::Small`] its lower
+    /// bound.
     pub fn attribute_lowpass(&self) -> f32 {
         match self.splatting.filter {
             Filter::None => self.least_lowpass(),
@@ -83,7 +83,7 @@ impl Settings {
         }
     }
 
-    /// Refuses splats of a scene that has lines or triangles, as `there` says.
+    /// Returns an error if the scene has lines or triangles, as `there` tells, and the method draws splats only.
     pub fn check_primitives(&self, there: bool) -> Result<()> {
         if there && self.pull_push.is_none() {
             Err(Error::Usage(
@@ -94,7 +94,7 @@ impl Settings {
         }
     }
 
-    /// Refuses numbers of points where pixels are sums of several.
+    /// Returns an error if point ids are requested of a method that blends several points.
     pub fn check_outputs(&self, outputs: Outputs) -> Result<()> {
         if outputs.id && self.pull_push.is_none() {
             Err(Error::Usage(
@@ -107,7 +107,7 @@ impl Settings {
         }
     }
 
-    /// Refuses what no frame can be made of.
+    /// Validates the settings.
     pub fn check(&self) -> Result<()> {
         if self.pull_push.is_some() && self.splatting != Splatting::default() {
             return Err(Error::Usage(
@@ -148,7 +148,7 @@ impl Settings {
     }
 }
 
-/// What the low-pass filter `H` widens: how it turns the variance `V` of a projected kernel, with eigenvalues `λ`, into that of the
+/// Splats that the low-pass filter `H` widens: how the variance `V` of a projected kernel, with eigenvalues `λ`, becomes that of the
 /// attribute footprint.
 #[derive(
     Clone,
@@ -170,16 +170,17 @@ pub enum Widen {
     /// `V + H`, the convolution of both (zwicker2004, equation 3).
     #[default]
     All,
-    /// Splats, or their axes, that are smaller than the filter.
+    /// Splats, or axes of splats, that are smaller than the filter.
     ///
-    /// Along either of `V`'s axes `λ` becomes `max(λ + least, H)`, with [`Settings::least_lowpass`]. Larger splats stay sharp and cost fewer pixels. Continuous in `V`, so that nothing jumps as a
-    /// splat grows, and nowhere less than the visibility footprint, so that every pixel which that covers gets attributes. (Clamping
-    /// the axes is how texture filters bound theirs: Greene, Heckbert, *Creating Raster Omnimax Images from Multiple Perspective
-    /// Views Using the Elliptical Weighted Average Filter*, IEEE Computer Graphics and Applications 1986.)
+    /// Along each axis of `V`, `λ` becomes `max(λ + least, H)`, with [`Settings::least_lowpass`]. Larger splats stay sharp and cost fewer
+    /// pixels. The result is continuous in `V`, so that nothing jumps as a splat grows, and at least the visibility footprint, so that
+    /// every visible pixel gets attributes. Texture filters clamp the axes of their footprints in this way: Greene, Heckbert, *Creating
+    /// Raster Omnimax Images from Multiple Perspective Views Using the Elliptical Weighted Average Filter*, IEEE Computer Graphics and
+    /// Applications 1986.
     Small,
 }
 
-/// Which side of a surfel is seen.
+/// Back-face culling.
 #[derive(
     Clone,
     Copy,
@@ -198,11 +199,11 @@ pub enum Cull {
     ///
     /// The normal is flipped towards the eye before it is accumulated.
     None,
-    /// Surfels whose normals face away are left out.
+    /// Surfels whose normals face away are culled.
     Back,
 }
 
-/// What α says of a pixel.
+/// Meaning of α.
 #[derive(
     Clone,
     Copy,
@@ -217,19 +218,19 @@ pub enum Cull {
 )]
 #[strum(serialize_all = "kebab-case")]
 pub enum Alpha {
-    /// 1 where a splat owns the pixel's centre, else 0.
+    /// 1 if a splat covers the pixel's centre, otherwise 0.
     Mask,
-    /// The part of the pixel that surface covers: smooth outlines.
+    /// The covered part of the pixel: smooth outlines.
     ///
-    /// Of 16 samples, those within any splat, hidden or not. A splat counts up to 0.77 of its cut-off
-    /// and unfiltered: discs of radii 1.3 times as large as needed leave no holes then, and reach no further beyond an outline. Each also
-    /// covers the sample nearest to its centre if it holds none in that pixel, so that what is drawn shows however small it is. A clip line
-    /// parts the pixels that it cuts by their samples too; what it cuts off is drawn up to half a pixel beyond it where nothing else is.
-    /// Pull-push has a mask's pixels, and those next to an empty one have the samples within any disc that was made about them.
+    /// Of 16 samples, those inside any splat, hidden or not. A splat counts up to 0.77 of its cut-off and unfiltered: discs with radii 1.3
+    /// times as large as needed then leave no holes and do not extend beyond the outline. Each splat without a sample in its centre's pixel
+    /// covers the sample nearest to its centre, so that it is visible however small it is. A clip line divides the pixels that it cuts by
+    /// samples, too; the removed side is drawn up to half a pixel beyond it where nothing else is. Pull–push has the pixels of a mask;
+    /// those next to an empty one have the samples inside any disc that was reconstructed around them.
     Coverage,
 }
 
-/// What the picture shows.
+/// Quantity that the picture shows.
 #[derive(
     Clone,
     Copy,
@@ -246,7 +247,7 @@ pub enum Alpha {
 pub enum Shading {
     /// Lit by a lamp at the eye.
     ///
-    /// Blinn–Phong in linear light, with the lamps of [`Lighting`].
+    /// Blinn–Phong in linear light, with the lights of [`Lighting`].
     Lit,
     /// The points' own colours.
     #[strum(to_string = "color", serialize = "colour")]
@@ -255,24 +256,24 @@ pub enum Shading {
     Normal,
     /// Distance from the eye along the view, in the positions' unit.
     Depth,
-    /// How many splats are blended (pajarola2004 figure 18).
+    /// Number of blended splats (pajarola2004 figure 18).
     Overlap,
-    /// What the splats' weights add up to.
+    /// Sum of the splats' weights.
     ///
-    /// Normalization weights are included: how far they are from a partition of unity.
+    /// Includes normalization weights: shows the deviation from a partition of unity.
     Weight,
 }
 
 /// Lights and material, all linear.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Lighting {
-    /// Colour of a surface whose scene has none.
+    /// Colour of surfaces without colours.
     pub albedo: [f32; 3],
-    /// Light that comes from everywhere, as a factor of the albedo.
+    /// Ambient light, as a factor of the albedo.
     pub ambient: f32,
-    /// Lambert's term of the headlight, which stands at the eye.
+    /// Lambertian factor of the headlight, which is at the eye.
     pub headlight: f32,
-    /// Blinn–Phong's specular factor, the same for every light.
+    /// Blinn–Phong's specular factor, the same for all lights.
     pub specular: f32,
     /// Blinn–Phong's exponent.
     pub shininess: f32,
@@ -290,10 +291,10 @@ pub struct DirectionalLight {
 }
 
 impl Lighting {
-    /// Most directional lights beside the headlight.
+    /// Maximum number of directional lights beside the headlight.
     pub const MAX_DIRECTIONAL: usize = 4;
 
-    /// Refuses what no surface can be lit by.
+    /// Validates the lights and the material.
     fn check(&self) -> Result<()> {
         let lights = self.directional.len();
         if lights > Self::MAX_DIRECTIONAL {

@@ -1,8 +1,8 @@
-//! What a frame gives, how precisely, and by what means.
+//! Outputs of a frame, their precision, and the rasterizer.
 
 use super::{Settings, Shading};
 
-/// What visits the pixels of a splat, or of a point. Both make the same picture: of splats up to rounding, of points bit for bit.
+/// Rasterization path. Both paths produce the same picture: of splats up to rounding, of points bit for bit.
 #[derive(
     Clone,
     Copy,
@@ -17,27 +17,27 @@ use super::{Settings, Shading};
 )]
 #[strum(serialize_all = "kebab-case")]
 pub enum Rasterizer {
-    /// The device's own: triangles or points, depth test, blending; works everywhere.
+    /// Raster path: triangles or points with depth test and blending; works on every device.
     Draw,
-    /// Compute shaders: faster where fragments are slow.
+    /// Compute path: faster on devices with slow fragment processing.
     ///
-    /// They add floats and take minima of 64-bit integers atomically; sums are of 32-bit floats only.
+    /// It needs atomic addition of floats and atomic minima of 64-bit integers; sums are 32-bit floats only.
     Compute,
 }
 
-/// Images that a frame gives beside the picture itself.
+/// Images that a frame returns beside the colours.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Outputs {
     /// Unit normals, world space.
     pub normal: bool,
     /// Eye-space depth.
     pub depth: bool,
-    /// Numbers of the points that are shown ([`Picture::id`](crate::Picture::id)); by pull–push alone.
+    /// Point ids ([`Picture::id`](crate::Picture::id)); pull–push only.
     pub id: bool,
 }
 
 impl Outputs {
-    /// With what a PNG of frames of these settings needs beside: on an opaque background α does not tell where a surface is.
+    /// Adds the image that a PNG of these settings needs: on an opaque background α does not tell where a surface is.
     #[must_use]
     pub fn with_mask(self, settings: &Settings) -> Self {
         let opaque = settings.background.is_some();
@@ -50,7 +50,7 @@ impl Outputs {
     }
 }
 
-/// Width of the floats in which weighted sums, or the samples of pull–push, are kept.
+/// Precision of weighted sums, and of the samples of pull–push.
 #[derive(
     Clone,
     Copy,
@@ -71,8 +71,8 @@ pub enum Precision {
     Full,
     /// 16 bits: half the memory and bandwidth.
     ///
-    /// Blending in it may truncate, so that sums of many splats come out low. Samples of pull–push keep
-    /// 32 bits of what is compared most closely, the distances, so that nothing is lost that can be seen; displacements and radii end at
-    /// 65504 px, and colours beyond 1 of scenes that have linear ones at 65408.
+    /// Blending in 16 bits may truncate, so that sums of many splats are too low. Samples of pull–push keep 32-bit distances, on which the
+    /// comparisons depend, so that no visible surface is lost; displacements and radii are limited to 65504 px, and linear colours to
+    /// 65408.
     Half,
 }

@@ -1,15 +1,15 @@
-//! Which pull–push makes the picture.
+//! Variants of pull–push.
 
-/// How a surface is made of points one pixel large (marroquim2008).
+/// Reconstruction of a surface from points one pixel large (marroquim2008).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct PullPush {
-    /// What decides which samples are one surface, and how far each reaches.
+    /// Criteria for samples of one surface, and the extent of each.
     pub rules: Rules,
-    /// Where the levels are kept. It changes no picture.
+    /// Storage of the levels. It does not change the picture.
     pub storage: Storage,
 }
 
-/// What decides which samples are one surface, and how far each reaches.
+/// Criteria for samples of one surface, and the extent of each.
 #[derive(
     Clone,
     Copy,
@@ -26,17 +26,17 @@ pub struct PullPush {
 pub enum Rules {
     /// As published: ellipses by parallel projection, intervals of one radius, and means over the four nearest coarser pixels.
     Paper,
-    /// Perspective ellipses, intervals of two radii, and means over the nearest surface alone, of coarser pixels and neighbours.
+    /// Perspective ellipses, intervals of two radii, and means over the nearest surface only, of coarser pixels and neighbours.
     Robust,
 }
 
-/// Where the levels are kept: in which of two pyramids a pass reads and writes.
+/// Storage of the levels in two pyramids.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Storage {
-    /// All that is pulled in one, all that is pushed in the other: what a pass reads is never overwritten.
+    /// Pulled levels in one pyramid, pushed levels in the other: no input is overwritten.
     Apart,
-    /// As published (marroquim2008 §3.5): even levels are made in one, odd ones in the other, so that no pass writes what it reads from. The
-    /// push reads two levels at once, for which what was pulled is first copied beside the level above it.
+    /// As published (marroquim2008 §3.5): even levels in one pyramid, odd levels in the other, so that no pass writes to its input. The
+    /// push reads two levels at once, so pulled levels are first copied beside the level above.
     PingPong,
 }
 
@@ -60,7 +60,7 @@ impl Storage {
         }
     }
 
-    /// The pyramids that the push to a level reads and writes. It reads what was pulled of that level in the first.
+    /// The pyramids that the push to a level reads and writes. It reads the pulled values of that level from the first.
     pub fn push(self, level: u32) -> [usize; 2] {
         match self {
             Self::Apart => [0, 1],
@@ -69,7 +69,7 @@ impl Storage {
     }
 }
 
-/// A level is made in the pyramid of its parity, from the other.
+/// A level is in the pyramid of its parity, and reads the other.
 fn in_turns(level: u32) -> [usize; 2] {
     let own = level as usize % 2;
     [1 - own, own]

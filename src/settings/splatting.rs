@@ -1,25 +1,26 @@
-//! How surfels become pixels: a choice along six axes. The papers' methods are [presets](crate::settings::methods); what else makes sense runs too.
+//! Splatting: six choices that turn surfels into pixels. The papers' methods are [presets](crate::settings::methods); other valid
+//! combinations run, too.
 
 use crate::error::{Error, Result};
 
-/// One choice along each axis.
+/// One choice per axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Splatting {
-    /// Which pixels a splat covers, and where in the kernel each of them is.
+    /// Pixels that a splat covers, and their kernel coordinates.
     pub footprint: Footprint,
-    /// How a splat's weight falls off from its centre.
+    /// Falloff of a splat's weight.
     pub kernel: Kernel,
-    /// Where the kernel meets the low-pass filter.
+    /// Space of the low-pass filter.
     pub filter: Filter,
-    /// Which splats a pixel sees.
+    /// Splats that contribute to a pixel.
     pub visibility: Visibility,
-    /// What makes weights a partition of unity.
+    /// Normalization of the weights to a partition of unity.
     pub normalization: Normalization,
-    /// What is lit.
+    /// Stage of lighting.
     pub shade: Shade,
 }
 
-/// The image of a surfel's disc.
+/// Screen-space shape of a splat.
 #[derive(
     Clone,
     Copy,
@@ -39,7 +40,7 @@ pub enum Footprint {
     Conic = 0,
     /// The ellipse by an affine approximation at the centre: holes under strong perspective (ren2002 §3).
     ///
-    /// The approximation is Heckbert's (1989), right at the centre alone.
+    /// The approximation is Heckbert's (1989), exact at the centre only.
     Affine = 1,
     /// A parallelogram in the tangent plane, with the kernel on it (ren2002 §5.2).
     Parallelogram = 2,
@@ -47,30 +48,30 @@ pub enum Footprint {
     Disc = 3,
     /// An ellipse as of parallel projection, with a slope in depth (botsch2003 §3.2).
     ///
-    /// Its depth is linear on the screen, its foreshortening bounded.
+    /// Its depth is linear in screen space, its foreshortening bounded.
     Sprite = 4,
-    /// A sprite whose width is a whole number of px (botsch2003 §4).
+    /// A sprite with a width of whole pixels (botsch2003 §4).
     WholeSprite = 5,
-    /// A square that faces the image plane, at the depth of its centre (botsch2003 §3.1).
+    /// A square parallel to the image plane, at the depth of its centre (botsch2003 §3.1).
     Square = 6,
 }
 
-/// The falloff of a splat's weight.
+/// Falloff of a splat's weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Kernel {
-    /// `exp(−½ m²)` at m σ from the centre, up to the cut-off.
+    /// `exp(−½ m²)` at a distance of m σ from the centre, up to the cut-off.
     Gaussian,
-    /// `ψ_E`: `exp(−a tⁿ / (1 − tⁿ))` with `t` from 0 at the centre to 1 at the rim (pajarola2004 equation 10). The paper's third
-    /// parameter `b` is the unit of its radius: here, the rim.
+    /// `ψ_E`: `exp(−a tⁿ / (1 − tⁿ))` with `t` from 0 at the centre to 1 at the rim (pajarola2004 equation 10). The paper's third parameter
+    /// `b`, the radius at which `ψ_E` is 0, is the rim here.
     Confetti {
-        /// The larger, the narrower.
+        /// Larger values are narrower.
         a: f32,
-        /// The larger, the more like a plateau.
+        /// Larger values have a flatter top.
         n: f32,
     },
 }
 
-/// Where the low-pass filter is applied.
+/// Space in which the low-pass filter is applied.
 #[derive(
     Clone,
     Copy,
@@ -85,15 +86,15 @@ pub enum Kernel {
 )]
 #[strum(serialize_all = "kebab-case")]
 pub enum Filter {
-    /// No filter: a splat is widened only as far as it must be to own a pixel centre.
+    /// No filter: a splat is widened only as far as needed to cover a pixel centre.
     None,
-    /// The projected kernel is convolved with it on the screen (zwicker2004 equation 3).
+    /// Screen space: the projected kernel is convolved with the filter (zwicker2004 equation 3).
     Screen,
-    /// The filter is warped to the tangent plane and widens the kernel there (ren2002 equation 7).
+    /// The tangent plane: the filter is projected there and widens the kernel (ren2002 equation 7).
     Object,
 }
 
-/// Which splats a pixel sees.
+/// Splats that contribute to a pixel.
 #[derive(
     Clone,
     Copy,
@@ -108,15 +109,15 @@ pub enum Filter {
 )]
 #[strum(serialize_all = "kebab-case")]
 pub enum Visibility {
-    /// All within ε behind the nearest one, along the viewing ray.
+    /// All splats at most ε behind the nearest one, along the viewing ray.
     Ray,
-    /// All within ε behind the nearest one, along the camera's axis: hides too much near silhouettes (ren2002 figure 5a).
+    /// All splats at most ε behind the nearest one, along the camera's axis: hides too much near silhouettes (ren2002 figure 5a).
     Axis,
-    /// The nearest one alone: one pass, and nothing is blended.
+    /// The nearest splat only: one pass without blending.
     Nearest,
 }
 
-/// What makes the weights at a pixel a partition of unity.
+/// Normalization of the weights at a pixel to a partition of unity.
 #[derive(
     Clone,
     Copy,
@@ -132,15 +133,15 @@ pub enum Visibility {
 #[strum(serialize_all = "kebab-case")]
 #[repr(u32)]
 pub enum Normalization {
-    /// The sums are divided by that of the weights at every pixel.
+    /// Divides the sums by the sum of the weights at every pixel.
     Pixel = 0,
-    /// Each surfel has a factor, captured beforehand by surfel convert --weights (ren2002 §7).
+    /// Multiplies by a factor per surfel, captured beforehand by surfel convert --weights (ren2002 §7).
     Surfel = 1,
-    /// Nothing is done: brightness varies with the overlap (ren2002 figure 10a).
+    /// None: brightness varies with the overlap (ren2002 figure 10a).
     None = 2,
 }
 
-/// What is lit, where a frame is [lit](crate::settings::Shading::Lit).
+/// Stage at which a [lit](crate::settings::Shading::Lit) frame is lit.
 #[derive(
     Clone,
     Copy,
@@ -155,14 +156,14 @@ pub enum Normalization {
 )]
 #[strum(serialize_all = "kebab-case")]
 pub enum Shade {
-    /// Splats are lit at their centres, and light is blended.
+    /// Lights splats at their centres, and blends light.
     Splat,
-    /// Normals and colours are blended, and pixels are lit.
+    /// Blends normals and colours, and lights pixels.
     Pixel,
 }
 
 impl Default for Splatting {
-    /// `perspective-ewa`'s.
+    /// The choices of `perspective-ewa`.
     fn default() -> Self {
         Self {
             footprint: Footprint::Conic,
@@ -176,19 +177,19 @@ impl Default for Splatting {
 }
 
 impl Footprint {
-    /// Whether the kernel lies in the tangent plane.
+    /// Whether the kernel is in the tangent plane.
     pub fn is_on_plane(self) -> bool {
         matches!(self, Self::Parallelogram | Self::Disc)
     }
 
-    /// Whether it is a sprite with a shape.
+    /// Whether it is an elliptical sprite.
     pub fn is_sprite(self) -> bool {
         matches!(self, Self::Sprite | Self::WholeSprite)
     }
 }
 
 impl Splatting {
-    /// Refuses what makes no sense together, with the reason.
+    /// Returns an error for combinations that are not supported.
     ///
     /// # Errors
     /// [`Error::Usage`].
@@ -232,7 +233,7 @@ impl Splatting {
 }
 
 impl Normalization {
-    /// Refuses surfels without the weights that it needs.
+    /// Returns an error if weights are needed and not `there`.
     ///
     /// # Errors
     /// [`Error::Usage`].
@@ -248,7 +249,7 @@ impl Normalization {
 }
 
 impl std::fmt::Display for Kernel {
-    /// As options and reports call it.
+    /// The form of options and reports.
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {
             Self::Gaussian => f.write_str("gaussian"),

@@ -1,4 +1,4 @@
-//! One short file a method: its paper, its pipeline figure, and what it chooses along the axes of [`Splatting`]; or a [`pull_push`] of points.
+//! Presets: one file per method with its paper, its pipeline figure, and its choices of [`Splatting`] or [`pull_push`].
 //!
 //! # How to add a method
 //!
@@ -6,8 +6,8 @@
 //! 2. Here: its module, and its place at the end of [`Method::SPLATTING`], or of what [`Method::ALL`] adds to that: the first is the default.
 //!    Command line, window, benchmark and tests go by these lists.
 //!
-//! A method that needs a choice which no axis has adds it to the axis' enum in [`splatting`](super::splatting), to the shader that branches on it
-//! and to the reference function of the shader's name.
+//! A method that needs a choice which no axis has adds it to the axis' enum in [`splatting`](super::splatting), to the shader that branches
+//! on it, and to the reference function with the shader's name.
 
 pub mod confetti;
 pub mod object_ewa;
@@ -19,14 +19,14 @@ use crate::settings::pull_push::PullPush;
 use crate::settings::splatting::Splatting;
 use crate::settings::{Cull, Settings, Widen};
 
-/// A method as its paper has it, or as measurements improve on it.
+/// A preset: a method as published, or as improved by measurements.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Method {
-    /// The name on the command line and in reports.
+    /// Name on the command line and in reports.
     pub name: &'static str,
     /// Authors, title, year.
     pub paper: &'static str,
-    /// Its choice along each axis; of no use where it is one of `pull_push`.
+    /// The choice along each axis; unused with `pull_push`.
     pub splatting: Splatting,
     /// See [`Settings::pull_push`].
     pub pull_push: Option<PullPush>,
@@ -41,22 +41,22 @@ pub struct Method {
 }
 
 impl Method {
-    /// Every preset that splats.
+    /// All presets of splatting.
     pub const SPLATTING: [Self; 5] =
         [perspective_ewa::METHOD, object_ewa::METHOD, sprites::METHOD, sprites::UNFILTERED, confetti::METHOD];
 
-    /// Every preset.
+    /// All presets.
     pub const ALL: [Self; 7] = {
         let [a, b, c, d, e] = Self::SPLATTING;
         [a, b, c, d, e, pull_push::METHOD, pull_push::PAPER]
     };
 
-    /// The preset of this name.
+    /// The preset with this name.
     pub fn named(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|method| method.name == name)
     }
 
-    /// Its settings.
+    /// Settings of the preset.
     pub fn settings(&self) -> Settings {
         Settings {
             splatting: self.splatting,

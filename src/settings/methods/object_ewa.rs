@@ -8,9 +8,9 @@
 //! normalize    / Σ w (what §7 calls per-pixel normalization); or not, with weights that every surfel brings (per-surfel)
 //! ```
 //!
-//! While the camera moves the sums need no division, and once it rests they are divided (§8): [`Progressive`].
+//! While the camera moves, sums are not divided; when it rests, they are (§8): [`Progressive`].
 //!
-//! `J` is singular edge-on, where the parallelogram would reach behind the eye: it is kept from growing or shrinking by more than 2.
+//! `J` is singular edge-on, where the parallelogram would reach behind the eye: its scale is limited to the range from ½ to 2.
 
 use super::Method;
 use crate::geometry::Camera;
@@ -37,21 +37,21 @@ pub const METHOD: Method = Method {
     cull: Cull::Back,
 };
 
-/// The preset by surfel while the camera is `moving`, which needs surfels with normalization weights, or by pixel. A
-/// [`Renderer`](crate::Renderer) keeps what it has made for either.
+/// The preset with normalization by surfel while the camera is `moving`, which needs surfels with normalization weights; otherwise by
+/// pixel. A [`Renderer`](crate::Renderer) keeps the pipelines of both.
 pub fn progressive(moving: bool) -> Settings {
     let normalization = if moving { Normalization::Surfel } else { Normalization::Pixel };
     Settings { splatting: Splatting { normalization, ..METHOD.splatting }, ..METHOD.settings() }
 }
 
-/// Progressive rendering: a camera moves as long as it is another one from frame to frame.
+/// Progressive rendering. A camera moves while it differs from frame to frame.
 #[derive(Clone, Debug, Default)]
 pub struct Progressive {
     last: Option<Camera>,
 }
 
 impl Progressive {
-    /// Settings of the next frame, seen by `camera`; of the first frame as of one that moves.
+    /// Settings of the next frame with `camera`. The first frame counts as moving.
     pub fn settings(&mut self, camera: &Camera) -> Settings {
         progressive(self.last.replace(*camera) != Some(*camera))
     }

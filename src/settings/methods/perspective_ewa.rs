@@ -7,8 +7,8 @@
 //! normalize    / Σ w, light (§6, third pass)
 //! ```
 //!
-//! Departs from the paper where measurements say so: a cut-off of 2.5 σ, a filter that widens only what is smaller than itself, light after
-//! blending. `cutoff` 2 and `widen` all are the paper's.
+//! Departs from the paper where measurements support it: a cut-off of 2.5 σ, a filter that widens only splats smaller than itself, and
+//! lighting after blending. The paper's values are `cutoff` 2 and `widen` all.
 
 use super::Method;
 use crate::settings::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};

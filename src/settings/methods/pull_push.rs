@@ -12,7 +12,7 @@ use super::{Method, perspective_ewa};
 use crate::settings::Cull;
 use crate::settings::pull_push::{PullPush, Rules};
 
-/// The preset that holds.
+/// The preset with robust rules.
 pub const METHOD: Method =
     Method { name: "pull-push", pull_push: Some(PullPush::of(Rules::Robust)), ..PAPER };
 

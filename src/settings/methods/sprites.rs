@@ -7,7 +7,7 @@
 //! normalize    / Σ w (§3.4)
 //! ```
 //!
-//! Unfiltered, the nearest ellipse of each pixel is seen alone (§3.2), in one pass.
+//! `sprites-unfiltered` shows only the nearest ellipse of each pixel (§3.2), in one pass.
 
 use super::Method;
 use crate::settings::splatting::{Filter, Footprint, Kernel, Normalization, Shade, Splatting, Visibility};
