@@ -1,11 +1,11 @@
-//! The Voronoi cell of a point among its neighbours in the tangent plane: who is next to whom, and how far a disc must reach.
+//! Voronoi cell of a point among its neighbours in the tangent plane: its adjacent points, and the required radius of its disc.
 
 use super::reach::reach;
 use glam::DVec2;
 
-/// The neighbours whose cells touch that of the point at 0, in counter-clockwise order.
+/// The neighbours whose cells are adjacent to that of the point at 0, in counter-clockwise order.
 pub(super) struct Cell {
-    /// The corners, each with the neighbour behind the side that begins there; `None` is the frame around everything.
+    /// Corners, each with the neighbour behind the side that starts there; `None` is the bounding frame.
     corners: Vec<(DVec2, Option<u32>)>,
     spare: Vec<(DVec2, Option<u32>)>,
 }
@@ -16,7 +16,7 @@ impl Cell {
         Self { corners: Vec::new(), spare: Vec::new() }
     }
 
-    /// The cell among `neighbours`, which are best in the order of their distance.
+    /// Computes the cell among `neighbours`, which are best sorted by distance.
     pub fn build(&mut self, neighbours: &[DVec2]) {
         let farthest = neighbours.iter().map(|q| q.length_squared()).fold(0.0, f64::max).sqrt();
         let frame = 4.0 * farthest;
@@ -28,7 +28,7 @@ impl Cell {
         }
     }
 
-    /// Takes away what is nearer to `q` than to 0.
+    /// Removes the half-plane that is nearer to `q` than to 0.
     fn cut(&mut self, q: DVec2, index: u32) {
         let half = 0.5 * q.length_squared();
         let excess = |x: DVec2| x.dot(q) - half;
@@ -52,19 +52,18 @@ impl Cell {
         std::mem::swap(&mut self.corners, &mut self.spare);
     }
 
-    /// The neighbours around, each with the next; a pair with a `None` has the frame between.
+    /// The adjacent neighbours in order, each with the next; `None` is the frame.
     fn pairs(&self) -> impl Iterator<Item = (Option<u32>, Option<u32>)> {
         let sides = self.corners.iter().map(|&(_, side)| side);
         sides.clone().zip(sides.cycle().skip(1))
     }
 
-    /// The neighbours around.
+    /// The adjacent neighbours in order.
     pub fn neighbours(&self) -> impl Iterator<Item = u32> {
         self.corners.iter().filter_map(|&(_, side)| side)
     }
 
-    /// Whether somewhere around the point two neighbours in turn are seen more than 120° apart: there may be nothing on that side, or
-    /// neighbours further away than those that were looked at.
+    /// Whether two consecutive neighbours are more than 120° apart: the surface may end there, or more neighbours are needed.
     pub fn is_open(&self, neighbours: &[DVec2]) -> bool {
         let wide = |a: DVec2, b: DVec2| a.perp_dot(b) <= 0.0 || a.dot(b) < -0.5 * a.length() * b.length();
         self.pairs().any(|pair| match pair {
@@ -73,7 +72,7 @@ impl Cell {
         })
     }
 
-    /// How far the point's disc must reach so that with its neighbours' it covers the triangles between them.
+    /// Radius at which the point's disc and its neighbours' cover the triangles between them.
     pub fn reach(&self, neighbours: &[DVec2]) -> f64 {
         let triangles =
             self.pairs().filter_map(|(a, b)| Some((neighbours[a? as usize], neighbours[b? as usize])));

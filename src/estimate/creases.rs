@@ -1,7 +1,7 @@
-//! Clip lines at creases: where the discs of a sharp edge's faces meet (Zwicker et al. 2004, section 5, which intersects the tangent planes
-//! of surfels on either side).
+//! Clip lines at creases, where the discs of two faces meet (Zwicker et al. 2004, section 5, which intersects the tangent planes of surfels
+//! on either side).
 //!
-//! A single surfel's plane is as noisy as its normal, so the plane beyond an edge is that of all neighbours there which agree.
+//! A single surfel's plane is as noisy as its normal, so the plane beyond an edge is that of all neighbours that agree on it.
 
 use super::Estimate;
 use super::facets::{Facet, Sample, facets, median};
@@ -14,25 +14,25 @@ use rayon::prelude::*;
 use std::f64::consts::PI;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Neighbours are looked at up to this many radii away: where the disc's rim just touches an edge, what lies beyond it.
+/// Search distance in radii: the neighbours beyond an edge that just touches the disc's rim.
 const WINDOW: f64 = 2.0;
-/// And so many times as many as a normal is estimated from.
+/// Number of neighbours relative to that of normal estimation.
 const WIDER: usize = 4;
-/// From this angle short of a half turn on, two faces are the sides of a thin sheet and not those of a blade, radians.
+/// Angle below a half turn from which two faces are the sides of a thin sheet instead of a blade, radians.
 const BACK: f64 = PI / 6.0;
-/// A normal is between two others if it is no further from either than this part of the angle between them.
+/// A normal is between two others if its angle to each is at most this part of the angle between them.
 const BETWEEN: f64 = 0.75;
-/// More such samples, for each one of the face beyond, are of a surface that is curved.
+/// Ratio of samples with normals in between to samples of the face beyond from which the surface is curved.
 const CURVED: f64 = 0.2;
-/// Part of the radius by which noise may put a sample of the face beyond its edge.
+/// Part of the radius by which noise may move a sample of the face beyond across its edge.
 const MARGIN: f64 = 0.15;
-/// Least number of samples of a face beyond one line and not beyond the other that make the corner between them a concave one.
+/// Minimum number of samples beyond one line but not the other for a concave corner.
 const EVIDENCE: usize = 2;
-/// Surfels of one piece of work.
+/// Number of surfels per task.
 const PIECE: usize = 1 << 12;
 
-/// Clips discs that reach a crease at which normals turn by more than `angle`, radians; those that are clipped already stay as they are.
-/// Gives the number of surfels that it has clipped. Surfels are best in Morton order.
+/// Clips discs at creases where normals turn by more than `angle`, radians. Existing clips are kept. Returns the number of new clips.
+/// Surfels are best in Morton order.
 pub(super) fn clip(
     surfels: &mut Surfels,
     angle: f32,
@@ -63,13 +63,13 @@ pub(super) fn clip(
     Ok(found.iter().sum())
 }
 
-/// Finds clips of surfels.
+/// Detects clips of surfels.
 struct Finder<'a> {
     surfels: &'a Surfels,
     sites: &'a Sites,
-    /// By how much normals turn at a crease, radians.
+    /// Least angle of a crease, radians.
     angle: f64,
-    /// How many neighbours are looked at.
+    /// Number of neighbours.
     count: usize,
 }
 
@@ -91,7 +91,7 @@ impl Finder<'_> {
         Some(clip)
     }
 
-    /// The samples around a surfel, relative to its centre and by its radius.
+    /// The samples around a surfel, relative to its centre and in units of its radius.
     fn around(&self, index: usize) -> Vec<Sample> {
         let Self { surfels, sites, .. } = self;
         let [centre, normal] = [surfels.positions[index], surfels.normals[index]].map(|v| v.as_dvec3());
@@ -108,7 +108,7 @@ impl Finder<'_> {
     }
 }
 
-/// Whether the surface turns to a facet at once: where it is curved, samples on the way have normals between.
+/// Whether the surface turns to a facet abruptly: a curved surface has samples with normals in between.
 fn is_crease(facet: &Facet, samples: &[Sample], normal: DVec3) -> bool {
     let most = BETWEEN * normal.angle_between(facet.normal);
     let is_between = |samples: &&Sample| {
@@ -117,21 +117,21 @@ fn is_crease(facet: &Facet, samples: &[Sample], normal: DVec3) -> bool {
     samples.iter().filter(is_between).count() as f64 <= CURVED * facet.members.len() as f64
 }
 
-/// The side of a normal at `at` that agrees with another at 0, also across a crease: the other is mirrored as a circle's would be on the way.
+/// The side of a normal at `at` that agrees with one at 0, also across a crease: the other is mirrored as on a circle between them.
 fn agreeing(normal: DVec3, facing: DVec3, at: DVec3) -> DVec3 {
     let along = at.normalize_or_zero();
     let mirrored = normal - 2.0 * along.dot(normal) * along;
     if mirrored.dot(facing) < 0.0 { -facing } else { facing }
 }
 
-/// Where a disc's plane ends at a facet. If that falls away from the plane, the solid is behind both; if it rises, it is behind either.
+/// The intersection of a disc's plane with a facet. A facet below the plane is convex: the solid is behind both; a facet above is concave.
 fn line(facet: &Facet, normal: DVec3) -> Option<ClipLine> {
     let heights: Vec<f64> = facet.members.iter().map(|at| at.dot(normal)).collect();
     let side = if median(heights) < 0.0 { 1.0 } else { -1.0 };
     ClipLine::of_half_space(side * facet.normal, side * facet.offset, normal.as_vec3())
 }
 
-/// What the lines make of a disc of radius 1, as its own face's samples in it have it.
+/// The clip that lines make of a disc of radius 1, given the samples of its own face.
 fn decide(lines: &[ClipLine], own: &[DVec3], normal: DVec3) -> Option<Clip> {
     let beyond =
         |line: &ClipLine, at: &DVec3| line.outward.as_dvec3().dot(*at) > f64::from(line.offset) + MARGIN;
@@ -148,14 +148,14 @@ fn decide(lines: &[ClipLine], own: &[DVec3], normal: DVec3) -> Option<Clip> {
             return Some(Clip { lines: [a, b], concave: true });
         }
     }
-    // A line with samples of the face beyond it is no edge of the face here. The centre is one of them: noise alone can put it there.
+    // A line with samples of the own face beyond it is not an edge here. The centre is one of the samples: noise alone can put it there.
     let is_edge = |line: &&ClipLine| line.offset < 1.0 && !own.iter().any(|at| beyond(line, at));
     let mut edges =
         lines.iter().filter(is_edge).map(|line| ClipLine { offset: line.offset.max(0.0), ..*line });
     Clip::of_some([edges.next(), edges.next()], false)
 }
 
-/// Where two lines of a plane meet, relative to the disc's centre; `None` if they are parallel.
+/// The intersection of two lines in a plane, relative to the disc's centre; `None` if they are parallel.
 fn corner(a: &ClipLine, b: &ClipLine, normal: DVec3) -> Option<DVec3> {
     let (x, y) = normal.any_orthonormal_pair();
     let flat = |line: &ClipLine| {

@@ -1,20 +1,20 @@
-//! Surfels in the making.
+//! Surfels with missing attributes.
 
 use super::{Estimate, Estimated};
 use crate::error::{Error, Result};
 use crate::geometry::{Clips, Cloud, Ellipse, Surfels, Weights, morton};
 use glam::Vec3;
 
-/// Surfels whose normals and radii may still be missing, which is 0 here, and what tells them.
+/// Surfels whose missing normals and radii are 0, with the data to estimate them.
 pub(super) struct Draft {
     pub surfels: Surfels,
-    /// Between the surfels.
+    /// Triangles between the surfels.
     pub triangles: Vec<[u32; 3]>,
     pub estimated: Estimated,
 }
 
 impl Draft {
-    /// What the cloud has, with the radius that is asked for.
+    /// A draft of the cloud; `how` may set the radius.
     pub fn new(cloud: Cloud, how: &Estimate) -> Result<Self> {
         let count = cloud.len();
         let surfels = Surfels {
@@ -53,13 +53,13 @@ impl Draft {
         Ok(Self { surfels, triangles: cloud.triangles, estimated: Estimated::default() })
     }
 
-    /// Neighbours in space become neighbours in memory.
+    /// Sorts neighbours in space next to each other in memory.
     pub fn sort_morton(&mut self) {
         let order = morton::order(&self.surfels.positions);
         self.arrange(&order);
     }
 
-    /// Leaves out what is not among `kept`.
+    /// Removes all surfels but `kept`.
     pub fn keep(&mut self, kept: &[u32]) {
         self.estimated.outliers = (self.surfels.len() - kept.len()) as u64;
         if self.estimated.outliers > 0 {
@@ -67,7 +67,7 @@ impl Draft {
         }
     }
 
-    /// Surfel `order[i]` becomes surfel `i`. Triangles that lose a corner go.
+    /// Surfel `order[i]` becomes surfel `i`. Triangles with a removed corner are removed.
     fn arrange(&mut self, order: &[u32]) {
         if !self.triangles.is_empty() {
             let mut place = vec![None; self.surfels.len()];
@@ -81,14 +81,14 @@ impl Draft {
         self.surfels.permute(order);
     }
 
-    /// What is there by now was given.
+    /// Counts the present normals and radii as given.
     pub fn count_given(&mut self) {
         let [normals, radii] = self.lacking();
         let count = self.surfels.len() as u64;
         (self.estimated.normals_given, self.estimated.radii_given) = (count - normals, count - radii);
     }
 
-    /// How many normals and radii are missing.
+    /// Number of missing normals and radii.
     fn lacking(&self) -> [u64; 2] {
         let normals = self.surfels.normals.iter().filter(|normal| **normal == Vec3::ZERO).count();
         let radii = self.surfels.radii.iter().filter(|radius| **radius == 0.0).count();
@@ -100,7 +100,7 @@ impl Draft {
         self.lacking() != [0; 2]
     }
 
-    /// The surfels, if they can be drawn.
+    /// The surfels; an error if a radius is invalid.
     pub fn finish(self, how: &Estimate) -> Result<(Surfels, Estimated)> {
         let Self { mut surfels, mut estimated, .. } = self;
         if surfels.radii.contains(&0.0) {
@@ -113,11 +113,11 @@ impl Draft {
                 "a surfel would have the radius {radius}: give another radius or factor of it"
             )));
         }
-        // Weights are of the kernels that were, and of their neighbours.
+        // Weights depend on the kernels and on the neighbours.
         let changed = how.radius.is_some() || how.radius_scale != 1.0 || how.sharp.is_some();
         let changed = changed || estimated.outliers > 0;
         surfels.weights = surfels.weights.take().filter(|_| !changed).and_then(Weights::filled);
-        // A shape or a clip may be older than the normal to which its axis and its lines must be at a right angle.
+        // Ellipses and clips may be older than the normal to which they must be orthogonal.
         for (ellipse, normal) in surfels.ellipses.iter_mut().flatten().zip(&surfels.normals) {
             *ellipse = within(*ellipse, *normal);
         }
@@ -131,10 +131,10 @@ impl Draft {
     }
 }
 
-/// The ellipse in the plane of a disc with a unit normal; a circle if it stands upright on it.
+/// The ellipse projected to the plane of a disc with a unit normal; a circle if its axis is orthogonal to the plane.
 fn within(ellipse: Ellipse, normal: Vec3) -> Ellipse {
     let major = ellipse.major - ellipse.major.dot(normal) * normal;
-    // Shorter than this it is rounding alone.
+    // Shorter vectors are rounding errors.
     if major.length() > 1e-3 {
         Ellipse { major: major.normalize(), ..ellipse }
     } else {

@@ -5,23 +5,23 @@ use super::reach::reach;
 use super::{Estimate, MARGIN};
 use glam::{DVec3, Vec3};
 
-/// Normals of faces around a point that leave less than this part of themselves cancel: the point is on two sheets back to back, and their
-/// sum is rounding.
+/// Normals of faces whose sum is below this part of its terms cancel: the point is on two sheets back to back, and the sum is rounding
+/// error.
 const CANCELLED: f64 = 1e-3;
 
-/// What the faces around a point say.
+/// Attributes of a point from its faces.
 #[derive(Clone, Copy, Default)]
 struct Corner {
-    /// Sum of the faces' normals, each times the angle that the face has here.
+    /// Sum of the faces' normals, weighted by their angles here.
     normal: DVec3,
     /// Sum of these angles.
     angle: f64,
-    /// How far the disc must reach.
+    /// Required radius of the disc.
     reach: f64,
 }
 
-/// Gives surfels without a normal the mean normal of their triangles, weighted by the angle that each has there, and those without a radius
-/// one with which the discs cover every triangle, unless they are to be ellipses.
+/// Sets missing normals to the mean normal of the triangles, weighted by their angles, and missing radii to those of discs that cover every
+/// triangle, unless the discs are to be ellipses.
 pub(super) fn fill(draft: &mut Draft, how: &Estimate) {
     if draft.triangles.is_empty() || !draft.lacks_anything() {
         return;
@@ -43,8 +43,8 @@ pub(super) fn fill(draft: &mut Draft, how: &Estimate) {
     }
 }
 
-/// The mean normal of the triangles around each point, weighted by the angle that each has there; `None` where there are none, or none with
-/// an area. Where they cancel, as on two sheets back to back, it is that of one of them.
+/// The mean normal of the triangles around each point, weighted by their angles there; `None` without triangles, or if all are degenerate.
+/// If they cancel, as on two sheets back to back, it is that of one of them.
 pub(super) fn normals(positions: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Option<Vec3>> {
     let corners = corners(positions, triangles);
     let mean = |corner: &Corner| {

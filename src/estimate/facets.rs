@@ -1,15 +1,15 @@
-//! Plane faces that samples around a point belong to, by their normals.
+//! Plane faces in the neighbourhood of a point, by the samples' normals.
 
 use glam::DVec3;
 
-/// Most faces that are told apart: a disc has no more clip lines.
+/// Maximum number of faces: a disc has at most two clip lines.
 const MOST: usize = 2;
-/// Fewest samples of a face: of fewer, each could be noise.
+/// Minimum number of samples of a face: fewer may be noise.
 const LEAST: usize = 3;
-/// How often a face's samples are chosen anew by its mean normal.
+/// Iterations of the selection of a face's samples by its mean normal.
 const SETTLING: usize = 2;
 
-/// A sample.
+/// A neighbouring sample.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sample {
     pub at: DVec3,
@@ -22,13 +22,14 @@ pub(super) struct Sample {
 pub(super) struct Facet {
     /// Mean of the samples' normals, a unit vector.
     pub normal: DVec3,
-    /// The middle of what the samples say, so that a few that belong elsewhere do not move it.
+    /// Median of the samples' offsets, robust against outliers.
     pub offset: f64,
-    /// Where they are.
+    /// Positions of the samples.
     pub members: Vec<DVec3>,
 }
 
-/// The largest faces, at most two. Samples of a face have normals within `spread` of its mean, radians; faces are twice as far apart.
+/// The two largest faces. Normals of a face's samples are within `spread` of its mean, radians; means of faces are at least twice that
+/// apart.
 pub(super) fn facets(samples: &[Sample], spread: f64) -> Vec<Facet> {
     let near = spread.cos();
     let mut left = samples.to_vec();
@@ -40,7 +41,7 @@ pub(super) fn facets(samples: &[Sample], spread: f64) -> Vec<Facet> {
         if members.len() < LEAST {
             break;
         }
-        // What is left of a rounded face beside it is none of its own.
+        // The remainder of a rounded face is not another face.
         let apart = |facet: &Facet| facet.normal.dot(normal) < (2.0 * spread).cos();
         if facets.iter().all(apart) {
             let offset = median(members.iter().map(|samples| samples.at.dot(normal)).collect());
@@ -55,7 +56,7 @@ pub(super) fn facets(samples: &[Sample], spread: f64) -> Vec<Facet> {
     facets
 }
 
-/// The mean normal of the samples of which most have similar normals.
+/// The mean normal of the largest group of samples with similar normals.
 fn densest(samples: &[Sample], near: f64) -> Option<DVec3> {
     let around = |normal: DVec3| samples.iter().filter(move |samples| samples.normal.dot(normal) >= near);
     let mut normal = samples.iter().max_by_key(|samples| around(samples.normal).count())?.normal;
@@ -65,7 +66,7 @@ fn densest(samples: &[Sample], near: f64) -> Option<DVec3> {
     Some(normal)
 }
 
-/// The middle one, of an even number the mean of both; not a number of none.
+/// Median: the middle value, or the mean of the middle two; NaN for no values.
 pub(super) fn median(mut values: Vec<f64>) -> f64 {
     values.sort_unstable_by(f64::total_cmp);
     let at = |i: usize| values.get(i).copied().unwrap_or(f64::NAN);

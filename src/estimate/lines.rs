@@ -5,12 +5,12 @@ use crate::geometry::{Bounds, Cloud};
 use glam::{DVec3, Vec3};
 use std::collections::VecDeque;
 
-/// Radius of lines of which no vertex has one, in diagonals of the lines' bounds.
+/// Radius of lines without any radius, in diagonals of the lines' bounds.
 const THIN: f64 = 1.0 / 2000.0;
 
-/// The vertices that segments join.
+/// Adjacency of vertices by segments.
 struct Graph {
-    /// Where the neighbours of each vertex begin; the last is where all end.
+    /// Start of each vertex's neighbours; the last entry is the end.
     first: Vec<u32>,
     neighbours: Vec<u32>,
 }
@@ -40,8 +40,8 @@ impl Graph {
     }
 }
 
-/// Unit tangents of the vertices of tubes, 0 of others. What the cloud lacks is the mean of the directions of the segments at the vertex
-/// (marroquim2008, section 4.3), each taken along the way from the line's beginning, whichever end the file has first.
+/// Unit tangents of the vertices of tubes, 0 for others. A missing tangent is the mean direction of the vertex's segments (marroquim2008,
+/// section 4.3), each oriented from the start of the line, whichever end the file has first.
 pub(super) fn tangents(cloud: &Cloud) -> Vec<Vec3> {
     let mut tangents = vec![Vec3::ZERO; cloud.len()];
     if cloud.tubes.is_empty() {
@@ -56,7 +56,7 @@ pub(super) fn tangents(cloud: &Cloud) -> Vec<Vec3> {
     tangents
 }
 
-/// The mean direction at each vertex, by a walk from the ends of the lines along each segment once.
+/// The mean direction at each vertex, by a traversal of each segment once from the ends of the lines.
 fn means(positions: &[Vec3], graph: &Graph) -> Vec<Vec3> {
     const NOT_YET: u32 = u32::MAX;
     let count = positions.len() as u32;
@@ -90,7 +90,7 @@ fn means(positions: &[Vec3], graph: &Graph) -> Vec<Vec3> {
                     (step[to as usize], steps) = (steps, steps + 1);
                     stack.push((to, from, graph.of(to).iter()));
                 }
-                // A ring closes, once: from where it was walked to.
+                // A ring closes once: at the vertex that was visited before.
                 Some(&to) if to != parent && step[to as usize] < step[from as usize] => add(from, to),
                 Some(_) => {}
             }
@@ -107,7 +107,7 @@ fn means(positions: &[Vec3], graph: &Graph) -> Vec<Vec3> {
     sums.iter().zip(&any).map(mean).collect()
 }
 
-/// Radii of all vertices: what of lines is missing in `given` is `asked`, or comes from the rest.
+/// Radii of all vertices. Missing ones of lines in `given` are `asked`, or are derived from the others.
 pub(super) fn radii(
     cloud: &Cloud,
     given: Vec<f32>,

@@ -1,4 +1,4 @@
-//! From a point cloud to surfels: what the cloud lacks is estimated.
+//! Estimation: from a point cloud to surfels.
 
 mod cell;
 mod creases;
@@ -27,25 +27,25 @@ use draft::Draft;
 use std::f32::consts::PI;
 use std::ops::Add;
 
-/// Estimated discs reach this many times as far as they must for the surface between flat neighbours to have no gap.
+/// Factor of estimated radii beyond the least that covers the surface between flat neighbours.
 const MARGIN: f64 = 1.3;
 
-/// How what is missing is estimated.
+/// Options of an estimation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Estimate {
-    /// How many nearest points a normal and a radius are estimated from.
+    /// Number of nearest points for the estimation of a normal and radius.
     pub neighbours: usize,
-    /// Radius of every surfel, in the positions' unit, instead of given and estimated ones.
+    /// Radius of every surfel, in the positions' unit, in place of given and estimated ones.
     pub radius: Option<f32>,
-    /// Factor of every radius.
+    /// Factor of all radii.
     pub radius_scale: f32,
-    /// Whether discs whose radius is estimated are ellipses, longer where points are sparser.
+    /// Whether discs with an estimated radius are ellipses, longer where points are sparser.
     pub elliptical: bool,
-    /// Removes points whose mean distance from their neighbours is more than this many standard deviations above the average.
+    /// Removes points whose mean distance from their neighbours is more than this number of standard deviations above the average.
     pub outliers: Option<f32>,
-    /// Clips discs that reach a crease at which normals turn by more than this angle, radians.
+    /// Clips discs at creases where normals turn by more than this angle, radians.
     pub sharp: Option<f32>,
-    /// Radius of ribbons and tubes where they have none, in the positions' unit.
+    /// Radius of ribbons and tubes without one, in the positions' unit.
     pub line_radius: Option<f32>,
 }
 
@@ -64,10 +64,10 @@ impl Default for Estimate {
 }
 
 impl Estimate {
-    /// Least and greatest [`Estimate::neighbours`]: fewer do not tell a plane, more are no neighbourhood.
+    /// Range of [`Estimate::neighbours`]: fewer do not determine a plane, more are not local.
     pub const NEIGHBOURS: [usize; 2] = [6, 64];
 
-    /// Refuses what nothing can be estimated with; says what and the remedy.
+    /// Validates the options.
     fn check(&self) -> Result<()> {
         let positive = |name: &str, value: f32| {
             if value.is_finite() && value > 0.0 {
@@ -93,32 +93,32 @@ impl Estimate {
     }
 }
 
-/// Where normals and radii came from, as numbers of points.
+/// Number of points by the source of their normals and radii.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Estimated {
-    /// The file's own normals.
+    /// Normals from the file.
     pub normals_given: u64,
-    /// Normals of the faces around the point.
+    /// Normals from the faces around the point.
     pub normals_from_faces: u64,
     /// Normals from the nearest points.
     pub normals_from_neighbours: u64,
-    /// Surfels that are two-sided, because the side of their normals is unknown or because the file says so.
+    /// Two-sided surfels: the side of the normal is unknown, or the file declares it.
     pub two_sided: u64,
-    /// The file's own radii, or the one that was asked for.
+    /// Radii from the file, or from [`Estimate::radius`].
     pub radii_given: u64,
     /// Radii from the faces around the point.
     pub radii_from_faces: u64,
     /// Radii from the nearest points.
     pub radii_from_neighbours: u64,
-    /// Points that were removed as outliers.
+    /// Points removed as outliers.
     pub outliers: u64,
-    /// Surfels that are clipped because of a crease that was looked for.
+    /// Surfels clipped at detected creases.
     pub clipped: u64,
-    /// Radii of the vertices of lines, the file's own or the one that was asked for.
+    /// Radii of line vertices from the file, or from [`Estimate::line_radius`].
     pub line_radii_given: u64,
-    /// Those of the nearest vertex of the same line that has one.
+    /// Radii of line vertices from the nearest vertex along the line.
     pub line_radii_from_lines: u64,
-    /// Those that are a part of the lines' extent.
+    /// Radii of line vertices from the lines' extent.
     pub line_radii_from_extent: u64,
 }
 
@@ -144,14 +144,15 @@ impl Add for Estimated {
 }
 
 impl Cloud {
-    /// The surfels of the cloud, one a point, in Morton order. [`Cloud::into_model`] has lines and triangles, too.
+    /// Converts the cloud to surfels, one per point, in Morton order. [`Cloud::into_model`] includes lines and triangles.
     ///
-    /// A normal that is missing is that of the faces around the point; where there are none, of the plane of least squares through its
-    /// neighbours, which points to where the cloud was seen from, or agrees with normals that are known and with its neighbours', outwards
-    /// on a closed surface. Where even that does not tell its side, the surfel is two-sided. A radius that is missing is just large enough
-    /// that the discs of a smooth surface leave no gap, by the triangles between the points: the faces', or those of the neighbours'
-    /// Delaunay triangulation in the tangent plane. Normalization weights are kept unless the radii, the number or the edges of the discs
-    /// change; one that is missing is the median.
+    /// A missing normal is that of the faces around the point; without faces, that of the least-squares plane through its neighbours. Such
+    /// a normal points to where the cloud was seen from, or agrees with known normals and with its neighbours', outwards on a closed
+    /// surface. If its side is still unknown, the surfel is two-sided.
+    ///
+    /// A missing radius is just large enough that the discs of a smooth surface leave no gap, according to the triangles between the
+    /// points: faces, or the Delaunay triangulation of the neighbours in the tangent plane. Normalization weights are kept unless radii,
+    /// number or edges of the discs change; a missing one is the median.
     ///
     /// # Errors
     /// [`Error::Usage`](crate::Error::Usage) if what is missing cannot be estimated.

@@ -1,4 +1,4 @@
-//! From a cloud to everything that is drawn of it: surfels, lines and triangles.
+//! From a cloud to a model: surfels, lines and triangles.
 
 use super::{Estimate, Estimated, faces, lines};
 use crate::Progress;
@@ -7,13 +7,13 @@ use crate::geometry::{Cloud, Colours, Model, Primitives, Surfels};
 use glam::Vec3;
 
 impl Cloud {
-    /// What is drawn of the cloud: its lines as ribbons and tubes; its faces as triangles if there are lines or if `polygons`; the points
-    /// that neither uses as surfels, as [`Cloud::into_surfels`] has them. All have the cloud's origin.
+    /// Converts the cloud to a model: lines become ribbons and tubes; faces become triangles if there are lines, or with `polygons`; the
+    /// points that neither uses become surfels, as [`Cloud::into_surfels`]. All have the cloud's origin.
     ///
-    /// A tube's vertex without a tangent gets the mean direction of the segments there (marroquim2008, section 4.3). A vertex of a
-    /// triangle without a normal gets that of the faces around it. A radius that is missing is 0 where there are triangles alone; of a
-    /// line it is [`Estimate::line_radius`], otherwise that of the nearest vertex along its line that has one, otherwise 1/2000 of the
-    /// diagonal of the lines' bounds: about a pixel across where all is in the picture. A vertex of tubes that ribbons or triangles share
+    /// A tube's vertex without a tangent gets the mean direction of its segments (marroquim2008, section 4.3). A triangle's vertex without
+    /// a normal gets that of its faces. A missing radius is 0 where there are only triangles. On a line it is [`Estimate::line_radius`],
+    /// otherwise that of the nearest vertex along its line that has one, otherwise 1/2000 of the diagonal of the lines' bounds: about a
+    /// pixel in a picture of all. A vertex of tubes that ribbons or triangles share becomes two, with a direction each.
     /// becomes two, as it has a direction for each.
     ///
     /// # Errors
@@ -55,7 +55,7 @@ impl Cloud {
         }
     }
 
-    /// All points as vertices of lines and triangles.
+    /// Converts all points to vertices of lines and triangles.
     fn into_primitives(self, how: &Estimate) -> (Primitives, Estimated) {
         let mut estimated = Estimated::default();
         let given = self.radii.clone().unwrap_or_else(|| vec![0.0; self.len()]);
@@ -80,7 +80,7 @@ impl Cloud {
 }
 
 impl Primitives {
-    /// Puts tangents where there are tubes: in place of a normal that nothing needs, otherwise on a copy of the vertex.
+    /// Sets tangents at the vertices of tubes: in place of an unused normal, otherwise on a copy of the vertex.
     fn give_tangents(&mut self, tangents: &[Vec3]) {
         let mut needed = vec![false; self.len()];
         let others = self.ribbons.iter().flatten().chain(self.triangles.iter().flatten());
@@ -122,7 +122,7 @@ impl Primitives {
     }
 }
 
-/// The points' normals; those of the faces around them where they have none; any direction where there are none either.
+/// The points' normals; if missing, those of their faces; otherwise an arbitrary direction.
 fn normals(cloud: &Cloud) -> Vec<Vec3> {
     let mut normals = cloud.normals.clone().unwrap_or_else(|| vec![Vec3::ZERO; cloud.len()]);
     if normals.contains(&Vec3::ZERO) {

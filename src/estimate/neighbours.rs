@@ -12,17 +12,17 @@ use glam::Vec3;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Neighbours of a site in the graph along which normals are made to agree.
+/// Number of neighbours of a site in the graph for normal orientation.
 const EDGES: usize = 10;
-/// A disc is at most this many times as large as the middle one of those next to it: a point far from others would hide them.
+/// Largest ratio of a disc's radius to the median of its neighbours' radii: an isolated point would hide its neighbours.
 const LARGEST_BESIDE: f32 = 3.0;
-/// And this many times, on flat ground twice as many, as what 99 % of all are not larger than: a few points far from all others would fill
-/// what is empty.
+/// Largest ratio of a disc's radius to the 99th percentile of all radii, twice that on flat ground: a few isolated points would fill empty
+/// space.
 const LARGEST_OVERALL: f32 = 2.0;
-/// Sites of one piece of work.
+/// Number of sites per task.
 const PIECE: usize = 1 << 12;
 
-/// Gives surfels without a normal or radius one from the points around them. Surfels are best in Morton order.
+/// Estimates missing normals and radii from the nearest points. Surfels are best in Morton order.
 pub(super) fn fill(draft: &mut Draft, view: View, how: &Estimate, progress: &dyn Progress) -> Result<()> {
     let surfels = &draft.surfels;
     let sites = Sites::new(&surfels.positions, progress)?;
@@ -38,7 +38,7 @@ pub(super) fn fill(draft: &mut Draft, view: View, how: &Estimate, progress: &dyn
     Ok(())
 }
 
-/// The sites where a normal or a radius is missing.
+/// Sites with a missing normal or radius.
 fn wanted(surfels: &Surfels, sites: &Sites) -> Vec<u32> {
     let lacks = |i: usize| surfels.normals[i] == Vec3::ZERO || surfels.radii[i] == 0.0;
     let mut wanted = vec![false; sites.len()];
@@ -46,7 +46,7 @@ fn wanted(surfels: &Surfels, sites: &Sites) -> Vec<u32> {
     (0..sites.len() as u32).filter(|&site| wanted[site as usize]).collect()
 }
 
-/// Puts normals and radii where they are missing.
+/// Sets missing normals and radii.
 fn put(draft: &mut Draft, sites: &Sites, normals: &[Vec3], unknown: &[bool], radii: &[f32]) {
     let (surfels, estimated) = (&mut draft.surfels, &mut draft.estimated);
     let mut two_sided = surfels.two_sided.take().unwrap_or_else(|| vec![false; surfels.len()]);
@@ -64,7 +64,7 @@ fn put(draft: &mut Draft, sites: &Sites, normals: &[Vec3], unknown: &[bool], rad
     surfels.two_sided = two_sided.contains(&true).then_some(two_sided);
 }
 
-/// Makes the discs whose radius is estimated ellipses.
+/// Makes discs with an estimated radius elliptical.
 fn stretch(surfels: &mut Surfels, sites: &Sites, survey: &Survey, is_estimated: &[bool]) {
     let mut shapes = vec![None; sites.len()];
     survey.each().for_each(|(site, patch, _)| shapes[site as usize] = patch.ellipse);
@@ -77,11 +77,11 @@ fn stretch(surfels: &mut Surfels, sites: &Sites, survey: &Survey, is_estimated: 
     surfels.ellipses = Some((0..surfels.len()).map(shape).collect());
 }
 
-/// The patches of the sites where something is missing.
+/// Patches of the sites with a missing normal or radius.
 struct Survey {
     sites: Vec<u32>,
     patches: Vec<Patch>,
-    /// [`EDGES`] neighbours of each, or the site itself.
+    /// [`EDGES`] neighbours of each site, padded with the site itself.
     edges: Vec<u32>,
 }
 
@@ -107,7 +107,7 @@ impl Survey {
         Ok(Self { sites: wanted, patches, edges })
     }
 
-    /// The sites that are next to each other, each pair once, without those that are both `known`.
+    /// Pairs of neighbouring sites, each once, unless both are `known`.
     fn edges(&self, count: usize, known: &[bool]) -> Vec<Edge> {
         let mut place = vec![None; count];
         self.sites
@@ -127,7 +127,7 @@ impl Survey {
         edges
     }
 
-    /// Each site, its patch and its neighbours.
+    /// Each site with its patch and neighbours.
     fn each(&self) -> impl Iterator<Item = (u32, &Patch, &[u32])> {
         self.sites
             .iter()
@@ -137,7 +137,7 @@ impl Survey {
     }
 }
 
-/// The normal of every site, and the sites whose side is unknown.
+/// The normal of every site, and whether its side is unknown.
 fn normals(
     surfels: &Surfels,
     sites: &Sites,
@@ -194,7 +194,7 @@ fn radii(surfels: &Surfels, sites: &Sites, survey: &Survey) -> Vec<f32> {
     radii
 }
 
-/// What 99 % of `values` do not exceed.
+/// The 99th percentile of `values`.
 fn tail(mut values: Vec<f32>) -> f32 {
     let index = values.len() * 99 / 100;
     if values.is_empty() { 0.0 } else { *values.select_nth_unstable_by(index, f32::total_cmp).1 }

@@ -1,5 +1,5 @@
-//! Which side normals point to: neighbours agree first where they are most nearly parallel (Hoppe et al., Surface Reconstruction from
-//! Unorganized Points, 1992, section 3.3), along the minimum spanning tree of the graph of neighbours.
+//! Orientation of normals: neighbours agree in order of decreasing parallelism (Hoppe et al., Surface Reconstruction from Unorganized
+//! Points, 1992, section 3.3), along the minimum spanning tree of the neighbourhood graph.
 
 use super::sheet::Sheet;
 use crate::Progress;
@@ -7,10 +7,10 @@ use glam::Vec3;
 use rayon::prelude::*;
 use std::collections::HashMap;
 
-/// A node that knows whether it agrees with its parent: a disjoint-set forest with parity.
+/// Disjoint-set forest with parity: each node stores whether it agrees with its parent.
 struct Forest {
     parent: Vec<u32>,
-    /// Whether the node's normal must be flipped if its parent's is not.
+    /// Whether the node's normal is flipped relative to its parent's.
     flips: Vec<bool>,
 }
 
@@ -19,7 +19,7 @@ impl Forest {
         Self { parent: (0..count as u32).collect(), flips: vec![false; count] }
     }
 
-    /// The root of a node, and whether the node is flipped against it.
+    /// The root of a node, and whether the node is flipped relative to it.
     fn find(&mut self, mut node: u32) -> (u32, bool) {
         let mut flipped = false;
         loop {
@@ -28,7 +28,7 @@ impl Forest {
             if parent == above {
                 return (parent, flipped ^ (parent != node && self.flips[node as usize]));
             }
-            // Each node on the way is hung one higher.
+            // Path compression by halving.
             self.flips[node as usize] ^= self.flips[parent as usize];
             self.parent[node as usize] = above;
             flipped ^= self.flips[node as usize];
@@ -36,7 +36,7 @@ impl Forest {
         }
     }
 
-    /// Makes two nodes agree, or disagree, unless that is settled.
+    /// Makes two nodes agree, or disagree, unless they are connected.
     fn join(&mut self, a: u32, b: u32, disagree: bool) {
         let ((root_a, a), (root_b, b)) = (self.find(a), self.find(b));
         if root_a != root_b {
@@ -46,26 +46,26 @@ impl Forest {
     }
 }
 
-/// Normals to be made to agree, and where they stand; all by site.
+/// Normals to orient, and their positions, by site.
 pub(super) struct Oriented<'a> {
     /// Unit normals.
     pub normals: &'a mut [Vec3],
-    /// Whether a normal points to its right side already.
+    /// Whether the side of a normal is known.
     pub known: &'a [bool],
     /// Positions.
     pub positions: &'a (dyn Fn(u32) -> Vec3 + Sync),
-    /// What each disc covers, to the square of the positions' unit.
+    /// Areas of the discs, in squares of the positions' unit.
     pub areas: &'a [f32],
 }
 
-/// Two sites next to each other.
+/// A pair of neighbouring sites.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Edge {
     pub a: u32,
     pub b: u32,
-    /// From 0, surely parallel or antiparallel, to [`STEPS`] - 1.
+    /// From 0, reliably parallel or antiparallel, to [`STEPS`] − 1.
     weight: u16,
-    /// Whether one of the normals is to be flipped.
+    /// Whether one of the normals must be flipped.
     disagree: bool,
 }
 
@@ -75,15 +75,15 @@ impl Edge {
     }
 }
 
-/// Edges between two words about progress.
+/// Number of edges between progress reports.
 const PERIOD: u64 = 1 << 16;
-/// Steps of the weights by which edges are sorted.
+/// Number of weights by which edges are sorted.
 const STEPS: usize = 1 << 10;
-/// Edges below this weight are sure: their normals are less than 41° from parallel, or antiparallel.
+/// Edges below this weight are reliable: their normals are less than 41° from parallel, or antiparallel.
 const SURE: u16 = (STEPS / 4) as u16;
 
 impl Oriented<'_> {
-    /// Makes normals agree along `edges`, outwards on closed surfaces; those that are known stay. Gives the sites whose side is still
+    /// Orients normals consistently along `edges`, outwards on closed surfaces; known sides are kept. Returns the sites whose side is still
     /// unknown.
     pub fn settle(&mut self, mut edges: Vec<Edge>, progress: &dyn Progress) -> Vec<bool> {
         edges.par_iter_mut().for_each(|edge| self.weigh(edge));
@@ -106,7 +106,7 @@ impl Oriented<'_> {
         unknown
     }
 
-    /// The minimum spanning tree, as far as it matters: who agrees with whom. All known normals agree with the node beyond the last.
+    /// The minimum spanning tree, as a forest of agreements. All known normals agree with a virtual node after the last.
     fn span(&self, edges: &[Edge], progress: &dyn Progress) -> Forest {
         let known = self.known.len() as u32;
         let mut forest = Forest::new(self.known.len() + 1);
@@ -125,7 +125,7 @@ impl Oriented<'_> {
         forest
     }
 
-    /// The parts that hang together, by their roots, with normals as the roots have them.
+    /// The connected parts by their roots, with normals oriented as the roots'.
     fn sheets(&self, roots: &[(u32, bool)], edges: &[Edge]) -> HashMap<u32, Sheet> {
         let mut sheets = HashMap::<u32, Sheet>::new();
         for (site, &(root, flipped)) in roots.iter().enumerate() {
@@ -141,8 +141,8 @@ impl Oriented<'_> {
         sheets
     }
 
-    /// Whether two normals agree, and how surely: the one is mirrored as a circle's would be on the way to the other, so that creases do not
-    /// confuse (Xie et al., Surface Reconstruction of Noisy and Defective Data Sets, 2004).
+    /// Computes whether two normals agree, and how reliably: one is mirrored as on a circle between them, so that creases do not mislead
+    /// (Xie et al., Surface Reconstruction of Noisy and Defective Data Sets, 2004).
     fn weigh(&self, edge: &mut Edge) {
         let (m, n) = (self.normals[edge.a as usize], self.normals[edge.b as usize]);
         let along = ((self.positions)(edge.b) - (self.positions)(edge.a)).normalize_or_zero();
@@ -152,7 +152,7 @@ impl Oriented<'_> {
     }
 }
 
-/// The edges' indices by ascending weight.
+/// Indices of the edges by ascending weight.
 fn surest_first(edges: &[Edge]) -> Vec<u32> {
     let mut starts = vec![0usize; STEPS + 1];
     edges.iter().for_each(|edge| starts[edge.weight as usize + 1] += 1);

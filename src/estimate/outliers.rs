@@ -1,5 +1,4 @@
-//! Statistical removal of points far from all others (Rusu et al., Towards 3D Point Cloud Based Object Maps for Household Environments,
-//! 2008, section 4.1).
+//! Statistical outlier removal (Rusu et al., Towards 3D Point Cloud Based Object Maps for Household Environments, 2008, section 4.1).
 
 use super::Estimate;
 use super::sites::Sites;
@@ -9,11 +8,10 @@ use glam::Vec3;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// Sites of one piece of work.
+/// Number of sites per task.
 const PIECE: usize = 1 << 12;
 
-/// The points that stay: those whose mean distance from their neighbours is no more than `deviations` standard deviations above the mean of
-/// all.
+/// The points whose mean distance from their neighbours is at most `deviations` standard deviations above the mean of all.
 pub(super) fn kept(
     positions: &[Vec3],
     deviations: f32,
@@ -30,7 +28,7 @@ pub(super) fn kept(
     Ok((0..positions.len() as u32).filter(stays).collect())
 }
 
-/// The mean distance of each site from its neighbours.
+/// Mean distance of each site from its neighbours.
 fn distances(sites: &Sites, neighbours: usize, progress: &dyn Progress) -> Result<Vec<f64>> {
     let mean = |site: u32| {
         let each =

@@ -1,4 +1,4 @@
-//! What the points around a point say of the surface there: its plane, and how far a disc must reach.
+//! Local surface around a point: its plane, and the required radius of its disc.
 
 use super::cell::Cell;
 use super::eigen;
@@ -6,61 +6,60 @@ use super::sites::Sites;
 use crate::geometry::Ellipse;
 use glam::{DMat2, DMat3, DVec2, DVec3, Vec3};
 
-/// The surface around a site.
+/// Local surface around a site.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Patch {
-    /// Unit normal, of either side.
+    /// Unit normal with an arbitrary side.
     pub normal: Vec3,
-    /// How far a disc must reach to cover what is nearest to the site; 0 if it has no neighbours. Of an ellipse, its longer semi-axis.
+    /// Radius of the disc that covers the region nearest to the site; 0 without neighbours. Of an ellipse, the longer semi-axis.
     pub reach: f32,
-    /// From 0, the neighbours do not lie in a plane, to 1, they do.
+    /// From 0, the neighbours are not in a plane, to 1, they are.
     pub flatness: f32,
-    /// The ellipse that covers it.
+    /// The ellipse that covers the region.
     pub ellipse: Option<Ellipse>,
 }
 
-/// Makes patches, one after the other.
+/// Computes patches.
 pub(super) struct Surveyor<'a> {
     sites: &'a Sites,
-    /// How many neighbours are looked at where they surround the site.
+    /// Number of neighbours if they surround the site.
     neighbours: usize,
     elliptical: bool,
     cell: Cell,
     near: Vec<u32>,
-    /// The neighbours relative to the site, and those of them that lie in its plane.
+    /// Neighbours relative to the site, and the ones in its plane.
     offsets: Vec<DVec3>,
     flat: Vec<DVec2>,
     distances: Vec<f64>,
 }
 
-/// Where the neighbours do not surround a site, because they all belong to one scan line for example, or where they do not lie in a plane,
-/// this many times as many are looked at.
+/// Factor of the number of neighbours where they do not surround a site, for example in a single scan line, or do not lie in a plane.
 const WIDER: usize = 4;
-/// Neighbours whose extents across and along are less than this far apart, 1-σ, lie in a line.
+/// Largest ratio of the extents across and along a line, 1-σ.
 const LINE: f64 = 0.1;
-/// A site on a surface has about this many neighbours around it.
+/// Typical number of neighbours around a site on a surface.
 const AROUND: usize = 6;
-/// Of these neighbours' distance, a disc reaches at most so many times as far: where they do not lie in a plane, and where they do.
+/// Largest radius in distances of these neighbours: if they do not lie in a plane, and if they do.
 const WIDEST: [f64; 2] = [1.0, 8.0];
-/// Neighbours lie in a plane if their thickness, the extent across it by the lesser extent along it, 1-σ, is less than this; and they do
-/// not if it is more than [`THICK`].
+/// Neighbours lie in a plane if their thickness, the extent across the plane divided by the lesser extent in it, 1-σ, is below [`THIN`],
+/// and do not if it is above [`THICK`].
 const THIN: f64 = 0.2;
 const THICK: f64 = 0.4;
-/// Neighbours that are this thick may be noise. They are if more of them are less than [`SMOOTHER`] times as thick: a crease is as thick in
-/// any neighbourhood.
+/// Neighbours of this thickness may be noise. They are if more neighbours are less than [`SMOOTHER`] times as thick: a crease has the same
+/// thickness in any neighbourhood.
 const NOISY: f64 = 0.15;
 const SMOOTHER: f64 = 0.6;
-/// How often a plane through noise is made anew without what is far from it.
+/// Iterations of the robust plane through noise.
 const SETTLING: usize = 3;
-/// Least shorter axis of an ellipse by its longer.
+/// Least aspect of an ellipse.
 const LEAST_ASPECT: f64 = 0.125;
 
-/// The plane through a site's neighbours.
+/// Plane through a site's neighbours.
 struct Plane {
-    /// The middle of the neighbours, relative to the site.
+    /// Mean of the neighbours, relative to the site.
     mean: DVec3,
     normal: DVec3,
-    /// The other eigenvectors, the longer extent last.
+    /// The other eigenvectors, by increasing extent.
     tangents: [DVec3; 2],
     /// Extents along normal and tangents, 1-σ.
     extents: DVec3,
@@ -80,7 +79,7 @@ impl<'a> Surveyor<'a> {
         }
     }
 
-    /// The patch around `site`; the nearest of its neighbours, at most `edges.len()`, go to `edges`, whose rest becomes `site`.
+    /// The patch around `site`. Writes the nearest neighbours to `edges`, padded with `site`.
     pub fn survey(&mut self, site: u32, edges: &mut [u32]) -> Patch {
         let mut plane = self.look(site, self.neighbours);
         for (i, edge) in edges.iter_mut().enumerate() {
@@ -94,7 +93,7 @@ impl<'a> Surveyor<'a> {
             plane = if plane.is_line() || closes || smooths {
                 wider
             } else {
-                // An edge of the surface, or a crease: the nearer neighbours know better, and do not bridge its bays.
+                // An edge of the surface, or a crease: the nearer neighbours are more accurate, and do not bridge its bays.
                 self.look(site, self.neighbours)
             };
         }
@@ -114,20 +113,20 @@ impl<'a> Surveyor<'a> {
         patch
     }
 
-    /// Keeps a disc from covering what is no surface: gaps that are wide for how near the nearest neighbours are, the more so where these
-    /// do not lie in a plane.
+    /// Limits the radius at gaps that are wide relative to the distance of the nearest neighbours, the more so if these do not lie in a
+    /// plane.
     fn limit(&self, patch: &mut Patch) {
         let distance =
             |i: usize| self.offsets.get(i).or(self.offsets.last()).map_or(0.0, |offset| offset.length());
         let most = distance(AROUND - 1) * (WIDEST[0] + f64::from(patch.flatness) * (WIDEST[1] - WIDEST[0]));
         patch.reach = match patch.reach {
-            // On a line, or with a single neighbour: half-way to the second.
+            // In a line, or with a single neighbour: half-way to the second.
             0.0 => 0.5 * distance(1) as f32,
             reach => reach.min(most as f32),
         };
     }
 
-    /// The plane of most neighbours, where they lie in several: each counts the less the further it is from the plane before.
+    /// The plane of most neighbours if they lie in several: iteratively reweighted by distance from the plane.
     fn settle(&mut self, mut plane: Plane) -> Plane {
         for _ in 0..SETTLING {
             let distance = |offset: &DVec3| (offset - plane.mean).dot(plane.normal).abs();
@@ -145,7 +144,7 @@ impl<'a> Surveyor<'a> {
         plane
     }
 
-    /// Looks at the `count` nearest sites: their plane, and the cell among them in it.
+    /// Computes the plane of the `count` nearest sites and the Voronoi cell in it.
     fn look(&mut self, site: u32, count: usize) -> Plane {
         let centre = self.sites.at(site).as_dvec3();
         self.near.clear();
@@ -157,12 +156,12 @@ impl<'a> Surveyor<'a> {
         plane
     }
 
-    /// Finds the cell among the neighbours in a plane.
+    /// Computes the Voronoi cell in a plane.
     fn flatten(&mut self, plane: &Plane) {
         self.flat.clear();
         for offset in &self.offsets {
             let flat = DVec2::from(plane.tangents.map(|tangent| tangent.dot(*offset)));
-            // What is rather above than beside the site is of another sheet, or noise.
+            // Neighbours above rather than beside the site belong to another sheet, or are noise.
             let above = offset.dot(plane.normal);
             if above * above <= flat.length_squared() {
                 self.flat.push(flat);
@@ -171,8 +170,8 @@ impl<'a> Surveyor<'a> {
         self.cell.build(&self.flat);
     }
 
-    /// Makes the disc an ellipse: a circle in the plane that is stretched so that the distances to the neighbours around are the same in
-    /// every direction.
+    /// Makes the disc elliptical: stretches a circle in the plane so that the distances to the surrounding neighbours are equal in all
+    /// directions.
     fn stretch(&mut self, plane: &Plane, patch: &mut Patch) {
         let around = self.cell.neighbours().map(|i| self.flat[i as usize]);
         let covariance = around.fold(DMat2::ZERO, |sum, e| sum + DMat2::from_cols(e * e.x, e * e.y));
@@ -191,7 +190,7 @@ impl<'a> Surveyor<'a> {
 }
 
 impl Plane {
-    /// The plane of least squares through points, each with its weight.
+    /// The weighted least-squares plane through points.
     fn through(points: impl Iterator<Item = (DVec3, f64)> + Clone) -> Self {
         let (sum, weight) =
             points.clone().fold((DVec3::ZERO, 0.0), |(sum, weight), (p, w)| (sum + w * p, weight + w));
@@ -207,12 +206,12 @@ impl Plane {
         self.extents.y <= LINE * self.extents.z
     }
 
-    /// The extent across by the lesser extent along, from 0 to 1.
+    /// The extent across the plane divided by the lesser extent in it, from 0 to 1.
     fn thickness(&self) -> f64 {
         if self.extents.y > 0.0 { self.extents.x / self.extents.y } else { 1.0 }
     }
 
-    /// From 0, the neighbours do not lie in a plane, to 1, they do.
+    /// From 0, the neighbours are not in a plane, to 1, they are.
     fn flatness(&self) -> f64 {
         ((THICK - self.thickness()) / (THICK - THIN)).clamp(0.0, 1.0)
     }

@@ -1,15 +1,15 @@
-//! How far the discs at a triangle's corners must reach so that together they cover it.
+//! Radii of discs at a triangle's corners that together cover the triangle.
 
-/// The part of a triangle that is nearest to its corner `p` ends this far from `p`: if every corner's disc reaches that far, they cover the
-/// triangle without a gap. Given are the squares of the sides' lengths, `pa` from `p` to `a`, and so on.
+/// Radius of the disc at corner `p`, if every corner has one, at which the discs cover the triangle: the distance to the farthest point
+/// that is nearer to `p` than to the other corners. The arguments are squared lengths of sides: `pa` from `p` to `a`, and so on.
 ///
-/// Of an acute triangle it is the circumscribed circle's radius. Of an obtuse one, whose circle's centre is outside, it is where the
-/// bisectors of the short sides meet the long one. 0 of a triangle without extent.
+/// For an acute triangle it is the circumradius. For an obtuse one, whose circumcentre is outside, it is the distance to where the
+/// bisectors of the short sides meet the long one. 0 for a degenerate triangle.
 pub(super) fn reach(pa: f64, pb: f64, ab: f64) -> f64 {
-    // By the law of cosines, twice the product of two sides with the cosine between them.
+    // By the law of cosines: twice the product of two sides and the cosine between them.
     let (at_p, at_a, at_b) = (pa + pb - ab, pa + ab - pb, pb + ab - pa);
     if at_p <= 0.0 {
-        // The point of side ab that is as far from p as from a is |pa| / (2 cos A) away from both.
+        // The point of side ab that is equally far from p and a is |pa| / (2 cos A) away from both.
         let from_a = pa * ab.sqrt() / at_a;
         let from_b = pb * ab.sqrt() / at_b;
         from_a.max(from_b)
@@ -18,8 +18,8 @@ pub(super) fn reach(pa: f64, pb: f64, ab: f64) -> f64 {
     } else if at_b <= 0.0 {
         pb * pa.sqrt() / at_p
     } else {
-        // 16 times the square of the area, by Heron; where two corners are close together it is rounding alone, but of an acute triangle
-        // the circle's radius is between these two parts of the longest side.
+        // 16 times the squared area, by Heron. It is only rounding error where two corners are close together, but the circumradius of an
+        // acute triangle is between these two parts of the longest side.
         let area = (4.0 * pa * pb - at_p * at_p).max(0.0);
         let longest = pa.max(pb).max(ab).sqrt();
         (pa * pb * ab / area).sqrt().min(longest / 3f64.sqrt()).max(0.5 * longest)

@@ -1,33 +1,33 @@
-//! A part of a surface that hangs together: what tells its inside from its outside.
+//! A connected part of a surface: sums that tell its inside from its outside.
 
 use glam::{DVec3, Vec3};
 
-/// Sums over the discs of a sheet whose normals agree.
+/// Sums over the discs of a sheet with consistent normals.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Sheet {
     discs: u64,
     area: f64,
-    /// Sum of normals times areas: 0 of a closed surface.
+    /// Sum of normal × area: 0 for a closed surface.
     vector: DVec3,
-    /// Sum of positions times areas.
+    /// Sum of position × area.
     moment: DVec3,
-    /// Sum of squared distances from 0 times areas.
+    /// Sum of squared distance from 0 × area.
     second_moment: f64,
-    /// Sum of normal · position times area: three times the volume of a closed surface, negative if the normals point inwards.
+    /// Sum of (normal · position) × area: three times the volume of a closed surface, negative if the normals point inwards.
     flux: f64,
-    /// Pairs of neighbours whose normals are surely parallel or antiparallel.
+    /// Number of neighbour pairs with reliably parallel or antiparallel normals.
     pub sure: u64,
-    /// Those of them that contradict the others.
+    /// Number of these pairs that contradict the others.
     pub contradicted: u64,
 }
 
-/// A surface whose vector area is below this part of its area is closed. A half sphere's is 0.5.
+/// A surface is closed if its vector area is below this part of its area (a half sphere has 0.5),
 const CLOSED: f64 = 0.15;
-/// And whose volume is at least this part of that of a sphere with the same area and extent: not crumpled.
+/// its volume is at least this part of that of a sphere with the same area and extent, so that it is not crumpled,
 const FULL: f64 = 0.15;
-/// And that contradicts itself in at most this part of its sure pairs, where noise or clutter has no side at all.
+/// at most this part of its reliable pairs contradict, so that it is not noise or clutter,
 const CONTRADICTED: f64 = 0.01;
-/// And that has at least as many discs.
+/// and it has at least this number of discs.
 const LEAST_DISCS: u64 = 32;
 
 impl Sheet {
@@ -41,7 +41,7 @@ impl Sheet {
         self.flux += area * normal.dot(position);
     }
 
-    /// Whether it has an outside, without doubt.
+    /// Whether it is reliably closed, so that it has an outside.
     pub fn is_closed(&self) -> bool {
         let middle = self.moment / self.area;
         let extent = (self.second_moment / self.area - middle.length_squared()).max(0.0).sqrt();
@@ -51,7 +51,7 @@ impl Sheet {
             && self.contradicted as f64 <= CONTRADICTED * self.sure as f64
     }
 
-    /// Three times the volume, seen from the middle; negative if the normals point inwards.
+    /// Three times the volume about the centre; negative if the normals point inwards.
     pub fn volume(&self) -> f64 {
         self.flux - self.vector.dot(self.moment / self.area)
     }

@@ -1,4 +1,4 @@
-//! The places where points are, each once, and the nearest of them to each.
+//! Sites: distinct positions of points with nearest-neighbour search.
 
 use crate::Progress;
 use crate::error::{Error, Result};
@@ -7,8 +7,7 @@ use kiddo::{ImmutableKdTree, SquaredEuclidean};
 use rayon::prelude::*;
 use std::num::NonZero;
 
-/// Distinct positions, searchable. In a unit of its own, so that neither very small nor very large coordinates leave f32's range when they
-/// are squared.
+/// Distinct positions in a search tree, scaled so that squares of very small or very large coordinates stay in f32's range.
 pub(super) struct Sites {
     tree: ImmutableKdTree<f32, 3>,
     points: Vec<[f32; 3]>,
@@ -16,12 +15,12 @@ pub(super) struct Sites {
     pub of_point: Vec<u32>,
     /// A point at each site.
     pub point: Vec<u32>,
-    /// A site's coordinates, in the points' unit, are these times this, a power of two.
+    /// Scale from a site's coordinates to the points' unit, a power of two.
     pub unit: f32,
 }
 
 impl Sites {
-    /// The sites of `positions`, in their order.
+    /// Creates the sites of `positions`, in order.
     pub fn new(positions: &[Vec3], progress: &dyn Progress) -> Result<Self> {
         let stage = |done| progress.at("building the search tree", done, 2);
         stage(0);
@@ -49,7 +48,7 @@ impl Sites {
         self.points[site as usize].into()
     }
 
-    /// Up to `count` sites next to `site`, nearest first, without itself.
+    /// Up to `count` nearest other sites, nearest first.
     pub fn nearest(&self, site: u32, count: usize) -> impl Iterator<Item = u32> + use<> {
         let most = NonZero::new(count + 1).unwrap_or(NonZero::<usize>::MIN);
         let query = &self.points[site as usize];
@@ -58,14 +57,14 @@ impl Sites {
     }
 }
 
-/// The site of each point, and the first point of each site. Points are at one site if they are equal.
+/// The site of each point, and the first point of each site. Equal positions share a site.
 fn distinct(positions: &[Vec3]) -> (Vec<u32>, Vec<u32>) {
     // -0 becomes 0, so that equal numbers have equal bits.
     let bits = |p: Vec3| (p + 0.0).to_array().map(f32::to_bits);
     let mut order: Vec<([u32; 3], u32)> =
         positions.par_iter().zip(0..positions.len() as u32).map(|(p, i)| (bits(*p), i)).collect();
     order.par_sort_unstable();
-    // The first of its equals stands for each point.
+    // The first equal position represents each point.
     let mut first: Vec<u32> = vec![0; positions.len()];
     for equal in order.chunk_by(|a, b| a.0 == b.0) {
         equal.iter().for_each(|&(_, i)| first[i as usize] = equal[0].1);
@@ -102,7 +101,7 @@ mod tests {
             let grid: Vec<Vec3> = grid.collect();
             let sites = Sites::new(&grid, &()).unwrap();
             for site in [0, 210, 3999_u32] {
-                // Divided before they are squared, which must not leave f32's range.
+                // Divided before squaring, which must not exceed f32's range.
                 let at = |site: u32| grid[site as usize] / scale;
                 let distance = |&other: &u32| at(other).distance(at(site));
                 let found: Vec<f32> = sites.nearest(site, 8).map(|other| distance(&other)).collect();

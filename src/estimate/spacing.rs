@@ -1,10 +1,10 @@
-//! How far points are apart.
+//! Distance between points.
 
 use super::sites::Sites;
 use glam::Vec3;
 use rayon::prelude::*;
 
-/// The median distance from a point to the nearest one elsewhere, in the points' unit; `None` if they are all at one place.
+/// Median distance from a point to the nearest distinct one, in the points' unit; `None` if all coincide.
 pub fn spacing(positions: &[Vec3]) -> Option<f32> {
     let sites = Sites::new(positions, &()).ok()?;
     let distance = |site: u32| Some(sites.at(site).distance(sites.at(sites.nearest(site, 1).next()?)));

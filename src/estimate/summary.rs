@@ -1,9 +1,9 @@
-//! What was estimated, in words.
+//! Summary of an estimation.
 
 use super::Estimated;
 
 impl Estimated {
-    /// A line on what was estimated and what was dropped for it; `None` if nothing was.
+    /// One line on the estimated and removed attributes; `None` if there are none.
     pub fn summary(&self) -> Option<String> {
         let counts = self;
         let normals = sources(counts.normals_from_faces, counts.normals_from_neighbours);

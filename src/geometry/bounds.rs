@@ -1,15 +1,15 @@
-//! Bounds: a box and a sphere.
+//! Bounds: an axis-aligned box and a sphere.
 
 use glam::{DVec3, Vec3};
 
-/// The axis-aligned box of a set of points and a sphere about them, in the points' own unit and frame.
+/// Axis-aligned box and bounding sphere of points, in the points' unit and frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Bounds {
     /// Least coordinates.
     pub min: DVec3,
     /// Greatest coordinates.
     pub max: DVec3,
-    /// Radius of the sphere about [`Bounds::centre`] that holds the points.
+    /// Radius of the bounding sphere around [`Bounds::centre`].
     pub radius: f64,
 }
 
@@ -29,25 +29,25 @@ impl Bounds {
         Self { min, max, radius: (0.5 * max - 0.5 * min).length() }
     }
 
-    /// The middle of the box.
+    /// Centre of the box.
     pub fn centre(&self) -> DVec3 {
         // Halved before the sum, so that the largest finite coordinates do not overflow.
         0.5 * self.min + 0.5 * self.max
     }
 
-    /// The same bounds moved by `offset`.
+    /// The bounds, translated by `offset`.
     pub fn translated(&self, offset: DVec3) -> Self {
         Self { min: self.min + offset, max: self.max + offset, ..*self }
     }
 
-    /// Bounds that hold both.
+    /// Bounds of both.
     pub fn with(&self, other: &Self) -> Self {
         let both = Self::of_box(self.min.min(other.min), self.max.max(other.max));
         let reach = |part: &Self| part.centre().distance(both.centre()) + part.radius;
         Self { radius: both.radius.min(reach(self).max(reach(other))), ..both }
     }
 
-    /// The same bounds moved outwards by `margin`.
+    /// The bounds, grown by `margin` on all sides.
     pub fn grown(&self, margin: f64) -> Self {
         Self { min: self.min - margin, max: self.max + margin, radius: self.radius + margin }
     }

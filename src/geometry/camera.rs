@@ -1,29 +1,29 @@
-//! Cameras: a view and a projection matrix, and what a renderer needs to know of them.
+//! Cameras: view and projection matrix.
 
 use super::Bounds;
 use crate::error::{Error, Result};
 use glam::{DMat3, DMat4, DVec3, DVec4};
 
-/// A view and a projection matrix, in Vulkan's clip space (x right, y down, `0 ≤ z ≤ w`), for column vectors.
+/// View and projection matrix in Vulkan's clip space (x right, y down, `0 ≤ z ≤ w`), for column vectors.
 ///
-/// Any rigid view and any projection of these kinds serve: perspective or orthographic, off-centre, finite or infinite, reversed or
-/// not. [`Camera::look_at`] makes ours: eye space x right, y down, z forward; reversed, infinite far plane.
+/// Supports any rigid view, and perspective and orthographic projections: off-centre, with finite or infinite far plane, reversed or not.
+/// [`Camera::look_at`] creates the engine's default: eye space x right, y down, z forward; reversed, infinite far plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// World to eye space.
     pub view: DMat4,
     /// Eye space to clip space.
     pub projection: DMat4,
-    /// Whether clip-space depth falls with distance (1 at the near plane).
+    /// Whether clip-space depth decreases with distance (1 at the near plane).
     pub reversed: bool,
 }
 
-/// How depth becomes distance: what the third and fourth row of the projection say.
+/// Parameters of the third and fourth row of a projection matrix: how depth relates to distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Projection {
-    /// Whether all rays meet in the eye.
+    /// Whether the projection is perspective.
     pub perspective: bool,
-    /// +1 if eye space looks along +z, −1 if along −z: distance in front of the eye is `forward · z`.
+    /// +1 if eye space looks along +z, −1 if along −z: the distance in front of the eye is `forward · z`.
     pub forward: f64,
     /// Eye-space distance of the near plane; above 0 in perspective.
     pub near: f64,
@@ -31,13 +31,13 @@ pub struct Projection {
     pub far: f64,
 }
 
-/// How much larger than the sphere about the object the framed sphere is, so that the outline stays clear of the edge.
+/// Radius of the framed sphere divided by that of the object's, so that the outline stays clear of the edge.
 const FRAME: f64 = 1.04;
 
 impl Camera {
     /// A perspective camera at `eye` that looks at `target`, with `up` upwards in the picture.
     ///
-    /// `fov_y` is the full vertical angle in radians, `aspect` is width / height, `near` the near plane's distance.
+    /// `fov_y` is the full vertical angle in radians, `aspect` is width / height, `near` the distance of the near plane.
     pub fn look_at(eye: DVec3, target: DVec3, up: DVec3, fov_y: f64, aspect: f64, near: f64) -> Result<Self> {
         if !(fov_y > 0.0 && fov_y < std::f64::consts::PI) {
             let degrees = fov_y.to_degrees();
@@ -66,10 +66,10 @@ impl Camera {
         Ok(Self { view, projection, reversed: true })
     }
 
-    /// A perspective camera that shows the whole of `bounds`, seen from the front, a little from the right and above (y is up).
+    /// A perspective camera that frames `bounds`, from the front, a little from the right and above (y is up).
     pub fn framing(bounds: &Bounds, fov_y: f64, aspect: f64) -> Result<Self> {
         let radius = if bounds.radius > 0.0 { FRAME * bounds.radius } else { 1.0 };
-        // The sphere touches the narrower of the two fields of view.
+        // The sphere touches the narrower field of view.
         let half = (0.5 * fov_y).tan().min((0.5 * fov_y).tan() * aspect).atan();
         let distance = radius / half.sin();
         let eye = bounds.centre() + distance * DVec3::new(1.0, 0.8, 1.6).normalize();
@@ -77,8 +77,8 @@ impl Camera {
         Self::look_at(eye, bounds.centre(), DVec3::Y, fov_y, aspect, near)
     }
 
-    /// A near plane that cuts nothing a viewer at `eye` could want to see of `bounds`. Reversed float depth loses nothing by a small
-    /// one.
+    /// A near plane in front of everything in `bounds` that a viewer at `eye` may look at. With reversed float depth, a small one costs no
+    /// precision.
     pub fn near_for(eye: DVec3, bounds: &Bounds) -> f64 {
         let scale = bounds.radius.max((eye - bounds.centre()).length());
         if scale > 0.0 { 1e-5 * scale } else { 1e-5 }
@@ -89,7 +89,7 @@ impl Camera {
         self.projection * self.view
     }
 
-    /// Eye-space distance, in front of the eye, of what has this depth, 0 to 1; infinite at an infinite far plane.
+    /// Eye-space distance of a depth from 0 to 1; infinite at an infinite far plane.
     ///
     /// # Errors
     /// As [`Camera::projection`].
@@ -99,10 +99,10 @@ impl Camera {
         Ok(forward * (z.w - depth * w.w) / (depth * w.z - z.z))
     }
 
-    /// What the projection's depth rows say.
+    /// Parameters of the projection's depth rows.
     ///
     /// # Errors
-    /// [`Error::Usage`] for a view that is no rotation, mirrored or not, and translation, and for a projection that is of no supported kind.
+    /// [`Error::Usage`] for a view that is not a rotation, possibly mirrored, with a translation, and for an unsupported projection.
     pub fn projection(&self) -> Result<Projection> {
         let (z, w) = (self.projection.row(2), self.projection.row(3));
         let refuse = |cause: &str| Err(Error::Usage(format!("the projection matrix {cause}")));
@@ -121,7 +121,7 @@ impl Camera {
             return refuse("has a fourth row that is neither (0, 0, ±k, 0) nor (0, 0, 0, k)");
         }
         let perspective = w.z != 0.0;
-        // ndc depth as a function of the distance d = forward · z: a + b / d in perspective, (a d + b) otherwise.
+        // Depth as a function of the distance d = forward · z: a + b / d in perspective, otherwise a d + b.
         let (forward, at_zero, at_one) = if perspective {
             let (a, b) = (z.z / w.z, z.w / w.z.abs());
             (w.z.signum(), -b / a, b / (1.0 - a))
@@ -131,7 +131,7 @@ impl Camera {
             (forward, -b / a, (1.0 - b) / a)
         };
         let (near, far) = if self.reversed { (at_one, at_zero) } else { (at_zero, at_one) };
-        // An infinite far plane may come out as −∞ or, from single-precision matrices, as a huge negative number.
+        // An infinite far plane may be −∞ or, from single-precision matrices, a huge negative number.
         let far = if perspective && (far.is_nan() || far < 0.0) { f64::INFINITY } else { far };
         if !(near.is_finite() && far > near && (near > 0.0 || !perspective)) {
             return refuse(&format!(
@@ -142,10 +142,10 @@ impl Camera {
     }
 }
 
-/// Most that lengths and right angles may be off in a view of floats.
+/// Tolerance of lengths and right angles in a single-precision view.
 const LEAST_RIGID: f64 = 1e-4;
 
-/// Whether lengths and angles stay.
+/// Whether lengths and angles are preserved.
 fn is_rigid(view: &DMat4) -> bool {
     let turn = DMat3::from_mat4(*view);
     let off = turn.transpose() * turn - DMat3::IDENTITY;
@@ -194,7 +194,7 @@ mod tests {
 
     #[test]
     fn planes_are_read_off_every_kind_of_matrix() {
-        // glam's names: rh looks along −z, lh along +z.
+        // glam's rh looks along −z, lh along +z.
         let ortho = |near, far| rh::proj::directx::orthographic(-1.0, 1.0, -1.0, 1.0, near, far);
         let cases = [
             (rh::proj::directx::perspective(1.0, 1.5, 0.5, 80.0), false, -1.0, 0.5, 80.0),

@@ -1,61 +1,61 @@
-//! Clip lines: where the discs of surfels end at sharp edges and corners (Zwicker et al. 2004, section 5).
+//! Clip lines: edges of discs at sharp edges and corners (Zwicker et al. 2004, section 5).
 
 use crate::error::{Error, Result};
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 
-/// How far the square of a unit vector's length, and its product with another at a right angle, may be from 1 and 0 for float32 to be the
-/// cause: rounding each coordinate moves them by at most 2⁻²³, and a few sums of such vectors by a few times that.
+/// Tolerance for the squared length of a unit vector, and for its product with an orthogonal one, at which float32 is the cause: rounding
+/// moves each coordinate by at most 2⁻²³, and a few sums of such vectors by a few times that.
 const ROUNDING: f64 = 1e-6;
 
-/// A half-space whose border is nearer than this, radians, to a tangent plane has no line in it that rounding would not move far away.
+/// Least angle between a half-space's border and a tangent plane, radians: below it, rounding would move the line far.
 const UPRIGHT: f64 = 1e-3;
 
 /// Keeps the points x of a surfel's tangent plane with `outward · (x − p) ≤ offset`, where p is the surfel's centre.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct ClipLine {
-    /// Unit vector in the tangent plane, away from what is kept.
+    /// Unit vector in the tangent plane, away from the kept side.
     pub outward: Vec3,
     /// Signed distance from the centre to the line along `outward`, in the positions' unit; negative if the centre is cut off.
     pub offset: f32,
 }
 
-/// What is cut off a disc: by one line, or at a corner by two. A convex corner keeps what both keep, a concave one what either keeps.
+/// Clip of a disc: one line, or at a corner two. A convex corner keeps the intersection of both half-planes, a concave one the union.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Zeroable)]
 pub struct Clip {
-    /// The lines; of a single one, the second is [`ClipLine::NONE`].
+    /// The lines; the second is [`ClipLine::NONE`] if there is one.
     pub lines: [ClipLine; 2],
-    /// Whether what either line keeps is kept. Never of a single line.
+    /// Whether the corner is concave: the union is kept. Never with a single line.
     pub concave: bool,
 }
 
-/// The clips of those surfels that have one.
+/// Clips of some surfels.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Clips {
-    /// One entry a surfel: 0 if its disc is whole, otherwise 1 + the index of its clip.
+    /// One entry per surfel: 0 if its disc is whole, otherwise 1 + the index of its clip.
     pub of: Vec<u32>,
-    /// The clips; several surfels may name one.
+    /// The clips; several surfels may share one.
     pub clips: Vec<Clip>,
 }
 
 impl ClipLine {
-    /// Keeps everything, as 0 ≤ 0.
+    /// Keeps everything: 0 ≤ 0.
     pub const NONE: Self = Self { outward: Vec3::ZERO, offset: 0.0 };
 
-    /// The border of the half-space `a · (x − p) ≤ d` in the tangent plane with the unit normal `normal`; `a` may have any length.
-    /// `None` if it has none: the border is parallel to the plane, a number is not finite, or there is no normal.
+    /// The border of the half-space `a · (x − p) ≤ d` in the tangent plane with the unit normal `normal`; `a` may have any length. `None`
+    /// if the border is parallel to the plane, a number is not finite, or the normal is 0.
     pub(crate) fn of_half_space(a: DVec3, d: f64, normal: Vec3) -> Option<Self> {
         if normal == Vec3::ZERO {
             return None;
         }
-        // The length that rounding has left it would stay in what is projected.
+        // A rounding error of its length would remain in the projection.
         let n = normal.as_dvec3().normalize();
-        // What is a line of this plane already keeps its bits.
+        // A line of this plane keeps its bits.
         if (a.length_squared() - 1.0).abs() <= ROUNDING && a.dot(n).abs() <= ROUNDING {
             return Self { outward: a.as_vec3(), offset: d as f32 }.finite();
         }
-        // By the largest coordinate first, whose square may leave float64's range.
+        // Scaled by the largest coordinate first, whose square may exceed float64's range.
         let largest = a.abs().max_element();
         let direction = (a / largest).normalize();
         let across = direction - direction.dot(n) * n;
@@ -81,20 +81,20 @@ impl ClipLine {
         self.outward != Vec3::ZERO
     }
 
-    /// Whether the point of the tangent plane at `from_centre` from the surfel's centre is kept.
+    /// Whether the point at `from_centre` from the surfel's centre, in the tangent plane, is kept.
     pub fn keeps(&self, from_centre: DVec3) -> bool {
         self.outward.as_dvec3().dot(from_centre) <= self.offset.into()
     }
 }
 
 impl Clip {
-    /// By one line.
+    /// A clip of one line.
     pub fn line(line: ClipLine) -> Self {
         Self { lines: [line, ClipLine::NONE], concave: false }
     }
 
-    /// By those of two lines that there are; `None` if there is none. A concave corner of which a line is missing keeps everything, so it
-    /// is none: the other line alone would cut off what the missing one keeps.
+    /// A clip of the lines that exist; `None` if there are none. A concave corner with a missing line keeps everything, so it is `None`:
+    /// the other line alone would cut off points that the missing one keeps.
     pub(crate) fn of_some(lines: [Option<ClipLine>; 2], concave: bool) -> Option<Self> {
         match lines {
             [Some(a), Some(b)] => Some(Self { lines: [a, b], concave }),
@@ -103,13 +103,13 @@ impl Clip {
         }
     }
 
-    /// Whether the point of the tangent plane at `from_centre` from the surfel's centre is kept.
+    /// Whether the point at `from_centre` from the surfel's centre, in the tangent plane, is kept.
     pub fn keeps(&self, from_centre: DVec3) -> bool {
         let [a, b] = self.lines.map(|line| line.keeps(from_centre));
         if self.concave { a || b } else { a && b }
     }
 
-    /// The same clip in another tangent plane through the centre; `None` if nothing is left of it.
+    /// The same clip in another tangent plane through the centre; `None` if no line is left.
     pub(crate) fn within(self, normal: Vec3) -> Option<Self> {
         let within = |line: ClipLine| line.within(normal);
         if self.lines[1].is_some() {
@@ -121,23 +121,23 @@ impl Clip {
 }
 
 impl Clips {
-    /// Of surfels one after the other, each with its clip or none; `None` if none has any.
+    /// Clips of consecutive surfels, each with its clip or none; `None` if no surfel has one.
     pub fn collect(each: impl IntoIterator<Item = Option<Clip>>) -> Option<Self> {
         let mut all = Self::default();
         for clip in each {
             all.clips.extend(clip);
-            // There are no more than surfels, whose number is a u32.
+            // Fits: there are no more clips than surfels, whose number is a u32.
             all.of.push(if clip.is_some() { all.clips.len() as u32 } else { 0 });
         }
         (!all.clips.is_empty()).then_some(all)
     }
 
-    /// The clip of a surfel, if its disc is not whole.
+    /// The clip of a surfel, if any.
     pub fn get(&self, surfel: usize) -> Option<&Clip> {
         self.clips.get((*self.of.get(surfel)? as usize).checked_sub(1)?)
     }
 
-    /// Refuses a clip that does not exist.
+    /// Validates the clip indices.
     pub(super) fn check(&self) -> Result<()> {
         let count = self.clips.len();
         match self.of.iter().position(|&clip| clip as usize > count) {
@@ -149,7 +149,7 @@ impl Clips {
         }
     }
 
-    /// Entry `i` of the result is entry `order[i]` of `self`. The clips come in the order of the surfels, and those of none are left out.
+    /// Entry `i` of the result is entry `order[i]` of `self`. Clips are reordered with their surfels; unused ones are removed.
     pub(super) fn permute(&mut self, order: &[u32]) {
         let mut places = vec![0; self.clips.len() + 1];
         let mut clips = Vec::with_capacity(self.clips.len());
@@ -166,7 +166,7 @@ impl Clips {
         self.clips = clips;
     }
 
-    /// Those of several sets of surfels, one after the other, each with the set's number of surfels; `None` if no set has any.
+    /// Joins the clips of consecutive sets of surfels, each with its number of surfels; `None` if no set has any.
     pub(crate) fn join(parts: impl IntoIterator<Item = (Option<Self>, usize)>) -> Option<Self> {
         let mut all = Self::default();
         let mut any = false;

@@ -1,57 +1,57 @@
-//! A point cloud as files hold it: positions, and whatever else there is.
+//! Point clouds as files store them: positions, and optional attributes.
 
 use super::morton::order;
 use super::{Clips, Colours, Ellipse, Materials, Surfels, Texture, Weights};
 use glam::{DVec3, Vec3};
 
-/// Points as a structure of arrays; every array that is there has one entry a point.
+/// Points as a structure of arrays; every array that is present has one entry per point.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Cloud {
-    /// Added to every position: see [`Surfels::origin`](super::Surfels::origin).
+    /// Origin of the positions: see [`Surfels::origin`](super::Surfels::origin).
     pub origin: DVec3,
     /// Positions relative to `origin`, all finite.
     pub positions: Vec<Vec3>,
-    /// Unit normals; 0 where a point has none.
+    /// Unit normals; 0 for points without one.
     pub normals: Option<Vec<Vec3>>,
-    /// Radii of the covered discs, in the positions' unit; 0 where a point has none. Of elliptical discs, the longer semi-axis.
+    /// Radii of the discs, in the positions' unit; 0 for points without one. Of elliptical discs, the longer semi-axis.
     pub radii: Option<Vec<f32>>,
-    /// Shapes of elliptical discs. There are radii and normals, then.
+    /// Shapes of elliptical discs; need radii and normals.
     pub ellipses: Option<Vec<Ellipse>>,
-    /// Points whose normals may as well point the other way.
+    /// Points whose normals have no known side.
     pub two_sided: Option<Vec<bool>>,
-    /// Where discs end at sharp edges. There are normals, then.
+    /// Clips of discs at sharp edges; need normals.
     pub clips: Option<Clips>,
-    /// Normalization weights; 0 where a point has none. There are normals and radii, then.
+    /// Normalization weights; 0 for points without one. Need normals and radii.
     pub weights: Option<Weights>,
     /// Colours.
     pub colours: Option<Colours>,
-    /// What has the colours in place of [`Cloud::colours`].
+    /// Texture, in place of [`Cloud::colours`].
     pub texture: Option<Texture>,
-    /// How points shine.
+    /// Materials of the points.
     pub materials: Option<Materials>,
-    /// A number a point, chosen on reading; not finite where there is none.
+    /// A scalar per point, selected on reading; not finite for points without one.
     pub scalar: Option<Vec<f64>>,
-    /// Triangles between the points, counter-clockwise from outside; each index is one of a point.
+    /// Triangles as point indices, counter-clockwise from outside.
     pub triangles: Vec<[u32; 3]>,
-    /// Segments of ribbons between points: see [`Primitives`](super::Primitives). Ends are different points at different places.
+    /// Segments of ribbons as point indices: see [`Primitives`](super::Primitives). Their ends differ in index and position.
     pub ribbons: Vec<[u32; 2]>,
-    /// Segments of tubes between points, likewise.
+    /// Segments of tubes as point indices, likewise.
     pub tubes: Vec<[u32; 2]>,
-    /// Unit tangents of tubes; 0 where a point has none.
+    /// Unit tangents of tubes; 0 for points without one.
     pub tangents: Option<Vec<Vec3>>,
-    /// From where the points were seen.
+    /// Viewpoint of the scanner.
     pub view: View,
 }
 
-/// From where the points of a cloud were seen, as far as it is known.
+/// Viewpoint from which a cloud was captured.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum View {
-    /// Not known.
+    /// Unknown.
     #[default]
     Unknown,
-    /// From a point, relative to the cloud's origin.
+    /// A point, relative to the cloud's origin.
     From(Vec3),
-    /// From far away in this direction, a unit vector.
+    /// Far away in this direction, a unit vector.
     Towards(Vec3),
 }
 
@@ -61,9 +61,8 @@ impl Cloud {
         self.positions.len()
     }
 
-    /// So many of its points, spread evenly: every so-manyth along the Z-curve of their bounds, in that order; all if there are no more.
-    /// Radii, ellipses, clips, weights, triangles and lines, which belonged to closer points, are dropped: larger discs reach edges that
-    /// those did not.
+    /// About `count` points, evenly spread along the Z-curve of the bounds and in its order; all points if there are no more. Radii,
+    /// ellipses, clips, weights, triangles and lines are dropped, because they belong to the denser points: larger discs reach other edges.
     pub fn some(&self, count: usize) -> Self {
         let order = order(&self.positions);
         let (count, all) = (count.min(order.len()), order.len() as u64);
@@ -76,8 +75,8 @@ impl Cloud {
         !(self.ribbons.is_empty() && self.tubes.is_empty())
     }
 
-    /// The points that lines use, with the lines between them, and the others; if `faces`, points and triangles of faces are with the
-    /// lines. Order stays.
+    /// Splits off the points of lines, and with `faces` those of triangles, with these elements; the second cloud has the other points.
+    /// Order is kept.
     pub(crate) fn split(self, faces: bool) -> [Self; 2] {
         let mut used = vec![false; self.len()];
         let triangles = if faces { &self.triangles[..] } else { &[] };
@@ -87,7 +86,7 @@ impl Cloud {
         [which(true), which(false)].map(|kept| self.part(&kept))
     }
 
-    /// The points `kept`, in that order, and the triangles and lines of which they are all corners.
+    /// The points `kept`, in that order, and the triangles and lines among them.
     pub(super) fn part(&self, kept: &[u32]) -> Self {
         let mut place = vec![None; self.len()];
         kept.iter().zip(0..).for_each(|(&from, to)| place[from as usize] = Some(to));
@@ -99,7 +98,7 @@ impl Cloud {
         }
     }
 
-    /// The points `kept`, in that order, and nothing that connects them.
+    /// The points `kept`, in that order, without elements.
     fn points(&self, kept: &[u32]) -> Self {
         fn of<T: Copy>(values: &Option<Vec<T>>, kept: &[u32]) -> Option<Vec<T>> {
             values.as_ref().map(|values| kept.iter().map(|&i| values[i as usize]).collect())
@@ -129,27 +128,27 @@ impl Cloud {
         }
     }
 
-    /// Puts the texture's colours at the points in its place, for what cannot keep coordinates.
+    /// Replaces the texture by its colours at the points.
     pub fn bake_texture(&mut self) {
         if let Some(texture) = self.texture.take() {
             self.colours = Some(texture.baked(&self.positions, self.radii.as_deref()));
         }
     }
 
-    /// Whether there are none.
+    /// Whether there are no points.
     pub fn is_empty(&self) -> bool {
         self.positions.is_empty()
     }
 }
 
-/// What has all of its corners at new places.
+/// Elements whose corners all have new indices.
 fn moved<const N: usize>(all: &[[u32; N]], place: &[Option<u32>]) -> Vec<[u32; N]> {
     let whole = |corners: &&[u32; N]| corners.iter().all(|&i| place[i as usize].is_some());
     all.iter().filter(whole).map(|corners| corners.map(|i| place[i as usize].unwrap_or_default())).collect()
 }
 
 impl From<Surfels> for Cloud {
-    /// A cloud that lacks nothing.
+    /// A complete cloud.
     fn from(surfels: Surfels) -> Self {
         Self {
             origin: surfels.origin,

@@ -1,4 +1,4 @@
-//! Fewer and larger surfels for the same surface, for pictures that have to be quick.
+//! Coarser surfels: fewer and larger discs of the same surface, for quick previews.
 
 use super::{Colours, Ellipse, Surfels, morton};
 use crate::geometry::srgb;
@@ -14,17 +14,18 @@ struct Merged {
     /// Linear light.
     colour: [f32; 3],
     two_sided: bool,
-    /// The one of them that is nearest to its centre.
+    /// Index of the surfel that is nearest to the centre.
     nearest: u32,
 }
 
 impl Surfels {
-    /// About `count` surfels that cover what these do, in Morton order: those in a box along the Z-curve whose normals are on one side of
-    /// a plane become one, with the means of their positions, normals and colours, weighted by area, and a radius that reaches to the far
-    /// ends of their discs. Up to a third as many where boxes do not come out even, and a few more where a surface is thinner than a box.
+    /// About `count` surfels that cover the same surface, in Morton order. Surfels in a cell of the Z-curve with normals on one side of a
+    /// plane become one, with the means of position, normal and colour, weighted by area, and a radius that reaches the far ends of their
+    /// discs. The result may have down to a third of `count`, depending on the occupied cells, and a few more where a surface is thinner
+    /// than a cell.
     ///
-    /// Discs are circles, none is clipped, and none has a weight; texture coordinates and materials are those of one of them. What is not
-    /// [valid](Surfels::is_valid) is left out.
+    /// Discs are circles without clips and weights; texture coordinates and materials are those of one of the merged surfels. Invalid
+    /// surfels ([`Surfels::is_valid`]) are removed.
     pub fn coarser(&self, count: usize) -> Self {
         let keys = morton::keys(&self.positions);
         let bits = bits(&keys, count);
@@ -37,7 +38,7 @@ impl Surfels {
         self.of_merged(&merged)
     }
 
-    /// The discs of a box, by the side that they face.
+    /// The discs of a cell, one per side.
     fn merge_cell(&self, cell: &[(u64, u32)], light: &[f32; 256]) -> [Option<Merged>; 2] {
         let valid = || cell.iter().map(|&(_, i)| i).filter(|&i| self.is_valid(i as usize));
         let Some(first) = valid().next() else { return [None, None] };
@@ -54,7 +55,7 @@ impl Surfels {
         light: &[f32; 256],
     ) -> Option<Merged> {
         let first = members().next()?;
-        // Relative to one of them, and in units of one's radius, nothing is lost and nothing overflows.
+        // Relative to one surfel and in units of its radius, so that nothing overflows or loses precision.
         let [at, unit] = [self.positions[first as usize], Vec3::splat(self.radii[first as usize])];
         let (mut offset, mut normal, mut colour, mut weight) = (Vec3::ZERO, Vec3::ZERO, Vec3::ZERO, 0.0);
         let mut two_sided = false;
@@ -88,7 +89,7 @@ impl Surfels {
         self.two_sided.as_ref().is_some_and(|two_sided| two_sided[i as usize])
     }
 
-    /// The colour, in linear light; 0 where there are none.
+    /// The colour in linear light; 0 without colours.
     fn light(&self, i: u32, light: &[f32; 256]) -> Vec3 {
         match &self.colours {
             Some(Colours::Srgb8(codes)) => {
@@ -100,7 +101,7 @@ impl Surfels {
         }
     }
 
-    /// Surfels with the streams of these.
+    /// Surfels of `merged` discs with the streams of `self`.
     fn of_merged(&self, merged: &[Merged]) -> Self {
         let nearest: Vec<u32> = merged.iter().map(|disc| disc.nearest).collect();
         let code = |disc: &Merged| {
@@ -129,20 +130,20 @@ impl Surfels {
     }
 }
 
-/// The first `bits` of the 63 of a key, or of what two keys differ in.
+/// The first `bits` of a 63-bit key, or of the difference of two keys.
 fn prefix(key: u64, bits: u32) -> u64 {
     (key << 1).checked_shr(64 - bits).unwrap_or(0)
 }
 
-/// How many bits of sorted keys tell no more than `count` boxes apart.
+/// Number of leading bits in which sorted keys form at most `count` cells.
 fn bits(keys: &[(u64, u32)], count: usize) -> u32 {
-    // How many neighbours differ from that bit on, bit 1 being the first.
+    // Number of neighbours whose first difference is at each bit, bit 1 being the first.
     let mut differ = [0usize; 65];
     for pair in keys.windows(2) {
         differ[(pair[0].0 ^ pair[1].0).leading_zeros() as usize] += 1;
     }
     let mut boxes = 1;
-    // Keys have 63 bits, the first of 64 is 0.
+    // Keys have 63 bits; the first of 64 is 0.
     (0..63)
         .take_while(|bit| {
             boxes += differ[*bit as usize + 1];
@@ -160,7 +161,7 @@ mod tests {
     use super::*;
     use crate::verify::scenes;
 
-    /// Whether discs of `few` reach as far as the disc of surfel `i` of `all`, in one of them that faces as it does.
+    /// Whether discs of `few` cover the disc of surfel `i` of `all`, one of them facing the same way.
     fn covers(few: &Surfels, all: &Surfels, i: usize) -> bool {
         (0..few.len()).any(|disc| {
             let (normal, way) = (few.normals[disc], all.positions[i] - few.positions[disc]);

@@ -1,9 +1,9 @@
-//! Numbers shown as colours.
+//! Colour maps for scalars.
 
 use super::Colours;
 use rayon::prelude::*;
 
-/// A sequence of colours for the numbers from 0 to 1. In all but `Turbo` equal steps look equal, and lightness grows throughout.
+/// A colour map over the range from 0 to 1. All maps but `Turbo` are perceptually uniform, with increasing lightness.
 #[derive(
     Clone,
     Copy,
@@ -21,7 +21,7 @@ pub enum ColourMap {
     /// Purple, green, yellow.
     #[default]
     Viridis,
-    /// Blue, grey, yellow: the same to the colour-blind.
+    /// Blue, grey, yellow: the same for colour-blind viewers.
     Cividis,
     /// Black, red, pale yellow.
     Magma,
@@ -29,36 +29,36 @@ pub enum ColourMap {
     Inferno,
     /// Blue, pink, yellow.
     Plasma,
-    /// A rainbow: most colours told apart, lightness rises and falls.
+    /// A rainbow: most distinct colours; lightness rises and falls.
     Turbo,
 }
 
-/// Shown where a number is none.
+/// Colour of NaN and infinity.
 const NONE: [u8; 3] = [128; 3];
 
-/// The percentiles that make a range unless another is given, so that a few stray values do not squeeze all others together.
+/// Percentiles of the default range, so that a few outliers do not compress all other values.
 const PERCENTILES: [f64; 2] = [0.01, 0.99];
 
-/// The numbers at both ends of a colour map.
+/// Range of a colour map.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ValueRange {
-    /// Shown in the first colour, as is what is less.
+    /// Value of the first colour; lesser values have the same colour.
     pub min: f64,
-    /// Shown in the last colour, as is what is more.
+    /// Value of the last colour; greater values have the same colour.
     pub max: f64,
 }
 
-/// Which colour a number has.
+/// A colour map with its range.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ColourScale {
     /// The colours.
     pub map: ColourMap,
-    /// What the colours mean.
+    /// Values of the ends.
     pub range: ValueRange,
 }
 
 impl ColourMap {
-    /// The colour of a number from 0 to 1, sRGB-encoded; what lies beyond has the colour of the nearer end.
+    /// The sRGB-encoded colour at `share` from 0 to 1; values beyond have the colour of the nearer end.
     pub fn at(self, share: f64) -> [u8; 3] {
         let gradient = match self {
             Self::Viridis => colorous::VIRIDIS,
@@ -73,7 +73,7 @@ impl ColourMap {
 }
 
 impl ValueRange {
-    /// From the 1st to the 99th percentile of the finite ones among `values`, and how many of them are finite; `None` if none is.
+    /// From the 1st to the 99th percentile of the finite `values`, and the number of these; `None` if there are none.
     pub fn of(values: impl IntoIterator<Item = f64>) -> Option<(Self, u64)> {
         let mut finite: Vec<f64> = values.into_iter().filter(|value| value.is_finite()).collect();
         let last = finite.len().checked_sub(1)?;
@@ -84,9 +84,9 @@ impl ValueRange {
         Some((Self { min, max }, finite.len() as u64))
     }
 
-    /// Where `value` lies: 0 at `min`, 1 at `max`, ½ everywhere if they are the same.
+    /// Position of `value` in the range: 0 at `min`, 1 at `max`; ½ everywhere if they are equal.
     pub fn share(&self, value: f64) -> f64 {
-        // Halved first: the difference of two finite numbers need not be finite.
+        // Halved first: the difference of two finite numbers may be infinite.
         let half = 0.5 * self.max - 0.5 * self.min;
         if half > 0.0 { (0.5 * value - 0.5 * self.min) / half } else { 0.5 }
     }

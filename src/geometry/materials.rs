@@ -1,4 +1,4 @@
-//! Materials: how points shine.
+//! Materials: specular reflection of points.
 
 use super::Surfels;
 use crate::error::{Error, Result};
@@ -6,36 +6,36 @@ use std::cmp::Reverse;
 use std::collections::HashMap;
 use std::sync::Arc;
 
-/// How a surface shines in a light, beside its colour (Blinn–Phong, linear light).
+/// Specular reflection of a surface (Blinn–Phong, linear light).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Material {
-    /// The specular factor, linear RGB; 0 or more.
+    /// Specular factor, linear RGB; 0 or more.
     pub specular: [f32; 3],
-    /// The exponent, above 0.
+    /// Exponent, above 0.
     pub shininess: f32,
 }
 
-/// A table of materials and which of them each point has; one entry a point.
+/// A table of materials and one index per point.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Materials {
-    /// At most [`Materials::MOST`].
+    /// At most [`Materials::MOST`] materials.
     pub table: Arc<[Material]>,
-    /// Number of the point's material, or [`Materials::NONE`]: then the frame's lighting tells how it shines.
+    /// Index of the point's material, or [`Materials::NONE`] for the frame's lighting.
     pub of: Vec<u16>,
 }
 
 impl Materials {
-    /// The number of a point that has no material.
+    /// Index of points without a material.
     pub const NONE: u16 = u16::MAX;
-    /// Most materials of a table.
+    /// Maximum number of materials in a table.
     pub const MOST: usize = Self::NONE as usize;
 
-    /// The material of a point, if it has one; `None` beyond the end, too.
+    /// The material of a point, if any; `None` also beyond the end.
     pub fn material(&self, point: usize) -> Option<Material> {
         self.table.get(usize::from(*self.of.get(point)?)).copied()
     }
 
-    /// Refuses numbers of materials that do not exist, too many, and such as cannot be.
+    /// Validates the indices, the number of materials, and their values.
     pub(super) fn check(&self) -> Result<()> {
         let count = self.table.len();
         if count > Self::MOST {
@@ -59,15 +59,15 @@ impl Materials {
         }
     }
 
-    /// Those of the points at `indices`, in that order.
+    /// Indices of the points at `indices`, in that order.
     pub(crate) fn gather(&self, indices: &[u32]) -> Self {
         Self { table: self.table.clone(), of: indices.iter().map(|&i| self.of[i as usize]).collect() }
     }
 
-    /// For each group of points the material that most of its points have, of equally many the first one's; none for a group without points.
+    /// The most frequent material of each group of points, the first one among equals; none for an empty group.
     pub(super) fn of_groups<G: Iterator<Item = u32>>(&self, groups: impl Iterator<Item = G>) -> Self {
         let most = |group: G| {
-            // How often each is there, and where first, backwards.
+            // Number of occurrences, and first position, reversed.
             let mut found = HashMap::<u16, (usize, Reverse<usize>)>::new();
             for (i, point) in group.enumerate() {
                 found.entry(self.of[point as usize]).or_insert((0, Reverse(i))).0 += 1;
@@ -77,11 +77,11 @@ impl Materials {
         Self { table: self.table.clone(), of: groups.map(most).collect() }
     }
 
-    /// Those of several sets of points, each with its number of points, one after the other; `None` if no set has any. Tables follow one
-    /// another, equal ones once.
+    /// Joins the materials of consecutive sets of points, each with its number of points; `None` if no set has any. Equal tables are
+    /// shared.
     ///
     /// # Errors
-    /// [`Error::Usage`] if there are more than [`Materials::MOST`].
+    /// [`Error::Usage`] for more than [`Materials::MOST`] materials.
     pub(crate) fn join(parts: &[(Option<&Self>, usize)]) -> Result<Option<Self>> {
         if parts.iter().all(|(part, _)| part.is_none()) {
             return Ok(None);
@@ -106,7 +106,7 @@ impl Materials {
                     format!("{} materials in one scene: at most {} are drawn", table.len(), Self::MOST);
                 return Err(Error::Usage(text));
             }
-            // Fits, as that many are refused.
+            // Fits: there are at most `MOST` materials.
             let moved = |&number: &u16| if number == Self::NONE { number } else { number + first as u16 };
             of.extend(part.of.iter().map(moved));
         }

@@ -2,19 +2,19 @@
 
 use crate::error::Cause;
 
-/// Memory that programs can have without others going to disk, bytes, where the system tells it.
+/// Memory that is available without swapping, bytes, if the system reports it.
 fn available() -> Option<u64> {
     available_in(&std::fs::read_to_string("/proc/meminfo").ok()?)
 }
 
-/// The same, of Linux's account of it.
+/// The same from the contents of `/proc/meminfo`.
 fn available_in(account: &str) -> Option<u64> {
     let line = account.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
     let kibibytes: u64 = line.trim().strip_suffix("kB")?.trim().parse().ok()?;
     Some(kibibytes * 1024)
 }
 
-/// Refuses more than there is: a system that lends what it has not ends the program later.
+/// Returns an error if `bytes` exceed the available memory: a system that overcommits would kill the process later.
 pub(crate) fn check(what: &str, bytes: u64) -> Result<(), Cause> {
     check_against(what, bytes, available())
 }
@@ -30,7 +30,7 @@ fn check_against(what: &str, bytes: u64, available: Option<u64>) -> Result<(), C
     }
 }
 
-/// Bytes in words.
+/// A size with its unit.
 pub(crate) fn size(bytes: u64) -> String {
     let units = ["bytes", "KiB", "MiB", "GiB", "TiB"];
     let unit = (bytes.max(1).ilog2() / 10).min(4);

@@ -1,4 +1,4 @@
-//! Several sets of points as one.
+//! Merging of clouds.
 
 use super::{
     Bounds, Clips, Cloud, Colours, Ellipse, Materials, Model, Primitives, Surfels, Texture, View, Weights,
@@ -8,23 +8,21 @@ use crate::geometry::srgb;
 use glam::{DVec3, Vec3};
 
 impl Surfels {
-    /// All surfels of `parts`, one part after the other.
+    /// Concatenates all surfels of `parts`.
     ///
-    /// If the parts' origins agree, the origin and every position stay as they are; otherwise the origin is the middle of the common
-    /// bounds, and positions are moved in float64. Where only some parts have colours, `albedo` (linear) is the others' colour; colours
-    /// stay sRGB-encoded unless a part has linear ones. Where only some have shapes, the others' discs are circles; where only some
-    /// name two-sided surfels, the others' are not; where only some have clips, the others' discs are whole;
-    /// where not all have the same texture, those that have one get its colours at their points;
-    /// where only some have materials, the others' points have none;
-    /// where only some have normalization weights, none has: there are none that would fit the others.
+    /// If the origins agree, origin and positions are kept; otherwise the origin is the middle of the common bounds, and positions are
+    /// translated in float64. Attributes that only some parts have: surfels without colours get `albedo` (linear), and colours stay
+    /// sRGB-encoded unless a part has linear ones; discs without shapes are circles; surfels without sides are one-sided; discs without
+    /// clips are whole; parts with different textures get their colours at the points; points without materials have none. Normalization
+    /// weights are dropped unless all parts have them, because no value would fit the others.
     ///
     /// # Errors
-    /// [`Error::Usage`] if there are more than 2³² − 1 surfels, or [`Materials::MOST`] materials.
+    /// [`Error::Usage`] for more than 2³² − 1 surfels, or more than [`Materials::MOST`] materials.
     pub fn merge(parts: Vec<Self>, albedo: [f32; 3]) -> Result<Self> {
         Ok(Self::whole(Cloud::merge(parts.into_iter().map(Cloud::from).collect(), albedo)?))
     }
 
-    /// The points of a cloud that lacks nothing.
+    /// The surfels of a complete cloud.
     fn whole(cloud: Cloud) -> Self {
         Self {
             origin: cloud.origin,
@@ -43,10 +41,10 @@ impl Surfels {
 }
 
 impl Model {
-    /// All parts, one after the other, about one origin: [`Surfels::merge`] of their surfels, and likewise of their lines and triangles.
+    /// Concatenates all parts with one origin: [`Surfels::merge`] of the surfels, and likewise of lines and triangles.
     ///
     /// # Errors
-    /// [`Error::Usage`] if there are more than 2³² − 1 surfels or vertices.
+    /// [`Error::Usage`] for more than 2³² − 1 surfels or vertices.
     pub fn merge(mut parts: Vec<Self>, albedo: [f32; 3]) -> Result<Self> {
         if parts.len() == 1 {
             return Ok(parts.remove(0));
@@ -66,7 +64,7 @@ impl Model {
 }
 
 impl From<Primitives> for Cloud {
-    /// The vertices as points: directions as normals, and those of tubes as tangents, too.
+    /// The vertices as points: directions become normals, and also tangents for tubes.
     fn from(primitives: Primitives) -> Self {
         let mut tangents = (!primitives.tubes.is_empty()).then(|| vec![Vec3::ZERO; primitives.len()]);
         let tangents_of = |tangents: &mut Vec<Vec3>| {
@@ -92,7 +90,7 @@ impl From<Primitives> for Cloud {
 }
 
 impl Primitives {
-    /// What such a cloud was made of.
+    /// The primitives that such a cloud was made from.
     pub(super) fn whole(cloud: Cloud) -> Self {
         Self {
             origin: cloud.origin,
@@ -110,11 +108,11 @@ impl Primitives {
 }
 
 impl Cloud {
-    /// All points of `parts`, one part after the other, as [`Surfels::merge`] has it. Where only some parts have normals, radii, tangents or
-    /// scalars, the others' points have none; where the parts were not all seen from the same place, it is not known.
+    /// Concatenates all points of `parts`, as [`Surfels::merge`]. Points without normals, radii, tangents or scalars have none in the
+    /// result; the view is unknown unless it is the same for all parts.
     ///
     /// # Errors
-    /// [`Error::Usage`] if there are more than 2³² − 1 points.
+    /// [`Error::Usage`] for more than 2³² − 1 points.
     pub fn merge(mut parts: Vec<Self>, albedo: [f32; 3]) -> Result<Self> {
         let count: usize = parts.iter().map(Self::len).sum();
         if u32::try_from(count).is_err() {
@@ -150,7 +148,7 @@ impl Cloud {
         })
     }
 
-    /// Makes `origin` what the positions are relative to.
+    /// Changes the origin of the positions.
     fn move_origin(&mut self, origin: DVec3) {
         let offset = self.origin - origin;
         if offset != DVec3::ZERO {
@@ -180,7 +178,7 @@ fn common_view(parts: &[Cloud]) -> View {
     if parts.iter().all(|part| part.view == first) { first } else { View::Unknown }
 }
 
-/// The parts' arrays one after the other, with what `missing` gives of a part that has none; `None` if no part has any.
+/// Concatenates arrays of the parts, with `missing` for a part that has none; `None` if no part has any.
 fn join<T>(
     parts: &mut [Cloud],
     take: impl Fn(&mut Cloud) -> Option<Vec<T>>,
@@ -193,7 +191,7 @@ fn join<T>(
 }
 
 fn circles(part: &Cloud) -> Vec<Ellipse> {
-    // What has no normal has no disc yet.
+    // Without a normal there is no disc yet.
     let circle = |normal: &Vec3| match *normal {
         Vec3::ZERO => Ellipse::circle(Vec3::Z),
         normal => Ellipse::circle(normal),
@@ -204,7 +202,7 @@ fn circles(part: &Cloud) -> Vec<Ellipse> {
     }
 }
 
-/// Offsets are from the surfels' centres, so that another origin changes nothing.
+/// Offsets are relative to the surfels' centres, so the origin does not matter.
 fn join_clips(parts: &mut [Cloud]) -> Option<Clips> {
     Clips::join(parts.iter_mut().map(|part| (part.clips.take(), part.len())))
 }
@@ -217,13 +215,13 @@ fn join_corners<const N: usize>(
     let mut first = 0;
     for part in parts {
         all.extend(std::mem::take(of(part)).iter().map(|corners| corners.map(|i| first + i)));
-        // Fits: the number of all points does.
+        // Fits, as the number of all points does.
         first += part.len() as u32;
     }
     all
 }
 
-/// One texture, or colours in the place of several.
+/// One texture for all, or colours instead.
 fn join_textures(parts: &mut [Cloud]) -> Option<Texture> {
     let texture = Texture::join(parts.iter().map(|part| part.texture.as_ref()));
     parts.iter_mut().for_each(|part| match texture {
@@ -251,7 +249,7 @@ fn join_colours(parts: &mut [Cloud], albedo: [f32; 3]) -> Option<Colours> {
     })
 }
 
-/// sRGB codes of a part that has no linear colours.
+/// sRGB codes of a part without linear colours.
 fn codes(part: &mut Cloud, albedo: [u8; 4]) -> Vec<[u8; 4]> {
     match part.colours.take() {
         Some(Colours::Srgb8(colours)) => colours,

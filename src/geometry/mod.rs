@@ -1,4 +1,4 @@
-//! What a scene is made of, as plain CPU data: nothing here knows Vulkan.
+//! Geometry as plain CPU data, independent of Vulkan.
 
 mod bounds;
 mod camera;

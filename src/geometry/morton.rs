@@ -1,26 +1,26 @@
-//! Morton (Z-curve) order, so that surfels near each other in space are near each other in memory and on the screen.
+//! Morton order (Z-curve): surfels that are close in space are close in memory and on the screen.
 
 use super::{Bounds, Surfels};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
-/// Bits of the Morton code an axis: 3 × 21 fit a u64.
+/// Bits of the Morton code per axis: 3 × 21 fit a u64.
 const BITS: u32 = 21;
 
 impl Surfels {
-    /// Sorts the surfels along the Z-curve of their bounds; equal codes keep their order, so the result is deterministic.
+    /// Sorts the surfels along the Z-curve of their bounds. Equal codes keep their order, so the result is deterministic.
     pub fn sort_morton(&mut self) {
         let order = order(&self.positions);
         self.permute(&order);
     }
 }
 
-/// The points' indices in the order of the Z-curve of their bounds; where codes are equal, in their own.
+/// Indices of the points along the Z-curve of their bounds; equal codes in index order.
 pub(crate) fn order(positions: &[Vec3]) -> Vec<u32> {
     keys(positions).into_par_iter().map(|(_, i)| i).collect()
 }
 
-/// The points' codes along the Z-curve of their bounds, 63 bits, with their indices, sorted.
+/// 63-bit Morton codes of the points in their bounds, with the indices, sorted.
 pub(super) fn keys(positions: &[Vec3]) -> Vec<(u64, u32)> {
     let Some(bounds) = Bounds::of(positions) else { return Vec::new() };
     let extent = (bounds.max - bounds.min).max_element();

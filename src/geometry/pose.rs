@@ -1,33 +1,33 @@
-//! Cameras as people write them.
+//! Camera poses, as users write them.
 
 use super::{Bounds, Camera};
 use crate::error::{Error, Result};
 use glam::DVec3;
 
-/// Where a camera stands and looks, and how much it sees, in world space. Near and far planes follow from the scene.
+/// Position, direction and field of view of a camera, world space. Near and far plane follow from the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
-    /// Where it stands.
+    /// Position of the camera.
     pub eye: DVec3,
-    /// Where it looks: in the middle of the picture.
+    /// Point in the middle of the picture.
     pub target: DVec3,
-    /// What is upwards in the picture, of any length.
+    /// Upward direction in the picture, of any length.
     pub up: DVec3,
-    /// How much it sees from top to bottom.
+    /// Vertical extent of the picture.
     pub span: Span,
 }
 
-/// What a picture spans from top to bottom.
+/// Vertical extent of a picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Span {
-    /// The angle between its outermost rays, degrees.
+    /// Perspective: vertical field of view, degrees.
     Angle(f64),
-    /// Its height, in world units: rays are parallel.
+    /// Orthographic: height, world units.
     Height(f64),
 }
 
 impl Pose {
-    /// The camera for a scene of these bounds, and a picture of this width / height.
+    /// The camera for a scene with these bounds, and a picture with this width / height.
     ///
     /// # Errors
     /// As [`Pose::check`].
@@ -49,10 +49,11 @@ impl Pose {
         }
     }
 
-    /// Refuses what is no camera.
+    /// Validates the pose.
     ///
     /// # Errors
-    /// [`Error::Usage`] if eye and target are one place, if the camera looks along its up vector, or if it sees nothing or too much.
+    /// [`Error::Usage`] if eye and target coincide, if the camera looks along its up vector, or if the field of view or height is out of
+    /// range.
     pub fn check(&self) -> Result<()> {
         let bounds = Bounds::of_box(DVec3::splat(-1.0), DVec3::ONE);
         self.camera(&bounds, 1.0).map(drop)

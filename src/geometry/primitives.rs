@@ -1,40 +1,39 @@
-//! Lines and triangles: what pull–push draws beside surfels.
+//! Lines and triangles, which pull–push draws beside surfels.
 
 use super::{Bounds, Cloud, Colours, Materials, MipMap, Surfels, Texture};
 use crate::error::{Error, Result};
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
 
-/// Ribbons, tubes and triangles between shared vertices (marroquim2008 sections 4 and 5). Every array of vertices has one entry a
-/// vertex.
+/// Ribbons, tubes and triangles with shared vertices (marroquim2008 sections 4 and 5). Every vertex array has one entry per vertex.
 ///
-/// A ribbon is a flat strip about its centre line, seen from both sides; a tube is round about its own. What is between two vertices is
-/// interpolated. What is not [valid](Primitives::is_valid) is never drawn, and counted.
+/// A ribbon is a flat two-sided strip around its centre line; a tube is round. Attributes are interpolated between vertices. Invalid
+/// elements ([`Primitives::is_valid`]) are not drawn, and are counted.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Primitives {
-    /// Added to every position, as [`Surfels::origin`](super::Surfels::origin).
+    /// Origin of the positions, as [`Surfels::origin`](super::Surfels::origin).
     pub origin: DVec3,
-    /// Of the vertices, relative to `origin`.
+    /// Vertex positions, relative to `origin`.
     pub positions: Vec<Vec3>,
     /// Unit vectors: normals of ribbons and triangles, tangents of tubes.
     pub directions: Vec<Vec3>,
-    /// Half the width of ribbons, the radius of tubes, how far a triangle's surface goes on beyond it, in the positions' unit; 0 or more.
+    /// Half width of ribbons, radius of tubes, extension of a triangle's surface beyond its edges, in the positions' unit; 0 or more.
     pub radii: Vec<f32>,
-    /// Colours, where the input has them.
+    /// Colours, if the input has them.
     pub colours: Option<Colours>,
-    /// What has the colours in place of [`Primitives::colours`].
+    /// Texture, in place of [`Primitives::colours`].
     pub texture: Option<Texture>,
-    /// How they shine: a segment or triangle as its first vertex does.
+    /// Materials: a segment or triangle has that of its first vertex.
     pub materials: Option<Materials>,
     /// Segments of ribbons.
     pub ribbons: Vec<[u32; 2]>,
     /// Segments of tubes.
     pub tubes: Vec<[u32; 2]>,
-    /// Triangles, seen from both sides.
+    /// Triangles, two-sided.
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// What a scene is made of. Both are relative to one origin, if there are both.
+/// A model: surfels, lines and triangles with one origin.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Model {
     /// Points.
@@ -43,12 +42,12 @@ pub struct Model {
     pub primitives: Primitives,
 }
 
-/// A model's parts, wherever they are.
+/// Borrowed parts of a model.
 #[derive(Clone, Copy, Debug)]
 pub struct Parts<'a> {
     /// Points.
     pub surfels: &'a Surfels,
-    /// Lines and triangles, if there are any.
+    /// Lines and triangles, if any.
     pub primitives: Option<&'a Primitives>,
 }
 
@@ -72,7 +71,7 @@ impl From<Surfels> for Model {
 }
 
 impl Parts<'_> {
-    /// Refuses arrays of unequal length, what is not there, and two origins.
+    /// Validates the parts, and that their origins agree.
     ///
     /// # Errors
     /// [`Error::Usage`], as [`Surfels::check`] and [`Primitives::check`].
@@ -90,7 +89,7 @@ impl Parts<'_> {
         }
     }
 
-    /// The texture of everything that is drawn; `None` where a part has none or another.
+    /// The texture of all parts; `None` unless they share one.
     pub fn texture(&self) -> Option<&Arc<MipMap>> {
         let of_surfels = (!self.surfels.is_empty()).then_some(self.surfels.texture.as_ref());
         let of_primitives = self.primitives.map(|primitives| primitives.texture.as_ref());
@@ -100,7 +99,7 @@ impl Parts<'_> {
         parts.all(|part| part.is_some_and(|part| same(&part.image))).then_some(first)
     }
 
-    /// The materials of surfels, segments and triangles, one after the other as frames number them; `None` if there are none.
+    /// Materials of surfels, segments and triangles, in the order of their ids; `None` if there are none.
     ///
     /// # Errors
     /// [`Error::Usage`] if there are more than [`Materials::MOST`].
@@ -111,7 +110,7 @@ impl Parts<'_> {
         Materials::join(&[surfels, (elements.flatten().as_ref(), count)])
     }
 
-    /// A copy in which textures are colours, one a point.
+    /// A copy with a colour per point in place of textures.
     pub(crate) fn baked(&self) -> Model {
         let mut model =
             Model { surfels: self.surfels.clone(), primitives: self.primitives.cloned().unwrap_or_default() };
@@ -125,13 +124,13 @@ impl Parts<'_> {
         model
     }
 
-    /// Whether something has a texture.
+    /// Whether a part has a texture.
     pub(crate) fn has_texture(&self) -> bool {
         self.surfels.texture.is_some()
             || self.primitives.is_some_and(|primitives| primitives.texture.is_some())
     }
 
-    /// What positions are relative to.
+    /// Origin of the positions.
     pub fn origin(&self) -> DVec3 {
         match self.primitives {
             Some(primitives) if self.surfels.is_empty() => primitives.origin,
@@ -139,7 +138,7 @@ impl Parts<'_> {
         }
     }
 
-    /// Bounds of what is valid, in the world; `None` if nothing is.
+    /// Bounds of the valid elements, world space; `None` if there are none.
     pub fn bounds(&self) -> Option<Bounds> {
         let both = [self.surfels.bounds(), self.primitives.and_then(Primitives::bounds)];
         both.into_iter().flatten().reduce(|a, b| a.with(&b))
@@ -152,7 +151,7 @@ impl Primitives {
         self.positions.len()
     }
 
-    /// The vertices `kept`, in that order, and what has no others.
+    /// The vertices `kept`, in that order, and the elements among them.
     pub(super) fn part(&self, kept: &[u32]) -> Self {
         Self::whole(Cloud::from(self.clone()).part(kept))
     }
@@ -162,18 +161,18 @@ impl Primitives {
         self.ribbons.len() + self.tubes.len() + self.triangles.len()
     }
 
-    /// Whether nothing is drawn.
+    /// Whether there are no elements.
     pub fn is_empty(&self) -> bool {
         self.count() == 0
     }
 
-    /// Segments of both kinds, ribbons first, with whether each is of a tube.
+    /// Segments, ribbons first, each with whether it is a tube.
     pub fn segments(&self) -> impl Iterator<Item = ([u32; 2], bool)> {
         let ribbons = self.ribbons.iter().map(|ends| (*ends, false));
         ribbons.chain(self.tubes.iter().map(|ends| (*ends, true)))
     }
 
-    /// The materials of segments, ribbons first, and triangles: those of their first vertices.
+    /// Materials of segments, ribbons first, and triangles: those of their first vertices.
     fn element_materials(&self) -> Option<Materials> {
         let materials = self.materials.as_ref()?;
         let segments = self.segments().map(|([first, _], _)| first);
@@ -181,8 +180,8 @@ impl Primitives {
         Some(materials.gather(&firsts))
     }
 
-    /// Direction of the lines at every vertex: the mean of the segments' that end there, whichever way they go; 0 where there are none. Segments of
-    /// vertices that do not exist have no part in it.
+    /// Line direction at every vertex: the mean of the adjacent segments' directions, regardless of their orientation; 0 without segments.
+    /// Segments with invalid vertex indices are ignored.
     pub fn line_directions(&self) -> Vec<Vec3> {
         let mut directions = vec![Vec3::ZERO; self.len()];
         for ([from, to], _) in self.segments() {
@@ -197,10 +196,10 @@ impl Primitives {
         directions.into_iter().map(Vec3::normalize_or_zero).collect()
     }
 
-    /// Refuses arrays of unequal length, an origin that is not finite, and vertices that do not exist.
+    /// Validates the lengths of the arrays, the origin, and the indices.
     ///
     /// # Errors
-    /// [`Error::Usage`], with the lengths, the origin, the material or the vertex.
+    /// [`Error::Usage`], naming the lengths, origin, material or vertex.
     pub fn check(&self) -> Result<()> {
         if !self.origin.is_finite() {
             let text = format!("the origin of lines and triangles is {}: give a finite one", self.origin);
@@ -230,8 +229,8 @@ impl Primitives {
         }
     }
 
-    /// Whether what has this vertex can be drawn: no attribute is NaN, infinite or beyond [`Surfels::LARGEST`], the direction is a unit
-    /// vector and the radius 0 or more. `false` beyond the end of any array.
+    /// Whether elements with this vertex can be drawn: no attribute is NaN, infinite or beyond [`Surfels::LARGEST`], the direction is a
+    /// unit vector, and the radius is 0 or more. `false` beyond the end of any array.
     pub fn is_valid(&self, vertex: usize) -> bool {
         let bounded = |v: Vec3| v.abs().cmple(Vec3::splat(Surfels::LARGEST)).all();
         let placed = self.positions.get(vertex).is_some_and(|&position| bounded(position));
@@ -249,14 +248,14 @@ impl Primitives {
         placed && directed && sized && coloured && textured
     }
 
-    /// How many segments and triangles have a vertex that is not [valid](Primitives::is_valid).
+    /// Number of segments and triangles with an invalid vertex.
     pub fn count_invalid(&self) -> usize {
         let valid = |vertices: &[u32]| vertices.iter().all(|&vertex| self.is_valid(vertex as usize));
         let lines = self.segments().filter(|(ends, _)| !valid(ends)).count();
         lines + self.triangles.iter().filter(|corners| !valid(*corners)).count()
     }
 
-    /// Bounds in the world of the spheres about the valid vertices; `None` if there are none.
+    /// Bounds of the spheres around the valid vertices, world space; `None` if there are none.
     pub fn bounds(&self) -> Option<Bounds> {
         let valid = (0..self.len()).filter(|&i| self.is_valid(i));
         let (positions, radii): (Vec<_>, Vec<f32>) =

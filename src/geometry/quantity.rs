@@ -1,10 +1,10 @@
-//! Numbers that surfels have by themselves, to be shown as colours.
+//! Scalar quantities of surfels, for display as colours.
 
 use super::{ColourScale, Colours, Primitives, Surfels};
 use glam::{DVec3, Vec3};
 use rayon::prelude::*;
 
-/// A number a surfel.
+/// A scalar quantity of a surfel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Quantity {
     /// The coordinate along a unit vector, origin included.
@@ -14,18 +14,18 @@ pub enum Quantity {
 }
 
 impl Surfels {
-    /// A quantity of every surfel.
+    /// The quantity of every surfel.
     pub fn values(&self, quantity: Quantity) -> Vec<f64> {
         values(self.origin, &self.positions, &self.radii, quantity)
     }
 
-    /// Colours every surfel by its number among `values`, one a surfel.
+    /// Colours every surfel by its entry in `values`.
     pub fn colour_by_values(&mut self, values: &[f64], scale: &ColourScale) {
         self.texture = None;
         self.colours = Some(scale.colours(values.par_iter().copied()));
     }
 
-    /// Colours every surfel by its normal: red, green and blue are x, y and z from −1 to 1.
+    /// Colours every surfel by its normal: x, y and z from −1 to 1 become red, green and blue.
     pub fn colour_by_normals(&mut self) {
         self.texture = None;
         self.colours = Some(colours_of(&self.normals));
@@ -33,18 +33,18 @@ impl Surfels {
 }
 
 impl Primitives {
-    /// A quantity of every vertex.
+    /// The quantity of every vertex.
     pub fn values(&self, quantity: Quantity) -> Vec<f64> {
         values(self.origin, &self.positions, &self.radii, quantity)
     }
 
-    /// Colours every vertex by its number among `values`, one a vertex.
+    /// Colours every vertex by its entry in `values`.
     pub fn colour_by_values(&mut self, values: &[f64], scale: &ColourScale) {
         self.texture = None;
         self.colours = Some(scale.colours(values.par_iter().copied()));
     }
 
-    /// Colours every vertex by its direction, a normal or of tubes a tangent, as [`Surfels::colour_by_normals`] does.
+    /// Colours every vertex by its direction, a normal or the tangent of a tube, as [`Surfels::colour_by_normals`].
     pub fn colour_by_directions(&mut self) {
         self.texture = None;
         self.colours = Some(colours_of(&self.directions));

@@ -1,19 +1,18 @@
-//! Lines of fewer vertices.
+//! Simplification of lines.
 //!
-//! Inner vertices of lines can be dropped (marroquim2008, section 4.1); which ones, David Douglas and Thomas Peucker say, *Algorithms for
-//! the Reduction of the Number of Points Required to Represent a Digitized Line or its Caricature*, Cartographica 1973.
+//! Removes inner vertices of lines (marroquim2008, section 4.1), chosen by David Douglas and Thomas Peucker, *Algorithms for the Reduction
+//! of the Number of Points Required to Represent a Digitized Line or its Caricature*, Cartographica 1973.
 
 use super::Primitives;
 
-/// Position, and how far the line's edge is from it and where to: of a tube the radius, of a ribbon its normal times half its width, so
-/// that the vertices of a twist stay.
+/// Position, and the offset of the line's edge: of a tube the radius, of a ribbon the normal times half the width, so that the vertices of
+/// a twist are kept.
 type Feature = [f64; 6];
 
 impl Primitives {
-    /// Drops inner vertices of lines where what is interpolated without them is no further from them than `tolerance`, in the
-    /// positions' unit: the distance in space and in radius together, of ribbons in the radius times the normal. Colours and tangents are
-    /// not looked at. Vertices where lines end, fork, change their kind or meet triangles stay; so do rings that would vanish. Vertices
-    /// that nothing uses go. Gives the number of segments that there are fewer.
+    /// Removes inner vertices of lines that interpolation reproduces up to `tolerance`, in the positions' unit: the distance in space and
+    /// in radius together, of ribbons in radius times normal. Colours and tangents are ignored. Vertices at ends, forks, changes of kind
+    /// and triangles are kept, and so are rings that would vanish. Unused vertices are removed. Returns the number of removed segments.
     pub fn simplify(&mut self, tolerance: f64) -> u64 {
         let before = self.count();
         let fixed = self.fixed();
@@ -28,7 +27,7 @@ impl Primitives {
         (before - self.count()) as u64
     }
 
-    /// Whether each vertex must stay.
+    /// Whether each vertex must be kept.
     fn fixed(&self) -> Vec<bool> {
         let mut degrees = vec![0u32; self.len()];
         self.segments().flat_map(|(ends, _)| ends).for_each(|i| degrees[i as usize] += 1);
@@ -57,7 +56,7 @@ impl Primitives {
     }
 }
 
-/// The segments between the vertices that stay.
+/// The segments between the kept vertices.
 fn simplified(
     segments: &[[u32; 2]],
     fixed: &[bool],
@@ -69,7 +68,7 @@ fn simplified(
         let features: Vec<Feature> = chain.iter().map(|&i| feature(i)).collect();
         let stays = stays(&features, tolerance);
         let kept: Vec<u32> = chain.iter().zip(&stays).filter(|(_, stays)| **stays).map(|(i, _)| *i).collect();
-        // Of a ring, less than a triangle is nothing.
+        // A ring with fewer corners than a triangle would vanish.
         let vanishes = chain.first() == chain.last() && kept.len() < 4;
         let line = if vanishes { &chain } else { &kept };
         all.extend(line.windows(2).map(|pair| [pair[0], pair[1]]));
@@ -77,7 +76,7 @@ fn simplified(
     all
 }
 
-/// The lines between fixed vertices, and rings, whose first vertex is their last.
+/// Lines between fixed vertices, and rings, whose first vertex is also the last.
 fn chains(segments: &[[u32; 2]], fixed: &[bool]) -> Vec<Vec<u32>> {
     let mut at: Vec<Vec<u32>> = vec![Vec::new(); fixed.len()];
     for (i, ends) in (0..).zip(segments) {
@@ -109,8 +108,8 @@ fn chains(segments: &[[u32; 2]], fixed: &[bool]) -> Vec<Vec<u32>> {
     chains
 }
 
-/// Which vertices stay: the first, the last, and between any two that stay the farthest from what is interpolated, if it is farther than
-/// the tolerance.
+/// The kept vertices: first and last, and recursively the farthest from the interpolation between two kept ones, if farther than the
+/// tolerance.
 fn stays(features: &[Feature], tolerance: f64) -> Vec<bool> {
     let mut stays = vec![false; features.len()];
     let Some(last) = features.len().checked_sub(1) else { return stays };
@@ -127,7 +126,7 @@ fn stays(features: &[Feature], tolerance: f64) -> Vec<bool> {
     stays
 }
 
-/// From `p` to the segment from `a` to `b`.
+/// Distance from `p` to the segment from `a` to `b`.
 fn distance(p: &Feature, a: &Feature, b: &Feature) -> f64 {
     let minus = |p: &Feature, q: &Feature| -> Feature { std::array::from_fn(|k| p[k] - q[k]) };
     let dot = |p: &Feature, q: &Feature| -> f64 { p.iter().zip(q).map(|(p, q)| p * q).sum() };

@@ -1,23 +1,23 @@
-//! The sRGB transfer function (IEC 61966-2-1), in float64: one definition for every file that is read or written.
+//! The sRGB transfer function (IEC 61966-2-1) in float64, used for all files.
 
 use std::sync::LazyLock;
 
-/// Linear light of an sRGB-encoded value; both 0 to 1.
+/// Linear light of an sRGB-encoded value; both from 0 to 1.
 pub fn decode(encoded: f64) -> f64 {
     if encoded <= 0.04045 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
 }
 
-/// The sRGB-encoded value of linear light; both 0 to 1.
+/// sRGB-encoded value of linear light; both from 0 to 1.
 pub fn encode(linear: f64) -> f64 {
     if linear <= 0.003_130_8 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
-/// The 8-bit code of linear light: clamped to 0–1, encoded, rounded to nearest. What is not a number becomes 0.
+/// 8-bit code of linear light: clamped to 0–1, encoded, rounded to nearest. NaN becomes 0.
 pub fn encode8(linear: f32) -> u8 {
     LEAST.partition_point(|least| *least <= linear) as u8
 }
 
-/// The least linear light of each code from 1 on: what is searched takes a tenth of the time of a power, and is as exact.
+/// Least linear light of each code from 1 on. The search takes a tenth of the time of a power, with the same result.
 static LEAST: LazyLock<[f32; 255]> = LazyLock::new(|| {
     std::array::from_fn(|i| {
         // The bits of positive floats are in the order of the floats.

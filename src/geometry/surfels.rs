@@ -1,62 +1,61 @@
-//! A set of surfels: oriented discs that sample a surface.
+//! Surfels: oriented discs that sample a surface.
 
 use super::{Clips, Materials, Texture, Weights};
 use crate::error::{Error, Result};
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec3, Vec3};
 
-/// Surfels as a structure of arrays; every array has one entry a surfel.
+/// Surfels as a structure of arrays; every array has one entry per surfel.
 ///
-/// A surfel is a disc with centre, unit normal and radius. The radius is that of the disc which the splat covers: `r = F σ`, where `F`
-/// is the cut-off and `σ` the kernel's 1-σ length. What is not [valid](Surfels::is_valid) is never drawn, and counted.
+/// A surfel is a disc with centre, unit normal and radius. The radius is the extent of the splat: `r = F σ`, with the cut-off `F` and the
+/// kernel's standard deviation `σ`. Invalid surfels ([`Surfels::is_valid`]) are not drawn, and are counted.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Surfels {
-    /// Added to every position: the point that [`Surfels::positions`] are relative to, in the file's unit and frame. Keeps large
-    /// (geodetic) coordinates exact while positions stay f32.
+    /// Origin of [`Surfels::positions`], in the file's unit and frame: keeps large (geodetic) coordinates exact while positions are f32.
     pub origin: DVec3,
     /// Centres, relative to `origin`.
     pub positions: Vec<Vec3>,
     /// Unit normals.
     pub normals: Vec<Vec3>,
-    /// Radii of the covered discs, in the positions' unit; of elliptical discs, the longer semi-axes.
+    /// Radii of the discs, in the positions' unit; of elliptical discs, the longer semi-axes.
     pub radii: Vec<f32>,
-    /// Shapes of the discs; all are circles where there are none.
+    /// Shapes of the discs; `None` if all are circles.
     pub ellipses: Option<Vec<Ellipse>>,
-    /// Surfels whose normals may as well point the other way, so that neither side is ever the back; none where there is no array.
+    /// Surfels that are two-sided, so that neither side is the back; `None` if there are none.
     pub two_sided: Option<Vec<bool>>,
-    /// Where discs end at sharp edges; all are whole where there are none.
+    /// Clip lines of discs at sharp edges; `None` if all are whole.
     pub clips: Option<Clips>,
-    /// What kernels are multiplied by where nothing is divided by their sum ([`crate::settings::splatting::Normalization::Surfel`]).
+    /// Factors of the kernels for sums without division ([`crate::settings::splatting::Normalization::Surfel`]).
     pub weights: Option<Weights>,
-    /// Colours, where the input has them.
+    /// Colours, if the input has them.
     pub colours: Option<Colours>,
-    /// What has the colours in place of [`Surfels::colours`].
+    /// Texture, in place of [`Surfels::colours`].
     pub texture: Option<Texture>,
-    /// How they shine, where pull–push lights them; all as the frame's lighting says where there are none.
+    /// Materials for the lighting of pull–push; `None` if all have the frame's.
     pub materials: Option<Materials>,
 }
 
-/// The shape of an elliptical disc whose longer semi-axis is the surfel's radius. The other axis is normal × major.
+/// Shape of an elliptical disc whose longer semi-axis is the surfel's radius. The other axis is normal × major.
 #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Ellipse {
-    /// Direction of the longer axis: a unit vector at a right angle to the normal.
+    /// Direction of the longer axis: a unit vector orthogonal to the normal.
     pub major: Vec3,
-    /// Shorter semi-axis divided by the longer, above 0 and at most 1.
+    /// Shorter semi-axis divided by the longer one, above 0 and at most 1.
     pub aspect: f32,
 }
 
 impl Ellipse {
-    /// The circle of a disc with the unit normal `normal`; its major axis is any.
+    /// A circle with the unit normal `normal` and an arbitrary major axis.
     pub fn circle(normal: Vec3) -> Self {
         Self { major: normal.any_orthonormal_vector(), aspect: 1.0 }
     }
 }
 
-/// One colour a surfel, in the form in which it came.
+/// One colour per surfel.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Colours {
-    /// sRGB-encoded, 8 bits a channel; the fourth byte is padding.
+    /// sRGB-encoded, 8 bits per channel; the fourth byte is padding.
     Srgb8(Vec<[u8; 4]>),
     /// Linear light.
     Linear(Vec<[f32; 3]>),
@@ -73,10 +72,10 @@ impl Surfels {
         self.positions.is_empty()
     }
 
-    /// Refuses arrays of unequal length, an origin that is not finite, and clips, corners and materials that do not exist.
+    /// Validates the lengths of the arrays, the origin, and the indices of clips, corner weights and materials.
     ///
     /// # Errors
-    /// [`Error::Usage`], with the array, the origin, the clip, the corners or the material.
+    /// [`Error::Usage`], naming the array, origin, clip, corner weight or material.
     pub fn check(&self) -> Result<()> {
         if !self.origin.is_finite() {
             return Err(Error::Usage(format!("the surfels' origin is {}: give a finite one", self.origin)));
@@ -125,7 +124,7 @@ impl Surfels {
 }
 
 impl Colours {
-    /// Those at `indices`, in that order.
+    /// The colours at `indices`, in that order.
     pub(crate) fn gather(&self, indices: &[u32]) -> Self {
         match self {
             Self::Srgb8(codes) => Self::Srgb8(indices.iter().map(|&i| codes[i as usize]).collect()),

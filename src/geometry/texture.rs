@@ -1,4 +1,4 @@
-//! Textures: pictures in which points have their places, and with that their colours.
+//! Textures.
 
 use super::Colours;
 use crate::error::{Error, Result};
@@ -8,24 +8,24 @@ use glam::{DVec2, DVec3, Vec2, Vec3};
 use rayon::prelude::*;
 use std::sync::Arc;
 
-/// A picture and where points are in it; one entry a point.
+/// A texture and coordinates in it, one entry per point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
-    /// The picture.
+    /// The texture's levels.
     pub image: Arc<MipMap>,
-    /// u to the right and v upwards, 0 to 1 from edge to edge; the picture is repeated beyond.
+    /// u to the right, v upwards, from 0 to 1 between the edges; the texture repeats.
     pub coordinates: Vec<Vec2>,
 }
 
-/// A picture with coarser copies of itself, each of half the side (Williams, *Pyramidal Parametrics*, SIGGRAPH 1983).
+/// A mip map (Williams, *Pyramidal Parametrics*, SIGGRAPH 1983).
 #[derive(Clone, Debug, PartialEq)]
 pub struct MipMap {
     size: [u32; 2],
-    /// Level after level, fine to coarse; each row by row from the top left.
+    /// Texels of all levels, fine to coarse, each row by row from the top left.
     texels: Colours,
 }
 
-/// Most pairs of points that the density of a texture is told from.
+/// Maximum number of point pairs in the estimate of a texture's density.
 const PAIRS: usize = 1 << 12;
 
 impl Texture {
@@ -35,7 +35,7 @@ impl Texture {
         Self { image: self.image.clone(), coordinates }
     }
 
-    /// All parts' one after the other, if every one has this picture; otherwise none.
+    /// Joins parts that share one mip map; otherwise `None`.
     pub(super) fn join<'a>(mut parts: impl Iterator<Item = Option<&'a Self>> + Clone) -> Option<Self> {
         let image = parts.clone().flatten().next()?.image.clone();
         let same = |part: Option<&Self>| part.is_some_and(|part| part.image == image);
@@ -47,8 +47,8 @@ impl Texture {
         Some(Self { image, coordinates })
     }
 
-    /// The points' colours for methods that blend one a point: linear, from the level whose texels are as large as the disc's radius, or
-    /// where `radii` are none or 0, as what lies between two points.
+    /// Colours of the points for methods that blend one colour per point: linear, from the level whose texels are as large as the disc's
+    /// radius, or without radii as the distance between points.
     pub(crate) fn colours(&self, positions: &[Vec3], radii: Option<&[f32]>) -> Vec<[f32; 3]> {
         let [density, spacing] = self.density(positions);
         let colour = |(i, at): (usize, &Vec2)| {
@@ -59,7 +59,7 @@ impl Texture {
         self.coordinates.par_iter().enumerate().map(colour).collect()
     }
 
-    /// The same in the form in which the picture has its own.
+    /// The same in the texture's own encoding.
     pub(crate) fn baked(&self, positions: &[Vec3], radii: Option<&[f32]>) -> Colours {
         let linear = self.colours(positions, radii);
         match self.image.texels {
@@ -68,7 +68,7 @@ impl Texture {
         }
     }
 
-    /// Texels of the finest level in a unit of length, and what lies between points: medians of points that follow one another.
+    /// Texels of the finest level per unit of length, and distance between points: medians over consecutive points.
     fn density(&self, positions: &[Vec3]) -> [f64; 2] {
         let size = DVec2::from(self.image.size.map(f64::from));
         let step = positions.len().div_ceil(PAIRS).max(1);
@@ -91,10 +91,10 @@ impl Texture {
 }
 
 impl MipMap {
-    /// Of a picture, linear; its α is passed over. What 8 bits of sRGB hold exactly is kept in them.
+    /// Creates the mip map of a linear picture; its α is ignored. Colours that 8-bit sRGB represents exactly are stored that way.
     ///
     /// # Errors
-    /// [`Error::Usage`] if there are not as many pixels as `picture.size` says, or none.
+    /// [`Error::Usage`] if the number of pixels is 0 or differs from `picture.size`.
     pub fn new(picture: &Picture) -> Result<Self> {
         let (size, pixels) = (picture.size, picture.colour.len());
         if pixels == 0 || pixels as u64 != u64::from(size[0]) * u64::from(size[1]) {
@@ -121,7 +121,7 @@ impl MipMap {
         Ok(Self { size, texels })
     }
 
-    /// Number of levels, down to one of a single texel.
+    /// Number of levels, down to one texel.
     pub fn levels(&self) -> u32 {
         1 + self.size[0].max(self.size[1]).ilog2()
     }
@@ -131,15 +131,15 @@ impl MipMap {
         self.size.map(|side| (side >> level).max(1))
     }
 
-    /// All levels' texels, fine to coarse, each row by row from the top left.
+    /// Texels of all levels, fine to coarse, each row by row from the top left.
     pub fn texels(&self) -> &Colours {
         &self.texels
     }
 
-    /// The colour at coordinates, linear, between the texels of two levels and between their centres (trilinear); of the finest level
-    /// below 0, of the coarsest beyond it.
+    /// The colour at texture coordinates, linear, trilinearly filtered. Levels below 0 are the finest, levels beyond the last are the
+    /// coarsest.
     pub fn sample(&self, at: DVec2, level: f64) -> DVec3 {
-        // What is no number is no coarser than the finest.
+        // NaN is the finest level.
         let level = if level > 0.0 { level.min(f64::from(self.levels() - 1)) } else { 0.0 };
         let (finer, part) = (level as u32, level.fract());
         let colour = self.bilinear(at, finer);
@@ -175,13 +175,13 @@ impl MipMap {
     }
 }
 
-/// The colour as codes.
+/// The sRGB code of a colour.
 fn code(&[r, g, b]: &[f32; 3]) -> [u8; 4] {
     let [r, g, b] = [r, g, b].map(srgb::encode8);
     [r, g, b, 0]
 }
 
-/// The next coarser level: each texel is the mean of what it covers, whole or in part.
+/// The next coarser level: each texel is the mean of the texels that it covers, weighted by area.
 fn halved(texels: &[[f32; 3]], [width, height]: [u32; 2]) -> (Vec<[f32; 3]>, [u32; 2]) {
     let size = [width, height].map(|side| (side / 2).max(1));
     let [columns, rows] = [shares(width, size[0]), shares(height, size[1])];
@@ -195,7 +195,7 @@ fn halved(texels: &[[f32; 3]], [width, height]: [u32; 2]) -> (Vec<[f32; 3]>, [u3
     ((0..columns.len() * rows.len()).into_par_iter().map(mean).collect(), size)
 }
 
-/// Of each of `to` equal parts of `from` texels, which ones it covers, and by which part of itself.
+/// For each of `to` equal parts of `from` texels, the texels that it covers and their shares.
 fn shares(from: u32, to: u32) -> Vec<Vec<(usize, f32)>> {
     let side = f64::from(from) / f64::from(to);
     let part = |i: u32| {

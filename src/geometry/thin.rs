@@ -1,4 +1,4 @@
-//! Fewer points: one a voxel.
+//! Thinning: one point per voxel.
 
 use super::{Bounds, Cloud, Colours};
 use crate::error::{Error, Result};
@@ -6,19 +6,20 @@ use crate::geometry::srgb;
 use glam::{DVec3, I64Vec3, Vec3};
 use rayon::prelude::*;
 
-/// A voxel and a point in it.
+/// A voxel and the index of a point in it.
 type Key = ([u32; 3], u32);
 
-/// Beyond it a coordinate, measured in voxels, has no place after the point in float64.
+/// Limit of coordinates in voxels: beyond it float64 has no fraction.
 const LARGEST: f64 = (1u64 << 52) as f64;
 
 impl Cloud {
-    /// One point for every cube of side `voxel` that holds any; the cubes' corners are at whole multiples of `voxel` in the cloud's frame,
+    /// Thins the cloud to one point per voxel, a cube of side `voxel` with corners at whole multiples of `voxel` in the cloud's frame,
     /// origin included.
     ///
-    /// The point is the mean of its voxel's: of positions, of normals (0 where they cancel), of colours in linear light, of the finite
-    /// scalars; its material is the one that most of them have. A texture becomes colours. Radii, ellipses, clips, weights and triangles, which belonged to the closer points, are dropped: a normal that only the triangles told is
-    /// then estimated from the points. The points of lines and, if there are lines, of triangles stay as they are, before the others. The
+    /// Each point is the mean of its voxel's points: position, normal (0 if normals cancel), colour in linear light, and finite scalar. Its
+    /// material is the most frequent one. A texture becomes colours. Radii, ellipses, clips, weights and triangles are dropped, because
+    /// they belong to the denser points: a normal that only the triangles provide is then estimated from the points. Points of lines and,
+    /// if there are lines, of triangles are kept and come first. The result does not depend on the number of threads.
     /// result does not depend on the number of threads.
     ///
     /// # Errors
@@ -56,7 +57,7 @@ impl Cloud {
         })
     }
 
-    /// Every point with its voxel, in the voxels' order and then the points'.
+    /// Every point with its voxel, sorted by voxel, then by point.
     fn keys(&self, voxel: f64) -> Result<Vec<Key>> {
         if !(voxel > 0.0 && voxel.is_finite()) {
             return Err(Error::Usage(format!("voxels of side {voxel}: give a size above 0")));
@@ -87,7 +88,7 @@ impl Cloud {
         Ok(keys)
     }
 
-    /// Mean normal of a voxel's points, 0 if there is none. Of normals whose side is unknown, that side counts which agrees with the others.
+    /// Mean normal of a voxel's points; 0 if there is none. The side of two-sided normals is chosen to agree with the others.
     fn normal(&self, group: &[Key]) -> Vec3 {
         let normals = self.normals.as_deref().unwrap_or_default();
         let either = |i: usize| self.two_sided.as_ref().is_some_and(|two_sided| two_sided[i]);
@@ -96,7 +97,7 @@ impl Cloud {
             if either(i) && normal.dot(sum) < 0.0 { sum - normal } else { sum + normal }
         };
         let sum = members(group).fold(DVec3::ZERO, add);
-        // What is left of normals that cancel is rounding.
+        // Normals that cancel leave only rounding errors.
         if sum.length() > 1e-4 { sum.normalize().as_vec3() } else { Vec3::ZERO }
     }
 }
@@ -110,7 +111,7 @@ fn mean(group: &[Key], value: impl Fn(usize) -> DVec3) -> Vec3 {
     (members(group).map(value).sum::<DVec3>() / group.len() as f64).as_vec3()
 }
 
-/// Mean of the finite ones; not a number if none is.
+/// Mean of the finite values; NaN if there are none.
 fn mean_finite(values: impl Iterator<Item = f64>) -> f64 {
     let finite = values.filter(|value| value.is_finite());
     let (sum, count) = finite.fold((0.0, 0u32), |(sum, count), value| (sum + value, count + 1));

@@ -1,21 +1,20 @@
-//! Which surfels can be drawn at all.
+//! Validity of surfels.
 
 use super::{Bounds, Clip, ClipLine, Colours, Surfels};
 use glam::Vec3;
 use rayon::prelude::*;
 
-/// How far the squared length of a unit vector may be from 1.
+/// Tolerance of the squared length of a unit vector.
 const UNIT: f32 = 1e-3;
 
 impl Surfels {
-    /// Largest coordinate, radius and linear colour of a [valid](Surfels::is_valid) surfel: float32 still holds products of two, and
-    /// sums of such, with room for the scale of a picture.
+    /// Largest coordinate, radius and linear colour of a [valid](Surfels::is_valid) surfel: products of two, and sums of these, stay finite
+    /// in float32, with room for the scale of a picture.
     pub const LARGEST: f32 = 1e15;
 
-    /// Whether surfel `index` can be drawn: no attribute is NaN, infinite or beyond [`Surfels::LARGEST`], the radius is above 0, the
-    /// normal is a unit vector, and so is the longer axis of an ellipse, at a right angle to the normal and with an aspect above 0
-    /// and up to 1. The same holds of the lines of its clip, if it has one, and its normalization weights, if it has any, are
-    /// above 0. `false` beyond the end of any array.
+    /// Whether surfel `index` can be drawn: no attribute is NaN, infinite or beyond [`Surfels::LARGEST`], the radius is above 0, the normal
+    /// is a unit vector, and the longer axis of an ellipse is a unit vector orthogonal to it, with an aspect above 0 and up to 1. The lines
+    /// of its clip, if any, are valid, and its normalization weights, if any, are above 0. `false` beyond the end of any array.
     pub fn is_valid(&self, index: usize) -> bool {
         let bounded = |v: Vec3| v.abs().cmple(Vec3::splat(Self::LARGEST)).all();
         let at = |values: &[Vec3]| values.get(index).copied();
@@ -44,12 +43,12 @@ impl Surfels {
         bounded(position) && is_unit(normal) && sized && shaped && clipped && weighted && coloured && textured
     }
 
-    /// How many surfels are not [valid](Surfels::is_valid).
+    /// Number of invalid surfels.
     pub fn count_invalid(&self) -> usize {
         (0..self.len()).into_par_iter().filter(|&i| !self.is_valid(i)).count()
     }
 
-    /// A copy of the valid ones, in their order.
+    /// A copy of the valid surfels, in order.
     pub fn valid(&self) -> Self {
         let mut copy = self.clone();
         if self.count_invalid() > 0 {
@@ -59,7 +58,7 @@ impl Surfels {
         copy
     }
 
-    /// Bounds of the valid discs' bounding spheres in the file's frame, `origin` included; `None` if there are none.
+    /// Bounds of the bounding spheres of the valid discs in the file's frame, `origin` included; `None` if there are none.
     pub fn bounds(&self) -> Option<Bounds> {
         let of = |positions: &[Vec3], radii: &[f32]| {
             let largest = radii.iter().copied().fold(0.0, f32::max);
@@ -74,7 +73,7 @@ impl Surfels {
     }
 }
 
-/// Whether every line is one of the tangent plane, or [`ClipLine::NONE`].
+/// Whether every line is in the tangent plane, or [`ClipLine::NONE`].
 fn fits_clip(clip: &Clip, normal: Vec3) -> bool {
     clip.lines.iter().all(|line| {
         *line == ClipLine::NONE
@@ -84,7 +83,7 @@ fn fits_clip(clip: &Clip, normal: Vec3) -> bool {
     })
 }
 
-/// Whether `v` has length 1; NaN and infinity have not.
+/// Whether `v` has length 1; `false` for NaN and infinity.
 pub(crate) fn is_unit(v: Vec3) -> bool {
     (v.length_squared() - 1.0).abs() <= UNIT
 }

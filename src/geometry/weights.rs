@@ -1,38 +1,39 @@
-//! Normalization weights: factors that make the surfels' kernels add up to 1 without a division at every pixel (Ren, Pfister, Zwicker
+//! Normalization weights: factors of the surfels' kernels that make their sum 1 without a division at every pixel (Ren, Pfister, Zwicker
 //! 2002, section 7).
 
 use crate::error::{Error, Result};
 use glam::{DVec3, Vec3};
 
-/// A factor of each surfel's kernel. They belong to the surfels as they are: other radii, or fewer neighbours, need other weights.
+/// Factors of the surfels' kernels. They depend on the radii and on the neighbours: other radii, or fewer neighbours, need other weights.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Weights {
-    /// One entry a surfel: the factor, at a border that at its centre. Above 0; 0 where it is not known, and then the surfel is not
-    /// [valid](crate::geometry::Surfels::is_valid).
+    /// One entry per surfel: its factor; for a surfel at a border the factor at its centre. Above 0; 0 if unknown, and then the surfel is
+    /// not [valid](crate::geometry::Surfels::is_valid).
     pub of: Vec<f32>,
-    /// Of the surfels at borders, in their order, each at most once.
+    /// Corner weights of surfels at borders, in index order.
     pub corners: Vec<Corners>,
 }
 
-/// Factors of a surfel about which the surface ends: bilinear over the square about its disc, and beyond it as at its rim.
+/// Factors of a surfel at a border of the surface: bilinear over the square around its disc, constant beyond.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Corners {
     /// Index of the surfel.
     pub surfel: u32,
-    /// At the square's corners −u −v, +u −v, −u +v, +u +v; u is [`first_axis`], or the longer axis of an ellipse, v is normal × u.
+    /// Factors at the square's corners −u −v, +u −v, −u +v, +u +v; u is [`first_axis`], or the longer axis of an ellipse, and v is normal ×
+    /// u.
     pub weights: [f32; 4],
 }
 
-/// The axis that the corners of a circular disc's square are told apart by: at a right angle to the unit vector `normal` (Duff et al.,
-/// *Building an Orthonormal Basis, Revisited*, 2017).
+/// First axis of the square around a circular disc: orthogonal to the unit vector `normal` (Duff et al., *Building an Orthonormal Basis,
+/// Revisited*, 2017).
 pub fn first_axis(normal: DVec3) -> DVec3 {
-    // By comparison: −0 has the sign of 0.
+    // A comparison, because −0 has the sign of 0.
     let s = if normal.z >= 0.0 { 1.0 } else { -1.0 };
     let a = -1.0 / (s + normal.z);
     DVec3::new(1.0 + s * normal.x * normal.x * a, s * normal.x * normal.y * a, -s * normal.x)
 }
 
-/// The first axis of the square about a disc, a unit vector at a right angle to its normal; `major` is that of an ellipse.
+/// First axis of the square around a disc, a unit vector orthogonal to its normal; `major` is that of an ellipse.
 pub(crate) fn square_axis(normal: Vec3, major: Option<Vec3>) -> DVec3 {
     let normal = normal.as_dvec3().normalize_or_zero();
     match major {
@@ -42,7 +43,7 @@ pub(crate) fn square_axis(normal: Vec3, major: Option<Vec3>) -> DVec3 {
 }
 
 impl Weights {
-    /// Of surfels one after the other, each with its factor, and at a border with those at its corners.
+    /// Weights of consecutive surfels: the factor and, at a border, the corner factors.
     pub fn collect(each: impl IntoIterator<Item = (f32, Option<[f32; 4]>)>) -> Self {
         let mut all = Self::default();
         for (weight, corners) in each {
@@ -53,20 +54,20 @@ impl Weights {
         all
     }
 
-    /// The factors at the corners of a surfel's square, if it is at a border.
+    /// Corner factors of a surfel, if it is at a border.
     pub fn corners_of(&self, surfel: usize) -> Option<[f32; 4]> {
         let place = self.corners.binary_search_by_key(&surfel, |corners| corners.surfel as usize).ok()?;
         Some(self.corners[place].weights)
     }
 
-    /// Whether the surfel's factors are above 0 and bounded.
+    /// Whether the surfel's factors are above 0 and at most `largest`.
     pub(super) fn is_valid(&self, surfel: usize, largest: f32) -> bool {
         let fits = |weight: f32| weight > 0.0 && weight <= largest;
         self.of.get(surfel).is_some_and(|&weight| fits(weight))
             && self.corners_of(surfel).is_none_or(|corners| corners.into_iter().all(fits))
     }
 
-    /// Refuses corners of surfels that do not exist, or that are not in order.
+    /// Validates the indices of corner weights and their order.
     pub(super) fn check(&self) -> Result<()> {
         let count = self.of.len();
         let ascending = self.corners.windows(2).all(|pair| pair[0].surfel < pair[1].surfel);
@@ -85,7 +86,7 @@ impl Weights {
         *self = Self::collect(each);
     }
 
-    /// Those of several sets of surfels, one after the other; `None` unless every set has some: a set without has none that fit.
+    /// Joins the weights of several sets of surfels; `None` unless every set has weights.
     pub(super) fn join(parts: impl IntoIterator<Item = Option<Self>>) -> Option<Self> {
         let mut all = Self::default();
         for part in parts {
@@ -96,7 +97,7 @@ impl Weights {
         Some(all)
     }
 
-    /// Gives surfels whose factor is 0 the middle one of the others; `None` if there are no others.
+    /// Replaces unknown factors, 0, by the median of the others; `None` if there are no others.
     pub(crate) fn filled(mut self) -> Option<Self> {
         let mut known: Vec<f32> = self.of.iter().copied().filter(|&weight| weight > 0.0).collect();
         let middle = known.len() / 2;

@@ -62,7 +62,7 @@ pub enum Kernel {
     /// `exp(−½ m²)` at a distance of m σ from the centre, up to the cut-off.
     Gaussian,
     /// `ψ_E`: `exp(−a tⁿ / (1 − tⁿ))` with `t` from 0 at the centre to 1 at the rim (pajarola2004 equation 10). The paper's third parameter
-    /// `b`, the radius at which `ψ_E` is 0, is the rim here.
+    /// `b`, its unit of radius, is the rim here.
     Confetti {
         /// Larger values are narrower.
         a: f32,

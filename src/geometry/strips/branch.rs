@@ -1,7 +1,7 @@
-//! Rows of rings as tubes.
+//! Tubes from rings of vertices.
 //!
-//! Vertices are sorted into layers by the number of sides between them and an end of the component; a layer's connected parts are the
-//! clusters that the paper speaks of, the rings of a branch or, beyond a fork, of several.
+//! Vertices are sorted into layers by their distance in sides from an end of the component. The connected parts of a layer are the paper's
+//! clusters: the ring of a branch or, beyond a fork, of several.
 
 use super::component::{border, sides};
 use super::weld::{TOLERANCE, Welded};
@@ -11,31 +11,31 @@ use std::f64::consts::PI;
 
 /// Least length of a tube, in mean radii of its rings: a ball has 2.5.
 const SLENDER: f64 = 3.0;
-/// A ring's farthest vertex is at most this many times as far from its centre as the nearest one.
+/// Largest ratio between the distances of a ring's farthest and nearest vertex from its centre.
 const ROUND: f64 = 2.0;
-/// Part of a component's length within which vertices are at the end of one that is closed.
+/// Part of a closed component's length at which vertices belong to its end.
 const CAP: f64 = 1e-3;
-/// Radius where a tube ends in one vertex, in greatest radii: close to 0, and not none.
+/// Radius at an end in one vertex, in largest radii: close to 0, but not 0.
 const TIP: f64 = 1e-3;
 
 /// A vertex of a tube.
 pub(super) struct Ring {
     pub centre: DVec3,
     pub radius: f64,
-    /// Places that it stands for.
+    /// Places that it replaces.
     pub places: Vec<u32>,
 }
 
-/// What becomes of a component.
+/// Tubes of a component.
 pub(super) struct Tubes {
     pub rings: Vec<Ring>,
-    /// Between rings.
+    /// Segments between rings.
     pub segments: Vec<[u32; 2]>,
-    /// Triangles that stay.
+    /// Triangles that are kept.
     pub rest: Vec<u32>,
 }
 
-/// The tubes of a component, whose rings have no larger radius than `thickest`.
+/// The tubes of a component with radii of at most `thickest`.
 pub(super) fn tubes(component: &[u32], mesh: &Welded, thickest: f64) -> Tubes {
     let stay = || Tubes { rings: Vec::new(), segments: Vec::new(), rest: component.to_vec() };
     let Some(border) = border(component, mesh) else { return stay() };
@@ -56,7 +56,7 @@ pub(super) fn tubes(component: &[u32], mesh: &Welded, thickest: f64) -> Tubes {
     }
     leave_out_stout(&mut segments, &rings);
     let used: BTreeSet<u32> = segments.iter().flatten().copied().collect();
-    // A lid's middle is where its ring is.
+    // The middle of a lid coincides with its ring.
     let is_lid = |[a, b]: [u32; 2]| {
         let middle = |i: u32| rings[i as usize].places.len() == 1;
         !apart([a, b]) && (used.contains(&a) && middle(b) || used.contains(&b) && middle(a))
@@ -81,7 +81,7 @@ fn neighbours(component: &[u32], mesh: &Welded) -> Neighbours {
     near
 }
 
-/// The widest opening; of what is closed, what is at one end of its longest axis.
+/// The vertices of the widest opening; for a closed component, those at one end of its longest axis.
 fn ends(border: &[[u32; 2]], near: &Neighbours, mesh: &Welded) -> BTreeSet<u32> {
     let at = |i: &u32| mesh.positions[*i as usize];
     let mean = |places: &BTreeSet<u32>| places.iter().map(at).sum::<DVec3>() / places.len().max(1) as f64;
@@ -110,7 +110,7 @@ fn ends(border: &[[u32; 2]], near: &Neighbours, mesh: &Welded) -> BTreeSet<u32> 
     openings.max_by(|a, b| width(a).total_cmp(&width(b))).unwrap_or_default()
 }
 
-/// The direction in which points extend most, by power iteration on their covariance.
+/// The axis of largest extent, by power iteration on the covariance.
 fn axis(points: &[DVec3]) -> DVec3 {
     const STEPS: usize = 64;
     let mean = points.iter().sum::<DVec3>() / points.len().max(1) as f64;
@@ -152,7 +152,7 @@ fn layers(first: BTreeSet<u32>, near: &Neighbours) -> Vec<BTreeSet<u32>> {
     layers
 }
 
-/// The cluster of each place, and what would be their rings.
+/// The cluster of each place, and the rings of the clusters.
 fn clusters(layers: &[BTreeSet<u32>], near: &Neighbours, mesh: &Welded) -> (BTreeMap<u32, u32>, Vec<Ring>) {
     let (mut of_place, mut rings) = (BTreeMap::new(), Vec::new());
     for cluster in layers.iter().flat_map(|layer| parts(layer, near)) {
@@ -161,15 +161,15 @@ fn clusters(layers: &[BTreeSet<u32>], near: &Neighbours, mesh: &Welded) -> (BTre
         let at = |i: &u32| mesh.positions[*i as usize];
         let centre = cluster.iter().map(at).sum::<DVec3>() / count;
         let mean = cluster.iter().map(|i| at(i).distance(centre)).sum::<f64>() / count;
-        // Half the mean width of a regular polygon of so many corners, by Cauchy: its perimeter over 2 π. The paper's greatest distance
-        // makes outlines wider than the mesh's, by 7 % of five corners and by 21 % of three.
+        // Half the mean width of a regular polygon with this number of corners, by Cauchy: its perimeter over 2 π. The paper's largest
+        // distance makes outlines wider than the mesh's: by 7 % for five corners and by 21 % for three.
         let radius = mean * (PI / count).sin() / (PI / count);
         rings.push(Ring { centre, radius, places: cluster.into_iter().collect() });
     }
     (of_place, rings)
 }
 
-/// Whether it is a round ring that is thin enough, or a single vertex where a tube may end.
+/// Whether it is a round ring that is thin enough, or a single vertex at which a tube may end.
 fn is_fit(
     ring: &Ring,
     near: &Neighbours,
@@ -188,7 +188,7 @@ fn is_fit(
     closed && ring.places.len() > 2 && most <= ROUND * least && ring.radius <= thickest
 }
 
-/// Leaves out tubes that are too short for their width.
+/// Removes tubes that are too short for their width.
 fn leave_out_stout(segments: &mut BTreeSet<[u32; 2]>, rings: &[Ring]) {
     let mut near = Neighbours::new();
     for &[a, b] in segments.iter() {
@@ -213,7 +213,7 @@ fn leave_out_stout(segments: &mut BTreeSet<[u32; 2]>, rings: &[Ring]) {
     segments.retain(|[a, _]| slender[tubes[a]]);
 }
 
-/// Single vertices get a radius.
+/// Gives single vertices a radius.
 fn with_tips(mut rings: Vec<Ring>, segments: &BTreeSet<[u32; 2]>) -> Vec<Ring> {
     let used = || segments.iter().flatten();
     let widest = used().map(|&i| rings[i as usize].radius).fold(0.0, f64::max);

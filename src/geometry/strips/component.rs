@@ -1,10 +1,10 @@
-//! Triangles that share sides.
+//! Connected components of triangles.
 
 use super::weld::Welded;
 use std::collections::{BTreeMap, HashMap};
 
-/// Indices of triangles, by component: triangles that share a side are in one, those that only share a corner are not, so that a leaf ends
-/// where its stalk meets the branch. In the order of the first triangles.
+/// Indices of triangles by component. Triangles that share a side are connected; triangles that share only a corner are not, so that a leaf
+/// ends where its stalk meets the branch. Ordered by the first triangles.
 pub(super) fn components(mesh: &Welded) -> Vec<Vec<u32>> {
     let mut parent: Vec<u32> = (0..mesh.triangles.len() as u32).collect();
     let mut first = HashMap::new();
@@ -12,7 +12,7 @@ pub(super) fn components(mesh: &Welded) -> Vec<Vec<u32>> {
         for side in sides(triangle) {
             let other = *first.entry(side).or_insert(i);
             let (a, b) = (root(&mut parent, i), root(&mut parent, other));
-            // The lesser stays, so that roots are first triangles.
+            // The lesser index is the root, so that roots are first triangles.
             parent[a.max(b) as usize] = a.min(b);
         }
     }
@@ -37,7 +37,7 @@ fn root(parent: &mut [u32], mut i: u32) -> u32 {
     i
 }
 
-/// The sides of a component that one triangle alone has; `None` if more than two have one.
+/// The sides of a component that belong to one triangle only; `None` if a side belongs to more than two.
 pub(super) fn border(component: &[u32], mesh: &Welded) -> Option<Vec<[u32; 2]>> {
     let mut counts: BTreeMap<[u32; 2], u32> = BTreeMap::new();
     let all = component.iter().flat_map(|&i| sides(&mesh.triangles[i as usize]));

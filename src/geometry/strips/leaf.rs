@@ -1,23 +1,23 @@
-//! Small open sheets as ribbons.
+//! Ribbons from small open sheets.
 //!
-//! The paper's leaves have four triangles between six vertices: a tip, two pairs, a tip. Here a leaf may have any outline with two ends, and
-//! vertices within: the ends are the two vertices of the outline that are farthest apart, and the outline's two sides between them are
-//! walked together.
+//! The paper's leaves have four triangles between six vertices: a tip, two pairs, a tip. Here a leaf may have any outline with two ends,
+//! and inner vertices. The ends are the two vertices of the outline that are farthest apart; the two sides of the outline between them are
+//! traversed together.
 
 use super::component::border;
 use super::weld::Welded;
 use glam::DVec3;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Most triangles of a leaf.
+/// Largest number of triangles of a leaf.
 const MOST: usize = 64;
-/// Least length, in greatest widths.
+/// Least length, in largest widths.
 const ELONGATED: f64 = 1.5;
-/// The ribbon has between one over this and this times the area of the sheet: what is curled up is no flat strip.
+/// Largest ratio between the areas of ribbon and sheet, either way: a curled sheet is not a flat strip.
 const AREA: f64 = 1.5;
-/// Cosine of the largest angle of a corner at which an end is blunt, as of a blade of grass that is cut: 110°.
+/// Cosine of the largest corner angle of a blunt end, such as of a cut blade of grass: 110°.
 const BLUNT: f64 = -0.342;
-/// Radius of a pointed end, in greatest radii: close to 0 as in the paper, and not none.
+/// Radius of a pointed end, in largest radii: close to 0 as in the paper, but not 0.
 const TIP: f64 = 1e-3;
 
 /// A vertex of a ribbon.
@@ -26,11 +26,11 @@ pub(super) struct Row {
     pub centre: DVec3,
     pub normal: DVec3,
     pub radius: f64,
-    /// Places that it stands for.
+    /// Places that it replaces.
     pub places: [u32; 2],
 }
 
-/// Between place `a` and place `b`.
+/// A point between place `a` and place `b`.
 #[derive(Clone, Copy)]
 struct Station {
     a: u32,
@@ -38,7 +38,7 @@ struct Station {
     t: f64,
 }
 
-/// The rows of a leaf; `None` if the component is none.
+/// The rows of a leaf; `None` if the component is not a leaf.
 pub(super) fn rows(component: &[u32], mesh: &Welded) -> Option<Vec<Row>> {
     if component.len() > MOST {
         return None;
@@ -64,7 +64,7 @@ pub(super) fn rows(component: &[u32], mesh: &Welded) -> Option<Vec<Row>> {
     (is_leaf && rows.iter().all(|row| row.normal != DVec3::ZERO)).then_some(rows)
 }
 
-/// The vertices around a sheet of one piece and without holes, in their order.
+/// The vertices around a connected sheet without holes, in order.
 fn outline(component: &[u32], mesh: &Welded) -> Option<Vec<u32>> {
     let border = border(component, mesh)?;
     let mut next: BTreeMap<u32, Vec<u32>> = BTreeMap::new();
@@ -74,7 +74,7 @@ fn outline(component: &[u32], mesh: &Welded) -> Option<Vec<u32>> {
     }
     let simple = next.values().all(|others| others.len() == 2);
     let places: BTreeSet<u32> = component.iter().flat_map(|&i| mesh.triangles[i as usize]).collect();
-    // Euler's formula: vertices − sides + triangles is 1 of a disc. Each side is on the border or of two triangles.
+    // Euler's formula: vertices − sides + triangles = 1 for a disc. Each side is on the border or belongs to two triangles.
     let sides = (3 * component.len() + border.len()) / 2;
     if !simple || places.len() + component.len() != sides + 1 {
         return None;
@@ -91,7 +91,7 @@ fn outline(component: &[u32], mesh: &Welded) -> Option<Vec<u32>> {
     (loop_.len() == next.len()).then_some(loop_)
 }
 
-/// Opposite places of the outline, from one end to the other.
+/// Opposite points of the outline, from one end to the other.
 fn pairs(outline: &[u32], mesh: &Welded) -> Option<Vec<[Station; 2]>> {
     let count = outline.len();
     let at = |i: usize| mesh.positions[outline[i % count] as usize];
@@ -99,7 +99,7 @@ fn pairs(outline: &[u32], mesh: &Welded) -> Option<Vec<[Station; 2]>> {
     let [from, to] = all
         .max_by(|a, b| at(a.0).distance(at(a.1)).total_cmp(&at(b.0).distance(at(b.1))))
         .map(<[_; 2]>::from)?;
-    // Where each side begins and ends: both at one vertex, or at the two of a blunt end. One side goes up, the other down.
+    // Start and end of the two sides: one vertex, or the two of a blunt end. One side goes up, the other down.
     let [up_from, down_from] = end(from, to, count, at);
     let [down_to, up_to] = end(to, from, count, at);
     let up: Vec<u32> = walk(up_from, up_to, count).map(|i| outline[i]).collect();
@@ -115,8 +115,8 @@ fn pairs(outline: &[u32], mesh: &Welded) -> Option<Vec<[Station; 2]>> {
     })
 }
 
-/// The vertices where the way up from end `i` begins and the way down to it ends, as positions on the outline. They are two where one
-/// neighbour makes a blunt end with `i`, which the other end, `far`, is seen from at a corner of about a right angle.
+/// The vertices where the side up from end `i` starts and the side down to it ends, as positions on the outline. They differ where one
+/// neighbour forms a blunt end with `i`: its corner towards the other end, `far`, is about a right angle.
 fn end(i: usize, far: usize, count: usize, at: impl Fn(usize) -> DVec3) -> [usize; 2] {
     let (next, before) = ((i + 1) % count, (i + count - 1) % count);
     let cosine = |corner: usize| {
@@ -132,7 +132,7 @@ fn end(i: usize, far: usize, count: usize, at: impl Fn(usize) -> DVec3) -> [usiz
     }
 }
 
-/// From one position on the outline up to another.
+/// Positions on the outline from one up to another.
 fn walk(from: usize, to: usize, count: usize) -> impl Iterator<Item = usize> {
     (0..=(to + count - from) % count).map(move |step| (from + step) % count)
 }
@@ -141,7 +141,7 @@ fn station(i: u32) -> Station {
     Station { a: i, b: i, t: 0.0 }
 }
 
-/// Length of the way to each vertex, of 1 in all.
+/// Length of the path to each vertex, as a fraction of the whole.
 fn fractions(chain: &[u32], mesh: &Welded) -> Vec<f64> {
     let at = |i: u32| mesh.positions[i as usize];
     let mut sums = vec![0.0];
@@ -152,7 +152,7 @@ fn fractions(chain: &[u32], mesh: &Welded) -> Vec<f64> {
     sums.iter().map(|sum| sum / all).collect()
 }
 
-/// The place at part `t` of the way along a chain.
+/// The point at fraction `t` of a chain's length.
 fn along(chain: &[u32], t: f64, mesh: &Welded) -> Station {
     let fractions = fractions(chain, mesh);
     let after = fractions
@@ -178,7 +178,7 @@ fn row(pair: &[Station; 2], normals: &BTreeMap<u32, DVec3>, mesh: &Welded) -> Ro
     }
 }
 
-/// Mean normal of the component's triangles at each place, weighted by the angle that each has there.
+/// Mean normal of the component's triangles at each place, weighted by their angles there.
 fn normals(component: &[u32], mesh: &Welded) -> BTreeMap<u32, DVec3> {
     let mut sums: BTreeMap<u32, DVec3> = BTreeMap::new();
     for &i in component {

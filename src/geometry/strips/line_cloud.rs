@@ -1,4 +1,4 @@
-//! The cloud that becomes of it.
+//! The resulting cloud.
 
 use super::Lined;
 use super::branch::Tubes;
@@ -10,13 +10,13 @@ use crate::geometry::{Cloud, Colours};
 use glam::{DVec3, Vec3};
 use std::collections::HashMap;
 
-/// New vertices, and what stays of a cloud.
+/// New vertices and the kept parts of a cloud.
 pub(super) struct LineCloud<'a> {
     cloud: &'a Cloud,
     new: Cloud,
-    /// Points whose mean colour each new vertex has.
+    /// The points from which each new vertex takes its colour and material.
     sources: Vec<Vec<u32>>,
-    /// Indices of triangles of [`Welded`] that stay, as points.
+    /// Kept triangles of [`Welded`], as points.
     kept: Vec<[u32; 3]>,
     welded: &'a Welded,
 }
@@ -33,7 +33,7 @@ impl<'a> LineCloud<'a> {
         Self { cloud, new, sources: Vec::new(), kept: Vec::new(), welded }
     }
 
-    /// Adds a ribbon; says how many segments it has.
+    /// Adds a ribbon; returns the number of its segments.
     pub fn ribbon(&mut self, rows: &[Row], component: &[u32]) -> u64 {
         let first = self.new.len() as u32;
         let points = self.points(component);
@@ -45,7 +45,7 @@ impl<'a> LineCloud<'a> {
         u64::from(last - first)
     }
 
-    /// Adds tubes; says how many segments they have.
+    /// Adds tubes; returns the number of their segments.
     pub fn tubes(&mut self, tubes: &Tubes, component: &[u32]) -> u64 {
         let points = self.points(component);
         let mut place = HashMap::new();
@@ -61,7 +61,7 @@ impl<'a> LineCloud<'a> {
         tubes.segments.len() as u64
     }
 
-    /// Triangles stay.
+    /// Keeps triangles.
     pub fn keep(&mut self, triangles: &[u32]) {
         self.kept.extend(triangles.iter().map(|&i| self.welded.points[i as usize]));
     }
@@ -90,7 +90,7 @@ impl<'a> LineCloud<'a> {
         self.new.len() as u32 - 1
     }
 
-    /// What stays, and behind it what is new.
+    /// The kept points, followed by the new ones.
     pub fn finish(self, lined: &mut Lined) -> Result<Cloud> {
         let Self { cloud, mut new, sources, kept, .. } = self;
         new.colours = cloud.colours.as_ref().map(|colours| means(colours, &sources));

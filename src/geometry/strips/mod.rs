@@ -1,7 +1,8 @@
-//! Meshes of plants as lines: leaves become ribbons, branches tubes (marroquim2008, section 4.3).
+//! Lines from meshes of plants: leaves become ribbons, branches become tubes (marroquim2008, section 4.3).
 //!
-//! Triangles that share sides are one component; vertices at one place are one, as programs often write the corners of each face anew. A
-//! small open sheet that is longer than wide becomes a [ribbon](leaf); rings of vertices become a [tube](branch); the rest stays.
+//! Triangles that share sides form a component. Coincident vertices are welded, because programs often write the corners of each face anew.
+//! A small open sheet that is longer than wide becomes a [ribbon](leaf), rings of vertices become a [tube](branch); all other triangles are
+//! kept.
 
 mod branch;
 mod component;
@@ -15,36 +16,36 @@ use component::components;
 use line_cloud::LineCloud;
 use weld::weld;
 
-/// What becomes of a mesh's triangles.
+/// Options of [`Cloud::to_lines`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ToLines {
-    /// Largest radius of a tube, in the positions' unit; unless given 1/250 of the diagonal of the mesh's bounds, which is four pixels in a
-    /// picture of a thousand. A thick trunk stays as it is: a tube's light is right of thin ones alone.
+    /// Largest radius of a tube, in the positions' unit; by default 1/250 of the diagonal of the mesh's bounds, which is four pixels in a
+    /// picture of a thousand. Thick trunks are kept as triangles: the lighting of tubes is correct only for thin ones.
     pub thickest: Option<f32>,
 }
 
-/// What came of triangles, as numbers.
+/// Counts of [`Cloud::to_lines`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Lined {
-    /// Triangles that there were, less those without area or there twice.
+    /// Number of triangles, without degenerate and duplicate ones.
     pub triangles: u64,
-    /// Triangles that became ribbons, and the segments that they became.
+    /// Number of triangles that became ribbons, and of their segments.
     pub leaves: [u64; 2],
-    /// Triangles that became tubes, and the segments that they became.
+    /// Number of triangles that became tubes, and of their segments.
     pub branches: [u64; 2],
-    /// Vertices that triangles had, and vertices of what there is now.
+    /// Number of vertices of the triangles, and of the result.
     pub vertices: [u64; 2],
 }
 
-/// Part of the diagonal of the bounds that is the [thickest](ToLines::thickest) tube's radius.
+/// Radius of the default [thickest](ToLines::thickest) tube, in diagonals of the bounds.
 const THICKEST: f64 = 1.0 / 250.0;
 
 impl Cloud {
-    /// Leaves and branches of the cloud's triangles as ribbons and tubes; triangles that are neither, lines and other points stay. Points
-    /// that nothing uses any more go.
+    /// Replaces leaves and branches among the cloud's triangles by ribbons and tubes. Other triangles, lines and other points are kept;
+    /// unused points are removed.
     ///
-    /// New vertices have the mean colour, in linear light, of those that they stand for, and the material that most of them have; they
-    /// have no scalar. A texture becomes colours.
+    /// A new vertex has the mean colour, in linear light, of the vertices that it replaces, and their most frequent material; it has no
+    /// scalar. A texture becomes colours.
     ///
     /// # Errors
     /// [`Error::Usage`](crate::Error::Usage) if there are more than 2³² − 1 points afterwards.

@@ -1,28 +1,28 @@
-//! Vertices at one place as one.
+//! Welding of coincident vertices.
 
 use crate::geometry::Bounds;
 use glam::{DVec3, I64Vec3, Vec3};
 use std::collections::{HashMap, HashSet};
 
-/// Vertices are at one place if no coordinate differs by more than this part of the diagonal of their bounds: what is left of equal places
-/// that were computed in different frames.
+/// Coordinates of coincident vertices differ by at most this part of the diagonal of their bounds, the rounding error of equal places in
+/// different frames.
 pub(super) const TOLERANCE: f64 = 1e-6;
-/// Side of the cells in which others are looked for, tolerances.
+/// Side of the cells of the search, in tolerances.
 const CELL: f64 = 64.0;
 
-/// A mesh whose vertices are places.
+/// A mesh with welded vertices.
 pub(super) struct Welded {
-    /// The places.
+    /// Positions of the welded vertices, called places.
     pub positions: Vec<DVec3>,
-    /// Triangles between places, each with three different ones, and none twice.
+    /// Triangles of three different places, without duplicates.
     pub triangles: Vec<[u32; 3]>,
-    /// The same by their points.
+    /// The same triangles as indices of points.
     pub points: Vec<[u32; 3]>,
-    /// Of the bounds of all.
+    /// Diagonal of the bounds.
     pub diagonal: f64,
 }
 
-/// The mesh of `triangles`. A place is where the first of its points is.
+/// Welds the mesh `triangles`. A place has the position of its first point.
 pub(super) fn weld(positions: &[Vec3], triangles: &[[u32; 3]]) -> Welded {
     let used: Vec<Vec3> = triangles.iter().flatten().map(|&i| positions[i as usize]).collect();
     let diagonal = Bounds::of(&used).map_or(0.0, |bounds| bounds.min.distance(bounds.max));
@@ -56,7 +56,7 @@ impl Places {
         let side = (CELL * self.tolerance).max(f64::MIN_POSITIVE);
         let cell = |p: DVec3| (p / side).floor().as_i64vec3();
         let (low, high) = (cell(at - self.tolerance), cell(at + self.tolerance));
-        // Mostly the same one.
+        // Usually a single cell.
         for x in low.x..=high.x {
             for y in low.y..=high.y {
                 for z in low.z..=high.z {
