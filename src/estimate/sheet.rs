@@ -21,13 +21,13 @@ pub(super) struct Sheet {
     pub contradicted: u64,
 }
 
-/// A surface is closed if its vector area is below this part of its area (a half sphere has 0.5),
+/// A surface is closed if its vector area is below this part of its area (a half sphere has 0.5).
 const CLOSED: f64 = 0.15;
-/// its volume is at least this part of that of a sphere with the same area and extent, so that it is not crumpled,
+/// Its volume is at least this part of that of a sphere with the same area and extent, so that it is not crumpled.
 const FULL: f64 = 0.15;
-/// at most this part of its reliable pairs contradict, so that it is not noise or clutter,
+/// At most this part of its reliable pairs contradict, so that it is not noise or clutter.
 const CONTRADICTED: f64 = 0.01;
-/// and it has at least this number of discs.
+/// It has at least this number of discs.
 const LEAST_DISCS: u64 = 32;
 
 impl Sheet {

@@ -1,4 +1,4 @@
-//! Files that appear whole or not at all.
+//! Atomic file writes.
 
 use crate::error::{Error, Result};
 use std::fs::{self, File, Metadata};
@@ -6,8 +6,8 @@ use std::io::{self, BufWriter, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 
-/// Writes `path` through a temporary file in the same folder that is renamed at the end, so that a failure leaves what was there before.
-/// What is no regular file (a device, a pipe) is written to directly.
+/// Writes `path` through a temporary file in the same folder that is renamed at the end, so that a failure leaves the old contents.
+/// Anything but a regular file (a device, a pipe) is written directly.
 ///
 /// # Errors
 /// [`Error::Io`] if the file cannot be written, or `fill` fails.
@@ -22,10 +22,10 @@ pub fn write(path: &Path, fill: impl FnOnce(&mut BufWriter<&File>) -> io::Result
     done.map_err(Error::io(path, "cannot write"))
 }
 
-/// Refuses what [`write()`] would refuse, before there is anything to write. Leaves nothing behind.
+/// Checks whether [`write()`] can succeed, before there is anything to write. Leaves nothing behind.
 ///
 /// # Errors
-/// [`Error::Io`] if the folder is missing or closed to us, or if `path` is a folder or write-protected.
+/// [`Error::Io`] if the folder is missing or not writable, or if `path` is a folder or write-protected.
 pub fn check(path: &Path) -> Result<()> {
     let (target, existing) = resolve(path);
     match &existing {
@@ -34,7 +34,7 @@ pub fn check(path: &Path) -> Result<()> {
     }
 }
 
-/// Where `path` leads, and what is there now. A link keeps its place: what it leads to is replaced.
+/// Resolves `path`, with the metadata of the existing file. A link is kept: its target is replaced.
 fn resolve(path: &Path) -> (PathBuf, Option<Metadata>) {
     let target = fs::canonicalize(path).unwrap_or_else(|_| path.to_owned());
     let existing = fs::metadata(&target).ok();
@@ -60,7 +60,7 @@ fn replace(
     temporary.persist(target).map(drop).map_err(|failed| failed.error)
 }
 
-/// The file that becomes `target`, which is `existing` now.
+/// The temporary file that replaces `target`, which is `existing` now.
 fn temporary_for(target: &Path, existing: Option<&Metadata>) -> io::Result<NamedTempFile> {
     let refuse = |kind, text: &str| Err(io::Error::new(kind, text));
     match existing {
@@ -86,7 +86,7 @@ fn folder_of(target: &Path) -> PathBuf {
 fn temporary_in(folder: &Path) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".surfel-");
-    // As any new file: what the user's mask leaves, instead of the owner alone.
+    // Default permissions by the user's mask, instead of the owner only.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     builder.tempfile_in(folder)
@@ -96,7 +96,7 @@ fn advise(folder: &Path, error: io::Error) -> io::Error {
     let exists = folder.is_dir();
     let folder = folder.display();
     let text = match error.kind() {
-        // As of /proc, which a kernel makes up.
+        // For example in /proc.
         ErrorKind::NotFound if exists => format!("the folder {folder} takes no new files: write elsewhere"),
         ErrorKind::NotFound => format!("the folder {folder} does not exist: create it or write elsewhere"),
         ErrorKind::NotADirectory => format!("{folder} is not a folder: write elsewhere"),
@@ -173,7 +173,7 @@ mod tests {
         assert!(write(&file, |_| Ok(())).unwrap_err().to_string().contains("write-protected"));
     }
 
-    /// On a pipe of its own, never on a device: a mistake here, run by root, would take the system's device away.
+    /// On a private pipe, never on a device: an error, run by root, would remove the system's device.
     #[cfg(unix)]
     #[test]
     fn what_is_no_regular_file_is_written_to_and_not_replaced() {

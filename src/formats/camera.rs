@@ -1,11 +1,11 @@
-//! Cameras in files: what `--camera` reads and the window writes.
+//! Camera files: read by `--camera`, written by the window.
 //!
 //! ```json
 //! {"eye": [0, 0, 3], "target": [0, 0, 0], "up": [0, 1, 0], "fov_y_deg": 45}
 //! ```
 //!
-//! Where `height` stands in the place of `fov_y_deg`, rays are parallel, and the picture is so high, in the scene's unit. A camera that is
-//! written and read again is the same, bit for bit.
+//! With `height` in place of `fov_y_deg` the projection is orthographic, and the value is the height of the picture in the scene's unit. A
+//! written camera is read back bit by bit.
 
 use super::read_small;
 use crate::error::{Error, Result};
@@ -13,7 +13,7 @@ use crate::geometry::{Pose, Span};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
-/// What a file holds.
+/// Contents of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(deny_unknown_fields, expecting = "an object with eye, target, up, and fov_y_deg or height")]
 pub struct Fields {
@@ -36,13 +36,13 @@ impl From<Pose> for Fields {
     }
 }
 
-/// Reads a file; the error names it and, by serde, the field.
+/// Reads a file; an error names it and the field.
 pub fn read(path: &Path) -> Result<Pose> {
     let text = read_small(path)?;
     parse(&text).map_err(|error| error.in_input(path.display().to_string()))
 }
 
-/// The camera of a file's text; the error says what is wrong with it.
+/// Parses the contents of a file.
 pub fn parse(text: &[u8]) -> Result<Pose> {
     let fields: Fields =
         serde_json::from_slice(text).map_err(|error| Error::Usage(format!("{error}: correct the file")))?;
@@ -60,7 +60,7 @@ pub fn parse(text: &[u8]) -> Result<Pose> {
     pose.check().map(|()| pose)
 }
 
-/// The text of a file, a field a line.
+/// Contents of a file, one line per field.
 #[cfg(any(feature = "viewer", test))]
 pub fn text(pose: &Pose) -> String {
     let fields = Fields::from(*pose);

@@ -1,19 +1,19 @@
-//! What a file declares to hold, as data.
+//! Declarations of a file: encoding, elements and properties.
 
 use std::fmt;
 
-/// How the records are encoded.
+/// Encoding of the records.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Encoding {
     /// Decimal numbers between white space.
     Ascii,
-    /// Packed, least significant byte first.
+    /// Packed little-endian binary.
     BinaryLittleEndian,
-    /// Packed, most significant byte first.
+    /// Packed big-endian binary.
     BinaryBigEndian,
 }
 
-/// Type of a number in a record, with its names in PLY files.
+/// Type of a number in a record, with its PLY names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scalar {
     /// `char` or `int8`.
@@ -39,7 +39,7 @@ pub enum Scalar {
 pub enum Kind {
     /// One number.
     Scalar(Scalar),
-    /// A length and as many items.
+    /// A length and that many items.
     List {
         /// Type of the length, an integer.
         length: Scalar,
@@ -57,14 +57,14 @@ pub struct Property {
     pub kind: Kind,
 }
 
-/// A group of records of one kind.
+/// An element: a group of records of one kind.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Element {
-    /// Name, as in the file.
+    /// Type.
     pub name: String,
-    /// Number of records that the header claims.
+    /// Declared number of records.
     pub count: u64,
-    /// What each record holds, in the file's order.
+    /// Properties of each record, in order.
     pub properties: Vec<Property>,
 }
 
@@ -84,7 +84,7 @@ impl Scalar {
         matches!(self, Self::F32 | Self::F64)
     }
 
-    /// The type of either of its two names.
+    /// The type with one of its two names.
     pub(super) fn of_name(name: &[u8]) -> Option<Self> {
         Some(match name {
             b"char" | b"int8" => Self::I8,
@@ -101,7 +101,7 @@ impl Scalar {
 }
 
 impl Kind {
-    /// Least size in a binary record, bytes: that of a list without items.
+    /// Least size in a binary record, bytes: for a list, without items.
     pub fn least_size(self) -> u64 {
         match self {
             Self::Scalar(scalar) => scalar.size(),
@@ -111,12 +111,12 @@ impl Kind {
 }
 
 impl Element {
-    /// Least size of a binary record, bytes; every record's size if there are no lists.
+    /// Least size of a binary record, bytes; the size of every record without lists.
     pub fn least_stride(&self) -> u64 {
         self.properties.iter().map(|property| property.kind.least_size()).sum()
     }
 
-    /// Whether records can differ in size.
+    /// Whether records may differ in size.
     pub fn has_lists(&self) -> bool {
         self.properties.iter().any(|property| matches!(property.kind, Kind::List { .. }))
     }

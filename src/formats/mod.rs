@@ -1,13 +1,13 @@
-//! Files in and out.
+//! File formats: point clouds, images, cameras.
 //!
 //! # How to add a format of point clouds
 //!
-//! 1. `formats/NAME.rs`: a unit struct that implements `Reader` (`formats/reader.rs`): its name, the extensions of its files, whether it knows a
-//!    file's beginning (`None` where content does not tell), and how it reads one to a [`Cloud`](crate::geometry::Cloud) and a [`Report`]. It
-//!    tells the progress how far it is and ends with an error once that is cancelled, counts and leaves out points without a position, and
-//!    refuses a property (`ReadOptions::scalar`) that the file has not.
-//! 2. `formats/reader.rs`: its place in `READERS`; here `mod NAME;`. [`read`] chooses by content, then by extension; the window's list of
-//!    files goes by the extensions.
+//! 1. `formats/NAME.rs`: a unit struct that implements `Reader` (`formats/reader.rs`): the name, the file extensions, the detection by content
+//!    (`None` if the content does not tell), and a function that reads a file to a [`Cloud`](crate::geometry::Cloud) and a [`Report`]. It
+//!    reports progress and stops when cancelled, drops and counts points without a position, and returns an error if the file lacks a
+//!    requested property (`ReadOptions::scalar`).
+//! 2. `formats/reader.rs`: its entry in `READERS`; here `mod NAME;`. [`read`] selects by content, then by extension; the window lists
+//!    files by extension.
 
 pub mod atomic;
 #[cfg(feature = "serde")]
@@ -29,13 +29,13 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-/// Most bytes of a file of settings or of a camera.
+/// Maximum size of a settings or camera file, bytes.
 const SMALL: u64 = 1 << 20;
 
-/// The contents of a small file, of at most a mebibyte: a device need not end.
+/// Reads a file of at most a mebibyte: a device may have no end.
 ///
 /// # Errors
-/// [`Error::Io`] if it cannot be read, [`Error::Input`] if there is more of it.
+/// [`Error::Io`] if it cannot be read, [`Error::Input`] if it is larger.
 pub fn read_small(path: &Path) -> Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let read = File::open(path).and_then(|file| file.take(SMALL + 1).read_to_end(&mut bytes));

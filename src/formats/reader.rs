@@ -1,4 +1,4 @@
-//! Readers of point clouds: one a file format, chosen by what a file begins with, or else by its extension.
+//! Point cloud readers: one per file format, selected by content, otherwise by extension.
 
 use super::declared::{Element, Encoding};
 use super::report::Report;
@@ -10,7 +10,7 @@ use crate::geometry::{Cloud, MipMap};
 use std::path::Path;
 use std::sync::Arc;
 
-/// A format of files of points, lines and triangles.
+/// A file format of points, lines and triangles.
 pub(super) trait Reader: Sync {
     /// The name of the format.
     fn name(&self) -> &'static str;
@@ -18,10 +18,10 @@ pub(super) trait Reader: Sync {
     /// Extensions of its files, in lower case.
     fn extensions(&self) -> &'static [&'static str];
 
-    /// Whether a file with this beginning is of the format; `None` where content does not tell.
+    /// Whether a file with this beginning has the format; `None` if the content does not tell.
     fn knows(&self, beginning: &[u8]) -> Option<bool>;
 
-    /// Reads what a file declares, and its points. Errors are causes, without the file's name.
+    /// Reads the declarations and the points. Errors do not name the file.
     fn inspect(
         &self,
         input: &Input<'_>,
@@ -33,75 +33,74 @@ pub(super) trait Reader: Sync {
 /// All formats.
 static READERS: [&dyn Reader; 1] = [&ply::Ply];
 
-/// What is read.
+/// An input to read.
 pub(super) struct Input<'a> {
-    /// What errors call it.
+    /// Name in errors.
     pub name: &'a str,
-    /// Its contents.
+    /// Contents.
     pub source: Source<'a>,
-    /// Where files lie that it names; nowhere if it is no file itself.
+    /// Folder of the files that it refers to; `None` if it is not a file.
     pub folder: Option<&'a Path>,
 }
 
-/// A file's points and what was made of the file.
+/// The points of a file, with a report.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loaded {
-    /// The points, in the file's order. `origin` is 0 unless the coordinates are more than twice as large as the extent, a few stray points
-    /// aside; then it is a round number near their middle, subtracted in float64.
+    /// The points, in file order. `origin` is 0 unless the coordinates are more than twice as large as the extent, without a few stray
+    /// points; then it is a round number near their middle, subtracted in float64.
     pub cloud: Cloud,
     /// What was read, skipped and dropped.
     pub report: Report,
 }
 
-/// What is looked for in a file.
+/// Requested contents of a file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ReadOptions {
-    /// Name of the points' property that becomes [`Cloud::scalar`]. A file whose points have no number of this name is refused.
+    /// Name of the point property that becomes [`Cloud::scalar`]. A file without such a property is an error.
     pub scalar: Option<String>,
-    /// Whether triangles are kept where every point has a normal and a radius, too.
+    /// Whether triangles are kept even if every point has a normal and a radius.
     pub triangles: bool,
-    /// What texture coordinates are of, in place of what the file names.
+    /// Texture, in place of the one that the file names.
     pub texture: Option<Arc<MipMap>>,
 }
 
-/// What a file declares, and its points if they could be had.
+/// The declarations of a file, and its points if they can be read.
 #[derive(Debug)]
 pub struct Inspected<E = Error> {
     /// Name of the format.
     pub format: &'static str,
     /// Encoding of the records.
     pub encoding: Encoding,
-    /// Everything that the file declares, in its order.
+    /// All declared elements, in order.
     pub elements: Vec<Element>,
-    /// What [`read`] gives.
+    /// The result of [`read`].
     pub loaded: std::result::Result<Loaded, E>,
 }
 
-/// Looks at a file whose points may be unusable: what it declares is told all the same. The stage of the progress is `reading`, its unit the
-/// byte.
+/// Inspects a file whose points may be invalid: returns its declarations in any case. The progress stage is `reading`, in bytes.
 ///
 /// # Errors
-/// [`Error::Io`] if the file cannot be opened; [`Error::Input`] if no reader knows it, or what it declares cannot be read.
+/// [`Error::Io`] if the file cannot be opened; [`Error::Input`] if the format is not supported or the declarations are invalid.
 pub fn inspect(path: &Path, options: &ReadOptions, progress: &dyn Progress) -> Result<Inspected> {
     let name = path.display().to_string();
     let source = Source::open(path, |beginning| {
-        // A device need not end: it is read on only for a reader that may know what follows.
+        // A device may have no end: only a reader that may support the contents reads on.
         find(&name, beginning).is_some_and(|reader| reader.knows(beginning) != Some(false))
     })?;
     let input = Input { name: &name, source, folder: path.parent() };
     inspect_input(&input, options, progress)
 }
 
-/// Reads the points of a file. The stage of the progress is `reading`, its unit the byte.
+/// Reads the points of a file. The progress stage is `reading`, in bytes.
 ///
 /// # Errors
-/// [`Error::Io`] if the file cannot be opened; [`Error::Input`] if no reader knows it, or if it is damaged or truncated anywhere, has no points,
-/// or lacks what the options ask for; [`Error::Cancelled`] if the progress has it given up.
+/// [`Error::Io`] if the file cannot be opened; [`Error::Input`] if the format is not supported, or the file is damaged or truncated, has no
+/// points, or lacks requested contents; [`Error::Cancelled`].
 pub fn read(path: &Path, options: &ReadOptions, progress: &dyn Progress) -> Result<Loaded> {
     inspect(path, options, progress)?.loaded
 }
 
-/// Reads a file's contents, without other files that they name; `name` is what errors call them.
+/// Reads a file's contents, without other files that they refer to; `name` is its name in errors.
 ///
 /// # Errors
 /// [`Error::Input`], as [`read`].
@@ -117,14 +116,14 @@ fn inspect_input(input: &Input<'_>, options: &ReadOptions, progress: &dyn Progre
     Ok(Inspected { format, encoding, elements, loaded })
 }
 
-/// The reader that knows a file's beginning, or else the one whose extension it has, which tells what is wrong with it.
+/// The reader for a file's beginning, otherwise that of its extension, which reports what is wrong.
 fn reader_of(input: &Input<'_>) -> Parsed<&'static dyn Reader> {
     let beginning = input.source.beginning()?;
     find(input.name, &beginning)
         .ok_or_else(|| sniff::name(input.name, &beginning, input.source.size()).into())
 }
 
-/// The reader of a file of this name with this beginning.
+/// The reader of a file with this name and beginning.
 fn find(name: &str, beginning: &[u8]) -> Option<&'static dyn Reader> {
     let extension = name.rsplit_once('.').map(|(_, extension)| extension.to_lowercase());
     let has =
@@ -133,7 +132,7 @@ fn find(name: &str, beginning: &[u8]) -> Option<&'static dyn Reader> {
     known.or_else(|| READERS.iter().find(has)).copied()
 }
 
-/// Extensions of the files that can be read, in lower case.
+/// Extensions of all supported formats, in lower case.
 pub fn extensions() -> impl Iterator<Item = &'static str> {
     READERS.iter().flat_map(|reader| reader.extensions()).copied()
 }

@@ -1,29 +1,29 @@
-//! What was made of a file, for those who must tell it.
+//! Report of reading a file.
 
 use super::declared::{Element, Encoding};
 
-/// What was made of a file.
+/// Result of reading a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
     /// Encoding of the records.
     pub encoding: Encoding,
-    /// Everything that the file declares, in its order.
+    /// All declared elements, in order.
     pub elements: Vec<Element>,
-    /// Names of the vertices' properties that were used, in the file's order.
+    /// Used vertex properties, in file order.
     pub understood: Vec<String>,
-    /// Names of the vertices' properties that were not used, in the file's order.
+    /// Unused vertex properties, in file order.
     pub skipped: Vec<String>,
-    /// Names of the elements that were not used, in the file's order.
+    /// Unused elements, in file order.
     pub skipped_elements: Vec<String>,
-    /// Number of vertices in the file, dropped ones included.
+    /// Number of vertices in the file, including dropped ones.
     pub points: u64,
-    /// Vertices that are not among the points.
+    /// Dropped vertices.
     pub dropped: Dropped,
-    /// Clip lines of no use: a number is not finite, or the line is in no tangent plane, as there is no normal or as it stands upright on it.
+    /// Invalid clip lines: not finite, without a normal, or orthogonal to the tangent plane.
     pub clip_lines_dropped: u64,
-    /// Normalization weights of no use: not finite, or not above 0.
+    /// Invalid normalization weights: not finite, or not above 0.
     pub weights_dropped: u64,
-    /// Materials beyond [`Materials::MOST`](crate::geometry::Materials::MOST), which are not read: points of theirs have none.
+    /// Materials beyond [`Materials::MOST`](crate::geometry::Materials::MOST), which are ignored: their points have none.
     pub materials_dropped: u64,
     /// Faces, triangle strips and cells of range grids.
     pub faces: Faces,
@@ -31,44 +31,44 @@ pub struct Report {
     pub lines: Lines,
     /// Whether the vertices are 3D Gaussians, whose flat sides became discs.
     pub gaussians: bool,
-    /// Why a texture is of no use that the file names or the options give: it cannot be read, or the vertices have no coordinates.
+    /// Why a texture is not used: it cannot be read, or the vertices have no coordinates.
     pub texture_missing: Option<String>,
-    /// Bytes after the last element, which mean nothing.
+    /// Bytes after the last element, which are ignored.
     pub trailing: u64,
 }
 
-/// Vertices that are not among the points, each counted once, under the first reason that applies.
+/// Dropped vertices, each counted once, by the first applicable reason.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Dropped {
     /// A coordinate is not finite, or too large for f32.
     pub position: u64,
-    /// A 3D Gaussian that is less than a tenth opaque.
+    /// A 3D Gaussian is less than a tenth opaque.
     pub transparent: u64,
 }
 
 impl Dropped {
-    /// Dropped for any reason.
+    /// Number of dropped vertices.
     pub fn total(&self) -> u64 {
         self.position + self.transparent
     }
 }
 
-/// Segments of lines of a file, each counted once.
+/// Line segments of a file, each counted once.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Lines {
     /// Segments of ribbons and tubes.
     pub understood: u64,
-    /// Segments with an end that does not exist or was dropped, and those whose ends are at one place.
+    /// Segments with an end that does not exist or was dropped, or with both ends at one position.
     pub skipped: u64,
-    /// Edges of no kind of their own that are sides of faces: they tell how the mesh is connected, which its faces do already.
+    /// Edges without a declared kind that are sides of faces: they repeat the connectivity of the faces.
     pub sides: u64,
 }
 
 /// Faces of a file; of strips and range grids, their triangles.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Faces {
-    /// Faces that could be understood, whether or not they are needed.
+    /// Valid faces, used or not.
     pub understood: u64,
-    /// Faces without three different corners, with a corner that does not exist, or with one that was dropped.
+    /// Faces without three different corners, or with a corner that does not exist or was dropped.
     pub skipped: u64,
 }

@@ -1,8 +1,8 @@
-//! What a file is that no reader knows, so that the message can say so.
+//! Identification of unsupported files, for error messages.
 
 use super::ply::quoted;
 
-/// First bytes of files that are often met under the wrong name, and what to do with them.
+/// First bytes of common file types, and the remedy.
 const KNOWN: &[(&[u8], &str)] = &[
     (b"version https://git-lfs", "a Git LFS pointer instead of the file: fetch it with `git lfs pull`"),
     (b"\x1f\x8b", "gzip-compressed: unpack it first"),
@@ -27,7 +27,7 @@ const KNOWN: &[(&[u8], &str)] = &[
     (b"\xfe\xff", "text in UTF-16: save it as ASCII or UTF-8"),
 ];
 
-/// Extensions of binary formats without a signature, or with that of what packs them.
+/// Extensions of binary formats without a signature, or with that of their container.
 const EXTENSIONS: &[(&str, &str)] = &[
     ("splat", "3D Gaussians (.splat): convert them to PLY"),
     ("ksplat", "3D Gaussians (.ksplat): convert them to PLY"),
@@ -35,7 +35,7 @@ const EXTENSIONS: &[(&str, &str)] = &[
     ("sog", "3D Gaussians (.sog): convert them to PLY"),
 ];
 
-/// Says that the file of this name and of `size` bytes is no PLY file, and what it is where its beginning tells, or its extension.
+/// The error for a file that is not a PLY file: names its actual type if its beginning or extension tells.
 pub(super) fn name(file: &str, bytes: &[u8], size: u64) -> String {
     let extension = file.rsplit_once('.').map(|(_, extension)| extension.to_ascii_lowercase());
     let known = EXTENSIONS.iter().find(|(known, _)| extension.as_deref() == Some(known));
@@ -59,13 +59,13 @@ pub(super) fn name(file: &str, bytes: &[u8], size: u64) -> String {
     }
 }
 
-/// Whether it has the length that a binary STL mesh of as many triangles as it says has: 80 bytes of whatever, their number, 50 bytes each.
+/// Whether it has the length of a binary STL mesh with its declared number of triangles: 80 bytes, the number, 50 bytes each.
 fn is_binary_stl(bytes: &[u8], size: u64) -> bool {
     let count = bytes.get(80..84).map(|count| u32::from_le_bytes([count[0], count[1], count[2], count[3]]));
     count.is_some_and(|count| count > 0 && 84 + 50 * u64::from(count) == size)
 }
 
-/// Text formats without a signature, told by their first lines that are no comments.
+/// Identifies text formats without a signature by their first lines that are not comments.
 fn text(beginning: &[u8]) -> Option<&'static str> {
     let start = &beginning[..beginning.len().min(4096)];
     let line = start
@@ -84,7 +84,7 @@ fn text(beginning: &[u8]) -> Option<&'static str> {
     }
 }
 
-/// Whether a line is the names of a table's columns, three of which are x, y and z.
+/// Whether a line is a table head with columns x, y and z.
 fn is_table_head(line: &[u8]) -> bool {
     let line = String::from_utf8_lossy(line).to_ascii_lowercase();
     let names: Vec<_> = line.split([',', ';', '\t']).map(|name| name.trim().trim_matches('"')).collect();

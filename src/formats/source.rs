@@ -1,4 +1,4 @@
-//! A file's bytes, in memory or where they lie.
+//! Contents of a file, in memory or on disk.
 
 use crate::error::{Cause, Error, Result};
 use std::borrow::Cow;
@@ -9,20 +9,20 @@ use std::path::Path;
 /// A result whose error does not name the file yet.
 pub type Parsed<T> = std::result::Result<T, Cause>;
 
-/// Bytes by which a format is recognized.
+/// Number of bytes for the detection of a format.
 const BEGINNING: u64 = 4096;
 
-/// Read, not mapped: a mapping would end the process by SIGBUS if another one shortened the file meanwhile.
+/// Contents of a file. Read, not mapped: a mapping would end the process by SIGBUS if another process truncated the file.
 pub enum Source<'a> {
-    /// All of it.
+    /// All of it, in memory.
     Bytes(Cow<'a, [u8]>),
-    /// A file of `size` bytes, read piece by piece, from any thread.
+    /// A file of `size` bytes, read in pieces from any thread.
     #[cfg_attr(not(unix), allow(dead_code))]
     File { file: File, size: u64 },
 }
 
 impl<'a> Source<'a> {
-    /// Opens a file. Of what has no size, such as a pipe, everything is read if its beginning is `known`: a device need not end.
+    /// Opens a file. A file without a size, such as a pipe, is read completely if its beginning is `known`: a device may have no end.
     pub fn open(path: &Path, known: impl Fn(&[u8]) -> bool) -> Result<Source<'static>> {
         let mut file = File::open(path).map_err(|error| Error::io(path, "cannot open")(advise(error)))?;
         let about = file.metadata().map_err(Error::io(path, "cannot read"))?;
@@ -38,17 +38,17 @@ impl<'a> Source<'a> {
         Ok(Source::Bytes(bytes.into()))
     }
 
-    /// What is in memory already.
+    /// Contents in memory.
     pub fn of(bytes: &'a [u8]) -> Self {
         Self::Bytes(Cow::Borrowed(bytes))
     }
 
-    /// The first bytes, as many as a format is recognized by.
+    /// The first bytes, for the detection of a format.
     pub fn beginning(&self) -> Parsed<Cow<'_, [u8]>> {
         self.part(0, self.size().min(BEGINNING))
     }
 
-    /// Bytes in all.
+    /// Size, bytes.
     pub fn size(&self) -> u64 {
         match self {
             Self::Bytes(bytes) => bytes.len() as u64,
@@ -56,7 +56,7 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// `length` bytes from `start` on, all of which must exist.
+    /// `length` bytes from `start` on, which must exist.
     pub fn part(&self, start: u64, length: u64) -> Parsed<Cow<'_, [u8]>> {
         match self {
             Self::Bytes(bytes) => slice(bytes, start, length).map(Cow::Borrowed),
@@ -68,7 +68,7 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// The same, through `buffer` where the bytes are not in memory.
+    /// Like [`Source::part`], through `buffer` if the bytes are not in memory.
     pub fn view<'b>(&'b self, start: u64, length: usize, buffer: &'b mut Vec<u8>) -> Parsed<&'b [u8]> {
         match self {
             Self::Bytes(bytes) => slice(bytes, start, length as u64),

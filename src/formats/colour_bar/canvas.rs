@@ -4,7 +4,7 @@ use crate::formats::image::Encoded;
 use crate::geometry::srgb;
 use noto_sans_mono_bitmap::{FontWeight, RasterHeight, RasterizedChar, get_raster, get_raster_width};
 
-/// A part of a picture, px.
+/// A rectangle in a picture, px.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Rectangle {
     pub x: u32,
@@ -14,7 +14,7 @@ pub(super) struct Rectangle {
 }
 
 impl Rectangle {
-    /// The four sides, 1 px thick, inside it; no corner twice.
+    /// The four sides, 1 px thick, inside it, without overlap.
     pub fn edges(self) -> [Self; 4] {
         let Self { x, y, width, height } = self;
         let (level, upright) =
@@ -23,16 +23,16 @@ impl Rectangle {
     }
 }
 
-/// A size of letters. They are bold: thin dark ones fade when they are blended in linear light.
+/// A bold font size: thin dark letters fade when they are blended in linear light.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Font {
     raster: RasterHeight,
-    /// Pixels a side of a pixel of the raster.
+    /// Scale of the raster font, px per raster pixel.
     zoom: u32,
 }
 
 impl Font {
-    /// The largest font whose lines are at most `height` px high; never less than 16.
+    /// The largest font with lines of at most `height` px; at least 16.
     pub fn of_height(height: u32) -> Self {
         let rasters =
             [RasterHeight::Size32, RasterHeight::Size24, RasterHeight::Size20, RasterHeight::Size16];
@@ -63,7 +63,7 @@ impl Font {
 }
 
 impl Encoded {
-    /// Blends an sRGB-encoded colour over a pixel; what is beyond the edge is not drawn.
+    /// Blends an sRGB-encoded colour over a pixel; pixels outside the picture are ignored.
     fn blend(&mut self, x: u32, y: u32, colour: [u8; 3], alpha: f64) {
         let [width, height] = self.size();
         if x >= width || y >= height {
@@ -103,7 +103,7 @@ impl Encoded {
         }
     }
 
-    /// Mean linear lightness of a rectangle inside the picture, as it looks over white.
+    /// Mean linear lightness of a rectangle inside the picture, over white.
     pub(super) fn lightness(&self, area: Rectangle) -> f64 {
         let row = |y: u32| {
             let start = y as usize * self.size()[0] as usize + area.x as usize;

@@ -1,4 +1,4 @@
-//! A colour bar: what the colours of a picture mean, drawn into it.
+//! Colour bar: a legend of the colours in a picture.
 
 mod canvas;
 mod ticks;
@@ -9,37 +9,37 @@ use crate::geometry::ColourScale;
 use canvas::{Font, Rectangle};
 use ticks::{Tick, ticks};
 
-/// The colours of a scale with some of their values beside them.
+/// The colours of a scale with some labelled values.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ColourBar {
-    /// Which colour a value has.
+    /// Colour map and range.
     pub scale: ColourScale,
-    /// What the values are: the name stands above the bar.
+    /// Name of the quantity, above the bar.
     pub name: String,
 }
 
-/// Width and height of the smallest picture with room for a bar, px.
+/// Width and height of the smallest picture with a bar, px.
 const LEAST_SIZE: [u32; 2] = [160, 128];
-/// Lines of text that would fit the picture's shorter side.
+/// Lines of text that fit the shorter side of the picture.
 const LINES: u32 = 45;
-/// Height of the bar, of the picture's.
+/// Height of the bar, as a part of the picture's.
 const HEIGHT: f64 = 0.6;
-/// On a light picture. In linear light little white is enough to read dark letters on.
+/// Theme for light pictures. In linear light, a little white is enough behind dark letters.
 const LIGHT: Theme = Theme { panel: [255; 3], ink: [16; 3], opacity: 0.65 };
-/// On a dark picture.
+/// Theme for dark pictures.
 const DARK: Theme = Theme { panel: [16; 3], ink: [240; 3], opacity: 0.8 };
-/// How much of the picture the panel's edge hides.
+/// Opacity of the panel's edge.
 const EDGE: f64 = 0.4;
 
 /// Colours, sRGB-encoded.
 struct Theme {
     panel: [u8; 3],
     ink: [u8; 3],
-    /// How much of the picture the panel hides, in linear light.
+    /// Opacity of the panel, in linear light.
     opacity: f64,
 }
 
-/// Where everything is, px.
+/// Positions of all parts, px.
 struct Layout {
     font: Font,
     panel: Rectangle,
@@ -48,7 +48,7 @@ struct Layout {
 }
 
 impl ColourBar {
-    /// Refuses a picture without room for a bar.
+    /// Returns an error for a picture that is too small for a bar.
     ///
     /// # Errors
     /// [`Error::Usage`].
@@ -75,7 +75,7 @@ impl ColourBar {
         let layout = Layout::of(picture.size(), font, height, &name, &ticks);
         let Theme { panel, ink, opacity } = if picture.lightness(layout.panel) > 0.2 { LIGHT } else { DARK };
         picture.fill(layout.panel, panel, opacity);
-        // Without an edge, a panel of the background's colour looks like the end of the object.
+        // Without an edge, a panel of the background's colour would look like the end of the object.
         layout.panel.edges().into_iter().for_each(|edge| picture.fill(edge, ink, EDGE));
         picture.text(layout.title, &name, font, ink);
         self.draw_bar(picture, layout.bar, ink);
@@ -83,7 +83,7 @@ impl ColourBar {
         Ok(())
     }
 
-    /// The name, cut off where it would be wider than `width` px.
+    /// The name, truncated to `width` px.
     fn title(&self, font: Font, width: u32) -> String {
         let most = (width / font.advance()) as usize;
         if self.name.chars().count() > most {
@@ -105,7 +105,7 @@ impl ColourBar {
 }
 
 impl Layout {
-    /// A panel that is as wide as its widest line, in the middle of the right edge.
+    /// A panel as wide as its widest line, in the middle of the right edge.
     fn of(size: [u32; 2], font: Font, height: u32, name: &str, ticks: &[Tick]) -> Self {
         let line = font.height();
         let gap = line / 2;
@@ -114,7 +114,7 @@ impl Layout {
         let (width, tall) = (inner + 2 * gap, height + 2 * line + 2 * gap);
         let panel = Rectangle { x: size[0] - width - gap, y: (size[1] - tall) / 2, width, height: tall };
         let title = [panel.x + gap, panel.y + gap];
-        // Half a line more than the title's, for the upper half of the greatest value's label.
+        // Half a line more than the title needs, for the upper half of the maximum's label.
         let bar = Rectangle { x: title[0], y: title[1] + line + line / 2, width: line, height };
         Self { font, panel, bar, title }
     }

@@ -1,26 +1,26 @@
-//! Where a scale has its marks, and the numbers beside them.
+//! Ticks of a scale and their labels.
 
 use crate::geometry::ValueRange;
 
-/// A mark on a scale.
+/// A tick of a scale.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Tick {
-    /// 0 at the least value, 1 at the greatest.
+    /// Position: 0 at the minimum, 1 at the maximum.
     pub share: f64,
-    /// The value.
+    /// Label of the value.
     pub label: String,
 }
 
-/// About so many round numbers lie between the ends.
+/// Approximate number of round values between the ends.
 const STEPS: f64 = 5.0;
 /// Longest plain number; longer ones get an exponent.
 const LONGEST: usize = 10;
 
-/// Both ends, and the round numbers between them no closer than `apart` to an end (1 is the whole scale). One mark if both ends are one.
+/// Both ends, and round values between them that are at least `apart` from an end (1 is the whole scale). One tick if the ends are equal.
 pub(super) fn ticks(range: &ValueRange, apart: f64) -> Vec<Tick> {
     let ValueRange { min, max } = *range;
     let span = max - min;
-    // Of a range that is no number wide, or wider than there are numbers, only the ends can be told.
+    // A range of width 0, or of infinite width, has only its ends.
     let step = if span > 0.0 && span.is_finite() { round_step(span / STEPS) } else { 0.0 };
     if step == 0.0 || min + step == min {
         let ends = if min == max { vec![min] } else { vec![min, max] };
@@ -38,19 +38,19 @@ pub(super) fn ticks(range: &ValueRange, apart: f64) -> Vec<Tick> {
     std::iter::once(end(min)).chain(between).chain([end(max)]).collect()
 }
 
-/// 1, 2 or 5 times a power of ten, at least `least`.
+/// The least of 1, 2 and 5 times a power of ten that is at least `least`.
 fn round_step(least: f64) -> f64 {
     let power = 10f64.powf(least.log10().floor());
     let factor = [1.0, 2.0, 5.0].into_iter().find(|factor| factor * power >= least * (1.0 - 1e-9));
     factor.unwrap_or(10.0) * power
 }
 
-/// `value` with as many digits as tell it from a number that is `spacing` away.
+/// `value` with enough digits to differ from a number `spacing` away.
 fn number(value: f64, spacing: f64) -> String {
     let exponent = |v: f64| if v == 0.0 { 0.0 } else { v.abs().log10().floor() };
     let decimals = (-exponent(spacing)).max(0.0);
     let plain = format!("{value:.*}", decimals.min(20.0) as usize);
-    // What rounds to nothing has no sign.
+    // No sign on a rounded 0.
     let plain = if plain.parse() == Ok(0.0) { "0".to_owned() } else { shorten(plain) };
     if plain.len() <= LONGEST && (plain != "0" || value == 0.0 || value.abs() < spacing) {
         return plain;
@@ -61,7 +61,7 @@ fn number(value: f64, spacing: f64) -> String {
     format!("{}e{exponent}", shorten(mantissa.to_owned()))
 }
 
-/// Without zeros at the end that say nothing.
+/// Removes trailing zeros.
 fn shorten(number: String) -> String {
     if number.contains('.') { number.trim_end_matches('0').trim_end_matches('.').to_owned() } else { number }
 }

@@ -1,7 +1,7 @@
-//! OpenEXR: a picture's values as they are, linear light, in 32-bit floats.
+//! OpenEXR: the values of a picture in linear light, as 32-bit floats.
 //!
-//! Channels `R G B A` hold [`Picture::colour`], with straight α; `Z` the depth, under the name that OpenEXR gives it; `N.X N.Y N.Z` the
-//! normal; `id`, in 32-bit whole numbers, [`Picture::id`]. What a picture does not have is not written.
+//! Channels: `R G B A` are [`Picture::colour`] with straight α; `Z` is the depth, the name in OpenEXR; `N.X N.Y N.Z` the normal; `id`,
+//! 32-bit unsigned integers, [`Picture::id`]. Absent images are not written.
 
 use crate::error::Cause;
 use crate::picture::Picture;
@@ -15,7 +15,7 @@ const DEPTH: &str = "Z";
 const NORMAL: [&str; 3] = ["N.X", "N.Y", "N.Z"];
 const ID: &str = "id";
 
-/// Writes a picture whose images fit its size.
+/// Writes a picture whose images match its size.
 pub fn write(picture: &Picture, out: impl Write + Seek) -> io::Result<()> {
     let channel = |name: &str, values: Vec<f32>| AnyChannel::new(name, FlatSamples::F32(values));
     let mut channels = SmallVec::new();
@@ -43,8 +43,7 @@ pub fn write(picture: &Picture, out: impl Write + Seek) -> io::Result<()> {
     })
 }
 
-/// Reads a picture of at most `most_pixels`; the error says what is wrong with the file. Other channels than those that [`write()`]
-/// writes are passed over; without `A` it is opaque.
+/// Reads a picture of at most `most_pixels`. Channels that [`write()`] does not write are ignored; without `A` it is opaque.
 pub fn read(bytes: &[u8], most_pixels: u64) -> Result<Picture, Cause> {
     check(bytes, most_pixels).map_err(|error| error.to_string())??;
     let layer = first_layer(bytes).map_err(|error| error.to_string())?;
@@ -59,7 +58,7 @@ pub fn read(bytes: &[u8], most_pixels: u64) -> Result<Picture, Cause> {
     let mut take = |name: &str| {
         let at = channels.iter().position(|channel| channel.name.eq(name))?;
         let channel = channels.swap_remove(at);
-        // Each pixel must have its own value.
+        // Subsampled channels are not supported.
         (channel.sampling == Vec2(1, 1)).then(|| channel.sample_data.values_as_f32().collect::<Vec<_>>())
     };
     let [r, g, b] = ["R", "G", "B"].map(&mut take);
@@ -76,7 +75,7 @@ pub fn read(bytes: &[u8], most_pixels: u64) -> Result<Picture, Cause> {
     Ok(Picture { size, colour, depth: take(DEPTH), normal, id })
 }
 
-/// Looks at the header alone, before there is memory for what it promises.
+/// Validates the header before any allocation.
 fn check(bytes: &[u8], most_pixels: u64) -> ExrResult<Result<(), Cause>> {
     for header in MetaData::read_from_buffered(Cursor::new(bytes), false)?.headers {
         let window = header.shared_attributes.display_window;

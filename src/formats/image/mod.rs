@@ -1,4 +1,4 @@
-//! Pictures in files: PNG for the eye, EXR for numbers.
+//! Image files: PNG for display, EXR for values.
 
 mod exr;
 mod read;
@@ -18,10 +18,10 @@ use std::ffi::OsStr;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// Where a picture goes.
+/// Destination of a picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Output {
-    /// A file, which appears whole or not at all.
+    /// A file, which appears complete or not at all.
     File(PathBuf),
     /// Standard output, as PNG.
     Stdout,
@@ -33,7 +33,7 @@ impl Output {
         if text == "-" { Self::Stdout } else { Self::File(text.into()) }
     }
 
-    /// Whether it holds 8 bits a channel, for the eye, and not numbers.
+    /// Whether it has 8 bits per channel, for display, instead of values.
     pub fn is_png(&self) -> bool {
         match self {
             Self::File(path) => matches!(Kind::of(path), Ok(Kind::Png)),
@@ -41,7 +41,7 @@ impl Output {
         }
     }
 
-    /// Refuses a file that [`write()`] would: before the picture is made, not after.
+    /// Validates the destination before the picture exists, with the errors of [`write()`].
     ///
     /// # Errors
     /// [`Error::Usage`] if the extension is neither png nor exr, [`Error::Io`] if no file can be written there.
@@ -73,7 +73,7 @@ impl Kind {
     }
 }
 
-/// Writes a picture as its extension says; PNG to standard output.
+/// Writes a picture in the format of the extension; PNG to standard output.
 ///
 /// # Errors
 /// [`Error::Usage`] if the extension is neither png nor exr; otherwise as [`write_png`] and [`write_exr`].
@@ -87,18 +87,18 @@ pub fn write(picture: &Picture, shading: Shading, out: &Output) -> Result<()> {
     }
 }
 
-/// Writes a picture as 8-bit PNG, [`Encoded`].
+/// Writes a picture as 8-bit PNG, encoded by [`Encoded`].
 ///
 /// # Errors
-/// [`Error::Usage`] if the picture's arrays do not fit its size, [`Error::Io`] if `out` cannot be written.
+/// [`Error::Usage`] if the picture's arrays do not match its size, [`Error::Io`] if `out` cannot be written.
 pub fn write_png(picture: &Picture, shading: Shading, out: &Output) -> Result<()> {
     Encoded::of(picture, shading)?.write_png(out)
 }
 
-/// A picture as a PNG holds it: RGBA, 8 bits a channel, straight α.
+/// An encoded picture as in a PNG: RGBA, 8 bits per channel, straight α.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Encoded {
-    /// As large as `size` says.
+    /// `size` pixels, row by row.
     pixels: Vec<[u8; 4]>,
     size: [u32; 2],
 }
@@ -107,20 +107,20 @@ impl Encoded {
     /// Encodes a picture.
     ///
     /// `Lit` and `Colour` are sRGB-encoded. `Normal` maps −1…1 to 0…255 without a transfer function, in world space. `Depth` is grey, white
-    /// at the nearest covered pixel and a tenth of that at the furthest, linear in depth, without a transfer function. Overlaps are viridis from 0 to their greatest. Pixels without a
-    /// surface are the background's colour, black under `Depth`.
+    /// at the nearest covered pixel and a tenth of that at the farthest, linear in depth, without a transfer function. Overlaps are viridis
+    /// from 0 to their maximum. Pixels without a surface have the background's colour, black for `Depth`.
     ///
     /// # Errors
-    /// [`Error::Usage`] if the picture's arrays do not fit its size.
+    /// [`Error::Usage`] if the picture's arrays do not match its size.
     pub fn of(picture: &Picture, shading: Shading) -> Result<Self> {
         check(picture)?;
         Self::new(picture.size, encode(picture, shading))
     }
 
-    /// Pixels row by row from the top left.
+    /// A picture of pixels row by row from the top left.
     ///
     /// # Errors
-    /// [`Error::Usage`] if there are none, or not as many as `size`, width and height in px, says.
+    /// [`Error::Usage`] if the number of pixels is 0 or differs from `size`, px.
     pub fn new(size: [u32; 2], pixels: Vec<[u8; 4]>) -> Result<Self> {
         let [width, height] = size;
         if !pixels.is_empty() && pixels.len() as u64 == u64::from(width) * u64::from(height) {
@@ -143,12 +143,12 @@ impl Encoded {
         &self.pixels
     }
 
-    /// The same, to be drawn on.
+    /// Like [`Encoded::pixels`], for drawing.
     pub fn pixels_mut(&mut self) -> &mut [[u8; 4]] {
         &mut self.pixels
     }
 
-    /// Writes it as PNG to a file or to standard output, as [`Encoded::png`].
+    /// Writes a PNG to a file or to standard output, as [`Encoded::png`].
     ///
     /// # Errors
     /// [`Error::Io`] if `out` cannot be written.
@@ -164,16 +164,16 @@ impl Encoded {
         }
     }
 
-    /// The bytes of a PNG of it: RGBA, or RGB if every pixel is opaque.
+    /// Writes PNG data: RGBA, or RGB if every pixel is opaque.
     ///
     /// # Errors
-    /// What `out` says.
+    /// Errors of `out`.
     pub fn png(mut self, out: &mut dyn Write) -> io::Result<()> {
         let opaque = self.pixels.iter().all(|pixel| pixel[3] == 255);
         let (bytes, kind) = if opaque {
             (self.pixels.iter().flat_map(|&[r, g, b, _]| [r, g, b]).collect(), ExtendedColorType::Rgb8)
         } else {
-            // What cannot be seen compresses better as nothing.
+            // Invisible pixels compress better as 0.
             self.pixels.iter_mut().filter(|pixel| pixel[3] == 0).for_each(|pixel| *pixel = [0; 4]);
             (self.pixels.into_flattened(), ExtendedColorType::Rgba8)
         };
@@ -182,8 +182,8 @@ impl Encoded {
     }
 }
 
-/// Writes a picture as float OpenEXR, value by value: [`Picture::colour`] as R, G, B and straight A (linear light, unit normals or
-/// depths); [`Picture::depth`] as Z and [`Picture::normal`] as N.X, N.Y, N.Z where it has them.
+/// Writes a picture as float OpenEXR without conversion: [`Picture::colour`] as R, G, B and straight A (linear light, unit normals or
+/// depths); [`Picture::depth`] as Z and [`Picture::normal`] as N.X, N.Y, N.Z if present.
 ///
 /// # Errors
 /// As [`write_png`].
@@ -235,7 +235,7 @@ fn encode(picture: &Picture, shading: Shading) -> Vec<[u8; 4]> {
         }
         Shading::Depth => {
             let [near, far] = depth_range(picture);
-            // The furthest surface must still differ from the background.
+            // The farthest surface must differ from the background.
             let scale = if far > near { 0.9 / (far - near) } else { 0.0 };
             let grey =
                 |i, depth: f32| if covered(picture, i) { unit(1.0 - (depth - near) * scale) } else { 0 };
@@ -260,19 +260,19 @@ fn encode(picture: &Picture, shading: Shading) -> Vec<[u8; 4]> {
     }
 }
 
-/// The 8-bit code of a value from 0 to 1.
+/// 8-bit code of a value from 0 to 1.
 fn unit(value: f32) -> u8 {
     (value.clamp(0.0, 1.0) * 255.0).round() as u8
 }
 
-/// Whether a surface is seen in pixel `i`. The background may be opaque, so α alone does not tell where there is more to go by.
+/// Whether pixel `i` shows a surface. With an opaque background α does not tell, so other images are used if present.
 fn covered(picture: &Picture, i: usize) -> bool {
     let no_depth = picture.depth.as_ref().is_some_and(|depth| depth[i] == 0.0);
     let no_normal = picture.normal.as_ref().is_some_and(|normal| normal[i] == [0.0; 3]);
     picture.colour[i][3] > 0.0 && !no_depth && !no_normal
 }
 
-/// Nearest and furthest depth of the covered pixels; infinite and the wrong way round if there are none.
+/// Smallest and largest depth of the covered pixels; infinite and reversed without any.
 fn depth_range(picture: &Picture) -> [f32; 2] {
     let depths =
         picture.colour.iter().enumerate().filter(|(i, _)| covered(picture, *i)).map(|(_, pixel)| pixel[0]);

@@ -9,21 +9,20 @@ use std::fs::File;
 use std::io::{Cursor, Read};
 use std::path::Path;
 
-/// Most pixels of a picture that is read: a gibibyte of colours.
+/// Maximum number of pixels of a picture: a gibibyte of colours.
 pub const MOST_PIXELS: u64 = 1 << 26;
 
 const PNG: &[u8] = b"\x89PNG\r\n\x1a\n";
 const JPEG: &[u8] = &[0xff, 0xd8, 0xff];
 const EXR: &[u8] = &[0x76, 0x2f, 0x31, 0x01];
 
-/// Reads a PNG, JPEG or EXR file, told apart by its contents.
+/// Reads a PNG, JPEG or EXR file, detected by content.
 ///
-/// PNG of 8 or 16 bits and JPEG are taken as sRGB and decoded to linear light; its α is straight, as PNG has it, and 1 without one. Other colour
-/// spaces that it may name are passed over. EXR is taken as [`super::write_exr`] writes it, with depth and normals if there are any; α
-/// is straight there too.
+/// PNG of 8 or 16 bits and JPEG are decoded from sRGB to linear light; other colour spaces in the file are ignored. α is straight, as in
+/// PNG, and 1 if absent. EXR is read as [`super::write_exr`] writes it, with depth and normals if present; α is straight there, too.
 ///
 /// # Errors
-/// [`Error::Io`] if the file cannot be read, [`Error::Input`] if it is neither, is damaged, or has more than [`MOST_PIXELS`].
+/// [`Error::Io`] if the file cannot be read, [`Error::Input`] if it has another format, is damaged, or has more than [`MOST_PIXELS`].
 pub fn read(path: &Path) -> Result<Picture> {
     let bytes = beginning_as_picture(path).map_err(Error::io(path, "cannot read"))?;
     let picture = match &bytes {
@@ -35,7 +34,7 @@ pub fn read(path: &Path) -> Result<Picture> {
     picture.map_err(|cause: Cause| cause.in_input(path.display().to_string()))
 }
 
-/// All of a file that begins as a picture does; of another one the beginning, as it need not end.
+/// The whole file if it begins as a picture; otherwise the beginning only, as the file may have no end.
 fn beginning_as_picture(path: &Path) -> std::io::Result<Vec<u8>> {
     let (mut file, mut bytes) = (File::open(path)?, Vec::new());
     file.by_ref().take(PNG.len() as u64).read_to_end(&mut bytes)?;
@@ -57,7 +56,7 @@ fn read_codes(bytes: &[u8], format: ImageFormat) -> Result<Picture, Cause> {
     Ok(Picture { size: [width, height], colour: decoded(image), ..Default::default() })
 }
 
-/// Linear light; a code of 8 bits is one of 16 exactly.
+/// Linear light; an 8-bit code is exactly a 16-bit one.
 fn decoded(image: DynamicImage) -> Vec<[f32; 4]> {
     let share = |code: u16| f64::from(code) / f64::from(u16::MAX);
     let linear: Vec<f32> = (0..=u16::MAX).map(|code| srgb::decode(share(code)) as f32).collect();

@@ -1,4 +1,4 @@
-//! Where the points go: one array for each attribute that the file can have, filled piece by piece from several threads.
+//! Arrays of the points' attributes, filled in pieces by several threads.
 
 use super::Parsed;
 use super::layout::{CORNERS, Layout, MATERIAL, SCALAR, Shape, TANGENT, TEXTURE, WEIGHT};
@@ -9,7 +9,7 @@ use glam::{DVec3, Vec2, Vec3};
 
 macro_rules! arrays {
     ($($name:ident: $type:ty, $there:expr, $what:literal;)*) => {
-        /// Arrays of one entry a vertex; those that the file has nothing for are empty.
+        /// Arrays with one entry per vertex; empty for attributes that the file does not have.
         #[derive(Default)]
         pub(super) struct Arrays {
             $(#[doc = $what] pub $name: Vec<$type>,)*
@@ -21,7 +21,7 @@ macro_rules! arrays {
         }
 
         impl Arrays {
-            /// Zeros. `count` has been checked against the bytes of the file.
+            /// Arrays of zeros. `count` is validated against the size of the file.
             pub fn new(count: u64, layout: &Layout) -> Parsed<Self> {
                 let each = 0 $(+ if $there(layout) { size_of::<$type>() as u64 } else { 0 })*;
                 memory::check(&format!("its {count} vertices"), count.saturating_mul(each))?;
@@ -33,7 +33,7 @@ macro_rules! arrays {
                 Slices { $($name: &mut self.$name,)* }
             }
 
-            /// Leaves out the entries whose `kept` is false.
+            /// Removes entries whose `kept` is false.
             pub fn retain(&mut self, kept: &[bool]) {
                 $(let mut flags = kept.iter();
                 self.$name.retain(|_| flags.next().is_none_or(|kept| *kept));)*
@@ -41,7 +41,7 @@ macro_rules! arrays {
         }
 
         impl<'a> Slices<'a> {
-            /// Takes the first `rows` entries away.
+            /// Splits off the first `rows` entries.
             pub fn split(&mut self, rows: usize) -> Slices<'a> {
                 Slices { $($name: split(&mut self.$name, rows),)* }
             }

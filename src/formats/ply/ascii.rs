@@ -1,10 +1,10 @@
-//! Text records: numbers between white space, wherever the lines break.
+//! Text records: numbers between white space, independent of line breaks.
 
 use super::records::Reader;
 use super::{Parsed, quoted};
 use crate::formats::declared::{Element, Kind, Scalar};
 
-/// A place among numbers that are spelled out.
+/// A position in the text.
 #[derive(Clone)]
 pub(super) struct Tokens<'a> {
     rest: &'a [u8],
@@ -25,7 +25,7 @@ impl<'a> Tokens<'a> {
             self.rest = rest;
             match token {
                 b"" => return Err("the file ends here".into()),
-                // Some writers put comments between the records, too.
+                // Some writers put comments between the records.
                 b"comment" | b"obj_info" => {
                     let line = rest.iter().position(|byte| matches!(byte, b'\n' | b'\r'));
                     self.rest = &rest[line.unwrap_or(rest.len())..];
@@ -42,7 +42,7 @@ impl Reader for Tokens<'_> {
         self.rest.len() + 1
     }
 
-    /// A digit and a space for every number; a list has at least its length.
+    /// A digit and a space per number; a list has at least its length.
     fn least_size(element: &Element) -> u64 {
         2 * element.properties.len() as u64
     }
@@ -70,7 +70,8 @@ impl Reader for Tokens<'_> {
         Ok(length as u64)
     }
 
-    /// Numbers run on from line to line. Two lines with as many, more than a record has and not those of several, are of another table.
+    /// Numbers may continue on the next line. Two lines with an equal number of values that is larger than a record's, and not a multiple
+    /// of it, belong to a different table.
     fn check(&self, element: &Element) -> Parsed<()> {
         let declared = element.properties.len();
         let scalars = element.properties.iter().all(|property| matches!(property.kind, Kind::Scalar(_)));
@@ -101,11 +102,11 @@ impl Reader for Tokens<'_> {
     }
 }
 
-/// The number that a token spells, `nan` and `inf` in all spellings included.
+/// The number of a token, including all spellings of `nan` and `inf`.
 fn number(token: &[u8]) -> Option<f64> {
     let text = std::str::from_utf8(token).ok()?;
     text.parse().ok().or_else(|| {
-        // What C libraries print: nan(ind), -1.#IND, 1.#QNAN, 1.#INF. All of it is no finite number, and the point is dropped.
+        // Output of C libraries: nan(ind), -1.#IND, 1.#QNAN, 1.#INF. None is finite, so the point is dropped.
         let odd = ["nan(", "-nan(", "+nan(", "1.#", "-1.#", "+1.#"];
         odd.iter()
             .any(|start| text.get(..start.len()).is_some_and(|text| text.eq_ignore_ascii_case(start)))

@@ -4,7 +4,7 @@ use super::Parsed;
 use super::records::Reader;
 use crate::formats::declared::{Element, Scalar};
 
-/// The number at the start of `bytes`; `None` if they are too few.
+/// The number at the start of `bytes`; `None` if there are too few.
 fn decode(bytes: &[u8], scalar: Scalar, big_endian: bool) -> Option<f64> {
     fn array<const N: usize>(bytes: &[u8], big_endian: bool) -> Option<[u8; N]> {
         let mut array = *bytes.first_chunk()?;
@@ -25,7 +25,7 @@ fn decode(bytes: &[u8], scalar: Scalar, big_endian: bool) -> Option<f64> {
     })
 }
 
-/// One property of consecutive records of `stride` bytes: a loop of its own for every type and byte order.
+/// Decodes one property of consecutive records of `stride` bytes, with a loop for each type and byte order.
 pub(super) fn gather(
     to: &mut [f64],
     records: &[u8],
@@ -67,7 +67,7 @@ pub(super) fn gather(
     }
 }
 
-/// A place among binary records.
+/// A position in binary records.
 #[derive(Clone)]
 pub(super) struct Cursor<'a> {
     rest: &'a [u8],
@@ -107,7 +107,7 @@ impl Reader for Cursor<'_> {
     }
 
     fn length(&mut self, length: Scalar, item: Scalar) -> Parsed<u64> {
-        // A whole number, as lengths are of integer types.
+        // An integer, because lengths have integer types.
         let length = self.number(length)?;
         if length < 0.0 {
             return Err(format!("a list of negative length, {length}").into());

@@ -1,4 +1,4 @@
-//! From a block of the file's numbers to points.
+//! Conversion of blocks of numbers to points.
 
 use super::arrays::Slices;
 use super::block::Block;
@@ -12,23 +12,23 @@ use crate::geometry::srgb;
 use crate::geometry::{Clip, ClipLine, Materials};
 use glam::{DVec2, DVec3, Vec2, Vec3};
 
-/// Largest usable coordinate: differences of two stay finite in f32.
+/// Largest valid coordinate: differences of two stay finite in f32.
 const LARGEST: f64 = f32::MAX as f64 / 4.0;
 
-/// Least opacity of a 3D Gaussian that becomes a disc. Trained scenes make surfaces of many faint Gaussians, so that only haze is below.
+/// Least opacity of a 3D Gaussian that becomes a disc. Trained scenes have surfaces of many faint Gaussians, so that only haze is below.
 const OPAQUE: f64 = 0.1;
 
 /// The constant spherical harmonic, 1 / (2 √π).
 const HARMONIC: f64 = 0.282_094_791_773_878_14;
 
-/// What was dropped, and whether what was kept is whole.
+/// Counts of dropped values, and whether the points are complete.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Tally {
     pub dropped: u64,
     pub transparent: u64,
-    /// Clip lines that are none.
+    /// Invalid clip lines.
     pub clip_lines: u64,
-    /// Normalization weights that are none.
+    /// Invalid normalization weights.
     pub weights: u64,
     /// Whether a normal or a radius is missing.
     pub lacking: bool,
@@ -46,7 +46,7 @@ impl Tally {
     }
 }
 
-/// Fills as many entries as the block has rows.
+/// Converts all rows of the block to consecutive entries of `out`.
 pub(super) fn convert(block: &Block, layout: &Layout, out: &mut Slices) -> Tally {
     let mut tally = if layout.narrow {
         positions(block, layout, out.narrow, DVec3::as_vec3, Vec3::NAN)
@@ -73,22 +73,22 @@ pub(super) fn convert(block: &Block, layout: &Layout, out: &mut Slices) -> Tally
     colours(block, layout, out);
     for ((to, u), v) in out.coordinates.iter_mut().zip(block.column(TEXTURE)).zip(block.column(TEXTURE + 1)) {
         let at = DVec2::new(*u, *v).as_vec2();
-        // What is nowhere has some place.
+        // Invalid coordinates become 0.
         *to = if at.is_finite() { at } else { Vec2::ZERO };
     }
     for (to, number) in out.materials.iter_mut().zip(block.column(MATERIAL)) {
-        // Whole numbers of a table alone survive the way there and back.
+        // Only whole numbers in range survive the conversion and back.
         let index = *number as u16;
         *to = if f64::from(index) == *number { index } else { Materials::NONE };
     }
     out.scalar.iter_mut().zip(block.column(SCALAR)).for_each(|(to, value)| *to = *value);
-    // Here, as the entries are still in the cache.
+    // Here, while the entries are in the cache.
     tally.lacking = !layout.has_normals() || !layout.has_radii();
     tally.lacking |= out.normals.contains(&Vec3::ZERO) || out.radii.contains(&0.0);
     tally
 }
 
-/// Positions, with `none` for those that are dropped.
+/// Positions; dropped ones become `none`.
 fn positions<T>(block: &Block, layout: &Layout, to: &mut [T], of: impl Fn(DVec3) -> T, none: T) -> Tally
 where
     T: Copy,
@@ -116,7 +116,7 @@ where
     tally
 }
 
-/// Discs whose shape is given by more than a radius.
+/// Discs with a shape beyond a radius.
 fn shapes(block: &Block, layout: &Layout, out: &mut Slices) {
     for row in 0..out.ellipses.len().min(block.rows()) {
         let at = |column| block.column(column)[row];
@@ -141,7 +141,7 @@ fn shapes(block: &Block, layout: &Layout, out: &mut Slices) {
     }
 }
 
-/// Clips, in the planes of the normals that the discs have by now; gives the number of lines that are none of these planes.
+/// Clips in the planes of the final normals; returns the number of invalid lines.
 fn clips(block: &Block, out: &mut Slices) -> u64 {
     let mut dropped = 0;
     for row in 0..out.clips.len().min(block.rows()) {
@@ -154,14 +154,14 @@ fn clips(block: &Block, out: &mut Slices) -> u64 {
         };
         let lines = [read(0), read(1)];
         dropped += lines.iter().filter(|line| **line == Some(None)).count() as u64;
-        // What is concave is a corner: two lines that the file has, whether or not they are of any use.
+        // A concave corner needs two lines in the file, valid or not.
         let concave = at(CONCAVE) != 0.0 && lines.iter().all(Option::is_some);
         out.clips[row] = Clip::of_some(lines.map(Option::flatten), concave).unwrap_or_default();
     }
     dropped
 }
 
-/// Weights, and those at corners; gives the number of those that are none. Where one corner's is none, so are the others.
+/// Weights and corner weights; returns the number of invalid ones. One invalid corner invalidates all four.
 fn weights(block: &Block, out: &mut Slices) -> u64 {
     let read = |value: f64| Some(value as f32).filter(|weight| *weight > 0.0 && weight.is_finite());
     let mut dropped = 0;
@@ -189,7 +189,7 @@ fn colours(block: &Block, layout: &Layout, out: &mut Slices) {
             }
         }
         Some(Colour::Rgb(_)) if layout.has_codes() => {
-            // In text, any number can stand for a code: rounded, and clamped by the conversion.
+            // In text, any number may stand for a code: it is rounded, and clamped by the conversion.
             for (to, code) in out.codes.iter_mut().zip(block.triples(COLOUR)) {
                 *to = [(code.x + 0.5) as u8, (code.y + 0.5) as u8, (code.z + 0.5) as u8, 0];
             }
@@ -202,7 +202,7 @@ fn colours(block: &Block, layout: &Layout, out: &mut Slices) {
     }
 }
 
-/// Linear light of a channel: integers are sRGB-encoded, floats linear already. What is no colour (negative, not finite) is black.
+/// Linear light of a channel: integers are sRGB-encoded, floats are linear. Invalid values (negative, not finite) are black.
 pub(super) fn linear(value: f64, scalar: Scalar) -> f32 {
     let linear = match scalar {
         Scalar::U8 => srgb::decode(value / 255.0),

@@ -1,4 +1,4 @@
-//! The elements in the file's order, and what comes of each.
+//! Reading of all elements in file order.
 
 use super::arrays::Arrays;
 use super::ascii::Tokens;
@@ -18,18 +18,18 @@ use crate::formats::source::Source;
 use crate::geometry::Cloud;
 use std::borrow::Cow;
 
-/// What all elements together hold.
+/// Contents of all elements.
 pub(super) struct Contents {
     pub points: Points,
     pub faces: Faces,
     pub lines: Lines,
     pub materials: Table,
     pub trailing: u64,
-    /// Which elements were used.
+    /// Whether each element was used.
     pub used: Vec<bool>,
 }
 
-/// A file whose header is known, and what is looked for in it.
+/// A file with a parsed header, and the requested contents.
 pub(super) struct File<'a> {
     pub source: &'a Source<'a>,
     pub header: &'a Header,
@@ -37,7 +37,7 @@ pub(super) struct File<'a> {
     pub vertex: usize,
     pub layout: &'a Layout,
     pub meter: &'a Meter<'a>,
-    /// Whether triangles are kept even if the points lack nothing and there are no lines.
+    /// Whether triangles are kept even if the points are complete and there are no lines.
     pub triangles: bool,
     /// Whether the header declares lines.
     pub lines: bool,
@@ -60,7 +60,7 @@ impl File<'_> {
         })
     }
 
-    /// Lists tell only one after the other where the vertices are.
+    /// For binary files with lists before the vertices: their offset is known only after reading these.
     fn read_in_memory(&self, big_endian: bool) -> Parsed<Contents> {
         let (bytes, vertex) = (self.from(self.header.payload as u64)?, self.points());
         self.elements(Cursor::new(&bytes, big_endian), |cursor| {
@@ -74,7 +74,7 @@ impl File<'_> {
         })
     }
 
-    /// The vertices are where the header says: what is before and after them is small as a rule, and read whole.
+    /// For vertices at a known offset: the elements before and after them are usually small and read whole.
     fn read_in_place(&self, big_endian: bool) -> Parsed<Contents> {
         let payload = self.header.payload as u64;
         let (start, end) = self.extent(payload)?;
@@ -90,24 +90,24 @@ impl File<'_> {
         &self.header.elements[self.vertex]
     }
 
-    /// Everything from a byte on.
+    /// All bytes from `start` on.
     fn from(&self, start: u64) -> Parsed<Cow<'_, [u8]>> {
         self.source.part(start, self.source.size().saturating_sub(start))
     }
 
-    /// Where the vertices begin and end if there are no lists up to there.
+    /// Byte range of the vertices, if there are no lists before their end.
     fn extent(&self, payload: u64) -> Parsed<(u64, u64)> {
         let (mut start, mut end) = (payload, payload);
         for element in &self.header.elements[..=self.vertex] {
             let left = usize::try_from(self.source.size() - end).unwrap_or(usize::MAX);
             refuse_lie(element, element.least_stride(), left)?;
-            // Fits, as the product is no more than the bytes left; a stride of 0 needs no bytes whatever the count.
+            // Fits: the product is at most the remaining bytes. A stride of 0 needs no bytes, whatever the count.
             (start, end) = (end, end + element.count.saturating_mul(element.least_stride()));
         }
         Ok((start, end))
     }
 
-    /// Goes through all elements; those before the vertices are looked at once more when the points are known.
+    /// Reads all elements. Those before the vertices are read again when the points are known.
     fn elements<R: Reader>(
         &self,
         mut reader: R,

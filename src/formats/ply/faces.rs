@@ -7,18 +7,18 @@ use super::points::Points;
 pub(super) struct Collector<'a> {
     points: &'a Points,
     keep: bool,
-    /// Empty unless they are to be kept.
+    /// The triangles, if they are kept.
     pub triangles: Vec<[u32; 3]>,
     pub faces: Faces,
 }
 
 impl<'a> Collector<'a> {
-    /// Collects triangles between `points`; only counts them unless they are to be kept.
+    /// Collects triangles between `points` with `keep`; otherwise counts them.
     pub fn new(points: &'a Points, keep: bool) -> Self {
         Self { points, keep, triangles: Vec::new(), faces: Faces::default() }
     }
 
-    /// A polygon, as a fan.
+    /// Adds a polygon as a fan.
     pub fn face(&mut self, corners: &[f64]) {
         let inside = corners.iter().all(|corner| self.points.of_vertex(*corner).is_some());
         let mut understood = false;
@@ -30,8 +30,7 @@ impl<'a> Collector<'a> {
         self.count(understood);
     }
 
-    /// A strip of triangles; −1 begins another. Every other triangle is wound the other way; those with two equal corners only carry
-    /// the strip on.
+    /// Adds a triangle strip; −1 starts another. Every other triangle is wound the other way; degenerate triangles only continue the strip.
     pub fn strip(&mut self, corners: &[f64]) {
         for strip in corners.split(|corner| *corner == -1.0) {
             for (index, corners) in strip.windows(3).enumerate() {
@@ -45,7 +44,7 @@ impl<'a> Collector<'a> {
         }
     }
 
-    /// A triangle whose corners are different points.
+    /// Adds a triangle with three different points.
     pub fn add(&mut self, triangle: [u32; 3]) {
         self.count(true);
         if self.keep {
@@ -58,7 +57,7 @@ impl<'a> Collector<'a> {
         if understood { self.faces.understood += 1 } else { self.faces.skipped += 1 }
     }
 
-    /// Whether it has three different corners, all of them points.
+    /// Adds a triangle if its corners are three different points; returns whether they are.
     fn triangle(&mut self, corners: [f64; 3]) -> bool {
         let [Some(a), Some(b), Some(c)] = corners.map(|corner| self.points.of_vertex(corner)) else {
             return false;

@@ -1,23 +1,23 @@
-//! Triangles between the neighbours of a range grid, as Cyberware's scanners and the Stanford range scans have it.
+//! Triangles between neighbours of a range grid, as in Cyberware's scanners and the Stanford range scans.
 //!
-//! Such scans are height fields over x and y, seen from far up the z axis.
+//! Such scans are height fields over x and y, seen from far along the z axis.
 
 use super::faces::Collector;
 use super::points::Points;
 use glam::Vec3;
 
-/// Where an edge is so many times longer than usual in its direction, the surface is taken to be torn: for evenly spaced samples, where
-/// it is steeper than 75° (Turk and Levoy, Zippered Polygon Meshes from Range Images, SIGGRAPH 1994, section 3).
+/// Ratio of an edge's length to the median in its direction from which the surface is considered torn: for evenly spaced samples, where it
+/// is steeper than 75° (Turk and Levoy, Zippered Polygon Meshes from Range Images, SIGGRAPH 1994, section 3).
 const TORN: f32 = 4.0;
 
-/// Cells in rows; each holds a point or none.
+/// Cells in rows; each has a point or none.
 pub(super) struct Grid {
     columns: usize,
     cells: Vec<Option<u32>>,
 }
 
 impl Grid {
-    /// Cells whose number is that of columns × rows; `None` if it is not.
+    /// A grid of columns × rows cells; `None` if the number of cells differs.
     pub fn new(cells: Vec<Option<u32>>, [columns, rows]: [Option<u64>; 2]) -> Option<Self> {
         let columns = usize::try_from(columns?).ok()?;
         let fits = Some(cells.len() as u64) == rows?.checked_mul(columns as u64);
@@ -34,7 +34,7 @@ impl Grid {
         let down = TORN * self.usual(self.columns, length);
         let limits = [across, down, across.hypot(down)];
         for [a, b, c, d] in self.quads() {
-            // The shorter diagonal, where there is a choice.
+            // The shorter diagonal, if there is a choice.
             let pair = match [a, b, c, d] {
                 [Some(a), Some(b), Some(c), Some(d)] if length(a, d) <= length(b, c) => {
                     [[a, b, d], [a, d, c]]
@@ -60,7 +60,7 @@ impl Grid {
         }
     }
 
-    /// Median distance between neighbours `step` cells apart.
+    /// Median distance between points `step` cells apart.
     fn usual(&self, step: usize, length: impl Fn(u32, u32) -> f32) -> f32 {
         let cells = self.cells.iter().zip(self.cells.iter().skip(step)).enumerate();
         let neighbours = cells.filter(|(index, _)| step > 1 || index % self.columns + 1 < self.columns);
@@ -72,7 +72,7 @@ impl Grid {
         *lengths.select_nth_unstable_by(middle, f32::total_cmp).1
     }
 
-    /// Neighbouring cells: this one, the next, the one below this, the one below the next.
+    /// Quads of neighbouring cells: this one, the next, the one below this, the one below the next.
     fn quads(&self) -> impl Iterator<Item = [Option<u32>; 4]> {
         self.cells.windows(self.columns + 2).enumerate().filter_map(|(index, cells)| {
             let inside = index % self.columns + 1 < self.columns;
@@ -81,7 +81,7 @@ impl Grid {
     }
 }
 
-/// The triangle, wound so that it faces up the z axis.
+/// The triangle, wound so that it faces along +z.
 fn towards_viewer(positions: &[Vec3], [i, j, k]: [u32; 3]) -> [u32; 3] {
     let [a, b, c] = [i, j, k].map(|index| positions[index as usize]);
     if (b - a).cross(c - a).z < 0.0 { [i, k, j] } else { [i, j, k] }

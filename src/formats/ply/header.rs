@@ -1,19 +1,19 @@
-//! The header, parsed byte by byte: it may hold comments in any encoding, and no claim of it is trusted.
+//! The PLY header, parsed byte by byte: comments may have any encoding, and no claim is trusted.
 
 use super::{Parsed, quoted};
 use crate::formats::declared::{Element, Encoding, Kind, Property, Scalar};
 use std::collections::HashSet;
 
-/// Longest header, bytes. The longest known ones hold a few hundred properties.
+/// Maximum size of a header, bytes. The longest known ones have a few hundred properties.
 pub(super) const LIMIT: usize = 1 << 20;
 
 /// A parsed header.
 #[derive(Debug, PartialEq)]
 pub(super) struct Header {
     pub encoding: Encoding,
-    /// In the order of their records in the file.
+    /// Elements in the order of their records.
     pub elements: Vec<Element>,
-    /// Where the records begin, bytes from the start of the file.
+    /// Offset of the records from the start of the file, bytes.
     pub payload: usize,
     /// Columns and rows of a range grid, from `obj_info num_cols` and `num_rows`.
     pub grid: [Option<u64>; 2],
@@ -21,12 +21,12 @@ pub(super) struct Header {
     pub texture: Option<String>,
 }
 
-/// Whether a file that begins so is a PLY file.
+/// Whether a file with this beginning is a PLY file.
 pub(super) fn is_ply(bytes: &[u8]) -> bool {
     Lines::new(bytes).first().trim_ascii_end() == b"ply"
 }
 
-/// The header of a PLY file, which begins so.
+/// Parses the header of a PLY file with this beginning.
 pub(super) fn parse(bytes: &[u8]) -> Parsed<Header> {
     let mut lines = Lines::new(bytes);
     lines.first();
@@ -62,7 +62,7 @@ pub(super) fn parse(bytes: &[u8]) -> Parsed<Header> {
     Ok(Header { encoding, elements, payload: lines.at, grid, texture })
 }
 
-/// Free text as a rule; which texture coordinates are of is understood. A name may have blanks.
+/// Reads the texture name from a comment; other comments are ignored. A name may contain spaces.
 fn parse_comment(line: &[u8], texture: &mut Option<String>) {
     let text = String::from_utf8_lossy(line);
     let name = text.trim_start_matches("comment").trim_start().strip_prefix("TextureFile");
@@ -72,7 +72,7 @@ fn parse_comment(line: &[u8], texture: &mut Option<String>) {
     }
 }
 
-/// Free text as a rule; what range scanners say of their grids is understood.
+/// Reads the size of a range grid from free text.
 fn parse_info(line: &[u8], grid: &mut [Option<u64>; 2]) {
     if let [_, name, value] = words(line)[..] {
         let value = std::str::from_utf8(value).ok().and_then(|text| text.parse().ok());
@@ -176,7 +176,7 @@ fn parse_scalar(name: &[u8]) -> Parsed<Scalar> {
     })
 }
 
-/// Refuses a name that occurs twice in one element: which of the two is meant cannot be known.
+/// Returns an error for duplicate property names in an element, which are ambiguous.
 pub(super) fn refuse_duplicates(elements: &[Element]) -> Parsed<()> {
     for element in elements {
         let mut seen = HashSet::new();
@@ -190,13 +190,13 @@ pub(super) fn refuse_duplicates(elements: &[Element]) -> Parsed<()> {
     Ok(())
 }
 
-/// The header's lines, without their ends and without white space around them.
+/// The header's lines, without line ends and surrounding white space.
 struct Lines<'a> {
     bytes: &'a [u8],
     at: usize,
     number: usize,
-    /// What ends a line. Lines that end in CR LF end in LF here; those of old Macintosh files, in CR alone. Settled once, by the first
-    /// line, because a binary payload may begin with either byte.
+    /// Byte that ends a line: LF, also for CR LF, or CR in files of old Macintoshes. The first line determines it, because a binary payload
+    /// may start with either byte.
     end: u8,
 }
 

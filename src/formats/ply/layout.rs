@@ -1,4 +1,4 @@
-//! Which properties of a vertex are understood, and as what.
+//! The supported vertex properties and their columns.
 
 use super::{Parsed, listed, quoted};
 use crate::formats::declared::{Element, Kind, Property, Scalar};
@@ -11,9 +11,9 @@ pub(super) const POSITION: usize = 0;
 pub(super) const NORMAL: usize = 3;
 /// Column of the radius.
 pub(super) const RADIUS: usize = 6;
-/// Column of red; green and blue follow. Of 3D Gaussians, the constant harmonics f_dc_0 to 2.
+/// Column of red; green and blue follow. For 3D Gaussians, of the constant harmonics f_dc_0 to 2.
 pub(super) const COLOUR: usize = 7;
-/// Column of ux; uy uz, vx vy vz follow. Of 3D Gaussians, scale_0 to 2.
+/// Column of ux; uy uz, vx vy vz follow. For 3D Gaussians, of scale_0 to 2.
 pub(super) const AXES: usize = 10;
 /// Column of two_sided.
 pub(super) const TWO_SIDED: usize = 16;
@@ -35,40 +35,40 @@ pub(super) const TANGENT: usize = 36;
 pub(super) const TEXTURE: usize = 39;
 /// Column of material_index.
 pub(super) const MATERIAL: usize = 41;
-/// Column of the scalar that the caller has chosen.
+/// Column of the scalar that the caller selects.
 pub(super) const SCALAR: usize = 42;
 
-/// Names of the columns of two clip lines.
+/// Column names of two clip lines.
 pub(super) const CLIP_LINES: [[&str; 4]; 2] =
     [["clip0x", "clip0y", "clip0z", "clip0d"], ["clip1x", "clip1y", "clip1z", "clip1d"]];
-/// Name of the column that says how they meet.
+/// Column name of the flag of concave corners.
 pub(super) const CLIP_CONCAVE: &str = "clip_concave";
-/// Name of the column of normalization weights.
+/// Column name of normalization weights.
 pub(super) const WEIGHT_NAME: &str = "surfel_weight";
-/// Names of those at the corners of surfels at borders.
+/// Column names of corner weights.
 pub(super) const CORNER_NAMES: [&str; 4] =
     ["surfel_weight0", "surfel_weight1", "surfel_weight2", "surfel_weight3"];
-/// Names of the columns of tangents.
+/// Column names of tangents.
 pub(super) const TANGENT_NAMES: [&str; 3] = ["tx", "ty", "tz"];
-/// Name of the column that has the number of a material.
+/// Column name of the material index.
 pub(super) const MATERIAL_NAME: &str = "material_index";
 const TEXTURES: &[[&str; 2]] = &[["texture_u", "texture_v"], ["s", "t"], ["u", "v"]];
 const NORMALS: &[[&str; 3]] = &[["nx", "ny", "nz"], ["normal_x", "normal_y", "normal_z"]];
 const COLOURS: &[[&str; 3]] =
     &[["red", "green", "blue"], ["diffuse_red", "diffuse_green", "diffuse_blue"], ["r", "g", "b"]];
 
-/// How the shape of a disc is given beyond its radius.
+/// Source of a disc's shape beyond its radius.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Shape {
-    /// Not at all.
+    /// None: a circle.
     Circle,
-    /// By two axes.
+    /// Two semi-axes.
     Axes,
-    /// As a Gaussian with so many scales, 2 or 3, and a rotation.
+    /// A Gaussian with 2 or 3 scales and a rotation.
     Gaussian(u8),
 }
 
-/// What the columns of colour hold.
+/// Content of the colour columns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Colour {
     /// red green blue of these types.
@@ -77,23 +77,23 @@ pub(super) enum Colour {
     Harmonics,
 }
 
-/// Where a vertex keeps what a surfel needs.
+/// Mapping from vertex properties to surfel attributes.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Layout {
-    /// Index of the property that fills each column.
+    /// Property index of each column.
     pub columns: [Option<usize>; COLUMNS],
-    /// What the shape comes from.
+    /// Source of the shape.
     pub shape: Shape,
-    /// What the colour comes from, if there is one.
+    /// Source of the colour, if any.
     pub colour: Option<Colour>,
-    /// Whether f32 holds every coordinate that the file can, as it is.
+    /// Whether f32 represents all coordinates of the file exactly.
     pub narrow: bool,
-    /// Whether the column of the radius holds diameters.
+    /// Whether the radius column holds diameters.
     pub diameters: bool,
 }
 
 impl Layout {
-    /// Looks for what is understood, for the property named `chosen`, and for what belongs to `lines`, if the file has some.
+    /// Finds the supported properties, the property named `chosen`, and those of `lines`, if the file has lines.
     pub fn of(vertex: &Element, chosen: Option<&str>, lines: bool) -> Parsed<Self> {
         let properties = &vertex.properties;
         refuse_compressed(properties)?;
@@ -127,7 +127,7 @@ impl Layout {
         if let Some(normal) = NORMALS.iter().find_map(|names| find.all(*names)) {
             self.fill(NORMAL, normal);
         }
-        // `value` is a scale beside the normals of FSSR's samples alone; elsewhere it may be anything.
+        // `value` is a scale only beside normals, in samples of FSSR.
         let scale = || find.one("value").filter(|(_, scalar)| scalar.is_float() && self.fills(NORMAL));
         if let Some(radius) = find.one("radius").or_else(scale) {
             self.fill(RADIUS, [radius]);
@@ -146,12 +146,12 @@ impl Layout {
             third.into_iter().for_each(|scale| self.fill(AXES + 2, [scale]));
             find.one("opacity").into_iter().for_each(|opacity| self.fill(OPACITY, [opacity]));
             self.shape = Shape::Gaussian(if third.is_some() { 3 } else { 2 });
-            // The scales tell it.
+            // The scales determine it.
             self.columns[RADIUS] = None;
         }
     }
 
-    /// Lines of no tangent plane would clip nothing.
+    /// Clip lines need a tangent plane.
     fn find_clips(&mut self, find: &Finder) {
         if !self.has_normals() {
             return;
@@ -166,7 +166,7 @@ impl Layout {
         }
     }
 
-    /// Weights of no disc would weigh nothing.
+    /// Weights need a disc.
     fn find_weights(&mut self, find: &Finder) {
         let Some(weight) = find.one(WEIGHT_NAME).filter(|_| self.has_normals() && self.has_radii()) else {
             return;
@@ -175,7 +175,7 @@ impl Layout {
         find.all(CORNER_NAMES).into_iter().for_each(|corners| self.fill(CORNERS, corners));
     }
 
-    /// What is a tangent or a diameter beside lines may be anything elsewhere.
+    /// Tangents and diameters have this meaning only in files with lines.
     fn find_lines(&mut self, find: &Finder) {
         if let Some(tangent) = find.all(TANGENT_NAMES) {
             self.fill(TANGENT, tangent);
@@ -186,7 +186,7 @@ impl Layout {
         }
     }
 
-    /// Looks for coordinates in a texture. Without one, the same names may be anything.
+    /// Finds texture coordinates. Call it if there is a texture: otherwise the same names may have other meanings.
     pub fn find_texture(&mut self, vertex: &Element) {
         let find = Finder { properties: &vertex.properties };
         if let Some(place) = TEXTURES.iter().find_map(|names| find.all(*names)) {
@@ -194,7 +194,7 @@ impl Layout {
         }
     }
 
-    /// Looks for numbers of materials. Where there are none, the same name may be anything.
+    /// Finds material indices. Call it if there are materials: otherwise the same name may have another meaning.
     pub fn find_materials(&mut self, vertex: &Element) {
         if let Some(number) = (Finder { properties: &vertex.properties }).one(MATERIAL_NAME) {
             self.fill(MATERIAL, [number]);
@@ -222,12 +222,12 @@ impl Layout {
         self.columns.contains(&Some(index))
     }
 
-    /// Whether the discs have normals of their own.
+    /// Whether the file provides normals.
     pub fn has_normals(&self) -> bool {
         self.fills(NORMAL) || self.shape != Shape::Circle
     }
 
-    /// Whether the discs have radii of their own.
+    /// Whether the file provides radii.
     pub fn has_radii(&self) -> bool {
         self.fills(RADIUS) || self.shape != Shape::Circle
     }
@@ -237,18 +237,18 @@ impl Layout {
         matches!(self.colour, Some(Colour::Rgb([Scalar::U8, Scalar::U8, Scalar::U8]) | Colour::Harmonics))
     }
 
-    /// Whether the discs can end at clip lines.
+    /// Whether the file provides clip lines.
     pub fn has_clips(&self) -> bool {
         self.fills(CLIPS) || self.fills(CLIPS + 4)
     }
 
-    /// Whether the file can say that a disc has no side.
+    /// Whether the file can mark discs as two-sided.
     pub fn has_sides(&self) -> bool {
         self.fills(TWO_SIDED) || matches!(self.shape, Shape::Gaussian(_))
     }
 }
 
-/// Integers of other sizes have no agreed range as colours.
+/// Whether the type has an agreed colour range: other integers do not.
 pub(super) fn is_colour(scalar: Scalar) -> bool {
     matches!(scalar, Scalar::U8 | Scalar::U16) || scalar.is_float()
 }
@@ -258,7 +258,7 @@ struct Finder<'a> {
 }
 
 impl Finder<'_> {
-    /// The property of one number that has this name.
+    /// The scalar property with this name.
     fn one(&self, name: &str) -> Option<(usize, Scalar)> {
         self.properties.iter().enumerate().find_map(|(index, property)| match property.kind {
             Kind::Scalar(scalar) if property.name == name => Some((index, scalar)),
@@ -266,7 +266,7 @@ impl Finder<'_> {
         })
     }
 
-    /// The properties of these names; `None` unless all are there.
+    /// The properties with these names; `None` unless all exist.
     fn all<const N: usize>(&self, names: [&str; N]) -> Option<[(usize, Scalar); N]> {
         let mut found = [(0, Scalar::I8); N];
         for (found, name) in found.iter_mut().zip(names) {
@@ -299,7 +299,7 @@ fn refuse_compressed(properties: &[Property]) -> Parsed<()> {
     }
 }
 
-/// The element whose records are the points.
+/// Index of the element whose records are the points.
 pub(super) fn find_vertex(elements: &[Element]) -> Parsed<usize> {
     elements.iter().position(|element| element.name == "vertex").ok_or_else(|| {
         if elements.is_empty() {

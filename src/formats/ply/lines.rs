@@ -6,19 +6,19 @@ use crate::formats::declared::{Element, Kind};
 use crate::geometry::Cloud;
 use glam::Vec3;
 
-/// Name of the property that says what a line is.
+/// Name of the property that marks tubes.
 pub(super) const TUBE: &str = "tube";
 
-/// What an element of lines has its vertices in, as indices of its properties.
+/// Vertex properties of an element of lines, as indices.
 #[derive(Clone, Copy)]
 pub(super) enum Ends {
-    /// Two numbers.
+    /// Two scalars.
     Two([usize; 2]),
-    /// A list, in which −1 begins another line.
+    /// A list, in which −1 starts another line.
     List(usize),
 }
 
-/// The vertices of an element's lines; `None` if it has no lines that are understood.
+/// The vertex properties of an element of lines; `None` for other elements.
 pub(super) fn ends(element: &Element) -> Option<Ends> {
     let scalar = |name: &str| scalar(element, name);
     let list = || {
@@ -36,7 +36,7 @@ pub(super) fn ends(element: &Element) -> Option<Ends> {
     }
 }
 
-/// Index of the property of one number that has this name.
+/// Index of the scalar property with this name.
 pub(super) fn scalar(element: &Element, name: &str) -> Option<usize> {
     let is = |kind| matches!(kind, Kind::Scalar(_));
     element.properties.iter().position(|property| property.name == name && is(property.kind))
@@ -44,12 +44,12 @@ pub(super) fn scalar(element: &Element, name: &str) -> Option<usize> {
 
 /// A segment between points.
 struct Segment {
-    /// The lesser first.
+    /// The lesser index first.
     ends: [u32; 2],
-    /// Whether they are the other way round in the file.
+    /// Whether the file has the opposite order.
     turned: bool,
     tube: bool,
-    /// Whether the file says what it is, and not only that there is an edge.
+    /// Whether the file declares ribbon or tube, and not only an edge.
     told: bool,
 }
 
@@ -65,7 +65,7 @@ impl<'a> Segments<'a> {
         Self { points, all: Vec::new(), lines: Lines::default() }
     }
 
-    /// The segments of a list; −1 begins another line.
+    /// Adds the segments of a list; −1 starts another line.
     pub fn strip(&mut self, vertices: &[f64], tube: Option<bool>) {
         for line in vertices.split(|vertex| *vertex == -1.0) {
             for pair in line.windows(2) {
@@ -74,12 +74,12 @@ impl<'a> Segments<'a> {
         }
     }
 
-    /// An edge, which is a line unless it is the side of a face.
+    /// Adds an edge, which is a line unless it is the side of a face.
     pub fn edge(&mut self, vertices: [f64; 2], tube: Option<bool>) {
         self.add(vertices, tube, tube.is_some());
     }
 
-    /// A segment is a ribbon if both ends have normals and the file does not say otherwise.
+    /// Adds a segment: a ribbon if both ends have normals, unless the file declares otherwise.
     fn add(&mut self, vertices: [f64; 2], tube: Option<bool>, told: bool) {
         let cloud = &self.points.cloud;
         let [a, b] = vertices.map(|vertex| self.points.of_vertex(vertex));
@@ -93,7 +93,7 @@ impl<'a> Segments<'a> {
         self.all.push(Segment { ends: [a.min(b), a.max(b)], turned: b < a, tube, told });
     }
 
-    /// What becomes of the segments, beside the sides of `triangles`.
+    /// The lines of the segments, without the sides of `triangles`.
     pub fn finish(mut self, triangles: &[[u32; 3]]) -> (Cloud, Lines) {
         self.leave_out_sides(triangles);
         let mut found = Cloud::default();
@@ -106,7 +106,7 @@ impl<'a> Segments<'a> {
     }
 
     fn leave_out_sides(&mut self, triangles: &[[u32; 3]]) {
-        // As few as there are edges, while there may be many triangles.
+        // There are few edges, but there may be many triangles.
         let mut untold: Vec<_> =
             self.all.iter().filter(|edge| !edge.told).map(|edge| (edge.ends, false)).collect();
         if untold.is_empty() || triangles.is_empty() {

@@ -1,4 +1,4 @@
-//! The element `material`: how points shine, and their colours where they have none of their own.
+//! The element `material`: specular reflection, and colours for points without colours.
 
 use super::convert;
 use super::layout::is_colour;
@@ -11,18 +11,18 @@ use crate::settings::Lighting;
 pub(super) const ELEMENT: &str = "material";
 /// Names of the specular factor's properties.
 pub(super) const SPECULAR: [&str; 3] = ["specular_red", "specular_green", "specular_blue"];
-/// Name of the exponent's.
+/// Name of the exponent's property.
 pub(super) const POWER: &str = "specular_power";
 const DIFFUSE: [&str; 3] = ["diffuse_red", "diffuse_green", "diffuse_blue"];
 
-/// Where the records have what is understood.
+/// Supported properties of the records.
 pub(super) struct Columns {
     specular: Colour,
     diffuse: Colour,
     power: Option<usize>,
 }
 
-/// A colour: its channels, and what they are multiplied by.
+/// A colour: its channels and their factor.
 struct Colour {
     channels: Option<[(usize, Scalar); 3]>,
     factor: Option<usize>,
@@ -31,10 +31,10 @@ struct Colour {
 /// The materials of a file.
 #[derive(Default)]
 pub(super) struct Table {
-    /// How many there are in the file.
+    /// Number of records in the file.
     records: u64,
     materials: Option<Vec<Material>>,
-    /// Linear.
+    /// Diffuse colours, linear.
     colours: Option<Vec<[f32; 3]>>,
 }
 
@@ -58,7 +58,7 @@ impl Colour {
         self.channels.is_some() || self.factor.is_some()
     }
 
-    /// Linear light; what is no number, or below 0, is 0.
+    /// Linear light; NaN and negative values are 0.
     fn of_record(&self, numbers: &[f64]) -> [f32; 3] {
         let factor = self.factor.map_or(1.0, |index| numbers[index]) as f32;
         let linear = |(index, scalar): (usize, Scalar)| convert::linear(numbers[index], scalar);
@@ -68,7 +68,7 @@ impl Colour {
 }
 
 impl Columns {
-    /// Of an element, if it is that of materials and something of it is understood.
+    /// The properties of an element `material`, if any is supported.
     pub fn of(element: &Element) -> Option<Self> {
         let specular = Colour::of(element, SPECULAR, "specular_coeff");
         let diffuse = Colour::of(element, DIFFUSE, "diffuse_coeff");
@@ -77,7 +77,7 @@ impl Columns {
         (element.name == ELEMENT && element.count > 0 && any).then_some(found)
     }
 
-    /// Whether the property of this index is read.
+    /// Whether the property with this index is used.
     pub fn uses(&self, index: usize) -> bool {
         let of = |colour: &Colour| {
             let channels = colour.channels.iter().flatten().map(|(channel, _)| *channel);
@@ -86,7 +86,7 @@ impl Columns {
         of(&self.specular) || of(&self.diffuse) || self.power == Some(index)
     }
 
-    /// Adds a record to the table, as long as it has room.
+    /// Adds a record to the table if there is room.
     pub fn add(&self, numbers: &[f64], table: &mut Table) {
         table.records += 1;
         if table.records > Materials::MOST as u64 {
@@ -100,7 +100,7 @@ impl Columns {
         }
     }
 
-    /// An exponent of 0 is that of no highlight; one that is not finite is none.
+    /// An exponent of 0 means no highlight; one that is not finite is invalid.
     fn material(&self, numbers: &[f64]) -> Material {
         let power = self.power.map(|index| numbers[index]).filter(|power| power.is_finite());
         let shininess = power.map_or(Lighting::default().shininess, |power| power.min(1e6) as f32);
@@ -113,13 +113,12 @@ impl Columns {
 }
 
 impl Table {
-    /// How many of the file's are not in the table.
+    /// Number of materials that did not fit the table.
     pub fn dropped(&self) -> u64 {
         self.records.saturating_sub(Materials::MOST as u64)
     }
 
-    /// Gives the points of a cloud the materials of these numbers, and where it has no colours, theirs. A number that is none of the table's
-    /// is that of no material.
+    /// Sets the materials of a cloud's points by index, and their colours if the cloud has none. Invalid indices mean no material.
     pub fn give(self, cloud: &mut Cloud, mut numbers: Vec<u16>) {
         if numbers.len() != cloud.len() {
             return;

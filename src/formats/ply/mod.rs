@@ -1,6 +1,6 @@
-//! PLY files: any encoding, any order of elements and properties.
+//! PLY reader and writer: any encoding, any order of elements and properties.
 //!
-//! What is understood; everything else is skipped, and the [`Report`] says so:
+//! Supported properties and elements; all others are skipped and listed in the [`Report`]:
 //!
 //! | vertex property | type | becomes |
 //! |---|---|---|
@@ -35,11 +35,11 @@
 //! | `range_grid` | list `vertex_indices` of no vertex or one; `obj_info num_cols`, `num_rows` | triangles between neighbours, where the surface is not torn; [`View::Towards`](crate::geometry::View::Towards) +z |
 //! | `camera` | `view_px view_py view_pz` | [`View::From`](crate::geometry::View::From); all 0, which is what some programs write of any cloud, is not known |
 //!
-//! Triangles are kept only where some point has no normal or no radius, which they can tell, where there are lines, or where [`ReadOptions`] ask for them. Skipped elements are checked all the same: a
-//! file that ends too early is an error, bytes after its end are counted.
+//! Triangles are kept only if some point needs a normal or radius from them, if there are lines, or if [`ReadOptions`] request them.
+//! Skipped elements are validated, too: a truncated file is an error, and bytes after its end are counted.
 //!
-//! The header is parsed here rather than by ply-rs, whose parser stops the process on large counts, takes two properties of one name for
-//! one and refuses much that programs write; ply-rs [writes](write()).
+//! The header parser is the engine's own, because that of ply-rs aborts on large counts, merges duplicate properties, and rejects many
+//! files that programs write; ply-rs [writes](write()).
 
 mod arrays;
 mod ascii;
@@ -81,7 +81,7 @@ use points::Points;
 use std::path::Path;
 use std::sync::Arc;
 
-/// PLY files.
+/// The PLY format.
 pub(super) struct Ply;
 
 impl Reader for Ply {
@@ -111,7 +111,7 @@ impl Reader for Ply {
 }
 
 fn parse_header(Input { name, source, .. }: &Input<'_>) -> Parsed<Header> {
-    // One byte more than allowed, so that a header which is too long shows.
+    // One byte more than the limit, to detect a longer header.
     let beginning = source.part(0, source.size().min(header::LIMIT as u64 + 1))?;
     if header::is_ply(&beginning) {
         header::parse(&beginning)
@@ -134,7 +134,7 @@ fn parse_records(
         layout.find_materials(&header.elements[vertex]);
     }
     let texture = find_texture(&header, vertex, &mut layout, options, *folder);
-    // Text keeps its digits, whatever type the header names.
+    // Text keeps all digits, whatever type the header declares.
     layout.narrow &= header.encoding != Encoding::Ascii;
     let meter = Meter::new(progress, source.size());
     let triangles = options.triangles;
@@ -152,7 +152,7 @@ fn parse_records(
     Ok(Loaded { cloud, report })
 }
 
-/// The texture of a file whose vertices have coordinates, if it is known; why it is not.
+/// The texture, if there are vertex coordinates for it; an error tells why it cannot be used.
 fn find_texture(
     header: &Header,
     vertex: usize,
@@ -170,7 +170,7 @@ fn find_texture(
     }
     match (&options.texture, named) {
         (None, Some((name, folder))) => {
-            // Whoever wrote the file names it: a device or a pipe may have no end.
+            // The name comes from the file: a device or pipe may have no end.
             let path = folder.join(name);
             if path.exists() && !path.is_file() {
                 return Err(format!("{}: no regular file", path.display()).into());
@@ -207,7 +207,7 @@ fn report(header: Header, vertex: usize, layout: &Layout, contents: &Contents) -
     }
 }
 
-/// Names of a file as they may stand in a message: the first few, and how many more there are.
+/// Quoted names from a file for a message: the first few, and the number of the others.
 fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
     const MOST: usize = 8;
     let mut names = names.map(|name| quoted(name.as_bytes()));
@@ -219,7 +219,7 @@ fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
     text
 }
 
-/// Bytes of a file as they may stand in a message: quoted, on one line, not too long.
+/// Bytes of a file for a message: quoted, on one line, truncated.
 pub(super) fn quoted(bytes: &[u8]) -> String {
     const LONGEST: usize = 40;
     let mut text = bytes[..bytes.len().min(LONGEST)].escape_ascii().to_string();

@@ -13,7 +13,7 @@ use crate::formats::declared::{Element, Kind};
 use crate::geometry::{Cloud, View};
 use glam::{DVec3, Vec3};
 
-/// What elements other than the vertices tell of them.
+/// Data collected from elements other than the vertices.
 pub(super) struct Others<'a> {
     /// Columns and rows of a range grid.
     grid: [Option<u64>; 2],
@@ -25,7 +25,7 @@ pub(super) struct Others<'a> {
     view: View,
 }
 
-/// What there was.
+/// The collected data.
 pub(super) struct OtherElements {
     /// Triangles, ribbons and tubes between the points.
     pub cloud: Cloud,
@@ -35,14 +35,14 @@ pub(super) struct OtherElements {
 }
 
 impl<'a> Others<'a> {
-    /// Triangles are looked at if they are asked for.
+    /// An empty collection; triangles are kept with `triangles`.
     pub fn new(grid: [Option<u64>; 2], meter: &'a Meter<'a>, points: &'a Points, triangles: bool) -> Self {
         let (collector, segments) = (Collector::new(points, triangles), Segments::new(points));
         let materials = Table::default();
         Self { grid, meter, points, collector, segments, materials, view: View::Unknown }
     }
 
-    /// Faces, lines, materials, and from where the points were seen.
+    /// Builds faces, lines, materials and the viewpoint.
     pub fn finish(self) -> OtherElements {
         let Collector { triangles, faces, .. } = self.collector;
         let (found, lines) = self.segments.finish(&triangles);
@@ -50,7 +50,7 @@ impl<'a> Others<'a> {
         OtherElements { cloud, faces, lines, materials: self.materials }
     }
 
-    /// Reads an element, understood or not; says whether it was.
+    /// Reads an element, supported or not; returns whether it is.
     pub fn read<R: Reader>(&mut self, reader: &mut R, element: &Element) -> Parsed<bool> {
         let list = ["vertex_indices", "vertex_index"].iter().find_map(|name| {
             let is = |kind| matches!(kind, Kind::List { .. });
@@ -127,7 +127,7 @@ impl<'a> Others<'a> {
         Ok(true)
     }
 
-    /// Cells with at most one vertex each. A grid whose cells are not as many as its columns and rows is left alone.
+    /// Reads cells with at most one vertex each. A grid with another number of cells than columns × rows is ignored.
     fn range_grid<R: Reader>(&mut self, reader: &mut R, element: &Element, list: usize) -> Parsed<bool> {
         let mut cells = Vec::new();
         self.lists(reader, element, list, |others, corners| {
@@ -146,7 +146,7 @@ impl<'a> Others<'a> {
         Ok(true)
     }
 
-    /// Where the camera stood, if there was one camera. Exactly 0 is what the Point Cloud Library writes unless it is told otherwise.
+    /// Reads the viewpoint, if there is one camera. The Point Cloud Library writes exactly 0 by default.
     fn camera<R: Reader>(&mut self, reader: &mut R, element: &Element) -> Parsed<bool> {
         let eye = ["view_px", "view_py", "view_pz"].map(|name| lines::scalar(element, name));
         let wanted: Vec<bool> =

@@ -1,4 +1,4 @@
-//! From the arrays to a cloud: what cannot be drawn is left out and counted, positions are made relative in float64.
+//! From arrays to a cloud: removes and counts invalid points, and makes positions relative in float64.
 
 use super::arrays::Arrays;
 use super::convert::Tally;
@@ -12,36 +12,36 @@ use rayon::prelude::*;
 /// files keep their coordinates bit by bit, and the error of a position is at most one f32 ulp of the extent.
 const FAR: f64 = 2.0;
 
-/// Extent and middle are those of the points between these percentiles of each coordinate: a single stray point, such as a scanner's 0 0 0
-/// where nothing came back, must not cost all others their precision.
+/// Percentiles of each coordinate that determine extent and middle, so that a single stray point, such as a scanner's 0 0 0 for a missing
+/// return, does not cost all others their precision.
 const PERCENTILES: [f64; 2] = [0.01, 0.99];
 
-/// So many points are a scan.
+/// Minimum number of points of a scan.
 const MANY: usize = 100;
-/// Most points that the percentiles are taken of.
+/// Maximum number of points for the percentiles.
 const SAMPLE: usize = 1 << 12;
 
-/// A file's points, before its faces are looked at.
+/// The points of a file, before faces are read.
 pub(super) struct Points {
     pub cloud: Cloud,
     pub dropped: Dropped,
     /// Number of vertices in the file.
     pub count: u32,
-    /// Which point each vertex has become, if some were dropped.
+    /// Point index of each vertex, if some were dropped.
     map: Option<Vec<u32>>,
-    /// Whether some points lack normals or radii, which faces can tell.
+    /// Whether some points need normals or radii from faces.
     pub lacking: bool,
-    /// Clip lines that are none.
+    /// Number of invalid clip lines.
     pub clip_lines: u64,
-    /// Normalization weights that are none.
+    /// Number of invalid normalization weights.
     pub weights: u64,
-    /// Coordinates in a texture, if the file has some.
+    /// Texture coordinates, if any.
     pub coordinates: Vec<Vec2>,
-    /// Numbers of materials, if the file has some.
+    /// Material indices, if any.
     pub materials: Vec<u16>,
 }
 
-/// What stands in the map for a vertex that was dropped.
+/// Map entry of a dropped vertex.
 const NOWHERE: u32 = u32::MAX;
 
 impl Points {
@@ -60,9 +60,9 @@ impl Points {
         Ok(Self { cloud, dropped, count, map, lacking, clip_lines, weights, coordinates, materials })
     }
 
-    /// The point that a vertex has become; `None` if there is no such vertex, or if it was dropped.
+    /// The point of a vertex; `None` if the vertex does not exist or was dropped.
     pub fn of_vertex(&self, vertex: f64) -> Option<u32> {
-        // Whole numbers alone survive the way there and back.
+        // Only whole numbers survive the conversion and back.
         let index = vertex as u32;
         if f64::from(index) != vertex || index >= self.count {
             return None;
@@ -86,7 +86,7 @@ fn nothing(count: u32, dropped: Dropped) -> Cause {
     }
 }
 
-/// Leaves out what has no position; gives the index that each vertex has then.
+/// Removes points without a position; returns the new index of each vertex.
 fn leave_out(arrays: &mut Arrays) -> Vec<u32> {
     let kept: Vec<bool> = if arrays.wide.is_empty() {
         arrays.narrow.iter().map(|position| position.is_finite()).collect()
@@ -109,7 +109,7 @@ fn cloud(arrays: Arrays) -> Cloud {
         (_, false) => Some(Colours::Linear(arrays.linear)),
         _ => None,
     };
-    // Arrays that the file has, but nothing but zeros in them, are none.
+    // Arrays of zeros only are treated as absent.
     let normals = Some(arrays.normals).filter(|normals| normals.iter().any(|n| *n != Vec3::ZERO));
     let radii = Some(arrays.radii).filter(|radii| radii.iter().any(|radius| *radius > 0.0));
     let tangents = Some(arrays.tangents).filter(|tangents| tangents.iter().any(|t| *t != Vec3::ZERO));
@@ -134,7 +134,7 @@ fn cloud(arrays: Arrays) -> Cloud {
     }
 }
 
-/// Corners whose weights are all 0 are none.
+/// Corner weights that are all 0 are absent.
 fn weights(weights: &[f32], corners: &[[f32; 4]]) -> Option<Weights> {
     let corners_of = |i: usize| corners.get(i).copied().filter(|corners| *corners != [0.0; 4]);
     let each = weights.iter().enumerate().map(|(i, &weight)| (weight, corners_of(i)));
@@ -151,8 +151,8 @@ fn positions(mut narrow: Vec<Vec3>, wide: &[DVec3], origin: DVec3) -> Vec<Vec3> 
     narrow
 }
 
-/// What positions are made relative to. A round number: the power of two next above the extent divides it, so that coordinates which have
-/// been moved by whole metres, say, come back as they were.
+/// Origin of the positions. A round number: it is a multiple of the power of two above the extent, so that coordinates translated by whole
+/// metres, say, are unchanged.
 fn origin(arrays: &Arrays) -> DVec3 {
     let [min, max] = usual_box(arrays);
     let largest = min.abs().max(max.abs()).max_element();
@@ -165,14 +165,14 @@ fn origin(arrays: &Arrays) -> DVec3 {
     if step.is_normal() { (middle / step).round() * step } else { middle }
 }
 
-/// The box between the percentiles; of few points, that of all of them.
+/// The box between the percentiles; for few points, the box of all.
 fn usual_box(arrays: &Arrays) -> [DVec3; 2] {
     let mut points: Vec<DVec3> = if arrays.wide.is_empty() {
         sample(&arrays.narrow).map(|position| position.as_dvec3()).collect()
     } else {
         sample(&arrays.wide).copied().collect()
     };
-    // Scanners write 0 0 0 for many a ray that came back from nothing. Of few points each counts.
+    // Scanners write 0 0 0 for missing returns. Of few points each counts.
     if points.iter().filter(|point| **point != DVec3::ZERO).count() >= MANY {
         points.retain(|point| *point != DVec3::ZERO);
     }

@@ -1,45 +1,45 @@
-//! Records in order, whatever the encoding they came in.
+//! Sequential reader of records, independent of the encoding.
 
 use super::meter::Meter;
 use super::{Parsed, quoted};
 use crate::error::Cause;
 use crate::formats::declared::{Element, Kind, Scalar};
 
-/// A place among the numbers of a file. A clone is a bookmark.
+/// A position in the numbers of a file. A clone is a bookmark.
 pub(super) trait Reader: Clone {
-    /// Bytes left.
+    /// Remaining bytes.
     fn left(&self) -> usize;
 
     /// Least size of a record, bytes.
     fn least_size(element: &Element) -> u64;
 
-    /// The next number.
+    /// Reads a number.
     fn number(&mut self, scalar: Scalar) -> Parsed<f64>;
 
-    /// Goes past as many numbers, which must exist.
+    /// Skips `count` numbers, which must exist.
     fn skip(&mut self, scalar: Scalar, count: u64) -> Parsed<()>;
 
-    /// The length of a list, whose items are sure to fit into the bytes left.
+    /// Reads the length of a list. The result is an error if the items cannot fit the remaining bytes.
     fn length(&mut self, length: Scalar, item: Scalar) -> Parsed<u64>;
 
-    /// Goes past all records of an element without lists at once, if the encoding has a way.
+    /// Skips all records of an element without lists at once, if the encoding supports it.
     fn leap(&mut self, _: &Element) -> bool {
         false
     }
 
-    /// Refuses records that cannot be what the element declares, as far as its first one tells.
+    /// Returns an error if the first records do not match the element's declaration.
     fn check(&self, _: &Element) -> Parsed<()> {
         Ok(())
     }
 
-    /// Bytes left that mean something.
+    /// Remaining bytes other than white space.
     fn trailing(&self) -> usize;
 }
 
-/// How many records are read between two reports of the progress.
+/// Number of records between progress reports.
 const REPORT: u64 = 1 << 14;
 
-/// Reads all records of an element and hands over each one's wanted numbers, by property, and the items of the wanted list.
+/// Reads all records of an element. Calls `each` with the wanted numbers, by property, and the items of the wanted list.
 pub(super) fn walk<R: Reader>(
     reader: &mut R,
     element: &Element,
@@ -67,7 +67,7 @@ pub(super) fn walk<R: Reader>(
     meter.add((left - reader.left()) as u64)
 }
 
-/// Reads one record; an error comes with the property's index.
+/// Reads one record; an error has the property's index.
 fn one<R: Reader>(
     reader: &mut R,
     element: &Element,
@@ -104,7 +104,7 @@ fn at(element: &Element, record: u64, index: usize, cause: &Cause) -> Cause {
         .into()
 }
 
-/// Refuses a count that the bytes left cannot hold, before anything is allocated for it.
+/// Returns an error for a count that the remaining bytes cannot hold, before any allocation.
 pub(super) fn refuse_lie(element: &Element, least_size: u64, left: usize) -> Parsed<()> {
     if u128::from(element.count) * u128::from(least_size) <= left as u128 {
         return Ok(());

@@ -1,4 +1,4 @@
-//! Records, as ply-rs asks for them: by name and type.
+//! Records for ply-rs, which queries properties by name and type.
 
 use super::layout::{CLIP_CONCAVE, CLIP_LINES, CORNER_NAMES, MATERIAL_NAME, TANGENT_NAMES, WEIGHT_NAME};
 use super::lines::TUBE;
@@ -80,7 +80,7 @@ impl Row {
             position: primitives.origin + primitives.positions[i].as_dvec3(),
             floats: floats([n, Vec3::new(r, g, b), Vec3::ZERO, Vec3::ZERO, t], primitives.radii[i]),
             srgb,
-            // Of no disc, but 0 would be counted as a weight that is none.
+            // Unused, but 0 would be counted as an invalid weight.
             weight: 1.0,
             material: contents.material(contents.parts.surfels.len() + i),
             ..Default::default()
@@ -109,7 +109,7 @@ fn floats([n, c, u, v, t]: [Vec3; 5], radius: f32) -> [f32; FLOATS.len()] {
     [n.x, n.y, n.z, radius, c.x, c.y, c.z, u.x, u.y, u.z, v.x, v.y, v.z, t.x, t.y, t.z]
 }
 
-/// A colour as linear light and as codes, of which the header has one. It is exact in its own form.
+/// A colour as linear light and as codes, of which the header declares one. It is exact in its own encoding.
 fn colour(own: Option<&Colours>, others: Option<&Colours>, i: usize) -> ([f32; 3], [u8; 3]) {
     match own {
         Some(Colours::Linear(colours)) => (colours[i], [0; 3]),
@@ -200,7 +200,7 @@ impl PropertyAccess for Line {
     }
 }
 
-/// A triangle, in both types that its corners can be written in.
+/// A triangle, in both types that its corners may have.
 pub(super) struct Triangle {
     corners: [u32; 3],
     signed: [i32; 3],
@@ -208,7 +208,7 @@ pub(super) struct Triangle {
 
 impl Triangle {
     pub fn of(corners: [u32; 3]) -> Self {
-        // Written only where all fit.
+        // The signed type is written only if all indices fit.
         Self { corners, signed: corners.map(|i| i32::try_from(i).unwrap_or_default()) }
     }
 }

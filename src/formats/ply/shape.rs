@@ -1,12 +1,12 @@
-//! Normals, radii and elliptical shapes of discs.
+//! Normals, radii and ellipses of discs.
 
 use crate::geometry::Ellipse;
 use glam::{DQuat, DVec3, Vec3};
 
-/// Standard deviations that the disc of a 3D Gaussian covers: the cut-off at which it is drawn, unless another is asked for.
+/// Standard deviations that the disc of a 3D Gaussian covers: the default cut-off.
 const CUTOFF: f64 = 2.0;
 
-/// Least ratio of the shorter axis to the longer.
+/// Least aspect.
 const LEAST_ASPECT: f64 = 1e-4;
 
 /// A disc; a normal or radius of 0 is missing.
@@ -16,33 +16,33 @@ pub(super) struct Disc {
     pub radius: f32,
 }
 
-/// How far the squared length of a unit vector that f32 has rounded may be from 1.
+/// Tolerance of the squared length of a unit vector that is rounded to f32.
 const ROUNDED: f64 = 1e-6;
 
-/// The unit vector along `n`; 0 if there is no direction.
+/// The unit vector along `n`; 0 without a direction.
 pub(super) fn unit(n: DVec3) -> Vec3 {
     let square = n.length_squared();
-    // What has been written comes back bit by bit.
+    // Written unit vectors are read back bit by bit.
     if (square - 1.0).abs() < ROUNDED {
         return n.as_vec3();
     }
     if (1e-200..1e200).contains(&square) {
         return (n * square.sqrt().recip()).as_vec3();
     }
-    // By the largest component first: the squares of very long and very short normals leave float64's range.
+    // Scaled by the largest component first: the squares of very long and very short normals exceed float64's range.
     let scaled = n / n.abs().max_element();
     if scaled.is_finite() { scaled.normalize().as_vec3() } else { Vec3::ZERO }
 }
 
-/// A length that can be one; 0 otherwise.
+/// A valid length; otherwise 0.
 pub(super) fn length(value: f64) -> f32 {
     let length = value as f32;
     if length.is_finite() && length > 0.0 { length } else { 0.0 }
 }
 
-/// A disc with conjugate semi-axes `u` and `v`: its rim is `u cos φ + v sin φ`. What `given` has stays.
+/// The disc with conjugate semi-axes `u` and `v`: its rim is `u cos φ + v sin φ`. Attributes in `given` take precedence.
 pub(super) fn of_axes(given: Disc, u: DVec3, v: DVec3) -> (Disc, Ellipse) {
-    // The principal axes, which need not be the given ones.
+    // The principal axes, which may differ from the given ones.
     let angle = 0.5 * (2.0 * u.dot(v)).atan2(u.length_squared() - v.length_squared());
     let (sin, cos) = angle.sin_cos();
     let (major, minor) = (u * cos + v * sin, v * cos - u * sin);
@@ -52,8 +52,8 @@ pub(super) fn of_axes(given: Disc, u: DVec3, v: DVec3) -> (Disc, Ellipse) {
     disc(normal, radius, major, aspect)
 }
 
-/// The flat side of a 3D Gaussian with the logarithms of its standard deviations and its rotation, real part first. A normal of 0 is
-/// missing; any other tells the side.
+/// The flat side of a 3D Gaussian with the logarithms of its standard deviations and its rotation, real part first. `given` is the normal
+/// or 0; it determines the side.
 pub(super) fn of_gaussian(given: Vec3, logs: [f64; 3], [w, x, y, z]: [f64; 4]) -> (Disc, Ellipse) {
     let mut order = [0, 1, 2];
     order.sort_by(|&a, &b| logs[b].total_cmp(&logs[a]));

@@ -1,4 +1,4 @@
-//! The vertices: records of one size are read in pieces by all threads, others in order by one.
+//! Vertices: fixed-size records are read in pieces by all threads, others sequentially.
 
 use super::Parsed;
 use super::arrays::{Arrays, Slices};
@@ -12,25 +12,25 @@ use crate::formats::declared::{Element, Kind, Scalar};
 use crate::formats::source::Source;
 use rayon::prelude::*;
 
-/// Size of the pieces that a file is read in, bytes: they stay in the cache until they are decoded.
+/// Size of the pieces, bytes: they stay in the cache until they are decoded.
 const PIECE: usize = 256 << 10;
 
-/// Where binary records of one size lie.
+/// Location of binary fixed-size records.
 pub(super) struct Records<'a> {
     pub source: &'a Source<'a>,
-    /// Of the first record, bytes.
+    /// Offset of the first record, bytes.
     pub start: u64,
     pub big_endian: bool,
 }
 
-/// Consecutive records and where their points go.
+/// Consecutive records with the destination of their points.
 struct Piece<'a> {
     start: u64,
     length: usize,
     out: Slices<'a>,
 }
 
-/// Reads binary records without lists, whose number has been checked.
+/// Reads binary records without lists, whose count is validated.
 pub(super) fn read(
     records: &Records,
     vertex: &Element,
@@ -73,7 +73,7 @@ fn pieces(arrays: &mut Arrays, count: usize, stride: usize, start: u64) -> Vec<P
     (0..count).step_by(rows).map(piece).collect()
 }
 
-/// Each column that is filled, with its offset in a record and its type.
+/// Each filled column with its offset in a record and its type.
 fn fields(vertex: &Element, layout: &Layout) -> Vec<(usize, usize, Scalar)> {
     let mut offset = 0;
     let mut all = Vec::new();
@@ -90,7 +90,7 @@ fn fields(vertex: &Element, layout: &Layout) -> Vec<(usize, usize, Scalar)> {
     layout.columns.iter().enumerate().filter_map(field).collect()
 }
 
-/// Reads records in order: text, or binary ones that have lists. The number of records is checked first.
+/// Reads records sequentially: text, or binary with lists. Validates the count first.
 pub(super) fn read_in_order<R: Reader>(
     reader: &mut R,
     vertex: &Element,

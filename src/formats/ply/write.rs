@@ -1,4 +1,4 @@
-//! Writing models, through ply-rs: its writer is sound for binary records, as long as the header's counts and the lists' lengths are ours.
+//! PLY writer, through ply-rs: its writer is correct for binary records if the header's counts and the lists' lengths are.
 
 use super::layout::{CLIP_CONCAVE, CLIP_LINES, CORNER_NAMES, MATERIAL_NAME, TANGENT_NAMES, WEIGHT_NAME};
 use super::lines::TUBE;
@@ -15,23 +15,23 @@ use ply_rs::writer::Writer;
 use std::io::{self, Write};
 use std::path::Path;
 
-/// Writes surfels, lines and triangles as binary little-endian PLY. Of a vertex: x y z as float, or as double if they have an origin; nx ny nz
-/// and radius as float; if there are ellipses, their semi-axes ux uy uz vx vy vz as float; if some surfels may have no side, two_sided as
-/// uchar; if there are clips, their lines clip0x clip0y clip0z clip0d clip1x clip1y clip1z clip1d as float, all 0 where there is none, and
-/// clip_concave as uchar; if there are normalization weights, surfel_weight as float, and if there are some at corners, surfel_weight0 to
-/// surfel_weight3 as float, all 0 where there are none; if there are tubes, their tangents tx ty tz as float, with which nx ny nz are 0;
-/// red green blue as uchar if sRGB-encoded, as float if linear; of a texture, its colours at the vertices;
-/// if there are materials, material_index as int, −1 where there is none, and an element material with specular_red specular_green
-/// specular_blue and specular_power as float, those of the surfels first.
+/// Writes surfels, lines and triangles as binary little-endian PLY.
 ///
-/// The surfels come first, then the vertices that lines and triangles use, in their order. If there are lines, an element edge has
-/// vertex1 and vertex2 and, as uchar, tube: ribbons first, then tubes. If there are triangles, an element face has the list
-/// vertex_indices. Where only surfels or only vertices have colours, the others' are the default albedo. The file is replaced as a contents
-/// or, after an error, not at all.
+/// Vertex properties: x y z as float, or as double with an origin; nx ny nz and radius as float; for ellipses, their semi-axes ux uy uz vx
+/// vy vz as float; for two-sided surfels, two_sided as uchar; for clips, their lines clip0x clip0y clip0z clip0d clip1x clip1y clip1z
+/// clip1d as float, all 0 without a line, and clip_concave as uchar; for normalization weights, surfel_weight as float, and for corner
+/// weights surfel_weight0 to surfel_weight3 as float, all 0 without; for tubes, their tangents tx ty tz as float, with nx ny nz 0; red
+/// green blue as uchar if sRGB-encoded, as float if linear, of a texture its colours at the vertices; for materials, material_index as int,
+/// −1 without, and an element material with specular_red specular_green specular_blue and specular_power as float, those of the surfels
+/// first.
+///
+/// The surfels come first, then the vertices that lines and triangles use, in order. For lines, an element edge has vertex1 and vertex2
+/// and, as uchar, tube: ribbons first, then tubes. For triangles, an element face has the list vertex_indices. If only surfels or only
+/// vertices have colours, the others get the default albedo. The file is replaced completely or, after an error, not at all.
 ///
 /// # Errors
-/// [`Error::Usage`] if the arrays differ in length, a line or triangle has a vertex that does not exist, or there are more than 2³² − 1
-/// vertices; [`Error::Io`] if the file cannot be written.
+/// [`Error::Usage`] if the arrays differ in length, an index of a vertex is invalid, or there are more than 2³² − 1 vertices; [`Error::Io`]
+/// if the file cannot be written.
 pub fn write<'a>(path: &Path, parts: impl Into<Parts<'a>>) -> Result<()> {
     let parts = parts.into();
     parts.check()?;
@@ -45,19 +45,19 @@ pub fn write<'a>(path: &Path, parts: impl Into<Parts<'a>>) -> Result<()> {
     atomic::write(path, |mut out| records(&mut out, &contents))
 }
 
-/// What is written.
+/// The contents of a file.
 pub(super) struct FileContents<'a> {
     pub parts: Parts<'a>,
-    /// The vertices that something uses.
+    /// The used vertices of lines and triangles.
     pub vertices: Vec<u32>,
-    /// Which vertex of the file each has become.
+    /// Index of each vertex in the file.
     place: Vec<u32>,
-    /// Whether each is a tube's, a ribbon's or triangle's, or both.
+    /// Whether each is a tube's vertex, a ribbon's or triangle's, or both.
     pub tangent: Vec<bool>,
     pub normal: Vec<bool>,
-    /// Colours of surfels and of vertices that have a texture.
+    /// Colours of surfels and vertices from a texture.
     baked: [Option<Colours>; 2],
-    /// Materials of surfels, and then of all vertices.
+    /// Materials of surfels, then of all vertices.
     materials: Option<Materials>,
 }
 
@@ -73,7 +73,7 @@ impl<'a> FileContents<'a> {
         let vertices: Vec<u32> = (0..primitives.len() as u32).filter(used).collect();
         let mut place = vec![0; primitives.len()];
         let first = parts.surfels.len();
-        // Fits, as that many are refused.
+        // Fits: a larger number is an error.
         vertices.iter().zip(first as u32..).for_each(|(&i, to)| place[i as usize] = to);
         let of_surfels = parts.surfels.texture.as_ref();
         let of_surfels = of_surfels.map(|t| t.baked(&parts.surfels.positions, Some(&parts.surfels.radii)));
@@ -96,12 +96,12 @@ impl<'a> FileContents<'a> {
         corners.map(|i| self.place[i as usize])
     }
 
-    /// Type of a vertex's number: most programs write and expect int.
+    /// Type of vertex indices: most programs write and expect int.
     fn index(&self) -> ScalarType {
         if i32::try_from(self.len()).is_ok() { ScalarType::Int } else { ScalarType::UInt }
     }
 
-    /// Number of the material of a surfel, or behind these of a vertex of lines and triangles; −1 if it has none.
+    /// Material index of a surfel, or after these of a vertex of lines and triangles; −1 without a material.
     pub fn material(&self, point: usize) -> i32 {
         let number = self.materials.as_ref().map(|materials| materials.of[point]);
         number.filter(|&number| number != Materials::NONE).map_or(-1, i32::from)
@@ -126,7 +126,7 @@ fn records(out: &mut impl Write, contents: &FileContents) -> io::Result<()> {
     let there = [&vertex].into_iter().chain(others);
     there.for_each(|element| header.elements.add(element.clone()));
     Writer::<Row>::new().write_header(out, &header)?;
-    // Record by record: a payload of its own would hold everything twice.
+    // Record by record: a payload would hold everything twice.
     let surfels = (0..contents.parts.surfels.len()).map(|i| Row::surfel(contents, i));
     let vertices = contents.vertices.iter().map(|&i| Row::vertex(contents, primitives, i as usize));
     each(out, &vertex, surfels.chain(vertices))?;
@@ -135,7 +135,7 @@ fn records(out: &mut impl Write, contents: &FileContents) -> io::Result<()> {
         &edge,
         primitives.segments().map(|(ends, tube)| Line { ends: contents.file_indices(&ends), tube }),
     )?;
-    // ply-rs takes the number of records for the length of each one's list.
+    // ply-rs writes the count of the element as the length of each list.
     let face = ElementDef { count: 3, ..face };
     each(
         out,
