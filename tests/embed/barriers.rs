@@ -1,9 +1,9 @@
-//! What frames wait for: never for all that the host has submitted before.
+//! Barriers of frames: none waits for all earlier work of the host.
 
+use crate::fixture::{SIZE, assert_silent, camera, open, surfels, upload};
 use crate::host::Host;
 use crate::host::frame::{Frame, Kind, Way};
 use crate::live::settings;
-use crate::stand::{SIZE, assert_silent, camera, open, surfels, upload};
 use crate::{FLOATS, ONE};
 use ash::vk;
 use std::ffi::{CStr, c_void};
@@ -13,9 +13,9 @@ use surfel::settings::methods::Method;
 use surfel::vk::Device;
 use surfel::{Precision, Rasterizer};
 
-/// Stages that the barriers of the one host that listens wait for.
+/// Source stages of the barriers on the host's device.
 static WAITED_FOR: Mutex<Vec<vk::PipelineStageFlags>> = Mutex::new(Vec::new());
-/// What its device records them with.
+/// The device's barrier function.
 static RECORDING: Mutex<Option<vk::PFN_vkCmdPipelineBarrier>> = Mutex::new(None);
 
 unsafe extern "system" fn barrier(
@@ -32,13 +32,13 @@ unsafe extern "system" fn barrier(
 ) {
     WAITED_FOR.lock().unwrap().push(source);
     let record = RECORDING.lock().unwrap().unwrap();
-    // SAFETY: what is called was asked of the device.
+    // SAFETY: the function is the device's.
     unsafe {
         record(cmd, source, target, dependencies, memories, memory, buffers, buffer, images, image);
     }
 }
 
-/// The host's device, lent with a function that listens.
+/// The host's device with a recording barrier function.
 fn recorded_device(host: &Host) -> Arc<Device> {
     *RECORDING.lock().unwrap() = Some(host.device.fp_v1_0().cmd_pipeline_barrier);
     let replace = |name: &CStr| (name == c"vkCmdPipelineBarrier").then_some(barrier as *const c_void);
@@ -83,7 +83,7 @@ fn no_barrier_waits_for_everything() {
                     "{} {rasterizer:?}, frame {number}: {waited_for:?}",
                     method.name
                 );
-                // What is computed does not wait for what the host has drawn to its attachments.
+                // Compute passes do not wait for the host's attachment writes.
                 let attachments = vk::PipelineStageFlags::COLOR_ATTACHMENT_OUTPUT;
                 let drawn = waited_for.iter().any(|stages| stages.intersects(attachments));
                 assert!(!drawn || rasterizer == Rasterizer::Draw, "{}: {waited_for:?}", method.name);

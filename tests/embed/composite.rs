@@ -1,12 +1,12 @@
-//! Surfels in a host: the pictures are those of the engine's own frames, what is in front hides what is behind, and the host's state is its own.
+//! Composites: the pictures equal the engine's, occlusion is correct, and the host's state is its own.
 
+use crate::fixture::{Fixture, assert_silent, open, upload};
 use crate::host::Host;
 use crate::host::frame::{Frame, IDS, Kind, Way};
 use crate::host::memory::Counted;
 use crate::host::mesh::Mesh;
 use crate::host::scene::parallelogram;
 use crate::host::under_way::UnderWay;
-use crate::stand::{Stand, assert_silent, open, upload};
 use crate::{FLOATS, FOUR, ONE};
 use ash::vk;
 use glam::{DMat4, DVec3};
@@ -19,15 +19,15 @@ use surfel::settings::splatting::Visibility;
 use surfel::vk::{Device, DeviceLimits, DeviceOptions};
 use surfel::{Error, Outputs, Picture, Precision, Rasterizer, RenderOptions, Scene, Settings};
 
-use crate::stand::{SIZE, camera, meets, rising, sphere, surfels, viewport};
+use crate::fixture::{SIZE, camera, meets, rising, sphere, surfels, viewport};
 
-/// Hosts have threads.
+/// A renderer is `Send`.
 #[allow(dead_code, reason = "it compiles, or not")]
 fn a_renderer_goes_to_another_thread(renderer: Renderer) -> impl Send {
     renderer
 }
 
-/// What the engine's own frames show: colours, and distances, of what is seen.
+/// The engine's frame: colours, and distances.
 fn alone(settings: &Settings, camera: &Camera, rasterizer: Option<Rasterizer>) -> Picture {
     let device = Device::open(&DeviceOptions::default()).unwrap();
     let outputs = Outputs { normal: false, depth: true, id: false };
@@ -63,10 +63,10 @@ fn an_embedded_picture_is_the_engines_own_bit_for_bit() {
         let depth = own.depth.as_ref().unwrap();
         assert!(own.colour.iter().filter(|colour| colour[3] == 1.0).count() > 5_000);
         for kind in kinds() {
-            let mut stand = Stand::new(&host, kind, SIZE, rasterizer, &surfels());
+            let mut fixture = Fixture::new(&host, kind, SIZE, rasterizer, &surfels());
             let view = View::whole(camera(), SIZE);
-            let (colours, depths) = stand.render(&host, &view, &settings, None);
-            // Splats that are blended by atomic sums are added in whatever order.
+            let (colours, depths) = fixture.render(&host, &view, &settings, None);
+            // Atomic sums have an arbitrary order.
             let blended = rasterizer == Some(Rasterizer::Compute)
                 && settings.splatting.visibility != Visibility::Nearest;
             let most = if blended { 2e-5 } else { 0.0 };
@@ -76,7 +76,7 @@ fn an_embedded_picture_is_the_engines_own_bit_for_bit() {
                 colours.len() == own.colour.len() && colours.iter().zip(&own.colour).all(same),
                 "{kind:?} {rasterizer:?}"
             );
-            // The near plane is at 0.1, and the depth is that over the distance.
+            // The near plane is at 0.1, and the depth is 0.1 over the distance.
             for (found, distance) in depths.iter().zip(depth) {
                 let exact = if *distance == 0.0 { 0.0 } else { 0.1 / f64::from(*distance) };
                 assert!(
@@ -84,7 +84,7 @@ fn an_embedded_picture_is_the_engines_own_bit_for_bit() {
                     "{found} {exact}"
                 );
             }
-            stand.destroy(&host);
+            fixture.destroy(&host);
         }
     }
     assert_silent(&host);
@@ -93,9 +93,9 @@ fn an_embedded_picture_is_the_engines_own_bit_for_bit() {
 #[test]
 fn pictures_and_normals_are_where_the_host_wants_them() {
     let Some(host) = open(|all| all) else { return };
-    // Seen alone, splats have one picture whatever their order.
+    // Without blending, splats have one picture whatever their order.
     let settings = Settings { background: None, ..Method::named("sprites-unfiltered").unwrap().settings() };
-    // Within a larger target.
+    // In a larger target.
     let larger = [SIZE[0] + 37, SIZE[1] + 11];
     let at = vk::Viewport { x: 30.0, y: 8.0, ..viewport(SIZE) };
     let device = Device::open(&DeviceOptions::default()).unwrap();
@@ -107,9 +107,9 @@ fn pictures_and_normals_are_where_the_host_wants_them() {
             RenderOptions { size: SIZE, outputs, rasterizer: Some(rasterizer), ..Default::default() };
         let own = crate::support::gpu::render(&device, &surfels(), &camera(), &settings, options);
         let kind = Kind { way, colour: FLOATS, normals: true, samples: ONE, reversed: true };
-        let mut stand = Stand::new(&host, kind, larger, Some(rasterizer), &surfels());
-        let (colours, _) = stand.render(&host, &View { camera: camera(), viewport: at }, &settings, None);
-        let normals = stand.frame.read_normals(&host).unwrap();
+        let mut fixture = Fixture::new(&host, kind, larger, Some(rasterizer), &surfels());
+        let (colours, _) = fixture.render(&host, &View { camera: camera(), viewport: at }, &settings, None);
+        let normals = fixture.frame.read_normals(&host).unwrap();
         let (normal, mut seen) = (own.normal.unwrap(), 0);
         for (i, colour) in colours.iter().enumerate() {
             let [x, y] = [i % larger[0] as usize, i / larger[0] as usize].map(|at| at as i64);
@@ -123,7 +123,7 @@ fn pictures_and_normals_are_where_the_host_wants_them() {
             seen += usize::from(there.is_some());
         }
         assert!(seen > 5_000);
-        stand.destroy(&host);
+        fixture.destroy(&host);
     }
     assert_silent(&host);
 }
@@ -161,7 +161,7 @@ fn numbers_are_the_engines_own() {
         for (found, own) in frame.read_normals(&host).unwrap().iter().zip(&normals) {
             assert_eq!(found[..3], *own);
         }
-        // Of sums there are no numbers.
+        // Sums have no point ids.
         let refused = draw(&host, &frame, &mut renderer, &scene, &view, &Settings::default());
         assert!(refused.is_err_and(|error| error.to_string().contains("pull-push-paper alone")));
         drop(renderer);
@@ -170,7 +170,7 @@ fn numbers_are_the_engines_own() {
     assert_silent(&host);
 }
 
-/// A frame of surfels alone.
+/// A frame of surfels only.
 fn draw(
     host: &Host,
     frame: &Frame,
@@ -211,7 +211,7 @@ fn colours_are_encoded_by_the_shader_as_by_the_format() {
         bytes
     });
     assert!(bytes[0].iter().filter(|byte| **byte > 100).count() > 20_000);
-    // Either rounds to the nearest code, of values that differ by the last bits of a power.
+    // Both round to the nearest code, of values that differ by the last bits of a power.
     assert!(bytes[0].iter().zip(&bytes[1]).all(|(a, b)| a.abs_diff(*b) <= 1));
     assert_silent(&host);
 }
@@ -221,7 +221,7 @@ fn what_is_in_front_hides_what_is_behind_either_way() {
     let Some(host) = open(|all| all) else { return };
     let (centre, sides) =
         (DVec3::new(0.1, 0.05, 0.2), [DVec3::new(1.4, 0.2, 0.1), DVec3::new(0.0, 0.3, -1.1)]);
-    // Orthogonal, for the sake of `meets`.
+    // Orthogonal, for `meets`.
     let sides = [sides[0], sides[1] - sides[1].dot(sides[0]) / sides[0].length_squared() * sides[0]];
     let corners = parallelogram(centre.as_vec3(), sides.map(|side| side.as_vec3()));
     let settings = Settings { background: None, ..Method::named("perspective-ewa").unwrap().settings() };
@@ -235,14 +235,14 @@ fn what_is_in_front_hides_what_is_behind_either_way() {
         let [min_depth, max_depth] = range;
         let mut viewport = vk::Viewport { min_depth, max_depth, ..viewport(SIZE) };
         if up {
-            // The host's y points up, and its viewport turns it over.
+            // The host's y points up, and its viewport flips it.
             viewport = vk::Viewport { y: height, height: -height, ..viewport };
             camera.projection = DMat4::from_scale(DVec3::new(1.0, -1.0, 1.0)) * camera.projection;
         }
         let kind = Kind { way, colour: FLOATS, normals: false, samples: ONE, reversed };
-        let mut stand = Stand::new(&host, kind, SIZE, None, &surfels());
-        let mesh = Mesh::new(&host, &corners, stand.frame.mesh_target()).unwrap();
-        let (colours, _) = stand.render(&host, &View { camera, viewport }, &settings, Some(&mesh));
+        let mut fixture = Fixture::new(&host, kind, SIZE, None, &surfels());
+        let mesh = Mesh::new(&host, &corners, fixture.frame.mesh_target()).unwrap();
+        let (colours, _) = fixture.render(&host, &View { camera, viewport }, &settings, Some(&mesh));
         let mut counts = [[0; 2]; 2];
         let mut wrong = 0;
         for (i, colour) in colours.iter().enumerate() {
@@ -251,7 +251,7 @@ fn what_is_in_front_hides_what_is_behind_either_way() {
             let of_host = meets(&self::camera(), at, centre, sides);
             let is_surfel = surfel.is_some_and(|z| of_host.is_none_or(|of_host| z <= of_host));
             let is_host = !is_surfel && of_host.is_some();
-            // The mesh is blue; nothing else is.
+            // Only the mesh is blue.
             let found = [
                 colour[3] > 0.0 && colour[2] <= 1.5 * colour[0],
                 colour[3] > 0.0 && colour[2] > 1.5 * colour[0],
@@ -263,7 +263,7 @@ fn what_is_in_front_hides_what_is_behind_either_way() {
         assert!(counts[1].iter().all(|count| *count > 500), "either hides the other: {counts:?}");
         assert!(wrong * 1000 <= colours.len(), "{wrong} px");
         mesh.destroy(&host);
-        stand.destroy(&host);
+        fixture.destroy(&host);
     }
     assert_silent(&host);
 }
@@ -286,12 +286,12 @@ fn a_thousand_frames_of_all_sizes_and_scenes_leave_nothing() {
         let mut under_way = UnderWay::new(2);
         let mut most = 0;
         for number in 0..1000usize {
-            // Sizes come and go, each for a while.
+            // Each size lasts for a few frames.
             let size = [[64, 48], [33, 48], [64, 1]][number / 7 % 3];
             let view = View::whole(camera(), size);
             under_way
                 .submit(&host, |cmd| {
-                    // SAFETY: as `Options::frames_in_flight` says: two are under way at most.
+                    // SAFETY: as `Options::frames_in_flight` requires: at most two are in flight.
                     unsafe {
                         renderer.prepare(cmd, &scenes[number / 5 % 2], &view, &settings[number / 11 % 3])?;
                         frame.begin(&host, cmd);
@@ -347,7 +347,7 @@ fn without_memory_there_is_an_error_and_then_there_is_memory() {
         }
         if let Err(error) = prepared {
             assert!(matches!(error, Error::Memory { .. }), "{error}");
-            // SAFETY: nothing is recorded where there is nothing to draw.
+            // SAFETY: nothing is recorded without a picture to draw.
             let nothing = host.run(|cmd| Ok(unsafe { renderer.draw(cmd) })).unwrap();
             assert!(nothing.unwrap_err().to_string().contains("no picture to draw"));
         }
@@ -366,8 +366,8 @@ fn without_memory_there_is_an_error_and_then_there_is_memory() {
 fn what_cannot_be_served_is_refused_and_says_why() {
     let Some(host) = open(|all| Abilities { independent_blend: false, ..all }) else { return };
     let kind = Kind { way: Way::Subpass, colour: FLOATS, normals: false, samples: ONE, reversed: true };
-    let mut stand = Stand::new(&host, kind, SIZE, None, &surfels());
-    let target = stand.frame.target();
+    let mut fixture = Fixture::new(&host, kind, SIZE, None, &surfels());
+    let target = fixture.frame.target();
     type Change = fn(&mut embed::Target);
     let changes: [(Change, &str); 17] = [
         (|t| t.picture = 1, "location 1 of 1 colour attachments"),
@@ -399,14 +399,14 @@ fn what_cannot_be_served_is_refused_and_says_why() {
     ];
     let make = |target, frames_in_flight| {
         let options = Options { target, frames_in_flight, precision: Precision::Full, rasterizer: None };
-        // SAFETY: nothing is made of a target that is refused.
-        unsafe { Renderer::new(&stand.device, options) }
+        // SAFETY: nothing is created for a rejected target.
+        unsafe { Renderer::new(&fixture.device, options) }
     };
-    for (change, said) in changes {
+    for (change, expected) in changes {
         let mut target = target.clone();
         change(&mut target);
         let text = make(target, 2).err().map(|error| error.to_string()).unwrap_or_default();
-        assert!(text.contains(said), "`{said}` is not in `{text}`");
+        assert!(text.contains(expected), "`{expected}` is not in `{text}`");
     }
     let hidden = host
         .external_device_within(DeviceLimits { dynamic_rendering: Some(false), ..Default::default() }, None)
@@ -414,12 +414,12 @@ fn what_cannot_be_served_is_refused_and_says_why() {
     let rendering = embed::Target { pass: embed::Pass::Rendering, ..target.clone() };
     let options =
         Options { target: rendering, frames_in_flight: 2, precision: Precision::Full, rasterizer: None };
-    // SAFETY: nothing is made of a target that is refused.
+    // SAFETY: nothing is created for a rejected target.
     let refused = unsafe { Renderer::new(&hidden, options) }.err().unwrap().to_string();
     assert!(refused.contains("the feature dynamicRendering"), "{refused}");
     for frames in [0, u32::MAX] {
-        let said = format!("{frames} frames in flight");
-        assert!(make(target.clone(), frames).is_err_and(|error| error.to_string().contains(&said)));
+        let expected = format!("{frames} frames in flight");
+        assert!(make(target.clone(), frames).is_err_and(|error| error.to_string().contains(&expected)));
     }
 
     let other = host.external_device(None).unwrap();
@@ -430,8 +430,8 @@ fn what_cannot_be_served_is_refused_and_says_why() {
         change(&mut view);
         view
     };
-    let scene = stand.scene.clone();
-    for (scene, view, said) in [
+    let scene = fixture.scene.clone();
+    for (scene, view, expected) in [
         (&elsewhere, good, "of another device"),
         (&scene, bad(|view| view.viewport.width = 0.0), "0x120"),
         (&scene, bad(|view| view.viewport.x = 0.5), "whole pixels"),
@@ -444,22 +444,22 @@ fn what_cannot_be_served_is_refused_and_says_why() {
     ] {
         // SAFETY: recorded outside a render pass, and waited for.
         let made = host
-            .run(|cmd| Ok(unsafe { stand.renderer.prepare(cmd, scene, &view, &Settings::default()) }))
+            .run(|cmd| Ok(unsafe { fixture.renderer.prepare(cmd, scene, &view, &Settings::default()) }))
             .unwrap();
         let text = made.unwrap_err().to_string();
-        assert!(text.contains(said), "`{said}` is not in `{text}`");
+        assert!(text.contains(expected), "`{expected}` is not in `{text}`");
     }
-    // What was refused leaves all as it was.
+    // Rejected frames leave the state unchanged.
     let (colours, _) =
-        stand.render(&host, &good, &Settings { background: None, ..Settings::default() }, None);
+        fixture.render(&host, &good, &Settings { background: None, ..Settings::default() }, None);
     assert!(colours.iter().any(|colour| colour[3] == 1.0));
-    // The engine does not submit to what it borrows.
+    // The engine does not submit to an external device.
     assert!(
-        Scene::upload(&stand.device, &surfels())
+        Scene::upload(&fixture.device, &surfels())
             .is_err_and(|error| error.to_string().contains("belongs to a host"))
     );
     drop(scene);
-    stand.destroy(&host);
+    fixture.destroy(&host);
     drop((elsewhere, other));
     assert_silent(&host);
 }

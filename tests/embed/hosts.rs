@@ -1,11 +1,11 @@
-//! Hosts differ: formats of depth, samples a pixel, secondary command buffers, how much they record in a command buffer.
+//! Variants of hosts: depth formats, sample counts, secondary command buffers, and several frames in a command buffer.
 
+use crate::fixture::{Fixture, SIZE, assert_silent, camera, open, rising, sphere, surfels, upload};
 use crate::host::Host;
 use crate::host::frame::{Frame, IDS, Kind, Way};
 use crate::host::mesh::Mesh;
 use crate::host::native::{self, Native};
 use crate::host::scene::{Corners, parallelogram};
-use crate::stand::{SIZE, Stand, assert_silent, camera, open, rising, sphere, surfels, upload};
 use crate::{FLOATS, FOUR, ONE};
 use ash::vk;
 use glam::{DVec3, Vec3};
@@ -22,7 +22,7 @@ fn settings(name: &str) -> Settings {
     Settings { background: None, ..Method::named(name).unwrap().settings() }
 }
 
-/// What the engine's own frames show.
+/// The engine's frame.
 fn alone(
     surfels: &Surfels,
     settings: &Settings,
@@ -38,7 +38,7 @@ fn alone(
 fn renderer(device: &Arc<Device>, frame: &Frame, rasterizer: Option<Rasterizer>) -> Renderer {
     let target = frame.target();
     let options = Options { target, frames_in_flight: 2, precision: Precision::Full, rasterizer };
-    // SAFETY: the target is the frame's, which goes after the renderer.
+    // SAFETY: the target is the frame's, which outlives the renderer.
     unsafe { Renderer::new(device, options) }.unwrap()
 }
 
@@ -46,7 +46,7 @@ fn view(camera: Camera) -> View {
     View::whole(camera, SIZE)
 }
 
-/// The formats of depth that the device has, from one depth of which to the next there is so much, beside what rounds floats.
+/// The depth formats of the device, each with its step between depths beyond float rounding.
 fn depths(host: &Host) -> Vec<(vk::Format, f64)> {
     let all = [
         (vk::Format::D16_UNORM, 1.0 / 65_535.0),
@@ -59,7 +59,7 @@ fn depths(host: &Host) -> Vec<(vk::Format, f64)> {
     there
 }
 
-/// The depth of a distance by either camera: 0.1 is the near plane, 50 the far one of that whose depth rises.
+/// The depth of a distance: the near plane is at 0.1, and the far plane of the camera with increasing depth at 50.
 fn depth_of(distance: f64, reversed: bool) -> f64 {
     match (distance == 0.0, reversed) {
         (true, reversed) => f64::from(!reversed),
@@ -92,18 +92,18 @@ fn depth_of_every_format_is_the_surfaces() {
             let device = host.external_device(None).unwrap();
             let renderer = renderer(&device, &frame, Some(Rasterizer::Draw));
             let scene = upload(&host, &device, &surfels());
-            let mut stand = Stand { frame, renderer, scene, device };
+            let mut fixture = Fixture { frame, renderer, scene, device };
             let camera = if reversed { camera() } else { rising() };
-            record(&host, &mut stand, &view(camera), &settings);
-            assert_depths(&stand.frame.read_depths(&host).unwrap(), &own, reversed, step, &what);
-            stand.destroy(&host);
+            record(&host, &mut fixture, &view(camera), &settings);
+            assert_depths(&fixture.frame.read_depths(&host).unwrap(), &own, reversed, step, &what);
+            fixture.destroy(&host);
         }
     }
     assert_silent(&host);
 }
 
-fn record(host: &Host, stand: &mut Stand, view: &View, settings: &Settings) {
-    let Stand { frame, renderer, scene, .. } = stand;
+fn record(host: &Host, fixture: &mut Fixture, view: &View, settings: &Settings) {
+    let Fixture { frame, renderer, scene, .. } = fixture;
     let recorded = host.run(|cmd| {
         // SAFETY: recorded outside and inside the frame's pass, and waited for.
         unsafe {
@@ -122,7 +122,7 @@ fn wall() -> Corners {
     parallelogram(Vec3::new(0.1, 0.05, 0.2), [Vec3::new(1.4, 0.2, 0.1), Vec3::new(0.0, 0.3, -1.1)])
 }
 
-/// From so far away that the coarsest format does not tell the wall from splats a tenth before it, which is more than ε.
+/// So far away that the coarsest format does not separate the wall from splats a tenth in front of it, which is more than ε.
 fn far_away(reversed: bool) -> Camera {
     let near = if reversed { camera() } else { rising() };
     let eye = 12.0 * DVec3::new(1.1, 0.9, 3.0);
@@ -144,12 +144,12 @@ fn native_subpasses_start_from_depth_of_every_format_and_leave_such() {
             let kind = Kind { samples, reversed, ..PLAIN };
             let frame = Frame::with_depth(&host, kind, SIZE, &[], format).unwrap();
             let renderer = renderer(&device, &frame, Some(Rasterizer::Draw));
-            let mut stand = Stand { frame, renderer, scene: scene.clone(), device: device.clone() };
-            let mesh = Mesh::new(&host, &wall(), stand.frame.mesh_target()).unwrap();
-            let (expected, _) = stand.render(&host, &view, &settings, Some(&mesh));
-            let expected_depths = (samples == ONE).then(|| stand.frame.read_depths(&host).unwrap());
+            let mut fixture = Fixture { frame, renderer, scene: scene.clone(), device: device.clone() };
+            let mesh = Mesh::new(&host, &wall(), fixture.frame.mesh_target()).unwrap();
+            let (expected, _) = fixture.render(&host, &view, &settings, Some(&mesh));
+            let expected_depths = (samples == ONE).then(|| fixture.frame.read_depths(&host).unwrap());
             mesh.destroy(&host);
-            stand.destroy(&host);
+            fixture.destroy(&host);
 
             let kind = native::Kind {
                 colour: FLOATS,
@@ -185,7 +185,7 @@ fn native_subpasses_start_from_depth_of_every_format_and_leave_such() {
                 let found = native.read_depths(&host).unwrap();
                 assert_eq!(found.len(), expected.len());
                 for ((a, b), _) in found.iter().zip(&expected).zip(&same).filter(|(_, same)| **same) {
-                    // Either rounds to the format, of values that differ by what rounds floats.
+                    // Both round to the format, of values that differ by float rounding.
                     assert!((a - b).abs() <= 1.01 * step + 3e-7, "{kind:?}: {a} {b}");
                 }
             }
@@ -208,10 +208,10 @@ fn every_sample_has_the_number_of_its_pixel() {
         let device = host.external_device(None).unwrap();
         let renderer = renderer(&device, &frame, None);
         let scene = upload(&host, &device, &surfels());
-        let mut stand = Stand { frame, renderer, scene, device };
-        record(&host, &mut stand, &view(camera()), &settings);
-        assert!(stand.frame.read_ids(&host).unwrap() == numbers, "{way:?}");
-        stand.destroy(&host);
+        let mut fixture = Fixture { frame, renderer, scene, device };
+        record(&host, &mut fixture, &view(camera()), &settings);
+        assert!(fixture.frame.read_ids(&host).unwrap() == numbers, "{way:?}");
+        fixture.destroy(&host);
     }
     assert_silent(&host);
 }
@@ -246,7 +246,7 @@ fn a_picture_is_drawn_from_a_secondary_command_buffer_too() {
     assert_silent(&host);
 }
 
-/// Nothing of the host's stands between them: what they wait for, they say themselves.
+/// Without barriers of the host: updates and frames synchronize themselves.
 #[test]
 fn an_update_and_the_frames_around_it_wait_for_each_other() {
     let Some(host) = open(|all| all) else { return };

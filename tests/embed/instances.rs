@@ -1,11 +1,11 @@
-//! Several scenes where they are placed, in frames of hosts: the pictures are the engine's own, whatever the list is from frame to frame.
+//! Instances in frames of hosts: the pictures equal the engine's, whatever list each frame has.
 
+use crate::fixture::{SIZE, assert_silent, camera, open, upload};
 use crate::host::Host;
 use crate::host::frame::{Frame, Kind, Way};
 use crate::host::memory::Counted;
 use crate::host::native::{self, Native};
 use crate::host::under_way::UnderWay;
-use crate::stand::{SIZE, assert_silent, camera, open, upload};
 use crate::support::placing::{exact, painted, plain, rich, turned};
 use crate::{FLOATS, ONE};
 use ash::vk;
@@ -20,7 +20,7 @@ use surfel::vk::{Device, DeviceOptions};
 use surfel::{Instance, Outputs, Picture, Precision, Rasterizer, RenderOptions, Scene, Settings};
 
 const KIND: Kind = Kind { way: Way::Subpass, colour: FLOATS, normals: false, samples: ONE, reversed: true };
-/// Splats start from the host's depth.
+/// Splats are seeded by the host's depth.
 const NATIVE: native::Kind = native::Kind {
     colour: FLOATS,
     depth: Some(vk::Format::D32_SFLOAT),
@@ -39,7 +39,7 @@ fn view() -> View {
     View::whole(camera(), SIZE)
 }
 
-/// Two clouds that run through each other, one of them without colours.
+/// Two intersecting clouds, one of them without colours.
 fn parts() -> [(Surfels, DMat4); 2] {
     let place = turned(0.6, [0.2, 1.0, -0.5], 1.9, [0.7, 0.1, 0.3]);
     [(plain(8_000), exact(1.0, [1.0, 0.0, 2.0], [0.0; 3])), (rich(3_000), place)]
@@ -49,7 +49,7 @@ fn instances(scenes: impl IntoIterator<Item = Arc<Scene>>) -> Vec<Instance> {
     scenes.into_iter().zip(parts()).map(|(scene, (_, place))| Instance::new(&scene, place)).collect()
 }
 
-/// What the engine's own frames show of them.
+/// The engine's frame of the instances.
 fn alone(settings: &Settings, rasterizer: Rasterizer) -> Picture {
     let device = Device::open(&DeviceOptions::default()).unwrap();
     let outputs = Outputs { normal: false, depth: true, id: false };
@@ -63,7 +63,7 @@ fn options(frame: &Frame, rasterizer: Option<Rasterizer>) -> Options {
     Options { target: frame.target(), frames_in_flight: 2, precision: Precision::Full, rasterizer }
 }
 
-/// A frame of these scenes, which is empty after an error.
+/// A frame of the instances; empty after an error.
 fn draw(
     host: &Host,
     frame: &Frame,
@@ -99,7 +99,7 @@ fn a_composite_of_several_scenes_is_the_engines_own() {
             let list = instances(parts().map(|(surfels, _)| upload(&host, &device, &surfels)));
             draw(&host, &frame, &mut renderer, &list, &settings).unwrap();
             let (colours, depths) = frame.read(&host).unwrap();
-            // Splats that are blended by atomic sums are added in whatever order.
+            // Atomic sums have an arbitrary order.
             let blended = settings.splatting.visibility != Visibility::Nearest
                 && settings.pull_push.is_none()
                 && rasterizer == Rasterizer::Compute;
@@ -170,7 +170,7 @@ fn what_is_refused_records_nothing_and_the_next_frame_is_right() {
         list[1].scene = upload(&host, &device, &parts()[1].0);
         draw(&host, &frame, &mut renderer, &list, &settings).unwrap();
         assert!(frame.read(&host).unwrap() == before);
-        // And an empty list is an empty picture.
+        // An empty list is an empty picture.
         draw(&host, &frame, &mut renderer, &[], &settings).unwrap();
         assert!(frame.read(&host).unwrap().0.iter().all(|colour| colour[3] == 0.0));
     }
@@ -178,7 +178,7 @@ fn what_is_refused_records_nothing_and_the_next_frame_is_right() {
     assert_silent(&host);
 }
 
-/// The list of a frame: scenes come and go, change places, stand twice, or are none.
+/// The instances of a frame: scenes come and go, move, occur twice, or not at all.
 fn list(number: usize, scenes: &[Arc<Scene>; 3]) -> Vec<Instance> {
     let place = |i: usize| {
         let angle = (number + 3 * i) as f64;
@@ -205,7 +205,7 @@ fn lists_that_change_with_every_frame_leave_nothing() {
         for number in 0..60 {
             under_way
                 .submit(&host, |cmd| {
-                    // SAFETY: two frames are under way at most, as was said.
+                    // SAFETY: at most two frames are in flight, as declared.
                     unsafe {
                         let list = list(number, &scenes);
                         renderer.prepare(cmd, &list, &view(), &settings[number / 7 % 3])?;

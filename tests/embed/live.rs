@@ -1,10 +1,10 @@
-//! Data that lives on the GPU: surfels in buffers of a host, in place, and new values for surfels that were uploaded.
+//! Scenes that change on the GPU: surfels in buffers of the host, and updates of uploaded surfels.
 
+use crate::fixture::{assert_silent, open, upload};
 use crate::host::frame::Frame;
 use crate::host::memory::Counted;
 use crate::host::{Host, Submitted};
-use crate::rig::{Held, KIND, Rig, SIZE, Shown, lay, view};
-use crate::stand::{assert_silent, open, upload};
+use crate::rig::{HostBuffer, KIND, Rendered, Rig, SIZE, lay, view};
 use crate::support::layouts::Layout;
 use crate::support::sampling::{Random, bumpy_sphere, forget_sides, narrow, paint_linear, paint_srgb};
 use ash::vk::{self, Format};
@@ -18,7 +18,7 @@ use surfel::settings::splatting::Visibility;
 use surfel::vk::{Device, DeviceLimits};
 use surfel::{Picture, Precision, Rasterizer, RenderOptions, Scene, Settings, SplatCounts};
 
-/// Ranges so small that a scene of 20,000 surfels has several windows, which begin at far fewer places than the values of vertices do.
+/// Limits so low that a scene of 20,000 surfels has several chunks, with a coarser alignment than a vertex.
 pub const NARROW: DeviceLimits = DeviceLimits {
     max_storage_buffer_range: Some(512 << 10),
     blend_float32: None,
@@ -41,7 +41,7 @@ pub fn sphere(count: usize) -> Surfels {
     surfels
 }
 
-/// Ellipses, of which some have no side, with linear colours.
+/// Ellipses with linear colours, some of them two-sided.
 pub fn ellipses(count: usize) -> Surfels {
     let mut random = Random(12);
     let mut surfels = bumpy_sphere(count, &mut random);
@@ -55,14 +55,14 @@ pub fn settings(method: Method) -> Settings {
     Settings { background: None, ..method.settings() }
 }
 
-/// What may differ by whom a frame is made: splats that are blended by atomic sums are added in whatever order.
+/// Tolerance of two frames: atomic sums have an arbitrary order.
 fn most(settings: &Settings, rasterizer: Rasterizer) -> f32 {
     let blends = settings.pull_push.is_none() && settings.splatting.visibility != Visibility::Nearest;
     if blends && rasterizer == Rasterizer::Compute { 2e-5 } else { 0.0 }
 }
 
-/// The number of pixels in which two frames differ by more than `most`.
-pub fn differing((colours, depths): &Shown, (others, other_depths): &Shown, most: f32) -> usize {
+/// Number of pixels in which two frames differ by more than `most`.
+pub fn differing((colours, depths): &Rendered, (others, other_depths): &Rendered, most: f32) -> usize {
     assert_eq!((colours.len(), depths.len()), (others.len(), other_depths.len()));
     let near = |a: f32, b: f32| (a - b).abs() <= most;
     let same = |i: &usize| {
@@ -71,7 +71,7 @@ pub fn differing((colours, depths): &Shown, (others, other_depths): &Shown, most
     (0..colours.len()).filter(|i| !same(i)).count()
 }
 
-fn covered((colours, _): &Shown) -> usize {
+fn covered((colours, _): &Rendered) -> usize {
     colours.iter().filter(|colour| colour[3] > 0.0).count()
 }
 
@@ -95,7 +95,7 @@ fn a_hosts_buffers_give_the_picture_of_an_upload_by_every_method() {
             );
             for method in Method::ALL {
                 let settings = settings(method);
-                let [found, expected] = [&external, &own].map(|scene| rig.show(&host, scene, &settings));
+                let [found, expected] = [&external, &own].map(|scene| rig.render(&host, scene, &settings));
                 assert!(covered(&expected) > 5_000);
                 let wrong = differing(&found, &expected, most(&settings, rasterizer));
                 assert_eq!(wrong, 0, "{} {rasterizer:?} {layout:?}", method.name);
@@ -130,13 +130,13 @@ fn every_format_gives_what_it_holds() {
     let cases = [
         (base, bare(), 0),
         (Layout { radii: None, ..base }, bare(), 0),
-        // Numbers that half floats hold to the bit.
+        // Numbers that half floats represent exactly.
         linear(Format::R16G16B16A16_SFLOAT, 0, |p| (64.0 * p).round() / 16.0),
         linear(Format::R32G32B32_SFLOAT, 0, |p| p),
         linear(Format::R32G32B32A32_SFLOAT, 0, |p| 3.0 * p),
-        // A quotient by 255 is rounded by whoever makes it.
+        // The rounding of a quotient by 255 is implementation-defined.
         linear(Format::R8G8B8A8_UNORM, 20, |p| (0.5 * p + 0.5).clamp(Vec3::ZERO, Vec3::ONE)),
-        // So are unit vectors: few pixels at the rims of discs may turn.
+        // So is that of unit vectors: a few pixels at the rims of discs may differ.
         normals(Format::R8G8B8A8_SNORM, 4, 20),
         normals(Format::R16G16B16A16_SNORM, 12, 20),
         normals(Format::R16G16B16A16_SFLOAT, 8, 20),
@@ -145,14 +145,14 @@ fn every_format_gives_what_it_holds() {
         let settings = settings(Method::named(name).unwrap());
         for (layout, surfels, few) in &cases {
             let (external, buffer) = lay(&host, &rig.device, layout, surfels);
-            let found = rig.show(&host, &external, &settings);
-            let expected = rig.show_uploaded(&host, &layout.held(surfels.clone()), &external, &settings);
+            let found = rig.render(&host, &external, &settings);
+            let expected = rig.render_uploaded(&host, &layout.held(surfels.clone()), &external, &settings);
             assert!(covered(&expected) > 5_000);
             let wrong = differing(&found, &expected, if *few > 0 { 1e-6 } else { 0.0 });
             assert!(wrong <= *few, "{name} {layout:?}: {wrong} px");
             if *few > 0 {
-                // The format is what was read: unrounded normals are others.
-                let rounded = rig.show_uploaded(&host, surfels, &external, &settings);
+                // The format has an effect: unrounded normals give another picture.
+                let rounded = rig.render_uploaded(&host, surfels, &external, &settings);
                 assert!(differing(&found, &rounded, 1e-6) > 1_000, "{name} {layout:?}");
             }
             drop(external);
@@ -179,13 +179,14 @@ fn chunks_of_interleaved_buffers_fit_and_count_as_they_are_told() {
             for count in [20_000, border + 1, border, border - 1, 1, 0] {
                 [&external, &own].into_iter().for_each(|scene| scene.set_count(count).unwrap());
                 assert_eq!((external.count(), external.capacity()), (count, 20_000));
-                let [found, again] = [&external, &own].map(|scene| rig.show(&host, scene, &settings));
+                let [found, again] = [&external, &own].map(|scene| rig.render(&host, scene, &settings));
                 assert_eq!(differing(&found, &again, most), 0, "{name} {rasterizer:?} {count}");
                 if count == 0 {
                     assert_eq!(covered(&found), 0, "{name} {rasterizer:?}");
                     continue;
                 }
-                let fresh = rig.show_uploaded(&host, &first(&surfels, count as usize), &external, &settings);
+                let fresh =
+                    rig.render_uploaded(&host, &first(&surfels, count as usize), &external, &settings);
                 assert_eq!(differing(&found, &fresh, most), 0, "{name} {rasterizer:?} {count}");
                 assert!(covered(&fresh) > 0);
             }
@@ -197,7 +198,7 @@ fn chunks_of_interleaved_buffers_fit_and_count_as_they_are_told() {
     assert_silent(&host);
 }
 
-/// The first surfels.
+/// The first `count` surfels.
 fn first(surfels: &Surfels, count: usize) -> Surfels {
     let mut part = surfels.clone();
     part.positions.truncate(count);
@@ -213,7 +214,7 @@ fn first(surfels: &Surfels, count: usize) -> Surfels {
     part
 }
 
-/// The sphere turned and swollen, as a simulation might.
+/// The sphere, rotated and inflated, as by a simulation.
 pub fn moved(surfels: &Surfels, step: usize) -> Surfels {
     let (turn, swell) = (glam::Quat::from_rotation_y(0.3 * step as f32), 1.0 + 0.02 * step as f32);
     let mut moved = surfels.clone();
@@ -222,8 +223,8 @@ pub fn moved(surfels: &Surfels, step: usize) -> Surfels {
     moved
 }
 
-/// Waits for the frames' readers, writes the buffer anew, and has the frames' readers wait for that.
-fn rewrite(host: &Host, cmd: vk::CommandBuffer, from: &Held, to: &Held, size: u64) {
+/// Rewrites the buffer between barriers for the readers of the frames before and after.
+fn rewrite(host: &Host, cmd: vk::CommandBuffer, from: &HostBuffer, to: &HostBuffer, size: u64) {
     let transfer = vk::PipelineStageFlags::TRANSFER;
     let barrier = |from, to, memory: &[vk::MemoryBarrier<'_>]| {
         // SAFETY: recorded outside a render pass.
@@ -233,7 +234,7 @@ fn rewrite(host: &Host, cmd: vk::CommandBuffer, from: &Held, to: &Held, size: u6
     };
     barrier(READ_STAGES, transfer, &[]);
     let region = vk::BufferCopy { size, ..Default::default() };
-    // SAFETY: both buffers are as large, and stay until all is done.
+    // SAFETY: both buffers have this size, and are kept until the copy is executed.
     unsafe { host.device.cmd_copy_buffer(cmd, from.0, to.0, &[region]) };
     let seen = vk::MemoryBarrier::default()
         .src_access_mask(vk::AccessFlags::TRANSFER_WRITE)
@@ -257,10 +258,10 @@ fn what_moves_every_frame_is_seen_where_it_is_with_frames_in_flight() {
         let settings = settings(Method::named(name).unwrap());
         let mut rig = Rig::new(&host, Some(rasterizer), DeviceLimits::default());
         let (external, buffer) = lay(&host, &rig.device, &layout, &surfels);
-        let sources: Vec<_> = steps.iter().map(|step| Held::new(&host, &layout.bytes(step))).collect();
+        let sources: Vec<_> = steps.iter().map(|step| HostBuffer::new(&host, &layout.bytes(step))).collect();
         let frames: Vec<_> = steps.iter().map(|_| Frame::new(&host, KIND, SIZE).unwrap()).collect();
         let size = layout.bytes(&surfels).len() as u64;
-        let submit = |(source, frame): (&Held, &Frame)| -> Submitted {
+        let submit = |(source, frame): (&HostBuffer, &Frame)| -> Submitted {
             let (submitted, ()) = host
                 .submit(|cmd| {
                     rewrite(&host, cmd, source, &buffer, size);
@@ -272,10 +273,10 @@ fn what_moves_every_frame_is_seen_where_it_is_with_frames_in_flight() {
         };
         let under_way: Vec<_> = sources.iter().zip(&frames).map(submit).collect();
         under_way.into_iter().for_each(|submitted| host.wait(submitted).unwrap());
-        let mut before: Option<Shown> = None;
+        let mut before: Option<Rendered> = None;
         for (step, frame) in steps.iter().zip(&frames) {
             let found = frame.read(&host).unwrap();
-            let expected = rig.show_uploaded(&host, step, &external, &settings);
+            let expected = rig.render_uploaded(&host, step, &external, &settings);
             assert_eq!(differing(&found, &expected, most(&settings, rasterizer)), 0, "{name} {rasterizer:?}");
             assert!(before.is_none_or(|before| differing(&before, &found, 1e-3) > 1_000), "it moves");
             before = Some(found);
@@ -304,14 +305,14 @@ fn buffers_that_take_turns_make_nothing() {
     let settings = settings(Method::named("perspective-ewa").unwrap());
     let mut made = Vec::new();
     for number in 0..12 {
-        let shown = rig.show(&host, &scenes[number % 3].0, &settings);
+        let shown = rig.render(&host, &scenes[number % 3].0, &settings);
         assert!(covered(&shown) > 5_000);
         made.push(counts.left.load(Ordering::SeqCst));
     }
     assert!(made[3..].iter().all(|left| *left == made[3]), "{made:?}");
-    // What is no longer among them goes.
+    // Resources of dropped scenes are destroyed.
     let alive = counts.alive.load(Ordering::SeqCst);
-    (0..8).for_each(|_| drop(rig.show(&host, &scenes[0].0, &settings)));
+    (0..8).for_each(|_| drop(rig.render(&host, &scenes[0].0, &settings)));
     assert!(counts.alive.load(Ordering::SeqCst) < alive);
     let (kept, buffer): (Vec<_>, Vec<_>) = scenes.into_iter().unzip();
     drop(kept);
@@ -324,7 +325,7 @@ fn buffers_that_take_turns_make_nothing() {
     assert_silent(&host);
 }
 
-/// A frame of the engine's own, of what is there and counted.
+/// The engine's frame of a scene, with counts.
 pub fn alone(
     device: &Arc<Device>,
     scene: &Scene,
@@ -345,7 +346,7 @@ pub const ALONE: [(&str, Rasterizer); 3] = [
     ("pull-push", Rasterizer::Compute),
 ];
 
-/// Surfels of which every 16th of some kind is invalid in another way.
+/// Surfels of which every 16th is invalid, each in another way.
 pub fn spoil(surfels: &mut Surfels) -> usize {
     let spoils: [fn(&mut Surfels, usize); 12] = [
         |s, i| s.positions[i].y = f32::NAN,
@@ -378,9 +379,9 @@ fn what_is_invalid_in_a_hosts_buffer_is_culled_and_counted() {
     let own = Scene::upload(&device, &surfels).unwrap();
     let layout = Layout::wide();
     let bytes = layout.bytes(&surfels);
-    let buffer = Foreign::new(&device, &bytes);
-    // SAFETY: the buffer is the device's, and goes last.
-    let external = unsafe { Scene::from_buffers(&device, &layout.told(&surfels, buffer.buffer)) }.unwrap();
+    let buffer = RawBuffer::new(&device, &bytes);
+    // SAFETY: the buffer is of the device, and is dropped last.
+    let external = unsafe { Scene::from_buffers(&device, &layout.buffers(&surfels, buffer.buffer)) }.unwrap();
     for (name, rasterizer) in ALONE {
         let [found, expected] = [&external, &own].map(|scene| alone(&device, scene, name, rasterizer));
         assert_eq!(expected.1.invalid as usize, spoiled);
@@ -392,21 +393,21 @@ fn what_is_invalid_in_a_hosts_buffer_is_culled_and_counted() {
     crate::support::gpu::assert_silent(&device);
 }
 
-/// A buffer of shaders that the engine has not made, on its own device.
-struct Foreign {
+/// A buffer that is not created by the engine, on the engine's device.
+struct RawBuffer {
     buffer: vk::Buffer,
     memory: vk::DeviceMemory,
     device: Arc<Device>,
 }
 
-impl Foreign {
+impl RawBuffer {
     fn new(device: &Arc<Device>, bytes: &[u8]) -> Self {
         let raw = device.handle();
         let info = vk::BufferCreateInfo::default()
             .size(bytes.len() as u64)
             .usage(vk::BufferUsageFlags::STORAGE_BUFFER);
         let seen = vk::MemoryPropertyFlags::HOST_VISIBLE | vk::MemoryPropertyFlags::HOST_COHERENT;
-        // SAFETY: a plain use of Vulkan; `drop` destroys what is made.
+        // SAFETY: plain Vulkan; `drop` destroys the objects.
         unsafe {
             let buffer = raw.create_buffer(&info, None).unwrap();
             let needs = raw.get_buffer_memory_requirements(buffer);
@@ -425,7 +426,7 @@ impl Foreign {
     }
 }
 
-impl Drop for Foreign {
+impl Drop for RawBuffer {
     fn drop(&mut self) {
         // SAFETY: every frame that reads it was waited for.
         unsafe {
@@ -445,7 +446,7 @@ fn bounds_follow_positions_or_are_what_is_said() {
     scene.update(3, &Changes { positions: Some(&far), ..Default::default() }).unwrap();
     let reach = f64::from(surfels.radii.iter().copied().fold(0.0, f32::max));
     assert!(scene.bounds().max.x == 9.0 + reach && scene.bounds().min == surfels.bounds().unwrap().min);
-    // What is nowhere changes nothing of them.
+    // Positions that are not finite do not change the bounds.
     let before = scene.bounds();
     for nowhere in [vec![Vec3::NAN], vec![Vec3::INFINITY; 500]] {
         scene.update(0, &Changes { positions: Some(&nowhere), ..Default::default() }).unwrap();
@@ -455,16 +456,16 @@ fn bounds_follow_positions_or_are_what_is_said() {
     let whole = Changes { positions: Some(&all.positions), radii: Some(&all.radii), ..Default::default() };
     scene.update(0, &whole).unwrap();
     assert_eq!(scene.bounds(), all.bounds().unwrap());
-    let said = Bounds::of_box(DVec3::splat(-2.0), DVec3::splat(5.0));
-    scene.update(0, &Changes { bounds: Some(said), ..whole }).unwrap();
-    assert_eq!(scene.bounds(), said);
-    assert!(scene.set_bounds(Bounds { radius: f64::NAN, ..said }).is_err());
+    let expected = Bounds::of_box(DVec3::splat(-2.0), DVec3::splat(5.0));
+    scene.update(0, &Changes { bounds: Some(expected), ..whole }).unwrap();
+    assert_eq!(scene.bounds(), expected);
+    assert!(scene.set_bounds(Bounds { radius: f64::NAN, ..expected }).is_err());
     crate::support::gpu::assert_silent(&device);
 }
 
-pub fn refused<T>(made: surfel::Result<T>, said: &str) {
+pub fn refused<T>(made: surfel::Result<T>, expected: &str) {
     let text = made.err().map(|error| error.to_string()).unwrap_or_default();
-    assert!(text.contains(said), "`{said}` is not in `{text}`");
+    assert!(text.contains(expected), "`{expected}` is not in `{text}`");
 }
 
 #[test]
@@ -473,8 +474,8 @@ fn buffers_that_cannot_be_read_are_refused_and_named() {
     let device = host.external_device_within(NARROW, None).unwrap();
     let surfels = ellipses(1_000);
     let layout = Layout::wide();
-    let buffer = Held::new(&host, &layout.bytes(&surfels));
-    let good = layout.told(&surfels, buffer.0);
+    let buffer = HostBuffer::new(&host, &layout.bytes(&surfels));
+    let good = layout.buffers(&surfels, buffer.0);
     type Change = fn(&mut Buffers);
     let changes: [(Change, &str); 17] = [
         (
@@ -501,17 +502,17 @@ fn buffers_that_cannot_be_read_are_refused_and_named() {
         (|b| (b.radii, b.two_sided) = (Radii::All(-1.0), false), "radius of -1"),
         (|b| b.normals.buffer = vk::Buffer::null(), "buffer is null"),
     ];
-    for (change, said) in changes {
+    for (change, expected) in changes {
         let mut buffers = good;
         change(&mut buffers);
-        // SAFETY: nothing is made of what is refused.
-        refused(unsafe { Scene::from_buffers(&device, &buffers) }, said);
+        // SAFETY: nothing is created for a rejected description.
+        refused(unsafe { Scene::from_buffers(&device, &buffers) }, expected);
     }
     let mut sparse = good;
     (sparse.positions.stride, sparse.positions.size) = (4 << 10, 4 << 20);
     // SAFETY: as above.
     refused(unsafe { Scene::from_buffers(&device, &sparse) }, "maxStorageBufferRange");
-    // SAFETY: the buffer is the device's, and goes last.
+    // SAFETY: the buffer is of the device, and is dropped last.
     let scene = unsafe { Scene::from_buffers(&device, &good) }.unwrap();
     refused(scene.set_count(1_001), "room for 1000");
     let one = Changes { positions: Some(&[Vec3::ZERO]), ..Default::default() };

@@ -1,8 +1,9 @@
-//! Surfels in hosts, each of which is a small renderer of its own.
+//! Tests of embedding, with small renderers as hosts.
 #![allow(unsafe_code, reason = "a host speaks Vulkan itself")]
 
 mod barriers;
 mod composite;
+mod fixture;
 #[path = "../../tools/hosts/host/mod.rs"]
 mod host;
 mod hosts;
@@ -14,14 +15,13 @@ mod native_refused;
 mod pipelines;
 mod reports;
 mod rig;
-mod stand;
 #[path = "../support/mod.rs"]
 mod support;
 mod updates;
 
 use ash::vk;
 
-/// What hosts may share among threads, and give from one to another.
+/// Types that hosts may share among threads, and move between them.
 const _: () = {
     const fn shared<T: Send + Sync>() {}
     shared::<surfel::embed::Renderer>();

@@ -1,5 +1,8 @@
-//! Surfels in subpasses of a host's own render pass: the picture is the engine's own and the composite's, whatever it starts from.
+//! Surfels in subpasses of the host's render pass: the picture equals the engine's and the composite's, with any seed.
 
+use crate::fixture::{
+    Fixture, SIZE, assert_silent, camera, meets, open, rising, sphere, surfels, upload, viewport,
+};
 use crate::host::Host;
 use crate::host::frame::{self, Way};
 use crate::host::memory::Counted;
@@ -7,9 +10,6 @@ use crate::host::mesh::Mesh;
 use crate::host::native::{Kind, Native};
 use crate::host::scene::{Corners, parallelogram};
 use crate::host::under_way::UnderWay;
-use crate::stand::{
-    SIZE, Stand, assert_silent, camera, meets, open, rising, sphere, surfels, upload, viewport,
-};
 use crate::support::sampling::{self, Random};
 use crate::{FOUR, ONE};
 use ash::vk;
@@ -27,13 +27,13 @@ use surfel::{Outputs, Picture, Precision, Rasterizer, RenderOptions, Scene, Sett
 
 pub const D32: vk::Format = vk::Format::D32_SFLOAT;
 
-/// Hosts have threads.
+/// A renderer is `Send`.
 #[allow(dead_code, reason = "it compiles, or not")]
 fn a_renderer_goes_to_another_thread(renderer: Renderer) -> impl Send {
     renderer
 }
 
-/// Colours of floats, one sample, depth that falls with distance, which splats start from, between a mesh and fog.
+/// Float colours, one sample, and reversed depth as seed, between a mesh and fog.
 pub const PLAIN: Kind = Kind {
     colour: vk::Format::R32G32B32A32_SFLOAT,
     depth: Some(D32),
@@ -48,7 +48,7 @@ pub fn method(name: &str) -> Settings {
     Settings { background: None, ..Method::named(name).unwrap().settings() }
 }
 
-/// What the engine's own drawn frames show.
+/// The engine's frames by the raster path.
 fn alone(surfels: &Surfels, settings: &Settings, camera: &Camera, normal: bool, depth: bool) -> Picture {
     let device = Device::open(&DeviceOptions::default()).unwrap();
     let outputs = Outputs { normal, depth, id: false };
@@ -73,7 +73,7 @@ impl<'a> Drawn<'a> {
         Self { host, native, scene, device }
     }
 
-    /// The same frame twice in a command buffer, so that validation sees how they wait for each other.
+    /// The same frame twice in a command buffer, so that validation checks their synchronization.
     pub fn render(&mut self, view: &View, settings: &Settings, mesh: Option<&Mesh>, foggy: bool) {
         let Self { host, native, scene, .. } = self;
         let mesh = mesh.map(|mesh| (mesh, Vec3::Y));
@@ -107,7 +107,7 @@ impl<'a> Drawn<'a> {
     }
 }
 
-/// Over nothing.
+/// Colours over nothing: premultiplied.
 fn multiplied(colours: &[[f32; 4]]) -> Vec<[f32; 4]> {
     colours.iter().map(|[r, g, b, a]| [a * r, a * g, a * b, *a]).collect()
 }
@@ -138,7 +138,7 @@ fn subpasses_draw_the_engines_own_picture_bit_for_bit() {
             drawn.render(&view, &settings, None, false);
             assert_eq!(count_different(&drawn.colours(), &own.colour), 0, "{name} {kind:?}");
             if kind.samples == ONE && kind.depth == Some(D32) {
-                // The near plane is at 0.1, and the depth is that over the distance.
+                // The near plane is at 0.1, and the depth is 0.1 over the distance.
                 for (found, distance) in drawn.depths().iter().zip(own.depth.as_ref().unwrap()) {
                     let exact = if *distance == 0.0 { 0.0 } else { 0.1 / f64::from(*distance) };
                     assert!((f64::from(*found) - exact).abs() <= 1.5e-7 * exact, "{found} {exact}");
@@ -228,14 +228,14 @@ fn a_viewport_is_anywhere_and_runs_any_way() {
     assert_silent(&host);
 }
 
-/// A parallelogram through the sphere: its centre and the halves of its sides, orthogonal for the sake of `meets`.
+/// A parallelogram through the sphere: its centre and the halves of its sides, orthogonal for `meets`.
 fn plane() -> (DVec3, [DVec3; 2]) {
     let (centre, sides) =
         (DVec3::new(0.1, 0.05, 0.2), [DVec3::new(1.4, 0.2, 0.1), DVec3::new(0.0, 0.3, -1.1)]);
     (centre, [sides[0], sides[1] - sides[1].dot(sides[0]) / sides[0].length_squared() * sides[0]])
 }
 
-/// The composite's picture of the same.
+/// The composite's picture of the same scene.
 fn composited(
     host: &Host,
     kind: Kind,
@@ -246,11 +246,11 @@ fn composited(
 ) -> Vec<[f32; 4]> {
     let Kind { colour, samples, reversed, .. } = kind;
     let kind = frame::Kind { way: Way::Subpass, colour, normals: false, samples, reversed };
-    let mut stand = Stand::new(host, kind, SIZE, Some(Rasterizer::Draw), surfels);
-    let mesh = Mesh::new(host, mesh, stand.frame.mesh_target()).unwrap();
-    let (colours, _) = stand.render(host, view, settings, Some(&mesh));
+    let mut fixture = Fixture::new(host, kind, SIZE, Some(Rasterizer::Draw), surfels);
+    let mesh = Mesh::new(host, mesh, fixture.frame.mesh_target()).unwrap();
+    let (colours, _) = fixture.render(host, view, settings, Some(&mesh));
     mesh.destroy(host);
-    stand.destroy(host);
+    fixture.destroy(host);
     colours
 }
 
@@ -302,12 +302,12 @@ fn among_the_hosts_surfaces_the_picture_is_the_composites_and_the_references() {
     assert_silent(&host);
 }
 
-/// Whether it is of the host's mesh: nothing else is blue.
+/// Whether a pixel shows the host's mesh, the only blue surface.
 fn is_blue(colour: &[f32; 4]) -> bool {
     colour[3] > 0.0 && colour[2] > 1.5 * colour[0]
 }
 
-/// Scenes that are hard to draw, with a wall of the host through them.
+/// Difficult scenes, with a wall of the host through them.
 #[test]
 #[ignore = "takes long: tools/test --all"]
 fn in_hard_scenes_the_picture_is_the_composites() {
@@ -333,7 +333,7 @@ fn in_hard_scenes_the_picture_is_the_composites() {
                 for (found, other) in drawn.colours().iter().zip(&other) {
                     shown += usize::from(seed && other[3] > 0.0);
                     if found != other {
-                        // The host hides what is seen edge-on.
+                        // The host hides edge-on discs.
                         assert!(seed && is_blue(found), "{}: {found:?} {other:?}", case.name);
                         different += 1;
                     }
@@ -343,7 +343,7 @@ fn in_hard_scenes_the_picture_is_the_composites() {
             }
         }
         println!("{}: {different} px of {shown} differ", case.name);
-        // One scene is of discs that are seen edge-on, all of them.
+        // One scene has edge-on discs only.
         assert!(case.name == "edge-on" || 1000 * different <= shown, "{}", case.name);
     }
     assert_silent(&host);
@@ -368,7 +368,7 @@ fn a_later_subpass_of_the_host_sees_the_depth_of_surfels() {
     assert_silent(&host);
 }
 
-/// Fragments of each subpass of a frame that pass its tests.
+/// Number of fragments of each subpass that pass the tests.
 fn count_fragments(drawn: &mut Drawn<'_>, view: &View, settings: &Settings, mesh: &Mesh) -> Vec<u64> {
     let Drawn { host, native, scene, .. } = drawn;
     let first = u32::from(native.kind.around[0]);
@@ -409,7 +409,7 @@ fn count_fragments(drawn: &mut Drawn<'_>, view: &View, settings: &Settings, mesh
 fn splats_that_the_host_hides_are_left_out_early() {
     let Some(host) = open(|all| all) else { return };
     let view = View::whole(camera(), SIZE);
-    // Half of the view, in front of all.
+    // Half of the view, in front of everything.
     let before = camera().view.inverse();
     let centre = before.transform_point3(DVec3::new(-1.0, 0.0, 1.0)).as_vec3();
     let sides = [DVec3::X, DVec3::Y].map(|side| before.transform_vector3(side).as_vec3());
@@ -426,7 +426,7 @@ fn splats_that_the_host_hides_are_left_out_early() {
             counts
         });
         let [seeded, plain] = &counts;
-        // The first of the seeded ones is the seed's; the last ones draw what is seen, to the host's own depth.
+        // The first seeded count is the seed's; the last ones draw the visible surfaces, to the host's depth.
         println!("{name}: {seeded:?} fragments, without a seed {plain:?}");
         assert_eq!(seeded[0], u64::from(SIZE[0] * SIZE[1]));
         let last = plain.len() - 1;
@@ -453,7 +453,7 @@ fn a_thousand_frames_of_all_sizes_and_scenes_leave_nothing() {
         let mut native = Native::new(&host, &device, kind, [64, 48], &frames).unwrap();
         let (mut under_way, mut most) = (UnderWay::new(2), 0);
         for number in 0..1000usize {
-            // Sizes come and go, each for a while.
+            // Each size lasts for a few frames.
             let size = [[64, 48], [33, 48], [64, 1]][number / 7 % 3];
             if number > 0 && number % 7 == 0 {
                 under_way.finish(&host).unwrap();
@@ -463,7 +463,7 @@ fn a_thousand_frames_of_all_sizes_and_scenes_leave_nothing() {
             under_way
                 .submit(&host, |cmd| {
                     let (scene, settings) = (&scenes[number / 5 % 2], &settings[number / 11 % 4]);
-                    // SAFETY: two are under way at most.
+                    // SAFETY: at most two frames are in flight.
                     unsafe {
                         native.renderer.prepare(cmd, scene, &view, settings)?;
                         native.record(&host, cmd, (None, &view), |surfels| surfels.draw(cmd), true)
@@ -482,7 +482,7 @@ fn a_thousand_frames_of_all_sizes_and_scenes_leave_nothing() {
     assert_silent(&host);
 }
 
-/// A plan for several kinds of frames draws each, and what needs less.
+/// A plan for several kinds of frames draws each of them, and frames that need less.
 #[test]
 fn a_plan_for_several_frames_serves_each() {
     let Some(host) = open(|all| all) else { return };
@@ -515,7 +515,7 @@ fn a_plan_for_several_frames_serves_each() {
     assert_silent(&host);
 }
 
-/// Where 32-bit floats cannot be blended, sums have 16 bits here as there.
+/// Without blending of 32-bit floats, both use 16-bit sums.
 #[test]
 fn sums_of_16_bits_are_the_engines_own_too() {
     let Some(host) = open(|all| all) else { return };

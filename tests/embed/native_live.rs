@@ -1,11 +1,11 @@
-//! Surfels that change, in subpasses of a host: radii that grow, surfels that are fewer, buffers that take turns.
+//! Changing surfels in subpasses of a host: growing radii, fewer surfels, alternating buffers.
 
+use crate::fixture::{SIZE, assert_silent, camera, open, sphere, upload};
 use crate::host::Host;
 use crate::host::mesh::Mesh;
 use crate::host::native::{Kind, Native};
 use crate::host::scene::parallelogram;
 use crate::rig::lay;
-use crate::stand::{SIZE, assert_silent, camera, open, sphere, upload};
 use crate::support::layouts::Layout;
 use ash::vk;
 use glam::Vec3;
@@ -17,7 +17,7 @@ use surfel::settings::splatting::{Splatting, Visibility};
 use surfel::vk::{Device, DeviceLimits};
 use surfel::{Scene, Settings};
 
-/// A mesh of the host before the surfels, which start from its depth if they are seeded.
+/// A mesh of the host before the surfels, which may be seeded by its depth.
 fn kind(seed: bool) -> Kind {
     Kind {
         colour: vk::Format::R32G32B32A32_SFLOAT,
@@ -35,15 +35,15 @@ fn settings(visibility: Visibility) -> Settings {
     Settings { background: None, splatting: Splatting { visibility, ..preset.splatting }, ..preset }
 }
 
-/// A native host with a mesh that goes through the surfels.
-struct Shown<'a> {
+/// A native host with a mesh that intersects the surfels.
+struct NativeHost<'a> {
     host: &'a Host,
     native: Native,
     mesh: Mesh,
     device: Arc<Device>,
 }
 
-impl<'a> Shown<'a> {
+impl<'a> NativeHost<'a> {
     fn new(host: &'a Host, seed: bool, like: &Surfels, settings: &Settings) -> Self {
         let device = host.external_device_within(DeviceLimits::default(), None).unwrap();
         let scene = upload(host, &device, like);
@@ -87,10 +87,10 @@ fn a_seed_heeds_radii_that_grow() {
     let Some(host) = open(|all| all) else { return };
     let usual = sphere(20_000);
     let scaled = |by: f32| usual.radii.iter().map(|radius| by * radius).collect::<Vec<_>>();
-    // Seeds reach some ten times as far as the largest disc does.
+    // A seed's reach is some ten times that of the largest disc.
     let (small, radii) = (Surfels { radii: scaled(0.02), ..usual.clone() }, scaled(12.0));
     let settings = settings(Visibility::Ray);
-    let mut shown = [true, false].map(|seed| Shown::new(&host, seed, &small, &settings));
+    let mut shown = [true, false].map(|seed| NativeHost::new(&host, seed, &small, &settings));
     let pictures = shown.each_mut().map(|shown| {
         let scene = upload(&host, &shown.device, &small);
         shown.frame(&scene, &settings);
@@ -104,9 +104,9 @@ fn a_seed_heeds_radii_that_grow() {
     let [seeded, plain] = &pictures;
     let different = seeded.iter().zip(plain).filter(|(a, b)| a != b).count();
     println!("{different} px differ by the seed");
-    // Where a filter widens discs that are seen edge-on.
+    // Where a filter widens edge-on discs.
     assert!(different <= 5, "{different}");
-    shown.into_iter().for_each(Shown::destroy);
+    shown.into_iter().for_each(NativeHost::destroy);
     assert_silent(&host);
 }
 
@@ -121,7 +121,7 @@ fn as_many_surfels_are_drawn_as_are_said() {
             }
             other => settings(other),
         };
-        let mut shown = Shown::new(&host, true, &all, &settings);
+        let mut shown = NativeHost::new(&host, true, &all, &settings);
         let scene = upload(&host, &shown.device, &all);
         let whole = shown.frame(&scene, &settings);
         scene.set_count(9_001).unwrap();
@@ -148,7 +148,7 @@ fn buffers_that_take_turns_keep_what_is_made_for_them() {
         Native::new(&host, &device, kind(true), SIZE, &[(external[0].0.streams(), &settings)]).unwrap();
     let sides = [Vec3::X, Vec3::Z];
     let mesh = Mesh::new(&host, &parallelogram(Vec3::ZERO, sides), native.mesh_target()).unwrap();
-    let mut shown = Shown { host: &host, native, mesh, device: device.clone() };
+    let mut shown = NativeHost { host: &host, native, mesh, device: device.clone() };
     let mut round = || external.each_ref().map(|(scene, _)| shown.frame(scene, &settings));
     let pictures = round();
     let made = device.usage();

@@ -1,10 +1,10 @@
-//! What native subpasses cannot serve is refused by its name, and memory that is short leaves nothing behind.
+//! Unsupported render passes and frames of native subpasses are rejected with the cause, and a failed allocation leaks nothing.
 
 use crate::FOUR;
+use crate::fixture::{SIZE, assert_silent, camera, open, rising, surfels, upload};
 use crate::host::memory::Counted;
 use crate::host::native::{Kind, Native};
 use crate::native::{Drawn, PLAIN, method};
-use crate::stand::{SIZE, assert_silent, camera, open, rising, surfels, upload};
 use crate::support::sampling::{self, Random};
 use ash::vk;
 use std::sync::atomic::Ordering;
@@ -50,16 +50,16 @@ fn without_memory_there_is_an_error_and_then_there_is_memory() {
             Err(Error::Memory { .. }) => {}
             Err(error) => assert!(error.to_string().contains("attachments have 8x8 px"), "{error}"),
         }
-        // The host goes through its render pass all the same.
+        // The host still records its render pass.
         let drawn = host.run(|cmd| {
-            // SAFETY: as it is recorded whole, and waited for.
+            // SAFETY: it is fully recorded, and waited for.
             native.record(&host, cmd, (None, &view), |surfels| unsafe { surfels.draw(cmd) }, true)
         });
         assert!(drawn.unwrap_err().to_string().contains("no frame to draw"));
         refused[usize::from(sized)] += 1;
         left += 1;
     }
-    // While the attachments were made and while the frame was, at the first request and at later ones.
+    // Both the attachments and the frame fail, at the first request and at later ones.
     assert!(refused.iter().all(|times| *times > 1), "{refused:?}");
     counts.left.store(-1, Ordering::SeqCst);
     native.destroy(&host);
@@ -69,10 +69,10 @@ fn without_memory_there_is_an_error_and_then_there_is_memory() {
     assert_silent(&host);
 }
 
-/// Says that `made` was refused for this reason.
-fn assert_refused<T>(made: surfel::Result<T>, said: &str) {
+/// Asserts that `made` is an error with the text `said`.
+fn assert_refused<T>(made: surfel::Result<T>, expected: &str) {
     let text = made.err().map(|error| error.to_string()).unwrap_or_default();
-    assert!(text.contains(said), "`{said}` is not in `{text}`");
+    assert!(text.contains(expected), "`{expected}` is not in `{text}`");
 }
 
 #[test]
@@ -103,8 +103,8 @@ fn render_passes_that_cannot_be_served_are_refused_and_say_why() {
         (|pass| (pass.picture, pass.resolve) = (2, None), "depth has TYPE_4 samples in attachment 1"),
         (|pass| (pass.resolve, pass.normal) = (None, Some(2)), "normals has TYPE_1 samples in attachment 2"),
     ];
-    for (change, said) in changes {
-        assert_refused(plan(&attachments, change, &[&settings]), said);
+    for (change, expected) in changes {
+        assert_refused(plan(&attachments, change, &[&settings]), expected);
     }
     let coloured = |format, samples| {
         let mut attachments = kind.attachments();
@@ -142,7 +142,7 @@ fn render_passes_that_cannot_be_served_are_refused_and_say_why() {
     assert_refused(plan(&attachments, same, &[&settings, &nearest]), "make a plan for each");
     assert_refused(plan(&attachments, same, &[]), "a plan of no frames");
     let good = plan(&attachments, same, &[&settings]).unwrap();
-    // SAFETY: nothing is made of what is refused.
+    // SAFETY: nothing is created for a rejected description.
     let made = |frames| unsafe { Renderer::new(&device, good.clone(), vk::RenderPass::null(), frames) };
     assert_refused(made(2), "no render pass");
     assert_silent(&host);
@@ -167,7 +167,7 @@ fn frames_that_cannot_be_served_are_refused_and_say_why() {
     let scene = drawn.scene.clone();
     // SAFETY: nothing is recorded.
     assert_refused(unsafe { drawn.native.renderer.draw(vk::CommandBuffer::null()) }, "no frame to draw");
-    for (scene, view, settings, said) in [
+    for (scene, view, settings, expected) in [
         (&elsewhere, good, &settings, "of another device"),
         (&painted, good, &settings, "planned without"),
         (&scene, good, &method("sprites-unfiltered"), "a subpass for the nearest splat alone"),
@@ -180,16 +180,16 @@ fn frames_that_cannot_be_served_are_refused_and_say_why() {
         let made = host
             .run(|cmd| Ok(unsafe { drawn.native.renderer.prepare(cmd, scene, &view, settings) }))
             .unwrap();
-        assert_refused(made, said);
+        assert_refused(made, expected);
         // SAFETY: nothing is recorded.
         assert_refused(unsafe { drawn.native.renderer.draw(vk::CommandBuffer::null()) }, "no frame to draw");
     }
-    // SAFETY: nothing is made.
+    // SAFETY: nothing is created.
     unsafe {
         assert_refused(drawn.native.renderer.resize([0, 4], None), "0x4");
         assert_refused(drawn.native.renderer.resize(SIZE, None), "there is no view of it");
     }
-    // What was refused leaves all as it was.
+    // Rejected frames leave the state unchanged.
     drawn.render(&good, &settings, None, false);
     assert!(drawn.colours().iter().any(|colour| colour[3] == 1.0));
     drop(scene);

@@ -1,9 +1,9 @@
-//! Pipelines are made when a host likes, and then not again.
+//! Pipelines are created when the host asks for it, and only once.
 
+use crate::fixture::{SIZE, assert_silent, camera, open, surfels, upload};
 use crate::host::Host;
 use crate::host::frame::{Frame, Kind, Way};
 use crate::host::native::{self, Native};
-use crate::stand::{SIZE, assert_silent, camera, open, surfels, upload};
 use crate::{FLOATS, ONE};
 use ash::vk;
 use std::ffi::{CStr, c_void};
@@ -15,12 +15,12 @@ use surfel::settings::methods::Method;
 use surfel::vk::Device;
 use surfel::{Precision, Settings};
 
-/// Pipelines that were made by the one host that counts.
+/// Number of pipelines created by the host that counts.
 static MADE: AtomicU64 = AtomicU64::new(0);
-/// What its device makes them with.
+/// Pipeline creation functions of its device.
 static MAKING: Mutex<Option<(vk::PFN_vkCreateGraphicsPipelines, vk::PFN_vkCreateComputePipelines)>> =
     Mutex::new(None);
-/// One test at a time counts.
+/// Serializes the tests that count.
 static COUNTING: Mutex<()> = Mutex::new(());
 
 fn making() -> (vk::PFN_vkCreateGraphicsPipelines, vk::PFN_vkCreateComputePipelines) {
@@ -36,7 +36,7 @@ unsafe extern "system" fn graphics(
     pipelines: *mut vk::Pipeline,
 ) -> vk::Result {
     MADE.fetch_add(count.into(), Ordering::SeqCst);
-    // SAFETY: what is called was asked of the device.
+    // SAFETY: the functions are the device's.
     unsafe { making().0(device, cache, count, infos, allocator, pipelines) }
 }
 
@@ -53,7 +53,7 @@ unsafe extern "system" fn compute(
     unsafe { making().1(device, cache, count, infos, allocator, pipelines) }
 }
 
-/// The host's device, lent with functions that count.
+/// The host's device with functions that count.
 fn counted_device(host: &Host) -> Arc<Device> {
     let table = host.device.fp_v1_0();
     *MAKING.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) =
@@ -70,7 +70,7 @@ fn settings(name: &str) -> Settings {
     Settings { background: None, ..Method::named(name).unwrap().settings() }
 }
 
-/// Pipelines that `body` makes.
+/// Number of pipelines that `body` creates.
 fn made(body: impl FnOnce()) -> u64 {
     let before = MADE.load(Ordering::SeqCst);
     body();
@@ -90,7 +90,7 @@ fn a_frame_whose_pipelines_are_there_makes_none() {
     let view = View::whole(camera(), SIZE);
     for name in Method::ALL.map(|method| method.name) {
         let (first, next) = (settings("sprites-unfiltered"), settings(name));
-        // SAFETY: the target is the frame's; what is recorded is waited for.
+        // SAFETY: the target is the frame's; all commands are waited for.
         unsafe {
             let mut renderer = Renderer::new(&device, options.clone()).unwrap();
             let show = |renderer: &mut Renderer, settings: &Settings, body: &dyn Fn(&mut Renderer)| {
@@ -106,7 +106,7 @@ fn a_frame_whose_pipelines_are_there_makes_none() {
             };
             show(&mut renderer, &first, &|_| {});
             let ahead = made(|| {
-                // What is prepared is drawn all the same.
+                // The prepared frame is still drawn.
                 show(&mut renderer, &first, &|renderer| {
                     renderer.make_pipelines(&scene, &view, &next).unwrap();
                 });

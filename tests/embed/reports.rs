@@ -1,10 +1,10 @@
-//! What frames tell when they are over: times of passes, counts of surfels.
+//! Reports of finished frames: pass times and surfel counts.
 
 use crate::composite::frames;
+use crate::fixture::{Fixture, SIZE, assert_silent, open, surfels, upload};
 use crate::host::Host;
 use crate::host::frame::{Kind, Way};
 use crate::host::native::{self, Native};
-use crate::stand::{SIZE, Stand, assert_silent, open, surfels, upload};
 use crate::{FLOATS, ONE};
 use glam::DVec3;
 use std::sync::Arc;
@@ -16,13 +16,13 @@ use surfel::settings::methods::Method;
 use surfel::vk::{Device, DeviceOptions, PassTime};
 use surfel::{FrameReport, Outputs, Rasterizer, RenderOptions, Scene, Settings};
 
-/// The `number`th camera: each sees other parts of the sphere.
+/// The `number`th camera: each sees different parts of the sphere.
 fn nearer(number: usize) -> Camera {
     let eye = DVec3::new(0.4, 0.3, 1.6 + 0.2 * number as f64);
     Camera::look_at(eye, DVec3::new(0.5, 0.2, 0.0), DVec3::Y, 0.6, 4.0 / 3.0, 0.1).unwrap()
 }
 
-/// What the engine's own frames from these cameras tell.
+/// Reports of the engine's frames from these cameras.
 fn reports(settings: &Settings, rasterizer: Option<Rasterizer>, count: bool) -> Vec<FrameReport> {
     let device = Device::open(&DeviceOptions::default()).unwrap();
     let scene = Scene::upload(&device, &surfels()).unwrap();
@@ -45,14 +45,14 @@ fn frames_that_are_over_tell_what_is_asked_for() {
         let settings = Settings { cull: Cull::Back, ..settings };
         let [own, uncounted] = [true, false].map(|count| reports(&settings, rasterizer, count));
         let kind = Kind { way: Way::Subpass, colour: FLOATS, normals: false, samples: ONE, reversed: true };
-        let mut stand = Stand::new(&host, kind, SIZE, rasterizer, &surfels());
+        let mut fixture = Fixture::new(&host, kind, SIZE, rasterizer, &surfels());
         let mut render = |number, measured| {
-            stand.renderer.measure(measured);
+            fixture.renderer.measure(measured);
             let (start, view) = (Instant::now(), View::whole(nearer(number), SIZE));
-            stand.render(&host, &view, &settings, None);
+            fixture.render(&host, &view, &settings, None);
             // SAFETY: the frame was waited for.
-            unsafe { stand.renderer.finish() }.unwrap();
-            (stand.renderer.report().cloned(), 1e3 * start.elapsed().as_secs_f64())
+            unsafe { fixture.renderer.finish() }.unwrap();
+            (fixture.renderer.report().cloned(), 1e3 * start.elapsed().as_secs_f64())
         };
         let (report, wall) = render(0, both);
         let report = report.unwrap();
@@ -72,7 +72,7 @@ fn frames_that_are_over_tell_what_is_asked_for() {
         assert_eq!(counts.as_ref().and_then(|report| report.counts), own[2].counts);
         assert!(counts.is_some_and(|report| report.pass_times.is_empty()));
         assert_eq!(render(3, Measured::default()).0, None);
-        stand.destroy(&host);
+        fixture.destroy(&host);
     }
     assert_silent(&host);
 }
@@ -84,18 +84,18 @@ fn a_report_is_of_the_frame_that_must_be_over_by_now() {
     let own: Vec<_> = reports(&settings, None, true).iter().map(|report| report.counts).collect();
     assert!(own.windows(2).all(|pair| pair[0] != pair[1]));
     let kind = Kind { way: Way::Subpass, colour: FLOATS, normals: false, samples: ONE, reversed: true };
-    let mut stand = Stand::new(&host, kind, SIZE, None, &surfels());
-    stand.renderer.measure(Measured { times: false, counts: true });
+    let mut fixture = Fixture::new(&host, kind, SIZE, None, &surfels());
+    fixture.renderer.measure(Measured { times: false, counts: true });
     let told: Vec<_> = (0..5)
         .map(|number| {
             let view = View::whole(nearer(number), SIZE);
-            stand.render(&host, &view, &settings, None);
-            stand.renderer.report().map(|report| report.counts)
+            fixture.render(&host, &view, &settings, None);
+            fixture.renderer.report().map(|report| report.counts)
         })
         .collect();
-    // Two may be under way: when the third is recorded, the first is over.
+    // Two frames may be in flight: when the third is recorded, the first is over.
     assert_eq!(told, [None, None, Some(own[0]), Some(own[1]), Some(own[2])]);
-    stand.destroy(&host);
+    fixture.destroy(&host);
     assert_silent(&host);
 }
 
@@ -105,32 +105,32 @@ fn a_frame_that_was_never_submitted_tells_nothing() {
     let settings = Settings { cull: Cull::Back, ..Method::named("sprites").unwrap().settings() };
     let own = reports(&settings, None, true);
     let kind = Kind { way: Way::Subpass, colour: FLOATS, normals: false, samples: ONE, reversed: true };
-    let mut stand = Stand::new(&host, kind, SIZE, None, &surfels());
-    stand.renderer.measure(Measured { times: true, counts: true });
-    // Each slot is first used by a frame that is thrown away, and once more after one that was not.
+    let mut fixture = Fixture::new(&host, kind, SIZE, None, &surfels());
+    fixture.renderer.measure(Measured { times: true, counts: true });
+    // Each slot is first used by a discarded frame, and again after a submitted one.
     for (number, submitted) in [false, false, true, true, false].into_iter().enumerate() {
         let view = View::whole(nearer(number), SIZE);
         if submitted {
-            stand.render(&host, &view, &settings, None);
+            fixture.render(&host, &view, &settings, None);
         } else {
             host.record(|cmd| {
                 // SAFETY: recorded outside a render pass, and never submitted.
-                unsafe { stand.renderer.prepare(cmd, &stand.scene, &view, &settings)? };
+                unsafe { fixture.renderer.prepare(cmd, &fixture.scene, &view, &settings)? };
                 Ok(())
             })
             .unwrap();
         }
-        // SAFETY: what was submitted was waited for.
-        unsafe { stand.renderer.finish() }.unwrap();
-        let report = stand.renderer.report();
+        // SAFETY: the submitted frames were waited for.
+        unsafe { fixture.renderer.finish() }.unwrap();
+        let report = fixture.renderer.report();
         assert_eq!(report.map(|report| report.counts), submitted.then_some(own[number].counts), "{number}");
         assert_eq!(report.is_some_and(|report| !report.pass_times.is_empty()), submitted, "{number}");
     }
-    stand.destroy(&host);
+    fixture.destroy(&host);
     assert_silent(&host);
 }
 
-/// A frame of a native host that is recorded so many times after it was prepared once; what it tells, and how long it took, ms.
+/// A frame of a native host that is recorded several times after one `prepare`; its report, and its time, ms.
 fn native_report(
     host: &Host,
     native: &mut Native,
@@ -158,15 +158,15 @@ fn frames_that_are_not_measured_do_not_hide_what_was() {
     let settings = Settings { cull: Cull::Back, ..Method::named("sprites").unwrap().settings() };
     let own = reports(&settings, None, true);
     let kind = Kind { way: Way::Subpass, colour: FLOATS, normals: false, samples: ONE, reversed: true };
-    let mut stand = Stand::new(&host, kind, SIZE, None, &surfels());
+    let mut fixture = Fixture::new(&host, kind, SIZE, None, &surfels());
     for (number, counts) in [true, false].into_iter().enumerate() {
-        stand.renderer.measure(Measured { times: false, counts });
-        stand.render(&host, &View::whole(nearer(number), SIZE), &settings, None);
+        fixture.renderer.measure(Measured { times: false, counts });
+        fixture.render(&host, &View::whole(nearer(number), SIZE), &settings, None);
     }
     // SAFETY: both frames were waited for.
-    unsafe { stand.renderer.finish() }.unwrap();
-    assert_eq!(stand.renderer.report().map(|report| report.counts), Some(own[0].counts));
-    stand.destroy(&host);
+    unsafe { fixture.renderer.finish() }.unwrap();
+    assert_eq!(fixture.renderer.report().map(|report| report.counts), Some(own[0].counts));
+    fixture.destroy(&host);
     assert_silent(&host);
 }
 
@@ -209,7 +209,7 @@ fn subpasses_tell_what_is_asked_for() {
         let sum: f64 = report.pass_times.iter().map(|time| time.milliseconds).sum();
         assert!(sum < wall, "{sum} ms of {wall} ms");
 
-        // Drawn again, it is not timed again; not drawn at all, it has the times of what was prepared.
+        // A second draw is not timed again; a frame without draw has the times of `prepare`.
         let (counts, _) = render(2, Measured { times: false, ..both }, 2);
         assert_eq!(counts.as_ref().and_then(|report| report.counts), own[2].counts);
         assert!(counts.is_some_and(|report| report.pass_times.is_empty()));

@@ -1,8 +1,8 @@
-//! A host that draws surfels which live on the GPU, frame by frame.
+//! A host that renders changing scenes, frame by frame.
 
+use crate::fixture::upload;
 use crate::host::Host;
 use crate::host::frame::{Frame, Kind, Way};
-use crate::stand::upload;
 use crate::support::layouts::Layout;
 use ash::vk::{self, Format};
 use glam::DVec3;
@@ -20,7 +20,7 @@ pub const KIND: Kind = Kind {
     samples: vk::SampleCountFlags::TYPE_1,
     reversed: true,
 };
-pub type Shown = (Vec<[f32; 4]>, Vec<f32>);
+pub type Rendered = (Vec<[f32; 4]>, Vec<f32>);
 
 pub fn view() -> View {
     let camera =
@@ -28,7 +28,7 @@ pub fn view() -> View {
     View::whole(camera, SIZE)
 }
 
-/// A host's frames, and the renderer that draws into them.
+/// A host's frames, and their embedded renderer.
 pub struct Rig {
     pub renderer: Renderer,
     pub device: Arc<Device>,
@@ -64,7 +64,7 @@ impl Rig {
         }
     }
 
-    pub fn show(&mut self, host: &Host, scene: &Arc<Scene>, settings: &Settings) -> Shown {
+    pub fn render(&mut self, host: &Host, scene: &Arc<Scene>, settings: &Settings) -> Rendered {
         host.run(|cmd| {
             self.record(host, cmd, None, scene, settings);
             Ok(())
@@ -73,17 +73,17 @@ impl Rig {
         self.frame.read(host).unwrap()
     }
 
-    /// A frame of `surfels` uploaded anew. Depths are summed in a unit of about the scene's distance: its bounds have to be the same.
-    pub fn show_uploaded(
+    /// A frame of `surfels`, uploaded anew. Sums of depths are scaled by the scene's distance, so the bounds must be the same.
+    pub fn render_uploaded(
         &mut self,
         host: &Host,
         surfels: &Surfels,
         like: &Scene,
         settings: &Settings,
-    ) -> Shown {
+    ) -> Rendered {
         let scene = upload(host, &self.device, surfels);
         scene.set_bounds(like.bounds()).unwrap();
-        self.show(host, &scene, settings)
+        self.render(host, &scene, settings)
     }
 
     pub fn destroy(self, host: &Host) {
@@ -93,9 +93,9 @@ impl Rig {
 }
 
 /// A buffer of the host.
-pub struct Held(pub vk::Buffer, vk::DeviceMemory);
+pub struct HostBuffer(pub vk::Buffer, vk::DeviceMemory);
 
-impl Held {
+impl HostBuffer {
     pub fn new(host: &Host, bytes: &[u8]) -> Self {
         let usage = vk::BufferUsageFlags::STORAGE_BUFFER
             | vk::BufferUsageFlags::TRANSFER_DST
@@ -105,7 +105,7 @@ impl Held {
     }
 
     pub fn destroy(self, host: &Host) {
-        // SAFETY: the GPU is done with it.
+        // SAFETY: the GPU has finished using it.
         unsafe {
             host.device.destroy_buffer(self.0, None);
             host.device.free_memory(self.1, None);
@@ -113,10 +113,15 @@ impl Held {
     }
 }
 
-/// A scene of `surfels` in a buffer of the host, and that.
-pub fn lay(host: &Host, device: &Arc<Device>, layout: &Layout, surfels: &Surfels) -> (Arc<Scene>, Held) {
-    let held = Held::new(host, &layout.bytes(surfels));
-    // SAFETY: the buffer is the device's, was made for it, and is destroyed last.
-    let scene = unsafe { Scene::from_buffers(device, &layout.told(surfels, held.0)) }.unwrap();
+/// A scene of `surfels` in a buffer of the host, and the buffer.
+pub fn lay(
+    host: &Host,
+    device: &Arc<Device>,
+    layout: &Layout,
+    surfels: &Surfels,
+) -> (Arc<Scene>, HostBuffer) {
+    let held = HostBuffer::new(host, &layout.bytes(surfels));
+    // SAFETY: the buffer is of the device, is created for this scene, and is destroyed last.
+    let scene = unsafe { Scene::from_buffers(device, &layout.buffers(surfels, held.0)) }.unwrap();
     (Arc::new(scene), held)
 }

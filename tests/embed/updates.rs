@@ -1,9 +1,9 @@
-//! New values for surfels that were uploaded: seen by the frames after, and by none before.
+//! Updates of uploaded surfels: visible in later frames, and not in earlier ones.
 
+use crate::fixture::{assert_silent, open, upload};
 use crate::host::frame::Frame;
 use crate::live::{ALONE, NARROW, alone, differing, ellipses, moved, refused, settings, sphere, spoil};
 use crate::rig::{KIND, Rig, SIZE};
-use crate::stand::{assert_silent, open, upload};
 use crate::support::sampling::{Random, narrow, paint_linear, paint_srgb};
 use glam::Vec3;
 use surfel::embed::{self, Changes};
@@ -12,7 +12,7 @@ use surfel::settings::methods::Method;
 use surfel::vk::DeviceLimits;
 use surfel::{Rasterizer, Scene};
 
-/// Surfels `range` of `surfels`, as changes of all streams.
+/// Surfels `range` of `surfels` as changes of all streams.
 fn changes<'a>(surfels: &'a Surfels, range: std::ops::Range<usize>, colours: &'a Colours) -> Changes<'a> {
     Changes {
         positions: Some(&surfels.positions[range.clone()]),
@@ -57,7 +57,7 @@ fn mixed(old: &Surfels, new: &Surfels, range: std::ops::Range<usize>) -> Surfels
     mixed
 }
 
-/// Other values for the same surfels, all streams.
+/// Other values of all streams for the same surfels.
 fn others(surfels: &Surfels) -> Surfels {
     let mut other = moved(surfels, 4);
     other.radii.iter_mut().for_each(|radius| *radius *= 1.25);
@@ -104,7 +104,7 @@ fn an_update_is_seen_by_the_frames_after_it_and_by_none_before() {
             let later = mixed(&surfels, &new, range.clone());
             for (frame, surfels, like) in [(before, &surfels, &old), (after, &later, &scene)] {
                 let found = frame.read(&host).unwrap();
-                let expected = rig.show_uploaded(&host, surfels, like, &settings);
+                let expected = rig.render_uploaded(&host, surfels, like, &settings);
                 assert_eq!(differing(&found, &expected, 0.0), 0, "{rasterizer:?} {range:?}");
                 frame.destroy(&host);
             }
@@ -132,7 +132,7 @@ fn what_an_update_makes_invalid_is_culled_and_what_it_mends_is_drawn() {
             assert!(found.0 == expected.0, "{name} {rasterizer:?}");
         }
     }
-    // A radius has a surfel drawn again that was left out for another reason.
+    // A new radius enables a surfel that was disabled for another reason.
     let mut circles = sphere(500);
     circles.colours = Some(Colours::Linear(vec![[0.5; 3]; 500]));
     if let Some(Colours::Linear(colours)) = &mut circles.colours {
@@ -146,7 +146,7 @@ fn what_an_update_makes_invalid_is_culled_and_what_it_mends_is_drawn() {
         assert_eq!(counts.invalid, 2, "{name} {rasterizer:?}");
         assert!(picture.colour.iter().flatten().all(|value| value.is_finite()));
     }
-    // One stream alone.
+    // A single stream.
     let scene = Scene::upload(&device, &good).unwrap();
     scene.update(0, &Changes { positions: Some(&[Vec3::NAN, Vec3::ZERO]), ..Default::default() }).unwrap();
     let (_, counts) = alone(&device, &scene, "pull-push", Rasterizer::Compute);
@@ -210,7 +210,7 @@ fn a_scene_that_is_uploaded_piece_by_piece_is_the_same() {
     let surfels = sphere(3_000);
     let whole = upload(&host, &rig.device, &surfels);
     for most in [1, 4_096, 50_000, u64::MAX] {
-        // Four bytes at a time take long.
+        // Four bytes at a time are slow.
         let surfels = if most == 1 { sphere(30) } else { surfels.clone() };
         let mut upload = embed::Upload::new(&rig.device, &surfels).unwrap();
         let all = upload.left();
@@ -229,7 +229,7 @@ fn a_scene_that_is_uploaded_piece_by_piece_is_the_same() {
         let settings = settings(Method::ALL[0]);
         if most > 1 {
             let [expected, shown] =
-                [&whole, &std::sync::Arc::new(scene)].map(|scene| rig.show(&host, scene, &settings));
+                [&whole, &std::sync::Arc::new(scene)].map(|scene| rig.render(&host, scene, &settings));
             assert!(expected == shown, "{most} bytes at a time");
         }
     }

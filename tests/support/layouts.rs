@@ -89,7 +89,7 @@ impl Layout {
     }
 
     /// What a scene is told of `surfels` in `buffer`.
-    pub fn told(&self, surfels: &Surfels, buffer: vk::Buffer) -> Buffers {
+    pub fn buffers(&self, surfels: &Surfels, buffer: vk::Buffer) -> Buffers {
         let values = |(offset, stride, format): Place| Values {
             buffer,
             size: self.end(surfels.len()) as u64,

@@ -1,4 +1,4 @@
-//! The least host: draws one disc from arrays into a picture and counts its pixels.
+//! The smallest host: renders one disc from arrays and counts its pixels.
 
 use surfel::geometry::{Camera, Surfels};
 use surfel::glam::{DVec3, Vec3};
@@ -17,7 +17,7 @@ fn main() -> surfel::Result<()> {
     let device = Device::open(&DeviceOptions::default())?;
     let scene = Scene::upload(&device, &disc)?;
     let mut renderer = Renderer::new(&device, RenderOptions { size: SIZE, ..RenderOptions::default() })?;
-    // The disc, of radius 1, fills the middle half of the picture's height: tan(fov / 2) = 1, from 2 away.
+    // The disc, of radius 1, fills the middle half of the picture's height: tan(fov / 2) = 1, at distance 2.
     let camera = Camera::look_at(2.0 * DVec3::Z, DVec3::ZERO, DVec3::Y, 90f64.to_radians(), 1.0, 1e-3)?;
     let (picture, _) = renderer.render_picture(&scene, &camera, &Settings::default())?;
     let covered = picture.colour.iter().filter(|pixel| pixel[3] > 0.5).count();

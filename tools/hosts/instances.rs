@@ -1,7 +1,7 @@
-//! A host that shows a model three times, turned, scaled, and running through each other and a mesh of the host:
-//! `cargo run --release --example instances -- FILE.png [--method NAME] [--model FILE.ply]`, or in a window without FILE.png.
+//! A host that shows three instances of a model, rotated, scaled and intersecting each other and a mesh of the host: `cargo run --release
+//! --example instances -- FILE.png [--method NAME] [--model FILE.ply]`, or in a window without FILE.png.
 //!
-//! The model is on the device once; `prepare` is given a list of where it stands.
+//! The model is on the device once; `prepare` receives a list of instances.
 #![allow(unsafe_code, reason = "a host speaks Vulkan itself")]
 
 mod host;
@@ -25,10 +25,10 @@ fn main() -> Result<()> {
     host::demo::run(|host, arguments| Composite::<Threefold>::new(host, Way::Subpass, arguments))
 }
 
-/// A model that stands in three places.
+/// Three instances of a model.
 struct Threefold(Models);
 
-/// Number of surfels, if none is asked for.
+/// Default number of surfels.
 const COUNT: u32 = 150_000;
 
 impl Content for Threefold {
@@ -37,7 +37,7 @@ impl Content for Threefold {
         Ok(Self(Models::new(device, arguments, own, COUNT)?))
     }
 
-    /// The host's sun shines on surfels, too.
+    /// The host's light shines on surfels, too.
     fn settings(arguments: &Arguments) -> Settings {
         let settings = arguments.settings();
         let sun = DirectionalLight { to_light: TO_LIGHT.to_array(), radiance: [0.7; 3] };
@@ -69,7 +69,7 @@ impl Content for Threefold {
     fn destroy(self, _: &Host) {}
 }
 
-/// Where a model of radius 1 stands: turned, scaled and moved.
+/// Transforms of a model of radius 1.
 fn places() -> [DMat4; 3] {
     let place = |scale: f64, axis: [f64; 3], angle: f64, at: [f64; 3]| {
         let turn = DQuat::from_axis_angle(DVec3::from_array(axis).normalize(), angle);

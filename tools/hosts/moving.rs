@@ -1,8 +1,8 @@
-//! A host whose million points move on the GPU, seen where they are:
-//! `cargo run --release --example moving -- FILE.png [--frames 60] [--method NAME]`, or in a window without FILE.png.
+//! A host whose million points move on the GPU and are rendered in place: `cargo run --release --example moving -- FILE.png [--frames 60]
+//! [--method NAME]`, or in a window without FILE.png.
 //!
-//! The host's own compute shader writes its vertices every frame; surfels are read from the same buffer, beside a mesh of the host, with two
-//! frames in flight.
+//! A compute shader of the host writes its vertices in every frame; surfels are read from the same buffer, beside a mesh of the host, with
+//! two frames in flight.
 #![allow(unsafe_code, reason = "a host speaks Vulkan itself")]
 
 mod host;
@@ -20,25 +20,25 @@ use surfel::geometry::Camera;
 use surfel::vk::Device;
 use surfel::{Instance, Scene};
 
-/// Number of points, if none is asked for: 1024 along either direction.
+/// Default number of points: 1024 in each direction.
 const COUNT: u32 = 1 << 20;
 
 fn main() -> Result<()> {
     host::demo::run(|host, arguments| Composite::<Waves>::new(host, Way::Subpass, arguments))
 }
 
-/// Points that move.
+/// Moving points.
 struct Waves {
     simulation: Simulation,
     scene: Arc<Scene>,
-    /// Of the one that is shown, and of the one that is not.
+    /// Points per direction of the visible simulation, and of the other.
     sides: [u32; 2],
 }
 
-/// Points, and the scene that reads them.
+/// A simulation, and the scene that reads its points.
 fn simulate(host: &Host, device: &Arc<Device>, side: u32) -> Result<(Simulation, Arc<Scene>)> {
     let simulation = Simulation::new(host, side)?;
-    // SAFETY: the simulation is destroyed after the last frame that reads it, and waits for its readers, as they for it.
+    // SAFETY: the simulation is destroyed after the last frame that reads it; it waits for its readers, and they for it.
     let scene = unsafe { Scene::from_buffers(device, &simulation.buffers())? };
     Ok((simulation, Arc::new(scene)))
 }
@@ -65,12 +65,12 @@ impl Content for Waves {
         Camera::look_at(eye, middle, DVec3::Y, 0.7, f64::from(width) / f64::from(height), 0.1)
     }
 
-    /// A quarter of the points, or all of them again.
+    /// Switches between all points and a quarter of them.
     fn change(&mut self, host: &Host, device: &Arc<Device>) -> Result<()> {
         self.sides.reverse();
         let (simulation, scene) = simulate(host, device, self.sides[0])?;
         self.scene = scene;
-        // SAFETY: a plain use of Vulkan.
+        // SAFETY: plain Vulkan.
         unsafe { host.device.device_wait_idle()? };
         std::mem::replace(&mut self.simulation, simulation).destroy(host);
         Ok(())

@@ -1,5 +1,5 @@
-//! A host whose render pass has surfels' passes among its own subpasses: `cargo run --example native -- FILE.png`, or in a window,
-//! `cargo run --example native`.
+//! A host with the engine's passes among the subpasses of its render pass: `cargo run --example native -- FILE.png`, or in a window, `cargo
+//! run --example native`.
 #![allow(unsafe_code, reason = "a host speaks Vulkan itself")]
 
 mod host;
@@ -19,7 +19,7 @@ fn main() -> Result<()> {
     host::demo::run(Subpasses::new)
 }
 
-/// A render pass with the mesh's subpass, surfels' own, and the fog's over both.
+/// A render pass with a subpass of the mesh, those of the surfels, and one of fog.
 struct Subpasses {
     models: Models,
     native: Native,
@@ -68,7 +68,7 @@ impl Demo for Subpasses {
         let view = View::whole(sphere::camera(seconds, self.size)?, self.size);
         let scene = self.models.scene(cmd)?;
         let stands = Instance::new(&scene, self.models.to_unit(&scene.bounds()));
-        // SAFETY: prepared outside the pass and drawn inside it; the callers submit frames in order, no more at once than was said.
+        // SAFETY: prepared outside the pass and drawn inside it; the callers submit frames in order, with the declared number in flight.
         unsafe {
             self.native.renderer.prepare(cmd, &stands, &view, &self.settings)?;
             let lit = (&self.mesh, TO_LIGHT);

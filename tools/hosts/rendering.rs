@@ -1,5 +1,4 @@
-//! A host that draws by dynamic rendering: `cargo run --example rendering -- FILE.png`, or in a window,
-//! `cargo run --example rendering`.
+//! A host that draws by dynamic rendering: `cargo run --example rendering -- FILE.png`, or in a window, `cargo run --example rendering`.
 #![allow(unsafe_code, reason = "a host speaks Vulkan itself")]
 
 mod host;

@@ -1,5 +1,5 @@
-//! A host that draws in a subpass of its render pass: `cargo run --example subpass -- FILE.png`, or in a window,
-//! `cargo run --example subpass`.
+//! A host that draws in a subpass of its render pass: `cargo run --example subpass -- FILE.png`, or in a window, `cargo run --example
+//! subpass`.
 #![allow(unsafe_code, reason = "a host speaks Vulkan itself")]
 
 mod host;

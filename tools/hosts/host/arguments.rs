@@ -1,34 +1,34 @@
-//! The hosts' command lines.
+//! Command line of the hosts.
 
 use std::ffi::OsString;
 use std::path::PathBuf;
 use surfel::Settings;
 use surfel::settings::methods::Method;
 
-/// What a host is asked to do.
+/// Mode of a host.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Mode {
-    /// A picture in a file, a PNG.
+    /// Renders a picture to a PNG file.
     Picture(PathBuf),
-    /// A window, until it is closed.
+    /// Opens a window.
     #[default]
     Window,
-    /// A window that changes its size and what it shows by itself.
+    /// Opens a window that changes its size and contents by itself.
     Soak,
-    /// A comparison with the engine's own frames.
+    /// Compares with the engine's frames.
     Check,
 }
 
-/// What a command line asks for.
+/// Parsed command line.
 #[derive(Clone, Debug, Default)]
 pub struct Arguments {
     pub mode: Mode,
     pub method: Option<Method>,
-    /// A PLY in the place of the host's own surfels.
+    /// A PLY file, in place of the host's surfels.
     pub model: Option<PathBuf>,
-    /// Number of the host's own surfels.
+    /// Number of the host's surfels.
     pub points: Option<u32>,
-    /// Frames until it ends; the last one is the picture.
+    /// Number of frames; the last one is the picture.
     pub frames: Option<u64>,
 }
 
@@ -36,7 +36,7 @@ const USAGE: &str = "give FILE.png, --window, --soak or --check; \
     and --method NAME, --model FILE.ply, --points N, --frames N where they are wanted";
 
 impl Arguments {
-    /// Reads the program's arguments: the window, if there are none.
+    /// Parses the program's arguments; a window without any.
     pub fn of_program() -> Result<Self, String> {
         Self::of(std::env::args_os().skip(1))
     }
@@ -77,7 +77,7 @@ impl Arguments {
         Ok(Self { mode: mode.unwrap_or_default(), ..parsed })
     }
 
-    /// How surfels are rendered.
+    /// Render settings.
     pub fn settings(&self) -> Settings {
         self.method.map_or_else(Settings::default, |method| method.settings())
     }

@@ -1,4 +1,4 @@
-//! Surfels that are composed into the host's own pass: in its subpass, or by dynamic rendering.
+//! Surfels composed into the host's pass: in its subpass, or by dynamic rendering.
 
 use super::arguments::Arguments;
 use super::demo::{Demo, FRAMES_IN_FLIGHT};
@@ -13,36 +13,37 @@ use surfel::geometry::Camera;
 use surfel::vk::Device;
 use surfel::{Instance, Precision, Settings};
 
-/// What is composed.
+/// Contents of a composite.
 pub trait Content: Sized {
-    /// Samples a pixel.
+    /// Samples per pixel.
     const SAMPLES: vk::SampleCountFlags = vk::SampleCountFlags::TYPE_4;
 
-    /// What surfels there are.
+    /// Creates the surfels.
     fn new(host: &Host, device: &Arc<Device>, arguments: &Arguments) -> Result<Self>;
 
-    /// How they are rendered.
+    /// Render settings.
     fn settings(arguments: &Arguments) -> Settings {
         arguments.settings()
     }
 
-    /// The host's own triangles, three corners each.
+    /// The host's triangles, three corners each.
     fn triangles() -> Corners;
 
-    /// From where all is seen after so many seconds.
+    /// Camera at a time in seconds.
     fn camera(seconds: f64, size: [u32; 2]) -> surfel::Result<Camera>;
 
-    /// Others from the next frame on.
+    /// Shows other surfels from the next frame on.
     fn change(&mut self, host: &Host, device: &Arc<Device>) -> Result<()>;
 
-    /// Records, outside a render pass, what a frame needs of them; where they stand in it. The GPU is done with all frames but the last.
+    /// Records, outside a render pass, the commands that a frame needs; returns its instances. The GPU has finished all frames but the
+    /// last.
     fn instances(&mut self, host: &Host, cmd: vk::CommandBuffer, seconds: f64) -> Result<Vec<Instance>>;
 
-    /// Destroys what is the host's own, once the GPU is done with it.
+    /// Destroys the host's objects, once the GPU has finished using them.
     fn destroy(self, host: &Host);
 }
 
-/// Content, a mesh, and the frame that they are drawn to.
+/// Contents, a mesh, and their frame.
 pub struct Composite<C> {
     content: C,
     frame: Frame,
@@ -53,7 +54,7 @@ pub struct Composite<C> {
 }
 
 impl<C: Content> Composite<C> {
-    /// What is asked for, in a host that draws in this way.
+    /// Creates the composite for a host that draws in this way.
     pub fn new(host: &Host, way: Way, arguments: &Arguments) -> Result<Self> {
         let device = host.external_device(None)?;
         let content = C::new(host, &device, arguments)?;
@@ -72,7 +73,7 @@ impl<C: Content> Composite<C> {
             precision: Precision::Full,
             rasterizer: None,
         };
-        // SAFETY: the target is the frame's, which is destroyed after the renderer, and keeps its pass through all sizes.
+        // SAFETY: the target is the frame's, which is destroyed after the renderer and keeps its pass for all sizes.
         let renderer = unsafe { Renderer::new(&device, options)? };
         Ok(Self { content, frame, mesh, renderer, settings: C::settings(arguments), device })
     }
@@ -95,7 +96,7 @@ impl<C: Content> Demo for Composite<C> {
         let camera = C::camera(seconds, self.frame.size)?;
         let view = View::whole(camera, self.frame.size);
         let list = self.content.instances(host, cmd, seconds)?;
-        // SAFETY: prepared outside the pass and drawn inside it; the callers submit frames in order, no more at once than was said.
+        // SAFETY: prepared outside the pass and drawn inside it; the callers submit frames in order, with the declared number in flight.
         unsafe {
             self.renderer.prepare(cmd, &list, &view, &self.settings)?;
             self.frame.begin(host, cmd);

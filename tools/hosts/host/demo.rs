@@ -1,4 +1,4 @@
-//! What a host shows: to a picture or in a window.
+//! Demos: what a host renders to a picture or a window.
 
 use super::arguments::{Arguments, Mode};
 use super::scene::{SIZE, STEP};
@@ -8,24 +8,24 @@ use ash::vk;
 use std::path::Path;
 use std::time::Instant;
 
-/// How many frames may be under way.
+/// Number of frames in flight.
 pub const FRAMES_IN_FLIGHT: u32 = 2;
 
 /// Creates a demo, at first with frames of [`SIZE`].
 pub type New<D> = fn(&Host, &Arguments) -> Result<D>;
 
-/// Frames of one size at a time, and what they show.
+/// Contents and frames of one size at a time.
 pub trait Demo: Sized {
-    /// Px of the frames.
+    /// Size of the frames, px.
     fn size(&self) -> [u32; 2];
 
-    /// The same in frames of `size` px. The GPU is done with those before.
+    /// Changes the size. The GPU has finished the frames before.
     fn resize(&mut self, host: &Host, size: [u32; 2]) -> Result<()>;
 
-    /// Other surfels from the next frame on, while others may still be under way.
+    /// Shows other surfels from the next frame on, while earlier frames may be in flight.
     fn change(&mut self, host: &Host) -> Result<()>;
 
-    /// Records what is seen after so many seconds, and leaves the picture ready to be copied. The GPU is done with all frames but the last.
+    /// Records the frame at a time in seconds, and leaves the picture as a transfer source. The GPU has finished all frames but the last.
     fn record(&mut self, host: &Host, cmd: vk::CommandBuffer, seconds: f64) -> Result<()>;
 
     /// The image of the picture.
@@ -34,11 +34,11 @@ pub trait Demo: Sized {
     /// The picture: sRGB and alpha, row by row.
     fn read(&self, host: &Host) -> Result<Vec<u8>>;
 
-    /// Destroys it, once the GPU is done with it.
+    /// Destroys the demo, once the GPU has finished using it.
     fn destroy(self, host: &Host);
 }
 
-/// Runs a host as its command line says.
+/// Runs a demo according to the command line.
 pub fn run<D: Demo>(new: New<D>) -> Result<()> {
     let arguments = Arguments::of_program()?;
     match &arguments.mode {
@@ -54,7 +54,7 @@ pub fn run<D: Demo>(new: New<D>) -> Result<()> {
     }
 }
 
-/// Renders frames, of which the last is written to `file`, a PNG; says what they take where there are several.
+/// Renders frames, and writes the last one to `file`, a PNG; prints the median time of several.
 fn picture<D: Demo>(new: New<D>, arguments: &Arguments, file: &Path) -> Result<()> {
     let host = Host::open_with(|all| all, Validation::WhereThere, &[], &[])?;
     let mut demo = new(&host, arguments)?;
@@ -70,7 +70,7 @@ fn picture<D: Demo>(new: New<D>, arguments: &Arguments, file: &Path) -> Result<(
     Ok(picture.save(file)?)
 }
 
-/// Shows so many frames; the median of what one takes, ms.
+/// Renders frames; returns the median time of one, ms.
 fn frames<D: Demo>(host: &Host, demo: &mut D, frames: u64) -> Result<f64> {
     let mut under_way = UnderWay::new(FRAMES_IN_FLIGHT);
     let mut ends = vec![Instant::now()];

@@ -1,14 +1,14 @@
-//! Fog: a later subpass of the host, which reads the depth that is there by then, whoever drew it.
+//! Fog: a later subpass of the host that reads the final depth of host and surfels.
 
 use super::{Host, Result};
 use ash::vk;
 
-/// How dense it is: at depth d, its part of the colour is exp(−DENSITY d).
+/// Density: at depth d, the fog's share of the colour is exp(−DENSITY d).
 pub const DENSITY: f32 = 80.0;
 /// Its colour, linear.
 pub const COLOUR: [f32; 3] = [0.65, 0.7, 0.75];
 
-/// The pipeline that draws it and what that reads.
+/// The fog's pipeline and its descriptors.
 pub struct Fog {
     layout: vk::PipelineLayout,
     set_layout: vk::DescriptorSetLayout,
@@ -18,7 +18,7 @@ pub struct Fog {
 }
 
 impl Fog {
-    /// Fog in a subpass of a render pass.
+    /// Creates fog for a subpass of a render pass.
     pub fn new(
         host: &Host,
         (pass, subpass): (vk::RenderPass, u32),
@@ -32,7 +32,7 @@ impl Fog {
             .stage_flags(stage)];
         let push = [vk::PushConstantRange { stage_flags: stage, offset: 0, size: 20 }];
         let size = [vk::DescriptorPoolSize { ty: input, descriptor_count: 1 }];
-        // SAFETY: a plain use of Vulkan; `destroy` destroys what is made.
+        // SAFETY: plain Vulkan; `destroy` destroys the objects.
         unsafe {
             let device = &host.device;
             let info = vk::DescriptorSetLayoutCreateInfo::default().bindings(&binding);
@@ -50,7 +50,7 @@ impl Fog {
         }
     }
 
-    /// The depth that it reads from now on, of which no frame is under way.
+    /// Sets the depth that it reads; no frame is in flight.
     pub fn read(&self, host: &Host, depth: vk::ImageView) {
         let info = [vk::DescriptorImageInfo {
             image_view: depth,
@@ -65,7 +65,7 @@ impl Fog {
         unsafe { host.device.update_descriptor_sets(&[write], &[]) };
     }
 
-    /// Draws it over all of `viewport`, inside its subpass.
+    /// Draws the fog over all of `viewport`, inside its subpass.
     pub fn draw(&self, host: &Host, cmd: vk::CommandBuffer, [width, height]: [u32; 2]) {
         let [r, g, b] = COLOUR;
         let push = [r, g, b, 1.0, DENSITY];
@@ -73,7 +73,7 @@ impl Fog {
         let viewport =
             vk::Viewport { width: width as f32, height: height as f32, max_depth: 1.0, ..Default::default() };
         let point = vk::PipelineBindPoint::GRAPHICS;
-        // SAFETY: recorded inside the subpass that the pipeline is for.
+        // SAFETY: recorded inside the subpass of the pipeline.
         unsafe {
             let device = &host.device;
             device.cmd_set_viewport(cmd, 0, &[viewport]);
@@ -86,7 +86,7 @@ impl Fog {
         }
     }
 
-    /// Destroys it, once the GPU is done with it.
+    /// Destroys the fog, once the GPU has finished using it.
     pub fn destroy(self, host: &Host) {
         // SAFETY: by the caller.
         unsafe {
@@ -104,7 +104,7 @@ unsafe fn pipeline(
     (pass, subpass): (vk::RenderPass, u32),
     samples: vk::SampleCountFlags,
 ) -> Result<vk::Pipeline> {
-    // SAFETY: by the caller: a plain use of Vulkan.
+    // SAFETY: by the caller: plain Vulkan.
     unsafe {
         let many = samples != vk::SampleCountFlags::TYPE_1;
         let fragment = if many { shader!("fog_multisampled_fragment") } else { shader!("fog_fragment") };

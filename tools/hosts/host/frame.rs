@@ -1,28 +1,28 @@
-//! What the host draws into: colour and depth, in a subpass of a render pass or by dynamic rendering, resolved where it is multisampled.
+//! The host's frame: colour and depth, in a subpass of a render pass or by dynamic rendering, resolved if multisampled.
 
 use super::image::{Target, has_stencil};
 use super::{Host, Result};
 use ash::vk;
 use surfel::embed;
 
-/// How the host draws.
+/// Kind of the host's pass.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Way {
-    /// In a render pass of one subpass.
+    /// A render pass with one subpass.
     Subpass,
-    /// By dynamic rendering.
+    /// Dynamic rendering.
     Rendering,
 }
 
-/// What a frame is drawn with.
+/// Configuration of a frame.
 #[derive(Clone, Copy, Debug)]
 pub struct Kind {
     pub way: Way,
     pub colour: vk::Format,
-    /// A second target, the first in order, for normals.
+    /// Whether there is a second target, at location 0, for normals.
     pub normals: bool,
     pub samples: vk::SampleCountFlags,
-    /// Greater is nearer.
+    /// Reversed depth: greater is nearer.
     pub reversed: bool,
 }
 
@@ -30,7 +30,7 @@ pub struct Kind {
 pub struct Frame {
     pub kind: Kind,
     pub size: [u32; 2],
-    /// Colour targets before the first.
+    /// Colour targets before the picture's.
     more: Vec<Target>,
     colour: Target,
     depth: Target,
@@ -38,17 +38,17 @@ pub struct Frame {
     pass: Option<(vk::RenderPass, vk::Framebuffer)>,
 }
 
-/// The host's format of depth.
+/// Depth format of the host.
 pub const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
 const NORMALS: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
-/// The host's format of numbers.
+/// Format of point ids.
 pub const IDS: vk::Format = vk::Format::R32_UINT;
-/// Where the picture is copied from.
+/// Layout of the picture before the copy.
 const TESTED: vk::ImageLayout = vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
 const SOURCE: vk::ImageLayout = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
 
 impl Frame {
-    /// A frame of `size` px.
+    /// Creates a frame of `size` px.
     pub fn new(host: &Host, kind: Kind, size: [u32; 2]) -> Result<Self> {
         let normals = [NORMALS];
         Self::with(host, kind, size, if kind.normals { &normals } else { &[] })
@@ -59,7 +59,7 @@ impl Frame {
         Self::with_depth(host, kind, size, more, DEPTH)
     }
 
-    /// The same with a format of depth of its own.
+    /// Like [`Frame::with`], with another depth format.
     pub fn with_depth(
         host: &Host,
         kind: Kind,
@@ -82,7 +82,7 @@ impl Frame {
             .collect::<Result<Vec<_>>>()?;
         let views: Vec<_> =
             more.iter().chain([&colour, &depth]).chain(&resolved).map(|target| target.view).collect();
-        // SAFETY: a plain use of Vulkan; `destroy` destroys what is made.
+        // SAFETY: plain Vulkan; `destroy` destroys the objects.
         let make = || unsafe {
             let pass = render_pass(host, kind, &formats, depth.format)?;
             let info = vk::FramebufferCreateInfo::default()
@@ -97,7 +97,7 @@ impl Frame {
         Ok(Self { kind, size, more, colour, depth, resolved, pass })
     }
 
-    /// What surfels are told of it.
+    /// Description of the frame for the engine.
     pub fn target(&self) -> embed::Target {
         embed::Target {
             pass: match self.pass {
@@ -116,17 +116,17 @@ impl Frame {
         }
     }
 
-    /// Format of its stencil, which is its depth's, if that has any.
+    /// Format of the stencil, that of a depth format with stencil.
     fn stencil(&self) -> vk::Format {
         if has_stencil(self.depth.format) { self.depth.format } else { vk::Format::UNDEFINED }
     }
 
-    /// The first location before the picture's that has this format.
+    /// The first location before the picture's with this format.
     fn location(&self, format: vk::Format) -> Option<u32> {
         self.more.iter().position(|target| target.format == format).map(|location| location as u32)
     }
 
-    /// What the host's own pipelines are told of it, where the picture is the only colour.
+    /// Target of the host's pipelines if the picture is the only colour.
     pub fn mesh_target(&self) -> super::mesh::MeshTarget<'_> {
         let formats = (std::slice::from_ref(&self.kind.colour), self.depth.format);
         super::mesh::MeshTarget {
@@ -139,12 +139,12 @@ impl Frame {
         }
     }
 
-    /// Begins the pass: colour is 0, depth the farthest.
+    /// Begins the pass: colour is 0, depth is farthest.
     pub fn begin(&self, host: &Host, cmd: vk::CommandBuffer) {
         self.begin_with(host, cmd, false);
     }
 
-    /// The same, for commands that are in secondary command buffers, or are not.
+    /// Like [`Frame::begin`], with or without secondary command buffers.
     pub fn begin_with(&self, host: &Host, cmd: vk::CommandBuffer, secondaries: bool) {
         let far = if self.kind.reversed { 0.0 } else { 1.0 };
         let black = vk::ClearValue::default();
@@ -214,9 +214,9 @@ impl Frame {
         unsafe { host.rendering.cmd_begin_rendering(cmd, &info) };
     }
 
-    /// Ends the pass and leaves the colour, and the depth of one sample, ready to be copied.
+    /// Ends the pass, and leaves the colour and the single-sample depth as transfer sources.
     pub fn end(&self, host: &Host, cmd: vk::CommandBuffer) {
-        // SAFETY: `begin` began it.
+        // SAFETY: `begin` began the pass.
         unsafe {
             match self.pass {
                 Some(_) => host.device.cmd_end_render_pass(cmd),
@@ -236,47 +236,47 @@ impl Frame {
         self.resolved.as_ref().unwrap_or(&self.colour)
     }
 
-    /// The colours, of RGBA floats, and the depths, where there is one sample.
+    /// The colours as RGBA floats, and the single-sample depths.
     pub fn read(&self, host: &Host) -> Result<(Vec<[f32; 4]>, Vec<f32>)> {
         let colours = self.picture().read(host, 16)?;
         let depths = if self.resolved.is_none() { self.depth.read(host, 4)? } else { Vec::new() };
         Ok((bytemuck::pod_collect_to_vec(&colours), bytemuck::pod_collect_to_vec(&depths)))
     }
 
-    /// The normals, where there are any.
+    /// The normals, if any.
     pub fn read_normals(&self, host: &Host) -> Result<Vec<[f32; 4]>> {
         let bytes = self.read_more(host, NORMALS, 16)?;
         Ok(bytemuck::pod_collect_to_vec(&bytes))
     }
 
-    /// The numbers, where there are any.
+    /// The point ids, if any.
     pub fn read_ids(&self, host: &Host) -> Result<Vec<u32>> {
         let bytes = self.read_more(host, IDS, 4)?;
         Ok(bytemuck::pod_collect_to_vec(&bytes))
     }
 
-    /// The first target before the picture's that has this format, of so many bytes a pixel; nothing without one.
+    /// Contents of the first target before the picture's with this format, `bytes` per pixel; empty if there is none.
     fn read_more(&self, host: &Host, format: vk::Format, bytes: usize) -> Result<Vec<u8>> {
         let target = self.more.iter().find(|target| target.format == format);
         target.map_or(Ok(Vec::new()), |target| target.read(host, bytes))
     }
 
-    /// The bytes of the colours, `bytes` a pixel.
+    /// The colours, `bytes` per pixel.
     pub fn read_bytes(&self, host: &Host, bytes: usize) -> Result<Vec<u8>> {
         self.picture().read(host, bytes)
     }
 
-    /// The image of the picture, which `end` leaves ready to be copied.
+    /// The image of the picture, a transfer source after `end`.
     pub fn image(&self) -> vk::Image {
         self.picture().image
     }
 
-    /// The depths, of any format, where there is one sample.
+    /// The single-sample depths, of any format.
     pub fn read_depths(&self, host: &Host) -> Result<Vec<f64>> {
         self.depth.read_depths(host)
     }
 
-    /// A secondary command buffer of what is drawn in its pass; the caller frees it.
+    /// A secondary command buffer for draws in the pass; the caller frees it.
     pub fn secondary(
         &self,
         host: &Host,
@@ -296,11 +296,11 @@ impl Frame {
         host.record_secondary(&inherited, draw)
     }
 
-    /// Has `size` px from now on, and the same pass. The GPU is done with the frames before.
+    /// Changes the size, with the same pass. The GPU has finished the frames before.
     pub fn resize(&mut self, host: &Host, size: [u32; 2]) -> Result<()> {
         let more: Vec<_> = self.more.iter().map(|target| target.format).collect();
         let mut made = Self::with_depth(host, self.kind, size, &more, self.depth.format)?;
-        // A framebuffer goes with every pass like its own.
+        // A framebuffer is compatible with any equal pass.
         if let (Some((new, _)), Some((old, _))) = (&mut made.pass, &mut self.pass) {
             std::mem::swap(new, old);
         }
@@ -308,7 +308,7 @@ impl Frame {
         Ok(())
     }
 
-    /// Destroys it, once the GPU is done with it.
+    /// Destroys the frame, once the GPU has finished using it.
     pub fn destroy(self, host: &Host) {
         // SAFETY: by the caller.
         unsafe {
@@ -322,7 +322,7 @@ impl Frame {
     }
 }
 
-/// The pass of a frame whose colour targets have these formats.
+/// Creates the pass of a frame with colour targets of these formats.
 unsafe fn render_pass(
     host: &Host,
     kind: Kind,
@@ -363,7 +363,7 @@ unsafe fn render_pass(
         subpass = subpass.resolve_attachments(&resolves);
     }
     let subpasses = [subpass];
-    // Frames take turns with the same targets.
+    // Consecutive frames use the same targets.
     let all = vk::PipelineStageFlags::ALL_COMMANDS;
     let memory = vk::AccessFlags::MEMORY_READ | vk::AccessFlags::MEMORY_WRITE;
     let dependency =
@@ -383,6 +383,6 @@ unsafe fn render_pass(
         .attachments(&attachments)
         .subpasses(&subpasses)
         .dependencies(&dependencies);
-    // SAFETY: a plain use of Vulkan.
+    // SAFETY: plain Vulkan.
     unsafe { host.device.create_render_pass(&info, None) }
 }

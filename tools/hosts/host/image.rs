@@ -1,4 +1,4 @@
-//! The host's targets.
+//! The host's render targets.
 
 use super::{Host, Result};
 use ash::vk;
@@ -14,7 +14,7 @@ pub struct Target {
 }
 
 impl Target {
-    /// A target of `size` px.
+    /// Creates a target of `size` px.
     pub fn new(
         host: &Host,
         format: vk::Format,
@@ -30,7 +30,7 @@ impl Target {
             .array_layers(1)
             .samples(samples)
             .usage(usage);
-        // SAFETY: a plain use of Vulkan; `destroy` destroys what is made.
+        // SAFETY: plain Vulkan; `destroy` destroys the objects.
         unsafe {
             let image = host.device.create_image(&info, None)?;
             let requirements = host.device.get_image_memory_requirements(image);
@@ -46,7 +46,7 @@ impl Target {
         }
     }
 
-    /// Records a copy of all of it, once it is in the layout of a copy's source, to `buffer`.
+    /// Records a copy to `buffer`; the target is a transfer source.
     pub fn copy_to(&self, host: &Host, cmd: vk::CommandBuffer, buffer: vk::Buffer) {
         let [width, height] = self.size;
         let region = vk::BufferImageCopy::default()
@@ -58,12 +58,11 @@ impl Target {
             })
             .image_extent(vk::Extent3D { width, height, depth: 1 });
         let layout = vk::ImageLayout::TRANSFER_SRC_OPTIMAL;
-        // SAFETY: the caller has it in this layout, and the buffer is large enough.
+        // SAFETY: the caller has transitioned it, and the buffer is large enough.
         unsafe { host.device.cmd_copy_image_to_buffer(cmd, self.image, layout, buffer, &[region]) };
     }
 
-    /// Its bytes, `bytes` a pixel, once it is in the layout of a copy's source; of depth and stencil, the depth's; of several samples of
-    /// integers, one's.
+    /// The contents, `bytes` per pixel; the target is a transfer source. Depth without stencil; of multisampled integers, one sample.
     pub fn read(&self, host: &Host, bytes: usize) -> Result<Vec<u8>> {
         if self.samples != vk::SampleCountFlags::TYPE_1 {
             let one = self.resolved(host)?;
@@ -95,7 +94,7 @@ impl Target {
         found
     }
 
-    /// Its depths, once it is in the layout of a copy's source.
+    /// The depths; the target is a transfer source.
     pub fn read_depths(&self, host: &Host) -> Result<Vec<f64>> {
         let bytes = if self.format == vk::Format::D16_UNORM { 2 } else { 4 };
         let value = |depth: &[u8]| match (self.format, depth) {
@@ -109,7 +108,7 @@ impl Target {
         Ok(self.read(host, bytes)?.chunks_exact(bytes).map(value).collect())
     }
 
-    /// A copy with one sample a pixel, in the layout of a copy's source.
+    /// A single-sample copy, a transfer source.
     fn resolved(&self, host: &Host) -> Result<Self> {
         use vk::ImageLayout as Layout;
         let usage = vk::ImageUsageFlags::TRANSFER_SRC
@@ -146,7 +145,7 @@ impl Target {
         }
     }
 
-    /// A view of its depth alone, which the caller destroys.
+    /// A view of the depth aspect, which the caller destroys.
     pub fn depth_view(&self, host: &Host) -> Result<vk::ImageView> {
         let depth = vk::ImageAspectFlags::DEPTH;
         let info = vk::ImageViewCreateInfo::default()
@@ -158,7 +157,7 @@ impl Target {
         Ok(unsafe { host.device.create_image_view(&info, None)? })
     }
 
-    /// Brings it from one layout to another, after all that was recorded and before all that follows.
+    /// Transitions the layout, after all earlier commands and before all later ones.
     pub fn transition(&self, host: &Host, cmd: vk::CommandBuffer, [from, to]: [vk::ImageLayout; 2]) {
         let all = vk::PipelineStageFlags::ALL_COMMANDS;
         let barrier = vk::ImageMemoryBarrier::default()
@@ -175,7 +174,7 @@ impl Target {
         unsafe { host.device.cmd_pipeline_barrier(cmd, all, all, none, &[], &[], &[barrier]) };
     }
 
-    /// Destroys it, once the GPU is done with it.
+    /// Destroys the target, once the GPU has finished using it.
     pub fn destroy(self, host: &Host) {
         // SAFETY: by the caller.
         unsafe {
@@ -186,7 +185,7 @@ impl Target {
     }
 }
 
-/// Whether a format of depth has stencil, too.
+/// Whether a depth format has stencil, too.
 pub fn has_stencil(format: vk::Format) -> bool {
     [vk::Format::D24_UNORM_S8_UINT, vk::Format::D32_SFLOAT_S8_UINT].contains(&format)
 }
@@ -201,7 +200,7 @@ fn aspect(format: vk::Format) -> vk::ImageAspectFlags {
     }
 }
 
-/// What is copied at once.
+/// Aspect of a copy.
 fn copied(format: vk::Format) -> vk::ImageAspectFlags {
     aspect(format) & !vk::ImageAspectFlags::STENCIL
 }

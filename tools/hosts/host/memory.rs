@@ -1,4 +1,4 @@
-//! Memory: an allocation a resource, the simplest that works; also lent to surfels, with counts that show what is still there.
+//! Memory: one allocation per resource; also a memory source of the engine that counts its allocations.
 
 use super::{Host, Result};
 use ash::vk;
@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicI64, Ordering};
 use surfel::embed::{HostMemory, Location, MemoryError, MemoryRequest, MemorySource};
 
 impl Host {
-    /// Memory for `requirements`.
+    /// Allocates memory for `requirements`.
     pub fn allocate(
         &self,
         requirements: vk::MemoryRequirements,
@@ -18,7 +18,7 @@ impl Host {
         unsafe { allocate(&self.instance, self.physical, &self.device, requirements, wanted) }
     }
 
-    /// A buffer with `bytes` that the CPU and the GPU see, and its memory.
+    /// A buffer with `bytes` in host-visible memory.
     pub fn buffer(
         &self,
         bytes: &[u8],
@@ -26,7 +26,7 @@ impl Host {
     ) -> Result<(vk::Buffer, vk::DeviceMemory)> {
         let info = vk::BufferCreateInfo::default().size(bytes.len() as u64).usage(usage);
         let seen = vk::MemoryPropertyFlags::HOST_VISIBLE | vk::MemoryPropertyFlags::HOST_COHERENT;
-        // SAFETY: a plain use of Vulkan; the caller destroys both.
+        // SAFETY: plain Vulkan; the caller destroys both.
         unsafe {
             let buffer = self.device.create_buffer(&info, None)?;
             let memory = self.allocate(self.device.get_buffer_memory_requirements(buffer), seen)?;
@@ -38,9 +38,9 @@ impl Host {
         }
     }
 
-    /// What a buffer's memory holds.
+    /// Contents of a buffer's memory.
     pub fn read(&self, memory: vk::DeviceMemory, size: usize) -> Result<Vec<u8>> {
-        // SAFETY: the memory is visible, coherent and as large, and the GPU is done with it.
+        // SAFETY: the memory is visible, coherent and large enough, and the GPU has finished.
         unsafe {
             let mapped = self.device.map_memory(memory, 0, vk::WHOLE_SIZE, vk::MemoryMapFlags::empty())?;
             let bytes = std::slice::from_raw_parts(mapped.cast::<u8>(), size).to_vec();
@@ -72,7 +72,7 @@ unsafe fn allocate(
     }
 }
 
-/// The host's memory for surfels.
+/// The host's memory source for the engine.
 pub struct Counted {
     instance: ash::Instance,
     physical: vk::PhysicalDevice,
@@ -80,12 +80,12 @@ pub struct Counted {
     counts: Arc<Counts>,
 }
 
-/// What surfels hold.
+/// Allocations of the engine.
 #[derive(Default)]
 pub struct Counts {
-    /// Pieces that are not freed.
+    /// Number of live allocations.
     pub alive: AtomicI64,
-    /// Requests that are granted before one is refused; below 0, all are.
+    /// Number of allocations until one fails; unlimited below 0.
     pub left: AtomicI64,
 }
 
@@ -98,7 +98,7 @@ impl Counted {
     }
 }
 
-// SAFETY: every piece is an allocation of its own, mapped for as long as it is there.
+// SAFETY: every range is a separate allocation, mapped while it exists.
 unsafe impl MemorySource for Counted {
     fn allocate(&self, request: &MemoryRequest<'_>) -> std::result::Result<HostMemory, MemoryError> {
         if self.counts.left.load(Ordering::SeqCst) == 0 {
@@ -111,7 +111,7 @@ unsafe impl MemorySource for Counted {
         } else {
             vk::MemoryPropertyFlags::DEVICE_LOCAL
         };
-        // SAFETY: the host outlives what it lends.
+        // SAFETY: the host outlives the engine's objects.
         unsafe {
             let memory = allocate(&self.instance, self.physical, &self.device, request.requirements, wanted)
                 .map_err(|error| error.to_string())?;
@@ -130,7 +130,7 @@ unsafe impl MemorySource for Counted {
 
     fn free(&self, memory: HostMemory) {
         self.counts.alive.fetch_sub(1, Ordering::SeqCst);
-        // SAFETY: it was allocated above, and nothing is bound to it any more.
+        // SAFETY: it was allocated above, and nothing is bound to it.
         unsafe { self.device.free_memory(memory.memory, None) };
     }
 }

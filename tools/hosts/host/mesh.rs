@@ -1,10 +1,10 @@
-//! A lit mesh, drawn as hosts draw: vertices of position and normal, a matrix in push constants.
+//! A lit mesh: vertices with position and normal, a matrix in push constants.
 
 use super::{Host, Result};
 use ash::vk;
 use glam::{Mat4, Vec3};
 
-/// A mesh on the GPU with the pipeline that draws it.
+/// A mesh on the GPU with its pipeline.
 pub struct Mesh {
     buffer: vk::Buffer,
     memory: vk::DeviceMemory,
@@ -13,7 +13,7 @@ pub struct Mesh {
     count: u32,
 }
 
-/// Where a mesh is drawn.
+/// The pass in which a mesh is drawn.
 #[derive(Clone, Copy)]
 pub struct MeshTarget<'a> {
     pub pass: vk::RenderPass,
@@ -25,12 +25,12 @@ pub struct MeshTarget<'a> {
 }
 
 impl Mesh {
-    /// A mesh of `corners`.
+    /// Creates a mesh of `corners`.
     pub fn new(host: &Host, corners: &[[Vec3; 2]], target: MeshTarget<'_>) -> Result<Self> {
         let floats: Vec<f32> = corners.iter().flatten().flat_map(Vec3::to_array).collect();
         let (buffer, memory) =
             host.buffer(bytemuck::cast_slice(&floats), vk::BufferUsageFlags::VERTEX_BUFFER)?;
-        // SAFETY: a plain use of Vulkan; `destroy` destroys what is made.
+        // SAFETY: plain Vulkan; `destroy` destroys the objects.
         unsafe {
             let stages = vk::ShaderStageFlags::VERTEX | vk::ShaderStageFlags::FRAGMENT;
             let push = [vk::PushConstantRange { stage_flags: stages, offset: 0, size: 80 }];
@@ -41,7 +41,7 @@ impl Mesh {
         }
     }
 
-    /// Draws it inside its pass.
+    /// Draws the mesh inside its pass.
     pub fn draw(
         &self,
         host: &Host,
@@ -58,7 +58,7 @@ impl Mesh {
             offset: vk::Offset2D { x: viewport.x as i32, y: top as i32 },
             extent: vk::Extent2D { width: viewport.width as u32, height: viewport.height.abs() as u32 },
         };
-        // SAFETY: recorded inside the pass that the pipeline is for.
+        // SAFETY: recorded inside the pass of the pipeline.
         unsafe {
             let device = &host.device;
             device.cmd_set_viewport(cmd, 0, &[viewport]);
@@ -70,7 +70,7 @@ impl Mesh {
         }
     }
 
-    /// Destroys it, once the GPU is done with it.
+    /// Destroys the mesh, once the GPU has finished using it.
     pub fn destroy(self, host: &Host) {
         // SAFETY: by the caller.
         unsafe {
@@ -83,7 +83,7 @@ impl Mesh {
 }
 
 unsafe fn pipeline(host: &Host, layout: vk::PipelineLayout, target: MeshTarget<'_>) -> Result<vk::Pipeline> {
-    // SAFETY: by the caller: a plain use of Vulkan.
+    // SAFETY: by the caller: plain Vulkan.
     unsafe {
         let modules = [host.shader(shader!("mesh_vertex"))?, host.shader(shader!("mesh_fragment"))?];
         let stage = |module, stage| {

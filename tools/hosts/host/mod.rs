@@ -1,5 +1,4 @@
-//! A small renderer of its own, as hosts are: it owns instance, device, queue and command buffers, and knows nothing of surfels but what it
-//! lends.
+//! A small renderer, as an example of a host: it owns instance, device, queue and command buffers.
 
 #![allow(dead_code, reason = "no host uses all of it")]
 
@@ -40,17 +39,17 @@ use std::sync::{Arc, Mutex};
 use surfel::embed::{Abilities, ExternalDevice, MemorySource};
 use surfel::vk::{Device, DeviceLimits};
 
-/// Whatever goes wrong.
+/// A result with any error.
 pub type Result<T> = std::result::Result<T, Box<dyn Error>>;
 
-/// What the host opened.
+/// Vulkan objects of the host.
 pub struct Host {
     pub device: ash::Device,
     pub instance: ash::Instance,
     pub physical: vk::PhysicalDevice,
     pub queue: vk::Queue,
     pub family: u32,
-    /// What it enabled of what surfels can use.
+    /// The engine's optional features that it has enabled.
     pub enabled: Abilities,
     pub rendering: khr::dynamic_rendering::Device,
     pool: vk::CommandPool,
@@ -60,7 +59,7 @@ pub struct Host {
     _entry: ash::Entry,
 }
 
-/// Whether the host runs under the validation layers.
+/// Use of the validation layers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Validation {
     Needed,
@@ -68,7 +67,7 @@ pub enum Validation {
     Off,
 }
 
-/// Commands under way.
+/// Submitted commands.
 pub struct Submitted {
     cmd: vk::CommandBuffer,
     fence: vk::Fence,
@@ -77,20 +76,20 @@ pub struct Submitted {
 const VALIDATION: &CStr = c"VK_LAYER_KHRONOS_validation";
 
 impl Host {
-    /// Opens the first device that does graphics and compute; under validation where its layer is installed, which it must be if `validates`.
+    /// Opens the first device with graphics and compute; with the validation layers if installed, which they must be if `validates`.
     pub fn open(wanted: fn(Abilities) -> Abilities, validates: bool) -> Result<Self> {
         let validation = if validates { Validation::Needed } else { Validation::WhereThere };
         Self::open_with(wanted, validation, &[], &[])
     }
 
-    /// The same with these extensions of the instance, by their raw names, and of the device.
+    /// Like [`Host::open`], with these raw instance extensions and device extensions.
     pub fn open_with(
         wanted: fn(Abilities) -> Abilities,
         validation: Validation,
         of_instance: &[*const c_char],
         of_device: &[&'static CStr],
     ) -> Result<Self> {
-        // SAFETY: a plain use of Vulkan: every handle is made here, and destroyed in `drop`, after what was made of it.
+        // SAFETY: plain Vulkan: every handle is created here, and destroyed in `drop` after the objects that depend on it.
         unsafe {
             let entry = ash::Entry::load()?;
             let layers = entry.enumerate_instance_layer_properties()?;
@@ -116,7 +115,7 @@ impl Host {
                 info = info.push_next(&mut features);
             }
             let messages = Arc::new(Mutex::new(Vec::new()));
-            // It hears what is said of the instance itself, too.
+            // Reports messages about the instance, too.
             let mut whole = messenger(&messages);
             let instance = entry.create_instance(&info.push_next(&mut whole), None)?;
             let debug = ext::debug_utils::Instance::new(&entry, &instance);
@@ -144,12 +143,12 @@ impl Host {
         }
     }
 
-    /// The device as surfels borrow it.
+    /// Imports the device into the engine.
     pub fn external_device(&self, memory: Option<Box<dyn MemorySource>>) -> surfel::Result<Arc<Device>> {
         self.external_device_within(DeviceLimits::default(), memory)
     }
 
-    /// The same, less what `limits` hide.
+    /// The same, without the capabilities that `limits` hide.
     pub fn external_device_within(
         &self,
         limits: DeviceLimits,
@@ -158,7 +157,7 @@ impl Host {
         self.external_device_as(&self.device, limits, memory)
     }
 
-    /// The device with some of its functions replaced by what `replace` gives for their names, each of which calls what it replaces.
+    /// The same, with functions of the device replaced by `replace`, by name; each replacement calls the original.
     pub fn external_device_replaced(
         &self,
         replace: impl Fn(&CStr) -> Option<*const c_void>,
@@ -168,7 +167,7 @@ impl Host {
             let found = unsafe { self.instance.get_device_proc_addr(self.device.handle(), name.as_ptr()) };
             found.map_or(std::ptr::null(), |found| found as *const c_void)
         };
-        // SAFETY: the functions are the device's, or call it.
+        // SAFETY: the functions are the device's, or call them.
         let device = unsafe {
             ash::Device::load_with(|name| replace(name).unwrap_or_else(|| find(name)), self.device.handle())
         };
@@ -194,13 +193,13 @@ impl Host {
             memory_blocks: Default::default(),
             pipeline_cache: None,
         };
-        // SAFETY: all of it is true, and hosts drop what they lend last.
+        // SAFETY: the description is correct, and hosts drop their device last.
         unsafe { Device::from_external(external) }
     }
 
-    /// Records and submits commands; the GPU may still be at them.
+    /// Records and submits commands without waiting.
     pub fn submit<T>(&self, body: impl FnOnce(vk::CommandBuffer) -> Result<T>) -> Result<(Submitted, T)> {
-        // SAFETY: the command buffer is recorded whole, and freed once its fence is signalled.
+        // SAFETY: the command buffer is fully recorded, and freed once its fence is signalled.
         unsafe {
             let buffer =
                 vk::CommandBufferAllocateInfo::default().command_pool(self.pool).command_buffer_count(1);
@@ -222,9 +221,9 @@ impl Host {
         }
     }
 
-    /// Records what is not submitted.
+    /// Records commands without submitting them.
     pub fn record<T>(&self, body: impl FnOnce(vk::CommandBuffer) -> Result<T>) -> Result<T> {
-        // SAFETY: the command buffer is recorded whole, and freed.
+        // SAFETY: the command buffer is fully recorded, and freed.
         unsafe {
             let buffer =
                 vk::CommandBufferAllocateInfo::default().command_pool(self.pool).command_buffer_count(1);
@@ -237,7 +236,7 @@ impl Host {
         }
     }
 
-    /// Records a secondary command buffer that goes on with a pass; the caller frees it.
+    /// Records a secondary command buffer inside a pass; the caller frees it.
     pub fn record_secondary(
         &self,
         inherited: &vk::CommandBufferInheritanceInfo<'_>,
@@ -250,7 +249,7 @@ impl Host {
         let within = vk::CommandBufferBeginInfo::default()
             .flags(vk::CommandBufferUsageFlags::RENDER_PASS_CONTINUE)
             .inheritance_info(inherited);
-        // SAFETY: the command buffer is recorded whole.
+        // SAFETY: the command buffer is fully recorded.
         unsafe {
             let cmd = self.device.allocate_command_buffers(&buffer)?[0];
             self.device.begin_command_buffer(cmd, &within)?;
@@ -260,22 +259,22 @@ impl Host {
         }
     }
 
-    /// Frees a command buffer that the GPU is done with.
+    /// Frees a command buffer that the GPU has finished.
     pub fn free(&self, cmd: vk::CommandBuffer) {
         // SAFETY: by the caller; it is of this pool.
         unsafe { self.device.free_command_buffers(self.pool, &[cmd]) };
     }
 
-    /// Whether images of this format can be depth attachments.
+    /// Whether the format supports depth attachments.
     pub fn has_depth(&self, format: vk::Format) -> bool {
-        // SAFETY: the device is the instance's.
+        // SAFETY: the device is of the instance.
         let can = unsafe { self.instance.get_physical_device_format_properties(self.physical, format) };
         can.optimal_tiling_features.contains(vk::FormatFeatureFlags::DEPTH_STENCIL_ATTACHMENT)
     }
 
-    /// Waits until the GPU is done with what was submitted.
+    /// Waits until the GPU has executed a submission.
     pub fn wait(&self, Submitted { cmd, fence }: Submitted) -> Result<()> {
-        // SAFETY: both are of this device, and done with after the wait.
+        // SAFETY: both are of this device, and unused after the wait.
         unsafe {
             self.device.wait_for_fences(&[fence], true, u64::MAX)?;
             self.device.destroy_fence(fence, None);
@@ -291,7 +290,7 @@ impl Host {
         Ok(made)
     }
 
-    /// Ends it: an error if the validation layers have said anything, of what is left over, too.
+    /// Destroys the host; an error if there were validation messages, including those about leaks.
     pub fn close(self) -> Result<()> {
         let messages = self.messages.clone();
         drop(self);
@@ -307,7 +306,7 @@ impl Host {
 
 impl Drop for Host {
     fn drop(&mut self) {
-        // SAFETY: what was made of them is gone.
+        // SAFETY: dependent objects are destroyed.
         unsafe {
             let _ = self.device.device_wait_idle();
             self.device.destroy_command_pool(self.pool, None);
@@ -342,23 +341,23 @@ unsafe fn create_device(
 ) -> Result<ash::Device> {
     let queues = [vk::DeviceQueueCreateInfo::default().queue_family_index(family).queue_priorities(&[1.0])];
     let mut names: Vec<_> = enabled.extensions().chain(more.iter().copied()).map(CStr::as_ptr).collect();
-    // What this host wants itself.
+    // Extensions of this host.
     names.extend(
         [khr::dynamic_rendering::NAME, khr::depth_stencil_resolve::NAME, khr::create_renderpass2::NAME]
             .map(CStr::as_ptr),
     );
     let mut rendering = vk::PhysicalDeviceDynamicRenderingFeatures::default().dynamic_rendering(true);
     let mut features = enabled.features();
-    // SAFETY: by the caller: the device is the instance's.
+    // SAFETY: by the caller: the device is of the instance.
     let there = unsafe { instance.get_physical_device_features(physical) };
-    // Its tests count fragments.
+    // The tests count fragments.
     let core = features.core.occlusion_query_precise(there.occlusion_query_precise != vk::FALSE);
     let info = vk::DeviceCreateInfo::default()
         .queue_create_infos(&queues)
         .enabled_extension_names(&names)
         .enabled_features(&core)
         .push_next(&mut rendering);
-    // SAFETY: by the caller: the device and its family are the instance's.
+    // SAFETY: by the caller: the device and its family are of the instance.
     Ok(unsafe { instance.create_device(physical, &features.chain(info), None)? })
 }
 

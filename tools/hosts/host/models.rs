@@ -1,4 +1,4 @@
-//! Surfels that a host shows one after another, each uploaded by the frame that shows it first.
+//! Surfels that a host shows in turn, each uploaded by the first frame that shows it.
 
 use super::arguments::Arguments;
 use super::demo::FRAMES_IN_FLIGHT;
@@ -16,20 +16,20 @@ use surfel::geometry::{Bounds, Surfels};
 use surfel::scene::Streams;
 use surfel::vk::Device;
 
-/// Models, of which one is shown.
+/// Models, of which one is visible.
 pub struct Models {
     device: Arc<Device>,
     all: [Surfels; 2],
-    /// Whether the first is of a file, and stands wherever that says.
+    /// Whether the first is from a file, with any position and size.
     is_file: bool,
     shown: usize,
     scene: Option<Arc<Scene>>,
-    /// What uploads read, oldest first, and for how many frames yet.
+    /// Staging memory of uploads, oldest first, with the number of frames that may still use it.
     staging: VecDeque<(Staging, u32)>,
 }
 
 impl Models {
-    /// The file's that is asked for, or else the host's `own` of so many surfels; and another of fewer.
+    /// Creates the model of the requested file, otherwise the host's `own` with `count` surfels; and another with fewer.
     pub fn new(
         device: &Arc<Device>,
         arguments: &Arguments,
@@ -43,11 +43,11 @@ impl Models {
         Ok(Self { device: device.clone(), all, is_file, shown: 0, scene: None, staging })
     }
 
-    /// What each of them has, for plans.
+    /// The streams of each model, for plans.
     pub fn streams(&self, host: &Host) -> Result<[Streams; 2]> {
         let mut streams = Vec::new();
         for surfels in &self.all {
-            // SAFETY: recorded outside a render pass; both stay until `run` has waited.
+            // SAFETY: recorded outside a render pass; both are kept until `run` has waited.
             let (scene, _staging) =
                 host.run(|cmd| Ok(unsafe { embed::upload(&self.device, cmd, surfels)? }))?;
             streams.push(scene.streams());
@@ -55,26 +55,26 @@ impl Models {
         streams.try_into().map_err(|_| "two models have two streams".into())
     }
 
-    /// The other one from now on.
+    /// Shows the other model from now on.
     pub fn change(&mut self) {
         self.shown = (self.shown + 1) % self.all.len();
         self.scene = None;
     }
 
-    /// The scene of a frame that is being recorded, outside a render pass; the GPU is done with all frames but the last.
+    /// The scene of a frame that is being recorded outside a render pass; the GPU has finished all frames but the last.
     pub fn scene(&mut self, cmd: vk::CommandBuffer) -> Result<Arc<Scene>> {
         self.staging.iter_mut().for_each(|(_, frames)| *frames -= 1);
         self.staging.retain(|(_, frames)| *frames > 0);
         if let Some(scene) = &self.scene {
             return Ok(scene.clone());
         }
-        // SAFETY: by the caller; the frame that copies is over before the staging memory goes, and whoever renders keeps the scene.
+        // SAFETY: by the caller; the frame that copies is over before the staging memory is dropped, and the renderer keeps the scene.
         let (scene, staging) = unsafe { embed::upload(&self.device, cmd, &self.all[self.shown])? };
         self.staging.push_back((staging, FRAMES_IN_FLIGHT));
         Ok(self.scene.insert(Arc::new(scene)).clone())
     }
 
-    /// What brings a model with these bounds to the origin, at a radius of 1.
+    /// Transform of a model with these bounds to the origin, with radius 1.
     pub fn to_unit(&self, bounds: &Bounds) -> DMat4 {
         if self.is_file && self.shown == 0 {
             DMat4::from_scale(DVec3::splat(1.0 / bounds.radius)) * DMat4::from_translation(-bounds.centre())

@@ -1,4 +1,4 @@
-//! A render pass of the host with surfels in subpasses of their own: its mesh before, its fog after.
+//! A render pass of the host with surfels in subpasses: the mesh before, fog after.
 
 use super::fog::Fog;
 use super::image::Target;
@@ -13,25 +13,25 @@ use surfel::scene::Streams;
 use surfel::vk::Device;
 use surfel::{Precision, Settings};
 
-/// What a frame is drawn with.
+/// Configuration of the render pass.
 #[derive(Clone, Copy, Debug)]
 pub struct Kind {
     pub colour: vk::Format,
-    /// Format of the depth, if there is one.
+    /// Format of the depth, if any.
     pub depth: Option<vk::Format>,
-    /// Another target, for normals.
+    /// Whether there is a target for normals.
     pub normals: bool,
     pub samples: vk::SampleCountFlags,
-    /// Greater is nearer.
+    /// Reversed depth: greater is nearer.
     pub reversed: bool,
     pub seed: bool,
-    /// Whether there is a subpass before, for the mesh, and one after, for the fog.
+    /// Whether there is a subpass before, for the mesh, and one after, for fog.
     pub around: [bool; 2],
 }
 
-/// A render pass, and what is drawn in it.
+/// A render pass and its contents.
 pub struct Native {
-    // Surfels go before what they are drawn to.
+    // Surfels are destroyed before their targets.
     pub renderer: Renderer,
     pub kind: Kind,
     pass: vk::RenderPass,
@@ -40,7 +40,7 @@ pub struct Native {
     clears: Vec<vk::ClearValue>,
 }
 
-/// What there is for one size.
+/// Resources of one size.
 struct Framed {
     size: [u32; 2],
     targets: Vec<Target>,
@@ -54,7 +54,7 @@ const DRAWN: vk::ImageLayout = vk::ImageLayout::COLOR_ATTACHMENT_OPTIMAL;
 const TESTED: vk::ImageLayout = vk::ImageLayout::DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
 const SEEN: vk::ImageLayout = vk::ImageLayout::DEPTH_STENCIL_READ_ONLY_OPTIMAL;
 
-/// AttachmentIndices of the host's attachments: the colour is 0.
+/// Indices of the host's attachments: the colour is 0.
 #[derive(Clone, Copy)]
 struct AttachmentIndices {
     depth: Option<u32>,
@@ -73,7 +73,7 @@ impl Kind {
         }
     }
 
-    /// Formats and samples of the attachments.
+    /// Formats and sample counts of the attachments.
     fn formats(&self) -> Vec<(vk::Format, vk::SampleCountFlags)> {
         let depth = self.depth.map(|depth| (depth, self.samples));
         let normals = self.normals.then_some((NORMALS, self.samples));
@@ -81,7 +81,7 @@ impl Kind {
         [Some((self.colour, self.samples)), depth, normals, resolved].into_iter().flatten().collect()
     }
 
-    /// The attachments: cleared at the start, and ready to be copied at the end.
+    /// The attachments: cleared at the start, transfer sources at the end.
     pub fn attachments(&self) -> Vec<vk::AttachmentDescription> {
         let describe = |(format, samples)| {
             vk::AttachmentDescription::default()
@@ -95,7 +95,7 @@ impl Kind {
         self.formats().into_iter().map(describe).collect()
     }
 
-    /// Where surfels are drawn among them.
+    /// The host's render pass for the engine.
     pub fn host_pass<'a>(&self, attachments: &'a [vk::AttachmentDescription]) -> HostRenderPass<'a> {
         let AttachmentIndices { depth, normals, resolved } = self.attachment_indices();
         let [before, after] = self.around;
@@ -103,7 +103,7 @@ impl Kind {
             attachments,
             subpasses: [before.into(), after.into()],
             picture: 0,
-            // Whoever comes last resolves.
+            // The last subpass resolves.
             resolve: resolved.filter(|_| !after),
             normal: normals,
             depth: depth.map(|attachment| Depth { attachment, reversed: self.reversed, seed: self.seed }),
@@ -113,7 +113,7 @@ impl Kind {
 }
 
 impl Native {
-    /// A frame of `size` px for scenes that have such streams, with such settings.
+    /// Creates frames of `size` px for scenes with these streams and settings.
     pub fn new(
         host: &Host,
         device: &Arc<Device>,
@@ -132,7 +132,7 @@ impl Native {
         clears.extend(plan.clear_values());
         let pass = render_pass(host, kind, &attachments, &plan)?;
         let fog = kind.around[1].then(|| Fog::new(host, (pass, plan.last() + 1), kind.samples));
-        // SAFETY: the pass has what the plan adds, and outlives the renderer.
+        // SAFETY: the pass has the plan's additions and outlives the renderer.
         let mut renderer = unsafe { Renderer::new(device, plan, pass, 2)? };
         let framed = Framed::new(host, kind, pass, &mut renderer, size)?;
         let native = Self { renderer, kind, pass, fog: fog.transpose()?, framed, clears };
@@ -140,7 +140,7 @@ impl Native {
         Ok(native)
     }
 
-    /// The same in another size, once no frame is under way.
+    /// Changes the size; no frame is in flight.
     pub fn resize(&mut self, host: &Host, size: [u32; 2]) -> Result<()> {
         let framed = Framed::new(host, self.kind, self.pass, &mut self.renderer, size)?;
         std::mem::replace(&mut self.framed, framed).destroy(host);
@@ -154,7 +154,7 @@ impl Native {
         }
     }
 
-    /// Where the host's own pipelines before surfels draw.
+    /// Target of the host's pipelines before the surfels.
     pub fn mesh_target(&self) -> MeshTarget<'_> {
         MeshTarget {
             pass: self.pass,
@@ -166,7 +166,7 @@ impl Native {
         }
     }
 
-    /// Records the render pass: the mesh, if there is one, and the direction to its light; what `surfels` draw, and the fog, if it is wanted.
+    /// Records the render pass: the mesh with the direction to its light, if any; the surfels, drawn by `surfels`; and the fog, if any.
     pub fn record(
         &self,
         host: &Host,
@@ -191,7 +191,7 @@ impl Native {
             // SAFETY: inside the render pass, before the plan's first subpass.
             unsafe { self.renderer.skip(cmd) };
         }
-        // SAFETY: the command buffer is in surfel's last subpass.
+        // SAFETY: the command buffer is in the engine's last subpass.
         unsafe {
             if let Some(fog) = &self.fog {
                 host.device.cmd_next_subpass(cmd, vk::SubpassContents::INLINE);
@@ -204,12 +204,12 @@ impl Native {
         Ok(drawn?)
     }
 
-    /// The picture's bytes, `bytes` a pixel.
+    /// The picture, `bytes` per pixel.
     pub fn picture(&self, host: &Host, bytes: usize) -> Result<Vec<u8>> {
         self.framed.targets[self.picture_number()].read(host, bytes)
     }
 
-    /// The image of the picture, which is ready to be copied after the pass.
+    /// The image of the picture, a transfer source after the pass.
     pub fn image(&self) -> vk::Image {
         self.framed.targets[self.picture_number()].image
     }
@@ -218,7 +218,7 @@ impl Native {
         self.kind.attachment_indices().resolved.unwrap_or(0) as usize
     }
 
-    /// The depths' bytes, `bytes` a pixel, where there is one sample.
+    /// The single-sample depths, `bytes` per pixel.
     pub fn depths(&self, host: &Host, bytes: usize) -> Result<Vec<u8>> {
         let number = self.kind.attachment_indices().depth.ok_or("there is no depth")?;
         self.framed.targets[number as usize].read(host, bytes)
@@ -230,13 +230,13 @@ impl Native {
         self.framed.targets[number as usize].read_depths(host)
     }
 
-    /// The normals' bytes.
+    /// The normals.
     pub fn normals(&self, host: &Host) -> Result<Vec<u8>> {
         let number = self.kind.attachment_indices().normals.ok_or("there are no normals")?;
         self.framed.targets[number as usize].read(host, 16)
     }
 
-    /// Destroys it, once the GPU is done with it.
+    /// Destroys it, once the GPU has finished using it.
     pub fn destroy(self, host: &Host) {
         drop(self.renderer);
         if let Some(fog) = self.fog {
@@ -269,7 +269,7 @@ impl Framed {
         let targets: Vec<_> = kind.formats().into_iter().map(target).collect::<Result<_>>()?;
         let depth = kind.attachment_indices().depth.map(|depth| &targets[depth as usize]);
         let depth_view = depth.map(|depth| depth.depth_view(host)).transpose()?;
-        // SAFETY: the view is of the depth attachment alone.
+        // SAFETY: the view is of the depth aspect only.
         let added = unsafe { renderer.resize(size, depth_view)? };
         let views: Vec<_> = targets.iter().map(|target| target.view).chain(added).collect();
         let info = vk::FramebufferCreateInfo::default()
@@ -278,13 +278,13 @@ impl Framed {
             .width(size[0])
             .height(size[1])
             .layers(1);
-        // SAFETY: a plain use of Vulkan; `destroy` destroys it.
+        // SAFETY: plain Vulkan; `destroy` destroys the framebuffer.
         let framebuffer = unsafe { host.device.create_framebuffer(&info, None)? };
         Ok(Self { size, targets, depth_view, framebuffer })
     }
 
     fn destroy(self, host: &Host) {
-        // SAFETY: no frame is under way.
+        // SAFETY: no frame is in flight.
         unsafe {
             host.device.destroy_framebuffer(self.framebuffer, None);
             self.depth_view.into_iter().for_each(|view| host.device.destroy_image_view(view, None));
@@ -293,7 +293,7 @@ impl Framed {
     }
 }
 
-/// The host's subpasses about those of the plan.
+/// The host's subpasses around those of the plan.
 fn render_pass(
     host: &Host,
     kind: Kind,
@@ -323,7 +323,7 @@ fn render_pass(
     let subpasses: Vec<_> =
         before.then_some(meshes).into_iter().chain(plan.subpasses()).chain(after.then_some(fog)).collect();
     let mut dependencies = plan.dependencies();
-    // Frames take turns with the same targets, and are copied from.
+    // Consecutive frames use the same targets, which are copied from.
     use vk::{AccessFlags as Access, PipelineStageFlags as Stages};
     let tests = Stages::EARLY_FRAGMENT_TESTS | Stages::LATE_FRAGMENT_TESTS;
     let drawing = Stages::COLOR_ATTACHMENT_OUTPUT | tests;
@@ -350,6 +350,6 @@ fn render_pass(
         .attachments(attachments)
         .subpasses(&subpasses)
         .dependencies(&dependencies);
-    // SAFETY: a plain use of Vulkan.
+    // SAFETY: plain Vulkan.
     Ok(unsafe { host.device.create_render_pass(&info, None)? })
 }

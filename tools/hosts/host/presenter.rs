@@ -1,4 +1,4 @@
-//! Pictures to a window, with two frames under way.
+//! Presentation to a window, with two frames in flight.
 
 use super::demo::FRAMES_IN_FLIGHT;
 use super::surface::Surface;
@@ -12,11 +12,11 @@ pub struct Presenter {
     surface: Surface,
     swapchain: Option<Swapchain>,
     slots: Vec<Slot>,
-    /// Of the slot that is next.
+    /// Index of the next slot.
     next: usize,
 }
 
-/// What a frame under way uses.
+/// Resources of a frame in flight.
 struct Slot {
     pool: vk::CommandPool,
     cmd: vk::CommandBuffer,
@@ -25,32 +25,32 @@ struct Slot {
 }
 
 impl Presenter {
-    /// A presenter to `window`.
+    /// Creates a presenter for `window`.
     pub fn new(host: &Host, window: &Window) -> Result<Self> {
         let slots = (0..FRAMES_IN_FLIGHT).map(|_| Slot::new(host)).collect::<Result<_>>()?;
         Ok(Self { surface: Surface::new(host, window)?, swapchain: None, slots, next: 0 })
     }
 
-    /// The window's size is another.
+    /// Notes that the window's size may have changed.
     pub fn resized(&mut self) {
         if let Some(swapchain) = &mut self.swapchain {
             swapchain.stale = true;
         }
     }
 
-    /// Px of the next frame in a window of `size` px; `None` where there is none to be seen. When it is not the size of the frame before, the
-    /// GPU is done with that.
+    /// Size of the next frame in a window of `size` px; `None` if the window has no extent. If it differs from the last frame's, the GPU
+    /// has finished that one.
     pub fn ready(&mut self, host: &Host, size: [u32; 2]) -> Result<Option<[u32; 2]>> {
         if self.swapchain.as_ref().is_none_or(|swapchain| swapchain.stale) {
-            // SAFETY: a plain use of Vulkan.
+            // SAFETY: plain Vulkan.
             unsafe { host.device.device_wait_idle()? };
             self.swapchain = Swapchain::new(host, &self.surface, size, self.swapchain.take())?;
         }
         Ok(self.swapchain.as_ref().map(|swapchain| swapchain.size))
     }
 
-    /// Records a frame with `body`, which leaves its picture ready to be copied in an image that it names, and presents that; whether there was
-    /// one.
+    /// Records a frame with `body`, which leaves the image that it returns as a transfer source, and presents it; returns whether there was
+    /// an image.
     pub fn present(
         &mut self,
         host: &Host,
@@ -61,16 +61,16 @@ impl Presenter {
         slot.wait(host)?;
         let Some(acquired) = swapchain.acquire(slot.acquired)? else { return Ok(false) };
         slot.record(host, acquired.image, swapchain.size, body)?;
-        // SAFETY: it was recorded whole, and what the slot did last was waited for.
+        // SAFETY: it is fully recorded, and the slot's last frame is over.
         unsafe { slot.submit(host, acquired.drawn)? };
         self.next = (self.next + 1) % self.slots.len();
         swapchain.present(host, acquired)?;
         Ok(true)
     }
 
-    /// Destroys it, before the window.
+    /// Destroys the presenter, before the window.
     pub fn destroy(self, host: &Host) {
-        // SAFETY: a plain use of Vulkan; nothing is under way after it.
+        // SAFETY: plain Vulkan; afterwards nothing is in flight.
         let _ = unsafe { host.device.device_wait_idle() };
         if let Some(swapchain) = self.swapchain {
             swapchain.destroy(host);
@@ -84,7 +84,7 @@ impl Slot {
     fn new(host: &Host) -> Result<Self> {
         let signalled = vk::FenceCreateInfo::default().flags(vk::FenceCreateFlags::SIGNALED);
         let pool = vk::CommandPoolCreateInfo::default().queue_family_index(host.family);
-        // SAFETY: a plain use of Vulkan; `Presenter::destroy` destroys what is made.
+        // SAFETY: plain Vulkan; `Presenter::destroy` destroys the objects.
         unsafe {
             let pool = host.device.create_command_pool(&pool, None)?;
             let buffer = vk::CommandBufferAllocateInfo::default().command_pool(pool).command_buffer_count(1);
@@ -94,14 +94,14 @@ impl Slot {
         }
     }
 
-    /// Waits until its last frame is over.
+    /// Waits until the slot's last frame is over.
     fn wait(&self, host: &Host) -> Result<()> {
         // SAFETY: the fence is of this device.
         unsafe { host.device.wait_for_fences(&[self.done], true, u64::MAX)? };
         Ok(())
     }
 
-    /// Records what draws an image of `size` px: a picture that `body` leaves ready to be copied.
+    /// Records the copy of a picture that `body` leaves as a transfer source to an image of `size` px.
     fn record(
         &self,
         host: &Host,
@@ -120,7 +120,7 @@ impl Slot {
         }
     }
 
-    /// Destroys it, once its last frame is over.
+    /// Destroys the slot, once its last frame is over.
     fn destroy(self, host: &Host) {
         // SAFETY: by the caller.
         unsafe {
@@ -130,7 +130,7 @@ impl Slot {
         }
     }
 
-    /// Submits what was recorded, once the image is there, which is then drawn.
+    /// Submits the frame once the image is available, and signals `drawn`.
     unsafe fn submit(&self, host: &Host, drawn: vk::Semaphore) -> Result<()> {
         let (commands, waits, signals) = ([self.cmd], [self.acquired], [drawn]);
         let submit = [vk::SubmitInfo::default()
@@ -138,7 +138,7 @@ impl Slot {
             .wait_semaphores(&waits)
             .wait_dst_stage_mask(&[vk::PipelineStageFlags::TRANSFER])
             .signal_semaphores(&signals)];
-        // SAFETY: by the caller: the command buffer was recorded whole, and the fence was waited for.
+        // SAFETY: by the caller: the command buffer is fully recorded, and the fence was waited for.
         unsafe {
             host.device.reset_fences(&[self.done])?;
             Ok(host.device.queue_submit(host.queue, &submit, self.done)?)
@@ -146,7 +146,7 @@ impl Slot {
     }
 }
 
-/// Copies a picture, ready to be copied, to an image that is then ready to be presented.
+/// Copies a picture, a transfer source, to an image, which can then be presented.
 unsafe fn blit(host: &Host, cmd: vk::CommandBuffer, [from, to]: [vk::Image; 2], size: [u32; 2]) {
     use vk::ImageLayout as Layout;
     let layers = vk::ImageSubresourceLayers {
@@ -191,7 +191,7 @@ unsafe fn transition(
         .dst_queue_family_index(vk::QUEUE_FAMILY_IGNORED)
         .image(image)
         .subresource_range(range);
-    // The wait for the image, and the one before it is presented, stand at this stage.
+    // The waits for the image and for the picture are at this stage.
     let stage = vk::PipelineStageFlags::TRANSFER;
     let none = vk::DependencyFlags::empty();
     // SAFETY: by the caller.

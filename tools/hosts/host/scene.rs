@@ -1,28 +1,28 @@
-//! What hosts show: surfels on a sphere or an egg, and a ring of triangles that goes through them.
+//! Contents of the hosts: surfels on a sphere or an egg, and a torus of triangles that intersects them.
 
 use glam::{DVec3, Vec3};
 use surfel::geometry::{Camera, Colours, Surfels};
 
-/// Width and height of a picture, and of a window at first, px.
+/// Width and height of a picture, and initially of a window, px.
 pub const SIZE: [u32; 2] = [960, 720];
 
 /// Time between frames that do not follow the clock, s.
 pub const STEP: f64 = 0.05;
 
-/// Direction to the light of the hosts' own surfaces, of length 1.
+/// Unit vector to the light of the hosts' own geometry.
 pub const TO_LIGHT: Vec3 = Vec3::new(0.4, 0.8, 0.447_213_6);
 
-/// Corners of triangles, three by three: position and normal.
+/// Triangle corners, three by three: position and normal.
 pub type Corners = Vec<[Vec3; 2]>;
 
-/// The camera that has gone round by `angle`, rad, for a picture of `size` px. Its depth is 0.1 over the distance.
+/// The camera at `angle` around the scene, rad, for a picture of `size` px. Its depth is 0.1 over the distance.
 pub fn camera(angle: f64, [width, height]: [u32; 2]) -> surfel::Result<Camera> {
     let (sin, cos) = (angle + 0.392).sin_cos();
     let eye = DVec3::new(3.13 * sin, 1.4, 3.13 * cos);
     Camera::look_at(eye, DVec3::ZERO, DVec3::Y, 0.75, f64::from(width) / f64::from(height), 0.1)
 }
 
-/// Surfels on the unit sphere, along a spiral, of two colours.
+/// Surfels on the unit sphere, along a spiral, in two colours.
 pub fn sphere(count: u32) -> Surfels {
     let point = |i: u32| {
         let y = 1.0 - 2.0 * (f64::from(i) + 0.5) / f64::from(count);
@@ -57,7 +57,7 @@ pub fn egg(count: u32) -> Surfels {
     }
 }
 
-/// A ring of `segments` times `segments` quads about `centre`, its axis along y.
+/// A torus of `segments` × `segments` quads around `centre`, its axis along y.
 pub fn torus(centre: Vec3, [large, small]: [f32; 2], segments: u32) -> Corners {
     let angle = |i: u32| i as f32 / segments as f32 * std::f32::consts::TAU;
     let corner = |i: u32, j: u32| {
@@ -73,7 +73,7 @@ pub fn torus(centre: Vec3, [large, small]: [f32; 2], segments: u32) -> Corners {
     quads.flat_map(triangles).collect()
 }
 
-/// A parallelogram about `centre`, with these halves of its sides.
+/// A parallelogram around `centre`, with these halves of its sides.
 pub fn parallelogram(centre: Vec3, [u, v]: [Vec3; 2]) -> Corners {
     let normal = u.cross(v).normalize();
     let corner = |a: f32, b: f32| [centre + a * u + b * v, normal];

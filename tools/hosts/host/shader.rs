@@ -1,4 +1,4 @@
-//! Shaders of the hosts, compiled beforehand.
+//! Precompiled shaders of the hosts.
 
 use super::{Host, Result};
 use ash::vk;
@@ -12,11 +12,11 @@ macro_rules! shader {
 }
 
 impl Host {
-    /// A module of SPIR-V, which the caller destroys.
+    /// Creates a module of SPIR-V, which the caller destroys.
     pub fn shader(&self, spirv: &[u8]) -> Result<vk::ShaderModule> {
         let words = ash::util::read_spv(&mut Cursor::new(spirv))?;
         let info = vk::ShaderModuleCreateInfo::default().code(&words);
-        // SAFETY: shaderc made the words.
+        // SAFETY: shaderc compiled the words.
         Ok(unsafe { self.device.create_shader_module(&info, None)? })
     }
 }

@@ -1,5 +1,5 @@
-//! Points that a compute shader of the host moves every frame: a torus with waves that run around its tube. Positions and normals are exact,
-//! of the surface's own formulas, so that there is nothing to upload and nothing to estimate.
+//! Simulation of points by a compute shader: a torus with waves around its tube. Positions and normals are exact, by the surface's
+//! formulas, so nothing is uploaded or estimated.
 
 use super::{Host, Result};
 use ash::vk;
@@ -10,7 +10,7 @@ use surfel::geometry::Bounds;
 /// Bytes of a vertex.
 const STRIDE: u64 = 32;
 
-/// The points, and what moves them.
+/// The points and their simulation.
 pub struct Simulation {
     buffer: vk::Buffer,
     memory: vk::DeviceMemory,
@@ -19,12 +19,12 @@ pub struct Simulation {
     pool: vk::DescriptorPool,
     set: vk::DescriptorSet,
     pipeline: vk::Pipeline,
-    /// Points along either direction of the surface; a power of two.
+    /// Points per direction of the surface; a power of two.
     side: u32,
 }
 
 impl Simulation {
-    /// `side` times `side` points.
+    /// Creates `side` × `side` points.
     pub fn new(host: &Host, side: u32) -> Result<Self> {
         let size = u64::from(side).pow(2) * STRIDE;
         let info = vk::BufferCreateInfo::default().size(size).usage(vk::BufferUsageFlags::STORAGE_BUFFER);
@@ -35,7 +35,7 @@ impl Simulation {
         let push = [vk::PushConstantRange { stage_flags: vk::ShaderStageFlags::COMPUTE, offset: 0, size: 8 }];
         let sizes =
             [vk::DescriptorPoolSize::default().ty(vk::DescriptorType::STORAGE_BUFFER).descriptor_count(1)];
-        // SAFETY: a plain use of Vulkan; `destroy` destroys what is made.
+        // SAFETY: plain Vulkan; `destroy` destroys the objects.
         unsafe {
             let device = &host.device;
             let buffer = device.create_buffer(&info, None)?;
@@ -64,7 +64,7 @@ impl Simulation {
         }
     }
 
-    /// What surfels are told of the points.
+    /// Description of the points for [`Scene::from_buffers`](surfel::Scene::from_buffers).
     pub fn buffers(&self) -> Buffers {
         let count = u64::from(self.side).pow(2);
         let values = |offset, format| Values {
@@ -88,14 +88,14 @@ impl Simulation {
         }
     }
 
-    /// Records that the points are moved to where they are at a time, between frames that show them.
+    /// Records the motion of the points to a time, between frames that show them.
     pub fn step(&self, host: &Host, cmd: vk::CommandBuffer, time: f32) {
         let compute = vk::PipelineStageFlags::COMPUTE_SHADER;
         let seen = vk::MemoryBarrier::default()
             .src_access_mask(vk::AccessFlags::SHADER_WRITE)
             .dst_access_mask(READ_ACCESS);
         let push = [time.to_bits(), self.side];
-        // SAFETY: recorded outside a render pass, with what is alive until the GPU is done.
+        // SAFETY: recorded outside a render pass, with objects that outlive the GPU's use.
         unsafe {
             let (device, none) = (&host.device, vk::DependencyFlags::empty());
             // The frame before may still be reading.
@@ -110,7 +110,7 @@ impl Simulation {
         }
     }
 
-    /// Destroys it, once the GPU is done with it.
+    /// Destroys the simulation, once the GPU has finished using it.
     pub fn destroy(self, host: &Host) {
         // SAFETY: by the caller.
         unsafe {
@@ -126,7 +126,7 @@ impl Simulation {
 }
 
 unsafe fn pipeline(host: &Host, layout: vk::PipelineLayout) -> Result<vk::Pipeline> {
-    // SAFETY: by the caller: a plain use of Vulkan.
+    // SAFETY: by the caller: plain Vulkan.
     unsafe {
         let module = host.shader(shader!("simulation_compute"))?;
         let stage = vk::PipelineShaderStageCreateInfo::default()

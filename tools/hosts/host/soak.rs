@@ -1,46 +1,46 @@
 //! Soak test of a window: many frames, changes of size and of surfels.
 
-/// So many frames have the same size.
+/// Number of frames of one size.
 const SIZE_EVERY: u64 = 20;
-/// So many frames show the same surfels: changes of both fall together now and then, and mostly do not.
+/// Number of frames with the same surfels: both changes coincide only now and then.
 const SURFELS_EVERY: u64 = 25;
-/// Frames of a soak test unless a number is given.
+/// Default number of frames.
 pub const FRAMES: u64 = 1000;
 
-/// What comes before the next frame.
+/// Actions before the next frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Step {
-    /// Px that the window is to have.
+    /// New size of the window, px.
     pub size: Option<[u32; 2]>,
-    /// Whether the surfels are to be others.
+    /// Whether to change the surfels.
     pub change: bool,
 }
 
 impl Step {
-    /// All stays as it is.
+    /// No change.
     pub const STAY: Self = Self { size: None, change: false };
 }
 
-/// How far a soak is.
+/// State of a soak test.
 #[derive(Clone, Debug)]
 pub struct Soak {
     frames: u64,
     drawn: u64,
     changes: u64,
-    /// The size that was asked for and not seen yet.
+    /// The requested size, until it arrives.
     requested: Option<[u32; 2]>,
-    /// How many sizes came, and how many did not before the next was asked for.
+    /// Number of sizes that arrived, and of those that did not before the next request.
     taken: u64,
     missed: u64,
 }
 
 impl Soak {
-    /// A soak of so many frames.
+    /// A soak test of `frames` frames.
     pub fn new(frames: u64) -> Self {
         Self { frames, drawn: 0, changes: 0, requested: None, taken: 0, missed: 0 }
     }
 
-    /// What comes after a frame of `size` px; `None` at the end.
+    /// The actions after a frame of `size` px; `None` at the end.
     pub fn next(&mut self, size: [u32; 2]) -> Option<Step> {
         self.drawn += 1;
         self.taken += u64::from(self.requested.take_if(|requested| *requested == size).is_some());
@@ -56,9 +56,9 @@ impl Soak {
         Some(Step { size, change })
     }
 
-    /// What was seen; an error where the window did not follow.
+    /// Summary; an error if the window did not follow.
     pub fn end(&self) -> Result<String, String> {
-        // The last size may come after the end.
+        // The last size may arrive after the end.
         let Self { drawn, taken, missed, changes, .. } = self;
         match missed {
             0 => Ok(format!("{drawn} frames, size changed {taken} times, surfels {changes} times")),
@@ -67,7 +67,7 @@ impl Soak {
     }
 }
 
-/// The sizes in turns, px; the smallest that there is among them.
+/// The size of a turn, px; includes the smallest one.
 fn size_of(turn: u64) -> [u32; 2] {
     let turn = turn as u32;
     match turn % 10 {

@@ -1,4 +1,4 @@
-//! A sphere of surfels, and a ring of triangles that goes through it.
+//! A sphere of surfels, and a torus that intersects it.
 
 use super::arguments::Arguments;
 use super::composite::Content;
@@ -12,26 +12,26 @@ use surfel::Instance;
 use surfel::geometry::Camera;
 use surfel::vk::Device;
 
-/// Number of surfels, if none is asked for.
+/// Default number of surfels.
 const COUNT: u32 = 200_000;
 
-/// The sphere, or another model in its place.
+/// The sphere, or another model.
 pub struct Sphere(Models);
 
-/// The models of it.
+/// The models.
 pub fn models(device: &Arc<Device>, arguments: &Arguments) -> Result<Models> {
     Models::new(device, arguments, |count| Ok(scene::sphere(count)), COUNT)
 }
 
-/// The ring.
+/// The torus.
 pub fn ring() -> Corners {
     scene::torus(Vec3::ZERO, [1.0, 0.22], 96)
 }
 
-/// How fast it is gone round, rad/s.
+/// Angular speed of the camera, rad/s.
 const SPEED: f64 = 0.5;
 
-/// From where it is seen after so many seconds.
+/// Camera at a time in seconds.
 pub fn camera(seconds: f64, size: [u32; 2]) -> surfel::Result<Camera> {
     scene::camera(SPEED * seconds, size)
 }

@@ -1,4 +1,4 @@
-//! What a window shows, as Vulkan sees it.
+//! Window surfaces.
 
 use super::{Host, Result};
 use ash::{khr, vk};
@@ -8,13 +8,13 @@ use winit::window::Window;
 /// The surface of a window.
 pub struct Surface {
     pub raw: vk::SurfaceKHR,
-    /// Of sRGB, which encodes linear light itself.
+    /// An sRGB format, which encodes linear light.
     pub format: vk::SurfaceFormatKHR,
     loader: khr::surface::Instance,
 }
 
 impl Surface {
-    /// The surface of `window`, which must outlive it.
+    /// Creates the surface of `window`, which must outlive it.
     pub fn new(host: &Host, window: &Window) -> Result<Self> {
         let loader = khr::surface::Instance::new(&host._entry, &host.instance);
         let (display, handle) = (window.display_handle()?.as_raw(), window.window_handle()?.as_raw());
@@ -33,7 +33,7 @@ impl Surface {
         Ok(Self { raw, format, loader })
     }
 
-    /// What its swapchain has to be, in a window of `size` px; `None` where there is nothing to be seen.
+    /// Parameters of a swapchain in a window of `size` px; `None` if the window has no extent.
     pub fn wants(&self, host: &Host, size: [u32; 2]) -> Result<Option<vk::SwapchainCreateInfoKHR<'static>>> {
         // SAFETY: the surface is alive.
         let can = unsafe { self.loader.get_physical_device_surface_capabilities(host.physical, self.raw)? };
@@ -64,7 +64,7 @@ impl Surface {
         Ok(Some(info))
     }
 
-    /// Destroys it, after its swapchain and before the window.
+    /// Destroys the surface, after its swapchain and before the window.
     pub fn destroy(self) {
         // SAFETY: by the caller.
         unsafe { self.loader.destroy_surface(self.raw, None) };

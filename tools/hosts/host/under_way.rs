@@ -1,22 +1,22 @@
-//! Frames that the GPU is at while the next ones are recorded.
+//! Frames in flight.
 
 use super::{Host, Result, Submitted};
 use ash::vk;
 use std::collections::VecDeque;
 
-/// Frames under way, so many at most.
+/// A limited number of frames in flight.
 pub struct UnderWay {
     most: usize,
     frames: VecDeque<Submitted>,
 }
 
 impl UnderWay {
-    /// None yet, of so many.
+    /// No frames yet, at most `most`.
     pub fn new(most: u32) -> Self {
         Self { most: most as usize, frames: VecDeque::new() }
     }
 
-    /// Records and submits a frame, once the GPU is done with all but the last.
+    /// Records and submits a frame, once the GPU has finished all but the last.
     pub fn submit<T>(&mut self, host: &Host, body: impl FnOnce(vk::CommandBuffer) -> Result<T>) -> Result<T> {
         while self.is_full() {
             self.wait(host)?;
@@ -26,12 +26,12 @@ impl UnderWay {
         Ok(made)
     }
 
-    /// Whether the next has to wait for the oldest.
+    /// Whether the next frame must wait for the oldest.
     pub fn is_full(&self) -> bool {
         self.frames.len() >= self.most
     }
 
-    /// Waits for the oldest; whether there was one.
+    /// Waits for the oldest frame; returns whether there was one.
     pub fn wait(&mut self, host: &Host) -> Result<bool> {
         let oldest = self.frames.pop_front();
         let is_some = oldest.is_some();
@@ -39,7 +39,7 @@ impl UnderWay {
         Ok(is_some)
     }
 
-    /// Waits for all.
+    /// Waits for all frames.
     pub fn finish(&mut self, host: &Host) -> Result<()> {
         while self.wait(host)? {}
         Ok(())

@@ -1,4 +1,4 @@
-//! The host's frames against the engine's own.
+//! Comparison of the host's frames with the engine's.
 
 use crate::Result;
 use crate::arguments::Arguments;
@@ -14,16 +14,16 @@ use surfel::{Outputs, Picture, RenderOptions, Renderer, Scene, Settings};
 
 const METHODS: [&str; 3] = ["perspective-ewa", "sprites-unfiltered", "pull-push"];
 const NOTHING: Parts = Parts { ring: false, surfels: false, glass: false };
-/// Part of a depth by which sums that are added in another order may be off.
+/// Relative depth difference of sums with another order of terms.
 const ORDER: f32 = 2e-5;
 
-/// A frame as the CPU has it: sRGB codes, and depths of one sample.
+/// A frame on the CPU: sRGB codes, and single-sample depths.
 struct Shot {
     colours: Vec<[u8; 4]>,
     depths: Vec<f32>,
 }
 
-/// Compares frames by several methods; an error where they differ.
+/// Compares frames of several methods; an error if they differ.
 pub fn all() -> Result<()> {
     let gpu = Gpu::open(&instance()?, None)?;
     let name = gpu.adapter.get_info().name;
@@ -53,7 +53,7 @@ pub fn all() -> Result<()> {
     Ok(())
 }
 
-/// The engine's own frame.
+/// The engine's frame.
 fn own(device: &std::sync::Arc<Device>, settings: &Settings) -> Result<Picture> {
     let outputs = Outputs { depth: true, ..Default::default() };
     let mut renderer = Renderer::new(device, RenderOptions { size: SIZE, outputs, ..Default::default() })?;
@@ -68,7 +68,7 @@ fn shot(gpu: &Gpu, frame: &Frame, demo: &mut Demo, parts: Parts) -> Result<Shot>
     Ok(Shot { colours, depths: bytemuck::pod_collect_to_vec(&depths) })
 }
 
-/// Surfels alone are the engine's own, within a code, and their depth is 0.1 over the distance.
+/// Checks that surfels alone equal the engine's up to one code, and that their depth is 0.1 over the distance.
 fn alone(found: &Shot, own: &Picture) -> Result<()> {
     let coded = |linear: f32| {
         let linear = linear.clamp(0.0, 1.0);
@@ -95,7 +95,7 @@ fn alone(found: &Shot, own: &Picture) -> Result<()> {
     }
 }
 
-/// Each pixel of both is the ring's or the surfels', whichever is nearer.
+/// Checks that each pixel of both shows the nearer one of ring and surfels.
 fn among(ring: &Shot, surfels: &Shot, both: &Shot) -> Result<String> {
     let (mut hidden, mut wrong) = ([0, 0], 0);
     for i in 0..both.colours.len() {
@@ -120,7 +120,7 @@ fn among(ring: &Shot, surfels: &Shot, both: &Shot) -> Result<String> {
     }
 }
 
-/// Glass that is drawn after the surfels is seen where it is nearer than what is there.
+/// Checks that glass, drawn after the surfels, is visible where it is nearest.
 fn glass(before: &Shot, after: &Shot) -> Result<String> {
     let camera = camera(0.0, SIZE)?;
     let [mut seen, mut hidden, mut wrong] = [0; 3];
@@ -134,7 +134,7 @@ fn glass(before: &Shot, after: &Shot) -> Result<String> {
         hidden += usize::from(!nearer);
         wrong += usize::from(nearer != (before.colours[i] != after.colours[i]));
     }
-    // Edges of triangles are where floats put them.
+    // Edges of triangles depend on float rounding.
     match (seen.min(hidden) > 5_000, wrong * 1000 <= before.colours.len()) {
         (true, true) => {
             Ok(format!("{hidden} px of the glass are hidden, {seen} are seen, {wrong} are wrong"))
@@ -143,7 +143,7 @@ fn glass(before: &Shot, after: &Shot) -> Result<String> {
     }
 }
 
-/// Depth of the pane at the middle of a pixel, in float64.
+/// Depth of the glass at the centre of a pixel, in float64.
 fn pane(camera: &Camera, at: [u32; 2]) -> Option<f64> {
     let [centre, u, v] = PANE.map(|v| v.as_dvec3());
     let back = camera.world_to_clip().inverse();

@@ -1,4 +1,4 @@
-//! A frame of the host: what is opaque, the surfels, and a pane of glass after them.
+//! A frame of the host: opaque geometry, the surfels, and then a pane of glass.
 
 use crate::Result;
 use crate::arguments::Arguments;
@@ -12,17 +12,17 @@ use std::path::Path;
 use surfel::Settings;
 use surfel::geometry::{Camera, Surfels};
 
-/// All that a frame shows.
+/// Contents of the frames.
 pub struct Demo {
     pub embedded: Embedded,
     pub settings: Settings,
-    /// The surfels that are shown, and those that are not.
+    /// The visible surfels, and the others.
     models: [Surfels; 2],
     ring: Mesh,
     glass: Mesh,
 }
 
-/// What of it a frame shows.
+/// Visible parts of a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Parts {
     pub ring: bool,
@@ -30,14 +30,14 @@ pub struct Parts {
     pub glass: bool,
 }
 
-/// Number of surfels, if none is asked for.
+/// Default number of surfels.
 pub const SURFELS: u32 = 200_000;
 
-/// The pane: its centre and the halves of its sides, which are at right angles.
+/// The glass: its centre and the halves of its sides, which are orthogonal.
 pub const PANE: [Vec3; 3] = [Vec3::new(0.6, 0.1, 0.75), Vec3::new(0.6, 0.0, -0.3), Vec3::new(0.0, 0.55, 0.0)];
 
 impl Demo {
-    /// What is asked for, in frames of so many samples a pixel.
+    /// Creates the contents for frames with `samples` samples per pixel.
     pub fn new(gpu: &Gpu, arguments: &Arguments, samples: u32) -> Result<Self> {
         let [centre, u, v] = PANE;
         let ring = torus(Vec3::ZERO, [1.0, 0.22], 96);
@@ -52,13 +52,13 @@ impl Demo {
         })
     }
 
-    /// The other surfels from the next frame on.
+    /// Shows the other surfels from the next frame on.
     pub fn change(&mut self, gpu: &Gpu) -> Result<()> {
         self.models.reverse();
         self.embedded.set_surfels(gpu, &self.models[0])
     }
 
-    /// Records a frame: commands to be submitted at once, in this order.
+    /// Records a frame: commands to submit at once, in this order.
     pub fn record(
         &mut self,
         gpu: &Gpu,
@@ -86,12 +86,12 @@ impl Demo {
     }
 }
 
-/// The camera for clip space as wgpu has it, whose y points up.
+/// The camera for wgpu's clip space, whose y points up.
 fn upwards(camera: &Camera) -> Camera {
     Camera { projection: DMat4::from_scale(DVec3::new(1.0, -1.0, 1.0)) * camera.projection, ..*camera }
 }
 
-/// Renders a frame and writes it to `file`, a PNG.
+/// Renders a frame to `file`, a PNG.
 pub fn picture(arguments: &Arguments, file: &Path) -> Result<()> {
     let gpu = Gpu::open(&instance()?, None)?;
     let frame = Frame::new(&gpu, SIZE, 4);

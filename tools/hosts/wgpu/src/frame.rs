@@ -1,10 +1,10 @@
-//! What the host draws into, and how a picture of it is read.
+//! The host's render targets, and their readback.
 
 use crate::Result;
 use crate::gpu::Gpu;
 use std::sync::mpsc;
 
-/// Colour and depth of a frame, and where its colour is resolved if it is multisampled.
+/// Colour and depth of a frame, and the resolved colour if multisampled.
 pub struct Frame {
     pub size: [u32; 2],
     pub samples: u32,
@@ -14,7 +14,7 @@ pub struct Frame {
 }
 
 pub const COLOUR: wgpu::TextureFormat = wgpu::TextureFormat::Rgba8UnormSrgb;
-/// Depth falls with distance: greater is nearer.
+/// Reversed depth: greater is nearer.
 pub const DEPTH: wgpu::TextureFormat = wgpu::TextureFormat::Depth32Float;
 
 impl Frame {
@@ -34,7 +34,7 @@ impl Frame {
             })
         };
         let read = Usage::COPY_SRC | Usage::TEXTURE_BINDING;
-        // Samples are only drawn and resolved.
+        // Multisampled textures are only drawn and resolved.
         let of_one = if samples == 1 { read } else { Usage::empty() };
         Self {
             size,
@@ -45,12 +45,12 @@ impl Frame {
         }
     }
 
-    /// Where the picture is when the frame is over.
+    /// The texture with the final picture.
     pub fn picture(&self) -> &wgpu::Texture {
         self.resolved.as_ref().unwrap_or(&self.colour)
     }
 
-    /// Begins a pass on it: the first, which clears it, or the last, which resolves it.
+    /// Begins a pass: the first clears the targets, the last resolves them.
     pub fn begin<'a>(&self, encoder: &'a mut wgpu::CommandEncoder, first: bool) -> wgpu::RenderPass<'a> {
         let view = |texture: &wgpu::Texture| texture.create_view(&wgpu::TextureViewDescriptor::default());
         let load = if first { wgpu::LoadOp::Clear(wgpu::Color::BLACK) } else { wgpu::LoadOp::Load };
@@ -73,7 +73,7 @@ impl Frame {
         })
     }
 
-    /// The bytes of a texture of 4 bytes a pixel.
+    /// The bytes of a texture with 4 bytes per pixel.
     pub fn read(&self, gpu: &Gpu, texture: &wgpu::Texture) -> Result<Vec<u8>> {
         let row = 4 * self.size[0];
         let padded = row.next_multiple_of(wgpu::COPY_BYTES_PER_ROW_ALIGNMENT);

@@ -1,4 +1,4 @@
-//! wgpu's device, and how surfels borrow it.
+//! wgpu's device, and its import into the engine.
 
 use crate::Result;
 use ash::ext;
@@ -8,23 +8,23 @@ use surfel::vk::{Device, DeviceLimits};
 use wgpu::hal::vulkan::Api as Vulkan;
 use wgpu::{DownlevelFlags, Features};
 
-/// What of wgpu all of this host uses.
+/// The wgpu objects of this host.
 pub struct Gpu {
     pub device: wgpu::Device,
     pub queue: wgpu::Queue,
     pub adapter: wgpu::Adapter,
 }
 
-/// wgpu's names of what surfels can use of a device.
+/// Features of wgpu that correspond to the engine's optional features.
 const FLOAT_ATOMICS: Features = Features::SHADER_FLOAT32_ATOMIC;
 const INT64_ATOMICS: Features = Features::SHADER_INT64.union(Features::SHADER_INT64_ATOMIC_MIN_MAX);
 
-/// wgpu on Vulkan, under the validation layers where they are installed, to which it listens.
+/// wgpu on Vulkan, with the validation layers if they are installed.
 pub fn instance() -> Result<wgpu::Instance> {
     use wgpu::hal;
     let descriptor = hal::InstanceDescriptor {
         name: "surfels in wgpu",
-        // The flag DEBUG would listen, too, but name WGSL in shaders, which older layers take for an error.
+        // The flag DEBUG would also report messages, but names WGSL in shaders, which older layers reject.
         flags: wgpu::InstanceFlags::VALIDATION,
         memory_budget_thresholds: wgpu::MemoryBudgetThresholds::default(),
         backend_options: wgpu::BackendOptions::default(),
@@ -39,7 +39,7 @@ pub fn instance() -> Result<wgpu::Instance> {
             args.extensions.push(name);
         }
     });
-    // SAFETY: the callback turns nothing off; wgpu owns the instance from here on.
+    // SAFETY: the callback disables nothing; wgpu owns the instance from here on.
     unsafe {
         let made = hal::vulkan::Instance::init_with_callback(&descriptor, Some(listening))?;
         Ok(wgpu::Instance::from_hal::<Vulkan>(made))
@@ -47,7 +47,7 @@ pub fn instance() -> Result<wgpu::Instance> {
 }
 
 impl Gpu {
-    /// A device that can present to `surface`, if one is given.
+    /// Opens a device that can present to `surface`, if given.
     pub fn open(instance: &wgpu::Instance, surface: Option<&wgpu::Surface<'_>>) -> Result<Self> {
         let options = wgpu::RequestAdapterOptions {
             power_preference: wgpu::PowerPreference::HighPerformance,
@@ -57,7 +57,7 @@ impl Gpu {
         let adapter = pollster::block_on(instance.request_adapter(&options))?;
         let wanted = wgpu::DeviceDescriptor {
             label: Some("host"),
-            // wgpu enables what surfels can use by features of its own.
+            // The optional features of the engine, by wgpu's names.
             required_features: adapter.features() & (FLOAT_ATOMICS | INT64_ATOMICS),
             required_limits: wgpu::Limits::default().using_resolution(adapter.limits()),
             ..Default::default()
@@ -66,9 +66,9 @@ impl Gpu {
         Ok(Self { device, queue, adapter })
     }
 
-    /// The device as surfels borrow it. What is returned, and all that is made on it, must be gone before the device.
+    /// Imports the device into the engine. The result, and all objects created on it, must be dropped before the device.
     pub fn external_device(&self) -> Result<Arc<Device>> {
-        // SAFETY: nothing of wgpu's is destroyed, and what is said of the device is true.
+        // SAFETY: nothing of wgpu's is destroyed, and the description of the device is correct.
         unsafe {
             let device = self.device.as_hal::<Vulkan>().ok_or("wgpu does not use Vulkan")?;
             let shared = device.shared_instance();
@@ -89,7 +89,7 @@ impl Gpu {
         }
     }
 
-    /// What wgpu has enabled: features where they were asked for, and what its downlevel flags stand for wherever it is there.
+    /// The features that wgpu has enabled: requested ones, and those behind its downlevel flags wherever they are supported.
     fn enabled(&self) -> Abilities {
         let features = self.device.features();
         let flags = self.adapter.get_downlevel_capabilities().flags;
@@ -101,7 +101,7 @@ impl Gpu {
         }
     }
 
-    /// Waits until the GPU has done what was submitted: all of it, or up to `index`.
+    /// Waits until the GPU has executed all submissions, or those up to `index`.
     pub fn wait(&self, index: Option<wgpu::SubmissionIndex>) -> Result<()> {
         self.device.poll(wgpu::PollType::Wait { submission_index: index, timeout: None })?;
         Ok(())

@@ -1,14 +1,14 @@
-//! What wgpu and the validation layers say. wgpu hands it to `log`.
+//! Messages of wgpu and of the validation layers, which wgpu passes to `log`.
 
 use crate::Result;
 use std::sync::Mutex;
 
-/// Keeps warnings and errors of Vulkan, and prints all.
+/// Prints all messages, and keeps Vulkan's warnings and errors.
 pub struct Listener(Mutex<Vec<String>>);
 
 static LISTENER: Listener = Listener(Mutex::new(Vec::new()));
 
-/// Listens from now on. wgpu asks the layers for what is listened to when its instance is made.
+/// Installs the logger. wgpu configures the layers by the log level when its instance is created.
 pub fn install() -> Result<&'static Listener> {
     log::set_logger(&LISTENER).map_err(|error| error.to_string())?;
     log::set_max_level(log::LevelFilter::Warn);
@@ -16,7 +16,7 @@ pub fn install() -> Result<&'static Listener> {
 }
 
 impl Listener {
-    /// An error if Vulkan has said anything.
+    /// Returns an error if there were messages of Vulkan.
     pub fn silent(&self) -> Result<()> {
         let said = self.0.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
         if said.is_empty() { Ok(()) } else { Err(format!("{} messages of Vulkan", said.len()).into()) }

@@ -1,5 +1,5 @@
-//! A host that draws with wgpu, and surfels among what it draws:
-//! `cargo run --manifest-path tools/hosts/wgpu/Cargo.toml -- [FILE.png | --window | --soak | --check]`.
+//! A host that draws with wgpu, with surfels in its frames:
+//!    `cargo run --manifest-path tools/hosts/wgpu/Cargo.toml -- [FILE.png | --window | --soak | --check]`.
 
 #[path = "../../host/arguments.rs"]
 mod arguments;
@@ -20,7 +20,7 @@ mod window;
 
 use arguments::{Arguments, Mode};
 
-/// Whatever goes wrong.
+/// A result with any error.
 type Result<T> = std::result::Result<T, Box<dyn std::error::Error>>;
 
 fn main() -> Result<()> {

@@ -1,4 +1,4 @@
-//! Triangles of the host's own, in WGSL.
+//! The host's own triangles, in WGSL.
 
 use crate::frame::{COLOUR, DEPTH};
 use crate::gpu::Gpu;
@@ -6,12 +6,12 @@ use crate::scene::{Corners, TO_LIGHT};
 use glam::Mat4;
 use wgpu::util::DeviceExt;
 
-/// How a mesh is drawn.
+/// Shading of a mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Look {
-    /// Lit, and hides what is behind it.
+    /// Lit and opaque.
     Lit,
-    /// Blended over what is behind it.
+    /// Blended over the background.
     Glass,
 }
 
@@ -24,11 +24,11 @@ pub struct Mesh {
     pipeline: wgpu::RenderPipeline,
 }
 
-/// World → clip space, and the light, as `mesh.wgsl` has them.
+/// Size of world → clip space and light, in the layout of `mesh.wgsl`, bytes.
 const VIEW_BYTES: u64 = 80;
 
 impl Mesh {
-    /// A mesh of `corners` in frames of so many samples a pixel.
+    /// A mesh of `corners` for frames with `samples` samples per pixel.
     pub fn new(gpu: &Gpu, corners: &Corners, look: Look, samples: u32) -> Self {
         let floats: Vec<f32> = corners.iter().flatten().flat_map(|v| v.to_array()).collect();
         let buffer = gpu.device.create_buffer_init(&wgpu::util::BufferInitDescriptor {
@@ -51,7 +51,7 @@ impl Mesh {
         Self { corners: buffer, count: corners.len() as u32, view, group, pipeline }
     }
 
-    /// How it is seen in the next submission.
+    /// Sets the camera of the next submission.
     pub fn look_from(&self, gpu: &Gpu, world_to_clip: Mat4) {
         let floats = [&world_to_clip.to_cols_array()[..], &TO_LIGHT.extend(0.0).to_array()].concat();
         gpu.queue.write_buffer(&self.view, 0, bytemuck::cast_slice(&floats));

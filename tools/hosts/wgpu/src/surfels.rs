@@ -1,6 +1,7 @@
-//! Surfels between two passes of wgpu: a render pass of raw Vulkan on wgpu's own textures, in an encoder of its own.
+//! Surfels between two passes of wgpu: a raw Vulkan render pass on wgpu's textures, in a separate encoder.
 //!
-//! wgpu's passes cannot be entered, but it says in which state it leaves a texture, and what is recorded raw leaves it so again.
+//! wgpu does not allow other code inside its passes, but it documents the state in which it leaves a texture; the raw commands leave it in
+//! the same state.
 
 use crate::Result;
 use crate::frame::{COLOUR, Frame};
@@ -13,19 +14,19 @@ use surfel::vk::Device;
 use surfel::{Precision, Scene, Settings};
 use wgpu::hal::vulkan::Api as Vulkan;
 
-/// Surfels with what draws them into frames of wgpu. The GPU must be done with it when it is dropped.
+/// Surfels and their renderer for frames of wgpu. The GPU must have finished using it when it is dropped.
 pub struct Embedded {
-    // Fields are dropped in this order: the pass after what is made of it, and wgpu's device last.
+    // Drop order: the render pass after the objects that use it, and wgpu's device last.
     renderer: Renderer,
     scene: Arc<Scene>,
-    /// The device as it was lent.
+    /// wgpu's device, imported into the engine.
     device: Arc<Device>,
     attached: Option<Attached>,
     pass: RawPass,
     _device: wgpu::Device,
 }
 
-/// A frame's textures as the render pass sees them.
+/// A frame's textures, as attachments.
 struct Attached {
     framebuffer: vk::Framebuffer,
     _views: [wgpu::TextureView; 2],
@@ -39,7 +40,7 @@ struct RawPass {
     device: ash::Device,
 }
 
-/// How many frames may be under way.
+/// Number of frames in flight.
 pub const FRAMES_IN_FLIGHT: u32 = 2;
 
 const LAYOUTS: [vk::ImageLayout; 2] =
@@ -47,7 +48,7 @@ const LAYOUTS: [vk::ImageLayout; 2] =
 const DEPTH: vk::Format = vk::Format::D32_SFLOAT;
 
 impl Embedded {
-    /// Uploads `surfels`, for frames of so many samples a pixel.
+    /// Uploads `surfels`, for frames with `samples` samples per pixel.
     pub fn new(gpu: &Gpu, surfels: &Surfels, samples: u32) -> Result<Self> {
         let device = gpu.external_device()?;
         let scene = upload(gpu, &device, surfels)?;
@@ -77,18 +78,18 @@ impl Embedded {
             precision: Precision::Full,
             rasterizer: None,
         };
-        // SAFETY: the target is this pass, which goes after the renderer.
+        // SAFETY: the target is this pass, which outlives the renderer.
         let renderer = unsafe { Renderer::new(&device, options)? };
         Ok(Self { renderer, scene, device, attached: None, pass, _device: gpu.device.clone() })
     }
 
-    /// Shows other surfels from the next frame on; the renderer keeps those of frames that are under way.
+    /// Shows other surfels from the next frame on; the renderer keeps those of frames in flight.
     pub fn set_surfels(&mut self, gpu: &Gpu, surfels: &Surfels) -> Result<()> {
         self.scene = upload(gpu, &self.device, surfels)?;
         Ok(())
     }
 
-    /// From now on the surfels go into `frame`. The GPU is done with the one before.
+    /// Draws the surfels into `frame` from now on. The GPU has finished the frames before.
     pub fn attach(&mut self, frame: &Frame) -> Result<()> {
         let views = [&frame.colour, &frame.depth].map(|texture| texture.create_view(&Default::default()));
         // SAFETY: wgpu's views are kept as long as the framebuffer.
@@ -104,19 +105,19 @@ impl Embedded {
             .height(height)
             .layers(1);
         let device = self.pass.device.clone();
-        // SAFETY: a plain use of Vulkan; `drop` destroys it.
+        // SAFETY: plain Vulkan; `drop` destroys the framebuffer.
         let framebuffer = unsafe { device.create_framebuffer(&info, None)? };
         self.attached = Some(Attached { framebuffer, _views: views, size: frame.size, device });
         Ok(())
     }
 
-    /// Commands that draw the surfels, to be submitted between a pass of wgpu on the frame and another: each leaves its textures as colour and
-    /// depth target.
+    /// Commands that draw the surfels, to be submitted between two passes of wgpu on the frame: its textures are colour and depth targets
+    /// before and after.
     pub fn record(&mut self, gpu: &Gpu, camera: &Camera, settings: &Settings) -> Result<wgpu::CommandBuffer> {
         let Some(Attached { framebuffer, size: [width, height], device, .. }) = &self.attached else {
             return Err("surfels without a frame".into());
         };
-        // wgpu turns its viewports over: y points up.
+        // wgpu flips its viewports: y points up.
         let (width, height) = (*width, *height);
         let viewport = vk::Viewport {
             x: 0.0,
@@ -134,8 +135,8 @@ impl Embedded {
             .render_area(area);
         let mut encoder =
             gpu.device.create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("surfels") });
-        // SAFETY: prepared outside the pass and drawn inside it; what is recorded goes to the only queue after what was recorded before, and
-        // the caller lets no more frames be under way than the renderer was told.
+        // SAFETY: prepared outside the pass and drawn inside it; the commands are submitted to the only queue in the order of recording,
+        // and the caller limits the frames in flight to the declared number.
         unsafe {
             encoder.as_hal_mut::<Vulkan, _, _>(|raw| {
                 let cmd = raw.ok_or("wgpu does not record")?.raw_handle();
@@ -150,10 +151,10 @@ impl Embedded {
     }
 }
 
-/// Surfels on the device.
+/// Uploads surfels to the device.
 fn upload(gpu: &Gpu, device: &Arc<Device>, surfels: &Surfels) -> Result<Arc<Scene>> {
     let mut encoder = gpu.device.create_command_encoder(&Default::default());
-    // SAFETY: recorded outside a render pass; the staging memory stays until the GPU is done.
+    // SAFETY: recorded outside a render pass; the staging memory is kept until the GPU has finished.
     let (scene, staging) = unsafe {
         encoder.as_hal_mut::<Vulkan, _, _>(|raw| {
             let cmd = raw.ok_or("wgpu does not record")?.raw_handle();
@@ -168,19 +169,19 @@ fn upload(gpu: &Gpu, device: &Arc<Device>, surfels: &Surfels) -> Result<Arc<Scen
 
 impl Drop for Attached {
     fn drop(&mut self) {
-        // SAFETY: whoever drops or replaces it says that the GPU is done with it.
+        // SAFETY: the caller of `attach` and `drop` guarantees that the GPU has finished using it.
         unsafe { self.device.destroy_framebuffer(self.framebuffer, None) };
     }
 }
 
 impl Drop for RawPass {
     fn drop(&mut self) {
-        // SAFETY: as above, and what was made of it is gone.
+        // SAFETY: as above, and the objects that use it are destroyed.
         unsafe { self.device.destroy_render_pass(self.raw, None) };
     }
 }
 
-/// A pass over what wgpu has drawn, which takes its textures and leaves them as wgpu's own passes do.
+/// A render pass over wgpu's output that keeps its textures in the layouts of wgpu's passes.
 fn render_pass(
     device: &ash::Device,
     colour: vk::Format,
@@ -208,11 +209,11 @@ fn render_pass(
         .attachments(&attachments)
         .subpasses(&subpass)
         .dependencies(&dependencies);
-    // SAFETY: a plain use of Vulkan; `drop` destroys it.
+    // SAFETY: plain Vulkan; `drop` destroys the pass.
     Ok(unsafe { device.create_render_pass(&info, None)? })
 }
 
-/// The pass waits for wgpu's before it and holds up those after it: wgpu, to which its textures do not change, has no barrier there.
+/// The pass waits for wgpu's before it and blocks those after it: wgpu inserts no barrier there, because for it the textures do not change.
 fn dependencies() -> [vk::SubpassDependency; 2] {
     use vk::{AccessFlags as Access, PipelineStageFlags as Stages};
     let stages = Stages::COLOR_ATTACHMENT_OUTPUT | Stages::EARLY_FRAGMENT_TESTS | Stages::LATE_FRAGMENT_TESTS;

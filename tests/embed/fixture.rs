@@ -1,4 +1,4 @@
-//! A host with a frame into which surfels are drawn.
+//! A host's frame with an embedded renderer.
 #![allow(dead_code, reason = "no test uses all of it")]
 
 use crate::host::Host;
@@ -13,10 +13,10 @@ use surfel::geometry::{Camera, Surfels};
 use surfel::vk::Device;
 use surfel::{Precision, Rasterizer, Scene, Settings};
 
-/// Width and height of what is drawn, px.
+/// Width and height of a frame, px.
 pub const SIZE: [u32; 2] = [160, 120];
 
-/// A host; `None`, said aloud, where there is no device. With `SURFEL_REQUIRE_GPU` set, the lack of one is a failure.
+/// Opens a host; without a device, prints a message and returns `None`. With `SURFEL_REQUIRE_GPU` set, it panics instead.
 pub fn open(wanted: fn(Abilities) -> Abilities) -> Option<Host> {
     match Host::open(wanted, true) {
         Ok(host) => Some(host),
@@ -33,15 +33,15 @@ pub fn assert_silent(host: &Host) {
     assert!(messages.is_empty(), "{} validation messages: {messages:#?}", messages.len());
 }
 
-/// A host's frame with the renderer that draws into it.
-pub struct Stand {
+/// A host's frame with an embedded renderer.
+pub struct Fixture {
     pub frame: Frame,
     pub renderer: Renderer,
     pub scene: Arc<Scene>,
     pub device: Arc<Device>,
 }
 
-impl Stand {
+impl Fixture {
     pub fn new(
         host: &Host,
         kind: Kind,
@@ -59,7 +59,7 @@ impl Stand {
         Self { frame, renderer, scene, device }
     }
 
-    /// A frame of the mesh, if there is one, and then the surfels.
+    /// Renders the mesh, if any, and then the surfels.
     pub fn render(
         &mut self,
         host: &Host,
@@ -112,7 +112,7 @@ pub fn camera() -> Camera {
     Camera::look_at(eye, DVec3::ZERO, DVec3::Y, 0.8, 4.0 / 3.0, 0.1).unwrap()
 }
 
-/// The same with depth that rises with distance, from 0 at the near plane to 1 at the far one.
+/// A camera with increasing depth, from 0 at the near plane to 1 at the far plane.
 pub fn rising() -> Camera {
     let (near, far) = (0.1, 50.0);
     let mut camera = camera();
@@ -132,7 +132,7 @@ pub fn viewport([width, height]: [u32; 2]) -> vk::Viewport {
     }
 }
 
-/// Distance from the eye plane and whether it is on the parallelogram, of what the ray through the middle of a pixel meets.
+/// Distance from the eye plane of the parallelogram along the ray through the centre of a pixel, if they intersect.
 pub fn meets(camera: &Camera, at: [u32; 2], centre: DVec3, sides: [DVec3; 2]) -> Option<f64> {
     let back: DMat4 = camera.world_to_clip().inverse();
     let clip = |depth: f64| {
